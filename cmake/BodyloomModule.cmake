@@ -1,0 +1,26 @@
+# bodyloom_module(NAME [PUBLIC lib...] [PRIVATE lib...])
+#   One folder = one static library bodyloom_NAME with alias bodyloom::NAME, made of every .cc file in the folder.
+#   Baseline CPU flags everywhere: Debian's libceres.a is built for SSE2, and mixing in AVX-compiled Eigen code breaks
+#   its aligned allocations (docs/concepts.md, "Why no -march=native"). SIMD lives in Eigen-free *_simd.cc files that
+#   pick their instruction set at run time.
+function(bodyloom_module name)
+  cmake_parse_arguments(ARG "" "" "PUBLIC;PRIVATE" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cc ${CMAKE_CURRENT_SOURCE_DIR}/*/*.cc)
+  add_library(bodyloom_${name} STATIC ${sources})
+  add_library(bodyloom::${name} ALIAS bodyloom_${name})
+  target_include_directories(bodyloom_${name} PUBLIC ${PROJECT_SOURCE_DIR})
+  target_link_libraries(bodyloom_${name} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
+  bodyloom_flags(bodyloom_${name})
+endfunction()
+
+# Warnings and sanitizers shared by every target of the project.
+function(bodyloom_flags target)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wno-unused-parameter)
+  if(BODYLOOM_WERROR)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+  if(BODYLOOM_SANITIZE)
+    target_compile_options(${target} PUBLIC -fsanitize=${BODYLOOM_SANITIZE} -fno-omit-frame-pointer)
+    target_link_options(${target} PUBLIC -fsanitize=${BODYLOOM_SANITIZE})
+  endif()
+endfunction()

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "data_tools/formats/atomic_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <stdexcept>
+#include <utility>
+
+namespace bodyloom {
+namespace {
+
+[[noreturn]] void Fail(const std::string& path, const std::string& action) {
+  throw std::runtime_error(path + ": cannot " + action + ": " + std::strerror(errno));
+}
+
+std::string TemporaryBeside(const std::string& target) {
+  const std::filesystem::path path(target);
+  const std::string name =
+      "." + path.stem().string() + ".tmp" + std::to_string(::getpid()) + path.extension().string();
+  return (path.parent_path() / name).string();
+}
+
+void SyncFolderOf(const std::string& path) {
+  std::string folder = std::filesystem::path(path).parent_path().string();
+  if (folder.empty()) folder = ".";
+  const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY);
+  if (fd < 0) return;  // not every file system lets a folder be opened; the rename itself has succeeded
+  ::fsync(fd);
+  ::close(fd);
+}
+
+}  // namespace
+
+std::string ReadFileBytes(const std::string& path, size_t max_bytes) {
+  const int fd = ::open(path.c_str(), O_RDONLY);
+  if (fd < 0) Fail(path, "open for reading");
+  struct stat info {};
+  if (::fstat(fd, &info) != 0 || !S_ISREG(info.st_mode)) {
+    ::close(fd);
+    throw std::runtime_error(path + ": not a regular file");
+  }
+  if (static_cast<size_t>(info.st_size) > max_bytes) {
+    ::close(fd);
+    throw std::runtime_error(path + ": " + std::to_string(info.st_size) + " bytes, at most " +
+                             std::to_string(max_bytes) + " are read");
+  }
+  std::string bytes(static_cast<size_t>(info.st_size), '\0');
+  size_t done = 0;
+  while (done < bytes.size()) {
+    const ssize_t n = ::read(fd, bytes.data() + done, bytes.size() - done);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) {
+      ::close(fd);
+      Fail(path, "read");
+    }
+    if (n == 0) break;
+    done += static_cast<size_t>(n);
+  }
+  ::close(fd);
+  bytes.resize(done);
+  return bytes;
+}
+
+void WriteFileAtomically(const std::string& path, const std::string& bytes) {
+  AtomicPath file(path);
+  const int fd = ::open(file.temporary().c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (fd < 0) Fail(path, "open for writing");
+  size_t done = 0;
+  while (done < bytes.size()) {
+    const ssize_t n = ::write(fd, bytes.data() + done, bytes.size() - done);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) {
+      const int reason = errno;
+      ::close(fd);
+      errno = reason;
+      Fail(path, "write (" + std::to_string(done) + " of " + std::to_string(bytes.size()) + " bytes written)");
+    }
+    done += static_cast<size_t>(n);
+  }
+  if (::close(fd) != 0) Fail(path, "close");
+  file.Commit();
+}
+
+AtomicPath::AtomicPath(std::string target) : target_(std::move(target)), temporary_(TemporaryBeside(target_)) {}
+
+AtomicPath::~AtomicPath() {
+  if (!committed_) ::unlink(temporary_.c_str());
+}
+
+void AtomicPath::Commit() {
+  const int fd = ::open(temporary_.c_str(), O_RDONLY | O_CLOEXEC);
+  if (fd < 0) Fail(target_, "finish (no output was written)");
+  const bool synced = ::fsync(fd) == 0;
+  ::close(fd);
+  if (!synced) Fail(target_, "flush to disk");
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) Fail(target_, "move the finished file into place");
+  committed_ = true;
+  SyncFolderOf(target_);
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Files appear whole or not at all: temporary file beside the target → write → fsync → rename → fsync of the folder.
+#pragma once
+
+#include <string>
+
+namespace bodyloom {
+
+/// Whole contents of a file. Throws std::runtime_error with path and reason; larger than max_bytes is refused.
+std::string ReadFileBytes(const std::string& path, size_t max_bytes = size_t{1} << 32);
+
+/// Writes `bytes` to `path` atomically. Throws std::runtime_error with path and reason (no folder, no permission, disk
+/// full); a failure leaves whatever stood at `path` untouched and no temporary behind.
+void WriteFileAtomically(const std::string& path, const std::string& bytes);
+
+/// For writers that need a path (video encoders): hands out a temporary path beside the target with the same extension;
+/// Commit() fsyncs and renames; the destructor removes the temporary when Commit was not called.
+class AtomicPath {
+ public:
+  explicit AtomicPath(std::string target);
+  ~AtomicPath();
+  AtomicPath(const AtomicPath&) = delete;
+  AtomicPath& operator=(const AtomicPath&) = delete;
+  [[nodiscard]] const std::string& temporary() const { return temporary_; }
+  void Commit();
+
+ private:
+  std::string target_, temporary_;
+  bool committed_ = false;
+};
+
+}  // namespace bodyloom

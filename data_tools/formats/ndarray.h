@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A typed n-dimensional array as it lies in .npy, .npz and pickle files: C order, little endian, owned bytes.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "geometry/arrays.h"
+
+namespace bodyloom {
+
+enum class DType { kBool, kI8, kU8, kI16, kU16, kI32, kU32, kI64, kU64, kF16, kF32, kF64, kBytes, kUnicode };
+
+struct NdArray {
+  DType dtype = DType::kF64;
+  std::vector<int64_t> shape;  ///< empty: a scalar
+  size_t item_size = 8;        ///< bytes an element (strings: width of an element)
+  std::string bytes;           ///< C order
+
+  [[nodiscard]] int64_t num_elements() const;
+  [[nodiscard]] std::string ShapeText() const;  ///< "576x72", "scalar"
+  [[nodiscard]] bool is_number() const { return dtype != DType::kBytes && dtype != DType::kUnicode; }
+  /// All elements converted; throws std::invalid_argument for string arrays.
+  [[nodiscard]] std::vector<double> ToDoubles() const;
+  [[nodiscard]] std::vector<float> ToFloats() const;
+  /// Elements of an integer or boolean array (floats only when integral); throws otherwise.
+  [[nodiscard]] std::vector<int64_t> ToInts() const;
+  /// Text elements of kBytes/kUnicode arrays (trailing NULs stripped, UTF-8).
+  [[nodiscard]] std::vector<std::string> ToStrings() const;
+  /// Rows×rest matrix: the first dimension is the row, the others are flattened (a scalar or vector gives n×1).
+  [[nodiscard]] RowMatrixXd ToMatrix() const;
+
+  static NdArray FromDoubles(const double* values, std::vector<int64_t> shape);
+  static NdArray FromFloats(const float* values, std::vector<int64_t> shape);
+  static NdArray FromInts32(const int32_t* values, std::vector<int64_t> shape);
+  static NdArray FromUInt8(const uint8_t* values, std::vector<int64_t> shape);
+  static NdArray FromStrings(const std::vector<std::string>& values);
+  static NdArray FromString(const std::string& value);  ///< scalar '<U'
+  static NdArray FromDouble(double value);              ///< scalar
+};
+
+}  // namespace bodyloom

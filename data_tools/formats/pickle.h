@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Reads Python pickles (protocols 0–5) without running anything.
+///
+/// An opcode machine that builds inert values. Only the globals on a fixed list are understood (numpy arrays, dtypes and
+/// scalars, scipy.sparse csc/csr matrices, chumpy.ch.Ch, collections.OrderedDict, _codecs.encode, object
+/// reconstruction); any other global is refused by name and offset. Limits: nesting depth, memo entries, and total bytes
+/// of arrays, checked before memory is taken. Python-2 strings (STRING, BINSTRING) are latin-1 bytes.
+/// Source: CPython Lib/pickletools.py for the opcodes; numpy.core.multiarray._reconstruct and ndarray.__setstate__.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "data_tools/formats/ndarray.h"
+
+namespace bodyloom {
+
+struct PickleValue;
+using PicklePtr = std::shared_ptr<const PickleValue>;
+
+/// A value of a pickle. Dictionaries keep insertion order; keys are text or integers (as text).
+struct PickleValue {
+  enum class Kind { kNone, kBool, kInt, kFloat, kString, kBytes, kList, kTuple, kDict, kArray, kObject } kind = Kind::kNone;
+  bool boolean = false;
+  int64_t integer = 0;
+  double real = 0;
+  std::string text;                                     ///< kString, kBytes; class name for kObject
+  std::vector<PicklePtr> items;                         ///< kList, kTuple
+  std::vector<std::pair<std::string, PicklePtr>> dict;  ///< kDict; attributes of kObject
+  NdArray array;                                        ///< kArray (sparse matrices arrive dense when they fit the limit)
+
+  /// The entry of a dictionary or attribute of an object; nullptr when absent.
+  [[nodiscard]] const PickleValue* Find(const std::string& key) const;
+};
+
+struct PickleLimits {
+  size_t max_bytes = size_t{1} << 31;  ///< of all arrays and strings together
+  int max_depth = 200;
+  size_t max_items = 20'000'000;
+};
+
+/// Parses one pickle. `where` names the file in messages. Throws std::runtime_error with `where`, byte offset, what was
+/// found and what was expected.
+PicklePtr ReadPickle(const std::string& bytes, const std::string& where, const PickleLimits& limits = {});
+PicklePtr ReadPickleFile(const std::string& path, const PickleLimits& limits = {});
+
+}  // namespace bodyloom

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "geometry/rotation.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+namespace bodyloom {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+Matrix3d Skew(const Vector3d& w) {
+  Matrix3d S;
+  S << 0, -w.z(), w.y(), w.z(), 0, -w.x(), -w.y(), w.x(), 0;
+  return S;
+}
+
+Matrix3d RotationFromAxisAngle(const Vector3d& w) {
+  const double angle2 = w.squaredNorm();
+  double a, b;  // sin(θ)/θ and (1 − cos θ)/θ²
+  if (angle2 < 1e-8) {
+    a = 1 - angle2 / 6;
+    b = 0.5 - angle2 / 24;
+  } else {
+    const double angle = std::sqrt(angle2);
+    a = std::sin(angle) / angle;
+    const double half_sine = std::sin(angle / 2);
+    b = 2 * half_sine * half_sine / angle2;
+  }
+  const Matrix3d S = Skew(w);
+  return Matrix3d::Identity() + a * S + b * S * S;
+}
+
+Vector3d AxisAngleFromRotation(const Matrix3d& R) {
+  Eigen::Quaterniond q(R);  // picks the largest component, stable at π
+  if (q.w() < 0) q.coeffs() = -q.coeffs();
+  const double sine = q.vec().norm();
+  if (sine < 1e-10) return 2 * q.vec() / std::max(q.w(), 0.5);
+  const double angle = 2 * std::atan2(sine, q.w());
+  Vector3d axis = q.vec() / sine;
+  if (q.w() == 0) {
+    for (int i = 0; i < 3; ++i) {
+      if (axis[i] != 0) {
+        if (axis[i] < 0) axis = -axis;
+        break;
+      }
+    }
+  }
+  return angle * axis;
+}
+
+Matrix3d RightJacobian(const Vector3d& w) {
+  const double angle2 = w.squaredNorm();
+  double b, c;  // (1 − cos θ)/θ² and (θ − sin θ)/θ³
+  if (angle2 < 1e-6) {
+    b = 0.5 - angle2 / 24;
+    c = 1.0 / 6 - angle2 / 120;
+  } else {
+    const double angle = std::sqrt(angle2);
+    b = (1 - std::cos(angle)) / angle2;
+    c = (angle - std::sin(angle)) / (angle2 * angle);
+  }
+  const Matrix3d S = Skew(w);
+  return Matrix3d::Identity() - b * S + c * S * S;
+}
+
+Matrix3d RightJacobianInverse(const Vector3d& w) {
+  const double angle2 = w.squaredNorm();
+  double c;  // 1/θ² − (1 + cos θ)/(2 θ sin θ), written with half angles so that θ = π is regular
+  if (angle2 < 1e-4) {
+    c = 1.0 / 12 + angle2 / 720 + angle2 * angle2 / 30240;
+  } else {
+    const double angle = std::sqrt(angle2);
+    c = 1 / angle2 - std::cos(angle / 2) / (2 * angle * std::sin(angle / 2));
+  }
+  const Matrix3d S = Skew(w);
+  return Matrix3d::Identity() + 0.5 * S + c * S * S;
+}
+
+Matrix3d NearestRotation(const Matrix3d& M) {
+  const Eigen::JacobiSVD<Matrix3d> svd(M, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Vector3d d(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1.0 : 1.0);
+  return svd.matrixU() * d.asDiagonal() * svd.matrixV().transpose();
+}
+
+double RotationAngleBetween(const Matrix3d& A, const Matrix3d& B) {
+  return AxisAngleFromRotation(A.transpose() * B).norm();
+}
+
+Matrix3d InterpolateRotation(const Matrix3d& A, const Matrix3d& B, double t) {
+  return A * RotationFromAxisAngle(t * AxisAngleFromRotation(A.transpose() * B));
+}
+
+Matrix3d RotationBetweenDirections(const Vector3d& from, const Vector3d& to) {
+  const double norms = from.norm() * to.norm();
+  if (!(norms > 0)) return Matrix3d::Identity();
+  return Eigen::Quaterniond::FromTwoVectors(from, to).normalized().toRotationMatrix();
+}
+
+}  // namespace bodyloom
