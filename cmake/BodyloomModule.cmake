@@ -6,6 +6,12 @@
 function(bodyloom_module name)
   cmake_parse_arguments(ARG "" "" "PUBLIC;PRIVATE" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cc ${CMAKE_CURRENT_SOURCE_DIR}/*/*.cc)
+  if(NOT sources)
+    add_library(bodyloom_${name} INTERFACE)
+    add_library(bodyloom::${name} ALIAS bodyloom_${name})
+    target_link_libraries(bodyloom_${name} INTERFACE ${ARG_PUBLIC})
+    return()
+  endif()
   add_library(bodyloom_${name} STATIC ${sources})
   add_library(bodyloom::${name} ALIAS bodyloom_${name})
   target_include_directories(bodyloom_${name} PUBLIC ${PROJECT_SOURCE_DIR})
@@ -15,7 +21,8 @@ endfunction()
 
 # Warnings and sanitizers shared by every target of the project.
 function(bodyloom_flags target)
-  target_compile_options(${target} PRIVATE -Wall -Wextra -Wno-unused-parameter)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wno-unused-parameter
+    -Wno-restrict)  # g++ 12 reports std::string concatenation (GCC bug 105651)
   if(BODYLOOM_WERROR)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
