@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Fits one body to a clip: what was seen in one camera → a pose in every frame, one shape, and the camera.
+/// How it works: docs/tracking.md.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "geometry/body_model.h"
+#include "geometry/camera.h"
+#include "geometry/observations.h"
+#include "geometry/pose_prior.h"
+#include "geometry/track.h"
+
+namespace bodyloom {
+
+/// What is known about the camera's intrinsics.
+enum class CameraKnowledge {
+  kKnown,         ///< TrackSequenceInput::camera is used as it is
+  kUnknownFocal,  ///< pinhole, square pixels, centred principal point, focal length estimated with the clip
+  kWeak,          ///< weak perspective: scale and image offset per frame (the camera of paper A)
+};
+
+/// Everything the tracker may look at. Pointers are borrowed and may be null unless noted.
+struct TrackSequenceInput {
+  const BodyModel* body = nullptr;              ///< required
+  const KeypointSequence* keypoints = nullptr;  ///< 2D joints; this or `dense` is required
+  const DenseSequence* dense = nullptr;         ///< dense surface keypoints
+  const Motion* initialiser = nullptr;          ///< camera-frame poses of another system, same frames (L_d of paper A)
+  const PosePrior* prior = nullptr;             ///< learned pose prior; without it only joint limits apply
+  Camera camera;  ///< kKnown: all of it; otherwise only width and height (0: taken from the observations)
+};
+
+/// Progress of the solve, for a progress bar. Return false from the callback to stop early with what there is.
+struct TrackProgress {
+  std::string stage;      ///< "initialise", "fit", "refine", …
+  double fraction = 0;    ///< of the whole run, estimated, in [0, 1]
+  double cost = 0;        ///< of the current stage
+};
+
+struct TrackSequenceOptions {
+  CameraKnowledge camera_knowledge = CameraKnowledge::kKnown;
+  std::string solver = "ceres";  ///< the engine; only "ceres" so far
+  int num_threads = 0;           ///< 0: all cores
+  int max_iterations = 50;       ///< of each stage
+  double initialiser_weight = 0.1;  ///< λ_d of paper A, per frame
+  bool estimate_shape = true;       ///< false: keep the mean shape
+  bool estimate_uncertainty = true; ///< joint_sigma; NaN when off
+  bool skip_unneeded = true;        ///< false: switch every skip off (same answer, slower)
+  std::function<bool(const TrackProgress&)> progress;
+  /// False with the reason when a field is out of range.
+  bool IsValid(std::string* why) const;
+};
+
+/// One line of the plan: a step or part of the problem, whether it runs, and why.
+struct PlanEntry {
+  std::string what;
+  bool runs = false;
+  std::string why;
+};
+
+enum class SolveStatus { kFailure, kConverged, kMaxIterations, kStopped };
+std::string ToString(SolveStatus status);
+
+struct TrackSequenceSummary {
+  SolveStatus status = SolveStatus::kFailure;
+  std::string message;
+  std::string solver;
+  int iterations = 0;
+  double initial_cost = 0, final_cost = 0;
+  std::vector<std::pair<std::string, double>> seconds;  ///< by stage, in order of running
+  std::vector<PlanEntry> plan;                          ///< what ran and what was skipped
+  std::map<std::string, int> frames_by_status;          ///< "tracked", "weak", "interpolated", "lost"
+  double reprojection_median_px = 0, reprojection_p95_px = 0;  ///< of the used 2D joints (confidence > 0.3)
+  double dense_median_px = 0;                                  ///< of the dense keypoints, 0 without
+  double focal_px = 0;                                         ///< used or estimated
+  int num_observations = 0, num_parameters = 0;
+  int num_swaps_repaired = 0;  ///< left–right pairs found exchanged in the detections
+  [[nodiscard]] bool IsUsable() const { return status != SolveStatus::kFailure; }
+  /// A few lines for a terminal.
+  [[nodiscard]] std::string BriefReport() const;
+};
+
+struct TrackSequenceResult {
+  Track track;
+  TrackSequenceSummary summary;
+};
+
+/// What TrackSequence would do with this input: no computation.
+std::vector<PlanEntry> PlanTrackSequence(const TrackSequenceInput& input, const TrackSequenceOptions& options);
+
+/// Throws std::invalid_argument when the input contradicts itself (no body, no observations, sizes that differ, image
+/// size against camera); a clip in which nothing can be estimated gives status kFailure with a message.
+TrackSequenceResult TrackSequence(const TrackSequenceInput& input, const TrackSequenceOptions& options);
+
+}  // namespace bodyloom
