@@ -255,10 +255,10 @@ JointAngleError MeanJointAngleError(const RowMatrixXd& prediction, const RowMatr
     Mean frame;
     for (Eigen::Index j = 0; j < J; ++j) {
       const Eigen::Vector3d a = prediction.row(t).segment<3>(3 * j), b = truth.row(t).segment<3>(3 * j);
-      const double angle_deg = a.allFinite() && b.allFinite()
-                                   ? RotationAngleBetween(RotationFromAxisAngle(a), RotationFromAxisAngle(b)) * 180 /
-                                         std::numbers::pi
-                                   : kNotMeasured;
+      const double angle_deg =
+          a.allFinite() && b.allFinite()
+              ? RotationAngleBetween(RotationFromAxisAngle(a), RotationFromAxisAngle(b)) * 180 / std::numbers::pi
+              : kNotMeasured;
       joints[j].Add(angle_deg);
       if (j == 0) continue;
       frame.Add(angle_deg);

@@ -76,7 +76,7 @@ PositionError ProcrustesPositionError(Clip prediction, Clip truth);
 
 /// Where the root is, T×3 metres in the camera frame. Depth is what a single camera knows least, so it is kept apart.
 struct RootError {
-  ErrorStatistics distance;  ///< ‖prediction − truth‖
+  ErrorStatistics distance;       ///< ‖prediction − truth‖
   double lateral = kNotMeasured;  ///< mean distance in the image plane's directions (x, y)
   double depth = kNotMeasured;    ///< mean |z difference|
 };
@@ -109,11 +109,11 @@ double Jitter(Clip points, const std::vector<double>& timestamps, double max_ste
 
 /// Geodesic angle between corresponding rotations, degrees in [0, 180].
 struct JointAngleError {
-  double mean_deg = kNotMeasured;   ///< joints 1…J−1 relative to their parents, over all frames
-  double root_deg = kNotMeasured;   ///< joint 0: the body's orientation in the frame of the poses
-  Eigen::VectorXd per_joint_deg;    ///< J: mean over frames
-  ErrorStatistics frames;           ///< distribution of the frames' means over joints 1…J−1
-  int64_t count = 0, missing = 0;   ///< joint rotations, the root's included
+  double mean_deg = kNotMeasured;  ///< joints 1…J−1 relative to their parents, over all frames
+  double root_deg = kNotMeasured;  ///< joint 0: the body's orientation in the frame of the poses
+  Eigen::VectorXd per_joint_deg;   ///< J: mean over frames
+  ErrorStatistics frames;          ///< distribution of the frames' means over joints 1…J−1
+  int64_t count = 0, missing = 0;  ///< joint rotations, the root's included
 };
 /// Poses are T×3J axis-angle, radians, both in the same camera or world frame.
 JointAngleError MeanJointAngleError(const RowMatrixXd& prediction, const RowMatrixXd& truth);

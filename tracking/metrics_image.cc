@@ -17,8 +17,8 @@ void CheckAgainstDetections(const char* what, PixelClip prediction, const Keypoi
   BODYLOOM_CHECK(static_cast<int>(prediction.size()) <= detections.num_frames(), what, ": prediction has ",
                  prediction.size(), " frames, the detections have ", detections.num_frames());
   for (size_t t = 0; t < prediction.size(); ++t) {
-    BODYLOOM_CHECK(prediction[t].rows() == detections.num_points(), what, ": frame ", t, " has ",
-                   prediction[t].rows(), " points, the detections have ", detections.num_points());
+    BODYLOOM_CHECK(prediction[t].rows() == detections.num_points(), what, ": frame ", t, " has ", prediction[t].rows(),
+                   " points, the detections have ", detections.num_points());
   }
 }
 

@@ -146,9 +146,8 @@ TEST(MetricsImageTest, BrokenContractsThrow) {
   EXPECT_THROW(SquareImageScale(0, 480), std::invalid_argument);
   KeypointSequence no_hips = detections;
   for (std::string& name : no_hips.names) name += "?";
-  EXPECT_THROW(
-      PercentageOfCorrectKeypoints(Pixels(no_hips, 0, 0), no_hips, 0.2, PckReference::kTorso, 0.3),
-      std::invalid_argument);
+  EXPECT_THROW(PercentageOfCorrectKeypoints(Pixels(no_hips, 0, 0), no_hips, 0.2, PckReference::kTorso, 0.3),
+               std::invalid_argument);
 }
 
 }  // namespace

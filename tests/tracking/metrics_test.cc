@@ -127,8 +127,8 @@ TEST(MetricsTest, ProcrustesErrorIgnoresASimilarityPerFrame) {
 }
 
 // A regular tetrahedron with one corner pulled out along its axis: closed form by symmetry. Corners of a regular
-// tetrahedron are a, b, c, d with zero sum; moving d to (1 + ε)d changes to first order the scale, the centre and leaves
-// no rotation.
+// tetrahedron are a, b, c, d with zero sum; moving d to (1 + ε)d changes to first order the scale, the centre and
+// leaves no rotation.
 TEST(MetricsTest, ProcrustesErrorOfATetrahedron) {
   MatrixX3d truth(4, 3);
   truth << 1, 1, 1, 1, -1, -1, -1, 1, -1, -1, -1, 1;
@@ -141,7 +141,8 @@ TEST(MetricsTest, ProcrustesErrorOfATetrahedron) {
   const double s = dot / square;
   const double corner = std::sqrt(3.0) * std::abs(s * (1 + 3 * epsilon / 4) - 1);
   // s p_i − truth_i = (s − 1) truth_i − s ε/4 d
-  const double other = std::sqrt((s - 1) * (s - 1) * 3 + (s - 1) * s * epsilon / 2 + s * s * epsilon * epsilon * 3 / 16);
+  const double other =
+      std::sqrt((s - 1) * (s - 1) * 3 + (s - 1) * s * epsilon / 2 + s * s * epsilon * epsilon * 3 / 16);
   const PositionError e = ProcrustesPositionError(std::vector<MatrixX3d>{pulled}, std::vector<MatrixX3d>{truth});
   EXPECT_NEAR(e.mean, (3 * other + corner) / 4, kTolerance);
 }
