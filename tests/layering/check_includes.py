@@ -31,7 +31,7 @@ THIRD_PARTY = [
     (r"(torch|ATen|c10|caffe2)/", {"neural"} | TEST_CODE, False),
     (r"CGAL/", TEST_CODE, False),
     (r"OpenMesh/", {"geometry", "data_tools"} | TEST_CODE, False),
-    (r"nlohmann/", {"data_tools", "apps"} | TEST_CODE, False),
+    (r"nlohmann/(?!json_fwd)", {"data_tools", "apps"} | TEST_CODE, False),
     (r"(matio|zlib)\.h", {"data_tools"} | TEST_CODE, False),
     (r"CLI/", {"apps"}, False),
     (r"hwy/", {"geometry", "render", "tracking"} | TEST_CODE, False),
