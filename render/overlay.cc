@@ -100,8 +100,8 @@ void OverlayRenderer::DrawLandmarks(int frame, const KeypointSequence* detected,
   projected.pixels.resize(points.rows(), 2);
   for (int k = 0; k < points.rows(); ++k) {
     Eigen::Vector2d pixel;
-    const bool valid = camera.Project(points.row(k).transpose(), &pixel);
-    projected.pixels.row(k) = valid ? pixel.transpose() : Eigen::RowVector2d::Constant(std::nan(""));
+    if (!camera.Project(points.row(k).transpose(), &pixel)) pixel.setConstant(std::nan(""));
+    projected.pixels.row(k) = pixel.transpose();
   }
   const double size = std::max(2.0, image->height / 220.0);
   if (options_.skeleton) {

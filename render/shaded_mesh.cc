@@ -29,8 +29,10 @@ Light Shade(const Vector3f& n) {
   const float key = std::max(0.0f, 0.5f + 0.5f * n.dot(kKey));  // wraps round: no hard terminator
   const float fill = std::max(0.0f, n.dot(kFill));
   const float sky = 0.5f - 0.5f * n.y();
-  const float rim = std::pow(1 - std::min(1.0f, std::abs(n.z())), 3.0f);
-  const float spark = std::pow(std::max(0.0f, n.dot(kHalfway)), 28.0f);
+  const float edge = 1 - std::min(1.0f, std::abs(n.z()));
+  const float rim = edge * edge * edge;
+  float spark = std::max(0.0f, n.dot(kHalfway));
+  for (int i = 0; i < 5; ++i) spark *= spark;  // to the power of 32
   return {0.22f + 0.72f * key * key + 0.13f * fill + 0.12f * sky, 0.10f * spark + 0.16f * rim * sky};
 }
 
@@ -71,30 +73,51 @@ class NormalSampler {
   MatrixX3f normals_;
   MatrixX2d pixels_;
   int face_ = -1;
-  std::array<Vector3f, 3> corner_;
-  Vector2d origin_, row_b_, row_c_;
+  std::array<Vector3f, 3> corner_ = {Vector3f::Zero(), Vector3f::Zero(), Vector3f::Zero()};
+  Vector2d origin_ = Vector2d::Zero(), row_b_ = Vector2d::Zero(), row_c_ = Vector2d::Zero();
 };
 
-/// True where the surface ends at this sample: the background, or something at least 4 cm further away, begins within
+/// Finds the samples where the surface ends: the background, or something at least 4 cm further away, begins within
 /// `radius` samples. The line lies on the nearer side.
-bool IsOutline(const VisibilityBuffer& buffer, const Camera& camera, int x, int y, int radius) {
-  constexpr double kStep_m = 0.04;
-  const double z = buffer.DepthAt(x, y);
-  const int diagonal = std::max(1, static_cast<int>(std::lround(radius * 0.7071)));
-  const std::array<std::array<int, 2>, 8> offsets = {{{radius, 0},
-                                                      {-radius, 0},
-                                                      {0, radius},
-                                                      {0, -radius},
-                                                      {diagonal, diagonal},
-                                                      {diagonal, -diagonal},
-                                                      {-diagonal, diagonal},
-                                                      {-diagonal, -diagonal}}};
-  return std::any_of(offsets.begin(), offsets.end(),
-                     [&](const auto& d) {  // the border of the image ends no surface
-                       return buffer.DepthAt(std::clamp(x + d[0], 0, camera.width - 1),
-                                             std::clamp(y + d[1], 0, camera.height - 1)) > z + kStep_m;
-                     });
-}
+class OutlineFinder {
+ public:
+  OutlineFinder(const VisibilityBuffer& buffer, const Camera& camera, int radius)
+      : buffer_(buffer), camera_(camera), inner_(buffer.box().GrownBy(-radius)) {
+    const int diagonal = std::max(1, static_cast<int>(std::lround(radius * 0.7071)));
+    offsets_ = {{{radius, 0},
+                 {-radius, 0},
+                 {0, radius},
+                 {0, -radius},
+                 {diagonal, diagonal},
+                 {diagonal, -diagonal},
+                 {-diagonal, diagonal},
+                 {-diagonal, -diagonal}}};
+    for (size_t k = 0; k < offsets_.size(); ++k)
+      steps_[k] = ptrdiff_t(offsets_[k][1]) * buffer.box().width() + offsets_[k][0];
+  }
+
+  [[nodiscard]] bool IsOutline(int x, int y) const {
+    constexpr float kStep_m = 0.04f;
+    const size_t index = buffer_.box().IndexOf(x, y);
+    const float* here = buffer_.nearness().data() + index;
+    const float limit = camera_.model == CameraModel::kPinhole ? *here / (1 + kStep_m * *here) : *here - kStep_m;
+    if (inner_.Contains(x, y)) {
+      return std::any_of(steps_.begin(), steps_.end(), [&](ptrdiff_t step) { return here[step] < limit; });
+    }
+    return std::any_of(offsets_.begin(), offsets_.end(), [&](const auto& d) {
+      const int i = std::clamp(x + d[0], 0, camera_.width - 1);  // the border of the image ends no surface
+      const int j = std::clamp(y + d[1], 0, camera_.height - 1);
+      return !buffer_.box().Contains(i, j) || buffer_.nearness()[buffer_.box().IndexOf(i, j)] < limit;
+    });
+  }
+
+ private:
+  const VisibilityBuffer& buffer_;
+  const Camera& camera_;
+  PixelBox inner_;  ///< where no neighbour leaves the box
+  std::array<std::array<int, 2>, 8> offsets_;
+  std::array<ptrdiff_t, 8> steps_;
+};
 
 }  // namespace
 
@@ -126,6 +149,7 @@ void DrawMesh(const MatrixX3d& vertices, const MatrixX3i& faces, const Camera& c
   if (buffer.box().empty()) return;
   NormalSampler normals(vertices, faces, fine);
   const int radius = static_cast<int>(std::lround(style.outline_px * n));
+  const OutlineFinder outline(buffer, fine, radius);
   const PixelBox box{buffer.box().x_begin / n, buffer.box().y_begin / n, (buffer.box().x_end + n - 1) / n,
                      (buffer.box().y_end + n - 1) / n};
   const float per_sample = 1.0f / static_cast<float>(n * n);
@@ -143,7 +167,7 @@ void DrawMesh(const MatrixX3d& vertices, const MatrixX3i& faces, const Camera& c
           Vector3f colour =
               Vector3f(c.blue, c.green, c.red) * light.diffuse + Vector3f::Constant(255 * light.highlight);
           auto alpha = static_cast<float>(style.alpha);
-          if (radius > 0 && IsOutline(buffer, fine, i, j, radius)) {
+          if (radius > 0 && outline.IsOutline(i, j)) {
             const auto ink = static_cast<float>(style.outline_alpha);
             colour = (1 - ink) * colour + ink * 0.22f * Vector3f(c.blue, c.green, c.red);
             alpha = std::max(alpha, ink);
