@@ -164,6 +164,7 @@ void AddSharedPriors(const SequenceProblem& problem, Parameters* x, ceres::Probl
     const double height = problem.shape_prior.height_m > 0 ? problem.shape_prior.height_m : mean_height;
     RowMatrixXd A = RowMatrixXd::Identity(B + 1, B) * (std::sqrt(problem.shape_prior.weight) / problem.shape_prior.sigma);
     VectorXd b = VectorXd::Zero(B + 1);
+    if (problem.shape_prior.mean.size() == B) b = -A * problem.shape_prior.mean;
     A.row(B) = gradient.transpose() / problem.shape_prior.height_sigma_m;
     b[B] = (mean_height - height) / problem.shape_prior.height_sigma_m;
     ceres_problem->AddResidualBlock(new LinearCost(A, b), nullptr, x->betas.data());
