@@ -20,16 +20,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-FrameState Interpolate(const FrameState& a, const FrameState& b, double s) {
-  FrameState result;
-  result.rotations.reserve(a.rotations.size());
-  for (size_t j = 0; j < a.rotations.size(); ++j) {
-    result.rotations.push_back(InterpolateRotation(a.rotations[j], b.rotations[j], s));
-  }
-  result.translation = (1 - s) * a.translation + s * b.translation;
-  return result;
-}
-
 /// Fills all frames from states at `frames` (ascending): SO(3) interpolation between, constant beyond the ends.
 std::vector<FrameState> FillFrames(const std::vector<int>& frames, const std::vector<FrameState>& known,
                                    const std::vector<double>& timestamps) {
@@ -43,16 +33,16 @@ std::vector<FrameState> FillFrames(const std::vector<int>& frames, const std::ve
       states[t] = known.back();
     } else {
       const double t0 = timestamps[frames[next - 1]], t1 = timestamps[frames[next]];
-      states[t] = Interpolate(known[next - 1], known[next], (timestamps[t] - t0) / (t1 - t0));
+      states[t] = InterpolateStates(known[next - 1], known[next], (timestamps[t] - t0) / (t1 - t0));
     }
   }
   return states;
 }
 
-MatrixX3d RestLandmarks(const BodyModel& model) {
+MatrixX3d RestLandmarks(const BodyModel& model, const VectorXd& betas = VectorXd()) {
   BodyPose rest;
   rest.rotations.assign(model.num_joints(), Matrix3d::Identity());
-  return PoseLandmarks(model, VectorXd(), rest, CocoNames());
+  return PoseLandmarks(model, betas, rest, CocoNames());
 }
 
 /// Replaces translations by weak-perspective cameras that fit what the frame shows; frames that show too little take
@@ -152,6 +142,7 @@ InitialStates FindInitialStates(const TrackSequenceInput& input, const FrameLayo
                                 const TrackSequenceOptions& options) {
   const BodyModel& model = *input.body;
   InitialStates result;
+  result.betas = VectorXd::Zero(layout.num_betas);
   KeypointSequence from_dense;
   const KeypointSequence* keypoints = input.keypoints;
   if (keypoints == nullptr) {
@@ -159,6 +150,8 @@ InitialStates FindInitialStates(const TrackSequenceInput& input, const FrameLayo
     keypoints = &from_dense;
   }
   if (input.initialiser != nullptr) {
+    const Eigen::Index given = std::min<Eigen::Index>(input.initialiser->betas.size(), layout.num_betas);
+    result.betas.head(given) = input.initialiser->betas.head(given);
     for (int t = 0; t < input.initialiser->num_frames(); ++t) {
       const BodyPose pose =
           PoseFromAxisAngle(model, input.initialiser->poses.row(t).transpose(), input.initialiser->trans.row(t).transpose());
@@ -166,7 +159,10 @@ InitialStates FindInitialStates(const TrackSequenceInput& input, const FrameLayo
       result.from_observation.push_back(1);
     }
   } else {
-    const MatrixX3d rest_joints = model.joint_template(), rest_points = RestLandmarks(model);
+    if (layout.num_betas > 0) {
+      result.betas = EstimateShape(*keypoints, layout.camera, model, layout.num_betas, options.hypotheses);
+    }
+    const MatrixX3d rest_joints = model.RestJoints(result.betas), rest_points = RestLandmarks(model, result.betas);
     const JointHypothesesResult found =
         FindJointHypotheses(*keypoints, layout.camera, rest_points, input.prior, options.hypotheses);
     if (found.frames.empty()) return result;
