@@ -55,7 +55,7 @@ TEST(Pickle, BinaryNumbers) {
   EXPECT_EQ(Read("\x8a\x00."s)->integer, 0);
   EXPECT_EQ(Read("\x8a\x08\x00\x00\x00\x00\x00\x00\x00\x80."s)->integer, std::numeric_limits<int64_t>::min());
   EXPECT_EQ(Read("\x8a\x09\x00\x00\x00\x00\x00\x00\x00\x00\x01."s)->real, std::ldexp(1.0, 64));
-  EXPECT_EQ(Read("\x8b\x09\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\xff."s)->real, -std::ldexp(1.0, 64));
+  EXPECT_EQ(Read("\x8b\x09\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\xff."s)->real, -std::ldexp(1.0, 64));
   EXPECT_EQ(Read("G\x3f\xf8\x00\x00\x00\x00\x00\x00."s)->real, 1.5);
   EXPECT_TRUE(std::isnan(Read("Fnan\n.")->real));
 }
