@@ -13,20 +13,6 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-namespace {
-
-/// Row v of ShapeVertices. Sums in double: float would be precise enough to look at, but not to take differences of.
-Vector3d ShapeVertex(const BodyModelData& d, const VectorXd& betas, int v) {
-  Vector3d vertex = d.v_template.row(v).transpose();
-  for (int c = 0; c < 3; ++c) {
-    const float* row = d.shapedirs.data() + (3 * static_cast<size_t>(v) + c) * d.shapedirs.cols();
-    for (Eigen::Index b = 0; b < betas.size(); ++b) vertex[c] += row[b] * betas[b];
-  }
-  return vertex;
-}
-
-}  // namespace
-
 BodyPose PoseFromAxisAngle(const BodyModel& model, const Eigen::Ref<const VectorXd>& axis_angle,
                            const Vector3d& trans) {
   const int J = model.num_joints();
@@ -76,30 +62,16 @@ MatrixX3d PoseVertices(const BodyModel& model, const VectorXd& betas, const Body
                        std::span<const int> vertices) {
   const PosedSkeleton skeleton = PoseSkeleton(model, model.RestJoints(betas), pose);
   const int J = model.num_joints();
-  using Feature = Eigen::Matrix<double, 9, 1>;  // vec_rowmajor(R − I)
-  std::vector<Feature> features(J);
-  for (int j = 0; j < J; ++j) {
-    const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> R = pose.rotations[j] - Matrix3d::Identity();
-    features[j] = Eigen::Map<const Feature>(R.data());
-  }
   MatrixX3d offsets(J, 3);  // p_j − G_j rest_j, so that bone j maps x to G_j x + offset_j
   for (int j = 0; j < J; ++j) {
     offsets.row(j) =
         skeleton.joints.row(j) - (skeleton.world_rotations[j] * skeleton.rest_joints.row(j).transpose()).transpose();
   }
-  const BodyModelData& d = model.data();
-  const PoseCorrectives& correctives = d.posedirs;
   MatrixX3d result(vertices.size(), 3);
   for (size_t i = 0; i < vertices.size(); ++i) {
     const int v = vertices[i];
     BODYLOOM_CHECK(v >= 0 && v < model.num_vertices(), "vertex ", v, " is outside 0..", model.num_vertices() - 1);
-    Vector3d rest = ShapeVertex(d, betas, v);
-    if (!correctives.begin.empty()) {
-      for (int k = correctives.begin[v]; k < correctives.begin[v + 1]; ++k) {
-        const Eigen::Map<const Eigen::Matrix<float, 3, 9, Eigen::RowMajor>> block(&correctives.block[27 * size_t(k)]);
-        rest.noalias() += block.cast<double>() * features[correctives.joint[k]];
-      }
-    }
+    const Vector3d rest = ShapedVertex(model, betas, v) + PoseCorrective(model, pose, v);
     Vector3d x = Vector3d::Zero();
     for (int k = model.influence_begin()[v]; k < model.influence_begin()[v + 1]; ++k) {
       const int j = model.influence_joint()[k];
@@ -140,7 +112,30 @@ MatrixX3d ShapeVertices(const BodyModel& model, const VectorXd& betas) {
   BODYLOOM_CHECK(betas.size() <= model.num_betas(), "betas has ", betas.size(), " values, the body '", model.name(),
                  "' takes ", model.num_betas());
   MatrixX3d result(model.num_vertices(), 3);
-  for (int v = 0; v < model.num_vertices(); ++v) result.row(v) = ShapeVertex(model.data(), betas, v).transpose();
+  for (int v = 0; v < model.num_vertices(); ++v) result.row(v) = ShapedVertex(model, betas, v).transpose();
+  return result;
+}
+
+// Sums in double: float would be precise enough to look at, but not to take differences of.
+Vector3d ShapedVertex(const BodyModel& model, const VectorXd& betas, int vertex) {
+  const BodyModelData& d = model.data();
+  Vector3d result = d.v_template.row(vertex).transpose();
+  for (int c = 0; c < 3; ++c) {
+    const float* row = d.shapedirs.data() + (3 * static_cast<size_t>(vertex) + c) * d.shapedirs.cols();
+    for (Eigen::Index b = 0; b < betas.size(); ++b) result[c] += row[b] * betas[b];
+  }
+  return result;
+}
+
+Vector3d PoseCorrective(const BodyModel& model, const BodyPose& pose, int vertex) {
+  const PoseCorrectives& correctives = model.data().posedirs;
+  Vector3d result = Vector3d::Zero();
+  if (correctives.begin.empty()) return result;
+  for (int k = correctives.begin[vertex]; k < correctives.begin[vertex + 1]; ++k) {
+    const Eigen::Map<const Eigen::Matrix<float, 3, 9, Eigen::RowMajor>> block(&correctives.block[27 * size_t(k)]);
+    const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> R = pose.rotations[correctives.joint[k]] - Matrix3d::Identity();
+    result.noalias() += block.cast<double>() * Eigen::Map<const Eigen::Matrix<double, 9, 1>>(R.data());
+  }
   return result;
 }
 

@@ -51,4 +51,9 @@ MatrixX3d PoseLandmarks(const BodyModel& model, const Eigen::VectorXd& betas, co
 /// v_template + shapedirs·betas, V×3.
 MatrixX3d ShapeVertices(const BodyModel& model, const Eigen::VectorXd& betas);
 
+/// The two blend shapes of one vertex, the terms of its rest position v_rest = ShapedVertex + PoseCorrective.
+/// Indices and sizes are the caller's responsibility.
+Eigen::Vector3d ShapedVertex(const BodyModel& model, const Eigen::VectorXd& betas, int vertex);
+Eigen::Vector3d PoseCorrective(const BodyModel& model, const BodyPose& pose, int vertex);
+
 }  // namespace bodyloom
