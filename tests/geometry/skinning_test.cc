@@ -209,9 +209,11 @@ TEST(Skinning, RestingJointsAreSkippedExactly) {
   const Eigen::VectorXd betas = RandomBetas(6, 8);
   std::vector<BodyPose> poses = Poses(model, 64);
   for (size_t t = 0; t < poses.size(); ++t) {
-    // Legs rest throughout, the left elbow in the first 32 frames only.
+    // Legs rest throughout, the left elbow in the first 32 frames only; the right arm moves, but not in every frame.
     for (int j : {1, 2, 4, 5}) poses[t].rotations[j].setIdentity();
     if (t < 32) poses[t].rotations[18].setIdentity();
+    if (t % 32 == 0) poses[t].rotations[19].setIdentity();
+    if (t % 32 != 31) poses[t].rotations[17].setIdentity();
   }
   SkinnerOptions all;
   all.skip_resting_joints = false;
