@@ -14,6 +14,7 @@ constexpr char kFormat[] = "bodyloom built-in body 1";
 constexpr double kWeightUnit = 1.0 / 65535;  // of `weight`: a row sums to 65535
 constexpr double kChartUnit = 1.0 / 65534;   // of `chart_uv`: even, so that the middle of a chart is exact
 constexpr double kCorrectiveUnit_m = 5e-5;   // of `corrective_block`
+constexpr double kSumTolerance = 1e-3;
 constexpr double kMaxShape_m = 10;
 constexpr int64_t kMaxComponents = 1000;
 constexpr size_t kMaxFileBytes = size_t{1} << 28;
@@ -88,12 +89,21 @@ class Reader {
   NpzArrays arrays_;
 };
 
-std::vector<WeightedIndices> SparseRowsOf(const std::vector<int64_t>& counts, const std::vector<int64_t>& indices,
+/// Rows of (index, weight), each summing to 1. `name` is the array of the weights.
+std::vector<WeightedIndices> SparseRowsOf(const Reader& reader, const std::string& name,
+                                          const std::vector<int64_t>& counts, const std::vector<int64_t>& indices,
                                           const std::vector<double>& weights) {
   std::vector<WeightedIndices> rows(counts.size());
   size_t i = 0;
   for (size_t r = 0; r < counts.size(); ++r) {
-    for (int64_t k = 0; k < counts[r]; ++k, ++i) rows[r].push_back({static_cast<int>(indices[i]), weights[i]});
+    double sum = 0;
+    for (int64_t k = 0; k < counts[r]; ++k, ++i) {
+      rows[r].push_back({static_cast<int>(indices[i]), weights[i]});
+      sum += weights[i];
+    }
+    if (!(std::abs(sum - 1) <= kSumTolerance)) {
+      reader.Fail(name, "a sum of " + std::to_string(sum) + " in row " + std::to_string(r), "rows that sum to 1");
+    }
   }
   return rows;
 }
@@ -180,16 +190,18 @@ LeftHalfArrays ReadLeftHalfArrays(const std::string& npz_bytes, const std::strin
   for (int64_t weight : reader.Ints("weight", {total}, 0, 65535)) {
     weights.push_back(kWeightUnit * static_cast<double>(weight));
   }
-  arrays.weights = SparseRowsOf(weight_counts, weight_joints, weights);
+  arrays.weights = SparseRowsOf(reader, "weight", weight_counts, weight_joints, weights);
 
   const auto regressor_counts = reader.Counts("regressor_count", sizes.left_joints, sizes.vertices, &total);
-  arrays.regressor = SparseRowsOf(regressor_counts, reader.Ints("regressor_vertex", {total}, 0, sizes.vertices - 1),
+  arrays.regressor = SparseRowsOf(reader, "regressor_weight", regressor_counts,
+                                  reader.Ints("regressor_vertex", {total}, 0, sizes.vertices - 1),
                                   reader.Reals("regressor_weight", {total}, 1));
 
   arrays.landmark_names = reader.Text("landmark_names");
   const auto landmark_counts =
       reader.Counts("landmark_count", static_cast<int64_t>(arrays.landmark_names.size()), sizes.vertices, &total);
-  arrays.landmarks = SparseRowsOf(landmark_counts, reader.Ints("landmark_vertex", {total}, 0, sizes.vertices - 1),
+  arrays.landmarks = SparseRowsOf(reader, "landmark_weight", landmark_counts,
+                                  reader.Ints("landmark_vertex", {total}, 0, sizes.vertices - 1),
                                   reader.Reals("landmark_weight", {total}, 1));
   ReadCorrectives(reader, sizes, &arrays);
   ReadCharts(reader, sizes, &arrays);
