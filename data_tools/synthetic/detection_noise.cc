@@ -38,7 +38,8 @@ double OpenConfidence(const std::string& kind, double head_cosine) {
 }
 
 /// Exchanges left and right of one pair in runs of frames.
-void SwapPair(int left, int right, const DetectionNoiseOptions& options, HashRandom random, KeypointSequence* sequence) {
+void SwapPair(int left, int right, const DetectionNoiseOptions& options, HashRandom random,
+              KeypointSequence* sequence) {
   const double enter = options.swap_probability / options.swap_frames / (1 - options.swap_probability);
   bool swapped = false;
   for (int t = 0; t < sequence->num_frames(); ++t) {
@@ -55,8 +56,10 @@ bool DetectionNoiseOptions::IsValid(std::string* why) const {
     return false;
   };
   if (!(noise >= 0 && noise <= 100)) return no("detection noise: noise must be in [0, 100]");
-  if (!(dropout_probability >= 0 && dropout_probability <= 1)) return no("detection noise: dropout_probability must be in [0, 1]");
-  if (!(swap_probability >= 0 && swap_probability <= 0.5)) return no("detection noise: swap_probability must be in [0, 0.5]");
+  if (!(dropout_probability >= 0 && dropout_probability <= 1))
+    return no("detection noise: dropout_probability must be in [0, 1]");
+  if (!(swap_probability >= 0 && swap_probability <= 0.5))
+    return no("detection noise: swap_probability must be in [0, 0.5]");
   if (!(swap_frames >= 1)) return no("detection noise: swap_frames must be at least 1");
   return true;
 }
@@ -66,7 +69,8 @@ KeypointSequence DetectKeypoints(const KeypointSequence& exact, const std::vecto
   std::string why;
   BODYLOOM_CHECK(options.IsValid(&why), why);
   const int T = exact.num_frames(), K = exact.num_points();
-  BODYLOOM_CHECK(static_cast<int>(frames.size()) == T, "detection noise: ", frames.size(), " frames described, ", T, " given");
+  BODYLOOM_CHECK(static_cast<int>(frames.size()) == T, "detection noise: ", frames.size(), " frames described, ", T,
+                 " given");
   KeypointSequence detected = exact;
   for (int k = 0; k < K; ++k) {
     const auto key = static_cast<uint64_t>(k);
@@ -112,8 +116,8 @@ KeypointSequence DetectKeypoints(const KeypointSequence& exact, const std::vecto
       if (!swappable || !exact.names[k].starts_with("left_")) continue;
       const auto twin = std::find(exact.names.begin(), exact.names.end(), "right_" + kind);
       if (twin == exact.names.end()) continue;
-      SwapPair(k, static_cast<int>(twin - exact.names.begin()), options, HashRandom(seed, {kSwap, static_cast<uint64_t>(k)}),
-               &detected);
+      SwapPair(k, static_cast<int>(twin - exact.names.begin()), options,
+               HashRandom(seed, {kSwap, static_cast<uint64_t>(k)}), &detected);
     }
   }
   return detected;

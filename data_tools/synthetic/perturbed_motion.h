@@ -12,7 +12,8 @@ namespace bodyloom {
 
 /// Relative sizes; all are scaled together until the projection error matches.
 struct PerturbationOptions {
-  double root_rad = 0.12, spine_rad = 0.06, hip_rad = 0.16, knee_rad = 0.22, shoulder_rad = 0.25, elbow_rad = 0.28, end_rad = 0.15;
+  double root_rad = 0.12, spine_rad = 0.06, hip_rad = 0.16, knee_rad = 0.22, shoulder_rad = 0.25, elbow_rad = 0.28,
+         end_rad = 0.15;
   double sideways_m = 0.02, depth_m = 0.15;  ///< translation across and along the view
   double shape = 0.3;                        ///< of each beta
   double time_constant_s = 0.4;              ///< errors drift like this
@@ -22,11 +23,12 @@ struct PerturbationOptions {
 /// Mean over frames and vertices of the distance between the projections of two motions in the camera frame, in pixels
 /// of an image scaled so that its longer side has 512: e = mean ‖π(a) − π(b)‖ · 512 / max(width, height). Vertices that
 /// do not project are left out.
-double MeanProjectionError(const BodyModel& body, const Camera& camera, const Motion& a, const Motion& b, int num_threads);
+double MeanProjectionError(const BodyModel& body, const Camera& camera, const Motion& a, const Motion& b,
+                           int num_threads);
 
 struct PerturbedMotion {
   Motion motion;
-  double error_px = 0;   ///< as measured by MeanProjectionError
+  double error_px = 0;  ///< as measured by MeanProjectionError
 };
 
 /// `truth` (camera frame) with a smooth random error in every joint, the translation and the shape, of one common size

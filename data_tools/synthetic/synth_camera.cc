@@ -54,7 +54,8 @@ bool SynthCameraOptions::IsValid(std::string* why) const {
     if (why != nullptr) *why = text;
     return false;
   };
-  if (width < 16 || height < 16 || width > 16384 || height > 16384) return no("synth camera: size must be 16 to 16384 px a side");
+  if (width < 16 || height < 16 || width > 16384 || height > 16384)
+    return no("synth camera: size must be 16 to 16384 px a side");
   if (!(focal_px >= 0 && std::isfinite(focal_px))) return no("synth camera: focal_px must be positive, or 0");
   if (!(std::abs(elevation_deg) <= 85)) return no("synth camera: elevation_deg must be in [-85, 85]");
   if (!std::isfinite(yaw_deg)) return no("synth camera: yaw_deg must be finite");

@@ -12,8 +12,8 @@ namespace bodyloom {
 
 struct SynthCameraOptions {
   CameraModel model = CameraModel::kPinhole;
-  int width = 1280, height = 720;  ///< pixels
-  double focal_px = 0;             ///< pinhole; 0: 1.1 times the longer side
+  int width = 1280, height = 720;      ///< pixels
+  double focal_px = 0;                 ///< pinhole; 0: 1.1 times the longer side
   std::array<double, 8> distortion{};  ///< pinhole, OpenCV's order
   double yaw_deg = 0;        ///< about the world's up axis; 0: the camera looks along −z of a y-up world, at a front
   double elevation_deg = 8;  ///< positive: from above
@@ -23,7 +23,7 @@ struct SynthCameraOptions {
 
 struct SynthCamera {
   Camera camera;
-  CameraPose pose;            ///< camera from world
+  CameraPose pose;  ///< camera from world
 };
 
 /// The camera for a motion in the world (motion.up says which way is up; Motion::Up::kCamera counts as −y). All frames'

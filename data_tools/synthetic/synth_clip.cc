@@ -4,8 +4,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <optional>
+#include <thread>
 
 #include "data_tools/synthetic/hash_random.h"
 #include "geometry/check.h"
@@ -64,7 +64,8 @@ class SurfaceSampler {
     const BodyModelData& d = body.data();
     double sum = 0;
     for (int f = 0; f < body.num_faces(); ++f) {
-      const Vector3d a = d.v_template.row(d.faces(f, 0)), b = d.v_template.row(d.faces(f, 1)), c = d.v_template.row(d.faces(f, 2));
+      const Vector3d a = d.v_template.row(d.faces(f, 0)), b = d.v_template.row(d.faces(f, 1)),
+                     c = d.v_template.row(d.faces(f, 2));
       sum += (b - a).cross(c - a).norm();
       area_up_to_.push_back(sum);
     }
@@ -73,16 +74,18 @@ class SurfaceSampler {
     const double at = random->Uniform() * area_up_to_.back();
     const auto face = std::upper_bound(area_up_to_.begin(), area_up_to_.end(), at) - area_up_to_.begin();
     const double r = std::sqrt(random->Uniform()), s = random->Uniform();
-    return {std::min(static_cast<int>(face), static_cast<int>(area_up_to_.size()) - 1), Vector3d(1 - r, r * (1 - s), r * s)};
+    return {std::min(static_cast<int>(face), static_cast<int>(area_up_to_.size()) - 1),
+            Vector3d(1 - r, r * (1 - s), r * s)};
   }
 
  private:
   std::vector<double> area_up_to_;
 };
 
-/// d(pixel)/d(u, v) at a surface point: how far in the image a label moves when its chart coordinates do. Zero for faces
-/// without chart area.
-Matrix2d PixelByChart(const BodyModel& body, const MatrixX3d& vertices, const Camera& camera, const SurfacePoint& point) {
+/// d(pixel)/d(u, v) at a surface point: how far in the image a label moves when its chart coordinates do. Zero for
+/// faces without chart area.
+Matrix2d PixelByChart(const BodyModel& body, const MatrixX3d& vertices, const Camera& camera,
+                      const SurfacePoint& point) {
   const auto corners = body.data().faces.row(point.face);
   const auto uv = body.data().face_iuv.row(point.face).cast<double>();
   Matrix2d edges_uv;
@@ -122,7 +125,8 @@ class ClipMaker {
     const double frame_s = T > 1 ? (times().back() - times().front()) / (T - 1) : 1.0;
     for (uint64_t part = 0; part <= 24; ++part) {
       missing_.push_back(InRuns(T, part == 0 ? 0 : faults.missing_part_share,
-                                std::max(1.0, faults.missing_part_seconds / frame_s), HashRandom(seed, {kMissingParts, part})));
+                                std::max(1.0, faults.missing_part_seconds / frame_s),
+                                HashRandom(seed, {kMissingParts, part})));
     }
     clip_.dense.timestamps = clip_.dense_truth.timestamps = times();
     clip_.dense.frames.resize(T);
@@ -205,7 +209,8 @@ class ClipMaker {
   void AddDensePoint(int t, const SurfacePoint& truth, const Vector2d& pixel, const MatrixX3d& vertices) {
     const DenseFaultOptions& faults = options_.dense;
     // Keyed by the pixel: a fault at one pixel does not depend on which others were drawn.
-    HashRandom random(options_.seed, {kFaults, static_cast<uint64_t>(t), static_cast<uint64_t>(pixel.x()), static_cast<uint64_t>(pixel.y())});
+    HashRandom random(options_.seed, {kFaults, static_cast<uint64_t>(t), static_cast<uint64_t>(pixel.x()),
+                                      static_cast<uint64_t>(pixel.y())});
     SurfacePoint label = truth;
     double chart_variance = 0;
     if (uv_faults_) {
@@ -221,7 +226,8 @@ class ClipMaker {
       if (moved.face >= 0) label = moved;
     }
     double variance = faults.pixel_sigma_px * faults.pixel_sigma_px;
-    if (chart_variance > 0) variance += 0.5 * chart_variance * PixelByChart(body_, vertices, camera(), label).squaredNorm();
+    if (chart_variance > 0)
+      variance += 0.5 * chart_variance * PixelByChart(body_, vertices, camera(), label).squaredNorm();
     const double sigma_px = std::max(std::sqrt(variance), faults.min_sigma_px);
     if (random.Uniform() < faults.outlier_probability) {
       label = surface_.Draw(&random);
@@ -237,7 +243,8 @@ class ClipMaker {
     if (names_.empty()) return;
     const MatrixX3d points = PoseLandmarks(body_, clip_.truth.motion.betas, pose, names_);
     const size_t num_coco = CocoNames().size();
-    const bool has_coco = names_.size() >= num_coco && std::equal(CocoNames().begin(), CocoNames().end(), names_.begin());
+    const bool has_coco =
+        names_.size() >= num_coco && std::equal(CocoNames().begin(), CocoNames().end(), names_.begin());
     if (has_coco) clip_.truth.coco17[t] = points.topRows(static_cast<Eigen::Index>(num_coco));
     DetectionFrame& frame = detection_frames_[t];
     frame.person_height_px = PersonHeight(t, vertices);
@@ -248,7 +255,9 @@ class ClipMaker {
       const Vector3d X = points.row(static_cast<Eigen::Index>(k));
       Vector2d pixel;
       if (!camera().Project(X, &pixel)) continue;
-      if (!(pixel.x() >= -0.5 && pixel.x() < camera().width - 0.5 && pixel.y() >= -0.5 && pixel.y() < camera().height - 0.5)) continue;
+      if (!(pixel.x() >= -0.5 && pixel.x() < camera().width - 0.5 && pixel.y() >= -0.5 &&
+            pixel.y() < camera().height - 0.5))
+        continue;
       frame.hidden[k] = !buffer.IsVisible(X, DepthInsideBody(names_[k]));
       exact = {static_cast<float>(pixel.x()), static_cast<float>(pixel.y()), frame.hidden[k] ? 0.5F : 1.0F};
     }
@@ -258,7 +267,8 @@ class ClipMaker {
   /// Cosines between where nose and eyes (forward) and ears (to their side) look and the way to the camera.
   void FaceDirections(const MatrixX3d& points, DetectionFrame* frame) const {
     const Vector3d nose = points.row(0), between_ears = 0.5 * (points.row(3) + points.row(4));
-    const Vector3d to_camera = camera().model == CameraModel::kPinhole ? Vector3d(-between_ears.normalized()) : Vector3d(0, 0, -1);
+    const Vector3d to_camera =
+        camera().model == CameraModel::kPinhole ? Vector3d(-between_ears.normalized()) : Vector3d(0, 0, -1);
     const Vector3d forward = (nose - between_ears).normalized();
     const Vector3d left = (points.row(3) - points.row(4)).transpose().normalized();
     for (int k = 0; k < 3; ++k) frame->head_cosine[k] = forward.dot(to_camera);
@@ -305,7 +315,8 @@ bool SynthClipOptions::IsValid(std::string* why) const {
   if (!(dense.min_sigma_px > 0)) return no("min_sigma_px must be positive");
   if (!is_share(dropped_frame_share)) return no("dropped_frame_share must be in [0, 1]");
   if (!(dropped_run_frames >= 1)) return no("dropped_run_frames must be at least 1");
-  if (!(initialiser_error_px >= 0 && initialiser_error_px <= 200)) return no("initialiser_error_px must be in [0, 200]");
+  if (!(initialiser_error_px >= 0 && initialiser_error_px <= 200))
+    return no("initialiser_error_px must be in [0, 200]");
   if (num_threads < 0 || num_threads > 1024) return no("num_threads must be in [0, 1024]");
   return true;
 }
@@ -315,12 +326,14 @@ SynthClip MakeSynthClip(const BodyModel& body, const Motion& motion, const Synth
   BODYLOOM_CHECK(options.IsValid(&why), why);
   const int T = motion.num_frames();
   BODYLOOM_CHECK(T > 0, "synthetic clip: the motion has no frames");
-  BODYLOOM_CHECK(static_cast<int>(motion.timestamps.size()) == T && motion.trans.rows() == T, "synthetic clip: ", T, " poses, ",
-                 motion.timestamps.size(), " timestamps, ", motion.trans.rows(), " translations");
-  BODYLOOM_CHECK(motion.poses.cols() <= 3 * body.num_joints() && motion.poses.cols() >= 3 && motion.poses.cols() % 3 == 0,
-                 "synthetic clip: poses have ", motion.poses.cols(), " columns, the body '", body.name(), "' takes up to ",
-                 3 * body.num_joints());
-  BODYLOOM_CHECK(motion.poses.allFinite() && motion.trans.allFinite(), "synthetic clip: the motion holds NaN or infinite values");
+  BODYLOOM_CHECK(static_cast<int>(motion.timestamps.size()) == T && motion.trans.rows() == T, "synthetic clip: ", T,
+                 " poses, ", motion.timestamps.size(), " timestamps, ", motion.trans.rows(), " translations");
+  BODYLOOM_CHECK(
+      motion.poses.cols() <= 3 * body.num_joints() && motion.poses.cols() >= 3 && motion.poses.cols() % 3 == 0,
+      "synthetic clip: poses have ", motion.poses.cols(), " columns, the body '", body.name(), "' takes up to ",
+      3 * body.num_joints());
+  BODYLOOM_CHECK(motion.poses.allFinite() && motion.trans.allFinite(),
+                 "synthetic clip: the motion holds NaN or infinite values");
   SynthClip clip;
   const SynthCamera placed = PlaceSynthCamera(body, motion, options.camera);
   clip.camera_from_world = placed.pose;
@@ -335,12 +348,15 @@ SynthClip MakeSynthClip(const BodyModel& body, const Motion& motion, const Synth
   truth.coco17.resize(T);
   truth.joint_sigma = RowMatrixXd::Zero(T, body.num_joints());
 
+  const int num_threads = options.num_threads > 0 ? options.num_threads
+                                                  : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   ClipMaker maker(body, options, &clip);
-  ParallelFor(T, options.num_threads, [&](int t) { maker.MakeFrame(t); });
+  ParallelFor(T, num_threads, [&](int t) { maker.MakeFrame(t); });
   maker.Finish();
   if (options.initialiser_error_px > 0) {
-    PerturbedMotion perturbed = PerturbMotion(body, truth.camera, truth.motion, options.initialiser_error_px, options.perturbation,
-                                              HashRandom(options.seed, {kInitialiser}).Next(), options.num_threads);
+    PerturbedMotion perturbed =
+        PerturbMotion(body, truth.camera, truth.motion, options.initialiser_error_px, options.perturbation,
+                      HashRandom(options.seed, {kInitialiser}).Next(), num_threads);
     clip.initialiser = std::move(perturbed.motion);
     clip.initialiser_error_px = perturbed.error_px;
   }
