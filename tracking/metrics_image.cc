@@ -9,8 +9,9 @@
 namespace bodyloom {
 namespace {
 
+/// Compared in float, as the files hold it: 0.3 in a file is not above 0.3.
 bool IsUsed(const Keypoint& p, double min_confidence) {
-  return p.confidence > min_confidence && std::isfinite(p.x) && std::isfinite(p.y);
+  return p.confidence > static_cast<float>(min_confidence) && std::isfinite(p.x) && std::isfinite(p.y);
 }
 
 void CheckAgainstDetections(const char* what, PixelClip prediction, const KeypointSequence& detections) {

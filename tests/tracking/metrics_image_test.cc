@@ -86,14 +86,14 @@ TEST(MetricsImageTest, ReprojectionErrorInPixelsAndHeights) {
   std::vector<MatrixX2d> pixels = Pixels(Detections(3), 6, 8);
   pixels[0].row(3).setConstant(kNotMeasured);
   ReprojectionErrors errors;
-  AddReprojectionErrors(pixels, detections, 0.3F, &errors);
+  AddReprojectionErrors(pixels, detections, 0.3, &errors);
   EXPECT_EQ(errors.px.size(), 3u * 17 - 3);
   EXPECT_EQ(errors.missing, 1);
   const ErrorStatistics px = Summarize(errors.px), percent = Summarize(errors.percent_of_height);
   EXPECT_NEAR(px.median, 10, 1e-5);
   EXPECT_NEAR(px.p95, 10, 1e-5);
   EXPECT_NEAR(percent.median, 2.5, 1e-5);  // of 400 px
-  AddReprojectionErrors(pixels, detections, 0.3F, &errors);
+  AddReprojectionErrors(pixels, detections, 0.3, &errors);
   EXPECT_EQ(errors.px.size(), 2 * (3u * 17 - 3));
 }
 
