@@ -83,6 +83,16 @@ TEST(CramerRaoTest, SingularInformationIsReported) {
   EXPECT_FALSE(MarginalCovariances(ClipInformationFromSparse(information.sparseView(), 3, 2)).is_finite);
 }
 
+TEST(CramerRaoTest, TwoParametersSeenOnlyTogetherAreSingularWhateverTheRounding) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    std::mt19937 rng(seed);
+    MatrixXd J = RandomMatrix(9, 3, &rng);
+    J.col(2) = J.col(0) / 3 - J.col(1) / 7;
+    const MatrixXd information = J.transpose() * J;
+    EXPECT_FALSE(MarginalCovariances(ClipInformationFromSparse(information.sparseView(), 1, 3)).is_finite) << seed;
+  }
+}
+
 TEST(CramerRaoTest, ExpectedNormInClosedForm) {
   const double isotropic = 3 * std::sqrt(std::numbers::pi / 2), line = 3 * std::sqrt(2 / std::numbers::pi);
   EXPECT_NEAR(ExpectedNorm(9 * Eigen::Matrix2d::Identity()), isotropic, 1e-12);
