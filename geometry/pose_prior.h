@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Which poses people take: a mixture of Gaussians over the joint rotations, and examples of limb directions.
+/// Which poses people take: a mixture of Gaussians over the joint rotations, and densities of limb directions.
 /// Learned from motion capture by `bodyloom body make-prior` (data_tools/pose_prior_learning.h), stored in assets/prior.
 #pragma once
 
@@ -16,11 +16,13 @@ struct PosePrior {
   std::vector<std::string> joints;           ///< joint names, in the order of x
   Eigen::VectorXd log_weights;               ///< K
   RowMatrixXd means;                         ///< K × dim
-  std::vector<Eigen::MatrixXd> sqrt_precisions;  ///< K of dim×dim upper triangular L with LᵀL = Σ⁻¹
+  std::vector<Eigen::MatrixXd> covariances;  ///< K of dim×dim
 
-  /// Limb examples in the torso frame (x left, y up, z front): unit vectors (upper, lower) of one limb, 6 values a row,
-  /// for the left side; the right side mirrors x.
-  MatrixX3d arm_upper, arm_lower, leg_upper, leg_lower;  ///< N×3 each
+  /// Log density (natural, relative to uniform) of a limb's two bone directions in the torso frame (x left, y up,
+  /// z front): row = direction of the upper bone, column = of the lower, as indices into DirectionBins of
+  /// num_directions; for the left limb, the right one mirrors x. Empty when not learned.
+  int num_directions = 0;
+  RowMatrixXf arm_log_density, leg_log_density;
 
   [[nodiscard]] int dim() const { return static_cast<int>(3 * joints.size()); }
   [[nodiscard]] int num_components() const { return static_cast<int>(log_weights.size()); }

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The pose prior as the solver uses it: the learned mixture restricted to the joints that are estimated.
+///
+/// Energy of x (stacked axis-angle of the joints): min_k [ ‖L_k (x − μ_k)‖² + e_k ], e_k = −2 log(w_k |L_k|) shifted so
+/// that the smallest is zero. The minimum over components replaces the logarithm of the sum, as in SMPLify, so that the
+/// energy stays a sum of squares.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "geometry/body_model.h"
+#include "geometry/pose_prior.h"
+
+namespace bodyloom {
+
+class MixturePrior {
+ public:
+  /// Marginalises the prior to those of its joints that are in `active_joints`. Empty when there are none.
+  MixturePrior(const PosePrior& prior, const BodyModel& model, const std::vector<int>& active_joints);
+
+  [[nodiscard]] bool empty() const { return joints_.empty(); }
+  /// Body joint indices in the order of x.
+  [[nodiscard]] const std::vector<int>& joints() const { return joints_; }
+  /// Index of the component with the least energy at x, and that energy.
+  int Nearest(const Eigen::VectorXd& x, double* energy) const;
+  [[nodiscard]] const Eigen::MatrixXd& sqrt_precision(int k) const { return components_[k].L; }
+  [[nodiscard]] const Eigen::VectorXd& mean(int k) const { return components_[k].mean; }
+  [[nodiscard]] double offset(int k) const { return components_[k].offset; }
+  [[nodiscard]] int num_components() const { return static_cast<int>(components_.size()); }
+
+ private:
+  struct Component {
+    Eigen::VectorXd mean;
+    Eigen::MatrixXd L;  ///< upper triangular, LᵀL = Σ⁻¹
+    double offset = 0;
+  };
+  std::vector<int> joints_;
+  std::vector<Component> components_;
+};
+
+}  // namespace bodyloom

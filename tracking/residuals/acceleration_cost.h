@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Smoothness in time (L_t of paper A, by acceleration instead of velocity so that fast motion is not damped).
+///
+/// Rotation: r = [ log(R₁ᵀR₂)/Δ₁ − log(R₀ᵀR₁)/Δ₀ ] / ((Δ₀+Δ₁)/2) / σ, angular acceleration of a joint relative to its
+/// parent, rad/s². Vector: the same with x₂ − x₁ and x₁ − x₀. Δ are the frames' time steps in seconds, so frame rate
+/// and irregular time stamps need no special care. Three consecutive frames; never used across a gap or a cut.
+#pragma once
+
+#include <ceres/sized_cost_function.h>
+
+namespace bodyloom {
+
+/// Blocks: axis-angle of one joint at three frames (RotationManifold; derivatives by right increments).
+class RotationAccelerationCost : public ceres::SizedCostFunction<3, 3, 3, 3> {
+ public:
+  RotationAccelerationCost(double dt0, double dt1, double sigma);
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+
+ private:
+  double scale0_, scale1_;
+};
+
+/// Blocks: a 3-vector at three frames, one σ a component.
+class VectorAccelerationCost : public ceres::SizedCostFunction<3, 3, 3, 3> {
+ public:
+  VectorAccelerationCost(double dt0, double dt1, const double sigma[3]);
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+
+ private:
+  double scale0_[3], scale1_[3];
+};
+
+}  // namespace bodyloom

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracking/residuals/compressed_frame_cost.h"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+#include "geometry/rotation.h"
+
+namespace bodyloom {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+void SquareRootSystem(const MatrixXd& H, const VectorXd& g, MatrixXd* R, VectorXd* y) {
+  const Eigen::Index n = H.rows();
+  const double tolerance = 1e-14 * H.diagonal().cwiseAbs().maxCoeff();
+  const Eigen::LLT<MatrixXd, Eigen::Lower> factor(H);
+  if (factor.info() == Eigen::Success && factor.matrixLLT().diagonal().minCoeff() > std::sqrt(tolerance)) {
+    *R = factor.matrixU();
+    *y = factor.matrixL().solve(g);
+    return;
+  }
+  // Semi-definite: left-looking Cholesky that leaves a zero row for every parameter nothing depends on.
+  R->setZero(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double pivot = H(i, i) - R->col(i).head(i).squaredNorm();
+    if (!(pivot > tolerance)) continue;
+    const double root = std::sqrt(pivot);
+    (*R)(i, i) = root;
+    for (Eigen::Index j = i + 1; j < n; ++j) {
+      (*R)(i, j) = (H(j, i) - R->col(i).head(i).dot(R->col(j).head(i))) / root;
+    }
+  }
+  y->resize(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double root = (*R)(i, i);
+    (*y)[i] = root > 0 ? (g[i] - R->col(i).head(i).dot(y->head(i))) / root : 0.0;
+  }
+}
+
+CompressedFrameCost::CompressedFrameCost(const FrameLayout& layout, const FrameData& data, const FrameState& held)
+    : layout_(layout), data_(data), held_(held) {
+  for (size_t i = 0; i < layout.active_joints.size() + 1; ++i) mutable_parameter_block_sizes()->push_back(3);
+  if (layout.num_betas > 0) mutable_parameter_block_sizes()->push_back(layout.num_betas);
+  if (layout.focal_column >= 0) mutable_parameter_block_sizes()->push_back(1);
+  set_num_residuals(layout.num_columns + 1);
+}
+
+bool CompressedFrameCost::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
+  thread_local FrameEvaluator evaluator;
+  thread_local FrameSystem system;
+  thread_local FrameState state;
+  thread_local VectorXd betas;
+  thread_local MatrixXd R;
+  thread_local VectorXd y;
+  state = held_;
+  int block = 0;
+  for (int j : layout_.active_joints) {
+    state.rotations[j] = RotationFromAxisAngle(Eigen::Map<const Eigen::Vector3d>(parameters[block++]));
+  }
+  state.translation = Eigen::Map<const Eigen::Vector3d>(parameters[block++]);
+  betas.resize(layout_.num_betas);
+  if (layout_.num_betas > 0) betas = Eigen::Map<const VectorXd>(parameters[block++], layout_.num_betas);
+  const double log_focal = layout_.focal_column >= 0 ? parameters[block++][0] : 0.0;
+  const bool derivatives = jacobians != nullptr;
+  evaluator.Evaluate(layout_, data_, state, betas, log_focal, derivatives, &system);
+  if (!std::isfinite(system.cost)) return false;
+  const int p = layout_.num_columns;
+  Eigen::Map<VectorXd> r(residuals, p + 1);
+  if (!derivatives) {
+    r.setZero();
+    r[p] = std::sqrt(2 * system.cost);
+    return true;
+  }
+  SquareRootSystem(system.H, system.gradient, &R, &y);
+  r.head(p) = y;
+  r[p] = std::sqrt(std::max(0.0, 2 * system.cost - y.squaredNorm()));
+  int column = 0;
+  for (int b = 0; b < block; ++b) {
+    const int size = parameter_block_sizes()[b];
+    if (jacobians[b] != nullptr) {
+      Eigen::Map<RowMatrixXd> J(jacobians[b], p + 1, size);
+      J.topRows(p) = R.middleCols(column, size);
+      J.row(p).setZero();
+    }
+    column += size;
+  }
+  return true;
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The clip as one least-squares problem: frames coupled to their neighbours by acceleration, all to shape and camera.
+///
+/// The unknowns live here, in plain form; SolveSequence hands them to Ceres and takes them back. Work and memory grow
+/// linearly with the number of frames: a frame couples to two neighbours on each side and to the shared columns only.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tracking/frame_cost.h"
+
+namespace bodyloom {
+
+/// σ of the smoothness terms.
+struct Smoothness {
+  double tip_acceleration = 25;       ///< m/s²: of the far end of what a joint moves; sets each joint's angular σ
+  double root_acceleration = 15;      ///< m/s²: of the translation across the view and along it
+  double weak_scale_acceleration = 2; ///< 1/s²: of log scale (weak perspective)
+};
+
+struct ShapePrior {
+  double sigma = 1.0;           ///< of each beta; the body's components are in standard deviations
+  double height_m = 0;          ///< 0: the mean body's. Metric scale cannot be seen by one camera
+  double height_sigma_m = 0.005;
+};
+
+struct SequenceProblem {
+  FrameLayout layout;
+  std::vector<FrameData> frames;
+  std::vector<FrameState> states;
+  std::vector<double> timestamps;   ///< seconds
+  std::vector<char> cut_before;     ///< true where frame t does not continue frame t−1
+  Eigen::VectorXd betas;
+  double log_focal = 0;
+  double log_focal_prior = 0, log_focal_sigma = 0.25;
+  Smoothness smoothness;
+  ShapePrior shape_prior;
+};
+
+struct SolveOptions {
+  int max_iterations = 50;
+  int num_threads = 1;
+  double function_tolerance = 1e-5;
+  bool shape_constant = false, focal_constant = false;
+  /// Called after each iteration with (iteration, cost); false stops.
+  std::function<bool(int, double)> on_iteration;
+};
+
+struct SolveReport {
+  SolveStatus status = SolveStatus::kFailure;
+  int iterations = 0;
+  double initial_cost = 0, final_cost = 0, seconds = 0;
+  std::string message;
+};
+
+/// Solves with Ceres (sparse Cholesky). The problem's states, betas and log_focal hold the answer afterwards.
+SolveReport SolveSequence(SequenceProblem* problem, const SolveOptions& options);
+
+/// Rest-pose distance from a joint to the farthest joint below it, metres (at least 0.1): the lever that turns a linear
+/// acceleration into an angular one.
+std::vector<double> JointLevers(const BodyModel& model);
+
+/// Stature h(β) = h0 + g·β: highest minus lowest vertex of the mean shape, followed linearly.
+double StatureOfMeanShape(const BodyModel& model, int num_betas, Eigen::VectorXd* gradient);
+
+}  // namespace bodyloom
