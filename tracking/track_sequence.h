@@ -14,6 +14,7 @@
 #include "geometry/observations.h"
 #include "geometry/pose_prior.h"
 #include "geometry/track.h"
+#include "tracking/initialise/joint_hypotheses.h"
 
 namespace bodyloom {
 
@@ -47,6 +48,9 @@ struct TrackSequenceOptions {
   int num_threads = 0;           ///< 0: all cores
   int max_iterations = 50;       ///< of each stage
   double initialiser_weight = 0.1;  ///< λ_d of paper A, per frame
+  double prior_weight = 0.2;        ///< of the pose prior's energy, per frame
+  double start_pull = 1.0;          ///< pull towards the hypotheses in the first stage (rotation σ 0.2 rad)
+  JointHypothesesOptions hypotheses;
   bool estimate_shape = true;       ///< false: keep the mean shape
   bool estimate_uncertainty = true; ///< joint_sigma; NaN when off
   bool skip_unneeded = true;        ///< false: switch every skip off (same answer, slower)

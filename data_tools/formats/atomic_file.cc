@@ -20,8 +20,7 @@ namespace {
 
 std::string TemporaryBeside(const std::string& target) {
   const std::filesystem::path path(target);
-  const std::string name =
-      "." + path.stem().string() + ".tmp" + std::to_string(::getpid()) + path.extension().string();
+  const std::string name = "." + path.stem().string() + ".tmp" + std::to_string(::getpid()) + path.extension().string();
   return (path.parent_path() / name).string();
 }
 

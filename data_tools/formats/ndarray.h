@@ -11,7 +11,9 @@
 
 namespace bodyloom {
 
-enum class DType { kBool, kI8, kU8, kI16, kU16, kI32, kU32, kI64, kU64, kF16, kF32, kF64, kBytes, kUnicode };
+/// kOther: anything else (pickled objects, structures, complex numbers, dates), carried without its contents so that
+/// the other arrays of a file can be read; `bytes` holds numpy's description of the type.
+enum class DType { kBool, kI8, kU8, kI16, kU16, kI32, kU32, kI64, kU64, kF16, kF32, kF64, kBytes, kUnicode, kOther };
 
 struct NdArray {
   DType dtype = DType::kF64;
@@ -21,8 +23,9 @@ struct NdArray {
 
   [[nodiscard]] int64_t num_elements() const;
   [[nodiscard]] std::string ShapeText() const;  ///< "576x72", "scalar"
-  [[nodiscard]] bool is_number() const { return dtype != DType::kBytes && dtype != DType::kUnicode; }
-  /// All elements converted; throws std::invalid_argument for string arrays.
+  [[nodiscard]] bool is_text() const { return dtype == DType::kBytes || dtype == DType::kUnicode; }
+  [[nodiscard]] bool is_number() const { return !is_text() && dtype != DType::kOther; }
+  /// All elements converted; throws std::invalid_argument for arrays that do not hold numbers.
   [[nodiscard]] std::vector<double> ToDoubles() const;
   [[nodiscard]] std::vector<float> ToFloats() const;
   /// Elements of an integer or boolean array (floats only when integral); throws otherwise.

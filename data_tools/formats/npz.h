@@ -2,7 +2,9 @@
 /// .npy and .npz files: numpy's array format and zip archives of it (stored or deflated, zip64).
 ///
 /// The reader checks every claim before memory is taken: header at most 64 KiB, shape product without overflow, size
-/// equal to the bytes present, deflate ratio at most 1100:1, object arrays refused. Source: numpy/lib/format.py, APPNOTE.TXT.
+/// equal to the bytes present, deflate ratio at most 1100:1. Object arrays are never unpickled: in an archive they
+/// arrive as DType::kOther without contents (SMPL-X files hold some beside the arrays that matter) and are refused when
+/// asked for. Members that are not arrays are passed over. Source: numpy/lib/format.py, APPNOTE.TXT.
 #pragma once
 
 #include <map>
@@ -25,7 +27,7 @@ NdArray ReadNpyBytes(const std::string& bytes, const std::string& where);
 void WriteNpz(const std::string& path, const NpzArrays& arrays);
 void WriteNpy(const std::string& path, const NdArray& array);
 
-/// The array `name`, or std::runtime_error naming `where`, the key, and the keys present.
+/// The array `name` (numbers or text), or std::runtime_error naming `where`, the key, and the keys present.
 const NdArray& RequireArray(const NpzArrays& arrays, const std::string& name, const std::string& where);
 
 }  // namespace bodyloom

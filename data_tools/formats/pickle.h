@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Reads Python pickles (protocols 0–5) without running anything.
 ///
-/// An opcode machine that builds inert values. Only the globals on a fixed list are understood (numpy arrays, dtypes and
-/// scalars, scipy.sparse csc/csr matrices, chumpy.ch.Ch, collections.OrderedDict, _codecs.encode, object
-/// reconstruction); any other global is refused by name and offset. Limits: nesting depth, memo entries, and total bytes
-/// of arrays, checked before memory is taken. Python-2 strings (STRING, BINSTRING) are latin-1 bytes.
-/// Source: CPython Lib/pickletools.py for the opcodes; numpy.core.multiarray._reconstruct and ndarray.__setstate__.
+/// An opcode machine that builds inert values. Only the globals on a fixed list are understood (pickle_objects.cc: numpy
+/// arrays, dtypes and scalars, scipy.sparse csc/csr matrices, chumpy's Ch and Select, collections.OrderedDict,
+/// _codecs.encode, object reconstruction); any other global is refused by name and offset, and nothing is ever executed.
+/// What becomes what: sparse matrices and chumpy objects arrive as plain arrays, numpy scalars as numbers or text, object
+/// arrays and sets as lists, whole numbers beyond 64 bits as the nearest float; of a repeated key the last value counts.
+/// Python-2 strings (STRING, BINSTRING) are their latin-1 bytes.
+/// Limits, checked before memory is taken: bytes in all (also at most 64 MiB + 256 times the file), number of values,
+/// nesting; values that contain themselves are refused.
+/// Source: CPython Lib/pickletools.py for the opcodes; numpy's _reconstruct and ndarray.__setstate__.
 #pragma once
 
 #include <cstddef>
@@ -24,14 +28,15 @@ using PicklePtr = std::shared_ptr<const PickleValue>;
 
 /// A value of a pickle. Dictionaries keep insertion order; keys are text or integers (as text).
 struct PickleValue {
-  enum class Kind { kNone, kBool, kInt, kFloat, kString, kBytes, kList, kTuple, kDict, kArray, kObject } kind = Kind::kNone;
+  enum class Kind { kNone, kBool, kInt, kFloat, kString, kBytes, kList, kTuple, kDict, kArray, kObject };
+  Kind kind = Kind::kNone;
   bool boolean = false;
   int64_t integer = 0;
   double real = 0;
   std::string text;                                     ///< kString, kBytes; class name for kObject
   std::vector<PicklePtr> items;                         ///< kList, kTuple
   std::vector<std::pair<std::string, PicklePtr>> dict;  ///< kDict; attributes of kObject
-  NdArray array;                                        ///< kArray (sparse matrices arrive dense when they fit the limit)
+  NdArray array;                                        ///< kArray
 
   /// The entry of a dictionary or attribute of an object; nullptr when absent.
   [[nodiscard]] const PickleValue* Find(const std::string& key) const;

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What the pickle machine works on: values under construction, the budget they are charged to, and the meaning of the
+/// few globals that are understood. Internal to pickle.cc and pickle_objects.cc.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "data_tools/formats/pickle.h"
+
+namespace bodyloom {
+
+enum class PickleGlobal {
+  kNone,
+  kNdarray,
+  kReconstruct,  ///< numpy.core.multiarray._reconstruct
+  kScalar,       ///< numpy.core.multiarray.scalar
+  kFromBuffer,   ///< numpy.core.numeric._frombuffer (protocol 5)
+  kDtype,
+  kSparseColumns,  ///< scipy.sparse csc
+  kSparseRows,     ///< scipy.sparse csr
+  kChumpyArray,    ///< chumpy.ch.Ch: its array x
+  kChumpySelect,   ///< chumpy.reordering.Select: a.ravel()[idxs].reshape(preferred_shape)
+  kOrderedDict,
+  kEncode,         ///< _codecs.encode: how protocols 0–2 of Python 3 write bytes
+  kReconstructor,  ///< copy_reg._reconstructor
+  kObject,
+  kBytes,
+};
+
+struct PickleNode : PickleValue {
+  std::string_view view;  ///< text still lying in the file (then `text` is empty); copied when the result needs it
+  PickleGlobal global = PickleGlobal::kNone;  ///< what a class or function is, or an instance is of
+  bool is_callable = false;                   ///< the class or function itself, not an instance
+  bool is_open = false;                       ///< an array that still waits for its state
+  uint8_t visit = 0;                          ///< 0 new, 1 on the path, 2 done
+  int height = 0;                             ///< levels below and including this one
+
+  [[nodiscard]] std::string_view Text() const { return view.data() != nullptr ? view : std::string_view(text); }
+};
+using PickleNodePtr = std::shared_ptr<PickleNode>;
+
+/// Nodes are only ever made by PickleContext::New, so every PicklePtr inside the machine is one.
+inline const PickleNode& AsNode(const PicklePtr& value) { return static_cast<const PickleNode&>(*value); }
+
+/// Where the machine stands and what it may still use.
+class PickleContext {
+ public:
+  PickleContext(std::string where, size_t budget, size_t max_items)
+      : where_(std::move(where)), budget_(budget), max_items_(max_items) {}
+
+  size_t offset = 0;                 ///< of the current opcode
+  std::vector<PickleNodePtr> nodes;  ///< everything made so far
+
+  /// Throws std::runtime_error "where: byte offset: message".
+  [[noreturn]] void Fail(const std::string& message) const;
+  /// Takes `bytes` from the budget before they are allocated.
+  void Charge(size_t bytes);
+  PickleNodePtr New(PickleValue::Kind kind);
+
+ private:
+  std::string where_;
+  size_t budget_, max_items_;
+};
+
+/// kNone for everything that is not on the list.
+PickleGlobal FindPickleGlobal(std::string_view name);
+
+/// What `callable(*args)` builds; args is a tuple.
+PickleNodePtr CallPickleGlobal(PickleContext* context, const PickleNode& callable, const PickleNode& args);
+
+/// Gives `object` its state (opcode BUILD). Sparse matrices and chumpy objects become plain arrays here.
+void SetPickleState(PickleContext* context, PickleNode* object, const PicklePtr& state);
+
+/// For messages: text cut to 80 characters, control characters replaced.
+std::string PrintableText(std::string_view text);
+
+}  // namespace bodyloom

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "data_tools/formats/zip.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+#include "geometry/check.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr uint32_t kLocalHeader = 0x04034b50, kDirectoryEntry = 0x02014b50, kEndOfDirectory = 0x06054b50;
+constexpr uint32_t kZip64Locator = 0x07064b50, kZip64End = 0x06064b50;
+constexpr uint16_t kZip64Extra = 1, kStored = 0, kDeflated = 8;
+constexpr size_t kEndSize = 22, kEntrySize = 46, kLocalSize = 30, kLocatorSize = 20, kZip64EndSize = 56;
+constexpr size_t kMaxRatio = 1100;
+constexpr uint64_t kIn64 = 0xFFFFFFFF;  // a 32-bit field that says "see the zip64 record"
+
+/// Little-endian fields of the archive; reading past the end is a truncated file.
+class Bytes {
+ public:
+  Bytes(std::string_view bytes, const std::string& where) : bytes_(bytes), where_(where) {}
+
+  [[nodiscard]] size_t size() const { return bytes_.size(); }
+  [[nodiscard]] uint64_t U16(size_t at) const { return Unsigned(at, 2); }
+  [[nodiscard]] uint64_t U32(size_t at) const { return Unsigned(at, 4); }
+  [[nodiscard]] uint64_t U64(size_t at) const { return Unsigned(at, 8); }
+  [[nodiscard]] std::string_view Text(size_t at, size_t length) const {
+    if (at > bytes_.size() || length > bytes_.size() - at) {
+      Fail(Concatenate("the archive ends at byte ", bytes_.size(), ", expected ", length, " bytes at ", at,
+                       " (the file is truncated or damaged)"));
+    }
+    return bytes_.substr(at, length);
+  }
+  [[noreturn]] void Fail(const std::string& message) const { throw std::runtime_error(where_ + ": " + message); }
+
+ private:
+  [[nodiscard]] uint64_t Unsigned(size_t at, size_t length) const {
+    const std::string_view text = Text(at, length);
+    uint64_t value = 0;
+    for (size_t i = length; i-- > 0;) value = (value << 8) | static_cast<unsigned char>(text[i]);
+    return value;
+  }
+  std::string_view bytes_;
+  const std::string& where_;
+};
+
+struct Directory {
+  uint64_t offset = 0, size = 0, entries = 0;
+};
+
+struct Entry {
+  std::string name;
+  uint64_t flags = 0, method = 0, crc = 0, packed_size = 0, size = 0, header = 0;
+};
+
+Directory FindDirectory(const Bytes& in) {
+  if (in.size() < kEndSize) in.Fail(Concatenate(in.size(), " bytes, expected a zip archive (at least 22)"));
+  const size_t lowest = in.size() - std::min<size_t>(in.size(), kEndSize + 65535);
+  size_t end = in.size() - kEndSize + 1;
+  do {
+    if (end == lowest)
+      in.Fail("no end of directory, expected a zip archive (the file is truncated or of another kind)");
+    --end;
+  } while (in.U32(end) != kEndOfDirectory || in.U16(end + 20) != in.size() - end - kEndSize);
+  Directory directory{in.U32(end + 16), in.U32(end + 12), in.U16(end + 10)};
+  if (end >= kLocatorSize && in.U32(end - kLocatorSize) == kZip64Locator) {
+    const uint64_t at = in.U64(end - kLocatorSize + 8);
+    if (at > in.size() || in.size() - at < kZip64EndSize || in.U32(at) != kZip64End) {
+      in.Fail(Concatenate("no zip64 directory at byte ", at));
+    }
+    directory = {in.U64(at + 48), in.U64(at + 40), in.U64(at + 32)};
+  }
+  if (directory.offset > end || directory.size > end - directory.offset) {
+    in.Fail(Concatenate("the directory is said to take ", directory.size, " bytes at ", directory.offset,
+                        ", outside the archive of ", in.size(), " bytes"));
+  }
+  if (directory.entries > directory.size / kEntrySize) {
+    in.Fail(Concatenate("the directory promises ", directory.entries, " members in ", directory.size, " bytes"));
+  }
+  return directory;
+}
+
+/// Replaces the fields that say kIn64 by those of the entry's zip64 record.
+void ApplyZip64(const Bytes& in, size_t extra, size_t extra_size, Entry* entry) {
+  const size_t end = extra + extra_size;
+  while (extra + 4 <= end) {
+    const uint64_t id = in.U16(extra), size = in.U16(extra + 2);
+    extra += 4;
+    if (size > end - extra) in.Fail("member '" + entry->name + "': its extra field is cut off");
+    if (id == kZip64Extra) {
+      size_t at = extra;
+      for (uint64_t* field : {&entry->size, &entry->packed_size, &entry->header}) {
+        if (*field != kIn64) continue;
+        if (at + 8 > extra + size) in.Fail("member '" + entry->name + "': its zip64 record is cut off");
+        *field = in.U64(at);
+        at += 8;
+      }
+    }
+    extra += size;
+  }
+}
+
+std::vector<Entry> ReadDirectory(const Bytes& in, const Directory& directory) {
+  std::vector<Entry> entries;
+  std::set<std::string> names;
+  size_t at = directory.offset;
+  for (uint64_t i = 0; i < directory.entries; ++i) {
+    if (in.U32(at) != kDirectoryEntry) in.Fail(Concatenate("byte ", at, ": expected directory entry ", i));
+    const size_t name_size = in.U16(at + 28), extra_size = in.U16(at + 30), comment_size = in.U16(at + 32);
+    Entry entry;
+    entry.flags = in.U16(at + 8);
+    entry.method = in.U16(at + 10);
+    entry.crc = in.U32(at + 16);
+    entry.packed_size = in.U32(at + 20);
+    entry.size = in.U32(at + 24);
+    entry.header = in.U32(at + 42);
+    entry.name = std::string(in.Text(at + kEntrySize, name_size));
+    ApplyZip64(in, at + kEntrySize + name_size, extra_size, &entry);
+    at += kEntrySize + name_size + extra_size + comment_size;
+    if (!names.insert(entry.name).second) in.Fail("member '" + entry.name + "' occurs twice");
+    entries.push_back(std::move(entry));
+  }
+  return entries;
+}
+
+/// Where a member's packed bytes start, after its own header.
+size_t PackedBegin(const Bytes& in, const Entry& entry, uint64_t directory_offset) {
+  const std::string member = "member '" + entry.name + "': ";
+  if ((entry.flags & 1) != 0) in.Fail(member + "is encrypted, expected a plain archive");
+  if (entry.method != kStored && entry.method != kDeflated) {
+    in.Fail(Concatenate(member, "compression method ", entry.method, ", expected 0 (stored) or 8 (deflated)"));
+  }
+  if (entry.header > directory_offset || in.U32(entry.header) != kLocalHeader) {
+    in.Fail(Concatenate(member, "no member header at byte ", entry.header));
+  }
+  const size_t begin = entry.header + kLocalSize + in.U16(entry.header + 26) + in.U16(entry.header + 28);
+  if (begin > directory_offset || entry.packed_size > directory_offset - begin) {
+    in.Fail(Concatenate(member, "promises ", entry.packed_size, " packed bytes at ", begin, ", outside the archive of ",
+                        in.size(), " bytes"));
+  }
+  if (entry.method == kStored && entry.size != entry.packed_size) {
+    in.Fail(Concatenate(member, "stored, but promises ", entry.size, " bytes out of ", entry.packed_size));
+  }
+  if (entry.size / kMaxRatio > entry.packed_size) {
+    in.Fail(Concatenate(member, "promises ", entry.size, " bytes out of ", entry.packed_size,
+                        " packed ones, more than deflate can give"));
+  }
+  return begin;
+}
+
+std::string Unpack(const Bytes& in, const Entry& entry, std::string_view packed) {
+  std::string bytes;
+  if (entry.method == kStored) {
+    bytes = std::string(packed);
+  } else {
+    bytes.resize(entry.size);
+    z_stream stream{};
+    if (inflateInit2(&stream, -MAX_WBITS) != Z_OK) throw std::bad_alloc();
+    int result = Z_OK;
+    size_t taken = 0, given = 0;
+    constexpr size_t kStep = size_t{1} << 30;  // zlib counts in 32 bits
+    char overflow = 0;                         // one byte of room beyond the promise shows a stream that is too long
+    while (result == Z_OK) {
+      const size_t in_step = std::min(kStep, packed.size() - taken), room = std::min(kStep, bytes.size() - given);
+      stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data() + taken));
+      stream.avail_in = static_cast<uInt>(in_step);
+      stream.next_out = reinterpret_cast<Bytef*>(room > 0 ? bytes.data() + given : &overflow);
+      stream.avail_out = static_cast<uInt>(std::max<size_t>(room, 1));
+      const size_t out_step = stream.avail_out;
+      result = inflate(&stream, Z_NO_FLUSH);
+      taken += in_step - stream.avail_in;
+      given += out_step - stream.avail_out;
+      if (given > bytes.size()) break;
+    }
+    inflateEnd(&stream);
+    if (result != Z_STREAM_END || given != bytes.size() || taken != packed.size()) {
+      in.Fail(Concatenate("member '", entry.name, "': its compressed bytes are damaged (", given, " of ", entry.size,
+                          " bytes unpacked)"));
+    }
+  }
+  if (crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()) != entry.crc) {
+    in.Fail("member '" + entry.name + "': checksum mismatch, the file is damaged");
+  }
+  return bytes;
+}
+
+std::string Deflate(const std::string& bytes, int level) {
+  z_stream stream{};
+  if (deflateInit2(&stream, level, Z_DEFLATED, -MAX_WBITS, 9, Z_DEFAULT_STRATEGY) != Z_OK) throw std::bad_alloc();
+  std::string packed(deflateBound(&stream, bytes.size()), '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+  stream.avail_in = static_cast<uInt>(bytes.size());
+  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
+  stream.avail_out = static_cast<uInt>(packed.size());
+  const int result = deflate(&stream, Z_FINISH);
+  packed.resize(packed.size() - stream.avail_out);
+  deflateEnd(&stream);
+  return result == Z_STREAM_END ? packed : bytes;
+}
+
+void Put(uint64_t value, int length, std::string* out) {
+  for (int i = 0; i < length; ++i) out->push_back(static_cast<char>(value >> (8 * i)));
+}
+
+/// The fields shared by a member's header and its directory entry, from "version needed" to "extra length".
+void PutCommon(const Entry& entry, std::string* out) {
+  Put(20, 2, out);
+  Put(0, 2, out);
+  Put(entry.method, 2, out);
+  Put(0, 2, out);
+  Put(0x21, 2, out);  // 1980-01-01, the first date there is
+  Put(entry.crc, 4, out);
+  Put(entry.packed_size, 4, out);
+  Put(entry.size, 4, out);
+  Put(entry.name.size(), 2, out);
+  Put(0, 2, out);
+}
+
+}  // namespace
+
+bool LooksLikeZip(std::string_view bytes) {
+  return bytes.substr(0, 4) == "PK\x03\x04" || bytes.substr(0, 4) == "PK\x05\x06";
+}
+
+std::vector<ZipMember> ReadZip(std::string_view archive, const std::string& where, size_t max_bytes) {
+  const Bytes in(archive, where);
+  const Directory directory = FindDirectory(in);
+  const std::vector<Entry> entries = ReadDirectory(in, directory);
+  std::vector<std::pair<size_t, size_t>> extents;  // packed bytes [begin, end) of each member
+  size_t total = 0;
+  for (const Entry& entry : entries) {
+    const size_t begin = PackedBegin(in, entry, directory.offset);
+    extents.emplace_back(begin, begin + entry.packed_size);
+    if (entry.size > max_bytes - total) {
+      in.Fail(Concatenate("member '", entry.name, "': ", entry.size, " bytes, at most ", max_bytes,
+                          " are read from one archive"));
+    }
+    total += entry.size;
+  }
+  std::vector<std::pair<size_t, size_t>> sorted = extents;
+  std::sort(sorted.begin(), sorted.end());
+  for (size_t i = 1; i < sorted.size(); ++i) {
+    if (sorted[i].first < sorted[i - 1].second) in.Fail("two members overlap, expected an ordinary archive");
+  }
+  std::vector<ZipMember> members;
+  for (size_t i = 0; i < entries.size(); ++i) {
+    const std::string_view packed = in.Text(extents[i].first, extents[i].second - extents[i].first);
+    members.push_back({entries[i].name, Unpack(in, entries[i], packed)});
+  }
+  return members;
+}
+
+std::string MakeZip(const std::vector<ZipMember>& members, int level) {
+  std::string archive, directory;
+  for (const ZipMember& member : members) {
+    BODYLOOM_CHECK(member.bytes.size() < kIn64 && member.name.size() <= std::numeric_limits<uint16_t>::max(),
+                   "zip member '", member.name, "' of ", member.bytes.size(), " bytes, expected less than 4 GiB");
+    const std::string packed = Deflate(member.bytes, level);
+    const bool deflated = packed.size() < member.bytes.size();
+    const std::string& body = deflated ? packed : member.bytes;
+    Entry entry;
+    entry.name = member.name;
+    entry.method = deflated ? kDeflated : kStored;
+    entry.crc = crc32_z(0, reinterpret_cast<const Bytef*>(member.bytes.data()), member.bytes.size());
+    entry.packed_size = body.size();
+    entry.size = member.bytes.size();
+    entry.header = archive.size();
+    Put(kLocalHeader, 4, &archive);
+    PutCommon(entry, &archive);
+    archive += entry.name;
+    archive += body;
+    Put(kDirectoryEntry, 4, &directory);
+    Put(20, 2, &directory);
+    PutCommon(entry, &directory);
+    Put(0, 10, &directory);  // comment length, disk, attributes
+    Put(entry.header, 4, &directory);
+    directory += entry.name;
+  }
+  BODYLOOM_CHECK(archive.size() + directory.size() < kIn64 && members.size() < 0xFFFF, "zip archive of ",
+                 archive.size(), " bytes and ", members.size(), " members, expected less than 4 GiB and 65535");
+  const size_t directory_offset = archive.size();
+  archive += directory;
+  Put(kEndOfDirectory, 4, &archive);
+  Put(0, 4, &archive);
+  Put(members.size(), 2, &archive);
+  Put(members.size(), 2, &archive);
+  Put(directory.size(), 4, &archive);
+  Put(directory_offset, 4, &archive);
+  Put(0, 2, &archive);
+  return archive;
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Zip archives in memory: stored and deflated members, zip64 sizes and offsets read.
+///
+/// The reader trusts nothing: every offset lies inside the file, members do not overlap (so they cannot share one
+/// compressed bomb), deflate expands at most 1100:1 (its own limit is 1032:1), sizes and CRC-32 must hold.
+/// Source: PKWARE APPNOTE.TXT 6.3.x; RFC 1951.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace bodyloom {
+
+struct ZipMember {
+  std::string name;
+  std::string bytes;
+};
+
+/// True for the four bytes that a zip archive starts with.
+bool LooksLikeZip(std::string_view bytes);
+
+/// All members in the order of the archive's directory. Throws std::runtime_error naming `where`, the member and what
+/// was expected; together the members take at most max_bytes, which is checked before memory is taken.
+std::vector<ZipMember> ReadZip(std::string_view archive, const std::string& where, size_t max_bytes);
+
+/// The archive of the members in the given order: fixed dates, deflated where that is smaller, so that equal members
+/// give equal bytes. level 1..9 as in zlib. Throws std::invalid_argument for archives beyond 4 GiB.
+std::string MakeZip(const std::vector<ZipMember>& members, int level = 6);
+
+}  // namespace bodyloom

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The project's contract for files that cannot be used: std::runtime_error, one line, naming the file.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <string>
+
+namespace bodyloom {
+
+/// Runs `action`; returns the message of the std::runtime_error it throws, or fails the test. The message must name
+/// `where` and be one line.
+template <typename Action>
+std::string FileErrorOf(const std::string& where, const Action& action) {
+  try {
+    action();
+  } catch (const std::runtime_error& error) {
+    const std::string message = error.what();
+    EXPECT_NE(message.find(where), std::string::npos) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    return message;
+  } catch (const std::exception& error) {
+    ADD_FAILURE() << "expected std::runtime_error, got: " << error.what();
+    return "";
+  }
+  ADD_FAILURE() << "expected std::runtime_error, nothing was thrown";
+  return "";
+}
+
+}  // namespace bodyloom
