@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/body_points.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <map>
 #include <utility>

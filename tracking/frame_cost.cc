@@ -40,6 +40,16 @@ FrameLayout FrameLayout::Make(const BodyModel& model, CameraKnowledge knowledge,
   return layout;
 }
 
+FrameState InterpolateStates(const FrameState& a, const FrameState& b, double s) {
+  FrameState result;
+  result.rotations.reserve(a.rotations.size());
+  for (size_t j = 0; j < a.rotations.size(); ++j) {
+    result.rotations.push_back(InterpolateRotation(a.rotations[j], b.rotations[j], s));
+  }
+  result.translation = (1 - s) * a.translation + s * b.translation;
+  return result;
+}
+
 void FrameEvaluator::ReserveRows(int rows, int columns) {
   if (J_.cols() != columns || J_.rows() < rows) J_.resize(rows, columns);
   if (r_.size() < rows) r_.resize(rows);

@@ -68,6 +68,9 @@ struct FrameState {
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();
 };
 
+/// From a (s = 0) to b (s = 1): rotations along geodesics, translation linearly.
+FrameState InterpolateStates(const FrameState& a, const FrameState& b, double s);
+
 /// Gauss–Newton system of a frame: cost = ½ Σ ρ, gradient = Jᵀ r and H = Jᵀ J of the weighted residuals.
 struct FrameSystem {
   double cost = 0;

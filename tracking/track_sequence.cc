@@ -195,12 +195,16 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& input, const TrackSe
     summary.num_observations += static_cast<int>(frame.landmarks.size()) +
                                 (frame.dense != nullptr ? static_cast<int>(frame.dense->size()) : 0);
   }
+  // Detections of a frame and of its neighbours err together (COCO joints are not the body's, and detectors are off for
+  // a third of a second at a time), so frames do not outvote the shape prior as independent measurements would.
+  problem.shape_prior.weight = std::max(1.0, options.shape_prior_weight * static_cast<double>(T));
   summary.num_parameters =
       static_cast<int>(T) * problem.layout.num_frame_columns() + problem.layout.num_columns - problem.layout.beta_column;
 
   const bool pulled = input.initialiser == nullptr;
-  const auto solve = [&](const char* stage, double pull, double kernel, double tolerance, double from, double to) {
-    for (FrameData& frame : problem.frames) {
+  const auto solve = [&](const char* stage, SequenceProblem* stage_problem, double pull, double kernel, double tolerance,
+                         double from, double to) {
+    for (FrameData& frame : stage_problem->frames) {
       frame.initialiser_weight = pull;
       frame.landmark_kernel = kernel;
     }
@@ -214,7 +218,7 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& input, const TrackSe
         return options.progress({stage, from + (to - from) * done, cost});
       };
     }
-    const SolveReport report = SolveSequence(&problem, solve_options);
+    const SolveReport report = SolveSequence(stage_problem, solve_options);
     summary.iterations += report.iterations;
     if (summary.initial_cost == 0) summary.initial_cost = report.initial_cost;
     summary.final_cost = report.final_cost;
@@ -223,9 +227,19 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& input, const TrackSe
     clock.Book(stage);
     return report.status != SolveStatus::kFailure && report.status != SolveStatus::kStopped;
   };
+  // Coarse in time first: what a frame cannot decide alone its neighbours decide together, and 15 frames a second are
+  // enough to see how a person moves.
   bool going = true;
-  if (pulled) going = solve("fit near start", options.start_pull, 8, 1e-3, 0.05, 0.5);
-  if (going) solve("fit", pulled ? 0.0 : options.initialiser_weight, 4, 1e-5, 0.5, 0.95);
+  const std::vector<int> coarse_frames = FramesAtRate(problem, options.coarse_rate);
+  const bool coarse_to_fine = coarse_frames.size() < T;
+  const double final_pull = pulled ? 0.0 : options.initialiser_weight;
+  if (pulled || coarse_to_fine) {
+    SequenceProblem coarse = SelectFrames(problem, coarse_frames);
+    if (pulled) going = solve("fit near start", &coarse, options.start_pull, 8, 1e-3, 0.05, 0.3);
+    if (going) going = solve("fit coarse", &coarse, final_pull, 4, 1e-4, 0.3, 0.6);
+    SpreadFrames(coarse, coarse_frames, &problem);
+  }
+  if (going) solve("fit", &problem, final_pull, 4, 1e-4, 0.6, 0.95);
 
   FillTrack(input, problem, landmarks, &result);
   clock.Book("finish");

@@ -50,6 +50,8 @@ struct TrackSequenceOptions {
   double initialiser_weight = 0.1;  ///< λ_d of paper A, per frame
   double prior_weight = 0.2;        ///< of the pose prior's energy, per frame
   double start_pull = 1.0;          ///< pull towards the hypotheses in the first stage (rotation σ 0.2 rad)
+  double coarse_rate = 15;          ///< frames a second of the coarse stages
+  double shape_prior_weight = 0.3;  ///< of the shape prior, a frame
   JointHypothesesOptions hypotheses;
   bool estimate_shape = true;       ///< false: keep the mean shape
   bool estimate_uncertainty = true; ///< joint_sigma; NaN when off

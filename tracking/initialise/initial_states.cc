@@ -20,16 +20,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-FrameState Interpolate(const FrameState& a, const FrameState& b, double s) {
-  FrameState result;
-  result.rotations.reserve(a.rotations.size());
-  for (size_t j = 0; j < a.rotations.size(); ++j) {
-    result.rotations.push_back(InterpolateRotation(a.rotations[j], b.rotations[j], s));
-  }
-  result.translation = (1 - s) * a.translation + s * b.translation;
-  return result;
-}
-
 /// Fills all frames from states at `frames` (ascending): SO(3) interpolation between, constant beyond the ends.
 std::vector<FrameState> FillFrames(const std::vector<int>& frames, const std::vector<FrameState>& known,
                                    const std::vector<double>& timestamps) {
@@ -43,7 +33,7 @@ std::vector<FrameState> FillFrames(const std::vector<int>& frames, const std::ve
       states[t] = known.back();
     } else {
       const double t0 = timestamps[frames[next - 1]], t1 = timestamps[frames[next]];
-      states[t] = Interpolate(known[next - 1], known[next], (timestamps[t] - t0) / (t1 - t0));
+      states[t] = InterpolateStates(known[next - 1], known[next], (timestamps[t] - t0) / (t1 - t0));
     }
   }
   return states;

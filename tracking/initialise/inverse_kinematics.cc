@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/initialise/inverse_kinematics.h"
 
+#include <Eigen/Geometry>
+
 #include "geometry/check.h"
 #include "geometry/rotation.h"
 #include "tracking/initialise/joint_hypotheses.h"
