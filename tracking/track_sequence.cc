@@ -223,6 +223,8 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& input, const TrackSe
     }
     const SolveReport report = SolveSequence(stage_problem, solve_options);
     summary.iterations += report.iterations;
+    summary.seconds_evaluation += report.seconds_evaluation;
+    summary.seconds_linear_solver += report.seconds_linear_solver;
     if (summary.initial_cost == 0) summary.initial_cost = report.initial_cost;
     summary.final_cost = report.final_cost;
     summary.status = report.status;

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "data_tools/observations/frame_numbers.h"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <numeric>
+#include <stdexcept>
+
+#include "geometry/check.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr int64_t kMostFrames = 1'000'000;
+constexpr size_t kMostDigits = 15;
+
+bool IsDigit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
+
+}  // namespace
+
+int64_t FrameNumberFromName(const std::string& file_name) {
+  std::string stem = std::filesystem::path(file_name).filename().string();
+  const size_t dot = stem.rfind('.');
+  // An extension starts with a letter: "cam01.0037" has none.
+  if (dot != std::string::npos && dot + 1 < stem.size() && !IsDigit(stem[dot + 1])) stem.resize(dot);
+  const std::string ending = "_keypoints";
+  if (stem.ends_with(ending)) stem.resize(stem.size() - ending.size());
+  size_t end = stem.size();
+  while (end > 0 && !IsDigit(stem[end - 1])) --end;
+  size_t begin = end;
+  while (begin > 0 && IsDigit(stem[begin - 1])) --begin;
+  while (begin < end && stem[begin] == '0' && end - begin > 1) ++begin;
+  if (begin == end || end - begin > kMostDigits) return -1;
+  return std::stoll(stem.substr(begin, end - begin));
+}
+
+FrameGrid MakeFrameGrid(const std::vector<int64_t>& numbers, double fps, const std::string& where) {
+  BODYLOOM_CHECK(fps > 0 && fps < 1e6, "frame rate ", fps, " must be positive");
+  FrameGrid grid;
+  if (numbers.empty()) return grid;
+  std::vector<int64_t> sorted = numbers;
+  std::sort(sorted.begin(), sorted.end());
+  int64_t step = 0;
+  for (size_t i = 1; i < sorted.size(); ++i) {
+    if (sorted[i] == sorted[i - 1]) {
+      throw std::runtime_error(where + ": frame number " + std::to_string(sorted[i]) + " occurs twice");
+    }
+    step = std::gcd(step, sorted[i] - sorted[i - 1]);
+  }
+  step = std::max<int64_t>(1, step);
+  const int64_t num_frames = (sorted.back() - sorted.front()) / step + 1;
+  if (num_frames > kMostFrames) {
+    throw std::runtime_error(where + ": frame numbers " + std::to_string(sorted.front()) + " to " +
+                             std::to_string(sorted.back()) + " span " + std::to_string(num_frames) +
+                             " frames, at most " + std::to_string(kMostFrames) + " are read");
+  }
+  grid.index.reserve(numbers.size());
+  for (const int64_t number : numbers) grid.index.push_back(static_cast<int>((number - sorted.front()) / step));
+  grid.timestamps.reserve(num_frames);
+  for (int64_t t = 0; t < num_frames; ++t) {
+    grid.timestamps.push_back(static_cast<double>(sorted.front() + t * step) / fps);
+  }
+  return grid;
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+/// JSON from strangers: parsed with limits, read through a cursor whose errors name the file and the place.
+///
+/// Limits are enforced before anything is built: size of the text, nesting depth (a linear scan that knows strings), and
+/// NaN / Infinity tokens, which JSON does not have although some writers emit them. Errors are std::runtime_error with
+/// one line "path: byte N: what was found, expected what".
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+namespace bodyloom {
+
+struct JsonLimits {
+  size_t max_bytes = size_t{256} << 20;
+  int max_depth = 64;
+};
+
+/// Parses `text`; `where` names the file in messages.
+nlohmann::json ParseJson(const std::string& text, const std::string& where, const JsonLimits& limits = {});
+nlohmann::json ReadJsonFile(const std::string& path, const JsonLimits& limits = {});
+
+/// A JSON value that knows where it stands ("calib.json: cameras[2].K"). Refers to a document that must outlive it.
+class JsonNode {
+ public:
+  JsonNode(const nlohmann::json& value, std::string place) : value_(&value), place_(std::move(place)) {}
+
+  [[nodiscard]] const std::string& place() const { return place_; }
+  [[nodiscard]] bool is_object() const;
+  [[nodiscard]] bool is_array() const;
+  [[nodiscard]] bool is_number() const;
+  [[nodiscard]] bool is_string() const;
+  [[nodiscard]] bool is_null() const;
+  /// Entries of an array or object; 0 for anything else.
+  [[nodiscard]] size_t size() const;
+  /// Whether this is an object with that key.
+  [[nodiscard]] bool Has(const std::string& key) const;
+  [[nodiscard]] std::vector<std::string> Keys() const;
+
+  // Everything below throws std::runtime_error naming the place when the value is not what was asked for.
+  [[nodiscard]] JsonNode At(const std::string& key) const;
+  [[nodiscard]] JsonNode At(size_t index) const;
+  [[nodiscard]] double Number() const;    ///< finite
+  [[nodiscard]] int64_t Integer() const;  ///< exactly integral
+  [[nodiscard]] std::string Text() const;
+  /// All numbers of an array, nested arrays flattened in order; `expected_count` < 0 accepts any number of them.
+  [[nodiscard]] std::vector<double> Numbers(int expected_count = -1) const;
+  /// "place: found <kind>, expected <expected>".
+  [[noreturn]] void Fail(const std::string& expected) const;
+
+ private:
+  void AppendNumbers(const nlohmann::json& value, std::vector<double>* numbers) const;
+
+  const nlohmann::json* value_;
+  std::string place_;
+};
+
+}  // namespace bodyloom

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "data_tools/observations/keypoint_conventions.h"
+
+#include "geometry/observations.h"
+
+namespace bodyloom {
+namespace {
+
+std::vector<std::string> CocoAnd(const std::vector<std::string>& more) {
+  std::vector<std::string> names = CocoNames();
+  names.insert(names.end(), more.begin(), more.end());
+  return names;
+}
+
+}  // namespace
+
+const KeypointConvention& Coco17() {
+  static const KeypointConvention convention{"coco17", CocoNames()};
+  return convention;
+}
+
+const KeypointConvention& Body25() {
+  static const KeypointConvention convention{
+      "body25",
+      {"nose",           "neck",          "right_shoulder", "right_elbow", "right_wrist",
+       "left_shoulder",  "left_elbow",    "left_wrist",     "mid_hip",     "right_hip",
+       "right_knee",     "right_ankle",   "left_hip",       "left_knee",   "left_ankle",
+       "right_eye",      "left_eye",      "right_ear",      "left_ear",    "left_big_toe",
+       "left_small_toe", "left_heel",     "right_big_toe",  "right_small_toe", "right_heel"}};
+  return convention;
+}
+
+const KeypointConvention& Body25B() {
+  static const KeypointConvention convention{
+      "body25b", CocoAnd({"upper_neck", "head_top", "left_big_toe", "left_small_toe", "left_heel", "right_big_toe",
+                          "right_small_toe", "right_heel"})};
+  return convention;
+}
+
+const KeypointConvention& OpenPoseCoco18() {
+  static const KeypointConvention convention{
+      "openpose_coco18",
+      {"nose", "neck", "right_shoulder", "right_elbow", "right_wrist", "left_shoulder", "left_elbow", "left_wrist",
+       "right_hip", "right_knee", "right_ankle", "left_hip", "left_knee", "left_ankle", "right_eye", "left_eye",
+       "right_ear", "left_ear"}};
+  return convention;
+}
+
+const KeypointConvention& CocoWholeBody23() {
+  static const KeypointConvention convention{
+      "coco_wholebody23", CocoAnd({"left_big_toe", "left_small_toe", "left_heel", "right_big_toe", "right_small_toe",
+                                   "right_heel"})};
+  return convention;
+}
+
+const KeypointConvention& Halpe26() {
+  static const KeypointConvention convention{
+      "halpe26", CocoAnd({"head_top", "neck", "mid_hip", "left_big_toe", "right_big_toe", "left_small_toe",
+                          "right_small_toe", "left_heel", "right_heel"})};
+  return convention;
+}
+
+const KeypointConvention& MediaPipe33() {
+  static const KeypointConvention convention{
+      "mediapipe33",
+      {"nose",           "left_eye_inner", "left_eye",      "left_eye_outer", "right_eye_inner", "right_eye",
+       "right_eye_outer", "left_ear",      "right_ear",     "mouth_left",     "mouth_right",     "left_shoulder",
+       "right_shoulder", "left_elbow",     "right_elbow",   "left_wrist",     "right_wrist",     "left_pinky",
+       "right_pinky",    "left_index",     "right_index",   "left_thumb",     "right_thumb",     "left_hip",
+       "right_hip",      "left_knee",      "right_knee",    "left_ankle",     "right_ankle",     "left_heel",
+       "right_heel",     "left_big_toe",   "right_big_toe"}};
+  return convention;
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Calibrated cameras from files, with their poses in metres.
+///
+/// 1. AIST++: a folder with `mapping.txt` ("<sequence> <setting>" per line) and `<setting>.json`, or one such JSON: a
+///    list of {name, size [w,h], matrix 3×3, distortions, rotation (Rodrigues, rad), translation (cm)}.
+/// 2. Pose2Sim `calib_refined.json`: {"cameras": [{name, size [w,h], K 3×3, dist_k1k2p1p2, rvec, tvec_m}]}; beside it
+///    `video_to_calib_affine.json` (or the folder that holds both) tells how the video's pixels map to the
+///    calibration's.
+/// 3. This project's: one object, a list of them, or {"cameras": […]}, each with
+///      "model"      "pinhole" (default) or "weak"
+///      "width", "height"                    pixels
+///      "fx","fy","cx","cy"  or  "K" 3×3     pixels, pinhole; cx, cy default to the image centre, fy to fx
+///      "distortion" 4, 5 or 8 numbers       OpenCV order k1 k2 p1 p2 [k3 [k4 k5 k6]], optional
+///      "scale","tx","ty"                    weak perspective: pixels a metre, metres
+///      "rotation" 3×3 or Rodrigues 3, "translation" 3 metres: camera from world, optional
+///      "name"                               optional
+/// Source: google/aistplusplus_api loader.py (1).
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "geometry/camera.h"
+
+namespace bodyloom {
+
+struct NamedCamera {
+  std::string name;
+  Camera camera;
+  CameraPose pose;
+  /// Affine map from this camera's pixels to those of the video that goes with it (identity unless the file says).
+  Matrix2x3d video_px_from_camera_px = (Matrix2x3d() << 1, 0, 0, 0, 1, 0).finished();
+};
+
+/// All cameras of a file or folder; `sequence` picks the setting of an AIST++ folder (the name of the clip or of one of
+/// its videos, with or without path and extension). Throws std::runtime_error naming file, place and expectation.
+std::vector<NamedCamera> LoadCameras(const std::string& path, const std::string& sequence = "");
+
+/// The camera called `view` ("c01"; "cam01" also finds "cam_01"); an empty view means the only one. Throws
+/// std::runtime_error beginning with `where` that lists the cameras present.
+const NamedCamera& FindCamera(const std::vector<NamedCamera>& cameras, const std::string& view,
+                              const std::string& where);
+
+/// Writes form 3 with a list of cameras.
+void WriteCameras(const std::string& path, const std::vector<NamedCamera>& cameras);
+
+}  // namespace bodyloom

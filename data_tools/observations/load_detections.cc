@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "data_tools/observations/load_detections.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <vector>
+
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/npz.h"
+#include "data_tools/formats/pickle.h"
+#include "data_tools/observations/aist_reader.h"
+#include "data_tools/observations/blazepose_reader.h"
+#include "data_tools/observations/coco_reader.h"
+#include "data_tools/observations/json_reader.h"
+#include "data_tools/observations/observations_npz.h"
+#include "data_tools/observations/openpose_reader.h"
+#include "data_tools/observations/people.h"
+#include "geometry/check.h"
+
+namespace bodyloom {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kUsualFps = 30, kAistFps = 60;
+/// A clip whose every landmark lies within this many units of the corner cannot be in pixels.
+constexpr double kMostNormalised = 3;
+/// Share of landmarks that may lie outside the image (plus a tenth of its size) before the size is called wrong.
+constexpr double kMostOutside = 0.5;
+constexpr size_t kMostFileBytes = size_t{2} << 30;
+constexpr const char* kExpected =
+    "expected OpenPose JSON (a folder or a file), COCO or AlphaPose JSON, BlazePose/MediaPipe JSON, an AIST++ "
+    "keypoints2d .pkl, or this project's .npz with 'keypoints'";
+
+std::vector<std::string> SortedEntries(const std::string& folder, bool folders) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    std::error_code ignored;
+    const bool wanted = folders ? it->is_directory(ignored) : it->path().extension() == ".json";
+    if (wanted) names.push_back(it->path().filename().string());
+  }
+  if (error) throw std::runtime_error(folder + ": cannot list the folder: " + error.message());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// The folder itself when it holds JSON files, else its sub-folder of the chosen view ("cam01" finds "cam01_json").
+std::string FolderOfView(const std::string& folder, const std::string& view) {
+  if (!SortedEntries(folder, /*folders=*/false).empty()) return folder;
+  const std::vector<std::string> names = SortedEntries(folder, /*folders=*/true);
+  if (names.empty()) throw std::runtime_error(folder + ": no .json files in this folder; " + kExpected);
+  std::string present;
+  for (const std::string& name : names) {
+    if (name == view || name == view + "_json" || (view.empty() && names.size() == 1)) return (fs::path(folder) / name).string();
+    if (present.size() < 300) present += (present.empty() ? "" : ", ") + name;
+  }
+  throw std::runtime_error(folder + ": " + (view.empty() ? "no view chosen" : "no view '" + view + "'") +
+                           "; the folder has " + present);
+}
+
+bool StartsLikeJson(const std::string& bytes) {
+  const size_t start = bytes.find_first_not_of(" \t\r\n");
+  return start != std::string::npos && (bytes[start] == '[' || bytes[start] == '{');
+}
+
+bool StartsLikePickle(const std::string& bytes) {
+  return bytes.size() > 2 && ((bytes[0] == '\x80' && bytes[1] >= 2 && bytes[1] <= 5) || bytes.compare(0, 2, "(d") == 0);
+}
+
+struct Bounds {
+  double lowest = 0, highest = 0;
+  size_t seen = 0;
+};
+
+Bounds CoordinateBounds(const KeypointSequence& sequence) {
+  Bounds bounds{INFINITY, -INFINITY, 0};
+  for (const Keypoint& p : sequence.points) {
+    if (!(p.confidence > 0)) continue;
+    bounds.lowest = std::min({bounds.lowest, double{p.x}, double{p.y}});
+    bounds.highest = std::max({bounds.highest, double{p.x}, double{p.y}});
+    ++bounds.seen;
+  }
+  return bounds;
+}
+
+/// Fractions of the image → pixels.
+void ToPixels(KeypointSequence* sequence, bool is_openpose, const std::string& where) {
+  const Bounds bounds = CoordinateBounds(*sequence);
+  if (bounds.highest > kMostNormalised || bounds.lowest < -kMostNormalised) return;
+  if (sequence->image_width <= 0 || sequence->image_height <= 0) {
+    throw std::runtime_error(where + ": coordinates between " + std::to_string(bounds.lowest) + " and " +
+                             std::to_string(bounds.highest) +
+                             " are fractions of the image, whose size is not known; give its width and height");
+  }
+  const bool is_symmetric = is_openpose && bounds.lowest < -0.01;  // OpenPose --keypoint_scale 4: [−1, 1]
+  for (Keypoint& p : sequence->points) {
+    if (!(p.confidence > 0)) continue;
+    const double u = is_symmetric ? 0.5 * (p.x + 1) : p.x, v = is_symmetric ? 0.5 * (p.y + 1) : p.y;
+    p.x = static_cast<float>(u * sequence->image_width - 0.5);
+    p.y = static_cast<float>(v * sequence->image_height - 0.5);
+  }
+}
+
+/// An image size that contradicts the detections is a wrong file, a wrong video or swapped numbers.
+void CheckImageSize(const KeypointSequence& sequence, const std::string& where) {
+  const double w = sequence.image_width, h = sequence.image_height;
+  if (w <= 0 || h <= 0) return;
+  size_t seen = 0, outside = 0;
+  double right = 0, bottom = 0;
+  for (const Keypoint& p : sequence.points) {
+    if (!(p.confidence > 0)) continue;
+    ++seen;
+    outside += !(p.x >= -0.1 * w && p.x <= 1.1 * w && p.y >= -0.1 * h && p.y <= 1.1 * h);
+    right = std::max(right, double{p.x});
+    bottom = std::max(bottom, double{p.y});
+  }
+  if (static_cast<double>(outside) > kMostOutside * static_cast<double>(seen)) {
+    throw std::runtime_error(where + ": " + std::to_string(outside) + " of " + std::to_string(seen) +
+                             " landmarks (up to x = " + std::to_string(std::lround(right)) +
+                             ", y = " + std::to_string(std::lround(bottom)) + ") lie outside an image of " +
+                             std::to_string(sequence.image_width) + "x" + std::to_string(sequence.image_height) +
+                             " pixels; is the image size right?");
+  }
+}
+
+KeypointSequence Read(const std::string& path, const LoadDetectionsOptions& options) {
+  const double fps = options.fps > 0 ? options.fps : kUsualFps;
+  std::error_code error;
+  if (fs::is_directory(path, error)) {
+    const std::string folder = FolderOfView(path, options.view);
+    return SelectPerson(ReadOpenPoseFolder(folder, fps, options.convention), options.person, folder);
+  }
+  const std::string bytes = ReadFileBytes(path, kMostFileBytes);
+  if (bytes.empty()) throw std::runtime_error(path + ": the file is empty; " + kExpected);
+  if (StartsLikeJson(bytes)) {
+    const nlohmann::json json = ParseJson(bytes, path);
+    const JsonNode document(json, path);
+    if (IsOpenPoseJson(document)) {
+      return SelectPerson(OpenPoseFromJson(document, fps, options.convention), options.person, path);
+    }
+    if (IsCocoJson(document)) return SelectPerson(CocoFromJson(document, fps), options.person, path);
+    if (IsBlazePoseJson(document)) return SelectPerson(BlazePoseFromJson(document, fps), options.person, path);
+    throw std::runtime_error(path + ": JSON that holds no known detections" +
+                             (document.size() == 0 ? " (it is empty)" : "") + "; " + kExpected);
+  }
+  if (bytes.compare(0, 4, "PK\x03\x04") == 0) {
+    const NpzArrays arrays = ReadNpzBytes(bytes, path);
+    if (HasKeypoints(arrays)) return KeypointsFromNpz(arrays, path);
+    throw std::runtime_error(path + ": an .npz without 'keypoints'" +
+                             (HasDense(arrays) ? " (it holds dense keypoints)" : "") + "; " + kExpected);
+  }
+  if (StartsLikePickle(bytes)) {
+    const PicklePtr file = ReadPickle(bytes, path);
+    if (IsAistKeypoints2d(*file)) {
+      return AistKeypoints2dFromPickle(*file, path, options.view, options.fps > 0 ? options.fps : kAistFps);
+    }
+    throw std::runtime_error(path + ": a pickle without 'keypoints2d'; " + kExpected);
+  }
+  throw std::runtime_error(path + ": unknown kind of file; " + kExpected);
+}
+
+}  // namespace
+
+KeypointSequence LoadDetections(const std::string& path, const LoadDetectionsOptions& options) {
+  BODYLOOM_CHECK(options.person >= 0, "person ", options.person, " must not be negative");
+  BODYLOOM_CHECK(options.fps >= 0 && options.fps < 1e6, "frame rate ", options.fps, " must not be negative");
+  BODYLOOM_CHECK(options.image_width >= 0 && options.image_height >= 0 &&
+                     (options.image_width > 0) == (options.image_height > 0),
+                 "image size ", options.image_width, "x", options.image_height, ": give both or neither");
+  KeypointSequence sequence = Read(path, options);
+  if (options.image_width > 0) {
+    if (sequence.image_width > 0 &&
+        (sequence.image_width != options.image_width || sequence.image_height != options.image_height)) {
+      throw std::runtime_error(path + ": made on images of " + std::to_string(sequence.image_width) + "x" +
+                               std::to_string(sequence.image_height) + ", expected " +
+                               std::to_string(options.image_width) + "x" + std::to_string(options.image_height));
+    }
+    sequence.image_width = options.image_width;
+    sequence.image_height = options.image_height;
+  }
+  for (Keypoint& p : sequence.points) {
+    if (!(p.confidence >= options.min_confidence)) p = {};
+  }
+  if (CoordinateBounds(sequence).seen == 0) {
+    throw std::runtime_error(path + ": nobody was detected in any of " + std::to_string(sequence.num_frames()) +
+                             " frames");
+  }
+  const bool is_openpose = sequence.convention == "body25" || sequence.convention == "body25b" ||
+                           sequence.convention == "openpose_coco18";
+  ToPixels(&sequence, is_openpose, path);
+  CheckImageSize(sequence, path);
+  return sequence;
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+/// One call for every form of 2D detections: tells the format by content and returns one person's landmarks.
+///
+/// Read: a folder of OpenPose JSON files (or a folder of such folders, one a view), OpenPose frames in one file, COCO
+/// results or annotations and AlphaPose, BlazePose/MediaPipe dumps, AIST++ keypoints2d pickles, the project's own .npz.
+/// Coordinates in [0, 1] (all of them) are taken as fractions of the image, whose size must then be known; OpenPose's
+/// [−1, 1] likewise. Fractions become pixels by x·width − 0.5 (pixel centres at integers).
+#pragma once
+
+#include <string>
+
+#include "geometry/observations.h"
+
+namespace bodyloom {
+
+struct LoadDetectionsOptions {
+  std::string view;        ///< camera of a file that has several ("c01"), sub-folder of a folder that has several
+  int person = 0;          ///< which one when several were seen: 0 is the largest and longest in view (people.h)
+  double fps = 0;          ///< frame rate of files that do not say; 0: 30, or 60 for AIST++
+  int image_width = 0;     ///< when known; checked against the detections, and needed for normalised coordinates
+  int image_height = 0;
+  double min_confidence = 0;  ///< landmarks below this count as missing
+  std::string convention;  ///< OpenPose model when it should not be detected (openpose_reader.h)
+};
+
+/// Throws std::runtime_error in one line: what was found, what was expected, what to do; std::invalid_argument for
+/// options that contradict each other.
+KeypointSequence LoadDetections(const std::string& path, const LoadDetectionsOptions& options = {});
+
+}  // namespace bodyloom

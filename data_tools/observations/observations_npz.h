@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The project's own file of observations: a .npz that holds 2D keypoints, dense surface keypoints, or both.
+///
+/// | key                | shape  | type  | meaning                                                             |
+/// |--------------------|--------|-------|---------------------------------------------------------------------|
+/// | timestamps         | T      | f8    | seconds, strictly increasing                                        |
+/// | image_size         | 2      | i4    | width, height in pixels; 0, 0 when not known                        |
+/// | keypoints          | T×K×3  | f4    | x_px, y_px, confidence in [0,1] (0: missing)                        |
+/// | keypoint_names     | K      | text  | landmark names                                                      |
+/// | keypoint_convention| scalar | text  | "coco17", …                                                         |
+/// | dense_frame        | N      | i4    | frame of each dense keypoint, not decreasing                        |
+/// | dense_face         | N      | i4    | face of the body                                                    |
+/// | dense_barycentric  | N×3    | f4    | weights of the face's corners, sum 1                                |
+/// | dense_pixel        | N×2    | f4    | x_px, y_px                                                          |
+/// | dense_sigma_px     | N      | f4    | standard deviation of the pixel                                     |
+#pragma once
+
+#include <string>
+
+#include "data_tools/formats/npz.h"
+#include "geometry/observations.h"
+
+namespace bodyloom {
+
+/// Writes whichever are given (at least one; both must have the same timestamps and image size).
+void WriteObservations(const std::string& path, const KeypointSequence* keypoints, const DenseSequence* dense);
+
+bool HasKeypoints(const NpzArrays& arrays);
+bool HasDense(const NpzArrays& arrays);
+/// Throw std::runtime_error naming `where`, the key, what it holds and what was expected.
+KeypointSequence KeypointsFromNpz(const NpzArrays& arrays, const std::string& where);
+DenseSequence DenseFromNpz(const NpzArrays& arrays, const std::string& where);
+DenseSequence ReadDenseObservations(const std::string& path);
+
+}  // namespace bodyloom

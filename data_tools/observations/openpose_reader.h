@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+/// OpenPose's JSON: {"version": 1.3, "people": [{"person_id": [-1], "pose_keypoints_2d": [x, y, c, …], …}]} per frame.
+///
+/// x and y are pixels, c is in [0, 1], 0,0,0 means missing. The order of people says nothing. `people` may be empty and
+/// may hold empty objects. The number of landmarks tells the model, except that BODY_25 and BODY_25B both have 25: they
+/// are told apart by whether landmark 1 lies between landmarks 2 and 5 (a neck between shoulders) or the first three
+/// form a face. Also read: a list of such frames in one file, a table {"12.jpg": {"people": …}}, and the older key
+/// "pose_keypoints". Source: OpenPose doc/02_output.md.
+#pragma once
+
+#include <string>
+
+#include "data_tools/observations/json_reader.h"
+#include "data_tools/observations/people.h"
+
+namespace bodyloom {
+
+/// A folder with one JSON file a frame; frame numbers come from the file names (frame_numbers.h), from the order of the
+/// names when a name has no number. `convention` is "" (detect), "body25", "body25b", "openpose_coco18", "coco17" or
+/// "halpe26". Throws std::runtime_error naming the file and place.
+PeopleSequence ReadOpenPoseFolder(const std::string& folder, double fps, const std::string& convention = "");
+
+/// Whether a parsed file is one of OpenPose's forms.
+bool IsOpenPoseJson(const JsonNode& document);
+PeopleSequence OpenPoseFromJson(const JsonNode& document, double fps, const std::string& convention = "");
+
+}  // namespace bodyloom
