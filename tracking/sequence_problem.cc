@@ -164,6 +164,7 @@ void AddSharedPriors(const SequenceProblem& problem, Parameters* x, ceres::Probl
     const double height = problem.shape_prior.height_m > 0 ? problem.shape_prior.height_m : mean_height;
     RowMatrixXd A = RowMatrixXd::Identity(B + 1, B) * (std::sqrt(problem.shape_prior.weight) / problem.shape_prior.sigma);
     VectorXd b = VectorXd::Zero(B + 1);
+    if (problem.shape_prior.mean.size() == B) b = -A * problem.shape_prior.mean;
     A.row(B) = gradient.transpose() / problem.shape_prior.height_sigma_m;
     b[B] = (mean_height - height) / problem.shape_prior.height_sigma_m;
     ceres_problem->AddResidualBlock(new LinearCost(A, b), nullptr, x->betas.data());
@@ -250,6 +251,8 @@ SolveReport SolveSequence(SequenceProblem* problem, const SolveOptions& options)
   report.final_cost = summary.final_cost;
   report.seconds = summary.total_time_in_seconds;
   report.message = summary.message;
+  report.seconds_evaluation = summary.residual_evaluation_time_in_seconds + summary.jacobian_evaluation_time_in_seconds;
+  report.seconds_linear_solver = summary.linear_solver_time_in_seconds;
   if (summary.IsSolutionUsable()) Unpack(x, problem);
   return report;
 }

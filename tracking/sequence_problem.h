@@ -21,6 +21,7 @@ struct Smoothness {
 };
 
 struct ShapePrior {
+  Eigen::VectorXd mean;         ///< B; empty: zero
   double sigma = 1.0;           ///< of each beta; the body's components are in standard deviations
   double weight = 1.0;          ///< how many times the prior counts
   double height_m = 0;          ///< 0: the mean body's. Metric scale cannot be seen by one camera
@@ -53,6 +54,7 @@ struct SolveReport {
   SolveStatus status = SolveStatus::kFailure;
   int iterations = 0;
   double initial_cost = 0, final_cost = 0, seconds = 0;
+  double seconds_evaluation = 0, seconds_linear_solver = 0;  ///< parts of `seconds`
   std::string message;
 };
 

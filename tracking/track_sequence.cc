@@ -172,6 +172,8 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& input, const TrackSe
     return result;
   }
   problem.states = initial.states;
+  problem.betas = initial.betas;
+  problem.shape_prior.mean = initial.betas;
   clock.Book("initialise");
 
   // Observations.
@@ -190,6 +192,7 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& input, const TrackSe
       frame.prior_weight = options.prior_weight;
     }
     frame.limits = &limits;
+    frame.upright_weight = options.upright_weight;
     frame.initial_rotations = problem.states[t].rotations;
     frame.initial_translation = problem.states[t].translation;
     summary.num_observations += static_cast<int>(frame.landmarks.size()) +
@@ -220,6 +223,8 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& input, const TrackSe
     }
     const SolveReport report = SolveSequence(stage_problem, solve_options);
     summary.iterations += report.iterations;
+    summary.seconds_evaluation += report.seconds_evaluation;
+    summary.seconds_linear_solver += report.seconds_linear_solver;
     if (summary.initial_cost == 0) summary.initial_cost = report.initial_cost;
     summary.final_cost = report.final_cost;
     summary.status = report.status;

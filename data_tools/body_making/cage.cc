@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data_tools/body_making/cage.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <map>
 #include <set>
-#include <sstream>
 #include <stdexcept>
 #include <string_view>
 
@@ -120,7 +120,8 @@ class Parser {
   }
 
   void ReadQuad(const std::vector<std::string_view>& fields) {
-    if (fields.size() != 6) Fail("a quad of " + std::to_string(fields.size()) + " fields, expected: f CHART N1 N2 N3 N4");
+    if (fields.size() != 6)
+      Fail("a quad of " + std::to_string(fields.size()) + " fields, expected: f CHART N1 N2 N3 N4");
     if (quads_.size() >= kMaxVertices) Fail("more than " + std::to_string(kMaxVertices) + " quads");
     const std::vector<std::string_view> charts = Split(fields[1], "|");
     if (charts.size() != 1 && charts.size() != 4) {

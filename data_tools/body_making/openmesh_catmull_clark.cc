@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data_tools/body_making/openmesh_catmull_clark.h"
 
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <set>
 #include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
 #include <OpenMesh/Tools/Subdivider/Uniform/CatmullClarkT.hh>
+#include <algorithm>
+#include <set>
 
 #include "geometry/check.h"
 

@@ -62,7 +62,8 @@ SubdivisionLevel SubdivideCatmullClark(int num_vertices, const std::vector<Quad>
     ++valence[edge[0]];
     ++valence[edge[1]];
   }
-  for (int v = 0; v < V; ++v) BODYLOOM_CHECK(valence[v] >= 3, "vertex ", v, " has ", valence[v], " edges, expected 3 or more");
+  for (int v = 0; v < V; ++v)
+    BODYLOOM_CHECK(valence[v] >= 3, "vertex ", v, " has ", valence[v], " edges, expected 3 or more");
 
   using Triplet = Eigen::Triplet<double>;
   std::vector<Triplet> entries;  // repeated (row, column) pairs are summed

@@ -20,9 +20,9 @@
 namespace bodyloom {
 
 struct SubdivisionLevel {
-  std::vector<Quad> quads;         ///< 4F
-  std::vector<Edge> edges;         ///< E coarse edges; edge e gives fine vertex V + F + e
-  SparseRows fine_from_coarse;     ///< (V+F+E)×V, rows sum to 1
+  std::vector<Quad> quads;      ///< 4F
+  std::vector<Edge> edges;      ///< E coarse edges; edge e gives fine vertex V + F + e
+  SparseRows fine_from_coarse;  ///< (V+F+E)×V, rows sum to 1
 };
 
 /// Throws std::invalid_argument unless every edge has a quad on each side and every index is below num_vertices.

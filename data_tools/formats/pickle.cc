@@ -13,6 +13,7 @@
 
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/formats/pickle_node.h"
+#include "data_tools/formats/utf8.h"
 #include "geometry/check.h"
 
 namespace bodyloom {
@@ -241,19 +242,14 @@ class PickleMachine {
   }
   /// latin-1 with \uXXXX and \UXXXXXXXX escapes, as UTF-8.
   std::string FromRawUnicode(std::string_view line) {
-    std::vector<uint32_t> codes;
-    context_.Charge(4 * line.size());
+    std::string text;
     for (size_t i = 0; i < line.size(); ++i) {
       const bool escape = line[i] == '\\' && i + 1 < line.size() && (line[i + 1] == 'u' || line[i + 1] == 'U');
       const size_t n = !escape ? 0 : line[i + 1] == 'u' ? 4 : 8;
-      codes.push_back(escape ? Digits(line.substr(i + 2, n), n, 16) : static_cast<unsigned char>(line[i]));
+      AppendUtf8(escape ? Digits(line.substr(i + 2, n), n, 16) : static_cast<unsigned char>(line[i]), &text);
       if (escape) i += 1 + n;
     }
-    NdArray array;
-    array.dtype = DType::kUnicode;
-    array.item_size = 4 * codes.size();
-    array.bytes.assign(reinterpret_cast<const char*>(codes.data()), array.item_size);
-    return array.ToStrings().front();
+    return text;
   }
 
   // ---- containers ----

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Reads Python pickles (protocols 0–5) without running anything.
 ///
-/// An opcode machine that builds inert values. Only the globals on a fixed list are understood (pickle_objects.cc: numpy
-/// arrays, dtypes and scalars, scipy.sparse csc/csr matrices, chumpy's Ch and Select, collections.OrderedDict,
-/// _codecs.encode, object reconstruction); any other global is refused by name and offset, and nothing is ever executed.
-/// What becomes what: sparse matrices and chumpy objects arrive as plain arrays, numpy scalars as numbers or text, object
-/// arrays and sets as lists, whole numbers beyond 64 bits as the nearest float; of a repeated key the last value counts.
-/// Python-2 strings (STRING, BINSTRING) are their latin-1 bytes.
-/// Limits, checked before memory is taken: bytes in all (also at most 64 MiB + 256 times the file), number of values,
-/// nesting; values that contain themselves are refused.
-/// Source: CPython Lib/pickletools.py for the opcodes; numpy's _reconstruct and ndarray.__setstate__.
+/// An opcode machine that builds inert values. Only the globals on a fixed list are understood (pickle_objects.cc:
+/// numpy arrays, dtypes and scalars, scipy.sparse csc/csr matrices, chumpy's Ch and Select, collections.OrderedDict,
+/// _codecs.encode, object reconstruction); any other global is refused by name and offset, and nothing is ever
+/// executed. What becomes what: sparse matrices and chumpy objects arrive as plain arrays, numpy scalars as numbers or
+/// text, object arrays and sets as lists, whole numbers beyond 64 bits as the nearest float; of a repeated key the last
+/// value counts. Python-2 strings (STRING, BINSTRING) are their latin-1 bytes. Limits, checked before memory is taken:
+/// bytes in all (also at most 64 MiB + 256 times the file), number of values, nesting; values that contain themselves
+/// are refused. Source: CPython Lib/pickletools.py for the opcodes; numpy's _reconstruct and ndarray.__setstate__.
 #pragma once
 
 #include <cstddef>

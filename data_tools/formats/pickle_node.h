@@ -28,6 +28,7 @@ enum class PickleGlobal {
   kReconstructor,  ///< copy_reg._reconstructor
   kObject,
   kBytes,
+  kSet,
 };
 
 struct PickleNode : PickleValue {

@@ -44,6 +44,10 @@ constexpr NamedGlobal kGlobals[] = {
     {"builtins.object", PickleGlobal::kObject},
     {"__builtin__.bytes", PickleGlobal::kBytes},
     {"builtins.bytes", PickleGlobal::kBytes},
+    {"__builtin__.set", PickleGlobal::kSet},
+    {"builtins.set", PickleGlobal::kSet},
+    {"__builtin__.frozenset", PickleGlobal::kSet},
+    {"builtins.frozenset", PickleGlobal::kSet},
 };
 
 bool IsText(const PickleNode& node) { return node.kind == Kind::kString || node.kind == Kind::kBytes; }
@@ -203,6 +207,16 @@ PickleNodePtr NewOrderedDict(PickleContext* context, const PickleNode& args) {
   return dict;
 }
 
+/// A set from the list of its members, as a list.
+PickleNodePtr NewSet(PickleContext* context, const PickleNode& args) {
+  PickleNodePtr set = context->New(Kind::kList);
+  if (args.items.empty()) return set;
+  if (args.items[0]->kind != Kind::kList) context->Fail("set: expected the list of its members");
+  context->Charge(args.items[0]->items.size() * sizeof(PicklePtr));
+  set->items = args.items[0]->items;
+  return set;
+}
+
 PickleNodePtr NewInstance(PickleContext* context, const PickleNode& cls) {
   PickleNodePtr object = context->New(Kind::kObject);
   object->global = cls.global;
@@ -330,6 +344,8 @@ PickleNodePtr CallPickleGlobal(PickleContext* context, const PickleNode& callabl
     case PickleGlobal::kBytes:
       if (!args.items.empty()) context->Fail("bytes called with arguments, expected none");
       return context->New(Kind::kBytes);
+    case PickleGlobal::kSet:
+      return NewSet(context, args);
     case PickleGlobal::kReconstructor: {
       const PickleNode& cls = Argument(*context, args, 0, "copy_reg._reconstructor");
       if (!cls.is_callable) context->Fail("copy_reg._reconstructor: expected a class");

@@ -42,6 +42,7 @@ TEST(Pickle, ProtocolZeroStringsAndEscapes) {
   EXPECT_EQ(Read("S'a\\n\\x41\\'\\\\\\101'\n.")->text, "a\nA'\\A");
   EXPECT_EQ(Read("S\"it's\"\n.")->text, "it's");
   EXPECT_EQ(Read("V\\u20ac\xe9\\U0001F600\n.")->text, "\xe2\x82\xac\xc3\xa9\xf0\x9f\x98\x80");
+  EXPECT_EQ(Read("V\\u0000a\\u0000\n.")->text, "\0a\0"s);
   for (const char* broken : {"S'a\n.", "Sa\n.", "S'\\x4'\n.", "S'\\q'\n.", "S'\\'\n.", "V\\u12\n.", "V\\uzzzz\n."}) {
     ErrorOf(broken);
   }
@@ -55,7 +56,7 @@ TEST(Pickle, BinaryNumbers) {
   EXPECT_EQ(Read("\x8a\x00."s)->integer, 0);
   EXPECT_EQ(Read("\x8a\x08\x00\x00\x00\x00\x00\x00\x00\x80."s)->integer, std::numeric_limits<int64_t>::min());
   EXPECT_EQ(Read("\x8a\x09\x00\x00\x00\x00\x00\x00\x00\x00\x01."s)->real, std::ldexp(1.0, 64));
-  EXPECT_EQ(Read("\x8b\x09\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\xff."s)->real, -std::ldexp(1.0, 64));
+  EXPECT_EQ(Read("\x8b\x09\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\xff."s)->real, -std::ldexp(1.0, 64));
   EXPECT_EQ(Read("G\x3f\xf8\x00\x00\x00\x00\x00\x00."s)->real, 1.5);
   EXPECT_TRUE(std::isnan(Read("Fnan\n.")->real));
 }
@@ -191,7 +192,9 @@ TEST(Pickle, SparseMatrixBeyondTheBudgetIsRefused) {
 
 TEST(Pickle, ChumpyObjectsBecomeArrays) {
   const std::string x = Doubles2({1, 2, 3, 4, 5, 6}, {2, 3});
-  const std::string ch = Object2("chumpy.ch", "Ch", {{Str2("_dirty_vars"), "](e"}, {Str2("x"), x}});
+  const std::string ch = Object2(
+      "chumpy.ch", "Ch",
+      {{Str2("_dirty_vars"), Global("__builtin__", "set") + Tuple({"](" + Str2("x") + "e"}) + "R"}, {Str2("x"), x}});
   const PicklePtr array = Read(Pickle(2, ch));
   ASSERT_EQ(array->kind, Kind::kArray);
   EXPECT_EQ(array->array.ShapeText(), "2x3");

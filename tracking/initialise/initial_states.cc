@@ -39,10 +39,10 @@ std::vector<FrameState> FillFrames(const std::vector<int>& frames, const std::ve
   return states;
 }
 
-MatrixX3d RestLandmarks(const BodyModel& model) {
+MatrixX3d RestLandmarks(const BodyModel& model, const VectorXd& betas = VectorXd()) {
   BodyPose rest;
   rest.rotations.assign(model.num_joints(), Matrix3d::Identity());
-  return PoseLandmarks(model, VectorXd(), rest, CocoNames());
+  return PoseLandmarks(model, betas, rest, CocoNames());
 }
 
 /// Replaces translations by weak-perspective cameras that fit what the frame shows; frames that show too little take
@@ -142,6 +142,7 @@ InitialStates FindInitialStates(const TrackSequenceInput& input, const FrameLayo
                                 const TrackSequenceOptions& options) {
   const BodyModel& model = *input.body;
   InitialStates result;
+  result.betas = VectorXd::Zero(layout.num_betas);
   KeypointSequence from_dense;
   const KeypointSequence* keypoints = input.keypoints;
   if (keypoints == nullptr) {
@@ -149,6 +150,8 @@ InitialStates FindInitialStates(const TrackSequenceInput& input, const FrameLayo
     keypoints = &from_dense;
   }
   if (input.initialiser != nullptr) {
+    const Eigen::Index given = std::min<Eigen::Index>(input.initialiser->betas.size(), layout.num_betas);
+    result.betas.head(given) = input.initialiser->betas.head(given);
     for (int t = 0; t < input.initialiser->num_frames(); ++t) {
       const BodyPose pose =
           PoseFromAxisAngle(model, input.initialiser->poses.row(t).transpose(), input.initialiser->trans.row(t).transpose());
@@ -156,7 +159,10 @@ InitialStates FindInitialStates(const TrackSequenceInput& input, const FrameLayo
       result.from_observation.push_back(1);
     }
   } else {
-    const MatrixX3d rest_joints = model.joint_template(), rest_points = RestLandmarks(model);
+    if (layout.num_betas > 0) {
+      result.betas = EstimateShape(*keypoints, layout.camera, model, layout.num_betas, options.hypotheses);
+    }
+    const MatrixX3d rest_joints = model.RestJoints(result.betas), rest_points = RestLandmarks(model, result.betas);
     const JointHypothesesResult found =
         FindJointHypotheses(*keypoints, layout.camera, rest_points, input.prior, options.hypotheses);
     if (found.frames.empty()) return result;

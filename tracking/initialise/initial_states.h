@@ -12,6 +12,7 @@ namespace bodyloom {
 struct InitialStates {
   std::vector<FrameState> states;  ///< T, or empty when no frame shows a torso
   std::vector<char> from_observation;  ///< T: a hypothesis was made for this frame (others are interpolated)
+  Eigen::VectorXd betas;           ///< shape that fits the clip's bone ratios (initialiser: its own betas, or zero)
   double cost = 0;                 ///< of the hypotheses
 };
 

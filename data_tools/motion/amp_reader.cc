@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "data_tools/motion/amp_reader.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <stdexcept>
+
+#include "data_tools/formats/pickle.h"
+
+namespace bodyloom {
+namespace {
+
+using Kind = PickleValue::Kind;
+
+constexpr size_t kMostJoints = 1000;
+
+[[noreturn]] void Fail(const std::string& where, const std::string& message) {
+  throw std::runtime_error(where + ": " + message);
+}
+
+/// Bytes before the pickle: magic, version, header length, header; 0 when this is no .npy with an object dtype.
+size_t ObjectNpyHeaderSize(const std::string& bytes) {
+  if (bytes.size() < 12 || bytes.compare(0, 6, "\x93NUMPY") != 0) return 0;
+  const auto byte = [&](size_t i) { return size_t{static_cast<unsigned char>(bytes[i])}; };
+  const bool is_version_1 = bytes[6] == 1;
+  const size_t begin = is_version_1 ? 10 : 12;
+  const size_t length = byte(8) + (byte(9) << 8) + (is_version_1 ? 0 : (byte(10) << 16) + (byte(11) << 24));
+  if (length > bytes.size() - begin || length > 65536) return 0;
+  const std::string header = bytes.substr(begin, length);
+  return header.find("'|O'") == std::string::npos ? 0 : begin + length;
+}
+
+const PickleValue& Require(const PickleValue& table, const std::string& key, Kind kind, const std::string& where) {
+  const PickleValue* value = table.Find(key);
+  if (value == nullptr || value->kind != kind) Fail(where, "no '" + key + "' of the right kind, expected a SkeletonMotion");
+  return *value;
+}
+
+/// table[key]["arr"] with that shape; −1 stands for any size.
+const NdArray& RequireArr(const PickleValue& table, const std::string& key, const std::vector<int64_t>& shape,
+                          const std::string& where) {
+  const NdArray& array = Require(Require(table, key, Kind::kDict, where), "arr", Kind::kArray, where).array;
+  bool is_right = array.is_number() && array.shape.size() == shape.size();
+  for (size_t i = 0; is_right && i < shape.size(); ++i) is_right = shape[i] < 0 || array.shape[i] == shape[i];
+  if (!is_right) {
+    NdArray expected;
+    expected.shape = shape;
+    Fail(where, key + ": shape " + array.ShapeText() + ", expected " + expected.ShapeText() + " numbers (-1: any)");
+  }
+  return array;
+}
+
+double NumberOf(const PickleValue* value) {
+  if (value == nullptr) return NAN;
+  if (value->kind == Kind::kInt) return static_cast<double>(value->integer);
+  if (value->kind == Kind::kFloat) return value->real;
+  if (value->kind == Kind::kArray && value->array.is_number() && value->array.num_elements() == 1) {
+    return value->array.ToDoubles()[0];
+  }
+  return NAN;
+}
+
+}  // namespace
+
+bool IsObjectNpy(const std::string& bytes) { return ObjectNpyHeaderSize(bytes) > 0; }
+
+SkeletonMotion AmpFromNpyBytes(const std::string& bytes, const std::string& where) {
+  const size_t header = ObjectNpyHeaderSize(bytes);
+  if (header == 0) Fail(where, "not a .npy file of Python objects");
+  PicklePtr file = ReadPickle(bytes.substr(header), where);
+  while (file->kind == Kind::kList && file->items.size() == 1) file = file->items[0];  // the 0-d array of objects
+  if (file->kind != Kind::kDict) Fail(where, "the pickled object is no dictionary, expected a SkeletonMotion");
+
+  const PickleValue& tree = Require(*file, "skeleton_tree", Kind::kDict, where);
+  const PickleValue& names = Require(tree, "node_names", Kind::kList, where);
+  SkeletonMotion motion;
+  for (const PicklePtr& name : names.items) motion.names.push_back(name->text);
+  const auto J = static_cast<int64_t>(motion.names.size());
+  if (J == 0 || motion.names.size() > kMostJoints) Fail(where, "node_names: " + std::to_string(J) + " joints");
+  const std::vector<int64_t> parents = RequireArr(tree, "parent_indices", {J}, where).ToInts();
+  for (int64_t j = 0; j < J; ++j) {
+    if (j == 0 ? parents[j] != -1 : (parents[j] < 0 || parents[j] >= j)) {
+      Fail(where, "parent_indices[" + std::to_string(j) + "] is " + std::to_string(parents[j]) +
+                      ", expected -1 for the first joint and an earlier joint for the others");
+    }
+    motion.parents.push_back(static_cast<int>(parents[j]));
+  }
+  motion.offsets = RequireArr(tree, "local_translation", {J, 3}, where).ToMatrix();
+
+  const NdArray& rotation = RequireArr(*file, "rotation", {-1, J, 4}, where);
+  const int64_t T = rotation.shape[0];
+  if (T == 0) Fail(where, "rotation: no frames");
+  if (static_cast<size_t>(T * J) > kMostRotations) Fail(where, "rotation: " + std::to_string(T) + " frames are too many");
+  motion.root_positions = RequireArr(*file, "root_translation", {T, 3}, where).ToMatrix();
+  if (!motion.root_positions.allFinite() || !motion.offsets.allFinite()) {
+    Fail(where, "root_translation or local_translation is not finite");
+  }
+  const PickleValue* is_local = file->Find("is_local");
+  const bool are_local = is_local == nullptr || is_local->kind != Kind::kBool || is_local->boolean;
+  const std::vector<double> q = rotation.ToDoubles();
+  motion.rotations.resize(T * J);
+  for (int64_t i = 0; i < T * J; ++i) {
+    const Eigen::Quaterniond quaternion(q[4 * i + 3], q[4 * i], q[4 * i + 1], q[4 * i + 2]);
+    if (!(quaternion.norm() > 0.5 && quaternion.norm() < 2)) {
+      Fail(where, "rotation of frame " + std::to_string(i / J) + ", joint '" + motion.names[i % J] +
+                      "': a quaternion of length " + std::to_string(quaternion.norm()) + ", expected 1");
+    }
+    motion.rotations[i] = quaternion.normalized().toRotationMatrix();
+  }
+  for (int64_t t = 0; !are_local && t < T; ++t) {  // world rotations → relative, leaves first
+    Eigen::Matrix3d* frame = motion.rotations.data() + t * J;
+    for (int64_t j = J; --j > 0;) frame[j] = frame[motion.parents[j]].transpose() * frame[j];
+  }
+  const double fps = NumberOf(file->Find("fps"));
+  if (!(fps > 0 && fps < 1e5)) Fail(where, "fps is " + std::to_string(fps) + ", expected a positive number");
+  motion.timestamps = RegularTimestamps(static_cast<int>(T), 1 / fps);
+  return motion;
+}
+
+}  // namespace bodyloom

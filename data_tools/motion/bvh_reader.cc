@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "data_tools/motion/bvh_reader.h"
+
+#include <cmath>
+
+#include "data_tools/motion/text_scanner.h"
+#include "geometry/rotation.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr int kMostJoints = 2000;
+constexpr double kSlowestFrame = 10;  ///< seconds
+constexpr double kDegree = M_PI / 180;
+
+struct Channel {
+  int joint = 0;
+  int axis = 0;  ///< 0, 1, 2
+  bool is_rotation = false;
+};
+
+Channel ChannelFromName(TextScanner* scanner, std::string_view name, int joint) {
+  const bool is_rotation = name.size() == 9 && name.substr(1) == "rotation";
+  const bool is_position = name.size() == 9 && name.substr(1) == "position";
+  const int axis = name.empty() ? -1 : name[0] == 'X' ? 0 : name[0] == 'Y' ? 1 : name[0] == 'Z' ? 2 : -1;
+  if (axis < 0 || !(is_rotation || is_position)) {
+    scanner->Fail("found channel '" + std::string(name.substr(0, 60)) + "', expected [XYZ]rotation or [XYZ]position");
+  }
+  return {joint, axis, is_rotation};
+}
+
+/// Words up to the opening brace: names may hold blanks.
+std::string NameUpToBrace(TextScanner* scanner) {
+  std::string name(scanner->Word("a joint's name"));
+  while (scanner->Peek() != "{") {
+    name += " " + std::string(scanner->Word("'{'"));
+    if (name.size() > 500) scanner->Fail("expected '{' after the joint's name");
+  }
+  scanner->Expect("{");
+  return name;
+}
+
+struct Hierarchy {
+  SkeletonMotion skeleton;
+  std::vector<Eigen::Vector3d> offsets;
+  std::vector<Channel> channels;
+};
+
+/// Adds a joint with its OFFSET; returns its index.
+int AddJoint(TextScanner* scanner, Hierarchy* h, const std::string& name, int parent) {
+  if (h->offsets.size() >= kMostJoints) scanner->Fail("more than " + std::to_string(kMostJoints) + " joints");
+  scanner->Expect("OFFSET");
+  Eigen::Vector3d offset;
+  for (double& value : offset) value = scanner->Number("an offset");
+  h->offsets.push_back(offset);
+  h->skeleton.names.push_back(name);
+  h->skeleton.parents.push_back(parent);
+  return static_cast<int>(h->offsets.size()) - 1;
+}
+
+void ReadChannels(TextScanner* scanner, Hierarchy* h, int joint) {
+  if (!scanner->Accept("CHANNELS")) return;
+  const int count = scanner->Integer("a number of channels", 0, 12);
+  for (int c = 0; c < count; ++c) {
+    h->channels.push_back(ChannelFromName(scanner, scanner->Word("a channel"), joint));
+  }
+}
+
+Hierarchy ReadHierarchy(TextScanner* scanner) {
+  Hierarchy h;
+  scanner->Expect("HIERARCHY");
+  scanner->Expect("ROOT");
+  const std::string root = NameUpToBrace(scanner);
+  std::vector<int> open = {AddJoint(scanner, &h, root, -1)};
+  ReadChannels(scanner, &h, 0);
+  while (!open.empty()) {
+    if (scanner->Accept("}")) {
+      open.pop_back();
+    } else if (scanner->Accept("End")) {
+      scanner->Expect("Site");
+      scanner->Expect("{");
+      AddJoint(scanner, &h, h.skeleton.names[open.back()] + "_end", open.back());
+      scanner->Expect("}");
+    } else {
+      scanner->Expect("JOINT");
+      const std::string name = NameUpToBrace(scanner);
+      open.push_back(AddJoint(scanner, &h, name, open.back()));
+      ReadChannels(scanner, &h, open.back());
+    }
+  }
+  return h;
+}
+
+}  // namespace
+
+SkeletonMotion ReadBvh(const std::string& path) { return BvhFromText(ReadTextFile(path), path); }
+
+SkeletonMotion BvhFromText(const std::string& text, const std::string& where) {
+  TextScanner scanner(text, where);
+  Hierarchy h = ReadHierarchy(&scanner);
+  SkeletonMotion& motion = h.skeleton;
+  const int J = motion.num_joints();
+  motion.offsets.resize(J, 3);
+  for (int j = 0; j < J; ++j) motion.offsets.row(j) = h.offsets[j].transpose();
+
+  scanner.Expect("MOTION");
+  scanner.Expect("Frames:");
+  const int num_frames = scanner.Integer("a number of frames", 1, static_cast<int>(kMostRotations));
+  scanner.Expect("Frame");
+  scanner.Expect("Time:");
+  const double frame_time = scanner.Number("a frame time");
+  if (!(frame_time > 0 && frame_time < kSlowestFrame)) {
+    scanner.Fail("frame time " + std::to_string(frame_time) + " s, expected more than 0 and less than 10");
+  }
+  // Every number takes two bytes at least: a claim that the file cannot hold is refused before memory is taken.
+  const size_t num_channels = h.channels.size();
+  if (num_channels == 0) scanner.Fail("no joint has channels");
+  if (size_t(num_frames) * J > kMostRotations) scanner.Fail(std::to_string(num_frames) + " frames are too many");
+  if (size_t(num_frames) * num_channels > scanner.remaining_bytes() / 2 + 1) {
+    scanner.Fail(std::to_string(num_frames) + " frames of " + std::to_string(num_channels) +
+                 " channels are more than the rest of the file can hold");
+  }
+  motion.rotations.assign(size_t(num_frames) * J, Eigen::Matrix3d::Identity());
+  motion.root_positions = motion.offsets.row(0).replicate(num_frames, 1);
+  motion.timestamps = RegularTimestamps(num_frames, frame_time);
+  for (int t = 0; t < num_frames; ++t) {
+    for (const Channel& channel : h.channels) {
+      const double value = scanner.Number("a channel value of frame " + std::to_string(t));
+      if (channel.is_rotation) {
+        Eigen::Matrix3d& rotation = motion.rotations[size_t(t) * J + channel.joint];
+        rotation = rotation * RotationFromAxisAngle(Eigen::Vector3d::Unit(channel.axis) * (value * kDegree));
+      } else if (channel.joint == 0) {
+        motion.root_positions(t, channel.axis) = value;
+      }
+    }
+  }
+  if (!scanner.AtEnd()) {
+    scanner.Fail("found '" + std::string(scanner.Peek().substr(0, 60)) + "' after the last of " +
+                 std::to_string(num_frames) + " frames, expected the end of the file");
+  }
+  return motion;
+}
+
+}  // namespace bodyloom

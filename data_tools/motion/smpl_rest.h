@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Joint positions of the built-in body's mean shape in its T-pose: what SMPL's joint rotations are relative to. Other
+/// bodies of the family differ by a few degrees in bone direction.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "geometry/arrays.h"
+
+namespace bodyloom {
+
+/// 24×3 metres, body frame (x left, y up, z front), pelvis at the origin.
+const MatrixX3d& SmplRestJoints();
+
+/// 24×3 joint positions for 72 axis-angle values, pelvis joint at `pelvis`.
+MatrixX3d PoseSmplJoints(const Eigen::Ref<const Eigen::VectorXd>& pose, const Eigen::Vector3d& pelvis);
+
+/// Bending of the hinge joints out of the straight limb, degrees, positive the way people bend: left knee, right knee,
+/// left elbow, right elbow. Measured in the plane of natural flexion (shin backwards, T-pose forearm forwards).
+Eigen::Vector4d HingeFlexionDeg(const Eigen::Ref<const Eigen::VectorXd>& pose);
+
+}  // namespace bodyloom

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "data_tools/motion/text_scanner.h"
+
+#include <zlib.h>
+
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+
+#include "data_tools/formats/atomic_file.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr size_t kInflateStep = size_t{1} << 20;
+
+bool IsSpace(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f' || c == '\v'; }
+
+std::string Inflate(const std::string& bytes, const std::string& path, size_t max_bytes) {
+  z_stream stream{};
+  if (::inflateInit2(&stream, 15 + 16) != Z_OK) throw std::runtime_error(path + ": cannot start zlib");
+  struct Closer {
+    z_stream* stream;
+    ~Closer() { ::inflateEnd(stream); }
+  } closer{&stream};
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+  stream.avail_in = static_cast<uInt>(bytes.size());
+  std::string text;
+  int status = Z_OK;
+  while (status != Z_STREAM_END) {
+    const size_t done = text.size();
+    if (done > max_bytes) {
+      throw std::runtime_error(path + ": inflates to more than " + std::to_string(max_bytes) + " bytes");
+    }
+    text.resize(done + kInflateStep);
+    stream.next_out = reinterpret_cast<Bytef*>(text.data() + done);
+    stream.avail_out = static_cast<uInt>(kInflateStep);
+    status = ::inflate(&stream, Z_NO_FLUSH);
+    text.resize(done + kInflateStep - stream.avail_out);
+    const bool is_stuck = status == Z_BUF_ERROR || (status == Z_OK && stream.avail_in == 0 && stream.avail_out > 0);
+    if ((status != Z_OK && status != Z_STREAM_END) || is_stuck) {
+      throw std::runtime_error(path + ": byte " + std::to_string(bytes.size() - stream.avail_in) +
+                               ": the gzip stream is " + (is_stuck ? "cut off" : "damaged"));
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string ReadTextFile(const std::string& path, size_t max_bytes) {
+  std::string bytes = ReadFileBytes(path, max_bytes);
+  if (bytes.size() >= 2 && bytes[0] == '\x1f' && bytes[1] == '\x8b') return Inflate(bytes, path, max_bytes);
+  return bytes;
+}
+
+std::string_view TextScanner::Peek() {
+  if (!peeked_.empty()) return peeked_;
+  while (next_ < text_.size()) {
+    const char c = text_[next_];
+    if (c == '\n') ++line_;
+    if (IsSpace(c)) {
+      ++next_;
+    } else if (comment_ != '\0' && c == comment_) {
+      while (next_ < text_.size() && text_[next_] != '\n') ++next_;
+    } else {
+      break;
+    }
+  }
+  size_t end = next_;
+  while (end < text_.size() && !IsSpace(text_[end])) ++end;
+  peeked_ = text_.substr(next_, end - next_);
+  return peeked_;
+}
+
+std::string_view TextScanner::Word(const std::string& expected) {
+  const std::string_view word = Peek();
+  if (word.empty()) Fail("the file ends, expected " + expected);
+  next_ += word.size();
+  peeked_ = {};
+  return word;
+}
+
+void TextScanner::Expect(std::string_view word) {
+  if (Peek() != word) {
+    const std::string found(Peek().substr(0, 60));
+    Fail(found.empty() ? "the file ends, expected '" + std::string(word) + "'"
+                       : "found '" + found + "', expected '" + std::string(word) + "'");
+  }
+  Word("");
+}
+
+bool TextScanner::Accept(std::string_view word) {
+  if (Peek() != word) return false;
+  Word("");
+  return true;
+}
+
+double TextScanner::Number(const std::string& expected) {
+  const std::string_view word = Word(expected);
+  const char* begin = word.data();
+  const char* end = begin + word.size();
+  if (begin != end && *begin == '+') ++begin;
+  double value = 0;
+  const auto [stop, error] = std::from_chars(begin, end, value);
+  const bool is_tiny = error == std::errc::result_out_of_range && std::abs(value) < 1;  // 1e-400 is zero
+  if ((error != std::errc() && !is_tiny) || stop != end || !std::isfinite(value)) {
+    Fail("found '" + std::string(word.substr(0, 60)) + "', expected " + expected);
+  }
+  return is_tiny ? 0 : value;
+}
+
+int TextScanner::Integer(const std::string& expected, int low, int high) {
+  const double value = Number(expected);
+  if (value != std::floor(value) || value < low || value > high) {
+    Fail("found " + std::to_string(value) + ", expected " + expected + " from " + std::to_string(low) + " to " +
+         std::to_string(high));
+  }
+  return static_cast<int>(value);
+}
+
+void TextScanner::Fail(const std::string& message) const {
+  throw std::runtime_error(where_ + ": line " + std::to_string(line_) + ": " + message);
+}
+
+}  // namespace bodyloom
