@@ -106,12 +106,16 @@ TEST(EvaluationTruthTest, ShapeAndFocalLength) {
   const Track truth = TrueTrack();
   Track track = truth;
   track.camera.fx = track.camera.fy = 1.1 * 1300;
-  track.motion.betas[0] = 1;  // stature: 4.5 % larger about the toy body's origin
+  track.motion.betas[0] = 1;  // stature: 4.5 % larger about the pelvis
   const Evaluation e = EvaluateAgainstTruth(track, truth, ToyBody());
   EXPECT_NEAR(e.Value("focal_err_percent"), 10, 1e-9);
-  EXPECT_GT(e.Value("shape_err_mm"), 10);
-  EXPECT_LT(e.Value("clip_scale"), 0.99);
-  EXPECT_LT(e.Value("mpjpe_scaled_mm"), 0.2 * e.Value("mpjpe_mm"));
+  EXPECT_NEAR(e.Value("clip_scale"), 1 / 1.045, 1e-6);
+  EXPECT_NEAR(e.Value("mpjpe_scaled_mm"), 0, 1e-4);
+  MatrixX3d vertices = ToyBody().data().v_template;
+  vertices.rowwise() -= Eigen::RowVector3d(ToyBody().joint_template().row(0));
+  const double size_mm = vertices.rowwise().norm().mean() * 1e3;
+  EXPECT_NEAR(e.Value("shape_err_mm"), 0.045 * size_mm, 0.01);
+  EXPECT_NEAR(e.Value("pve_mm"), 0.045 * size_mm, 0.1 * 0.045 * size_mm);  // the posed body is a little smaller
 }
 
 TEST(EvaluationTruthTest, FramesWithoutAResultCost) {
