@@ -63,7 +63,7 @@ TEST(EvaluationTruthTest, AShiftedRootMovesThePictureAndNothingElse) {
   EXPECT_NEAR(e.Value("root_lateral_err_mm"), 50, 1e-9);
   EXPECT_NEAR(e.Value("root_depth_err_mm"), 0, 1e-9);
   EXPECT_NEAR(e.Value("mpjpe_mm"), 0, 1e-9);
-  EXPECT_NEAR(e.Value("pve_mm"), 0, 1e-9);
+  EXPECT_NEAR(e.Value("pve_mm"), 0, 1e-3);
   EXPECT_NEAR(e.Value("joint_angle_err_deg"), 0, 1e-9);
   // 50 mm at about 4 m through 1300 px, in an image whose longer side is 512.
   double sum = 0;
@@ -74,8 +74,10 @@ TEST(EvaluationTruthTest, AShiftedRootMovesThePictureAndNothingElse) {
     const MatrixX3d vertices = PoseVertices(ToyBody(), truth.motion.betas, pose);
     for (Eigen::Index v = 0; v < vertices.rows(); ++v, ++count) sum += 0.05 * 1300 / vertices(v, 2) * 512 / 1920;
   }
-  EXPECT_NEAR(e.Value("projection_mean_px"), sum / count, 1e-9);
+  EXPECT_NEAR(e.Value("projection_mean_px"), sum / count, 1e-5);  // vertices are skinned in float
   EvaluateAgainstTruthOptions options;
+  options.num_threads = 2;
+  EXPECT_EQ(EvaluateAgainstTruth(track, truth, ToyBody(), options).Value("pve_mm"), e.Value("pve_mm"));
   options.image_side_px = 1920;
   options.vertex_step = 3;
   EXPECT_NEAR(EvaluateAgainstTruth(track, truth, ToyBody(), options).Value("projection_mean_px"),
