@@ -81,7 +81,7 @@ void FillFaces(const MakeHumanFiles& files, BodyModelData* body) {
 
 class LandmarkFinder {
  public:
-  LandmarkFinder(const BodyModelData& body, const MatrixX3d& joints) : body_(body), joints_(joints) {}
+  explicit LandmarkFinder(const BodyModelData& body) : body_(body) {}
 
   /// The vertex farthest along `direction` among those that mostly move with one of `joints`.
   [[nodiscard]] int Farthest(const std::vector<int>& joints, const Eigen::RowVector3d& direction) const {
@@ -116,12 +116,11 @@ class LandmarkFinder {
 
  private:
   const BodyModelData& body_;
-  const MatrixX3d& joints_;
 };
 
-/// eye_from_head: mean offset of the left eye's centre from the head joint.
+/// joints: 24×3; left_eye: mean centre of the left eye; both in metres, T-pose.
 void FillLandmarks(const MatrixX3d& joints, const Eigen::RowVector3d& left_eye, BodyModelData* body) {
-  const LandmarkFinder find(*body, joints);
+  const LandmarkFinder find(*body);
   const auto add = [&](const std::string& name, int vertex) { body->landmarks.push_back({name, {vertex}, {1.0}}); };
   const Eigen::RowVector3d front(0, 0, 1), mirror(-1, 1, 1);
   const int head = 15;

@@ -163,8 +163,9 @@ MatrixX3d FindJoints(const Poser& poser, double metre) {
     set(16 + right, shoulder);
     set(18 + right, poser.Move(poser.Bone("upperarm" + suffix), poser.Cube(side + "elbow")));
     set(20 + right, poser.Move(poser.Bone("lowerarm" + suffix), poser.Cube(side + "hand")));
-    set(22 + right, poser.Move(poser.Bone("hand" + suffix),
-                               0.5 * (poser.Cube(side + "finger-3-1") + poser.Cube(side + "finger-4-1"))));
+    // Between the knuckles of the middle and ring fingers lies the web: a tenth of the way back is inside the hand.
+    const Vector3d knuckles = 0.5 * (poser.Cube(side + "finger-3-1") + poser.Cube(side + "finger-4-1"));
+    set(22 + right, poser.Move(poser.Bone("hand" + suffix), 0.9 * knuckles + 0.1 * poser.Cube(side + "hand")));
   }
   return joints;
 }

@@ -5,7 +5,8 @@
 ///   clavicle raised by 10°; upper and lower arm along +x with the elbow's axis vertical, so that bending brings the
 ///   forearm to the front; palm down, hand along +x; fingers spread by 7/1/−5/−12° and curled by 4/12/16°;
 ///   thigh along (.045,−1,−.02), shin along (.035,−1,−.03), foot turned out by 7°, its slope kept
-/// Joints from the joint cubes: RECIPE.md of the built-in body, section 6.
+/// Joints from the joint cubes: RECIPE.md of the built-in body, section 6; the hand joint a tenth of the way from the
+/// knuckles to the wrist, where it lies inside this mesh's hand.
 #pragma once
 
 #include <vector>
