@@ -15,17 +15,38 @@ using Eigen::Vector2d;
 
 namespace {
 
-/// OpenCV's rational distortion of (a, b) with its 2×2 Jacobian; false where the radial map folds back.
+/// Numerator or denominator of the radial factor with its derivative by s = r².
+struct Cubic {
+  double value, slope;
+  Cubic(double k1, double k2, double k3, double s)
+      : value(1 + s * (k1 + s * (k2 + s * k3))), slope(k1 + s * (2 * k2 + 3 * s * k3)) {}
+};
+
+/// Whether r → r·f(r²) rises all the way from the axis to r². Beyond a fold it may rise again, but no light goes there.
+bool RadialMapRises(const std::array<double, 8>& d, double r2) {
+  const auto rises_at = [&d](double s) {
+    const Cubic n(d[0], d[1], d[4], s), m(d[5], d[6], d[7], s);
+    return m.value > 0 && n.value * m.value + 2 * s * (n.slope * m.value - n.value * m.slope) > 0;
+  };
+  if (!rises_at(r2)) return false;
+  // Usual lenses: coefficients so small that no sign can change on the way.
+  const Cubic n(std::abs(d[0]), std::abs(d[1]), std::abs(d[4]), r2),
+      m(std::abs(d[5]), std::abs(d[6]), std::abs(d[7]), r2);
+  if (m.value < 2 && (2 - n.value) * (2 - m.value) > 2 * r2 * (n.slope * m.value + n.value * m.slope)) return true;
+  constexpr int kSamples = 32;
+  for (int i = 1; i < kSamples; ++i) {
+    if (!rises_at(r2 * i / kSamples)) return false;
+  }
+  return true;
+}
+
+/// OpenCV's rational distortion of (a, b) with its 2×2 Jacobian; false outside the lens' field of view.
 bool Distort(const std::array<double, 8>& d, const Vector2d& ab, Vector2d* uv, Matrix2d* J) {
   const double a = ab.x(), b = ab.y(), r2 = a * a + b * b;
-  const double numerator = 1 + r2 * (d[0] + r2 * (d[1] + r2 * d[4]));
-  const double denominator = 1 + r2 * (d[5] + r2 * (d[6] + r2 * d[7]));
-  if (!(denominator > 0)) return false;
-  const double f = numerator / denominator;
-  const double dn = d[0] + r2 * (2 * d[1] + 3 * r2 * d[4]);
-  const double dd = d[5] + r2 * (2 * d[6] + 3 * r2 * d[7]);
-  const double df = (dn - f * dd) / denominator;  // d f / d r²
-  if (!(f + 2 * r2 * df > 0)) return false;       // d(r f)/dr must stay positive
+  if (!RadialMapRises(d, r2)) return false;
+  const Cubic numerator(d[0], d[1], d[4], r2), denominator(d[5], d[6], d[7], r2);
+  const double f = numerator.value / denominator.value;
+  const double df = (numerator.slope - f * denominator.slope) / denominator.value;  // d f / d r²
   *uv = {a * f + 2 * d[2] * a * b + d[3] * (r2 + 2 * a * a), b * f + d[2] * (r2 + 2 * b * b) + 2 * d[3] * a * b};
   (*J)(0, 0) = f + 2 * a * a * df + 2 * d[2] * b + 6 * d[3] * a;
   (*J)(0, 1) = 2 * a * b * df + 2 * d[2] * a + 2 * d[3] * b;
@@ -60,13 +81,14 @@ Eigen::Matrix3d Camera::K() const {
 }
 
 bool Camera::Project(const Eigen::Vector3d& X, Vector2d* pixel, Matrix2x3d* J) const {
+  pixel->setZero();
+  if (J != nullptr) J->setZero();
+  if (!X.allFinite()) return false;
   if (model == CameraModel::kWeakPerspective) {
     *pixel = {scale * (X.x() + tx) + cx, scale * (X.y() + ty) + cy};
     if (J != nullptr) *J << scale, 0, 0, 0, scale, 0;
     return true;
   }
-  pixel->setZero();
-  if (J != nullptr) J->setZero();
   if (!(X.z() > kMinDepth)) return false;
   const double iz = 1 / X.z();
   const Vector2d ab(X.x() * iz, X.y() * iz);
@@ -105,8 +127,8 @@ Vector2d Camera::Unproject(const Vector2d& pixel) const {
 }
 
 Camera MakePinhole(int width, int height, double focal_px) {
-  BODYLOOM_CHECK(width > 0 && height > 0 && focal_px > 0, "MakePinhole: size ", width, "x", height, " and focal length ",
-                 focal_px, " px must be positive");
+  BODYLOOM_CHECK(width > 0 && height > 0 && focal_px > 0, "MakePinhole: size ", width, "x", height,
+                 " and focal length ", focal_px, " px must be positive");
   Camera camera;
   camera.width = width;
   camera.height = height;

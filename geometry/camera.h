@@ -35,10 +35,10 @@ struct Camera {
   [[nodiscard]] bool HasDistortion() const;
   [[nodiscard]] Eigen::Matrix3d K() const;
 
-  /// Pixel of `point_in_camera`. Valid for z > kMinDepth (pinhole) and any point (weak perspective); elsewhere returns
-  /// false and leaves the outputs at zero. The Jacobian, when asked for, is d pixel / d point_in_camera.
-  /// Distortion is only meaningful inside the lens' field of view: with a radial model that folds back
-  /// (d r_distorted / d r <= 0) the point is reported invalid.
+  /// Pixel of `point_in_camera`. Valid for z > kMinDepth (pinhole) and any finite point (weak perspective); elsewhere
+  /// returns false and sets the outputs to zero. The Jacobian, when asked for, is d pixel / d point_in_camera.
+  /// Distortion is only meaningful inside the lens' field of view: at and beyond the radius where the radial model
+  /// folds back (d r_distorted / d r <= 0) the point is reported invalid.
   bool Project(const Eigen::Vector3d& point_in_camera, Eigen::Vector2d* pixel,
                Matrix2x3d* d_pixel_d_point = nullptr) const;
 

@@ -10,7 +10,7 @@ namespace bodyloom {
 /// [w]×, so that Skew(w) * x = w × x.
 Eigen::Matrix3d Skew(const Eigen::Vector3d& w);
 
-/// exp([w]×): the rotation by |w| radians about w. Exact to rounding for every finite w, series below 1e-4 rad.
+/// exp([w]×): the rotation by |w| radians about w, a rotation to rounding for every finite w. Series below 1e-4 rad.
 Eigen::Matrix3d RotationFromAxisAngle(const Eigen::Vector3d& w);
 
 /// The axis-angle of R with angle in [0, π]. At π the axis' sign is free; the first non-zero component is positive.
@@ -23,7 +23,7 @@ Eigen::Matrix3d RightJacobian(const Eigen::Vector3d& w);
 /// Inverse of RightJacobian: log(exp(w) exp(d)) = w + RightJacobianInverse(w) d to first order. Valid for |w| < 2π.
 Eigen::Matrix3d RightJacobianInverse(const Eigen::Vector3d& w);
 
-/// The rotation nearest to M in the Frobenius norm (polar factor with determinant +1).
+/// The rotation nearest to M in the Frobenius norm (polar factor with determinant +1); NaN when M is not finite.
 Eigen::Matrix3d NearestRotation(const Eigen::Matrix3d& M);
 
 /// Angle of the relative rotation AᵀB, radians in [0, π].

@@ -24,6 +24,8 @@ Camera Track::CameraAt(int t) const {
   BODYLOOM_CHECK(t >= 0 && t < num_frames(), "frame ", t, " is outside the track's ", num_frames(), " frames");
   Camera result = camera;
   if (camera.model == CameraModel::kWeakPerspective) {
+    BODYLOOM_CHECK(weak_camera.rows() == num_frames(), "weak_camera has ", weak_camera.rows(), " rows for ",
+                   num_frames(), " frames");
     result.scale = weak_camera(t, 0);
     result.tx = weak_camera(t, 1);
     result.ty = weak_camera(t, 2);

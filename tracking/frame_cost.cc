@@ -40,6 +40,16 @@ FrameLayout FrameLayout::Make(const BodyModel& model, CameraKnowledge knowledge,
   return layout;
 }
 
+FrameState InterpolateStates(const FrameState& a, const FrameState& b, double s) {
+  FrameState result;
+  result.rotations.reserve(a.rotations.size());
+  for (size_t j = 0; j < a.rotations.size(); ++j) {
+    result.rotations.push_back(InterpolateRotation(a.rotations[j], b.rotations[j], s));
+  }
+  result.translation = (1 - s) * a.translation + s * b.translation;
+  return result;
+}
+
 void FrameEvaluator::ReserveRows(int rows, int columns) {
   if (J_.cols() != columns || J_.rows() < rows) J_.resize(rows, columns);
   if (r_.size() < rows) r_.resize(rows);
@@ -107,6 +117,7 @@ void FrameEvaluator::Evaluate(const FrameLayout& layout, const FrameData& data, 
     const size_t rows = 2 * (data.landmarks.size() + num_dense) +
                         (use_prior ? 3 * data.prior->joints().size() : 0) +
                         (data.limits != nullptr ? 3 * data.limits->ranges.size() : 0) +
+                        (data.upright_weight > 0 ? 1 : 0) +
                         (data.initial_rotations.empty() ? 0 : 3 * layout.active_joints.size() + 3);
     ReserveRows(static_cast<int>(rows), p);
   }
@@ -167,6 +178,20 @@ void FrameEvaluator::Evaluate(const FrameLayout& layout, const FrameData& data, 
       J_.block<3, 3>(row_, column) = d_excess;
       r_.segment<3>(row_) = excess;
       row_ += 3;
+    }
+  }
+
+  if (data.upright_weight > 0 && layout.column_of_joint[0] >= 0) {
+    const Matrix3d& root = state.rotations[0];
+    const double r = root(2, 1) / kUprightSigma;
+    const RobustValue robust = GemanMcClure(r * r, kUprightKernel);
+    cost_ += 0.5 * data.upright_weight * robust.rho;
+    if (derivatives) {
+      const double scale = std::sqrt(data.upright_weight * robust.weight);
+      J_.row(row_).setZero();
+      J_.block<1, 3>(row_, layout.column_of_joint[0]) =
+          -scale / kUprightSigma * root.row(2) * Skew(Vector3d::UnitY());
+      r_[row_++] = scale * r;
     }
   }
 

@@ -4,6 +4,9 @@
 ///   ½ Σ ρ(‖(π(x_k) − y_k)/σ_k‖²)      2D joints and dense keypoints (L_f of paper A), Geman–McClure
 /// + ½ w_prior (energy of the nearest mixture component)
 /// + ½ Σ (excess over joint limits / σ)²
+/// + ½ w ρ(u_z² / σ²)                 u: the root's up axis in the camera frame; how far the trunk leans towards or away
+///                                    from the camera, which a camera barely sees (cos is flat): people are mostly
+///                                    upright and cameras mostly level. Saturates, so bending and lying stay free
 /// + ½ λ_d (‖log(R̄ᵀR)‖²/σ_R² + ‖t − t̄‖²/σ_t²)  initialiser (L_d of paper A)
 ///
 /// Rotations are differentiated by right increments. Points that cannot be projected cost the kernel's saturation c²
@@ -58,15 +61,21 @@ struct FrameData {
   double prior_weight = 0;
   const JointLimits* limits = nullptr;
   double limit_sigma = 0.05;  ///< radians
+  double upright_weight = 0;  ///< of the spine's tilt out of the image plane
   std::vector<Eigen::Matrix3d> initial_rotations;  ///< J, or empty: no initialiser
   Eigen::Vector3d initial_translation = Eigen::Vector3d::Zero();
   double initialiser_weight = 0, initialiser_sigma = 0.2, initialiser_translation_sigma = 0.3;  ///< radians, metres
 };
 
+inline constexpr double kUprightSigma = 0.25, kUprightKernel = 1.5;
+
 struct FrameState {
   std::vector<Eigen::Matrix3d> rotations;  ///< J
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();
 };
+
+/// From a (s = 0) to b (s = 1): rotations along geodesics, translation linearly.
+FrameState InterpolateStates(const FrameState& a, const FrameState& b, double s);
 
 /// Gauss–Newton system of a frame: cost = ½ Σ ρ, gradient = Jᵀ r and H = Jᵀ J of the weighted residuals.
 struct FrameSystem {

@@ -36,6 +36,55 @@ double StatureOfMeanShape(const BodyModel& model, int num_betas, VectorXd* gradi
   return height;
 }
 
+SequenceProblem SelectFrames(const SequenceProblem& problem, const std::vector<int>& frames) {
+  SequenceProblem coarse;
+  coarse.layout = problem.layout;
+  coarse.betas = problem.betas;
+  coarse.log_focal = problem.log_focal;
+  coarse.log_focal_prior = problem.log_focal_prior;
+  coarse.log_focal_sigma = problem.log_focal_sigma;
+  coarse.smoothness = problem.smoothness;
+  coarse.shape_prior = problem.shape_prior;
+  int previous = -1;
+  for (int t : frames) {
+    coarse.frames.push_back(problem.frames[t]);
+    coarse.states.push_back(problem.states[t]);
+    coarse.timestamps.push_back(problem.timestamps[t]);
+    bool cut = false;
+    for (int u = previous + 1; u <= t; ++u) cut = cut || problem.cut_before[u];
+    coarse.cut_before.push_back(cut);
+    previous = t;
+  }
+  return coarse;
+}
+
+void SpreadFrames(const SequenceProblem& coarse, const std::vector<int>& frames, SequenceProblem* problem) {
+  problem->betas = coarse.betas;
+  problem->log_focal = coarse.log_focal;
+  for (size_t i = 0; i < frames.size(); ++i) problem->states[frames[i]] = coarse.states[i];
+  for (size_t i = 0; i + 1 < frames.size(); ++i) {
+    if (coarse.cut_before[i + 1]) continue;
+    const double t0 = problem->timestamps[frames[i]], t1 = problem->timestamps[frames[i + 1]];
+    for (int t = frames[i] + 1; t < frames[i + 1]; ++t) {
+      problem->states[t] =
+          InterpolateStates(coarse.states[i], coarse.states[i + 1], (problem->timestamps[t] - t0) / (t1 - t0));
+    }
+  }
+}
+
+std::vector<int> FramesAtRate(const SequenceProblem& problem, double rate) {
+  std::vector<int> frames;
+  const int T = static_cast<int>(problem.states.size());
+  double next = 0;
+  for (int t = 0; t < T; ++t) {
+    const bool ends_shot = t + 1 == T || problem.cut_before[t + 1];
+    if (t > 0 && !problem.cut_before[t] && !ends_shot && problem.timestamps[t] < next - 1e-9) continue;
+    frames.push_back(t);
+    next = problem.timestamps[t] + 1 / rate;
+  }
+  return frames;
+}
+
 namespace {
 
 class IterationCallback : public ceres::IterationCallback {
@@ -113,8 +162,9 @@ void AddSharedPriors(const SequenceProblem& problem, Parameters* x, ceres::Probl
     VectorXd gradient;
     const double mean_height = StatureOfMeanShape(*problem.layout.model, B, &gradient);
     const double height = problem.shape_prior.height_m > 0 ? problem.shape_prior.height_m : mean_height;
-    RowMatrixXd A = RowMatrixXd::Identity(B + 1, B) / problem.shape_prior.sigma;
+    RowMatrixXd A = RowMatrixXd::Identity(B + 1, B) * (std::sqrt(problem.shape_prior.weight) / problem.shape_prior.sigma);
     VectorXd b = VectorXd::Zero(B + 1);
+    if (problem.shape_prior.mean.size() == B) b = -A * problem.shape_prior.mean;
     A.row(B) = gradient.transpose() / problem.shape_prior.height_sigma_m;
     b[B] = (mean_height - height) / problem.shape_prior.height_sigma_m;
     ceres_problem->AddResidualBlock(new LinearCost(A, b), nullptr, x->betas.data());
@@ -201,6 +251,8 @@ SolveReport SolveSequence(SequenceProblem* problem, const SolveOptions& options)
   report.final_cost = summary.final_cost;
   report.seconds = summary.total_time_in_seconds;
   report.message = summary.message;
+  report.seconds_evaluation = summary.residual_evaluation_time_in_seconds + summary.jacobian_evaluation_time_in_seconds;
+  report.seconds_linear_solver = summary.linear_solver_time_in_seconds;
   if (summary.IsSolutionUsable()) Unpack(x, problem);
   return report;
 }

@@ -21,7 +21,9 @@ struct Smoothness {
 };
 
 struct ShapePrior {
+  Eigen::VectorXd mean;         ///< B; empty: zero
   double sigma = 1.0;           ///< of each beta; the body's components are in standard deviations
+  double weight = 1.0;          ///< how many times the prior counts
   double height_m = 0;          ///< 0: the mean body's. Metric scale cannot be seen by one camera
   double height_sigma_m = 0.005;
 };
@@ -52,11 +54,22 @@ struct SolveReport {
   SolveStatus status = SolveStatus::kFailure;
   int iterations = 0;
   double initial_cost = 0, final_cost = 0, seconds = 0;
+  double seconds_evaluation = 0, seconds_linear_solver = 0;  ///< parts of `seconds`
   std::string message;
 };
 
 /// Solves with Ceres (sparse Cholesky). The problem's states, betas and log_focal hold the answer afterwards.
 SolveReport SolveSequence(SequenceProblem* problem, const SolveOptions& options);
+
+/// The same problem on a subset of the frames (ascending indices): a coarse solve in time. Frame data is copied.
+SequenceProblem SelectFrames(const SequenceProblem& problem, const std::vector<int>& frames);
+
+/// Takes the coarse answer back: shape and focal length, the selected frames' states, and for frames between them the
+/// change of the selected neighbours, interpolated on SO(3). Frames are not changed across cuts.
+void SpreadFrames(const SequenceProblem& coarse, const std::vector<int>& frames, SequenceProblem* problem);
+
+/// About `rate` frames a second, always with the first and last frame of every shot.
+std::vector<int> FramesAtRate(const SequenceProblem& problem, double rate);
 
 /// Rest-pose distance from a joint to the farthest joint below it, metres (at least 0.1): the lever that turns a linear
 /// acceleration into an angular one.

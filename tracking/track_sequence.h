@@ -14,6 +14,7 @@
 #include "geometry/observations.h"
 #include "geometry/pose_prior.h"
 #include "geometry/track.h"
+#include "tracking/initialise/joint_hypotheses.h"
 
 namespace bodyloom {
 
@@ -47,6 +48,12 @@ struct TrackSequenceOptions {
   int num_threads = 0;           ///< 0: all cores
   int max_iterations = 50;       ///< of each stage
   double initialiser_weight = 0.1;  ///< λ_d of paper A, per frame
+  double prior_weight = 0.2;        ///< of the pose prior's energy, per frame
+  double start_pull = 1.0;          ///< pull towards the hypotheses in the first stage (rotation σ 0.2 rad)
+  double upright_weight = 1.0;      ///< of the trunk not leaning out of the image plane, per frame
+  double coarse_rate = 15;          ///< frames a second of the coarse stages
+  double shape_prior_weight = 0.3;  ///< of the shape prior, a frame
+  JointHypothesesOptions hypotheses;
   bool estimate_shape = true;       ///< false: keep the mean shape
   bool estimate_uncertainty = true; ///< joint_sigma; NaN when off
   bool skip_unneeded = true;        ///< false: switch every skip off (same answer, slower)
@@ -72,6 +79,7 @@ struct TrackSequenceSummary {
   int iterations = 0;
   double initial_cost = 0, final_cost = 0;
   std::vector<std::pair<std::string, double>> seconds;  ///< by stage, in order of running
+  double seconds_evaluation = 0, seconds_linear_solver = 0;  ///< inside the solves
   std::vector<PlanEntry> plan;                          ///< what ran and what was skipped
   std::map<std::string, int> frames_by_status;          ///< "tracked", "weak", "interpolated", "lost"
   double reprojection_median_px = 0, reprojection_p95_px = 0;  ///< of the used 2D joints (confidence > 0.3)

@@ -17,10 +17,11 @@ class LinearCost : public ceres::CostFunction {
     mutable_parameter_block_sizes()->push_back(static_cast<int>(A_.cols()));
   }
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    Eigen::Map<Eigen::VectorXd>(residuals, A_.rows()) =
-        A_ * Eigen::Map<const Eigen::VectorXd>(parameters[0], A_.cols()) + b_;
+    Eigen::Map<Eigen::VectorXd> r(residuals, A_.rows());
+    r = A_ * Eigen::Map<const Eigen::VectorXd>(parameters[0], A_.cols()) + b_;
     if (jacobians != nullptr && jacobians[0] != nullptr) {
-      Eigen::Map<RowMatrixXd>(jacobians[0], A_.rows(), A_.cols()) = A_;
+      Eigen::Map<RowMatrixXd> J(jacobians[0], A_.rows(), A_.cols());
+      J = A_;
     }
     return true;
   }

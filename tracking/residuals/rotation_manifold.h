@@ -18,22 +18,26 @@ class RotationManifold : public ceres::Manifold {
   [[nodiscard]] int TangentSize() const override { return 3; }
   bool Plus(const double* x, const double* delta, double* x_plus_delta) const override {
     using Vector = Eigen::Map<const Eigen::Vector3d>;
-    Eigen::Map<Eigen::Vector3d>(x_plus_delta) =
+    Eigen::Map<Eigen::Vector3d> result(x_plus_delta);
+    result =
         AxisAngleFromRotation(RotationFromAxisAngle(Vector(x)) * RotationFromAxisAngle(Vector(delta)));
     return true;
   }
   bool PlusJacobian(const double*, double* jacobian) const override {
-    Eigen::Map<Eigen::Matrix3d>(jacobian).setIdentity();
+    Eigen::Map<Eigen::Matrix3d> J(jacobian);
+    J.setIdentity();
     return true;
   }
   bool Minus(const double* y, const double* x, double* y_minus_x) const override {
     using Vector = Eigen::Map<const Eigen::Vector3d>;
-    Eigen::Map<Eigen::Vector3d>(y_minus_x) =
+    Eigen::Map<Eigen::Vector3d> result(y_minus_x);
+    result =
         AxisAngleFromRotation(RotationFromAxisAngle(Vector(x)).transpose() * RotationFromAxisAngle(Vector(y)));
     return true;
   }
   bool MinusJacobian(const double*, double* jacobian) const override {
-    Eigen::Map<Eigen::Matrix3d>(jacobian).setIdentity();
+    Eigen::Map<Eigen::Matrix3d> J(jacobian);
+    J.setIdentity();
     return true;
   }
 };

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+/// How the command ends: the exit codes that scripts may rely on, and the exceptions that lead to them.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace bodyloom {
+
+enum ExitCode : int {
+  kExitOk = 0,
+  kExitFailed = 1,         ///< any std::exception: a file, the data, or the solve
+  kExitUsage = 2,          ///< unknown verb or option, or options that do not go together
+  kExitInterrupted = 130,  ///< Ctrl-C or SIGTERM; what was being written is removed
+};
+
+/// The words for --help.
+constexpr const char* kExitCodeHelp =
+    "Exit codes: 0 done, 1 failed (one line on stderr says why), 2 wrong usage, 130 interrupted.\n"
+    "Output files are written whole or not at all.";
+
+/// The options contradict each other or one is missing; main() answers with exit code 2.
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Unwinds the stack after Ctrl-C, so that temporary files go; main() answers with exit code 130.
+class Interrupted : public std::runtime_error {
+ public:
+  Interrupted() : std::runtime_error("interrupted") {}
+};
+
+}  // namespace bodyloom

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// The command `bodyloom`: parses, runs the chosen verb, and is the only place that catches.
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <iostream>
+
+#include "apps/exit_code.h"
+#include "apps/interrupt.h"
+#include "apps/verbs.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr const char* kExamples =
+    "Examples:\n"
+    "  bodyloom demo --out demo                          everything at once, on a clip made on the spot\n"
+    "  bodyloom track --detections keypoints.json --video clip.mp4 --out track.npz --overlay overlay.mp4\n"
+    "  bodyloom export --track track.npz --what bvh --out motion.bvh\n"
+    "  bodyloom track --help                             the options of one verb, with examples\n\n";
+
+int Run(int argc, char** argv) {
+  CLI::App app("Follows one person through a single-camera video with a parametric body.", "bodyloom");
+  app.require_subcommand(1);
+  app.footer(std::string(kExamples) + kExitCodeHelp);
+  Action action;
+  AddNeuralVerb(app, &action);
+  AddVersionVerb(app, &action);
+  try {
+    app.parse(argc, argv);
+    action();
+    std::cout.flush();
+    if (!std::cout) {
+      throw std::runtime_error("standard output: writing failed");
+    }
+    return kExitOk;
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) {  // --help
+      return app.exit(error);
+    }
+    // The parser reports an unknown verb as a missing one.
+    const bool unknown_verb = app.get_subcommands().empty() && !app.remaining().empty();
+    std::cerr << "bodyloom: " << (unknown_verb ? "no verb or option \"" + app.remaining().front() + "\"" : error.what())
+              << "\nRun with --help for the options.\n";
+    return kExitUsage;
+  } catch (const UsageError& error) {
+    std::cerr << "bodyloom: " << error.what() << "\nRun with --help for the options.\n";
+    return kExitUsage;
+  } catch (const std::exception& error) {
+    if (IsInterrupted()) {  // whatever failed did so because of the signal (an encoder that died with us, say)
+      std::cerr << "bodyloom: interrupted, unfinished files were removed\n";
+      return kExitInterrupted;
+    }
+    std::cerr << "bodyloom: " << error.what() << "\n";
+    return kExitFailed;
+  }
+}
+
+}  // namespace
+}  // namespace bodyloom
+
+int main(int argc, char** argv) {
+  bodyloom::InstallSignalHandlers();
+  return bodyloom::Run(argc, argv);
+}

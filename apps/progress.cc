@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/progress.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+
+namespace bodyloom {
+namespace {
+
+constexpr double kBarInterval = 0.1, kLineInterval = 10;  // seconds
+constexpr int kBarCells = 24;
+constexpr double kMinFractionForEta = 0.02;  // earlier guesses are noise
+
+std::string EtaText(double fraction, double elapsed_seconds) {
+  if (fraction < kMinFractionForEta) {
+    return "";
+  }
+  return ", " + ClockText(elapsed_seconds * (1 - fraction) / fraction) + " left";
+}
+
+}  // namespace
+
+std::string ClockText(double seconds) {
+  const auto whole = static_cast<long long>(std::max(0.0, std::round(seconds)));
+  char text[48];
+  if (whole >= 3600) {
+    std::snprintf(text, sizeof text, "%lld:%02lld:%02lld", whole / 3600, whole / 60 % 60, whole % 60);
+  } else {
+    std::snprintf(text, sizeof text, "%lld:%02lld", whole / 60, whole % 60);
+  }
+  return text;
+}
+
+Progress::Progress(std::string title)
+    : Progress(std::move(title), isatty(STDERR_FILENO) != 0 ? Style::kBar : Style::kLines, std::cerr) {}
+
+Progress::Progress(std::string title, Style style, std::ostream& out)
+    : title_(std::move(title)), style_(style), out_(out) {}
+
+Progress::~Progress() {
+  if (style_ == Style::kBar && drawn_width_ > 0) {
+    out_ << "\r" << std::string(drawn_width_, ' ') << "\r" << std::flush;
+  }
+}
+
+void Progress::Update(const std::string& stage, double fraction) {
+  const Clock::time_point now = Clock::now();
+  const bool new_stage = stage != stage_;
+  const double interval = style_ == Style::kBar ? kBarInterval : kLineInterval;
+  fraction_ = std::max(fraction_, std::clamp(fraction, 0.0, 1.0));
+  if (style_ == Style::kSilent || (!new_stage && now - last_drawn_ < std::chrono::duration<double>(interval))) {
+    return;
+  }
+  stage_ = stage;
+  last_drawn_ = now;
+  Draw(stage, fraction_, std::chrono::duration<double>(now - start_).count());
+}
+
+void Progress::Draw(const std::string& stage, double fraction, double elapsed_seconds) {
+  const int percent = static_cast<int>(std::floor(100 * fraction));
+  std::string line = title_ + " ";
+  if (style_ == Style::kBar) {
+    const int filled = static_cast<int>(std::floor(kBarCells * fraction));
+    line += "[" + std::string(filled, '#') + std::string(kBarCells - filled, '.') + "] ";
+  }
+  line += std::to_string(percent) + " % " + stage + EtaText(fraction, elapsed_seconds);
+  if (style_ == Style::kBar) {
+    out_ << "\r" << line << std::string(std::max(drawn_width_, line.size()) - line.size(), ' ') << std::flush;
+    drawn_width_ = line.size();
+  } else {
+    out_ << line << std::endl;
+  }
+}
+
+}  // namespace bodyloom

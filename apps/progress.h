@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Progress on stderr: a bar with the time left on a terminal, a plain line now and then anywhere else.
+#pragma once
+
+#include <chrono>
+#include <iosfwd>
+#include <string>
+
+namespace bodyloom {
+
+/// "0:07", "12:34", "1:02:03".
+std::string ClockText(double seconds);
+
+class Progress {
+ public:
+  enum class Style { kBar, kLines, kSilent };
+
+  /// kBar when stderr is a terminal, else kLines.
+  explicit Progress(std::string title);
+  Progress(std::string title, Style style, std::ostream& out);
+  /// Finishes the line of a bar.
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  /// `fraction` of the whole in [0, 1]; a smaller one than before is taken for the one before. A bar is redrawn at most
+  /// ten times a second; a line is written when the stage changes and every ten seconds.
+  void Update(const std::string& stage, double fraction);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void Draw(const std::string& stage, double fraction, double elapsed_seconds);
+
+  std::string title_;
+  Style style_;
+  std::ostream& out_;
+  Clock::time_point start_ = Clock::now(), last_drawn_ = Clock::time_point::min();
+  std::string stage_;
+  double fraction_ = 0;
+  size_t drawn_width_ = 0;
+};
+
+}  // namespace bodyloom

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The closing words of `bodyloom track`: for a reader, and as JSON for a program.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "apps/stage_clock.h"
+#include "tracking/track_sequence.h"
+
+namespace bodyloom {
+
+struct TrackReport {
+  TrackSequenceSummary solve;
+  int num_frames = 0;
+  StageSeconds seconds;  ///< the command's own stages; the one named kSolveStage is split by solve.seconds
+  double total_seconds = 0;
+  size_t peak_memory_bytes = 0;
+  std::string detections;
+  std::vector<std::string> outputs;  ///< files written
+};
+
+constexpr const char* kSolveStage = "solve";
+
+/// Largest resident size of this process so far, bytes.
+size_t PeakMemoryBytes();
+
+/// Frames by status, error, time by stage, what was skipped and why: about fifteen lines, the last one with a newline.
+std::string ToText(const TrackReport& report);
+
+/// The same as one JSON object; the keys are listed in docs/command.md. Numbers that are not finite become null.
+std::string ToJson(const TrackReport& report);
+
+/// A plan as lines "run   what: why" / "skip  what: why".
+std::string ToText(const std::vector<PlanEntry>& plan);
+
+}  // namespace bodyloom

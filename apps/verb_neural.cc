@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// `bodyloom neural ...` becomes `bodyloom-neural ...`: LibTorch adds 0.4 s to the start of any program linked with it,
+// so what needs it lives in an executable of its own, beside this one.
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "apps/verbs.h"
+
+namespace bodyloom {
+namespace {
+
+/// Replaces this process; returns only by throwing.
+void ExecNeural(const std::vector<std::string>& arguments) {
+  const std::filesystem::path program =
+      std::filesystem::read_symlink("/proc/self/exe").parent_path() / "bodyloom-neural";
+  std::vector<char*> argv = {const_cast<char*>(program.c_str())};
+  for (const std::string& argument : arguments) {
+    argv.push_back(const_cast<char*>(argument.c_str()));
+  }
+  argv.push_back(nullptr);
+  execv(program.c_str(), argv.data());
+  if (errno == ENOENT) {
+    throw std::runtime_error(program.string() +
+                             ": not there: the neural verbs were not built; install libtorch-dev and build again");
+  }
+  throw std::runtime_error(program.string() + ": cannot be started: " + std::strerror(errno));
+}
+
+}  // namespace
+
+void AddNeuralVerb(CLI::App& app, Action* action) {
+  CLI::App* verb = app.add_subcommand("neural", "Runs a verb that needs LibTorch: `bodyloom neural doctor`");
+  verb->footer(
+      "Verbs:\n"
+      "  doctor   which LibTorch, how many threads, which matrix library, and what makes it slow\n");
+  verb->prefix_command();  // everything after `neural` belongs to the other executable
+  verb->callback([verb, action] { *action = [arguments = verb->remaining()] { ExecNeural(arguments); }; });
+}
+
+}  // namespace bodyloom

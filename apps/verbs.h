@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The verbs of the command, one file each (apps/verb_NAME.cc).
+/// An Add function describes its verb to the parser and, when the user chose it, sets `action` to what is to be done;
+/// main() runs it after parsing. An action returns normally on success and throws otherwise (apps/exit_code.h).
+#pragma once
+
+#include <functional>
+
+namespace CLI {
+class App;
+}
+
+namespace bodyloom {
+
+using Action = std::function<void()>;
+
+void AddTrackVerb(CLI::App& app, Action* action);
+void AddSynthVerb(CLI::App& app, Action* action);
+void AddEvaluateVerb(CLI::App& app, Action* action);
+void AddExportVerb(CLI::App& app, Action* action);
+void AddBodyVerb(CLI::App& app, Action* action);
+void AddDemoVerb(CLI::App& app, Action* action);
+void AddNeuralVerb(CLI::App& app, Action* action);
+void AddVersionVerb(CLI::App& app, Action* action);
+
+}  // namespace bodyloom

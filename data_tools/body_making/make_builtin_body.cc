@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "data_tools/body_making/make_builtin_body.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "data_tools/body_making/body_charts.h"
+#include "data_tools/body_making/cage.h"
+#include "data_tools/body_making/left_half_arrays.h"
+#include "data_tools/body_making/subdivision.h"
+#include "data_tools/formats/atomic_file.h"
+#include "geometry/check.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr int kLevels = 2;
+constexpr int kQuadsPerCageQuad = 16;
+constexpr double kOpenMeshTolerance_m = 1e-6;
+
+/// The mirror image of each joint: l_ and r_ of a name exchanged.
+std::vector<int> MirrorOfJoints(const std::vector<std::string>& names) {
+  std::vector<int> mirror(names.size());
+  for (size_t j = 0; j < names.size(); ++j) {
+    std::string name = names[j];
+    if (name.starts_with("l_")) {
+      name[0] = 'r';
+    } else if (name.starts_with("r_")) {
+      name[0] = 'l';
+    }
+    mirror[j] = static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
+  }
+  return mirror;
+}
+
+std::string MirrorOfLandmark(const std::string& name) {
+  return name.starts_with("left_") ? "right_" + name.substr(5) : name;
+}
+
+/// The cage's two levels below: connectivity, symmetry, and S2 S1.
+struct RefinedCage {
+  std::vector<Quad> quads;
+  std::vector<int> mirror;
+  SparseRows fine_from_cage;
+  std::vector<int> left_vertices;  ///< of quads of the left half, increasing
+  int num_left_quads = 0;
+};
+
+RefinedCage Refine(const Cage& cage) {
+  RefinedCage refined;
+  refined.quads = cage.quads;
+  refined.mirror = cage.mirror;
+  refined.fine_from_cage.resize(static_cast<Eigen::Index>(cage.mirror.size()),
+                                static_cast<Eigen::Index>(cage.mirror.size()));
+  refined.fine_from_cage.setIdentity();
+  for (int level = 0; level < kLevels; ++level) {
+    const SubdivisionLevel finer = SubdivideCatmullClark(static_cast<int>(refined.mirror.size()), refined.quads);
+    refined.mirror = MirrorOfSubdivision(refined.mirror, refined.quads, finer);
+    refined.quads = finer.quads;
+    refined.fine_from_cage = SparseRows(finer.fine_from_coarse * refined.fine_from_cage);
+  }
+  refined.num_left_quads = kQuadsPerCageQuad * cage.num_left_quads;
+  std::vector<bool> is_left(refined.mirror.size(), false);
+  for (int q = 0; q < refined.num_left_quads; ++q) {
+    for (int v : refined.quads[q]) is_left[v] = true;
+  }
+  for (size_t v = 0; v < is_left.size(); ++v) {
+    if (is_left[v]) refined.left_vertices.push_back(static_cast<int>(v));
+  }
+  return refined;
+}
+
+void FillShape(const Cage& cage, const RefinedCage& refined, const Eigen::MatrixXd& left_cage_shape,
+               BodyModelData* body) {
+  body->v_template = refined.fine_from_cage * cage.vertices;
+  const Eigen::MatrixXd shape = refined.fine_from_cage * MirrorCageRows(cage, left_cage_shape);
+  const Eigen::Index components = shape.cols() / 3;
+  body->shapedirs.resize(3 * shape.rows(), components);
+  for (Eigen::Index v = 0; v < shape.rows(); ++v) {
+    for (Eigen::Index b = 0; b < components; ++b) {
+      for (int c = 0; c < 3; ++c) body->shapedirs(3 * v + c, b) = static_cast<float>(shape(v, 3 * b + c));
+    }
+  }
+}
+
+void FillWeights(const RefinedCage& refined, const std::vector<int>& joint_mirror,
+                 const std::vector<WeightedIndices>& left_weights, BodyModelData* body) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (size_t i = 0; i < refined.left_vertices.size(); ++i) {
+    const int v = refined.left_vertices[i];
+    for (const auto& [joint, weight] : left_weights[i]) {
+      entries.emplace_back(v, joint, weight);
+      if (refined.mirror[v] != v) entries.emplace_back(refined.mirror[v], joint_mirror[joint], weight);
+    }
+  }
+  body->weights.resize(static_cast<Eigen::Index>(refined.mirror.size()),
+                       static_cast<Eigen::Index>(joint_mirror.size()));
+  body->weights.setFromTriplets(entries.begin(), entries.end());
+}
+
+void FillRegressor(const RefinedCage& refined, const std::vector<int>& joint_mirror,
+                   const std::vector<int>& left_joints, const std::vector<WeightedIndices>& rows, BodyModelData* body) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (size_t i = 0; i < left_joints.size(); ++i) {
+    const int joint = left_joints[i];
+    for (const auto& [vertex, weight] : rows[i]) {
+      entries.emplace_back(joint, vertex, weight);
+      if (joint_mirror[joint] != joint) entries.emplace_back(joint_mirror[joint], refined.mirror[vertex], weight);
+    }
+  }
+  body->J_regressor.resize(static_cast<Eigen::Index>(joint_mirror.size()),
+                           static_cast<Eigen::Index>(refined.mirror.size()));
+  body->J_regressor.setFromTriplets(entries.begin(), entries.end());
+}
+
+/// The corrective that gives the mirrored vertex the mirrored offset when the pose is mirrored: with S = diag(−1,1,1)
+/// the mirrored rotation is S R S, so entry (c; a,b) takes the sign s_c s_a s_b.
+CorrectiveBlock MirrorCorrective(const CorrectiveBlock& block, const std::vector<int>& joint_mirror) {
+  CorrectiveBlock mirrored;
+  mirrored.joint = joint_mirror[block.joint];
+  for (int c = 0; c < 3; ++c) {
+    for (int a = 0; a < 3; ++a) {
+      for (int b = 0; b < 3; ++b) {
+        const bool negative = (c == 0) ^ (a == 0) ^ (b == 0);
+        const int i = 9 * c + 3 * a + b;
+        mirrored.values[i] = negative ? -block.values[i] : block.values[i];
+      }
+    }
+  }
+  return mirrored;
+}
+
+void FillCorrectives(const RefinedCage& refined, const std::vector<int>& joint_mirror,
+                     const std::vector<std::vector<CorrectiveBlock>>& left_blocks, BodyModelData* body) {
+  std::vector<std::vector<CorrectiveBlock>> blocks(refined.mirror.size());
+  for (size_t i = 0; i < refined.left_vertices.size(); ++i) {
+    const int v = refined.left_vertices[i];
+    blocks[v] = left_blocks[i];
+    if (refined.mirror[v] == v) continue;
+    std::vector<CorrectiveBlock>& mirrored = blocks[refined.mirror[v]];
+    for (const CorrectiveBlock& block : left_blocks[i]) mirrored.push_back(MirrorCorrective(block, joint_mirror));
+    std::sort(mirrored.begin(), mirrored.end(), [](const auto& a, const auto& b) { return a.joint < b.joint; });
+  }
+  body->posedirs.begin.push_back(0);
+  for (const auto& of_vertex : blocks) {
+    for (const CorrectiveBlock& block : of_vertex) {
+      body->posedirs.joint.push_back(block.joint);
+      body->posedirs.block.insert(body->posedirs.block.end(), block.values.begin(), block.values.end());
+    }
+    body->posedirs.begin.push_back(static_cast<int>(body->posedirs.joint.size()));
+  }
+}
+
+void FillLandmarks(const RefinedCage& refined, const LeftHalfArrays& arrays, BodyModelData* body) {
+  for (size_t i = 0; i < arrays.landmark_names.size(); ++i) {
+    Landmark landmark{arrays.landmark_names[i], {}, {}};
+    for (const auto& [vertex, weight] : arrays.landmarks[i]) {
+      landmark.vertices.push_back(vertex);
+      landmark.weights.push_back(weight);
+    }
+    body->landmarks.push_back(landmark);
+    const std::string mirrored_name = MirrorOfLandmark(landmark.name);
+    if (mirrored_name == landmark.name) continue;
+    landmark.name = mirrored_name;
+    for (int& vertex : landmark.vertices) vertex = refined.mirror[vertex];
+    body->landmarks.push_back(landmark);
+  }
+}
+
+void FillCharts(const Cage& cage, const RefinedCage& refined, const LeftHalfArrays& arrays,
+                const std::string& cage_name, BodyModelData* body) {
+  std::vector<int> quad_chart;
+  std::vector<bool> quad_is_right;
+  for (size_t q = 0; q < refined.quads.size(); ++q) {
+    const size_t cage_quad = q / kQuadsPerCageQuad;
+    const std::string& name = cage.child_charts[cage_quad][(q % kQuadsPerCageQuad) / 4];
+    const int chart = FindChartKind(name);
+    if (chart < 0) {
+      throw std::runtime_error(cage_name + ": quad " + std::to_string(cage_quad) + ": unknown chart '" + name + "'");
+    }
+    quad_chart.push_back(chart);
+    quad_is_right.push_back(static_cast<int>(q) >= refined.num_left_quads);
+  }
+  ChartedFaces faces =
+      BuildCharts(refined.quads, quad_chart, quad_is_right, refined.mirror, arrays.charts, arrays.atlas_from_chart);
+  body->vt = std::move(faces.vt);
+  body->ft = std::move(faces.ft);
+  body->face_part = std::move(faces.face_part);
+  body->face_iuv = std::move(faces.face_iuv);
+}
+
+}  // namespace
+
+BuiltinBodySources ReadBuiltinBodySources(const std::string& cage_path, const std::string& parts_path) {
+  return {ReadFileBytes(cage_path), cage_path, ReadFileBytes(parts_path), parts_path};
+}
+
+BodyModelData MakeBuiltinBody(const BuiltinBodySources& sources, MakeBuiltinBodySummary* summary) {
+  const Cage cage = ParseCage(sources.cage_text, sources.cage_name);
+  RefinedCage refined;
+  try {
+    refined = Refine(cage);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(sources.cage_name + ": cannot be subdivided: " + error.what());
+  }
+
+  BodyModelData body;
+  body.name = "bodyloom";
+  body.joint_names = SmplJointNames();
+  body.parents = SmplParents();
+  const std::vector<int> joint_mirror = MirrorOfJoints(body.joint_names);
+  std::vector<int> left_joints;
+  for (size_t j = 0; j < joint_mirror.size(); ++j) {
+    if (joint_mirror[j] >= static_cast<int>(j)) left_joints.push_back(static_cast<int>(j));
+  }
+  const LeftHalfSizes sizes{cage.num_left_vertices, static_cast<int>(refined.left_vertices.size()),
+                            static_cast<int>(refined.mirror.size()), static_cast<int>(body.parents.size()),
+                            static_cast<int>(left_joints.size())};
+  const LeftHalfArrays arrays = ReadLeftHalfArrays(sources.parts_bytes, sources.parts_name, sizes);
+
+  FillShape(cage, refined, arrays.cage_shape, &body);
+  body.faces = TrianglesOfQuads(refined.quads);
+  FillWeights(refined, joint_mirror, arrays.weights, &body);
+  FillRegressor(refined, joint_mirror, left_joints, arrays.regressor, &body);
+  FillCorrectives(refined, joint_mirror, arrays.correctives, &body);
+  FillLandmarks(refined, arrays, &body);
+  try {
+    FillCharts(cage, refined, arrays, sources.cage_name, &body);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(sources.parts_name + ": charts do not fit " + sources.cage_name + ": " + error.what());
+  }
+  if (summary != nullptr) {
+    summary->cage_vertices = static_cast<int>(cage.mirror.size());
+    summary->cage_quads = static_cast<int>(cage.quads.size());
+    summary->vertices = static_cast<int>(body.v_template.rows());
+    summary->quads = static_cast<int>(refined.quads.size());
+    summary->openmesh_agreement =
+        CompareByGeometry({body.v_template, refined.quads}, SubdivideByOpenMesh({cage.vertices, cage.quads}, kLevels),
+                          kOpenMeshTolerance_m);
+    summary->compared_with_openmesh = true;
+  }
+  return body;
+}
+
+}  // namespace bodyloom

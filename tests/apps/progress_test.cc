@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/progress.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+namespace bodyloom {
+namespace {
+
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+TEST(ClockText, MinutesAndHours) {
+  EXPECT_EQ(ClockText(0), "0:00");
+  EXPECT_EQ(ClockText(7.4), "0:07");
+  EXPECT_EQ(ClockText(754), "12:34");
+  EXPECT_EQ(ClockText(3723), "1:02:03");
+  EXPECT_EQ(ClockText(-3), "0:00");
+}
+
+TEST(Progress, WritesOneLineAStageWhenNotATerminal) {
+  std::ostringstream out;
+  {
+    Progress progress("tracking", Progress::Style::kLines, out);
+    for (int i = 0; i <= 100; ++i) {
+      progress.Update(i < 50 ? "initialise" : "fit", 0.01 * i);
+    }
+  }
+  EXPECT_EQ(out.str(), "tracking 0 % initialise\ntracking 50 % fit, 0:00 left\n");
+}
+
+TEST(Progress, DrawsABarThatIsWipedAtTheEnd) {
+  std::ostringstream out;
+  {
+    Progress progress("tracking", Progress::Style::kBar, out);
+    progress.Update("fit", 0.5);
+    EXPECT_THAT(out.str(), HasSubstr("\rtracking [############............] 50 % fit"));
+  }
+  EXPECT_THAT(out.str(), EndsWith(" \r"));
+  EXPECT_THAT(out.str(), Not(HasSubstr("\n")));
+}
+
+TEST(Progress, NeverGoesBackAndStaysWithinBounds) {
+  std::ostringstream out;
+  Progress progress("x", Progress::Style::kLines, out);
+  progress.Update("a", 0.6);
+  progress.Update("b", 0.2);
+  progress.Update("c", 7);
+  EXPECT_THAT(out.str(), HasSubstr("x 60 % b"));
+  EXPECT_THAT(out.str(), HasSubstr("x 100 % c"));
+}
+
+TEST(Progress, SilentWritesNothing) {
+  std::ostringstream out;
+  Progress("x", Progress::Style::kSilent, out).Update("a", 0.5);
+  EXPECT_EQ(out.str(), "");
+}
+
+}  // namespace
+}  // namespace bodyloom

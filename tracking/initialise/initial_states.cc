@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracking/initialise/initial_states.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "geometry/check.h"
+#include "geometry/posed_body.h"
+#include "geometry/rotation.h"
+#include "tracking/initialise/inverse_kinematics.h"
+#include "tracking/initialise/joint_hypotheses.h"
+
+namespace bodyloom {
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+namespace {
+
+/// Fills all frames from states at `frames` (ascending): SO(3) interpolation between, constant beyond the ends.
+std::vector<FrameState> FillFrames(const std::vector<int>& frames, const std::vector<FrameState>& known,
+                                   const std::vector<double>& timestamps) {
+  std::vector<FrameState> states(timestamps.size());
+  size_t next = 0;
+  for (size_t t = 0; t < timestamps.size(); ++t) {
+    while (next < frames.size() && frames[next] < static_cast<int>(t)) ++next;
+    if (next == 0) {
+      states[t] = known[0];
+    } else if (next == frames.size()) {
+      states[t] = known.back();
+    } else {
+      const double t0 = timestamps[frames[next - 1]], t1 = timestamps[frames[next]];
+      states[t] = InterpolateStates(known[next - 1], known[next], (timestamps[t] - t0) / (t1 - t0));
+    }
+  }
+  return states;
+}
+
+MatrixX3d RestLandmarks(const BodyModel& model, const VectorXd& betas = VectorXd()) {
+  BodyPose rest;
+  rest.rotations.assign(model.num_joints(), Matrix3d::Identity());
+  return PoseLandmarks(model, betas, rest, CocoNames());
+}
+
+/// Replaces translations by weak-perspective cameras that fit what the frame shows; frames that show too little take
+/// their neighbour's.
+void ToWeakPerspective(const KeypointSequence& keypoints, const FrameLayout& layout, std::vector<FrameState>* states) {
+  Vector3d last(0, 0, 0);
+  bool known = false;
+  for (size_t t = 0; t < states->size(); ++t) {
+    FrameState& state = (*states)[t];
+    BodyPose pose{state.rotations, Vector3d::Zero()};
+    std::vector<Vector3d> points;
+    std::vector<Vector2d> pixels;
+    const MatrixX3d landmarks = PoseLandmarks(*layout.model, VectorXd(), pose, CocoNames());
+    for (int k = 0; k < 17; ++k) {
+      const auto it = std::find(keypoints.names.begin(), keypoints.names.end(), CocoNames()[k]);
+      if (it == keypoints.names.end()) continue;
+      const Keypoint& point = keypoints.at(static_cast<int>(t), static_cast<int>(it - keypoints.names.begin()));
+      if (point.confidence < 0.2F) continue;
+      points.push_back(landmarks.row(k).transpose());
+      pixels.emplace_back(point.x, point.y);
+    }
+    Vector3d weak;
+    if (points.size() >= 4 && FitWeakCamera(points, pixels, layout.camera.cx, layout.camera.cy, &weak)) {
+      if (!known) {
+        for (size_t u = 0; u < t; ++u) (*states)[u].translation = weak;
+      }
+      last = weak;
+      known = true;
+    }
+    state.translation = last;
+  }
+}
+
+}  // namespace
+
+bool FitWeakCamera(const std::vector<Vector3d>& points, const std::vector<Vector2d>& pixels, double cx, double cy,
+                   Vector3d* log_scale_tx_ty) {
+  BODYLOOM_CHECK(points.size() == pixels.size(), "weak camera: ", points.size(), " points and ", pixels.size(), " pixels");
+  if (points.size() < 2) return false;
+  Vector2d mean_point = Vector2d::Zero(), mean_pixel = Vector2d::Zero();
+  for (size_t i = 0; i < points.size(); ++i) {
+    mean_point += points[i].head<2>() / static_cast<double>(points.size());
+    mean_pixel += pixels[i] / static_cast<double>(points.size());
+  }
+  double dot = 0, square = 0;
+  for (size_t i = 0; i < points.size(); ++i) {
+    dot += (points[i].head<2>() - mean_point).dot(pixels[i] - mean_pixel);
+    square += (points[i].head<2>() - mean_point).squaredNorm();
+  }
+  const double scale = dot / square;
+  if (!(scale > 0) || !std::isfinite(scale)) return false;
+  *log_scale_tx_ty = {std::log(scale), (mean_pixel.x() - cx) / scale - mean_point.x(),
+                      (mean_pixel.y() - cy) / scale - mean_point.y()};
+  return true;
+}
+
+KeypointSequence JointsFromDense(const BodyModel& model, const DenseSequence& dense) {
+  const MatrixX3d landmarks = RestLandmarks(model);
+  const MatrixX3d& vertices = model.data().v_template;
+  RowMatrixXf closeness(vertices.rows(), 17);
+  for (Eigen::Index v = 0; v < vertices.rows(); ++v) {
+    for (int k = 0; k < 17; ++k) {
+      const double d2 = (vertices.row(v) - landmarks.row(k)).squaredNorm();
+      closeness(v, k) = static_cast<float>(std::exp(-d2 / (2 * 0.06 * 0.06)));
+    }
+  }
+  KeypointSequence result;
+  result.convention = "coco17 from dense keypoints";
+  result.names = CocoNames();
+  result.timestamps = dense.timestamps;
+  result.image_width = dense.image_width;
+  result.image_height = dense.image_height;
+  result.points.resize(17 * dense.frames.size());
+  for (int t = 0; t < dense.num_frames(); ++t) {
+    Eigen::Matrix<double, 17, 3> sums = Eigen::Matrix<double, 17, 3>::Zero();
+    for (const DenseKeypoint& point : dense.frames[t]) {
+      for (int k = 0; k < 17; ++k) {
+        double w = 0;
+        for (int c = 0; c < 3; ++c) w += point.barycentric[c] * closeness(model.data().faces(point.face, c), k);
+        sums.row(k) += w * Eigen::RowVector3d(point.pixel.x(), point.pixel.y(), 1);
+      }
+    }
+    const double total = std::max<double>(1, static_cast<double>(dense.frames[t].size()));
+    for (int k = 0; k < 17; ++k) {
+      // A landmark in plain sight gathers about 2 % of the surface points.
+      const double confidence = std::min(0.9, sums(k, 2) / (0.01 * total));
+      if (sums(k, 2) > 0.1) {
+        result.at(t, k) = {static_cast<float>(sums(k, 0) / sums(k, 2)), static_cast<float>(sums(k, 1) / sums(k, 2)),
+                           static_cast<float>(confidence)};
+      }
+    }
+  }
+  return result;
+}
+
+InitialStates FindInitialStates(const TrackSequenceInput& input, const FrameLayout& layout,
+                                const TrackSequenceOptions& options) {
+  const BodyModel& model = *input.body;
+  InitialStates result;
+  result.betas = VectorXd::Zero(layout.num_betas);
+  KeypointSequence from_dense;
+  const KeypointSequence* keypoints = input.keypoints;
+  if (keypoints == nullptr) {
+    from_dense = JointsFromDense(model, *input.dense);
+    keypoints = &from_dense;
+  }
+  if (input.initialiser != nullptr) {
+    const Eigen::Index given = std::min<Eigen::Index>(input.initialiser->betas.size(), layout.num_betas);
+    result.betas.head(given) = input.initialiser->betas.head(given);
+    for (int t = 0; t < input.initialiser->num_frames(); ++t) {
+      const BodyPose pose =
+          PoseFromAxisAngle(model, input.initialiser->poses.row(t).transpose(), input.initialiser->trans.row(t).transpose());
+      result.states.push_back({pose.rotations, pose.trans});
+      result.from_observation.push_back(1);
+    }
+  } else {
+    if (layout.num_betas > 0) {
+      result.betas = EstimateShape(*keypoints, layout.camera, model, layout.num_betas, options.hypotheses);
+    }
+    const MatrixX3d rest_joints = model.RestJoints(result.betas), rest_points = RestLandmarks(model, result.betas);
+    const JointHypothesesResult found =
+        FindJointHypotheses(*keypoints, layout.camera, rest_points, input.prior, options.hypotheses);
+    if (found.frames.empty()) return result;
+    std::vector<FrameState> known;
+    result.from_observation.assign(keypoints->num_frames(), 0);
+    for (size_t i = 0; i < found.frames.size(); ++i) {
+      const JointHypothesis& hypothesis = found.hypotheses[i];
+      const BodyPose pose =
+          PoseFromJoints(model, rest_joints, rest_points, hypothesis.points, hypothesis.torso_rotation);
+      known.push_back({pose.rotations, pose.trans});
+      result.from_observation[found.frames[i]] = 1;
+    }
+    result.cost = found.cost;
+    result.states = FillFrames(found.frames, known, keypoints->timestamps);
+  }
+  if (layout.knowledge == CameraKnowledge::kWeak) ToWeakPerspective(*keypoints, layout, &result.states);
+  return result;
+}
+
+}  // namespace bodyloom

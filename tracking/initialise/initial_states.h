@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A starting pose for every frame: from the user's initialiser, or from nothing.
+#pragma once
+
+#include <vector>
+
+#include "tracking/frame_cost.h"
+#include "tracking/track_sequence.h"
+
+namespace bodyloom {
+
+struct InitialStates {
+  std::vector<FrameState> states;  ///< T, or empty when no frame shows a torso
+  std::vector<char> from_observation;  ///< T: a hypothesis was made for this frame (others are interpolated)
+  Eigen::VectorXd betas;           ///< shape that fits the clip's bone ratios (initialiser: its own betas, or zero)
+  double cost = 0;                 ///< of the hypotheses
+};
+
+/// The initialiser's poses when given; else joint hypotheses (from 2D joints, or from joints estimated out of dense
+/// keypoints) turned into poses by inverse kinematics and interpolated on SO(3) to every frame.
+InitialStates FindInitialStates(const TrackSequenceInput& input, const FrameLayout& layout,
+                                const TrackSequenceOptions& options);
+
+/// COCO-17 keypoints estimated from dense ones: each landmark is the mean pixel of the surface points near it in the rest
+/// pose, weighted by exp(−d²/2(6 cm)²); confidence grows with the number of such points. Good enough to start from.
+KeypointSequence JointsFromDense(const BodyModel& model, const DenseSequence& dense);
+
+/// Least-squares weak-perspective camera (log scale, tx, ty) from points (camera frame axes, metres) to pixels; false
+/// with fewer than two distinct points.
+bool FitWeakCamera(const std::vector<Eigen::Vector3d>& points, const std::vector<Eigen::Vector2d>& pixels, double cx,
+                   double cy, Eigen::Vector3d* log_scale_tx_ty);
+
+}  // namespace bodyloom

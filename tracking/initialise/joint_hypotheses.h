@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+/// From one camera's 2D joints to 3D joints, without a start: what the depth ambiguity allows, chosen over the clip.
+///
+/// 1. Depth of the root from the image size of torso and legs (the largest over a few seconds is unforeshortened).
+/// 2. Torso orientation: a trellis over heading and tilt; each state is scored by how its shoulders and hips project,
+///    by which parts of the face are seen, by how plausible the best limb hypotheses would be, and by angular speed.
+/// 3. Limbs: every limb has four hypotheses (each of its two bones points towards the camera or away: the sphere around
+///    the known end meets the viewing ray twice); a trellis over the clip picks them by the learned density of limb
+///    directions, by what low confidence says about occlusion behind the torso, and by continuity.
+/// Source: Lee & Chen 1985 for the binary tree of hypotheses; the cues and their statistics are described in
+/// docs/tracking.md.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "geometry/arrays.h"
+#include "geometry/body_model.h"
+#include "geometry/camera.h"
+#include "geometry/observations.h"
+#include "geometry/pose_prior.h"
+
+namespace bodyloom {
+
+struct JointHypothesesOptions {
+  double confidence = 0.2;        ///< joints below are not used as positions
+  double frame_rate = 15;         ///< the trellis runs on about this many frames a second
+  double angular_speed = 4.0;     ///< rad/s, σ of the torso's turning
+  double limb_speed = 2.2;        ///< m/s, σ of a limb's joints relative to the torso
+  double density_weight = 0.6;    ///< of the learned limb density
+  double occlusion_weight = 0.5;  ///< of confidence as a depth cue
+  double face_weight = 1.0;       ///< of the face's visibility as a heading cue
+  double upright_weight = 1.0;    ///< of the trunk being upright in a level camera
+};
+
+/// Index of the torso's axes and joints in `JointHypothesis::points`: CocoNames() order.
+struct JointHypothesis {
+  MatrixX3d points;                ///< 17×3, camera frame, metres; NaN where nothing is known
+  Eigen::Matrix3d torso_rotation;  ///< camera-from-torso (x left, y up, z front)
+  double depth = 0;                ///< of the mid-hip, metres
+};
+
+struct JointHypothesesResult {
+  std::vector<int> frames;                   ///< frame indices that were looked at, ascending
+  std::vector<JointHypothesis> hypotheses;   ///< one for each
+  double cost = 0;                           ///< of the chosen paths, for comparing alternatives
+};
+
+/// `keypoints` must contain CocoNames() landmarks (any subset); frames without both hips or both shoulders are bridged.
+/// Empty when fewer than one frame shows a torso. `camera` gives rays; `rest_points` are the body's 17 landmarks in the
+/// rest pose, metres.
+JointHypothesesResult FindJointHypotheses(const KeypointSequence& keypoints, const Camera& camera,
+                                          const MatrixX3d& rest_points, const PosePrior* prior,
+                                          const JointHypothesesOptions& options);
+
+/// Shape components whose bone lengths have the ratios that the clip shows: a bone's largest projections over the clip
+/// (90th percentile, relative to the body's apparent size) tell its length wherever it once lay in the image plane. Fits
+/// log ratios of torso, thighs, shins, upper arms and forearms with σ = 0.05, and N(0, 1) on each component. Zero without enough frames.
+Eigen::VectorXd EstimateShape(const KeypointSequence& keypoints, const Camera& camera, const BodyModel& model,
+                              int num_betas, const JointHypothesesOptions& options);
+
+/// Orthonormal torso axes of 3D joints in CocoNames() order: y from mid-hip to mid-shoulder, x to the body's left (mean
+/// of shoulder and hip lines, made orthogonal), z = x × y to the front. False when degenerate.
+bool TorsoFrame(const MatrixX3d& coco17, Eigen::Matrix3d* rotation);
+
+/// The four limbs as CocoNames() indices (start, middle, end); even entries are left.
+inline constexpr std::array<std::array<int, 3>, 4> kLimbs = {{{5, 7, 9}, {6, 8, 10}, {11, 13, 15}, {12, 14, 16}}};
+
+}  // namespace bodyloom

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracking/track_result.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "geometry/posed_body.h"
+#include "tracking/kinematics.h"
+
+namespace bodyloom {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+namespace {
+
+/// Fewer 2D joints than this and the frame is called weak: the torso alone gives four, a limb two more.
+constexpr int kFewLandmarks = 6;
+constexpr int kFewDense = 20;
+
+double Percentile(std::vector<double> values, double q) {
+  if (values.empty()) return 0;
+  const size_t k = static_cast<size_t>(std::lround(q * static_cast<double>(values.size() - 1)));
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(k), values.end());
+  return values[k];
+}
+
+FrameStatus StatusOf(const FrameData& frame) {
+  const size_t dense = frame.dense != nullptr ? frame.dense->size() : 0;
+  if (frame.landmarks.empty() && dense == 0) return FrameStatus::kInterpolated;
+  if (frame.landmarks.size() < kFewLandmarks && dense < kFewDense) return FrameStatus::kWeak;
+  return FrameStatus::kTracked;
+}
+
+}  // namespace
+
+void FillTrack(const TrackSequenceInput& input, const SequenceProblem& problem, const ObservedLandmarks& landmarks,
+               TrackSequenceResult* result) {
+  const BodyModel& model = *input.body;
+  const int T = static_cast<int>(problem.states.size()), J = model.num_joints();
+  Track& track = result->track;
+  TrackSequenceSummary& summary = result->summary;
+  track.motion.body = model.name();
+  track.motion.up = Motion::Up::kCamera;
+  track.motion.timestamps = problem.timestamps;
+  track.motion.betas = problem.betas;
+  track.motion.poses.resize(T, 3 * J);
+  track.motion.trans.resize(T, 3);
+  track.camera = problem.layout.camera;
+  if (problem.layout.focal_column >= 0) track.camera.fx = track.camera.fy = std::exp(problem.log_focal);
+  const bool weak = problem.layout.knowledge == CameraKnowledge::kWeak;
+  track.weak_camera.resize(weak ? T : 0, 3);
+  track.joint_sigma.setConstant(T, J, std::numeric_limits<double>::quiet_NaN());
+  summary.focal_px = track.camera.fx;
+  for (FrameStatus status : {FrameStatus::kTracked, FrameStatus::kWeak, FrameStatus::kInterpolated, FrameStatus::kLost}) {
+    summary.frames_by_status[ToString(status)] = 0;
+  }
+
+  std::vector<CompiledPoint> coco;
+  for (const std::string& name : CocoNames()) {
+    const int index = model.FindLandmark(name);
+    if (index < 0) break;
+    const Landmark& landmark = model.data().landmarks[index];
+    coco.push_back(CompilePoint(model, landmark.vertices, landmark.weights, static_cast<int>(problem.betas.size())));
+  }
+  Kinematics kinematics;
+  PointEvaluator points;
+  PointEvaluator::VertexCache vertices;
+  std::vector<double> landmark_errors, dense_errors;
+  for (int t = 0; t < T; ++t) {
+    const FrameState& state = problem.states[t];
+    const FrameData& frame = problem.frames[t];
+    Vector3d trans = state.translation;
+    if (weak) {
+      track.weak_camera.row(t) << std::exp(state.translation[0]), state.translation[1], state.translation[2];
+      trans.setZero();
+    }
+    track.motion.poses.row(t) = AxisAngleFromPose(model, BodyPose{state.rotations, trans}).transpose();
+    track.motion.trans.row(t) = trans.transpose();
+    kinematics.Set(model, problem.betas, state.rotations, trans, false);
+    MatrixX3d joints(J, 3);
+    for (int j = 0; j < J; ++j) joints.row(j) = kinematics.p[j].transpose();
+    track.joints.push_back(joints);
+    MatrixX3d coco17(static_cast<Eigen::Index>(coco.size()), 3);
+    for (size_t k = 0; k < coco.size(); ++k) coco17.row(k) = points.Evaluate(kinematics, coco[k], false).transpose();
+    track.coco17.push_back(coco17);
+    const FrameStatus status = StatusOf(frame);
+    track.frame_status.push_back(status);
+    ++summary.frames_by_status[ToString(status)];
+
+    const Camera camera = track.CameraAt(t);
+    Vector2d pixel;
+    for (size_t i = 0; i < landmarks.names.size(); ++i) {
+      const Keypoint& seen = input.keypoints->at(t, landmarks.keypoint_column[i]);
+      if (!(seen.confidence > 0.3F)) continue;
+      if (camera.Project(points.Evaluate(kinematics, landmarks.points[i], false), &pixel)) {
+        landmark_errors.push_back((pixel - Vector2d(seen.x, seen.y)).norm());
+      }
+    }
+    if (frame.dense != nullptr) {
+      vertices.NewFrame(kinematics);
+      for (const DenseKeypoint& point : *frame.dense) {
+        const Vector3d x = points.Evaluate(kinematics, model.data().faces.row(point.face).data(),
+                                           point.barycentric.data(), &vertices, false);
+        if (camera.Project(x, &pixel)) dense_errors.push_back((pixel - point.pixel.cast<double>()).norm());
+      }
+    }
+  }
+  summary.reprojection_median_px = Percentile(landmark_errors, 0.5);
+  summary.reprojection_p95_px = Percentile(landmark_errors, 0.95);
+  summary.dense_median_px = Percentile(dense_errors, 0.5);
+}
+
+std::vector<PlanEntry> PlanTrackSequence(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
+  std::vector<PlanEntry> plan;
+  const BodyModel& model = *input.body;
+  const bool dense = input.dense != nullptr;
+  const ObservedLandmarks landmarks = FindObservedLandmarks(model, input.keypoints, 0);
+  const size_t active = FindActiveJoints(model, landmarks, dense, options.skip_unneeded).size();
+  const auto add = [&](const std::string& what, bool runs, const std::string& why) { plan.push_back({what, runs, why}); };
+  add("hypotheses over the clip", input.initialiser == nullptr,
+      input.initialiser == nullptr ? "no initialiser was given" : "the initialiser gives the start");
+  add("2D joints (L_f)", input.keypoints != nullptr,
+      input.keypoints != nullptr ? std::to_string(landmarks.names.size()) + " landmarks" : "no 2D joints in the input");
+  add("dense keypoints (L_f)", dense, dense ? "in the input" : "no dense keypoints in the input");
+  add("initialiser term (L_d)", input.initialiser != nullptr && options.initialiser_weight > 0,
+      input.initialiser != nullptr ? "weight " + std::to_string(options.initialiser_weight) : "no initialiser was given");
+  add("pose prior", input.prior != nullptr, input.prior != nullptr ? "learned mixture" : "none was given");
+  const std::string joints = std::to_string(active) + " of " + std::to_string(model.num_joints());
+  add("joint rotations", true, joints + " joints are estimated");
+  if (active < static_cast<size_t>(model.num_joints())) {
+    add("remaining joints", false, "no observed landmark depends on them; held at rest");
+  }
+  add("surface vertices", dense, dense ? "only those of dense keypoints" : "2D joints are compiled to their bones");
+  add("shape", options.estimate_shape, options.estimate_shape ? "one for the clip" : "switched off");
+  add("focal length", options.camera_knowledge == CameraKnowledge::kUnknownFocal,
+      options.camera_knowledge == CameraKnowledge::kKnown ? "known"
+      : options.camera_knowledge == CameraKnowledge::kWeak ? "weak perspective has none" : "estimated with the clip");
+  add("uncertainty", options.estimate_uncertainty, options.estimate_uncertainty ? "per joint" : "switched off");
+  return plan;
+}
+
+std::string TrackSequenceSummary::BriefReport() const {
+  std::ostringstream out;
+  out << ToString(status) << " after " << iterations << " iterations, cost " << initial_cost << " -> " << final_cost;
+  if (!frames_by_status.empty()) {
+    out << "\nframes:";
+    for (const auto& [name, count] : frames_by_status) {
+      if (count > 0) out << ' ' << count << ' ' << name;
+    }
+  }
+  if (reprojection_median_px > 0) {
+    out << "\n2D joints: median " << reprojection_median_px << " px, 95 % below " << reprojection_p95_px << " px";
+  }
+  if (dense_median_px > 0) out << "\ndense keypoints: median " << dense_median_px << " px";
+  return out.str();
+}
+
+}  // namespace bodyloom
