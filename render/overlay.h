@@ -24,6 +24,7 @@ struct OverlayOptions {
   bool part_colours = false;  ///< colour the body by its charts; needs a body with parts
   bool skeleton = false;      ///< bones between the projected landmarks
   bool side_view = false;     ///< a second panel to the right, as high as the image
+  bool side_follows = true;   ///< the side camera moves along with the person; false: it sees the whole clip's space
   double side_yaw_deg = 90;   ///< 90: from the person's left when it faces the camera
   double side_elevation_deg = 8;
   double side_aspect = 0.75;                                 ///< width of the panel / its height
@@ -57,6 +58,9 @@ class OverlayRenderer {
 
  private:
   void DrawLandmarks(int frame, const KeypointSequence* detected, const BodyPose& pose, Image* image) const;
+  void PlaceSideView();
+  /// Large pictures need fewer samples a pixel to look smooth.
+  [[nodiscard]] int Samples() const { return track_.camera.height >= 600 ? 2 : 3; }
   void DrawSide(int frame, Image* panel) const;
 
   const BodyModel& body_;
@@ -64,9 +68,10 @@ class OverlayRenderer {
   const Track* reference_;
   OverlayOptions options_;
   std::vector<Colour> face_colours_;
-  std::optional<View> side_;
+  std::optional<View> side_;  ///< of a person at the origin when it follows
+  MatrixX3d side_centre_;     ///< T×3: where that origin is
   Image side_backdrop_;
-  Floor side_floor_;
+  Floor floor_;  ///< camera frame
 };
 
 /// The body of frame t of a track, V×3 in the camera frame; empty when the frame is lost.

@@ -49,10 +49,6 @@ std::string Wrapped(const std::string& text, size_t indent) {
   return result;
 }
 
-nlohmann::ordered_json NumberOrNull(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
-}
-
 }  // namespace
 
 double Evaluation::Value(const std::string& name) const {
@@ -99,17 +95,16 @@ std::string EvaluationJson(const Evaluation& evaluation) {
   json["values"] = nlohmann::ordered_json::object();
   json["meanings"] = nlohmann::ordered_json::object();
   for (const EvaluationValue& entry : evaluation.values) {
-    json["values"][entry.name] = NumberOrNull(entry.value);
+    json["values"][entry.name] = entry.value;
     json["meanings"][entry.name] = entry.meaning;
   }
   json["breakdowns"] = nlohmann::ordered_json::object();
   for (const EvaluationBreakdown& breakdown : evaluation.breakdowns) {
     nlohmann::ordered_json& target = json["breakdowns"][breakdown.name];
     target = nlohmann::ordered_json::object();
-    for (size_t i = 0; i < breakdown.labels.size(); ++i)
-      target[breakdown.labels[i]] = NumberOrNull(breakdown.values[i]);
+    for (size_t i = 0; i < breakdown.labels.size(); ++i) target[breakdown.labels[i]] = breakdown.values[i];
   }
-  // A subject may hold any bytes of a file name: what is not UTF-8 is replaced rather than refused.
+  // NaN becomes null. A subject may hold any bytes of a file name: what is not UTF-8 is replaced rather than refused.
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 

@@ -6,6 +6,7 @@
 
 #include "geometry/check.h"
 #include "geometry/posed_body.h"
+#include "geometry/skinning.h"
 #include "tracking/metrics.h"
 #include "tracking/metrics_image.h"
 
@@ -24,6 +25,17 @@ RowMatrixXd WithColumns(const RowMatrixXd& poses, Eigen::Index columns) {
   RowMatrixXd result = RowMatrixXd::Zero(poses.rows(), columns);
   result.leftCols(std::min(columns, poses.cols())) = poses.leftCols(std::min(columns, poses.cols()));
   return result;
+}
+
+std::vector<MatrixX3d> SkinFrames(const Skinner& skinner, const ShapedBody& body, const std::vector<BodyPose>& poses) {
+  std::vector<double> values(3 * poses.size() * skinner.num_vertices());
+  skinner.Skin(body, poses, values);
+  std::vector<MatrixX3d> frames;
+  for (size_t t = 0; t < poses.size(); ++t) {
+    const double* begin = values.data() + 3 * t * skinner.num_vertices();
+    frames.emplace_back(Eigen::Map<const MatrixX3d>(begin, skinner.num_vertices(), 3));
+  }
+  return frames;
 }
 
 /// Mean distance of the two shapes' vertices in the rest pose, pelvis on pelvis, metres.
@@ -64,29 +76,39 @@ Evaluation EvaluateAgainstTruth(const Track& track, const Track& truth, const Bo
   const std::vector<int> source = NearestFramesWithResult(has_result);
   if (source.empty()) return result;
 
-  std::vector<int> vertices;
-  for (int v = 0; v < body.num_vertices(); v += options.vertex_step) vertices.push_back(v);
+  SkinnerOptions skinning;
+  skinning.num_threads = options.num_threads;
+  for (int v = 0; v < body.num_vertices(); v += options.vertex_step) skinning.vertices.push_back(v);
+  const Skinner skinner(body, skinning);
+  const ShapedBody shaped = skinner.Shape(track.motion.betas), true_shaped = skinner.Shape(truth.motion.betas);
 
   const Motion& estimate = track.motion;
-  const MatrixX3d rest_estimate = body.RestJoints(estimate.betas), rest_truth = body.RestJoints(truth.motion.betas);
   ProjectionErrorAccumulator projection(
       SquareImageScale(truth.camera.width, truth.camera.height, options.image_side_px));
   PositionErrorAccumulator vertex_errors;
   std::vector<MatrixX3d> joints(T), true_joints(T);
   RowMatrixXd poses(T, estimate.poses.cols());
-  for (int t = 0; t < T; ++t) {
-    const int f = source[t];
-    poses.row(t) = estimate.poses.row(f);
-    const BodyPose pose = PoseFromAxisAngle(body, estimate.poses.row(f).transpose(), estimate.trans.row(f).transpose());
-    const BodyPose true_pose =
-        PoseFromAxisAngle(body, truth.motion.poses.row(t).transpose(), truth.motion.trans.row(t).transpose());
-    joints[t] = PoseSkeleton(body, rest_estimate, pose).joints;
-    true_joints[t] = PoseSkeleton(body, rest_truth, true_pose).joints;
-    const MatrixX3d own = PoseVertices(body, estimate.betas, pose, vertices);
-    const MatrixX3d true_own = PoseVertices(body, truth.motion.betas, true_pose, vertices);
-    projection.AddFrame(ProjectPoints(track.CameraAt(f), own), ProjectPoints(truth.CameraAt(t), true_own));
-    const Eigen::RowVector3d pelvis_offset = joints[t].row(0) - true_joints[t].row(0);
-    vertex_errors.AddFrame(((own - true_own).rowwise() - pelvis_offset).rowwise().norm());
+  constexpr int kChunk = 64;  // frames whose vertices are held at a time
+  for (int begin = 0; begin < T; begin += kChunk) {
+    const int end = std::min(T, begin + kChunk);
+    std::vector<BodyPose> own, true_own;
+    for (int t = begin; t < end; ++t) {
+      const int f = source[t];
+      poses.row(t) = estimate.poses.row(f);
+      own.push_back(PoseFromAxisAngle(body, estimate.poses.row(f).transpose(), estimate.trans.row(f).transpose()));
+      true_own.push_back(
+          PoseFromAxisAngle(body, truth.motion.poses.row(t).transpose(), truth.motion.trans.row(t).transpose()));
+      joints[t] = PoseSkeleton(body, shaped.rest_joints, own.back()).joints;
+      true_joints[t] = PoseSkeleton(body, true_shaped.rest_joints, true_own.back()).joints;
+    }
+    const std::vector<MatrixX3d> vertices = SkinFrames(skinner, shaped, own);
+    const std::vector<MatrixX3d> true_vertices = SkinFrames(skinner, true_shaped, true_own);
+    for (int t = begin; t < end; ++t) {
+      const MatrixX3d &a = vertices[t - begin], &b = true_vertices[t - begin];
+      projection.AddFrame(ProjectPoints(track.CameraAt(source[t]), a), ProjectPoints(truth.CameraAt(t), b));
+      const Eigen::RowVector3d pelvis_offset = joints[t].row(0) - true_joints[t].row(0);
+      vertex_errors.AddFrame(((a - b).rowwise() - pelvis_offset).rowwise().norm());
+    }
   }
 
   const ProjectionError px = projection.Result();

@@ -10,6 +10,7 @@ namespace bodyloom {
 
 struct EvaluateAgainstTruthOptions {
   int vertex_step = 1;      ///< every n-th vertex is compared (1: all); the mean moves by well under a percent up to 10
+  int num_threads = 1;      ///< of skinning; the result is the same
   int image_side_px = 512;  ///< projection errors are for an image scaled to this by its longer side
 };
 

@@ -75,6 +75,9 @@ TEST(EvaluationRecordingsTest, AistAgreesWithTheIndependentScorer) {
   for (const char* sequence : kSequences) {
     const MultiViewClip clip = ReadAistClip(kAist, kAist + "/cameras", sequence);
     ASSERT_EQ(clip.views.size(), 9u);
+    // SMPL's origin lies about 0.3 m above the hips; scaling is cm a metre of SMPL's body.
+    const Eigen::RowVector3d hip = clip.coco17_in_world[0].middleRows(11, 2).colwise().mean();
+    EXPECT_LT((0.9 * clip.motion.trans.row(0) - hip).norm(), 0.6);
     for (const auto& [view, frames] : {std::pair<std::string, int>{"c01", 576}, {"c05", 400}}) {
       const Track track = FaultyTrack(clip, view, frames);
       const std::string path = folder.File("track.npz");
@@ -172,6 +175,12 @@ TEST(EvaluationRecordingsTest, Pose2SimTriangulatesAndScores) {
   EXPECT_LT(e.Value("fitview_median_px"), 6);
   EXPECT_LT(e.Value("heldout_median_height_percent"), 1);
   EXPECT_NEAR(e.Value("pa_mpjpe_mm"), 0, 1e-6);
+
+  Pose2SimOptions strict;
+  strict.max_triangulation_px = 3;
+  const Evaluation fewer = EvaluatePose2Sim(track, ReadPose2SimClip(folder, strict), "cam_01", strict);
+  EXPECT_LT(fewer.Value("triangulated_percent"), e.Value("triangulated_percent") - 10);
+  EXPECT_LT(fewer.Value("triangulation_p95_px"), 6);
 }
 
 }  // namespace
