@@ -48,7 +48,7 @@ void RequireWritableFolder(const std::string& path) {
 }
 
 void RequireDistinct(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs) {
-  const auto resolved = [](const std::string& path) { return fs::weakly_canonical(path); };
+  const auto resolved = [](const std::string& path) { return fs::weakly_canonical(fs::absolute(path)); };
   for (size_t i = 0; i < outputs.size(); ++i) {
     if (outputs[i].empty()) {
       continue;

@@ -23,12 +23,6 @@ int Run(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(std::string(kExamples) + kExitCodeHelp);
   Action action;
-  AddTrackVerb(app, &action);
-  AddSynthVerb(app, &action);
-  AddEvaluateVerb(app, &action);
-  AddExportVerb(app, &action);
-  AddBodyVerb(app, &action);
-  AddDemoVerb(app, &action);
   AddNeuralVerb(app, &action);
   AddVersionVerb(app, &action);
   try {
@@ -43,7 +37,10 @@ int Run(int argc, char** argv) {
     if (error.get_exit_code() == 0) {  // --help
       return app.exit(error);
     }
-    std::cerr << "bodyloom: " << error.what() << "\nRun with --help for the options.\n";
+    // The parser reports an unknown verb as a missing one.
+    const bool unknown_verb = app.get_subcommands().empty() && !app.remaining().empty();
+    std::cerr << "bodyloom: " << (unknown_verb ? "no verb or option \"" + app.remaining().front() + "\"" : error.what())
+              << "\nRun with --help for the options.\n";
     return kExitUsage;
   } catch (const UsageError& error) {
     std::cerr << "bodyloom: " << error.what() << "\nRun with --help for the options.\n";

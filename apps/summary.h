@@ -14,7 +14,7 @@ namespace bodyloom {
 struct TrackReport {
   TrackSequenceSummary solve;
   int num_frames = 0;
-  StageSeconds seconds;      ///< the command's own stages; the one named kSolveStage is split by solve.seconds
+  StageSeconds seconds;  ///< the command's own stages; the one named kSolveStage is split by solve.seconds
   double total_seconds = 0;
   size_t peak_memory_bytes = 0;
   std::string detections;

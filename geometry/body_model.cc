@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "geometry/check.h"
@@ -18,7 +19,11 @@ void NormaliseRows(const char* what, SparseRows* rows) {
   rows->makeCompressed();
   for (int r = 0; r < rows->rows(); ++r) {
     double sum = 0;
-    for (SparseRows::InnerIterator it(*rows, r); it; ++it) sum += it.value();
+    for (SparseRows::InnerIterator it(*rows, r); it; ++it) {
+      BODYLOOM_CHECK(it.col() >= 0 && it.col() < rows->cols(), "body: row ", r, " of ", what, " names column ",
+                     it.col(), ", expected 0..", rows->cols() - 1);
+      sum += it.value();
+    }
     BODYLOOM_CHECK(std::abs(sum - 1) <= kSumTolerance, "body: row ", r, " of ", what, " sums to ", sum, ", expected 1");
     for (SparseRows::InnerIterator it(*rows, r); it; ++it) it.valueRef() /= sum;
   }
@@ -42,10 +47,11 @@ void CheckSizes(const BodyModelData& d) {
     BODYLOOM_CHECK(j == 0 ? parent == -1 : (parent >= 0 && parent < j), "body: parent of joint ", j, " is ", parent,
                    ", expected ", j == 0 ? "-1" : "an earlier joint");
   }
-  BODYLOOM_CHECK(d.joint_names.empty() || static_cast<Eigen::Index>(d.joint_names.size()) == J, "body: ",
-                 d.joint_names.size(), " joint names for ", J, " joints");
+  BODYLOOM_CHECK(d.joint_names.empty() || static_cast<Eigen::Index>(d.joint_names.size()) == J,
+                 "body: ", d.joint_names.size(), " joint names for ", J, " joints");
   BODYLOOM_CHECK(d.pose_mean.size() == 0 || d.pose_mean.size() == 3 * J, "body: pose_mean has ", d.pose_mean.size(),
                  " values, expected 3J = ", 3 * J);
+  BODYLOOM_CHECK(d.pose_mean.allFinite(), "body: pose_mean holds NaN or infinite values");
 }
 
 void CheckIndices(const BodyModelData& d) {
@@ -57,14 +63,15 @@ void CheckIndices(const BodyModelData& d) {
   }
   if (d.ft.rows() > 0) {
     BODYLOOM_CHECK(d.ft.rows() == F, "body: ft has ", d.ft.rows(), " faces, expected ", F);
-    BODYLOOM_CHECK(d.ft.minCoeff() >= 0 && d.ft.maxCoeff() < d.vt.rows(), "body: ft names UV vertex ", d.ft.maxCoeff(),
-                   ", expected 0..", d.vt.rows() - 1);
+    BODYLOOM_CHECK(d.ft.minCoeff() >= 0 && d.ft.maxCoeff() < d.vt.rows(), "body: ft names UV vertex ",
+                   d.ft.minCoeff() < 0 ? d.ft.minCoeff() : d.ft.maxCoeff(), ", expected 0..", d.vt.rows() - 1);
     BODYLOOM_CHECK(d.vt.allFinite(), "body: vt holds NaN or infinite values");
   }
   BODYLOOM_CHECK(d.face_part.empty() || static_cast<Eigen::Index>(d.face_part.size()) == F, "body: face_part has ",
                  d.face_part.size(), " entries, expected ", F);
   BODYLOOM_CHECK(d.face_iuv.rows() == 0 || (d.face_iuv.rows() == F && d.face_iuv.cols() == 6), "body: face_iuv is ",
                  d.face_iuv.rows(), "x", d.face_iuv.cols(), ", expected ", F, "x6");
+  BODYLOOM_CHECK(d.face_iuv.allFinite(), "body: face_iuv holds NaN or infinite values");
   for (const Landmark& landmark : d.landmarks) {
     BODYLOOM_CHECK(!landmark.vertices.empty() && landmark.vertices.size() == landmark.weights.size(),
                    "body: landmark '", landmark.name, "' has ", landmark.vertices.size(), " vertices and ",
@@ -72,6 +79,9 @@ void CheckIndices(const BodyModelData& d) {
     for (int v : landmark.vertices) {
       BODYLOOM_CHECK(v >= 0 && v < V, "body: landmark '", landmark.name, "' names vertex ", v, ", expected 0..", V - 1);
     }
+    const double sum = std::accumulate(landmark.weights.begin(), landmark.weights.end(), 0.0);
+    BODYLOOM_CHECK(std::abs(sum - 1) <= kSumTolerance, "body: the weights of landmark '", landmark.name, "' sum to ",
+                   sum, ", expected 1");
   }
   const PoseCorrectives& p = d.posedirs;
   if (p.begin.empty()) {
@@ -80,11 +90,13 @@ void CheckIndices(const BodyModelData& d) {
   }
   const int J = static_cast<int>(d.parents.size());
   BODYLOOM_CHECK(static_cast<int>(p.begin.size()) == V + 1 && p.begin.front() == 0 &&
-                     p.begin.back() == static_cast<int>(p.joint.size()) && std::is_sorted(p.begin.begin(), p.begin.end()),
+                     p.begin.back() == static_cast<int>(p.joint.size()) &&
+                     std::is_sorted(p.begin.begin(), p.begin.end()),
                  "body: pose correctives' offsets do not match ", V, " vertices and ", p.joint.size(), " blocks");
   BODYLOOM_CHECK(p.block.size() == 27 * p.joint.size(), "body: pose correctives hold ", p.block.size(),
                  " values, expected ", 27 * p.joint.size());
-  for (int j : p.joint) BODYLOOM_CHECK(j >= 1 && j < J, "body: a pose corrective names joint ", j, ", expected 1..", J - 1);
+  for (int j : p.joint)
+    BODYLOOM_CHECK(j >= 1 && j < J, "body: a pose corrective names joint ", j, ", expected 1..", J - 1);
   BODYLOOM_CHECK(std::all_of(p.block.begin(), p.block.end(), [](float x) { return std::isfinite(x); }),
                  "body: posedirs holds NaN or infinite values");
 }
@@ -104,10 +116,9 @@ BodyModel::BodyModel(BodyModelData data) : data_(std::move(data)) {
   }
   joint_template_ = data_.J_regressor * data_.v_template;
   joint_shapedirs_.setZero(3 * num_joints(), num_betas());
-  for (int j = 0; j < num_joints(); ++j) {
+  for (int j = 0; num_betas() > 0 && j < num_joints(); ++j) {
     for (SparseRows::InnerIterator it(data_.J_regressor, j); it; ++it) {
-      joint_shapedirs_.middleRows<3>(3 * j) +=
-          it.value() * data_.shapedirs.middleRows<3>(3 * it.col()).cast<double>();
+      joint_shapedirs_.middleRows<3>(3 * j) += it.value() * data_.shapedirs.middleRows<3>(3 * it.col()).cast<double>();
     }
   }
   influence_begin_.push_back(0);
@@ -151,14 +162,15 @@ int BodyModel::FindLandmark(const std::string& name) const {
 
 const std::vector<std::string>& SmplJointNames() {
   static const std::vector<std::string> names = {
-      "pelvis",  "l_hip",   "r_hip",  "spine1",   "l_knee",   "r_knee",     "spine2",     "l_ankle",
-      "r_ankle", "spine3",  "l_foot", "r_foot",   "neck",     "l_collar",   "r_collar",   "head",
-      "l_shoulder", "r_shoulder", "l_elbow", "r_elbow", "l_wrist", "r_wrist", "l_hand", "r_hand"};
+      "pelvis",     "l_hip",      "r_hip",   "spine1",  "l_knee",  "r_knee",   "spine2",   "l_ankle",
+      "r_ankle",    "spine3",     "l_foot",  "r_foot",  "neck",    "l_collar", "r_collar", "head",
+      "l_shoulder", "r_shoulder", "l_elbow", "r_elbow", "l_wrist", "r_wrist",  "l_hand",   "r_hand"};
   return names;
 }
 
 const std::vector<int>& SmplParents() {
-  static const std::vector<int> parents = {-1, 0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 9, 9, 12, 13, 14, 16, 17, 18, 19, 20, 21};
+  static const std::vector<int> parents = {-1, 0, 0, 0,  1,  2,  3,  4,  5,  6,  7,  8,
+                                           9,  9, 9, 12, 13, 14, 16, 17, 18, 19, 20, 21};
   return parents;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The parametric body: immutable data of the SMPL family (SMPL, SMPL-H, SMPL-X, the built-in body) with run-time sizes.
+/// The parametric body: immutable data of the SMPL family (SMPL, SMPL-H, SMPL-X, the built-in body) with run-time
+/// sizes.
 ///
 /// A body of V vertices, J joints, B shape components and, optionally, pose correctives:
 ///   v_shaped(β)  = v_template + shapedirs β
@@ -44,23 +45,24 @@ struct BodyModelData {
   MatrixX3d v_template;                  ///< V×3 metres, T-pose
   RowMatrixXf shapedirs;                 ///< 3V×B, row 3v+c: metres per unit of β
   PoseCorrectives posedirs;
-  SparseRows J_regressor;                ///< J×V, rows sum to 1
-  SparseRows weights;                    ///< V×J skinning weights, rows sum to 1
-  MatrixX3i faces;                       ///< F×3 vertex indices, counter-clockwise seen from outside
-  Eigen::VectorXd pose_mean;             ///< 3J axis-angle added to poses (hands of SMPL-H/X); empty means zero
+  SparseRows J_regressor;     ///< J×V, rows sum to 1
+  SparseRows weights;         ///< V×J skinning weights, rows sum to 1
+  MatrixX3i faces;            ///< F×3 vertex indices, counter-clockwise seen from outside
+  Eigen::VectorXd pose_mean;  ///< 3J axis-angle added to poses (hands of SMPL-H/X); empty means zero
 
   // Optional surface coordinates. Never assumed: empty when neither the body nor the user brought them.
-  MatrixX2f vt;                    ///< UV vertices in [0,1]², v up
-  MatrixX3i ft;                    ///< F×3 indices into vt
-  std::vector<uint8_t> face_part;  ///< F DensePose-style chart ids 1..24 (0: none)
-  RowMatrixXf face_iuv;            ///< F×6: (u,v) of the three corners inside the face's chart
-  std::vector<Landmark> landmarks; ///< for example COCO-17, toes and heels
+  MatrixX2f vt;                     ///< UV vertices in [0,1]², v up
+  MatrixX3i ft;                     ///< F×3 indices into vt
+  std::vector<uint8_t> face_part;   ///< F DensePose-style chart ids 1..24 (0: none)
+  RowMatrixXf face_iuv;             ///< F×6: (u,v) of the three corners inside the face's chart
+  std::vector<Landmark> landmarks;  ///< for example COCO-17, toes and heels
 };
 
 class BodyModel {
  public:
   /// Takes and checks the data. Throws std::invalid_argument naming the array, what it holds and what was expected:
-  /// sizes, index ranges, finite values, weights and regressor rows summing to 1 within 1e-3 (then normalised).
+  /// sizes, index ranges, finite values, weights and regressor rows summing to 1 within 1e-3 (then normalised),
+  /// landmark weights summing to 1 within 1e-3.
   explicit BodyModel(BodyModelData data);
 
   [[nodiscard]] const BodyModelData& data() const { return data_; }
@@ -71,7 +73,8 @@ class BodyModel {
   [[nodiscard]] int num_betas() const { return static_cast<int>(data_.shapedirs.cols()); }
   [[nodiscard]] const std::vector<int>& parents() const { return data_.parents; }
 
-  /// Joints of the mean shape (J×3) and their derivative by shape (3J×B): joints(β) = joint_template + joint_shapedirs β.
+  /// Joints of the mean shape (J×3) and their derivative by shape (3J×B): joints(β) = joint_template + joint_shapedirs
+  /// β.
   [[nodiscard]] const MatrixX3d& joint_template() const { return joint_template_; }
   [[nodiscard]] const Eigen::MatrixXd& joint_shapedirs() const { return joint_shapedirs_; }
   /// J×3 rest joints of a shape. betas may be shorter than B (the rest is zero); longer throws.

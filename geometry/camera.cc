@@ -30,7 +30,8 @@ bool RadialMapRises(const std::array<double, 8>& d, double r2) {
   };
   if (!rises_at(r2)) return false;
   // Usual lenses: coefficients so small that no sign can change on the way.
-  const Cubic n(std::abs(d[0]), std::abs(d[1]), std::abs(d[4]), r2), m(std::abs(d[5]), std::abs(d[6]), std::abs(d[7]), r2);
+  const Cubic n(std::abs(d[0]), std::abs(d[1]), std::abs(d[4]), r2),
+      m(std::abs(d[5]), std::abs(d[6]), std::abs(d[7]), r2);
   if (m.value < 2 && (2 - n.value) * (2 - m.value) > 2 * r2 * (n.slope * m.value + n.value * m.slope)) return true;
   constexpr int kSamples = 32;
   for (int i = 1; i < kSamples; ++i) {
@@ -126,8 +127,8 @@ Vector2d Camera::Unproject(const Vector2d& pixel) const {
 }
 
 Camera MakePinhole(int width, int height, double focal_px) {
-  BODYLOOM_CHECK(width > 0 && height > 0 && focal_px > 0, "MakePinhole: size ", width, "x", height, " and focal length ",
-                 focal_px, " px must be positive");
+  BODYLOOM_CHECK(width > 0 && height > 0 && focal_px > 0, "MakePinhole: size ", width, "x", height,
+                 " and focal length ", focal_px, " px must be positive");
   Camera camera;
   camera.width = width;
   camera.height = height;

@@ -39,8 +39,10 @@ VectorXd AxisAngleFromPose(const BodyModel& model, const BodyPose& pose) {
 
 PosedSkeleton PoseSkeleton(const BodyModel& model, const MatrixX3d& rest_joints, const BodyPose& pose) {
   const int J = model.num_joints();
-  BODYLOOM_CHECK(static_cast<int>(pose.rotations.size()) == J, "pose has ", pose.rotations.size(), " rotations, the body '",
-                 model.name(), "' has ", J, " joints");
+  BODYLOOM_CHECK(static_cast<int>(pose.rotations.size()) == J, "pose has ", pose.rotations.size(),
+                 " rotations, the body '", model.name(), "' has ", J, " joints");
+  BODYLOOM_CHECK(rest_joints.rows() == J, "rest_joints has ", rest_joints.rows(), " rows, the body '", model.name(),
+                 "' has ", J, " joints");
   PosedSkeleton skeleton;
   skeleton.rest_joints = rest_joints;
   skeleton.world_rotations.resize(J);
@@ -60,35 +62,16 @@ MatrixX3d PoseVertices(const BodyModel& model, const VectorXd& betas, const Body
                        std::span<const int> vertices) {
   const PosedSkeleton skeleton = PoseSkeleton(model, model.RestJoints(betas), pose);
   const int J = model.num_joints();
-  std::vector<Eigen::Matrix<float, 9, 1>> features(J);
-  for (int j = 0; j < J; ++j) {
-    const Matrix3d R = pose.rotations[j] - Matrix3d::Identity();
-    for (int k = 0; k < 9; ++k) features[j][k] = static_cast<float>(R(k / 3, k % 3));
-  }
   MatrixX3d offsets(J, 3);  // p_j − G_j rest_j, so that bone j maps x to G_j x + offset_j
   for (int j = 0; j < J; ++j) {
-    offsets.row(j) = skeleton.joints.row(j) -
-                     (skeleton.world_rotations[j] * skeleton.rest_joints.row(j).transpose()).transpose();
+    offsets.row(j) =
+        skeleton.joints.row(j) - (skeleton.world_rotations[j] * skeleton.rest_joints.row(j).transpose()).transpose();
   }
-  const BodyModelData& d = model.data();
-  const PoseCorrectives& correctives = d.posedirs;
-  const Eigen::VectorXf betas_f = betas.cast<float>();
   MatrixX3d result(vertices.size(), 3);
   for (size_t i = 0; i < vertices.size(); ++i) {
     const int v = vertices[i];
     BODYLOOM_CHECK(v >= 0 && v < model.num_vertices(), "vertex ", v, " is outside 0..", model.num_vertices() - 1);
-    Vector3d rest = d.v_template.row(v).transpose();
-    if (betas.size() > 0) {
-      rest += (d.shapedirs.block(3 * v, 0, 3, betas.size()) * betas_f).cast<double>();
-    }
-    if (!correctives.begin.empty()) {
-      Eigen::Vector3f offset = Eigen::Vector3f::Zero();
-      for (int k = correctives.begin[v]; k < correctives.begin[v + 1]; ++k) {
-        const Eigen::Map<const Eigen::Matrix<float, 3, 9, Eigen::RowMajor>> block(&correctives.block[27 * k]);
-        offset.noalias() += block * features[correctives.joint[k]];
-      }
-      rest += offset.cast<double>();
-    }
+    const Vector3d rest = ShapedVertex(model, betas, v) + PoseCorrective(model, pose, v);
     Vector3d x = Vector3d::Zero();
     for (int k = model.influence_begin()[v]; k < model.influence_begin()[v + 1]; ++k) {
       const int j = model.influence_joint()[k];
@@ -128,10 +111,30 @@ MatrixX3d PoseLandmarks(const BodyModel& model, const VectorXd& betas, const Bod
 MatrixX3d ShapeVertices(const BodyModel& model, const VectorXd& betas) {
   BODYLOOM_CHECK(betas.size() <= model.num_betas(), "betas has ", betas.size(), " values, the body '", model.name(),
                  "' takes ", model.num_betas());
-  MatrixX3d result = model.data().v_template;
-  if (betas.size() > 0) {
-    const Eigen::VectorXf offset = model.data().shapedirs.leftCols(betas.size()) * betas.cast<float>();
-    result += Eigen::Map<const MatrixX3f>(offset.data(), result.rows(), 3).cast<double>();
+  MatrixX3d result(model.num_vertices(), 3);
+  for (int v = 0; v < model.num_vertices(); ++v) result.row(v) = ShapedVertex(model, betas, v).transpose();
+  return result;
+}
+
+// Sums in double: float would be precise enough to look at, but not to take differences of.
+Vector3d ShapedVertex(const BodyModel& model, const VectorXd& betas, int vertex) {
+  const BodyModelData& d = model.data();
+  Vector3d result = d.v_template.row(vertex).transpose();
+  for (int c = 0; c < 3; ++c) {
+    const float* row = d.shapedirs.data() + (3 * static_cast<size_t>(vertex) + c) * d.shapedirs.cols();
+    for (Eigen::Index b = 0; b < betas.size(); ++b) result[c] += row[b] * betas[b];
+  }
+  return result;
+}
+
+Vector3d PoseCorrective(const BodyModel& model, const BodyPose& pose, int vertex) {
+  const PoseCorrectives& correctives = model.data().posedirs;
+  Vector3d result = Vector3d::Zero();
+  if (correctives.begin.empty()) return result;
+  for (int k = correctives.begin[vertex]; k < correctives.begin[vertex + 1]; ++k) {
+    const Eigen::Map<const Eigen::Matrix<float, 3, 9, Eigen::RowMajor>> block(&correctives.block[27 * size_t(k)]);
+    const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> R = pose.rotations[correctives.joint[k]] - Matrix3d::Identity();
+    result.noalias() += block.cast<double>() * Eigen::Map<const Eigen::Matrix<double, 9, 1>>(R.data());
   }
   return result;
 }

@@ -19,9 +19,9 @@ struct BodyPose {
   Eigen::Vector3d trans = Eigen::Vector3d::Zero();
 };
 
-/// From 3J axis-angle values; fewer values leave the remaining joints at rest (72 values on a 24-joint body is all of
-/// them). The body's pose_mean is added. Throws std::invalid_argument when there are more than 3J or they are not
-/// finite.
+/// From 3J axis-angle values; fewer values leave the remaining joints at zero (72 values on a 24-joint body is all of
+/// them). The body's pose_mean is added to all of them. Throws std::invalid_argument when there are more than 3J or
+/// they are not finite.
 BodyPose PoseFromAxisAngle(const BodyModel& model, const Eigen::Ref<const Eigen::VectorXd>& axis_angle,
                            const Eigen::Vector3d& trans);
 
@@ -37,7 +37,7 @@ struct PosedSkeleton {
 
 PosedSkeleton PoseSkeleton(const BodyModel& model, const MatrixX3d& rest_joints, const BodyPose& pose);
 
-/// V×3 vertices. betas may be shorter than the body's.
+/// V×3 vertices, in double throughout. betas may be shorter than the body's.
 MatrixX3d PoseVertices(const BodyModel& model, const Eigen::VectorXd& betas, const BodyPose& pose);
 
 /// Only the listed vertices, in that order (n×3); no other vertex is touched.
@@ -50,5 +50,10 @@ MatrixX3d PoseLandmarks(const BodyModel& model, const Eigen::VectorXd& betas, co
 
 /// v_template + shapedirs·betas, V×3.
 MatrixX3d ShapeVertices(const BodyModel& model, const Eigen::VectorXd& betas);
+
+/// The two blend shapes of one vertex, the terms of its rest position v_rest = ShapedVertex + PoseCorrective.
+/// Indices and sizes are the caller's responsibility.
+Eigen::Vector3d ShapedVertex(const BodyModel& model, const Eigen::VectorXd& betas, int vertex);
+Eigen::Vector3d PoseCorrective(const BodyModel& model, const BodyPose& pose, int vertex);
 
 }  // namespace bodyloom

@@ -37,8 +37,8 @@ std::string OpenBlasCore() {
 std::string BlasAdvice(const std::string& blas_path, const std::string& blas_core, bool cpu_has_avx2,
                        bool cpu_has_avx512) {
   if (!blas_core.empty()) {
-    static const std::array<std::string, 6> kVectorCores = {"Haswell",  "Zen",        "SkylakeX",
-                                                            "Cooperlake", "Sapphirerapids", "SapphireRapids"};
+    static const std::array<std::string, 6> kVectorCores = {"Haswell",        "Zen",           "SkylakeX", "Cooperlake",
+                                                            "Sapphirerapids", "SapphireRapids"};
     const bool known = std::find(kVectorCores.begin(), kVectorCores.end(), blas_core) != kVectorCores.end();
     if (known || !cpu_has_avx2) {
       return "";

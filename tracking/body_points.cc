@@ -170,8 +170,10 @@ Vector3d PointEvaluator::Evaluate(const Kinematics& kin, const int vertices[3], 
   const int B = static_cast<int>(kin.betas.size());
   if (jacobian) shape_.setZero(3, B);
   Vector3d x = Vector3d::Zero();
+  // Floats sum to 1 within rounding only; the point's weights have to do so exactly for d x / d trans = I.
+  const double sum = static_cast<double>(barycentric[0]) + barycentric[1] + barycentric[2];
   for (int k = 0; k < 3; ++k) {
-    const double b = barycentric[k];
+    const double b = barycentric[k] / sum;
     if (b == 0) continue;
     const int v = vertices[k];
     const Vector3d& rest = cache->Rest(kin, v);

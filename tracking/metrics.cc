@@ -51,31 +51,6 @@ void CheckSameShape(const char* what, Clip a, Clip b) {
   }
 }
 
-/// errors[t][p] = distance of point p in frame t, NaN when missing.
-PositionError SummarizeDistances(const std::vector<Eigen::VectorXd>& errors) {
-  const Eigen::Index num_points = errors.empty() ? 0 : errors[0].size();
-  std::vector<Mean> points(num_points);
-  std::vector<double> frame_means;
-  Mean all;
-  for (const Eigen::VectorXd& frame : errors) {
-    Mean mean;
-    for (Eigen::Index p = 0; p < num_points; ++p) {
-      mean.Add(frame[p]);
-      all.Add(frame[p]);
-      points[p].Add(frame[p]);
-    }
-    frame_means.push_back(mean.Value());
-  }
-  PositionError result;
-  result.mean = all.Value();
-  result.count = all.count;
-  result.missing = all.missing;
-  result.frames = Summarize(frame_means);
-  result.per_point.resize(num_points);
-  for (Eigen::Index p = 0; p < num_points; ++p) result.per_point[p] = points[p].Value();
-  return result;
-}
-
 }  // namespace
 
 double Percentile(std::span<const double> values, double percent) {
@@ -155,23 +130,54 @@ double ClipScale(Clip prediction, Clip truth) {
   return square > 0 ? product / square : kNotMeasured;
 }
 
+void PositionErrorAccumulator::AddFrame(const Eigen::VectorXd& distances) {
+  if (frame_means_.empty()) {
+    point_sum_ = Eigen::VectorXd::Zero(distances.size());
+    point_count_.assign(distances.size(), 0);
+  }
+  BODYLOOM_CHECK(distances.size() == point_sum_.size(), "PositionErrorAccumulator: frame ", frame_means_.size(),
+                 " has ", distances.size(), " points, frame 0 has ", point_sum_.size());
+  Mean frame;
+  for (Eigen::Index p = 0; p < distances.size(); ++p) {
+    frame.Add(distances[p]);
+    if (!std::isfinite(distances[p])) continue;
+    point_sum_[p] += distances[p];
+    ++point_count_[p];
+  }
+  missing_ += frame.missing;
+  frame_means_.push_back(frame.Value());
+}
+
+PositionError PositionErrorAccumulator::Result() const {
+  PositionError result;
+  result.frames = Summarize(frame_means_);
+  result.missing = missing_;
+  result.per_point = Eigen::VectorXd::Constant(point_sum_.size(), kNotMeasured);
+  for (Eigen::Index p = 0; p < point_sum_.size(); ++p) {
+    if (point_count_[p] > 0) result.per_point[p] = point_sum_[p] / static_cast<double>(point_count_[p]);
+    result.count += point_count_[p];
+  }
+  if (result.count > 0) result.mean = point_sum_.sum() / static_cast<double>(result.count);
+  return result;
+}
+
 PositionError MeanPositionError(Clip prediction, Clip truth, double scale) {
   CheckSameShape("MeanPositionError", prediction, truth);
-  std::vector<Eigen::VectorXd> errors;
+  PositionErrorAccumulator errors;
   for (size_t t = 0; t < prediction.size(); ++t) {
-    errors.emplace_back((scale * prediction[t] - truth[t]).rowwise().norm());
+    errors.AddFrame((scale * prediction[t] - truth[t]).rowwise().norm());
   }
-  return SummarizeDistances(errors);
+  return errors.Result();
 }
 
 PositionError ProcrustesPositionError(Clip prediction, Clip truth) {
   CheckSameShape("ProcrustesPositionError", prediction, truth);
-  std::vector<Eigen::VectorXd> errors;
+  PositionErrorAccumulator errors;
   for (size_t t = 0; t < prediction.size(); ++t) {
     const AlignmentResult alignment = AlignPoints(prediction[t], truth[t]);
-    errors.emplace_back((alignment.target_from_source.Apply(prediction[t]) - truth[t]).rowwise().norm());
+    errors.AddFrame((alignment.target_from_source.Apply(prediction[t]) - truth[t]).rowwise().norm());
   }
-  return SummarizeDistances(errors);
+  return errors.Result();
 }
 
 RootError RootPositionError(const MatrixX3d& prediction, const MatrixX3d& truth) {

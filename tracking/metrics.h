@@ -63,6 +63,20 @@ struct PositionError {
   int64_t count = 0, missing = 0;
 };
 
+/// Gathers a PositionError frame by frame, for clips too large to hold (all vertices of long clips).
+class PositionErrorAccumulator {
+ public:
+  /// Distances of one frame's P points, metres; a non-finite one is missing.
+  void AddFrame(const Eigen::VectorXd& distances);
+  [[nodiscard]] PositionError Result() const;
+
+ private:
+  std::vector<double> frame_means_;
+  Eigen::VectorXd point_sum_;
+  std::vector<int64_t> point_count_;
+  int64_t missing_ = 0;
+};
+
 /// mean_{t,p} ‖prediction − truth‖ with no alignment. MPJPE and PVE are this after RelativeTo the root:
 ///   MPJPE        = MeanPositionError(RelativeTo(joints, root), …)
 ///   scaled MPJPE = MeanPositionError(RelativeTo(joints, root), …, ClipScale(…))

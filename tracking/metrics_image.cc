@@ -9,8 +9,9 @@
 namespace bodyloom {
 namespace {
 
+/// Compared in float, as the files hold it: 0.3 in a file is not above 0.3.
 bool IsUsed(const Keypoint& p, double min_confidence) {
-  return p.confidence > min_confidence && std::isfinite(p.x) && std::isfinite(p.y);
+  return p.confidence > static_cast<float>(min_confidence) && std::isfinite(p.x) && std::isfinite(p.y);
 }
 
 void CheckAgainstDetections(const char* what, PixelClip prediction, const KeypointSequence& detections) {
@@ -56,40 +57,46 @@ double SquareImageScale(int width, int height, int side) {
   return static_cast<double>(side) / std::max(width, height);
 }
 
+void ProjectionErrorAccumulator::AddFrame(const MatrixX2d& prediction_px, const MatrixX2d& truth_px) {
+  BODYLOOM_CHECK(prediction_px.rows() == truth_px.rows(), "per-vertex projection error: frame ", frame_means_.size(),
+                 " has ", prediction_px.rows(), " predicted and ", truth_px.rows(), " true vertices");
+  double frame_sum = 0;
+  int64_t frame_count = 0;
+  for (Eigen::Index v = 0; v < truth_px.rows(); ++v) {
+    const double e = scale_ * (prediction_px.row(v) - truth_px.row(v)).norm();
+    if (!std::isfinite(e)) {
+      ++missing_;
+      continue;
+    }
+    frame_sum += e;
+    squares_ += e * e;
+    ++frame_count;
+  }
+  frame_means_.push_back(frame_count > 0 ? frame_sum / static_cast<double>(frame_count) : kNotMeasured);
+  sum_ += frame_sum;
+  count_ += frame_count;
+}
+
+ProjectionError ProjectionErrorAccumulator::Result() const {
+  ProjectionError result;
+  result.frames_px = Summarize(frame_means_);
+  result.count = count_;
+  result.missing = missing_;
+  if (count_ == 0) return result;
+  const auto n = static_cast<double>(count_);
+  result.mean_px = sum_ / n;
+  result.rms_px = std::sqrt(squares_ / n);
+  result.std_frames_px = result.frames_px.std_dev;
+  result.std_vertices_px = std::sqrt(std::max(0.0, squares_ / n - result.mean_px * result.mean_px));
+  return result;
+}
+
 ProjectionError PerVertexProjectionError(PixelClip prediction_px, PixelClip truth_px, int width, int height, int side) {
   BODYLOOM_CHECK(prediction_px.size() == truth_px.size(), "PerVertexProjectionError: prediction has ",
                  prediction_px.size(), " frames, truth has ", truth_px.size());
-  const double scale = SquareImageScale(width, height, side);
-  std::vector<double> frame_means;
-  double sum = 0, squares = 0;
-  ProjectionError result;
-  for (size_t t = 0; t < truth_px.size(); ++t) {
-    BODYLOOM_CHECK(prediction_px[t].rows() == truth_px[t].rows(), "PerVertexProjectionError: frame ", t, " has ",
-                   prediction_px[t].rows(), " predicted and ", truth_px[t].rows(), " true vertices");
-    double frame_sum = 0;
-    int64_t frame_count = 0;
-    for (Eigen::Index v = 0; v < truth_px[t].rows(); ++v) {
-      const double e = scale * (prediction_px[t].row(v) - truth_px[t].row(v)).norm();
-      if (!std::isfinite(e)) {
-        ++result.missing;
-        continue;
-      }
-      frame_sum += e;
-      squares += e * e;
-      ++frame_count;
-    }
-    frame_means.push_back(frame_count > 0 ? frame_sum / static_cast<double>(frame_count) : kNotMeasured);
-    sum += frame_sum;
-    result.count += frame_count;
-  }
-  result.frames_px = Summarize(frame_means);
-  if (result.count == 0) return result;
-  const auto n = static_cast<double>(result.count);
-  result.mean_px = sum / n;
-  result.rms_px = std::sqrt(squares / n);
-  result.std_frames_px = result.frames_px.std_dev;
-  result.std_vertices_px = std::sqrt(std::max(0.0, squares / n - result.mean_px * result.mean_px));
-  return result;
+  ProjectionErrorAccumulator errors(SquareImageScale(width, height, side));
+  for (size_t t = 0; t < truth_px.size(); ++t) errors.AddFrame(prediction_px[t], truth_px[t]);
+  return errors.Result();
 }
 
 double PersonHeightPx(const KeypointSequence& detections, int frame, double min_confidence) {
@@ -128,11 +135,14 @@ void AddReprojectionErrors(PixelClip prediction_px, const KeypointSequence& dete
   }
 }
 
-double PercentageOfCorrectKeypoints(PixelClip prediction_px, const KeypointSequence& detections, double fraction,
-                                    PckReference reference, double min_confidence) {
-  CheckAgainstDetections("PercentageOfCorrectKeypoints", prediction_px, detections);
-  BODYLOOM_CHECK(fraction > 0, "PercentageOfCorrectKeypoints: fraction ", fraction, " must be positive");
-  int64_t correct = 0, total = 0;
+double CorrectKeypoints::Share() const {
+  return total > 0 ? static_cast<double>(correct) / static_cast<double>(total) : kNotMeasured;
+}
+
+void AddCorrectKeypoints(PixelClip prediction_px, const KeypointSequence& detections, double fraction,
+                         PckReference reference, double min_confidence, CorrectKeypoints* counts) {
+  CheckAgainstDetections("AddCorrectKeypoints", prediction_px, detections);
+  BODYLOOM_CHECK(fraction > 0, "AddCorrectKeypoints: fraction ", fraction, " must be positive");
   for (size_t t = 0; t < prediction_px.size(); ++t) {
     const int frame = static_cast<int>(t);
     const double size_px = reference == PckReference::kBox ? PersonHeightPx(detections, frame, min_confidence)
@@ -141,11 +151,10 @@ double PercentageOfCorrectKeypoints(PixelClip prediction_px, const KeypointSeque
     for (int k = 0; k < detections.num_points(); ++k) {
       const Keypoint& p = detections.at(frame, k);
       if (!IsUsed(p, min_confidence)) continue;
-      ++total;
-      if ((prediction_px[t].row(k) - Eigen::RowVector2d(p.x, p.y)).norm() <= fraction * size_px) ++correct;
+      ++counts->total;
+      if ((prediction_px[t].row(k) - Eigen::RowVector2d(p.x, p.y)).norm() <= fraction * size_px) ++counts->correct;
     }
   }
-  return total > 0 ? static_cast<double>(correct) / static_cast<double>(total) : kNotMeasured;
 }
 
 }  // namespace bodyloom

@@ -39,6 +39,20 @@ struct ProjectionError {
   ErrorStatistics frames_px;              ///< distribution of the frames' means
   int64_t count = 0, missing = 0;         ///< vertices
 };
+
+/// Gathers a ProjectionError frame by frame. `scale` multiplies the distances (SquareImageScale).
+class ProjectionErrorAccumulator {
+ public:
+  explicit ProjectionErrorAccumulator(double scale) : scale_(scale) {}
+  void AddFrame(const MatrixX2d& prediction_px, const MatrixX2d& truth_px);
+  [[nodiscard]] ProjectionError Result() const;
+
+ private:
+  double scale_ = 1, sum_ = 0, squares_ = 0;
+  int64_t count_ = 0, missing_ = 0;
+  std::vector<double> frame_means_;
+};
+
 ProjectionError PerVertexProjectionError(PixelClip prediction_px, PixelClip truth_px, int width, int height,
                                          int side = 512);
 
@@ -62,10 +76,16 @@ enum class PckReference {
   kBox,    ///< longer side of the box around the frame's detections (PersonHeightPx); PCK@0.05, PCK@0.1
   kTorso,  ///< distance from left shoulder to right hip (or right shoulder to left hip when one is missing); PCK@0.2
 };
-/// Percentage of correct keypoints: share (0…1) of the detections with confidence above min_confidence whose predicted
-/// point lies within fraction × reference. Frames without a reference are left out; NaN when nothing is left.
+/// Percentage of correct keypoints, counted over frames (and over cameras, by calling Add again).
+struct CorrectKeypoints {
+  int64_t correct = 0, total = 0;
+  /// Share in 0…1, NaN when nothing was counted.
+  [[nodiscard]] double Share() const;
+};
+/// Counts the detections with confidence above min_confidence, and those whose predicted point lies within
+/// fraction × reference. Frames without a reference are left out.
 /// Source of @0.2 torso: Sapp and Taskar, "MODEC", CVPR 2013.
-double PercentageOfCorrectKeypoints(PixelClip prediction_px, const KeypointSequence& detections, double fraction,
-                                    PckReference reference, double min_confidence);
+void AddCorrectKeypoints(PixelClip prediction_px, const KeypointSequence& detections, double fraction,
+                         PckReference reference, double min_confidence, CorrectKeypoints* counts);
 
 }  // namespace bodyloom

@@ -251,6 +251,8 @@ SolveReport SolveSequence(SequenceProblem* problem, const SolveOptions& options)
   report.final_cost = summary.final_cost;
   report.seconds = summary.total_time_in_seconds;
   report.message = summary.message;
+  report.seconds_evaluation = summary.residual_evaluation_time_in_seconds + summary.jacobian_evaluation_time_in_seconds;
+  report.seconds_linear_solver = summary.linear_solver_time_in_seconds;
   if (summary.IsSolutionUsable()) Unpack(x, problem);
   return report;
 }

@@ -54,6 +54,7 @@ struct SolveReport {
   SolveStatus status = SolveStatus::kFailure;
   int iterations = 0;
   double initial_cost = 0, final_cost = 0, seconds = 0;
+  double seconds_evaluation = 0, seconds_linear_solver = 0;  ///< parts of `seconds`
   std::string message;
 };
 

@@ -15,6 +15,7 @@
 #include "geometry/posed_body.h"
 #include "geometry/rotation.h"
 #include "tracking/initialise/initial_states.h"
+#include "tracking/initialise/swap_repair.h"
 #include "tracking/observability.h"
 #include "tracking/sequence_problem.h"
 #include "tracking/track_result.h"
@@ -134,11 +135,18 @@ std::string ToString(SolveStatus status) {
   return "failure";
 }
 
-TrackSequenceResult TrackSequence(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
-  CheckInput(input, options);
-  const BodyModel& model = *input.body;
+TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSequenceOptions& options) {
+  CheckInput(given, options);
+  const BodyModel& model = *given.body;
   TrackSequenceResult result;
   TrackSequenceSummary& summary = result.summary;
+  TrackSequenceInput input = given;
+  KeypointSequence repaired;
+  if (given.keypoints != nullptr) {
+    repaired = *given.keypoints;
+    summary.num_swaps_repaired = RepairSwaps(&repaired);
+    input.keypoints = &repaired;
+  }
   summary.solver = options.solver;
   summary.plan = PlanTrackSequence(input, options);
   StageClock clock(&summary);
@@ -155,7 +163,7 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& input, const TrackSe
   problem.layout = FrameLayout::Make(model, options.camera_knowledge, camera, active, num_betas);
   problem.timestamps = Timestamps(input);
   const size_t T = problem.timestamps.size();
-  problem.cut_before.assign(T, 0);
+  problem.cut_before = input.keypoints != nullptr ? FindCuts(*input.keypoints) : std::vector<char>(T, 0);
   problem.betas = VectorXd::Zero(num_betas);
   problem.log_focal = problem.log_focal_prior = std::log(camera.fx);
   std::optional<MixturePrior> prior;
@@ -223,6 +231,8 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& input, const TrackSe
     }
     const SolveReport report = SolveSequence(stage_problem, solve_options);
     summary.iterations += report.iterations;
+    summary.seconds_evaluation += report.seconds_evaluation;
+    summary.seconds_linear_solver += report.seconds_linear_solver;
     if (summary.initial_cost == 0) summary.initial_cost = report.initial_cost;
     summary.final_cost = report.final_cost;
     summary.status = report.status;

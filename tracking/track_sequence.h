@@ -79,6 +79,7 @@ struct TrackSequenceSummary {
   int iterations = 0;
   double initial_cost = 0, final_cost = 0;
   std::vector<std::pair<std::string, double>> seconds;  ///< by stage, in order of running
+  double seconds_evaluation = 0, seconds_linear_solver = 0;  ///< inside the solves
   std::vector<PlanEntry> plan;                          ///< what ran and what was skipped
   std::map<std::string, int> frames_by_status;          ///< "tracked", "weak", "interpolated", "lost"
   double reprojection_median_px = 0, reprojection_p95_px = 0;  ///< of the used 2D joints (confidence > 0.3)

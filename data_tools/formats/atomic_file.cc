@@ -36,7 +36,8 @@ void SyncFolderOf(const std::string& path) {
 }  // namespace
 
 std::string ReadFileBytes(const std::string& path, size_t max_bytes) {
-  const int fd = ::open(path.c_str(), O_RDONLY);
+  // Without O_NONBLOCK, opening a pipe that nobody writes to would wait forever.
+  const int fd = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   if (fd < 0) Fail(path, "open for reading");
   struct stat info {};
   if (::fstat(fd, &info) != 0 || !S_ISREG(info.st_mode)) {

@@ -40,8 +40,8 @@ TEST_F(Files, ReadableOnesPass) {
 
 TEST_F(Files, AMissingOneIsNamed) {
   EXPECT_THAT([&] { RequireReadable(InFolder("absent"), "detections"); },
-              ThrowsMessage<std::runtime_error>(::testing::AllOf(HasSubstr(InFolder("absent") + ": No such file"),
-                                                                 HasSubstr("(detections)"))));
+              ThrowsMessage<std::runtime_error>(
+                  ::testing::AllOf(HasSubstr(InFolder("absent") + ": No such file"), HasSubstr("(detections)"))));
 }
 
 TEST_F(Files, WritableLeavesEverythingAsItWas) {

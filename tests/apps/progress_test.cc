@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <sstream>
 
 namespace bodyloom {
@@ -30,10 +29,7 @@ TEST(Progress, WritesOneLineAStageWhenNotATerminal) {
       progress.Update(i < 50 ? "initialise" : "fit", 0.01 * i);
     }
   }
-  EXPECT_EQ(out.str().substr(0, 25), "tracking 0 % initialise\nt");
-  EXPECT_THAT(out.str(), HasSubstr("tracking 50 % fit, 0:00 left\n"));
-  EXPECT_EQ(std::count(out.str().begin(), out.str().end(), '\n'), 2);
-  EXPECT_THAT(out.str(), Not(HasSubstr("\r")));
+  EXPECT_EQ(out.str(), "tracking 0 % initialise\ntracking 50 % fit, 0:00 left\n");
 }
 
 TEST(Progress, DrawsABarThatIsWipedAtTheEnd) {

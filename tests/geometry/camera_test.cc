@@ -22,9 +22,9 @@ std::vector<Camera> Cameras() {
       {},
       {-0.08, 0.03, 0, 0, 0, 0, 0, 0},
       {0.12, -0.05, 0.002, -0.001, 0.01, 0, 0, 0},
-      {-0.28, 0.09, 0.0005, 0.0003, -0.012, 0, 0, 0},               // action camera
-      {8.1, 4.3, 0.0008, -0.0002, 0.19, 8.4, 6.9, 1.2},             // rational model, large cancelling terms
-      {0, 0, 0.01, -0.02, 0, 0, 0, 0},                              // tangential alone
+      {-0.28, 0.09, 0.0005, 0.0003, -0.012, 0, 0, 0},    // action camera
+      {8.1, 4.3, 0.0008, -0.0002, 0.19, 8.4, 6.9, 1.2},  // rational model, large cancelling terms
+      {0, 0, 0.01, -0.02, 0, 0, 0, 0},                   // tangential alone
   };
   std::vector<Camera> cameras;
   for (const auto& lens : lenses) {

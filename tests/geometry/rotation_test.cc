@@ -18,8 +18,8 @@ using Eigen::Vector3d;
 constexpr double kPi = 3.14159265358979323846;
 
 std::vector<Vector3d> Axes() {
-  std::vector<Vector3d> axes = {Vector3d::UnitX(), -Vector3d::UnitY(), Vector3d::UnitZ(), Vector3d(1, 1, 0).normalized(),
-                                Vector3d(-1, 1e-9, 1e-5).normalized()};
+  std::vector<Vector3d> axes = {Vector3d::UnitX(), -Vector3d::UnitY(), Vector3d::UnitZ(),
+                                Vector3d(1, 1, 0).normalized(), Vector3d(-1, 1e-9, 1e-5).normalized()};
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
   for (int i = 0; i < 20; ++i) axes.push_back(Vector3d(normal(random), normal(random), normal(random)).normalized());
@@ -180,8 +180,10 @@ TEST(Rotation, RightJacobianIsTheDerivativeOfExp) {
       const Vector3d w = angle * axis;
       const Matrix3d R = RotationFromAxisAngle(w), J = RightJacobian(w);
       for (int k = 0; k < 3; ++k) {
-        const Vector3d plus = AxisAngleFromRotation(R.transpose() * RotationFromAxisAngle(w + step * Vector3d::Unit(k)));
-        const Vector3d minus = AxisAngleFromRotation(R.transpose() * RotationFromAxisAngle(w - step * Vector3d::Unit(k)));
+        const Vector3d plus =
+            AxisAngleFromRotation(R.transpose() * RotationFromAxisAngle(w + step * Vector3d::Unit(k)));
+        const Vector3d minus =
+            AxisAngleFromRotation(R.transpose() * RotationFromAxisAngle(w - step * Vector3d::Unit(k)));
         EXPECT_LT(((plus - minus) / (2 * step) - J.col(k)).norm(), 1e-9) << angle;
         ++checked;
       }
@@ -194,11 +196,13 @@ TEST(Rotation, RightJacobianInverseInvertsUpToTwoPi) {
   for (const Vector3d& axis : Axes()) {
     for (double angle : Angles()) {
       const Vector3d w = angle * axis;
-      EXPECT_LT((RightJacobian(w) * RightJacobianInverse(w) - Matrix3d::Identity()).cwiseAbs().maxCoeff(), 1e-14) << angle;
+      EXPECT_LT((RightJacobian(w) * RightJacobianInverse(w) - Matrix3d::Identity()).cwiseAbs().maxCoeff(), 1e-14)
+          << angle;
     }
     for (double angle : {kPi, 4.0, 6.0}) {
       const Vector3d w = angle * axis;
-      EXPECT_LT((RightJacobian(w) * RightJacobianInverse(w) - Matrix3d::Identity()).cwiseAbs().maxCoeff(), 2e-14) << angle;
+      EXPECT_LT((RightJacobian(w) * RightJacobianInverse(w) - Matrix3d::Identity()).cwiseAbs().maxCoeff(), 2e-14)
+          << angle;
     }
   }
 }

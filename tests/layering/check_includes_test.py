@@ -42,6 +42,11 @@ class CheckIncludes(unittest.TestCase):
         self.expect_fault({"data_tools/a.cc": '#include "tracking/b.h"\n'}, "data_tools/a.cc:1")
         self.expect_fault({"neural/a.cc": '#include "tracking/b.h"\n'}, "neural/a.cc:1")
 
+    def test_evaluation_measures_with_tracking(self):
+        code, out = check({"data_tools/evaluation/a.cc": '#include "tracking/metrics.h"\n'})
+        self.assertEqual((code, out), (0, "1 files checked, 0 faults\n"))
+        self.expect_fault({"data_tools/formats/a.cc": '#include "tracking/metrics.h"\n'}, "data_tools/formats/a.cc:1")
+
     def test_third_party_outside_its_home(self):
         self.expect_fault({"geometry/a.cc": "#include <ceres/jet.h>\n"}, "expected only in benchmarks, tests, tracking")
         self.expect_fault({"tracking/a.cc": "#  include <torch/torch.h>\n"}, "tracking/a.cc:1")

@@ -29,7 +29,8 @@ TEST(NeuralRuntime, TextNamesVersionThreadsAndWarnings) {
   runtime.num_threads = 5;
   runtime.blas_path = "/lib/some/libblas.so";
   runtime.warnings = {"too slow"};
-  EXPECT_EQ(ToText(runtime), "LibTorch 9.8.7\nthreads  5 of 6 cores\nBLAS     /lib/some/libblas.so\nwarning: too slow\n");
+  EXPECT_EQ(ToText(runtime),
+            "LibTorch 9.8.7\nthreads  5 of 6 cores\nBLAS     /lib/some/libblas.so\nwarning: too slow\n");
 }
 
 TEST(BlasAdvice, SpeaksUpAboutAMisjudgedProcessor) {
@@ -44,7 +45,8 @@ TEST(BlasAdvice, IsSilentWhenTheProcessorWasRecognised) {
 }
 
 TEST(BlasAdvice, NamesAFasterLibrary) {
-  EXPECT_THAT(BlasAdvice("/usr/lib/x86_64-linux-gnu/blas/libblas.so.3.11.0", "", true, true), HasSubstr("reference BLAS"));
+  EXPECT_THAT(BlasAdvice("/usr/lib/x86_64-linux-gnu/blas/libblas.so.3.11.0", "", true, true),
+              HasSubstr("reference BLAS"));
   EXPECT_THAT(BlasAdvice("/usr/lib/x86_64-linux-gnu/atlas/libblas.so.3.10.3", "", true, true), HasSubstr("ATLAS"));
   EXPECT_EQ(BlasAdvice("/usr/lib/x86_64-linux-gnu/blis-openmp/libblas.so.4", "", true, true), "");
 }

@@ -13,6 +13,7 @@
 /// - landmarks: COCO-17 and {left,right}_{big_toe,small_toe,heel}.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <array>
 #include <cmath>
 #include <map>

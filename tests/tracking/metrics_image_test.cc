@@ -41,6 +41,13 @@ std::vector<MatrixX2d> Pixels(const KeypointSequence& s, double dx, double dy) {
   return pixels;
 }
 
+double Pck(const std::vector<MatrixX2d>& pixels, const KeypointSequence& detections, double fraction,
+           PckReference reference) {
+  CorrectKeypoints counts;
+  AddCorrectKeypoints(pixels, detections, fraction, reference, 0.3, &counts);
+  return counts.Share();
+}
+
 TEST(MetricsImageTest, ProjectionErrorScalesByTheLongerSide) {
   const std::vector<MatrixX2d> truth(4, MatrixX2d::Constant(10, 2, 300));
   std::vector<MatrixX2d> estimate(4, MatrixX2d::Constant(10, 2, 300));
@@ -86,14 +93,14 @@ TEST(MetricsImageTest, ReprojectionErrorInPixelsAndHeights) {
   std::vector<MatrixX2d> pixels = Pixels(Detections(3), 6, 8);
   pixels[0].row(3).setConstant(kNotMeasured);
   ReprojectionErrors errors;
-  AddReprojectionErrors(pixels, detections, 0.3F, &errors);
+  AddReprojectionErrors(pixels, detections, 0.3, &errors);
   EXPECT_EQ(errors.px.size(), 3u * 17 - 3);
   EXPECT_EQ(errors.missing, 1);
   const ErrorStatistics px = Summarize(errors.px), percent = Summarize(errors.percent_of_height);
   EXPECT_NEAR(px.median, 10, 1e-5);
   EXPECT_NEAR(px.p95, 10, 1e-5);
   EXPECT_NEAR(percent.median, 2.5, 1e-5);  // of 400 px
-  AddReprojectionErrors(pixels, detections, 0.3F, &errors);
+  AddReprojectionErrors(pixels, detections, 0.3, &errors);
   EXPECT_EQ(errors.px.size(), 2 * (3u * 17 - 3));
 }
 
@@ -109,7 +116,7 @@ TEST(MetricsImageTest, PersonHeightNeedsFivePoints) {
 TEST(MetricsImageTest, PckThresholds) {
   const KeypointSequence detections = Detections(2);
   const auto pck = [&](double offset, double fraction, PckReference reference) {
-    return PercentageOfCorrectKeypoints(Pixels(detections, offset, 0), detections, fraction, reference, 0.3);
+    return Pck(Pixels(detections, offset, 0), detections, fraction, reference);
   };
   EXPECT_EQ(pck(19.9, 0.05, PckReference::kBox), 1);  // 20 px of 400
   EXPECT_EQ(pck(20.1, 0.05, PckReference::kBox), 0);
@@ -123,13 +130,13 @@ TEST(MetricsImageTest, PckCountsMissingPredictionsAsWrongAndSkipsFramesWithoutAR
   KeypointSequence detections = Detections(3);
   std::vector<MatrixX2d> pixels = Pixels(detections, 0, 0);
   pixels[0].setConstant(kNotMeasured);
-  EXPECT_NEAR(PercentageOfCorrectKeypoints(pixels, detections, 0.1, PckReference::kBox, 0.3), 2.0 / 3, kTolerance);
+  EXPECT_NEAR(Pck(pixels, detections, 0.1, PckReference::kBox), 2.0 / 3, kTolerance);
   // Without left shoulder the other diagonal serves; without right shoulder too the frame has no torso.
   detections.at(2, 5).confidence = 0;
-  EXPECT_NEAR(PercentageOfCorrectKeypoints(pixels, detections, 0.2, PckReference::kTorso, 0.3), 33.0 / 50, kTolerance);
+  EXPECT_NEAR(Pck(pixels, detections, 0.2, PckReference::kTorso), 33.0 / 50, kTolerance);
   detections.at(2, 6).confidence = 0;
-  EXPECT_NEAR(PercentageOfCorrectKeypoints(pixels, detections, 0.2, PckReference::kTorso, 0.3), 0.5, kTolerance);
-  EXPECT_TRUE(std::isnan(PercentageOfCorrectKeypoints({}, detections, 0.2, PckReference::kTorso, 0.3)));
+  EXPECT_NEAR(Pck(pixels, detections, 0.2, PckReference::kTorso), 0.5, kTolerance);
+  EXPECT_TRUE(std::isnan(Pck({}, detections, 0.2, PckReference::kTorso)));
 }
 
 TEST(MetricsImageTest, BrokenContractsThrow) {
@@ -138,16 +145,14 @@ TEST(MetricsImageTest, BrokenContractsThrow) {
   EXPECT_THROW(AddReprojectionErrors(Pixels(Detections(3), 0, 0), detections, 0.3, &errors), std::invalid_argument);
   EXPECT_THROW(AddReprojectionErrors(std::vector<MatrixX2d>(2, MatrixX2d::Zero(16, 2)), detections, 0.3, &errors),
                std::invalid_argument);
-  EXPECT_THROW(PercentageOfCorrectKeypoints(Pixels(detections, 0, 0), detections, 0, PckReference::kBox, 0.3),
-               std::invalid_argument);
+  EXPECT_THROW(Pck(Pixels(detections, 0, 0), detections, 0, PckReference::kBox), std::invalid_argument);
   EXPECT_THROW(PerVertexProjectionError(std::vector<MatrixX2d>(2, MatrixX2d::Zero(5, 2)),
                                         std::vector<MatrixX2d>(2, MatrixX2d::Zero(6, 2)), 512, 512),
                std::invalid_argument);
   EXPECT_THROW(SquareImageScale(0, 480), std::invalid_argument);
   KeypointSequence no_hips = detections;
   for (std::string& name : no_hips.names) name += "?";
-  EXPECT_THROW(PercentageOfCorrectKeypoints(Pixels(no_hips, 0, 0), no_hips, 0.2, PckReference::kTorso, 0.3),
-               std::invalid_argument);
+  EXPECT_THROW(Pck(Pixels(no_hips, 0, 0), no_hips, 0.2, PckReference::kTorso), std::invalid_argument);
 }
 
 }  // namespace

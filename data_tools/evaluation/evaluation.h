@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What an evaluation says: the protocol in words, named numbers, and their breakdown by joint or camera.
+#pragma once
+
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace bodyloom {
+
+/// One number. The name ends in its unit (`pa_mpjpe_mm`, `heldout_median_px`) and is the key in JSON; NaN means that
+/// there was nothing to measure.
+struct EvaluationValue {
+  std::string name;
+  double value = 0;
+  std::string meaning;  ///< one line
+};
+
+/// One number a joint or camera.
+struct EvaluationBreakdown {
+  std::string name;  ///< with its unit
+  std::vector<std::string> labels;
+  std::vector<double> values;  ///< as many as labels
+};
+
+struct Evaluation {
+  std::string protocol;     ///< short name, "aist-held-out"
+  std::string description;  ///< what is compared with what, after which alignment, over which frames
+  std::vector<std::pair<std::string, std::string>> subject;  ///< sequence, view, …
+  int frames = 0;                                            ///< compared
+  int frames_without_result = 0;                             ///< of these, scored with the nearest frame that has one
+  std::vector<EvaluationValue> values;
+  std::vector<EvaluationBreakdown> breakdowns;
+
+  void Add(std::string name, double value, std::string meaning) {
+    values.push_back({std::move(name), value, std::move(meaning)});
+  }
+  /// The value called `name`; throws std::invalid_argument when there is none.
+  [[nodiscard]] double Value(const std::string& name) const;
+};
+
+/// An aligned table for a terminal: protocol, subject, one line a value with its meaning, then the breakdowns.
+std::string EvaluationTable(const Evaluation& evaluation);
+
+/// One JSON object: protocol, description, subject, frames, frames_without_result, values {name: number or null},
+/// meanings {name: text}, breakdowns {name: {label: number or null}}. Ends with a newline.
+std::string EvaluationJson(const Evaluation& evaluation);
+
+}  // namespace bodyloom

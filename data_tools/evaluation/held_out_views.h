@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A track made from one camera, judged by what the other cameras saw.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "data_tools/evaluation/evaluation.h"
+#include "geometry/arrays.h"
+#include "geometry/camera.h"
+#include "geometry/observations.h"
+#include "geometry/track.h"
+
+namespace bodyloom {
+
+/// One camera of a rig and its detections of COCO's 17 landmarks.
+struct RigView {
+  std::string name;
+  Camera camera;
+  CameraPose pose;              ///< camera from world, metres
+  KeypointSequence detections;  ///< CocoNames() in order
+};
+
+/// A clip seen by several calibrated cameras, with the joints that all of them together gave.
+struct MultiViewClip {
+  std::string name;
+  std::vector<RigView> views;
+  std::vector<MatrixX3d> coco17_in_world;  ///< T of 17×3 metres; NaN where not known
+  Motion motion;                           ///< T SMPL poses in the world frame; num_frames() = 0 when there are none
+  double fps = 0;                          ///< nominal: positions are differenced with it, not with rounded timestamps
+};
+
+struct EvaluateHeldOutViewsOptions {
+  double min_confidence = 0.3;  ///< detections above this count
+};
+
+/// Protocol "held-out views". The track (camera frame of the view it was fitted to, coco17 in metres) and the clip are
+/// matched by frame index over the frames both have. With P the track's landmarks, G the clip's in the camera frame of
+/// the fitted view, and hip(·) the middle of COCO's hips:
+///   clip_scale         s = argmin Σ ‖s (P − hip P) − (G − hip G)‖²
+///   mpjpe_mm, mpjpe_scaled_mm   mean ‖(P − hip P) − (G − hip G)‖, and with s
+///   pa_mpjpe_mm, pa_p95_mm      after one similarity a frame (tracking/procrustes.h)
+///   accel_err_ms2, gt_accel_ms2 ‖P″ − G″‖ and ‖G″‖
+///   root_err_mm        mean ‖hip P − hip G‖, and its parts across and along the viewing direction
+///   heldout_*          distance in pixels of s (P − hip P) + hip G, carried into every other camera, to its detections
+///   fitview_*          distance of P, through the clip's camera, to the fitted view's detections
+///   fitview_own_*      the same through the track's own camera (differs when the focal length was estimated)
+/// and PCK, percent of person height (tracking/metrics_image.h); with `motion`, the angle between the track's joint
+/// rotations and SMPL's, both on the same 24 joints, the root's in the camera frame.
+/// A frame whose landmarks are not all finite is scored with the nearest frame that has them.
+/// Throws std::invalid_argument when the view is unknown, sizes disagree, or nothing overlaps.
+Evaluation EvaluateHeldOutViews(const Track& track, const MultiViewClip& clip, const std::string& view,
+                                const EvaluateHeldOutViewsOptions& options = {});
+
+}  // namespace bodyloom

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "data_tools/motion/amass.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "data_tools/motion/motion_tools.h"
+#include "data_tools/motion/skeleton_motion.h"
+#include "geometry/check.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr int kBodyColumns = 66, kSmplColumns = 72, kSmplhColumns = 156;
+
+[[noreturn]] void Fail(const std::string& where, const std::string& key, const std::string& message) {
+  throw std::runtime_error(where + ": " + key + ": " + message);
+}
+
+RowMatrixXd RequireMatrix(const NpzArrays& arrays, const std::string& key, const std::string& where) {
+  const NdArray& array = RequireArray(arrays, key, where);
+  if (!array.is_number() || array.shape.size() != 2) {
+    Fail(where, key, "shape " + array.ShapeText() + ", expected frames x values");
+  }
+  RowMatrixXd matrix = array.ToMatrix();
+  for (Eigen::Index t = 0; t < matrix.rows(); ++t) {
+    if (!matrix.row(t).allFinite()) Fail(where, key, "frame " + std::to_string(t) + " is not finite");
+  }
+  return matrix;
+}
+
+double FrameRateOf(const NpzArrays& arrays, const std::string& where) {
+  for (const char* key : {"mocap_framerate", "mocap_frame_rate"}) {
+    const auto found = arrays.find(key);
+    if (found == arrays.end()) continue;
+    if (!found->second.is_number() || found->second.num_elements() != 1) Fail(where, key, "expected one number");
+    const double fps = found->second.ToDoubles()[0];
+    if (!(fps > 0 && fps < 1e5)) Fail(where, key, std::to_string(fps) + ", expected frames a second");
+    return fps;
+  }
+  throw std::runtime_error(where + ": neither 'mocap_framerate' nor 'mocap_frame_rate' nor 'timestamps'");
+}
+
+std::vector<double> TimestampsOf(const NpzArrays& arrays, int num_frames, const std::string& where) {
+  const auto found = arrays.find("timestamps");
+  if (found == arrays.end()) return RegularTimestamps(num_frames, 1 / FrameRateOf(arrays, where));
+  if (!found->second.is_number() || found->second.num_elements() != num_frames) {
+    Fail(where, "timestamps", found->second.ShapeText() + " values, expected " + std::to_string(num_frames));
+  }
+  std::vector<double> timestamps = found->second.ToDoubles();
+  for (int t = 0; t < num_frames; ++t) {
+    if (!std::isfinite(timestamps[t]) || (t > 0 && !(timestamps[t] > timestamps[t - 1]))) {
+      Fail(where, "timestamps", "entry " + std::to_string(t) + ": expected finite, increasing seconds");
+    }
+  }
+  return timestamps;
+}
+
+Motion::Up UpOf(const NpzArrays& arrays, const std::string& where) {
+  if (arrays.find("camera_model") != arrays.end()) return Motion::Up::kCamera;
+  const auto found = arrays.find("up_axis");
+  if (found == arrays.end()) return Motion::Up::kZ;
+  const std::vector<std::string> text = found->second.is_number() ? std::vector<std::string>() : found->second.ToStrings();
+  if (text.size() != 1 || (text[0] != "y" && text[0] != "z")) Fail(where, "up_axis", "expected 'y' or 'z'");
+  return text[0] == "y" ? Motion::Up::kY : Motion::Up::kZ;
+}
+
+}  // namespace
+
+bool IsAmass(const NpzArrays& arrays) {
+  return arrays.find("poses") != arrays.end() && arrays.find("trans") != arrays.end();
+}
+
+Motion AmassFromNpz(const NpzArrays& arrays, const std::string& where) {
+  const RowMatrixXd poses = RequireMatrix(arrays, "poses", where);
+  const Eigen::Index columns = poses.cols();
+  if (columns != 72 && columns != 156 && columns != 162 && columns != 165) {
+    Fail(where, "poses", "shape " + RequireArray(arrays, "poses", where).ShapeText() +
+                             ", expected 72 (SMPL), 156 (SMPL-H), 162 or 165 (SMPL-X) columns");
+  }
+  if (poses.rows() == 0) Fail(where, "poses", "no frames");
+  const RowMatrixXd trans = RequireMatrix(arrays, "trans", where);
+  if (trans.rows() != poses.rows() || trans.cols() != 3) {
+    Fail(where, "trans", "shape " + RequireArray(arrays, "trans", where).ShapeText() + ", expected " +
+                             std::to_string(poses.rows()) + "x3");
+  }
+  Motion motion;
+  motion.body = "smpl";
+  motion.poses = RowMatrixXd::Zero(poses.rows(), kSmplColumns);
+  const Eigen::Index kept = columns == kSmplColumns ? kSmplColumns : kBodyColumns;
+  motion.poses.leftCols(kept) = poses.leftCols(kept);
+  motion.trans = trans;
+  if (const auto found = arrays.find("betas"); found != arrays.end()) {
+    const NdArray& betas = found->second;
+    const bool is_row = betas.shape.size() == 2 && betas.shape[0] == 1;
+    if (!betas.is_number() || (betas.shape.size() != 1 && !is_row) || betas.num_elements() > 1000) {
+      Fail(where, "betas", "shape " + betas.ShapeText() + ", expected one shape for the clip");
+    }
+    const std::vector<double> values = betas.ToDoubles();
+    motion.betas = Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+    if (!motion.betas.allFinite()) Fail(where, "betas", "not finite");
+  }
+  motion.timestamps = TimestampsOf(arrays, motion.num_frames(), where);
+  motion.up = UpOf(arrays, where);
+  return motion;
+}
+
+void WriteAmass(const std::string& path, const Motion& motion, const Eigen::Vector3d& rest_pelvis,
+                const std::string& gender) {
+  CheckMotion(motion, "WriteAmass");
+  BODYLOOM_CHECK(motion.poses.cols() == kSmplColumns || motion.poses.cols() == kSmplhColumns, "WriteAmass: ",
+                 motion.poses.cols() / 3, " joints, expected 24 (SMPL) or 52 (SMPL-H)");
+  const Motion z_up = ChangeUp(motion, Motion::Up::kZ, rest_pelvis);
+  const int64_t T = motion.num_frames();
+  RowMatrixXd poses = RowMatrixXd::Zero(T, kSmplhColumns);
+  const Eigen::Index kept = motion.poses.cols() == kSmplColumns ? kBodyColumns : kSmplhColumns;
+  poses.leftCols(kept) = z_up.poses.leftCols(kept);
+  const double fps = FrameRate(motion);
+  NpzArrays arrays;
+  arrays["poses"] = NdArray::FromDoubles(poses.data(), {T, kSmplhColumns});
+  arrays["trans"] = NdArray::FromDoubles(z_up.trans.data(), {T, 3});
+  arrays["betas"] = NdArray::FromDoubles(motion.betas.data(), {motion.betas.size()});
+  arrays["gender"] = NdArray::FromString(gender);
+  // One frame, or a clip with a gap, has no frame rate of its own; AMASS readers insist on a number.
+  const double seconds = motion.timestamps.back() - motion.timestamps.front();
+  arrays["mocap_framerate"] =
+      NdArray::FromDouble(fps > 0 ? fps : seconds > 0 ? static_cast<double>(T - 1) / seconds : 30.0);
+  arrays["timestamps"] = NdArray::FromDoubles(motion.timestamps.data(), {T});
+  WriteNpz(path, arrays);
+}
+
+}  // namespace bodyloom

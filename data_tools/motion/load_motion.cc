@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "data_tools/motion/load_motion.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "data_tools/formats/npz.h"
+#include "data_tools/formats/pickle.h"
+#include "data_tools/motion/aist_motion.h"
+#include "data_tools/motion/amass.h"
+#include "data_tools/motion/amp_reader.h"
+#include "data_tools/motion/asf_amc_reader.h"
+#include "data_tools/motion/bvh_reader.h"
+#include "data_tools/motion/deepmimic_reader.h"
+#include "data_tools/motion/motion_tools.h"
+#include "data_tools/motion/text_scanner.h"
+#include "data_tools/observations/json_reader.h"
+#include "geometry/check.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr double kAistFps = 60, kAcclaimFps = 120;
+constexpr const char* kExpected =
+    "expected AMASS .npz (poses, trans), AIST++ motions .pkl, .bvh, .amc with its .asf, DeepMimic JSON or AMP .npy";
+
+bool HasExtension(const std::string& path, const std::string& extension) {
+  return path.ends_with(extension) || path.ends_with(extension + ".gz");
+}
+
+/// Skeletons and their motions; nullopt-like: false when the text is none of them.
+bool SkeletonFromText(const std::string& text, const std::string& path, const LoadMotionOptions& options,
+                      SkeletonMotion* skeleton) {
+  TextScanner scanner(text, path);
+  const std::string first(scanner.Peek().substr(0, 64));
+  if (first == "HIERARCHY") {
+    *skeleton = BvhFromText(text, path);
+    return true;
+  }
+  if (HasExtension(path, ".asf")) {
+    throw std::runtime_error(path + ": a skeleton without motion, expected the .amc that goes with it");
+  }
+  if (HasExtension(path, ".amc") || first.starts_with("#!OML") || first == ":FULLY-SPECIFIED") {
+    *skeleton = ReadAsfAmc(path, options.skeleton_path, options.fps > 0 ? options.fps : kAcclaimFps);
+    return true;
+  }
+  if (!first.empty() && (first[0] == '{' || first[0] == '[')) {
+    const nlohmann::json json = ParseJson(text, path);
+    const JsonNode document(json, path);
+    if (!IsDeepMimicJson(document)) throw std::runtime_error(path + ": JSON without 'Frames'; " + kExpected);
+    *skeleton = DeepMimicFromJson(document);
+    return true;
+  }
+  return false;
+}
+
+Motion Read(const std::string& path, const LoadMotionOptions& options, RetargetSummary* summary) {
+  const std::string bytes = ReadTextFile(path);
+  if (bytes.empty()) throw std::runtime_error(path + ": the file is empty; " + kExpected);
+  if (bytes.compare(0, 4, "PK\x03\x04") == 0) {
+    const NpzArrays arrays = ReadNpzBytes(bytes, path);
+    if (!IsAmass(arrays)) throw std::runtime_error(path + ": an .npz without 'poses' and 'trans'; " + kExpected);
+    return AmassFromNpz(arrays, path);
+  }
+  if (IsObjectNpy(bytes)) return RetargetToSmpl(AmpFromNpyBytes(bytes, path), path, summary);
+  if (bytes[0] == '\x80' || bytes.compare(0, 2, "(d") == 0) {
+    const PicklePtr file = ReadPickle(bytes, path);
+    if (!IsAistMotion(*file)) throw std::runtime_error(path + ": a pickle without 'smpl_poses'; " + kExpected);
+    return AistMotionFromPickle(*file, path, options.fps > 0 ? options.fps : kAistFps);
+  }
+  SkeletonMotion skeleton;
+  if (SkeletonFromText(bytes, path, options, &skeleton)) return RetargetToSmpl(skeleton, path, summary);
+  throw std::runtime_error(path + ": unknown kind of file; " + kExpected);
+}
+
+}  // namespace
+
+Motion LoadMotion(const std::string& path, const LoadMotionOptions& options, RetargetSummary* summary) {
+  BODYLOOM_CHECK(options.fps >= 0 && options.resample_fps >= 0, "frame rates ", options.fps, " and ",
+                 options.resample_fps, " must not be negative");
+  const Motion motion = Read(path, options, summary);
+  return options.resample_fps > 0 ? ResampleMotion(motion, options.resample_fps) : motion;
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+/// One call for every form of recorded motion: tells the format by content and returns SMPL's 24 joints.
+///
+/// Read: AMASS and track .npz, AIST++ motions .pkl, BVH, Acclaim .amc with its .asf, DeepMimic JSON, AMP .npy; the text
+/// forms may be gzipped. Skeletons other than SMPL's are retargeted (retarget.h).
+#pragma once
+
+#include <string>
+
+#include "data_tools/motion/retarget.h"
+#include "geometry/track.h"
+
+namespace bodyloom {
+
+struct LoadMotionOptions {
+  double fps = 0;             ///< frame rate of files that do not say; 0: 60 for AIST++, 120 for AMC
+  std::string skeleton_path;  ///< .asf of an .amc; empty: beside it
+  double resample_fps = 0;    ///< when positive, the motion is resampled to it
+};
+
+/// Throws std::runtime_error in one line: what was found and what was expected. `summary`, when given, is filled for
+/// retargeted skeletons.
+Motion LoadMotion(const std::string& path, const LoadMotionOptions& options = {}, RetargetSummary* summary = nullptr);
+
+}  // namespace bodyloom

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "data_tools/motion/motion_tools.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/check.h"
+#include "geometry/rotation.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr double kClockTolerance = 0.01;
+
+/// y-up world from a world with that up: proper rotations.
+Eigen::Matrix3d YUpFrom(Motion::Up up) {
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  if (up == Motion::Up::kZ) R << 1, 0, 0, 0, 0, 1, 0, -1, 0;
+  if (up == Motion::Up::kCamera) R << 1, 0, 0, 0, -1, 0, 0, 0, -1;
+  return R;
+}
+
+}  // namespace
+
+Motion ChangeUp(const Motion& motion, Motion::Up up, const Eigen::Vector3d& rest_pelvis) {
+  BODYLOOM_CHECK(up != Motion::Up::kCamera, "ChangeUp: a camera frame cannot be made from a world without its camera");
+  Motion turned = motion;
+  turned.up = up;
+  if (motion.up == up) return turned;
+  const Eigen::Matrix3d R = YUpFrom(up).transpose() * YUpFrom(motion.up);
+  for (int t = 0; t < motion.num_frames(); ++t) {
+    const Eigen::Matrix3d root = R * RotationFromAxisAngle(motion.poses.block<1, 3>(t, 0).transpose());
+    turned.poses.block<1, 3>(t, 0) = AxisAngleFromRotation(root).transpose();
+    const Eigen::Vector3d pelvis = rest_pelvis + motion.trans.row(t).transpose();
+    turned.trans.row(t) = (R * pelvis - rest_pelvis).transpose();
+  }
+  return turned;
+}
+
+Motion ResampleMotion(const Motion& motion, double fps) {
+  CheckMotion(motion, "ResampleMotion");
+  BODYLOOM_CHECK(fps > 0 && fps < 1e5, "ResampleMotion: frame rate ", fps, " must be positive");
+  if (motion.num_frames() < 2) return motion;
+  const std::vector<double>& times = motion.timestamps;
+  const int T = static_cast<int>(std::floor((times.back() - times.front()) * fps + 1e-6)) + 1;
+  Motion out = motion;
+  out.poses.resize(T, motion.poses.cols());
+  out.trans.resize(T, 3);
+  out.timestamps.resize(T);
+  size_t next = 1;
+  for (int t = 0; t < T; ++t) {
+    const double time = times.front() + t / fps;
+    while (next + 1 < times.size() && times[next] < time) ++next;
+    const double s = std::clamp((time - times[next - 1]) / (times[next] - times[next - 1]), 0.0, 1.0);
+    out.timestamps[t] = time;
+    out.trans.row(t) = (1 - s) * motion.trans.row(next - 1) + s * motion.trans.row(next);
+    for (int j = 0; 3 * j < motion.poses.cols(); ++j) {
+      const Eigen::Matrix3d a = RotationFromAxisAngle(motion.poses.block<1, 3>(next - 1, 3 * j).transpose());
+      const Eigen::Matrix3d b = RotationFromAxisAngle(motion.poses.block<1, 3>(next, 3 * j).transpose());
+      out.poses.block<1, 3>(t, 3 * j) = AxisAngleFromRotation(InterpolateRotation(a, b, s)).transpose();
+    }
+  }
+  return out;
+}
+
+double FrameRate(const Motion& motion) {
+  const std::vector<double>& times = motion.timestamps;
+  if (times.size() < 2) return 0;
+  const double step = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+  for (size_t t = 1; t < times.size(); ++t) {
+    if (!(std::abs(times[t] - times[t - 1] - step) < kClockTolerance * step)) return 0;
+  }
+  return 1 / step;
+}
+
+void CheckMotion(const Motion& motion, const char* caller) {
+  BODYLOOM_CHECK(motion.poses.rows() > 0 && motion.poses.cols() % 3 == 0 && motion.poses.cols() > 0, caller, ": poses ",
+                 motion.poses.rows(), "x", motion.poses.cols(), ", expected frames x 3 joints");
+  BODYLOOM_CHECK(motion.trans.rows() == motion.poses.rows() &&
+                     motion.timestamps.size() == static_cast<size_t>(motion.poses.rows()),
+                 caller, ": ", motion.poses.rows(), " poses, ", motion.trans.rows(), " translations, ",
+                 motion.timestamps.size(), " timestamps");
+  BODYLOOM_CHECK(motion.poses.allFinite() && motion.trans.allFinite(), caller, ": poses or translations are not finite");
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Small operations on motions that readers, writers and generators share.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "geometry/track.h"
+
+namespace bodyloom {
+
+/// Turns the world of a motion (y up, z up, or camera with y down) into one with `up` (kY or kZ); a camera's world is
+/// taken as level. The root turns about the pelvis joint, which is not the origin: with R the turn and J0 the body's
+/// rest pelvis, θ_root ← R·θ_root and trans ← R(J0 + trans) − J0.
+Motion ChangeUp(const Motion& motion, Motion::Up up, const Eigen::Vector3d& rest_pelvis);
+
+/// The same motion at t0 + k/fps: rotations along the shortest arc, translations linearly. The last instant is kept
+/// within rounding. A motion of one frame stays as it is. Throws std::invalid_argument for fps that is not positive.
+Motion ResampleMotion(const Motion& motion, double fps);
+
+/// Frames per second of a motion with a regular clock; 0 when its steps differ by more than 1 % (a gap) or it has fewer
+/// than two frames.
+double FrameRate(const Motion& motion);
+
+/// Throws std::invalid_argument unless poses, trans and timestamps have T rows each, poses 3J columns, and all is finite.
+void CheckMotion(const Motion& motion, const char* caller);
+
+}  // namespace bodyloom

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "data_tools/video/image_file.h"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <opencv2/imgcodecs.hpp>
+#include <stdexcept>
+#include <string_view>
+
+#include "data_tools/formats/atomic_file.h"
+#include "geometry/check.h"
+#include "render/image_mat.h"
+
+namespace bodyloom {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr size_t kMaxPixels = size_t{1} << 26;
+constexpr size_t kMaxFileBytes = size_t{1} << 28;
+
+std::string ExtensionOf(const std::string& path) {
+  std::string extension = fs::path(path).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+/// True when a comes before b, runs of digits compared by value.
+bool NaturalLess(std::string_view a, std::string_view b) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  size_t i = 0, j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (is_digit(a[i]) && is_digit(b[j])) {
+      while (i < a.size() && a[i] == '0') ++i;
+      while (j < b.size() && b[j] == '0') ++j;
+      size_t p = i, q = j;
+      while (p < a.size() && is_digit(a[p])) ++p;
+      while (q < b.size() && is_digit(b[q])) ++q;
+      if (p - i != q - j) return p - i < q - j;
+      const int order = a.substr(i, p - i).compare(b.substr(j, q - j));
+      if (order != 0) return order < 0;
+      i = p, j = q;
+    } else {
+      if (a[i] != b[j]) return a[i] < b[j];
+      ++i, ++j;
+    }
+  }
+  if (a.size() - i != b.size() - j) return a.size() - i < b.size() - j;
+  return a < b;  // frame_1 and frame_01
+}
+
+}  // namespace
+
+Image ReadImage(const std::string& path) {
+  const std::string bytes = ReadFileBytes(path, kMaxFileBytes);
+  cv::Mat decoded;
+  try {
+    if (!bytes.empty()) {
+      const cv::Mat view(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<char*>(bytes.data()));
+      decoded = cv::imdecode(view, cv::IMREAD_COLOR);
+    }
+  } catch (const cv::Exception&) {  // a header that promises too much; reported below like any other nonsense
+    decoded.release();
+  }
+  if (decoded.empty() || decoded.total() > kMaxPixels) {
+    throw std::runtime_error(path +
+                             ": not an image that can be decoded, expected PNG, JPEG, BMP, WebP or TIFF of at most " +
+                             std::to_string(kMaxPixels) + " pixels");
+  }
+  Image image(decoded.cols, decoded.rows);
+  cv::Mat target = MatOf(&image);
+  decoded.copyTo(target);
+  return image;
+}
+
+void WriteImage(const std::string& path, const Image& image) {
+  BODYLOOM_CHECK(!image.empty(), path, ": the image to write is empty");
+  const std::string extension = ExtensionOf(path);
+  if (extension != ".png" && extension != ".jpg" && extension != ".jpeg") {
+    throw std::runtime_error(path + ": extension '" + extension +
+                             "' of an image to write, expected .png, .jpg or .jpeg");
+  }
+  std::vector<uchar> bytes;
+  const std::vector<int> parameters = {cv::IMWRITE_JPEG_QUALITY, 95, cv::IMWRITE_PNG_COMPRESSION, 6};
+  if (!cv::imencode(extension, MatOf(image), bytes, parameters)) {
+    throw std::runtime_error(path + ": cannot encode " + std::to_string(image.width) + "x" +
+                             std::to_string(image.height) + " pixels as " + extension);
+  }
+  WriteFileAtomically(path, std::string(bytes.begin(), bytes.end()));
+}
+
+std::vector<std::string> ImageFilesOf(const std::string& folder) {
+  std::error_code error;
+  std::vector<std::string> names;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    static const std::vector<std::string> kKnown = {".png", ".jpg", ".jpeg", ".bmp", ".webp", ".tif", ".tiff"};
+    const std::string name = it->path().filename().string();
+    if (name.starts_with(".") || std::find(kKnown.begin(), kKnown.end(), ExtensionOf(name)) == kKnown.end()) continue;
+    names.push_back(name);
+  }
+  if (error) throw std::runtime_error(folder + ": cannot list the folder: " + error.message());
+  if (names.empty()) {
+    throw std::runtime_error(folder + ": the folder holds no images, expected .png, .jpg, .bmp, .webp or .tif files");
+  }
+  std::sort(names.begin(), names.end(), [](const auto& a, const auto& b) { return NaturalLess(a, b); });
+  for (std::string& name : names) name = (fs::path(folder) / name).string();
+  return names;
+}
+
+}  // namespace bodyloom

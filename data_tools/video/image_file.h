@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Still images: PNG, JPEG and what else OpenCV decodes, in; PNG and JPEG out.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "render/image.h"
+
+namespace bodyloom {
+
+/// Throws std::runtime_error naming the file when it cannot be read or is no image of 1 to 2^26 pixels.
+Image ReadImage(const std::string& path);
+
+/// By the extension: .png, or .jpg/.jpeg (quality 95). Whole or not at all. Throws std::runtime_error naming the file,
+/// std::invalid_argument for an empty image.
+void WriteImage(const std::string& path, const Image& image);
+
+/// The image files of a folder (.png .jpg .jpeg .bmp .webp .tif .tiff), numbers in names compared as numbers, so that
+/// frame_2 comes before frame_10; hidden files are passed over. Throws std::runtime_error when there are none.
+std::vector<std::string> ImageFilesOf(const std::string& folder);
+
+}  // namespace bodyloom

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Writes an .mp4: H.264 where the installed ffmpeg can encode it, MPEG-4 otherwise. The file appears at its place,
+/// whole, when Finish() returns, or not at all.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "render/image.h"
+
+namespace bodyloom {
+
+class VideoWriter {
+ public:
+  /// Frames of width×height pixels; an odd side is made even by repeating its last row or column, as players expect.
+  /// Throws std::runtime_error naming the path when its extension is not .mp4, its folder does not exist or cannot be
+  /// written, or no encoder is there; std::invalid_argument for a size below 2 or a frame rate outside (0, 1000].
+  VideoWriter(const std::string& path, int width, int height, double fps);
+  /// Without Finish() everything written is thrown away.
+  ~VideoWriter();
+  VideoWriter(const VideoWriter&) = delete;
+  VideoWriter& operator=(const VideoWriter&) = delete;
+
+  /// Throws std::invalid_argument when the frame has another size.
+  void Write(const Image& frame);
+
+  /// Closes the file, reads it back (encoders do not report a full disk) and moves it into place. Throws
+  /// std::runtime_error naming the path when it holds fewer frames than were written, or none were.
+  void Finish();
+
+  [[nodiscard]] int num_frames() const;
+  /// "H.264" or "MPEG-4".
+  [[nodiscard]] std::string codec() const;
+
+ private:
+  class Sink;
+  std::unique_ptr<Sink> sink_;
+};
+
+}  // namespace bodyloom

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+/// From chart coordinates back to the surface: the inverse of ChartUvAt (render/visible_points.h), as needed for
+/// DensePose-style (part, u, v) labels.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "geometry/body_model.h"
+
+namespace bodyloom {
+
+struct SurfacePoint {
+  int face = -1;                                           ///< −1: the body has no such part
+  Eigen::Vector3d barycentric = Eigen::Vector3d(1, 0, 0);  ///< of the face's corners, each in [0, 1], sums to 1
+};
+
+/// Immutable after construction; may be shared by threads. Does not keep the body.
+class ChartLookup {
+ public:
+  /// Throws std::invalid_argument when the body has no parts or no chart coordinates.
+  explicit ChartLookup(const BodyModel& body);
+
+  /// The point of part 1..24 at (u, v); where the chart does not cover (u, v), the covered point nearest to it in chart
+  /// units, whose distance goes to `gap` when asked for (0 inside). Of faces equally near the lowest index is taken.
+  /// A part that the body lacks, or coordinates that are not finite, give face −1.
+  [[nodiscard]] SurfacePoint Find(int part, const Eigen::Vector2d& uv, double* gap = nullptr) const;
+
+ private:
+  static constexpr int kCells = 32;  ///< a side, over the chart's box
+  struct Triangle {
+    int face;
+    std::array<Eigen::Vector2d, 3> corners;
+  };
+  struct Chart {
+    std::vector<Triangle> triangles;
+    Eigen::Vector2d low = Eigen::Vector2d::Zero(), cell = Eigen::Vector2d::Ones();
+    std::vector<int> begin, entries;  ///< triangles whose box meets a cell, by cell
+  };
+  std::array<Chart, 25> charts_;
+};
+
+}  // namespace bodyloom

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A floor under the person: a grid that gives pictures a scale and a soft shadow that ties the body to the ground.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "geometry/arrays.h"
+#include "geometry/camera.h"
+#include "render/image.h"
+
+namespace bodyloom {
+
+/// A plane in the camera frame.
+struct Floor {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  Eigen::Vector3d up = -Eigen::Vector3d::UnitY();
+};
+
+struct FloorGridStyle {
+  double spacing_m = 0.5;
+  double radius_m = 3;  ///< lines fade out towards this distance from the centre
+  double alpha = 0.5;
+  Colour colour{96, 104, 120};
+};
+
+/// Grid lines around the floor point nearest to `centre` (camera frame), at whole multiples of the spacing from
+/// floor.point.
+void DrawFloorGrid(const Floor& floor, const Eigen::Vector3d& centre, const FloorGridStyle& style, const Camera& camera,
+                   Image* image);
+
+/// Darkens the floor under a mesh (vertices in the camera frame), lit from above and a little from the side.
+/// `strength` in [0, 1].
+void DrawShadow(const MatrixX3d& vertices_in_camera, const MatrixX3i& faces, const Floor& floor, const Camera& camera,
+                double strength, Image* image);
+
+}  // namespace bodyloom

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/overlay.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "geometry/check.h"
+#include "geometry/posed_body.h"
+#include "render/draw_keypoints.h"
+#include "render/shaded_mesh.h"
+
+namespace bodyloom {
+namespace {
+
+using Eigen::Vector3d;
+
+std::optional<BodyPose> PoseOf(const BodyModel& body, const Track& track, int frame) {
+  const Motion& motion = track.motion;
+  if (!motion.poses.row(frame).allFinite() || !motion.trans.row(frame).allFinite()) return std::nullopt;
+  return PoseFromAxisAngle(body, motion.poses.row(frame).transpose(), motion.trans.row(frame).transpose());
+}
+
+/// Joints of the frames of a track; no rows where a frame is lost.
+std::vector<MatrixX3d> JointsOf(const BodyModel& body, const Track& track) {
+  const MatrixX3d rest = body.RestJoints(track.motion.betas);
+  std::vector<MatrixX3d> joints(track.num_frames());
+  for (int t = 0; t < track.num_frames(); ++t) {
+    if (const auto pose = PoseOf(body, track, t)) joints[t] = PoseSkeleton(body, rest, *pose).joints;
+  }
+  return joints;
+}
+
+/// The root's path blurred over about a second, so that a camera on it moves smoothly; lost frames are bridged.
+MatrixX3d SmoothRootPath(const std::vector<MatrixX3d>& joints, const std::vector<double>& times) {
+  constexpr double kBlur_s = 0.35;
+  const int T = static_cast<int>(joints.size());
+  std::vector<int> known;
+  for (int t = 0; t < T; ++t) {
+    if (joints[t].rows() > 0) known.push_back(t);
+  }
+  MatrixX3d path = MatrixX3d::Zero(T, 3);
+  size_t first = 0;
+  for (int t = 0; t < T; ++t) {
+    while (first + 1 < known.size() && times[known[first]] < times[t] - 3 * kBlur_s) ++first;
+    Vector3d sum = Vector3d::Zero();
+    double weights = 0;
+    for (size_t i = first; i < known.size() && (i == first || times[known[i]] < times[t] + 3 * kBlur_s); ++i) {
+      const double lag = (times[known[i]] - times[t]) / kBlur_s;
+      const double weight = std::max(std::exp(-0.5 * lag * lag), 1e-9);  // in a long gap the nearest frame still counts
+      sum += weight * joints[known[i]].row(0).transpose();
+      weights += weight;
+    }
+    path.row(t) = (sum / weights).transpose();
+  }
+  return path;
+}
+
+}  // namespace
+
+bool OverlayOptions::IsValid(std::string* why) const {
+  const auto no = [&](const std::string& text) {
+    if (why != nullptr) *why = text;
+    return false;
+  };
+  if (!(alpha >= 0 && alpha <= 1)) return no("overlay: alpha must be in [0, 1]");
+  if (!(side_aspect > 0.1 && side_aspect < 10)) return no("overlay: side_aspect must be in (0.1, 10)");
+  if (!(std::abs(side_elevation_deg) < 90)) return no("overlay: side_elevation_deg must be in (-90, 90)");
+  if (!std::isfinite(side_yaw_deg)) return no("overlay: side_yaw_deg must be finite");
+  if (!(up_in_camera.norm() > 0)) return no("overlay: up_in_camera must not be zero");
+  return true;
+}
+
+MatrixX3d TrackVertices(const BodyModel& body, const Track& track, int frame) {
+  BODYLOOM_CHECK(frame >= 0 && frame < track.num_frames(), "frame ", frame, " is outside the track's ",
+                 track.num_frames(), " frames");
+  const auto pose = PoseOf(body, track, frame);
+  return pose ? PoseVertices(body, track.motion.betas, *pose) : MatrixX3d(0, 3);
+}
+
+OverlayRenderer::OverlayRenderer(const BodyModel& body, const Track& track, const OverlayOptions& options,
+                                 const Track* reference)
+    : body_(body), track_(track), reference_(reference), options_(options) {
+  std::string why;
+  BODYLOOM_CHECK(options.IsValid(&why), why);
+  BODYLOOM_CHECK(track.camera.width > 0 && track.camera.height > 0, "overlay: the track's camera has no image size");
+  BODYLOOM_CHECK(track.num_frames() > 0, "overlay: the track has no frames");
+  BODYLOOM_CHECK(!options.part_colours || body.has_parts(), "overlay: the body '", body.name(),
+                 "' has no parts to colour");
+  if (options.part_colours) {
+    for (const uint8_t part : body.data().face_part) face_colours_.push_back(PartColour(part));
+  }
+  if (options.side_view) PlaceSideView();
+}
+
+void OverlayRenderer::PlaceSideView() {
+  std::vector<MatrixX3d> joints = JointsOf(body_, track_);
+  const std::vector<MatrixX3d> leaders = reference_ != nullptr ? JointsOf(body_, *reference_) : joints;
+  const auto is_known = [](const MatrixX3d& frame) { return frame.rows() > 0; };
+  BODYLOOM_CHECK(std::any_of(leaders.begin(), leaders.end(), is_known),
+                 "overlay: no frame of the track is known, there is nothing to see from the side");
+  BODYLOOM_CHECK(leaders.size() == joints.size() && track_.motion.timestamps.size() == joints.size(),
+                 "overlay: the track has ", joints.size(), " frames and ", track_.motion.timestamps.size(),
+                 " timestamps, its reference ", leaders.size(), " frames");
+  side_centre_ = SmoothRootPath(leaders, track_.motion.timestamps);
+  if (!options_.side_follows) side_centre_.rowwise() = Eigen::RowVector3d(side_centre_.colwise().mean());
+
+  // The floor lies under the lowest joint, which is an ankle or a foot, a few centimetres below it.
+  const Vector3d up = options_.up_in_camera.normalized();
+  double lowest = std::numeric_limits<double>::infinity();
+  std::vector<MatrixX3d> around_centre;
+  for (size_t t = 0; t < joints.size(); ++t) {
+    for (const MatrixX3d* frame : {std::as_const(joints).data() + t, leaders.data() + t}) {
+      if (!is_known(*frame)) continue;
+      around_centre.push_back(frame->rowwise() - side_centre_.row(static_cast<Eigen::Index>(t)));
+      if (frame == leaders.data() + t) lowest = std::min(lowest, (*frame * up).minCoeff());
+    }
+  }
+  floor_.up = up;
+  floor_.point = (lowest - 0.04) * up;
+
+  const int side_width = 2 * static_cast<int>(std::lround(0.5 * track_.camera.height * options_.side_aspect));
+  side_ = OrbitView(around_centre, side_width, track_.camera.height,
+                    {.yaw_deg = options_.side_yaw_deg,
+                     .elevation_deg = options_.side_elevation_deg,
+                     .up_in_camera = options_.up_in_camera});
+  side_backdrop_ = StudioBackdrop(side_->camera.width, side_->camera.height);
+}
+
+void OverlayRenderer::DrawLandmarks(int frame, const KeypointSequence* detected, const BodyPose& pose,
+                                    Image* image) const {
+  DrawnKeypoints seen, projected;
+  projected.names = detected != nullptr ? detected->names : CocoNames();
+  std::erase_if(projected.names, [&](const std::string& name) { return body_.FindLandmark(name) < 0; });
+  const MatrixX3d points = PoseLandmarks(body_, track_.motion.betas, pose, projected.names);
+  const Camera camera = track_.CameraAt(frame);
+  projected.pixels.resize(points.rows(), 2);
+  for (int k = 0; k < points.rows(); ++k) {
+    Eigen::Vector2d pixel;
+    if (!camera.Project(points.row(k).transpose(), &pixel)) pixel.setConstant(std::nan(""));
+    projected.pixels.row(k) = pixel.transpose();
+  }
+  const double size = std::max(2.0, image->height / 220.0);
+  if (options_.skeleton) {
+    DrawKeypoints(projected, {.size_px = size}, image);
+  }
+  if (detected == nullptr) return;
+  BODYLOOM_CHECK(frame < detected->num_frames(), "overlay: frame ", frame, " is outside the ", detected->num_frames(),
+                 " frames of detections");
+  seen.names = projected.names;
+  seen.min_confidence = options_.min_confidence;
+  seen.pixels.resize(points.rows(), 2);
+  for (size_t k = 0; k < seen.names.size(); ++k) {
+    const auto it = std::find(detected->names.begin(), detected->names.end(), seen.names[k]);
+    const Keypoint& p = detected->at(frame, static_cast<int>(it - detected->names.begin()));
+    seen.pixels.row(k) << p.x, p.y;
+    seen.confidence.push_back(p.confidence);
+  }
+  if (!options_.skeleton) DrawKeypoints(projected, {.size_px = 1.25 * size, .bones = false, .hollow = true}, image);
+  DrawResiduals(seen, projected, 0.4 * size, image);
+  DrawKeypoints(seen, {.size_px = 0.8 * size, .bones = false}, image);
+}
+
+void OverlayRenderer::DrawSide(int frame, Image* panel) const {
+  const MatrixX3i& faces = body_.data().faces;
+  View view = *side_;
+  const Eigen::Matrix3d& R = view.from_camera.camera_from_world_rotation;
+  view.from_camera.camera_from_world_translation -= R * side_centre_.row(frame).transpose();
+  const Vector3d& t = view.from_camera.camera_from_world_translation;
+  const Floor floor{R * floor_.point + t, R * floor_.up};
+  DrawFloorGrid(floor, R * side_centre_.row(frame).transpose() + t, {}, view.camera, panel);
+
+  const auto draw = [&](const MatrixX3d& vertices_in_camera, const MeshStyle& style) {
+    if (vertices_in_camera.rows() == 0) return;
+    const MatrixX3d vertices = view.Apply(vertices_in_camera);
+    DrawShadow(vertices, faces, floor, view.camera, 0.3, panel);
+    DrawMesh(vertices, faces, view.camera, style, panel);
+  };
+  if (reference_ != nullptr) {
+    draw(TrackVertices(body_, *reference_, frame), {.colour = kReferenceColour, .samples = Samples()});
+  }
+  const double alpha = reference_ != nullptr ? options_.alpha : 1;
+  draw(TrackVertices(body_, track_, frame), {.face_colours = face_colours_, .alpha = alpha, .samples = Samples()});
+}
+
+Image OverlayRenderer::Render(int frame, const OverlayFrame& what) const {
+  BODYLOOM_CHECK(frame >= 0 && frame < track_.num_frames(), "frame ", frame, " is outside the track's ",
+                 track_.num_frames(), " frames");
+  const Camera camera = track_.CameraAt(frame);
+  Image view;
+  if (what.background != nullptr) {
+    BODYLOOM_CHECK(what.background->width == camera.width && what.background->height == camera.height,
+                   "overlay: the video is ", what.background->width, "x", what.background->height, ", the camera ",
+                   camera.width, "x", camera.height);
+    view = *what.background;
+  } else {
+    view = StudioBackdrop(camera.width, camera.height);
+  }
+  const auto pose = PoseOf(body_, track_, frame);
+  if (pose && options_.body) {
+    const double alpha = what.background != nullptr ? options_.alpha : 1;
+    DrawMesh(PoseVertices(body_, track_.motion.betas, *pose), body_.data().faces, camera,
+             {.face_colours = face_colours_, .alpha = alpha, .samples = Samples()}, &view);
+  }
+  if (pose && (options_.skeleton || what.detected != nullptr)) DrawLandmarks(frame, what.detected, *pose, &view);
+  const double caption_height = std::max(9.0, view.height / 48.0);
+  DrawCaption(what.caption, Corner::kTopLeft, caption_height, &view);
+  if (what.detected != nullptr) {
+    DrawCaption({{"detected", CaptionLine::Mark::kDisc, kLeftColour},
+                 {options_.skeleton ? "estimated (bones)" : "estimated", CaptionLine::Mark::kRing, kPaperColour}},
+                Corner::kBottomLeft, caption_height, &view);
+  }
+  if (!side_) return view;
+
+  Image panel = side_backdrop_;
+  DrawSide(frame, &panel);
+  std::vector<CaptionLine> legend = {{"seen from the side"}};
+  if (reference_ != nullptr) {
+    legend = {{"estimate", CaptionLine::Mark::kDisc, kBodyColour},
+              {"truth", CaptionLine::Mark::kDisc, kReferenceColour}};
+  }
+  DrawCaption(legend, Corner::kBottomRight, caption_height, &panel);
+  Image both(width(), height());
+  Paste(view, 0, 0, &both);
+  Paste(panel, view.width, 0, &both);
+  return both;
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The picture by which a track is judged: the projected body over the video (or a plain backdrop), detected and
+/// projected landmarks, a caption, and on request the same body seen from the side, where errors in depth show.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "geometry/body_model.h"
+#include "geometry/observations.h"
+#include "geometry/posed_body.h"
+#include "geometry/track.h"
+#include "render/caption.h"
+#include "render/floor.h"
+#include "render/image.h"
+#include "render/view_camera.h"
+
+namespace bodyloom {
+
+struct OverlayOptions {
+  bool body = true;
+  double alpha = 0.72;        ///< opacity of the body over the video
+  bool part_colours = false;  ///< colour the body by its charts; needs a body with parts
+  bool skeleton = false;      ///< bones between the projected landmarks
+  bool side_view = false;     ///< a second panel to the right, as high as the image
+  bool side_follows = true;   ///< the side camera moves along with the person; false: it sees the whole clip's space
+  double side_yaw_deg = 90;   ///< 90: from the person's left when it faces the camera
+  double side_elevation_deg = 8;
+  double side_aspect = 0.75;                                 ///< width of the panel / its height
+  Eigen::Vector3d up_in_camera = -Eigen::Vector3d::UnitY();  ///< for the side view, when the camera is tilted
+  double min_confidence = 0.1;                               ///< detections below are not drawn
+  /// False with the reason when a field is out of range.
+  bool IsValid(std::string* why) const;
+};
+
+/// What one picture shows besides the body. Pointers are borrowed and may be null.
+struct OverlayFrame {
+  const Image* background = nullptr;           ///< of the camera's size; null: a plain backdrop
+  const KeypointSequence* detected = nullptr;  ///< drawn as discs, the track's own landmarks as rings
+  std::vector<CaptionLine> caption;            ///< top left
+};
+
+class OverlayRenderer {
+ public:
+  /// Borrows everything. `reference`, when given, is the true track: it stands beside the estimate in the side view.
+  /// Throws std::invalid_argument when the track has no image size or no frame, or options are out of range.
+  OverlayRenderer(const BodyModel& body, const Track& track, const OverlayOptions& options = {},
+                  const Track* reference = nullptr);
+
+  /// Size of the pictures, side panel included.
+  [[nodiscard]] int width() const { return track_.camera.width + (side_ ? side_->camera.width : 0); }
+  [[nodiscard]] int height() const { return track_.camera.height; }
+
+  /// Frames that the track has lost show no body. Throws std::invalid_argument when `frame` is not in the track or the
+  /// background has another size than the camera.
+  [[nodiscard]] Image Render(int frame, const OverlayFrame& what) const;
+
+ private:
+  void DrawLandmarks(int frame, const KeypointSequence* detected, const BodyPose& pose, Image* image) const;
+  void PlaceSideView();
+  /// Large pictures need fewer samples a pixel to look smooth.
+  [[nodiscard]] int Samples() const { return track_.camera.height >= 600 ? 2 : 3; }
+  void DrawSide(int frame, Image* panel) const;
+
+  const BodyModel& body_;
+  const Track& track_;
+  const Track* reference_;
+  OverlayOptions options_;
+  std::vector<Colour> face_colours_;
+  std::optional<View> side_;  ///< of a person at the origin when it follows
+  MatrixX3d side_centre_;     ///< T×3: where that origin is
+  Image side_backdrop_;
+  Floor floor_;  ///< camera frame
+};
+
+/// The body of frame t of a track, V×3 in the camera frame; empty when the frame is lost.
+MatrixX3d TrackVertices(const BodyModel& body, const Track& track, int frame);
+
+}  // namespace bodyloom

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/palette.h"
+
+#include <array>
+
+namespace bodyloom {
+
+Colour PartColour(int part) {
+  static constexpr std::array<Colour, 25> kColours = {{
+      {150, 150, 150},                   // none
+      {124, 110, 170}, {172, 158, 214},  // torso back, front
+      {64, 190, 190},  {250, 180, 70},   // right, left hand
+      {250, 200, 110}, {100, 205, 200},  // left, right foot
+      {48, 96, 176},   {200, 74, 66},    // upper legs, back: right, left
+      {84, 140, 222},  {238, 112, 96},   // upper legs, front
+      {46, 122, 160},  {206, 104, 52},   // lower legs, back
+      {84, 170, 208},  {246, 146, 86},   // lower legs, front
+      {236, 96, 120},  {92, 120, 214},   // upper arms, front: left, right
+      {196, 64, 92},   {62, 84, 170},    // upper arms, back
+      {248, 136, 148}, {112, 160, 232},  // lower arms, front
+      {212, 96, 112},  {74, 120, 190},   // lower arms, back
+      {126, 200, 160}, {214, 212, 120},  // head: right, left half
+  }};
+  return kColours[part >= 1 && part <= 24 ? part : 0];
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The colours of the project's pictures.
+#pragma once
+
+#include "render/image.h"
+
+namespace bodyloom {
+
+inline constexpr Colour kBodyColour{122, 166, 218};      ///< the estimated body
+inline constexpr Colour kReferenceColour{226, 150, 92};  ///< the true body, where it is known
+inline constexpr Colour kLeftColour{255, 145, 60};       ///< the person's left side
+inline constexpr Colour kRightColour{40, 170, 235};      ///< the person's right side
+inline constexpr Colour kMiddleColour{250, 220, 110};
+inline constexpr Colour kDetectedColour{80, 220, 120};
+inline constexpr Colour kInkColour{26, 32, 44};
+inline constexpr Colour kPaperColour{248, 249, 251};
+
+/// Colour of a DensePose-style chart 1..24 (grey for 0): warm on the person's left, cool on its right, the back of a
+/// limb darker than its front.
+Colour PartColour(int part);
+
+}  // namespace bodyloom

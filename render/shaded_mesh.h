@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Draws a mesh over an image: smooth shading by vertex normals, dark antialiased outline, transparency.
+#pragma once
+
+#include <vector>
+
+#include "geometry/arrays.h"
+#include "geometry/camera.h"
+#include "render/image.h"
+#include "render/palette.h"
+
+namespace bodyloom {
+
+struct MeshStyle {
+  Colour colour = kBodyColour;
+  std::vector<Colour> face_colours = {};  ///< F colours instead of `colour`, or empty
+  double alpha = 1;                       ///< opacity of the surface
+  double outline_px = 1.4;     ///< width of the line along silhouettes and where a limb hides another; 0: none
+  double outline_alpha = 0.9;  ///< opacity of that line
+  int samples = 3;             ///< samples a pixel along x and y
+};
+
+/// Area-weighted unit normals (V×3), outwards for counter-clockwise faces; zero where all faces of a vertex vanish.
+MatrixX3d VertexNormals(const MatrixX3d& vertices, const MatrixX3i& faces);
+
+/// Draws the mesh (vertices in the camera frame, metres) as `camera` sees it onto an image of the camera's size. Lit
+/// from the upper left of the viewer. Only the mesh's box is touched. Throws std::invalid_argument when sizes differ.
+void DrawMesh(const MatrixX3d& vertices_in_camera, const MatrixX3i& faces, const Camera& camera, const MeshStyle& style,
+              Image* image);
+
+}  // namespace bodyloom
