@@ -123,7 +123,7 @@ OverlaySummary WriteOverlayVideo(const std::string& path, const OverlayVideo& wh
       frame.background = frames->At(index);
       summary.frames_without_video += frame.background == nullptr;
     }
-    frame.caption = {{Concatenate("frame ", t, ", ", ToString(track.frame_status[t])), false, {}}};
+    frame.caption = {{Concatenate("frame ", t, ", ", ToString(track.frame_status[t])), CaptionLine::Mark::kNone, {}}};
     Image picture = renderer.Render(t, frame);
     writer.Write(picture);
     if (what.num_stills > 0 && std::find(stills.begin(), stills.end(), t) != stills.end()) {
