@@ -47,7 +47,7 @@ struct OverlayOptions {
 struct OverlayFrame {
   const Image* background = nullptr;           ///< of the camera's size; null: a plain backdrop
   const KeypointSequence* detected = nullptr;  ///< drawn as discs, the track's own landmarks as rings
-  std::vector<CaptionLine> caption;            ///< top left
+  std::vector<CaptionLine> caption = {};       ///< top left
 };
 
 class OverlayRenderer {
