@@ -8,6 +8,7 @@
 
 #include "data_tools/body_codec.h"
 #include "data_tools/body_posedirs_codec.h"
+#include "data_tools/formats/printable.h"
 #include "data_tools/formats/zip.h"
 #include "geometry/check.h"
 
@@ -130,7 +131,9 @@ class Reader {
   [[nodiscard]] std::vector<std::string> Texts(const std::string& name) const {
     const NdArray& array = Array(name);
     if (!array.is_text()) Fail(name, "expected text");
-    return array.ToStrings();
+    std::vector<std::string> texts = array.ToStrings();
+    if (!std::all_of(texts.begin(), texts.end(), IsOneLine)) Fail(name, "control characters");
+    return texts;
   }
   [[nodiscard]] std::vector<double> Numbers(const std::string& name, int64_t expected) const {
     const NdArray& array = Array(name);
@@ -271,7 +274,7 @@ BodyModelData BodyFromCompact(const NpzArrays& arrays, const std::string& where,
   const Reader in(arrays, where);
   const std::vector<std::string> format = in.Texts("format");
   if (format.size() != 1 || format[0] != kFormat) {
-    in.Fail("format", Concatenate("'", format.empty() ? "" : format[0].substr(0, 40), "', expected '", kFormat, "'"));
+    in.Fail("format", Concatenate("'", format.empty() ? "" : PrintableText(format[0]), "', expected '", kFormat, "'"));
   }
   BodyModelData body;
   const std::vector<std::string> name = in.Texts("name");

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "data_tools/body_landmarks.h"
+#include "data_tools/formats/printable.h"
 #include "geometry/check.h"
 
 namespace bodyloom {
@@ -154,6 +155,7 @@ std::vector<Landmark> ReadLandmarks(const NamedArrays& arrays, int64_t V) {
   if (names == nullptr) return {};
   if (!names->is_text() || names->shape.size() != 1) arrays.Fail("landmark_names: expected a list of names");
   const std::vector<std::string> texts = names->ToStrings();
+  if (!std::all_of(texts.begin(), texts.end(), IsOneLine)) arrays.Fail("landmark_names: control characters");
   const auto n = static_cast<int64_t>(texts.size());
   const std::vector<int64_t> begin = Integers(arrays, "landmark_indptr", arrays.Require("landmark_indptr", {n + 1}));
   const std::vector<int64_t> index = Integers(arrays, "landmark_indices", arrays.Require("landmark_indices", {-1}));
@@ -199,9 +201,9 @@ const NdArray* NamedArrays::Find(const std::string& name) const {
 const NdArray& NamedArrays::Require(const std::string& name, const std::vector<int64_t>& shape) const {
   const NdArray* array = Find(name);
   if (array == nullptr) {
-    std::string keys;
-    for (const auto& [key, value] : arrays_) keys += (keys.empty() ? "" : ", ") + key;
-    Fail("no array '" + name + "', expected that of a body model; it holds " + (keys.empty() ? "no arrays" : keys));
+    std::vector<std::string> names;
+    for (const auto& [key, value] : arrays_) names.push_back(key);
+    Fail("no array '" + name + "', expected that of a body model; it holds " + PrintableList(names));
   }
   bool fits = array->is_number() && array->shape.size() == shape.size();
   std::string expected;

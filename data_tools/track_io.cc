@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "data_tools/formats/atomic_file.h"
-#include "data_tools/formats/npz.h"
+#include "data_tools/formats/printable.h"
 #include "geometry/check.h"
 
 namespace bodyloom {
@@ -109,7 +109,9 @@ class TrackReader {
   [[nodiscard]] std::string Text(const std::string& name) const {
     const NdArray& array = RequireArray(arrays_, name, where_);
     if (!array.is_text() || array.num_elements() != 1) Fail(name + ": expected one text");
-    return array.ToStrings().front();
+    std::string text = array.ToStrings().front();
+    if (!IsOneLine(text) || text.size() > 1000) Fail(name + ": expected one line of text");
+    return text;
   }
 
   void ReadMotion() {
@@ -304,9 +306,10 @@ void WriteTrack(const std::string& path, const Track& track) {
   WriteNpz(path, arrays);
 }
 
+Track TrackFromArrays(const NpzArrays& arrays, const std::string& where) { return TrackReader(arrays, where).Read(); }
+
 Track ReadTrackBytes(const std::string& bytes, const std::string& where) {
-  const NpzArrays arrays = ReadNpzBytes(bytes, where);
-  return TrackReader(arrays, where).Read();
+  return TrackFromArrays(ReadNpzBytes(bytes, where), where);
 }
 
 Track ReadTrack(const std::string& path) { return ReadTrackBytes(ReadFileBytes(path), path); }

@@ -20,6 +20,7 @@
 
 #include <string>
 
+#include "data_tools/formats/npz.h"
 #include "geometry/track.h"
 
 namespace bodyloom {
@@ -31,7 +32,8 @@ void WriteTrack(const std::string& path, const Track& track);
 /// Throws std::runtime_error naming file, member, what it holds and what was expected.
 Track ReadTrack(const std::string& path);
 
-/// The same from a file's bytes; `where` names it in messages.
+/// The same from a file's bytes or arrays; `where` names it in messages.
+Track TrackFromArrays(const NpzArrays& arrays, const std::string& where);
 Track ReadTrackBytes(const std::string& bytes, const std::string& where);
 
 }  // namespace bodyloom

@@ -61,7 +61,7 @@ void DrawCaption(const std::vector<CaptionLine>& lines, Corner corner, double he
   const auto line_width = [&](const CaptionLine& line, double cap_px) {
     int baseline = 0;
     const double text = cv::getTextSize(Printable(line.text), kFont, cap_px * kFine / kCapHeight, 1, &baseline).width;
-    return text / kFine + (line.has_key ? 1.5 * cap_px : 0.0);
+    return text / kFine + (line.mark != CaptionLine::Mark::kNone ? 1.5 * cap_px : 0.0);
   };
   double widest = 0;
   for (const CaptionLine& line : lines) widest = std::max(widest, line_width(line, cap));
@@ -89,11 +89,13 @@ void DrawCaption(const std::vector<CaptionLine>& lines, Corner corner, double he
   for (size_t i = 0; i < lines.size(); ++i) {
     const int baseline = padding + static_cast<int>(i) * step + static_cast<int>(std::lround(cap));
     int x = padding;
-    if (lines[i].has_key) {
+    if (lines[i].mark != CaptionLine::Mark::kNone) {
       cv::Mat dot(height * kFine, width * kFine, CV_8UC1, cv::Scalar(0));
       cv::circle(dot, cv::Point(int((x + 0.45 * cap) * kFine), int((baseline - 0.5 * cap) * kFine)),
-                 static_cast<int>(0.42 * cap * kFine), 255, cv::FILLED);
-      Tint(Shrunk(dot), lines[i].key, 1, target);
+                 static_cast<int>(0.42 * cap * kFine), 255,
+                 lines[i].mark == CaptionLine::Mark::kDisc ? int{cv::FILLED}
+                                                           : std::max(1, static_cast<int>(0.16 * cap * kFine)));
+      Tint(Shrunk(dot), lines[i].colour, 1, target);
       x += static_cast<int>(std::lround(1.5 * cap));
     }
     cv::putText(letters, Printable(lines[i].text), {x * kFine, baseline * kFine}, kFont, cap * kFine / kCapHeight, 255,

@@ -11,11 +11,12 @@ namespace bodyloom {
 
 enum class Corner { kTopLeft, kTopRight, kBottomLeft, kBottomRight };
 
-/// A line of a caption, with an optional coloured dot before it (a legend's key).
+/// A line of a caption, with an optional coloured mark before it (a legend's key).
 struct CaptionLine {
+  enum class Mark { kNone, kDisc, kRing };
   std::string text;  ///< ASCII; other bytes are drawn as '?'
-  bool has_key = false;
-  Colour key;
+  Mark mark = Mark::kNone;
+  Colour colour = {};
 };
 
 /// Draws the lines, left aligned, letters about height_px high (0: 1/45 of the image's smaller side, at least 9 px). A

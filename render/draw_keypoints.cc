@@ -126,8 +126,9 @@ void DrawKeypoints(const DrawnKeypoints& keypoints, const KeypointStyle& style, 
       const Colour colour = SideColour(keypoints.names[k], keypoints.names[k]);
       const auto fixed = [&](double radius) { return static_cast<int>(std::lround(radius * (1 << kShift))); };
       if (style.hollow) {
-        cv::circle(mat, p, fixed(r), ScalarOf(kInkColour), width + 2, cv::LINE_AA, kShift);
-        cv::circle(mat, p, fixed(r), ScalarOf(kPaperColour), width, cv::LINE_AA, kShift);
+        const int ring = std::max(1, static_cast<int>(std::lround(0.35 * r)));
+        cv::circle(mat, p, fixed(r), ScalarOf(kInkColour), ring + 2, cv::LINE_AA, kShift);
+        cv::circle(mat, p, fixed(r), ScalarOf(kPaperColour), ring, cv::LINE_AA, kShift);
       } else {
         cv::circle(mat, p, fixed(r + 1.2), ScalarOf(kInkColour), cv::FILLED, cv::LINE_AA, kShift);
         cv::circle(mat, p, fixed(r), ScalarOf(colour), cv::FILLED, cv::LINE_AA, kShift);

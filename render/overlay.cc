@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "geometry/check.h"
 #include "geometry/posed_body.h"
@@ -21,12 +22,39 @@ std::optional<BodyPose> PoseOf(const BodyModel& body, const Track& track, int fr
   return PoseFromAxisAngle(body, motion.poses.row(frame).transpose(), motion.trans.row(frame).transpose());
 }
 
-/// Joints of all frames of a track that are known, for framing.
-void AppendJoints(const BodyModel& body, const Track& track, std::vector<MatrixX3d>* joints) {
+/// Joints of the frames of a track; no rows where a frame is lost.
+std::vector<MatrixX3d> JointsOf(const BodyModel& body, const Track& track) {
   const MatrixX3d rest = body.RestJoints(track.motion.betas);
+  std::vector<MatrixX3d> joints(track.num_frames());
   for (int t = 0; t < track.num_frames(); ++t) {
-    if (const auto pose = PoseOf(body, track, t)) joints->push_back(PoseSkeleton(body, rest, *pose).joints);
+    if (const auto pose = PoseOf(body, track, t)) joints[t] = PoseSkeleton(body, rest, *pose).joints;
   }
+  return joints;
+}
+
+/// The root's path blurred over about a second, so that a camera on it moves smoothly; lost frames are bridged.
+MatrixX3d SmoothRootPath(const std::vector<MatrixX3d>& joints, const std::vector<double>& times) {
+  constexpr double kBlur_s = 0.35;
+  const int T = static_cast<int>(joints.size());
+  std::vector<int> known;
+  for (int t = 0; t < T; ++t) {
+    if (joints[t].rows() > 0) known.push_back(t);
+  }
+  MatrixX3d path = MatrixX3d::Zero(T, 3);
+  size_t first = 0;
+  for (int t = 0; t < T; ++t) {
+    while (first + 1 < known.size() && times[known[first]] < times[t] - 3 * kBlur_s) ++first;
+    Vector3d sum = Vector3d::Zero();
+    double weights = 0;
+    for (size_t i = first; i < known.size() && (i == first || times[known[i]] < times[t] + 3 * kBlur_s); ++i) {
+      const double lag = (times[known[i]] - times[t]) / kBlur_s;
+      const double weight = std::max(std::exp(-0.5 * lag * lag), 1e-9);  // in a long gap the nearest frame still counts
+      sum += weight * joints[known[i]].row(0).transpose();
+      weights += weight;
+    }
+    path.row(t) = (sum / weights).transpose();
+  }
+  return path;
 }
 
 }  // namespace
@@ -58,36 +86,52 @@ OverlayRenderer::OverlayRenderer(const BodyModel& body, const Track& track, cons
   BODYLOOM_CHECK(options.IsValid(&why), why);
   BODYLOOM_CHECK(track.camera.width > 0 && track.camera.height > 0, "overlay: the track's camera has no image size");
   BODYLOOM_CHECK(track.num_frames() > 0, "overlay: the track has no frames");
-  BODYLOOM_CHECK(!options.part_colours || body.has_parts(), "overlay: the body '", body.name(),
+  BODYLOOM_CHECK(options.colours == BodyColours::kPlain || body.has_parts(), "overlay: the body '", body.name(),
                  "' has no parts to colour");
-  if (options.part_colours) {
-    for (const uint8_t part : body.data().face_part) face_colours_.push_back(PartColour(part));
+  if (options.colours != BodyColours::kPlain) {
+    for (const uint8_t part : body.data().face_part) {
+      face_colours_.push_back(options.colours == BodyColours::kParts ? PartColour(part) : ClothesColour(part));
+    }
   }
-  if (!options.side_view) return;
-  std::vector<MatrixX3d> joints;
-  AppendJoints(body, track, &joints);
-  if (reference != nullptr) AppendJoints(body, *reference, &joints);
-  BODYLOOM_CHECK(!joints.empty(), "overlay: no frame of the track is known, there is nothing to see from the side");
-  const int side_width = 2 * static_cast<int>(std::lround(0.5 * track.camera.height * options.side_aspect));
-  side_ = OrbitView(joints, side_width, track.camera.height,
-                    {.yaw_deg = options.side_yaw_deg,
-                     .elevation_deg = options.side_elevation_deg,
-                     .up_in_camera = options.up_in_camera});
-  // The floor lies under the lowest joint, which is an ankle or a foot, about 4 cm below it.
-  const Vector3d up = options.up_in_camera.normalized();
+  backdrop_ = StudioBackdrop(track.camera.width, track.camera.height);
+  const std::vector<MatrixX3d> joints = JointsOf(body, track);
+  const std::vector<MatrixX3d> leaders = reference != nullptr ? JointsOf(body, *reference) : joints;
+  FindFloor(leaders);
+  if (options.side_view) PlaceSideView(joints, leaders);
+}
+
+void OverlayRenderer::FindFloor(const std::vector<MatrixX3d>& joints) {
+  // It lies under the lowest joint, which is an ankle or a foot, a few centimetres below it.
+  const Vector3d up = options_.up_in_camera.normalized();
   double lowest = std::numeric_limits<double>::infinity();
-  Vector3d sum = Vector3d::Zero();
   for (const MatrixX3d& frame : joints) {
-    lowest = std::min(lowest, (frame * up).minCoeff());
-    sum += frame.row(0).transpose();
+    if (frame.rows() > 0) lowest = std::min(lowest, (frame * up).minCoeff());
   }
-  const Vector3d middle = sum / static_cast<double>(joints.size());
-  const Eigen::Matrix3d& R = side_->from_camera.camera_from_world_rotation;
-  side_floor_.up = R * up;
-  side_floor_.point =
-      R * (middle + (lowest - 0.04 - middle.dot(up)) * up) + side_->from_camera.camera_from_world_translation;
+  if (std::isfinite(lowest)) floor_ = Floor{(lowest - 0.04) * up, up};
+}
+
+void OverlayRenderer::PlaceSideView(const std::vector<MatrixX3d>& joints, const std::vector<MatrixX3d>& leaders) {
+  const auto is_known = [](const MatrixX3d& frame) { return frame.rows() > 0; };
+  BODYLOOM_CHECK(std::any_of(leaders.begin(), leaders.end(), is_known),
+                 "overlay: no frame of the track is known, there is nothing to see from the side");
+  BODYLOOM_CHECK(leaders.size() == joints.size() && track_.motion.timestamps.size() == joints.size(),
+                 "overlay: the track has ", joints.size(), " frames and ", track_.motion.timestamps.size(),
+                 " timestamps, its reference ", leaders.size(), " frames");
+  side_centre_ = SmoothRootPath(leaders, track_.motion.timestamps);
+  if (!options_.side_follows) side_centre_.rowwise() = Eigen::RowVector3d(side_centre_.colwise().mean());
+
+  std::vector<MatrixX3d> around_centre;
+  for (size_t t = 0; t < joints.size(); ++t) {
+    const auto centre = side_centre_.row(static_cast<Eigen::Index>(t));
+    if (is_known(joints[t])) around_centre.push_back(joints[t].rowwise() - centre);
+    if (is_known(leaders[t])) around_centre.push_back(leaders[t].rowwise() - centre);
+  }
+  const int side_width = 2 * static_cast<int>(std::lround(0.5 * track_.camera.height * options_.side_aspect));
+  side_ = OrbitView(around_centre, side_width, track_.camera.height,
+                    {.yaw_deg = options_.side_yaw_deg,
+                     .elevation_deg = options_.side_elevation_deg,
+                     .up_in_camera = options_.up_in_camera});
   side_backdrop_ = StudioBackdrop(side_->camera.width, side_->camera.height);
-  DrawFloorGrid(side_floor_, side_floor_.point, {}, side_->camera, &side_backdrop_);
 }
 
 void OverlayRenderer::DrawLandmarks(int frame, const KeypointSequence* detected, const BodyPose& pose,
@@ -120,29 +164,48 @@ void OverlayRenderer::DrawLandmarks(int frame, const KeypointSequence* detected,
     seen.confidence.push_back(p.confidence);
   }
   if (!options_.skeleton) DrawKeypoints(projected, {.size_px = 1.25 * size, .bones = false, .hollow = true}, image);
-  DrawResiduals(seen, projected, 0.5 * size, image);
+  DrawResiduals(seen, projected, 0.4 * size, image);
   DrawKeypoints(seen, {.size_px = 0.8 * size, .bones = false}, image);
 }
 
 void OverlayRenderer::DrawSide(int frame, Image* panel) const {
   const MatrixX3i& faces = body_.data().faces;
+  View view = *side_;
+  const Eigen::Matrix3d& R = view.from_camera.camera_from_world_rotation;
+  view.from_camera.camera_from_world_translation -= R * side_centre_.row(frame).transpose();
+  const Vector3d& t = view.from_camera.camera_from_world_translation;
+  const Floor floor{R * floor_->point + t, R * floor_->up};
+  DrawFloorGrid(floor, R * side_centre_.row(frame).transpose() + t, {}, view.camera, panel);
+
   const auto draw = [&](const MatrixX3d& vertices_in_camera, const MeshStyle& style) {
     if (vertices_in_camera.rows() == 0) return;
-    const MatrixX3d vertices = side_->Apply(vertices_in_camera);
-    DrawShadow(vertices, faces, side_floor_, side_->camera, 0.3, panel);
-    DrawMesh(vertices, faces, side_->camera, style, panel);
+    const MatrixX3d vertices = view.Apply(vertices_in_camera);
+    DrawShadow(vertices, faces, floor, view.camera, 0.3, panel);
+    DrawMesh(vertices, faces, view.camera, style, panel);
   };
-  if (reference_ != nullptr && frame < reference_->num_frames()) {
-    draw(TrackVertices(body_, *reference_, frame), {.colour = kReferenceColour});
+  if (reference_ != nullptr) {
+    draw(TrackVertices(body_, *reference_, frame), {.colour = kReferenceColour, .samples = Samples()});
   }
   const double alpha = reference_ != nullptr ? options_.alpha : 1;
-  draw(TrackVertices(body_, track_, frame), {.face_colours = face_colours_, .alpha = alpha});
+  draw(TrackVertices(body_, track_, frame), {.face_colours = face_colours_, .alpha = alpha, .samples = Samples()});
+}
+
+Image OverlayRenderer::Backdrop(const MatrixX3d& vertices, const Camera& camera) const {
+  Image image = backdrop_;
+  if (!options_.floor || !floor_ || camera.model != CameraModel::kPinhole) return image;
+  if (vertices.rows() == 0) return image;
+  const Vector3d centre = vertices.colwise().mean().transpose();
+  DrawFloorGrid(*floor_, centre, {}, camera, &image);
+  if (options_.body) DrawShadow(vertices, body_.data().faces, *floor_, camera, 0.35, &image);
+  return image;
 }
 
 Image OverlayRenderer::Render(int frame, const OverlayFrame& what) const {
   BODYLOOM_CHECK(frame >= 0 && frame < track_.num_frames(), "frame ", frame, " is outside the track's ",
                  track_.num_frames(), " frames");
   const Camera camera = track_.CameraAt(frame);
+  const auto pose = PoseOf(body_, track_, frame);
+  const MatrixX3d vertices = pose ? PoseVertices(body_, track_.motion.betas, *pose) : MatrixX3d(0, 3);
   Image view;
   if (what.background != nullptr) {
     BODYLOOM_CHECK(what.background->width == camera.width && what.background->height == camera.height,
@@ -150,23 +213,31 @@ Image OverlayRenderer::Render(int frame, const OverlayFrame& what) const {
                    camera.width, "x", camera.height);
     view = *what.background;
   } else {
-    view = StudioBackdrop(camera.width, camera.height);
+    view = Backdrop(vertices, camera);
   }
-  const auto pose = PoseOf(body_, track_, frame);
   if (pose && options_.body) {
     const double alpha = what.background != nullptr ? options_.alpha : 1;
-    DrawMesh(PoseVertices(body_, track_.motion.betas, *pose), body_.data().faces, camera,
-             {.face_colours = face_colours_, .alpha = alpha}, &view);
+    DrawMesh(vertices, body_.data().faces, camera,
+             {.face_colours = face_colours_, .alpha = alpha, .samples = Samples()}, &view);
   }
   if (pose && (options_.skeleton || what.detected != nullptr)) DrawLandmarks(frame, what.detected, *pose, &view);
-  DrawCaption(what.caption, Corner::kTopLeft, 0, &view);
+  const double caption_height = std::max(9.0, view.height / 48.0);
+  DrawCaption(what.caption, Corner::kTopLeft, caption_height, &view);
+  if (what.detected != nullptr) {
+    DrawCaption({{"detected", CaptionLine::Mark::kDisc, kLeftColour},
+                 {options_.skeleton ? "estimated (bones)" : "estimated", CaptionLine::Mark::kRing, kPaperColour}},
+                Corner::kBottomLeft, caption_height, &view);
+  }
   if (!side_) return view;
 
   Image panel = side_backdrop_;
   DrawSide(frame, &panel);
-  std::vector<CaptionLine> legend = {{"seen from the side", false, {}}};
-  if (reference_ != nullptr) legend = {{"estimate", true, kBodyColour}, {"truth", true, kReferenceColour}};
-  DrawCaption(legend, Corner::kBottomRight, 0, &panel);
+  std::vector<CaptionLine> legend = {{"seen from the side"}};
+  if (reference_ != nullptr) {
+    legend = {{"estimate", CaptionLine::Mark::kDisc, kBodyColour},
+              {"truth", CaptionLine::Mark::kDisc, kReferenceColour}};
+  }
+  DrawCaption(legend, Corner::kBottomRight, caption_height, &panel);
   Image both(width(), height());
   Paste(view, 0, 0, &both);
   Paste(panel, view.width, 0, &both);

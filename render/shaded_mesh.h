@@ -14,10 +14,10 @@ namespace bodyloom {
 struct MeshStyle {
   Colour colour = kBodyColour;
   std::vector<Colour> face_colours = {};  ///< F colours instead of `colour`, or empty
-  double alpha = 1;                  ///< opacity of the surface
-  double outline_px = 1.4;           ///< width of the line along silhouettes and where a limb hides another; 0: none
-  double outline_alpha = 0.9;        ///< opacity of that line
-  int samples = 3;                   ///< samples a pixel along x and y
+  double alpha = 1;                       ///< opacity of the surface
+  double outline_px = 1.4;     ///< width of the line along silhouettes and where a limb hides another; 0: none
+  double outline_alpha = 0.9;  ///< opacity of that line
+  int samples = 3;             ///< samples a pixel along x and y
 };
 
 /// Area-weighted unit normals (V×3), outwards for counter-clockwise faces; zero where all faces of a vertex vanish.

@@ -15,9 +15,11 @@
 #include "geometry/posed_body.h"
 #include "geometry/rotation.h"
 #include "tracking/initialise/initial_states.h"
+#include "tracking/initialise/swap_repair.h"
 #include "tracking/observability.h"
 #include "tracking/sequence_problem.h"
 #include "tracking/track_result.h"
+#include "tracking/uncertainty.h"
 
 namespace bodyloom {
 namespace {
@@ -134,11 +136,18 @@ std::string ToString(SolveStatus status) {
   return "failure";
 }
 
-TrackSequenceResult TrackSequence(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
-  CheckInput(input, options);
-  const BodyModel& model = *input.body;
+TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSequenceOptions& options) {
+  CheckInput(given, options);
+  const BodyModel& model = *given.body;
   TrackSequenceResult result;
   TrackSequenceSummary& summary = result.summary;
+  TrackSequenceInput input = given;
+  KeypointSequence repaired;
+  if (given.keypoints != nullptr) {
+    repaired = *given.keypoints;
+    summary.num_swaps_repaired = RepairSwaps(&repaired);
+    input.keypoints = &repaired;
+  }
   summary.solver = options.solver;
   summary.plan = PlanTrackSequence(input, options);
   StageClock clock(&summary);
@@ -155,7 +164,7 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& input, const TrackSe
   problem.layout = FrameLayout::Make(model, options.camera_knowledge, camera, active, num_betas);
   problem.timestamps = Timestamps(input);
   const size_t T = problem.timestamps.size();
-  problem.cut_before.assign(T, 0);
+  problem.cut_before = input.keypoints != nullptr ? FindCuts(*input.keypoints) : std::vector<char>(T, 0);
   problem.betas = VectorXd::Zero(num_betas);
   problem.log_focal = problem.log_focal_prior = std::log(camera.fx);
   std::optional<MixturePrior> prior;
@@ -248,6 +257,18 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& input, const TrackSe
 
   FillTrack(input, problem, landmarks, &result);
   clock.Book("finish");
+  if (options.estimate_uncertainty) {
+    // On the coarse frames: neighbours' detection errors are not independent, and their joints' spread changes slowly.
+    const RowMatrixXd sigma = JointPositionSigma(SelectFrames(problem, coarse_frames));
+    for (size_t i = 0, t = 0; t < T; ++t) {
+      while (i + 1 < coarse_frames.size() && std::abs(problem.timestamps[coarse_frames[i + 1]] - problem.timestamps[t]) <=
+                                                 std::abs(problem.timestamps[coarse_frames[i]] - problem.timestamps[t])) {
+        ++i;
+      }
+      result.track.joint_sigma.row(t) = sigma.row(i);
+    }
+    clock.Book("uncertainty");
+  }
   return result;
 }
 

@@ -10,6 +10,7 @@
 
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/formats/element_type.h"
+#include "data_tools/formats/printable.h"
 #include "data_tools/formats/zip.h"
 #include "geometry/check.h"
 
@@ -39,7 +40,8 @@ class HeaderParser {
       const std::string key = Text("a key");
       Expect(':');
       const int index = key == "descr" ? 0 : key == "fortran_order" ? 1 : key == "shape" ? 2 : -1;
-      if (index < 0 || seen[index]) Fail("the keys descr, fortran_order and shape, once each; found '" + key + "'");
+      if (index < 0 || seen[index])
+        Fail("the keys descr, fortran_order and shape, once each; found '" + PrintableText(key) + "'");
       seen[index] = true;
       if (index == 0) header.descr = Take('[') ? "structure" + Bracketed() : Text("an element type such as '<f8'");
       if (index == 1) header.fortran_order = Boolean();
@@ -162,24 +164,9 @@ NdArray ParseNpy(std::string_view bytes, const std::string& where) {
 
 void RequireReadable(const NdArray& array, const std::string& where) {
   if (array.dtype != DType::kOther) return;
-  throw std::runtime_error(where + ": elements of type '" + array.bytes +
+  throw std::runtime_error(where + ": elements of type '" + PrintableText(array.bytes) +
                            "', expected numbers or text (pickled objects, structures, complex numbers and dates are "
                            "never read)");
-}
-
-std::string NpyBytes(const NdArray& array) {
-  std::string header = "{'descr': '" + ElementTypeText(array) + "', 'fortran_order': False, 'shape': (";
-  for (size_t d = 0; d < array.shape.size(); ++d) {
-    header += std::to_string(array.shape[d]) + (d + 1 < array.shape.size() ? ", " : "");
-  }
-  header += array.shape.size() == 1 ? ",), }" : "), }";
-  // The data starts at a multiple of 64 bytes so that it can be mapped; the padding ends in a line break.
-  header.append(63 - (kMagic.size() + 4 + header.size()) % 64, ' ');
-  header.push_back('\n');
-  BODYLOOM_CHECK(header.size() < kMaxHeader, "array of rank ", array.shape.size(), ", expected at most 32");
-  std::string bytes(kMagic);
-  bytes += {'\x01', '\x00', static_cast<char>(header.size() & 255), static_cast<char>(header.size() >> 8)};
-  return bytes + header + array.bytes;
 }
 
 }  // namespace
@@ -190,7 +177,7 @@ NpzArrays ReadNpzBytes(const std::string& bytes, const std::string& where, size_
     std::string name = member.name;
     if (name.size() < 4 || name.substr(name.size() - 4) != ".npy") continue;
     name.resize(name.size() - 4);
-    arrays[name] = ParseNpy(member.bytes, where + ": '" + name + "'");
+    arrays[name] = ParseNpy(member.bytes, where + ": '" + PrintableText(name) + "'");
     std::string().swap(member.bytes);  // so that packed, unpacked and parsed copies do not add up
   }
   return arrays;
@@ -208,13 +195,30 @@ NdArray ReadNpyBytes(const std::string& bytes, const std::string& where) {
 
 NdArray ReadNpy(const std::string& path) { return ReadNpyBytes(ReadFileBytes(path), path); }
 
-void WriteNpz(const std::string& path, const NpzArrays& arrays) {
+std::string NpzBytes(const NpzArrays& arrays) {
   std::vector<ZipMember> members;
   for (const auto& [name, array] : arrays) {
-    BODYLOOM_CHECK(array.dtype != DType::kOther, "array '", name, "' has no contents to write");
     members.push_back({name + ".npy", NpyBytes(array)});
   }
-  WriteFileAtomically(path, MakeZip(members));
+  return MakeZip(members);
+}
+
+void WriteNpz(const std::string& path, const NpzArrays& arrays) { WriteFileAtomically(path, NpzBytes(arrays)); }
+
+std::string NpyBytes(const NdArray& array) {
+  BODYLOOM_CHECK(array.dtype != DType::kOther, "an array of elements '", array.bytes, "' has no contents to write");
+  std::string header = "{'descr': '" + ElementTypeText(array) + "', 'fortran_order': False, 'shape': (";
+  for (size_t d = 0; d < array.shape.size(); ++d) {
+    header += std::to_string(array.shape[d]) + (d + 1 < array.shape.size() ? ", " : "");
+  }
+  header += array.shape.size() == 1 ? ",), }" : "), }";
+  // The data starts at a multiple of 64 bytes so that it can be mapped; the padding ends in a line break.
+  header.append(63 - (kMagic.size() + 4 + header.size()) % 64, ' ');
+  header.push_back('\n');
+  BODYLOOM_CHECK(header.size() < kMaxHeader, "array of rank ", array.shape.size(), ", expected at most 32");
+  std::string bytes(kMagic);
+  bytes += {'\x01', '\x00', static_cast<char>(header.size() & 255), static_cast<char>(header.size() >> 8)};
+  return bytes + header + array.bytes;
 }
 
 void WriteNpy(const std::string& path, const NdArray& array) { WriteFileAtomically(path, NpyBytes(array)); }
@@ -225,9 +229,9 @@ const NdArray& RequireArray(const NpzArrays& arrays, const std::string& name, co
     RequireReadable(it->second, where + ": '" + name + "'");
     return it->second;
   }
-  std::string keys;
-  for (const auto& [key, array] : arrays) keys += (keys.empty() ? "" : ", ") + key;
-  throw std::runtime_error(where + ": no array '" + name + "'; it holds " + (keys.empty() ? "nothing" : keys));
+  std::vector<std::string> names;
+  for (const auto& [key, array] : arrays) names.push_back(key);
+  throw std::runtime_error(where + ": no array '" + name + "'; it holds " + PrintableList(names));
 }
 
 }  // namespace bodyloom

@@ -24,7 +24,9 @@ NdArray ReadNpy(const std::string& path);
 NdArray ReadNpyBytes(const std::string& bytes, const std::string& where);
 
 /// Deflated, deterministic (entries in name order, fixed dates), written whole or not at all.
+std::string NpzBytes(const NpzArrays& arrays);
 void WriteNpz(const std::string& path, const NpzArrays& arrays);
+std::string NpyBytes(const NdArray& array);
 void WriteNpy(const std::string& path, const NdArray& array);
 
 /// The array `name` (numbers or text), or std::runtime_error naming `where`, the key, and the keys present.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/printable.h"
 #include "geometry/check.h"
 
 namespace bodyloom {
@@ -59,11 +60,12 @@ class ObjParser {
 
   void ReadNumbers(int n, std::vector<double>* out) {
     for (int i = 0; i < n; ++i) {
-      const std::string_view word = Word();
+      std::string_view word = Word();
+      if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);  // from_chars takes no plus
       double value = 0;
       const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
       if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) {
-        Fail(Concatenate("'", word.substr(0, 40), "', expected ", n, " finite numbers"));
+        Fail(Concatenate("'", PrintableText(word), "', expected ", n, " finite numbers"));
       }
       out->push_back(value);
     }
@@ -74,7 +76,7 @@ class ObjParser {
     int value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size()) {
-      Fail(Concatenate("'", text.substr(0, 40), "', expected the number of a ", what));
+      Fail(Concatenate("'", PrintableText(text), "', expected the number of a ", what));
     }
     const int index = value < 0 ? count + value : value - 1;
     if (value == 0 || index < 0 || index >= count) {

@@ -13,6 +13,7 @@
 
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/formats/pickle_node.h"
+#include "data_tools/formats/printable.h"
 #include "data_tools/formats/utf8.h"
 #include "geometry/check.h"
 
@@ -596,14 +597,6 @@ PickleNodePtr PickleContext::New(Kind kind) {
   node->kind = kind;
   nodes.push_back(node);
   return node;
-}
-
-std::string PrintableText(std::string_view text) {
-  std::string printable(text.substr(0, 80));
-  for (char& c : printable) {
-    if (static_cast<unsigned char>(c) < 32 || static_cast<unsigned char>(c) > 126) c = '?';
-  }
-  return printable + (text.size() > 80 ? "…" : "");
 }
 
 PicklePtr ReadPickle(const std::string& bytes, const std::string& where, const PickleLimits& limits) {

@@ -75,7 +75,4 @@ PickleNodePtr CallPickleGlobal(PickleContext* context, const PickleNode& callabl
 /// Gives `object` its state (opcode BUILD). Sparse matrices and chumpy objects become plain arrays here.
 void SetPickleState(PickleContext* context, PickleNode* object, const PicklePtr& state);
 
-/// For messages: text cut to 80 characters, control characters replaced.
-std::string PrintableText(std::string_view text);
-
 }  // namespace bodyloom

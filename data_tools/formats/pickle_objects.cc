@@ -7,6 +7,7 @@
 
 #include "data_tools/formats/element_type.h"
 #include "data_tools/formats/pickle_node.h"
+#include "data_tools/formats/printable.h"
 #include "geometry/check.h"
 
 namespace bodyloom {

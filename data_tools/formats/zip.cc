@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "data_tools/formats/printable.h"
 #include "geometry/check.h"
 
 namespace bodyloom {
@@ -93,12 +94,12 @@ void ApplyZip64(const Bytes& in, size_t extra, size_t extra_size, Entry* entry) 
   while (extra + 4 <= end) {
     const uint64_t id = in.U16(extra), size = in.U16(extra + 2);
     extra += 4;
-    if (size > end - extra) in.Fail("member '" + entry->name + "': its extra field is cut off");
+    if (size > end - extra) in.Fail("member '" + PrintableText(entry->name) + "': its extra field is cut off");
     if (id == kZip64Extra) {
       size_t at = extra;
       for (uint64_t* field : {&entry->size, &entry->packed_size, &entry->header}) {
         if (*field != kIn64) continue;
-        if (at + 8 > extra + size) in.Fail("member '" + entry->name + "': its zip64 record is cut off");
+        if (at + 8 > extra + size) in.Fail("member '" + PrintableText(entry->name) + "': its zip64 record is cut off");
         *field = in.U64(at);
         at += 8;
       }
@@ -124,7 +125,7 @@ std::vector<Entry> ReadDirectory(const Bytes& in, const Directory& directory) {
     entry.name = std::string(in.Text(at + kEntrySize, name_size));
     ApplyZip64(in, at + kEntrySize + name_size, extra_size, &entry);
     at += kEntrySize + name_size + extra_size + comment_size;
-    if (!names.insert(entry.name).second) in.Fail("member '" + entry.name + "' occurs twice");
+    if (!names.insert(entry.name).second) in.Fail("member '" + PrintableText(entry.name) + "' occurs twice");
     entries.push_back(std::move(entry));
   }
   return entries;
@@ -132,7 +133,7 @@ std::vector<Entry> ReadDirectory(const Bytes& in, const Directory& directory) {
 
 /// Where a member's packed bytes start, after its own header.
 size_t PackedBegin(const Bytes& in, const Entry& entry, uint64_t directory_offset) {
-  const std::string member = "member '" + entry.name + "': ";
+  const std::string member = "member '" + PrintableText(entry.name) + "': ";
   if ((entry.flags & 1) != 0) in.Fail(member + "is encrypted, expected a plain archive");
   if (entry.method != kStored && entry.method != kDeflated) {
     in.Fail(Concatenate(member, "compression method ", entry.method, ", expected 0 (stored) or 8 (deflated)"));
@@ -181,12 +182,12 @@ std::string Unpack(const Bytes& in, const Entry& entry, std::string_view packed)
     }
     inflateEnd(&stream);
     if (result != Z_STREAM_END || given != bytes.size() || taken != packed.size()) {
-      in.Fail(Concatenate("member '", entry.name, "': its compressed bytes are damaged (", given, " of ", entry.size,
-                          " bytes unpacked)"));
+      in.Fail(Concatenate("member '", PrintableText(entry.name), "': its compressed bytes are damaged (", given, " of ",
+                          entry.size, " bytes unpacked)"));
     }
   }
   if (crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()) != entry.crc) {
-    in.Fail("member '" + entry.name + "': checksum mismatch, the file is damaged");
+    in.Fail("member '" + PrintableText(entry.name) + "': checksum mismatch, the file is damaged");
   }
   return bytes;
 }
@@ -206,7 +207,7 @@ std::string Deflate(const std::string& bytes, int level) {
 }
 
 void Put(uint64_t value, int length, std::string* out) {
-  for (int i = 0; i < length; ++i) out->push_back(static_cast<char>(value >> (8 * i)));
+  for (int i = 0; i < length; ++i, value >>= 8) out->push_back(static_cast<char>(value));
 }
 
 /// The fields shared by a member's header and its directory entry, from "version needed" to "extra length".
@@ -239,7 +240,7 @@ std::vector<ZipMember> ReadZip(std::string_view archive, const std::string& wher
     const size_t begin = PackedBegin(in, entry, directory.offset);
     extents.emplace_back(begin, begin + entry.packed_size);
     if (entry.size > max_bytes - total) {
-      in.Fail(Concatenate("member '", entry.name, "': ", entry.size, " bytes, at most ", max_bytes,
+      in.Fail(Concatenate("member '", PrintableText(entry.name), "': ", entry.size, " bytes, at most ", max_bytes,
                           " are read from one archive"));
     }
     total += entry.size;

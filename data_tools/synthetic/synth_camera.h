@@ -12,7 +12,7 @@ namespace bodyloom {
 
 struct SynthCameraOptions {
   CameraModel model = CameraModel::kPinhole;
-  int width = 1280, height = 720;      ///< pixels
+  int width = 960, height = 720;       ///< pixels
   double focal_px = 0;                 ///< pinhole; 0: 1.1 times the longer side
   std::array<double, 8> distortion{};  ///< pinhole, OpenCV's order
   double yaw_deg = 0;        ///< about the world's up axis; 0: the camera looks along −z of a y-up world, at a front
@@ -24,6 +24,7 @@ struct SynthCameraOptions {
 struct SynthCamera {
   Camera camera;
   CameraPose pose;  ///< camera from world
+  Eigen::Vector3d up_in_camera = -Eigen::Vector3d::UnitY();
 };
 
 /// The camera for a motion in the world (motion.up says which way is up; Motion::Up::kCamera counts as −y). All frames'

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Small valid files of every kind the fuzzers read, made on the spot.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace bodyloom::fuzz {
+
+/// Seeds by fuzzer: "npz", "pickle", "body", "track", "obj". Each is accepted by the function of that name.
+std::map<std::string, std::vector<std::string>> Seeds();
+
+}  // namespace bodyloom::fuzz

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What the fuzzers call: every reader of untrusted files, on bytes. A reader may refuse with std::runtime_error and
+/// nothing else; whatever it accepts must hold together.
+///
+/// The same functions run under libFuzzer (tests/fuzz/*_fuzz.cc, clang) and under GoogleTest with fixed mutations
+/// (tests/data_tools/fuzz_corpus_test.cc, any compiler). Each returns whether the input was accepted.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "data_tools/body_compact.h"
+#include "data_tools/body_smpl.h"
+#include "data_tools/formats/npz.h"
+#include "data_tools/formats/obj.h"
+#include "data_tools/formats/pickle.h"
+#include "data_tools/formats/printable.h"
+#include "data_tools/track_io.h"
+
+namespace bodyloom::fuzz {
+
+/// True when `action` returns, false when it throws std::runtime_error naming the file; anything else gets out.
+template <typename Action>
+bool Accepts(const Action& action) {
+  try {
+    action();
+    return true;
+  } catch (const std::runtime_error& error) {
+    const std::string message = error.what();
+    if (message.find("fuzz") == std::string::npos || !IsOneLine(message)) {
+      throw std::logic_error("a message that does not name the file in one line: " + message);
+    }
+    return false;
+  }
+}
+
+/// Every key the readers look for.
+inline constexpr const char* kNames[] = {"v_template",
+                                         "f",
+                                         "weights",
+                                         "kintree_table",
+                                         "J_regressor",
+                                         "shapedirs",
+                                         "posedirs",
+                                         "hands_meanl",
+                                         "hands_meanr",
+                                         "vt",
+                                         "ft",
+                                         "part",
+                                         "iu_uv",
+                                         "landmark_names",
+                                         "landmark_indptr",
+                                         "landmark_indices",
+                                         "landmark_weights",
+                                         "format",
+                                         "name",
+                                         "joint_names",
+                                         "parents",
+                                         "pose_mean",
+                                         "grid",
+                                         "lag",
+                                         "faces",
+                                         "posedirs_count",
+                                         "posedirs_joint",
+                                         "posedirs_block",
+                                         "weights_count",
+                                         "weights_column",
+                                         "weights_weight",
+                                         "regressor_count",
+                                         "regressor_column",
+                                         "regressor_weight",
+                                         "landmark_count",
+                                         "landmark_column",
+                                         "landmark_weight",
+                                         "vt_iuv",
+                                         "face_iuv",
+                                         "face_part",
+                                         "poses",
+                                         "trans",
+                                         "betas",
+                                         "mocap_framerate",
+                                         "mocap_frame_rate",
+                                         "body",
+                                         "timestamps",
+                                         "frame_status",
+                                         "joints",
+                                         "coco17",
+                                         "joint_sigma",
+                                         "camera_model",
+                                         "K",
+                                         "distortion",
+                                         "image_size",
+                                         "camera",
+                                         "cage_v"};
+
+/// Named arrays without the archive around them, whose checksums no mutation survives:
+/// (index of a known name, 3 bytes of length, .npy bytes) over and over.
+inline NpzArrays FramedArrays(const std::string& bytes) {
+  NpzArrays arrays;
+  size_t at = 0;
+  while (at + 4 <= bytes.size()) {
+    const auto byte = [&](size_t i) { return static_cast<size_t>(static_cast<unsigned char>(bytes[at + i])); };
+    const char* name = kNames[byte(0) % std::size(kNames)];
+    const size_t length = std::min(byte(1) | byte(2) << 8 | byte(3) << 16, bytes.size() - at - 4);
+    Accepts([&] { arrays[name] = ReadNpyBytes(bytes.substr(at + 4, length), "fuzz.npy"); });
+    at += 4 + length;
+  }
+  return arrays;
+}
+
+/// The inverse, for seeds; arrays of other names are left out.
+inline std::string FrameArrays(const NpzArrays& arrays) {
+  std::string framed;
+  for (size_t i = 0; i < std::size(kNames); ++i) {
+    const auto it = arrays.find(kNames[i]);
+    if (it == arrays.end()) continue;
+    const std::string npy = NpyBytes(it->second);
+    framed += {static_cast<char>(i), static_cast<char>(npy.size()), static_cast<char>(npy.size() >> 8),
+               static_cast<char>(npy.size() >> 16)};
+    framed += npy;
+  }
+  return framed;
+}
+
+inline bool AcceptsNpz(const std::string& bytes) {
+  const bool npy = Accepts([&] { ReadNpyBytes(bytes, "fuzz.npy"); });
+  const bool npz = Accepts([&] {
+    for (const auto& [name, array] : ReadNpzBytes(bytes, "fuzz.npz")) {
+      if (array.dtype == DType::kOther) continue;
+      const size_t n = array.is_text() ? array.ToStrings().size() : array.ToDoubles().size();
+      if (n != static_cast<size_t>(array.num_elements())) {
+        throw std::logic_error("an array of another size than its shape");
+      }
+    }
+  });
+  return npy || npz;
+}
+
+inline bool AcceptsPickle(const std::string& bytes) {
+  return Accepts([&] { ReadPickle(bytes, "fuzz.pkl"); });
+}
+
+/// BodyModel's own refusals are part of LoadBody's contract.
+inline void CheckBody(BodyModelData data) {
+  try {
+    const BodyModel body(std::move(data));
+    if (body.joint_template().rows() != body.num_joints()) throw std::logic_error("joints of another number");
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(std::string("fuzz: ") + error.what());
+  }
+}
+
+inline bool AcceptsBody(const std::string& bytes) {
+  if (Accepts([&] { LoadBodyBytes(bytes, "fuzz.pkl"); })) return true;
+  const NpzArrays arrays = FramedArrays(bytes);
+  return Accepts([&] {
+    CheckBody(IsCompactBody(arrays) ? BodyFromCompact(arrays, "fuzz.npz", {})
+                                    : BodyFromArrays(NamedArrays(arrays, "fuzz.npz"), {}));
+  });
+}
+
+inline bool AcceptsTrack(const std::string& bytes) {
+  if (Accepts([&] { ReadTrackBytes(bytes, "fuzz.npz"); })) return true;
+  return Accepts([&] {
+    const Track track = TrackFromArrays(FramedArrays(bytes), "fuzz.npz");
+    if (static_cast<int>(track.frame_status.size()) != track.num_frames()) throw std::logic_error("frames disagree");
+  });
+}
+
+inline bool AcceptsObj(const std::string& bytes) {
+  return Accepts([&] {
+    const ObjMesh mesh = ReadObjBytes(bytes, "fuzz.obj");
+    for (const int v : mesh.corner_position) {
+      if (v < 0 || v >= mesh.positions.rows()) throw std::logic_error("a corner outside the mesh");
+    }
+    for (const int u : mesh.corner_uv) {
+      if (u < -1 || u >= mesh.uv.rows()) throw std::logic_error("a UV corner outside the mesh");
+    }
+  });
+}
+
+}  // namespace bodyloom::fuzz
