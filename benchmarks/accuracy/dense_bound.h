@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The Cramér–Rao bound of a synthetic clip's dense keypoints, as expected per-vertex projection error.
+#pragma once
+
+#include "data_tools/synthetic/synth_clip.h"
+#include "geometry/body_model.h"
+#include "tracking/cramer_rao.h"
+
+namespace bodyloom {
+
+struct DenseBoundOptions {
+  /// Spread of what is known beforehand, about the truth: keeps what no keypoint shows (a hidden hand) finite.
+  double rotation_sigma_rad = 0.5, beta_sigma = 1;
+  double outlier_sigmas = 6;  ///< keypoints whose label lies farther from the truth carry no information
+  int vertex_step = 10;
+  int image_side_px = 512;
+};
+
+/// Frames are independent (no smoothness is assumed, so a tracker that uses it can be better), the shape is shared, the
+/// camera is known; every keypoint has the noise its sigma_px says. Constant errors (8-bit rounding) are not in it.
+/// Throws std::runtime_error when the information is singular.
+ProjectionBound DenseBound(const BodyModel& body, const SynthClip& clip, const DenseBoundOptions& options = {});
+
+}  // namespace bodyloom
