@@ -24,6 +24,7 @@ int Run(int argc, char** argv) {
   app.footer(std::string(kExamples) + kExitCodeHelp);
   Action action;
   AddTrackVerb(app, &action);
+  AddSynthVerb(app, &action);
   AddEvaluateVerb(app, &action);
   AddExportVerb(app, &action);
   AddBodyVerb(app, &action);

@@ -54,19 +54,6 @@ KeypointSequence MovedKeypoints(KeypointSequence keypoints, const Matrix2x3d& ma
   return keypoints;
 }
 
-/// The median frame rate of the timestamps, or of the video when there is only one.
-double FrameRate(const std::vector<double>& timestamps) {
-  std::vector<double> steps;
-  for (size_t t = 1; t < timestamps.size(); ++t) {
-    steps.push_back(timestamps[t] - timestamps[t - 1]);
-  }
-  if (steps.empty()) {
-    return 30;
-  }
-  std::nth_element(steps.begin(), steps.begin() + steps.size() / 2, steps.end());
-  return std::clamp(1 / steps[steps.size() / 2], 1.0, 240.0);
-}
-
 /// Hands out video frames by index, forwards only.
 class FrameSource {
  public:
@@ -92,10 +79,22 @@ class FrameSource {
 
 }  // namespace
 
+double VideoFrameRate(const std::vector<double>& timestamps) {
+  std::vector<double> steps;
+  for (size_t t = 1; t < timestamps.size(); ++t) {
+    steps.push_back(timestamps[t] - timestamps[t - 1]);
+  }
+  if (steps.empty()) {
+    return 30;
+  }
+  std::nth_element(steps.begin(), steps.begin() + steps.size() / 2, steps.end());
+  return std::clamp(1 / steps[steps.size() / 2], 1.0, 240.0);
+}
+
 OverlaySummary WriteOverlayVideo(const std::string& path, const OverlayVideo& what) {
   Track track = *what.track;
   KeypointSequence detected = what.detected != nullptr ? *what.detected : KeypointSequence();
-  const double fps = FrameRate(track.motion.timestamps);
+  const double fps = VideoFrameRate(track.motion.timestamps);
   std::unique_ptr<FrameSource> frames;
   double video_fps = fps;
   if (!what.video.empty()) {
@@ -113,7 +112,6 @@ OverlaySummary WriteOverlayVideo(const std::string& path, const OverlayVideo& wh
   options.side_view = what.side_view;
   const OverlayRenderer renderer(*what.body, track, options, what.reference);
   VideoWriter writer(path, renderer.width(), renderer.height(), fps);
-  const std::vector<int> stills = EvenlySpreadFrames(track.num_frames(), std::max(what.num_stills, 1));
   OverlaySummary summary;
   for (int t = 0; t < track.num_frames(); ++t) {
     OverlayFrame frame;
@@ -123,12 +121,8 @@ OverlaySummary WriteOverlayVideo(const std::string& path, const OverlayVideo& wh
       frame.background = frames->At(index);
       summary.frames_without_video += frame.background == nullptr;
     }
-    frame.caption = {{Concatenate("frame ", t, ", ", ToString(track.frame_status[t])), CaptionLine::Mark::kNone, {}}};
-    Image picture = renderer.Render(t, frame);
-    writer.Write(picture);
-    if (what.num_stills > 0 && std::find(stills.begin(), stills.end(), t) != stills.end()) {
-      summary.stills.push_back(std::move(picture));
-    }
+    frame.caption = {{Concatenate("frame ", t, ", ", ToString(track.frame_status[t]))}};
+    writer.Write(renderer.Render(t, frame));
     ++summary.frames;
     what.progress(static_cast<double>(t + 1) / track.num_frames());
   }

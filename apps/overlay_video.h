@@ -4,13 +4,12 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "data_tools/observations/load_cameras.h"
 #include "geometry/body_model.h"
 #include "geometry/observations.h"
 #include "geometry/track.h"
-#include "render/contact_sheet.h"
-#include "render/image.h"
 
 namespace bodyloom {
 
@@ -30,12 +29,15 @@ struct OverlayVideo {
 
 struct OverlaySummary {
   int frames = 0, frames_without_video = 0;
-  std::vector<Image> stills;
 };
 
 /// Frame t of the track goes over the video frame shown at its timestamp. Where the video has ended the backdrop stands
 /// in and is counted. Throws std::runtime_error when the video's size fits neither the camera nor a scaled copy of it,
 /// and when `path` cannot be written; nothing is left behind then.
 OverlaySummary WriteOverlayVideo(const std::string& path, const OverlayVideo& what);
+
+/// Frames a second of a video whose frames have these timestamps: 1 / their median step, within [1, 240]; 30 for one
+/// frame.
+double VideoFrameRate(const std::vector<double>& timestamps);
 
 }  // namespace bodyloom

@@ -10,6 +10,7 @@
 #include "data_tools/observations/load_detections.h"
 #include "data_tools/observations/observations_npz.h"
 #include "data_tools/prior/pose_prior_io.h"
+#include "data_tools/track_io.h"
 #include "data_tools/video/video_reader.h"
 #include "geometry/check.h"
 
@@ -155,6 +156,13 @@ TrackInputs LoadTrackInputs(const TrackCommand& command) {
   }
   if (!command.init.empty()) {
     inputs.initialiser = ReadInitialiser(command.init, inputs.num_frames());
+  }
+  if (!command.reference.empty()) {
+    inputs.reference = ReadTrack(command.reference);
+    if (inputs.reference->num_frames() != inputs.num_frames()) {
+      throw std::runtime_error(Concatenate(command.reference, ": ", inputs.reference->num_frames(),
+                                           " frames, expected the ", inputs.num_frames(), " of the detections"));
+    }
   }
   if (command.prior != "none") {
     inputs.prior = command.prior.empty() ? BuiltinPosePrior() : ReadPosePrior(command.prior);

@@ -20,6 +20,7 @@ struct TrackInputs {
   std::optional<DenseSequence> dense;
   std::optional<Motion> initialiser;
   std::optional<PosePrior> prior;
+  std::optional<Track> reference;
   NamedCamera camera;  ///< intrinsics, pose and the way to the video's pixels, as far as known
   double video_fps = 0;
 

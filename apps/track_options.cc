@@ -95,6 +95,9 @@ void AddTrackOptions(CLI::App& app, TrackCommand* command) {
   app.add_option("--overlay", c.overlay, "video with the projected body, .mp4")->group(wanted)->type_name("FILE");
   app.add_flag("--side-view", c.side_view, "the overlay also shows the body from its side, where depth errors show")
       ->group(wanted);
+  app.add_option("--reference", c.reference, "a known true track, drawn beside the estimate in the side view")
+      ->group(wanted)
+      ->type_name("FILE");
   app.add_option("--json", c.json, "the closing summary as JSON")->group(wanted)->type_name("FILE");
   app.add_flag("--plan", c.plan, "print what would run, what is skipped and why; compute and write nothing")
       ->group(wanted);
@@ -150,8 +153,14 @@ void CheckTrackOptions(const TrackCommand& command) {
   if (!command.cameras.empty() && command.focal_px > 0) {
     throw UsageError("--cameras and --focal both give the focal length, expected one of them");
   }
+  if (!command.overlay.empty() && !command.overlay.ends_with(".mp4")) {
+    throw UsageError("--overlay " + command.overlay + ": expected a name that ends in .mp4");
+  }
   if (command.side_view && command.overlay.empty()) {
     throw UsageError("--side-view is a part of the overlay: give --overlay FILE");
+  }
+  if (!command.reference.empty() && !command.side_view) {
+    throw UsageError("--reference is drawn in the side view: give --side-view");
   }
 }
 

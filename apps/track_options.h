@@ -35,6 +35,7 @@ struct TrackCommand {
 
   // What is wanted.
   std::string out, overlay, json;
+  std::string reference;  ///< a known true track, drawn beside the estimate in the side view
   bool side_view = false, plan = false, quiet = false;
 
   TrackSequenceOptions solve;
