@@ -19,6 +19,7 @@
 #include "tracking/observability.h"
 #include "tracking/sequence_problem.h"
 #include "tracking/track_result.h"
+#include "tracking/uncertainty.h"
 
 namespace bodyloom {
 namespace {
@@ -256,6 +257,18 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSe
 
   FillTrack(input, problem, landmarks, &result);
   clock.Book("finish");
+  if (options.estimate_uncertainty) {
+    // On the coarse frames: neighbours' detection errors are not independent, and their joints' spread changes slowly.
+    const RowMatrixXd sigma = JointPositionSigma(SelectFrames(problem, coarse_frames));
+    for (size_t i = 0, t = 0; t < T; ++t) {
+      while (i + 1 < coarse_frames.size() && std::abs(problem.timestamps[coarse_frames[i + 1]] - problem.timestamps[t]) <=
+                                                 std::abs(problem.timestamps[coarse_frames[i]] - problem.timestamps[t])) {
+        ++i;
+      }
+      result.track.joint_sigma.row(t) = sigma.row(i);
+    }
+    clock.Book("uncertainty");
+  }
   return result;
 }
 

@@ -157,16 +157,14 @@ void SetParents(TextScanner* scanner, Asf* asf, const std::map<std::string, std:
 /// so it is taken from the text itself and not from the scanner's words.
 std::map<std::string, std::string> HierarchyLines(const std::string& text) {
   std::map<std::string, std::string> parent_of;
-  size_t at = text.find(":hierarchy");
-  if (at == std::string::npos) return parent_of;
-  at = text.find('\n', at);
-  while (at != std::string::npos && at + 1 < text.size()) {
-    const size_t end = text.find('\n', at + 1);
-    const std::string line = text.substr(at + 1, end == std::string::npos ? end : end - at - 1);
-    at = end;
-    TextScanner words(line, "");
-    if (words.AtEnd() || words.Peek() == "begin") continue;
-    if (words.Peek() == "end" || IsSection(words.Peek())) break;
+  bool is_inside = false;
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t end = std::min(text.find('\n', begin), text.size());
+    TextScanner words(std::string_view(text).substr(begin, end - begin), "", '#');
+    begin = end + 1;
+    const std::string_view first = words.Peek();
+    if (IsSection(first)) is_inside = first == ":hierarchy";
+    if (!is_inside || first.empty() || IsSection(first) || first == "begin" || first == "end") continue;
     const std::string parent(words.Word("a bone"));
     while (!words.AtEnd()) parent_of.emplace(std::string(words.Word("a bone")), parent);
   }
