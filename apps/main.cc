@@ -28,6 +28,7 @@ int Run(int argc, char** argv) {
   AddEvaluateVerb(app, &action);
   AddExportVerb(app, &action);
   AddBodyVerb(app, &action);
+  AddDemoVerb(app, &action);
   AddNeuralVerb(app, &action);
   AddVersionVerb(app, &action);
   try {

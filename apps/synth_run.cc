@@ -132,12 +132,18 @@ void AddSynthOptions(CLI::App& app, SynthCommand* command) {
                "faults as real dense detectors have them: --uv-noise 0.02 --quantise --outliers 0.05 "
                "--missing-parts 0.05")
       ->group(dense);
-  CLI::Option_group* faults = app.add_option_group(dense);
-  faults->add_option("--pixel-noise", clip.dense.pixel_sigma_px, "standard deviation, pixels")->capture_default_str();
-  faults->add_option("--uv-noise", clip.dense.uv_sigma, "standard deviation, chart units")->capture_default_str();
-  faults->add_flag("--quantise", clip.dense.quantise_uv, "UV in 8 bits, rounded down");
-  faults->add_option("--outliers", clip.dense.outlier_probability, "share that lie anywhere")->capture_default_str();
-  faults->add_option("--missing-parts", clip.dense.missing_part_share, "share of the time that each part is missing")
+  app.add_option("--pixel-noise", clip.dense.pixel_sigma_px, "standard deviation, pixels")
+      ->group(dense)
+      ->capture_default_str();
+  app.add_option("--uv-noise", clip.dense.uv_sigma, "standard deviation, chart units")
+      ->group(dense)
+      ->capture_default_str();
+  app.add_flag("--quantise", clip.dense.quantise_uv, "UV in 8 bits, rounded down")->group(dense);
+  app.add_option("--outliers", clip.dense.outlier_probability, "share that lie anywhere")
+      ->group(dense)
+      ->capture_default_str();
+  app.add_option("--missing-parts", clip.dense.missing_part_share, "share of the time that each part is missing")
+      ->group(dense)
       ->capture_default_str();
 
   app.add_flag_callback(
