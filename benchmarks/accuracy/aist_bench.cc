@@ -10,6 +10,8 @@
 ///   reference      keypoints3d_optim, made from all nine cameras (the detections' noise floor)
 ///   true angles    the body posed with the data set's own joint rotations, mean shape (what the difference between
 ///                  COCO's landmarks of that body and this one costs)
+#include <unistd.h>
+
 #include <chrono>
 #include <cstdio>
 #include <exception>

@@ -56,6 +56,19 @@ std::string Number(double value) {
   return text;
 }
 
+/// A column's name over several lines, broken at underscores: "pa_mpjpe_mm" gives "pa", "mpjpe", "mm".
+std::vector<std::string> Stacked(const std::string& name) {
+  std::vector<std::string> lines(1);
+  for (char c : name) {
+    if (c == '_') {
+      lines.emplace_back();
+    } else {
+      lines.back() += c;
+    }
+  }
+  return lines;
+}
+
 void CheckRows(const BenchReport& report) {
   for (const BenchRow& row : report.rows) {
     BODYLOOM_CHECK(row.labels.size() == report.label_columns.size() && row.values.size() == report.value_columns.size(),
@@ -84,7 +97,13 @@ std::string BenchText(const BenchReport& report) {
     std::vector<std::vector<std::string>> cells;
     std::vector<std::string> head = report.label_columns;
     head.insert(head.end(), report.value_columns.begin(), report.value_columns.end());
-    cells.push_back(head);
+    size_t head_lines = 1;
+    for (const std::string& name : head) head_lines = std::max(head_lines, Stacked(name).size());
+    cells.assign(head_lines, std::vector<std::string>(head.size()));
+    for (size_t c = 0; c < head.size(); ++c) {
+      const std::vector<std::string> lines = Stacked(head[c]);
+      for (size_t i = 0; i < lines.size(); ++i) cells[head_lines - lines.size() + i][c] = lines[i];
+    }
     int rows = 0;
     for (const BenchRow& row : report.rows) {
       if (row.group != group) continue;

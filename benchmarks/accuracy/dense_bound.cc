@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "geometry/posed_body.h"
+#include "geometry/rotation.h"
 #include "tracking/body_points.h"
 #include "tracking/frame_cost.h"
 #include "tracking/metrics_image.h"
@@ -65,6 +66,42 @@ MatrixXd VertexJacobian(const FrameLayout& layout, const FrameState& state, cons
   return J;
 }
 
+/// Second differences of the frames' parameters as right increments, (T−2)×p: rotations 3 a joint, then translation.
+MatrixXd SecondDifferences(const std::vector<FrameState>& states) {
+  const int J = static_cast<int>(states[0].rotations.size());
+  MatrixXd d(states.size() - 2, 3 * J + 3);
+  for (size_t t = 1; t + 1 < states.size(); ++t) {
+    const FrameState &a = states[t - 1], &b = states[t], &c = states[t + 1];
+    for (int j = 0; j < J; ++j) {
+      d.block<1, 3>(t - 1, 3 * j) = (AxisAngleFromRotation(b.rotations[j].transpose() * c.rotations[j]) -
+                                     AxisAngleFromRotation(a.rotations[j].transpose() * b.rotations[j]))
+                                        .transpose();
+    }
+    d.block<1, 3>(t - 1, 3 * J) = (c.translation - 2 * b.translation + a.translation).transpose();
+  }
+  return d;
+}
+
+/// Σ_t (x_{t−1} − 2x_t + x_{t+1})²/σ² in each parameter, σ as in this motion. Timestamps are taken as even.
+void AddSmoothness(const std::vector<FrameState>& states, ClipInformation* information) {
+  const int T = static_cast<int>(states.size());
+  if (T < 3) return;
+  const Eigen::Index p = information->band[0][0].rows();
+  constexpr double kSmallest = 1e-5;  // radians or metres: a joint that never moves still may
+  const Eigen::VectorXd weight = (SecondDifferences(states).colwise().squaredNorm().transpose().array() / (T - 2))
+                                     .max(kSmallest * kSmallest)
+                                     .inverse();
+  for (int k = 1; k <= 2; ++k) information->band.emplace_back(T - k, MatrixXd::Zero(p, p));
+  const double stencil[3] = {1, -2, 1};
+  for (int t = 0; t + 2 < T; ++t) {
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; i + k < 3; ++k) {
+        information->band[k][t + i].diagonal() += stencil[i] * stencil[i + k] * weight;
+      }
+    }
+  }
+}
+
 }  // namespace
 
 ProjectionBound DenseBound(const BodyModel& body, const SynthClip& clip, const DenseBoundOptions& options) {
@@ -101,6 +138,7 @@ ProjectionBound DenseBound(const BodyModel& body, const SynthClip& clip, const D
     information.coupling.emplace_back(H.block(0, layout.beta_column, p, num_betas));
     information.shared += H.block(layout.beta_column, layout.beta_column, num_betas, num_betas);
   }
+  if (options.smooth) AddSmoothness(states, &information);
   const ClipCovariance covariance = MarginalCovariances(information);
   if (!covariance.is_finite) throw std::runtime_error("Cramér–Rao bound: " + covariance.message);
   ProjectionBoundAccumulator bound;
