@@ -29,6 +29,7 @@ int Run(int argc, char** argv) {
   AddExportVerb(app, &action);
   AddBodyVerb(app, &action);
   AddDemoVerb(app, &action);
+  AddPriorVerb(app, &action);
   AddNeuralVerb(app, &action);
   AddVersionVerb(app, &action);
   try {
