@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
-#include <zlib.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -229,10 +228,8 @@ TEST(DensePose, MalformedImages) {
   grey[25] = 0;
   EXPECT_THAT(error(grey), HasSubstr("expected 8-bit colour"));
   std::string huge = bytes;
-  huge[16] = huge[20] = 0x7f;  // two billion pixels a side, with a right checksum
-  const uLong checksum = crc32(0, reinterpret_cast<const Bytef*>(huge.data()) + 12, 17);
-  for (int i = 0; i < 4; ++i) huge[29 + i] = static_cast<char>(checksum >> (24 - 8 * i));
-  error(huge);
+  huge[16] = huge[20] = 0x7f;
+  EXPECT_THAT(error(huge), HasSubstr("pixels, expected 1 to"));
   Image photo(16, 16, {200, 100, 50});
   WriteImage(path, photo);
   EXPECT_THAT(FileErrorOf("a_IUV.png", [&] { ReadIuvImage(path); }), HasSubstr("blue reaches 50 and red 200"));
