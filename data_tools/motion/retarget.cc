@@ -18,8 +18,22 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 /// SMPL joint numbers, left side; the right one is the next.
-enum Smpl { kPelvis = 0, kHip = 1, kSpine1 = 3, kKnee = 4, kSpine2 = 6, kAnkle = 7, kSpine3 = 9, kToe = 10,
-            kNeck = 12, kCollar = 13, kHead = 15, kShoulder = 16, kElbow = 18, kWrist = 20 };
+enum Smpl {
+  kPelvis = 0,
+  kHip = 1,
+  kSpine1 = 3,
+  kKnee = 4,
+  kSpine2 = 6,
+  kAnkle = 7,
+  kSpine3 = 9,
+  kToe = 10,
+  kNeck = 12,
+  kCollar = 13,
+  kHead = 15,
+  kShoulder = 16,
+  kElbow = 18,
+  kWrist = 20
+};
 
 /// A limb must bend this much on average (sine), and always in nearly the same direction, to tell its twist.
 constexpr double kLeastBend = 0.1;
@@ -40,7 +54,8 @@ class Retargeter {
       : source_(source), map_(MapSkeleton(source, where)), axes_(map_.file_from_body), rest_(RestPositions(source)) {
     double source_leg = 0, smpl_leg = 0;
     for (int side = 0; side < 2; ++side) {
-      source_leg += SourceBone(map_.hip[side], map_.knee[side]).norm() + SourceBone(map_.knee[side], map_.ankle[side]).norm();
+      source_leg +=
+          SourceBone(map_.hip[side], map_.knee[side]).norm() + SourceBone(map_.knee[side], map_.ankle[side]).norm();
       smpl_leg += SmplBone(kHip + side, kKnee + side).norm() + SmplBone(kKnee + side, kAnkle + side).norm();
     }
     if (!(source_leg > 0) || !std::isfinite(source_leg)) {
@@ -86,7 +101,8 @@ class Retargeter {
 
   void Align(int side) {
     LimbAlignment& limb = limbs_[side];
-    const Vector3d upper_arm = SmplBone(kShoulder + side, kElbow + side), forearm = SmplBone(kElbow + side, kWrist + side);
+    const Vector3d upper_arm = SmplBone(kShoulder + side, kElbow + side),
+                   forearm = SmplBone(kElbow + side, kWrist + side);
     const Vector3d thigh = SmplBone(kHip + side, kKnee + side), shin = SmplBone(kKnee + side, kAnkle + side);
     const Vector3d source_upper_arm = SourceBone(map_.shoulder[side], map_.elbow[side]);
     const Vector3d source_forearm = SourceBone(map_.elbow[side], map_.wrist[side]);
@@ -101,8 +117,9 @@ class Retargeter {
     limb.elbow = Onto(limb.shoulder, forearm, source_forearm);
 
     limb.hip = Onto(axes_, thigh, source_thigh);
-    limb.hip *= BendTwist({map_.hip[side], map_.knee[side], map_.ankle[side]}, {kHip + side, kKnee + side, kAnkle + side},
-                          limb.hip, Vector3d::UnitX(), &summary_.hip_twist_deg[side]);
+    limb.hip *=
+        BendTwist({map_.hip[side], map_.knee[side], map_.ankle[side]}, {kHip + side, kKnee + side, kAnkle + side},
+                  limb.hip, Vector3d::UnitX(), &summary_.hip_twist_deg[side]);
     limb.knee = Onto(limb.hip, shin, source_shin);
 
     // The foot's heading, in SMPL's frame of the shin: a turn about the vertical.
@@ -137,7 +154,8 @@ class Retargeter {
       expected += across(RotationFromAxisAngle(hinge * angle) * lower - (is_straight ? lower : axis));
       weight += bend.norm();
     }
-    if (weight < kLeastBend * source_.num_frames() || sum.norm() < kLeastCoherence * weight) return Matrix3d::Identity();
+    if (weight < kLeastBend * source_.num_frames() || sum.norm() < kLeastCoherence * weight)
+      return Matrix3d::Identity();
     const double twist = std::atan2(axis.dot(sum.cross(expected)), sum.dot(expected));
     *twist_deg = twist * 180 / M_PI;
     // The limb turns so that what the source does falls where SMPL's hinge does: A ← A·exp(−twist·axis).

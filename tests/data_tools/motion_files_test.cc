@@ -92,7 +92,8 @@ TEST(Amass, MalformedArrays) {
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(error([](NpzArrays* a) { (*a)["poses"] = AmassArrays(3, 63, "x")["poses"]; }), HasSubstr("shape 3x63"));
-  EXPECT_THAT(error([](NpzArrays* a) { (*a)["poses"] = AmassArrays(4, 156, "x")["poses"]; }), HasSubstr("trans: shape 3x3, expected 4x3"));
+  EXPECT_THAT(error([](NpzArrays* a) { (*a)["poses"] = AmassArrays(4, 156, "x")["poses"]; }),
+              HasSubstr("trans: shape 3x3, expected 4x3"));
   EXPECT_THAT(error([](NpzArrays* a) { (*a)["poses"] = AmassArrays(0, 156, "x")["poses"]; }), HasSubstr("no frames"));
   EXPECT_THAT(error([](NpzArrays* a) { (*a)["poses"] = NdArray::FromString("x"); }), HasSubstr("poses"));
   EXPECT_THAT(error([&](NpzArrays* a) {
@@ -102,8 +103,10 @@ TEST(Amass, MalformedArrays) {
               }),
               HasSubstr("trans: frame 1 is not finite"));
   EXPECT_THAT(error([](NpzArrays* a) { a->erase("mocap_framerate"); }), HasSubstr("neither 'mocap_framerate'"));
-  EXPECT_THAT(error([&](NpzArrays* a) { (*a)["mocap_framerate"] = NdArray::FromDouble(-1); }), HasSubstr("frames a second"));
-  EXPECT_THAT(error([](NpzArrays* a) { (*a)["betas"] = AmassArrays(3, 10, "x")["poses"]; }), HasSubstr("one shape for the clip"));
+  EXPECT_THAT(error([&](NpzArrays* a) { (*a)["mocap_framerate"] = NdArray::FromDouble(-1); }),
+              HasSubstr("frames a second"));
+  EXPECT_THAT(error([](NpzArrays* a) { (*a)["betas"] = AmassArrays(3, 10, "x")["poses"]; }),
+              HasSubstr("one shape for the clip"));
   EXPECT_THAT(error([](NpzArrays* a) { a->erase("trans"); }), HasSubstr("trans"));
   EXPECT_THAT(error([](NpzArrays* a) { (*a)["up_axis"] = NdArray::FromString("w"); }), HasSubstr("up_axis"));
 }
@@ -127,7 +130,8 @@ TEST(Amass, WrittenAndReadBack) {
   Motion broken = RandomMotion(3);
   broken.poses(1, 1) = NAN;
   EXPECT_THROW(WriteAmass(path, broken, pelvis), std::invalid_argument);
-  EXPECT_THAT(FileErrorOf("/nowhere/m.npz", [&] { WriteAmass("/nowhere/m.npz", RandomMotion(3), pelvis); }), HasSubstr("cannot"));
+  EXPECT_THAT(FileErrorOf("/nowhere/m.npz", [&] { WriteAmass("/nowhere/m.npz", RandomMotion(3), pelvis); }),
+              HasSubstr("cannot"));
 }
 
 std::string AistPickle(const std::vector<double>& poses, const std::vector<int>& shape, double scaling) {
@@ -153,7 +157,8 @@ TEST(AistMotion, BothShapesAndErrors) {
     return FileErrorOf("a.pkl", [&] { AistMotionFromPickle(*ReadPickle(bytes, "a.pkl"), "a.pkl"); });
   };
   EXPECT_THAT(error(AistPickle(poses, {4, 36}, 90)), HasSubstr("smpl_poses: shape 4x36"));
-  EXPECT_THAT(error(AistPickle(std::vector<double>(72), {1, 72}, 90)), HasSubstr("smpl_trans: shape 2x3, expected 1x3"));
+  EXPECT_THAT(error(AistPickle(std::vector<double>(72), {1, 72}, 90)),
+              HasSubstr("smpl_trans: shape 2x3, expected 1x3"));
   EXPECT_THAT(error(AistPickle(poses, {2, 72}, 0)), HasSubstr("smpl_scaling"));
   EXPECT_THAT(error(AistPickle(poses, {2, 72}, NAN)), HasSubstr("smpl_scaling"));
   poses[5] = INFINITY;
@@ -177,14 +182,16 @@ TEST(Bvh, WrittenAndReadBack) {
     // The edge of the Euler angles: x at ±90°.
     motion.poses.block<1, 3>(2, 6) = Eigen::RowVector3d(M_PI / 2, 0, 0);
     motion.poses.block<1, 3>(3, 6) =
-        AxisAngleFromRotation(RotationFromAxisAngle({0, 0, 0.4}) * RotationFromAxisAngle({-M_PI / 2, 0, 0})).transpose();
+        AxisAngleFromRotation(RotationFromAxisAngle({0, 0, 0.4}) * RotationFromAxisAngle({-M_PI / 2, 0, 0}))
+            .transpose();
     const SkeletonMotion read = BvhFromText(BvhText(motion, body), "w.bvh");
     const Motion y_up = ChangeUp(motion, Motion::Up::kY, body.RestJoints(motion.betas).row(0).transpose());
     ASSERT_EQ(read.num_frames(), 5);
     EXPECT_NEAR(read.timestamps[1], 0.04, 1e-9);
     for (int t = 0; t < 5; ++t) {
-      const PosedSkeleton expected = PoseSkeleton(body, body.RestJoints(motion.betas),
-                                                  PoseFromAxisAngle(body, y_up.poses.row(t).transpose(), y_up.trans.row(t).transpose()));
+      const PosedSkeleton expected =
+          PoseSkeleton(body, body.RestJoints(motion.betas),
+                       PoseFromAxisAngle(body, y_up.poses.row(t).transpose(), y_up.trans.row(t).transpose()));
       const SkeletonFrame frame = PoseSkeletonFrame(read, t);
       for (int j = 0; j < 24; ++j) {
         const int i = read.FindJoint(body.data().joint_names[j]);
@@ -216,7 +223,8 @@ TEST(MotionTools, ChangeUpTurnsTheBodyAsAWhole) {
     const Motion motion = RandomMotion(3, from), turned = ChangeUp(motion, Motion::Up::kZ, rest.row(0).transpose());
     for (int t = 0; t < 3; ++t) {
       const auto joints = [&](const Motion& m) {
-        return PoseSkeleton(body, rest, PoseFromAxisAngle(body, m.poses.row(t).transpose(), m.trans.row(t).transpose())).joints;
+        return PoseSkeleton(body, rest, PoseFromAxisAngle(body, m.poses.row(t).transpose(), m.trans.row(t).transpose()))
+            .joints;
       };
       const MatrixX3d a = joints(motion), b = joints(turned);
       const Eigen::VectorXd height = (from == Motion::Up::kCamera ? -1.0 : 1.0) * a.col(from == Motion::Up::kZ ? 2 : 1);
@@ -245,10 +253,10 @@ TEST(MotionTools, ResamplingKeepsWhatLiesOnTheGrid) {
 
 TEST(SmplRest, HingesBendTheNaturalWay) {
   Eigen::VectorXd pose = Eigen::VectorXd::Zero(72);
-  pose[12] = 0.5;             // left knee about x
-  pose[15] = -0.25;           // right knee, hyper-extended
-  pose[55] = -1;              // left elbow about −y
-  pose[58] = 1.5;             // right elbow about y
+  pose[12] = 0.5;    // left knee about x
+  pose[15] = -0.25;  // right knee, hyper-extended
+  pose[55] = -1;     // left elbow about −y
+  pose[58] = 1.5;    // right elbow about y
   const Eigen::Vector4d flexion = HingeFlexionDeg(pose) * M_PI / 180;
   EXPECT_NEAR(flexion[0], 0.5, 1e-9);
   EXPECT_NEAR(flexion[1], -0.25, 1e-9);

@@ -62,7 +62,8 @@ TEST(TextFile, GzipIsInflatedAndDamageIsReported) {
   FileErrorOf("c.gz", [&] { ReadTextFile(folder.File("c.gz")); });
   // A bomb: a thousand times smaller than what it holds.
   WriteFileAtomically(folder.File("d.gz"), Gzip(std::string(50'000'000, 'x')));
-  EXPECT_THAT(FileErrorOf("d.gz", [&] { ReadTextFile(folder.File("d.gz"), 1'000'000); }), HasSubstr("inflates to more"));
+  EXPECT_THAT(FileErrorOf("d.gz", [&] { ReadTextFile(folder.File("d.gz"), 1'000'000); }),
+              HasSubstr("inflates to more"));
 }
 
 const char* const kBvh = R"(HIERARCHY
@@ -105,7 +106,8 @@ TEST(Bvh, ChannelsMeanWhatTheySay) {
 
 TEST(Bvh, EveryTruncationIsAnError) {
   const std::string text = kBvh;
-  for (size_t n = 0; n + 3 < text.size(); ++n) FileErrorOf("k.bvh: line", [&] { BvhFromText(text.substr(0, n), "k.bvh"); });
+  for (size_t n = 0; n + 3 < text.size(); ++n)
+    FileErrorOf("k.bvh: line", [&] { BvhFromText(text.substr(0, n), "k.bvh"); });
 }
 
 TEST(Bvh, LyingAndHostileFiles) {
@@ -260,7 +262,8 @@ TEST(AsfAmc, MalformedFiles) {
 TEST(AsfAmc, SkeletonIsFoundBesideTheMotion) {
   const TemporaryFolder folder;
   WriteFileAtomically(folder.File("07_02.amc"), kAmc);
-  EXPECT_THAT(FileErrorOf("07_02.amc", [&] { ReadAsfAmc(folder.File("07_02.amc")); }), HasSubstr("no skeleton beside it"));
+  EXPECT_THAT(FileErrorOf("07_02.amc", [&] { ReadAsfAmc(folder.File("07_02.amc")); }),
+              HasSubstr("no skeleton beside it"));
   WriteFileAtomically(folder.File("07.asf.gz"), Gzip(kAsf));
   EXPECT_EQ(ReadAsfAmc(folder.File("07_02.amc")).num_frames(), 2);
 }
@@ -277,8 +280,8 @@ SkeletonMotion DeepMimic(const std::string& text) {
 }
 
 TEST(DeepMimic, FramesAndErrors) {
-  const SkeletonMotion motion =
-      DeepMimic(R"({"Loop":"wrap","Frames":[)" + DeepMimicFrame(0.04, "0.5,0.5,0.5,0.5") + "," + DeepMimicFrame(0) + "]}");
+  const SkeletonMotion motion = DeepMimic(R"({"Loop":"wrap","Frames":[)" + DeepMimicFrame(0.04, "0.5,0.5,0.5,0.5") +
+                                          "," + DeepMimicFrame(0) + "]}");
   ASSERT_EQ(motion.num_frames(), 2);
   EXPECT_NEAR(motion.timestamps[1], 0.04, 1e-12);
   EXPECT_TRUE(motion.root_positions.row(0).isApprox(Eigen::RowVector3d(0.1, 0.9, 0.2)));
@@ -288,27 +291,28 @@ TEST(DeepMimic, FramesAndErrors) {
   const auto error = [](const std::string& text) { return FileErrorOf("d.txt", [&] { DeepMimic(text); }); };
   EXPECT_THAT(error(R"({"Frames":[]})"), HasSubstr("not empty"));
   EXPECT_THAT(error(R"({"Frames":[[1,2,3]]})"), HasSubstr("3 numbers, expected 44"));
-  EXPECT_THAT(error(R"({"Frames":[)" + DeepMimicFrame(0.1, "0,0,0,0") + "]}"), HasSubstr("quaternion of 'root' has length 0"));
+  EXPECT_THAT(error(R"({"Frames":[)" + DeepMimicFrame(0.1, "0,0,0,0") + "]}"),
+              HasSubstr("quaternion of 'root' has length 0"));
   EXPECT_THAT(error(R"({"Frames":[)" + DeepMimicFrame(-1) + "," + DeepMimicFrame(1) + "]}"), HasSubstr("duration"));
 }
 
 /// An AMP file of a 16-joint person would be long: three joints are enough for the reader.
-std::string AmpNpy(const std::vector<double>& rotations, const std::vector<int>& shape, double fps = 20, int bad_parent = 0) {
+std::string AmpNpy(const std::vector<double>& rotations, const std::vector<int>& shape, double fps = 20,
+                   int bad_parent = 0) {
   using namespace pickle_writer;  // NOLINT(google-build-using-namespace)
   const auto arr = [](const std::string& array) { return Dict({{Str2("arr"), array}}); };
   const std::vector<int64_t> parents = {-1, bad_parent, 1};
   const std::string names = "](" + Str2("a") + Str2("b") + Str2("c") + "e";
   std::string fps_bytes = "G";
   for (int i = 7; i >= 0; --i) fps_bytes += RawOf(std::vector<double>{fps})[i];
-  const std::string object =
-      Dict({{Str2("rotation"), arr(Doubles2(rotations, shape))},
-            {Str2("root_translation"), arr(Doubles2({1, 2, 3}, {1, 3}))},
-            {Str2("skeleton_tree"),
-             Dict({{Str2("node_names"), names},
-                   {Str2("parent_indices"), arr(Array2("i8", '<', {3}, false, RawOf(parents)))},
-                   {Str2("local_translation"), arr(Doubles2({0, 0, 0, 0, 0, 1, 0, 0, 2}, {3, 3}))}})},
-            {Str2("is_local"), "\x88"},
-            {Str2("fps"), fps_bytes}});
+  const std::string object = Dict(
+      {{Str2("rotation"), arr(Doubles2(rotations, shape))},
+       {Str2("root_translation"), arr(Doubles2({1, 2, 3}, {1, 3}))},
+       {Str2("skeleton_tree"), Dict({{Str2("node_names"), names},
+                                     {Str2("parent_indices"), arr(Array2("i8", '<', {3}, false, RawOf(parents)))},
+                                     {Str2("local_translation"), arr(Doubles2({0, 0, 0, 0, 0, 1, 0, 0, 2}, {3, 3}))}})},
+       {Str2("is_local"), "\x88"},
+       {Str2("fps"), fps_bytes}});
   const std::string array = Global("numpy.core.multiarray", "_reconstruct") +
                             Tuple({Global("numpy", "ndarray"), Tuple({Int(0)}), Str2("b")}) + "R" +
                             Tuple({Int(1), Tuple({}), Dtype2("O8", '|'), "\x89", "](" + object + "e"}) + "b";
@@ -325,9 +329,12 @@ TEST(Amp, ReadsAndChecks) {
   EXPECT_TRUE(motion.rotations[0].isApprox(Rot(2, 90), 1e-9));
   EXPECT_TRUE(motion.rotations[1].isApprox(Rot(0, 90), 1e-9));
   EXPECT_TRUE(motion.offsets.row(2).isApprox(Eigen::RowVector3d(0, 0, 2)));
-  const auto error = [](const std::string& bytes) { return FileErrorOf("a.npy", [&] { AmpFromNpyBytes(bytes, "a.npy"); }); };
+  const auto error = [](const std::string& bytes) {
+    return FileErrorOf("a.npy", [&] { AmpFromNpyBytes(bytes, "a.npy"); });
+  };
   EXPECT_THAT(error(AmpNpy(rotations, {1, 4, 3})), HasSubstr("rotation: shape 1x4x3"));
-  EXPECT_THAT(error(AmpNpy({0, 0, h, h, 0, 0, 0, 0, 0, 0, 0, 1}, {1, 3, 4})), HasSubstr("joint 'b': a quaternion of length 0"));
+  EXPECT_THAT(error(AmpNpy({0, 0, h, h, 0, 0, 0, 0, 0, 0, 0, 1}, {1, 3, 4})),
+              HasSubstr("joint 'b': a quaternion of length 0"));
   EXPECT_THAT(error(AmpNpy({0, 0, h, h, 0, NAN, 0, 0, 0, 0, 0, 1}, {1, 3, 4})), HasSubstr("joint 'b'"));
   EXPECT_THAT(error(AmpNpy(rotations, {1, 3, 4}, 0)), HasSubstr("fps is 0"));
   EXPECT_THAT(error(AmpNpy(rotations, {1, 3, 4}, 20, 2)), HasSubstr("parent_indices[1] is 2"));

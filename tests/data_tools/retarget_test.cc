@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A known SMPL motion is seen through a foreign skeleton (other axes, units, names, rest pose and twist), written as BVH,
-/// read back and retargeted: it must come back as it was.
+/// A known SMPL motion is seen through a foreign skeleton (other axes, units, names, rest pose and twist), written as
+/// BVH, read back and retargeted: it must come back as it was.
 #include "data_tools/motion/retarget.h"
 
 #include <gmock/gmock.h>
@@ -64,10 +64,10 @@ struct ForeignSkeleton {
 
 /// SMPL joint number and the foreign name, parents first.
 const std::vector<std::pair<int, std::string>> kNames = {
-    {0, "Hips"},       {1, "LeftUpLeg"},   {4, "LeftLeg"},       {7, "LeftFoot"},      {10, "LeftToeBase"},
-    {2, "RightUpLeg"}, {5, "RightLeg"},    {8, "RightFoot"},     {11, "RightToeBase"}, {3, "LowerBack"},
-    {6, "Spine"},      {9, "Spine1"},      {12, "Neck"},         {15, "Head"},         {13, "LeftShoulder"},
-    {16, "LeftArm"},   {18, "LeftForeArm"}, {20, "LeftHand"},    {14, "RightShoulder"}, {17, "RightArm"},
+    {0, "Hips"},          {1, "LeftUpLeg"},    {4, "LeftLeg"},   {7, "LeftFoot"},       {10, "LeftToeBase"},
+    {2, "RightUpLeg"},    {5, "RightLeg"},     {8, "RightFoot"}, {11, "RightToeBase"},  {3, "LowerBack"},
+    {6, "Spine"},         {9, "Spine1"},       {12, "Neck"},     {15, "Head"},          {13, "LeftShoulder"},
+    {16, "LeftArm"},      {18, "LeftForeArm"}, {20, "LeftHand"}, {14, "RightShoulder"}, {17, "RightArm"},
     {19, "RightForeArm"}, {21, "RightHand"}};
 
 SkeletonMotion SeenThrough(const ForeignSkeleton& foreign, const RowMatrixXd& poses, const MatrixX3d& pelvis) {
@@ -99,9 +99,11 @@ SkeletonMotion SeenThrough(const ForeignSkeleton& foreign, const RowMatrixXd& po
     std::vector<Eigen::Matrix3d> foreign_world(J);
     for (int i = 0; i < J; ++i) {
       const int j = kNames[i].first;
-      foreign_world[i] = foreign.file_from_body * world[j] * rest_world[j].transpose() * foreign.file_from_body.transpose();
+      foreign_world[i] =
+          foreign.file_from_body * world[j] * rest_world[j].transpose() * foreign.file_from_body.transpose();
       const int p = motion.parents[i];
-      motion.rotations.push_back(p < 0 ? foreign_world[i] : Eigen::Matrix3d(foreign_world[p].transpose() * foreign_world[i]));
+      motion.rotations.push_back(p < 0 ? foreign_world[i]
+                                       : Eigen::Matrix3d(foreign_world[p].transpose() * foreign_world[i]));
     }
   }
   return motion;
@@ -212,7 +214,8 @@ TEST(Retarget, ArmsDownSplayedLegsAndTwistedArms) {
     const MatrixX3d a = PoseSmplJoints(motion.poses.row(t).transpose(), Eigen::Vector3d::Zero());
     const MatrixX3d b = PoseSmplJoints(truth.row(t).transpose(), Eigen::Vector3d::Zero());
     for (const auto& [from, to] : {std::pair(16, 18), {18, 20}, {1, 4}, {4, 7}, {17, 19}, {19, 21}, {2, 5}, {5, 8}}) {
-      EXPECT_GT((a.row(to) - a.row(from)).normalized().dot((b.row(to) - b.row(from)).normalized()), std::cos(0.1 * kDegree));
+      EXPECT_GT((a.row(to) - a.row(from)).normalized().dot((b.row(to) - b.row(from)).normalized()),
+                std::cos(0.1 * kDegree));
     }
   }
 }
@@ -223,7 +226,8 @@ TEST(Retarget, ForearmTakesHalfOfTheHandsTwist) {
   const Motion motion = RetargetToSmpl(SeenThrough({}, truth, TruePelvis()), "c.bvh");
   for (int t = 0; t < kFrames; ++t) {
     EXPECT_NEAR(motion.poses(t, 60), 0.4 - 0.5 * std::sin(0.4), 1e-2);
-    const std::array<Eigen::Matrix3d, 24> a = WorldOf(motion.poses.row(t).transpose()), b = WorldOf(truth.row(t).transpose());
+    const std::array<Eigen::Matrix3d, 24> a = WorldOf(motion.poses.row(t).transpose()),
+                                          b = WorldOf(truth.row(t).transpose());
     EXPECT_LT(RotationAngleBetween(a[20], b[20]), 1e-3) << "the hand itself does not turn";
   }
 }
@@ -235,10 +239,18 @@ TEST(Retarget, SkeletonsOfOtherVocabularies) {
   EXPECT_EQ(seen.names[map.shoulder[1]], "RightArm");
   EXPECT_EQ(seen.names[map.palm[0]], "LeftHand");
   EXPECT_EQ(map.spine.size(), 3U);
-  const std::vector<std::pair<std::string, std::string>> swaps[] = {
-      {{"LeftShoulder", "LeftCollar"}, {"LeftArm", "LeftShoulder"}, {"LeftForeArm", "LeftElbow"}, {"LeftHand", "LeftWrist"},
-       {"LeftUpLeg", "LeftHip"}, {"LeftLeg", "LeftKnee"}, {"LeftFoot", "LeftAnkle"}, {"LeftToeBase", "LeftToe"}},
-      {{"LeftForeArm", "mixamorig:LeftForeArm"}, {"LeftLeg", "Bip01 L Calf"}, {"LeftFoot", "foot.L"}, {"LeftHand", "l_hand"}}};
+  const std::vector<std::pair<std::string, std::string>> swaps[] = {{{"LeftShoulder", "LeftCollar"},
+                                                                     {"LeftArm", "LeftShoulder"},
+                                                                     {"LeftForeArm", "LeftElbow"},
+                                                                     {"LeftHand", "LeftWrist"},
+                                                                     {"LeftUpLeg", "LeftHip"},
+                                                                     {"LeftLeg", "LeftKnee"},
+                                                                     {"LeftFoot", "LeftAnkle"},
+                                                                     {"LeftToeBase", "LeftToe"}},
+                                                                    {{"LeftForeArm", "mixamorig:LeftForeArm"},
+                                                                     {"LeftLeg", "Bip01 L Calf"},
+                                                                     {"LeftFoot", "foot.L"},
+                                                                     {"LeftHand", "l_hand"}}};
   for (const auto& swap : swaps) {
     SkeletonMotion other = seen;
     for (const auto& [from, to] : swap) other.names[seen.FindJoint(from)] = to;
@@ -259,17 +271,21 @@ TEST(Retarget, WhatIsNoPersonIsAnError) {
     change(&other);
     return FileErrorOf("x.bvh", [&] { RetargetToSmpl(other, "x.bvh"); });
   };
-  EXPECT_THAT(error([](SkeletonMotion* m) { m->names[m->FindJoint("RightLeg")] = "Tentacle"; }), HasSubstr("no right knee"));
+  EXPECT_THAT(error([](SkeletonMotion* m) { m->names[m->FindJoint("RightLeg")] = "Tentacle"; }),
+              HasSubstr("no right knee"));
   EXPECT_THAT(error([](SkeletonMotion* m) {
                 m->names[m->FindJoint("Head")] = "Lamp";
                 m->names[m->FindJoint("Neck")] = "Pole";
               }),
               HasSubstr("no head"));
   EXPECT_THAT(error([](SkeletonMotion* m) { m->offsets.setZero(); }), HasSubstr("leg length"));
-  EXPECT_THAT(error([](SkeletonMotion* m) { std::swap(m->names[m->FindJoint("Hips")], m->names[m->FindJoint("LeftForeArm")]); }),
+  EXPECT_THAT(error([](SkeletonMotion* m) {
+                std::swap(m->names[m->FindJoint("Hips")], m->names[m->FindJoint("LeftForeArm")]);
+              }),
               HasSubstr("is the root"));
-  EXPECT_THAT(error([](SkeletonMotion* m) { std::swap(m->names[m->FindJoint("Head")], m->names[m->FindJoint("LeftHand")]); }),
-              HasSubstr("not chains"));
+  EXPECT_THAT(
+      error([](SkeletonMotion* m) { std::swap(m->names[m->FindJoint("Head")], m->names[m->FindJoint("LeftHand")]); }),
+      HasSubstr("not chains"));
 }
 
 class RealMotion : public ::testing::Test {
@@ -287,7 +303,8 @@ TEST_F(RealMotion, EveryClipLoadsAndMovesLikeAPerson) {
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_)) {
     const std::string path = entry.path().string(), name = entry.path().filename().string();
     const bool is_motion = name.find(".bvh") != std::string::npos || name.find(".amc") != std::string::npos ||
-                           name.ends_with(".npy") || (name.starts_with("humanoid3d_") && name.find("character") == std::string::npos);
+                           name.ends_with(".npy") ||
+                           (name.starts_with("humanoid3d_") && name.find("character") == std::string::npos);
     if (!is_motion) continue;
     const Motion motion = LoadMotion(path);
     ++clips;
@@ -310,8 +327,10 @@ TEST_F(RealMotion, EveryClipLoadsAndMovesLikeAPerson) {
   RecordProperty("minutes", std::to_string(seconds / 60));
   // Knees and elbows that bend the wrong way by more than 10°: fewer than one frame in a thousand.
   EXPECT_LT(violations.maxCoeff(), frames / 1000) << violations.transpose();
-  std::printf("%d clips, %.1f minutes, %d frames; hyper-extended (left knee, right knee, left elbow, right elbow): %d %d %d %d\n",
-              clips, seconds / 60, frames, violations[0], violations[1], violations[2], violations[3]);
+  std::printf(
+      "%d clips, %.1f minutes, %d frames; hyper-extended (left knee, right knee, left elbow, right elbow): %d %d %d "
+      "%d\n",
+      clips, seconds / 60, frames, violations[0], violations[1], violations[2], violations[3]);
 }
 
 }  // namespace
