@@ -23,7 +23,7 @@ namespace bodyloom {
 struct WriteSynthClipOptions {
   bool video = false;
   /// Called with the finished fraction of the video; may be empty. Return false to stop: no video appears then.
-  std::function<bool(double)> progress;
+  std::function<bool(double)> progress = {};
 };
 
 /// Makes the folder when it is missing; each file appears whole or not at all. `options` are those the clip was made
