@@ -94,9 +94,7 @@ std::string DemoPage(const DemoPageContent& content) {
   }
   page.AddTable(rows);
   page.AddHeading("The same by hand");
-  for (const std::string& command : content.commands) {
-    page.AddParagraph(command);
-  }
+  page.AddCode(content.commands);
   return page.ToHtml();
 }
 

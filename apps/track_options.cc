@@ -108,7 +108,7 @@ void AddTrackOptions(CLI::App& app, TrackCommand* command) {
       ->group(solve)
       ->capture_default_str()
       ->check(CLI::IsMember({"ceres"}));
-  app.add_option("--threads", s.num_threads, "at most 256; 0: all cores; the result does not depend on it")
+  app.add_option("--threads", s.num_threads, "at most 256; 0: all cores; results agree to rounding")
       ->group(solve)
       ->check(Quiet(CLI::Range(0, 256)))
       ->capture_default_str();
