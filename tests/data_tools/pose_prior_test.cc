@@ -138,7 +138,8 @@ TEST(DirectionBins, NearestIsWithinABinsWidth) {
     const Vector3d d = Vector3d(normal(random), normal(random), normal(random)).normalized();
     worst = std::max(worst, std::acos(std::min(1.0, d.dot(bins.direction(bins.Nearest(d))))));
   }
-  EXPECT_LT(worst, 0.20);  // a bin's radius is 2/√200 = 0.14 rad, the cube map's cells add 0.04
+  // A bin reaches 0.17 rad at its corners (2.4/√200), a cell of the cube map adds up to 0.06.
+  EXPECT_LT(worst, 0.23);
   for (int i = 0; i < bins.size(); ++i) EXPECT_EQ(bins.Nearest(bins.direction(i)), i);
   EXPECT_EQ(bins.Nearest(Vector3d::Zero()), 0);
 }
