@@ -23,6 +23,13 @@ int Run(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(std::string(kExamples) + kExitCodeHelp);
   Action action;
+  AddTrackVerb(app, &action);
+  AddSynthVerb(app, &action);
+  AddEvaluateVerb(app, &action);
+  AddExportVerb(app, &action);
+  AddBodyVerb(app, &action);
+  AddDemoVerb(app, &action);
+  AddPriorVerb(app, &action);
   AddNeuralVerb(app, &action);
   AddVersionVerb(app, &action);
   try {

@@ -35,8 +35,9 @@ std::string ClockText(double seconds) {
   return text;
 }
 
-Progress::Progress(std::string title)
-    : Progress(std::move(title), isatty(STDERR_FILENO) != 0 ? Style::kBar : Style::kLines, std::cerr) {}
+Progress::Style Progress::DefaultStyle() { return isatty(STDERR_FILENO) != 0 ? Style::kBar : Style::kLines; }
+
+Progress::Progress(std::string title, Style style) : Progress(std::move(title), style, std::cerr) {}
 
 Progress::Progress(std::string title, Style style, std::ostream& out)
     : title_(std::move(title)), style_(style), out_(out) {}

@@ -15,13 +15,16 @@ class Progress {
  public:
   enum class Style { kBar, kLines, kSilent };
 
-  /// kBar when stderr is a terminal, else kLines.
-  explicit Progress(std::string title);
+  /// On stderr.
+  explicit Progress(std::string title, Style style = DefaultStyle());
   Progress(std::string title, Style style, std::ostream& out);
   /// Finishes the line of a bar.
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
+
+  /// kBar when stderr is a terminal, else kLines.
+  static Style DefaultStyle();
 
   /// `fraction` of the whole in [0, 1]; a smaller one than before is taken for the one before. A bar is redrawn at most
   /// ten times a second; a line is written when the stage changes and every ten seconds.

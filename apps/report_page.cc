@@ -23,6 +23,7 @@ table { border-collapse: collapse; background: #fff; margin: 10px 0; }
 th, td { border: 1px solid #e2e8f0; padding: 5px 12px; text-align: left; font-size: 15px; }
 th { background: #edf2f7; } td.n { text-align: right; font-variant-numeric: tabular-nums; }
 figure { margin: 16px 0; } figure img, figure video, figure svg { max-width: 100%; border-radius: 6px; background: #fff; }
+pre { background: #edf2f7; padding: 12px; border-radius: 6px; white-space: pre-wrap; font-size: 14px; }
 figcaption { color: #4a5568; font-size: 14px; }
 )";
 
@@ -103,6 +104,14 @@ void ReportPage::AddHeading(const std::string& text) { body_ += "<h2>" + EscapeH
 
 void ReportPage::AddParagraph(const std::string& text) { body_ += "<p>" + EscapeHtml(text) + "</p>\n"; }
 
+void ReportPage::AddCode(const std::vector<std::string>& lines) {
+  body_ += "<pre>";
+  for (const std::string& line : lines) {
+    body_ += EscapeHtml(line) + "\n";
+  }
+  body_ += "</pre>\n";
+}
+
 void ReportPage::AddFigures(const std::vector<std::pair<std::string, std::string>>& figures) {
   body_ += "<div class=\"figures\">";
   for (const auto& [value, meaning] : figures) {
@@ -116,7 +125,7 @@ void ReportPage::AddTable(const std::vector<std::vector<std::string>>& rows) {
   for (size_t r = 0; r < rows.size(); ++r) {
     body_ += "<tr>";
     for (const std::string& cell : rows[r]) {
-      const bool is_number = !cell.empty() && cell[0] >= '0' && cell[0] <= '9';
+      const bool is_number = !cell.empty() && cell.find_first_not_of("0123456789.-+e") == std::string::npos;
       const std::string tag = r == 0 ? "th" : "td";
       body_ += "<" + tag + (r > 0 && is_number ? " class=\"n\"" : "") + ">" + EscapeHtml(cell) + "</" + tag + ">";
     }

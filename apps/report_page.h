@@ -15,9 +15,11 @@ class ReportPage {
 
   void AddHeading(const std::string& text);
   void AddParagraph(const std::string& text);
+  /// Lines as they are typed.
+  void AddCode(const std::vector<std::string>& lines);
   /// Big numbers in a row: (value with unit, what it is).
   void AddFigures(const std::vector<std::pair<std::string, std::string>>& figures);
-  /// A table; the first row is its head. Cells that begin with a digit are set to the right.
+  /// A table; the first row is its head. Cells that are numbers are set to the right.
   void AddTable(const std::vector<std::vector<std::string>>& rows);
   /// An encoded picture ("image/png", "image/jpeg") becomes part of the page.
   void AddPicture(const std::string& bytes, const std::string& mime_type, const std::string& caption);

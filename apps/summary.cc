@@ -18,24 +18,6 @@ std::string Fixed(double value, int digits) {
   return text;
 }
 
-/// The command's stages with the solve replaced by the solver's own stages (and what they leave unexplained).
-StageSeconds AllStages(const TrackReport& report) {
-  StageSeconds all;
-  for (const auto& [stage, seconds] : report.seconds) {
-    if (stage != kSolveStage || report.solve.seconds.empty()) {
-      all.emplace_back(stage, seconds);
-      continue;
-    }
-    double rest = seconds;
-    for (const auto& [solver_stage, solver_seconds] : report.solve.seconds) {
-      all.emplace_back(solver_stage, solver_seconds);
-      rest -= solver_seconds;
-    }
-    all.emplace_back("solve, other", std::max(0.0, rest));
-  }
-  return all;
-}
-
 std::string Join(const std::vector<std::string>& parts, const std::string& separator) {
   std::string text;
   for (const std::string& part : parts) {
@@ -50,6 +32,23 @@ size_t PeakMemoryBytes() {
   rusage usage = {};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<size_t>(usage.ru_maxrss) * 1024;  // Linux counts KiB
+}
+
+StageSeconds StagesOf(const TrackReport& report) {
+  StageSeconds all;
+  for (const auto& [stage, seconds] : report.seconds) {
+    if (stage != kSolveStage || report.solve.seconds.empty()) {
+      all.emplace_back(stage, seconds);
+      continue;
+    }
+    double rest = seconds;
+    for (const auto& [solver_stage, solver_seconds] : report.solve.seconds) {
+      all.emplace_back(solver_stage, solver_seconds);
+      rest -= solver_seconds;
+    }
+    all.emplace_back("solve, other", std::max(0.0, rest));
+  }
+  return all;
 }
 
 std::string ToText(const std::vector<PlanEntry>& plan) {
@@ -91,7 +90,7 @@ std::string ToText(const TrackReport& report) {
     text += "repaired " + std::to_string(solve.num_swaps_repaired) + " left-right swaps in the detections\n";
   }
   parts.clear();
-  for (const auto& [stage, seconds] : AllStages(report)) {
+  for (const auto& [stage, seconds] : StagesOf(report)) {
     parts.push_back(stage + " " + Fixed(seconds, 2));
   }
   text += "time     " + Fixed(report.total_seconds, 2) + " s (" + Join(parts, ", ") + ")";
@@ -113,7 +112,7 @@ std::string ToText(const TrackReport& report) {
 std::string ToJson(const TrackReport& report) {
   const TrackSequenceSummary& solve = report.solve;
   Json seconds = Json::object();
-  for (const auto& [stage, value] : AllStages(report)) {
+  for (const auto& [stage, value] : StagesOf(report)) {
     seconds[stage] = seconds.value(stage, 0.0) + value;
   }
   seconds["total"] = report.total_seconds;

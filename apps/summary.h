@@ -26,6 +26,9 @@ constexpr const char* kSolveStage = "solve";
 /// Largest resident size of this process so far, bytes.
 size_t PeakMemoryBytes();
 
+/// The command's stages with the solve replaced by the solver's own stages and what they leave unexplained.
+StageSeconds StagesOf(const TrackReport& report);
+
 /// Frames by status, error, time by stage, what was skipped and why: about fifteen lines, the last one with a newline.
 std::string ToText(const TrackReport& report);
 

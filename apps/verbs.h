@@ -20,6 +20,7 @@ void AddEvaluateVerb(CLI::App& app, Action* action);
 void AddExportVerb(CLI::App& app, Action* action);
 void AddBodyVerb(CLI::App& app, Action* action);
 void AddDemoVerb(CLI::App& app, Action* action);
+void AddPriorVerb(CLI::App& app, Action* action);
 void AddNeuralVerb(CLI::App& app, Action* action);
 void AddVersionVerb(CLI::App& app, Action* action);
 

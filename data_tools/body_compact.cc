@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "data_tools/body_codec.h"
+#include "data_tools/body_faces_codec.h"
 #include "data_tools/body_posedirs_codec.h"
 #include "data_tools/formats/printable.h"
-#include "data_tools/formats/zip.h"
 #include "geometry/check.h"
 
 namespace bodyloom {
@@ -18,7 +18,6 @@ namespace {
 constexpr const char* kFormat = "bodyloom-body-1";
 constexpr double kTemplateGrid = 1.0 / (1 << 21), kShapeGrid = 1.0 / (1 << 22), kUvGrid = 1.0 / (1 << 20);
 constexpr int kSkinningBits = 21, kRegressorBits = 28;
-constexpr int kLags[] = {1, 2, 8};  // previous triangle; previous quad; previous quad of a subdivision step
 
 template <typename Derived>
 Integers GridValues(const Eigen::DenseBase<Derived>& values, double step, const char* what) {
@@ -38,48 +37,6 @@ Matrix FromGrid(const Integers& integers, Eigen::Index rows, Eigen::Index column
   }
   return matrix;
 }
-
-// ---- faces ----
-
-NdArray PackFaces(const MatrixX3i& faces, int lag) {
-  Integers residuals(faces.size());
-  for (Eigen::Index i = 0; i < faces.size(); ++i) {
-    residuals[i] = faces.data()[i] - (i >= 3 * lag ? faces.data()[i - 3 * lag] : 0);
-  }
-  return PackIntegers(residuals);
-}
-
-/// The lag whose residuals deflate best.
-int BestLag(const MatrixX3i& faces) {
-  int best = kLags[0];
-  size_t best_size = 0;
-  for (const int lag : kLags) {
-    const size_t size = MakeZip({{"f", PackFaces(faces, lag).bytes}}).size();
-    if (best_size == 0 || size < best_size) {
-      best = lag;
-      best_size = size;
-    }
-  }
-  return best;
-}
-
-/// `limit` bounds the indices.
-MatrixX3i UnpackFaces(const NdArray& packed, int lag, int64_t limit, int64_t expected_faces, const std::string& where) {
-  Integers values = UnpackIntegers(packed, expected_faces < 0 ? -1 : 3 * expected_faces, where);
-  if (values.size() % 3 != 0) throw std::runtime_error(where + ": not a whole number of triangles");
-  for (size_t i = 0; i < values.size(); ++i) {
-    const int64_t before = i >= 3 * static_cast<size_t>(lag) ? values[i - 3 * static_cast<size_t>(lag)] : 0;
-    const int64_t index = values[i] + before;
-    if (index < 0 || index >= limit) {
-      throw std::runtime_error(
-          Concatenate(where, ": face ", i / 3, " names vertex ", index, ", expected 0..", limit - 1));
-    }
-    values[i] = static_cast<int32_t>(index);
-  }
-  return Eigen::Map<const MatrixX3i>(values.data(), static_cast<Eigen::Index>(values.size() / 3), 3);
-}
-
-// ---- rows of weights ----
 
 UnitRows RowsOf(const SparseRows& matrix) {
   UnitRows rows;
@@ -294,7 +251,7 @@ BodyModelData BodyFromCompact(const NpzArrays& arrays, const std::string& where,
     if (!(step > 0 && step < 1)) in.Fail("grid", Concatenate("a step of ", step, ", expected one between 0 and 1"));
   }
   for (const double x : lag) {
-    if (std::find(std::begin(kLags), std::end(kLags), x) == std::end(kLags)) in.Fail("lag", "expected 1, 2 or 8");
+    if (x != 1 && x != 2 && x != 8) in.Fail("lag", Concatenate(x, ", expected 1, 2 or 8"));
   }
 
   Integers vertices = in.Packed("v_template", -1);

@@ -18,11 +18,11 @@ Image::Image(int width_px, int height_px, Colour fill) : width(width_px), height
 
 Image StudioBackdrop(int width, int height) {
   Image image(width, height);
-  const double radius = std::hypot(width, height) / 2;
+  const double radius2 = (double(width) * width + double(height) * height) / 4;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      const double r = std::hypot(x - (width - 1) / 2.0, y - 0.42 * (height - 1)) / std::max(radius, 1.0);
-      const double light = 1 - 0.42 * r * r;
+      const double dx = x - (width - 1) / 2.0, dy = y - 0.42 * (height - 1);
+      const double light = 1 - 0.42 * (dx * dx + dy * dy) / radius2;
       // Ordered dither of one grey level: a smooth ramp without bands.
       const double dither = ((x * 5 + y * 3) % 8) / 8.0;
       uint8_t* p = image.pixel(x, y);

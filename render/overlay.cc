@@ -86,17 +86,31 @@ OverlayRenderer::OverlayRenderer(const BodyModel& body, const Track& track, cons
   BODYLOOM_CHECK(options.IsValid(&why), why);
   BODYLOOM_CHECK(track.camera.width > 0 && track.camera.height > 0, "overlay: the track's camera has no image size");
   BODYLOOM_CHECK(track.num_frames() > 0, "overlay: the track has no frames");
-  BODYLOOM_CHECK(!options.part_colours || body.has_parts(), "overlay: the body '", body.name(),
+  BODYLOOM_CHECK(options.colours == BodyColours::kPlain || body.has_parts(), "overlay: the body '", body.name(),
                  "' has no parts to colour");
-  if (options.part_colours) {
-    for (const uint8_t part : body.data().face_part) face_colours_.push_back(PartColour(part));
+  if (options.colours != BodyColours::kPlain) {
+    for (const uint8_t part : body.data().face_part) {
+      face_colours_.push_back(options.colours == BodyColours::kParts ? PartColour(part) : ClothesColour(part));
+    }
   }
-  if (options.side_view) PlaceSideView();
+  backdrop_ = StudioBackdrop(track.camera.width, track.camera.height);
+  const std::vector<MatrixX3d> joints = JointsOf(body, track);
+  const std::vector<MatrixX3d> leaders = reference != nullptr ? JointsOf(body, *reference) : joints;
+  FindFloor(leaders);
+  if (options.side_view) PlaceSideView(joints, leaders);
 }
 
-void OverlayRenderer::PlaceSideView() {
-  std::vector<MatrixX3d> joints = JointsOf(body_, track_);
-  const std::vector<MatrixX3d> leaders = reference_ != nullptr ? JointsOf(body_, *reference_) : joints;
+void OverlayRenderer::FindFloor(const std::vector<MatrixX3d>& joints) {
+  // It lies under the lowest joint, which is an ankle or a foot, a few centimetres below it.
+  const Vector3d up = options_.up_in_camera.normalized();
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const MatrixX3d& frame : joints) {
+    if (frame.rows() > 0) lowest = std::min(lowest, (frame * up).minCoeff());
+  }
+  if (std::isfinite(lowest)) floor_ = Floor{(lowest - 0.04) * up, up};
+}
+
+void OverlayRenderer::PlaceSideView(const std::vector<MatrixX3d>& joints, const std::vector<MatrixX3d>& leaders) {
   const auto is_known = [](const MatrixX3d& frame) { return frame.rows() > 0; };
   BODYLOOM_CHECK(std::any_of(leaders.begin(), leaders.end(), is_known),
                  "overlay: no frame of the track is known, there is nothing to see from the side");
@@ -106,20 +120,12 @@ void OverlayRenderer::PlaceSideView() {
   side_centre_ = SmoothRootPath(leaders, track_.motion.timestamps);
   if (!options_.side_follows) side_centre_.rowwise() = Eigen::RowVector3d(side_centre_.colwise().mean());
 
-  // The floor lies under the lowest joint, which is an ankle or a foot, a few centimetres below it.
-  const Vector3d up = options_.up_in_camera.normalized();
-  double lowest = std::numeric_limits<double>::infinity();
   std::vector<MatrixX3d> around_centre;
   for (size_t t = 0; t < joints.size(); ++t) {
-    for (const MatrixX3d* frame : {std::as_const(joints).data() + t, leaders.data() + t}) {
-      if (!is_known(*frame)) continue;
-      around_centre.push_back(frame->rowwise() - side_centre_.row(static_cast<Eigen::Index>(t)));
-      if (frame == leaders.data() + t) lowest = std::min(lowest, (*frame * up).minCoeff());
-    }
+    const auto centre = side_centre_.row(static_cast<Eigen::Index>(t));
+    if (is_known(joints[t])) around_centre.push_back(joints[t].rowwise() - centre);
+    if (is_known(leaders[t])) around_centre.push_back(leaders[t].rowwise() - centre);
   }
-  floor_.up = up;
-  floor_.point = (lowest - 0.04) * up;
-
   const int side_width = 2 * static_cast<int>(std::lround(0.5 * track_.camera.height * options_.side_aspect));
   side_ = OrbitView(around_centre, side_width, track_.camera.height,
                     {.yaw_deg = options_.side_yaw_deg,
@@ -168,7 +174,7 @@ void OverlayRenderer::DrawSide(int frame, Image* panel) const {
   const Eigen::Matrix3d& R = view.from_camera.camera_from_world_rotation;
   view.from_camera.camera_from_world_translation -= R * side_centre_.row(frame).transpose();
   const Vector3d& t = view.from_camera.camera_from_world_translation;
-  const Floor floor{R * floor_.point + t, R * floor_.up};
+  const Floor floor{R * floor_->point + t, R * floor_->up};
   DrawFloorGrid(floor, R * side_centre_.row(frame).transpose() + t, {}, view.camera, panel);
 
   const auto draw = [&](const MatrixX3d& vertices_in_camera, const MeshStyle& style) {
@@ -184,10 +190,22 @@ void OverlayRenderer::DrawSide(int frame, Image* panel) const {
   draw(TrackVertices(body_, track_, frame), {.face_colours = face_colours_, .alpha = alpha, .samples = Samples()});
 }
 
+Image OverlayRenderer::Backdrop(const MatrixX3d& vertices, const Camera& camera) const {
+  Image image = backdrop_;
+  if (!options_.floor || !floor_ || camera.model != CameraModel::kPinhole) return image;
+  if (vertices.rows() == 0) return image;
+  const Vector3d centre = vertices.colwise().mean().transpose();
+  DrawFloorGrid(*floor_, centre, {}, camera, &image);
+  if (options_.body) DrawShadow(vertices, body_.data().faces, *floor_, camera, 0.35, &image);
+  return image;
+}
+
 Image OverlayRenderer::Render(int frame, const OverlayFrame& what) const {
   BODYLOOM_CHECK(frame >= 0 && frame < track_.num_frames(), "frame ", frame, " is outside the track's ",
                  track_.num_frames(), " frames");
   const Camera camera = track_.CameraAt(frame);
+  const auto pose = PoseOf(body_, track_, frame);
+  const MatrixX3d vertices = pose ? PoseVertices(body_, track_.motion.betas, *pose) : MatrixX3d(0, 3);
   Image view;
   if (what.background != nullptr) {
     BODYLOOM_CHECK(what.background->width == camera.width && what.background->height == camera.height,
@@ -195,12 +213,11 @@ Image OverlayRenderer::Render(int frame, const OverlayFrame& what) const {
                    camera.width, "x", camera.height);
     view = *what.background;
   } else {
-    view = StudioBackdrop(camera.width, camera.height);
+    view = Backdrop(vertices, camera);
   }
-  const auto pose = PoseOf(body_, track_, frame);
   if (pose && options_.body) {
     const double alpha = what.background != nullptr ? options_.alpha : 1;
-    DrawMesh(PoseVertices(body_, track_.motion.betas, *pose), body_.data().faces, camera,
+    DrawMesh(vertices, body_.data().faces, camera,
              {.face_colours = face_colours_, .alpha = alpha, .samples = Samples()}, &view);
   }
   if (pose && (options_.skeleton || what.detected != nullptr)) DrawLandmarks(frame, what.detected, *pose, &view);

@@ -18,18 +18,27 @@
 
 namespace bodyloom {
 
+/// How the estimated body is coloured.
+enum class BodyColours {
+  kPlain,    ///< one colour
+  kParts,    ///< by chart; needs a body with parts
+  kClothes,  ///< shirt, trousers, shoes, skin; needs a body with parts
+};
+
 struct OverlayOptions {
   bool body = true;
-  double alpha = 0.72;        ///< opacity of the body over the video
-  bool part_colours = false;  ///< colour the body by its charts; needs a body with parts
-  bool skeleton = false;      ///< bones between the projected landmarks
-  bool side_view = false;     ///< a second panel to the right, as high as the image
-  bool side_follows = true;   ///< the side camera moves along with the person; false: it sees the whole clip's space
-  double side_yaw_deg = 90;   ///< 90: from the person's left when it faces the camera
+  double alpha = 0.72;  ///< opacity of the body over the video
+  BodyColours colours = BodyColours::kPlain;
+  bool skeleton = false;     ///< bones between the projected landmarks
+  bool floor = true;         ///< where there is no video: a floor with the body's shadow (pinhole only)
+  bool side_view = false;    ///< a second panel to the right, as high as the image
+  bool side_follows = true;  ///< the side camera moves along with the person; false: it sees the whole clip's space
+  double side_yaw_deg = 90;  ///< 90: from the person's left when it faces the camera
   double side_elevation_deg = 8;
-  double side_aspect = 0.75;                                 ///< width of the panel / its height
-  Eigen::Vector3d up_in_camera = -Eigen::Vector3d::UnitY();  ///< for the side view, when the camera is tilted
-  double min_confidence = 0.1;                               ///< detections below are not drawn
+  double side_aspect = 0.75;  ///< width of the panel / its height
+  Eigen::Vector3d up_in_camera =
+      -Eigen::Vector3d::UnitY();  ///< for the floor and the side view, when the camera is tilted
+  double min_confidence = 0.1;    ///< detections below are not drawn
   /// False with the reason when a field is out of range.
   bool IsValid(std::string* why) const;
 };
@@ -38,7 +47,7 @@ struct OverlayOptions {
 struct OverlayFrame {
   const Image* background = nullptr;           ///< of the camera's size; null: a plain backdrop
   const KeypointSequence* detected = nullptr;  ///< drawn as discs, the track's own landmarks as rings
-  std::vector<CaptionLine> caption;            ///< top left
+  std::vector<CaptionLine> caption = {};       ///< top left
 };
 
 class OverlayRenderer {
@@ -58,7 +67,9 @@ class OverlayRenderer {
 
  private:
   void DrawLandmarks(int frame, const KeypointSequence* detected, const BodyPose& pose, Image* image) const;
-  void PlaceSideView();
+  void FindFloor(const std::vector<MatrixX3d>& joints);
+  void PlaceSideView(const std::vector<MatrixX3d>& joints, const std::vector<MatrixX3d>& leaders);
+  [[nodiscard]] Image Backdrop(const MatrixX3d& vertices, const Camera& camera) const;
   /// Large pictures need fewer samples a pixel to look smooth.
   [[nodiscard]] int Samples() const { return track_.camera.height >= 600 ? 2 : 3; }
   void DrawSide(int frame, Image* panel) const;
@@ -70,8 +81,8 @@ class OverlayRenderer {
   std::vector<Colour> face_colours_;
   std::optional<View> side_;  ///< of a person at the origin when it follows
   MatrixX3d side_centre_;     ///< T×3: where that origin is
-  Image side_backdrop_;
-  Floor floor_;  ///< camera frame
+  Image backdrop_, side_backdrop_;
+  std::optional<Floor> floor_;  ///< camera frame
 };
 
 /// The body of frame t of a track, V×3 in the camera frame; empty when the frame is lost.

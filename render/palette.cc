@@ -24,4 +24,12 @@ Colour PartColour(int part) {
   return kColours[part >= 1 && part <= 24 ? part : 0];
 }
 
+Colour ClothesColour(int part) {
+  constexpr Colour kSkin{224, 178, 148}, kShirt{196, 84, 72}, kTrousers{70, 84, 112}, kShoes{58, 56, 60};
+  if (part == 1 || part == 2 || (part >= 15 && part <= 18)) return kShirt;
+  if (part >= 7 && part <= 14) return kTrousers;
+  if (part == 5 || part == 6) return kShoes;
+  return kSkin;
+}
+
 }  // namespace bodyloom

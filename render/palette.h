@@ -19,4 +19,7 @@ inline constexpr Colour kPaperColour{248, 249, 251};
 /// limb darker than its front.
 Colour PartColour(int part);
 
+/// The same charts as clothes: shirt, trousers, shoes, and skin elsewhere. For made-up videos of a person.
+Colour ClothesColour(int part);
+
 }  // namespace bodyloom

@@ -37,7 +37,7 @@ View OrbitView(const std::vector<MatrixX3d>& points, int width, int height, cons
   // Turn the scene about `up`, stand the camera upright, then tilt it.
   const Eigen::Matrix3d upright = RotationBetweenDirections(up, -Vector3d::UnitY());
   const Eigen::Matrix3d R = RotationFromAxisAngle(Vector3d(options.elevation_deg * radians, 0, 0)) * upright *
-                            RotationFromAxisAngle(options.yaw_deg * radians * up);
+                            RotationFromAxisAngle(-options.yaw_deg * radians * up);
   View view;
   view.camera = MakePinhole(width, height, 1.6 * std::max(width, height));
 

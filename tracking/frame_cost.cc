@@ -221,8 +221,11 @@ void FrameEvaluator::Evaluate(const FrameLayout& layout, const FrameData& data, 
   system->num_invalid = num_invalid_;
   if (derivatives) {
     system->H.setZero(p, p);
-    system->H.selfadjointView<Eigen::Lower>().rankUpdate(J_.topRows(row_).transpose());
-    system->gradient.noalias() = J_.topRows(row_).transpose() * r_.head(row_);
+    system->gradient.setZero(p);
+    if (row_ > 0) {  // Eigen's blocking divides by the number of rows
+      system->H.selfadjointView<Eigen::Lower>().rankUpdate(J_.topRows(row_).transpose());
+      system->gradient.noalias() = J_.topRows(row_).transpose() * r_.head(row_);
+    }
   }
 }
 

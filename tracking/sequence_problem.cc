@@ -36,6 +36,12 @@ double StatureOfMeanShape(const BodyModel& model, int num_betas, VectorXd* gradi
   return height;
 }
 
+std::array<double, 3> RootAccelerationSigma(const SequenceProblem& problem) {
+  const double sigma = problem.smoothness.root_acceleration;
+  const bool weak = problem.layout.knowledge == CameraKnowledge::kWeak;
+  return {weak ? problem.smoothness.weak_scale_acceleration : sigma, sigma, sigma};
+}
+
 SequenceProblem SelectFrames(const SequenceProblem& problem, const std::vector<int>& frames) {
   SequenceProblem coarse;
   coarse.layout = problem.layout;
@@ -140,8 +146,7 @@ void Unpack(Parameters& x, SequenceProblem* problem) {
 void AddSmoothness(const SequenceProblem& problem, Parameters* x, ceres::Problem* ceres_problem) {
   const std::vector<double> levers = JointLevers(*problem.layout.model);
   const Smoothness& smooth = problem.smoothness;
-  double root_sigma[3] = {smooth.root_acceleration, smooth.root_acceleration, smooth.root_acceleration};
-  if (problem.layout.knowledge == CameraKnowledge::kWeak) root_sigma[0] = smooth.weak_scale_acceleration;
+  const std::array<double, 3> root_sigma = RootAccelerationSigma(problem);
   for (size_t t = 2; t < problem.states.size(); ++t) {
     if (problem.cut_before[t] || problem.cut_before[t - 1]) continue;
     const double dt0 = problem.timestamps[t - 1] - problem.timestamps[t - 2];
@@ -151,7 +156,7 @@ void AddSmoothness(const SequenceProblem& problem, Parameters* x, ceres::Problem
       ceres_problem->AddResidualBlock(new RotationAccelerationCost(dt0, dt1, sigma), nullptr, x->Rotation(t - 2, a),
                                       x->Rotation(t - 1, a), x->Rotation(t, a));
     }
-    ceres_problem->AddResidualBlock(new VectorAccelerationCost(dt0, dt1, root_sigma), nullptr, x->Translation(t - 2),
+    ceres_problem->AddResidualBlock(new VectorAccelerationCost(dt0, dt1, root_sigma.data()), nullptr, x->Translation(t - 2),
                                     x->Translation(t - 1), x->Translation(t));
   }
 }

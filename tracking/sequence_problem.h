@@ -5,6 +5,7 @@
 /// linearly with the number of frames: a frame couples to two neighbours on each side and to the shared columns only.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <string>
 #include <vector>
@@ -70,6 +71,9 @@ void SpreadFrames(const SequenceProblem& coarse, const std::vector<int>& frames,
 
 /// About `rate` frames a second, always with the first and last frame of every shot.
 std::vector<int> FramesAtRate(const SequenceProblem& problem, double rate);
+
+/// σ of the acceleration of the three translation parameters (metres, or log scale and offsets for weak perspective).
+std::array<double, 3> RootAccelerationSigma(const SequenceProblem& problem);
 
 /// Rest-pose distance from a joint to the farthest joint below it, metres (at least 0.1): the lever that turns a linear
 /// acceleration into an angular one.

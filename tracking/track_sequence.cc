@@ -19,6 +19,7 @@
 #include "tracking/observability.h"
 #include "tracking/sequence_problem.h"
 #include "tracking/track_result.h"
+#include "tracking/uncertainty.h"
 
 namespace bodyloom {
 namespace {
@@ -214,13 +215,13 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSe
 
   const bool pulled = input.initialiser == nullptr;
   const auto solve = [&](const char* stage, SequenceProblem* stage_problem, double pull, double kernel, double tolerance,
-                         double from, double to) {
+                         int max_iterations, double from, double to) {
     for (FrameData& frame : stage_problem->frames) {
       frame.initialiser_weight = pull;
       frame.landmark_kernel = kernel;
     }
     SolveOptions solve_options;
-    solve_options.max_iterations = options.max_iterations;
+    solve_options.max_iterations = max_iterations;
     solve_options.num_threads = threads;
     solve_options.function_tolerance = tolerance;
     if (options.progress) {
@@ -248,14 +249,28 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSe
   const double final_pull = pulled ? 0.0 : options.initialiser_weight;
   if (pulled || coarse_to_fine) {
     SequenceProblem coarse = SelectFrames(problem, coarse_frames);
-    if (pulled) going = solve("fit near start", &coarse, options.start_pull, 8, 1e-3, 0.05, 0.3);
-    if (going) going = solve("fit coarse", &coarse, final_pull, 4, 1e-4, 0.3, 0.6);
+    if (pulled) going = solve("fit near start", &coarse, options.start_pull, 8, 1e-3, options.max_iterations, 0.05, 0.3);
+    if (going) going = solve("fit coarse", &coarse, final_pull, 4, 1e-4, options.max_iterations, 0.3, 0.6);
     SpreadFrames(coarse, coarse_frames, &problem);
   }
-  if (going) solve("fit", &problem, final_pull, 4, 1e-4, 0.6, 0.95);
+  // The coarse solve has settled what is slow to settle; between its frames a few steps are enough.
+  const int fine_iterations = coarse_to_fine ? options.max_fine_iterations : options.max_iterations;
+  if (going) solve("fit", &problem, final_pull, 4, 1e-4, fine_iterations, 0.6, 0.95);
 
   FillTrack(input, problem, landmarks, &result);
   clock.Book("finish");
+  if (options.estimate_uncertainty) {
+    // On the coarse frames: neighbours' detection errors are not independent, and their joints' spread changes slowly.
+    const RowMatrixXd sigma = JointPositionSigma(SelectFrames(problem, coarse_frames));
+    for (size_t i = 0, t = 0; t < T; ++t) {
+      while (i + 1 < coarse_frames.size() && std::abs(problem.timestamps[coarse_frames[i + 1]] - problem.timestamps[t]) <=
+                                                 std::abs(problem.timestamps[coarse_frames[i]] - problem.timestamps[t])) {
+        ++i;
+      }
+      result.track.joint_sigma.row(t) = sigma.row(i);
+    }
+    clock.Book("uncertainty");
+  }
   return result;
 }
 

@@ -2,9 +2,9 @@
 #include "data_tools/evaluation/aist_evaluation.h"
 
 #include <filesystem>
-#include <stdexcept>
 
 #include "data_tools/formats/pickle.h"
+#include "data_tools/motion/load_motion.h"
 #include "data_tools/observations/aist_reader.h"
 #include "data_tools/observations/load_cameras.h"
 
@@ -12,31 +12,6 @@ namespace bodyloom {
 namespace {
 
 constexpr double kAistFps = 60;
-
-/// smpl_poses (T×72, or T×24×3) and smpl_trans / smpl_scaling of a motions file.
-Motion ReadSmplMotion(const std::string& path) {
-  const PicklePtr file = ReadPickleFile(path);
-  const auto numbers = [&](const char* key) {
-    const PickleValue* value = file->Find(key);
-    if (value == nullptr || value->kind != PickleValue::Kind::kArray || !value->array.is_number()) {
-      throw std::runtime_error(path + ": no array '" + key + "'");
-    }
-    return value->array.ToMatrix();
-  };
-  Motion motion;
-  motion.body = "smpl";
-  motion.poses = numbers("smpl_poses");
-  const RowMatrixXd trans = numbers("smpl_trans"), scaling = numbers("smpl_scaling");
-  if (motion.poses.cols() != 72 || trans.cols() != 3 || trans.rows() != motion.poses.rows() || scaling.size() != 1 ||
-      !(scaling(0, 0) > 0)) {
-    throw std::runtime_error(path + ": smpl_poses " + std::to_string(motion.poses.rows()) + "x" +
-                             std::to_string(motion.poses.cols()) + ", smpl_trans " + std::to_string(trans.rows()) +
-                             "x" + std::to_string(trans.cols()) + ", expected Tx72, Tx3 and one positive smpl_scaling");
-  }
-  motion.trans = trans / scaling(0, 0);
-  for (Eigen::Index t = 0; t < motion.poses.rows(); ++t) motion.timestamps.push_back(static_cast<double>(t) / kAistFps);
-  return motion;
-}
 
 }  // namespace
 
@@ -50,7 +25,7 @@ MultiViewClip ReadAistClip(const std::string& annotations_folder, const std::str
   clip.name = sequence;
   clip.fps = kAistFps;
   clip.coco17_in_world = ReadAistKeypoints3d((root / "keypoints3d" / file).string());
-  if (std::filesystem::exists(motion)) clip.motion = ReadSmplMotion(motion);
+  if (std::filesystem::exists(motion)) clip.motion = LoadMotion(motion);
   const PicklePtr detections = ReadPickleFile(keypoints);
   for (const NamedCamera& camera : LoadCameras(cameras_folder, sequence)) {
     clip.views.push_back({camera.name, camera.camera, camera.pose,

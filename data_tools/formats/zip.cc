@@ -207,7 +207,7 @@ std::string Deflate(const std::string& bytes, int level) {
 }
 
 void Put(uint64_t value, int length, std::string* out) {
-  for (int i = 0; i < length; ++i) out->push_back(static_cast<char>(value >> (8 * i)));
+  for (int i = 0; i < length; ++i, value >>= 8) out->push_back(static_cast<char>(value));
 }
 
 /// The fields shared by a member's header and its directory entry, from "version needed" to "extra length".

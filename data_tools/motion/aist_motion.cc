@@ -40,12 +40,14 @@ Motion AistMotionFromPickle(const PickleValue& file, const std::string& where, d
   const bool is_flat = poses.shape.size() == 2 && poses.shape[1] == 72;
   const bool is_nested = poses.shape.size() == 3 && poses.shape[1] == 24 && poses.shape[2] == 3;
   if ((!is_flat && !is_nested) || poses.shape[0] == 0) {
-    throw std::runtime_error(where + ": smpl_poses: shape " + poses.ShapeText() + ", expected frames x 72 or frames x 24 x 3");
+    throw std::runtime_error(where + ": smpl_poses: shape " + poses.ShapeText() +
+                             ", expected frames x 72 or frames x 24 x 3");
   }
   const int64_t T = poses.shape[0];
   const NdArray& trans = RequireNumbers(file, "smpl_trans", where);
   if (trans.shape != std::vector<int64_t>{T, 3}) {
-    throw std::runtime_error(where + ": smpl_trans: shape " + trans.ShapeText() + ", expected " + std::to_string(T) + "x3");
+    throw std::runtime_error(where + ": smpl_trans: shape " + trans.ShapeText() + ", expected " + std::to_string(T) +
+                             "x3");
   }
   Motion motion;
   motion.body = "smpl";

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// AIST++ motions/<seq>.pkl: `smpl_poses` N×72 (or N×24×3) axis-angle, `smpl_trans` N×3, `smpl_scaling` (1).
 ///
-/// Vertices in the data set's world (centimetres, y up) are smpl_scaling · SMPL(θ, β = 0) + smpl_trans, so the motion of
-/// a metric SMPL body has trans = smpl_trans / smpl_scaling metres. The person in front of the (metric) cameras is
+/// Vertices in the data set's world (centimetres, y up) are smpl_scaling · SMPL(θ, β = 0) + smpl_trans, so the motion
+/// of a metric SMPL body has trans = smpl_trans / smpl_scaling metres. The person in front of the (metric) cameras is
 /// smpl_scaling / 100 times that size. 60 frames a second. Source: google/aistplusplus_api loader.py.
 #pragma once
 

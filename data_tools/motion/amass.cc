@@ -60,7 +60,8 @@ Motion::Up UpOf(const NpzArrays& arrays, const std::string& where) {
   if (arrays.find("camera_model") != arrays.end()) return Motion::Up::kCamera;
   const auto found = arrays.find("up_axis");
   if (found == arrays.end()) return Motion::Up::kZ;
-  const std::vector<std::string> text = found->second.is_number() ? std::vector<std::string>() : found->second.ToStrings();
+  const std::vector<std::string> text =
+      found->second.is_text() ? found->second.ToStrings() : std::vector<std::string>();
   if (text.size() != 1 || (text[0] != "y" && text[0] != "z")) Fail(where, "up_axis", "expected 'y' or 'z'");
   return text[0] == "y" ? Motion::Up::kY : Motion::Up::kZ;
 }
@@ -75,14 +76,16 @@ Motion AmassFromNpz(const NpzArrays& arrays, const std::string& where) {
   const RowMatrixXd poses = RequireMatrix(arrays, "poses", where);
   const Eigen::Index columns = poses.cols();
   if (columns != 72 && columns != 156 && columns != 162 && columns != 165) {
-    Fail(where, "poses", "shape " + RequireArray(arrays, "poses", where).ShapeText() +
-                             ", expected 72 (SMPL), 156 (SMPL-H), 162 or 165 (SMPL-X) columns");
+    Fail(where, "poses",
+         "shape " + RequireArray(arrays, "poses", where).ShapeText() +
+             ", expected 72 (SMPL), 156 (SMPL-H), 162 or 165 (SMPL-X) columns");
   }
   if (poses.rows() == 0) Fail(where, "poses", "no frames");
   const RowMatrixXd trans = RequireMatrix(arrays, "trans", where);
   if (trans.rows() != poses.rows() || trans.cols() != 3) {
-    Fail(where, "trans", "shape " + RequireArray(arrays, "trans", where).ShapeText() + ", expected " +
-                             std::to_string(poses.rows()) + "x3");
+    Fail(where, "trans",
+         "shape " + RequireArray(arrays, "trans", where).ShapeText() + ", expected " + std::to_string(poses.rows()) +
+             "x3");
   }
   Motion motion;
   motion.body = "smpl";
@@ -108,8 +111,8 @@ Motion AmassFromNpz(const NpzArrays& arrays, const std::string& where) {
 void WriteAmass(const std::string& path, const Motion& motion, const Eigen::Vector3d& rest_pelvis,
                 const std::string& gender) {
   CheckMotion(motion, "WriteAmass");
-  BODYLOOM_CHECK(motion.poses.cols() == kSmplColumns || motion.poses.cols() == kSmplhColumns, "WriteAmass: ",
-                 motion.poses.cols() / 3, " joints, expected 24 (SMPL) or 52 (SMPL-H)");
+  BODYLOOM_CHECK(motion.poses.cols() == kSmplColumns || motion.poses.cols() == kSmplhColumns,
+                 "WriteAmass: ", motion.poses.cols() / 3, " joints, expected 24 (SMPL) or 52 (SMPL-H)");
   const Motion z_up = ChangeUp(motion, Motion::Up::kZ, rest_pelvis);
   const int64_t T = motion.num_frames();
   RowMatrixXd poses = RowMatrixXd::Zero(T, kSmplhColumns);
@@ -123,8 +126,9 @@ void WriteAmass(const std::string& path, const Motion& motion, const Eigen::Vect
   arrays["gender"] = NdArray::FromString(gender);
   // One frame, or a clip with a gap, has no frame rate of its own; AMASS readers insist on a number.
   const double seconds = motion.timestamps.back() - motion.timestamps.front();
-  arrays["mocap_framerate"] =
-      NdArray::FromDouble(fps > 0 ? fps : seconds > 0 ? static_cast<double>(T - 1) / seconds : 30.0);
+  arrays["mocap_framerate"] = NdArray::FromDouble(fps > 0       ? fps
+                                                  : seconds > 0 ? static_cast<double>(T - 1) / seconds
+                                                                : 30.0);
   arrays["timestamps"] = NdArray::FromDoubles(motion.timestamps.data(), {T});
   WriteNpz(path, arrays);
 }

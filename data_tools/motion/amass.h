@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-/// AMASS motions (.npz): `poses` T×156 (SMPL-H), 165 or 162 (SMPL-X) or 72 (SMPL) axis-angle, `trans` T×3 metres, `betas`,
-/// `gender`, and the frame rate as `mocap_framerate` or, in the SMPL-X release, `mocap_frame_rate`. z up.
+/// AMASS motions (.npz): `poses` T×156 (SMPL-H), 165 or 162 (SMPL-X) or 72 (SMPL) axis-angle, `trans` T×3 metres,
+/// `betas`, `gender`, and the frame rate as `mocap_framerate` or, in the SMPL-X release, `mocap_frame_rate`. z up.
 ///
-/// Columns 0–2 are the root, 3–65 SMPL's 21 body joints in every family; hands, jaw and eyes are left out and SMPL's two
-/// hand joints are zero. A file may say otherwise than AMASS: `timestamps` (T seconds) override the frame rate,
+/// Columns 0–2 are the root, 3–65 SMPL's 21 body joints in every family; hands, jaw and eyes are left out and SMPL's
+/// two hand joints are zero. A file may say otherwise than AMASS: `timestamps` (T seconds) override the frame rate,
 /// `up_axis` is "y" or "z", and `camera_model` marks a track in camera coordinates. Source: amass.is.tue.mpg.de,
 /// headers of the released files.
 #pragma once
@@ -16,7 +16,8 @@
 namespace bodyloom {
 
 bool IsAmass(const NpzArrays& arrays);
-/// A motion of SMPL's 24 joints. Throws std::runtime_error naming `where`, the key, what it holds and what was expected.
+/// A motion of SMPL's 24 joints. Throws std::runtime_error naming `where`, the key, what it holds and what was
+/// expected.
 Motion AmassFromNpz(const NpzArrays& arrays, const std::string& where);
 
 /// Writes the SMPL-H form (156 columns, z up) of a 24- or 52-joint motion; `rest_pelvis` is the body's pelvis joint at

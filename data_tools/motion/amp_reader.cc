@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "data_tools/formats/pickle.h"
+#include "data_tools/formats/printable.h"
 
 namespace bodyloom {
 namespace {
@@ -32,7 +33,8 @@ size_t ObjectNpyHeaderSize(const std::string& bytes) {
 
 const PickleValue& Require(const PickleValue& table, const std::string& key, Kind kind, const std::string& where) {
   const PickleValue* value = table.Find(key);
-  if (value == nullptr || value->kind != kind) Fail(where, "no '" + key + "' of the right kind, expected a SkeletonMotion");
+  if (value == nullptr || value->kind != kind)
+    Fail(where, "no '" + key + "' of the right kind, expected a SkeletonMotion");
   return *value;
 }
 
@@ -90,7 +92,8 @@ SkeletonMotion AmpFromNpyBytes(const std::string& bytes, const std::string& wher
   const NdArray& rotation = RequireArr(*file, "rotation", {-1, J, 4}, where);
   const int64_t T = rotation.shape[0];
   if (T == 0) Fail(where, "rotation: no frames");
-  if (static_cast<size_t>(T * J) > kMostRotations) Fail(where, "rotation: " + std::to_string(T) + " frames are too many");
+  if (static_cast<size_t>(T * J) > kMostRotations)
+    Fail(where, "rotation: " + std::to_string(T) + " frames are too many");
   motion.root_positions = RequireArr(*file, "root_translation", {T, 3}, where).ToMatrix();
   if (!motion.root_positions.allFinite() || !motion.offsets.allFinite()) {
     Fail(where, "root_translation or local_translation is not finite");
@@ -102,7 +105,7 @@ SkeletonMotion AmpFromNpyBytes(const std::string& bytes, const std::string& wher
   for (int64_t i = 0; i < T * J; ++i) {
     const Eigen::Quaterniond quaternion(q[4 * i + 3], q[4 * i], q[4 * i + 1], q[4 * i + 2]);
     if (!(quaternion.norm() > 0.5 && quaternion.norm() < 2)) {
-      Fail(where, "rotation of frame " + std::to_string(i / J) + ", joint '" + motion.names[i % J] +
+      Fail(where, "rotation of frame " + std::to_string(i / J) + ", joint '" + PrintableText(motion.names[i % J]) +
                       "': a quaternion of length " + std::to_string(quaternion.norm()) + ", expected 1");
     }
     motion.rotations[i] = quaternion.normalized().toRotationMatrix();

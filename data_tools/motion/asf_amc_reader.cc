@@ -8,6 +8,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "data_tools/formats/printable.h"
 #include "data_tools/motion/text_scanner.h"
 #include "geometry/check.h"
 #include "geometry/rotation.h"
@@ -54,11 +55,11 @@ bool ParseFreedom(std::string_view word, Freedom* freedom) {
 
 /// Angles applied in the order of `order` about fixed axes: "XYZ" → Rz·Ry·Rx.
 Eigen::Matrix3d EulerFrame(TextScanner* scanner, const Eigen::Vector3d& radians, std::string_view order) {
-  if (order.size() != 3) scanner->Fail("found axis order '" + std::string(order.substr(0, 20)) + "', expected XYZ");
+  if (order.size() != 3) scanner->Fail("found axis order '" + PrintableText(order) + "', expected XYZ");
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
   for (int i = 0; i < 3; ++i) {
     const int axis = std::toupper(static_cast<unsigned char>(order[i])) - 'X';
-    if (axis < 0 || axis > 2) scanner->Fail("found axis order '" + std::string(order) + "', expected XYZ");
+    if (axis < 0 || axis > 2) scanner->Fail("found axis order '" + PrintableText(order) + "', expected XYZ");
     R = RotationFromAxisAngle(Eigen::Vector3d::Unit(axis) * radians[i]) * R;
   }
   return R;
@@ -91,7 +92,7 @@ void ReadRoot(TextScanner* scanner, Asf* asf) {
     } else if (key == "orientation") {
       orientation = ReadVector(scanner, "an orientation") * asf->radians_per_unit;
     } else {
-      scanner->Fail("found '" + key.substr(0, 60) + "', expected order, axis, position or orientation");
+      scanner->Fail("found '" + PrintableText(key) + "', expected order, axis, position or orientation");
     }
   }
   root.frame = EulerFrame(scanner, orientation, order);
@@ -140,7 +141,8 @@ void SetParents(TextScanner* scanner, Asf* asf, const std::map<std::string, std:
       const auto found = parent_of.find(asf->bones[b].name);
       if (found == parent_of.end()) continue;
       const auto parent = index.find(found->second);
-      if (parent == index.end()) scanner->Fail("hierarchy names an unknown bone '" + found->second.substr(0, 60) + "'");
+      if (parent == index.end())
+        scanner->Fail("hierarchy names an unknown bone '" + PrintableText(found->second) + "'");
       if (!placed[parent->second]) continue;
       asf->bones[b].parent = found->second;
       ordered.push_back(asf->bones[b]);
@@ -148,7 +150,7 @@ void SetParents(TextScanner* scanner, Asf* asf, const std::map<std::string, std:
     }
   }
   for (size_t b = 0; b < asf->bones.size(); ++b) {
-    if (!placed[b]) scanner->Fail("bone '" + asf->bones[b].name.substr(0, 60) + "' does not hang on the root");
+    if (!placed[b]) scanner->Fail("bone '" + PrintableText(asf->bones[b].name) + "' does not hang on the root");
   }
   asf->bones = std::move(ordered);
 }
@@ -157,16 +159,14 @@ void SetParents(TextScanner* scanner, Asf* asf, const std::map<std::string, std:
 /// so it is taken from the text itself and not from the scanner's words.
 std::map<std::string, std::string> HierarchyLines(const std::string& text) {
   std::map<std::string, std::string> parent_of;
-  size_t at = text.find(":hierarchy");
-  if (at == std::string::npos) return parent_of;
-  at = text.find('\n', at);
-  while (at != std::string::npos && at + 1 < text.size()) {
-    const size_t end = text.find('\n', at + 1);
-    const std::string line = text.substr(at + 1, end == std::string::npos ? end : end - at - 1);
-    at = end;
-    TextScanner words(line, "");
-    if (words.AtEnd() || words.Peek() == "begin") continue;
-    if (words.Peek() == "end" || IsSection(words.Peek())) break;
+  bool is_inside = false;
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t end = std::min(text.find('\n', begin), text.size());
+    TextScanner words(std::string_view(text).substr(begin, end - begin), "", '#');
+    begin = end + 1;
+    const std::string_view first = words.Peek();
+    if (IsSection(first)) is_inside = first == ":hierarchy";
+    if (!is_inside || first.empty() || IsSection(first) || first == "begin" || first == "end") continue;
     const std::string parent(words.Word("a bone"));
     while (!words.AtEnd()) parent_of.emplace(std::string(words.Word("a bone")), parent);
   }
@@ -188,7 +188,8 @@ Asf ReadAsf(const std::string& text, const std::string& where) {
       while (!scanner.AtEnd() && !IsSection(scanner.Peek())) {
         if (Lower(scanner.Word("a unit")) == "angle") {
           const std::string unit = Lower(scanner.Word("deg or rad"));
-          if (unit != "deg" && unit != "rad") scanner.Fail("found angle unit '" + unit.substr(0, 60) + "', expected deg or rad");
+          if (unit != "deg" && unit != "rad")
+            scanner.Fail("found angle unit '" + PrintableText(unit) + "', expected deg or rad");
           asf.radians_per_unit = unit == "deg" ? M_PI / 180 : 1;
         }
       }
@@ -262,14 +263,16 @@ SkeletonMotion AsfAmcFromText(const std::string& asf_text, const std::string& as
       const std::string_view name = scanner.Word("a bone");
       const auto found = index.find(name);
       if (found == index.end()) {
-        scanner.Fail("bone '" + std::string(name.substr(0, 60)) + "' is not in the skeleton " + asf_where);
+        scanner.Fail("bone '" + PrintableText(name) + "' is not in the skeleton " + asf_where);
       }
       const Bone& bone = asf.bones[found->second];
-      if (seen[found->second]) scanner.Fail("bone '" + bone.name + "' occurs twice in frame " + std::to_string(t + 1));
+      if (seen[found->second])
+        scanner.Fail("bone '" + PrintableText(bone.name) + "' occurs twice in frame " + std::to_string(t + 1));
       seen[found->second] = true;
       Eigen::Matrix3d M = Eigen::Matrix3d::Identity();
       for (const Freedom& freedom : bone.freedoms) {
-        const double value = scanner.Number("a value of '" + bone.name + "' in frame " + std::to_string(t + 1));
+        const double value =
+            scanner.Number("a value of '" + PrintableText(bone.name) + "' in frame " + std::to_string(t + 1));
         if (freedom.is_rotation) {
           M = RotationFromAxisAngle(Eigen::Vector3d::Unit(freedom.axis) * (value * unit)) * M;
         } else if (found->second == 0) {
@@ -282,7 +285,8 @@ SkeletonMotion AsfAmcFromText(const std::string& asf_text, const std::string& as
     if (!seen[0]) scanner.Fail("frame " + std::to_string(t + 1) + " lacks the root");
     for (size_t b = 0; b < asf.bones.size(); ++b) {
       if (seen[b] == seen_first[b]) continue;
-      scanner.Fail("bone '" + asf.bones[b].name + "' is in only one of frames 1 and " + std::to_string(t + 1));
+      scanner.Fail("bone '" + PrintableText(asf.bones[b].name) + "' is in only one of frames 1 and " +
+                   std::to_string(t + 1));
     }
   }
   if (positions.empty()) scanner.Fail("no frames");

@@ -4,8 +4,9 @@
 /// A bone b has a rest direction and length in world axes, a frame C_b given by the Euler angles `axis` (applied in the
 /// order written: "XYZ" is Rz·Ry·Rx) and degrees of freedom M_b in that frame. With all rest frames parallel to the
 /// world its joint rotation is C_b·M_b·C_b⁻¹. A bone's joint sits at its near end: joint "ltibia" is the left knee. A
-/// bone without degrees of freedom, or absent from the motion (fingers often are), stays at rest. Lengths stay in file units (CMU: 0.45⁻¹ inches). AMC has no frame rate;
-/// CMU's is 120 Hz. Source: Schafer, Acclaim skeleton file definition V1.10; mocap.cs.cmu.edu.
+/// bone without degrees of freedom, or absent from the motion (fingers often are), stays at rest. Lengths stay in file
+/// units (CMU: 0.45⁻¹ inches). AMC has no frame rate; CMU's is 120 Hz. Source: Schafer, Acclaim skeleton file
+/// definition V1.10; mocap.cs.cmu.edu.
 #pragma once
 
 #include <string>

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "data_tools/formats/printable.h"
 #include "data_tools/motion/text_scanner.h"
 #include "geometry/rotation.h"
 
@@ -24,7 +25,7 @@ Channel ChannelFromName(TextScanner* scanner, std::string_view name, int joint) 
   const bool is_position = name.size() == 9 && name.substr(1) == "position";
   const int axis = name.empty() ? -1 : name[0] == 'X' ? 0 : name[0] == 'Y' ? 1 : name[0] == 'Z' ? 2 : -1;
   if (axis < 0 || !(is_rotation || is_position)) {
-    scanner->Fail("found channel '" + std::string(name.substr(0, 60)) + "', expected [XYZ]rotation or [XYZ]position");
+    scanner->Fail("found channel '" + PrintableText(name) + "', expected [XYZ]rotation or [XYZ]position");
   }
   return {joint, axis, is_rotation};
 }
@@ -135,8 +136,8 @@ SkeletonMotion BvhFromText(const std::string& text, const std::string& where) {
     }
   }
   if (!scanner.AtEnd()) {
-    scanner.Fail("found '" + std::string(scanner.Peek().substr(0, 60)) + "' after the last of " +
-                 std::to_string(num_frames) + " frames, expected the end of the file");
+    scanner.Fail("found '" + PrintableText(scanner.Peek()) + "' after the last of " + std::to_string(num_frames) +
+                 " frames, expected the end of the file");
   }
   return motion;
 }

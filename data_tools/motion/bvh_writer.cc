@@ -52,8 +52,10 @@ class Writer {
   void AppendJoint(int j, int level) {
     const std::string indent(2 * level, ' ');
     const int parent = model_.parents()[j];
-    const Eigen::RowVector3d offset = parent < 0 ? Eigen::RowVector3d::Zero().eval() : (rest_.row(j) - rest_.row(parent)).eval();
-    text_ += indent + (parent < 0 ? "ROOT " : "JOINT ") + model_.data().joint_names[j] + "\n" + indent + "{\n" + indent + "  OFFSET ";
+    const Eigen::RowVector3d offset =
+        parent < 0 ? Eigen::RowVector3d::Zero().eval() : (rest_.row(j) - rest_.row(parent)).eval();
+    text_ += indent + (parent < 0 ? "ROOT " : "JOINT ") + model_.data().joint_names[j] + "\n" + indent + "{\n" +
+             indent + "  OFFSET ";
     AppendNumbers(&text_, offset.transpose() * kCentimetresPerMetre);
     text_ += "\n" + indent + (parent < 0 ? "  CHANNELS 6 Xposition Yposition Zposition" : "  CHANNELS 3") +
              " Zrotation Xrotation Yrotation\n";

@@ -10,8 +10,8 @@
 
 namespace bodyloom {
 
-/// The motion may have fewer joints than the body (the rest stay at rest). Motions with z up or in camera coordinates are
-/// turned (motion_tools.h). BVH has one frame time: a motion with a gap is refused, resample it first. Throws
+/// The motion may have fewer joints than the body (the rest stay at rest). Motions with z up or in camera coordinates
+/// are turned (motion_tools.h). BVH has one frame time: a motion with a gap is refused, resample it first. Throws
 /// std::invalid_argument for such motions, std::runtime_error when the file cannot be written.
 void WriteBvh(const std::string& path, const Motion& motion, const BodyModel& model);
 std::string BvhText(const Motion& motion, const BodyModel& model);

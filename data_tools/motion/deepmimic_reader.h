@@ -2,8 +2,8 @@
 /// DeepMimic motions (humanoid3d_*.txt, JSON): {"Loop": …, "Frames": [[…]·44]}.
 ///
 /// A frame is: its duration (s), root position (m), then unit quaternions (w, x, y, z) of root, chest, neck, right hip,
-/// [knee angle], right ankle, right shoulder, [elbow angle], and the same for the left side; knees and elbows turn about
-/// z. World: y up, x forward, z right; legs and arms hang at rest. The skeleton (joint offsets, metres) is fixed.
+/// [knee angle], right ankle, right shoulder, [elbow angle], and the same for the left side; knees and elbows turn
+/// about z. World: y up, x forward, z right; legs and arms hang at rest. The skeleton (joint offsets, metres) is fixed.
 /// Source: Peng et al., DeepMimic, data/motions and data/characters/humanoid3d.txt.
 #pragma once
 

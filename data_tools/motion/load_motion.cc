@@ -55,8 +55,8 @@ bool SkeletonFromText(const std::string& text, const std::string& path, const Lo
   return false;
 }
 
-Motion Read(const std::string& path, const LoadMotionOptions& options, RetargetSummary* summary) {
-  const std::string bytes = ReadTextFile(path);
+Motion ReadBytes(const std::string& bytes, const std::string& path, const LoadMotionOptions& options,
+                 RetargetSummary* summary) {
   if (bytes.empty()) throw std::runtime_error(path + ": the file is empty; " + kExpected);
   if (bytes.compare(0, 4, "PK\x03\x04") == 0) {
     const NpzArrays arrays = ReadNpzBytes(bytes, path);
@@ -76,11 +76,16 @@ Motion Read(const std::string& path, const LoadMotionOptions& options, RetargetS
 
 }  // namespace
 
-Motion LoadMotion(const std::string& path, const LoadMotionOptions& options, RetargetSummary* summary) {
+Motion MotionFromBytes(const std::string& bytes, const std::string& where, const LoadMotionOptions& options,
+                       RetargetSummary* summary) {
   BODYLOOM_CHECK(options.fps >= 0 && options.resample_fps >= 0, "frame rates ", options.fps, " and ",
                  options.resample_fps, " must not be negative");
-  const Motion motion = Read(path, options, summary);
+  const Motion motion = ReadBytes(bytes, where, options, summary);
   return options.resample_fps > 0 ? ResampleMotion(motion, options.resample_fps) : motion;
+}
+
+Motion LoadMotion(const std::string& path, const LoadMotionOptions& options, RetargetSummary* summary) {
+  return MotionFromBytes(ReadTextFile(path), path, options, summary);
 }
 
 }  // namespace bodyloom

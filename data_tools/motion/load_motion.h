@@ -22,4 +22,8 @@ struct LoadMotionOptions {
 /// retargeted skeletons.
 Motion LoadMotion(const std::string& path, const LoadMotionOptions& options = {}, RetargetSummary* summary = nullptr);
 
+/// The same for the contents of a file; `where` is its path (an .amc finds its skeleton by it).
+Motion MotionFromBytes(const std::string& bytes, const std::string& where, const LoadMotionOptions& options = {},
+                       RetargetSummary* summary = nullptr);
+
 }  // namespace bodyloom

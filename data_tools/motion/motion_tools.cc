@@ -80,7 +80,8 @@ void CheckMotion(const Motion& motion, const char* caller) {
                      motion.timestamps.size() == static_cast<size_t>(motion.poses.rows()),
                  caller, ": ", motion.poses.rows(), " poses, ", motion.trans.rows(), " translations, ",
                  motion.timestamps.size(), " timestamps");
-  BODYLOOM_CHECK(motion.poses.allFinite() && motion.trans.allFinite(), caller, ": poses or translations are not finite");
+  BODYLOOM_CHECK(motion.poses.allFinite() && motion.trans.allFinite(), caller,
+                 ": poses or translations are not finite");
 }
 
 }  // namespace bodyloom

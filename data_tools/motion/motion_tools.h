@@ -21,7 +21,8 @@ Motion ResampleMotion(const Motion& motion, double fps);
 /// than two frames.
 double FrameRate(const Motion& motion);
 
-/// Throws std::invalid_argument unless poses, trans and timestamps have T rows each, poses 3J columns, and all is finite.
+/// Throws std::invalid_argument unless poses, trans and timestamps have T rows each, poses 3J columns, and all is
+/// finite.
 void CheckMotion(const Motion& motion, const char* caller);
 
 }  // namespace bodyloom

@@ -18,12 +18,28 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 /// SMPL joint numbers, left side; the right one is the next.
-enum Smpl { kPelvis = 0, kHip = 1, kSpine1 = 3, kKnee = 4, kSpine2 = 6, kAnkle = 7, kSpine3 = 9, kToe = 10,
-            kNeck = 12, kCollar = 13, kHead = 15, kShoulder = 16, kElbow = 18, kWrist = 20 };
+enum Smpl {
+  kPelvis = 0,
+  kHip = 1,
+  kSpine1 = 3,
+  kKnee = 4,
+  kSpine2 = 6,
+  kAnkle = 7,
+  kSpine3 = 9,
+  kToe = 10,
+  kNeck = 12,
+  kCollar = 13,
+  kHead = 15,
+  kShoulder = 16,
+  kElbow = 18,
+  kWrist = 20
+};
 
 /// A limb must bend this much on average (sine), and always in nearly the same direction, to tell its twist.
 constexpr double kLeastBend = 0.1;
 constexpr double kLeastCoherence = 0.8;
+/// A limb whose rest pose bends less than this (sine) is straight at rest; bending is counted from there.
+constexpr double kStraight = 0.2;
 
 Vector3d SmplBone(int from, int to) { return (SmplRestJoints().row(to) - SmplRestJoints().row(from)).transpose(); }
 
@@ -38,7 +54,8 @@ class Retargeter {
       : source_(source), map_(MapSkeleton(source, where)), axes_(map_.file_from_body), rest_(RestPositions(source)) {
     double source_leg = 0, smpl_leg = 0;
     for (int side = 0; side < 2; ++side) {
-      source_leg += SourceBone(map_.hip[side], map_.knee[side]).norm() + SourceBone(map_.knee[side], map_.ankle[side]).norm();
+      source_leg +=
+          SourceBone(map_.hip[side], map_.knee[side]).norm() + SourceBone(map_.knee[side], map_.ankle[side]).norm();
       smpl_leg += SmplBone(kHip + side, kKnee + side).norm() + SmplBone(kKnee + side, kAnkle + side).norm();
     }
     if (!(source_leg > 0) || !std::isfinite(source_leg)) {
@@ -84,7 +101,8 @@ class Retargeter {
 
   void Align(int side) {
     LimbAlignment& limb = limbs_[side];
-    const Vector3d upper_arm = SmplBone(kShoulder + side, kElbow + side), forearm = SmplBone(kElbow + side, kWrist + side);
+    const Vector3d upper_arm = SmplBone(kShoulder + side, kElbow + side),
+                   forearm = SmplBone(kElbow + side, kWrist + side);
     const Vector3d thigh = SmplBone(kHip + side, kKnee + side), shin = SmplBone(kKnee + side, kAnkle + side);
     const Vector3d source_upper_arm = SourceBone(map_.shoulder[side], map_.elbow[side]);
     const Vector3d source_forearm = SourceBone(map_.elbow[side], map_.wrist[side]);
@@ -93,13 +111,15 @@ class Retargeter {
 
     limb.shoulder = Onto(axes_, upper_arm, source_upper_arm);
     limb.wrist = Onto(limb.shoulder, forearm, source_forearm);
-    limb.shoulder *= BendTwist(map_.shoulder[side], map_.elbow[side], map_.wrist[side], limb.shoulder, upper_arm,
-                               Vector3d::UnitZ(), &summary_.shoulder_twist_deg[side]);
+    limb.shoulder *= BendTwist({map_.shoulder[side], map_.elbow[side], map_.wrist[side]},
+                               {kShoulder + side, kElbow + side, kWrist + side}, limb.shoulder,
+                               Vector3d::UnitY() * (side == 0 ? -1 : 1), &summary_.shoulder_twist_deg[side]);
     limb.elbow = Onto(limb.shoulder, forearm, source_forearm);
 
     limb.hip = Onto(axes_, thigh, source_thigh);
-    limb.hip *= BendTwist(map_.hip[side], map_.knee[side], map_.ankle[side], limb.hip, thigh, -Vector3d::UnitZ(),
-                          &summary_.hip_twist_deg[side]);
+    limb.hip *=
+        BendTwist({map_.hip[side], map_.knee[side], map_.ankle[side]}, {kHip + side, kKnee + side, kAnkle + side},
+                  limb.hip, Vector3d::UnitX(), &summary_.hip_twist_deg[side]);
     limb.knee = Onto(limb.hip, shin, source_shin);
 
     // The foot's heading, in SMPL's frame of the shin: a turn about the vertical.
@@ -110,26 +130,36 @@ class Retargeter {
     limb.ankle = limb.knee * RotationFromAxisAngle(Vector3d::UnitY() * turn);
   }
 
-  /// The turn about the upper bone after which the lower one bends towards `natural` (SMPL's frame of the upper bone),
-  /// from the mean bending direction over the clip; identity when the limb hardly bends or bends all ways.
-  [[nodiscard]] Matrix3d BendTwist(int upper, int middle, int lower, const Matrix3d& alignment, const Vector3d& bone,
-                                   const Vector3d& natural, double* twist_deg) const {
-    const Vector3d axis = bone.normalized();
-    Vector3d sum = Vector3d::Zero();
+  /// The turn about the upper bone after which the lower one bends about SMPL's natural hinge (an axis of SMPL's rest
+  /// frame), from the sum of bends over the clip against that of SMPL's limb bent by the same angles; identity when the
+  /// limb hardly bends or bends all ways.
+  [[nodiscard]] Matrix3d BendTwist(const std::array<int, 3>& source, const std::array<int, 3>& smpl,
+                                   const Matrix3d& alignment, const Vector3d& hinge, double* twist_deg) const {
+    const Vector3d axis = SmplBone(smpl[0], smpl[1]).normalized(), lower = SmplBone(smpl[1], smpl[2]).normalized();
+    const auto across = [&](const Vector3d& v) -> Vector3d { return v - v.dot(axis) * axis; };
+    // Where the lower bone is when the limb counts as straight: its rest direction (legs bend sideways at the knee by a
+    // few degrees, which is no bending), or the upper bone's when the source rests with bent limbs.
+    const Vector3d at_rest = alignment.transpose() * SourceBone(source[1], source[2]).normalized();
+    const bool is_straight = across(at_rest).norm() < kStraight;
+    const Vector3d straight = is_straight ? at_rest : axis;
+    Vector3d sum = Vector3d::Zero(), expected = Vector3d::Zero();
     double weight = 0;
     for (int t = 0; t < source_.num_frames(); ++t) {
       const SkeletonFrame frame = PoseSkeletonFrame(source_, t);
-      const Vector3d direction = (frame.positions.row(lower) - frame.positions.row(middle)).transpose().normalized();
-      Vector3d bend = alignment.transpose() * (frame.rotations[upper].transpose() * direction);
-      bend -= bend.dot(axis) * axis;
+      const Vector3d bone = (frame.positions.row(source[2]) - frame.positions.row(source[1])).transpose().normalized();
+      const Vector3d direction = alignment.transpose() * (frame.rotations[source[0]].transpose() * bone);
+      const double angle = std::atan2(direction.cross(straight).norm(), direction.dot(straight));
+      const Vector3d bend = across(direction - straight);
       sum += bend;
+      expected += across(RotationFromAxisAngle(hinge * angle) * lower - (is_straight ? lower : axis));
       weight += bend.norm();
     }
-    if (weight < kLeastBend * source_.num_frames() || sum.norm() < kLeastCoherence * weight) return Matrix3d::Identity();
-    const Vector3d target = (natural - natural.dot(axis) * axis).normalized();
-    const double angle = std::atan2(sum.dot(axis.cross(target)), sum.dot(target));
-    *twist_deg = angle * 180 / M_PI;
-    return RotationFromAxisAngle(axis * angle);
+    if (weight < kLeastBend * source_.num_frames() || sum.norm() < kLeastCoherence * weight)
+      return Matrix3d::Identity();
+    const double twist = std::atan2(axis.dot(sum.cross(expected)), sum.dot(expected));
+    *twist_deg = twist * 180 / M_PI;
+    // The limb turns so that what the source does falls where SMPL's hinge does: A ← A·exp(−twist·axis).
+    return RotationFromAxisAngle(axis * -twist);
   }
 
   /// Rotation at a fraction (0 to 1) of a chain that starts below joint `base`.

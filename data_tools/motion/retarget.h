@@ -5,17 +5,19 @@
 ///   W_j(t) = file_from_bodyᵀ · W_s(t) · A_j,   θ_j = W_parentᵀ W_j.
 /// A_j, constant over the clip, says where SMPL's rest frame of j lies in the source's rest pose:
 /// - pelvis, spine, neck, head, collars: axes to axes; chains of another length are interpolated;
-/// - upper arm, forearm, thigh, shin: the shortest turn that takes SMPL's rest bone onto the source's, composed along the
+/// - upper arm, forearm, thigh, shin: the shortest turn that takes SMPL's rest bone onto the source's, composed along
+/// the
 ///   limb, so that limb directions agree exactly in every frame whatever the source's rest pose (T-pose, arms down,
 ///   splayed legs);
-/// - upper arm and thigh are then turned about their own axis until elbow and knee bend in SMPL's natural plane: sources
+/// - upper arm and thigh are then turned about their own axis until elbow and knee bend in SMPL's natural plane:
+/// sources
 ///   put the zero of that twist anywhere (CMU's elbow is 30° off), and it shows in how the limb bends, not at rest;
 /// - foot: turned about the shin until its heading agrees; its slope is rest to rest, because flat is flat whatever
 ///   height the source gives its ankle;
 /// - hand: as the limb before the twist; the forearm takes half of the hand's twist (½ sin τ), as flesh does.
 /// Positions scale by leg length (hip to ankle), and the pelvis is placed so that the middles of the hips coincide. The
-/// result is a world with y up in metres; `trans` is the pelvis joint's position (a body whose rest pelvis is not at the
-/// origin stands offset by it).
+/// result is a world with y up in metres; `trans` is the pelvis joint's position (a body whose rest pelvis is not at
+/// the origin stands offset by it).
 #pragma once
 
 #include <array>

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "data_tools/formats/printable.h"
+
 namespace bodyloom {
 namespace {
 
@@ -55,7 +57,8 @@ class Finder {
     return -1;
   }
   [[nodiscard]] int Parent(int joint, const std::string& what) const {
-    if (motion_.parents[joint] < 0) Fail("'" + motion_.names[joint] + "' is the root, expected " + what + " above it");
+    if (motion_.parents[joint] < 0)
+      Fail("'" + PrintableText(motion_.names[joint]) + "' is the root, expected " + what + " above it");
     return motion_.parents[joint];
   }
   /// Joints from `joint` up to the root, both included.
@@ -83,16 +86,8 @@ class Finder {
     return joint != ancestor && std::find(path.begin(), path.end(), ancestor) != path.end();
   }
   [[noreturn]] void Fail(const std::string& message) const {
-    std::string present;
-    for (const std::string& name : motion_.names) {
-      present += (present.empty() ? "" : ", ") + name;
-      if (present.size() > 400) {
-        present += ", …";
-        break;
-      }
-    }
     throw std::runtime_error(where_ + ": the skeleton is not recognised as a person's: " + message +
-                             "; its joints are " + present);
+                             "; its joints are " + PrintableList(motion_.names));
   }
 
  private:

@@ -14,7 +14,8 @@ int SkeletonMotion::FindJoint(const std::string& name) const {
 
 MatrixX3d RestPositions(const SkeletonMotion& motion) {
   MatrixX3d positions = MatrixX3d::Zero(motion.num_joints(), 3);
-  for (int j = 1; j < motion.num_joints(); ++j) positions.row(j) = positions.row(motion.parents[j]) + motion.offsets.row(j);
+  for (int j = 1; j < motion.num_joints(); ++j)
+    positions.row(j) = positions.row(motion.parents[j]) + motion.offsets.row(j);
   return positions;
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// A motion as capture files hold it: any skeleton, joint rotations frame by frame, the file's own units and axes.
 ///
-/// The rest pose has every joint frame parallel to the file's axes: joint j sits at Σ offsets along its chain. In frame t
+/// The rest pose has every joint frame parallel to the file's axes: joint j sits at Σ offsets along its chain. In frame
+/// t
 ///   world_rotation_j = world_rotation_parent · rotation_j,
 ///   world_position_j = world_position_parent + world_rotation_parent · offset_j.
 #pragma once

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/printable.h"
 
 namespace bodyloom {
 namespace {
@@ -83,7 +84,7 @@ std::string_view TextScanner::Word(const std::string& expected) {
 
 void TextScanner::Expect(std::string_view word) {
   if (Peek() != word) {
-    const std::string found(Peek().substr(0, 60));
+    const std::string found = PrintableText(Peek());
     Fail(found.empty() ? "the file ends, expected '" + std::string(word) + "'"
                        : "found '" + found + "', expected '" + std::string(word) + "'");
   }
@@ -103,9 +104,11 @@ double TextScanner::Number(const std::string& expected) {
   if (begin != end && *begin == '+') ++begin;
   double value = 0;
   const auto [stop, error] = std::from_chars(begin, end, value);
-  const bool is_tiny = error == std::errc::result_out_of_range && std::abs(value) < 1;  // 1e-400 is zero
+  // 1e-400 is zero; from_chars leaves the value alone and does not say in which direction it is out of range.
+  const bool is_tiny = error == std::errc::result_out_of_range && word.find_first_of("eE") != std::string_view::npos &&
+                       word[word.find_first_of("eE") + 1] == '-';
   if ((error != std::errc() && !is_tiny) || stop != end || !std::isfinite(value)) {
-    Fail("found '" + std::string(word.substr(0, 60)) + "', expected " + expected);
+    Fail("found '" + PrintableText(word) + "', expected " + expected);
   }
   return is_tiny ? 0 : value;
 }

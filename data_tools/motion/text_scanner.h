@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Whitespace-separated words and numbers of a text file, with line numbers in every error; and the file itself, gzipped
-/// or not. Used by the motion formats that are text (BVH, ASF, AMC).
+/// Whitespace-separated words and numbers of a text file, with line numbers in every error; and the file itself,
+/// gzipped or not. Used by the motion formats that are text (BVH, ASF, AMC).
 #pragma once
 
 #include <string>

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "data_tools/formats/printable.h"
 #include "data_tools/observations/keypoint_conventions.h"
 
 namespace bodyloom {
@@ -13,6 +14,7 @@ namespace {
 
 constexpr double kMicrosecond = 1e-6;
 constexpr double kCentimetre = 1e-2;
+constexpr int64_t kMostViews = 99;  ///< names have two digits
 
 std::string ViewName(int64_t index) {
   char name[16];
@@ -30,13 +32,13 @@ const NdArray& RequireNumbers(const PickleValue& file, const std::string& key, c
 
 int64_t FindView(const std::string& view, int64_t num_views, const std::string& where) {
   if (view.empty() && num_views == 1) return 0;
-  std::string present;
-  for (int64_t v = 0; v < num_views; ++v) {
+  std::vector<std::string> present;
+  for (int64_t v = 0; v < std::min(num_views, kMostViews); ++v) {
     if (ViewName(v) == view) return v;
-    if (v < 32) present += (v > 0 ? ", " : "") + ViewName(v);
+    present.push_back(ViewName(v));
   }
   throw std::runtime_error(where + ": " + (view.empty() ? "no view chosen" : "no view '" + view + "'") +
-                           "; the file has " + present);
+                           "; the file has " + PrintableList(present));
 }
 
 std::vector<double> Timestamps(const PickleValue& file, int64_t num_frames, double fps, const std::string& where) {

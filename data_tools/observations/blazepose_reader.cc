@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "data_tools/formats/printable.h"
 #include "data_tools/observations/frame_numbers.h"
 
 namespace bodyloom {
@@ -80,7 +81,8 @@ DetectedPerson PersonFromJson(const JsonNode& node, const KeypointConvention& co
   for (const std::string& name : node.Keys()) {
     const auto found = std::find(convention.names.begin(), convention.names.end(), LandmarkName(name));
     if (found == convention.names.end()) {
-      throw std::runtime_error(node.place() + ": landmark '" + name + "' is not one of " + convention.name);
+      throw std::runtime_error(node.place() + ": landmark '" + PrintableText(name) + "' is not one of " +
+                               convention.name);
     }
     person.points[found - convention.names.begin()] = PointFromJson(node.At(name));
   }

@@ -2,8 +2,8 @@
 /// BlazePose / MediaPipe landmarks as programs dump them to JSON: a list of frames, each of which is
 ///   [[x, y, z], …]·33 or [{"x", "y", "z", "visibility", "presence", "name"}, …]·33 (17 entries: COCO),
 ///   {"nose": {"x", "y", "score"}, …} by landmark name,
-///   {"keypoints" or "landmarks" or "pose_landmarks": either list, "score"}, or a list of such objects (several people),
-///   null or an empty list when nobody was found.
+///   {"keypoints" or "landmarks" or "pose_landmarks": either list, "score"}, or a list of such objects (several
+///   people), null or an empty list when nobody was found.
 /// A top-level object with "frames" holds such a list too.
 ///
 /// x and y are pixels or fractions of the image (told apart by load_detections.h, which knows the image size). z is

@@ -12,12 +12,16 @@ namespace {
 /// The convention of a person with that many landmarks; nullptr when none has.
 const KeypointConvention* ConventionFor(size_t num_points) {
   switch (num_points) {
-    case 17: return &Coco17();
+    case 17:
+      return &Coco17();
     case 23:
-    case 133: return &CocoWholeBody23();
+    case 133:
+      return &CocoWholeBody23();
     case 26:
-    case 136: return &Halpe26();
-    default: return nullptr;
+    case 136:
+      return &Halpe26();
+    default:
+      return nullptr;
   }
 }
 
@@ -44,7 +48,8 @@ int IdentityOf(const JsonNode& entry) {
 
 bool IsCocoJson(const JsonNode& document) {
   if (document.Has("annotations")) return true;
-  return document.is_array() && document.size() > 0 && document.At(0).Has("image_id") && document.At(0).Has("keypoints");
+  return document.is_array() && document.size() > 0 && document.At(0).Has("image_id") &&
+         document.At(0).Has("keypoints");
 }
 
 PeopleSequence CocoFromJson(const JsonNode& document, double fps) {

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/printable.h"
 
 namespace bodyloom {
 
@@ -96,14 +97,9 @@ JsonNode JsonNode::At(const std::string& key) const {
   if (!value_->is_object()) Fail("an object with '" + key + "'");
   const auto found = value_->find(key);
   if (found == value_->end()) {
-    std::string present;
-    for (const std::string& name : Keys()) {
-      present += (present.empty() ? "" : ", ") + name;
-      if (present.size() > 200) break;
-    }
-    throw std::runtime_error(place_ + ": no '" + key + "'; present: " + (present.empty() ? "nothing" : present));
+    throw std::runtime_error(place_ + ": no '" + key + "'; present: " + PrintableList(Keys()));
   }
-  return {*found, place_ + (place_.find(": ") == std::string::npos ? ": " : ".") + key};
+  return {*found, place_ + (place_.find(": ") == std::string::npos ? ": " : ".") + PrintableText(key)};
 }
 
 JsonNode JsonNode::At(size_t index) const {
@@ -112,7 +108,8 @@ JsonNode JsonNode::At(size_t index) const {
     throw std::runtime_error(place_ + ": " + std::to_string(value_->size()) + " entries, expected more than " +
                              std::to_string(index));
   }
-  return {(*value_)[index], place_ + (place_.find(": ") == std::string::npos ? ": " : "") + "[" + std::to_string(index) + "]"};
+  return {(*value_)[index],
+          place_ + (place_.find(": ") == std::string::npos ? ": " : "") + "[" + std::to_string(index) + "]"};
 }
 
 double JsonNode::Number() const {

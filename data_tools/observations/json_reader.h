@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// JSON from strangers: parsed with limits, read through a cursor whose errors name the file and the place.
 ///
-/// Limits are enforced before anything is built: size of the text, nesting depth (a linear scan that knows strings), and
-/// NaN / Infinity tokens, which JSON does not have although some writers emit them. Errors are std::runtime_error with
-/// one line "path: byte N: what was found, expected what".
+/// Limits are enforced before anything is built: size of the text, nesting depth (a linear scan that knows strings),
+/// and NaN / Infinity tokens, which JSON does not have although some writers emit them. Errors are std::runtime_error
+/// with one line "path: byte N: what was found, expected what".
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -21,12 +21,11 @@ const KeypointConvention& Coco17() {
 
 const KeypointConvention& Body25() {
   static const KeypointConvention convention{
-      "body25",
-      {"nose",           "neck",          "right_shoulder", "right_elbow", "right_wrist",
-       "left_shoulder",  "left_elbow",    "left_wrist",     "mid_hip",     "right_hip",
-       "right_knee",     "right_ankle",   "left_hip",       "left_knee",   "left_ankle",
-       "right_eye",      "left_eye",      "right_ear",      "left_ear",    "left_big_toe",
-       "left_small_toe", "left_heel",     "right_big_toe",  "right_small_toe", "right_heel"}};
+      "body25", {"nose",           "neck",        "right_shoulder", "right_elbow",     "right_wrist",
+                 "left_shoulder",  "left_elbow",  "left_wrist",     "mid_hip",         "right_hip",
+                 "right_knee",     "right_ankle", "left_hip",       "left_knee",       "left_ankle",
+                 "right_eye",      "left_eye",    "right_ear",      "left_ear",        "left_big_toe",
+                 "left_small_toe", "left_heel",   "right_big_toe",  "right_small_toe", "right_heel"}};
   return convention;
 }
 
@@ -48,8 +47,8 @@ const KeypointConvention& OpenPoseCoco18() {
 
 const KeypointConvention& CocoWholeBody23() {
   static const KeypointConvention convention{
-      "coco_wholebody23", CocoAnd({"left_big_toe", "left_small_toe", "left_heel", "right_big_toe", "right_small_toe",
-                                   "right_heel"})};
+      "coco_wholebody23",
+      CocoAnd({"left_big_toe", "left_small_toe", "left_heel", "right_big_toe", "right_small_toe", "right_heel"})};
   return convention;
 }
 
@@ -62,13 +61,13 @@ const KeypointConvention& Halpe26() {
 
 const KeypointConvention& MediaPipe33() {
   static const KeypointConvention convention{
-      "mediapipe33",
-      {"nose",           "left_eye_inner", "left_eye",      "left_eye_outer", "right_eye_inner", "right_eye",
-       "right_eye_outer", "left_ear",      "right_ear",     "mouth_left",     "mouth_right",     "left_shoulder",
-       "right_shoulder", "left_elbow",     "right_elbow",   "left_wrist",     "right_wrist",     "left_pinky",
-       "right_pinky",    "left_index",     "right_index",   "left_thumb",     "right_thumb",     "left_hip",
-       "right_hip",      "left_knee",      "right_knee",    "left_ankle",     "right_ankle",     "left_heel",
-       "right_heel",     "left_big_toe",   "right_big_toe"}};
+      "mediapipe33", {"nose",        "left_eye_inner",  "left_eye",       "left_eye_outer", "right_eye_inner",
+                      "right_eye",   "right_eye_outer", "left_ear",       "right_ear",      "mouth_left",
+                      "mouth_right", "left_shoulder",   "right_shoulder", "left_elbow",     "right_elbow",
+                      "left_wrist",  "right_wrist",     "left_pinky",     "right_pinky",    "left_index",
+                      "right_index", "left_thumb",      "right_thumb",    "left_hip",       "right_hip",
+                      "left_knee",   "right_knee",      "left_ankle",     "right_ankle",    "left_heel",
+                      "right_heel",  "left_big_toe",    "right_big_toe"}};
   return convention;
 }
 

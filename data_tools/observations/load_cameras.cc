@@ -11,6 +11,7 @@
 #include <Eigen/LU>
 
 #include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/printable.h"
 #include "data_tools/observations/json_reader.h"
 #include "geometry/check.h"
 #include "geometry/rotation.h"
@@ -79,7 +80,8 @@ void CheckCamera(const JsonNode& node, const Camera& camera) {
                              std::to_string(camera.fy) + " px, expected positive");
   }
   if (!is_pinhole && !(camera.scale > 0)) {
-    throw std::runtime_error(node.place() + ": scale " + std::to_string(camera.scale) + " px a metre, expected positive");
+    throw std::runtime_error(node.place() + ": scale " + std::to_string(camera.scale) +
+                             " px a metre, expected positive");
   }
   // A principal point far outside the picture means that the matrix belongs to another image size.
   if (std::abs(camera.cx - camera.width / 2.0) > 2.0 * camera.width ||
@@ -122,7 +124,7 @@ NamedCamera OwnCamera(const JsonNode& node) {
   if (node.Has("model")) {
     const std::string model = node.At("model").Text();
     if (model != "pinhole" && model != "weak") {
-      throw std::runtime_error(node.place() + ": model '" + model + "', expected 'pinhole' or 'weak'");
+      throw std::runtime_error(node.place() + ": model '" + PrintableText(model) + "', expected 'pinhole' or 'weak'");
     }
     camera.model = CameraModelFromString(model);
   }
@@ -153,7 +155,9 @@ std::vector<NamedCamera> CamerasFromJson(const JsonNode& document) {
   for (size_t i = 0; i < (is_one ? 1 : list.size()); ++i) {
     const JsonNode node = is_one ? document : list.At(i);
     if (!node.is_object()) node.Fail("a camera");
-    cameras.push_back(node.Has("matrix") ? AistCamera(node) : node.Has("rvec") ? Pose2SimCamera(node) : OwnCamera(node));
+    cameras.push_back(node.Has("matrix") ? AistCamera(node)
+                      : node.Has("rvec") ? Pose2SimCamera(node)
+                                         : OwnCamera(node));
     CheckCamera(node, cameras.back().camera);
   }
   return cameras;
@@ -198,7 +202,8 @@ std::string SequenceName(const std::string& name) {
   return stem;
 }
 
-std::vector<NamedCamera> AistFolder(const std::string& folder, const std::string& mapping, const std::string& sequence) {
+std::vector<NamedCamera> AistFolder(const std::string& folder, const std::string& mapping,
+                                    const std::string& sequence) {
   if (sequence.empty()) {
     throw std::runtime_error(mapping + ": a folder of camera settings needs the name of the sequence");
   }
@@ -208,7 +213,8 @@ std::vector<NamedCamera> AistFolder(const std::string& folder, const std::string
   while (lines >> name >> setting) {
     if (name != wanted) continue;
     if (setting.find('/') != std::string::npos) {
-      throw std::runtime_error(mapping + ": setting '" + setting + "' of " + wanted + ": expected a plain name");
+      throw std::runtime_error(mapping + ": setting '" + PrintableText(setting) + "' of " + wanted +
+                               ": expected a plain name");
     }
     const std::string path = (fs::path(folder) / (setting + ".json")).string();
     const nlohmann::json json = ReadJsonFile(path);
@@ -219,6 +225,11 @@ std::vector<NamedCamera> AistFolder(const std::string& folder, const std::string
 
 }  // namespace
 
+std::vector<NamedCamera> CamerasFromText(const std::string& text, const std::string& where) {
+  const nlohmann::json json = ParseJson(text, where);
+  return CamerasFromJson(JsonNode(json, where));
+}
+
 std::vector<NamedCamera> LoadCameras(const std::string& path, const std::string& sequence) {
   std::error_code ignored;
   std::string file = path;
@@ -227,7 +238,8 @@ std::vector<NamedCamera> LoadCameras(const std::string& path, const std::string&
     if (fs::exists(mapping, ignored)) return AistFolder(path, mapping, sequence);
     file = (fs::path(path) / "calib_refined.json").string();
     if (!fs::exists(file, ignored)) {
-      throw std::runtime_error(path + ": a folder without mapping.txt (AIST++) or calib_refined.json (Pose2Sim); "
+      throw std::runtime_error(path +
+                               ": a folder without mapping.txt (AIST++) or calib_refined.json (Pose2Sim); "
                                "expected one of them, or the camera file itself");
     }
   }
@@ -241,21 +253,24 @@ std::vector<NamedCamera> LoadCameras(const std::string& path, const std::string&
 const NamedCamera& FindCamera(const std::vector<NamedCamera>& cameras, const std::string& view,
                               const std::string& where) {
   if (view.empty() && cameras.size() == 1) return cameras[0];
-  std::string present;
+  std::vector<std::string> present;
   for (const NamedCamera& camera : cameras) {
     if (camera.name == view || (!view.empty() && Plain(camera.name) == Plain(view))) return camera;
-    if (present.size() < 300) present += (present.empty() ? "" : ", ") + camera.name;
+    present.push_back(camera.name);
   }
   throw std::runtime_error(where + ": " + (view.empty() ? "no view chosen" : "no camera '" + view + "'") +
-                           "; the file has " + (present.empty() ? "none" : present));
+                           "; the file has " + PrintableList(present));
 }
 
 void WriteCameras(const std::string& path, const std::vector<NamedCamera>& cameras) {
   nlohmann::json list = nlohmann::json::array();
   for (const NamedCamera& named : cameras) {
     const Camera& camera = named.camera;
-    nlohmann::json entry = {{"model", ToString(camera.model)}, {"width", camera.width}, {"height", camera.height},
-                            {"cx", camera.cx},                 {"cy", camera.cy}};
+    nlohmann::json entry = {{"model", ToString(camera.model)},
+                            {"width", camera.width},
+                            {"height", camera.height},
+                            {"cx", camera.cx},
+                            {"cy", camera.cy}};
     if (!named.name.empty()) entry["name"] = named.name;
     if (camera.model == CameraModel::kPinhole) {
       entry["fx"] = camera.fx;

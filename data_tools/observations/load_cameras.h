@@ -37,6 +37,9 @@ struct NamedCamera {
 /// its videos, with or without path and extension). Throws std::runtime_error naming file, place and expectation.
 std::vector<NamedCamera> LoadCameras(const std::string& path, const std::string& sequence = "");
 
+/// The cameras of one file's text; `where` names it in messages.
+std::vector<NamedCamera> CamerasFromText(const std::string& text, const std::string& where);
+
 /// The camera called `view` ("c01"; "cam01" also finds "cam_01"); an empty view means the only one. Throws
 /// std::runtime_error beginning with `where` that lists the cameras present.
 const NamedCamera& FindCamera(const std::vector<NamedCamera>& cameras, const std::string& view,

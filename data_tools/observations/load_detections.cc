@@ -11,6 +11,7 @@
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/formats/npz.h"
 #include "data_tools/formats/pickle.h"
+#include "data_tools/formats/printable.h"
 #include "data_tools/observations/aist_reader.h"
 #include "data_tools/observations/blazepose_reader.h"
 #include "data_tools/observations/coco_reader.h"
@@ -53,13 +54,13 @@ std::string FolderOfView(const std::string& folder, const std::string& view) {
   if (!SortedEntries(folder, /*folders=*/false).empty()) return folder;
   const std::vector<std::string> names = SortedEntries(folder, /*folders=*/true);
   if (names.empty()) throw std::runtime_error(folder + ": no .json files in this folder; " + kExpected);
-  std::string present;
   for (const std::string& name : names) {
-    if (name == view || name == view + "_json" || (view.empty() && names.size() == 1)) return (fs::path(folder) / name).string();
-    if (present.size() < 300) present += (present.empty() ? "" : ", ") + name;
+    if (name == view || name == view + "_json" || (view.empty() && names.size() == 1)) {
+      return (fs::path(folder) / name).string();
+    }
   }
   throw std::runtime_error(folder + ": " + (view.empty() ? "no view chosen" : "no view '" + view + "'") +
-                           "; the folder has " + present);
+                           "; the folder has " + PrintableList(names));
 }
 
 bool StartsLikeJson(const std::string& bytes) {
@@ -127,14 +128,9 @@ void CheckImageSize(const KeypointSequence& sequence, const std::string& where) 
   }
 }
 
-KeypointSequence Read(const std::string& path, const LoadDetectionsOptions& options) {
+/// One person's landmarks as the file has them.
+KeypointSequence ReadBytes(const std::string& bytes, const std::string& path, const LoadDetectionsOptions& options) {
   const double fps = options.fps > 0 ? options.fps : kUsualFps;
-  std::error_code error;
-  if (fs::is_directory(path, error)) {
-    const std::string folder = FolderOfView(path, options.view);
-    return SelectPerson(ReadOpenPoseFolder(folder, fps, options.convention), options.person, folder);
-  }
-  const std::string bytes = ReadFileBytes(path, kMostFileBytes);
   if (bytes.empty()) throw std::runtime_error(path + ": the file is empty; " + kExpected);
   if (StartsLikeJson(bytes)) {
     const nlohmann::json json = ParseJson(bytes, path);
@@ -163,15 +159,8 @@ KeypointSequence Read(const std::string& path, const LoadDetectionsOptions& opti
   throw std::runtime_error(path + ": unknown kind of file; " + kExpected);
 }
 
-}  // namespace
-
-KeypointSequence LoadDetections(const std::string& path, const LoadDetectionsOptions& options) {
-  BODYLOOM_CHECK(options.person >= 0, "person ", options.person, " must not be negative");
-  BODYLOOM_CHECK(options.fps >= 0 && options.fps < 1e6, "frame rate ", options.fps, " must not be negative");
-  BODYLOOM_CHECK(options.image_width >= 0 && options.image_height >= 0 &&
-                     (options.image_width > 0) == (options.image_height > 0),
-                 "image size ", options.image_width, "x", options.image_height, ": give both or neither");
-  KeypointSequence sequence = Read(path, options);
+/// What the caller knows, and the checks that every format needs.
+KeypointSequence Finish(KeypointSequence sequence, const std::string& path, const LoadDetectionsOptions& options) {
   if (options.image_width > 0) {
     if (sequence.image_width > 0 &&
         (sequence.image_width != options.image_width || sequence.image_height != options.image_height)) {
@@ -189,11 +178,37 @@ KeypointSequence LoadDetections(const std::string& path, const LoadDetectionsOpt
     throw std::runtime_error(path + ": nobody was detected in any of " + std::to_string(sequence.num_frames()) +
                              " frames");
   }
-  const bool is_openpose = sequence.convention == "body25" || sequence.convention == "body25b" ||
-                           sequence.convention == "openpose_coco18";
+  const bool is_openpose =
+      sequence.convention == "body25" || sequence.convention == "body25b" || sequence.convention == "openpose_coco18";
   ToPixels(&sequence, is_openpose, path);
   CheckImageSize(sequence, path);
   return sequence;
+}
+
+void CheckOptions(const LoadDetectionsOptions& options) {
+  BODYLOOM_CHECK(options.person >= 0, "person ", options.person, " must not be negative");
+  BODYLOOM_CHECK(options.fps >= 0 && options.fps < 1e6, "frame rate ", options.fps, " must not be negative");
+  BODYLOOM_CHECK(
+      options.image_width >= 0 && options.image_height >= 0 && (options.image_width > 0) == (options.image_height > 0),
+      "image size ", options.image_width, "x", options.image_height, ": give both or neither");
+}
+
+}  // namespace
+
+KeypointSequence DetectionsFromBytes(const std::string& bytes, const std::string& where,
+                                     const LoadDetectionsOptions& options) {
+  CheckOptions(options);
+  return Finish(ReadBytes(bytes, where, options), where, options);
+}
+
+KeypointSequence LoadDetections(const std::string& path, const LoadDetectionsOptions& options) {
+  CheckOptions(options);
+  std::error_code ignored;
+  if (!fs::is_directory(path, ignored)) return DetectionsFromBytes(ReadFileBytes(path, kMostFileBytes), path, options);
+  const std::string folder = FolderOfView(path, options.view);
+  const PeopleSequence people =
+      ReadOpenPoseFolder(folder, options.fps > 0 ? options.fps : kUsualFps, options.convention);
+  return Finish(SelectPerson(people, options.person, folder), path, options);
 }
 
 }  // namespace bodyloom

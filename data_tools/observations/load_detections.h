@@ -14,17 +14,21 @@
 namespace bodyloom {
 
 struct LoadDetectionsOptions {
-  std::string view;        ///< camera of a file that has several ("c01"), sub-folder of a folder that has several
-  int person = 0;          ///< which one when several were seen: 0 is the largest and longest in view (people.h)
-  double fps = 0;          ///< frame rate of files that do not say; 0: 30, or 60 for AIST++
-  int image_width = 0;     ///< when known; checked against the detections, and needed for normalised coordinates
+  std::string view;     ///< camera of a file that has several ("c01"), sub-folder of a folder that has several
+  int person = 0;       ///< which one when several were seen: 0 is the largest and longest in view (people.h)
+  double fps = 0;       ///< frame rate of files that do not say; 0: 30, or 60 for AIST++
+  int image_width = 0;  ///< when known; checked against the detections, and needed for normalised coordinates
   int image_height = 0;
   double min_confidence = 0;  ///< landmarks below this count as missing
-  std::string convention;  ///< OpenPose model when it should not be detected (openpose_reader.h)
+  std::string convention;     ///< OpenPose model when it should not be detected (openpose_reader.h)
 };
 
 /// Throws std::runtime_error in one line: what was found, what was expected, what to do; std::invalid_argument for
 /// options that contradict each other.
 KeypointSequence LoadDetections(const std::string& path, const LoadDetectionsOptions& options = {});
+
+/// The same for the contents of a file; `where` names it in messages.
+KeypointSequence DetectionsFromBytes(const std::string& bytes, const std::string& where,
+                                     const LoadDetectionsOptions& options = {});
 
 }  // namespace bodyloom

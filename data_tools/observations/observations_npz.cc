@@ -22,8 +22,9 @@ const NdArray& RequireShape(const NpzArrays& arrays, const std::string& key, con
   if (!array.is_number() || array.shape != shape) {
     NdArray expected;
     expected.shape = shape;
-    Fail(where, key, "shape " + array.ShapeText() + (array.is_number() ? "" : " of text") + ", expected numbers, " +
-                         expected.ShapeText());
+    Fail(where, key,
+         "shape " + array.ShapeText() + (array.is_number() ? "" : " of no numbers") + ", expected numbers, " +
+             expected.ShapeText());
   }
   return array;
 }
@@ -37,8 +38,9 @@ std::vector<double> TimestampsFromNpz(const NpzArrays& arrays, const std::string
   if (timestamps.empty()) Fail(where, "timestamps", "no frames");
   for (size_t t = 0; t < timestamps.size(); ++t) {
     if (!std::isfinite(timestamps[t]) || (t > 0 && !(timestamps[t] > timestamps[t - 1]))) {
-      Fail(where, "timestamps", "entry " + std::to_string(t) + " is " + std::to_string(timestamps[t]) +
-                                    ", expected finite, increasing seconds");
+      Fail(where, "timestamps",
+           "entry " + std::to_string(t) + " is " + std::to_string(timestamps[t]) +
+               ", expected finite, increasing seconds");
     }
   }
   return timestamps;
@@ -61,9 +63,10 @@ void WriteObservations(const std::string& path, const KeypointSequence* keypoint
   const std::vector<double>& timestamps = keypoints != nullptr ? keypoints->timestamps : dense->timestamps;
   int size[2] = {keypoints != nullptr ? keypoints->image_width : dense->image_width,
                  keypoints != nullptr ? keypoints->image_height : dense->image_height};
-  BODYLOOM_CHECK(keypoints == nullptr || dense == nullptr ||
-                     (dense->timestamps == timestamps && dense->image_width == size[0] && dense->image_height == size[1]),
-                 "WriteObservations: keypoints and dense keypoints differ in timestamps or image size");
+  BODYLOOM_CHECK(
+      keypoints == nullptr || dense == nullptr ||
+          (dense->timestamps == timestamps && dense->image_width == size[0] && dense->image_height == size[1]),
+      "WriteObservations: keypoints and dense keypoints differ in timestamps or image size");
   NpzArrays arrays;
   const auto num_frames = static_cast<int64_t>(timestamps.size());
   arrays["timestamps"] = NdArray::FromDoubles(timestamps.data(), {num_frames});
@@ -71,8 +74,8 @@ void WriteObservations(const std::string& path, const KeypointSequence* keypoint
   arrays["image_size"] = NdArray::FromInts32(image_size, {2});
   if (keypoints != nullptr) {
     static_assert(sizeof(Keypoint) == 3 * sizeof(float));
-    BODYLOOM_CHECK(keypoints->points.size() == timestamps.size() * keypoints->names.size(), "WriteObservations: ",
-                   keypoints->points.size(), " points, expected frames times names");
+    BODYLOOM_CHECK(keypoints->points.size() == timestamps.size() * keypoints->names.size(),
+                   "WriteObservations: ", keypoints->points.size(), " points, expected frames times names");
     arrays["keypoints"] = NdArray::FromFloats(reinterpret_cast<const float*>(keypoints->points.data()),
                                               {num_frames, static_cast<int64_t>(keypoints->names.size()), 3});
     arrays["keypoint_names"] = NdArray::FromStrings(keypoints->names);
@@ -110,10 +113,10 @@ KeypointSequence KeypointsFromNpz(const NpzArrays& arrays, const std::string& wh
   sequence.timestamps = TimestampsFromNpz(arrays, where);
   ImageSizeFromNpz(arrays, where, &sequence.image_width, &sequence.image_height);
   const NdArray& names = RequireArray(arrays, "keypoint_names", where);
-  if (names.is_number() || names.shape.size() != 1) Fail(where, "keypoint_names", "expected a list of text");
+  if (!names.is_text() || names.shape.size() != 1) Fail(where, "keypoint_names", "expected a list of text");
   sequence.names = names.ToStrings();
   sequence.convention = "custom";
-  if (const auto found = arrays.find("keypoint_convention"); found != arrays.end() && !found->second.is_number()) {
+  if (const auto found = arrays.find("keypoint_convention"); found != arrays.end() && found->second.is_text()) {
     const std::vector<std::string> text = found->second.ToStrings();
     if (!text.empty()) sequence.convention = text[0];
   }
@@ -142,8 +145,8 @@ DenseSequence DenseFromNpz(const NpzArrays& arrays, const std::string& where) {
   for (int64_t i = 0; i < n; ++i) {
     const std::string entry = "entry " + std::to_string(i);
     if (frame[i] < 0 || frame[i] >= dense.num_frames()) {
-      Fail(where, "dense_frame", entry + " is " + std::to_string(frame[i]) + ", expected 0 to " +
-                                     std::to_string(dense.num_frames() - 1));
+      Fail(where, "dense_frame",
+           entry + " is " + std::to_string(frame[i]) + ", expected 0 to " + std::to_string(dense.num_frames() - 1));
     }
     if (face[i] < 0 || face[i] > 100'000'000) {
       Fail(where, "dense_face", entry + " is " + std::to_string(face[i]) + ", expected a face index");

@@ -82,14 +82,16 @@ const KeypointConvention& Body25OrBody25B(const std::vector<RawFrame>& frames) {
 
 const KeypointConvention& FindConvention(size_t num_points, const std::string& wanted,
                                          const std::vector<RawFrame>& frames, const std::string& where) {
-  const std::vector<const KeypointConvention*> known = {&Body25(), &Body25B(), &OpenPoseCoco18(), &Coco17(), &Halpe26()};
+  const std::vector<const KeypointConvention*> known = {&Body25(), &Body25B(), &OpenPoseCoco18(), &Coco17(),
+                                                        &Halpe26()};
   for (const KeypointConvention* convention : known) {
     if (!wanted.empty() && convention->name == wanted && (num_points == 0 || convention->names.size() == num_points)) {
       return *convention;
     }
   }
   if (!wanted.empty()) {
-    throw std::runtime_error(where + ": " + std::to_string(num_points) + " landmarks a person, which is not '" + wanted +
+    throw std::runtime_error(where + ": " + std::to_string(num_points) + " landmarks a person, which is not '" +
+                             wanted +
                              "'; expected body25, body25b, openpose_coco18, coco17 or halpe26 with its number");
   }
   if (num_points == 25 || num_points == 0) return Body25OrBody25B(frames);

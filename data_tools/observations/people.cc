@@ -23,9 +23,9 @@ constexpr int kPatienceFrames = 30, kPatiencePerSeenFrame = 10;
 bool IsSeen(const Keypoint& p) { return p.confidence > 0 && std::isfinite(p.x) && std::isfinite(p.y); }
 
 struct Extent {
-  double x = 0, y = 0;      ///< centre of the seen landmarks' box, px
-  double diagonal = 0;      ///< px
-  double confidence = 0;    ///< mean of the seen landmarks
+  double x = 0, y = 0;    ///< centre of the seen landmarks' box, px
+  double diagonal = 0;    ///< px
+  double confidence = 0;  ///< mean of the seen landmarks
   int count = 0;
 };
 

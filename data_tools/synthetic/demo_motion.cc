@@ -88,11 +88,12 @@ const FootPlan& PlanOf(bool left) {
   return left ? kLeft : kRight;
 }
 
-/// A foot flat on the floor at `ground`, then pitched by pitch_deg (positive: heel up, about the ball; negative: toes
-/// up, about the heel), and lifted.
+/// A foot flat on the floor at `ground`, then turned: heel up about the ball, toes up about the heel, pointed about the
+/// ankle; the toes bent back by toes_deg; all of it lifted.
 struct FootState {
   Vector2d ground;  ///< (x, z) of the ankle when flat
-  double yaw_deg = 0, pitch_deg = 0, lift_m = 0, toes_deg = 0;
+  double yaw_deg = 0, heel_up_deg = 0, toes_up_deg = 0, pointed_deg = 0, toes_deg = 0, lift_m = 0;
+  [[nodiscard]] double PitchDeg() const { return heel_up_deg - toes_up_deg + pointed_deg; }
 };
 
 FootState WalkingFoot(const FootPlan& plan, double t) {
@@ -112,8 +113,9 @@ FootState WalkingFoot(const FootPlan& plan, double t) {
     foot.lift_m += (0.035 + 0.055 * stride) * Bump((swing - 0.45) / 0.5);
     const double heel_up = 58 * stride * Bump((t - (step.lift_s + 0.04)) / 0.27);
     const double toes_up = 17 * stride * Bump((t - (step.land_s - 0.01)) / 0.16);
-    foot.pitch_deg += heel_up - toes_up;
-    foot.toes_deg += 0.8 * heel_up * (1 - SmoothStep(swing / 0.35));  // toes stay on the floor until it lifts
+    foot.heel_up_deg += heel_up;
+    foot.toes_up_deg += toes_up;
+    foot.toes_deg += heel_up * (1 - SmoothStep(swing / 0.35));  // toes stay on the floor until it lifts
     from = step.path_m;
   }
   return foot;
@@ -121,14 +123,13 @@ FootState WalkingFoot(const FootPlan& plan, double t) {
 
 /// The kick of the right foot: keyed forward and upward of where the foot stood.
 void AddKick(double t, double heading_deg, FootState* foot) {
-  static const SmoothCurve kForward({{4.62, 0}, {4.90, -0.24}, {5.20, 0.88}, {5.46, 0.34}, {5.78, 0}}, 0.11);
-  static const SmoothCurve kUp({{4.62, 0}, {4.90, 0.17}, {5.20, 0.86}, {5.46, 0.36}, {5.78, 0}}, 0.11);
-  static const SmoothCurve kPitch({{4.62, 0}, {4.90, 62}, {5.20, -38}, {5.46, 30}, {5.78, 0}});
-  if (t < 4.5 || t > 5.92) return;
+  static const SmoothCurve kForward({{4.62, 0}, {4.90, -0.24}, {5.20, 0.85}, {5.46, 0.34}, {5.78, 0}}, 0.11);
+  static const SmoothCurve kUp({{4.53, 0}, {4.70, 0.13}, {4.90, 0.20}, {5.20, 0.86}, {5.46, 0.36}, {5.78, 0}}, 0.11);
+  static const SmoothCurve kPitch({{4.66, 0}, {4.90, 62}, {5.20, -38}, {5.46, 30}, {5.78, 0}});
   const double heading = heading_deg * kDegree;
   foot->ground += kForward(t) * Vector2d(std::sin(heading), std::cos(heading));
   foot->lift_m += std::max(0.0, kUp(t));
-  foot->pitch_deg += kPitch(t);
+  foot->pointed_deg += kPitch(t);
 }
 
 // ---- The body above the feet.
@@ -137,6 +138,7 @@ struct Torso {
   Vector2d ground;                                 ///< (x, z) of the pelvis
   double drop_m = 0;                               ///< below standing height
   double yaw_deg = 0, lean_deg = 0, tilt_deg = 0;  ///< of the pelvis; lean forward positive
+  double walks = 0;                                ///< 1 while walking, 0 while standing
 };
 
 /// +1 while the left foot carries the body, −1 while the right one does, 0 between.
@@ -170,11 +172,12 @@ Torso TorsoAt(double t) {
   Torso torso;
   const Vector2d to_left(std::cos(heading), -std::sin(heading));
   torso.ground = PathPoint(path) + (0.028 + 0.042 * kick) * support * to_left;
-  torso.drop_m = 0.012 + 0.022 * walks * (1 - support * support) + 0.012 * kick;
+  torso.drop_m = 0.002 + 0.010 * walks + 0.022 * walks * (1 - support * support) + 0.012 * kick;
   torso.lean_deg = kLean(t);
   // The hip of the swinging leg comes forward with it.
   torso.yaw_deg = HeadingAt(path) + 5 * walks * std::sin(M_PI * (t - 0.68) / 0.455) + 10 * Bump((t - 5.25) / 0.4);
   torso.tilt_deg = 2.5 * support;
+  torso.walks = walks;
   return torso;
 }
 
@@ -211,7 +214,7 @@ class Choreography {
     Vector3d ankles[2];
     Matrix3d soles[2];
     for (int side = 0; side < 2; ++side) PlaceFoot(feet[side], side, &ankles[side], &soles[side]);
-    position.y() -= ExcessReach(position, pelvis, ankles);
+    position.y() -= ExcessReach(position, pelvis, ankles, torso.walks);
     pose.trans = position - rest_.row(kPelvis).transpose();
     pose.rotations[kPelvis] = pelvis;
     for (int side = 0; side < 2; ++side) {
@@ -231,14 +234,20 @@ class Choreography {
     // Pivots relative to the ankle: the ball of the foot, and the heel behind it.
     const Vector3d to_ball = Vector3d(0, -rest_ankle.y(), Bone(kLeftAnkle + side, kLeftToes + side).z());
     const Vector3d to_heel = Vector3d(0, -rest_ankle.y(), -0.45 * to_ball.z());
-    const Vector3d& pivot = foot.pitch_deg > 0 ? to_ball : to_heel;
-    *sole = TurnY(foot.yaw_deg) * TurnX(foot.pitch_deg);
-    const Vector3d flat(scale_ * foot.ground.x(), rest_ankle.y() + scale_ * foot.lift_m, scale_ * foot.ground.y());
-    *ankle = flat + TurnY(foot.yaw_deg) * (pivot - TurnX(foot.pitch_deg) * pivot);
+    const Vector3d by_heel = to_ball - TurnX(foot.heel_up_deg) * to_ball;
+    const Vector3d by_toes = to_heel - TurnX(-foot.toes_up_deg) * to_heel;
+    // Where the toes are not bent back as far as the heel is up they would dig into the floor.
+    const double dig = 0.6 * to_ball.z() * std::sin(std::max(0.0, foot.heel_up_deg - foot.toes_deg) * kDegree);
+    *sole = TurnY(foot.yaw_deg) * TurnX(foot.PitchDeg());
+    const Vector3d flat(scale_ * foot.ground.x(), rest_ankle.y() + scale_ * foot.lift_m + dig,
+                        scale_ * foot.ground.y());
+    *ankle = flat + TurnY(foot.yaw_deg) * (by_heel + by_toes);
   }
 
-  /// How far the pelvis must sink so that both ankles are within reach of nearly straight legs, smoothly.
-  double ExcessReach(const Vector3d& position, const Matrix3d& pelvis, const Vector3d (&ankles)[2]) const {
+  /// How far the pelvis must sink so that both ankles are within reach of nearly straight legs. Moving legs are kept
+  /// further from straight, where the knee's angle changes infinitely fast with the distance.
+  double ExcessReach(const Vector3d& position, const Matrix3d& pelvis, const Vector3d (&ankles)[2],
+                     double walks) const {
     double excess = 0;
     for (int side = 0; side < 2; ++side) {
       const Vector3d hip = position + pelvis * Bone(kPelvis, kLeftHip + side);
@@ -247,8 +256,8 @@ class Choreography {
       const Vector3d away = ankles[side] - hip;
       const double level = std::min(std::hypot(away.x(), away.z()), 0.9 * reach);
       const double height = std::sqrt(reach * reach - level * level);
-      const double over = (-away.y() - height) / (0.004 * scale_);
-      excess += 0.004 * scale_ * (over > 30 ? over : std::log1p(std::exp(over)));  // soft maximum with 0
+      const double soft = (0.003 + 0.011 * walks) * scale_, over = (-away.y() - height) / soft;
+      excess += soft * (over > 30 ? over : std::log1p(std::exp(over)));  // soft maximum with 0
     }
     return excess;
   }
@@ -259,7 +268,7 @@ class Choreography {
     const double a = thigh.norm(), b = shin.norm();
     const Vector3d hip = position + pelvis * Bone(kPelvis, kLeftHip + side);
     Vector3d reach = ankle - hip;
-    const double distance = std::clamp(reach.norm(), 0.35 * (a + b), 0.998 * (a + b));
+    const double distance = std::clamp(reach.norm(), 0.35 * (a + b), 0.9995 * (a + b));
     reach = distance * reach.normalized();
     // The knee bends in the plane across the leg's hinge, which points to the left of both pelvis and foot.
     Vector3d hinge = (pelvis * Vector3d::UnitX() + TurnY(foot.yaw_deg) * Vector3d::UnitX());
@@ -275,10 +284,11 @@ class Choreography {
   }
 
   static void MoveUpperBody(double t, const Torso& torso, BodyPose* pose) {
-    static const SmoothCurve kWalks({{0.3, 0}, {0.8, 1}, {2.3, 1}, {2.9, 0}});
     static const SmoothCurve kWave({{2.95, 0}, {3.45, 1}, {4.45, 1}, {4.95, 0}});
     static const SmoothCurve kKick({{4.6, 0}, {4.92, -0.45}, {5.2, 1}, {5.5, 0.35}, {5.9, 0}});
-    const double walks = kWalks(t), wave = kWave(t), kick = kKick(t), breath = std::sin(2 * M_PI * t / 3.1);
+    static const SmoothCurve kEffort({{4.6, 0}, {4.92, 0.45}, {5.2, 1}, {5.5, 0.35}, {5.9, 0}});
+    const double walks = torso.walks, wave = kWave(t), kick = kKick(t), effort = kEffort(t),
+                 breath = std::sin(2 * M_PI * t / 3.1);
     const double gait = walks * std::sin(M_PI * (t - 0.68) / 0.455);  // +1: right leg in front
 
     // Shoulders turn against the pelvis, the trunk stays upright over it.
@@ -295,11 +305,11 @@ class Choreography {
 
     for (const bool left : {true, false}) {
       const double s = left ? 1 : -1;
-      const double swing = (left ? 1 : -1) * -20 * gait;  // about x: negative brings the arm forward
-      const double forward = std::max(0.0, -swing);
-      Matrix3d shoulder = TurnX(swing + (left ? -34 : 30) * kick) * TurnZ(s * (-74 + 2 * breath + 22 * std::abs(kick)));
+      const double swing = (left ? 1 : -1) * -20 * gait;             // about x: negative brings the arm forward
+      const double forward = std::sqrt(swing * swing + 25) - swing;  // smooth
+      Matrix3d shoulder = TurnX(swing + (left ? -34 : 30) * kick) * TurnZ(s * (-74 + 2 * breath + 22 * effort));
       shoulder = shoulder * TurnX(-12);  // thumbs a little forward
-      Matrix3d elbow = TurnY(-s * (16 + 0.8 * forward + (left ? 38 : 26) * std::abs(kick)));
+      Matrix3d elbow = TurnY(-s * (12 + 0.4 * forward + (left ? 38 : 26) * effort));
       Matrix3d wrist = TurnZ(-s * 4);
       double collar = 0;
       if (!left) {

@@ -21,37 +21,39 @@ inline double Bump(double x) {
   return y * y * y;
 }
 
-/// Passes near its keys (time, value): straight lines between them, constant outside, blurred in time by a smooth
-/// window of ±blur_s. Never leaves the range of the keys; twice differentiable.
+/// Straight lines between keys (time, value), constant outside, averaged over ±blur_s with the weight (1 − x²)³: never
+/// leaves the range of the keys, and has four continuous derivatives. Exact: a polyline is a sum of ramps
+/// max(0, t − t_i), and an averaged ramp is a polynomial.
 class SmoothCurve {
  public:
-  explicit SmoothCurve(std::vector<std::pair<double, double>> keys, double blur_s = 0.16)
-      : keys_(std::move(keys)), blur_s_(blur_s) {}
+  explicit SmoothCurve(const std::vector<std::pair<double, double>>& keys, double blur_s = 0.16)
+      : start_(keys.front().second), blur_s_(blur_s) {
+    double slope = 0;
+    for (size_t i = 0; i < keys.size(); ++i) {
+      const double next =
+          i + 1 < keys.size() ? (keys[i + 1].second - keys[i].second) / (keys[i + 1].first - keys[i].first) : 0;
+      bends_.emplace_back(keys[i].first, next - slope);
+      slope = next;
+    }
+  }
 
   [[nodiscard]] double operator()(double t) const {
-    constexpr int kHalf = 16;
-    double sum = 0, weights = 0;
-    for (int k = -kHalf; k <= kHalf; ++k) {
-      const double w = Bump(double(k) / (kHalf + 1));
-      sum += w * Polyline(t + blur_s_ * k / (kHalf + 1));
-      weights += w;
-    }
-    return sum / weights;
+    double value = start_;
+    for (const auto& [time, bend] : bends_) value += bend * blur_s_ * SmoothRamp((t - time) / blur_s_);
+    return value;
   }
 
  private:
-  [[nodiscard]] double Polyline(double t) const {
-    if (t <= keys_.front().first) return keys_.front().second;
-    for (size_t i = 1; i < keys_.size(); ++i) {
-      const auto& [t_0, v_0] = keys_[i - 1];
-      const auto& [t_1, v_1] = keys_[i];
-      if (t <= t_1) return v_0 + (v_1 - v_0) * (t - t_0) / (t_1 - t_0);
-    }
-    return keys_.back().second;
+  /// max(0, x) averaged over ±1: its second derivative is the weight (35/32) (1 − x²)³.
+  static double SmoothRamp(double x) {
+    if (x <= -1) return 0;
+    if (x >= 1) return x;
+    const double y = x * x;
+    return 35.0 / 256 + 0.5 * x + 35.0 / 32 * y * (0.5 - y * (0.25 - y * (0.1 - y / 56)));
   }
 
-  std::vector<std::pair<double, double>> keys_;
-  double blur_s_;
+  double start_, blur_s_;
+  std::vector<std::pair<double, double>> bends_;  ///< time, change of slope
 };
 
 }  // namespace bodyloom

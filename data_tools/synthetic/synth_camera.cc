@@ -107,6 +107,7 @@ SynthCamera PlaceSynthCamera(const BodyModel& body, const Motion& motion, const 
       centre.head<2>() += 0.7 * distance * seen.center();
     }
   }
+  result.up_in_camera = R * YUpFromWorld(motion.up).transpose() * Vector3d::UnitY();
   result.pose.camera_from_world_rotation = R;
   result.pose.camera_from_world_translation = Vector3d(0, 0, distance) - centre;
   return result;

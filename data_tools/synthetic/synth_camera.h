@@ -24,6 +24,7 @@ struct SynthCameraOptions {
 struct SynthCamera {
   Camera camera;
   CameraPose pose;  ///< camera from world
+  Eigen::Vector3d up_in_camera = -Eigen::Vector3d::UnitY();
 };
 
 /// The camera for a motion in the world (motion.up says which way is up; Motion::Up::kCamera counts as −y). All frames'

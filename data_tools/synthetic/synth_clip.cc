@@ -337,6 +337,7 @@ SynthClip MakeSynthClip(const BodyModel& body, const Motion& motion, const Synth
   SynthClip clip;
   const SynthCamera placed = PlaceSynthCamera(body, motion, options.camera);
   clip.camera_from_world = placed.pose;
+  clip.up_in_camera = placed.up_in_camera;
   Track& truth = clip.truth;
   truth.motion = MotionInCamera(body, motion, placed.pose);
   truth.camera = placed.camera;
@@ -353,6 +354,7 @@ SynthClip MakeSynthClip(const BodyModel& body, const Motion& motion, const Synth
   ClipMaker maker(body, options, &clip);
   ParallelFor(T, num_threads, [&](int t) { maker.MakeFrame(t); });
   maker.Finish();
+  if (truth.coco17.front().rows() == 0) truth.coco17.clear();  // the body lacks these landmarks
   if (options.initialiser_error_px > 0) {
     PerturbedMotion perturbed =
         PerturbMotion(body, truth.camera, truth.motion, options.initialiser_error_px, options.perturbation,

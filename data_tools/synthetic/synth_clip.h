@@ -62,6 +62,7 @@ struct SynthFaultCounts {
 struct SynthClip {
   Track truth;  ///< camera frame
   CameraPose camera_from_world;
+  Eigen::Vector3d up_in_camera;  ///< unit vector
   DenseSequence dense;
   DenseSequence dense_truth;  ///< the same pixels before faults 2–5 (same frames, same order)
   KeypointSequence keypoints;

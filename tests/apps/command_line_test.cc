@@ -13,7 +13,9 @@ using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 /// Every verb, sub-verbs included.
-const std::vector<std::vector<std::string>> kVerbs = {{"neural"}, {"version"}};
+const std::vector<std::vector<std::string>> kVerbs = {
+    {"track"},           {"synth"},        {"evaluate"}, {"export"}, {"body"},   {"body", "info"},
+    {"body", "convert"}, {"body", "make"}, {"demo"},     {"neural"}, {"version"}};
 
 TEST(CommandLine, HelpNamesEveryVerbExamplesAndExitCodes) {
   const CommandResult result = RunCommand({"--help"});

@@ -27,9 +27,11 @@ TEST(ReportPage, TextIsEscaped) {
   ReportPage page("a < b & \"c\"");
   page.AddParagraph("<script>alert('x')</script>");
   page.AddTable({{"k"}, {"<b>"}});
+  page.AddCode({"a > b"});
   EXPECT_THAT(page.ToHtml(), HasSubstr("<title>a &lt; b &amp; &quot;c&quot;</title>"));
   EXPECT_THAT(page.ToHtml(), Not(HasSubstr("<script>")));
   EXPECT_THAT(page.ToHtml(), HasSubstr("<td>&lt;b&gt;</td>"));
+  EXPECT_THAT(page.ToHtml(), HasSubstr("<pre>a &gt; b\n</pre>"));
 }
 
 TEST(ReportPage, NothingIsFetchedFromElsewhere) {
@@ -46,10 +48,10 @@ TEST(ReportPage, NothingIsFetchedFromElsewhere) {
 
 TEST(ReportPage, NumbersStandToTheRight) {
   ReportPage page("x");
-  page.AddTable({{"1 is a head"}, {"12.5"}, {"text"}});
-  EXPECT_THAT(page.ToHtml(), HasSubstr("<th>1 is a head</th>"));
-  EXPECT_THAT(page.ToHtml(), HasSubstr("<td class=\"n\">12.5</td>"));
-  EXPECT_THAT(page.ToHtml(), HasSubstr("<td>text</td>"));
+  page.AddTable({{"1"}, {"-12.5"}, {"2D joints"}});
+  EXPECT_THAT(page.ToHtml(), HasSubstr("<th>1</th>"));
+  EXPECT_THAT(page.ToHtml(), HasSubstr("<td class=\"n\">-12.5</td>"));
+  EXPECT_THAT(page.ToHtml(), HasSubstr("<td>2D joints</td>"));
 }
 
 TEST(ReportPage, CurveSpansItsBoxAndLeavesGaps) {

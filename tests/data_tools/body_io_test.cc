@@ -7,6 +7,7 @@
 #include <cstring>
 #include <filesystem>
 #include <limits>
+#include <numeric>
 #include <set>
 #include <tuple>
 
@@ -126,6 +127,23 @@ TEST(BodyIo, SmplTopologyGetsTheDetectorsLandmarks) {
   EXPECT_TRUE(points.row(1).isApprox(body.data().v_template.row(6787), 1e-12));
   EXPECT_TRUE(points.row(2).isApprox(body.joint_template().row(4), 1e-12));
   EXPECT_TRUE(points.row(3).isApprox(body.joint_template().row(21), 1e-12));
+}
+
+TEST(BodyIo, LandmarksAreTheNormalisedRegressorRows) {
+  BodyArrays arrays = MakeBodyArrays(6890, 24, 1, false);
+  for (int v = 0; v < 6890; ++v) arrays.J_regressor[4 * 6890 + v] *= 1.0005;  // still a file that is accepted
+  const BodyModel body = LoadArrays(OfficialNpz(arrays));
+  const Landmark& knee = body.data().landmarks[body.FindLandmark("left_knee")];
+  EXPECT_NEAR(std::accumulate(knee.weights.begin(), knee.weights.end(), 0.0), 1, 1e-12);
+}
+
+TEST(BodyIo, CompactFileDropsWeightsBelowItsGrid) {
+  BodyArrays arrays = MakeBodyArrays(50, 24, 1, false);
+  arrays.weights[5] = 1e-9;  // vertex 0, joint 5
+  const BodyModel body = LoadArrays(OfficialNpz(arrays));
+  const TemporaryFolder folder;
+  SaveBodyCompact(folder.File("a.npz"), body.data());
+  EXPECT_EQ(LoadBodyData(folder.File("a.npz")).weights.nonZeros(), body.data().weights.nonZeros() - 1);
 }
 
 TEST(BodyIo, HandsOfSmplhAndSmplx) {

@@ -79,7 +79,8 @@ TEST(JsonReader, ErrorsNameThePlace) {
   const JsonNode root(json, "t.json");
   const auto error = [&](const auto& action) { return FileErrorOf("t.json", action); };
   EXPECT_THAT(error([&] { (void)root.At("z"); }), HasSubstr("no 'z'; present: a, b, d, e"));
-  EXPECT_THAT(error([&] { (void)root.At("b").At("c").Number(); }), HasSubstr("t.json: b.c: found string, expected a number"));
+  EXPECT_THAT(error([&] { (void)root.At("b").At("c").Number(); }),
+              HasSubstr("t.json: b.c: found string, expected a number"));
   EXPECT_THAT(error([&] { (void)root.At("a").At(7); }), HasSubstr("a: 3 entries"));
   EXPECT_THAT(error([&] { (void)root.At("a").At(1).Integer(); }), HasSubstr("a[1]: found number, expected an integer"));
   EXPECT_THAT(error([&] { (void)root.At("a").Numbers(4); }), HasSubstr("3 numbers, expected 4"));

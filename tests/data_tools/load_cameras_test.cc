@@ -37,8 +37,8 @@ class LoadCamerasTest : public ::testing::Test {
 TEST_F(LoadCamerasTest, AistFileAndFolder) {
   Write("setting1.json", kAist);
   Write("mapping.txt", "gX_sBM_cAll_d01_mX0_ch01 setting9\ngBR_sBM_cAll_d06_mBR2_ch06 setting1\n");
-  for (const char* sequence : {"gBR_sBM_cAll_d06_mBR2_ch06", "gBR_sBM_c03_d06_mBR2_ch06.mp4",
-                               "/videos/gBR_sBM_cAll_d06_mBR2_ch06.pkl"}) {
+  for (const char* sequence :
+       {"gBR_sBM_cAll_d06_mBR2_ch06", "gBR_sBM_c03_d06_mBR2_ch06.mp4", "/videos/gBR_sBM_cAll_d06_mBR2_ch06.pkl"}) {
     const std::vector<NamedCamera> cameras = LoadCameras(folder_.File(""), sequence);
     ASSERT_EQ(cameras.size(), 2U);
     const NamedCamera& c01 = FindCamera(cameras, "c01", "x");
@@ -65,10 +65,10 @@ TEST_F(LoadCamerasTest, AistFileAndFolder) {
 }
 
 TEST_F(LoadCamerasTest, Pose2SimWithAffine) {
-  const std::string path = Write(
-      "calib_refined.json",
-      R"({"note":"x","cameras":[{"name":"cam_01","size":[1088,1920],"K":[[1681,0,533],[0,1682,948],[0,0,1]],)"
-      R"("dist_k1k2p1p2":[-0.05,0.1,0.001,0.002],"rvec":[0,0,0],"tvec_m":[0.3,0.9,2.9]}]})");
+  const std::string path =
+      Write("calib_refined.json",
+            R"({"note":"x","cameras":[{"name":"cam_01","size":[1088,1920],"K":[[1681,0,533],[0,1682,948],[0,0,1]],)"
+            R"("dist_k1k2p1p2":[-0.05,0.1,0.001,0.002],"rvec":[0,0,0],"tvec_m":[0.3,0.9,2.9]}]})");
   EXPECT_EQ(LoadCameras(path)[0].video_px_from_camera_px(0, 0), 1);
   Write("video_to_calib_affine.json", R"({"cam01":{"video_to_calib_affine":[[2,0,4],[0,2,-6]]},"cam09":{}})");
   for (const std::string& place : {path, folder_.File("")}) {
@@ -132,7 +132,8 @@ TEST_F(LoadCamerasTest, MalformedFilesAreErrors) {
   EXPECT_THAT(ErrorOf(R"({"width":640,"height":480,"K":[[600,5,320],[0,601,240],[0,0,1]]})"), HasSubstr("skew"));
   EXPECT_THAT(ErrorOf(R"({"width":640,"height":480,"K":[600,0,320]})"), HasSubstr("3 numbers, expected 9"));
   EXPECT_THAT(ErrorOf(R"({"width":640,"height":480,"fx":5,"distortion":[1,2,3,4,5,6,7,8,9]})"), HasSubstr("at most 8"));
-  EXPECT_THAT(ErrorOf(R"({"width":6,"height":4,"fx":5,"rotation":[1,0],"translation":[0,0,0]})"), HasSubstr("2 numbers"));
+  EXPECT_THAT(ErrorOf(R"({"width":6,"height":4,"fx":5,"rotation":[1,0],"translation":[0,0,0]})"),
+              HasSubstr("2 numbers"));
   EXPECT_THAT(ErrorOf(R"({"width":6,"height":4,"fx":5,"rotation":[[1,0,0],[0,1,0],[0,0,-1]],"translation":[0,0,0]})"),
               HasSubstr("not a rotation"));
   EXPECT_THAT(ErrorOf(R"({"width":6,"height":4,"fx":NaN})"), HasSubstr("NaN"));

@@ -36,8 +36,8 @@ class LoadDetectionsTest : public ::testing::Test {
 };
 
 std::string CocoEntry(const std::string& image_id, double x, const std::string& more = "") {
-  return R"({"image_id":)" + image_id + R"(,"category_id":1,"keypoints":[)" + StickNumbers(Coco17().names, x, 500, 400) +
-         R"(],"score":2.5)" + more + "}";
+  return R"({"image_id":)" + image_id + R"(,"category_id":1,"keypoints":[)" +
+         StickNumbers(Coco17().names, x, 500, 400) + R"(],"score":2.5)" + more + "}";
 }
 
 TEST_F(LoadDetectionsTest, CocoResults) {
@@ -51,7 +51,8 @@ TEST_F(LoadDetectionsTest, CocoResults) {
 }
 
 TEST_F(LoadDetectionsTest, AlphaPoseNamesIdentitiesAndConfidences) {
-  std::string text = "[" + CocoEntry("\"0.jpg\"", 300, ",\"idx\":4") + "," + CocoEntry("\"1.jpg\"", 310, ",\"idx\":4") + "]";
+  std::string text =
+      "[" + CocoEntry("\"0.jpg\"", 300, ",\"idx\":4") + "," + CocoEntry("\"1.jpg\"", 310, ",\"idx\":4") + "]";
   text.replace(text.find("0.9"), 3, "5.9");
   const KeypointSequence sequence = LoadDetections(Write("alpha.json", text));
   EXPECT_EQ(sequence.num_frames(), 2);
@@ -66,7 +67,8 @@ TEST_F(LoadDetectionsTest, CocoAnnotations) {
   }();
   const std::string text =
       R"({"images":[{"id":77,"file_name":"f_0001.png","width":640,"height":480},{"id":12,"file_name":"f_0002.png","width":640,"height":480}],)"
-      R"("annotations":[{"image_id":12,"keypoints":[)" + flags + R"(]}]})";
+      R"("annotations":[{"image_id":12,"keypoints":[)" +
+      flags + R"(]}]})";
   const KeypointSequence sequence = LoadDetections(Write("ann.json", text));
   ASSERT_EQ(sequence.num_frames(), 2) << "an image without anyone is a frame";
   EXPECT_EQ(sequence.image_width, 640);
@@ -86,8 +88,7 @@ std::string BlazePoseFrame(double scale, const std::string& visibility) {
 }
 
 TEST_F(LoadDetectionsTest, BlazePoseForms) {
-  const KeypointSequence pixels =
-      LoadDetections(Write("a.json", "[[],null," + BlazePoseFrame(1, "0.7") + ",{}]"));
+  const KeypointSequence pixels = LoadDetections(Write("a.json", "[[],null," + BlazePoseFrame(1, "0.7") + ",{}]"));
   ASSERT_EQ(pixels.num_frames(), 4);
   EXPECT_EQ(pixels.convention, "mediapipe33");
   EXPECT_NEAR(pixels.at(2, 3).x, 130, 1e-4);
@@ -109,8 +110,8 @@ TEST_F(LoadDetectionsTest, BlazePoseForms) {
   const KeypointSequence named = LoadDetections(
       Write("d.json", R"([[{"score":0.5,"keypoints":[)" + BlazePoseFrame(1, "0.7").substr(1) + R"(}],[]])"));
   EXPECT_EQ(named.num_frames(), 2);
-  const KeypointSequence table = LoadDetections(
-      Write("e.json", R"([{"nose":{"x":10,"y":20},"left_foot_index":{"x":30,"y":40,"score":0.25}}])"));
+  const KeypointSequence table =
+      LoadDetections(Write("e.json", R"([{"nose":{"x":10,"y":20},"left_foot_index":{"x":30,"y":40,"score":0.25}}])"));
   EXPECT_EQ(table.names[31], "left_big_toe");
   EXPECT_EQ(table.at(0, 31).confidence, 0.25F);
   EXPECT_EQ(table.at(0, 1).confidence, 0) << "left_eye_inner is not there";
@@ -134,8 +135,8 @@ TEST_F(LoadDetectionsTest, FolderOfViews) {
   for (const char* view : {"cam01_json", "cam02_json"}) {
     std::filesystem::create_directory(folder_.File(view));
     Write(std::string(view) + "/x_0_keypoints.json",
-          R"({"people":[{"pose_keypoints_2d":[)" +
-              StickNumbers(Body25().names, view[4] == '1' ? 300 : 400, 500, 400) + "]}]}");
+          R"({"people":[{"pose_keypoints_2d":[)" + StickNumbers(Body25().names, view[4] == '1' ? 300 : 400, 500, 400) +
+              "]}]}");
   }
   LoadDetectionsOptions options;
   options.view = "cam02";
@@ -228,7 +229,8 @@ TEST_F(LoadDetectionsTest, AistViews) {
   EXPECT_EQ(sequence.at(0, 3).confidence, 1) << "1.02 is clamped";
   EXPECT_NEAR(sequence.timestamps[2], 0.033333, 1e-12);
   options.view = "c07";
-  EXPECT_THAT(FileErrorOf(path, [&] { LoadDetections(path, options); }), HasSubstr("no view 'c07'; the file has c01, c02"));
+  EXPECT_THAT(FileErrorOf(path, [&] { LoadDetections(path, options); }),
+              HasSubstr("no view 'c07'; the file has c01, c02"));
   options.view = "";
   EXPECT_THAT(FileErrorOf(path, [&] { LoadDetections(path, options); }), HasSubstr("no view chosen"));
   options.view = "c01";

@@ -29,7 +29,7 @@ Track SampleTrack(CameraModel model) {
   track.motion.poses = RowMatrixXd::Random(kFrames, 3 * kJoints);
   track.motion.trans = MatrixX3d::Random(kFrames, 3);
   track.motion.betas = Eigen::VectorXd::Random(10);
-  track.motion.timestamps = {0.5, 0.52, 0.54, 0.60, 0.62};
+  track.motion.timestamps = {0.5, 0.55, 0.57, 0.59, 0.61};
   track.camera.model = model;
   track.camera.width = 1920;
   track.camera.height = 1080;

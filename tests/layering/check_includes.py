@@ -15,7 +15,7 @@ MAY_INCLUDE = {
     "geometry": set(),
     "render": {"geometry"},
     "tracking": {"geometry", "render"},
-    "data_tools": {"geometry", "render", "tracking"},
+    "data_tools": {"geometry", "render"},
     "neural": {"geometry", "render"},
     "apps": {"geometry", "render", "tracking", "data_tools", "neural"},
     "benchmarks": {"geometry", "render", "tracking", "data_tools", "neural", "tests"},

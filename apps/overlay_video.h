@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Writes a track as a video: the projected body over the frames it was fitted to.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "data_tools/observations/load_cameras.h"
+#include "geometry/body_model.h"
+#include "geometry/observations.h"
+#include "geometry/track.h"
+
+namespace bodyloom {
+
+struct OverlayVideo {
+  // Pointers are borrowed; those marked so may be null.
+  const BodyModel* body = nullptr;
+  const Track* track = nullptr;
+  const Track* reference = nullptr;  ///< may be null: the true track, drawn beside the estimate in the side view
+  const KeypointSequence* detected = nullptr;  ///< may be null
+  std::string video;                           ///< frames to draw on; empty: a plain backdrop
+  int video_offset = 0;                        ///< video frame of the track's time zero
+  Matrix2x3d video_px_from_camera_px = NamedCamera().video_px_from_camera_px;
+  bool side_view = false;
+  int num_stills = 0;  ///< pictures to keep, spread over the clip
+  std::function<void(double fraction)> progress = [](double) {};
+};
+
+struct OverlaySummary {
+  int frames = 0, frames_without_video = 0;
+};
+
+/// Frame t of the track goes over the video frame shown at its timestamp. Where the video has ended the backdrop stands
+/// in and is counted. Throws std::runtime_error when the video's size fits neither the camera nor a scaled copy of it,
+/// and when `path` cannot be written; nothing is left behind then.
+OverlaySummary WriteOverlayVideo(const std::string& path, const OverlayVideo& what);
+
+/// Frames a second of a video whose frames have these timestamps: 1 / their median step, within [1, 240]; 30 for one
+/// frame.
+double VideoFrameRate(const std::vector<double>& timestamps);
+
+}  // namespace bodyloom

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/track_inputs.h"
+
+#include <stdexcept>
+
+#include "data_tools/body_io.h"
+#include "data_tools/builtin_body.h"
+#include "data_tools/formats/npz.h"
+#include "data_tools/motion/load_motion.h"
+#include "data_tools/observations/load_detections.h"
+#include "data_tools/observations/observations_npz.h"
+#include "data_tools/prior/pose_prior_io.h"
+#include "data_tools/track_io.h"
+#include "data_tools/video/video_reader.h"
+#include "geometry/check.h"
+
+namespace bodyloom {
+namespace {
+
+/// Camera file, focal length and image size as far as the options give them.
+NamedCamera CameraFromOptions(const TrackCommand& command) {
+  NamedCamera camera;
+  camera.camera.width = command.image_width;
+  camera.camera.height = command.image_height;
+  if (!command.cameras.empty()) {
+    camera = FindCamera(LoadCameras(command.cameras, command.detections), command.view, command.cameras);
+    if (command.image_width > 0 &&
+        (camera.camera.width != command.image_width || camera.camera.height != command.image_height)) {
+      throw std::runtime_error(Concatenate(command.cameras, ": camera ", camera.name, " is for images of ",
+                                           camera.camera.width, "x", camera.camera.height, ", --image-size says ",
+                                           command.image_width, "x", command.image_height));
+    }
+  }
+  return camera;
+}
+
+/// Takes image size and frame rate from the video, or checks the size against what is known.
+void UseVideo(const std::string& path, TrackInputs* inputs) {
+  const VideoInfo info = VideoReader(path).info();
+  inputs->video_fps = info.fps;
+  Camera& camera = inputs->camera.camera;
+  if (camera.width == 0) {
+    camera.width = info.width;
+    camera.height = info.height;
+  }
+}
+
+DenseSequence ReadDense(const std::string& path, const BodyModel& body) {
+  DenseSequence dense = ReadDenseObservations(path);
+  for (const auto& frame : dense.frames) {
+    for (const DenseKeypoint& point : frame) {
+      if (point.face < 0 || point.face >= body.num_faces()) {
+        throw std::runtime_error(Concatenate(path, ": a dense keypoint lies on face ", point.face, ", the body '",
+                                             body.name(), "' has ", body.num_faces(), " faces"));
+      }
+    }
+  }
+  return dense;
+}
+
+Motion ReadInitialiser(const std::string& path, int num_frames) {
+  Motion motion = LoadMotion(path);
+  if (motion.up != Motion::Up::kCamera) {
+    throw std::runtime_error(path + ": poses in a world frame, expected the camera's (a track .npz)");
+  }
+  if (motion.num_frames() != num_frames) {
+    throw std::runtime_error(
+        Concatenate(path, ": ", motion.num_frames(), " frames, expected the ", num_frames, " of the detections"));
+  }
+  return motion;
+}
+
+/// Observations of this project's own form may hold either kind or both.
+struct Holds {
+  bool keypoints = true, dense = false;
+};
+
+Holds WhatItHolds(const std::string& path) {
+  if (!path.ends_with(".npz")) {
+    return {};
+  }
+  const NpzArrays arrays = ReadNpz(path);
+  return {HasKeypoints(arrays) || !HasDense(arrays), HasDense(arrays)};
+}
+
+/// The one image size of a clip: the camera's, which the observations may bring but not contradict.
+void AgreeOnImageSize(const std::string& path, int width, int height, Camera* camera) {
+  if (width == 0) {
+    return;
+  }
+  if (camera->width == 0) {
+    camera->width = width;
+    camera->height = height;
+  }
+  if (camera->width != width || camera->height != height) {
+    throw std::runtime_error(Concatenate(path, ": made for images of ", width, "x", height, ", the camera is for ",
+                                         camera->width, "x", camera->height));
+  }
+}
+
+}  // namespace
+
+TrackSequenceInput TrackInputs::ForTracker() const {
+  TrackSequenceInput input;
+  input.body = body.get();
+  input.keypoints = keypoints ? &*keypoints : nullptr;
+  input.dense = dense ? &*dense : nullptr;
+  input.initialiser = initialiser ? &*initialiser : nullptr;
+  input.prior = prior ? &*prior : nullptr;
+  input.camera = camera.camera;
+  return input;
+}
+
+std::shared_ptr<const BodyModel> BodyOrBuiltin(const std::string& path) {
+  if (path.empty()) {
+    return {std::shared_ptr<void>(), &BuiltinBody()};  // lives as long as the program
+  }
+  return std::make_shared<const BodyModel>(LoadBody(path));
+}
+
+TrackInputs LoadTrackInputs(const TrackCommand& command) {
+  TrackInputs inputs;
+  inputs.body = BodyOrBuiltin(command.body);
+  inputs.camera = CameraFromOptions(command);
+  Camera& camera = inputs.camera.camera;
+  if (!command.video.empty()) {
+    UseVideo(command.video, &inputs);
+  }
+  if (!command.detections.empty()) {
+    const Holds holds = WhatItHolds(command.detections);
+    if (holds.keypoints) {
+      LoadDetectionsOptions options;
+      options.view = command.view;
+      options.person = command.person;
+      options.fps = command.fps > 0 ? command.fps : inputs.video_fps;
+      options.image_width = camera.width;
+      options.image_height = camera.height;
+      options.min_confidence = command.min_confidence;
+      options.convention = command.convention;
+      inputs.keypoints = LoadDetections(command.detections, options);
+      AgreeOnImageSize(command.detections, inputs.keypoints->image_width, inputs.keypoints->image_height, &camera);
+    }
+    if (holds.dense && command.dense.empty()) {
+      inputs.dense = ReadDense(command.detections, *inputs.body);
+      AgreeOnImageSize(command.detections, inputs.dense->image_width, inputs.dense->image_height, &camera);
+    }
+  }
+  if (!command.dense.empty()) {
+    inputs.dense = ReadDense(command.dense, *inputs.body);
+    AgreeOnImageSize(command.dense, inputs.dense->image_width, inputs.dense->image_height, &camera);
+  }
+  if (camera.width == 0) {
+    throw std::runtime_error(Concatenate(command.detections.empty() ? command.dense : command.detections,
+                                         ": does not say how large the images are; give --video, --cameras or "
+                                         "--image-size"));
+  }
+  if (!command.init.empty()) {
+    inputs.initialiser = ReadInitialiser(command.init, inputs.num_frames());
+  }
+  if (!command.reference.empty()) {
+    inputs.reference = ReadTrack(command.reference);
+    if (inputs.reference->num_frames() != inputs.num_frames()) {
+      throw std::runtime_error(Concatenate(command.reference, ": ", inputs.reference->num_frames(),
+                                           " frames, expected the ", inputs.num_frames(), " of the detections"));
+    }
+  }
+  if (command.prior != "none") {
+    inputs.prior = command.prior.empty() ? BuiltinPosePrior() : ReadPosePrior(command.prior);
+  }
+  if (command.focal_px > 0) {
+    camera = MakePinhole(camera.width, camera.height, command.focal_px);
+  }
+  return inputs;
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+/// From file names to what the tracker takes: everything `bodyloom track` reads, checked against each other.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "apps/track_options.h"
+#include "data_tools/observations/load_cameras.h"
+#include "geometry/body_model.h"
+#include "geometry/observations.h"
+#include "geometry/pose_prior.h"
+#include "geometry/track.h"
+
+namespace bodyloom {
+
+struct TrackInputs {
+  std::shared_ptr<const BodyModel> body;
+  std::optional<KeypointSequence> keypoints;
+  std::optional<DenseSequence> dense;
+  std::optional<Motion> initialiser;
+  std::optional<PosePrior> prior;
+  std::optional<Track> reference;
+  NamedCamera camera;  ///< intrinsics, pose and the way to the video's pixels, as far as known
+  double video_fps = 0;
+
+  [[nodiscard]] int num_frames() const { return keypoints ? keypoints->num_frames() : dense->num_frames(); }
+  [[nodiscard]] const std::vector<double>& timestamps() const {
+    return keypoints ? keypoints->timestamps : dense->timestamps;
+  }
+  /// Pointers into this object.
+  [[nodiscard]] TrackSequenceInput ForTracker() const;
+};
+
+/// Reads what the command names. Throws std::runtime_error naming file and place, also when two files contradict each
+/// other (image sizes, number of frames).
+TrackInputs LoadTrackInputs(const TrackCommand& command);
+
+/// The body in a file, or the built-in one for an empty path.
+std::shared_ptr<const BodyModel> BodyOrBuiltin(const std::string& path);
+
+}  // namespace bodyloom

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/track_options.h"
+
+#include <CLI/CLI.hpp>
+
+#include "apps/exit_code.h"
+
+namespace bodyloom {
+namespace {
+
+/// A validator whose range is said in the option's own words.
+CLI::Validator Quiet(CLI::Validator validator) {
+  validator.description("");
+  return validator;
+}
+
+/// "1920x1080" into two numbers.
+void AddImageSize(CLI::App& app, TrackCommand* command) {
+  app.add_option_function<std::string>(
+         "--image-size",
+         [command](const std::string& text) {
+           char cross = 0, rest = 0;
+           const int n =
+               std::sscanf(text.c_str(), "%d%c%d%c", &command->image_width, &cross, &command->image_height, &rest);
+           if (n != 3 || cross != 'x' || command->image_width <= 0 || command->image_height <= 0) {
+             throw CLI::ValidationError("--image-size", "'" + text + "', expected WIDTHxHEIGHT as in 1920x1080");
+           }
+         },
+         "pixels, when neither --cameras nor --video says")
+      ->type_name("WxH");
+}
+
+}  // namespace
+
+void AddTrackOptions(CLI::App& app, TrackCommand* command) {
+  TrackCommand& c = *command;
+  const std::string seen = "What was seen", camera = "The camera", known = "What else is known", wanted = "Results",
+                    solve = "The solve";
+  app.add_option(
+         "--detections", c.detections,
+         "2D joints of a detector: a folder of OpenPose JSON files, a COCO, AlphaPose or MediaPipe JSON, an AIST++ "
+         "keypoints2d pickle, or this project's .npz")
+      ->group(seen)
+      ->type_name("FILE");
+  app.add_option("--dense", c.dense, "dense surface keypoints: this project's .npz")->group(seen)->type_name("FILE");
+  app.add_option("--view", c.view, "camera of a file that holds several, as c01")->group(seen)->type_name("NAME");
+  app.add_option("--person", c.person, "which person when there are several: 0 is the largest and longest in view")
+      ->group(seen)
+      ->check(Quiet(CLI::NonNegativeNumber))
+      ->capture_default_str();
+  app.add_option("--fps", c.fps, "frame rate of detections that do not say (default: the video's, else 30)")
+      ->group(seen)
+      ->check(Quiet(CLI::PositiveNumber));
+  app.add_option("--min-confidence", c.min_confidence, "detections below (0 to 1) count as missing")
+      ->group(seen)
+      ->check(Quiet(CLI::Range(0.0, 1.0)))
+      ->capture_default_str();
+  app.add_option("--convention", c.convention, "landmark order of OpenPose files when it is not recognised")
+      ->group(seen)
+      ->check(CLI::IsMember({"body25", "body25b", "openpose_coco18", "coco17", "halpe26"}));
+
+  app.add_option(
+         "--cameras", c.cameras,
+         "calibration: an AIST++ camera folder or setting, a Pose2Sim calib_refined.json, or this project's JSON")
+      ->group(camera)
+      ->type_name("FILE");
+  app.add_option("--camera", c.camera,
+                 "pinhole: intrinsics from --cameras or --focal; unknown-focal: the focal length is estimated; weak: "
+                 "weak perspective (default: pinhole when intrinsics are given, else unknown-focal)")
+      ->group(camera)
+      ->check(CLI::IsMember({"pinhole", "unknown-focal", "weak"}));
+  app.add_option("--focal", c.focal_px, "focal length in pixels, for a centred camera without distortion")
+      ->group(camera)
+      ->check(Quiet(CLI::PositiveNumber));
+  AddImageSize(app, command);
+  app.get_option("--image-size")->group(camera);
+
+  app.add_option("--video", c.video, "the video (or a folder of images), for image size, frame rate and the overlay")
+      ->group(known)
+      ->type_name("FILE");
+  app.add_option("--video-offset", c.video_offset, "video frame that belongs to the detections' frame number 0")
+      ->group(known)
+      ->capture_default_str();
+  app.add_option("--body", c.body, "body model: SMPL, SMPL-H or SMPL-X .pkl or .npz (default: the built-in body)")
+      ->group(known)
+      ->type_name("FILE");
+  app.add_option("--init", c.init, "poses of another system to start from and stay near, same frames")
+      ->group(known)
+      ->type_name("FILE");
+  app.add_option("--prior", c.prior, "pose prior file, or none (default: the built-in one)")
+      ->group(known)
+      ->type_name("FILE");
+
+  app.add_option("--out", c.out, "the track, .npz (required unless --plan)")->group(wanted)->type_name("FILE");
+  app.add_option("--overlay", c.overlay, "video with the projected body, .mp4")->group(wanted)->type_name("FILE");
+  app.add_flag("--side-view", c.side_view, "the overlay also shows the body from its side, where depth errors show")
+      ->group(wanted);
+  app.add_option("--reference", c.reference, "a known true track, drawn beside the estimate in the side view")
+      ->group(wanted)
+      ->type_name("FILE");
+  app.add_option("--json", c.json, "the closing summary as JSON")->group(wanted)->type_name("FILE");
+  app.add_flag("--plan", c.plan, "print what would run, what is skipped and why; compute and write nothing")
+      ->group(wanted);
+  app.add_flag("--quiet", c.quiet, "no progress and no summary on the screen")->group(wanted);
+
+  TrackSequenceOptions& s = c.solve;
+  app.add_option("--solver", s.solver, "the engine")
+      ->group(solve)
+      ->capture_default_str()
+      ->check(CLI::IsMember({"ceres"}));
+  app.add_option("--threads", s.num_threads, "at most 256; 0: all cores; results agree to rounding")
+      ->group(solve)
+      ->check(Quiet(CLI::Range(0, 256)))
+      ->capture_default_str();
+  app.add_option("--max-iterations", s.max_iterations, "of each stage")
+      ->group(solve)
+      ->check(Quiet(CLI::PositiveNumber))
+      ->capture_default_str();
+  app.add_option("--init-weight", s.initialiser_weight, "how strongly the track stays near --init")
+      ->group(solve)
+      ->check(Quiet(CLI::NonNegativeNumber))
+      ->capture_default_str();
+  app.add_flag_callback(
+         "--no-shape", [&s] { s.estimate_shape = false; }, "keep the body's mean shape")
+      ->group(solve);
+  app.add_flag_callback(
+         "--no-uncertainty", [&s] { s.estimate_uncertainty = false; }, "leave out joint_sigma")
+      ->group(solve);
+  app.add_flag_callback(
+         "--no-skip", [&s] { s.skip_unneeded = false; }, "compute also what nobody needs: same answer, slower")
+      ->group(solve);
+}
+
+CameraKnowledge CameraKnowledgeOf(const TrackCommand& command) {
+  if (command.camera == "weak") {
+    return CameraKnowledge::kWeak;
+  }
+  const bool has_intrinsics = !command.cameras.empty() || command.focal_px > 0;
+  return command.camera == "pinhole" || (command.camera.empty() && has_intrinsics) ? CameraKnowledge::kKnown
+                                                                                   : CameraKnowledge::kUnknownFocal;
+}
+
+void CheckTrackOptions(const TrackCommand& command) {
+  if (command.detections.empty() && command.dense.empty()) {
+    throw UsageError("--detections is required (or --dense)");
+  }
+  if (command.out.empty() && !command.plan) {
+    throw UsageError("--out is required (or --plan, to see what would be done)");
+  }
+  if (command.camera == "pinhole" && command.cameras.empty() && command.focal_px == 0) {
+    throw UsageError("--camera pinhole needs the intrinsics: give --cameras FILE or --focal PIXELS");
+  }
+  if (!command.cameras.empty() && command.focal_px > 0) {
+    throw UsageError("--cameras and --focal both give the focal length, expected one of them");
+  }
+  if (!command.overlay.empty() && !command.overlay.ends_with(".mp4")) {
+    throw UsageError("--overlay " + command.overlay + ": expected a name that ends in .mp4");
+  }
+  if (command.side_view && command.overlay.empty()) {
+    throw UsageError("--side-view is a part of the overlay: give --overlay FILE");
+  }
+  if (!command.reference.empty() && !command.side_view) {
+    throw UsageError("--reference is drawn in the side view: give --side-view");
+  }
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include "apps/verbs.h"
+#include "data_tools/builtin_body.h"
+#include "data_tools/motion/load_motion.h"
+#include "data_tools/prior/pose_prior_io.h"
+#include "data_tools/prior/pose_prior_learning.h"
+
+namespace bodyloom {
+namespace {
+
+struct PriorRequest {
+  std::string motions, out;
+  LearnPosePriorOptions options;
+};
+
+/// Every regular file below the folder (or the file itself), sorted, so that the same folder gives the same prior.
+std::vector<std::string> FilesBelow(const std::string& path) {
+  if (!std::filesystem::is_directory(path)) return {path};
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(path)) {
+    if (entry.is_regular_file()) files.push_back(entry.path().string());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+void Run(const PriorRequest& request) {
+  std::vector<Motion> motions;
+  double seconds = 0;
+  for (const std::string& file : FilesBelow(request.motions)) {
+    try {
+      Motion motion = LoadMotion(file);
+      seconds += motion.timestamps.back() - motion.timestamps.front();
+      motions.push_back(std::move(motion));
+    } catch (const std::runtime_error& error) {
+      std::cerr << "left out: " << error.what() << "\n";  // licences, skeletons and readmes lie among the motions
+    }
+  }
+  const PosePrior prior = LearnPosePrior(motions, BuiltinBody(), request.options);
+  WritePosePrior(request.out, prior);
+  std::cout << "learned from " << motions.size() << " motions, " << seconds / 60 << " minutes: "
+            << prior.num_components() << " components over " << prior.joints.size() << " joints\nwrote " << request.out
+            << "\n";
+}
+
+}  // namespace
+
+void AddPriorVerb(CLI::App& app, Action* action) {
+  CLI::App* verb = app.add_subcommand("prior", "Learns a pose prior from a folder of motions");
+  auto request = std::make_shared<PriorRequest>();
+  LearnPosePriorOptions& options = request->options;
+  verb->add_option("--motions", request->motions, "Motion file, or a folder of them (BVH, ASF/AMC, AMASS, …)")->required();
+  verb->add_option("--out", request->out, "The prior, .npz")->required();
+  verb->add_option("--components", options.num_components, "Gaussians in the mixture")->capture_default_str();
+  verb->add_option("--seed", options.seed, "Of the mixture's start")->capture_default_str();
+  verb->footer("Example, which makes the built-in prior again:\n"
+               "  bodyloom prior --motions motion/ --out assets/prior/pose_prior.npz");
+  verb->callback([request, action] { *action = [request] { Run(*request); }; });
+}
+
+}  // namespace bodyloom

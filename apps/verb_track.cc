@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+
+#include "apps/exit_code.h"
+#include "apps/track_run.h"
+#include "apps/verbs.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr const char* kFooter =
+    "Examples:\n"
+    "  OpenPose's output folder and the video it was made from; the focal length is estimated:\n"
+    "    bodyloom track --detections openpose_json/ --video clip.mp4 --out track.npz --overlay overlay.mp4\n"
+    "  one calibrated camera of an AIST++ clip:\n"
+    "    bodyloom track --detections keypoints2d/SEQ.pkl --view c01 --cameras cameras/ --out track.npz\n"
+    "  a body of your own, and the numbers for a program:\n"
+    "    bodyloom track --detections coco.json --image-size 1920x1080 --body SMPL_NEUTRAL.pkl --out t.npz --json "
+    "t.json\n"
+    "  what would be done, and why not the rest:\n"
+    "    bodyloom track --detections coco.json --image-size 1920x1080 --plan\n\n";
+
+void TrackAndReport(const TrackCommand& command) {
+  const TrackReport report = RunTrack(command);
+  if (command.plan) {
+    std::cout << report.num_frames << " frames would be tracked:\n" << ToText(report.solve.plan);
+  } else if (!command.quiet) {
+    std::cout << ToText(report);
+  }
+}
+
+}  // namespace
+
+void AddTrackVerb(CLI::App& app, Action* action) {
+  CLI::App* verb = app.add_subcommand("track", "Fits a body to a clip: detections in, track out");
+  verb->footer(std::string(kFooter) + kExitCodeHelp);
+  auto command = std::make_shared<TrackCommand>();
+  AddTrackOptions(*verb, command.get());
+  verb->callback([command, action] { *action = [command] { TrackAndReport(*command); }; });
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Tracks AIST++ clips from one camera's 2D joints and scores them in the other eight (data_tools/evaluation/
+/// aist_evaluation.h): error and time, file to file.
+///
+///   bodyloom_bench_aist --data AISTPP [--sequences A,B] [--views c01,c03] [--focal known,unknown] [--threads 2]
+///                       [--frames 0] [--json F]
+///
+/// Seconds: `file_s` from detections file to written track (body and prior included), `track_s` the tracker alone.
+/// The group "limits" scores what no tracker of these detections can beat, and the body itself:
+///   reference      keypoints3d_optim, made from all nine cameras (the detections' noise floor)
+///   true angles    the body posed with the data set's own joint rotations, mean shape (what the difference between
+///                  COCO's landmarks of that body and this one costs)
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+
+#include "benchmarks/accuracy/bench_arguments.h"
+#include "benchmarks/accuracy/bench_report.h"
+#include "data_tools/builtin_body.h"
+#include "data_tools/evaluation/aist_evaluation.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/observations/load_cameras.h"
+#include "data_tools/observations/load_detections.h"
+#include "data_tools/prior/pose_prior_io.h"
+#include "data_tools/track_io.h"
+#include "geometry/check.h"
+#include "geometry/posed_body.h"
+#include "geometry/rotation.h"
+#include "tracking/metrics.h"
+#include "tracking/track_sequence.h"
+
+namespace bodyloom {
+namespace {
+
+const std::vector<std::string> kEvaluated = {"pa_mpjpe_mm",           "mpjpe_scaled_mm",    "mpjpe_mm",
+                                             "accel_err_ms2",         "heldout_median_px",  "heldout_p95_px",
+                                             "fitview_own_median_px", "fitview_own_p95_px", "limb_angle_err_deg",
+                                             "root_rotation_err_deg", "root_depth_err_mm"};
+
+double Seconds(std::chrono::steady_clock::time_point since) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
+}
+
+std::vector<double> Evaluated(const Evaluation& evaluation) {
+  std::vector<double> values;
+  for (const std::string& name : kEvaluated) {
+    values.push_back(evaluation.values.empty() ? kNotMeasured : evaluation.Value(name));
+  }
+  return values;
+}
+
+KeypointSequence FirstFrames(KeypointSequence keypoints, int frames) {
+  if (frames > 0 && frames < keypoints.num_frames()) {
+    keypoints.timestamps.resize(frames);
+    keypoints.points.resize(static_cast<size_t>(frames) * keypoints.num_points());
+  }
+  return keypoints;
+}
+
+struct Setting {
+  std::string data, sequence, view;
+  CameraKnowledge knowledge = CameraKnowledge::kKnown;
+  int threads = 2, frames = 0;
+};
+
+BenchRow TrackAndScore(const Setting& setting, const MultiViewClip& clip, const std::string& track_path) {
+  const auto start = std::chrono::steady_clock::now();
+  const NamedCamera camera =
+      FindCamera(LoadCameras(setting.data + "/cameras", setting.sequence), setting.view, setting.data + "/cameras");
+  LoadDetectionsOptions load;
+  load.view = setting.view;
+  load.image_width = camera.camera.width;
+  load.image_height = camera.camera.height;
+  const KeypointSequence keypoints =
+      FirstFrames(LoadDetections(setting.data + "/keypoints2d/" + setting.sequence + ".pkl", load), setting.frames);
+  TrackSequenceInput input;
+  input.body = &BuiltinBody();
+  input.prior = &BuiltinPosePrior();
+  input.keypoints = &keypoints;
+  if (setting.knowledge == CameraKnowledge::kKnown) {
+    input.camera = camera.camera;
+  } else {
+    input.camera.width = camera.camera.width;
+    input.camera.height = camera.camera.height;
+  }
+  TrackSequenceOptions options;
+  options.camera_knowledge = setting.knowledge;
+  options.num_threads = setting.threads;
+  const auto track_start = std::chrono::steady_clock::now();
+  const TrackSequenceResult result = TrackSequence(input, options);
+  const double track_s = Seconds(track_start);
+  WriteTrack(track_path, result.track);
+  const double file_s = Seconds(start);
+
+  const Evaluation evaluation = EvaluateAist(ReadTrack(track_path), clip, setting.view);
+  BenchRow row;
+  row.group = setting.knowledge == CameraKnowledge::kKnown ? "known focal length" : "unknown focal length";
+  row.labels = {setting.sequence.substr(0, 3), setting.view};
+  row.values = Evaluated(evaluation);
+  row.values.insert(row.values.end(),
+                    {100 * (result.summary.focal_px / camera.camera.fx - 1), double(result.summary.iterations),
+                     double(evaluation.frames_without_result), track_s, file_s});
+  return row;
+}
+
+/// The clip's own joints, or the body posed by the clip's own rotations, as if a tracker had found them.
+BenchRow Limit(const MultiViewClip& clip, const std::string& view, bool body_with_true_angles) {
+  const BodyModel& body = BuiltinBody();
+  Track track;
+  for (const RigView& rig_view : clip.views) {
+    if (rig_view.name != view) continue;
+    const Eigen::Matrix3d& R = rig_view.pose.camera_from_world_rotation;
+    const Eigen::Vector3d& t = rig_view.pose.camera_from_world_translation;
+    track.camera = rig_view.camera;
+    track.motion = clip.motion;
+    for (int frame = 0; frame < clip.motion.num_frames(); ++frame) {
+      auto pose = track.motion.poses.row(frame);
+      pose.head<3>() = AxisAngleFromRotation(R * RotationFromAxisAngle(pose.head<3>().transpose())).transpose();
+      if (body_with_true_angles) {
+        const BodyPose posed = PoseFromAxisAngle(body, pose.transpose(), Eigen::Vector3d::Zero());
+        MatrixX3d points = PoseLandmarks(body, Eigen::VectorXd(), posed, CocoNames());
+        const Eigen::RowVector3d hip = points.middleRows(11, 2).colwise().mean();
+        const Eigen::Vector3d true_hip = clip.coco17_in_world[frame].middleRows(11, 2).colwise().mean().transpose();
+        points.rowwise() += (R * true_hip + t).transpose() - hip;
+        track.coco17.push_back(points);
+      } else {
+        track.coco17.emplace_back((clip.coco17_in_world[frame] * R.transpose()).rowwise() + t.transpose());
+      }
+    }
+  }
+  BenchRow row;
+  row.group = body_with_true_angles ? "limits: body with true angles" : "limits: reference from nine cameras";
+  row.labels = {clip.name.substr(0, 3), view};
+  row.values = Evaluated(EvaluateAist(track, clip, view));
+  row.values.resize(row.values.size() + 5, kNotMeasured);
+  return row;
+}
+
+void Run(const BenchArguments& arguments, const std::string& command) {
+  BenchReport report;
+  report.title = "AIST++: one camera's COCO-17 detections, scored in the other eight";
+  report.command = command;
+  report.label_columns = {"clip", "camera"};
+  report.value_columns = kEvaluated;
+  for (const char* name : {"focal_err_percent", "iterations", "frames_without_result", "track_s", "file_s"}) {
+    report.value_columns.emplace_back(name);
+  }
+  report.notes = {"accuracy: protocol aist-held-out (docs/evaluation.md); std over clips and cameras",
+                  Concatenate("threads: ", arguments.Integer("threads"))};
+  const std::filesystem::path track_path =
+      std::filesystem::temp_directory_path() / Concatenate("bodyloom_bench_aist_", ::getpid(), ".npz");
+  BuiltinBody();  // built once a process; its time is reported apart
+  std::vector<MultiViewClip> clips;
+  for (const std::string& sequence : arguments.List("sequences")) {
+    clips.push_back(ReadAistClip(arguments.Text("data"), arguments.Text("data") + "/cameras", sequence));
+  }
+  for (const std::string& focal : arguments.List("focal")) {
+    BODYLOOM_CHECK(focal == "known" || focal == "unknown", "--focal is '", focal, "', expected known or unknown");
+    for (const MultiViewClip& clip : clips) {
+      for (const std::string& view : arguments.List("views")) {
+        Setting setting{arguments.Text("data"),
+                        clip.name,
+                        view,
+                        focal == "known" ? CameraKnowledge::kKnown : CameraKnowledge::kUnknownFocal,
+                        arguments.Integer("threads"),
+                        arguments.Integer("frames")};
+        report.rows.push_back(TrackAndScore(setting, clip, track_path.string()));
+        std::fprintf(stderr, "%s %s %s: PA-MPJPE %.1f mm, held out %.1f px, %.2f s\n", focal.c_str(), clip.name.c_str(),
+                     view.c_str(), report.rows.back().values[0], report.rows.back().values[4],
+                     report.rows.back().values.back());
+      }
+    }
+  }
+  std::filesystem::remove(track_path);
+  for (bool true_angles : {false, true}) {
+    for (const MultiViewClip& clip : clips) {
+      for (const std::string& view : arguments.List("views")) report.rows.push_back(Limit(clip, view, true_angles));
+    }
+  }
+  std::fputs(BenchText(report).c_str(), stdout);
+  if (!arguments.Text("json").empty()) WriteFileAtomically(arguments.Text("json"), BenchJson(report));
+}
+
+}  // namespace
+}  // namespace bodyloom
+
+int main(int argc, char** argv) {
+  try {
+    std::string command = "bodyloom_bench_aist";
+    for (int i = 1; i < argc; ++i) command += " " + std::string(argv[i]);
+    const bodyloom::BenchArguments arguments(argc, argv,
+                                             {{"data", BODYLOOM_SOURCE_DIR "/../shared/data/aistpp"},
+                                              {"sequences", "gBR_sBM_cAll_d06_mBR2_ch06,gJS_sBM_cAll_d03_mJS2_ch07"},
+                                              {"views", "c01,c03,c05,c07,c08"},
+                                              {"focal", "known,unknown"},
+                                              {"threads", "2"},
+                                              {"frames", "0"},
+                                              {"json", ""}});
+    bodyloom::Run(arguments, command);
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "bodyloom_bench_aist: %s\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "benchmarks/accuracy/bench_arguments.h"
+
+#include <sstream>
+#include <utility>
+
+#include "geometry/check.h"
+
+namespace bodyloom {
+
+BenchArguments::BenchArguments(int argc, char** argv, std::map<std::string, std::string> known)
+    : values_(std::move(known)) {
+  std::string usage = "options:";
+  for (const auto& [name, value] : values_) usage += " --" + name + " (" + (value.empty() ? "none" : value) + ")";
+  for (int i = 1; i < argc; i += 2) {
+    const std::string name = argv[i];
+    BODYLOOM_CHECK(name.starts_with("--") && values_.contains(name.substr(2)), "unknown option '", name, "'; ", usage);
+    BODYLOOM_CHECK(i + 1 < argc, "option '", name, "' needs a value; ", usage);
+    values_[name.substr(2)] = argv[i + 1];
+  }
+}
+
+int BenchArguments::Integer(const std::string& name) const {
+  const std::string& text = Text(name);
+  size_t used = 0;
+  int value = 0;
+  try {
+    value = std::stoi(text, &used);
+  } catch (const std::logic_error&) {
+    used = 0;
+  }
+  BODYLOOM_CHECK(used > 0 && used == text.size(), "--", name, " is '", text, "', expected a whole number");
+  return value;
+}
+
+std::vector<std::string> BenchArguments::List(const std::string& name) const {
+  std::vector<std::string> items;
+  std::istringstream stream(Text(name));
+  for (std::string item; std::getline(stream, item, ',');) {
+    if (!item.empty()) items.push_back(item);
+  }
+  return items;
+}
+
+}  // namespace bodyloom

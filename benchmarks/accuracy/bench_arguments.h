@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Command lines of the benchmarks: "--name value" pairs, lists separated by commas.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace bodyloom {
+
+class BenchArguments {
+ public:
+  /// `known` maps each option to its default. Throws std::invalid_argument for anything else, naming what is known.
+  BenchArguments(int argc, char** argv, std::map<std::string, std::string> known);
+
+  [[nodiscard]] const std::string& Text(const std::string& name) const { return values_.at(name); }
+  [[nodiscard]] int Integer(const std::string& name) const;
+  [[nodiscard]] std::vector<std::string> List(const std::string& name) const;
+
+ private:
+  std::map<std::string, std::string> values_;
+};
+
+}  // namespace bodyloom

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What a benchmark hands over: rows of labels and numbers, their mean and spread by group, commit and machine.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace bodyloom {
+
+struct BenchRow {
+  std::string group;                ///< rows of one group are averaged ("known focal length")
+  std::vector<std::string> labels;  ///< one a label column
+  std::vector<double> values;       ///< one a value column; NaN prints as "-"
+};
+
+struct BenchReport {
+  std::string title;
+  std::string command;                     ///< as it was called
+  std::vector<std::string> label_columns;  ///< "clip", "camera"
+  std::vector<std::string> value_columns;  ///< "pa_mpjpe_mm", …
+  std::vector<BenchRow> rows;
+  std::vector<std::string> notes;
+};
+
+/// A table a group, each closed by "mean" and "std" (population, over its rows), then notes, commit and machine.
+std::string BenchText(const BenchReport& report);
+
+/// {title, command, commit, machine, notes, groups: [{name, rows: [{label: …, value: …}], mean: {…}, std: {…}}]}.
+std::string BenchJson(const BenchReport& report);
+
+/// Commit of the source tree ("… with changes" when it has any), processor, cores, compiler and flags.
+std::vector<std::pair<std::string, std::string>> BenchEnvironment();
+
+}  // namespace bodyloom
