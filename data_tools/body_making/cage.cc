@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "data_tools/formats/printable.h"
 #include "geometry/check.h"
 
 namespace bodyloom {
@@ -42,7 +43,7 @@ class Parser {
     } else if (fields[0] == "f") {
       ReadQuad(fields);
     } else {
-      Fail("starts with '" + Shown(fields[0]) + "', expected v, f or #");
+      Fail("starts with '" + PrintableText(fields[0]) + "', expected v, f or #");
     }
   }
 
@@ -91,8 +92,6 @@ class Parser {
   }
 
  private:
-  static std::string Shown(std::string_view text) { return std::string(text.substr(0, 40)); }
-
   [[noreturn]] void Fail(const std::string& what) const {
     throw std::runtime_error(where_ + ": line " + std::to_string(line_number_) + ": " + what);
   }
@@ -101,7 +100,7 @@ class Parser {
     double value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size() || !(std::abs(value) <= kMaxCoordinate)) {
-      Fail("'" + Shown(text) + "' is not a coordinate in metres within +-100");
+      Fail("'" + PrintableText(text) + "' is not a coordinate in metres within +-100");
     }
     return value;
   }
@@ -110,10 +109,10 @@ class Parser {
     if (fields.size() != 5) Fail("a vertex of " + std::to_string(fields.size()) + " fields, expected: v NAME X Y Z");
     const std::string name(fields[1]);
     const Eigen::Vector3d position(Number(fields[2]), Number(fields[3]), Number(fields[4]));
-    if (position.x() < 0) Fail("vertex '" + Shown(name) + "' has x < 0, expected the left half (x >= 0)");
+    if (position.x() < 0) Fail("vertex '" + PrintableText(name) + "' has x < 0, expected the left half (x >= 0)");
     if (positions_.size() >= kMaxVertices) Fail("more than " + std::to_string(kMaxVertices) + " vertices");
     if (!index_of_.emplace(name, static_cast<int>(positions_.size())).second) {
-      Fail("vertex '" + Shown(name) + "' is defined twice");
+      Fail("vertex '" + PrintableText(name) + "' is defined twice");
     }
     names_.push_back(name);
     positions_.push_back(position);
@@ -125,13 +124,13 @@ class Parser {
     if (quads_.size() >= kMaxVertices) Fail("more than " + std::to_string(kMaxVertices) + " quads");
     const std::vector<std::string_view> charts = Split(fields[1], "|");
     if (charts.size() != 1 && charts.size() != 4) {
-      Fail("'" + Shown(fields[1]) + "' names " + std::to_string(charts.size()) + " charts, expected 1 or 4");
+      Fail("'" + PrintableText(fields[1]) + "' names " + std::to_string(charts.size()) + " charts, expected 1 or 4");
     }
     Quad quad;
     std::array<std::string, 4> names;
     for (int k = 0; k < 4; ++k) {
       const auto found = index_of_.find(std::string(fields[2 + k]));
-      if (found == index_of_.end()) Fail("vertex '" + Shown(fields[2 + k]) + "' is not defined above");
+      if (found == index_of_.end()) Fail("vertex '" + PrintableText(fields[2 + k]) + "' is not defined above");
       quad[k] = found->second;
       names[k] = std::string(charts[charts.size() == 1 ? 0 : k]);
     }
@@ -148,20 +147,22 @@ class Parser {
       for (int k = 0; k < 4; ++k) {
         used[quad[k]] = true;
         if (!directed.emplace(quad[k], quad[(k + 1) % 4]).second) {
-          throw std::runtime_error(where_ + ": edge " + cage.vertex_names[quad[k]] + " -> " +
-                                   cage.vertex_names[quad[(k + 1) % 4]] +
+          throw std::runtime_error(where_ + ": edge " + PrintableText(cage.vertex_names[quad[k]]) + " -> " +
+                                   PrintableText(cage.vertex_names[quad[(k + 1) % 4]]) +
                                    " belongs to two quads in the same direction, expected an oriented manifold");
         }
       }
     }
     for (const auto& [a, b] : directed) {
       if (!directed.contains({b, a})) {
-        throw std::runtime_error(where_ + ": edge " + cage.vertex_names[a] + " -> " + cage.vertex_names[b] +
+        throw std::runtime_error(where_ + ": edge " + PrintableText(cage.vertex_names[a]) + " -> " +
+                                 PrintableText(cage.vertex_names[b]) +
                                  " has a quad on one side only, expected a closed mesh");
       }
     }
     for (size_t v = 0; v < used.size(); ++v) {
-      if (!used[v]) throw std::runtime_error(where_ + ": vertex '" + cage.vertex_names[v] + "' belongs to no quad");
+      if (!used[v])
+        throw std::runtime_error(where_ + ": vertex '" + PrintableText(cage.vertex_names[v]) + "' belongs to no quad");
     }
   }
 

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "data_tools/formats/npz.h"
+#include "data_tools/formats/printable.h"
 #include "geometry/check.h"
 
 namespace bodyloom {
@@ -25,7 +26,7 @@ class Reader {
       : where_(where), arrays_(ReadNpzBytes(npz_bytes, where, kMaxFileBytes)) {
     const std::vector<std::string> format = Text("format");
     if (format.size() != 1 || format[0] != kFormat) {
-      Fail("format", "'" + (format.empty() ? "" : format[0]) + "'", std::string("'") + kFormat + "'");
+      Fail("format", "'" + PrintableText(format.empty() ? "" : format[0]) + "'", std::string("'") + kFormat + "'");
     }
   }
 
@@ -154,7 +155,7 @@ void ReadCharts(const Reader& reader, const LeftHalfSizes& sizes, LeftHalfArrays
   for (size_t c = 0; c < ChartKinds().size(); ++c) {
     const std::string found = c < names.size() ? names[c] : "nothing";
     if (names.size() != ChartKinds().size() || found != ChartKinds()[c].name) {
-      reader.Fail("chart_names", "'" + found + "' at entry " + std::to_string(c),
+      reader.Fail("chart_names", "'" + PrintableText(found) + "' at entry " + std::to_string(c),
                   std::string("'") + ChartKinds()[c].name + "' of " + std::to_string(num_kinds) + " charts");
     }
   }

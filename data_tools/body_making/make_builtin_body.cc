@@ -9,6 +9,7 @@
 #include "data_tools/body_making/left_half_arrays.h"
 #include "data_tools/body_making/subdivision.h"
 #include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/printable.h"
 #include "geometry/check.h"
 
 namespace bodyloom {
@@ -176,7 +177,8 @@ void FillCharts(const Cage& cage, const RefinedCage& refined, const LeftHalfArra
     const std::string& name = cage.child_charts[cage_quad][(q % kQuadsPerCageQuad) / 4];
     const int chart = FindChartKind(name);
     if (chart < 0) {
-      throw std::runtime_error(cage_name + ": quad " + std::to_string(cage_quad) + ": unknown chart '" + name + "'");
+      throw std::runtime_error(cage_name + ": quad " + std::to_string(cage_quad) + ": unknown chart '" +
+                               PrintableText(name) + "'");
     }
     quad_chart.push_back(chart);
     quad_is_right.push_back(static_cast<int>(q) >= refined.num_left_quads);

@@ -14,6 +14,7 @@
 
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/formats/obj.h"
+#include "data_tools/formats/printable.h"
 #include "data_tools/observations/json_reader.h"
 #include "geometry/check.h"
 
@@ -86,7 +87,8 @@ std::vector<int> ReadBoneEnd(const JsonNode& end, const MakeHumanFiles& files) {
   if (end.At("strategy").Text() == "CUBE") {
     const JsonNode name = end.At("cube_name");
     const auto cube = files.joint_cubes.find(name.Text());
-    if (cube == files.joint_cubes.end()) name.Fail("a joint cube of base.obj, found '" + name.Text() + "'");
+    if (cube == files.joint_cubes.end())
+      name.Fail("a joint cube of base.obj, found '" + PrintableText(name.Text()) + "'");
     return cube->second;
   }
   std::vector<int> vertices;
@@ -175,7 +177,7 @@ MakeHumanTarget ParseTarget(std::string_view text, const std::string& path, Eige
       double value = 0;
       const auto [last, error] = std::from_chars(line.data() + begin, line.data() + stop, value);
       if (count == 4 || error != std::errc() || last != line.data() + stop || !(std::abs(value) <= 1e6)) {
-        Fail(path, Concatenate("line ", line_number, ": '", line.substr(0, 40), "', expected: vertex dx dy dz"));
+        Fail(path, Concatenate("line ", line_number, ": '", PrintableText(line), "', expected: vertex dx dy dz"));
       }
       values[count++] = value;
       begin = stop;
@@ -183,7 +185,7 @@ MakeHumanTarget ParseTarget(std::string_view text, const std::string& path, Eige
     if (count == 0) continue;
     if (count != 4 || values[0] != std::floor(values[0]) || values[0] < 0 ||
         values[0] >= static_cast<double>(num_vertices)) {
-      Fail(path, Concatenate("line ", line_number, ": '", line.substr(0, 40),
+      Fail(path, Concatenate("line ", line_number, ": '", PrintableText(line),
                              "', expected: vertex dx dy dz with a vertex 0..", num_vertices - 1));
     }
     target.vertices.push_back(static_cast<int>(values[0]));

@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "data_tools/builtin_body.h"
+#include "data_tools/formats/printable.h"
 #include "tests/data_tools/expect_file_error.h"
 
 namespace bodyloom {
@@ -73,6 +76,28 @@ TEST(Cage, RefusesEveryTruncation) {
   for (size_t size = 0; size + 2 < cage.size(); size += 53) {
     FileErrorOf("cut.txt", [&] { ParseCage(cage.substr(0, size), "cut.txt"); });
   }
+}
+
+/// Random edits of bytes: refused with one line, or a cage that holds together.
+TEST(Cage, SurvivesRandomEdits) {
+  std::mt19937 random(17);
+  int refused = 0;
+  for (int trial = 0; trial < 3000; ++trial) {
+    std::string text = kHalfCube;
+    for (int edit = 0; edit < 1 + trial % 4; ++edit) text[random() % text.size()] = static_cast<char>(random() % 256);
+    try {
+      const Cage cage = ParseCage(text, "edited.txt");
+      EXPECT_EQ(cage.quads.size(), 2u * cage.num_left_quads);
+      EXPECT_EQ(cage.vertices.rows(), static_cast<Eigen::Index>(cage.mirror.size()));
+      EXPECT_TRUE(cage.vertices.allFinite());
+    } catch (const std::runtime_error& error) {
+      ++refused;
+      EXPECT_NE(std::string(error.what()).find("edited.txt"), std::string::npos);
+      EXPECT_TRUE(IsOneLine(error.what())) << error.what();
+    }
+  }
+  EXPECT_GT(refused, 1000);
+  EXPECT_LT(refused, 3000);
 }
 
 }  // namespace

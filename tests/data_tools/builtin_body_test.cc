@@ -5,10 +5,13 @@
 
 #include <chrono>
 #include <functional>
+#include <iterator>
+#include <random>
 
 #include "data_tools/body_making/cage.h"
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/formats/npz.h"
+#include "data_tools/formats/printable.h"
 #include "tests/data_tools/expect_file_error.h"
 #include "tests/data_tools/temporary_file.h"
 
@@ -107,6 +110,34 @@ TEST(BuiltinBody, RefusesChangedArrays) {
   for (const char* name : {"cage_shape", "corrective_block", "chart_uv", "atlas_from_chart"}) {
     FileErrorOf("changed.npz", [&] { MakeBuiltinBody(WithArray(name, flatten)); });
   }
+}
+
+/// Random values in random arrays: refused with one line, or a body that BodyModel accepts.
+TEST(BuiltinBody, SurvivesRandomEdits) {
+  const BuiltinBodySources original = EmbeddedBuiltinBodySources();
+  const NpzArrays whole = ReadNpzBytes(original.parts_bytes, "parts");
+  const TemporaryFolder folder;
+  std::mt19937 random(23);
+  int refused = 0, accepted = 0;
+  for (int trial = 0; trial < 60; ++trial) {
+    NpzArrays arrays = whole;
+    NdArray& array = std::next(arrays.begin(), static_cast<int>(random() % arrays.size()))->second;
+    array.bytes[random() % array.bytes.size()] ^= static_cast<char>(1 << random() % 8);
+    WriteNpz(folder.File("parts.npz"), arrays);
+    BuiltinBodySources sources = original;
+    sources.parts_bytes = ReadFileBytes(folder.File("parts.npz"));
+    sources.parts_name = "edited.npz";
+    try {
+      const BodyModel body(MakeBuiltinBody(sources));
+      ++accepted;
+    } catch (const std::runtime_error& error) {
+      ++refused;
+      EXPECT_NE(std::string(error.what()).find("edited.npz"), std::string::npos) << error.what();
+      EXPECT_TRUE(IsOneLine(error.what())) << error.what();
+    }
+  }
+  EXPECT_GT(refused, 10);
+  EXPECT_GT(accepted, 10);
 }
 
 TEST(BuiltinBody, RefusesTruncatedParts) {
