@@ -209,7 +209,8 @@ SolveReport SolveSequence(SequenceProblem* problem, const SolveOptions& options)
   Parameters x = Pack(*problem);
   ceres::Problem::Options problem_options;
   problem_options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  problem_options.enable_fast_removal = false;
+  FrameBatch batch(options.num_threads);
+  problem_options.evaluation_callback = &batch;
   problem_options.disable_all_safety_checks = true;
   ceres::Problem ceres_problem(problem_options);
   RotationManifold manifold;
@@ -223,8 +224,8 @@ SolveReport SolveSequence(SequenceProblem* problem, const SolveOptions& options)
     blocks.push_back(x.Translation(t));
     if (problem->layout.num_betas > 0) blocks.push_back(x.betas.data());
     if (problem->layout.focal_column >= 0) blocks.push_back(&x.log_focal);
-    ceres_problem.AddResidualBlock(new CompressedFrameCost(problem->layout, problem->frames[t], problem->states[t]),
-                                   nullptr, blocks);
+    auto cost = std::make_unique<CompressedFrameCost>(problem->layout, problem->frames[t], problem->states[t]);
+    ceres_problem.AddResidualBlock(batch.Add(std::move(cost), blocks), nullptr, blocks);
   }
   AddSmoothness(*problem, &x, &ceres_problem);
   AddSharedPriors(*problem, &x, &ceres_problem);
@@ -237,7 +238,7 @@ SolveReport SolveSequence(SequenceProblem* problem, const SolveOptions& options)
   solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   solver.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
   solver.max_num_iterations = options.max_iterations;
-  solver.num_threads = options.num_threads;
+  solver.num_threads = 1;  // FrameBatch has the threads
   solver.function_tolerance = options.function_tolerance;
   solver.gradient_tolerance = 1e-9;
   solver.parameter_tolerance = 1e-9;

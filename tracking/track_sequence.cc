@@ -177,7 +177,7 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSe
   }
   const InitialStates initial = FindInitialStates(input, problem.layout, options);
   if (initial.states.empty()) {
-    summary.message = "no frame shows enough of the body to start from (both shoulders and both hips are needed)";
+    summary.message = "no frame shows enough of the body to start from: a shoulder and a hip are needed, with some confidence";
     return result;
   }
   problem.states = initial.states;

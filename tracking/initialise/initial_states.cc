@@ -159,12 +159,25 @@ InitialStates FindInitialStates(const TrackSequenceInput& input, const FrameLayo
       result.from_observation.push_back(1);
     }
   } else {
+    // Hypotheses need rays. For weak perspective the camera keeps the focal length it would have had as a pinhole.
+    Camera camera = layout.camera;
+    camera.model = CameraModel::kPinhole;
     if (layout.num_betas > 0) {
-      result.betas = EstimateShape(*keypoints, layout.camera, model, layout.num_betas, options.hypotheses);
+      result.betas = EstimateShape(*keypoints, camera, model, layout.num_betas, options.hypotheses);
     }
     const MatrixX3d rest_joints = model.RestJoints(result.betas), rest_points = RestLandmarks(model, result.betas);
-    const JointHypothesesResult found =
-        FindJointHypotheses(*keypoints, layout.camera, rest_points, input.prior, options.hypotheses);
+    // A clip that nowhere shows both shoulders and both hips well is taken with what it has: faint joints first, then a
+    // hidden shoulder or hip where its partner is.
+    JointHypothesesOptions hypotheses = options.hypotheses;
+    JointHypothesesResult found = FindJointHypotheses(*keypoints, camera, rest_points, input.prior, hypotheses);
+    if (found.frames.empty()) {
+      hypotheses.confidence = std::min(hypotheses.confidence, 0.02);
+      found = FindJointHypotheses(*keypoints, camera, rest_points, input.prior, hypotheses);
+    }
+    if (found.frames.empty()) {
+      hypotheses.hidden_pairs = true;
+      found = FindJointHypotheses(*keypoints, camera, rest_points, input.prior, hypotheses);
+    }
     if (found.frames.empty()) return result;
     std::vector<FrameState> known;
     result.from_observation.assign(keypoints->num_frames(), 0);

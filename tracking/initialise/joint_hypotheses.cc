@@ -9,6 +9,7 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "geometry/check.h"
 #include "geometry/direction_bins.h"
@@ -57,7 +58,7 @@ struct Lengths {
 };
 
 std::vector<Rays> RaysOfFrames(const KeypointSequence& keypoints, const Camera& camera, const std::vector<int>& frames,
-                               double min_confidence) {
+                               const JointHypothesesOptions& options) {
   std::array<int, 17> column;
   for (int k = 0; k < 17; ++k) {
     const auto it = std::find(keypoints.names.begin(), keypoints.names.end(), CocoNames()[k]);
@@ -73,7 +74,13 @@ std::vector<Rays> RaysOfFrames(const KeypointSequence& keypoints, const Camera& 
       if (!(point.confidence > 0) || !std::isfinite(point.x) || !std::isfinite(point.y)) continue;
       rays.ray[k] = camera.Unproject({point.x, point.y});
       rays.confidence[k] = point.confidence;
-      rays.seen[k] = point.confidence >= min_confidence && rays.ray[k].allFinite();
+      rays.seen[k] = point.confidence >= options.confidence && rays.ray[k].allFinite();
+    }
+    for (const auto& [a, b] : {std::pair(kLeftShoulder, kRightShoulder), std::pair(kLeftHip, kRightHip)}) {
+      if (!options.hidden_pairs || rays.seen[a] == rays.seen[b]) continue;
+      const int from = rays.seen[a] ? a : b, to = rays.seen[a] ? b : a;
+      rays.ray[to] = rays.ray[from];
+      rays.seen[to] = true;
     }
     result.push_back(rays);
   }
@@ -288,7 +295,7 @@ Eigen::VectorXd EstimateShape(const KeypointSequence& keypoints, const Camera& c
   std::vector<int> frames;
   const int step = std::max(1, keypoints.num_frames() / 1000);
   for (int t = 0; t < keypoints.num_frames(); t += step) frames.push_back(t);
-  const std::vector<Rays> rays = RaysOfFrames(keypoints, camera, frames, options.confidence);
+  const std::vector<Rays> rays = RaysOfFrames(keypoints, camera, frames, options);
 
   // Bones as pairs of point groups: torso, then the two bones of each limb, left and right together.
   const auto midpoint = [](const auto& points, int a, int b) -> Vector2d { return (points(a) + points(b)) / 2; };
@@ -367,7 +374,7 @@ JointHypothesesResult FindJointHypotheses(const KeypointSequence& keypoints, con
   std::vector<int> candidates;
   for (int t = 0; t < keypoints.num_frames(); ++t) {
     if (keypoints.timestamps[t] < next - 1e-9) continue;
-    const Rays rays = RaysOfFrames(keypoints, camera, {t}, options.confidence)[0];
+    const Rays rays = RaysOfFrames(keypoints, camera, {t}, options)[0];
     if (!rays.has_torso()) continue;
     candidates.push_back(t);
     times.push_back(keypoints.timestamps[t]);
@@ -375,7 +382,7 @@ JointHypothesesResult FindJointHypotheses(const KeypointSequence& keypoints, con
   }
   if (candidates.empty()) return result;
   result.frames = candidates;
-  const std::vector<Rays> rays = RaysOfFrames(keypoints, camera, candidates, options.confidence);
+  const std::vector<Rays> rays = RaysOfFrames(keypoints, camera, candidates, options);
   const size_t T = rays.size();
   const std::vector<double> depth = RootDepths(rays, times, lengths);
   const LimbCosts limb_costs(prior, lengths, options);

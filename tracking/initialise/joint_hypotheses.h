@@ -25,6 +25,7 @@ namespace bodyloom {
 
 struct JointHypothesesOptions {
   double confidence = 0.2;        ///< joints below are not used as positions
+  bool hidden_pairs = false;      ///< a shoulder or hip that is not seen is where the other one is: a view from the side
   double frame_rate = 15;         ///< the trellis runs on about this many frames a second
   double angular_speed = 4.0;     ///< rad/s, σ of the torso's turning
   double limb_speed = 2.2;        ///< m/s, σ of a limb's joints relative to the torso

@@ -2,8 +2,11 @@
 #include "tracking/residuals/compressed_frame_cost.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "geometry/parallel.h"
 #include "geometry/rotation.h"
 
 namespace bodyloom {
@@ -86,6 +89,61 @@ bool CompressedFrameCost::Evaluate(double const* const* parameters, double* resi
     column += size;
   }
   return true;
+}
+
+/// Copies a frame's residuals and Jacobians out of the batch.
+class FrameBatch::HandOut : public ceres::CostFunction {
+ public:
+  explicit HandOut(const Frame& frame) : frame_(frame) {
+    *mutable_parameter_block_sizes() = frame.cost->parameter_block_sizes();
+    set_num_residuals(frame.cost->num_residuals());
+  }
+  bool Evaluate(double const* const*, double* residuals, double** jacobians) const override {
+    if (!frame_.valid) return false;
+    std::copy(frame_.residuals.begin(), frame_.residuals.end(), residuals);
+    if (jacobians == nullptr) return true;
+    const double* next = frame_.jacobian.data();
+    for (size_t b = 0; b < parameter_block_sizes().size(); ++b) {
+      const size_t size = static_cast<size_t>(num_residuals()) * parameter_block_sizes()[b];
+      if (jacobians[b] != nullptr) std::copy(next, next + size, jacobians[b]);
+      next += size;
+    }
+    return true;
+  }
+
+ private:
+  const Frame& frame_;
+};
+
+ceres::CostFunction* FrameBatch::Add(std::unique_ptr<CompressedFrameCost> cost, std::vector<double*> blocks) {
+  auto frame = std::make_unique<Frame>();
+  frame->residuals.resize(cost->num_residuals());
+  frame->cost = std::move(cost);
+  frame->blocks = std::move(blocks);
+  frames_.push_back(std::move(frame));
+  return new HandOut(*frames_.back());
+}
+
+void FrameBatch::PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) {
+  if (!new_evaluation_point && (has_jacobians_ || !evaluate_jacobians)) return;
+  has_jacobians_ = evaluate_jacobians;
+  ParallelFor(static_cast<int>(frames_.size()), num_threads_, [&](int t) {
+    Frame& frame = *frames_[t];
+    const std::vector<int>& sizes = frame.cost->parameter_block_sizes();
+    std::vector<double*> jacobians;
+    if (evaluate_jacobians) {
+      size_t columns = 0;
+      for (int size : sizes) columns += size;
+      frame.jacobian.resize(columns * frame.residuals.size());
+      double* next = frame.jacobian.data();
+      for (int size : sizes) {
+        jacobians.push_back(next);
+        next += static_cast<size_t>(size) * frame.residuals.size();
+      }
+    }
+    frame.valid = frame.cost->Evaluate(frame.blocks.data(), frame.residuals.data(),
+                                       evaluate_jacobians ? jacobians.data() : nullptr);
+  });
 }
 
 }  // namespace bodyloom

@@ -8,8 +8,11 @@
 #pragma once
 
 #include <ceres/cost_function.h>
+#include <ceres/evaluation_callback.h>
 
 #include <Eigen/Core>
+#include <memory>
+#include <vector>
 
 #include "tracking/frame_cost.h"
 
@@ -28,6 +31,29 @@ class CompressedFrameCost : public ceres::CostFunction {
   const FrameLayout& layout_;
   const FrameData& data_;
   const FrameState& held_;
+};
+
+/// All frames of a clip, evaluated together: Ceres asks once for each new point, the frames are spread over threads, and
+/// its cost functions only hand out what lies ready. Ceres itself then runs on one thread: its own threads add up
+/// gradients in the order in which they finish, which changes the last bits from run to run.
+class FrameBatch : public ceres::EvaluationCallback {
+ public:
+  explicit FrameBatch(int num_threads) : num_threads_(num_threads) {}
+  /// Takes a frame's cost and its parameter blocks; returns the cost function for the problem (which owns it).
+  ceres::CostFunction* Add(std::unique_ptr<CompressedFrameCost> cost, std::vector<double*> blocks);
+  void PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) override;
+
+ private:
+  struct Frame {
+    std::unique_ptr<CompressedFrameCost> cost;
+    std::vector<double*> blocks;
+    std::vector<double> residuals, jacobian;  ///< jacobian: one (p+1)×size matrix after the other
+    bool valid = false;
+  };
+  class HandOut;
+  std::vector<std::unique_ptr<Frame>> frames_;
+  int num_threads_;
+  bool has_jacobians_ = false;
 };
 
 /// Upper triangular R with RᵀR = H (lower triangle of H is read) and y with Rᵀy = g, for positive semi-definite H with g
