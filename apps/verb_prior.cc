@@ -44,9 +44,9 @@ void Run(const PriorRequest& request) {
   }
   const PosePrior prior = LearnPosePrior(motions, BuiltinBody(), request.options);
   WritePosePrior(request.out, prior);
-  std::cout << "learned from " << motions.size() << " motions, " << seconds / 60 << " minutes: "
-            << prior.num_components() << " components over " << prior.joints.size() << " joints\nwrote " << request.out
-            << "\n";
+  std::cout << "learned from " << motions.size() << " motions, " << seconds / 60
+            << " minutes: " << prior.num_components() << " components over " << prior.joints.size() << " joints\nwrote "
+            << request.out << "\n";
 }
 
 }  // namespace
@@ -55,12 +55,14 @@ void AddPriorVerb(CLI::App& app, Action* action) {
   CLI::App* verb = app.add_subcommand("prior", "Learns a pose prior from a folder of motions");
   auto request = std::make_shared<PriorRequest>();
   LearnPosePriorOptions& options = request->options;
-  verb->add_option("--motions", request->motions, "Motion file, or a folder of them (BVH, ASF/AMC, AMASS, …)")->required();
+  verb->add_option("--motions", request->motions, "Motion file, or a folder of them (BVH, ASF/AMC, AMASS, …)")
+      ->required();
   verb->add_option("--out", request->out, "The prior, .npz")->required();
   verb->add_option("--components", options.num_components, "Gaussians in the mixture")->capture_default_str();
   verb->add_option("--seed", options.seed, "Of the mixture's start")->capture_default_str();
-  verb->footer("Example, which makes the built-in prior again:\n"
-               "  bodyloom prior --motions motion/ --out assets/prior/pose_prior.npz");
+  verb->footer(
+      "Example, which makes the built-in prior again:\n"
+      "  bodyloom prior --motions motion/ --out assets/prior/pose_prior.npz");
   verb->callback([request, action] { *action = [request] { Run(*request); }; });
 }
 

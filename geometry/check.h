@@ -19,9 +19,9 @@ template <typename... Parts>
 
 }  // namespace bodyloom
 
-#define BODYLOOM_CHECK(condition, ...)                                    \
-  do {                                                                    \
-    if (!(condition)) {                                                   \
+#define BODYLOOM_CHECK(condition, ...)                                   \
+  do {                                                                   \
+    if (!(condition)) {                                                  \
       throw std::invalid_argument(::bodyloom::Concatenate(__VA_ARGS__)); \
-    }                                                                     \
+    }                                                                    \
   } while (false)

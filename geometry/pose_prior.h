@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Which poses people take: a mixture of Gaussians over the joint rotations, and densities of limb directions.
-/// Learned from motion capture by `bodyloom body make-prior` (data_tools/pose_prior_learning.h), stored in assets/prior.
+/// Learned from motion capture by `bodyloom body make-prior` (data_tools/pose_prior_learning.h), stored in
+/// assets/prior.
 #pragma once
 
 #include <Eigen/Core>

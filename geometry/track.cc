@@ -35,9 +35,9 @@ Camera Track::CameraAt(int t) const {
 
 const std::vector<std::string>& CocoNames() {
   static const std::vector<std::string> names = {
-      "nose",          "left_eye",   "right_eye",  "left_ear",    "right_ear",  "left_shoulder",
-      "right_shoulder", "left_elbow", "right_elbow", "left_wrist",  "right_wrist", "left_hip",
-      "right_hip",     "left_knee",  "right_knee", "left_ankle",  "right_ankle"};
+      "nose",           "left_eye",   "right_eye",   "left_ear",   "right_ear",   "left_shoulder",
+      "right_shoulder", "left_elbow", "right_elbow", "left_wrist", "right_wrist", "left_hip",
+      "right_hip",      "left_knee",  "right_knee",  "left_ankle", "right_ankle"};
   return names;
 }
 

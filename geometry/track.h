@@ -15,10 +15,10 @@ namespace bodyloom {
 /// T frames of SMPL-style parameters. The frame of `trans` and of the root rotation is whatever the source says
 /// (`y_up` tells worlds with y up from those with z up); tracks are in the camera frame.
 struct Motion {
-  std::string body;             ///< body family: "smpl" (24 joints), "smplh" (52), "smplx" (55)
-  RowMatrixXd poses;            ///< T×3J axis-angle, radians
-  MatrixX3d trans;              ///< T×3 metres
-  Eigen::VectorXd betas;        ///< B, or empty
+  std::string body;                ///< body family: "smpl" (24 joints), "smplh" (52), "smplx" (55)
+  RowMatrixXd poses;               ///< T×3J axis-angle, radians
+  MatrixX3d trans;                 ///< T×3 metres
+  Eigen::VectorXd betas;           ///< B, or empty
   std::vector<double> timestamps;  ///< T seconds
   enum class Up { kY, kZ, kCamera } up = Up::kY;
   [[nodiscard]] int num_frames() const { return static_cast<int>(poses.rows()); }
@@ -35,13 +35,13 @@ std::string ToString(FrameStatus status);
 
 /// A Motion in the camera frame together with its camera. All positions in metres, camera frame.
 struct Track {
-  Motion motion;                           ///< up = kCamera
-  Camera camera;                           ///< intrinsics shared by all frames
-  MatrixX3d weak_camera;                   ///< T×3 (s, tx, ty) per frame for weak perspective; T×0 rows otherwise
-  std::vector<FrameStatus> frame_status;   ///< T
-  std::vector<MatrixX3d> joints;           ///< T of J×3
-  std::vector<MatrixX3d> coco17;           ///< T of 17×3
-  RowMatrixXd joint_sigma;                 ///< T×J standard deviation of each joint's position, metres (NaN: unknown)
+  Motion motion;                          ///< up = kCamera
+  Camera camera;                          ///< intrinsics shared by all frames
+  MatrixX3d weak_camera;                  ///< T×3 (s, tx, ty) per frame for weak perspective; T×0 rows otherwise
+  std::vector<FrameStatus> frame_status;  ///< T
+  std::vector<MatrixX3d> joints;          ///< T of J×3
+  std::vector<MatrixX3d> coco17;          ///< T of 17×3
+  RowMatrixXd joint_sigma;                ///< T×J standard deviation of each joint's position, metres (NaN: unknown)
   [[nodiscard]] int num_frames() const { return motion.num_frames(); }
   /// The camera of frame t: `camera`, with (s, tx, ty) of that frame for weak perspective.
   [[nodiscard]] Camera CameraAt(int t) const;

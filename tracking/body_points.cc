@@ -17,8 +17,8 @@ using Matrix39d = Eigen::Matrix<double, 3, 9>;
 
 CompiledPoint CompilePoint(const BodyModel& model, std::span<const int> vertices, std::span<const double> weights,
                            int num_betas) {
-  BODYLOOM_CHECK(vertices.size() == weights.size() && !vertices.empty(), "a body point needs as many weights as vertices, got ",
-                 weights.size(), " and ", vertices.size());
+  BODYLOOM_CHECK(vertices.size() == weights.size() && !vertices.empty(),
+                 "a body point needs as many weights as vertices, got ", weights.size(), " and ", vertices.size());
   const BodyModelData& d = model.data();
   CompiledPoint point;
   std::map<int, int> bone_of_joint;
@@ -201,7 +201,8 @@ Vector3d PointEvaluator::Evaluate(const Kinematics& kin, const int vertices[3], 
           touched_.push_back(joint);
         }
       }
-      const Eigen::Map<const Eigen::Matrix<float, 3, 9, Eigen::RowMajor>> block(&d.posedirs.block[27 * static_cast<size_t>(c)]);
+      const Eigen::Map<const Eigen::Matrix<float, 3, 9, Eigen::RowMajor>> block(
+          &d.posedirs.block[27 * static_cast<size_t>(c)]);
       corrective_[joint].noalias() += M * block.cast<double>();
     }
   }

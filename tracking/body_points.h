@@ -71,8 +71,8 @@ class PointEvaluator {
   void Begin(const Kinematics& kinematics);
   void AddBone(const Kinematics& kinematics, int joint, double weight, const Eigen::Vector3d& y, bool jacobian);
 
-  std::vector<Eigen::Vector3d> sum_;                   ///< S_j
-  std::vector<double> weight_;                         ///< W_j
+  std::vector<Eigen::Vector3d> sum_;                     ///< S_j
+  std::vector<double> weight_;                           ///< W_j
   std::vector<Eigen::Matrix<double, 3, 9>> corrective_;  ///< E_j
   std::vector<char> has_corrective_, is_touched_;
   std::vector<int> touched_, corrective_joints_;

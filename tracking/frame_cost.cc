@@ -21,8 +21,7 @@ FrameLayout FrameLayout::Make(const BodyModel& model, CameraKnowledge knowledge,
   layout.model = &model;
   layout.knowledge = knowledge;
   layout.camera = camera;
-  layout.camera.model =
-      knowledge == CameraKnowledge::kWeak ? CameraModel::kWeakPerspective : CameraModel::kPinhole;
+  layout.camera.model = knowledge == CameraKnowledge::kWeak ? CameraModel::kWeakPerspective : CameraModel::kPinhole;
   layout.active_joints = std::move(active_joints);
   layout.column_of_joint.assign(model.num_joints(), -1);
   int column = 0;
@@ -114,8 +113,7 @@ void FrameEvaluator::Evaluate(const FrameLayout& layout, const FrameData& data, 
   const size_t num_dense = data.dense != nullptr ? data.dense->size() : 0;
   const bool use_prior = data.prior != nullptr && !data.prior->empty() && data.prior_weight > 0;
   if (derivatives) {
-    const size_t rows = 2 * (data.landmarks.size() + num_dense) +
-                        (use_prior ? 3 * data.prior->joints().size() : 0) +
+    const size_t rows = 2 * (data.landmarks.size() + num_dense) + (use_prior ? 3 * data.prior->joints().size() : 0) +
                         (data.limits != nullptr ? 3 * data.limits->ranges.size() : 0) +
                         (data.upright_weight > 0 ? 1 : 0) +
                         (data.initial_rotations.empty() ? 0 : 3 * layout.active_joints.size() + 3);
@@ -189,8 +187,7 @@ void FrameEvaluator::Evaluate(const FrameLayout& layout, const FrameData& data, 
     if (derivatives) {
       const double scale = std::sqrt(data.upright_weight * robust.weight);
       J_.row(row_).setZero();
-      J_.block<1, 3>(row_, layout.column_of_joint[0]) =
-          -scale / kUprightSigma * root.row(2) * Skew(Vector3d::UnitY());
+      J_.block<1, 3>(row_, layout.column_of_joint[0]) = -scale / kUprightSigma * root.row(2) * Skew(Vector3d::UnitY());
       r_[row_++] = scale * r;
     }
   }

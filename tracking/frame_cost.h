@@ -4,7 +4,8 @@
 ///   ½ Σ ρ(‖(π(x_k) − y_k)/σ_k‖²)      2D joints and dense keypoints (L_f of paper A), Geman–McClure
 /// + ½ w_prior (energy of the nearest mixture component)
 /// + ½ Σ (excess over joint limits / σ)²
-/// + ½ w ρ(u_z² / σ²)                 u: the root's up axis in the camera frame; how far the trunk leans towards or away
+/// + ½ w ρ(u_z² / σ²)                 u: the root's up axis in the camera frame; how far the trunk leans towards or
+/// away
 ///                                    from the camera, which a camera barely sees (cos is flat): people are mostly
 ///                                    upright and cameras mostly level. Saturates, so bending and lying stay free
 /// + ½ λ_d (‖log(R̄ᵀR)‖²/σ_R² + ‖t − t̄‖²/σ_t²)  initialiser (L_d of paper A)
@@ -32,12 +33,12 @@ namespace bodyloom {
 struct FrameLayout {
   const BodyModel* model = nullptr;
   CameraKnowledge knowledge = CameraKnowledge::kKnown;
-  Camera camera;                        ///< intrinsics; the focal length is replaced by exp(log_focal) when estimated
-  std::vector<int> active_joints;       ///< joints whose rotation is estimated, in column order (3 columns each)
-  std::vector<int> column_of_joint;     ///< J; −1: held
-  int translation_column = 0;           ///< 3 columns: translation, or (log scale, tx, ty) for weak perspective
+  Camera camera;                     ///< intrinsics; the focal length is replaced by exp(log_focal) when estimated
+  std::vector<int> active_joints;    ///< joints whose rotation is estimated, in column order (3 columns each)
+  std::vector<int> column_of_joint;  ///< J; −1: held
+  int translation_column = 0;        ///< 3 columns: translation, or (log scale, tx, ty) for weak perspective
   int beta_column = 0, num_betas = 0;
-  int focal_column = -1;                ///< −1: known
+  int focal_column = -1;  ///< −1: known
   int num_columns = 0;
 
   static FrameLayout Make(const BodyModel& model, CameraKnowledge knowledge, const Camera& camera,
@@ -60,8 +61,8 @@ struct FrameData {
   const MixturePrior* prior = nullptr;
   double prior_weight = 0;
   const JointLimits* limits = nullptr;
-  double limit_sigma = 0.05;  ///< radians
-  double upright_weight = 0;  ///< of the spine's tilt out of the image plane
+  double limit_sigma = 0.05;                       ///< radians
+  double upright_weight = 0;                       ///< of the spine's tilt out of the image plane
   std::vector<Eigen::Matrix3d> initial_rotations;  ///< J, or empty: no initialiser
   Eigen::Vector3d initial_translation = Eigen::Vector3d::Zero();
   double initialiser_weight = 0, initialiser_sigma = 0.2, initialiser_translation_sigma = 0.3;  ///< radians, metres

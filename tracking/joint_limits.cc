@@ -12,7 +12,7 @@ JointLimits JointLimits::ForBody(const BodyModel& model) {
   };
   // Left side; the right side mirrors x → −x, which keeps rotations about x and turns those about y and z round.
   static constexpr Row kLeft[] = {
-      {"l_hip", -2.4, 0.8, -1.2, 1.2, -1.0, 1.5},      // flexion about −x, abduction about +z
+      {"l_hip", -2.4, 0.8, -1.2, 1.2, -1.0, 1.5},       // flexion about −x, abduction about +z
       {"l_knee", -0.10, 2.75, -0.6, 0.6, -0.35, 0.35},  // flexion about +x
       {"l_ankle", -0.9, 1.1, -0.7, 0.7, -0.7, 0.7},
       {"l_foot", -0.9, 0.6, -0.4, 0.4, -0.4, 0.4},

@@ -18,11 +18,11 @@ struct Kinematics {
   static constexpr int kMaxBetas = 32;
 
   const BodyModel* model = nullptr;
-  Eigen::VectorXd betas;                  ///< the first n shape components in use
-  std::vector<Eigen::Matrix3d> R, G;      ///< J local and world rotations
-  std::vector<Eigen::Vector3d> p, rest, t;  ///< J joint positions, rest joints, bone offsets
-  std::vector<Matrix3Bd> dp, dt;          ///< J derivatives of p and t by betas, 3×n
-  std::vector<Matrix93d> feature_jacobian;  ///< J: d vec_rowmajor(R_j) / d δ_j
+  Eigen::VectorXd betas;                             ///< the first n shape components in use
+  std::vector<Eigen::Matrix3d> R, G;                 ///< J local and world rotations
+  std::vector<Eigen::Vector3d> p, rest, t;           ///< J joint positions, rest joints, bone offsets
+  std::vector<Matrix3Bd> dp, dt;                     ///< J derivatives of p and t by betas, 3×n
+  std::vector<Matrix93d> feature_jacobian;           ///< J: d vec_rowmajor(R_j) / d δ_j
   std::vector<Eigen::Matrix<double, 9, 1>> feature;  ///< J: vec_rowmajor(R_j − I)
 
   /// Sets shape and pose. `rotations` holds J matrices. Derivatives are filled only when asked for.

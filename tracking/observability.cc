@@ -38,12 +38,14 @@ std::vector<int> FindActiveJoints(const BodyModel& model, const ObservedLandmark
   if (dense || !skip) return all;
   Kinematics kinematics;
   PointEvaluator points;
-  kinematics.Set(model, Eigen::VectorXd(), std::vector<Eigen::Matrix3d>(model.num_joints(), Eigen::Matrix3d::Identity()),
-                 Eigen::Vector3d::Zero(), true);
+  kinematics.Set(model, Eigen::VectorXd(),
+                 std::vector<Eigen::Matrix3d>(model.num_joints(), Eigen::Matrix3d::Identity()), Eigen::Vector3d::Zero(),
+                 true);
   std::vector<double> lever(model.num_joints(), 0);
   for (const CompiledPoint& point : landmarks.points) {
     points.Evaluate(kinematics, point, true);
-    for (int j : points.joints()) lever[j] = std::max(lever[j], points.JointJacobian(kinematics, j).norm() / std::sqrt(2.0));
+    for (int j : points.joints())
+      lever[j] = std::max(lever[j], points.JointJacobian(kinematics, j).norm() / std::sqrt(2.0));
   }
   std::vector<int> active;
   for (int j : all) {

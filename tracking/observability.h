@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Which landmarks of the body the detections show, which joints they can tell anything about, and how precise they are.
+/// Which landmarks of the body the detections show, which joints they can tell anything about, and how precise they
+/// are.
 #pragma once
 
 #include <string>
@@ -15,16 +16,16 @@ namespace bodyloom {
 /// Landmarks that both the body and the detections have.
 struct ObservedLandmarks {
   std::vector<std::string> names;
-  std::vector<int> keypoint_column;    ///< in the KeypointSequence
+  std::vector<int> keypoint_column;  ///< in the KeypointSequence
   std::vector<CompiledPoint> points;
 };
 
 /// Empty when `keypoints` is null. Throws std::invalid_argument when the body has none of the detections' landmarks.
 ObservedLandmarks FindObservedLandmarks(const BodyModel& model, const KeypointSequence* keypoints, int num_betas);
 
-/// Joints worth estimating. With dense keypoints: all. With 2D joints only: those that move some observed landmark by at
-/// least 4 cm a radian in the rest pose; the others (wrists, hands, feet without toe detections) only carry the prior,
-/// and holding them at rest changes nothing that was observed by more than that lever. `skip` false: all joints.
+/// Joints worth estimating. With dense keypoints: all. With 2D joints only: those that move some observed landmark by
+/// at least 4 cm a radian in the rest pose; the others (wrists, hands, feet without toe detections) only carry the
+/// prior, and holding them at rest changes nothing that was observed by more than that lever. `skip` false: all joints.
 std::vector<int> FindActiveJoints(const BodyModel& model, const ObservedLandmarks& landmarks, bool dense, bool skip);
 
 /// σ of a 2D joint in pixels, for a person `height_px` tall in the image: (0.022 + 0.033 (1 − confidence)^1.5) of it.

@@ -30,7 +30,8 @@ std::vector<double> JointLevers(const BodyModel& model) {
 
 double StatureOfMeanShape(const BodyModel& model, int num_betas, VectorXd* gradient) {
   Eigen::Index top, bottom;
-  const double height = model.data().v_template.col(1).maxCoeff(&top) - model.data().v_template.col(1).minCoeff(&bottom);
+  const double height =
+      model.data().v_template.col(1).maxCoeff(&top) - model.data().v_template.col(1).minCoeff(&bottom);
   const RowMatrixXf& s = model.data().shapedirs;
   *gradient = (s.row(3 * top + 1).head(num_betas) - s.row(3 * bottom + 1).head(num_betas)).cast<double>().transpose();
   return height;
@@ -156,8 +157,8 @@ void AddSmoothness(const SequenceProblem& problem, Parameters* x, ceres::Problem
       ceres_problem->AddResidualBlock(new RotationAccelerationCost(dt0, dt1, sigma), nullptr, x->Rotation(t - 2, a),
                                       x->Rotation(t - 1, a), x->Rotation(t, a));
     }
-    ceres_problem->AddResidualBlock(new VectorAccelerationCost(dt0, dt1, root_sigma.data()), nullptr, x->Translation(t - 2),
-                                    x->Translation(t - 1), x->Translation(t));
+    ceres_problem->AddResidualBlock(new VectorAccelerationCost(dt0, dt1, root_sigma.data()), nullptr,
+                                    x->Translation(t - 2), x->Translation(t - 1), x->Translation(t));
   }
 }
 
@@ -167,7 +168,8 @@ void AddSharedPriors(const SequenceProblem& problem, Parameters* x, ceres::Probl
     VectorXd gradient;
     const double mean_height = StatureOfMeanShape(*problem.layout.model, B, &gradient);
     const double height = problem.shape_prior.height_m > 0 ? problem.shape_prior.height_m : mean_height;
-    RowMatrixXd A = RowMatrixXd::Identity(B + 1, B) * (std::sqrt(problem.shape_prior.weight) / problem.shape_prior.sigma);
+    RowMatrixXd A =
+        RowMatrixXd::Identity(B + 1, B) * (std::sqrt(problem.shape_prior.weight) / problem.shape_prior.sigma);
     VectorXd b = VectorXd::Zero(B + 1);
     if (problem.shape_prior.mean.size() == B) b = -A * problem.shape_prior.mean;
     A.row(B) = gradient.transpose() / problem.shape_prior.height_sigma_m;
@@ -200,10 +202,10 @@ SolveStatus StatusOf(const ceres::Solver::Summary& summary) {
 
 SolveReport SolveSequence(SequenceProblem* problem, const SolveOptions& options) {
   const size_t T = problem->states.size();
-  BODYLOOM_CHECK(T > 0 && problem->frames.size() == T && problem->timestamps.size() == T &&
-                     problem->cut_before.size() == T,
-                 "sequence: ", T, " states, ", problem->frames.size(), " frames, ", problem->timestamps.size(),
-                 " timestamps, ", problem->cut_before.size(), " cut flags; expected the same number of each");
+  BODYLOOM_CHECK(
+      T > 0 && problem->frames.size() == T && problem->timestamps.size() == T && problem->cut_before.size() == T,
+      "sequence: ", T, " states, ", problem->frames.size(), " frames, ", problem->timestamps.size(), " timestamps, ",
+      problem->cut_before.size(), " cut flags; expected the same number of each");
   BODYLOOM_CHECK(problem->betas.size() == problem->layout.num_betas, "sequence: ", problem->betas.size(),
                  " betas, the layout has ", problem->layout.num_betas);
   Parameters x = Pack(*problem);

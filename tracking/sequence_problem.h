@@ -16,16 +16,16 @@ namespace bodyloom {
 
 /// σ of the smoothness terms.
 struct Smoothness {
-  double tip_acceleration = 25;       ///< m/s²: of the far end of what a joint moves; sets each joint's angular σ
-  double root_acceleration = 15;      ///< m/s²: of the translation across the view and along it
-  double weak_scale_acceleration = 2; ///< 1/s²: of log scale (weak perspective)
+  double tip_acceleration = 25;        ///< m/s²: of the far end of what a joint moves; sets each joint's angular σ
+  double root_acceleration = 15;       ///< m/s²: of the translation across the view and along it
+  double weak_scale_acceleration = 2;  ///< 1/s²: of log scale (weak perspective)
 };
 
 struct ShapePrior {
-  Eigen::VectorXd mean;         ///< B; empty: zero
-  double sigma = 1.0;           ///< of each beta; the body's components are in standard deviations
-  double weight = 1.0;          ///< how many times the prior counts
-  double height_m = 0;          ///< 0: the mean body's. Metric scale cannot be seen by one camera
+  Eigen::VectorXd mean;  ///< B; empty: zero
+  double sigma = 1.0;    ///< of each beta; the body's components are in standard deviations
+  double weight = 1.0;   ///< how many times the prior counts
+  double height_m = 0;   ///< 0: the mean body's. Metric scale cannot be seen by one camera
   double height_sigma_m = 0.005;
 };
 
@@ -33,8 +33,8 @@ struct SequenceProblem {
   FrameLayout layout;
   std::vector<FrameData> frames;
   std::vector<FrameState> states;
-  std::vector<double> timestamps;   ///< seconds
-  std::vector<char> cut_before;     ///< true where frame t does not continue frame t−1
+  std::vector<double> timestamps;  ///< seconds
+  std::vector<char> cut_before;    ///< true where frame t does not continue frame t−1
   Eigen::VectorXd betas;
   double log_focal = 0;
   double log_focal_prior = 0, log_focal_sigma = 0.25;

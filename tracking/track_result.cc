@@ -55,7 +55,8 @@ void FillTrack(const TrackSequenceInput& input, const SequenceProblem& problem, 
   track.weak_camera.resize(weak ? T : 0, 3);
   track.joint_sigma.setConstant(T, J, std::numeric_limits<double>::quiet_NaN());
   summary.focal_px = track.camera.fx;
-  for (FrameStatus status : {FrameStatus::kTracked, FrameStatus::kWeak, FrameStatus::kInterpolated, FrameStatus::kLost}) {
+  for (FrameStatus status :
+       {FrameStatus::kTracked, FrameStatus::kWeak, FrameStatus::kInterpolated, FrameStatus::kLost}) {
     summary.frames_by_status[ToString(status)] = 0;
   }
 
@@ -120,14 +121,17 @@ std::vector<PlanEntry> PlanTrackSequence(const TrackSequenceInput& input, const 
   const bool dense = input.dense != nullptr;
   const ObservedLandmarks landmarks = FindObservedLandmarks(model, input.keypoints, 0);
   const size_t active = FindActiveJoints(model, landmarks, dense, options.skip_unneeded).size();
-  const auto add = [&](const std::string& what, bool runs, const std::string& why) { plan.push_back({what, runs, why}); };
+  const auto add = [&](const std::string& what, bool runs, const std::string& why) {
+    plan.push_back({what, runs, why});
+  };
   add("hypotheses over the clip", input.initialiser == nullptr,
       input.initialiser == nullptr ? "no initialiser was given" : "the initialiser gives the start");
   add("2D joints (L_f)", input.keypoints != nullptr,
       input.keypoints != nullptr ? std::to_string(landmarks.names.size()) + " landmarks" : "no 2D joints in the input");
   add("dense keypoints (L_f)", dense, dense ? "in the input" : "no dense keypoints in the input");
   add("initialiser term (L_d)", input.initialiser != nullptr && options.initialiser_weight > 0,
-      input.initialiser != nullptr ? "weight " + std::to_string(options.initialiser_weight) : "no initialiser was given");
+      input.initialiser != nullptr ? "weight " + std::to_string(options.initialiser_weight)
+                                   : "no initialiser was given");
   add("pose prior", input.prior != nullptr, input.prior != nullptr ? "learned mixture" : "none was given");
   const std::string joints = std::to_string(active) + " of " + std::to_string(model.num_joints());
   add("joint rotations", true, joints + " joints are estimated");
@@ -137,8 +141,9 @@ std::vector<PlanEntry> PlanTrackSequence(const TrackSequenceInput& input, const 
   add("surface vertices", dense, dense ? "only those of dense keypoints" : "2D joints are compiled to their bones");
   add("shape", options.estimate_shape, options.estimate_shape ? "one for the clip" : "switched off");
   add("focal length", options.camera_knowledge == CameraKnowledge::kUnknownFocal,
-      options.camera_knowledge == CameraKnowledge::kKnown ? "known"
-      : options.camera_knowledge == CameraKnowledge::kWeak ? "weak perspective has none" : "estimated with the clip");
+      options.camera_knowledge == CameraKnowledge::kKnown  ? "known"
+      : options.camera_knowledge == CameraKnowledge::kWeak ? "weak perspective has none"
+                                                           : "estimated with the clip");
   add("uncertainty", options.estimate_uncertainty, options.estimate_uncertainty ? "per joint" : "switched off");
   return plan;
 }

@@ -71,9 +71,10 @@ void CheckInput(const TrackSequenceInput& input, const TrackSequenceOptions& opt
   if (options.camera_knowledge == CameraKnowledge::kKnown) {
     BODYLOOM_CHECK(input.camera.fx > 0 && input.camera.fy > 0, "track: the camera's focal length is ", input.camera.fx,
                    ", expected a positive number of pixels");
-    BODYLOOM_CHECK(width == 0 || input.camera.width == 0 || (width == input.camera.width && height == input.camera.height),
-                   "track: the detections are for images of ", width, "x", height, " but the camera is for ",
-                   input.camera.width, "x", input.camera.height);
+    BODYLOOM_CHECK(
+        width == 0 || input.camera.width == 0 || (width == input.camera.width && height == input.camera.height),
+        "track: the detections are for images of ", width, "x", height, " but the camera is for ", input.camera.width,
+        "x", input.camera.height);
   } else {
     BODYLOOM_CHECK(width > 0 || input.camera.width > 0,
                    "track: the image size is not known; it is needed when the focal length is not");
@@ -83,10 +84,12 @@ void CheckInput(const TrackSequenceInput& input, const TrackSequenceOptions& opt
 /// The camera the problem starts with. An unknown focal length starts at 0.9 of the longer side (58° field of view).
 Camera StartCamera(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
   if (options.camera_knowledge == CameraKnowledge::kKnown) return input.camera;
-  const int width = input.camera.width > 0 ? input.camera.width
-                    : input.keypoints != nullptr ? input.keypoints->image_width : input.dense->image_width;
-  const int height = input.camera.height > 0 ? input.camera.height
-                     : input.keypoints != nullptr ? input.keypoints->image_height : input.dense->image_height;
+  const int width = input.camera.width > 0       ? input.camera.width
+                    : input.keypoints != nullptr ? input.keypoints->image_width
+                                                 : input.dense->image_width;
+  const int height = input.camera.height > 0      ? input.camera.height
+                     : input.keypoints != nullptr ? input.keypoints->image_height
+                                                  : input.dense->image_height;
   return MakePinhole(width, height, 0.9 * std::max(width, height));
 }
 
@@ -151,14 +154,12 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSe
   summary.solver = options.solver;
   summary.plan = PlanTrackSequence(input, options);
   StageClock clock(&summary);
-  const int threads =
-      options.num_threads > 0 ? options.num_threads : std::max(1u, std::thread::hardware_concurrency());
+  const int threads = options.num_threads > 0 ? options.num_threads : std::max(1u, std::thread::hardware_concurrency());
 
   // Which landmarks and joints take part.
   const int num_betas = options.estimate_shape ? std::min(model.num_betas(), 10) : 0;
   const ObservedLandmarks landmarks = FindObservedLandmarks(model, input.keypoints, num_betas);
-  const std::vector<int> active =
-      FindActiveJoints(model, landmarks, input.dense != nullptr, options.skip_unneeded);
+  const std::vector<int> active = FindActiveJoints(model, landmarks, input.dense != nullptr, options.skip_unneeded);
   const Camera camera = StartCamera(input, options);
   SequenceProblem problem;
   problem.layout = FrameLayout::Make(model, options.camera_knowledge, camera, active, num_betas);
@@ -177,7 +178,8 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSe
   }
   const InitialStates initial = FindInitialStates(input, problem.layout, options);
   if (initial.states.empty()) {
-    summary.message = "no frame shows enough of the body to start from: a shoulder and a hip are needed, with some confidence";
+    summary.message =
+        "no frame shows enough of the body to start from: a shoulder and a hip are needed, with some confidence";
     return result;
   }
   problem.states = initial.states;
@@ -204,18 +206,18 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSe
     frame.upright_weight = options.upright_weight;
     frame.initial_rotations = problem.states[t].rotations;
     frame.initial_translation = problem.states[t].translation;
-    summary.num_observations += static_cast<int>(frame.landmarks.size()) +
-                                (frame.dense != nullptr ? static_cast<int>(frame.dense->size()) : 0);
+    summary.num_observations +=
+        static_cast<int>(frame.landmarks.size()) + (frame.dense != nullptr ? static_cast<int>(frame.dense->size()) : 0);
   }
   // Detections of a frame and of its neighbours err together (COCO joints are not the body's, and detectors are off for
   // a third of a second at a time), so frames do not outvote the shape prior as independent measurements would.
   problem.shape_prior.weight = std::max(1.0, options.shape_prior_weight * static_cast<double>(T));
-  summary.num_parameters =
-      static_cast<int>(T) * problem.layout.num_frame_columns() + problem.layout.num_columns - problem.layout.beta_column;
+  summary.num_parameters = static_cast<int>(T) * problem.layout.num_frame_columns() + problem.layout.num_columns -
+                           problem.layout.beta_column;
 
   const bool pulled = input.initialiser == nullptr;
-  const auto solve = [&](const char* stage, SequenceProblem* stage_problem, double pull, double kernel, double tolerance,
-                         int max_iterations, double from, double to) {
+  const auto solve = [&](const char* stage, SequenceProblem* stage_problem, double pull, double kernel,
+                         double tolerance, int max_iterations, double from, double to) {
     for (FrameData& frame : stage_problem->frames) {
       frame.initialiser_weight = pull;
       frame.landmark_kernel = kernel;
@@ -249,7 +251,8 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSe
   const double final_pull = pulled ? 0.0 : options.initialiser_weight;
   if (pulled || coarse_to_fine) {
     SequenceProblem coarse = SelectFrames(problem, coarse_frames);
-    if (pulled) going = solve("fit near start", &coarse, options.start_pull, 8, 1e-3, options.max_iterations, 0.05, 0.3);
+    if (pulled)
+      going = solve("fit near start", &coarse, options.start_pull, 8, 1e-3, options.max_iterations, 0.05, 0.3);
     if (going) going = solve("fit coarse", &coarse, final_pull, 4, 1e-4, options.max_iterations, 0.3, 0.6);
     SpreadFrames(coarse, coarse_frames, &problem);
   }
@@ -263,8 +266,9 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSe
     // On the coarse frames: neighbours' detection errors are not independent, and their joints' spread changes slowly.
     const RowMatrixXd sigma = JointPositionSigma(SelectFrames(problem, coarse_frames));
     for (size_t i = 0, t = 0; t < T; ++t) {
-      while (i + 1 < coarse_frames.size() && std::abs(problem.timestamps[coarse_frames[i + 1]] - problem.timestamps[t]) <=
-                                                 std::abs(problem.timestamps[coarse_frames[i]] - problem.timestamps[t])) {
+      while (i + 1 < coarse_frames.size() &&
+             std::abs(problem.timestamps[coarse_frames[i + 1]] - problem.timestamps[t]) <=
+                 std::abs(problem.timestamps[coarse_frames[i]] - problem.timestamps[t])) {
         ++i;
       }
       result.track.joint_sigma.row(t) = sigma.row(i);

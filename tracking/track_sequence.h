@@ -37,17 +37,17 @@ struct TrackSequenceInput {
 
 /// Progress of the solve, for a progress bar. Return false from the callback to stop early with what there is.
 struct TrackProgress {
-  std::string stage;      ///< "initialise", "fit", "refine", …
-  double fraction = 0;    ///< of the whole run, estimated, in [0, 1]
-  double cost = 0;        ///< of the current stage
+  std::string stage;    ///< "initialise", "fit", "refine", …
+  double fraction = 0;  ///< of the whole run, estimated, in [0, 1]
+  double cost = 0;      ///< of the current stage
 };
 
 struct TrackSequenceOptions {
   CameraKnowledge camera_knowledge = CameraKnowledge::kKnown;
-  std::string solver = "ceres";  ///< the engine; only "ceres" so far
-  int num_threads = 0;           ///< 0: all cores
-  int max_iterations = 50;       ///< of each stage
-  int max_fine_iterations = 4;   ///< of the last stage, when a coarse one came before
+  std::string solver = "ceres";     ///< the engine; only "ceres" so far
+  int num_threads = 0;              ///< 0: all cores
+  int max_iterations = 50;          ///< of each stage
+  int max_fine_iterations = 4;      ///< of the last stage, when a coarse one came before
   double initialiser_weight = 0.1;  ///< λ_d of paper A, per frame
   double prior_weight = 0.2;        ///< of the pose prior's energy, per frame
   double start_pull = 1.0;          ///< pull towards the hypotheses in the first stage (rotation σ 0.2 rad)
@@ -55,9 +55,9 @@ struct TrackSequenceOptions {
   double coarse_rate = 15;          ///< frames a second of the coarse stages
   double shape_prior_weight = 0.3;  ///< of the shape prior, a frame
   JointHypothesesOptions hypotheses;
-  bool estimate_shape = true;       ///< false: keep the mean shape
-  bool estimate_uncertainty = true; ///< joint_sigma; NaN when off
-  bool skip_unneeded = true;        ///< false: switch every skip off (same answer, slower)
+  bool estimate_shape = true;        ///< false: keep the mean shape
+  bool estimate_uncertainty = true;  ///< joint_sigma; NaN when off
+  bool skip_unneeded = true;         ///< false: switch every skip off (same answer, slower)
   std::function<bool(const TrackProgress&)> progress;
   /// False with the reason when a field is out of range.
   bool IsValid(std::string* why) const;
@@ -79,10 +79,10 @@ struct TrackSequenceSummary {
   std::string solver;
   int iterations = 0;
   double initial_cost = 0, final_cost = 0;
-  std::vector<std::pair<std::string, double>> seconds;  ///< by stage, in order of running
-  double seconds_evaluation = 0, seconds_linear_solver = 0;  ///< inside the solves
-  std::vector<PlanEntry> plan;                          ///< what ran and what was skipped
-  std::map<std::string, int> frames_by_status;          ///< "tracked", "weak", "interpolated", "lost"
+  std::vector<std::pair<std::string, double>> seconds;         ///< by stage, in order of running
+  double seconds_evaluation = 0, seconds_linear_solver = 0;    ///< inside the solves
+  std::vector<PlanEntry> plan;                                 ///< what ran and what was skipped
+  std::map<std::string, int> frames_by_status;                 ///< "tracked", "weak", "interpolated", "lost"
   double reprojection_median_px = 0, reprojection_p95_px = 0;  ///< of the used 2D joints (confidence > 0.3)
   double dense_median_px = 0;                                  ///< of the dense keypoints, 0 without
   double focal_px = 0;                                         ///< used or estimated

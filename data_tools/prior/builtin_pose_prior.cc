@@ -9,8 +9,8 @@ extern const char bodyloom_pose_prior_begin[], bodyloom_pose_prior_end[];
 namespace bodyloom {
 
 const PosePrior& BuiltinPosePrior() {
-  static const PosePrior prior = ReadPosePriorBytes(
-      std::string(bodyloom_pose_prior_begin, bodyloom_pose_prior_end), "assets/prior/pose_prior.npz (built in)");
+  static const PosePrior prior = ReadPosePriorBytes(std::string(bodyloom_pose_prior_begin, bodyloom_pose_prior_end),
+                                                    "assets/prior/pose_prior.npz (built in)");
   return prior;
 }
 

@@ -130,7 +130,8 @@ struct Limb {
 };
 
 /// Unit directions of a limb's two bones in the torso frame (x left, y up, z front).
-bool LimbDirections(const BodyModel& body, const MatrixX3d& joints, const Limb& limb, Vector3d* upper, Vector3d* lower) {
+bool LimbDirections(const BodyModel& body, const MatrixX3d& joints, const Limb& limb, Vector3d* upper,
+                    Vector3d* lower) {
   const auto at = [&](const char* name) -> Vector3d { return joints.row(body.FindJoint(name)).transpose(); };
   const Vector3d up = at("l_shoulder") + at("r_shoulder") - at("l_hip") - at("r_hip");
   const Vector3d left = at("l_shoulder") - at("r_shoulder") + at("l_hip") - at("r_hip");
@@ -190,7 +191,8 @@ VectorXd MirrorPose(const BodyModel& body, const VectorXd& axis_angle) {
   return result;
 }
 
-PosePrior LearnPosePrior(const std::vector<Motion>& motions, const BodyModel& body, const LearnPosePriorOptions& options) {
+PosePrior LearnPosePrior(const std::vector<Motion>& motions, const BodyModel& body,
+                         const LearnPosePriorOptions& options) {
   std::string why;
   BODYLOOM_CHECK(options.IsValid(&why), "pose prior: ", why);
   const std::vector<Sample> samples = CollectSamples(motions, body, options.sample_rate);

@@ -92,7 +92,8 @@ TEST(PosePriorLearning, RefusesMotionsOfAnotherSkeleton) {
 
 TEST(PosePriorFile, RoundTripAndGarbage) {
   const PosePrior prior = LearnPosePrior({TwoClusters(200, 5)}, ToyBody(), LearnPosePriorOptions());
-  const std::string path = (std::filesystem::temp_directory_path() / ("prior_" + std::to_string(::getpid()) + ".npz")).string();
+  const std::string path =
+      (std::filesystem::temp_directory_path() / ("prior_" + std::to_string(::getpid()) + ".npz")).string();
   WritePosePrior(path, prior);
   const PosePrior back = ReadPosePrior(path);
   EXPECT_EQ(back.joints, prior.joints);

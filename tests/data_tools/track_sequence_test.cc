@@ -59,7 +59,8 @@ TEST(TrackSequence, DenseKeypointsGiveTheSurface) {
 
 TEST(TrackSequence, SameBytesForAnyNumberOfThreads) {
   const SynthClip clip = Clip(20, 0);
-  const TrackSequenceResult one = TrackClip(clip, CameraKnowledge::kKnown, 1), four = TrackClip(clip, CameraKnowledge::kKnown, 4);
+  const TrackSequenceResult one = TrackClip(clip, CameraKnowledge::kKnown, 1),
+                            four = TrackClip(clip, CameraKnowledge::kKnown, 4);
   ASSERT_TRUE(one.summary.IsUsable()) << one.summary.message;
   ASSERT_EQ(one.track.num_frames(), 20);
   EXPECT_EQ(one.track.motion.poses, four.track.motion.poses);

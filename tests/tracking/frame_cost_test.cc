@@ -46,7 +46,8 @@ std::vector<int> AllJoints(const BodyModel& body) {
 }
 
 /// Random pose of the given size in front of the camera, with 17 landmarks and 40 dense keypoints seen with noise.
-std::unique_ptr<Scene> MakeScene(CameraKnowledge knowledge, double pose_size, uint64_t seed, std::vector<int> active = {}) {
+std::unique_ptr<Scene> MakeScene(CameraKnowledge knowledge, double pose_size, uint64_t seed,
+                                 std::vector<int> active = {}) {
   auto scene = std::make_unique<Scene>();
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
@@ -244,8 +245,8 @@ TEST(FrameCost, PointsBehindTheCameraCostTheSaturationAndAreCounted) {
   EXPECT_EQ(system.gradient.norm(), 0);
 }
 
-/// Terms on the pose alone, each against central differences of the cost along right increments, and H against JᵀJ where
-/// the residual is linear near the point (checked through the gradient's change).
+/// Terms on the pose alone, each against central differences of the cost along right increments, and H against JᵀJ
+/// where the residual is linear near the point (checked through the gradient's change).
 void CheckPoseTerm(Scene* scene, const std::function<double(const FrameState&)>& twin_cost) {
   scene->data.landmarks.clear();
   const FrameSystem system = Evaluate(*scene);
@@ -277,7 +278,9 @@ TEST(FrameCost, JointLimitsMatchTheirFormula) {
     for (const JointLimits::Range& range : limits.ranges) {
       const Vector3d w = twin::Log<double>(state.rotations[range.joint]);
       for (int c = 0; c < 3; ++c) {
-        const double excess = w[c] > range.upper[c] ? w[c] - range.upper[c] : w[c] < range.lower[c] ? w[c] - range.lower[c] : 0;
+        const double excess = w[c] > range.upper[c]   ? w[c] - range.upper[c]
+                              : w[c] < range.lower[c] ? w[c] - range.lower[c]
+                                                      : 0;
         cost += 0.5 * excess * excess / (scene->data.limit_sigma * scene->data.limit_sigma);
       }
     }
@@ -358,7 +361,8 @@ TEST(MixturePrior, MarginalOfASubsetOfJoints) {
   ASSERT_EQ(mixture.joints(), (std::vector<int>{4, 5}));
   for (int k = 0; k < 2; ++k) {
     const MatrixXd marginal = prior.covariances[k].block(9, 9, 6, 6);
-    ExpectNear(mixture.sqrt_precision(k).transpose() * mixture.sqrt_precision(k), marginal.inverse(), 1e-9, "precision");
+    ExpectNear(mixture.sqrt_precision(k).transpose() * mixture.sqrt_precision(k), marginal.inverse(), 1e-9,
+               "precision");
     ExpectNear(mixture.mean(k), prior.means.row(k).segment(9, 6).transpose(), 1e-12, "mean");
   }
 }
@@ -400,8 +404,8 @@ TEST(CompressedFrameCost, EqualsTheFullSystem) {
     ExpectNear(J.transpose() * r, system.gradient, 1e-10, "gradient");
     ExpectNear(J.transpose() * J, H, 1e-10, "Gauss-Newton matrix");
     const MatrixXd damping = 1e-3 * MatrixXd(H.diagonal().asDiagonal()) + 1e-9 * MatrixXd::Identity(p, p);
-    ExpectNear((J.transpose() * J + damping).ldlt().solve(J.transpose() * r), (H + damping).ldlt().solve(system.gradient),
-               1e-7, "step");
+    ExpectNear((J.transpose() * J + damping).ldlt().solve(J.transpose() * r),
+               (H + damping).ldlt().solve(system.gradient), 1e-7, "step");
   }
 }
 

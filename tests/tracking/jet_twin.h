@@ -136,8 +136,8 @@ Eigen::Matrix<T, 2, 1> Project(const Camera& camera, const Vector3<T>& x, const 
   }
   const T a = x[0] / x[2], b = x[1] / x[2], r2 = a * a + b * b;
   const auto& k = camera.distortion;
-  const T radial = (T(1) + r2 * (T(k[0]) + r2 * (T(k[1]) + r2 * T(k[4])))) /
-                   (T(1) + r2 * (T(k[5]) + r2 * (T(k[6]) + r2 * T(k[7]))));
+  const T radial =
+      (T(1) + r2 * (T(k[0]) + r2 * (T(k[1]) + r2 * T(k[4])))) / (T(1) + r2 * (T(k[5]) + r2 * (T(k[6]) + r2 * T(k[7]))));
   const T u = a * radial + T(2 * k[2]) * a * b + T(k[3]) * (r2 + T(2) * a * a);
   const T v = b * radial + T(k[2]) * (r2 + T(2) * b * b) + T(2 * k[3]) * a * b;
   return {fx * u + T(camera.cx), fy * v + T(camera.cy)};

@@ -34,7 +34,8 @@ KeypointSequence Walk(int frames, double fps) {
 
 double Difference(const KeypointSequence& a, const KeypointSequence& b) {
   double sum = 0;
-  for (size_t i = 0; i < a.points.size(); ++i) sum += std::hypot(a.points[i].x - b.points[i].x, a.points[i].y - b.points[i].y);
+  for (size_t i = 0; i < a.points.size(); ++i)
+    sum += std::hypot(a.points[i].x - b.points[i].x, a.points[i].y - b.points[i].y);
   return sum;
 }
 

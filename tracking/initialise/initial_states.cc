@@ -80,7 +80,8 @@ void ToWeakPerspective(const KeypointSequence& keypoints, const FrameLayout& lay
 
 bool FitWeakCamera(const std::vector<Vector3d>& points, const std::vector<Vector2d>& pixels, double cx, double cy,
                    Vector3d* log_scale_tx_ty) {
-  BODYLOOM_CHECK(points.size() == pixels.size(), "weak camera: ", points.size(), " points and ", pixels.size(), " pixels");
+  BODYLOOM_CHECK(points.size() == pixels.size(), "weak camera: ", points.size(), " points and ", pixels.size(),
+                 " pixels");
   if (points.size() < 2) return false;
   Vector2d mean_point = Vector2d::Zero(), mean_pixel = Vector2d::Zero();
   for (size_t i = 0; i < points.size(); ++i) {
@@ -153,8 +154,8 @@ InitialStates FindInitialStates(const TrackSequenceInput& input, const FrameLayo
     const Eigen::Index given = std::min<Eigen::Index>(input.initialiser->betas.size(), layout.num_betas);
     result.betas.head(given) = input.initialiser->betas.head(given);
     for (int t = 0; t < input.initialiser->num_frames(); ++t) {
-      const BodyPose pose =
-          PoseFromAxisAngle(model, input.initialiser->poses.row(t).transpose(), input.initialiser->trans.row(t).transpose());
+      const BodyPose pose = PoseFromAxisAngle(model, input.initialiser->poses.row(t).transpose(),
+                                              input.initialiser->trans.row(t).transpose());
       result.states.push_back({pose.rotations, pose.trans});
       result.from_observation.push_back(1);
     }

@@ -10,10 +10,10 @@
 namespace bodyloom {
 
 struct InitialStates {
-  std::vector<FrameState> states;  ///< T, or empty when no frame shows a torso
+  std::vector<FrameState> states;      ///< T, or empty when no frame shows a torso
   std::vector<char> from_observation;  ///< T: a hypothesis was made for this frame (others are interpolated)
-  Eigen::VectorXd betas;           ///< shape that fits the clip's bone ratios (initialiser: its own betas, or zero)
-  double cost = 0;                 ///< of the hypotheses
+  Eigen::VectorXd betas;               ///< shape that fits the clip's bone ratios (initialiser: its own betas, or zero)
+  double cost = 0;                     ///< of the hypotheses
 };
 
 /// The initialiser's poses when given; else joint hypotheses (from 2D joints, or from joints estimated out of dense
@@ -21,8 +21,9 @@ struct InitialStates {
 InitialStates FindInitialStates(const TrackSequenceInput& input, const FrameLayout& layout,
                                 const TrackSequenceOptions& options);
 
-/// COCO-17 keypoints estimated from dense ones: each landmark is the mean pixel of the surface points near it in the rest
-/// pose, weighted by exp(−d²/2(6 cm)²); confidence grows with the number of such points. Good enough to start from.
+/// COCO-17 keypoints estimated from dense ones: each landmark is the mean pixel of the surface points near it in the
+/// rest pose, weighted by exp(−d²/2(6 cm)²); confidence grows with the number of such points. Good enough to start
+/// from.
 KeypointSequence JointsFromDense(const BodyModel& model, const DenseSequence& dense);
 
 /// Least-squares weak-perspective camera (log scale, tx, ty) from points (camera frame axes, metres) to pixels; false

@@ -52,8 +52,8 @@ BodyPose PoseFromJoints(const BodyModel& model, const MatrixX3d& rest_joints, co
   for (int l = 0; l < 4; ++l) {
     const Limb& limb = kBodyLimbs[l];
     const int upper = model.FindJoint(limb.upper), hinge = model.FindJoint(limb.hinge), end = model.FindJoint(limb.end);
-    BODYLOOM_CHECK(upper >= 0 && hinge >= 0 && end >= 0, "inverse kinematics: the body '", model.name(), "' has no joint ",
-                   limb.upper, ", ", limb.hinge, " or ", limb.end);
+    BODYLOOM_CHECK(upper >= 0 && hinge >= 0 && end >= 0, "inverse kinematics: the body '", model.name(),
+                   "' has no joint ", limb.upper, ", ", limb.hinge, " or ", limb.end);
     const Vector3d start = points.row(kLimbs[l][0]), middle = points.row(kLimbs[l][1]), tip = points.row(kLimbs[l][2]);
     const Vector3d upper_bone = middle - start, lower_bone = tip - middle;
     if (!upper_bone.allFinite() || !(upper_bone.norm() > 0)) continue;

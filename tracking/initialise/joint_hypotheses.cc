@@ -29,7 +29,17 @@ constexpr double kPi = std::numbers::pi;
 constexpr int kNumYaw = 24, kNumTilt = 7;
 constexpr double kTiltStep = kPi / 9;     // 20°: tilts −60° … 60°
 constexpr double kUprightTilt = kPi / 9;  // σ of the trunk's lean towards or away from a level camera
-enum Coco { kNose = 0, kLeftEye, kRightEye, kLeftEar, kRightEar, kLeftShoulder, kRightShoulder, kLeftHip = 11, kRightHip };
+enum Coco {
+  kNose = 0,
+  kLeftEye,
+  kRightEye,
+  kLeftEar,
+  kRightEar,
+  kLeftShoulder,
+  kRightShoulder,
+  kLeftHip = 11,
+  kRightHip
+};
 
 /// One frame's detections as normalised rays (x/z, y/z) with confidences, in CocoNames() order.
 struct Rays {
@@ -49,7 +59,8 @@ struct Lengths {
   double torso, upper[4], lower[4];
   MatrixX3d rest;
   explicit Lengths(const MatrixX3d& rest_points) : rest(rest_points) {
-    torso = ((rest.row(kLeftShoulder) + rest.row(kRightShoulder)) - (rest.row(kLeftHip) + rest.row(kRightHip))).norm() / 2;
+    torso =
+        ((rest.row(kLeftShoulder) + rest.row(kRightShoulder)) - (rest.row(kLeftHip) + rest.row(kRightHip))).norm() / 2;
     for (int l = 0; l < 4; ++l) {
       upper[l] = (rest.row(kLimbs[l][1]) - rest.row(kLimbs[l][0])).norm();
       lower[l] = (rest.row(kLimbs[l][2]) - rest.row(kLimbs[l][1])).norm();
@@ -89,7 +100,8 @@ std::vector<Rays> RaysOfFrames(const KeypointSequence& keypoints, const Camera& 
 
 /// Depth of the root for every frame: body length over its apparent length, the apparent length being the 85th
 /// percentile over ±1.5 s (bones only ever look shorter), smoothed over the same window.
-std::vector<double> RootDepths(const std::vector<Rays>& rays, const std::vector<double>& times, const Lengths& lengths) {
+std::vector<double> RootDepths(const std::vector<Rays>& rays, const std::vector<double>& times,
+                               const Lengths& lengths) {
   const size_t T = rays.size();
   std::vector<double> size(T, std::numeric_limits<double>::quiet_NaN());
   const double body = lengths.torso + (lengths.upper[2] + lengths.upper[3] + lengths.lower[2] + lengths.lower[3]) / 2;
@@ -137,7 +149,8 @@ std::vector<double> RootDepths(const std::vector<Rays>& rays, const std::vector<
   return depth;
 }
 
-/// camera-from-torso for heading `yaw` (0: facing the camera), tilt of the spine towards the camera and roll in the image.
+/// camera-from-torso for heading `yaw` (0: facing the camera), tilt of the spine towards the camera and roll in the
+/// image.
 Matrix3d TorsoRotation(double yaw, double tilt, double roll) {
   const Matrix3d facing = Vector3d(1, -1, -1).asDiagonal();  // body left → image right, up → −y, front → towards camera
   return RotationFromAxisAngle({0, 0, roll}) * RotationFromAxisAngle({tilt, 0, 0}) * facing *
@@ -327,7 +340,8 @@ Eigen::VectorXd EstimateShape(const KeypointSequence& keypoints, const Camera& c
   Eigen::VectorXd log_seen(kNumBones);
   for (int b = 0; b < kNumBones; ++b) {
     if (seen[b].size() < 30) return betas;
-    // The ratio to the body's apparent size is noisy both ways for torso and legs (median), and only shortened for arms.
+    // The ratio to the body's apparent size is noisy both ways for torso and legs (median), and only shortened for
+    // arms.
     const size_t k = static_cast<size_t>((b == 0 || b >= 3 ? 0.5 : 0.85) * static_cast<double>(seen[b].size() - 1));
     std::nth_element(seen[b].begin(), seen[b].begin() + static_cast<std::ptrdiff_t>(k), seen[b].end());
     log_seen[b] = std::log(seen[b][k]);
@@ -392,8 +406,7 @@ JointHypothesesResult FindJointHypotheses(const KeypointSequence& keypoints, con
     Vector2d centre_ray = Vector2d::Zero();
     for (int k : kTorso) centre_ray += rays[t].ray[k] / 4;
     const Vector3d centre(centre_ray.x() * depth[t], centre_ray.y() * depth[t], depth[t]);
-    const Vector3d offset =
-        torso * (lengths.rest.row(kLimbs[limb][0]).transpose() - Centroid(lengths.rest, kTorso));
+    const Vector3d offset = torso * (lengths.rest.row(kLimbs[limb][0]).transpose() - Centroid(lengths.rest, kTorso));
     // The observed ray is trusted across the view, the plate for the depth.
     const double z = centre.z() + offset.z();
     const Vector2d& ray = rays[t].ray[kLimbs[limb][0]];
@@ -462,7 +475,8 @@ JointHypothesesResult FindJointHypotheses(const KeypointSequence& keypoints, con
     for (int l = 0; l < 4; ++l) hypothesis.points.row(kLimbs[l][0]) = start_of_limb(t, torso[t], l).transpose();
     const double head_depth = (hypothesis.points(kLeftShoulder, 2) + hypothesis.points(kRightShoulder, 2)) / 2;
     for (int k = 0; k < 5; ++k) {
-      if (rays[t].seen[k]) hypothesis.points.row(k) << rays[t].ray[k].x() * head_depth, rays[t].ray[k].y() * head_depth, head_depth;
+      if (rays[t].seen[k])
+        hypothesis.points.row(k) << rays[t].ray[k].x() * head_depth, rays[t].ray[k].y() * head_depth, head_depth;
     }
   }
   for (int limb = 0; limb < 4; ++limb) {
@@ -478,8 +492,7 @@ JointHypothesesResult FindJointHypotheses(const KeypointSequence& keypoints, con
       const Vector3d start = start_of_limb(t, torso[t], limb), centre = centre_of(t, torso[t]);
       limb_costs.Hypotheses(rays[t], limb, start, middles[i].data(), ends[i].data());
       for (int h = 0; h < 4; ++h) {
-        limb_unary[i].push_back(
-            limb_costs.Cost(rays[t], limb, torso[t], centre, start, middles[i][h], ends[i][h]));
+        limb_unary[i].push_back(limb_costs.Cost(rays[t], limb, torso[t], centre, start, middles[i][h], ends[i][h]));
         // Transitions compare positions relative to the limb's start, so that the root's motion does not count.
         middles[i][h] -= start;
         ends[i][h] -= start;
@@ -487,8 +500,9 @@ JointHypothesesResult FindJointHypotheses(const KeypointSequence& keypoints, con
     }
     const std::vector<int> path = Viterbi(limb_unary, [&](size_t i, int a, int b) {
       const double sigma = options.limb_speed * (times[steps[i]] - times[steps[i - 1]]);
-      const double z2 = ((middles[i][b] - middles[i - 1][a]).squaredNorm() + (ends[i][b] - ends[i - 1][a]).squaredNorm()) /
-                        (sigma * sigma);
+      const double z2 =
+          ((middles[i][b] - middles[i - 1][a]).squaredNorm() + (ends[i][b] - ends[i - 1][a]).squaredNorm()) /
+          (sigma * sigma);
       return 0.5 * Saturated(z2, 25);
     });
     for (size_t i = 0; i < steps.size(); ++i) {

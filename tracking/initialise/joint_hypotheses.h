@@ -24,12 +24,12 @@
 namespace bodyloom {
 
 struct JointHypothesesOptions {
-  double confidence = 0.2;        ///< joints below are not used as positions
-  bool hidden_pairs = false;      ///< a shoulder or hip that is not seen is where the other one is: a view from the side
-  double frame_rate = 15;         ///< the trellis runs on about this many frames a second
-  double angular_speed = 4.0;     ///< rad/s, σ of the torso's turning
-  double limb_speed = 2.2;        ///< m/s, σ of a limb's joints relative to the torso
-  double density_weight = 0.6;    ///< of the learned limb density
+  double confidence = 0.2;      ///< joints below are not used as positions
+  bool hidden_pairs = false;    ///< a shoulder or hip that is not seen is where the other one is: a view from the side
+  double frame_rate = 15;       ///< the trellis runs on about this many frames a second
+  double angular_speed = 4.0;   ///< rad/s, σ of the torso's turning
+  double limb_speed = 2.2;      ///< m/s, σ of a limb's joints relative to the torso
+  double density_weight = 0.6;  ///< of the learned limb density
   double occlusion_weight = 0.5;  ///< of confidence as a depth cue
   double face_weight = 1.0;       ///< of the face's visibility as a heading cue
   double upright_weight = 1.0;    ///< of the trunk being upright in a level camera
@@ -43,9 +43,9 @@ struct JointHypothesis {
 };
 
 struct JointHypothesesResult {
-  std::vector<int> frames;                   ///< frame indices that were looked at, ascending
-  std::vector<JointHypothesis> hypotheses;   ///< one for each
-  double cost = 0;                           ///< of the chosen paths, for comparing alternatives
+  std::vector<int> frames;                  ///< frame indices that were looked at, ascending
+  std::vector<JointHypothesis> hypotheses;  ///< one for each
+  double cost = 0;                          ///< of the chosen paths, for comparing alternatives
 };
 
 /// `keypoints` must contain CocoNames() landmarks (any subset); frames without both hips or both shoulders are bridged.
@@ -56,8 +56,9 @@ JointHypothesesResult FindJointHypotheses(const KeypointSequence& keypoints, con
                                           const JointHypothesesOptions& options);
 
 /// Shape components whose bone lengths have the ratios that the clip shows: a bone's largest projections over the clip
-/// (90th percentile, relative to the body's apparent size) tell its length wherever it once lay in the image plane. Fits
-/// log ratios of torso, thighs, shins, upper arms and forearms with σ = 0.05, and N(0, 1) on each component. Zero without enough frames.
+/// (90th percentile, relative to the body's apparent size) tell its length wherever it once lay in the image plane.
+/// Fits log ratios of torso, thighs, shins, upper arms and forearms with σ = 0.05, and N(0, 1) on each component. Zero
+/// without enough frames.
 Eigen::VectorXd EstimateShape(const KeypointSequence& keypoints, const Camera& camera, const BodyModel& model,
                               int num_betas, const JointHypothesesOptions& options);
 

@@ -44,7 +44,8 @@ int RepairSwaps(KeypointSequence* keypoints) {
   std::vector<std::pair<int, int>> pairs;
   for (int k = 0; k < keypoints->num_points(); ++k) {
     if (keypoints->names[k].rfind("left_", 0) != 0) continue;
-    const auto it = std::find(keypoints->names.begin(), keypoints->names.end(), "right_" + keypoints->names[k].substr(5));
+    const auto it =
+        std::find(keypoints->names.begin(), keypoints->names.end(), "right_" + keypoints->names[k].substr(5));
     if (it != keypoints->names.end()) pairs.emplace_back(k, static_cast<int>(it - keypoints->names.begin()));
   }
   std::vector<double> sizes(keypoints->num_frames());
@@ -66,8 +67,7 @@ int RepairSwaps(KeypointSequence* keypoints) {
       const double sigma = std::max(sizes[t], sizes[u]) * std::hypot(kJitter, kSpeed * dt);
       const int from_left = a == 0 ? left : right, to_left = b == 0 ? left : right;
       const int from_right = a == 0 ? right : left, to_right = b == 0 ? right : left;
-      const double s =
-          (distance2(t, from_left, u, to_left) + distance2(t, from_right, u, to_right)) / (sigma * sigma);
+      const double s = (distance2(t, from_left, u, to_left) + distance2(t, from_right, u, to_right)) / (sigma * sigma);
       return GemanMcClure(s, kJumpKernel).rho;
     });
     for (size_t i = 0; i < frames.size(); ++i) {

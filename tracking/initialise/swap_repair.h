@@ -8,8 +8,8 @@
 
 namespace bodyloom {
 
-/// Exchanges each left–right pair back in the frames where it was swapped: a two-state trellis over the clip, in which a
-/// jump costs its squared length in body sizes (saturated) and a swapped frame costs a little, so that a pair is only
+/// Exchanges each left–right pair back in the frames where it was swapped: a two-state trellis over the clip, in which
+/// a jump costs its squared length in body sizes (saturated) and a swapped frame costs a little, so that a pair is only
 /// exchanged where both its points jump to each other's place and back. Pairs are found by name (left_x, right_x);
 /// shoulders with hips, and eyes with ears, are not tied together. Returns the number of exchanged pairs × frames.
 int RepairSwaps(KeypointSequence* keypoints);

@@ -19,8 +19,8 @@ Eigen::Map<RowMatrix3d> Block(double* jacobian) { return Eigen::Map<RowMatrix3d>
 }  // namespace
 
 RotationAccelerationCost::RotationAccelerationCost(double dt0, double dt1, double sigma) {
-  BODYLOOM_CHECK(dt0 > 0 && dt1 > 0 && sigma > 0, "acceleration: time steps ", dt0, " and ", dt1, " s and sigma ", sigma,
-                 " must be positive");
+  BODYLOOM_CHECK(dt0 > 0 && dt1 > 0 && sigma > 0, "acceleration: time steps ", dt0, " and ", dt1, " s and sigma ",
+                 sigma, " must be positive");
   scale0_ = 2 / ((dt0 + dt1) * dt0 * sigma);
   scale1_ = 2 / ((dt0 + dt1) * dt1 * sigma);
 }
@@ -53,7 +53,8 @@ VectorAccelerationCost::VectorAccelerationCost(double dt0, double dt1, const dou
 
 bool VectorAccelerationCost::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
   for (int c = 0; c < 3; ++c) {
-    residuals[c] = scale1_[c] * (parameters[2][c] - parameters[1][c]) - scale0_[c] * (parameters[1][c] - parameters[0][c]);
+    residuals[c] =
+        scale1_[c] * (parameters[2][c] - parameters[1][c]) - scale0_[c] * (parameters[1][c] - parameters[0][c]);
   }
   if (jacobians == nullptr) return true;
   for (int block = 0; block < 3; ++block) {

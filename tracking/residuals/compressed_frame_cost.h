@@ -33,8 +33,8 @@ class CompressedFrameCost : public ceres::CostFunction {
   const FrameState& held_;
 };
 
-/// All frames of a clip, evaluated together: Ceres asks once for each new point, the frames are spread over threads, and
-/// its cost functions only hand out what lies ready. Ceres itself then runs on one thread: its own threads add up
+/// All frames of a clip, evaluated together: Ceres asks once for each new point, the frames are spread over threads,
+/// and its cost functions only hand out what lies ready. Ceres itself then runs on one thread: its own threads add up
 /// gradients in the order in which they finish, which changes the last bits from run to run.
 class FrameBatch : public ceres::EvaluationCallback {
  public:
@@ -56,8 +56,8 @@ class FrameBatch : public ceres::EvaluationCallback {
   bool has_jacobians_ = false;
 };
 
-/// Upper triangular R with RᵀR = H (lower triangle of H is read) and y with Rᵀy = g, for positive semi-definite H with g
-/// in its range; pivots below 1e-14 of the largest diagonal give zero rows.
+/// Upper triangular R with RᵀR = H (lower triangle of H is read) and y with Rᵀy = g, for positive semi-definite H with
+/// g in its range; pivots below 1e-14 of the largest diagonal give zero rows.
 void SquareRootSystem(const Eigen::MatrixXd& H, const Eigen::VectorXd& g, Eigen::MatrixXd* R, Eigen::VectorXd* y);
 
 }  // namespace bodyloom

@@ -2,8 +2,8 @@
 /// SO(3) stored as axis-angle: Plus(w, δ) = log(exp(w) exp(δ)).
 ///
 /// PlusJacobian is declared the identity: cost functions on such blocks give their derivatives by the increment δ
-/// directly ("lifted" Jacobians), which saves a 3×3 product for each block and is exact because Ceres only ever uses the
-/// product of the two. A block must therefore not be mixed with cost functions that differentiate by w.
+/// directly ("lifted" Jacobians), which saves a 3×3 product for each block and is exact because Ceres only ever uses
+/// the product of the two. A block must therefore not be mixed with cost functions that differentiate by w.
 #pragma once
 
 #include <ceres/manifold.h>
@@ -19,8 +19,7 @@ class RotationManifold : public ceres::Manifold {
   bool Plus(const double* x, const double* delta, double* x_plus_delta) const override {
     using Vector = Eigen::Map<const Eigen::Vector3d>;
     Eigen::Map<Eigen::Vector3d> result(x_plus_delta);
-    result =
-        AxisAngleFromRotation(RotationFromAxisAngle(Vector(x)) * RotationFromAxisAngle(Vector(delta)));
+    result = AxisAngleFromRotation(RotationFromAxisAngle(Vector(x)) * RotationFromAxisAngle(Vector(delta)));
     return true;
   }
   bool PlusJacobian(const double*, double* jacobian) const override {
@@ -31,8 +30,7 @@ class RotationManifold : public ceres::Manifold {
   bool Minus(const double* y, const double* x, double* y_minus_x) const override {
     using Vector = Eigen::Map<const Eigen::Vector3d>;
     Eigen::Map<Eigen::Vector3d> result(y_minus_x);
-    result =
-        AxisAngleFromRotation(RotationFromAxisAngle(Vector(x)).transpose() * RotationFromAxisAngle(Vector(y)));
+    result = AxisAngleFromRotation(RotationFromAxisAngle(Vector(x)).transpose() * RotationFromAxisAngle(Vector(y)));
     return true;
   }
   bool MinusJacobian(const double*, double* jacobian) const override {
