@@ -13,6 +13,7 @@
 #include "tracking/residuals/compressed_frame_cost.h"
 #include "tracking/residuals/linear_cost.h"
 #include "tracking/residuals/rotation_manifold.h"
+#include "tracking/serial_openmp.h"
 
 namespace bodyloom {
 
@@ -251,6 +252,7 @@ SolveReport SolveSequence(SequenceProblem* problem, const SolveOptions& options)
     solver.callbacks.push_back(callback.get());
   }
   ceres::Solver::Summary summary;
+  const SerialOpenMp no_threads_in_the_factorisation;
   ceres::Solve(solver, &ceres_problem, &summary);
   SolveReport report;
   report.status = StatusOf(summary);
