@@ -47,7 +47,7 @@ struct TrackSequenceOptions {
   std::string solver = "ceres";     ///< the engine; only "ceres" so far
   int num_threads = 0;              ///< 0: all cores
   int max_iterations = 50;          ///< of each stage
-  int max_fine_iterations = 4;      ///< of the last stage, when a coarse one came before
+  int max_fine_iterations = 8;      ///< of the last stage, when a coarse one came before
   double initialiser_weight = 0.1;  ///< λ_d of paper A, per frame
   double prior_weight = 0.2;        ///< of the pose prior's energy, per frame
   double start_pull = 1.0;          ///< pull towards the hypotheses in the first stage (rotation σ 0.2 rad)

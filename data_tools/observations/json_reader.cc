@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data_tools/observations/json_reader.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <nlohmann/json.hpp>
@@ -49,10 +50,14 @@ void CheckDepthAndTokens(const std::string& text, const std::string& where, int 
 }
 
 /// nlohmann's messages start with "[json.exception...] parse error at line 1, column 5: "; the part that helps is last.
+/// They quote what was read, which may hold anything.
 std::string Reason(const json::exception& error) {
   const std::string text = error.what();
   const size_t marker = text.find("syntax error");
-  return marker == std::string::npos ? text : text.substr(marker);
+  std::string reason = marker == std::string::npos ? text : text.substr(marker);
+  std::replace_if(
+      reason.begin(), reason.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  return reason;
 }
 
 const char* KindName(const json& value) { return value.type_name(); }

@@ -7,6 +7,7 @@
 
 #include "tests/data_tools/fuzz_seeds.h"
 #include "tests/fuzz/fuzz_targets.h"
+#include "tests/fuzz/fuzz_text_targets.h"
 
 namespace bodyloom::fuzz {
 namespace {
@@ -85,6 +86,12 @@ TEST(FuzzCorpus, Pickle) { RunMutations("pickle", AcceptsPickle, 4000); }
 TEST(FuzzCorpus, Body) { RunMutations("body", AcceptsBody, 3000); }
 TEST(FuzzCorpus, Track) { RunMutations("track", AcceptsTrack, 4000); }
 TEST(FuzzCorpus, Obj) { RunMutations("obj", AcceptsObj, 4000); }
+TEST(FuzzCorpus, Detections) { RunMutations("detections", AcceptsDetections, 6000); }
+TEST(FuzzCorpus, Cameras) { RunMutations("cameras", AcceptsCameras, 4000); }
+TEST(FuzzCorpus, Bvh) { RunMutations("bvh", AcceptsBvh, 4000); }
+TEST(FuzzCorpus, AsfAmc) { RunMutations("asf_amc", AcceptsAsfAmc, 4000); }
+TEST(FuzzCorpus, DeepMimic) { RunMutations("deepmimic", AcceptsDeepMimic, 4000); }
+TEST(FuzzCorpus, Cage) { RunMutations("cage", AcceptsCage, 4000); }
 
 }  // namespace
 }  // namespace bodyloom::fuzz

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the fuzzers call: every reader of untrusted files, on bytes. A reader may refuse with std::runtime_error and
-/// nothing else; whatever it accepts must hold together.
+/// What the fuzzers call: every reader of untrusted binary files and meshes, on bytes (text: fuzz_text_targets.h).
+/// A reader may refuse with std::runtime_error and nothing else; whatever it accepts must hold together.
 ///
 /// The same functions run under libFuzzer (tests/fuzz/*_fuzz.cc, clang) and under GoogleTest with fixed mutations
 /// (tests/data_tools/fuzz_corpus_test.cc, any compiler). Each returns whether the input was accepted.
@@ -18,25 +18,10 @@
 #include "data_tools/formats/npz.h"
 #include "data_tools/formats/obj.h"
 #include "data_tools/formats/pickle.h"
-#include "data_tools/formats/printable.h"
 #include "data_tools/track_io.h"
+#include "tests/fuzz/fuzz_accepts.h"
 
 namespace bodyloom::fuzz {
-
-/// True when `action` returns, false when it throws std::runtime_error naming the file; anything else gets out.
-template <typename Action>
-bool Accepts(const Action& action) {
-  try {
-    action();
-    return true;
-  } catch (const std::runtime_error& error) {
-    const std::string message = error.what();
-    if (message.find("fuzz") == std::string::npos || !IsOneLine(message)) {
-      throw std::logic_error("a message that does not name the file in one line: " + message);
-    }
-    return false;
-  }
-}
 
 /// Every key the readers look for.
 inline constexpr const char* kNames[] = {"v_template",

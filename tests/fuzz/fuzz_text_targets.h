@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The fuzzers' functions for text formats: detections, cameras, motions and the body's cage.
+/// Each returns whether the input was accepted; what is accepted must hold together.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "data_tools/body_making/cage.h"
+#include "data_tools/motion/asf_amc_reader.h"
+#include "data_tools/motion/bvh_reader.h"
+#include "data_tools/motion/deepmimic_reader.h"
+#include "data_tools/observations/blazepose_reader.h"
+#include "data_tools/observations/coco_reader.h"
+#include "data_tools/observations/load_cameras.h"
+#include "data_tools/observations/openpose_reader.h"
+#include "tests/fuzz/fuzz_accepts.h"
+
+namespace bodyloom::fuzz {
+
+inline void CheckPeople(const PeopleSequence& people) {
+  if (people.timestamps.size() != people.frames.size()) throw std::logic_error("frames without a time");
+  for (const auto& frame : people.frames) {
+    for (const DetectedPerson& person : frame) {
+      if (person.points.size() != people.convention.names.size())
+        throw std::logic_error("a person of another number of joints");
+    }
+  }
+}
+
+/// Whatever the file claims to be, each reader must take it or refuse it.
+inline bool AcceptsDetections(const std::string& bytes) {
+  nlohmann::json json;
+  if (!Accepts([&] { json = ParseJson(bytes, "fuzz.json"); })) return false;
+  const JsonNode document(json, "fuzz.json");
+  bool taken = false;
+  if (IsOpenPoseJson(document)) taken |= Accepts([&] { CheckPeople(OpenPoseFromJson(document, 30)); });
+  if (IsCocoJson(document)) taken |= Accepts([&] { CheckPeople(CocoFromJson(document, 30)); });
+  if (IsBlazePoseJson(document)) taken |= Accepts([&] { CheckPeople(BlazePoseFromJson(document, 30)); });
+  return taken;
+}
+
+inline bool AcceptsCameras(const std::string& bytes) {
+  return Accepts([&] {
+    for (const NamedCamera& camera : CamerasFromText(bytes, "fuzz.json")) {
+      if (!(camera.camera.fx > 0) || !(camera.camera.fy > 0)) throw std::logic_error("a camera without a focal length");
+    }
+  });
+}
+
+inline void CheckSkeleton(const SkeletonMotion& motion) {
+  if (motion.rotations.size() != static_cast<size_t>(motion.num_frames()) * motion.num_joints()) {
+    throw std::logic_error("rotations of another number");
+  }
+  for (int j = 0; j < motion.num_joints(); ++j) {
+    if (motion.parents[j] >= j) throw std::logic_error("a joint before its parent");
+  }
+  if (!motion.offsets.allFinite() || !motion.root_positions.allFinite()) throw std::logic_error("not finite");
+}
+
+inline bool AcceptsBvh(const std::string& bytes) {
+  return Accepts([&] { CheckSkeleton(BvhFromText(bytes, "fuzz.bvh")); });
+}
+
+/// Skeleton and motion in one input, apart at the first form feed.
+inline bool AcceptsAsfAmc(const std::string& bytes) {
+  const size_t apart = std::min(bytes.find('\f'), bytes.size());
+  const std::string motion = apart < bytes.size() ? bytes.substr(apart + 1) : "";
+  return Accepts([&] { CheckSkeleton(AsfAmcFromText(bytes.substr(0, apart), "fuzz.asf", motion, "fuzz.amc", 120)); });
+}
+
+inline bool AcceptsDeepMimic(const std::string& bytes) {
+  return Accepts([&] {
+    const nlohmann::json json = ParseJson(bytes, "fuzz.txt");
+    CheckSkeleton(DeepMimicFromJson(JsonNode(json, "fuzz.txt")));
+  });
+}
+
+inline bool AcceptsCage(const std::string& bytes) {
+  return Accepts([&] {
+    const Cage cage = ParseCage(bytes, "fuzz.txt");
+    for (const Quad& quad : cage.quads) {
+      for (const int v : quad) {
+        if (v < 0 || v >= cage.vertices.rows()) throw std::logic_error("a corner outside the cage");
+      }
+    }
+  });
+}
+
+}  // namespace bodyloom::fuzz
