@@ -8,205 +8,264 @@
 #include <utility>
 
 #include "geometry/check.h"
+#include "render/near_clip.h"
+#include "render/parallel_phases.h"
 
 namespace bodyloom {
 namespace {
 
 using Eigen::Vector3d;
-using Eigen::Vector4d;
+using raster_internal::kGuardBandPx;
+using raster_internal::kLanes;
+using raster_internal::kSubpixels;
+using raster_internal::kTileHeight;
+using raster_internal::kTileWidth;
+using raster_internal::kUnusable;
+using raster_internal::LargeFace;
+using raster_internal::ScreenExtent;
+using raster_internal::ScreenVertex;
 
-constexpr int kSubpixels = 256;
-constexpr double kGuardBandPx = 1 << 21;  // 2^29 subpixels: sums of two products of differences stay below 2^62
+constexpr int kVerticesAChunk = 1024;  // a multiple of every vector's length
 
-/// A convex polygon of at most 3 + 5 corners in the camera frame.
-struct Polygon {
-  std::array<Vector3d, 8> corners;
-  int size = 0;
-};
+/// Large meshes get longer chunks: each chunk keeps a table as long as the picture has tiles.
+int FacesAChunk(int num_faces) { return std::max(2048, (num_faces + 15) / 16); }
 
-/// Keeps the part of the polygon with plane · (x, y, z, 1) >= 0. A crossing is always computed from the corner inside
-/// to the corner outside, so the two faces of a shared edge get the same point.
-void ClipAtPlane(const Vector4d& plane, Polygon* polygon) {
-  Polygon kept;
-  const auto side = [&](const Vector3d& x) { return plane.head<3>().dot(x) + plane.w(); };
-  for (int i = 0; i < polygon->size; ++i) {
-    const Vector3d& p = polygon->corners[i];
-    const Vector3d& q = polygon->corners[(i + 1) % polygon->size];
-    const double side_p = side(p), side_q = side(q);
-    if (side_p >= 0) kept.corners[kept.size++] = p;
-    if (side_p >= 0 && side_q < 0) {
-      kept.corners[kept.size++] = p + (side_p / (side_p - side_q)) * (q - p);
-    } else if (side_p < 0 && side_q >= 0) {
-      kept.corners[kept.size++] = q + (side_q / (side_q - side_p)) * (p - q);
-    }
-  }
-  *polygon = kept;
-}
+int DivideUp(int a, int b) { return (a + b - 1) / b; }
 
-/// The four planes inside of which |x_px| and |y_px| stay below the guard band (less a pixel for rounding).
-std::array<Vector4d, 4> GuardPlanes(const Camera& camera) {
-  constexpr double kLimit = kGuardBandPx - 1;
+raster_internal::Projection ProjectionOf(const Camera& camera, double near_m) {
   if (camera.model == CameraModel::kWeakPerspective) {
-    const double s = camera.scale, x = s * camera.tx + camera.cx, y = s * camera.ty + camera.cy;
-    return {Vector4d(s, 0, 0, kLimit + x), Vector4d(-s, 0, 0, kLimit - x), Vector4d(0, s, 0, kLimit + y),
-            Vector4d(0, -s, 0, kLimit - y)};
+    return {false, camera.scale, camera.scale, camera.tx, camera.ty, camera.cx, camera.cy, 0};
   }
-  return {Vector4d(camera.fx, 0, camera.cx + kLimit, 0), Vector4d(-camera.fx, 0, kLimit - camera.cx, 0),
-          Vector4d(0, camera.fy, camera.cy + kLimit, 0), Vector4d(0, -camera.fy, kLimit - camera.cy, 0)};
+  return {true, camera.fx, camera.fy, 0, 0, camera.cx, camera.cy, near_m};
 }
 
-int FloorDivide(int64_t a, int64_t b) { return static_cast<int>(a >= 0 ? a / b : -((-a + b - 1) / b)); }
+void Extend(int32_t x, int32_t y, ScreenExtent* extent) {
+  extent->x_min = std::min(extent->x_min, x), extent->x_max = std::max(extent->x_max, x);
+  extent->y_min = std::min(extent->y_min, y), extent->y_max = std::max(extent->y_max, y);
+}
+
+/// The pixels whose centres the extent holds.
+PixelBox PixelsOf(const ScreenExtent& extent) {
+  if (extent.x_min > extent.x_max) return {};
+  return {(extent.x_min + kSubpixels - 1) >> 8, (extent.y_min + kSubpixels - 1) >> 8, (extent.x_max >> 8) + 1,
+          (extent.y_max >> 8) + 1};
+}
+
+/// Counting sort of items 0..count−1 by the tiles that their pixels (PixelBox of an item, not empty) meet; within a tile
+/// items rise.
+template <class BoxOf>
+void SortByTile(int count, int tiles_across, int num_tiles, const BoxOf& box_of, std::vector<int32_t>* begin,
+                std::vector<int32_t>* entries) {
+  const auto for_tiles = [&](int i, const auto& use) {
+    const PixelBox box = box_of(i);
+    const unsigned x_first = unsigned(box.x_begin) / kTileWidth, x_last = unsigned(box.x_end - 1) / kTileWidth;
+    const unsigned y_first = unsigned(box.y_begin) / kTileHeight, y_last = unsigned(box.y_end - 1) / kTileHeight;
+    for (unsigned y = y_first; y <= y_last; ++y) {
+      for (unsigned x = x_first; x <= x_last; ++x) use(y * tiles_across + x);
+    }
+  };
+  begin->assign(static_cast<size_t>(num_tiles) + 2, 0);
+  int32_t* const end = begin->data() + 1;  // of each tile's entries, once they are all placed
+  for (int i = 0; i < count; ++i) for_tiles(i, [&](unsigned tile) { ++end[tile + 1]; });
+  for (int t = 0; t < num_tiles; ++t) end[t + 1] += end[t];
+  entries->resize(end[num_tiles]);
+  int32_t* const to = entries->data();
+  for (int i = 0; i < count; ++i) for_tiles(i, [&](unsigned tile) { to[end[tile]++] = i; });
+}
 
 }  // namespace
 
-VisibilityBuffer::ScreenVertex VisibilityBuffer::ToScreen(const Vector3d& point) const {
-  ScreenVertex result;
+bool VisibilityBuffer::ToScreen(const Vector3d& point, ScreenVertex* screen) const {
+  const bool is_pinhole = camera_.model == CameraModel::kPinhole;
   Eigen::Vector2d pixel;
-  if (is_plain_pinhole_) {
-    if (!(point.z() >= options_.near_m)) return result;
-    result.nearness = 1 / point.z();
-    pixel = {camera_.fx * point.x() * result.nearness + camera_.cx,
-             camera_.fy * point.y() * result.nearness + camera_.cy};
-  } else if (camera_.model == CameraModel::kPinhole) {
-    if (!(point.z() >= options_.near_m) || !camera_.Project(point, &pixel)) return result;
-    result.nearness = 1 / point.z();
-  } else {
-    camera_.Project(point, &pixel);
-    result.nearness = -point.z();
-  }
-  if (!(pixel.cwiseAbs().maxCoeff() < kGuardBandPx)) return result;
-  result.x = static_cast<int32_t>(std::floor(pixel.x() * kSubpixels + 0.5));
-  result.y = static_cast<int32_t>(std::floor(pixel.y() * kSubpixels + 0.5));
-  result.usable = true;
-  return result;
+  if (is_pinhole && !(point.z() >= options_.near_m)) return false;
+  if (!camera_.Project(point, &pixel) || !(pixel.cwiseAbs().maxCoeff() < kGuardBandPx)) return false;
+  *screen = {static_cast<int32_t>(std::floor(pixel.x() * kSubpixels + 0.5)),
+             static_cast<int32_t>(std::floor(pixel.y() * kSubpixels + 0.5)),
+             static_cast<float>(is_pinhole ? 1 / point.z() : -point.z()), 0};
+  return true;
 }
 
-void VisibilityBuffer::FindBox(int num_vertices) {
-  const PixelBox image{0, 0, camera_.width, camera_.height};
-  int32_t x_min = std::numeric_limits<int32_t>::max(), x_max = std::numeric_limits<int32_t>::min();
-  int32_t y_min = x_min, y_max = x_max;
-  for (int v = 0; v < num_vertices; ++v) {
-    const ScreenVertex& s = screen_[v];
-    if (!s.usable) {  // a face that is clipped may reach anywhere
-      box_ = image;
-      return;
-    }
-    x_min = std::min(x_min, s.x), x_max = std::max(x_max, s.x);
-    y_min = std::min(y_min, s.y), y_max = std::max(y_max, s.y);
-  }
-  if (num_vertices == 0) {
-    box_ = {};
+void VisibilityBuffer::ProjectChunk(const MatrixX3d& vertices, int chunk) {
+  const int first = chunk * kVerticesAChunk, last = std::min(num_vertices_, first + kVerticesAChunk);
+  ScreenExtent& extent = extents_[chunk];
+  if (is_linear_) {
+    raster_internal::ProjectVertices(ProjectionOf(camera_, options_.near_m), vertices.data(), first, last, screen_,
+                                     &extent);
     return;
   }
-  const PixelBox mesh{FloorDivide(x_min + kSubpixels - 1, kSubpixels), FloorDivide(y_min + kSubpixels - 1, kSubpixels),
-                      FloorDivide(x_max, kSubpixels) + 1, FloorDivide(y_max, kSubpixels) + 1};
-  box_ = mesh.ClippedTo(image);
-  if (box_.empty()) box_ = {};
+  for (int v = first; v < last; ++v) {
+    const Vector3d point = vertices.row(v).transpose();
+    extent.all_finite = extent.all_finite && point.allFinite();
+    if (ToScreen(point, &screen_vertices_[v])) {
+      Extend(screen_vertices_[v].x, screen_vertices_[v].y, &extent);
+    } else {
+      screen_vertices_[v] = {kUnusable, 0, 0, 0};
+      extent.all_usable = false;
+    }
+  }
+}
+
+void VisibilityBuffer::ClipFaces(const MatrixX3d& vertices, const MatrixX3i& faces, ScreenExtent* extent) {
+  Chunk& pieces = chunks_.back();
+  for (int f = 0; f < faces.rows(); ++f) {
+    std::array<Vector3d, 3> corners;
+    bool usable = true;
+    for (int c = 0; c < 3; ++c) {
+      corners[c] = vertices.row(faces(f, c)).transpose();
+      usable = usable && screen_vertices_[faces(f, c)].x != kUnusable;
+    }
+    if (usable) continue;
+    const ClippedPolygon polygon = ClipTriangle(corners, camera_, options_.near_m, kGuardBandPx);
+    std::array<ScreenVertex, 8> screen;
+    usable = true;
+    for (int i = 0; i < polygon.size && usable; ++i) usable = ToScreen(polygon.corners[i], &screen[i]);
+    if (!usable) continue;
+    for (int i = 0; i < polygon.size; ++i) Extend(screen[i].x, screen[i].y, extent);
+    for (int i = 2; i < polygon.size; ++i) pieces.large.push_back({{screen[0], screen[i - 1], screen[i]}, f});
+  }
+}
+
+raster_internal::Box VisibilityBuffer::DrawnBox() const {
+  return {box_.x_begin, box_.y_begin, box_.width(), box_.height()};
+}
+
+void VisibilityBuffer::PrepareFaces(const MatrixX3d& vertices, const MatrixX3i& faces) {
+  ScreenExtent all;
+  for (const ScreenExtent& extent : extents_) {
+    if (extent.x_min <= extent.x_max) {
+      Extend(extent.x_min, extent.y_min, &all);
+      Extend(extent.x_max, extent.y_max, &all);
+    }
+    all.all_usable = all.all_usable && extent.all_usable;
+    all.all_finite = all.all_finite && extent.all_finite;
+  }
+  BODYLOOM_CHECK(all.all_finite, "visibility buffer: vertices hold NaN or infinite values");
+  const int num_faces = static_cast<int>(faces.rows()), faces_a_chunk = FacesAChunk(num_faces);
+  chunks_.resize(DivideUp(num_faces, faces_a_chunk) + 1);
+  for (size_t i = 0; i < chunks_.size(); ++i) {
+    Chunk& chunk = chunks_[i];
+    chunk.first = std::min(num_faces, static_cast<int>(i) * faces_a_chunk);
+    chunk.last = std::min(num_faces, chunk.first + faces_a_chunk);
+    chunk.large.clear();
+  }
+  if (!all.all_usable) ClipFaces(vertices, faces, &all);
+  const PixelBox image{0, 0, camera_.width, camera_.height};
+  box_ = options_.whole_image ? image : PixelsOf(all).ClippedTo(image);
+  if (num_faces == 0 || box_.empty()) box_ = {};
+  tiles_across_ = DivideUp(box_.width(), kTileWidth), tiles_down_ = DivideUp(box_.height(), kTileHeight);
+  if (box_.area() > capacity_) {
+    capacity_ = 0;
+    face_.reset(), nearness_.reset();
+    face_ = std::make_unique_for_overwrite<int32_t[]>(box_.area());
+    nearness_ = std::make_unique_for_overwrite<float[]>(box_.area());
+    capacity_ = box_.area();
+  }
+}
+
+void VisibilityBuffer::SetUpChunk(const MatrixX3i& faces, int index) {
+  Chunk& chunk = chunks_[index];
+  chunk.others.clear();
+  chunk.small.Reserve(chunk.last - chunk.first);
+  raster_internal::SetUpFaces(faces.data(), chunk.first, chunk.last, screen_, DrawnBox(), options_.cull_back_faces,
+                              &chunk.small, &chunk.others);
+  for (const int f : chunk.others) {
+    LargeFace face;
+    face.face = f;
+    bool usable = true;
+    for (int c = 0; c < 3; ++c) {
+      face.corners[c] = screen_vertices_[faces(f, c)];
+      usable = usable && face.corners[c].x != kUnusable;  // else its pieces are in the last chunk
+    }
+    if (usable) chunk.large.push_back(face);
+  }
+  SortIntoTiles(&chunk);
+}
+
+void VisibilityBuffer::SortIntoTiles(Chunk* chunk) const {
+  const int num_tiles = tiles_across_ * tiles_down_;
+  const raster_internal::SmallFaces& small = chunk->small;
+  SortByTile(
+      small.size, tiles_across_, num_tiles,
+      [&](int i) { return PixelBox{small.x_begin[i], small.y_begin[i], small.x_end[i], small.y_end[i]}; },
+      &chunk->small_begin, &chunk->small_entries);
+  const PixelBox drawn{0, 0, box_.width(), box_.height()};
+  const auto box_of = [&](const LargeFace& f) {
+    ScreenExtent extent;
+    for (const ScreenVertex& corner : f.corners) Extend(corner.x, corner.y, &extent);
+    const PixelBox pixels = PixelsOf(extent);
+    return PixelBox{pixels.x_begin - box_.x_begin, pixels.y_begin - box_.y_begin, pixels.x_end - box_.x_begin,
+                    pixels.y_end - box_.y_begin}
+        .ClippedTo(drawn);
+  };
+  std::erase_if(chunk->large, [&](const LargeFace& f) { return box_of(f).empty(); });
+  SortByTile(
+      static_cast<int>(chunk->large.size()), tiles_across_, num_tiles, [&](int i) { return box_of(chunk->large[i]); },
+      &chunk->large_begin, &chunk->large_entries);
+}
+
+void VisibilityBuffer::DrawTile(int index) {
+  const int x = index % tiles_across_ * kTileWidth, y = index / tiles_across_ * kTileHeight;
+  const int width = std::min(kTileWidth, box_.width() - x), height = std::min(kTileHeight, box_.height() - y);
+  int num_entries = 0;
+  for (const Chunk& chunk : chunks_) {
+    num_entries += chunk.small_begin[index + 1] - chunk.small_begin[index];
+    num_entries += chunk.large_begin[index + 1] - chunk.large_begin[index];
+  }
+  size_t to = size_t(y) * box_.width() + x;
+  if (num_entries == 0) {
+    for (int row = 0; row < height; ++row, to += box_.width()) {
+      std::fill_n(face_.get() + to, width, -1);
+      std::fill_n(nearness_.get() + to, width, -std::numeric_limits<float>::infinity());
+    }
+    return;
+  }
+  raster_internal::Tile tile;
+  tile.x = x, tile.y = y;
+  raster_internal::ClearTile(&tile);
+  for (const Chunk& chunk : chunks_) {
+    raster_internal::DrawSmallFaces(chunk.small, chunk.small_entries.data() + chunk.small_begin[index],
+                                    chunk.small_begin[index + 1] - chunk.small_begin[index], &tile);
+  }
+  for (const Chunk& chunk : chunks_) {
+    raster_internal::DrawLargeFaces(chunk.large.data(), chunk.large_entries.data() + chunk.large_begin[index],
+                                    chunk.large_begin[index + 1] - chunk.large_begin[index], DrawnBox(),
+                                    options_.cull_back_faces, &tile);
+  }
+  for (int row = 0; row < height; ++row, to += box_.width()) {
+    std::copy_n(tile.face + row * kTileWidth, width, face_.get() + to);
+    std::copy_n(tile.nearness + row * kTileWidth, width, nearness_.get() + to);
+  }
 }
 
 void VisibilityBuffer::Render(const MatrixX3d& vertices, const MatrixX3i& faces, const Camera& camera,
                               const VisibilityOptions& options) {
+  box_ = {};
   BODYLOOM_CHECK(camera.width > 0 && camera.height > 0 && camera.width < kGuardBandPx && camera.height < kGuardBandPx,
                  "visibility buffer: image size is ", camera.width, "x", camera.height,
                  ", expected positive and below ", kGuardBandPx);
   BODYLOOM_CHECK(options.near_m >= Camera::kMinDepth, "visibility buffer: near plane at ", options.near_m,
                  " m, expected at least ", Camera::kMinDepth, " m");
-  BODYLOOM_CHECK(vertices.allFinite(), "visibility buffer: vertices hold NaN or infinite values");
-  const int V = static_cast<int>(vertices.rows()), F = static_cast<int>(faces.rows());
-  if (F > 0) {
-    BODYLOOM_CHECK(faces.minCoeff() >= 0 && faces.maxCoeff() < V, "visibility buffer: faces name vertices ",
-                   faces.minCoeff(), "..", faces.maxCoeff(), ", expected 0..", V - 1);
-  }
+  BODYLOOM_CHECK(options.num_threads >= 1, "visibility buffer: ", options.num_threads,
+                 " threads, expected at least 1");
+  num_vertices_ = static_cast<int>(vertices.rows());
+  BODYLOOM_CHECK(raster_internal::AllInRange(faces.data(), faces.size(), num_vertices_),
+                 "visibility buffer: faces name vertices ", faces.minCoeff(), "..", faces.maxCoeff(),
+                 ", expected 0..", num_vertices_ - 1);
   camera_ = camera;
   options_ = options;
-  is_plain_pinhole_ = camera.model == CameraModel::kPinhole && !camera.HasDistortion();
+  is_linear_ = camera.model == CameraModel::kWeakPerspective || !camera.HasDistortion();
 
-  screen_.resize(V);
-  for (int v = 0; v < V; ++v) screen_[v] = ToScreen(vertices.row(v).transpose());
-  FindBox(F > 0 ? V : 0);
-  face_.assign(box_.area(), -1);
-  nearness_.assign(box_.area(), -std::numeric_limits<float>::infinity());
-  if (box_.empty()) return;
-
-  for (int f = 0; f < F; ++f) {
-    const ScreenVertex &a = screen_[faces(f, 0)], &b = screen_[faces(f, 1)], &c = screen_[faces(f, 2)];
-    if (a.usable && b.usable && c.usable) {
-      DrawFace(a, b, c, f);
-    } else {
-      DrawClipped(vertices, faces, f);
-    }
-  }
-}
-
-void VisibilityBuffer::DrawFace(const ScreenVertex& a, ScreenVertex b, ScreenVertex c, int face) {
-  int64_t area = int64_t(b.x - a.x) * (c.y - a.y) - int64_t(b.y - a.y) * (c.x - a.x);
-  if (area == 0 || (area > 0 && options_.cull_back_faces)) return;  // y is down: counter-clockwise is negative
-  if (area < 0) {
-    std::swap(b, c);
-    area = -area;
-  }
-  const int x_begin = std::max(box_.x_begin, FloorDivide(std::min({a.x, b.x, c.x}) + kSubpixels - 1, kSubpixels));
-  const int x_end = std::min(box_.x_end, FloorDivide(std::max({a.x, b.x, c.x}), kSubpixels) + 1);
-  const int y_begin = std::max(box_.y_begin, FloorDivide(std::min({a.y, b.y, c.y}) + kSubpixels - 1, kSubpixels));
-  const int y_end = std::min(box_.y_end, FloorDivide(std::max({a.y, b.y, c.y}), kSubpixels) + 1);
-  if (x_begin >= x_end || y_begin >= y_end) return;
-
-  // Edge function of p → q: (q−p) × (pixel−p), positive inside. A pixel on an edge belongs to the face when the edge is
-  // a left one (inside lies to the right) or a horizontal top one; otherwise 1 is taken off, so that one sign test
-  // does.
-  struct Edge {
-    int64_t at_row, step_x, step_y, bias;
-  };
-  const auto edge = [&](const ScreenVertex& p, const ScreenVertex& q) {
-    const int64_t dx = q.x - p.x, dy = q.y - p.y;
-    const int64_t bias = dy < 0 || (dy == 0 && dx > 0) ? 0 : 1;
-    const int64_t value = dx * (int64_t(y_begin) * kSubpixels - p.y) - dy * (int64_t(x_begin) * kSubpixels - p.x);
-    return Edge{value - bias, -dy * kSubpixels, dx * kSubpixels, bias};
-  };
-  Edge opposite_a = edge(b, c), opposite_b = edge(c, a), opposite_c = edge(a, b);
-  const double per_area = 1.0 / static_cast<double>(area);
-  const double slope_b = (b.nearness - a.nearness) * per_area, slope_c = (c.nearness - a.nearness) * per_area;
-
-  for (int y = y_begin; y < y_end; ++y) {
-    int64_t ea = opposite_a.at_row, eb = opposite_b.at_row, ec = opposite_c.at_row;
-    const size_t row = box_.IndexOf(x_begin, y);
-    for (int i = 0; i < x_end - x_begin; ++i) {
-      if ((ea | eb | ec) >= 0) {
-        // A mean of the corners' values weighted by integers: never outside their range, however thin the face.
-        const auto nearness = static_cast<float>(a.nearness + static_cast<double>(eb + opposite_b.bias) * slope_b +
-                                                 static_cast<double>(ec + opposite_c.bias) * slope_c);
-        if (nearness > nearness_[row + i]) {  // faces come in rising order: at a tie the lowest stays
-          nearness_[row + i] = nearness;
-          face_[row + i] = face;
-        }
-      }
-      ea += opposite_a.step_x, eb += opposite_b.step_x, ec += opposite_c.step_x;
-    }
-    opposite_a.at_row += opposite_a.step_y, opposite_b.at_row += opposite_b.step_y,
-        opposite_c.at_row += opposite_c.step_y;
-  }
-}
-
-void VisibilityBuffer::DrawClipped(const MatrixX3d& vertices, const MatrixX3i& faces, int face) {
-  Polygon polygon;
-  polygon.size = 3;
-  for (int c = 0; c < 3; ++c) polygon.corners[c] = vertices.row(faces(face, c)).transpose();
-  if (camera_.model == CameraModel::kPinhole) {
-    // The clipped corner must pass the test z >= near in ToScreen in spite of rounding.
-    ClipAtPlane(Vector4d(0, 0, 1, -options_.near_m * (1 + 1e-9)), &polygon);
-  }
-  if (!camera_.HasDistortion()) {
-    for (const Vector4d& plane : GuardPlanes(camera_)) {
-      if (polygon.size == 0) return;
-      ClipAtPlane(plane, &polygon);
-    }
-  }
-  std::array<ScreenVertex, 8> screen;
-  for (int i = 0; i < polygon.size; ++i) {
-    screen[i] = ToScreen(polygon.corners[i]);
-    if (!screen[i].usable) return;
-  }
-  for (int i = 2; i < polygon.size; ++i) DrawFace(screen[0], screen[i - 1], screen[i], face);
+  const size_t room = static_cast<size_t>(num_vertices_) + kLanes;  // kernels write whole vectors
+  x_px_.resize(room), y_px_.resize(room), screen_vertices_.resize(room);
+  screen_ = {x_px_.data(), y_px_.data(), screen_vertices_.data()};
+  const int vertex_chunks = DivideUp(num_vertices_, kVerticesAChunk);
+  extents_.assign(vertex_chunks, {});
+  RunPhases(options.num_threads,
+            {{[&] { return vertex_chunks; }, [&](int i) { ProjectChunk(vertices, i); }},
+             {[&] { return 1; }, [&](int) { PrepareFaces(vertices, faces); }},
+             {[&] { return static_cast<int>(chunks_.size()); }, [&](int i) { SetUpChunk(faces, i); }},
+             {[&] { return tiles_across_ * tiles_down_; }, [&](int i) { DrawTile(i); }}});
 }
 
 double VisibilityBuffer::DepthAt(int x, int y) const {

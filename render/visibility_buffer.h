@@ -1,49 +1,56 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Which face of a mesh each pixel sees, and how near it is: one id and one depth a pixel, nothing else. Attributes are
-/// resolved afterwards for the pixels that need them (render/visible_points.h).
+/// resolved afterwards for the pixels that need them (render/resolve_pixels.h, render/visible_points.h).
 ///
 /// - A pixel sees what its centre sees (integer coordinates, geometry/camera.h).
-/// - Vertices are projected and rounded to 1/256 px; edge functions are 64-bit integers with the top-left rule, so that
-///   two faces that share an edge never both cover a pixel centre and never leave a hole between them.
+/// - Vertices are projected and rounded to 1/256 px; edge functions are integers with the top-left rule, so that two
+///   faces that share an edge never both cover a pixel centre and never leave a hole between them.
 /// - The nearest face wins; of faces at exactly the same depth, the one with the lowest index.
-/// - Pinhole: 1/z is linear on the screen and is what is compared. Weak perspective: z is.
+/// - Pinhole: 1/z is linear on the screen and is what is compared. Weak perspective: z is. Formula and rounding:
+///   render/raster_simd.h.
 /// - Faces are clipped in space at the near plane and, should they reach further than 2^21 px, at that guard band.
 ///   With lens distortion edges are drawn straight between distorted vertices, and a face that after the near clip
 ///   still has a vertex outside the lens' field of view is not drawn.
 /// - Only the box that holds the projected mesh is allocated, cleared and visited.
 ///
-/// Same input, same bytes. Cost: about 1 ms for 16,000 faces at 512².
+/// Same input, same bytes: for any number of threads and any instruction set. How it works, what it costs:
+/// docs/rendering.md.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "geometry/arrays.h"
 #include "geometry/camera.h"
 #include "render/pixel_box.h"
+#include "render/raster_simd.h"
 
 namespace bodyloom {
 
 struct VisibilityOptions {
   bool cull_back_faces = true;  ///< faces are counter-clockwise seen from outside
   double near_m = 0.01;         ///< pinhole: nothing nearer than this is seen; at least Camera::kMinDepth
+  int num_threads = 1;          ///< at least 1
+  bool whole_image = false;     ///< visit every pixel of the image instead of the mesh's box: same picture, more time
 };
 
 /// Keeps its memory between frames. Not for use by two threads at once.
 class VisibilityBuffer {
  public:
   /// Sees `faces` (F×3, indices into the V×3 vertices in the camera frame, metres) with `camera`. Throws
-  /// std::invalid_argument when the camera has no image size, an index is out of range or a vertex is not finite.
+  /// std::invalid_argument when the camera has no image size, an index is out of range or a vertex is not finite; the
+  /// buffer sees nothing then.
   void Render(const MatrixX3d& vertices_in_camera, const MatrixX3i& faces, const Camera& camera,
               const VisibilityOptions& options = {});
 
   /// The pixels that were visited; everything outside is background.
   [[nodiscard]] const PixelBox& box() const { return box_; }
   /// Face index of each pixel of the box, row-major; −1 is background.
-  [[nodiscard]] std::span<const int32_t> faces() const { return face_; }
+  [[nodiscard]] std::span<const int32_t> faces() const { return {face_.get(), box_.area()}; }
   /// 1/z (pinhole) or −z (weak perspective) of each pixel of the box: larger is nearer; −infinity on the background.
-  [[nodiscard]] std::span<const float> nearness() const { return nearness_; }
+  [[nodiscard]] std::span<const float> nearness() const { return {nearness_.get(), box_.area()}; }
 
   /// Face seen by any pixel, −1 for background and outside the image.
   [[nodiscard]] int FaceAt(int x, int y) const { return box_.Contains(x, y) ? face_[box_.IndexOf(x, y)] : -1; }
@@ -55,23 +62,37 @@ class VisibilityBuffer {
   [[nodiscard]] bool IsVisible(const Eigen::Vector3d& point_in_camera, double tolerance_m) const;
 
  private:
-  struct ScreenVertex {
-    int32_t x = 0, y = 0;  ///< 1/256 px
-    double nearness = 0;
-    bool usable = false;  ///< in front of the near plane, inside the lens' field and the guard band
+  /// Faces of one stretch of indices, sorted by the tiles they meet.
+  struct Chunk {
+    int first = 0, last = 0;
+    raster_internal::SmallFaces small;
+    std::vector<raster_internal::LargeFace> large;
+    std::vector<int32_t> others;
+    std::vector<int32_t> small_begin, small_entries, large_begin, large_entries;  ///< by tile
   };
-  ScreenVertex ToScreen(const Eigen::Vector3d& point_in_camera) const;
-  void FindBox(int num_vertices);
-  void DrawFace(const ScreenVertex& a, ScreenVertex b, ScreenVertex c, int face);
-  void DrawClipped(const MatrixX3d& vertices, const MatrixX3i& faces, int face);
+  void ProjectChunk(const MatrixX3d& vertices, int chunk);
+  [[nodiscard]] bool ToScreen(const Eigen::Vector3d& point, raster_internal::ScreenVertex* screen) const;
+  void PrepareFaces(const MatrixX3d& vertices, const MatrixX3i& faces);
+  void ClipFaces(const MatrixX3d& vertices, const MatrixX3i& faces, raster_internal::ScreenExtent* extent);
+  void SetUpChunk(const MatrixX3i& faces, int chunk);
+  void SortIntoTiles(Chunk* chunk) const;
+  void DrawTile(int tile);
+  [[nodiscard]] raster_internal::Box DrawnBox() const;
 
   Camera camera_;
-  bool is_plain_pinhole_ = true;
+  bool is_linear_ = true;  ///< no lens distortion
   VisibilityOptions options_;
   PixelBox box_;
-  std::vector<int32_t> face_;
-  std::vector<float> nearness_;
-  std::vector<ScreenVertex> screen_;
+  std::unique_ptr<int32_t[]> face_;  ///< not cleared before it is written: at 16k that would take as long as drawing
+  std::unique_ptr<float[]> nearness_;
+  size_t capacity_ = 0;
+
+  int num_vertices_ = 0, tiles_across_ = 0, tiles_down_ = 0;
+  std::vector<double> x_px_, y_px_;
+  std::vector<raster_internal::ScreenVertex> screen_vertices_;
+  raster_internal::ScreenArrays screen_;
+  std::vector<raster_internal::ScreenExtent> extents_;
+  std::vector<Chunk> chunks_;  ///< the last one holds pieces of clipped faces
 };
 
 }  // namespace bodyloom
