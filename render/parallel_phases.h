@@ -9,8 +9,8 @@
 namespace bodyloom {
 
 struct Phase {
-  std::function<int()> count;      ///< how many tasks; called once, by one thread, when the phase before is done
-  std::function<void(int)> task;   ///< called once for every i in 0..count()−1
+  std::function<int()> count;     ///< how many tasks; called once, by one thread, when the phase before is done
+  std::function<void(int)> task;  ///< called once for every i in 0..count()−1
 };
 
 /// Runs the phases in order on up to num_threads threads, the caller's among them (geometry/parallel.h). Which thread

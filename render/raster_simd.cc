@@ -40,12 +40,12 @@ HWY_INLINE void ProjectLanes(D d, const Projection& projection, hn::Vec<D> x, hn
     ok = hn::And(ok, hn::Ge(z, hn::Set(d, projection.near_m)));
     w = nearness = hn::Div(one, hn::IfThenElse(ok, z, one));
   }
-  const auto x_px = hn::Add(
-      hn::Mul(hn::Set(d, projection.scale_x), hn::Add(hn::Mul(x, w), hn::Set(d, projection.offset_x))),
-      hn::Set(d, projection.centre_x));
-  const auto y_px = hn::Add(
-      hn::Mul(hn::Set(d, projection.scale_y), hn::Add(hn::Mul(y, w), hn::Set(d, projection.offset_y))),
-      hn::Set(d, projection.centre_y));
+  const auto x_px =
+      hn::Add(hn::Mul(hn::Set(d, projection.scale_x), hn::Add(hn::Mul(x, w), hn::Set(d, projection.offset_x))),
+              hn::Set(d, projection.centre_x));
+  const auto y_px =
+      hn::Add(hn::Mul(hn::Set(d, projection.scale_y), hn::Add(hn::Mul(y, w), hn::Set(d, projection.offset_y))),
+              hn::Set(d, projection.centre_y));
   const auto guard = hn::Set(d, kGuardBandPx);
   ok = hn::And(ok, hn::And(hn::Lt(hn::Abs(x_px), guard), hn::Lt(hn::Abs(y_px), guard)));
   const auto subpixels = hn::Set(d, double{kSubpixels}), half = hn::Set(d, 0.5);
@@ -250,8 +250,8 @@ void DrawSmallFaces(const SmallFaces& faces, const int32_t* entries, int count, 
     const auto draw = [&](VI ea, VI eb, VI ec, int at) HWY_ATTR {
       const auto inside = hn::Gt(hn::Or(hn::Or(ea, eb), ec), hn::Set(d, -1));
       if (hn::AllFalse(d, inside)) return;
-      const VF nearness = hn::Add(
-          anchor, hn::Add(hn::Mul(hn::ConvertTo(df, eb), slope_b), hn::Mul(hn::ConvertTo(df, ec), slope_c)));
+      const VF nearness =
+          hn::Add(anchor, hn::Add(hn::Mul(hn::ConvertTo(df, eb), slope_b), hn::Mul(hn::ConvertTo(df, ec), slope_c)));
       const VF before = hn::Load(df, tile->nearness + at);
       const auto wins = hn::And(hn::RebindMask(df, inside), hn::Gt(nearness, before));
       hn::Store(hn::IfThenElse(wins, nearness, before), df, tile->nearness + at);
@@ -305,8 +305,7 @@ HWY_INLINE void DrawLargeRow(const LargeRow& row, int x_begin, int x_end, float*
     const auto before = hn::Load(df, nearness_row + x);
     const auto face_before = hn::Load(di, face_row + x);
     const auto column = hn::Iota(di, x);
-    const auto inside =
-        hn::And(hn::Gt(column, hn::Set(di, x_begin - 1)), hn::Lt(column, hn::Set(di, x_end)));
+    const auto inside = hn::And(hn::Gt(column, hn::Set(di, x_begin - 1)), hn::Lt(column, hn::Set(di, x_end)));
     const auto nearer = hn::RebindMask(di, hn::Gt(nearness, before));
     const auto tied = hn::And(hn::RebindMask(di, hn::Eq(nearness, before)), hn::Lt(face, face_before));
     const auto wins = hn::And(inside, hn::Or(nearer, tied));

@@ -23,7 +23,8 @@
 namespace bodyloom::raster_internal {
 
 inline constexpr int kSubpixels = 256;
-inline constexpr double kGuardBandPx = 1 << 21;  ///< 2^29 subpixels: sums of two products of differences stay below 2^62
+inline constexpr double kGuardBandPx =
+    1 << 21;  ///< 2^29 subpixels: sums of two products of differences stay below 2^62
 inline constexpr int kTileWidth = 64, kTileHeight = 32;
 inline constexpr int kLanes = 16;  ///< the widest vector; arrays that kernels write end in as many spare entries
 

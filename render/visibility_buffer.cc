@@ -51,8 +51,8 @@ PixelBox PixelsOf(const ScreenExtent& extent) {
           (extent.y_max >> 8) + 1};
 }
 
-/// Counting sort of items 0..count−1 by the tiles that their pixels (PixelBox of an item, not empty) meet; within a tile
-/// items rise.
+/// Counting sort of items 0..count−1 by the tiles that their pixels (PixelBox of an item, not empty) meet; within a
+/// tile items rise.
 template <class BoxOf>
 void SortByTile(int count, int tiles_across, int num_tiles, const BoxOf& box_of, std::vector<int32_t>* begin,
                 std::vector<int32_t>* entries) {
@@ -99,6 +99,8 @@ void VisibilityBuffer::ProjectChunk(const MatrixX3d& vertices, int chunk) {
     extent.all_finite = extent.all_finite && point.allFinite();
     if (ToScreen(point, &screen_vertices_[v])) {
       Extend(screen_vertices_[v].x, screen_vertices_[v].y, &extent);
+      x_px_[v] = camera_.fx * point.x() / point.z() + camera_.cx;
+      y_px_[v] = camera_.fy * point.y() / point.z() + camera_.cy;
     } else {
       screen_vertices_[v] = {kUnusable, 0, 0, 0};
       extent.all_usable = false;
@@ -187,7 +189,9 @@ void VisibilityBuffer::SortIntoTiles(Chunk* chunk) const {
   const raster_internal::SmallFaces& small = chunk->small;
   SortByTile(
       small.size, tiles_across_, num_tiles,
-      [&](int i) { return PixelBox{small.x_begin[i], small.y_begin[i], small.x_end[i], small.y_end[i]}; },
+      [&](int i) {
+        return PixelBox{small.x_begin[i], small.y_begin[i], small.x_end[i], small.y_end[i]};
+      },
       &chunk->small_begin, &chunk->small_entries);
   const PixelBox drawn{0, 0, box_.width(), box_.height()};
   const auto box_of = [&](const LargeFace& f) {
@@ -246,12 +250,11 @@ void VisibilityBuffer::Render(const MatrixX3d& vertices, const MatrixX3i& faces,
                  ", expected positive and below ", kGuardBandPx);
   BODYLOOM_CHECK(options.near_m >= Camera::kMinDepth, "visibility buffer: near plane at ", options.near_m,
                  " m, expected at least ", Camera::kMinDepth, " m");
-  BODYLOOM_CHECK(options.num_threads >= 1, "visibility buffer: ", options.num_threads,
-                 " threads, expected at least 1");
+  BODYLOOM_CHECK(options.num_threads >= 1, "visibility buffer: ", options.num_threads, " threads, expected at least 1");
   num_vertices_ = static_cast<int>(vertices.rows());
   BODYLOOM_CHECK(raster_internal::AllInRange(faces.data(), faces.size(), num_vertices_),
-                 "visibility buffer: faces name vertices ", faces.minCoeff(), "..", faces.maxCoeff(),
-                 ", expected 0..", num_vertices_ - 1);
+                 "visibility buffer: faces name vertices ", faces.minCoeff(), "..", faces.maxCoeff(), ", expected 0..",
+                 num_vertices_ - 1);
   camera_ = camera;
   options_ = options;
   is_linear_ = camera.model == CameraModel::kWeakPerspective || !camera.HasDistortion();

@@ -61,6 +61,13 @@ class VisibilityBuffer {
   /// Points outside the image or the camera's valid set are not visible.
   [[nodiscard]] bool IsVisible(const Eigen::Vector3d& point_in_camera, double tolerance_m) const;
 
+  /// Of the vertices last rendered: whether one projects (it lies in front of the near plane, in the lens' field and
+  /// inside the guard band), and where to: pixels, not rounded, lens distortion left out.
+  [[nodiscard]] bool VertexProjects(int v) const { return screen_vertices_[v].x != raster_internal::kUnusable; }
+  [[nodiscard]] float VertexNearness(int v) const { return screen_vertices_[v].nearness; }
+  [[nodiscard]] std::span<const double> vertex_x_px() const { return {x_px_.data(), size_t(num_vertices_)}; }
+  [[nodiscard]] std::span<const double> vertex_y_px() const { return {y_px_.data(), size_t(num_vertices_)}; }
+
  private:
   /// Faces of one stretch of indices, sorted by the tiles they meet.
   struct Chunk {

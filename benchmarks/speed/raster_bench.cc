@@ -6,6 +6,7 @@
 #include "data_tools/builtin_body.h"
 #include "geometry/posed_body.h"
 #include "render/visibility_buffer.h"
+#include "render/resolve_pixels.h"
 #include "tests/support/raster_twin.h"
 using namespace bodyloom;
 int main(int argc, char** argv) {
@@ -31,6 +32,17 @@ int main(int argc, char** argv) {
       }
       std::sort(t.begin(), t.end());
       std::printf("%d threads %d: median %.3f min %.3f ms box %dx%d\n", size, threads, t[100], t[0], b.box().width(), b.box().height());
+    }
+    for (int what = 0; what < 4; ++what) {
+      ResolvedPixels out; std::vector<double> t;
+      ResolveRequest r; if (what==0) r.part=r.chart_uv=true; if (what==1) r.part=true; if (what==2) r.normal=true; if (what==3) r.depth=true;
+      for (int i = 0; i < 200; ++i) {
+        auto t0 = std::chrono::steady_clock::now();
+        ResolvePixels(b, body, v, c, r, &out);
+        t.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - t0).count() * 1e3);
+      }
+      std::sort(t.begin(), t.end());
+      std::printf("  resolve %d: median %.3f min %.3f ms\n", what, t[100], t[0]);
     }
     if (size > 1024 || argc > 1) continue;
     TwinPicture twin = RasterTwin(v, body.data().faces, c, true);

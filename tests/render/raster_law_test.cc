@@ -37,10 +37,10 @@ Scene Soup(const Camera& camera, uint32_t seed, bool cull, int count = 400) {
       scene.vertices(3 * f + c, 2) = std::max(scene.vertices(3 * f + c, 2), 0.6);
       scene.faces(f, c) = 3 * f + c;
     }
-    if (f % 16 == 3) scene.vertices.row(3 * f + 1) = scene.vertices.row(3 * f);                     // no area
-    if (f % 16 == 5) scene.faces(f, 2) = scene.faces(f, 0);                                         // named twice
-    if (f % 16 == 7 && f > 0) scene.faces.row(f) = scene.faces.row(f - 1);                          // there already
-    if (f % 16 == 9) scene.vertices.row(3 * f + 2) = scene.vertices.row(3 * f) + 1e-4 * middle;     // a needle
+    if (f % 16 == 3) scene.vertices.row(3 * f + 1) = scene.vertices.row(3 * f);                  // no area
+    if (f % 16 == 5) scene.faces(f, 2) = scene.faces(f, 0);                                      // named twice
+    if (f % 16 == 7 && f > 0) scene.faces.row(f) = scene.faces.row(f - 1);                       // there already
+    if (f % 16 == 9) scene.vertices.row(3 * f + 2) = scene.vertices.row(3 * f) + 1e-4 * middle;  // a needle
   }
   return scene;
 }

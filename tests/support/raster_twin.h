@@ -54,7 +54,8 @@ inline TwinPicture RasterTwin(const MatrixX3d& vertices, const MatrixX3i& faces,
     const int64_t area = area_of();
     const auto [x_low, x_high] = std::minmax({p[0].x, p[1].x, p[2].x});
     const auto [y_low, y_high] = std::minmax({p[0].y, p[1].y, p[2].y});
-    const bool small = static_cast<float>(x_high - x_low + 34 * 256) * static_cast<float>(y_high - y_low + 2 * 256) < 1.07e9F;
+    const bool small =
+        static_cast<float>(x_high - x_low + 34 * 256) * static_cast<float>(y_high - y_low + 2 * 256) < 1.07e9F;
     const auto first = [&](int64_t low) { return every_pixel ? 0 : std::max<int64_t>(0, low / 256 - 1); };
     const auto last = [&](int64_t high, int end) { return every_pixel ? end : std::min<int64_t>(end, high / 256 + 2); };
     for (int64_t y = first(y_low); y < last(y_high, camera.height); ++y) {
