@@ -9,7 +9,6 @@
 #include "geometry/check.h"
 #include "geometry/posed_body.h"
 #include "render/draw_keypoints.h"
-#include "render/shaded_mesh.h"
 
 namespace bodyloom {
 namespace {
@@ -68,6 +67,7 @@ bool OverlayOptions::IsValid(std::string* why) const {
   if (!(side_aspect > 0.1 && side_aspect < 10)) return no("overlay: side_aspect must be in (0.1, 10)");
   if (!(std::abs(side_elevation_deg) < 90)) return no("overlay: side_elevation_deg must be in (-90, 90)");
   if (!std::isfinite(side_yaw_deg)) return no("overlay: side_yaw_deg must be finite");
+  if (num_threads < 1) return no("overlay: num_threads must be at least 1");
   if (!(up_in_camera.norm() > 0)) return no("overlay: up_in_camera must not be zero");
   return true;
 }
@@ -168,6 +168,10 @@ void OverlayRenderer::DrawLandmarks(int frame, const KeypointSequence* detected,
   DrawKeypoints(seen, {.size_px = 0.8 * size, .bones = false}, image);
 }
 
+MeshStyle OverlayRenderer::Style(double alpha) const {
+  return {.face_colours = face_colours_, .alpha = alpha, .samples = Samples(), .num_threads = options_.num_threads};
+}
+
 void OverlayRenderer::DrawSide(int frame, Image* panel) const {
   const MatrixX3i& faces = body_.data().faces;
   View view = *side_;
@@ -181,13 +185,14 @@ void OverlayRenderer::DrawSide(int frame, Image* panel) const {
     if (vertices_in_camera.rows() == 0) return;
     const MatrixX3d vertices = view.Apply(vertices_in_camera);
     DrawShadow(vertices, faces, floor, view.camera, 0.3, panel);
-    DrawMesh(vertices, faces, view.camera, style, panel);
+    drawer_.Draw(vertices, faces, view.camera, style, panel);
   };
   if (reference_ != nullptr) {
-    draw(TrackVertices(body_, *reference_, frame), {.colour = kReferenceColour, .samples = Samples()});
+    draw(TrackVertices(body_, *reference_, frame),
+         {.colour = kReferenceColour, .samples = Samples(), .num_threads = options_.num_threads});
   }
   const double alpha = reference_ != nullptr ? options_.alpha : 1;
-  draw(TrackVertices(body_, track_, frame), {.face_colours = face_colours_, .alpha = alpha, .samples = Samples()});
+  draw(TrackVertices(body_, track_, frame), Style(alpha));
 }
 
 Image OverlayRenderer::Backdrop(const MatrixX3d& vertices, const Camera& camera) const {
@@ -217,8 +222,7 @@ Image OverlayRenderer::Render(int frame, const OverlayFrame& what) const {
   }
   if (pose && options_.body) {
     const double alpha = what.background != nullptr ? options_.alpha : 1;
-    DrawMesh(vertices, body_.data().faces, camera,
-             {.face_colours = face_colours_, .alpha = alpha, .samples = Samples()}, &view);
+    drawer_.Draw(vertices, body_.data().faces, camera, Style(alpha), &view);
   }
   if (pose && (options_.skeleton || what.detected != nullptr)) DrawLandmarks(frame, what.detected, *pose, &view);
   const double caption_height = std::max(9.0, view.height / 48.0);

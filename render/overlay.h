@@ -14,6 +14,7 @@
 #include "render/caption.h"
 #include "render/floor.h"
 #include "render/image.h"
+#include "render/shaded_mesh.h"
 #include "render/view_camera.h"
 
 namespace bodyloom {
@@ -39,6 +40,7 @@ struct OverlayOptions {
   Eigen::Vector3d up_in_camera =
       -Eigen::Vector3d::UnitY();  ///< for the floor and the side view, when the camera is tilted
   double min_confidence = 0.1;    ///< detections below are not drawn
+  int num_threads = 1;            ///< the picture is the same for any number
   /// False with the reason when a field is out of range.
   bool IsValid(std::string* why) const;
 };
@@ -50,6 +52,7 @@ struct OverlayFrame {
   std::vector<CaptionLine> caption = {};       ///< top left
 };
 
+/// Not for use by two threads at once.
 class OverlayRenderer {
  public:
   /// Borrows everything. `reference`, when given, is the true track: it stands beside the estimate in the side view.
@@ -72,6 +75,7 @@ class OverlayRenderer {
   [[nodiscard]] Image Backdrop(const MatrixX3d& vertices, const Camera& camera) const;
   /// Large pictures need fewer samples a pixel to look smooth.
   [[nodiscard]] int Samples() const { return track_.camera.height >= 600 ? 2 : 3; }
+  [[nodiscard]] MeshStyle Style(double alpha) const;
   void DrawSide(int frame, Image* panel) const;
 
   const BodyModel& body_;
@@ -83,6 +87,7 @@ class OverlayRenderer {
   MatrixX3d side_centre_;     ///< T×3: where that origin is
   Image backdrop_, side_backdrop_;
   std::optional<Floor> floor_;  ///< camera frame
+  mutable MeshDrawer drawer_;   ///< memory used again
 };
 
 /// The body of frame t of a track, V×3 in the camera frame; empty when the frame is lost.

@@ -8,6 +8,7 @@
 
 #include "geometry/check.h"
 #include "geometry/parallel.h"
+#include "render/covered_span.h"
 #include "render/shaded_mesh.h"
 #include "render/visible_points.h"
 
@@ -15,13 +16,6 @@ namespace bodyloom {
 namespace {
 
 constexpr int kRowsATask = 16;
-
-/// Whether eight neighbours see nothing: most of a person's box is background.
-bool IsBackground(const int32_t* ids) {
-  int32_t all = ids[0];
-  for (int i = 1; i < 8; ++i) all &= ids[i];  // −1 has every bit
-  return all == -1;
-}
 
 /// The covered pixels of one row.
 struct RowPoints {
@@ -182,10 +176,11 @@ class Resolver {
     points->size = 0;
     int last = -1;
     ProjectedFace face;
-    for (int column = 0; column < box.width(); ++column) {
+    const CoveredSpan span = FindCoveredSpan(ids, box.width());
+    for (int column = span.begin; column < span.end; ++column) {
       const int id = ids[column];
       if (id < 0) {
-        while (column + 8 < box.width() && IsBackground(ids + column + 1)) column += 8;
+        while (column + 8 < span.end && SeeNothing(ids + column + 1)) column += 8;
         continue;
       }
       const int i = points->size++;

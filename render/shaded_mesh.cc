@@ -5,8 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 #include "geometry/check.h"
+#include "geometry/parallel.h"
+#include "render/covered_span.h"
+#include "render/shade_simd.h"
 #include "render/view_camera.h"
 #include "render/visibility_buffer.h"
 
@@ -14,46 +19,29 @@ namespace bodyloom {
 namespace {
 
 using Eigen::Vector2d;
+using Eigen::Vector2f;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-/// Light that a surface with this unit normal sends to the eye, 0 dark … 1 full colour … above 1 highlight. Camera
-/// frame: the eye looks along +z.
-struct Light {
-  float diffuse, highlight;
-};
-Light Shade(const Vector3f& n) {
-  static const Vector3f kKey = Vector3f(-0.45f, -0.65f, -0.62f).normalized();  // from the upper left, behind the viewer
-  static const Vector3f kFill = Vector3f(0.75f, -0.05f, -0.65f).normalized();
-  static const Vector3f kHalfway = (kKey + Vector3f(0, 0, -1)).normalized();
-  const float key = std::max(0.0f, 0.5f + 0.5f * n.dot(kKey));  // wraps round: no hard terminator
-  const float fill = std::max(0.0f, n.dot(kFill));
-  const float sky = 0.5f - 0.5f * n.y();
-  const float edge = 1 - std::min(1.0f, std::abs(n.z()));
-  const float rim = edge * edge * edge;
-  float spark = std::max(0.0f, n.dot(kHalfway));
-  for (int i = 0; i < 5; ++i) spark *= spark;  // to the power of 32
-  return {0.22f + 0.72f * key * key + 0.13f * fill + 0.12f * sky, 0.10f * spark + 0.16f * rim * sky};
+/// Nearness of a point step_m further away.
+float FurtherBy(float step_m, float nearness, const Camera& camera) {
+  return camera.model == CameraModel::kPinhole ? nearness / (1 + step_m * nearness) : nearness - step_m;
 }
 
 /// Interpolates vertex normals across the face under a sample. Linear on the screen: inside one face of a body that
 /// differs from the perspective-correct value by less than shading can show.
+/// For one thread; the arrays are borrowed.
 class NormalSampler {
  public:
-  NormalSampler(const MatrixX3d& vertices, const MatrixX3i& faces, const Camera& camera)
-      : faces_(faces), normals_(VertexNormals(vertices, faces).cast<float>()), pixels_(vertices.rows(), 2) {
-    for (int v = 0; v < vertices.rows(); ++v) {
-      Vector2d pixel = Vector2d::Zero();
-      camera.Project(vertices.row(v).transpose(), &pixel);
-      pixels_.row(v) = pixel.transpose();
-    }
-  }
+  NormalSampler(const MatrixX3i& faces, const MatrixX3f& normals, const MatrixX2d& pixels)
+      : faces_(faces), normals_(normals), pixels_(pixels) {}
 
+  /// Not of unit length.
   Vector3f At(int face, double x, double y) {
     if (face != face_) Prepare(face);
-    const auto b = static_cast<float>(std::clamp(row_b_.dot(Vector2d(x, y) - origin_), 0.0, 1.0));
-    const auto c = static_cast<float>(std::clamp(row_c_.dot(Vector2d(x, y) - origin_), 0.0, 1.0));
-    return (corner_[0] + b * (corner_[1] - corner_[0]) + c * (corner_[2] - corner_[0])).normalized();
+    const Vector2f at = (Vector2d(x, y) - origin_).cast<float>();
+    const float b = std::clamp(row_b_.dot(at), 0.0F, 1.0F), c = std::clamp(row_c_.dot(at), 0.0F, 1.0F);
+    return corner_[0] + b * (corner_[1] - corner_[0]) + c * (corner_[2] - corner_[0]);
   }
 
  private:
@@ -65,16 +53,17 @@ class NormalSampler {
     const Vector2d v = pixels_.row(faces_(face, 2)).transpose() - origin_;
     const double area = u.x() * v.y() - u.y() * v.x();
     const double scale = std::abs(area) > 1e-9 ? 1 / area : 0;
-    row_b_ = scale * Vector2d(v.y(), -v.x());
-    row_c_ = scale * Vector2d(-u.y(), u.x());
+    row_b_ = (scale * Vector2d(v.y(), -v.x())).cast<float>();
+    row_c_ = (scale * Vector2d(-u.y(), u.x())).cast<float>();
   }
 
   const MatrixX3i& faces_;
-  MatrixX3f normals_;
-  MatrixX2d pixels_;
+  const MatrixX3f& normals_;
+  const MatrixX2d& pixels_;
   int face_ = -1;
   std::array<Vector3f, 3> corner_ = {Vector3f::Zero(), Vector3f::Zero(), Vector3f::Zero()};
-  Vector2d origin_ = Vector2d::Zero(), row_b_ = Vector2d::Zero(), row_c_ = Vector2d::Zero();
+  Vector2d origin_ = Vector2d::Zero();
+  Vector2f row_b_ = Vector2f::Zero(), row_c_ = Vector2f::Zero();
 };
 
 /// Finds the samples where the surface ends: the background, or something at least 4 cm further away, begins within
@@ -82,7 +71,10 @@ class NormalSampler {
 class OutlineFinder {
  public:
   OutlineFinder(const VisibilityBuffer& buffer, const Camera& camera, int radius)
-      : buffer_(buffer), camera_(camera), inner_(buffer.box().GrownBy(-radius)) {
+      : buffer_(buffer),
+        camera_(camera),
+        radius_(radius),
+        nothing_(buffer.box().width(), -std::numeric_limits<float>::infinity()) {
     const int diagonal = std::max(1, static_cast<int>(std::lround(radius * 0.7071)));
     offsets_ = {{{radius, 0},
                  {-radius, 0},
@@ -92,31 +84,244 @@ class OutlineFinder {
                  {diagonal, -diagonal},
                  {-diagonal, diagonal},
                  {-diagonal, -diagonal}}};
-    for (size_t k = 0; k < offsets_.size(); ++k)
-      steps_[k] = ptrdiff_t(offsets_[k][1]) * buffer.box().width() + offsets_[k][0];
+  }
+
+  /// mask[i] ≠ 0 where the sample (begin + i, y) of the box's row y lies on the line. Background: anything.
+  void FindRow(int y, int begin, int end, int8_t* mask) const {
+    const PixelBox& box = buffer_.box();
+    // Columns whose neighbours all lie in the box.
+    const int inner_begin = std::clamp(box.x_begin + radius_, begin, end);
+    const int inner_end = std::clamp(box.x_end - radius_, inner_begin, end);
+    for (int x = begin; x < inner_begin; ++x) mask[x - begin] = IsOutline(x, y) ? -1 : 0;
+    for (int x = inner_end; x < end; ++x) mask[x - begin] = IsOutline(x, y) ? -1 : 0;
+    shade_internal::OutlineRow row;
+    row.here = RowAt(y) + (inner_begin - box.x_begin);
+    row.count = inner_end - inner_begin;
+    for (size_t k = 0; k < offsets_.size(); ++k) {
+      const int j = std::clamp(y + offsets_[k][1], 0, camera_.height - 1);  // the border of the image ends no surface
+      row.neighbours[k] = RowAt(j) + (inner_begin + offsets_[k][0] - box.x_begin);
+    }
+    if (row.count > 0) {
+      shade_internal::FindOutline(row, kStep_m, camera_.model == CameraModel::kWeakPerspective,
+                                  mask + inner_begin - begin);
+    }
+  }
+
+ private:
+  static constexpr float kStep_m = 0.04F;
+
+  [[nodiscard]] const float* RowAt(int y) const {
+    const PixelBox& box = buffer_.box();
+    if (y < box.y_begin || y >= box.y_end) return nothing_.data();
+    return buffer_.nearness().data() + box.IndexOf(box.x_begin, y);
   }
 
   [[nodiscard]] bool IsOutline(int x, int y) const {
-    constexpr float kStep_m = 0.04f;
-    const size_t index = buffer_.box().IndexOf(x, y);
-    const float* here = buffer_.nearness().data() + index;
-    const float limit = camera_.model == CameraModel::kPinhole ? *here / (1 + kStep_m * *here) : *here - kStep_m;
-    if (inner_.Contains(x, y)) {
-      return std::any_of(steps_.begin(), steps_.end(), [&](ptrdiff_t step) { return here[step] < limit; });
-    }
+    const float here = RowAt(y)[x - buffer_.box().x_begin];
+    const float limit = FurtherBy(kStep_m, here, camera_);
     return std::any_of(offsets_.begin(), offsets_.end(), [&](const auto& d) {
-      const int i = std::clamp(x + d[0], 0, camera_.width - 1);  // the border of the image ends no surface
+      const int i = std::clamp(x + d[0], 0, camera_.width - 1);
       const int j = std::clamp(y + d[1], 0, camera_.height - 1);
       return !buffer_.box().Contains(i, j) || buffer_.nearness()[buffer_.box().IndexOf(i, j)] < limit;
     });
   }
 
- private:
   const VisibilityBuffer& buffer_;
   const Camera& camera_;
-  PixelBox inner_;  ///< where no neighbour leaves the box
+  int radius_;
+  std::vector<float> nothing_;
   std::array<std::array<int, 2>, 8> offsets_;
-  std::array<ptrdiff_t, 8> steps_;
+};
+
+/// Points of a row of pixels at which light is computed, each for a share of its pixel.
+struct ShadingPoints {
+  int size = 0;
+  std::vector<float> nx, ny, nz, blue, green, red;
+  std::vector<int> column;
+  std::vector<float> cover;  ///< opacity × share of the pixel
+  std::vector<Colour> ink;   ///< what an outline mixes in
+  std::vector<uint8_t> outlined;
+  explicit ShadingPoints(int capacity) : column(capacity), cover(capacity), ink(capacity), outlined(capacity) {
+    for (auto* values : {&nx, &ny, &nz, &blue, &green, &red}) values->resize(capacity + shade_internal::kLanes);
+  }
+};
+
+class MeshPainter {
+ public:
+  MeshPainter(const MatrixX3d& vertices, const MatrixX3i& faces, const Camera& camera, const MeshStyle& style,
+              VisibilityBuffer* buffer)
+      : faces_(faces), style_(style), n_(style.samples), fine_(ScaledCamera(camera, style.samples)), buffer_(*buffer) {
+    buffer->Render(vertices, faces, fine_, {.num_threads = style.num_threads});
+    normals_ = VertexNormals(vertices, faces).cast<float>();
+    pixels_.resize(vertices.rows(), 2);
+    for (int v = 0; v < vertices.rows(); ++v) {
+      Vector2d pixel = Vector2d::Zero();
+      fine_.Project(vertices.row(v).transpose(), &pixel);
+      pixels_.row(v) = pixel.transpose();
+    }
+    const int radius = static_cast<int>(std::lround(style.outline_px * n_));
+    if (radius > 0) outline_.emplace(buffer_, fine_, radius);
+    const PixelBox& box = buffer_.box();
+    box_ = {box.x_begin / n_, box.y_begin / n_, (box.x_end + n_ - 1) / n_, (box.y_end + n_ - 1) / n_};
+  }
+
+  [[nodiscard]] const PixelBox& box() const { return box_; }
+
+  void DrawRows(int y_begin, int y_end, Image* image) const {
+    Scratch scratch(box_.width(), n_);
+    NormalSampler normals(faces_, normals_, pixels_);
+    // The number of samples known to the compiler: nearly half of the time is spent looking at them.
+    const auto draw_row = n_ == 1   ? &MeshPainter::DrawRow<1>
+                          : n_ == 2 ? &MeshPainter::DrawRow<2>
+                          : n_ == 3 ? &MeshPainter::DrawRow<3>
+                                    : &MeshPainter::DrawRow<0>;
+    for (int y = y_begin; y < y_end; ++y) (this->*draw_row)(y, &normals, &scratch, image);
+  }
+
+ private:
+  struct Scratch {
+    ShadingPoints points;
+    std::vector<int8_t> mask;  ///< n rows of n·width samples
+    std::vector<float> cover, blue, green, red;
+    Scratch(int width, int n) : points(width * n * n), mask(size_t(width) * n * n) {
+      for (auto* values : {&cover, &blue, &green, &red}) values->resize(width + shade_internal::kLanes);
+    }
+  };
+
+  /// The samples of one pixel, row by row; −1 outside the box.
+  struct PixelSamples {
+    std::array<int, 64> face;
+    std::array<uint8_t, 64> outlined;
+    bool any = false;
+    bool is_smooth = true;  ///< all covered, one colour, no line, no step in depth
+  };
+
+  /// Columns of the box, [begin, end), outside of which the pixel row sees nothing.
+  void FindSpan(int y, int* begin, int* end) const {
+    const PixelBox& box = buffer_.box();
+    *begin = box.x_end, *end = box.x_begin;
+    for (int j = std::max(y * n_, box.y_begin); j < std::min((y + 1) * n_, box.y_end); ++j) {
+      const CoveredSpan span = FindCoveredSpan(&buffer_.faces()[box.IndexOf(box.x_begin, j)], box.width());
+      if (span.begin == span.end) continue;
+      *begin = std::min(*begin, box.x_begin + span.begin), *end = std::max(*end, box.x_begin + span.end);
+    }
+  }
+
+  /// `mask` starts at column mask_begin of the box and has rows of n·width bytes.
+  template <int kSamples>
+  void ReadSamples(int x, int y, int mask_begin, const int8_t* mask, PixelSamples* samples) const {
+    const int n = kSamples > 0 ? kSamples : n_;
+    const PixelBox& box = buffer_.box();
+    const bool is_inside = box.Contains(x * n, y * n) && box.Contains(x * n + n - 1, y * n + n - 1);
+    float nearest = -std::numeric_limits<float>::infinity(), furthest = -nearest;
+    int all = -1, any_missing = 0, lines = 0;
+    for (int j = 0, s = 0; j < n; ++j) {
+      const size_t row = is_inside ? box.IndexOf(x * n, y * n + j) : 0;
+      const int8_t* mask_row = mask + size_t(j) * box_.width() * n + (x * n - mask_begin);
+      for (int i = 0; i < n; ++i, ++s) {
+        size_t at = row + i;
+        if (!is_inside) {
+          if (!box.Contains(x * n + i, y * n + j)) {
+            samples->face[s] = any_missing = -1;
+            continue;
+          }
+          at = box.IndexOf(x * n + i, y * n + j);
+        }
+        const int face = buffer_.faces()[at];
+        const float nearness = buffer_.nearness()[at];
+        samples->face[s] = face;
+        samples->outlined[s] = outline_ && face >= 0 && mask_row[i] != 0;
+        lines |= samples->outlined[s];
+        all &= face, any_missing |= face;
+        nearest = std::max(nearest, nearness), furthest = std::min(furthest, nearness);
+      }
+    }
+    constexpr float kStep_m = 0.01F;
+    samples->any = all != -1;
+    samples->is_smooth = any_missing >= 0 && lines == 0 && furthest >= FurtherBy(kStep_m, nearest, fine_);
+    for (int s = 1; s < n * n && samples->is_smooth && !style_.face_colours.empty(); ++s) {
+      samples->is_smooth =
+          samples->face[s] == samples->face[0] || ColourOf(samples->face[s]) == ColourOf(samples->face[0]);
+    }
+  }
+
+  [[nodiscard]] const Colour& ColourOf(int face) const {
+    return style_.face_colours.empty() ? style_.colour : style_.face_colours[face];
+  }
+
+  void AddPoint(int column, int face, double x, double y, bool outlined, float share, NormalSampler* normals,
+                ShadingPoints* points) const {
+    const int i = points->size++;
+    const Vector3f normal = normals->At(face, x, y);
+    points->nx[i] = normal.x(), points->ny[i] = normal.y(), points->nz[i] = normal.z();
+    const Colour& c = ColourOf(face);
+    points->blue[i] = c.blue, points->green[i] = c.green, points->red[i] = c.red;
+    points->column[i] = column;
+    points->outlined[i] = outlined;
+    points->ink[i] = c;
+    const double alpha = outlined ? std::max(style_.alpha, style_.outline_alpha) : style_.alpha;
+    points->cover[i] = static_cast<float>(alpha) * share;
+  }
+
+  template <int kSamples>
+  void DrawRow(int y, NormalSampler* normals, Scratch* scratch, Image* image) const {
+    int fine_begin, fine_end;
+    FindSpan(y, &fine_begin, &fine_end);
+    if (fine_begin >= fine_end) return;
+    const PixelBox& box = buffer_.box();
+    for (int j = 0; j < n_ && outline_; ++j) {
+      if (y * n_ + j < box.y_begin || y * n_ + j >= box.y_end) continue;
+      outline_->FindRow(y * n_ + j, fine_begin, fine_end, &scratch->mask[size_t(j) * box_.width() * n_]);
+    }
+    const int begin = fine_begin / n_, end = (fine_end + n_ - 1) / n_;
+    ShadingPoints& points = scratch->points;
+    points.size = 0;
+    const float share = 1.0F / static_cast<float>(n_ * n_);
+    PixelSamples samples;
+    for (int x = begin; x < end; ++x) {
+      ReadSamples<kSamples>(x, y, fine_begin, scratch->mask.data(), &samples);
+      if (!samples.any) continue;
+      if (samples.is_smooth) {
+        const double middle = 0.5 * (n_ - 1);
+        AddPoint(x - begin, samples.face[0], x * n_ + middle, y * n_ + middle, false, 1, normals, &points);
+        continue;
+      }
+      for (int s = 0; s < n_ * n_; ++s) {
+        if (samples.face[s] < 0) continue;
+        AddPoint(x - begin, samples.face[s], x * n_ + s % n_, y * n_ + s / n_, samples.outlined[s], share, normals,
+                 &points);
+      }
+    }
+    shade_internal::ShadePixels({points.nx.data(), points.ny.data(), points.nz.data(), points.blue.data(),
+                                 points.green.data(), points.red.data(), points.size});
+    for (auto* values : {&scratch->cover, &scratch->blue, &scratch->green, &scratch->red}) {
+      std::fill_n(values->begin(), end - begin, 0.0F);
+    }
+    const auto ink = static_cast<float>(style_.outline_alpha);
+    for (int i = 0; i < points.size; ++i) {
+      const int x = points.column[i];
+      const float cover = points.cover[i];
+      scratch->cover[x] += cover;
+      const float keep = points.outlined[i] ? cover * (1 - ink) : cover;
+      const float line = points.outlined[i] ? cover * ink * 0.22F : 0;
+      scratch->blue[x] += keep * points.blue[i] + line * points.ink[i].blue;
+      scratch->green[x] += keep * points.green[i] + line * points.ink[i].green;
+      scratch->red[x] += keep * points.red[i] + line * points.ink[i].red;
+    }
+    shade_internal::BlendPixels(
+        {scratch->cover.data(), scratch->blue.data(), scratch->green.data(), scratch->red.data(), end - begin},
+        image->pixel(begin, y));
+  }
+
+  const MatrixX3i& faces_;
+  const MeshStyle& style_;
+  int n_;
+  Camera fine_;
+  const VisibilityBuffer& buffer_;
+  MatrixX3f normals_;
+  MatrixX2d pixels_;
+  std::optional<OutlineFinder> outline_;
+  PixelBox box_;
 };
 
 }  // namespace
@@ -135,55 +340,25 @@ MatrixX3d VertexNormals(const MatrixX3d& vertices, const MatrixX3i& faces) {
   return normals;
 }
 
-void DrawMesh(const MatrixX3d& vertices, const MatrixX3i& faces, const Camera& camera, const MeshStyle& style,
-              Image* image) {
+void MeshDrawer::Draw(const MatrixX3d& vertices, const MatrixX3i& faces, const Camera& camera, const MeshStyle& style,
+                      Image* image) {
   BODYLOOM_CHECK(image->width == camera.width && image->height == camera.height, "overlay: the image is ", image->width,
                  "x", image->height, ", the camera ", camera.width, "x", camera.height);
   BODYLOOM_CHECK(style.face_colours.empty() || static_cast<Eigen::Index>(style.face_colours.size()) == faces.rows(),
                  "overlay: ", style.face_colours.size(), " face colours for ", faces.rows(), " faces");
   BODYLOOM_CHECK(style.samples >= 1 && style.samples <= 8, "overlay: ", style.samples, " samples, expected 1..8");
-  const int n = style.samples;
-  const Camera fine = ScaledCamera(camera, n);
-  VisibilityBuffer buffer;
-  buffer.Render(vertices, faces, fine);
-  if (buffer.box().empty()) return;
-  NormalSampler normals(vertices, faces, fine);
-  const int radius = static_cast<int>(std::lround(style.outline_px * n));
-  const OutlineFinder outline(buffer, fine, radius);
-  const PixelBox box{buffer.box().x_begin / n, buffer.box().y_begin / n, (buffer.box().x_end + n - 1) / n,
-                     (buffer.box().y_end + n - 1) / n};
-  const float per_sample = 1.0f / static_cast<float>(n * n);
+  const MeshPainter painter(vertices, faces, camera, style, &buffer_);
+  constexpr int kRowsATask = 8;
+  const PixelBox& box = painter.box();
+  ParallelFor((box.height() + kRowsATask - 1) / kRowsATask, style.num_threads, [&](int task) {
+    const int begin = box.y_begin + task * kRowsATask;
+    painter.DrawRows(begin, std::min(box.y_end, begin + kRowsATask), image);
+  });
+}
 
-  for (int y = box.y_begin; y < box.y_end; ++y) {
-    for (int x = box.x_begin; x < box.x_end; ++x) {
-      Vector3f sum = Vector3f::Zero();  // premultiplied, blue green red
-      float cover = 0;
-      for (int j = y * n; j < (y + 1) * n; ++j) {
-        for (int i = x * n; i < (x + 1) * n; ++i) {
-          const int face = buffer.FaceAt(i, j);
-          if (face < 0) continue;
-          const Colour& c = style.face_colours.empty() ? style.colour : style.face_colours[face];
-          const Light light = Shade(normals.At(face, i, j));
-          Vector3f colour =
-              Vector3f(c.blue, c.green, c.red) * light.diffuse + Vector3f::Constant(255 * light.highlight);
-          auto alpha = static_cast<float>(style.alpha);
-          if (radius > 0 && outline.IsOutline(i, j)) {
-            const auto ink = static_cast<float>(style.outline_alpha);
-            colour = (1 - ink) * colour + ink * 0.22f * Vector3f(c.blue, c.green, c.red);
-            alpha = std::max(alpha, ink);
-          }
-          sum += alpha * colour.cwiseMin(255.0f);
-          cover += alpha;
-        }
-      }
-      if (cover == 0) continue;
-      uint8_t* p = image->pixel(x, y);
-      for (int k = 0; k < 3; ++k) {
-        p[k] = static_cast<uint8_t>(
-            std::clamp(p[k] * (1 - cover * per_sample) + sum[k] * per_sample + 0.5f, 0.0f, 255.0f));
-      }
-    }
-  }
+void DrawMesh(const MatrixX3d& vertices, const MatrixX3i& faces, const Camera& camera, const MeshStyle& style,
+              Image* image) {
+  MeshDrawer().Draw(vertices, faces, camera, style, image);
 }
 
 }  // namespace bodyloom
