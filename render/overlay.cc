@@ -21,41 +21,6 @@ std::optional<BodyPose> PoseOf(const BodyModel& body, const Track& track, int fr
   return PoseFromAxisAngle(body, motion.poses.row(frame).transpose(), motion.trans.row(frame).transpose());
 }
 
-/// Joints of the frames of a track; no rows where a frame is lost.
-std::vector<MatrixX3d> JointsOf(const BodyModel& body, const Track& track) {
-  const MatrixX3d rest = body.RestJoints(track.motion.betas);
-  std::vector<MatrixX3d> joints(track.num_frames());
-  for (int t = 0; t < track.num_frames(); ++t) {
-    if (const auto pose = PoseOf(body, track, t)) joints[t] = PoseSkeleton(body, rest, *pose).joints;
-  }
-  return joints;
-}
-
-/// The root's path blurred over about a second, so that a camera on it moves smoothly; lost frames are bridged.
-MatrixX3d SmoothRootPath(const std::vector<MatrixX3d>& joints, const std::vector<double>& times) {
-  constexpr double kBlur_s = 0.35;
-  const int T = static_cast<int>(joints.size());
-  std::vector<int> known;
-  for (int t = 0; t < T; ++t) {
-    if (joints[t].rows() > 0) known.push_back(t);
-  }
-  MatrixX3d path = MatrixX3d::Zero(T, 3);
-  size_t first = 0;
-  for (int t = 0; t < T; ++t) {
-    while (first + 1 < known.size() && times[known[first]] < times[t] - 3 * kBlur_s) ++first;
-    Vector3d sum = Vector3d::Zero();
-    double weights = 0;
-    for (size_t i = first; i < known.size() && (i == first || times[known[i]] < times[t] + 3 * kBlur_s); ++i) {
-      const double lag = (times[known[i]] - times[t]) / kBlur_s;
-      const double weight = std::max(std::exp(-0.5 * lag * lag), 1e-9);  // in a long gap the nearest frame still counts
-      sum += weight * joints[known[i]].row(0).transpose();
-      weights += weight;
-    }
-    path.row(t) = (sum / weights).transpose();
-  }
-  return path;
-}
-
 }  // namespace
 
 bool OverlayOptions::IsValid(std::string* why) const {
@@ -94,8 +59,8 @@ OverlayRenderer::OverlayRenderer(const BodyModel& body, const Track& track, cons
     }
   }
   backdrop_ = StudioBackdrop(track.camera.width, track.camera.height);
-  const std::vector<MatrixX3d> joints = JointsOf(body, track);
-  const std::vector<MatrixX3d> leaders = reference != nullptr ? JointsOf(body, *reference) : joints;
+  const std::vector<MatrixX3d> joints = TrackJoints(body, track);
+  const std::vector<MatrixX3d> leaders = reference != nullptr ? TrackJoints(body, *reference) : joints;
   FindFloor(leaders);
   if (options.side_view) PlaceSideView(joints, leaders);
 }
@@ -111,27 +76,17 @@ void OverlayRenderer::FindFloor(const std::vector<MatrixX3d>& joints) {
 }
 
 void OverlayRenderer::PlaceSideView(const std::vector<MatrixX3d>& joints, const std::vector<MatrixX3d>& leaders) {
-  const auto is_known = [](const MatrixX3d& frame) { return frame.rows() > 0; };
-  BODYLOOM_CHECK(std::any_of(leaders.begin(), leaders.end(), is_known),
-                 "overlay: no frame of the track is known, there is nothing to see from the side");
-  BODYLOOM_CHECK(leaders.size() == joints.size() && track_.motion.timestamps.size() == joints.size(),
-                 "overlay: the track has ", joints.size(), " frames and ", track_.motion.timestamps.size(),
-                 " timestamps, its reference ", leaders.size(), " frames");
-  side_centre_ = SmoothRootPath(leaders, track_.motion.timestamps);
-  if (!options_.side_follows) side_centre_.rowwise() = Eigen::RowVector3d(side_centre_.colwise().mean());
-
-  std::vector<MatrixX3d> around_centre;
-  for (size_t t = 0; t < joints.size(); ++t) {
-    const auto centre = side_centre_.row(static_cast<Eigen::Index>(t));
-    if (is_known(joints[t])) around_centre.push_back(joints[t].rowwise() - centre);
-    if (is_known(leaders[t])) around_centre.push_back(leaders[t].rowwise() - centre);
-  }
-  const int side_width = 2 * static_cast<int>(std::lround(0.5 * track_.camera.height * options_.side_aspect));
-  side_ = OrbitView(around_centre, side_width, track_.camera.height,
-                    {.yaw_deg = options_.side_yaw_deg,
-                     .elevation_deg = options_.side_elevation_deg,
-                     .up_in_camera = options_.up_in_camera});
-  side_backdrop_ = StudioBackdrop(side_->camera.width, side_->camera.height);
+  BODYLOOM_CHECK(leaders.size() == joints.size(), "overlay: the track has ", joints.size(), " frames, its reference ",
+                 leaders.size());
+  FollowViewOptions view;
+  view.orbit = {.yaw_deg = options_.side_yaw_deg,
+                .elevation_deg = options_.side_elevation_deg,
+                .up_in_camera = options_.up_in_camera};
+  view.width = 2 * static_cast<int>(std::lround(0.5 * track_.camera.height * options_.side_aspect));
+  view.height = track_.camera.height;
+  view.follows = options_.side_follows;
+  side_.emplace(leaders, track_.motion.timestamps, view, joints);
+  side_backdrop_ = StudioBackdrop(view.width, view.height);
 }
 
 void OverlayRenderer::DrawLandmarks(int frame, const KeypointSequence* detected, const BodyPose& pose,
@@ -174,12 +129,11 @@ MeshStyle OverlayRenderer::Style(double alpha) const {
 
 void OverlayRenderer::DrawSide(int frame, Image* panel) const {
   const MatrixX3i& faces = body_.data().faces;
-  View view = *side_;
+  const View view = side_->At(frame);
   const Eigen::Matrix3d& R = view.from_camera.camera_from_world_rotation;
-  view.from_camera.camera_from_world_translation -= R * side_centre_.row(frame).transpose();
   const Vector3d& t = view.from_camera.camera_from_world_translation;
   const Floor floor{R * floor_->point + t, R * floor_->up};
-  DrawFloorGrid(floor, R * side_centre_.row(frame).transpose() + t, {}, view.camera, panel);
+  DrawFloorGrid(floor, R * side_->CentreAt(frame) + t, {}, view.camera, panel);
 
   const auto draw = [&](const MatrixX3d& vertices_in_camera, const MeshStyle& style) {
     if (vertices_in_camera.rows() == 0) return;

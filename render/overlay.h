@@ -13,9 +13,9 @@
 #include "geometry/track.h"
 #include "render/caption.h"
 #include "render/floor.h"
+#include "render/follow_view.h"
 #include "render/image.h"
 #include "render/shaded_mesh.h"
-#include "render/view_camera.h"
 
 namespace bodyloom {
 
@@ -61,7 +61,7 @@ class OverlayRenderer {
                   const Track* reference = nullptr);
 
   /// Size of the pictures, side panel included.
-  [[nodiscard]] int width() const { return track_.camera.width + (side_ ? side_->camera.width : 0); }
+  [[nodiscard]] int width() const { return track_.camera.width + side_backdrop_.width; }
   [[nodiscard]] int height() const { return track_.camera.height; }
 
   /// Frames that the track has lost show no body. Throws std::invalid_argument when `frame` is not in the track or the
@@ -83,8 +83,7 @@ class OverlayRenderer {
   const Track* reference_;
   OverlayOptions options_;
   std::vector<Colour> face_colours_;
-  std::optional<View> side_;  ///< of a person at the origin when it follows
-  MatrixX3d side_centre_;     ///< T×3: where that origin is
+  std::optional<FollowView> side_;
   Image backdrop_, side_backdrop_;
   std::optional<Floor> floor_;  ///< camera frame
   mutable MeshDrawer drawer_;   ///< memory used again
