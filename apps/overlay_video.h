@@ -36,8 +36,4 @@ struct OverlaySummary {
 /// and when `path` cannot be written; nothing is left behind then.
 OverlaySummary WriteOverlayVideo(const std::string& path, const OverlayVideo& what);
 
-/// Frames a second of a video whose frames have these timestamps: 1 / their median step, within [1, 240]; 30 for one
-/// frame.
-double VideoFrameRate(const std::vector<double>& timestamps);
-
 }  // namespace bodyloom

@@ -8,9 +8,9 @@
 
 #include "apps/files.h"
 #include "apps/interrupt.h"
-#include "apps/overlay_video.h"
 #include "apps/progress.h"
 #include "apps/track_inputs.h"
+#include "apps/track_video.h"
 #include "data_tools/motion/load_motion.h"
 #include "data_tools/observations/load_cameras.h"
 #include "data_tools/observations/observations_npz.h"

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <opencv2/imgproc.hpp>
 
 #include "geometry/check.h"
@@ -26,6 +27,16 @@ void FloorAxes(const Floor& floor, Vector3d* right, Vector3d* ahead) {
 }
 
 }  // namespace
+
+std::optional<Floor> FloorUnder(const std::vector<MatrixX3d>& joints, const Vector3d& up_in) {
+  const Vector3d up = up_in.normalized();
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const MatrixX3d& frame : joints) {
+    if (frame.rows() > 0) lowest = std::min(lowest, (frame * up).minCoeff());
+  }
+  if (!std::isfinite(lowest)) return std::nullopt;
+  return Floor{(lowest - 0.04) * up, up};
+}
 
 void DrawFloorGrid(const Floor& floor_in, const Vector3d& centre, const FloorGridStyle& style, const Camera& camera,
                    Image* image) {

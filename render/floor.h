@@ -3,6 +3,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
+#include <vector>
 
 #include "geometry/arrays.h"
 #include "geometry/camera.h"
@@ -15,6 +17,10 @@ struct Floor {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   Eigen::Vector3d up = -Eigen::Vector3d::UnitY();
 };
+
+/// The floor on which a person stands in a clip: level with `up`, a few centimetres under the lowest joint, which is an
+/// ankle or a foot, of all frames (joints J×3, no rows where a frame is unknown). Nothing when no frame is known.
+std::optional<Floor> FloorUnder(const std::vector<MatrixX3d>& joints, const Eigen::Vector3d& up);
 
 struct FloorGridStyle {
   double spacing_m = 0.5;

@@ -76,6 +76,22 @@ std::vector<MatrixX3d> TrackJoints(const BodyModel& body, const Track& track) {
   return joints;
 }
 
+Vector3d EstimatedUp(const Track& track) {
+  constexpr double kSteadiness = 0.95, kFurthest_deg = 40;
+  const Vector3d camera_up = -Vector3d::UnitY();
+  Vector3d sum = Vector3d::Zero();
+  int known = 0;
+  for (int t = 0; t < track.num_frames(); ++t) {
+    const Vector3d root = track.motion.poses.row(t).head<3>().transpose();
+    if (!root.allFinite()) continue;
+    sum += RotationFromAxisAngle(root) * Vector3d::UnitY();
+    ++known;
+  }
+  if (sum.norm() < kSteadiness * known || known == 0) return camera_up;
+  const Vector3d up = sum.normalized();
+  return up.dot(camera_up) > std::cos(kFurthest_deg * M_PI / 180) ? up : camera_up;
+}
+
 FollowView::FollowView(const std::vector<MatrixX3d>& joints, const std::vector<double>& timestamps,
                        const FollowViewOptions& options, const std::vector<MatrixX3d>& others)
     : options_(options) {

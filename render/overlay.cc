@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "geometry/check.h"
@@ -61,18 +60,8 @@ OverlayRenderer::OverlayRenderer(const BodyModel& body, const Track& track, cons
   backdrop_ = StudioBackdrop(track.camera.width, track.camera.height);
   const std::vector<MatrixX3d> joints = TrackJoints(body, track);
   const std::vector<MatrixX3d> leaders = reference != nullptr ? TrackJoints(body, *reference) : joints;
-  FindFloor(leaders);
+  floor_ = FloorUnder(leaders, options.up_in_camera);
   if (options.side_view) PlaceSideView(joints, leaders);
-}
-
-void OverlayRenderer::FindFloor(const std::vector<MatrixX3d>& joints) {
-  // It lies under the lowest joint, which is an ankle or a foot, a few centimetres below it.
-  const Vector3d up = options_.up_in_camera.normalized();
-  double lowest = std::numeric_limits<double>::infinity();
-  for (const MatrixX3d& frame : joints) {
-    if (frame.rows() > 0) lowest = std::min(lowest, (frame * up).minCoeff());
-  }
-  if (std::isfinite(lowest)) floor_ = Floor{(lowest - 0.04) * up, up};
 }
 
 void OverlayRenderer::PlaceSideView(const std::vector<MatrixX3d>& joints, const std::vector<MatrixX3d>& leaders) {

@@ -70,7 +70,6 @@ class OverlayRenderer {
 
  private:
   void DrawLandmarks(int frame, const KeypointSequence* detected, const BodyPose& pose, Image* image) const;
-  void FindFloor(const std::vector<MatrixX3d>& joints);
   void PlaceSideView(const std::vector<MatrixX3d>& joints, const std::vector<MatrixX3d>& leaders);
   [[nodiscard]] Image Backdrop(const MatrixX3d& vertices, const Camera& camera) const;
   /// Large pictures need fewer samples a pixel to look smooth.

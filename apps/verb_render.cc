@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include "apps/exit_code.h"
+#include "apps/render_run.h"
+#include "apps/verbs.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr const char* kFooter =
+    "What is shown:\n"
+    "  overlay  the body, shaded, over the video or in a studio with a floor\n"
+    "  iuv      chart coordinates: red u, green v, blue the part   parts   DensePose's 24 charts in colours\n"
+    "  normal   the surface's direction in the camera frame        depth   metres: warm near, cold far\n"
+    "  texture  a picture in the body's UV atlas (--texture), on the body\n"
+    "What is written, by the ending of --out:\n"
+    "  .mp4     every frame                 .png    a contact sheet of up to 12 frames, to judge a run at a glance\n"
+    "  .npz     numbers: frames, timestamps, frame_status, K, image_size and, T frames of H x W pixels:\n"
+    "           part uint8 (0: nobody), uv float32 T*H*W*2, normal float32 T*H*W*3, depth float32 in metres (inf:\n"
+    "           nobody), rgb and mask uint8; with a new view also view_rotation, view_translation: x_view = R x + t\n"
+    "Frames that the track has lost are shown without a body and counted. A video frame is found by the track's\n"
+    "timestamp: a longer video's rest is left out, where it is too short a plain background stands in and is counted.\n"
+    "Examples:\n"
+    "  bodyloom render --track track.npz --what overlay --video clip.mp4 --out overlay.mp4\n"
+    "  bodyloom render --track track.npz --what parts --out parts.png\n"
+    "  bodyloom render --track track.npz --what overlay --view-yaw 90 --out left.mp4      from the person's left\n"
+    "  bodyloom render --track track.npz --what normal --frames 42 --turntable --out turn.mp4\n"
+    "  bodyloom render --track track.npz --what iuv --frames 0:30 --out iuv.npz\n\n";
+
+void Render(const RenderCommand& command) {
+  const RenderReport report = RunRender(command);
+  if (!command.quiet) {
+    std::cout << ToText(report);
+  }
+}
+
+}  // namespace
+
+void AddRenderVerb(CLI::App& app, Action* action) {
+  CLI::App* verb =
+      app.add_subcommand("render", "Shows a track: overlay, parts, IUV, normals, depth, texture; any side");
+  verb->footer(std::string(kFooter) + kExitCodeHelp);
+  auto command = std::make_shared<RenderCommand>();
+  RenderCommand& c = *command;
+  verb->add_option("--track", c.track, "the track, .npz")->required()->type_name("FILE");
+  verb->add_option("--what", c.what, "what to show (below)")
+      ->required()
+      ->check(CLI::IsMember({"overlay", "iuv", "parts", "normal", "depth", "texture"}))
+      ->type_name("KIND");
+  verb->add_option("--out", c.out, "where to write it: .mp4, .png or .npz")->required()->type_name("FILE");
+  verb->add_option("--video", c.video, "what the person was filmed with, as background")->type_name("FILE");
+  verb->add_option("--body", c.body, "the track's body (default: the built-in body)")->type_name("FILE");
+  verb->add_option("--frames", c.frames, "only frames a to b-1; one number: that frame (default: all)")
+      ->type_name("a:b");
+  CLI::Option* yaw =
+      verb->add_option("--view-yaw", c.view_yaw_deg,
+                       "see the person from the side: degrees about the vertical, 90 is from its left; the camera "
+                       "follows the person")
+          ->check(CLI::Range(-3600.0, 3600.0))
+          ->type_name("DEG");
+  verb->add_flag(
+      "--turntable", c.turntable,
+      "that camera makes one full turn over the frames (one frame: the pose is held, 120 pictures or 12 cells)");
+  verb->add_option("--texture", c.texture, "for --what texture: the picture, laid out in the body's atlas")
+      ->type_name("FILE");
+  verb->add_option("--json", c.json, "what was done, for a program")->type_name("FILE");
+  verb->add_option("--threads", c.num_threads, "0: all cores; pictures are the same for any number")
+      ->check(CLI::Range(0, 256))
+      ->capture_default_str();
+  verb->add_flag("--quiet", c.quiet, "only errors");
+  verb->callback([command, yaw, action] {
+    command->has_view_yaw = yaw->count() > 0;
+    *action = [command] { Render(*command); };
+  });
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What the surface carries, as colours for people to look at. (Programs want the numbers: render/resolve_pixels.h.)
+///
+///   parts    the chart's colour (render/palette.h)
+///   iuv      red = u, green = v of the chart, blue rises with the part's number
+///   normal   camera frame: red = right, green = up, blue = towards the viewer, each (1 + component) / 2
+///   depth    near is warm, far is cold (OpenCV's "turbo"), linear between two depths
+///   texture  a UV map of colours over the body's atlas
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "geometry/body_model.h"
+#include "geometry/camera.h"
+#include "render/image.h"
+#include "render/resolve_pixels.h"
+#include "render/visibility_buffer.h"
+
+namespace bodyloom {
+
+enum class SurfaceAttribute { kParts, kIuv, kNormal, kDepth, kTexture };
+
+struct AttributePictureOptions {
+  SurfaceAttribute attribute = SurfaceAttribute::kParts;
+  double near_m = 1, far_m = 5;  ///< depth: where the colours begin and end
+  TexelAttribute texture = {};   ///< texture: three channels blue, green, red, 0…255
+  int samples = 2;               ///< a pixel along x and y, 1..8: their colours are averaged, never their coordinates
+  int num_threads = 1;           ///< the picture is the same for any number
+};
+
+/// UV map of an image's colours, for AttributePictureOptions::texture (which borrows it).
+std::vector<float> TexelsOf(const Image& image);
+
+/// Keeps its memory between pictures. Not for use by two threads at once.
+class AttributePainter {
+ public:
+  /// Draws the attribute over an image of the camera's size. Throws std::invalid_argument when sizes differ or the body
+  /// lacks what is to be drawn.
+  void Draw(const BodyModel& body, const MatrixX3d& vertices_in_camera, const Camera& camera,
+            const AttributePictureOptions& options, Image* image);
+
+ private:
+  VisibilityBuffer buffer_;
+  ResolvedPixels pixels_;
+};
+
+}  // namespace bodyloom
