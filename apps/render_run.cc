@@ -237,6 +237,9 @@ std::string ToText(const RenderReport& report) {
     text += Concatenate(report.without_video, " of ", report.pictures,
                         " pictures have no video frame at their time: they have a plain background\n");
   }
+  if (report.video_frames_left > 0) {
+    text += Concatenate("the video goes on for ", report.video_frames_left, " frames after the track: left out\n");
+  }
   for (const std::string& path : report.outputs) {
     text += "wrote " + path + "\n";
   }
