@@ -52,8 +52,8 @@ HWY_INLINE void ProjectLanes(D d, const Projection& projection, hn::Vec<D> x, hn
   const auto snapped = [&](auto px) HWY_ATTR {
     return hn::Floor(hn::Add(hn::Mul(hn::IfThenElseZero(ok, px), subpixels), half));
   };
-  hn::StoreU(x_px, d, screen.x_px + first);
-  hn::StoreU(y_px, d, screen.y_px + first);
+  const auto unknown = hn::Set(d, std::numeric_limits<double>::quiet_NaN());
+  hn::StoreInterleaved4(x_px, y_px, hn::IfThenElse(ok, nearness, unknown), zero, d, &screen.projected[first].x_px);
   *x_snapped = hn::DemoteTo(di, hn::IfThenElse(ok, snapped(x_px), hn::Set(d, double{kUnusable})));
   *y_snapped = hn::DemoteTo(di, snapped(y_px));
   const auto nearness_bits = hn::BitCast(di, hn::DemoteTo(df, nearness));

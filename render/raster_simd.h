@@ -20,6 +20,17 @@
 #include <string>
 #include <vector>
 
+namespace bodyloom {
+
+/// Where a vertex is seen, not rounded; lens distortion left out.
+struct ProjectedVertex {
+  double x_px, y_px;
+  double nearness;  ///< 1/z, or −z for weak perspective; NaN: behind the near plane, outside the lens or guard band
+  double spare;     ///< makes it half a cache line
+};
+
+}  // namespace bodyloom
+
 namespace bodyloom::raster_internal {
 
 inline constexpr int kSubpixels = 256;
@@ -45,7 +56,7 @@ struct ScreenVertex {
 
 /// By vertex.
 struct ScreenArrays {
-  double *x_px = nullptr, *y_px = nullptr;  ///< not rounded
+  ProjectedVertex* projected = nullptr;
   ScreenVertex* vertices = nullptr;
 };
 
@@ -55,7 +66,8 @@ struct ScreenExtent {
   bool all_usable = true, all_finite = true;
 };
 
-/// Projects vertices first..last−1 (V×3 row-major, camera frame, metres). Pixels of unusable vertices hold anything.
+/// Projects vertices first..last−1 (V×3 row-major, camera frame, metres). Pixels of unusable vertices hold
+/// anything.
 void ProjectVertices(const Projection& projection, const double* vertices, int first, int last,
                      const ScreenArrays& screen, ScreenExtent* extent);
 

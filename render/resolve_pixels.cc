@@ -148,16 +148,15 @@ class Resolver {
 
   ProjectedFace Project(int face) const {
     ProjectedFace f;
-    const auto corners = body_.data().faces.row(face);
-    std::array<double, 3> x, y;
-    for (int c = 0; c < 3; ++c) {
-      if (!buffer_.VertexProjects(corners[c])) return f;
-      x[c] = buffer_.vertex_x_px()[corners[c]], y[c] = buffer_.vertex_y_px()[corners[c]];
-      f.weight[c] = is_weak_ ? 1.0F : buffer_.VertexNearness(corners[c]);
-    }
-    f.x = x[0], f.y = y[0];
-    f.ux = static_cast<float>(x[1] - x[0]), f.uy = static_cast<float>(y[1] - y[0]);
-    f.vx = static_cast<float>(x[2] - x[0]), f.vy = static_cast<float>(y[2] - y[0]);
+    const int* const corners = &body_.data().faces(face, 0);
+    const ProjectedVertex* const vertices = buffer_.vertices().data();
+    const ProjectedVertex &a = vertices[corners[0]], &b = vertices[corners[1]], &c = vertices[corners[2]];
+    if (std::isnan(a.nearness + b.nearness + c.nearness)) return f;
+    f.x = a.x_px, f.y = a.y_px;
+    f.ux = static_cast<float>(b.x_px - a.x_px), f.uy = static_cast<float>(b.y_px - a.y_px);
+    f.vx = static_cast<float>(c.x_px - a.x_px), f.vy = static_cast<float>(c.y_px - a.y_px);
+    f.weight = {1, 1, 1};
+    if (!is_weak_) f.weight = {float(a.nearness), float(b.nearness), float(c.nearness)};
     const float area = f.ux * f.vy - f.uy * f.vx;
     f.per_area = std::abs(area) > 1e-6F * (f.ux * f.ux + f.uy * f.uy + f.vx * f.vx + f.vy * f.vy) ? 1 / area : 0;
     return f;

@@ -99,10 +99,11 @@ void VisibilityBuffer::ProjectChunk(const MatrixX3d& vertices, int chunk) {
     extent.all_finite = extent.all_finite && point.allFinite();
     if (ToScreen(point, &screen_vertices_[v])) {
       Extend(screen_vertices_[v].x, screen_vertices_[v].y, &extent);
-      x_px_[v] = camera_.fx * point.x() / point.z() + camera_.cx;
-      y_px_[v] = camera_.fy * point.y() / point.z() + camera_.cy;
+      projected_[v] = {camera_.fx * point.x() / point.z() + camera_.cx, camera_.fy * point.y() / point.z() + camera_.cy,
+                       1 / point.z(), 0};
     } else {
       screen_vertices_[v] = {kUnusable, 0, 0, 0};
+      projected_[v] = {0, 0, std::numeric_limits<double>::quiet_NaN(), 0};
       extent.all_usable = false;
     }
   }
@@ -260,8 +261,8 @@ void VisibilityBuffer::Render(const MatrixX3d& vertices, const MatrixX3i& faces,
   is_linear_ = camera.model == CameraModel::kWeakPerspective || !camera.HasDistortion();
 
   const size_t room = static_cast<size_t>(num_vertices_) + kLanes;  // kernels write whole vectors
-  x_px_.resize(room), y_px_.resize(room), screen_vertices_.resize(room);
-  screen_ = {x_px_.data(), y_px_.data(), screen_vertices_.data()};
+  projected_.resize(room), screen_vertices_.resize(room);
+  screen_ = {projected_.data(), screen_vertices_.data()};
   const int vertex_chunks = DivideUp(num_vertices_, kVerticesAChunk);
   extents_.assign(vertex_chunks, {});
   RunPhases(options.num_threads,

@@ -61,12 +61,8 @@ class VisibilityBuffer {
   /// Points outside the image or the camera's valid set are not visible.
   [[nodiscard]] bool IsVisible(const Eigen::Vector3d& point_in_camera, double tolerance_m) const;
 
-  /// Of the vertices last rendered: whether one projects (it lies in front of the near plane, in the lens' field and
-  /// inside the guard band), and where to: pixels, not rounded, lens distortion left out.
-  [[nodiscard]] bool VertexProjects(int v) const { return screen_vertices_[v].x != raster_internal::kUnusable; }
-  [[nodiscard]] float VertexNearness(int v) const { return screen_vertices_[v].nearness; }
-  [[nodiscard]] std::span<const double> vertex_x_px() const { return {x_px_.data(), size_t(num_vertices_)}; }
-  [[nodiscard]] std::span<const double> vertex_y_px() const { return {y_px_.data(), size_t(num_vertices_)}; }
+  /// The vertices last rendered.
+  [[nodiscard]] std::span<const ProjectedVertex> vertices() const { return {projected_.data(), size_t(num_vertices_)}; }
 
  private:
   /// Faces of one stretch of indices, sorted by the tiles they meet.
@@ -95,7 +91,7 @@ class VisibilityBuffer {
   size_t capacity_ = 0;
 
   int num_vertices_ = 0, tiles_across_ = 0, tiles_down_ = 0;
-  std::vector<double> x_px_, y_px_;
+  std::vector<ProjectedVertex> projected_;
   std::vector<raster_internal::ScreenVertex> screen_vertices_;
   raster_internal::ScreenArrays screen_;
   std::vector<raster_internal::ScreenExtent> extents_;

@@ -112,7 +112,7 @@ std::string BenchText(const BenchReport& report) {
       cells.push_back(line);
       ++rows;
     }
-    if (rows > 1) {
+    if (rows > 1 && report.summarise) {
       std::vector<std::string> mean(report.label_columns.size()), spread(report.label_columns.size());
       mean[0] = "mean";
       spread[0] = "std";
@@ -162,7 +162,7 @@ std::string BenchJson(const BenchReport& report) {
       for (size_t c = 0; c < row.values.size(); ++c) line[report.value_columns[c]] = row.values[c];
       entry["rows"].push_back(line);
     }
-    for (size_t c = 0; c < report.value_columns.size(); ++c) {
+    for (size_t c = 0; c < report.value_columns.size() && report.summarise; ++c) {
       const ErrorStatistics s = Column(report, group, c);
       entry["mean"][report.value_columns[c]] = s.mean;
       entry["std"][report.value_columns[c]] = s.std_dev;

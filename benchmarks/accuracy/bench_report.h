@@ -21,9 +21,11 @@ struct BenchReport {
   std::vector<std::string> value_columns;  ///< "pa_mpjpe_mm", …
   std::vector<BenchRow> rows;
   std::vector<std::string> notes;
+  bool summarise = true;  ///< close each group with the mean and spread of its rows
 };
 
-/// A table a group, each closed by "mean" and "std" (population, over its rows), then notes, commit and machine.
+/// A table a group, each closed by "mean" and "std" (population, over its rows) when asked for, then notes, commit and
+/// machine.
 std::string BenchText(const BenchReport& report);
 
 /// {title, command, commit, machine, notes, groups: [{name, rows: [{label: …, value: …}], mean: {…}, std: {…}}]}.

@@ -33,6 +33,7 @@ THIRD_PARTY = [
     (r"opencv2/", {"render", "data_tools"} | TEST_CODE, True),
     (r"(torch|ATen|c10|caffe2)/", {"neural"} | TEST_CODE, False),
     (r"CGAL/", TEST_CODE, False),
+    (r"embree3/", TEST_CODE, False),
     (r"OpenMesh/", {"geometry", "data_tools"} | TEST_CODE, False),
     (r"nlohmann/(?!json_fwd)", {"data_tools", "apps"} | TEST_CODE, False),
     (r"(matio|zlib)\.h", {"data_tools"} | TEST_CODE, False),
