@@ -9,11 +9,14 @@
 #include "geometry/check.h"
 #include "geometry/parallel.h"
 #include "render/covered_span.h"
+#include "render/resolve_simd.h"
 #include "render/shaded_mesh.h"
 #include "render/visible_points.h"
 
 namespace bodyloom {
 namespace {
+
+using resolve_internal::Barycentrics;
 
 constexpr int kRowsATask = 16;
 
@@ -21,29 +24,9 @@ constexpr int kRowsATask = 16;
 struct RowPoints {
   int size = 0;
   std::vector<int32_t> column, face;
-  std::vector<std::array<float, 3>> barycentric;
+  std::vector<Barycentrics> barycentric;
   std::vector<std::array<float, 2>> atlas_uv;
   explicit RowPoints(int width) : column(width), face(width), barycentric(width), atlas_uv(width) {}
-};
-
-/// Barycentrics of pixels in one projected face.
-struct ProjectedFace {
-  double x = 0, y = 0;          ///< first corner
-  float ux, uy, vx, vy;         ///< edges from it to the other two
-  float per_area = 0;           ///< 0: no area, or a corner that does not project
-  std::array<float, 3> weight;  ///< 1/z
-
-  /// False where the plane is seen edge-on or the pixel lies far outside: rounding decides nothing good there.
-  bool At(double px, double py, std::array<float, 3>* barycentric) const {
-    const auto ex = static_cast<float>(px - x), ey = static_cast<float>(py - y);
-    const float b = (ex * vy - ey * vx) * per_area, c = (ux * ey - uy * ex) * per_area, a = 1 - b - c;
-    if (!(std::min({a, b, c}) > -0.5F) || per_area == 0) return false;
-    const float wa = std::max(a, 0.0F) * weight[0], wb = std::max(b, 0.0F) * weight[1],
-                wc = std::max(c, 0.0F) * weight[2];
-    const float scale = 1 / (wa + wb + wc);
-    *barycentric = {wa * scale, wb * scale, wc * scale};
-    return true;
-  }
 };
 
 class Resolver {
@@ -67,6 +50,7 @@ class Resolver {
   void ResolveRow(int row, RowPoints* points) {
     FindPoints(row, points);
     const size_t to = size_t(row) * buffer_.box().width();
+    ClearRow(to);
     const MatrixX3i& faces = body_.data().faces;
     if (request_.part) {
       for (int i = 0; i < points->size; ++i) {
@@ -133,6 +117,26 @@ class Resolver {
   }
 
  private:
+  /// Background to the row that begins at pixel `to`.
+  void ClearRow(size_t to) const {
+    const size_t width = buffer_.box().width();
+    const auto clear = [&](std::vector<float>* values, size_t channels) {
+      if (!values->empty()) std::fill_n(values->begin() + channels * to, channels * width, 0.0F);
+    };
+    if (request_.part) std::fill_n(out_.part.begin() + to, width, uint8_t{0});
+    if (request_.depth) std::fill_n(out_.depth_m.begin() + to, width, std::numeric_limits<float>::infinity());
+    clear(&out_.chart_uv, 2);
+    clear(&out_.atlas_uv, 2);
+    clear(&out_.normal, 3);
+    clear(&out_.barycentric, 3);
+    for (size_t k = 0; k < request_.vertex_attributes.size(); ++k) {
+      clear(&out_.vertex_attributes[k], request_.vertex_attributes[k].channels);
+    }
+    for (size_t k = 0; k < request_.texel_attributes.size(); ++k) {
+      clear(&out_.texel_attributes[k], request_.texel_attributes[k].channels);
+    }
+  }
+
   template <int channels, class Fill>
   static void Write(const RowPoints& points, float* row, const Fill& fill) {
     for (int i = 0; i < points.size; ++i) fill(i, row + channels * points.column[i]);
@@ -140,60 +144,41 @@ class Resolver {
 
   /// Values (channels a row) of three rows, weighted.
   template <int channels>
-  static void Mix(const float* values, const int* rows, const std::array<float, 3>& weights, float* to) {
+  static void Mix(const float* values, const int* rows, const Barycentrics& weights, float* to) {
     const float *a = values + channels * size_t(rows[0]), *b = values + channels * size_t(rows[1]),
                 *c = values + channels * size_t(rows[2]);
     for (int k = 0; k < channels; ++k) to[k] = weights[0] * a[k] + weights[1] * b[k] + weights[2] * c[k];
   }
 
-  ProjectedFace Project(int face) const {
-    ProjectedFace f;
-    const int* const corners = &body_.data().faces(face, 0);
-    const ProjectedVertex* const vertices = buffer_.vertices().data();
-    const ProjectedVertex &a = vertices[corners[0]], &b = vertices[corners[1]], &c = vertices[corners[2]];
-    if (std::isnan(a.nearness + b.nearness + c.nearness)) return f;
-    f.x = a.x_px, f.y = a.y_px;
-    f.ux = static_cast<float>(b.x_px - a.x_px), f.uy = static_cast<float>(b.y_px - a.y_px);
-    f.vx = static_cast<float>(c.x_px - a.x_px), f.vy = static_cast<float>(c.y_px - a.y_px);
-    f.weight = {1, 1, 1};
-    if (!is_weak_) f.weight = {float(a.nearness), float(b.nearness), float(c.nearness)};
-    const float area = f.ux * f.vy - f.uy * f.vx;
-    f.per_area = std::abs(area) > 1e-6F * (f.ux * f.ux + f.uy * f.uy + f.vx * f.vx + f.vy * f.vy) ? 1 / area : 0;
-    return f;
-  }
-
-  /// Where an undistorted lens would see what this pixel sees.
-  [[nodiscard]] Eigen::Vector2d Straightened(int x, int y) const {
-    if (is_linear_) return {x, y};
-    const Eigen::Vector2d ray = camera_.Unproject(Eigen::Vector2d(x, y));
-    return {camera_.fx * ray.x() + camera_.cx, camera_.fy * ray.y() + camera_.cy};
-  }
-
   void FindPoints(int row, RowPoints* points) const {
     const PixelBox& box = buffer_.box();
     const int32_t* const ids = buffer_.faces().data() + size_t(row) * box.width();
-    points->size = 0;
-    int last = -1;
-    ProjectedFace face;
     const CoveredSpan span = FindCoveredSpan(ids, box.width());
-    for (int column = span.begin; column < span.end; ++column) {
-      const int id = ids[column];
-      if (id < 0) {
-        while (column + 8 < span.end && SeeNothing(ids + column + 1)) column += 8;
-        continue;
+    if (needs_points_ && is_linear_) {
+      points->size =
+          resolve_internal::FindPoints({ids, span.begin, span.end, box.x_begin, box.y_begin + row,
+                                        body_.data().faces.data(), buffer_.vertices().data(), is_weak_},
+                                       points->column.data(), points->face.data(), points->barycentric.data());
+    } else {
+      points->size = 0;
+      for (int column = span.begin; column < span.end; ++column) {
+        if (ids[column] < 0) {
+          while (column + 8 < span.end && SeeNothing(ids + column + 1)) column += 8;
+          continue;
+        }
+        const int i = points->size++;
+        points->column[i] = column;
+        points->face[i] = ids[column];
+        points->barycentric[i] = {0, 0, 0, 0};
       }
-      const int i = points->size++;
-      points->column[i] = column;
-      points->face[i] = id;
-      if (!needs_points_) continue;
-      if (id != last) face = Project(last = id);
-      const int x = box.x_begin + column, y = box.y_begin + row;
-      const Eigen::Vector2d at = Straightened(x, y);
-      if (!face.At(at.x(), at.y(), &points->barycentric[i])) {
-        const Eigen::Vector3f b =
-            BarycentricAtPixel(vertices_, body_.data().faces, camera_, id, Eigen::Vector2d(x, y)).cast<float>();
-        points->barycentric[i] = {b[0], b[1], b[2]};
-      }
+    }
+    for (int i = 0; i < points->size && needs_points_; ++i) {
+      Barycentrics& b = points->barycentric[i];
+      if (b[3] != 0) continue;
+      const Eigen::Vector2d pixel(box.x_begin + points->column[i], box.y_begin + row);
+      const Eigen::Vector3f exact =
+          BarycentricAtPixel(vertices_, body_.data().faces, camera_, points->face[i], pixel).cast<float>();
+      b = {exact[0], exact[1], exact[2], 1};
     }
   }
 
@@ -232,10 +217,10 @@ void CheckRequest(const BodyModel& body, const MatrixX3d& vertices, const Resolv
   }
 }
 
-/// Empty when not asked for.
+/// Empty when not asked for. Rows are cleared when they are written, while they are in the cache.
 template <class T>
-void Prepare(bool asked, size_t size, T background, std::vector<T>* values) {
-  values->assign(asked ? size : 0, background);
+void Prepare(bool asked, size_t size, std::vector<T>* values) {
+  values->resize(asked ? size : 0);
 }
 
 }  // namespace
@@ -261,19 +246,19 @@ void ResolvePixels(const VisibilityBuffer& buffer, const BodyModel& body, const 
   const PixelBox& box = buffer.box();
   const size_t area = box.area();
   result->box = box;
-  Prepare<uint8_t>(request.part, area, 0, &result->part);
-  Prepare(request.chart_uv, 2 * area, 0.0F, &result->chart_uv);
-  Prepare(request.atlas_uv, 2 * area, 0.0F, &result->atlas_uv);
-  Prepare(request.depth, area, std::numeric_limits<float>::infinity(), &result->depth_m);
-  Prepare(request.normal, 3 * area, 0.0F, &result->normal);
-  Prepare(request.barycentric, 3 * area, 0.0F, &result->barycentric);
+  Prepare(request.part, area, &result->part);
+  Prepare(request.chart_uv, 2 * area, &result->chart_uv);
+  Prepare(request.atlas_uv, 2 * area, &result->atlas_uv);
+  Prepare(request.depth, area, &result->depth_m);
+  Prepare(request.normal, 3 * area, &result->normal);
+  Prepare(request.barycentric, 3 * area, &result->barycentric);
   result->vertex_attributes.resize(request.vertex_attributes.size());
   for (size_t k = 0; k < request.vertex_attributes.size(); ++k) {
-    Prepare(true, area * request.vertex_attributes[k].channels, 0.0F, &result->vertex_attributes[k]);
+    Prepare(true, area * request.vertex_attributes[k].channels, &result->vertex_attributes[k]);
   }
   result->texel_attributes.resize(request.texel_attributes.size());
   for (size_t k = 0; k < request.texel_attributes.size(); ++k) {
-    Prepare(true, area * request.texel_attributes[k].channels, 0.0F, &result->texel_attributes[k]);
+    Prepare(true, area * request.texel_attributes[k].channels, &result->texel_attributes[k]);
   }
   if (box.empty()) return;
   Resolver resolver(buffer, body, vertices, camera, request, result);
