@@ -27,6 +27,7 @@ int Run(int argc, char** argv) {
   AddSynthVerb(app, &action);
   AddEvaluateVerb(app, &action);
   AddExportVerb(app, &action);
+  AddDescribeVerb(app, &action);
   AddBodyVerb(app, &action);
   AddDemoVerb(app, &action);
   AddPriorVerb(app, &action);
