@@ -47,7 +47,7 @@ NormalSummary& NormalSummary::operator+=(const NormalSummary& other) {
   return *this;
 }
 
-VertexNormals::VertexNormals(const MatrixX3i& faces, int num_vertices, NormalWeighting weighting)
+MeshNormals::MeshNormals(const MatrixX3i& faces, int num_vertices, NormalWeighting weighting)
     : adjacency_(BuildMeshAdjacency(faces, num_vertices)),
       faces_(faces),
       weighting_(weighting),
@@ -57,8 +57,8 @@ VertexNormals::VertexNormals(const MatrixX3i& faces, int num_vertices, NormalWei
   }
 }
 
-NormalSummary VertexNormals::Compute(std::span<const float> vertices, std::span<float> normals, NormalScratch* scratch,
-                                     const NormalFallback& fallback) const {
+NormalSummary MeshNormals::Compute(std::span<const float> vertices, std::span<float> normals, NormalScratch* scratch,
+                                   const NormalFallback& fallback) const {
   const int V = num_vertices(), F = static_cast<int>(faces_.rows());
   const size_t size = 3 * static_cast<size_t>(V);
   BODYLOOM_CHECK(vertices.size() == size && normals.size() == size, "normals: ", vertices.size(), " values in, ",
@@ -83,8 +83,8 @@ NormalSummary VertexNormals::Compute(std::span<const float> vertices, std::span<
   return summary;
 }
 
-NormalSummary VertexNormals::FillMissing(std::span<float> normals, NormalScratch* scratch,
-                                         const NormalFallback& fallback) const {
+NormalSummary MeshNormals::FillMissing(std::span<float> normals, NormalScratch* scratch,
+                                       const NormalFallback& fallback) const {
   NormalSummary summary;
   const auto normal = [&normals](int v) { return Eigen::Map<Vector3f>(normals.data() + 3 * static_cast<size_t>(v)); };
   std::vector<int> missing;
@@ -124,8 +124,8 @@ NormalSummary VertexNormals::FillMissing(std::span<float> normals, NormalScratch
   return summary;
 }
 
-NormalSummary VertexNormals::ComputeFrames(std::span<const float> vertices, std::span<float> normals,
-                                           int num_threads) const {
+NormalSummary MeshNormals::ComputeFrames(std::span<const float> vertices, std::span<float> normals,
+                                         int num_threads) const {
   const size_t size = 3 * static_cast<size_t>(num_vertices());
   BODYLOOM_CHECK(size > 0 && vertices.size() % size == 0 && normals.size() == vertices.size(),
                  "normals: ", vertices.size(), " values in, ", normals.size(), " out, expected frames x ", size);
@@ -151,7 +151,7 @@ MatrixX3f TemplateNormals(const BodyModel& body, NormalWeighting weighting) {
   const MatrixX3f vertices = (body.data().v_template.rowwise() - root).cast<float>();
   MatrixX3f normals(vertices.rows(), 3);
   NormalScratch scratch;
-  VertexNormals(body.data().faces, body.num_vertices(), weighting)
+  MeshNormals(body.data().faces, body.num_vertices(), weighting)
       .Compute({vertices.data(), static_cast<size_t>(vertices.size())},
                {normals.data(), static_cast<size_t>(normals.size())}, &scratch);
   return normals;

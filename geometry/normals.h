@@ -51,10 +51,10 @@ struct NormalScratch {
   std::vector<uint8_t> missing;
 };
 
-class VertexNormals {
+class MeshNormals {
  public:
   /// Keeps what it needs of the faces. Throws std::invalid_argument on an index outside 0..num_vertices−1.
-  VertexNormals(const MatrixX3i& faces, int num_vertices, NormalWeighting weighting = NormalWeighting::kArea);
+  MeshNormals(const MatrixX3i& faces, int num_vertices, NormalWeighting weighting = NormalWeighting::kArea);
 
   [[nodiscard]] int num_vertices() const { return static_cast<int>(adjacency_.corner_begin.size()) - 1; }
   [[nodiscard]] const MeshAdjacency& adjacency() const { return adjacency_; }

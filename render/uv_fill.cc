@@ -14,6 +14,7 @@ namespace bodyloom {
 namespace {
 
 constexpr int kMaxLevels = 14;
+constexpr int kTip = 8;     ///< texels
 constexpr int kSweeps = 4;  ///< averages with the neighbours on each level
 
 void CheckMaps(size_t pixels, int num_channels, size_t values) {
@@ -40,8 +41,26 @@ struct GutterTaps {
         sum += all.weight[k];
       }
       for (int k = 0; k < own.count; ++k) own.weight[k] /= sum;
+      if (own.count == 0) own = Nearest(table, inside, table.pixel[i]);
       if (own.count > 0) taps.emplace_back(table.pixel[i], own);
     }
+  }
+  /// For the tips of charts, where no texel centre lies near the point: the texel nearest in the map of its own chart.
+  static UvTaps Nearest(const UvTexelTable& table, const std::vector<char>& inside, int pixel) {
+    UvTaps taps;
+    const int x = pixel % table.width, y = pixel / table.width;
+    int nearest = 1 << 30;
+    for (int row = std::max(0, y - kTip); row <= std::min(table.height - 1, y + kTip); ++row) {
+      for (int column = std::max(0, x - kTip); column <= std::min(table.width - 1, x + kTip); ++column) {
+        const int at = row * table.width + column, distance = (row - y) * (row - y) + (column - x) * (column - x);
+        if (!inside[at] || table.chart_at[at] != table.chart_at[pixel] || distance >= nearest) continue;
+        nearest = distance;
+        taps.count = 1;
+        taps.pixel[0] = at;
+        taps.weight[0] = 1;
+      }
+    }
+    return taps;
   }
   void Fill(size_t pixels, int num_channels, std::span<float> maps) const {
     for (int c = 0; c < num_channels; ++c) {

@@ -452,7 +452,7 @@ class Describer {
   Skinner skinner_;
   ShapedBody shape_;
   VelocitySkinner velocity_skinner_;
-  VertexNormals normals_;
+  MeshNormals normals_;
   MatrixX3f template_normals_;
   ScratchPool scratch_;
   size_t item_size_, map_bytes_;

@@ -96,7 +96,7 @@ TEST(DescribeTrack, HoldsNormalsAndVelocitiesOfThePosedSurface) {
     // The slow way: vertices in double, differences, no streaming.
     const auto poses = PosesInFrame(body, track, frame, options.camera_pose);
     const UvTexelTable& table = d.summary.texels;
-    const VertexNormals normals_of(body.data().faces, body.num_vertices());
+    const MeshNormals normals_of(body.data().faces, body.num_vertices());
     for (const int t : {5, 11}) {
       const MatrixX3d before = PoseVertices(body, Eigen::VectorXd(), *poses[t - 1]);
       const MatrixX3d after = PoseVertices(body, Eigen::VectorXd(), *poses[t + 1]);

@@ -36,7 +36,7 @@ Normals NormalsOf(const MatrixX3d& vertices, const MatrixX3i& faces, NormalWeigh
   const MatrixX3f points = vertices.cast<float>();
   Normals result{MatrixX3f::Constant(vertices.rows(), 3, std::nanf("")), {}};
   NormalScratch scratch;
-  result.summary = VertexNormals(faces, static_cast<int>(vertices.rows()), weighting)
+  result.summary = MeshNormals(faces, static_cast<int>(vertices.rows()), weighting)
                        .Compute({points.data(), static_cast<size_t>(points.size())},
                                 {result.normals.data(), static_cast<size_t>(points.size())}, &scratch, fallback);
   return result;
@@ -296,7 +296,7 @@ TEST(Normals, SameBytesForAnyNumberOfThreads) {
     const MatrixX3f frame = ToyVertices(t).cast<float>();
     vertices.insert(vertices.end(), frame.data(), frame.data() + stride);
   }
-  const VertexNormals normals(body.data().faces, body.num_vertices());
+  const MeshNormals normals(body.data().faces, body.num_vertices());
   std::vector<float> one(vertices.size()), many(vertices.size());
   EXPECT_EQ(normals.ComputeFrames(vertices, one, 1).meshes, T);
   for (const int threads : {2, 3, 8}) {
@@ -310,9 +310,9 @@ TEST(Normals, RefuseWhatTheyCannotUse) {
   const TestMesh sphere = UnitSphere(0);
   MatrixX3i faces = sphere.faces;
   faces(3, 1) = 12;
-  EXPECT_THROW(VertexNormals(faces, 12), std::invalid_argument);
+  EXPECT_THROW(MeshNormals(faces, 12), std::invalid_argument);
   faces(3, 1) = -1;
-  EXPECT_THROW(VertexNormals(faces, 12), std::invalid_argument);
+  EXPECT_THROW(MeshNormals(faces, 12), std::invalid_argument);
   for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
     for (const int v : {0, 5, 11}) {
       MatrixX3d vertices = sphere.vertices;
@@ -322,7 +322,7 @@ TEST(Normals, RefuseWhatTheyCannotUse) {
   }
   NormalScratch scratch;
   std::vector<float> in(36), out(35);
-  EXPECT_THROW(VertexNormals(sphere.faces, 12).Compute(in, out, &scratch), std::invalid_argument);
+  EXPECT_THROW(MeshNormals(sphere.faces, 12).Compute(in, out, &scratch), std::invalid_argument);
 }
 
 TEST(MeshAdjacency, FindsTheFaceAcrossEveryEdge) {
