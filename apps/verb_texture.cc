@@ -134,15 +134,15 @@ void RunTexture(const TextureCommand& command) {
                                          gathered.used, " frames, there is no texture"));
   }
   const UvTexelTable& table = extractor.table();
-  if (command.fill) {
-    clock.Begin("fill");
-    std::vector<uint8_t> known(texture.confidence.size());
-    for (size_t p = 0; p < known.size(); ++p) known[p] = texture.confidence[p] > 0;
-    if (command.fill_with == "laplace") {
-      LaplaceFill(*body, table, known).Fill(3, texture.bgr);
-    } else {
-      PyramidFill(*body, table).Fill(known, 3, texture.bgr);
-    }
+  clock.Begin("fill");
+  std::vector<uint8_t> known(texture.confidence.size());
+  for (size_t p = 0; p < known.size(); ++p) known[p] = texture.confidence[p] > 0;
+  if (!command.fill) {
+    FillGutter(*body, table, known, 3, texture.bgr);
+  } else if (command.fill_with == "laplace") {
+    LaplaceFill(*body, table, known).Fill(3, texture.bgr);
+  } else {
+    PyramidFill(*body, table).Fill(known, 3, texture.bgr);
   }
   clock.Begin("write");
   WriteImage(command.out, ColourImage(texture, texture.bgr));

@@ -13,6 +13,11 @@ bool TextureExtractOptions::IsValid(std::string* why) const {
     *why = Concatenate("keep is ", keep, ", expected 1..64 samples");
     return false;
   }
+  if (edge_margin_px < 0 || edge_margin_px > 64 || !(edge_step_m > 0)) {
+    *why = Concatenate("edge_margin_px is ", edge_margin_px, ", edge_step_m ", edge_step_m,
+                       "; expected 0..64 and more than 0");
+    return false;
+  }
   return texels.IsValid(why) && sight.IsValid(why);
 }
 
@@ -36,15 +41,63 @@ TextureExtractor::TextureExtractor(const BodyModel& body, const TextureExtractOp
   samples_.resize(table_.size() * options.keep);
 }
 
+void TextureExtractor::FindEdges() {
+  const PixelBox& box = buffer_.box();
+  const int width = box.width(), height = box.height(), margin = options_.edge_margin_px;
+  near_edge_.assign(box.area(), 0);
+  if (margin == 0) return;
+  std::vector<uint8_t> edge(box.area(), 0);
+  std::vector<double> depth(box.area());
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) depth[size_t(y) * width + x] = buffer_.DepthAt(box.x_begin + x, box.y_begin + y);
+  }
+  const auto is_step = [&](double a, double b) { return !(std::abs(a - b) <= options_.edge_step_m); };
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const size_t p = size_t(y) * width + x;
+      const bool right = x + 1 < width && is_step(depth[p], depth[p + 1]);
+      const bool below = y + 1 < height && is_step(depth[p], depth[p + width]);
+      const bool border = x == 0 || y == 0 || x + 1 == width || y + 1 == height;  // beyond the box is background
+      edge[p] |= border || right || below || !std::isfinite(depth[p]);
+      if (right) edge[p + 1] = 1;
+      if (below) edge[p + width] = 1;
+    }
+  }
+  // Spread by margin − 1 along rows, then along columns: the pixel at a step counts as one already.
+  const int reach = margin - 1;
+  std::vector<uint8_t> rows(box.area(), 0);
+  const auto spread = [reach](const std::vector<uint8_t>& from, std::vector<uint8_t>* to, int count, size_t start,
+                              size_t step) {
+    int last = -(1 << 20);
+    for (int i = 0; i < count; ++i) {  // as seen from the left, then from the right
+      if (from[start + i * step]) last = i;
+      if (i - last <= reach) (*to)[start + i * step] = 1;
+    }
+    last = 1 << 20;
+    for (int i = count - 1; i >= 0; --i) {
+      if (from[start + i * step]) last = i;
+      if (last - i <= reach) (*to)[start + i * step] = 1;
+    }
+  };
+  for (int y = 0; y < height; ++y) spread(edge, &rows, width, size_t(y) * width, 1);
+  for (int x = 0; x < width; ++x) spread(rows, &near_edge_, height, x, width);
+}
+
+bool TextureExtractor::IsNearEdge(float x_px, float y_px) const {
+  const int x = static_cast<int>(std::lround(x_px)), y = static_cast<int>(std::lround(y_px));
+  return !buffer_.box().Contains(x, y) || near_edge_[buffer_.box().IndexOf(x, y)] != 0;
+}
+
 int TextureExtractor::Add(const Image& image, const MatrixX3d& vertices_in_camera, const Camera& camera, int frame) {
   BODYLOOM_CHECK(image.width == camera.width && image.height == camera.height, "texture: frame ", frame, " is ",
                  image.width, "x", image.height, ", the camera is for ", camera.width, "x", camera.height);
   buffer_.Render(vertices_in_camera, body_.data().faces, camera);
   const std::vector<TexelSight> sights = SeeTexels(table_, body_, vertices_in_camera, camera, buffer_, options_.sight);
+  FindEdges();
   int num_seen = 0;
   for (size_t i = 0; i < sights.size(); ++i) {
     const TexelSight& sight = sights[i];
-    if (!(sight.cosine > 0)) continue;
+    if (!(sight.cosine > 0) || IsNearEdge(sight.x_px, sight.y_px)) continue;
     ++num_seen;
     Sample sample;
     sample.weight = sight.cosine * sight.cosine / std::max(1.0F, sight.texels_per_pixel);

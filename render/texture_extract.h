@@ -22,6 +22,10 @@ namespace bodyloom {
 struct TextureExtractOptions {
   UvTexelOptions texels{.width = 512, .height = 512, .gutter = 1};
   TexelSightOptions sight{.min_cosine = 0.2, .bias_m = 0.003, .slope = 1.5, .whole_footprint = true};
+  /// Pixels this near to the body's outline, or to where a limb hides another (a step of edge_step_m in depth), are not
+  /// used: there the picture is blurred and the track a little off. 0 to 64.
+  int edge_margin_px = 2;
+  double edge_step_m = 0.05;
   enum class Merge { kMedian, kMean } merge = Merge::kMedian;
   int keep = 9;  ///< samples a texel, 1 to 64
   [[nodiscard]] bool IsValid(std::string* why) const;
@@ -57,11 +61,15 @@ class TextureExtractor {
     int frame = -1;
     float x_px = 0, y_px = 0;
   };
+  void FindEdges();
+  [[nodiscard]] bool IsNearEdge(float x_px, float y_px) const;
+
   const BodyModel& body_;
   TextureExtractOptions options_;
   UvTexelTable table_;
   VisibilityBuffer buffer_;
-  std::vector<Sample> samples_;  ///< keep a texel of the table
+  std::vector<Sample> samples_;     ///< keep a texel of the table
+  std::vector<uint8_t> near_edge_;  ///< of the buffer's box
 };
 
 /// Colour of the image at a place between pixels, bilinear, 0 to 1; the border's colour outside.

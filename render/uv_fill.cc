@@ -62,13 +62,19 @@ struct GutterTaps {
     }
     return taps;
   }
-  void Fill(size_t pixels, int num_channels, std::span<float> maps) const {
-    for (int c = 0; c < num_channels; ++c) {
-      float* map = maps.data() + pixels * c;
-      for (const auto& [pixel, own] : taps) {
+  /// known: empty, or a byte a texel.
+  void Fill(size_t pixels, int num_channels, std::span<float> maps, std::span<const uint8_t> known = {}) const {
+    for (const auto& [pixel, own] : taps) {
+      double total = 0;
+      for (int k = 0; k < own.count; ++k) total += known.empty() || known[own.pixel[k]] ? own.weight[k] : 0;
+      if (!(total > 0)) continue;
+      for (int c = 0; c < num_channels; ++c) {
+        float* map = maps.data() + pixels * c;
         double value = 0;
-        for (int k = 0; k < own.count; ++k) value += own.weight[k] * map[own.pixel[k]];
-        map[pixel] = static_cast<float>(value);
+        for (int k = 0; k < own.count; ++k) {
+          if (known.empty() || known[own.pixel[k]]) value += own.weight[k] * map[own.pixel[k]];
+        }
+        map[pixel] = static_cast<float>(value / total);
       }
     }
   }
@@ -314,10 +320,12 @@ void LaplaceFill::Fill(int num_channels, std::span<float> maps) const {
   s.gutter.Fill(s.num_pixels, num_channels, maps);
 }
 
-void FillGutter(const BodyModel& body, const UvTexelTable& table, int num_channels, std::span<float> maps) {
+void FillGutter(const BodyModel& body, const UvTexelTable& table, std::span<const uint8_t> known, int num_channels,
+                std::span<float> maps) {
   const size_t pixels = size_t(table.width) * table.height;
+  BODYLOOM_CHECK(known.size() == pixels, "filling: a mask of ", known.size(), " texels, expected ", pixels);
   CheckMaps(pixels, num_channels, maps.size());
-  GutterTaps(body, table).Fill(pixels, num_channels, maps);
+  GutterTaps(body, table).Fill(pixels, num_channels, maps, known);
 }
 
 }  // namespace bodyloom

@@ -52,7 +52,9 @@ class LaplaceFill {
   std::unique_ptr<System> system_;
 };
 
-/// Gives each gutter texel the value of the surface point it shows, from the texels around that point.
-void FillGutter(const BodyModel& body, const UvTexelTable& table, int num_channels, std::span<float> maps);
+/// Gives each gutter texel the value of the surface point it shows, from the known texels around that point; where none
+/// is known it stays as it is. Without it a map that was gathered texel by texel is dark along its seams.
+void FillGutter(const BodyModel& body, const UvTexelTable& table, std::span<const uint8_t> known, int num_channels,
+                std::span<float> maps);
 
 }  // namespace bodyloom

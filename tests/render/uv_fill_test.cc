@@ -191,6 +191,28 @@ TEST_F(UvFill, WithNothingKnownLeavesTheMapAlone) {
   }
 }
 
+TEST_F(UvFill, GutterTakesKnownTexelsOnly) {
+  std::vector<float> map = WithHoles(-7);
+  for (size_t i = 0; i < table_.size(); ++i) {
+    if (table_.in_gutter[i]) map[table_.pixel[i]] = -9;
+  }
+  FillGutter(body_, table_, known_, 1, map);
+  int filled = 0, left = 0;
+  for (size_t i = 0; i < table_.size(); ++i) {
+    const int p = table_.pixel[i];
+    if (!table_.in_gutter[i]) {
+      ASSERT_EQ(map[p], known_[p] ? truth_[p] : -7);
+      continue;
+    }
+    ++(map[p] == -9 ? left : filled);
+    if (map[p] != -9) {
+      ASSERT_NEAR(map[p], truth_[p], 0.1);
+    }
+  }
+  EXPECT_GT(filled, 200);
+  EXPECT_GT(left, 20);  // those that show the octant nobody has seen
+}
+
 TEST_F(UvFill, PartsThatNothingKnownTouchesTakeTheMean) {
   // Two spheres in one atlas, all of one unknown.
   BodyModelData two = SphereOfOctants(2);
