@@ -128,6 +128,7 @@ class Describer {
     NpyStream stream(path, options_.half ? DType::kF16 : DType::kF32,
                      {static_cast<int64_t>(outputs_.size()), summary_.channels, table_.height, table_.width});
     summary_.bytes = stream.record_bytes() * outputs_.size();
+    watch.Add("prepare and reserve");
     DescriptorPreview preview(options_, table_, outputs_, FramesWithFit());
     for (size_t first = 0; first < outputs_.size(); first += kFramesInFlight) {
       if (progress) progress(static_cast<double>(first) / static_cast<double>(outputs_.size()));
@@ -144,6 +145,7 @@ class Describer {
       for (int i = 0; i < count; ++i) {
         if (preview.Wants(outputs[i])) preview.Add(outputs[i], PiecesOf(chunk, i));
       }
+      for (Map& map : chunk.normal_maps) Recycle(&map);
       watch.Add("write");
     }
     stream.Finish();
@@ -216,7 +218,7 @@ class Describer {
     }
     // Velocity maps of frames that no later output looks back to are let go, and the others made once.
     for (int s = 0; s < static_cast<int>(velocity_maps_.size()) && s < outputs.front(); ++s) {
-      if (!velocity_maps_[s].empty() && !maps.contains(s)) Map().swap(velocity_maps_[s]);
+      if (!maps.contains(s)) Recycle(&velocity_maps_[s]);
     }
     for (const int s : maps) {
       if (velocity_maps_[s].empty()) chunk.new_velocity_maps.push_back(s);
@@ -271,28 +273,45 @@ class Describer {
     summary_.frames_skinned += static_cast<int>(missing.size());
   }
 
-  [[nodiscard]] Map ToMap(const Scratch& scratch) const {
-    Map map(map_bytes_);
+  /// Room for a map: one that is no longer needed, or a new one. Either is zero where no texel is.
+  Map TakeMap() {
+    const std::lock_guard<std::mutex> lock(spare_mutex_);
+    if (spare_maps_.empty()) return Map(map_bytes_, 0);
+    Map map = std::move(spare_maps_.back());
+    spare_maps_.pop_back();
+    return map;
+  }
+  void Recycle(Map* map) {
+    if (map->empty()) return;
+    const std::lock_guard<std::mutex> lock(spare_mutex_);
+    spare_maps_.push_back(std::move(*map));
+    map->clear();
+  }
+
+  /// A map of what `bake` writes into three planes of floats.
+  template <typename Bake>
+  Map Baked(Scratch* scratch, const Bake& bake) {
+    Map map = TakeMap();
     if (options_.half) {
-      uv_bake_internal::HalfFromFloat(scratch.planes.data(), static_cast<int64_t>(scratch.planes.size()),
+      bake(std::span<float>(scratch->planes));
+      uv_bake_internal::HalfFromFloat(scratch->planes.data(), static_cast<int64_t>(scratch->planes.size()),
                                       reinterpret_cast<uint16_t*>(map.data()));
     } else {
-      std::memcpy(map.data(), scratch.planes.data(), map_bytes_);
+      bake(std::span<float>(reinterpret_cast<float*>(map.data()), scratch->planes.size()));
     }
     return map;
   }
 
-  Map NormalMap(int t, Scratch* scratch, NormalSummary* summary, int* cancelled) const {
+  Map NormalMap(int t, Scratch* scratch, NormalSummary* summary, int* cancelled) {
     const PosedSkeleton skeleton = PoseSkeleton(body_, shape_.rest_joints, *poses_[t]);
     *summary =
         normals_.Compute(VerticesOf(t), scratch->vertices, &scratch->normals, {&body_, &template_normals_, &skeleton});
     normals_internal::PadVertices(scratch->vertices.data(), body_.num_vertices(), 1, scratch->padded.data());
-    *cancelled = baker_.BakeUnit(scratch->padded, scratch->planes);
-    return ToMap(*scratch);
+    return Baked(scratch, [&](std::span<float> planes) { *cancelled = baker_.BakeUnit(scratch->padded, planes); });
   }
 
   /// `velocities`: of the vertices, or empty to take differences.
-  Map VelocityMap(int s, std::span<const float> velocities, Scratch* scratch) const {
+  Map VelocityMap(int s, std::span<const float> velocities, Scratch* scratch) {
     if (velocities.empty()) {
       const VelocityStencil& stencil = stencils_[s];
       std::vector<const float*> frames;
@@ -304,8 +323,8 @@ class Describer {
       velocities = scratch->vertices;
     }
     normals_internal::PadVertices(velocities.data(), body_.num_vertices(), 1, scratch->padded.data());
-    baker_.Bake(scratch->padded, body_.num_vertices(), 3, scratch->planes);
-    return ToMap(*scratch);
+    return Baked(scratch,
+                 [&](std::span<float> planes) { baker_.Bake(scratch->padded, body_.num_vertices(), 3, planes); });
   }
 
   [[nodiscard]] std::vector<float> AnalyticVelocities(std::span<const int> frames) const {
@@ -390,6 +409,7 @@ class Describer {
       pieces = {masked};
     }
     stream->Write(static_cast<int64_t>(record), pieces);
+    for (Map& map : own) Recycle(&map);
   }
 
   /// The frame's vertices as its camera sees them.
@@ -461,7 +481,9 @@ class Describer {
   std::vector<int> outputs_;
   std::vector<Vector3d> roots_;
   std::vector<int> place_of_frame_, placed_frames_;
-  std::vector<float> vertices_;     ///< of placed_frames_, relative to their roots
+  std::vector<float> vertices_;  ///< of placed_frames_, relative to their roots
+  std::mutex spare_mutex_;
+  std::vector<Map> spare_maps_;
   std::vector<Map> velocity_maps_;  ///< by frame, empty where not held
   DescribeTrackSummary summary_;
 };
