@@ -51,12 +51,19 @@ void UvBaker::Check(size_t attributes, int num_vertices, size_t maps, int num_ch
 
 void UvBaker::Bake(std::span<const float> grouped, int num_vertices, int num_channels, std::span<float> maps) const {
   Check(grouped.size(), num_vertices, maps.size(), num_channels);
-  for (int first = 0; first < num_channels; first += 4) {
-    float* planes[4] = {};
-    const int count = std::min(4, num_channels - first);
+  const int num_blocks = static_cast<int>(blocks_.size());
+  for (int first = 0; first < num_channels;) {
+    float* planes[8] = {};
+    const int count = num_channels - first >= 8 ? 8 : std::min(4, num_channels - first);
     for (int p = 0; p < count; ++p) planes[p] = maps.data() + size_t(first + p) * num_pixels_;
-    uv_bake_internal::BakeGroup(blocks_.data(), static_cast<int>(blocks_.size()), num_pixels_,
-                                grouped.data() + size_t(first) * num_vertices, count, planes);
+    const float* attributes = grouped.data() + size_t(first) * num_vertices;
+    if (count == 8) {
+      uv_bake_internal::BakeTwoGroups(blocks_.data(), num_blocks, num_pixels_, attributes, 4 * int64_t{num_vertices},
+                                      planes);
+    } else {
+      uv_bake_internal::BakeGroup(blocks_.data(), num_blocks, num_pixels_, attributes, count, planes);
+    }
+    first += count;
   }
 }
 

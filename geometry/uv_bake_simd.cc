@@ -50,6 +50,27 @@ void BakeGroup(const Block* HWY_RESTRICT blocks, int num_blocks, int num_pixels,
   }
 }
 
+void BakeTwoGroups(const Block* HWY_RESTRICT blocks, int num_blocks, int num_pixels,
+                   const float* HWY_RESTRICT attributes, int64_t group_stride, float* const* planes) {
+  const float* HWY_RESTRICT others = attributes + group_stride;
+  for (int n = 0; n < num_blocks; ++n) {
+    const Block& block = blocks[n];
+    Quad c[8];
+    for (int i = 0; i < 4; ++i) {
+      const int64_t v0 = 4 * int64_t{block.vertex[i][0]}, v1 = 4 * int64_t{block.vertex[i][1]},
+                    v2 = 4 * int64_t{block.vertex[i][2]};
+      const Quad w0 = Fill(block.weight[i][0]), w1 = Fill(block.weight[i][1]), w2 = Fill(block.weight[i][2]);
+      c[i] = MulAdd(w2, LoadQuadU(attributes + v2),
+                    MulAdd(w1, LoadQuadU(attributes + v1), w0 * LoadQuadU(attributes + v0)));
+      c[4 + i] = MulAdd(w2, LoadQuadU(others + v2), MulAdd(w1, LoadQuadU(others + v1), w0 * LoadQuadU(others + v0)));
+    }
+    Transpose(c[0], c[1], c[2], c[3]);
+    Transpose(c[4], c[5], c[6], c[7]);
+    const int count = num_pixels - block.pixel;
+    for (int p = 0; p < 8; ++p) StoreUpTo(c[p], count, planes[p] + block.pixel);
+  }
+}
+
 int BakeUnitVectors(const Block* HWY_RESTRICT blocks, int num_blocks, int num_pixels,
                     const float* HWY_RESTRICT attributes, float* const* planes) {
   const Quad zero = Fill(0), one = Fill(1), shortest = Fill(kShortestSquared);
@@ -127,12 +148,18 @@ HWY_AFTER_NAMESPACE();
 namespace bodyloom::uv_bake_internal {
 
 HWY_EXPORT(BakeGroup);
+HWY_EXPORT(BakeTwoGroups);
 HWY_EXPORT(BakeUnitVectors);
 HWY_EXPORT(HalfFromFloat);
 
 void BakeGroup(const Block* blocks, int num_blocks, int num_pixels, const float* attributes, int num_planes,
                float* const* planes) {
   HWY_DYNAMIC_DISPATCH(BakeGroup)(blocks, num_blocks, num_pixels, attributes, num_planes, planes);
+}
+
+void BakeTwoGroups(const Block* blocks, int num_blocks, int num_pixels, const float* attributes, int64_t group_stride,
+                   float* const* planes) {
+  HWY_DYNAMIC_DISPATCH(BakeTwoGroups)(blocks, num_blocks, num_pixels, attributes, group_stride, planes);
 }
 
 int BakeUnitVectors(const Block* blocks, int num_blocks, int num_pixels, const float* attributes,

@@ -24,8 +24,13 @@ struct Block {
 void BakeGroup(const Block* blocks, int num_blocks, int num_pixels, const float* attributes, int num_planes,
                float* const* planes);
 
-/// The same of a vector (three planes), scaled to length 1; 0 where its length is below 1e-6. Returns the number of
-/// texels, empty ones included, that became 0.
+/// Two full groups (eight planes) at once, the second group_stride values behind the first: indices and weights are
+/// read once for both. The same numbers.
+void BakeTwoGroups(const Block* blocks, int num_blocks, int num_pixels, const float* attributes, int64_t group_stride,
+                   float* const* planes);
+
+/// As BakeGroup, of a vector (three planes), scaled to length 1; 0 where its length is below 1e-6. Returns the number
+/// of texels, empty ones included, that became 0.
 int BakeUnitVectors(const Block* blocks, int num_blocks, int num_pixels, const float* attributes, float* const* planes);
 
 /// IEEE half precision, rounded to nearest even, beyond ±65504 to infinity.
