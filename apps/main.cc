@@ -28,6 +28,8 @@ int Run(int argc, char** argv) {
   AddEvaluateVerb(app, &action);
   AddExportVerb(app, &action);
   AddRenderVerb(app, &action);
+  AddDescribeVerb(app, &action);
+  AddTextureVerb(app, &action);
   AddBodyVerb(app, &action);
   AddDemoVerb(app, &action);
   AddPriorVerb(app, &action);

@@ -19,6 +19,8 @@ void AddSynthVerb(CLI::App& app, Action* action);
 void AddEvaluateVerb(CLI::App& app, Action* action);
 void AddExportVerb(CLI::App& app, Action* action);
 void AddRenderVerb(CLI::App& app, Action* action);
+void AddDescribeVerb(CLI::App& app, Action* action);
+void AddTextureVerb(CLI::App& app, Action* action);
 void AddBodyVerb(CLI::App& app, Action* action);
 void AddDemoVerb(CLI::App& app, Action* action);
 void AddPriorVerb(CLI::App& app, Action* action);

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A .npy file written record by record, for arrays larger than memory: numpy.load(path, mmap_mode="r") opens it.
+/// Its place and size on disk are fixed from the start, so records may be written in any order and by several threads;
+/// the file appears at its path, whole, when Finish() returns, or not at all.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/ndarray.h"
+
+namespace bodyloom {
+
+class NpyStream {
+ public:
+  /// An array of `shape` (the first dimension counts the records), elements of `dtype` (numbers). Reserves the disk
+  /// space where the file system can, so that a full disk shows now and not after an hour. Throws std::runtime_error
+  /// "path:
+  /// ..." when the file cannot be made, std::invalid_argument for a shape that no memory could address.
+  NpyStream(const std::string& path, DType dtype, std::vector<int64_t> shape);
+  /// Without Finish() everything written is thrown away.
+  ~NpyStream();
+  NpyStream(const NpyStream&) = delete;
+  NpyStream& operator=(const NpyStream&) = delete;
+
+  [[nodiscard]] size_t record_bytes() const { return record_bytes_; }
+
+  /// The record at `index`, in pieces that follow each other. Safe to call from several threads for different records.
+  /// Throws std::runtime_error naming the path when the disk is full, std::invalid_argument when the index or the
+  /// number of bytes is wrong.
+  void Write(int64_t index, std::span<const std::span<const char>> pieces);
+
+  /// Flushes to disk and moves the file into place. Throws std::runtime_error naming the path; std::invalid_argument
+  /// when not every record was written.
+  void Finish();
+
+ private:
+  std::string path_;
+  AtomicPath file_;
+  int descriptor_ = -1;
+  size_t header_bytes_ = 0, record_bytes_ = 0;
+  int64_t num_records_ = 0;
+  std::atomic<int64_t> num_written_{0};
+};
+
+}  // namespace bodyloom
