@@ -2,6 +2,7 @@
 #include "tracking/track_sequence.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -42,59 +43,119 @@ class StageClock {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
+/// Length and image size of the clip, from whichever observations there are.
+struct ClipExtent {
+  int frames = 0, width = 0, height = 0;
+  const std::vector<double>* timestamps = nullptr;
+};
+
+ClipExtent ExtentOf(const TrackSequenceInput& input) {
+  ClipExtent extent;
+  const char* first = nullptr;
+  const auto add = [&](const auto* observations, const char* what) {
+    if (observations == nullptr) return;
+    if (first == nullptr) {
+      first = what;
+      extent.frames = observations->num_frames();
+      extent.timestamps = &observations->timestamps;
+    }
+    BODYLOOM_CHECK(observations->num_frames() == extent.frames, "track: ", extent.frames, " frames of ", first, " but ",
+                   observations->num_frames(), " of ", what);
+    const int w = observations->image_width, h = observations->image_height;
+    if (w == 0) return;
+    BODYLOOM_CHECK(extent.width == 0 || (extent.width == w && extent.height == h), "track: the ", what,
+                   " are for images of ", w, "x", h, ", other observations for ", extent.width, "x", extent.height);
+    extent.width = w;
+    extent.height = h;
+  };
+  add(input.keypoints, "2D joints");
+  add(input.dense, "dense keypoints");
+  add(input.part_labels, "part labels");
+  return extent;
+}
+
+void CheckDense(const TrackSequenceInput& input) {
+  for (const auto& frame : input.dense->frames) {
+    for (const DenseKeypoint& point : frame) {
+      BODYLOOM_CHECK(point.face >= 0 && point.face < input.body->num_faces(), "track: a dense keypoint names face ",
+                     point.face, ", the body '", input.body->name(), "' has ", input.body->num_faces());
+    }
+  }
+}
+
+void CheckPartLabels(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
+  const PartLabelSequence& labels = *input.part_labels;
+  BODYLOOM_CHECK(static_cast<int>(labels.timestamps.size()) == labels.num_frames(), "track: ", labels.num_frames(),
+                 " frames of part labels but ", labels.timestamps.size(), " timestamps");
+  BODYLOOM_CHECK(labels.image_width > 0 && labels.image_height > 0,
+                 "track: the part labels do not say how large their images are");
+  const bool alone = input.keypoints == nullptr && input.dense == nullptr;
+  BODYLOOM_CHECK(!alone || input.initialiser != nullptr,
+                 "track: part labels refine a start; give 2D joints, dense keypoints or an initialiser with them");
+  BODYLOOM_CHECK(!alone || options.camera_knowledge != CameraKnowledge::kWeak,
+                 "track: weak perspective needs 2D joints or dense keypoints besides part labels");
+  std::array<bool, 256> has_chart{};
+  if (!input.body->has_parts()) has_chart[labels.part_of_chart[0]] = true;
+  for (const uint8_t chart : input.body->data().face_part) has_chart[labels.part_of_chart[chart]] = true;
+  has_chart[PartLabelSequence::kBackground] = has_chart[PartLabelSequence::kUnknown] = true;
+  for (int t = 0; t < labels.num_frames(); ++t) {
+    const LabelImage& image = labels.frames[t];
+    const size_t expected = size_t(std::max(image.width, 0)) * size_t(std::max(image.height, 0));
+    BODYLOOM_CHECK(image.labels.size() == expected, "track: frame ", t, " holds ", image.labels.size(),
+                   " part labels for ", image.width, "x", image.height, " pixels");
+    BODYLOOM_CHECK(expected == 0 ||
+                       (image.x_begin >= 0 && image.y_begin >= 0 && image.x_begin <= labels.image_width - image.width &&
+                        image.y_begin <= labels.image_height - image.height),
+                   "track: the part labels of frame ", t, " cover ", image.width, "x", image.height, " pixels from (",
+                   image.x_begin, ", ", image.y_begin, "), outside the image of ", labels.image_width, "x",
+                   labels.image_height);
+    for (const uint8_t label : image.labels) {
+      BODYLOOM_CHECK(has_chart[labels.part_of_label[label]], "track: frame ", t, " has pixels of label ", int{label},
+                     " (part ", int{labels.part_of_label[label]}, "), which no chart of the body '", input.body->name(),
+                     "' belongs to");
+    }
+  }
+}
+
 void CheckInput(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
   std::string why;
   BODYLOOM_CHECK(options.IsValid(&why), "track: ", why);
   BODYLOOM_CHECK(input.body != nullptr, "track: no body");
-  BODYLOOM_CHECK(input.keypoints != nullptr || input.dense != nullptr,
-                 "track: neither 2D joints nor dense keypoints; give at least one");
-  const int frames = input.keypoints != nullptr ? input.keypoints->num_frames() : input.dense->num_frames();
-  BODYLOOM_CHECK(frames > 0, "track: the detections hold no frames");
-  if (input.keypoints != nullptr && input.dense != nullptr) {
-    BODYLOOM_CHECK(input.keypoints->num_frames() == input.dense->num_frames(), "track: ", input.keypoints->num_frames(),
-                   " frames of 2D joints but ", input.dense->num_frames(), " of dense keypoints");
-  }
+  BODYLOOM_CHECK(input.keypoints != nullptr || input.dense != nullptr || input.part_labels != nullptr,
+                 "track: neither 2D joints nor dense keypoints nor part labels; give at least one");
+  const ClipExtent extent = ExtentOf(input);
+  BODYLOOM_CHECK(extent.frames > 0, "track: the detections hold no frames");
   if (input.initialiser != nullptr) {
-    BODYLOOM_CHECK(input.initialiser->num_frames() == frames, "track: the initialiser has ",
-                   input.initialiser->num_frames(), " frames, the detections ", frames);
+    BODYLOOM_CHECK(input.initialiser->num_frames() == extent.frames, "track: the initialiser has ",
+                   input.initialiser->num_frames(), " frames, the detections ", extent.frames);
   }
-  if (input.dense != nullptr) {
-    for (const auto& frame : input.dense->frames) {
-      for (const DenseKeypoint& point : frame) {
-        BODYLOOM_CHECK(point.face >= 0 && point.face < input.body->num_faces(), "track: a dense keypoint names face ",
-                       point.face, ", the body '", input.body->name(), "' has ", input.body->num_faces());
-      }
-    }
-  }
-  const int width = input.keypoints != nullptr ? input.keypoints->image_width : input.dense->image_width;
-  const int height = input.keypoints != nullptr ? input.keypoints->image_height : input.dense->image_height;
+  if (input.dense != nullptr) CheckDense(input);
+  if (input.part_labels != nullptr) CheckPartLabels(input, options);
   if (options.camera_knowledge == CameraKnowledge::kKnown) {
     BODYLOOM_CHECK(input.camera.fx > 0 && input.camera.fy > 0, "track: the camera's focal length is ", input.camera.fx,
                    ", expected a positive number of pixels");
-    BODYLOOM_CHECK(
-        width == 0 || input.camera.width == 0 || (width == input.camera.width && height == input.camera.height),
-        "track: the detections are for images of ", width, "x", height, " but the camera is for ", input.camera.width,
-        "x", input.camera.height);
+    BODYLOOM_CHECK(extent.width == 0 || input.camera.width == 0 ||
+                       (extent.width == input.camera.width && extent.height == input.camera.height),
+                   "track: the detections are for images of ", extent.width, "x", extent.height,
+                   " but the camera is for ", input.camera.width, "x", input.camera.height);
   } else {
-    BODYLOOM_CHECK(width > 0 || input.camera.width > 0,
+    BODYLOOM_CHECK(extent.width > 0 || input.camera.width > 0,
                    "track: the image size is not known; it is needed when the focal length is not");
   }
 }
 
 /// The camera the problem starts with. An unknown focal length starts at 0.9 of the longer side (58° field of view).
 Camera StartCamera(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
-  if (options.camera_knowledge == CameraKnowledge::kKnown) return input.camera;
-  const int width = input.camera.width > 0       ? input.camera.width
-                    : input.keypoints != nullptr ? input.keypoints->image_width
-                                                 : input.dense->image_width;
-  const int height = input.camera.height > 0      ? input.camera.height
-                     : input.keypoints != nullptr ? input.keypoints->image_height
-                                                  : input.dense->image_height;
-  return MakePinhole(width, height, 0.9 * std::max(width, height));
-}
-
-const std::vector<double>& Timestamps(const TrackSequenceInput& input) {
-  return input.keypoints != nullptr ? input.keypoints->timestamps : input.dense->timestamps;
+  const ClipExtent extent = ExtentOf(input);
+  const int width = input.camera.width > 0 ? input.camera.width : extent.width;
+  const int height = input.camera.height > 0 ? input.camera.height : extent.height;
+  if (options.camera_knowledge != CameraKnowledge::kKnown) {
+    return MakePinhole(width, height, 0.9 * std::max(width, height));
+  }
+  Camera camera = input.camera;
+  camera.width = width;
+  camera.height = height;
+  return camera;
 }
 
 /// Image height of an upright body at each frame's depth, pixels: the yardstick of detection noise.
@@ -120,6 +181,25 @@ bool TrackSequenceOptions::IsValid(std::string* why) const {
   }
   if (!(initialiser_weight >= 0)) {
     *why = "initialiser_weight is " + std::to_string(initialiser_weight) + ", expected 0 or more";
+    return false;
+  }
+  const auto in_range = [&](const char* name, double value, double low, double high) {
+    if (value >= low && value <= high) return true;
+    *why = Concatenate(name, " is ", value, ", expected ", low, " to ", high);
+    return false;
+  };
+  if (!in_range("rendered_uv.weight", rendered_uv.weight, 0, 1e6) ||
+      !in_range("rendered_uv.max_points", rendered_uv.max_points, 1, 1e7) ||
+      !in_range("rendered_uv.rounds", rendered_uv.rounds, 0, 100) ||
+      !in_range("rendered_uv.max_iterations", rendered_uv.max_iterations, 1, 1000) ||
+      !in_range("rendered_uv.min_cosine", rendered_uv.min_cosine, 1e-3, 1) ||
+      !in_range("part_labels.silhouette_weight", part_labels.silhouette_weight, 0, 1e6) ||
+      !in_range("part_labels.part_weight", part_labels.part_weight, 0, 1e6) ||
+      !in_range("part_labels.sigma_share", part_labels.sigma_share, 1e-4, 1) ||
+      !in_range("part_labels.start_kernel", part_labels.start_kernel, 0.1, 1e6) ||
+      !in_range("part_labels.kernel", part_labels.kernel, 0.1, 1e6) ||
+      !in_range("part_labels.rounds", part_labels.rounds, 1, 100) ||
+      !in_range("part_labels.max_iterations", part_labels.max_iterations, 1, 1000)) {
     return false;
   }
   return true;
@@ -163,7 +243,7 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSe
   const Camera camera = StartCamera(input, options);
   SequenceProblem problem;
   problem.layout = FrameLayout::Make(model, options.camera_knowledge, camera, active, num_betas);
-  problem.timestamps = Timestamps(input);
+  problem.timestamps = *ExtentOf(input).timestamps;
   const size_t T = problem.timestamps.size();
   problem.cut_before = input.keypoints != nullptr ? FindCuts(*input.keypoints) : std::vector<char>(T, 0);
   problem.betas = VectorXd::Zero(num_betas);
