@@ -15,6 +15,7 @@
 #include "geometry/check.h"
 #include "geometry/posed_body.h"
 #include "geometry/rotation.h"
+#include "tracking/image_terms.h"
 #include "tracking/initialise/initial_states.h"
 #include "tracking/initialise/swap_repair.h"
 #include "tracking/observability.h"
@@ -158,12 +159,6 @@ Camera StartCamera(const TrackSequenceInput& input, const TrackSequenceOptions& 
   return camera;
 }
 
-/// Image height of an upright body at each frame's depth, pixels: the yardstick of detection noise.
-double BodyHeightPx(const FrameLayout& layout, const FrameState& state, double stature) {
-  if (layout.knowledge == CameraKnowledge::kWeak) return std::exp(state.translation[0]) * stature;
-  return layout.camera.fy * stature / std::max(state.translation.z(), 0.3);
-}
-
 }  // namespace
 
 bool TrackSequenceOptions::IsValid(std::string* why) const {
@@ -239,7 +234,8 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSe
   // Which landmarks and joints take part.
   const int num_betas = options.estimate_shape ? std::min(model.num_betas(), 10) : 0;
   const ObservedLandmarks landmarks = FindObservedLandmarks(model, input.keypoints, num_betas);
-  const std::vector<int> active = FindActiveJoints(model, landmarks, input.dense != nullptr, options.skip_unneeded);
+  const std::vector<int> active =
+      FindActiveJoints(model, landmarks, input.dense != nullptr || input.part_labels != nullptr, options.skip_unneeded);
   const Camera camera = StartCamera(input, options);
   SequenceProblem problem;
   problem.layout = FrameLayout::Make(model, options.camera_knowledge, camera, active, num_betas);
@@ -274,7 +270,7 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSe
   for (size_t t = 0; t < T; ++t) {
     FrameData& frame = problem.frames[t];
     if (input.keypoints != nullptr) {
-      const double height_px = BodyHeightPx(problem.layout, problem.states[t], stature);
+      const double height_px = PersonHeightPx(problem.layout, problem.states[t], stature);
       frame.landmarks = ObserveLandmarks(landmarks, *input.keypoints, static_cast<int>(t), height_px);
     }
     if (input.dense != nullptr) frame.dense = &input.dense->frames[t];
@@ -326,21 +322,45 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSe
   // Coarse in time first: what a frame cannot decide alone its neighbours decide together, and 15 frames a second are
   // enough to see how a person moves.
   bool going = true;
+  const ImageTerms terms(input, options, problem.layout, threads);
   const std::vector<int> coarse_frames = FramesAtRate(problem, options.coarse_rate);
   const bool coarse_to_fine = coarse_frames.size() < T;
   const double final_pull = pulled ? 0.0 : options.initialiser_weight;
-  if (pulled || coarse_to_fine) {
+  const bool has_points = input.keypoints != nullptr || input.dense != nullptr;
+  if (pulled || coarse_to_fine || terms.has_dense_rounds() || terms.has_part_labels()) {
     SequenceProblem coarse = SelectFrames(problem, coarse_frames);
-    if (pulled)
+    if (pulled) {
       going = solve("fit near start", &coarse, options.start_pull, 8, 1e-3, options.max_iterations, 0.05, 0.3);
-    if (going) going = solve("fit coarse", &coarse, final_pull, 4, 1e-4, options.max_iterations, 0.3, 0.6);
+    }
+    if (going && has_points)
+      going = solve("fit coarse", &coarse, final_pull, 4, 1e-4, options.max_iterations, 0.3, 0.5);
+    if (terms.has_part_labels()) {
+      const PartLabelOptions& labels = options.part_labels;
+      for (int round = 0; going && round < labels.rounds; ++round) {
+        const double s = labels.rounds > 1 ? double(round) / (labels.rounds - 1) : 1.0;
+        const double kernel = labels.start_kernel * std::pow(labels.kernel / labels.start_kernel, s);
+        terms.StartPartLabelRound(coarse_frames, kernel, &coarse);
+        going = solve("fit part labels", &coarse, final_pull, 4, 1e-4, labels.max_iterations, 0.5, 0.55);
+      }
+    }
+    if (terms.has_dense_rounds()) {
+      for (int round = 0; going && round < options.rendered_uv.rounds; ++round) {
+        terms.StartDenseRound(coarse_frames, &coarse);
+        going = solve("fit dense", &coarse, final_pull, 4, 1e-4, options.rendered_uv.max_iterations, 0.55, 0.6);
+      }
+    }
     SpreadFrames(coarse, coarse_frames, &problem);
   }
   // The coarse solve has settled what is slow to settle; between its frames a few steps are enough.
+  std::vector<int> all_frames(T);
+  std::iota(all_frames.begin(), all_frames.end(), 0);
+  terms.StartPartLabelRound(all_frames, options.part_labels.kernel, &problem);
+  terms.StartDenseRound(all_frames, &problem);
   const int fine_iterations = coarse_to_fine ? options.max_fine_iterations : options.max_iterations;
   if (going) solve("fit", &problem, final_pull, 4, 1e-4, fine_iterations, 0.6, 0.95);
 
   FillTrack(input, problem, landmarks, &result);
+  terms.Summarise(problem, &summary);
   clock.Book("finish");
   if (options.estimate_uncertainty) {
     // On the coarse frames: neighbours' detection errors are not independent, and their joints' spread changes slowly.
