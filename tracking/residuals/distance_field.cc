@@ -68,8 +68,8 @@ DistanceField::DistanceField(int x_begin, int y_begin, int width, int height, in
     : x_begin_(x_begin), y_begin_(y_begin), cell_px_(cell_px) {
   BODYLOOM_CHECK(width > 0 && height > 0 && cell_px > 0, "distance field: ", width, "x", height, " pixels in cells of ",
                  cell_px, ", expected positive sizes");
-  columns_ = (width - 1) / cell_px + 2;
-  rows_ = (height - 1) / cell_px + 2;
+  columns_ = std::max(2, (width + cell_px - 2) / cell_px + 1);
+  rows_ = std::max(2, (height + cell_px - 2) / cell_px + 1);
   // Along rows: distance from every node's column to the nearest pixel inside, and outside, of the same row.
   std::array<std::vector<std::vector<float>>, 2> along;  // by kind, by node column: one value a pixel row
   for (auto& kind : along) kind.assign(columns_, std::vector<float>(height, kFar));
@@ -109,7 +109,7 @@ DistanceField::DistanceField(int x_begin, int y_begin, int width, int height, in
       const Pixel here = at_node[static_cast<size_t>(r) * columns_ + c];
       const double distance = here == Pixel::kInside    ? 0.5 - out
                               : here == Pixel::kOutside ? in - 0.5
-                                                        : 0.5 * (in - out);
+                                                        : in - out;
       nodes_[static_cast<size_t>(r) * columns_ + c] = static_cast<float>(distance);
     }
   }

@@ -19,7 +19,7 @@ class DistanceField {
   enum class Pixel {
     kOutside,
     kInside,
-    kUnsaid,  ///< belongs to neither; the border runs through it half way between what was said
+    kUnsaid,  ///< belongs to neither: distance to the inside minus distance to the outside, so the border runs half way
   };
 
   /// Region of the pixels for which `at(x, y)` says kInside. The grid covers the rectangle of width × height pixels

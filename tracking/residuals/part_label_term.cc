@@ -18,6 +18,7 @@ using Eigen::Vector3d;
 
 constexpr uint8_t kBackground = PartLabelSequence::kBackground, kUnknown = PartLabelSequence::kUnknown;
 constexpr int kFieldCells = 128;  ///< a field has about this many cells along the person
+constexpr int kMinCellPx = 3;      ///< finer cells would show the stairs of the mask in the field's slope
 constexpr int kMarginCells = 24;  ///< around what the field is of
 constexpr int kMaxSilhouette = 160, kMaxPartBorder = 16, kMaxPartOutline = 16, kMaxInside = 12;
 constexpr double kAlongBorder = 0.2;       ///< τ
@@ -47,7 +48,7 @@ PartLabelTerm::PartLabelTerm(const PartLabelSequence& labels, int t, std::shared
     num_person_pixels_ = 0;
     return;
   }
-  cell_px_ = std::max(1, std::max(boxes_[0].width(), boxes_[0].height()) / kFieldCells);
+  cell_px_ = std::max(kMinCellPx, std::max(boxes_[0].width(), boxes_[0].height()) / kFieldCells);
   AddField(kBackground);
   int parts = 0;
   for (int p = 1; p < kUnknown; ++p) parts += pixels_of_part_[p] > 0;
@@ -91,8 +92,8 @@ void PartLabelTerm::FindBoxes() {
 
 void PartLabelTerm::AddField(uint8_t part) {
   const PixelBox image{0, 0, labels_.image_width, labels_.image_height};
-  // Beyond the image nothing is said; two pixels of it are enough for the field to know.
-  const PixelBox box = boxes_[part].GrownBy(kMarginCells * cell_px_).ClippedTo(image.GrownBy(2));
+  // Beyond the image nothing is said; a cell of it is enough for the field to know.
+  const PixelBox box = boxes_[part].GrownBy(kMarginCells * cell_px_).ClippedTo(image.GrownBy(cell_px_));
   const auto at = [&](int x, int y) {
     if (!image.Contains(x, y)) return DistanceField::Pixel::kUnsaid;
     const uint8_t here = PartAt(x, y);
