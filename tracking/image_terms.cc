@@ -52,17 +52,17 @@ ImageTerms::ImageTerms(const TrackSequenceInput& input, const TrackSequenceOptio
   whitens_ = input.dense != nullptr && input.dense->uv_sigma > 0 && model.data().face_iuv.rows() > 0;
   const bool uv = WhyNoRenderedUv(input, options).empty();
   const bool labels = WhyNoSilhouette(input, options).empty() || WhyNoParts(input, options).empty();
-  if (!uv && !labels) return;
-  const auto skinner = std::make_shared<const Skinner>(model);
+  if (!uv && !labels && !whitens_) return;
+  skinner_ = std::make_shared<const Skinner>(model);
   if (uv) {
     for (const std::vector<DenseKeypoint>& frame : input.dense->frames) {
-      rendered_uv_.push_back(std::make_unique<RenderedUvTerm>(model, skinner, frame, options.rendered_uv));
+      rendered_uv_.push_back(std::make_unique<RenderedUvTerm>(model, skinner_, frame, options.rendered_uv));
     }
   }
   if (labels) {
     part_labels_.resize(input.part_labels->num_frames());
     ParallelFor(input.part_labels->num_frames(), num_threads, [&](int t) {
-      part_labels_[t] = std::make_unique<PartLabelTerm>(*input.part_labels, t, skinner, options.part_labels);
+      part_labels_[t] = std::make_unique<PartLabelTerm>(*input.part_labels, t, skinner_, options.part_labels);
     });
   }
 }
@@ -71,8 +71,14 @@ void ImageTerms::StartDenseRound(const std::vector<int>& frames, SequenceProblem
   if (!has_dense_rounds()) return;
   ParallelFor(static_cast<int>(frames.size()), num_threads_, [&](int i) {
     FrameData& frame = problem->frames[i];
-    frame.dense_whitening = WhitenDense(problem->layout, problem->states[i], problem->betas, problem->log_focal,
-                                        *frame.dense, input_.dense->uv_sigma, input_.dense->pixel_sigma_px);
+    const FrameState& state = problem->states[i];
+    thread_local VisibleSurface surface;
+    const bool seen =
+        surface.Render(skinner_, *problem->layout.model, problem->betas, state.rotations,
+                       problem->layout.BodyTranslation(state), problem->layout.CameraAt(state, problem->log_focal));
+    frame.dense_whitening =
+        WhitenDense(problem->layout, state, problem->betas, problem->log_focal, *frame.dense, input_.dense->uv_sigma,
+                    input_.dense->pixel_sigma_px, seen ? &surface.buffer() : nullptr);
     if (rendered_uv_.empty()) return;
     frame.rendered_uv = rendered_uv_[frames[i]].get();
     frame.rendered_uv->SetWhitening(frame.dense_whitening);

@@ -43,6 +43,7 @@ class ImageTerms {
   int num_threads_;
   bool whitens_ = false;
   double stature_m_ = 0;
+  std::shared_ptr<const Skinner> skinner_;                    ///< null when no term looks at the surface
   std::vector<std::unique_ptr<RenderedUvTerm>> rendered_uv_;  ///< T, or empty
   std::vector<std::unique_ptr<PartLabelTerm>> part_labels_;   ///< T, or empty
 };

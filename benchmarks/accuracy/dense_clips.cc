@@ -11,6 +11,7 @@ DenseFaultOptions DenseFaults(const std::string& noise) {
   DenseFaultOptions faults;
   faults.pixel_sigma_px = 1;
   if (noise == "pixel") return faults;
+  if (noise == "uv") { faults.pixel_sigma_px = 0; faults.uv_sigma = 0.02; return faults; }
   BODYLOOM_CHECK(noise == "densepose", "--noise is '", noise, "', expected pixel or densepose");
   faults.uv_sigma = 0.02;
   faults.quantise_uv = true;

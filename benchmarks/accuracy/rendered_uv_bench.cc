@@ -94,11 +94,12 @@ void DenseClips(const BenchArguments& arguments, BenchReport* report) {
     for (const std::string& path : arguments.List("motions")) {
       const Motion motion = FirstFrames(LoadMotion(path), arguments.Integer("frames"));
       SynthClip clip = MakeClip(noise, motion, std::stod(arguments.Text("initial")), 1, arguments);
-      for (const std::string residual : {"reprojection", "whitened", "rendered UV"}) {
+      for (const std::string& residual : arguments.List("residuals")) {
         TrackSequenceOptions options;
         options.num_threads = arguments.Integer("threads");
         options.max_fine_iterations = arguments.Integer("fine_iterations");
         options.rendered_uv.rounds = arguments.Integer("rounds");
+        options.rendered_uv.min_cosine = std::stod(arguments.Text("min_cosine"));
         options.rendered_uv.weight = residual == "rendered UV" ? 1 : 0;
         clip.dense.uv_sigma = residual == "reprojection" ? 0 : DenseFaults(noise).uv_sigma;
         report->rows.push_back(
@@ -299,6 +300,8 @@ int main(int argc, char** argv) {
          {"initial", "14.8"},
          {"fine_iterations", "4"},
          {"rounds", "1"},
+         {"residuals", "reprojection,whitened,rendered UV"},
+         {"min_cosine", "0.5"},
          {"frames", "0"},
          {"starts", "15,30,60,90,120"},
          {"trials", "40"},

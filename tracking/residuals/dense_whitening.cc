@@ -2,6 +2,7 @@
 #include "tracking/residuals/dense_whitening.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -10,8 +11,15 @@ namespace bodyloom {
 
 using Eigen::Matrix2d;
 using Eigen::Matrix3d;
+using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Matrix32d = Eigen::Matrix<double, 3, 2>;
+
+namespace {
+
+int NearestPixel(double x) { return static_cast<int>(std::floor(x + 0.5)); }
+
+}  // namespace
 
 Matrix32d CornerUv(const BodyModel& model, int face) {
   const auto corners = model.data().face_iuv.row(face);
@@ -30,11 +38,28 @@ Matrix2d PixelByChart(const Matrix3d& corners, const Matrix2x3d& d_pixel_d_x, co
   return d_pixel_d_x * E * U.transpose().inverse();
 }
 
+bool SeeUv(const Camera& camera, const Matrix3d& corners, const Matrix32d& corner_uv, const Vector2d& pixel,
+           double min_cosine, SeenUv* seen) {
+  const Vector2d xy = camera.Unproject(pixel);
+  const bool weak = camera.model == CameraModel::kWeakPerspective;
+  const Vector3d origin = weak ? Vector3d(xy.x(), xy.y(), 0) : Vector3d::Zero();
+  const Vector3d ray = weak ? Vector3d::UnitZ() : Vector3d(xy.x(), xy.y(), 1);
+  const Vector3d a = corners.row(0).transpose() - origin, b = corners.row(1).transpose() - origin,
+                 c = corners.row(2).transpose() - origin;
+  // Signed volumes of the ray with the edges; they add up to ray · normal.
+  const Vector3d volume(ray.dot(b.cross(c)), ray.dot(c.cross(a)), ray.dot(a.cross(b)));
+  const double sum = volume.sum(), normal = (b - a).cross(c - a).norm();
+  if (!(std::abs(sum) >= min_cosine * normal * ray.norm()) || !(normal > 0)) return false;
+  seen->barycentric = volume / sum;
+  seen->uv = corner_uv.transpose() * seen->barycentric;
+  return true;
+}
+
 std::vector<DenseWhitening> WhitenDense(const FrameLayout& layout, const FrameState& state,
                                         const Eigen::VectorXd& betas, double log_focal,
                                         const std::vector<DenseKeypoint>& keypoints, double uv_sigma,
-                                        double pixel_sigma_px) {
-  constexpr double kMinPixelSigma = 0.3;
+                                        double pixel_sigma_px, const VisibilityBuffer* seen) {
+  constexpr double kMinPixelSigma = 0.3, kMinCosine = 0.1;
   const BodyModel& model = *layout.model;
   const bool has_charts = model.data().face_iuv.rows() > 0;
   const Camera camera = layout.CameraAt(state, log_focal);
@@ -50,15 +75,34 @@ std::vector<DenseWhitening> WhitenDense(const FrameLayout& layout, const FrameSt
     out.pixel_by_uv.setZero();
     if (!has_charts) continue;
     Matrix3d corners;
-    for (int c = 0; c < 3; ++c) {
-      corners.row(c) =
-          PointEvaluator::VertexPosition(kinematics, model.data().faces(point.face, c), &vertices).transpose();
+    Vector3d barycentric = point.barycentric.cast<double>() / point.barycentric.cast<double>().sum();
+    const auto set_corners = [&](int face) {
+      for (int c = 0; c < 3; ++c) {
+        corners.row(c) = PointEvaluator::VertexPosition(kinematics, model.data().faces(face, c), &vertices).transpose();
+      }
+    };
+    const Vector2d y = point.pixel.cast<double>();
+    int face =
+        seen != nullptr && y.cwiseAbs().maxCoeff() < 1e6 ? seen->FaceAt(NearestPixel(y.x()), NearestPixel(y.y())) : -1;
+    SeenUv at_pixel;
+    if (face >= 0 && model.data().face_part[face] == model.data().face_part[point.face]) {
+      set_corners(face);
+      if (SeeUv(camera, corners, CornerUv(model, face), y, kMinCosine, &at_pixel)) {
+        barycentric = at_pixel.barycentric;
+      } else {
+        face = -1;
+      }
+    } else {
+      face = -1;
     }
-    const Vector3d x = corners.transpose() * point.barycentric.cast<double>() / point.barycentric.cast<double>().sum();
-    Eigen::Vector2d pixel;
+    if (face < 0) {
+      face = point.face;
+      set_corners(face);
+    }
+    Vector2d pixel;
     Matrix2x3d d_pixel;
-    if (!camera.Project(x, &pixel, &d_pixel)) continue;
-    out.pixel_by_uv = PixelByChart(corners, d_pixel, CornerUv(model, point.face));
+    if (!camera.Project(corners.transpose() * barycentric, &pixel, &d_pixel)) continue;
+    out.pixel_by_uv = PixelByChart(corners, d_pixel, CornerUv(model, face));
     if (uv_sigma <= 0) continue;
     const double s_px = std::max(pixel_sigma_px, kMinPixelSigma);
     const Matrix2d S =

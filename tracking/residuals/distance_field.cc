@@ -107,9 +107,7 @@ DistanceField::DistanceField(int x_begin, int y_begin, int width, int height, in
     for (int r = 0; r < rows_; ++r) {
       const double in = std::min(std::sqrt(to_inside[r]), diagonal), out = std::min(std::sqrt(to_outside[r]), diagonal);
       const Pixel here = at_node[static_cast<size_t>(r) * columns_ + c];
-      const double distance = here == Pixel::kInside    ? 0.5 - out
-                              : here == Pixel::kOutside ? in - 0.5
-                                                        : in - out;
+      const double distance = here == Pixel::kInside ? 0.5 - out : here == Pixel::kOutside ? in - 0.5 : in - out;
       nodes_[static_cast<size_t>(r) * columns_ + c] = static_cast<float>(distance);
     }
   }

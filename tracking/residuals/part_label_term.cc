@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 
 constexpr uint8_t kBackground = PartLabelSequence::kBackground, kUnknown = PartLabelSequence::kUnknown;
 constexpr int kFieldCells = 128;  ///< a field has about this many cells along the person
-constexpr int kMinCellPx = 3;      ///< finer cells would show the stairs of the mask in the field's slope
+constexpr int kMinCellPx = 3;     ///< finer cells would show the stairs of the mask in the field's slope
 constexpr int kMarginCells = 24;  ///< around what the field is of
 constexpr int kMaxSilhouette = 160, kMaxPartBorder = 16, kMaxPartOutline = 16, kMaxInside = 12;
 constexpr double kAlongBorder = 0.2;       ///< τ

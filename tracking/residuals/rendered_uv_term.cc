@@ -40,23 +40,6 @@ std::vector<int> StratifiedKeypoints(const BodyModel& model, const std::vector<D
   return chosen;
 }
 
-bool SeeUv(const Camera& camera, const Eigen::Matrix3d& corners, const Matrix32d& corner_uv,
-           const Eigen::Vector2d& pixel, double min_cosine, SeenUv* seen) {
-  const Eigen::Vector2d xy = camera.Unproject(pixel);
-  const bool weak = camera.model == CameraModel::kWeakPerspective;
-  const Vector3d origin = weak ? Vector3d(xy.x(), xy.y(), 0) : Vector3d::Zero();
-  const Vector3d ray = weak ? Vector3d::UnitZ() : Vector3d(xy.x(), xy.y(), 1);
-  const Vector3d a = corners.row(0).transpose() - origin, b = corners.row(1).transpose() - origin,
-                 c = corners.row(2).transpose() - origin;
-  // Signed volumes of the ray with the edges; they add up to ray · normal.
-  const Vector3d volume(ray.dot(b.cross(c)), ray.dot(c.cross(a)), ray.dot(a.cross(b)));
-  const double sum = volume.sum(), normal = (b - a).cross(c - a).norm();
-  if (!(std::abs(sum) >= min_cosine * normal * ray.norm()) || !(normal > 0)) return false;
-  seen->barycentric = volume / sum;
-  seen->uv = corner_uv.transpose() * seen->barycentric;
-  return true;
-}
-
 Eigen::Matrix2d UvByPixel(const Eigen::Matrix3d& corners, const Matrix2x3d& d_pixel_d_x, const Matrix32d& corner_uv) {
   Matrix32d E;
   E << (corners.row(1) - corners.row(0)).transpose(), (corners.row(2) - corners.row(0)).transpose();

@@ -30,16 +30,6 @@
 
 namespace bodyloom {
 
-/// Where the ray through a pixel meets the plane of a face.
-struct SeenUv {
-  Eigen::Vector3d barycentric;  ///< not clamped: linear beyond the edges, by less than a pixel
-  Eigen::Vector2d uv;
-};
-
-/// False where the face is seen at |cos| below min_cosine, or no ray belongs to the pixel. Corners are rows.
-bool SeeUv(const Camera& camera, const Eigen::Matrix3d& corners, const Eigen::Matrix<double, 3, 2>& corner_uv,
-           const Eigen::Vector2d& pixel, double min_cosine, SeenUv* seen);
-
 /// M⁻¹ = ∂(u, v)/∂pixel on a face, at a point whose ∂pixel/∂x is given.
 Eigen::Matrix2d UvByPixel(const Eigen::Matrix3d& corners, const Matrix2x3d& d_pixel_d_x,
                           const Eigen::Matrix<double, 3, 2>& corner_uv);
