@@ -9,11 +9,11 @@ namespace bodyloom {
 
 DenseFaultOptions DenseFaults(const std::string& noise) {
   DenseFaultOptions faults;
-  faults.pixel_sigma_px = 1;
-  if (noise == "pixel") return faults;
-  if (noise == "uv") { faults.pixel_sigma_px = 0; faults.uv_sigma = 0.02; return faults; }
-  BODYLOOM_CHECK(noise == "densepose", "--noise is '", noise, "', expected pixel or densepose");
-  faults.uv_sigma = 0.02;
+  BODYLOOM_CHECK(noise == "pixel" || noise == "uv" || noise == "densepose", "--noise is '", noise,
+                 "', expected pixel, uv or densepose");
+  if (noise != "uv") faults.pixel_sigma_px = 1;
+  if (noise != "pixel") faults.uv_sigma = 0.02;
+  if (noise != "densepose") return faults;
   faults.quantise_uv = true;
   faults.outlier_probability = 0.05;
   faults.missing_part_share = 0.05;

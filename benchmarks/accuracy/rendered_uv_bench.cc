@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 /// What the rendered-UV term (L_r) and the part-label terms buy, and what they cost.
 ///
-///   bodyloom_bench_rendered_uv [--what dense,basin,labels] [--motions A.pkl,B.bvh] [--noise pixel,densepose] [--dense
-///   300]
-///                              [--initial 14.8] [--frames 0] [--starts 15,30,60,90,120] [--trials 40] [--block 1,6]
-///                              [--threads 2] [--json F]
+///   bodyloom_bench_rendered_uv [--what dense,basin,labels] [--motions A.pkl,B.bvh] [--noise pixel,uv,densepose]
+///                              [--residuals "reprojection,whitened,rendered UV"] [--dense 300] [--initial 14.8]
+///                              [--frames 0] [--rounds 1] [--fine_iterations 8] [--min_cosine 0.5]
+///                              [--starts 15,30,45,60,70] [--trials 60] [--block 1,6] [--threads 2] [--json F]
 ///
 /// dense   whole clips tracked from dense keypoints and an initialiser: reprojection with one σ a keypoint;
 /// reprojection
 ///         whitened by the UV covariance; rendered UV after it.
-/// basin   single frames from starts of stated error, the shape known: success is a final per-vertex projection error
-///         below 4 px at 512 px. Reprojection only, rendered UV only (unmatched pixels saturate), the two in turn.
-/// labels  clips tracked from part labels alone (of truth, by blocks of so many pixels) from an initialiser.
+/// basin   single frames from starts of stated error, the shape known, densepose noise: success is a final per-vertex
+///         projection error below 4 px at 512 px. Reprojection only, rendered UV only (unmatched pixels saturate), the
+///         two in turn.
+/// labels  clips tracked from part labels alone (of the truth, by blocks of so many pixels) from an initialiser.
 /// Errors: protocol known-truth (docs/evaluation.md), pixels at 512.
 #include <chrono>
 #include <cstdio>
@@ -70,7 +71,10 @@ std::vector<double> TrackAndScore(const TrackSequenceInput& input, const TrackSe
   EvaluateAgainstTruthOptions evaluate;
   evaluate.num_threads = options.num_threads;
   const Evaluation e = EvaluateAgainstTruth(result.track, clip.truth, *input.body, evaluate);
-  std::fprintf(stderr, "%s\n", result.summary.BriefReport().c_str());
+  std::fprintf(stderr, "%s\nevaluation %.2f s, linear solver %.2f s", result.summary.BriefReport().c_str(),
+               result.summary.seconds_evaluation, result.summary.seconds_linear_solver);
+  for (const auto& [stage, s] : result.summary.seconds) std::fprintf(stderr, ", %s %.2f s", stage.c_str(), s);
+  std::fprintf(stderr, "\n");
   return {clip.initialiser_error_px,
           e.Value("projection_mean_px"),
           e.Value("projection_std_px"),
@@ -295,16 +299,16 @@ int main(int argc, char** argv) {
         argc, argv,
         {{"what", "dense,basin,labels"},
          {"motions", data + "gBR_sBM_cAll_d06_mBR2_ch06.pkl," + data + "gJS_sBM_cAll_d03_mJS2_ch07.pkl"},
-         {"noise", "pixel,densepose"},
+         {"noise", "pixel,uv,densepose"},
          {"dense", "300"},
          {"initial", "14.8"},
-         {"fine_iterations", "4"},
+         {"fine_iterations", "8"},
          {"rounds", "1"},
          {"residuals", "reprojection,whitened,rendered UV"},
          {"min_cosine", "0.5"},
          {"frames", "0"},
-         {"starts", "15,30,60,90,120"},
-         {"trials", "40"},
+         {"starts", "15,30,45,60,70"},
+         {"trials", "60"},
          {"block", "1,6"},
          {"threads", "2"},
          {"json", ""}});

@@ -30,7 +30,9 @@ double BruteForce(int width, int height, const std::vector<Pixel>& image, int x,
 }
 
 DistanceField MakeField(int width, int height, int cell, const std::vector<Pixel>& image, int x0 = 0, int y0 = 0) {
-  return {x0, y0, width, height, cell, [&, x0, y0, width](int x, int y) { return image[(y - y0) * width + x - x0]; }};
+  return {x0,     y0,   width,
+          height, cell, [&, y0, width](int y, Pixel* row) {
+            std::copy_n(&image[size_t(y - y0) * width], width, row); }};
 }
 
 TEST(DistanceField, IsExactAtItsNodes) {

@@ -64,7 +64,7 @@ void CubicWeights(double s, std::array<double, 4>* w, std::array<double, 4>* d) 
 }  // namespace
 
 DistanceField::DistanceField(int x_begin, int y_begin, int width, int height, int cell_px,
-                             const std::function<Pixel(int x, int y)>& at)
+                             const std::function<void(int y, Pixel* row)>& fill_row)
     : x_begin_(x_begin), y_begin_(y_begin), cell_px_(cell_px) {
   BODYLOOM_CHECK(width > 0 && height > 0 && cell_px > 0, "distance field: ", width, "x", height, " pixels in cells of ",
                  cell_px, ", expected positive sizes");
@@ -76,7 +76,7 @@ DistanceField::DistanceField(int x_begin, int y_begin, int width, int height, in
   std::vector<Pixel> row(width);
   std::vector<Pixel> at_node(static_cast<size_t>(columns_) * rows_, Pixel::kUnsaid);
   for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) row[x] = at(x_begin + x, y_begin + y);
+    fill_row(y_begin + y, row.data());
     for (int kind = 0; kind < 2; ++kind) {
       const Pixel wanted = kind == 0 ? Pixel::kInside : Pixel::kOutside;
       int last = -1, x = 0;

@@ -22,11 +22,11 @@ class DistanceField {
     kUnsaid,  ///< belongs to neither: distance to the inside minus distance to the outside, so the border runs half way
   };
 
-  /// Region of the pixels for which `at(x, y)` says kInside. The grid covers the rectangle of width × height pixels
-  /// from (x_begin, y_begin); outside it nothing is looked at. `cell_px` at least 1. Without a pixel inside (or
-  /// outside) the distance to it counts as the rectangle's diagonal.
+  /// Region of the pixels that `fill_row(y, row)` calls kInside; it writes the `width` pixels from (x_begin, y) on. The
+  /// grid covers the rectangle of width × height pixels from (x_begin, y_begin); outside it nothing is looked at.
+  /// `cell_px` at least 1. Without a pixel inside (or outside) the distance to it counts as the rectangle's diagonal.
   DistanceField(int x_begin, int y_begin, int width, int height, int cell_px,
-                const std::function<Pixel(int x, int y)>& at);
+                const std::function<void(int y, Pixel* row)>& fill_row);
 
   /// Distance at any finite position, with its derivative when asked for.
   double Evaluate(const Eigen::Vector2d& pixel, Eigen::RowVector2d* gradient = nullptr) const;

@@ -19,8 +19,8 @@ using Eigen::Vector3d;
 constexpr uint8_t kBackground = PartLabelSequence::kBackground, kUnknown = PartLabelSequence::kUnknown;
 constexpr int kFieldCells = 128;  ///< a field has about this many cells along the person
 constexpr int kMinCellPx = 3;     ///< finer cells would show the stairs of the mask in the field's slope
-constexpr int kMarginCells = 24;  ///< around what the field is of
-constexpr int kMaxSilhouette = 160, kMaxPartBorder = 16, kMaxPartOutline = 16, kMaxInside = 12;
+constexpr int kMarginCells = 10;  ///< around what the field is of; farther away it goes on as a cone
+constexpr int kMaxSilhouette = 160, kMaxPartBorder = 10, kMaxPartOutline = 12, kMaxInside = 10;
 constexpr double kAlongBorder = 0.2;       ///< τ
 constexpr double kInsideSigmas = 3;        ///< σ of "somewhere on this part"
 constexpr double kBehindTolerance = 0.02;  ///< metres: neighbouring pixels of one surface
@@ -94,14 +94,18 @@ void PartLabelTerm::AddField(uint8_t part) {
   const PixelBox image{0, 0, labels_.image_width, labels_.image_height};
   // Beyond the image nothing is said; a cell of it is enough for the field to know.
   const PixelBox box = boxes_[part].GrownBy(kMarginCells * cell_px_).ClippedTo(image.GrownBy(cell_px_));
-  const auto at = [&](int x, int y) {
-    if (!image.Contains(x, y)) return DistanceField::Pixel::kUnsaid;
-    const uint8_t here = PartAt(x, y);
-    if (here == kUnknown) return DistanceField::Pixel::kUnsaid;
-    const bool inside = part == kBackground ? here != kBackground : here == part;
-    return inside ? DistanceField::Pixel::kInside : DistanceField::Pixel::kOutside;
+  using Pixel = DistanceField::Pixel;
+  std::array<Pixel, 256> kind;  // by part
+  kind.fill(part == kBackground ? Pixel::kInside : Pixel::kOutside);
+  kind[kBackground] = Pixel::kOutside;
+  if (part != kBackground) kind[part] = Pixel::kInside;
+  kind[kUnknown] = Pixel::kUnsaid;
+  const auto fill_row = [&](int y, Pixel* row) {
+    for (int x = box.x_begin; x < box.x_end; ++x) {
+      *row++ = image.Contains(x, y) ? kind[PartAt(x, y)] : Pixel::kUnsaid;
+    }
   };
-  fields_.try_emplace(part, box.x_begin, box.y_begin, box.width(), box.height(), cell_px_, at);
+  fields_.try_emplace(part, box.x_begin, box.y_begin, box.width(), box.height(), cell_px_, fill_row);
 }
 
 void PartLabelTerm::SampleBorders() {
