@@ -35,6 +35,7 @@ std::vector<T> Thinned(const std::vector<T>& items, size_t n) {
   return result;
 }
 
+/// Neither background nor unknown.
 bool IsPart(uint8_t part) { return part != kBackground && part != kUnknown; }
 
 }  // namespace
@@ -43,22 +44,23 @@ PartLabelTerm::PartLabelTerm(const PartLabelSequence& labels, int t, std::shared
                              const PartLabelOptions& options)
     : labels_(labels), t_(t), skinner_(std::move(skinner)), options_(options) {
   BODYLOOM_CHECK(t >= 0 && t < labels.num_frames(), "part labels: frame ", t, " of ", labels.num_frames());
-  FindBoxes();
+  const PartMap map = MakePartMap(labels, t, kSpeckShare);
+  FindBoxes(map);
   if (num_person_pixels_ < kMinPartPixels) {
     num_person_pixels_ = 0;
     return;
   }
   cell_px_ = std::max(kMinCellPx, std::max(boxes_[0].width(), boxes_[0].height()) / kFieldCells);
-  AddField(kBackground);
+  AddField(map, kBackground);
   int parts = 0;
   for (int p = 1; p < kUnknown; ++p) parts += pixels_of_part_[p] > 0;
   if (parts > 1 && options.part_weight > 0) {  // a mask has nothing to say about parts
     for (int p = 1; p < kUnknown; ++p) {
-      if (pixels_of_part_[p] >= kMinPartPixels) AddField(static_cast<uint8_t>(p));
+      if (pixels_of_part_[p] >= kMinPartPixels) AddField(map, static_cast<uint8_t>(p));
     }
-    SampleInside();
+    SampleInside(map);
   }
-  SampleBorders();
+  SampleBorders(map);
 }
 
 const DistanceField* PartLabelTerm::Field(uint8_t part) const {
@@ -66,21 +68,24 @@ const DistanceField* PartLabelTerm::Field(uint8_t part) const {
   return it == fields_.end() ? nullptr : &it->second;
 }
 
-uint8_t PartLabelTerm::PartOfFace(const BodyModel& model, int face) const {
-  const uint8_t part = labels_.part_of_chart[model.has_parts() ? model.data().face_part[face] : 0];
-  return part == kBackground ? kUnknown : part;
+std::vector<uint8_t> PartLabelTerm::PartOfFaces(const BodyModel& model) const {
+  std::vector<uint8_t> result(model.num_faces());
+  for (int f = 0; f < model.num_faces(); ++f) {
+    const uint8_t part = labels_.part_of_chart[model.has_parts() ? model.data().face_part[f] : 0];
+    result[f] = part == kBackground ? kUnknown : part;
+  }
+  return result;
 }
 
-void PartLabelTerm::FindBoxes() {
-  const LabelImage& image = labels_.frames[t_];
+void PartLabelTerm::FindBoxes(const PartMap& map) {
   const auto grow = [](PixelBox* box, int x, int y) {
     *box = box->empty() ? PixelBox{x, y, x + 1, y + 1}
                         : PixelBox{std::min(box->x_begin, x), std::min(box->y_begin, y), std::max(box->x_end, x + 1),
                                    std::max(box->y_end, y + 1)};
   };
-  for (int y = image.y_begin; y < image.y_begin + image.height; ++y) {
-    for (int x = image.x_begin; x < image.x_begin + image.width; ++x) {
-      const uint8_t part = PartAt(x, y);
+  for (int y = map.box.y_begin; y < map.box.y_end; ++y) {
+    for (int x = map.box.x_begin; x < map.box.x_end; ++x) {
+      const uint8_t part = map.At(x, y);
       if (!IsPart(part)) continue;
       ++num_person_pixels_;
       ++pixels_of_part_[part];
@@ -90,10 +95,9 @@ void PartLabelTerm::FindBoxes() {
   }
 }
 
-void PartLabelTerm::AddField(uint8_t part) {
-  const PixelBox image{0, 0, labels_.image_width, labels_.image_height};
+void PartLabelTerm::AddField(const PartMap& map, uint8_t part) {
   // Beyond the image nothing is said; a cell of it is enough for the field to know.
-  const PixelBox box = boxes_[part].GrownBy(kMarginCells * cell_px_).ClippedTo(image.GrownBy(cell_px_));
+  const PixelBox box = boxes_[part].GrownBy(kMarginCells * cell_px_).ClippedTo(map.image.GrownBy(cell_px_));
   using Pixel = DistanceField::Pixel;
   std::array<Pixel, 256> kind;  // by part
   kind.fill(part == kBackground ? Pixel::kInside : Pixel::kOutside);
@@ -101,21 +105,17 @@ void PartLabelTerm::AddField(uint8_t part) {
   if (part != kBackground) kind[part] = Pixel::kInside;
   kind[kUnknown] = Pixel::kUnsaid;
   const auto fill_row = [&](int y, Pixel* row) {
-    for (int x = box.x_begin; x < box.x_end; ++x) {
-      *row++ = image.Contains(x, y) ? kind[PartAt(x, y)] : Pixel::kUnsaid;
-    }
+    for (int x = box.x_begin; x < box.x_end; ++x) *row++ = kind[map.At(x, y)];
   };
   fields_.try_emplace(part, box.x_begin, box.y_begin, box.width(), box.height(), cell_px_, fill_row);
 }
 
-void PartLabelTerm::SampleBorders() {
+void PartLabelTerm::SampleBorders(const PartMap& map) {
   std::vector<Border> silhouette;
   std::map<std::pair<uint8_t, uint8_t>, std::vector<Border>> between;
-  const PixelBox image{0, 0, labels_.image_width, labels_.image_height};
-  const PixelBox box = boxes_[0].GrownBy(1).ClippedTo(image);
+  const PixelBox box = boxes_[0].GrownBy(1).ClippedTo(map.image);
   const auto look = [&](int x, int y, int dx, int dy) {
-    if (!image.Contains(x + dx, y + dy)) return;
-    const uint8_t here = PartAt(x, y), there = PartAt(x + dx, y + dy);
+    const uint8_t here = map.At(x, y), there = map.At(x + dx, y + dy);
     if (here == there || here == kUnknown || there == kUnknown) return;
     const Border border{Vector2d(x + 0.5 * dx, y + 0.5 * dy), std::min(here, there), std::max(here, there)};
     (border.a == kBackground ? silhouette : between[{border.a, border.b}]).push_back(border);
@@ -134,7 +134,7 @@ void PartLabelTerm::SampleBorders() {
   }
 }
 
-void PartLabelTerm::SampleInside() {
+void PartLabelTerm::SampleInside(const PartMap& map) {
   std::array<std::vector<Inside>, 256> by_part;
   const PixelBox& box = boxes_[0];
   // A grid of at least kMaxInside points in the smallest part that counts is finer than needed elsewhere: thinned
@@ -142,7 +142,7 @@ void PartLabelTerm::SampleInside() {
   const int step = std::max(1, cell_px_ / 2);
   for (int y = box.y_begin; y < box.y_end; y += step) {
     for (int x = box.x_begin; x < box.x_end; x += step) {
-      const uint8_t part = PartAt(x, y);
+      const uint8_t part = map.At(x, y);
       if (IsPart(part) && fields_.contains(part)) by_part[part].push_back({x, y, part});
     }
   }
@@ -152,7 +152,7 @@ void PartLabelTerm::SampleInside() {
   }
 }
 
-std::vector<PartLabelTerm::Edge> PartLabelTerm::EdgesOfBody(const BodyModel& model,
+std::vector<PartLabelTerm::Edge> PartLabelTerm::EdgesOfBody(const std::vector<uint8_t>& part_of_face,
                                                             const VisibilityBuffer& buffer) const {
   std::vector<Edge> edges;
   const PixelBox& box = buffer.box();
@@ -160,13 +160,14 @@ std::vector<PartLabelTerm::Edge> PartLabelTerm::EdgesOfBody(const BodyModel& mod
   constexpr std::array<std::pair<int, int>, 4> kNeighbours = {{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
   for (int y = box.y_begin; y < box.y_end; ++y) {
     for (int x = box.x_begin; x < box.x_end; ++x) {
-      const int face = buffer.FaceAt(x, y);
+      const int face = buffer.faces()[box.IndexOf(x, y)];
       if (face < 0) continue;
-      const uint8_t part = PartOfFace(model, face);
+      const uint8_t part = part_of_face[face];
       for (const auto& [dx, dy] : kNeighbours) {
         if (!image.Contains(x + dx, y + dy)) continue;  // the image ends here, not the body
         const int neighbour = buffer.FaceAt(x + dx, y + dy);
-        const uint8_t other = neighbour < 0 ? kBackground : PartOfFace(model, neighbour);
+        if (neighbour == face) continue;
+        const uint8_t other = neighbour < 0 ? kBackground : part_of_face[neighbour];
         if (other == part || other == kUnknown || (part == kUnknown && other != kBackground)) continue;
         if (neighbour >= 0 && buffer.DepthAt(x, y) > buffer.DepthAt(x + dx, y + dy) + kBehindTolerance) continue;
         edges.push_back({x, y, face, part, other});
@@ -180,7 +181,7 @@ std::vector<PartLabelTerm::Edge> PartLabelTerm::EdgesOfBody(const BodyModel& mod
 void PartLabelTerm::AddOutline(const std::vector<Edge>& edges, const BodyModel& model, const VisibleSurface& surface,
                                const Camera& camera, double sigma_px) {
   const auto add = [&](const Edge& edge, const DistanceField* field, bool is_silhouette) {
-    if (PartAt(edge.x, edge.y) == kUnknown) return;
+    if (labels_.PartAt(t_, edge.x, edge.y) == kUnknown) return;
     OutlinePoint point;
     point.face = edge.face;
     point.barycentric =
@@ -256,8 +257,8 @@ void PartLabelTerm::AddBorders(const std::vector<Edge>& edges, const BodyModel& 
   }
 }
 
-void PartLabelTerm::AddInside(const BodyModel& model, const VisibleSurface& surface, const Camera& camera,
-                              double sigma_px) {
+void PartLabelTerm::AddInside(const std::vector<uint8_t>& part_of_face, const BodyModel& model,
+                              const VisibleSurface& surface, const Camera& camera, double sigma_px) {
   const MatrixX3i& faces = model.data().faces;
   struct Corner {
     Vector2d pixel;
@@ -267,14 +268,14 @@ void PartLabelTerm::AddInside(const BodyModel& model, const VisibleSurface& surf
   std::vector<Inside> missed;
   for (const Inside& inside : inside_) {
     const int face = surface.buffer().FaceAt(inside.x, inside.y);
-    if (face >= 0 && PartOfFace(model, face) == inside.part) continue;
+    if (face >= 0 && part_of_face[face] == inside.part) continue;
     missed.push_back(inside);
     facing.try_emplace(inside.part);
   }
   if (missed.empty()) return;
   std::vector<uint8_t> taken(model.num_vertices(), 0);
   for (int f = 0; f < model.num_faces(); ++f) {
-    const uint8_t part = PartOfFace(model, f);
+    const uint8_t part = part_of_face[f];
     const auto it = facing.find(part);
     if (it == facing.end()) continue;
     std::array<Vector2d, 3> pixel;
@@ -335,10 +336,11 @@ void PartLabelTerm::Correspond(const FrameLayout& layout, const FrameState& stat
   const Camera camera = layout.CameraAt(state, log_focal);
   if (!surface->Render(skinner_, model, betas, state.rotations, layout.BodyTranslation(state), camera)) return;
   const double sigma_px = std::max(0.5, options_.sigma_share * person_height_px);
-  const std::vector<Edge> edges = EdgesOfBody(model, surface->buffer());
+  const std::vector<uint8_t> part_of_face = PartOfFaces(model);
+  const std::vector<Edge> edges = EdgesOfBody(part_of_face, surface->buffer());
   AddOutline(edges, model, *surface, camera, sigma_px);
   AddBorders(edges, model, *surface, camera, sigma_px, kReach * person_height_px);
-  AddInside(model, *surface, camera, sigma_px);
+  AddInside(part_of_face, model, *surface, camera, sigma_px);
   Weigh();
 }
 

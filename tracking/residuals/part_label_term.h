@@ -17,7 +17,8 @@
 /// σ = sigma_share × the person's height in the image. Correspondences (x and y) stay during a round, φ and π are
 /// evaluated at every state. Each of the two terms counts as kSilhouetteCount or kPartCount observations at most,
 /// however many samples it has: neighbouring pixels err together.
-/// Unknown pixels and pixels beyond the image give no border; parts of fewer than kMinPartPixels pixels are left out.
+/// Unknown pixels and pixels beyond the image give no border. Pieces of the person or of a part below kSpeckShare of
+/// the largest are unknown (residuals/part_map.h); parts of fewer than kMinPartPixels pixels are left out.
 #pragma once
 
 #include <Eigen/Core>
@@ -29,6 +30,7 @@
 #include "geometry/observations.h"
 #include "tracking/frame_cost.h"
 #include "tracking/residuals/distance_field.h"
+#include "tracking/residuals/part_map.h"
 #include "tracking/residuals/visible_surface.h"
 
 namespace bodyloom {
@@ -36,7 +38,7 @@ namespace bodyloom {
 class PartLabelTerm {
  public:
   static constexpr int kMinPartPixels = 30;
-  static constexpr double kSilhouetteCount = 40, kPartCount = 60;
+  static constexpr double kSilhouetteCount = 40, kPartCount = 60, kSpeckShare = 0.1;
 
   /// A surface point that should appear at a pixel.
   struct Target {
@@ -90,20 +92,21 @@ class PartLabelTerm {
     int x, y, face;
     uint8_t part, other;  ///< 0: the background
   };
-  void FindBoxes();
-  void AddField(uint8_t part);
-  void SampleBorders();
-  void SampleInside();
-  [[nodiscard]] std::vector<Edge> EdgesOfBody(const BodyModel& model, const VisibilityBuffer& buffer) const;
+  void FindBoxes(const PartMap& map);
+  void AddField(const PartMap& map, uint8_t part);
+  void SampleBorders(const PartMap& map);
+  void SampleInside(const PartMap& map);
+  [[nodiscard]] std::vector<Edge> EdgesOfBody(const std::vector<uint8_t>& part_of_face,
+                                              const VisibilityBuffer& buffer) const;
   void AddOutline(const std::vector<Edge>& edges, const BodyModel& model, const VisibleSurface& surface,
                   const Camera& camera, double sigma_px);
   void AddBorders(const std::vector<Edge>& edges, const BodyModel& model, const VisibleSurface& surface,
                   const Camera& camera, double sigma_px, double reach_px);
-  void AddInside(const BodyModel& model, const VisibleSurface& surface, const Camera& camera, double sigma_px);
+  void AddInside(const std::vector<uint8_t>& part_of_face, const BodyModel& model, const VisibleSurface& surface,
+                 const Camera& camera, double sigma_px);
   void Weigh();
-  [[nodiscard]] uint8_t PartAt(int x, int y) const { return labels_.PartAt(t_, x, y); }
-  /// Part of a face; unknown for charts that are never labelled.
-  [[nodiscard]] uint8_t PartOfFace(const BodyModel& model, int face) const;
+  /// Part of each face; unknown for charts that are never labelled.
+  [[nodiscard]] std::vector<uint8_t> PartOfFaces(const BodyModel& model) const;
 
   const PartLabelSequence& labels_;
   int t_;
