@@ -46,9 +46,7 @@ SynthClip MakeClip(const std::string& noise, const Motion& motion, double initia
   synth.keypoints = false;
   synth.initialiser_error_px = initial_px;
   synth.num_threads = arguments.Integer("threads");
-  SynthClip clip = MakeSynthClip(BuiltinBody(), motion, synth);
-  clip.dense.pixel_sigma_px = synth.dense.pixel_sigma_px;
-  return clip;
+  return MakeSynthClip(BuiltinBody(), motion, synth);
 }
 
 TrackSequenceInput InputOf(const SynthClip& clip) {
@@ -98,6 +96,7 @@ void DenseClips(const BenchArguments& arguments, BenchReport* report) {
     for (const std::string& path : arguments.List("motions")) {
       const Motion motion = FirstFrames(LoadMotion(path), arguments.Integer("frames"));
       SynthClip clip = MakeClip(noise, motion, std::stod(arguments.Text("initial")), 1, arguments);
+      const double uv_sigma = clip.dense.uv_sigma;
       for (const std::string& residual : arguments.List("residuals")) {
         TrackSequenceOptions options;
         options.num_threads = arguments.Integer("threads");
@@ -105,7 +104,7 @@ void DenseClips(const BenchArguments& arguments, BenchReport* report) {
         options.rendered_uv.rounds = arguments.Integer("rounds");
         options.rendered_uv.min_cosine = std::stod(arguments.Text("min_cosine"));
         options.rendered_uv.weight = residual == "rendered UV" ? 1 : 0;
-        clip.dense.uv_sigma = residual == "reprojection" ? 0 : DenseFaults(noise).uv_sigma;
+        clip.dense.uv_sigma = residual == "reprojection" ? 0 : uv_sigma;
         report->rows.push_back(
             {"noise: " + noise, {MotionName(path), residual}, TrackAndScore(InputOf(clip), options, clip)});
         std::fprintf(stderr, "%s %s %s: %.2f px\n", noise.c_str(), MotionName(path).c_str(), residual.c_str(),
@@ -240,8 +239,7 @@ void Basin(const BenchArguments& arguments, BenchReport* report) {
       one.poses = motion.poses.row(t);
       one.trans = motion.trans.row(t);
       one.timestamps = {0};
-      SynthClip clip = MakeClip("densepose", one, std::stod(start), 1 + trial, arguments);
-      clip.dense.uv_sigma = DenseFaults("densepose").uv_sigma;
+      const SynthClip clip = MakeClip("densepose", one, std::stod(start), 1 + trial, arguments);
       for (const std::string method : {"reprojection", "rendered UV", "in turn"}) {
         results[method].push_back(SolveFrame(clip, method, joints));
       }

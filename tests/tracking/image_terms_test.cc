@@ -28,10 +28,7 @@ SynthClip Clip(int frames, double uv_sigma) {
   options.dense.uv_sigma = uv_sigma;
   options.initialiser_error_px = 15;
   options.num_threads = 2;
-  SynthClip clip = MakeSynthClip(BuiltinBody(), DemoMotion(BuiltinBody(), frames, 15), options);
-  clip.dense.uv_sigma = uv_sigma;
-  clip.dense.pixel_sigma_px = 0.5;
-  return clip;
+  return MakeSynthClip(BuiltinBody(), DemoMotion(BuiltinBody(), frames, 15), options);
 }
 
 PartLabelSequence LabelsOf(const SynthClip& clip) {

@@ -266,8 +266,31 @@ TEST(PartLabelTerm, UnknownPixelsHaveNoBorder) {
   EXPECT_LT(system.cost, 0.1 * Evaluate(*scene, *MakeTerm(*scene, moved), moved).cost);
 }
 
+TEST(PartLabelTerm, SpecksAreLeftOut) {
+  const auto scene = MakeScene();
+  const auto clean = MakeTerm(*scene, scene->truth);
+  LabelImage& image = scene->labels.frames[0];
+  for (int y = 5; y < 15; ++y) {
+    for (int x = 5; x < 15; ++x) image.labels[y * kWidth + x] = 3;  // far from the person
+  }
+  const PartMap map = MakePartMap(scene->labels, 0, PartLabelTerm::kSpeckShare);
+  EXPECT_EQ(map.At(10, 10), PartLabelSequence::kUnknown);
+  EXPECT_EQ(map.At(20, 10), PartLabelSequence::kBackground);
+  EXPECT_EQ(map.At(-1, 10), PartLabelSequence::kUnknown);
+  const auto term = MakeTerm(*scene, scene->truth);
+  EXPECT_EQ(term->num_person_pixels(), clean->num_person_pixels());
+  EXPECT_EQ(Evaluate(*scene, *term, scene->truth).cost, Evaluate(*scene, *clean, scene->truth).cost);
+  // A small piece of a part inside the person: only that piece.
+  const int centre = kHeight / 2 * kWidth + kWidth / 2;
+  const uint8_t around = image.labels[centre];
+  image.labels[centre] = around == 3 ? 4 : 3;
+  const PartMap with_hole = MakePartMap(scene->labels, 0, PartLabelTerm::kSpeckShare);
+  EXPECT_EQ(with_hole.At(kWidth / 2, kHeight / 2), PartLabelSequence::kUnknown);
+  EXPECT_EQ(with_hole.At(kWidth / 2 + 1, kHeight / 2), map.At(kWidth / 2 + 1, kHeight / 2));
+}
+
 TEST(PartLabelTerm, APersonCutByTheImageIsNotPulledInside) {
-  const auto scene = MakeScene(Vector3d(1.35, 0, 3));  // half of the body is beyond the right edge
+  const auto scene = MakeScene(Vector3d(1.55, 0, 3));  // half of the body is beyond the right edge
   const auto term = MakeTerm(*scene, scene->truth);
   ASSERT_GT(term->num_person_pixels(), 1000);
   FrameResiduals residuals;
