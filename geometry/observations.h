@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What detectors saw in a clip: 2D keypoints and dense surface keypoints, one person, one camera.
+/// What detectors saw in a clip: 2D keypoints, dense surface keypoints and part labels, one person, one camera.
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -37,9 +39,49 @@ struct DenseKeypoint {
 
 struct DenseSequence {
   std::vector<std::vector<DenseKeypoint>> frames;  ///< T
-  std::vector<double> timestamps;                  ///< T seconds
+  /// The two sources that sigma_px adds up, when they are known: noise of the labels in units of a chart, and of the
+  /// pixels. A detector errs on the surface, so its error in the image is wide across what faces the camera and narrow
+  /// along what is foreshortened; with uv_sigma > 0 the tracker knows that. 0: not known, sigma_px in every direction.
+  double uv_sigma = 0, pixel_sigma_px = 0;
+  std::vector<double> timestamps;  ///< T seconds
   int image_width = 0, image_height = 0;
   [[nodiscard]] int num_frames() const { return static_cast<int>(frames.size()); }
+};
+
+/// A detector's label of every pixel of a rectangle of the image. Pixels outside the rectangle are background.
+struct LabelImage {
+  int x_begin = 0, y_begin = 0, width = 0, height = 0;  ///< pixels; negative or empty sizes hold nothing
+  std::vector<uint8_t> labels;                          ///< width·height, row-major
+  [[nodiscard]] uint8_t At(int x, int y) const {
+    if (x < x_begin || y < y_begin || x >= x_begin + width || y >= y_begin + height) return 0;
+    return labels[size_t(y - y_begin) * size_t(width) + size_t(x - x_begin)];
+  }
+};
+
+/// Which part of the person each pixel shows, frame by frame: DensePose's part index, or just a mask.
+///
+/// Labels and the body's charts meet in *parts*, numbers that the caller gives: a pixel with label l shows part
+/// part_of_label[l], and a face of chart c (BodyModelData::face_part) belongs to part part_of_chart[c]. A part may hold
+/// several charts (upper arm outside and inside), and several labels; Merge() joins two parts on both sides. The start
+/// is the identity, so labels 1–24 are the charts 1–24.
+///   part 0     background: the pixel does not show the person; a chart of part 0 is never labelled and asks for
+///   nothing part 255   unknown: nothing is said about the pixel (nor about the chart)
+/// A mask has one label for the whole person: AsMask().
+struct PartLabelSequence {
+  static constexpr uint8_t kBackground = 0, kUnknown = 255;
+  std::vector<LabelImage> frames;         ///< T; an empty one is a frame in which nobody was seen
+  std::vector<double> timestamps;         ///< T seconds, strictly increasing
+  int image_width = 0, image_height = 0;  ///< pixels, required; rectangles lie inside the image
+  std::array<uint8_t, 256> part_of_label = Identity(), part_of_chart = Identity();
+  [[nodiscard]] int num_frames() const { return static_cast<int>(frames.size()); }
+  [[nodiscard]] uint8_t PartAt(int frame, int x, int y) const { return part_of_label[frames[frame].At(x, y)]; }
+  /// Labels and charts of `part` belong to `into` from now on.
+  void Merge(uint8_t part, uint8_t into);
+  /// Every label from 1 to 254 and every chart becomes part 1.
+  void AsMask();
+
+ private:
+  static std::array<uint8_t, 256> Identity();
 };
 
 /// COCO's 17 landmark names in order: nose, left_eye, right_eye, left_ear, right_ear, left_shoulder, …, right_ankle.

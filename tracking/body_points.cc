@@ -88,6 +88,17 @@ const Vector3d& PointEvaluator::VertexCache::Rest(const Kinematics& kinematics, 
   return rest_[v];
 }
 
+Vector3d PointEvaluator::VertexPosition(const Kinematics& kin, int v, VertexCache* cache) {
+  const BodyModel& model = *kin.model;
+  const Vector3d& rest = cache->Rest(kin, v);
+  Vector3d x = Vector3d::Zero();
+  for (int i = model.influence_begin()[v]; i < model.influence_begin()[v + 1]; ++i) {
+    const int joint = model.influence_joint()[i];
+    x += model.influence_weight()[i] * (kin.G[joint] * rest + kin.t[joint]);
+  }
+  return x;
+}
+
 void PointEvaluator::Begin(const Kinematics& kinematics) {
   const size_t J = kinematics.G.size();
   if (sum_.size() != J) {
@@ -162,7 +173,7 @@ Vector3d PointEvaluator::Evaluate(const Kinematics& kin, const CompiledPoint& po
   return x;
 }
 
-Vector3d PointEvaluator::Evaluate(const Kinematics& kin, const int vertices[3], const float barycentric[3],
+Vector3d PointEvaluator::Evaluate(const Kinematics& kin, const int vertices[3], const double barycentric[3],
                                   VertexCache* cache, bool jacobian) {
   Begin(kin);
   const BodyModel& model = *kin.model;
@@ -170,8 +181,8 @@ Vector3d PointEvaluator::Evaluate(const Kinematics& kin, const int vertices[3], 
   const int B = static_cast<int>(kin.betas.size());
   if (jacobian) shape_.setZero(3, B);
   Vector3d x = Vector3d::Zero();
-  // Floats sum to 1 within rounding only; the point's weights have to do so exactly for d x / d trans = I.
-  const double sum = static_cast<double>(barycentric[0]) + barycentric[1] + barycentric[2];
+  // Detectors' floats sum to 1 within rounding only; the point's weights have to do so exactly for d x / d trans = I.
+  const double sum = barycentric[0] + barycentric[1] + barycentric[2];
   for (int k = 0; k < 3; ++k) {
     const double b = barycentric[k] / sum;
     if (b == 0) continue;

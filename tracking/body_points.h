@@ -45,8 +45,11 @@ class PointEvaluator {
   Eigen::Vector3d Evaluate(const Kinematics& kinematics, const CompiledPoint& point, bool jacobian);
   /// The surface point Σ_k barycentric_k · vertex_k. Rest vertices come from `cache`.
   class VertexCache;
-  Eigen::Vector3d Evaluate(const Kinematics& kinematics, const int vertices[3], const float barycentric[3],
+  Eigen::Vector3d Evaluate(const Kinematics& kinematics, const int vertices[3], const double barycentric[3],
                            VertexCache* cache, bool jacobian);
+
+  /// Posed position of one vertex. Does not touch what the last Evaluate() left.
+  static Eigen::Vector3d VertexPosition(const Kinematics& kinematics, int v, VertexCache* cache);
 
   /// Joints that move the point, after Evaluate(…, true).
   [[nodiscard]] const std::vector<int>& joints() const { return touched_; }

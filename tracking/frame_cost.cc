@@ -6,6 +6,7 @@
 
 #include "geometry/check.h"
 #include "geometry/rotation.h"
+#include "tracking/residuals/part_label_term.h"
 #include "tracking/robust.h"
 
 namespace bodyloom {
@@ -39,6 +40,22 @@ FrameLayout FrameLayout::Make(const BodyModel& model, CameraKnowledge knowledge,
   return layout;
 }
 
+Camera FrameLayout::CameraAt(const FrameState& state, double log_focal) const {
+  Camera result = camera;
+  if (knowledge == CameraKnowledge::kWeak) {
+    result.scale = std::exp(state.translation[0]);
+    result.tx = state.translation[1];
+    result.ty = state.translation[2];
+  } else if (knowledge == CameraKnowledge::kUnknownFocal) {
+    result.fx = result.fy = std::exp(log_focal);
+  }
+  return result;
+}
+
+Vector3d FrameLayout::BodyTranslation(const FrameState& state) const {
+  return knowledge == CameraKnowledge::kWeak ? Vector3d::Zero() : state.translation;
+}
+
 FrameState InterpolateStates(const FrameState& a, const FrameState& b, double s) {
   FrameState result;
   result.rotations.reserve(a.rotations.size());
@@ -54,66 +71,22 @@ void FrameEvaluator::ReserveRows(int rows, int columns) {
   if (r_.size() < rows) r_.resize(rows);
 }
 
-void FrameEvaluator::AddPixel(const FrameLayout& layout, const Vector3d& x, const Vector2d& pixel, double sigma_px,
-                              double kernel, const FrameState& state, bool derivatives) {
-  Vector2d projected;
-  Matrix2x3d d_pixel_d_x;
-  if (!camera_.Project(x, &projected, derivatives ? &d_pixel_d_x : nullptr)) {
-    cost_ += 0.5 * kernel * kernel;
-    ++num_invalid_;
-    return;
-  }
-  const Vector2d residual = (projected - pixel) / sigma_px;
-  const RobustValue robust = GemanMcClure(residual.squaredNorm(), kernel);
-  cost_ += 0.5 * robust.rho;
-  if (!derivatives) return;
-  const double scale = std::sqrt(robust.weight);
-  const Matrix2x3d A = (scale / sigma_px) * d_pixel_d_x;
-  auto rows = J_.middleRows<2>(row_);
-  rows.setZero();
-  for (int j : points_.joints()) {
-    const int column = layout.column_of_joint[j];
-    if (column >= 0) rows.middleCols<3>(column).noalias() = A * points_.JointJacobian(kinematics_, j);
-  }
-  if (layout.knowledge == CameraKnowledge::kWeak) {
-    const double s = camera_.scale * scale / sigma_px;
-    rows.col(layout.translation_column) = s * Vector2d(x.x() + camera_.tx, x.y() + camera_.ty);
-    rows(0, layout.translation_column + 1) = s;
-    rows(1, layout.translation_column + 2) = s;
-  } else {
-    rows.middleCols<3>(layout.translation_column) = A;
-  }
-  if (layout.num_betas > 0) {
-    rows.middleCols(layout.beta_column, layout.num_betas).noalias() = A * points_.ShapeJacobian();
-  }
-  if (layout.focal_column >= 0) {
-    rows.col(layout.focal_column) = (scale / sigma_px) * (projected - Vector2d(camera_.cx, camera_.cy));
-  }
-  r_.segment<2>(row_) = scale * residual;
-  row_ += 2;
-}
-
 void FrameEvaluator::Evaluate(const FrameLayout& layout, const FrameData& data, const FrameState& state,
-                              const VectorXd& betas, double log_focal, bool derivatives, FrameSystem* system) {
+                              const VectorXd& betas, double log_focal, bool derivatives, FrameSystem* system,
+                              FrameResiduals* residuals) {
   const int p = layout.num_columns;
-  camera_ = layout.camera;
-  Vector3d trans = state.translation;
-  if (layout.knowledge == CameraKnowledge::kWeak) {
-    camera_.scale = std::exp(state.translation[0]);
-    camera_.tx = state.translation[1];
-    camera_.ty = state.translation[2];
-    trans.setZero();
-  } else if (layout.knowledge == CameraKnowledge::kUnknownFocal) {
-    camera_.fx = camera_.fy = std::exp(log_focal);
-  }
-  kinematics_.Set(*layout.model, betas, state.rotations, trans, derivatives);
+  camera_ = layout.CameraAt(state, log_focal);
+  kinematics_.Set(*layout.model, betas, state.rotations, layout.BodyTranslation(state), derivatives);
   cost_ = 0;
   row_ = 0;
   num_invalid_ = 0;
   const size_t num_dense = data.dense != nullptr ? data.dense->size() : 0;
   const bool use_prior = data.prior != nullptr && !data.prior->empty() && data.prior_weight > 0;
   if (derivatives) {
-    const size_t rows = 2 * (data.landmarks.size() + num_dense) + (use_prior ? 3 * data.prior->joints().size() : 0) +
+    // A keypoint has its two rows in UV or in the image.
+    const size_t rows = 2 * (data.landmarks.size() + num_dense) +
+                        (data.part_labels != nullptr ? static_cast<size_t>(data.part_labels->num_rows()) : 0) +
+                        (use_prior ? 3 * data.prior->joints().size() : 0) +
                         (data.limits != nullptr ? 3 * data.limits->ranges.size() : 0) +
                         (data.upright_weight > 0 ? 1 : 0) +
                         (data.initial_rotations.empty() ? 0 : 3 * layout.active_joints.size() + 3);
@@ -122,17 +95,13 @@ void FrameEvaluator::Evaluate(const FrameLayout& layout, const FrameData& data, 
 
   for (const LandmarkObservation& observation : data.landmarks) {
     const Vector3d x = points_.Evaluate(kinematics_, *observation.point, derivatives);
-    AddPixel(layout, x, observation.pixel, observation.sigma_px, data.landmark_kernel, state, derivatives);
+    AddPixel(layout, x, observation.pixel, Eigen::Matrix2d::Identity() / observation.sigma_px, data.landmark_kernel, 1,
+             derivatives);
   }
-  if (num_dense > 0) {
-    vertices_.NewFrame(kinematics_);
-    const MatrixX3i& faces = layout.model->data().faces;
-    for (const DenseKeypoint& point : *data.dense) {
-      const Vector3d x = points_.Evaluate(kinematics_, faces.row(point.face).data(), point.barycentric.data(),
-                                          &vertices_, derivatives);
-      AddPixel(layout, x, point.pixel.cast<double>(), point.sigma_px, data.dense_kernel, state, derivatives);
-    }
-  }
+  vertices_.NewFrame(kinematics_);
+  if (num_dense > 0) AddDense(layout, data, derivatives);
+  if (data.rendered_uv != nullptr) AddRenderedUv(layout, data, state, betas, derivatives, residuals);
+  if (data.part_labels != nullptr) AddPartLabels(layout, data, derivatives, residuals);
 
   if (use_prior) {
     const std::vector<int>& joints = data.prior->joints();

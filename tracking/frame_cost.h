@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// The cost of one frame: everything that depends on one frame's pose and on the clip's shape and focal length.
 ///
-///   ½ Σ ρ(‖(π(x_k) − y_k)/σ_k‖²)      2D joints and dense keypoints (L_f of paper A), Geman–McClure
+///   ½ Σ ρ(‖W_k (π(x_k) − y_k)‖²)      2D joints and dense keypoints (L_f of paper A), Geman–McClure; W_k = I/σ_k, or
+///                                    the inverse root of the keypoint's covariance (residuals/dense_whitening.h)
+/// + ½ λ_r Σ ρ(‖r_uv‖²)                dense keypoints in UV (L_r of paper A, residuals/rendered_uv_term.h)
+/// + ½ Σ w ρ(‖r‖²)                     outlines and part labels (residuals/part_label_term.h)
 /// + ½ w_prior (energy of the nearest mixture component)
 /// + ½ Σ (excess over joint limits / σ)²
 /// + ½ w ρ(u_z² / σ²)                 u: the root's up axis in the camera frame; how far the trunk leans towards or
@@ -25,9 +28,15 @@
 #include "tracking/body_points.h"
 #include "tracking/joint_limits.h"
 #include "tracking/mixture_prior.h"
+#include "tracking/residuals/visible_surface.h"
 #include "tracking/track_sequence.h"
 
 namespace bodyloom {
+
+struct FrameState {
+  std::vector<Eigen::Matrix3d> rotations;  ///< J
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();
+};
 
 /// Which unknowns a frame has and in which column of its Jacobian they stand; shared by all frames of a clip.
 struct FrameLayout {
@@ -44,6 +53,10 @@ struct FrameLayout {
   static FrameLayout Make(const BodyModel& model, CameraKnowledge knowledge, const Camera& camera,
                           std::vector<int> active_joints, int num_betas);
   [[nodiscard]] int num_frame_columns() const { return translation_column + 3; }
+  /// Intrinsics at a frame's state; for weak perspective with its scale and offset.
+  [[nodiscard]] Camera CameraAt(const FrameState& state, double log_focal) const;
+  /// Translation of the body: zero for weak perspective, where the camera has it.
+  [[nodiscard]] Eigen::Vector3d BodyTranslation(const FrameState& state) const;
 };
 
 /// A 2D joint: the compiled landmark, where it was seen, and how well.
@@ -53,10 +66,22 @@ struct LandmarkObservation {
   double sigma_px = 1;
 };
 
+/// How a dense keypoint's error lies in the image (residuals/dense_whitening.h).
+struct DenseWhitening {
+  Eigen::Matrix2d whitening;    ///< W, 1/px
+  Eigen::Matrix2d pixel_by_uv;  ///< M = ∂pixel/∂(u, v) at the label, pixels a chart; zero where there is none
+};
+
+class RenderedUvTerm;
+class PartLabelTerm;
+
 /// Everything known about one frame. Borrowed pointers outlive the cost.
 struct FrameData {
   std::vector<LandmarkObservation> landmarks;
   const std::vector<DenseKeypoint>* dense = nullptr;
+  std::vector<DenseWhitening> dense_whitening;  ///< one a dense keypoint, or empty: I/sigma_px
+  RenderedUvTerm* rendered_uv = nullptr;        ///< takes its keypoints away from `dense`
+  const PartLabelTerm* part_labels = nullptr;
   double landmark_kernel = 8, dense_kernel = 4;  ///< c of the robust kernel, in sigmas
   const MixturePrior* prior = nullptr;
   double prior_weight = 0;
@@ -70,11 +95,6 @@ struct FrameData {
 
 inline constexpr double kUprightSigma = 0.25, kUprightKernel = 1.5;
 
-struct FrameState {
-  std::vector<Eigen::Matrix3d> rotations;  ///< J
-  Eigen::Vector3d translation = Eigen::Vector3d::Zero();
-};
-
 /// From a (s = 0) to b (s = 1): rotations along geodesics, translation linearly.
 FrameState InterpolateStates(const FrameState& a, const FrameState& b, double s);
 
@@ -86,21 +106,44 @@ struct FrameSystem {
   int num_invalid = 0;  ///< observations that could not be projected
 };
 
+/// How far the newer image terms are off in one frame, in pixels, before weights and kernels.
+struct FrameResiduals {
+  std::vector<double> rendered_uv_px, silhouette_px, part_px;
+  int rendered_uv_unmatched = 0, silhouette_unmatched = 0, part_unmatched = 0;
+};
+
 /// Evaluates frames; holds scratch memory, one instance a thread.
 class FrameEvaluator {
  public:
-  /// Cost only when `derivatives` is false.
+  /// Cost only when `derivatives` is false. `residuals` is filled when given (appended to).
   void Evaluate(const FrameLayout& layout, const FrameData& data, const FrameState& state, const Eigen::VectorXd& betas,
-                double log_focal, bool derivatives, FrameSystem* system);
+                double log_focal, bool derivatives, FrameSystem* system, FrameResiduals* residuals = nullptr);
 
  private:
-  void AddPixel(const FrameLayout& layout, const Eigen::Vector3d& x, const Eigen::Vector2d& pixel, double sigma_px,
-                double kernel, const FrameState& state, bool derivatives);
+  /// A surface point that was evaluated last in points_, and where it appears.
+  struct Projected {
+    Eigen::Vector3d x;
+    Eigen::Vector2d pixel;
+    Matrix2x3d d_pixel_d_x;
+  };
+  bool Project(const Eigen::Vector3d& x, bool derivatives, Projected* projected);
+  /// ½ w ρ(‖residual‖²) with ∂residual/∂θ = B ∂pixel/∂θ of the point evaluated last; N rows.
+  template <int N>
+  void AddImageRows(const FrameLayout& layout, const Projected& at, const Eigen::Matrix<double, N, 1>& residual,
+                    const Eigen::Matrix<double, N, 2>& B, double kernel, double weight, bool derivatives);
+  void AddPixel(const FrameLayout& layout, const Eigen::Vector3d& x, const Eigen::Vector2d& pixel,
+                const Eigen::Matrix2d& whitening, double kernel, double weight, bool derivatives);
+  void AddSaturated(double kernel, double weight);
+  void AddDense(const FrameLayout& layout, const FrameData& data, bool derivatives);
+  void AddRenderedUv(const FrameLayout& layout, const FrameData& data, const FrameState& state,
+                     const Eigen::VectorXd& betas, bool derivatives, FrameResiduals* residuals);
+  void AddPartLabels(const FrameLayout& layout, const FrameData& data, bool derivatives, FrameResiduals* residuals);
   void ReserveRows(int rows, int columns);
 
   Kinematics kinematics_;
   PointEvaluator points_;
   PointEvaluator::VertexCache vertices_;
+  VisibleSurface surface_;
   Camera camera_;
   RowMatrixXd J_;
   Eigen::VectorXd r_;

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "geometry/posed_body.h"
+#include "tracking/image_terms.h"
 #include "tracking/kinematics.h"
 
 namespace bodyloom {
@@ -30,6 +31,7 @@ double Percentile(std::vector<double> values, double q) {
 
 FrameStatus StatusOf(const FrameData& frame) {
   const size_t dense = frame.dense != nullptr ? frame.dense->size() : 0;
+  if (frame.part_labels != nullptr && frame.part_labels->num_person_pixels() > 0) return FrameStatus::kTracked;
   if (frame.landmarks.empty() && dense == 0) return FrameStatus::kInterpolated;
   if (frame.landmarks.size() < kFewLandmarks && dense < kFewDense) return FrameStatus::kWeak;
   return FrameStatus::kTracked;
@@ -104,8 +106,9 @@ void FillTrack(const TrackSequenceInput& input, const SequenceProblem& problem, 
     if (frame.dense != nullptr) {
       vertices.NewFrame(kinematics);
       for (const DenseKeypoint& point : *frame.dense) {
-        const Vector3d x = points.Evaluate(kinematics, model.data().faces.row(point.face).data(),
-                                           point.barycentric.data(), &vertices, false);
+        const Vector3d barycentric = point.barycentric.cast<double>();
+        const Vector3d x = points.Evaluate(kinematics, model.data().faces.row(point.face).data(), barycentric.data(),
+                                           &vertices, false);
         if (camera.Project(x, &pixel)) dense_errors.push_back((pixel - point.pixel.cast<double>()).norm());
       }
     }
@@ -113,6 +116,11 @@ void FillTrack(const TrackSequenceInput& input, const SequenceProblem& problem, 
   summary.reprojection_median_px = Percentile(landmark_errors, 0.5);
   summary.reprojection_p95_px = Percentile(landmark_errors, 0.95);
   summary.dense_median_px = Percentile(dense_errors, 0.5);
+  const auto add_term = [&](const char* term, const std::vector<double>& px) {
+    summary.terms.push_back({term, static_cast<int>(px.size()), 0, Percentile(px, 0.5), Percentile(px, 0.95)});
+  };
+  if (input.keypoints != nullptr) add_term("2D joints", landmark_errors);
+  if (input.dense != nullptr) add_term("dense keypoints", dense_errors);
 }
 
 std::vector<PlanEntry> PlanTrackSequence(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
@@ -120,7 +128,8 @@ std::vector<PlanEntry> PlanTrackSequence(const TrackSequenceInput& input, const 
   const BodyModel& model = *input.body;
   const bool dense = input.dense != nullptr;
   const ObservedLandmarks landmarks = FindObservedLandmarks(model, input.keypoints, 0);
-  const size_t active = FindActiveJoints(model, landmarks, dense, options.skip_unneeded).size();
+  const bool labels = input.part_labels != nullptr;
+  const size_t active = FindActiveJoints(model, landmarks, dense || labels, options.skip_unneeded).size();
   const auto add = [&](const std::string& what, bool runs, const std::string& why) {
     plan.push_back({what, runs, why});
   };
@@ -129,6 +138,13 @@ std::vector<PlanEntry> PlanTrackSequence(const TrackSequenceInput& input, const 
   add("2D joints (L_f)", input.keypoints != nullptr,
       input.keypoints != nullptr ? std::to_string(landmarks.names.size()) + " landmarks" : "no 2D joints in the input");
   add("dense keypoints (L_f)", dense, dense ? "in the input" : "no dense keypoints in the input");
+  const auto add_unless = [&](const std::string& what, const std::string& why_not, const std::string& why) {
+    add(what, why_not.empty(), why_not.empty() ? why : why_not);
+  };
+  add_unless("rendered UV (L_r)", WhyNoRenderedUv(input, options),
+             "weight " + std::to_string(options.rendered_uv.weight));
+  add_unless("silhouette", WhyNoSilhouette(input, options), "of all labelled parts");
+  add_unless("part labels", WhyNoParts(input, options), "outline and pixels of each part");
   add("initialiser term (L_d)", input.initialiser != nullptr && options.initialiser_weight > 0,
       input.initialiser != nullptr ? "weight " + std::to_string(options.initialiser_weight)
                                    : "no initialiser was given");
@@ -138,7 +154,9 @@ std::vector<PlanEntry> PlanTrackSequence(const TrackSequenceInput& input, const 
   if (active < static_cast<size_t>(model.num_joints())) {
     add("remaining joints", false, "no observed landmark depends on them; held at rest");
   }
-  add("surface vertices", dense, dense ? "only those of dense keypoints" : "2D joints are compiled to their bones");
+  add("surface vertices", dense || labels,
+      dense || labels ? "of dense keypoints and outlines; all of them only to see what is visible"
+                      : "2D joints are compiled to their bones");
   add("shape", options.estimate_shape, options.estimate_shape ? "one for the clip" : "switched off");
   add("focal length", options.camera_knowledge == CameraKnowledge::kUnknownFocal,
       options.camera_knowledge == CameraKnowledge::kKnown  ? "known"
@@ -161,6 +179,12 @@ std::string TrackSequenceSummary::BriefReport() const {
     out << "\n2D joints: median " << reprojection_median_px << " px, 95 % below " << reprojection_p95_px << " px";
   }
   if (dense_median_px > 0) out << "\ndense keypoints: median " << dense_median_px << " px";
+  for (const TermSummary& term : terms) {
+    if (term.term == "2D joints" || term.term == "dense keypoints") continue;
+    out << '\n'
+        << term.term << ": median " << term.median_px << " px, 95 % below " << term.p95_px << " px, "
+        << term.observations << " matched, " << term.unmatched << " not";
+  }
   return out.str();
 }
 

@@ -2,6 +2,7 @@
 #include "tracking/track_sequence.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -14,6 +15,7 @@
 #include "geometry/check.h"
 #include "geometry/posed_body.h"
 #include "geometry/rotation.h"
+#include "tracking/image_terms.h"
 #include "tracking/initialise/initial_states.h"
 #include "tracking/initialise/swap_repair.h"
 #include "tracking/observability.h"
@@ -42,65 +44,119 @@ class StageClock {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
+/// Length and image size of the clip, from whichever observations there are.
+struct ClipExtent {
+  int frames = 0, width = 0, height = 0;
+  const std::vector<double>* timestamps = nullptr;
+};
+
+ClipExtent ExtentOf(const TrackSequenceInput& input) {
+  ClipExtent extent;
+  const char* first = nullptr;
+  const auto add = [&](const auto* observations, const char* what) {
+    if (observations == nullptr) return;
+    if (first == nullptr) {
+      first = what;
+      extent.frames = observations->num_frames();
+      extent.timestamps = &observations->timestamps;
+    }
+    BODYLOOM_CHECK(observations->num_frames() == extent.frames, "track: ", extent.frames, " frames of ", first, " but ",
+                   observations->num_frames(), " of ", what);
+    const int w = observations->image_width, h = observations->image_height;
+    if (w == 0) return;
+    BODYLOOM_CHECK(extent.width == 0 || (extent.width == w && extent.height == h), "track: the ", what,
+                   " are for images of ", w, "x", h, ", other observations for ", extent.width, "x", extent.height);
+    extent.width = w;
+    extent.height = h;
+  };
+  add(input.keypoints, "2D joints");
+  add(input.dense, "dense keypoints");
+  add(input.part_labels, "part labels");
+  return extent;
+}
+
+void CheckDense(const TrackSequenceInput& input) {
+  for (const auto& frame : input.dense->frames) {
+    for (const DenseKeypoint& point : frame) {
+      BODYLOOM_CHECK(point.face >= 0 && point.face < input.body->num_faces(), "track: a dense keypoint names face ",
+                     point.face, ", the body '", input.body->name(), "' has ", input.body->num_faces());
+    }
+  }
+}
+
+void CheckPartLabels(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
+  const PartLabelSequence& labels = *input.part_labels;
+  BODYLOOM_CHECK(static_cast<int>(labels.timestamps.size()) == labels.num_frames(), "track: ", labels.num_frames(),
+                 " frames of part labels but ", labels.timestamps.size(), " timestamps");
+  BODYLOOM_CHECK(labels.image_width > 0 && labels.image_height > 0,
+                 "track: the part labels do not say how large their images are");
+  const bool alone = input.keypoints == nullptr && input.dense == nullptr;
+  BODYLOOM_CHECK(!alone || input.initialiser != nullptr,
+                 "track: part labels refine a start; give 2D joints, dense keypoints or an initialiser with them");
+  BODYLOOM_CHECK(!alone || options.camera_knowledge != CameraKnowledge::kWeak,
+                 "track: weak perspective needs 2D joints or dense keypoints besides part labels");
+  std::array<bool, 256> has_chart{};
+  if (!input.body->has_parts()) has_chart[labels.part_of_chart[0]] = true;
+  for (const uint8_t chart : input.body->data().face_part) has_chart[labels.part_of_chart[chart]] = true;
+  has_chart[PartLabelSequence::kBackground] = has_chart[PartLabelSequence::kUnknown] = true;
+  for (int t = 0; t < labels.num_frames(); ++t) {
+    const LabelImage& image = labels.frames[t];
+    const size_t expected = size_t(std::max(image.width, 0)) * size_t(std::max(image.height, 0));
+    BODYLOOM_CHECK(image.labels.size() == expected, "track: frame ", t, " holds ", image.labels.size(),
+                   " part labels for ", image.width, "x", image.height, " pixels");
+    BODYLOOM_CHECK(expected == 0 ||
+                       (image.x_begin >= 0 && image.y_begin >= 0 && image.x_begin <= labels.image_width - image.width &&
+                        image.y_begin <= labels.image_height - image.height),
+                   "track: the part labels of frame ", t, " cover ", image.width, "x", image.height, " pixels from (",
+                   image.x_begin, ", ", image.y_begin, "), outside the image of ", labels.image_width, "x",
+                   labels.image_height);
+    for (const uint8_t label : image.labels) {
+      BODYLOOM_CHECK(has_chart[labels.part_of_label[label]], "track: frame ", t, " has pixels of label ", int{label},
+                     " (part ", int{labels.part_of_label[label]}, "), which no chart of the body '", input.body->name(),
+                     "' belongs to");
+    }
+  }
+}
+
 void CheckInput(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
   std::string why;
   BODYLOOM_CHECK(options.IsValid(&why), "track: ", why);
   BODYLOOM_CHECK(input.body != nullptr, "track: no body");
-  BODYLOOM_CHECK(input.keypoints != nullptr || input.dense != nullptr,
-                 "track: neither 2D joints nor dense keypoints; give at least one");
-  const int frames = input.keypoints != nullptr ? input.keypoints->num_frames() : input.dense->num_frames();
-  BODYLOOM_CHECK(frames > 0, "track: the detections hold no frames");
-  if (input.keypoints != nullptr && input.dense != nullptr) {
-    BODYLOOM_CHECK(input.keypoints->num_frames() == input.dense->num_frames(), "track: ", input.keypoints->num_frames(),
-                   " frames of 2D joints but ", input.dense->num_frames(), " of dense keypoints");
-  }
+  BODYLOOM_CHECK(input.keypoints != nullptr || input.dense != nullptr || input.part_labels != nullptr,
+                 "track: neither 2D joints nor dense keypoints nor part labels; give at least one");
+  const ClipExtent extent = ExtentOf(input);
+  BODYLOOM_CHECK(extent.frames > 0, "track: the detections hold no frames");
   if (input.initialiser != nullptr) {
-    BODYLOOM_CHECK(input.initialiser->num_frames() == frames, "track: the initialiser has ",
-                   input.initialiser->num_frames(), " frames, the detections ", frames);
+    BODYLOOM_CHECK(input.initialiser->num_frames() == extent.frames, "track: the initialiser has ",
+                   input.initialiser->num_frames(), " frames, the detections ", extent.frames);
   }
-  if (input.dense != nullptr) {
-    for (const auto& frame : input.dense->frames) {
-      for (const DenseKeypoint& point : frame) {
-        BODYLOOM_CHECK(point.face >= 0 && point.face < input.body->num_faces(), "track: a dense keypoint names face ",
-                       point.face, ", the body '", input.body->name(), "' has ", input.body->num_faces());
-      }
-    }
-  }
-  const int width = input.keypoints != nullptr ? input.keypoints->image_width : input.dense->image_width;
-  const int height = input.keypoints != nullptr ? input.keypoints->image_height : input.dense->image_height;
+  if (input.dense != nullptr) CheckDense(input);
+  if (input.part_labels != nullptr) CheckPartLabels(input, options);
   if (options.camera_knowledge == CameraKnowledge::kKnown) {
     BODYLOOM_CHECK(input.camera.fx > 0 && input.camera.fy > 0, "track: the camera's focal length is ", input.camera.fx,
                    ", expected a positive number of pixels");
-    BODYLOOM_CHECK(
-        width == 0 || input.camera.width == 0 || (width == input.camera.width && height == input.camera.height),
-        "track: the detections are for images of ", width, "x", height, " but the camera is for ", input.camera.width,
-        "x", input.camera.height);
+    BODYLOOM_CHECK(extent.width == 0 || input.camera.width == 0 ||
+                       (extent.width == input.camera.width && extent.height == input.camera.height),
+                   "track: the detections are for images of ", extent.width, "x", extent.height,
+                   " but the camera is for ", input.camera.width, "x", input.camera.height);
   } else {
-    BODYLOOM_CHECK(width > 0 || input.camera.width > 0,
+    BODYLOOM_CHECK(extent.width > 0 || input.camera.width > 0,
                    "track: the image size is not known; it is needed when the focal length is not");
   }
 }
 
 /// The camera the problem starts with. An unknown focal length starts at 0.9 of the longer side (58° field of view).
 Camera StartCamera(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
-  if (options.camera_knowledge == CameraKnowledge::kKnown) return input.camera;
-  const int width = input.camera.width > 0       ? input.camera.width
-                    : input.keypoints != nullptr ? input.keypoints->image_width
-                                                 : input.dense->image_width;
-  const int height = input.camera.height > 0      ? input.camera.height
-                     : input.keypoints != nullptr ? input.keypoints->image_height
-                                                  : input.dense->image_height;
-  return MakePinhole(width, height, 0.9 * std::max(width, height));
-}
-
-const std::vector<double>& Timestamps(const TrackSequenceInput& input) {
-  return input.keypoints != nullptr ? input.keypoints->timestamps : input.dense->timestamps;
-}
-
-/// Image height of an upright body at each frame's depth, pixels: the yardstick of detection noise.
-double BodyHeightPx(const FrameLayout& layout, const FrameState& state, double stature) {
-  if (layout.knowledge == CameraKnowledge::kWeak) return std::exp(state.translation[0]) * stature;
-  return layout.camera.fy * stature / std::max(state.translation.z(), 0.3);
+  const ClipExtent extent = ExtentOf(input);
+  const int width = input.camera.width > 0 ? input.camera.width : extent.width;
+  const int height = input.camera.height > 0 ? input.camera.height : extent.height;
+  if (options.camera_knowledge != CameraKnowledge::kKnown) {
+    return MakePinhole(width, height, 0.9 * std::max(width, height));
+  }
+  Camera camera = input.camera;
+  camera.width = width;
+  camera.height = height;
+  return camera;
 }
 
 }  // namespace
@@ -120,6 +176,25 @@ bool TrackSequenceOptions::IsValid(std::string* why) const {
   }
   if (!(initialiser_weight >= 0)) {
     *why = "initialiser_weight is " + std::to_string(initialiser_weight) + ", expected 0 or more";
+    return false;
+  }
+  const auto in_range = [&](const char* name, double value, double low, double high) {
+    if (value >= low && value <= high) return true;
+    *why = Concatenate(name, " is ", value, ", expected ", low, " to ", high);
+    return false;
+  };
+  if (!in_range("rendered_uv.weight", rendered_uv.weight, 0, 1e6) ||
+      !in_range("rendered_uv.max_points", rendered_uv.max_points, 1, 1e7) ||
+      !in_range("rendered_uv.rounds", rendered_uv.rounds, 0, 100) ||
+      !in_range("rendered_uv.max_iterations", rendered_uv.max_iterations, 1, 1000) ||
+      !in_range("rendered_uv.min_cosine", rendered_uv.min_cosine, 1e-3, 1) ||
+      !in_range("part_labels.silhouette_weight", part_labels.silhouette_weight, 0, 1e6) ||
+      !in_range("part_labels.part_weight", part_labels.part_weight, 0, 1e6) ||
+      !in_range("part_labels.sigma_share", part_labels.sigma_share, 1e-4, 1) ||
+      !in_range("part_labels.start_kernel", part_labels.start_kernel, 0.1, 1e6) ||
+      !in_range("part_labels.kernel", part_labels.kernel, 0.1, 1e6) ||
+      !in_range("part_labels.rounds", part_labels.rounds, 1, 100) ||
+      !in_range("part_labels.max_iterations", part_labels.max_iterations, 1, 1000)) {
     return false;
   }
   return true;
@@ -159,11 +234,12 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSe
   // Which landmarks and joints take part.
   const int num_betas = options.estimate_shape ? std::min(model.num_betas(), 10) : 0;
   const ObservedLandmarks landmarks = FindObservedLandmarks(model, input.keypoints, num_betas);
-  const std::vector<int> active = FindActiveJoints(model, landmarks, input.dense != nullptr, options.skip_unneeded);
+  const std::vector<int> active =
+      FindActiveJoints(model, landmarks, input.dense != nullptr || input.part_labels != nullptr, options.skip_unneeded);
   const Camera camera = StartCamera(input, options);
   SequenceProblem problem;
   problem.layout = FrameLayout::Make(model, options.camera_knowledge, camera, active, num_betas);
-  problem.timestamps = Timestamps(input);
+  problem.timestamps = *ExtentOf(input).timestamps;
   const size_t T = problem.timestamps.size();
   problem.cut_before = input.keypoints != nullptr ? FindCuts(*input.keypoints) : std::vector<char>(T, 0);
   problem.betas = VectorXd::Zero(num_betas);
@@ -194,7 +270,7 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSe
   for (size_t t = 0; t < T; ++t) {
     FrameData& frame = problem.frames[t];
     if (input.keypoints != nullptr) {
-      const double height_px = BodyHeightPx(problem.layout, problem.states[t], stature);
+      const double height_px = PersonHeightPx(problem.layout, problem.states[t], stature);
       frame.landmarks = ObserveLandmarks(landmarks, *input.keypoints, static_cast<int>(t), height_px);
     }
     if (input.dense != nullptr) frame.dense = &input.dense->frames[t];
@@ -246,21 +322,45 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSe
   // Coarse in time first: what a frame cannot decide alone its neighbours decide together, and 15 frames a second are
   // enough to see how a person moves.
   bool going = true;
+  const ImageTerms terms(input, options, problem.layout, threads);
   const std::vector<int> coarse_frames = FramesAtRate(problem, options.coarse_rate);
   const bool coarse_to_fine = coarse_frames.size() < T;
   const double final_pull = pulled ? 0.0 : options.initialiser_weight;
-  if (pulled || coarse_to_fine) {
+  const bool has_points = input.keypoints != nullptr || input.dense != nullptr;
+  if (pulled || coarse_to_fine || terms.has_dense_rounds() || terms.has_part_labels()) {
     SequenceProblem coarse = SelectFrames(problem, coarse_frames);
-    if (pulled)
+    if (pulled) {
       going = solve("fit near start", &coarse, options.start_pull, 8, 1e-3, options.max_iterations, 0.05, 0.3);
-    if (going) going = solve("fit coarse", &coarse, final_pull, 4, 1e-4, options.max_iterations, 0.3, 0.6);
+    }
+    if (going && has_points)
+      going = solve("fit coarse", &coarse, final_pull, 4, 1e-4, options.max_iterations, 0.3, 0.5);
+    if (terms.has_part_labels()) {
+      const PartLabelOptions& labels = options.part_labels;
+      for (int round = 0; going && round < labels.rounds; ++round) {
+        const double s = labels.rounds > 1 ? double(round) / (labels.rounds - 1) : 1.0;
+        const double kernel = labels.start_kernel * std::pow(labels.kernel / labels.start_kernel, s);
+        terms.StartPartLabelRound(coarse_frames, kernel, &coarse);
+        going = solve("fit part labels", &coarse, final_pull, 4, 1e-4, labels.max_iterations, 0.5, 0.55);
+      }
+    }
+    if (terms.has_dense_rounds()) {
+      for (int round = 0; going && round < options.rendered_uv.rounds; ++round) {
+        terms.StartDenseRound(coarse_frames, &coarse);
+        going = solve("fit dense", &coarse, final_pull, 4, 1e-4, options.rendered_uv.max_iterations, 0.55, 0.6);
+      }
+    }
     SpreadFrames(coarse, coarse_frames, &problem);
   }
   // The coarse solve has settled what is slow to settle; between its frames a few steps are enough.
+  std::vector<int> all_frames(T);
+  std::iota(all_frames.begin(), all_frames.end(), 0);
+  terms.StartPartLabelRound(all_frames, options.part_labels.kernel, &problem);
+  terms.StartDenseRound(all_frames, &problem);
   const int fine_iterations = coarse_to_fine ? options.max_fine_iterations : options.max_iterations;
   if (going) solve("fit", &problem, final_pull, 4, 1e-4, fine_iterations, 0.6, 0.95);
 
   FillTrack(input, problem, landmarks, &result);
+  terms.Summarise(problem, &summary);
   clock.Book("finish");
   if (options.estimate_uncertainty) {
     // On the coarse frames: neighbours' detection errors are not independent, and their joints' spread changes slowly.

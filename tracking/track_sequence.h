@@ -30,8 +30,11 @@ struct TrackSequenceInput {
   const BodyModel* body = nullptr;              ///< required
   const KeypointSequence* keypoints = nullptr;  ///< 2D joints; this or `dense` is required
   const DenseSequence* dense = nullptr;         ///< dense surface keypoints
-  const Motion* initialiser = nullptr;          ///< camera-frame poses of another system, same frames (L_d of paper A)
-  const PosePrior* prior = nullptr;             ///< learned pose prior; without it only joint limits apply
+  /// Part labels or a mask of each frame. They refine a start and do not find one: without 2D joints and dense
+  /// keypoints an initialiser is required, and weak perspective is not available.
+  const PartLabelSequence* part_labels = nullptr;
+  const Motion* initialiser = nullptr;  ///< camera-frame poses of another system, same frames (L_d of paper A)
+  const PosePrior* prior = nullptr;     ///< learned pose prior; without it only joint limits apply
   Camera camera;  ///< kKnown: all of it; otherwise only width and height (0: taken from the observations)
 };
 
@@ -40,6 +43,29 @@ struct TrackProgress {
   std::string stage;    ///< "initialise", "fit", "refine", …
   double fraction = 0;  ///< of the whole run, estimated, in [0, 1]
   double cost = 0;      ///< of the current stage
+};
+
+/// L_r of paper A: where a dense keypoint's pixel sees the chart that the detector named, its residual is taken in UV
+/// (residuals/rendered_uv.h) instead of in the image.
+struct RenderedUvOptions {
+  double weight = 0;        ///< λ_r; 0: off
+  int max_points = 1000;    ///< keypoints of a frame that are taken in UV, spread evenly over the parts
+  int rounds = 1;           ///< solves on the coarse frames; whitening is refreshed before each
+  int max_iterations = 8;   ///< of each round
+  double min_cosine = 0.5;  ///< between the ray and the surface normal; more grazing pixels are left to reprojection
+  /// What an unmatched pixel costs: true: its reprojection error, so that it still pulls; false: the kernel's
+  /// saturation.
+  bool unmatched_reproject = true;
+};
+
+/// Part labels and silhouettes (residuals/part_label_term.h).
+struct PartLabelOptions {
+  double silhouette_weight = 1;          ///< of the outline of all parts together; 0: off
+  double part_weight = 1;                ///< of each part's outline and pixels; 0: off
+  double sigma_share = 0.01;             ///< σ of an outline as a share of the person's height in the image
+  double start_kernel = 16, kernel = 4;  ///< c of the robust kernel in σ, in the first and in the last round
+  int rounds = 5;          ///< solves on the coarse frames; what corresponds to what is found anew before each
+  int max_iterations = 8;  ///< of each round
 };
 
 struct TrackSequenceOptions {
@@ -55,6 +81,8 @@ struct TrackSequenceOptions {
   double coarse_rate = 15;          ///< frames a second of the coarse stages
   double shape_prior_weight = 0.3;  ///< of the shape prior, a frame
   JointHypothesesOptions hypotheses;
+  RenderedUvOptions rendered_uv;
+  PartLabelOptions part_labels;
   bool estimate_shape = true;        ///< false: keep the mean shape
   bool estimate_uncertainty = true;  ///< joint_sigma; NaN when off
   bool skip_unneeded = true;         ///< false: switch every skip off (same answer, slower)
@@ -68,6 +96,14 @@ struct PlanEntry {
   std::string what;
   bool runs = false;
   std::string why;
+};
+
+/// How well one term fits at the end, over all frames.
+struct TermSummary {
+  std::string term;                  ///< "2D joints", "dense keypoints", "rendered UV", "silhouette", "part labels"
+  int observations = 0;              ///< that had a say
+  int unmatched = 0;                 ///< that could not be used: hidden, another chart, another part, behind the camera
+  double median_px = 0, p95_px = 0;  ///< of |residual|, in pixels
 };
 
 enum class SolveStatus { kFailure, kConverged, kMaxIterations, kStopped };
@@ -85,6 +121,7 @@ struct TrackSequenceSummary {
   std::map<std::string, int> frames_by_status;                 ///< "tracked", "weak", "interpolated", "lost"
   double reprojection_median_px = 0, reprojection_p95_px = 0;  ///< of the used 2D joints (confidence > 0.3)
   double dense_median_px = 0;                                  ///< of the dense keypoints, 0 without
+  std::vector<TermSummary> terms;                              ///< of every image term that ran
   double focal_px = 0;                                         ///< used or estimated
   int num_observations = 0, num_parameters = 0;
   int num_swaps_repaired = 0;  ///< left–right pairs found exchanged in the detections

@@ -11,11 +11,11 @@
 #include <chrono>
 #include <cstdio>
 #include <exception>
-#include <filesystem>
 
 #include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/accuracy/bench_report.h"
 #include "benchmarks/accuracy/dense_bound.h"
+#include "benchmarks/accuracy/dense_clips.h"
 #include "data_tools/builtin_body.h"
 #include "data_tools/evaluation/truth_evaluation.h"
 #include "data_tools/formats/atomic_file.h"
@@ -28,33 +28,12 @@
 namespace bodyloom {
 namespace {
 
-DenseFaultOptions Faults(const std::string& noise) {
-  DenseFaultOptions faults;
-  faults.pixel_sigma_px = 1;
-  if (noise == "pixel") return faults;
-  BODYLOOM_CHECK(noise == "densepose", "--noise is '", noise, "', expected pixel or densepose");
-  faults.uv_sigma = 0.02;
-  faults.quantise_uv = true;
-  faults.outlier_probability = 0.05;
-  faults.missing_part_share = 0.05;
-  return faults;
-}
-
-Motion FirstFrames(Motion motion, int frames) {
-  if (frames > 0 && frames < motion.num_frames()) {
-    motion.poses.conservativeResize(frames, motion.poses.cols());
-    motion.trans.conservativeResize(frames, 3);
-    motion.timestamps.resize(frames);
-  }
-  return motion;
-}
-
 BenchRow TrackAndScore(const std::string& noise, const std::string& name, const Motion& motion,
                        const BenchArguments& arguments) {
   const BodyModel& body = BuiltinBody();
   SynthClipOptions synth;
   synth.dense_per_frame = arguments.Integer("dense");
-  synth.dense = Faults(noise);
+  synth.dense = DenseFaults(noise);
   synth.keypoints = false;
   synth.initialiser_error_px = std::stod(arguments.Text("initial"));
   synth.num_threads = arguments.Integer("threads");
@@ -104,7 +83,7 @@ void Run(const BenchArguments& arguments, const std::string& command) {
   for (const std::string& noise : arguments.List("noise")) {
     for (const std::string& path : arguments.List("motions")) {
       const Motion motion = FirstFrames(LoadMotion(path), arguments.Integer("frames"));
-      const std::string name = std::filesystem::path(path).stem().string().substr(0, 16);
+      const std::string name = MotionName(path);
       report.rows.push_back(TrackAndScore(noise, name, motion, arguments));
       std::fprintf(stderr, "%s %s: %.1f -> %.2f px, bound %.2f\n", noise.c_str(), name.c_str(),
                    report.rows.back().values[0], report.rows.back().values[1], report.rows.back().values[5]);

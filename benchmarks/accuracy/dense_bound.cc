@@ -50,7 +50,7 @@ MatrixXd VertexJacobian(const FrameLayout& layout, const FrameState& state, cons
   MatrixXd J = MatrixXd::Zero(2 * count, layout.num_columns);
   for (int i = 0; i < count; ++i) {
     const int corners[3] = {i * step, i * step, i * step};
-    const float barycentric[3] = {1, 0, 0};
+    const double barycentric[3] = {1, 0, 0};
     const Eigen::Vector3d x = evaluator.Evaluate(kinematics, corners, barycentric, &cache, true);
     Eigen::Vector2d pixel;
     Matrix2x3d d_pixel;

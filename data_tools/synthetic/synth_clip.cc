@@ -351,6 +351,9 @@ SynthClip MakeSynthClip(const BodyModel& body, const Motion& motion, const Synth
 
   const int num_threads = options.num_threads > 0 ? options.num_threads
                                                   : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  clip.dense.pixel_sigma_px = options.dense.pixel_sigma_px;
+  clip.dense.uv_sigma =
+      std::hypot(options.dense.uv_sigma, options.dense.quantise_uv ? 1 / (255 * std::sqrt(12.0)) : 0.0);
   ClipMaker maker(body, options, &clip);
   ParallelFor(T, num_threads, [&](int t) { maker.MakeFrame(t); });
   maker.Finish();

@@ -10,8 +10,8 @@
 ///   4. outliers: a label is replaced by a random point of the surface (uniform by area) with `outlier_probability`;
 ///   5. pixel noise: pixel += N(0, pixel_sigma_px²) on each coordinate.
 ///   sigma_px of a keypoint is what these faults amount to in the image: √(pixel_sigma² + ½ (uv_sigma² + q²/12)
-///   ‖M‖²_F), q = 1/255 when quantised, M = d(pixel)/d(u, v) at the label, at least min_sigma_px; outliers do not
-///   announce themselves.
+///   ‖M‖²_F), q = 1/255 when quantised, M = d(pixel)/d(u, v) at the label, at least min_sigma_px; the sequence's
+///   uv_sigma and pixel_sigma_px say what it is made of; outliers do not announce themselves.
 /// 2D landmarks: detection_noise.h. Frames drop out whole in runs (`dropped_frame_share`). Frames are independent: the
 /// clip is the same for any number of threads, and the same bytes for the same seed.
 #pragma once

@@ -91,35 +91,13 @@ std::unique_ptr<Scene> MakeScene(CameraKnowledge knowledge, double pose_size, ui
 
 /// Raw residual vectors of the image observations with their derivative by parameter `column` in the Jets.
 std::vector<Eigen::Matrix<Jet, 2, 1>> TwinPixels(const Scene& scene, int column) {
-  const FrameLayout& layout = scene.layout;
-  const auto seed = [&](int c, double value) { return c == column ? Jet(value, 0) : Jet(value); };
-  twin::Body<Jet> body;
-  body.model = &scene.body;
-  for (int j = 0; j < scene.body.num_joints(); ++j) {
-    twin::Vector3<Jet> delta(Jet(0.0), Jet(0.0), Jet(0.0));
-    const int first = layout.column_of_joint[j];
-    for (int c = 0; c < 3 && first >= 0; ++c) delta[c] = seed(first + c, 0.0);
-    body.local.push_back(scene.state.rotations[j].cast<Jet>() * twin::Exp(delta));
-  }
-  body.betas.resize(layout.num_betas);
-  for (int b = 0; b < layout.num_betas; ++b) body.betas[b] = seed(layout.beta_column + b, scene.betas[b]);
-  twin::Vector3<Jet> translation;
-  for (int c = 0; c < 3; ++c) translation[c] = seed(layout.translation_column + c, scene.state.translation[c]);
-  Jet fx(layout.camera.fx), fy(layout.camera.fy), scale(1.0), tx(0.0), ty(0.0);
-  if (layout.knowledge == CameraKnowledge::kWeak) {
-    body.trans = twin::Vector3<Jet>(Jet(0.0), Jet(0.0), Jet(0.0));
-    scale = exp(translation[0]);
-    tx = translation[1];
-    ty = translation[2];
-  } else {
-    body.trans = translation;
-  }
-  if (layout.focal_column >= 0) fx = fy = exp(seed(layout.focal_column, scene.log_focal));
+  const twin::SeededFrame seeded =
+      twin::SeedFrame(scene.body, scene.layout, scene.state, scene.betas, scene.log_focal, column);
+  const twin::Body<Jet>& body = seeded.body;
 
   std::vector<Eigen::Matrix<Jet, 2, 1>> residuals;
   const auto add = [&](const twin::Vector3<Jet>& x, const Eigen::Vector2d& pixel, double sigma) {
-    const Eigen::Matrix<Jet, 2, 1> projected = twin::Project<Jet>(layout.camera, x, fx, fy, scale, tx, ty);
-    residuals.push_back((projected - pixel.cast<Jet>()) / Jet(sigma));
+    residuals.push_back((seeded.Project(x) - pixel.cast<Jet>()) / Jet(sigma));
   };
   for (size_t i = 0; i < scene.data.landmarks.size(); ++i) {
     const Landmark& landmark = scene.body.data().landmarks[scene.landmark_ids[i]];

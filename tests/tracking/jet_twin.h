@@ -11,6 +11,7 @@
 #include "geometry/body_model.h"
 #include "geometry/camera.h"
 #include "geometry/rotation.h"
+#include "tracking/frame_cost.h"
 
 namespace bodyloom::twin {
 
@@ -141,6 +142,47 @@ Eigen::Matrix<T, 2, 1> Project(const Camera& camera, const Vector3<T>& x, const 
   const T u = a * radial + T(2 * k[2]) * a * b + T(k[3]) * (r2 + T(2) * a * a);
   const T v = b * radial + T(k[2]) * (r2 + T(2) * b * b) + T(2 * k[3]) * a * b;
   return {fx * u + T(camera.cx), fy * v + T(camera.cy)};
+}
+
+/// One frame's body and camera as functions of one of the layout's parameters.
+struct SeededFrame {
+  Body<Jet> body;
+  Camera camera;
+  Jet fx, fy, scale, tx, ty;
+  [[nodiscard]] Eigen::Matrix<Jet, 2, 1> Project(const Vector3<Jet>& x) const {
+    return twin::Project<Jet>(camera, x, fx, fy, scale, tx, ty);
+  }
+};
+
+/// Derivatives are by parameter `column` (−1: none): right increments for rotations.
+inline SeededFrame SeedFrame(const BodyModel& model, const FrameLayout& layout, const FrameState& state,
+                             const Eigen::VectorXd& betas, double log_focal, int column) {
+  const auto seed = [&](int c, double value) { return c == column ? Jet(value, 0) : Jet(value); };
+  SeededFrame frame;
+  frame.camera = layout.camera;
+  frame.body.model = &model;
+  for (int j = 0; j < model.num_joints(); ++j) {
+    Vector3<Jet> delta(Jet(0.0), Jet(0.0), Jet(0.0));
+    const int first = layout.column_of_joint[j];
+    for (int c = 0; c < 3 && first >= 0; ++c) delta[c] = seed(first + c, 0.0);
+    frame.body.local.push_back(state.rotations[j].cast<Jet>() * Exp(delta));
+  }
+  frame.body.betas.resize(layout.num_betas);
+  for (int b = 0; b < layout.num_betas; ++b) frame.body.betas[b] = seed(layout.beta_column + b, betas[b]);
+  Vector3<Jet> translation;
+  for (int c = 0; c < 3; ++c) translation[c] = seed(layout.translation_column + c, state.translation[c]);
+  frame.fx = Jet(layout.camera.fx), frame.fy = Jet(layout.camera.fy);
+  frame.scale = Jet(1.0), frame.tx = Jet(0.0), frame.ty = Jet(0.0);
+  if (layout.knowledge == CameraKnowledge::kWeak) {
+    frame.body.trans = Vector3<Jet>(Jet(0.0), Jet(0.0), Jet(0.0));
+    frame.scale = exp(translation[0]);
+    frame.tx = translation[1];
+    frame.ty = translation[2];
+  } else {
+    frame.body.trans = translation;
+  }
+  if (layout.focal_column >= 0) frame.fx = frame.fy = exp(seed(layout.focal_column, log_focal));
+  return frame;
 }
 
 }  // namespace bodyloom::twin

@@ -146,7 +146,7 @@ InitialStates FindInitialStates(const TrackSequenceInput& input, const FrameLayo
   result.betas = VectorXd::Zero(layout.num_betas);
   KeypointSequence from_dense;
   const KeypointSequence* keypoints = input.keypoints;
-  if (keypoints == nullptr) {
+  if (keypoints == nullptr && input.dense != nullptr) {
     from_dense = JointsFromDense(model, *input.dense);
     keypoints = &from_dense;
   }

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "benchmarks/accuracy/dense_clips.h"
+
+#include <filesystem>
+
+#include "geometry/check.h"
+
+namespace bodyloom {
+
+DenseFaultOptions DenseFaults(const std::string& noise) {
+  DenseFaultOptions faults;
+  BODYLOOM_CHECK(noise == "pixel" || noise == "uv" || noise == "densepose", "--noise is '", noise,
+                 "', expected pixel, uv or densepose");
+  if (noise != "uv") faults.pixel_sigma_px = 1;
+  if (noise != "pixel") faults.uv_sigma = 0.02;
+  if (noise != "densepose") return faults;
+  faults.quantise_uv = true;
+  faults.outlier_probability = 0.05;
+  faults.missing_part_share = 0.05;
+  return faults;
+}
+
+Motion FirstFrames(Motion motion, int frames) {
+  if (frames > 0 && frames < motion.num_frames()) {
+    motion.poses.conservativeResize(frames, motion.poses.cols());
+    motion.trans.conservativeResize(frames, 3);
+    motion.timestamps.resize(frames);
+  }
+  return motion;
+}
+
+std::string MotionName(const std::string& path) { return std::filesystem::path(path).stem().string().substr(0, 16); }
+
+}  // namespace bodyloom

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The dense synthetic clips that several benchmarks share.
+#pragma once
+
+#include <string>
+
+#include "data_tools/synthetic/synth_clip.h"
+#include "geometry/track.h"
+
+namespace bodyloom {
+
+/// `pixel`: 1 px Gaussian. `densepose`: 1 px, UV noise 0.02 of a chart, 8-bit UV, 5 % outliers, each part missing 5 %
+/// of the time. Throws std::invalid_argument for other names.
+DenseFaultOptions DenseFaults(const std::string& noise);
+
+/// All frames when `frames` is 0 or more than there are.
+Motion FirstFrames(Motion motion, int frames);
+
+/// First part of the file's name.
+std::string MotionName(const std::string& path);
+
+}  // namespace bodyloom

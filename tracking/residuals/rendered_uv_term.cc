@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracking/residuals/rendered_uv_term.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "geometry/check.h"
+#include "tracking/residuals/dense_whitening.h"
+
+namespace bodyloom {
+
+using Eigen::Vector3d;
+using Matrix32d = Eigen::Matrix<double, 3, 2>;
+
+std::vector<int> StratifiedKeypoints(const BodyModel& model, const std::vector<DenseKeypoint>& keypoints,
+                                     int max_points) {
+  std::array<std::vector<int>, 256> by_part;
+  for (size_t i = 0; i < keypoints.size(); ++i) {
+    by_part[model.data().face_part[keypoints[i].face]].push_back(static_cast<int>(i));
+  }
+  std::vector<int> order;  // parts by rising size: what a small part leaves over goes to the others
+  for (int p = 0; p < 256; ++p) {
+    if (!by_part[p].empty()) order.push_back(p);
+  }
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return by_part[a].size() < by_part[b].size(); });
+  std::vector<int> chosen;
+  size_t left = static_cast<size_t>(std::max(0, max_points)), parts_left = order.size();
+  for (int p : order) {
+    const std::vector<int>& all = by_part[p];
+    const size_t n = std::min(all.size(), left / parts_left);
+    for (size_t k = 0; k < n; ++k) chosen.push_back(all[k * all.size() / n]);
+    left -= n;
+    --parts_left;
+  }
+  std::sort(chosen.begin(), chosen.end());
+  return chosen;
+}
+
+Eigen::Matrix2d UvByPixel(const Eigen::Matrix3d& corners, const Matrix2x3d& d_pixel_d_x, const Matrix32d& corner_uv) {
+  Matrix32d E;
+  E << (corners.row(1) - corners.row(0)).transpose(), (corners.row(2) - corners.row(0)).transpose();
+  Eigen::Matrix2d U;
+  U << (corner_uv.row(1) - corner_uv.row(0)).transpose(), (corner_uv.row(2) - corner_uv.row(0)).transpose();
+  return U * (d_pixel_d_x * E).inverse();
+}
+
+RenderedUvTerm::RenderedUvTerm(const BodyModel& model, std::shared_ptr<const Skinner> skinner,
+                               const std::vector<DenseKeypoint>& keypoints, const RenderedUvOptions& options)
+    : skinner_(std::move(skinner)), options_(options), has_(keypoints.size(), 0) {
+  BODYLOOM_CHECK(model.has_parts() && model.data().face_iuv.rows() == model.num_faces(), "rendered UV: the body '",
+                 model.name(), "' has no charts with coordinates");
+  for (int i : StratifiedKeypoints(model, keypoints, options.max_points)) {
+    const DenseKeypoint& point = keypoints[i];
+    Pixel pixel;
+    pixel.keypoint = i;
+    pixel.part = model.data().face_part[point.face];
+    if (pixel.part == 0) continue;
+    pixel.pixel = point.pixel.cast<double>();
+    const Eigen::Vector3d b = point.barycentric.cast<double>();
+    pixel.uv = CornerUv(model, point.face).transpose() * b / b.sum();
+    chosen_.push_back(pixel);
+  }
+}
+
+void RenderedUvTerm::SetWhitening(const std::vector<DenseWhitening>& whitening) {
+  BODYLOOM_CHECK(whitening.size() == has_.size(), "rendered UV: ", whitening.size(), " covariances for ", has_.size(),
+                 " keypoints");
+  pixels_.clear();
+  std::fill(has_.begin(), has_.end(), 0);
+  valid_ = false;
+  for (Pixel pixel : chosen_) {
+    const DenseWhitening& w = whitening[pixel.keypoint];
+    pixel.pixel_by_uv = w.pixel_by_uv;
+    pixel.whitening = w.whitening;
+    pixel.residual_by_uv = w.whitening * w.pixel_by_uv;
+    if (!pixel.residual_by_uv.allFinite() || pixel.residual_by_uv.isZero(0)) continue;
+    has_[pixel.keypoint] = 1;
+    pixels_.push_back(pixel);
+  }
+}
+
+const std::vector<int>& RenderedUvTerm::VisibleFaces(const BodyModel& model, const FrameState& state,
+                                                     const Eigen::VectorXd& betas, const Eigen::Vector3d& translation,
+                                                     const Camera& camera, VisibleSurface* surface) {
+  if (valid_ && hold_) return faces_;
+  if (valid_ && state_.translation == state.translation && fx_ == camera.fx && betas_.size() == betas.size() &&
+      betas_ == betas && state_.rotations == state.rotations) {
+    return faces_;
+  }
+  state_ = state;
+  betas_ = betas;
+  fx_ = camera.fx;
+  valid_ = true;
+  faces_.assign(pixels_.size(), -1);
+  ++num_rasterised_;
+  if (pixels_.empty() || !surface->Render(skinner_, model, betas, state.rotations, translation, camera)) return faces_;
+  for (size_t i = 0; i < pixels_.size(); ++i) {
+    const double x = std::floor(pixels_[i].pixel.x() + 0.5), y = std::floor(pixels_[i].pixel.y() + 0.5);
+    if (!(std::abs(x) < 1e6 && std::abs(y) < 1e6)) continue;
+    faces_[i] = surface->buffer().FaceAt(static_cast<int>(x), static_cast<int>(y));
+  }
+  return faces_;
+}
+
+}  // namespace bodyloom
