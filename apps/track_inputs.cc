@@ -9,10 +9,12 @@
 #include "data_tools/motion/load_motion.h"
 #include "data_tools/observations/load_detections.h"
 #include "data_tools/observations/observations_npz.h"
+#include "data_tools/observations/part_labels.h"
 #include "data_tools/prior/pose_prior_io.h"
 #include "data_tools/track_io.h"
 #include "data_tools/video/video_reader.h"
 #include "geometry/check.h"
+#include "tracking/initialise/part_keypoints.h"
 
 namespace bodyloom {
 namespace {
@@ -105,6 +107,7 @@ TrackSequenceInput TrackInputs::ForTracker() const {
   input.body = body.get();
   input.keypoints = keypoints ? &*keypoints : nullptr;
   input.dense = dense ? &*dense : nullptr;
+  input.part_labels = part_labels ? &*part_labels : nullptr;
   input.initialiser = initialiser ? &*initialiser : nullptr;
   input.prior = prior ? &*prior : nullptr;
   input.camera = camera.camera;
@@ -148,6 +151,15 @@ TrackInputs LoadTrackInputs(const TrackCommand& command) {
   if (!command.dense.empty()) {
     inputs.dense = ReadDense(command.dense, *inputs.body);
     AgreeOnImageSize(command.dense, inputs.dense->image_width, inputs.dense->image_height, &camera);
+  }
+  if (!command.part_labels.empty()) {
+    ReadPartLabelsOptions options;
+    options.fps = command.fps > 0 ? command.fps : inputs.video_fps > 0 ? inputs.video_fps : options.fps;
+    inputs.part_labels = ReadPartLabels(command.part_labels, options);
+    AgreeOnImageSize(command.part_labels, inputs.part_labels->image_width, inputs.part_labels->image_height, &camera);
+    if (!inputs.keypoints && !inputs.dense) {
+      inputs.keypoints = KeypointsFromPartLabels(*inputs.part_labels);
+    }
   }
   if (camera.width == 0) {
     throw std::runtime_error(Concatenate(command.detections.empty() ? command.dense : command.detections,

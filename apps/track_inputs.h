@@ -18,12 +18,14 @@ struct TrackInputs {
   std::shared_ptr<const BodyModel> body;
   std::optional<KeypointSequence> keypoints;
   std::optional<DenseSequence> dense;
+  std::optional<PartLabelSequence> part_labels;
   std::optional<Motion> initialiser;
   std::optional<PosePrior> prior;
   std::optional<Track> reference;
   NamedCamera camera;  ///< intrinsics, pose and the way to the video's pixels, as far as known
   double video_fps = 0;
 
+  /// Keypoints are always there when only part labels were given: those read off the labels.
   [[nodiscard]] int num_frames() const { return keypoints ? keypoints->num_frames() : dense->num_frames(); }
   [[nodiscard]] const std::vector<double>& timestamps() const {
     return keypoints ? keypoints->timestamps : dense->timestamps;

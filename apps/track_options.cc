@@ -43,6 +43,12 @@ void AddTrackOptions(CLI::App& app, TrackCommand* command) {
       ->group(seen)
       ->type_name("FILE");
   app.add_option("--dense", c.dense, "dense surface keypoints: this project's .npz")->group(seen)->type_name("FILE");
+  app.add_option(
+         "--part-labels", c.part_labels,
+         "DensePose part of every pixel: .npz with uint8 `labels`, frames x height x width; alone or beside the "
+         "others")
+      ->group(seen)
+      ->type_name("FILE");
   app.add_option("--view", c.view, "camera of a file that holds several, as c01")->group(seen)->type_name("NAME");
   app.add_option("--person", c.person, "which person when there are several: 0 is the largest and longest in view")
       ->group(seen)
@@ -141,8 +147,8 @@ CameraKnowledge CameraKnowledgeOf(const TrackCommand& command) {
 }
 
 void CheckTrackOptions(const TrackCommand& command) {
-  if (command.detections.empty() && command.dense.empty()) {
-    throw UsageError("--detections is required (or --dense)");
+  if (command.detections.empty() && command.dense.empty() && command.part_labels.empty()) {
+    throw UsageError("--detections is required (or --dense, or --part-labels)");
   }
   if (command.out.empty() && !command.plan) {
     throw UsageError("--out is required (or --plan, to see what would be done)");

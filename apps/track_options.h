@@ -16,6 +16,7 @@ struct TrackCommand {
   // What was seen.
   std::string detections;     ///< 2D joints (and dense keypoints, when the file holds both)
   std::string dense;          ///< dense surface keypoints from a file or folder of their own
+  std::string part_labels;    ///< DensePose part of every pixel
   std::string view;           ///< camera of a file that has several
   int person = 0;             ///< 0: the largest and longest in view
   double fps = 0;             ///< of detections that do not say; 0: the video's, else 30

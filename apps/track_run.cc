@@ -50,6 +50,7 @@ void CheckFiles(const TrackCommand& command) {
   const std::vector<std::pair<std::string, std::string>> named_inputs = {
       {command.detections, "detections"},
       {command.dense, "dense keypoints"},
+      {command.part_labels, "part labels"},
       {command.cameras, "cameras"},
       {command.video, "video"},
       {command.body, "body model"},
@@ -100,7 +101,9 @@ TrackReport RunTrack(const TrackCommand& command) {
   clock.Begin("read");
   const TrackInputs inputs = LoadTrackInputs(command);
   TrackReport report;
-  report.detections = command.detections.empty() ? command.dense : command.detections;
+  report.detections = !command.detections.empty() ? command.detections
+                      : !command.dense.empty()    ? command.dense
+                                                  : command.part_labels;
   report.num_frames = inputs.num_frames();
   if (command.plan) {
     report.solve.plan = WholePlan(command, inputs);

@@ -10,9 +10,12 @@
 #include "apps/track_inputs.h"
 #include "apps/verbs.h"
 #include "data_tools/evaluation/aist_evaluation.h"
+#include "data_tools/evaluation/part_label_evaluation.h"
 #include "data_tools/evaluation/pose2sim_evaluation.h"
 #include "data_tools/evaluation/truth_evaluation.h"
 #include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/npz.h"
+#include "data_tools/observations/part_labels.h"
 #include "data_tools/track_io.h"
 
 namespace bodyloom {
@@ -21,6 +24,7 @@ namespace {
 constexpr const char* kFooter =
     "What --truth may be, and the protocol it selects:\n"
     "  a track .npz (bodyloom synth writes truth.npz)   known-truth: vertices, joints, angles, camera\n"
+    "  part labels .npz (uint8 labels)                  part-labels: overlap of the rendered body with each part\n"
     "  an AIST++ folder (keypoints2d/, keypoints3d/)    aist-held-out: 3D joints, and the cameras that were not "
     "fitted\n"
     "  a Pose2Sim folder (calib_refined.json)           pose2sim-held-out: the other camera\n"
@@ -33,11 +37,18 @@ struct EvaluateCommand {
   std::string cameras, sequence, view;
 };
 
+bool IsPartLabelFile(const std::string& path) { return path.ends_with(".npz") && HasPartLabels(ReadNpz(path)); }
+
 Evaluation Evaluate(const EvaluateCommand& command) {
   namespace fs = std::filesystem;
   const fs::path truth = command.truth;
   const Track track = ReadTrack(command.track);
   if (!fs::is_directory(truth)) {
+    if (IsPartLabelFile(command.truth)) {
+      ReadPartLabelsOptions as_they_are;
+      as_they_are.mend_strays = false;
+      return EvaluatePartLabels(track, ReadPartLabels(command.truth, as_they_are), *BodyOrBuiltin(command.body));
+    }
     return EvaluateAgainstTruth(track, ReadTrack(command.truth), *BodyOrBuiltin(command.body));
   }
   if (fs::exists(truth / "keypoints2d")) {

@@ -41,4 +41,9 @@ const std::vector<std::string>& CocoNames() {
   return names;
 }
 
+bool Track::HasResult(int t) const {
+  return motion.poses.row(t).allFinite() && motion.trans.row(t).allFinite() &&
+         (camera.model != CameraModel::kWeakPerspective || weak_camera.row(t).allFinite());
+}
+
 }  // namespace bodyloom

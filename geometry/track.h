@@ -45,6 +45,8 @@ struct Track {
   [[nodiscard]] int num_frames() const { return motion.num_frames(); }
   /// The camera of frame t: `camera`, with (s, tx, ty) of that frame for weak perspective.
   [[nodiscard]] Camera CameraAt(int t) const;
+  /// Whether frame t has a pose and a camera (finite numbers).
+  [[nodiscard]] bool HasResult(int t) const;
 };
 
 }  // namespace bodyloom

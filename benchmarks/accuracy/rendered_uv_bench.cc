@@ -27,6 +27,7 @@
 #include "data_tools/evaluation/truth_evaluation.h"
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/motion/load_motion.h"
+#include "data_tools/synthetic/rendered_labels.h"
 #include "data_tools/prior/pose_prior_io.h"
 #include "geometry/check.h"
 #include "geometry/posed_body.h"
@@ -114,29 +115,6 @@ void DenseClips(const BenchArguments& arguments, BenchReport* report) {
   }
 }
 
-/// What a pixel of the truth shows, by blocks of `block` pixels (their centre decides), as low-resolution detectors do.
-PartLabelSequence LabelsOfTruth(const BodyModel& body, const Track& truth, int block) {
-  PartLabelSequence labels;
-  labels.timestamps = truth.motion.timestamps;
-  labels.image_width = truth.camera.width;
-  labels.image_height = truth.camera.height;
-  VisibilityBuffer buffer;
-  for (int t = 0; t < truth.num_frames(); ++t) {
-    const BodyPose pose =
-        PoseFromAxisAngle(body, truth.motion.poses.row(t).transpose(), truth.motion.trans.row(t).transpose());
-    buffer.Render(PoseVertices(body, truth.motion.betas, pose), body.data().faces, truth.CameraAt(t));
-    LabelImage image{0, 0, labels.image_width, labels.image_height, {}};
-    for (int y = 0; y < image.height; ++y) {
-      for (int x = 0; x < image.width; ++x) {
-        const int face = buffer.FaceAt(x / block * block + block / 2, y / block * block + block / 2);
-        image.labels.push_back(face < 0 ? 0 : body.data().face_part[face]);
-      }
-    }
-    labels.frames.push_back(std::move(image));
-  }
-  return labels;
-}
-
 void LabelClips(const BenchArguments& arguments, BenchReport* report) {
   report->label_columns = {"motion", "terms"};
   report->value_columns = kClipColumns;
@@ -144,7 +122,7 @@ void LabelClips(const BenchArguments& arguments, BenchReport* report) {
     for (const std::string& path : arguments.List("motions")) {
       const Motion motion = FirstFrames(LoadMotion(path), arguments.Integer("frames"));
       const SynthClip clip = MakeClip("pixel", motion, std::stod(arguments.Text("initial")), 1, arguments);
-      const PartLabelSequence labels = LabelsOfTruth(BuiltinBody(), clip.truth, std::stoi(block));
+      const PartLabelSequence labels = RenderPartLabels(BuiltinBody(), clip.truth, std::stoi(block));
       for (const std::string terms : {"silhouette", "parts", "both"}) {
         TrackSequenceInput input = InputOf(clip);
         input.dense = nullptr;

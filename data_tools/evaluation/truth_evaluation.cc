@@ -15,11 +15,6 @@ namespace {
 
 constexpr double kMm = 1e3;
 
-bool HasResult(const Track& track, int t) {
-  return track.motion.poses.row(t).allFinite() && track.motion.trans.row(t).allFinite() &&
-         (track.camera.model != CameraModel::kWeakPerspective || track.weak_camera.row(t).allFinite());
-}
-
 /// The poses of both tracks on the same joints: columns that one of them lacks are at rest.
 RowMatrixXd WithColumns(const RowMatrixXd& poses, Eigen::Index columns) {
   RowMatrixXd result = RowMatrixXd::Zero(poses.rows(), columns);
@@ -71,7 +66,7 @@ Evaluation EvaluateAgainstTruth(const Track& track, const Track& truth, const Bo
   result.frames = T;
 
   std::vector<bool> has_result(T);
-  for (int t = 0; t < T; ++t) has_result[t] = HasResult(track, t);
+  for (int t = 0; t < T; ++t) has_result[t] = track.HasResult(t);
   result.frames_without_result = static_cast<int>(std::count(has_result.begin(), has_result.end(), false));
   const std::vector<int> source = NearestFramesWithResult(has_result);
   if (source.empty()) return result;

@@ -29,6 +29,18 @@ const NdArray& RequireShape(const NpzArrays& arrays, const std::string& key, con
   return array;
 }
 
+void ImageSizeFromNpz(const NpzArrays& arrays, const std::string& where, int* width, int* height) {
+  if (arrays.find("image_size") == arrays.end()) return;
+  const std::vector<double> size = RequireShape(arrays, "image_size", {2}, where).ToDoubles();
+  if (!(size[0] >= 0 && size[1] >= 0 && size[0] <= 100000 && size[1] <= 100000)) {
+    Fail(where, "image_size", std::to_string(size[0]) + " x " + std::to_string(size[1]) + ", expected pixels");
+  }
+  *width = static_cast<int>(size[0]);
+  *height = static_cast<int>(size[1]);
+}
+
+}  // namespace
+
 std::vector<double> TimestampsFromNpz(const NpzArrays& arrays, const std::string& where) {
   const NdArray& array = RequireArray(arrays, "timestamps", where);
   if (!array.is_number() || array.shape.size() != 1) {
@@ -45,18 +57,6 @@ std::vector<double> TimestampsFromNpz(const NpzArrays& arrays, const std::string
   }
   return timestamps;
 }
-
-void ImageSizeFromNpz(const NpzArrays& arrays, const std::string& where, int* width, int* height) {
-  if (arrays.find("image_size") == arrays.end()) return;
-  const std::vector<double> size = RequireShape(arrays, "image_size", {2}, where).ToDoubles();
-  if (!(size[0] >= 0 && size[1] >= 0 && size[0] <= 100000 && size[1] <= 100000)) {
-    Fail(where, "image_size", std::to_string(size[0]) + " x " + std::to_string(size[1]) + ", expected pixels");
-  }
-  *width = static_cast<int>(size[0]);
-  *height = static_cast<int>(size[1]);
-}
-
-}  // namespace
 
 void WriteObservations(const std::string& path, const KeypointSequence* keypoints, const DenseSequence* dense) {
   BODYLOOM_CHECK(keypoints != nullptr || dense != nullptr, "WriteObservations: nothing to write");

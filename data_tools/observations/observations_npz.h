@@ -16,6 +16,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "data_tools/formats/npz.h"
 #include "geometry/observations.h"
@@ -24,6 +25,9 @@ namespace bodyloom {
 
 /// Writes whichever are given (at least one; both must have the same timestamps and image size).
 void WriteObservations(const std::string& path, const KeypointSequence* keypoints, const DenseSequence* dense);
+
+/// The key `timestamps`: T > 0 finite, increasing seconds.
+std::vector<double> TimestampsFromNpz(const NpzArrays& arrays, const std::string& where);
 
 bool HasKeypoints(const NpzArrays& arrays);
 bool HasDense(const NpzArrays& arrays);

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "data_tools/observations/part_labels.h"
+
+#include <algorithm>
+#include <array>
+#include <opencv2/imgproc.hpp>
+#include <stdexcept>
+
+#include "data_tools/observations/observations_npz.h"
+#include "geometry/check.h"
+
+namespace bodyloom {
+namespace {
+
+/// Pixels between two boxes, 0 when they meet.
+int Gap(const cv::Rect& a, const cv::Rect& b) {
+  const int dx = std::max({0, b.x - (a.x + a.width), a.x - (b.x + b.width)});
+  const int dy = std::max({0, b.y - (a.y + a.height), a.y - (b.y + b.height)});
+  return std::max(dx, dy);
+}
+
+/// The most frequent person label among a pixel's eight neighbours that are not unknown; unknown when there is none.
+uint8_t Majority(const cv::Mat& labels, int x, int y) {
+  std::array<int, 256> votes{};
+  uint8_t best = PartLabelSequence::kUnknown;
+  for (int v = std::max(0, y - 1); v <= std::min(labels.rows - 1, y + 1); ++v) {
+    for (int u = std::max(0, x - 1); u <= std::min(labels.cols - 1, x + 1); ++u) {
+      const uint8_t label = labels.at<uint8_t>(v, u);
+      if (label == PartLabelSequence::kBackground || label == PartLabelSequence::kUnknown) continue;
+      if (++votes[label] > votes[best]) best = label;
+    }
+  }
+  return best;
+}
+
+/// Labels thinner than 3 px give way to their neighbours', a ring of pixels at a time.
+void MendStrays(cv::Mat* labels) {
+  const cv::Mat kernel = cv::Mat::ones(3, 3, CV_8U);
+  std::array<bool, 256> present{};
+  for (const uint8_t label : cv::Mat_<uint8_t>(*labels)) present[label] = true;
+  cv::Mat solid = cv::Mat::zeros(labels->size(), CV_8U), opened;
+  for (int label = 1; label < PartLabelSequence::kUnknown; ++label) {
+    if (!present[label]) continue;
+    cv::morphologyEx(*labels == label, opened, cv::MORPH_OPEN, kernel);
+    solid |= opened;
+  }
+  cv::Mat strays = (*labels > 0) & (solid == 0);
+  labels->setTo(PartLabelSequence::kUnknown, strays);
+  constexpr int kRings = 4;
+  for (int ring = 0; ring < kRings; ++ring) {
+    const cv::Mat before = labels->clone();
+    for (int y = 0; y < labels->rows; ++y) {
+      for (int x = 0; x < labels->cols; ++x) {
+        if (before.at<uint8_t>(y, x) == PartLabelSequence::kUnknown) labels->at<uint8_t>(y, x) = Majority(before, x, y);
+      }
+    }
+  }
+}
+
+/// The labels of one H×W image within the person's box.
+LabelImage CutPerson(const cv::Mat& labels, const ReadPartLabelsOptions& options, int64_t* dropped) {
+  cv::Mat blob, stats, centroids;
+  const int count = cv::connectedComponentsWithStats(labels > 0, blob, stats, centroids, 8);
+  int largest = 0;
+  for (int i = 1; i < count; ++i) {
+    if (largest == 0 || stats.at<int>(i, cv::CC_STAT_AREA) > stats.at<int>(largest, cv::CC_STAT_AREA)) largest = i;
+  }
+  LabelImage result;
+  if (largest == 0) return result;
+  const auto box_of = [&](int i) {
+    return cv::Rect(stats.at<int>(i, cv::CC_STAT_LEFT), stats.at<int>(i, cv::CC_STAT_TOP),
+                    stats.at<int>(i, cv::CC_STAT_WIDTH), stats.at<int>(i, cv::CC_STAT_HEIGHT));
+  };
+  const cv::Rect main = box_of(largest);
+  const double most_gap = options.max_gap * std::max(main.width, main.height);
+  const double least_area = options.min_share * stats.at<int>(largest, cv::CC_STAT_AREA);
+  std::vector<char> kept(count, 0);
+  cv::Rect box = main;
+  for (int i = 1; i < count; ++i) {
+    kept[i] = stats.at<int>(i, cv::CC_STAT_AREA) >= least_area || Gap(main, box_of(i)) <= most_gap;
+    if (kept[i]) {
+      box |= box_of(i);
+    } else if (dropped != nullptr) {
+      *dropped += stats.at<int>(i, cv::CC_STAT_AREA);
+    }
+  }
+  result.x_begin = box.x;
+  result.y_begin = box.y;
+  result.width = box.width;
+  result.height = box.height;
+  cv::Mat person = labels(box).clone();
+  for (int y = 0; y < box.height; ++y) {
+    for (int x = 0; x < box.width; ++x) {
+      if (!kept[blob.at<int>(box.y + y, box.x + x)]) person.at<uint8_t>(y, x) = PartLabelSequence::kBackground;
+    }
+  }
+  if (options.mend_strays) MendStrays(&person);
+  result.labels.assign(person.begin<uint8_t>(), person.end<uint8_t>());
+  return result;
+}
+
+}  // namespace
+
+bool HasPartLabels(const NpzArrays& arrays) { return arrays.find("labels") != arrays.end(); }
+
+PartLabelSequence PartLabelsFromNpz(const NpzArrays& arrays, const std::string& where,
+                                    const ReadPartLabelsOptions& options, int64_t* dropped_pixels) {
+  const NdArray& array = RequireArray(arrays, "labels", where);
+  const auto fail = [&](const std::string& message) { throw std::runtime_error(where + ": labels: " + message); };
+  if (array.shape.size() != 3 || array.dtype != DType::kU8) {
+    fail("shape " + array.ShapeText() + ", expected uint8, frames x height x width");
+  }
+  constexpr int64_t kMostPixels = 32768;
+  const int64_t T = array.shape[0], H = array.shape[1], W = array.shape[2];
+  if (T < 1 || H < 1 || W < 1 || H > kMostPixels || W > kMostPixels) {
+    fail("shape " + array.ShapeText() + ", expected at least one frame and at most 32768 pixels a side");
+  }
+  PartLabelSequence sequence;
+  sequence.image_width = static_cast<int>(W);
+  sequence.image_height = static_cast<int>(H);
+  if (arrays.find("timestamps") != arrays.end()) {
+    sequence.timestamps = TimestampsFromNpz(arrays, where);
+    if (sequence.timestamps.size() != static_cast<size_t>(T)) {
+      fail(Concatenate(T, " frames but ", sequence.timestamps.size(), " timestamps"));
+    }
+  } else {
+    for (int64_t t = 0; t < T; ++t) sequence.timestamps.push_back(static_cast<double>(t) / options.fps);
+  }
+  if (dropped_pixels != nullptr) *dropped_pixels = 0;
+  const auto* bytes = reinterpret_cast<const uint8_t*>(array.bytes.data());
+  for (int64_t t = 0; t < T; ++t) {
+    const uint8_t* first = bytes + t * H * W;
+    const uint8_t* wrong =
+        std::find_if(first, first + H * W, [&](uint8_t label) { return label > options.highest_label; });
+    if (wrong != first + H * W) {
+      fail(Concatenate("frame ", t, ", pixel (", (wrong - first) % W, ", ", (wrong - first) / W, ") is ", int(*wrong),
+                       ", expected 0 to ", int(options.highest_label)));
+    }
+    const cv::Mat labels(static_cast<int>(H), static_cast<int>(W), CV_8U, const_cast<uint8_t*>(first));
+    sequence.frames.push_back(CutPerson(labels, options, dropped_pixels));
+  }
+  return sequence;
+}
+
+PartLabelSequence ReadPartLabels(const std::string& path, const ReadPartLabelsOptions& options,
+                                 int64_t* dropped_pixels) {
+  return PartLabelsFromNpz(ReadNpz(path), path, options, dropped_pixels);
+}
+
+}  // namespace bodyloom

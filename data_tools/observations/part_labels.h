@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+/// DensePose part labels of a whole clip in one .npz: key `labels`, uint8, T×H×W, 0 = background, 1..24 = parts;
+/// optional `timestamps` (T, seconds).
+#pragma once
+
+#include <string>
+
+#include "data_tools/formats/npz.h"
+#include "geometry/observations.h"
+
+namespace bodyloom {
+
+struct ReadPartLabelsOptions {
+  double fps = 30;          ///< of a file without timestamps
+  double min_share = 0.05;  ///< blobs smaller than this share of the largest one …
+  double max_gap = 0.15;    ///< … and farther from it than this share of its box's longer side are not the person
+  uint8_t highest_label = 24;
+  /// Resized label images carry lines of false labels between two parts, and specks. True: what is thinner than 3 px
+  /// takes the label that most of its neighbours have, or becomes unknown (255) when none has one.
+  bool mend_strays = true;
+};
+
+/// Whether an archive is one of part labels.
+bool HasPartLabels(const NpzArrays& arrays);
+
+/// Each frame's labels, cut to the person's box. Blobs of labels apart from the person (min_share, max_gap) become
+/// background; `dropped_pixels`, when asked for, counts them over the clip. Throws std::runtime_error naming the file,
+/// the key, and what was expected: shape, type, a label above highest_label (with its frame and pixel), timestamps that
+/// do not increase.
+PartLabelSequence ReadPartLabels(const std::string& path, const ReadPartLabelsOptions& options = {},
+                                 int64_t* dropped_pixels = nullptr);
+PartLabelSequence PartLabelsFromNpz(const NpzArrays& arrays, const std::string& where,
+                                    const ReadPartLabelsOptions& options = {}, int64_t* dropped_pixels = nullptr);
+
+}  // namespace bodyloom

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+/// 2D joints read off DensePose part labels, so that a clip with nothing else can be started from.
+///
+/// Two parts that meet, meet at a joint: upper and lower arm at the elbow, lower arm and hand at the wrist, torso and
+/// thigh at the hip, thigh and shin at the knee, shin and foot at the ankle. The joint is the median of the pixels
+/// where the two labels touch; a limb's part that lies across another body part touches it too, but not its own
+/// neighbour. The shoulder is where the upper arm touches the torso farthest from the elbow, as a hanging arm touches
+/// it all the way down. Nose and ears come from the two halves of the head, and the torso's front or back says which
+/// way it looks. The boundary between two charts is not the joint: kShare moves it along the limb (measured on the
+/// built-in body).
+#pragma once
+
+#include "geometry/observations.h"
+
+namespace bodyloom {
+
+struct PartKeypointsOptions {
+  double min_contact = 0.01;  ///< shortest boundary that counts, as a share of the person's height in the image
+  double confidence = 0.6;    ///< of a joint whose boundary is seen in full; these are not a detector's joints
+};
+
+/// T×(17 + 2) keypoints: CocoNames() and left_big_toe, right_big_toe; confidence 0 where the parts do not touch. The
+/// labels must be DensePose's chart numbers 1..24 (not merged). Throws std::invalid_argument when there are no frames.
+KeypointSequence KeypointsFromPartLabels(const PartLabelSequence& labels, const PartKeypointsOptions& options = {});
+
+}  // namespace bodyloom
