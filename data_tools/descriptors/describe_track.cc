@@ -146,7 +146,7 @@ class Describer {
       for (const int maps : made_again) summary_.velocity_maps += maps;
       for (const double share : seen) summary_.mean_seen += share / static_cast<double>(outputs_.size());
       for (int i = 0; i < count; ++i) {
-        if (preview.Wants(outputs[i])) preview.Add(outputs[i], PiecesOf(chunk, i));
+        if (preview.Wants(outputs[i])) AddToPreview(chunk, i, &preview);
       }
       for (Map& map : chunk.normal_maps) Recycle(&map);
       watch.Add("write");
@@ -385,6 +385,19 @@ class Describer {
       pieces.emplace_back(s >= 0 && !velocity_maps_[s].empty() ? velocity_maps_[s] : zero_map_);
     }
     return pieces;
+  }
+
+  void AddToPreview(const Chunk& chunk, int i, DescriptorPreview* preview) {
+    std::vector<std::span<const char>> pieces = PiecesOf(chunk, i);
+    Map masked;
+    if (options_.seen_only) {
+      std::unique_ptr<Scratch> scratch = scratch_.Take();
+      double share = 0;
+      masked = OnlySeen(chunk.outputs[i], pieces, scratch.get(), &share);
+      scratch_.Return(std::move(scratch));
+      for (size_t k = 0; k < pieces.size(); ++k) pieces[k] = std::span(masked).subspan(k * map_bytes_, map_bytes_);
+    }
+    preview->Add(chunk.outputs[i], pieces);
   }
 
   /// Returns the number of maps it had to make.
