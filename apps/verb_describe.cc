@@ -99,6 +99,11 @@ std::string Text(const DescribeTrackSummary& s, const DescribeCommand& command, 
     text += "lost     " + std::to_string(s.frames_without_fit.size()) + " frames have no fit and are zero\n";
   }
   if (s.runs > 1) text += "gaps     " + std::to_string(s.runs) + " runs of frames; no velocity reaches across a gap\n";
+  if (command.options.seen_only) {
+    std::snprintf(line, sizeof line, "seen     %.0f %% of the body's texels in the mean frame, the others are zero\n",
+                  100 * s.mean_seen);
+    text += line;
+  }
   const NormalSummary& n = s.normals;
   if (n.degenerate_faces + n.from_neighbours + n.from_template + n.undefined > 0) {
     text += "normals  " + std::to_string(n.degenerate_faces) + " faces without area; vertices from neighbours " +

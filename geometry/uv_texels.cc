@@ -163,7 +163,8 @@ class TableBuilder {
       table_.contested += contested[p];
       if (half_edge[p] < 0) continue;
       owners_[p] = charts_.chart[half_edge[p] / 3];
-      const Vector2d centre(static_cast<double>(p % table_.width), static_cast<double>(p / table_.width));
+      const int column = static_cast<int>(p) % table_.width, row = static_cast<int>(p) / table_.width;
+      const Vector2d centre(column, row);
       FollowSurface(half_edge[p], BarycentricOf(TexelTriangle(half_edge[p] / 3), centre), &faces_[p],
                     &barycentrics_[p]);
     }

@@ -140,10 +140,13 @@ class Describer {
       MakeMaps(&chunk);
       watch.Add("normals, velocities, bake");
       std::vector<double> seen(count, 0);
-      ParallelFor(count, options_.num_threads, [&](int i) { WriteFrame(chunk, i, first + i, &stream, &seen[i]); });
+      std::vector<int> made_again(count, 0);
+      ParallelFor(count, options_.num_threads,
+                  [&](int i) { made_again[i] = WriteFrame(chunk, i, first + i, &stream, &seen[i]); });
+      for (const int maps : made_again) summary_.velocity_maps += maps;
       for (const double share : seen) summary_.mean_seen += share / static_cast<double>(outputs_.size());
       for (int i = 0; i < count; ++i) {
-        if (preview.Wants(outputs[i])) preview.Add(outputs[i], PiecesOf(chunk, i));
+        if (preview.Wants(outputs[i])) AddToPreview(chunk, i, &preview);
       }
       for (Map& map : chunk.normal_maps) Recycle(&map);
       watch.Add("write");
@@ -384,7 +387,21 @@ class Describer {
     return pieces;
   }
 
-  void WriteFrame(const Chunk& chunk, int i, size_t record, NpyStream* stream, double* seen) {
+  void AddToPreview(const Chunk& chunk, int i, DescriptorPreview* preview) {
+    std::vector<std::span<const char>> pieces = PiecesOf(chunk, i);
+    Map masked;
+    if (options_.seen_only) {
+      std::unique_ptr<Scratch> scratch = scratch_.Take();
+      double share = 0;
+      masked = OnlySeen(chunk.outputs[i], pieces, scratch.get(), &share);
+      scratch_.Return(std::move(scratch));
+      for (size_t k = 0; k < pieces.size(); ++k) pieces[k] = std::span(masked).subspan(k * map_bytes_, map_bytes_);
+    }
+    preview->Add(chunk.outputs[i], pieces);
+  }
+
+  /// Returns the number of maps it had to make.
+  int WriteFrame(const Chunk& chunk, int i, size_t record, NpyStream* stream, double* seen) {
     const int t = chunk.outputs[i];
     std::vector<std::span<const char>> pieces = PiecesOf(chunk, i);
     std::vector<Map> own;  // for as long as the pieces are needed
@@ -410,6 +427,7 @@ class Describer {
     }
     stream->Write(static_cast<int64_t>(record), pieces);
     for (Map& map : own) Recycle(&map);
+    return static_cast<int>(own.size());
   }
 
   /// The frame's vertices as its camera sees them.

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kGap = 4;
 constexpr int kSide = 256;  ///< pixels a map
-constexpr int kLabel = 22;  ///< above it
+constexpr int kLabel = 36;  ///< above it
 constexpr Colour kBackground = {24, 24, 28};
 
 uint8_t Byte(double x) { return static_cast<uint8_t>(std::clamp(std::lround(255 * x), 0L, 255L)); }
