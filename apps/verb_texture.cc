@@ -15,11 +15,11 @@
 #include "apps/progress.h"
 #include "apps/stage_clock.h"
 #include "apps/track_inputs.h"
+#include "apps/track_video.h"
 #include "apps/verbs.h"
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/track_io.h"
 #include "data_tools/video/image_file.h"
-#include "data_tools/video/video_reader.h"
 #include "geometry/check.h"
 #include "render/overlay.h"
 #include "render/texture_extract.h"
@@ -42,7 +42,8 @@ struct TextureCommand {
   std::string track, video, out, body, confidence, json;
   std::string merge = "median", fill_with = "pyramid";
   bool fill = false;
-  int size = 512, every = 1;
+  int size = 512, every = 1, margin_px = -1;
+  double trust = 0.1;
 };
 
 uint8_t Byte(float x) { return static_cast<uint8_t>(std::clamp(std::lround(255 * x), 0L, 255L)); }
@@ -63,39 +64,33 @@ Image GreyImage(const Texture& texture, const std::vector<float>& plane) {
 }
 
 struct Gathered {
-  int video_frames = 0, used = 0, passed_over = 0;
+  int used = 0, passed_over = 0, beyond_video = 0;  ///< frames of the track
 };
 
-Gathered Gather(const TextureCommand& command, const BodyModel& body, const Track& track, TextureExtractor* extractor) {
-  VideoReader video(command.video);
-  const VideoInfo& info = video.info();
-  const Camera& camera = track.camera;
-  if (camera.width == 0) {
-    throw std::runtime_error(command.track + ": no image size, expected image_size so that the video can be matched");
-  }
-  const double stretch = double(info.width) / camera.width / (double(info.height) / camera.height);
-  if (std::abs(stretch - 1) > 0.01) {
-    throw std::runtime_error(Concatenate(command.video, ": frames of ", info.width, "x", info.height,
-                                         ", expected those of the track's camera, ", camera.width, "x", camera.height,
-                                         ", or a scaled copy of them"));
-  }
+/// Pixels around outlines that are not used, when the user did not say: tracks are off by about that much.
+int DefaultMargin(const VideoInfo& video) {
+  return std::max(2, static_cast<int>(std::lround(0.006 * std::max(video.width, video.height))));
+}
+
+Gathered Gather(const TextureCommand& command, const BodyModel& body, const Track& track, TrackVideo* video,
+                TextureExtractor* extractor) {
   Gathered gathered;
   Progress progress("texture");
-  Image frame;
-  for (int t = 0; t < track.num_frames(); ++t) {
+  for (int t = 0; t < track.num_frames(); t += command.every) {
     ThrowIfInterrupted();
     progress.Update("gathering", double(t) / track.num_frames());
-    if (!video.Read(&frame)) break;
-    ++gathered.video_frames;
-    if (t % command.every != 0) continue;
     const FrameStatus status = track.frame_status[t];
     const MatrixX3d vertices = TrackVertices(body, track, t);
     if (vertices.rows() == 0 || (status != FrameStatus::kTracked && status != FrameStatus::kWeak)) {
       ++gathered.passed_over;
       continue;
     }
-    const bool same_size = frame.width == camera.width && frame.height == camera.height;
-    extractor->Add(same_size ? frame : Resized(frame, camera.width, camera.height), vertices, track.CameraAt(t), t);
+    const Image* frame = video->At(track.motion.timestamps[t]);
+    if (frame == nullptr) {
+      ++gathered.beyond_video;
+      continue;
+    }
+    extractor->Add(*frame, vertices, track.CameraAt(t), t);
     ++gathered.used;
   }
   return gathered;
@@ -108,7 +103,12 @@ void RunTexture(const TextureCommand& command) {
   RequireReadable(command.body, "body model");
   RequireDistinct({command.track, command.video, command.body}, {command.out, command.confidence, command.json});
   for (const std::string& path : {command.out, command.confidence, command.json}) RequireWritable(path);
-  const Track track = ReadTrack(command.track);
+  const Track track_of_file = ReadTrack(command.track);
+  if (track_of_file.camera.width == 0) {
+    throw std::runtime_error(command.track + ": no image size, expected image_size so that the video can be matched");
+  }
+  TrackVideo video(command.video, track_of_file);
+  const Track track = video.Moved(track_of_file);
   const std::shared_ptr<const BodyModel> body = BodyOrBuiltin(command.body);
   if (!body->has_uv()) {
     throw std::runtime_error(command.body +
@@ -122,11 +122,12 @@ void RunTexture(const TextureCommand& command) {
   }
   TextureExtractOptions options;
   options.texels.width = options.texels.height = command.size;
+  options.edge_margin_px = command.margin_px >= 0 ? command.margin_px : DefaultMargin(video.info());
   if (command.merge == "mean") options.merge = TextureExtractOptions::Merge::kMean;
   clock.Begin("prepare");
   TextureExtractor extractor(*body, options);
   clock.Begin("gather");
-  const Gathered gathered = Gather(command, *body, track, &extractor);
+  const Gathered gathered = Gather(command, *body, track, &video, &extractor);
   clock.Begin("merge");
   Texture texture = extractor.Merge();
   if (texture.num_seen == 0) {
@@ -136,7 +137,7 @@ void RunTexture(const TextureCommand& command) {
   const UvTexelTable& table = extractor.table();
   clock.Begin("fill");
   std::vector<uint8_t> known(texture.confidence.size());
-  for (size_t p = 0; p < known.size(); ++p) known[p] = texture.confidence[p] > 0;
+  for (size_t p = 0; p < known.size(); ++p) known[p] = texture.confidence[p] > (command.fill ? command.trust : 0);
   if (!command.fill) {
     FillGutter(*body, table, known, 3, texture.bgr);
   } else if (command.fill_with == "laplace") {
@@ -154,7 +155,8 @@ void RunTexture(const TextureCommand& command) {
     for (const auto& [stage, stage_seconds] : clock.seconds()) seconds[stage] = stage_seconds;
     const nlohmann::ordered_json json = {{"size", {texture.width, texture.height}},
                                          {"track_frames", track.num_frames()},
-                                         {"video_frames_read", gathered.video_frames},
+                                         {"frames_beyond_video", gathered.beyond_video},
+                                         {"edge_margin_px", options.edge_margin_px},
                                          {"frames_used", gathered.used},
                                          {"frames_without_fit", gathered.passed_over},
                                          {"texels", table.num_inside},
@@ -167,9 +169,8 @@ void RunTexture(const TextureCommand& command) {
   std::snprintf(line, sizeof line, "%d frames show %.1f %% of the body%s\n", gathered.used, 100 * seen,
                 command.fill ? ", the rest is filled" : "");
   std::cout << line;
-  if (gathered.video_frames < track.num_frames()) {
-    std::cout << "note     the video ends after " << gathered.video_frames << " of the track's " << track.num_frames()
-              << " frames\n";
+  if (gathered.beyond_video > 0) {
+    std::cout << "note     " << gathered.beyond_video << " frames of the track lie beyond the end of the video\n";
   }
   std::cout << "time     ";
   for (const auto& [stage, stage_seconds] : clock.seconds()) {
@@ -202,6 +203,12 @@ void AddTextureVerb(CLI::App& app, Action* action) {
       ->capture_default_str()
       ->check(CLI::IsMember(std::vector<std::string>{"pyramid", "laplace"}))
       ->type_name("KIND");
+  verb->add_option("--trust", c.trust, "with --fill: texels seen worse than this (0 to 1) are filled, too")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1.0));
+  verb->add_option("--margin", c.margin_px,
+                   "pixels around the body's outlines that are not used (default: 0.6 % of the image's larger side)")
+      ->check(CLI::Range(0, 64));
   verb->add_option("--confidence", c.confidence, "how well each texel was seen, as a grey image")->type_name("FILE");
   verb->add_option("--json", c.json, "counts and times of the run")->type_name("FILE");
   verb->callback([command, action] { *action = [command] { RunTexture(*command); }; });
