@@ -22,6 +22,9 @@ double Quantile(std::vector<double> values, double q) {
 std::string WhyNoRenderedUv(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
   if (input.dense == nullptr) return "no dense keypoints in the input";
   if (options.rendered_uv.weight == 0) return "switched off";
+  if (options.rendered_uv.only_with_uv_noise && !(input.dense->uv_sigma > 0)) {
+    return "the keypoints do not say that their noise lies on the surface";
+  }
   if (!input.body->has_parts() || input.body->data().face_iuv.rows() == 0) return "the body has no charts";
   if (input.camera.width <= 0 && input.dense->image_width <= 0) return "the image size is not known";
   return "";

@@ -48,7 +48,10 @@ struct TrackProgress {
 /// L_r of paper A: where a dense keypoint's pixel sees the chart that the detector named, its residual is taken in UV
 /// (residuals/rendered_uv.h) instead of in the image.
 struct RenderedUvOptions {
-  double weight = 0;        ///< λ_r; 0: off
+  double weight = 1;  ///< λ_r; 0: off
+  /// Run only when the keypoints' noise is known to lie on the surface (DenseSequence::uv_sigma). Where it lies in the
+  /// pixels instead, reprojection is the better residual (docs/benchmarks.md).
+  bool only_with_uv_noise = true;
   int max_points = 1000;    ///< keypoints of a frame that are taken in UV, spread evenly over the parts
   int rounds = 1;           ///< solves on the coarse frames; whitening is refreshed before each
   int max_iterations = 8;   ///< of each round

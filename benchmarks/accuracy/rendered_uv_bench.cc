@@ -4,7 +4,7 @@
 ///   bodyloom_bench_rendered_uv [--what dense,basin,labels] [--motions A.pkl,B.bvh] [--noise pixel,uv,densepose]
 ///                              [--residuals "reprojection,whitened,rendered UV"] [--dense 300] [--initial 14.8]
 ///                              [--frames 0] [--rounds 1] [--fine_iterations 8] [--min_cosine 0.5]
-///                              [--starts 15,30,45,60,70] [--trials 60] [--block 1,6] [--threads 2] [--json F]
+///                              [--starts 15,30,45,60] [--trials 60] [--block 1,6] [--threads 2] [--json F]
 ///
 /// dense   whole clips tracked from dense keypoints and an initialiser: reprojection with one σ a keypoint;
 /// reprojection
@@ -105,6 +105,7 @@ void DenseClips(const BenchArguments& arguments, BenchReport* report) {
         options.rendered_uv.rounds = arguments.Integer("rounds");
         options.rendered_uv.min_cosine = std::stod(arguments.Text("min_cosine"));
         options.rendered_uv.weight = residual == "rendered UV" ? 1 : 0;
+        options.rendered_uv.only_with_uv_noise = false;
         clip.dense.uv_sigma = residual == "reprojection" ? 0 : uv_sigma;
         report->rows.push_back(
             {"noise: " + noise, {MotionName(path), residual}, TrackAndScore(InputOf(clip), options, clip)});
@@ -283,7 +284,7 @@ int main(int argc, char** argv) {
          {"residuals", "reprojection,whitened,rendered UV"},
          {"min_cosine", "0.5"},
          {"frames", "0"},
-         {"starts", "15,30,45,60,70"},
+         {"starts", "15,30,45,60"},
          {"trials", "60"},
          {"block", "1,6"},
          {"threads", "2"},

@@ -107,6 +107,24 @@ TEST(ImageTerms, RenderedUvTracksAndReportsItself) {
   EXPECT_NE(without.track.motion.poses, result.track.motion.poses);
 }
 
+TEST(ImageTerms, RenderedUvRunsByItselfOnlyForNoiseOnTheSurface) {
+  SynthClip clip = Clip(2, 0.02);
+  TrackSequenceInput input = InputOf(clip);
+  input.dense = &clip.dense;
+  TrackSequenceOptions options;
+  EXPECT_TRUE(Runs(PlanTrackSequence(input, options), "rendered UV (L_r)"));
+  clip.dense.uv_sigma = 0;
+  EXPECT_FALSE(Runs(PlanTrackSequence(input, options), "rendered UV (L_r)"));
+  options.rendered_uv.only_with_uv_noise = false;
+  EXPECT_TRUE(Runs(PlanTrackSequence(input, options), "rendered UV (L_r)"));
+  BodyModelData without_charts = BuiltinBody().data();
+  without_charts.face_part.clear();
+  without_charts.face_iuv.resize(0, 6);
+  const BodyModel plain(without_charts);
+  input.body = &plain;
+  EXPECT_FALSE(Runs(PlanTrackSequence(input, options), "rendered UV (L_r)"));
+}
+
 TEST(ImageTerms, PartLabelsAloneTrackFromAStart) {
   const SynthClip clip = Clip(8, 0);
   const PartLabelSequence labels = LabelsOf(clip);
