@@ -138,9 +138,7 @@ void Square(int size, int repetitions, BenchReport* report) {
   const MatrixX3i& faces = body.data().faces;
   const std::string group = std::to_string(size) + " x " + std::to_string(size);
   VisibilityBuffer buffer;
-  const auto see = [&](int threads, bool whole) {
-    buffer.Render(scene.vertices, faces, scene.camera, {.num_threads = threads, .whole_image = whole});
-  };
+  const auto see = [&](int threads) { buffer.Render(scene.vertices, faces, scene.camera, {.num_threads = threads}); };
   ResolvedPixels pixels;
   const auto resolve = [&](ResolveRequest request, int threads) {
     request.num_threads = threads;
@@ -148,21 +146,17 @@ void Square(int size, int repetitions, BenchReport* report) {
   };
   const TwinPicture twin = RasterTwin(scene.vertices, faces, scene.camera, true);
   int covered = 0;
-  see(1, false);
+  see(1);
   const double wrong = WrongPixels(buffer, twin, &covered);
   const auto add = [&](const std::string& what, double px_wrong, double uv_error,
                        const std::function<void(int)>& work) {
     report->rows.push_back(Row(group, what, repetitions, work, {double(covered), px_wrong, uv_error}));
   };
-  add("face and depth", wrong, kNone, [&](int threads) { see(threads, false); });
-  see(1, true);
-  const double whole_wrong = WrongPixels(buffer, twin, &covered);
-  add("  without the person's box", whole_wrong, kNone, [&](int threads) { see(threads, true); });
-  see(1, false);
+  add("face and depth", wrong, kNone, [&](int threads) { see(threads); });
   resolve({.part = true, .chart_uv = true}, 1);
   const double uv_error = UvError(buffer, scene, pixels);
   add("face, depth and IUV", wrong, uv_error, [&](int threads) {
-    see(threads, false);
+    see(threads);
     resolve({.part = true, .chart_uv = true}, threads);
   });
   add("  resolve alone: part", kNone, kNone, [&](int threads) { resolve({.part = true}, threads); });
@@ -174,6 +168,42 @@ void Square(int size, int repetitions, BenchReport* report) {
 #ifdef BODYLOOM_HAS_EMBREE
   report->rows.push_back(EmbreeRow(group, scene, buffer, std::max(5, repetitions / 5)));
 #endif
+}
+
+/// What the person's box saves: a person 400 px wide and high in an image of 1920×1080.
+void SmallPerson(int repetitions, BenchReport* report) {
+  Scene scene(400);
+  scene.camera.width = 1920, scene.camera.height = 1080;
+  scene.camera.cx += 700, scene.camera.cy += 300;
+  const BodyModel& body = BuiltinBody();
+  VisibilityBuffer box, whole;
+  ResolvedPixels pixels;
+  const auto see = [&](VisibilityBuffer* buffer, bool is_whole, bool iuv) {
+    return [&, buffer, is_whole, iuv](int threads) {
+      buffer->Render(scene.vertices, body.data().faces, scene.camera,
+                     {.num_threads = threads, .whole_image = is_whole});
+      if (!iuv) return;
+      ResolveRequest request{.part = true, .chart_uv = true};
+      request.num_threads = threads;
+      ResolvePixels(*buffer, body, scene.vertices, scene.camera, request, &pixels);
+    };
+  };
+  see(&box, false, false)(1);
+  see(&whole, true, false)(1);
+  int covered = 0, differing = 0;
+  for (int y = 0; y < 1080; ++y) {
+    for (int x = 0; x < 1920; ++x) {
+      covered += box.FaceAt(x, y) >= 0;
+      differing += box.FaceAt(x, y) != whole.FaceAt(x, y) || box.DepthAt(x, y) != whole.DepthAt(x, y);
+    }
+  }
+  for (const bool iuv : {false, true}) {
+    const std::string what = iuv ? "face, depth and IUV" : "face and depth";
+    report->rows.push_back(Row("Person of 400 px in 1920 x 1080", what, repetitions, see(&box, false, iuv),
+                               {double(covered), double(differing), kNone}));
+    report->rows.push_back(Row("Person of 400 px in 1920 x 1080", "  without the person's box", repetitions,
+                               see(&whole, true, iuv), {double(covered), double(differing), kNone}));
+  }
 }
 
 /// A standing person 646 px high over 1280×720 video frames that are in memory already.
@@ -223,6 +253,7 @@ int Run(int argc, char** argv) {
     Square(std::stoi(size), arguments.Integer("repetitions"), &report);
   }
   for (BenchRow& row : report.rows) row.values.back() *= 1e6;
+  SmallPerson(arguments.Integer("repetitions"), &report);
   Overlay(arguments.Integer("repetitions"), &report);
   std::printf("%s", BenchText(report).c_str());
   if (!arguments.Text("json").empty()) WriteFileAtomically(arguments.Text("json"), BenchJson(report));
