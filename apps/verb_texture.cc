@@ -20,6 +20,7 @@
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/track_io.h"
 #include "data_tools/video/image_file.h"
+#include "data_tools/video/video_reader.h"
 #include "geometry/check.h"
 #include "render/overlay.h"
 #include "render/texture_extract.h"
@@ -72,6 +73,17 @@ int DefaultMargin(const VideoInfo& video) {
   return std::max(2, static_cast<int>(std::lround(0.006 * std::max(video.width, video.height))));
 }
 
+/// The video frame of the track's time zero. A video of just the track's frames, or one that is over before the track
+/// begins, was cut to it: its first frame is the track's first, whatever the clock says.
+int VideoOffset(const std::string& path, const Track& track) {
+  const VideoInfo info = VideoReader(path).info();
+  if (track.num_frames() == 0) return 0;
+  const double fps = info.fps > 0 ? info.fps : VideoFrameRate(track.motion.timestamps);
+  const int first = static_cast<int>(std::lround(track.motion.timestamps[0] * fps));
+  const bool is_cut = info.num_frames > 0 && (info.num_frames == track.num_frames() || first >= info.num_frames);
+  return is_cut ? -first : 0;
+}
+
 Gathered Gather(const TextureCommand& command, const BodyModel& body, const Track& track, TrackVideo* video,
                 TextureExtractor* extractor) {
   Gathered gathered;
@@ -107,7 +119,8 @@ void RunTexture(const TextureCommand& command) {
   if (track_of_file.camera.width == 0) {
     throw std::runtime_error(command.track + ": no image size, expected image_size so that the video can be matched");
   }
-  TrackVideo video(command.video, track_of_file);
+  TrackVideo video(command.video, track_of_file, NamedCamera().video_px_from_camera_px,
+                   VideoOffset(command.video, track_of_file));
   const Track track = video.Moved(track_of_file);
   const std::shared_ptr<const BodyModel> body = BodyOrBuiltin(command.body);
   if (!body->has_uv()) {
