@@ -68,9 +68,23 @@ struct Gathered {
   int used = 0, passed_over = 0, beyond_video = 0;  ///< frames of the track
 };
 
-/// Pixels around outlines that are not used, when the user did not say: tracks are off by about that much.
-int DefaultMargin(const VideoInfo& video) {
-  return std::max(2, static_cast<int>(std::lround(0.006 * std::max(video.width, video.height))));
+/// Pixels around outlines that are not used, when the user did not say: tracks are off by about a hundredth of the
+/// person's height (of the joints, in the median frame).
+int DefaultMargin(const Track& track) {
+  std::vector<double> heights_px;
+  for (int t = 0; t < static_cast<int>(track.joints.size()); ++t) {
+    double low = 1e9, high = -1e9;
+    Eigen::Vector2d pixel;
+    for (Eigen::Index j = 0; j < track.joints[t].rows(); ++j) {
+      if (!track.CameraAt(t).Project(track.joints[t].row(j).transpose(), &pixel)) continue;
+      low = std::min(low, pixel.y());
+      high = std::max(high, pixel.y());
+    }
+    if (high > low) heights_px.push_back(high - low);
+  }
+  if (heights_px.empty()) return 2;
+  std::nth_element(heights_px.begin(), heights_px.begin() + heights_px.size() / 2, heights_px.end());
+  return static_cast<int>(std::clamp(std::lround(0.01 * heights_px[heights_px.size() / 2]), 1L, 64L));
 }
 
 /// The video frame of the track's time zero. A video of just the track's frames, or one that is over before the track
@@ -135,7 +149,7 @@ void RunTexture(const TextureCommand& command) {
   }
   TextureExtractOptions options;
   options.texels.width = options.texels.height = command.size;
-  options.edge_margin_px = command.margin_px >= 0 ? command.margin_px : DefaultMargin(video.info());
+  options.edge_margin_px = command.margin_px >= 0 ? command.margin_px : DefaultMargin(track);
   if (command.merge == "mean") options.merge = TextureExtractOptions::Merge::kMean;
   clock.Begin("prepare");
   TextureExtractor extractor(*body, options);
@@ -220,7 +234,7 @@ void AddTextureVerb(CLI::App& app, Action* action) {
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1.0));
   verb->add_option("--margin", c.margin_px,
-                   "pixels around the body's outlines that are not used (default: 0.6 % of the image's larger side)")
+                   "pixels around the body's outlines that are not used (default: 1 % of the person's height)")
       ->check(CLI::Range(0, 64));
   verb->add_option("--confidence", c.confidence, "how well each texel was seen, as a grey image")->type_name("FILE");
   verb->add_option("--json", c.json, "counts and times of the run")->type_name("FILE");
