@@ -127,7 +127,7 @@ Image Picture(const Person& person, const Track& track) {
   const OverlayRenderer renderer(BuiltinBody(), track, options);
   const Image whole = renderer.Render(0, {&background, &person.keypoints, {}});
   constexpr int kMargin = 60;
-  Image cut(x_end - x_begin + 2 * kMargin, whole.height);
+  Image cut(x_end - x_begin + 2 * kMargin, whole.height, {245, 245, 245});
   Paste(whole, kMargin - x_begin, 0, &cut);
   return cut;
 }
