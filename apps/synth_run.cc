@@ -47,6 +47,9 @@ Motion MotionOf(const SynthCommand& command, const BodyModel& body) {
   motion.trans = MatrixX3d(motion.trans.middleRows(command.first_frame, count));
   motion.timestamps = {motion.timestamps.begin() + command.first_frame,
                        motion.timestamps.begin() + command.first_frame + count};
+  // The clip begins at zero, as its video does.
+  const double begin = motion.timestamps.front();
+  for (double& time : motion.timestamps) time -= begin;
   return motion;
 }
 

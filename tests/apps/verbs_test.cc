@@ -90,6 +90,10 @@ class Verbs : public ::testing::Test {
 ScratchFolder* Verbs::shared_ = nullptr;
 CommandResult* Verbs::tracking_ = nullptr;
 
+TEST_F(Verbs, AClipFromTheMiddleOfAMotionBeginsAtZeroAsItsVideoDoes) {
+  EXPECT_EQ(ReadTrack(Shared("clip/truth.npz")).motion.timestamps.front(), 0);
+}
+
 TEST_F(Verbs, SynthWritesObservationsTruthCameraAndVideo) {
   EXPECT_TRUE(fs::exists(Observations()));
   EXPECT_TRUE(fs::exists(Shared("clip/camera.json")));
