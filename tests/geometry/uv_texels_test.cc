@@ -202,7 +202,7 @@ TEST(UvTexels, MakeSeamsThatLookupsDoNotSee) {
     }
     if (kind == 1) {
       const std::vector<Vector3d> inside = map;
-      for (int p = 129; p < 128 * 127; ++p) {
+      for (int p = 129; p < 128 * 127 - 1; ++p) {
         for (const int step : {-1, 1, -128, 128, -129, 129, -127, 127}) {
           if (map[p].isZero() && !inside[p + step].isZero()) map[p] = inside[p + step];
         }
