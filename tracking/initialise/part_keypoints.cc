@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 
 #include "geometry/check.h"
 
@@ -71,11 +70,6 @@ enum Coco {
   kAnkle = 15,
   kToe = 17,
   kNumPoints = 19
-};
-
-struct Contact {
-  Vector2d point;
-  double length = 0;  ///< pixels
 };
 
 double MedianOf(std::vector<double>* values) {

@@ -6,8 +6,10 @@
 /// where the two labels touch; a limb's part that lies across another body part touches it too, but not its own
 /// neighbour. The shoulder is where the upper arm touches the torso farthest from the elbow, as a hanging arm touches
 /// it all the way down. Nose and ears come from the two halves of the head, and the torso's front or back says which
-/// way it looks. The boundary between two charts is not the joint: kShare moves it along the limb (measured on the
-/// built-in body).
+/// way it looks.
+///
+/// The boundary between two charts is not the joint itself; it is taken as it stands, a median of less than 0.05 of the
+/// person's height away (tests/data_tools/part_labels_test.cc).
 #pragma once
 
 #include "geometry/observations.h"
