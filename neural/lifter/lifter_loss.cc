@@ -53,8 +53,7 @@ Limb TakeLimb(const Tensor& y, int limb, const Tensor& truth) {
 
 Tensor TakeTorso(const Tensor& y) {
   const int64_t n = static_cast<int64_t>(LifterOutput::kTorso.size());
-  return y.slice(-1, 0, n * LifterOutput::kPerPoint)
-      .reshape({y.size(0), y.size(1), n, LifterOutput::kPerPoint});
+  return y.slice(-1, 0, n * LifterOutput::kPerPoint).reshape({y.size(0), y.size(1), n, LifterOutput::kPerPoint});
 }
 
 /// B×T×21×3 with torso landmarks in place and limbs from `choose` (B×T×M weights of one limb's hypotheses).
@@ -71,9 +70,7 @@ Tensor Assemble(const Tensor& y, const Tensor& truth, const Choose& choose) {
   return points;
 }
 
-Tensor OneHot(const Tensor& index) {
-  return torch::one_hot(index, LifterOutput::kHypotheses).to(torch::kFloat);
-}
+Tensor OneHot(const Tensor& index) { return torch::one_hot(index, LifterOutput::kHypotheses).to(torch::kFloat); }
 
 }  // namespace
 
@@ -99,8 +96,8 @@ LifterLoss ComputeLifterLoss(const Tensor& output, const LifterTargets& targets,
   nll = nll.mean() / total_weight;
   int next = 0;
   const Tensor points = Assemble(y, {}, [&](const Limb&) { return posterior[next++]; });
-  const Tensor slip = (points.slice(1, 1) - points.slice(1, 0, -1)) -
-                      (targets.points.slice(1, 1) - targets.points.slice(1, 0, -1));
+  const Tensor slip =
+      (points.slice(1, 1) - points.slice(1, 0, -1)) - (targets.points.slice(1, 1) - targets.points.slice(1, 0, -1));
   const Tensor velocity =
       slip.numel() > 0 ? (slip.square().sum(-1) + kTiny).sqrt().mean() : torch::zeros({}, y.options());
   const Tensor up_log_sigma = y.select(-1, LifterOutput::kUp + 3).clamp(kLogSigmaLow, kLogSigmaHigh);
@@ -123,9 +120,8 @@ Tensor LikeliestPoints(const Tensor& output) {
 }
 
 Tensor NearestPoints(const Tensor& output, const Tensor& truth) {
-  return Assemble(output.transpose(1, 2), truth, [](const Limb& limb) {
-    return OneHot(Errors(limb.points, limb.truth).distance.sum(-1).argmin(-1));
-  });
+  return Assemble(output.transpose(1, 2), truth,
+                  [](const Limb& limb) { return OneHot(Errors(limb.points, limb.truth).distance.sum(-1).argmin(-1)); });
 }
 
 }  // namespace bodyloom

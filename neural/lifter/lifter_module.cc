@@ -17,9 +17,7 @@ nn::Conv1d Convolution(int from, int to, int kernel, int dilation) {
 }
 
 /// Over the channels of each frame: B×C×T.
-torch::Tensor PerFrame(nn::LayerNorm& norm, const torch::Tensor& x) {
-  return norm(x.transpose(1, 2)).transpose(1, 2);
-}
+torch::Tensor PerFrame(nn::LayerNorm& norm, const torch::Tensor& x) { return norm(x.transpose(1, 2)).transpose(1, 2); }
 
 /// out×in×k → out × (k·in), columns tap by tap.
 RowMatrixXf TapsByColumn(const torch::Tensor& weight) {
@@ -36,8 +34,8 @@ void SetConvolution(const RowMatrixXf& matrix, const Eigen::VectorXf& bias, nn::
   torch::Tensor weight = (*convolution)->weight;
   BODYLOOM_CHECK(matrix.rows() == weight.size(0) && matrix.cols() == weight.size(1) * weight.size(2) &&
                      bias.size() == weight.size(0),
-                 "lifter: weights of ", matrix.rows(), "x", matrix.cols(), " for a convolution of ", weight.size(0), "x",
-                 weight.size(1) * weight.size(2));
+                 "lifter: weights of ", matrix.rows(), "x", matrix.cols(), " for a convolution of ", weight.size(0),
+                 "x", weight.size(1) * weight.size(2));
   const torch::NoGradGuard no_grad;
   weight.copy_(torch::from_blob(const_cast<float*>(matrix.data()), {weight.size(0), weight.size(2), weight.size(1)})
                    .permute({0, 2, 1}));

@@ -253,6 +253,13 @@ class Trainer {
     fs::rename(whole, path);
   }
 
+  /// What must agree before a checkpoint's numbers mean anything: LibTorch loads tensors of any size.
+  [[nodiscard]] Tensor Shape() const {
+    std::vector<int64_t> shape = {options_.num_inputs, options_.width};
+    shape.insert(shape.end(), options_.dilations.begin(), options_.dilations.end());
+    return torch::tensor(shape);
+  }
+
   [[nodiscard]] fs::path CheckpointPath() const { return fs::path(options_.run_dir) / "checkpoint.pt"; }
 
   void SaveCheckpoint() {
@@ -264,6 +271,7 @@ class Trainer {
     archive.write("average", average);
     archive.write("optimizer", optimizer);
     archive.write("step", torch::tensor(int64_t{step_}));
+    archive.write("shape", Shape());
     const fs::path whole = CheckpointPath().string() + ".part";
     try {
       archive.save_to(whole.string());
@@ -281,15 +289,24 @@ class Trainer {
       archive.read("module", module);
       archive.read("average", average);
       archive.read("optimizer", optimizer);
-      Tensor step;
+      Tensor step, shape;
       archive.read("step", step);
+      archive.read("shape", shape);
+      if (!torch::equal(shape, Shape())) {
+        std::ostringstream text;
+        text << CheckpointPath().string() << ": a network of " << shape[0].item<int64_t>() << " inputs, "
+             << shape[1].item<int64_t>() << " channels and " << shape.numel() - 2 << " blocks, expected "
+             << options_.num_inputs << ", " << options_.width << " and " << options_.dilations.size()
+             << " of the same dilations";
+        throw std::runtime_error(text.str());
+      }
       module_->load(module);
       average_->load(average);
       optimizer_->load(optimizer);
       step_ = last_checkpoint_ = static_cast<int>(step.item<int64_t>());
     } catch (const c10::Error& error) {
-      throw std::runtime_error(CheckpointPath().string() + ": not a checkpoint of this network (" +
-                               std::to_string(options_.width) + " channels): " + error.what_without_backtrace());
+      throw std::runtime_error(CheckpointPath().string() +
+                               ": not a checkpoint of a lifter: " + error.what_without_backtrace());
     }
   }
 
