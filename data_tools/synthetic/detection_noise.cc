@@ -2,10 +2,10 @@
 #include "data_tools/synthetic/detection_noise.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
+#include <string_view>
 
+#include "data_tools/synthetic/detection_model.h"
 #include "data_tools/synthetic/drift.h"
 #include "data_tools/synthetic/hash_random.h"
 #include "geometry/check.h"
@@ -15,26 +15,12 @@ namespace {
 
 enum Stream : uint64_t { kDrift = 1, kWhite, kOffset, kTail, kConfidence, kDropout, kSwap };
 
-double Logistic(double x) { return 1 / (1 + std::exp(-x)); }
-
-/// The landmark's kind: its name without the side.
-std::string KindOf(const std::string& name) {
-  for (const char* side : {"left_", "right_"}) {
-    if (name.starts_with(side)) return name.substr(std::string(side).size());
-  }
-  return name;
-}
-
-/// Typical confidence of a landmark in plain view. Source: medians over nine cameras of two dance clips.
-double OpenConfidence(const std::string& kind, double head_cosine) {
-  if (kind == "nose") return 0.97 * Logistic((head_cosine + 0.62) / 0.12);
-  if (kind == "eye") return 0.97 * Logistic((head_cosine + 0.13) / 0.15);
-  if (kind == "ear") return 0.92 * Logistic((head_cosine + 0.42) / 0.10);
-  static const std::map<std::string, double> kTypical = {{"shoulder", 0.71}, {"elbow", 0.66},    {"wrist", 0.65},
-                                                         {"hip", 0.58},      {"knee", 0.74},     {"ankle", 0.72},
-                                                         {"big_toe", 0.65},  {"small_toe", 0.6}, {"heel", 0.62}};
-  const auto found = kTypical.find(kind);
-  return found != kTypical.end() ? found->second : 0.65;
+/// Typical confidence of a landmark in plain view.
+double ConfidenceInView(std::string_view kind, double head_cosine) {
+  if (kind == "nose") return kNoseConfidence.At(head_cosine);
+  if (kind == "eye") return kEyeConfidence.At(head_cosine);
+  if (kind == "ear") return kEarConfidence.At(head_cosine);
+  return OpenConfidence(kind);
 }
 
 /// Exchanges left and right of one pair in runs of frames.
@@ -74,12 +60,15 @@ KeypointSequence DetectKeypoints(const KeypointSequence& exact, const std::vecto
   KeypointSequence detected = exact;
   for (int k = 0; k < K; ++k) {
     const auto key = static_cast<uint64_t>(k);
-    const std::string kind = KindOf(exact.names[k]);
-    const std::vector<double> drift_x = RoughDrift(exact.timestamps, 0.25, HashRandom(seed, {kDrift, key, 0}));
-    const std::vector<double> drift_y = RoughDrift(exact.timestamps, 0.25, HashRandom(seed, {kDrift, key, 1}));
-    const std::vector<double> mood = RoughDrift(exact.timestamps, 0.3, HashRandom(seed, {kConfidence, key}));
+    const std::string_view kind = LandmarkKind(exact.names[k]);
+    const std::vector<double> drift_x =
+        RoughDrift(exact.timestamps, kSlowNoiseSeconds, HashRandom(seed, {kDrift, key, 0}));
+    const std::vector<double> drift_y =
+        RoughDrift(exact.timestamps, kSlowNoiseSeconds, HashRandom(seed, {kDrift, key, 1}));
+    const std::vector<double> mood =
+        RoughDrift(exact.timestamps, kConfidenceDriftSeconds, HashRandom(seed, {kConfidence, key}));
     HashRandom offset(seed, {kOffset, key});
-    const double offset_x = 0.005 * offset.Normal(), offset_y = 0.005 * offset.Normal();
+    const double offset_x = kConstantNoise * offset.Normal(), offset_y = kConstantNoise * offset.Normal();
     const double joint_factor = offset.Uniform(0.6, 1.4);
     for (int t = 0; t < T; ++t) {
       Keypoint& p = detected.at(t, k);
@@ -91,18 +80,19 @@ KeypointSequence DetectKeypoints(const KeypointSequence& exact, const std::vecto
       const bool hidden = frames[t].hidden[k];
       double confidence = hidden ? 0.3 : 1.0;
       if (options.model_confidence) {
-        confidence = OpenConfidence(kind, frames[t].head_cosine[k]) * (hidden ? 0.16 : 1.0);
-        confidence = std::clamp(confidence + (hidden ? 0.05 : 0.09) * mood[t], 0.02, 1.0);
+        confidence = ConfidenceInView(kind, frames[t].head_cosine[k]) * (hidden ? kHiddenFactor : 1.0);
+        confidence = std::clamp(confidence + (hidden ? kHiddenConfidenceDrift : kConfidenceDrift) * mood[t],
+                                kMinConfidence, 1.0);
       }
       const double h = frames[t].person_height_px;
-      const double sigma = joint_factor * (0.006 + 0.024 * std::pow(1 - confidence, 1.5));
+      const double sigma = joint_factor * DetectionSigma(confidence);
       double tail = 1;
-      if (confidence < 0.35) {
-        const auto window = static_cast<uint64_t>(std::max(0.0, std::floor(exact.timestamps[t] / 0.2)));
+      if (confidence < kHeavyTailConfidence) {
+        const auto window = static_cast<uint64_t>(std::max(0.0, std::floor(exact.timestamps[t] / kHeavyTailSeconds)));
         tail += HashRandom(seed, {kTail, key, window}).Exponential();
       }
-      const double x = tail * (sigma * (0.85 * drift_x[t] + 0.45 * random.Normal()) + offset_x);
-      const double y = tail * (sigma * (0.85 * drift_y[t] + 0.45 * random.Normal()) + offset_y);
+      const double x = tail * (sigma * (kSlowNoiseShare * drift_x[t] + kWhiteNoiseShare * random.Normal()) + offset_x);
+      const double y = tail * (sigma * (kSlowNoiseShare * drift_y[t] + kWhiteNoiseShare * random.Normal()) + offset_y);
       p.x = static_cast<float>(p.x + options.noise * h * x);
       p.y = static_cast<float>(p.y + options.noise * h * y);
       p.confidence = static_cast<float>(confidence);
@@ -111,10 +101,10 @@ KeypointSequence DetectKeypoints(const KeypointSequence& exact, const std::vecto
   }
   if (options.swap_probability > 0) {
     for (int k = 0; k < K; ++k) {
-      const std::string kind = KindOf(exact.names[k]);
+      const std::string_view kind = LandmarkKind(exact.names[k]);
       const bool swappable = kind == "elbow" || kind == "wrist" || kind == "knee" || kind == "ankle";
       if (!swappable || !exact.names[k].starts_with("left_")) continue;
-      const auto twin = std::find(exact.names.begin(), exact.names.end(), "right_" + kind);
+      const auto twin = std::find(exact.names.begin(), exact.names.end(), "right_" + std::string(kind));
       if (twin == exact.names.end()) continue;
       SwapPair(k, static_cast<int>(twin - exact.names.begin()), options,
                HashRandom(seed, {kSwap, static_cast<uint64_t>(k)}), &detected);

@@ -22,8 +22,9 @@ MAY_INCLUDE = {
     "tests": {"geometry", "render", "tracking", "data_tools", "neural", "apps"},
 }
 
-# Sub-folder -> what it may include besides: the evaluation protocols read files and measure with tracking's metrics.
-MAY_ALSO_INCLUDE = {"data_tools/evaluation": {"tracking"}}
+# Sub-folder -> what it may include besides: the evaluation protocols read files and measure with tracking's metrics; the
+# lifter's training data must look as the tracker will show it.
+MAY_ALSO_INCLUDE = {"data_tools/evaluation": {"tracking"}, "data_tools/lifter": {"tracking"}}
 
 # Third-party header -> (folders that may include it, whether a header file of ours may).
 ANYWHERE = set(MAY_INCLUDE)

@@ -189,6 +189,50 @@ void FillDirections(const std::vector<char>& seen, std::vector<Vector3f>* direct
   }
 }
 
+/// Usable detections as unit directions, and the middle of the body in every frame.
+struct Rays {
+  std::vector<char> usable;      ///< T·21
+  std::vector<Vector3f> ray;     ///< T·21
+  std::vector<char> seen;        ///< T
+  std::vector<Vector3f> centre;  ///< T
+};
+
+Rays MakeRays(const LifterFrames& frames) {
+  const int T = frames.num_frames;
+  const size_t N = static_cast<size_t>(std::max(T, 0)) * kLifterPoints;
+  BODYLOOM_CHECK(T >= 0 && frames.x.size() == N && frames.y.size() == N && frames.confidence.size() == N,
+                 "lifter input: ", T, " frames need ", N, " values each of x, y and confidence, got ", frames.x.size(),
+                 ", ", frames.y.size(), " and ", frames.confidence.size());
+  Rays rays;
+  rays.usable.resize(N);
+  rays.ray.resize(N);
+  rays.seen.assign(T, 0);
+  rays.centre.assign(T, Vector3f::UnitZ());
+  for (int t = 0; t < T; ++t) {
+    Vector3f middle = Vector3f::Zero(), all = Vector3f::Zero();
+    int num_middle = 0;
+    for (int k = 0; k < kLifterPoints; ++k) {
+      const size_t i = static_cast<size_t>(t) * kLifterPoints + k;
+      rays.usable[i] = std::isfinite(frames.x[i]) && std::isfinite(frames.y[i]) && frames.confidence[i] > 0;
+      if (!rays.usable[i]) continue;
+      // In double: the square of a large finite float is not finite.
+      const double x = frames.x[i], y = frames.y[i];
+      rays.ray[i] = (Eigen::Vector3d(x, y, 1) / std::sqrt(x * x + y * y + 1)).cast<float>();
+      rays.seen[t] = 1;
+      all += rays.ray[i];
+      if (k != kLifterLeftShoulder && k != kLifterLeftShoulder + 1 && k != kLifterLeftHip && k != kLifterLeftHip + 1)
+        continue;
+      middle += rays.ray[i];
+      ++num_middle;
+    }
+    const Vector3f& sum = num_middle >= 2 ? middle : all;
+    // Rays a quarter turn to both sides could cancel.
+    if (rays.seen[t]) rays.centre[t] = sum.norm() > 1e-6F ? sum.normalized() : Vector3f::UnitZ();
+  }
+  FillDirections(rays.seen, &rays.centre);
+  return rays;
+}
+
 }  // namespace
 
 const std::vector<std::string>& LifterPointNames() {
@@ -201,48 +245,20 @@ const std::vector<std::string>& LifterPointNames() {
 }
 
 LifterInput MakeLifterInput(const LifterFrames& frames) {
+  const Rays rays = MakeRays(frames);
   const int T = frames.num_frames;
-  const size_t N = static_cast<size_t>(std::max(T, 0)) * kLifterPoints;
-  BODYLOOM_CHECK(T >= 0 && frames.x.size() == N && frames.y.size() == N && frames.confidence.size() == N,
-                 "lifter input: ", T, " frames need ", N, " values each of x, y and confidence, got ", frames.x.size(),
-                 ", ", frames.y.size(), " and ", frames.confidence.size());
   LifterInput input;
-  input.seen.assign(T, 0);
-  std::vector<char> usable(N);
-  std::vector<Vector3f> ray(N), centre(T, Vector3f::UnitZ());
-  for (int t = 0; t < T; ++t) {
-    Vector3f middle = Vector3f::Zero(), all = Vector3f::Zero();
-    int num_middle = 0;
-    for (int k = 0; k < kLifterPoints; ++k) {
-      const size_t i = static_cast<size_t>(t) * kLifterPoints + k;
-      usable[i] = std::isfinite(frames.x[i]) && std::isfinite(frames.y[i]) && frames.confidence[i] > 0;
-      if (!usable[i]) continue;
-      // In double: the square of a large finite float is not finite.
-      const double x = frames.x[i], y = frames.y[i];
-      ray[i] = (Eigen::Vector3d(x, y, 1) / std::sqrt(x * x + y * y + 1)).cast<float>();
-      input.seen[t] = 1;
-      all += ray[i];
-      if (k != kLifterLeftShoulder && k != kLifterLeftShoulder + 1 && k != kLifterLeftHip && k != kLifterLeftHip + 1)
-        continue;
-      middle += ray[i];
-      ++num_middle;
-    }
-    const Vector3f& sum = num_middle >= 2 ? middle : all;
-    // Rays a quarter turn to both sides could cancel.
-    if (input.seen[t]) centre[t] = sum.norm() > 1e-6F ? sum.normalized() : Vector3f::UnitZ();
-  }
-  FillDirections(input.seen, &centre);
-
+  input.seen = rays.seen;
   input.camera_from_virtual.resize(T);
   std::vector<Frame> seen_frames(T);
   std::vector<std::optional<float>> body_scale(T), rough_scale(T);
   for (int t = 0; t < T; ++t) {
-    const Matrix3f& R = input.camera_from_virtual[t] = TurnAxisTo(centre[t]);
+    const Matrix3f& R = input.camera_from_virtual[t] = TurnAxisTo(rays.centre[t]);
     Frame& frame = seen_frames[t];
     for (int k = 0; k < kLifterPoints; ++k) {
       const size_t i = static_cast<size_t>(t) * kLifterPoints + k;
-      if (!usable[i]) continue;
-      const Vector3f v = R.transpose() * ray[i];
+      if (!rays.usable[i]) continue;
+      const Vector3f v = R.transpose() * rays.ray[i];
       if (v.z() < kMinCosine) continue;
       frame.point[k] = v.head<2>() / v.z();
       frame.seen[k] = true;
@@ -268,11 +284,18 @@ LifterInput MakeLifterInput(const LifterFrames& frames) {
     more[1] = frames.focal_known ? 1 : 0;
     more[2] = body_scale[t] ? std::min(*body_scale[t] / S - 0.9F, kMaxCoordinate) : 0;
     if (t == 0 || !input.seen[t] || !input.seen[t - 1]) continue;
-    const Vector3f before = input.camera_from_virtual[t].transpose() * centre[t - 1];
+    const Vector3f before = input.camera_from_virtual[t].transpose() * rays.centre[t - 1];
     const float depth = std::max(before.z(), kMinCosine);
     for (int c = 0; c < 2; ++c) more[3 + c] = std::clamp(-before[c] / depth / S, -kMaxMotion, kMaxMotion);
   }
   return input;
+}
+
+std::vector<Matrix3f> LifterVirtualCameras(const LifterFrames& frames) {
+  const Rays rays = MakeRays(frames);
+  std::vector<Matrix3f> cameras(frames.num_frames);
+  std::transform(rays.centre.begin(), rays.centre.end(), cameras.begin(), TurnAxisTo);
+  return cameras;
 }
 
 float LifterReferenceLength(std::span<const float> points) {

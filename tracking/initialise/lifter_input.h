@@ -71,6 +71,9 @@ struct LifterInput {
 /// Throws std::invalid_argument when the arrays do not have num_frames · kLifterPoints entries.
 LifterInput MakeLifterInput(const LifterFrames& frames);
 
+/// camera_from_virtual of MakeLifterInput(frames) alone.
+std::vector<Eigen::Matrix3f> LifterVirtualCameras(const LifterFrames& frames);
+
 /// The body's own length in which the lifter measures: |mid-shoulder − mid-hip| + mean over the legs of thigh + shin,
 /// of 3·kLifterPoints coordinates (in their unit). Of the rest pose it is the Lref of the lifter's targets.
 float LifterReferenceLength(std::span<const float> points);

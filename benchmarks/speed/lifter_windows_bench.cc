@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Training windows a second, with one and two threads, and where the time goes.
+///
+///   bodyloom_bench_lifter_windows [--motion FOLDER] [--windows 4000] [--json F] [--picture F.png] [--first 0]
+///                                 [--floor_poses F.png] [--floor_work 0..1]
+///
+/// Motion: the demo motion, or every file of FOLDER and the folders below it that can be read, each lowered so that the
+/// lowest point of the body lies on the floor in one frame of twenty. --picture draws six windows from seed --first:
+/// detections above, the landmarks they stand for from the front and from the side below, upright by the target's own
+/// idea of up. --floor_poses draws three people for each way of being on the floor.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <functional>
+#include <limits>
+
+#include "benchmarks/accuracy/bench_arguments.h"
+#include "benchmarks/accuracy/bench_report.h"
+#include "data_tools/builtin_body.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/lifter/lifter_windows.h"
+#include "data_tools/motion/load_motion.h"
+#include "data_tools/synthetic/demo_motion.h"
+#include "data_tools/video/image_file.h"
+#include "geometry/parallel.h"
+#include "render/draw_keypoints.h"
+
+namespace bodyloom {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3f;
+using Clock = std::chrono::steady_clock;
+
+const double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// Lowers the motion onto its floor.
+void PutOnFloor(const LifterBody& body, Motion* motion) {
+  const LifterPerson person = body.Person(motion->betas);
+  std::vector<float> lowest;
+  PosedPerson posed;
+  for (int t = 0; t < motion->num_frames(); ++t) {
+    std::vector<Eigen::Quaternionf> q;
+    for (int j = 0; j < kPoseJoints; ++j)
+      q.push_back(TurnBy(motion->poses.block<1, 3>(t, 3 * j).transpose().cast<float>()));
+    body.Pose(person, q.data(), motion->trans.row(t).transpose().cast<float>(), &posed);
+    lowest.push_back(body.Lowest(person, posed));
+  }
+  std::nth_element(lowest.begin(), lowest.begin() + static_cast<long>(lowest.size() / 20), lowest.end());
+  motion->trans.col(1).array() -= lowest[lowest.size() / 20];
+}
+
+std::vector<Motion> Motions(const std::string& folder) {
+  if (folder.empty()) return {DemoMotion(BuiltinBody(), 360, 60)};
+  const LifterBody body(BuiltinBody());
+  std::vector<std::string> paths;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    if (entry.is_regular_file()) paths.push_back(entry.path().string());
+  }
+  std::sort(paths.begin(), paths.end());
+  std::vector<Motion> motions;
+  for (const std::string& path : paths) {
+    try {
+      LoadMotionOptions options;
+      options.resample_fps = kLifterClipRate;
+      Motion motion = LoadMotion(path, options);
+      if (motion.num_frames() < 2) continue;
+      PutOnFloor(body, &motion);
+      motions.push_back(std::move(motion));
+    } catch (const std::exception&) {  // skeletons and licences lie beside the motions
+    }
+  }
+  return motions;
+}
+
+/// 21 points as positions (x right, y down, units of the body) in a box of the picture.
+void DrawPerson(const std::vector<Vector2d>& points, const std::vector<float>& confidence, const Vector2d& corner_px,
+                double size_px, Image* image) {
+  DrawnKeypoints drawn;
+  drawn.names = LifterPointNames();
+  drawn.pixels.resize(kLifterPoints, 2);
+  for (int k = 0; k < kLifterPoints; ++k) {
+    drawn.pixels.row(k) = (corner_px + Vector2d(0.5, 0.5) * size_px + points[k] * size_px / 2.3).transpose();
+    if (confidence[k] <= 0) drawn.pixels.row(k).setConstant(kNone);
+  }
+  DrawKeypoints(drawn, {2.5, true, false, 1}, image);
+}
+
+/// Positions upright by `up`, seen along the camera's depth or across it.
+std::vector<Vector2d> Upright(const float* points, const Vector3f& up, bool from_the_side) {
+  const Vector3f right = up.cross(Vector3f::UnitZ()).normalized() * -1, depth = right.cross(up);
+  std::vector<Vector2d> result;
+  for (int k = 0; k < kLifterPoints; ++k) {
+    const Vector3f p(points[3 * k], points[3 * k + 1], points[3 * k + 2]);
+    result.emplace_back(p.dot(from_the_side ? depth : right), -p.dot(up));
+  }
+  return result;
+}
+
+void DrawWindows(const LifterWindowGenerator& generator, uint64_t first, const std::string& path) {
+  constexpr int kWindows = 6, kMoments = 9;
+  constexpr double kSize = 150;
+  Image image(static_cast<int>(kMoments * kSize), static_cast<int>(3 * kWindows * kSize), {250, 250, 250});
+  const std::vector<float> all(kLifterPoints, 1);
+  for (int w = 0; w < kWindows; ++w) {
+    LifterWindow window;
+    generator.Generate(first + static_cast<uint64_t>(w), &window);
+    const int T = generator.options().num_frames;
+    for (int m = 0; m < kMoments; ++m) {
+      const size_t t = static_cast<size_t>(m) * (T - 1) / (kMoments - 1);
+      std::vector<Vector2d> seen;
+      const float* f = &window.features[t * kLifterInputs];
+      for (int k = 0; k < kLifterPoints; ++k) seen.emplace_back(f[3 * k], f[3 * k + 1]);
+      const std::vector<float> confidence(&window.confidence[t * kLifterPoints],
+                                          &window.confidence[t * kLifterPoints] + kLifterPoints);
+      const Vector3f up(&window.up[3 * t]);
+      const float* points = &window.points[3 * t * kLifterPoints];
+      DrawPerson(seen, confidence, Vector2d(m, 3 * w) * kSize, kSize, &image);
+      DrawPerson(Upright(points, up, false), all, Vector2d(m, 3 * w + 1) * kSize, kSize, &image);
+      DrawPerson(Upright(points, up, true), all, Vector2d(m, 3 * w + 2) * kSize, kSize, &image);
+    }
+    for (int x = 0; x < image.width; ++x) {
+      for (int c = 0; c < 3; ++c) image.pixel(x, static_cast<int>(3 * w * kSize))[c] = 120;
+    }
+  }
+  WriteImage(path, image);
+}
+
+void DrawFloorPoses(const LifterBody& body, const std::string& path) {
+  constexpr double kSize = 150;
+  constexpr int kPeople = 6, kColumns = 2;
+  const int rows = (NumFloorPoses() + kColumns - 1) / kColumns;
+  Image image(static_cast<int>(kColumns * kPeople * kSize), static_cast<int>(rows * kSize), {250, 250, 250});
+  const std::vector<float> all(kLifterPoints, 1);
+  for (int kind = 0; kind < NumFloorPoses(); ++kind) {
+    std::printf("row %d, column %d: %s\n", kind / kColumns, kind % kColumns, FloorPoseName(kind));
+    for (int i = 0; i < kPeople / 2; ++i) {
+      HashRandom random(static_cast<uint64_t>(i), {static_cast<uint64_t>(kind)});
+      const LifterPerson person = body.Person({});
+      const auto pose = RandomFloorPose(kind, body, person, &random);
+      PosedPerson posed;
+      body.Pose(person, pose.data(), Vector3f::Zero(), &posed);
+      const float floor = body.Lowest(person, posed);
+      for (int view = 0; view < 2; ++view) {
+        std::vector<Vector2d> points;
+        const Vector3f middle = 0.5F * (posed.point[kLifterLeftHip] + posed.point[kLifterLeftShoulder]);
+        for (const Vector3f& p : posed.point) {
+          points.emplace_back((view == 0 ? p.z() - middle.z() : p.x() - middle.x()) / 1.3, 0.8 - (p.y() - floor) / 1.3);
+        }
+        DrawPerson(points, all, Vector2d(kind % kColumns * kPeople + 2 * i + view, kind / kColumns) * kSize, kSize,
+                   &image);
+      }
+    }
+    const int y = static_cast<int>((kind / kColumns + 0.5 + 0.8 / 2.3) * kSize);
+    for (int x = 0; x < image.width; ++x) {
+      for (int c = 0; c < 3; ++c) image.pixel(x, y)[c] = 170;
+    }
+  }
+  WriteImage(path, image);
+}
+
+/// Best of three: microseconds a window.
+double Microseconds(int windows, const std::function<void(int)>& work) {
+  double best = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < 3; ++round) {
+    const auto start = Clock::now();
+    for (int i = 0; i < windows; ++i) work(i);
+    best = std::min(best, std::chrono::duration<double>(Clock::now() - start).count() * 1e6 / windows);
+  }
+  return best;
+}
+
+int Run(int argc, char** argv) {
+  const BenchArguments arguments(argc, argv,
+                                 {{"motion", ""},
+                                  {"windows", "4000"},
+                                  {"json", ""},
+                                  {"picture", ""},
+                                  {"first", "0"},
+                                  {"floor_poses", ""},
+                                  {"floor_work", ""}});
+  const std::vector<Motion> motions = Motions(arguments.Text("motion"));
+  LifterWindowOptions options;
+  if (!arguments.Text("floor_work").empty()) options.floor_work = std::stod(arguments.Text("floor_work"));
+  double seconds = 0;
+  for (const Motion& m : motions) seconds += m.timestamps.back() - m.timestamps.front();
+  const LifterWindowGenerator generator(motions, std::vector<char>(motions.size(), 1), BuiltinBody(), options);
+  std::printf("%zu motions, %.0f s\n", motions.size(), seconds);
+  if (!arguments.Text("picture").empty())
+    DrawWindows(generator, static_cast<uint64_t>(arguments.Integer("first")), arguments.Text("picture"));
+  if (!arguments.Text("floor_poses").empty()) DrawFloorPoses(generator.body(), arguments.Text("floor_poses"));
+
+  const int windows = arguments.Integer("windows");
+  if (windows < 1) return 0;
+  BenchReport report;
+  report.title = "Training windows of 81 frames";
+  report.label_columns = {"what"};
+  report.value_columns = {"us_a_window", "windows_a_second"};
+  report.summarise = false;
+  const auto row = [&](const char* group, const char* what, double us) {
+    report.rows.push_back({group, {what}, {us, 1e6 / us}});
+  };
+  for (const int threads : {1, 2}) {
+    double best = std::numeric_limits<double>::infinity();
+    for (int round = 0; round < 3; ++round) {
+      const auto start = Clock::now();
+      constexpr int kBatch = 32;
+      ParallelFor((windows + kBatch - 1) / kBatch, threads, [&](int batch) {
+        LifterWindow window;
+        for (int i = batch * kBatch; i < std::min(windows, (batch + 1) * kBatch); ++i)
+          generator.Generate(static_cast<uint64_t>(i), &window);
+      });
+      best = std::min(best, std::chrono::duration<double>(Clock::now() - start).count() * 1e6 / windows);
+    }
+    row("whole", threads == 1 ? "one thread" : "two threads", best);
+  }
+  const int few = std::min(windows, 500);
+  std::vector<LifterPerson> persons(few);
+  std::vector<PoseSequence> poses(few);
+  std::vector<LifterScene> scenes(few);
+  std::vector<LifterFrames> frames(few);
+  LifterWindow window;
+  row("one thread, by stage", "person", Microseconds(few, [&](int i) { persons[i] = generator.MakePerson(i); }));
+  row("one thread, by stage", "poses",
+      Microseconds(few, [&](int i) { poses[i] = generator.MakePoses(i, persons[i]); }));
+  row("one thread, by stage", "landmarks, camera",
+      Microseconds(few, [&](int i) { scenes[i] = generator.MakeScene(i, persons[i], poses[i]); }));
+  row("one thread, by stage", "detections",
+      Microseconds(few, [&](int i) { frames[i] = generator.Detect(i, scenes[i]); }));
+  row("one thread, by stage", "features, targets",
+      Microseconds(few, [&](int i) { generator.MakeWindow(i, scenes[i], frames[i], &window); }));
+  report.notes = {"best of three rounds"};
+  for (int i = 0; i < argc; ++i) report.command += (i > 0 ? " " : "") + std::string(argv[i]);
+  std::fputs(BenchText(report).c_str(), stdout);
+  if (!arguments.Text("json").empty()) WriteFileAtomically(arguments.Text("json"), BenchJson(report));
+  return 0;
+}
+
+}  // namespace
+}  // namespace bodyloom
+
+int main(int argc, char** argv) {
+  try {
+    return bodyloom::Run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Motions in compact form, and stretches of them at any speed.
+#pragma once
+
+#include <vector>
+
+#include "data_tools/lifter/lifter_body.h"
+#include "data_tools/lifter/pose_sequence.h"
+#include "geometry/track.h"
+
+namespace bodyloom {
+
+/// A motion at about kLifterClipRate frames a second.
+struct LifterClip {
+  double rate = 0, duration_s = 0;
+  PoseSequence poses;
+};
+
+inline constexpr double kLifterClipRate = 60;  ///< faster motions are resampled to it
+
+/// `motion`: 24 or more joints, y up, with its floor at y = 0 when has_floor. The height of the lowest point above the
+/// floor is measured with the motion's own shape. Throws std::invalid_argument with the reason when the motion cannot
+/// be used (arrays that do not fit, values that are not finite, y is not up, an uneven or missing clock, one frame).
+LifterClip CompactClip(const Motion& motion, bool has_floor, const LifterBody& body);
+
+/// Frames at start_s + i·step_s; beyond the clip's ends time runs back and forth (a clip is a pendulum).
+void SampleClip(const LifterClip& clip, double start_s, double step_s, int num_frames, PoseSequence* poses);
+
+/// The same for the listed joints alone, written into `poses` (which has frames already): target[i] takes the rotations
+/// of source[i], mirrored when asked for.
+void SampleJoints(const LifterClip& clip, double start_s, double step_s, const std::vector<int>& source,
+                  const std::vector<int>& target, bool mirror, PoseSequence* poses);
+
+/// Left becomes right: x → −x.
+void MirrorPoses(PoseSequence* poses);
+
+}  // namespace bodyloom

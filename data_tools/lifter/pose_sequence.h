@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Poses of a stretch of frames in the form that windows are made in: unit quaternions of SMPL's 24 joints.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <array>
+#include <vector>
+
+namespace bodyloom {
+
+inline constexpr int kPoseJoints = 24;
+
+enum PoseJoint : int {
+  kPelvis = 0,
+  kLeftHip = 1,
+  kSpine1 = 3,
+  kLeftKnee = 4,
+  kSpine2 = 6,
+  kLeftAnkle = 7,
+  kSpine3 = 9,
+  kLeftFoot = 10,
+  kNeck = 12,
+  kLeftCollar = 13,
+  kHead = 15,
+  kLeftShoulder = 16,
+  kLeftElbow = 18,
+  kLeftWrist = 20,
+  kLeftHand = 22,
+};  // right = left + 1
+
+/// The joint on the other side.
+inline int MirrorJoint(int joint) {
+  static constexpr std::array<int, kPoseJoints> kMirror = {0,  2,  1,  3,  5,  4,  6,  8,  7,  9,  11, 10,
+                                                           12, 14, 13, 15, 17, 16, 19, 18, 21, 20, 23, 22};
+  return kMirror[joint];
+}
+
+/// The same turn seen in a mirror at x = 0.
+inline Eigen::Quaternionf MirrorRotation(const Eigen::Quaternionf& q) { return {q.w(), q.x(), -q.y(), -q.z()}; }
+
+/// World: y up.
+struct PoseSequence {
+  int num_frames = 0;
+  bool has_floor = false;
+  std::vector<Eigen::Quaternionf> rotations;  ///< T·24, relative to the parent
+  std::vector<Eigen::Vector3f> trans;         ///< T, of the pelvis, metres of the mean body
+  std::vector<float> clearance;               ///< T: lowest point above the floor, metres of the mean body
+  Eigen::Quaternionf& at(int t, int joint) { return rotations[static_cast<size_t>(t) * kPoseJoints + joint]; }
+  [[nodiscard]] const Eigen::Quaternionf& at(int t, int joint) const {
+    return rotations[static_cast<size_t>(t) * kPoseJoints + joint];
+  }
+};
+
+/// exp of half the vector: the turn by |w| radians about w.
+inline Eigen::Quaternionf TurnBy(const Eigen::Vector3f& w) {
+  const float angle2 = w.squaredNorm();
+  if (angle2 < 1e-8F) return Eigen::Quaternionf(1, 0.5F * w.x(), 0.5F * w.y(), 0.5F * w.z()).normalized();
+  const float angle = std::sqrt(angle2), s = std::sin(0.5F * angle) / angle;
+  return {std::cos(0.5F * angle), s * w.x(), s * w.y(), s * w.z()};
+}
+
+/// Its inverse; angles in [0, π].
+inline Eigen::Vector3f AxisAngleOf(const Eigen::Quaternionf& q) {
+  const Eigen::Vector3f v = q.w() < 0 ? Eigen::Vector3f(-q.vec()) : Eigen::Vector3f(q.vec());
+  const float s = v.norm();
+  return s < 1e-6F ? Eigen::Vector3f(2 * v) : Eigen::Vector3f(2 * std::atan2(s, std::abs(q.w())) / s * v);
+}
+
+/// From a (part 0) to b (part 1) by the short way, at nearly constant speed.
+inline Eigen::Quaternionf Between(const Eigen::Quaternionf& a, const Eigen::Quaternionf& b, float part) {
+  const float sign = a.dot(b) < 0 ? -part : part;
+  return Eigen::Quaternionf((1 - part) * a.coeffs() + sign * b.coeffs()).normalized();
+}
+
+}  // namespace bodyloom
