@@ -40,6 +40,7 @@ struct MotionsCommand {
   std::vector<std::string> motions;
   std::string json, sheet;
   MotionLibraryOptions options;
+  MotionSheetOptions picture;
 };
 
 struct ClipReport {
@@ -94,16 +95,17 @@ std::string MinutesTable(const std::string& title, const std::map<std::string, d
 }
 
 std::string Text(const std::vector<ClipReport>& reports, const MotionLibrarySummary& summary) {
-  std::string text = Line("%-44s %-10s %-5s %6s %4s %6s %4s %5s %6s %5s %5s %5s  %s\n", "clip", "class", "split",
-                          "s", "fps", "limits", "deg", "skate", "floor", "flips", "speed", "acc", "flags");
+  std::string text = Line("%-44s %-10s %-5s %6s %4s %6s %4s %5s %6s %5s %5s %5s  %s\n", "clip", "class", "split", "s",
+                          "fps", "limits", "deg", "skate", "floor", "flips", "speed", "acc", "flags");
   for (const ClipReport& report : reports) text += ClipLine(report);
   text += "\n" + MinutesTable("class", summary.train_seconds_by_class, summary.test_seconds_by_class);
   text += "\n" + MinutesTable("source", summary.train_seconds_by_source, summary.test_seconds_by_source) + "\n";
   for (const ClipReport& report : reports) {
     const LibraryClip& clip = report.clip;
-    if (clip.jumps + clip.gaps + clip.frames_dropped == 0) continue;
-    text += Line("cut       %s: %d impossible steps, %d gaps, %d frames dropped\n", clip.name.c_str(), clip.jumps,
-                 clip.gaps, clip.frames_dropped);
+    if (clip.frames_mended + clip.jumps + clip.gaps + clip.frames_dropped == 0) continue;
+    text += Line("cleaned   %s: of %d frames %d dropped (%d broken, %d impossible steps, %d gaps), feet mended in %d\n",
+                 clip.name.c_str(), clip.frames_recorded, clip.frames_dropped, clip.frames_broken, clip.jumps,
+                 clip.gaps, clip.frames_mended);
   }
   for (const auto& [file, reason] : summary.left_out) text += "left out  " + file + ": " + reason + "\n";
   for (const std::string& name : summary.unnamed) {
@@ -129,6 +131,9 @@ nlohmann::ordered_json ClipJson(const ClipReport& report) {
           {"has_floor", clip.has_floor},
           {"floor_shift_m", clip.floor_shift_m},
           {"floor_flat_share", clip.floor_flat_share},
+          {"frames_recorded", clip.frames_recorded},
+          {"frames_mended", clip.frames_mended},
+          {"frames_broken", clip.frames_broken},
           {"jumps", clip.jumps},
           {"gaps", clip.gaps},
           {"frames_dropped", clip.frames_dropped},
@@ -173,25 +178,24 @@ void RunMotions(const MotionsCommand& command) {
   for (const std::string& path : {command.json, command.sheet}) RequireWritable(path);
   std::vector<ClipReport> reports;
   std::vector<Image> strips;
-  const MotionLibrarySummary summary =
-      VisitMotionLibrary(command.motions, command.options, [&](LibraryClip&& clip) {
-        ThrowIfInterrupted();
-        const MotionQuality quality = MeasureMotionQuality(clip.motion, clip.has_floor);
-        if (!command.sheet.empty()) {
-          const std::string label = Line("%s   %s, %s, %.1f s  %s", clip.name.c_str(), clip.motion_class.c_str(),
-                                         clip.test ? "TEST" : "train", quality.seconds, Joined(quality.flags).c_str());
-          strips.push_back(DrawMotionStrip(clip.motion, clip.has_floor, label));
-        }
-        clip.motion = Motion();
-        reports.push_back({std::move(clip), quality});
-      });
+  const MotionLibrarySummary summary = VisitMotionLibrary(command.motions, command.options, [&](LibraryClip&& clip) {
+    ThrowIfInterrupted();
+    const MotionQuality quality = MeasureMotionQuality(clip.motion, clip.has_floor);
+    if (!command.sheet.empty()) {
+      const std::string label = Line("%s   %s, %s, %.1f s  %s", clip.name.c_str(), clip.motion_class.c_str(),
+                                     clip.test ? "TEST" : "train", quality.seconds, Joined(quality.flags).c_str());
+      strips.push_back(DrawMotionStrip(clip.motion, clip.has_floor, label, command.picture));
+    }
+    clip.motion = Motion();
+    reports.push_back({std::move(clip), quality});
+  });
   if (reports.empty()) {
     throw std::runtime_error(command.motions[0] + ": no motions, " + std::to_string(summary.left_out.size()) +
                              " files left out" +
                              (summary.left_out.empty() ? "" : ", the first: " + summary.left_out[0].second));
   }
   if (!command.json.empty()) WriteFileAtomically(command.json, Json(reports, summary));
-  if (!command.sheet.empty()) WriteImage(command.sheet, MotionSheet(strips));
+  if (!command.sheet.empty()) WriteImage(command.sheet, MotionSheet(strips, command.picture));
   std::cout << Text(reports, summary);
 }
 
@@ -212,6 +216,12 @@ void AddMotionsVerb(CLI::App& app, Action* action) {
       ->check(CLI::Range(1.0, 1000.0));
   verb->add_option("--json", c.json, "the report")->type_name("FILE");
   verb->add_option("--sheet", c.sheet, "stick figures of every clip, .png")->type_name("FILE");
+  verb->add_option("--instants", c.picture.instants, "of a clip on the sheet")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 200));
+  verb->add_option("--columns", c.picture.columns, "of clips on the sheet")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 20));
   verb->callback([command, action] { *action = [command] { RunMotions(*command); }; });
 }
 

@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kHead = 15;
 constexpr std::array<int, 2> kToes{10, 11};
-constexpr double kContactHeight_m = 0.05, kSunk_m = 0.05;
+constexpr double kContactHeight_m = 0.05, kStillVertical_m_s = 0.2, kSunk_m = 0.05;
 constexpr double kTolerance_rad = 5 * M_PI / 180;
 constexpr double kFlipTurn_rad_s = 20, kFlipCosine = -0.5;
 
@@ -66,6 +66,7 @@ void MeasureFloor(const std::vector<MatrixX3d>& joints, double dt, MotionQuality
       const double highest = std::max(joints[t](toe, 1), joints[t - 1](toe, 1)) - JointClearance(toe);
       if (highest > kContactHeight_m) continue;
       const Eigen::RowVector3d step = joints[t].row(toe) - joints[t - 1].row(toe);
+      if (std::abs(step.y()) > kStillVertical_m_s * dt) continue;
       slowest = std::min(slowest, std::hypot(step.x(), step.z()) / dt);
     }
     if (std::isfinite(slowest)) speeds.push_back(slowest);
@@ -125,8 +126,8 @@ MotionQuality MeasureMotionQuality(const Motion& motion, bool has_floor) {
   if (!has_floor) {
     quality.skate_m_s = quality.skate_p95_m_s = quality.contact_share = quality.sunk_share = quality.deepest_m = NAN;
   }
-  const auto upside_down = std::count_if(joints.begin(), joints.end(),
-                                         [](const MatrixX3d& frame) { return frame(kHead, 1) < frame(0, 1); });
+  const auto upside_down =
+      std::count_if(joints.begin(), joints.end(), [](const MatrixX3d& frame) { return frame(kHead, 1) < frame(0, 1); });
   const auto flag = [&quality](bool is_so, const char* word) {
     if (is_so) quality.flags.emplace_back(word);
   };

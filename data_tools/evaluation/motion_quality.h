@@ -19,9 +19,10 @@ struct MotionQuality {
   double beyond_limits_share = 0;
   double worst_excess_deg = 0;
   std::string worst_excess_joint;  ///< empty when none is beyond
-  /// Foot skate: of the steps in which a toe joint is less than 5 cm + its clearance above the floor at both ends, the
-  /// mean horizontal speed of the slower such toe, m/s, and its 95th percentile. One foot bears the person; it should
-  /// stand still. NaN without such steps or without a floor. A dancer's slide counts as well.
+  /// Foot skate: of the steps in which a toe joint is less than 5 cm + its clearance above the floor at both ends and
+  /// moves up or down slower than 0.2 m/s, the mean horizontal speed of the slower such toe, m/s, and its 95th
+  /// percentile. One foot bears the person; it should stand still. NaN without such steps or without a floor. A
+  /// dancer's slide and a runner's low swing count as well.
   double skate_m_s = 0, skate_p95_m_s = 0;
   double contact_share = 0;  ///< of the steps, with such a toe
   /// Share of the frames whose lowest point is more than 5 cm below the floor, and the deepest.

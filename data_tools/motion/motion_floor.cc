@@ -12,16 +12,17 @@
 namespace bodyloom {
 namespace {
 
-constexpr double kSupportSpeed = 0.3, kLevelBand = 0.06, kFlatBand = 0.08, kFlatShare = 0.9, kLeastSupport_s = 0.25;
+constexpr double kSupportSpeed = 0.8, kSupportVerticalSpeed = 0.2;
+constexpr double kLevelBand = 0.06, kFlatBand = 0.08, kFlatShare = 0.9, kLeastSupport_s = 0.1;
 
 constexpr std::array<double, 24> kClearance = {
-    0.11,  0.09,  0.09,         // pelvis, hips
-    0.11,  0.055, 0.055,        // spine1, knees
-    0.11,  0.08,  0.08,         // spine2, ankles
-    0.11,  0.025, 0.025,        // spine3, toes
-    0.06,  0.06,  0.06,  0.09,  // neck, collars, head
-    0.05,  0.05,  0.04,  0.04,  // shoulders, elbows
-    0.03,  0.03,  0.015, 0.015  // wrists, hands
+    0.10, 0.09,  0.09,         // pelvis, hips
+    0.08, 0.05,  0.05,         // spine1, knees
+    0.08, 0.073, 0.073,        // spine2, ankles
+    0.08, 0.01,  0.01,         // spine3, toes
+    0.05, 0.05,  0.05,  0.09,  // neck, collars, head
+    0.06, 0.06,  0.04,  0.04,  // shoulders, elbows
+    0.03, 0.03,  0.02,  0.02   // wrists, hands
 };
 
 double Percentile(std::vector<double> values, double share) {
@@ -60,7 +61,8 @@ FloorEstimate EstimateFloor(std::span<const Motion> pieces) {
       all.push_back(LowestPoint(joints[t], &j));
       const int before = std::max(t - 1, 0), after = std::min(t + 1, T - 1);
       const double dt = piece.timestamps[after] - piece.timestamps[before];
-      if (dt > 0 && (joints[after].row(j) - joints[before].row(j)).norm() < kSupportSpeed * dt) {
+      const Eigen::RowVector3d step = joints[after].row(j) - joints[before].row(j);
+      if (dt > 0 && step.norm() < kSupportSpeed * dt && std::abs(step.y()) < kSupportVerticalSpeed * dt) {
         support.push_back(all.back());
         floor.support_s += dt / (after - before);
       }
@@ -71,17 +73,22 @@ FloorEstimate EstimateFloor(std::span<const Motion> pieces) {
     floor.height_m = Percentile(all, 0.05);
     return floor;
   }
-  const double low = Percentile(support, 0.05);
-  std::vector<double> level;
-  for (const double height : support) {
-    if (height >= low && height <= low + kLevelBand) level.push_back(height);
+  std::sort(support.begin(), support.end());
+  const auto band_end = [&support](size_t i) {
+    return std::upper_bound(support.begin(), support.end(), support[i] + kLevelBand) - support.begin();
+  };
+  const auto median_of_band = [&](size_t i) { return support[(i + band_end(i)) / 2]; };
+  size_t densest = 0;
+  for (size_t i = 0; i < support.size(); ++i) {
+    if (band_end(i) - i > band_end(densest) - densest) densest = i;
   }
-  floor.height_m = Percentile(level, 0.5);
-  const auto flat = std::count_if(support.begin(), support.end(), [&](double height) {
-    return std::abs(height - floor.height_m) <= kFlatBand;
-  });
+  floor.height_m = median_of_band(densest);
+  const auto flat = std::count_if(support.begin(), support.end(),
+                                  [&](double height) { return std::abs(height - floor.height_m) <= kFlatBand; });
   floor.flat_share = static_cast<double>(flat) / static_cast<double>(support.size());
   floor.has_floor = floor.support_s >= kLeastSupport_s && floor.flat_share >= kFlatShare;
+  if (!floor.has_floor)
+    floor.height_m = median_of_band(static_cast<size_t>(0.05 * static_cast<double>(support.size())));
   return floor;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data_tools/motion/motion_library.h"
 
-#include <cmath>
+#include <algorithm>
 #include <filesystem>
 #include <regex>
 #include <stdexcept>
@@ -83,17 +83,17 @@ std::vector<LibraryClip> ClipsOf(const std::string& file, const std::string& nam
   }
   // The pelvis is at a constant offset from `trans`, which turning the world about the origin keeps constant.
   motion = ChangeUp(motion, Motion::Up::kY, Eigen::Vector3d::Zero());
-  const MotionCuts cuts = CutMotion(motion, options.cuts);
-  if (cuts.pieces.empty()) {
-    throw std::runtime_error(
-        Concatenate(file, ": ", motion.num_frames(), " frames, none in a piece of ", options.cuts.min_piece_s,
-                    " s without an impossible step (", cuts.jumps, " of these, ", cuts.gaps, " gaps)"));
+  const CleanedMotion cleaned = CleanMotion(motion, options.cleaning);
+  if (cleaned.pieces.empty()) {
+    throw std::runtime_error(Concatenate(file, ": ", motion.num_frames(), " frames, none in a sound piece of ",
+                                         options.cleaning.min_piece_s, " s (", cleaned.frames_broken, " broken, ",
+                                         cleaned.jumps, " impossible steps, ", cleaned.gaps, " gaps)"));
   }
-  const FloorEstimate floor = EstimateFloor(cuts.pieces);
+  const FloorEstimate floor = EstimateFloor(cleaned.pieces);
   const MotionSplitEntry* entry = split.Find(name);
   const Origin origin = OriginOf(name);
   std::vector<LibraryClip> clips;
-  for (const Motion& piece : cuts.pieces) {
+  for (const Motion& piece : cleaned.pieces) {
     LibraryClip clip;
     clip.name = clips.empty() ? name : name + "#" + std::to_string(clips.size() + 1);
     clip.source = origin.source;
@@ -108,9 +108,12 @@ std::vector<LibraryClip> ClipsOf(const std::string& file, const std::string& nam
     clip.floor_shift_m = floor.height_m;
     clip.floor_flat_share = floor.flat_share;
     if (clips.empty()) {
-      clip.jumps = cuts.jumps;
-      clip.gaps = cuts.gaps;
-      clip.frames_dropped = cuts.frames_dropped;
+      clip.frames_recorded = motion.num_frames();
+      clip.frames_mended = cleaned.frames_mended;
+      clip.frames_broken = cleaned.frames_broken;
+      clip.jumps = cleaned.jumps;
+      clip.gaps = cleaned.gaps;
+      clip.frames_dropped = cleaned.frames_dropped;
     }
     clips.push_back(std::move(clip));
   }
@@ -142,7 +145,8 @@ MotionLibrarySummary VisitMotionLibrary(const std::vector<std::string>& folders,
       try {
         clips = ClipsOf(file, name, split, options);
       } catch (const std::runtime_error& error) {  // licences, skeletons and readmes lie among the motions
-        summary.left_out.emplace_back(name, error.what());
+        const std::string reason = error.what(), prefix = file + ": ";
+        summary.left_out.emplace_back(name, reason.starts_with(prefix) ? reason.substr(prefix.size()) : reason);
         continue;
       }
       for (LibraryClip& clip : clips) {

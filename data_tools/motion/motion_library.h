@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Recorded motions of any format, collected from folders, cleaned, classed, and split into training and testing.
 ///
-/// A clip is read (load_motion.h), turned to y up, cut where no person could have moved so (motion_cuts.h; every piece
-/// is a clip of its own), resampled to at most `max_fps` frames a second, and set on its floor (motion_floor.h).
+/// A clip is read (load_motion.h), turned to y up, mended and cut where no person could have moved so
+/// (motion_cleaning.h; every piece is a clip of its own), resampled to at most `max_fps` frames a second, and set on
+/// its floor (motion_floor.h).
 #pragma once
 
 #include <functional>
@@ -11,15 +12,15 @@
 #include <utility>
 #include <vector>
 
-#include "data_tools/motion/motion_cuts.h"
+#include "data_tools/motion/motion_cleaning.h"
 #include "geometry/track.h"
 
 namespace bodyloom {
 
 struct LibraryClip {
-  std::string name;          ///< path below the given folder, '/' separators; pieces after the first: "…#2"
-  std::string source;        ///< format: bvh asfamc amp deepmimic aistpp amass; CMU's with their numbering: cmu_bvh, …
-  std::string subject;       ///< performer as the source numbers it ("05" of 05_02, "d06" of gBR_…_d06_…), else the clip
+  std::string name;     ///< path below the given folder, '/' separators; pieces after the first: "…#2"
+  std::string source;   ///< format: bvh asfamc amp deepmimic aistpp amass; CMU's with their numbering: cmu_bvh, …
+  std::string subject;  ///< performer as the source numbers it ("05" of 05_02, "d06" of gBR_…_d06_…), else the clip
   std::string motion_class;  ///< one of MotionClasses()
   bool test = false;         ///< kept for testing
   bool is_named = false;     ///< the split names it
@@ -30,15 +31,16 @@ struct LibraryClip {
   double floor_shift_m = 0;     ///< height of that floor in the recording's own world: what was taken off `trans`
   double floor_flat_share = 0;  ///< of the frames in which something rests, on the floor within 8 cm
   double source_fps = 0;        ///< of the recording
-  int jumps = 0, gaps = 0, frames_dropped = 0;  ///< of the whole recording, with its first piece (0 with the others)
+  /// What cleaning did to the whole recording, with its first piece (zero with the others).
+  int frames_recorded = 0, frames_mended = 0, frames_broken = 0, jumps = 0, gaps = 0, frames_dropped = 0;
 };
 
 struct MotionLibraryOptions {
   double max_fps = 60;
-  std::string split_path;    ///< empty: the project's own (BuiltinMotionSplit)
-  bool visit_train = true;   ///< false: clips for training are counted, not visited
-  bool visit_test = true;    ///< false: the same for those kept for testing
-  MotionCutOptions cuts;
+  std::string split_path;   ///< empty: the project's own (BuiltinMotionSplit)
+  bool visit_train = true;  ///< false: clips for training are counted, not visited
+  bool visit_test = true;   ///< false: the same for those kept for testing
+  MotionCleaningOptions cleaning;
 };
 
 struct MotionLibrarySummary {

@@ -18,8 +18,8 @@
 namespace bodyloom {
 namespace {
 
-constexpr double kRoom_m = 2.2;      ///< height that a row shows
-constexpr double kBelow_m = 0.12;    ///< of it, below y = 0
+constexpr double kRoom_m = 2.2;    ///< height that a row shows
+constexpr double kBelow_m = 0.12;  ///< of it, below y = 0
 constexpr int kLabelHeight_px = 18, kHead = 15, kSubpixelBits = 4;
 constexpr Colour kMiddle{120, 126, 140}, kFloor{196, 200, 208};
 
@@ -106,7 +106,8 @@ Image DrawMotionStrip(const Motion& motion, bool has_floor, const std::string& l
   }
   cv::rectangle(mat, {0, 0, strip.width, kLabelHeight_px}, ScalarOf({226, 229, 235}), cv::FILLED);
   std::string ascii = label;
-  std::replace_if(ascii.begin(), ascii.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  std::replace_if(
+      ascii.begin(), ascii.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
   cv::putText(mat, ascii, {4, kLabelHeight_px - 5}, cv::FONT_HERSHEY_SIMPLEX, 0.42, ScalarOf(kInkColour), 1,
               cv::LINE_AA);
   return strip;
