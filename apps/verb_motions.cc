@@ -26,7 +26,8 @@ namespace {
 
 constexpr const char* kFooter =
     "The table, a line a clip:\n"
-    "  limits   share of frames with a joint more than 5 degrees beyond its limits, and the worst excess\n"
+    "  limits   share of frames with a joint of the body more than 5 degrees beyond its limits, and the worst excess\n"
+    "  ends     the same share for ankles, toes and wrists\n"
     "  skate    mean horizontal speed of the slower toe that is within 5 cm of the floor, m/s\n"
     "  floor    height of the floor in the recording's own world, m; - where the ground is not flat\n"
     "  flips    joint rotations of more than 20 rad/s that turn back in the next frame\n"
@@ -66,10 +67,10 @@ std::string ClipLine(const ClipReport& report) {
   const MotionQuality& q = report.quality;
   const std::string floor = clip.has_floor ? Line("%6.2f", clip.floor_shift_m) : "     -";
   const std::string skate = std::isfinite(q.skate_m_s) ? Line("%5.2f", q.skate_m_s) : "    -";
-  return Line("%-44s %-10s %-5s %6.1f %4.0f %5.1f%% %4.0f %s %s %5d %5.1f %5.0f  %s\n", clip.name.c_str(),
+  return Line("%-40s %-9s %-5s %5.1f %3.0f %5.1f%% %3.0f %4.0f%% %s %s %5d %5.1f %5.0f  %s\n", clip.name.c_str(),
               clip.motion_class.c_str(), clip.test ? "test" : "train", q.seconds, q.fps, 100 * q.beyond_limits_share,
-              q.worst_excess_deg, skate.c_str(), floor.c_str(), q.flips, q.worst_speed_m_s, q.worst_acceleration_m_s2,
-              Joined(q.flags).c_str());
+              q.worst_excess_deg, 100 * q.ends_beyond_limits_share, skate.c_str(), floor.c_str(), q.flips,
+              q.worst_speed_m_s, q.worst_acceleration_m_s2, Joined(q.flags).c_str());
 }
 
 /// Minutes by key, training and test side by side.
@@ -95,8 +96,8 @@ std::string MinutesTable(const std::string& title, const std::map<std::string, d
 }
 
 std::string Text(const std::vector<ClipReport>& reports, const MotionLibrarySummary& summary) {
-  std::string text = Line("%-44s %-10s %-5s %6s %4s %6s %4s %5s %6s %5s %5s %5s  %s\n", "clip", "class", "split", "s",
-                          "fps", "limits", "deg", "skate", "floor", "flips", "speed", "acc", "flags");
+  std::string text = Line("%-40s %-9s %-5s %5s %3s %6s %3s %5s %5s %6s %5s %5s %5s  %s\n", "clip", "class", "split",
+                          "s", "fps", "limits", "deg", "ends", "skate", "floor", "flips", "speed", "acc", "flags");
   for (const ClipReport& report : reports) text += ClipLine(report);
   text += "\n" + MinutesTable("class", summary.train_seconds_by_class, summary.test_seconds_by_class);
   text += "\n" + MinutesTable("source", summary.train_seconds_by_source, summary.test_seconds_by_source) + "\n";
@@ -145,7 +146,11 @@ nlohmann::ordered_json ClipJson(const ClipReport& report) {
           {"contact_share", q.contact_share},
           {"sunk_share", q.sunk_share},
           {"deepest_m", q.deepest_m},
+          {"ends_beyond_limits_share", q.ends_beyond_limits_share},
+          {"ends_worst_excess_deg", q.ends_worst_excess_deg},
+          {"ends_worst_excess_joint", q.ends_worst_excess_joint},
           {"flips", q.flips},
+          {"ends_flips", q.ends_flips},
           {"worst_speed_m_s", q.worst_speed_m_s},
           {"worst_speed_joint", q.worst_speed_joint},
           {"worst_acceleration_m_s2", q.worst_acceleration_m_s2},

@@ -34,22 +34,28 @@ void Keep(double value, int joint, double* largest, std::string* name) {
   *name = SmplJointNames()[joint];
 }
 
+bool IsEnd(int joint) { return joint == 7 || joint == 8 || joint == 10 || joint == 11 || joint >= 20; }
+
 void MeasureLimits(const Motion& motion, MotionQuality* quality) {
   static const JointLimits limits = JointLimits::ForBody(BuiltinBody());
-  double worst_rad = 0;
-  int beyond = 0;
+  double worst_rad[2] = {0, 0};  // of the body, of the ends
+  int beyond[2] = {0, 0};
   for (int t = 0; t < motion.num_frames(); ++t) {
-    double frame_rad = 0;
+    double frame_rad[2] = {0, 0};
     for (const JointLimits::Range& range : limits.ranges) {
+      const bool is_end = IsEnd(range.joint);
       const Eigen::Vector3d axis_angle = AxisAngleFromRotation(RotationOf(motion, t, range.joint));
       const double excess = LimitExcess(range, axis_angle).cwiseAbs().maxCoeff();
-      frame_rad = std::max(frame_rad, excess);
-      Keep(excess, range.joint, &worst_rad, &quality->worst_excess_joint);
+      frame_rad[is_end] = std::max(frame_rad[is_end], excess);
+      Keep(excess, range.joint, &worst_rad[is_end],
+           is_end ? &quality->ends_worst_excess_joint : &quality->worst_excess_joint);
     }
-    beyond += frame_rad > kTolerance_rad;
+    for (const int end : {0, 1}) beyond[end] += frame_rad[end] > kTolerance_rad;
   }
-  quality->beyond_limits_share = static_cast<double>(beyond) / motion.num_frames();
-  quality->worst_excess_deg = worst_rad * 180 / M_PI;
+  quality->beyond_limits_share = static_cast<double>(beyond[0]) / motion.num_frames();
+  quality->ends_beyond_limits_share = static_cast<double>(beyond[1]) / motion.num_frames();
+  quality->worst_excess_deg = worst_rad[0] * 180 / M_PI;
+  quality->ends_worst_excess_deg = worst_rad[1] * 180 / M_PI;
 }
 
 void MeasureFloor(const std::vector<MatrixX3d>& joints, double dt, MotionQuality* quality) {
@@ -101,7 +107,8 @@ void MeasureTurns(const Motion& motion, double dt, MotionQuality* quality) {
           AxisAngleFromRotation(RotationOf(motion, t - 1, j).transpose() * RotationOf(motion, t, j)) / dt;
       Keep(rate.norm(), j, &quality->worst_turn_rad_s, &quality->worst_turn_joint);
       const bool both_fast = rate.norm() > kFlipTurn_rad_s && before.norm() > kFlipTurn_rad_s;
-      quality->flips += both_fast && rate.dot(before) < kFlipCosine * rate.norm() * before.norm();
+      const bool is_flip = both_fast && rate.dot(before) < kFlipCosine * rate.norm() * before.norm();
+      (IsEnd(j) ? quality->ends_flips : quality->flips) += is_flip;
       before = rate;
     }
   }
@@ -132,9 +139,10 @@ MotionQuality MeasureMotionQuality(const Motion& motion, bool has_floor) {
     if (is_so) quality.flags.emplace_back(word);
   };
   flag(quality.beyond_limits_share > 0.2 || quality.worst_excess_deg > 40, "limits");
-  flag(quality.skate_m_s > 0.25, "skate");
-  flag(quality.sunk_share > 0.1, "sunk");
+  flag(quality.ends_beyond_limits_share > 0.2 || quality.ends_worst_excess_deg > 40, "ends");
   flag(quality.flips > 0, "flips");
+  flag(quality.skate_m_s > 0.3, "skate");
+  flag(quality.sunk_share > 0.1, "sunk");
   flag(quality.worst_speed_m_s > 20, "speed");
   flag(quality.worst_acceleration_m_s2 > 1000, "acceleration");
   flag(2 * upside_down > quality.frames, "upside_down");

@@ -66,6 +66,16 @@ double MedianStep(const std::vector<double>& times) {
   return *middle;
 }
 
+/// Whether nobody gets from frame t−1 to frame t.
+bool IsJump(const Motion& motion, const std::vector<MatrixX3d>& joints, int t, const MotionCleaningOptions& options) {
+  const double dt = motion.timestamps[t] - motion.timestamps[t - 1];
+  const MatrixX3d step = joints[t] - joints[t - 1];
+  return step.row(0).norm() > options.max_pelvis_speed_m_s * dt ||
+         (step.rowwise() - step.row(0)).rowwise().norm().maxCoeff() > options.max_joint_speed_m_s * dt ||
+         RotationAngleBetween(RotationOf(motion, t - 1, 0), RotationOf(motion, t, 0)) >
+             options.max_root_turn_rad_s * dt;
+}
+
 }  // namespace
 
 Motion FramesOf(const Motion& motion, int begin, int end) {
@@ -87,42 +97,43 @@ CleanedMotion CleanMotion(const Motion& recorded, const MotionCleaningOptions& o
                  "CleanMotion: ", recorded.poses.cols() / 3, " joints, expected 24 in a world with y up");
   CleanedMotion cleaned;
   const Motion motion = WithMendedFeet(recorded, &cleaned.frames_mended);
+  const std::vector<double>& times = motion.timestamps;
   const int T = motion.num_frames();
-  const double median_step = MedianStep(motion.timestamps);
+  const double median_step = MedianStep(times);
   const std::vector<MatrixX3d> joints = PoseSmplJoints(motion);
-  const auto keep = [&](int begin, int end) {
-    if (begin == end) return;
-    if (motion.timestamps[end - 1] - motion.timestamps[begin] >= options.min_piece_s) {
+
+  std::vector<char> is_out(T, 0), begins_piece(T, 0);
+  const auto leave_out_around = [&](int t) {
+    for (int s = t; s >= 0 && times[t] - times[s] <= options.margin_s; --s) is_out[s] = 1;
+    for (int s = t; s < T && times[s] - times[t] <= options.margin_s; ++s) is_out[s] = 1;
+  };
+  for (int t = 0; t < T; ++t) {
+    if (IsBroken(motion, t)) {
+      ++cleaned.frames_broken;
+      leave_out_around(t);
+    }
+    if (t == 0) continue;
+    const double dt = times[t] - times[t - 1];
+    if (!(dt > 0 && dt <= options.longest_step * median_step)) {
+      ++cleaned.gaps;
+      begins_piece[t] = 1;
+    } else if (IsJump(motion, joints, t, options)) {
+      ++cleaned.jumps;
+      begins_piece[t] = 1;
+      leave_out_around(t - 1);
+      leave_out_around(t);
+    }
+  }
+  for (int begin = 0; begin < T;) {
+    int end = begin + 1;
+    while (end < T && !is_out[begin] && !is_out[end] && !begins_piece[end]) ++end;
+    if (!is_out[begin] && times[end - 1] - times[begin] >= options.min_piece_s) {
       cleaned.pieces.push_back(FramesOf(motion, begin, end));
     } else {
       cleaned.frames_dropped += end - begin;
     }
-  };
-  int begin = 0;
-  for (int t = 0; t < T; ++t) {
-    if (IsBroken(motion, t)) {
-      keep(begin, t);
-      begin = t + 1;
-      ++cleaned.frames_broken;
-      ++cleaned.frames_dropped;
-      continue;
-    }
-    if (t == begin) continue;
-    const double dt = motion.timestamps[t] - motion.timestamps[t - 1];
-    const bool is_gap = !(dt > 0 && dt <= options.longest_step * median_step);
-    const MatrixX3d step = joints[t] - joints[t - 1];
-    const bool is_jump =
-        !is_gap && (step.row(0).norm() > options.max_pelvis_speed_m_s * dt ||
-                    (step.rowwise() - step.row(0)).rowwise().norm().maxCoeff() > options.max_joint_speed_m_s * dt ||
-                    RotationAngleBetween(RotationOf(motion, t - 1, 0), RotationOf(motion, t, 0)) >
-                        options.max_root_turn_rad_s * dt);
-    cleaned.gaps += is_gap;
-    cleaned.jumps += is_jump;
-    if (!is_gap && !is_jump) continue;
-    keep(begin, t);
-    begin = t;
+    begin = end;
   }
-  keep(begin, T);
   return cleaned;
 }
 

@@ -7,8 +7,9 @@
 ///    every joint is where it should be. (It does so with hands, too; they are left, nothing hangs on them.)
 /// 2. Frames are broken, and left out, where a thigh is rolled about its own axis by more than 110° (the knee then
 ///    bends backwards) or a spine joint is turned by more than 80°.
-/// 3. The motion is cut at impossible steps and at gaps; a frame of garbage becomes a piece of its own, and pieces that
-///    are too short are dropped.
+/// 3. The motion is cut at impossible steps and at gaps. What lies within 0.04 s of an impossible step or a broken
+/// frame
+///    goes with it, because recordings are smoothed over such places; so do pieces that are too short.
 #pragma once
 
 #include <vector>
@@ -24,6 +25,7 @@ struct MotionCleaningOptions {
   double max_pelvis_speed_m_s = 15;  ///< between two frames
   double max_joint_speed_m_s = 22;   ///< of any joint relative to the pelvis
   double max_root_turn_rad_s = 40;
+  double margin_s = 0.04;     ///< left out on both sides of an impossible step and of a broken frame
   double longest_step = 1.5;  ///< a longer step of the clock than this times the median is a gap
   double min_piece_s = 0.5;   ///< shorter pieces are dropped
 };
@@ -34,7 +36,7 @@ struct CleanedMotion {
   int frames_broken = 0;
   int jumps = 0;  ///< steps faster than the limits
   int gaps = 0;
-  int frames_dropped = 0;  ///< broken ones and those of pieces that were too short
+  int frames_dropped = 0;  ///< in all: broken, too near to a fault, in a piece that was too short
 };
 
 /// Needs 24 joints with y up; throws std::invalid_argument otherwise.
