@@ -34,6 +34,7 @@ int Run(int argc, char** argv) {
   AddDemoVerb(app, &action);
   AddPriorVerb(app, &action);
   AddMotionsVerb(app, &action);
+  AddTrainVerb(app, &action);
   AddNeuralVerb(app, &action);
   AddVersionVerb(app, &action);
   try {

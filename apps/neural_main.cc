@@ -1,23 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
-// The command `bodyloom-neural`: the verbs that need LibTorch. `bodyloom neural VERB` starts it.
+// The command `bodyloom-neural`: the verbs that need LibTorch. `bodyloom neural VERB` and `bodyloom train …` start it.
 #include <CLI/CLI.hpp>
 #include <exception>
+#include <functional>
 #include <iostream>
 
 #include "apps/exit_code.h"
+#include "apps/interrupt.h"
+#include "apps/neural/train_lifter.h"
 #include "neural/runtime.h"
 
 int main(int argc, char** argv) {
+  bodyloom::InstallSignalHandlers();
   CLI::App app("The verbs of bodyloom that need LibTorch.", "bodyloom neural");
   app.require_subcommand(1);
   app.footer(bodyloom::kExitCodeHelp);
+  std::function<void()> action;
   int num_threads = 0;
   CLI::App* doctor = app.add_subcommand("doctor", "Prints what LibTorch runs on, and what makes it slow");
   doctor->add_option("--threads", num_threads, "threads inside one operation (0: all cores)")
       ->check(CLI::NonNegativeNumber);
-  doctor->callback([&] { std::cout << bodyloom::ToText(bodyloom::StartNeuralRuntime(num_threads)); });
+  doctor->callback([&] { action = [&] { std::cout << bodyloom::ToText(bodyloom::StartNeuralRuntime(num_threads)); }; });
+  CLI::App* train = app.add_subcommand("train", "Trains a network");
+  train->require_subcommand(1);
+  bodyloom::AddTrainLifter(*train, &action);
   try {
     app.parse(argc, argv);
+    action();
     return bodyloom::kExitOk;
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) {
@@ -25,8 +34,11 @@ int main(int argc, char** argv) {
     }
     std::cerr << "bodyloom neural: " << error.what() << "\nRun with --help for the options.\n";
     return bodyloom::kExitUsage;
+  } catch (const bodyloom::UsageError& error) {
+    std::cerr << "bodyloom neural: " << error.what() << "\nRun with --help for the options.\n";
+    return bodyloom::kExitUsage;
   } catch (const std::exception& error) {
     std::cerr << "bodyloom neural: " << error.what() << "\n";
-    return bodyloom::kExitFailed;
+    return bodyloom::IsInterrupted() ? bodyloom::kExitInterrupted : bodyloom::kExitFailed;
   }
 }

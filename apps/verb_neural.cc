@@ -40,9 +40,23 @@ void AddNeuralVerb(CLI::App& app, Action* action) {
   CLI::App* verb = app.add_subcommand("neural", "Runs a verb that needs LibTorch: `bodyloom neural doctor`");
   verb->footer(
       "Verbs:\n"
-      "  doctor   which LibTorch, how many threads, which matrix library, and what makes it slow\n");
+      "  doctor   which LibTorch, how many threads, which matrix library, and what makes it slow\n"
+      "  train    trains a network (also: bodyloom train)\n");
   verb->prefix_command();  // everything after `neural` belongs to the other executable
   verb->callback([verb, action] { *action = [arguments = verb->remaining()] { ExecNeural(arguments); }; });
+}
+
+void AddTrainVerb(CLI::App& app, Action* action) {
+  CLI::App* verb = app.add_subcommand("train", "Trains a network: `bodyloom train lifter --help`");
+  verb->footer(
+      "Networks:\n"
+      "  lifter   from 2D joints to 3D, the start of `bodyloom track`\n");
+  verb->prefix_command();
+  verb->callback([verb, action] {
+    std::vector<std::string> arguments = verb->remaining();
+    arguments.insert(arguments.begin(), "train");
+    *action = [arguments] { ExecNeural(arguments); };
+  });
 }
 
 }  // namespace bodyloom

@@ -25,6 +25,7 @@ void AddBodyVerb(CLI::App& app, Action* action);
 void AddDemoVerb(CLI::App& app, Action* action);
 void AddPriorVerb(CLI::App& app, Action* action);
 void AddMotionsVerb(CLI::App& app, Action* action);
+void AddTrainVerb(CLI::App& app, Action* action);
 void AddNeuralVerb(CLI::App& app, Action* action);
 void AddVersionVerb(CLI::App& app, Action* action);
 
