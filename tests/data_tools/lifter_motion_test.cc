@@ -142,7 +142,7 @@ TEST(PoseAugmentation, LimitsHoldAndKneesBendForward) {
   poses.at(5, kLeftElbow + 1) = TurnBy({0, -0.9F, 0});
   LifterWindowOptions options;
   options.perturbation = 5;
-  PerturbPoses(options, 1, HashRandom(8, {}), &poses);
+  PerturbPoses(options, 1, 1, HashRandom(8, {}), &poses);
   poses.at(5, kLeftKnee) = TurnBy({-0.8F, 0, 0});
   poses.at(5, kLeftElbow + 1) = TurnBy({0, -0.9F, 0});
   limits.Apply(&poses);
