@@ -33,6 +33,7 @@ int Run(int argc, char** argv) {
   AddBodyVerb(app, &action);
   AddDemoVerb(app, &action);
   AddPriorVerb(app, &action);
+  AddMotionsVerb(app, &action);
   AddNeuralVerb(app, &action);
   AddVersionVerb(app, &action);
   try {

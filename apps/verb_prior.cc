@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 
 #include "apps/verbs.h"
 #include "data_tools/builtin_body.h"
+#include "data_tools/formats/files_below.h"
 #include "data_tools/motion/load_motion.h"
 #include "data_tools/prior/pose_prior_io.h"
 #include "data_tools/prior/pose_prior_learning.h"
@@ -18,17 +17,6 @@ struct PriorRequest {
   std::string motions, out;
   LearnPosePriorOptions options;
 };
-
-/// Every regular file below the folder (or the file itself), sorted, so that the same folder gives the same prior.
-std::vector<std::string> FilesBelow(const std::string& path) {
-  if (!std::filesystem::is_directory(path)) return {path};
-  std::vector<std::string> files;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(path)) {
-    if (entry.is_regular_file()) files.push_back(entry.path().string());
-  }
-  std::sort(files.begin(), files.end());
-  return files;
-}
 
 void Run(const PriorRequest& request) {
   std::vector<Motion> motions;

@@ -24,6 +24,7 @@ void AddTextureVerb(CLI::App& app, Action* action);
 void AddBodyVerb(CLI::App& app, Action* action);
 void AddDemoVerb(CLI::App& app, Action* action);
 void AddPriorVerb(CLI::App& app, Action* action);
+void AddMotionsVerb(CLI::App& app, Action* action);
 void AddNeuralVerb(CLI::App& app, Action* action);
 void AddVersionVerb(CLI::App& app, Action* action);
 

@@ -6,6 +6,7 @@
 
 #include "geometry/check.h"
 #include "geometry/rotation.h"
+#include "tracking/residuals/lifted_pose.h"
 #include "tracking/residuals/part_label_term.h"
 #include "tracking/robust.h"
 
@@ -82,13 +83,14 @@ void FrameEvaluator::Evaluate(const FrameLayout& layout, const FrameData& data, 
   num_invalid_ = 0;
   const size_t num_dense = data.dense != nullptr ? data.dense->size() : 0;
   const bool use_prior = data.prior != nullptr && !data.prior->empty() && data.prior_weight > 0;
+  const bool use_lifted = data.lifted != nullptr && data.lifted_weight > 0;
   if (derivatives) {
     // A keypoint has its two rows in UV or in the image.
     const size_t rows = 2 * (data.landmarks.size() + num_dense) +
                         (data.part_labels != nullptr ? static_cast<size_t>(data.part_labels->num_rows()) : 0) +
                         (use_prior ? 3 * data.prior->joints().size() : 0) +
                         (data.limits != nullptr ? 3 * data.limits->ranges.size() : 0) +
-                        (data.upright_weight > 0 ? 1 : 0) +
+                        (data.upright_weight > 0 ? 1 : 0) + (use_lifted ? 3 * data.lifted->points.size() + 3 : 0) +
                         (data.initial_rotations.empty() ? 0 : 3 * layout.active_joints.size() + 3);
     ReserveRows(static_cast<int>(rows), p);
   }
@@ -102,6 +104,7 @@ void FrameEvaluator::Evaluate(const FrameLayout& layout, const FrameData& data, 
   if (num_dense > 0) AddDense(layout, data, derivatives);
   if (data.rendered_uv != nullptr) AddRenderedUv(layout, data, state, betas, derivatives, residuals);
   if (data.part_labels != nullptr) AddPartLabels(layout, data, derivatives, residuals);
+  if (use_lifted) AddLifted(layout, data, derivatives);
 
   if (use_prior) {
     const std::vector<int>& joints = data.prior->joints();

@@ -12,6 +12,7 @@
 ///                                    from the camera, which a camera barely sees (cos is flat): people are mostly
 ///                                    upright and cameras mostly level. Saturates, so bending and lying stay free
 /// + ½ λ_d (‖log(R̄ᵀR)‖²/σ_R² + ‖t − t̄‖²/σ_t²)  initialiser (L_d of paper A)
+/// + ½ λ_d Σ ρ(‖W (x − x_hips − y)‖²)         the lifter as initialiser (residuals/lifted_pose.h)
 ///
 /// Rotations are differentiated by right increments. Points that cannot be projected cost the kernel's saturation c²
 /// with a zero derivative, and are counted.
@@ -74,6 +75,7 @@ struct DenseWhitening {
 
 class RenderedUvTerm;
 class PartLabelTerm;
+struct LiftedPose;
 
 /// Everything known about one frame. Borrowed pointers outlive the cost.
 struct FrameData {
@@ -82,6 +84,8 @@ struct FrameData {
   std::vector<DenseWhitening> dense_whitening;  ///< one a dense keypoint, or empty: I/sigma_px
   RenderedUvTerm* rendered_uv = nullptr;        ///< takes its keypoints away from `dense`
   const PartLabelTerm* part_labels = nullptr;
+  const LiftedPose* lifted = nullptr;
+  double lifted_weight = 0, lifted_kernel = 3;
   double landmark_kernel = 8, dense_kernel = 4;  ///< c of the robust kernel, in sigmas
   const MixturePrior* prior = nullptr;
   double prior_weight = 0;
@@ -138,6 +142,9 @@ class FrameEvaluator {
   void AddRenderedUv(const FrameLayout& layout, const FrameData& data, const FrameState& state,
                      const Eigen::VectorXd& betas, bool derivatives, FrameResiduals* residuals);
   void AddPartLabels(const FrameLayout& layout, const FrameData& data, bool derivatives, FrameResiduals* residuals);
+  void AddLifted(const FrameLayout& layout, const FrameData& data, bool derivatives);
+  /// 3×columns: derivative of the point evaluated last, without translation.
+  void FillPointRows(const FrameLayout& layout, Eigen::Ref<RowMatrixXd> rows);
   void ReserveRows(int rows, int columns);
 
   Kinematics kinematics_;
@@ -145,7 +152,7 @@ class FrameEvaluator {
   PointEvaluator::VertexCache vertices_;
   VisibleSurface surface_;
   Camera camera_;
-  RowMatrixXd J_;
+  RowMatrixXd J_, hip_rows_;
   Eigen::VectorXd r_;
   int row_ = 0;
   double cost_ = 0;

@@ -17,8 +17,10 @@
 #include "geometry/rotation.h"
 #include "tracking/image_terms.h"
 #include "tracking/initialise/initial_states.h"
+#include "tracking/initialise/lifted_start.h"
 #include "tracking/initialise/swap_repair.h"
 #include "tracking/observability.h"
+#include "tracking/residuals/lifted_pose.h"
 #include "tracking/sequence_problem.h"
 #include "tracking/track_result.h"
 #include "tracking/uncertainty.h"
@@ -252,7 +254,8 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSe
   if (options.progress && !options.progress({"initialise", 0.0, 0.0})) {
     summary.status = SolveStatus::kStopped;
   }
-  const InitialStates initial = FindInitialStates(input, problem.layout, options);
+  LiftedStart lifted;
+  const InitialStates initial = FindInitialStates(input, problem.layout, options, &lifted);
   if (initial.states.empty()) {
     summary.message =
         "no frame shows enough of the body to start from: a shoulder and a hip are needed, with some confidence";
@@ -262,6 +265,13 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSe
   problem.betas = initial.betas;
   problem.shape_prior.mean = initial.betas;
   clock.Book("initialise");
+
+  // What the lifter said stays as a term.
+  const LiftedLandmarks lifted_landmarks = CompileLiftedLandmarks(model, num_betas);
+  std::vector<LiftedPose> lifted_poses;
+  for (const LiftedFrame& frame : lifted.frames) {
+    lifted_poses.push_back(MakeLiftedPose(frame, lifted_landmarks, lifted.metres, options.lifter_min_sigma_m));
+  }
 
   // Observations.
   VectorXd stature_gradient;
@@ -279,6 +289,10 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSe
       frame.prior_weight = options.prior_weight;
     }
     frame.limits = &limits;
+    if (!lifted_poses.empty()) {
+      frame.lifted = &lifted_poses[t];
+      frame.lifted_weight = options.lifter_weight;
+    }
     frame.upright_weight = options.upright_weight;
     frame.initial_rotations = problem.states[t].rotations;
     frame.initial_translation = problem.states[t].translation;

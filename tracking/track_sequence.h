@@ -11,6 +11,7 @@
 
 #include "geometry/body_model.h"
 #include "geometry/camera.h"
+#include "geometry/lifter_weights.h"
 #include "geometry/observations.h"
 #include "geometry/pose_prior.h"
 #include "geometry/track.h"
@@ -33,8 +34,9 @@ struct TrackSequenceInput {
   /// Part labels or a mask of each frame. They refine a start and do not find one: without 2D joints and dense
   /// keypoints an initialiser is required, and weak perspective is not available.
   const PartLabelSequence* part_labels = nullptr;
-  const Motion* initialiser = nullptr;  ///< camera-frame poses of another system, same frames (L_d of paper A)
-  const PosePrior* prior = nullptr;     ///< learned pose prior; without it only joint limits apply
+  const Motion* initialiser = nullptr;    ///< camera-frame poses of another system, same frames (L_d of paper A)
+  const PosePrior* prior = nullptr;       ///< learned pose prior; without it only joint limits apply
+  const LifterWeights* lifter = nullptr;  ///< starts from 2D joints and stays as L_d; without it: joint hypotheses
   Camera camera;  ///< kKnown: all of it; otherwise only width and height (0: taken from the observations)
 };
 
@@ -73,16 +75,18 @@ struct PartLabelOptions {
 
 struct TrackSequenceOptions {
   CameraKnowledge camera_knowledge = CameraKnowledge::kKnown;
-  std::string solver = "ceres";     ///< the engine; only "ceres" so far
-  int num_threads = 0;              ///< 0: all cores
-  int max_iterations = 50;          ///< of each stage
-  int max_fine_iterations = 8;      ///< of the last stage, when a coarse one came before
-  double initialiser_weight = 0.1;  ///< λ_d of paper A, per frame
-  double prior_weight = 0.2;        ///< of the pose prior's energy, per frame
-  double start_pull = 1.0;          ///< pull towards the hypotheses in the first stage (rotation σ 0.2 rad)
-  double upright_weight = 1.0;      ///< of the trunk not leaning out of the image plane, per frame
-  double coarse_rate = 15;          ///< frames a second of the coarse stages
-  double shape_prior_weight = 0.3;  ///< of the shape prior, a frame
+  std::string solver = "ceres";      ///< the engine; only "ceres" so far
+  int num_threads = 0;               ///< 0: all cores
+  int max_iterations = 50;           ///< of each stage
+  int max_fine_iterations = 8;       ///< of the last stage, when a coarse one came before
+  double initialiser_weight = 0.1;   ///< λ_d of paper A, per frame
+  double lifter_weight = 0.1;        ///< λ_d when the lifter is the initialiser; 0: it is not asked
+  double lifter_min_sigma_m = 0.03;  ///< floor of the lifter's own uncertainty, metres
+  double prior_weight = 0.2;         ///< of the pose prior's energy, per frame
+  double start_pull = 1.0;           ///< pull towards the hypotheses in the first stage (rotation σ 0.2 rad)
+  double upright_weight = 1.0;       ///< of the trunk not leaning out of the image plane, per frame
+  double coarse_rate = 15;           ///< frames a second of the coarse stages
+  double shape_prior_weight = 0.3;   ///< of the shape prior, a frame
   JointHypothesesOptions hypotheses;
   RenderedUvOptions rendered_uv;
   PartLabelOptions part_labels;

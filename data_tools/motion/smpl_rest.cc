@@ -52,6 +52,15 @@ MatrixX3d PoseSmplJoints(const Eigen::Ref<const Eigen::VectorXd>& pose, const Ei
   return joints;
 }
 
+std::vector<MatrixX3d> PoseSmplJoints(const Motion& motion) {
+  std::vector<MatrixX3d> joints;
+  joints.reserve(motion.num_frames());
+  for (int t = 0; t < motion.num_frames(); ++t) {
+    joints.push_back(PoseSmplJoints(motion.poses.row(t).transpose(), motion.trans.row(t).transpose()));
+  }
+  return joints;
+}
+
 Eigen::Vector4d HingeFlexionDeg(const Eigen::Ref<const Eigen::VectorXd>& pose) {
   BODYLOOM_CHECK(pose.size() >= 66, "pose has ", pose.size(), " values, expected 72");
   const auto flexion = [&](int joint, const Eigen::Vector3d& bone, const Eigen::Vector3d& bends_towards) {

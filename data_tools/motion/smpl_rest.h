@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "geometry/arrays.h"
+#include "geometry/track.h"
 
 namespace bodyloom {
 
@@ -15,6 +16,9 @@ const MatrixX3d& SmplRestJoints();
 
 /// 24×3 joint positions for 72 axis-angle values, pelvis joint at `pelvis`.
 MatrixX3d PoseSmplJoints(const Eigen::Ref<const Eigen::VectorXd>& pose, const Eigen::Vector3d& pelvis);
+
+/// The same for every frame of a motion of 24 joints with y up; the pelvis is at `trans`.
+std::vector<MatrixX3d> PoseSmplJoints(const Motion& motion);
 
 /// Bending of the hinge joints out of the straight limb, degrees, positive the way people bend: left knee, right knee,
 /// left elbow, right elbow. Measured in the plane of natural flexion (shin backwards, T-pose forearm forwards).

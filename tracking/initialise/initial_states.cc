@@ -4,12 +4,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <thread>
 
 #include "geometry/check.h"
 #include "geometry/posed_body.h"
 #include "geometry/rotation.h"
 #include "tracking/initialise/inverse_kinematics.h"
 #include "tracking/initialise/joint_hypotheses.h"
+#include "tracking/initialise/lifted_start.h"
+#include "tracking/initialise/swap_repair.h"
+#include "tracking/residuals/lifted_pose.h"
 
 namespace bodyloom {
 
@@ -139,8 +143,17 @@ KeypointSequence JointsFromDense(const BodyModel& model, const DenseSequence& de
   return result;
 }
 
+std::string WhyNoLifter(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
+  if (input.lifter == nullptr) return "no lifter was given";
+  if (input.initialiser != nullptr) return "an initialiser was given";
+  if (input.keypoints == nullptr) return "it reads 2D joints, and there are none";
+  if (options.lifter_weight == 0) return "switched off";
+  if (!CompileLiftedLandmarks(*input.body, 0).IsUsable()) return "the body lacks its landmarks";
+  return "";
+}
+
 InitialStates FindInitialStates(const TrackSequenceInput& input, const FrameLayout& layout,
-                                const TrackSequenceOptions& options) {
+                                const TrackSequenceOptions& options, LiftedStart* lifted) {
   const BodyModel& model = *input.body;
   InitialStates result;
   result.betas = VectorXd::Zero(layout.num_betas);
@@ -165,6 +178,19 @@ InitialStates FindInitialStates(const TrackSequenceInput& input, const FrameLayo
     camera.model = CameraModel::kPinhole;
     if (layout.num_betas > 0) {
       result.betas = EstimateShape(*keypoints, camera, model, layout.num_betas, options.hypotheses);
+    }
+    if (WhyNoLifter(input, options).empty()) {
+      const int threads = options.num_threads > 0 ? options.num_threads
+                                                  : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+      LiftedStart start =
+          StartFromLifter(*keypoints, FindCuts(*keypoints), camera, layout.knowledge == CameraKnowledge::kKnown, model,
+                          result.betas, *input.lifter, threads);
+      if (!start.frames.empty()) {
+        result = start.initial;
+        if (lifted != nullptr) *lifted = std::move(start);
+        if (layout.knowledge == CameraKnowledge::kWeak) ToWeakPerspective(*keypoints, layout, &result.states);
+        return result;
+      }
     }
     const MatrixX3d rest_joints = model.RestJoints(result.betas), rest_points = RestLandmarks(model, result.betas);
     // A clip that nowhere shows both shoulders and both hips well is taken with what it has: faint joints first, then a

@@ -2,6 +2,7 @@
 /// A starting pose for every frame: from the user's initialiser, or from nothing.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "tracking/frame_cost.h"
@@ -16,10 +17,17 @@ struct InitialStates {
   double cost = 0;                     ///< of the hypotheses
 };
 
-/// The initialiser's poses when given; else joint hypotheses (from 2D joints, or from joints estimated out of dense
-/// keypoints) turned into poses by inverse kinematics and interpolated on SO(3) to every frame.
+struct LiftedStart;
+
+/// The initialiser's poses when given; else the lifter's, when there is one that can read the observations; else joint
+/// hypotheses (from 2D joints, or from joints estimated out of dense keypoints) turned into poses by inverse kinematics
+/// and interpolated on SO(3) to every frame. `lifted`, when given, receives what the lifter said (its frames are empty
+/// when it was not asked or saw nothing).
 InitialStates FindInitialStates(const TrackSequenceInput& input, const FrameLayout& layout,
-                                const TrackSequenceOptions& options);
+                                const TrackSequenceOptions& options, LiftedStart* lifted = nullptr);
+
+/// Why the lifter does not run, or empty when it does.
+std::string WhyNoLifter(const TrackSequenceInput& input, const TrackSequenceOptions& options);
 
 /// COCO-17 keypoints estimated from dense ones: each landmark is the mean pixel of the surface points near it in the
 /// rest pose, weighted by exp(−d²/2(6 cm)²); confidence grows with the number of such points. Good enough to start

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A picture of a motion library: stick figures of SMPL's 24 joints at several instants of every clip.
+///
+/// A clip is a strip with its label: the upper row looks at the person's front, the lower row at the person's left side
+/// (the pelvis' heading at that instant; a person upright walks to the left below). The left limbs are warm, the right
+/// ones cool (render/palette.h), so that in the upper row warm is on the right: a mirrored clip shows. The line is
+/// y = 0, drawn where the clip has a flat floor; figures keep their height above it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "geometry/track.h"
+#include "render/image.h"
+
+namespace bodyloom {
+
+struct MotionSheetOptions {
+  int instants = 10;         ///< spread evenly over the clip, first and last included
+  int figure_width_px = 76;  ///< of an instant
+  int columns = 2;           ///< strips side by side
+};
+
+/// One clip's strip. Clips that reach higher than 2.2 m are drawn smaller. Needs 24 joints with y up; throws
+/// std::invalid_argument otherwise.
+Image DrawMotionStrip(const Motion& motion, bool has_floor, const std::string& label,
+                      const MotionSheetOptions& options = {});
+
+/// The strips below one another, column by column; they are all of one size. Throws std::invalid_argument when there
+/// are none.
+Image MotionSheet(const std::vector<Image>& strips, const MotionSheetOptions& options = {});
+
+}  // namespace bodyloom

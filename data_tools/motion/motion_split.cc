@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "data_tools/motion/motion_split.h"
+
+#include <algorithm>
+#include <sstream>
+#include <stdexcept>
+
+#include "data_tools/formats/atomic_file.h"
+
+// Made by bodyloom_embed() in data_tools/CMakeLists.txt.
+extern "C" {
+extern const char bodyloom_motion_split_begin[], bodyloom_motion_split_end[];
+}
+
+namespace bodyloom {
+namespace {
+
+constexpr size_t kMaxSplitBytes = size_t{1} << 26;
+
+std::string Shortened(const std::string& word) { return word.size() > 40 ? word.substr(0, 40) + "…" : word; }
+
+}  // namespace
+
+const std::vector<std::string>& MotionClasses() {
+  static const std::vector<std::string> classes = {"walk",  "run",   "jump", "dance", "kick",      "punch",
+                                                   "sport", "climb", "sit",  "floor", "acrobatic", "other"};
+  return classes;
+}
+
+std::string WithoutMotionExtension(const std::string& path) {
+  std::string name = path;
+  const auto drop = [&name](const std::string& extension) {
+    const bool ends = name.size() > extension.size() && name.ends_with(extension);
+    if (ends) name.resize(name.size() - extension.size());
+    return ends;
+  };
+  drop(".gz");
+  for (const char* extension : {".bvh", ".amc", ".npz", ".npy", ".pkl", ".json", ".txt"}) {
+    if (drop(extension)) break;
+  }
+  return name;
+}
+
+const MotionSplitEntry* MotionSplit::Find(const std::string& path, std::string* name) const {
+  // From the whole path to its last part, so that the longest name is found first.
+  for (std::string rest = WithoutMotionExtension(path);;) {
+    if (const auto found = entries_.find(rest); found != entries_.end()) {
+      if (name != nullptr) *name = rest;
+      return &found->second;
+    }
+    const size_t slash = rest.find('/');
+    if (slash == std::string::npos) return nullptr;
+    rest.erase(0, slash + 1);
+  }
+}
+
+MotionSplit MotionSplitFromText(const std::string& text, const std::string& where) {
+  MotionSplit split;
+  std::istringstream lines(text);
+  std::string line;
+  for (int number = 1; std::getline(lines, line); ++number) {
+    const auto fail = [&](const std::string& what) {
+      throw std::runtime_error(where + ": line " + std::to_string(number) + ": " + what);
+    };
+    std::istringstream words(line.substr(0, line.find('#')));
+    std::vector<std::string> found;
+    for (std::string word; found.size() < 4 && words >> word;) found.push_back(word);
+    if (found.empty()) continue;
+    if (found.size() != 3) {
+      fail("found " + std::string(found.size() > 3 ? "more than 3" : std::to_string(found.size())) +
+           " words, expected 3: name, class, train or test");
+    }
+    const std::vector<std::string>& classes = MotionClasses();
+    if (std::find(classes.begin(), classes.end(), found[1]) == classes.end()) {
+      std::string known;
+      for (const std::string& name : classes) known += (known.empty() ? "" : ", ") + name;
+      fail("found class '" + Shortened(found[1]) + "', expected one of " + known);
+    }
+    if (found[2] != "train" && found[2] != "test") fail("found '" + Shortened(found[2]) + "', expected train or test");
+    if (!split.entries_.try_emplace(found[0], MotionSplitEntry{found[1], found[2] == "test"}).second) {
+      fail("'" + Shortened(found[0]) + "' a second time, expected one line a clip");
+    }
+  }
+  return split;
+}
+
+MotionSplit ReadMotionSplit(const std::string& path) {
+  return MotionSplitFromText(ReadFileBytes(path, kMaxSplitBytes), path);
+}
+
+const MotionSplit& BuiltinMotionSplit() {
+  static const MotionSplit split = MotionSplitFromText(
+      std::string(bodyloom_motion_split_begin, bodyloom_motion_split_end), "assets/lifter/motion_split.txt (built in)");
+  return split;
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The lifter (geometry/lifter_weights.h) as a LibTorch module, and its weights as plain arrays.
+/// Internal: included by neural's own sources only, because it includes LibTorch.
+#pragma once
+
+#include <torch/torch.h>
+
+#include <vector>
+
+#include "geometry/lifter_weights.h"
+
+namespace bodyloom {
+
+struct LifterModuleImpl : torch::nn::Module {
+  LifterModuleImpl(int num_inputs, int width, const std::vector<int>& dilations);
+  /// B×num_inputs×T → B×LifterOutput::kSize×T.
+  torch::Tensor forward(torch::Tensor x);
+
+  torch::nn::Conv1d input{nullptr}, output{nullptr};
+  torch::nn::LayerNorm norm{nullptr};
+  std::vector<torch::nn::LayerNorm> norms;
+  std::vector<torch::nn::Conv1d> dilated, mix;
+  std::vector<int> dilations;
+};
+TORCH_MODULE(LifterModule);
+
+/// The module's numbers as plain arrays.
+LifterWeights ExportLifter(const LifterModule& module);
+/// The other way; throws std::invalid_argument when the sizes differ.
+void ImportLifter(const LifterWeights& weights, LifterModule* module);
+
+}  // namespace bodyloom

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Trains the lifter (geometry/lifter_weights.h): AdamW with a cosine schedule on windows that a source makes up as
+/// they are asked for, exponential moving average of the weights, validation on windows of other seeds.
+///
+/// A run folder holds `metrics.csv` (a line every `report_every` steps), `checkpoint.pt` (replaced whole or not at all)
+/// and, at the end, what the caller writes. A run that was interrupted goes on from its checkpoint and ends with the
+/// same bytes as one that was not (same machine, same number of threads).
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "geometry/lifter_weights.h"
+
+namespace bodyloom {
+
+/// One window of T frames: what the network reads and what it should say (tracking/initialise/lifter_input.h,
+/// geometry/lifter_weights.h).
+struct LifterExample {
+  std::vector<float> features;  ///< T·num_inputs
+  std::vector<float> points;    ///< T·21·3
+  std::vector<float> up;        ///< T·3
+  std::vector<float> contact;   ///< T·2
+};
+/// Fills the example that belongs to a seed; called from several threads.
+using LifterSource = std::function<void(uint64_t seed, LifterExample* example)>;
+
+struct TrainLifterProgress {
+  int step = 0, steps = 0;
+  double loss = 0, distance = 0, nll = 0;
+  double validation_distance = 0;  ///< of the last validation, 0 before the first
+  double seconds = 0;              ///< since this process began training
+};
+
+struct TrainLifterOptions {
+  int num_inputs = 0;   ///< features of a frame
+  int num_frames = 81;  ///< of a window
+  int width = 256;      ///< channels
+  std::vector<int> dilations = {1, 2, 4, 8, 16, 1};
+  int steps = 10000;
+  int batch = 32;
+  double learning_rate = 1.5e-3;
+  int warmup_steps = 100;
+  double weight_decay = 1e-3;
+  double clip_norm = 1;
+  double average = 0.998;  ///< of the moving average of the weights
+  double nll_weight = 0.05, velocity_weight = 0.3;
+  uint64_t seed = 1;
+  int num_threads = 0;         ///< of LibTorch; 0: all cores
+  int report_every = 100;      ///< steps
+  int validate_every = 1000;   ///< steps
+  int checkpoint_every = 500;  ///< steps
+  int validation_windows = 256;
+  std::string run_dir;  ///< exists; metrics.csv and checkpoint.pt are written here
+  bool resume = false;  ///< go on from run_dir/checkpoint.pt
+  /// Return false to stop after a checkpoint.
+  std::function<bool(const TrainLifterProgress&)> progress;
+  [[nodiscard]] bool IsValid(std::string* why) const;
+};
+
+enum class TrainStatus { kFinished, kStopped, kNotFinite };
+
+struct TrainLifterSummary {
+  TrainStatus status = TrainStatus::kNotFinite;
+  std::string message;
+  int steps = 0;                        ///< that the weights have seen
+  double seconds = 0;                   ///< of this process
+  double validation_distance = 0;       ///< mean |d| of the likeliest hypotheses, in torso + leg lengths
+  double validation_best_distance = 0;  ///< of each limb's best hypothesis
+};
+
+struct TrainLifterResult {
+  LifterWeights weights;  ///< the moving average
+  TrainLifterSummary summary;
+};
+
+/// `train` and `validation` are called with seeds that do not repeat within a run. Throws std::invalid_argument for
+/// options that are not valid and std::runtime_error when a file cannot be read or written, or a checkpoint is of
+/// another network. A loss that is not finite ends the run (kNotFinite) with the last checkpoint in place.
+TrainLifterResult TrainLifter(const LifterSource& train, const LifterSource& validation,
+                              const TrainLifterOptions& options);
+
+}  // namespace bodyloom

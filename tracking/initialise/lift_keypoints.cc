@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracking/initialise/lift_keypoints.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "geometry/check.h"
+#include "geometry/parallel.h"
+#include "geometry/rotation.h"
+#include "tracking/initialise/lifter_input.h"
+#include "tracking/initialise/lifter_network.h"
+#include "tracking/initialise/viterbi.h"
+#include "tracking/robust.h"
+
+namespace bodyloom {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double kSlowest = 14;  ///< frames a second; below, frames are put in between
+
+/// The landmark seen in a mirror: left and right exchanged.
+int MirroredPoint(int k) { return k == kLifterNose ? k : ((k - 1) ^ 1) + 1; }
+int MirroredLimb(int limb) { return limb ^ 1; }
+
+/// Frames first, first + stride, … of the clip, with `between` − 1 interpolated frames after each (stride 1 then).
+struct Phase {
+  int first = 0, stride = 1, count = 0, between = 1;
+  [[nodiscard]] int num_samples() const { return (count - 1) * between + 1; }
+};
+
+/// How the frames [begin, end) are read.
+std::vector<Phase> PhasesOf(const std::vector<double>& timestamps, int begin, int end, bool all) {
+  const int count = end - begin;
+  double fps = kLifterRate;
+  if (count > 1 && timestamps[end - 1] > timestamps[begin]) {
+    std::vector<double> steps;
+    for (int t = begin + 1; t < end; ++t) steps.push_back(timestamps[t] - timestamps[t - 1]);
+    std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
+    fps = 1 / std::max(steps[steps.size() / 2], 1e-6);
+  }
+  if (fps < kSlowest) {
+    const int between = std::clamp(static_cast<int>(std::lround(kLifterRate / fps)), 1, 40);
+    return {{begin, 1, count, between}};
+  }
+  const int stride = std::clamp(static_cast<int>(std::lround(fps / kLifterRate)), 1, count);
+  std::vector<Phase> phases;
+  for (int p = 0; p < (all ? stride : 1); ++p)
+    phases.push_back({begin + p, stride, (count - p + stride - 1) / stride, 1});
+  return phases;
+}
+
+/// All frames' rays in the lifter's order of landmarks.
+LifterFrames RaysOf(const KeypointSequence& keypoints, const Camera& camera, bool focal_known) {
+  const int T = keypoints.num_frames();
+  LifterFrames rays;
+  rays.num_frames = T;
+  rays.focal_known = focal_known;
+  rays.x.assign(size_t(T) * kLifterPoints, 0);
+  rays.y = rays.confidence = rays.x;
+  for (int k = 0; k < kLifterPoints; ++k) {
+    const auto it = std::find(keypoints.names.begin(), keypoints.names.end(), LifterPointNames()[k]);
+    if (it == keypoints.names.end()) continue;
+    const int column = static_cast<int>(it - keypoints.names.begin());
+    for (int t = 0; t < T; ++t) {
+      const Keypoint& point = keypoints.at(t, column);
+      if (!(point.confidence > 0) || !std::isfinite(point.x) || !std::isfinite(point.y)) continue;
+      const Vector2d ray = camera.Unproject({point.x, point.y});
+      if (!ray.allFinite()) continue;
+      const size_t i = size_t(t) * kLifterPoints + k;
+      rays.x[i] = static_cast<float>(ray.x());
+      rays.y[i] = static_cast<float>(ray.y());
+      rays.confidence[i] = std::min(point.confidence, 1.0F);
+    }
+  }
+  return rays;
+}
+
+LifterFrames SamplePhase(const LifterFrames& all, const Phase& phase) {
+  LifterFrames frames;
+  frames.focal_known = all.focal_known;
+  frames.num_frames = phase.num_samples();
+  for (int s = 0; s < frames.num_frames; ++s) {
+    const int a = phase.first + (s / phase.between) * phase.stride, part = s % phase.between;
+    const int b = part == 0 ? a : a + phase.stride;
+    const float w = static_cast<float>(part) / static_cast<float>(phase.between);
+    for (int k = 0; k < kLifterPoints; ++k) {
+      const size_t i = size_t(a) * kLifterPoints + k, j = size_t(b) * kLifterPoints + k;
+      frames.x.push_back((1 - w) * all.x[i] + w * all.x[j]);
+      frames.y.push_back((1 - w) * all.y[i] + w * all.y[j]);
+      frames.confidence.push_back(std::min(all.confidence[i], all.confidence[j]));
+    }
+  }
+  return frames;
+}
+
+RowMatrixXf MirrorFeatures(const RowMatrixXf& features) {
+  RowMatrixXf result = features;
+  for (int k = 0; k < kLifterPoints; ++k) {
+    const int from = MirroredPoint(k);
+    result.col(3 * k) = -features.col(3 * from);
+    result.middleCols(3 * k + 1, 2) = features.middleCols(3 * from + 1, 2);
+  }
+  const int motion = 3 * kLifterPoints + 3;
+  result.col(motion) = -features.col(motion);
+  return result;
+}
+
+/// One run's output of one frame; a mirrored run is read as if it were not.
+class OutputReader {
+ public:
+  OutputReader(const RowMatrixXf& output, Eigen::Index row, bool mirrored)
+      : y_(output.row(row).data()), mirrored_(mirrored) {}
+
+  [[nodiscard]] Vector3d TorsoPoint(int i) const { return PointAt(LifterOutput::TorsoOffset(TorsoIndex(i))); }
+  [[nodiscard]] Vector2d TorsoSigma(int i) const { return SigmaAt(LifterOutput::TorsoOffset(TorsoIndex(i))); }
+  [[nodiscard]] Vector3d Up() const { return PointAt(LifterOutput::kUp); }
+  [[nodiscard]] double UpSigma() const { return Sigma(y_[LifterOutput::kUp + 3]); }
+  [[nodiscard]] double Contact(int side) const {
+    return 1 / (1 + std::exp(-double{y_[LifterOutput::kContact + (mirrored_ ? 1 - side : side)]}));
+  }
+  [[nodiscard]] std::vector<LiftedLimb> Limb(int limb) const {
+    const int from = mirrored_ ? MirroredLimb(limb) : limb;
+    const float* logits = y_ + LifterOutput::LogitOffset(from);
+    const float largest = *std::max_element(logits, logits + LifterOutput::kHypotheses);
+    std::vector<LiftedLimb> result(LifterOutput::kHypotheses);
+    double sum = 0;
+    for (int m = 0; m < LifterOutput::kHypotheses; ++m) sum += result[m].weight = std::exp(double{logits[m] - largest});
+    for (int m = 0; m < LifterOutput::kHypotheses; ++m) {
+      result[m].weight /= sum;
+      for (size_t i = 0; i < LifterOutput::LimbPoints(limb).size(); ++i) {
+        const int offset = LifterOutput::PointOffset(from, m, static_cast<int>(i));
+        result[m].points[i] = PointAt(offset);
+        result[m].sigma[i] = SigmaAt(offset);
+      }
+    }
+    return result;
+  }
+
+ private:
+  // The range that training clamps to (neural/lifter/lifter_loss.cc).
+  static double Sigma(float log_sigma) { return std::exp(std::clamp(double{log_sigma}, -5.0, 1.0)); }
+  [[nodiscard]] int TorsoIndex(int i) const {
+    if (!mirrored_) return i;
+    const int point = MirroredPoint(LifterOutput::kTorso[i]);
+    return static_cast<int>(std::find(LifterOutput::kTorso.begin(), LifterOutput::kTorso.end(), point) -
+                            LifterOutput::kTorso.begin());
+  }
+  [[nodiscard]] Vector3d PointAt(int offset) const {
+    return {mirrored_ ? -y_[offset] : y_[offset], y_[offset + 1], y_[offset + 2]};
+  }
+  [[nodiscard]] Vector2d SigmaAt(int offset) const { return {Sigma(y_[offset + 3]), Sigma(y_[offset + 4])}; }
+
+  const float* y_;
+  bool mirrored_;
+};
+
+void SetLimb(int limb, const LiftedLimb& guess, LiftedFrame* frame) {
+  const auto points = LifterOutput::LimbPoints(limb);
+  for (size_t i = 0; i < points.size(); ++i) {
+    frame->points.row(points[i]) = guess.points[i].transpose();
+    frame->sigma.row(points[i]) = guess.sigma[i].transpose();
+  }
+}
+
+const LiftedLimb& Likeliest(const std::vector<LiftedLimb>& guesses) {
+  return *std::max_element(guesses.begin(), guesses.end(),
+                           [](const LiftedLimb& a, const LiftedLimb& b) { return a.weight < b.weight; });
+}
+
+/// The mean of all runs' torsos, and all their hypotheses.
+LiftedFrame Combine(const std::vector<OutputReader>& runs, const Matrix3d& camera_from_virtual) {
+  LiftedFrame frame;
+  frame.camera_from_virtual = camera_from_virtual;
+  frame.points.setZero(kLifterPoints, 3);
+  frame.sigma.setZero(kLifterPoints, 2);
+  const double share = 1.0 / static_cast<double>(runs.size());
+  Vector3d up = Vector3d::Zero();
+  frame.up_sigma = 0;
+  for (const OutputReader& run : runs) {
+    for (size_t i = 0; i < LifterOutput::kTorso.size(); ++i) {
+      const int index = static_cast<int>(i);
+      frame.points.row(LifterOutput::kTorso[i]) += share * (camera_from_virtual * run.TorsoPoint(index)).transpose();
+      frame.sigma.row(LifterOutput::kTorso[i]) += share * run.TorsoSigma(index).transpose();
+    }
+    up += run.Up();
+    frame.up_sigma += share * run.UpSigma();
+    for (int side = 0; side < 2; ++side) frame.contact[side] += share * run.Contact(side);
+    for (int limb = 0; limb < LifterOutput::kLimbs; ++limb) {
+      for (LiftedLimb& guess : run.Limb(limb)) {
+        guess.weight *= share;
+        for (Vector3d& point : guess.points) point = camera_from_virtual * point;
+        frame.limbs[limb].push_back(guess);
+      }
+    }
+  }
+  for (int limb = 0; limb < LifterOutput::kLimbs; ++limb) SetLimb(limb, Likeliest(frame.limbs[limb]), &frame);
+  if (up.norm() > 1e-6) frame.up = (camera_from_virtual * up).normalized();
+  return frame;
+}
+
+/// Frames that no phase has read: in between their neighbours, limbs of the nearer one.
+void FillBetween(const std::vector<char>& read, int begin, int end, std::vector<LiftedFrame>* frames) {
+  int last = -1;
+  for (int t = begin; t < end; ++t) {
+    if (read[t]) {
+      last = t;
+      continue;
+    }
+    int next = t;
+    while (next < end && !read[next]) ++next;
+    if (next == end) {
+      (*frames)[t] = (*frames)[last];
+      continue;
+    }
+    const LiftedFrame &a = (*frames)[last], &b = (*frames)[next];
+    const double w = static_cast<double>(t - last) / (next - last);
+    LiftedFrame frame = w < 0.5 ? a : b;
+    frame.points = (1 - w) * a.points + w * b.points;
+    (*frames)[t] = frame;
+  }
+}
+
+}  // namespace
+
+std::vector<LiftedFrame> LiftKeypoints(const KeypointSequence& keypoints, const Camera& camera, bool focal_known,
+                                       const std::vector<char>& cut_before, const LifterWeights& weights,
+                                       const LiftOptions& options) {
+  const int T = keypoints.num_frames();
+  BODYLOOM_CHECK(weights.num_inputs() == kLifterInputs, "lifter: the weights are for ", weights.num_inputs(),
+                 " inputs, expected ", kLifterInputs);
+  BODYLOOM_CHECK(cut_before.empty() || static_cast<int>(cut_before.size()) == T, "lifter: ", cut_before.size(),
+                 " cut marks for ", T, " frames");
+  const LifterFrames rays = RaysOf(keypoints, camera, focal_known);
+  const auto shows = [&](int t) {
+    const auto first = rays.confidence.begin() + std::ptrdiff_t{t} * kLifterPoints;
+    return std::any_of(first, first + kLifterPoints, [](float c) { return c > 0; });
+  };
+  std::vector<LiftedFrame> result(T);
+  std::vector<Phase> phases;
+  std::vector<std::pair<int, int>> clips;
+  bool any = false;
+  for (int begin = 0; begin < T;) {
+    int end = begin + 1;
+    while (end < T && (cut_before.empty() || !cut_before[end])) ++end;
+    for (const Phase& phase : PhasesOf(keypoints.timestamps, begin, end, options.all_phases)) phases.push_back(phase);
+    clips.emplace_back(begin, end);
+    begin = end;
+  }
+  std::vector<char> read(T, 0);
+  ParallelFor(static_cast<int>(phases.size()), options.num_threads, [&](int p) {
+    const Phase& phase = phases[p];
+    const LifterInput input = MakeLifterInput(SamplePhase(rays, phase));
+    const RowMatrixXf features =
+        Eigen::Map<const RowMatrixXf>(input.features.data(), phase.num_samples(), kLifterInputs);
+    const RowMatrixXf plain = RunLifter(weights, features);
+    const RowMatrixXf mirrored = options.mirrored ? RunLifter(weights, MirrorFeatures(features)) : RowMatrixXf();
+    for (int i = 0; i < phase.count; ++i) {
+      const int t = phase.first + i * phase.stride, s = i * phase.between;
+      std::vector<OutputReader> runs = {OutputReader(plain, s, false)};
+      if (options.mirrored) runs.emplace_back(mirrored, s, true);
+      result[t] = Combine(runs, input.camera_from_virtual[s].cast<double>());
+      read[t] = 1;
+    }
+  });
+  for (const auto& [begin, end] : clips) FillBetween(read, begin, end, &result);
+  for (int t = 0; t < T; ++t) any |= result[t].seen = shows(t);
+  if (!any) result.clear();
+  return result;
+}
+
+int ChooseLimbs(const std::vector<double>& timestamps, const std::vector<char>& cut_before,
+                const ChooseLimbsOptions& options, std::vector<LiftedFrame>* frames) {
+  const size_t T = frames->size();
+  int changed = 0;
+  for (int limb = 0; limb < LifterOutput::kLimbs; ++limb) {
+    const size_t n = LifterOutput::LimbPoints(limb).size();
+    std::vector<std::vector<double>> unary(T);
+    for (size_t t = 0; t < T; ++t) {
+      for (const LiftedLimb& guess : (*frames)[t].limbs[limb]) unary[t].push_back(-std::log(guess.weight + 1e-6));
+    }
+    const std::vector<int> path = Viterbi(unary, [&](size_t t, int a, int b) {
+      if (!cut_before.empty() && cut_before[t]) return 0.0;
+      const LiftedLimb &from = (*frames)[t - 1].limbs[limb][a], &to = (*frames)[t].limbs[limb][b];
+      double squared = 0;
+      for (size_t i = 0; i < std::min<size_t>(n, 2); ++i) squared += (from.points[i] - to.points[i]).squaredNorm();
+      const double sigma = std::hypot(options.jitter, options.speed * (timestamps[t] - timestamps[t - 1]));
+      return 0.5 * GemanMcClure(squared / (sigma * sigma), options.kernel).rho;
+    });
+    for (size_t t = 0; t < T; ++t) {
+      const LiftedLimb& chosen = (*frames)[t].limbs[limb][path[t]];
+      changed += &chosen != &Likeliest((*frames)[t].limbs[limb]);
+      SetLimb(limb, chosen, &(*frames)[t]);
+    }
+  }
+  return changed;
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+/// 2D landmarks of a clip → 3D landmarks with their uncertainty, by the lifter.
+///
+/// The network works at about 20 frames a second. Faster clips are read in k = round(fps/20) interleaved phases, slower
+/// ones with interpolated frames in between. It runs a second time on the mirrored clip: torso landmarks, up and
+/// contact are averaged, and a limb's hypotheses of both runs stand side by side. A cut ends one clip and begins
+/// another.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "geometry/arrays.h"
+#include "geometry/camera.h"
+#include "geometry/lifter_weights.h"
+#include "geometry/observations.h"
+
+namespace bodyloom {
+
+/// One guess for the landmarks LifterOutput::LimbPoints(limb) of a limb.
+struct LiftedLimb {
+  double weight = 0;                      ///< probability; the hypotheses of a limb sum to 1
+  std::array<Eigen::Vector3d, 4> points;  ///< as LiftedFrame::points
+  std::array<Eigen::Vector2d, 4> sigma;
+};
+
+struct LiftedFrame {
+  bool seen = false;  ///< the frame shows at least one landmark; otherwise its neighbours speak for it
+  Eigen::Matrix3d camera_from_virtual = Eigen::Matrix3d::Identity();
+  /// 21×3 relative to the mid-hip, camera axes, in units of the body's torso + leg length. Limbs: the likeliest
+  /// hypothesis, until ChooseLimbs() has spoken.
+  MatrixX3d points;
+  /// 21×2: scale of the error across and along the view, same units (lifter_weights.h says of which density).
+  Eigen::Matrix<double, Eigen::Dynamic, 2> sigma;
+  std::array<std::vector<LiftedLimb>, LifterOutput::kLimbs> limbs;
+  Eigen::Vector3d up = Eigen::Vector3d(0, -1, 0);  ///< world up, camera axes, unit
+  double up_sigma = 1;
+  Eigen::Vector2d contact = Eigen::Vector2d::Zero();  ///< probability that the left and the right foot stand
+};
+
+struct LiftOptions {
+  bool mirrored = true;    ///< the second run
+  bool all_phases = true;  ///< false: one phase, frames in between interpolated; faster and rougher
+  int num_threads = 1;
+};
+
+/// One entry a frame; empty when no landmark is ever seen. `cut_before` (T, or empty) marks frames that do not continue
+/// the one before. Throws std::invalid_argument for weights of another number of inputs.
+std::vector<LiftedFrame> LiftKeypoints(const KeypointSequence& keypoints, const Camera& camera, bool focal_known,
+                                       const std::vector<char>& cut_before, const LifterWeights& weights,
+                                       const LiftOptions& options);
+
+struct ChooseLimbsOptions {
+  double speed = 3.0;    ///< lengths (torso + leg) a second, σ of a limb's landmarks relative to the body
+  double jitter = 0.05;  ///< lengths, σ of the guesses from frame to frame
+  double kernel = 3;     ///< a jump costs no more than this many σ
+};
+
+/// Picks one hypothesis of each limb in every frame: the path of least Σ −log weight + Σ ρ(jump), and writes it to
+/// `points` and `sigma`. Returns the number of frame–limb pairs in which that is not the likeliest hypothesis.
+int ChooseLimbs(const std::vector<double>& timestamps, const std::vector<char>& cut_before,
+                const ChooseLimbsOptions& options, std::vector<LiftedFrame>* frames);
+
+}  // namespace bodyloom

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracking/initialise/lifted_start.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "geometry/posed_body.h"
+#include "geometry/rotation.h"
+#include "tracking/initialise/inverse_kinematics.h"
+#include "tracking/initialise/joint_hypotheses.h"
+#include "tracking/initialise/lifter_input.h"
+#include "tracking/robust.h"
+
+namespace bodyloom {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr double kRayKernel = 0.15;  ///< metres off its ray at which a landmark stops pulling
+constexpr double kNearest = 0.3;     ///< metres; a person nearer than that is a failed estimate
+constexpr double kMinConfidence = 0.1;
+
+struct Sight {
+  int landmark;
+  Vector3d ray;  ///< unit
+  double weight;
+};
+
+/// Where the mid-hip is, from the rays of one frame.
+std::optional<Vector3d> PlaceOnRays(const std::vector<Sight>& sights, const MatrixX3d& offsets) {
+  if (sights.size() < 3) return std::nullopt;
+  Vector3d hips = Vector3d::Zero();
+  for (int pass = 0; pass < 4; ++pass) {
+    Matrix3d A = Matrix3d::Zero();
+    Vector3d b = Vector3d::Zero();
+    for (const Sight& sight : sights) {
+      const Matrix3d across = Matrix3d::Identity() - sight.ray * sight.ray.transpose();
+      const Vector3d x = offsets.row(sight.landmark).transpose();
+      double weight = sight.weight;
+      if (pass > 0) weight *= GemanMcClure((across * (x + hips)).squaredNorm() / (kRayKernel * kRayKernel), 1).weight;
+      A += weight * across;
+      b -= weight * across * x;
+    }
+    const Eigen::LDLT<Matrix3d> solver(A);
+    // Rays that are nearly parallel do not tell the depth.
+    if (solver.info() != Eigen::Success || !(solver.vectorD().minCoeff() > 1e-6 * solver.vectorD().maxCoeff())) {
+      return std::nullopt;
+    }
+    hips = solver.solve(b);
+  }
+  if (!hips.allFinite() || hips.z() < kNearest) return std::nullopt;
+  return hips;
+}
+
+std::vector<Sight> SightsOf(const KeypointSequence& keypoints, const std::array<int, kLifterPoints>& columns,
+                            const Camera& camera, int t) {
+  std::vector<Sight> sights;
+  for (int k = 0; k < kLifterPoints; ++k) {
+    if (columns[k] < 0) continue;
+    const Keypoint& point = keypoints.at(t, columns[k]);
+    if (!(point.confidence >= kMinConfidence) || !std::isfinite(point.x) || !std::isfinite(point.y)) continue;
+    const Eigen::Vector2d ray = camera.Unproject({point.x, point.y});
+    if (!ray.allFinite()) continue;
+    const double c = std::min(1.0F, point.confidence);
+    sights.push_back({k, Vector3d(ray.x(), ray.y(), 1).normalized(), c * c});
+  }
+  return sights;
+}
+
+/// Positions of frames that have none: between their neighbours', constant beyond the ends. False when none is known.
+bool FillPositions(const std::vector<double>& timestamps, std::vector<std::optional<Vector3d>>* positions) {
+  const int T = static_cast<int>(positions->size());
+  int last = -1;
+  for (int t = 0; t <= T; ++t) {
+    if (t < T && !(*positions)[t]) continue;
+    if (t == T && last < 0) return false;
+    for (int gap = last + 1; gap < t; ++gap) {
+      if (last < 0 || t == T) {
+        (*positions)[gap] = (*positions)[last < 0 ? t : last];
+      } else {
+        const double s = (timestamps[gap] - timestamps[last]) / (timestamps[t] - timestamps[last]);
+        (*positions)[gap] = (1 - s) * *(*positions)[last] + s * *(*positions)[t];
+      }
+    }
+    last = t;
+  }
+  return true;
+}
+
+}  // namespace
+
+LiftedStart StartFromLifter(const KeypointSequence& keypoints, const std::vector<char>& cut_before,
+                            const Camera& camera, bool focal_known, const BodyModel& body, const Eigen::VectorXd& betas,
+                            const LifterWeights& weights, int num_threads) {
+  LiftedStart start;
+  LiftOptions lift_options;
+  lift_options.num_threads = num_threads;
+  start.frames = LiftKeypoints(keypoints, camera, focal_known, cut_before, weights, lift_options);
+  if (start.frames.empty()) return start;
+  ChooseLimbs(keypoints.timestamps, cut_before, {}, &start.frames);
+
+  BodyPose rest;
+  rest.rotations.assign(body.num_joints(), Matrix3d::Identity());
+  const MatrixX3d rest_joints = body.RestJoints(betas), rest_points = PoseLandmarks(body, betas, rest, CocoNames());
+  std::vector<float> measured(3 * kLifterPoints, 0);
+  for (int k = 0; k < 17; ++k) {
+    for (int c = 0; c < 3; ++c) measured[3 * k + c] = static_cast<float>(rest_points(k, c));
+  }
+  start.metres = LifterReferenceLength(measured);
+
+  std::array<int, kLifterPoints> columns;
+  for (int k = 0; k < kLifterPoints; ++k) {
+    const auto it = std::find(keypoints.names.begin(), keypoints.names.end(), LifterPointNames()[k]);
+    columns[k] = it == keypoints.names.end() ? -1 : static_cast<int>(it - keypoints.names.begin());
+  }
+  const int T = keypoints.num_frames();
+  std::vector<std::optional<Vector3d>> hips(T);
+  for (int t = 0; t < T; ++t) {
+    hips[t] = PlaceOnRays(SightsOf(keypoints, columns, camera, t), start.metres * start.frames[t].points);
+  }
+  if (!FillPositions(keypoints.timestamps, &hips)) {
+    start.frames.clear();
+    return start;
+  }
+  Matrix3d torso = Matrix3d::Identity();
+  for (int t = 0; t < T; ++t) {
+    const MatrixX3d points = (start.metres * start.frames[t].points.topRows(17)).rowwise() + hips[t]->transpose();
+    TorsoFrame(points, &torso);  // a degenerate torso keeps its predecessor's axes
+    const BodyPose pose = PoseFromJoints(body, rest_joints, rest_points, points, torso);
+    start.initial.states.push_back({pose.rotations, pose.trans});
+    start.initial.from_observation.push_back(start.frames[t].seen);
+  }
+  start.initial.betas = betas;
+  return start;
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Runs the lifter (geometry/lifter_weights.h) with plain matrix products: about 7 million of them a frame.
+#pragma once
+
+#include "geometry/arrays.h"
+#include "geometry/lifter_weights.h"
+
+namespace bodyloom {
+
+/// T×LifterOutput::kSize for T×num_inputs features of consecutive frames; beyond the ends is nothing, as in training.
+/// Throws std::invalid_argument when the features have another number of columns.
+RowMatrixXf RunLifter(const LifterWeights& weights, const RowMatrixXf& features);
+
+}  // namespace bodyloom
