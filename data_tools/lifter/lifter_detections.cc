@@ -42,25 +42,32 @@ size_t At(int t, int k) { return static_cast<size_t>(t) * kLifterPoints + k; }
 /// By how much the body in front lowers each point's confidence: 1 in view, kHiddenFactor hidden.
 void HideBehindBody(const Vector3f* p, float size, std::array<float, kLifterPoints>* factor) {
   const float inverse = 1 / (kSoftness * size);
+  std::array<Vector3f, kLifterPoints> ray;
+  std::array<float, kLifterPoints> distance{};
+  for (int k = 5; k < kLifterPoints; ++k) {
+    distance[k] = p[k].norm();
+    ray[k] = p[k] / distance[k];
+  }
   for (const Capsule& c : kCapsules) {
-    const Vector3f a = 0.5F * (p[c.from] + p[c.from_other]), b = 0.5F * (p[c.to] + p[c.to_other]), d = b - a;
-    const float near = std::min(a.z(), b.z());
+    const Vector3f a = 0.5F * (p[c.from] + p[c.from_other]), d = 0.5F * (p[c.to] + p[c.to_other]) - a;
+    const float aa = a.squaredNorm(), ad = a.dot(d), dd = d.squaredNorm(), reach = (c.radius + 3 * kSoftness) * size;
     for (int k = 5; k < kLifterPoints; ++k) {
-      if ((c.own & Bit(k)) != 0 || p[k].z() < near + kBehind * size * 0.5F) continue;
-      // The point of the segment nearest to the ray o + s·r towards the landmark.
-      const Vector3f r = p[k] / p[k].norm();
-      const Vector3f across = d - d.dot(r) * r, from = a - a.dot(r) * r;
-      const float along = std::clamp(-from.dot(across) / std::max(across.squaredNorm(), 1e-8F), 0.0F, 1.0F);
-      const float miss = (from + along * across).norm();
-      if (miss > (c.radius + 3 * kSoftness) * size) continue;
-      const float depth = p[k].norm() - (a + along * d).dot(r);
+      if ((c.own & Bit(k)) != 0) continue;
+      // The point a + s·d of the segment nearest to the ray towards the landmark.
+      const float ar = a.dot(ray[k]), dr = d.dot(ray[k]);
+      const float across2 = std::max(dd - dr * dr, 1e-8F), from_across = ad - ar * dr;
+      const float s = std::clamp(-from_across / across2, 0.0F, 1.0F);
+      const float miss2 = aa - ar * ar + s * (2 * from_across + s * across2);
+      const float depth = distance[k] - (ar + s * dr);
+      if (miss2 > reach * reach || depth < 0) continue;
+      const float miss = std::sqrt(std::max(0.0F, miss2));
       const float hidden =
           Logistic((c.radius * size - miss) * 2 * inverse) * Logistic((depth - kBehind * size) * 2 * inverse);
       (*factor)[k] = std::min((*factor)[k], 1 - (1 - static_cast<float>(kHiddenFactor)) * hidden);
     }
   }
   for (const int left : {kLifterLeftShoulder, kLifterLeftHip}) {
-    const float apart = p[left].norm() - p[left + 1].norm();
+    const float apart = distance[left] - distance[left + 1];
     const float away = Logistic((std::abs(apart) - kTurnedAway * size) * inverse);
     (*factor)[apart > 0 ? left : left + 1] *= 1 - (1 - kTurnedAwayFactor) * away;
   }

@@ -141,8 +141,8 @@ PoseSequence LifterWindowGenerator::MakePoses(uint64_t seed, const LifterPerson&
   } else {
     AddExercises(options_, HashRandom(seed, {kExercises}), &poses);
   }
-  // On the floor the root must not be turned off it.
-  PerturbPoses(options_, floor ? 0.25F : 1.0F, HashRandom(seed, {kPerturb}), &poses);
+  // What lies on the floor shall not be turned off it, nor pushed up by its limbs.
+  PerturbPoses(options_, floor ? 0.6F : 1.0F, floor ? 0.2F : 1.0F, HashRandom(seed, {kPerturb}), &poses);
   limits_.Apply(&poses);
   return poses;
 }

@@ -187,7 +187,8 @@ void AddExercises(const LifterWindowOptions& options, HashRandom random, PoseSeq
   }
 }
 
-void PerturbPoses(const LifterWindowOptions& options, float root, HashRandom random, PoseSequence* poses) {
+void PerturbPoses(const LifterWindowOptions& options, float share, float root_share, HashRandom random,
+                  PoseSequence* poses) {
   struct Row {
     int joint;
     Vector3f sd;
@@ -209,7 +210,7 @@ void PerturbPoses(const LifterWindowOptions& options, float root, HashRandom ran
     SmoothNoise(poses->num_frames, knot_frames, &normal, &y);
     SmoothNoise(poses->num_frames, knot_frames, &normal, &z);
     if (level == 0) continue;
-    const Vector3f sd = (row.joint == kPelvis ? root * level : level) * row.sd;
+    const Vector3f sd = ((row.joint == kPelvis ? root_share : share) * level) * row.sd;
     for (int t = 0; t < poses->num_frames; ++t) {
       Quaternionf& q = poses->at(t, row.joint);
       q = q * TurnBy(sd.cwiseProduct(Vector3f(x[t], y[t], z[t])));

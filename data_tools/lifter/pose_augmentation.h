@@ -47,6 +47,7 @@ void AddExercises(const LifterWindowOptions& options, HashRandom random, PoseSeq
 /// Every joint turns a little more, smoothly in time: shoulders by 0.5 rad, elbows and knees 0.4, hips 0.3, root and
 /// head 0.2, spine, collars and ankles 0.1 to 0.2, times a level that is uniform up to options.perturbation; the root
 /// by `root` of that.
-void PerturbPoses(const LifterWindowOptions& options, float root, HashRandom random, PoseSequence* poses);
+void PerturbPoses(const LifterWindowOptions& options, float share, float root_share, HashRandom random,
+                  PoseSequence* poses);
 
 }  // namespace bodyloom
