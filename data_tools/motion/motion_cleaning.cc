@@ -12,6 +12,7 @@
 namespace bodyloom {
 namespace {
 
+constexpr double kRounding = 1e-6;  // of times that are sums of frame steps
 constexpr double kDegree = M_PI / 180;
 constexpr double kMaxThighRoll = 110 * kDegree, kMaxSpineTurn = 80 * kDegree, kMaxAnkleTurn = 110 * kDegree;
 
@@ -103,9 +104,10 @@ CleanedMotion CleanMotion(const Motion& recorded, const MotionCleaningOptions& o
   const std::vector<MatrixX3d> joints = PoseSmplJoints(motion);
 
   std::vector<char> is_out(T, 0), begins_piece(T, 0);
+  const double margin_s = options.margin_s * (1 + kRounding);
   const auto leave_out_around = [&](int t) {
-    for (int s = t; s >= 0 && times[t] - times[s] <= options.margin_s; --s) is_out[s] = 1;
-    for (int s = t; s < T && times[s] - times[t] <= options.margin_s; ++s) is_out[s] = 1;
+    for (int s = t; s >= 0 && times[t] - times[s] <= margin_s; --s) is_out[s] = 1;
+    for (int s = t; s < T && times[s] - times[t] <= margin_s; ++s) is_out[s] = 1;
   };
   for (int t = 0; t < T; ++t) {
     if (IsBroken(motion, t)) {

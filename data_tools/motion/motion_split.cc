@@ -17,7 +17,13 @@ namespace {
 
 constexpr size_t kMaxSplitBytes = size_t{1} << 26;
 
-std::string Shortened(const std::string& word) { return word.size() > 40 ? word.substr(0, 40) + "…" : word; }
+/// A word of the file as an error message may show it.
+std::string Shown(const std::string& word) {
+  std::string shown = word.size() > 40 ? word.substr(0, 40) + "..." : word;
+  std::replace_if(
+      shown.begin(), shown.end(), [](char c) { return c >= 0 && c < ' '; }, '?');
+  return shown;
+}
 
 }  // namespace
 
@@ -74,11 +80,11 @@ MotionSplit MotionSplitFromText(const std::string& text, const std::string& wher
     if (std::find(classes.begin(), classes.end(), found[1]) == classes.end()) {
       std::string known;
       for (const std::string& name : classes) known += (known.empty() ? "" : ", ") + name;
-      fail("found class '" + Shortened(found[1]) + "', expected one of " + known);
+      fail("found class '" + Shown(found[1]) + "', expected one of " + known);
     }
-    if (found[2] != "train" && found[2] != "test") fail("found '" + Shortened(found[2]) + "', expected train or test");
+    if (found[2] != "train" && found[2] != "test") fail("found '" + Shown(found[2]) + "', expected train or test");
     if (!split.entries_.try_emplace(found[0], MotionSplitEntry{found[1], found[2] == "test"}).second) {
-      fail("'" + Shortened(found[0]) + "' a second time, expected one line a clip");
+      fail("'" + Shown(found[0]) + "' a second time, expected one line a clip");
     }
   }
   return split;
