@@ -141,7 +141,8 @@ void AddTrackOptions(CLI::App& app, TrackCommand* command) {
          "--no-uncertainty", [&s] { s.estimate_uncertainty = false; }, "leave out joint_sigma")
       ->group(solve);
   app.add_flag_callback(
-         "--no-skip", [&s] { s.skip_unneeded = false; }, "compute also what nobody needs: same answer, slower")
+         "--no-skip", [&s] { s.skip_unneeded = false; },
+         "solve also for joints that no landmark moves: nearly the same answer, slower")
       ->group(solve);
 }
 
