@@ -2,8 +2,8 @@
 #include "apps/demo_page.h"
 
 #include <algorithm>
-#include <cstdio>
 
+#include "apps/fixed_text.h"
 #include "apps/report_page.h"
 #include "data_tools/video/video_reader.h"
 #include "geometry/check.h"
@@ -13,12 +13,6 @@ namespace bodyloom {
 namespace {
 
 constexpr int kStills = 8, kStillHeightPx = 300;
-
-std::string Fixed(double value, int digits) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
-  return text;
-}
 
 }  // namespace
 

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
 
+#include "apps/fixed_text.h"
 #include "geometry/check.h"
 #include "render/contact_sheet.h"
 #include "render/overlay.h"
@@ -40,12 +40,6 @@ void CheckBody(const BodyModel& body, RenderKind kind, const std::string& where)
     throw std::runtime_error(where + ": the body '" + body.name() +
                              "' has no UV coordinates; give one that has with --body");
   }
-}
-
-std::string Rounded(double value, int digits) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
-  return text;
 }
 
 }  // namespace
@@ -157,7 +151,7 @@ Image RenderPicture::Draw(int frame, double turn_deg, const Image* background) {
 }
 
 std::string RenderPicture::Caption(int frame, double turn_deg) const {
-  std::string text = "frame " + std::to_string(frame) + "   " + Rounded(track_.motion.timestamps[frame], 2) + " s   " +
+  std::string text = "frame " + std::to_string(frame) + "   " + Fixed(track_.motion.timestamps[frame], 2) + " s   " +
                      ToString(track_.frame_status[frame]);
   if (track_.frame_status[frame] == FrameStatus::kLost) {
     text += ", no body";
@@ -165,7 +159,7 @@ std::string RenderPicture::Caption(int frame, double turn_deg) const {
   if (view_) {
     double yaw = std::fmod(options_.view_yaw_deg + turn_deg, 360.0);
     yaw += yaw < 0 ? 360 : 0;
-    text += "   from " + Rounded(yaw, 0) + " deg";
+    text += "   from " + Fixed(yaw, 0) + " deg";
   }
   return text;
 }
@@ -182,7 +176,7 @@ std::string RenderPicture::Legend() const {
     case RenderKind::kNormal:
       return "normals: red right, green up, blue towards the viewer";
     case RenderKind::kDepth:
-      return "depth: " + Rounded(near_m_, 1) + " m warm to " + Rounded(far_m_, 1) + " m cold";
+      return "depth: " + Fixed(near_m_, 1) + " m warm to " + Fixed(far_m_, 1) + " m cold";
   }
   return "";
 }

@@ -198,6 +198,7 @@ class ArraySink : public RenderSink {
     request.part = arrays_.contains("part");
     request.chart_uv = arrays_.contains("uv");
     request.normal = arrays_.contains("normal");
+    if (request.normal) request.vertex_normals = &normals_.Compute(placed.vertices, body_.data().faces);
     request.depth = has_depth;
     ResolvePixels(buffer_, body_, placed.vertices, placed.camera, request, &resolved_);
     if (request.part) Copy(resolved_.part, 1, placed.camera, first_pixel, &arrays_.at("part"));
@@ -230,6 +231,7 @@ class ArraySink : public RenderSink {
   size_t count_ = 0;
   VisibilityBuffer buffer_;
   ResolvedPixels resolved_;
+  VertexNormalsOfMesh normals_;
 };
 
 }  // namespace

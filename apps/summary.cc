@@ -4,19 +4,14 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <nlohmann/json.hpp>
+
+#include "apps/fixed_text.h"
 
 namespace bodyloom {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string Fixed(double value, int digits) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
-  return text;
-}
 
 std::string Join(const std::vector<std::string>& parts, const std::string& separator) {
   std::string text;

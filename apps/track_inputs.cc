@@ -7,6 +7,7 @@
 #include "data_tools/builtin_body.h"
 #include "data_tools/formats/npz.h"
 #include "data_tools/motion/load_motion.h"
+#include "data_tools/observations/iuv_to_dense.h"
 #include "data_tools/observations/load_detections.h"
 #include "data_tools/observations/observations_npz.h"
 #include "data_tools/observations/part_labels.h"
@@ -47,17 +48,9 @@ void UseVideo(const std::string& path, TrackInputs* inputs) {
   }
 }
 
-DenseSequence ReadDense(const std::string& path, const BodyModel& body) {
-  DenseSequence dense = ReadDenseObservations(path);
-  for (const auto& frame : dense.frames) {
-    for (const DenseKeypoint& point : frame) {
-      if (point.face < 0 || point.face >= body.num_faces()) {
-        throw std::runtime_error(Concatenate(path, ": a dense keypoint lies on face ", point.face, ", the body '",
-                                             body.name(), "' has ", body.num_faces(), " faces"));
-      }
-    }
-  }
-  return dense;
+/// Frame rate of observations that do not say; 0 when the command and the video do not say either.
+double FrameRate(const TrackCommand& command, const TrackInputs& inputs) {
+  return command.fps > 0 ? command.fps : inputs.video_fps;
 }
 
 Motion ReadInitialiser(const std::string& path, int num_frames) {
@@ -100,6 +93,18 @@ void AgreeOnImageSize(const std::string& path, int width, int height, Camera* ca
   }
 }
 
+void UseDense(const std::string& path, const TrackCommand& command, TrackInputs* inputs) {
+  LoadDenseOptions options;
+  const double fps = FrameRate(command, *inputs);
+  if (fps > 0) {
+    options.fps = fps;
+  }
+  options.person = command.person;
+  options.uv_sigma = command.dense_uv_sigma;
+  inputs->dense = LoadDense(path, *inputs->body, options);
+  AgreeOnImageSize(path, inputs->dense->image_width, inputs->dense->image_height, &inputs->camera.camera);
+}
+
 }  // namespace
 
 TrackSequenceInput TrackInputs::ForTracker() const {
@@ -135,7 +140,7 @@ TrackInputs LoadTrackInputs(const TrackCommand& command) {
       LoadDetectionsOptions options;
       options.view = command.view;
       options.person = command.person;
-      options.fps = command.fps > 0 ? command.fps : inputs.video_fps;
+      options.fps = FrameRate(command, inputs);
       options.image_width = camera.width;
       options.image_height = camera.height;
       options.min_confidence = command.min_confidence;
@@ -144,17 +149,18 @@ TrackInputs LoadTrackInputs(const TrackCommand& command) {
       AgreeOnImageSize(command.detections, inputs.keypoints->image_width, inputs.keypoints->image_height, &camera);
     }
     if (holds.dense && command.dense.empty()) {
-      inputs.dense = ReadDense(command.detections, *inputs.body);
-      AgreeOnImageSize(command.detections, inputs.dense->image_width, inputs.dense->image_height, &camera);
+      UseDense(command.detections, command, &inputs);
     }
   }
   if (!command.dense.empty()) {
-    inputs.dense = ReadDense(command.dense, *inputs.body);
-    AgreeOnImageSize(command.dense, inputs.dense->image_width, inputs.dense->image_height, &camera);
+    UseDense(command.dense, command, &inputs);
   }
   if (!command.part_labels.empty()) {
     ReadPartLabelsOptions options;
-    options.fps = command.fps > 0 ? command.fps : inputs.video_fps > 0 ? inputs.video_fps : options.fps;
+    const double fps = FrameRate(command, inputs);
+    if (fps > 0) {
+      options.fps = fps;
+    }
     inputs.part_labels = ReadPartLabels(command.part_labels, options);
     AgreeOnImageSize(command.part_labels, inputs.part_labels->image_width, inputs.part_labels->image_height, &camera);
     if (!inputs.keypoints && !inputs.dense) {

@@ -42,7 +42,15 @@ void AddTrackOptions(CLI::App& app, TrackCommand* command) {
          "keypoints2d pickle, or this project's .npz")
       ->group(seen)
       ->type_name("FILE");
-  app.add_option("--dense", c.dense, "dense surface keypoints: this project's .npz")->group(seen)->type_name("FILE");
+  app.add_option("--dense", c.dense,
+                 "dense surface keypoints: a folder of DensePose *_IUV.png (one a frame), or this project's .npz")
+      ->group(seen)
+      ->type_name("FILE");
+  app.add_option("--dense-uv-sigma", c.dense_uv_sigma,
+                 "noise of the dense keypoints' U and V, standard deviation in chart units, 0: not known, which leaves "
+                 "out whitening and rendered UV (default: what the .npz says; 0.03 for DensePose images)")
+      ->group(seen)
+      ->check(Quiet(CLI::Range(0.0, 1.0)));
   app.add_option(
          "--part-labels", c.part_labels,
          "DensePose part of every pixel: .npz with uint8 `labels`, frames x height x width; alone or beside the "
@@ -133,7 +141,8 @@ void AddTrackOptions(CLI::App& app, TrackCommand* command) {
          "--no-uncertainty", [&s] { s.estimate_uncertainty = false; }, "leave out joint_sigma")
       ->group(solve);
   app.add_flag_callback(
-         "--no-skip", [&s] { s.skip_unneeded = false; }, "compute also what nobody needs: same answer, slower")
+         "--no-skip", [&s] { s.skip_unneeded = false; },
+         "solve also for joints that no landmark moves: nearly the same answer, slower")
       ->group(solve);
 }
 
@@ -149,6 +158,9 @@ CameraKnowledge CameraKnowledgeOf(const TrackCommand& command) {
 void CheckTrackOptions(const TrackCommand& command) {
   if (command.detections.empty() && command.dense.empty() && command.part_labels.empty()) {
     throw UsageError("--detections is required (or --dense, or --part-labels)");
+  }
+  if (command.dense_uv_sigma && command.dense.empty() && !command.detections.ends_with(".npz")) {
+    throw UsageError("--dense-uv-sigma is the noise of dense keypoints: give --dense");
   }
   if (command.out.empty() && !command.plan) {
     throw UsageError("--out is required (or --plan, to see what would be done)");

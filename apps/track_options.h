@@ -2,6 +2,7 @@
 /// What `bodyloom track` can be asked, and the flags that ask it.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "tracking/track_sequence.h"
@@ -14,14 +15,15 @@ namespace bodyloom {
 
 struct TrackCommand {
   // What was seen.
-  std::string detections;     ///< 2D joints (and dense keypoints, when the file holds both)
-  std::string dense;          ///< dense surface keypoints from a file or folder of their own
-  std::string part_labels;    ///< DensePose part of every pixel
-  std::string view;           ///< camera of a file that has several
-  int person = 0;             ///< 0: the largest and longest in view
-  double fps = 0;             ///< of detections that do not say; 0: the video's, else 30
-  double min_confidence = 0;  ///< detections below count as missing
-  std::string convention;     ///< OpenPose model, when it should not be detected
+  std::string detections;                ///< 2D joints (and dense keypoints, when the file holds both)
+  std::string dense;                     ///< dense surface keypoints from a file or folder of their own
+  std::optional<double> dense_uv_sigma;  ///< their noise on the surface, chart units; none: what their source says
+  std::string part_labels;               ///< DensePose part of every pixel
+  std::string view;                      ///< camera of a file that has several
+  int person = 0;                        ///< 0: the largest and longest in view
+  double fps = 0;                        ///< of detections that do not say; 0: the video's, else 30
+  double min_confidence = 0;             ///< detections below count as missing
+  std::string convention;                ///< OpenPose model, when it should not be detected
 
   // The camera.
   std::string cameras;                    ///< calibration file or folder

@@ -37,19 +37,24 @@ struct EvaluateCommand {
   std::string cameras, sequence, view;
 };
 
-bool IsPartLabelFile(const std::string& path) { return path.ends_with(".npz") && HasPartLabels(ReadNpz(path)); }
+/// Against a file: what kind of truth it is shows in what it holds.
+Evaluation EvaluateAgainstFile(const EvaluateCommand& command, const Track& track) {
+  const NpzArrays arrays = ReadNpz(command.truth);
+  const std::shared_ptr<const BodyModel> body = BodyOrBuiltin(command.body);
+  if (!HasPartLabels(arrays)) {
+    return EvaluateAgainstTruth(track, TrackFromArrays(arrays, command.truth), *body);
+  }
+  ReadPartLabelsOptions as_they_are;
+  as_they_are.mend_strays = false;
+  return EvaluatePartLabels(track, PartLabelsFromNpz(arrays, command.truth, as_they_are), *body);
+}
 
 Evaluation Evaluate(const EvaluateCommand& command) {
   namespace fs = std::filesystem;
   const fs::path truth = command.truth;
   const Track track = ReadTrack(command.track);
   if (!fs::is_directory(truth)) {
-    if (IsPartLabelFile(command.truth)) {
-      ReadPartLabelsOptions as_they_are;
-      as_they_are.mend_strays = false;
-      return EvaluatePartLabels(track, ReadPartLabels(command.truth, as_they_are), *BodyOrBuiltin(command.body));
-    }
-    return EvaluateAgainstTruth(track, ReadTrack(command.truth), *BodyOrBuiltin(command.body));
+    return EvaluateAgainstFile(command, track);
   }
   if (fs::exists(truth / "keypoints2d")) {
     if (command.sequence.empty()) {

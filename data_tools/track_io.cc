@@ -172,7 +172,7 @@ class TrackReader {
       if (status[t] < 0 || status[t] > 3) {
         Fail(Concatenate("frame_status: frame ", t, " is ", status[t], ", expected 0 to 3"));
       }
-      const bool known = track_.motion.poses.row(t).allFinite() && track_.motion.trans.row(t).allFinite();
+      const bool known = track_.motion.HasPose(t);
       auto frame = static_cast<FrameStatus>(status[t]);
       if (!known && frame != FrameStatus::kLost) {
         if (given) Fail(Concatenate("frame ", t, " is ", ToString(frame), ", but its pose holds NaN"));

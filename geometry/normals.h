@@ -57,6 +57,7 @@ class MeshNormals {
   MeshNormals(const MatrixX3i& faces, int num_vertices, NormalWeighting weighting = NormalWeighting::kArea);
 
   [[nodiscard]] int num_vertices() const { return static_cast<int>(adjacency_.corner_begin.size()) - 1; }
+  [[nodiscard]] const MatrixX3i& faces() const { return faces_; }
   [[nodiscard]] const MeshAdjacency& adjacency() const { return adjacency_; }
 
   /// One mesh: V×3 in, V×3 out. Throws std::invalid_argument when the sizes are wrong or a vertex is not finite.

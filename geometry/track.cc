@@ -42,8 +42,7 @@ const std::vector<std::string>& CocoNames() {
 }
 
 bool Track::HasResult(int t) const {
-  return motion.poses.row(t).allFinite() && motion.trans.row(t).allFinite() &&
-         (camera.model != CameraModel::kWeakPerspective || weak_camera.row(t).allFinite());
+  return motion.HasPose(t) && (camera.model != CameraModel::kWeakPerspective || weak_camera.row(t).allFinite());
 }
 
 }  // namespace bodyloom

@@ -22,6 +22,8 @@ struct Motion {
   std::vector<double> timestamps;  ///< T seconds
   enum class Up { kY, kZ, kCamera } up = Up::kY;
   [[nodiscard]] int num_frames() const { return static_cast<int>(poses.rows()); }
+  /// Whether frame t has a pose and a place (finite numbers).
+  [[nodiscard]] bool HasPose(int t) const { return poses.row(t).allFinite() && trans.row(t).allFinite(); }
 };
 
 enum class FrameStatus : uint8_t {

@@ -93,7 +93,9 @@ void AttributePainter::Draw(const BodyModel& body, const MatrixX3d& vertices, co
   const int n = options.samples;
   const Camera fine = ScaledCamera(camera, n);
   buffer_.Render(vertices, body.data().faces, fine, {.num_threads = options.num_threads});
-  ResolvePixels(buffer_, body, vertices, fine, RequestOf(options), &pixels_);
+  ResolveRequest request = RequestOf(options);
+  if (request.normal) request.vertex_normals = &normals_.Compute(vertices, body.data().faces);
+  ResolvePixels(buffer_, body, vertices, fine, request, &pixels_);
   const PixelBox& box = buffer_.box();
   if (box.empty()) return;
   const Colouring colouring(options, pixels_);

@@ -13,6 +13,7 @@
 
 #include "geometry/body_model.h"
 #include "geometry/camera.h"
+#include "geometry/vertex_normals.h"
 #include "render/image.h"
 #include "render/resolve_pixels.h"
 #include "render/visibility_buffer.h"
@@ -43,6 +44,7 @@ class AttributePainter {
  private:
   VisibilityBuffer buffer_;
   ResolvedPixels pixels_;
+  VertexNormalsOfMesh normals_;
 };
 
 }  // namespace bodyloom

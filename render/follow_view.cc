@@ -68,10 +68,10 @@ std::vector<MatrixX3d> TrackJoints(const BodyModel& body, const Track& track) {
   const MatrixX3d rest = body.RestJoints(track.motion.betas);
   std::vector<MatrixX3d> joints(track.num_frames());
   for (int t = 0; t < track.num_frames(); ++t) {
-    const auto pose = track.motion.poses.row(t);
-    const auto trans = track.motion.trans.row(t);
-    if (!pose.allFinite() || !trans.allFinite()) continue;
-    joints[t] = PoseSkeleton(body, rest, PoseFromAxisAngle(body, pose.transpose(), trans.transpose())).joints;
+    if (!track.HasResult(t)) continue;
+    const BodyPose pose =
+        PoseFromAxisAngle(body, track.motion.poses.row(t).transpose(), track.motion.trans.row(t).transpose());
+    joints[t] = PoseSkeleton(body, rest, pose).joints;
   }
   return joints;
 }

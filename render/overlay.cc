@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 
 std::optional<BodyPose> PoseOf(const BodyModel& body, const Track& track, int frame) {
   const Motion& motion = track.motion;
-  if (!motion.poses.row(frame).allFinite() || !motion.trans.row(frame).allFinite()) return std::nullopt;
+  if (!track.HasResult(frame)) return std::nullopt;
   return PoseFromAxisAngle(body, motion.poses.row(frame).transpose(), motion.trans.row(frame).transpose());
 }
 

@@ -149,10 +149,10 @@ struct ShadingPoints {
 class MeshPainter {
  public:
   MeshPainter(const MatrixX3d& vertices, const MatrixX3i& faces, const Camera& camera, const MeshStyle& style,
-              VisibilityBuffer* buffer)
+              VisibilityBuffer* buffer, VertexNormalsOfMesh* normals)
       : faces_(faces), style_(style), n_(style.samples), fine_(ScaledCamera(camera, style.samples)), buffer_(*buffer) {
     buffer->Render(vertices, faces, fine_, {.num_threads = style.num_threads});
-    normals_ = VertexNormals(vertices, faces).cast<float>();
+    if (!buffer_.box().empty()) normals_ = &normals->Compute(vertices, faces);
     pixels_.resize(vertices.rows(), 2);
     for (int v = 0; v < vertices.rows(); ++v) {
       Vector2d pixel = Vector2d::Zero();
@@ -169,7 +169,7 @@ class MeshPainter {
 
   void DrawRows(int y_begin, int y_end, Image* image) const {
     Scratch scratch(box_.width(), n_);
-    NormalSampler normals(faces_, normals_, pixels_);
+    NormalSampler normals(faces_, *normals_, pixels_);
     // The number of samples known to the compiler: nearly half of the time is spent looking at them.
     const auto draw_row = n_ == 1   ? &MeshPainter::DrawRow<1>
                           : n_ == 2 ? &MeshPainter::DrawRow<2>
@@ -318,27 +318,13 @@ class MeshPainter {
   int n_;
   Camera fine_;
   const VisibilityBuffer& buffer_;
-  MatrixX3f normals_;
+  const MatrixX3f* normals_ = nullptr;  ///< null: nothing is in view
   MatrixX2d pixels_;
   std::optional<OutlineFinder> outline_;
   PixelBox box_;
 };
 
 }  // namespace
-
-MatrixX3d VertexNormals(const MatrixX3d& vertices, const MatrixX3i& faces) {
-  MatrixX3d normals = MatrixX3d::Zero(vertices.rows(), 3);
-  for (int f = 0; f < faces.rows(); ++f) {
-    const Vector3d a = vertices.row(faces(f, 0)), b = vertices.row(faces(f, 1)), c = vertices.row(faces(f, 2));
-    const Vector3d twice_area = (b - a).cross(c - a);
-    for (int i = 0; i < 3; ++i) normals.row(faces(f, i)) += twice_area.transpose();
-  }
-  for (int v = 0; v < normals.rows(); ++v) {
-    const double norm = normals.row(v).norm();
-    if (norm > 0) normals.row(v) /= norm;
-  }
-  return normals;
-}
 
 void MeshDrawer::Draw(const MatrixX3d& vertices, const MatrixX3i& faces, const Camera& camera, const MeshStyle& style,
                       Image* image) {
@@ -347,7 +333,7 @@ void MeshDrawer::Draw(const MatrixX3d& vertices, const MatrixX3i& faces, const C
   BODYLOOM_CHECK(style.face_colours.empty() || static_cast<Eigen::Index>(style.face_colours.size()) == faces.rows(),
                  "overlay: ", style.face_colours.size(), " face colours for ", faces.rows(), " faces");
   BODYLOOM_CHECK(style.samples >= 1 && style.samples <= 8, "overlay: ", style.samples, " samples, expected 1..8");
-  const MeshPainter painter(vertices, faces, camera, style, &buffer_);
+  const MeshPainter painter(vertices, faces, camera, style, &buffer_, &normals_);
   constexpr int kRowsATask = 8;
   const PixelBox& box = painter.box();
   ParallelFor((box.height() + kRowsATask - 1) / kRowsATask, style.num_threads, [&](int task) {

@@ -6,6 +6,7 @@
 
 #include "geometry/arrays.h"
 #include "geometry/camera.h"
+#include "geometry/vertex_normals.h"
 #include "render/image.h"
 #include "render/palette.h"
 #include "render/visibility_buffer.h"
@@ -22,9 +23,6 @@ struct MeshStyle {
   int num_threads = 1;         ///< the picture is the same for any number
 };
 
-/// Area-weighted unit normals (V×3), outwards for counter-clockwise faces; zero where all faces of a vertex vanish.
-MatrixX3d VertexNormals(const MatrixX3d& vertices, const MatrixX3i& faces);
-
 /// Draws meshes (vertices in the camera frame, metres) as `camera` sees them onto an image of the camera's size. Lit
 /// from the upper left of the viewer. Only the mesh's box is touched. Where all samples of a pixel see one smooth
 /// stretch of surface in one colour, light is computed once, in its middle.
@@ -39,6 +37,7 @@ class MeshDrawer {
 
  private:
   VisibilityBuffer buffer_;
+  VertexNormalsOfMesh normals_;
 };
 
 /// The same for a single picture.

@@ -92,7 +92,7 @@ struct TrackSequenceOptions {
   PartLabelOptions part_labels;
   bool estimate_shape = true;        ///< false: keep the mean shape
   bool estimate_uncertainty = true;  ///< joint_sigma; NaN when off
-  bool skip_unneeded = true;         ///< false: switch every skip off (same answer, slower)
+  bool skip_unneeded = true;         ///< false: solve also for joints that no landmark moves (nearly the same answer)
   std::function<bool(const TrackProgress&)> progress;
   /// False with the reason when a field is out of range.
   bool IsValid(std::string* why) const;

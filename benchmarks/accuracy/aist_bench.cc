@@ -14,14 +14,12 @@
 
 #include <chrono>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 
 #include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/accuracy/bench_report.h"
 #include "data_tools/builtin_body.h"
 #include "data_tools/evaluation/aist_evaluation.h"
-#include "data_tools/formats/atomic_file.h"
 #include "data_tools/observations/load_cameras.h"
 #include "data_tools/observations/load_detections.h"
 #include "data_tools/prior/pose_prior_io.h"
@@ -180,29 +178,20 @@ void Run(const BenchArguments& arguments, const std::string& command) {
       for (const std::string& view : arguments.List("views")) report.rows.push_back(Limit(clip, view, true_angles));
     }
   }
-  std::fputs(BenchText(report).c_str(), stdout);
-  if (!arguments.Text("json").empty()) WriteFileAtomically(arguments.Text("json"), BenchJson(report));
+  HandOver(report, arguments.Text("json"));
 }
 
 }  // namespace
 }  // namespace bodyloom
 
 int main(int argc, char** argv) {
-  try {
-    std::string command = "bodyloom_bench_aist";
-    for (int i = 1; i < argc; ++i) command += " " + std::string(argv[i]);
-    const bodyloom::BenchArguments arguments(argc, argv,
-                                             {{"data", BODYLOOM_SOURCE_DIR "/../shared/data/aistpp"},
-                                              {"sequences", "gBR_sBM_cAll_d06_mBR2_ch06,gJS_sBM_cAll_d03_mJS2_ch07"},
-                                              {"views", "c01,c03,c05,c07,c08"},
-                                              {"focal", "known,unknown"},
-                                              {"threads", "2"},
-                                              {"frames", "0"},
-                                              {"json", ""}});
-    bodyloom::Run(arguments, command);
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "bodyloom_bench_aist: %s\n", error.what());
-    return 1;
-  }
+  return bodyloom::BenchMain("bodyloom_bench_aist", argc, argv,
+                             {{"data", BODYLOOM_SOURCE_DIR "/../shared/data/aistpp"},
+                              {"sequences", "gBR_sBM_cAll_d06_mBR2_ch06,gJS_sBM_cAll_d03_mJS2_ch07"},
+                              {"views", "c01,c03,c05,c07,c08"},
+                              {"focal", "known,unknown"},
+                              {"threads", "2"},
+                              {"frames", "0"},
+                              {"json", ""}},
+                             bodyloom::Run);
 }

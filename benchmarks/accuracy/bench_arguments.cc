@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "benchmarks/accuracy/bench_arguments.h"
 
+#include <cstdio>
+#include <exception>
 #include <sstream>
 #include <utility>
 
@@ -40,6 +42,19 @@ std::vector<std::string> BenchArguments::List(const std::string& name) const {
     if (!item.empty()) items.push_back(item);
   }
   return items;
+}
+
+int BenchMain(const std::string& program, int argc, char** argv, std::map<std::string, std::string> known,
+              const std::function<void(const BenchArguments& arguments, const std::string& command)>& run) {
+  try {
+    std::string command = program;
+    for (int i = 1; i < argc; ++i) command += " " + std::string(argv[i]);
+    run(BenchArguments(argc, argv, std::move(known)), command);
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", program.c_str(), error.what());
+    return 1;
+  }
 }
 
 }  // namespace bodyloom

@@ -2,6 +2,7 @@
 /// Command lines of the benchmarks: "--name value" pairs, lists separated by commas.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -20,5 +21,10 @@ class BenchArguments {
  private:
   std::map<std::string, std::string> values_;
 };
+
+/// main() of a benchmark: runs it with its arguments and the command as it was called. Exit code 1, with one line on
+/// stderr, for anything thrown.
+int BenchMain(const std::string& program, int argc, char** argv, std::map<std::string, std::string> known,
+              const std::function<void(const BenchArguments& arguments, const std::string& command)>& run);
 
 }  // namespace bodyloom

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "data_tools/formats/atomic_file.h"
 #include "geometry/check.h"
 #include "tracking/metrics.h"
 
@@ -170,6 +171,11 @@ std::string BenchJson(const BenchReport& report) {
     json["groups"].push_back(entry);
   }
   return json.dump(2) + "\n";
+}
+
+void HandOver(const BenchReport& report, const std::string& json_path) {
+  std::fputs(BenchText(report).c_str(), stdout);
+  if (!json_path.empty()) WriteFileAtomically(json_path, BenchJson(report));
 }
 
 }  // namespace bodyloom

@@ -31,6 +31,9 @@ std::string BenchText(const BenchReport& report);
 /// {title, command, commit, machine, notes, groups: [{name, rows: [{label: …, value: …}], mean: {…}, std: {…}}]}.
 std::string BenchJson(const BenchReport& report);
 
+/// Prints the text and, when `json_path` is not empty, writes the JSON.
+void HandOver(const BenchReport& report, const std::string& json_path);
+
 /// Commit of the source tree ("… with changes" when it has any), processor, cores, compiler and flags.
 std::vector<std::pair<std::string, std::string>> BenchEnvironment();
 

@@ -10,7 +10,6 @@
 /// ± 2.1 from real DensePose, its initialiser 14.8).
 #include <chrono>
 #include <cstdio>
-#include <exception>
 
 #include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/accuracy/bench_report.h"
@@ -18,7 +17,6 @@
 #include "benchmarks/accuracy/dense_clips.h"
 #include "data_tools/builtin_body.h"
 #include "data_tools/evaluation/truth_evaluation.h"
-#include "data_tools/formats/atomic_file.h"
 #include "data_tools/motion/load_motion.h"
 #include "data_tools/prior/pose_prior_io.h"
 #include "data_tools/synthetic/synth_clip.h"
@@ -89,31 +87,22 @@ void Run(const BenchArguments& arguments, const std::string& command) {
                    report.rows.back().values[0], report.rows.back().values[1], report.rows.back().values[5]);
     }
   }
-  std::fputs(BenchText(report).c_str(), stdout);
-  if (!arguments.Text("json").empty()) WriteFileAtomically(arguments.Text("json"), BenchJson(report));
+  HandOver(report, arguments.Text("json"));
 }
 
 }  // namespace
 }  // namespace bodyloom
 
 int main(int argc, char** argv) {
-  try {
-    std::string command = "bodyloom_bench_dense";
-    for (int i = 1; i < argc; ++i) command += " " + std::string(argv[i]);
-    const std::string data = BODYLOOM_SOURCE_DIR "/../shared/data/aistpp/motions/";
-    const bodyloom::BenchArguments arguments(
-        argc, argv,
-        {{"motions", data + "gBR_sBM_cAll_d06_mBR2_ch06.pkl," + data + "gJS_sBM_cAll_d03_mJS2_ch07.pkl"},
-         {"noise", "pixel,densepose"},
-         {"dense", "300"},
-         {"initial", "14.8"},
-         {"frames", "0"},
-         {"threads", "2"},
-         {"json", ""}});
-    bodyloom::Run(arguments, command);
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "bodyloom_bench_dense: %s\n", error.what());
-    return 1;
-  }
+  const std::string data = BODYLOOM_SOURCE_DIR "/../shared/data/aistpp/motions/";
+  return bodyloom::BenchMain(
+      "bodyloom_bench_dense", argc, argv,
+      {{"motions", data + "gBR_sBM_cAll_d06_mBR2_ch06.pkl," + data + "gJS_sBM_cAll_d03_mJS2_ch07.pkl"},
+       {"noise", "pixel,densepose"},
+       {"dense", "300"},
+       {"initial", "14.8"},
+       {"frames", "0"},
+       {"threads", "2"},
+       {"json", ""}},
+      bodyloom::Run);
 }

@@ -11,7 +11,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <exception>
 #include <limits>
 #include <numeric>
 #include <opencv2/imgproc.hpp>
@@ -19,7 +18,6 @@
 #include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/accuracy/bench_report.h"
 #include "data_tools/builtin_body.h"
-#include "data_tools/formats/atomic_file.h"
 #include "data_tools/formats/npz.h"
 #include "data_tools/prior/pose_prior_io.h"
 #include "data_tools/video/image_file.h"
@@ -181,8 +179,7 @@ void Run(const BenchArguments& arguments, const std::string& command) {
       pictures.push_back(Picture(person, result.track));
     }
   }
-  std::fputs(BenchText(report).c_str(), stdout);
-  if (!arguments.Text("json").empty()) WriteFileAtomically(arguments.Text("json"), BenchJson(report));
+  HandOver(report, arguments.Text("json"));
   if (!arguments.Text("picture").empty()) {
     ContactSheetOptions sheet;
     sheet.columns = 4;
@@ -195,16 +192,8 @@ void Run(const BenchArguments& arguments, const std::string& command) {
 }  // namespace bodyloom
 
 int main(int argc, char** argv) {
-  try {
-    std::string command = "bodyloom_bench_hard_poses";
-    for (int i = 1; i < argc; ++i) command += " " + std::string(argv[i]);
-    const bodyloom::BenchArguments arguments(
-        argc, argv,
-        {{"data", BODYLOOM_SOURCE_DIR "/../shared/data/mhr_sam3d"}, {"threads", "2"}, {"picture", ""}, {"json", ""}});
-    bodyloom::Run(arguments, command);
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "bodyloom_bench_hard_poses: %s\n", error.what());
-    return 1;
-  }
+  return bodyloom::BenchMain(
+      "bodyloom_bench_hard_poses", argc, argv,
+      {{"data", BODYLOOM_SOURCE_DIR "/../shared/data/mhr_sam3d"}, {"threads", "2"}, {"picture", ""}, {"json", ""}},
+      bodyloom::Run);
 }

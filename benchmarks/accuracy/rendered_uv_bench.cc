@@ -16,7 +16,6 @@
 /// Errors: protocol known-truth (docs/evaluation.md), pixels at 512.
 #include <chrono>
 #include <cstdio>
-#include <exception>
 #include <functional>
 #include <numeric>
 
@@ -268,31 +267,23 @@ void Run(const BenchArguments& arguments, const std::string& command) {
 }  // namespace bodyloom
 
 int main(int argc, char** argv) {
-  try {
-    std::string command = "bodyloom_bench_rendered_uv";
-    for (int i = 1; i < argc; ++i) command += " " + std::string(argv[i]);
-    const std::string data = BODYLOOM_SOURCE_DIR "/../shared/data/aistpp/motions/";
-    const bodyloom::BenchArguments arguments(
-        argc, argv,
-        {{"what", "dense,basin,labels"},
-         {"motions", data + "gBR_sBM_cAll_d06_mBR2_ch06.pkl," + data + "gJS_sBM_cAll_d03_mJS2_ch07.pkl"},
-         {"noise", "pixel,uv,densepose"},
-         {"dense", "300"},
-         {"initial", "14.8"},
-         {"fine_iterations", "8"},
-         {"rounds", "1"},
-         {"residuals", "reprojection,whitened,rendered UV"},
-         {"min_cosine", "0.5"},
-         {"frames", "0"},
-         {"starts", "15,30,45,60"},
-         {"trials", "60"},
-         {"block", "1,6"},
-         {"threads", "2"},
-         {"json", ""}});
-    bodyloom::Run(arguments, command);
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "bodyloom_bench_rendered_uv: %s\n", error.what());
-    return 1;
-  }
+  const std::string data = BODYLOOM_SOURCE_DIR "/../shared/data/aistpp/motions/";
+  return bodyloom::BenchMain(
+      "bodyloom_bench_rendered_uv", argc, argv,
+      {{"what", "dense,basin,labels"},
+       {"motions", data + "gBR_sBM_cAll_d06_mBR2_ch06.pkl," + data + "gJS_sBM_cAll_d03_mJS2_ch07.pkl"},
+       {"noise", "pixel,uv,densepose"},
+       {"dense", "300"},
+       {"initial", "14.8"},
+       {"fine_iterations", "8"},
+       {"rounds", "1"},
+       {"residuals", "reprojection,whitened,rendered UV"},
+       {"min_cosine", "0.5"},
+       {"frames", "0"},
+       {"starts", "15,30,45,60"},
+       {"trials", "60"},
+       {"block", "1,6"},
+       {"threads", "2"},
+       {"json", ""}},
+      bodyloom::Run);
 }

@@ -4,15 +4,16 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <memory>
-#include <mutex>
 #include <set>
 #include <span>
 
 #include "data_tools/descriptors/descriptor_header.h"
 #include "data_tools/descriptors/descriptor_preview.h"
+#include "data_tools/descriptors/map_memory.h"
+#include "data_tools/descriptors/posed_frames.h"
+#include "data_tools/descriptors/seen_texels.h"
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/formats/npy_stream.h"
 #include "geometry/check.h"
@@ -20,13 +21,12 @@
 #include "geometry/parallel.h"
 #include "geometry/skinning.h"
 #include "geometry/uv_bake.h"
-#include "render/texel_sight.h"
-#include "render/visibility_buffer.h"
 
 namespace bodyloom {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
+using namespace describe_internal;  // NOLINT(google-build-using-namespace)
 
 namespace {
 
@@ -53,46 +53,6 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-/// Three planes as they go to the file.
-using Map = std::vector<char>;
-
-/// What one worker needs to make maps.
-struct Scratch {
-  NormalScratch normals;
-  std::vector<float> vertices, padded, planes;  ///< V×3, V×4, three planes
-  VisibilityBuffer buffer;
-};
-
-/// Hands out scratch memory, one a worker at a time.
-class ScratchPool {
- public:
-  ScratchPool(int num_vertices, int num_pixels) : num_vertices_(num_vertices), num_pixels_(num_pixels) {}
-  std::unique_ptr<Scratch> Take() {
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      if (!free_.empty()) {
-        std::unique_ptr<Scratch> scratch = std::move(free_.back());
-        free_.pop_back();
-        return scratch;
-      }
-    }
-    auto scratch = std::make_unique<Scratch>();
-    scratch->vertices.resize(3 * size_t(num_vertices_));
-    scratch->padded.resize(4 * size_t(num_vertices_));
-    scratch->planes.resize(3 * size_t(num_pixels_));
-    return scratch;
-  }
-  void Return(std::unique_ptr<Scratch> scratch) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    free_.push_back(std::move(scratch));
-  }
-
- private:
-  int num_vertices_, num_pixels_;
-  std::mutex mutex_;
-  std::vector<std::unique_ptr<Scratch>> free_;
-};
-
 class Describer {
  public:
   Describer(const BodyModel& body, const Track& track, const DescribeTrackOptions& options)
@@ -110,16 +70,15 @@ class Describer {
         scratch_(body.num_vertices(), baker_.num_pixels()),
         item_size_(options.half ? 2 : 4),
         map_bytes_(3 * size_t(baker_.num_pixels()) * item_size_),
-        zero_map_(map_bytes_, 0) {
+        zero_map_(map_bytes_, 0),
+        maps_(map_bytes_),
+        posed_(skinner_, shape_, poses_, body.num_vertices(), kFramesInFlight) {
     const int T = track.num_frames();
     std::vector<char> usable(T);
     for (int t = 0; t < T; ++t) usable[t] = poses_[t].has_value();
     stencils_ = VelocityStencils(track.motion.timestamps, usable, options.velocity);
     for (int t = 0; t < T; t += options.every) outputs_.push_back(t);
-    roots_.resize(T);
-    place_of_frame_.assign(T, -1);
     velocity_maps_.resize(T);
-    vertices_.reserve(3 * size_t(body.num_vertices()) * kFramesInFlight);
   }
 
   DescribeTrackSummary Run(const std::string& path, const DescribeProgress& progress) {
@@ -135,7 +94,7 @@ class Describer {
       const auto count = static_cast<int>(std::min<size_t>(kFramesInFlight, outputs_.size() - first));
       const std::span<const int> outputs(&outputs_[first], count);
       Chunk chunk = PlanChunk(outputs);
-      Skin(chunk);
+      summary_.frames_skinned += posed_.Need(chunk.needed_vertices);
       watch.Add("skin");
       MakeMaps(&chunk);
       watch.Add("normals, velocities, bake");
@@ -148,7 +107,7 @@ class Describer {
       for (int i = 0; i < count; ++i) {
         if (preview.Wants(outputs[i])) AddToPreview(chunk, i, &preview);
       }
-      for (Map& map : chunk.normal_maps) Recycle(&map);
+      for (Map& map : chunk.normal_maps) maps_.Return(&map);
       watch.Add("write");
     }
     stream.Finish();
@@ -221,7 +180,7 @@ class Describer {
     }
     // Velocity maps of frames that no later output looks back to are let go, and the others made once.
     for (int s = 0; s < static_cast<int>(velocity_maps_.size()) && s < outputs.front(); ++s) {
-      if (!maps.contains(s)) Recycle(&velocity_maps_[s]);
+      if (!maps.contains(s)) maps_.Return(&velocity_maps_[s]);
     }
     for (const int s : maps) {
       if (velocity_maps_[s].empty()) chunk.new_velocity_maps.push_back(s);
@@ -236,65 +195,10 @@ class Describer {
   }
 
   [[nodiscard]] size_t Stride() const { return 3 * size_t(body_.num_vertices()); }
-  [[nodiscard]] std::span<const float> VerticesOf(int t) const {
-    return {vertices_.data() + Stride() * place_of_frame_[t], Stride()};
-  }
-
-  /// Poses the frames that are not there yet; those that are and are still needed move to the front.
-  void Skin(const Chunk& chunk) {
-    std::vector<std::pair<int, int>> kept;  // place, frame
-    std::vector<int> missing;
-    for (const int t : chunk.needed_vertices) {
-      if (place_of_frame_[t] >= 0) {
-        kept.emplace_back(place_of_frame_[t], t);
-      } else {
-        missing.push_back(t);
-      }
-    }
-    std::sort(kept.begin(), kept.end());
-    for (const int t : placed_frames_) place_of_frame_[t] = -1;
-    placed_frames_.clear();
-    for (const auto& [place, t] : kept) {
-      const int to = static_cast<int>(placed_frames_.size());
-      if (to != place) {
-        std::memmove(vertices_.data() + Stride() * to, vertices_.data() + Stride() * place, Stride() * sizeof(float));
-      }
-      place_of_frame_[t] = to;
-      placed_frames_.push_back(t);
-    }
-    vertices_.resize(Stride() * (kept.size() + missing.size()));
-    std::vector<BodyPose> poses;
-    for (const int t : missing) {
-      poses.push_back(*poses_[t]);
-      place_of_frame_[t] = static_cast<int>(placed_frames_.size());
-      placed_frames_.push_back(t);
-    }
-    MatrixX3d roots;
-    skinner_.SkinFromRoot(shape_, poses, std::span(vertices_).subspan(Stride() * kept.size()), &roots);
-    for (size_t i = 0; i < missing.size(); ++i)
-      roots_[missing[i]] = roots.row(static_cast<Eigen::Index>(i)).transpose();
-    summary_.frames_skinned += static_cast<int>(missing.size());
-  }
-
-  /// Room for a map: one that is no longer needed, or a new one. Either is zero where no texel is.
-  Map TakeMap() {
-    const std::lock_guard<std::mutex> lock(spare_mutex_);
-    if (spare_maps_.empty()) return Map(map_bytes_, 0);
-    Map map = std::move(spare_maps_.back());
-    spare_maps_.pop_back();
-    return map;
-  }
-  void Recycle(Map* map) {
-    if (map->empty()) return;
-    const std::lock_guard<std::mutex> lock(spare_mutex_);
-    spare_maps_.push_back(std::move(*map));
-    map->clear();
-  }
-
   /// A map of what `bake` writes into three planes of floats.
   template <typename Bake>
   Map Baked(Scratch* scratch, const Bake& bake) {
-    Map map = TakeMap();
+    Map map = maps_.Take();
     if (options_.half) {
       bake(std::span<float>(scratch->planes));
       uv_bake_internal::HalfFromFloat(scratch->planes.data(), static_cast<int64_t>(scratch->planes.size()),
@@ -307,8 +211,8 @@ class Describer {
 
   Map NormalMap(int t, Scratch* scratch, NormalSummary* summary, int* cancelled) {
     const PosedSkeleton skeleton = PoseSkeleton(body_, shape_.rest_joints, *poses_[t]);
-    *summary =
-        normals_.Compute(VerticesOf(t), scratch->vertices, &scratch->normals, {&body_, &template_normals_, &skeleton});
+    *summary = normals_.Compute(posed_.Vertices(t), scratch->vertices, &scratch->normals,
+                                {&body_, &template_normals_, &skeleton});
     normals_internal::PadVertices(scratch->vertices.data(), body_.num_vertices(), 1, scratch->padded.data());
     return Baked(scratch, [&](std::span<float> planes) { *cancelled = baker_.BakeUnit(scratch->padded, planes); });
   }
@@ -319,9 +223,9 @@ class Describer {
       const VelocityStencil& stencil = stencils_[s];
       std::vector<const float*> frames;
       for (size_t k = 0; k < stencil.weights.size(); ++k) {
-        frames.push_back(VerticesOf(stencil.first_frame + static_cast<int>(k)).data());
+        frames.push_back(posed_.Vertices(stencil.first_frame + static_cast<int>(k)).data());
       }
-      DifferenceVertices(stencil, frames, std::span(roots_).subspan(stencil.first_frame, frames.size()),
+      DifferenceVertices(stencil, frames, posed_.roots().subspan(stencil.first_frame, frames.size()),
                          scratch->vertices);
       velocities = scratch->vertices;
     }
@@ -426,7 +330,7 @@ class Describer {
       pieces = {masked};
     }
     stream->Write(static_cast<int64_t>(record), pieces);
-    for (Map& map : own) Recycle(&map);
+    for (Map& map : own) maps_.Return(&map);
     return static_cast<int>(own.size());
   }
 
@@ -435,50 +339,14 @@ class Describer {
     const Vector3d root = shape_.rest_joints.row(0).transpose() + track_.motion.trans.row(t).transpose();
     const BodyPose in_camera = PoseFromAxisAngle(body_, track_.motion.poses.row(t).transpose(), Vector3d::Zero());
     const Matrix3d camera_from_frame = in_camera.rotations[0] * poses_[t]->rotations[0].transpose();
-    const Eigen::Map<const MatrixX3f> from_root(VerticesOf(t).data(), body_.num_vertices(), 3);
+    const Eigen::Map<const MatrixX3f> from_root(posed_.Vertices(t).data(), body_.num_vertices(), 3);
     return (from_root.cast<double>() * camera_from_frame.transpose()).rowwise() + root.transpose();
   }
 
   Map OnlySeen(int t, std::span<const std::span<const char>> pieces, Scratch* scratch, double* share) const {
-    const MatrixX3d vertices = VerticesInCamera(t);
-    const Camera camera = track_.CameraAt(t);
-    scratch->buffer.Render(vertices, body_.data().faces, camera);
-    const std::vector<TexelSight> sights =
-        SeeTexels(table_, body_, vertices, camera, scratch->buffer, {.min_cosine = 0, .whole_footprint = false});
-    std::vector<char> seen(baker_.num_pixels(), 0);
-    int num_seen = 0;
-    for (size_t i = 0; i < sights.size(); ++i) {
-      seen[table_.pixel[i]] = sights[i].cosine > 0;
-      num_seen += sights[i].cosine > 0;
-    }
-    *share = static_cast<double>(num_seen) / table_.num_inside;
-    // A gutter texel goes with the texels of its chart beside it.
-    for (size_t i = 0; i < table_.size(); ++i) {
-      if (!table_.in_gutter[i]) continue;
-      const int x = table_.pixel[i] % table_.width, y = table_.pixel[i] / table_.width;
-      for (int q = std::max(0, y - 1); q <= std::min(table_.height - 1, y + 1); ++q) {
-        for (int p = std::max(0, x - 1); p <= std::min(table_.width - 1, x + 1); ++p) {
-          const int beside = q * table_.width + p;
-          if (seen[beside] == 1 && table_.chart_at[beside] == table_.chart_at[table_.pixel[i]]) {
-            seen[table_.pixel[i]] = 2;  // 2: does not spread
-          }
-        }
-      }
-    }
-    Map masked(map_bytes_ * pieces.size(), 0);
-    char* out = masked.data();
-    for (const std::span<const char>& piece : pieces) {
-      for (int c = 0; c < 3; ++c) {
-        const size_t plane = size_t(c) * baker_.num_pixels() * item_size_;
-        for (const int pixel : table_.pixel) {
-          if (!seen[pixel]) continue;
-          const size_t at = plane + size_t(pixel) * item_size_;
-          std::memcpy(out + at, piece.data() + at, item_size_);
-        }
-      }
-      out += map_bytes_;
-    }
-    return masked;
+    const SeenTexels sight = FindSeenTexels(table_, body_, VerticesInCamera(t), track_.CameraAt(t), &scratch->buffer);
+    *share = sight.share;
+    return KeepSeen(table_, sight.seen, pieces, item_size_);
   }
 
   const BodyModel& body_;
@@ -495,13 +363,10 @@ class Describer {
   ScratchPool scratch_;
   size_t item_size_, map_bytes_;
   Map zero_map_;
+  MapPool maps_;
+  PosedFrames posed_;
   std::vector<VelocityStencil> stencils_;
   std::vector<int> outputs_;
-  std::vector<Vector3d> roots_;
-  std::vector<int> place_of_frame_, placed_frames_;
-  std::vector<float> vertices_;  ///< of placed_frames_, relative to their roots
-  std::mutex spare_mutex_;
-  std::vector<Map> spare_maps_;
   std::vector<Map> velocity_maps_;  ///< by frame, empty where not held
   DescribeTrackSummary summary_;
 };

@@ -21,6 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kParts = 24;
+/// Standard deviation of a place that is known to a pixel: 1/√12.
+constexpr double kPixelWidthSigma = 0.28867513459481287;
 constexpr const char* kIuvEnding = "_IUV.png";
 
 /// Bits of x and y interleaved: pixels near each other on the curve are near each other in the image.
@@ -145,6 +147,8 @@ DenseSequence DenseFromImages(const std::string& folder, const std::vector<std::
   DenseSequence dense;
   dense.timestamps = std::move(grid.timestamps);
   dense.frames.resize(dense.timestamps.size());
+  dense.uv_sigma = kDensePoseUvSigma;
+  dense.pixel_sigma_px = kPixelWidthSigma;
   IuvOrder channel_order = options.order;
   size_t num_points = 0;
   for (const size_t i : order) {
@@ -170,6 +174,34 @@ DenseSequence DenseFromImages(const std::string& folder, const std::vector<std::
                              " IUV images shows a part of this body");
   }
   return dense;
+}
+
+/// As the file has it.
+DenseSequence ReadDense(const std::string& path, const BodyModel& body, const LoadDenseOptions& options) {
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) {
+    const std::vector<std::string> names = IuvFilesOf(path);
+    if (names.empty()) throw std::runtime_error(path + ": no files *_IUV.png, expected one DensePose image a frame");
+    return DenseFromImages(path, names, body, options);
+  }
+  if (IsNpz(path)) {
+    const NpzArrays arrays = ReadNpz(path);
+    if (!HasDense(arrays)) throw std::runtime_error(path + ": an .npz without dense keypoints ('dense_frame')");
+    DenseSequence dense = DenseFromNpz(arrays, path);
+    for (int t = 0; t < dense.num_frames(); ++t) {
+      for (const DenseKeypoint& point : dense.frames[t]) {
+        if (point.face < body.num_faces()) continue;
+        throw std::runtime_error(path + ": frame " + std::to_string(t) + " names face " + std::to_string(point.face) +
+                                 ", but the body has " + std::to_string(body.num_faces()) +
+                                 " faces; was it made for another body?");
+      }
+    }
+    return dense;
+  }
+  if (!path.ends_with(kIuvEnding)) {
+    throw std::runtime_error(path + ": expected a folder of *_IUV.png, one such image, or an .npz of dense keypoints");
+  }
+  return DenseFromImages(fs::path(path).parent_path().string(), {fs::path(path).filename().string()}, body, options);
 }
 
 }  // namespace
@@ -221,30 +253,11 @@ bool HoldsDenseKeypoints(const std::string& path) {
 
 DenseSequence LoadDense(const std::string& path, const BodyModel& body, const LoadDenseOptions& options) {
   BODYLOOM_CHECK(options.person >= 0, "person ", options.person, " must not be negative");
-  std::error_code ignored;
-  if (fs::is_directory(path, ignored)) {
-    const std::vector<std::string> names = IuvFilesOf(path);
-    if (names.empty()) throw std::runtime_error(path + ": no files *_IUV.png, expected one DensePose image a frame");
-    return DenseFromImages(path, names, body, options);
-  }
-  if (IsNpz(path)) {
-    const NpzArrays arrays = ReadNpz(path);
-    if (!HasDense(arrays)) throw std::runtime_error(path + ": an .npz without dense keypoints ('dense_frame')");
-    DenseSequence dense = DenseFromNpz(arrays, path);
-    for (int t = 0; t < dense.num_frames(); ++t) {
-      for (const DenseKeypoint& point : dense.frames[t]) {
-        if (point.face < body.num_faces()) continue;
-        throw std::runtime_error(path + ": frame " + std::to_string(t) + " names face " + std::to_string(point.face) +
-                                 ", but the body has " + std::to_string(body.num_faces()) +
-                                 " faces; was it made for another body?");
-      }
-    }
-    return dense;
-  }
-  if (!path.ends_with(kIuvEnding)) {
-    throw std::runtime_error(path + ": expected a folder of *_IUV.png, one such image, or an .npz of dense keypoints");
-  }
-  return DenseFromImages(fs::path(path).parent_path().string(), {fs::path(path).filename().string()}, body, options);
+  BODYLOOM_CHECK(!options.uv_sigma || (*options.uv_sigma >= 0 && std::isfinite(*options.uv_sigma)), "uv_sigma ",
+                 options.uv_sigma.value_or(0), " must be finite and not negative");
+  DenseSequence dense = ReadDense(path, body, options);
+  if (options.uv_sigma) dense.uv_sigma = *options.uv_sigma;
+  return dense;
 }
 
 }  // namespace bodyloom

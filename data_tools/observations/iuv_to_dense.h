@@ -7,6 +7,7 @@
 /// within a part the pixels are taken at equal steps along a Morton curve, which spreads them evenly over the part.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,13 @@
 #include "render/chart_lookup.h"
 
 namespace bodyloom {
+
+/// Standard deviation of DensePose's U and V, chart units, where nobody says better. No published figure is in these
+/// units, so this is an estimate between two bounds. Below: 8 bits rounded down alone give 1/(255 √12) = 0.0011. Above:
+/// people who label rendered bodies err by 2 cm on small parts to 7 cm on the torso (Güler et al., DensePose, CVPR
+/// 2018, section 2.1), a tenth of those charts and more, much of it shared by neighbouring pixels. 0.03 of a torso's
+/// chart that is 100 px high in the image is 3 px, the sigma_px below. What a wrong value costs: docs/tracking.md.
+constexpr double kDensePoseUvSigma = 0.03;
 
 struct IuvToDenseOptions {
   int per_frame = 1000;   ///< at most; 0: every pixel
@@ -31,6 +39,8 @@ struct LoadDenseOptions {
   IuvToDenseOptions sampling;
   IuvOrder order = IuvOrder::kDetect;
   double fps = 30;  ///< of image folders; .npz files have timestamps
+  /// DenseSequence::uv_sigma, 0: not known. Without it kDensePoseUvSigma for images, what the file says for an .npz.
+  std::optional<double> uv_sigma;
   int person =
       0;  ///< with _INDS images: which person of the first frame, 0 the largest; then the one that overlaps most
 };
@@ -40,7 +50,8 @@ struct LoadDenseOptions {
 bool HoldsDenseKeypoints(const std::string& path);
 
 /// Dense keypoints of a clip: a folder of IUV images (one a frame; numbers in the names are frame numbers), a single
-/// IUV image, or the project's .npz (observations_npz.h). Throws std::runtime_error naming the file: images that differ
+/// IUV image, or the project's .npz (observations_npz.h). The labels of an image belong to pixels, not to points: their
+/// pixel_sigma_px is that of a pixel's width, 1/√12. Throws std::runtime_error naming the file: images that differ
 /// in size or channel order, faces that the body does not have, no labelled pixel in any frame; std::invalid_argument
 /// when the body has no charts.
 DenseSequence LoadDense(const std::string& path, const BodyModel& body, const LoadDenseOptions& options = {});

@@ -29,6 +29,16 @@ const NdArray& RequireShape(const NpzArrays& arrays, const std::string& key, con
   return array;
 }
 
+/// A noise of the labels: a scalar that older files do not have.
+double OptionalSigma(const NpzArrays& arrays, const std::string& key, const std::string& where) {
+  if (arrays.find(key) == arrays.end()) return 0;
+  const double sigma = RequireShape(arrays, key, {}, where).ToDoubles()[0];
+  if (!(sigma >= 0) || !std::isfinite(sigma)) {
+    Fail(where, key, std::to_string(sigma) + ", expected a standard deviation, or 0 when it is not known");
+  }
+  return sigma;
+}
+
 void ImageSizeFromNpz(const NpzArrays& arrays, const std::string& where, int* width, int* height) {
   if (arrays.find("image_size") == arrays.end()) return;
   const std::vector<double> size = RequireShape(arrays, "image_size", {2}, where).ToDoubles();
@@ -101,6 +111,8 @@ void WriteObservations(const std::string& path, const KeypointSequence* keypoint
     arrays["dense_barycentric"] = NdArray::FromFloats(barycentric.data(), {n, 3});
     arrays["dense_pixel"] = NdArray::FromFloats(pixel.data(), {n, 2});
     arrays["dense_sigma_px"] = NdArray::FromFloats(sigma.data(), {n});
+    arrays["dense_uv_sigma"] = NdArray::FromDouble(dense->uv_sigma);
+    arrays["dense_pixel_sigma_px"] = NdArray::FromDouble(dense->pixel_sigma_px);
   }
   WriteNpz(path, arrays);
 }
@@ -136,6 +148,8 @@ DenseSequence DenseFromNpz(const NpzArrays& arrays, const std::string& where) {
   dense.timestamps = TimestampsFromNpz(arrays, where);
   dense.frames.resize(dense.timestamps.size());
   ImageSizeFromNpz(arrays, where, &dense.image_width, &dense.image_height);
+  dense.uv_sigma = OptionalSigma(arrays, "dense_uv_sigma", where);
+  dense.pixel_sigma_px = OptionalSigma(arrays, "dense_pixel_sigma_px", where);
   const int64_t n = RequireArray(arrays, "dense_frame", where).num_elements();
   const std::vector<int64_t> frame = RequireShape(arrays, "dense_frame", {n}, where).ToInts();
   const std::vector<int64_t> face = RequireShape(arrays, "dense_face", {n}, where).ToInts();

@@ -13,6 +13,8 @@
 /// | dense_barycentric  | N×3    | f4    | weights of the face's corners, sum 1                                |
 /// | dense_pixel        | N×2    | f4    | x_px, y_px                                                          |
 /// | dense_sigma_px     | N      | f4    | standard deviation of the pixel                                     |
+/// | dense_uv_sigma     | scalar | f8    | DenseSequence::uv_sigma, chart units; may be missing: 0, not known   |
+/// | dense_pixel_sigma_px| scalar| f8    | DenseSequence::pixel_sigma_px, pixels; may be missing: 0, not known  |
 #pragma once
 
 #include <string>

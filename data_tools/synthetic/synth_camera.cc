@@ -39,7 +39,7 @@ std::vector<Vector3d> SampleSurface(const BodyModel& body, const Motion& motion)
   for (int v = 0; v < body.num_vertices(); v += std::max(1, body.num_vertices() / 300)) vertices.push_back(v);
   std::vector<Vector3d> points;
   for (int t = 0; t < motion.num_frames(); ++t) {
-    if (!motion.poses.row(t).allFinite() || !motion.trans.row(t).allFinite()) continue;
+    if (!motion.HasPose(t)) continue;
     const BodyPose pose = PoseFromAxisAngle(body, motion.poses.row(t).transpose(), motion.trans.row(t).transpose());
     const MatrixX3d frame = PoseVertices(body, motion.betas, pose, vertices);
     for (int i = 0; i < frame.rows(); ++i) points.push_back(frame.row(i).transpose());

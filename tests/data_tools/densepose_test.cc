@@ -204,6 +204,15 @@ TEST(DensePose, FolderWithInstancesAndGaps) {
   EXPECT_THAT(FileErrorOf("f_0010_INDS.png", [&] { LoadDense(folder.File(""), ToyBody(), options); }),
               HasSubstr("only 2 are in this frame"));
   EXPECT_EQ(LoadDense(folder.File("f_0013_IUV.png"), ToyBody()).num_frames(), 1);
+
+  // The noise lies on the surface unless the caller says otherwise.
+  EXPECT_EQ(dense.uv_sigma, kDensePoseUvSigma);
+  EXPECT_GT(kDensePoseUvSigma, 1 / (255 * std::sqrt(12.0)));
+  EXPECT_NEAR(dense.pixel_sigma_px, 1 / std::sqrt(12.0), 1e-12);
+  for (const double uv_sigma : {0.0, 0.1}) {
+    options.uv_sigma = uv_sigma;
+    EXPECT_EQ(LoadDense(folder.File("f_0013_IUV.png"), ToyBody(), options).uv_sigma, uv_sigma);
+  }
 }
 
 TEST(DensePose, MalformedImages) {

@@ -159,6 +159,8 @@ TEST_F(LoadDetectionsTest, OwnNpzRoundTrip) {
   dense.timestamps = keypoints.timestamps;
   dense.image_width = 640;
   dense.image_height = 480;
+  dense.uv_sigma = 0.02;
+  dense.pixel_sigma_px = 0.75;
   dense.frames.resize(2);
   dense.frames[1] = {{7, {0.25F, 0.5F, 0.25F}, {1.5F, 2.5F}, 3}, {9, {1, 0, 0}, {4, 5}, 0.5F}};
   const std::string path = folder_.File("o.npz");
@@ -174,9 +176,18 @@ TEST_F(LoadDetectionsTest, OwnNpzRoundTrip) {
   EXPECT_EQ(read_dense.frames[1][0].face, 7);
   EXPECT_EQ(read_dense.frames[1][0].pixel, Eigen::Vector2f(1.5F, 2.5F));
   EXPECT_EQ(read_dense.frames[1][1].sigma_px, 0.5F);
+  EXPECT_EQ(read_dense.uv_sigma, 0.02);
+  EXPECT_EQ(read_dense.pixel_sigma_px, 0.75);
+
+  // Files from before the two noises were stored.
+  NpzArrays arrays = ReadNpz(path);
+  NpzArrays older = arrays;
+  ASSERT_EQ(older.erase("dense_uv_sigma") + older.erase("dense_pixel_sigma_px"), 2U);
+  EXPECT_EQ(DenseFromNpz(older, "x.npz").uv_sigma, 0);
+  EXPECT_EQ(DenseFromNpz(older, "x.npz").pixel_sigma_px, 0);
+  EXPECT_EQ(DenseFromNpz(older, "x.npz").frames[1].size(), 2U);
 
   // Files that lie.
-  NpzArrays arrays = ReadNpz(path);
   const auto error = [&](const std::string& key, const NdArray& value) {
     NpzArrays changed = arrays;
     changed[key] = value;
@@ -193,6 +204,13 @@ TEST_F(LoadDetectionsTest, OwnNpzRoundTrip) {
   EXPECT_THAT(error("dense_barycentric", NdArray::FromFloats(weights, {2, 3})), HasSubstr("sum to 1"));
   const float sigmas[2] = {1, std::numeric_limits<float>::quiet_NaN()};
   EXPECT_THAT(error("dense_sigma_px", NdArray::FromFloats(sigmas, {2})), HasSubstr("positive"));
+  for (const char* key : {"dense_uv_sigma", "dense_pixel_sigma_px"}) {
+    EXPECT_THAT(error(key, NdArray::FromDouble(-0.01)), HasSubstr(std::string(key) + ": -0.01"));
+    EXPECT_THAT(error(key, NdArray::FromDouble(std::numeric_limits<double>::quiet_NaN())), HasSubstr("or 0 when"));
+    EXPECT_THAT(error(key, NdArray::FromDouble(std::numeric_limits<double>::infinity())), HasSubstr("or 0 when"));
+    EXPECT_THAT(error(key, NdArray::FromFloats(sigmas, {2})), HasSubstr("expected numbers, scalar"));
+    EXPECT_THAT(error(key, NdArray::FromString("0.02")), HasSubstr("of no numbers"));
+  }
   EXPECT_THAT(error("keypoints", NdArray::FromFloats(weights, {2, 3})), HasSubstr("expected numbers, 2x17x3"));
   EXPECT_THAT(error("keypoint_names", NdArray::FromFloats(weights, {6})), HasSubstr("list of text"));
   const int32_t size[2] = {-1, 5};

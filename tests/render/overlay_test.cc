@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "geometry/rotation.h"
+#include "geometry/vertex_normals.h"
 #include "render/shaded_mesh.h"
 #include "render/visibility_buffer.h"
 #include "tests/support/toy_body.h"
@@ -87,7 +88,7 @@ TEST(ShadedMesh, IsBrighterTowardsTheLight) {
       faces.row(f++) << a, b + n, a + n;
     }
   }
-  const MatrixX3d normals = VertexNormals(vertices, faces);
+  const MatrixX3d normals = VertexNormals(vertices, faces).cast<double>();
   for (int v = n; v < n * n; ++v) {
     ASSERT_NEAR(std::abs(normals.row(v).dot(vertices.row(v) - Eigen::RowVector3d(0, 0, 4))), 1, 0.02) << v;
     ASSERT_GT(normals.row(v).dot(vertices.row(v) - Eigen::RowVector3d(0, 0, 4)), 0) << "inwards at " << v;

@@ -8,12 +8,15 @@
 #include <memory>
 
 #include "geometry/rotation.h"
-#include "tests/support/toy_body.h"
+#include "tests/support/frame_scene.h"
+#include "tests/tracking/jet_twin.h"
+#include "tracking/robust.h"
 
 namespace bodyloom {
 namespace {
 
 using Eigen::Matrix3d;
+using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
@@ -26,6 +29,7 @@ struct Scene {
   FrameLayout layout;
   FrameState truth;
   VectorXd betas;
+  double log_focal = 0;
   std::shared_ptr<const Skinner> skinner = std::make_shared<const Skinner>(body);
   PartLabelSequence labels;
 };
@@ -33,10 +37,8 @@ struct Scene {
 /// The toy body in front of the camera and the part map of what the camera sees of it.
 std::unique_ptr<Scene> MakeScene(const Vector3d& translation = Vector3d(0, 0, 3)) {
   auto scene = std::make_unique<Scene>();
-  std::vector<int> joints;
-  for (int j = 0; j < scene->body.num_joints(); ++j) joints.push_back(j);
-  scene->layout = FrameLayout::Make(scene->body, CameraKnowledge::kKnown, MakePinhole(kWidth, kHeight, 310), joints,
-                                    scene->body.num_betas());
+  scene->layout = FrameLayout::Make(scene->body, CameraKnowledge::kKnown, MakePinhole(kWidth, kHeight, 310),
+                                    AllJoints(scene->body), scene->body.num_betas());
   scene->betas = VectorXd::Zero(scene->body.num_betas());
   scene->truth.rotations.assign(scene->body.num_joints(), Matrix3d::Identity());
   scene->truth.rotations[0] = RotationFromAxisAngle(Vector3d(M_PI, 0, 0));
@@ -64,7 +66,7 @@ std::unique_ptr<PartLabelTerm> MakeTerm(const Scene& scene, const FrameState& st
                                         const PartLabelOptions& options = {}, double kernel = 8) {
   auto term = std::make_unique<PartLabelTerm>(scene.labels, 0, scene.skinner, options);
   VisibleSurface surface;
-  term->Correspond(scene.layout, state, scene.betas, 0, kPersonPx, kernel, &surface);
+  term->Correspond(scene.layout, state, scene.betas, scene.log_focal, kPersonPx, kernel, &surface);
   return term;
 }
 
@@ -74,7 +76,7 @@ FrameSystem Evaluate(const Scene& scene, const PartLabelTerm& term, const FrameS
   data.part_labels = &term;
   FrameEvaluator evaluator;
   FrameSystem system;
-  evaluator.Evaluate(scene.layout, data, state, scene.betas, 0, true, &system, residuals);
+  evaluator.Evaluate(scene.layout, data, state, scene.betas, scene.log_focal, true, &system, residuals);
   return system;
 }
 
@@ -139,6 +141,91 @@ TEST(PartLabelTerm, DerivativesMatchDifferences) {
     check(scene->layout.beta_column + b, [&](double h, FrameState*, VectorXd* betas) { (*betas)[b] += h; });
   }
   EXPECT_GT(moving, 60);
+}
+
+using twin::Jet;
+
+/// Where the term's points appear, as functions of parameter `column`.
+std::vector<Eigen::Matrix<Jet, 2, 1>> TwinPixels(const Scene& scene, const PartLabelTerm& term, const FrameState& state,
+                                                 int column) {
+  const twin::SeededFrame frame =
+      twin::SeedFrame(scene.body, scene.layout, state, scene.betas, scene.log_focal, column);
+  std::vector<int> corners;
+  std::vector<Vector3d> barycentrics;
+  const auto add = [&](int face, const Vector3d& barycentric) {
+    for (int c = 0; c < 3; ++c) corners.push_back(scene.body.data().faces(face, c));
+    barycentrics.push_back(barycentric);
+  };
+  for (const PartLabelTerm::Target& target : term.targets()) add(target.face, target.barycentric);
+  for (const PartLabelTerm::OutlinePoint& point : term.outline()) add(point.face, point.barycentric);
+  const auto vertices = frame.body.Vertices(corners);
+  std::vector<Eigen::Matrix<Jet, 2, 1>> pixels;
+  for (size_t i = 0; i < barycentrics.size(); ++i) {
+    twin::Vector3<Jet> x = twin::Vector3<Jet>::Zero();
+    for (size_t c = 0; c < 3; ++c) x += vertices[3 * i + c] * Jet(barycentrics[i][static_cast<int>(c)]);
+    pixels.push_back(frame.Project(x));
+  }
+  return pixels;
+}
+
+/// The term from its definition with the correspondences held, which is what a round does. The distance field's own
+/// derivative is checked where the field is (distance_field_test.cc). Returns the number of rows.
+int CheckAgainstTwin(const Scene& scene, const PartLabelTerm& term, const FrameState& state) {
+  const size_t num_targets = term.targets().size(), n = num_targets + term.outline().size();
+  MatrixXd J = MatrixXd::Zero(static_cast<int>(2 * n), scene.layout.num_columns);
+  VectorXd r = VectorXd::Zero(static_cast<int>(2 * n));
+  double cost = 0;
+  for (int column = 0; column < scene.layout.num_columns; ++column) {
+    const auto pixels = TwinPixels(scene, term, state, column);
+    cost = 0;
+    for (size_t i = 0; i < n; ++i) {
+      Eigen::Matrix<Jet, 2, 1> raw(Jet(0.0), Jet(0.0));
+      double weight;
+      if (i < num_targets) {
+        const PartLabelTerm::Target& target = term.targets()[i];
+        raw = target.whitening.cast<Jet>() * (pixels[i] - target.pixel.cast<Jet>());
+        weight = target.weight;
+      } else {
+        const PartLabelTerm::OutlinePoint& point = term.outline()[i - num_targets];
+        Eigen::RowVector2d slope;
+        const double distance = point.field->Evaluate(Eigen::Vector2d(pixels[i][0].a, pixels[i][1].a), &slope);
+        raw[0] = Jet(distance - point.offset_px);
+        raw[0].v[0] = slope[0] * pixels[i][0].v[0] + slope[1] * pixels[i][1].v[0];
+        raw[0] *= Jet(point.inverse_sigma);
+        weight = point.weight;
+      }
+      const RobustValue robust = GemanMcClure(raw[0].a * raw[0].a + raw[1].a * raw[1].a, term.kernel());
+      cost += 0.5 * weight * robust.rho;
+      for (int c = 0; c < 2; ++c) {
+        const int row = static_cast<int>(2 * i) + c;
+        r[row] = std::sqrt(weight * robust.weight) * raw[c].a;
+        J(row, column) = std::sqrt(weight * robust.weight) * raw[c].v[0];
+      }
+    }
+  }
+  ExpectMatchesTwin(Evaluate(scene, term, state), cost, J, r);
+  return static_cast<int>(2 * n);
+}
+
+TEST(PartLabelTerm, MatchesAutomaticDerivativesInEveryCamera) {
+  for (const CameraKnowledge knowledge :
+       {CameraKnowledge::kKnown, CameraKnowledge::kUnknownFocal, CameraKnowledge::kWeak}) {
+    const auto scene = MakeScene();
+    Camera camera = scene->layout.camera;
+    if (knowledge == CameraKnowledge::kKnown) camera.distortion = {-0.12, 0.03, 0.001, -0.002, 0.004, 0.01, 0, 0};
+    scene->layout = FrameLayout::Make(scene->body, knowledge, camera, AllJoints(scene->body), scene->body.num_betas());
+    scene->log_focal = std::log(320.0);
+    FrameState state = scene->truth;
+    state.rotations[1] = RotationFromAxisAngle(Vector3d(0.1, 0.2, 0.3));
+    state.rotations[16] = RotationFromAxisAngle(Vector3d(0.1, 0.2, -0.4));
+    state.rotations[18] = RotationFromAxisAngle(Vector3d(0.3, -0.2, 0.5));
+    state.translation =
+        knowledge == CameraKnowledge::kWeak ? Vector3d(std::log(100.0), 0.05, -0.04) : Vector3d(0.05, -0.04, 3.1);
+    const auto term = MakeTerm(*scene, state);
+    // Away from where the correspondences were made.
+    state.rotations[0] = state.rotations[0] * RotationFromAxisAngle(Vector3d(0.02, 0.01, -0.03));
+    EXPECT_GT(CheckAgainstTwin(*scene, *term, state), 600) << static_cast<int>(knowledge);
+  }
 }
 
 /// Gauss–Newton steps with rounds; returns the largest distance of a joint from the truth, metres.

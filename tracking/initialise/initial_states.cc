@@ -9,6 +9,7 @@
 #include "geometry/check.h"
 #include "geometry/posed_body.h"
 #include "geometry/rotation.h"
+#include "tracking/initialise/bone_ratio_shape.h"
 #include "tracking/initialise/inverse_kinematics.h"
 #include "tracking/initialise/joint_hypotheses.h"
 #include "tracking/initialise/lifted_start.h"

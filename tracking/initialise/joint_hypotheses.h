@@ -55,13 +55,6 @@ JointHypothesesResult FindJointHypotheses(const KeypointSequence& keypoints, con
                                           const MatrixX3d& rest_points, const PosePrior* prior,
                                           const JointHypothesesOptions& options);
 
-/// Shape components whose bone lengths have the ratios that the clip shows: a bone's largest projections over the clip
-/// (90th percentile, relative to the body's apparent size) tell its length wherever it once lay in the image plane.
-/// Fits log ratios of torso, thighs, shins, upper arms and forearms with σ = 0.05, and N(0, 1) on each component. Zero
-/// without enough frames.
-Eigen::VectorXd EstimateShape(const KeypointSequence& keypoints, const Camera& camera, const BodyModel& model,
-                              int num_betas, const JointHypothesesOptions& options);
-
 /// Orthonormal torso axes of 3D joints in CocoNames() order: y from mid-hip to mid-shoulder, x to the body's left (mean
 /// of shoulder and hip lines, made orthogonal), z = x × y to the front. False when degenerate.
 bool TorsoFrame(const MatrixX3d& coco17, Eigen::Matrix3d* rotation);

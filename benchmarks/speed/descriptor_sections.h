@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The sections of bodyloom_bench_descriptors. Each prints its own table; `folder` takes files.
+#pragma once
+
+#include <string>
+
+#include "geometry/body_model.h"
+
+namespace bodyloom {
+
+void BenchNormals(const BodyModel& body);
+void BenchVelocities(const BodyModel& body);
+void BenchBake(const BodyModel& body);
+/// Error of bilinear lookups in a baked map of normals, next to seams and away from them.
+void BenchSeams(const BodyModel& body);
+void BenchStream(const BodyModel& body, const std::string& folder);
+void BenchTexture(const BodyModel& body, const std::string& folder);
+
+}  // namespace bodyloom

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Area-weighted normals of meshes given in double and wherever they stand, as pictures need them: the vertices are
+/// taken relative to the first one, then geometry/normals.h.
+#pragma once
+
+#include <optional>
+
+#include "geometry/arrays.h"
+#include "geometry/normals.h"
+
+namespace bodyloom {
+
+/// For meshes that come one after another with the same faces, as the frames of a clip do: who meets whom is worked out
+/// once. Not for use by two threads at once.
+class VertexNormalsOfMesh {
+ public:
+  /// V×3 unit normals, valid until the next call. Throws std::invalid_argument as MeshNormals does.
+  const MatrixX3f& Compute(const MatrixX3d& vertices, const MatrixX3i& faces);
+
+ private:
+  std::optional<MeshNormals> mesh_;
+  NormalScratch scratch_;
+  MatrixX3f relative_, normals_;
+};
+
+/// The same for a single mesh.
+MatrixX3f VertexNormals(const MatrixX3d& vertices, const MatrixX3i& faces);
+
+}  // namespace bodyloom

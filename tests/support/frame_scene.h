@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+/// One frame of a toy body before a camera, with what the frame cost needs; tests of its terms add what was seen.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "geometry/rotation.h"
+#include "tests/support/toy_body.h"
+#include "tracking/frame_cost.h"
+
+namespace bodyloom {
+
+/// Points into itself (data, layout): not to be copied.
+struct FrameScene {
+  BodyModel body{ToyBodyData()};
+  FrameLayout layout;
+  FrameData data;
+  FrameState state;
+  Eigen::VectorXd betas;
+  double log_focal = 0;
+  std::vector<DenseKeypoint> dense;
+  FrameScene() = default;
+  FrameScene(const FrameScene&) = delete;
+  FrameScene& operator=(const FrameScene&) = delete;
+};
+
+inline std::vector<int> AllJoints(const BodyModel& body) {
+  std::vector<int> all;
+  for (int j = 0; j < body.num_joints(); ++j) all.push_back(j);
+  return all;
+}
+
+/// A rotation vector of independent normal numbers of this size.
+inline Eigen::Vector3d RandomTurn(double radians, std::mt19937_64* random) {
+  std::normal_distribution<double> normal;
+  const double x = normal(*random), y = normal(*random), z = normal(*random);
+  return radians * Eigen::Vector3d(x, y, z);
+}
+
+/// Layout (distorted when the camera is known), shape and focal length; the joints in `active` are unknowns.
+inline void PlaceCamera(CameraKnowledge knowledge, Camera camera, double focal_px, const std::vector<int>& active,
+                        std::mt19937_64* random, FrameScene* scene) {
+  std::normal_distribution<double> normal;
+  if (knowledge == CameraKnowledge::kKnown) camera.distortion = {-0.12, 0.03, 0.001, -0.002, 0.004, 0.01, 0, 0};
+  scene->layout = FrameLayout::Make(scene->body, knowledge, camera, active, scene->body.num_betas());
+  scene->betas = Eigen::VectorXd::NullaryExpr(scene->body.num_betas(), [&]() { return 0.5 * normal(*random); });
+  scene->log_focal = std::log(focal_px);
+}
+
+inline FrameSystem Evaluate(const FrameScene& scene, bool derivatives = true) {
+  FrameEvaluator evaluator;
+  FrameSystem system;
+  evaluator.Evaluate(scene.layout, scene.data, scene.state, scene.betas, scene.log_focal, derivatives, &system);
+  return system;
+}
+
+/// A frame's cost against its twin's (cost, and the robustly weighted residual r with its derivatives J, by automatic
+/// differentiation): cost, gradient and Gauss–Newton matrix to 1e-9 relative.
+inline void ExpectMatchesTwin(const FrameSystem& system, double cost, const Eigen::MatrixXd& J,
+                              const Eigen::VectorXd& r) {
+  constexpr double kRelative = 1e-9;
+  EXPECT_NEAR(system.cost, cost, kRelative * std::max(cost, 1e-6));
+  // Rounding in r is felt through J: at a zero residual the gradient is zero to 1e-12 of what a unit residual gives.
+  const Eigen::VectorXd gradient = J.transpose() * r;
+  EXPECT_LE((system.gradient - gradient).norm(), kRelative * gradient.norm() + 1e-12 * J.norm());
+  const Eigen::MatrixXd H = system.H.selfadjointView<Eigen::Lower>(), expected = J.transpose() * J;
+  ASSERT_TRUE(H.allFinite());
+  EXPECT_LE((H - expected).norm(), kRelative * std::max(1e-3, expected.norm()));
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What the search for 3D joints (joint_hypotheses.h) knows of a clip before it chooses anything: the rays of the
+/// detections, the lengths of the body, and how far away the body is.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "geometry/arrays.h"
+#include "geometry/camera.h"
+#include "geometry/observations.h"
+#include "tracking/initialise/joint_hypotheses.h"
+
+namespace bodyloom::hypotheses_internal {
+
+/// Indices of CocoNames().
+enum Coco {
+  kNose = 0,
+  kLeftEye,
+  kRightEye,
+  kLeftEar,
+  kRightEar,
+  kLeftShoulder,
+  kRightShoulder,
+  kLeftHip = 11,
+  kRightHip
+};
+
+constexpr std::array<int, 4> kTorso = {kLeftShoulder, kRightShoulder, kLeftHip, kRightHip};
+
+/// One frame's detections as normalised rays (x/z, y/z) with confidences, in CocoNames() order.
+struct Rays {
+  std::array<Eigen::Vector2d, 17> ray;
+  std::array<double, 17> confidence{};
+  std::array<bool, 17> seen{};
+  [[nodiscard]] bool has_torso() const {
+    return seen[kLeftShoulder] && seen[kRightShoulder] && seen[kLeftHip] && seen[kRightHip];
+  }
+};
+
+/// `keypoints` at these frames.
+std::vector<Rays> RaysOfFrames(const KeypointSequence& keypoints, const Camera& camera, const std::vector<int>& frames,
+                               const JointHypothesesOptions& options);
+
+/// Lengths of the body that the hypotheses need, metres; `rest` are its 17 landmarks in the rest pose.
+struct Lengths {
+  double torso, upper[4], lower[4];
+  MatrixX3d rest;
+  explicit Lengths(const MatrixX3d& rest_points);
+};
+
+/// Depth of the root for every frame: body length over its apparent length, the apparent length being the 85th
+/// percentile over ±1.5 s (bones only ever look shorter), smoothed over the same window.
+std::vector<double> RootDepths(const std::vector<Rays>& rays, const std::vector<double>& times, const Lengths& lengths);
+
+/// A squared error that grows up to `limit` and no further.
+inline double Saturated(double squared, double limit) { return limit * squared / (limit + squared); }
+
+}  // namespace bodyloom::hypotheses_internal

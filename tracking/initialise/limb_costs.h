@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The four hypotheses of a limb (each of its two bones points towards the camera or away) and what each costs: the
+/// learned density of its directions in the torso's frame, and what confidence says about occlusion by the torso.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "geometry/direction_bins.h"
+#include "geometry/pose_prior.h"
+#include "tracking/initialise/joint_rays.h"
+
+namespace bodyloom::hypotheses_internal {
+
+class LimbCosts {
+ public:
+  /// Borrows all three; without a prior every direction costs the same.
+  LimbCosts(const PosePrior* prior, const Lengths& lengths, const JointHypothesesOptions& options);
+
+  /// The four hypotheses of a limb that starts at `start` (camera frame): end points of both bones. Bones that look
+  /// longer than they are lie in the image plane.
+  void Hypotheses(const Rays& rays, int limb, const Eigen::Vector3d& start, Eigen::Vector3d middle[4],
+                  Eigen::Vector3d end[4]) const;
+
+  [[nodiscard]] bool Usable(const Rays& rays, int limb) const {
+    return rays.seen[kLimbs[limb][1]] && rays.seen[kLimbs[limb][2]];
+  }
+
+  /// Cost of one hypothesis of a limb.
+  [[nodiscard]] double Cost(const Rays& rays, int limb, const Eigen::Matrix3d& torso,
+                            const Eigen::Vector3d& torso_centre, const Eigen::Vector3d& start,
+                            const Eigen::Vector3d& middle, const Eigen::Vector3d& end) const;
+
+ private:
+  [[nodiscard]] double Density(int limb, Eigen::Vector3d upper, Eigen::Vector3d lower) const;
+
+  const Lengths& lengths_;
+  const JointHypothesesOptions& options_;
+  const PosePrior* prior_ = nullptr;
+  std::optional<DirectionBins> bins_;
+};
+
+}  // namespace bodyloom::hypotheses_internal
