@@ -40,6 +40,7 @@ std::vector<int> EvenlySpreadFrames(int num_frames, int count) {
   BODYLOOM_CHECK(num_frames >= 0 && count >= 0, "spread of ", count, " over ", num_frames, " frames");
   count = std::min(count, num_frames);
   std::vector<int> frames;
+  frames.reserve(count);
   for (int i = 0; i < count; ++i) {
     frames.push_back(count == 1 ? (num_frames - 1) / 2
                                 : static_cast<int>(std::lround(double(i) * (num_frames - 1) / (count - 1))));
