@@ -200,6 +200,7 @@ TEST(MotionSplit, TheLongestNameThatFitsCounts) {
   EXPECT_EQ(name, "bvh/05_02");
   EXPECT_EQ(split.Find("amc/05_02.amc")->motion_class, "walk");
   EXPECT_EQ(split.Find("05_02")->motion_class, "walk");
+  EXPECT_EQ(split.Find("otherbvh/05_02.bvh")->motion_class, "walk") << "names match whole parts of the path";
   EXPECT_EQ(split.Find("amc/105_02.amc"), nullptr);
   EXPECT_EQ(split.Find(""), nullptr);
 }
