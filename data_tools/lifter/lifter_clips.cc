@@ -17,6 +17,10 @@ namespace {
 
 constexpr double kFloorShare = 0.1;  // of the frames, in which the body reaches through its floor
 
+// Feet of retargeted motion hover by a few centimetres; that much counts as standing, and little more as less of a
+// jump.
+constexpr float kHover = 0.02F, kSurelyOff = 0.08F;
+
 struct Instant {
   int before, after;
   float part;
@@ -73,7 +77,10 @@ LifterClip CompactClip(const Motion& motion, bool has_floor, const LifterBody& b
   std::vector<float> sorted = lowest;
   const auto low = sorted.begin() + static_cast<long>(kFloorShare * static_cast<double>(sorted.size() - 1));
   std::nth_element(sorted.begin(), low, sorted.end());
-  for (int t = 0; t < poses.num_frames; ++t) poses.clearance[t] = std::max(0.0F, lowest[t] - *low);
+  for (int t = 0; t < poses.num_frames; ++t) {
+    const float height = lowest[t] - *low;
+    poses.clearance[t] = height * std::clamp((height - kHover) / (kSurelyOff - kHover), 0.0F, 1.0F);
+  }
   return clip;
 }
 

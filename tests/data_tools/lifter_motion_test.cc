@@ -122,11 +122,11 @@ TEST(LifterClips, ClearanceIsMeasuredFromTheFloorThatTheMotionStandsOn) {
   const PoseSequence raised = CompactClip(motion, true, body).poses;
   std::vector<float> sorted = plain.clearance;
   std::sort(sorted.begin(), sorted.end());
-  EXPECT_LT(sorted[sorted.size() / 2], 0.02);
+  EXPECT_EQ(sorted[sorted.size() / 2], 0);
   for (int t = 0; t < plain.num_frames; ++t) EXPECT_NEAR(plain.clearance[t], raised.clearance[t], 1e-4);
   for (int t = 100; t < 150; ++t) motion.trans(t, 1) += 0.4;  // a jump
   const PoseSequence jumping = CompactClip(motion, true, body).poses;
-  EXPECT_NEAR(jumping.clearance[120] - plain.clearance[120], 0.4, 0.02);
+  EXPECT_NEAR(jumping.clearance[120], 0.4, 0.04);
   for (const float c : CompactClip(motion, false, body).poses.clearance) EXPECT_EQ(c, 0);
 }
 
