@@ -4,17 +4,15 @@
 ///   bodyloom_bench_lifter_windows [--motion FOLDER] [--windows 4000] [--json F] [--picture F.png] [--first 0]
 ///                                 [--floor_poses F.png] [--floor_work 0..1]
 ///
-/// Motion: the demo motion, or every file of FOLDER and the folders below it that can be read, each lowered so that the
-/// lowest point of the body lies on the floor in one frame of twenty. --picture draws six windows from seed --first:
-/// detections above, the landmarks they stand for from the front and from the side below, upright by the target's own
-/// idea of up. --floor_poses draws three people for each way of being on the floor.
+/// Motion: the demo motion, or what the motion library finds in FOLDER for training. --picture draws six windows from
+/// seed --first: detections above, the landmarks they stand for from the front and from the side below, upright by the
+/// target's own idea of up. --floor_poses draws three people for each way of being on the floor.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
 #include <exception>
-#include <filesystem>
 #include <functional>
 #include <limits>
 
@@ -23,7 +21,7 @@
 #include "data_tools/builtin_body.h"
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/lifter/lifter_windows.h"
-#include "data_tools/motion/load_motion.h"
+#include "data_tools/motion/motion_library.h"
 #include "data_tools/synthetic/demo_motion.h"
 #include "data_tools/video/image_file.h"
 #include "geometry/parallel.h"
@@ -38,43 +36,22 @@ using Clock = std::chrono::steady_clock;
 
 const double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// Lowers the motion onto its floor.
-void PutOnFloor(const LifterBody& body, Motion* motion) {
-  const LifterPerson person = body.Person(motion->betas);
-  std::vector<float> lowest;
-  PosedPerson posed;
-  for (int t = 0; t < motion->num_frames(); ++t) {
-    std::vector<Eigen::Quaternionf> q;
-    for (int j = 0; j < kPoseJoints; ++j)
-      q.push_back(TurnBy(motion->poses.block<1, 3>(t, 3 * j).transpose().cast<float>()));
-    body.Pose(person, q.data(), motion->trans.row(t).transpose().cast<float>(), &posed);
-    lowest.push_back(body.Lowest(person, posed));
-  }
-  std::nth_element(lowest.begin(), lowest.begin() + static_cast<long>(lowest.size() / 20), lowest.end());
-  motion->trans.col(1).array() -= lowest[lowest.size() / 20];
-}
-
-std::vector<Motion> Motions(const std::string& folder) {
-  if (folder.empty()) return {DemoMotion(BuiltinBody(), 360, 60)};
-  const LifterBody body(BuiltinBody());
-  std::vector<std::string> paths;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
-    if (entry.is_regular_file()) paths.push_back(entry.path().string());
-  }
-  std::sort(paths.begin(), paths.end());
+struct Library {
   std::vector<Motion> motions;
-  for (const std::string& path : paths) {
-    try {
-      LoadMotionOptions options;
-      options.resample_fps = kLifterClipRate;
-      Motion motion = LoadMotion(path, options);
-      if (motion.num_frames() < 2) continue;
-      PutOnFloor(body, &motion);
-      motions.push_back(std::move(motion));
-    } catch (const std::exception&) {  // skeletons and licences lie beside the motions
-    }
+  std::vector<char> has_floor;
+};
+
+Library Motions(const std::string& folder) {
+  if (folder.empty()) return {{DemoMotion(BuiltinBody(), 360, 60)}, {1}};
+  Library library;
+  MotionLibraryOptions options;
+  options.visit_test = false;
+  for (LibraryClip& clip : LoadMotionLibrary({folder}, options)) {
+    if (clip.motion.num_frames() < 2) continue;
+    library.has_floor.push_back(clip.has_floor ? 1 : 0);
+    library.motions.push_back(std::move(clip.motion));
   }
-  return motions;
+  return library;
 }
 
 /// 21 points as positions (x right, y down, units of the body) in a box of the picture.
@@ -194,13 +171,13 @@ int Run(int argc, char** argv) {
                                   {"first", "0"},
                                   {"floor_poses", ""},
                                   {"floor_work", ""}});
-  const std::vector<Motion> motions = Motions(arguments.Text("motion"));
+  const Library library = Motions(arguments.Text("motion"));
   LifterWindowOptions options;
   if (!arguments.Text("floor_work").empty()) options.floor_work = std::stod(arguments.Text("floor_work"));
   double seconds = 0;
-  for (const Motion& m : motions) seconds += m.timestamps.back() - m.timestamps.front();
-  const LifterWindowGenerator generator(motions, std::vector<char>(motions.size(), 1), BuiltinBody(), options);
-  std::printf("%zu motions, %.0f s\n", motions.size(), seconds);
+  for (const Motion& m : library.motions) seconds += m.timestamps.back() - m.timestamps.front();
+  const LifterWindowGenerator generator(library.motions, library.has_floor, BuiltinBody(), options);
+  std::printf("%zu motions, %.0f s\n", library.motions.size(), seconds);
   if (!arguments.Text("picture").empty())
     DrawWindows(generator, static_cast<uint64_t>(arguments.Integer("first")), arguments.Text("picture"));
   if (!arguments.Text("floor_poses").empty()) DrawFloorPoses(generator.body(), arguments.Text("floor_poses"));

@@ -15,6 +15,12 @@ using Eigen::Vector3f;
 
 namespace {
 
+constexpr double kFloorShare = 0.1;  // of the frames, in which the body reaches through its floor
+
+// Feet of retargeted motion hover by a few centimetres; that much counts as standing, and little more as less of a
+// jump.
+constexpr float kHover = 0.02F, kSurelyOff = 0.08F;
+
 struct Instant {
   int before, after;
   float part;
@@ -56,17 +62,24 @@ LifterClip CompactClip(const Motion& motion, bool has_floor, const LifterBody& b
   poses.clearance.assign(poses.num_frames, 0);
   const LifterPerson person = body.Person(motion.betas);
   PosedPerson posed;
+  std::vector<float> lowest(poses.num_frames);
   for (int t = 0; t < poses.num_frames; ++t) {
     for (int j = 0; j < kPoseJoints; ++j) {
       const Eigen::Vector3d w = at_rate.poses.block<1, 3>(t, 3 * j);
       poses.at(t, j) = Eigen::Quaterniond(RotationFromAxisAngle(w)).cast<float>();
     }
     poses.trans[t] = at_rate.trans.row(t).cast<float>();
-    if (has_floor) {
-      body.Pose(person, &poses.at(t, 0), poses.trans[t], &posed);
-      poses.clearance[t] = std::max(0.0F, body.Lowest(person, posed) / person.size);
-    }
+    body.Pose(person, &poses.at(t, 0), poses.trans[t], &posed);
+    lowest[t] = body.Lowest(person, posed) / person.size;
     poses.trans[t] /= person.size;
+  }
+  if (!has_floor) return clip;
+  std::vector<float> sorted = lowest;
+  const auto low = sorted.begin() + static_cast<long>(kFloorShare * static_cast<double>(sorted.size() - 1));
+  std::nth_element(sorted.begin(), low, sorted.end());
+  for (int t = 0; t < poses.num_frames; ++t) {
+    const float height = lowest[t] - *low;
+    poses.clearance[t] = height * std::clamp((height - kHover) / (kSurelyOff - kHover), 0.0F, 1.0F);
   }
   return clip;
 }

@@ -18,9 +18,11 @@ struct LifterClip {
 
 inline constexpr double kLifterClipRate = 60;  ///< faster motions are resampled to it
 
-/// `motion`: 24 or more joints, y up, with its floor at y = 0 when has_floor. The height of the lowest point above the
-/// floor is measured with the motion's own shape. Throws std::invalid_argument with the reason when the motion cannot
-/// be used (arrays that do not fit, values that are not finite, y is not up, an uneven or missing clock, one frame).
+/// `motion`: 24 or more joints, y up, on a flat floor when has_floor. Where that floor is, is measured on this body (it
+/// stands on its own soles, and sources differ in where the pelvis is): the height below which the body's lowest point
+/// is in one frame of ten. Up to 2 cm above it is on it, from 8 cm on it is as high as it is. Throws
+/// std::invalid_argument with the reason when the motion cannot be used (arrays that do not fit, values that are not
+/// finite, y is not up, an uneven or missing clock, one frame).
 LifterClip CompactClip(const Motion& motion, bool has_floor, const LifterBody& body);
 
 /// Frames at start_s + i·step_s; beyond the clip's ends time runs back and forth (a clip is a pendulum).

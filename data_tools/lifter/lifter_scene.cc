@@ -84,11 +84,17 @@ LifterScene FilmPerson(const WorldMotion& motion, const LifterPerson& person, co
   for (int t = 0; t < T; ++t) middle += MidHip(&motion.points[static_cast<size_t>(t) * kLifterPoints]);
   middle /= static_cast<float>(T);
   Vector3f place = distance * Vector3f(aside, above, 1);  // of the middle, in the camera
-  float nearest = 1e9F;
-  for (const Vector3f& p : motion.points)
-    nearest = std::min(nearest, (camera_from_world.row(2) * (p - middle)).value());
-  const float missing = kMinDepth * person.size - (place.z() + nearest);
-  if (missing > 0) place *= (place.z() + missing) / place.z();
+  // Back until nothing is too near and the hips stay within 45° of the axis, as in a picture that somebody framed.
+  float missing = 0;
+  for (const Vector3f& p : motion.points) {
+    missing = std::max(missing, kMinDepth * person.size - place.z() - camera_from_world.row(2).dot(p - middle));
+  }
+  for (int t = 0; t < T; ++t) {
+    const Vector3f hip =
+        camera_from_world * (MidHip(&motion.points[static_cast<size_t>(t) * kLifterPoints]) - middle) + place;
+    missing = std::max(missing, hip.head<2>().cwiseAbs().maxCoeff() - hip.z());
+  }
+  place.z() += missing;
 
   LifterScene scene;
   scene.num_frames = T;

@@ -30,7 +30,7 @@ struct LifterWindow {
 
 class LifterWindowGenerator {
  public:
-  /// `motions`: 24 joints, y up, floor at y = 0 where has_floor says so; copied into a compact form (24 quaternions a
+  /// `motions`: 24 joints, y up, on a flat floor where has_floor says so; copied into a compact form (24 quaternions a
   /// frame at 60 frames a second). Throws std::invalid_argument, naming the motion by its index, for motions that
   /// cannot be used, when there are none, when has_floor has another length, and for options that are not valid.
   LifterWindowGenerator(const std::vector<Motion>& motions, const std::vector<char>& has_floor, const BodyModel& body,

@@ -114,6 +114,22 @@ TEST(LifterClips, FasterMotionsAreResampled) {
   EXPECT_NEAR(clip.poses.num_frames, 180, 1);
 }
 
+TEST(LifterClips, ClearanceIsMeasuredFromTheFloorThatTheMotionStandsOn) {
+  const LifterBody body(ToyBody());
+  Motion motion = ShortDemoMotion();
+  const PoseSequence plain = CompactClip(motion, true, body).poses;
+  motion.trans.col(1).array() += 0.3;
+  const PoseSequence raised = CompactClip(motion, true, body).poses;
+  std::vector<float> sorted = plain.clearance;
+  std::sort(sorted.begin(), sorted.end());
+  EXPECT_EQ(sorted[sorted.size() / 2], 0);
+  for (int t = 0; t < plain.num_frames; ++t) EXPECT_NEAR(plain.clearance[t], raised.clearance[t], 1e-4);
+  for (int t = 100; t < 150; ++t) motion.trans(t, 1) += 0.4;  // a jump
+  const PoseSequence jumping = CompactClip(motion, true, body).poses;
+  EXPECT_NEAR(jumping.clearance[120], 0.4, 0.04);
+  for (const float c : CompactClip(motion, false, body).poses.clearance) EXPECT_EQ(c, 0);
+}
+
 TEST(LifterClips, MirroredPosesAreMirroredLandmarks) {
   const LifterBody body(ToyBody());
   const LifterPerson person = body.Person({});

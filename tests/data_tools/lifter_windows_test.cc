@@ -215,6 +215,11 @@ TEST(LifterWindows, ThePersonStaysBeforeTheCamera) {
     const LifterPerson person = generator.MakePerson(seed);
     const LifterScene scene = generator.MakeScene(seed, person, generator.MakePoses(seed, person));
     for (const Vector3f& p : scene.points) ASSERT_GT(p.z(), 0.5);
+    for (int t = 0; t < scene.num_frames; ++t) {
+      const Vector3f* p = &scene.points[t * kLifterPoints];
+      const Vector3f hip = 0.5F * (p[kLifterLeftHip] + p[kLifterLeftHip + 1]);
+      ASSERT_LT(hip.head<2>().cwiseAbs().maxCoeff(), 1.1 * hip.z());  // a shaking camera may go a little further
+    }
   }
 }
 
