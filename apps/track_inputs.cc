@@ -6,6 +6,7 @@
 #include "data_tools/body_io.h"
 #include "data_tools/builtin_body.h"
 #include "data_tools/formats/npz.h"
+#include "data_tools/lifter/lifter_weights_io.h"
 #include "data_tools/motion/load_motion.h"
 #include "data_tools/observations/iuv_to_dense.h"
 #include "data_tools/observations/load_detections.h"
@@ -115,6 +116,7 @@ TrackSequenceInput TrackInputs::ForTracker() const {
   input.part_labels = part_labels ? &*part_labels : nullptr;
   input.initialiser = initialiser ? &*initialiser : nullptr;
   input.prior = prior ? &*prior : nullptr;
+  input.lifter = lifter ? &*lifter : nullptr;
   input.camera = camera.camera;
   return input;
 }
@@ -165,6 +167,7 @@ TrackInputs LoadTrackInputs(const TrackCommand& command) {
     AgreeOnImageSize(command.part_labels, inputs.part_labels->image_width, inputs.part_labels->image_height, &camera);
     if (!inputs.keypoints && !inputs.dense) {
       inputs.keypoints = KeypointsFromPartLabels(*inputs.part_labels);
+      inputs.joints_from_labels = true;
     }
   }
   if (camera.width == 0) {
@@ -181,6 +184,11 @@ TrackInputs LoadTrackInputs(const TrackCommand& command) {
       throw std::runtime_error(Concatenate(command.reference, ": ", inputs.reference->num_frames(),
                                            " frames, expected the ", inputs.num_frames(), " of the detections"));
     }
+  }
+  // The lifter knows how detectors err. Joints read off labels err otherwise, and it makes worse of them than the joint
+  // hypotheses do (docs/benchmarks.md).
+  if (command.lifter != "none" && !(command.lifter.empty() && inputs.joints_from_labels)) {
+    inputs.lifter = command.lifter.empty() ? BuiltinLifter() : ReadLifterWeights(command.lifter);
   }
   if (command.prior != "none") {
     inputs.prior = command.prior.empty() ? BuiltinPosePrior() : ReadPosePrior(command.prior);

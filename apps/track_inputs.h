@@ -8,6 +8,7 @@
 #include "apps/track_options.h"
 #include "data_tools/observations/load_cameras.h"
 #include "geometry/body_model.h"
+#include "geometry/lifter_weights.h"
 #include "geometry/observations.h"
 #include "geometry/pose_prior.h"
 #include "geometry/track.h"
@@ -19,8 +20,10 @@ struct TrackInputs {
   std::optional<KeypointSequence> keypoints;
   std::optional<DenseSequence> dense;
   std::optional<PartLabelSequence> part_labels;
+  bool joints_from_labels = false;  ///< `keypoints` were read off `part_labels`
   std::optional<Motion> initialiser;
   std::optional<PosePrior> prior;
+  std::optional<LifterWeights> lifter;
   std::optional<Track> reference;
   NamedCamera camera;  ///< intrinsics, pose and the way to the video's pixels, as far as known
   double video_fps = 0;

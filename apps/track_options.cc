@@ -105,6 +105,10 @@ void AddTrackOptions(CLI::App& app, TrackCommand* command) {
       ->group(known)
       ->type_name("FILE");
 
+  app.add_option("--lifter", c.lifter, "weights of the network that starts from 2D joints, or none (default: built in)")
+      ->group(known)
+      ->type_name("FILE");
+
   app.add_option("--out", c.out, "the track, .npz (required unless --plan)")->group(wanted)->type_name("FILE");
   app.add_option("--overlay", c.overlay, "video with the projected body, .mp4")->group(wanted)->type_name("FILE");
   app.add_flag("--side-view", c.side_view, "the overlay also shows the body from its side, where depth errors show")

@@ -34,7 +34,7 @@ struct TrackCommand {
   // What else is known.
   std::string video;     ///< for the image size, the frame rate and the overlay
   int video_offset = 0;  ///< video frame of the detections' time zero
-  std::string body, init, prior;
+  std::string body, init, prior, lifter;
 
   // What is wanted.
   std::string out, overlay, json;

@@ -56,6 +56,7 @@ void CheckFiles(const TrackCommand& command) {
       {command.body, "body model"},
       {command.init, "initialiser"},
       {command.prior == "none" ? "" : command.prior, "pose prior"},
+      {command.lifter == "none" ? "" : command.lifter, "lifter"},
       {command.reference, "reference track"}};
   std::vector<std::string> inputs;
   for (const auto& [path, what] : named_inputs) {
@@ -71,8 +72,14 @@ void CheckFiles(const TrackCommand& command) {
   }
 }
 
-TrackSequenceResult Solve(const TrackCommand& command, const TrackInputs& inputs, double share, Progress* progress) {
+TrackSequenceOptions OptionsFor(const TrackCommand& command, const TrackInputs& inputs) {
   TrackSequenceOptions options = command.solve;
+  if (inputs.joints_from_labels) options.part_labels = PartLabelOptions::LabelsAlone();
+  return options;
+}
+
+TrackSequenceResult Solve(const TrackCommand& command, const TrackInputs& inputs, double share, Progress* progress) {
+  TrackSequenceOptions options = OptionsFor(command, inputs);
   options.camera_knowledge = CameraKnowledgeOf(command);
   options.progress = [&](const TrackProgress& at) {
     progress->Update(at.stage, share * at.fraction);
@@ -84,7 +91,7 @@ TrackSequenceResult Solve(const TrackCommand& command, const TrackInputs& inputs
 }
 
 std::vector<PlanEntry> WholePlan(const TrackCommand& command, const TrackInputs& inputs) {
-  TrackSequenceOptions options = command.solve;
+  TrackSequenceOptions options = OptionsFor(command, inputs);
   options.camera_knowledge = CameraKnowledgeOf(command);
   std::vector<PlanEntry> plan = PlanTrackSequence(inputs.ForTracker(), options);
   const std::vector<PlanEntry> own = OwnPlan(command);

@@ -6,8 +6,10 @@
 #include <limits>
 #include <sstream>
 
+#include "geometry/check.h"
 #include "geometry/posed_body.h"
 #include "tracking/image_terms.h"
+#include "tracking/initialise/initial_states.h"
 #include "tracking/kinematics.h"
 
 namespace bodyloom {
@@ -133,8 +135,12 @@ std::vector<PlanEntry> PlanTrackSequence(const TrackSequenceInput& input, const 
   const auto add = [&](const std::string& what, bool runs, const std::string& why) {
     plan.push_back({what, runs, why});
   };
-  add("hypotheses over the clip", input.initialiser == nullptr,
-      input.initialiser == nullptr ? "no initialiser was given" : "the initialiser gives the start");
+  const std::string no_lifter = WhyNoLifter(input, options);
+  add("lifter", no_lifter.empty(), no_lifter.empty() ? "starts from 2D joints" : no_lifter);
+  add("hypotheses over the clip", input.initialiser == nullptr && !no_lifter.empty(),
+      input.initialiser != nullptr ? "the initialiser gives the start"
+      : no_lifter.empty()          ? "the lifter gives the start"
+                                   : "no initialiser and no lifter");
   add("2D joints (L_f)", input.keypoints != nullptr,
       input.keypoints != nullptr ? std::to_string(landmarks.names.size()) + " landmarks" : "no 2D joints in the input");
   add("dense keypoints (L_f)", dense, dense ? "in the input" : "no dense keypoints in the input");
@@ -145,9 +151,11 @@ std::vector<PlanEntry> PlanTrackSequence(const TrackSequenceInput& input, const 
              "weight " + std::to_string(options.rendered_uv.weight));
   add_unless("silhouette", WhyNoSilhouette(input, options), "of all labelled parts");
   add_unless("part labels", WhyNoParts(input, options), "outline and pixels of each part");
-  add("initialiser term (L_d)", input.initialiser != nullptr && options.initialiser_weight > 0,
-      input.initialiser != nullptr ? "weight " + std::to_string(options.initialiser_weight)
-                                   : "no initialiser was given");
+  const bool stays = input.initialiser != nullptr ? options.initialiser_weight > 0 : no_lifter.empty();
+  add("initialiser term (L_d)", stays,
+      stays ? Concatenate("weight ", input.initialiser != nullptr ? options.initialiser_weight : options.lifter_weight,
+                          input.initialiser != nullptr ? "" : ", of the lifter")
+            : "no initialiser and no lifter");
   add("pose prior", input.prior != nullptr, input.prior != nullptr ? "learned mixture" : "none was given");
   const std::string joints = std::to_string(active) + " of " + std::to_string(model.num_joints());
   add("joint rotations", true, joints + " joints are estimated");

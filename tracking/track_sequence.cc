@@ -185,7 +185,9 @@ bool TrackSequenceOptions::IsValid(std::string* why) const {
     *why = Concatenate(name, " is ", value, ", expected ", low, " to ", high);
     return false;
   };
-  if (!in_range("rendered_uv.weight", rendered_uv.weight, 0, 1e6) ||
+  if (!in_range("lifter_weight", lifter_weight, 0, 1e6) ||
+      !in_range("lifter_min_sigma_m", lifter_min_sigma_m, 1e-6, 1e3) ||
+      !in_range("rendered_uv.weight", rendered_uv.weight, 0, 1e6) ||
       !in_range("rendered_uv.max_points", rendered_uv.max_points, 1, 1e7) ||
       !in_range("rendered_uv.rounds", rendered_uv.rounds, 0, 100) ||
       !in_range("rendered_uv.max_iterations", rendered_uv.max_iterations, 1, 1000) ||

@@ -109,11 +109,9 @@ void Run(Request request) {
   if (test_clips.empty()) throw std::runtime_error("no motion for validation in the given folders: the split has none");
   const MotionSet train = TakeShare(std::move(train_clips), request.share), test = TakeShare(std::move(test_clips), 1);
   const LifterWindowOptions windows;
-  LifterWindowOptions plain = windows;  // validation is on motion as recorded, seen by the same detectors
-  plain.arm_exchange = plain.leg_exchange = plain.spine_exchange = plain.perturbation = 0;
-  plain.squat = plain.leg_raise = plain.kick = plain.arm_raise = plain.bend = plain.lean = plain.floor_work = 0;
   const LifterWindowGenerator train_windows(train.motions, train.has_floor, BuiltinBody(), windows);
-  const LifterWindowGenerator test_windows(test.motions, test.has_floor, BuiltinBody(), plain);
+  const LifterWindowGenerator test_windows(test.motions, test.has_floor, BuiltinBody(),
+                                           LifterWindowOptions::AsRecorded());
 
   TrainLifterOptions& options = request.options;
   options.num_inputs = kLifterInputs;

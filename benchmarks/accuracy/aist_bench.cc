@@ -20,6 +20,7 @@
 #include "benchmarks/accuracy/bench_report.h"
 #include "data_tools/builtin_body.h"
 #include "data_tools/evaluation/aist_evaluation.h"
+#include "data_tools/lifter/lifter_weights_io.h"
 #include "data_tools/observations/load_cameras.h"
 #include "data_tools/observations/load_detections.h"
 #include "data_tools/prior/pose_prior_io.h"
@@ -58,10 +59,27 @@ KeypointSequence FirstFrames(KeypointSequence keypoints, int frames) {
   return keypoints;
 }
 
+CameraKnowledge KnowledgeOf(const std::string& focal) {
+  if (focal == "known") return CameraKnowledge::kKnown;
+  if (focal == "unknown") return CameraKnowledge::kUnknownFocal;
+  BODYLOOM_CHECK(focal == "weak", "--focal is '", focal, "', expected known, unknown or weak");
+  return CameraKnowledge::kWeak;
+}
+
+/// "built-in", "none" or a file.
+const LifterWeights* LifterOf(const std::string& name) {
+  if (name == "none") return nullptr;
+  if (name == "built-in") return &BuiltinLifter();
+  static const LifterWeights weights = ReadLifterWeights(name);
+  return &weights;
+}
+
 struct Setting {
   std::string data, sequence, view;
   CameraKnowledge knowledge = CameraKnowledge::kKnown;
   int threads = 2, frames = 0;
+  const LifterWeights* lifter = nullptr;  ///< null: joint hypotheses
+  double lifter_weight = 0.03;
 };
 
 BenchRow TrackAndScore(const Setting& setting, const MultiViewClip& clip, const std::string& track_path) {
@@ -77,6 +95,7 @@ BenchRow TrackAndScore(const Setting& setting, const MultiViewClip& clip, const 
   TrackSequenceInput input;
   input.body = &BuiltinBody();
   input.prior = &BuiltinPosePrior();
+  input.lifter = setting.lifter;
   input.keypoints = &keypoints;
   if (setting.knowledge == CameraKnowledge::kKnown) {
     input.camera = camera.camera;
@@ -87,6 +106,7 @@ BenchRow TrackAndScore(const Setting& setting, const MultiViewClip& clip, const 
   TrackSequenceOptions options;
   options.camera_knowledge = setting.knowledge;
   options.num_threads = setting.threads;
+  options.lifter_weight = setting.lifter_weight;
   const auto track_start = std::chrono::steady_clock::now();
   const TrackSequenceResult result = TrackSequence(input, options);
   const double track_s = Seconds(track_start);
@@ -95,7 +115,9 @@ BenchRow TrackAndScore(const Setting& setting, const MultiViewClip& clip, const 
 
   const Evaluation evaluation = EvaluateAist(ReadTrack(track_path), clip, setting.view);
   BenchRow row;
-  row.group = setting.knowledge == CameraKnowledge::kKnown ? "known focal length" : "unknown focal length";
+  row.group = setting.knowledge == CameraKnowledge::kKnown          ? "known focal length"
+              : setting.knowledge == CameraKnowledge::kUnknownFocal ? "unknown focal length"
+                                                                    : "weak perspective";
   row.labels = {setting.sequence.substr(0, 3), setting.view};
   row.values = Evaluated(evaluation);
   row.values.insert(row.values.end(),
@@ -156,15 +178,16 @@ void Run(const BenchArguments& arguments, const std::string& command) {
     clips.push_back(ReadAistClip(arguments.Text("data"), arguments.Text("data") + "/cameras", sequence));
   }
   for (const std::string& focal : arguments.List("focal")) {
-    BODYLOOM_CHECK(focal == "known" || focal == "unknown", "--focal is '", focal, "', expected known or unknown");
     for (const MultiViewClip& clip : clips) {
       for (const std::string& view : arguments.List("views")) {
         Setting setting{arguments.Text("data"),
                         clip.name,
                         view,
-                        focal == "known" ? CameraKnowledge::kKnown : CameraKnowledge::kUnknownFocal,
+                        KnowledgeOf(focal),
                         arguments.Integer("threads"),
-                        arguments.Integer("frames")};
+                        arguments.Integer("frames"),
+                        LifterOf(arguments.Text("lifter")),
+                        std::stod(arguments.Text("lifter_weight"))};
         report.rows.push_back(TrackAndScore(setting, clip, track_path.string()));
         std::fprintf(stderr, "%s %s %s: PA-MPJPE %.1f mm, held out %.1f px, %.2f s\n", focal.c_str(), clip.name.c_str(),
                      view.c_str(), report.rows.back().values[0], report.rows.back().values[4],
@@ -190,6 +213,8 @@ int main(int argc, char** argv) {
                               {"sequences", "gBR_sBM_cAll_d06_mBR2_ch06,gJS_sBM_cAll_d03_mJS2_ch07"},
                               {"views", "c01,c03,c05,c07,c08"},
                               {"focal", "known,unknown"},
+                              {"lifter", "built-in"},
+                              {"lifter_weight", "0.03"},
                               {"threads", "2"},
                               {"frames", "0"},
                               {"json", ""}},

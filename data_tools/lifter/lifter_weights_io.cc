@@ -37,7 +37,8 @@ class Reader {
     const NdArray& array = RequireArray(arrays_, name, where_);
     const bool is_float = array.dtype == DType::kF16 || array.dtype == DType::kF32 || array.dtype == DType::kF64;
     if (!is_float || array.shape.size() != dimensions || array.num_elements() == 0) {
-      throw std::runtime_error(where_ + ": " + name + " is " + array.ShapeText() + ", expected floating point numbers, " +
+      throw std::runtime_error(where_ + ": " + name + " is " + array.ShapeText() +
+                               ", expected floating point numbers, " +
                                (dimensions == 2 ? "rows x columns" : "one row"));
     }
     return array;

@@ -16,4 +16,7 @@ void WriteLifterWeights(const std::string& path, const LifterWeights& weights);
 LifterWeights ReadLifterWeights(const std::string& path);
 LifterWeights ReadLifterWeightsBytes(const std::string& bytes, const std::string& where);
 
+/// The lifter that ships with the project (assets/lifter/lifter.npz, embedded).
+const LifterWeights& BuiltinLifter();
+
 }  // namespace bodyloom

@@ -52,6 +52,16 @@ struct LifterWindowOptions {
   double confidence_spread = 0.35;   ///< sd of the logarithm of the exponent that detectors' confidences differ by
 
   [[nodiscard]] bool IsValid(std::string* why) const;
+
+  /// Motion as it was recorded, before the same cameras and detectors: for validation and tests.
+  static LifterWindowOptions AsRecorded() {
+    LifterWindowOptions options;
+    options.min_speed = options.max_speed = 1;
+    options.arm_exchange = options.leg_exchange = options.spine_exchange = options.perturbation = 0;
+    options.squat = options.leg_raise = options.kick = options.arm_raise = options.bend = options.lean = 0;
+    options.floor_work = 0;
+    return options;
+  }
 };
 
 }  // namespace bodyloom

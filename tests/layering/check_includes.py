@@ -32,7 +32,7 @@ TEST_CODE = {"tests", "benchmarks"}
 THIRD_PARTY = [
     (r"ceres/", {"tracking"} | TEST_CODE, True),
     (r"opencv2/", {"render", "data_tools"} | TEST_CODE, True),
-    (r"(torch|ATen|c10|caffe2)/", {"neural"} | TEST_CODE, False),
+    (r"(torch|ATen|c10|caffe2)/", {"neural"} | TEST_CODE, True),  # in headers that stay inside neural/, see below
     (r"CGAL/", TEST_CODE, False),
     (r"embree3/", TEST_CODE, False),
     (r"OpenMesh/", {"geometry", "data_tools"} | TEST_CODE, False),
@@ -45,6 +45,11 @@ THIRD_PARTY = [
 ]
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
+TORCH = re.compile(r'#\s*include\s*<(torch|ATen|c10|caffe2)/')
+
+
+def read(path):
+    return path.read_text(encoding="utf-8") if path.exists() else ""
 
 
 def faults_of(root, path):
@@ -62,6 +67,8 @@ def faults_of(root, path):
         if name.startswith("."):
             yield f"{place}: includes \"{name}\", expected a path from the project root"
         elif first in MAY_INCLUDE and "/" in name and match.group(1) == '"':
+            if first == "neural" and folder not in TEST_CODE | {"neural"} and TORCH.search(read(root / name)):
+                yield f"{place}: includes \"{name}\", which includes LibTorch and is for neural/ alone"
             if first != folder and first not in allowed:
                 others = ", ".join(sorted(allowed)) or "none"
                 yield f"{place}: {folder}/ includes \"{name}\", expected only its own headers and those of: {others}"

@@ -11,6 +11,7 @@
 #include "geometry/rotation.h"
 #include "tracking/initialise/lifter_input.h"
 #include "tracking/initialise/lifter_network.h"
+#include "tracking/initialise/lifter_reading.h"
 #include "tracking/initialise/viterbi.h"
 #include "tracking/robust.h"
 
@@ -22,10 +23,6 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kSlowest = 14;  ///< frames a second; below, frames are put in between
-
-/// The landmark seen in a mirror: left and right exchanged.
-int MirroredPoint(int k) { return k == kLifterNose ? k : ((k - 1) ^ 1) + 1; }
-int MirroredLimb(int limb) { return limb ^ 1; }
 
 /// Frames first, first + stride, … of the clip, with `between` − 1 interpolated frames after each (stride 1 then).
 struct Phase {
@@ -98,111 +95,6 @@ LifterFrames SamplePhase(const LifterFrames& all, const Phase& phase) {
   return frames;
 }
 
-RowMatrixXf MirrorFeatures(const RowMatrixXf& features) {
-  RowMatrixXf result = features;
-  for (int k = 0; k < kLifterPoints; ++k) {
-    const int from = MirroredPoint(k);
-    result.col(3 * k) = -features.col(3 * from);
-    result.middleCols(3 * k + 1, 2) = features.middleCols(3 * from + 1, 2);
-  }
-  const int motion = 3 * kLifterPoints + 3;
-  result.col(motion) = -features.col(motion);
-  return result;
-}
-
-/// One run's output of one frame; a mirrored run is read as if it were not.
-class OutputReader {
- public:
-  OutputReader(const RowMatrixXf& output, Eigen::Index row, bool mirrored)
-      : y_(output.row(row).data()), mirrored_(mirrored) {}
-
-  [[nodiscard]] Vector3d TorsoPoint(int i) const { return PointAt(LifterOutput::TorsoOffset(TorsoIndex(i))); }
-  [[nodiscard]] Vector2d TorsoSigma(int i) const { return SigmaAt(LifterOutput::TorsoOffset(TorsoIndex(i))); }
-  [[nodiscard]] Vector3d Up() const { return PointAt(LifterOutput::kUp); }
-  [[nodiscard]] double UpSigma() const { return Sigma(y_[LifterOutput::kUp + 3]); }
-  [[nodiscard]] double Contact(int side) const {
-    return 1 / (1 + std::exp(-double{y_[LifterOutput::kContact + (mirrored_ ? 1 - side : side)]}));
-  }
-  [[nodiscard]] std::vector<LiftedLimb> Limb(int limb) const {
-    const int from = mirrored_ ? MirroredLimb(limb) : limb;
-    const float* logits = y_ + LifterOutput::LogitOffset(from);
-    const float largest = *std::max_element(logits, logits + LifterOutput::kHypotheses);
-    std::vector<LiftedLimb> result(LifterOutput::kHypotheses);
-    double sum = 0;
-    for (int m = 0; m < LifterOutput::kHypotheses; ++m) sum += result[m].weight = std::exp(double{logits[m] - largest});
-    for (int m = 0; m < LifterOutput::kHypotheses; ++m) {
-      result[m].weight /= sum;
-      for (size_t i = 0; i < LifterOutput::LimbPoints(limb).size(); ++i) {
-        const int offset = LifterOutput::PointOffset(from, m, static_cast<int>(i));
-        result[m].points[i] = PointAt(offset);
-        result[m].sigma[i] = SigmaAt(offset);
-      }
-    }
-    return result;
-  }
-
- private:
-  // The range that training clamps to (neural/lifter/lifter_loss.cc).
-  static double Sigma(float log_sigma) { return std::exp(std::clamp(double{log_sigma}, -5.0, 1.0)); }
-  [[nodiscard]] int TorsoIndex(int i) const {
-    if (!mirrored_) return i;
-    const int point = MirroredPoint(LifterOutput::kTorso[i]);
-    return static_cast<int>(std::find(LifterOutput::kTorso.begin(), LifterOutput::kTorso.end(), point) -
-                            LifterOutput::kTorso.begin());
-  }
-  [[nodiscard]] Vector3d PointAt(int offset) const {
-    return {mirrored_ ? -y_[offset] : y_[offset], y_[offset + 1], y_[offset + 2]};
-  }
-  [[nodiscard]] Vector2d SigmaAt(int offset) const { return {Sigma(y_[offset + 3]), Sigma(y_[offset + 4])}; }
-
-  const float* y_;
-  bool mirrored_;
-};
-
-void SetLimb(int limb, const LiftedLimb& guess, LiftedFrame* frame) {
-  const auto points = LifterOutput::LimbPoints(limb);
-  for (size_t i = 0; i < points.size(); ++i) {
-    frame->points.row(points[i]) = guess.points[i].transpose();
-    frame->sigma.row(points[i]) = guess.sigma[i].transpose();
-  }
-}
-
-const LiftedLimb& Likeliest(const std::vector<LiftedLimb>& guesses) {
-  return *std::max_element(guesses.begin(), guesses.end(),
-                           [](const LiftedLimb& a, const LiftedLimb& b) { return a.weight < b.weight; });
-}
-
-/// The mean of all runs' torsos, and all their hypotheses.
-LiftedFrame Combine(const std::vector<OutputReader>& runs, const Matrix3d& camera_from_virtual) {
-  LiftedFrame frame;
-  frame.camera_from_virtual = camera_from_virtual;
-  frame.points.setZero(kLifterPoints, 3);
-  frame.sigma.setZero(kLifterPoints, 2);
-  const double share = 1.0 / static_cast<double>(runs.size());
-  Vector3d up = Vector3d::Zero();
-  frame.up_sigma = 0;
-  for (const OutputReader& run : runs) {
-    for (size_t i = 0; i < LifterOutput::kTorso.size(); ++i) {
-      const int index = static_cast<int>(i);
-      frame.points.row(LifterOutput::kTorso[i]) += share * (camera_from_virtual * run.TorsoPoint(index)).transpose();
-      frame.sigma.row(LifterOutput::kTorso[i]) += share * run.TorsoSigma(index).transpose();
-    }
-    up += run.Up();
-    frame.up_sigma += share * run.UpSigma();
-    for (int side = 0; side < 2; ++side) frame.contact[side] += share * run.Contact(side);
-    for (int limb = 0; limb < LifterOutput::kLimbs; ++limb) {
-      for (LiftedLimb& guess : run.Limb(limb)) {
-        guess.weight *= share;
-        for (Vector3d& point : guess.points) point = camera_from_virtual * point;
-        frame.limbs[limb].push_back(guess);
-      }
-    }
-  }
-  for (int limb = 0; limb < LifterOutput::kLimbs; ++limb) SetLimb(limb, Likeliest(frame.limbs[limb]), &frame);
-  if (up.norm() > 1e-6) frame.up = (camera_from_virtual * up).normalized();
-  return frame;
-}
-
 /// Frames that no phase has read: in between their neighbours, limbs of the nearer one.
 void FillBetween(const std::vector<char>& read, int begin, int end, std::vector<LiftedFrame>* frames) {
   int last = -1;
@@ -261,9 +153,7 @@ std::vector<LiftedFrame> LiftKeypoints(const KeypointSequence& keypoints, const 
     const RowMatrixXf mirrored = options.mirrored ? RunLifter(weights, MirrorFeatures(features)) : RowMatrixXf();
     for (int i = 0; i < phase.count; ++i) {
       const int t = phase.first + i * phase.stride, s = i * phase.between;
-      std::vector<OutputReader> runs = {OutputReader(plain, s, false)};
-      if (options.mirrored) runs.emplace_back(mirrored, s, true);
-      result[t] = Combine(runs, input.camera_from_virtual[s].cast<double>());
+      result[t] = ReadLifter(plain, mirrored, s, input.camera_from_virtual[s].cast<double>());
       read[t] = 1;
     }
   });

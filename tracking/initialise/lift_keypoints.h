@@ -15,29 +15,9 @@
 #include "geometry/camera.h"
 #include "geometry/lifter_weights.h"
 #include "geometry/observations.h"
+#include "tracking/initialise/lifter_reading.h"
 
 namespace bodyloom {
-
-/// One guess for the landmarks LifterOutput::LimbPoints(limb) of a limb.
-struct LiftedLimb {
-  double weight = 0;                      ///< probability; the hypotheses of a limb sum to 1
-  std::array<Eigen::Vector3d, 4> points;  ///< as LiftedFrame::points
-  std::array<Eigen::Vector2d, 4> sigma;
-};
-
-struct LiftedFrame {
-  bool seen = false;  ///< the frame shows at least one landmark; otherwise its neighbours speak for it
-  Eigen::Matrix3d camera_from_virtual = Eigen::Matrix3d::Identity();
-  /// 21×3 relative to the mid-hip, camera axes, in units of the body's torso + leg length. Limbs: the likeliest
-  /// hypothesis, until ChooseLimbs() has spoken.
-  MatrixX3d points;
-  /// 21×2: scale of the error across and along the view, same units (lifter_weights.h says of which density).
-  Eigen::Matrix<double, Eigen::Dynamic, 2> sigma;
-  std::array<std::vector<LiftedLimb>, LifterOutput::kLimbs> limbs;
-  Eigen::Vector3d up = Eigen::Vector3d(0, -1, 0);  ///< world up, camera axes, unit
-  double up_sigma = 1;
-  Eigen::Vector2d contact = Eigen::Vector2d::Zero();  ///< probability that the left and the right foot stand
-};
 
 struct LiftOptions {
   bool mirrored = true;    ///< the second run
