@@ -14,8 +14,8 @@ std::span<const int> LifterOutput::LimbPoints(int limb) {
 }
 
 size_t LifterWeights::num_parameters() const {
-  size_t count = input.size() + input_bias.size() + norm_scale.size() + norm_shift.size() + output.size() +
-                 output_bias.size();
+  size_t count =
+      input.size() + input_bias.size() + norm_scale.size() + norm_shift.size() + output.size() + output_bias.size();
   for (const Block& block : blocks) {
     count += block.norm_scale.size() + block.norm_shift.size() + block.dilated.size() + block.dilated_bias.size() +
              block.mix.size() + block.mix_bias.size();
