@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+// The tracker with the lifter that ships, on synthetic clips with known truth and on clips that show too little.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "data_tools/builtin_body.h"
+#include "data_tools/lifter/lifter_weights_io.h"
+#include "data_tools/prior/pose_prior_io.h"
+#include "data_tools/synthetic/demo_motion.h"
+#include "data_tools/synthetic/synth_clip.h"
+#include "tracking/metrics.h"
+#include "tracking/track_sequence.h"
+
+namespace bodyloom {
+namespace {
+
+SynthClip Clip(int frames, double fps) {
+  SynthClipOptions options;
+  options.dense_per_frame = 0;
+  return MakeSynthClip(BuiltinBody(), DemoMotion(BuiltinBody(), frames, fps), options);
+}
+
+TrackSequenceResult TrackWithLifter(const KeypointSequence& keypoints, const Camera& camera,
+                                    CameraKnowledge knowledge = CameraKnowledge::kKnown, int threads = 2) {
+  TrackSequenceInput input;
+  input.body = &BuiltinBody();
+  input.keypoints = &keypoints;
+  input.prior = &BuiltinPosePrior();
+  input.lifter = &BuiltinLifter();
+  input.camera = camera;
+  TrackSequenceOptions options;
+  options.camera_knowledge = knowledge;
+  options.num_threads = threads;
+  return TrackSequence(input, options);
+}
+
+double PaMpjpe(const TrackSequenceResult& result, const SynthClip& clip) {
+  return 1000 * ProcrustesPositionError(result.track.joints, clip.truth.joints).frames.mean;
+}
+
+bool Ran(const TrackSequenceResult& result, const std::string& what) {
+  for (const PlanEntry& entry : result.summary.plan) {
+    if (entry.what == what) return entry.runs;
+  }
+  ADD_FAILURE() << "the plan does not speak of " << what;
+  return false;
+}
+
+/// Every frame has finite poses, or says that it has none.
+void ExpectHonest(const TrackSequenceResult& result) {
+  if (!result.summary.IsUsable()) {
+    EXPECT_FALSE(result.summary.message.empty());
+    return;
+  }
+  for (int t = 0; t < result.track.num_frames(); ++t) {
+    if (!result.track.HasResult(t)) {
+      EXPECT_EQ(result.track.frame_status[t], FrameStatus::kLost) << t;
+      continue;
+    }
+    EXPECT_TRUE(result.track.joints[t].allFinite()) << t;
+  }
+}
+
+TEST(LiftedTrack, FindsThePoseInEveryCamera) {
+  const SynthClip clip = Clip(60, 20);
+  for (const CameraKnowledge knowledge :
+       {CameraKnowledge::kKnown, CameraKnowledge::kUnknownFocal, CameraKnowledge::kWeak}) {
+    const TrackSequenceResult result = TrackWithLifter(clip.keypoints, clip.truth.camera, knowledge);
+    ASSERT_TRUE(result.summary.IsUsable()) << result.summary.message;
+    EXPECT_TRUE(Ran(result, "lifter"));
+    EXPECT_TRUE(Ran(result, "initialiser term (L_d)"));
+    EXPECT_FALSE(Ran(result, "hypotheses over the clip"));
+    EXPECT_LT(PaMpjpe(result, clip), 70) << static_cast<int>(knowledge);
+    EXPECT_LT(result.summary.reprojection_median_px, 12);
+  }
+}
+
+TEST(LiftedTrack, AnyFrameRate) {
+  for (const double fps : {5.0, 25.0, 60.0, 240.0}) {
+    const SynthClip clip = Clip(static_cast<int>(2 * fps) + 1, fps);
+    const TrackSequenceResult result = TrackWithLifter(clip.keypoints, clip.truth.camera);
+    ASSERT_TRUE(result.summary.IsUsable()) << fps;
+    ExpectHonest(result);
+    EXPECT_LT(PaMpjpe(result, clip), 90) << fps;
+  }
+}
+
+TEST(LiftedTrack, SameBytesForAnyNumberOfThreads) {
+  const SynthClip clip = Clip(40, 60);
+  const TrackSequenceResult one = TrackWithLifter(clip.keypoints, clip.truth.camera, CameraKnowledge::kKnown, 1),
+                            four = TrackWithLifter(clip.keypoints, clip.truth.camera, CameraKnowledge::kKnown, 4);
+  ASSERT_TRUE(one.summary.IsUsable());
+  EXPECT_EQ(one.track.motion.poses, four.track.motion.poses);
+  EXPECT_EQ(one.track.motion.trans, four.track.motion.trans);
+}
+
+TEST(LiftedTrack, HalfTheBodyMissingForSecondsIsBridged) {
+  SynthClip clip = Clip(120, 20);
+  for (int t = 40; t < 90; ++t) {
+    for (int k = 0; k < clip.keypoints.num_points(); ++k) {
+      const std::string& name = clip.keypoints.names[k];
+      const bool lower = name.find("hip") != std::string::npos || name.find("knee") != std::string::npos ||
+                         name.find("ankle") != std::string::npos || name.find("toe") != std::string::npos ||
+                         name.find("heel") != std::string::npos;
+      if (lower) clip.keypoints.at(t, k).confidence = 0;
+    }
+  }
+  const TrackSequenceResult result = TrackWithLifter(clip.keypoints, clip.truth.camera);
+  ASSERT_TRUE(result.summary.IsUsable()) << result.summary.message;
+  ExpectHonest(result);
+  // What nobody saw is known worse: the ankles, half way through the gap, against a frame that shows them.
+  const int ankle = BuiltinBody().FindJoint("l_ankle");
+  ASSERT_GE(ankle, 0);
+  EXPECT_GT(result.track.joint_sigma(65, ankle), 1.5 * result.track.joint_sigma(20, ankle));
+}
+
+TEST(LiftedTrack, ClipsThatShowAlmostNothing) {
+  const SynthClip clip = Clip(30, 20);
+  KeypointSequence one_joint = clip.keypoints, nothing = clip.keypoints, loud = clip.keypoints;
+  for (Keypoint& point : nothing.points) point.confidence = 0;
+  for (Keypoint& point : loud.points) point.confidence *= 40;
+  for (int t = 0; t < 30; ++t) {
+    for (int k = 1; k < one_joint.num_points(); ++k) one_joint.at(t, k).confidence = 0;
+  }
+  ExpectHonest(TrackWithLifter(one_joint, clip.truth.camera));
+  EXPECT_FALSE(TrackWithLifter(nothing, clip.truth.camera).summary.IsUsable());
+  const TrackSequenceResult result = TrackWithLifter(loud, clip.truth.camera);
+  ExpectHonest(result);
+  EXPECT_LT(PaMpjpe(result, clip), 90);
+  for (const int frames : {1, 2}) ExpectHonest(TrackWithLifter(Clip(frames, 20).keypoints, clip.truth.camera));
+}
+
+TEST(LiftedTrack, AMirroredVideoGivesTheMirroredPerson) {
+  const SynthClip clip = Clip(40, 20);
+  const Camera camera = MakePinhole(clip.truth.camera.width, clip.truth.camera.height, clip.truth.camera.fx);
+  KeypointSequence mirrored = clip.keypoints;
+  const auto partner = [&](const std::string& name) {
+    if (name.starts_with("left_")) return "right_" + name.substr(5);
+    if (name.starts_with("right_")) return "left_" + name.substr(6);
+    return name;
+  };
+  for (int k = 0; k < mirrored.num_points(); ++k) {
+    const auto from = std::find(mirrored.names.begin(), mirrored.names.end(), partner(mirrored.names[k]));
+    ASSERT_NE(from, mirrored.names.end());
+    for (int t = 0; t < 40; ++t) {
+      mirrored.at(t, k) = clip.keypoints.at(t, static_cast<int>(from - mirrored.names.begin()));
+      mirrored.at(t, k).x = static_cast<float>(camera.width - 1) - mirrored.at(t, k).x;
+    }
+  }
+  const TrackSequenceResult a = TrackWithLifter(clip.keypoints, camera), b = TrackWithLifter(mirrored, camera);
+  ASSERT_TRUE(a.summary.IsUsable() && b.summary.IsUsable());
+  double off = 0;
+  for (int t = 0; t < 40; ++t) {
+    for (int k = 0; k < 17; ++k) {
+      const int from = k == 0 ? 0 : ((k - 1) ^ 1) + 1;
+      const Eigen::RowVector3d expected = a.track.coco17[t].row(from).cwiseProduct(Eigen::RowVector3d(-1, 1, 1));
+      off = std::max(off, (b.track.coco17[t].row(k) - expected).norm());
+    }
+  }
+  EXPECT_LT(off, 0.02) << "metres, of the joint that differs most; the built-in body is symmetric";
+}
+
+}  // namespace
+}  // namespace bodyloom
