@@ -52,6 +52,15 @@ inline void PlaceCamera(CameraKnowledge knowledge, Camera camera, double focal_p
   scene->log_focal = std::log(focal_px);
 }
 
+/// Random rotations of this size, a few metres before the camera; after PlaceCamera().
+inline void PoseAtRandom(CameraKnowledge knowledge, double pose_size, std::mt19937_64* random, FrameScene* scene) {
+  for (int j = 0; j < scene->body.num_joints(); ++j) {
+    scene->state.rotations.push_back(RotationFromAxisAngle(RandomTurn(pose_size, random)));
+  }
+  scene->state.translation = knowledge == CameraKnowledge::kWeak ? Eigen::Vector3d(std::log(250.0), 0.1, -0.2)
+                                                                 : Eigen::Vector3d(0.2, -0.1, 4.0);
+}
+
 inline FrameSystem Evaluate(const FrameScene& scene, bool derivatives = true) {
   FrameEvaluator evaluator;
   FrameSystem system;

@@ -33,11 +33,7 @@ std::unique_ptr<Scene> MakeScene(CameraKnowledge knowledge, double pose_size, ui
   std::normal_distribution<double> normal;
   if (active.empty()) active = AllJoints(scene->body);
   PlaceCamera(knowledge, MakePinhole(1280, 720, 1000), 1100, active, &random, scene.get());
-  for (int j = 0; j < scene->body.num_joints(); ++j) {
-    scene->state.rotations.push_back(RotationFromAxisAngle(RandomTurn(pose_size, &random)));
-  }
-  scene->state.translation =
-      knowledge == CameraKnowledge::kWeak ? Vector3d(std::log(250.0), 0.1, -0.2) : Vector3d(0.2, -0.1, 4.0);
+  PoseAtRandom(knowledge, pose_size, &random, scene.get());
   scene->landmarks = CompileLiftedLandmarks(scene->body, scene->body.num_betas());
   LiftedFrame frame;
   frame.camera_from_virtual = RotationFromAxisAngle(RandomTurn(0.3, &random));
