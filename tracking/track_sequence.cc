@@ -269,7 +269,8 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSe
   clock.Book("initialise");
 
   // What the lifter said stays as a term.
-  const LiftedLandmarks lifted_landmarks = CompileLiftedLandmarks(model, num_betas);
+  LiftedLandmarks lifted_landmarks;
+  if (!lifted.frames.empty()) lifted_landmarks = CompileLiftedLandmarks(model, num_betas);
   std::vector<LiftedPose> lifted_poses;
   for (const LiftedFrame& frame : lifted.frames) {
     lifted_poses.push_back(MakeLiftedPose(frame, lifted_landmarks, lifted.metres, options.lifter_min_sigma_m));

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/initialise/lift_keypoints.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "geometry/check.h"
 #include "geometry/parallel.h"
-#include "geometry/rotation.h"
 #include "tracking/initialise/lifter_input.h"
 #include "tracking/initialise/lifter_network.h"
 #include "tracking/initialise/lifter_reading.h"
