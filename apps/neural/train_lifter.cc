@@ -30,6 +30,7 @@ namespace fs = std::filesystem;
 struct Request {
   std::vector<std::string> motions;
   std::string out, split;
+  std::string optimizer = "muon";
   double share = 1;
   TrainLifterOptions options;
 };
@@ -87,6 +88,7 @@ nlohmann::ordered_json Describe(const Request& request, const MotionSet& train, 
           {"dilations", o.dilations},
           {"learning_rate", o.learning_rate},
           {"weight_decay", o.weight_decay},
+          {"optimizer", request.optimizer},
           {"average", o.average},
           {"nll_weight", o.nll_weight},
           {"velocity_weight", o.velocity_weight},
@@ -115,6 +117,7 @@ void Run(Request request) {
 
   TrainLifterOptions& options = request.options;
   options.num_inputs = kLifterInputs;
+  options.muon = request.optimizer == "muon";
   options.num_frames = windows.num_frames;
   options.run_dir = request.out;
   fs::create_directories(request.out);
@@ -169,6 +172,9 @@ void AddTrainLifter(CLI::App& train, std::function<void()>* action) {
   verb->add_option("--batch", options.batch, "Windows in a batch")->capture_default_str();
   verb->add_option("--channels", options.width, "Width of the network")->capture_default_str();
   verb->add_option("--learning-rate", options.learning_rate, "At its highest")->capture_default_str();
+  verb->add_option("--optimizer", request->optimizer, "For the blocks' matrices")
+      ->check(CLI::IsMember({"muon", "adamw"}))
+      ->capture_default_str();
   verb->add_option("--seed", options.seed, "Of the weights and the windows")->capture_default_str();
   verb->add_option("--threads", options.num_threads, "0: all cores")->capture_default_str();
   verb->add_flag("--resume", options.resume, "Go on with the run in --out");

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 /// bodyloom_bench_lifter: the lifter alone on motion it has not seen.
 ///
-///   bodyloom_bench_lifter --motions FOLDER[,FOLDER…] [--lifter built-in|FILE] [--windows 400] [--json F]
+///   bodyloom_bench_lifter --motions FOLDER[,FOLDER…] [--lifter built-in|FILE] [--windows 400]
+///                         [--detections users|steady|exact] [--json F]
 ///
 /// Motion that the split keeps for testing, by class, as recorded, through the generator's cameras and detectors
 /// (data_tools/lifter); `--windows` random windows a class. Errors in mm of a body with the mean body's torso + leg
 /// length: mean per-joint error of the 17 COCO landmarks relative to the mid-hip (mpjpe), after a similarity (pa), of
 /// the limb hypotheses chosen by weight and by hindsight (best). Reliability: landmarks sorted by the probability that
 /// the lifter gives to being within 50 mm, against the share that is. Time: one thread, both runs (mirrored), a frame.
+///
+/// `--detections` tells what errors come from: users' detectors as in training (users), COCO-17 points that are all
+/// there, from a known camera, with the measured noise (steady), or exact (exact).
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -47,6 +51,23 @@ double MeanBodyLength() {
     for (int c = 0; c < 3; ++c) coordinates.push_back(static_cast<float>(points(k, c)));
   }
   return LifterReferenceLength(coordinates);
+}
+
+LifterWindowOptions WindowOptions(const std::string& detections) {
+  LifterWindowOptions options = LifterWindowOptions::AsRecorded();
+  if (detections == "users") return options;
+  BODYLOOM_CHECK(detections == "steady" || detections == "exact", "--detections is ", detections,
+                 ", expected users, steady or exact");
+  options.moving_camera = 0;
+  options.focal_known = options.no_feet = 1;
+  options.dropout = options.pair_swap = options.body_swap = options.no_face = 0;
+  options.missing_limb = options.missing_lower_half = options.nothing = options.border = options.cut_off = 0;
+  options.constant_confidence = options.confidence_spread = 0;
+  if (detections == "exact") {
+    options.noise = 0;
+    options.biased_detector = options.landmark_sd_m = 0;
+  }
+  return options;
 }
 
 struct Errors {
@@ -152,8 +173,9 @@ void Run(const BenchArguments& arguments, const std::string& command) {
   report.command = command;
   report.label_columns = {"class", "clips"};
   report.value_columns = {"pa_mpjpe_mm", "mpjpe_mm", "best_mm", "depth_mm"};
+  const LifterWindowOptions options = WindowOptions(arguments.Text("detections"));
   for (const auto& [name, set] : classes) {
-    const LifterWindowGenerator generator(set.motions, set.has_floor, BuiltinBody(), LifterWindowOptions::AsRecorded());
+    const LifterWindowGenerator generator(set.motions, set.has_floor, BuiltinBody(), options);
     Errors errors;
     LifterWindow window;
     for (int i = 0; i < arguments.Integer("windows"); ++i) {
@@ -200,6 +222,7 @@ int main(int argc, char** argv) {
       {{"motions", BODYLOOM_SOURCE_DIR "/../shared/data/motion," BODYLOOM_SOURCE_DIR "/../shared/data/aistpp/motions"},
        {"lifter", "built-in"},
        {"windows", "200"},
+       {"detections", "users"},
        {"json", ""}},
       bodyloom::Run);
 }

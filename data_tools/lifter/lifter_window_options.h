@@ -24,6 +24,7 @@ struct LifterWindowOptions {
   // Motion.
   double min_speed = 0.58, max_speed = 1.73;  ///< logarithmically uniform
   double mirror = 0.5;
+  double as_recorded = 0.35;  ///< nothing of what follows is done, but for a quarter of the perturbation
   double arm_exchange = 0.35, leg_exchange = 0.15;  ///< for each arm and leg: moves as in another clip
   double spine_exchange = 0.2;
   double perturbation = 1.2;                ///< smooth random turns of the joints: the level is uniform up to this

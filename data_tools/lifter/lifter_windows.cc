@@ -27,7 +27,8 @@ enum Stream : uint64_t {
   kPerson,
   kCamera,
   kDetections,
-  kFocal
+  kFocal,
+  kAsRecorded
 };
 
 std::vector<LifterClip> CompactClips(const std::vector<Motion>& motions, const std::vector<char>& has_floor,
@@ -82,6 +83,7 @@ bool LifterWindowOptions::IsValid(std::string* why) const {
   for (const auto& [name, value] : {std::pair("moving_camera", moving_camera),
                                     {"focal_known", focal_known},
                                     {"mirror", mirror},
+                                    {"as_recorded", as_recorded},
                                     {"arm_exchange", arm_exchange},
                                     {"leg_exchange", leg_exchange},
                                     {"spine_exchange", spine_exchange},
@@ -134,6 +136,11 @@ PoseSequence LifterWindowGenerator::MakePoses(uint64_t seed, const LifterPerson&
   PoseSequence poses;
   SampleClip(clip, start_s, step, options_.num_frames, &poses);
   if (mirror) MirrorPoses(&poses);
+  if (HashRandom(seed, {kAsRecorded}).Uniform() < options_.as_recorded) {
+    PerturbPoses(options_, 0.25F, 0.25F, HashRandom(seed, {kPerturb}), &poses);
+    limits_.Apply(&poses);
+    return poses;
+  }
   ExchangeLimbs(clips_, choice_, options_, step, HashRandom(seed, {kLimbs}), &poses);
   const bool floor = HashRandom(seed, {kWhetherFloor}).Uniform() < options_.floor_work;
   if (floor) {

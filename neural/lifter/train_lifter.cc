@@ -18,6 +18,7 @@
 #include "geometry/check.h"
 #include "neural/lifter/lifter_loss.h"
 #include "neural/lifter/lifter_module.h"
+#include "neural/muon.h"
 #include "neural/runtime.h"
 
 namespace bodyloom {
@@ -141,8 +142,14 @@ class Trainer {
     module_ = LifterModule(options.num_inputs, options.width, options.dilations);
     average_ = LifterModule(options.num_inputs, options.width, options.dilations);
     ImportLifter(ExportLifter(module_), &average_);
+    std::vector<Tensor> matrices, others;
+    for (const auto& item : module_->named_parameters()) {
+      const bool block = item.key().rfind("block", 0) == 0 && item.value().dim() == 3;
+      (block && options.muon ? matrices : others).push_back(item.value());
+    }
     optimizer_ = std::make_unique<torch::optim::AdamW>(
-        module_->parameters(), torch::optim::AdamWOptions(options.learning_rate).weight_decay(options.weight_decay));
+        others, torch::optim::AdamWOptions(options.learning_rate).weight_decay(options.weight_decay));
+    muon_ = std::make_unique<Muon>(matrices, Muon::Options{0.95, options.weight_decay});
   }
 
   TrainLifterResult Run() {
@@ -204,6 +211,7 @@ class Trainer {
     gradient_norm_ = torch::nn::utils::clip_grad_norm_(module_->parameters(), options_.clip_norm);
     if (!std::isfinite(gradient_norm_)) return loss;  // a step would spoil the weights
     optimizer_->step();
+    muon_->Step(rate);
     const torch::NoGradGuard no_grad;
     // Early steps count less, or the start would stay in the average for long.
     const double keep = std::min(options_.average, (1.0 + step_) / (10.0 + step_));
@@ -263,13 +271,15 @@ class Trainer {
   [[nodiscard]] fs::path CheckpointPath() const { return fs::path(options_.run_dir) / "checkpoint.pt"; }
 
   void SaveCheckpoint() {
-    torch::serialize::OutputArchive archive, module, average, optimizer;
+    torch::serialize::OutputArchive archive, module, average, optimizer, muon;
     module_->save(module);
     average_->save(average);
     optimizer_->save(optimizer);
+    muon_->Save(muon);
     archive.write("module", module);
     archive.write("average", average);
     archive.write("optimizer", optimizer);
+    archive.write("muon", muon);
     archive.write("step", torch::tensor(int64_t{step_}));
     archive.write("shape", Shape());
     const fs::path whole = CheckpointPath().string() + ".part";
@@ -284,11 +294,12 @@ class Trainer {
 
   void LoadCheckpoint() {
     try {
-      torch::serialize::InputArchive archive, module, average, optimizer;
+      torch::serialize::InputArchive archive, module, average, optimizer, muon;
       archive.load_from(CheckpointPath().string());
       archive.read("module", module);
       archive.read("average", average);
       archive.read("optimizer", optimizer);
+      archive.read("muon", muon);
       Tensor step, shape;
       archive.read("step", step);
       archive.read("shape", shape);
@@ -303,6 +314,7 @@ class Trainer {
       module_->load(module);
       average_->load(average);
       optimizer_->load(optimizer);
+      muon_->Load(muon);
       step_ = last_checkpoint_ = static_cast<int>(step.item<int64_t>());
     } catch (const c10::Error& error) {
       throw std::runtime_error(CheckpointPath().string() +
@@ -314,6 +326,7 @@ class Trainer {
   const TrainLifterOptions& options_;
   LifterModule module_{nullptr}, average_{nullptr};
   std::unique_ptr<torch::optim::AdamW> optimizer_;
+  std::unique_ptr<Muon> muon_;
   int step_ = 0, last_checkpoint_ = 0;
   double gradient_norm_ = 0, distance_ = 0, best_distance_ = 0;
   std::string metrics_;

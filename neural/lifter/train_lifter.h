@@ -44,6 +44,7 @@ struct TrainLifterOptions {
   double learning_rate = 1.5e-3;
   int warmup_steps = 100;
   double weight_decay = 1e-3;
+  bool muon = true;  ///< for the matrices of the blocks (neural/muon.h); false: AdamW for everything
   double clip_norm = 1;
   double average = 0.998;  ///< of the moving average of the weights
   double nll_weight = 0.05, velocity_weight = 0.3;

@@ -44,6 +44,27 @@ constexpr Part kHead[] = {
     {kLifterLeftEar, kLifterLeftEar + 1, 0.105F},
 };
 
+struct Bone {
+  int from, to;
+  bool middles;  ///< from the middle of a pair to the middle of another
+};
+// Left bones are followed by their right ones; those of the middle come last.
+constexpr Bone kBones[kLifterBones] = {
+    {kLifterLeftShoulder, kLifterLeftElbow, false},
+    {kLifterLeftShoulder + 1, kLifterLeftElbow + 1, false},
+    {kLifterLeftElbow, kLifterLeftWrist, false},
+    {kLifterLeftElbow + 1, kLifterLeftWrist + 1, false},
+    {kLifterLeftHip, kLifterLeftKnee, false},
+    {kLifterLeftHip + 1, kLifterLeftKnee + 1, false},
+    {kLifterLeftKnee, kLifterLeftAnkle, false},
+    {kLifterLeftKnee + 1, kLifterLeftAnkle + 1, false},
+    {kLifterLeftShoulder, kLifterLeftShoulder + 1, false},
+    {kLifterLeftHip, kLifterLeftHip + 1, false},
+    {kLifterLeftShoulder, kLifterLeftHip, true},
+};
+constexpr int kPairedBones = 8;
+constexpr float kBonePercentile = 0.9F;
+
 /// One frame in its virtual camera.
 struct Frame {
   std::array<Vector2f, kLifterPoints> point;
@@ -110,7 +131,7 @@ std::optional<float> RoughScale(const Frame& frame) {
 }
 
 /// For each frame the percentile of the known values within the window; unknown where there are none.
-std::vector<std::optional<float>> WindowPercentile(const std::vector<std::optional<float>>& values) {
+std::vector<std::optional<float>> WindowPercentile(const std::vector<std::optional<float>>& values, float percentile) {
   constexpr int kReach = (kLifterScaleFrames - 1) / 2;
   const int T = static_cast<int>(values.size());
   std::vector<std::optional<float>> result(T);
@@ -126,7 +147,7 @@ std::vector<std::optional<float>> WindowPercentile(const std::vector<std::option
       sorted.erase(std::lower_bound(sorted.begin(), sorted.end(), *values[leaving]));
     }
     if (sorted.empty()) continue;
-    const float at = kScalePercentile * static_cast<float>(sorted.size() - 1);
+    const float at = percentile * static_cast<float>(sorted.size() - 1);
     const size_t below = static_cast<size_t>(at), above = std::min(below + 1, sorted.size() - 1);
     const float part = at - static_cast<float>(below);
     result[t] = (1 - part) * sorted[below] + part * sorted[above];
@@ -134,13 +155,48 @@ std::vector<std::optional<float>> WindowPercentile(const std::vector<std::option
   return result;
 }
 
+/// Of a bone in a frame, divided by S.
+std::optional<float> BoneLength(const Frame& frame, const Bone& bone, float scale) {
+  float length = 0;
+  if (bone.middles) {
+    const auto from = Middle(frame, bone.from), to = Middle(frame, bone.to);
+    if (!from || !to) return std::nullopt;
+    length = (*from - *to).norm();
+  } else {
+    if (!frame.seen[bone.from] || !frame.seen[bone.to]) return std::nullopt;
+    length = frame.Distance(bone.from, bone.to);
+  }
+  return std::min(length / scale, kMaxCoordinate);
+}
+
+/// Of every frame and bone: extent in depth and full length, at features + stride·t + 2·bone.
+void Foreshortening(const std::vector<Frame>& frames, const std::vector<float>& scale, size_t stride, float* features) {
+  const size_t T = frames.size();
+  std::array<std::vector<std::optional<float>>, kLifterBones> length, full;
+  for (int b = 0; b < kLifterBones; ++b) {
+    for (size_t t = 0; t < T; ++t) length[b].push_back(BoneLength(frames[t], kBones[b], scale[t]));
+    full[b] = WindowPercentile(length[b], kBonePercentile);
+  }
+  for (int b = 0; b < kLifterBones; ++b) {
+    for (size_t t = 0; t < T; ++t) {
+      if (!length[b][t]) continue;
+      float m = *full[b][t];
+      if (b < kPairedBones && full[b ^ 1][t]) m = std::max(m, *full[b ^ 1][t]);
+      const float l = *length[b][t];
+      float* out = features + stride * t + 2 * static_cast<size_t>(b);
+      out[0] = std::sqrt(std::max(0.0F, m * m - l * l));
+      out[1] = m;
+    }
+  }
+}
+
 /// S of every frame: from the window, else the rough guess of the window, else that of the nearest frame that has one.
 std::vector<float> WindowScale(const std::vector<std::optional<float>>& body,
                                const std::vector<std::optional<float>>& rough) {
-  std::vector<std::optional<float>> scale = WindowPercentile(body);
+  std::vector<std::optional<float>> scale = WindowPercentile(body, kScalePercentile);
   const int T = static_cast<int>(scale.size());
   if (std::any_of(scale.begin(), scale.end(), [](const auto& s) { return !s; })) {
-    const std::vector<std::optional<float>> other = WindowPercentile(rough);
+    const std::vector<std::optional<float>> other = WindowPercentile(rough, kScalePercentile);
     for (int t = 0; t < T; ++t) {
       if (!scale[t]) scale[t] = other[t];
     }
@@ -288,8 +344,11 @@ LifterInput MakeLifterInput(const LifterFrames& frames) {
     const float depth = std::max(before.z(), kMinCosine);
     for (int c = 0; c < 2; ++c) more[3 + c] = std::clamp(-before[c] / depth / S, -kMaxMotion, kMaxMotion);
   }
+  if (T > 0) Foreshortening(seen_frames, input.scale, kLifterInputs, &input.features[3 * kLifterPoints + 5]);
   return input;
 }
+
+int MirroredLifterBone(int bone) { return bone < kPairedBones ? bone ^ 1 : bone; }
 
 std::vector<Matrix3f> LifterVirtualCameras(const LifterFrames& frames) {
   const Rays rays = MakeRays(frames);

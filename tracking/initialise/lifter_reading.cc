@@ -78,6 +78,10 @@ RowMatrixXf MirrorFeatures(const RowMatrixXf& features) {
   }
   const int motion = 3 * kLifterPoints + 3;
   result.col(motion) = -features.col(motion);
+  const int bones = motion + 2;
+  for (int b = 0; b < kLifterBones; ++b) {
+    result.middleCols(bones + 2 * b, 2) = features.middleCols(bones + 2 * MirroredLifterBone(b), 2);
+  }
   return result;
 }
 
