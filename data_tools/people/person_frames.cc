@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "data_tools/people/person_frames.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "data_tools/descriptors/describe_track.h"
+#include "data_tools/formats/npz.h"
+#include "geometry/check.h"
+#include "geometry/parallel.h"
+#include "geometry/posed_body.h"
+#include "geometry/skinning.h"
+#include "render/resolve_pixels.h"
+#include "render/visibility_buffer.h"
+
+namespace bodyloom {
+namespace {
+
+namespace fs = std::filesystem;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+/// IEEE half to float, by table: 64 K floats.
+class HalfTable {
+ public:
+  HalfTable() : values_(1 << 16) {
+    for (uint32_t half = 0; half < values_.size(); ++half) {
+      const int exponent = static_cast<int>((half >> 10) & 31U), mantissa = static_cast<int>(half & 1023U);
+      double value = exponent == 0 ? std::ldexp(mantissa, -24) : std::ldexp(1024 + mantissa, exponent - 25);
+      if (exponent == 31) value = mantissa == 0 ? std::numeric_limits<double>::infinity() : std::nan("");
+      values_[half] = static_cast<float>((half >> 15) != 0 ? -value : value);
+    }
+  }
+  float operator[](uint16_t half) const { return values_[half]; }
+
+ private:
+  std::vector<float> values_;
+};
+
+/// A file that is gone when this is.
+struct ScratchFile {
+  fs::path path;
+  ~ScratchFile() {
+    std::error_code ignored;
+    fs::remove(path, ignored);
+    fs::remove(DescriptorHeaderPath(path.string()), ignored);
+  }
+};
+
+fs::path ScratchPath(const std::string& folder) {
+  static std::atomic<int> count{0};
+  const fs::path place = folder.empty() ? fs::temp_directory_path() : fs::path(folder);
+  return place / ("motion_maps_" + std::to_string(getpid()) + "_" + std::to_string(count++) + ".npy");
+}
+
+class PosedTrack {
+ public:
+  PosedTrack(const BodyModel& body, const Track& track)
+      : body_(body), track_(track), skinner_(body), shape_(skinner_.Shape(track.motion.betas)) {}
+
+  /// V×3 in the camera frame.
+  [[nodiscard]] MatrixX3d Vertices(int t) const {
+    MatrixX3d vertices(body_.num_vertices(), 3);
+    const BodyPose pose =
+        PoseFromAxisAngle(body_, track_.motion.poses.row(t).transpose(), track_.motion.trans.row(t).transpose());
+    skinner_.Skin(shape_, std::span(&pose, 1), {vertices.data(), static_cast<size_t>(vertices.size())});
+    return vertices;
+  }
+
+ private:
+  const BodyModel& body_;
+  const Track& track_;
+  Skinner skinner_;
+  ShapedBody shape_;
+};
+
+std::vector<PersonExtent> ExtentsOf(const PosedTrack& posed, const Track& track, int num_threads) {
+  std::vector<PersonExtent> extents(track.num_frames());
+  ParallelFor(track.num_frames(), num_threads, [&](int t) {
+    if (!track.HasResult(t)) return;
+    const MatrixX3d vertices = posed.Vertices(t);
+    const Camera camera = track.CameraAt(t);
+    PersonExtent extent{Vector2d::Constant(1e9), Vector2d::Constant(-1e9)};
+    for (Eigen::Index v = 0; v < vertices.rows(); ++v) {
+      Vector2d pixel;
+      if (!camera.Project(vertices.row(v).transpose(), &pixel)) continue;
+      extent.min = extent.min.cwiseMin(pixel);
+      extent.max = extent.max.cwiseMax(pixel);
+    }
+    const bool in_picture =
+        extent.max.minCoeff() >= 0 && extent.min.x() < camera.width && extent.min.y() < camera.height;
+    if (in_picture) extents[t] = extent;
+  });
+  return extents;
+}
+
+}  // namespace
+
+std::vector<PersonExtent> BodyExtents(const BodyModel& body, const Track& track, int num_threads) {
+  return ExtentsOf(PosedTrack(body, track), track, num_threads);
+}
+
+class PersonFrames::Impl {
+ public:
+  Impl(const BodyModel& body, const Track& track, const PersonFramesOptions& options)
+      : body_(body), track_(track), options_(options), posed_(body, track) {
+    BODYLOOM_CHECK(options.uv_size > 0 && options.past >= 0, "person frames: UV maps of ", options.uv_size, ", past ",
+                   options.past);
+    window_ = PlanPersonWindow(ExtentsOf(posed_, track, options.num_threads), track.camera.width, track.camera.height,
+                               options.window);
+    Describe();
+  }
+
+  void MotionMaps(int t, std::span<float> maps) const {
+    const size_t map = 3 * Texels();
+    BODYLOOM_CHECK(maps.size() == map * (1 + options_.past), "person frames: room for ", maps.size(),
+                   " values, expected ", map * (1 + options_.past));
+    static const HalfTable half;
+    std::fill(maps.begin(), maps.end(), 0.0F);
+    if (!track_.HasResult(t)) return;
+    for (size_t i = 0; i < map; ++i) maps[i] = half[normals_[map * t + i]];
+    for (int k = 0; k < options_.past; ++k) {
+      const int s = t - k;
+      if (s < 0 || segment_[s] < 0 || segment_[s] != segment_[t]) continue;
+      float* to = &maps[map * (1 + k)];
+      const uint16_t* from = &velocities_[map * s];
+      constexpr auto kScale = static_cast<float>(1 / kBodyLength);
+      for (size_t i = 0; i < map; ++i) to[i] = std::clamp(kScale * half[from[i]], -kMaxSpeed, kMaxSpeed);
+    }
+  }
+
+  void BodyMaps(int t, std::span<float> uv, std::span<float> mask) const {
+    const size_t area = size_t(window_.width) * window_.height;
+    BODYLOOM_CHECK(uv.size() == 2 * area && mask.size() == area, "person frames: room for ", uv.size(), " and ",
+                   mask.size(), " values, expected ", 2 * area, " and ", area);
+    std::fill(uv.begin(), uv.end(), 0.0F);
+    std::fill(mask.begin(), mask.end(), 0.0F);
+    if (!track_.HasResult(t)) return;
+    const MatrixX3d vertices = posed_.Vertices(t);
+    const Camera camera = CameraInWindow(track_.CameraAt(t), window_, t);
+    VisibilityBuffer buffer;
+    buffer.Render(vertices, body_.data().faces, camera);
+    ResolveRequest request;
+    request.atlas_uv = true;
+    ResolvedPixels pixels;
+    ResolvePixels(buffer, body_, vertices, camera, request, &pixels);
+    const PixelBox& box = pixels.box;
+    for (int y = box.y_begin; y < box.y_end; ++y) {
+      for (int x = box.x_begin; x < box.x_end; ++x) {
+        if (buffer.FaceAt(x, y) < 0) continue;
+        const size_t at = size_t(y) * window_.width + x, from = box.IndexOf(x, y);
+        uv[at] = pixels.atlas_uv[2 * from];
+        uv[area + at] = pixels.atlas_uv[2 * from + 1];
+        mask[at] = 1;
+      }
+    }
+  }
+
+  [[nodiscard]] const PersonWindow& window() const { return window_; }
+  [[nodiscard]] const PersonFramesOptions& options() const { return options_; }
+  [[nodiscard]] int num_frames() const { return track_.num_frames(); }
+
+ private:
+  [[nodiscard]] size_t Texels() const { return size_t(options_.uv_size) * options_.uv_size; }
+
+  void Describe() {
+    DescribeTrackOptions describe;
+    describe.texels.width = describe.texels.height = options_.uv_size;
+    describe.past = 1;  // the maps of the frames before are theirs, and put together when asked for
+    describe.half = true;
+    describe.num_threads = options_.num_threads;
+    const ScratchFile file{ScratchPath(options_.scratch_dir)};
+    DescribeTrack(body_, track_, file.path.string(), describe);
+    const NdArray array = ReadNpy(file.path.string());
+    const size_t map = 3 * Texels();
+    const auto* halves = reinterpret_cast<const uint16_t*>(array.bytes.data());
+    for (int t = 0; t < track_.num_frames(); ++t) {
+      const uint16_t* from = halves + 2 * map * t;
+      normals_.insert(normals_.end(), from, from + map);
+      velocities_.insert(velocities_.end(), from + map, from + 2 * map);
+    }
+    std::vector<char> usable(track_.num_frames());
+    for (int t = 0; t < track_.num_frames(); ++t) usable[t] = track_.HasResult(t);
+    for (const VelocityStencil& stencil : VelocityStencils(track_.motion.timestamps, usable, describe.velocity)) {
+      segment_.push_back(stencil.segment);
+    }
+  }
+
+  const BodyModel& body_;
+  const Track& track_;
+  PersonFramesOptions options_;
+  PosedTrack posed_;
+  PersonWindow window_;
+  std::vector<uint16_t> normals_, velocities_;  ///< half precision, frame by frame
+  std::vector<int> segment_;                    ///< gap-free run of each frame, −1: none
+};
+
+PersonFrames::PersonFrames(const BodyModel& body, const Track& track, const PersonFramesOptions& options)
+    : impl_(std::make_unique<Impl>(body, track, options)) {}
+PersonFrames::~PersonFrames() = default;
+
+int PersonFrames::num_frames() const { return impl_->num_frames(); }
+int PersonFrames::channels() const { return 3 + 3 * impl_->options().past; }
+const PersonWindow& PersonFrames::window() const { return impl_->window(); }
+const PersonFramesOptions& PersonFrames::options() const { return impl_->options(); }
+void PersonFrames::MotionMaps(int t, std::span<float> maps) const { impl_->MotionMaps(t, maps); }
+void PersonFrames::BodyMaps(int t, std::span<float> uv, std::span<float> mask) const { impl_->BodyMaps(t, uv, mask); }
+
+}  // namespace bodyloom

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "neural/motion/chain_plan.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "geometry/check.h"
+
+namespace bodyloom {
+namespace {
+
+/// SplitMix64 (Steele, Lea, Flood 2014).
+uint64_t Mix(uint64_t x) {
+  x += 0x9E3779B97F4A7C15U;
+  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9U;
+  x = (x ^ (x >> 27)) * 0x94D049BB133111EBU;
+  return x ^ (x >> 31);
+}
+double Uniform(uint64_t hash) { return static_cast<double>(hash >> 11) * 0x1p-53; }
+
+}  // namespace
+
+ChainPlan::ChainPlan(std::vector<FrameRange> ranges, const Options& options)
+    : ranges_(std::move(ranges)), options_(options), walks_(options.chains) {
+  BODYLOOM_CHECK(options.chains > 0 && options.length > 0, "chain plan: ", options.chains, " chains of ",
+                 options.length, " frames, expected at least one of each");
+  int64_t sum = 0;
+  for (const FrameRange& range : ranges_) {
+    BODYLOOM_CHECK(range.begin >= 0 && range.end > range.begin, "chain plan: frames ", range.begin, " to ", range.end,
+                   ", expected at least one");
+    frames_up_to_.push_back(sum += range.end - range.begin);
+  }
+  BODYLOOM_CHECK(sum > 0, "chain plan: no frames");
+}
+
+std::vector<ChainStep> ChainPlan::Next() {
+  std::vector<ChainStep> steps;
+  for (size_t c = 0; c < walks_.size(); ++c) {
+    Walk& walk = walks_[c];
+    ChainStep step;
+    if (walk.left == 0 || walk.frame >= walk.end) {
+      const uint64_t hash = Mix(Mix(Mix(options_.seed) ^ static_cast<uint64_t>(step_)) ^ c);
+      const auto at = static_cast<int64_t>(Uniform(hash) * static_cast<double>(frames_up_to_.back()));
+      const size_t r = std::upper_bound(frames_up_to_.begin(), frames_up_to_.end(), at) - frames_up_to_.begin();
+      const FrameRange& range = ranges_[std::min(r, ranges_.size() - 1)];
+      walk.frame = range.end - static_cast<int>(frames_up_to_[r] - at);
+      walk.end = range.end;
+      walk.left = options_.length;
+      step.restart = true;
+      step.from_truth = walk.frame > range.begin && Uniform(Mix(hash)) < options_.from_truth;
+    }
+    step.frame = walk.frame++;
+    --walk.left;
+    steps.push_back(step);
+  }
+  ++step_;
+  return steps;
+}
+
+void ChainPlan::Skip(int64_t steps) {
+  for (int64_t i = 0; i < steps; ++i) Next();
+}
+
+}  // namespace bodyloom

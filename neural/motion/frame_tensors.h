@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Frames as tensors. Internal: includes LibTorch.
+#pragma once
+
+#include <torch/torch.h>
+
+#include <span>
+#include <vector>
+
+#include "neural/motion/motion_frame.h"
+#include "neural/motion/motion_model.h"
+
+namespace bodyloom {
+
+/// Of frames of one size. Throws std::invalid_argument when a frame has not what the configuration needs, naming it.
+MotionInput InputOf(std::span<const MotionFrame> frames, const MotionConfig& config);
+
+struct MotionTruth {
+  torch::Tensor image;       ///< B×3×h×w
+  torch::Tensor labels;      ///< B×K×h×w one-hot; undefined when the frames have none
+  torch::Tensor normals;     ///< B×3×h×w; undefined when the frames have none
+  torch::Tensor foreground;  ///< B×1×h×w: labels other than 0, else where the image is not black
+  /// As the past of a following frame: what the frames do not have is zero.
+  [[nodiscard]] MotionState State(const MotionConfig& config) const;
+};
+
+/// A part counts as there when all frames have it. Throws std::invalid_argument when images are missing, sizes differ
+/// or a label is beyond the configuration's classes.
+MotionTruth TruthOf(std::span<const MotionFrame> frames, const MotionConfig& config);
+
+}  // namespace bodyloom

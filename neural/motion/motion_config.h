@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What the motion-dependent renderer (Yoon et al., CVPR 2022) consists of: sizes, and which parts are left out.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace bodyloom {
+
+/// The paper gives blocks and resolutions but no channels or levels; these are this project's choice (docs/motion.md).
+struct MotionProfile {
+  std::string name;
+  int image_size = 0;  ///< longer side of what is rendered, pixels
+  int uv_size = 0;     ///< side of the UV maps, texels
+  int features = 0;    ///< channels d of the motion descriptor f_3D
+  std::vector<int> encoder_widths, decoder_widths;
+  int discriminator_width = 0;
+  int perceptual_divisor = 1;  ///< channels of VGG are divided by this where a stand-in takes its place
+};
+
+/// "paper" (512², the published resolutions), "cpu" (256², trains and runs on two cores), "tiny" (128², for tests).
+/// Throws std::invalid_argument for other names, listing these.
+const MotionProfile& MotionProfileNamed(const std::string& name);
+
+struct MotionConfig {
+  MotionProfile profile;
+  int motion_channels = 33;  ///< N_t and the velocities of ten frames
+  int num_labels = 7;        ///< classes of the shape decoder; label 0 is the background
+  // The paper's ablations (Table 3): without the shape decoder; without predicted surface normals; with rendered UV
+  // coordinates in place of the projected motion descriptor.
+  bool shape = true, normals = true, motion = true;
+
+  /// A side of the images must be a multiple of this.
+  [[nodiscard]] int Multiple() const { return 1 << profile.decoder_widths.size(); }
+  [[nodiscard]] bool IsValid(std::string* why) const;
+};
+
+/// One line that tells two configurations apart: names and values of everything that the networks' shapes depend on.
+std::string ToText(const MotionConfig& config);
+
+}  // namespace bodyloom

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "neural/motion/motion_model.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+
+#include "geometry/check.h"
+#include "neural/networks/uv_sampler.h"
+
+namespace bodyloom {
+namespace {
+
+using torch::Tensor;
+
+constexpr int kUvChannels = 3;  // u, v, 1
+constexpr double kTiny = 1e-6;
+
+/// Unit vectors; nearly zero ones stay short instead of being blown up.
+Tensor Unit(const Tensor& x) { return x / (x.square().sum(1, true) + kTiny).sqrt(); }
+
+}  // namespace
+
+MotionState MotionState::Detached() const {
+  MotionState result = *this;
+  for (Tensor* part : result.Parts()) *part = part->detach();
+  return result;
+}
+
+std::vector<Tensor*> MotionState::Parts() {
+  std::vector<Tensor*> parts;
+  for (Tensor* part : {&labels, &image, &normals}) {
+    if (part->defined()) parts.push_back(part);
+  }
+  return parts;
+}
+
+MotionModelImpl::MotionModelImpl(const MotionConfig& model_config) : config(model_config) {
+  std::string why;
+  BODYLOOM_CHECK(config.IsValid(&why), "motion renderer: ", why);
+  const MotionProfile& p = config.profile;
+  const int projected = config.motion ? p.features : kUvChannels;
+  if (config.motion) {
+    encoder = register_module("encoder", UNet(UNetOptions{config.motion_channels, {p.features}, p.encoder_widths}));
+  }
+  if (config.shape) {
+    shape_decoder = register_module(
+        "shape_decoder", UNet(UNetOptions{projected + config.num_labels, {config.num_labels}, p.decoder_widths}));
+  }
+  const int past = 3 + (config.normals ? 3 : 0);
+  std::vector<int> heads = {3};
+  if (config.normals) heads.push_back(3);
+  appearance_decoder = register_module(
+      "appearance_decoder",
+      UNet(UNetOptions{projected + (config.shape ? config.num_labels : 0) + past, heads, p.decoder_widths}));
+}
+
+Tensor MotionModelImpl::Encode(const Tensor& motion) {
+  BODYLOOM_CHECK(config.motion, "motion renderer: there is no encoder in a network without motion");
+  return encoder(motion)[0];
+}
+
+Tensor MotionModelImpl::Project(const Tensor& descriptor, const Tensor& uv, const Tensor& body) const {
+  if (config.motion) return SampleUv(descriptor, uv, body);
+  return torch::cat({uv * body, body}, 1);
+}
+
+MotionStepResult MotionModelImpl::Decode(const Tensor& projected, const MotionState& before) {
+  MotionStepResult result;
+  std::vector<Tensor> input = {projected};
+  if (config.shape) {
+    result.label_logits = shape_decoder(torch::cat({projected, before.labels}, 1))[0];
+    result.state.labels = torch::softmax(result.label_logits, 1);
+    result.foreground = 1 - result.state.labels.slice(1, 0, 1);
+    input.push_back(result.state.labels);
+  } else {
+    result.foreground = torch::ones({projected.size(0), 1, projected.size(2), projected.size(3)}, projected.options());
+  }
+  input.push_back(before.image);
+  if (config.normals) input.push_back(before.normals);
+  const std::vector<Tensor> heads = appearance_decoder(torch::cat(input, 1));
+  result.state.image = result.foreground * torch::sigmoid(heads[0]);
+  if (config.normals) result.state.normals = result.foreground * Unit(torch::tanh(heads[1]));
+  return result;
+}
+
+MotionStepResult MotionModelImpl::forward(const MotionInput& input, const MotionState& before) {
+  const Tensor descriptor = config.motion ? Encode(input.motion) : Tensor();
+  return Decode(Project(descriptor, input.uv, input.body), before);
+}
+
+MotionState MotionModelImpl::Nothing(int64_t batch, int64_t height, int64_t width) const {
+  MotionState state;
+  const auto options = appearance_decoder->parameters().front().options().requires_grad(false);
+  const auto zeros = [&](int64_t channels) { return torch::zeros({batch, channels, height, width}, options); };
+  if (config.shape) state.labels = zeros(config.num_labels);
+  state.image = zeros(3);
+  if (config.normals) state.normals = zeros(3);
+  return state;
+}
+
+Tensor Shifted(const Tensor& image, int x, int y) {
+  if (x == 0 && y == 0) return image;
+  const int64_t h = image.size(2), w = image.size(3), dx = std::abs(x), dy = std::abs(y);
+  Tensor result = torch::zeros_like(image);
+  if (dx >= w || dy >= h) return result;
+  const int64_t from_x = std::max(0, -x), from_y = std::max(0, -y), to_x = std::max(0, x), to_y = std::max(0, y);
+  result.slice(2, to_y, to_y + h - dy)
+      .slice(3, to_x, to_x + w - dx)
+      .copy_(image.slice(2, from_y, from_y + h - dy).slice(3, from_x, from_x + w - dx));
+  return result;
+}
+
+}  // namespace bodyloom

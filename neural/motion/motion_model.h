@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The networks of the motion-dependent renderer. Internal: includes LibTorch.
+///
+///   f_3D  = E_Δ(N_t, V_t … V_{t−9})                       in UV, d channels
+///   f̂_t   = Π f_3D                                        at the pixels that see the body, 0 elsewhere
+///   ŝ_t   = softmax D_s(f̂_t, ŝ_{t−1})                     classes of every pixel, class 0 the background
+///   a, n  = D_a(f̂_t, ŝ_t, Â_{t−1}, n̂_{t−1})
+///   Â_t   = (1 − ŝ_t[0]) · sigmoid a,   n̂_t = (1 − ŝ_t[0]) · tanh n / |tanh n|
+/// Source: Yoon et al., "Learning Motion-Dependent Appearance for High-Fidelity Rendering of Dynamic Humans from a
+/// Single Camera", CVPR 2022, Section 3; channels and levels: neural/motion/motion_config.h.
+///
+/// Without shape there is no ŝ: Â = sigmoid a must learn where the person ends. Without motion f̂ is the rendered UV
+/// itself, (u, v, 1) on the body and 0 elsewhere. Without normals n̂ is left out.
+#pragma once
+
+#include <torch/torch.h>
+
+#include <vector>
+
+#include "neural/motion/motion_config.h"
+#include "neural/networks/unet.h"
+
+namespace bodyloom {
+
+/// Of B frames: B×channels×U×U, B×2×h×w, B×1×h×w.
+struct MotionInput {
+  torch::Tensor motion, uv, body;
+};
+
+/// What a frame hands on to the next. Parts that the configuration leaves out are undefined.
+struct MotionState {
+  torch::Tensor labels;   ///< B×K×h×w probabilities
+  torch::Tensor image;    ///< B×3×h×w
+  torch::Tensor normals;  ///< B×3×h×w
+  [[nodiscard]] MotionState Detached() const;
+  [[nodiscard]] std::vector<torch::Tensor*> Parts();  ///< those that are defined
+};
+
+struct MotionStepResult {
+  MotionState state;
+  torch::Tensor label_logits;  ///< B×K×h×w, undefined without shape
+  torch::Tensor foreground;    ///< B×1×h×w, 1 without shape
+};
+
+struct MotionModelImpl : torch::nn::Module {
+  explicit MotionModelImpl(const MotionConfig& config);
+
+  /// f_3D of B×channels×U×U.
+  torch::Tensor Encode(const torch::Tensor& motion);
+  /// f̂ from f_3D (ignored, and may be undefined, without motion).
+  torch::Tensor Project(const torch::Tensor& descriptor, const torch::Tensor& uv, const torch::Tensor& body) const;
+  MotionStepResult Decode(const torch::Tensor& projected, const MotionState& before);
+  MotionStepResult forward(const MotionInput& input, const MotionState& before);
+  /// The past of a clip's first frame: zeros.
+  [[nodiscard]] MotionState Nothing(int64_t batch, int64_t height, int64_t width) const;
+
+  MotionConfig config;
+  UNet encoder{nullptr}, shape_decoder{nullptr}, appearance_decoder{nullptr};
+};
+TORCH_MODULE(MotionModel);
+
+/// The picture moved by (x, y) pixels, right and down; what comes in is zero.
+torch::Tensor Shifted(const torch::Tensor& image, int x, int y);
+
+}  // namespace bodyloom

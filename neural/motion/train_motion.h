@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Trains the motion-dependent renderer on one person's clip.
+///
+///   L = L_a + 10 L_s + L_n + L_p + 0.01 L_g            (Yoon et al., CVPR 2022, eq. 8 and below)
+/// L_a, L_s, L_n: mean absolute differences of image, class probabilities and normals; L_p: of VGG-16's features after
+/// conv 1-2, 2-2, 3-2 and 4-2; L_g: a patch discriminator's judgement of the image beside the true classes. Losses
+/// whose truth the clip does not have are switched off (`losses_off` says which). Recurrence:
+/// neural/motion/chain_plan.h.
+///
+/// Writes into run_dir: checkpoint.pt and metrics.csv. A run that goes on from a checkpoint ends with the same bytes as
+/// one that was never interrupted (same binary, machine and threads).
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "neural/motion/chain_plan.h"
+#include "neural/motion/motion_config.h"
+#include "neural/motion/motion_frame.h"
+#include "neural/networks/named_weights.h"
+
+namespace bodyloom {
+
+/// What a validation measured, on frames rolled out by the network from nothing.
+struct MotionScores {
+  double image_l1 = 0;        ///< mean over the true foreground
+  double psnr_db = 0;         ///< over the true foreground, range 1
+  double label_iou = 0;       ///< mean over classes that occur; NaN without labels
+  double foreground_iou = 0;  ///< NaN without labels
+  double normal_deg = 0;      ///< mean angle over the true foreground; NaN without normals
+  double flicker = 0;  ///< mean over the foreground of |(Â_t − Â_{t−1}) − (A_t − A_{t−1})|: what tLPIPS is for images
+  int frames = 0;
+};
+
+/// One validated frame beside its truth: planar RGB in [0, 1], window size.
+struct MotionPreview {
+  int frame = 0, width = 0, height = 0;
+  std::vector<float> image, normals, true_image, true_normals;  ///< normals empty where there are none
+  std::vector<uint8_t> labels, true_labels;
+};
+
+struct TrainMotionProgress {
+  int step = 0, steps = 0;
+  double loss = 0, image = 0;  ///< of the last step
+  MotionScores scores;         ///< of the last validation
+  double seconds = 0;
+};
+
+struct TrainMotionOptions {
+  MotionConfig config;
+  std::vector<FrameRange> train, validation;  ///< validation may be empty
+  int steps = 20000;
+  int batch = 4;
+  int chain_length = 32;
+  double learning_rate = 1e-3, discriminator_rate = 2e-4;
+  double shape_weight = 10, normal_weight = 1, perceptual_weight = 1, gan_weight = 0.01;
+  int warmup_iterations = 10;  ///< of the first frame, before a roll-out counts
+  NamedWeights vgg16;          ///< empty: a seeded stand-in of random features
+  uint64_t seed = 1;
+  int num_threads = 0;  ///< of LibTorch; 0: all cores
+  int report_every = 20, validate_every = 500, checkpoint_every = 250;
+  int preview_frames = 4;
+  int patience = 0;  ///< stop after so many validations without a better foreground L1; 0: never
+  std::string run_dir;
+  bool resume = false;
+  std::function<bool(const TrainMotionProgress&)> progress;  ///< return false to stop after a checkpoint
+  std::function<void(int step, const std::vector<MotionPreview>&)> preview;
+  [[nodiscard]] bool IsValid(std::string* why) const;
+};
+
+enum class TrainMotionStatus { kFinished, kStopped, kNoProgress, kNotFinite };
+
+struct TrainMotionSummary {
+  TrainMotionStatus status = TrainMotionStatus::kNotFinite;
+  std::string message;
+  int steps = 0;
+  double seconds = 0;
+  MotionScores scores;
+  std::vector<std::string> losses_off;  ///< "shape: the frames have no labels", …
+  bool perceptual_stand_in = true;
+};
+
+/// Throws std::invalid_argument for options that are not valid, std::runtime_error for files that cannot be used.
+TrainMotionSummary TrainMotion(const MotionFrameSource& source, const TrainMotionOptions& options);
+
+}  // namespace bodyloom
