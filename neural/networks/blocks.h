@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The two blocks that the networks of the motion-dependent renderer are made of. Internal: includes LibTorch.
+///
+/// Conv(ic, oc, kernel, stride, padding), Deconv likewise; LReLU has slope 0.2, IN is instance normalisation without
+/// learned scale and shift (epsilon 1e-5):
+///   C-BLK(ic, oc)     = Conv(ic, oc, 3, 1, 1) LReLU+IN, Conv(oc, oc, 3, 1, 1) LReLU+IN, Conv(oc, oc, 4, 2, 1) LReLU+IN
+///   D-BLK(ic, mc, oc) = Conv(ic, mc, 3, 1, 1) LReLU+IN, Conv(mc, mc, 3, 1, 1) LReLU+IN, Conv(mc, mc, 3, 1, 1)
+///   LReLU+IN,
+///                       Deconv(mc, oc, 4, 2, 1) LReLU
+/// C-BLK halves an image's sides, D-BLK doubles them. Source: Yoon et al., "Learning Motion-Dependent Appearance for
+/// High-Fidelity Rendering of Dynamic Humans from a Single Camera", CVPR 2022, Fig. 11, which leaves the order inside
+/// "LReLU+IN" open.
+///
+/// Convolutions whose bias the normalisation would remove again (norm first) have none. Weights start as
+/// N(0, 2 / (1.04 fan_in)) (Kaiming for the slope 0.2; fan_in of a Deconv with stride 2: mc·4·4/4), biases at 0.
+#pragma once
+
+#include <torch/torch.h>
+
+namespace bodyloom {
+
+enum class NormOrder { kNormFirst, kActivationFirst };
+
+constexpr double kLeakySlope = 0.2;
+
+/// LReLU; writes over x, which must be what a convolution or norm just made and nobody else reads.
+torch::Tensor LeakyRelu(torch::Tensor x);
+
+/// IN then LReLU, or LReLU then IN. May write over x, as above.
+torch::Tensor NormAndActivation(torch::Tensor x, NormOrder order);
+
+/// A square convolution with Kaiming weights (fan_in, slope 0.2) and a bias of zero, or
+/// none.
+torch::nn::Conv2d MakeConv(int from, int to, int kernel, int stride, int padding, bool bias);
+
+/// B×ic×H×W → B×oc×H/2×W/2; H and W even and at least 4.
+struct ConvBlockImpl : torch::nn::Module {
+  ConvBlockImpl(int ic, int oc, NormOrder norm_order = NormOrder::kNormFirst);
+  torch::Tensor forward(torch::Tensor x);
+
+  NormOrder order;
+  torch::nn::Conv2d conv1{nullptr}, conv2{nullptr}, down{nullptr};
+};
+TORCH_MODULE(ConvBlock);
+
+/// B×ic×H×W → B×oc×2H×2W; H·W at least 2.
+struct DeconvBlockImpl : torch::nn::Module {
+  DeconvBlockImpl(int ic, int mc, int oc, NormOrder norm_order = NormOrder::kNormFirst);
+  torch::Tensor forward(torch::Tensor x);
+
+  NormOrder order;
+  torch::nn::Conv2d conv1{nullptr}, conv2{nullptr}, conv3{nullptr};
+  torch::nn::ConvTranspose2d up{nullptr};
+};
+TORCH_MODULE(DeconvBlock);
+
+}  // namespace bodyloom
