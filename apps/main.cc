@@ -35,6 +35,7 @@ int Run(int argc, char** argv) {
   AddPriorVerb(app, &action);
   AddMotionsVerb(app, &action);
   AddTrainVerb(app, &action);
+  AddAnimateVerb(app, &action);
   AddNeuralVerb(app, &action);
   AddVersionVerb(app, &action);
   try {

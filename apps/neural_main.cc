@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The command `bodyloom-neural`: the verbs that need LibTorch. `bodyloom neural VERB` and `bodyloom train …` start it.
+// The command `bodyloom-neural`: the verbs that need LibTorch. `bodyloom neural VERB`, `bodyloom train …` and
+// `bodyloom animate …` start it.
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <functional>
@@ -7,7 +8,9 @@
 
 #include "apps/exit_code.h"
 #include "apps/interrupt.h"
+#include "apps/neural/animate_motion.h"
 #include "apps/neural/train_lifter.h"
+#include "apps/neural/train_motion.h"
 #include "neural/runtime.h"
 
 int main(int argc, char** argv) {
@@ -24,6 +27,10 @@ int main(int argc, char** argv) {
   CLI::App* train = app.add_subcommand("train", "Trains a network");
   train->require_subcommand(1);
   bodyloom::AddTrainLifter(*train, &action);
+  bodyloom::AddTrainMotion(*train, &action);
+  CLI::App* animate = app.add_subcommand("animate", "Renders a person with a trained network");
+  animate->require_subcommand(1);
+  bodyloom::AddAnimateMotion(*animate, &action);
   try {
     app.parse(argc, argv);
     action();

@@ -41,22 +41,41 @@ void AddNeuralVerb(CLI::App& app, Action* action) {
   verb->footer(
       "Verbs:\n"
       "  doctor   which LibTorch, how many threads, which matrix library, and what makes it slow\n"
-      "  train    trains a network (also: bodyloom train)\n");
+      "  train    trains a network (also: bodyloom train)\n"
+      "  animate  renders a person with a trained network (also: bodyloom animate)\n");
   verb->prefix_command();  // everything after `neural` belongs to the other executable
   verb->callback([verb, action] { *action = [arguments = verb->remaining()] { ExecNeural(arguments); }; });
 }
 
-void AddTrainVerb(CLI::App& app, Action* action) {
-  CLI::App* verb = app.add_subcommand("train", "Trains a network: `bodyloom train lifter --help`");
-  verb->footer(
-      "Networks:\n"
-      "  lifter   from 2D joints to 3D, the start of `bodyloom track`\n");
+namespace {
+
+/// A verb of this executable's own that the other one has under the same name.
+void AddNeuralVerbOfItsOwn(CLI::App& app, const char* name, const char* what, const char* footer, Action* action) {
+  CLI::App* verb = app.add_subcommand(name, what);
+  verb->footer(footer);
   verb->prefix_command();
-  verb->callback([verb, action] {
+  verb->callback([verb, action, name] {
     std::vector<std::string> arguments = verb->remaining();
-    arguments.insert(arguments.begin(), "train");
+    arguments.insert(arguments.begin(), name);
     *action = [arguments] { ExecNeural(arguments); };
   });
+}
+
+}  // namespace
+
+void AddTrainVerb(CLI::App& app, Action* action) {
+  AddNeuralVerbOfItsOwn(app, "train", "Trains a network: `bodyloom train motion --help`",
+                        "Networks:\n"
+                        "  lifter   from 2D joints to 3D, the start of `bodyloom track`\n"
+                        "  motion   how a person looks as a function of how the body has moved, from one video\n",
+                        action);
+}
+
+void AddAnimateVerb(CLI::App& app, Action* action) {
+  AddNeuralVerbOfItsOwn(app, "animate", "Renders a person with a trained network: `bodyloom animate motion --help`",
+                        "Networks:\n"
+                        "  motion   of `bodyloom train motion`\n",
+                        action);
 }
 
 }  // namespace bodyloom

@@ -26,6 +26,7 @@ void AddDemoVerb(CLI::App& app, Action* action);
 void AddPriorVerb(CLI::App& app, Action* action);
 void AddMotionsVerb(CLI::App& app, Action* action);
 void AddTrainVerb(CLI::App& app, Action* action);
+void AddAnimateVerb(CLI::App& app, Action* action);
 void AddNeuralVerb(CLI::App& app, Action* action);
 void AddVersionVerb(CLI::App& app, Action* action);
 

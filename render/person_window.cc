@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "geometry/check.h"
 
@@ -54,8 +55,9 @@ PersonWindow PlanPersonWindow(const std::vector<PersonExtent>& extents, int imag
   }
   BODYLOOM_CHECK(largest.x() > 0, "person window: the person is in none of the ", extents.size(), " frames");
   PersonWindow window;
-  const int side = options.max_side / options.multiple * options.multiple;
-  const double scale = std::min(1.0, side / largest.maxCoeff());
+  const int fitting_side = options.max_side / options.multiple * options.multiple;
+  const double scale = options.scale > 0 ? options.scale : std::min(1.0, fitting_side / largest.maxCoeff());
+  const int side = options.scale > 0 ? std::numeric_limits<int>::max() : fitting_side;
   window.picture_width = std::max(1, static_cast<int>(std::lround(scale * image_width)));
   window.picture_height = std::max(1, static_cast<int>(std::lround(scale * image_height)));
   window.scale_x = static_cast<double>(window.picture_width) / image_width;

@@ -31,6 +31,7 @@ struct PersonWindow {
 
 struct PersonWindowOptions {
   int max_side = 256;    ///< of the window; the person is never enlarged to fill it
+  double scale = 0;      ///< shrunk (or enlarged) by this much, however large the window gets; 0: to fit max_side
   int multiple = 16;     ///< the window's sides are multiples of this
   double margin = 0.15;  ///< of the extent's longer side, on every side: clothes and hair reach beyond the body
 };

@@ -20,6 +20,9 @@ struct PersonFramesOptions {
   int uv_size = 128;  ///< of the motion maps
   int past = 10;      ///< velocities of so many frames
   PersonWindowOptions window;
+  /// By frame: turns the view about the vertical (the camera's y) through the body's root, degrees; empty: the track's
+  /// own view. The motion is turned with it, so that a view that moves adds no velocity of its own.
+  std::vector<double> yaw_deg;
   std::string scratch_dir;  ///< the maps pass through a file here while they are made; empty: the system's own place
   int num_threads = 1;
 };
@@ -56,7 +59,7 @@ class PersonFrames {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The extent of the posed body in each frame's picture.
-std::vector<PersonExtent> BodyExtents(const BodyModel& body, const Track& track, int num_threads);
+/// Pixels of the track's picture a metre at the body's root, median over the frames; 0 when no frame has a result.
+double PixelsPerMetre(const BodyModel& body, const Track& track);
 
 }  // namespace bodyloom

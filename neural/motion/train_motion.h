@@ -7,8 +7,8 @@
 /// whose truth the clip does not have are switched off (`losses_off` says which). Recurrence:
 /// neural/motion/chain_plan.h.
 ///
-/// Writes into run_dir: checkpoint.pt and metrics.csv. A run that goes on from a checkpoint ends with the same bytes as
-/// one that was never interrupted (same binary, machine and threads).
+/// Writes into run_dir: checkpoint.bin and metrics.csv. A run that goes on from a checkpoint ends with the same bytes
+/// as one that was never interrupted (same binary, machine and threads).
 #pragma once
 
 #include <functional>
@@ -26,7 +26,7 @@ namespace bodyloom {
 struct MotionScores {
   double image_l1 = 0;        ///< mean over the true foreground
   double psnr_db = 0;         ///< over the true foreground, range 1
-  double label_iou = 0;       ///< mean over classes that occur; NaN without labels
+  double label_iou = 0;       ///< mean over the classes other than the background that occur; NaN without labels
   double foreground_iou = 0;  ///< NaN without labels
   double normal_deg = 0;      ///< mean angle over the true foreground; NaN without normals
   double flicker = 0;  ///< mean over the foreground of |(Â_t − Â_{t−1}) − (A_t − A_{t−1})|: what tLPIPS is for images
@@ -63,6 +63,7 @@ struct TrainMotionOptions {
   int preview_frames = 4;
   int patience = 0;  ///< stop after so many validations without a better foreground L1; 0: never
   std::string run_dir;
+  std::string config_json;  ///< kept in the checkpoint as it is
   bool resume = false;
   std::function<bool(const TrainMotionProgress&)> progress;  ///< return false to stop after a checkpoint
   std::function<void(int step, const std::vector<MotionPreview>&)> preview;
@@ -80,6 +81,9 @@ struct TrainMotionSummary {
   std::vector<std::string> losses_off;  ///< "shape: the frames have no labels", …
   bool perceptual_stand_in = true;
 };
+
+/// run_dir/checkpoint.bin.
+std::string MotionCheckpointPath(const std::string& run_dir);
 
 /// Throws std::invalid_argument for options that are not valid, std::runtime_error for files that cannot be used.
 TrainMotionSummary TrainMotion(const MotionFrameSource& source, const TrainMotionOptions& options);

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/neural/animate_motion.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "apps/exit_code.h"
+#include "apps/files.h"
+#include "apps/interrupt.h"
+#include "apps/neural/background.h"
+#include "apps/neural/motion_data.h"
+#include "apps/neural/motion_preview.h"
+#include "apps/neural/motion_run.h"
+#include "apps/progress.h"
+#include "apps/stage_clock.h"
+#include "apps/track_inputs.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/people/person_frames.h"
+#include "data_tools/track_io.h"
+#include "data_tools/video/image_file.h"
+#include "data_tools/video/video_writer.h"
+#include "geometry/check.h"
+#include "neural/motion/motion_renderer.h"
+#include "neural/motion/train_motion.h"
+#include "render/contact_sheet.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr int kLargestSide = 4096;
+
+struct Request {
+  std::string run, track, out, body, background, sheet, json, view_yaw;
+  int threads = 0, warmup = 50;
+};
+
+/// "30": every frame turned by 30°; "0:360": from 0 to 360 over the clip.
+std::vector<double> ViewAngles(const std::string& text, int num_frames) {
+  if (text.empty()) return {};
+  double from = 0, to = 0;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%lf:%lf%c", &from, &to, &rest) != 2) {
+    if (std::sscanf(text.c_str(), "%lf%c", &from, &rest) != 1) {
+      throw UsageError("--view-yaw " + text + ": expected degrees, such as 30 or 0:360");
+    }
+    to = from;
+  }
+  std::vector<double> angles;
+  for (int t = 0; t < num_frames; ++t) angles.push_back(from + (to - from) * t / std::max(1, num_frames - 1));
+  return angles;
+}
+
+/// The pictures of a frame side by side, for the contact sheet.
+void AddToSheet(const MotionPicture& picture, const Image& composed, std::vector<Image>* pictures) {
+  pictures->push_back(composed);
+  if (!picture.labels.empty()) pictures->push_back(LabelsPicture(picture.labels, picture.width, picture.height));
+  if (!picture.normals.empty()) pictures->push_back(NormalPicture(picture.normals, picture.width, picture.height));
+}
+
+void Run(const Request& request) {
+  const StageClock clock;
+  double counted_s = 0;
+  // Stages come around every frame: their times are summed.
+  std::vector<std::pair<const char*, double>> seconds = {
+      {"prepare", 0}, {"maps", 0}, {"network", 0}, {"compose and encode", 0}};
+  const auto lap = [&](int stage) {
+    const double now_s = clock.total(), took_s = now_s - counted_s;
+    seconds[stage].second += took_s;
+    counted_s = now_s;
+    return took_s;
+  };
+  RequireReadable(request.track, "track");
+  RequireReadable(request.background, "background");
+  RequireDistinct({request.track, request.background, request.body}, {request.out, request.sheet, request.json});
+  for (const std::string& path : {request.out, request.sheet, request.json}) RequireWritable(path);
+  const MotionRun run = ReadMotionRun(request.run);
+  const int threads = request.threads > 0 ? request.threads : static_cast<int>(std::thread::hardware_concurrency());
+  const Track track = ReadTrack(request.track);
+  const std::shared_ptr<const BodyModel> body = BodyOrBuiltin(request.body);
+  const double size = PixelsPerMetre(*body, track);
+  if (!(size > 0)) throw std::runtime_error(request.track + ": no frame has a result, nothing to animate");
+
+  PersonFramesOptions options;
+  options.uv_size = run.config.profile.uv_size;
+  options.past = run.past;
+  options.window.scale = run.pixels_per_metre / size;
+  options.window.multiple = run.config.Multiple();
+  options.num_threads = threads;
+  options.yaw_deg = ViewAngles(request.view_yaw, track.num_frames());
+  const PersonFrames frames(*body, track, options);
+  const PersonWindow& window = frames.window();
+  if (std::max({window.width, window.height, window.picture_width, window.picture_height}) > kLargestSide) {
+    throw std::runtime_error(Concatenate(request.track,
+                                         ": at the size that the person was trained at the picture would "
+                                         "have ",
+                                         window.picture_width, "x", window.picture_height, " px, at most ",
+                                         kLargestSide, " a side; the track's person is too small in its picture"));
+  }
+  MotionRenderer renderer(MotionCheckpointPath(request.run), run.config, {request.warmup, threads});
+  lap(0);
+  Background background(request.background, window.picture_width, window.picture_height);
+  const double fps = track.num_frames() > 1
+                         ? (track.num_frames() - 1) / (track.motion.timestamps.back() - track.motion.timestamps.front())
+                         : run.fps;
+  VideoWriter video(request.out, window.picture_width, window.picture_height, fps);
+  const std::vector<int> on_sheet = EvenlySpreadFrames(track.num_frames(), 6);
+  std::vector<Image> sheet;
+  std::vector<double> network_ms;
+  int lost = 0, sheet_columns = 1;
+  {
+    Progress progress("animate");
+    MotionFrame frame;
+    for (int t = 0; t < track.num_frames(); ++t) {
+      ThrowIfInterrupted();
+      Image composed = background.Next();
+      MotionPicture picture;
+      if (track.HasResult(t)) {
+        FillMotion(frames, t, &frame);
+        lap(1);
+        picture = renderer.Next(frame);
+        const double network_s = lap(2);
+        if (t > 0) network_ms.push_back(1e3 * network_s);  // the first frame warms up
+        Composite(picture.image, picture.alpha, picture.width, picture.height, window.corner[t].x(),
+                  window.corner[t].y(), &composed);
+      } else {
+        ++lost;
+      }
+      video.Write(composed);
+      if (!request.sheet.empty() && std::binary_search(on_sheet.begin(), on_sheet.end(), t) && track.HasResult(t)) {
+        const size_t before = sheet.size();
+        AddToSheet(picture, composed, &sheet);
+        sheet_columns = static_cast<int>(sheet.size() - before);
+      }
+      lap(3);
+      progress.Update("rendering", static_cast<double>(t + 1) / track.num_frames());
+    }
+    video.Finish();
+  }
+  lap(3);
+  if (!sheet.empty()) {
+    ContactSheetOptions layout;
+    layout.columns = sheet_columns;
+    layout.cell_height_px = window.picture_height;
+    WriteImage(request.sheet, ContactSheet(sheet, layout));
+  }
+  std::sort(network_ms.begin(), network_ms.end());
+  const double median_ms = network_ms.empty() ? 0 : network_ms[network_ms.size() / 2];
+  nlohmann::ordered_json stages = nlohmann::ordered_json::object();
+  for (const auto& [stage, stage_s] : seconds) stages[stage] = stage_s;
+  if (!request.json.empty()) {
+    const nlohmann::ordered_json json = {{"frames", track.num_frames()},
+                                         {"frames_without_fit", lost},
+                                         {"window", {window.width, window.height}},
+                                         {"picture", {window.picture_width, window.picture_height}},
+                                         {"network_ms_median", median_ms},
+                                         {"descriptors_kept", renderer.descriptors_kept()},
+                                         {"projections_kept", renderer.projections_kept()},
+                                         {"seconds", stages},
+                                         {"output", request.out}};
+    WriteFileAtomically(request.json, json.dump(2) + "\n");
+  }
+  std::printf("%d frames, window %dx%d px of a %dx%d picture, network %.0f ms a frame, %.1f frames/s in all\n",
+              track.num_frames(), window.width, window.height, window.picture_width, window.picture_height, median_ms,
+              track.num_frames() / std::max(1e-9, clock.total()));
+  if (lost > 0) std::printf("%d frames have no fit and show the background\n", lost);
+  if (renderer.descriptors_kept() > 0) {
+    std::printf("%lld frames did not move: their descriptors were not computed again\n",
+                static_cast<long long>(renderer.descriptors_kept()));
+  }
+  std::printf("wrote %s\n", request.out.c_str());
+}
+
+}  // namespace
+
+void AddAnimateMotion(CLI::App& animate, std::function<void()>* action) {
+  CLI::App* verb =
+      animate.add_subcommand("motion", "Renders a person that `bodyloom train motion` learned, in any motion");
+  auto request = std::make_shared<Request>();
+  verb->add_option("--run", request->run, "Folder of the trained run")->required();
+  verb->add_option("--track", request->track, "The motion: a track, .npz")->required();
+  verb->add_option("--out", request->out, "The video, .mp4")->required();
+  verb->add_option("--body", request->body, "The track's body (default: the built-in body)");
+  verb->add_option("--view-yaw", request->view_yaw,
+                   "Turns the view about the person's vertical, degrees; FROM:TO turns it over the clip");
+  verb->add_option("--background", request->background, "Image, video or folder of images behind the person");
+  verb->add_option("--warmup", request->warmup, "Passes of the first frame through the network before it counts")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 1000));
+  verb->add_option("--sheet", request->sheet, "Contact sheet of six frames: picture, labels, normals");
+  verb->add_option("--json", request->json, "Report with times");
+  verb->add_option("--threads", request->threads, "0: all cores")->check(CLI::NonNegativeNumber);
+  verb->footer("Example:\n  bodyloom animate motion --run run --track dance.npz --out dance.mp4 --view-yaw 0:360");
+  verb->callback([request, action] { *action = [request] { Run(*request); }; });
+}
+
+}  // namespace bodyloom

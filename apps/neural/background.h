@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What stands behind an animated person: a picture, a video that is played to and fro no further than its end, or a
+/// plain backdrop.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+
+#include "data_tools/video/video_reader.h"
+#include "render/image.h"
+
+namespace bodyloom {
+
+class Background {
+ public:
+  /// `path`: an image, a video or a folder of images; empty: a studio's backdrop. Throws std::runtime_error naming it.
+  Background(const std::string& path, int width, int height);
+
+  /// The next frame, width × height; a video that has ended keeps its last frame.
+  const Image& Next();
+
+ private:
+  int width_, height_;
+  std::unique_ptr<VideoReader> video_;
+  Image image_;
+};
+
+/// Lays a window's picture over the background: alpha · image is added to (1 − alpha) · background, at (x, y). `image`
+/// is planar RGB in [0, 1] already multiplied by alpha, as the renderers give it.
+void Composite(std::span<const float> image, std::span<const float> alpha, int width, int height, int x, int y,
+               Image* background);
+
+}  // namespace bodyloom

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+/// From files to what the motion-dependent renderer trains on: a person set, or a video with a track.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "data_tools/people/person_frames.h"
+#include "geometry/track.h"
+#include "neural/motion/motion_config.h"
+#include "neural/motion/motion_frame.h"
+
+namespace bodyloom {
+
+struct MotionDataRequest {
+  std::string data;         ///< a person set, a video or a folder of images
+  std::string track;        ///< empty: the person set's own
+  std::string body;         ///< empty: the built-in body
+  std::string part_labels;  ///< for a video: DensePose's parts, which stand in for a parsing of the clothes
+  int num_threads = 0;
+};
+
+/// Where MotionData's classes come from.
+enum class LabelSource { kNone, kPersonSet, kPartLabels };
+
+class MotionData {
+ public:
+  /// Describes the track and plans the window around the person. Throws std::runtime_error naming files that do not fit
+  /// each other (sizes, numbers of frames).
+  MotionData(const MotionDataRequest& request, const MotionProfile& profile, int multiple);
+  ~MotionData();
+  MotionData(const MotionData&) = delete;
+  MotionData& operator=(const MotionData&) = delete;
+
+  [[nodiscard]] const PersonFrames& frames() const;
+  [[nodiscard]] const Track& track() const;
+  /// Pixels of the window a metre at the body's root.
+  [[nodiscard]] double PixelsPerMetre() const;
+  [[nodiscard]] LabelSource labels() const;
+  [[nodiscard]] bool has_normals() const;
+  [[nodiscard]] std::string notes() const;  ///< lines for the user: what is not used, what stands in for what
+
+  /// Frames as the networks take them; pictures are read once and kept.
+  void Fill(int t, bool with_truth, MotionFrame* frame);
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// The part of a frame that does not need pictures: motion maps, surface coordinates, the window's place.
+void FillMotion(const PersonFrames& frames, int t, MotionFrame* frame);
+
+}  // namespace bodyloom

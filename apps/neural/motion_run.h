@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+/// config.json of a run of the motion-dependent renderer: what it takes to use its checkpoint.
+#pragma once
+
+#include <string>
+
+#include "neural/motion/motion_config.h"
+
+namespace bodyloom {
+
+struct MotionRun {
+  MotionConfig config;
+  double pixels_per_metre = 0;  ///< of the window: the size that the person was trained at
+  double fps = 30;
+  int past = 10;      ///< velocities of so many frames
+  std::string notes;  ///< JSON object of what else is known: data, frames, options
+};
+
+std::string MotionRunJson(const MotionRun& run);
+
+/// Of RUN/config.json. Throws std::runtime_error naming the file, the key and what was expected.
+MotionRun ReadMotionRun(const std::string& run_dir);
+
+}  // namespace bodyloom

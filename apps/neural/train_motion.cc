@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/neural/train_motion.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "apps/exit_code.h"
+#include "apps/files.h"
+#include "apps/interrupt.h"
+#include "apps/neural/motion_data.h"
+#include "apps/neural/motion_preview.h"
+#include "apps/neural/motion_run.h"
+#include "apps/progress.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/video/image_file.h"
+#include "geometry/check.h"
+#include "neural/motion/train_motion.h"
+
+namespace bodyloom {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kShareStretch = 32;  ///< frames: with less of the data, whole stretches of so many are kept
+
+struct Request {
+  MotionDataRequest data;
+  std::string out, profile = "cpu";
+  std::vector<std::string> without, train, validate;
+  double share = 1;
+  TrainMotionOptions options;
+};
+
+/// "12-40" (last frame included) → [12, 41).
+FrameRange ParseRange(const std::string& text, const char* option) {
+  int first = 0, last = 0;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%d-%d%c", &first, &last, &rest) != 2 || first < 0 || last < first) {
+    throw UsageError(Concatenate(option, " ", text, ": expected FIRST-LAST, such as 0-149"));
+  }
+  return {first, last + 1};
+}
+
+std::vector<FrameRange> Ranges(const std::vector<std::string>& texts, const char* option, int num_frames) {
+  std::vector<FrameRange> ranges;
+  for (const std::string& text : texts) {
+    ranges.push_back(ParseRange(text, option));
+    if (ranges.back().end > num_frames) {
+      throw UsageError(Concatenate(option, " ", text, ": the clip has frames 0 to ", num_frames - 1));
+    }
+  }
+  return ranges;
+}
+
+/// Of every so many stretches the first.
+std::vector<FrameRange> TakeShare(const std::vector<FrameRange>& ranges, double share) {
+  if (share >= 1) return ranges;
+  std::vector<FrameRange> stretches;
+  for (const FrameRange& range : ranges) {
+    for (int begin = range.begin; begin < range.end; begin += kShareStretch) {
+      stretches.push_back({begin, std::min(range.end, begin + kShareStretch)});
+    }
+  }
+  const double count = std::max(1.0, share * static_cast<double>(stretches.size()));
+  std::vector<FrameRange> kept;
+  for (int i = 0; i < static_cast<int>(count + 0.5); ++i) {
+    kept.push_back(stretches[static_cast<size_t>(i * static_cast<double>(stretches.size()) / count)]);
+  }
+  return kept;
+}
+
+nlohmann::ordered_json RangesJson(const std::vector<FrameRange>& ranges) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const FrameRange& range : ranges) json.push_back({range.begin, range.end - 1});
+  return json;
+}
+
+std::string Notes(const Request& request) {
+  const TrainMotionOptions& o = request.options;
+  const nlohmann::ordered_json json = {{"data", request.data.data},
+                                       {"track", request.data.track},
+                                       {"train", RangesJson(o.train)},
+                                       {"validate", RangesJson(o.validation)},
+                                       {"share", request.share},
+                                       {"seed", o.seed},
+                                       {"steps", o.steps},
+                                       {"batch", o.batch},
+                                       {"chain_length", o.chain_length},
+                                       {"learning_rate", o.learning_rate},
+                                       {"discriminator_rate", o.discriminator_rate},
+                                       {"weights",
+                                        {{"shape", o.shape_weight},
+                                         {"normals", o.normal_weight},
+                                         {"perceptual", o.perceptual_weight},
+                                         {"gan", o.gan_weight}}},
+                                       {"threads", o.num_threads}};
+  return json.dump();
+}
+
+void ChooseFrames(const Request& request, const Track& track, TrainMotionOptions* options) {
+  const int T = track.num_frames();
+  options->train = Ranges(request.train, "--train", T);
+  options->validation = Ranges(request.validate, "--validate", T);
+  if (options->train.empty()) {
+    // The end of the clip is kept for validation.
+    const int last = options->validation.empty() ? T - std::max(1, T / 5) : T;
+    options->train = {{0, last}};
+    if (options->validation.empty() && last < T) options->validation = {{last, T}};
+  }
+  options->train = TakeShare(options->train, request.share);
+}
+
+std::string ScoresText(const MotionScores& s) {
+  char line[256];
+  std::snprintf(line, sizeof line,
+                "validation: L1 %.4f, PSNR %.2f dB, labels IoU %.3f, outline IoU %.3f, normals %.1f deg", s.image_l1,
+                s.psnr_db, s.label_iou, s.foreground_iou, s.normal_deg);
+  return line;
+}
+
+void Run(Request request) {
+  TrainMotionOptions& options = request.options;
+  MotionConfig& config = options.config;
+  config.profile = MotionProfileNamed(request.profile);
+  for (const std::string& part : request.without) {
+    if (part == "shape") config.shape = false;
+    if (part == "normal") config.normals = false;
+    if (part == "motion") config.motion = false;
+  }
+  if (options.num_threads == 0) options.num_threads = static_cast<int>(std::thread::hardware_concurrency());
+  request.data.num_threads = options.num_threads;
+  RequireReadable(request.data.data, "data");
+  RequireReadable(request.data.track, "track");
+  RequireWritableFolder(request.out);
+  const fs::path run_dir = request.out;
+  options.run_dir = request.out;
+  const bool exists = fs::exists(MotionCheckpointPath(request.out));
+  if (!options.resume && exists) {
+    throw UsageError(request.out + " holds a run already; go on with it by --resume, or choose another --out");
+  }
+  if (options.resume && !exists) throw UsageError(request.out + " holds no run to go on with");
+
+  MotionData data(request.data, config.profile, config.Multiple());
+  std::cout << data.notes();
+  if (data.labels() == LabelSource::kNone && config.shape) {
+    config.shape = false;
+    std::cout << "no labels: trained without shape, on the whole window with its background\n";
+  }
+  if (!data.has_normals() && config.normals) {
+    config.normals = false;
+    std::cout << "no normals: trained without them\n";
+  }
+  config.motion_channels = data.frames().channels();
+  ChooseFrames(request, data.track(), &options);
+  MotionRun run{config, data.PixelsPerMetre(), 30, data.frames().options().past, Notes(request)};
+  const std::vector<double>& times = data.track().motion.timestamps;
+  if (times.size() > 1) run.fps = static_cast<double>(times.size() - 1) / (times.back() - times.front());
+  options.config_json = MotionRunJson(run);
+  WriteFileAtomically((run_dir / "config.json").string(), options.config_json);
+  const PersonWindow& window = data.frames().window();
+  std::cout << "window " << window.width << "x" << window.height << " px, " << run.pixels_per_metre
+            << " px a metre; profile " << config.profile.name << "\n"
+            << std::flush;
+
+  Progress bar("training " + std::to_string(options.steps) + " steps");
+  options.progress = [&](const TrainMotionProgress& progress) {
+    std::ostringstream stage;
+    stage.precision(3);
+    stage << "loss " << progress.loss << ", image " << progress.image;
+    if (progress.scores.frames > 0) stage << ", validation " << progress.scores.psnr_db << " dB";
+    bar.Update(stage.str(), static_cast<double>(progress.step) / progress.steps);
+    return !IsInterrupted();
+  };
+  options.preview = [&](int step, const std::vector<MotionPreview>& previews) {
+    if (previews.empty()) return;
+    char name[64];
+    std::snprintf(name, sizeof name, "preview_%06d.png", step);
+    WriteImage((run_dir / name).string(), MotionPreviewSheet(previews));
+  };
+  const TrainMotionSummary summary =
+      TrainMotion([&](int t, bool with_truth, MotionFrame* frame) { data.Fill(t, with_truth, frame); }, options);
+  if (summary.status == TrainMotionStatus::kNotFinite) throw std::runtime_error(request.out + ": " + summary.message);
+  for (const std::string& loss : summary.losses_off) std::cout << "loss switched off: " << loss << "\n";
+  if (options.perceptual_weight > 0 && summary.perceptual_stand_in) {
+    std::cout << "perceptual loss by a stand-in of random features (no VGG-16 weights given)\n";
+  }
+  std::cout << "step " << summary.steps << " of " << options.steps << " in " << ClockText(summary.seconds) << "\n";
+  if (summary.scores.frames > 0) std::cout << ScoresText(summary.scores) << "\n";
+  std::cout << "wrote " << MotionCheckpointPath(request.out) << "\n";
+  if (summary.status == TrainMotionStatus::kNoProgress) std::cout << summary.message << "\n";
+  if (summary.status == TrainMotionStatus::kStopped) {
+    throw std::runtime_error(request.out + ": " + summary.message + "; go on with --resume");
+  }
+}
+
+}  // namespace
+
+void AddTrainMotion(CLI::App& train, std::function<void()>* action) {
+  CLI::App* verb = train.add_subcommand("motion", "Trains a renderer of one person's motion-dependent appearance");
+  auto request = std::make_shared<Request>();
+  TrainMotionOptions& options = request->options;
+  verb->add_option("--data", request->data.data, "A person set (bodyloom synth-person), or a video or folder of images")
+      ->required();
+  verb->add_option("--track", request->data.track, "The clip's track (default: the person set's own)");
+  verb->add_option("--out", request->out, "Folder of the run: config.json, checkpoint.bin, metrics.csv, previews")
+      ->required();
+  verb->add_option("--body", request->data.body, "The track's body (default: the built-in body)");
+  verb->add_option("--part-labels", request->data.part_labels,
+                   "For a video: DensePose's parts (.npz), for outline and classes");
+  verb->add_option("--profile", request->profile, "Sizes of the networks")
+      ->check(CLI::IsMember({"paper", "cpu", "tiny"}))
+      ->capture_default_str();
+  verb->add_option("--without", request->without, "Leave out a part, as the paper's ablations do")
+      ->check(CLI::IsMember({"shape", "normal", "motion"}));
+  verb->add_option("--train", request->train, "Frames to train on, FIRST-LAST (default: the first four fifths)");
+  verb->add_option("--validate", request->validate, "Frames to validate on (default: the last fifth)");
+  verb->add_option("--share", request->share, "Of the training frames that is used, in stretches of 32")
+      ->check(CLI::Range(0.001, 1.0))
+      ->capture_default_str();
+  verb->add_option("--steps", options.steps, "Batches to train on")->capture_default_str();
+  verb->add_option("--batch", options.batch, "Frames in a batch")->capture_default_str();
+  verb->add_option("--chain", options.chain_length, "Frames that the recurrence runs on before it starts anew")
+      ->capture_default_str();
+  verb->add_option("--learning-rate", options.learning_rate, "At its highest")->capture_default_str();
+  verb->add_option("--validate-every", options.validate_every, "Steps")->capture_default_str();
+  verb->add_option("--patience", options.patience, "Stop after so many validations without a better one (0: never)")
+      ->capture_default_str();
+  verb->add_option("--seed", options.seed, "Of weights and order of frames")->capture_default_str();
+  verb->add_option("--threads", options.num_threads, "0: all cores")->capture_default_str();
+  verb->add_flag("--resume", options.resume, "Go on with the run in --out");
+  verb->footer(
+      "Example:\n"
+      "  bodyloom synth-person --motion dance.pkl --out dancer --frames 600\n"
+      "  bodyloom train motion --data dancer --out run --steps 4000\n"
+      "  bodyloom animate motion --run run --track other.npz --out other.mp4");
+  verb->callback([request, action] { *action = [request] { Run(*request); }; });
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A trained motion-dependent renderer at work: motion in, pictures out.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "neural/motion/motion_config.h"
+#include "neural/motion/motion_frame.h"
+
+namespace bodyloom {
+
+/// Planar, window size.
+struct MotionPicture {
+  int width = 0, height = 0;
+  std::vector<float> image;     ///< 3, RGB in [0, 1], 0 on the background
+  std::vector<float> alpha;     ///< 1, probability of the foreground (1 throughout without the shape decoder)
+  std::vector<float> normals;   ///< 3, camera frame, shortened by alpha; empty without normals
+  std::vector<uint8_t> labels;  ///< likeliest class; empty without the shape decoder
+};
+
+struct MotionRendererOptions {
+  int warmup_iterations = 50;  ///< of a clip's first frame, as Kappel et al., CVPR 2021
+  int num_threads = 0;         ///< 0: all cores
+};
+
+class MotionRenderer {
+ public:
+  /// Throws std::runtime_error naming the file when the checkpoint cannot be read or is of another configuration.
+  MotionRenderer(const std::string& checkpoint_path, const MotionConfig& config,
+                 const MotionRendererOptions& options = {});
+  ~MotionRenderer();
+  MotionRenderer(const MotionRenderer&) = delete;
+  MotionRenderer& operator=(const MotionRenderer&) = delete;
+
+  /// The next frame of the clip. Throws std::invalid_argument when the frame's sizes do not fit.
+  MotionPicture Next(const MotionFrame& frame);
+  /// The next frame begins another clip.
+  void Restart();
+
+  /// Frames whose motion maps (and surface coordinates) were those of the frame before: their descriptors
+  /// (projections) were not computed again.
+  [[nodiscard]] int64_t descriptors_kept() const;
+  [[nodiscard]] int64_t projections_kept() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace bodyloom

@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "neural/motion/train_motion.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <span>
+
+#include "geometry/check.h"
+#include "neural/losses/gan_losses.h"
+#include "neural/losses/image_losses.h"
+#include "neural/losses/perceptual_loss.h"
+#include "neural/motion/motion_batches.h"
+#include "neural/motion/motion_scores.h"
+#include "neural/motion/roll_out.h"
+#include "neural/networks/patch_discriminator.h"
+#include "neural/networks/vgg.h"
+#include "neural/runtime.h"
+#include "neural/training/checkpoint.h"
+#include "neural/training/run_files.h"
+#include "neural/training/schedules.h"
+
+namespace bodyloom {
+namespace {
+
+namespace fs = std::filesystem;
+using torch::Tensor;
+
+const std::vector<std::string> kColumns = {"learning_rate",
+                                           "loss",
+                                           "image",
+                                           "shape",
+                                           "normals",
+                                           "perceptual",
+                                           "generator",
+                                           "discriminator",
+                                           "validation_l1",
+                                           "validation_psnr_db",
+                                           "validation_label_iou",
+                                           "validation_foreground_iou",
+                                           "validation_normal_deg",
+                                           "validation_flicker",
+                                           "seconds"};
+/// Intermediate validations look at so many frames of each range; the last one at all.
+constexpr int kQuickFrames = 48;
+
+struct Losses {
+  double total = 0, image = 0, shape = 0, normals = 0, perceptual = 0, generator = 0, discriminator = 0;
+  [[nodiscard]] bool IsFinite() const { return std::isfinite(total + discriminator); }
+};
+
+FeatureNetwork MakeVgg(const TrainMotionOptions& options) {
+  FeatureNetworkOptions network;
+  network.trunk = FeatureTrunk::kVgg16;
+  network.taps = FeatureLayers(FeatureTrunk::kVgg16, {"conv1_2", "conv2_2", "conv3_2", "conv4_2"});
+  if (options.vgg16.empty()) network.stand_in_divisor = options.config.profile.perceptual_divisor;
+  FeatureNetwork vgg(network);
+  if (!options.vgg16.empty()) vgg->Load(options.vgg16, "VGG-16");
+  return vgg;
+}
+
+std::vector<float> Values(const Tensor& tensor) {
+  const Tensor values = tensor.detach().contiguous().to(torch::kFloat);
+  return {values.data_ptr<float>(), values.data_ptr<float>() + values.numel()};
+}
+
+std::vector<uint8_t> Classes(const Tensor& probabilities) {
+  const Tensor classes = probabilities.argmax(1).to(torch::kByte).contiguous();
+  return {classes.data_ptr<uint8_t>(), classes.data_ptr<uint8_t>() + classes.numel()};
+}
+
+class Trainer {
+ public:
+  Trainer(const MotionFrameSource& source, const TrainMotionOptions& options)
+      : source_(source), options_(options), config_(options.config) {
+    torch::manual_seed(options.seed);
+    model_ = MotionModel(config_);
+    MotionFrame first;
+    source(options.train.front().begin, true, &first);
+    has_labels_ = !first.labels.empty();
+    has_normals_ = !first.normals.empty();
+    if (config_.shape && !has_labels_) losses_off_.emplace_back("shape: the frames have no labels");
+    if (config_.normals && !has_normals_) losses_off_.emplace_back("normals: the frames have no normals");
+    discriminator_ = PatchDiscriminator(
+        PatchDiscriminatorOptions{3 + (has_labels_ ? config_.num_labels : 0), config_.profile.discriminator_width});
+    vgg_ = MakeVgg(options);
+    const auto adam = [](double rate) { return torch::optim::AdamOptions(rate).betas({0.5, 0.999}); };
+    optimizer_ = std::make_unique<torch::optim::Adam>(model_->parameters(), adam(options.learning_rate));
+    discriminator_optimizer_ =
+        std::make_unique<torch::optim::Adam>(discriminator_->parameters(), adam(options.discriminator_rate));
+    discriminator_parameters_ = discriminator_->parameters();
+    checkpoint_ = std::make_unique<Checkpoint>(ToText(config_));
+    checkpoint_->config_json = options.config_json;
+    checkpoint_->Add("model", model_.ptr().get());
+    checkpoint_->Add("discriminator", discriminator_.ptr().get());
+    checkpoint_->Add("optimizer", optimizer_.get());
+    checkpoint_->Add("discriminator_optimizer", discriminator_optimizer_.get());
+    checkpoint_->Add("past_labels", &past_.labels);
+    checkpoint_->Add("past_image", &past_.image);
+    checkpoint_->Add("past_normals", &past_.normals);
+    checkpoint_->Add("best", &best_);
+  }
+
+  TrainMotionSummary Run() {
+    MetricsLog log((fs::path(options_.run_dir) / "metrics.csv").string(), kColumns);
+    if (options_.resume) {
+      checkpoint_->Load(CheckpointPath());
+      step_ = last_checkpoint_ = static_cast<int>(checkpoint_->step);
+      log.KeepUpTo(step_);
+    }
+    const auto start = std::chrono::steady_clock::now();
+    const auto seconds = [&] {
+      return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    };
+    MotionBatches batches(source_, config_,
+                          ChainPlan(options_.train, {options_.batch, options_.chain_length, 0.75, options_.seed}),
+                          step_, options_.steps);
+    TrainMotionSummary summary;
+    summary.status = TrainMotionStatus::kFinished;
+    summary.losses_off = losses_off_;
+    summary.perceptual_stand_in = vgg_->is_stand_in;
+    while (step_ < options_.steps) {
+      const Losses losses = Step(batches.Take());
+      if (!losses.IsFinite()) {
+        summary.status = TrainMotionStatus::kNotFinite;
+        summary.message =
+            Concatenate("the loss is not finite at step ", step_ + 1, "; checkpoint.bin holds step ", last_checkpoint_);
+        break;
+      }
+      ++step_;
+      const bool last = step_ == options_.steps;
+      const bool validates = !options_.validation.empty() && (last || step_ % options_.validate_every == 0);
+      if (validates) Validate(last ? 0 : kQuickFrames);
+      if (last || validates || step_ % options_.report_every == 0) {
+        log.Add(step_, Row(losses, validates, seconds()));
+        const bool go_on = !options_.progress ||
+                           options_.progress({step_, options_.steps, losses.total, losses.image, scores_, seconds()});
+        const bool no_progress = options_.patience > 0 && SinceBest() >= options_.patience;
+        if (!go_on || no_progress) {
+          Save();
+          summary.status = go_on ? TrainMotionStatus::kNoProgress : TrainMotionStatus::kStopped;
+          summary.message =
+              go_on ? Concatenate("no better validation in the last ", options_.patience, "; stopped at step ", step_)
+                    : Concatenate("stopped at step ", step_);
+          break;
+        }
+      }
+      if (last || step_ % options_.checkpoint_every == 0) Save();
+    }
+    summary.steps = step_;
+    summary.seconds = seconds();
+    summary.scores = scores_;
+    return summary;
+  }
+
+ private:
+  /// The past of every chain, laid over its new window.
+  MotionState PastOf(const MotionBatch& batch) {
+    const int64_t h = batch.truth.image.size(2), w = batch.truth.image.size(3);
+    std::vector<MotionState> each;
+    for (size_t c = 0; c < batch.steps.size(); ++c) {
+      MotionState state;
+      const MotionFrame& frame = batch.frames[c];
+      if (!batch.steps[c].restart) {
+        state = past_;
+        const auto at = static_cast<int64_t>(c);
+        for (Tensor* part : state.Parts()) *part = part->slice(0, at, at + 1);
+      } else if (batch.steps[c].from_truth) {
+        state = batch.past[c];
+      } else {
+        state = model_->Nothing(1, h, w);
+      }
+      for (Tensor* part : state.Parts()) *part = Shifted(*part, frame.before_x, frame.before_y);
+      each.push_back(state);
+    }
+    const auto join = [&](Tensor MotionState::*part) {
+      std::vector<Tensor> tensors;
+      for (const MotionState& state : each) {
+        if ((state.*part).defined()) tensors.push_back(state.*part);
+      }
+      return tensors.empty() ? Tensor() : torch::cat(tensors, 0);
+    };
+    return {join(&MotionState::labels), join(&MotionState::image), join(&MotionState::normals)};
+  }
+
+  void SetRate(torch::optim::Adam* optimizer, double rate) const {
+    for (auto& group : optimizer->param_groups()) static_cast<torch::optim::AdamOptions&>(group.options()).lr(rate);
+  }
+
+  void RequireGradients(bool on) {
+    for (Tensor& parameter : discriminator_parameters_) parameter.set_requires_grad(on);
+  }
+
+  Losses Step(const MotionBatch& batch) {
+    SetRate(optimizer_.get(), LinearDecayOverLastHalf(options_.learning_rate, step_, options_.steps));
+    SetRate(discriminator_optimizer_.get(),
+            LinearDecayOverLastHalf(options_.discriminator_rate, step_, options_.steps));
+    const MotionTruth& truth = batch.truth;
+    const MotionStepResult result = model_(batch.input, PastOf(batch));
+    const MotionState& state = result.state;
+    Losses losses;
+    const auto condition = [&](const Tensor& image) {
+      return has_labels_ ? torch::cat({truth.labels, image}, 1) : image;
+    };
+    if (options_.gan_weight > 0) {
+      discriminator_optimizer_->zero_grad();
+      const Tensor loss = DiscriminatorLoss({discriminator_(condition(truth.image))},
+                                            {discriminator_(condition(state.image.detach()))});
+      loss.backward();
+      losses.discriminator = loss.item<double>();
+      if (!std::isfinite(losses.discriminator)) return losses;
+      discriminator_optimizer_->step();
+    }
+    optimizer_->zero_grad();
+    Tensor total = L1Loss(state.image, truth.image);
+    losses.image = total.item<double>();
+    const auto add = [&](double weight, const Tensor& loss, double* value) {
+      *value = loss.item<double>();
+      total = total + weight * loss;
+    };
+    if (config_.shape && has_labels_) add(options_.shape_weight, L1Loss(state.labels, truth.labels), &losses.shape);
+    if (config_.normals && has_normals_)
+      add(options_.normal_weight, L1Loss(state.normals, truth.normals), &losses.normals);
+    if (options_.perceptual_weight > 0) {
+      std::vector<Tensor> target;
+      {
+        const torch::NoGradGuard no_grad;
+        target = vgg_(truth.image);
+      }
+      add(options_.perceptual_weight, PerceptualLoss(vgg_(state.image), target), &losses.perceptual);
+    }
+    if (options_.gan_weight > 0) {
+      RequireGradients(false);
+      add(options_.gan_weight, GeneratorLoss({discriminator_(condition(state.image))}), &losses.generator);
+    }
+    total.backward();
+    RequireGradients(true);
+    losses.total = total.item<double>();
+    if (!losses.IsFinite()) return losses;  // a step would spoil the weights
+    optimizer_->step();
+    const MotionState detached = state.Detached();
+    past_.labels = detached.labels;
+    past_.image = detached.image;
+    past_.normals = detached.normals;
+    return losses;
+  }
+
+  void Validate(int max_frames) {
+    std::vector<MotionPreview> previews;
+    MotionScorer scorer(config_);
+    RollOut roll(model_, options_.warmup_iterations);
+    for (const FrameRange& range : options_.validation) {
+      roll.Restart();
+      const int end = max_frames > 0 ? std::min(range.end, range.begin + max_frames) : range.end;
+      const int every = std::max(1, (end - range.begin) / std::max(1, options_.preview_frames));
+      for (int t = range.begin; t < end; ++t) {
+        MotionFrame frame;
+        source_(t, true, &frame);
+        const MotionStepResult result = roll.Next(frame);
+        const MotionTruth truth = TruthOf(std::span(&frame, 1), config_);
+        scorer.Add(result.state, truth, frame.before_x, frame.before_y);
+        if (!options_.preview || (t - range.begin) % every != every / 2) continue;
+        MotionPreview preview{t,  frame.width, frame.height, Values(result.state.image), {}, frame.image, frame.normals,
+                              {}, frame.labels};
+        if (result.state.normals.defined()) preview.normals = Values(result.state.normals);
+        if (result.state.labels.defined()) preview.labels = Classes(result.state.labels);
+        previews.push_back(std::move(preview));
+      }
+    }
+    scores_ = scorer.Scores();
+    const bool better = scores_.image_l1 < best_[0].item<double>();
+    best_ = better ? torch::tensor({scores_.image_l1, 0.0}, torch::kDouble)
+                   : torch::tensor({best_[0].item<double>(), SinceBest() + 1.0}, torch::kDouble);
+    if (options_.preview) options_.preview(step_, previews);
+  }
+
+  [[nodiscard]] std::vector<double> Row(const Losses& losses, bool validated, double seconds) const {
+    std::vector<double> row = {LinearDecayOverLastHalf(options_.learning_rate, step_ - 1, options_.steps),
+                               losses.total,
+                               losses.image,
+                               losses.shape,
+                               losses.normals,
+                               losses.perceptual,
+                               losses.generator,
+                               losses.discriminator};
+    for (const double score : {scores_.image_l1, scores_.psnr_db, scores_.label_iou, scores_.foreground_iou,
+                               scores_.normal_deg, scores_.flicker}) {
+      row.push_back(validated ? score : std::numeric_limits<double>::quiet_NaN());
+    }
+    row.push_back(seconds);
+    return row;
+  }
+
+  /// Validations since the best one.
+  [[nodiscard]] int SinceBest() const { return static_cast<int>(best_[1].item<double>()); }
+  [[nodiscard]] std::string CheckpointPath() const { return MotionCheckpointPath(options_.run_dir); }
+  void Save() {
+    checkpoint_->step = last_checkpoint_ = step_;
+    checkpoint_->Save(CheckpointPath());
+  }
+
+  const MotionFrameSource& source_;
+  const TrainMotionOptions& options_;
+  const MotionConfig& config_;
+  bool has_labels_ = false, has_normals_ = false;
+  std::vector<std::string> losses_off_;
+  MotionModel model_{nullptr};
+  PatchDiscriminator discriminator_{nullptr};
+  FeatureNetwork vgg_{nullptr};
+  std::vector<Tensor> discriminator_parameters_;
+  std::unique_ptr<torch::optim::Adam> optimizer_, discriminator_optimizer_;
+  std::unique_ptr<Checkpoint> checkpoint_;
+  MotionState past_;  ///< of the chains, B×…
+  MotionScores scores_;
+  Tensor best_ = torch::tensor({1e9, 0.0}, torch::kDouble);  ///< least L1 of a validation, and how many came since
+  int step_ = 0, last_checkpoint_ = 0;
+};
+
+}  // namespace
+
+bool TrainMotionOptions::IsValid(std::string* why) const {
+  const auto in_range = [&](const char* name, double value, double low, double high) {
+    if (value >= low && value <= high) return true;
+    if (why != nullptr) *why = Concatenate(name, " is ", value, ", expected ", low, " to ", high);
+    return false;
+  };
+  if (train.empty()) {
+    if (why != nullptr) *why = "no frames to train on";
+    return false;
+  }
+  for (const auto& ranges : {train, validation}) {
+    for (const FrameRange& range : ranges) {
+      if (range.begin >= 0 && range.end > range.begin) continue;
+      if (why != nullptr) *why = Concatenate("frames ", range.begin, " to ", range.end, ", expected at least one");
+      return false;
+    }
+  }
+  return config.IsValid(why) && in_range("steps", steps, 1, 1e8) && in_range("batch", batch, 1, 256) &&
+         in_range("chain_length", chain_length, 1, 1e6) && in_range("learning_rate", learning_rate, 0, 1) &&
+         in_range("discriminator_rate", discriminator_rate, 0, 1) && in_range("shape_weight", shape_weight, 0, 1e6) &&
+         in_range("normal_weight", normal_weight, 0, 1e6) && in_range("perceptual_weight", perceptual_weight, 0, 1e6) &&
+         in_range("gan_weight", gan_weight, 0, 1e6) && in_range("warmup_iterations", warmup_iterations, 0, 1000) &&
+         in_range("num_threads", num_threads, 0, 256) && in_range("report_every", report_every, 1, 1e8) &&
+         in_range("validate_every", validate_every, 1, 1e8) && in_range("checkpoint_every", checkpoint_every, 1, 1e8) &&
+         in_range("preview_frames", preview_frames, 1, 64) && in_range("patience", patience, 0, 1e6);
+}
+
+std::string MotionCheckpointPath(const std::string& run_dir) { return (fs::path(run_dir) / "checkpoint.bin").string(); }
+
+TrainMotionSummary TrainMotion(const MotionFrameSource& source, const TrainMotionOptions& options) {
+  std::string why;
+  BODYLOOM_CHECK(options.IsValid(&why), "motion training: ", why);
+  StartNeuralRuntime(options.num_threads);
+  return Trainer(source, options).Run();
+}
+
+}  // namespace bodyloom
