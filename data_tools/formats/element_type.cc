@@ -109,6 +109,7 @@ std::string ElementTypeText(const NdArray& array) {
       return "|S" + std::to_string(array.item_size);
     case DType::kUnicode:
       return "<U" + std::to_string(array.item_size / 4);
+    case DType::kBF16:
     case DType::kOther:
       break;
   }

@@ -2,6 +2,7 @@
 #include "data_tools/formats/ndarray.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -26,6 +27,9 @@ float FloatFromHalf(uint16_t half) {
   }
   return (half & 0x8000) != 0 ? -value : value;
 }
+
+/// The sixteen bits are the upper ones of a float.
+float FloatFromBrain(uint16_t brain) { return std::bit_cast<float>(static_cast<uint32_t>(brain) << 16); }
 
 /// Calls use(index, value) for every element of type T; the bytes of a std::string need not be aligned for T.
 template <typename T, typename Use>
@@ -61,6 +65,8 @@ void ForEachNumber(const NdArray& array, const Use& use) {
       return ForEachOf<uint64_t>(array, use);
     case DType::kF16:
       return ForEachOf<uint16_t>(array, [&](size_t i, uint16_t x) { use(i, FloatFromHalf(x)); });
+    case DType::kBF16:
+      return ForEachOf<uint16_t>(array, [&](size_t i, uint16_t x) { use(i, FloatFromBrain(x)); });
     case DType::kF32:
       return ForEachOf<float>(array, use);
     case DType::kF64:

@@ -13,7 +13,25 @@ namespace bodyloom {
 
 /// kOther: anything else (pickled objects, structures, complex numbers, dates), carried without its contents so that
 /// the other arrays of a file can be read; `bytes` holds numpy's description of the type.
-enum class DType { kBool, kI8, kU8, kI16, kU16, kI32, kU32, kI64, kU64, kF16, kF32, kF64, kBytes, kUnicode, kOther };
+/// kBF16 (the upper half of a float) occurs in network weights and not in numpy's files.
+enum class DType {
+  kBool,
+  kI8,
+  kU8,
+  kI16,
+  kU16,
+  kI32,
+  kU32,
+  kI64,
+  kU64,
+  kF16,
+  kBF16,
+  kF32,
+  kF64,
+  kBytes,
+  kUnicode,
+  kOther
+};
 
 struct NdArray {
   DType dtype = DType::kF64;

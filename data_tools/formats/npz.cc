@@ -207,6 +207,7 @@ void WriteNpz(const std::string& path, const NpzArrays& arrays) { WriteFileAtomi
 
 std::string NpyBytes(const NdArray& array) {
   BODYLOOM_CHECK(array.dtype != DType::kOther, "an array of elements '", array.bytes, "' has no contents to write");
+  BODYLOOM_CHECK(array.dtype != DType::kBF16, "numpy has no bfloat16, expected float32 or another of its types");
   std::string header = "{'descr': '" + ElementTypeText(array) + "', 'fortran_order': False, 'shape': (";
   for (size_t d = 0; d < array.shape.size(); ++d) {
     header += std::to_string(array.shape[d]) + (d + 1 < array.shape.size() ? ", " : "");

@@ -117,14 +117,22 @@ PickleNodePtr PickleContext::New(PickleValue::Kind kind) {
 }
 
 PicklePtr ReadPickle(const std::string& bytes, const std::string& where, const PickleLimits& limits) {
+  size_t offset = 0;
+  return ReadPickleAt(PickleDialect::kPlain, bytes, &offset, where, limits);
+}
+
+PicklePtr ReadPickleAt(PickleDialect dialect, std::string_view bytes, size_t* offset, const std::string& where,
+                       const PickleLimits& limits) {
   // Memory in proportion to the file: a few bytes can ask for much (memo references, sparse matrices), honestly or not.
   constexpr size_t kFloor = size_t{64} << 20, kPerByte = 256;
   const size_t budget = std::min(limits.max_bytes, kFloor + kPerByte * bytes.size());
-  PickleContext context(where, budget, limits.max_items);
+  PickleContext context(dialect, where, budget, limits.max_items);
+  context.offset = *offset;
   try {
     PickleNodePtr root = RunPickle(bytes, &context);
     Finish(root.get(), limits.max_depth, &context);
     Release(&context, true);
+    *offset = context.offset + 1;
     return root;
   } catch (...) {
     Release(&context, false);

@@ -16,6 +16,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "data_tools/formats/ndarray.h"
@@ -51,5 +52,19 @@ struct PickleLimits {
 /// found and what was expected.
 PicklePtr ReadPickle(const std::string& bytes, const std::string& where, const PickleLimits& limits = {});
 PicklePtr ReadPickleFile(const std::string& path, const PickleLimits& limits = {});
+
+/// Which globals a pickle may name: the list above, or those of torch.save's files.
+enum class PickleDialect { kPlain, kTorch };
+
+constexpr const char* kPicklePersistentId = "persistent id";
+
+/// One of several pickles that follow each other: starts at *offset and moves it behind the STOP mark.
+/// kTorch understands collections.OrderedDict, torch.*Storage, torch._utils._rebuild_tensor, _rebuild_tensor_v2 and
+/// _rebuild_parameter, torch.nn.parameter.Parameter, and persistent ids (opcode BINPERSID), nothing else. A storage
+/// class arrives as kObject whose text is its full name ("torch.FloatStorage"); a call as kObject whose text is the
+/// function's name and whose items are the arguments; a persistent id as kObject kPicklePersistentId with the id's
+/// items. Attributes of an OrderedDict (_metadata) are dropped.
+PicklePtr ReadPickleAt(PickleDialect dialect, std::string_view bytes, size_t* offset, const std::string& where,
+                       const PickleLimits& limits = {});
 
 }  // namespace bodyloom

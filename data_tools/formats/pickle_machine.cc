@@ -24,7 +24,7 @@ constexpr size_t kSlot = sizeof(PicklePtr);
 /// The stack machine of pickletools: runs opcodes over a byte string until STOP.
 class PickleMachine {
  public:
-  PickleMachine(std::string_view bytes, PickleContext* context) : in_(bytes), context_(*context) {
+  PickleMachine(std::string_view bytes, PickleContext* context) : in_(bytes), context_(*context), at_(context->offset) {
     none_ = context_.New(Kind::kNone);
     true_ = context_.New(Kind::kBool);
     true_->boolean = true;
@@ -363,16 +363,30 @@ class PickleMachine {
   // ---- objects ----
   void PushGlobal(std::string_view module, std::string_view name) {
     const std::string full = std::string(module) + "." + std::string(name);
-    const PickleGlobal global = FindPickleGlobal(full);
+    const PickleGlobal global = FindPickleGlobal(context_.dialect(), full);
     if (global == PickleGlobal::kNone) {
       context_.Fail("the pickle names '" + PrintableText(full) +
                     "', which is not on the list of plain data types; the file is refused and nothing was executed" +
-                    (module.substr(0, 6) == "joblib" ? " (save joblib files again with pickle.dump)" : ""));
+                    Advice(module));
     }
     PickleNodePtr node = context_.New(Kind::kObject);
     node->global = global;
     node->is_callable = true;
     node->text = full;
+    Push(std::move(node));
+  }
+  [[nodiscard]] const char* Advice(std::string_view module) const {
+    if (context_.dialect() == PickleDialect::kTorch) return " (save the model's state_dict() alone)";
+    return module.substr(0, 6) == "joblib" ? " (save joblib files again with pickle.dump)" : "";
+  }
+  /// torch.save points to its storages so; the id is a tuple.
+  void PushPersistentId() {
+    const PickleNodePtr id = Pop();
+    if (id->kind != Kind::kTuple) context_.Fail("a persistent id that is not a tuple");
+    context_.Charge(id->items.size() * kSlot);
+    PickleNodePtr node = context_.New(Kind::kObject);
+    node->text = kPicklePersistentId;
+    node->items = id->items;
     Push(std::move(node));
   }
   void Call(const PickleNode& callable, const PickleNode& args) { Push(CallPickleGlobal(&context_, callable, args)); }
@@ -417,6 +431,9 @@ class PickleMachine {
         const PickleNodePtr args = TupleOf(std::move(items));
         return Call(*callable, *args), true;
       }
+      case 'Q':
+        if (context_.dialect() != PickleDialect::kTorch) return false;
+        return PushPersistentId(), true;
       case 'b': {
         const PickleNodePtr state = Pop();
         return SetPickleState(&context_, &Top(), state), true;
@@ -439,7 +456,7 @@ class PickleMachine {
 
   std::string_view in_;
   PickleContext& context_;
-  size_t at_ = 0;
+  size_t at_;
   std::vector<PickleNodePtr> stack_;
   std::vector<size_t> marks_;
   std::unordered_map<uint64_t, PickleNodePtr> memo_;

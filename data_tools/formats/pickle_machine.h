@@ -9,8 +9,9 @@
 
 namespace bodyloom {
 
-/// What stands on top of the stack at STOP. Text longer than a few bytes still lies in `bytes` (PickleNode::view), and
-/// values may contain themselves: the caller finishes or refuses them.
+/// What stands on top of the stack at STOP, starting at context->offset, which is left at the STOP mark. Text longer
+/// than a few bytes still lies in `bytes` (PickleNode::view), and values may contain themselves: the caller finishes or
+/// refuses them.
 PickleNodePtr RunPickle(std::string_view bytes, PickleContext* context);
 
 }  // namespace bodyloom

@@ -29,6 +29,9 @@ enum class PickleGlobal {
   kObject,
   kBytes,
   kSet,
+  kTorchStorage,    ///< torch.*Storage: a name, never called
+  kTorchRebuild,    ///< torch._utils._rebuild_*: a call is kept as it is
+  kTorchParameter,  ///< torch.nn.parameter.Parameter: its arguments, then its state
 };
 
 struct PickleNode : PickleValue {
@@ -49,8 +52,10 @@ inline const PickleNode& AsNode(const PicklePtr& value) { return static_cast<con
 /// Where the machine stands and what it may still use.
 class PickleContext {
  public:
-  PickleContext(std::string where, size_t budget, size_t max_items)
-      : where_(std::move(where)), budget_(budget), max_items_(max_items) {}
+  PickleContext(PickleDialect dialect, std::string where, size_t budget, size_t max_items)
+      : dialect_(dialect), where_(std::move(where)), budget_(budget), max_items_(max_items) {}
+
+  [[nodiscard]] PickleDialect dialect() const { return dialect_; }
 
   size_t offset = 0;                 ///< of the current opcode
   std::vector<PickleNodePtr> nodes;  ///< everything made so far
@@ -62,12 +67,13 @@ class PickleContext {
   PickleNodePtr New(PickleValue::Kind kind);
 
  private:
+  PickleDialect dialect_;
   std::string where_;
   size_t budget_, max_items_;
 };
 
-/// kNone for everything that is not on the list.
-PickleGlobal FindPickleGlobal(std::string_view name);
+/// kNone for everything that is not on the dialect's list.
+PickleGlobal FindPickleGlobal(PickleDialect dialect, std::string_view name);
 
 /// What `callable(*args)` builds; args is a tuple.
 PickleNodePtr CallPickleGlobal(PickleContext* context, const PickleNode& callable, const PickleNode& args);

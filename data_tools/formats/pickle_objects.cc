@@ -3,6 +3,7 @@
 #include <cstring>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "data_tools/formats/element_type.h"
@@ -49,6 +50,24 @@ constexpr NamedGlobal kGlobals[] = {
     {"builtins.set", PickleGlobal::kSet},
     {"__builtin__.frozenset", PickleGlobal::kSet},
     {"builtins.frozenset", PickleGlobal::kSet},
+};
+
+constexpr NamedGlobal kTorchGlobals[] = {
+    {"collections.OrderedDict", PickleGlobal::kOrderedDict},
+    {"torch._utils._rebuild_tensor", PickleGlobal::kTorchRebuild},
+    {"torch._utils._rebuild_tensor_v2", PickleGlobal::kTorchRebuild},
+    {"torch._utils._rebuild_parameter", PickleGlobal::kTorchRebuild},
+    {"torch.nn.parameter.Parameter", PickleGlobal::kTorchParameter},
+    {"torch.DoubleStorage", PickleGlobal::kTorchStorage},
+    {"torch.FloatStorage", PickleGlobal::kTorchStorage},
+    {"torch.HalfStorage", PickleGlobal::kTorchStorage},
+    {"torch.BFloat16Storage", PickleGlobal::kTorchStorage},
+    {"torch.LongStorage", PickleGlobal::kTorchStorage},
+    {"torch.IntStorage", PickleGlobal::kTorchStorage},
+    {"torch.ShortStorage", PickleGlobal::kTorchStorage},
+    {"torch.CharStorage", PickleGlobal::kTorchStorage},
+    {"torch.ByteStorage", PickleGlobal::kTorchStorage},
+    {"torch.BoolStorage", PickleGlobal::kTorchStorage},
 };
 
 bool IsText(const PickleNode& node) { return node.kind == Kind::kString || node.kind == Kind::kBytes; }
@@ -196,6 +215,7 @@ PickleNodePtr EncodeLatin1(PickleContext* context, const PickleNode& args) {
 /// An OrderedDict from the list of its [key, value] pairs (as Python 2 wrote it).
 PickleNodePtr NewOrderedDict(PickleContext* context, const PickleNode& args) {
   PickleNodePtr dict = context->New(Kind::kDict);
+  dict->global = PickleGlobal::kOrderedDict;
   if (args.items.empty()) return dict;
   for (const PicklePtr& pair : args.items[0]->items) {
     if (pair->items.size() != 2 || !IsText(AsNode(pair->items[0]))) {
@@ -313,8 +333,9 @@ NdArray ChumpyArray(PickleContext* context, const PickleNode& state) {
 
 }  // namespace
 
-PickleGlobal FindPickleGlobal(std::string_view name) {
-  for (const NamedGlobal& known : kGlobals) {
+PickleGlobal FindPickleGlobal(PickleDialect dialect, std::string_view name) {
+  const bool torch = dialect == PickleDialect::kTorch;
+  for (const NamedGlobal& known : torch ? std::span<const NamedGlobal>(kTorchGlobals) : kGlobals) {
     if (known.name == name) return known.global;
   }
   return PickleGlobal::kNone;
@@ -352,12 +373,20 @@ PickleNodePtr CallPickleGlobal(PickleContext* context, const PickleNode& callabl
       if (!cls.is_callable) context->Fail("copy_reg._reconstructor: expected a class");
       return NewInstance(context, cls);
     }
+    case PickleGlobal::kTorchRebuild:
+    case PickleGlobal::kTorchParameter: {
+      PickleNodePtr call = NewInstance(context, callable);
+      context->Charge(args.items.size() * sizeof(PicklePtr));
+      call->items = args.items;
+      return call;
+    }
     case PickleGlobal::kSparseColumns:
     case PickleGlobal::kSparseRows:
     case PickleGlobal::kChumpyArray:
     case PickleGlobal::kChumpySelect:
     case PickleGlobal::kObject:
       return NewInstance(context, callable);
+    case PickleGlobal::kTorchStorage:
     case PickleGlobal::kNone:
       break;
   }
@@ -367,10 +396,18 @@ PickleNodePtr CallPickleGlobal(PickleContext* context, const PickleNode& callabl
 void SetPickleState(PickleContext* context, PickleNode* object, const PicklePtr& state_value) {
   const PickleNode& state = AsNode(state_value);
   if (object->kind == Kind::kArray && object->is_open) return SetArrayState(context, object, state);
+  if (object->kind == Kind::kDict && object->global == PickleGlobal::kOrderedDict && state.kind == Kind::kDict) {
+    return;  // attributes of the dictionary itself, which are no entries
+  }
   if (object->kind != Kind::kObject || object->is_callable) {
     context->Fail("a state for something that takes none");
   }
   if (object->global == PickleGlobal::kDtype) return SetDtypeState(*context, object, state);
+  if (object->global == PickleGlobal::kTorchParameter && state.kind == Kind::kTuple) {
+    context->Charge(state.items.size() * sizeof(PicklePtr));
+    object->items.insert(object->items.end(), state.items.begin(), state.items.end());
+    return;
+  }
   if (state.kind != Kind::kDict) {
     context->Fail("the state of a '" + PrintableText(object->text) + "': expected a dictionary");
   }

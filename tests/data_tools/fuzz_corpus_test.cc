@@ -83,6 +83,7 @@ void RunMutations(const std::string& name, const Function& accepts, int mutation
 
 TEST(FuzzCorpus, Npz) { RunMutations("npz", AcceptsNpz, 4000); }
 TEST(FuzzCorpus, Pickle) { RunMutations("pickle", AcceptsPickle, 4000); }
+TEST(FuzzCorpus, Weights) { RunMutations("weights", AcceptsWeights, 4000); }
 TEST(FuzzCorpus, Body) { RunMutations("body", AcceptsBody, 3000); }
 TEST(FuzzCorpus, Track) { RunMutations("track", AcceptsTrack, 4000); }
 TEST(FuzzCorpus, Obj) { RunMutations("obj", AcceptsObj, 4000); }

@@ -3,10 +3,12 @@
 
 #include "data_tools/body_compact.h"
 #include "data_tools/body_smpl.h"
+#include "data_tools/formats/safetensors.h"
 #include "data_tools/formats/zip.h"
 #include "tests/data_tools/fuzz_text_seeds.h"
 #include "tests/data_tools/pickle_writer.h"
 #include "tests/data_tools/small_body.h"
+#include "tests/data_tools/torch_stream.h"
 #include "tests/fuzz/fuzz_targets.h"
 
 namespace bodyloom::fuzz {
@@ -85,6 +87,17 @@ std::vector<std::string> PickleSeeds() {
           "b\x94}\x94K\x01(K\x02\x91\x94su."};
 }
 
+std::vector<std::string> WeightsSeeds() {
+  std::map<std::string, NdArray> tensors;
+  for (auto& [name, array] : SmallArrays()) {
+    if (array.is_number()) tensors[name] = array;
+  }
+  const torch_stream::SmallModel legacy = torch_stream::MakeSmallModel(true);
+  const torch_stream::SmallModel zipped = torch_stream::MakeSmallModel(false);
+  return {SafetensorsBytes(tensors, {{"format", "pt"}}), torch_stream::Legacy(legacy.object, legacy.storages),
+          torch_stream::Archive(zipped.object, zipped.storages)};
+}
+
 }  // namespace
 
 std::map<std::string, std::vector<std::string>> Seeds() {
@@ -97,6 +110,7 @@ std::map<std::string, std::vector<std::string>> Seeds() {
   seeds["npz"] = {NpzBytes(SmallArrays()), MakeZip(stored, 0), NpyBytes(SmallArrays().at("poses")),
                   NpyBytes(SmallArrays().at("gender"))};
   seeds["pickle"] = PickleSeeds();
+  seeds["weights"] = WeightsSeeds();
   seeds["body"] = {OfficialPickle(MakeBodyArrays(20, 3, 2, false)), NpzBytes(compact), FrameArrays(dense),
                    FrameArrays(compact)};
   seeds["track"] = {NpzBytes(TrackArrays(false)), FrameArrays(TrackArrays(false)), FrameArrays(TrackArrays(true))};

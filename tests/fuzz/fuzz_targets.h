@@ -18,6 +18,7 @@
 #include "data_tools/formats/npz.h"
 #include "data_tools/formats/obj.h"
 #include "data_tools/formats/pickle.h"
+#include "data_tools/formats/weights_file.h"
 #include "data_tools/track_io.h"
 #include "tests/fuzz/fuzz_accepts.h"
 
@@ -127,6 +128,18 @@ inline bool AcceptsNpz(const std::string& bytes) {
 
 inline bool AcceptsPickle(const std::string& bytes) {
   return Accepts([&] { ReadPickle(bytes, "fuzz.pkl"); });
+}
+
+inline void CheckWeights(const WeightsFile& file) {
+  for (const auto& [name, tensor] : file.tensors) {
+    if (tensor.bytes.size() != static_cast<size_t>(tensor.num_elements()) * tensor.item_size) {
+      throw std::logic_error("a tensor of another size than its shape");
+    }
+  }
+}
+
+inline bool AcceptsWeights(const std::string& bytes) {
+  return Accepts([&] { CheckWeights(WeightsFromBytes(bytes, "fuzz.pth", {.widen_halves = true})); });
 }
 
 /// BodyModel's own refusals are part of LoadBody's contract.

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "neural/metrics/lpips.h"
+
+#include <torch/torch.h>
+
+#include <utility>
+#include <vector>
+
+#include "geometry/check.h"
+#include "neural/image_tensor.h"
+#include "neural/networks/load_weights.h"
+#include "neural/networks/vgg.h"
+
+namespace bodyloom {
+namespace {
+
+using torch::Tensor;
+
+FeatureNetworkOptions TrunkOptions(const LpipsOptions& options) {
+  FeatureNetworkOptions trunk;
+  const bool alex = options.trunk == LpipsTrunk::kAlexNet;
+  trunk.trunk = alex ? FeatureTrunk::kAlexNet : FeatureTrunk::kVgg16;
+  trunk.taps = alex ? FeatureLayers(trunk.trunk, {"relu1", "relu2", "relu3", "relu4", "relu5"})
+                    : FeatureLayers(trunk.trunk, {"relu1_2", "relu2_2", "relu3_3", "relu4_3", "relu5_3"});
+  trunk.normalise = false;  // LPIPS has its own shift and scale
+  trunk.stand_in_divisor = options.stand_in_divisor;
+  trunk.stand_in_seed = options.stand_in_seed;
+  return trunk;
+}
+
+/// The channel weights, a tensor a tap: parameters named weight0 … weight4.
+struct HeadsImpl : torch::nn::Module {
+  explicit HeadsImpl(const std::vector<int64_t>& channels) {
+    for (size_t k = 0; k < channels.size(); ++k) {
+      weights.push_back(register_parameter("weight" + std::to_string(k), torch::ones({1, channels[k], 1, 1}),
+                                           /*requires_grad=*/false));
+    }
+  }
+  std::vector<Tensor> weights;
+};
+TORCH_MODULE(Heads);
+
+}  // namespace
+
+struct LpipsFeatures::Impl {
+  std::vector<Tensor> unit;  ///< a tap: 1×C×h×w, unit length over channels
+  int64_t generation = 0;    ///< of the network's weights
+};
+
+struct Lpips::Network {
+  explicit Network(const LpipsOptions& options) : trunk(TrunkOptions(options)) {
+    const torch::NoGradGuard no_grad;
+    std::vector<int64_t> channels;
+    for (const Tensor& tap : trunk(torch::zeros({1, 3, 32, 32}))) channels.push_back(tap.size(1));
+    heads = Heads(channels);
+  }
+  FeatureNetwork trunk;
+  Heads heads{nullptr};
+  int64_t generation = 0;
+};
+
+Lpips::Lpips(const LpipsOptions& options) : network_(std::make_unique<Network>(options)) {}
+Lpips::~Lpips() = default;
+Lpips::Lpips(Lpips&&) noexcept = default;
+Lpips& Lpips::operator=(Lpips&&) noexcept = default;
+
+void Lpips::Load(const NamedWeights& trunk, const std::string& trunk_source, const NamedWeights& heads,
+                 const std::string& heads_source) {
+  LoadWeightsOptions options;
+  options.name_in_file = [](const std::string& own) { return "lin" + own.substr(6) + ".model.1.weight"; };
+  std::vector<int64_t> channels;
+  for (const Tensor& weight : network_->heads->weights) channels.push_back(weight.size(1));
+  Heads loaded(channels);  // taken over when the trunk fits too
+  LoadWeights(heads, heads_source, loaded.get(), options);
+  network_->trunk->Load(trunk, trunk_source);
+  network_->heads = loaded;
+  ++network_->generation;
+}
+
+bool Lpips::is_stand_in() const { return network_->trunk->is_stand_in; }
+
+LpipsFeatures Lpips::Features(const Image& image) const {
+  const torch::NoGradGuard no_grad;
+  const Tensor shift = torch::tensor({-.030F, -.088F, -.188F}).view({1, 3, 1, 1});
+  const Tensor scale = torch::tensor({.458F, .448F, .450F}).view({1, 3, 1, 1});
+  auto impl = std::make_shared<LpipsFeatures::Impl>();
+  impl->generation = network_->generation;
+  for (const Tensor& tap : network_->trunk((ToTensor(image) * 2 - 1 - shift) / scale)) {
+    impl->unit.push_back(tap / (tap.square().sum(1, true).sqrt() + 1e-10));
+  }
+  LpipsFeatures features;
+  features.impl_ = std::move(impl);
+  return features;
+}
+
+LpipsValue Lpips::Distance(const LpipsFeatures& a, const LpipsFeatures& b) const {
+  const torch::NoGradGuard no_grad;
+  BODYLOOM_CHECK(a.impl_ != nullptr && b.impl_ != nullptr && a.impl_->generation == network_->generation &&
+                     b.impl_->generation == network_->generation,
+                 "LPIPS: features of other weights, or none");
+  double value = 0;
+  for (size_t k = 0; k < a.impl_->unit.size(); ++k) {
+    const Tensor &x = a.impl_->unit[k], &y = b.impl_->unit[k];
+    BODYLOOM_CHECK(x.sizes() == y.sizes(), "LPIPS: images of different size or network (layer ", k, ": ", x.sizes(),
+                   " and ", y.sizes(), ")");
+    value += (network_->heads->weights[k] * (x - y).square()).sum(1).mean().item<double>();
+  }
+  return {value, is_stand_in()};
+}
+
+LpipsValue Lpips::Distance(const Image& a, const Image& b) const {
+  BODYLOOM_CHECK(a.width == b.width && a.height == b.height, "LPIPS: images of ", a.width, " x ", a.height, " and ",
+                 b.width, " x ", b.height, " pixels");
+  return Distance(Features(a), Features(b));
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+/// LPIPS v0.1: how different two images look, as features that were calibrated on people's judgements see it.
+///
+/// RGB in [−1, 1]; (x − shift)/scale with shift (−.030, −.088, −.188) and scale (.458, .448, .450); features of AlexNet
+/// (relu1 … relu5) or VGG-16 (relu1_2, 2_2, 3_3, 4_3, 5_3); each position's channels divided by their norm + 1e-10;
+/// squared differences weighted by the channel weights of "lin{k}.model.1.weight" (1×C×1×1), averaged over positions,
+/// summed over layers. Whole images, no crop or mask (blacken the background of both to leave it out); 0 for equal
+/// images; tables often print 100 or 1000 times the value.
+/// Source: Zhang et al., "The Unreasonable Effectiveness of Deep Features as a Perceptual Metric", CVPR 2018, and
+/// version 0.1 of its program.
+///
+/// Without the trained weights a stand-in measures (neural/networks/vgg.h, channel weights 1); its values say so and
+/// compare with nobody else's.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "neural/networks/named_weights.h"
+#include "render/image.h"
+
+namespace bodyloom {
+
+enum class LpipsTrunk { kAlexNet, kVgg16 };
+
+struct LpipsOptions {
+  LpipsTrunk trunk = LpipsTrunk::kAlexNet;
+  int stand_in_divisor = 1;  ///< of the stand-in's channels, for speed; trained weights need 1
+  uint64_t stand_in_seed = 1;
+};
+
+struct LpipsValue {
+  double value = 0;
+  bool stand_in = true;  ///< not comparable with other programs' figures
+};
+
+/// What the network sees in one image, kept for several comparisons.
+class LpipsFeatures {
+ private:
+  friend class Lpips;
+  struct Impl;
+  std::shared_ptr<const Impl> impl_;
+};
+
+class Lpips {
+ public:
+  /// A stand-in until Load is called.
+  explicit Lpips(const LpipsOptions& options = {});
+  ~Lpips();
+  Lpips(Lpips&&) noexcept;
+  Lpips& operator=(Lpips&&) noexcept;
+
+  /// `trunk`: torchvision's weights ("features.0.weight", …); `heads`: LPIPS' own ("lin0.model.1.weight", …). Throws
+  /// std::runtime_error naming source and tensor when one does not fit (then the stand-in stays), std::invalid_argument
+  /// for a network of divided channels.
+  void Load(const NamedWeights& trunk, const std::string& trunk_source, const NamedWeights& heads,
+            const std::string& heads_source);
+
+  [[nodiscard]] bool is_stand_in() const;
+
+  /// At least 31 pixels a side (VGG-16: 16); std::invalid_argument otherwise. Features of a network that has loaded
+  /// other weights since are refused too.
+  [[nodiscard]] LpipsFeatures Features(const Image& image) const;
+  /// Images of the same size; std::invalid_argument otherwise.
+  [[nodiscard]] LpipsValue Distance(const LpipsFeatures& a, const LpipsFeatures& b) const;
+  [[nodiscard]] LpipsValue Distance(const Image& a, const Image& b) const;
+
+ private:
+  struct Network;
+  std::unique_ptr<Network> network_;
+};
+
+}  // namespace bodyloom

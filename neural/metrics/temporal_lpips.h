@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+/// LPIPS and tLPIPS of a video, frame by frame, each frame's features computed once.
+///
+/// tLPIPS of frame t = |LPIPS(s_t, s_{t−1}) − LPIPS(g_t, g_{t−1})| with result s and truth g: whether the result
+/// changes as much as the truth does. A video's value is the mean over its frames but the first. Tables print 100 times
+/// that. Source: Chu et al., "Learning Temporal Coherence via Self-Supervision for GAN-based Video Generation", 2020
+/// (which crops and drops two frames at each end; this does not), as used by Yoon et al., CVPR 2022.
+#pragma once
+
+#include <optional>
+
+#include "neural/metrics/lpips.h"
+
+namespace bodyloom {
+
+struct TemporalLpipsMean {
+  int frames = 0;
+  double lpips = 0;   ///< mean over frames
+  double tlpips = 0;  ///< mean over frames but the first; 0 for fewer than two
+  bool stand_in = true;
+};
+
+class TemporalLpips {
+ public:
+  struct Frame {
+    double lpips = 0;
+    std::optional<double> tlpips;  ///< none for the first frame
+    bool stand_in = true;
+  };
+
+  /// `lpips` must outlive this.
+  explicit TemporalLpips(const Lpips& lpips) : lpips_(lpips) {}
+
+  /// The next frame. Throws std::invalid_argument when the images differ in size, from each other or from the frame
+  /// before.
+  Frame Add(const Image& result, const Image& truth);
+
+  [[nodiscard]] TemporalLpipsMean Mean() const;
+
+ private:
+  const Lpips& lpips_;
+  LpipsFeatures last_result_, last_truth_;
+  int frames_ = 0;
+  double sum_lpips_ = 0, sum_tlpips_ = 0;
+};
+
+}  // namespace bodyloom

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The state of a training run in one file, from which the run goes on bit for bit. Internal: includes LibTorch.
+///
+/// Holds modules (parameters and buffers by name), Adam and AdamW optimizers (moments, steps, learning rates), named
+/// tensors (such as the state of a recurrence), the step, the configuration as text and the state of LibTorch's CPU
+/// random generator. Not held: random generators of other devices and of the caller.
+///
+/// File, little endian: "BLOOMCP1"; u64 size of the file; records (u32 name length, name, u8 element type, u8
+/// dimensions, i64 sizes, values); u64 checksum of everything before it. Records come in the order added, so equal
+/// states give equal bytes.
+#pragma once
+
+#include <torch/torch.h>
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace bodyloom {
+
+struct CheckpointInfo {
+  std::string identity;     ///< what was trained, such as "motion renderer, profile cpu, 256 px"
+  std::string config_json;  ///< as the caller gave it
+  int64_t step = 0;
+};
+
+/// What a file says of itself, to build the right networks before they are loaded. Checks the file as Load does.
+CheckpointInfo ReadCheckpointInfo(const std::string& path);
+
+enum class CheckpointPart { kAll, kModules };
+
+class Checkpoint {
+ public:
+  /// One line that says which networks the file is for; a file with another one is refused.
+  explicit Checkpoint(std::string identity);
+
+  /// What is added must outlive this; names are unique and not empty.
+  void Add(const std::string& name, torch::nn::Module* module);
+  /// Adam or AdamW; std::invalid_argument for others.
+  void Add(const std::string& name, torch::optim::Optimizer* optimizer);
+  /// Replaced by Load, whatever its shape; undefined tensors stay undefined.
+  void Add(const std::string& name, torch::Tensor* tensor);
+
+  int64_t step = 0;
+  std::string config_json;
+
+  /// The file appears whole or not at all. Throws std::runtime_error "path: why" (no folder, disk full).
+  void Save(const std::string& path) const;
+
+  /// All or nothing: nothing of the run changes unless the whole file fits. kModules leaves optimizers, tensors and the
+  /// random generator as they are (for inference; the file may then hold other ones). Throws std::runtime_error, one
+  /// line that begins with the path, for a file that is missing, not a checkpoint, cut off, damaged, of another
+  /// identity, or whose modules, tensors or optimizers are others (naming the tensor, its shape and the expected one).
+  void Load(const std::string& path, CheckpointPart part = CheckpointPart::kAll);
+
+ private:
+  std::string identity_;
+  std::vector<std::pair<std::string, torch::nn::Module*>> modules_;
+  std::vector<std::pair<std::string, torch::optim::Optimizer*>> optimizers_;
+  std::vector<std::pair<std::string, torch::Tensor*>> tensors_;
+  void CheckName(const std::string& name) const;
+};
+
+}  // namespace bodyloom
