@@ -14,9 +14,9 @@ bool Same(const Tensor& a, const Tensor& b) { return a.defined() && b.defined() 
 }  // namespace
 
 void RollOut::Restart() {
-  past_ = {};
-  last_ = {};
-  descriptor_ = projected_ = {};
+  past_ = MotionState();
+  last_ = MotionInput();
+  descriptor_ = projected_ = Tensor();
 }
 
 MotionStepResult RollOut::Next(const MotionFrame& frame) {
