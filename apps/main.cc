@@ -25,6 +25,7 @@ int Run(int argc, char** argv) {
   Action action;
   AddTrackVerb(app, &action);
   AddSynthVerb(app, &action);
+  AddSynthPersonVerb(app, &action);
   AddEvaluateVerb(app, &action);
   AddExportVerb(app, &action);
   AddRenderVerb(app, &action);

@@ -2,56 +2,24 @@
 #include "apps/synth_run.h"
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <filesystem>
-#include <stdexcept>
 
 #include "apps/files.h"
 #include "apps/interrupt.h"
+#include "apps/motion_input.h"
 #include "apps/progress.h"
 #include "apps/track_inputs.h"
 #include "apps/track_video.h"
-#include "data_tools/motion/load_motion.h"
 #include "data_tools/observations/load_cameras.h"
 #include "data_tools/observations/observations_npz.h"
-#include "data_tools/synthetic/demo_motion.h"
 #include "data_tools/track_io.h"
 #include "data_tools/video/video_writer.h"
-#include "geometry/check.h"
 #include "render/overlay.h"
 #include "render/palette.h"
 #include "render/shaded_mesh.h"
 
 namespace bodyloom {
 namespace {
-
-constexpr double kDemoFps = 30;
-
-Motion MotionOf(const SynthCommand& command, const BodyModel& body) {
-  Motion motion;
-  if (command.motion == "demo") {
-    const double fps = command.fps > 0 ? command.fps : kDemoFps;
-    motion = DemoMotion(body, static_cast<int>(kDemoMotionSeconds * fps), fps);
-  } else {
-    LoadMotionOptions options;
-    options.resample_fps = command.fps;
-    motion = LoadMotion(command.motion, options);
-  }
-  const int available = motion.num_frames() - command.first_frame;
-  if (available <= 0) {
-    throw std::runtime_error(Concatenate(command.motion, ": ", motion.num_frames(), " frames, --first asks for frame ",
-                                         command.first_frame));
-  }
-  const int count = command.num_frames > 0 ? std::min(command.num_frames, available) : available;
-  motion.poses = RowMatrixXd(motion.poses.middleRows(command.first_frame, count));
-  motion.trans = MatrixX3d(motion.trans.middleRows(command.first_frame, count));
-  motion.timestamps = {motion.timestamps.begin() + command.first_frame,
-                       motion.timestamps.begin() + command.first_frame + count};
-  // The clip begins at zero, as its video does.
-  const double begin = motion.timestamps.front();
-  for (double& time : motion.timestamps) time -= begin;
-  return motion;
-}
 
 /// A track file for the perturbed motion, which has no observations of its own.
 Track InitialiserTrack(const SynthClip& clip) {
@@ -95,10 +63,7 @@ void AddSynthOptions(CLI::App& app, SynthCommand* command) {
   SynthClipOptions& clip = c.clip;
   const std::string what = "What", camera = "The camera", dense = "Dense keypoints", joints = "2D joints",
                     other = "Other faults";
-  app.add_option("--motion", c.motion,
-                 "AMASS .npz, AIST++ .pkl, BVH, Acclaim .amc, DeepMimic JSON or AMP .npy; or the word demo")
-      ->required()
-      ->group(what);
+  app.add_option("--motion", c.motion, kMotionInputHelp)->required()->group(what);
   app.add_option("--body", c.body, "body model (default: the built-in body)")->group(what)->type_name("FILE");
   app.add_option("--out", c.out, "folder for observations.npz, truth.npz, camera.json")
       ->required()
@@ -192,7 +157,7 @@ SynthClip RunSynth(const SynthCommand& command) {
   RequireReadable(command.body, "body model");
   RequireWritableFolder(command.out);
   const std::shared_ptr<const BodyModel> body = BodyOrBuiltin(command.body);
-  const Motion motion = MotionOf(command, *body);
+  const Motion motion = LoadMotionInput({command.motion, command.fps, command.first_frame, command.num_frames}, *body);
   ThrowIfInterrupted();
   SynthClipOptions options = command.clip;
   if (command.realistic) {

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The motion that a verb was given by name: any motion file, or the one made by code.
+#pragma once
+
+#include <string>
+
+#include "geometry/body_model.h"
+#include "geometry/track.h"
+
+namespace bodyloom {
+
+struct MotionInput {
+  std::string motion;                   ///< any motion file; "demo": the motion that is made by code
+  double fps = 0;                       ///< resampled to; 0: as the file has it (demo: 30)
+  int first_frame = 0, num_frames = 0;  ///< of the motion, after resampling; 0 frames: all
+};
+
+/// Text for --help of the option that names the motion.
+extern const char* const kMotionInputHelp;
+
+/// Reads or makes it and cuts it; its clock begins at zero. Throws std::runtime_error naming the file.
+Motion LoadMotionInput(const MotionInput& input, const BodyModel& body);
+
+}  // namespace bodyloom

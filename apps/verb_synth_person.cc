@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/exit_code.h"
+#include "apps/files.h"
+#include "apps/interrupt.h"
+#include "apps/motion_input.h"
+#include "apps/progress.h"
+#include "apps/track_inputs.h"
+#include "apps/verbs.h"
+#include "data_tools/people/make_person_set.h"
+#include "data_tools/people/person_sheet.h"
+#include "data_tools/video/image_file.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr const char* kFooter =
+    "Writes a folder: images, labels (background top bottom face hair skin shoes), normals of the clothed surface, IUV "
+    "of\n"
+    "the body, backgrounds, the true track (track.npz) and person.json. The seed makes the person, the clothes' "
+    "colours,\n"
+    "the light and the background: the same seed with another motion is the same person.\n"
+    "Examples:\n"
+    "  bodyloom synth-person --motion demo --out person --garment skirt --sheet person.png\n"
+    "  bodyloom synth-person --motion dance.pkl --out train --frames 600 --seed 3\n"
+    "  bodyloom synth-person --motion walk.bvh --out test --seed 3 --garment coat --yaw 30 --size 512\n\n";
+
+struct SynthPersonCommand {
+  MotionInput motion;
+  std::string body, out, sheet, garment = "skirt";
+  bool quiet = false;
+  MakePersonSetOptions set;
+};
+
+/// The command as it would be typed again.
+std::string CommandLine(const SynthPersonCommand& c) {
+  std::string line =
+      "bodyloom synth-person --motion " + c.motion.motion + " --out " + c.out + " --garment " + c.garment;
+  line += " --seed " + std::to_string(c.set.seed) + " --size " + std::to_string(c.set.size_px);
+  const auto add = [&](const char* option, double value) {
+    std::array<char, 64> text{};
+    std::snprintf(text.data(), text.size(), " %s %g", option, value);
+    line += text.data();
+  };
+  add("--fps", c.motion.fps), add("--yaw", c.set.yaw_deg), add("--elevation", c.set.elevation_deg);
+  line += " --first " + std::to_string(c.motion.first_frame) + " --frames " + std::to_string(c.motion.num_frames);
+  return c.body.empty() ? line : line + " --body " + c.body;
+}
+
+void SynthPerson(SynthPersonCommand command) {
+  if (command.motion.motion != "demo") RequireReadable(command.motion.motion, "motion");
+  RequireReadable(command.body, "body model");
+  RequireWritableFolder(command.out);
+  RequireWritable(command.sheet);
+  const std::shared_ptr<const BodyModel> body = BodyOrBuiltin(command.body);
+  const Motion motion = LoadMotionInput(command.motion, *body);
+  ThrowIfInterrupted();
+  MakePersonSetOptions& set = command.set;
+  set.garment = GarmentKindFromString(command.garment);
+  set.motion = std::filesystem::path(command.motion.motion).filename().string();
+  set.command = CommandLine(command);
+  Progress progress("dressing " + std::to_string(motion.num_frames()) + " frames",
+                    command.quiet ? Progress::Style::kSilent : Progress::DefaultStyle());
+  set.progress = [&](double done) {
+    progress.Update("person", done);
+    return !IsInterrupted();
+  };
+  PersonSheet sheet(motion.num_frames());
+  if (!command.sheet.empty()) set.look = [&](int t, const PersonFrame& frame) { sheet.Take(t, frame); };
+  const MakePersonSetSummary summary = MakePersonSet(command.out, *body, motion, set);
+  ThrowIfInterrupted();
+  if (!command.sheet.empty()) WriteImage(command.sheet, sheet.Picture());
+  if (command.quiet) return;
+  std::cout << summary.frames << " frames of " << set.size_px << "x" << set.size_px << " in "
+            << ClockText(summary.seconds) << ", " << static_cast<int>(summary.frames_per_second() * 10) / 10.0
+            << " a second\n";
+  if (summary.cloth_vertices > 0) {
+    std::cout << "cloth            " << summary.cloth_vertices << " vertices, "
+              << static_cast<int>(1e4 * summary.cloth_seconds / summary.frames) / 10.0
+              << " ms a frame, stretched by at most " << static_cast<int>(1000 * summary.largest_stretch) / 10.0
+              << " %, " << summary.cuts << " cuts\n";
+  }
+  std::cout << "wrote            " << command.out << "\n";
+  if (!command.sheet.empty()) std::cout << "wrote            " << command.sheet << "\n";
+}
+
+}  // namespace
+
+void AddSynthPersonVerb(CLI::App& app, Action* action) {
+  CLI::App* verb = app.add_subcommand("synth-person", "Makes pictures of a dressed person with known truth");
+  verb->footer(std::string(kFooter) + kExitCodeHelp);
+  auto command = std::make_shared<SynthPersonCommand>();
+  SynthPersonCommand& c = *command;
+  c.motion.fps = 30;
+  verb->add_option("--motion", c.motion.motion, kMotionInputHelp)->required();
+  verb->add_option("--out", c.out, "the folder to write")->required()->type_name("DIR");
+  verb->add_option("--garment", c.garment, "skirt, coat (both loose) or suit (tight)")
+      ->check(CLI::IsMember({"skirt", "coat", "suit"}))
+      ->capture_default_str();
+  verb->add_option("--seed", c.set.seed, "the person; same seed, same files")->capture_default_str();
+  verb->add_option("--size", c.set.size_px, "pixels, width and height")
+      ->check(CLI::Range(32, 4096))
+      ->capture_default_str();
+  verb->add_option("--first", c.motion.first_frame, "first frame that is used")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  verb->add_option("--frames", c.motion.num_frames, "how many frames (0: all)")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  verb->add_option("--fps", c.motion.fps, "resample the motion to this rate (0: as the file has it)")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->capture_default_str();
+  verb->add_option("--yaw", c.set.yaw_deg, "of the camera about the vertical, degrees; 0 sees the front")
+      ->capture_default_str();
+  verb->add_option("--elevation", c.set.elevation_deg, "degrees from above")
+      ->check(CLI::Range(-60.0, 60.0))
+      ->capture_default_str();
+  verb->add_option("--shape", c.set.shape_sigma, "how far bodies of different seeds differ, standard deviations")
+      ->check(CLI::Range(0.0, 2.0))
+      ->capture_default_str();
+  verb->add_option("--body", c.body, "body model (default: the built-in body)")->type_name("FILE");
+  verb->add_option("--sheet", c.sheet, "also write a contact sheet, .png or .jpg")->type_name("FILE");
+  verb->add_option("--threads", c.set.num_threads, "0: all cores")->check(CLI::Range(0, 1024))->capture_default_str();
+  verb->add_flag("--quiet", c.quiet, "no words on the screen");
+  verb->callback([command, action] { *action = [command] { SynthPerson(*command); }; });
+}
+
+}  // namespace bodyloom
