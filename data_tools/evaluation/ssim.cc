@@ -9,8 +9,8 @@
 #include <limits>
 #include <numeric>
 
-#include "data_tools/evaluation/ssim_rows.h"
 #include "geometry/check.h"
+#include "render/ssim_rows.h"
 
 namespace bodyloom {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "data_tools/evaluation/ssim_rows.h"
+#include "render/ssim_rows.h"
 
 namespace bodyloom {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// The two inner loops of Gaussian SSIM, compiled for several instruction sets and chosen at run time. Internal to
-/// ssim.cc. The sets differ by rounding alone (fused multiply-adds).
+/// data_tools/evaluation/ssim.cc. The sets differ by rounding alone (fused multiply-adds).
 #pragma once
 
 #include <cstdint>
