@@ -226,8 +226,12 @@ std::string ToText(const MetricsReport& report) {
       const MetricColumn& column = table.columns[c];
       const ColumnSummary summary = Summarise(table, c);
       char line[160];
-      std::snprintf(line, sizeof line, "  %-*s %10.4f ± %-9.4f", static_cast<int>(width), column.name.c_str(),
-                    summary.mean, summary.std);
+      if (summary.finite > 0) {
+        std::snprintf(line, sizeof line, "  %-*s %10.4f ± %-9.4f", static_cast<int>(width), column.name.c_str(),
+                      summary.mean, summary.std);
+      } else {
+        std::snprintf(line, sizeof line, "  %-*s %10s   %-9s", static_cast<int>(width), column.name.c_str(), "-", "");
+      }
       text += line + column.meaning;
       if (summary.infinite > 0) text += "; " + std::to_string(summary.infinite) + " frames equal, left out";
       if (summary.undefined > 0) text += "; nothing to measure in " + std::to_string(summary.undefined) + " frames";
