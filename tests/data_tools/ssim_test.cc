@@ -7,6 +7,8 @@
 #include <cmath>
 #include <random>
 
+#include "render/ssim_rows.h"
+
 namespace bodyloom {
 namespace {
 
@@ -124,6 +126,19 @@ TEST(Ssim, FastEqualsWindowByWindow) {
   EXPECT_NEAR(fast(SsimPreset::kNeuralBody), SlowSsim::Uniform(7, 2)(a, b), kRounding);
   const PlanarImage large_a = RandomPicture(60, 56, 1, 3), large_b = RandomPicture(60, 56, 1, 4);
   EXPECT_NEAR(Ssim(large_a, large_b, SsimPreset::kGfla51, 1), SlowSsim::Uniform(51, 1)(large_a, large_b), kRounding);
+}
+
+TEST(Ssim, EveryInstructionSetAgrees) {
+  const PlanarImage a = RandomPicture(270, 23, 2, 1), b = RandomPicture(270, 23, 2, 2);
+  const double expected = SlowSsim::Gaussian(1)(a, b);
+  const std::vector<int64_t> targets = ssim_internal::SimdTargets();
+  ASSERT_FALSE(targets.empty());
+  for (const int64_t target : targets) {
+    ssim_internal::ForceSimdTarget(target);
+    EXPECT_NEAR(Ssim(a, b, SsimPreset::kWang2004, 1), expected, kRounding) << target;
+    EXPECT_EQ(Ssim(a, a, SsimPreset::kWang2004, 1), 1) << target;
+  }
+  ssim_internal::ForceSimdTarget(0);
 }
 
 TEST(Ssim, TheWindowIsTheGaussianItClaims) {

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include "apps/exit_code.h"
+#include "apps/metrics_run.h"
+#include "apps/verbs.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr const char* kFooter =
+    "What is compared:\n"
+    "  two folders of pictures     matched by name without extension\n"
+    "  two videos                  frame by frame\n"
+    "  two person sets             images/, labels/ (grey, 0 to 6) and normals/ (n = 2c/255 - 1), each by its own\n"
+    "                              metrics, as far as both have them\n"
+    "SSIM is never one number; docs/image_metrics.md says what each preset is and who uses it. --mask adds PSNR "
+    "inside\n"
+    "the mask, bounds the normals, and gives --preset neuralbody its box; other presets look at the whole picture.\n"
+    "Means and standard deviations are over frames; frames of equal pictures (PSNR inf) are counted apart.\n"
+    "Examples:\n"
+    "  bodyloom metrics --truth clip/images --result run/frames --json errors.json --csv frames.csv\n"
+    "  bodyloom metrics --truth clip.mp4 --result rendered.mp4 --preset 3dgs\n\n";
+
+void Metrics(const MetricsCommand& command) { std::cout << ToText(RunMetrics(command)); }
+
+}  // namespace
+
+void AddMetricsVerb(CLI::App& app, Action* action) {
+  CLI::App* verb = app.add_subcommand("metrics", "Compares pictures with the truth: PSNR, SSIM, labels, normals");
+  verb->footer(std::string(kFooter) + kExitCodeHelp);
+  auto command = std::make_shared<MetricsCommand>();
+  auto preset = std::make_shared<std::string>(ToText(command->preset));
+  MetricsCommand& c = *command;
+  verb->add_option("--truth", c.truth, "folder or video with the truth")->required()->type_name("PATH");
+  verb->add_option("--result", c.result, "folder or video to judge")->required()->type_name("PATH");
+  verb->add_option("--mask", c.mask, "folder or video of masks: pixels of 128 or more count")->type_name("PATH");
+  verb->add_option("--preset", *preset, "which SSIM")->check(CLI::IsMember(SsimPresetNames()))->capture_default_str();
+  verb->add_flag("--common", c.common_only, "compare the frames that both folders have, instead of asking for all");
+  verb->add_option("--json", c.json, "also write the means as JSON")->type_name("FILE");
+  verb->add_option("--csv", c.csv, "also write a line a frame")->type_name("FILE");
+  verb->add_option("--threads", c.num_threads, "0: all cores; numbers are the same for any number")
+      ->check(CLI::Range(0, 256))
+      ->capture_default_str();
+  verb->add_flag("--quiet", c.quiet, "no progress");
+  verb->callback([command, preset, action] {
+    command->preset = SsimPresetFrom(*preset).value();
+    *action = [command] { Metrics(*command); };
+  });
+}
+
+}  // namespace bodyloom
