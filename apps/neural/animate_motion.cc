@@ -24,11 +24,13 @@
 #include "apps/track_inputs.h"
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/people/person_frames.h"
+#include "data_tools/people/person_set.h"
 #include "data_tools/track_io.h"
 #include "data_tools/video/image_file.h"
 #include "data_tools/video/video_writer.h"
 #include "geometry/check.h"
 #include "neural/motion/motion_renderer.h"
+#include "neural/motion/score_motion.h"
 #include "neural/motion/train_motion.h"
 #include "render/contact_sheet.h"
 
@@ -38,7 +40,7 @@ namespace {
 constexpr int kLargestSide = 4096;
 
 struct Request {
-  std::string run, track, out, body, background, sheet, json, view_yaw;
+  std::string run, track, data, out, body, background, sheet, json, view_yaw;
   int threads = 0, warmup = 50;
 };
 
@@ -65,6 +67,26 @@ void AddToSheet(const MotionPicture& picture, const Image& composed, std::vector
   if (!picture.normals.empty()) pictures->push_back(NormalPicture(picture.normals, picture.width, picture.height));
 }
 
+/// Against the pictures of a person set of the same person.
+MotionScores Score(const Request& request, const MotionRun& run, int threads) {
+  MotionDataRequest data_request;
+  data_request.data = request.data;
+  data_request.body = request.body;
+  data_request.pixels_per_metre = run.pixels_per_metre;
+  data_request.num_threads = threads;
+  MotionData data(data_request, run.config.profile, run.config.Multiple());
+  return ScoreMotion(
+      MotionCheckpointPath(request.run), run.config,
+      [&](int t, bool with_truth, MotionFrame* frame) { data.Fill(t, with_truth, frame); },
+      {{0, data.track().num_frames()}}, request.warmup, threads);
+}
+
+nlohmann::ordered_json ScoresJson(const MotionScores& s) {
+  return {{"frames", s.frames},         {"image_l1", s.image_l1},   {"psnr_db", s.psnr_db},
+          {"label_iou", s.label_iou},   {"class_iou", s.class_iou}, {"foreground_iou", s.foreground_iou},
+          {"normal_deg", s.normal_deg}, {"flicker", s.flicker}};
+}
+
 void Run(const Request& request) {
   const StageClock clock;
   double counted_s = 0;
@@ -77,16 +99,19 @@ void Run(const Request& request) {
     counted_s = now_s;
     return took_s;
   };
+  if (request.track.empty() == request.data.empty()) throw UsageError("expected one of --track and --data");
   RequireReadable(request.track, "track");
   RequireReadable(request.background, "background");
+  RequireReadable(request.data, "person set");
   RequireDistinct({request.track, request.background, request.body}, {request.out, request.sheet, request.json});
   for (const std::string& path : {request.out, request.sheet, request.json}) RequireWritable(path);
   const MotionRun run = ReadMotionRun(request.run);
   const int threads = request.threads > 0 ? request.threads : static_cast<int>(std::thread::hardware_concurrency());
-  const Track track = ReadTrack(request.track);
+  const Track track = request.data.empty() ? ReadTrack(request.track) : PersonSet(request.data).track();
   const std::shared_ptr<const BodyModel> body = BodyOrBuiltin(request.body);
   const double size = PixelsPerMetre(*body, track);
-  if (!(size > 0)) throw std::runtime_error(request.track + ": no frame has a result, nothing to animate");
+  if (!(size > 0))
+    throw std::runtime_error(request.track + request.data + ": no frame has a result, nothing to animate");
 
   PersonFramesOptions options;
   options.uv_size = run.config.profile.uv_size;
@@ -151,20 +176,23 @@ void Run(const Request& request) {
     layout.cell_height_px = window.picture_height;
     WriteImage(request.sheet, ContactSheet(sheet, layout));
   }
+  const bool scored = !request.data.empty();
+  const MotionScores scores = scored ? Score(request, run, threads) : MotionScores{};
   std::sort(network_ms.begin(), network_ms.end());
   const double median_ms = network_ms.empty() ? 0 : network_ms[network_ms.size() / 2];
   nlohmann::ordered_json stages = nlohmann::ordered_json::object();
   for (const auto& [stage, stage_s] : seconds) stages[stage] = stage_s;
   if (!request.json.empty()) {
-    const nlohmann::ordered_json json = {{"frames", track.num_frames()},
-                                         {"frames_without_fit", lost},
-                                         {"window", {window.width, window.height}},
-                                         {"picture", {window.picture_width, window.picture_height}},
-                                         {"network_ms_median", median_ms},
-                                         {"descriptors_kept", renderer.descriptors_kept()},
-                                         {"projections_kept", renderer.projections_kept()},
-                                         {"seconds", stages},
-                                         {"output", request.out}};
+    nlohmann::ordered_json json = {{"frames", track.num_frames()},
+                                   {"frames_without_fit", lost},
+                                   {"window", {window.width, window.height}},
+                                   {"picture", {window.picture_width, window.picture_height}},
+                                   {"network_ms_median", median_ms},
+                                   {"descriptors_kept", renderer.descriptors_kept()},
+                                   {"projections_kept", renderer.projections_kept()},
+                                   {"seconds", stages},
+                                   {"output", request.out}};
+    if (scored) json["scores"] = ScoresJson(scores);
     WriteFileAtomically(request.json, json.dump(2) + "\n");
   }
   std::printf("%d frames, window %dx%d px of a %dx%d picture, network %.0f ms a frame, %.1f frames/s in all\n",
@@ -174,6 +202,12 @@ void Run(const Request& request) {
   if (renderer.descriptors_kept() > 0) {
     std::printf("%lld frames did not move: their descriptors were not computed again\n",
                 static_cast<long long>(renderer.descriptors_kept()));
+  }
+  if (scored) {
+    std::printf(
+        "against %s: L1 %.4f, PSNR %.2f dB, labels IoU %.3f, outline IoU %.3f, normals %.1f deg, flicker %.4f\n",
+        request.data.c_str(), scores.image_l1, scores.psnr_db, scores.label_iou, scores.foreground_iou,
+        scores.normal_deg, scores.flicker);
   }
   std::printf("wrote %s\n", request.out.c_str());
 }
@@ -185,7 +219,9 @@ void AddAnimateMotion(CLI::App& animate, std::function<void()>* action) {
       animate.add_subcommand("motion", "Renders a person that `bodyloom train motion` learned, in any motion");
   auto request = std::make_shared<Request>();
   verb->add_option("--run", request->run, "Folder of the trained run")->required();
-  verb->add_option("--track", request->track, "The motion: a track, .npz")->required();
+  verb->add_option("--track", request->track, "The motion: a track, .npz (default: that of --data)");
+  verb->add_option("--data", request->data,
+                   "A person set of the same person: the result is compared with its pictures");
   verb->add_option("--out", request->out, "The video, .mp4")->required();
   verb->add_option("--body", request->body, "The track's body (default: the built-in body)");
   verb->add_option("--view-yaw", request->view_yaw,

@@ -13,10 +13,11 @@
 namespace bodyloom {
 
 struct MotionDataRequest {
-  std::string data;         ///< a person set, a video or a folder of images
-  std::string track;        ///< empty: the person set's own
-  std::string body;         ///< empty: the built-in body
-  std::string part_labels;  ///< for a video: DensePose's parts, which stand in for a parsing of the clothes
+  std::string data;             ///< a person set, a video or a folder of images
+  std::string track;            ///< empty: the person set's own
+  std::string body;             ///< empty: the built-in body
+  std::string part_labels;      ///< for a video: DensePose's parts, which stand in for a parsing of the clothes
+  double pixels_per_metre = 0;  ///< of the window; 0: as large as the profile's image_size allows
   int num_threads = 0;
 };
 

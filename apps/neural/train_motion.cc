@@ -34,7 +34,7 @@ constexpr int kShareStretch = 32;  ///< frames: with less of the data, whole str
 
 struct Request {
   MotionDataRequest data;
-  std::string out, profile = "cpu";
+  std::string validate_data, out, profile = "cpu";
   std::vector<std::string> without, train, validate;
   double share = 1;
   TrainMotionOptions options;
@@ -88,6 +88,7 @@ std::string Notes(const Request& request) {
   const TrainMotionOptions& o = request.options;
   const nlohmann::ordered_json json = {{"data", request.data.data},
                                        {"track", request.data.track},
+                                       {"validate_data", request.validate_data},
                                        {"train", RangesJson(o.train)},
                                        {"validate", RangesJson(o.validation)},
                                        {"share", request.share},
@@ -106,10 +107,12 @@ std::string Notes(const Request& request) {
   return json.dump();
 }
 
-void ChooseFrames(const Request& request, const Track& track, TrainMotionOptions* options) {
+/// `validation_frames`: of the clip that is for validation alone, 0: there is none.
+void ChooseFrames(const Request& request, const Track& track, int validation_frames, TrainMotionOptions* options) {
   const int T = track.num_frames();
   options->train = Ranges(request.train, "--train", T);
-  options->validation = Ranges(request.validate, "--validate", T);
+  options->validation = Ranges(request.validate, "--validate", validation_frames > 0 ? validation_frames : T);
+  if (validation_frames > 0 && options->validation.empty()) options->validation = {{0, validation_frames}};
   if (options->train.empty()) {
     // The end of the clip is kept for validation.
     const int last = options->validation.empty() ? T - std::max(1, T / 5) : T;
@@ -160,7 +163,18 @@ void Run(Request request) {
     std::cout << "no normals: trained without them\n";
   }
   config.motion_channels = data.frames().channels();
-  ChooseFrames(request, data.track(), &options);
+  std::unique_ptr<MotionData> validation;
+  if (!request.validate_data.empty()) {
+    MotionDataRequest other = request.data;
+    other.data = request.validate_data;
+    other.track.clear();
+    other.pixels_per_metre = data.PixelsPerMetre();
+    validation = std::make_unique<MotionData>(other, config.profile, config.Multiple());
+    options.validation_source = [&](int t, bool with_truth, MotionFrame* frame) {
+      validation->Fill(t, with_truth, frame);
+    };
+  }
+  ChooseFrames(request, data.track(), validation ? validation->track().num_frames() : 0, &options);
   MotionRun run{config, data.PixelsPerMetre(), 30, data.frames().options().past, Notes(request)};
   const std::vector<double>& times = data.track().motion.timestamps;
   if (times.size() > 1) run.fps = static_cast<double>(times.size() - 1) / (times.back() - times.front());
@@ -223,6 +237,8 @@ void AddTrainMotion(CLI::App& train, std::function<void()>* action) {
       ->check(CLI::IsMember({"shape", "normal", "motion"}));
   verb->add_option("--train", request->train, "Frames to train on, FIRST-LAST (default: the first four fifths)");
   verb->add_option("--validate", request->validate, "Frames to validate on (default: the last fifth)");
+  verb->add_option("--validate-data", request->validate_data,
+                   "Validate on another person set of the same person, in another motion");
   verb->add_option("--share", request->share, "Of the training frames that is used, in stretches of 32")
       ->check(CLI::Range(0.001, 1.0))
       ->capture_default_str();

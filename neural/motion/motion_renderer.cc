@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "neural/motion/motion_renderer.h"
 
+#include <span>
+
+#include "neural/motion/frame_tensors.h"
+#include "neural/motion/motion_scores.h"
 #include "neural/motion/roll_out.h"
+#include "neural/motion/score_motion.h"
 #include "neural/runtime.h"
 #include "neural/training/checkpoint.h"
 
@@ -9,10 +14,24 @@ namespace bodyloom {
 
 using torch::Tensor;
 
+namespace {
+
+MotionModel Loaded(const std::string& path, const MotionConfig& config, const MotionRendererOptions& options) {
+  StartNeuralRuntime(options.num_threads);
+  MotionModel model(config);
+  Checkpoint checkpoint(ToText(config));
+  checkpoint.Add("model", model.ptr().get());
+  checkpoint.Load(path, CheckpointPart::kModules);
+  model->eval();
+  return model;
+}
+
+}  // namespace
+
 class MotionRenderer::Impl {
  public:
   Impl(const std::string& path, const MotionConfig& config, const MotionRendererOptions& options)
-      : model_(Loaded(path, config, options)), roll_(model_, options.warmup_iterations) {}
+      : roll_(Loaded(path, config, options), options.warmup_iterations) {}
 
   MotionPicture Next(const MotionFrame& frame) {
     const MotionStepResult result = roll_.Next(frame);
@@ -36,17 +55,6 @@ class MotionRenderer::Impl {
   RollOut& roll() { return roll_; }
 
  private:
-  static MotionModel Loaded(const std::string& path, const MotionConfig& config, const MotionRendererOptions& options) {
-    StartNeuralRuntime(options.num_threads);
-    MotionModel model(config);
-    Checkpoint checkpoint(ToText(config));
-    checkpoint.Add("model", model.ptr().get());
-    checkpoint.Load(path, CheckpointPart::kModules);
-    model->eval();
-    return model;
-  }
-
-  MotionModel model_;
   RollOut roll_;
 };
 
@@ -59,5 +67,23 @@ MotionPicture MotionRenderer::Next(const MotionFrame& frame) { return impl_->Nex
 void MotionRenderer::Restart() { impl_->roll().Restart(); }
 int64_t MotionRenderer::descriptors_kept() const { return impl_->roll().descriptors_kept(); }
 int64_t MotionRenderer::projections_kept() const { return impl_->roll().projections_kept(); }
+
+MotionScores ScoreMotion(const std::string& checkpoint_path, const MotionConfig& config,
+                         const MotionFrameSource& source, const std::vector<FrameRange>& ranges, int warmup_iterations,
+                         int num_threads) {
+  RollOut roll(Loaded(checkpoint_path, config, {warmup_iterations, num_threads}), warmup_iterations);
+  MotionScorer scorer(config);
+  for (const FrameRange& range : ranges) {
+    roll.Restart();
+    scorer.Restart();
+    for (int t = range.begin; t < range.end; ++t) {
+      MotionFrame frame;
+      source(t, true, &frame);
+      const MotionStepResult result = roll.Next(frame);
+      scorer.Add(result.state, TruthOf(std::span(&frame, 1), config), frame.before_x, frame.before_y);
+    }
+  }
+  return scorer.Scores();
+}
 
 }  // namespace bodyloom

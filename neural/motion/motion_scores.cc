@@ -53,8 +53,9 @@ MotionScores MotionScorer::Scores() const {
   scores.foreground_iou = mean(foreground_both_, foreground_either_);
   double sum = 0;
   int classes = 0;
-  for (size_t k = 1; k < either_.size(); ++k) {
-    if (either_[k] == 0) continue;
+  for (size_t k = 0; k < either_.size(); ++k) {
+    scores.class_iou.push_back(mean(both_[k], either_[k]));
+    if (k == 0 || either_[k] == 0) continue;
     sum += both_[k] / either_[k];
     ++classes;
   }

@@ -6,7 +6,7 @@
 
 #include "neural/motion/frame_tensors.h"
 #include "neural/motion/motion_model.h"
-#include "neural/motion/train_motion.h"
+#include "neural/motion/score_motion.h"
 
 namespace bodyloom {
 
@@ -16,6 +16,8 @@ class MotionScorer {
   explicit MotionScorer(const MotionConfig& config) : config_(config) {}
   /// One frame (B = 1) and where the window of the frame before lies in this one.
   void Add(const MotionState& predicted, const MotionTruth& truth, int before_x, int before_y);
+  /// The next frame does not follow the last one.
+  void Restart() { last_error_ = torch::Tensor(); }
   [[nodiscard]] MotionScores Scores() const;
 
  private:

@@ -254,11 +254,12 @@ class Trainer {
     RollOut roll(model_, options_.warmup_iterations);
     for (const FrameRange& range : options_.validation) {
       roll.Restart();
+      scorer.Restart();
       const int end = max_frames > 0 ? std::min(range.end, range.begin + max_frames) : range.end;
       const int every = std::max(1, (end - range.begin) / std::max(1, options_.preview_frames));
       for (int t = range.begin; t < end; ++t) {
         MotionFrame frame;
-        source_(t, true, &frame);
+        (options_.validation_source ? options_.validation_source : source_)(t, true, &frame);
         const MotionStepResult result = roll.Next(frame);
         const MotionTruth truth = TruthOf(std::span(&frame, 1), config_);
         scorer.Add(result.state, truth, frame.before_x, frame.before_y);

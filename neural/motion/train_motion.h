@@ -18,20 +18,10 @@
 #include "neural/motion/chain_plan.h"
 #include "neural/motion/motion_config.h"
 #include "neural/motion/motion_frame.h"
+#include "neural/motion/score_motion.h"
 #include "neural/networks/named_weights.h"
 
 namespace bodyloom {
-
-/// What a validation measured, on frames rolled out by the network from nothing.
-struct MotionScores {
-  double image_l1 = 0;        ///< mean over the true foreground
-  double psnr_db = 0;         ///< over the true foreground, range 1
-  double label_iou = 0;       ///< mean over the classes other than the background that occur; NaN without labels
-  double foreground_iou = 0;  ///< NaN without labels
-  double normal_deg = 0;      ///< mean angle over the true foreground; NaN without normals
-  double flicker = 0;  ///< mean over the foreground of |(Â_t − Â_{t−1}) − (A_t − A_{t−1})|: what tLPIPS is for images
-  int frames = 0;
-};
 
 /// One validated frame beside its truth: planar RGB in [0, 1], window size.
 struct MotionPreview {
@@ -50,6 +40,7 @@ struct TrainMotionProgress {
 struct TrainMotionOptions {
   MotionConfig config;
   std::vector<FrameRange> train, validation;  ///< validation may be empty
+  MotionFrameSource validation_source;        ///< of another clip; empty: the same clip
   int steps = 20000;
   int batch = 4;
   int chain_length = 32;

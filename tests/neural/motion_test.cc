@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: Apache-2.0
+// The motion-dependent renderer on toy frames: a square "person" whose colour follows its motion map.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+#include "neural/motion/frame_tensors.h"
+#include "neural/motion/motion_model.h"
+#include "neural/motion/motion_renderer.h"
+#include "neural/motion/motion_scores.h"
+#include "neural/motion/roll_out.h"
+#include "neural/motion/train_motion.h"
+#include "neural/networks/architecture_card.h"
+
+namespace bodyloom {
+namespace {
+
+namespace fs = std::filesystem;
+using torch::Tensor;
+
+MotionConfig Toy() {
+  MotionConfig config;
+  config.profile = {"toy", 32, 16, 4, {4, 8}, {4, 8}, 4, 16};
+  config.motion_channels = 6;
+  config.num_labels = 3;
+  return config;
+}
+
+/// The person is a square that moves right; its shade and its label follow the first channel of the motion map.
+void ToyFrame(int t, bool with_truth, MotionFrame* frame) {
+  constexpr int kSide = 32, kArea = kSide * kSide;
+  *frame = {};
+  frame->width = frame->height = kSide;
+  frame->before_x = t > 0 && t % 4 == 0 ? -2 : 0;
+  const float level = 0.5F + 0.4F * std::sin(0.7F * static_cast<float>(t));
+  frame->motion.assign(6 * 16 * 16, level);
+  frame->uv.assign(2 * kArea, 0);
+  frame->body.assign(kArea, 0);
+  if (with_truth) {
+    frame->image.assign(3 * kArea, 0);
+    frame->normals.assign(3 * kArea, 0);
+    frame->labels.assign(kArea, 0);
+  }
+  for (int y = 8; y < 24; ++y) {
+    for (int x = 6 + t % 4; x < 22 + t % 4; ++x) {
+      const int i = y * kSide + x;
+      frame->uv[i] = static_cast<float>(x) / kSide;
+      frame->uv[kArea + i] = static_cast<float>(y) / kSide;
+      frame->body[i] = 1;
+      if (!with_truth) continue;
+      frame->labels[i] = y < 16 ? 1 : 2;
+      for (int c = 0; c < 3; ++c) frame->image[c * kArea + i] = level * (c == 0 ? 1.0F : 0.5F);
+      frame->normals[2 * kArea + i] = -1;
+    }
+  }
+}
+
+TrainMotionOptions ToyOptions(const std::string& name) {
+  TrainMotionOptions options;
+  options.config = Toy();
+  options.train = {{0, 24}};
+  options.validation = {{24, 32}};
+  options.batch = 2;
+  options.chain_length = 6;
+  options.steps = 8;
+  options.num_threads = 1;
+  options.report_every = options.checkpoint_every = options.validate_every = 4;
+  options.run_dir = (fs::path(::testing::TempDir()) / name).string();
+  fs::remove_all(options.run_dir);
+  fs::create_directories(options.run_dir);
+  return options;
+}
+
+std::string Bytes(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::stringstream bytes;
+  bytes << file.rdbuf();
+  return bytes.str();
+}
+
+int64_t Parameters(const torch::nn::Module& module) {
+  int64_t count = 0;
+  for (const Tensor& parameter : module.parameters()) count += parameter.numel();
+  return count;
+}
+
+TEST(MotionModel, ProfilesHaveTheSizesThatTheyAreKnownFor) {
+  // Computed apart from this code for the paper's blocks: base 64 with five levels 5.8 M, 45.8 M and 45.8 M; base 16
+  // with four 0.37 M, 1.5 M and 1.5 M; base 8 0.09 M, 0.37 M, 0.37 M.
+  const auto millions = [](const char* profile) {
+    MotionConfig config;
+    config.profile = MotionProfileNamed(profile);
+    const MotionModel model(config);
+    return std::vector<double>{1e-6 * Parameters(*model->encoder), 1e-6 * Parameters(*model->shape_decoder),
+                               1e-6 * Parameters(*model->appearance_decoder)};
+  };
+  const std::vector<double> cpu = millions("cpu"), tiny = millions("tiny");
+  EXPECT_NEAR(cpu[0], 0.37, 0.01);
+  EXPECT_NEAR(cpu[1], 1.5, 0.05);
+  EXPECT_NEAR(cpu[2], 1.5, 0.05);
+  EXPECT_NEAR(tiny[0], 0.09, 0.005);
+  EXPECT_NEAR(tiny[1], 0.37, 0.01);
+  EXPECT_THROW(MotionProfileNamed("gpu"), std::invalid_argument);
+}
+
+TEST(MotionModel, AblationsLeaveOutWhatTheyName) {
+  for (const int left_out : {0, 1, 2, 3}) {
+    MotionConfig config = Toy();
+    config.shape = left_out != 1;
+    config.normals = left_out != 2;
+    config.motion = left_out != 3;
+    MotionModel model(config);
+    EXPECT_EQ(model->encoder.is_empty(), left_out == 3);
+    EXPECT_EQ(model->shape_decoder.is_empty(), left_out == 1);
+    std::vector<MotionFrame> frames(2);
+    ToyFrame(0, true, &frames[0]);
+    ToyFrame(1, true, &frames[1]);
+    const MotionInput input = InputOf(frames, config);
+    EXPECT_EQ(input.motion.defined(), left_out != 3);
+    const MotionStepResult result = model(input, model->Nothing(2, 32, 32));
+    EXPECT_EQ(result.state.image.sizes(), (std::vector<int64_t>{2, 3, 32, 32}));
+    EXPECT_EQ(result.state.labels.defined(), left_out != 1);
+    EXPECT_EQ(result.state.normals.defined(), left_out != 2);
+    EXPECT_GE(result.state.image.min().item<float>(), 0);
+    EXPECT_LE(result.state.image.max().item<float>(), 1);
+    if (left_out == 1) continue;
+    EXPECT_NEAR((result.state.labels.sum(1) - 1).abs().max().item<float>(), 0, 1e-5);
+    // Where the background is certain there is nothing to see.
+    EXPECT_TRUE(torch::allclose(result.foreground, 1 - result.state.labels.slice(1, 0, 1)));
+    EXPECT_TRUE((result.state.image <= result.foreground + 1e-6).all().item<bool>());
+  }
+}
+
+TEST(MotionModel, ShiftedPicturesComeFromWhereTheyWere) {
+  const Tensor image = torch::arange(2 * 1 * 4 * 5, torch::kFloat).reshape({2, 1, 4, 5});
+  const Tensor moved = Shifted(image, 2, -1);
+  for (int y = 0; y < 4; ++y) {
+    for (int x = 0; x < 5; ++x) {
+      const bool inside = x - 2 >= 0 && y + 1 < 4;
+      const float expected = inside ? image[1][0][y + 1][x - 2].item<float>() : 0.0F;
+      EXPECT_EQ(moved[1][0][y][x].item<float>(), expected);
+    }
+  }
+  EXPECT_TRUE(torch::equal(Shifted(image, 0, 0), image));
+  EXPECT_EQ(Shifted(image, 5, 0).abs().max().item<float>(), 0);
+}
+
+TEST(MotionTraining, LearnsAClipByHeartAndRollsItOut) {
+  TrainMotionOptions options = ToyOptions("motion_learns");
+  options.train = options.validation = {{0, 4}};
+  options.steps = 250;
+  options.learning_rate = 5e-3;
+  options.gan_weight = 0;
+  options.validate_every = 250;
+  std::vector<MotionPreview> previews;
+  options.preview = [&](int, const std::vector<MotionPreview>& made) { previews = made; };
+  const TrainMotionSummary summary = TrainMotion(ToyFrame, options);
+  ASSERT_EQ(summary.status, TrainMotionStatus::kFinished) << summary.message;
+  EXPECT_EQ(summary.scores.frames, 4);
+  // An untrained network is off by 0.3 or more, and knows nothing of labels.
+  EXPECT_LT(summary.scores.image_l1, 0.1);
+  EXPECT_GT(summary.scores.label_iou, 0.7);
+  EXPECT_LT(summary.scores.normal_deg, 20);
+  EXPECT_TRUE(summary.perceptual_stand_in);
+  EXPECT_EQ(previews.size(), 4U);
+  // The same network from its file, scored apart from training.
+  const MotionScores again =
+      ScoreMotion(MotionCheckpointPath(options.run_dir), options.config, ToyFrame, {{0, 4}}, 10, 1);
+  EXPECT_NEAR(again.image_l1, summary.scores.image_l1, 1e-6);
+  EXPECT_NEAR(again.label_iou, summary.scores.label_iou, 1e-6);
+}
+
+TEST(MotionTraining, AResumedRunEndsWithTheSameBytes) {
+  const TrainMotionOptions whole = ToyOptions("motion_whole");
+  ASSERT_EQ(TrainMotion(ToyFrame, whole).status, TrainMotionStatus::kFinished);
+  TrainMotionOptions parts = ToyOptions("motion_parts");
+  parts.progress = [](const TrainMotionProgress& progress) { return progress.step < 4; };
+  const TrainMotionSummary stopped = TrainMotion(ToyFrame, parts);
+  EXPECT_EQ(stopped.status, TrainMotionStatus::kStopped);
+  EXPECT_EQ(stopped.steps, 4);
+  parts.progress = nullptr;
+  parts.resume = true;
+  ASSERT_EQ(TrainMotion(ToyFrame, parts).status, TrainMotionStatus::kFinished);
+  EXPECT_EQ(Bytes(MotionCheckpointPath(parts.run_dir)), Bytes(MotionCheckpointPath(whole.run_dir)));
+}
+
+TEST(MotionTraining, LossesWithoutTruthAreSwitchedOff) {
+  TrainMotionOptions options = ToyOptions("motion_no_truth");
+  options.steps = 2;
+  options.validation.clear();
+  const TrainMotionSummary summary = TrainMotion(
+      [](int t, bool with_truth, MotionFrame* frame) {
+        ToyFrame(t, with_truth, frame);
+        frame->labels.clear();
+        frame->normals.clear();
+      },
+      options);
+  EXPECT_EQ(summary.status, TrainMotionStatus::kFinished);
+  EXPECT_EQ(summary.losses_off.size(), 2U);
+}
+
+TEST(MotionTraining, ALossThatIsNotANumberKeepsTheLastCheckpoint) {
+  TrainMotionOptions options = ToyOptions("motion_nan");
+  options.checkpoint_every = 1;
+  options.validation.clear();
+  options.train = {{0, 24}};
+  options.steps = 50;
+  const TrainMotionSummary summary = TrainMotion(
+      [](int t, bool with_truth, MotionFrame* frame) {
+        ToyFrame(t, with_truth, frame);
+        if (t == 20 && with_truth) frame->image[600] = std::numeric_limits<float>::quiet_NaN();
+      },
+      options);
+  ASSERT_EQ(summary.status, TrainMotionStatus::kNotFinite);
+  EXPECT_GT(summary.steps, 0);
+  EXPECT_NE(summary.message.find("checkpoint.bin holds step " + std::to_string(summary.steps)), std::string::npos)
+      << summary.message;
+  MotionRenderer renderer(MotionCheckpointPath(options.run_dir), options.config, {0, 1});
+  MotionFrame frame;
+  ToyFrame(3, false, &frame);
+  for (const float value : renderer.Next(frame).image) ASSERT_TRUE(std::isfinite(value));
+}
+
+TEST(MotionTraining, RefusesWhatDoesNotFit) {
+  TrainMotionOptions options = ToyOptions("motion_refuses");
+  options.train.clear();
+  EXPECT_THROW(TrainMotion(ToyFrame, options), std::invalid_argument);
+  options = ToyOptions("motion_refuses");
+  options.steps = 1;
+  ASSERT_EQ(TrainMotion(ToyFrame, options).status, TrainMotionStatus::kFinished);
+  const std::string path = MotionCheckpointPath(options.run_dir);
+  MotionConfig other = Toy();
+  other.profile.decoder_widths = {4, 8, 8};
+  EXPECT_THROW(MotionRenderer(path, other, {0, 1}), std::runtime_error);
+  fs::resize_file(path, fs::file_size(path) / 2);
+  try {
+    MotionRenderer renderer(path, Toy(), {0, 1});
+    FAIL() << "took half a checkpoint";
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(std::string(error.what()).rfind(path, 0), 0U) << error.what();
+  }
+}
+
+TEST(RollOut, KeepsWhatDoesNotChangeAndSaysTheSame) {
+  torch::manual_seed(5);
+  const MotionConfig config = Toy();
+  MotionModel model(config);
+  RollOut roll(model, 3);
+  MotionState past = model->Nothing(1, 32, 32);
+  const torch::NoGradGuard no_grad;
+  for (const int t : {2, 2, 2, 3, 4, 4}) {
+    MotionFrame frame;
+    ToyFrame(t, false, &frame);
+    frame.before_x = 0;
+    const MotionStepResult kept = roll.Next(frame);
+    const MotionInput input = InputOf(std::span(&frame, 1), config);
+    const int passes = past.image.abs().max().item<float>() == 0 ? 4 : 1;
+    for (int i = 0; i < passes; ++i) past = model(input, past).state;
+    EXPECT_TRUE(torch::equal(kept.state.image, past.image)) << "frame " << t;
+  }
+  EXPECT_EQ(roll.descriptors_kept(), 3);
+  EXPECT_EQ(roll.projections_kept(), 3);
+}
+
+TEST(MotionScores, AreZeroForTheTruthAndWhatTheyShouldBeBesideIt) {
+  const MotionConfig config = Toy();
+  MotionScorer perfect(config), shifted(config);
+  for (int t = 0; t < 3; ++t) {
+    MotionFrame frame;
+    ToyFrame(t, true, &frame);
+    const MotionTruth truth = TruthOf(std::span(&frame, 1), config);
+    MotionState state = truth.State(config);
+    perfect.Add(state, truth, 0, 0);
+    // Off by 0.1, 0.2, 0.3: the error of every frame, and by how much it changes.
+    state.image = truth.image + 0.1 * (t + 1);
+    state.labels = truth.labels.clone();
+    state.labels.slice(1, 1, 2).fill_(2);  // everything is of class 1
+    shifted.Add(state, truth, 0, 0);
+  }
+  EXPECT_EQ(perfect.Scores().image_l1, 0);
+  EXPECT_EQ(perfect.Scores().label_iou, 1);
+  EXPECT_EQ(perfect.Scores().foreground_iou, 1);
+  EXPECT_NEAR(perfect.Scores().normal_deg, 0, 0.05);
+  const MotionScores scores = shifted.Scores();
+  EXPECT_NEAR(scores.image_l1, 0.2, 1e-6);
+  EXPECT_NEAR(scores.flicker, 0.1, 1e-6);
+  EXPECT_NEAR(scores.psnr_db, -10 * std::log10((0.01 + 0.04 + 0.09) / 3), 1e-4);
+  EXPECT_NEAR(scores.class_iou[1], 128.0 / 1024, 1e-6);
+  EXPECT_EQ(scores.class_iou[2], 0);
+  EXPECT_NEAR(scores.foreground_iou, 256.0 / 1024, 1e-6);
+  EXPECT_NEAR(scores.label_iou, 0.5 * 128 / 1024, 1e-6);
+}
+
+}  // namespace
+}  // namespace bodyloom
