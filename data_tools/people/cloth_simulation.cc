@@ -127,7 +127,6 @@ void ClothSimulation::Restart(std::vector<Vector3d> positions, ClothObstacles ob
   x_ = std::move(positions);
   before_ = x_;
   v_.assign(x_.size(), Vector3d::Zero());
-  backwards_ = false;
   obstacles_ = std::move(obstacles);
 }
 
@@ -204,11 +203,9 @@ void ClothSimulation::PredictVertices(double h) {
   }
 }
 
-void ClothSimulation::SolveLinks(double h, bool backwards) {
-  const int n = static_cast<int>(mesh_.links.size());
+void ClothSimulation::SolveLinks(double h) {
   const double per_h2 = 1 / (h * h);
-  for (int i = 0; i < n; ++i) {
-    const ClothLink& link = mesh_.links[backwards ? n - 1 - i : i];
+  for (const ClothLink& link : mesh_.links) {
     const double w_a = inverse_mass_[link.a], w_b = inverse_mass_[link.b];
     if (w_a + w_b == 0) continue;
     const Vector3d d = x_[link.a] - x_[link.b];
@@ -323,11 +320,10 @@ void ClothSimulation::Step(double dt, ClothObstacles obstacles, const std::vecto
       v_[pinned_[i]] = (pinned[i] - pinned_from[i]) / dt;
     }
     points_now_ = obstacles_.points + fraction * (obstacles.points - obstacles_.points);
-    SolveLinks(h, backwards_);
+    SolveLinks(h);
     SolveTethers();
     SolveContacts(obstacles, fraction, dt);
     UpdateVelocities(h);
-    backwards_ = !backwards_;
   }
   obstacles_ = std::move(obstacles);
 }
