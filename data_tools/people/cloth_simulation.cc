@@ -245,9 +245,10 @@ void ClothSimulation::WalkToNearest(int vertex) {
   }
 }
 
-void ClothSimulation::SolveContacts(const ClothObstacles& next, double fraction, double dt) {
+void ClothSimulation::SolveCapsules(const ClothObstacles& next, bool yielding, double fraction, double dt) {
   const double thickness = options_.thickness_m;
   for (size_t c = 0; c < next.capsules.size(); ++c) {
+    if (next.capsules[c].yields != yielding) continue;
     const Capsule &from = obstacles_.capsules[c], &to = next.capsules[c];
     const Capsule now = {from.a + fraction * (to.a - from.a), from.b + fraction * (to.b - from.b),
                          from.radius_a + fraction * (to.radius_a - from.radius_a),
@@ -264,6 +265,10 @@ void ClothSimulation::SolveContacts(const ClothObstacles& next, double fraction,
       Touch(v, away, depth, ((1 - along) * (to.a - from.a) + along * (to.b - from.b)) / dt);
     }
   }
+}
+
+void ClothSimulation::SolveSurface(const ClothObstacles& next, double fraction, double dt) {
+  const double thickness = options_.thickness_m;
   for (const int v : free_) {
     if (nearest_[v] < 0) continue;
     WalkToNearest(v);
@@ -279,9 +284,12 @@ void ClothSimulation::SolveContacts(const ClothObstacles& next, double fraction,
     if (depth <= 0) continue;
     Touch(v, normal, depth, (next.points.row(i) - obstacles_.points.row(i)).transpose() / dt);
   }
+}
+
+void ClothSimulation::SolveFloor() {
   if (!options_.floor) return;
   for (const int v : free_) {
-    const double depth = thickness - options_.floor->up.dot(x_[v] - options_.floor->point);
+    const double depth = options_.thickness_m - options_.floor->up.dot(x_[v] - options_.floor->point);
     if (depth > 0) Touch(v, options_.floor->up, depth, Vector3d::Zero());
   }
 }
@@ -320,9 +328,12 @@ void ClothSimulation::Step(double dt, ClothObstacles obstacles, const std::vecto
       v_[pinned_[i]] = (pinned[i] - pinned_from[i]) / dt;
     }
     points_now_ = obstacles_.points + fraction * (obstacles.points - obstacles_.points);
+    SolveCapsules(obstacles, true, fraction, dt);
     SolveLinks(h);
     SolveTethers();
-    SolveContacts(obstacles, fraction, dt);
+    SolveCapsules(obstacles, false, fraction, dt);
+    SolveSurface(obstacles, fraction, dt);
+    SolveFloor();
     UpdateVelocities(h);
   }
   obstacles_ = std::move(obstacles);
