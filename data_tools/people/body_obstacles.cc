@@ -87,7 +87,8 @@ BodyObstacles::BodyObstacles(const BodyModel& body, const MatrixX3d& vertices, c
       const double distance = CapsuleDistance(axis, vertices.row(v).transpose(), &away, &along);
       if (along > 0 && along < 1) distances[along < 0.5 ? 0 : 1].push_back(distance);
     }
-    bones_.push_back({bone.from, bone.to, RadiusOf(distances[0], bone.limb), RadiusOf(distances[1], bone.limb)});
+    bones_.push_back({bone.from, bone.to, RadiusOf(distances[0], bone.limb), RadiusOf(distances[1], bone.limb),
+                      bone.limb == Limb::kArm});
   }
 }
 
@@ -100,8 +101,8 @@ ClothObstacles BodyObstacles::At(const MatrixX3d& vertices, const MatrixX3f& nor
     obstacles.normals.row(i) = normals.row(vertices_[i]);
   }
   for (const Bone& bone : bones_) {
-    obstacles.capsules.push_back(
-        {joints.row(bone.from).transpose(), joints.row(bone.to).transpose(), bone.radius_from, bone.radius_to});
+    obstacles.capsules.push_back({joints.row(bone.from).transpose(), joints.row(bone.to).transpose(), bone.radius_from,
+                                  bone.radius_to, bone.yields});
   }
   return obstacles;
 }

@@ -30,6 +30,7 @@ class BodyObstacles {
   struct Bone {
     int from, to;
     double radius_from, radius_to;
+    bool yields;
   };
   std::vector<int> vertices_;
   MatrixX3i faces_;

@@ -127,7 +127,6 @@ void ClothSimulation::Restart(std::vector<Vector3d> positions, ClothObstacles ob
   x_ = std::move(positions);
   before_ = x_;
   v_.assign(x_.size(), Vector3d::Zero());
-  backwards_ = false;
   obstacles_ = std::move(obstacles);
 }
 
@@ -204,11 +203,9 @@ void ClothSimulation::PredictVertices(double h) {
   }
 }
 
-void ClothSimulation::SolveLinks(double h, bool backwards) {
-  const int n = static_cast<int>(mesh_.links.size());
+void ClothSimulation::SolveLinks(double h) {
   const double per_h2 = 1 / (h * h);
-  for (int i = 0; i < n; ++i) {
-    const ClothLink& link = mesh_.links[backwards ? n - 1 - i : i];
+  for (const ClothLink& link : mesh_.links) {
     const double w_a = inverse_mass_[link.a], w_b = inverse_mass_[link.b];
     if (w_a + w_b == 0) continue;
     const Vector3d d = x_[link.a] - x_[link.b];
@@ -248,9 +245,10 @@ void ClothSimulation::WalkToNearest(int vertex) {
   }
 }
 
-void ClothSimulation::SolveContacts(const ClothObstacles& next, double fraction, double dt) {
+void ClothSimulation::SolveCapsules(const ClothObstacles& next, bool yielding, double fraction, double dt) {
   const double thickness = options_.thickness_m;
   for (size_t c = 0; c < next.capsules.size(); ++c) {
+    if (next.capsules[c].yields != yielding) continue;
     const Capsule &from = obstacles_.capsules[c], &to = next.capsules[c];
     const Capsule now = {from.a + fraction * (to.a - from.a), from.b + fraction * (to.b - from.b),
                          from.radius_a + fraction * (to.radius_a - from.radius_a),
@@ -267,6 +265,10 @@ void ClothSimulation::SolveContacts(const ClothObstacles& next, double fraction,
       Touch(v, away, depth, ((1 - along) * (to.a - from.a) + along * (to.b - from.b)) / dt);
     }
   }
+}
+
+void ClothSimulation::SolveSurface(const ClothObstacles& next, double fraction, double dt) {
+  const double thickness = options_.thickness_m;
   for (const int v : free_) {
     if (nearest_[v] < 0) continue;
     WalkToNearest(v);
@@ -282,9 +284,12 @@ void ClothSimulation::SolveContacts(const ClothObstacles& next, double fraction,
     if (depth <= 0) continue;
     Touch(v, normal, depth, (next.points.row(i) - obstacles_.points.row(i)).transpose() / dt);
   }
+}
+
+void ClothSimulation::SolveFloor() {
   if (!options_.floor) return;
   for (const int v : free_) {
-    const double depth = thickness - options_.floor->up.dot(x_[v] - options_.floor->point);
+    const double depth = options_.thickness_m - options_.floor->up.dot(x_[v] - options_.floor->point);
     if (depth > 0) Touch(v, options_.floor->up, depth, Vector3d::Zero());
   }
 }
@@ -323,11 +328,13 @@ void ClothSimulation::Step(double dt, ClothObstacles obstacles, const std::vecto
       v_[pinned_[i]] = (pinned[i] - pinned_from[i]) / dt;
     }
     points_now_ = obstacles_.points + fraction * (obstacles.points - obstacles_.points);
-    SolveLinks(h, backwards_);
+    SolveCapsules(obstacles, true, fraction, dt);
+    SolveLinks(h);
     SolveTethers();
-    SolveContacts(obstacles, fraction, dt);
+    SolveCapsules(obstacles, false, fraction, dt);
+    SolveSurface(obstacles, fraction, dt);
+    SolveFloor();
     UpdateVelocities(h);
-    backwards_ = !backwards_;
   }
   obstacles_ = std::move(obstacles);
 }

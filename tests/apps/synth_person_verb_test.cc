@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include <filesystem>
+
+#include "data_tools/people/person_set.h"
+#include "data_tools/video/image_file.h"
+#include "tests/apps/run_command.h"
+
+namespace bodyloom {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(SynthPersonVerb, WritesASetAndASheet) {
+  const ScratchFolder scratch;
+  const CommandResult result =
+      RunCommand({"synth-person", "--motion", "demo", "--first", "100", "--frames", "5", "--out", scratch / "person",
+                  "--size", "96", "--garment", "skirt", "--seed", "7", "--sheet", scratch / "sheet.jpg"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("5 frames of 96x96"));
+  EXPECT_THAT(result.out, HasSubstr("cloth"));
+  const PersonSet set(scratch / "person");
+  EXPECT_EQ(set.info().num_frames, 5);
+  EXPECT_EQ(set.info().seed, 7);
+  EXPECT_EQ(set.info().garment, "skirt");
+  EXPECT_EQ(set.info().motion, "demo");
+  EXPECT_THAT(set.info().command, HasSubstr("--seed 7"));
+  EXPECT_EQ(set.Read(4).labels.width, 96);
+  EXPECT_GT(ReadImage(scratch / "sheet.jpg").width, 500);
+}
+
+TEST(SynthPersonVerb, SaysWhatIsWrong) {
+  const ScratchFolder scratch;
+  const auto run = [&](const std::string& option, const std::string& value) {
+    return RunCommand({"synth-person", "--motion", "demo", "--out", scratch / "p", "--frames", "2", option, value});
+  };
+  EXPECT_EQ(run("--garment", "kilt").exit_code, 2);
+  EXPECT_EQ(run("--size", "7").exit_code, 2);
+  EXPECT_EQ(run("--first", "-3").exit_code, 2);
+  const CommandResult late = run("--first", "100000");
+  EXPECT_EQ(late.exit_code, 1);
+  EXPECT_THAT(late.err, HasSubstr("--first asks for frame 100000"));
+  const CommandResult missing = RunCommand({"synth-person", "--motion", scratch / "no.bvh", "--out", scratch / "p"});
+  EXPECT_EQ(missing.exit_code, 1);
+  EXPECT_THAT(missing.err, HasSubstr("no.bvh"));
+  EXPECT_EQ(missing.NumErrorLines(), 1);
+}
+
+TEST(SynthPersonVerb, AnInterruptionLeavesNoFinishedSet) {
+  const ScratchFolder scratch;
+  const CommandResult result = RunCommand(
+      {"synth-person", "--motion", "demo", "--out", scratch / "person", "--size", "64"}, {.interrupt_on = "% person"});
+  EXPECT_EQ(result.exit_code, 130);
+  EXPECT_FALSE(std::filesystem::exists(scratch / "person/person.json"));
+}
+
+}  // namespace
+}  // namespace bodyloom
