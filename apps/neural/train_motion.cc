@@ -34,7 +34,7 @@ constexpr int kShareStretch = 32;  ///< frames: with less of the data, whole str
 
 struct Request {
   MotionDataRequest data;
-  std::string validate_data, out, profile = "cpu";
+  std::string shape_loss = "ce", validate_data, out, profile = "cpu";
   std::vector<std::string> without, train, validate;
   double share = 1;
   TrainMotionOptions options;
@@ -98,6 +98,7 @@ std::string Notes(const Request& request) {
                                        {"chain_length", o.chain_length},
                                        {"learning_rate", o.learning_rate},
                                        {"discriminator_rate", o.discriminator_rate},
+                                       {"shape_loss", request.shape_loss},
                                        {"weights",
                                         {{"shape", o.shape_weight},
                                          {"normals", o.normal_weight},
@@ -139,6 +140,7 @@ void Run(Request request) {
     if (part == "normal") config.normals = false;
     if (part == "motion") config.motion = false;
   }
+  options.shape_by_cross_entropy = request.shape_loss == "ce";
   if (options.num_threads == 0) options.num_threads = static_cast<int>(std::thread::hardware_concurrency());
   request.data.num_threads = options.num_threads;
   RequireReadable(request.data.data, "data");
@@ -247,6 +249,9 @@ void AddTrainMotion(CLI::App& train, std::function<void()>* action) {
   verb->add_option("--chain", options.chain_length, "Frames that the recurrence runs on before it starts anew")
       ->capture_default_str();
   verb->add_option("--learning-rate", options.learning_rate, "At its highest")->capture_default_str();
+  verb->add_option("--shape-loss", request->shape_loss, "Of the classes: cross entropy or absolute differences")
+      ->check(CLI::IsMember({"ce", "l1"}))
+      ->capture_default_str();
   verb->add_option("--validate-every", options.validate_every, "Steps")->capture_default_str();
   verb->add_option("--patience", options.patience, "Stop after so many validations without a better one (0: never)")
       ->capture_default_str();

@@ -221,7 +221,12 @@ class Trainer {
       *value = loss.item<double>();
       total = total + weight * loss;
     };
-    if (config_.shape && has_labels_) add(options_.shape_weight, L1Loss(state.labels, truth.labels), &losses.shape);
+    if (config_.shape && has_labels_) {
+      add(options_.shape_weight,
+          options_.shape_by_cross_entropy ? SoftLabelCrossEntropy(result.label_logits, truth.labels)
+                                          : L1Loss(state.labels, truth.labels),
+          &losses.shape);
+    }
     if (config_.normals && has_normals_)
       add(options_.normal_weight, L1Loss(state.normals, truth.normals), &losses.normals);
     if (options_.perceptual_weight > 0) {

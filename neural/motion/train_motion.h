@@ -2,7 +2,9 @@
 /// Trains the motion-dependent renderer on one person's clip.
 ///
 ///   L = L_a + 10 L_s + L_n + L_p + 0.01 L_g            (Yoon et al., CVPR 2022, eq. 8 and below)
-/// L_a, L_s, L_n: mean absolute differences of image, class probabilities and normals; L_p: of VGG-16's features after
+/// L_a, L_n: mean absolute differences of image and normals; L_s: cross entropy of the classes, or the mean absolute
+/// difference of probabilities (the paper does not say which norm; with absolute differences small classes are never
+/// learned, docs/motion_renderer.md); L_p: of VGG-16's features after
 /// conv 1-2, 2-2, 3-2 and 4-2; L_g: a patch discriminator's judgement of the image beside the true classes. Losses
 /// whose truth the clip does not have are switched off (`losses_off` says which). Recurrence:
 /// neural/motion/chain_plan.h.
@@ -45,6 +47,7 @@ struct TrainMotionOptions {
   int batch = 4;
   int chain_length = 32;
   double learning_rate = 1e-3, discriminator_rate = 2e-4;
+  bool shape_by_cross_entropy = true;
   double shape_weight = 10, normal_weight = 1, perceptual_weight = 1, gan_weight = 0.01;
   int warmup_iterations = 10;  ///< of the first frame, before a roll-out counts
   NamedWeights vgg16;          ///< empty: a seeded stand-in of random features
