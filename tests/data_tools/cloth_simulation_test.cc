@@ -23,16 +23,13 @@ Sheet MakeSheet(int n, double side_m, bool pinned, const Vector3d& corner = Vect
   Sheet sheet;
   const double step = side_m / (n - 1);
   const auto id = [n](int i, int j) { return i * n + j; };
-  sheet.mesh.mass_kg.assign(n * n, 0.25 * step * step);
+  sheet.mesh.mass_kg.assign(n * n, 0);
   sheet.mesh.faces.resize(2 * (n - 1) * (n - 1), 3);
   int f = 0;
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < n; ++j) {
       sheet.places.emplace_back(corner + Vector3d(j * step, 0, i * step));
-      if (pinned && i == 0) {
-        sheet.mesh.mass_kg[id(i, j)] = 0;
-        sheet.pins.push_back(sheet.places.back());
-      }
+      if (pinned && i == 0) sheet.pins.push_back(sheet.places.back());
       if (i > 0) sheet.mesh.links.push_back({id(i - 1, j), id(i, j), step, 0});
       if (j > 0) sheet.mesh.links.push_back({id(i, j - 1), id(i, j), step, 0});
       if (i > 0 && j > 0) {
@@ -43,6 +40,10 @@ Sheet MakeSheet(int n, double side_m, bool pinned, const Vector3d& corner = Vect
       }
     }
   }
+  for (f = 0; f < sheet.mesh.faces.rows(); ++f) {  // 0.25 kg/m², shared by the corners
+    for (int c = 0; c < 3; ++c) sheet.mesh.mass_kg[sheet.mesh.faces(f, c)] += 0.25 * step * step / 6;
+  }
+  for (int j = 0; j < n && pinned; ++j) sheet.mesh.mass_kg[id(0, j)] = 0;
   return sheet;
 }
 
@@ -82,11 +83,10 @@ TEST(ClothSimulation, AirHoldsBackWhatFallsFlat) {
   ClothOptions options;
   options.damping = 0;
   ClothSimulation s(sheet.mesh, sheet.places, {}, {}, options);
-  for (int i = 0; i < 600; ++i) s.Step(1.0 / 60, {}, {});
-  // At rest with itself: ½ ρ A c v² = m g. Inner vertices have the sheet's own mass by area.
+  for (int i = 0; i < 120; ++i) s.Step(1.0 / 60, {}, {});
+  // ½ ρ c v² = (mass an area) · g, reached as tanh(g t / v); what is read is slowed after each step, by g h.
   const double terminal = std::sqrt(2 * 0.25 * 9.81 / (1.2 * 1.1));
-  EXPECT_NEAR(-s.velocities()[40].y(), terminal, 0.25 * terminal);
-  EXPECT_LT(-s.velocities()[40].y(), 5);
+  for (const Vector3d& v : s.velocities()) EXPECT_NEAR(-v.y(), terminal - 9.81 / 480, 2e-3);
 }
 
 TEST(ClothSimulation, APendulumSwingsAtItsPeriod) {
@@ -224,7 +224,7 @@ TEST(ClothSimulation, StaysOutsideOfASurface) {
   MatrixX3i faces;
   ClothObstacles ball = Ball(Vector3d::Zero(), 0.15, &faces);
   ClothSimulation s(sheet.mesh, sheet.places, ball, faces);
-  double deepest = 0;
+  double deepest = -1;
   for (int i = 0; i < 120; ++i) {
     const Vector3d centre(0.05 * std::sin(0.1 * i), 0, 0);
     ball = Ball(centre, 0.15, &faces);
