@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// `bodyloom train motion` and `bodyloom animate motion`, from a synthetic person to a video.
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "data_tools/video/video_reader.h"
+#include "tests/apps/run_command.h"
+
+namespace bodyloom {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+class TrainMotionVerb : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (BODYLOOM_HAS_NEURAL == 0) GTEST_SKIP() << "built without LibTorch";
+    const CommandResult made = RunCommand({"synth-person", "--motion", "demo", "--first", "60", "--frames", "14",
+                                           "--out", scratch_ / "person", "--size", "96", "--garment", "skirt"});
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+  }
+  CommandResult Train(const std::string& run, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments = {"train",        "motion",    "--data", scratch_ / "person", "--out",
+                                          scratch_ / run, "--profile", "tiny",   "--batch",           "2",
+                                          "--threads",    "1"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return RunCommand(arguments);
+  }
+  ScratchFolder scratch_;
+};
+
+TEST_F(TrainMotionVerb, TrainsGoesOnAndAnimates) {
+  const CommandResult trained =
+      Train("run", {"--steps", "3", "--train", "0-9", "--validate", "10-13", "--validate-every", "3"});
+  ASSERT_EQ(trained.exit_code, 0) << trained.err;
+  EXPECT_THAT(trained.out, HasSubstr("step 3 of 3"));
+  EXPECT_THAT(trained.out, HasSubstr("stand-in"));
+  EXPECT_THAT(trained.out, HasSubstr("validation: L1"));
+  for (const char* file : {"config.json", "checkpoint.bin", "metrics.csv", "preview_000003.png"}) {
+    EXPECT_TRUE(fs::exists(scratch_ / ("run/" + std::string(file)))) << file;
+  }
+  EXPECT_EQ(Train("run", {"--steps", "5"}).exit_code, 2) << "took the folder of another run";
+  const CommandResult resumed = Train("run", {"--steps", "5", "--train", "0-9", "--validate", "10-13", "--resume"});
+  EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+  EXPECT_THAT(resumed.out, HasSubstr("step 5 of 5"));
+
+  const CommandResult animated = RunCommand(
+      {"animate", "motion", "--run", scratch_ / "run", "--data", scratch_ / "person", "--out", scratch_ / "a.mp4",
+       "--sheet", scratch_ / "a.png", "--json", scratch_ / "a.json", "--warmup", "2", "--threads", "1"});
+  ASSERT_EQ(animated.exit_code, 0) << animated.err;
+  EXPECT_THAT(animated.out, HasSubstr("14 frames"));
+  EXPECT_THAT(animated.out, HasSubstr("outline IoU"));
+  VideoReader video(scratch_ / "a.mp4");
+  EXPECT_EQ(video.info().width, 96);
+  EXPECT_TRUE(fs::exists(scratch_ / "a.png"));
+  const CommandResult turned =
+      RunCommand({"animate", "motion", "--run", scratch_ / "run", "--track", scratch_ / "person/track.npz", "--out",
+                  scratch_ / "b.mp4", "--view-yaw", "0:90", "--warmup", "0", "--threads", "1"});
+  EXPECT_EQ(turned.exit_code, 0) << turned.err;
+}
+
+TEST_F(TrainMotionVerb, SaysWhatIsWrong) {
+  const auto fails = [&](const std::vector<std::string>& arguments, int code, const std::string& says) {
+    const CommandResult result = RunCommand(arguments);
+    EXPECT_EQ(result.exit_code, code) << result.err;
+    EXPECT_THAT(result.err, HasSubstr(says));
+  };
+  EXPECT_EQ(Train("x", {"--train", "5"}).exit_code, 2);
+  EXPECT_THAT(Train("x", {"--train", "0-99"}).err, HasSubstr("the clip has frames 0 to 13"));
+  EXPECT_THAT(Train("x", {"--resume"}).err, HasSubstr("holds no run"));
+  fails({"train", "motion", "--data", scratch_ / "nobody", "--out", scratch_ / "x"}, 1, "nobody");
+  fails({"animate", "motion", "--run", scratch_ / "person", "--track", scratch_ / "person/track.npz", "--out",
+         scratch_ / "a.mp4"},
+        1, "config.json: not there");
+  fails({"animate", "motion", "--run", scratch_ / "run", "--out", scratch_ / "a.mp4"}, 2, "--track and --data");
+
+  // A track of another clip.
+  const CommandResult other = RunCommand({"synth-person", "--motion", "demo", "--frames", "20", "--out",
+                                          scratch_ / "other", "--size", "96", "--garment", "suit"});
+  ASSERT_EQ(other.exit_code, 0) << other.err;
+  EXPECT_THAT(Train("x", {"--track", scratch_ / "other/track.npz"}).err, HasSubstr("20 frames"));
+
+  // A run whose checkpoint was cut off, and one of another profile.
+  ASSERT_EQ(Train("run", {"--steps", "1", "--train", "0-9", "--validate", "10-10"}).exit_code, 0);
+  const std::string checkpoint = scratch_ / "run/checkpoint.bin";
+  const auto animate = [&] {
+    return RunCommand({"animate", "motion", "--run", scratch_ / "run", "--track", scratch_ / "person/track.npz",
+                       "--out", scratch_ / "a.mp4"});
+  };
+  std::ifstream config(scratch_ / "run/config.json");
+  std::string text((std::istreambuf_iterator<char>(config)), {});
+  std::string changed = text;
+  changed.replace(changed.find("\"features\": 8"), 13, "\"features\": 9");
+  std::ofstream(scratch_ / "run/config.json") << changed;
+  EXPECT_THAT(animate().err, HasSubstr("checkpoint.bin"));
+  std::ofstream(scratch_ / "run/config.json") << text;
+  fs::resize_file(checkpoint, 1000);
+  const CommandResult cut = animate();
+  EXPECT_EQ(cut.exit_code, 1);
+  EXPECT_THAT(cut.err, HasSubstr("checkpoint.bin"));
+  EXPECT_EQ(cut.NumErrorLines(), 1);
+  EXPECT_FALSE(fs::exists(scratch_ / "a.mp4"));
+}
+
+}  // namespace
+}  // namespace bodyloom
