@@ -51,7 +51,7 @@ TEST(SynthPersonVerb, AnInterruptionLeavesNoFinishedSet) {
   const ScratchFolder scratch;
   const CommandResult result =
       RunCommand({"synth-person", "--motion", "demo", "--out", scratch / "person", "--size", "64"},
-                 {.file_size_limit = 0, .interrupt_on = "% person", .work_folder = ""});
+                 {.file_size_limit = {}, .interrupt_on = "% person", .work_folder = ""});
   EXPECT_EQ(result.exit_code, 130);
   EXPECT_FALSE(std::filesystem::exists(scratch / "person/person.json"));
 }
