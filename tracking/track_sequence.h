@@ -93,7 +93,7 @@ struct TrackSequenceOptions {
   double initialiser_weight = 0.1;  ///< λ_d of paper A, per frame
   /// λ_d when the lifter is the initialiser (0: it is not asked), and a floor of its own uncertainty in metres. Found
   /// on the development clips of docs/benchmarks.md: weights 0.01 to 0.1 differ by less than 3 mm.
-  double lifter_weight = 0.03, lifter_min_sigma_m = 0.08;
+  double lifter_weight = 0.06, lifter_min_sigma_m = 0.08;
   double prior_weight = 0.2;        ///< of the pose prior's energy, per frame
   double start_pull = 1.0;          ///< pull towards the hypotheses in the first stage (rotation σ 0.2 rad)
   double upright_weight = 1.0;      ///< of the trunk not leaning out of the image plane, per frame

@@ -28,6 +28,7 @@ std::string MotionRunJson(const MotionRun& run) {
                {"shape", c.shape},
                {"normals", c.normals},
                {"motion", c.motion},
+               {"surface", c.surface},
                {"pixels_per_metre", run.pixels_per_metre},
                {"fps", run.fps},
                {"past", run.past}};
@@ -68,6 +69,7 @@ MotionRun ReadMotionRun(const std::string& run_dir) {
     get("shape", &c.shape);
     get("normals", &c.normals);
     get("motion", &c.motion);
+    get("surface", &c.surface);
     get("pixels_per_metre", &run.pixels_per_metre);
     get("fps", &run.fps);
     get("past", &run.past);

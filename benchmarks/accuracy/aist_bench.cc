@@ -214,7 +214,7 @@ int main(int argc, char** argv) {
                               {"views", "c01,c03,c05,c07,c08"},
                               {"focal", "known,unknown"},
                               {"lifter", "built-in"},
-                              {"lifter_weight", "0.03"},
+                              {"lifter_weight", "0.06"},
                               {"threads", "2"},
                               {"frames", "0"},
                               {"json", ""}},

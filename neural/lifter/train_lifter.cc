@@ -204,7 +204,7 @@ class Trainer {
     for (auto& group : optimizer_->param_groups()) {
       static_cast<torch::optim::AdamWOptions&>(group.options()).lr(rate);
     }
-    optimizer_->zero_grad();
+    module_->zero_grad();  // of all weights: two optimizers share them
     LifterLoss loss =
         ComputeLifterLoss(module_(batch.features), batch.targets, {options_.nll_weight, options_.velocity_weight});
     loss.total.backward();

@@ -56,7 +56,7 @@ std::string ToText(const MotionConfig& config) {
   for (const int width : p.decoder_widths) text << ' ' << width;
   text << "; discriminator " << p.discriminator_width << "; motion channels " << config.motion_channels << "; labels "
        << config.num_labels << "; shape " << config.shape << "; normals " << config.normals << "; motion "
-       << config.motion;
+       << config.motion << "; surface " << config.surface;
   return text.str();
 }
 

@@ -29,6 +29,10 @@ struct MotionConfig {
   // The paper's ablations (Table 3): without the shape decoder; without predicted surface normals; with rendered UV
   // coordinates in place of the projected motion descriptor.
   bool shape = true, normals = true, motion = true;
+  /// The decoders also see the rendered UV coordinates, beside the projected descriptor. The paper's do not: they must
+  /// find out from normals and velocities alone which part of the body a pixel shows, and learn it slowly
+  /// (docs/motion_renderer.md).
+  bool surface = true;
 
   /// A side of the images must be a multiple of this.
   [[nodiscard]] int Multiple() const { return 1 << profile.decoder_widths.size(); }

@@ -39,7 +39,7 @@ MotionModelImpl::MotionModelImpl(const MotionConfig& model_config) : config(mode
   std::string why;
   BODYLOOM_CHECK(config.IsValid(&why), "motion renderer: ", why);
   const MotionProfile& p = config.profile;
-  const int projected = config.motion ? p.features : kUvChannels;
+  const int projected = !config.motion ? kUvChannels : p.features + (config.surface ? kUvChannels : 0);
   if (config.motion) {
     encoder = register_module("encoder", UNet(UNetOptions{config.motion_channels, {p.features}, p.encoder_widths}));
   }
@@ -61,8 +61,10 @@ Tensor MotionModelImpl::Encode(const Tensor& motion) {
 }
 
 Tensor MotionModelImpl::Project(const Tensor& descriptor, const Tensor& uv, const Tensor& body) const {
-  if (config.motion) return SampleUv(descriptor, uv, body);
-  return torch::cat({uv * body, body}, 1);
+  std::vector<Tensor> parts;
+  if (config.motion) parts.push_back(SampleUv(descriptor, uv, body));
+  if (!config.motion || config.surface) parts.insert(parts.end(), {uv * body, body});
+  return torch::cat(parts, 1);
 }
 
 MotionStepResult MotionModelImpl::Decode(const Tensor& projected, const MotionState& before) {

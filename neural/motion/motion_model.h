@@ -9,6 +9,7 @@
 /// Source: Yoon et al., "Learning Motion-Dependent Appearance for High-Fidelity Rendering of Dynamic Humans from a
 /// Single Camera", CVPR 2022, Section 3; channels and levels: neural/motion/motion_config.h.
 ///
+/// With `surface` (not in the paper) f̂ has the rendered UV coordinates (u, v, 1) beside Π f_3D.
 /// Without shape there is no ŝ: Â = sigmoid a must learn where the person ends. Without motion f̂ is the rendered UV
 /// itself, (u, v, 1) on the body and 0 elsewhere. Without normals n̂ is left out.
 #pragma once

@@ -94,6 +94,45 @@ TEST(LifterInput, NamesAndIndicesAgree) {
   EXPECT_EQ(names[kLifterLeftHeel + 1], "right_heel");
 }
 
+/// Far away, so that lengths in the image are lengths across the view.
+TEST(LifterInput, ForeshorteningTellsDepthsApart) {
+  const MatrixX3d body = FacingBody();
+  MatrixX3d bent = body;
+  // The left forearm turns by 60° towards the camera, about its elbow and the vertical.
+  const Vector3d elbow = body.row(kLifterLeftElbow).transpose(),
+                 forearm = body.row(kLifterLeftWrist).transpose() - elbow;
+  const double side = forearm.x() > 0 ? 1 : -1;
+  bent.row(kLifterLeftWrist) = (elbow + Eigen::AngleAxisd(side * M_PI / 3, Vector3d::UnitY()) * forearm).transpose();
+  ASSERT_LT(bent(kLifterLeftWrist, 2), body(kLifterLeftWrist, 2) - 0.1);
+  const double distance = 200;
+  LifterFrames frames = Empty(2);
+  Show(body, {0, 0, distance}, 0, &frames);
+  Show(bent, {0, 0, distance}, 1, &frames);
+  const LifterInput input = MakeLifterInput(frames);
+  ExpectUsable(input, 2);
+  const auto feature = [&](int t, int bone, int which) {
+    return distance * input.scale[t] * input.features[t * kLifterInputs + kMore + 5 + 2 * bone + which];
+  };
+  const int left = 2, right = 3;
+  const double across = forearm.head<2>().norm(),
+               now = (bent.row(kLifterLeftWrist).transpose() - elbow).head<2>().norm();
+  EXPECT_NEAR(feature(1, left, 1), across, 0.003);  // as long as its mirror image
+  EXPECT_NEAR(feature(1, left, 0), std::sqrt(across * across - now * now), 0.003);
+  EXPECT_NEAR(feature(1, left, 0), across * std::sin(M_PI / 3), 0.02);
+  EXPECT_NEAR(feature(0, left, 0), 0, 0.02);
+  EXPECT_NEAR(feature(1, right, 0), 0, 0.02);
+  EXPECT_EQ(MirroredLifterBone(left), right);
+  for (int bone = 0; bone < kLifterBones; ++bone) EXPECT_EQ(MirroredLifterBone(MirroredLifterBone(bone)), bone);
+
+  KeepOnly({kLifterLeftElbow, kLifterLeftShoulder}, &frames);
+  const LifterInput without = MakeLifterInput(frames);
+  for (int bone = 0; bone < kLifterBones; ++bone) {
+    const float* f = &without.features[kLifterInputs + kMore + 5 + 2 * bone];
+    EXPECT_EQ(f[0] == 0 && f[1] == 0, bone != 0)
+        << bone;  // the left upper arm is all there is; its full length is known
+  }
+}
+
 TEST(LifterInput, FeaturesGiveTheRaysBack) {
   const MatrixX3d body = FacingBody();
   const LifterFrames frames = OneFrame(body, {1.1, -0.4, 3.2});
