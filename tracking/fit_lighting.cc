@@ -12,6 +12,7 @@
 #include <memory>
 
 #include "geometry/check.h"
+#include "tracking/residuals/linear_cost.h"
 
 namespace bodyloom {
 namespace {
@@ -20,6 +21,7 @@ constexpr size_t kFewest = 50;
 constexpr double kTukey = 4.685;  // 95 % efficient on Gaussian residuals
 constexpr double kHuber = 1.345;  // the same
 constexpr double kAlbedoGauge = 1e3;
+constexpr double kRidge = 1e-3;
 
 struct Sample {
   ShVector basis;
@@ -136,6 +138,7 @@ class Fit {
                                &result_.albedo[s.label]);
     }
     AddGauge(&problem);
+    AddRidge(&problem);
     ceres::Solver::Options options;
     options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
     options.max_num_iterations = options_.max_iterations;
@@ -163,6 +166,12 @@ class Fit {
       weights.push_back(kAlbedoGauge * share_[l]);
     }
     problem->AddResidualBlock(new MeanAlbedoCost(weights), nullptr, blocks);
+  }
+
+  void AddRidge(ceres::Problem* problem) {
+    RowMatrixXd A = RowMatrixXd::Identity(9, 9) * (kRidge * std::sqrt(double(samples_.size())) / result_.summary.sigma);
+    A(0, 0) = 0;
+    problem->AddResidualBlock(new LinearCost(A, Eigen::VectorXd::Zero(9)), nullptr, result_.coefficients.data());
   }
 
   /// Σ_l w_l (a_l − 1).

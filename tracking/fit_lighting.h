@@ -3,7 +3,9 @@
 /// (render/sh_lighting.h), with an albedo for each label as unknowns of the same problem, so that dark trousers are not
 /// taken for shadow.
 ///
-///   minimises ½ Σ_i ρ( (a_l(i) · c·Y(n_i) − y_i)² / σ² ) + ½ (w Σ_i (a_l(i) − 1)/N)²  over c in R⁹ and albedos a_l
+///   minimises ½ Σ_i ρ( (a_l(i) · c·Y(n_i) − y_i)² / σ² ) + ½ (w Σ_i (a_l(i) − 1)/N)² + ½ N (10⁻³/σ)² Σ_k>0 c_k²
+/// over c in R⁹ and the albedos a_l. The last term only decides what the normals leave open (seen from one side, 1, z and
+/// z² are much alike).
 ///
 /// y_i: light of a pixel (luminance, or one colour), n_i its normal, l(i) its label. Albedo and light have one common
 /// factor that no picture tells: the mean albedo over the samples is 1, so the shading is in units of it. ρ is Tukey's
@@ -28,7 +30,7 @@ namespace bodyloom {
 struct FitLightingOptions {
   int max_samples = 20000;  ///< evenly spread over those given
   int max_iterations = 50;
-  double min_spread = 1e-5;  ///< of the normals: smallest over largest eigenvalue of Σ Y Yᵀ
+  double min_spread = 1e-9;  ///< of the normals: smallest over largest eigenvalue of Σ Y Yᵀ
 };
 
 enum class FitLightingStatus {
