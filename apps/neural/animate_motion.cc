@@ -19,6 +19,7 @@
 #include "apps/neural/motion_data.h"
 #include "apps/neural/motion_preview.h"
 #include "apps/neural/motion_run.h"
+#include "apps/neural/relight_frames.h"
 #include "apps/progress.h"
 #include "apps/stage_clock.h"
 #include "apps/track_inputs.h"
@@ -40,7 +41,7 @@ namespace {
 constexpr int kLargestSide = 4096;
 
 struct Request {
-  std::string run, track, data, out, body, background, sheet, json, view_yaw;
+  std::string run, track, data, out, body, background, sheet, json, view_yaw, relight;
   int threads = 0, warmup = 50;
 };
 
@@ -81,6 +82,23 @@ MotionScores Score(const Request& request, const MotionRun& run, int threads) {
       {{0, data.track().num_frames()}}, request.warmup, threads);
 }
 
+/// The light of the clip from its first frames, rendered for it; the clip then begins anew.
+void EstimateLight(const PersonFrames& frames, const Track& track, MotionRenderer* renderer,
+                   FrameRelighter* relighter) {
+  Progress progress("light");
+  MotionFrame frame;
+  const int count = std::min(FrameRelighter::kFrames, track.num_frames());
+  for (int t = 0; t < count; ++t) {
+    ThrowIfInterrupted();
+    progress.Update("rendering", static_cast<double>(t + 1) / count);
+    if (!track.HasResult(t)) continue;
+    FillMotion(frames, t, &frame);
+    relighter->Observe(renderer->Next(frame));
+  }
+  relighter->Estimate();
+  renderer->Restart();
+}
+
 nlohmann::ordered_json ScoresJson(const MotionScores& s) {
   return {{"frames", s.frames},         {"image_l1", s.image_l1},   {"psnr_db", s.psnr_db},
           {"label_iou", s.label_iou},   {"class_iou", s.class_iou}, {"foreground_iou", s.foreground_iou},
@@ -92,7 +110,7 @@ void Run(const Request& request) {
   double counted_s = 0;
   // Stages come around every frame: their times are summed.
   std::vector<std::pair<const char*, double>> seconds = {
-      {"prepare", 0}, {"maps", 0}, {"network", 0}, {"compose and encode", 0}};
+      {"prepare", 0}, {"light", 0}, {"maps", 0}, {"network", 0}, {"compose and encode", 0}};
   const auto lap = [&](int stage) {
     const double now_s = clock.total(), took_s = now_s - counted_s;
     seconds[stage].second += took_s;
@@ -103,9 +121,16 @@ void Run(const Request& request) {
   RequireReadable(request.track, "track");
   RequireReadable(request.background, "background");
   RequireReadable(request.data, "person set");
-  RequireDistinct({request.track, request.background, request.body}, {request.out, request.sheet, request.json});
+  RequireReadable(request.relight, "light");
+  RequireDistinct({request.track, request.background, request.body, request.relight},
+                  {request.out, request.sheet, request.json});
   for (const std::string& path : {request.out, request.sheet, request.json}) RequireWritable(path);
+  std::unique_ptr<FrameRelighter> relighter;
+  if (!request.relight.empty()) relighter = std::make_unique<FrameRelighter>(ReadRelight(request.relight));
   const MotionRun run = ReadMotionRun(request.run);
+  if (relighter && !run.config.normals) {
+    throw std::runtime_error(request.run + ": was trained without surface normals, which --relight needs");
+  }
   const int threads = request.threads > 0 ? request.threads : static_cast<int>(std::thread::hardware_concurrency());
   const Track track = request.data.empty() ? ReadTrack(request.track) : PersonSet(request.data).track();
   const std::shared_ptr<const BodyModel> body = BodyOrBuiltin(request.body);
@@ -131,6 +156,8 @@ void Run(const Request& request) {
   }
   MotionRenderer renderer(MotionCheckpointPath(request.run), run.config, {request.warmup, threads});
   lap(0);
+  if (relighter && relighter->wants_frames()) EstimateLight(frames, track, &renderer, relighter.get());
+  lap(1);
   Background background(request.background, window.picture_width, window.picture_height);
   const double fps = track.num_frames() > 1
                          ? (track.num_frames() - 1) / (track.motion.timestamps.back() - track.motion.timestamps.front())
@@ -149,10 +176,11 @@ void Run(const Request& request) {
       MotionPicture picture;
       if (track.HasResult(t)) {
         FillMotion(frames, t, &frame);
-        lap(1);
+        lap(2);
         picture = renderer.Next(frame);
-        const double network_s = lap(2);
+        const double network_s = lap(3);
         if (t > 0) network_ms.push_back(1e3 * network_s);  // the first frame warms up
+        if (relighter) relighter->Apply(&picture);
         Composite(picture.image, picture.alpha, picture.width, picture.height, window.corner[t].x(),
                   window.corner[t].y(), &composed);
       } else {
@@ -164,12 +192,12 @@ void Run(const Request& request) {
         AddToSheet(picture, composed, &sheet);
         sheet_columns = static_cast<int>(sheet.size() - before);
       }
-      lap(3);
+      lap(4);
       progress.Update("rendering", static_cast<double>(t + 1) / track.num_frames());
     }
     video.Finish();
   }
-  lap(3);
+  lap(4);
   if (!sheet.empty()) {
     ContactSheetOptions layout;
     layout.columns = sheet_columns;
@@ -192,6 +220,7 @@ void Run(const Request& request) {
                                    {"projections_kept", renderer.projections_kept()},
                                    {"seconds", stages},
                                    {"output", request.out}};
+    if (relighter) json["relight"] = relighter->Json();
     if (scored) json["scores"] = ScoresJson(scores);
     WriteFileAtomically(request.json, json.dump(2) + "\n");
   }
@@ -199,6 +228,9 @@ void Run(const Request& request) {
               track.num_frames(), window.width, window.height, window.picture_width, window.picture_height, median_ms,
               track.num_frames() / std::max(1e-9, clock.total()));
   if (lost > 0) std::printf("%d frames have no fit and show the background\n", lost);
+  if (relighter && relighter->wants_frames() && !relighter->summary().IsUsable()) {
+    std::printf("light of the clip not found (%s): taken as even\n", ToString(relighter->summary().status).c_str());
+  }
   if (renderer.descriptors_kept() > 0) {
     std::printf("%lld frames did not move: their descriptors were not computed again\n",
                 static_cast<long long>(renderer.descriptors_kept()));
@@ -227,6 +259,8 @@ void AddAnimateMotion(CLI::App& animate, std::function<void()>* action) {
   verb->add_option("--view-yaw", request->view_yaw,
                    "Turns the view about the person's vertical, degrees; FROM:TO turns it over the clip");
   verb->add_option("--background", request->background, "Image, video or folder of images behind the person");
+  verb->add_option("--relight", request->relight,
+                   "Other light: an environment image (equirectangular), or JSON with lights (docs/relighting.md)");
   verb->add_option("--warmup", request->warmup, "Passes of the first frame through the network before it counts")
       ->capture_default_str()
       ->check(CLI::Range(0, 1000));

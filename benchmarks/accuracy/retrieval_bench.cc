@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What a descriptor of motion can tell apart (Yoon et al., CVPR 2022, Fig. 4): a person turns left and right again and
+/// again before one camera; each moment of the first cycle is looked for in the cycles that follow.
+///
+///   bodyloom_bench_retrieval [--cycles 6] [--period 2] [--amplitude 60] [--variation 0.1] [--noise_px 0,2]
+///                            [--noise_deg 0,1] [--uv 32] [--window 48] [--seeds 3] [--threads 2] [--plot F.svg]
+///                            [--json F]
+///
+/// Rows of the table (docs/benchmarks.md, "Retrieval"): COCO-17 trajectories, atlas coordinates as the camera sees
+/// them, the 3D motion descriptor; the first with noise in pixels, the others from a track with noise in degrees. The
+/// plot shows, for the moment at which the person of the first seed, without noise, passes the middle of the first
+/// cycle's first half, its correlation with all later frames.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "benchmarks/accuracy/bench_arguments.h"
+#include "benchmarks/accuracy/bench_report.h"
+#include "data_tools/builtin_body.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/people/motion_retrieval.h"
+#include "geometry/check.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr int kPast = 10;
+
+using NamedDescriptors = std::vector<std::pair<std::string, DescriptorRows>>;
+
+NamedDescriptors DescriptorsOf(const TurningPerson& person, double noise_px, const BenchArguments& arguments) {
+  PersonFramesOptions options;
+  options.uv_size = arguments.Integer("uv");
+  options.past = kPast;
+  options.window.max_side = arguments.Integer("window");
+  options.num_threads = arguments.Integer("threads");
+  const PersonFrames frames(BuiltinBody(), person.track, options);
+  return {{"2D keypoints, 10 frames", KeypointTrajectories(BuiltinBody(), person.track, kPast, noise_px, 1)},
+          {"2D dense UV, 1 frame", DenseCoordinates(frames, 1)},
+          {"2D dense UV, 10 frames", DenseCoordinates(frames, kPast)},
+          {"3D normals alone", MotionDescriptors(frames, 0)},
+          {"3D motion descriptor", MotionDescriptors(frames, kPast)}};
+}
+
+/// A curve a descriptor, one below the other; lines where cycles meet, dots at the peaks.
+std::string Plot(const TurningPerson& person, const NamedDescriptors& descriptors) {
+  constexpr int kLeft = 50, kTop = 34, kWidth = 840, kHeight = 74, kPitch = 112;
+  const std::vector<int> turning = TurningFrames(person, true);
+  // Facing the camera: the middle of the first half turn.
+  const int query =
+      *std::min_element(turning.begin(), turning.begin() + std::ptrdiff_t(turning.size() / 2),
+                        [&](int a, int b) { return std::abs(person.yaw_deg[a]) < std::abs(person.yaw_deg[b]); });
+  const auto first =
+      static_cast<int>(std::upper_bound(person.cycle.begin(), person.cycle.end(), 0) - person.cycle.begin());
+  const int count = static_cast<int>(person.cycle.size()) - first;
+  const auto x_of = [&](int i) { return kLeft + double(kWidth) * i / std::max(1, count - 1); };
+  std::ostringstream svg;
+  svg << "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"920\" height=\"" << kTop + kPitch * descriptors.size()
+      << "\" font-family=\"sans-serif\" font-size=\"13\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n";
+  for (size_t d = 0; d < descriptors.size(); ++d) {
+    const DescriptorRows& rows = descriptors[d].second;
+    const Eigen::MatrixXf correlation = NormalisedCrossCorrelation(rows.bottomRows(count), rows.row(query));
+    const std::vector<float> curve(correlation.data(), correlation.data() + count);
+    const double top = kTop + double(kPitch) * double(d);
+    // Curves are stretched to their own range, which the axis tells.
+    const auto [low, high] = std::minmax_element(curve.begin(), curve.end());
+    const double range = std::max(1e-6, double(*high) - *low);
+    const auto y_of = [&, low = *low](float value) { return top + kHeight * (1 - (value - low) / range); };
+    char text[160];
+    const std::vector<int> peaks = Peaks(curve, 0.9, 4);
+    std::snprintf(text, sizeof(text), "%.2f peaks a cycle at this moment", double(peaks.size()) / person.cycle.back());
+    svg << "<text x=\"" << kLeft << "\" y=\"" << top - 8 << "\"><tspan font-weight=\"bold\">" << descriptors[d].first
+        << "</tspan>: " << text << "</text>\n";
+    for (const float value : {*low, *high}) {
+      std::snprintf(text, sizeof(text), "%.2f", value);
+      svg << "<text x=\"" << kLeft - 6 << "\" y=\"" << y_of(value) + 4 << "\" text-anchor=\"end\" fill=\"#666\">"
+          << text << "</text>\n";
+    }
+    for (int i = 0; i < count; ++i) {
+      if (i > 0 && person.cycle[first + i] == person.cycle[first + i - 1]) continue;
+      svg << "<path d=\"M" << x_of(i) << ' ' << top << 'v' << kHeight << "\" stroke=\"#bbb\"/>\n";
+    }
+    svg << "<polyline fill=\"none\" stroke=\"" << (d + 1 == descriptors.size() ? "#1565c0" : "#c62828")
+        << "\" stroke-width=\"1.6\" points=\"";
+    for (int i = 0; i < count; ++i) svg << x_of(i) << ',' << y_of(curve[i]) << ' ';
+    svg << "\"/>\n";
+    for (const int i : peaks) {
+      svg << "<circle cx=\"" << x_of(i) << "\" cy=\"" << y_of(curve[i]) << "\" r=\"4\" fill=\"black\"/>\n";
+    }
+  }
+  svg << "</svg>\n";
+  return svg.str();
+}
+
+void Run(const BenchArguments& arguments, const std::string& command) {
+  BenchReport report;
+  report.command = command;
+  report.title = "Retrieval by normalised cross-correlation, a person turning left and right";
+  report.label_columns = {"descriptor", "seed"};
+  report.value_columns = {"peaks_a_cycle", "one_peak_%", "direction_right_%", "yaw_error_deg"};
+  const std::vector<std::string> noise_px = arguments.List("noise_px"), noise_deg = arguments.List("noise_deg");
+  BODYLOOM_CHECK(noise_px.size() == noise_deg.size(), "--noise_px and --noise_deg: lists of one length");
+  for (size_t n = 0; n < noise_px.size(); ++n) {
+    std::vector<BenchRow> rows;
+    for (int seed = 1; seed <= arguments.Integer("seeds"); ++seed) {
+      TurningPersonOptions options;
+      options.cycles = arguments.Integer("cycles");
+      options.period_s = std::stod(arguments.Text("period"));
+      options.amplitude_deg = std::stod(arguments.Text("amplitude"));
+      options.variation = std::stod(arguments.Text("variation"));
+      options.pose_noise_deg = std::stod(noise_deg[n]);
+      options.seed = static_cast<uint64_t>(seed);
+      const TurningPerson person = MakeTurningPerson(BuiltinBody(), options);
+      const NamedDescriptors descriptors = DescriptorsOf(person, std::stod(noise_px[n]), arguments);
+      for (const auto& [name, values] : descriptors) {
+        const RetrievalScores s = ScoreRetrieval(person, values);
+        rows.push_back({Concatenate(name, " (noise ", noise_px[n], " px, ", noise_deg[n], " deg)"),
+                        {name, std::to_string(seed)},
+                        {s.peaks_a_cycle, 100 * s.one_peak_share, 100 * s.direction_share, s.yaw_error_deg}});
+      }
+      if (n == 0 && seed == 1 && !arguments.Text("plot").empty()) {
+        WriteFileAtomically(arguments.Text("plot"), Plot(person, descriptors));
+      }
+    }
+    std::stable_sort(rows.begin(), rows.end(), [](const BenchRow& a, const BenchRow& b) { return a.group < b.group; });
+    report.rows.insert(report.rows.end(), rows.begin(), rows.end());
+  }
+  HandOver(report, arguments.Text("json"));
+}
+
+}  // namespace
+}  // namespace bodyloom
+
+int main(int argc, char** argv) {
+  return bodyloom::BenchMain("bodyloom_bench_retrieval", argc, argv,
+                             {{"cycles", "6"},
+                              {"period", "2"},
+                              {"amplitude", "60"},
+                              {"variation", "0.1"},
+                              {"noise_px", "0,2"},
+                              {"noise_deg", "0,1"},
+                              {"uv", "32"},
+                              {"window", "48"},
+                              {"seeds", "3"},
+                              {"threads", "2"},
+                              {"plot", ""},
+                              {"json", ""}},
+                             bodyloom::Run);
+}
