@@ -9,6 +9,7 @@
 #include <limits>
 #include <random>
 
+#include "geometry/posed_body.h"
 #include "tests/support/toy_body.h"
 #include "tracking/initialise/lifted_start.h"
 #include "tracking/initialise/lifter_input.h"
@@ -238,7 +239,11 @@ TEST(StartFromLifter, PlacesTheHipsWhereTheRaysMeet) {
   ASSERT_EQ(start.initial.states.size(), 20U);
   for (const FrameState& state : start.initial.states) {
     EXPECT_TRUE(state.translation.allFinite());
-    EXPECT_GT(state.translation.z(), 0);
+    BodyPose pose;
+    pose.rotations = state.rotations;
+    pose.trans = state.translation;
+    const MatrixX3d hips = PoseLandmarks(body, Eigen::VectorXd(), pose, {"left_hip", "right_hip"});
+    EXPECT_GT(hips.col(2).mean(), 0);
     for (const Eigen::Matrix3d& R : state.rotations)
       EXPECT_NEAR((R * R.transpose() - Eigen::Matrix3d::Identity()).norm(), 0, 1e-9);
   }

@@ -51,7 +51,9 @@ std::optional<Vector3d> PlaceOnRays(const std::vector<Sight>& sights, const Matr
     }
     hips = solver.solve(b);
   }
-  if (!hips.allFinite() || hips.z() < kNearest) return std::nullopt;
+  // The network's own hips need not lie at its origin.
+  const double hip_z = 0.5 * (offsets(kLifterLeftHip, 2) + offsets(kLifterLeftHip + 1, 2));
+  if (!hips.allFinite() || std::min(hips.z(), hips.z() + hip_z) < kNearest) return std::nullopt;
   return hips;
 }
 
