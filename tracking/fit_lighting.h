@@ -4,8 +4,8 @@
 /// taken for shadow.
 ///
 ///   minimises ½ Σ_i ρ( (a_l(i) · c·Y(n_i) − y_i)² / σ² ) + ½ (w Σ_i (a_l(i) − 1)/N)² + ½ N (10⁻³/σ)² Σ_k>0 c_k²
-/// over c in R⁹ and the albedos a_l. The last term only decides what the normals leave open (seen from one side, 1, z and
-/// z² are much alike).
+/// over c in R⁹ and the albedos a_l. The last term only decides what the normals leave open (seen from one side, 1, z
+/// and z² are much alike).
 ///
 /// y_i: light of a pixel (luminance, or one colour), n_i its normal, l(i) its label. Albedo and light have one common
 /// factor that no picture tells: the mean albedo over the samples is 1, so the shading is in units of it. ρ is Tukey's

@@ -9,7 +9,8 @@ namespace {
 PersonExtent Box(double x0, double y0, double x1, double y1) { return {{x0, y0}, {x1, y1}}; }
 
 TEST(PersonWindow, HoldsEveryFrameAndMovesOnlyWhenItMust) {
-  const std::vector<PersonExtent> extents = {Box(100, 50, 160, 190), Box(102, 50, 162, 190), {}, Box(150, 60, 210, 195)};
+  const std::vector<PersonExtent> extents = {
+      Box(100, 50, 160, 190), Box(102, 50, 162, 190), {}, Box(150, 60, 210, 195)};
   const PersonWindow window = PlanPersonWindow(extents, 400, 300, {.max_side = 256, .multiple = 16, .margin = 0.1});
   EXPECT_EQ(window.scale_x, 1);
   EXPECT_EQ(window.width % 16, 0);
