@@ -43,6 +43,7 @@ constexpr int kLargestSide = 4096;
 struct Request {
   std::string run, track, data, out, body, background, sheet, json, view_yaw, relight;
   int threads = 0, warmup = 50;
+  bool anywhere = false;
 };
 
 /// "30": every frame turned by 30°; "0:360": from 0 to 360 over the clip.
@@ -76,10 +77,9 @@ MotionScores Score(const Request& request, const MotionRun& run, int threads) {
   data_request.pixels_per_metre = run.pixels_per_metre;
   data_request.num_threads = threads;
   MotionData data(data_request, run.config.profile, run.config.Multiple());
-  return ScoreMotion(
-      MotionCheckpointPath(request.run), run.config,
-      [&](int t, bool with_truth, MotionFrame* frame) { data.Fill(t, with_truth, frame); },
-      {{0, data.track().num_frames()}}, request.warmup, threads);
+  return ScoreMotion(MotionCheckpointPath(request.run), run.config,
+                     [&](int t, bool with_truth, MotionFrame* frame) { data.Fill(t, with_truth, frame); },
+                     {{0, data.track().num_frames()}}, {request.warmup, request.anywhere ? 0 : run.reach, threads});
 }
 
 /// The light of the clip from its first frames, rendered for it; the clip then begins anew.
@@ -154,7 +154,8 @@ void Run(const Request& request) {
                                          window.picture_width, "x", window.picture_height, " px, at most ",
                                          kLargestSide, " a side; the track's person is too small in its picture"));
   }
-  MotionRenderer renderer(MotionCheckpointPath(request.run), run.config, {request.warmup, threads});
+  MotionRenderer renderer(MotionCheckpointPath(request.run), run.config,
+                          {request.warmup, request.anywhere ? 0 : run.reach, threads});
   lap(0);
   if (relighter && relighter->wants_frames()) EstimateLight(frames, track, &renderer, relighter.get());
   lap(1);
@@ -264,6 +265,8 @@ void AddAnimateMotion(CLI::App& animate, std::function<void()>* action) {
   verb->add_option("--warmup", request->warmup, "Passes of the first frame through the network before it counts")
       ->capture_default_str()
       ->check(CLI::Range(0, 1000));
+  verb->add_flag("--anywhere", request->anywhere,
+                 "The person may be farther from the body than clothes ever were in training");
   verb->add_option("--sheet", request->sheet, "Contact sheet of six frames: picture, labels, normals");
   verb->add_option("--json", request->json, "Report with times");
   verb->add_option("--threads", request->threads, "0: all cores")->check(CLI::NonNegativeNumber);

@@ -31,7 +31,8 @@ std::string MotionRunJson(const MotionRun& run) {
                {"surface", c.surface},
                {"pixels_per_metre", run.pixels_per_metre},
                {"fps", run.fps},
-               {"past", run.past}};
+               {"past", run.past},
+               {"reach", run.reach}};
   if (!run.notes.empty()) json["run"] = Json::parse(run.notes);
   return json.dump(2) + "\n";
 }
@@ -73,13 +74,15 @@ MotionRun ReadMotionRun(const std::string& run_dir) {
     get("pixels_per_metre", &run.pixels_per_metre);
     get("fps", &run.fps);
     get("past", &run.past);
+    get("reach", &run.reach);
   } catch (const nlohmann::json::exception&) {
     throw std::runtime_error(path + ": no usable \"" + key + "\", expected the config.json of `bodyloom train motion`");
   }
   std::string why;
   if (!run.config.IsValid(&why)) throw std::runtime_error(path + ": " + why);
-  if (run.past < 0 || 3 + 3 * run.past != run.config.motion_channels || !(run.pixels_per_metre > 0) || !(run.fps > 0)) {
-    throw std::runtime_error(path + ": past, pixels_per_metre or fps do not make sense");
+  if (run.reach < 0 || run.past < 0 || 3 + 3 * run.past != run.config.motion_channels || !(run.pixels_per_metre > 0) ||
+      !(run.fps > 0)) {
+    throw std::runtime_error(path + ": past, reach, pixels_per_metre or fps do not make sense");
   }
   return run;
 }

@@ -12,6 +12,7 @@ struct MotionRun {
   MotionConfig config;
   double pixels_per_metre = 0;  ///< of the window: the size that the person was trained at
   double fps = 30;
+  int reach = 0;      ///< pixels that clothes reach beyond the body (neural/motion/clothes_reach.h), 0: not known
   int past = 10;      ///< velocities of so many frames
   std::string notes;  ///< JSON object of what else is known: data, frames, options
 };

@@ -23,7 +23,9 @@
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/video/image_file.h"
 #include "geometry/check.h"
+#include "neural/motion/clothes_reach.h"
 #include "neural/motion/train_motion.h"
+#include "render/contact_sheet.h"
 
 namespace bodyloom {
 namespace {
@@ -123,6 +125,24 @@ void ChooseFrames(const Request& request, const Track& track, int validation_fra
   options->train = TakeShare(options->train, request.share);
 }
 
+/// Of frames spread over the ranges.
+int ReachOf(MotionData* data, const std::vector<FrameRange>& ranges) {
+  if (data->labels() == LabelSource::kNone) return 0;
+  constexpr int kFrames = 64;
+  std::vector<int> all;
+  for (const FrameRange& range : ranges) {
+    for (int t = range.begin; t < range.end; ++t) all.push_back(t);
+  }
+  std::vector<MotionFrame> frames;
+  for (const int i : EvenlySpreadFrames(static_cast<int>(all.size()), kFrames)) {
+    MotionFrame frame;
+    data->Fill(all[i], true, &frame);
+    frame.motion = frame.uv = frame.image = frame.normals = {};
+    frames.push_back(std::move(frame));
+  }
+  return ClothesReach(frames);
+}
+
 std::string ScoresText(const MotionScores& s) {
   char line[256];
   std::snprintf(line, sizeof line,
@@ -178,7 +198,12 @@ void Run(Request request) {
     };
   }
   ChooseFrames(request, data.track(), validation ? validation->track().num_frames() : 0, &options);
-  MotionRun run{config, data.PixelsPerMetre(), 30, data.frames().options().past, Notes(request)};
+  MotionRun run;
+  run.config = config;
+  run.pixels_per_metre = data.PixelsPerMetre();
+  run.reach = ReachOf(&data, options.train);
+  run.past = data.frames().options().past;
+  run.notes = Notes(request);
   const std::vector<double>& times = data.track().motion.timestamps;
   if (times.size() > 1) run.fps = static_cast<double>(times.size() - 1) / (times.back() - times.front());
   options.config_json = MotionRunJson(run);

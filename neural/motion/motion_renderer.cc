@@ -31,7 +31,7 @@ MotionModel Loaded(const std::string& path, const MotionConfig& config, const Mo
 class MotionRenderer::Impl {
  public:
   Impl(const std::string& path, const MotionConfig& config, const MotionRendererOptions& options)
-      : roll_(Loaded(path, config, options), options.warmup_iterations) {}
+      : roll_(Loaded(path, config, options), options.warmup_iterations, options.reach) {}
 
   MotionPicture Next(const MotionFrame& frame) {
     const MotionStepResult result = roll_.Next(frame);
@@ -69,9 +69,9 @@ int64_t MotionRenderer::descriptors_kept() const { return impl_->roll().descript
 int64_t MotionRenderer::projections_kept() const { return impl_->roll().projections_kept(); }
 
 MotionScores ScoreMotion(const std::string& checkpoint_path, const MotionConfig& config,
-                         const MotionFrameSource& source, const std::vector<FrameRange>& ranges, int warmup_iterations,
-                         int num_threads) {
-  RollOut roll(Loaded(checkpoint_path, config, {warmup_iterations, num_threads}), warmup_iterations);
+                         const MotionFrameSource& source, const std::vector<FrameRange>& ranges,
+                         const MotionRendererOptions& options) {
+  RollOut roll(Loaded(checkpoint_path, config, options), options.warmup_iterations, options.reach);
   MotionScorer scorer(config);
   for (const FrameRange& range : ranges) {
     roll.Restart();

@@ -23,6 +23,7 @@ struct MotionPicture {
 
 struct MotionRendererOptions {
   int warmup_iterations = 50;  ///< of a clip's first frame, as Kappel et al., CVPR 2021
+  int reach = 0;               ///< pixels from the body beyond which is background; 0: none (roll_out.h)
   int num_threads = 0;         ///< 0: all cores
 };
 

@@ -19,6 +19,20 @@ void RollOut::Restart() {
   descriptor_ = projected_ = Tensor();
 }
 
+void RollOut::KeepWithinReach(const Tensor& body, MotionStepResult* result) const {
+  if (reach_ <= 0 || body.max().item<float>() <= 0) return;
+  const Tensor near = torch::max_pool2d(body, 2 * reach_ + 1, 1, reach_);
+  MotionState& state = result->state;
+  state.image = state.image * near;
+  if (state.normals.defined()) state.normals = state.normals * near;
+  if (state.labels.defined()) {
+    Tensor background = torch::zeros_like(state.labels);
+    background.slice(1, 0, 1).fill_(1);
+    state.labels = torch::where(near > 0, state.labels, background);
+    result->foreground = result->foreground * near;
+  }
+}
+
 MotionStepResult RollOut::Next(const MotionFrame& frame) {
   const torch::NoGradGuard no_grad;
   const MotionInput input = InputOf(std::span(&frame, 1), model_->config);
@@ -39,6 +53,7 @@ MotionStepResult RollOut::Next(const MotionFrame& frame) {
   MotionStepResult result;
   for (int i = 0; i < passes; ++i) {
     result = model_->Decode(projected_, past_);
+    KeepWithinReach(input.body, &result);
     past_ = result.state;
   }
   return result;

@@ -12,8 +12,10 @@ namespace bodyloom {
 class RollOut {
  public:
   /// The first frame passes `warmup_iterations` times through the network before it counts, each time with its own last
-  /// answer as its past.
-  RollOut(MotionModel model, int warmup_iterations) : model_(std::move(model)), warmup_(warmup_iterations) {}
+  /// answer as its past. What lies more than `reach` pixels (along x or y) from the body is background: the recurrence
+  /// would keep a speck alive that it once put there; 0: anything may be anywhere.
+  RollOut(MotionModel model, int warmup_iterations, int reach = 0)
+      : model_(std::move(model)), warmup_(warmup_iterations), reach_(reach) {}
 
   /// The next frame. No gradients.
   MotionStepResult Next(const MotionFrame& frame);
@@ -24,8 +26,10 @@ class RollOut {
   [[nodiscard]] int64_t projections_kept() const { return projections_kept_; }
 
  private:
+  void KeepWithinReach(const torch::Tensor& body, MotionStepResult* result) const;
+
   MotionModel model_;
-  int warmup_;
+  int warmup_, reach_;
   MotionState past_;
   MotionInput last_;
   torch::Tensor descriptor_, projected_;

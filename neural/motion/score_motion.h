@@ -8,6 +8,7 @@
 #include "neural/motion/chain_plan.h"
 #include "neural/motion/motion_config.h"
 #include "neural/motion/motion_frame.h"
+#include "neural/motion/motion_renderer.h"
 
 namespace bodyloom {
 
@@ -26,7 +27,7 @@ struct MotionScores {
 
 /// Rolls the checkpoint's network out over the ranges. Throws as MotionRenderer.
 MotionScores ScoreMotion(const std::string& checkpoint_path, const MotionConfig& config,
-                         const MotionFrameSource& source, const std::vector<FrameRange>& ranges, int warmup_iterations,
-                         int num_threads);
+                         const MotionFrameSource& source, const std::vector<FrameRange>& ranges,
+                         const MotionRendererOptions& options);
 
 }  // namespace bodyloom

@@ -8,6 +8,7 @@
 #include <limits>
 #include <sstream>
 
+#include "neural/motion/clothes_reach.h"
 #include "neural/motion/frame_tensors.h"
 #include "neural/motion/motion_model.h"
 #include "neural/motion/motion_renderer.h"
@@ -169,7 +170,7 @@ TEST(MotionTraining, LearnsAClipByHeartAndRollsItOut) {
   EXPECT_EQ(previews.size(), 4U);
   // The same network from its file, scored apart from training.
   const MotionScores again =
-      ScoreMotion(MotionCheckpointPath(options.run_dir), options.config, ToyFrame, {{0, 4}}, 10, 1);
+      ScoreMotion(MotionCheckpointPath(options.run_dir), options.config, ToyFrame, {{0, 4}}, {10, 0, 1});
   EXPECT_NEAR(again.image_l1, summary.scores.image_l1, 1e-6);
   EXPECT_NEAR(again.label_iou, summary.scores.label_iou, 1e-6);
 }
@@ -219,7 +220,7 @@ TEST(MotionTraining, ALossThatIsNotANumberKeepsTheLastCheckpoint) {
   EXPECT_GT(summary.steps, 0);
   EXPECT_NE(summary.message.find("checkpoint.bin holds step " + std::to_string(summary.steps)), std::string::npos)
       << summary.message;
-  MotionRenderer renderer(MotionCheckpointPath(options.run_dir), options.config, {0, 1});
+  MotionRenderer renderer(MotionCheckpointPath(options.run_dir), options.config, {0, 0, 1});
   MotionFrame frame;
   ToyFrame(3, false, &frame);
   for (const float value : renderer.Next(frame).image) ASSERT_TRUE(std::isfinite(value));
@@ -235,10 +236,10 @@ TEST(MotionTraining, RefusesWhatDoesNotFit) {
   const std::string path = MotionCheckpointPath(options.run_dir);
   MotionConfig other = Toy();
   other.profile.decoder_widths = {4, 8, 8};
-  EXPECT_THROW(MotionRenderer(path, other, {0, 1}), std::runtime_error);
+  EXPECT_THROW(MotionRenderer(path, other, {0, 0, 1}), std::runtime_error);
   fs::resize_file(path, fs::file_size(path) / 2);
   try {
-    MotionRenderer renderer(path, Toy(), {0, 1});
+    MotionRenderer renderer(path, Toy(), {0, 0, 1});
     FAIL() << "took half a checkpoint";
   } catch (const std::runtime_error& error) {
     EXPECT_EQ(std::string(error.what()).rfind(path, 0), 0U) << error.what();
@@ -264,6 +265,42 @@ TEST(RollOut, KeepsWhatDoesNotChangeAndSaysTheSame) {
   }
   EXPECT_EQ(roll.descriptors_kept(), 3);
   EXPECT_EQ(roll.projections_kept(), 3);
+}
+
+TEST(RollOut, NothingIsBeyondReach) {
+  torch::manual_seed(6);
+  const MotionConfig config = Toy();
+  MotionModel model(config);  // untrained: sees the person everywhere
+  RollOut anywhere(model, 2), near(model, 2, 3);
+  MotionFrame frame;
+  ToyFrame(1, false, &frame);
+  const MotionStepResult all = anywhere.Next(frame), kept = near.Next(frame);
+  int beyond = 0;
+  for (int y = 0; y < 32; ++y) {
+    for (int x = 0; x < 32; ++x) {
+      // The body is [7, 23) × [8, 24).
+      if (x >= 4 && x < 26 && y >= 5 && y < 27) continue;
+      beyond += all.foreground[0][0][y][x].item<float>() > 0.01F;
+      EXPECT_EQ(kept.foreground[0][0][y][x].item<float>(), 0);
+      EXPECT_EQ(kept.state.labels[0][0][y][x].item<float>(), 1);
+      EXPECT_EQ(kept.state.image[0][1][y][x].item<float>(), 0);
+    }
+  }
+  EXPECT_GT(beyond, 100);
+  EXPECT_GT(kept.foreground[0][0][5][4].item<float>(), 0);
+}
+
+TEST(ClothesReach, IsTheLongerOfBothDistances) {
+  MotionFrame frame;
+  ToyFrame(0, true, &frame);
+  EXPECT_EQ(ClothesReach(std::span(&frame, 1)), 0);  // labels are where the body is: [6, 22) × [8, 24)
+  frame.labels[10 * 32 + 27] = 1;                    // 6 to the right
+  EXPECT_EQ(ClothesReach(std::span(&frame, 1), 0), 6);
+  frame.labels[31 * 32 + 24] = 1;  // 3 to the right, 8 below
+  EXPECT_EQ(ClothesReach(std::span(&frame, 1), 0), 8);
+  EXPECT_EQ(ClothesReach(std::span(&frame, 1), 0.1), 0);  // two of 258 pixels may stay out
+  frame.labels.clear();
+  EXPECT_EQ(ClothesReach(std::span(&frame, 1)), 0);
 }
 
 TEST(MotionScores, AreZeroForTheTruthAndWhatTheyShouldBeBesideIt) {

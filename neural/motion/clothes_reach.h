@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+/// How far clothes and hair reach beyond the body, so that a renderer need not look for the person elsewhere.
+#pragma once
+
+#include <span>
+
+#include "neural/motion/motion_frame.h"
+
+namespace bodyloom {
+
+/// The smallest number of pixels r such that squares of side 2r + 1 around the body's pixels hold all but `left_out` of
+/// the foreground (labels other than 0) of the frames; 0 when the frames have no labels or no foreground. Frames
+/// without a body are passed over.
+int ClothesReach(std::span<const MotionFrame> frames, double left_out = 0.001);
+
+}  // namespace bodyloom
