@@ -8,25 +8,12 @@
 #include <limits>
 #include <utility>
 
+#include "data_tools/formats/half.h"
 #include "data_tools/formats/utf8.h"
 #include "geometry/check.h"
 
 namespace bodyloom {
 namespace {
-
-float FloatFromHalf(uint16_t half) {
-  const int exponent = (half >> 10) & 31;
-  const int fraction = half & 1023;
-  float value = 0;
-  if (exponent == 31) {
-    value = fraction == 0 ? std::numeric_limits<float>::infinity() : std::numeric_limits<float>::quiet_NaN();
-  } else if (exponent == 0) {
-    value = std::ldexp(static_cast<float>(fraction), -24);
-  } else {
-    value = std::ldexp(static_cast<float>(fraction + 1024), exponent - 25);
-  }
-  return (half & 0x8000) != 0 ? -value : value;
-}
 
 /// The sixteen bits are the upper ones of a float.
 float FloatFromBrain(uint16_t brain) { return std::bit_cast<float>(static_cast<uint32_t>(brain) << 16); }

@@ -8,10 +8,10 @@
 #include <atomic>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <utility>
 
 #include "data_tools/descriptors/describe_track.h"
+#include "data_tools/formats/half.h"
 #include "data_tools/formats/npz.h"
 #include "geometry/check.h"
 #include "geometry/parallel.h"
@@ -30,16 +30,11 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-/// IEEE half to float, by table: 64 K floats.
+/// FloatFromHalf by table: every frame decodes half a million values.
 class HalfTable {
  public:
   HalfTable() : values_(1 << 16) {
-    for (uint32_t half = 0; half < values_.size(); ++half) {
-      const int exponent = static_cast<int>((half >> 10) & 31U), mantissa = static_cast<int>(half & 1023U);
-      double value = exponent == 0 ? std::ldexp(mantissa, -24) : std::ldexp(1024 + mantissa, exponent - 25);
-      if (exponent == 31) value = mantissa == 0 ? std::numeric_limits<double>::infinity() : std::nan("");
-      values_[half] = static_cast<float>((half >> 15) != 0 ? -value : value);
-    }
+    for (uint32_t half = 0; half < values_.size(); ++half) values_[half] = FloatFromHalf(static_cast<uint16_t>(half));
   }
   float operator[](uint16_t half) const { return values_[half]; }
 

@@ -20,6 +20,7 @@
 #include "neural/lifter/lifter_module.h"
 #include "neural/muon.h"
 #include "neural/runtime.h"
+#include "neural/training/schedules.h"
 
 namespace bodyloom {
 namespace {
@@ -119,8 +120,7 @@ class BatchQueue {
 };
 
 double LearningRate(const TrainLifterOptions& options, int step) {
-  const double warm = std::min(1.0, (step + 1.0) / std::max(1, options.warmup_steps));
-  return options.learning_rate * warm * 0.5 * (1 + std::cos(M_PI * step / options.steps));
+  return CosineWithWarmup(options.learning_rate, step, options.steps, options.warmup_steps);
 }
 
 /// metrics.csv, kept up to a step: a run that goes on from a checkpoint writes later lines anew.
