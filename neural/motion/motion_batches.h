@@ -4,15 +4,11 @@
 
 #include <torch/torch.h>
 
-#include <condition_variable>
-#include <deque>
-#include <exception>
-#include <mutex>
-#include <thread>
 #include <vector>
 
 #include "neural/motion/chain_plan.h"
 #include "neural/motion/frame_tensors.h"
+#include "neural/training/made_ahead.h"
 
 namespace bodyloom {
 
@@ -29,27 +25,14 @@ class MotionBatches {
  public:
   MotionBatches(const MotionFrameSource& source, const MotionConfig& config, ChainPlan plan, int64_t first,
                 int64_t last);
-  ~MotionBatches();
-  MotionBatches(const MotionBatches&) = delete;
-  MotionBatches& operator=(const MotionBatches&) = delete;
 
-  /// The next batch; waits for it. Throws what the source threw. Adds the time it waited to waited_s().
-  MotionBatch Take();
-  [[nodiscard]] double waited_s() const { return waited_s_; }
+  /// The next batch; waits for it. Throws what the source threw.
+  MotionBatch Take() { return ahead_.Take(); }
+  [[nodiscard]] double waited_s() const { return ahead_.waited_s(); }
 
  private:
-  void Run(int64_t steps);
-
-  const MotionFrameSource& source_;
-  const MotionConfig& config_;
   ChainPlan plan_;
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::deque<MotionBatch> ready_;
-  std::exception_ptr error_;
-  bool stop_ = false;
-  double waited_s_ = 0;
-  std::thread thread_;
+  MadeAhead<MotionBatch> ahead_;
 };
 
 }  // namespace bodyloom

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Things made by a thread of their own, a few ahead of the one that is asked for: the batches of a training run.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+namespace bodyloom {
+
+template <class Item>
+class MadeAhead {
+ public:
+  /// `make` is called `count` times, one call after the other, with 0, 1, … count − 1, on the other thread; at most
+  /// `ahead` results wait.
+  MadeAhead(int64_t count, std::function<Item(int64_t)> make, size_t ahead = 3)
+      : make_(std::move(make)), ahead_(ahead), thread_([this, count] { Run(count); }) {}
+  ~MadeAhead() {
+    {
+      const std::lock_guard lock(mutex_);
+      stop_ = true;
+    }
+    changed_.notify_all();
+    thread_.join();
+  }
+  MadeAhead(const MadeAhead&) = delete;
+  MadeAhead& operator=(const MadeAhead&) = delete;
+
+  /// The next one; waits for it. At most `count` times. Throws what `make` threw, once all made before it were taken.
+  /// Adds the time it waited to waited_s().
+  Item Take() {
+    const auto start = std::chrono::steady_clock::now();
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return !ready_.empty() || error_ != nullptr; });
+    waited_s_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (ready_.empty()) std::rethrow_exception(error_);
+    Item item = std::move(ready_.front());
+    ready_.pop_front();
+    changed_.notify_all();
+    return item;
+  }
+  [[nodiscard]] double waited_s() const { return waited_s_; }
+
+ private:
+  void Run(int64_t count) {
+    try {
+      for (int64_t i = 0; i < count; ++i) {
+        Item item = make_(i);
+        std::unique_lock lock(mutex_);
+        changed_.wait(lock, [&] { return stop_ || ready_.size() < ahead_; });
+        if (stop_) return;
+        ready_.push_back(std::move(item));
+        changed_.notify_all();
+      }
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      error_ = std::current_exception();
+      changed_.notify_all();
+    }
+  }
+
+  std::function<Item(int64_t)> make_;
+  size_t ahead_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<Item> ready_;
+  std::exception_ptr error_;
+  bool stop_ = false;
+  double waited_s_ = 0;
+  std::thread thread_;  ///< last: it uses all of the above
+};
+
+}  // namespace bodyloom
