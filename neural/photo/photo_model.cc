@@ -8,6 +8,18 @@ namespace bodyloom {
 
 using torch::Tensor;
 
+namespace {
+
+/// The first three features begin as the input's colours, the others near 0. `colours` is the first channel of the
+/// input among those that the convolution sees.
+void StartFromColours(torch::nn::Conv2dImpl* last, int colours) {
+  const torch::NoGradGuard no_grad;
+  torch::nn::init::normal_(last->weight, 0, 0.02);
+  for (int c = 0; c < 3; ++c) last->weight[c][colours + c][1][1] += 1;
+}
+
+}  // namespace
+
 PhotoModelImpl::PhotoModelImpl(const PhotoConfig& model_config) : config(model_config) {
   std::string why;
   BODYLOOM_CHECK(config.IsValid(&why), "photo renderer: ", why);

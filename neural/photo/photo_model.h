@@ -8,6 +8,9 @@
 /// RenderNet has three outputs on its photographs' plain background; the fourth is this project's
 /// (docs/photo_renderer.md).
 ///
+/// FeatureNet's last convolution starts as N(0, 0.02²), plus what copies the input's colours to the first three
+/// features: visible texels need not be learned.
+///
 /// Variants (neural/photo/photo_config.h): without FeatureNet F_s is T_s itself; with kWarpCond R has the target's
 /// coordinates and parts (u, v, part/24, 0 off the body) beside it.
 #pragma once
