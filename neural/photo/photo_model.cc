@@ -27,6 +27,7 @@ PhotoModelImpl::PhotoModelImpl(const PhotoConfig& model_config) : config(model_c
   if (config.Completes()) {
     feature_net =
         register_module("feature_net", FeatureUNet(FeatureUNetOptions{4, config.TextureChannels(), p.feature_widths}));
+    StartFromColours(feature_net->last.get(), p.feature_widths[0]);
   }
   render_net = register_module("render_net", ResidualGenerator(ResidualGeneratorOptions{
                                                  config.RenderChannels(), 4, p.render_width, p.render_blocks}));
