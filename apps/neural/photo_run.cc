@@ -37,6 +37,7 @@ std::string PhotoRunJson(const PhotoRun& run) {
                                  {"discriminator_layers", p.discriminator_layers},
                                  {"discriminator_scales", p.discriminator_scales},
                                  {"perceptual_divisor", p.perceptual_divisor},
+                                 {"render_passes_input", p.render_passes_input ? 1 : 0},
                                  {"reach", run.reach}};
   if (!run.notes.empty()) json["run"] = nlohmann::ordered_json::parse(run.notes);
   return json.dump(2) + "\n";
@@ -63,6 +64,7 @@ PhotoRun ReadPhotoRun(const std::string& run_dir) {
   }
   const JsonNode widths = root.At("feature_widths");
   for (size_t i = 0; i < widths.size(); ++i) p.feature_widths.push_back(Int(widths.At(i)));
+  int passes_input = 0;
   const std::pair<const char*, int*> numbers[] = {{"image_size", &p.image_size},
                                                   {"texture_size", &p.texture_size},
                                                   {"features", &p.features},
@@ -72,8 +74,10 @@ PhotoRun ReadPhotoRun(const std::string& run_dir) {
                                                   {"discriminator_layers", &p.discriminator_layers},
                                                   {"discriminator_scales", &p.discriminator_scales},
                                                   {"perceptual_divisor", &p.perceptual_divisor},
+                                                  {"render_passes_input", &passes_input},
                                                   {"reach", &run.reach}};
   for (const auto& [key, value] : numbers) *value = Int(root.At(key));
+  p.render_passes_input = passes_input != 0;
   std::string why;
   if (!run.config.IsValid(&why)) throw std::runtime_error(path + ": " + why);
   if (run.reach < 0 || run.reach > p.image_size) {

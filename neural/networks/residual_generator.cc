@@ -51,7 +51,7 @@ ResidualGeneratorImpl::ResidualGeneratorImpl(const ResidualGeneratorOptions& gen
         Initialised(nn::ConvTranspose2d(
             nn::ConvTranspose2dOptions(channels, channels / 2, 3).stride(2).padding(1).output_padding(1)))));
   }
-  last = register_module("last", Conv(channels, options.out, 7, 1, 0));
+  last = register_module("last", Conv(channels + (options.passes_input ? options.in : 0), options.out, 7, 1, 0));
 }
 
 Tensor ResidualGeneratorImpl::forward(Tensor x) {
@@ -59,6 +59,7 @@ Tensor ResidualGeneratorImpl::forward(Tensor x) {
                      x.size(3) % kResidualGeneratorMultiple == 0 && x.size(2) >= 16 && x.size(3) >= 16,
                  "generator: an input of shape ", x.sizes(), ", expected B x ", options.in,
                  " x H x W, sides multiples of 8 and at least 16");
+  const Tensor input = x;
   x = NormAndRelu(first(Reflected(x, 3)));
   for (nn::Conv2d& conv : down) x = NormAndRelu(conv(x));
   for (size_t i = 0; i < blocks.size(); i += 2) {
@@ -66,7 +67,7 @@ Tensor ResidualGeneratorImpl::forward(Tensor x) {
     x = x + InstanceNorm(blocks[i + 1](Reflected(inner, 1)));
   }
   for (nn::ConvTranspose2d& conv : up) x = NormAndRelu(conv(x));
-  return last(Reflected(x, 3));
+  return last(Reflected(options.passes_input ? torch::cat({x, input}, 1) : x, 3));
 }
 
 }  // namespace bodyloom

@@ -21,6 +21,7 @@ struct ResidualGeneratorOptions {
   int in = 0, out = 0;
   int width = 64;  ///< n
   int blocks = 6;
+  bool passes_input = false;  ///< the last convolution sees the input beside the finest map: not in the sources
 };
 
 /// Every side of the input is a multiple of this.

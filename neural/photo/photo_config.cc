@@ -22,8 +22,8 @@ const std::vector<std::pair<PhotoVariant, const char*>> kVariants = {{PhotoVaria
 const PhotoProfile& PhotoProfileNamed(const std::string& name) {
   static const std::vector<PhotoProfile> profiles = {
       {"paper", 256, 256, 16, {64, 128, 256, 512, 1024}, 64, 6, 64, 3, 3, 1},
-      {"cpu", 256, 256, 16, {16, 32, 64, 128, 256}, 16, 6, 16, 3, 3, 4},
-      {"tiny", 128, 128, 16, {8, 16, 32, 64, 128}, 16, 6, 8, 3, 2, 8},
+      {"cpu", 256, 256, 16, {16, 32, 64, 128, 256}, 16, 6, 16, 3, 3, 4, true},
+      {"tiny", 128, 128, 16, {8, 16, 32, 64, 128}, 16, 6, 8, 3, 2, 8, true},
   };
   for (const PhotoProfile& profile : profiles) {
     if (profile.name == name) return profile;
@@ -97,7 +97,8 @@ std::string ToText(const PhotoConfig& config) {
        << p.texture_size << "; features " << p.features << "; feature widths";
   for (const int width : p.feature_widths) text << ' ' << width;
   text << "; render " << p.render_width << " x " << p.render_blocks << "; discriminator " << p.discriminator_width
-       << " x " << p.discriminator_layers << " x " << p.discriminator_scales;
+       << " x " << p.discriminator_layers << " x " << p.discriminator_scales << "; passes input "
+       << p.render_passes_input;
   return text.str();
 }
 

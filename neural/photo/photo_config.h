@@ -18,6 +18,9 @@ struct PhotoProfile {
   int render_width = 0, render_blocks = 0;
   int discriminator_width = 0, discriminator_layers = 0, discriminator_scales = 0;
   int perceptual_divisor = 1;  ///< channels of VGG are divided by this where a stand-in takes its place
+  /// RenderNet's last convolution sees R too, and begins with its colours. Instance norm takes colours out of every map
+  /// before; how they come back is learned, which takes longer than two cores can wait. Not in the paper.
+  bool render_passes_input = false;
 };
 
 /// "paper" (the published sizes), "cpu" (256² and 256², trains and runs on two cores), "tiny" (128², for tests and

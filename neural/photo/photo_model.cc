@@ -10,12 +10,13 @@ using torch::Tensor;
 
 namespace {
 
-/// The first three features begin as the input's colours, the others near 0. `colours` is the first channel of the
-/// input among those that the convolution sees.
+/// The first three outputs begin as the input's colours, the others near 0. `colours` is the first channel of the input
+/// among those that the convolution sees.
 void StartFromColours(torch::nn::Conv2dImpl* last, int colours) {
   const torch::NoGradGuard no_grad;
   torch::nn::init::normal_(last->weight, 0, 0.02);
-  for (int c = 0; c < 3; ++c) last->weight[c][colours + c][1][1] += 1;
+  const int64_t centre = last->weight.size(2) / 2;
+  for (int c = 0; c < 3; ++c) last->weight[c][colours + c][centre][centre] += 1;
 }
 
 }  // namespace
@@ -29,8 +30,10 @@ PhotoModelImpl::PhotoModelImpl(const PhotoConfig& model_config) : config(model_c
         register_module("feature_net", FeatureUNet(FeatureUNetOptions{4, config.TextureChannels(), p.feature_widths}));
     StartFromColours(feature_net->last.get(), p.feature_widths[0]);
   }
-  render_net = register_module("render_net", ResidualGenerator(ResidualGeneratorOptions{
-                                                 config.RenderChannels(), 4, p.render_width, p.render_blocks}));
+  render_net = register_module("render_net",
+                               ResidualGenerator(ResidualGeneratorOptions{config.RenderChannels(), 4, p.render_width,
+                                                                          p.render_blocks, p.render_passes_input}));
+  if (p.render_passes_input) StartFromColours(render_net->last.get(), p.render_width);
 }
 
 Tensor PhotoModelImpl::Complete(const TextureTensors& texture) {

@@ -163,6 +163,11 @@ TEST(PhotoModel, BeginsWithTheColoursThatItIsShown) {
   EXPECT_LT(error.abs().max().item<float>(), 0.5);
   EXPECT_LT(error.abs().mean().item<float>(), 0.1);
   EXPECT_LT(features.slice(1, 3).abs().mean().item<float>(), 0.3);
+  // So does the picture, where the body is seen.
+  const Tensor projected = model->Project(features, toy.pose);
+  const PhotoResult result = model->Render(projected);
+  const Tensor shown = 0.5 * (torch::tanh(projected.slice(1, 0, 3)) + 1);
+  EXPECT_LT(((result.image / result.alpha - shown) * toy.pose.body).abs().mean().item<float>(), 0.1);
 }
 
 TEST(PhotoModel, DerivativesAgreeWithDifferences) {

@@ -15,7 +15,7 @@ inline constexpr int kToySize = 64, kToyTexture = 16;
 inline constexpr int kCardLeft = 16, kCardTop = 12, kCardWidth = 24, kCardHeight = 40;
 
 inline PhotoConfig ToyPhotoConfig(PhotoVariant variant = PhotoVariant::kFull) {
-  return {{"toy", kToySize, kToyTexture, 4, {4, 8}, 4, 1, 4, 1, 2, 16}, variant};
+  return {{"toy", kToySize, kToyTexture, 4, {4, 8}, 4, 1, 4, 1, 2, 16, true}, variant};
 }
 
 /// Colour c of the card at (u, v).
