@@ -241,10 +241,10 @@ TEST(MotionTraining, RefusesWhatDoesNotFit) {
   const std::string path = MotionCheckpointPath(options.run_dir);
   MotionConfig other = Toy();
   other.profile.decoder_widths = {4, 8, 8};
-  EXPECT_THROW(MotionRenderer(path, other, {0, 0, 1}), std::runtime_error);
+  EXPECT_THROW(MotionRenderer(path, other, {0, 0, false, 1}), std::runtime_error);
   fs::resize_file(path, fs::file_size(path) / 2);
   try {
-    MotionRenderer renderer(path, Toy(), {0, 0, 1});
+    MotionRenderer renderer(path, Toy(), {0, 0, false, 1});
     FAIL() << "took half a checkpoint";
   } catch (const std::runtime_error& error) {
     EXPECT_EQ(std::string(error.what()).rfind(path, 0), 0U) << error.what();
