@@ -19,6 +19,7 @@
 #include "apps/neural/motion_data.h"
 #include "apps/neural/motion_preview.h"
 #include "apps/neural/motion_run.h"
+#include "apps/neural/weights_folder.h"
 #include "apps/progress.h"
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/video/image_file.h"
@@ -36,7 +37,7 @@ constexpr int kShareStretch = 32;  ///< frames: with less of the data, whole str
 
 struct Request {
   MotionDataRequest data;
-  std::string shape_loss = "ce", validate_data, out, profile = "cpu";
+  std::string shape_loss = "ce", validate_data, out, profile = "cpu", weights;
   std::vector<std::string> without, train, validate;
   double share = 1;
   TrainMotionOptions options;
@@ -184,6 +185,7 @@ void Run(Request request) {
   RequireReadable(request.data.data, "data");
   RequireReadable(request.data.track, "track");
   RequireWritableFolder(request.out);
+  options.vgg16 = ReadWeightsFolder(request.weights).vgg16;
   const fs::path run_dir = request.out;
   options.run_dir = request.out;
   const bool exists = fs::exists(MotionCheckpointPath(request.out));
@@ -301,6 +303,8 @@ void AddTrainMotion(CLI::App& train, std::function<void()>* action) {
   verb->add_option("--validate-every", options.validate_every, "Steps")->capture_default_str();
   verb->add_option("--patience", options.patience, "Stop after so many validations without a better one (0: never)")
       ->capture_default_str();
+  verb->add_option("--weights", request->weights,
+                   "Folder with trained networks: vgg16 (.pth or .safetensors) for the perceptual loss");
   verb->add_option("--seed", options.seed, "Of weights and order of frames")->capture_default_str();
   verb->add_option("--threads", options.num_threads, "0: all cores")->capture_default_str();
   verb->add_flag("--resume", options.resume, "Go on with the run in --out");

@@ -17,4 +17,11 @@ struct NamedArray {
 /// By the name that the file gives, such as "features.0.weight".
 using NamedWeights = std::map<std::string, NamedArray>;
 
+/// Weights and the file they are from, which messages name.
+struct WeightsFrom {
+  NamedWeights weights;
+  std::string source;
+  [[nodiscard]] bool empty() const { return weights.empty(); }
+};
+
 }  // namespace bodyloom

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+/// `--weights DIR`: trained weights that this project cannot ship, under fixed names.
+///
+///   vgg16, vgg19, alexnet   torchvision's classifiers ("features.0.weight", …)
+///   lpips_alex              LPIPS' channel weights on AlexNet ("lin0.model.1.weight", …)
+///   sphereface              SphereFace-20a ("conv1_1.weight", …)
+/// each as NAME.safetensors, NAME.pth or NAME.pt (the first that exists). All are optional.
+#pragma once
+
+#include <string>
+
+#include "neural/networks/named_weights.h"
+
+namespace bodyloom {
+
+/// Empty where the folder has no such file. Shapes are checked by the networks, whose messages name the file.
+struct WeightsFolder {
+  WeightsFrom vgg16, vgg19, alexnet, lpips_heads, sphereface;
+  [[nodiscard]] bool has_lpips() const { return !alexnet.empty() && !lpips_heads.empty(); }
+};
+
+/// `folder` empty: everything empty. Throws std::runtime_error naming the folder when it is none or has none of these
+/// files, and the file that cannot be read or holds a tensor that is no number.
+WeightsFolder ReadWeightsFolder(const std::string& folder);
+
+/// "vgg19 vgg19.pth, sphereface not there", one line for the user.
+std::string ToText(const WeightsFolder& weights);
+
+}  // namespace bodyloom
