@@ -9,6 +9,7 @@
 #include "apps/exit_code.h"
 #include "apps/interrupt.h"
 #include "apps/neural/animate_motion.h"
+#include "apps/neural/card.h"
 #include "apps/neural/likeness_metrics.h"
 #include "apps/neural/train_lifter.h"
 #include "apps/neural/train_motion.h"
@@ -33,6 +34,7 @@ int main(int argc, char** argv) {
   CLI::App* animate = app.add_subcommand("animate", "Renders a person with a trained network");
   animate->require_subcommand(1);
   bodyloom::AddAnimateMotion(*animate, &action);
+  bodyloom::AddCard(app, &action);
   bodyloom::AddMetricsVerb(app, &action, {}, bodyloom::LikenessMetrics);
   try {
     app.parse(argc, argv);

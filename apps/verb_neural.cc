@@ -42,6 +42,7 @@ void AddNeuralVerb(CLI::App& app, Action* action) {
   verb->footer(
       "Verbs:\n"
       "  doctor   which LibTorch, how many threads, which matrix library, and what makes it slow\n"
+      "  card     what a system's networks are made of\n"
       "  train    trains a network (also: bodyloom train)\n"
       "  animate  renders a person with a trained network (also: bodyloom animate)\n"
       "  metrics  with --lpips (also: bodyloom metrics)\n");

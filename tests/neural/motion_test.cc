@@ -10,6 +10,7 @@
 
 #include "neural/motion/clothes_reach.h"
 #include "neural/motion/frame_tensors.h"
+#include "neural/motion/motion_card.h"
 #include "neural/motion/motion_model.h"
 #include "neural/motion/motion_renderer.h"
 #include "neural/motion/motion_scorer.h"
@@ -148,6 +149,16 @@ TEST(MotionModel, ShiftedPicturesComeFromWhereTheyWere) {
   }
   EXPECT_TRUE(torch::equal(Shifted(image, 0, 0), image));
   EXPECT_EQ(Shifted(image, 5, 0).abs().max().item<float>(), 0);
+}
+
+/// Whole architectures, as `bodyloom neural card` prints them: a change of a shape anywhere is a change of these files.
+TEST(MotionModel, IsWhatItsCardsSay) {
+  for (const char* profile : {"tiny", "cpu"}) {
+    MotionConfig config;
+    config.profile = MotionProfileNamed(profile);
+    EXPECT_EQ(MotionCard(config),
+              Bytes(std::string(BODYLOOM_SOURCE_DIR) + "/tests/neural/cards/motion_" + profile + ".txt"));
+  }
 }
 
 TEST(MotionTraining, LearnsAClipByHeartAndRollsItOut) {
