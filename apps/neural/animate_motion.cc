@@ -21,6 +21,7 @@
 #include "apps/neural/motion_preview.h"
 #include "apps/neural/motion_run.h"
 #include "apps/neural/relight_frames.h"
+#include "apps/neural/view_angles.h"
 #include "apps/progress.h"
 #include "apps/stage_clock.h"
 #include "apps/track_inputs.h"
@@ -48,22 +49,6 @@ struct Request {
   int threads = 0, warmup = 50;
   bool anywhere = false;
 };
-
-/// "30": every frame turned by 30°; "0:360": from 0 to 360 over the clip.
-std::vector<double> ViewAngles(const std::string& text, int num_frames) {
-  if (text.empty()) return {};
-  double from = 0, to = 0;
-  char rest = 0;
-  if (std::sscanf(text.c_str(), "%lf:%lf%c", &from, &to, &rest) != 2) {
-    if (std::sscanf(text.c_str(), "%lf%c", &from, &rest) != 1) {
-      throw UsageError("--view-yaw " + text + ": expected degrees, such as 30 or 0:360");
-    }
-    to = from;
-  }
-  std::vector<double> angles;
-  for (int t = 0; t < num_frames; ++t) angles.push_back(from + (to - from) * t / std::max(1, num_frames - 1));
-  return angles;
-}
 
 /// The pictures of a frame side by side, for the contact sheet.
 void AddToSheet(const MotionPicture& picture, const Image& composed, std::vector<Image>* pictures) {

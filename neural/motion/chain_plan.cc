@@ -5,20 +5,9 @@
 #include <utility>
 
 #include "geometry/check.h"
+#include "neural/training/mix.h"
 
 namespace bodyloom {
-namespace {
-
-/// SplitMix64 (Steele, Lea, Flood 2014).
-uint64_t Mix(uint64_t x) {
-  x += 0x9E3779B97F4A7C15U;
-  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9U;
-  x = (x ^ (x >> 27)) * 0x94D049BB133111EBU;
-  return x ^ (x >> 31);
-}
-double Uniform(uint64_t hash) { return static_cast<double>(hash >> 11) * 0x1p-53; }
-
-}  // namespace
 
 ChainPlan::ChainPlan(std::vector<FrameRange> ranges, const Options& options)
     : ranges_(std::move(ranges)), options_(options), walks_(options.chains) {
@@ -40,14 +29,14 @@ std::vector<ChainStep> ChainPlan::Next() {
     ChainStep step;
     if (walk.left == 0 || walk.frame >= walk.end) {
       const uint64_t hash = Mix(Mix(Mix(options_.seed) ^ static_cast<uint64_t>(step_)) ^ c);
-      const auto at = static_cast<int64_t>(Uniform(hash) * static_cast<double>(frames_up_to_.back()));
+      const auto at = static_cast<int64_t>(UniformOf(hash) * static_cast<double>(frames_up_to_.back()));
       const size_t r = std::upper_bound(frames_up_to_.begin(), frames_up_to_.end(), at) - frames_up_to_.begin();
       const FrameRange& range = ranges_[std::min(r, ranges_.size() - 1)];
       walk.frame = range.end - static_cast<int>(frames_up_to_[r] - at);
       walk.end = range.end;
       walk.left = options_.length;
       step.restart = true;
-      step.from_truth = walk.frame > range.begin && Uniform(Mix(hash)) < options_.from_truth;
+      step.from_truth = walk.frame > range.begin && UniformOf(Mix(hash)) < options_.from_truth;
     }
     step.frame = walk.frame++;
     --walk.left;

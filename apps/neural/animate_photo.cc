@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/neural/animate_photo.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "apps/exit_code.h"
+#include "apps/files.h"
+#include "apps/interrupt.h"
+#include "apps/neural/background.h"
+#include "apps/neural/motion_preview.h"
+#include "apps/neural/photo_input.h"
+#include "apps/neural/photo_run.h"
+#include "apps/neural/view_angles.h"
+#include "apps/progress.h"
+#include "apps/stage_clock.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/people/label_of_part.h"
+#include "data_tools/people/photo_segmentation.h"
+#include "data_tools/track_io.h"
+#include "data_tools/video/image_file.h"
+#include "data_tools/video/video_writer.h"
+#include "geometry/check.h"
+#include "neural/photo/photo_renderer.h"
+#include "neural/photo/train_photo.h"
+#include "neural/training/made_ahead.h"
+#include "render/contact_sheet.h"
+
+namespace bodyloom {
+namespace {
+
+struct Request {
+  std::string run, track, out, background, view_yaw, shape = "photo", sheet, texture, json, garment_from;
+  std::vector<std::string> parts, views;
+  PhotoRequest photo;
+  int threads = 0;
+  bool whole_window = false;
+};
+
+/// DensePose's parts of "top", "bottom", "shoes", "head", "arms" (below the elbow, with hands) or a number.
+std::vector<int> PartsNamed(const std::vector<std::string>& names) {
+  const std::pair<const char*, PersonLabel> groups[] = {{"top", PersonLabel::kTop},
+                                                        {"bottom", PersonLabel::kBottom},
+                                                        {"shoes", PersonLabel::kShoes},
+                                                        {"head", PersonLabel::kFace},
+                                                        {"arms", PersonLabel::kSkin}};
+  std::vector<int> parts;
+  for (const std::string& name : names) {
+    const size_t before = parts.size();
+    for (const auto& [group, label] : groups) {
+      for (int part = 1; name == group && part < kPhotoParts; ++part) {
+        if (LabelOfPart(part) == label) parts.push_back(part);
+      }
+    }
+    int number = 0;
+    const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+    if (error == std::errc() && end == name.data() + name.size() && number >= 1 && number < kPhotoParts) {
+      parts.push_back(number);
+    }
+    if (parts.size() == before) {
+      throw UsageError("--parts " + name + ": expected top, bottom, shoes, head, arms or a DensePose part, 1 to 24");
+    }
+  }
+  return parts;
+}
+
+/// What the person looks like: the photo, more views of the same, a garment of another. Adds to `notes`.
+PartialTexture TextureOf(const Request& request, const Photo& photo, std::span<const uint8_t> texel_parts,
+                         std::string* notes) {
+  const auto load = [&](const std::string& text, const char* option) {
+    const Photo other =
+        LoadPhoto(ParsePhotoRequest(text, option, request.photo), photo.frame.size, photo.frame.texture_size);
+    *notes += other.notes;
+    return PartialTextureOf(other.frame);
+  };
+  std::vector<PartialTexture> textures = {PartialTextureOf(photo.frame)};
+  for (const std::string& view : request.views) textures.push_back(load(view, "--views"));
+  const PartialTexture own = UnionOf(textures);
+  if (request.garment_from.empty()) return own;
+  return WithParts(own, load(request.garment_from, "--garment-from"), texel_parts, PartsNamed(request.parts));
+}
+
+/// A median, 0 of nothing.
+double Median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+void Run(const Request& request) {
+  StageClock clock;
+  clock.Begin("prepare");
+  if (request.parts.empty() != request.garment_from.empty()) {
+    throw UsageError("--garment-from and --parts belong together");
+  }
+  const bool own_background = request.background == "photo";
+  const std::string background_path = own_background ? "" : request.background;
+  RequireReadable(request.photo.image, "image");
+  RequireReadable(request.photo.track, "track of the image");
+  RequireReadable(request.photo.labels, "part labels");
+  RequireReadable(request.track, "track");
+  RequireReadable(background_path, "background");
+  RequireDistinct({request.track, request.photo.image, request.photo.track, request.photo.body, background_path},
+                  {request.out, request.sheet, request.texture, request.json});
+  for (const std::string& path : {request.out, request.sheet, request.texture, request.json}) RequireWritable(path);
+  const PhotoRun run = ReadPhotoRun(request.run);
+  const PhotoProfile& profile = run.config.profile;
+  const int S = profile.image_size, U = profile.texture_size;
+  const int threads = request.threads > 0 ? request.threads : static_cast<int>(std::thread::hardware_concurrency());
+  PartsNamed(request.parts);  // a wrong name is said before anything is read
+  const Photo photo = LoadPhoto(request.photo, S, U);
+  Track track = ReadTrack(request.track);
+  if (request.shape == "photo") track.motion.betas = photo.track.motion.betas;
+  PhotoMapsOptions options;
+  options.size = S;
+  options.texture_size = U;
+  options.yaw_deg = ViewAngles(request.view_yaw, track.num_frames());
+  std::unique_ptr<PhotoMaps> maps;
+  try {
+    maps = std::make_unique<PhotoMaps>(*photo.body, track, options);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(request.track + ": " + error.what());
+  }
+  const PersonWindow& window = maps->window();
+  const std::vector<uint8_t> texel_parts = PartsOfTexels(*photo.body, *maps->texels());
+  std::string notes = photo.notes;
+  const PartialTexture texture = TextureOf(request, photo, texel_parts, &notes);
+  std::cout << notes << std::flush;
+  PhotoRenderer renderer(PhotoCheckpointPath(request.run), run.config,
+                         {request.whole_window ? -1 : run.reach, threads});
+  clock.Begin("encode the photo");
+  renderer.Encode(texture);
+  const std::vector<float> completed = renderer.CompletedTexture();
+  if (!request.texture.empty()) WriteImage(request.texture, PictureOf(completed, U, U));
+  clock.Begin("render");
+
+  Background background(background_path, window.picture_width, window.picture_height);
+  Image behind;
+  if (own_background) {
+    behind = Resized(FilledBackground(photo.picture, photo.person), window.picture_width, window.picture_height);
+  }
+  const int T = track.num_frames();
+  const std::vector<double>& times = track.motion.timestamps;
+  const double fps = T > 1 && times.back() > times.front() ? (T - 1) / (times.back() - times.front()) : 30;
+  VideoWriter video(request.out, window.picture_width, window.picture_height, fps);
+  const std::vector<int> on_sheet = EvenlySpreadFrames(T, 6);
+  std::vector<Image> sheet = {PictureOf(photo.frame.image, S, S), PictureOf(texture.colour, U, U),
+                              PictureOf(completed, U, U)};
+  std::vector<double> network_ms;
+  int lost = 0;
+  {
+    Progress progress("animate");
+    // Maps of the next frames are made while the network is at work.
+    MadeAhead<PhotoFrame> poses(T, [&](int64_t t) {
+      PhotoFrame pose;
+      if (track.HasResult(static_cast<int>(t))) FillMaps(maps->At(static_cast<int>(t)), S, U, &pose);
+      return pose;
+    });
+    for (int t = 0; t < T; ++t) {
+      ThrowIfInterrupted();
+      const PhotoFrame pose = poses.Take();
+      Image composed = own_background ? behind : background.Next();
+      if (pose.size > 0) {
+        const StageClock one;
+        const PhotoPicture picture = renderer.Render(pose);
+        if (t > 0) network_ms.push_back(1e3 * one.total());  // the first frame warms up
+        Composite(picture.image, picture.alpha, S, S, window.corner[t].x(), window.corner[t].y(), &composed);
+      } else {
+        ++lost;
+      }
+      video.Write(composed);
+      if (std::binary_search(on_sheet.begin(), on_sheet.end(), t)) sheet.push_back(composed);
+      progress.Update("rendering", static_cast<double>(t + 1) / T);
+    }
+    video.Finish();
+  }
+  clock.End();
+  if (!request.sheet.empty()) {
+    ContactSheetOptions layout;
+    layout.columns = 3;
+    layout.cell_height_px = S;
+    WriteImage(request.sheet, ContactSheet(sheet, layout));
+  }
+  const double visible = VisibleShare(texture, texel_parts);
+  const double render_s = clock.seconds().back().second, median_ms = Median(network_ms);
+  if (!request.json.empty()) {
+    nlohmann::ordered_json stages = nlohmann::ordered_json::object();
+    for (const auto& [stage, stage_s] : clock.seconds()) stages[stage] = stage_s;
+    const nlohmann::ordered_json json = {{"frames", T},
+                                         {"frames_without_fit", lost},
+                                         {"variant", ToText(run.config.variant)},
+                                         {"texels_seen", visible},
+                                         {"network_ms_median", median_ms},
+                                         {"frames_per_second", T / std::max(1e-9, render_s)},
+                                         {"picture", {window.picture_width, window.picture_height}},
+                                         {"notes", notes},
+                                         {"seconds", stages},
+                                         {"output", request.out}};
+    WriteFileAtomically(request.json, json.dump(2) + "\n");
+  }
+  std::printf("%d frames, %.0f %% of the texture seen, network %.0f ms a frame, %.1f frames/s rendered and written\n",
+              T, 100 * visible, median_ms, T / std::max(1e-9, render_s));
+  if (lost > 0) std::printf("%d frames have no fit and show the background\n", lost);
+  std::printf("wrote %s\n", request.out.c_str());
+}
+
+}  // namespace
+
+void AddAnimatePhoto(CLI::App& animate, std::function<void()>* action) {
+  CLI::App* verb = animate.add_subcommand("photo", "Renders a person from one photo, in any motion");
+  auto request = std::make_shared<Request>();
+  verb->add_option("--run", request->run, "Folder of a run of `bodyloom train photo`")->required();
+  verb->add_option("--image", request->photo.image, "The photo: a picture, a video, a folder of pictures, a person set")
+      ->required();
+  verb->add_option("--image-track", request->photo.track, "Its track, .npz (default: the person set's own)");
+  verb->add_option("--image-frame", request->photo.frame, "Which frame of image and track")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  verb->add_option("--image-labels", request->photo.labels,
+                   "DensePose's parts of the photo, which give the outline (default: GrabCut)");
+  verb->add_option("--track", request->track, "The motion: a track, .npz")->required();
+  verb->add_option("--out", request->out, "The video, .mp4")->required();
+  verb->add_option("--body", request->photo.body, "The tracks' body (default: the built-in body)");
+  verb->add_option("--views", request->views,
+                   "More pictures of the person, IMAGE:TRACK[:FRAME]: what they show is added");
+  verb->add_option("--garment-from", request->garment_from, "Another person, IMAGE:TRACK[:FRAME], who lends --parts");
+  verb->add_option("--parts", request->parts, "top, bottom, shoes, head, arms, or DensePose parts 1 to 24")
+      ->delimiter(',');
+  verb->add_option("--shape", request->shape, "Whose body shape moves: the photo's or the motion's")
+      ->check(CLI::IsMember({"photo", "motion"}))
+      ->capture_default_str();
+  verb->add_option("--background", request->background,
+                   "Image, video or folder of images behind the person; photo: the photo's own, filled in");
+  verb->add_option("--view-yaw", request->view_yaw,
+                   "Turns the view about the person's vertical, degrees; FROM:TO turns it over the clip");
+  verb->add_flag("--whole-window", request->whole_window, "Compute the background of the window too");
+  verb->add_option("--sheet", request->sheet, "Contact sheet: photo, its texture, the completed one, six frames");
+  verb->add_option("--texture", request->texture, "The completed texture as an image");
+  verb->add_option("--json", request->json, "Report with times");
+  verb->add_option("--threads", request->threads, "0: all cores")->check(CLI::NonNegativeNumber);
+  verb->footer(
+      "Example:\n"
+      "  bodyloom animate photo --run run --image me.jpg --image-track me.npz --track dance.npz --out me.mp4\n"
+      "      --garment-from you.jpg:you.npz --parts top,bottom");
+  verb->callback([request, action] { *action = [request] { Run(*request); }; });
+}
+
+}  // namespace bodyloom

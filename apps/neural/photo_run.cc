@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/neural/photo_run.h"
+
+#include <filesystem>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "data_tools/observations/json_reader.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr const char* kProgram = "bodyloom train photo";
+
+int Int(const JsonNode& node) {
+  const int64_t value = node.Integer();
+  if (value < std::numeric_limits<int>::min() || value > std::numeric_limits<int>::max()) node.Fail("a smaller number");
+  return static_cast<int>(value);
+}
+
+}  // namespace
+
+std::string PhotoRunJson(const PhotoRun& run) {
+  const PhotoProfile& p = run.config.profile;
+  nlohmann::ordered_json json = {{"program", kProgram},
+                                 {"version", BODYLOOM_VERSION},
+                                 {"profile", p.name},
+                                 {"variant", ToText(run.config.variant)},
+                                 {"image_size", p.image_size},
+                                 {"texture_size", p.texture_size},
+                                 {"features", p.features},
+                                 {"feature_widths", p.feature_widths},
+                                 {"render_width", p.render_width},
+                                 {"render_blocks", p.render_blocks},
+                                 {"discriminator_width", p.discriminator_width},
+                                 {"discriminator_layers", p.discriminator_layers},
+                                 {"discriminator_scales", p.discriminator_scales},
+                                 {"perceptual_divisor", p.perceptual_divisor},
+                                 {"render_passes_input", p.render_passes_input ? 1 : 0},
+                                 {"reach", run.reach}};
+  if (!run.notes.empty()) json["run"] = nlohmann::ordered_json::parse(run.notes);
+  return json.dump(2) + "\n";
+}
+
+PhotoRun ReadPhotoRun(const std::string& run_dir) {
+  const std::string path = (std::filesystem::path(run_dir) / "config.json").string();
+  if (!std::filesystem::exists(path)) {
+    throw std::runtime_error(path + ": not there, expected the folder of a run of `" + kProgram + "`");
+  }
+  const nlohmann::json json = ReadJsonFile(path);
+  const JsonNode root(json, path);
+  const JsonNode program = root.At("program");
+  if (program.Text() != kProgram) {
+    throw std::runtime_error(path + ": a run of \"" + program.Text() + "\", expected \"" + kProgram + "\"");
+  }
+  PhotoRun run;
+  PhotoProfile& p = run.config.profile;
+  p.name = root.At("profile").Text();
+  try {
+    run.config.variant = PhotoVariantNamed(root.At("variant").Text());
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(path + ": " + error.what());
+  }
+  const JsonNode widths = root.At("feature_widths");
+  for (size_t i = 0; i < widths.size(); ++i) p.feature_widths.push_back(Int(widths.At(i)));
+  int passes_input = 0;
+  const std::pair<const char*, int*> numbers[] = {{"image_size", &p.image_size},
+                                                  {"texture_size", &p.texture_size},
+                                                  {"features", &p.features},
+                                                  {"render_width", &p.render_width},
+                                                  {"render_blocks", &p.render_blocks},
+                                                  {"discriminator_width", &p.discriminator_width},
+                                                  {"discriminator_layers", &p.discriminator_layers},
+                                                  {"discriminator_scales", &p.discriminator_scales},
+                                                  {"perceptual_divisor", &p.perceptual_divisor},
+                                                  {"render_passes_input", &passes_input},
+                                                  {"reach", &run.reach}};
+  for (const auto& [key, value] : numbers) *value = Int(root.At(key));
+  p.render_passes_input = passes_input != 0;
+  std::string why;
+  if (!run.config.IsValid(&why)) throw std::runtime_error(path + ": " + why);
+  if (run.reach < 0 || run.reach > p.image_size) {
+    throw std::runtime_error(path + ": reach is " + std::to_string(run.reach) + ", expected 0 to " +
+                             std::to_string(p.image_size));
+  }
+  return run;
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/neural/train_photo.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "apps/exit_code.h"
+#include "apps/files.h"
+#include "apps/interrupt.h"
+#include "apps/neural/people_data.h"
+#include "apps/neural/photo_preview.h"
+#include "apps/neural/photo_run.h"
+#include "apps/neural/weights_folder.h"
+#include "apps/progress.h"
+#include "data_tools/evaluation/ssim.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/people/people_set.h"
+#include "data_tools/video/image_file.h"
+#include "neural/photo/photo_window.h"
+#include "neural/photo/train_photo.h"
+
+namespace bodyloom {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Request {
+  std::string data, body, out, profile = "cpu", variant = "full", weights;
+  TrainPhotoOptions options;
+};
+
+std::vector<int> Everybody(const PhotoSource& source) {
+  std::vector<int> persons(source.num_frames.size());
+  std::iota(persons.begin(), persons.end(), 0);
+  return persons;
+}
+
+/// The people kept for testing; nullptr when the set has none.
+std::unique_ptr<PeopleData> TestPeople(PeopleDataRequest request) {
+  if (fs::exists(fs::path(request.data) / "person.json")) return nullptr;
+  const PeopleSet set = ReadPeopleSet(request.data);
+  for (const SetPerson& person : set.people) {
+    if (!person.test) continue;
+    request.test = true;
+    return std::make_unique<PeopleData>(request);
+  }
+  return nullptr;
+}
+
+std::string Notes(const Request& request) {
+  const TrainPhotoOptions& o = request.options;
+  const nlohmann::ordered_json json = {{"data", request.data},
+                                       {"people", o.train.size()},
+                                       {"validation_people", o.validation.size()},
+                                       {"seed", o.seed},
+                                       {"steps", o.steps},
+                                       {"inpaint_steps", o.TotalSteps() - o.steps},
+                                       {"batch", o.batch},
+                                       {"learning_rate", o.learning_rate},
+                                       {"weights",
+                                        {{"perceptual", o.perceptual_weight},
+                                         {"face", o.face_weight},
+                                         {"texture", o.texture_weight},
+                                         {"gan", o.gan_weight},
+                                         {"alpha", o.alpha_weight}}},
+                                       {"vgg19", o.vgg19.source},
+                                       {"sphereface", o.sphereface.source},
+                                       {"threads", o.num_threads}};
+  return json.dump();
+}
+
+void Run(Request request) {
+  TrainPhotoOptions& options = request.options;
+  options.config.profile = PhotoProfileNamed(request.profile);
+  options.config.variant = PhotoVariantNamed(request.variant);
+  if (options.num_threads == 0) options.num_threads = static_cast<int>(std::thread::hardware_concurrency());
+  RequireReadable(request.data, "data");
+  RequireWritableFolder(request.out);
+  options.run_dir = request.out;
+  const bool exists = fs::exists(PhotoCheckpointPath(request.out));
+  if (!options.resume && exists) {
+    throw UsageError(request.out + " holds a run already; go on with it by --resume, or choose another --out");
+  }
+  if (options.resume && !exists) throw UsageError(request.out + " holds no run to go on with");
+  WeightsFolder weights = ReadWeightsFolder(request.weights);
+  if (!request.weights.empty()) std::cout << "weights: " << ToText(weights) << "\n";
+  options.vgg19 = std::move(weights.vgg19);
+  options.sphereface = std::move(weights.sphereface);
+  options.alexnet = std::move(weights.alexnet);
+  options.lpips_heads = std::move(weights.lpips_heads);
+
+  PeopleDataRequest people;
+  people.data = request.data;
+  people.body = request.body;
+  people.size = options.config.profile.image_size;
+  people.texture_size = options.config.profile.texture_size;
+  const PeopleData data(people);
+  const std::unique_ptr<PeopleData> test = TestPeople(people);
+  options.train = Everybody(data.source());
+  if (test) {
+    options.validation_source = &test->source();
+    options.validation = Everybody(test->source());
+  }
+  PhotoRun run;
+  run.config = options.config;
+  run.reach = options.reach = PhotoReach(data.source(), options.train);
+  run.notes = Notes(request);
+  options.config_json = PhotoRunJson(run);
+  WriteFileAtomically((fs::path(request.out) / "config.json").string(), options.config_json);
+  std::cout << options.train.size() << " people to train on, " << options.validation.size()
+            << " kept for validation; profile " << request.profile << ", variant " << request.variant
+            << "; clothes reach " << run.reach << " px beyond the body\n"
+            << std::flush;
+
+  Progress bar("training " + std::to_string(options.TotalSteps()) + " steps");
+  options.ssim = [](const Image& truth, const Image& result) { return Ssim(truth, result, SsimPreset::kWang2004); };
+  options.progress = [&](const TrainPhotoProgress& progress) {
+    std::ostringstream stage;
+    stage.precision(3);
+    stage << "loss " << progress.loss;
+    if (progress.scores.pictures > 0) stage << ", validation " << progress.scores.psnr_db << " dB";
+    bar.Update(stage.str(), static_cast<double>(progress.step) / progress.steps);
+    return !IsInterrupted();
+  };
+  options.preview = [&](int step, const std::vector<PhotoPreview>& previews) {
+    char name[64];
+    std::snprintf(name, sizeof name, "preview_%06d.png", step);
+    WriteImage((fs::path(request.out) / name).string(), PhotoPreviewSheet(previews));
+  };
+  const TrainPhotoSummary summary = TrainPhoto(data.source(), options);
+  if (summary.status == TrainPhotoStatus::kNotFinite) throw std::runtime_error(request.out + ": " + summary.message);
+  for (const std::string& loss : summary.losses_off) std::cout << "loss switched off: " << loss << "\n";
+  if (options.perceptual_weight > 0 && summary.perceptual_stand_in) {
+    std::cout << "perceptual loss by a stand-in of random features (no VGG-19 weights given)\n";
+  }
+  std::cout << "step " << summary.steps << " of " << options.TotalSteps() << " in " << ClockText(summary.seconds)
+            << "\n";
+  const PhotoScores& s = summary.scores;
+  if (s.pictures > 0) {
+    std::printf("validation of %d pairs: L1 %.4f, PSNR %.2f dB, SSIM %.4f, LPIPS%s %.4f, outline IoU %.3f\n",
+                s.pictures, s.image_l1, s.psnr_db, s.ssim, s.lpips_stand_in ? " (stand-in)" : "", s.lpips,
+                s.outline_iou);
+    std::fflush(stdout);
+  }
+  std::cout << "wrote " << PhotoCheckpointPath(request.out) << "\n";
+  if (summary.status == TrainPhotoStatus::kStopped) {
+    throw std::runtime_error(request.out + ": " + summary.message + "; go on with --resume");
+  }
+}
+
+}  // namespace
+
+void AddTrainPhoto(CLI::App& train, std::function<void()>* action) {
+  CLI::App* verb = train.add_subcommand("photo", "Trains a renderer that needs one photo of a person");
+  auto request = std::make_shared<Request>();
+  TrainPhotoOptions& options = request->options;
+  verb->add_option("--data", request->data, "A people set (bodyloom synth-people), or a person set")->required();
+  verb->add_option("--out", request->out, "Folder of the run: config.json, checkpoint.bin, metrics.csv, previews")
+      ->required();
+  verb->add_option("--body", request->body, "The people's body (default: the built-in body)");
+  verb->add_option("--profile", request->profile, "Sizes of the networks")
+      ->check(CLI::IsMember({"paper", "cpu", "tiny"}))
+      ->capture_default_str();
+  verb->add_option("--baseline", request->variant,
+                   "One of the paper's simpler variants: colours completed beforehand; the seen colours warped, "
+                   "without and with the target's pose; no loss on the texture")
+      ->check(CLI::IsMember({"full", "ip", "warp", "warpcond", "no-int"}))
+      ->capture_default_str();
+  verb->add_option("--weights", request->weights,
+                   "Folder with trained weights: vgg19, sphereface, alexnet, lpips_alex (.safetensors, .pth)");
+  verb->add_option("--steps", options.steps, "Batches to train on")->capture_default_str();
+  verb->add_option("--inpaint-steps", options.inpaint_steps,
+                   "Of ip's first stage, which comes before (0: as many as --steps)")
+      ->capture_default_str();
+  verb->add_option("--batch", options.batch, "Pairs in a batch")->capture_default_str();
+  verb->add_option("--learning-rate", options.learning_rate, "At its highest")->capture_default_str();
+  verb->add_option("--gan-weight", options.gan_weight, "Of the discriminator's judgement; 0: none")
+      ->capture_default_str();
+  verb->add_option("--validate-every", options.validate_every, "Steps")->capture_default_str();
+  verb->add_option("--validation-pairs", options.validation_pairs, "A person that is kept for validation")
+      ->capture_default_str();
+  verb->add_option("--seed", options.seed, "Of weights and pairs")->capture_default_str();
+  verb->add_option("--threads", options.num_threads, "0: all cores")->capture_default_str();
+  verb->add_flag("--resume", options.resume, "Go on with the run in --out");
+  verb->footer(
+      "Example:\n"
+      "  bodyloom synth-people --out people\n"
+      "  bodyloom train photo --data people --out run --steps 4000\n"
+      "  bodyloom animate photo --run run --image me.jpg --image-track me.npz --track dance.npz --out me.mp4");
+  verb->callback([request, action] { *action = [request] { Run(*request); }; });
+}
+
+}  // namespace bodyloom

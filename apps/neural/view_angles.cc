@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/neural/view_angles.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "apps/exit_code.h"
+
+namespace bodyloom {
+
+std::vector<double> ViewAngles(const std::string& text, int num_frames) {
+  if (text.empty()) return {};
+  double from = 0, to = 0;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%lf:%lf%c", &from, &to, &rest) != 2) {
+    if (std::sscanf(text.c_str(), "%lf%c", &from, &rest) != 1) {
+      throw UsageError("--view-yaw " + text + ": expected degrees, such as 30 or 0:360");
+    }
+    to = from;
+  }
+  std::vector<double> angles;
+  for (int t = 0; t < num_frames; ++t) angles.push_back(from + (to - from) * t / std::max(1, num_frames - 1));
+  return angles;
+}
+
+}  // namespace bodyloom

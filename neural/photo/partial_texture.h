@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+/// T_s: what a picture shows of the body's texture, and textures put together from several pictures.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "neural/people/photo_frame.h"
+
+namespace bodyloom {
+
+/// Planar; texels as in neural/people/photo_frame.h.
+struct PartialTexture {
+  int size = 0;
+  std::vector<float> colour;     ///< 3 × U × U RGB in [0, 1]; 0 where not visible
+  std::vector<uint8_t> visible;  ///< U × U, 0 or 1
+};
+
+/// A texel is visible where texel_seen says so and the pixel nearest to texel_pixels shows the person (label other than
+/// 0; a frame without labels: a colour other than black). Its colour is the bilinear mean of the up to four pixels
+/// around texel_pixels that show the person, their weights made to sum to 1.
+/// Throws std::invalid_argument for a frame without a picture or with sizes that do not fit each other.
+PartialTexture PartialTextureOf(const PhotoFrame& frame);
+
+/// `texture` where `texel_parts` is none of `parts`, `garment` elsewhere: colours and visibility are copied as they
+/// are, bit for bit. Texels that the garment's picture does not show become invisible: what the person wore there is
+/// not wanted. Source: Sarkar et al., ECCV 2020, Section 4.5.
+PartialTexture WithParts(const PartialTexture& texture, const PartialTexture& garment,
+                         std::span<const uint8_t> texel_parts, std::span<const int> parts);
+
+/// What any of the pictures shows of one person; where several do, the first one's colour counts.
+PartialTexture UnionOf(std::span<const PartialTexture> textures);
+
+/// Share of the atlas's texels (part other than 0) that is visible.
+double VisibleShare(const PartialTexture& texture, std::span<const uint8_t> texel_parts);
+
+}  // namespace bodyloom

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The pictures of one training step. Internal: includes LibTorch.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "neural/people/photo_frame.h"
+#include "neural/photo/photo_pairs.h"
+#include "neural/photo/photo_tensors.h"
+
+namespace bodyloom {
+
+struct PhotoBatch {
+  TextureTensors source, target;   ///< T_s and T_t
+  PoseTensors pose;                ///< P_t
+  PictureTensors truth;            ///< I_t
+  std::vector<PhotoWindow> faces;  ///< in the windows of truth; width 0 where there is none
+};
+
+/// Windows: neural/photo/photo_window.h, the largest one's sides for all.
+PhotoBatch MakePhotoBatch(const PhotoSource& source, std::span<const PhotoPair> pairs, int reach, int smallest_side);
+
+}  // namespace bodyloom

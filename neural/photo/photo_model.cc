@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "neural/photo/photo_model.h"
+
+#include "geometry/check.h"
+#include "neural/networks/uv_sampler.h"
+
+namespace bodyloom {
+
+using torch::Tensor;
+
+namespace {
+
+/// The first three outputs begin as the input's colours, the others near 0. `colours` is the first channel of the input
+/// among those that the convolution sees.
+void StartFromColours(torch::nn::Conv2dImpl* last, int colours) {
+  const torch::NoGradGuard no_grad;
+  torch::nn::init::normal_(last->weight, 0, 0.02);
+  const int64_t centre = last->weight.size(2) / 2;
+  for (int c = 0; c < 3; ++c) last->weight[c][colours + c][centre][centre] += 1;
+}
+
+}  // namespace
+
+PhotoModelImpl::PhotoModelImpl(const PhotoConfig& model_config) : config(model_config) {
+  std::string why;
+  BODYLOOM_CHECK(config.IsValid(&why), "photo renderer: ", why);
+  const PhotoProfile& p = config.profile;
+  if (config.Completes()) {
+    feature_net =
+        register_module("feature_net", FeatureUNet(FeatureUNetOptions{4, config.TextureChannels(), p.feature_widths}));
+    StartFromColours(feature_net->last.get(), p.feature_widths[0]);
+  }
+  render_net = register_module("render_net",
+                               ResidualGenerator(ResidualGeneratorOptions{config.RenderChannels(), 4, p.render_width,
+                                                                          p.render_blocks, p.render_passes_input}));
+  if (p.render_passes_input) StartFromColours(render_net->last.get(), p.render_width);
+}
+
+Tensor PhotoModelImpl::Complete(const TextureTensors& texture) {
+  if (!config.Completes()) return texture.colour;
+  return feature_net(torch::cat({texture.colour, texture.visible}, 1));
+}
+
+Tensor PhotoModelImpl::Project(const Tensor& features, const PoseTensors& pose) const {
+  const Tensor projected = SampleUv(features, pose.uv, pose.body);
+  if (config.variant != PhotoVariant::kWarpCond) return projected;
+  return torch::cat({projected, pose.uv * pose.body, pose.parts}, 1);
+}
+
+PhotoResult PhotoModelImpl::Render(const Tensor& projected) {
+  const Tensor raw = render_net(projected);
+  PhotoResult result;
+  result.alpha_logit = raw.slice(1, 3, 4);
+  result.alpha = torch::sigmoid(result.alpha_logit);
+  result.image = result.alpha * (0.5 * (torch::tanh(raw.slice(1, 0, 3)) + 1));
+  return result;
+}
+
+PhotoResult PhotoModelImpl::forward(const TextureTensors& texture, const PoseTensors& pose) {
+  return Render(Project(Complete(texture), pose));
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The networks of the one-photo renderer. Internal: includes LibTorch.
+///
+///   F_s = f(T_s, M_s)            FeatureNet on the partial texture's colours and visibility, in UV; d channels
+///   R   = r(F_s, P_t)            bilinear look-up at the target pose's surface coordinates, 0 off the body
+///   c, α = tanh, sigmoid g(R)    RenderNet;  I = α (c + 1)/2
+/// Source: Sarkar et al., "Neural Re-Rendering of Humans from a Single Image", ECCV 2020, Sections 3.2–3.4. The paper's
+/// RenderNet has three outputs on its photographs' plain background; the fourth is this project's
+/// (docs/photo_renderer.md).
+///
+/// FeatureNet's last convolution starts as N(0, 0.02²), plus what copies the input's colours to the first three
+/// features: visible texels need not be learned.
+///
+/// Variants (neural/photo/photo_config.h): without FeatureNet F_s is T_s itself; with kWarpCond R has the target's
+/// coordinates and parts (u, v, part/24, 0 off the body) beside it.
+#pragma once
+
+#include <torch/torch.h>
+
+#include "neural/networks/feature_unet.h"
+#include "neural/networks/residual_generator.h"
+#include "neural/photo/photo_config.h"
+#include "neural/photo/photo_tensors.h"
+
+namespace bodyloom {
+
+struct PhotoResult {
+  torch::Tensor image;        ///< B×3×h×w in [0, 1], multiplied by alpha
+  torch::Tensor alpha_logit;  ///< B×1×h×w
+  torch::Tensor alpha;        ///< B×1×h×w
+};
+
+struct PhotoModelImpl : torch::nn::Module {
+  explicit PhotoModelImpl(const PhotoConfig& config);
+
+  /// F_s. Its first three channels are colours 2c − 1, as T_s'.
+  torch::Tensor Complete(const TextureTensors& texture);
+  /// R of F_s.
+  [[nodiscard]] torch::Tensor Project(const torch::Tensor& features, const PoseTensors& pose) const;
+  PhotoResult Render(const torch::Tensor& projected);
+  PhotoResult forward(const TextureTensors& texture, const PoseTensors& pose);
+
+  PhotoConfig config;
+  FeatureUNet feature_net{nullptr};  ///< empty for kWarp and kWarpCond
+  ResidualGenerator render_net{nullptr};
+};
+TORCH_MODULE(PhotoModel);
+
+}  // namespace bodyloom

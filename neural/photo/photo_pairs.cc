@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "neural/photo/photo_pairs.h"
+
+#include <algorithm>
+
+#include "geometry/check.h"
+#include "neural/training/mix.h"
+
+namespace bodyloom {
+namespace {
+
+/// 0 … count − 1.
+int Draw(uint64_t hash, size_t count) {
+  return std::min(static_cast<int>(UniformOf(hash) * static_cast<double>(count)), static_cast<int>(count) - 1);
+}
+
+PhotoPair PairOf(std::span<const int> num_frames, int person, uint64_t hash) {
+  BODYLOOM_CHECK(person >= 0 && static_cast<size_t>(person) < num_frames.size() && num_frames[person] > 0,
+                 "photo pairs: person ", person, " has no frames");
+  PhotoPair pair;
+  const int frames = num_frames[person];
+  pair.person = person;
+  pair.source = Draw(Mix(hash ^ 1), frames);
+  if (frames > 1) pair.target = (pair.source + 1 + Draw(Mix(hash ^ 2), frames - 1)) % frames;
+  return pair;
+}
+
+}  // namespace
+
+PhotoPair DrawPhotoPair(std::span<const int> num_frames, std::span<const int> persons, uint64_t seed, int64_t step,
+                        int place) {
+  BODYLOOM_CHECK(!persons.empty(), "photo pairs: no persons");
+  const uint64_t hash = Mix(Mix(Mix(seed) ^ static_cast<uint64_t>(step)) ^ static_cast<uint64_t>(place));
+  return PairOf(num_frames, persons[Draw(hash, persons.size())], hash);
+}
+
+std::vector<PhotoPair> ValidationPairs(std::span<const int> num_frames, std::span<const int> persons, int per_person) {
+  std::vector<PhotoPair> pairs;
+  for (const int person : persons) {
+    for (int i = 0; i < per_person; ++i) {
+      pairs.push_back(PairOf(num_frames, person, Mix(Mix(static_cast<uint64_t>(person)) ^ static_cast<uint64_t>(i))));
+    }
+  }
+  return pairs;
+}
+
+}  // namespace bodyloom

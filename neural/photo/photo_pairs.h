@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Which pictures a step of training sees: pairs of one person in two poses.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace bodyloom {
+
+struct PhotoPair {
+  int person = 0, source = 0, target = 0;  ///< frames of the person
+};
+
+/// The pair at place `place` of step `step`'s batch: a person of `persons`, each as likely, two of its frames, each as
+/// likely, different unless there is but one. A function of these numbers alone. `num_frames` is by person; throws
+/// std::invalid_argument when there is no person or one has no frames.
+PhotoPair DrawPhotoPair(std::span<const int> num_frames, std::span<const int> persons, uint64_t seed, int64_t step,
+                        int place);
+
+/// `per_person` pairs of each person, the same for every seed: to compare runs on.
+std::vector<PhotoPair> ValidationPairs(std::span<const int> num_frames, std::span<const int> persons, int per_person);
+
+}  // namespace bodyloom

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A trained one-photo renderer at work: a texture in, pictures of its person in any pose out.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "neural/people/photo_frame.h"
+#include "neural/photo/partial_texture.h"
+#include "neural/photo/photo_config.h"
+#include "neural/photo/photo_picture.h"
+
+namespace bodyloom {
+
+struct PhotoRendererOptions {
+  int reach = -1;       ///< pixels from the body beyond which is background; negative: the whole frame is computed
+  int num_threads = 0;  ///< 0: all cores
+};
+
+class PhotoRenderer {
+ public:
+  /// Throws std::runtime_error naming the file when the checkpoint cannot be read or is of another configuration.
+  PhotoRenderer(const std::string& checkpoint_path, const PhotoConfig& config,
+                const PhotoRendererOptions& options = {});
+  ~PhotoRenderer();
+  PhotoRenderer(const PhotoRenderer&) = delete;
+  PhotoRenderer& operator=(const PhotoRenderer&) = delete;
+
+  /// From now on this is the person. Throws std::invalid_argument for a texture of another size.
+  void Encode(const PartialTexture& texture);
+
+  /// The person in the pose of a frame (its picture, labels and texels are not looked at). Throws std::invalid_argument
+  /// before Encode and when the frame's size is not the configuration's.
+  [[nodiscard]] PhotoPicture Render(const PhotoFrame& pose) const;
+
+  /// The completed texture as colours: the first three features, planar 3 × U × U in [0, 1], everywhere in the atlas.
+  /// Variants without FeatureNet give the partial texture's, unseen texels grey. Throws std::invalid_argument before
+  /// Encode.
+  [[nodiscard]] std::vector<float> CompletedTexture() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace bodyloom

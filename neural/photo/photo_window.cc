@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "neural/photo/photo_window.h"
+
+#include <algorithm>
+
+#include "geometry/check.h"
+#include "neural/motion/clothes_reach.h"
+
+namespace bodyloom {
+namespace {
+
+/// Box of the pixels whose part is at least `first`.
+PhotoWindow BoxOfParts(const PhotoFrame& frame, uint8_t first) {
+  const int S = frame.size;
+  BODYLOOM_CHECK(S > 0 && frame.parts.size() == static_cast<size_t>(S) * S, "photo window: ", frame.parts.size(),
+                 " parts, expected ", S, " x ", S);
+  int left = S, right = -1, top = S, bottom = -1;
+  for (int y = 0; y < S; ++y) {
+    for (int x = 0; x < S; ++x) {
+      if (frame.parts[static_cast<size_t>(y) * S + x] < first) continue;
+      left = std::min(left, x);
+      right = std::max(right, x);
+      top = std::min(top, y);
+      bottom = std::max(bottom, y);
+    }
+  }
+  return right < 0 ? PhotoWindow{} : PhotoWindow{left, top, right - left + 1, bottom - top + 1};
+}
+
+/// An interval of `length` with the same middle, inside [0, size).
+void Widen(int length, int size, int* begin, int* extent) {
+  *begin = std::clamp(*begin + (*extent - length) / 2, 0, size - length);
+  *extent = length;
+}
+
+}  // namespace
+
+PhotoWindow WindowAround(const PhotoFrame& frame, int reach, int smallest_side) {
+  const int S = frame.size;
+  PhotoWindow window = BoxOfParts(frame, 1);
+  if (window.width == 0) window = {S / 2, S / 2, 0, 0};
+  const auto side = [&](int extent) {
+    const int needed = extent == 0 ? smallest_side : std::max(smallest_side, extent + 2 * reach);
+    return std::min(S, (needed + kPhotoWindowMultiple - 1) / kPhotoWindowMultiple * kPhotoWindowMultiple);
+  };
+  const int width = side(window.width), height = side(window.height);
+  Widen(width, S, &window.x, &window.width);
+  Widen(height, S, &window.y, &window.height);
+  return window;
+}
+
+std::vector<PhotoWindow> EqualWindows(std::span<const PhotoWindow> windows, int size) {
+  int width = 0, height = 0;
+  for (const PhotoWindow& window : windows) {
+    width = std::max(width, window.width);
+    height = std::max(height, window.height);
+  }
+  std::vector<PhotoWindow> equal(windows.begin(), windows.end());
+  for (PhotoWindow& window : equal) {
+    Widen(width, size, &window.x, &window.width);
+    Widen(height, size, &window.y, &window.height);
+  }
+  return equal;
+}
+
+int PhotoReach(const PhotoSource& source, std::span<const int> persons, int num_frames) {
+  std::vector<MotionFrame> frames;
+  for (int i = 0; i < num_frames && !persons.empty(); ++i) {
+    const int person = persons[static_cast<size_t>(i) % persons.size()];
+    const int count = source.num_frames[person];
+    const int frame = static_cast<int>(static_cast<int64_t>(i) * count / num_frames);
+    PhotoFrame photo;
+    source.fill(person, frame, &photo);
+    if (photo.labels.empty()) return 0;
+    MotionFrame as_motion;
+    as_motion.width = as_motion.height = photo.size;
+    as_motion.body.assign(photo.parts.begin(), photo.parts.end());
+    as_motion.labels = std::move(photo.labels);
+    frames.push_back(std::move(as_motion));
+  }
+  return ClothesReach(frames);
+}
+
+PhotoWindow FaceBox(const PhotoFrame& frame) { return BoxOfParts(frame, 23); }
+
+}  // namespace bodyloom

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "neural/photo/render_photo.h"
+
+#include <algorithm>
+#include <span>
+
+namespace bodyloom {
+
+PhotoPicture RenderPhoto(PhotoModel model, const torch::Tensor& features, const PhotoFrame& pose, int reach) {
+  const torch::NoGradGuard no_grad;
+  const int S = pose.size;
+  const size_t pixels = static_cast<size_t>(S) * S;
+  PhotoPicture picture;
+  picture.size = S;
+  picture.image.assign(3 * pixels, 0);
+  picture.alpha.assign(pixels, 0);
+  if (std::all_of(pose.parts.begin(), pose.parts.end(), [](uint8_t part) { return part == 0; })) return picture;
+  const PhotoWindow window =
+      reach < 0 ? PhotoWindow{0, 0, S, S} : WindowAround(pose, reach, model->config.SmallestSide());
+  const PhotoResult result =
+      model->Render(model->Project(features, PoseOf(std::span(&pose, 1), std::span(&window, 1))));
+  const auto paste = [&](const torch::Tensor& tensor, std::vector<float>* planar) {
+    const torch::Tensor whole = tensor.contiguous();
+    const float* from = whole.data_ptr<float>();
+    for (int64_t c = 0; c < whole.size(1); ++c) {
+      for (int y = 0; y < window.height; ++y, from += window.width) {
+        std::copy_n(from, window.width, planar->begin() + ((c * S + window.y + y) * S + window.x));
+      }
+    }
+  };
+  paste(result.image, &picture.image);
+  paste(result.alpha, &picture.alpha);
+  return picture;
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,365 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "neural/photo/train_photo.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <span>
+
+#include "geometry/check.h"
+#include "neural/losses/gan_losses.h"
+#include "neural/losses/perceptual_loss.h"
+#include "neural/networks/patch_discriminator.h"
+#include "neural/networks/vgg.h"
+#include "neural/photo/photo_batch.h"
+#include "neural/photo/photo_losses.h"
+#include "neural/photo/photo_model.h"
+#include "neural/photo/render_photo.h"
+#include "neural/runtime.h"
+#include "neural/training/checkpoint.h"
+#include "neural/training/made_ahead.h"
+#include "neural/training/run_files.h"
+#include "neural/training/schedules.h"
+
+namespace bodyloom {
+namespace {
+
+namespace fs = std::filesystem;
+using torch::Tensor;
+using torch::optim::Adam;
+
+const std::vector<std::string> kColumns = {"learning_rate",
+                                           "loss",
+                                           "perceptual",
+                                           "face",
+                                           "texture",
+                                           "generator",
+                                           "alpha",
+                                           "discriminator",
+                                           "validation_l1",
+                                           "validation_psnr_db",
+                                           "validation_ssim",
+                                           "validation_lpips",
+                                           "validation_outline_iou",
+                                           "seconds"};
+
+struct Losses {
+  double total = 0, perceptual = 0, face = 0, texture = 0, generator = 0, alpha = 0, discriminator = 0;
+  [[nodiscard]] bool IsFinite() const { return std::isfinite(total + discriminator); }
+};
+
+FeatureNetwork MakeVgg(const TrainPhotoOptions& options) {
+  FeatureNetworkOptions network;
+  network.trunk = FeatureTrunk::kVgg19;
+  network.taps = FeatureLayers(FeatureTrunk::kVgg19, {"relu1_1", "relu2_1", "relu3_1", "relu4_1", "relu5_1"});
+  if (options.vgg19.empty()) network.stand_in_divisor = options.config.profile.perceptual_divisor;
+  FeatureNetwork vgg(network);
+  if (!options.vgg19.empty()) vgg->Load(options.vgg19.weights, options.vgg19.source);
+  return vgg;
+}
+
+Lpips MakeLpips(const TrainPhotoOptions& options) {
+  Lpips lpips;
+  if (!options.alexnet.empty() && !options.lpips_heads.empty()) {
+    lpips.Load(options.alexnet.weights, options.alexnet.source, options.lpips_heads.weights,
+               options.lpips_heads.source);
+  }
+  return lpips;
+}
+
+void SetRate(Adam* optimizer, double rate) {
+  for (auto& group : optimizer->param_groups()) static_cast<torch::optim::AdamOptions&>(group.options()).lr(rate);
+}
+
+void RequireGradients(torch::nn::Module* module, bool on) {
+  for (Tensor& parameter : module->parameters()) parameter.set_requires_grad(on);
+}
+
+const PhotoSource& ValidationSource(const PhotoSource& source, const TrainPhotoOptions& options) {
+  return options.validation_source != nullptr ? *options.validation_source : source;
+}
+
+class Trainer {
+ public:
+  Trainer(const PhotoSource& source, const TrainPhotoOptions& options)
+      : source_(source),
+        validation_source_(ValidationSource(source, options)),
+        options_(options),
+        config_(options.config),
+        lpips_(MakeLpips(options)) {
+    torch::manual_seed(options.seed);
+    const PhotoProfile& p = config_.profile;
+    model_ = PhotoModel(config_);
+    discriminator_ = MultiScaleDiscriminator(
+        PatchDiscriminatorOptions{config_.RenderChannels() + 3, p.discriminator_width, p.discriminator_layers, 2},
+        p.discriminator_scales);
+    vgg_ = MakeVgg(options);
+    if (options.sphereface.empty()) {
+      losses_off_.emplace_back("face: no weights of SphereFace given");
+    } else {
+      sphereface_ = SphereFace();
+      sphereface_->Load(options.sphereface.weights, options.sphereface.source);
+    }
+    if (config_.variant == PhotoVariant::kNoInt) losses_off_.emplace_back("texture: left out by no-int");
+    checkpoint_ = std::make_unique<Checkpoint>(ToText(config_));
+    checkpoint_->config_json = options.config_json;
+    checkpoint_->Add("model", model_.ptr().get());
+    checkpoint_->Add("discriminator", discriminator_.ptr().get());
+    const auto optimizer = [&](const char* name, torch::nn::Module& module) {
+      auto adam = std::make_unique<Adam>(module.parameters(),
+                                         torch::optim::AdamOptions(options.learning_rate).betas({0.5, 0.999}));
+      checkpoint_->Add(name, adam.get());
+      return adam;
+    };
+    if (config_.Completes()) feature_optimizer_ = optimizer("feature_optimizer", *model_->feature_net);
+    render_optimizer_ = optimizer("render_optimizer", *model_->render_net);
+    discriminator_optimizer_ = optimizer("discriminator_optimizer", *discriminator_);
+  }
+
+  TrainPhotoSummary Run() {
+    MetricsLog log((fs::path(options_.run_dir) / "metrics.csv").string(), kColumns);
+    if (options_.resume) {
+      checkpoint_->Load(PhotoCheckpointPath(options_.run_dir));
+      step_ = last_checkpoint_ = static_cast<int>(checkpoint_->step);
+      log.KeepUpTo(step_);
+    }
+    const int total = options_.TotalSteps(), first = step_;
+    const auto start = std::chrono::steady_clock::now();
+    const auto seconds = [&] {
+      return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    };
+    MadeAhead<PhotoBatch> batches(std::max(0, total - first), [&](int64_t i) { return BatchOf(first + i); });
+    TrainPhotoSummary summary;
+    summary.status = TrainPhotoStatus::kFinished;
+    summary.losses_off = losses_off_;
+    summary.perceptual_stand_in = vgg_->is_stand_in;
+    while (step_ < total) {
+      const Losses losses = Step(batches.Take());
+      if (!losses.IsFinite()) {
+        summary.status = TrainPhotoStatus::kNotFinite;
+        summary.message =
+            Concatenate("the loss is not finite at step ", step_ + 1, "; checkpoint.bin holds step ", last_checkpoint_);
+        break;
+      }
+      ++step_;
+      const bool last = step_ == total;
+      const bool validates = !options_.validation.empty() && (last || step_ % options_.validate_every == 0);
+      if (validates) Validate();
+      if (last || validates || step_ % options_.report_every == 0) {
+        log.Add(step_, Row(losses, validates, seconds()));
+        if (options_.progress && !options_.progress({step_, total, losses.total, scores_, seconds()})) {
+          Save();
+          summary.status = TrainPhotoStatus::kStopped;
+          summary.message = Concatenate("stopped at step ", step_);
+          break;
+        }
+      }
+      if (last || step_ % options_.checkpoint_every == 0) Save();
+    }
+    summary.steps = step_;
+    summary.seconds = seconds();
+    summary.scores = scores_;
+    return summary;
+  }
+
+ private:
+  [[nodiscard]] PhotoBatch BatchOf(int64_t step) const {
+    std::vector<PhotoPair> pairs;
+    for (int place = 0; place < options_.batch; ++place) {
+      pairs.push_back(DrawPhotoPair(source_.num_frames, options_.train, options_.seed, step, place));
+    }
+    return MakePhotoBatch(source_, pairs, options_.reach, config_.SmallestSide());
+  }
+
+  /// Steps before RenderNet's turn.
+  [[nodiscard]] int InpaintSteps() const { return options_.TotalSteps() - options_.steps; }
+  [[nodiscard]] double Rate(int step) const {
+    const int before = InpaintSteps();
+    return step < before ? LinearDecayOverLastHalf(options_.learning_rate, step, before)
+                         : LinearDecayOverLastHalf(options_.learning_rate, step - before, options_.steps);
+  }
+
+  Losses Step(const PhotoBatch& batch) {
+    const double rate = Rate(step_);
+    for (Adam* optimizer : {feature_optimizer_.get(), render_optimizer_.get(), discriminator_optimizer_.get()}) {
+      if (optimizer == nullptr) continue;
+      SetRate(optimizer, rate);
+      optimizer->zero_grad();
+    }
+    return step_ < InpaintSteps() ? InpaintStep(batch) : RenderStep(batch);
+  }
+
+  Losses InpaintStep(const PhotoBatch& batch) {
+    Losses losses;
+    const Tensor loss = TextureLoss(model_->Complete(batch.source), batch.source, batch.target);
+    loss.backward();
+    losses.total = losses.texture = loss.item<double>();
+    if (losses.IsFinite()) feature_optimizer_->step();
+    return losses;
+  }
+
+  /// F_s; fixed in kInpaint's second stage.
+  Tensor Features(const PhotoBatch& batch) {
+    if (config_.variant != PhotoVariant::kInpaint) return model_->Complete(batch.source);
+    const torch::NoGradGuard no_grad;
+    return model_->Complete(batch.source);
+  }
+
+  Losses RenderStep(const PhotoBatch& batch) {
+    Losses losses;
+    const Tensor features = Features(batch);
+    const Tensor projected = model_->Project(features, batch.pose);
+    const PhotoResult result = model_->Render(projected);
+    const Tensor condition = projected.detach();
+    const auto judge = [&](const Tensor& image) { return discriminator_(torch::cat({condition, image}, 1)); };
+    if (options_.gan_weight > 0) {
+      const Tensor loss = DiscriminatorLoss(judge(batch.truth.image), judge(result.image.detach()));
+      loss.backward();
+      losses.discriminator = loss.item<double>();
+      if (!std::isfinite(losses.discriminator)) return losses;
+      discriminator_optimizer_->step();
+    }
+    const Tensor alpha = torch::binary_cross_entropy_with_logits(result.alpha_logit, batch.truth.foreground);
+    losses.alpha = alpha.item<double>();
+    Tensor total = options_.alpha_weight * alpha;
+    const auto add = [&](double weight, const Tensor& loss, double* value) {
+      *value = loss.item<double>();
+      total = total + weight * loss;
+    };
+    if (options_.perceptual_weight > 0) {
+      std::vector<Tensor> target;
+      {
+        const torch::NoGradGuard no_grad;
+        target = vgg_(batch.truth.image);
+      }
+      add(options_.perceptual_weight, PerceptualLoss(vgg_(result.image), target), &losses.perceptual);
+    }
+    if (!sphereface_.is_empty() && options_.face_weight > 0) {
+      add(options_.face_weight, FaceLoss(sphereface_, result.image, batch.truth.image, batch.faces), &losses.face);
+    }
+    if (config_.variant == PhotoVariant::kFull && options_.texture_weight > 0) {
+      add(options_.texture_weight, TextureLoss(features, batch.source, batch.target), &losses.texture);
+    }
+    if (options_.gan_weight > 0) {
+      RequireGradients(discriminator_.ptr().get(), false);
+      add(options_.gan_weight, GeneratorLoss(judge(result.image)), &losses.generator);
+    }
+    total.backward();
+    RequireGradients(discriminator_.ptr().get(), true);
+    losses.total = total.item<double>();
+    if (!losses.IsFinite()) return losses;  // a step would spoil the weights
+    render_optimizer_->step();
+    if (config_.Completes() && config_.variant != PhotoVariant::kInpaint) feature_optimizer_->step();
+    return losses;
+  }
+
+  void Validate() {
+    const std::vector<PhotoPair> pairs =
+        ValidationPairs(validation_source_.num_frames, options_.validation, options_.validation_pairs);
+    const size_t every = std::max<size_t>(1, pairs.size() / static_cast<size_t>(options_.preview_pairs));
+    PhotoScorer scorer(lpips_, options_.ssim);
+    std::vector<PhotoPreview> previews;
+    for (size_t i = 0; i < pairs.size(); ++i) {
+      const torch::NoGradGuard no_grad;
+      PhotoPreview preview;
+      preview.pair = pairs[i];
+      validation_source_.fill(pairs[i].person, pairs[i].source, &preview.source);
+      validation_source_.fill(pairs[i].person, pairs[i].target, &preview.target);
+      const PartialTexture texture = PartialTextureOf(preview.source);
+      const Tensor features = model_->Complete(ToTensors(std::span(&texture, 1)));
+      preview.picture = RenderPhoto(model_, features, preview.target, options_.reach);
+      scorer.Add(preview.picture, preview.target);
+      if (!options_.preview || i % every != 0) continue;
+      preview.partial_texture = texture.colour;
+      const Tensor colour = (0.5 * (features.slice(1, 0, 3) + 1)).clamp(0, 1).contiguous();
+      preview.completed_texture.assign(colour.data_ptr<float>(), colour.data_ptr<float>() + colour.numel());
+      previews.push_back(std::move(preview));
+    }
+    scores_ = scorer.Scores();
+    if (options_.preview) options_.preview(step_, previews);
+  }
+
+  [[nodiscard]] std::vector<double> Row(const Losses& l, bool validated, double seconds) const {
+    std::vector<double> row = {Rate(step_ - 1), l.total,     l.perceptual, l.face,
+                               l.texture,       l.generator, l.alpha,      l.discriminator};
+    for (const double score : {scores_.image_l1, scores_.psnr_db, scores_.ssim, scores_.lpips, scores_.outline_iou}) {
+      row.push_back(validated ? score : std::numeric_limits<double>::quiet_NaN());
+    }
+    row.push_back(seconds);
+    return row;
+  }
+
+  void Save() {
+    checkpoint_->step = last_checkpoint_ = step_;
+    checkpoint_->Save(PhotoCheckpointPath(options_.run_dir));
+  }
+
+  const PhotoSource& source_;
+  const PhotoSource& validation_source_;
+  const TrainPhotoOptions& options_;
+  const PhotoConfig& config_;
+  Lpips lpips_;
+  std::vector<std::string> losses_off_;
+  PhotoModel model_{nullptr};
+  MultiScaleDiscriminator discriminator_{nullptr};
+  FeatureNetwork vgg_{nullptr};
+  SphereFace sphereface_{nullptr};  ///< empty without weights
+  std::unique_ptr<Adam> feature_optimizer_, render_optimizer_, discriminator_optimizer_;
+  std::unique_ptr<Checkpoint> checkpoint_;
+  PhotoScores scores_;
+  int step_ = 0, last_checkpoint_ = 0;
+};
+
+}  // namespace
+
+int TrainPhotoOptions::TotalSteps() const {
+  if (config.variant != PhotoVariant::kInpaint) return steps;
+  return steps + (inpaint_steps > 0 ? inpaint_steps : steps);
+}
+
+bool TrainPhotoOptions::IsValid(std::string* why) const {
+  const auto in_range = [&](const char* name, double value, double low, double high) {
+    if (value >= low && value <= high) return true;
+    if (why != nullptr) *why = Concatenate(name, " is ", value, ", expected ", low, " to ", high);
+    return false;
+  };
+  if (train.empty()) {
+    if (why != nullptr) *why = "nobody to train on";
+    return false;
+  }
+  return config.IsValid(why) && in_range("validation_pairs", validation_pairs, 1, 1e6) &&
+         in_range("steps", steps, 1, 1e8) && in_range("inpaint_steps", inpaint_steps, 0, 1e8) &&
+         in_range("batch", batch, 1, 256) && in_range("learning_rate", learning_rate, 0, 1) &&
+         in_range("perceptual_weight", perceptual_weight, 0, 1e6) && in_range("face_weight", face_weight, 0, 1e6) &&
+         in_range("texture_weight", texture_weight, 0, 1e6) && in_range("gan_weight", gan_weight, 0, 1e6) &&
+         in_range("alpha_weight", alpha_weight, 0, 1e6) && in_range("reach", reach, 0, 4096) &&
+         in_range("num_threads", num_threads, 0, 256) && in_range("report_every", report_every, 1, 1e8) &&
+         in_range("validate_every", validate_every, 1, 1e8) && in_range("checkpoint_every", checkpoint_every, 1, 1e8) &&
+         in_range("preview_pairs", preview_pairs, 1, 64);
+}
+
+std::string PhotoCheckpointPath(const std::string& run_dir) { return (fs::path(run_dir) / "checkpoint.bin").string(); }
+
+TrainPhotoSummary TrainPhoto(const PhotoSource& source, const TrainPhotoOptions& options) {
+  std::string why;
+  BODYLOOM_CHECK(options.IsValid(&why), "photo training: ", why);
+  const PhotoProfile& p = options.config.profile;
+  const auto check = [&](const PhotoSource& people, const std::vector<int>& persons) {
+    BODYLOOM_CHECK(people.size == p.image_size && people.texture_size == p.texture_size, "photo training: pictures of ",
+                   people.size, " pixels and textures of ", people.texture_size, " texels a side, expected ",
+                   p.image_size, " and ", p.texture_size);
+    for (const int person : persons) {
+      BODYLOOM_CHECK(person >= 0 && static_cast<size_t>(person) < people.num_frames.size(), "photo training: person ",
+                     person, " of ", people.num_frames.size());
+    }
+  };
+  check(source, options.train);
+  check(ValidationSource(source, options), options.validation);
+  StartNeuralRuntime(options.num_threads);
+  return Trainer(source, options).Run();
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Trains the one-photo renderer on pairs of pictures of the same person.
+///
+///   L_G = 10 L_p + 5 L_face + L_tex + L_adv + L_α       (Sarkar et al., ECCV 2020, Section 3.5)
+/// L_p: mean absolute differences of VGG-19's features relu1_1, 2_1, 3_1, 4_1, 5_1, unweighted; L_face, L_tex:
+/// neural/photo/photo_losses.h; L_adv: binary cross entropy of a discriminator on several scales that sees the feature
+/// image R (as it is: no gradient goes through it) beside the picture, updated every step; L_α, not in the paper:
+/// binary cross entropy of alpha against the labels' foreground. Adam 2e-4, β₁ 0.5, linear decay over the last half,
+/// for both sides.
+///
+/// The variant kInpaint trains FeatureNet by L_tex alone for `inpaint_steps` steps, then fixes it and trains RenderNet
+/// for `steps` steps; the steps of both stages are counted through.
+///
+/// Without VGG's weights a stand-in of random features takes its place; without SphereFace's L_face is left out
+/// (`losses_off` says so). Writes into run_dir: checkpoint.bin and metrics.csv. A run that goes on from a checkpoint
+/// ends with the same bytes as one that was never interrupted (same binary, machine and threads).
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "neural/networks/named_weights.h"
+#include "neural/people/photo_frame.h"
+#include "neural/photo/photo_config.h"
+#include "neural/photo/photo_pairs.h"
+#include "neural/photo/photo_picture.h"
+#include "neural/photo/photo_scores.h"
+
+namespace bodyloom {
+
+/// A validated pair.
+struct PhotoPreview {
+  PhotoPair pair;
+  PhotoFrame source, target;
+  PhotoPicture picture;
+  std::vector<float> partial_texture, completed_texture;  ///< planar 3 × U × U in [0, 1]
+};
+
+struct TrainPhotoProgress {
+  int step = 0, steps = 0;
+  double loss = 0;
+  PhotoScores scores;  ///< of the last validation
+  double seconds = 0;
+};
+
+struct TrainPhotoOptions {
+  PhotoConfig config;
+  std::vector<int> train, validation;              ///< persons; validation may be empty
+  const PhotoSource* validation_source = nullptr;  ///< whose persons `validation` are; nullptr: the same
+  int validation_pairs = 2;                        ///< a person, the same in every run
+  int steps = 20000;
+  int inpaint_steps = 0;  ///< of kInpaint's first stage; 0: as many as `steps`
+  int batch = 4;
+  double learning_rate = 2e-4;
+  double perceptual_weight = 10, face_weight = 5, texture_weight = 1, gan_weight = 1, alpha_weight = 1;
+  int reach = 0;                     ///< of clothes beyond the body, pixels (neural/photo/photo_window.h)
+  WeightsFrom vgg19;                 ///< empty: a seeded stand-in of random features
+  WeightsFrom sphereface;            ///< empty: no face loss
+  WeightsFrom alexnet, lpips_heads;  ///< empty: validation's LPIPS is a stand-in
+  PictureSimilarity ssim;            ///< of validation; may be empty
+  uint64_t seed = 1;
+  int num_threads = 0;  ///< of LibTorch; 0: all cores
+  int report_every = 20, validate_every = 500, checkpoint_every = 250;
+  int preview_pairs = 4;
+  std::string run_dir;
+  std::string config_json;  ///< kept in the checkpoint as it is
+  bool resume = false;
+  std::function<bool(const TrainPhotoProgress&)> progress;  ///< return false to stop after a checkpoint
+  std::function<void(int step, const std::vector<PhotoPreview>&)> preview;
+
+  /// Of both stages.
+  [[nodiscard]] int TotalSteps() const;
+  [[nodiscard]] bool IsValid(std::string* why) const;
+};
+
+enum class TrainPhotoStatus { kFinished, kStopped, kNotFinite };
+
+struct TrainPhotoSummary {
+  TrainPhotoStatus status = TrainPhotoStatus::kNotFinite;
+  std::string message;
+  int steps = 0;
+  double seconds = 0;
+  PhotoScores scores;
+  std::vector<std::string> losses_off;
+  bool perceptual_stand_in = true;
+};
+
+/// run_dir/checkpoint.bin.
+std::string PhotoCheckpointPath(const std::string& run_dir);
+
+/// Throws std::invalid_argument for options that are not valid or do not fit the source, std::runtime_error for files
+/// that cannot be used.
+TrainPhotoSummary TrainPhoto(const PhotoSource& source, const TrainPhotoOptions& options);
+
+}  // namespace bodyloom

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// `bodyloom train photo` and `bodyloom animate photo`, from synthetic people to a video.
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "data_tools/formats/ndarray.h"
+#include "data_tools/formats/safetensors.h"
+#include "data_tools/video/image_file.h"
+#include "data_tools/video/video_reader.h"
+#include "tests/apps/run_command.h"
+
+namespace bodyloom {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+class TrainPhotoVerb : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (BODYLOOM_HAS_NEURAL == 0) GTEST_SKIP() << "built without LibTorch";
+    const CommandResult made =
+        RunCommand({"synth-people", "--motions", "demo", "--out", scratch_ / "people", "--people", "3", "--test-share",
+                    "0.34", "--actions", "1", "--views", "2", "--frames", "2", "--size", "96", "--quiet"});
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+  }
+  CommandResult Train(const std::string& run, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments = {"train",        "photo",     "--data", scratch_ / "people", "--out",
+                                          scratch_ / run, "--profile", "tiny",   "--batch",           "1",
+                                          "--threads",    "1"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return RunCommand(arguments);
+  }
+  CommandResult Animate(const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments = {"animate",   "photo",
+                                          "--run",     scratch_ / "run",
+                                          "--image",   scratch_ / "people/p000/a0_v0",
+                                          "--track",   scratch_ / "people/p001/a0_v0/track.npz",
+                                          "--out",     scratch_ / "a.mp4",
+                                          "--threads", "1"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return RunCommand(arguments);
+  }
+  ScratchFolder scratch_;
+};
+
+TEST_F(TrainPhotoVerb, TrainsGoesOnAndAnimates) {
+  const CommandResult trained = Train("run", {"--steps", "2", "--validate-every", "2"});
+  ASSERT_EQ(trained.exit_code, 0) << trained.err;
+  EXPECT_THAT(trained.out, HasSubstr("2 people to train on, 1 kept for validation"));
+  EXPECT_THAT(trained.out, HasSubstr("step 2 of 2"));
+  EXPECT_THAT(trained.out, HasSubstr("stand-in"));
+  EXPECT_THAT(trained.out, HasSubstr("loss switched off: face"));
+  EXPECT_THAT(trained.out, HasSubstr("validation of 2 pairs"));
+  for (const char* file : {"config.json", "checkpoint.bin", "metrics.csv", "preview_000002.png"}) {
+    EXPECT_TRUE(fs::exists(scratch_ / ("run/" + std::string(file)))) << file;
+  }
+  EXPECT_EQ(Train("run", {"--steps", "3"}).exit_code, 2) << "took the folder of another run";
+  const CommandResult resumed = Train("run", {"--steps", "3", "--resume"});
+  EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+  EXPECT_THAT(resumed.out, HasSubstr("step 3 of 3"));
+
+  const CommandResult animated = Animate({"--sheet", scratch_ / "a.png", "--texture", scratch_ / "t.png", "--json",
+                                          scratch_ / "a.json", "--view-yaw", "0:90", "--background", "photo",
+                                          "--garment-from", (scratch_ / "people/p002/a0_v0") + "::1", "--parts",
+                                          "top,bottom", "--views", (scratch_ / "people/p000/a0_v1") + "::1"});
+  ASSERT_EQ(animated.exit_code, 0) << animated.err;
+  EXPECT_THAT(animated.out, HasSubstr("2 frames"));
+  VideoReader video(scratch_ / "a.mp4");
+  EXPECT_GT(video.info().width, 32);
+  EXPECT_EQ(ReadImage(scratch_ / "t.png").width, 128);
+  EXPECT_TRUE(fs::exists(scratch_ / "a.png"));
+  std::ifstream json(scratch_ / "a.json");
+  const std::string report((std::istreambuf_iterator<char>(json)), {});
+  EXPECT_THAT(report, HasSubstr("\"texels_seen\""));
+  EXPECT_THAT(report, HasSubstr("\"frames_per_second\""));
+}
+
+TEST_F(TrainPhotoVerb, SaysWhatIsWrong) {
+  const auto fails = [&](const CommandResult& result, int code, const std::string& says) {
+    EXPECT_EQ(result.exit_code, code) << result.err;
+    EXPECT_THAT(result.err, HasSubstr(says));
+  };
+  fails(Train("x", {"--resume"}), 2, "holds no run");
+  fails(Train("x", {"--baseline", "best"}), 2, "baseline");
+  fails(Train("x", {"--weights", scratch_ / "nowhere"}), 1, "nowhere: not a folder");
+  fs::create_directories(scratch_ / "weights");
+  fails(Train("x", {"--weights", scratch_ / "weights"}), 1, "none of vgg16, vgg19");
+  std::ofstream(scratch_ / "weights/vgg19.pth") << "no weights";
+  fails(Train("x", {"--weights", scratch_ / "weights"}), 1, "vgg19.pth");
+  fs::remove(scratch_ / "weights/vgg19.pth");
+  const std::vector<float> values(64 * 3 * 3, 0.1F);
+  WriteSafetensors(scratch_ / "weights/vgg19.safetensors",
+                   {{"features.0.weight", NdArray::FromFloats(values.data(), {64, 3, 3})}});
+  const CommandResult shape = Train("x", {"--weights", scratch_ / "weights"});
+  fails(shape, 1, "vgg19.safetensors: tensor features.0.weight");
+  EXPECT_EQ(fs::exists(scratch_ / "x/checkpoint.bin"), false);
+
+  ASSERT_EQ(Train("run", {"--steps", "1", "--baseline", "warp"}).exit_code, 0);
+  fails(Animate({"--garment-from", scratch_ / "people/p002/a0_v0"}), 2, "belong together");
+  fails(Animate({"--garment-from", scratch_ / "people/p002/a0_v0", "--parts", "hat"}), 2, "--parts hat");
+  fails(Animate({"--garment-from", scratch_ / "nobody", "--parts", "top"}), 1, "nobody");
+  fails(Animate({"--image-frame", "7"}), 1, "asked for frame 7");
+  fails(Animate({"--view-yaw", "left"}), 2, "--view-yaw left");
+
+  // The run's files: another config, a checkpoint that was cut off.
+  std::ifstream config(scratch_ / "run/config.json");
+  const std::string text((std::istreambuf_iterator<char>(config)), {});
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string changed = text;
+    changed.replace(changed.find(from), from.size(), to);
+    std::ofstream(scratch_ / "run/config.json") << changed;
+    return Animate();
+  };
+  fails(with("\"warp\"", "\"full\""), 1, "checkpoint.bin");
+  fails(with("\"warp\"", "\"best\""), 1, "config.json");
+  fails(with("\"features\": 16", "\"features\": 1e9"), 1, "config.json");
+  fails(with("\"features\": 16", "\"features\": \"many\""), 1, "config.json: features");
+  fails(with("train photo", "train motion"), 1, "a run of \"bodyloom train motion\"");
+  for (size_t size = 0; size < text.size(); size += text.size() / 5) {
+    std::ofstream(scratch_ / "run/config.json") << text.substr(0, size);
+    fails(Animate(), 1, "config.json");
+  }
+  std::ofstream(scratch_ / "run/config.json") << text;
+  fs::resize_file(scratch_ / "run/checkpoint.bin", 1000);
+  const CommandResult cut = Animate();
+  fails(cut, 1, "checkpoint.bin");
+  EXPECT_EQ(cut.NumErrorLines(), 1);
+  EXPECT_FALSE(fs::exists(scratch_ / "a.mp4"));
+}
+
+}  // namespace
+}  // namespace bodyloom
