@@ -12,15 +12,15 @@ namespace nn = torch::nn;
 
 double KaimingStd(double fan_in) { return std::sqrt(2 / ((1 + kLeakySlope * kLeakySlope) * fan_in)); }
 
-torch::Tensor InstanceNorm(const torch::Tensor& x) {
-  return torch::instance_norm(x, {}, {}, {}, {}, /*use_input_stats=*/true, /*momentum=*/0.1, /*eps=*/1e-5,
-                              /*cudnn_enabled=*/true);
-}
-
 }  // namespace
 
 // In place: neither a convolution nor the norm reads its own output in the backward pass.
 torch::Tensor LeakyRelu(torch::Tensor x) { return torch::leaky_relu_(x, kLeakySlope); }
+
+torch::Tensor InstanceNorm(const torch::Tensor& x) {
+  return torch::instance_norm(x, {}, {}, {}, {}, /*use_input_stats=*/true, /*momentum=*/0.1, /*eps=*/1e-5,
+                              /*cudnn_enabled=*/true);
+}
 
 torch::Tensor NormAndActivation(torch::Tensor x, NormOrder order) {
   return order == NormOrder::kNormFirst ? LeakyRelu(InstanceNorm(x)) : InstanceNorm(LeakyRelu(x));

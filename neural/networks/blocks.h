@@ -26,6 +26,9 @@ constexpr double kLeakySlope = 0.2;
 /// LReLU; writes over x, which must be what a convolution or norm just made and nobody else reads.
 torch::Tensor LeakyRelu(torch::Tensor x);
 
+/// IN: each channel of each image to mean 0 and variance 1 (+ 1e-5).
+torch::Tensor InstanceNorm(const torch::Tensor& x);
+
 /// IN then LReLU, or LReLU then IN. May write over x, as above.
 torch::Tensor NormAndActivation(torch::Tensor x, NormOrder order);
 
