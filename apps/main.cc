@@ -26,6 +26,7 @@ int Run(int argc, char** argv) {
   AddTrackVerb(app, &action);
   AddSynthVerb(app, &action);
   AddSynthPersonVerb(app, &action);
+  AddSynthPeopleVerb(app, &action);
   AddEvaluateVerb(app, &action);
   AddMetricsVerb(app, &action);
   AddExportVerb(app, &action);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "data_tools/motion/load_motion.h"
+#include "data_tools/motion/motion_tools.h"
 #include "data_tools/synthetic/demo_motion.h"
 #include "geometry/check.h"
 
@@ -35,10 +36,7 @@ Motion LoadMotionInput(const MotionInput& input, const BodyModel& body) {
         Concatenate(input.motion, ": ", motion.num_frames(), " frames, --first asks for frame ", input.first_frame));
   }
   const int count = input.num_frames > 0 ? std::min(input.num_frames, available) : available;
-  motion.poses = RowMatrixXd(motion.poses.middleRows(input.first_frame, count));
-  motion.trans = MatrixX3d(motion.trans.middleRows(input.first_frame, count));
-  motion.timestamps = {motion.timestamps.begin() + input.first_frame,
-                       motion.timestamps.begin() + input.first_frame + count};
+  motion = TakeFrames(motion, input.first_frame, count);
   // The clip begins at zero, as its video does.
   const double begin = motion.timestamps.front();
   for (double& time : motion.timestamps) time -= begin;

@@ -17,6 +17,7 @@ using Action = std::function<void()>;
 void AddTrackVerb(CLI::App& app, Action* action);
 void AddSynthVerb(CLI::App& app, Action* action);
 void AddSynthPersonVerb(CLI::App& app, Action* action);
+void AddSynthPeopleVerb(CLI::App& app, Action* action);
 void AddEvaluateVerb(CLI::App& app, Action* action);
 void AddMetricsVerb(CLI::App& app, Action* action);
 void AddExportVerb(CLI::App& app, Action* action);

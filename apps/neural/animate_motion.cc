@@ -26,6 +26,7 @@
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/people/person_frames.h"
 #include "data_tools/people/person_set.h"
+#include "data_tools/people/posed_track.h"
 #include "data_tools/track_io.h"
 #include "data_tools/video/image_file.h"
 #include "data_tools/video/video_writer.h"

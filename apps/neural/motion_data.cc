@@ -2,7 +2,6 @@
 #include "apps/neural/motion_data.h"
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <mutex>
 #include <optional>
@@ -11,7 +10,9 @@
 
 #include "apps/track_inputs.h"
 #include "data_tools/observations/part_labels.h"
+#include "data_tools/people/label_of_part.h"
 #include "data_tools/people/person_set.h"
+#include "data_tools/people/posed_track.h"
 #include "data_tools/track_io.h"
 #include "data_tools/video/video_reader.h"
 #include "geometry/check.h"
@@ -20,15 +21,6 @@ namespace bodyloom {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// DensePose's part → the class of clothing it is taken for: torso and upper arms top, legs bottom, head face, lower
-/// arms and hands skin, feet shoes.
-constexpr std::array<PersonLabel, 25> kLabelOfPart = {
-    PersonLabel::kBackground, PersonLabel::kTop,    PersonLabel::kTop,    PersonLabel::kSkin,   PersonLabel::kSkin,
-    PersonLabel::kShoes,      PersonLabel::kShoes,  PersonLabel::kBottom, PersonLabel::kBottom, PersonLabel::kBottom,
-    PersonLabel::kBottom,     PersonLabel::kBottom, PersonLabel::kBottom, PersonLabel::kBottom, PersonLabel::kBottom,
-    PersonLabel::kTop,        PersonLabel::kTop,    PersonLabel::kTop,    PersonLabel::kTop,    PersonLabel::kSkin,
-    PersonLabel::kSkin,       PersonLabel::kSkin,   PersonLabel::kSkin,   PersonLabel::kFace,   PersonLabel::kFace};
 
 /// The window's part of a frame's pictures.
 struct CutFrame {
@@ -40,10 +32,8 @@ Image LabelPicture(const LabelImage& labels, int width, int height) {
   Image picture(width, height);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      const uint8_t part = labels.At(x, y);
-      // 255: unknown. Inside the person's outline, or it would not have been looked at.
-      picture.pixel(x, y)[0] = part < kLabelOfPart.size() ? static_cast<uint8_t>(kLabelOfPart[part])
-                                                          : static_cast<uint8_t>(PersonLabel::kTop);
+      // 255, unknown: inside the person's outline, or it would not have been looked at.
+      picture.pixel(x, y)[0] = static_cast<uint8_t>(LabelOfPart(labels.At(x, y)));
     }
   }
   return picture;

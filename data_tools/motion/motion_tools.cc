@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "geometry/check.h"
 #include "geometry/rotation.h"
@@ -61,6 +62,21 @@ Motion ResampleMotion(const Motion& motion, double fps) {
     }
   }
   return out;
+}
+
+Motion TakeFrames(const Motion& motion, int first, int count, int step) {
+  BODYLOOM_CHECK(first >= 0 && count > 0 && step > 0 && first + int64_t{count - 1} * step < motion.num_frames(),
+                 "TakeFrames: frames ", first, " + ", step, "·(0 … ", count - 1, ") of ", motion.num_frames());
+  Motion taken = motion;
+  taken.poses.resize(count, motion.poses.cols());
+  taken.trans.resize(count, 3);
+  taken.timestamps.resize(count);
+  for (int i = 0; i < count; ++i) {
+    taken.poses.row(i) = motion.poses.row(first + i * step);
+    taken.trans.row(i) = motion.trans.row(first + i * step);
+    taken.timestamps[i] = motion.timestamps[first + i * step];
+  }
+  return taken;
 }
 
 double FrameRate(const Motion& motion) {

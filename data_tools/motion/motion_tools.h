@@ -17,6 +17,10 @@ Motion ChangeUp(const Motion& motion, Motion::Up up, const Eigen::Vector3d& rest
 /// within rounding. A motion of one frame stays as it is. Throws std::invalid_argument for fps that is not positive.
 Motion ResampleMotion(const Motion& motion, double fps);
 
+/// Frames first, first + step, … (count of them) as they are. Throws std::invalid_argument when the motion does not
+/// have them.
+Motion TakeFrames(const Motion& motion, int first, int count, int step = 1);
+
 /// Frames per second of a motion with a regular clock; 0 when its steps differ by more than 1 % (a gap) or it has fewer
 /// than two frames.
 double FrameRate(const Motion& motion);

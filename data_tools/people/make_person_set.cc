@@ -82,6 +82,24 @@ Eigen::VectorXd PersonBetas(const BodyModel& body, double sigma, uint64_t seed) 
   return betas;
 }
 
+Track TrueTrack(const BodyModel& body, const Motion& in_camera, const Camera& camera) {
+  Track track;
+  track.motion = in_camera;
+  track.camera = camera;
+  const int T = track.num_frames();
+  track.frame_status.assign(T, FrameStatus::kTracked);
+  track.joint_sigma = RowMatrixXd::Constant(T, body.num_joints(), std::numeric_limits<double>::quiet_NaN());
+  const MatrixX3d rest = body.RestJoints(in_camera.betas);
+  const bool has_coco = HasCoco(body);
+  for (int t = 0; t < T; ++t) {
+    const BodyPose pose =
+        PoseFromAxisAngle(body, track.motion.poses.row(t).transpose(), track.motion.trans.row(t).transpose());
+    track.joints.push_back(PoseSkeleton(body, rest, pose).joints);
+    if (has_coco) track.coco17.push_back(PoseLandmarks(body, in_camera.betas, pose, CocoNames()));
+  }
+  return track;
+}
+
 Track PersonTrack(const BodyModel& body, const Motion& motion, const MakePersonSetOptions& options,
                   SynthCamera* camera) {
   Motion world = motion;
@@ -92,21 +110,7 @@ Track PersonTrack(const BodyModel& body, const Motion& motion, const MakePersonS
   place.yaw_deg = options.yaw_deg, place.elevation_deg = options.elevation_deg;
   place.fill = 0.8;  // room for cloth that flies
   *camera = PlaceSynthCamera(body, world, place);
-  Track track;
-  track.motion = MotionInCamera(body, world, camera->pose);
-  track.camera = camera->camera;
-  const int T = track.num_frames();
-  track.frame_status.assign(T, FrameStatus::kTracked);
-  track.joint_sigma = RowMatrixXd::Constant(T, body.num_joints(), std::numeric_limits<double>::quiet_NaN());
-  const MatrixX3d rest = body.RestJoints(world.betas);
-  const bool has_coco = HasCoco(body);
-  for (int t = 0; t < T; ++t) {
-    const BodyPose pose =
-        PoseFromAxisAngle(body, track.motion.poses.row(t).transpose(), track.motion.trans.row(t).transpose());
-    track.joints.push_back(PoseSkeleton(body, rest, pose).joints);
-    if (has_coco) track.coco17.push_back(PoseLandmarks(body, world.betas, pose, CocoNames()));
-  }
-  return track;
+  return TrueTrack(body, MotionInCamera(body, world, camera->pose), camera->camera);
 }
 
 MakePersonSetSummary MakePersonSet(const std::string& folder, const BodyModel& body, const Motion& motion,

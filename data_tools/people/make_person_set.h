@@ -45,6 +45,9 @@ struct MakePersonSetSummary {
 /// Shape components of the person of a seed.
 Eigen::VectorXd PersonBetas(const BodyModel& body, double sigma, uint64_t seed);
 
+/// A motion in the camera's frame as a track without error: every frame tracked, joints and landmarks where they are.
+Track TrueTrack(const BodyModel& body, const Motion& in_camera, const Camera& camera);
+
 /// The true track of a motion (world frame) of that body, and the camera: static, the whole motion in view.
 Track PersonTrack(const BodyModel& body, const Motion& motion, const MakePersonSetOptions& options,
                   SynthCamera* camera);

@@ -3,20 +3,16 @@
 
 #include <unistd.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <filesystem>
 #include <utility>
 
 #include "data_tools/descriptors/describe_track.h"
 #include "data_tools/formats/half.h"
 #include "data_tools/formats/npz.h"
+#include "data_tools/people/posed_track.h"
 #include "geometry/check.h"
-#include "geometry/parallel.h"
-#include "geometry/posed_body.h"
-#include "geometry/skinning.h"
 #include "render/resolve_pixels.h"
 #include "render/visibility_buffer.h"
 
@@ -24,10 +20,7 @@ namespace bodyloom {
 namespace {
 
 namespace fs = std::filesystem;
-using Eigen::Matrix3d;
 using Eigen::Matrix3f;
-using Eigen::Vector2d;
-using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 /// FloatFromHalf by table: every frame decodes half a million values.
@@ -58,76 +51,12 @@ fs::path ScratchPath(const std::string& folder) {
   return place / ("motion_maps_" + std::to_string(getpid()) + "_" + std::to_string(count++) + ".npy");
 }
 
-class PosedTrack {
- public:
-  PosedTrack(const BodyModel& body, const Track& track, std::vector<double> yaw_deg)
-      : body_(body),
-        track_(track),
-        skinner_(body),
-        shape_(skinner_.Shape(track.motion.betas)),
-        yaw_deg_(std::move(yaw_deg)) {
-    BODYLOOM_CHECK(yaw_deg_.empty() || static_cast<int>(yaw_deg_.size()) == track.num_frames(),
-                   "person frames: ", yaw_deg_.size(), " angles for ", track.num_frames(), " frames");
-  }
-
-  /// How frame t's view is turned: vectors in the turned camera from vectors in the track's.
-  [[nodiscard]] Matrix3d Turn(int t) const {
-    if (yaw_deg_.empty()) return Matrix3d::Identity();
-    return Eigen::AngleAxisd(yaw_deg_[t] * M_PI / 180, Vector3d::UnitY()).toRotationMatrix();
-  }
-  [[nodiscard]] bool turned() const { return !yaw_deg_.empty(); }
-
-  [[nodiscard]] Vector3d Root(int t) const {
-    return shape_.rest_joints.row(0).transpose() + track_.motion.trans.row(t).transpose();
-  }
-
-  /// V×3 in the (turned) camera frame.
-  [[nodiscard]] MatrixX3d Vertices(int t) const {
-    MatrixX3d vertices(body_.num_vertices(), 3);
-    const BodyPose pose =
-        PoseFromAxisAngle(body_, track_.motion.poses.row(t).transpose(), track_.motion.trans.row(t).transpose());
-    skinner_.Skin(shape_, std::span(&pose, 1), {vertices.data(), static_cast<size_t>(vertices.size())});
-    if (turned()) {
-      const Eigen::RowVector3d root = Root(t).transpose();
-      vertices = ((vertices.rowwise() - root) * Turn(t).transpose()).rowwise() + root;
-    }
-    return vertices;
-  }
-
- private:
-  const BodyModel& body_;
-  const Track& track_;
-  Skinner skinner_;
-  ShapedBody shape_;
-  std::vector<double> yaw_deg_;
-};
-
 /// Turns the vectors whose components are three planes of `count` values.
 void TurnMap(const Matrix3f& turn, size_t count, float* planes) {
   for (size_t i = 0; i < count; ++i) {
     const Vector3f v = turn * Vector3f(planes[i], planes[count + i], planes[2 * count + i]);
     for (int c = 0; c < 3; ++c) planes[count * c + i] = v[c];
   }
-}
-
-std::vector<PersonExtent> ExtentsOf(const PosedTrack& posed, const Track& track, int num_threads) {
-  std::vector<PersonExtent> extents(track.num_frames());
-  ParallelFor(track.num_frames(), num_threads, [&](int t) {
-    if (!track.HasResult(t)) return;
-    const MatrixX3d vertices = posed.Vertices(t);
-    const Camera camera = track.CameraAt(t);
-    PersonExtent extent{Vector2d::Constant(1e9), Vector2d::Constant(-1e9)};
-    for (Eigen::Index v = 0; v < vertices.rows(); ++v) {
-      Vector2d pixel;
-      if (!camera.Project(vertices.row(v).transpose(), &pixel)) continue;
-      extent.min = extent.min.cwiseMin(pixel);
-      extent.max = extent.max.cwiseMax(pixel);
-    }
-    const bool in_picture =
-        extent.max.minCoeff() >= 0 && extent.min.x() < camera.width && extent.min.y() < camera.height;
-    if (in_picture) extents[t] = extent;
-  });
-  return extents;
 }
 
 }  // namespace
@@ -138,8 +67,8 @@ class PersonFrames::Impl {
       : body_(body), track_(track), options_(options), posed_(body, track, options.yaw_deg) {
     BODYLOOM_CHECK(options.uv_size > 0 && options.past >= 0, "person frames: UV maps of ", options.uv_size, ", past ",
                    options.past);
-    window_ = PlanPersonWindow(ExtentsOf(posed_, track, options.num_threads), track.camera.width, track.camera.height,
-                               options.window);
+    window_ =
+        PlanPersonWindow(posed_.Extents(options.num_threads), track.camera.width, track.camera.height, options.window);
     Describe();
   }
 
@@ -241,20 +170,5 @@ const PersonWindow& PersonFrames::window() const { return impl_->window(); }
 const PersonFramesOptions& PersonFrames::options() const { return impl_->options(); }
 void PersonFrames::MotionMaps(int t, std::span<float> maps) const { impl_->MotionMaps(t, maps); }
 void PersonFrames::BodyMaps(int t, std::span<float> uv, std::span<float> mask) const { impl_->BodyMaps(t, uv, mask); }
-
-double PixelsPerMetre(const BodyModel& body, const Track& track) {
-  const PosedTrack posed(body, track, {});
-  std::vector<double> sizes;
-  for (int t = 0; t < track.num_frames(); ++t) {
-    if (!track.HasResult(t)) continue;
-    const Camera camera = track.CameraAt(t);
-    const double z = posed.Root(t).z();
-    if (camera.model == CameraModel::kWeakPerspective) sizes.push_back(camera.scale);
-    if (camera.model == CameraModel::kPinhole && z > Camera::kMinDepth) sizes.push_back(camera.fy / z);
-  }
-  if (sizes.empty()) return 0;
-  std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2), sizes.end());
-  return sizes[sizes.size() / 2];
-}
 
 }  // namespace bodyloom

@@ -59,7 +59,4 @@ class PersonFrames {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Pixels of the track's picture a metre at the body's root, median over the frames; 0 when no frame has a result.
-double PixelsPerMetre(const BodyModel& body, const Track& track);
-
 }  // namespace bodyloom

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "data_tools/people/people_set.h"
 #include "data_tools/people/person_set.h"
 #include "data_tools/video/image_file.h"
 #include "tests/apps/run_command.h"
@@ -54,6 +55,30 @@ TEST(SynthPersonVerb, AnInterruptionLeavesNoFinishedSet) {
                  {.file_size_limit = {}, .interrupt_on = "% person", .work_folder = ""});
   EXPECT_EQ(result.exit_code, 130);
   EXPECT_FALSE(std::filesystem::exists(scratch / "person/person.json"));
+}
+
+TEST(SynthPeopleVerb, WritesASetAndASheet) {
+  const ScratchFolder scratch;
+  const CommandResult result =
+      RunCommand({"synth-people", "--motions", "demo", "--out", scratch / "people", "--people", "2", "--actions", "1",
+                  "--views", "2", "--frames", "2", "--size", "64", "--sheet", scratch / "sheet.png"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("8 pictures of 2 people"));
+  const PeopleSet set = ReadPeopleSet(scratch / "people");
+  EXPECT_EQ(set.people.size(), 2U);
+  EXPECT_THAT(set.command, HasSubstr("--every 6"));
+  EXPECT_GT(ReadImage(scratch / "sheet.png").width, 500);
+}
+
+TEST(SynthPeopleVerb, SaysWhatIsWrong) {
+  const ScratchFolder scratch;
+  const CommandResult longer =
+      RunCommand({"synth-people", "--motions", "demo", "--out", scratch / "p", "--frames", "500", "--every", "10"});
+  EXPECT_EQ(longer.exit_code, 2);
+  EXPECT_THAT(longer.err, HasSubstr("none is as long as a clip, 4991 frames"));
+  const CommandResult missing = RunCommand({"synth-people", "--motions", scratch / "none", "--out", scratch / "p"});
+  EXPECT_EQ(missing.exit_code, 1);
+  EXPECT_THAT(missing.err, HasSubstr("none"));
 }
 
 }  // namespace

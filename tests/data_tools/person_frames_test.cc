@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data_tools/people/person_frames.h"
+#include "data_tools/people/posed_track.h"
 
 #include <gtest/gtest.h>
 

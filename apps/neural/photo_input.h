@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+/// One picture of a person, from the files a user has, as the one-photo renderers take it; and the poses to show.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "data_tools/people/photo_maps.h"
+#include "geometry/body_model.h"
+#include "geometry/track.h"
+#include "neural/people/photo_frame.h"
+#include "render/image.h"
+
+namespace bodyloom {
+
+/// The window's part of a picture.
+struct CutPhoto {
+  Image image;
+  std::vector<uint8_t> labels;
+};
+
+/// uv, parts, texels of a frame; image and labels are left empty.
+void FillMaps(PhotoMap&& map, int size, int texture_size, PhotoFrame* frame);
+/// image (0 on the background) and labels.
+void FillPicture(const CutPhoto& cut, PhotoFrame* frame);
+
+struct PhotoRequest {
+  std::string image;   ///< a picture, a video, a folder of pictures, or a person set
+  int frame = 0;       ///< of the above, and of the track (a track of one frame: its only one)
+  std::string track;   ///< empty: the person set's own
+  std::string labels;  ///< DensePose's parts of the clip, which stand in for a parsing of the clothes; or empty
+  std::string body;    ///< empty: the built-in body
+};
+
+struct Photo {
+  PhotoFrame frame;
+  Image picture;                ///< whole
+  std::vector<uint8_t> person;  ///< of the whole picture: 1 where the person (by its labels) is
+  PersonWindow window;          ///< of one frame
+  std::shared_ptr<const BodyModel> body;
+  Track track;        ///< of one frame
+  std::string notes;  ///< lines for the user: what stands in for what
+};
+
+/// Throws std::runtime_error, one line naming the file: it cannot be read, the track is of another size or has no such
+/// frame, or shows nobody there.
+Photo LoadPhoto(const PhotoRequest& request, int size, int texture_size);
+
+/// "IMAGE:TRACK" or "IMAGE:TRACK:FRAME", as --views and --garment-from take it; a person set needs no track ("DIR" or
+/// "DIR::FRAME"). Throws UsageError naming the option.
+PhotoRequest ParsePhotoRequest(const std::string& text, const std::string& option, const PhotoRequest& like);
+
+}  // namespace bodyloom
