@@ -8,7 +8,9 @@
 
 #include "apps/exit_code.h"
 #include "apps/interrupt.h"
+#include "apps/neural/animate_guided.h"
 #include "apps/neural/animate_motion.h"
+#include "apps/neural/train_animate.h"
 #include "apps/neural/train_lifter.h"
 #include "apps/neural/train_motion.h"
 #include "neural/runtime.h"
@@ -28,9 +30,11 @@ int main(int argc, char** argv) {
   train->require_subcommand(1);
   bodyloom::AddTrainLifter(*train, &action);
   bodyloom::AddTrainMotion(*train, &action);
+  bodyloom::AddTrainAnimate(*train, &action);
   CLI::App* animate = app.add_subcommand("animate", "Renders a person with a trained network");
   animate->require_subcommand(1);
   bodyloom::AddAnimateMotion(*animate, &action);
+  bodyloom::AddAnimateGuided(*animate, &action);
   try {
     app.parse(argc, argv);
     action();

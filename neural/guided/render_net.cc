@@ -68,10 +68,10 @@ Tensor RenderNetImpl::forward(const Tensor& code, const Tensor& guide, const Ten
           : torch::zeros({guide.size(0), config.profile.latent, deepest.size(2), deepest.size(3)}, guide.options());
   Tensor x = first(z);
   for (int l = config.Levels() - 1; l >= 0; --l) {
-    x = blocks[l](x, {guide_features[l], pseudo_features[l]});
+    x = blocks[l]->forward(x, {guide_features[l], pseudo_features[l]});
     x = torch::upsample_nearest2d(x, {2 * x.size(2), 2 * x.size(3)});
   }
-  x = full(x, {guide, pseudo});
+  x = full->forward(x, {guide, pseudo});
   return last(LeakyRelu(x));
 }
 

@@ -170,7 +170,7 @@ TEST(CompleteMaps, TheBackIsTheFrontWithoutItsFace) {
       EXPECT_NE(maps.labels[t], 3);
       shirt += maps.labels[t] == 1 ? 1 : 0;
       hair += maps.labels[t] == 4 ? 1 : 0;
-      if (r < 8) continue;
+      if (r < 8 || r == 13 || r == 14) continue;  // head; where shirt and skin meet, the colours mix
       // A texel of the back lies behind the one of the front that has the same place across the body.
       for (int k = 0; k < 3; ++k) {
         EXPECT_NEAR(maps.appearance[k * 256 + t], maps.appearance[k * 256 + t - 8], 0.03) << r << " " << c;
