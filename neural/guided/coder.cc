@@ -30,7 +30,7 @@ std::vector<Tensor> EncoderImpl::forward(Tensor x) {
   return features;
 }
 
-SkipDecoderImpl::SkipDecoderImpl(int code, const std::vector<int>& widths, int out) {
+SkipDecoderImpl::SkipDecoderImpl(int code, const std::vector<int>& widths, int input, int out) {
   const int levels = static_cast<int>(widths.size());
   int channels = code;
   for (int l = levels - 1; l >= 0; --l) {
@@ -40,15 +40,15 @@ SkipDecoderImpl::SkipDecoderImpl(int code, const std::vector<int>& widths, int o
     channels = to;
   }
   std::reverse(blocks.begin(), blocks.end());
-  head = register_module("head", MakeConv(channels, out, 3, 1, 1, /*bias=*/true));
+  head = register_module("head", MakeConv(channels + input, out, 3, 1, 1, /*bias=*/true));
   torch::nn::init::normal_(head->weight, 0, 0.02);
 }
 
-Tensor SkipDecoderImpl::forward(Tensor code, const std::vector<Tensor>& features) {
+Tensor SkipDecoderImpl::forward(Tensor code, const Tensor& input, const std::vector<Tensor>& features) {
   const int levels = static_cast<int>(blocks.size());
   Tensor x = std::move(code);
   for (int l = levels - 1; l >= 0; --l) x = blocks[l](l == levels - 1 ? x : torch::cat({x, features[l]}, 1));
-  return head(x);
+  return head(torch::cat({x, input}, 1));
 }
 
 Tensor Cropped(const Tensor& map, const CodeBox& box) {

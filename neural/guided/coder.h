@@ -3,7 +3,8 @@
 ///
 /// Encoder: C-BLK(in, w_0), C-BLK(w_0, w_1), …; its features by level, level l with w_l channels at 1/2^(l+1) of the
 /// sides. SkipDecoder: D-BLK from the code at the deepest level upwards, at each level above it beside the encoder's
-/// features of that size, then a 3×3 convolution; result linear. Blocks: neural/networks/blocks.h.
+/// features of that size, then a 3×3 convolution that
+/// also sees the encoder's input; result linear. Blocks: neural/networks/blocks.h.
 #pragma once
 
 #include <torch/torch.h>
@@ -24,10 +25,11 @@ struct EncoderImpl : torch::nn::Module {
 TORCH_MODULE(Encoder);
 
 struct SkipDecoderImpl : torch::nn::Module {
-  /// `code`: channels of what is handed in at the deepest level.
-  SkipDecoderImpl(int code, const std::vector<int>& widths, int out);
-  /// `features`: of the encoder whose features are skipped over; its deepest ones are not used (they are in the code).
-  torch::Tensor forward(torch::Tensor code, const std::vector<torch::Tensor>& features);
+  /// `code`: channels of what is handed in at the deepest level; `input`: of the encoder's input.
+  SkipDecoderImpl(int code, const std::vector<int>& widths, int input, int out);
+  /// `input` and `features`: of the encoder that is skipped over; its deepest features are not used (they are in the
+  /// code).
+  torch::Tensor forward(torch::Tensor code, const torch::Tensor& input, const std::vector<torch::Tensor>& features);
 
   std::vector<DeconvBlock> blocks;  ///< finest first
   torch::nn::Conv2d head{nullptr};

@@ -7,15 +7,16 @@ namespace bodyloom {
 
 GarNetImpl::GarNetImpl(const GuidedConfig& config) {
   const std::vector<int>& widths = config.profile.shape_widths;
-  encoder = register_module("encoder", Encoder(4 + config.LabelChannels(), widths));
-  decoder = register_module("decoder", SkipDecoder(2 * widths.back(), widths, kPhotoLabels));
+  const int input = 4 + config.LabelChannels();
+  encoder = register_module("encoder", Encoder(input, widths));
+  decoder = register_module("decoder", SkipDecoder(2 * widths.back(), widths, input, kPhotoLabels));
 }
 
 torch::Tensor GarNetImpl::EncodeSource(const torch::Tensor& triplet) { return encoder(triplet).back(); }
 
 torch::Tensor GarNetImpl::forward(const torch::Tensor& source_code, const torch::Tensor& triplet) {
   const std::vector<torch::Tensor> features = encoder(triplet);
-  return decoder(torch::cat({features.back(), source_code}, 1), features);
+  return decoder(torch::cat({features.back(), source_code}, 1), triplet, features);
 }
 
 }  // namespace bodyloom

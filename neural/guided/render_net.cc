@@ -43,7 +43,7 @@ RenderNetImpl::RenderNetImpl(const GuidedConfig& guided_config) : config(guided_
   full = register_module("full", ModulatedBlock(channels, p.full_width, std::vector<int>{guide, pseudo},
                                                 std::min(p.modulation_width, p.full_width), p.spectral_norm));
   const int out = config.silhouettes || config.garments ? 3 : 4;
-  last = register_module("last", MakeConv(p.full_width, out, 3, 1, 1, true));
+  last = register_module("last", MakeConv(p.full_width + pseudo, out, 3, 1, 1, true));
   nn::init::normal_(last->weight, 0, 0.02);
 }
 
@@ -72,7 +72,7 @@ Tensor RenderNetImpl::forward(const Tensor& code, const Tensor& guide, const Ten
     x = torch::upsample_nearest2d(x, {2 * x.size(2), 2 * x.size(3)});
   }
   x = full->forward(x, {guide, pseudo});
-  return last(LeakyRelu(x));
+  return last(torch::cat({LeakyRelu(x), pseudo}, 1));
 }
 
 }  // namespace bodyloom

@@ -4,8 +4,9 @@
 ///   z ~ N(μ, σ²),  μ, log σ² = Conv3(enc_z(I^s, S^s, G^s))           (at the deepest level)
 ///   f = enc_G(G^t, S^t),  g = enc_I(Ĩ^t, S̃^t)                        (features of every level)
 ///   x = Conv3(z);  for each level, coarsest first: x = up2(ModulatedBlock(x | f_l, g_l));
-///   x = ModulatedBlock(x | (G^t, S^t), (Ĩ^t, S̃^t)),  result Conv3(LReLU(x))        (at full size)
-/// So both of the target's encoders condition every level, and the maps themselves the last one. Without the latent
+///   x = ModulatedBlock(x | (G^t, S^t), (Ĩ^t, S̃^t)),  result Conv3(LReLU(x), Ĩ^t, S̃^t)   (at full size)
+/// So both of the target's encoders condition every level, and the maps themselves the last one; the last convolution
+/// sees the pseudo image itself, so that what is known need not be painted anew. Without the latent
 /// code z = 0. Without L_KL the code is not drawn: z comes out of fully connected layers on the mean over enc_z's
 /// deepest features, the same at every place. Without SilNet and GarNet together a fourth channel outlines the person.
 /// Source: Yoon et al., CVPR 2021, Fig. 6, which gives neither channels nor levels.
