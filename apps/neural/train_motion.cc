@@ -63,6 +63,21 @@ std::vector<FrameRange> Ranges(const std::vector<std::string>& texts, const char
   return ranges;
 }
 
+/// The ranges without frames that have no result, cut where the clock jumps: a recurrent network must not be led
+/// across.
+std::vector<FrameRange> CutAtGaps(const std::vector<FrameRange>& ranges, const PersonFrames& frames) {
+  std::vector<FrameRange> cut;
+  for (const FrameRange& range : ranges) {
+    int begin = range.begin;
+    for (int t = range.begin; t < range.end; ++t) {
+      if (t + 1 < range.end && frames.Segment(t + 1) == frames.Segment(t)) continue;
+      if (frames.Segment(t) >= 0) cut.push_back({begin, t + 1});
+      begin = t + 1;
+    }
+  }
+  return cut;
+}
+
 /// Of every so many stretches the first.
 std::vector<FrameRange> TakeShare(const std::vector<FrameRange>& ranges, double share) {
   if (share >= 1) return ranges;
@@ -110,9 +125,10 @@ std::string Notes(const Request& request) {
   return json.dump();
 }
 
-/// `validation_frames`: of the clip that is for validation alone, 0: there is none.
-void ChooseFrames(const Request& request, const Track& track, int validation_frames, TrainMotionOptions* options) {
-  const int T = track.num_frames();
+/// `validation`: of the clip that is for validation alone, null: there is none.
+void ChooseFrames(const Request& request, const PersonFrames& frames, const PersonFrames* validation,
+                  TrainMotionOptions* options) {
+  const int T = frames.num_frames(), validation_frames = validation != nullptr ? validation->num_frames() : 0;
   options->train = Ranges(request.train, "--train", T);
   options->validation = Ranges(request.validate, "--validate", validation_frames > 0 ? validation_frames : T);
   if (validation_frames > 0 && options->validation.empty()) options->validation = {{0, validation_frames}};
@@ -122,7 +138,8 @@ void ChooseFrames(const Request& request, const Track& track, int validation_fra
     options->train = {{0, last}};
     if (options->validation.empty() && last < T) options->validation = {{last, T}};
   }
-  options->train = TakeShare(options->train, request.share);
+  options->train = TakeShare(CutAtGaps(options->train, frames), request.share);
+  options->validation = CutAtGaps(options->validation, validation != nullptr ? *validation : frames);
 }
 
 /// Of frames spread over the ranges.
@@ -197,7 +214,7 @@ void Run(Request request) {
       validation->Fill(t, with_truth, frame);
     };
   }
-  ChooseFrames(request, data.track(), validation ? validation->track().num_frames() : 0, &options);
+  ChooseFrames(request, data.frames(), validation ? &validation->frames() : nullptr, &options);
   MotionRun run;
   run.config = config;
   run.pixels_per_metre = data.PixelsPerMetre();

@@ -14,7 +14,7 @@
 #include "neural/losses/image_losses.h"
 #include "neural/losses/perceptual_loss.h"
 #include "neural/motion/motion_batches.h"
-#include "neural/motion/motion_scores.h"
+#include "neural/motion/motion_scorer.h"
 #include "neural/motion/roll_out.h"
 #include "neural/networks/patch_discriminator.h"
 #include "neural/networks/vgg.h"

@@ -20,7 +20,7 @@
 #include "neural/motion/chain_plan.h"
 #include "neural/motion/motion_config.h"
 #include "neural/motion/motion_frame.h"
-#include "neural/motion/score_motion.h"
+#include "neural/motion/motion_scores.h"
 #include "neural/networks/named_weights.h"
 
 namespace bodyloom {

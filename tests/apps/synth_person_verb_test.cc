@@ -31,6 +31,21 @@ TEST(SynthPersonVerb, WritesASetAndASheet) {
   EXPECT_GT(ReadImage(scratch / "sheet.jpg").width, 500);
 }
 
+TEST(SynthPersonVerb, SeveralMotionsFollowEachOtherWithAGap) {
+  const ScratchFolder scratch;
+  const CommandResult result =
+      RunCommand({"synth-person", "--motion", "demo", "--motion", "demo", "--first", "40", "--frames", "4", "--out",
+                  scratch / "person", "--size", "64", "--garment", "skirt"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const PersonSet set(scratch / "person");
+  EXPECT_EQ(set.info().num_frames, 8);
+  EXPECT_NEAR(set.info().fps, 30, 1e-6);
+  EXPECT_EQ(set.info().motion, "demo demo");
+  const std::vector<double> times = set.track().motion.timestamps;
+  EXPECT_NEAR(times[4] - times[3], 1, 1e-9);
+  EXPECT_NEAR(times[5] - times[4], 1 / 30.0, 1e-9);
+}
+
 TEST(SynthPersonVerb, SaysWhatIsWrong) {
   const ScratchFolder scratch;
   const auto run = [&](const std::string& option, const std::string& value) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/motion/motion_scores.h"
+#include "neural/motion/motion_scorer.h"
 
 #include <cmath>
 #include <limits>
