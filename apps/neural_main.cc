@@ -8,10 +8,12 @@
 
 #include "apps/exit_code.h"
 #include "apps/interrupt.h"
+#include "apps/neural/animate_guided.h"
 #include "apps/neural/animate_motion.h"
 #include "apps/neural/animate_photo.h"
 #include "apps/neural/card.h"
 #include "apps/neural/likeness_metrics.h"
+#include "apps/neural/train_animate.h"
 #include "apps/neural/train_lifter.h"
 #include "apps/neural/train_motion.h"
 #include "apps/neural/train_photo.h"
@@ -40,6 +42,10 @@ int main(int argc, char** argv) {
   bodyloom::AddAnimatePhoto(*animate, &action);
   bodyloom::AddCard(app, &action);
   bodyloom::AddMetricsVerb(app, &action, {}, bodyloom::LikenessMetrics);
+  bodyloom::AddTrainAnimate(*train, &action);
+  CLI::App* animate = app.add_subcommand("animate", "Renders a person with a trained network");
+  animate->require_subcommand(1);
+  bodyloom::AddAnimateGuided(*animate, &action);
   try {
     app.parse(argc, argv);
     action();
