@@ -36,16 +36,14 @@ int main(int argc, char** argv) {
   bodyloom::AddTrainLifter(*train, &action);
   bodyloom::AddTrainMotion(*train, &action);
   bodyloom::AddTrainPhoto(*train, &action);
+  bodyloom::AddTrainAnimate(*train, &action);
   CLI::App* animate = app.add_subcommand("animate", "Renders a person with a trained network");
   animate->require_subcommand(1);
   bodyloom::AddAnimateMotion(*animate, &action);
   bodyloom::AddAnimatePhoto(*animate, &action);
+  bodyloom::AddAnimateGuided(*animate, &action);
   bodyloom::AddCard(app, &action);
   bodyloom::AddMetricsVerb(app, &action, {}, bodyloom::LikenessMetrics);
-  bodyloom::AddTrainAnimate(*train, &action);
-  CLI::App* animate = app.add_subcommand("animate", "Renders a person with a trained network");
-  animate->require_subcommand(1);
-  bodyloom::AddAnimateGuided(*animate, &action);
   try {
     app.parse(argc, argv);
     action();
