@@ -183,6 +183,9 @@ void AddTrainAnimate(CLI::App& train, std::function<void()>* action) {
   verb->add_option("--gan-share", options.gan_share, "Of the adversarial loss, beside its balanced weight")
       ->check(CLI::Range(0.0, 100.0))
       ->capture_default_str();
+  verb->add_option("--kl-share", options.kl_share, "Of the divergence of the source's code, beside its balanced weight")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
   verb->add_option("--label-loss", request->label_loss, "Of the garment labels: cross entropy or absolute differences")
       ->check(CLI::IsMember({"ce", "l1"}))
       ->capture_default_str();
