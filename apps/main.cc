@@ -28,7 +28,7 @@ int Run(int argc, char** argv) {
   AddSynthPersonVerb(app, &action);
   AddSynthPeopleVerb(app, &action);
   AddEvaluateVerb(app, &action);
-  AddMetricsVerb(app, &action);
+  AddMetricsVerb(app, &action, {argv + 1, argv + argc});
   AddExportVerb(app, &action);
   AddRenderVerb(app, &action);
   AddDescribeVerb(app, &action);

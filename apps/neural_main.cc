@@ -8,11 +8,16 @@
 
 #include "apps/exit_code.h"
 #include "apps/interrupt.h"
+#include "apps/neural/animate_guided.h"
 #include "apps/neural/animate_motion.h"
 #include "apps/neural/animate_photo.h"
+#include "apps/neural/card.h"
+#include "apps/neural/likeness_metrics.h"
+#include "apps/neural/train_animate.h"
 #include "apps/neural/train_lifter.h"
 #include "apps/neural/train_motion.h"
 #include "apps/neural/train_photo.h"
+#include "apps/verbs.h"
 #include "neural/runtime.h"
 
 int main(int argc, char** argv) {
@@ -31,10 +36,14 @@ int main(int argc, char** argv) {
   bodyloom::AddTrainLifter(*train, &action);
   bodyloom::AddTrainMotion(*train, &action);
   bodyloom::AddTrainPhoto(*train, &action);
+  bodyloom::AddTrainAnimate(*train, &action);
   CLI::App* animate = app.add_subcommand("animate", "Renders a person with a trained network");
   animate->require_subcommand(1);
   bodyloom::AddAnimateMotion(*animate, &action);
   bodyloom::AddAnimatePhoto(*animate, &action);
+  bodyloom::AddAnimateGuided(*animate, &action);
+  bodyloom::AddCard(app, &action);
+  bodyloom::AddMetricsVerb(app, &action, {}, bodyloom::LikenessMetrics);
   try {
     app.parse(argc, argv);
     action();

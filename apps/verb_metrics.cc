@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "apps/exec_neural.h"
 #include "apps/exit_code.h"
 #include "apps/metrics_run.h"
 #include "apps/verbs.h"
@@ -29,7 +30,7 @@ void Metrics(const MetricsCommand& command) { std::cout << ToText(RunMetrics(com
 
 }  // namespace
 
-void AddMetricsVerb(CLI::App& app, Action* action) {
+void AddMetricsVerb(CLI::App& app, Action* action, std::vector<std::string> arguments, MoreMetrics more) {
   CLI::App* verb = app.add_subcommand("metrics", "Compares pictures with the truth: PSNR, SSIM, labels, normals");
   verb->footer(std::string(kFooter) + kExitCodeHelp);
   auto command = std::make_shared<MetricsCommand>();
@@ -45,10 +46,21 @@ void AddMetricsVerb(CLI::App& app, Action* action) {
   verb->add_option("--threads", c.num_threads, "0: all cores; numbers are the same for any number")
       ->check(CLI::Range(0, 256))
       ->capture_default_str();
+  auto lpips = std::make_shared<bool>(false);
+  auto weights = std::make_shared<std::string>();
+  CLI::Option* with_lpips = verb->add_flag(
+      "--lpips", *lpips, "also LPIPS and tLPIPS; without --weights by a stand-in that compares with nothing else");
+  verb->add_option("--weights", *weights, "folder with alexnet and lpips_alex, .pth or .safetensors")
+      ->type_name("DIR")
+      ->needs(with_lpips);
   verb->add_flag("--quiet", c.quiet, "no progress");
-  verb->callback([command, preset, action] {
+  verb->callback([command, preset, lpips, weights, action, arguments = std::move(arguments), more = std::move(more)] {
     command->preset = SsimPresetFrom(*preset).value();
-    *action = [command] { Metrics(*command); };
+    *action = [=] {
+      if (*lpips && !more) ExecNeural(arguments);
+      if (*lpips) command->more = more(*weights);
+      Metrics(*command);
+    };
   });
 }
 

@@ -13,12 +13,11 @@
 #include <string>
 #include <vector>
 
+#include "apps/exec_neural.h"
 #include "apps/verbs.h"
 
 namespace bodyloom {
-namespace {
 
-/// Replaces this process; returns only by throwing.
 void ExecNeural(const std::vector<std::string>& arguments) {
   const std::filesystem::path program =
       std::filesystem::read_symlink("/proc/self/exe").parent_path() / "bodyloom-neural";
@@ -38,15 +37,15 @@ void ExecNeural(const std::vector<std::string>& arguments) {
   throw std::runtime_error(program.string() + ": cannot be started: " + std::strerror(errno));
 }
 
-}  // namespace
-
 void AddNeuralVerb(CLI::App& app, Action* action) {
   CLI::App* verb = app.add_subcommand("neural", "Runs a verb that needs LibTorch: `bodyloom neural doctor`");
   verb->footer(
       "Verbs:\n"
       "  doctor   which LibTorch, how many threads, which matrix library, and what makes it slow\n"
+      "  card     what a system's networks are made of\n"
       "  train    trains a network (also: bodyloom train)\n"
-      "  animate  renders a person with a trained network (also: bodyloom animate)\n");
+      "  animate  renders a person with a trained network (also: bodyloom animate)\n"
+      "  metrics  with --lpips (also: bodyloom metrics)\n");
   verb->prefix_command();  // everything after `neural` belongs to the other executable
   verb->callback([verb, action] { *action = [arguments = verb->remaining()] { ExecNeural(arguments); }; });
 }

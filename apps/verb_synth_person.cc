@@ -15,6 +15,7 @@
 #include "apps/progress.h"
 #include "apps/track_inputs.h"
 #include "apps/verbs.h"
+#include "data_tools/motion/motion_tools.h"
 #include "data_tools/people/make_person_set.h"
 #include "data_tools/people/person_sheet.h"
 #include "data_tools/video/image_file.h"
@@ -31,10 +32,15 @@ constexpr const char* kFooter =
     "Examples:\n"
     "  bodyloom synth-person --motion demo --out person --garment skirt --sheet person.png\n"
     "  bodyloom synth-person --motion dance.pkl --out train --frames 600 --seed 3\n"
-    "  bodyloom synth-person --motion walk.bvh --out test --seed 3 --garment coat --yaw 30 --size 512\n\n";
+    "  bodyloom synth-person --motion walk.bvh --motion run.bvh --out test --seed 3 --garment coat --yaw 30 --size "
+    "512\n\n";
+
+/// Seconds between two motions of one set: longer than anything that looks back.
+constexpr double kGap_s = 1;
 
 struct SynthPersonCommand {
-  MotionInput motion;
+  std::vector<std::string> motions;
+  MotionInput motion;  ///< rate and frames of each
   std::string body, out, sheet, garment = "skirt";
   bool quiet = false;
   MakePersonSetOptions set;
@@ -42,8 +48,9 @@ struct SynthPersonCommand {
 
 /// The command as it would be typed again.
 std::string CommandLine(const SynthPersonCommand& c) {
-  std::string line =
-      "bodyloom synth-person --motion " + c.motion.motion + " --out " + c.out + " --garment " + c.garment;
+  std::string line = "bodyloom synth-person";
+  for (const std::string& motion : c.motions) line += " --motion " + motion;
+  line += " --out " + c.out + " --garment " + c.garment;
   line += " --seed " + std::to_string(c.set.seed) + " --size " + std::to_string(c.set.size_px);
   const auto add = [&](const char* option, double value) {
     std::array<char, 64> text{};
@@ -55,17 +62,34 @@ std::string CommandLine(const SynthPersonCommand& c) {
   return c.body.empty() ? line : line + " --body " + c.body;
 }
 
+/// All of them in one world with y up.
+Motion LoadMotions(const SynthPersonCommand& command, const BodyModel& body) {
+  const Eigen::Vector3d pelvis = body.RestJoints(Eigen::VectorXd::Zero(body.num_betas())).row(0).transpose();
+  std::vector<Motion> motions;
+  for (const std::string& name : command.motions) {
+    MotionInput input = command.motion;
+    input.motion = name;
+    motions.push_back(LoadMotionInput(input, body));
+    if (command.motions.size() > 1) motions.back() = ChangeUp(motions.back(), Motion::Up::kY, pelvis);
+  }
+  return motions.size() == 1 ? motions.front() : JoinMotions(motions, kGap_s);
+}
+
 void SynthPerson(SynthPersonCommand command) {
-  if (command.motion.motion != "demo") RequireReadable(command.motion.motion, "motion");
+  for (const std::string& motion : command.motions) {
+    if (motion != "demo") RequireReadable(motion, "motion");
+  }
   RequireReadable(command.body, "body model");
   RequireWritableFolder(command.out);
   RequireWritable(command.sheet);
   const std::shared_ptr<const BodyModel> body = BodyOrBuiltin(command.body);
-  const Motion motion = LoadMotionInput(command.motion, *body);
+  const Motion motion = LoadMotions(command, *body);
   ThrowIfInterrupted();
   MakePersonSetOptions& set = command.set;
   set.garment = GarmentKindFromString(command.garment);
-  set.motion = std::filesystem::path(command.motion.motion).filename().string();
+  for (const std::string& name : command.motions) {
+    set.motion += (set.motion.empty() ? "" : " ") + std::filesystem::path(name).filename().string();
+  }
   set.command = CommandLine(command);
   Progress progress("dressing " + std::to_string(motion.num_frames()) + " frames",
                     command.quiet ? Progress::Style::kSilent : Progress::DefaultStyle());
@@ -100,7 +124,8 @@ void AddSynthPersonVerb(CLI::App& app, Action* action) {
   auto command = std::make_shared<SynthPersonCommand>();
   SynthPersonCommand& c = *command;
   c.motion.fps = 30;
-  verb->add_option("--motion", c.motion.motion, kMotionInputHelp)->required();
+  verb->add_option("--motion", c.motions, std::string(kMotionInputHelp) + "; several follow each other with a gap")
+      ->required();
   verb->add_option("--out", c.out, "the folder to write")->required()->type_name("DIR");
   verb->add_option("--garment", c.garment, "skirt, coat (both loose) or suit (tight)")
       ->check(CLI::IsMember({"skirt", "coat", "suit"}))
@@ -109,10 +134,10 @@ void AddSynthPersonVerb(CLI::App& app, Action* action) {
   verb->add_option("--size", c.set.size_px, "pixels, width and height")
       ->check(CLI::Range(32, 4096))
       ->capture_default_str();
-  verb->add_option("--first", c.motion.first_frame, "first frame that is used")
+  verb->add_option("--first", c.motion.first_frame, "first frame of each motion that is used")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  verb->add_option("--frames", c.motion.num_frames, "how many frames (0: all)")
+  verb->add_option("--frames", c.motion.num_frames, "how many frames of each motion (0: all)")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   verb->add_option("--fps", c.motion.fps, "resample the motion to this rate (0: as the file has it)")

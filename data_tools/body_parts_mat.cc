@@ -14,7 +14,7 @@ namespace bodyloom {
 namespace {
 
 constexpr int kParts = 24;
-constexpr size_t kMaxValues = 10'000'000;  // UV_Processed.mat holds at most 41,322 a variable
+constexpr size_t kMaxValues = 1'000'000;  // UV_Processed.mat holds at most 41,322 a variable
 
 /// One variable's numbers in MATLAB's column order.
 struct MatMatrix {

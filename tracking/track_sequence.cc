@@ -16,9 +16,11 @@
 #include "geometry/posed_body.h"
 #include "geometry/rotation.h"
 #include "tracking/image_terms.h"
+#include "tracking/initialise/impossible_frames.h"
 #include "tracking/initialise/initial_states.h"
 #include "tracking/initialise/lifted_start.h"
 #include "tracking/initialise/swap_repair.h"
+#include "tracking/input_checks.h"
 #include "tracking/observability.h"
 #include "tracking/residuals/lifted_pose.h"
 #include "tracking/sequence_problem.h"
@@ -135,8 +137,6 @@ void CheckInput(const TrackSequenceInput& input, const TrackSequenceOptions& opt
   if (input.dense != nullptr) CheckDense(input);
   if (input.part_labels != nullptr) CheckPartLabels(input, options);
   if (options.camera_knowledge == CameraKnowledge::kKnown) {
-    BODYLOOM_CHECK(input.camera.fx > 0 && input.camera.fy > 0, "track: the camera's focal length is ", input.camera.fx,
-                   ", expected a positive number of pixels");
     BODYLOOM_CHECK(extent.width == 0 || input.camera.width == 0 ||
                        (extent.width == input.camera.width && extent.height == input.camera.height),
                    "track: the detections are for images of ", extent.width, "x", extent.height,
@@ -145,6 +145,7 @@ void CheckInput(const TrackSequenceInput& input, const TrackSequenceOptions& opt
     BODYLOOM_CHECK(extent.width > 0 || input.camera.width > 0,
                    "track: the image size is not known; it is needed when the focal length is not");
   }
+  CheckNumbers(input, options);
 }
 
 /// The camera the problem starts with. An unknown focal length starts at 0.9 of the longer side (58° field of view).
@@ -225,13 +226,26 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSe
   TrackSequenceSummary& summary = result.summary;
   TrackSequenceInput input = given;
   KeypointSequence repaired;
+  int impossible = 0;
   if (given.keypoints != nullptr) {
     repaired = *given.keypoints;
+    DropUnusable(&repaired);
+    impossible = DropImpossibleFrames(&repaired);
     summary.num_swaps_repaired = RepairSwaps(&repaired);
     input.keypoints = &repaired;
   }
+  DenseSequence usable;
+  if (given.dense != nullptr && HasUnusable(*given.dense)) {
+    usable = *given.dense;
+    DropUnusable(&usable);
+    input.dense = &usable;
+  }
   summary.solver = options.solver;
   summary.plan = PlanTrackSequence(input, options);
+  if (impossible > 0) {
+    summary.plan.push_back({"2D joints of impossible frames", false,
+                            std::to_string(impossible) + " frames jump away from the person and back"});
+  }
   StageClock clock(&summary);
   const int threads = options.num_threads > 0 ? options.num_threads : std::max(1u, std::thread::hardware_concurrency());
 

@@ -7,6 +7,7 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <thread>
 #include <utility>
@@ -32,8 +33,9 @@
 #include "data_tools/video/image_file.h"
 #include "data_tools/video/video_writer.h"
 #include "geometry/check.h"
+#include "neural/metrics/temporal_lpips.h"
 #include "neural/motion/motion_renderer.h"
-#include "neural/motion/score_motion.h"
+#include "neural/motion/motion_scores.h"
 #include "neural/motion/train_motion.h"
 #include "render/contact_sheet.h"
 
@@ -55,34 +57,80 @@ void AddToSheet(const MotionPicture& picture, const Image& composed, std::vector
   if (!picture.normals.empty()) pictures->push_back(NormalPicture(picture.normals, picture.width, picture.height));
 }
 
-/// Against the pictures of a person set of the same person.
-MotionScores Score(const Request& request, const MotionRun& run, int threads) {
-  MotionDataRequest data_request;
-  data_request.data = request.data;
-  data_request.body = request.body;
-  data_request.pixels_per_metre = run.pixels_per_metre;
-  data_request.num_threads = threads;
-  MotionData data(data_request, run.config.profile, run.config.Multiple());
-  return ScoreMotion(MotionCheckpointPath(request.run), run.config,
-                     [&](int t, bool with_truth, MotionFrame* frame) { data.Fill(t, with_truth, frame); },
-                     {{0, data.track().num_frames()}}, {request.warmup, request.anywhere ? 0 : run.reach, threads});
+/// LPIPS and tLPIPS of the windows, both on black.
+class Likeness {
+ public:
+  static constexpr int kSmallest = 32;  ///< pixels a side that LPIPS' network takes
+  void Add(const MotionPicture& picture, const MotionFrame& truth) {
+    temporal_.Add(PictureOf(picture.image, picture.width, picture.height),
+                  PictureOf(truth.image, truth.width, truth.height));
+  }
+  void Restart() { temporal_.Restart(); }
+  [[nodiscard]] TemporalLpipsMean Mean() const { return temporal_.Mean(); }
+
+ private:
+  Lpips lpips_;
+  TemporalLpips temporal_{lpips_};
+};
+
+/// What is animated: a track, or a person set whose pictures the result is compared with.
+struct Clip {
+  std::unique_ptr<MotionData> data;
+  std::shared_ptr<const BodyModel> body;
+  std::optional<Track> own_track;
+  std::optional<PersonFrames> own_frames;
+  [[nodiscard]] const Track& track() const { return data ? data->track() : *own_track; }
+  [[nodiscard]] const PersonFrames& frames() const { return data ? data->frames() : *own_frames; }
+  void Fill(int t, MotionFrame* frame) const {
+    if (data) {
+      data->Fill(t, true, frame);
+    } else {
+      FillMotion(*own_frames, t, frame);
+    }
+  }
+};
+
+/// Whether the result is compared: from another side there is nothing to compare with.
+bool IsScored(const Request& request) { return !request.data.empty() && request.view_yaw.empty(); }
+
+void OpenClip(const Request& request, const MotionRun& run, int threads, Clip* clip) {
+  if (IsScored(request)) {
+    MotionDataRequest data;
+    data.data = request.data, data.body = request.body;
+    data.pixels_per_metre = run.pixels_per_metre;
+    data.num_threads = threads;
+    clip->data = std::make_unique<MotionData>(data, run.config.profile, run.config.Multiple());
+    return;
+  }
+  clip->own_track = request.data.empty() ? ReadTrack(request.track) : PersonSet(request.data).track();
+  clip->body = BodyOrBuiltin(request.body);
+  const double size = PixelsPerMetre(*clip->body, *clip->own_track);
+  if (!(size > 0)) {
+    throw std::runtime_error(request.track + request.data + ": no frame has a result, nothing to animate");
+  }
+  PersonFramesOptions options;
+  options.uv_size = run.config.profile.uv_size;
+  options.past = run.past;
+  options.window.scale = run.pixels_per_metre / size;
+  options.window.multiple = run.config.Multiple();
+  options.num_threads = threads;
+  options.yaw_deg = ViewAngles(request.view_yaw, clip->own_track->num_frames());
+  clip->own_frames.emplace(*clip->body, *clip->own_track, options);
 }
 
-/// The light of the clip from its first frames, rendered for it; the clip then begins anew.
-void EstimateLight(const PersonFrames& frames, const Track& track, MotionRenderer* renderer,
-                   FrameRelighter* relighter) {
+/// The light of the clip from its first frames, rendered for it.
+void EstimateLight(const Clip& clip, MotionRenderer* renderer, FrameRelighter* relighter) {
   Progress progress("light");
   MotionFrame frame;
-  const int count = std::min(FrameRelighter::kFrames, track.num_frames());
+  const int count = std::min(FrameRelighter::kFrames, clip.track().num_frames());
   for (int t = 0; t < count; ++t) {
     ThrowIfInterrupted();
     progress.Update("rendering", static_cast<double>(t + 1) / count);
-    if (!track.HasResult(t)) continue;
-    FillMotion(frames, t, &frame);
+    if (!clip.track().HasResult(t)) continue;
+    FillMotion(clip.frames(), t, &frame);
     relighter->Observe(renderer->Next(frame));
   }
   relighter->Estimate();
-  renderer->Restart();
 }
 
 nlohmann::ordered_json ScoresJson(const MotionScores& s) {
@@ -118,20 +166,10 @@ void Run(const Request& request) {
     throw std::runtime_error(request.run + ": was trained without surface normals, which --relight needs");
   }
   const int threads = request.threads > 0 ? request.threads : static_cast<int>(std::thread::hardware_concurrency());
-  const Track track = request.data.empty() ? ReadTrack(request.track) : PersonSet(request.data).track();
-  const std::shared_ptr<const BodyModel> body = BodyOrBuiltin(request.body);
-  const double size = PixelsPerMetre(*body, track);
-  if (!(size > 0))
-    throw std::runtime_error(request.track + request.data + ": no frame has a result, nothing to animate");
-
-  PersonFramesOptions options;
-  options.uv_size = run.config.profile.uv_size;
-  options.past = run.past;
-  options.window.scale = run.pixels_per_metre / size;
-  options.window.multiple = run.config.Multiple();
-  options.num_threads = threads;
-  options.yaw_deg = ViewAngles(request.view_yaw, track.num_frames());
-  const PersonFrames frames(*body, track, options);
+  Clip clip;
+  OpenClip(request, run, threads, &clip);
+  const Track& track = clip.track();
+  const PersonFrames& frames = clip.frames();
   const PersonWindow& window = frames.window();
   if (std::max({window.width, window.height, window.picture_width, window.picture_height}) > kLargestSide) {
     throw std::runtime_error(Concatenate(request.track,
@@ -140,10 +178,14 @@ void Run(const Request& request) {
                                          window.picture_width, "x", window.picture_height, " px, at most ",
                                          kLargestSide, " a side; the track's person is too small in its picture"));
   }
-  MotionRenderer renderer(MotionCheckpointPath(request.run), run.config,
-                          {request.warmup, request.anywhere ? 0 : run.reach, threads});
+  const bool scored = IsScored(request);
+  const int reach = request.anywhere ? 0 : run.reach;
+  MotionRenderer renderer(MotionCheckpointPath(request.run), run.config, {request.warmup, reach, scored, threads});
   lap(0);
-  if (relighter && relighter->wants_frames()) EstimateLight(frames, track, &renderer, relighter.get());
+  if (relighter && relighter->wants_frames()) {
+    MotionRenderer before(MotionCheckpointPath(request.run), run.config, {request.warmup, reach, false, threads});
+    EstimateLight(clip, &before, relighter.get());
+  }
   lap(1);
   Background background(request.background, window.picture_width, window.picture_height);
   const double fps = track.num_frames() > 1
@@ -153,6 +195,8 @@ void Run(const Request& request) {
   const std::vector<int> on_sheet = EvenlySpreadFrames(track.num_frames(), 6);
   std::vector<Image> sheet;
   std::vector<double> network_ms;
+  std::optional<Likeness> likeness;
+  if (scored && std::min(window.width, window.height) >= Likeness::kSmallest) likeness.emplace();
   int lost = 0, sheet_columns = 1;
   {
     Progress progress("animate");
@@ -162,10 +206,15 @@ void Run(const Request& request) {
       Image composed = background.Next();
       MotionPicture picture;
       if (track.HasResult(t)) {
-        FillMotion(frames, t, &frame);
+        clip.Fill(t, &frame);
+        if (t > 0 && frames.Segment(t) != frames.Segment(t - 1)) {
+          renderer.Restart();
+          if (likeness) likeness->Restart();
+        }
         lap(2);
         picture = renderer.Next(frame);
         const double network_s = lap(3);
+        if (likeness) likeness->Add(picture, frame);
         if (t > 0) network_ms.push_back(1e3 * network_s);  // the first frame warms up
         if (relighter) relighter->Apply(&picture);
         Composite(picture.image, picture.alpha, picture.width, picture.height, window.corner[t].x(),
@@ -191,8 +240,7 @@ void Run(const Request& request) {
     layout.cell_height_px = window.picture_height;
     WriteImage(request.sheet, ContactSheet(sheet, layout));
   }
-  const bool scored = !request.data.empty();
-  const MotionScores scores = scored ? Score(request, run, threads) : MotionScores{};
+  const MotionScores scores = renderer.scores();
   std::sort(network_ms.begin(), network_ms.end());
   const double median_ms = network_ms.empty() ? 0 : network_ms[network_ms.size() / 2];
   nlohmann::ordered_json stages = nlohmann::ordered_json::object();
@@ -209,6 +257,11 @@ void Run(const Request& request) {
                                    {"output", request.out}};
     if (relighter) json["relight"] = relighter->Json();
     if (scored) json["scores"] = ScoresJson(scores);
+    if (likeness) {
+      json["scores"]["lpips"] = likeness->Mean().lpips;
+      json["scores"]["tlpips"] = likeness->Mean().tlpips;
+      json["scores"]["lpips_is_stand_in"] = likeness->Mean().stand_in;
+    }
     WriteFileAtomically(request.json, json.dump(2) + "\n");
   }
   std::printf("%d frames, window %dx%d px of a %dx%d picture, network %.0f ms a frame, %.1f frames/s in all\n",
@@ -228,6 +281,11 @@ void Run(const Request& request) {
         request.data.c_str(), scores.image_l1, scores.psnr_db, scores.label_iou, scores.foreground_iou,
         scores.normal_deg, scores.flicker);
   }
+  if (likeness) {
+    const TemporalLpipsMean mean = likeness->Mean();
+    std::printf("LPIPS %.4f, tLPIPS %.5f%s\n", mean.lpips, mean.tlpips,
+                mean.stand_in ? " (stand-in network: compares with nothing but itself)" : "");
+  }
   std::printf("wrote %s\n", request.out.c_str());
 }
 
@@ -240,7 +298,7 @@ void AddAnimateMotion(CLI::App& animate, std::function<void()>* action) {
   verb->add_option("--run", request->run, "Folder of the trained run")->required();
   verb->add_option("--track", request->track, "The motion: a track, .npz (default: that of --data)");
   verb->add_option("--data", request->data,
-                   "A person set of the same person: the result is compared with its pictures");
+                   "A person set of the same person: the result is compared with its pictures (not with --view-yaw)");
   verb->add_option("--out", request->out, "The video, .mp4")->required();
   verb->add_option("--body", request->body, "The track's body (default: the built-in body)");
   verb->add_option("--view-yaw", request->view_yaw,

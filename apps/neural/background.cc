@@ -3,28 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <string>
 
 #include "data_tools/video/image_file.h"
 
 namespace bodyloom {
-namespace {
-
-bool IsStillImage(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension == ".png" || extension == ".jpg" || extension == ".jpeg" || extension == ".bmp" ||
-         extension == ".webp" || extension == ".tif" || extension == ".tiff";
-}
-
-}  // namespace
-
 Background::Background(const std::string& path, int width, int height) : width_(width), height_(height) {
   if (path.empty()) {
     image_ = StudioBackdrop(width, height);
-  } else if (IsStillImage(path)) {
+  } else if (IsImageName(path)) {
     image_ = Resized(ReadImage(path), width, height);
   } else {
     video_ = std::make_unique<VideoReader>(path);

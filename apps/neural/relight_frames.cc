@@ -2,12 +2,11 @@
 #include "apps/neural/relight_frames.h"
 
 #include <algorithm>
-#include <cctype>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
 
+#include "data_tools/formats/file_extension.h"
 #include "data_tools/observations/json_reader.h"
 #include "data_tools/video/image_file.h"
 #include "geometry/check.h"
@@ -61,10 +60,7 @@ RelightRequest ReadJson(const std::string& path) {
     for (size_t i = 0; i < lights.size(); ++i) request.light += ReadDirectional(lights.At(i));
   }
   if (root.Has("ambient")) request.light += AmbientLight(Vector3d::Constant(NotNegative(root.At("ambient"))));
-  if (root.Has("estimate")) {
-    if (!json["estimate"].is_boolean()) root.At("estimate").Fail("true or false");
-    request.estimate = json["estimate"].get<bool>();
-  }
+  if (root.Has("estimate")) request.estimate = root.At("estimate").Flag();
   if (root.Has("encoding")) {
     const std::string text = root.At("encoding").Text();
     if (text != "srgb" && text != "linear") root.At("encoding").Fail("\"srgb\" or \"linear\"");
@@ -86,10 +82,7 @@ RelightRequest ReadEnvironment(const std::string& path) {
 }  // namespace
 
 RelightRequest ReadRelight(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension == ".json" ? ReadJson(path) : ReadEnvironment(path);
+  return LowerExtension(path) == ".json" ? ReadJson(path) : ReadEnvironment(path);
 }
 
 void FrameRelighter::Observe(const MotionPicture& picture) {

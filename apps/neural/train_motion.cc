@@ -19,6 +19,7 @@
 #include "apps/neural/motion_data.h"
 #include "apps/neural/motion_preview.h"
 #include "apps/neural/motion_run.h"
+#include "apps/neural/weights_folder.h"
 #include "apps/progress.h"
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/video/image_file.h"
@@ -36,7 +37,7 @@ constexpr int kShareStretch = 32;  ///< frames: with less of the data, whole str
 
 struct Request {
   MotionDataRequest data;
-  std::string shape_loss = "ce", validate_data, out, profile = "cpu";
+  std::string shape_loss = "ce", validate_data, out, profile = "cpu", weights;
   std::vector<std::string> without, train, validate;
   double share = 1;
   TrainMotionOptions options;
@@ -61,6 +62,21 @@ std::vector<FrameRange> Ranges(const std::vector<std::string>& texts, const char
     }
   }
   return ranges;
+}
+
+/// The ranges without frames that have no result, cut where the clock jumps: a recurrent network must not be led
+/// across.
+std::vector<FrameRange> CutAtGaps(const std::vector<FrameRange>& ranges, const PersonFrames& frames) {
+  std::vector<FrameRange> cut;
+  for (const FrameRange& range : ranges) {
+    int begin = range.begin;
+    for (int t = range.begin; t < range.end; ++t) {
+      if (t + 1 < range.end && frames.Segment(t + 1) == frames.Segment(t)) continue;
+      if (frames.Segment(t) >= 0) cut.push_back({begin, t + 1});
+      begin = t + 1;
+    }
+  }
+  return cut;
 }
 
 /// Of every so many stretches the first.
@@ -110,9 +126,10 @@ std::string Notes(const Request& request) {
   return json.dump();
 }
 
-/// `validation_frames`: of the clip that is for validation alone, 0: there is none.
-void ChooseFrames(const Request& request, const Track& track, int validation_frames, TrainMotionOptions* options) {
-  const int T = track.num_frames();
+/// `validation`: of the clip that is for validation alone, null: there is none.
+void ChooseFrames(const Request& request, const PersonFrames& frames, const PersonFrames* validation,
+                  TrainMotionOptions* options) {
+  const int T = frames.num_frames(), validation_frames = validation != nullptr ? validation->num_frames() : 0;
   options->train = Ranges(request.train, "--train", T);
   options->validation = Ranges(request.validate, "--validate", validation_frames > 0 ? validation_frames : T);
   if (validation_frames > 0 && options->validation.empty()) options->validation = {{0, validation_frames}};
@@ -122,7 +139,8 @@ void ChooseFrames(const Request& request, const Track& track, int validation_fra
     options->train = {{0, last}};
     if (options->validation.empty() && last < T) options->validation = {{last, T}};
   }
-  options->train = TakeShare(options->train, request.share);
+  options->train = TakeShare(CutAtGaps(options->train, frames), request.share);
+  options->validation = CutAtGaps(options->validation, validation != nullptr ? *validation : frames);
 }
 
 /// Of frames spread over the ranges.
@@ -167,6 +185,7 @@ void Run(Request request) {
   RequireReadable(request.data.data, "data");
   RequireReadable(request.data.track, "track");
   RequireWritableFolder(request.out);
+  options.vgg16 = ReadWeightsFolder(request.weights).vgg16;
   const fs::path run_dir = request.out;
   options.run_dir = request.out;
   const bool exists = fs::exists(MotionCheckpointPath(request.out));
@@ -197,7 +216,7 @@ void Run(Request request) {
       validation->Fill(t, with_truth, frame);
     };
   }
-  ChooseFrames(request, data.track(), validation ? validation->track().num_frames() : 0, &options);
+  ChooseFrames(request, data.frames(), validation ? &validation->frames() : nullptr, &options);
   MotionRun run;
   run.config = config;
   run.pixels_per_metre = data.PixelsPerMetre();
@@ -284,6 +303,8 @@ void AddTrainMotion(CLI::App& train, std::function<void()>* action) {
   verb->add_option("--validate-every", options.validate_every, "Steps")->capture_default_str();
   verb->add_option("--patience", options.patience, "Stop after so many validations without a better one (0: never)")
       ->capture_default_str();
+  verb->add_option("--weights", request->weights,
+                   "Folder with trained networks: vgg16 (.pth or .safetensors) for the perceptual loss");
   verb->add_option("--seed", options.seed, "Of weights and order of frames")->capture_default_str();
   verb->add_option("--threads", options.num_threads, "0: all cores")->capture_default_str();
   verb->add_flag("--resume", options.resume, "Go on with the run in --out");

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/printable.h"
 
 // Made by bodyloom_embed() in data_tools/CMakeLists.txt.
 extern "C" {
@@ -16,14 +17,6 @@ namespace bodyloom {
 namespace {
 
 constexpr size_t kMaxSplitBytes = size_t{1} << 26;
-
-/// A word of the file as an error message may show it.
-std::string Shown(const std::string& word) {
-  std::string shown = word.size() > 40 ? word.substr(0, 40) + "..." : word;
-  std::replace_if(
-      shown.begin(), shown.end(), [](char c) { return c >= 0 && c < ' '; }, '?');
-  return shown;
-}
 
 }  // namespace
 
@@ -80,11 +73,12 @@ MotionSplit MotionSplitFromText(const std::string& text, const std::string& wher
     if (std::find(classes.begin(), classes.end(), found[1]) == classes.end()) {
       std::string known;
       for (const std::string& name : classes) known += (known.empty() ? "" : ", ") + name;
-      fail("found class '" + Shown(found[1]) + "', expected one of " + known);
+      fail("found class '" + PrintableText(found[1]) + "', expected one of " + known);
     }
-    if (found[2] != "train" && found[2] != "test") fail("found '" + Shown(found[2]) + "', expected train or test");
+    if (found[2] != "train" && found[2] != "test")
+      fail("found '" + PrintableText(found[2]) + "', expected train or test");
     if (!split.entries_.try_emplace(found[0], MotionSplitEntry{found[1], found[2] == "test"}).second) {
-      fail("'" + Shown(found[0]) + "' a second time, expected one line a clip");
+      fail("'" + PrintableText(found[0]) + "' a second time, expected one line a clip");
     }
   }
   return split;

@@ -21,6 +21,14 @@ Eigen::Matrix3d YUpFrom(Motion::Up up) {
   return R;
 }
 
+/// Four fifths of the frames are no higher: people stand more often than they jump.
+double StandingHeight(const Eigen::VectorXd& heights) {
+  std::vector<double> sorted(heights.begin(), heights.end());
+  const auto at = sorted.begin() + static_cast<std::ptrdiff_t>(0.8 * static_cast<double>(sorted.size() - 1));
+  std::nth_element(sorted.begin(), at, sorted.end());
+  return *at;
+}
+
 }  // namespace
 
 Motion ChangeUp(const Motion& motion, Motion::Up up, const Eigen::Vector3d& rest_pelvis) {
@@ -77,6 +85,36 @@ Motion TakeFrames(const Motion& motion, int first, int count, int step) {
     taken.timestamps[i] = motion.timestamps[first + i * step];
   }
   return taken;
+}
+
+Motion JoinMotions(const std::vector<Motion>& motions, double gap_s) {
+  BODYLOOM_CHECK(!motions.empty() && gap_s > 0, "JoinMotions: ", motions.size(), " motions, ", gap_s, " s apart");
+  Motion joined = motions.front();
+  int frames = 0;
+  for (const Motion& motion : motions) {
+    CheckMotion(motion, "JoinMotions");
+    BODYLOOM_CHECK(motion.num_frames() > 0 && motion.poses.cols() == joined.poses.cols() && motion.up == joined.up,
+                   "JoinMotions: a motion of ", motion.num_frames(), " frames and ", motion.poses.cols() / 3,
+                   " joints beside one of ", joined.poses.cols() / 3, ", or with another axis up");
+    frames += motion.num_frames();
+  }
+  const int height = joined.up == Motion::Up::kZ ? 2 : 1;
+  const double level = StandingHeight(motions.front().trans.col(height));
+  joined.poses.resize(frames, joined.poses.cols());
+  joined.trans.resize(frames, 3);
+  joined.timestamps.clear();
+  int at = 0;
+  for (const Motion& motion : motions) {
+    const int T = motion.num_frames();
+    joined.poses.middleRows(at, T) = motion.poses;
+    Eigen::RowVector3d centre = motion.trans.colwise().mean();
+    centre[height] = StandingHeight(motion.trans.col(height)) - level;
+    joined.trans.middleRows(at, T) = motion.trans.rowwise() - centre;
+    const double begin = joined.timestamps.empty() ? 0 : joined.timestamps.back() + gap_s;
+    for (const double time : motion.timestamps) joined.timestamps.push_back(begin + time - motion.timestamps.front());
+    at += T;
+  }
+  return joined;
 }
 
 double FrameRate(const Motion& motion) {

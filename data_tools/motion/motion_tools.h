@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "geometry/track.h"
 
@@ -20,6 +21,12 @@ Motion ResampleMotion(const Motion& motion, double fps);
 /// Frames first, first + step, … (count of them) as they are. Throws std::invalid_argument when the motion does not
 /// have them.
 Motion TakeFrames(const Motion& motion, int first, int count, int step = 1);
+
+/// One motion after the other, `gap_s` seconds apart, so that nothing takes them for one movement; each is moved along
+/// the floor so that its root is above the origin on the average, and up or down so that people stand at one height
+/// (the root's 80 % quantile). Throws std::invalid_argument when there are none, or they differ in joints, body or up
+/// axis.
+Motion JoinMotions(const std::vector<Motion>& motions, double gap_s);
 
 /// Frames per second of a motion with a regular clock; 0 when its steps differ by more than 1 % (a gap) or it has fewer
 /// than two frames.

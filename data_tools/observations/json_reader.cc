@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -128,6 +129,19 @@ int64_t JsonNode::Integer() const {
   const double number = Number();
   if (number != std::floor(number) || std::abs(number) > 9e15) Fail("an integer");
   return static_cast<int64_t>(number);
+}
+
+int JsonNode::Int() const {
+  const int64_t value = Integer();
+  if (value < std::numeric_limits<int>::min() || value > std::numeric_limits<int>::max()) {
+    Fail("a whole number of at most 9 digits");
+  }
+  return static_cast<int>(value);
+}
+
+bool JsonNode::Flag() const {
+  if (!value_->is_boolean()) Fail("true or false");
+  return value_->get<bool>();
 }
 
 std::string JsonNode::Text() const {

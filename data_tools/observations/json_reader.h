@@ -43,6 +43,8 @@ class JsonNode {
   [[nodiscard]] JsonNode At(size_t index) const;
   [[nodiscard]] double Number() const;    ///< finite
   [[nodiscard]] int64_t Integer() const;  ///< exactly integral
+  [[nodiscard]] int Int() const;          ///< an Integer that an int holds
+  [[nodiscard]] bool Flag() const;        ///< true or false
   [[nodiscard]] std::string Text() const;
   /// All numbers of an array, nested arrays flattened in order; `expected_count` < 0 accepts any number of them.
   [[nodiscard]] std::vector<double> Numbers(int expected_count = -1) const;

@@ -125,7 +125,8 @@ MakePersonSetSummary MakePersonSet(const std::string& folder, const BodyModel& b
   const int T = track.num_frames();
   PersonSetInfo info;
   info.num_frames = T, info.width = info.height = options.size_px;
-  info.fps = FrameRate(motion) > 0 ? FrameRate(motion) : 30;
+  info.fps =
+      T > 1 && motion.timestamps[1] > motion.timestamps[0] ? 1 / (motion.timestamps[1] - motion.timestamps[0]) : 30;
   info.seed = options.seed, info.garment = ToString(options.garment);
   info.motion = options.motion, info.command = options.command;
   const DressedPerson person(body, track.motion.betas, options.garment, options.seed);

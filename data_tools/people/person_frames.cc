@@ -124,6 +124,7 @@ class PersonFrames::Impl {
   [[nodiscard]] const PersonWindow& window() const { return window_; }
   [[nodiscard]] const PersonFramesOptions& options() const { return options_; }
   [[nodiscard]] int num_frames() const { return track_.num_frames(); }
+  [[nodiscard]] int Segment(int t) const { return segment_.at(t); }
 
  private:
   [[nodiscard]] size_t Texels() const { return size_t(options_.uv_size) * options_.uv_size; }
@@ -165,6 +166,7 @@ PersonFrames::PersonFrames(const BodyModel& body, const Track& track, const Pers
 PersonFrames::~PersonFrames() = default;
 
 int PersonFrames::num_frames() const { return impl_->num_frames(); }
+int PersonFrames::Segment(int t) const { return impl_->Segment(t); }
 int PersonFrames::channels() const { return 3 + 3 * impl_->options().past; }
 const PersonWindow& PersonFrames::window() const { return impl_->window(); }
 const PersonFramesOptions& PersonFrames::options() const { return impl_->options(); }

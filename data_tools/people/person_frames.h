@@ -45,6 +45,9 @@ class PersonFrames {
   [[nodiscard]] const PersonWindow& window() const;
   [[nodiscard]] const PersonFramesOptions& options() const;
 
+  /// Number of the gap-free run of frames that frame t belongs to; −1: it has no result.
+  [[nodiscard]] int Segment(int t) const;
+
   /// [N_t, V_t, V_{t−1}, …] of the posed surface in the camera frame, channels × uv_size × uv_size: unit normals, and
   /// velocities in body lengths a second; zero where there is no frame to look back to. A frame without a result is
   /// zero.

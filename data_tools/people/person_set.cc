@@ -60,13 +60,6 @@ int IntegerIn(const JsonNode& node, int64_t low, int64_t high) {
   return static_cast<int>(value);
 }
 
-bool FlagOf(const nlohmann::json& document, const JsonNode& has, const char* name) {
-  const JsonNode flag = has.At(name);
-  const nlohmann::json& value = document.at("has").at(name);
-  if (!value.is_boolean()) flag.Fail("true or false");
-  return value.get<bool>();
-}
-
 PersonSetInfo ReadInfo(const std::string& path) {
   const std::string file = FileOf(path, "person.json");
   if (fs::is_directory(path) && !fs::exists(file)) {
@@ -89,7 +82,7 @@ PersonSetInfo ReadInfo(const std::string& path) {
   }
   const JsonNode has = root.At("has");
   for (const Kind& kind : kKinds) {
-    if (kind.flag != nullptr) info.has.*kind.flag = FlagOf(document, has, kind.name);
+    if (kind.flag != nullptr) info.has.*kind.flag = has.At(kind.name).Flag();
   }
   if (root.Has("seed") && document["seed"].is_number_unsigned()) info.seed = document["seed"].get<uint64_t>();
   const auto text = [&](const char* name) {

@@ -2,13 +2,13 @@
 #include "data_tools/video/image_file.h"
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 #include <string_view>
 
 #include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/file_extension.h"
 #include "geometry/check.h"
 #include "render/image_mat.h"
 
@@ -19,12 +19,6 @@ namespace fs = std::filesystem;
 
 constexpr size_t kMaxPixels = size_t{1} << 26;
 constexpr size_t kMaxFileBytes = size_t{1} << 28;
-
-std::string ExtensionOf(const std::string& path) {
-  std::string extension = fs::path(path).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
-}
 
 /// True when a comes before b, runs of digits compared by value.
 bool NaturalLess(std::string_view a, std::string_view b) {
@@ -52,6 +46,11 @@ bool NaturalLess(std::string_view a, std::string_view b) {
 
 }  // namespace
 
+bool IsImageName(const std::string& path) {
+  static const std::vector<std::string> kKnown = {".png", ".jpg", ".jpeg", ".bmp", ".webp", ".tif", ".tiff"};
+  return std::find(kKnown.begin(), kKnown.end(), LowerExtension(path)) != kKnown.end();
+}
+
 Image ReadImage(const std::string& path) {
   const std::string bytes = ReadFileBytes(path, kMaxFileBytes);
   cv::Mat decoded;
@@ -76,7 +75,7 @@ Image ReadImage(const std::string& path) {
 
 void WriteImage(const std::string& path, const Image& image) {
   BODYLOOM_CHECK(!image.empty(), path, ": the image to write is empty");
-  const std::string extension = ExtensionOf(path);
+  const std::string extension = LowerExtension(path);
   if (extension != ".png" && extension != ".jpg" && extension != ".jpeg") {
     throw std::runtime_error(path + ": extension '" + extension +
                              "' of an image to write, expected .png, .jpg or .jpeg");
@@ -94,9 +93,8 @@ std::vector<std::string> ImageFilesOf(const std::string& folder) {
   std::error_code error;
   std::vector<std::string> names;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    static const std::vector<std::string> kKnown = {".png", ".jpg", ".jpeg", ".bmp", ".webp", ".tif", ".tiff"};
     const std::string name = it->path().filename().string();
-    if (name.starts_with(".") || std::find(kKnown.begin(), kKnown.end(), ExtensionOf(name)) == kKnown.end()) continue;
+    if (name.starts_with(".") || !IsImageName(name)) continue;
     names.push_back(name);
   }
   if (error) throw std::runtime_error(folder + ": cannot list the folder: " + error.message());

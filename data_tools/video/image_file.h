@@ -9,6 +9,9 @@
 
 namespace bodyloom {
 
+/// Whether a file is named as a still image: .png .jpg .jpeg .bmp .webp .tif .tiff, in any case.
+bool IsImageName(const std::string& path);
+
 /// Throws std::runtime_error naming the file when it cannot be read or is no image of 1 to 2^26 pixels.
 Image ReadImage(const std::string& path);
 

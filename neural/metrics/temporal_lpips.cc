@@ -12,20 +12,22 @@ TemporalLpips::Frame TemporalLpips::Add(const Image& result, const Image& truth)
   const LpipsValue distance = lpips_.Distance(result_features, truth_features);
   frame.lpips = distance.value;
   frame.stand_in = distance.stand_in;
-  if (frames_ > 0) {
+  if (follows_) {
     frame.tlpips = std::abs(lpips_.Distance(result_features, last_result_).value -
                             lpips_.Distance(truth_features, last_truth_).value);
     sum_tlpips_ += *frame.tlpips;
+    ++pairs_;
   }
   sum_lpips_ += frame.lpips;
   last_result_ = result_features;
   last_truth_ = truth_features;
+  follows_ = true;
   ++frames_;
   return frame;
 }
 
 TemporalLpipsMean TemporalLpips::Mean() const {
-  return {frames_, sum_lpips_ / std::max(1, frames_), sum_tlpips_ / std::max(1, frames_ - 1), lpips_.is_stand_in()};
+  return {frames_, sum_lpips_ / std::max(1, frames_), sum_tlpips_ / std::max(1, pairs_), lpips_.is_stand_in()};
 }
 
 }  // namespace bodyloom

@@ -2,9 +2,9 @@
 /// LPIPS and tLPIPS of a video, frame by frame, each frame's features computed once.
 ///
 /// tLPIPS of frame t = |LPIPS(s_t, s_{t−1}) − LPIPS(g_t, g_{t−1})| with result s and truth g: whether the result
-/// changes as much as the truth does. A video's value is the mean over its frames but the first. Tables print 100 times
-/// that. Source: Chu et al., "Learning Temporal Coherence via Self-Supervision for GAN-based Video Generation", 2020
-/// (which crops and drops two frames at each end; this does not), as used by Yoon et al., CVPR 2022.
+/// changes as much as the truth does. A video's value is the mean over its frames but the first (of every cut). Tables
+/// print 100 times that. Source: Chu et al., "Learning Temporal Coherence via Self-Supervision for GAN-based Video
+/// Generation", 2020 (which crops and drops two frames at each end; this does not), as used by Yoon et al., CVPR 2022.
 #pragma once
 
 #include <optional>
@@ -16,7 +16,7 @@ namespace bodyloom {
 struct TemporalLpipsMean {
   int frames = 0;
   double lpips = 0;   ///< mean over frames
-  double tlpips = 0;  ///< mean over frames but the first; 0 for fewer than two
+  double tlpips = 0;  ///< mean over frames that follow another; 0 when none does
   bool stand_in = true;
 };
 
@@ -35,12 +35,16 @@ class TemporalLpips {
   /// before.
   Frame Add(const Image& result, const Image& truth);
 
+  /// The next frame does not follow the last one: it has no tLPIPS.
+  void Restart() { follows_ = false; }
+
   [[nodiscard]] TemporalLpipsMean Mean() const;
 
  private:
   const Lpips& lpips_;
   LpipsFeatures last_result_, last_truth_;
-  int frames_ = 0;
+  bool follows_ = false;
+  int frames_ = 0, pairs_ = 0;
   double sum_lpips_ = 0, sum_tlpips_ = 0;
 };
 

@@ -4,9 +4,8 @@
 #include <span>
 
 #include "neural/motion/frame_tensors.h"
-#include "neural/motion/motion_scores.h"
+#include "neural/motion/motion_scorer.h"
 #include "neural/motion/roll_out.h"
-#include "neural/motion/score_motion.h"
 #include "neural/runtime.h"
 #include "neural/training/checkpoint.h"
 
@@ -31,10 +30,14 @@ MotionModel Loaded(const std::string& path, const MotionConfig& config, const Mo
 class MotionRenderer::Impl {
  public:
   Impl(const std::string& path, const MotionConfig& config, const MotionRendererOptions& options)
-      : roll_(Loaded(path, config, options), options.warmup_iterations, options.reach) {}
+      : config_(config),
+        score_(options.score),
+        scorer_(config_),
+        roll_(Loaded(path, config, options), options.warmup_iterations, options.reach) {}
 
   MotionPicture Next(const MotionFrame& frame) {
     const MotionStepResult result = roll_.Next(frame);
+    if (score_) scorer_.Add(result.state, TruthOf(std::span(&frame, 1), config_), frame.before_x, frame.before_y);
     MotionPicture picture;
     picture.width = frame.width;
     picture.height = frame.height;
@@ -52,9 +55,17 @@ class MotionRenderer::Impl {
     return picture;
   }
 
-  RollOut& roll() { return roll_; }
+  void Restart() {
+    roll_.Restart();
+    scorer_.Restart();
+  }
+  [[nodiscard]] MotionScores scores() const { return scorer_.Scores(); }
+  [[nodiscard]] const RollOut& roll() const { return roll_; }
 
  private:
+  MotionConfig config_;
+  bool score_;
+  MotionScorer scorer_;
   RollOut roll_;
 };
 
@@ -64,26 +75,9 @@ MotionRenderer::MotionRenderer(const std::string& checkpoint_path, const MotionC
 MotionRenderer::~MotionRenderer() = default;
 
 MotionPicture MotionRenderer::Next(const MotionFrame& frame) { return impl_->Next(frame); }
-void MotionRenderer::Restart() { impl_->roll().Restart(); }
+void MotionRenderer::Restart() { impl_->Restart(); }
+MotionScores MotionRenderer::scores() const { return impl_->scores(); }
 int64_t MotionRenderer::descriptors_kept() const { return impl_->roll().descriptors_kept(); }
 int64_t MotionRenderer::projections_kept() const { return impl_->roll().projections_kept(); }
-
-MotionScores ScoreMotion(const std::string& checkpoint_path, const MotionConfig& config,
-                         const MotionFrameSource& source, const std::vector<FrameRange>& ranges,
-                         const MotionRendererOptions& options) {
-  RollOut roll(Loaded(checkpoint_path, config, options), options.warmup_iterations, options.reach);
-  MotionScorer scorer(config);
-  for (const FrameRange& range : ranges) {
-    roll.Restart();
-    scorer.Restart();
-    for (int t = range.begin; t < range.end; ++t) {
-      MotionFrame frame;
-      source(t, true, &frame);
-      const MotionStepResult result = roll.Next(frame);
-      scorer.Add(result.state, TruthOf(std::span(&frame, 1), config), frame.before_x, frame.before_y);
-    }
-  }
-  return scorer.Scores();
-}
 
 }  // namespace bodyloom

@@ -9,6 +9,7 @@
 
 #include "neural/motion/motion_config.h"
 #include "neural/motion/motion_frame.h"
+#include "neural/motion/motion_scores.h"
 
 namespace bodyloom {
 
@@ -24,6 +25,7 @@ struct MotionPicture {
 struct MotionRendererOptions {
   int warmup_iterations = 50;  ///< of a clip's first frame, as Kappel et al., CVPR 2021
   int reach = 0;               ///< pixels from the body beyond which is background; 0: none (roll_out.h)
+  bool score = false;          ///< compare every frame with the truth that it holds
   int num_threads = 0;         ///< 0: all cores
 };
 
@@ -36,10 +38,14 @@ class MotionRenderer {
   MotionRenderer(const MotionRenderer&) = delete;
   MotionRenderer& operator=(const MotionRenderer&) = delete;
 
-  /// The next frame of the clip. Throws std::invalid_argument when the frame's sizes do not fit.
+  /// The next frame of the clip. Throws std::invalid_argument when the frame's sizes do not fit, or it is to be
+  /// compared and has no image.
   MotionPicture Next(const MotionFrame& frame);
   /// The next frame begins another clip.
   void Restart();
+
+  /// Of all frames compared so far.
+  [[nodiscard]] MotionScores scores() const;
 
   /// Frames whose motion maps (and surface coordinates) were those of the frame before: their descriptors
   /// (projections) were not computed again.

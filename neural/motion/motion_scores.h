@@ -1,33 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How a rolled-out clip differs from the truth. Internal: includes LibTorch.
+/// A trained motion-dependent renderer against pictures of the person it was trained on.
 #pragma once
 
-#include <torch/torch.h>
-
-#include "neural/motion/frame_tensors.h"
-#include "neural/motion/motion_model.h"
-#include "neural/motion/score_motion.h"
+#include <vector>
 
 namespace bodyloom {
 
-/// Sums over frames, one at a time in order; windows may move between them.
-class MotionScorer {
- public:
-  explicit MotionScorer(const MotionConfig& config) : config_(config) {}
-  /// One frame (B = 1) and where the window of the frame before lies in this one.
-  void Add(const MotionState& predicted, const MotionTruth& truth, int before_x, int before_y);
-  /// The next frame does not follow the last one.
-  void Restart() { last_error_ = torch::Tensor(); }
-  [[nodiscard]] MotionScores Scores() const;
-
- private:
-  const MotionConfig& config_;
-  double l1_ = 0, squared_ = 0, angle_deg_ = 0, flicker_ = 0;
-  double foreground_ = 0, foreground_with_normals_ = 0, foreground_with_past_ = 0;  ///< pixels
-  std::vector<double> both_, either_;                                               ///< pixels by class
-  double foreground_both_ = 0, foreground_either_ = 0;
-  torch::Tensor last_error_;
-  int frames_ = 0;
+/// Of frames rolled out by the network from nothing, each stretch anew. "Foreground" is the true one: labels other than
+/// the background.
+struct MotionScores {
+  double image_l1 = 0;            ///< mean |Â − A| over the foreground and channels
+  double psnr_db = 0;             ///< over the foreground, range 1
+  double label_iou = 0;           ///< mean over the classes other than the background that occur; NaN without labels
+  double foreground_iou = 0;      ///< NaN without labels
+  std::vector<double> class_iou;  ///< by class; NaN where it does not occur; empty without labels
+  double normal_deg = 0;          ///< mean angle over the foreground; NaN without normals
+  double flicker = 0;  ///< mean over the foreground of |(Â_t − Â_{t−1}) − (A_t − A_{t−1})|: errors that move
+  int frames = 0;
 };
 
 }  // namespace bodyloom

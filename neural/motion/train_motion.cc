@@ -14,7 +14,7 @@
 #include "neural/losses/image_losses.h"
 #include "neural/losses/perceptual_loss.h"
 #include "neural/motion/motion_batches.h"
-#include "neural/motion/motion_scores.h"
+#include "neural/motion/motion_scorer.h"
 #include "neural/motion/roll_out.h"
 #include "neural/networks/patch_discriminator.h"
 #include "neural/networks/vgg.h"
@@ -58,7 +58,7 @@ FeatureNetwork MakeVgg(const TrainMotionOptions& options) {
   network.taps = FeatureLayers(FeatureTrunk::kVgg16, {"conv1_2", "conv2_2", "conv3_2", "conv4_2"});
   if (options.vgg16.empty()) network.stand_in_divisor = options.config.profile.perceptual_divisor;
   FeatureNetwork vgg(network);
-  if (!options.vgg16.empty()) vgg->Load(options.vgg16, "VGG-16");
+  if (!options.vgg16.empty()) vgg->Load(options.vgg16.weights, options.vgg16.source);
   return vgg;
 }
 

@@ -20,7 +20,7 @@
 #include "neural/motion/chain_plan.h"
 #include "neural/motion/motion_config.h"
 #include "neural/motion/motion_frame.h"
-#include "neural/motion/score_motion.h"
+#include "neural/motion/motion_scores.h"
 #include "neural/networks/named_weights.h"
 
 namespace bodyloom {
@@ -50,7 +50,7 @@ struct TrainMotionOptions {
   bool shape_by_cross_entropy = true;
   double shape_weight = 10, normal_weight = 1, perceptual_weight = 1, gan_weight = 0.01;
   int warmup_iterations = 10;  ///< of the first frame, before a roll-out counts
-  NamedWeights vgg16;          ///< empty: a seeded stand-in of random features
+  WeightsFrom vgg16;           ///< empty: a seeded stand-in of random features
   uint64_t seed = 1;
   int num_threads = 0;  ///< of LibTorch; 0: all cores
   int report_every = 20, validate_every = 500, checkpoint_every = 250;

@@ -5,6 +5,8 @@
 
 #include "geometry/check.h"
 
+#include "neural/networks/transposed_conv.h"
+
 namespace bodyloom {
 namespace {
 
@@ -67,7 +69,7 @@ torch::Tensor DeconvBlockImpl::forward(torch::Tensor x) {
   x = NormAndActivation(conv1(x), order);
   x = NormAndActivation(conv2(x), order);
   x = NormAndActivation(conv3(x), order);
-  return LeakyRelu(up(x));
+  return LeakyRelu(TransposedConv(x, up->weight, up->bias, 1, 0));
 }
 
 }  // namespace bodyloom

@@ -5,6 +5,7 @@
 
 #include "geometry/check.h"
 #include "neural/networks/blocks.h"
+#include "neural/networks/transposed_conv.h"
 
 namespace bodyloom {
 
@@ -66,7 +67,7 @@ Tensor ResidualGeneratorImpl::forward(Tensor x) {
     const Tensor inner = NormAndRelu(blocks[i](Reflected(x, 1)));
     x = x + InstanceNorm(blocks[i + 1](Reflected(inner, 1)));
   }
-  for (nn::ConvTranspose2d& conv : up) x = NormAndRelu(conv(x));
+  for (nn::ConvTranspose2d& conv : up) x = NormAndRelu(TransposedConv(x, conv->weight, conv->bias, 1, 1));
   return last(Reflected(options.passes_input ? torch::cat({x, input}, 1) : x, 3));
 }
 

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -10,6 +11,7 @@
 
 #include "apps/exit_code.h"
 #include "apps/metrics_run.h"
+#include "data_tools/formats/atomic_file.h"
 #include "data_tools/video/image_file.h"
 #include "data_tools/video/video_writer.h"
 #include "tests/apps/run_command.h"
@@ -244,6 +246,33 @@ TEST_F(MetricsVerb, FurtherMetricsSeeFramesInOrder) {
   EXPECT_THAT(Contents(Path("m.csv")), HasSubstr("frame,psnr_db,ssim_wang2004,change,level\n"));
   command.more.front().compute = [](const FramePair&, const FramePair*) { return std::vector<double>{1}; };
   EXPECT_THROW(RunMetrics(command), std::runtime_error);
+}
+
+TEST_F(MetricsVerb, LpipsComesFromTheNeuralHalf) {
+  if (BODYLOOM_HAS_NEURAL == 0) GTEST_SKIP() << "built without LibTorch";
+  for (const char* side : {"truth", "result"}) {
+    std::filesystem::create_directories(Path(side));
+    for (int t = 0; t < 3; ++t) {
+      Image image(40, 36);
+      for (size_t i = 0; i < image.bgr.size(); ++i) {
+        image.bgr[i] = static_cast<uint8_t>(i * 7 % 251 + (side[0] == 'r' ? i % (3 + t) : 0));
+      }
+      WriteImage(Path(side) + "/" + std::to_string(t) + ".png", image);
+    }
+  }
+  const CommandResult result = RunCommand({"metrics", "--truth", Path("truth"), "--result", Path("result"), "--lpips",
+                                           "--csv", Path("frames.csv"), "--threads", "2"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("lpips_stand_in"));
+  const std::string csv = ReadFileBytes(Path("frames.csv"));
+  EXPECT_THAT(csv, HasSubstr("tlpips_stand_in"));
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 4);
+  std::filesystem::create_directories(Path("empty"));
+  const CommandResult none = RunCommand(
+      {"metrics", "--truth", Path("truth"), "--result", Path("result"), "--lpips", "--weights", Path("empty")});
+  EXPECT_EQ(none.exit_code, 1);
+  EXPECT_THAT(none.err, HasSubstr("none of vgg16"));
+  EXPECT_EQ(RunCommand({"metrics", "--truth", "a", "--result", "b", "--weights", "c"}).exit_code, 2);
 }
 
 }  // namespace

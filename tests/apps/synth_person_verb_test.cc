@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "data_tools/people/people_set.h"
 #include "data_tools/people/person_set.h"
 #include "data_tools/video/image_file.h"
 #include "tests/apps/run_command.h"
@@ -30,6 +31,21 @@ TEST(SynthPersonVerb, WritesASetAndASheet) {
   EXPECT_GT(ReadImage(scratch / "sheet.jpg").width, 500);
 }
 
+TEST(SynthPersonVerb, SeveralMotionsFollowEachOtherWithAGap) {
+  const ScratchFolder scratch;
+  const CommandResult result =
+      RunCommand({"synth-person", "--motion", "demo", "--motion", "demo", "--first", "40", "--frames", "4", "--out",
+                  scratch / "person", "--size", "64", "--garment", "skirt"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const PersonSet set(scratch / "person");
+  EXPECT_EQ(set.info().num_frames, 8);
+  EXPECT_NEAR(set.info().fps, 30, 1e-6);
+  EXPECT_EQ(set.info().motion, "demo demo");
+  const std::vector<double> times = set.track().motion.timestamps;
+  EXPECT_NEAR(times[4] - times[3], 1, 1e-9);
+  EXPECT_NEAR(times[5] - times[4], 1 / 30.0, 1e-9);
+}
+
 TEST(SynthPersonVerb, SaysWhatIsWrong) {
   const ScratchFolder scratch;
   const auto run = [&](const std::string& option, const std::string& value) {
@@ -54,6 +70,30 @@ TEST(SynthPersonVerb, AnInterruptionLeavesNoFinishedSet) {
                  {.file_size_limit = {}, .interrupt_on = "% person", .work_folder = ""});
   EXPECT_EQ(result.exit_code, 130);
   EXPECT_FALSE(std::filesystem::exists(scratch / "person/person.json"));
+}
+
+TEST(SynthPeopleVerb, WritesASetAndASheet) {
+  const ScratchFolder scratch;
+  const CommandResult result =
+      RunCommand({"synth-people", "--motions", "demo", "--out", scratch / "people", "--people", "2", "--actions", "1",
+                  "--views", "2", "--frames", "2", "--size", "64", "--sheet", scratch / "sheet.png"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("8 pictures of 2 people"));
+  const PeopleSet set = ReadPeopleSet(scratch / "people");
+  EXPECT_EQ(set.people.size(), 2U);
+  EXPECT_THAT(set.command, HasSubstr("--every 6"));
+  EXPECT_GT(ReadImage(scratch / "sheet.png").width, 500);
+}
+
+TEST(SynthPeopleVerb, SaysWhatIsWrong) {
+  const ScratchFolder scratch;
+  const CommandResult longer =
+      RunCommand({"synth-people", "--motions", "demo", "--out", scratch / "p", "--frames", "500", "--every", "10"});
+  EXPECT_EQ(longer.exit_code, 2);
+  EXPECT_THAT(longer.err, HasSubstr("none is as long as a clip, 4991 frames"));
+  const CommandResult missing = RunCommand({"synth-people", "--motions", scratch / "none", "--out", scratch / "p"});
+  EXPECT_EQ(missing.exit_code, 1);
+  EXPECT_THAT(missing.err, HasSubstr("none"));
 }
 
 }  // namespace

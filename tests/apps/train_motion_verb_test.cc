@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "data_tools/video/image_file.h"
 #include "data_tools/video/video_reader.h"
 #include "tests/apps/run_command.h"
 
@@ -60,6 +61,29 @@ TEST_F(TrainMotionVerb, TrainsGoesOnAndAnimates) {
       RunCommand({"animate", "motion", "--run", scratch_ / "run", "--track", scratch_ / "person/track.npz", "--out",
                   scratch_ / "b.mp4", "--view-yaw", "0:90", "--warmup", "0", "--threads", "1"});
   EXPECT_EQ(turned.exit_code, 0) << turned.err;
+
+  // Other light: from a file of lights, and from an environment that is bright on one side.
+  const auto relight = [&](const std::string& light) {
+    return RunCommand({"animate", "motion", "--run", scratch_ / "run", "--track", scratch_ / "person/track.npz",
+                       "--out", scratch_ / "light.mp4", "--relight", scratch_ / light, "--json",
+                       scratch_ / "light.json", "--warmup", "0", "--threads", "1"});
+  };
+  std::ofstream(scratch_ / "light.json")
+      << R"({"directional": [{"from": [1, 0.5, 1], "intensity": 1}], "ambient": 0.3})";
+  fs::rename(scratch_ / "light.json", scratch_ / "lights.json");
+  const CommandResult lit = relight("lights.json");
+  EXPECT_EQ(lit.exit_code, 0) << lit.err;
+  Image environment(32, 16);
+  for (int y = 0; y < 16; ++y) {
+    for (int x = 0; x < 32; ++x) environment.pixel(x, y)[1] = x < 16 ? 250 : 10;
+  }
+  WriteImage(scratch_ / "sky.png", environment);
+  const CommandResult outdoors = relight("sky.png");
+  EXPECT_EQ(outdoors.exit_code, 0) << outdoors.err;
+  std::ofstream(scratch_ / "dark.json") << R"({"ambient": 0})";
+  const CommandResult dark = relight("dark.json");
+  EXPECT_EQ(dark.exit_code, 1);
+  EXPECT_THAT(dark.err, HasSubstr("all intensities are 0"));
 }
 
 TEST_F(TrainMotionVerb, SaysWhatIsWrong) {

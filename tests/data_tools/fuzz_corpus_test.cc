@@ -6,6 +6,8 @@
 #include <random>
 
 #include "tests/data_tools/fuzz_seeds.h"
+#include "tests/fuzz/fuzz_array_targets.h"
+#include "tests/fuzz/fuzz_file_targets.h"
 #include "tests/fuzz/fuzz_targets.h"
 #include "tests/fuzz/fuzz_text_targets.h"
 
@@ -92,6 +94,17 @@ TEST(FuzzCorpus, Cameras) { RunMutations("cameras", AcceptsCameras, 4000); }
 TEST(FuzzCorpus, Bvh) { RunMutations("bvh", AcceptsBvh, 4000); }
 TEST(FuzzCorpus, AsfAmc) { RunMutations("asf_amc", AcceptsAsfAmc, 4000); }
 TEST(FuzzCorpus, DeepMimic) { RunMutations("deepmimic", AcceptsDeepMimic, 4000); }
+TEST(FuzzCorpus, Observations) { RunMutations("observations", AcceptsObservations, 4000); }
+TEST(FuzzCorpus, PartLabels) { RunMutations("part_labels", AcceptsPartLabels, 4000); }
+TEST(FuzzCorpus, PosePrior) { RunMutations("pose_prior", AcceptsPosePrior, 500); }
+TEST(FuzzCorpus, Lifter) { RunMutations("lifter", AcceptsLifter, 2000); }
+TEST(FuzzCorpus, LeftHalf) { RunMutations("left_half", AcceptsLeftHalf, 50); }
+TEST(FuzzCorpus, Motion) { RunMutations("motion", AcceptsMotion, 4000); }
+TEST(FuzzCorpus, DetectionsFile) { RunMutations("detections_file", AcceptsDetectionsFile, 4000); }
+TEST(FuzzCorpus, Image) { RunMutations("image", AcceptsImage, 500); }
+TEST(FuzzCorpus, PersonSet) { RunMutations("person_set", AcceptsPersonSet, 1000); }
+TEST(FuzzCorpus, Split) { RunMutations("split", AcceptsSplit, 4000); }
+TEST(FuzzCorpus, Mat) { RunMutations("mat", AcceptsMat, 300); }
 TEST(FuzzCorpus, Cage) { RunMutations("cage", AcceptsCage, 4000); }
 
 }  // namespace

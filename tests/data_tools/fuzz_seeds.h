@@ -8,7 +8,7 @@
 
 namespace bodyloom::fuzz {
 
-/// Seeds by fuzzer: "npz", "pickle", "weights", "body", "track", "obj". Each is accepted by the function of that name.
+/// Seeds by fuzzer (tests/fuzz/CMakeLists.txt). Each is accepted by the function of that name.
 std::map<std::string, std::vector<std::string>> Seeds();
 
 }  // namespace bodyloom::fuzz

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -249,6 +250,43 @@ TEST(MotionTools, ResamplingKeepsWhatLiesOnTheGrid) {
   Motion gap = motion;
   gap.timestamps[5] += 0.5;
   EXPECT_EQ(FrameRate(gap), 0);
+}
+
+TEST(MotionTools, TakesEveryFewFrames) {
+  const Motion motion = RandomMotion(9);
+  const Motion taken = TakeFrames(motion, 2, 3, 2);
+  ASSERT_EQ(taken.num_frames(), 3);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(taken.poses.row(i), motion.poses.row(2 + 2 * i));
+    EXPECT_EQ(taken.trans.row(i), motion.trans.row(2 + 2 * i));
+    EXPECT_EQ(taken.timestamps[i], motion.timestamps[2 + 2 * i]);
+  }
+  EXPECT_THROW(TakeFrames(motion, 2, 5, 2), std::invalid_argument);
+  EXPECT_THROW(TakeFrames(motion, -1, 2), std::invalid_argument);
+}
+
+TEST(MotionTools, JoinedMotionsStandOnOnePlaceAndAreApartInTime) {
+  const Motion a = RandomMotion(6);
+  Motion b = RandomMotion(11);
+  b.trans.rowwise() += Eigen::RowVector3d(5, 2, -7);
+  const Motion joined = JoinMotions({a, b}, 1.5);
+  ASSERT_EQ(joined.num_frames(), 17);
+  EXPECT_EQ(joined.poses.bottomRows(11), b.poses);
+  EXPECT_NEAR(joined.timestamps[6] - joined.timestamps[5], 1.5, 1e-12);
+  EXPECT_NEAR(joined.timestamps[16] - joined.timestamps[6], b.timestamps[10] - b.timestamps[0], 1e-12);
+  // Every motion is moved as a whole: its own steps stay.
+  EXPECT_LT((joined.trans.row(9) - joined.trans.row(7) - b.trans.row(3) + b.trans.row(1)).norm(), 1e-12);
+  EXPECT_NEAR(joined.trans.bottomRows(11).col(0).mean(), 0, 1e-12);
+  EXPECT_NEAR(joined.trans.bottomRows(11).col(2).mean(), 0, 1e-12);
+  EXPECT_EQ(joined.trans.topRows(6).col(1), a.trans.col(1));
+  const auto high = [](Eigen::VectorXd y) {
+    std::sort(y.begin(), y.end());
+    return y[static_cast<Eigen::Index>(0.8 * (y.size() - 1))];
+  };
+  EXPECT_NEAR(high(joined.trans.bottomRows(11).col(1)), high(a.trans.col(1)), 1e-12);
+  EXPECT_THROW(JoinMotions({}, 1), std::invalid_argument);
+  EXPECT_THROW(JoinMotions({a, RandomMotion(4, Motion::Up::kZ)}, 1), std::invalid_argument);
+  EXPECT_THROW(JoinMotions({a, b}, 0), std::invalid_argument);
 }
 
 TEST(SmplRest, HingesBendTheNaturalWay) {

@@ -135,6 +135,10 @@ TEST(PersonFrames, LostFramesAreEmptyAndNothingReachesAcrossThem) {
   EXPECT_TRUE(std::any_of(next.begin() + map, next.begin() + 2 * map, [](float v) { return v != 0; }));
   EXPECT_TRUE(std::all_of(next.begin() + 3 * map, next.end(), [](float v) { return v == 0; }));
   for (const float v : next) ASSERT_TRUE(std::isfinite(v));
+  EXPECT_EQ(frames.Segment(4), frames.Segment(0));
+  EXPECT_EQ(frames.Segment(5), -1);
+  EXPECT_NE(frames.Segment(6), frames.Segment(4));
+  EXPECT_EQ(frames.Segment(7), frames.Segment(6));
   EXPECT_EQ(frames.window().corner[5], frames.window().corner[4]);
 }
 

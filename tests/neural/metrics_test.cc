@@ -190,6 +190,11 @@ TEST(TemporalLpips, ComparesChangesWithChanges) {
   still.Add(result[0], truth[0]);
   EXPECT_EQ(*still.Add(result[0], truth[0]).tlpips, 0);
   EXPECT_EQ(TemporalLpips(lpips).Mean().tlpips, 0);
+  // After a cut a frame follows none, and does not count among those that do.
+  temporal.Restart();
+  EXPECT_FALSE(temporal.Add(result[0], truth[1]).tlpips.has_value());
+  EXPECT_EQ(temporal.Mean().frames, 4);
+  EXPECT_NEAR(temporal.Mean().tlpips, expected / 2, 1e-12);
 }
 
 TEST(ContextualMetric, IsTheSumOfTwoLayers) {

@@ -10,9 +10,10 @@
 
 #include "neural/motion/clothes_reach.h"
 #include "neural/motion/frame_tensors.h"
+#include "neural/motion/motion_card.h"
 #include "neural/motion/motion_model.h"
 #include "neural/motion/motion_renderer.h"
-#include "neural/motion/motion_scores.h"
+#include "neural/motion/motion_scorer.h"
 #include "neural/motion/roll_out.h"
 #include "neural/motion/train_motion.h"
 #include "neural/networks/architecture_card.h"
@@ -150,6 +151,16 @@ TEST(MotionModel, ShiftedPicturesComeFromWhereTheyWere) {
   EXPECT_EQ(Shifted(image, 5, 0).abs().max().item<float>(), 0);
 }
 
+/// Whole architectures, as `bodyloom neural card` prints them: a change of a shape anywhere is a change of these files.
+TEST(MotionModel, IsWhatItsCardsSay) {
+  for (const char* profile : {"tiny", "cpu"}) {
+    MotionConfig config;
+    config.profile = MotionProfileNamed(profile);
+    EXPECT_EQ(MotionCard(config),
+              Bytes(std::string(BODYLOOM_SOURCE_DIR) + "/tests/neural/cards/motion_" + profile + ".txt"));
+  }
+}
+
 TEST(MotionTraining, LearnsAClipByHeartAndRollsItOut) {
   TrainMotionOptions options = ToyOptions("motion_learns");
   options.train = options.validation = {{0, 4}};
@@ -169,8 +180,13 @@ TEST(MotionTraining, LearnsAClipByHeartAndRollsItOut) {
   EXPECT_TRUE(summary.perceptual_stand_in);
   EXPECT_EQ(previews.size(), 4U);
   // The same network from its file, scored apart from training.
-  const MotionScores again =
-      ScoreMotion(MotionCheckpointPath(options.run_dir), options.config, ToyFrame, {{0, 4}}, {10, 0, 1});
+  MotionRenderer renderer(MotionCheckpointPath(options.run_dir), options.config, {10, 0, true, 1});
+  for (int t = 0; t < 4; ++t) {
+    MotionFrame frame;
+    ToyFrame(t, true, &frame);
+    renderer.Next(frame);
+  }
+  const MotionScores again = renderer.scores();
   EXPECT_NEAR(again.image_l1, summary.scores.image_l1, 1e-6);
   EXPECT_NEAR(again.label_iou, summary.scores.label_iou, 1e-6);
 }
@@ -220,7 +236,7 @@ TEST(MotionTraining, ALossThatIsNotANumberKeepsTheLastCheckpoint) {
   EXPECT_GT(summary.steps, 0);
   EXPECT_NE(summary.message.find("checkpoint.bin holds step " + std::to_string(summary.steps)), std::string::npos)
       << summary.message;
-  MotionRenderer renderer(MotionCheckpointPath(options.run_dir), options.config, {0, 0, 1});
+  MotionRenderer renderer(MotionCheckpointPath(options.run_dir), options.config, {0, 0, false, 1});
   MotionFrame frame;
   ToyFrame(3, false, &frame);
   for (const float value : renderer.Next(frame).image) ASSERT_TRUE(std::isfinite(value));
@@ -236,10 +252,10 @@ TEST(MotionTraining, RefusesWhatDoesNotFit) {
   const std::string path = MotionCheckpointPath(options.run_dir);
   MotionConfig other = Toy();
   other.profile.decoder_widths = {4, 8, 8};
-  EXPECT_THROW(MotionRenderer(path, other, {0, 0, 1}), std::runtime_error);
+  EXPECT_THROW(MotionRenderer(path, other, {0, 0, false, 1}), std::runtime_error);
   fs::resize_file(path, fs::file_size(path) / 2);
   try {
-    MotionRenderer renderer(path, Toy(), {0, 0, 1});
+    MotionRenderer renderer(path, Toy(), {0, 0, false, 1});
     FAIL() << "took half a checkpoint";
   } catch (const std::runtime_error& error) {
     EXPECT_EQ(std::string(error.what()).rfind(path, 0), 0U) << error.what();

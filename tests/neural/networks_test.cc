@@ -9,6 +9,7 @@
 
 #include "neural/networks/blocks.h"
 #include "neural/networks/patch_discriminator.h"
+#include "neural/networks/transposed_conv.h"
 #include "neural/networks/unet.h"
 #include "neural/networks/uv_sampler.h"
 #include "tests/support/gradient_check.h"
@@ -133,6 +134,37 @@ TEST(Blocks, WeightsStartWithUnitGain) {
 }
 
 // Sizes of the paper profile: E and D_s.
+TEST(TransposedConv, EqualsTheLayerWithItsGradients) {
+  torch::manual_seed(4);
+  for (const auto& [kernel, output_padding, bias] :
+       {std::tuple(4, 0, true), std::tuple(4, 0, false), std::tuple(3, 1, true)}) {
+    torch::nn::ConvTranspose2d layer(
+        torch::nn::ConvTranspose2dOptions(3, 5, kernel).stride(2).padding(1).output_padding(output_padding).bias(bias));
+    layer->to(torch::kDouble);
+    for (const auto& [height, width] : {std::pair(1, 1), std::pair(6, 5), std::pair(2, 9)}) {
+      Tensor x = torch::randn({2, 3, height, width}, torch::kDouble).requires_grad_();
+      const Tensor wanted = layer->forward(x), made = TransposedConv(x, layer->weight, layer->bias, 1, output_padding);
+      ASSERT_EQ(made.sizes(), wanted.sizes());
+      EXPECT_LT((made - wanted).abs().max().item<double>(), 1e-13);
+      const Tensor weights = torch::randn_like(wanted);
+      std::vector<Tensor> inputs = {x, layer->weight};
+      if (bias) inputs.push_back(layer->bias);
+      const auto expected = torch::autograd::grad({(wanted * weights).sum()}, inputs);
+      const auto found = torch::autograd::grad({(made * weights).sum()}, inputs);
+      for (size_t i = 0; i < inputs.size(); ++i) {
+        EXPECT_LT((found[i] - expected[i]).abs().max().item<double>(), 1e-12) << "input " << i;
+      }
+    }
+  }
+}
+
+TEST(TransposedConv, RefusesWhatDoesNotDouble) {
+  const Tensor x = torch::randn({1, 2, 4, 4}), five = torch::randn({2, 3, 5, 5}), four = torch::randn({2, 3, 4, 4});
+  EXPECT_THROW(TransposedConv(x, five, {}, 1, 0), std::invalid_argument);
+  EXPECT_THROW(TransposedConv(x, four, {}, 0, 0), std::invalid_argument);
+  EXPECT_THROW(TransposedConv(x, four, {}, 1, 1), std::invalid_argument);
+}
+
 TEST(UNet, SizesOfThePaperProfile) {
   EXPECT_EQ(NumParameters(*UNet(UNetOptions{33, {16}, {64, 128, 256}})), 5775184);
   EXPECT_EQ(NumParameters(*UNet(UNetOptions{23, {7}, {64, 128, 256, 512, 512}})), 45807495);

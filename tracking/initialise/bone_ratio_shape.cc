@@ -47,6 +47,7 @@ Eigen::VectorXd EstimateShape(const KeypointSequence& keypoints, const Camera& c
     }
     if (count[0] + count[3] + count[4] < 3) continue;
     const double size = length[0] + length[3] + length[4];
+    if (!(size > 0)) continue;
     for (int b = 0; b < kNumBones; ++b) {
       if (count[b] > 0) seen[b].push_back(length[b] / size);
     }
@@ -75,7 +76,10 @@ Eigen::VectorXd EstimateShape(const KeypointSequence& keypoints, const Camera& c
   for (int b = 0; b < num_betas; ++b) A.col(b) = log_lengths(Eigen::VectorXd::Unit(num_betas, b)) - mean;
   constexpr double kSigma = 0.03;
   const Eigen::MatrixXd H = A.transpose() * A / (kSigma * kSigma) + Eigen::MatrixXd::Identity(num_betas, num_betas);
-  return H.ldlt().solve(A.transpose() * (log_seen - mean) / (kSigma * kSigma));
+  // No two people differ by more; beyond it the joints are not a person's.
+  constexpr double kLimit = 0.35;
+  const Eigen::VectorXd difference = (log_seen - mean).cwiseMax(-kLimit).cwiseMin(kLimit);
+  return H.ldlt().solve(A.transpose() * difference / (kSigma * kSigma));
 }
 
 }  // namespace bodyloom

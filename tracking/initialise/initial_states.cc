@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <thread>
+#include <utility>
 
 #include "geometry/check.h"
 #include "geometry/posed_body.h"
@@ -25,23 +26,61 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Fills all frames from states at `frames` (ascending): SO(3) interpolation between, constant beyond the ends.
+/// Fills all frames from states at `frames` (ascending): SO(3) interpolation between, constant beyond the ends and from
+/// a cut to the nearest of `frames` on the same side of it.
 std::vector<FrameState> FillFrames(const std::vector<int>& frames, const std::vector<FrameState>& known,
-                                   const std::vector<double>& timestamps) {
+                                   const std::vector<double>& timestamps, const std::vector<char>& cut_before) {
+  std::vector<int> shot(timestamps.size(), 0);
+  for (size_t t = 1; t < timestamps.size(); ++t) shot[t] = shot[t - 1] + (cut_before[t] != 0 ? 1 : 0);
   std::vector<FrameState> states(timestamps.size());
   size_t next = 0;
   for (size_t t = 0; t < timestamps.size(); ++t) {
     while (next < frames.size() && frames[next] < static_cast<int>(t)) ++next;
-    if (next == 0) {
-      states[t] = known[0];
-    } else if (next == frames.size()) {
-      states[t] = known.back();
-    } else {
+    const bool has_previous = next > 0, has_next = next < frames.size();
+    const bool same_previous = has_previous && shot[frames[next - 1]] == shot[t];
+    const bool same_next = has_next && shot[frames[next]] == shot[t];
+    if (has_previous && has_next && same_previous == same_next) {
       const double t0 = timestamps[frames[next - 1]], t1 = timestamps[frames[next]];
       states[t] = InterpolateStates(known[next - 1], known[next], (timestamps[t] - t0) / (t1 - t0));
+    } else {
+      states[t] = same_next || !has_previous ? known[next] : known[next - 1];
     }
   }
   return states;
+}
+
+/// Hypotheses of every shot by itself: what lies beyond a cut says nothing about depth, heading or limbs. A shot that
+/// nowhere shows both shoulders and both hips well is taken with what it has: faint joints first, then a hidden
+/// shoulder or hip where its partner is.
+JointHypothesesResult FindHypothesesOfShots(const KeypointSequence& keypoints, const std::vector<char>& cut_before,
+                                            const Camera& camera, const MatrixX3d& rest_points, const PosePrior* prior,
+                                            const JointHypothesesOptions& options) {
+  JointHypothesesResult all;
+  const int T = keypoints.num_frames();
+  for (int first = 0, end = 0; first < T; first = end) {
+    for (end = first + 1; end < T && cut_before[end] == 0;) ++end;
+    const auto K = static_cast<std::ptrdiff_t>(keypoints.names.size());
+    KeypointSequence shot;
+    shot.names = keypoints.names;
+    shot.points.assign(keypoints.points.begin() + first * K, keypoints.points.begin() + end * K);
+    shot.timestamps.assign(keypoints.timestamps.begin() + first, keypoints.timestamps.begin() + end);
+    JointHypothesesOptions hypotheses = options;
+    JointHypothesesResult found = FindJointHypotheses(shot, camera, rest_points, prior, hypotheses);
+    if (found.frames.empty()) {
+      hypotheses.confidence = std::min(hypotheses.confidence, 0.02);
+      found = FindJointHypotheses(shot, camera, rest_points, prior, hypotheses);
+    }
+    if (found.frames.empty()) {
+      hypotheses.hidden_pairs = true;
+      found = FindJointHypotheses(shot, camera, rest_points, prior, hypotheses);
+    }
+    all.cost += found.cost;
+    for (size_t i = 0; i < found.frames.size(); ++i) {
+      all.frames.push_back(first + found.frames[i]);
+      all.hypotheses.push_back(std::move(found.hypotheses[i]));
+    }
+  }
+  return all;
 }
 
 MatrixX3d RestLandmarks(const BodyModel& model, const VectorXd& betas = VectorXd()) {
@@ -194,18 +233,9 @@ InitialStates FindInitialStates(const TrackSequenceInput& input, const FrameLayo
       }
     }
     const MatrixX3d rest_joints = model.RestJoints(result.betas), rest_points = RestLandmarks(model, result.betas);
-    // A clip that nowhere shows both shoulders and both hips well is taken with what it has: faint joints first, then a
-    // hidden shoulder or hip where its partner is.
-    JointHypothesesOptions hypotheses = options.hypotheses;
-    JointHypothesesResult found = FindJointHypotheses(*keypoints, camera, rest_points, input.prior, hypotheses);
-    if (found.frames.empty()) {
-      hypotheses.confidence = std::min(hypotheses.confidence, 0.02);
-      found = FindJointHypotheses(*keypoints, camera, rest_points, input.prior, hypotheses);
-    }
-    if (found.frames.empty()) {
-      hypotheses.hidden_pairs = true;
-      found = FindJointHypotheses(*keypoints, camera, rest_points, input.prior, hypotheses);
-    }
+    const std::vector<char> cuts = FindCuts(*keypoints);
+    const JointHypothesesResult found =
+        FindHypothesesOfShots(*keypoints, cuts, camera, rest_points, input.prior, options.hypotheses);
     if (found.frames.empty()) return result;
     std::vector<FrameState> known;
     result.from_observation.assign(keypoints->num_frames(), 0);
@@ -217,7 +247,7 @@ InitialStates FindInitialStates(const TrackSequenceInput& input, const FrameLayo
       result.from_observation[found.frames[i]] = 1;
     }
     result.cost = found.cost;
-    result.states = FillFrames(found.frames, known, keypoints->timestamps);
+    result.states = FillFrames(found.frames, known, keypoints->timestamps, cuts);
   }
   if (layout.knowledge == CameraKnowledge::kWeak) ToWeakPerspective(*keypoints, layout, &result.states);
   return result;

@@ -67,10 +67,17 @@ std::vector<double> RootDepths(const std::vector<Rays>& rays, const std::vector<
     // Without legs the torso alone stands for the body.
     size[t] = count > 0 ? torso + legs / count : torso * body / lengths.torso;
   }
+  // Frames within `half_window` seconds of frame t: [first, end).
+  const auto window = [&](size_t t, double half_window) {
+    const auto first = std::lower_bound(times.begin(), times.end(), times[t] - half_window);
+    const auto end = std::upper_bound(first, times.end(), times[t] + half_window);
+    return std::pair(static_cast<size_t>(first - times.begin()), static_cast<size_t>(end - times.begin()));
+  };
   const auto percentile = [&](size_t t, double half_window, double q) {
     std::vector<double> values;
-    for (size_t u = 0; u < T; ++u) {
-      if (std::abs(times[u] - times[t]) <= half_window && std::isfinite(size[u])) values.push_back(size[u]);
+    const auto [first, end] = window(t, half_window);
+    for (size_t u = first; u < end; ++u) {
+      if (std::isfinite(size[u])) values.push_back(size[u]);
     }
     if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
     const size_t k = static_cast<size_t>(q * static_cast<double>(values.size() - 1));
@@ -84,7 +91,8 @@ std::vector<double> RootDepths(const std::vector<Rays>& rays, const std::vector<
   }
   for (size_t t = 0; t < T; ++t) {
     double sum = 0, weight = 0;
-    for (size_t u = 0; u < T; ++u) {
+    const auto [first, end] = window(t, 1.5);
+    for (size_t u = first; u < end; ++u) {
       const double w = 1 - std::abs(times[u] - times[t]) / 1.5;
       if (w > 0) {
         sum += w * envelope[u];

@@ -34,8 +34,10 @@ struct Rays {
   std::array<Eigen::Vector2d, 17> ray;
   std::array<double, 17> confidence{};
   std::array<bool, 17> seen{};
+  /// Shoulders and hips are seen, and not all in one place.
   [[nodiscard]] bool has_torso() const {
-    return seen[kLeftShoulder] && seen[kRightShoulder] && seen[kLeftHip] && seen[kRightHip];
+    return seen[kLeftShoulder] && seen[kRightShoulder] && seen[kLeftHip] && seen[kRightHip] &&
+           ((ray[kLeftShoulder] + ray[kRightShoulder]) - (ray[kLeftHip] + ray[kRightHip])).norm() > 1e-6;
   }
 };
 

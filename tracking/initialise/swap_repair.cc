@@ -20,25 +20,24 @@ constexpr double kSpeed = 3;          ///< body sizes a second: σ of a joint's 
 constexpr double kJitter = 0.02;      ///< body sizes: σ of the detector
 constexpr double kMaxGapSeconds = 1.0;
 
-bool Seen(const Keypoint& point) {
+}  // namespace
+
+bool IsSeen(const Keypoint& point) {
   return point.confidence >= kConfidence && std::isfinite(point.x) && std::isfinite(point.y);
 }
 
-/// Diagonal of the box around the seen joints: the person's size in the image; 0 with fewer than 4.
-double BodySize(const KeypointSequence& keypoints, int t) {
+double SeenBodySize(const KeypointSequence& keypoints, int t) {
   Eigen::Array2d low = Eigen::Array2d::Constant(1e30), high = -low;
   int count = 0;
   for (int k = 0; k < keypoints.num_points(); ++k) {
     const Keypoint& point = keypoints.at(t, k);
-    if (!Seen(point)) continue;
+    if (!IsSeen(point)) continue;
     low = low.min(Eigen::Array2d(point.x, point.y));
     high = high.max(Eigen::Array2d(point.x, point.y));
     ++count;
   }
   return count < 4 ? 0 : (high - low).matrix().norm();
 }
-
-}  // namespace
 
 int RepairSwaps(KeypointSequence* keypoints) {
   std::vector<std::pair<int, int>> pairs;
@@ -49,12 +48,12 @@ int RepairSwaps(KeypointSequence* keypoints) {
     if (it != keypoints->names.end()) pairs.emplace_back(k, static_cast<int>(it - keypoints->names.begin()));
   }
   std::vector<double> sizes(keypoints->num_frames());
-  for (int t = 0; t < keypoints->num_frames(); ++t) sizes[t] = BodySize(*keypoints, t);
+  for (int t = 0; t < keypoints->num_frames(); ++t) sizes[t] = SeenBodySize(*keypoints, t);
   int repaired = 0;
   for (const auto& [left, right] : pairs) {
     std::vector<int> frames;
     for (int t = 0; t < keypoints->num_frames(); ++t) {
-      if (sizes[t] > 0 && Seen(keypoints->at(t, left)) && Seen(keypoints->at(t, right))) frames.push_back(t);
+      if (sizes[t] > 0 && IsSeen(keypoints->at(t, left)) && IsSeen(keypoints->at(t, right))) frames.push_back(t);
     }
     const std::vector<std::vector<double>> unary(frames.size(), {0.0, kSwappedCost});
     const auto distance2 = [&](int t, int a, int u, int b) {
@@ -84,13 +83,13 @@ std::vector<char> FindCuts(const KeypointSequence& keypoints) {
   int previous = -1;  // the last frame that shows a person
   for (int t = 0; t < keypoints.num_frames(); ++t) {
     if (t > 0 && keypoints.timestamps[t] - keypoints.timestamps[t - 1] > kMaxGapSeconds) cuts[t] = 1;
-    const double size = BodySize(keypoints, t);
+    const double size = SeenBodySize(keypoints, t);
     if (size <= 0) continue;
     if (previous >= 0 && keypoints.timestamps[t] - keypoints.timestamps[previous] < 0.1) {
       std::vector<double> jumps;
       for (int k = 0; k < keypoints.num_points(); ++k) {
         const Keypoint &p = keypoints.at(previous, k), &q = keypoints.at(t, k);
-        if (Seen(p) && Seen(q)) jumps.push_back(std::hypot(p.x - q.x, p.y - q.y));
+        if (IsSeen(p) && IsSeen(q)) jumps.push_back(std::hypot(p.x - q.x, p.y - q.y));
       }
       if (jumps.size() >= 4) {
         std::nth_element(jumps.begin(), jumps.begin() + static_cast<std::ptrdiff_t>(jumps.size() / 2), jumps.end());

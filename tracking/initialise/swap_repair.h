@@ -18,4 +18,11 @@ int RepairSwaps(KeypointSequence* keypoints);
 /// half its size within a tenth of a second. The first frame is never a cut.
 std::vector<char> FindCuts(const KeypointSequence& keypoints);
 
+/// Whether a detector is sure enough of a landmark to judge motion by it (confidence 0.2).
+bool IsSeen(const Keypoint& point);
+
+/// Diagonal of the box around the seen landmarks of frame t: the person's size in the image, pixels; 0 with fewer
+/// than 4.
+double SeenBodySize(const KeypointSequence& keypoints, int t);
+
 }  // namespace bodyloom

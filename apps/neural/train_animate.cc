@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/neural/train_animate.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "apps/exit_code.h"
+#include "apps/files.h"
+#include "apps/interrupt.h"
+#include "apps/neural/guided_people.h"
+#include "apps/neural/guided_preview.h"
+#include "apps/neural/guided_run.h"
+#include "apps/progress.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/video/image_file.h"
+#include "neural/guided/train_guided.h"
+#include "neural/motion/clothes_reach.h"
+
+namespace bodyloom {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Request {
+  std::string data, body, out, profile = "cpu", label_loss = "ce";
+  std::vector<std::string> without;
+  int image_size = 0;
+  TrainGuidedOptions options;
+};
+
+std::string Notes(const Request& request) {
+  const TrainGuidedOptions& o = request.options;
+  const nlohmann::ordered_json json = {{"data", request.data},
+                                       {"seed", o.seed},
+                                       {"steps", o.steps},
+                                       {"batch", o.batch},
+                                       {"learning_rate", o.learning_rate},
+                                       {"label_loss", request.label_loss},
+                                       {"balance_steps", o.balance_steps},
+                                       {"shares",
+                                        {{"perceptual", o.perceptual_share},
+                                         {"contextual", o.contextual_share},
+                                         {"gan", o.gan_share},
+                                         {"kl", o.kl_share}}},
+                                       {"predicted_from", o.predicted_from},
+                                       {"threads", o.num_threads}};
+  return json.dump();
+}
+
+/// How far clothes reach, from a few pictures of everybody.
+int ReachOf(const PhotoSource& people) {
+  constexpr int kFrames = 64;
+  std::vector<MotionFrame> frames;
+  const int persons = static_cast<int>(people.num_frames.size());
+  const int each = std::max(1, kFrames / persons);
+  for (int p = 0; p < persons && static_cast<int>(frames.size()) < kFrames; ++p) {
+    for (int k = 0; k < std::min(each, people.num_frames[p]); ++k) {
+      PhotoFrame photo;
+      people.fill(p, k * people.num_frames[p] / std::min(each, people.num_frames[p]), &photo);
+      MotionFrame frame;
+      frame.width = frame.height = photo.size;
+      for (const uint8_t part : photo.parts) frame.body.push_back(part != 0 ? 1.0F : 0.0F);
+      frame.labels = std::move(photo.labels);
+      frames.push_back(std::move(frame));
+    }
+  }
+  return std::min(ClothesReach(frames), people.size / 4);
+}
+
+void Run(Request request) {
+  TrainGuidedOptions& options = request.options;
+  GuidedConfig& config = options.config;
+  config.profile = GuidedProfileNamed(request.profile);
+  if (request.image_size > 0) {
+    config.profile.image_size = config.profile.texture_size = request.image_size;
+    std::string why;
+    if (!config.IsValid(&why)) throw UsageError("--image-size: " + why);
+  }
+  for (const std::string& part : request.without) LeaveOut(part, &config);
+  options.labels_by_cross_entropy = request.label_loss == "ce";
+  if (options.num_threads == 0) options.num_threads = static_cast<int>(std::thread::hardware_concurrency());
+  RequireReadable(request.data, "data");
+  RequireWritableFolder(request.out);
+  options.run_dir = request.out;
+  const bool exists = fs::exists(GuidedCheckpointPath(request.out));
+  if (!options.resume && exists) {
+    throw UsageError(request.out + " holds a run already; go on with it by --resume, or choose another --out");
+  }
+  if (options.resume && !exists) throw UsageError(request.out + " holds no run to go on with");
+
+  PeopleDataRequest people;
+  people.data = request.data;
+  people.body = request.body;
+  people.size = config.profile.image_size;
+  people.texture_size = config.profile.texture_size;
+  const GuidedPeople data(people);
+  people.test = true;
+  std::unique_ptr<GuidedPeople> test;
+  if (HasTestPeople(people)) {
+    test = std::make_unique<GuidedPeople>(people);
+    options.validation = test->source();
+    options.validation_views = [&test](int person) { return test->VirtualViewsOf(person); };
+  }
+  GuidedRun run;
+  run.config = config;
+  run.reach = options.reach = ReachOf(data.source());
+  run.notes = Notes(request);
+  options.config_json = GuidedRunJson(run);
+  WriteFileAtomically((fs::path(request.out) / "config.json").string(), options.config_json);
+  std::cout << data.source().num_frames.size() << " people to train on, " << options.validation.num_frames.size()
+            << " kept for validation; profile " << request.profile << "; clothes reach " << run.reach
+            << " px beyond the body\n"
+            << std::flush;
+
+  Progress bar("training " + std::to_string(options.steps) + " steps");
+  options.progress = [&](const TrainGuidedProgress& progress) {
+    std::ostringstream stage;
+    stage.precision(3);
+    stage << "loss " << progress.loss << ", image " << progress.image;
+    if (progress.scores.frames > 0) stage << ", validation " << progress.scores.psnr_db << " dB";
+    bar.Update(stage.str(), static_cast<double>(progress.step) / progress.steps);
+    return !IsInterrupted();
+  };
+  options.preview = [&](int step, const std::vector<GuidedPreview>& previews) {
+    if (previews.empty()) return;
+    char name[64];
+    std::snprintf(name, sizeof name, "preview_%06d.png", step);
+    WriteImage((fs::path(request.out) / name).string(), GuidedPreviewSheet(previews));
+  };
+  const TrainGuidedSummary summary = TrainGuided(data.source(), options);
+  if (summary.status == TrainGuidedStatus::kNotFinite) throw std::runtime_error(request.out + ": " + summary.message);
+  if (summary.perceptual_stand_in) {
+    std::cout << "perceptual and contextual loss by a stand-in of random features (no VGG-16 weights given)\n";
+  }
+  if (!summary.loss_weights.empty()) {
+    std::printf("weights of the losses: VGG %.3g, contextual %.3g, adversarial %.3g, KL %.3g\n",
+                summary.loss_weights[0], summary.loss_weights[1], summary.loss_weights[2], summary.loss_weights[3]);
+  }
+  std::printf("step %d of %d in %s\n", summary.steps, options.steps, ClockText(summary.seconds).c_str());
+  const GuidedScores& s = summary.scores;
+  if (s.frames > 0) {
+    std::printf(
+        "validation of %d pictures: L1 %.4f, PSNR %.2f dB, outline IoU %.3f, labels IoU %.3f, LPIPS (stand-in) %.4f\n",
+        s.frames, s.image_l1, s.psnr_db, s.silhouette_iou, s.label_iou, s.lpips);
+  }
+  std::printf("wrote %s\n", GuidedCheckpointPath(request.out).c_str());
+  if (summary.status == TrainGuidedStatus::kStopped) {
+    throw std::runtime_error(request.out + ": " + summary.message + "; go on with --resume");
+  }
+}
+
+}  // namespace
+
+void AddTrainAnimate(CLI::App& train, std::function<void()>* action) {
+  CLI::App* verb = train.add_subcommand("animate", "Trains a renderer that animates anybody from one photo");
+  auto request = std::make_shared<Request>();
+  TrainGuidedOptions& options = request->options;
+  verb->add_option("--data", request->data, "A people set (bodyloom synth-people)")->required();
+  verb->add_option("--out", request->out, "Folder of the run: config.json, checkpoint.bin, metrics.csv, previews")
+      ->required();
+  verb->add_option("--body", request->body, "The set's body (default: the built-in body)");
+  verb->add_option("--profile", request->profile, "Sizes of the networks")
+      ->check(CLI::IsMember({"paper", "cpu", "tiny"}))
+      ->capture_default_str();
+  verb->add_option("--image-size", request->image_size, "Pixels and texels a side (default: the profile's)")
+      ->check(CLI::Range(32, 4096));
+  verb->add_option("--without", request->without, "Leave out a part, as the paper's ablations do")
+      ->check(CLI::IsMember(GuidedParts()));
+  verb->add_option("--steps", options.steps, "Batches to train on")->capture_default_str();
+  verb->add_option("--batch", options.batch, "Pairs of pictures in a batch")->capture_default_str();
+  verb->add_option("--learning-rate", options.learning_rate, "At its highest")->capture_default_str();
+  verb->add_option("--balance-steps", options.balance_steps, "Steps by L1 alone, in which the losses are measured")
+      ->capture_default_str();
+  verb->add_option("--gan-share", options.gan_share, "Of the adversarial loss, beside its balanced weight")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+  verb->add_option("--kl-share", options.kl_share, "Of the divergence of the source's code, beside its balanced weight")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+  verb->add_option("--label-loss", request->label_loss, "Of the garment labels: cross entropy or absolute differences")
+      ->check(CLI::IsMember({"ce", "l1"}))
+      ->capture_default_str();
+  verb->add_option("--validate-every", options.validate_every, "Steps")->capture_default_str();
+  verb->add_option("--seed", options.seed, "Of weights and order of pictures")->capture_default_str();
+  verb->add_option("--threads", options.num_threads, "0: all cores")->capture_default_str();
+  verb->add_flag("--resume", options.resume, "Go on with the run in --out");
+  verb->footer(
+      "Example:\n"
+      "  bodyloom synth-people --motions motions --out people\n"
+      "  bodyloom train animate --data people --out run\n"
+      "  bodyloom animate animate --run run --image photo.jpg --image-track photo.npz --track dance.npz --out "
+      "dance.mp4");
+  verb->callback([request, action] { *action = [request] { Run(*request); }; });
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The pose map P of the pose-guided renderer: which part of the undressed body a pixel shows, as a colour.
+///
+/// DensePose's 24 charts become 14 parts: torso, head, and on either side hand, foot, thigh, shin, upper arm, forearm.
+/// Fronts and backs share a part, as in the data that the method was published with (3DPeople), whose colours are not
+/// public; these are the corners and edge centres of the RGB cube, so that no two parts are nearer than half its side.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace bodyloom {
+
+inline constexpr int kBodyParts = 15;  ///< with the background, part 0
+
+/// Of DensePose's chart 0–24.
+int BodyPartOf(int chart);
+/// RGB in [0, 1]; black for the background.
+std::array<float, 3> BodyPartColour(int part);
+
+/// Charts of n pixels → 3 × n planar RGB. Throws std::invalid_argument for a chart above 24.
+std::vector<float> BodyPartMap(std::span<const uint8_t> charts);
+
+}  // namespace bodyloom

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+/// L and A of the pose-guided renderer: garment labels and appearance on the body's surface, the same in every frame.
+///
+/// Pictures fill texels that they see and that no earlier one filled; every pose looks its pseudo inputs up in the same
+/// maps: G̃ = L(W_t), Ĩ = A(W_t). A pixel's value depends on its atlas coordinates and its part alone, so that a point
+/// of the body has one colour in all frames. Source: Yoon et al., CVPR 2021, Section 3.2.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "neural/guided/guided_picture.h"
+#include "neural/people/photo_frame.h"
+
+namespace bodyloom {
+
+struct CoherentMaps {
+  int size = 0;                      ///< U
+  std::vector<float> appearance;     ///< 3 × U × U RGB
+  std::vector<uint8_t> labels;       ///< U × U
+  std::vector<uint8_t> from;         ///< U × U: number of the picture that filled the texel, 0: empty
+  std::vector<uint8_t> texel_parts;  ///< U × U: DensePose's part, 0 where the atlas is empty
+};
+
+CoherentMaps EmptyMaps(int size, std::span<const uint8_t> texel_parts);
+
+/// Fills the empty texels that the frame's body shows inside the person: label of the nearest pixel, mean colour of the
+/// four around it that belong to the person (divided by alpha). `from`: 1 to 255. `no_face`: U × U or empty; texels
+/// that are not filled where the picture shows a face. Returns how many were filled.
+int FillEmptyTexels(const PhotoFrame& frame, const GuidedPicture& picture, uint8_t from,
+                    std::span<const uint8_t> no_face, CoherentMaps* maps);
+
+/// The frame's own picture, from its image and labels: alpha is 1 where a label is not 0.
+GuidedPicture OwnPicture(const PhotoFrame& frame);
+
+/// What the maps show of a pose, at the pixels of the bare body: bilinear among the filled texels of the pixel's part;
+/// label of the nearest of them. Nothing where less than half the weight is filled.
+PseudoPicture LookUp(const CoherentMaps& maps, const PhotoFrame& frame);
+
+}  // namespace bodyloom

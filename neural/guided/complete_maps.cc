@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "neural/guided/complete_maps.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/check.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr uint8_t kFace = 3, kHair = 4, kSkin = 5;
+constexpr int kEnoughPixels = 8;  ///< of hair, to know its colour
+
+struct Box {
+  int left = 0, top = 0, right = -1, bottom = -1;  ///< last pixels included
+};
+
+Box BodyBox(const PhotoFrame& frame) {
+  Box box{frame.size, frame.size, -1, -1};
+  for (int y = 0; y < frame.size; ++y) {
+    for (int x = 0; x < frame.size; ++x) {
+      if (frame.parts[size_t(y) * frame.size + x] == 0) continue;
+      box = {std::min(box.left, x), std::min(box.top, y), std::max(box.right, x), std::max(box.bottom, y)};
+    }
+  }
+  return box;
+}
+
+/// Of the pixels of a label; false where there are not enough.
+bool MeanColour(const GuidedPicture& picture, uint8_t label, std::array<float, 3>* colour) {
+  const size_t pixels = picture.alpha.size();
+  std::array<double, 3> sum{};
+  double weight = 0;
+  int count = 0;
+  for (size_t i = 0; i < pixels; ++i) {
+    if (picture.labels[i] != label) continue;
+    ++count;
+    weight += picture.alpha[i];
+    for (size_t c = 0; c < 3; ++c) sum[c] += picture.image[c * pixels + i];
+  }
+  if (count < kEnoughPixels || !(weight > 0)) return false;
+  for (size_t c = 0; c < 3; ++c) (*colour)[c] = static_cast<float>(sum[c] / weight);
+  return true;
+}
+
+/// v of [from_first, from_last] → [to_first, to_last], ends onto ends.
+int Onto(int v, int from_first, int from_last, int to_first, int to_last) {
+  if (from_last <= from_first) return to_first;
+  const double t = static_cast<double>(v - from_first) / (from_last - from_first);
+  return static_cast<int>(std::lround(to_first + t * (to_last - to_first)));
+}
+
+}  // namespace
+
+std::vector<uint8_t> TexelsOfTheBack(const PhotoFrame& front, const PhotoFrame& back) {
+  BODYLOOM_CHECK(front.texel_seen.size() == back.texel_seen.size(), "virtual views: ", front.texel_seen.size(), " and ",
+                 back.texel_seen.size(), " texels");
+  std::vector<uint8_t> texels(front.texel_seen.size());
+  for (size_t i = 0; i < texels.size(); ++i) texels[i] = back.texel_seen[i] != 0 && front.texel_seen[i] == 0 ? 1 : 0;
+  return texels;
+}
+
+PseudoPicture MirroredFront(const PhotoFrame& front, const GuidedPicture& picture, const PhotoFrame& back) {
+  const Box from = BodyBox(back), to = BodyBox(front);
+  const size_t pixels = size_t(back.size) * back.size;
+  PseudoPicture pseudo{back.size, std::vector<float>(3 * pixels), std::vector<uint8_t>(pixels),
+                       std::vector<uint8_t>(pixels)};
+  if (to.right < 0) return pseudo;
+  std::array<float, 3> behind_face{};
+  const bool hair = MeanColour(picture, kHair, &behind_face);
+  if (!hair) MeanColour(picture, kFace, &behind_face);
+  const size_t source_pixels = picture.alpha.size();
+  for (int y = from.top; y <= from.bottom; ++y) {
+    const int source_y = Onto(y, from.top, from.bottom, to.top, to.bottom);
+    for (int x = from.left; x <= from.right; ++x) {
+      const size_t i = size_t(y) * back.size + x;
+      if (back.parts[i] == 0) continue;
+      const size_t j = size_t(source_y) * front.size + Onto(x, from.left, from.right, to.right, to.left);
+      if (picture.labels[j] == 0 || !(picture.alpha[j] > 0)) continue;
+      const bool face = picture.labels[j] == kFace;
+      for (size_t c = 0; c < 3; ++c) {
+        pseudo.image[c * pixels + i] =
+            face ? behind_face[c] : std::min(1.0F, picture.image[c * source_pixels + j] / picture.alpha[j]);
+      }
+      pseudo.labels[i] = face ? (hair ? kHair : kSkin) : picture.labels[j];
+      pseudo.known[i] = 1;
+    }
+  }
+  return pseudo;
+}
+
+std::vector<GuidedPicture> CompleteMaps(std::span<const PhotoFrame> views, const DrawPose& draw, int first_number,
+                                        CoherentMaps* maps) {
+  BODYLOOM_CHECK(views.size() == kNumVirtualViews, "virtual views: ", views.size(), ", expected ",
+                 int(kNumVirtualViews));
+  const std::vector<uint8_t> no_face = TexelsOfTheBack(views[kViewFront], views[kViewBack]);
+  std::vector<GuidedPicture> pictures;
+  for (int v = 0; v < kNumVirtualViews; ++v) {
+    const PseudoPicture pseudo = v == kViewBack
+                                     ? MirroredFront(views[kViewFront], pictures[kViewFront], views[kViewBack])
+                                     : LookUp(*maps, views[v]);
+    pictures.push_back(draw(views[v], pseudo));
+    FillEmptyTexels(views[v], pictures.back(), static_cast<uint8_t>(first_number + v), no_face, maps);
+  }
+  return pictures;
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+/// One pose through the three networks. Internal: includes LibTorch.
+#pragma once
+
+#include "neural/guided/guided_model.h"
+#include "neural/guided/guided_picture.h"
+#include "neural/people/photo_frame.h"
+
+namespace bodyloom {
+
+/// The networks see the box of cells that the body, grown by `reach` pixels, lies in; what is farther from the body
+/// than that is background. reach 0: the whole window. An empty picture where the frame shows no body. `share` (may be
+/// null): of the window that was computed.
+GuidedPicture DrawGuided(GuidedModel* model, const GuidedSource& source, const PhotoFrame& frame,
+                         const PseudoPicture& pseudo, int reach, double* share);
+
+}  // namespace bodyloom

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "neural/guided/guided_batches.h"
+
+#include <utility>
+#include <vector>
+
+#include "geometry/check.h"
+#include "neural/guided/guided_plan.h"
+#include "neural/guided/guided_tensors.h"
+
+namespace bodyloom {
+
+GuidedBatch MakeGuidedBatch(const PhotoSource& people, const GuidedConfig& config, uint64_t seed, int64_t step,
+                            int batch, int reach) {
+  std::vector<PhotoFrame> sources(batch), targets(batch);
+  std::vector<std::vector<uint8_t>> known;
+  for (int b = 0; b < batch; ++b) {
+    const GuidedSample sample = GuidedSampleOf(seed, step, b, people.num_frames);
+    people.fill(sample.person, sample.source, &sources[b]);
+    people.fill(sample.person, sample.target, &targets[b]);
+    known.push_back(KnownPixels(seed, step, b, targets[b].size, targets[b].parts));
+  }
+  const int multiple = config.Multiple();
+  GuidedBatch result;
+  result.source = TensorsOf(sources);
+  const GuidedTensors target = TensorsOf(targets);
+  BODYLOOM_CHECK(result.source.image.defined() && target.image.defined(),
+                 "pose-guided training: a frame without image or labels");
+  result.box = PersonBox(targets, multiple, reach);
+  if (result.box.width == 0) result.box = {0, 0, targets[0].size / multiple, targets[0].size / multiple};
+  result.target = CroppedPixels(target, result.box, multiple);
+  result.pseudo = CroppedPixels(PseudoOf(target, known), result.box, multiple);
+  return result;
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The batches of a training run, made by a thread of their own a few steps ahead. Internal: includes LibTorch.
+#pragma once
+
+#include <torch/torch.h>
+
+#include <cstdint>
+
+#include "neural/guided/guided_config.h"
+#include "neural/guided/guided_model.h"
+#include "neural/people/photo_frame.h"
+#include "neural/training/made_ahead.h"
+
+namespace bodyloom {
+
+struct GuidedBatch {
+  GuidedTensors source;  ///< whole windows
+  GuidedTensors target;  ///< cropped to the box, as the renderer will crop
+  GuidedPseudo pseudo;   ///< of the target
+  CodeBox box;
+};
+
+/// Of step `step` (neural/guided/guided_plan.h). The box is that of all targets, grown by `reach` pixels.
+GuidedBatch MakeGuidedBatch(const PhotoSource& people, const GuidedConfig& config, uint64_t seed, int64_t step,
+                            int batch, int reach);
+
+}  // namespace bodyloom

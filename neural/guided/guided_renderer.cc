@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "neural/guided/guided_renderer.h"
+
+#include "geometry/check.h"
+#include "neural/guided/complete_maps.h"
+#include "neural/guided/draw_pose.h"
+#include "neural/guided/guided_model.h"
+#include "neural/guided/guided_tensors.h"
+#include "neural/runtime.h"
+#include "neural/training/checkpoint.h"
+
+namespace bodyloom {
+
+class GuidedRenderer::Impl {
+ public:
+  Impl(const std::string& path, const GuidedConfig& config, const GuidedRendererOptions& options)
+      : config_(config), options_(options) {
+    std::string why;
+    BODYLOOM_CHECK(config.IsValid(&why), "pose-guided renderer: ", why);
+    StartNeuralRuntime(options.num_threads);
+    model_ = GuidedModel(config);
+    Checkpoint checkpoint(ToText(config));
+    checkpoint.Add("model", model_.ptr().get());
+    checkpoint.Load(path, CheckpointPart::kModules);
+    model_->eval();
+  }
+
+  void SetSource(std::span<const PhotoFrame> photos, std::span<const uint8_t> texel_parts,
+                 std::span<const PhotoFrame> virtual_views) {
+    const int size = config_.profile.image_size;
+    BODYLOOM_CHECK(!photos.empty(), "pose-guided renderer: no photo");
+    BODYLOOM_CHECK(photos[0].size == size, "pose-guided renderer: a photo of ", photos[0].size, " px, expected ", size);
+    const torch::NoGradGuard no_grad;
+    const GuidedTensors source = TensorsOf(photos.first(1));
+    BODYLOOM_CHECK(source.image.defined(), "pose-guided renderer: the source has no picture");
+    source_ = model_->EncodeSource(source);
+    maps_ = EmptyMaps(photos[0].texture_size, texel_parts);
+    last_ = {};
+    int filled = 0;
+    for (size_t i = 0; i < photos.size(); ++i) {
+      filled +=
+          FillEmptyTexels(photos[i], OwnPicture(photos[i]), static_cast<uint8_t>(i + 1), NoFace(virtual_views), &maps_);
+    }
+    BODYLOOM_CHECK(filled > 0, "pose-guided renderer: the photos show nothing of the body");
+    virtual_.clear();
+    if (!options_.complete || !config_.uv_appearance) return;
+    virtual_ = CompleteMaps(
+        virtual_views, [&](const PhotoFrame& frame, const PseudoPicture& pseudo) { return Draw(frame, pseudo); },
+        static_cast<int>(photos.size()) + 1, &maps_);
+  }
+
+  GuidedPicture Render(const PhotoFrame& frame) {
+    BODYLOOM_CHECK(maps_.size > 0, "pose-guided renderer: no source yet");
+    ++frames_;
+    if (last_.size > 0 && frame.uv == last_uv_ && frame.parts == last_parts_) {
+      ++frames_kept_;
+      return last_;
+    }
+    last_ = Draw(frame, LookUp(maps_, frame));
+    last_uv_ = frame.uv;
+    last_parts_ = frame.parts;
+    return last_;
+  }
+
+  CoherentMaps maps_;
+  std::vector<GuidedPicture> virtual_;
+  int64_t frames_ = 0, frames_kept_ = 0;
+  double computed_ = 0;  ///< windows
+
+ private:
+  static std::vector<uint8_t> NoFace(std::span<const PhotoFrame> views) {
+    if (views.size() != kNumVirtualViews) return {};
+    return TexelsOfTheBack(views[kViewFront], views[kViewBack]);
+  }
+
+  GuidedPicture Draw(const PhotoFrame& frame, const PseudoPicture& pseudo) {
+    double share = 0;
+    GuidedPicture picture = DrawGuided(&model_, source_, frame, pseudo, options_.reach, &share);
+    computed_ += share;
+    ++drawn_;
+    return picture;
+  }
+
+  GuidedConfig config_;
+  GuidedRendererOptions options_;
+  GuidedModel model_{nullptr};
+  GuidedSource source_;
+  GuidedPicture last_;
+  std::vector<float> last_uv_;
+  std::vector<uint8_t> last_parts_;
+
+ public:
+  int64_t drawn_ = 0;
+};
+
+GuidedRenderer::GuidedRenderer(const std::string& checkpoint_path, const GuidedConfig& config,
+                               const GuidedRendererOptions& options)
+    : impl_(std::make_unique<Impl>(checkpoint_path, config, options)) {}
+GuidedRenderer::~GuidedRenderer() = default;
+
+void GuidedRenderer::SetSource(std::span<const PhotoFrame> photos, std::span<const uint8_t> texel_parts,
+                               std::span<const PhotoFrame> virtual_views) {
+  impl_->SetSource(photos, texel_parts, virtual_views);
+}
+GuidedPicture GuidedRenderer::Render(const PhotoFrame& frame) { return impl_->Render(frame); }
+const CoherentMaps& GuidedRenderer::maps() const { return impl_->maps_; }
+const std::vector<GuidedPicture>& GuidedRenderer::virtual_pictures() const { return impl_->virtual_; }
+int64_t GuidedRenderer::frames_kept() const { return impl_->frames_kept_; }
+double GuidedRenderer::computed_share() const {
+  return impl_->drawn_ > 0 ? impl_->computed_ / static_cast<double>(impl_->drawn_) : 0;
+}
+
+}  // namespace bodyloom

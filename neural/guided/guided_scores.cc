@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "neural/guided/guided_scores.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "geometry/check.h"
+#include "neural/metrics/contextual_similarity.h"
+#include "neural/metrics/lpips.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr int kStandInDivisor = 4;
+
+Image Bytes(const std::vector<float>& planar, int size) {
+  Image image(size, size);
+  const size_t pixels = size_t(size) * size;
+  for (size_t i = 0; i < pixels; ++i) {
+    for (size_t c = 0; c < 3; ++c) {
+      const float value = planar[(2 - c) * pixels + i];
+      image.bgr[3 * i + c] = value > 0 ? static_cast<uint8_t>(std::lround(255 * std::min(1.0F, value))) : uint8_t{0};
+    }
+  }
+  return image;
+}
+
+}  // namespace
+
+struct GuidedScorer::Impl {
+  std::optional<Lpips> lpips;
+  std::optional<ContextualMetric> contextual;
+  int frames = 0;
+  double l1 = 0, squared = 0, foreground = 0, outline_both = 0, outline_either = 0;
+  double lpips_sum = 0, lpips_squares = 0, contextual_sum = 0;
+  std::array<double, kPhotoLabels> both{}, either{}, occurs{};
+};
+
+GuidedScorer::GuidedScorer(bool features) : impl_(std::make_unique<Impl>()) {
+  if (!features) return;
+  LpipsOptions options;
+  options.stand_in_divisor = kStandInDivisor;
+  impl_->lpips.emplace(options);
+  impl_->contextual.emplace(kStandInDivisor);
+}
+GuidedScorer::~GuidedScorer() = default;
+
+void GuidedScorer::Add(const GuidedPicture& picture, const PhotoFrame& truth) {
+  const size_t pixels = picture.alpha.size();
+  BODYLOOM_CHECK(picture.size == truth.size && truth.labels.size() == pixels && truth.image.size() == 3 * pixels,
+                 "scores: a picture of ", picture.size, " px beside a truth of ", truth.size);
+  Impl& s = *impl_;
+  ++s.frames;
+  for (size_t i = 0; i < pixels; ++i) {
+    const uint8_t label = picture.labels[i], true_label = truth.labels[i];
+    s.outline_both += label != 0 && true_label != 0 ? 1 : 0;
+    s.outline_either += label != 0 || true_label != 0 ? 1 : 0;
+    s.occurs[true_label] += 1;
+    s.either[true_label] += 1;
+    if (label == true_label) {
+      s.both[label] += 1;
+    } else {
+      s.either[label] += 1;
+    }
+    if (true_label == 0) continue;
+    s.foreground += 1;
+    for (size_t c = 0; c < 3; ++c) {
+      const double error = double(picture.image[c * pixels + i]) - truth.image[c * pixels + i];
+      s.l1 += std::abs(error);
+      s.squared += error * error;
+    }
+  }
+  if (!s.lpips) return;
+  const Image image = Bytes(picture.image, picture.size), true_image = Bytes(truth.image, truth.size);
+  const double distance = s.lpips->Distance(image, true_image).value;
+  s.lpips_sum += distance;
+  s.lpips_squares += distance * distance;
+  s.contextual_sum += (*s.contextual)(image, true_image).distance;
+}
+
+GuidedScores GuidedScorer::Scores() const {
+  const Impl& s = *impl_;
+  GuidedScores scores;
+  scores.frames = s.frames;
+  if (s.frames == 0) return scores;
+  scores.image_l1 = s.l1 / std::max(1.0, 3 * s.foreground);
+  scores.psnr_db = -10 * std::log10(std::max(1e-12, s.squared / std::max(1.0, 3 * s.foreground)));
+  scores.silhouette_iou = s.outline_both / std::max(1.0, s.outline_either);
+  int classes = 0;
+  for (int k = 1; k < kPhotoLabels; ++k) {
+    if (s.occurs[k] == 0) continue;
+    ++classes;
+    scores.label_iou += s.both[k] / s.either[k];
+  }
+  if (classes > 0) scores.label_iou /= classes;
+  const double n = s.frames, none = std::numeric_limits<double>::quiet_NaN();
+  scores.lpips = s.lpips ? s.lpips_sum / n : none;
+  scores.lpips_deviation = s.lpips ? std::sqrt(std::max(0.0, s.lpips_squares / n - scores.lpips * scores.lpips)) : none;
+  scores.contextual = s.contextual ? s.contextual_sum / n : none;
+  return scores;
+}
+
+}  // namespace bodyloom

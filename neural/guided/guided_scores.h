@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+/// How drawn people differ from true ones.
+#pragma once
+
+#include <memory>
+
+#include "neural/guided/guided_picture.h"
+#include "neural/people/photo_frame.h"
+
+namespace bodyloom {
+
+/// "Foreground" is the true one, labels other than the background. LPIPS and CS are stand-ins of random features, on
+/// the whole window with a black background: they order results but compare with nobody else's figures.
+struct GuidedScores {
+  int frames = 0;
+  double image_l1 = 0;         ///< mean |I − I_true| over foreground and channels
+  double psnr_db = 0;          ///< over the foreground, range 1
+  double silhouette_iou = 0;   ///< alpha at least ½
+  double label_iou = 0;        ///< mean over the classes other than the background that occur
+  double lpips = 0;            ///< mean over frames; NaN where not asked for
+  double lpips_deviation = 0;  ///< over frames: the paper's temporal stability
+  double contextual = 0;       ///< Σ −log CX, mean over frames; NaN where not asked for
+};
+
+class GuidedScorer {
+ public:
+  /// `features`: with LPIPS and CS, which take their time.
+  explicit GuidedScorer(bool features);
+  ~GuidedScorer();
+  GuidedScorer(const GuidedScorer&) = delete;
+  GuidedScorer& operator=(const GuidedScorer&) = delete;
+
+  /// `truth` has a picture of the same size; std::invalid_argument otherwise.
+  void Add(const GuidedPicture& picture, const PhotoFrame& truth);
+  [[nodiscard]] GuidedScores Scores() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace bodyloom

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "neural/guided/guided_tensors.h"
+
+#include <algorithm>
+
+#include "geometry/check.h"
+#include "neural/guided/body_part_map.h"
+
+namespace bodyloom {
+namespace {
+
+using torch::Tensor;
+
+template <typename T>
+Tensor Filled(const std::vector<T>& values, const char* name, int64_t channels, int size, torch::ScalarType type) {
+  BODYLOOM_CHECK(static_cast<int64_t>(values.size()) == channels * size * size, "pose-guided renderer: a frame has ",
+                 values.size(), " values of ", name, ", expected ", channels, "x", size, "x", size);
+  Tensor tensor = torch::empty({1, channels, size, size}, type);
+  std::copy(values.begin(), values.end(), tensor.data_ptr<T>());
+  return tensor.to(torch::kFloat);
+}
+
+}  // namespace
+
+GuidedTensors TensorsOf(std::span<const PhotoFrame> frames) {
+  BODYLOOM_CHECK(!frames.empty(), "pose-guided renderer: no frames");
+  std::vector<Tensor> poses, classes, images;
+  for (const PhotoFrame& frame : frames) {
+    BODYLOOM_CHECK(frame.size == frames[0].size && frame.size > 0, "pose-guided renderer: a frame of ", frame.size,
+                   " px beside one of ", frames[0].size);
+    BODYLOOM_CHECK(frame.parts.size() == size_t(frame.size) * frame.size, "pose-guided renderer: a frame has ",
+                   frame.parts.size(), " parts, expected ", frame.size, "x", frame.size);
+    poses.push_back(Filled(BodyPartMap(frame.parts), "the pose map", 3, frame.size, torch::kFloat));
+    if (frame.image.empty() || frame.labels.empty()) continue;
+    images.push_back(Filled(frame.image, "the image", 3, frame.size, torch::kFloat));
+    classes.push_back(Filled(frame.labels, "the labels", 1, frame.size, torch::kByte));
+    const float largest = classes.back().max().item<float>();
+    BODYLOOM_CHECK(largest < kPhotoLabels, "pose-guided renderer: label ", largest, ", expected 0 to ",
+                   kPhotoLabels - 1);
+  }
+  GuidedTensors tensors;
+  tensors.pose = torch::cat(poses, 0);
+  if (images.size() != frames.size()) return tensors;
+  tensors.classes = torch::cat(classes, 0);
+  tensors.silhouette = (tensors.classes > 0).to(torch::kFloat);
+  tensors.image = torch::cat(images, 0) * tensors.silhouette;
+  return tensors;
+}
+
+GuidedPseudo PseudoOf(std::span<const PseudoPicture> pictures) {
+  std::vector<Tensor> classes, images, silhouettes;
+  for (const PseudoPicture& picture : pictures) {
+    classes.push_back(Filled(picture.labels, "pseudo labels", 1, picture.size, torch::kByte));
+    images.push_back(Filled(picture.image, "the pseudo image", 3, picture.size, torch::kFloat));
+    silhouettes.push_back(Filled(picture.known, "the pseudo silhouette", 1, picture.size, torch::kByte));
+  }
+  return {torch::cat(classes, 0), torch::cat(images, 0), torch::cat(silhouettes, 0)};
+}
+
+GuidedPseudo PseudoOf(const GuidedTensors& truth, std::span<const std::vector<uint8_t>> known) {
+  std::vector<Tensor> masks;
+  for (const std::vector<uint8_t>& mask : known) {
+    masks.push_back(Filled(mask, "known pixels", 1, static_cast<int>(truth.pose.size(2)), torch::kByte));
+  }
+  const Tensor silhouette = torch::cat(masks, 0) * truth.silhouette;
+  return {truth.classes * silhouette, truth.image * silhouette, silhouette};
+}
+
+CodeBox PersonBox(std::span<const PhotoFrame> frames, int multiple, int reach) {
+  int left = 1 << 30, top = 1 << 30, right = -1, bottom = -1;
+  for (const PhotoFrame& frame : frames) {
+    for (int y = 0; y < frame.size; ++y) {
+      for (int x = 0; x < frame.size; ++x) {
+        const size_t i = size_t(y) * frame.size + x;
+        const bool body = frame.parts[i] != 0;
+        if (!body && (frame.labels.empty() || frame.labels[i] == 0)) continue;
+        const int grow = body ? reach : 0;
+        left = std::min(left, x - grow), right = std::max(right, x + grow);
+        top = std::min(top, y - grow), bottom = std::max(bottom, y + grow);
+      }
+    }
+  }
+  if (right < 0) return {};
+  const int cells = frames[0].size / multiple, least = std::min(cells, std::max(2, (31 + multiple) / multiple));
+  const auto span = [&](int first, int last, int64_t* begin, int64_t* count) {
+    int from = std::clamp(first, 0, frames[0].size - 1) / multiple;
+    int to = std::clamp(last, 0, frames[0].size - 1) / multiple;
+    while (to - from + 1 < least) {
+      if (from > 0) --from;
+      if (to - from + 1 < least && to + 1 < cells) ++to;
+    }
+    *begin = from;
+    *count = to - from + 1;
+  };
+  CodeBox box;
+  span(left, right, &box.x, &box.width);
+  span(top, bottom, &box.y, &box.height);
+  return box;
+}
+
+Tensor CroppedPixels(const Tensor& map, const CodeBox& box, int multiple) {
+  if (!map.defined()) return map;
+  return Cropped(map, {box.x * multiple, box.y * multiple, box.width * multiple, box.height * multiple}).contiguous();
+}
+
+GuidedTensors CroppedPixels(const GuidedTensors& tensors, const CodeBox& box, int multiple) {
+  return {CroppedPixels(tensors.pose, box, multiple), CroppedPixels(tensors.silhouette, box, multiple),
+          CroppedPixels(tensors.classes, box, multiple), CroppedPixels(tensors.image, box, multiple)};
+}
+
+GuidedPseudo CroppedPixels(const GuidedPseudo& pseudo, const CodeBox& box, int multiple) {
+  return {CroppedPixels(pseudo.classes, box, multiple), CroppedPixels(pseudo.image, box, multiple),
+          CroppedPixels(pseudo.silhouette, box, multiple)};
+}
+
+GuidedPicture PictureOf(const GuidedResult& result, const GuidedPseudo& pseudo, int64_t b, const CodeBox& box,
+                        int multiple, int size) {
+  const size_t pixels = size_t(size) * size;
+  GuidedPicture picture{size, std::vector<float>(3 * pixels), std::vector<float>(pixels), std::vector<uint8_t>(pixels)};
+  const auto values = [&](const Tensor& map) { return map[b].contiguous(); };
+  const Tensor image = values(result.image), alpha = values(result.silhouette);
+  const Tensor labels = values(result.label_logits.defined() ? result.classes : pseudo.classes);
+  const int64_t width = box.width * multiple, height = box.height * multiple, area = width * height;
+  for (int64_t y = 0; y < height; ++y) {
+    for (int64_t x = 0; x < width; ++x) {
+      const int64_t j = y * width + x;
+      const size_t i = size_t(box.y * multiple + y) * size + (box.x * multiple + x);
+      for (int64_t c = 0; c < 3; ++c) picture.image[c * pixels + i] = image.data_ptr<float>()[c * area + j];
+      picture.alpha[i] = alpha.data_ptr<float>()[j];
+      if (picture.alpha[i] < 0.5F) continue;
+      picture.labels[i] = std::max<uint8_t>(1, static_cast<uint8_t>(labels.data_ptr<float>()[j]));
+    }
+  }
+  return picture;
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "neural/motion/motion_card.h"
+
+#include "neural/motion/motion_model.h"
+#include "neural/networks/architecture_card.h"
+#include "neural/networks/patch_discriminator.h"
+
+namespace bodyloom {
+
+std::string MotionCard(const MotionConfig& config) {
+  MotionModel model(config);
+  PatchDiscriminator discriminator(
+      PatchDiscriminatorOptions{3 + config.num_labels, config.profile.discriminator_width});
+  const int64_t side = config.profile.image_size, uv = config.profile.uv_size;
+  std::string text;
+  const auto add = [&](const char* title, auto& network, const std::vector<int64_t>& input) {
+    text += std::string(text.empty() ? "" : "\n") + title + "\n" + ArchitectureCard(network, input);
+  };
+  if (config.motion) add("motion encoder E, a frame's UV maps", model->encoder, {1, config.motion_channels, uv, uv});
+  if (config.shape) {
+    add("shape decoder D_s", model->shape_decoder, {1, model->shape_decoder->options.in, side, side});
+  }
+  add("appearance decoder D_a", model->appearance_decoder, {1, model->appearance_decoder->options.in, side, side});
+  add("discriminator D*, in training", discriminator, {1, 3 + config.num_labels, side, side});
+  return text;
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+/// How a rolled-out clip differs from the truth. Internal: includes LibTorch.
+#pragma once
+
+#include <torch/torch.h>
+
+#include "neural/motion/frame_tensors.h"
+#include "neural/motion/motion_model.h"
+#include "neural/motion/motion_scores.h"
+
+namespace bodyloom {
+
+/// Sums over frames, one at a time in order; windows may move between them.
+class MotionScorer {
+ public:
+  explicit MotionScorer(const MotionConfig& config) : config_(config) {}
+  /// One frame (B = 1) and where the window of the frame before lies in this one.
+  void Add(const MotionState& predicted, const MotionTruth& truth, int before_x, int before_y);
+  /// The next frame does not follow the last one.
+  void Restart() { last_error_ = torch::Tensor(); }
+  [[nodiscard]] MotionScores Scores() const;
+
+ private:
+  const MotionConfig& config_;
+  double l1_ = 0, squared_ = 0, angle_deg_ = 0, flicker_ = 0;
+  double foreground_ = 0, foreground_with_normals_ = 0, foreground_with_past_ = 0;  ///< pixels
+  std::vector<double> both_, either_;                                               ///< pixels by class
+  double foreground_both_ = 0, foreground_either_ = 0;
+  torch::Tensor last_error_;
+  int frames_ = 0;
+};
+
+}  // namespace bodyloom

@@ -1,7 +1,0 @@
-// SPDX-License-Identifier: Apache-2.0
-#include "tests/fuzz/fuzz_text_targets.h"
-
-extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
-  bodyloom::fuzz::AcceptsCameras(std::string(reinterpret_cast<const char*>(data), size));
-  return 0;
-}

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The fuzzers' functions for files of named arrays beside bodies and tracks: observations, part labels, the pose
+/// prior, the lifter and the built-in body's own arrays; and for the front doors that tell a format by its content.
+/// Each returns whether the input was accepted; what is accepted must hold together.
+#pragma once
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "data_tools/builtin_body.h"
+#include "data_tools/formats/zip.h"
+#include "data_tools/lifter/lifter_weights_io.h"
+#include "data_tools/motion/load_motion.h"
+#include "data_tools/observations/load_detections.h"
+#include "data_tools/observations/observations_npz.h"
+#include "data_tools/observations/part_labels.h"
+#include "data_tools/prior/pose_prior_io.h"
+#include "tests/fuzz/fuzz_targets.h"
+
+namespace bodyloom::fuzz {
+
+/// An archive of the framed arrays, not compressed: for readers that take a whole file.
+inline std::string ArchiveOf(const NpzArrays& arrays) {
+  std::vector<ZipMember> members;
+  for (const auto& [name, array] : arrays) members.push_back({name + ".npy", NpyBytes(array)});
+  return MakeZip(members, 0);
+}
+
+inline void CheckTimes(const std::vector<double>& times) {
+  for (size_t t = 0; t < times.size(); ++t) {
+    if (!std::isfinite(times[t]) || (t > 0 && !(times[t] > times[t - 1])))
+      throw std::logic_error("a clock that stands");
+  }
+}
+
+inline void CheckKeypoints(const KeypointSequence& keypoints) {
+  CheckTimes(keypoints.timestamps);
+  if (keypoints.points.size() != keypoints.timestamps.size() * keypoints.names.size()) {
+    throw std::logic_error("joints of another number");
+  }
+  for (const Keypoint& point : keypoints.points) {
+    if (!(point.confidence >= 0 && point.confidence <= 1)) throw std::logic_error("a confidence out of range");
+  }
+}
+
+inline bool AcceptsObservations(const std::string& bytes) {
+  const NpzArrays arrays = FramedArrays(bytes);
+  const bool sparse = Accepts([&] { CheckKeypoints(KeypointsFromNpz(arrays, "fuzz.npz")); });
+  const bool dense = Accepts([&] {
+    const DenseSequence sequence = DenseFromNpz(arrays, "fuzz.npz");
+    CheckTimes(sequence.timestamps);
+    if (sequence.timestamps.size() != sequence.frames.size()) throw std::logic_error("frames without a time");
+  });
+  return sparse || dense;
+}
+
+inline bool AcceptsPartLabels(const std::string& bytes) {
+  return Accepts([&] {
+    const PartLabelSequence labels = PartLabelsFromNpz(FramedArrays(bytes), "fuzz.npz");
+    CheckTimes(labels.timestamps);
+    for (const LabelImage& image : labels.frames) {
+      const bool empty = image.width <= 0 || image.height <= 0;
+      const size_t expected = empty ? 0 : static_cast<size_t>(image.width) * static_cast<size_t>(image.height);
+      if (image.labels.size() != expected) throw std::logic_error("labels of another number than pixels");
+    }
+  });
+}
+
+inline bool AcceptsPosePrior(const std::string& bytes) {
+  return Accepts([&] {
+    const PosePrior prior = ReadPosePriorBytes(ArchiveOf(FramedArrays(bytes)), "fuzz.npz");
+    if (prior.means.rows() != prior.num_components() || prior.means.cols() != prior.dim() || !prior.means.allFinite()) {
+      throw std::logic_error("means of another size");
+    }
+  });
+}
+
+inline bool AcceptsLifter(const std::string& bytes) {
+  return Accepts([&] {
+    std::string why;
+    const LifterWeights weights = ReadLifterWeightsBytes(ArchiveOf(FramedArrays(bytes)), "fuzz.npz");
+    if (!weights.IsValid(&why)) throw std::logic_error(why);
+  });
+}
+
+/// The built-in body's arrays, with its own cage.
+inline bool AcceptsLeftHalf(const std::string& bytes) {
+  static const BuiltinBodySources embedded = EmbeddedBuiltinBodySources();
+  return Accepts([&] {
+    CheckBody(MakeBuiltinBody({embedded.cage_text, "fuzz.txt", ArchiveOf(FramedArrays(bytes)), "fuzz.npz"}));
+  });
+}
+
+/// Whatever a motion file claims to be.
+inline bool AcceptsMotion(const std::string& bytes) {
+  return Accepts([&] {
+    const Motion motion = MotionFromBytes(bytes, "fuzz.motion");
+    CheckTimes(motion.timestamps);
+    if (static_cast<int>(motion.timestamps.size()) != motion.num_frames() ||
+        motion.trans.rows() != motion.poses.rows()) {
+      throw std::logic_error("frames disagree");
+    }
+  });
+}
+
+/// Whatever a file of detections claims to be, with the person chosen and the times filled in.
+inline bool AcceptsDetectionsFile(const std::string& bytes) {
+  return Accepts([&] { CheckKeypoints(DetectionsFromBytes(bytes, "fuzz.json", {})); });
+}
+
+}  // namespace bodyloom::fuzz

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The fuzzers' functions for what the neural verbs read beside weights and pictures: a run's config.json and the light
+/// that shall be.
+#pragma once
+
+#include <cmath>
+#include <string>
+
+#include "apps/neural/motion_run.h"
+#include "apps/neural/relight_frames.h"
+#include "tests/fuzz/fuzz_file_targets.h"
+
+namespace bodyloom::fuzz {
+
+inline bool AcceptsRunConfig(const std::string& bytes) {
+  Folder().Write("run/config.json", bytes);
+  return Accepts([&] {
+    const MotionRun run = ReadMotionRun(Folder().path() + "/run");
+    std::string why;
+    if (!run.config.IsValid(&why)) throw std::logic_error(why);
+    if (!std::isfinite(run.fps) || !std::isfinite(run.pixels_per_metre)) throw std::logic_error("not finite");
+  });
+}
+
+inline bool AcceptsRelight(const std::string& bytes) {
+  const std::string path = Folder().Write("light.json", bytes);
+  return Accepts([&] {
+    if (!ReadRelight(path).light.allFinite()) throw std::logic_error("light that is not finite");
+  });
+}
+
+}  // namespace bodyloom::fuzz

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The toy body (tests/support/toy_body.h) with as many vertices as asked for: the same person, finer or coarser.
+#pragma once
+
+#include "geometry/body_model.h"
+
+namespace bodyloom::stress {
+
+/// Exactly 100 vertices: three about each joint and one for each landmark of the surface.
+BodyModel BodyOf100Vertices();
+
+/// The toy body's vertices over and over, at most `num_vertices` of them (at least 804); every whole copy has faces.
+BodyModel BodyOfManyVertices(int num_vertices);
+
+/// A body of this body's numbers times `scale`: in millimetres for 1000.
+BodyModel ScaledBody(const BodyModel& body, double scale);
+
+}  // namespace bodyloom::stress

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What the stability suite shares: the engines it runs on, clips with known truth, and what every answer must keep.
+/// The cases and what they promise: docs/stability.md.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "data_tools/synthetic/synth_clip.h"
+#include "geometry/body_model.h"
+#include "tracking/track_sequence.h"
+
+namespace bodyloom::stress {
+
+/// Every case that solves runs once with each of these (TrackSequenceOptions::solver). A new engine is one more name.
+inline const std::vector<std::string>& Engines() {
+  static const std::vector<std::string> names = {"ceres"};
+  return names;
+}
+
+/// Fixture of the cases that solve; GetParam() is the engine.
+class EngineTest : public ::testing::TestWithParam<std::string> {};
+
+/// Makes a suite of EngineTest run with every engine: "Suite.Case/ceres".
+#define BODYLOOM_WITH_EVERY_ENGINE(suite)                                               \
+  INSTANTIATE_TEST_SUITE_P(, suite, ::testing::ValuesIn(::bodyloom::stress::Engines()), \
+                           [](const ::testing::TestParamInfo<std::string>& info) { return info.param; })
+
+/// The demo motion before a camera: `frames` frames at `fps` with detections as a detector makes them, and with
+/// `dense` surface keypoints a frame.
+SynthClip DemoClip(const BodyModel& body, int frames, double fps = 15, int dense = 0,
+                   const SynthClipOptions& options = {});
+
+/// The same of any motion in a world, at its own rate.
+SynthClip ClipOf(const BodyModel& body, const Motion& motion, int dense = 0, const SynthClipOptions& options = {});
+
+/// Everything the clip offers, with the built-in prior; borrows the clip and the body.
+TrackSequenceInput InputOf(const BodyModel& body, const SynthClip& clip);
+
+/// One thread, no uncertainty: what most cases need.
+TrackSequenceOptions OptionsOf(const std::string& engine);
+
+/// TrackSequence(), with ExpectSound() on what it returns.
+TrackSequenceResult Fit(const TrackSequenceInput& input, const TrackSequenceOptions& options);
+
+/// What every answer keeps, however bad the input: one state and one status a frame; a frame's numbers are all finite,
+/// or the frame says that it is lost; frames are counted rightly; a failure has a message; a usable answer has a finite
+/// cost.
+void ExpectSound(const TrackSequenceResult& result, int frames);
+
+/// Mean joint error of frame t in millimetres after a similarity alignment (PA-MPJPE), and of all frames.
+double ErrorMm(const TrackSequenceResult& result, const SynthClip& clip, int t);
+double ErrorMm(const TrackSequenceResult& result, const SynthClip& clip);
+
+/// Largest distance between the joints of two tracks over the given frames, metres.
+double LargestDifference(const Track& a, const Track& b, const std::vector<int>& frames);
+double LargestDifference(const Track& a, const Track& b);
+
+/// Largest turn of the root from one frame to the next, radians.
+double LargestStep(const Track& track);
+
+/// Angle between the root's rotation and the true one, radians.
+double RootErrorRad(const TrackSequenceResult& result, const SynthClip& clip, int t);
+
+/// Resident memory of this process now, bytes.
+size_t ResidentBytes();
+
+}  // namespace bodyloom::stress

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What TrackSequence refuses before it begins, and which observations it leaves out because they cannot be meant.
+#pragma once
+
+#include "geometry/observations.h"
+#include "tracking/track_sequence.h"
+
+namespace bodyloom {
+
+/// Throws std::invalid_argument, beginning with "track: ", when a number of the input cannot be:
+/// - observations: another number of points than frames × landmarks, or of timestamps than frames; timestamps that are
+///   not finite and strictly increasing;
+/// - a known camera: an intrinsic that is not finite, a focal length that is not positive;
+/// - the body: less than 0.3 m or more than 10 m from end to end (millimetres, centimetres, feet);
+/// - the initialiser: values that are not finite, or a person on average more than 1 km from the camera.
+void CheckNumbers(const TrackSequenceInput& input, const TrackSequenceOptions& options);
+
+/// Makes missing (confidence 0) every 2D landmark whose confidence is not positive, whose coordinates are not finite,
+/// or that lies more than ten images outside the image (a million pixels where the image size is not known), and limits
+/// confidences to 1.
+void DropUnusable(KeypointSequence* keypoints);
+
+/// True when some dense keypoint must be left out or changed by DropUnusable.
+bool HasUnusable(const DenseSequence& dense);
+
+/// Leaves out dense keypoints whose pixel or barycentric coordinates are not finite, whose pixel lies as far outside as
+/// above, whose barycentric coordinates leave [−1, 2], or whose σ is not a positive number; raises σ to 0.01 pixels.
+void DropUnusable(DenseSequence* dense);
+
+}  // namespace bodyloom
