@@ -106,7 +106,9 @@ TEST(CoherentMaps, AColourStaysTheSameWhereverThePersonGoes) {
         for (int c = 0; c < 3; ++c) {
           EXPECT_NEAR(shown.image[c * 1024 + here], pictures[0].image[c * 1024 + first], 2e-7);
         }
-        if (frame.parts[here] == 0) EXPECT_EQ(shown.known[here], 0);
+        if (frame.parts[here] == 0) {
+          EXPECT_EQ(shown.known[here], 0);
+        }
       }
     }
   }
@@ -136,7 +138,9 @@ TEST(CoherentMaps, TheFirstPictureOfATexelStays) {
   EXPECT_EQ(FillEmptyTexels(behind, OwnPicture(behind), 3, {}, &maps), 128);
   for (int t = 0; t < 256; ++t) {
     EXPECT_EQ(maps.from[t], t % 16 < 8 ? 1 : 3);
-    if (before.from[t] != 0) EXPECT_EQ(maps.appearance[t], before.appearance[t]);
+    if (before.from[t] != 0) {
+      EXPECT_EQ(maps.appearance[t], before.appearance[t]);
+    }
   }
   // What the photo does not show of the person fills nothing.
   PhotoFrame empty = front;
