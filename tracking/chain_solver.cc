@@ -18,6 +18,7 @@ using Eigen::VectorXd;
 constexpr double kMinRelativeDecrease = 1e-3, kMinDiagonal = 1e-6, kMaxDiagonal = 1e32;
 constexpr double kStartRadius = 1e4, kMaxRadius = 1e16, kMinRadius = 1e-32;
 constexpr int kMaxInvalidSteps = 5;
+constexpr double kEarlyTolerance = 1e-3;  ///< when all keypoints come in (SolveOptions::early_dense)
 
 /// The size of the trust region.
 class Radius {
@@ -46,6 +47,14 @@ VectorXd Damping(const VectorXd& diagonal, const VectorXd& scale, double radius)
 
 double LargestOf(const VectorXd& x) { return x.size() > 0 ? x.cwiseAbs().maxCoeff() : 0.0; }
 
+size_t MostDense(const SequenceProblem& problem) {
+  size_t most = 0;
+  for (const FrameData& frame : problem.frames) {
+    if (frame.dense != nullptr) most = std::max(most, frame.dense->size());
+  }
+  return most;
+}
+
 /// Adds the time since the last call to one of two sums.
 class Watch {
  public:
@@ -72,6 +81,8 @@ SolveReport SolveChain(SequenceProblem* problem, const SolveOptions& options) {
   x.log_focal = problem->log_focal;
   Watch watch;
   double other_seconds = 0;
+  bool thinned = options.early_dense > 0 && MostDense(*problem) > 2 * static_cast<size_t>(options.early_dense);
+  if (thinned) chain.LimitDense(options.early_dense);
   double cost = chain.Linearise(x);
   watch.To(&report.seconds_evaluation);
   report.initial_cost = report.final_cost = cost;
@@ -93,7 +104,8 @@ SolveReport SolveChain(SequenceProblem* problem, const SolveOptions& options) {
   double x_norm = std::sqrt(chain.SquaredNorm(x));
   Radius radius;
   int invalid_steps = 0;
-  bool moved = false, fresh = true;  // fresh: the point was reached by an accepted step, or is the first
+  bool rejected = false, moved = false,
+       fresh = true;  // fresh: the point was reached by an accepted step, or is the first
   for (int iteration = 0;; ++iteration) {
     if (options.on_iteration && !options.on_iteration(iteration, cost)) {
       return finish(SolveStatus::kStopped, "stopped by the caller");
@@ -103,6 +115,10 @@ SolveReport SolveChain(SequenceProblem* problem, const SolveOptions& options) {
       return finish(SolveStatus::kConverged, "the gradient is below its tolerance");
     }
     if (iteration >= options.max_iterations) {
+      if (thinned) {
+        chain.LimitDense(0);
+        cost = chain.Cost(x);
+      }
       return finish(SolveStatus::kMaxIterations, Concatenate("still going after ", iteration, " iterations"));
     }
     if (radius.value() < kMinRadius) {
@@ -135,28 +151,51 @@ SolveReport SolveChain(SequenceProblem* problem, const SolveOptions& options) {
     invalid_steps = 0;
     chain.Plus(x, step, shared_step, &candidate);
     watch.To(&other_seconds);
-    const double candidate_cost = chain.Cost(candidate);
+    // Most steps are accepted, and the derivatives at the new point cost little once its cost is known: both at once,
+    // unless the last step was rejected or this one promises to be the last.
+    const bool both = !rejected && promised > options.function_tolerance * cost;
+    const double candidate_cost = both ? chain.Linearise(candidate) : chain.Cost(candidate);
     watch.To(&report.seconds_evaluation);
     const double change = cost - candidate_cost;
     const bool too_short = moved && std::sqrt(step.squaredNorm() + shared_step.squaredNorm()) <=
                                         options.parameter_tolerance * (x_norm + options.parameter_tolerance);
-    if (too_short || std::abs(change) <= options.function_tolerance * cost) {
+    const bool settled = std::abs(change) <= (thinned ? kEarlyTolerance : options.function_tolerance) * cost;
+    if (too_short || settled) {
       if (change > 0) {
         cost = candidate_cost;
         std::swap(x, candidate);
       }
-      return finish(SolveStatus::kConverged,
-                    too_short ? "the step is below its tolerance" : "the change of the cost is below its tolerance");
+      if (!thinned) {
+        return finish(SolveStatus::kConverged,
+                      too_short ? "the step is below its tolerance" : "the change of the cost is below its tolerance");
+      }
+      thinned = false;
+      chain.LimitDense(0);
+      cost = chain.Linearise(x);
+      watch.To(&report.seconds_evaluation);
+      if (!std::isfinite(cost)) return finish(SolveStatus::kFailure, "the cost of all keypoints is not finite");
+      fresh = true;
+      rejected = false;
+      continue;
     }
     const double quality = change / promised;
     if (!(quality > kMinRelativeDecrease)) {  // also when the candidate's cost is not finite
+      if (both) {
+        chain.Linearise(x);
+        watch.To(&report.seconds_evaluation);
+      }
       radius.Rejected();
+      rejected = true;
       continue;
     }
     std::swap(x, candidate);
-    watch.To(&other_seconds);
-    cost = chain.Linearise(x);
-    watch.To(&report.seconds_evaluation);
+    if (!both) {
+      watch.To(&other_seconds);
+      chain.Linearise(x);
+      watch.To(&report.seconds_evaluation);
+    }
+    cost = candidate_cost;
+    rejected = false;
     x_norm = std::sqrt(chain.SquaredNorm(x));
     radius.Accepted(quality);
     moved = fresh = true;

@@ -120,6 +120,9 @@ struct FrameResiduals {
 /// Evaluates frames; holds scratch memory, one instance a thread.
 class FrameEvaluator {
  public:
+  /// From now on at most about this many dense keypoints of a frame, evenly chosen and weighted to stand for all of
+  /// them; 0: all. Frames with rendered UV always use all.
+  void LimitDense(int max_points) { max_dense_ = max_points; }
   /// Cost only when `derivatives` is false. `residuals` is filled when given (appended to).
   void Evaluate(const FrameLayout& layout, const FrameData& data, const FrameState& state, const Eigen::VectorXd& betas,
                 double log_focal, bool derivatives, FrameSystem* system, FrameResiduals* residuals = nullptr);
@@ -159,11 +162,11 @@ class FrameEvaluator {
   DensePoints dense_points_;
   std::vector<DensePoints::Row> dense_rows_;
   std::vector<char> has_dense_row_;
-  RowMatrixXd J_, hip_rows_;    ///< rows of the terms that are not added directly; columns padded with zeros
+  RowMatrixXd J_, hip_rows_;  ///< rows of the terms that are not added directly; columns padded with zeros
   Eigen::VectorXd r_;
-  RowMatrixXd H_;               ///< upper triangle; columns padded
+  RowMatrixXd H_;  ///< upper triangle; columns padded
   Eigen::VectorXd gradient_;
-  int row_ = 0;
+  int row_ = 0, max_dense_ = 0;
   double cost_ = 0;
   int num_invalid_ = 0;
 };

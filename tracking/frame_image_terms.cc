@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The image terms of FrameEvaluator: 2D joints, dense keypoints in the image and in UV, outlines and part labels. All
 // of them are functions of where a point of the body appears, so all share one chain of derivatives (AddImageRows).
+#include <algorithm>
 #include <cmath>
 
 #include "tracking/frame_cost.h"
@@ -73,28 +74,31 @@ void FrameEvaluator::AddPixel(const FrameLayout& layout, const Vector3d& x, cons
 
 void FrameEvaluator::AddDense(const FrameLayout& layout, const FrameData& data, bool derivatives) {
   const std::vector<DenseKeypoint>& points = *data.dense;
-  dense_points_.Pose(kinematics_, points, derivatives);
+  const bool thin = max_dense_ > 0 && data.rendered_uv == nullptr;
+  const size_t step = thin ? std::max<size_t>(1, points.size() / static_cast<size_t>(max_dense_)) : 1;
+  const auto weight = static_cast<double>(step);
+  dense_points_.Pose(kinematics_, points, step, derivatives);
   if (derivatives) {
     dense_rows_.resize(points.size());
     has_dense_row_.assign(points.size(), 0);
   }
-  for (size_t i = 0; i < points.size(); ++i) {
+  for (size_t i = 0, n = 0; i < points.size(); i += step, ++n) {
     if (data.rendered_uv != nullptr && data.rendered_uv->Has(i)) continue;
     Projected at;
-    if (!Project(dense_points_.position(i), derivatives, &at)) {
-      AddSaturated(data.dense_kernel, 1);
+    if (!Project(dense_points_.position(n), derivatives, &at)) {
+      AddSaturated(data.dense_kernel, weight);
       continue;
     }
     const Matrix2d whitening = data.dense_whitening.empty() ? Matrix2d(Matrix2d::Identity() / points[i].sigma_px)
                                                             : data.dense_whitening[i].whitening;
     const Vector2d residual = whitening * (at.pixel - points[i].pixel.cast<double>());
     const RobustValue robust = GemanMcClure(residual.squaredNorm(), data.dense_kernel);
-    cost_ += 0.5 * robust.rho;
+    cost_ += 0.5 * weight * robust.rho;
     if (!derivatives) continue;
-    const double scale = std::sqrt(robust.weight);
+    const double scale = std::sqrt(weight * robust.weight);
     const Matrix2d by_pixel = scale * whitening;
-    DensePoints::Row& row = dense_rows_[i];
-    has_dense_row_[i] = 1;
+    DensePoints::Row& row = dense_rows_[n];
+    has_dense_row_[n] = 1;
     row.A = by_pixel * at.d_pixel_d_x;
     row.residual = scale * residual;
     if (layout.knowledge == CameraKnowledge::kWeak) {

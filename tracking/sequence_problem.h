@@ -55,6 +55,10 @@ struct SolveOptions {
   double function_tolerance = 1e-5;   ///< stop when |Δcost| is below this share of the cost
   double gradient_tolerance = 1e-9;   ///< … when no component of the gradient is larger
   double parameter_tolerance = 1e-9;  ///< … when the step is below this share of the unknowns' norm
+  /// Chain only: until the cost settles to a thousandth, frames with more than twice as many dense keypoints use about
+  /// this many, evenly chosen and weighted to stand for all; then all of them. What converges is always the whole
+  /// problem. 0: all from the beginning.
+  int early_dense = 0;
   bool shape_constant = false, focal_constant = false;
   /// Called after each iteration with (iteration, cost); false stops.
   std::function<bool(int, double)> on_iteration;

@@ -317,6 +317,7 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSe
     }
     SolveOptions solve_options;
     solve_options.solver = options.solver == "chain" ? SequenceSolver::kChain : SequenceSolver::kCeres;
+    solve_options.early_dense = options.skip_unneeded ? 300 : 0;
     solve_options.max_iterations = max_iterations;
     solve_options.num_threads = threads;
     solve_options.function_tolerance = tolerance;

@@ -11,8 +11,8 @@ namespace bodyloom {
 struct PlotLine {
   std::string name;
   std::vector<std::pair<double, double>> points;
-  bool dashed = false;   ///< a limit, drawn without marks
-  bool stairs = false;   ///< constant between points
+  bool dashed = false;  ///< a limit, drawn without marks
+  bool stairs = false;  ///< constant between points
 };
 
 struct Plot {

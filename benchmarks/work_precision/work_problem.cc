@@ -56,8 +56,8 @@ std::unique_ptr<WorkProblem> MakeWorkProblem(const WorkProblemOptions& options) 
   problem.betas = Eigen::VectorXd::Zero(B);
   problem.shape_prior.weight = std::max(1.0, 0.3 * T);
   for (int t = 0; t < T; ++t) {
-    const BodyPose start = PoseFromAxisAngle(body, clip.initialiser.poses.row(t).transpose(),
-                                             clip.initialiser.trans.row(t).transpose());
+    const BodyPose start =
+        PoseFromAxisAngle(body, clip.initialiser.poses.row(t).transpose(), clip.initialiser.trans.row(t).transpose());
     problem.states.push_back({start.rotations, start.trans});
     FrameData frame;
     frame.dense = &clip.dense.frames[t];

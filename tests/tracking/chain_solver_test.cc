@@ -174,5 +174,26 @@ TEST(ChainSolver, AFrameThatNothingHoldsStaysWhereItIs) {
   }
 }
 
+TEST(ChainSolver, EarlyIterationsOnFewerPointsEndAtTheWholeProblem) {
+  SequenceSceneOptions scene;
+  scene.dense = 150;
+  scene.outliers = 0;
+  const auto owner = MakeSequenceScene(scene);
+  SequenceProblem all = owner->problem, early = owner->problem;
+  SolveOptions options = Tight(SequenceSolver::kChain);
+  const SolveReport whole = SolveSequence(&all, options);
+  options.early_dense = 40;
+  const SolveReport report = SolveSequence(&early, options);
+  ASSERT_EQ(report.status, SolveStatus::kConverged);
+  EXPECT_NE(report.initial_cost, whole.initial_cost);  // it did start with fewer
+  EXPECT_NEAR(report.final_cost, whole.final_cost, 1e-6 * whole.final_cost);
+  options.max_iterations = 1;  // ends among the few, and reports the cost of all
+  early = owner->problem;
+  const SolveReport one = SolveSequence(&early, options);
+  options.early_dense = 0;
+  options.max_iterations = 0;
+  EXPECT_NEAR(SolveSequence(&early, options).initial_cost, one.final_cost, 1e-12 * one.final_cost);
+}
+
 }  // namespace
 }  // namespace bodyloom

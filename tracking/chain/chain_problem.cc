@@ -80,6 +80,7 @@ double ChainProblem::EvaluateFrames(const ChainPoint& point, bool derivatives) {
   const int T = static_cast<int>(point.states.size());
   ParallelFor(T, num_threads_, [&](int t) {
     Lease evaluator(this);
+    (*evaluator).LimitDense(max_dense_);
     (*evaluator)
         .Evaluate(problem_.layout, problem_.frames[t], point.states[t], point.betas, point.log_focal, derivatives,
                   &systems_[t]);

@@ -28,6 +28,9 @@ class ChainProblem : public ChainSource {
   /// The problem is borrowed. Its states, betas and log_focal are not read.
   ChainProblem(const SequenceProblem& problem, bool shape_constant, bool focal_constant, int num_threads);
 
+  /// From now on at most about this many dense keypoints a frame (FrameEvaluator::LimitDense); 0: all.
+  void LimitDense(int max_points) { max_dense_ = max_points; }
+
   /// Cost alone; NaN where a frame's is not finite.
   double Cost(const ChainPoint& point);
   /// Cost, and everything that the factorisation needs.
@@ -71,7 +74,7 @@ class ChainProblem : public ChainSource {
   void AssembleAcceleration(size_t t);
 
   const SequenceProblem& problem_;
-  int n_, blocks_, num_threads_;
+  int n_, blocks_, num_threads_, max_dense_ = 0;
   std::vector<int> shared_columns_;  ///< columns of a frame's matrix that are unknown and shared
   bool shape_constant_, focal_constant_;
   RowMatrixXd shape_prior_;  ///< residual = shape_prior_ β + shape_offset_

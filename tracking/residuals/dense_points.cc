@@ -70,7 +70,8 @@ void DensePoints::SetBody(const Kinematics& kinematics) {
   frame_.feature = kinematics.feature[0].data();
 }
 
-void DensePoints::Pose(const Kinematics& kinematics, const std::vector<DenseKeypoint>& keypoints, bool derivatives) {
+void DensePoints::Pose(const Kinematics& kinematics, const std::vector<DenseKeypoint>& keypoints, size_t step,
+                       bool derivatives) {
   SetBody(kinematics);
   if (derivatives) {
     frame_.feature_jacobian = kinematics.feature_jacobian[0].data();
@@ -85,14 +86,15 @@ void DensePoints::Pose(const Kinematics& kinematics, const std::vector<DenseKeyp
     frame_.dt = dt_.data();
   }
   const MatrixX3i& faces = kinematics.model->data().faces;
-  points_.resize(keypoints.size());
-  positions_.resize(3 * keypoints.size());
-  for (size_t i = 0; i < keypoints.size(); ++i) {
-    const Eigen::Vector3d barycentric = keypoints[i].barycentric.cast<double>();
+  points_.resize((keypoints.size() + step - 1) / step);
+  positions_.resize(3 * points_.size());
+  for (size_t i = 0; i < points_.size(); ++i) {
+    const DenseKeypoint& keypoint = keypoints[i * step];
+    const Eigen::Vector3d barycentric = keypoint.barycentric.cast<double>();
     // Detectors' floats sum to 1 within rounding only; the weights have to do so exactly for d x / d trans = I.
     const double sum = barycentric[0] + barycentric[1] + barycentric[2];
     for (int k = 0; k < 3; ++k) {
-      points_[i].vertex[k] = faces(keypoints[i].face, k);
+      points_[i].vertex[k] = faces(keypoint.face, k);
       points_[i].weight[k] = barycentric[k] / sum;
     }
   }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Many surface points of one frame: where they are, and what they give to the normal equations.
 ///
-/// A point moves with few joints (six on average on the built-in body, of 24), so points are sorted by the set of joints
-/// that move them; each set's rows hold columns for its joints, translation, shape and focal length only, and JᵀJ of
-/// these narrow rows is added to the frame's matrix once a set. Nothing is left out: the columns not held are zero.
+/// A point moves with few joints (six on average on the built-in body, of 24), so points are sorted by the set of
+/// joints that move them; each set's rows hold columns for its joints, translation, shape and focal length only, and
+/// JᵀJ of these narrow rows is added to the frame's matrix once a set. Nothing is left out: the columns not held are
+/// zero.
 #pragma once
 
 #include <Eigen/Core>
@@ -33,15 +34,16 @@ class DensePoints {
     int translation = 0, beta = 0, focal = -1;
   };
 
-  /// Poses the points. With `derivatives`, `kinematics` has them and Accumulate() may follow.
-  void Pose(const Kinematics& kinematics, const std::vector<DenseKeypoint>& keypoints, bool derivatives);
+  /// Poses keypoints 0, step, 2 step, … which become points 0, 1, 2, … With `derivatives`, `kinematics` has them and
+  /// Accumulate() may follow.
+  void Pose(const Kinematics& kinematics, const std::vector<DenseKeypoint>& keypoints, size_t step, bool derivatives);
   [[nodiscard]] Eigen::Vector3d position(size_t i) const {
     return Eigen::Map<const Eigen::Vector3d>(&positions_[3 * i]);
   }
   /// Adds Σ JᵀJ to `H` (upper triangle, row-major with this stride) and Σ Jᵀ residual to `gradient` for the points
   /// with has_row[i]; rows belong to the points posed last.
-  void Accumulate(const Columns& columns, const std::vector<Row>& rows, const std::vector<char>& has_row,
-                  double* H, int64_t stride, double* gradient);
+  void Accumulate(const Columns& columns, const std::vector<Row>& rows, const std::vector<char>& has_row, double* H,
+                  int64_t stride, double* gradient);
 
  private:
   struct Group {

@@ -9,10 +9,42 @@
 // Must come after foreach_target.h.
 #include <hwy/highway.h>
 
-// The loops are short and irregular (two influences and one corrective a vertex on average): written plainly, and
-// compiled for each instruction set.
 HWY_BEFORE_NAMESPACE();
 namespace bodyloom::dense_internal::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using Tag = hn::CappedTag<double, 8>;
+using Lanes = hn::Vec<Tag>;
+
+HWY_INLINE Lanes LoadFloats(const float* p) { return hn::PromoteTo(Tag(), hn::LoadU(hn::Rebind<float, Tag>(), p)); }
+
+/// 2×3 times 3×n, added to 2×n: target_r[i] += Σ_c A_rc row_c[i], rows of float or of double.
+template <class T>
+HWY_INLINE void AddRows(const double (&A)[2][3], const T* HWY_RESTRICT row0, const T* HWY_RESTRICT row1,
+                        const T* HWY_RESTRICT row2, int n, double* HWY_RESTRICT target0, double* HWY_RESTRICT target1) {
+  const Tag d;
+  const int N = static_cast<int>(hn::Lanes(d));
+  int i = 0;
+  for (; i + N <= n; i += N) {
+    Lanes x, y, z;
+    if constexpr (sizeof(T) == sizeof(float)) {
+      x = LoadFloats(row0 + i), y = LoadFloats(row1 + i), z = LoadFloats(row2 + i);
+    } else {
+      x = hn::LoadU(d, row0 + i), y = hn::LoadU(d, row1 + i), z = hn::LoadU(d, row2 + i);
+    }
+    Lanes sum = hn::MulAdd(hn::Set(d, A[0][0]), x, hn::LoadU(d, target0 + i));
+    sum = hn::MulAdd(hn::Set(d, A[0][1]), y, sum);
+    hn::StoreU(hn::MulAdd(hn::Set(d, A[0][2]), z, sum), d, target0 + i);
+    sum = hn::MulAdd(hn::Set(d, A[1][0]), x, hn::LoadU(d, target1 + i));
+    sum = hn::MulAdd(hn::Set(d, A[1][1]), y, sum);
+    hn::StoreU(hn::MulAdd(hn::Set(d, A[1][2]), z, sum), d, target1 + i);
+  }
+  for (; i < n; ++i) {
+    const double x = row0[i], y = row1[i], z = row2[i];
+    target0[i] += A[0][0] * x + A[0][1] * y + A[0][2] * z;
+    target1[i] += A[1][0] * x + A[1][1] * y + A[1][2] * z;
+  }
+}
 
 const double* RestVertex(const Body& body, const Frame& frame, const Vertices& vertices, int v) {
   double* HWY_RESTRICT rest = vertices.rest + 3 * static_cast<int64_t>(v);
@@ -29,20 +61,26 @@ const double* RestVertex(const Body& body, const Frame& frame, const Vertices& v
     }
   }
   double x = shaped[0], y = shaped[1], z = shaped[2];
-  if (body.corrective_begin != nullptr) {
+  if (body.corrective_begin != nullptr && body.corrective_begin[v] < body.corrective_begin[v + 1]) {
+    const Tag d;
+    const int N = static_cast<int>(hn::Lanes(d));
+    Lanes sum_x = hn::Zero(d), sum_y = hn::Zero(d), sum_z = hn::Zero(d);
     for (int k = body.corrective_begin[v]; k < body.corrective_begin[v + 1]; ++k) {
       const float* HWY_RESTRICT block = body.corrective_block + 27 * static_cast<int64_t>(k);
       const double* HWY_RESTRICT feature = frame.feature + 9 * body.corrective_joint[k];
-      double sum_x = 0, sum_y = 0, sum_z = 0;
-      for (int m = 0; m < 9; ++m) {
-        sum_x += double{block[m]} * feature[m];
-        sum_y += double{block[9 + m]} * feature[m];
-        sum_z += double{block[18 + m]} * feature[m];
+      for (int m = 0; m < 8; m += N) {
+        const Lanes f = hn::LoadU(d, feature + m);
+        sum_x = hn::MulAdd(LoadFloats(block + m), f, sum_x);
+        sum_y = hn::MulAdd(LoadFloats(block + 9 + m), f, sum_y);
+        sum_z = hn::MulAdd(LoadFloats(block + 18 + m), f, sum_z);
       }
-      x += sum_x;
-      y += sum_y;
-      z += sum_z;
+      x += double{block[8]} * feature[8];
+      y += double{block[17]} * feature[8];
+      z += double{block[26]} * feature[8];
     }
+    x += hn::GetLane(hn::SumOfLanes(d, sum_x));
+    y += hn::GetLane(hn::SumOfLanes(d, sum_y));
+    z += hn::GetLane(hn::SumOfLanes(d, sum_z));
   }
   rest[0] = x;
   rest[1] = y;
@@ -88,8 +126,8 @@ void FillRowsHere(const Body& body, const Frame& frame, const Vertices& vertices
     const Point& point = points[chosen[i]];
     const double* HWY_RESTRICT a = A + 6 * static_cast<int64_t>(chosen[i]);
     double* HWY_RESTRICT out[2] = {rows + 2 * i * stride, rows + (2 * i + 1) * stride};
-    double shape[2][kMaxBetas];
-    for (int b = 0; b < B; ++b) shape[0][b] = shape[1][b] = 0;
+    double* HWY_RESTRICT beta[2] = {out[0] + group.beta_column, out[1] + group.beta_column};
+    for (int b = 0; b < B; ++b) beta[0][b] = beta[1][b] = 0;
     for (int q = 0; q < N; ++q) {
       for (double& value : moved[q]) value = 0;
       has_corrective[q] = false;
@@ -118,11 +156,7 @@ void FillRowsHere(const Body& body, const Frame& frame, const Vertices& vertices
         }
       }
       const float* HWY_RESTRICT s = body.shapedirs + 3 * static_cast<int64_t>(v) * body.shape_stride;
-      for (int b = 0; b < B; ++b) {
-        const double x = s[b], y = s[body.shape_stride + b], z = s[2 * body.shape_stride + b];
-        shape[0][b] += AM[0][0] * x + AM[0][1] * y + AM[0][2] * z;
-        shape[1][b] += AM[1][0] * x + AM[1][1] * y + AM[1][2] * z;
-      }
+      AddRows(AM, s, s + body.shape_stride, s + 2 * body.shape_stride, B, beta[0], beta[1]);
       if (body.corrective_begin == nullptr) continue;
       for (int e = body.corrective_begin[v]; e < body.corrective_begin[v + 1]; ++e) {
         const int q = group.of_joint[body.corrective_joint[e]];
@@ -131,25 +165,15 @@ void FillRowsHere(const Body& body, const Frame& frame, const Vertices& vertices
           for (int m = 0; m < 9; ++m) corrective[q][0][m] = corrective[q][1][m] = 0;
         }
         const float* HWY_RESTRICT block = body.corrective_block + 27 * static_cast<int64_t>(e);
-        for (int m = 0; m < 9; ++m) {
-          const double x = block[m], y = block[9 + m], z = block[18 + m];
-          corrective[q][0][m] += AM[0][0] * x + AM[0][1] * y + AM[0][2] * z;
-          corrective[q][1][m] += AM[1][0] * x + AM[1][1] * y + AM[1][2] * z;
-        }
+        AddRows(AM, block, block + 9, block + 18, 9, corrective[q][0], corrective[q][1]);
       }
-    }
-    for (int r = 0; r < 2; ++r) {
-      for (int b = 0; b < B; ++b) out[r][group.beta_column + b] = shape[r][b];
     }
     for (int q = 0; q < N; ++q) {
       const double w = moved[q][3];
       if (w == 0) continue;
       const double* HWY_RESTRICT dt = frame.dt + 3 * static_cast<int64_t>(group.joints[q]) * B;
-      for (int r = 0; r < 2; ++r) {
-        const double x = w * a[3 * r], y = w * a[3 * r + 1], z = w * a[3 * r + 2];
-        double* HWY_RESTRICT target = out[r] + group.beta_column;
-        for (int b = 0; b < B; ++b) target[b] += x * dt[b] + y * dt[B + b] + z * dt[2 * B + b];
-      }
+      const double wA[2][3] = {{w * a[0], w * a[1], w * a[2]}, {w * a[3], w * a[4], w * a[5]}};
+      AddRows(wA, dt, dt + B, dt + 2 * B, B, beta[0], beta[1]);
     }
     // From the leaves up: what a joint moves, its parent moves too.
     for (int q = N - 1; q >= 0; --q) {

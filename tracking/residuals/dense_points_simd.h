@@ -55,13 +55,13 @@ void PosePoints(const Body& body, const Frame& frame, const Vertices& vertices, 
 struct Group {
   int num_joints = 0;
   const int* joints = nullptr;
-  const int* parent = nullptr;       ///< index into `joints`, −1: none
-  const int* column = nullptr;       ///< first of its 3 columns in a row; −1: held
-  const int* of_joint = nullptr;     ///< J: index into `joints`
-  int beta_column = 0;               ///< first of num_betas columns
+  const int* parent = nullptr;    ///< index into `joints`, −1: none
+  const int* column = nullptr;    ///< first of its 3 columns in a row; −1: held
+  const int* of_joint = nullptr;  ///< J: index into `joints`
+  int beta_column = 0;            ///< first of num_betas columns
 };
 
-inline constexpr int kMaxGroupJoints = 256, kMaxBetas = 32;
+inline constexpr int kMaxGroupJoints = 256;
 
 /// For points that PosePoints has posed in this frame: two rows each, A ∂x/∂δ_j and A ∂x/∂β, A the point's 2×3 matrix
 /// row by row. Other columns are left alone.
