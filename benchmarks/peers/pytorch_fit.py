@@ -44,7 +44,7 @@ class Problem:
         data = np.load(path)
         get = lambda name: torch.from_numpy(np.ascontiguousarray(data[name]))
         real = lambda name: get(name).float()
-        self.parents = data["parents"].tolist()
+        self.parents = [int(parent) for parent in data["parents"]]
         self.corners = get("corners").long()  # T x K x 3, vertex indices; a keypoint that is missing has weight 0
         self.barycentric, self.pixel = real("barycentric"), real("pixel")
         self.inverse_sigma = real("inverse_sigma")  # T x K
