@@ -122,10 +122,11 @@ void AddTrackOptions(CLI::App& app, TrackCommand* command) {
   app.add_flag("--quiet", c.quiet, "no progress and no summary on the screen")->group(wanted);
 
   TrackSequenceOptions& s = c.solve;
-  app.add_option("--solver", s.solver, "the engine")
+  app.add_option("--solver", s.solver,
+                 "the engine: ceres (the reference) or chain (the same problem, several times faster)")
       ->group(solve)
       ->capture_default_str()
-      ->check(CLI::IsMember({"ceres"}));
+      ->check(CLI::IsMember({"ceres", "chain"}));
   app.add_option("--threads", s.num_threads, "at most 256; 0: all cores; results agree to rounding")
       ->group(solve)
       ->check(Quiet(CLI::Range(0, 256)))

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/frame_cost.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "geometry/check.h"
 #include "geometry/rotation.h"
+#include "tracking/chain/panel_simd.h"
 #include "tracking/residuals/lifted_pose.h"
 #include "tracking/residuals/part_label_term.h"
 #include "tracking/robust.h"
@@ -68,8 +70,41 @@ FrameState InterpolateStates(const FrameState& a, const FrameState& b, double s)
 }
 
 void FrameEvaluator::ReserveRows(int rows, int columns) {
-  if (J_.cols() != columns || J_.rows() < rows) J_.resize(rows, columns);
+  const int stride = panel_internal::RowStride(columns);
+  if (J_.cols() != stride || J_.rows() < rows) J_.setZero(rows, stride);
   if (r_.size() < rows) r_.resize(rows);
+  H_.setZero(columns, stride);
+  gradient_.setZero(columns);
+}
+
+void FrameEvaluator::AddSquares(int column, const Matrix3d& JtJ, const Vector3d& Jtr) {
+  H_.block<3, 3>(column, column) += JtJ;
+  gradient_.segment<3>(column) += Jtr;
+}
+
+void FrameEvaluator::AddPrior(const FrameLayout& layout, const FrameData& data, const FrameState& state,
+                              bool derivatives) {
+  const std::vector<int>& joints = data.prior->joints();
+  VectorXd x(3 * joints.size());
+  for (size_t i = 0; i < joints.size(); ++i) x.segment<3>(3 * i) = AxisAngleFromRotation(state.rotations[joints[i]]);
+  double energy;
+  const int k = data.prior->Nearest(x, &energy);
+  cost_ += 0.5 * data.prior_weight * energy;
+  if (!derivatives) return;
+  const Eigen::MatrixXd& precision = data.prior->precision(k);
+  std::vector<Matrix3d> d_x(joints.size());
+  for (size_t i = 0; i < joints.size(); ++i) d_x[i] = RightJacobianInverse(x.segment<3>(3 * i));
+  const VectorXd force = data.prior_weight * (precision * (x - data.prior->mean(k)));
+  for (size_t i = 0; i < joints.size(); ++i) {
+    const int row = layout.column_of_joint[joints[i]];
+    gradient_.segment<3>(row) += d_x[i].transpose() * force.segment<3>(3 * i);
+    for (size_t j = 0; j < joints.size(); ++j) {
+      const int column = layout.column_of_joint[joints[j]];
+      if (column < row) continue;
+      const Matrix3d half = data.prior_weight * d_x[i].transpose() * precision.block<3, 3>(3 * i, 3 * j);
+      H_.block<3, 3>(row, column) += half * d_x[j];
+    }
+  }
 }
 
 void FrameEvaluator::Evaluate(const FrameLayout& layout, const FrameData& data, const FrameState& state,
@@ -85,13 +120,9 @@ void FrameEvaluator::Evaluate(const FrameLayout& layout, const FrameData& data, 
   const bool use_prior = data.prior != nullptr && !data.prior->empty() && data.prior_weight > 0;
   const bool use_lifted = data.lifted != nullptr && data.lifted_weight > 0;
   if (derivatives) {
-    // A keypoint has its two rows in UV or in the image.
-    const size_t rows = 2 * (data.landmarks.size() + num_dense) +
+    const size_t rows = 2 * (data.landmarks.size() + (data.rendered_uv != nullptr ? num_dense : 0)) +
                         (data.part_labels != nullptr ? static_cast<size_t>(data.part_labels->num_rows()) : 0) +
-                        (use_prior ? 3 * data.prior->joints().size() : 0) +
-                        (data.limits != nullptr ? 3 * data.limits->ranges.size() : 0) +
-                        (data.upright_weight > 0 ? 1 : 0) + (use_lifted ? 3 * data.lifted->points.size() + 3 : 0) +
-                        (data.initial_rotations.empty() ? 0 : 3 * layout.active_joints.size() + 3);
+                        (use_lifted ? 3 * data.lifted->points.size() + 3 : 0);
     ReserveRows(static_cast<int>(rows), p);
   }
 
@@ -106,30 +137,7 @@ void FrameEvaluator::Evaluate(const FrameLayout& layout, const FrameData& data, 
   if (data.part_labels != nullptr) AddPartLabels(layout, data, derivatives, residuals);
   if (use_lifted) AddLifted(layout, data, derivatives);
 
-  if (use_prior) {
-    const std::vector<int>& joints = data.prior->joints();
-    VectorXd x(3 * joints.size());
-    for (size_t i = 0; i < joints.size(); ++i) {
-      x.segment<3>(3 * i) = AxisAngleFromRotation(state.rotations[joints[i]]);
-    }
-    double energy;
-    const int k = data.prior->Nearest(x, &energy);
-    cost_ += 0.5 * data.prior_weight * energy;
-    if (derivatives) {
-      const double scale = std::sqrt(data.prior_weight);
-      const Eigen::MatrixXd& L = data.prior->sqrt_precision(k);
-      const int n = static_cast<int>(x.size());
-      J_.middleRows(row_, n).setZero();
-      for (size_t i = 0; i < joints.size(); ++i) {
-        const int column = layout.column_of_joint[joints[i]];
-        const Matrix3d d_x = scale * RightJacobianInverse(x.segment<3>(3 * i));
-        J_.block(row_, column, n, 3).noalias() = L.middleCols<3>(3 * i) * d_x;
-      }
-      const VectorXd centred = scale * (x - data.prior->mean(k));
-      r_.segment(row_, n) = L.triangularView<Eigen::Upper>() * centred;
-      row_ += n;
-    }
-  }
+  if (use_prior) AddPrior(layout, data, state, derivatives);
 
   if (data.limits != nullptr) {
     for (const JointLimits::Range& range : data.limits->ranges) {
@@ -144,10 +152,7 @@ void FrameEvaluator::Evaluate(const FrameLayout& layout, const FrameData& data, 
       for (int c = 0; c < 3; ++c) {
         if (excess[c] == 0) d_excess.row(c).setZero();
       }
-      J_.middleRows<3>(row_).setZero();
-      J_.block<3, 3>(row_, column) = d_excess;
-      r_.segment<3>(row_) = excess;
-      row_ += 3;
+      AddSquares(column, d_excess.transpose() * d_excess, d_excess.transpose() * excess);
     }
   }
 
@@ -158,9 +163,8 @@ void FrameEvaluator::Evaluate(const FrameLayout& layout, const FrameData& data, 
     cost_ += 0.5 * data.upright_weight * robust.rho;
     if (derivatives) {
       const double scale = std::sqrt(data.upright_weight * robust.weight);
-      J_.row(row_).setZero();
-      J_.block<1, 3>(row_, layout.column_of_joint[0]) = -scale / kUprightSigma * root.row(2) * Skew(Vector3d::UnitY());
-      r_[row_++] = scale * r;
+      const Eigen::RowVector3d row = -scale / kUprightSigma * root.row(2) * Skew(Vector3d::UnitY());
+      AddSquares(layout.column_of_joint[0], row.transpose() * row, row.transpose() * (scale * r));
     }
   }
 
@@ -170,32 +174,37 @@ void FrameEvaluator::Evaluate(const FrameLayout& layout, const FrameData& data, 
       const Vector3d w = AxisAngleFromRotation(data.initial_rotations[j].transpose() * state.rotations[j]);
       cost_ += 0.5 * rotation_scale * rotation_scale * w.squaredNorm();
       if (!derivatives) continue;
-      J_.middleRows<3>(row_).setZero();
-      J_.block<3, 3>(row_, layout.column_of_joint[j]) = rotation_scale * RightJacobianInverse(w);
-      r_.segment<3>(row_) = rotation_scale * w;
-      row_ += 3;
+      const Matrix3d d_w = rotation_scale * RightJacobianInverse(w);
+      AddSquares(layout.column_of_joint[j], d_w.transpose() * d_w, rotation_scale * (d_w.transpose() * w));
     }
     const double translation_scale = std::sqrt(data.initialiser_weight) / data.initialiser_translation_sigma;
     const Vector3d offset = state.translation - data.initial_translation;
     cost_ += 0.5 * translation_scale * translation_scale * offset.squaredNorm();
     if (derivatives) {
-      J_.middleRows<3>(row_).setZero();
-      J_.block<3, 3>(row_, layout.translation_column) = translation_scale * Matrix3d::Identity();
-      r_.segment<3>(row_) = translation_scale * offset;
-      row_ += 3;
+      const double information = translation_scale * translation_scale;
+      AddSquares(layout.translation_column, information * Matrix3d::Identity(), information * offset);
     }
   }
 
   system->cost = cost_;
   system->num_invalid = num_invalid_;
-  if (derivatives) {
-    system->H.setZero(p, p);
-    system->gradient.setZero(p);
-    if (row_ > 0) {  // Eigen's blocking divides by the number of rows
-      system->H.selfadjointView<Eigen::Lower>().rankUpdate(J_.topRows(row_).transpose());
-      system->gradient.noalias() = J_.topRows(row_).transpose() * r_.head(row_);
-    }
+  if (!derivatives) return;
+  if (row_ > 0) {
+    panel_internal::Products products;
+    products.a = products.b = J_.data();
+    products.c = H_.data();
+    products.lda = products.ldb = J_.cols();
+    products.ldc = H_.cols();
+    products.rows = products.columns = p;
+    products.last = row_;
+    products.upper = true;
+    panel_internal::AddProducts(products);
+    gradient_.noalias() += J_.topLeftCorner(row_, p).transpose() * r_.head(row_);
   }
+  system->gradient = gradient_;
+  if (system->H.rows() != p) system->H.setZero(p, p);
+  // The upper triangle by rows is the lower one by columns.
+  for (int i = 0; i < p; ++i) std::copy(&H_(i, i), &H_(i, 0) + p, &system->H(i, i));
 }
 
 }  // namespace bodyloom

@@ -29,6 +29,7 @@
 #include "tracking/body_points.h"
 #include "tracking/joint_limits.h"
 #include "tracking/mixture_prior.h"
+#include "tracking/residuals/dense_points.h"
 #include "tracking/residuals/visible_surface.h"
 #include "tracking/track_sequence.h"
 
@@ -119,6 +120,9 @@ struct FrameResiduals {
 /// Evaluates frames; holds scratch memory, one instance a thread.
 class FrameEvaluator {
  public:
+  /// From now on at most about this many dense keypoints of a frame, evenly chosen and weighted to stand for all of
+  /// them; 0: all. Frames with rendered UV always use all.
+  void LimitDense(int max_points) { max_dense_ = max_points; }
   /// Cost only when `derivatives` is false. `residuals` is filled when given (appended to).
   void Evaluate(const FrameLayout& layout, const FrameData& data, const FrameState& state, const Eigen::VectorXd& betas,
                 double log_focal, bool derivatives, FrameSystem* system, FrameResiduals* residuals = nullptr);
@@ -146,15 +150,23 @@ class FrameEvaluator {
   /// 3×columns: derivative of the point evaluated last, without translation.
   void FillPointRows(const FrameLayout& layout, Eigen::Ref<RowMatrixXd> rows);
   void ReserveRows(int rows, int columns);
+  /// Adds J'J and J'r of a term that depends on one joint (or on the translation): three columns.
+  void AddSquares(int column, const Eigen::Matrix3d& JtJ, const Eigen::Vector3d& Jtr);
+  void AddPrior(const FrameLayout& layout, const FrameData& data, const FrameState& state, bool derivatives);
 
   Kinematics kinematics_;
   PointEvaluator points_;
   PointEvaluator::VertexCache vertices_;
   VisibleSurface surface_;
   Camera camera_;
-  RowMatrixXd J_, hip_rows_;
+  DensePoints dense_points_;
+  std::vector<DensePoints::Row> dense_rows_;
+  std::vector<char> has_dense_row_;
+  RowMatrixXd J_, hip_rows_;  ///< rows of the terms that are not added directly; columns padded with zeros
   Eigen::VectorXd r_;
-  int row_ = 0;
+  RowMatrixXd H_;  ///< upper triangle; columns padded
+  Eigen::VectorXd gradient_;
+  int row_ = 0, max_dense_ = 0;
   double cost_ = 0;
   int num_invalid_ = 0;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The image terms of FrameEvaluator: 2D joints, dense keypoints in the image and in UV, outlines and part labels. All
 // of them are functions of where a point of the body appears, so all share one chain of derivatives (AddImageRows).
+#include <algorithm>
 #include <cmath>
 
 #include "tracking/frame_cost.h"
@@ -72,17 +73,47 @@ void FrameEvaluator::AddPixel(const FrameLayout& layout, const Vector3d& x, cons
 }
 
 void FrameEvaluator::AddDense(const FrameLayout& layout, const FrameData& data, bool derivatives) {
-  const MatrixX3i& faces = layout.model->data().faces;
-  for (size_t i = 0; i < data.dense->size(); ++i) {
-    if (data.rendered_uv != nullptr && data.rendered_uv->Has(i)) continue;
-    const DenseKeypoint& point = (*data.dense)[i];
-    const Vector3d barycentric = point.barycentric.cast<double>();
-    const Vector3d x =
-        points_.Evaluate(kinematics_, faces.row(point.face).data(), barycentric.data(), &vertices_, derivatives);
-    const Matrix2d whitening = data.dense_whitening.empty() ? Matrix2d(Matrix2d::Identity() / point.sigma_px)
-                                                            : data.dense_whitening[i].whitening;
-    AddPixel(layout, x, point.pixel.cast<double>(), whitening, data.dense_kernel, 1, derivatives);
+  const std::vector<DenseKeypoint>& points = *data.dense;
+  const bool thin = max_dense_ > 0 && data.rendered_uv == nullptr;
+  const size_t step = thin ? std::max<size_t>(1, points.size() / static_cast<size_t>(max_dense_)) : 1;
+  const auto weight = static_cast<double>(step);
+  dense_points_.Pose(kinematics_, points, step, derivatives);
+  if (derivatives) {
+    dense_rows_.resize(points.size());
+    has_dense_row_.assign(points.size(), 0);
   }
+  for (size_t i = 0, n = 0; i < points.size(); i += step, ++n) {
+    if (data.rendered_uv != nullptr && data.rendered_uv->Has(i)) continue;
+    Projected at;
+    if (!Project(dense_points_.position(n), derivatives, &at)) {
+      AddSaturated(data.dense_kernel, weight);
+      continue;
+    }
+    const Matrix2d whitening = data.dense_whitening.empty() ? Matrix2d(Matrix2d::Identity() / points[i].sigma_px)
+                                                            : data.dense_whitening[i].whitening;
+    const Vector2d residual = whitening * (at.pixel - points[i].pixel.cast<double>());
+    const RobustValue robust = GemanMcClure(residual.squaredNorm(), data.dense_kernel);
+    cost_ += 0.5 * weight * robust.rho;
+    if (!derivatives) continue;
+    const double scale = std::sqrt(weight * robust.weight);
+    const Matrix2d by_pixel = scale * whitening;
+    DensePoints::Row& row = dense_rows_[n];
+    has_dense_row_[n] = 1;
+    row.A = by_pixel * at.d_pixel_d_x;
+    row.residual = scale * residual;
+    if (layout.knowledge == CameraKnowledge::kWeak) {
+      const Matrix2d by_offset = camera_.scale * by_pixel;
+      row.translation.col(0) = by_offset * Vector2d(at.x.x() + camera_.tx, at.x.y() + camera_.ty);
+      row.translation.rightCols<2>() = by_offset;
+    } else {
+      row.translation = row.A;
+    }
+    if (layout.focal_column >= 0) row.focal = by_pixel * (at.pixel - Vector2d(camera_.cx, camera_.cy));
+  }
+  if (!derivatives) return;
+  const DensePoints::Columns columns{&layout.column_of_joint, layout.translation_column, layout.beta_column,
+                                     layout.focal_column};
+  dense_points_.Accumulate(columns, dense_rows_, has_dense_row_, H_.data(), H_.cols(), gradient_.data());
 }
 
 void FrameEvaluator::AddRenderedUv(const FrameLayout& layout, const FrameData& data, const FrameState& state,

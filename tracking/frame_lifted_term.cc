@@ -26,7 +26,7 @@ void FrameEvaluator::AddLifted(const FrameLayout& layout, const FrameData& data,
   const LiftedLandmarks& landmarks = *lifted.landmarks;
   // The translation moves landmark and mid-hip alike, so its columns stay zero.
   Vector3d hips = Vector3d::Zero();
-  if (derivatives) hip_rows_.setZero(3, layout.num_columns);
+  if (derivatives) hip_rows_.setZero(3, J_.cols());
   for (int k = kLifterLeftHip; k <= kLifterLeftHip + 1; ++k) {
     hips += 0.5 * points_.Evaluate(kinematics_, landmarks.points[k], derivatives);
     if (!derivatives) continue;

@@ -35,6 +35,7 @@ MixturePrior::MixturePrior(const PosePrior& prior, const BodyModel& model, const
     // Σ = C Cᵀ, so Σ⁻¹ = C⁻ᵀ C⁻¹ and ‖C⁻¹ x‖² is the Mahalanobis distance; a QR makes the factor upper triangular.
     const Eigen::MatrixXd inverse = factor.matrixL().solve(Eigen::MatrixXd::Identity(rows.size(), rows.size()));
     component.L = Eigen::LLT<Eigen::MatrixXd>(inverse.transpose() * inverse).matrixU();
+    component.precision = component.L.transpose() * component.L;
     component.offset = -2 * (prior.log_weights[k] + component.L.diagonal().array().log().sum());
     smallest = std::min(smallest, component.offset);
     components_.push_back(std::move(component));

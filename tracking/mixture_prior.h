@@ -25,6 +25,8 @@ class MixturePrior {
   /// Index of the component with the least energy at x, and that energy.
   int Nearest(const Eigen::VectorXd& x, double* energy) const;
   [[nodiscard]] const Eigen::MatrixXd& sqrt_precision(int k) const { return components_[k].L; }
+  /// Σ⁻¹
+  [[nodiscard]] const Eigen::MatrixXd& precision(int k) const { return components_[k].precision; }
   [[nodiscard]] const Eigen::VectorXd& mean(int k) const { return components_[k].mean; }
   [[nodiscard]] double offset(int k) const { return components_[k].offset; }
   [[nodiscard]] int num_components() const { return static_cast<int>(components_.size()); }
@@ -33,6 +35,7 @@ class MixturePrior {
   struct Component {
     Eigen::VectorXd mean;
     Eigen::MatrixXd L;  ///< upper triangular, LᵀL = Σ⁻¹
+    Eigen::MatrixXd precision;
     double offset = 0;
   };
   std::vector<int> joints_;

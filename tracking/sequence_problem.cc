@@ -9,6 +9,7 @@
 
 #include "geometry/check.h"
 #include "geometry/rotation.h"
+#include "tracking/chain_solver.h"
 #include "tracking/residuals/acceleration_cost.h"
 #include "tracking/residuals/compressed_frame_cost.h"
 #include "tracking/residuals/linear_cost.h"
@@ -36,6 +37,18 @@ double StatureOfMeanShape(const BodyModel& model, int num_betas, VectorXd* gradi
   const RowMatrixXf& s = model.data().shapedirs;
   *gradient = (s.row(3 * top + 1).head(num_betas) - s.row(3 * bottom + 1).head(num_betas)).cast<double>().transpose();
   return height;
+}
+
+void ShapePriorRows(const SequenceProblem& problem, RowMatrixXd* A, VectorXd* b) {
+  const int B = problem.layout.num_betas;
+  VectorXd gradient;
+  const double mean_height = StatureOfMeanShape(*problem.layout.model, B, &gradient);
+  const double height = problem.shape_prior.height_m > 0 ? problem.shape_prior.height_m : mean_height;
+  *A = RowMatrixXd::Identity(B + 1, B) * (std::sqrt(problem.shape_prior.weight) / problem.shape_prior.sigma);
+  *b = VectorXd::Zero(B + 1);
+  if (problem.shape_prior.mean.size() == B) *b = -*A * problem.shape_prior.mean;
+  A->row(B) = gradient.transpose() / problem.shape_prior.height_sigma_m;
+  (*b)[B] = (mean_height - height) / problem.shape_prior.height_sigma_m;
 }
 
 std::array<double, 3> RootAccelerationSigma(const SequenceProblem& problem) {
@@ -165,16 +178,9 @@ void AddSmoothness(const SequenceProblem& problem, Parameters* x, ceres::Problem
 
 void AddSharedPriors(const SequenceProblem& problem, Parameters* x, ceres::Problem* ceres_problem) {
   if (problem.layout.num_betas > 0) {
-    const int B = problem.layout.num_betas;
-    VectorXd gradient;
-    const double mean_height = StatureOfMeanShape(*problem.layout.model, B, &gradient);
-    const double height = problem.shape_prior.height_m > 0 ? problem.shape_prior.height_m : mean_height;
-    RowMatrixXd A =
-        RowMatrixXd::Identity(B + 1, B) * (std::sqrt(problem.shape_prior.weight) / problem.shape_prior.sigma);
-    VectorXd b = VectorXd::Zero(B + 1);
-    if (problem.shape_prior.mean.size() == B) b = -A * problem.shape_prior.mean;
-    A.row(B) = gradient.transpose() / problem.shape_prior.height_sigma_m;
-    b[B] = (mean_height - height) / problem.shape_prior.height_sigma_m;
+    RowMatrixXd A;
+    VectorXd b;
+    ShapePriorRows(problem, &A, &b);
     ceres_problem->AddResidualBlock(new LinearCost(A, b), nullptr, x->betas.data());
   }
   if (problem.layout.focal_column >= 0) {
@@ -199,16 +205,8 @@ SolveStatus StatusOf(const ceres::Solver::Summary& summary) {
   }
 }
 
-}  // namespace
-
-SolveReport SolveSequence(SequenceProblem* problem, const SolveOptions& options) {
+SolveReport SolveWithCeres(SequenceProblem* problem, const SolveOptions& options) {
   const size_t T = problem->states.size();
-  BODYLOOM_CHECK(
-      T > 0 && problem->frames.size() == T && problem->timestamps.size() == T && problem->cut_before.size() == T,
-      "sequence: ", T, " states, ", problem->frames.size(), " frames, ", problem->timestamps.size(), " timestamps, ",
-      problem->cut_before.size(), " cut flags; expected the same number of each");
-  BODYLOOM_CHECK(problem->betas.size() == problem->layout.num_betas, "sequence: ", problem->betas.size(),
-                 " betas, the layout has ", problem->layout.num_betas);
   Parameters x = Pack(*problem);
   ceres::Problem::Options problem_options;
   problem_options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
@@ -243,8 +241,8 @@ SolveReport SolveSequence(SequenceProblem* problem, const SolveOptions& options)
   solver.max_num_iterations = options.max_iterations;
   solver.num_threads = 1;  // FrameBatch has the threads
   solver.function_tolerance = options.function_tolerance;
-  solver.gradient_tolerance = 1e-9;
-  solver.parameter_tolerance = 1e-9;
+  solver.gradient_tolerance = options.gradient_tolerance;
+  solver.parameter_tolerance = options.parameter_tolerance;
   solver.logging_type = ceres::SILENT;
   std::unique_ptr<IterationCallback> callback;
   if (options.on_iteration) {
@@ -265,6 +263,19 @@ SolveReport SolveSequence(SequenceProblem* problem, const SolveOptions& options)
   report.seconds_linear_solver = summary.linear_solver_time_in_seconds;
   if (summary.IsSolutionUsable()) Unpack(x, problem);
   return report;
+}
+
+}  // namespace
+
+SolveReport SolveSequence(SequenceProblem* problem, const SolveOptions& options) {
+  const size_t T = problem->states.size();
+  BODYLOOM_CHECK(
+      T > 0 && problem->frames.size() == T && problem->timestamps.size() == T && problem->cut_before.size() == T,
+      "sequence: ", T, " states, ", problem->frames.size(), " frames, ", problem->timestamps.size(), " timestamps, ",
+      problem->cut_before.size(), " cut flags; expected the same number of each");
+  BODYLOOM_CHECK(problem->betas.size() == problem->layout.num_betas, "sequence: ", problem->betas.size(),
+                 " betas, the layout has ", problem->layout.num_betas);
+  return options.solver == SequenceSolver::kChain ? SolveChain(problem, options) : SolveWithCeres(problem, options);
 }
 
 }  // namespace bodyloom

@@ -42,10 +42,23 @@ struct SequenceProblem {
   ShapePrior shape_prior;
 };
 
+/// The engines of SolveSequence: the same problem, the same rules of acceptance and of stopping.
+enum class SequenceSolver {
+  kCeres,  ///< Ceres with sparse Cholesky: the reference
+  kChain   ///< tracking/chain_solver.h
+};
+
 struct SolveOptions {
+  SequenceSolver solver = SequenceSolver::kCeres;
   int max_iterations = 50;
   int num_threads = 1;
-  double function_tolerance = 1e-5;
+  double function_tolerance = 1e-5;   ///< stop when |Δcost| is below this share of the cost
+  double gradient_tolerance = 1e-9;   ///< … when no component of the gradient is larger
+  double parameter_tolerance = 1e-9;  ///< … when the step is below this share of the unknowns' norm
+  /// Chain only: until the cost settles to a thousandth, frames with more than twice as many dense keypoints use about
+  /// this many, evenly chosen and weighted to stand for all; then all of them. What converges is always the whole
+  /// problem. 0: all from the beginning.
+  int early_dense = 0;
   bool shape_constant = false, focal_constant = false;
   /// Called after each iteration with (iteration, cost); false stops.
   std::function<bool(int, double)> on_iteration;
@@ -59,7 +72,8 @@ struct SolveReport {
   std::string message;
 };
 
-/// Solves with Ceres (sparse Cholesky). The problem's states, betas and log_focal hold the answer afterwards.
+/// The problem's states, betas and log_focal hold the answer afterwards. The answer is the same to the last bit for any
+/// number of threads. Throws std::invalid_argument when the problem's sizes contradict each other.
 SolveReport SolveSequence(SequenceProblem* problem, const SolveOptions& options);
 
 /// The same problem on a subset of the frames (ascending indices): a coarse solve in time. Frame data is copied.
@@ -81,5 +95,8 @@ std::vector<double> JointLevers(const BodyModel& model);
 
 /// Stature h(β) = h0 + g·β: highest minus lowest vertex of the mean shape, followed linearly.
 double StatureOfMeanShape(const BodyModel& model, int num_betas, Eigen::VectorXd* gradient);
+
+/// Rows of the shape prior and of the stature prior: residual = A β + b.
+void ShapePriorRows(const SequenceProblem& problem, RowMatrixXd* A, Eigen::VectorXd* b);
 
 }  // namespace bodyloom

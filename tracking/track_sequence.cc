@@ -165,8 +165,8 @@ Camera StartCamera(const TrackSequenceInput& input, const TrackSequenceOptions& 
 }  // namespace
 
 bool TrackSequenceOptions::IsValid(std::string* why) const {
-  if (solver != "ceres") {
-    *why = "solver '" + solver + "' is unknown; expected 'ceres'";
+  if (solver != "ceres" && solver != "chain") {
+    *why = "solver '" + solver + "' is unknown; expected 'ceres' or 'chain'";
     return false;
   }
   if (num_threads < 0 || num_threads > 256) {
@@ -330,6 +330,8 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSe
       frame.landmark_kernel = kernel;
     }
     SolveOptions solve_options;
+    solve_options.solver = options.solver == "chain" ? SequenceSolver::kChain : SequenceSolver::kCeres;
+    solve_options.early_dense = options.skip_unneeded ? 300 : 0;
     solve_options.max_iterations = max_iterations;
     solve_options.num_threads = threads;
     solve_options.function_tolerance = tolerance;

@@ -86,7 +86,7 @@ struct PartLabelOptions {
 
 struct TrackSequenceOptions {
   CameraKnowledge camera_knowledge = CameraKnowledge::kKnown;
-  std::string solver = "ceres";     ///< the engine; only "ceres" so far
+  std::string solver = "ceres";     ///< the engine: "ceres" (reference) or "chain" (chain_solver.h): same problem
   int num_threads = 0;              ///< 0: all cores
   int max_iterations = 50;          ///< of each stage
   int max_fine_iterations = 8;      ///< of the last stage, when a coarse one came before
@@ -104,7 +104,9 @@ struct TrackSequenceOptions {
   PartLabelOptions part_labels;
   bool estimate_shape = true;        ///< false: keep the mean shape
   bool estimate_uncertainty = true;  ///< joint_sigma; NaN when off
-  bool skip_unneeded = true;         ///< false: solve also for joints that no landmark moves (nearly the same answer)
+  /// False: solve also for joints that no landmark moves, and let `chain` use all dense keypoints from the first
+  /// iteration on (nearly the same answer).
+  bool skip_unneeded = true;
   std::function<bool(const TrackProgress&)> progress;
   /// False with the reason when a field is out of range.
   bool IsValid(std::string* why) const;

@@ -18,11 +18,24 @@ Eigen::Map<RowMatrix3d> Block(double* jacobian) { return Eigen::Map<RowMatrix3d>
 
 }  // namespace
 
+AccelerationFactors AccelerationFactors::Of(double dt0, double dt1) {
+  return {2 / ((dt0 + dt1) * dt0), 2 / ((dt0 + dt1) * dt1)};
+}
+
+void RotationAccelerationJacobians(const AccelerationFactors& factors, const Matrix3d& right0, const Matrix3d& right1,
+                                   Matrix3d J[3]) {
+  // log(exp(−δ) exp(a)) = a − Jr⁻¹(a)ᵀ δ to first order.
+  J[0] = factors.earlier * right0.transpose();
+  J[1] = -factors.later * right1.transpose() - factors.earlier * right0;
+  J[2] = factors.later * right1;
+}
+
 RotationAccelerationCost::RotationAccelerationCost(double dt0, double dt1, double sigma) {
   BODYLOOM_CHECK(dt0 > 0 && dt1 > 0 && sigma > 0, "acceleration: time steps ", dt0, " and ", dt1, " s and sigma ",
                  sigma, " must be positive");
-  scale0_ = 2 / ((dt0 + dt1) * dt0 * sigma);
-  scale1_ = 2 / ((dt0 + dt1) * dt1 * sigma);
+  factors_ = AccelerationFactors::Of(dt0, dt1);
+  factors_.earlier /= sigma;
+  factors_.later /= sigma;
 }
 
 bool RotationAccelerationCost::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
@@ -32,13 +45,13 @@ bool RotationAccelerationCost::Evaluate(double const* const* parameters, double*
   const Vector3d step0 = AxisAngleFromRotation(R0.transpose() * R1);
   const Vector3d step1 = AxisAngleFromRotation(R1.transpose() * R2);
   Eigen::Map<Vector3d> r(residuals);
-  r = scale1_ * step1 - scale0_ * step0;
+  r = factors_.later * step1 - factors_.earlier * step0;
   if (jacobians == nullptr) return true;
-  const Matrix3d right0 = RightJacobianInverse(step0), right1 = RightJacobianInverse(step1);
-  // log(exp(−δ) exp(a)) = a − Jr⁻¹(a)ᵀ δ to first order.
-  if (jacobians[0] != nullptr) Block(jacobians[0]) = scale0_ * right0.transpose();
-  if (jacobians[1] != nullptr) Block(jacobians[1]) = -scale1_ * right1.transpose() - scale0_ * right0;
-  if (jacobians[2] != nullptr) Block(jacobians[2]) = scale1_ * right1;
+  Matrix3d J[3];
+  RotationAccelerationJacobians(factors_, RightJacobianInverse(step0), RightJacobianInverse(step1), J);
+  for (int k = 0; k < 3; ++k) {
+    if (jacobians[k] != nullptr) Block(jacobians[k]) = J[k];
+  }
   return true;
 }
 
@@ -46,8 +59,9 @@ VectorAccelerationCost::VectorAccelerationCost(double dt0, double dt1, const dou
   for (int c = 0; c < 3; ++c) {
     BODYLOOM_CHECK(dt0 > 0 && dt1 > 0 && sigma[c] > 0, "acceleration: time steps ", dt0, " and ", dt1, " s and sigma ",
                    sigma[c], " must be positive");
-    scale0_[c] = 2 / ((dt0 + dt1) * dt0 * sigma[c]);
-    scale1_[c] = 2 / ((dt0 + dt1) * dt1 * sigma[c]);
+    const AccelerationFactors factors = AccelerationFactors::Of(dt0, dt1);
+    scale0_[c] = factors.earlier / sigma[c];
+    scale1_[c] = factors.later / sigma[c];
   }
 }
 

@@ -8,7 +8,19 @@
 
 #include <ceres/sized_cost_function.h>
 
+#include <Eigen/Core>
+
 namespace bodyloom {
+
+/// r = (later · second step − earlier · first step) / σ.
+struct AccelerationFactors {
+  double earlier = 0, later = 0;  ///< 2/((Δ₀+Δ₁) Δ₀), 2/((Δ₀+Δ₁) Δ₁)
+  static AccelerationFactors Of(double dt0, double dt1);
+};
+
+/// Derivatives of σ r by right increments of R₀, R₁, R₂, given RightJacobianInverse of log(R₀ᵀR₁) and of log(R₁ᵀR₂).
+void RotationAccelerationJacobians(const AccelerationFactors& factors, const Eigen::Matrix3d& right0,
+                                   const Eigen::Matrix3d& right1, Eigen::Matrix3d J[3]);
 
 /// Blocks: axis-angle of one joint at three frames (RotationManifold; derivatives by right increments).
 class RotationAccelerationCost : public ceres::SizedCostFunction<3, 3, 3, 3> {
@@ -17,7 +29,7 @@ class RotationAccelerationCost : public ceres::SizedCostFunction<3, 3, 3, 3> {
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
  private:
-  double scale0_, scale1_;
+  AccelerationFactors factors_;  ///< divided by σ
 };
 
 /// Blocks: a 3-vector at three frames, one σ a component.

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The problems on which engines are compared: a real motion seen by a known camera as dense keypoints of known noise,
+/// with a start that is off by a known amount. Cost: keypoints (Geman–McClure), accelerations, pose prior, shape prior.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "data_tools/synthetic/synth_clip.h"
+#include "tracking/mixture_prior.h"
+#include "tracking/sequence_problem.h"
+
+namespace bodyloom {
+
+struct WorkProblemOptions {
+  std::string motion;           ///< file
+  std::string noise = "pixel";  ///< DenseFaults()
+  int frames = 100;             ///< the motion runs forwards and backwards as often as it takes
+  int first_frame = 0;
+  int dense = 300;  ///< keypoints a frame
+  double start_error_px = 14.8;
+  uint64_t seed = 1;
+};
+
+/// Points into itself: not to be copied.
+struct WorkProblem {
+  SynthClip clip;
+  std::unique_ptr<MixturePrior> prior;
+  SequenceProblem problem;  ///< at its start
+  WorkProblem() = default;
+  WorkProblem(const WorkProblem&) = delete;
+  WorkProblem& operator=(const WorkProblem&) = delete;
+};
+
+std::unique_ptr<WorkProblem> MakeWorkProblem(const WorkProblemOptions& options);
+
+/// Mean distance between where every tenth vertex of the fitted and of the true body appears, pixels of the image
+/// scaled to 512 by its longer side.
+double ProjectionErrorPx(const WorkProblem& work, const std::vector<FrameState>& states, const Eigen::VectorXd& betas);
+
+}  // namespace bodyloom

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A SequenceProblem as the chain solver sees it: cost, gradient and Gauss–Newton matrix at a point, in the blocks of
+/// chain_factor.h. Frames come from FrameEvaluator, smoothness from the formulas of residuals/acceleration_cost.h,
+/// shared priors as in sequence_problem.h; nothing is approximated.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "tracking/chain/chain_factor.h"
+#include "tracking/residuals/acceleration_cost.h"
+#include "tracking/sequence_problem.h"
+
+namespace bodyloom {
+
+/// Where the solver stands.
+struct ChainPoint {
+  std::vector<FrameState> states;
+  Eigen::VectorXd betas;
+  double log_focal = 0;
+};
+
+class ChainProblem : public ChainSource {
+ public:
+  /// The problem is borrowed. Its states, betas and log_focal are not read.
+  ChainProblem(const SequenceProblem& problem, bool shape_constant, bool focal_constant, int num_threads);
+
+  /// From now on at most about this many dense keypoints a frame (FrameEvaluator::LimitDense); 0: all.
+  void LimitDense(int max_points) { max_dense_ = max_points; }
+
+  /// Cost alone; NaN where a frame's is not finite.
+  double Cost(const ChainPoint& point);
+  /// Cost, and everything that the factorisation needs.
+  double Linearise(const ChainPoint& point);
+
+  // At the point linearised last.
+  [[nodiscard]] const Eigen::VectorXd& gradient() const { return gradient_; }                ///< T·n
+  [[nodiscard]] const Eigen::VectorXd& shared_gradient() const { return shared_gradient_; }  ///< s
+  [[nodiscard]] const Eigen::VectorXd& diagonal() const { return diagonal_; }                ///< of the matrix, T·n
+  [[nodiscard]] const Eigen::MatrixXd& shared() const { return shared_; }                    ///< s×s, undamped
+
+  /// Damping that AddFrame adds to the diagonal (T·n values).
+  void SetDamping(const Eigen::VectorXd* damping) { damping_ = damping; }
+
+  /// x ⊞ step: rotations by right increments.
+  void Plus(const ChainPoint& x, const Eigen::VectorXd& step, const Eigen::VectorXd& shared_step, ChainPoint* y) const;
+  /// ‖x‖² of the unknowns with rotations as axis-angle.
+  [[nodiscard]] double SquaredNorm(const ChainPoint& x) const;
+
+  [[nodiscard]] int frame_size() const { return n_; }
+  [[nodiscard]] int shared_size() const { return static_cast<int>(shared_columns_.size()); }
+  [[nodiscard]] const std::vector<char>& cut_before() const { return problem_.cut_before; }
+
+  void AddFrame(int t, double* a, int64_t a_stride, double* b, int64_t b_stride) const override;
+  [[nodiscard]] const double* Next(int t) const override { return &next_[static_cast<size_t>(t) * 3 * n_]; }
+  [[nodiscard]] const double* Second(int t) const override { return &second_[static_cast<size_t>(t) * 3 * n_]; }
+
+ private:
+  /// The change from frame t − 1 to t: log(R₋ᵀR) of each active joint, then the translation's difference.
+  struct Change {
+    std::vector<Eigen::Vector3d> step;
+    std::vector<Eigen::Matrix3d> right;  ///< RightJacobianInverse of the rotations' steps
+  };
+  class Lease;
+  double EvaluateFrames(const ChainPoint& point, bool derivatives);
+  double EvaluateChanges(const ChainPoint& point, bool derivatives);
+  double SharedCost(const ChainPoint& point) const;
+  void AddSharedPriors(const ChainPoint& point);
+  [[nodiscard]] bool HasAcceleration(size_t t) const;
+  /// Blocks of the matrix and gradient that the accelerations of frames t, t + 1 and t + 2 give to frame t.
+  void AssembleAcceleration(size_t t);
+
+  const SequenceProblem& problem_;
+  int n_, blocks_, num_threads_, max_dense_ = 0;
+  std::vector<int> shared_columns_;  ///< columns of a frame's matrix that are unknown and shared
+  bool shape_constant_, focal_constant_;
+  RowMatrixXd shape_prior_;  ///< residual = shape_prior_ β + shape_offset_
+  Eigen::VectorXd shape_offset_;
+  std::vector<FrameSystem> systems_;                 ///< T
+  std::vector<Change> changes_;                      ///< T
+  std::vector<AccelerationFactors> factors_;         ///< T, of the acceleration that ends at each frame
+  std::vector<Eigen::Array3d> inverse_sigma_;        ///< n/3
+  std::vector<double> costs_, next_, second_, own_;  ///< T; T × n/3 blocks of 9
+  Eigen::VectorXd gradient_, shared_gradient_, diagonal_;
+  Eigen::MatrixXd shared_;
+  const Eigen::VectorXd* damping_ = nullptr;
+  std::vector<std::unique_ptr<FrameEvaluator>> evaluators_;  ///< that nobody uses now
+  std::mutex evaluators_mutex_;
+};
+
+}  // namespace bodyloom

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracking/chain_solver.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "geometry/check.h"
+#include "tracking/chain/chain_factor.h"
+#include "tracking/chain/chain_problem.h"
+
+namespace bodyloom {
+namespace {
+
+using Eigen::VectorXd;
+
+constexpr double kMinRelativeDecrease = 1e-3, kMinDiagonal = 1e-6, kMaxDiagonal = 1e32;
+constexpr double kStartRadius = 1e4, kMaxRadius = 1e16, kMinRadius = 1e-32;
+constexpr int kMaxInvalidSteps = 5;
+constexpr double kEarlyTolerance = 1e-3;  ///< when all keypoints come in (SolveOptions::early_dense)
+
+/// The size of the trust region.
+class Radius {
+ public:
+  [[nodiscard]] double value() const { return radius_; }
+  void Accepted(double quality) {
+    radius_ = std::min(kMaxRadius, radius_ / std::max(1.0 / 3, 1 - std::pow(2 * quality - 1, 3)));
+    decrease_ = 2;
+  }
+  void Rejected() {
+    radius_ /= decrease_;
+    decrease_ *= 2;
+  }
+
+ private:
+  double radius_ = kStartRadius, decrease_ = 2;
+};
+
+VectorXd ColumnScale(const VectorXd& diagonal) { return (1 + diagonal.array().sqrt()).inverse(); }
+
+/// Λ: clamp(S² h) / (r S²).
+VectorXd Damping(const VectorXd& diagonal, const VectorXd& scale, double radius) {
+  const Eigen::ArrayXd squared = scale.array().square();
+  return (squared * diagonal.array()).cwiseMax(kMinDiagonal).cwiseMin(kMaxDiagonal) / (radius * squared);
+}
+
+double LargestOf(const VectorXd& x) { return x.size() > 0 ? x.cwiseAbs().maxCoeff() : 0.0; }
+
+size_t MostDense(const SequenceProblem& problem) {
+  size_t most = 0;
+  for (const FrameData& frame : problem.frames) {
+    if (frame.dense != nullptr) most = std::max(most, frame.dense->size());
+  }
+  return most;
+}
+
+/// Adds the time since the last call to one of two sums.
+class Watch {
+ public:
+  void To(double* seconds) {
+    const auto now = std::chrono::steady_clock::now();
+    *seconds += std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+SolveReport SolveChain(SequenceProblem* problem, const SolveOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  SolveReport report;
+  ChainProblem chain(*problem, options.shape_constant, options.focal_constant, options.num_threads);
+  ChainFactor factor(chain.frame_size(), chain.shared_size(), chain.cut_before());
+  ChainPoint x, candidate;
+  x.states = problem->states;
+  x.betas = problem->betas;
+  x.log_focal = problem->log_focal;
+  Watch watch;
+  double other_seconds = 0;
+  bool thinned = options.early_dense > 0 && MostDense(*problem) > 2 * static_cast<size_t>(options.early_dense);
+  if (thinned) chain.LimitDense(options.early_dense);
+  double cost = chain.Linearise(x);
+  watch.To(&report.seconds_evaluation);
+  report.initial_cost = report.final_cost = cost;
+  const auto finish = [&](SolveStatus status, std::string message) {
+    report.status = status;
+    report.message = std::move(message);
+    report.final_cost = cost;
+    if (status != SolveStatus::kFailure) {
+      problem->states = std::move(x.states);
+      problem->betas = x.betas;
+      problem->log_focal = x.log_focal;
+    }
+    report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return report;
+  };
+  report.iterations = 1;
+  if (!std::isfinite(cost)) return finish(SolveStatus::kFailure, "the cost is not finite at the start");
+  const VectorXd scale = ColumnScale(chain.diagonal()), shared_scale = ColumnScale(chain.shared().diagonal());
+  double x_norm = std::sqrt(chain.SquaredNorm(x));
+  Radius radius;
+  int invalid_steps = 0;
+  bool rejected = false, moved = false,
+       fresh = true;  // fresh: the point was reached by an accepted step, or is the first
+  for (int iteration = 0;; ++iteration) {
+    if (options.on_iteration && !options.on_iteration(iteration, cost)) {
+      return finish(SolveStatus::kStopped, "stopped by the caller");
+    }
+    if (fresh &&
+        std::max(LargestOf(chain.gradient()), LargestOf(chain.shared_gradient())) <= options.gradient_tolerance) {
+      return finish(SolveStatus::kConverged, "the gradient is below its tolerance");
+    }
+    if (iteration >= options.max_iterations) {
+      if (thinned) {
+        chain.LimitDense(0);
+        cost = chain.Cost(x);
+      }
+      return finish(SolveStatus::kMaxIterations, Concatenate("still going after ", iteration, " iterations"));
+    }
+    if (radius.value() < kMinRadius) {
+      return finish(SolveStatus::kConverged, "the trust region has shrunk to nothing");
+    }
+    fresh = false;
+    ++report.iterations;
+    watch.To(&other_seconds);
+    const VectorXd damping = Damping(chain.diagonal(), scale, radius.value());
+    const VectorXd shared_damping = Damping(chain.shared().diagonal(), shared_scale, radius.value());
+    Eigen::MatrixXd shared = chain.shared();
+    shared.diagonal() += shared_damping;
+    chain.SetDamping(&damping);
+    VectorXd step, shared_step;
+    const bool solved = factor.Solve(chain, shared, -chain.shared_gradient(), options.num_threads, &step, &shared_step);
+    watch.To(&report.seconds_linear_solver);
+    // −gᵀδ − ½ δᵀHδ with Hδ = −g − Λδ.
+    const double promised = !solved ? 0.0
+                                    : 0.5 * ((damping.array() * step.array().square()).sum() +
+                                             (shared_damping.array() * shared_step.array().square()).sum() -
+                                             chain.gradient().dot(step) - chain.shared_gradient().dot(shared_step));
+    if (!(promised > 0)) {
+      if (++invalid_steps >= kMaxInvalidSteps) {
+        return finish(SolveStatus::kFailure,
+                      Concatenate(invalid_steps, " steps in a row could not be computed: the system is singular"));
+      }
+      radius.Rejected();
+      continue;
+    }
+    invalid_steps = 0;
+    chain.Plus(x, step, shared_step, &candidate);
+    watch.To(&other_seconds);
+    // Most steps are accepted, and the derivatives at the new point cost little once its cost is known: both at once,
+    // unless the last step was rejected or this one promises to be the last.
+    const bool both = !rejected && promised > options.function_tolerance * cost;
+    const double candidate_cost = both ? chain.Linearise(candidate) : chain.Cost(candidate);
+    watch.To(&report.seconds_evaluation);
+    const double change = cost - candidate_cost;
+    const bool too_short = moved && std::sqrt(step.squaredNorm() + shared_step.squaredNorm()) <=
+                                        options.parameter_tolerance * (x_norm + options.parameter_tolerance);
+    const bool settled = std::abs(change) <= (thinned ? kEarlyTolerance : options.function_tolerance) * cost;
+    if (too_short || settled) {
+      if (change > 0) {
+        cost = candidate_cost;
+        std::swap(x, candidate);
+      }
+      if (!thinned) {
+        return finish(SolveStatus::kConverged,
+                      too_short ? "the step is below its tolerance" : "the change of the cost is below its tolerance");
+      }
+      thinned = false;
+      chain.LimitDense(0);
+      cost = chain.Linearise(x);
+      watch.To(&report.seconds_evaluation);
+      if (!std::isfinite(cost)) return finish(SolveStatus::kFailure, "the cost of all keypoints is not finite");
+      fresh = true;
+      rejected = false;
+      continue;
+    }
+    const double quality = change / promised;
+    if (!(quality > kMinRelativeDecrease)) {  // also when the candidate's cost is not finite
+      if (both) {
+        chain.Linearise(x);
+        watch.To(&report.seconds_evaluation);
+      }
+      radius.Rejected();
+      rejected = true;
+      continue;
+    }
+    std::swap(x, candidate);
+    if (!both) {
+      watch.To(&other_seconds);
+      chain.Linearise(x);
+      watch.To(&report.seconds_evaluation);
+    }
+    cost = candidate_cost;
+    rejected = false;
+    x_norm = std::sqrt(chain.SquaredNorm(x));
+    radius.Accepted(quality);
+    moved = fresh = true;
+  }
+}
+
+}  // namespace bodyloom
