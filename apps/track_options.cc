@@ -123,7 +123,7 @@ void AddTrackOptions(CLI::App& app, TrackCommand* command) {
 
   TrackSequenceOptions& s = c.solve;
   app.add_option("--solver", s.solver,
-                 "the engine: ceres (the reference) or chain (the same problem, several times faster)")
+                 "the engine: chain, or ceres (the reference: the same problem, several times slower)")
       ->group(solve)
       ->capture_default_str()
       ->check(CLI::IsMember({"ceres", "chain"}));

@@ -86,7 +86,7 @@ struct PartLabelOptions {
 
 struct TrackSequenceOptions {
   CameraKnowledge camera_knowledge = CameraKnowledge::kKnown;
-  std::string solver = "ceres";     ///< the engine: "ceres" (reference) or "chain" (chain_solver.h): same problem
+  std::string solver = "chain";     ///< the engine: "chain" (chain_solver.h) or "ceres" (reference): same problem
   int num_threads = 0;              ///< 0: all cores
   int max_iterations = 50;          ///< of each stage
   int max_fine_iterations = 8;      ///< of the last stage, when a coarse one came before

@@ -79,7 +79,8 @@ struct Setting {
   CameraKnowledge knowledge = CameraKnowledge::kKnown;
   int threads = 2, frames = 0;
   const LifterWeights* lifter = nullptr;  ///< null: joint hypotheses
-  double lifter_weight = 0.03;
+  double lifter_weight = 0.06;
+  std::string solver = "chain";
 };
 
 BenchRow TrackAndScore(const Setting& setting, const MultiViewClip& clip, const std::string& track_path) {
@@ -107,6 +108,7 @@ BenchRow TrackAndScore(const Setting& setting, const MultiViewClip& clip, const 
   options.camera_knowledge = setting.knowledge;
   options.num_threads = setting.threads;
   options.lifter_weight = setting.lifter_weight;
+  options.solver = setting.solver;
   const auto track_start = std::chrono::steady_clock::now();
   const TrackSequenceResult result = TrackSequence(input, options);
   const double track_s = Seconds(track_start);
@@ -187,7 +189,8 @@ void Run(const BenchArguments& arguments, const std::string& command) {
                         arguments.Integer("threads"),
                         arguments.Integer("frames"),
                         LifterOf(arguments.Text("lifter")),
-                        std::stod(arguments.Text("lifter_weight"))};
+                        std::stod(arguments.Text("lifter_weight")),
+                        arguments.Text("solver")};
         report.rows.push_back(TrackAndScore(setting, clip, track_path.string()));
         std::fprintf(stderr, "%s %s %s: PA-MPJPE %.1f mm, held out %.1f px, %.2f s\n", focal.c_str(), clip.name.c_str(),
                      view.c_str(), report.rows.back().values[0], report.rows.back().values[4],
@@ -215,6 +218,7 @@ int main(int argc, char** argv) {
                               {"focal", "known,unknown"},
                               {"lifter", "built-in"},
                               {"lifter_weight", "0.06"},
+                              {"solver", "chain"},
                               {"threads", "2"},
                               {"frames", "0"},
                               {"json", ""}},

@@ -16,7 +16,7 @@ namespace bodyloom::stress {
 
 /// Every case that solves runs once with each of these (TrackSequenceOptions::solver). A new engine is one more name.
 inline const std::vector<std::string>& Engines() {
-  static const std::vector<std::string> names = {"ceres"};
+  static const std::vector<std::string> names = {"ceres", "chain"};
   return names;
 }
 
