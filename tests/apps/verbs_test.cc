@@ -123,7 +123,7 @@ TEST_F(Verbs, TrackTellsWhatItDidOnScreenAndAsJson) {
   }
   EXPECT_EQ(json["frames"], kFrames);
   EXPECT_EQ(json["frames_by_status"]["tracked"], kFrames);
-  EXPECT_EQ(json["solver"], "ceres");
+  EXPECT_EQ(json["solver"], "chain");
   EXPECT_GT(json["initial_cost"], json["final_cost"]);
   EXPECT_GT(json["seconds"]["total"], 0);
 }
