@@ -1,25 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/neural/guided_run.h"
 
-#include <filesystem>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
+#include "apps/neural/run_config.h"
 #include "data_tools/observations/json_reader.h"
 
 namespace bodyloom {
 namespace {
 
 constexpr const char* kProgram = "bodyloom train animate";
-
-int Int(const JsonNode& node) {
-  const int64_t value = node.Integer();
-  if (value < std::numeric_limits<int>::min() || value > std::numeric_limits<int>::max()) node.Fail("a smaller number");
-  return static_cast<int>(value);
-}
 
 std::vector<std::pair<const char*, int*>> Numbers(GuidedRun* run) {
   GuidedProfile& p = run->config.profile;
@@ -61,24 +54,17 @@ std::string GuidedRunJson(const GuidedRun& run) {
 }
 
 GuidedRun ReadGuidedRun(const std::string& run_dir) {
-  const std::string path = (std::filesystem::path(run_dir) / "config.json").string();
-  if (!std::filesystem::exists(path)) {
-    throw std::runtime_error(path + ": not there, expected the folder of a run of `" + kProgram + "`");
-  }
-  const nlohmann::json json = ReadJsonFile(path);
+  const std::string path = RunConfigPath(run_dir);
+  const nlohmann::json json = ReadRunConfig(run_dir, kProgram);
   const JsonNode root(json, path);
-  const JsonNode program = root.At("program");
-  if (program.Text() != kProgram) {
-    throw std::runtime_error(path + ": a run of \"" + program.Text() + "\", expected \"" + kProgram + "\"");
-  }
   GuidedRun run;
   run.config.profile.name = root.At("profile").Text();
-  for (const auto& [key, value] : Numbers(&run)) *value = Int(root.At(key));
+  for (const auto& [key, value] : Numbers(&run)) *value = root.At(key).Int();
   for (const auto& [key, value] : Widths(&run)) {
     const JsonNode widths = root.At(key);
-    for (size_t i = 0; i < widths.size(); ++i) value->push_back(Int(widths.At(i)));
+    for (size_t i = 0; i < widths.size(); ++i) value->push_back(widths.At(i).Int());
   }
-  for (const auto& [key, value] : Switches(&run)) *value = Int(root.At(key)) != 0;
+  for (const auto& [key, value] : Switches(&run)) *value = root.At(key).Int() != 0;
   const JsonNode without = root.At("without");
   for (size_t i = 0; i < without.size(); ++i) {
     try {

@@ -28,17 +28,6 @@ struct CutFrame {
   std::vector<uint8_t> labels;
 };
 
-Image LabelPicture(const LabelImage& labels, int width, int height) {
-  Image picture(width, height);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      // 255, unknown: inside the person's outline, or it would not have been looked at.
-      picture.pixel(x, y)[0] = static_cast<uint8_t>(LabelOfPart(labels.At(x, y)));
-    }
-  }
-  return picture;
-}
-
 void FillTruth(const CutFrame& cut, MotionFrame* frame) {
   const size_t area = size_t(frame->width) * frame->height;
   frame->labels = cut.labels;

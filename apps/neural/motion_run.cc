@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/neural/motion_run.h"
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <utility>
 
+#include "apps/neural/run_config.h"
 #include "data_tools/observations/json_reader.h"
 
 namespace bodyloom {
@@ -43,13 +43,9 @@ std::string MotionRunJson(const MotionRun& run) {
 }
 
 MotionRun ReadMotionRun(const std::string& run_dir) {
-  const std::string path = (std::filesystem::path(run_dir) / "config.json").string();
-  if (!std::filesystem::exists(path)) {
-    throw std::runtime_error(path + ": not there, expected the folder of a run of `" + kProgram + "`");
-  }
-  const nlohmann::json json = ReadJsonFile(path);
+  const std::string path = RunConfigPath(run_dir);
+  const nlohmann::json json = ReadRunConfig(run_dir, kProgram);
   const JsonNode root(json, path);
-  if (root.At("program").Text() != kProgram) root.At("program").Fail(std::string("\"") + kProgram + "\"");
   MotionRun run;
   MotionConfig& c = run.config;
   c.profile.name = root.At("profile").Text();

@@ -25,17 +25,6 @@ namespace fs = std::filesystem;
 
 bool IsPersonSet(const std::string& path) { return fs::exists(fs::path(path) / "person.json"); }
 
-/// One channel in three, as CutLabels takes labels.
-Image LabelPicture(const LabelImage& parts, int width, int height) {
-  Image picture(width, height);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      picture.pixel(x, y)[0] = static_cast<uint8_t>(LabelOfPart(parts.At(x, y)));
-    }
-  }
-  return picture;
-}
-
 /// Frame `frame` of a still, a folder or a video; a still has one for every number.
 Image PictureAt(const std::string& path, int frame) {
   if (fs::is_directory(path)) {

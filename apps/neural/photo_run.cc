@@ -1,23 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/neural/photo_run.h"
 
-#include <filesystem>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "apps/neural/run_config.h"
 #include "data_tools/observations/json_reader.h"
 
 namespace bodyloom {
 namespace {
 
 constexpr const char* kProgram = "bodyloom train photo";
-
-int Int(const JsonNode& node) {
-  const int64_t value = node.Integer();
-  if (value < std::numeric_limits<int>::min() || value > std::numeric_limits<int>::max()) node.Fail("a smaller number");
-  return static_cast<int>(value);
-}
 
 }  // namespace
 
@@ -44,16 +37,9 @@ std::string PhotoRunJson(const PhotoRun& run) {
 }
 
 PhotoRun ReadPhotoRun(const std::string& run_dir) {
-  const std::string path = (std::filesystem::path(run_dir) / "config.json").string();
-  if (!std::filesystem::exists(path)) {
-    throw std::runtime_error(path + ": not there, expected the folder of a run of `" + kProgram + "`");
-  }
-  const nlohmann::json json = ReadJsonFile(path);
+  const std::string path = RunConfigPath(run_dir);
+  const nlohmann::json json = ReadRunConfig(run_dir, kProgram);
   const JsonNode root(json, path);
-  const JsonNode program = root.At("program");
-  if (program.Text() != kProgram) {
-    throw std::runtime_error(path + ": a run of \"" + program.Text() + "\", expected \"" + kProgram + "\"");
-  }
   PhotoRun run;
   PhotoProfile& p = run.config.profile;
   p.name = root.At("profile").Text();
@@ -63,7 +49,7 @@ PhotoRun ReadPhotoRun(const std::string& run_dir) {
     throw std::runtime_error(path + ": " + error.what());
   }
   const JsonNode widths = root.At("feature_widths");
-  for (size_t i = 0; i < widths.size(); ++i) p.feature_widths.push_back(Int(widths.At(i)));
+  for (size_t i = 0; i < widths.size(); ++i) p.feature_widths.push_back(widths.At(i).Int());
   int passes_input = 0;
   const std::pair<const char*, int*> numbers[] = {{"image_size", &p.image_size},
                                                   {"texture_size", &p.texture_size},
@@ -76,7 +62,7 @@ PhotoRun ReadPhotoRun(const std::string& run_dir) {
                                                   {"perceptual_divisor", &p.perceptual_divisor},
                                                   {"render_passes_input", &passes_input},
                                                   {"reach", &run.reach}};
-  for (const auto& [key, value] : numbers) *value = Int(root.At(key));
+  for (const auto& [key, value] : numbers) *value = root.At(key).Int();
   p.render_passes_input = passes_input != 0;
   std::string why;
   if (!run.config.IsValid(&why)) throw std::runtime_error(path + ": " + why);

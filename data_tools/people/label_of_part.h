@@ -6,6 +6,8 @@
 #include <cstdint>
 
 #include "data_tools/people/person_set.h"
+#include "geometry/observations.h"
+#include "render/image.h"
 
 namespace bodyloom {
 
@@ -39,6 +41,16 @@ inline PersonLabel LabelOfPart(int part) {
                                                    PersonLabel::kFace,
                                                    PersonLabel::kFace};
   return part >= 0 && part < static_cast<int>(kLabels.size()) ? kLabels[part] : kTop;
+}
+
+/// A picture of `width` × `height` of these classes, in the first channel, as CutLabels takes labels. Unknown parts
+/// (255) inside the person's outline count as top.
+inline Image LabelPicture(const LabelImage& parts, int width, int height) {
+  Image picture(width, height);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) picture.pixel(x, y)[0] = static_cast<uint8_t>(LabelOfPart(parts.At(x, y)));
+  }
+  return picture;
 }
 
 }  // namespace bodyloom

@@ -28,6 +28,7 @@
 #include "neural/training/made_ahead.h"
 #include "neural/training/run_files.h"
 #include "neural/training/schedules.h"
+#include "neural/training/set_rate.h"
 
 namespace bodyloom {
 namespace {
@@ -153,10 +154,6 @@ class Trainer {
   }
 
  private:
-  static void SetRate(torch::optim::Adam* optimizer, double rate) {
-    for (auto& group : optimizer->param_groups()) static_cast<torch::optim::AdamOptions&>(group.options()).lr(rate);
-  }
-
   void RequireGradients(bool on) {
     for (Tensor& parameter : discriminator_parameters_) parameter.set_requires_grad(on);
   }

@@ -22,6 +22,7 @@
 #include "neural/training/checkpoint.h"
 #include "neural/training/run_files.h"
 #include "neural/training/schedules.h"
+#include "neural/training/set_rate.h"
 
 namespace bodyloom {
 namespace {
@@ -184,10 +185,6 @@ class Trainer {
       return tensors.empty() ? Tensor() : torch::cat(tensors, 0);
     };
     return {join(&MotionState::labels), join(&MotionState::image), join(&MotionState::normals)};
-  }
-
-  void SetRate(torch::optim::Adam* optimizer, double rate) const {
-    for (auto& group : optimizer->param_groups()) static_cast<torch::optim::AdamOptions&>(group.options()).lr(rate);
   }
 
   void RequireGradients(bool on) {

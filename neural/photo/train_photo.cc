@@ -23,6 +23,7 @@
 #include "neural/training/made_ahead.h"
 #include "neural/training/run_files.h"
 #include "neural/training/schedules.h"
+#include "neural/training/set_rate.h"
 
 namespace bodyloom {
 namespace {
@@ -68,10 +69,6 @@ Lpips MakeLpips(const TrainPhotoOptions& options) {
                options.lpips_heads.source);
   }
   return lpips;
-}
-
-void SetRate(Adam* optimizer, double rate) {
-  for (auto& group : optimizer->param_groups()) static_cast<torch::optim::AdamOptions&>(group.options()).lr(rate);
 }
 
 void RequireGradients(torch::nn::Module* module, bool on) {
