@@ -20,6 +20,13 @@ Vector3f FromHsv(double hue, double saturation, double value) {
   return {channel(5), channel(3), channel(1)};
 }
 
+/// From the darkest (0) to the lightest (1) skin, in sRGB.
+Vector3f SkinColour(double lightness) {
+  const Vector3f dark(96, 62, 44), middle(202, 146, 110), light(250, 220, 198);
+  const auto t = static_cast<float>(2 * lightness);
+  return t < 1 ? Vector3f(dark + t * (middle - dark)) : Vector3f(middle + (t - 1) * (light - middle));
+}
+
 float LatticeValue(int x, int y, int z, uint64_t seed) {
   uint64_t h = seed;
   for (const int i : {x, y, z}) h = (h ^ static_cast<uint32_t>(i)) * 0x9e3779b97f4a7c15ULL, h ^= h >> 29;
@@ -86,9 +93,8 @@ Wardrobe::Wardrobe(const Outfit& outfit, double around_m, uint64_t seed) : cut_(
   dress(PersonLabel::kShoes, random.Uniform(), PatternKind::kPlain, 0.03);
   dress(PersonLabel::kHair, 0.07, PatternKind::kNoise, 0.012);
   dress(PersonLabel::kSkin, 0.06, PatternKind::kNoise, 0.08);
-  const double tone = random.Uniform(0.35, 0.95);
   SurfacePattern& skin = patterns_[size_t(PersonLabel::kSkin)];
-  skin.colour = FromHsv(0.065, 0.58 - 0.2 * tone, tone), skin.other = 0.94F * skin.colour;
+  skin.colour = SkinColour(random.Uniform()), skin.other = 0.94F * skin.colour;
   patterns_[size_t(PersonLabel::kFace)] = skin;
   SurfacePattern& hair = patterns_[size_t(PersonLabel::kHair)];
   hair.colour = FromHsv(random.Uniform(0.04, 0.12), random.Uniform(0.3, 0.8), random.Uniform(0.1, 0.6));
