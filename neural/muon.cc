@@ -53,17 +53,4 @@ void Muon::Step(double learning_rate) {
   }
 }
 
-void Muon::Save(torch::serialize::OutputArchive& archive) const {
-  for (size_t i = 0; i < momenta_.size(); ++i) archive.write("momentum" + std::to_string(i), momenta_[i]);
-}
-
-void Muon::Load(torch::serialize::InputArchive& archive) {
-  for (size_t i = 0; i < momenta_.size(); ++i) {
-    Tensor read;
-    archive.read("momentum" + std::to_string(i), read);
-    BODYLOOM_CHECK(read.sizes() == weights_[i].sizes(), "Muon: momentum ", i, " is of another weight");
-    momenta_[i].copy_(read);
-  }
-}
-
 }  // namespace bodyloom

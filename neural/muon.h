@@ -33,8 +33,8 @@ class Muon {
   /// One step by the weights' gradients. Weights without a gradient stay.
   void Step(double learning_rate);
 
-  void Save(torch::serialize::OutputArchive& archive) const;
-  void Load(torch::serialize::InputArchive& archive);
+  /// M of each weight, in their order: what a checkpoint keeps.
+  [[nodiscard]] std::vector<torch::Tensor>& momenta() { return momenta_; }
 
  private:
   std::vector<torch::Tensor> weights_, momenta_;

@@ -4,15 +4,18 @@
 #include <ATen/Parallel.h>
 #include <dlfcn.h>
 #include <malloc.h>
+#include <torch/cuda.h>
 #include <torch/version.h>
 
 #include <algorithm>
 #include <array>
 #include <climits>
 #include <cstdlib>
+#include <stdexcept>
 #include <thread>
 
 #include "geometry/check.h"
+#include "neural/device.h"
 
 namespace bodyloom {
 namespace {
@@ -78,6 +81,16 @@ NeuralRuntime StartNeuralRuntime(int num_threads) {
     runtime.warnings.push_back(advice);
   }
   return runtime;
+}
+
+void UseNeuralDevice(const std::string& device) {
+  BODYLOOM_CHECK(device == "cpu" || device == "cuda", "device \"", device, "\": expected cpu or cuda");
+  if (device == "cuda" && !torch::cuda::is_available()) {
+    throw std::runtime_error("device cuda: LibTorch " TORCH_VERSION
+                             " finds no CUDA card here (Debian's is built for the CPU alone): use the cpu, or build "
+                             "with a LibTorch for CUDA on a machine that has a card");
+  }
+  SetNeuralDevice(device == "cuda" ? torch::Device(torch::kCUDA, 0) : torch::Device(torch::kCPU));
 }
 
 std::string ToText(const NeuralRuntime& runtime) {

@@ -21,6 +21,10 @@ struct NeuralRuntime {
 /// num_threads is negative.
 NeuralRuntime StartNeuralRuntime(int num_threads = 0);
 
+/// Renderers and trainers made from now on live on "cpu" or "cuda" (the first card), all of a process on the same.
+/// Throws std::invalid_argument for another name, std::runtime_error when there is no such device here.
+void UseNeuralDevice(const std::string& device);
+
 /// Why matrix products will be slow with this library on this processor and what to do, or "" when there is nothing to
 /// say. Measured on an AVX-512 processor, 2048² sgemm on two threads: reference BLAS 6 GFLOP/s, ATLAS 35, OpenBLAS that
 /// takes the processor for a "Prescott" 77, the same told that it is a SkylakeX 412.

@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "geometry/check.h"
+#include "geometry/in_range.h"
 #include "geometry/posed_body.h"
 #include "geometry/rotation.h"
 #include "tracking/image_terms.h"
@@ -181,11 +182,7 @@ bool TrackSequenceOptions::IsValid(std::string* why) const {
     *why = "initialiser_weight is " + std::to_string(initialiser_weight) + ", expected 0 or more";
     return false;
   }
-  const auto in_range = [&](const char* name, double value, double low, double high) {
-    if (value >= low && value <= high) return true;
-    *why = Concatenate(name, " is ", value, ", expected ", low, " to ", high);
-    return false;
-  };
+  const InRange in_range(why);
   if (!in_range("lifter_weight", lifter_weight, 0, 1e6) ||
       !in_range("lifter_min_sigma_m", lifter_min_sigma_m, 1e-6, 1e3) ||
       !in_range("rendered_uv.weight", rendered_uv.weight, 0, 1e6) ||

@@ -48,6 +48,7 @@ struct Request {
   std::vector<std::string> views;
   std::vector<int> score_photos = {1};
   int image_frame = 0, score_frames = 8, threads = 0;
+  std::string device = "cpu";
   bool as_seen = false, anywhere = false;
 };
 
@@ -125,8 +126,8 @@ void Run(const Request& request) {
   const GuidedRun run = ReadGuidedRun(request.run);
   const int size = run.config.profile.image_size, texture_size = run.config.profile.texture_size;
   const int threads = request.threads > 0 ? request.threads : static_cast<int>(std::thread::hardware_concurrency());
-  GuidedRenderer renderer(GuidedCheckpointPath(request.run), run.config,
-                          {request.anywhere ? 0 : run.reach, !request.as_seen, threads});
+  GuidedRenderer renderer(CheckpointPath(request.run), run.config,
+                          {request.anywhere ? 0 : run.reach, !request.as_seen, threads, request.device});
   if (!request.score.empty()) {
     RunScore(request, run, &renderer);
     return;
@@ -306,6 +307,9 @@ void AddAnimateGuided(CLI::App& animate, std::function<void()>* action) {
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
   verb->add_option("--threads", request->threads, "0: all cores")->check(CLI::NonNegativeNumber);
+  verb->add_option("--device", request->device, "Where the networks run")
+      ->check(CLI::IsMember({"cpu", "cuda"}))
+      ->capture_default_str();
   verb->footer(
       "Example:\n"
       "  bodyloom animate animate --run run --image photo.jpg --image-track photo.npz --track dance.npz --out "

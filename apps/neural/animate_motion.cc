@@ -8,6 +8,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <utility>
@@ -26,6 +27,7 @@
 #include "apps/stage_clock.h"
 #include "apps/track_inputs.h"
 #include "data_tools/formats/atomic_file.h"
+#include "data_tools/motion/play_track.h"
 #include "data_tools/people/person_frames.h"
 #include "data_tools/people/person_set.h"
 #include "data_tools/people/posed_track.h"
@@ -47,6 +49,8 @@ constexpr int kLargestSide = 4096;
 struct Request {
   std::string run, track, data, out, body, background, sheet, json, view_yaw, relight;
   int threads = 0, warmup = 50;
+  double speed = 1;
+  std::string device = "cpu";
   bool anywhere = false;
 };
 
@@ -90,8 +94,10 @@ struct Clip {
   }
 };
 
-/// Whether the result is compared: from another side there is nothing to compare with.
-bool IsScored(const Request& request) { return !request.data.empty() && request.view_yaw.empty(); }
+/// Whether the result is compared: from another side or at another speed there is nothing to compare with.
+bool IsScored(const Request& request) {
+  return !request.data.empty() && request.view_yaw.empty() && request.speed == 1;
+}
 
 void OpenClip(const Request& request, const MotionRun& run, int threads, Clip* clip) {
   if (IsScored(request)) {
@@ -103,6 +109,13 @@ void OpenClip(const Request& request, const MotionRun& run, int threads, Clip* c
     return;
   }
   clip->own_track = request.data.empty() ? ReadTrack(request.track) : PersonSet(request.data).track();
+  if (request.speed != 1) {
+    try {
+      clip->own_track = PlayedAtSpeed(*clip->own_track, request.speed);
+    } catch (const std::invalid_argument& error) {
+      throw std::runtime_error(request.track + request.data + ": --speed: " + error.what());
+    }
+  }
   clip->body = BodyOrBuiltin(request.body);
   const double size = PixelsPerMetre(*clip->body, *clip->own_track);
   if (!(size > 0)) {
@@ -180,10 +193,12 @@ void Run(const Request& request) {
   }
   const bool scored = IsScored(request);
   const int reach = request.anywhere ? 0 : run.reach;
-  MotionRenderer renderer(MotionCheckpointPath(request.run), run.config, {request.warmup, reach, scored, threads});
+  MotionRenderer renderer(CheckpointPath(request.run), run.config,
+                          {request.warmup, reach, scored, threads, request.device});
   lap(0);
   if (relighter && relighter->wants_frames()) {
-    MotionRenderer before(MotionCheckpointPath(request.run), run.config, {request.warmup, reach, false, threads});
+    MotionRenderer before(CheckpointPath(request.run), run.config,
+                          {request.warmup, reach, false, threads, request.device});
     EstimateLight(clip, &before, relighter.get());
   }
   lap(1);
@@ -297,12 +312,16 @@ void AddAnimateMotion(CLI::App& animate, std::function<void()>* action) {
   auto request = std::make_shared<Request>();
   verb->add_option("--run", request->run, "Folder of the trained run")->required();
   verb->add_option("--track", request->track, "The motion: a track, .npz (default: that of --data)");
-  verb->add_option("--data", request->data,
-                   "A person set of the same person: the result is compared with its pictures (not with --view-yaw)");
+  verb->add_option(
+      "--data", request->data,
+      "A person set of the same person: the result is compared with its pictures (not with --view-yaw or --speed)");
   verb->add_option("--out", request->out, "The video, .mp4")->required();
   verb->add_option("--body", request->body, "The track's body (default: the built-in body)");
   verb->add_option("--view-yaw", request->view_yaw,
                    "Turns the view about the person's vertical, degrees; FROM:TO turns it over the clip");
+  verb->add_option("--speed", request->speed, "Plays the motion so many times as fast: clothes move differently")
+      ->check(CLI::Range(0.05, 20.0))
+      ->capture_default_str();
   verb->add_option("--background", request->background, "Image, video or folder of images behind the person");
   verb->add_option("--relight", request->relight,
                    "Other light: an environment image (equirectangular), or JSON with lights (docs/relighting.md)");
@@ -314,6 +333,9 @@ void AddAnimateMotion(CLI::App& animate, std::function<void()>* action) {
   verb->add_option("--sheet", request->sheet, "Contact sheet of six frames: picture, labels, normals");
   verb->add_option("--json", request->json, "Report with times");
   verb->add_option("--threads", request->threads, "0: all cores")->check(CLI::NonNegativeNumber);
+  verb->add_option("--device", request->device, "Where the networks run")
+      ->check(CLI::IsMember({"cpu", "cuda"}))
+      ->capture_default_str();
   verb->footer("Example:\n  bodyloom animate motion --run run --track dance.npz --out dance.mp4 --view-yaw 0:360");
   verb->callback([request, action] { *action = [request] { Run(*request); }; });
 }

@@ -44,6 +44,7 @@ struct Request {
   std::vector<std::string> parts, views;
   PhotoRequest photo;
   int threads = 0;
+  std::string device = "cpu";
   bool whole_window = false;
 };
 
@@ -136,8 +137,8 @@ void Run(const Request& request) {
   std::string notes = photo.notes;
   const PartialTexture texture = TextureOf(request, photo, texel_parts, &notes);
   std::cout << notes << std::flush;
-  PhotoRenderer renderer(PhotoCheckpointPath(request.run), run.config,
-                         {request.whole_window ? -1 : run.reach, threads});
+  PhotoRenderer renderer(CheckpointPath(request.run), run.config,
+                         {request.whole_window ? -1 : run.reach, threads, request.device});
   clock.Begin("encode the photo");
   renderer.Encode(texture);
   const std::vector<float> completed = renderer.CompletedTexture();
@@ -248,6 +249,9 @@ void AddAnimatePhoto(CLI::App& animate, std::function<void()>* action) {
   verb->add_option("--texture", request->texture, "The completed texture as an image");
   verb->add_option("--json", request->json, "Report with times");
   verb->add_option("--threads", request->threads, "0: all cores")->check(CLI::NonNegativeNumber);
+  verb->add_option("--device", request->device, "Where the networks run")
+      ->check(CLI::IsMember({"cpu", "cuda"}))
+      ->capture_default_str();
   verb->footer(
       "Example:\n"
       "  bodyloom animate photo --run run --image me.jpg --image-track me.npz --track dance.npz --out me.mp4\n"

@@ -19,6 +19,7 @@
 #include "apps/neural/guided_people.h"
 #include "apps/neural/guided_preview.h"
 #include "apps/neural/guided_run.h"
+#include "apps/neural/weights_folder.h"
 #include "apps/progress.h"
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/video/image_file.h"
@@ -31,7 +32,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Request {
-  std::string data, body, out, profile = "cpu", label_loss = "ce";
+  std::string data, body, out, profile = "cpu", label_loss = "ce", weights;
   std::vector<std::string> without;
   int image_size = 0;
   TrainGuidedOptions options;
@@ -52,6 +53,7 @@ std::string Notes(const Request& request) {
                                          {"gan", o.gan_share},
                                          {"kl", o.kl_share}}},
                                        {"predicted_from", o.predicted_from},
+                                       {"vgg16", o.vgg16.source},
                                        {"threads", o.num_threads}};
   return json.dump();
 }
@@ -90,8 +92,9 @@ void Run(Request request) {
   if (options.num_threads == 0) options.num_threads = static_cast<int>(std::thread::hardware_concurrency());
   RequireReadable(request.data, "data");
   RequireWritableFolder(request.out);
+  options.vgg16 = ReadWeightsFolder(request.weights).vgg16;
   options.run_dir = request.out;
-  const bool exists = fs::exists(GuidedCheckpointPath(request.out));
+  const bool exists = fs::exists(CheckpointPath(request.out));
   if (!options.resume && exists) {
     throw UsageError(request.out + " holds a run already; go on with it by --resume, or choose another --out");
   }
@@ -137,7 +140,7 @@ void Run(Request request) {
     WriteImage((fs::path(request.out) / name).string(), GuidedPreviewSheet(previews));
   };
   const TrainGuidedSummary summary = TrainGuided(data.source(), options);
-  if (summary.status == TrainGuidedStatus::kNotFinite) throw std::runtime_error(request.out + ": " + summary.message);
+  if (summary.status == TrainingStatus::kNotFinite) throw std::runtime_error(request.out + ": " + summary.message);
   if (summary.perceptual_stand_in) {
     std::cout << "perceptual and contextual loss by a stand-in of random features (no VGG-16 weights given)\n";
   }
@@ -152,8 +155,8 @@ void Run(Request request) {
         "validation of %d pictures: L1 %.4f, PSNR %.2f dB, outline IoU %.3f, labels IoU %.3f, LPIPS (stand-in) %.4f\n",
         s.frames, s.image_l1, s.psnr_db, s.silhouette_iou, s.label_iou, s.lpips);
   }
-  std::printf("wrote %s\n", GuidedCheckpointPath(request.out).c_str());
-  if (summary.status == TrainGuidedStatus::kStopped) {
+  std::printf("wrote %s\n", CheckpointPath(request.out).c_str());
+  if (summary.status == TrainingStatus::kStopped) {
     throw std::runtime_error(request.out + ": " + summary.message + "; go on with --resume");
   }
 }
@@ -189,9 +192,13 @@ void AddTrainAnimate(CLI::App& train, std::function<void()>* action) {
   verb->add_option("--label-loss", request->label_loss, "Of the garment labels: cross entropy or absolute differences")
       ->check(CLI::IsMember({"ce", "l1"}))
       ->capture_default_str();
+  verb->add_option("--weights", request->weights, "Folder with trained weights: vgg16 (.safetensors, .pth)");
   verb->add_option("--validate-every", options.validate_every, "Steps")->capture_default_str();
   verb->add_option("--seed", options.seed, "Of weights and order of pictures")->capture_default_str();
   verb->add_option("--threads", options.num_threads, "0: all cores")->capture_default_str();
+  verb->add_option("--device", options.device, "Where the networks run")
+      ->check(CLI::IsMember({"cpu", "cuda"}))
+      ->capture_default_str();
   verb->add_flag("--resume", options.resume, "Go on with the run in --out");
   verb->footer(
       "Example:\n"

@@ -122,7 +122,7 @@ void Run(Request request) {
   options.run_dir = request.out;
   fs::create_directories(request.out);
   const fs::path run = request.out;
-  if (!options.resume && fs::exists(run / "checkpoint.pt")) {
+  if (!options.resume && fs::exists(CheckpointPath(request.out))) {
     throw UsageError(request.out + " holds a run already; go on with it by --resume, or choose another --out");
   }
   const nlohmann::ordered_json config = Describe(request, train, test);
@@ -141,7 +141,7 @@ void Run(Request request) {
   };
   TrainLifterResult result = TrainLifter(SourceOf(train_windows), SourceOf(test_windows), options);
   const TrainLifterSummary& summary = result.summary;
-  if (summary.status == TrainStatus::kNotFinite) throw std::runtime_error(request.out + ": " + summary.message);
+  if (summary.status == TrainingStatus::kNotFinite) throw std::runtime_error(request.out + ": " + summary.message);
   result.weights.recipe = config.dump();
   WriteLifterWeights((run / "lifter.npz").string(), result.weights);
   std::cout << "step " << summary.steps << " of " << options.steps << " in " << ClockText(summary.seconds)
@@ -149,7 +149,7 @@ void Run(Request request) {
             << " of torso + leg, with the best of each "
             << "limb's hypotheses " << summary.validation_best_distance << "\nwrote " << (run / "lifter.npz").string()
             << " (" << result.weights.num_parameters() << " numbers)\n";
-  if (summary.status == TrainStatus::kStopped) {
+  if (summary.status == TrainingStatus::kStopped) {
     throw std::runtime_error(request.out + ": " + summary.message + "; go on with --resume");
   }
 }
@@ -162,7 +162,7 @@ void AddTrainLifter(CLI::App& train, std::function<void()>* action) {
   TrainLifterOptions& options = request->options;
   verb->add_option("--motions", request->motions, "Motion files, or folders of them (BVH, ASF/AMC, AMASS, …)")
       ->required();
-  verb->add_option("--out", request->out, "Folder of the run: config.json, metrics.csv, checkpoint.pt, lifter.npz")
+  verb->add_option("--out", request->out, "Folder of the run: config.json, metrics.csv, checkpoint.bin, lifter.npz")
       ->required();
   verb->add_option("--split", request->split, "Which clips are for training (default: the project's own list)");
   verb->add_option("--share", request->share, "Of the training motion that is used")

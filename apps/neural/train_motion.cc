@@ -188,7 +188,7 @@ void Run(Request request) {
   options.vgg16 = ReadWeightsFolder(request.weights).vgg16;
   const fs::path run_dir = request.out;
   options.run_dir = request.out;
-  const bool exists = fs::exists(MotionCheckpointPath(request.out));
+  const bool exists = fs::exists(CheckpointPath(request.out));
   if (!options.resume && exists) {
     throw UsageError(request.out + " holds a run already; go on with it by --resume, or choose another --out");
   }
@@ -249,16 +249,16 @@ void Run(Request request) {
   };
   const TrainMotionSummary summary =
       TrainMotion([&](int t, bool with_truth, MotionFrame* frame) { data.Fill(t, with_truth, frame); }, options);
-  if (summary.status == TrainMotionStatus::kNotFinite) throw std::runtime_error(request.out + ": " + summary.message);
+  if (summary.status == TrainingStatus::kNotFinite) throw std::runtime_error(request.out + ": " + summary.message);
   for (const std::string& loss : summary.losses_off) std::cout << "loss switched off: " << loss << "\n";
   if (options.perceptual_weight > 0 && summary.perceptual_stand_in) {
     std::cout << "perceptual loss by a stand-in of random features (no VGG-16 weights given)\n";
   }
   std::cout << "step " << summary.steps << " of " << options.steps << " in " << ClockText(summary.seconds) << "\n";
   if (summary.scores.frames > 0) std::cout << ScoresText(summary.scores) << "\n";
-  std::cout << "wrote " << MotionCheckpointPath(request.out) << "\n";
-  if (summary.status == TrainMotionStatus::kNoProgress) std::cout << summary.message << "\n";
-  if (summary.status == TrainMotionStatus::kStopped) {
+  std::cout << "wrote " << CheckpointPath(request.out) << "\n";
+  if (summary.status == TrainingStatus::kNoProgress) std::cout << summary.message << "\n";
+  if (summary.status == TrainingStatus::kStopped) {
     throw std::runtime_error(request.out + ": " + summary.message + "; go on with --resume");
   }
 }
@@ -307,6 +307,9 @@ void AddTrainMotion(CLI::App& train, std::function<void()>* action) {
                    "Folder with trained networks: vgg16 (.pth or .safetensors) for the perceptual loss");
   verb->add_option("--seed", options.seed, "Of weights and order of frames")->capture_default_str();
   verb->add_option("--threads", options.num_threads, "0: all cores")->capture_default_str();
+  verb->add_option("--device", options.device, "Where the networks run")
+      ->check(CLI::IsMember({"cpu", "cuda"}))
+      ->capture_default_str();
   verb->add_flag("--resume", options.resume, "Go on with the run in --out");
   verb->footer(
       "Example:\n"

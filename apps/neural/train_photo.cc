@@ -86,7 +86,7 @@ void Run(Request request) {
   RequireReadable(request.data, "data");
   RequireWritableFolder(request.out);
   options.run_dir = request.out;
-  const bool exists = fs::exists(PhotoCheckpointPath(request.out));
+  const bool exists = fs::exists(CheckpointPath(request.out));
   if (!options.resume && exists) {
     throw UsageError(request.out + " holds a run already; go on with it by --resume, or choose another --out");
   }
@@ -137,7 +137,7 @@ void Run(Request request) {
     WriteImage((fs::path(request.out) / name).string(), PhotoPreviewSheet(previews));
   };
   const TrainPhotoSummary summary = TrainPhoto(data.source(), options);
-  if (summary.status == TrainPhotoStatus::kNotFinite) throw std::runtime_error(request.out + ": " + summary.message);
+  if (summary.status == TrainingStatus::kNotFinite) throw std::runtime_error(request.out + ": " + summary.message);
   for (const std::string& loss : summary.losses_off) std::cout << "loss switched off: " << loss << "\n";
   if (options.perceptual_weight > 0 && summary.perceptual_stand_in) {
     std::cout << "perceptual loss by a stand-in of random features (no VGG-19 weights given)\n";
@@ -151,8 +151,8 @@ void Run(Request request) {
                 s.outline_iou);
     std::fflush(stdout);
   }
-  std::cout << "wrote " << PhotoCheckpointPath(request.out) << "\n";
-  if (summary.status == TrainPhotoStatus::kStopped) {
+  std::cout << "wrote " << CheckpointPath(request.out) << "\n";
+  if (summary.status == TrainingStatus::kStopped) {
     throw std::runtime_error(request.out + ": " + summary.message + "; go on with --resume");
   }
 }
@@ -190,6 +190,9 @@ void AddTrainPhoto(CLI::App& train, std::function<void()>* action) {
       ->capture_default_str();
   verb->add_option("--seed", options.seed, "Of weights and pairs")->capture_default_str();
   verb->add_option("--threads", options.num_threads, "0: all cores")->capture_default_str();
+  verb->add_option("--device", options.device, "Where the networks run")
+      ->check(CLI::IsMember({"cpu", "cuda"}))
+      ->capture_default_str();
   verb->add_flag("--resume", options.resume, "Go on with the run in --out");
   verb->footer(
       "Example:\n"

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "geometry/in_range.h"
+
 namespace bodyloom {
 namespace {
 
@@ -95,10 +97,7 @@ bool GuidedConfig::IsValid(std::string* why) const {
     if (why != nullptr) *why = text;
     return false;
   };
-  const auto in_range = [&](const char* what, int value, int low, int high) {
-    return (value >= low && value <= high) || fail(std::string(what) + " is " + std::to_string(value) + ", expected " +
-                                                   std::to_string(low) + " to " + std::to_string(high));
-  };
+  const InRange in_range(why);
   const GuidedProfile& p = profile;
   const auto positive = [&](const char* what, const std::vector<int>& widths) {
     for (const int width : widths) {

@@ -2,6 +2,7 @@
 #include "neural/guided/guided_renderer.h"
 
 #include "geometry/check.h"
+#include "neural/device.h"
 #include "neural/guided/complete_maps.h"
 #include "neural/guided/draw_pose.h"
 #include "neural/guided/guided_model.h"
@@ -18,7 +19,9 @@ class GuidedRenderer::Impl {
     std::string why;
     BODYLOOM_CHECK(config.IsValid(&why), "pose-guided renderer: ", why);
     StartNeuralRuntime(options.num_threads);
+    UseNeuralDevice(options.device);
     model_ = GuidedModel(config);
+    model_->to(NeuralDevice());
     Checkpoint checkpoint(ToText(config));
     checkpoint.Add("model", model_.ptr().get());
     checkpoint.Load(path, CheckpointPart::kModules);

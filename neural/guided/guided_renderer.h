@@ -19,6 +19,7 @@ struct GuidedRendererOptions {
   int reach = 0;         ///< pixels from the body beyond which is background; 0: none, the whole window is computed
   bool complete = true;  ///< the maps over virtual views; false: the source warped as it is (the paper's −A)
   int num_threads = 0;   ///< 0: all cores
+  std::string device = "cpu";  ///< or "cuda"
 };
 
 class GuidedRenderer {

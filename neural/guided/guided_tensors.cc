@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "geometry/check.h"
+#include "neural/device.h"
 #include "neural/guided/body_part_map.h"
 
 namespace bodyloom {
@@ -17,7 +18,7 @@ Tensor Filled(const std::vector<T>& values, const char* name, int64_t channels, 
                  values.size(), " values of ", name, ", expected ", channels, "x", size, "x", size);
   Tensor tensor = torch::empty({1, channels, size, size}, type);
   std::copy(values.begin(), values.end(), tensor.data_ptr<T>());
-  return tensor.to(torch::kFloat);
+  return OnDevice(tensor.to(torch::kFloat));
 }
 
 }  // namespace
@@ -117,18 +118,18 @@ GuidedPicture PictureOf(const GuidedResult& result, const GuidedPseudo& pseudo, 
                         int multiple, int size) {
   const size_t pixels = size_t(size) * size;
   GuidedPicture picture{size, std::vector<float>(3 * pixels), std::vector<float>(pixels), std::vector<uint8_t>(pixels)};
-  const auto values = [&](const Tensor& map) { return map[b].contiguous(); };
-  const Tensor image = values(result.image), alpha = values(result.silhouette);
-  const Tensor labels = values(result.label_logits.defined() ? result.classes : pseudo.classes);
+  const std::vector<float> image = HostValues<float>(result.image[b]), alpha = HostValues<float>(result.silhouette[b]);
+  const std::vector<float> labels =
+      HostValues<float>(result.label_logits.defined() ? result.classes[b] : pseudo.classes[b]);
   const int64_t width = box.width * multiple, height = box.height * multiple, area = width * height;
   for (int64_t y = 0; y < height; ++y) {
     for (int64_t x = 0; x < width; ++x) {
       const int64_t j = y * width + x;
       const size_t i = size_t(box.y * multiple + y) * size + (box.x * multiple + x);
-      for (int64_t c = 0; c < 3; ++c) picture.image[c * pixels + i] = image.data_ptr<float>()[c * area + j];
-      picture.alpha[i] = alpha.data_ptr<float>()[j];
+      for (int64_t c = 0; c < 3; ++c) picture.image[c * pixels + i] = image[c * area + j];
+      picture.alpha[i] = alpha[j];
       if (picture.alpha[i] < 0.5F) continue;
-      picture.labels[i] = std::max<uint8_t>(1, static_cast<uint8_t>(labels.data_ptr<float>()[j]));
+      picture.labels[i] = std::max<uint8_t>(1, static_cast<uint8_t>(labels[j]));
     }
   }
   return picture;

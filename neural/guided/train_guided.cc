@@ -3,14 +3,14 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <memory>
 #include <span>
 
 #include "geometry/check.h"
+#include "geometry/in_range.h"
+#include "neural/device.h"
 #include "neural/guided/choose_photos.h"
 #include "neural/guided/complete_maps.h"
 #include "neural/guided/draw_pose.h"
@@ -24,16 +24,14 @@
 #include "neural/networks/patch_discriminator.h"
 #include "neural/networks/vgg.h"
 #include "neural/runtime.h"
-#include "neural/training/checkpoint.h"
+#include "neural/training/adam.h"
 #include "neural/training/made_ahead.h"
-#include "neural/training/run_files.h"
 #include "neural/training/schedules.h"
-#include "neural/training/set_rate.h"
+#include "neural/training/training_loop.h"
 
 namespace bodyloom {
 namespace {
 
-namespace fs = std::filesystem;
 using torch::Tensor;
 
 const std::vector<std::string> kColumns = {"learning_rate",
@@ -52,8 +50,7 @@ const std::vector<std::string> kColumns = {"learning_rate",
                                            "validation_silhouette_iou",
                                            "validation_label_iou",
                                            "validation_lpips",
-                                           "validation_contextual",
-                                           "seconds"};
+                                           "validation_contextual"};
 
 enum Balanced { kPerceptual, kContextual, kGan, kKl, kNumBalanced };
 
@@ -67,31 +64,21 @@ struct Losses {
   }
 };
 
-FeatureNetwork MakeVgg(const TrainGuidedOptions& options) {
-  FeatureNetworkOptions network;
-  network.trunk = FeatureTrunk::kVgg16;
-  network.taps = FeatureLayers(FeatureTrunk::kVgg16, {"conv1_2", "conv2_2", "conv3_2", "conv4_2"});
-  if (options.vgg16.empty()) network.stand_in_divisor = options.config.profile.perceptual_divisor;
-  FeatureNetwork vgg(network);
-  if (!options.vgg16.empty()) vgg->Load(options.vgg16, "VGG-16");
-  return vgg;
-}
-
-class Trainer {
+class GuidedTrainer : public TrainedSystem {
  public:
-  Trainer(const PhotoSource& people, const TrainGuidedOptions& options)
+  GuidedTrainer(const PhotoSource& people, const TrainGuidedOptions& options)
       : people_(people), options_(options), config_(options.config), balance_(kNumBalanced, options.balance_steps) {
     torch::manual_seed(options.seed);
     model_ = GuidedModel(config_);
     discriminator_ =
         PatchDiscriminator(PatchDiscriminatorOptions{3 + config_.LabelChannels(), config_.profile.discriminator_width});
-    vgg_ = MakeVgg(options);
-    const auto adam = [](double rate) { return torch::optim::AdamOptions(rate).betas({0.5, 0.999}); };
+    model_->to(NeuralDevice());
+    discriminator_->to(NeuralDevice());
+    vgg_ = MakeFeatureNetwork(FeatureTrunk::kVgg16, {"conv1_2", "conv2_2", "conv3_2", "conv4_2"}, options.vgg16,
+                              config_.profile.perceptual_divisor);
     // One optimizer is three: Adam treats every weight by itself, and no loss reaches two networks.
-    optimizer_ = std::make_unique<torch::optim::Adam>(model_->parameters(), adam(options.learning_rate));
-    discriminator_optimizer_ =
-        std::make_unique<torch::optim::Adam>(discriminator_->parameters(), adam(options.discriminator_rate));
-    discriminator_parameters_ = discriminator_->parameters();
+    optimizer_ = MakeAdam(*model_, options.learning_rate);
+    discriminator_optimizer_ = MakeAdam(*discriminator_, options.discriminator_rate);
     checkpoint_ = std::make_unique<Checkpoint>(ToText(config_));
     checkpoint_->config_json = options.config_json;
     checkpoint_->Add("model", model_.ptr().get());
@@ -102,50 +89,10 @@ class Trainer {
   }
 
   TrainGuidedSummary Run() {
-    MetricsLog log((fs::path(options_.run_dir) / "metrics.csv").string(), kColumns);
-    if (options_.resume) {
-      checkpoint_->Load(GuidedCheckpointPath(options_.run_dir));
-      step_ = last_checkpoint_ = static_cast<int>(checkpoint_->step);
-      log.KeepUpTo(step_);
-    }
-    const auto start = std::chrono::steady_clock::now();
-    const auto seconds = [&] {
-      return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    };
-    const int first = step_;
-    MadeAhead<GuidedBatch> batches(std::max(0, options_.steps - first), [&, first](int64_t i) {
-      return MakeGuidedBatch(people_, config_, options_.seed, first + i, options_.batch, options_.reach);
-    });
     TrainGuidedSummary summary;
-    summary.status = TrainGuidedStatus::kFinished;
-    summary.perceptual_stand_in = vgg_->is_stand_in;
     model_->train();
-    while (step_ < options_.steps) {
-      const Losses losses = Step(batches.Take());
-      if (!losses.IsFinite()) {
-        summary.status = TrainGuidedStatus::kNotFinite;
-        summary.message =
-            Concatenate("the loss is not finite at step ", step_ + 1, "; checkpoint.bin holds step ", last_checkpoint_);
-        break;
-      }
-      ++step_;
-      const bool last = step_ == options_.steps;
-      const bool validates = !options_.validation.num_frames.empty() && (last || step_ % options_.validate_every == 0);
-      if (validates) Validate(last);
-      if (last || validates || step_ % options_.report_every == 0) {
-        log.Add(step_, Row(losses, validates, seconds()));
-        if (options_.progress &&
-            !options_.progress({step_, options_.steps, losses.total, losses.image, scores_, seconds()})) {
-          Save();
-          summary.status = TrainGuidedStatus::kStopped;
-          summary.message = Concatenate("stopped at step ", step_);
-          break;
-        }
-      }
-      if (last || step_ % options_.checkpoint_every == 0) Save();
-    }
-    summary.steps = step_;
-    summary.seconds = seconds();
+    static_cast<TrainingOutcome&>(summary) = RunTraining(options_, options_.steps, kColumns, checkpoint_.get(), this);
+    summary.perceptual_stand_in = vgg_->is_stand_in;
     summary.scores = scores_;
     if (balance_.IsSet()) {
       for (int i = 0; i < kNumBalanced; ++i) summary.loss_weights.push_back(balance_.Weight(i));
@@ -153,133 +100,21 @@ class Trainer {
     return summary;
   }
 
- private:
-  void RequireGradients(bool on) {
-    for (Tensor& parameter : discriminator_parameters_) parameter.set_requires_grad(on);
+  void Begin(int first_step) override {
+    batches_ = std::make_unique<MadeAhead<GuidedBatch>>(
+        std::max(0, options_.steps - first_step), [this, first_step](int64_t i) {
+          return MakeGuidedBatch(people_, config_, options_.seed, first_step + i, options_.batch, options_.reach);
+        });
   }
 
-  [[nodiscard]] double Share(int loss) const {
-    return std::array{options_.perceptual_share, options_.contextual_share, options_.gan_share,
-                      config_.kl && config_.latent ? options_.kl_share : 0.0}[loss];
+  bool Step(int step) override {
+    losses_ = Learn(batches_->Take(), step);
+    return losses_.IsFinite();
   }
 
-  /// Silhouette and labels that RenderNet is given: true ones, or what the other two networks make of true inputs.
-  std::pair<Tensor, Tensor> RenderInputs(const GuidedBatch& batch, const GuidedSource& source,
-                                         const Tensor& silhouette_logits) {
-    Tensor silhouette = batch.target.silhouette, classes = batch.target.classes;
-    if (step_ < options_.predicted_from * options_.steps) return {silhouette, classes};
-    const torch::NoGradGuard no_grad;
-    Tensor predicted;
-    if (config_.silhouettes) silhouette = predicted = torch::sigmoid(silhouette_logits);
-    if (config_.garments) {
-      const Tensor logits = model_->Labels(source, batch.target.pose, predicted, batch.pseudo.classes, batch.box);
-      classes = logits.argmax(1, true).to(torch::kFloat);
-      if (!config_.silhouettes) silhouette = 1 - torch::softmax(logits, 1).slice(1, 0, 1);
-    }
-    return {silhouette.detach(), classes};
-  }
+  [[nodiscard]] bool HasValidation() const override { return !options_.validation.num_frames.empty(); }
 
-  Losses Step(const GuidedBatch& batch) {
-    SetRate(optimizer_.get(), LinearDecayOverLastHalf(options_.learning_rate, step_, options_.steps));
-    SetRate(discriminator_optimizer_.get(),
-            LinearDecayOverLastHalf(options_.discriminator_rate, step_, options_.steps));
-    const GuidedTensors& truth = batch.target;
-    Losses losses;
-    const GuidedSource source = model_->EncodeSource(batch.source);
-    Tensor total = torch::zeros({});
-    Tensor silhouette_logits;
-    if (config_.silhouettes) {
-      silhouette_logits = model_->Silhouette(source, truth.pose, batch.box);
-      const Tensor loss = L1Loss(torch::sigmoid(silhouette_logits), truth.silhouette);
-      losses.silhouette = loss.item<double>();
-      total = total + loss;
-    }
-    if (config_.garments) {
-      const Tensor logits = model_->Labels(source, truth.pose, config_.silhouettes ? truth.silhouette : Tensor(),
-                                           batch.pseudo.classes, batch.box);
-      const Tensor one_hot = OneHot(truth.classes.squeeze(1).to(torch::kLong), kPhotoLabels);
-      const Tensor loss =
-          options_.labels_by_cross_entropy ? SoftLabelCrossEntropy(logits, one_hot) : SoftLabelL1Loss(logits, one_hot);
-      losses.labels = loss.item<double>();
-      total = total + loss;
-    }
-    const auto [silhouette, classes] = RenderInputs(batch, source, silhouette_logits);
-    const RenderCode& code = source.render_code;
-    const Tensor noise = code.log_variance.defined() ? torch::randn_like(code.mean) : Tensor();
-    const auto [image, outline] =
-        model_->Render(Draw(code, noise), truth.pose, silhouette, classes, batch.pseudo, batch.box);
-    Tensor render = L1Loss(image, truth.image);
-    losses.image = render.item<double>();
-    if (!config_.silhouettes && !config_.garments) {
-      const Tensor loss = L1Loss(outline, truth.silhouette);
-      losses.outline = loss.item<double>();
-      render = render + loss;
-    }
-    if (options_.gan_share > 0) losses.discriminator = StepDiscriminator(truth, image.detach());
-    render = render + BalancedLosses(batch, image, code, &losses);
-    losses.render = render.item<double>();
-    total = total + render;
-    losses.total = total.item<double>();
-    if (!losses.IsFinite()) return losses;  // a step would spoil the weights
-    optimizer_->zero_grad();
-    total.backward();
-    RequireGradients(true);
-    optimizer_->step();
-    balance_.Measure(losses.image, losses.balanced);
-    return losses;
-  }
-
-  [[nodiscard]] Tensor Judged(const GuidedTensors& truth, const Tensor& image) const {
-    return torch::cat({model_->LabelMap(truth.classes), image}, 1);
-  }
-
-  double StepDiscriminator(const GuidedTensors& truth, const Tensor& image) {
-    RequireGradients(true);
-    discriminator_optimizer_->zero_grad();
-    const Tensor loss =
-        DiscriminatorLoss({discriminator_(Judged(truth, truth.image))}, {discriminator_(Judged(truth, image))});
-    const double value = loss.item<double>();
-    if (!std::isfinite(value)) return value;
-    loss.backward();
-    discriminator_optimizer_->step();
-    return value;
-  }
-
-  /// λ-weighted sum; while the weights are not set the losses are only measured.
-  Tensor BalancedLosses(const GuidedBatch& batch, const Tensor& image, const RenderCode& code, Losses* losses) {
-    const torch::AutoGradMode mode(balance_.IsSet());
-    Tensor sum = torch::zeros({});
-    const auto add = [&](Balanced which, const Tensor& loss) {
-      losses->balanced[which] = loss.item<double>();
-      if (balance_.IsSet()) sum = sum + Share(which) * balance_.Weight(which) * loss;
-    };
-    if (Share(kPerceptual) > 0 || Share(kContextual) > 0) {
-      std::vector<Tensor> target;
-      {
-        const torch::NoGradGuard no_grad;
-        target = vgg_(batch.target.image);
-      }
-      const std::vector<Tensor> features = vgg_(image);
-      if (Share(kPerceptual) > 0) add(kPerceptual, PerceptualLoss(features, target));
-      if (Share(kContextual) > 0) {
-        ContextualOptions contextual;
-        contextual.max_points = config_.profile.contextual_points;
-        contextual.seed = static_cast<uint64_t>(step_);
-        add(kContextual, ContextualLoss(features[2], target[2], contextual));
-      }
-    }
-    if (Share(kGan) > 0) {
-      RequireGradients(false);
-      add(kGan, GeneratorLoss({discriminator_(Judged(batch.target, image))}));
-    }
-    if (code.log_variance.defined() && Share(kKl) > 0) {
-      const double numbers = static_cast<double>(code.mean.numel() / code.mean.size(0));
-      add(kKl, KlLoss(code.mean, code.log_variance) / numbers);
-    }
-    return sum;
-  }
-
-  void Validate(bool last) {
+  void Validate(int done, bool last) override {
     model_->eval();
     const PhotoSource& people = options_.validation;
     GuidedScorer scorer(last);
@@ -318,32 +153,153 @@ class Trainer {
     }
     scores_ = scorer.Scores();
     model_->train();
-    if (options_.preview) options_.preview(step_, previews);
+    if (options_.preview) options_.preview(done, previews);
   }
 
-  [[nodiscard]] std::vector<double> Row(const Losses& losses, bool validated, double seconds) const {
-    std::vector<double> row = {LinearDecayOverLastHalf(options_.learning_rate, step_ - 1, options_.steps),
-                               losses.silhouette,
-                               losses.labels,
-                               losses.image,
-                               losses.outline,
-                               losses.balanced[kPerceptual],
-                               losses.balanced[kContextual],
-                               losses.balanced[kGan],
-                               losses.balanced[kKl],
-                               losses.discriminator,
-                               losses.render};
+  [[nodiscard]] std::vector<double> Row(int done, bool validated) const override {
+    std::vector<double> row = {LinearDecayOverLastHalf(options_.learning_rate, done - 1, options_.steps),
+                               losses_.silhouette,
+                               losses_.labels,
+                               losses_.image,
+                               losses_.outline,
+                               losses_.balanced[kPerceptual],
+                               losses_.balanced[kContextual],
+                               losses_.balanced[kGan],
+                               losses_.balanced[kKl],
+                               losses_.discriminator,
+                               losses_.render};
     for (const double score : {scores_.image_l1, scores_.psnr_db, scores_.silhouette_iou, scores_.label_iou,
                                scores_.lpips, scores_.contextual}) {
       row.push_back(validated ? score : std::numeric_limits<double>::quiet_NaN());
     }
-    row.push_back(seconds);
     return row;
   }
 
-  void Save() {
-    checkpoint_->step = last_checkpoint_ = step_;
-    checkpoint_->Save(GuidedCheckpointPath(options_.run_dir));
+  bool Report(int done, double seconds) override {
+    return !options_.progress ||
+           options_.progress({done, options_.steps, losses_.total, losses_.image, scores_, seconds});
+  }
+
+ private:
+  [[nodiscard]] double Share(int loss) const {
+    return std::array{options_.perceptual_share, options_.contextual_share, options_.gan_share,
+                      config_.kl && config_.latent ? options_.kl_share : 0.0}[loss];
+  }
+
+  /// Silhouette and labels that RenderNet is given: true ones, or what the other two networks make of true inputs.
+  std::pair<Tensor, Tensor> RenderInputs(const GuidedBatch& batch, const GuidedSource& source,
+                                         const Tensor& silhouette_logits, int step) {
+    Tensor silhouette = batch.target.silhouette, classes = batch.target.classes;
+    if (step < options_.predicted_from * options_.steps) return {silhouette, classes};
+    const torch::NoGradGuard no_grad;
+    Tensor predicted;
+    if (config_.silhouettes) silhouette = predicted = torch::sigmoid(silhouette_logits);
+    if (config_.garments) {
+      const Tensor logits = model_->Labels(source, batch.target.pose, predicted, batch.pseudo.classes, batch.box);
+      classes = logits.argmax(1, true).to(torch::kFloat);
+      if (!config_.silhouettes) silhouette = 1 - torch::softmax(logits, 1).slice(1, 0, 1);
+    }
+    return {silhouette.detach(), classes};
+  }
+
+  Losses Learn(const GuidedBatch& batch, int step) {
+    SetRate(optimizer_.get(), LinearDecayOverLastHalf(options_.learning_rate, step, options_.steps));
+    SetRate(discriminator_optimizer_.get(), LinearDecayOverLastHalf(options_.discriminator_rate, step, options_.steps));
+    const GuidedTensors& truth = batch.target;
+    Losses losses;
+    const GuidedSource source = model_->EncodeSource(batch.source);
+    Tensor total = torch::zeros({}, truth.image.options());
+    Tensor silhouette_logits;
+    if (config_.silhouettes) {
+      silhouette_logits = model_->Silhouette(source, truth.pose, batch.box);
+      const Tensor loss = L1Loss(torch::sigmoid(silhouette_logits), truth.silhouette);
+      losses.silhouette = loss.item<double>();
+      total = total + loss;
+    }
+    if (config_.garments) {
+      const Tensor logits = model_->Labels(source, truth.pose, config_.silhouettes ? truth.silhouette : Tensor(),
+                                           batch.pseudo.classes, batch.box);
+      const Tensor one_hot = OneHot(truth.classes.squeeze(1).to(torch::kLong), kPhotoLabels);
+      const Tensor loss =
+          options_.labels_by_cross_entropy ? SoftLabelCrossEntropy(logits, one_hot) : SoftLabelL1Loss(logits, one_hot);
+      losses.labels = loss.item<double>();
+      total = total + loss;
+    }
+    const auto [silhouette, classes] = RenderInputs(batch, source, silhouette_logits, step);
+    const RenderCode& code = source.render_code;
+    const Tensor noise = code.log_variance.defined() ? RandnLike(code.mean) : Tensor();
+    const auto [image, outline] =
+        model_->Render(Draw(code, noise), truth.pose, silhouette, classes, batch.pseudo, batch.box);
+    Tensor render = L1Loss(image, truth.image);
+    losses.image = render.item<double>();
+    if (!config_.silhouettes && !config_.garments) {
+      const Tensor loss = L1Loss(outline, truth.silhouette);
+      losses.outline = loss.item<double>();
+      render = render + loss;
+    }
+    if (options_.gan_share > 0) losses.discriminator = StepDiscriminator(truth, image.detach());
+    render = render + BalancedLosses(batch, image, code, step, &losses);
+    losses.render = render.item<double>();
+    total = total + render;
+    losses.total = total.item<double>();
+    if (!losses.IsFinite()) return losses;  // a step would spoil the weights
+    optimizer_->zero_grad();
+    total.backward();
+    RequireGradients(discriminator_.get(), true);
+    optimizer_->step();
+    balance_.Measure(losses.image, losses.balanced);
+    return losses;
+  }
+
+  [[nodiscard]] Tensor Judged(const GuidedTensors& truth, const Tensor& image) const {
+    return torch::cat({model_->LabelMap(truth.classes), image}, 1);
+  }
+
+  double StepDiscriminator(const GuidedTensors& truth, const Tensor& image) {
+    RequireGradients(discriminator_.get(), true);
+    discriminator_optimizer_->zero_grad();
+    const Tensor loss =
+        DiscriminatorLoss({discriminator_(Judged(truth, truth.image))}, {discriminator_(Judged(truth, image))});
+    const double value = loss.item<double>();
+    if (!std::isfinite(value)) return value;
+    loss.backward();
+    discriminator_optimizer_->step();
+    return value;
+  }
+
+  /// λ-weighted sum; while the weights are not set the losses are only measured.
+  Tensor BalancedLosses(const GuidedBatch& batch, const Tensor& image, const RenderCode& code, int step,
+                        Losses* losses) {
+    const torch::AutoGradMode mode(balance_.IsSet());
+    Tensor sum = torch::zeros({}, image.options().requires_grad(false));
+    const auto add = [&](Balanced which, const Tensor& loss) {
+      losses->balanced[which] = loss.item<double>();
+      if (balance_.IsSet()) sum = sum + Share(which) * balance_.Weight(which) * loss;
+    };
+    if (Share(kPerceptual) > 0 || Share(kContextual) > 0) {
+      std::vector<Tensor> target;
+      {
+        const torch::NoGradGuard no_grad;
+        target = vgg_(batch.target.image);
+      }
+      const std::vector<Tensor> features = vgg_(image);
+      if (Share(kPerceptual) > 0) add(kPerceptual, PerceptualLoss(features, target));
+      if (Share(kContextual) > 0) {
+        ContextualOptions contextual;
+        contextual.max_points = config_.profile.contextual_points;
+        contextual.seed = static_cast<uint64_t>(step);
+        add(kContextual, ContextualLoss(features[2], target[2], contextual));
+      }
+    }
+    if (Share(kGan) > 0) {
+      RequireGradients(discriminator_.get(), false);
+      add(kGan, GeneratorLoss({discriminator_(Judged(batch.target, image))}));
+    }
+    if (code.log_variance.defined() && Share(kKl) > 0) {
+      const double numbers = static_cast<double>(code.mean.numel() / code.mean.size(0));
+      add(kKl, KlLoss(code.mean, code.log_variance) / numbers);
+    }
+    return sum;
   }
 
   const PhotoSource& people_;
@@ -353,35 +309,26 @@ class Trainer {
   GuidedModel model_{nullptr};
   PatchDiscriminator discriminator_{nullptr};
   FeatureNetwork vgg_{nullptr};
-  std::vector<Tensor> discriminator_parameters_;
   std::unique_ptr<torch::optim::Adam> optimizer_, discriminator_optimizer_;
   std::unique_ptr<Checkpoint> checkpoint_;
   GuidedScores scores_;
-  std::vector<int> photos_;  ///< of the people validated on
-  int step_ = 0, last_checkpoint_ = 0;
+  std::vector<int> photos_;                          ///< of the people validated on
+  Losses losses_;                                    ///< of the last step
+  std::unique_ptr<MadeAhead<GuidedBatch>> batches_;  ///< last: its thread uses the rest
 };
 
 }  // namespace
 
 bool TrainGuidedOptions::IsValid(std::string* why) const {
-  const auto in_range = [&](const char* name, double value, double low, double high) {
-    if (value >= low && value <= high) return true;
-    if (why != nullptr) *why = Concatenate(name, " is ", value, ", expected ", low, " to ", high);
-    return false;
-  };
-  return config.IsValid(why) && in_range("steps", steps, 1, 1e8) && in_range("batch", batch, 1, 256) &&
+  const InRange in_range(why);
+  return IsValidRun(*this, why) && config.IsValid(why) && in_range("batch", batch, 1, 256) &&
          in_range("learning_rate", learning_rate, 0, 1) && in_range("discriminator_rate", discriminator_rate, 0, 1) &&
          in_range("balance_steps", balance_steps, 1, 1e8) && in_range("perceptual_share", perceptual_share, 0, 1e6) &&
          in_range("contextual_share", contextual_share, 0, 1e6) && in_range("gan_share", gan_share, 0, 1e6) &&
          in_range("kl_share", kl_share, 0, 1e6) && in_range("predicted_from", predicted_from, 0, 1) &&
-         in_range("reach", reach, 0, 8192) && in_range("num_threads", num_threads, 0, 256) &&
-         in_range("report_every", report_every, 1, 1e8) && in_range("validate_every", validate_every, 1, 1e8) &&
-         in_range("checkpoint_every", checkpoint_every, 1, 1e8) &&
-         in_range("validation_people", validation_people, 1, 1e6) &&
+         in_range("reach", reach, 0, 8192) && in_range("validation_people", validation_people, 1, 1e6) &&
          in_range("validation_frames", validation_frames, 1, 1e6);
 }
-
-std::string GuidedCheckpointPath(const std::string& run_dir) { return (fs::path(run_dir) / "checkpoint.bin").string(); }
 
 TrainGuidedSummary TrainGuided(const PhotoSource& people, const TrainGuidedOptions& options) {
   std::string why;
@@ -390,7 +337,8 @@ TrainGuidedSummary TrainGuided(const PhotoSource& people, const TrainGuidedOptio
   BODYLOOM_CHECK(people.size == options.config.profile.image_size, "pose-guided training: pictures of ", people.size,
                  " px, expected ", options.config.profile.image_size);
   StartNeuralRuntime(options.num_threads);
-  return Trainer(people, options).Run();
+  UseNeuralDevice(options.device);
+  return GuidedTrainer(people, options).Run();
 }
 
 }  // namespace bodyloom

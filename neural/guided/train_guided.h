@@ -25,6 +25,7 @@
 #include "neural/guided/guided_scores.h"
 #include "neural/networks/named_weights.h"
 #include "neural/people/photo_frame.h"
+#include "neural/training/training_run.h"
 
 namespace bodyloom {
 
@@ -43,13 +44,12 @@ struct TrainGuidedProgress {
   double seconds = 0;
 };
 
-struct TrainGuidedOptions {
+struct TrainGuidedOptions : TrainingRun {
   GuidedConfig config;
   PhotoSource validation;  ///< people who are not trained on; nobody: no validation
   /// The six virtual views of a person's body (complete_maps.h); without it validation warps the source as it is.
   std::function<std::vector<PhotoFrame>(int person)> validation_views;
   int validation_people = 8, validation_frames = 4;  ///< at most; frames beside the photo (choose_photos.h)
-  int steps = 20000;
   int batch = 8;
   double learning_rate = 2e-4, discriminator_rate = 2e-4;  ///< falling to 0 over the last half
   bool labels_by_cross_entropy = true;
@@ -58,33 +58,18 @@ struct TrainGuidedOptions {
   /// At its balanced weight the divergence is driven to 0 within 300 steps and the code says nothing of the source.
   double kl_share = 0.01;
   double predicted_from = 2.0 / 3;  ///< 1: never
-  int reach = 0;       ///< pixels that clothes reach beyond the body (0: not known, validates on whole windows)
-  NamedWeights vgg16;  ///< empty: a seeded stand-in of random features
-  uint64_t seed = 1;
-  int num_threads = 0;  ///< of LibTorch; 0: all cores
-  int report_every = 20, validate_every = 500, checkpoint_every = 250;
-  std::string run_dir;
-  std::string config_json;  ///< kept in the checkpoint as it is
-  bool resume = false;
+  int reach = 0;      ///< pixels that clothes reach beyond the body (0: not known, validates on whole windows)
+  WeightsFrom vgg16;  ///< empty: a seeded stand-in of random features
   std::function<bool(const TrainGuidedProgress&)> progress;  ///< return false to stop after a checkpoint
   std::function<void(int step, const std::vector<GuidedPreview>&)> preview;
   [[nodiscard]] bool IsValid(std::string* why) const;
 };
 
-enum class TrainGuidedStatus { kFinished, kStopped, kNotFinite };
-
-struct TrainGuidedSummary {
-  TrainGuidedStatus status = TrainGuidedStatus::kNotFinite;
-  std::string message;
-  int steps = 0;
-  double seconds = 0;
+struct TrainGuidedSummary : TrainingOutcome {
   GuidedScores scores;
   std::vector<double> loss_weights;  ///< λ of VGG, contextual, adversarial, KL; empty while they are not set
   bool perceptual_stand_in = true;
 };
-
-/// run_dir/checkpoint.bin.
-std::string GuidedCheckpointPath(const std::string& run_dir);
 
 /// Throws std::invalid_argument for options that are not valid, std::runtime_error for files that cannot be used.
 TrainGuidedSummary TrainGuided(const PhotoSource& people, const TrainGuidedOptions& options);

@@ -2,9 +2,9 @@
 /// Trains the lifter (geometry/lifter_weights.h): AdamW with a cosine schedule on windows that a source makes up as
 /// they are asked for, exponential moving average of the weights, validation on windows of other seeds.
 ///
-/// A run folder holds `metrics.csv` (a line every `report_every` steps), `checkpoint.pt` (replaced whole or not at all)
-/// and, at the end, what the caller writes. A run that was interrupted goes on from its checkpoint and ends with the
-/// same bytes as one that was not (same machine, same number of threads).
+/// A run folder holds `metrics.csv` (a line every `report_every` steps), `checkpoint.bin` (replaced whole or not at
+/// all) and, at the end, what the caller writes. A run that was interrupted goes on from its checkpoint and ends with
+/// the same bytes as one that was not (same machine, same number of threads).
 #pragma once
 
 #include <cstdint>
@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "geometry/lifter_weights.h"
+#include "neural/training/training_run.h"
 
 namespace bodyloom {
 
@@ -34,12 +35,15 @@ struct TrainLifterProgress {
   double seconds = 0;              ///< since this process began training
 };
 
-struct TrainLifterOptions {
+struct TrainLifterOptions : TrainingRun {
+  TrainLifterOptions() {
+    steps = 10000;
+    report_every = 100, validate_every = 1000, checkpoint_every = 500;
+  }
   int num_inputs = 0;   ///< features of a frame
   int num_frames = 81;  ///< of a window
   int width = 256;      ///< channels
   std::vector<int> dilations = {1, 2, 4, 8, 16, 1};
-  int steps = 10000;
   int batch = 32;
   double learning_rate = 1.5e-3;
   int warmup_steps = 100;
@@ -48,26 +52,13 @@ struct TrainLifterOptions {
   double clip_norm = 1;
   double average = 0.998;  ///< of the moving average of the weights
   double nll_weight = 0.05, velocity_weight = 0.3;
-  uint64_t seed = 1;
-  int num_threads = 0;         ///< of LibTorch; 0: all cores
-  int report_every = 100;      ///< steps
-  int validate_every = 1000;   ///< steps
-  int checkpoint_every = 500;  ///< steps
   int validation_windows = 256;
-  std::string run_dir;  ///< exists; metrics.csv and checkpoint.pt are written here
-  bool resume = false;  ///< go on from run_dir/checkpoint.pt
   /// Return false to stop after a checkpoint.
   std::function<bool(const TrainLifterProgress&)> progress;
   [[nodiscard]] bool IsValid(std::string* why) const;
 };
 
-enum class TrainStatus { kFinished, kStopped, kNotFinite };
-
-struct TrainLifterSummary {
-  TrainStatus status = TrainStatus::kNotFinite;
-  std::string message;
-  int steps = 0;                        ///< that the weights have seen
-  double seconds = 0;                   ///< of this process
+struct TrainLifterSummary : TrainingOutcome {
   double validation_distance = 0;       ///< mean |d| of the likeliest hypotheses, in torso + leg lengths
   double validation_best_distance = 0;  ///< of each limb's best hypothesis
 };

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "geometry/check.h"
+#include "neural/device.h"
 
 namespace bodyloom {
 namespace {
@@ -24,7 +25,7 @@ Tensor Stack(std::span<const MotionFrame> frames, std::vector<T> MotionFrame::*f
                    " values of ", name, ", expected ", channels, "x", height, "x", width);
     std::copy(values.begin(), values.end(), result.data_ptr<T>() + b * count);
   }
-  return result;
+  return OnDevice(result);
 }
 
 void CheckSizes(std::span<const MotionFrame> frames) {
@@ -67,7 +68,7 @@ MotionTruth TruthOf(std::span<const MotionFrame> frames, const MotionConfig& con
     const int64_t largest = classes.max().item<int64_t>();
     BODYLOOM_CHECK(largest < config.num_labels, "motion renderer: label ", largest, ", expected 0 to ",
                    config.num_labels - 1);
-    truth.labels = torch::zeros({static_cast<int64_t>(frames.size()), config.num_labels, h, w});
+    truth.labels = torch::zeros({static_cast<int64_t>(frames.size()), config.num_labels, h, w}, truth.image.options());
     truth.labels.scatter_(1, classes, 1);
     truth.foreground = (classes > 0).to(torch::kFloat);
   } else {
@@ -80,8 +81,9 @@ MotionState MotionTruth::State(const MotionConfig& config) const {
   MotionState state;
   state.image = image;
   if (config.shape) {
-    state.labels =
-        labels.defined() ? labels : torch::zeros({image.size(0), config.num_labels, image.size(2), image.size(3)});
+    state.labels = labels.defined() ? labels
+                                    : torch::zeros({image.size(0), config.num_labels, image.size(2), image.size(3)},
+                                                   image.options());
   }
   if (config.normals) state.normals = normals.defined() ? normals : torch::zeros_like(image);
   return state;

@@ -4,6 +4,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "geometry/in_range.h"
+
 namespace bodyloom {
 
 const MotionProfile& MotionProfileNamed(const std::string& name) {
@@ -19,14 +21,7 @@ const MotionProfile& MotionProfileNamed(const std::string& name) {
 }
 
 bool MotionConfig::IsValid(std::string* why) const {
-  const auto in_range = [&](const char* what, int value, int low, int high) {
-    if (value >= low && value <= high) return true;
-    if (why != nullptr) {
-      *why = std::string(what) + " is " + std::to_string(value) + ", expected " + std::to_string(low) + " to " +
-             std::to_string(high);
-    }
-    return false;
-  };
+  const InRange in_range(why);
   bool valid = in_range("image_size", profile.image_size, 32, 8192) && in_range("uv_size", profile.uv_size, 8, 4096) &&
                in_range("features", profile.features, 1, 1024) &&
                in_range("levels of the encoder", static_cast<int>(profile.encoder_widths.size()), 1, 8) &&

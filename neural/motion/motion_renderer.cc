@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "neural/device.h"
 #include "neural/motion/frame_tensors.h"
 #include "neural/motion/motion_scorer.h"
 #include "neural/motion/roll_out.h"
@@ -11,13 +12,13 @@
 
 namespace bodyloom {
 
-using torch::Tensor;
-
 namespace {
 
 MotionModel Loaded(const std::string& path, const MotionConfig& config, const MotionRendererOptions& options) {
   StartNeuralRuntime(options.num_threads);
+  UseNeuralDevice(options.device);
   MotionModel model(config);
+  model->to(NeuralDevice());
   Checkpoint checkpoint(ToText(config));
   checkpoint.Add("model", model.ptr().get());
   checkpoint.Load(path, CheckpointPart::kModules);
@@ -41,17 +42,10 @@ class MotionRenderer::Impl {
     MotionPicture picture;
     picture.width = frame.width;
     picture.height = frame.height;
-    const auto values = [](const Tensor& tensor) {
-      const Tensor whole = tensor.contiguous();
-      return std::vector<float>(whole.data_ptr<float>(), whole.data_ptr<float>() + whole.numel());
-    };
-    picture.image = values(result.state.image);
-    picture.alpha = values(result.foreground);
-    if (result.state.normals.defined()) picture.normals = values(result.state.normals);
-    if (result.state.labels.defined()) {
-      const Tensor labels = result.state.labels.argmax(1).to(torch::kByte).contiguous();
-      picture.labels.assign(labels.data_ptr<uint8_t>(), labels.data_ptr<uint8_t>() + labels.numel());
-    }
+    picture.image = HostValues<float>(result.state.image);
+    picture.alpha = HostValues<float>(result.foreground);
+    if (result.state.normals.defined()) picture.normals = HostValues<float>(result.state.normals);
+    if (result.state.labels.defined()) picture.labels = HostValues<uint8_t>(result.state.labels.argmax(1));
     return picture;
   }
 

@@ -27,6 +27,7 @@ struct MotionRendererOptions {
   int reach = 0;               ///< pixels from the body beyond which is background; 0: none (roll_out.h)
   bool score = false;          ///< compare every frame with the truth that it holds
   int num_threads = 0;         ///< 0: all cores
+  std::string device = "cpu";  ///< or "cuda"
 };
 
 class MotionRenderer {

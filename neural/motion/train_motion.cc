@@ -2,14 +2,14 @@
 #include "neural/motion/train_motion.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <memory>
 #include <span>
 
 #include "geometry/check.h"
+#include "geometry/in_range.h"
+#include "neural/device.h"
 #include "neural/losses/gan_losses.h"
 #include "neural/losses/image_losses.h"
 #include "neural/losses/perceptual_loss.h"
@@ -19,15 +19,13 @@
 #include "neural/networks/patch_discriminator.h"
 #include "neural/networks/vgg.h"
 #include "neural/runtime.h"
-#include "neural/training/checkpoint.h"
-#include "neural/training/run_files.h"
+#include "neural/training/adam.h"
 #include "neural/training/schedules.h"
-#include "neural/training/set_rate.h"
+#include "neural/training/training_loop.h"
 
 namespace bodyloom {
 namespace {
 
-namespace fs = std::filesystem;
 using torch::Tensor;
 
 const std::vector<std::string> kColumns = {"learning_rate",
@@ -43,8 +41,7 @@ const std::vector<std::string> kColumns = {"learning_rate",
                                            "validation_label_iou",
                                            "validation_foreground_iou",
                                            "validation_normal_deg",
-                                           "validation_flicker",
-                                           "seconds"};
+                                           "validation_flicker"};
 /// Intermediate validations look at so many frames of each range; the last one at all.
 constexpr int kQuickFrames = 48;
 
@@ -53,29 +50,9 @@ struct Losses {
   [[nodiscard]] bool IsFinite() const { return std::isfinite(total + discriminator); }
 };
 
-FeatureNetwork MakeVgg(const TrainMotionOptions& options) {
-  FeatureNetworkOptions network;
-  network.trunk = FeatureTrunk::kVgg16;
-  network.taps = FeatureLayers(FeatureTrunk::kVgg16, {"conv1_2", "conv2_2", "conv3_2", "conv4_2"});
-  if (options.vgg16.empty()) network.stand_in_divisor = options.config.profile.perceptual_divisor;
-  FeatureNetwork vgg(network);
-  if (!options.vgg16.empty()) vgg->Load(options.vgg16.weights, options.vgg16.source);
-  return vgg;
-}
-
-std::vector<float> Values(const Tensor& tensor) {
-  const Tensor values = tensor.detach().contiguous().to(torch::kFloat);
-  return {values.data_ptr<float>(), values.data_ptr<float>() + values.numel()};
-}
-
-std::vector<uint8_t> Classes(const Tensor& probabilities) {
-  const Tensor classes = probabilities.argmax(1).to(torch::kByte).contiguous();
-  return {classes.data_ptr<uint8_t>(), classes.data_ptr<uint8_t>() + classes.numel()};
-}
-
-class Trainer {
+class MotionTrainer : public TrainedSystem {
  public:
-  Trainer(const MotionFrameSource& source, const TrainMotionOptions& options)
+  MotionTrainer(const MotionFrameSource& source, const TrainMotionOptions& options)
       : source_(source), options_(options), config_(options.config) {
     torch::manual_seed(options.seed);
     model_ = MotionModel(config_);
@@ -87,12 +64,12 @@ class Trainer {
     if (config_.normals && !has_normals_) losses_off_.emplace_back("normals: the frames have no normals");
     discriminator_ = PatchDiscriminator(
         PatchDiscriminatorOptions{3 + (has_labels_ ? config_.num_labels : 0), config_.profile.discriminator_width});
-    vgg_ = MakeVgg(options);
-    const auto adam = [](double rate) { return torch::optim::AdamOptions(rate).betas({0.5, 0.999}); };
-    optimizer_ = std::make_unique<torch::optim::Adam>(model_->parameters(), adam(options.learning_rate));
-    discriminator_optimizer_ =
-        std::make_unique<torch::optim::Adam>(discriminator_->parameters(), adam(options.discriminator_rate));
-    discriminator_parameters_ = discriminator_->parameters();
+    model_->to(NeuralDevice());
+    discriminator_->to(NeuralDevice());
+    vgg_ = MakeFeatureNetwork(FeatureTrunk::kVgg16, {"conv1_2", "conv2_2", "conv3_2", "conv4_2"}, options.vgg16,
+                              config_.profile.perceptual_divisor);
+    optimizer_ = MakeAdam(*model_, options.learning_rate);
+    discriminator_optimizer_ = MakeAdam(*discriminator_, options.discriminator_rate);
     checkpoint_ = std::make_unique<Checkpoint>(ToText(config_));
     checkpoint_->config_json = options.config_json;
     checkpoint_->Add("model", model_.ptr().get());
@@ -106,55 +83,82 @@ class Trainer {
   }
 
   TrainMotionSummary Run() {
-    MetricsLog log((fs::path(options_.run_dir) / "metrics.csv").string(), kColumns);
-    if (options_.resume) {
-      checkpoint_->Load(CheckpointPath());
-      step_ = last_checkpoint_ = static_cast<int>(checkpoint_->step);
-      log.KeepUpTo(step_);
-    }
-    const auto start = std::chrono::steady_clock::now();
-    const auto seconds = [&] {
-      return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    };
-    MotionBatches batches(source_, config_,
-                          ChainPlan(options_.train, {options_.batch, options_.chain_length, 0.75, options_.seed}),
-                          step_, options_.steps);
     TrainMotionSummary summary;
-    summary.status = TrainMotionStatus::kFinished;
+    static_cast<TrainingOutcome&>(summary) = RunTraining(options_, options_.steps, kColumns, checkpoint_.get(), this);
     summary.losses_off = losses_off_;
     summary.perceptual_stand_in = vgg_->is_stand_in;
-    while (step_ < options_.steps) {
-      const Losses losses = Step(batches.Take());
-      if (!losses.IsFinite()) {
-        summary.status = TrainMotionStatus::kNotFinite;
-        summary.message =
-            Concatenate("the loss is not finite at step ", step_ + 1, "; checkpoint.bin holds step ", last_checkpoint_);
-        break;
-      }
-      ++step_;
-      const bool last = step_ == options_.steps;
-      const bool validates = !options_.validation.empty() && (last || step_ % options_.validate_every == 0);
-      if (validates) Validate(last ? 0 : kQuickFrames);
-      if (last || validates || step_ % options_.report_every == 0) {
-        log.Add(step_, Row(losses, validates, seconds()));
-        const bool go_on = !options_.progress ||
-                           options_.progress({step_, options_.steps, losses.total, losses.image, scores_, seconds()});
-        const bool no_progress = options_.patience > 0 && SinceBest() >= options_.patience;
-        if (!go_on || no_progress) {
-          Save();
-          summary.status = go_on ? TrainMotionStatus::kNoProgress : TrainMotionStatus::kStopped;
-          summary.message =
-              go_on ? Concatenate("no better validation in the last ", options_.patience, "; stopped at step ", step_)
-                    : Concatenate("stopped at step ", step_);
-          break;
-        }
-      }
-      if (last || step_ % options_.checkpoint_every == 0) Save();
-    }
-    summary.steps = step_;
-    summary.seconds = seconds();
     summary.scores = scores_;
     return summary;
+  }
+
+  void Begin(int first_step) override {
+    batches_ = std::make_unique<MotionBatches>(
+        source_, config_, ChainPlan(options_.train, {options_.batch, options_.chain_length, 0.75, options_.seed}),
+        first_step, options_.steps);
+    for (Tensor* part : past_.Parts()) *part = OnDevice(*part);
+  }
+
+  bool Step(int step) override {
+    losses_ = Learn(batches_->Take(), step);
+    return losses_.IsFinite();
+  }
+
+  [[nodiscard]] bool HasValidation() const override { return !options_.validation.empty(); }
+
+  void Validate(int done, bool last) override {
+    const int max_frames = last ? 0 : kQuickFrames;
+    std::vector<MotionPreview> previews;
+    MotionScorer scorer(config_);
+    RollOut roll(model_, options_.warmup_iterations);
+    for (const FrameRange& range : options_.validation) {
+      roll.Restart();
+      scorer.Restart();
+      const int end = max_frames > 0 ? std::min(range.end, range.begin + max_frames) : range.end;
+      const int every = std::max(1, (end - range.begin) / std::max(1, options_.preview_frames));
+      for (int t = range.begin; t < end; ++t) {
+        MotionFrame frame;
+        (options_.validation_source ? options_.validation_source : source_)(t, true, &frame);
+        const MotionStepResult result = roll.Next(frame);
+        const MotionTruth truth = TruthOf(std::span(&frame, 1), config_);
+        scorer.Add(result.state, truth, frame.before_x, frame.before_y);
+        if (!options_.preview || (t - range.begin) % every != every / 2) continue;
+        MotionPreview preview;
+        preview.frame = t, preview.width = frame.width, preview.height = frame.height;
+        preview.image = HostValues<float>(result.state.image);
+        if (result.state.normals.defined()) preview.normals = HostValues<float>(result.state.normals);
+        if (result.state.labels.defined()) preview.labels = HostValues<uint8_t>(result.state.labels.argmax(1));
+        preview.true_image = frame.image, preview.true_normals = frame.normals, preview.true_labels = frame.labels;
+        previews.push_back(std::move(preview));
+      }
+    }
+    scores_ = scorer.Scores();
+    const bool better = scores_.image_l1 < best_[0].item<double>();
+    best_ = better ? torch::tensor({scores_.image_l1, 0.0}, torch::kDouble)
+                   : torch::tensor({best_[0].item<double>(), ValidationsSinceBest() + 1.0}, torch::kDouble);
+    if (options_.preview) options_.preview(done, previews);
+  }
+
+  [[nodiscard]] int ValidationsSinceBest() const override { return static_cast<int>(best_[1].item<double>()); }
+
+  [[nodiscard]] std::vector<double> Row(int done, bool validated) const override {
+    std::vector<double> row = {LinearDecayOverLastHalf(options_.learning_rate, done - 1, options_.steps),
+                               losses_.total,
+                               losses_.image,
+                               losses_.shape,
+                               losses_.normals,
+                               losses_.perceptual,
+                               losses_.generator,
+                               losses_.discriminator};
+    for (const double score : {scores_.image_l1, scores_.psnr_db, scores_.label_iou, scores_.foreground_iou,
+                               scores_.normal_deg, scores_.flicker}) {
+      row.push_back(validated ? score : std::numeric_limits<double>::quiet_NaN());
+    }
+    return row;
+  }
+
+  bool Report(int done, double seconds) override {
+    return !options_.progress ||
+           options_.progress({done, options_.steps, losses_.total, losses_.image, scores_, seconds});
   }
 
  private:
@@ -187,14 +191,9 @@ class Trainer {
     return {join(&MotionState::labels), join(&MotionState::image), join(&MotionState::normals)};
   }
 
-  void RequireGradients(bool on) {
-    for (Tensor& parameter : discriminator_parameters_) parameter.set_requires_grad(on);
-  }
-
-  Losses Step(const MotionBatch& batch) {
-    SetRate(optimizer_.get(), LinearDecayOverLastHalf(options_.learning_rate, step_, options_.steps));
-    SetRate(discriminator_optimizer_.get(),
-            LinearDecayOverLastHalf(options_.discriminator_rate, step_, options_.steps));
+  Losses Learn(const MotionBatch& batch, int step) {
+    SetRate(optimizer_.get(), LinearDecayOverLastHalf(options_.learning_rate, step, options_.steps));
+    SetRate(discriminator_optimizer_.get(), LinearDecayOverLastHalf(options_.discriminator_rate, step, options_.steps));
     const MotionTruth& truth = batch.truth;
     const MotionStepResult result = model_(batch.input, PastOf(batch));
     const MotionState& state = result.state;
@@ -235,11 +234,11 @@ class Trainer {
       add(options_.perceptual_weight, PerceptualLoss(vgg_(state.image), target), &losses.perceptual);
     }
     if (options_.gan_weight > 0) {
-      RequireGradients(false);
+      RequireGradients(discriminator_.get(), false);
       add(options_.gan_weight, GeneratorLoss({discriminator_(condition(state.image))}), &losses.generator);
     }
     total.backward();
-    RequireGradients(true);
+    RequireGradients(discriminator_.get(), true);
     losses.total = total.item<double>();
     if (!losses.IsFinite()) return losses;  // a step would spoil the weights
     optimizer_->step();
@@ -250,61 +249,6 @@ class Trainer {
     return losses;
   }
 
-  void Validate(int max_frames) {
-    std::vector<MotionPreview> previews;
-    MotionScorer scorer(config_);
-    RollOut roll(model_, options_.warmup_iterations);
-    for (const FrameRange& range : options_.validation) {
-      roll.Restart();
-      scorer.Restart();
-      const int end = max_frames > 0 ? std::min(range.end, range.begin + max_frames) : range.end;
-      const int every = std::max(1, (end - range.begin) / std::max(1, options_.preview_frames));
-      for (int t = range.begin; t < end; ++t) {
-        MotionFrame frame;
-        (options_.validation_source ? options_.validation_source : source_)(t, true, &frame);
-        const MotionStepResult result = roll.Next(frame);
-        const MotionTruth truth = TruthOf(std::span(&frame, 1), config_);
-        scorer.Add(result.state, truth, frame.before_x, frame.before_y);
-        if (!options_.preview || (t - range.begin) % every != every / 2) continue;
-        MotionPreview preview{t,  frame.width, frame.height, Values(result.state.image), {}, frame.image, frame.normals,
-                              {}, frame.labels};
-        if (result.state.normals.defined()) preview.normals = Values(result.state.normals);
-        if (result.state.labels.defined()) preview.labels = Classes(result.state.labels);
-        previews.push_back(std::move(preview));
-      }
-    }
-    scores_ = scorer.Scores();
-    const bool better = scores_.image_l1 < best_[0].item<double>();
-    best_ = better ? torch::tensor({scores_.image_l1, 0.0}, torch::kDouble)
-                   : torch::tensor({best_[0].item<double>(), SinceBest() + 1.0}, torch::kDouble);
-    if (options_.preview) options_.preview(step_, previews);
-  }
-
-  [[nodiscard]] std::vector<double> Row(const Losses& losses, bool validated, double seconds) const {
-    std::vector<double> row = {LinearDecayOverLastHalf(options_.learning_rate, step_ - 1, options_.steps),
-                               losses.total,
-                               losses.image,
-                               losses.shape,
-                               losses.normals,
-                               losses.perceptual,
-                               losses.generator,
-                               losses.discriminator};
-    for (const double score : {scores_.image_l1, scores_.psnr_db, scores_.label_iou, scores_.foreground_iou,
-                               scores_.normal_deg, scores_.flicker}) {
-      row.push_back(validated ? score : std::numeric_limits<double>::quiet_NaN());
-    }
-    row.push_back(seconds);
-    return row;
-  }
-
-  /// Validations since the best one.
-  [[nodiscard]] int SinceBest() const { return static_cast<int>(best_[1].item<double>()); }
-  [[nodiscard]] std::string CheckpointPath() const { return MotionCheckpointPath(options_.run_dir); }
-  void Save() {
-    checkpoint_->step = last_checkpoint_ = step_;
-    checkpoint_->Save(CheckpointPath());
-  }
-
   const MotionFrameSource& source_;
   const TrainMotionOptions& options_;
   const MotionConfig& config_;
@@ -313,23 +257,19 @@ class Trainer {
   MotionModel model_{nullptr};
   PatchDiscriminator discriminator_{nullptr};
   FeatureNetwork vgg_{nullptr};
-  std::vector<Tensor> discriminator_parameters_;
   std::unique_ptr<torch::optim::Adam> optimizer_, discriminator_optimizer_;
   std::unique_ptr<Checkpoint> checkpoint_;
   MotionState past_;  ///< of the chains, B×…
   MotionScores scores_;
   Tensor best_ = torch::tensor({1e9, 0.0}, torch::kDouble);  ///< least L1 of a validation, and how many came since
-  int step_ = 0, last_checkpoint_ = 0;
+  std::unique_ptr<MotionBatches> batches_;
+  Losses losses_;  ///< of the last step
 };
 
 }  // namespace
 
 bool TrainMotionOptions::IsValid(std::string* why) const {
-  const auto in_range = [&](const char* name, double value, double low, double high) {
-    if (value >= low && value <= high) return true;
-    if (why != nullptr) *why = Concatenate(name, " is ", value, ", expected ", low, " to ", high);
-    return false;
-  };
+  const InRange in_range(why);
   if (train.empty()) {
     if (why != nullptr) *why = "no frames to train on";
     return false;
@@ -341,23 +281,20 @@ bool TrainMotionOptions::IsValid(std::string* why) const {
       return false;
     }
   }
-  return config.IsValid(why) && in_range("steps", steps, 1, 1e8) && in_range("batch", batch, 1, 256) &&
+  return IsValidRun(*this, why) && config.IsValid(why) && in_range("batch", batch, 1, 256) &&
          in_range("chain_length", chain_length, 1, 1e6) && in_range("learning_rate", learning_rate, 0, 1) &&
          in_range("discriminator_rate", discriminator_rate, 0, 1) && in_range("shape_weight", shape_weight, 0, 1e6) &&
          in_range("normal_weight", normal_weight, 0, 1e6) && in_range("perceptual_weight", perceptual_weight, 0, 1e6) &&
          in_range("gan_weight", gan_weight, 0, 1e6) && in_range("warmup_iterations", warmup_iterations, 0, 1000) &&
-         in_range("num_threads", num_threads, 0, 256) && in_range("report_every", report_every, 1, 1e8) &&
-         in_range("validate_every", validate_every, 1, 1e8) && in_range("checkpoint_every", checkpoint_every, 1, 1e8) &&
-         in_range("preview_frames", preview_frames, 1, 64) && in_range("patience", patience, 0, 1e6);
+         in_range("preview_frames", preview_frames, 1, 64);
 }
-
-std::string MotionCheckpointPath(const std::string& run_dir) { return (fs::path(run_dir) / "checkpoint.bin").string(); }
 
 TrainMotionSummary TrainMotion(const MotionFrameSource& source, const TrainMotionOptions& options) {
   std::string why;
   BODYLOOM_CHECK(options.IsValid(&why), "motion training: ", why);
   StartNeuralRuntime(options.num_threads);
-  return Trainer(source, options).Run();
+  UseNeuralDevice(options.device);
+  return MotionTrainer(source, options).Run();
 }
 
 }  // namespace bodyloom

@@ -22,6 +22,7 @@
 #include "neural/motion/motion_frame.h"
 #include "neural/motion/motion_scores.h"
 #include "neural/networks/named_weights.h"
+#include "neural/training/training_run.h"
 
 namespace bodyloom {
 
@@ -39,11 +40,10 @@ struct TrainMotionProgress {
   double seconds = 0;
 };
 
-struct TrainMotionOptions {
+struct TrainMotionOptions : TrainingRun {
   MotionConfig config;
   std::vector<FrameRange> train, validation;  ///< validation may be empty
   MotionFrameSource validation_source;        ///< of another clip; empty: the same clip
-  int steps = 20000;
   int batch = 4;
   int chain_length = 32;
   double learning_rate = 1e-3, discriminator_rate = 2e-4;
@@ -51,33 +51,17 @@ struct TrainMotionOptions {
   double shape_weight = 10, normal_weight = 1, perceptual_weight = 1, gan_weight = 0.01;
   int warmup_iterations = 10;  ///< of the first frame, before a roll-out counts
   WeightsFrom vgg16;           ///< empty: a seeded stand-in of random features
-  uint64_t seed = 1;
-  int num_threads = 0;  ///< of LibTorch; 0: all cores
-  int report_every = 20, validate_every = 500, checkpoint_every = 250;
   int preview_frames = 4;
-  int patience = 0;  ///< stop after so many validations without a better foreground L1; 0: never
-  std::string run_dir;
-  std::string config_json;  ///< kept in the checkpoint as it is
-  bool resume = false;
   std::function<bool(const TrainMotionProgress&)> progress;  ///< return false to stop after a checkpoint
   std::function<void(int step, const std::vector<MotionPreview>&)> preview;
   [[nodiscard]] bool IsValid(std::string* why) const;
 };
 
-enum class TrainMotionStatus { kFinished, kStopped, kNoProgress, kNotFinite };
-
-struct TrainMotionSummary {
-  TrainMotionStatus status = TrainMotionStatus::kNotFinite;
-  std::string message;
-  int steps = 0;
-  double seconds = 0;
+struct TrainMotionSummary : TrainingOutcome {
   MotionScores scores;
   std::vector<std::string> losses_off;  ///< "shape: the frames have no labels", …
   bool perceptual_stand_in = true;
 };
-
-/// run_dir/checkpoint.bin.
-std::string MotionCheckpointPath(const std::string& run_dir);
 
 /// Throws std::invalid_argument for options that are not valid, std::runtime_error for files that cannot be used.
 TrainMotionSummary TrainMotion(const MotionFrameSource& source, const TrainMotionOptions& options);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "geometry/check.h"
+#include "neural/device.h"
 
 namespace bodyloom {
 namespace {
@@ -166,6 +167,18 @@ std::vector<torch::Tensor> FeatureNetworkImpl::forward(torch::Tensor image) {
     for (; tap < options.taps.size() && options.taps[tap] == i; ++tap) features.push_back(x);
   }
   return features;
+}
+
+FeatureNetwork MakeFeatureNetwork(FeatureTrunk trunk, const std::vector<std::string>& layers,
+                                  const WeightsFrom& weights, int stand_in_divisor) {
+  FeatureNetworkOptions options;
+  options.trunk = trunk;
+  options.taps = FeatureLayers(trunk, layers);
+  if (weights.empty()) options.stand_in_divisor = stand_in_divisor;
+  FeatureNetwork network(options);
+  if (!weights.empty()) network->Load(weights.weights, weights.source);
+  network->to(NeuralDevice());
+  return network;
 }
 
 }  // namespace bodyloom

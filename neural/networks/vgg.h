@@ -61,4 +61,9 @@ struct FeatureNetworkImpl : torch::nn::Module {
 };
 TORCH_MODULE(FeatureNetwork);
 
+/// On the networks' device (neural/device.h), with the layers of these names as taps; `weights` empty: a stand-in whose
+/// channels are divided. Throws as FeatureNetworkImpl::Load.
+FeatureNetwork MakeFeatureNetwork(FeatureTrunk trunk, const std::vector<std::string>& layers,
+                                  const WeightsFrom& weights, int stand_in_divisor);
+
 }  // namespace bodyloom

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "geometry/check.h"
+#include "geometry/in_range.h"
 
 namespace bodyloom {
 namespace {
@@ -62,9 +63,7 @@ bool PhotoConfig::IsValid(std::string* why) const {
     if (why != nullptr) *why = text;
     return false;
   };
-  const auto in_range = [&](const char* what, int value, int low, int high) {
-    return (value >= low && value <= high) || says(Concatenate(what, " is ", value, ", expected ", low, " to ", high));
-  };
+  const InRange in_range(why);
   const PhotoProfile& p = profile;
   if (!(in_range("image_size", p.image_size, 16, 4096) && in_range("texture_size", p.texture_size, 8, 4096) &&
         in_range("features", p.features, 3, 1024) &&

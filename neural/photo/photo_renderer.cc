@@ -4,6 +4,7 @@
 #include <span>
 
 #include "geometry/check.h"
+#include "neural/device.h"
 #include "neural/photo/render_photo.h"
 #include "neural/runtime.h"
 #include "neural/training/checkpoint.h"
@@ -15,7 +16,9 @@ class PhotoRenderer::Impl {
   Impl(const std::string& path, const PhotoConfig& config, const PhotoRendererOptions& options)
       : reach_(options.reach) {
     StartNeuralRuntime(options.num_threads);
+    UseNeuralDevice(options.device);
     model_ = PhotoModel(config);
+    model_->to(NeuralDevice());
     Checkpoint checkpoint(ToText(config));
     checkpoint.Add("model", model_.ptr().get());
     checkpoint.Load(path, CheckpointPart::kModules);
@@ -38,8 +41,7 @@ class PhotoRenderer::Impl {
 
   [[nodiscard]] std::vector<float> CompletedTexture() const {
     CheckEncoded();
-    const torch::Tensor colour = (0.5 * (features_.slice(1, 0, 3) + 1)).clamp(0, 1).contiguous();
-    return {colour.data_ptr<float>(), colour.data_ptr<float>() + colour.numel()};
+    return HostValues<float>((0.5 * (features_.slice(1, 0, 3) + 1)).clamp(0, 1));
   }
 
  private:

@@ -16,6 +16,7 @@ namespace bodyloom {
 struct PhotoRendererOptions {
   int reach = -1;       ///< pixels from the body beyond which is background; negative: the whole frame is computed
   int num_threads = 0;  ///< 0: all cores
+  std::string device = "cpu";  ///< or "cuda"
 };
 
 class PhotoRenderer {

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "geometry/check.h"
+#include "neural/device.h"
 
 namespace bodyloom {
 
@@ -36,7 +37,7 @@ Tensor Cut(std::span<const PhotoFrame> frames, std::span<const PhotoWindow> wind
       }
     }
   }
-  return result;
+  return OnDevice(result);
 }
 
 }  // namespace
@@ -54,6 +55,7 @@ TextureTensors ToTensors(std::span<const PartialTexture> textures) {
     std::copy(texture.colour.begin(), texture.colour.end(), tensors.colour.data_ptr<float>() + b * 3 * U * U);
     std::copy(texture.visible.begin(), texture.visible.end(), tensors.visible.data_ptr<float>() + b * U * U);
   }
+  tensors = {OnDevice(tensors.colour), OnDevice(tensors.visible)};
   tensors.colour = (2 * tensors.colour - 1) * tensors.visible;
   return tensors;
 }

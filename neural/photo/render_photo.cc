@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <span>
+#include <vector>
+
+#include "neural/device.h"
 
 namespace bodyloom {
 
@@ -20,9 +23,9 @@ PhotoPicture RenderPhoto(PhotoModel model, const torch::Tensor& features, const 
   const PhotoResult result =
       model->Render(model->Project(features, PoseOf(std::span(&pose, 1), std::span(&window, 1))));
   const auto paste = [&](const torch::Tensor& tensor, std::vector<float>* planar) {
-    const torch::Tensor whole = tensor.contiguous();
-    const float* from = whole.data_ptr<float>();
-    for (int64_t c = 0; c < whole.size(1); ++c) {
+    const std::vector<float> whole = HostValues<float>(tensor);
+    auto from = whole.begin();
+    for (int64_t c = 0; c < tensor.size(1); ++c) {
       for (int y = 0; y < window.height; ++y, from += window.width) {
         std::copy_n(from, window.width, planar->begin() + ((c * S + window.y + y) * S + window.x));
       }

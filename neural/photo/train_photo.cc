@@ -2,14 +2,14 @@
 #include "neural/photo/train_photo.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <memory>
 #include <span>
 
 #include "geometry/check.h"
+#include "geometry/in_range.h"
+#include "neural/device.h"
 #include "neural/losses/gan_losses.h"
 #include "neural/losses/perceptual_loss.h"
 #include "neural/networks/patch_discriminator.h"
@@ -19,16 +19,14 @@
 #include "neural/photo/photo_model.h"
 #include "neural/photo/render_photo.h"
 #include "neural/runtime.h"
-#include "neural/training/checkpoint.h"
+#include "neural/training/adam.h"
 #include "neural/training/made_ahead.h"
-#include "neural/training/run_files.h"
 #include "neural/training/schedules.h"
-#include "neural/training/set_rate.h"
+#include "neural/training/training_loop.h"
 
 namespace bodyloom {
 namespace {
 
-namespace fs = std::filesystem;
 using torch::Tensor;
 using torch::optim::Adam;
 
@@ -44,23 +42,12 @@ const std::vector<std::string> kColumns = {"learning_rate",
                                            "validation_psnr_db",
                                            "validation_ssim",
                                            "validation_lpips",
-                                           "validation_outline_iou",
-                                           "seconds"};
+                                           "validation_outline_iou"};
 
 struct Losses {
   double total = 0, perceptual = 0, face = 0, texture = 0, generator = 0, alpha = 0, discriminator = 0;
   [[nodiscard]] bool IsFinite() const { return std::isfinite(total + discriminator); }
 };
-
-FeatureNetwork MakeVgg(const TrainPhotoOptions& options) {
-  FeatureNetworkOptions network;
-  network.trunk = FeatureTrunk::kVgg19;
-  network.taps = FeatureLayers(FeatureTrunk::kVgg19, {"relu1_1", "relu2_1", "relu3_1", "relu4_1", "relu5_1"});
-  if (options.vgg19.empty()) network.stand_in_divisor = options.config.profile.perceptual_divisor;
-  FeatureNetwork vgg(network);
-  if (!options.vgg19.empty()) vgg->Load(options.vgg19.weights, options.vgg19.source);
-  return vgg;
-}
 
 Lpips MakeLpips(const TrainPhotoOptions& options) {
   Lpips lpips;
@@ -71,17 +58,13 @@ Lpips MakeLpips(const TrainPhotoOptions& options) {
   return lpips;
 }
 
-void RequireGradients(torch::nn::Module* module, bool on) {
-  for (Tensor& parameter : module->parameters()) parameter.set_requires_grad(on);
-}
-
 const PhotoSource& ValidationSource(const PhotoSource& source, const TrainPhotoOptions& options) {
   return options.validation_source != nullptr ? *options.validation_source : source;
 }
 
-class Trainer {
+class PhotoTrainer : public TrainedSystem {
  public:
-  Trainer(const PhotoSource& source, const TrainPhotoOptions& options)
+  PhotoTrainer(const PhotoSource& source, const TrainPhotoOptions& options)
       : source_(source),
         validation_source_(ValidationSource(source, options)),
         options_(options),
@@ -93,21 +76,24 @@ class Trainer {
     discriminator_ = MultiScaleDiscriminator(
         PatchDiscriminatorOptions{config_.RenderChannels() + 3, p.discriminator_width, p.discriminator_layers, 2},
         p.discriminator_scales);
-    vgg_ = MakeVgg(options);
+    model_->to(NeuralDevice());
+    discriminator_->to(NeuralDevice());
+    vgg_ = MakeFeatureNetwork(FeatureTrunk::kVgg19, {"relu1_1", "relu2_1", "relu3_1", "relu4_1", "relu5_1"},
+                              options.vgg19, p.perceptual_divisor);
     if (options.sphereface.empty()) {
       losses_off_.emplace_back("face: no weights of SphereFace given");
     } else {
       sphereface_ = SphereFace();
       sphereface_->Load(options.sphereface.weights, options.sphereface.source);
+      sphereface_->to(NeuralDevice());
     }
     if (config_.variant == PhotoVariant::kNoInt) losses_off_.emplace_back("texture: left out by no-int");
     checkpoint_ = std::make_unique<Checkpoint>(ToText(config_));
     checkpoint_->config_json = options.config_json;
     checkpoint_->Add("model", model_.ptr().get());
     checkpoint_->Add("discriminator", discriminator_.ptr().get());
-    const auto optimizer = [&](const char* name, torch::nn::Module& module) {
-      auto adam = std::make_unique<Adam>(module.parameters(),
-                                         torch::optim::AdamOptions(options.learning_rate).betas({0.5, 0.999}));
+    const auto optimizer = [&](const char* name, const torch::nn::Module& module) {
+      std::unique_ptr<Adam> adam = MakeAdam(module, options.learning_rate);
       checkpoint_->Add(name, adam.get());
       return adam;
     };
@@ -117,49 +103,72 @@ class Trainer {
   }
 
   TrainPhotoSummary Run() {
-    MetricsLog log((fs::path(options_.run_dir) / "metrics.csv").string(), kColumns);
-    if (options_.resume) {
-      checkpoint_->Load(PhotoCheckpointPath(options_.run_dir));
-      step_ = last_checkpoint_ = static_cast<int>(checkpoint_->step);
-      log.KeepUpTo(step_);
-    }
-    const int total = options_.TotalSteps(), first = step_;
-    const auto start = std::chrono::steady_clock::now();
-    const auto seconds = [&] {
-      return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    };
-    MadeAhead<PhotoBatch> batches(std::max(0, total - first), [&](int64_t i) { return BatchOf(first + i); });
     TrainPhotoSummary summary;
-    summary.status = TrainPhotoStatus::kFinished;
+    static_cast<TrainingOutcome&>(summary) =
+        RunTraining(options_, options_.TotalSteps(), kColumns, checkpoint_.get(), this);
     summary.losses_off = losses_off_;
     summary.perceptual_stand_in = vgg_->is_stand_in;
-    while (step_ < total) {
-      const Losses losses = Step(batches.Take());
-      if (!losses.IsFinite()) {
-        summary.status = TrainPhotoStatus::kNotFinite;
-        summary.message =
-            Concatenate("the loss is not finite at step ", step_ + 1, "; checkpoint.bin holds step ", last_checkpoint_);
-        break;
-      }
-      ++step_;
-      const bool last = step_ == total;
-      const bool validates = !options_.validation.empty() && (last || step_ % options_.validate_every == 0);
-      if (validates) Validate();
-      if (last || validates || step_ % options_.report_every == 0) {
-        log.Add(step_, Row(losses, validates, seconds()));
-        if (options_.progress && !options_.progress({step_, total, losses.total, scores_, seconds()})) {
-          Save();
-          summary.status = TrainPhotoStatus::kStopped;
-          summary.message = Concatenate("stopped at step ", step_);
-          break;
-        }
-      }
-      if (last || step_ % options_.checkpoint_every == 0) Save();
-    }
-    summary.steps = step_;
-    summary.seconds = seconds();
     summary.scores = scores_;
     return summary;
+  }
+
+  void Begin(int first_step) override {
+    batches_ =
+        std::make_unique<MadeAhead<PhotoBatch>>(std::max(0, options_.TotalSteps() - first_step),
+                                                [this, first_step](int64_t i) { return BatchOf(first_step + i); });
+  }
+
+  bool Step(int step) override {
+    const double rate = Rate(step);
+    for (Adam* optimizer : {feature_optimizer_.get(), render_optimizer_.get(), discriminator_optimizer_.get()}) {
+      if (optimizer == nullptr) continue;
+      SetRate(optimizer, rate);
+      optimizer->zero_grad();
+    }
+    const PhotoBatch batch = batches_->Take();
+    losses_ = step < InpaintSteps() ? InpaintStep(batch) : RenderStep(batch);
+    return losses_.IsFinite();
+  }
+
+  [[nodiscard]] bool HasValidation() const override { return !options_.validation.empty(); }
+
+  void Validate(int done, bool) override {
+    const std::vector<PhotoPair> pairs =
+        ValidationPairs(validation_source_.num_frames, options_.validation, options_.validation_pairs);
+    const size_t every = std::max<size_t>(1, pairs.size() / static_cast<size_t>(options_.preview_pairs));
+    PhotoScorer scorer(lpips_, options_.ssim);
+    std::vector<PhotoPreview> previews;
+    for (size_t i = 0; i < pairs.size(); ++i) {
+      const torch::NoGradGuard no_grad;
+      PhotoPreview preview;
+      preview.pair = pairs[i];
+      validation_source_.fill(pairs[i].person, pairs[i].source, &preview.source);
+      validation_source_.fill(pairs[i].person, pairs[i].target, &preview.target);
+      const PartialTexture texture = PartialTextureOf(preview.source);
+      const Tensor features = model_->Complete(ToTensors(std::span(&texture, 1)));
+      preview.picture = RenderPhoto(model_, features, preview.target, options_.reach);
+      scorer.Add(preview.picture, preview.target);
+      if (!options_.preview || i % every != 0) continue;
+      preview.partial_texture = texture.colour;
+      preview.completed_texture = HostValues<float>((0.5 * (features.slice(1, 0, 3) + 1)).clamp(0, 1));
+      previews.push_back(std::move(preview));
+    }
+    scores_ = scorer.Scores();
+    if (options_.preview) options_.preview(done, previews);
+  }
+
+  [[nodiscard]] std::vector<double> Row(int done, bool validated) const override {
+    const Losses& l = losses_;
+    std::vector<double> row = {Rate(done - 1), l.total,     l.perceptual, l.face,
+                               l.texture,      l.generator, l.alpha,      l.discriminator};
+    for (const double score : {scores_.image_l1, scores_.psnr_db, scores_.ssim, scores_.lpips, scores_.outline_iou}) {
+      row.push_back(validated ? score : std::numeric_limits<double>::quiet_NaN());
+    }
+    return row;
+  }
+
+  bool Report(int done, double seconds) override {
+    return !options_.progress || options_.progress({done, options_.TotalSteps(), losses_.total, scores_, seconds});
   }
 
  private:
@@ -177,16 +186,6 @@ class Trainer {
     const int before = InpaintSteps();
     return step < before ? LinearDecayOverLastHalf(options_.learning_rate, step, before)
                          : LinearDecayOverLastHalf(options_.learning_rate, step - before, options_.steps);
-  }
-
-  Losses Step(const PhotoBatch& batch) {
-    const double rate = Rate(step_);
-    for (Adam* optimizer : {feature_optimizer_.get(), render_optimizer_.get(), discriminator_optimizer_.get()}) {
-      if (optimizer == nullptr) continue;
-      SetRate(optimizer, rate);
-      optimizer->zero_grad();
-    }
-    return step_ < InpaintSteps() ? InpaintStep(batch) : RenderStep(batch);
   }
 
   Losses InpaintStep(const PhotoBatch& batch) {
@@ -241,57 +240,16 @@ class Trainer {
       add(options_.texture_weight, TextureLoss(features, batch.source, batch.target), &losses.texture);
     }
     if (options_.gan_weight > 0) {
-      RequireGradients(discriminator_.ptr().get(), false);
+      RequireGradients(discriminator_.get(), false);
       add(options_.gan_weight, GeneratorLoss(judge(result.image)), &losses.generator);
     }
     total.backward();
-    RequireGradients(discriminator_.ptr().get(), true);
+    RequireGradients(discriminator_.get(), true);
     losses.total = total.item<double>();
     if (!losses.IsFinite()) return losses;  // a step would spoil the weights
     render_optimizer_->step();
     if (config_.Completes() && config_.variant != PhotoVariant::kInpaint) feature_optimizer_->step();
     return losses;
-  }
-
-  void Validate() {
-    const std::vector<PhotoPair> pairs =
-        ValidationPairs(validation_source_.num_frames, options_.validation, options_.validation_pairs);
-    const size_t every = std::max<size_t>(1, pairs.size() / static_cast<size_t>(options_.preview_pairs));
-    PhotoScorer scorer(lpips_, options_.ssim);
-    std::vector<PhotoPreview> previews;
-    for (size_t i = 0; i < pairs.size(); ++i) {
-      const torch::NoGradGuard no_grad;
-      PhotoPreview preview;
-      preview.pair = pairs[i];
-      validation_source_.fill(pairs[i].person, pairs[i].source, &preview.source);
-      validation_source_.fill(pairs[i].person, pairs[i].target, &preview.target);
-      const PartialTexture texture = PartialTextureOf(preview.source);
-      const Tensor features = model_->Complete(ToTensors(std::span(&texture, 1)));
-      preview.picture = RenderPhoto(model_, features, preview.target, options_.reach);
-      scorer.Add(preview.picture, preview.target);
-      if (!options_.preview || i % every != 0) continue;
-      preview.partial_texture = texture.colour;
-      const Tensor colour = (0.5 * (features.slice(1, 0, 3) + 1)).clamp(0, 1).contiguous();
-      preview.completed_texture.assign(colour.data_ptr<float>(), colour.data_ptr<float>() + colour.numel());
-      previews.push_back(std::move(preview));
-    }
-    scores_ = scorer.Scores();
-    if (options_.preview) options_.preview(step_, previews);
-  }
-
-  [[nodiscard]] std::vector<double> Row(const Losses& l, bool validated, double seconds) const {
-    std::vector<double> row = {Rate(step_ - 1), l.total,     l.perceptual, l.face,
-                               l.texture,       l.generator, l.alpha,      l.discriminator};
-    for (const double score : {scores_.image_l1, scores_.psnr_db, scores_.ssim, scores_.lpips, scores_.outline_iou}) {
-      row.push_back(validated ? score : std::numeric_limits<double>::quiet_NaN());
-    }
-    row.push_back(seconds);
-    return row;
-  }
-
-  void Save() {
-    checkpoint_->step = last_checkpoint_ = step_;
-    checkpoint_->Save(PhotoCheckpointPath(options_.run_dir));
   }
 
   const PhotoSource& source_;
@@ -307,7 +265,8 @@ class Trainer {
   std::unique_ptr<Adam> feature_optimizer_, render_optimizer_, discriminator_optimizer_;
   std::unique_ptr<Checkpoint> checkpoint_;
   PhotoScores scores_;
-  int step_ = 0, last_checkpoint_ = 0;
+  Losses losses_;                                   ///< of the last step
+  std::unique_ptr<MadeAhead<PhotoBatch>> batches_;  ///< last: its thread uses the rest
 };
 
 }  // namespace
@@ -318,27 +277,18 @@ int TrainPhotoOptions::TotalSteps() const {
 }
 
 bool TrainPhotoOptions::IsValid(std::string* why) const {
-  const auto in_range = [&](const char* name, double value, double low, double high) {
-    if (value >= low && value <= high) return true;
-    if (why != nullptr) *why = Concatenate(name, " is ", value, ", expected ", low, " to ", high);
-    return false;
-  };
+  const InRange in_range(why);
   if (train.empty()) {
     if (why != nullptr) *why = "nobody to train on";
     return false;
   }
-  return config.IsValid(why) && in_range("validation_pairs", validation_pairs, 1, 1e6) &&
-         in_range("steps", steps, 1, 1e8) && in_range("inpaint_steps", inpaint_steps, 0, 1e8) &&
-         in_range("batch", batch, 1, 256) && in_range("learning_rate", learning_rate, 0, 1) &&
-         in_range("perceptual_weight", perceptual_weight, 0, 1e6) && in_range("face_weight", face_weight, 0, 1e6) &&
-         in_range("texture_weight", texture_weight, 0, 1e6) && in_range("gan_weight", gan_weight, 0, 1e6) &&
-         in_range("alpha_weight", alpha_weight, 0, 1e6) && in_range("reach", reach, 0, 4096) &&
-         in_range("num_threads", num_threads, 0, 256) && in_range("report_every", report_every, 1, 1e8) &&
-         in_range("validate_every", validate_every, 1, 1e8) && in_range("checkpoint_every", checkpoint_every, 1, 1e8) &&
-         in_range("preview_pairs", preview_pairs, 1, 64);
+  return IsValidRun(*this, why) && config.IsValid(why) && in_range("validation_pairs", validation_pairs, 1, 1e6) &&
+         in_range("inpaint_steps", inpaint_steps, 0, 1e8) && in_range("batch", batch, 1, 256) &&
+         in_range("learning_rate", learning_rate, 0, 1) && in_range("perceptual_weight", perceptual_weight, 0, 1e6) &&
+         in_range("face_weight", face_weight, 0, 1e6) && in_range("texture_weight", texture_weight, 0, 1e6) &&
+         in_range("gan_weight", gan_weight, 0, 1e6) && in_range("alpha_weight", alpha_weight, 0, 1e6) &&
+         in_range("reach", reach, 0, 4096) && in_range("preview_pairs", preview_pairs, 1, 64);
 }
-
-std::string PhotoCheckpointPath(const std::string& run_dir) { return (fs::path(run_dir) / "checkpoint.bin").string(); }
 
 TrainPhotoSummary TrainPhoto(const PhotoSource& source, const TrainPhotoOptions& options) {
   std::string why;
@@ -356,7 +306,8 @@ TrainPhotoSummary TrainPhoto(const PhotoSource& source, const TrainPhotoOptions&
   check(source, options.train);
   check(ValidationSource(source, options), options.validation);
   StartNeuralRuntime(options.num_threads);
-  return Trainer(source, options).Run();
+  UseNeuralDevice(options.device);
+  return PhotoTrainer(source, options).Run();
 }
 
 }  // namespace bodyloom

@@ -26,6 +26,7 @@
 #include "neural/photo/photo_pairs.h"
 #include "neural/photo/photo_picture.h"
 #include "neural/photo/photo_scores.h"
+#include "neural/training/training_run.h"
 
 namespace bodyloom {
 
@@ -44,13 +45,12 @@ struct TrainPhotoProgress {
   double seconds = 0;
 };
 
-struct TrainPhotoOptions {
+struct TrainPhotoOptions : TrainingRun {
   PhotoConfig config;
   std::vector<int> train, validation;              ///< persons; validation may be empty
   const PhotoSource* validation_source = nullptr;  ///< whose persons `validation` are; nullptr: the same
   int validation_pairs = 2;                        ///< a person, the same in every run
-  int steps = 20000;
-  int inpaint_steps = 0;  ///< of kInpaint's first stage; 0: as many as `steps`
+  int inpaint_steps = 0;                           ///< of kInpaint's first stage; 0: as many as `steps`
   int batch = 4;
   double learning_rate = 2e-4;
   double perceptual_weight = 10, face_weight = 5, texture_weight = 1, gan_weight = 1, alpha_weight = 1;
@@ -59,13 +59,7 @@ struct TrainPhotoOptions {
   WeightsFrom sphereface;            ///< empty: no face loss
   WeightsFrom alexnet, lpips_heads;  ///< empty: validation's LPIPS is a stand-in
   PictureSimilarity ssim;            ///< of validation; may be empty
-  uint64_t seed = 1;
-  int num_threads = 0;  ///< of LibTorch; 0: all cores
-  int report_every = 20, validate_every = 500, checkpoint_every = 250;
   int preview_pairs = 4;
-  std::string run_dir;
-  std::string config_json;  ///< kept in the checkpoint as it is
-  bool resume = false;
   std::function<bool(const TrainPhotoProgress&)> progress;  ///< return false to stop after a checkpoint
   std::function<void(int step, const std::vector<PhotoPreview>&)> preview;
 
@@ -74,20 +68,11 @@ struct TrainPhotoOptions {
   [[nodiscard]] bool IsValid(std::string* why) const;
 };
 
-enum class TrainPhotoStatus { kFinished, kStopped, kNotFinite };
-
-struct TrainPhotoSummary {
-  TrainPhotoStatus status = TrainPhotoStatus::kNotFinite;
-  std::string message;
-  int steps = 0;
-  double seconds = 0;
+struct TrainPhotoSummary : TrainingOutcome {
   PhotoScores scores;
   std::vector<std::string> losses_off;
   bool perceptual_stand_in = true;
 };
-
-/// run_dir/checkpoint.bin.
-std::string PhotoCheckpointPath(const std::string& run_dir);
 
 /// Throws std::invalid_argument for options that are not valid or do not fit the source, std::runtime_error for files
 /// that cannot be used.

@@ -66,7 +66,7 @@ TEST(TrainLifterVerb, TrainsAndLeavesAWholeRun) {
   WriteMotions(folder);
   const CommandResult result = RunCommand(Training(folder));
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  for (const char* name : {"config.json", "metrics.csv", "checkpoint.pt", "lifter.npz"}) {
+  for (const char* name : {"config.json", "metrics.csv", "checkpoint.bin", "lifter.npz"}) {
     EXPECT_TRUE(std::filesystem::exists(folder / "run" + "/" + name)) << name;
   }
   const CommandResult again = RunCommand(Training(folder));

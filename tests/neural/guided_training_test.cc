@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The pose-guided renderer learns toy people, goes on where it stopped, and draws them.
 #include <gtest/gtest.h>
+#include <torch/cuda.h>
 
 #include <cmath>
 #include <filesystem>
@@ -11,6 +12,7 @@
 #include "neural/guided/guided_model.h"
 #include "neural/guided/guided_renderer.h"
 #include "neural/guided/train_guided.h"
+#include "neural/runtime.h"
 #include "tests/neural/guided_toy.h"
 
 namespace bodyloom {
@@ -54,7 +56,7 @@ TEST(GuidedTraining, LearnsAPairByHeart) {
   std::vector<GuidedPreview> previews;
   options.preview = [&](int, const std::vector<GuidedPreview>& made) { previews = made; };
   const TrainGuidedSummary summary = TrainGuided(ToyPeople(1, 2), options);
-  ASSERT_EQ(summary.status, TrainGuidedStatus::kFinished) << summary.message;
+  ASSERT_EQ(summary.status, TrainingStatus::kFinished) << summary.message;
   // An untrained network sees half a person everywhere, in grey.
   EXPECT_GT(summary.scores.silhouette_iou, 0.9);
   EXPECT_GT(summary.scores.label_iou, 0.7);
@@ -66,7 +68,7 @@ TEST(GuidedTraining, LearnsAPairByHeart) {
   EXPECT_EQ(previews[0].frame, 1);
 
   // The same networks from their file; two views fill what one leaves open, and the same pose is not drawn again.
-  GuidedRenderer renderer(GuidedCheckpointPath(options.run_dir), options.config, {2, true, 1});
+  GuidedRenderer renderer(CheckpointPath(options.run_dir), options.config, {2, true, 1});
   const std::vector<PhotoFrame> photos = {ToyPhotoFrame(0, ToyPoseOf(0), true), ToyPhotoFrame(0, {0, 0, true}, true)};
   const std::vector<PhotoFrame> views = ToyViews();
   EXPECT_THROW(renderer.Render(photos[0]), std::invalid_argument);
@@ -97,16 +99,16 @@ TEST(GuidedTraining, LearnsAPairByHeart) {
 
 TEST(GuidedTraining, AResumedRunEndsWithTheSameBytes) {
   const TrainGuidedOptions whole = ToyOptions("guided_whole");
-  ASSERT_EQ(TrainGuided(ToyPeople(3, 4), whole).status, TrainGuidedStatus::kFinished);
+  ASSERT_EQ(TrainGuided(ToyPeople(3, 4), whole).status, TrainingStatus::kFinished);
   TrainGuidedOptions parts = ToyOptions("guided_parts");
   parts.progress = [](const TrainGuidedProgress& progress) { return progress.step < 4; };
   const TrainGuidedSummary stopped = TrainGuided(ToyPeople(3, 4), parts);
-  EXPECT_EQ(stopped.status, TrainGuidedStatus::kStopped);
+  EXPECT_EQ(stopped.status, TrainingStatus::kStopped);
   EXPECT_EQ(stopped.steps, 4);
   parts.progress = nullptr;
   parts.resume = true;
-  ASSERT_EQ(TrainGuided(ToyPeople(3, 4), parts).status, TrainGuidedStatus::kFinished);
-  EXPECT_EQ(Bytes(GuidedCheckpointPath(parts.run_dir)), Bytes(GuidedCheckpointPath(whole.run_dir)));
+  ASSERT_EQ(TrainGuided(ToyPeople(3, 4), parts).status, TrainingStatus::kFinished);
+  EXPECT_EQ(Bytes(CheckpointPath(parts.run_dir)), Bytes(CheckpointPath(whole.run_dir)));
 }
 
 TEST(GuidedTraining, EveryAblationTrainsAndDraws) {
@@ -120,9 +122,9 @@ TEST(GuidedTraining, EveryAblationTrainsAndDraws) {
     options.config.profile.spectral_norm = true;
     options.config.profile.one_hot_labels = false;
     const TrainGuidedSummary summary = TrainGuided(ToyPeople(2, 4), options);
-    ASSERT_EQ(summary.status, TrainGuidedStatus::kFinished) << parts[0] << ": " << summary.message;
+    ASSERT_EQ(summary.status, TrainingStatus::kFinished) << parts[0] << ": " << summary.message;
     EXPECT_EQ(summary.scores.frames, 6) << parts[0];
-    GuidedRenderer renderer(GuidedCheckpointPath(options.run_dir), options.config, {0, true, 1});
+    GuidedRenderer renderer(CheckpointPath(options.run_dir), options.config, {0, true, 1});
     const PhotoFrame photo = ToyPhotoFrame(0, {}, true);
     renderer.SetSource(std::span(&photo, 1), ToyTexelParts(), ToyViews());
     EXPECT_EQ(renderer.virtual_pictures().empty(), !options.config.uv_appearance);
@@ -143,11 +145,11 @@ TEST(GuidedTraining, ALossThatIsNotANumberKeepsTheLastCheckpoint) {
     if (person == 3 && frame == 1) out->image[16 * kToySide + 16] = std::numeric_limits<float>::quiet_NaN();
   };
   const TrainGuidedSummary summary = TrainGuided(people, options);
-  ASSERT_EQ(summary.status, TrainGuidedStatus::kNotFinite);
+  ASSERT_EQ(summary.status, TrainingStatus::kNotFinite);
   EXPECT_NE(summary.message.find("checkpoint.bin holds step " + std::to_string(summary.steps)), std::string::npos)
       << summary.message;
   if (summary.steps == 0) return;
-  GuidedRenderer renderer(GuidedCheckpointPath(options.run_dir), options.config, {0, false, 1});
+  GuidedRenderer renderer(CheckpointPath(options.run_dir), options.config, {0, false, 1});
   const PhotoFrame photo = ToyPhotoFrame(0, {}, true);
   renderer.SetSource(std::span(&photo, 1), ToyTexelParts(), {});
   for (const float value : renderer.Render(photo).image) ASSERT_TRUE(std::isfinite(value));
@@ -164,8 +166,8 @@ TEST(GuidedTraining, RefusesWhatDoesNotFit) {
   PhotoSource bare = ToyPeople(1, 2);
   bare.fill = [](int, int, PhotoFrame* out) { *out = ToyPhotoFrame(0, {}, false); };
   EXPECT_THROW(TrainGuided(bare, options), std::invalid_argument);
-  ASSERT_EQ(TrainGuided(ToyPeople(1, 2), options).status, TrainGuidedStatus::kFinished);
-  const std::string path = GuidedCheckpointPath(options.run_dir);
+  ASSERT_EQ(TrainGuided(ToyPeople(1, 2), options).status, TrainingStatus::kFinished);
+  const std::string path = CheckpointPath(options.run_dir);
   GuidedConfig other = ToyGuided();
   LeaveOut("gar", &other);
   EXPECT_THROW(GuidedRenderer(path, other, {0, true, 1}), std::runtime_error);
@@ -182,6 +184,17 @@ TEST(GuidedTraining, RefusesWhatDoesNotFit) {
   } catch (const std::runtime_error& error) {
     EXPECT_EQ(std::string(error.what()).rfind(path, 0), 0U) << error.what();
   }
+}
+
+TEST(GuidedTraining, DoesTheSameOnACard) {
+  if (!torch::cuda::is_available()) GTEST_SKIP() << "no CUDA card here";
+  const TrainGuidedSummary here = TrainGuided(ToyPeople(3, 4), ToyOptions("guided_cpu"));
+  TrainGuidedOptions options = ToyOptions("guided_cuda");
+  options.device = "cuda";
+  const TrainGuidedSummary there = TrainGuided(ToyPeople(3, 4), options);
+  ASSERT_EQ(there.status, TrainingStatus::kFinished) << there.message;
+  EXPECT_NEAR(there.scores.image_l1, here.scores.image_l1, 1e-3);
+  UseNeuralDevice("cpu");
 }
 
 }  // namespace

@@ -262,7 +262,7 @@ TEST_F(LifterTraining, LearnsTheToyWorld) {
   options_.average = 0.9;
   options_.validate_every = 400;
   const TrainLifterResult result = TrainLifter(Source(), Source(), options_);
-  EXPECT_EQ(result.summary.status, TrainStatus::kFinished);
+  EXPECT_EQ(result.summary.status, TrainingStatus::kFinished);
   // Saying nothing is off by the mean length of the landmarks, 0.3 · √(8/π) = 0.48.
   EXPECT_LT(result.summary.validation_distance, 0.12);
   EXPECT_LE(result.summary.validation_best_distance, result.summary.validation_distance + 1e-6);
@@ -276,13 +276,13 @@ TEST_F(LifterTraining, AnInterruptedRunEndsWithTheSameBytes) {
   fs::create_directories(folder_);
   options_.progress = [](const TrainLifterProgress& progress) { return progress.step < 25; };
   const TrainLifterResult part = TrainLifter(Source(), Source(), options_);
-  EXPECT_EQ(part.summary.status, TrainStatus::kStopped);
+  EXPECT_EQ(part.summary.status, TrainingStatus::kStopped);
   EXPECT_EQ(part.summary.steps, 25);
   EXPECT_FALSE(SameBytes(part.weights, whole.weights));
   options_.progress = nullptr;
   options_.resume = true;
   const TrainLifterResult rest = TrainLifter(Source(), Source(), options_);
-  EXPECT_EQ(rest.summary.status, TrainStatus::kFinished);
+  EXPECT_EQ(rest.summary.status, TrainingStatus::kFinished);
   EXPECT_TRUE(SameBytes(rest.weights, whole.weights));
   EXPECT_EQ(NumLines(folder_ / "metrics.csv"), 1 + 8);
 }
@@ -293,21 +293,21 @@ TEST_F(LifterTraining, ALossThatIsNotFiniteKeepsTheCheckpoint) {
     if (seed % (uint64_t{1} << 40) >= 4 * 23) example->points[5] = std::numeric_limits<float>::quiet_NaN();
   };
   const TrainLifterResult result = TrainLifter(poisoned, Source(), options_);
-  EXPECT_EQ(result.summary.status, TrainStatus::kNotFinite);
-  EXPECT_NE(result.summary.message.find("step 23"), std::string::npos) << result.summary.message;
+  EXPECT_EQ(result.summary.status, TrainingStatus::kNotFinite);
+  EXPECT_NE(result.summary.message.find("step 24"), std::string::npos) << result.summary.message;
   EXPECT_NE(result.summary.message.find("holds step 20"), std::string::npos) << result.summary.message;
-  EXPECT_TRUE(fs::exists(folder_ / "checkpoint.pt"));
+  EXPECT_TRUE(fs::exists(folder_ / "checkpoint.bin"));
 }
 
 TEST_F(LifterTraining, RefusesCheckpointsThatAreNotOurs) {
   options_.resume = true;
   EXPECT_THROW(TrainLifter(Source(), Source(), options_), std::runtime_error);
-  std::ofstream(folder_ / "checkpoint.pt") << "not a checkpoint";
+  std::ofstream(folder_ / "checkpoint.bin") << "not a checkpoint";
   try {
     TrainLifter(Source(), Source(), options_);
     FAIL();
   } catch (const std::runtime_error& error) {
-    EXPECT_NE(std::string(error.what()).find("checkpoint.pt"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("checkpoint.bin"), std::string::npos) << error.what();
   }
   options_.resume = false;
   options_.steps = 10;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The motion-dependent renderer on toy frames: a square "person" whose colour follows its motion map.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <torch/cuda.h>
 
 #include <cmath>
 #include <filesystem>
@@ -17,6 +19,7 @@
 #include "neural/motion/roll_out.h"
 #include "neural/motion/train_motion.h"
 #include "neural/networks/architecture_card.h"
+#include "neural/runtime.h"
 
 namespace bodyloom {
 namespace {
@@ -171,7 +174,7 @@ TEST(MotionTraining, LearnsAClipByHeartAndRollsItOut) {
   std::vector<MotionPreview> previews;
   options.preview = [&](int, const std::vector<MotionPreview>& made) { previews = made; };
   const TrainMotionSummary summary = TrainMotion(ToyFrame, options);
-  ASSERT_EQ(summary.status, TrainMotionStatus::kFinished) << summary.message;
+  ASSERT_EQ(summary.status, TrainingStatus::kFinished) << summary.message;
   EXPECT_EQ(summary.scores.frames, 4);
   // An untrained network is off by 0.3 or more, and knows nothing of labels.
   EXPECT_LT(summary.scores.image_l1, 0.1);
@@ -180,7 +183,7 @@ TEST(MotionTraining, LearnsAClipByHeartAndRollsItOut) {
   EXPECT_TRUE(summary.perceptual_stand_in);
   EXPECT_EQ(previews.size(), 4U);
   // The same network from its file, scored apart from training.
-  MotionRenderer renderer(MotionCheckpointPath(options.run_dir), options.config, {10, 0, true, 1});
+  MotionRenderer renderer(CheckpointPath(options.run_dir), options.config, {10, 0, true, 1});
   for (int t = 0; t < 4; ++t) {
     MotionFrame frame;
     ToyFrame(t, true, &frame);
@@ -193,16 +196,16 @@ TEST(MotionTraining, LearnsAClipByHeartAndRollsItOut) {
 
 TEST(MotionTraining, AResumedRunEndsWithTheSameBytes) {
   const TrainMotionOptions whole = ToyOptions("motion_whole");
-  ASSERT_EQ(TrainMotion(ToyFrame, whole).status, TrainMotionStatus::kFinished);
+  ASSERT_EQ(TrainMotion(ToyFrame, whole).status, TrainingStatus::kFinished);
   TrainMotionOptions parts = ToyOptions("motion_parts");
   parts.progress = [](const TrainMotionProgress& progress) { return progress.step < 4; };
   const TrainMotionSummary stopped = TrainMotion(ToyFrame, parts);
-  EXPECT_EQ(stopped.status, TrainMotionStatus::kStopped);
+  EXPECT_EQ(stopped.status, TrainingStatus::kStopped);
   EXPECT_EQ(stopped.steps, 4);
   parts.progress = nullptr;
   parts.resume = true;
-  ASSERT_EQ(TrainMotion(ToyFrame, parts).status, TrainMotionStatus::kFinished);
-  EXPECT_EQ(Bytes(MotionCheckpointPath(parts.run_dir)), Bytes(MotionCheckpointPath(whole.run_dir)));
+  ASSERT_EQ(TrainMotion(ToyFrame, parts).status, TrainingStatus::kFinished);
+  EXPECT_EQ(Bytes(CheckpointPath(parts.run_dir)), Bytes(CheckpointPath(whole.run_dir)));
 }
 
 TEST(MotionTraining, LossesWithoutTruthAreSwitchedOff) {
@@ -216,7 +219,7 @@ TEST(MotionTraining, LossesWithoutTruthAreSwitchedOff) {
         frame->normals.clear();
       },
       options);
-  EXPECT_EQ(summary.status, TrainMotionStatus::kFinished);
+  EXPECT_EQ(summary.status, TrainingStatus::kFinished);
   EXPECT_EQ(summary.losses_off.size(), 2U);
 }
 
@@ -232,11 +235,11 @@ TEST(MotionTraining, ALossThatIsNotANumberKeepsTheLastCheckpoint) {
         if (t == 20 && with_truth) frame->image[600] = std::numeric_limits<float>::quiet_NaN();
       },
       options);
-  ASSERT_EQ(summary.status, TrainMotionStatus::kNotFinite);
+  ASSERT_EQ(summary.status, TrainingStatus::kNotFinite);
   EXPECT_GT(summary.steps, 0);
   EXPECT_NE(summary.message.find("checkpoint.bin holds step " + std::to_string(summary.steps)), std::string::npos)
       << summary.message;
-  MotionRenderer renderer(MotionCheckpointPath(options.run_dir), options.config, {0, 0, false, 1});
+  MotionRenderer renderer(CheckpointPath(options.run_dir), options.config, {0, 0, false, 1});
   MotionFrame frame;
   ToyFrame(3, false, &frame);
   for (const float value : renderer.Next(frame).image) ASSERT_TRUE(std::isfinite(value));
@@ -248,8 +251,8 @@ TEST(MotionTraining, RefusesWhatDoesNotFit) {
   EXPECT_THROW(TrainMotion(ToyFrame, options), std::invalid_argument);
   options = ToyOptions("motion_refuses");
   options.steps = 1;
-  ASSERT_EQ(TrainMotion(ToyFrame, options).status, TrainMotionStatus::kFinished);
-  const std::string path = MotionCheckpointPath(options.run_dir);
+  ASSERT_EQ(TrainMotion(ToyFrame, options).status, TrainingStatus::kFinished);
+  const std::string path = CheckpointPath(options.run_dir);
   MotionConfig other = Toy();
   other.profile.decoder_widths = {4, 8, 8};
   EXPECT_THROW(MotionRenderer(path, other, {0, 0, false, 1}), std::runtime_error);
@@ -346,6 +349,31 @@ TEST(MotionScores, AreZeroForTheTruthAndWhatTheyShouldBeBesideIt) {
   EXPECT_EQ(scores.class_iou[2], 0);
   EXPECT_NEAR(scores.foreground_iou, 256.0 / 1024, 1e-6);
   EXPECT_NEAR(scores.label_iou, 0.5 * 128 / 1024, 1e-6);
+}
+
+TEST(MotionTraining, DoesTheSameOnACard) {
+  if (!torch::cuda::is_available()) GTEST_SKIP() << "no CUDA card here";
+  TrainMotionOptions options = ToyOptions("motion_cpu");
+  const TrainMotionSummary here = TrainMotion(ToyFrame, options);
+  TrainMotionOptions other = ToyOptions("motion_cuda");
+  other.device = "cuda";
+  other.steps = 4;
+  other.report_every = other.validate_every = 2;
+  ASSERT_EQ(TrainMotion(ToyFrame, other).status, TrainingStatus::kFinished);
+  other.steps = options.steps;
+  other.resume = true;
+  const TrainMotionSummary there = TrainMotion(ToyFrame, other);
+  ASSERT_EQ(there.status, TrainingStatus::kFinished) << there.message;
+  EXPECT_NEAR(there.scores.image_l1, here.scores.image_l1, 0.02);
+  MotionFrame frame;
+  ToyFrame(0, false, &frame);
+  MotionPicture pictures[2];
+  for (const char* device : {"cpu", "cuda"}) {
+    MotionRenderer renderer(CheckpointPath(other.run_dir), other.config, {0, 3, false, 1, device});
+    pictures[device[1] == 'u'] = renderer.Next(frame);
+  }
+  EXPECT_THAT(pictures[1].image, ::testing::Pointwise(::testing::FloatNear(1e-3F), pictures[0].image));
+  UseNeuralDevice("cpu");
 }
 
 }  // namespace

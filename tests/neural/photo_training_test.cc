@@ -2,6 +2,7 @@
 // The one-photo renderer trained on toy people and put to work.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <torch/cuda.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +15,7 @@
 #include "neural/photo/photo_renderer.h"
 #include "neural/photo/photo_window.h"
 #include "neural/photo/train_photo.h"
+#include "neural/runtime.h"
 #include "tests/neural/toy_photos.h"
 
 namespace bodyloom {
@@ -57,7 +59,7 @@ TEST(PhotoTraining, LearnsTwoPeopleByHeart) {
   std::vector<PhotoPreview> previews;
   options.preview = [&](int, const std::vector<PhotoPreview>& made) { previews = made; };
   const TrainPhotoSummary summary = TrainPhoto(source, options);
-  ASSERT_EQ(summary.status, TrainPhotoStatus::kFinished) << summary.message;
+  ASSERT_EQ(summary.status, TrainingStatus::kFinished) << summary.message;
   EXPECT_EQ(summary.scores.pictures, 4);
   // An untrained network paints grey, 0.25 off, and is half transparent everywhere.
   EXPECT_LT(summary.scores.image_l1, 0.1);
@@ -68,7 +70,7 @@ TEST(PhotoTraining, LearnsTwoPeopleByHeart) {
   ASSERT_EQ(previews.size(), 4U);
 
   // The same network from its file: the completed texture keeps the colours of what the source picture shows.
-  PhotoRenderer renderer(PhotoCheckpointPath(options.run_dir), options.config, {options.reach, 1});
+  PhotoRenderer renderer(CheckpointPath(options.run_dir), options.config, {options.reach, 1});
   PhotoFrame front, back;
   source.fill(1, 0, &front);
   source.fill(1, 1, &back);
@@ -103,18 +105,18 @@ TEST(PhotoTraining, AResumedRunEndsWithTheSameBytes) {
   for (const auto& [variant, stop] : cases) {
     SCOPED_TRACE(Concatenate(ToText(variant), " stopped at ", stop));
     const TrainPhotoOptions whole = ToyOptions("photo_whole", variant);
-    ASSERT_EQ(TrainPhoto(source, whole).status, TrainPhotoStatus::kFinished);
+    ASSERT_EQ(TrainPhoto(source, whole).status, TrainingStatus::kFinished);
     TrainPhotoOptions parts = ToyOptions("photo_parts", variant);
     parts.progress = [stop = stop](const TrainPhotoProgress& progress) { return progress.step < stop; };
     const TrainPhotoSummary stopped = TrainPhoto(source, parts);
-    EXPECT_EQ(stopped.status, TrainPhotoStatus::kStopped);
+    EXPECT_EQ(stopped.status, TrainingStatus::kStopped);
     EXPECT_EQ(stopped.steps, stop);
     parts.progress = nullptr;
     parts.resume = true;
     const TrainPhotoSummary finished = TrainPhoto(source, parts);
-    ASSERT_EQ(finished.status, TrainPhotoStatus::kFinished);
+    ASSERT_EQ(finished.status, TrainingStatus::kFinished);
     EXPECT_EQ(finished.steps, whole.TotalSteps());
-    EXPECT_EQ(Bytes(PhotoCheckpointPath(parts.run_dir)), Bytes(PhotoCheckpointPath(whole.run_dir)));
+    EXPECT_EQ(Bytes(CheckpointPath(parts.run_dir)), Bytes(CheckpointPath(whole.run_dir)));
   }
 }
 
@@ -125,9 +127,9 @@ TEST(PhotoTraining, EveryVariantTrainsAndWorks) {
     TrainPhotoOptions options = ToyOptions("photo_variant", variant);
     options.steps = 2;
     const TrainPhotoSummary summary = TrainPhoto(source, options);
-    ASSERT_EQ(summary.status, TrainPhotoStatus::kFinished);
+    ASSERT_EQ(summary.status, TrainingStatus::kFinished);
     EXPECT_EQ(summary.losses_off.size(), variant == PhotoVariant::kNoInt ? 2U : 1U);
-    PhotoRenderer renderer(PhotoCheckpointPath(options.run_dir), options.config, {2, 1});
+    PhotoRenderer renderer(CheckpointPath(options.run_dir), options.config, {2, 1});
     PhotoFrame frame;
     source.fill(2, 0, &frame);
     renderer.Encode(PartialTextureOf(frame));
@@ -146,7 +148,7 @@ TEST(PhotoTraining, InpaintingTrainsOneNetworkAfterTheOther) {
   source.fill(0, 0, &frame);
   std::vector<std::vector<float>> textures, pictures;
   const auto look = [&] {
-    PhotoRenderer renderer(PhotoCheckpointPath(options.run_dir), options.config, {2, 1});
+    PhotoRenderer renderer(CheckpointPath(options.run_dir), options.config, {2, 1});
     renderer.Encode(PartialTextureOf(frame));
     textures.push_back(renderer.CompletedTexture());
     pictures.push_back(renderer.Render(frame).image);
@@ -173,10 +175,10 @@ TEST(PhotoTraining, ALossThatIsNotANumberKeepsTheLastCheckpoint) {
   options.validation.clear();
   options.steps = 60;
   const TrainPhotoSummary summary = TrainPhoto(source, options);
-  ASSERT_EQ(summary.status, TrainPhotoStatus::kNotFinite);
+  ASSERT_EQ(summary.status, TrainingStatus::kNotFinite);
   ASSERT_GT(summary.steps, 0);
   EXPECT_THAT(summary.message, HasSubstr("checkpoint.bin holds step " + std::to_string(summary.steps)));
-  PhotoRenderer renderer(PhotoCheckpointPath(options.run_dir), options.config, {2, 1});
+  PhotoRenderer renderer(CheckpointPath(options.run_dir), options.config, {2, 1});
   PhotoFrame frame;
   source.fill(0, 0, &frame);
   renderer.Encode(PartialTextureOf(frame));
@@ -200,8 +202,8 @@ TEST(PhotoTraining, RefusesWhatDoesNotFit) {
   TrainPhotoOptions options = ToyOptions("photo_refuses");
   options.steps = 1;
   options.validation.clear();
-  ASSERT_EQ(TrainPhoto(source, options).status, TrainPhotoStatus::kFinished);
-  const std::string path = PhotoCheckpointPath(options.run_dir);
+  ASSERT_EQ(TrainPhoto(source, options).status, TrainingStatus::kFinished);
+  const std::string path = CheckpointPath(options.run_dir);
   const auto fails = [&](const PhotoConfig& config) {
     try {
       const PhotoRenderer renderer(path, config, {2, 1});
@@ -238,8 +240,8 @@ TEST(PhotoRenderer, ComputesOnlyWhatIsNearTheBody) {
   TrainPhotoOptions options = ToyOptions("photo_window");
   options.steps = 1;
   options.validation.clear();
-  ASSERT_EQ(TrainPhoto(source, options).status, TrainPhotoStatus::kFinished);
-  const std::string path = PhotoCheckpointPath(options.run_dir);
+  ASSERT_EQ(TrainPhoto(source, options).status, TrainingStatus::kFinished);
+  const std::string path = CheckpointPath(options.run_dir);
   PhotoRenderer near(path, options.config, {2, 1}), everywhere(path, options.config, {-1, 1});
   PhotoFrame frame;
   source.fill(0, 1, &frame);
@@ -260,6 +262,27 @@ TEST(PhotoRenderer, ComputesOnlyWhatIsNearTheBody) {
   frame.parts.assign(frame.parts.size(), 0);
   const PhotoPicture nobody = near.Render(frame);
   EXPECT_EQ(*std::max_element(nobody.alpha.begin(), nobody.alpha.end()), 0);
+}
+
+TEST(PhotoTraining, DoesTheSameOnACard) {
+  if (!torch::cuda::is_available()) GTEST_SKIP() << "no CUDA card here";
+  const PhotoSource source = ToyPhotos(3, 2);
+  const TrainPhotoSummary here = TrainPhoto(source, ToyOptions("photo_cpu"));
+  TrainPhotoOptions options = ToyOptions("photo_cuda");
+  options.device = "cuda";
+  const TrainPhotoSummary there = TrainPhoto(source, options);
+  ASSERT_EQ(there.status, TrainingStatus::kFinished) << there.message;
+  EXPECT_NEAR(there.scores.image_l1, here.scores.image_l1, 1e-3);
+  PhotoFrame frame;
+  source.fill(1, 0, &frame);
+  PhotoPicture pictures[2];
+  for (const char* device : {"cpu", "cuda"}) {
+    PhotoRenderer renderer(CheckpointPath(options.run_dir), options.config, {2, 1, device});
+    renderer.Encode(PartialTextureOf(frame));
+    pictures[device[1] == 'u'] = renderer.Render(frame);
+  }
+  EXPECT_THAT(pictures[1].image, ::testing::Pointwise(::testing::FloatNear(1e-3F), pictures[0].image));
+  UseNeuralDevice("cpu");
 }
 
 }  // namespace

@@ -3,8 +3,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <torch/cuda.h>
 
 #include <stdexcept>
+#include <string>
 #include <thread>
 
 namespace bodyloom {
@@ -49,6 +51,17 @@ TEST(BlasAdvice, NamesAFasterLibrary) {
               HasSubstr("reference BLAS"));
   EXPECT_THAT(BlasAdvice("/usr/lib/x86_64-linux-gnu/atlas/libblas.so.3.10.3", "", true, true), HasSubstr("ATLAS"));
   EXPECT_EQ(BlasAdvice("/usr/lib/x86_64-linux-gnu/blis-openmp/libblas.so.4", "", true, true), "");
+}
+
+TEST(NeuralRuntime, ACardThatIsNotThereIsSaid) {
+  EXPECT_THROW(UseNeuralDevice("gpu"), std::invalid_argument);
+  if (torch::cuda::is_available()) GTEST_SKIP() << "there is a CUDA card";
+  try {
+    UseNeuralDevice("cuda");
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("no CUDA card"), std::string::npos) << error.what();
+  }
 }
 
 }  // namespace

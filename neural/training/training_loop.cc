@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "neural/training/training_loop.h"
+
+#include <chrono>
+#include <filesystem>
+
+#include "geometry/check.h"
+#include "geometry/in_range.h"
+#include "neural/training/run_files.h"
+
+namespace bodyloom {
+
+namespace fs = std::filesystem;
+
+std::string CheckpointPath(const std::string& run_dir) { return (fs::path(run_dir) / "checkpoint.bin").string(); }
+
+bool IsValidRun(const TrainingRun& run, std::string* why) {
+  const InRange in_range(why);
+  if (run.device != "cpu" && run.device != "cuda") {
+    if (why != nullptr) *why = Concatenate("device is \"", run.device, "\", expected cpu or cuda");
+    return false;
+  }
+  return in_range("steps", run.steps, 1, 1e8) && in_range("num_threads", run.num_threads, 0, 256) &&
+         in_range("report_every", run.report_every, 1, 1e8) && in_range("validate_every", run.validate_every, 1, 1e8) &&
+         in_range("checkpoint_every", run.checkpoint_every, 1, 1e8) && in_range("patience", run.patience, 0, 1e6);
+}
+
+TrainingOutcome RunTraining(const TrainingRun& run, int total_steps, const std::vector<std::string>& columns,
+                            Checkpoint* checkpoint, TrainedSystem* system) {
+  std::vector<std::string> all_columns = columns;
+  all_columns.emplace_back("seconds");
+  MetricsLog log((fs::path(run.run_dir) / "metrics.csv").string(), all_columns);
+  const std::string path = CheckpointPath(run.run_dir);
+  int done = 0, last_saved = 0;
+  if (run.resume) {
+    checkpoint->Load(path);
+    done = last_saved = static_cast<int>(checkpoint->step);
+    log.KeepUpTo(done);
+  }
+  const auto start = std::chrono::steady_clock::now();
+  const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
+  const auto save = [&] {
+    checkpoint->step = last_saved = done;
+    checkpoint->Save(path);
+  };
+  system->Begin(done);
+  TrainingOutcome outcome;
+  outcome.status = TrainingStatus::kFinished;
+  while (done < total_steps && outcome.status == TrainingStatus::kFinished) {
+    if (!system->Step(done)) {
+      outcome.status = TrainingStatus::kNotFinite;
+      outcome.message =
+          Concatenate("the loss is not finite at step ", done + 1, "; checkpoint.bin holds step ", last_saved);
+      break;
+    }
+    ++done;
+    const bool last = done == total_steps;
+    const bool validates = system->HasValidation() && (last || done % run.validate_every == 0);
+    if (validates) system->Validate(done, last);
+    if (last || validates || done % run.report_every == 0) {
+      std::vector<double> row = system->Row(done, validates);
+      row.push_back(seconds());
+      log.Add(done, row);
+      if (!system->Report(done, seconds())) {
+        outcome.status = TrainingStatus::kStopped;
+        outcome.message = Concatenate("stopped at step ", done);
+      } else if (run.patience > 0 && system->ValidationsSinceBest() >= run.patience) {
+        outcome.status = TrainingStatus::kNoProgress;
+        outcome.message = Concatenate("no better validation in the last ", run.patience, "; stopped at step ", done);
+      }
+    }
+    if (last || done % run.checkpoint_every == 0 || outcome.status != TrainingStatus::kFinished) save();
+  }
+  outcome.steps = done;
+  outcome.seconds = seconds();
+  return outcome;
+}
+
+}  // namespace bodyloom

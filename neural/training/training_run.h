@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What every training run is told, and how it ended.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace bodyloom {
+
+struct TrainingRun {
+  int steps = 20000;
+  uint64_t seed = 1;
+  int num_threads = 0;                                                  ///< of LibTorch; 0: all cores
+  std::string device = "cpu";                                           ///< or "cuda" (neural/runtime.h)
+  int report_every = 20, validate_every = 500, checkpoint_every = 250;  ///< steps
+  int patience = 0;         ///< stop after so many validations without a better one (0: never), where there are any
+  std::string run_dir;      ///< exists; checkpoint.bin and metrics.csv are written here
+  std::string config_json;  ///< kept in the checkpoint as it is
+  bool resume = false;      ///< go on from run_dir/checkpoint.bin
+};
+
+/// Of what all runs have in common. `why` may be nullptr.
+bool IsValidRun(const TrainingRun& run, std::string* why);
+
+enum class TrainingStatus {
+  kFinished,
+  kStopped,     ///< by the caller, after a checkpoint
+  kNoProgress,  ///< patience ran out, after a checkpoint
+  kNotFinite    ///< a loss was not finite: the last checkpoint is in place, no step was taken by that loss
+};
+
+struct TrainingOutcome {
+  TrainingStatus status = TrainingStatus::kNotFinite;
+  std::string message;  ///< unless finished: what ended it, and where
+  int steps = 0;        ///< that the weights have seen
+  double seconds = 0;   ///< of this process
+};
+
+/// run_dir/checkpoint.bin.
+std::string CheckpointPath(const std::string& run_dir);
+
+}  // namespace bodyloom
