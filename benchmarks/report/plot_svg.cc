@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "benchmarks/work_precision/plot_svg.h"
+#include "benchmarks/report/plot_svg.h"
 
 #include <algorithm>
 #include <array>
