@@ -112,6 +112,7 @@ void WorkBench::AddRow(const std::string& group, const std::string& problem, con
   std::fprintf(stderr, "%s, %s, %s: %s ms wall, %s ms processor, error %s\n", group.c_str(), problem.c_str(),
                engine.c_str(), BenchNumber(values[0]).c_str(), BenchNumber(values[2]).c_str(),
                BenchNumber(values[5]).c_str());
+  values.resize(kWorkColumns.size(), std::numeric_limits<double>::quiet_NaN());
   report.rows.push_back({group, {problem, engine}, std::move(values)});
 }
 

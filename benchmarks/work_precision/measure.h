@@ -64,7 +64,7 @@ struct WorkBench {
   void Add(const std::string& group, const std::string& problem, const std::vector<Engine>& engines,
            const std::vector<EngineRun>& runs, double bound_px,
            double peak_mb = std::numeric_limits<double>::quiet_NaN());
-  /// One row of numbers in the order of the value columns (kWorkColumns).
+  /// One row of numbers in the order of the value columns (kWorkColumns); those left out at the end are NaN.
   void AddRow(const std::string& group, const std::string& problem, const std::string& engine,
               std::vector<double> values);
 };
@@ -73,6 +73,6 @@ inline const std::vector<std::string> kWorkColumns = {"wall_ms",    "wall_ms_spr
                                                       "cpu_ms",     "cpu_ms_spread_percent",
                                                       "iterations", "error",
                                                       "bound",      "cost_excess",
-                                                      "peak_mb"};
+                                                      "peak_mb",    "wall_over_chain"};
 
 }  // namespace bodyloom

@@ -38,9 +38,10 @@ double CostOf(const SequenceProblem& answer) {
   return SolveSequence(&judged, judge).initial_cost;
 }
 
-/// Time until the error is no larger than `error_px`, ms a frame; infinity: never.
+/// Time until the error is no larger than chain's, ms a frame (infinity: never), and the error then (else the least).
 struct Reached {
-  double wall_ms = std::numeric_limits<double>::infinity(), cpu_ms = wall_ms, least_error_px = wall_ms;
+  double wall_ms = std::numeric_limits<double>::infinity(), cpu_ms = wall_ms, error_px = wall_ms;
+  int iterations = 0;
 };
 
 class PeerProblem {
@@ -76,9 +77,7 @@ class PeerProblem {
       plot_.lines.push_back({engines[i].name, {{runs[i].wall.median, runs[i].error_px}}});
       best_cost_ = std::fmin(best_cost_, runs[i].cost);
       slowest_ = std::max(slowest_, runs[i].wall.median);
-      if (engines[i].name != "chain") {
-        Compare(engines[i].name, {runs[i].wall.median, runs[i].cpu.median, runs[i].error_px});
-      }
+      Compare(engines[i].name, {runs[i].wall.median, runs[i].cpu.median, runs[i].error_px, runs[i].iterations});
     }
     Torch();
     plot_.lines.push_back({"Cramér–Rao", {{chain_.wall.median, bound_}, {slowest_, bound_}}, true});
@@ -86,17 +85,13 @@ class PeerProblem {
   }
 
  private:
+  /// A row of "peers": what it took the peer to be as good as chain, or the best it became.
   void Compare(const std::string& peer, const Reached& reached) {
-    std::string text = Concatenate(group_, ": ", peer);
-    if (std::isfinite(reached.wall_ms)) {
-      text += Concatenate(" needs ", BenchNumber(reached.wall_ms / chain_.wall.median), " times chain's wall time (",
-                          BenchNumber(reached.cpu_ms / chain_.cpu.median), " of processor time); its error ",
-                          BenchNumber(reached.least_error_px), " px, chain's ", BenchNumber(chain_.error_px));
-    } else {
-      text += Concatenate(" never reaches chain's error of ", BenchNumber(chain_.error_px), " px, best ",
-                          BenchNumber(reached.least_error_px));
-    }
-    bench_->report.notes.push_back(text);
+    const bool good = std::isfinite(reached.wall_ms);
+    bench_->AddRow("peers", Concatenate(frames_, frames_ == 1 ? " frame" : " frames", good ? "" : ", never as good"),
+                   peer,
+                   {good ? reached.wall_ms : kNaN, kNaN, good ? reached.cpu_ms : kNaN, kNaN, double(reached.iterations),
+                    reached.error_px, bound_, kNaN, kNaN, good ? reached.wall_ms / chain_.wall.median : kNaN});
   }
 
   void Torch() {
@@ -127,9 +122,10 @@ class PeerProblem {
         const double error = ProjectionErrorPx(*work_, moment.answer.states, moment.answer.betas);
         line.points.emplace_back(wall, error);
         slowest_ = std::max(slowest_, wall);
-        if (!std::isfinite(reached.wall_ms)) {
-          reached.least_error_px = std::min(reached.least_error_px, error);
-          if (error <= chain_.error_px) reached = {wall, cpu, error};
+        if (!std::isfinite(reached.wall_ms) && error < reached.error_px) {
+          reached.error_px = error;
+          reached.iterations = moment.iterations;
+          if (error <= chain_.error_px) reached.wall_ms = wall, reached.cpu_ms = cpu;
         }
         bench_->AddRow(group_, Concatenate("after ", moment.iterations), setting.name,
                        {wall, kNaN, cpu, kNaN, double(moment.iterations), error, bound_,
