@@ -72,8 +72,8 @@ MotionRun ReadMotionRun(const std::string& run_dir) {
   run.fps = root.At("fps").Number();
   std::string why;
   if (!run.config.IsValid(&why)) throw std::runtime_error(path + ": " + why);
-  if (run.reach < 0 || run.past < 0 || run.past > 10000 || 3 + 3 * run.past != run.config.motion_channels ||
-      !(run.pixels_per_metre > 0) || !(run.fps > 0)) {
+  if (run.reach < 0 || run.reach > run.config.profile.image_size || run.past < 0 || run.past > 10000 ||
+      3 + 3 * run.past != run.config.motion_channels || !(run.pixels_per_metre > 0) || !(run.fps > 0)) {
     throw std::runtime_error(path + ": past, reach, pixels_per_metre or fps do not make sense");
   }
   return run;

@@ -50,13 +50,6 @@ ErrorStatistics Column(const BenchReport& report, const std::string& group, size
   return Summarize(values);
 }
 
-std::string Number(double value) {
-  if (!std::isfinite(value)) return "-";
-  char text[32];
-  snprintf(text, sizeof(text), std::abs(value) < 10 ? "%.3f" : "%.1f", value);
-  return text;
-}
-
 /// A column's name over several lines, broken at underscores: "pa_mpjpe_mm" gives "pa", "mpjpe", "mm".
 std::vector<std::string> Stacked(const std::string& name) {
   std::vector<std::string> lines(1);
@@ -79,6 +72,14 @@ void CheckRows(const BenchReport& report) {
 }
 
 }  // namespace
+
+std::string BenchNumber(double value) {
+  if (!std::isfinite(value)) return "-";
+  const double size = std::abs(value);
+  char text[32];
+  snprintf(text, sizeof(text), size > 0 && size < 5e-4 ? "%.0e" : size < 10 ? "%.3f" : "%.1f", value);
+  return text;
+}
 
 std::vector<std::pair<std::string, std::string>> BenchEnvironment() {
   const std::string git = "git -C '" BODYLOOM_SOURCE_DIR "' ";
@@ -109,7 +110,7 @@ std::string BenchText(const BenchReport& report) {
     for (const BenchRow& row : report.rows) {
       if (row.group != group) continue;
       std::vector<std::string> line = row.labels;
-      for (double value : row.values) line.push_back(Number(value));
+      for (double value : row.values) line.push_back(BenchNumber(value));
       cells.push_back(line);
       ++rows;
     }
@@ -119,8 +120,8 @@ std::string BenchText(const BenchReport& report) {
       spread[0] = "std";
       for (size_t c = 0; c < report.value_columns.size(); ++c) {
         const ErrorStatistics s = Column(report, group, c);
-        mean.push_back(Number(s.mean));
-        spread.push_back(Number(s.std_dev));
+        mean.push_back(BenchNumber(s.mean));
+        spread.push_back(BenchNumber(s.std_dev));
       }
       cells.push_back(mean);
       cells.push_back(spread);
@@ -169,6 +170,16 @@ std::string BenchJson(const BenchReport& report) {
       entry["std"][report.value_columns[c]] = s.std_dev;
     }
     json["groups"].push_back(entry);
+  }
+  for (const Plot& plot : report.plots) {
+    nlohmann::ordered_json drawn = {{"file", plot.file},       {"title", plot.title}, {"x_label", plot.x_label},
+                                    {"y_label", plot.y_label}, {"log_x", plot.log_x}, {"log_y", plot.log_y}};
+    drawn["lines"] = nlohmann::ordered_json::array();
+    for (const PlotLine& line : plot.lines) {
+      drawn["lines"].push_back(
+          {{"name", line.name}, {"dashed", line.dashed}, {"stairs", line.stairs}, {"points", line.points}});
+    }
+    json["plots"].push_back(drawn);
   }
   return json.dump(2) + "\n";
 }

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "benchmarks/report/plot_svg.h"
+
 namespace bodyloom {
 
 struct BenchRow {
@@ -21,14 +23,17 @@ struct BenchReport {
   std::vector<std::string> value_columns;  ///< "pa_mpjpe_mm", …
   std::vector<BenchRow> rows;
   std::vector<std::string> notes;
-  bool summarise = true;  ///< close each group with the mean and spread of its rows
+  std::vector<Plot> plots;  ///< drawn by `bodyloom_report --render`
+  bool summarise = true;    ///< close each group with the mean and spread of its rows
 };
 
 /// A table a group, each closed by "mean" and "std" (population, over its rows) when asked for, then notes, commit and
 /// machine.
 std::string BenchText(const BenchReport& report);
 
-/// {title, command, commit, machine, notes, groups: [{name, rows: [{label: …, value: …}], mean: {…}, std: {…}}]}.
+/// {title, command, commit, machine, notes, groups: [{name, rows: [{label: …, value: …}], mean: {…}, std: {…}}],
+/// plots: [{file, title, x_label, y_label, log_x, log_y, lines: [{name, dashed, stairs, points: [[x, y], …]}]}]}.
+/// benchmarks/report/saved_report.h reads it.
 std::string BenchJson(const BenchReport& report);
 
 /// Prints the text and, when `json_path` is not empty, writes the JSON.
@@ -36,5 +41,8 @@ void HandOver(const BenchReport& report, const std::string& json_path);
 
 /// Commit of the source tree ("… with changes" when it has any), processor, cores, compiler and flags.
 std::vector<std::pair<std::string, std::string>> BenchEnvironment();
+
+/// A number as the tables show it: three digits after the point below ten, one above; tiny ones as 2e-07; "-" for none.
+std::string BenchNumber(double value);
 
 }  // namespace bodyloom

@@ -128,16 +128,18 @@ void WriteProblemFile(const WorkProblem& work, const std::string& path) {
 std::vector<PeerMoment> ReadPeerFile(const WorkProblem& work, const std::string& path) {
   const NpzArrays in = ReadNpz(path);
   const auto values = [&](const char* name) { return RequireArray(in, name, path).ToDoubles(); };
-  const std::vector<double> seconds = values("seconds"), iterations = values("iterations"), poses = values("poses"),
-                            trans = values("trans"), betas = values("betas");
+  const std::vector<double> seconds = values("seconds"), cpu_seconds = values("cpu_seconds"),
+                            iterations = values("iterations"), poses = values("poses"), trans = values("trans"),
+                            betas = values("betas");
   const size_t T = work.problem.states.size(), J = work.problem.states[0].rotations.size();
   const auto B = static_cast<size_t>(work.problem.betas.size());
   BODYLOOM_CHECK(poses.size() == seconds.size() * T * J * 3 && trans.size() == seconds.size() * T * 3 &&
-                     betas.size() == seconds.size() * B && iterations.size() == seconds.size(),
+                     betas.size() == seconds.size() * B && iterations.size() == seconds.size() &&
+                     cpu_seconds.size() == seconds.size(),
                  path, ": sizes that do not fit the problem");
   std::vector<PeerMoment> moments;
   for (size_t m = 0; m < seconds.size(); ++m) {
-    PeerMoment moment{seconds[m], static_cast<int>(iterations[m]), work.problem};
+    PeerMoment moment{seconds[m], cpu_seconds[m], static_cast<int>(iterations[m]), work.problem};
     for (size_t t = 0; t < T; ++t) {
       FrameState& state = moment.answer.states[t];
       for (size_t j = 0; j < J; ++j) {

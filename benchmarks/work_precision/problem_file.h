@@ -14,7 +14,7 @@ void WriteProblemFile(const WorkProblem& work, const std::string& path);
 
 /// Where a fitter stood at one moment.
 struct PeerMoment {
-  double seconds = 0;
+  double seconds = 0, cpu_seconds = 0;  ///< wall, and processor time of the process
   int iterations = 0;
   SequenceProblem answer;
 };

@@ -9,6 +9,7 @@
 #include "data_tools/builtin_body.h"
 #include "data_tools/motion/load_motion.h"
 #include "data_tools/prior/pose_prior_io.h"
+#include "data_tools/synthetic/demo_motion.h"
 #include "geometry/posed_body.h"
 
 namespace bodyloom {
@@ -43,7 +44,9 @@ std::unique_ptr<WorkProblem> MakeWorkProblem(const WorkProblemOptions& options) 
   synth.keypoints = false;
   synth.initialiser_error_px = options.start_error_px;
   synth.num_threads = 2;
-  work->clip = MakeSynthClip(body, Unfold(LoadMotion(options.motion), options.first_frame, options.frames), synth);
+  const Motion motion =
+      options.motion.empty() ? DemoMotion(body, options.first_frame + options.frames, 30) : LoadMotion(options.motion);
+  work->clip = MakeSynthClip(body, Unfold(motion, options.first_frame, options.frames), synth);
   const SynthClip& clip = work->clip;
   std::vector<int> joints(body.num_joints());
   std::iota(joints.begin(), joints.end(), 0);

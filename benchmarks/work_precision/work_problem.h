@@ -14,7 +14,7 @@
 namespace bodyloom {
 
 struct WorkProblemOptions {
-  std::string motion;           ///< file
+  std::string motion;           ///< file; empty: DemoMotion at 30 frames a second
   std::string noise = "pixel";  ///< DenseFaults()
   int frames = 100;             ///< the motion runs forwards and backwards as often as it takes
   int first_frame = 0;

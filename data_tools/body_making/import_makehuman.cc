@@ -136,7 +136,9 @@ void FillLandmarks(const MatrixX3d& joints, const Eigen::RowVector3d& left_eye, 
   });
   both([&](int side) { add(sides[side] + "ear", find.Farthest({head}, {out[side], 0, 0})); });
   for (const auto& [name, joint] : {std::pair{"shoulder", 16}, {"elbow", 18}, {"wrist", 20}}) {
-    both([&](int side) { body->landmarks.push_back(find.Joint(sides[side] + name, joint + side)); });
+    both([&, name = name, joint = joint](int side) {
+      body->landmarks.push_back(find.Joint(sides[side] + name, joint + side));
+    });
   }
   both([&](int side) {  // COCO's hips lie further out than the joint
     Landmark hip = find.Joint(sides[side] + "hip", 1 + side, 0.75);
@@ -145,7 +147,9 @@ void FillLandmarks(const MatrixX3d& joints, const Eigen::RowVector3d& left_eye, 
     body->landmarks.push_back(hip);
   });
   for (const auto& [name, joint] : {std::pair{"knee", 4}, {"ankle", 7}}) {
-    both([&](int side) { body->landmarks.push_back(find.Joint(sides[side] + name, joint + side)); });
+    both([&, name = name, joint = joint](int side) {
+      body->landmarks.push_back(find.Joint(sides[side] + name, joint + side));
+    });
   }
   both([&](int side) { add(sides[side] + "big_toe", find.Farthest({10 + side}, {-0.3 * out[side], 0, 1})); });
   both([&](int side) { add(sides[side] + "small_toe", find.Farthest({10 + side}, {1.0 * out[side], 0, 0.7})); });

@@ -187,8 +187,8 @@ std::string SafetensorsBytes(const std::map<std::string, NdArray>& tensors,
   std::string data;
   for (const auto& [name, tensor] : order) {
     BODYLOOM_CHECK(*name != kMetadata, "a tensor named ", kMetadata, ", expected another name");
-    const auto type =
-        std::find_if(std::begin(kTypes), std::end(kTypes), [&](const auto& t) { return tensor->dtype == t.dtype; });
+    const auto type = std::find_if(std::begin(kTypes), std::end(kTypes),
+                                   [dtype = tensor->dtype](const auto& t) { return dtype == t.dtype; });
     BODYLOOM_CHECK(type != std::end(kTypes), "tensor '", *name,
                    "': a type that safetensors lacks, expected BOOL, U8, I8, I16, I32, I64, F16, BF16, F32 or F64");
     const std::optional<size_t> expected = ArrayBytes(tensor->shape, type->item_size);

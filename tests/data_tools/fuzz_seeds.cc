@@ -6,6 +6,7 @@
 #include "data_tools/formats/safetensors.h"
 #include "data_tools/formats/zip.h"
 #include "tests/data_tools/fuzz_array_seeds.h"
+#include "tests/data_tools/fuzz_run_seeds.h"
 #include "tests/data_tools/fuzz_text_seeds.h"
 #include "tests/data_tools/pickle_writer.h"
 #include "tests/data_tools/small_body.h"
@@ -118,6 +119,7 @@ std::map<std::string, std::vector<std::string>> Seeds() {
   seeds["obj"] = {"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 1 1\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\nf 1 2 3 4\nf -1 -2 -3\n",
                   "# x\nmtllib a\ng b\nv\t1e3 -2.5 +0\r\nv 1 2 3\nv 1 2 4 1 1 1\nf 1//1 2//1 3//1\n"};
   AddTextSeeds(&seeds);
+  AddRunSeeds(&seeds);
   AddArraySeeds(&seeds);
   return seeds;
 }

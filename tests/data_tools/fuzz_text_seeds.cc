@@ -50,14 +50,6 @@ void AddTextSeeds(std::map<std::string, std::vector<std::string>>* seeds) {
       ":hierarchy\n  begin\n    root thigh\n  end\n\f"
       ":FULLY-SPECIFIED\n:DEGREES\n1\nroot 1 2 3 0 0 0\nthigh 0 0 0\n2\nroot 4 5 6 10 20 30\nthigh 40 50 60\n"};
   (*seeds)["deepmimic"] = {R"({"Loop":"wrap","Frames":[)" + DeepMimicFrame("0.04") + "," + DeepMimicFrame("0") + "]}"};
-  (*seeds)["run_config"] = {
-      R"({"program":"bodyloom train motion","profile":"tiny","image_size":32,"uv_size":16,"features":4,)"
-      R"("encoder_widths":[4,8],"decoder_widths":[4,8],"discriminator_width":4,"perceptual_divisor":8,)"
-      R"("motion_channels":33,"num_labels":7,"shape":true,"normals":true,"motion":true,"surface":true,)"
-      R"("pixels_per_metre":60,"fps":30,"past":10,"reach":3})"};
-  (*seeds)["relight"] = {
-      R"({"directional":[{"from":[0,1,1],"intensity":1,"colour":[1,0.9,0.8]}],"ambient":0.2,"estimate":true,)"
-      R"("encoding":"srgb"})"};
   (*seeds)["cage"] = {
       "# half a cube\r\nv a 1 -1 -1\nv b 1 1 -1\nv c 1 1 1\nv d 1 -1 1\r\n\n"
       "v e 0 -1 -1\nv f 0 1 -1 # on the plane\nv g 0.0 1 1\nv h 0 -1 1\n"

@@ -6,20 +6,31 @@
 #include <cmath>
 #include <string>
 
+#include "apps/neural/guided_run.h"
 #include "apps/neural/motion_run.h"
+#include "apps/neural/photo_run.h"
 #include "apps/neural/relight_frames.h"
 #include "tests/fuzz/fuzz_file_targets.h"
 
 namespace bodyloom::fuzz {
 
+/// The run of any of the three renderers.
 inline bool AcceptsRunConfig(const std::string& bytes) {
   Folder().Write("run/config.json", bytes);
-  return Accepts([&] {
-    const MotionRun run = ReadMotionRun(Folder().path() + "/run");
-    std::string why;
+  const std::string folder = Folder().path() + "/run";
+  std::string why;
+  const bool motion = Accepts([&] {
+    const MotionRun run = ReadMotionRun(folder);
     if (!run.config.IsValid(&why)) throw std::logic_error(why);
     if (!std::isfinite(run.fps) || !std::isfinite(run.pixels_per_metre)) throw std::logic_error("not finite");
   });
+  const bool photo = Accepts([&] {
+    if (!ReadPhotoRun(folder).config.IsValid(&why)) throw std::logic_error(why);
+  });
+  const bool guided = Accepts([&] {
+    if (!ReadGuidedRun(folder).config.IsValid(&why)) throw std::logic_error(why);
+  });
+  return motion || photo || guided;
 }
 
 inline bool AcceptsRelight(const std::string& bytes) {

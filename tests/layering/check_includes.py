@@ -19,7 +19,7 @@ MAY_INCLUDE = {
     "neural": {"geometry", "render"},
     "apps": {"geometry", "render", "tracking", "data_tools", "neural"},
     "benchmarks": {"geometry", "render", "tracking", "data_tools", "neural", "tests"},
-    "tests": {"geometry", "render", "tracking", "data_tools", "neural", "apps"},
+    "tests": {"geometry", "render", "tracking", "data_tools", "neural", "apps", "benchmarks"},
 }
 
 # Sub-folder -> what it may include besides: the evaluation protocols read files and measure with tracking's metrics; the

@@ -42,7 +42,7 @@ TEST_P(Invariance, SameBytesWithOneToEightThreads) {
     options.estimate_uncertainty = true;
     const TrackSequenceResult one = Fit(InputOf(BuiltinBody(), Clip()), options);
     ASSERT_TRUE(one.summary.IsUsable());
-    for (const int threads : {2, 3, 8}) {
+    for (const int threads : {2, 3, 4, 5, 6, 7, 8}) {
       options.num_threads = threads;
       const TrackSequenceResult many = Fit(InputOf(BuiltinBody(), Clip()), options);
       EXPECT_EQ(one.track.motion.poses, many.track.motion.poses) << threads;

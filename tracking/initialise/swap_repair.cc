@@ -60,7 +60,7 @@ int RepairSwaps(KeypointSequence* keypoints) {
       const Keypoint &p = keypoints->at(t, a), &q = keypoints->at(u, b);
       return (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y);
     };
-    const std::vector<int> path = Viterbi(unary, [&](size_t i, int a, int b) {
+    const std::vector<int> path = Viterbi(unary, [&, left = left, right = right](size_t i, int a, int b) {
       const int t = frames[i - 1], u = frames[i];
       const double dt = keypoints->timestamps[u] - keypoints->timestamps[t];
       const double sigma = std::max(sizes[t], sizes[u]) * std::hypot(kJitter, kSpeed * dt);

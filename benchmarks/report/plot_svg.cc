@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "benchmarks/work_precision/plot_svg.h"
+#include "benchmarks/report/plot_svg.h"
 
 #include <algorithm>
 #include <array>
@@ -12,13 +12,15 @@ namespace {
 
 constexpr double kWidth = 640, kHeight = 420, kLeft = 70, kRight = 170, kTop = 40, kBottom = 55;
 constexpr std::array<const char*, 8> kColours = {"#1f6fb4", "#d1495b", "#2e8b57", "#8a5fbf",
-                                                 "#c77800", "#4d4d4d", "#00808a", "#b0307a"};
+                                                 "#c77800", "#00808a", "#b0307a", "#7a6a00"};
 
 std::string Text(double x, double y, const char* anchor, const std::string& text, const char* more = "") {
   char buffer[160];
   std::snprintf(buffer, sizeof buffer, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\" %s>", x, y, anchor, more);
   return buffer + text + "</text>\n";
 }
+
+constexpr const char* kLimitColour = "#4d4d4d";
 
 /// One axis: data to [0, 1].
 struct Axis {
@@ -40,13 +42,19 @@ struct Axis {
   [[nodiscard]] std::vector<double> Ticks() const {
     std::vector<double> ticks;
     if (log) {
-      const bool dense = high - low < 2.2;
-      for (int e = static_cast<int>(std::floor(low)); e <= std::ceil(high); ++e) {
-        for (double m : {1.0, 2.0, 5.0}) {
-          if (m > 1 && !dense) continue;
-          const double v = m * std::pow(10.0, e);
-          if (Value(v) >= low && Value(v) <= high) ticks.push_back(v);
+      // The coarsest steps that give four marks or more.
+      for (const std::vector<double>& steps : {std::vector<double>{1},
+                                               {1, 2, 5},
+                                               {1, 2, 3, 4, 5, 6, 8},
+                                               {1, 1.2, 1.4, 1.6, 1.8, 2, 2.5, 3, 3.5, 4, 4.5, 5, 6, 7, 8, 9}}) {
+        ticks.clear();
+        for (int e = static_cast<int>(std::floor(low)); e <= std::ceil(high); ++e) {
+          for (double m : steps) {
+            const double v = m * std::pow(10.0, e);
+            if (Value(v) >= low && Value(v) <= high) ticks.push_back(v);
+          }
         }
+        if (ticks.size() >= 4) break;
       }
       return ticks;
     }
@@ -98,7 +106,7 @@ std::string PlotSvg(const Plot& plot) {
   svg += Text(18, kHeight / 2, "middle", plot.y_label, buffer);
   for (size_t i = 0; i < plot.lines.size(); ++i) {
     const PlotLine& line = plot.lines[i];
-    const char* colour = kColours[i % kColours.size()];
+    const char* colour = line.dashed ? kLimitColour : kColours[i % kColours.size()];
     std::string path, marks;
     double before = 0;
     for (const auto& [px, py] : line.points) {
@@ -111,8 +119,8 @@ std::string PlotSvg(const Plot& plot) {
       path += buffer;
       before = down(py);
       if (line.dashed || line.stairs) continue;
-      std::snprintf(buffer, sizeof buffer, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"3\" fill=\"%s\"/>\n", across(px),
-                    down(py), colour);
+      std::snprintf(buffer, sizeof buffer, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"%d\" fill=\"%s\"/>\n", across(px),
+                    down(py), line.points.size() == 1 ? 5 : 3, colour);
       marks += buffer;
     }
     std::snprintf(buffer, sizeof buffer, "\" fill=\"none\" stroke=\"%s\" stroke-width=\"1.8\"%s/>\n", colour,

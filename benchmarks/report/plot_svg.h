@@ -16,6 +16,7 @@ struct PlotLine {
 };
 
 struct Plot {
+  std::string file;  ///< name without extension
   std::string title, x_label, y_label;
   bool log_x = true, log_y = true;
   std::vector<PlotLine> lines;

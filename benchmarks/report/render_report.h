@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A benchmark's JSON as part of the documentation: tables in Markdown and plots in SVG.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "benchmarks/report/saved_report.h"
+
+namespace bodyloom {
+
+/// One group as a table, followed by a line with command, commit and machine. Columns without any number are left out.
+std::string MarkdownTable(const SavedReport& saved, const std::string& group);
+
+/// `page` with what stands between "<!-- benchmark: GROUP -->" and the next "<!-- /benchmark -->" replaced by the table
+/// of that group, and between "<!-- benchmark: notes of TITLE -->" … by the notes as a list, for every marked group
+/// that `saved` has. Everything else stays as it is. `rendered`, when given, collects the names of the replaced groups.
+/// Throws std::runtime_error with `page_name` when a mark is never closed.
+std::string RenderIntoPage(const std::string& page, const std::string& page_name, const SavedReport& saved,
+                           std::vector<std::string>* rendered = nullptr);
+
+/// FOLDER/<file>.svg for every plot; returns the paths.
+std::vector<std::string> WritePlots(const SavedReport& saved, const std::string& folder);
+
+}  // namespace bodyloom

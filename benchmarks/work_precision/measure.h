@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Engines on one problem: time, memory, error and cost of each.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "benchmarks/accuracy/bench_arguments.h"
+#include "benchmarks/accuracy/bench_report.h"
+#include "benchmarks/work_precision/work_problem.h"
+
+namespace bodyloom {
+
+struct Engine {
+  std::string name;
+  SolveOptions options;
+  std::function<SolveReport(SequenceProblem*, const SolveOptions&)> solve = SolveSequence;
+};
+
+Engine ChainEngine(int threads, int early_dense = 0);
+Engine CeresEngine(int threads);     ///< analytic derivatives, one cost function a frame
+Engine AutoDiffEngine(int threads);  ///< autodiff_peer.h
+
+/// Median of a time over repeated runs, and half the range over it.
+struct TimeMs {
+  double median = std::numeric_limits<double>::quiet_NaN(), spread_percent = median;
+  static TimeMs Of(std::vector<double> values);
+};
+
+struct EngineRun {
+  TimeMs wall, cpu;  ///< a frame
+  double cost = std::numeric_limits<double>::quiet_NaN(), error_px = cost;
+  int iterations = 0;
+  SequenceProblem answer;  ///< of the first round
+};
+
+/// All engines on one problem, `repeat` rounds in which they take turns. A failed solve has no cost.
+std::vector<EngineRun> MeasureEngines(const WorkProblem& work, const std::vector<Engine>& engines, int repeat);
+
+/// Runs `action` `repeat` times; wall and processor time of the process divided by `divisor`, milliseconds.
+struct Timing {
+  TimeMs wall, cpu;
+};
+Timing MeasureAction(const std::function<void()>& action, int repeat, double divisor);
+
+/// The Cramér–Rao bound as mean projection error, pixels at 512, with what smoothness tells when there are three
+/// frames or more.
+double BoundPx(const WorkProblem& work);
+
+/// Highest resident memory of the process since the last reset, MB.
+double PeakMegabytes();
+void ResetPeak();
+
+/// What the sections of the benchmark share.
+struct WorkBench {
+  const BenchArguments& arguments;
+  BenchReport report;
+  int threads = 1, repeat = 1;
+
+  [[nodiscard]] WorkProblemOptions Options(int frames, int dense) const;
+  /// One row an engine; cost_excess is over the lowest cost of the rows.
+  void Add(const std::string& group, const std::string& problem, const std::vector<Engine>& engines,
+           const std::vector<EngineRun>& runs, double bound_px,
+           double peak_mb = std::numeric_limits<double>::quiet_NaN());
+  /// One row of numbers in the order of the value columns (kWorkColumns); those left out at the end are NaN.
+  void AddRow(const std::string& group, const std::string& problem, const std::string& engine,
+              std::vector<double> values);
+};
+
+inline const std::vector<std::string> kWorkColumns = {"wall_ms",    "wall_ms_spread_percent",
+                                                      "cpu_ms",     "cpu_ms_spread_percent",
+                                                      "iterations", "error",
+                                                      "bound",      "cost_excess",
+                                                      "peak_mb",    "wall_over_chain"};
+
+}  // namespace bodyloom

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Error against time of the sequence solve: over tolerances, numbers of keypoints, lengths and threads.
+#include "benchmarks/work_precision/sections.h"
+#include "geometry/check.h"
+
+namespace bodyloom {
+
+void ToleranceSection(WorkBench* bench) {
+  const auto work = MakeWorkProblem(bench->Options(100, 300));
+  const double bound = BoundPx(*work);
+  Plot plot{"work_precision_tolerance",
+            "100 frames, 300 keypoints: tolerance 1e-1 to 1e-7",
+            "processor time, ms a frame",
+            "mean error, px at 512",
+            true,
+            true,
+            {}};
+  std::vector<Engine> engines = {CeresEngine(bench->threads), ChainEngine(bench->threads)};
+  for (const Engine& engine : engines) plot.lines.push_back({engine.name, {}});
+  for (double tolerance : {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-7}) {
+    for (Engine& engine : engines) engine.options.function_tolerance = tolerance;
+    const auto runs = MeasureEngines(*work, engines, bench->repeat);
+    bench->Add("function tolerance", Concatenate(tolerance), engines, runs, bound);
+    for (size_t i = 0; i < runs.size(); ++i) plot.lines[i].points.emplace_back(runs[i].cpu.median, runs[i].error_px);
+  }
+  plot.lines.push_back(
+      {"Cramér–Rao", {{plot.lines[1].points[0].first, bound}, {plot.lines[0].points.back().first, bound}}, true});
+  bench->report.plots.push_back(plot);
+}
+
+void CountSection(WorkBench* bench) {
+  Plot time{
+      "work_precision_counts_time", "50 frames", "keypoints a frame", "processor time, ms a frame", true, true, {}};
+  Plot error{"work_precision_counts_error",
+             "50 frames",
+             "keypoints a frame",
+             "mean error, px at 512",
+             true,
+             true,
+             {{"chain", {}}, {"Cramér–Rao", {}, true}}};
+  const std::vector<Engine> engines = {CeresEngine(bench->threads), ChainEngine(bench->threads),
+                                       ChainEngine(bench->threads, 300)};
+  for (const Engine& engine : engines) time.lines.push_back({engine.name, {}});
+  for (int dense : {20, 100, 300, 1000, 5000}) {
+    const auto work = MakeWorkProblem(bench->Options(50, dense));
+    const double bound = BoundPx(*work);
+    const auto runs = MeasureEngines(*work, engines, bench->repeat);
+    bench->Add("keypoints a frame", std::to_string(dense), engines, runs, bound);
+    for (size_t i = 0; i < runs.size(); ++i) time.lines[i].points.emplace_back(dense, runs[i].cpu.median);
+    error.lines[0].points.emplace_back(dense, runs[1].error_px);
+    error.lines[1].points.emplace_back(dense, bound);
+  }
+  bench->report.plots.push_back(time);
+  bench->report.plots.push_back(error);
+}
+
+void LengthSection(WorkBench* bench) {
+  Plot time{"work_precision_lengths", "300 keypoints a frame", "frames", "processor time, ms a frame", true, true, {}};
+  Plot memory{
+      "work_precision_memory", "300 keypoints a frame", "frames", "peak memory of the solve, MB", true, true, {}};
+  for (const char* name : {"ceres", "chain"}) {
+    time.lines.push_back({name, {}});
+    memory.lines.push_back({name, {}});
+  }
+  for (const std::string& text : bench->arguments.List("lengths")) {
+    const int frames = std::stoi(text);
+    const auto work = MakeWorkProblem(bench->Options(frames, 300));
+    for (const Engine& engine : {CeresEngine(bench->threads), ChainEngine(bench->threads)}) {
+      const bool is_chain = engine.name == "chain";
+      if (!is_chain && frames > 1000) continue;
+      ResetPeak();
+      const double before = PeakMegabytes();
+      const auto runs = MeasureEngines(*work, {engine}, frames > 2000 ? 1 : bench->repeat);
+      const double peak = PeakMegabytes() - before;
+      bench->Add("frames", text, {engine}, runs,
+                 frames <= 200 ? BoundPx(*work) : std::numeric_limits<double>::quiet_NaN(), peak);
+      time.lines[is_chain].points.emplace_back(frames, runs[0].cpu.median);
+      memory.lines[is_chain].points.emplace_back(frames, peak);
+    }
+  }
+  bench->report.plots.push_back(time);
+  bench->report.plots.push_back(memory);
+}
+
+void ThreadSection(WorkBench* bench) {
+  const auto work = MakeWorkProblem(bench->Options(100, 300));
+  for (int threads : {1, 2, 4}) {
+    const std::vector<Engine> engines = {CeresEngine(threads), ChainEngine(threads)};
+    bench->Add("threads", std::to_string(threads), engines, MeasureEngines(*work, engines, bench->repeat),
+               std::numeric_limits<double>::quiet_NaN());
+  }
+}
+
+}  // namespace bodyloom
