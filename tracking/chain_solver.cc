@@ -7,8 +7,6 @@
 #include <utility>
 
 #include "geometry/check.h"
-#include "tracking/chain/chain_factor.h"
-#include "tracking/chain/chain_problem.h"
 
 namespace bodyloom {
 namespace {
@@ -70,33 +68,44 @@ class Watch {
 
 }  // namespace
 
-SolveReport SolveChain(SequenceProblem* problem, const SolveOptions& options) {
+SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, ChainPoint* point,
+                         const SolveOptions& options, bool thinned) {
   const auto start = std::chrono::steady_clock::now();
   SolveReport report;
-  ChainProblem chain(*problem, options.shape_constant, options.focal_constant, options.num_threads);
-  ChainFactor factor(chain.frame_size(), chain.shared_size(), chain.cut_before());
-  ChainPoint x, candidate;
-  x.states = problem->states;
-  x.betas = problem->betas;
-  x.log_focal = problem->log_focal;
+  ChainProblem& chain = *chain_problem;
+  ChainPoint& x = *point;
+  ChainPoint candidate;
   Watch watch;
   double other_seconds = 0;
-  bool thinned = options.early_dense > 0 && MostDense(*problem) > 2 * static_cast<size_t>(options.early_dense);
   if (thinned) chain.LimitDense(options.early_dense);
+  bool skipping = options.skip_settled > 0;
+  chain.SkipSettled(options.skip_settled);
+  const auto count = [&]() {
+    report.frames_skipped += chain.num_skipped();
+    report.frames_evaluated += static_cast<int64_t>(x.states.size()) - chain.num_skipped();
+  };
   double cost = chain.Linearise(x);
+  count();
   watch.To(&report.seconds_evaluation);
   report.initial_cost = report.final_cost = cost;
   const auto finish = [&](SolveStatus status, std::string message) {
     report.status = status;
     report.message = std::move(message);
     report.final_cost = cost;
-    if (status != SolveStatus::kFailure) {
-      problem->states = std::move(x.states);
-      problem->betas = x.betas;
-      problem->log_focal = x.log_focal;
-    }
     report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return report;
+  };
+  // All frames with all their keypoints, evaluated here: what may end the descent. False when that changed nothing.
+  const auto make_whole = [&]() {
+    if (!thinned && !(skipping && chain.num_skipped() > 0)) return false;
+    chain.LimitDense(0);
+    if (!thinned) chain.SkipSettled(0);
+    skipping = skipping && thinned;
+    thinned = false;
+    cost = chain.Linearise(x);
+    count();
+    watch.To(&report.seconds_evaluation);
+    return true;
   };
   report.iterations = 1;
   if (!std::isfinite(cost)) return finish(SolveStatus::kFailure, "the cost is not finite at the start");
@@ -112,11 +121,13 @@ SolveReport SolveChain(SequenceProblem* problem, const SolveOptions& options) {
     }
     if (fresh &&
         std::max(LargestOf(chain.gradient()), LargestOf(chain.shared_gradient())) <= options.gradient_tolerance) {
-      return finish(SolveStatus::kConverged, "the gradient is below its tolerance");
+      if (!make_whole()) return finish(SolveStatus::kConverged, "the gradient is below its tolerance");
+      if (!std::isfinite(cost)) return finish(SolveStatus::kFailure, "the cost of all keypoints is not finite");
     }
     if (iteration >= options.max_iterations) {
-      if (thinned) {
+      if (thinned || (skipping && !options.skip_to_the_end)) {
         chain.LimitDense(0);
+        chain.SkipSettled(0);
         cost = chain.Cost(x);
       }
       return finish(SolveStatus::kMaxIterations, Concatenate("still going after ", iteration, " iterations"));
@@ -133,7 +144,8 @@ SolveReport SolveChain(SequenceProblem* problem, const SolveOptions& options) {
     shared.diagonal() += shared_damping;
     chain.SetDamping(&damping);
     VectorXd step, shared_step;
-    const bool solved = factor.Solve(chain, shared, -chain.shared_gradient(), options.num_threads, &step, &shared_step);
+    const bool solved =
+        factor->Solve(chain, shared, -chain.shared_gradient(), options.num_threads, &step, &shared_step);
     watch.To(&report.seconds_linear_solver);
     // −gᵀδ − ½ δᵀHδ with Hδ = −g − Λδ.
     const double promised = !solved ? 0.0
@@ -155,6 +167,7 @@ SolveReport SolveChain(SequenceProblem* problem, const SolveOptions& options) {
     // unless the last step was rejected or this one promises to be the last.
     const bool both = !rejected && promised > options.function_tolerance * cost;
     const double candidate_cost = both ? chain.Linearise(candidate) : chain.Cost(candidate);
+    count();
     watch.To(&report.seconds_evaluation);
     const double change = cost - candidate_cost;
     const bool too_short = moved && std::sqrt(step.squaredNorm() + shared_step.squaredNorm()) <=
@@ -165,23 +178,21 @@ SolveReport SolveChain(SequenceProblem* problem, const SolveOptions& options) {
         cost = candidate_cost;
         std::swap(x, candidate);
       }
-      if (!thinned) {
+      if (!make_whole()) {
         return finish(SolveStatus::kConverged,
                       too_short ? "the step is below its tolerance" : "the change of the cost is below its tolerance");
       }
-      thinned = false;
-      chain.LimitDense(0);
-      cost = chain.Linearise(x);
-      watch.To(&report.seconds_evaluation);
       if (!std::isfinite(cost)) return finish(SolveStatus::kFailure, "the cost of all keypoints is not finite");
       fresh = true;
-      rejected = false;
+      rejected = moved = false;
+      radius = Radius();  // what stood in for frames may have shrunk it
       continue;
     }
     const double quality = change / promised;
     if (!(quality > kMinRelativeDecrease)) {  // also when the candidate's cost is not finite
       if (both) {
         chain.Linearise(x);
+        count();
         watch.To(&report.seconds_evaluation);
       }
       radius.Rejected();
@@ -192,6 +203,7 @@ SolveReport SolveChain(SequenceProblem* problem, const SolveOptions& options) {
     if (!both) {
       watch.To(&other_seconds);
       chain.Linearise(x);
+      count();
       watch.To(&report.seconds_evaluation);
     }
     cost = candidate_cost;
@@ -200,6 +212,22 @@ SolveReport SolveChain(SequenceProblem* problem, const SolveOptions& options) {
     radius.Accepted(quality);
     moved = fresh = true;
   }
+}
+
+SolveReport SolveChain(SequenceProblem* problem, const SolveOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  ChainProblem chain(*problem, options.shape_constant, options.focal_constant, options.num_threads);
+  ChainFactor factor(chain.frame_size(), chain.shared_size(), chain.cut_before());
+  ChainPoint x{problem->states, problem->betas, problem->log_focal};
+  const bool thin = options.early_dense > 0 && MostDense(*problem) > 2 * static_cast<size_t>(options.early_dense);
+  SolveReport report = DescendChain(&chain, &factor, &x, options, thin);
+  if (report.status != SolveStatus::kFailure) {
+    problem->states = std::move(x.states);
+    problem->betas = x.betas;
+    problem->log_focal = x.log_focal;
+  }
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return report;
 }
 
 }  // namespace bodyloom

@@ -12,11 +12,18 @@
 /// Tingleff, "Methods for non-linear least squares problems", 2004.
 #pragma once
 
+#include "tracking/chain/chain_factor.h"
+#include "tracking/chain/chain_problem.h"
 #include "tracking/sequence_problem.h"
 
 namespace bodyloom {
 
 /// As SolveSequence(), which calls it.
 SolveReport SolveChain(SequenceProblem* problem, const SolveOptions& options);
+
+/// The iterations alone, from `x` on, which holds the best point afterwards (also after a failure). The linearisations
+/// that `chain` holds already are used where options.skip_settled lets them. `early`: begin with options.early_dense.
+SolveReport DescendChain(ChainProblem* chain, ChainFactor* factor, ChainPoint* x, const SolveOptions& options,
+                         bool early);
 
 }  // namespace bodyloom

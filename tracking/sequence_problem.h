@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -59,6 +60,13 @@ struct SolveOptions {
   /// this many, evenly chosen and weighted to stand for all; then all of them. What converges is always the whole
   /// problem. 0: all from the beginning.
   int early_dense = 0;
+  /// Chain only: frames whose unknowns have all moved by at most this much (radians, metres, betas, log focal length)
+  /// since they were linearised last are not evaluated again; a quadratic stands for them (ChainProblem::SkipSettled).
+  /// Before the descent may end as converged all frames are evaluated at the same point and iterations without the skip
+  /// follow, so the answer is a minimum of the cost itself. 0: every frame in every iteration.
+  double skip_settled = 0;
+  /// Leave it at that when max_iterations end the descent: the final cost may hold stand-ins.
+  bool skip_to_the_end = false;
   bool shape_constant = false, focal_constant = false;
   /// Called after each iteration with (iteration, cost); false stops.
   std::function<bool(int, double)> on_iteration;
@@ -69,6 +77,7 @@ struct SolveReport {
   int iterations = 0;
   double initial_cost = 0, final_cost = 0, seconds = 0;
   double seconds_evaluation = 0, seconds_linear_solver = 0;  ///< parts of `seconds`
+  int64_t frames_evaluated = 0, frames_skipped = 0;          ///< chain: frames × evaluations
   std::string message;
 };
 

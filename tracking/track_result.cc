@@ -36,6 +36,8 @@ bool IsFinite(const FrameState& state) {
                                                       [](const Eigen::Matrix3d& R) { return R.allFinite(); });
 }
 
+}  // namespace
+
 FrameStatus StatusOf(const FrameData& frame) {
   const size_t dense = frame.dense != nullptr ? frame.dense->size() : 0;
   if (frame.part_labels != nullptr && frame.part_labels->num_person_pixels() > 0) return FrameStatus::kTracked;
@@ -43,8 +45,6 @@ FrameStatus StatusOf(const FrameData& frame) {
   if (frame.landmarks.size() < kFewLandmarks && dense < kFewDense) return FrameStatus::kWeak;
   return FrameStatus::kTracked;
 }
-
-}  // namespace
 
 void FillTrack(const TrackSequenceInput& input, const SequenceProblem& problem, const ObservedLandmarks& landmarks,
                TrackSequenceResult* result) {

@@ -8,6 +8,9 @@
 
 namespace bodyloom {
 
+/// By how much of the frame is observed: tracked, weak or interpolated.
+FrameStatus StatusOf(const FrameData& frame);
+
 /// Fills result->track (poses, camera, status, joints, coco17) and the summary's errors and frame counts.
 void FillTrack(const TrackSequenceInput& input, const SequenceProblem& problem, const ObservedLandmarks& landmarks,
                TrackSequenceResult* result);

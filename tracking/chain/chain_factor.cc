@@ -60,12 +60,25 @@ void AddBlocks(const double* blocks, int n, bool transposed, double* target, int
   }
 }
 
+void AddDense(const double* block, int n, double* target, int64_t stride) {
+  if (block == nullptr) return;
+  for (int i = 0; i < n; ++i, block += n, target += stride) {
+    for (int j = 0; j < n; ++j) target[j] += block[j];
+  }
+}
+
 }  // namespace
 
 ChainFactor::ChainFactor(int frame_size, int shared_size, std::vector<char> cut_before)
     : n_(frame_size), s_(shared_size), b_columns_(RoundUp(shared_size + 1)), cut_before_(std::move(cut_before)) {
   BODYLOOM_CHECK(n_ > 0 && n_ % 3 == 0 && s_ >= 0 && !cut_before_.empty(), "chain: ", cut_before_.size(), " frames of ",
                  n_, " values and ", s_, " shared ones; expected at least one frame of a multiple of 3");
+  factor_.resize(cut_before_.size());
+}
+
+void ChainFactor::SetCuts(std::vector<char> cut_before) {
+  BODYLOOM_CHECK(!cut_before.empty(), "chain: no frames");
+  cut_before_ = std::move(cut_before);
   factor_.resize(cut_before_.size());
 }
 
@@ -135,6 +148,7 @@ bool ChainFactor::Eliminate(const ChainSource& source, Half* half) {
     source.AddFrame(t, front.data, front.stride, front.data + front.arrow, front.stride);
     AddBlocks(source.Next(back ? t - 1 : t), n_, back, front.data + front.next, front.stride);
     AddBlocks(source.Second(back ? t - 2 : t), n_, back, front.data + front.second, front.stride);
+    if (!back) AddDense(source.DenseNext(t), n_, front.data + front.next, front.stride);
     if (!Step(t, &panels[0], &panels[1], &panels[2], &half->shared_sum)) return false;
     std::rotate(panels.begin(), panels.begin() + 1, panels.end());
     panels[2].Clear();
@@ -161,6 +175,7 @@ bool ChainFactor::EliminateMiddle(const ChainSource& source, Half* forward, Half
   if (two) {
     source.AddFrame(m + 1, last.data, last.stride, last.data + last.arrow, last.stride);
     AddBlocks(source.Next(m), n_, false, first.data + first.next, first.stride);
+    AddDense(source.DenseNext(m), n_, first.data + first.next, first.stride);
   }
   if (forward->count > 0) {
     add(forward->panels[0], &first, true);

@@ -33,6 +33,9 @@ class ChainSource {
   /// n/3 row-major 3×3 blocks of C_t (frame t with t + 1) and D_t (t with t + 2); not asked for across cuts.
   [[nodiscard]] virtual const double* Next(int t) const = 0;
   [[nodiscard]] virtual const double* Second(int t) const = 0;
+  /// n×n row-major block that is added to C_t where a coupling is not block diagonal, or null. Only the first frame of
+  /// a segment may have one (what a marginal prior couples, chain_prior.h).
+  [[nodiscard]] virtual const double* DenseNext(int /*t*/) const { return nullptr; }
 };
 
 class ChainFactor {
@@ -46,6 +49,8 @@ class ChainFactor {
              int num_threads, Eigen::VectorXd* frames, Eigen::VectorXd* shared_step);
 
   [[nodiscard]] int num_frames() const { return static_cast<int>(cut_before_.size()); }
+  /// Another number of frames or other cuts; memory is kept.
+  void SetCuts(std::vector<char> cut_before);
 
  private:
   struct Panel;

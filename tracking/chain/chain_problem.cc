@@ -5,8 +5,10 @@
 #include <cmath>
 #include <utility>
 
+#include "geometry/check.h"
 #include "geometry/parallel.h"
 #include "geometry/rotation.h"
+#include "tracking/chain/panel_simd.h"
 
 namespace bodyloom {
 
@@ -14,6 +16,11 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 using RowMatrix3d = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+namespace {
+/// Information that a frame without any keeps when it is eliminated: a spread of a thousand radians or metres.
+constexpr double kNothing = 1e-6;
+}  // namespace
 
 /// Borrows an evaluator for one frame. Which one does not matter: they hold scratch memory only.
 class ChainProblem::Lease {
@@ -48,22 +55,29 @@ ChainProblem::ChainProblem(const SequenceProblem& problem, bool shape_constant, 
       shape_constant_(shape_constant || problem.layout.num_betas == 0),
       focal_constant_(focal_constant || problem.layout.focal_column < 0) {
   const FrameLayout& layout = problem.layout;
-  const size_t T = problem.states.size();
-  systems_.resize(T);
   for (int b = 0; b < layout.num_betas && !shape_constant_; ++b) shared_columns_.push_back(layout.beta_column + b);
   if (!focal_constant_) shared_columns_.push_back(layout.focal_column);
-  if (layout.num_betas > 0) ShapePriorRows(problem, &shape_prior_, &shape_offset_);
   const std::vector<double> levers = JointLevers(*layout.model);
   for (int j : layout.active_joints) {
     inverse_sigma_.emplace_back(Eigen::Array3d::Constant(levers[j] / problem.smoothness.tip_acceleration));
   }
   const std::array<double, 3> root_sigma = RootAccelerationSigma(problem);
   inverse_sigma_.emplace_back(1 / root_sigma[0], 1 / root_sigma[1], 1 / root_sigma[2]);
+  Resize();
+}
+
+void ChainProblem::Resize() {
+  const size_t T = problem_.states.size();
+  if (problem_.layout.num_betas > 0) ShapePriorRows(problem_, &shape_prior_, &shape_offset_);
+  systems_.resize(T);
+  anchors_.resize(T);
+  skipped_.resize(T);
+  frame_gradient_.resize(T);
   factors_.resize(T);
   for (size_t t = 2; t < T; ++t) {
     if (!HasAcceleration(t)) continue;
-    factors_[t] = AccelerationFactors::Of(problem.timestamps[t - 1] - problem.timestamps[t - 2],
-                                          problem.timestamps[t] - problem.timestamps[t - 1]);
+    factors_[t] = AccelerationFactors::Of(problem_.timestamps[t - 1] - problem_.timestamps[t - 2],
+                                          problem_.timestamps[t] - problem_.timestamps[t - 1]);
   }
   changes_.resize(T);
   costs_.resize(T);
@@ -72,20 +86,83 @@ ChainProblem::ChainProblem(const SequenceProblem& problem, bool shape_constant, 
   own_.resize(T * 3 * n_);
 }
 
+void ChainProblem::Moved(int dropped) {
+  // Frames keep their systems; those that left lend their memory to the new ones.
+  std::rotate(systems_.begin(), systems_.begin() + dropped, systems_.end());
+  std::rotate(anchors_.begin(), anchors_.begin() + dropped, anchors_.end());
+  const size_t kept = systems_.size() - static_cast<size_t>(dropped);
+  for (size_t t = kept; t < anchors_.size(); ++t) anchors_[t].set = false;
+  Resize();
+}
+
+void ChainProblem::LimitDense(int max_points) {
+  if (max_points != max_dense_) {
+    for (Anchor& anchor : anchors_) anchor.set = false;
+  }
+  max_dense_ = max_points;
+}
+
+bool ChainProblem::StepsFrom(const Anchor& anchor, const FrameState& state, const ChainPoint& point, double most,
+                             VectorXd* d) const {
+  d->resize(n_ + shared_size());
+  const auto fits = [most](const auto& x) { return x.cwiseAbs().maxCoeff() <= most; };  // false for NaN
+  d->segment<3>(n_ - 3) = state.translation - anchor.state.translation;
+  if (!fits(d->segment<3>(n_ - 3))) return false;
+  int at = n_;
+  if (!shape_constant_) {
+    d->segment(at, point.betas.size()) = point.betas - anchor.betas;
+    if (!fits(d->segment(at, point.betas.size()))) return false;
+    at += static_cast<int>(point.betas.size());
+  }
+  if (!focal_constant_) {
+    (*d)[at] = point.log_focal - anchor.log_focal;
+    if (!(std::abs((*d)[at]) <= most)) return false;
+  }
+  at = 0;
+  for (int j : problem_.layout.active_joints) {
+    d->segment<3>(at) = AxisAngleFromRotation(anchor.state.rotations[j].transpose() * state.rotations[j]);
+    if (!fits(d->segment<3>(at))) return false;
+    at += 3;
+  }
+  return true;
+}
+
 bool ChainProblem::HasAcceleration(size_t t) const {
   return t >= 2 && t < systems_.size() && !problem_.cut_before[t] && !problem_.cut_before[t - 1];
 }
 
 double ChainProblem::EvaluateFrames(const ChainPoint& point, bool derivatives) {
-  const int T = static_cast<int>(point.states.size());
+  const int T = static_cast<int>(point.states.size()), s = shared_size();
   ParallelFor(T, num_threads_, [&](int t) {
+    FrameSystem& system = systems_[t];
+    Anchor& anchor = anchors_[t];
+    VectorXd d;
+    skipped_[t] = skip_tolerance_ > 0 && anchor.set && StepsFrom(anchor, point.states[t], point, skip_tolerance_, &d);
+    if (skipped_[t]) {
+      VectorXd full = VectorXd::Zero(system.gradient.size());
+      full.head(n_) = d.head(n_);
+      for (int i = 0; i < s; ++i) full[shared_columns_[i]] = d[n_ + i];
+      const VectorXd Hd = system.H.selfadjointView<Eigen::Lower>() * full;
+      costs_[t] = anchor.cost + system.gradient.dot(full) + 0.5 * full.dot(Hd);
+      if (derivatives) frame_gradient_[t] = system.gradient + Hd;
+      return;
+    }
     Lease evaluator(this);
     (*evaluator).LimitDense(max_dense_);
     (*evaluator)
         .Evaluate(problem_.layout, problem_.frames[t], point.states[t], point.betas, point.log_focal, derivatives,
-                  &systems_[t]);
-    costs_[t] = systems_[t].cost;
+                  &system);
+    costs_[t] = system.cost;
+    if (!derivatives) return;
+    frame_gradient_[t] = system.gradient;
+    anchor.set = skip_tolerance_ > 0 && std::isfinite(system.cost);
+    if (!anchor.set) return;
+    anchor.state = point.states[t];
+    anchor.betas = point.betas;
+    anchor.log_focal = point.log_focal;
+    anchor.cost = system.cost;
   });
+  num_skipped_ = static_cast<int>(std::count(skipped_.begin(), skipped_.end(), 1));
   double sum = 0;
   for (int t = 0; t < T; ++t) sum += costs_[t];
   return sum;
@@ -131,7 +208,7 @@ double ChainProblem::SharedCost(const ChainPoint& point) const {
 }
 
 double ChainProblem::Cost(const ChainPoint& point) {
-  return EvaluateFrames(point, false) + EvaluateChanges(point, false) + SharedCost(point);
+  return EvaluateFrames(point, false) + EvaluateChanges(point, false) + EvaluatePrior(point, false) + SharedCost(point);
 }
 
 void ChainProblem::AddSharedPriors(const ChainPoint& point) {
@@ -148,6 +225,20 @@ void ChainProblem::AddSharedPriors(const ChainPoint& point) {
   }
 }
 
+void ChainProblem::AccelerationOf(size_t end, int a, Matrix3d J[3], Eigen::Array3d* weight, Vector3d* force) const {
+  const AccelerationFactors& f = factors_[end];
+  const Change &first = changes_[end - 1], &last = changes_[end];
+  if (a + 1 < blocks_) {
+    RotationAccelerationJacobians(f, first.right[a], last.right[a], J);
+  } else {
+    J[0] = f.earlier * Matrix3d::Identity();
+    J[1] = -(f.earlier + f.later) * Matrix3d::Identity();
+    J[2] = f.later * Matrix3d::Identity();
+  }
+  *weight = inverse_sigma_[a].square();
+  *force = (*weight * (f.later * last.step[a] - f.earlier * first.step[a]).array()).matrix();
+}
+
 void ChainProblem::AssembleAcceleration(size_t t) {
   double* own = &own_[t * 3 * n_];
   double* next = &next_[t * 3 * n_];
@@ -158,21 +249,13 @@ void ChainProblem::AssembleAcceleration(size_t t) {
   for (size_t end = t; end <= t + 2; ++end) {  // frame t is the last, the middle or the first of these three
     if (!HasAcceleration(end)) continue;
     const size_t role = t + 2 - end;  // 2, 1, 0: its place in (end − 2, end − 1, end)
-    const AccelerationFactors& f = factors_[end];
-    const Change &first = changes_[end - 1], &last = changes_[end];
     for (int a = 0; a < blocks_; ++a) {
       Matrix3d J[3];
-      if (a + 1 < blocks_) {
-        RotationAccelerationJacobians(f, first.right[a], last.right[a], J);
-      } else {
-        J[0] = f.earlier * Matrix3d::Identity();
-        J[1] = -(f.earlier + f.later) * Matrix3d::Identity();
-        J[2] = f.later * Matrix3d::Identity();
-      }
-      const Eigen::Array3d weight = inverse_sigma_[a].square();
-      const Vector3d r = (weight * (f.later * last.step[a] - f.earlier * first.step[a]).array()).matrix();
+      Eigen::Array3d weight;
+      Vector3d force;
+      AccelerationOf(end, a, J, &weight, &force);
       const Matrix3d weighted = J[role].transpose() * weight.matrix().asDiagonal();
-      gradient_.segment<3>(static_cast<Eigen::Index>(t * n_ + 3 * a)) += J[role].transpose() * r;
+      gradient_.segment<3>(static_cast<Eigen::Index>(t * n_ + 3 * a)) += J[role].transpose() * force;
       Eigen::Map<RowMatrix3d>(own + 9 * a) += weighted * J[role];
       if (role < 2) Eigen::Map<RowMatrix3d>(next + 9 * a) += weighted * J[role + 1];
       if (role == 0) Eigen::Map<RowMatrix3d>(second + 9 * a) += weighted * J[2];
@@ -180,14 +263,67 @@ void ChainProblem::AssembleAcceleration(size_t t) {
   }
 }
 
+double ChainProblem::EvaluatePrior(const ChainPoint& point, bool derivatives) {
+  if (prior_ == nullptr) return 0;
+  const int s = shared_size(), size = 2 * n_ + s;
+  BODYLOOM_CHECK(point.states.size() >= 2 && prior_->M.rows() == size && prior_->m.size() == size, "chain: a prior of ",
+                 prior_->M.rows(), " values on ", point.states.size(), " frames of ", n_, " and ", s,
+                 " shared values; expected ", size, " on two frames or more");
+  VectorXd e(size);
+  std::vector<Matrix3d> right;
+  int at = 0;
+  for (int k = 0; k < 2; ++k) {
+    for (int j : problem_.layout.active_joints) {
+      e.segment<3>(at) =
+          AxisAngleFromRotation(prior_->states[k].rotations[j].transpose() * point.states[k].rotations[j]);
+      if (derivatives) right.push_back(RightJacobianInverse(e.segment<3>(at)));
+      at += 3;
+    }
+    e.segment<3>(at) = point.states[k].translation - prior_->states[k].translation;
+    if (derivatives) right.push_back(Matrix3d::Identity());
+    at += 3;
+  }
+  if (!shape_constant_) {
+    e.segment(at, point.betas.size()) = point.betas - prior_->betas;
+    at += static_cast<int>(point.betas.size());
+  }
+  if (!focal_constant_) e[at] = point.log_focal - prior_->log_focal;
+  const VectorXd Me = prior_->M * e;
+  const double cost = e.dot(0.5 * Me + prior_->m);
+  if (!derivatives) return cost;
+  prior_gradient_ = prior_->m + Me;
+  prior_matrix_ = prior_->M;
+  for (size_t i = 0; i < right.size(); ++i) {
+    const auto b = static_cast<Eigen::Index>(3 * i);
+    prior_gradient_.segment<3>(b) = (right[i].transpose() * prior_gradient_.segment<3>(b)).eval();
+    prior_matrix_.middleCols<3>(b) = (prior_matrix_.middleCols<3>(b) * right[i]).eval();
+  }
+  for (size_t i = 0; i < right.size(); ++i) {
+    const auto b = static_cast<Eigen::Index>(3 * i);
+    prior_matrix_.middleRows<3>(b) = (right[i].transpose() * prior_matrix_.middleRows<3>(b)).eval();
+  }
+  prior_next_ = prior_matrix_.block(0, n_, n_, n_);
+  return cost;
+}
+
+void ChainProblem::AddPrior() {
+  if (prior_ == nullptr) return;
+  const int s = shared_size();
+  gradient_.head(2 * n_) += prior_gradient_.head(2 * n_);
+  diagonal_.head(2 * n_) += prior_matrix_.diagonal().head(2 * n_);
+  shared_gradient_ += prior_gradient_.tail(s);
+  shared_ += prior_matrix_.bottomRightCorner(s, s);
+}
+
 double ChainProblem::Linearise(const ChainPoint& point) {
   const int T = static_cast<int>(point.states.size()), s = shared_size();
-  const double cost = EvaluateFrames(point, true) + EvaluateChanges(point, true) + SharedCost(point);
+  const double cost =
+      EvaluateFrames(point, true) + EvaluateChanges(point, true) + EvaluatePrior(point, true) + SharedCost(point);
   gradient_.resize(static_cast<Eigen::Index>(T) * n_);
   diagonal_.resize(gradient_.size());
   ParallelFor(T, num_threads_, [&](int t) {
     const auto offset = static_cast<Eigen::Index>(t) * n_;
-    gradient_.segment(offset, n_) = systems_[t].gradient.head(n_);
+    gradient_.segment(offset, n_) = frame_gradient_[t].head(n_);
     AssembleAcceleration(t);
     for (int i = 0; i < n_; ++i) {
       diagonal_[offset + i] = systems_[t].H(i, i) + own_[static_cast<size_t>(offset) * 3 + i / 3 * 9 + i % 3 * 4];
@@ -197,12 +333,93 @@ double ChainProblem::Linearise(const ChainPoint& point) {
   shared_gradient_.setZero(s);
   for (int t = 0; t < T; ++t) {
     for (int i = 0; i < s; ++i) {
-      shared_gradient_[i] += systems_[t].gradient[shared_columns_[i]];
+      shared_gradient_[i] += frame_gradient_[t][shared_columns_[i]];
       for (int j = 0; j <= i; ++j) shared_(i, j) += systems_[t].H(shared_columns_[i], shared_columns_[j]);
     }
   }
   AddSharedPriors(point);
+  AddPrior();
   return cost;
+}
+
+bool ChainProblem::Marginalise(const ChainPoint& point, ChainPrior* prior) const {
+  using panel_internal::RoundUp;
+  const int T = static_cast<int>(point.states.size()), s = shared_size(), size = 2 * n_ + s;
+  BODYLOOM_CHECK(T >= 3, "chain: ", T, " frames, expected three or more to take the first away");
+  // Frame 0's rows: [A | C D B | right-hand side].
+  const int x_begin = RoundUp(n_), x_columns = RoundUp(size + 1);
+  const int64_t stride = panel_internal::RowStride(x_begin + x_columns);
+  std::vector<double> panel(static_cast<size_t>(n_ * stride), 0.0);
+  // Rows of what stays; the right-hand side is the last column.
+  const int64_t left_stride = panel_internal::RowStride(size + 1);
+  std::vector<double> left(static_cast<size_t>((size + 1) * left_stride), 0.0);
+  using Rows = Eigen::Map<RowMatrixXd, 0, Eigen::OuterStride<>>;
+  Rows A(panel.data(), n_, x_columns + x_begin, Eigen::OuterStride<>(stride));
+  Rows N(left.data(), size + 1, size + 1, Eigen::OuterStride<>(left_stride));
+  Rows X(panel.data() + x_begin, n_, x_columns, Eigen::OuterStride<>(stride));
+
+  const FrameSystem& system = systems_[0];
+  A.leftCols(n_) = system.H.topLeftCorner(n_, n_).selfadjointView<Eigen::Lower>();
+  A.diagonal().array() += kNothing;
+  for (int i = 0; i < s; ++i) {
+    X.col(2 * n_ + i) = system.H.row(shared_columns_[i]).head(n_).transpose();
+    N(2 * n_ + i, size) = -frame_gradient_[0][shared_columns_[i]];
+    for (int j = 0; j <= i; ++j) {
+      N(2 * n_ + i, 2 * n_ + j) = N(2 * n_ + j, 2 * n_ + i) = system.H(shared_columns_[i], shared_columns_[j]);
+    }
+  }
+  X.col(size) = -gradient_.head(n_);
+  if (HasAcceleration(2)) {
+    for (int a = 0; a < blocks_; ++a) {
+      Matrix3d J[3];
+      Eigen::Array3d weight;
+      Vector3d force;
+      AccelerationOf(2, a, J, &weight, &force);
+      const auto product = [&](int i, int j) -> Matrix3d {
+        return J[i].transpose() * weight.matrix().asDiagonal() * J[j];
+      };
+      A.block<3, 3>(3 * a, 3 * a) += product(0, 0);
+      for (int i = 1; i < 3; ++i) {
+        const int row = (i - 1) * n_ + 3 * a;
+        X.block<3, 3>(3 * a, row) += product(0, i);
+        N.block<3, 1>(row, size) -= J[i].transpose() * force;
+        for (int j = 1; j < 3; ++j) N.block<3, 3>(row, (j - 1) * n_ + 3 * a) += product(i, j);
+      }
+    }
+  }
+  if (prior_ != nullptr) {
+    A.leftCols(n_) += prior_matrix_.topLeftCorner(n_, n_);
+    X.leftCols(n_) += prior_matrix_.block(0, n_, n_, n_);
+    X.middleCols(2 * n_, s) += prior_matrix_.block(0, 2 * n_, n_, s);
+    N.topLeftCorner(n_, n_) += prior_matrix_.block(n_, n_, n_, n_);
+    N.block(0, 2 * n_, n_, s) += prior_matrix_.block(n_, 2 * n_, n_, s);
+    N.block(2 * n_, 0, s, n_) += prior_matrix_.block(2 * n_, n_, s, n_);
+    N.block(2 * n_, 2 * n_, s, s) += prior_matrix_.bottomRightCorner(s, s);
+    N.col(size).head(n_) -= prior_gradient_.segment(n_, n_);
+    N.col(size).segment(2 * n_, s) -= prior_gradient_.tail(s);
+  }
+  if (!panel_internal::EliminateRows(panel.data(), stride, n_, x_columns, false)) return false;
+  panel_internal::Products products;
+  products.a = products.b = X.data();
+  products.c = left.data();
+  products.lda = products.ldb = stride;
+  products.ldc = left_stride;
+  products.rows = size;
+  products.columns = size + 1;
+  products.last = n_;
+  products.upper = true;
+  products.sign = -1;
+  panel_internal::AddProducts(products);
+  ChainPrior result;
+  result.set = true;
+  result.states = {point.states[1], point.states[2]};
+  result.betas = point.betas;
+  result.log_focal = point.log_focal;
+  result.M = N.topLeftCorner(size, size).selfadjointView<Eigen::Upper>();
+  result.m = -N.col(size).head(size);
+  if (!result.M.allFinite() || !result.m.allFinite()) return false;
+  *prior = std::move(result);
+  return true;
 }
 
 void ChainProblem::AddFrame(int t, double* a, int64_t a_stride, double* b, int64_t b_stride) const {
@@ -219,6 +436,11 @@ void ChainProblem::AddFrame(int t, double* a, int64_t a_stride, double* b, int64
     row[i] += (*damping_)[offset + i];
     double* arrow = b + i * b_stride;
     for (int j = 0; j < s; ++j) arrow[j] += column[shared_columns_[j]];
+    if (prior_ != nullptr && t < 2) {
+      const auto p = prior_matrix_.row(offset + i);
+      for (int j = i; j < n_; ++j) row[j] += p[offset + j];
+      for (int j = 0; j < s; ++j) arrow[j] += p[2 * n_ + j];
+    }
     arrow[s] -= gradient_[offset + i];
   }
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tracking/chain/chain_factor.h"
+#include "tracking/chain/chain_prior.h"
 #include "tracking/residuals/acceleration_cost.h"
 #include "tracking/sequence_problem.h"
 
@@ -29,7 +30,24 @@ class ChainProblem : public ChainSource {
   ChainProblem(const SequenceProblem& problem, bool shape_constant, bool focal_constant, int num_threads);
 
   /// From now on at most about this many dense keypoints a frame (FrameEvaluator::LimitDense); 0: all.
-  void LimitDense(int max_points) { max_dense_ = max_points; }
+  void LimitDense(int max_points);
+  /// From now on frames whose unknowns (radians, metres, log focal length, betas) have all moved by at most this much
+  /// since they were linearised last are not evaluated: cost c + gᵀd + ½ dᵀHd and gradient g + Hd of that point stand
+  /// for them, wrong by O(d³) and O(d²) times the residuals' curvature. 0: all frames are evaluated.
+  void SkipSettled(double tolerance) { skip_tolerance_ = tolerance; }
+  /// How many frames the last Cost() or Linearise() took from an earlier point.
+  [[nodiscard]] int num_skipped() const { return num_skipped_; }
+  /// A term beside the problem's own; borrowed, null: none. The problem must have two frames or more.
+  void SetPrior(const ChainPrior* prior) { prior_ = prior; }
+
+  /// The borrowed problem has lost its first `dropped` frames, and may have got new ones at its end, other cuts or
+  /// other shared priors since.
+  void Moved(int dropped);
+  /// Frame t has other observations than when it was evaluated last.
+  void Forget(int t) { anchors_[t].set = false; }
+  /// What frame 0 and the prior say about frames 1 and 2 and shared values, at the point linearised last, `point`.
+  /// False when frame 0's matrix is singular.
+  bool Marginalise(const ChainPoint& point, ChainPrior* prior) const;
 
   /// Cost alone; NaN where a frame's is not finite.
   double Cost(const ChainPoint& point);
@@ -57,6 +75,9 @@ class ChainProblem : public ChainSource {
   void AddFrame(int t, double* a, int64_t a_stride, double* b, int64_t b_stride) const override;
   [[nodiscard]] const double* Next(int t) const override { return &next_[static_cast<size_t>(t) * 3 * n_]; }
   [[nodiscard]] const double* Second(int t) const override { return &second_[static_cast<size_t>(t) * 3 * n_]; }
+  [[nodiscard]] const double* DenseNext(int t) const override {
+    return t == 0 && prior_ != nullptr ? prior_next_.data() : nullptr;
+  }
 
  private:
   /// The change from frame t − 1 to t: log(R₋ᵀR) of each active joint, then the translation's difference.
@@ -64,22 +85,41 @@ class ChainProblem : public ChainSource {
     std::vector<Eigen::Vector3d> step;
     std::vector<Eigen::Matrix3d> right;  ///< RightJacobianInverse of the rotations' steps
   };
+  /// Where a frame's system was evaluated.
+  struct Anchor {
+    bool set = false;
+    FrameState state;
+    Eigen::VectorXd betas;
+    double log_focal = 0, cost = 0;
+  };
   class Lease;
+  void Resize();
+  /// Steps from a frame's anchor: n values, then the shared ones that are unknown. False when one exceeds `most`.
+  bool StepsFrom(const Anchor& anchor, const FrameState& state, const ChainPoint& point, double most,
+                 Eigen::VectorXd* d) const;
+  double EvaluatePrior(const ChainPoint& point, bool derivatives);
+  void AddPrior();
   double EvaluateFrames(const ChainPoint& point, bool derivatives);
   double EvaluateChanges(const ChainPoint& point, bool derivatives);
   double SharedCost(const ChainPoint& point) const;
   void AddSharedPriors(const ChainPoint& point);
   [[nodiscard]] bool HasAcceleration(size_t t) const;
+  /// Of joint (or translation) a in frames end − 2, end − 1, end: Jacobians of σ r, 1/σ², and r/σ.
+  void AccelerationOf(size_t end, int a, Eigen::Matrix3d J[3], Eigen::Array3d* weight, Eigen::Vector3d* force) const;
   /// Blocks of the matrix and gradient that the accelerations of frames t, t + 1 and t + 2 give to frame t.
   void AssembleAcceleration(size_t t);
 
   const SequenceProblem& problem_;
-  int n_, blocks_, num_threads_, max_dense_ = 0;
+  int n_, blocks_, num_threads_, max_dense_ = 0, num_skipped_ = 0;
+  double skip_tolerance_ = 0;
   std::vector<int> shared_columns_;  ///< columns of a frame's matrix that are unknown and shared
   bool shape_constant_, focal_constant_;
   RowMatrixXd shape_prior_;  ///< residual = shape_prior_ β + shape_offset_
   Eigen::VectorXd shape_offset_;
-  std::vector<FrameSystem> systems_;                 ///< T
+  std::vector<FrameSystem> systems_;                 ///< T, at their anchors
+  std::vector<Anchor> anchors_;                      ///< T
+  std::vector<char> skipped_;                        ///< T: the last evaluation took the anchor's
+  std::vector<Eigen::VectorXd> frame_gradient_;      ///< T, at the point linearised last
   std::vector<Change> changes_;                      ///< T
   std::vector<AccelerationFactors> factors_;         ///< T, of the acceleration that ends at each frame
   std::vector<Eigen::Array3d> inverse_sigma_;        ///< n/3
@@ -87,6 +127,10 @@ class ChainProblem : public ChainSource {
   Eigen::VectorXd gradient_, shared_gradient_, diagonal_;
   Eigen::MatrixXd shared_;
   const Eigen::VectorXd* damping_ = nullptr;
+  const ChainPrior* prior_ = nullptr;
+  Eigen::MatrixXd prior_matrix_;  ///< at the point linearised last
+  Eigen::VectorXd prior_gradient_;
+  RowMatrixXd prior_next_;                                   ///< first frame with the second
   std::vector<std::unique_ptr<FrameEvaluator>> evaluators_;  ///< that nobody uses now
   std::mutex evaluators_mutex_;
 };

@@ -100,21 +100,24 @@ void FillBetween(const std::vector<char>& read, int begin, int end, std::vector<
       last = t;
       continue;
     }
+    if (last < 0) continue;
     int next = t;
     while (next < end && !read[next]) ++next;
     if (next == end) {
       (*frames)[t] = (*frames)[last];
       continue;
     }
-    const LiftedFrame &a = (*frames)[last], &b = (*frames)[next];
-    const double w = static_cast<double>(t - last) / (next - last);
-    LiftedFrame frame = w < 0.5 ? a : b;
-    frame.points = (1 - w) * a.points + w * b.points;
-    (*frames)[t] = frame;
+    (*frames)[t] = InterpolateLifted((*frames)[last], (*frames)[next], static_cast<double>(t - last) / (next - last));
   }
 }
 
 }  // namespace
+
+LiftedFrame InterpolateLifted(const LiftedFrame& a, const LiftedFrame& b, double s) {
+  LiftedFrame frame = s < 0.5 ? a : b;
+  frame.points = (1 - s) * a.points + s * b.points;
+  return frame;
+}
 
 std::vector<LiftedFrame> LiftKeypoints(const KeypointSequence& keypoints, const Camera& camera, bool focal_known,
                                        const std::vector<char>& cut_before, const LifterWeights& weights,
@@ -146,11 +149,14 @@ std::vector<LiftedFrame> LiftKeypoints(const KeypointSequence& keypoints, const 
     const LifterInput input = MakeLifterInput(SamplePhase(rays, phase));
     const RowMatrixXf features =
         Eigen::Map<const RowMatrixXf>(input.features.data(), phase.num_samples(), kLifterInputs);
-    const RowMatrixXf plain = RunLifter(weights, features);
-    const RowMatrixXf mirrored = options.mirrored ? RunLifter(weights, MirrorFeatures(features)) : RowMatrixXf();
+    const int last = options.last_samples;
+    const RowMatrixXf plain = RunLifter(weights, features, last);
+    const RowMatrixXf mirrored = options.mirrored ? RunLifter(weights, MirrorFeatures(features), last) : RowMatrixXf();
+    const int skipped = phase.num_samples() - static_cast<int>(plain.rows());
     for (int i = 0; i < phase.count; ++i) {
       const int t = phase.first + i * phase.stride, s = i * phase.between;
-      result[t] = ReadLifter(plain, mirrored, s, input.camera_from_virtual[s].cast<double>());
+      if (s < skipped) continue;
+      result[t] = ReadLifter(plain, mirrored, s - skipped, input.camera_from_virtual[s].cast<double>());
       read[t] = 1;
     }
   });

@@ -23,7 +23,11 @@ struct LiftOptions {
   bool mirrored = true;    ///< the second run
   bool all_phases = true;  ///< false: one phase, frames in between interpolated; faster and rougher
   int num_threads = 1;
+  int last_samples = 0;  ///< above 0: only the last so many that each phase reads are computed; frames before are empty
 };
+
+/// Between two frames, s in [0, 1]: points by straight lines, limbs and uncertainty of the nearer one.
+LiftedFrame InterpolateLifted(const LiftedFrame& a, const LiftedFrame& b, double s);
 
 /// One entry a frame; empty when no landmark is ever seen. `cut_before` (T, or empty) marks frames that do not continue
 /// the one before. Throws std::invalid_argument for weights of another number of inputs.

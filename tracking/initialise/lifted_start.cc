@@ -94,6 +94,17 @@ bool FillPositions(const std::vector<double>& timestamps, std::vector<std::optio
 
 }  // namespace
 
+double LifterMetres(const BodyModel& body, const Eigen::VectorXd& betas) {
+  BodyPose rest;
+  rest.rotations.assign(body.num_joints(), Matrix3d::Identity());
+  const MatrixX3d points = PoseLandmarks(body, betas, rest, CocoNames());
+  std::vector<float> measured(3 * kLifterPoints, 0);
+  for (int k = 0; k < 17; ++k) {
+    for (int c = 0; c < 3; ++c) measured[3 * k + c] = static_cast<float>(points(k, c));
+  }
+  return LifterReferenceLength(measured);
+}
+
 LiftedStart StartFromLifter(const KeypointSequence& keypoints, const std::vector<char>& cut_before,
                             const Camera& camera, bool focal_known, const BodyModel& body, const Eigen::VectorXd& betas,
                             const LifterWeights& weights, int num_threads) {
@@ -107,11 +118,7 @@ LiftedStart StartFromLifter(const KeypointSequence& keypoints, const std::vector
   BodyPose rest;
   rest.rotations.assign(body.num_joints(), Matrix3d::Identity());
   const MatrixX3d rest_joints = body.RestJoints(betas), rest_points = PoseLandmarks(body, betas, rest, CocoNames());
-  std::vector<float> measured(3 * kLifterPoints, 0);
-  for (int k = 0; k < 17; ++k) {
-    for (int c = 0; c < 3; ++c) measured[3 * k + c] = static_cast<float>(rest_points(k, c));
-  }
-  start.metres = LifterReferenceLength(measured);
+  start.metres = LifterMetres(body, betas);
 
   std::array<int, kLifterPoints> columns;
   for (int k = 0; k < kLifterPoints; ++k) {

@@ -18,6 +18,9 @@ struct LiftedStart {
   InitialStates initial;
 };
 
+/// Torso + leg length of the body's rest pose, metres: the unit of LiftedFrame::points.
+double LifterMetres(const BodyModel& body, const Eigen::VectorXd& betas);
+
 /// `body` must have the landmarks of LiftedLandmarks::IsUsable(). Rays come from `camera`; `betas` give the bones'
 /// lengths. In every frame in which at least three landmarks are seen the mid-hip is placed by least squares: the
 /// position t that brings the lifted landmarks nearest to their rays, Σ c_k² ρ(‖(x_k + t) − its projection on the

@@ -3,33 +3,73 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
+#include <vector>
 
 #include "geometry/check.h"
+#include "tracking/initialise/matrix_simd.h"
 
 namespace bodyloom {
 namespace {
 
 constexpr float kNormEpsilon = 1e-5F;  // LibTorch's LayerNorm
 
-/// Frames are worked on in strips whose rows stay in the second-level cache.
+/// Frames are worked on in strips: their rows and the weights' stay in the second-level cache.
 constexpr Eigen::Index kStrip = 96;
 
-/// out(t) = bias + Σ_k W_k x(t + (k − 1) dilation), k = 0, 1, 2; x is zero outside.
-RowMatrixXf Convolve(const RowMatrixXf& x, const RowMatrixXf& weight, const Eigen::VectorXf& bias, int dilation) {
-  const Eigen::Index T = x.rows(), C = x.cols();
-  RowMatrixXf out(T, weight.rows());
-  for (Eigen::Index begin = 0; begin < T; begin += kStrip) {
-    const Eigen::Index end = std::min(T, begin + kStrip);
-    out.middleRows(begin, end - begin).rowwise() = bias.transpose();
-    for (int k = 0; k < 3; ++k) {
-      const Eigen::Index shift = Eigen::Index{k - 1} * dilation;
-      const Eigen::Index from = std::max(begin, -shift), to = std::min(end, T - shift);
-      if (from >= to) continue;
-      out.middleRows(from, to - from).noalias() +=
-          x.middleRows(from + shift, to - from) * weight.middleCols(k * C, C).transpose();
+/// out(r) += W x(r) for `rows` rows of as many values as W has columns.
+void AddProduct(const float* x, Eigen::Index rows, const RowMatrixXf& weight, float* out) {
+  matrix_internal::AddTimesTransposed(x, weight.cols(), static_cast<int>(rows), weight.data(), weight.cols(),
+                                      static_cast<int>(weight.rows()), static_cast<int>(weight.cols()), out,
+                                      weight.rows());
+}
+
+using Rows = std::vector<int>;
+
+/// `rows` and those a step before and after each, within the clip; ascending.
+Rows Around(const Rows& rows, int dilation, int num_frames) {
+  std::vector<char> wanted(num_frames, 0);
+  for (const int t : rows) {
+    for (const int u : {t - dilation, t, t + dilation}) {
+      if (u >= 0 && u < num_frames) wanted[u] = 1;
     }
   }
+  Rows around;
+  for (int t = 0; t < num_frames; ++t) {
+    if (wanted[t]) around.push_back(t);
+  }
+  return around;
+}
+
+/// out(t) = bias + Σ_k W_k x(t + (k − 1) dilation), k = 0, 1, 2, for the rows t that are asked for; x is zero outside.
+/// `place[t]` is the row of x that holds frame t.
+RowMatrixXf Convolve(const RowMatrixXf& x, const std::vector<int>& place, const Rows& rows, const RowMatrixXf& weight,
+                     const Eigen::VectorXf& bias, int dilation) {
+  const Eigen::Index C = x.cols();
+  const auto count = static_cast<Eigen::Index>(rows.size());
+  RowMatrixXf out = bias.transpose().replicate(count, 1);
+  RowMatrixXf taps(std::min(kStrip, count), 3 * C);
+  for (Eigen::Index begin = 0; begin < count; begin += kStrip) {
+    const Eigen::Index strip = std::min(kStrip, count - begin);
+    taps.setZero();
+    for (Eigen::Index i = 0; i < strip; ++i) {
+      for (int k = 0; k < 3; ++k) {
+        const int t = rows[begin + i] + (k - 1) * dilation;
+        if (t < 0 || t >= static_cast<int>(place.size())) continue;
+        taps.row(i).segment(k * C, C) = x.row(place[t]);
+      }
+    }
+    AddProduct(taps.data(), strip, weight, out.row(begin).data());
+  }
   return out;
+}
+
+/// Where each frame stands in a matrix that holds `rows`; −1: nowhere.
+std::vector<int> PlacesOf(const Rows& rows, int num_frames) {
+  std::vector<int> place(num_frames, -1);
+  for (size_t i = 0; i < rows.size(); ++i) place[rows[i]] = static_cast<int>(i);
+  return place;
 }
 
 /// Each row to mean 0 and variance 1, then scale and shift.
@@ -46,19 +86,33 @@ RowMatrixXf NormaliseFrames(const RowMatrixXf& x, const Eigen::VectorXf& scale, 
 
 }  // namespace
 
-RowMatrixXf RunLifter(const LifterWeights& weights, const RowMatrixXf& features) {
+RowMatrixXf RunLifter(const LifterWeights& weights, const RowMatrixXf& features, int last_frames) {
   BODYLOOM_CHECK(features.cols() == weights.num_inputs(), "lifter: ", features.cols(),
                  " features a frame for a network of ", weights.num_inputs());
-  RowMatrixXf h = Convolve(features, weights.input, weights.input_bias, 1);
-  for (const LifterWeights::Block& block : weights.blocks) {
-    RowMatrixXf inner = Convolve(NormaliseFrames(h, block.norm_scale, block.norm_shift), block.dilated,
-                                 block.dilated_bias, block.dilation);
+  const int T = static_cast<int>(features.rows());
+  // What each layer must know, from the output back.
+  std::vector<Rows> needed(weights.blocks.size() + 1);
+  for (int t = last_frames > 0 ? std::max(0, T - last_frames) : 0; t < T; ++t) needed.back().push_back(t);
+  for (size_t b = weights.blocks.size(); b-- > 0;) needed[b] = Around(needed[b + 1], weights.blocks[b].dilation, T);
+  Rows all(T);
+  std::iota(all.begin(), all.end(), 0);
+  RowMatrixXf h = Convolve(features, all, needed[0], weights.input, weights.input_bias, 1);
+  for (size_t b = 0; b < weights.blocks.size(); ++b) {
+    const LifterWeights::Block& block = weights.blocks[b];
+    const std::vector<int> place = PlacesOf(needed[b], T);
+    RowMatrixXf inner = Convolve(NormaliseFrames(h, block.norm_scale, block.norm_shift), place, needed[b + 1],
+                                 block.dilated, block.dilated_bias, block.dilation);
     inner = inner.array() / (1 + (-inner.array()).exp());  // SiLU
-    h.rowwise() += block.mix_bias.transpose();
-    h.noalias() += inner * block.mix.transpose();
+    RowMatrixXf next(static_cast<Eigen::Index>(needed[b + 1].size()), h.cols());
+    for (size_t i = 0; i < needed[b + 1].size(); ++i) {
+      next.row(static_cast<Eigen::Index>(i)) = h.row(place[needed[b + 1][i]]) + block.mix_bias.transpose();
+    }
+    AddProduct(inner.data(), inner.rows(), block.mix, next.data());
+    h = std::move(next);
   }
-  RowMatrixXf out = NormaliseFrames(h, weights.norm_scale, weights.norm_shift) * weights.output.transpose();
-  out.rowwise() += weights.output_bias.transpose();
+  RowMatrixXf out = weights.output_bias.transpose().replicate(h.rows(), 1);
+  const RowMatrixXf last = NormaliseFrames(h, weights.norm_scale, weights.norm_shift);
+  AddProduct(last.data(), last.rows(), weights.output, out.data());
   return out;
 }
 

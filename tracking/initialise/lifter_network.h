@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Runs the lifter (geometry/lifter_weights.h) with plain matrix products: about 7 million of them a frame.
+/// Runs the lifter (geometry/lifter_weights.h) with plain matrix products: about a million of them a frame.
 #pragma once
 
 #include "geometry/arrays.h"
@@ -8,7 +8,8 @@
 namespace bodyloom {
 
 /// T×LifterOutput::kSize for T×num_inputs features of consecutive frames; beyond the ends is nothing, as in training.
+/// `last_frames` n > 0: only the last n rows, and only what they depend on is computed; they equal those of the whole.
 /// Throws std::invalid_argument when the features have another number of columns.
-RowMatrixXf RunLifter(const LifterWeights& weights, const RowMatrixXf& features);
+RowMatrixXf RunLifter(const LifterWeights& weights, const RowMatrixXf& features, int last_frames = 0);
 
 }  // namespace bodyloom
