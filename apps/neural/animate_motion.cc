@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -19,6 +20,7 @@
 #include "apps/interrupt.h"
 #include "apps/neural/background.h"
 #include "apps/neural/motion_data.h"
+#include "apps/neural/motion_errors.h"
 #include "apps/neural/motion_preview.h"
 #include "apps/neural/motion_run.h"
 #include "apps/neural/relight_frames.h"
@@ -28,6 +30,7 @@
 #include "apps/track_inputs.h"
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/motion/play_track.h"
+#include "data_tools/people/motion_similarity.h"
 #include "data_tools/people/person_frames.h"
 #include "data_tools/people/person_set.h"
 #include "data_tools/people/posed_track.h"
@@ -47,7 +50,7 @@ namespace {
 constexpr int kLargestSide = 4096;
 
 struct Request {
-  std::string run, track, data, out, body, background, sheet, json, view_yaw, relight;
+  std::string run, track, data, out, body, background, sheet, json, view_yaw, relight, frames, like;
   int threads = 0, warmup = 50;
   double speed = 1;
   std::string device = "cpu";
@@ -146,6 +149,18 @@ void EstimateLight(const Clip& clip, MotionRenderer* renderer, FrameRelighter* r
   relighter->Estimate();
 }
 
+/// Of each frame to the nearest of --like; empty without it.
+std::vector<float> SimilarityTo(const Request& request, const Track& track, int past, int threads) {
+  if (request.like.empty()) return {};
+  const Track others =
+      std::filesystem::is_directory(request.like) ? PersonSet(request.like).track() : ReadTrack(request.like);
+  try {
+    return SimilarityToNearest(*BodyOrBuiltin(request.body), track, others, past, threads);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(request.like + ": " + error.what());
+  }
+}
+
 nlohmann::ordered_json ScoresJson(const MotionScores& s) {
   return {{"frames", s.frames},         {"image_l1", s.image_l1},   {"psnr_db", s.psnr_db},
           {"label_iou", s.label_iou},   {"class_iou", s.class_iou}, {"foreground_iou", s.foreground_iou},
@@ -170,8 +185,9 @@ void Run(const Request& request) {
   RequireReadable(request.data, "person set");
   RequireReadable(request.relight, "light");
   RequireDistinct({request.track, request.background, request.body, request.relight},
-                  {request.out, request.sheet, request.json});
-  for (const std::string& path : {request.out, request.sheet, request.json}) RequireWritable(path);
+                  {request.out, request.sheet, request.json, request.frames});
+  for (const std::string& path : {request.out, request.sheet, request.json, request.frames}) RequireWritable(path);
+  RequireReadable(request.like, "person set or track");
   std::unique_ptr<FrameRelighter> relighter;
   if (!request.relight.empty()) relighter = std::make_unique<FrameRelighter>(ReadRelight(request.relight));
   const MotionRun run = ReadMotionRun(request.run);
@@ -192,6 +208,9 @@ void Run(const Request& request) {
                                          kLargestSide, " a side; the track's person is too small in its picture"));
   }
   const bool scored = IsScored(request);
+  if (!scored && !(request.like.empty() && request.frames.empty())) {
+    throw UsageError("--like and --frames compare with the pictures of --data: not without it, --view-yaw or --speed");
+  }
   const int reach = request.anywhere ? 0 : run.reach;
   MotionRenderer renderer(CheckpointPath(request.run), run.config,
                           {request.warmup, reach, scored, threads, request.device});
@@ -206,6 +225,7 @@ void Run(const Request& request) {
   const double fps = track.num_frames() > 1
                          ? (track.num_frames() - 1) / (track.motion.timestamps.back() - track.motion.timestamps.front())
                          : run.fps;
+  MotionErrors errors(SimilarityTo(request, track, run.past, threads));
   VideoWriter video(request.out, window.picture_width, window.picture_height, fps);
   const std::vector<int> on_sheet = EvenlySpreadFrames(track.num_frames(), 6);
   std::vector<Image> sheet;
@@ -229,6 +249,7 @@ void Run(const Request& request) {
         lap(2);
         picture = renderer.Next(frame);
         const double network_s = lap(3);
+        if (scored) errors.Add(t, renderer.last_l1());
         if (likeness) likeness->Add(picture, frame);
         if (t > 0) network_ms.push_back(1e3 * network_s);  // the first frame warms up
         if (relighter) relighter->Apply(&picture);
@@ -256,6 +277,8 @@ void Run(const Request& request) {
     WriteImage(request.sheet, ContactSheet(sheet, layout));
   }
   const MotionScores scores = renderer.scores();
+  const std::vector<MotionErrors::Quarter> quarters = errors.Quarters();
+  if (!request.frames.empty()) errors.WriteCsv(request.frames);
   std::sort(network_ms.begin(), network_ms.end());
   const double median_ms = network_ms.empty() ? 0 : network_ms[network_ms.size() / 2];
   nlohmann::ordered_json stages = nlohmann::ordered_json::object();
@@ -272,6 +295,7 @@ void Run(const Request& request) {
                                    {"output", request.out}};
     if (relighter) json["relight"] = relighter->Json();
     if (scored) json["scores"] = ScoresJson(scores);
+    if (!quarters.empty()) json["scores"]["by_similarity"] = ToJson(quarters);
     if (likeness) {
       json["scores"]["lpips"] = likeness->Mean().lpips;
       json["scores"]["tlpips"] = likeness->Mean().tlpips;
@@ -295,6 +319,10 @@ void Run(const Request& request) {
         "against %s: L1 %.4f, PSNR %.2f dB, labels IoU %.3f, outline IoU %.3f, normals %.1f deg, flicker %.4f\n",
         request.data.c_str(), scores.image_l1, scores.psnr_db, scores.label_iou, scores.foreground_iou,
         scores.normal_deg, scores.flicker);
+  }
+  for (const MotionErrors::Quarter& quarter : quarters) {
+    std::printf("  %d frames of similarity %.3f and more: L1 %.4f\n", quarter.frames, quarter.least_similarity,
+                quarter.image_l1);
   }
   if (likeness) {
     const TemporalLpipsMean mean = likeness->Mean();
@@ -330,6 +358,10 @@ void AddAnimateMotion(CLI::App& animate, std::function<void()>* action) {
       ->check(CLI::Range(0, 1000));
   verb->add_flag("--anywhere", request->anywhere,
                  "The person may be farther from the body than clothes ever were in training");
+  verb->add_option(
+      "--like", request->like,
+      "A person set, or a track: with --data, the error by how much each frame's motion is like one there");
+  verb->add_option("--frames", request->frames, "With --data: a line of CSV a frame, error and similarity");
   verb->add_option("--sheet", request->sheet, "Contact sheet of six frames: picture, labels, normals");
   verb->add_option("--json", request->json, "Report with times");
   verb->add_option("--threads", request->threads, "0: all cores")->check(CLI::NonNegativeNumber);

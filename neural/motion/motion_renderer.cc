@@ -54,6 +54,7 @@ class MotionRenderer::Impl {
     scorer_.Restart();
   }
   [[nodiscard]] MotionScores scores() const { return scorer_.Scores(); }
+  [[nodiscard]] double last_l1() const { return scorer_.last_l1(); }
   [[nodiscard]] const RollOut& roll() const { return roll_; }
 
  private:
@@ -71,6 +72,7 @@ MotionRenderer::~MotionRenderer() = default;
 MotionPicture MotionRenderer::Next(const MotionFrame& frame) { return impl_->Next(frame); }
 void MotionRenderer::Restart() { impl_->Restart(); }
 MotionScores MotionRenderer::scores() const { return impl_->scores(); }
+double MotionRenderer::last_l1() const { return impl_->last_l1(); }
 int64_t MotionRenderer::descriptors_kept() const { return impl_->roll().descriptors_kept(); }
 int64_t MotionRenderer::projections_kept() const { return impl_->roll().projections_kept(); }
 

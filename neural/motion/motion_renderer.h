@@ -47,6 +47,8 @@ class MotionRenderer {
 
   /// Of all frames compared so far.
   [[nodiscard]] MotionScores scores() const;
+  /// image_l1 of the last frame compared.
+  [[nodiscard]] double last_l1() const;
 
   /// Frames whose motion maps (and surface coordinates) were those of the frame before: their descriptors
   /// (projections) were not computed again.

@@ -11,13 +11,15 @@ using torch::Tensor;
 void MotionScorer::Add(const MotionState& predicted, const MotionTruth& truth, int before_x, int before_y) {
   const Tensor& mask = truth.foreground;
   const Tensor error = predicted.image - truth.image;
-  l1_ += (mask * error).abs().sum().item<double>() / 3;
+  const double l1 = (mask * error).abs().sum().item<double>() / 3, foreground = mask.sum().item<double>();
+  l1_ += l1;
+  last_l1_ = foreground > 0 ? l1 / foreground : std::numeric_limits<double>::quiet_NaN();
   squared_ += (mask * error).square().sum().item<double>() / 3;
-  foreground_ += mask.sum().item<double>();
+  foreground_ += foreground;
   if (last_error_.defined()) {
     const Tensor change = error - Shifted(last_error_, before_x, before_y);
     flicker_ += (mask * change).abs().sum().item<double>() / 3;
-    foreground_with_past_ += mask.sum().item<double>();
+    foreground_with_past_ += foreground;
   }
   last_error_ = error;
   if (predicted.labels.defined() && truth.labels.defined()) {

@@ -4,6 +4,9 @@
 
 #include <torch/torch.h>
 
+#include <limits>
+#include <vector>
+
 #include "neural/motion/frame_tensors.h"
 #include "neural/motion/motion_model.h"
 #include "neural/motion/motion_scores.h"
@@ -19,6 +22,8 @@ class MotionScorer {
   /// The next frame does not follow the last one.
   void Restart() { last_error_ = torch::Tensor(); }
   [[nodiscard]] MotionScores Scores() const;
+  /// image_l1 of the frame added last; NaN before.
+  [[nodiscard]] double last_l1() const { return last_l1_; }
 
  private:
   const MotionConfig& config_;
@@ -27,6 +32,7 @@ class MotionScorer {
   std::vector<double> both_, either_;                                               ///< pixels by class
   double foreground_both_ = 0, foreground_either_ = 0;
   torch::Tensor last_error_;
+  double last_l1_ = std::numeric_limits<double>::quiet_NaN();
   int frames_ = 0;
 };
 

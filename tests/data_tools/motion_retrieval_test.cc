@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "data_tools/builtin_body.h"
+#include "data_tools/people/motion_similarity.h"
 
 namespace bodyloom {
 namespace {
@@ -78,6 +80,30 @@ TEST(MotionRetrieval, FindsTheDirectionInCyclesThatDiffer) {
   const PersonFrames frames(BuiltinBody(), person.track, Small());
   EXPECT_GT(ScoreRetrieval(person, MotionDescriptors(frames, 10)).direction_share, 0.99);
   EXPECT_LT(ScoreRetrieval(person, DenseCoordinates(frames, 1)).direction_share, 0.85);
+}
+
+TEST(MotionSimilarity, IsOneForWhatWasSeenAndLessForWhatWasNot) {
+  const TurningPerson person = ShortClip(0), other = ShortClip(0.3);
+  const std::vector<float> own = SimilarityToNearest(BuiltinBody(), person.track, person.track, 3, 1);
+  const std::vector<float> others = SimilarityToNearest(BuiltinBody(), person.track, other.track, 3, 1);
+  ASSERT_EQ(own.size(), size_t(person.track.num_frames()));
+  double mean = 0;
+  for (size_t t = 0; t < own.size(); ++t) {
+    EXPECT_NEAR(own[t], 1, 1e-4) << t;
+    EXPECT_LE(others[t], 1 + 1e-4F) << t;
+    mean += others[t] / static_cast<double>(own.size());
+  }
+  EXPECT_LT(mean, 0.999);
+  EXPECT_GT(mean, 0.5);
+}
+
+TEST(MotionSimilarity, FramesWithoutAResultHaveNone) {
+  TurningPerson person = ShortClip(0);
+  const Track whole = person.track;
+  person.track.motion.trans.row(5).setConstant(std::numeric_limits<double>::quiet_NaN());
+  const std::vector<float> similarity = SimilarityToNearest(BuiltinBody(), person.track, whole, 2, 1);
+  EXPECT_TRUE(std::isnan(similarity[5]));
+  EXPECT_NEAR(similarity[20], 1, 1e-3);
 }
 
 }  // namespace
