@@ -8,6 +8,7 @@
 
 #include "data_tools/body_faces.h"
 #include "data_tools/body_io.h"
+#include "data_tools/formats/mat_headers.h"
 #include "geometry/check.h"
 
 namespace bodyloom {
@@ -31,7 +32,9 @@ std::vector<double> Numbers(const matvar_t& variable, size_t n) {
 
 class MatFile {
  public:
-  explicit MatFile(const std::string& path) : path_(path), file_(Mat_Open(path.c_str(), MAT_ACC_RDONLY), &Mat_Close) {
+  explicit MatFile(const std::string& path) : path_(path), file_(nullptr, &Mat_Close) {
+    CheckMatHeaders(path);
+    file_.reset(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
     if (file_ == nullptr) Fail("not a MATLAB file that can be opened, expected DensePose's UV_Processed.mat");
     if (Mat_GetVersion(file_.get()) != MAT_FT_MAT5) Fail("not a MATLAB version 5 file, expected UV_Processed.mat");
   }

@@ -9,6 +9,7 @@
 
 #include "data_tools/body_landmarks.h"
 #include "data_tools/formats/printable.h"
+#include "data_tools/formats/whole_numbers.h"
 #include "geometry/check.h"
 
 namespace bodyloom {
@@ -43,18 +44,10 @@ std::string FamilyName(const NamedArrays& arrays, int V, int J) {
   return std::filesystem::path(arrays.where()).stem().string();
 }
 
-std::vector<int64_t> Integers(const NamedArrays& arrays, const std::string& name, const NdArray& array) {
-  try {
-    return array.ToInts();
-  } catch (const std::invalid_argument& error) {
-    arrays.Fail(name + ": " + error.what());
-  }
-}
-
 /// An n×3 array of indices below `limit`.
 MatrixX3i IndexTriples(const NamedArrays& arrays, const std::string& name, int64_t rows, int64_t limit) {
   const NdArray& array = arrays.Require(name, {rows, 3});
-  const std::vector<int64_t> values = Integers(arrays, name, array);
+  const std::vector<int64_t> values = WholeNumbers(array, name, arrays.where());
   MatrixX3i triples(array.shape[0], 3);
   for (size_t i = 0; i < values.size(); ++i) {
     if (values[i] < 0 || values[i] >= limit) {
@@ -67,7 +60,7 @@ MatrixX3i IndexTriples(const NamedArrays& arrays, const std::string& name, int64
 
 std::vector<int> Parents(const NamedArrays& arrays) {
   const NdArray& tree = arrays.Require("kintree_table", {2, -1});
-  const std::vector<int64_t> values = Integers(arrays, "kintree_table", tree);
+  const std::vector<int64_t> values = WholeNumbers(tree, "kintree_table", arrays.where());
   const auto J = static_cast<size_t>(tree.shape[1]);
   if (J == 0) arrays.Fail("kintree_table: no joints");
   std::vector<int> parents(J, -1);
@@ -140,7 +133,7 @@ void ReadSurfaceCoordinates(const NamedArrays& arrays, BodyModelData* body) {
     body->ft = IndexTriples(arrays, "ft", F, vt.shape[0]);
   }
   if (arrays.Find("part") != nullptr) {
-    for (const int64_t part : Integers(arrays, "part", arrays.Require("part", {F}))) {
+    for (const int64_t part : WholeNumbers(arrays.Require("part", {F}), "part", arrays.where())) {
       if (part < 0 || part > 24) arrays.Fail(Concatenate("part: ", part, ", expected 0..24"));
       body->face_part.push_back(static_cast<uint8_t>(part));
     }
@@ -157,8 +150,10 @@ std::vector<Landmark> ReadLandmarks(const NamedArrays& arrays, int64_t V) {
   const std::vector<std::string> texts = names->ToStrings();
   if (!std::all_of(texts.begin(), texts.end(), IsOneLine)) arrays.Fail("landmark_names: control characters");
   const auto n = static_cast<int64_t>(texts.size());
-  const std::vector<int64_t> begin = Integers(arrays, "landmark_indptr", arrays.Require("landmark_indptr", {n + 1}));
-  const std::vector<int64_t> index = Integers(arrays, "landmark_indices", arrays.Require("landmark_indices", {-1}));
+  const std::vector<int64_t> begin =
+      WholeNumbers(arrays.Require("landmark_indptr", {n + 1}), "landmark_indptr", arrays.where());
+  const std::vector<int64_t> index =
+      WholeNumbers(arrays.Require("landmark_indices", {-1}), "landmark_indices", arrays.where());
   const std::vector<double> weight =
       arrays.Require("landmark_weights", {static_cast<int64_t>(index.size())}).ToDoubles();
   if (begin.front() != 0 || begin.back() != static_cast<int64_t>(index.size()) ||

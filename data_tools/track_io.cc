@@ -9,6 +9,7 @@
 
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/formats/printable.h"
+#include "data_tools/formats/whole_numbers.h"
 #include "geometry/check.h"
 
 namespace bodyloom {
@@ -161,13 +162,7 @@ class TrackReader {
   void ReadStatus() {
     std::vector<int64_t> status(T_, 0);
     const bool given = Has("frame_status");
-    if (given) {
-      try {
-        status = Array("frame_status", {T_}).ToInts();
-      } catch (const std::invalid_argument& error) {
-        Fail(std::string("frame_status: ") + error.what());
-      }
-    }
+    if (given) status = WholeNumbers(Array("frame_status", {T_}), "frame_status", where_);
     for (int t = 0; t < T_; ++t) {
       if (status[t] < 0 || status[t] > 3) {
         Fail(Concatenate("frame_status: frame ", t, " is ", status[t], ", expected 0 to 3"));

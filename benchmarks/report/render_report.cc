@@ -11,16 +11,19 @@
 namespace bodyloom {
 namespace {
 
-const std::string kOpen = "<!-- benchmark: ", kOpenEnd = " -->", kClose = "<!-- /benchmark -->";
+const std::string kOpen = "<!-- benchmark: ", kOpenEnd = " -->", kClose = "<!-- /benchmark -->", kNotes = "notes: ";
 
 std::string Words(std::string name) {
   std::replace(name.begin(), name.end(), '_', ' ');
   return name;
 }
 
-std::string Notes(const SavedReport& saved) {
+/// The notes that begin with `word`, as a list.
+std::string Notes(const SavedReport& saved, const std::string& word) {
   std::string text;
-  for (const std::string& note : saved.report.notes) text += "- " + note + "\n";
+  for (const std::string& note : saved.report.notes) {
+    if (note.starts_with(word)) text += "- " + note + "\n";
+  }
   return text;
 }
 
@@ -77,9 +80,9 @@ std::string RenderIntoPage(const std::string& page, const std::string& page_name
                                            "\" is not closed, expected \"", kClose, "\" after it"));
     }
     result += page.substr(at, name_end + kOpenEnd.size() - at);
-    const bool notes = name == "notes of " + saved.report.title;
-    if (notes || has_group(name)) {
-      result += "\n" + (notes ? Notes(saved) : MarkdownTable(saved, name));
+    const std::string notes = name.starts_with(kNotes) ? Notes(saved, name.substr(kNotes.size())) : "";
+    if (!notes.empty() || has_group(name)) {
+      result += "\n" + (notes.empty() ? MarkdownTable(saved, name) : notes);
       if (rendered != nullptr) rendered->push_back(name);
     } else {
       result += page.substr(name_end + kOpenEnd.size(), close - name_end - kOpenEnd.size());

@@ -13,9 +13,9 @@ namespace bodyloom {
 std::string MarkdownTable(const SavedReport& saved, const std::string& group);
 
 /// `page` with what stands between "<!-- benchmark: GROUP -->" and the next "<!-- /benchmark -->" replaced by the table
-/// of that group, and between "<!-- benchmark: notes of TITLE -->" … by the notes as a list, for every marked group
-/// that `saved` has. Everything else stays as it is. `rendered`, when given, collects the names of the replaced groups.
-/// Throws std::runtime_error with `page_name` when a mark is never closed.
+/// of that group, and between "<!-- benchmark: notes: WORD -->" … by a list of the notes that begin with that word, for
+/// every marked group that `saved` has. Everything else stays as it is. `rendered`, when given, collects the names of
+/// the replaced groups. Throws std::runtime_error with `page_name` when a mark is never closed.
 std::string RenderIntoPage(const std::string& page, const std::string& page_name, const SavedReport& saved,
                            std::vector<std::string>* rendered = nullptr);
 

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
-#include <map>
+#include <memory>
+#include <string>
+#include <vector>
 
 #include "benchmarks/work_precision/problem_file.h"
 #include "benchmarks/work_precision/sections.h"
 #include "geometry/check.h"
+#include "tests/data_tools/temporary_file.h"
 
 namespace bodyloom {
 namespace {
@@ -101,10 +103,8 @@ class PeerProblem {
       bench_->report.notes.push_back("PyTorch: left out, /usr/bin/python3 has no torch (package python3-torch)");
       return;
     }
-    const std::filesystem::path folder = std::filesystem::temp_directory_path() / "bodyloom_work_precision";
-    std::filesystem::create_directories(folder);
-    const std::string problem_path = folder / Concatenate("problem_", frames_, ".npz");
-    const std::string answer_path = folder / "answer.npz";
+    const TemporaryFolder folder;
+    const std::string problem_path = folder.File("problem.npz"), answer_path = folder.File("answer.npz");
     WriteProblemFile(*work_, problem_path);
     for (const std::string& text : settings) {
       const TorchSetting setting = TorchSetting::Parse(text);

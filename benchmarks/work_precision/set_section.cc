@@ -25,24 +25,37 @@ double LargestAngleDeg(const SequenceProblem& a, const SequenceProblem& b) {
   return largest * 180 / M_PI;
 }
 
-/// How far the other engine gets from this answer, as a share of its cost: next to nothing at a minimum.
-double Polish(const EngineRun& run, Engine other) {
-  SequenceProblem problem = run.answer;
-  other.options.function_tolerance = 1e-12;
-  const SolveReport report = other.solve(&problem, other.options);
-  return (run.cost - report.final_cost) / run.cost;
+/// The engine goes on from its answer until the cost no longer changes.
+EngineRun Finish(const EngineRun& run, Engine engine) {
+  engine.options.function_tolerance = 1e-14;
+  engine.options.max_iterations = 10000;
+  EngineRun finished;
+  finished.answer = run.answer;
+  const SolveReport report = engine.solve(&finished.answer, engine.options);
+  finished.cost = report.final_cost;
+  finished.iterations = run.iterations + report.iterations;
+  return finished;
 }
 
-/// Why costs that are not equal are not: two minima, or a solve that stopped early.
+/// How much the other engine lowers this cost, as a share of it: next to nothing at a minimum.
+double Gain(const EngineRun& run, const Engine& other) {
+  const EngineRun finished = Finish(run, other);
+  return (run.cost - finished.cost) / run.cost;
+}
+
+/// Why costs that are not equal are not: a valley that was not followed to its end, or two minima.
 std::string Explain(const std::string& name, const Engine& ceres, const Engine& chain, const EngineRun& a,
                     const EngineRun& b) {
-  const double gap = (b.cost - a.cost) / std::min(a.cost, b.cost);
-  const double of_ceres = Polish(a, chain), of_chain = Polish(b, ceres);
-  const bool minima = of_ceres < kEqual && of_chain < kEqual;
-  return Concatenate("set, ", name, ": chain's cost is ", std::abs(gap), gap > 0 ? " higher" : " lower",
-                     " than Ceres'; started at the other's answer Ceres gains ", of_chain, ", chain gains ", of_ceres,
-                     "; joints differ by up to ", LargestAngleDeg(a.answer, b.answer),
-                     " degrees: ", minima ? "two minima" : "a solve that stopped before its minimum");
+  const auto gap = [](const EngineRun& x, const EngineRun& y) { return (y.cost - x.cost) / std::min(x.cost, y.cost); };
+  const EngineRun a_end = Finish(a, ceres), b_end = Finish(b, chain);
+  const double end = gap(a_end, b_end);
+  std::string text = Concatenate("set, ", name, ": chain's cost over Ceres' ", BenchNumber(gap(a, b)), " after ",
+                                 b.iterations, " and ", a.iterations, " iterations; at the end of the valley (",
+                                 b_end.iterations, " and ", a_end.iterations, ") ", BenchNumber(end));
+  if (std::abs(end) <= kEqual) return text + ": the same minimum";
+  return Concatenate(text, ", joints up to ", BenchNumber(LargestAngleDeg(a_end.answer, b_end.answer)),
+                     " degrees apart; from the other's end Ceres gains ", BenchNumber(Gain(b_end, ceres)), ", chain ",
+                     BenchNumber(Gain(a_end, chain)), " (0: another minimum)");
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <utility>
 
 #include "benchmarks/accuracy/dense_bound.h"
@@ -17,6 +16,7 @@
 #include "data_tools/motion/load_motion.h"
 #include "data_tools/prior/pose_prior_io.h"
 #include "geometry/check.h"
+#include "tests/data_tools/temporary_file.h"
 #include "tracking/track_sequence.h"
 
 namespace bodyloom {
@@ -99,17 +99,6 @@ DescribeTrackOptions MapOptions(const WorkBench& bench, int size) {
   return options;
 }
 
-class ScratchFolder {
- public:
-  ScratchFolder() : path_(std::filesystem::temp_directory_path() / "bodyloom_work_precision") {
-    std::filesystem::create_directories(path_);
-  }
-  [[nodiscard]] std::string File(const std::string& name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
-
 }  // namespace
 
 void TrackSection(WorkBench* bench) {
@@ -169,7 +158,7 @@ void DescribeSection(WorkBench* bench) {
   track_options.num_threads = bench->threads;
   const Track tracked = TrackOf(made.clip, track_options).track;
   const MapTruth truth(BuiltinBody(), made.clip.truth);
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   const std::string path = folder.File("maps.npy");
   Plot speed{"work_precision_describe",
              "describe: maps of 32² to 512² texels",
@@ -218,8 +207,6 @@ void DescribeSection(WorkBench* bench) {
     measure("describe, threads", std::to_string(threads), "the true poses", made.clip.truth, options, nullptr);
   }
   bench->report.plots.push_back(speed);
-  std::filesystem::remove(path);
-  std::filesystem::remove(DescriptorHeaderPath(path));
 }
 
 void EvaluateSection(WorkBench* bench) {
@@ -258,7 +245,7 @@ void EvaluateSection(WorkBench* bench) {
 }
 
 void WholeSection(WorkBench* bench) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   const std::string path = folder.File("whole.npy");
   for (int frames : {1, 10, 100, 600}) {
     const StageClip made = MakeStageClip(*bench, frames, 300);
@@ -292,8 +279,6 @@ void WholeSection(WorkBench* bench) {
     bench->AddRow("whole", label, "evaluate", Row(evaluating, kNaN, kNaN, kNaN, kNaN));
     bench->AddRow("whole", label, "together", Row(together, kNaN, error, made.bound_px, peak));
   }
-  std::filesystem::remove(path);
-  std::filesystem::remove(DescriptorHeaderPath(path));
 }
 
 }  // namespace bodyloom

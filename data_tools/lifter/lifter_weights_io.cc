@@ -6,6 +6,7 @@
 
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/formats/npz.h"
+#include "data_tools/formats/whole_numbers.h"
 #include "geometry/check.h"
 
 namespace bodyloom {
@@ -91,7 +92,7 @@ LifterWeights ReadLifterWeightsBytes(const std::string& bytes, const std::string
   const NpzArrays arrays = ReadNpzBytes(bytes, where, size_t{1} << 28);
   const Reader reader(arrays, where);
   LifterWeights weights;
-  const std::vector<int64_t> dilations = RequireArray(arrays, "dilations", where).ToInts();
+  const std::vector<int64_t> dilations = WholeNumbers(RequireArray(arrays, "dilations", where), "dilations", where);
   if (dilations.size() > kMostBlocks) {
     throw std::runtime_error(where + ": dilations names " + std::to_string(dilations.size()) +
                              " blocks, expected at most " + std::to_string(kMostBlocks));

@@ -7,6 +7,7 @@
 
 #include "data_tools/formats/pickle.h"
 #include "data_tools/formats/printable.h"
+#include "data_tools/formats/whole_numbers.h"
 
 namespace bodyloom {
 namespace {
@@ -79,7 +80,8 @@ SkeletonMotion AmpFromNpyBytes(const std::string& bytes, const std::string& wher
   for (const PicklePtr& name : names.items) motion.names.push_back(name->text);
   const auto J = static_cast<int64_t>(motion.names.size());
   if (J == 0 || motion.names.size() > kMostJoints) Fail(where, "node_names: " + std::to_string(J) + " joints");
-  const std::vector<int64_t> parents = RequireArr(tree, "parent_indices", {J}, where).ToInts();
+  const std::vector<int64_t> parents =
+      WholeNumbers(RequireArr(tree, "parent_indices", {J}, where), "parent_indices", where);
   for (int64_t j = 0; j < J; ++j) {
     if (j == 0 ? parents[j] != -1 : (parents[j] < 0 || parents[j] >= j)) {
       Fail(where, "parent_indices[" + std::to_string(j) + "] is " + std::to_string(parents[j]) +

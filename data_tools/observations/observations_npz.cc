@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "data_tools/formats/whole_numbers.h"
 #include "geometry/check.h"
 
 namespace bodyloom {
@@ -151,8 +152,9 @@ DenseSequence DenseFromNpz(const NpzArrays& arrays, const std::string& where) {
   dense.uv_sigma = OptionalSigma(arrays, "dense_uv_sigma", where);
   dense.pixel_sigma_px = OptionalSigma(arrays, "dense_pixel_sigma_px", where);
   const int64_t n = RequireArray(arrays, "dense_frame", where).num_elements();
-  const std::vector<int64_t> frame = RequireShape(arrays, "dense_frame", {n}, where).ToInts();
-  const std::vector<int64_t> face = RequireShape(arrays, "dense_face", {n}, where).ToInts();
+  const std::vector<int64_t> frame =
+      WholeNumbers(RequireShape(arrays, "dense_frame", {n}, where), "dense_frame", where);
+  const std::vector<int64_t> face = WholeNumbers(RequireShape(arrays, "dense_face", {n}, where), "dense_face", where);
   const std::vector<float> barycentric = RequireShape(arrays, "dense_barycentric", {n, 3}, where).ToFloats();
   const std::vector<float> pixel = RequireShape(arrays, "dense_pixel", {n, 2}, where).ToFloats();
   const std::vector<float> sigma = RequireShape(arrays, "dense_sigma_px", {n}, where).ToFloats();
