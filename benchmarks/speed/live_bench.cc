@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// The live tracker beside the solve of the whole clip: error on the same data, frames a second, latency, memory.
 ///
-///   bodyloom_bench_live [--sections real,synthetic,lags,long] [--threads 2] [--frames 0] [--views c01,c05]
+///   bodyloom_bench_live [--sections real,synthetic,lags,long,skip] [--threads 2] [--frames 0] [--views c01,c05]
 ///                       [--lags 0,2,4,8,16] [--long 20000] [--repeat 1] [--json F]
 ///
 /// real: AIST++, 17 detected joints, scored in the other eight cameras (protocol aist-held-out). synthetic: the same
@@ -19,6 +19,7 @@
 #include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/accuracy/bench_report.h"
 #include "benchmarks/accuracy/dense_clips.h"
+#include "benchmarks/work_precision/work_problem.h"
 #include "data_tools/builtin_body.h"
 #include "data_tools/evaluation/aist_evaluation.h"
 #include "data_tools/evaluation/truth_evaluation.h"
@@ -112,6 +113,8 @@ class Bench {
         Lags();
       else if (section == "long")
         Long();
+      else if (section == "skip")
+        Skip();
       else
         BODYLOOM_CHECK(false, "--sections names '", section, "'");
     }
@@ -257,6 +260,48 @@ class Bench {
     }
   }
 
+  /// The solve of a whole clip with and without SolveOptions::skip_settled: error is the cost over the lowest.
+  void Skip() {
+    for (const std::string& frames : arguments_.List("skip_frames")) {
+      WorkProblemOptions problem_options;
+      problem_options.motion = arguments_.List("motions")[0];
+      problem_options.frames = std::stoi(frames);
+      problem_options.dense = arguments_.Integer("dense");
+      const auto work = MakeWorkProblem(problem_options);
+      std::vector<BenchRow> rows;
+      double lowest = std::numeric_limits<double>::infinity();
+      for (const double share : {0.0, 0.01, 0.03, 0.1}) {
+        std::vector<std::pair<double, double>> times;
+        SolveReport report;
+        for (int round = 0; round < arguments_.Integer("repeat"); ++round) {
+          SequenceProblem problem = work->problem;
+          SolveOptions options;
+          options.solver = SequenceSolver::kChain;
+          options.num_threads = arguments_.Integer("threads");
+          options.skip_settled = share;
+          const std::clock_t cpu = std::clock();
+          report = SolveSequence(&problem, options);
+          times.emplace_back(1e3 * double(std::clock() - cpu) / CLOCKS_PER_SEC / problem_options.frames,
+                             1e3 * report.seconds / problem_options.frames);
+        }
+        std::sort(times.begin(), times.end());
+        const auto [cpu_ms, wall_ms] = times[times.size() / 2];
+        lowest = std::min(lowest, report.final_cost);
+        rows.push_back(
+            {"solve of " + frames + " frames, skip_settled",
+             {Concatenate(share),
+              Concatenate(report.iterations, " iterations, skipped ",
+                          100 * report.frames_skipped / (report.frames_skipped + report.frames_evaluated), " %")},
+             {report.final_cost, kNaN, kNaN, kNaN, 1e3 / wall_ms, cpu_ms, kNaN, kNaN, kNaN, kNaN}});
+      }
+      for (BenchRow& row : rows) {
+        row.values[1] = row.values[0] / lowest;
+        report_.rows.push_back(row);
+      }
+    }
+    report_.notes.push_back("skip: error is the final cost, over_batch the same over the lowest of the group");
+  }
+
   const BenchArguments& arguments_;
   BenchReport report_;
   LiveTrackerOptions options_;
@@ -274,7 +319,7 @@ int main(int argc, char** argv) {
        {"sequences", "gBR_sBM_cAll_d06_mBR2_ch06,gJS_sBM_cAll_d03_mJS2_ch07"},
        {"views", "c01,c03,c05,c07,c08"},
        {"motions", motions + "gBR_sBM_cAll_d06_mBR2_ch06.pkl," + motions + "gJS_sBM_cAll_d03_mJS2_ch07.pkl"},
-       {"sections", "real,synthetic,lags,long"},
+       {"sections", "real,synthetic,lags,long,skip"},
        {"frames", "0"},
        {"dense", "300"},
        {"threads", "2"},
@@ -283,6 +328,7 @@ int main(int argc, char** argv) {
        {"iterations", "2"},
        {"skip", "0.1"},
        {"lifter_weight", "0.06"},
+       {"skip_frames", "100,600"},
        {"lags", "0,2,4,8,16"},
        {"long", "20000"},
        {"repeat", "1"},
