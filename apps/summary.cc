@@ -70,7 +70,9 @@ std::string ToText(const TrackReport& report) {
   }
   text += (parts.empty() ? "none estimated" : Join(parts, ", ")) + "\n";
   text += "solve    " + ToString(solve.status) + ", " + solve.solver + ", " + std::to_string(solve.iterations) +
-          " iterations, cost " + Fixed(solve.initial_cost, 1) + " -> " + Fixed(solve.final_cost, 1) +
+          " iterations" +
+          (solve.initial_cost > 0 ? ", cost " + Fixed(solve.initial_cost, 1) + " -> " + Fixed(solve.final_cost, 1)
+                                  : std::string()) +
           (solve.message.empty() ? "" : " (" + solve.message + ")") + "\n";
   text += "error    2D joints: median " + Fixed(solve.reprojection_median_px, 2) + " px, 95 % below " +
           Fixed(solve.reprojection_p95_px, 2) + " px";

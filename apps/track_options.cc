@@ -139,6 +139,12 @@ void AddTrackOptions(CLI::App& app, TrackCommand* command) {
       ->group(solve)
       ->check(Quiet(CLI::NonNegativeNumber))
       ->capture_default_str();
+  app.add_option("--live", c.live_lag,
+                 "track frame by frame as if the clip came from a camera: each pose is final when this many frames "
+                 "after it have been seen (4 is a good number), and nothing later changes it")
+      ->group(solve)
+      ->type_name("LAG")
+      ->check(Quiet(CLI::Range(0, 60)));
   app.add_flag_callback(
          "--no-shape", [&s] { s.estimate_shape = false; }, "keep the body's mean shape")
       ->group(solve);
@@ -178,6 +184,12 @@ void CheckTrackOptions(const TrackCommand& command) {
   }
   if (!command.overlay.empty() && !command.overlay.ends_with(".mp4")) {
     throw UsageError("--overlay " + command.overlay + ": expected a name that ends in .mp4");
+  }
+  if (command.live_lag && command.solve.solver != "chain") {
+    throw UsageError("--live runs on the chain solver: leave out --solver " + command.solve.solver);
+  }
+  if (command.live_lag && command.detections.empty() && command.dense.empty()) {
+    throw UsageError("--live does not use part labels: give --detections or --dense");
   }
   if (command.side_view && command.overlay.empty()) {
     throw UsageError("--side-view is a part of the overlay: give --overlay FILE");

@@ -42,6 +42,7 @@ struct TrackCommand {
   bool side_view = false, plan = false, quiet = false;
 
   TrackSequenceOptions solve;
+  std::optional<int> live_lag;  ///< frames; track as if the clip came from a camera (tracking/live/live_tracker.h)
 };
 
 /// Binds every field to its flag; defaults in --help are those of the struct.

@@ -9,6 +9,7 @@
 #include "apps/track_inputs.h"
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/track_io.h"
+#include "tracking/live/track_live.h"
 
 namespace bodyloom {
 namespace {
@@ -78,6 +79,13 @@ TrackSequenceOptions OptionsFor(const TrackCommand& command, const TrackInputs& 
   return options;
 }
 
+LiveTrackerOptions LiveOptions(const TrackCommand& command, const TrackSequenceOptions& solve) {
+  LiveTrackerOptions live;
+  live.lag = *command.live_lag;
+  live.solve = solve;
+  return live;
+}
+
 TrackSequenceResult Solve(const TrackCommand& command, const TrackInputs& inputs, double share, Progress* progress) {
   TrackSequenceOptions options = OptionsFor(command, inputs);
   options.camera_knowledge = CameraKnowledgeOf(command);
@@ -85,7 +93,8 @@ TrackSequenceResult Solve(const TrackCommand& command, const TrackInputs& inputs
     progress->Update(at.stage, share * at.fraction);
     return !IsInterrupted();
   };
-  TrackSequenceResult result = TrackSequence(inputs.ForTracker(), options);
+  TrackSequenceResult result = command.live_lag ? TrackLive(inputs.ForTracker(), LiveOptions(command, options))
+                                                : TrackSequence(inputs.ForTracker(), options);
   ThrowIfInterrupted();
   return result;
 }
@@ -93,7 +102,8 @@ TrackSequenceResult Solve(const TrackCommand& command, const TrackInputs& inputs
 std::vector<PlanEntry> WholePlan(const TrackCommand& command, const TrackInputs& inputs) {
   TrackSequenceOptions options = OptionsFor(command, inputs);
   options.camera_knowledge = CameraKnowledgeOf(command);
-  std::vector<PlanEntry> plan = PlanTrackSequence(inputs.ForTracker(), options);
+  std::vector<PlanEntry> plan = command.live_lag ? PlanTrackLive(inputs.ForTracker(), LiveOptions(command, options))
+                                                 : PlanTrackSequence(inputs.ForTracker(), options);
   const std::vector<PlanEntry> own = OwnPlan(command);
   plan.insert(plan.end(), own.begin(), own.end());
   return plan;

@@ -60,10 +60,10 @@ struct SolveOptions {
   /// this many, evenly chosen and weighted to stand for all; then all of them. What converges is always the whole
   /// problem. 0: all from the beginning.
   int early_dense = 0;
-  /// Chain only: frames whose unknowns have all moved by at most this much (radians, metres, betas, log focal length)
-  /// since they were linearised last are not evaluated again; a quadratic stands for them (ChainProblem::SkipSettled).
-  /// Before the descent may end as converged all frames are evaluated at the same point and iterations without the skip
-  /// follow, so the answer is a minimum of the cost itself. 0: every frame in every iteration.
+  /// Chain only: frames whose residuals have moved by less than this share of their size since they were linearised
+  /// last are not evaluated again; a quadratic stands for them (ChainProblem::SkipSettled). Before the descent may end
+  /// as converged all frames are evaluated at the same point and iterations without the skip follow, so the answer is a
+  /// minimum of the cost itself. 0: every frame in every iteration.
   double skip_settled = 0;
   /// Leave it at that when max_iterations end the descent: the final cost may hold stand-ins.
   bool skip_to_the_end = false;

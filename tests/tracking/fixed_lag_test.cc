@@ -238,7 +238,7 @@ TEST(ChainSolver, SkippingSettledFramesEndsAtTheSameCost) {
     SequenceProblem skipped = all = start;
     const SolveReport whole = SolveSequence(&all, solve);
     EXPECT_EQ(whole.frames_skipped, 0);
-    solve.skip_settled = 3e-3;
+    solve.skip_settled = 0.03;
     const SolveReport report = SolveSequence(&skipped, solve);
     ASSERT_EQ(report.status, SolveStatus::kConverged);
     EXPECT_GT(report.frames_skipped, 10) << seed;

@@ -18,6 +18,10 @@ using Eigen::VectorXd;
 using RowMatrix3d = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 namespace {
+/// Radians, metres, log focal length: farther than this no quadratic stands for a frame.
+constexpr double kFarthestSkip = 0.05;
+/// How far a point of the surface moves with a shape component, about.
+constexpr double kMetresPerBeta = 0.03;
 /// Information that a frame without any keeps when it is eliminated: a spread of a thousand radians or metres.
 constexpr double kNothing = 1e-6;
 }  // namespace
@@ -102,21 +106,21 @@ void ChainProblem::LimitDense(int max_points) {
   max_dense_ = max_points;
 }
 
-bool ChainProblem::StepsFrom(const Anchor& anchor, const FrameState& state, const ChainPoint& point, double most,
+bool ChainProblem::StepsFrom(const Anchor& anchor, const FrameState& state, const ChainPoint& point,
                              VectorXd* d) const {
   d->resize(n_ + shared_size());
-  const auto fits = [most](const auto& x) { return x.cwiseAbs().maxCoeff() <= most; };  // false for NaN
+  const auto fits = [](const auto& x) { return x.cwiseAbs().maxCoeff() <= kFarthestSkip; };  // false for NaN
   d->segment<3>(n_ - 3) = state.translation - anchor.state.translation;
   if (!fits(d->segment<3>(n_ - 3))) return false;
   int at = n_;
   if (!shape_constant_) {
     d->segment(at, point.betas.size()) = point.betas - anchor.betas;
-    if (!fits(d->segment(at, point.betas.size()))) return false;
+    if (!fits(kMetresPerBeta * d->segment(at, point.betas.size()))) return false;
     at += static_cast<int>(point.betas.size());
   }
   if (!focal_constant_) {
     (*d)[at] = point.log_focal - anchor.log_focal;
-    if (!(std::abs((*d)[at]) <= most)) return false;
+    if (!(std::abs((*d)[at]) <= kFarthestSkip)) return false;
   }
   at = 0;
   for (int j : problem_.layout.active_joints) {
@@ -137,15 +141,19 @@ double ChainProblem::EvaluateFrames(const ChainPoint& point, bool derivatives) {
     FrameSystem& system = systems_[t];
     Anchor& anchor = anchors_[t];
     VectorXd d;
-    skipped_[t] = skip_tolerance_ > 0 && anchor.set && StepsFrom(anchor, point.states[t], point, skip_tolerance_, &d);
-    if (skipped_[t]) {
+    skipped_[t] = 0;
+    if (skip_share_ > 0 && anchor.set && StepsFrom(anchor, point.states[t], point, &d)) {
       VectorXd full = VectorXd::Zero(system.gradient.size());
       full.head(n_) = d.head(n_);
       for (int i = 0; i < s; ++i) full[shared_columns_[i]] = d[n_ + i];
       const VectorXd Hd = system.H.selfadjointView<Eigen::Lower>() * full;
-      costs_[t] = anchor.cost + system.gradient.dot(full) + 0.5 * full.dot(Hd);
-      if (derivatives) frame_gradient_[t] = system.gradient + Hd;
-      return;
+      const double moved = 0.5 * full.dot(Hd);
+      if (moved <= skip_share_ * skip_share_ * anchor.cost) {
+        skipped_[t] = 1;
+        costs_[t] = anchor.cost + system.gradient.dot(full) + moved;
+        if (derivatives) frame_gradient_[t] = system.gradient + Hd;
+        return;
+      }
     }
     Lease evaluator(this);
     (*evaluator).LimitDense(max_dense_);
@@ -155,7 +163,7 @@ double ChainProblem::EvaluateFrames(const ChainPoint& point, bool derivatives) {
     costs_[t] = system.cost;
     if (!derivatives) return;
     frame_gradient_[t] = system.gradient;
-    anchor.set = skip_tolerance_ > 0 && std::isfinite(system.cost);
+    anchor.set = skip_share_ > 0 && std::isfinite(system.cost);
     if (!anchor.set) return;
     anchor.state = point.states[t];
     anchor.betas = point.betas;

@@ -31,10 +31,11 @@ class ChainProblem : public ChainSource {
 
   /// From now on at most about this many dense keypoints a frame (FrameEvaluator::LimitDense); 0: all.
   void LimitDense(int max_points);
-  /// From now on frames whose unknowns (radians, metres, log focal length, betas) have all moved by at most this much
-  /// since they were linearised last are not evaluated: cost c + gᵀd + ½ dᵀHd and gradient g + Hd of that point stand
-  /// for them, wrong by O(d³) and O(d²) times the residuals' curvature. 0: all frames are evaluated.
-  void SkipSettled(double tolerance) { skip_tolerance_ = tolerance; }
+  /// From now on a frame is not evaluated where its residuals have moved, since it was linearised last, by less than
+  /// this share of their own size (root mean square: ½ dᵀHd ≤ share² c), and no unknown by more than 0.05 (radians,
+  /// metres, log focal length, 0.03 betas). Cost c + gᵀd + ½ dᵀHd and gradient g + Hd stand for it, wrong by O(d³) and
+  /// O(d²) times the residuals' curvature. 0: all frames are evaluated.
+  void SkipSettled(double share) { skip_share_ = share; }
   /// How many frames the last Cost() or Linearise() took from an earlier point.
   [[nodiscard]] int num_skipped() const { return num_skipped_; }
   /// A term beside the problem's own; borrowed, null: none. The problem must have two frames or more.
@@ -94,9 +95,8 @@ class ChainProblem : public ChainSource {
   };
   class Lease;
   void Resize();
-  /// Steps from a frame's anchor: n values, then the shared ones that are unknown. False when one exceeds `most`.
-  bool StepsFrom(const Anchor& anchor, const FrameState& state, const ChainPoint& point, double most,
-                 Eigen::VectorXd* d) const;
+  /// Steps from a frame's anchor: n values, then the shared ones that are unknown. False when one is too long.
+  bool StepsFrom(const Anchor& anchor, const FrameState& state, const ChainPoint& point, Eigen::VectorXd* d) const;
   double EvaluatePrior(const ChainPoint& point, bool derivatives);
   void AddPrior();
   double EvaluateFrames(const ChainPoint& point, bool derivatives);
@@ -111,7 +111,7 @@ class ChainProblem : public ChainSource {
 
   const SequenceProblem& problem_;
   int n_, blocks_, num_threads_, max_dense_ = 0, num_skipped_ = 0;
-  double skip_tolerance_ = 0;
+  double skip_share_ = 0;
   std::vector<int> shared_columns_;  ///< columns of a frame's matrix that are unknown and shared
   bool shape_constant_, focal_constant_;
   RowMatrixXd shape_prior_;  ///< residual = shape_prior_ β + shape_offset_

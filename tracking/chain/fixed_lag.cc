@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/chain/fixed_lag.h"
 
+#include <Eigen/Cholesky>
 #include <cmath>
 #include <utility>
 
@@ -44,12 +45,34 @@ int FixedLag::Add(FrameData frame, FrameState start, double timestamp, bool cut_
   return dropped;
 }
 
-SolveReport FixedLag::Solve(int max_iterations, double skip_tolerance, double function_tolerance) {
+void FixedLag::Cut(int t) {
+  BODYLOOM_CHECK(t >= 0 && t < num_frames(), "fixed lag: a cut at frame ", t, " of ", num_frames());
+  problem_.cut_before[t] = 1;
+  if (t <= 1 && prior_.set) {
+    // What it says about shape and focal length once nothing is known of the first two poses.
+    const int p = 2 * chain_.frame_size(), s = chain_.shared_size();
+    const Eigen::MatrixXd coupling = prior_.M.topRightCorner(p, s);
+    const Eigen::LDLT<Eigen::MatrixXd> poses(prior_.M.topLeftCorner(p, p) + 1e-6 * Eigen::MatrixXd::Identity(p, p));
+    prior_.M.bottomRightCorner(s, s) -= coupling.transpose() * poses.solve(coupling);
+    prior_.m.tail(s) -= coupling.transpose() * poses.solve(prior_.m.head(p));
+    prior_.M.topRows(p).setZero();
+    prior_.M.leftCols(p).setZero();
+    prior_.m.head(p).setZero();
+    if (!prior_.M.allFinite() || !prior_.m.allFinite()) {
+      prior_ = ChainPrior();
+      chain_.SetPrior(nullptr);
+    }
+  }
+  chain_.Moved(0);
+  factor_.SetCuts(problem_.cut_before);
+}
+
+SolveReport FixedLag::Solve(int max_iterations, double skip_share, double function_tolerance) {
   SolveOptions options;
   options.function_tolerance = function_tolerance;
   options.max_iterations = max_iterations;
   options.num_threads = num_threads_;
-  options.skip_settled = skip_tolerance;
+  options.skip_settled = skip_share;
   options.skip_to_the_end = true;
   ChainPoint x{std::move(problem_.states), problem_.betas, problem_.log_focal};
   const SolveReport report = DescendChain(&chain_, &factor_, &x, options, false);

@@ -25,14 +25,16 @@ class FixedLag {
   /// continue the last one. Returns how many frames have gone (0 or 1).
   int Add(FrameData frame, FrameState start, double timestamp, bool cut_before);
 
-  /// At most this many iterations; frames that moved less than `skip_tolerance` are not linearised again. A failure
+  /// At most this many iterations, with SolveOptions::skip_settled = `skip_share`. A failure
   /// leaves the states at the best point that was found.
-  SolveReport Solve(int max_iterations, double skip_tolerance, double function_tolerance = 1e-5);
+  SolveReport Solve(int max_iterations, double skip_share, double function_tolerance = 1e-5);
 
   /// Shape prior, betas, states and observations may be changed between calls; Touch(t) after the latter.
   [[nodiscard]] SequenceProblem& problem() { return problem_; }
   [[nodiscard]] const SequenceProblem& problem() const { return problem_; }
   void Touch(int t) { chain_.Forget(t); }
+  /// Frame t of the window does not continue the one before. Nothing that is said about frames before stays.
+  void Cut(int t);
   void LimitDense(int max_points) { chain_.LimitDense(max_points); }
   [[nodiscard]] int num_frames() const { return static_cast<int>(problem_.states.size()); }
   [[nodiscard]] const ChainPrior& prior() const { return prior_; }

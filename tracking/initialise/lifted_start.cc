@@ -105,6 +105,34 @@ double LifterMetres(const BodyModel& body, const Eigen::VectorXd& betas) {
   return LifterReferenceLength(measured);
 }
 
+std::vector<FrameState> PosesFromLifted(const std::vector<LiftedFrame>& frames, const KeypointSequence& keypoints,
+                                        const Camera& camera, const BodyModel& body, const Eigen::VectorXd& betas,
+                                        double metres) {
+  BodyPose rest;
+  rest.rotations.assign(body.num_joints(), Matrix3d::Identity());
+  const MatrixX3d rest_joints = body.RestJoints(betas), rest_points = PoseLandmarks(body, betas, rest, CocoNames());
+  std::array<int, kLifterPoints> columns;
+  for (int k = 0; k < kLifterPoints; ++k) {
+    const auto it = std::find(keypoints.names.begin(), keypoints.names.end(), LifterPointNames()[k]);
+    columns[k] = it == keypoints.names.end() ? -1 : static_cast<int>(it - keypoints.names.begin());
+  }
+  const int T = keypoints.num_frames();
+  std::vector<std::optional<Vector3d>> hips(T);
+  for (int t = 0; t < T; ++t) {
+    hips[t] = PlaceOnRays(SightsOf(keypoints, columns, camera, t), metres * frames[t].points);
+  }
+  std::vector<FrameState> states;
+  if (!FillPositions(keypoints.timestamps, &hips)) return states;
+  Matrix3d torso = Matrix3d::Identity();
+  for (int t = 0; t < T; ++t) {
+    const MatrixX3d points = (metres * frames[t].points.topRows(17)).rowwise() + hips[t]->transpose();
+    TorsoFrame(points, &torso);  // a degenerate torso keeps its predecessor's axes
+    const BodyPose pose = PoseFromJoints(body, rest_joints, rest_points, points, torso);
+    states.push_back({pose.rotations, pose.trans});
+  }
+  return states;
+}
+
 LiftedStart StartFromLifter(const KeypointSequence& keypoints, const std::vector<char>& cut_before,
                             const Camera& camera, bool focal_known, const BodyModel& body, const Eigen::VectorXd& betas,
                             const LifterWeights& weights, int num_threads) {
@@ -114,34 +142,13 @@ LiftedStart StartFromLifter(const KeypointSequence& keypoints, const std::vector
   start.frames = LiftKeypoints(keypoints, camera, focal_known, cut_before, weights, lift_options);
   if (start.frames.empty()) return start;
   ChooseLimbs(keypoints.timestamps, cut_before, {}, &start.frames);
-
-  BodyPose rest;
-  rest.rotations.assign(body.num_joints(), Matrix3d::Identity());
-  const MatrixX3d rest_joints = body.RestJoints(betas), rest_points = PoseLandmarks(body, betas, rest, CocoNames());
   start.metres = LifterMetres(body, betas);
-
-  std::array<int, kLifterPoints> columns;
-  for (int k = 0; k < kLifterPoints; ++k) {
-    const auto it = std::find(keypoints.names.begin(), keypoints.names.end(), LifterPointNames()[k]);
-    columns[k] = it == keypoints.names.end() ? -1 : static_cast<int>(it - keypoints.names.begin());
-  }
-  const int T = keypoints.num_frames();
-  std::vector<std::optional<Vector3d>> hips(T);
-  for (int t = 0; t < T; ++t) {
-    hips[t] = PlaceOnRays(SightsOf(keypoints, columns, camera, t), start.metres * start.frames[t].points);
-  }
-  if (!FillPositions(keypoints.timestamps, &hips)) {
+  start.initial.states = PosesFromLifted(start.frames, keypoints, camera, body, betas, start.metres);
+  if (start.initial.states.empty()) {
     start.frames.clear();
     return start;
   }
-  Matrix3d torso = Matrix3d::Identity();
-  for (int t = 0; t < T; ++t) {
-    const MatrixX3d points = (start.metres * start.frames[t].points.topRows(17)).rowwise() + hips[t]->transpose();
-    TorsoFrame(points, &torso);  // a degenerate torso keeps its predecessor's axes
-    const BodyPose pose = PoseFromJoints(body, rest_joints, rest_points, points, torso);
-    start.initial.states.push_back({pose.rotations, pose.trans});
-    start.initial.from_observation.push_back(start.frames[t].seen);
-  }
+  for (const LiftedFrame& frame : start.frames) start.initial.from_observation.push_back(frame.seen);
   start.initial.betas = betas;
   return start;
 }

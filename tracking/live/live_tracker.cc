@@ -35,6 +35,14 @@ constexpr int kLifterReach = 36;      ///< samples behind the oldest that is rea
 constexpr size_t kLifterMemory = 40;  ///< samples along which limbs are chosen
 constexpr int kFirstShapeFrames = 60;
 
+constexpr size_t kEnoughDense = 100;  ///< keypoints of a frame beside which the lifter is not asked
+constexpr double kOffLimb_m = 0.25;
+constexpr int kFramesBetweenTries = 5;  ///< of the lifter's rate
+constexpr int kTryIterations = 5;
+constexpr double kTryGain = 0.5;  ///< of the cost of each frame: less does not pay for a jump
+constexpr const char* kLimbJoints[4][2] = {
+    {"l_shoulder", "l_elbow"}, {"r_shoulder", "r_elbow"}, {"l_hip", "l_knee"}, {"r_hip", "r_knee"}};
+
 /// Steady motion continued by dt seconds.
 FrameState Predict(const FrameState& before, const FrameState& last, double dt_before, double dt) {
   const double s = dt / dt_before;
@@ -95,6 +103,11 @@ class LiveTracker::Impl {
   void Track();
   void AskLifter();
   [[nodiscard]] Camera PinholeNow() const;
+  /// Where limbs of the last frames are not where the lifter says, tries its poses instead, and keeps what costs less.
+  /// `lifted` ends with the window's last frame, one frame every `stride`.
+  void TryLifted(const std::vector<LiftedFrame>& lifted, int stride, double metres);
+  /// Limbs (bit set) whose joints are farther than kOffLimb_m from the lifter's.
+  unsigned LimbsOff(const FrameState& state, const LiftedFrame& lifted, double metres);
   void RefineShapePrior();
   LiveFrame HandOut(Record* record);
   void Forget();
@@ -115,6 +128,9 @@ class LiveTracker::Impl {
   bool tracking_ = false;
   int shot_ = 0, shot_frames_ = 0;  ///< which one; its tracked frames so far
   int since_lifter_ = 0;
+  int until_next_try_ = 0;  ///< frames in which TryLifted() rests
+  Kinematics kinematics_;
+  PointEvaluator points_;
   std::vector<double> lifted_times_;  ///< of what the lifter said last
   std::vector<LiftedFrame> lifted_;
   double last_seen_ = 0;
@@ -209,7 +225,8 @@ std::optional<LiveFrame> LiveTracker::Impl::Push(const LiveObservations& observa
   if (tracking_) {
     Track();
   } else if (record.seen) {
-    const int open = NumOpen();
+    int open = NumOpen();
+    while (!(records_.end() - open)->seen) --open;  // what was not seen before the first sight stays lost
     std::vector<FrameState> states = FindStates(open);
     if (!states.empty()) Start(open, std::move(states));
   }
@@ -411,7 +428,7 @@ void LiveTracker::Impl::Track() {
 
 void LiveTracker::Impl::AskLifter() {
   if (input_.lifter == nullptr || input_.landmarks.empty() || options_.solve.lifter_weight == 0 ||
-      !lifted_landmarks_.IsUsable() || records_.back().initialiser) {
+      !lifted_landmarks_.IsUsable() || records_.back().initialiser || records_.back().dense.size() >= kEnoughDense) {
     return;
   }
   // At the network's own rate, in one phase that ends with the newest frame.
@@ -459,6 +476,89 @@ void LiveTracker::Impl::AskLifter() {
     data.lifted_weight = options_.solve.lifter_weight;
     window_->Touch(slot);
   }
+  chosen.erase(chosen.begin(), chosen.end() - (samples - first));
+  TryLifted(chosen, stride, metres);
+}
+
+unsigned LiveTracker::Impl::LimbsOff(const FrameState& state, const LiftedFrame& lifted, double metres) {
+  kinematics_.Set(*input_.body, window_->problem().betas, state.rotations, Vector3d::Zero(), false);
+  const auto at = [&](int k) { return points_.Evaluate(kinematics_, lifted_landmarks_.points[k], false); };
+  const Vector3d hips = 0.5 * (at(kLifterLeftHip) + at(kLifterLeftHip + 1));
+  unsigned off = 0;
+  for (int limb = 0; limb < 4; ++limb) {
+    for (int i = 1; i < 3; ++i) {  // elbow and wrist, knee and ankle
+      const int k = kLimbs[limb][i];
+      if (!lifted_landmarks_.known[k]) continue;
+      const Vector3d away = at(k) - hips - metres * lifted.points.row(k).transpose();
+      if (away.norm() > kOffLimb_m) off |= 1U << limb;
+    }
+  }
+  return off;
+}
+
+void LiveTracker::Impl::TryLifted(const std::vector<LiftedFrame>& lifted, int stride, double metres) {
+  if (until_next_try_ > 0) --until_next_try_;
+  const int T = window_->num_frames(), samples = static_cast<int>(lifted.size());
+  const int count = (samples - 1) * stride + 1;  // the last frames of the window, which the samples span
+  // Dense keypoints tell limbs apart by themselves.
+  if (until_next_try_ > 0 || samples < 2 || count > std::min(T, shot_frames_) || !records_.back().dense.empty() ||
+      layout_.knowledge == CameraKnowledge::kWeak) {
+    return;
+  }
+  SequenceProblem& problem = window_->problem();
+  unsigned off = 0xF;
+  for (int i = 0; i < samples; ++i) {
+    off &= LimbsOff(problem.states[T - count + i * stride], lifted[i], metres);
+    if (off == 0) return;
+  }
+  until_next_try_ = kFramesBetweenTries;
+  const KeypointSequence seen = history_->Recent(samples, stride);
+  const std::vector<FrameState> poses =
+      PosesFromLifted(lifted, seen, PinholeNow(), *input_.body, problem.betas, metres);
+  if (poses.empty()) return;
+  std::vector<int> last;
+  for (int t = T - count; t < T; ++t) last.push_back(t);
+  const SequenceProblem now = SelectFrames(problem, last);
+  SolveOptions options;
+  options.solver = SequenceSolver::kChain;
+  options.shape_constant = options.focal_constant = true;
+  options.num_threads = threads_;
+  options.max_iterations = 0;
+  SequenceProblem best = now;
+  double best_cost = SolveSequence(&best, options).final_cost;
+  options.max_iterations = kTryIterations;
+  best_cost = std::min(best_cost, SolveSequence(&best, options).final_cost) - kTryGain * count;
+  bool found = false;
+  for (const bool whole : {false, true}) {
+    SequenceProblem other = now;
+    for (int t = 0; t < count; ++t) {
+      const int i = std::min(t / stride, samples - 2);
+      const FrameState pose = InterpolateStates(poses[i], poses[i + 1], static_cast<double>(t - i * stride) / stride);
+      if (whole) {
+        other.states[t] = pose;
+        continue;
+      }
+      for (int limb = 0; limb < 4; ++limb) {
+        if ((off >> limb & 1U) == 0) continue;
+        for (const char* name : kLimbJoints[limb]) {
+          const int j = input_.body->FindJoint(name);
+          other.states[t].rotations[j] = pose.rotations[j];
+        }
+      }
+    }
+    const SolveReport report = SolveSequence(&other, options);
+    if (report.status == SolveStatus::kFailure || !(report.final_cost < best_cost)) continue;
+    best_cost = report.final_cost;
+    best = std::move(other);
+    found = true;
+  }
+  if (!found) return;
+  // What the frames before say about the pose was said of another one: the first of these begins a shot for the solver.
+  for (int t = 0; t < count; ++t) {
+    problem.states[T - count + t] = best.states[t];
+    window_->Touch(T - count + t);
+  }
+  window_->Cut(T - count);
 }
 
 Camera LiveTracker::Impl::PinholeNow() const {

@@ -18,13 +18,13 @@
 namespace bodyloom {
 
 struct LiveTrackerOptions {
-  int lag = 4;                 ///< frames: Push() of frame t returns frame t − lag. 0 to 60
-  int context = 4;             ///< frames before those that stay in the window; at least 2
-  int iterations = 2;          ///< of each frame
-  int start_iterations = 8;    ///< of each of the first lag + 1 frames of a shot
-  int max_dense = 600;         ///< dense keypoints of a frame; of more, about this many stand for all
-  double lost_after_s = 1;     ///< without any observation the person is lost
-  double skip_settled = 1e-3;  ///< SolveOptions::skip_settled
+  int lag = 4;                ///< frames: Push() of frame t returns frame t − lag. 0 to 60
+  int context = 4;            ///< frames before those that stay in the window; at least 2
+  int iterations = 2;         ///< of each frame
+  int start_iterations = 8;   ///< of each of the first lag + 1 frames of a shot
+  int max_dense = 600;        ///< dense keypoints of a frame; of more, about this many stand for all
+  double lost_after_s = 1;    ///< without any observation the person is lost
+  double skip_settled = 0.1;  ///< SolveOptions::skip_settled
   /// Camera knowledge, weights, threads, estimate_shape and skip_unneeded mean what they mean for TrackSequence().
   TrackSequenceOptions solve;
   /// False with the reason when a field is out of range.
