@@ -94,16 +94,9 @@ bool FillPositions(const std::vector<double>& timestamps, std::vector<std::optio
 
 }  // namespace
 
-LiftedStart StartFromLifter(const KeypointSequence& keypoints, const std::vector<char>& cut_before,
-                            const Camera& camera, bool focal_known, const BodyModel& body, const Eigen::VectorXd& betas,
-                            const LifterWeights& weights, int num_threads) {
-  LiftedStart start;
-  LiftOptions lift_options;
-  lift_options.num_threads = num_threads;
-  start.frames = LiftKeypoints(keypoints, camera, focal_known, cut_before, weights, lift_options);
-  if (start.frames.empty()) return start;
-  ChooseLimbs(keypoints.timestamps, cut_before, {}, &start.frames);
-
+void StartFromLifted(const KeypointSequence& keypoints, const Camera& camera, const BodyModel& body,
+                     const Eigen::VectorXd& betas, LiftedStart* start) {
+  if (start->frames.empty()) return;
   BodyPose rest;
   rest.rotations.assign(body.num_joints(), Matrix3d::Identity());
   const MatrixX3d rest_joints = body.RestJoints(betas), rest_points = PoseLandmarks(body, betas, rest, CocoNames());
@@ -111,7 +104,7 @@ LiftedStart StartFromLifter(const KeypointSequence& keypoints, const std::vector
   for (int k = 0; k < 17; ++k) {
     for (int c = 0; c < 3; ++c) measured[3 * k + c] = static_cast<float>(rest_points(k, c));
   }
-  start.metres = LifterReferenceLength(measured);
+  start->metres = LifterReferenceLength(measured);
 
   std::array<int, kLifterPoints> columns;
   for (int k = 0; k < kLifterPoints; ++k) {
@@ -121,22 +114,21 @@ LiftedStart StartFromLifter(const KeypointSequence& keypoints, const std::vector
   const int T = keypoints.num_frames();
   std::vector<std::optional<Vector3d>> hips(T);
   for (int t = 0; t < T; ++t) {
-    hips[t] = PlaceOnRays(SightsOf(keypoints, columns, camera, t), start.metres * start.frames[t].points);
+    hips[t] = PlaceOnRays(SightsOf(keypoints, columns, camera, t), start->metres * start->frames[t].points);
   }
   if (!FillPositions(keypoints.timestamps, &hips)) {
-    start.frames.clear();
-    return start;
+    start->frames.clear();
+    return;
   }
   Matrix3d torso = Matrix3d::Identity();
   for (int t = 0; t < T; ++t) {
-    const MatrixX3d points = (start.metres * start.frames[t].points.topRows(17)).rowwise() + hips[t]->transpose();
+    const MatrixX3d points = (start->metres * start->frames[t].points.topRows(17)).rowwise() + hips[t]->transpose();
     TorsoFrame(points, &torso);  // a degenerate torso keeps its predecessor's axes
     const BodyPose pose = PoseFromJoints(body, rest_joints, rest_points, points, torso);
-    start.initial.states.push_back({pose.rotations, pose.trans});
-    start.initial.from_observation.push_back(start.frames[t].seen);
+    start->initial.states.push_back({pose.rotations, pose.trans});
+    start->initial.from_observation.push_back(start->frames[t].seen);
   }
-  start.initial.betas = betas;
-  return start;
+  start->initial.betas = betas;
 }
 
 }  // namespace bodyloom

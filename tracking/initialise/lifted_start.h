@@ -13,17 +13,17 @@
 namespace bodyloom {
 
 struct LiftedStart {
-  std::vector<LiftedFrame> frames;  ///< T, limbs chosen; empty when nothing was seen
+  std::vector<LiftedFrame> frames;  ///< T; empty when nothing was seen
   double metres = 0;                ///< the body's torso + leg length
   InitialStates initial;
 };
 
-/// `body` must have the landmarks of LiftedLandmarks::IsUsable(). Rays come from `camera`; `betas` give the bones'
-/// lengths. In every frame in which at least three landmarks are seen the mid-hip is placed by least squares: the
-/// position t that brings the lifted landmarks nearest to their rays, Σ c_k² ρ(‖(x_k + t) − its projection on the
-/// ray‖²); other frames take their neighbours' depth. Poses by inverse kinematics.
-LiftedStart StartFromLifter(const KeypointSequence& keypoints, const std::vector<char>& cut_before,
-                            const Camera& camera, bool focal_known, const BodyModel& body, const Eigen::VectorXd& betas,
-                            const LifterWeights& weights, int num_threads);
+/// start->frames → `metres` and `initial`. `body` must have the landmarks of LiftedLandmarks::IsUsable(). Rays come
+/// from `camera`; `betas` give the bones' lengths. In every frame in which at least three landmarks are seen the
+/// mid-hip is placed by least squares: the position t that brings the lifted landmarks nearest to their rays, Σ c_k²
+/// ρ(‖(x_k + t) − its projection on the ray‖²); other frames take their neighbours' depth. Poses by inverse kinematics.
+/// Clears start->frames when no frame can be placed.
+void StartFromLifted(const KeypointSequence& keypoints, const Camera& camera, const BodyModel& body,
+                     const Eigen::VectorXd& betas, LiftedStart* start);
 
 }  // namespace bodyloom
