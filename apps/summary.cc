@@ -86,6 +86,12 @@ std::string ToText(const TrackReport& report) {
   if (solve.num_swaps_repaired > 0) {
     text += "repaired " + std::to_string(solve.num_swaps_repaired) + " left-right swaps in the detections\n";
   }
+  if (solve.ground.has_plane) {
+    text += "ground   " + Fixed(solve.ground.camera_height_m, 2) + " m below the camera, feet held in " +
+            std::to_string(solve.ground.contact_frames) + " frames (" + solve.ground.why + ")\n";
+  } else if (!solve.ground.why.empty()) {
+    text += "ground   none: " + solve.ground.why + "\n";
+  }
   parts.clear();
   for (const auto& [stage, seconds] : StagesOf(report)) {
     parts.push_back(stage + " " + Fixed(seconds, 2));
@@ -117,6 +123,16 @@ std::string ToJson(const TrackReport& report) {
   for (const PlanEntry& entry : solve.plan) {
     (entry.runs ? ran : skipped).push_back({{"what", entry.what}, {"why", entry.why}});
   }
+  const GroundSummary& ground = solve.ground;
+  Json ground_json = {{"found", ground.has_plane}, {"why", ground.why}, {"contact_frames", ground.contact_frames}};
+  if (ground.has_up) {
+    ground_json["up_in_camera"] = {ground.up.x(), ground.up.y(), ground.up.z()};
+    ground_json["up_spread_deg"] = ground.up_spread_deg;
+  }
+  if (ground.has_plane) {
+    ground_json["camera_height_m"] = ground.camera_height_m;
+    ground_json["height_spread_m"] = ground.height_spread_m;
+  }
   const Json json = {
       {"status", ToString(solve.status)},
       {"message", solve.message},
@@ -134,6 +150,7 @@ std::string ToJson(const TrackReport& report) {
       {"dense_median_px", solve.dense_median_px},
       {"focal_px", solve.focal_px},
       {"swaps_repaired", solve.num_swaps_repaired},
+      {"ground", ground_json},
       {"seconds", seconds},
       {"peak_memory_bytes", report.peak_memory_bytes},
       {"ran", ran},

@@ -146,6 +146,10 @@ void AddTrackOptions(CLI::App& app, TrackCommand* command) {
       ->type_name("LAG")
       ->check(Quiet(CLI::Range(0, 60)));
   app.add_flag_callback(
+         "--no-ground", [&s] { s.ground = GroundOptions::Off(); },
+         "look for neither the vertical nor the ground that feet stand on")
+      ->group(solve);
+  app.add_flag_callback(
          "--no-shape", [&s] { s.estimate_shape = false; }, "keep the body's mean shape")
       ->group(solve);
   app.add_flag_callback(

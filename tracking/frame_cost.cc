@@ -59,6 +59,11 @@ Vector3d FrameLayout::BodyTranslation(const FrameState& state) const {
   return knowledge == CameraKnowledge::kWeak ? Vector3d::Zero() : state.translation;
 }
 
+Vector3d FrameLayout::BodyPlace(const FrameState& state) const {
+  if (knowledge != CameraKnowledge::kWeak) return state.translation;
+  return {state.translation[1], state.translation[2], camera.fx * std::exp(-state.translation[0])};
+}
+
 FrameState InterpolateStates(const FrameState& a, const FrameState& b, double s) {
   FrameState result;
   result.rotations.reserve(a.rotations.size());
@@ -122,7 +127,7 @@ void FrameEvaluator::Evaluate(const FrameLayout& layout, const FrameData& data, 
   if (derivatives) {
     const size_t rows = 2 * (data.landmarks.size() + (data.rendered_uv != nullptr ? num_dense : 0)) +
                         (data.part_labels != nullptr ? static_cast<size_t>(data.part_labels->num_rows()) : 0) +
-                        (use_lifted ? 3 * data.lifted->points.size() + 3 : 0);
+                        (use_lifted ? 3 * data.lifted->points.size() + 3 : 0) + 3 * data.contacts.size();
     ReserveRows(static_cast<int>(rows), p);
   }
 
@@ -136,6 +141,7 @@ void FrameEvaluator::Evaluate(const FrameLayout& layout, const FrameData& data, 
   if (data.rendered_uv != nullptr) AddRenderedUv(layout, data, state, betas, derivatives, residuals);
   if (data.part_labels != nullptr) AddPartLabels(layout, data, derivatives, residuals);
   if (use_lifted) AddLifted(layout, data, derivatives);
+  if (!data.contacts.empty()) AddContacts(layout, data, state, derivatives);
 
   if (use_prior) AddPrior(layout, data, state, derivatives);
 
@@ -158,12 +164,13 @@ void FrameEvaluator::Evaluate(const FrameLayout& layout, const FrameData& data, 
 
   if (data.upright_weight > 0 && layout.column_of_joint[0] >= 0) {
     const Matrix3d& root = state.rotations[0];
-    const double r = root(2, 1) / kUprightSigma;
+    const double r = data.upright_normal.dot(root.col(1)) / kUprightSigma;
     const RobustValue robust = GemanMcClure(r * r, kUprightKernel);
     cost_ += 0.5 * data.upright_weight * robust.rho;
     if (derivatives) {
       const double scale = std::sqrt(data.upright_weight * robust.weight);
-      const Eigen::RowVector3d row = -scale / kUprightSigma * root.row(2) * Skew(Vector3d::UnitY());
+      const Eigen::RowVector3d row =
+          -scale / kUprightSigma * data.upright_normal.transpose() * root * Skew(Vector3d::UnitY());
       AddSquares(layout.column_of_joint[0], row.transpose() * row, row.transpose() * (scale * r));
     }
   }

@@ -7,12 +7,13 @@
 /// + ½ Σ w ρ(‖r‖²)                     outlines and part labels (residuals/part_label_term.h)
 /// + ½ w_prior (energy of the nearest mixture component)
 /// + ½ Σ (excess over joint limits / σ)²
-/// + ½ w ρ(u_z² / σ²)                 u: the root's up axis in the camera frame; how far the trunk leans towards or
-/// away
-///                                    from the camera, which a camera barely sees (cos is flat): people are mostly
-///                                    upright and cameras mostly level. Saturates, so bending and lying stay free
+/// + ½ w ρ((n·u)² / σ²)               u: the root's up axis in the camera frame, n: horizontal, towards the scene; how
+///                                    far the trunk leans towards or away from the camera, which a camera barely sees
+///                                    (cos is flat): people are mostly upright. Saturates, so bending and lying stay
+///                                    free
 /// + ½ λ_d (‖log(R̄ᵀR)‖²/σ_R² + ‖t − t̄‖²/σ_t²)  initialiser (L_d of paper A)
 /// + ½ λ_d Σ ρ(‖W (x − x_hips − y)‖²)         the lifter as initialiser (residuals/lifted_pose.h)
+/// + ½ Σ ρ(‖W (x − a)‖²)              feet that stand (residuals/ground_contact.h)
 ///
 /// Rotations are differentiated by right increments. Points that cannot be projected cost the kernel's saturation c²
 /// with a zero derivative, and are counted.
@@ -30,6 +31,7 @@
 #include "tracking/joint_limits.h"
 #include "tracking/mixture_prior.h"
 #include "tracking/residuals/dense_points.h"
+#include "tracking/residuals/ground_contact.h"
 #include "tracking/residuals/visible_surface.h"
 #include "tracking/track_sequence.h"
 
@@ -59,6 +61,9 @@ struct FrameLayout {
   [[nodiscard]] Camera CameraAt(const FrameState& state, double log_focal) const;
   /// Translation of the body: zero for weak perspective, where the camera has it.
   [[nodiscard]] Eigen::Vector3d BodyTranslation(const FrameState& state) const;
+  /// Where the body's origin is in the camera frame, metres. For weak perspective: (tx, ty, fx/s), as far away as a
+  /// pinhole of the layout's focal length would have to be.
+  [[nodiscard]] Eigen::Vector3d BodyPlace(const FrameState& state) const;
 };
 
 /// A 2D joint: the compiled landmark, where it was seen, and how well.
@@ -91,8 +96,10 @@ struct FrameData {
   const MixturePrior* prior = nullptr;
   double prior_weight = 0;
   const JointLimits* limits = nullptr;
-  double limit_sigma = 0.05;                       ///< radians
-  double upright_weight = 0;                       ///< of the spine's tilt out of the image plane
+  double limit_sigma = 0.05;                                  ///< radians
+  double upright_weight = 0;                                  ///< of the trunk's lean along the view
+  Eigen::Vector3d upright_normal = Eigen::Vector3d::UnitZ();  ///< n: the direction in which it should not lean
+  std::vector<GroundContact> contacts;
   std::vector<Eigen::Matrix3d> initial_rotations;  ///< J, or empty: no initialiser
   Eigen::Vector3d initial_translation = Eigen::Vector3d::Zero();
   double initialiser_weight = 0, initialiser_sigma = 0.2, initialiser_translation_sigma = 0.3;  ///< radians, metres
@@ -147,6 +154,7 @@ class FrameEvaluator {
                      const Eigen::VectorXd& betas, bool derivatives, FrameResiduals* residuals);
   void AddPartLabels(const FrameLayout& layout, const FrameData& data, bool derivatives, FrameResiduals* residuals);
   void AddLifted(const FrameLayout& layout, const FrameData& data, bool derivatives);
+  void AddContacts(const FrameLayout& layout, const FrameData& data, const FrameState& state, bool derivatives);
   /// 3×columns: derivative of the point evaluated last, without translation.
   void FillPointRows(const FrameLayout& layout, Eigen::Ref<RowMatrixXd> rows);
   void ReserveRows(int rows, int columns);

@@ -8,6 +8,7 @@
 
 #include "geometry/check.h"
 #include "geometry/posed_body.h"
+#include "tracking/ground_terms.h"
 #include "tracking/image_terms.h"
 #include "tracking/initialise/initial_states.h"
 #include "tracking/kinematics.h"
@@ -161,6 +162,8 @@ std::vector<PlanEntry> PlanTrackSequence(const TrackSequenceInput& input, const 
       stays ? Concatenate("weight ", input.initialiser != nullptr ? options.initialiser_weight : options.lifter_weight,
                           input.initialiser != nullptr ? "" : ", of the lifter")
             : "no initialiser and no lifter");
+  add_unless("vertical", WhyNoUp(input, options), "the trunk's lean is measured against it");
+  add_unless("ground", WhyNoGround(input, options), "looked for; standing feet are held to it when there is one");
   add("pose prior", input.prior != nullptr, input.prior != nullptr ? "learned mixture" : "none was given");
   const std::string joints = std::to_string(active) + " of " + std::to_string(model.num_joints());
   add("joint rotations", true, joints + " joints are estimated");

@@ -16,12 +16,14 @@
 #include "geometry/in_range.h"
 #include "geometry/posed_body.h"
 #include "geometry/rotation.h"
+#include "tracking/ground_terms.h"
 #include "tracking/image_terms.h"
 #include "tracking/initialise/impossible_frames.h"
 #include "tracking/initialise/initial_states.h"
 #include "tracking/initialise/lifted_start.h"
 #include "tracking/initialise/swap_repair.h"
 #include "tracking/input_checks.h"
+#include "tracking/motion_level.h"
 #include "tracking/observability.h"
 #include "tracking/residuals/lifted_pose.h"
 #include "tracking/sequence_problem.h"
@@ -185,6 +187,9 @@ bool TrackSequenceOptions::IsValid(std::string* why) const {
   const InRange in_range(why);
   if (!in_range("lifter_weight", lifter_weight, 0, 1e6) ||
       !in_range("lifter_min_sigma_m", lifter_min_sigma_m, 1e-6, 1e3) ||
+      !in_range("ground.contact_weight", ground.contact_weight, 0, 1e6) ||
+      !in_range("ground.sigma_height_m", ground.sigma_height_m, 1e-4, 1e3) ||
+      !in_range("ground.sigma_slide_m", ground.sigma_slide_m, 1e-4, 1e3) ||
       !in_range("rendered_uv.weight", rendered_uv.weight, 0, 1e6) ||
       !in_range("rendered_uv.max_points", rendered_uv.max_points, 1, 1e7) ||
       !in_range("rendered_uv.rounds", rendered_uv.rounds, 0, 100) ||
@@ -316,6 +321,7 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSe
   // Detections of a frame and of its neighbours err together (COCO joints are not the body's, and detectors are off for
   // a third of a second at a time), so frames do not outvote the shape prior as independent measurements would.
   problem.shape_prior.weight = std::max(1.0, options.shape_prior_weight * static_cast<double>(T));
+  GroundTerms ground(input, options, lifted.frames, lifted_landmarks, &problem);
   summary.num_parameters = static_cast<int>(T) * problem.layout.num_frame_columns() + problem.layout.num_columns -
                            problem.layout.beta_column;
 
@@ -363,7 +369,15 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSe
       going = solve("fit near start", &coarse, options.start_pull, 8, 1e-3, options.max_iterations, 0.05, 0.3);
     }
     if (going && has_points)
-      going = solve("fit coarse", &coarse, final_pull, 4, 1e-4, options.max_iterations, 0.3, 0.5);
+      going = solve("fit coarse", &coarse, final_pull, 4, 1e-4, options.max_iterations, 0.3, 0.45);
+    // What the first answer says of the clip: how lively it is, and where its ground is.
+    if (going && options.fit_smoothness) {
+      problem.smoothness = coarse.smoothness = FitSmoothness(coarse, coarse.smoothness);
+    }
+    const bool has_ground = going && ground.FindGround(coarse_frames, &coarse, &problem);
+    if (going && has_points && (options.fit_smoothness || has_ground)) {
+      going = solve("fit again", &coarse, final_pull, 4, 1e-4, options.max_iterations, 0.45, 0.5);
+    }
     if (terms.has_part_labels()) {
       const PartLabelOptions& labels = options.part_labels;
       for (int round = 0; going && round < labels.rounds; ++round) {
@@ -391,6 +405,7 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSe
 
   FillTrack(input, problem, landmarks, &result);
   terms.Summarise(problem, &summary);
+  ground.Summarise(&summary);
   clock.Book("finish");
   if (options.estimate_uncertainty) {
     // On the coarse frames: neighbours' detection errors are not independent, and their joints' spread changes slowly.

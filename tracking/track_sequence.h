@@ -19,6 +19,8 @@
 
 namespace bodyloom {
 
+struct LiftedFrame;
+
 /// What is known about the camera's intrinsics.
 enum class CameraKnowledge {
   kKnown,         ///< TrackSequenceInput::camera is used as it is
@@ -37,6 +39,9 @@ struct TrackSequenceInput {
   const Motion* initialiser = nullptr;    ///< camera-frame poses of another system, same frames (L_d of paper A)
   const PosePrior* prior = nullptr;       ///< learned pose prior; without it only joint limits apply
   const LifterWeights* lifter = nullptr;  ///< starts from 2D joints and stays as L_d; without it: joint hypotheses
+  /// 3D landmarks of every frame that take the place of what `lifter` would say of the 2D joints (initialise/
+  /// lift_keypoints.h): another lifter's, or a benchmark's.
+  const std::vector<LiftedFrame>* lifted = nullptr;
   Camera camera;  ///< kKnown: all of it; otherwise only width and height (0: taken from the observations)
 };
 
@@ -84,6 +89,23 @@ struct PartLabelOptions {
   }
 };
 
+/// Which way is up, and the ground that feet stand on, read off the clip (initialise/ground_plane.h). Needs the lifter.
+struct GroundOptions {
+  /// The trunk's lean is measured against the clip's own vertical; false: against the image plane, as if every camera
+  /// were level.
+  bool use_up = true;
+  double contact_weight = 1;     ///< of feet that stand, on the ground that was found; 0: no ground is looked for
+  double sigma_height_m = 0.03;  ///< of a standing ankle's height
+  double sigma_slide_m = 0.03;   ///< of its place on the ground while the foot stands
+  /// Neither the vertical nor the ground.
+  static GroundOptions Off() {
+    GroundOptions options;
+    options.use_up = false;
+    options.contact_weight = 0;
+    return options;
+  }
+};
+
 struct TrackSequenceOptions {
   CameraKnowledge camera_knowledge = CameraKnowledge::kKnown;
   std::string solver = "chain";     ///< the engine: "chain" (chain_solver.h) or "ceres" (reference): same problem
@@ -92,16 +114,19 @@ struct TrackSequenceOptions {
   int max_fine_iterations = 8;      ///< of the last stage, when a coarse one came before
   double initialiser_weight = 0.1;  ///< λ_d of paper A, per frame
   /// λ_d when the lifter is the initialiser (0: it is not asked), and a floor of its own uncertainty in metres. Found
-  /// on the development clips of docs/benchmarks.md: weights 0.01 to 0.1 differ by less than 3 mm.
-  double lifter_weight = 0.06, lifter_min_sigma_m = 0.08;
+  /// on cameras c02, c04, c06 and c09 of the clips of docs/benchmarks.md, whose other cameras are reported there:
+  /// weights 0.03 to 0.4 differ by 2 mm.
+  double lifter_weight = 0.12, lifter_min_sigma_m = 0.08;
   double prior_weight = 0.2;        ///< of the pose prior's energy, per frame
   double start_pull = 1.0;          ///< pull towards the hypotheses in the first stage (rotation σ 0.2 rad)
   double upright_weight = 1.0;      ///< of the trunk not leaning out of the image plane, per frame
   double coarse_rate = 15;          ///< frames a second of the coarse stages
   double shape_prior_weight = 0.3;  ///< of the shape prior, a frame
+  bool fit_smoothness = true;       ///< σ of accelerations from the clip's own motion (motion_level.h)
   JointHypothesesOptions hypotheses;
   RenderedUvOptions rendered_uv;
   PartLabelOptions part_labels;
+  GroundOptions ground;
   bool estimate_shape = true;        ///< false: keep the mean shape
   bool estimate_uncertainty = true;  ///< joint_sigma; NaN when off
   /// False: solve also for joints that no landmark moves, and let `chain` use all dense keypoints from the first
@@ -127,6 +152,18 @@ struct TermSummary {
   double median_px = 0, p95_px = 0;  ///< of |residual|, in pixels
 };
 
+/// What the clip showed of the vertical and the ground.
+struct GroundSummary {
+  bool has_up = false;
+  Eigen::Vector3d up = Eigen::Vector3d(0, -1, 0);  ///< world up in the camera frame, mean over the clip
+  double up_spread_deg = 0;                        ///< median angle of the frames' own up to it
+  bool has_plane = false;
+  std::string why;             ///< what was found, or why there is no ground
+  double camera_height_m = 0;  ///< of the camera above the ground
+  double height_spread_m = 0;  ///< robust σ of standing feet's heights before the ground held them
+  int contact_frames = 0;      ///< frames in which at least one foot was held
+};
+
 enum class SolveStatus { kFailure, kConverged, kMaxIterations, kStopped };
 std::string ToString(SolveStatus status);
 
@@ -145,6 +182,7 @@ struct TrackSequenceSummary {
   std::vector<TermSummary> terms;                              ///< of every image term that ran
   double focal_px = 0;                                         ///< used or estimated
   int num_observations = 0, num_parameters = 0;
+  GroundSummary ground;
   int num_swaps_repaired = 0;  ///< left–right pairs found exchanged in the detections
   [[nodiscard]] bool IsUsable() const { return status != SolveStatus::kFailure; }
   /// A few lines for a terminal.

@@ -3,9 +3,13 @@
 /// aist_evaluation.h): error and time, file to file.
 ///
 ///   bodyloom_bench_aist --data AISTPP [--sequences A,B] [--views c01,c03] [--focal known,unknown] [--threads 2]
-///                       [--frames 0] [--json F]
+///                       [--frames 0] [--ground yes|no] [--oracle none|truth|torso|lean|best|arms|legs[,…]] [--json F]
 ///
 /// Seconds: `file_s` from detections file to written track (body and prior included), `track_s` the tracker alone.
+/// `--oracle` tells what the error comes from: what the lifter says is replaced, in part, by the truth before the
+/// solve. truth: all landmarks; torso, lean: the body is turned so that shoulders and hips lie as they do in truth
+/// (lean: only about the camera's x axis); best: of each limb the hypothesis nearest to the truth; arms, legs: those
+/// landmarks.
 /// The group "limits" scores what no tracker of these detections can beat, and the body itself:
 ///   reference      keypoints3d_optim, made from all nine cameras (the detections' noise floor)
 ///   true angles    the body posed with the data set's own joint rotations, mean shape (what the difference between
@@ -18,6 +22,7 @@
 
 #include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/accuracy/bench_report.h"
+#include "benchmarks/accuracy/lifter_oracle.h"
 #include "data_tools/builtin_body.h"
 #include "data_tools/evaluation/aist_evaluation.h"
 #include "data_tools/lifter/lifter_weights_io.h"
@@ -79,9 +84,33 @@ struct Setting {
   CameraKnowledge knowledge = CameraKnowledge::kKnown;
   int threads = 2, frames = 0;
   const LifterWeights* lifter = nullptr;  ///< null: joint hypotheses
-  double lifter_weight = 0.06;
+  double lifter_weight = 0.12;
   std::string solver = "chain";
+  bool ground = true;
+  std::string oracle;
 };
+
+/// The 3D joints of a clip in the axes of one of its cameras.
+std::vector<MatrixX3d> TruthInCamera(const MultiViewClip& clip, const std::string& view) {
+  std::vector<MatrixX3d> truth;
+  for (const RigView& rig_view : clip.views) {
+    if (rig_view.name != view) continue;
+    for (const MatrixX3d& joints : clip.coco17_in_world) {
+      truth.emplace_back((joints * rig_view.pose.camera_from_world_rotation.transpose()).rowwise() +
+                         rig_view.pose.camera_from_world_translation.transpose());
+    }
+  }
+  return truth;
+}
+
+std::vector<std::pair<std::string, std::string>> Pairs(const std::vector<std::string>& a,
+                                                       const std::vector<std::string>& b) {
+  std::vector<std::pair<std::string, std::string>> pairs;
+  for (const std::string& x : a) {
+    for (const std::string& y : b) pairs.emplace_back(x, y);
+  }
+  return pairs;
+}
 
 BenchRow TrackAndScore(const Setting& setting, const MultiViewClip& clip, const std::string& track_path) {
   const auto start = std::chrono::steady_clock::now();
@@ -109,6 +138,14 @@ BenchRow TrackAndScore(const Setting& setting, const MultiViewClip& clip, const 
   options.num_threads = setting.threads;
   options.lifter_weight = setting.lifter_weight;
   options.solver = setting.solver;
+  if (!setting.ground) options.ground = GroundOptions::Off();
+  std::vector<LiftedFrame> lifted;
+  if (setting.oracle != "none") {
+    BODYLOOM_CHECK(setting.lifter != nullptr, "--oracle corrects the lifter: --lifter none leaves nothing to correct");
+    lifted = LiftWithOracle(keypoints, setting.knowledge, camera.camera, *setting.lifter,
+                            TruthInCamera(clip, setting.view), setting.oracle);
+    input.lifted = &lifted;
+  }
   const auto track_start = std::chrono::steady_clock::now();
   const TrackSequenceResult result = TrackSequence(input, options);
   const double track_s = Seconds(track_start);
@@ -120,6 +157,7 @@ BenchRow TrackAndScore(const Setting& setting, const MultiViewClip& clip, const 
   row.group = setting.knowledge == CameraKnowledge::kKnown          ? "known focal length"
               : setting.knowledge == CameraKnowledge::kUnknownFocal ? "unknown focal length"
                                                                     : "weak perspective";
+  if (setting.oracle != "none") row.group += ", oracle " + setting.oracle;
   row.labels = {setting.sequence.substr(0, 3), setting.view};
   row.values = Evaluated(evaluation);
   row.values.insert(row.values.end(),
@@ -179,7 +217,7 @@ void Run(const BenchArguments& arguments, const std::string& command) {
   for (const std::string& sequence : arguments.List("sequences")) {
     clips.push_back(ReadAistClip(arguments.Text("data"), arguments.Text("data") + "/cameras", sequence));
   }
-  for (const std::string& focal : arguments.List("focal")) {
+  for (const auto& [focal, oracle] : Pairs(arguments.List("focal"), arguments.List("oracle"))) {
     for (const MultiViewClip& clip : clips) {
       for (const std::string& view : arguments.List("views")) {
         Setting setting{arguments.Text("data"),
@@ -190,7 +228,9 @@ void Run(const BenchArguments& arguments, const std::string& command) {
                         arguments.Integer("frames"),
                         LifterOf(arguments.Text("lifter")),
                         std::stod(arguments.Text("lifter_weight")),
-                        arguments.Text("solver")};
+                        arguments.Text("solver"),
+                        arguments.Text("ground") != "no",
+                        oracle};
         report.rows.push_back(TrackAndScore(setting, clip, track_path.string()));
         std::fprintf(stderr, "%s %s %s: PA-MPJPE %.1f mm, held out %.1f px, %.2f s\n", focal.c_str(), clip.name.c_str(),
                      view.c_str(), report.rows.back().values[0], report.rows.back().values[4],
@@ -217,8 +257,10 @@ int main(int argc, char** argv) {
                               {"views", "c01,c03,c05,c07,c08"},
                               {"focal", "known,unknown"},
                               {"lifter", "built-in"},
-                              {"lifter_weight", "0.06"},
+                              {"lifter_weight", "0.12"},
                               {"solver", "chain"},
+                              {"ground", "yes"},
+                              {"oracle", "none"},
                               {"threads", "2"},
                               {"frames", "0"},
                               {"json", ""}},

@@ -16,14 +16,16 @@
 namespace bodyloom {
 namespace {
 
-SynthClip Clip(int frames, double fps) {
+SynthClip Clip(int frames, double fps, double elevation_deg = 8) {
   SynthClipOptions options;
   options.dense_per_frame = 0;
+  options.camera.elevation_deg = elevation_deg;
   return MakeSynthClip(BuiltinBody(), DemoMotion(BuiltinBody(), frames, fps), options);
 }
 
 TrackSequenceResult TrackWithLifter(const KeypointSequence& keypoints, const Camera& camera,
-                                    CameraKnowledge knowledge = CameraKnowledge::kKnown, int threads = 2) {
+                                    CameraKnowledge knowledge = CameraKnowledge::kKnown, int threads = 2,
+                                    const GroundOptions& ground = {}) {
   TrackSequenceInput input;
   input.body = &BuiltinBody();
   input.keypoints = &keypoints;
@@ -33,6 +35,7 @@ TrackSequenceResult TrackWithLifter(const KeypointSequence& keypoints, const Cam
   TrackSequenceOptions options;
   options.camera_knowledge = knowledge;
   options.num_threads = threads;
+  options.ground = ground;
   return TrackSequence(input, options);
 }
 
@@ -75,6 +78,71 @@ TEST(LiftedTrack, FindsThePoseInEveryCamera) {
     EXPECT_LT(PaMpjpe(result, clip), 70) << static_cast<int>(knowledge);
     EXPECT_LT(result.summary.reprojection_median_px, 12);
   }
+}
+
+/// Mean speed of ankles, m/s, in frames in which the true ones stand.
+double SlidingOfFeet(const TrackSequenceResult& result, const SynthClip& clip) {
+  double sum = 0;
+  int count = 0;
+  for (const char* name : {"l_ankle", "r_ankle"}) {
+    const int ankle = BuiltinBody().FindJoint(name);
+    for (int t = 1; t + 1 < result.track.num_frames(); ++t) {
+      const double seconds = clip.keypoints.timestamps[t + 1] - clip.keypoints.timestamps[t - 1];
+      const auto speed = [&](const std::vector<MatrixX3d>& joints) {
+        return (joints[t + 1].row(ankle) - joints[t - 1].row(ankle)).norm() / seconds;
+      };
+      if (speed(clip.truth.joints) > 0.1) continue;
+      sum += speed(result.track.joints);
+      ++count;
+    }
+  }
+  return sum / std::max(1, count);
+}
+
+TEST(LiftedTrack, FindsVerticalAndGroundUnderTiltedCameras) {
+  for (const double elevation : {0.0, 20.0, 35.0}) {
+    const SynthClip clip = Clip(120, 20, elevation);
+    const TrackSequenceResult with = TrackWithLifter(clip.keypoints, clip.truth.camera),
+                              without = TrackWithLifter(clip.keypoints, clip.truth.camera, CameraKnowledge::kKnown, 2,
+                                                        GroundOptions::Off());
+    const GroundSummary& ground = with.summary.ground;
+    ASSERT_TRUE(ground.has_up) << elevation;
+    EXPECT_LT(std::acos(std::min(1.0, ground.up.dot(clip.up_in_camera))) * 180 / M_PI, 8) << elevation;
+    ASSERT_TRUE(ground.has_plane) << elevation << ": " << ground.why;
+    // Metric scale is the mean body's, so heights are within a tenth or so.
+    const double height_m = -clip.camera_from_world.camera_from_world_translation.dot(clip.up_in_camera);
+    EXPECT_NEAR(ground.camera_height_m, height_m, 0.15 * height_m + 0.15) << elevation;
+    EXPECT_GT(ground.contact_frames, 40) << elevation;
+    EXPECT_LT(SlidingOfFeet(with, clip), 0.6 * SlidingOfFeet(without, clip)) << elevation;
+    EXPECT_LT(PaMpjpe(with, clip), PaMpjpe(without, clip) + 2) << elevation;
+    EXPECT_FALSE(without.summary.ground.has_plane);
+    EXPECT_FALSE(without.summary.ground.why.empty());
+  }
+}
+
+TEST(LiftedTrack, GroundForEveryCamera) {
+  const SynthClip clip = Clip(80, 20, 15);
+  for (const CameraKnowledge knowledge : {CameraKnowledge::kUnknownFocal, CameraKnowledge::kWeak}) {
+    const TrackSequenceResult result = TrackWithLifter(clip.keypoints, clip.truth.camera, knowledge);
+    ASSERT_TRUE(result.summary.IsUsable());
+    EXPECT_TRUE(result.summary.ground.has_plane) << static_cast<int>(knowledge);
+    EXPECT_LT(PaMpjpe(result, clip), 70) << static_cast<int>(knowledge);
+  }
+}
+
+TEST(LiftedTrack, NoGroundWhereOnlyTheUpperBodyIsSeen) {
+  SynthClip clip = Clip(60, 20);
+  for (int k = 0; k < clip.keypoints.num_points(); ++k) {
+    for (const char* part : {"hip", "knee", "ankle", "toe", "heel"}) {
+      if (clip.keypoints.names[k].find(part) == std::string::npos || std::string(part) == "hip") continue;
+      for (int t = 0; t < 60; ++t) clip.keypoints.at(t, k).confidence = 0;
+    }
+  }
+  const TrackSequenceResult result = TrackWithLifter(clip.keypoints, clip.truth.camera);
+  ASSERT_TRUE(result.summary.IsUsable()) << result.summary.message;
+  EXPECT_FALSE(result.summary.ground.has_plane);
+  EXPECT_EQ(result.summary.ground.contact_frames, 0);
+  EXPECT_FALSE(result.summary.ground.why.empty());
 }
 
 TEST(LiftedTrack, AnyFrameRate) {

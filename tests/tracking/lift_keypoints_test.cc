@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From 2D landmarks to lifted frames: phases, mirror, cuts, choice of hypotheses, odd clips. The network is random
+// From 2D landmarks to lifted frames: phases, mirror, cuts, the mean of hypotheses, odd clips. The network is random
 // here: what it says is another test's business.
 #include "tracking/initialise/lift_keypoints.h"
 
@@ -10,6 +10,7 @@
 #include <random>
 
 #include "geometry/posed_body.h"
+#include "geometry/rotation.h"
 #include "tests/support/toy_body.h"
 #include "tracking/initialise/lifted_start.h"
 #include "tracking/initialise/lifter_input.h"
@@ -188,54 +189,33 @@ TEST(LiftKeypoints, WeightsOfAnotherInputAreRefused) {
   EXPECT_THROW(LiftKeypoints(Wave(3, 20), kCamera, true, {}, weights, {}), std::invalid_argument);
 }
 
-/// Frames with two guesses for the left arm: A at +z, B at −z.
-std::vector<LiftedFrame> TwoGuesses(const std::vector<double>& weight_of_a) {
-  std::vector<LiftedFrame> frames;
-  for (const double weight : weight_of_a) {
-    LiftedFrame& frame = frames.emplace_back();
-    frame.points.setZero(kLifterPoints, 3);
-    frame.sigma.setConstant(kLifterPoints, 2, 0.1);
-    for (int limb = 0; limb < 4; ++limb) {
-      for (const double side : {1.0, -1.0}) {
-        LiftedLimb guess;
-        guess.weight = side > 0 ? weight : 1 - weight;
-        for (auto& point : guess.points) point = {0, 0, 0.3 * side};
-        for (auto& sigma : guess.sigma) sigma = {0.1, 0.1};
-        frame.limbs[limb].push_back(guess);
-      }
-    }
+TEST(MeanLimb, WeighsTheGuessesAndCoversThem) {
+  std::vector<LiftedLimb> guesses(2);
+  const Eigen::Matrix3d R = RotationFromAxisAngle(Eigen::Vector3d(0.3, -0.4, 0.1));
+  for (int m = 0; m < 2; ++m) {
+    guesses[m].weight = m == 0 ? 0.75 : 0.25;
+    guesses[m].points.fill(R * Eigen::Vector3d(0.1, 0.2, m == 0 ? 0.4 : -0.4));
+    guesses[m].sigma.fill({0.1, 0.2});
   }
-  return frames;
+  const LiftedLimb mean = MeanLimb(guesses, R);
+  EXPECT_DOUBLE_EQ(mean.weight, 1);
+  EXPECT_LT((mean.points[1] - R * Eigen::Vector3d(0.1, 0.2, 0.2)).norm(), 1e-12);
+  EXPECT_NEAR(mean.sigma[1][0], 0.1, 1e-12) << "they agree across the view";
+  // Along it they are 0.2 and 0.6 from the mean: variance 0.75·0.04 + 0.25·0.36 = 0.12.
+  EXPECT_NEAR(mean.sigma[1][1], std::sqrt(0.04 + 0.12 / 4), 1e-12);
+  guesses.resize(1);
+  guesses[0].weight = 1;
+  EXPECT_LT((MeanLimb(guesses, R).points[0] - guesses[0].points[0]).norm(), 1e-12);
+  EXPECT_LT((MeanLimb(guesses, R).sigma[0] - guesses[0].sigma[0]).norm(), 1e-12);
 }
 
-TEST(ChooseLimbs, NeighboursOutvoteOneFrame) {
-  std::vector<LiftedFrame> frames = TwoGuesses({0.9, 0.9, 0.3, 0.9, 0.9});
-  const std::vector<double> times = {0, 0.05, 0.1, 0.15, 0.2};
-  EXPECT_EQ(ChooseLimbs(times, {}, {}, &frames), 4) << "one frame, four limbs";
-  for (const LiftedFrame& frame : frames) EXPECT_DOUBLE_EQ(frame.points(9, 2), 0.3);
-}
-
-TEST(ChooseLimbs, ALongChangeStays) {
-  std::vector<LiftedFrame> frames = TwoGuesses({0.9, 0.9, 0.9, 0.9, 0.02, 0.02, 0.02, 0.02});
-  std::vector<double> times;
-  for (int t = 0; t < 8; ++t) times.push_back(0.05 * t);
-  EXPECT_EQ(ChooseLimbs(times, {}, {}, &frames), 0);
-  EXPECT_DOUBLE_EQ(frames[3].points(9, 2), 0.3);
-  EXPECT_DOUBLE_EQ(frames[4].points(9, 2), -0.3);
-}
-
-TEST(ChooseLimbs, NothingIsHeldAcrossACut) {
-  std::vector<LiftedFrame> frames = TwoGuesses({0.9, 0.9, 0.9, 0.4});
-  EXPECT_EQ(ChooseLimbs({0, 0.05, 0.1, 0.15}, {0, 0, 0, 1}, {}, &frames), 0);
-  EXPECT_DOUBLE_EQ(frames[3].points(9, 2), -0.3);
-}
-
-TEST(StartFromLifter, PlacesTheHipsWhereTheRaysMeet) {
+TEST(StartFromLifted, PlacesTheHipsWhereTheRaysMeet) {
   // Whatever the network says of the shape, the mid-hip is where it fits the image best: in front, near the middle.
   const BodyModel body{ToyBodyData()};
   const KeypointSequence clip = Wave(20, 20);
-  const LiftedStart start =
-      StartFromLifter(clip, std::vector<char>(20, 0), kCamera, true, body, Eigen::VectorXd(), RandomWeights(7), 2);
+  LiftedStart start;
+  start.frames = LiftKeypoints(clip, kCamera, true, {}, RandomWeights(7), {});
+  StartFromLifted(clip, kCamera, body, Eigen::VectorXd(), &start);
   ASSERT_EQ(start.initial.states.size(), 20U);
   for (const FrameState& state : start.initial.states) {
     EXPECT_TRUE(state.translation.allFinite());

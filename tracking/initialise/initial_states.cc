@@ -222,9 +222,14 @@ InitialStates FindInitialStates(const TrackSequenceInput& input, const FrameLayo
     if (WhyNoLifter(input, options).empty()) {
       const int threads = options.num_threads > 0 ? options.num_threads
                                                   : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-      LiftedStart start =
-          StartFromLifter(*keypoints, FindCuts(*keypoints), camera, layout.knowledge == CameraKnowledge::kKnown, model,
-                          result.betas, *input.lifter, threads);
+      LiftOptions lift;
+      lift.num_threads = threads;
+      LiftedStart start;
+      start.frames = input.lifted != nullptr
+                         ? *input.lifted
+                         : LiftKeypoints(*keypoints, camera, layout.knowledge == CameraKnowledge::kKnown,
+                                         FindCuts(*keypoints), *input.lifter, lift);
+      StartFromLifted(*keypoints, camera, model, result.betas, &start);
       if (!start.frames.empty()) {
         result = start.initial;
         if (lifted != nullptr) *lifted = std::move(start);

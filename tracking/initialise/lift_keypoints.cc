@@ -9,8 +9,6 @@
 #include "tracking/initialise/lifter_input.h"
 #include "tracking/initialise/lifter_network.h"
 #include "tracking/initialise/lifter_reading.h"
-#include "tracking/initialise/viterbi.h"
-#include "tracking/robust.h"
 
 namespace bodyloom {
 namespace {
@@ -164,33 +162,6 @@ std::vector<LiftedFrame> LiftKeypoints(const KeypointSequence& keypoints, const 
   for (int t = 0; t < T; ++t) any |= result[t].seen = shows(t);
   if (!any) result.clear();
   return result;
-}
-
-int ChooseLimbs(const std::vector<double>& timestamps, const std::vector<char>& cut_before,
-                const ChooseLimbsOptions& options, std::vector<LiftedFrame>* frames) {
-  const size_t T = frames->size();
-  int changed = 0;
-  for (int limb = 0; limb < LifterOutput::kLimbs; ++limb) {
-    const size_t n = LifterOutput::LimbPoints(limb).size();
-    std::vector<std::vector<double>> unary(T);
-    for (size_t t = 0; t < T; ++t) {
-      for (const LiftedLimb& guess : (*frames)[t].limbs[limb]) unary[t].push_back(-std::log(guess.weight + 1e-6));
-    }
-    const std::vector<int> path = Viterbi(unary, [&](size_t t, int a, int b) {
-      if (!cut_before.empty() && cut_before[t]) return 0.0;
-      const LiftedLimb &from = (*frames)[t - 1].limbs[limb][a], &to = (*frames)[t].limbs[limb][b];
-      double squared = 0;
-      for (size_t i = 0; i < std::min<size_t>(n, 2); ++i) squared += (from.points[i] - to.points[i]).squaredNorm();
-      const double sigma = std::hypot(options.jitter, options.speed * (timestamps[t] - timestamps[t - 1]));
-      return 0.5 * GemanMcClure(squared / (sigma * sigma), options.kernel).rho;
-    });
-    for (size_t t = 0; t < T; ++t) {
-      const LiftedLimb& chosen = (*frames)[t].limbs[limb][path[t]];
-      changed += &chosen != &Likeliest((*frames)[t].limbs[limb]);
-      SetLimb(limb, chosen, &(*frames)[t]);
-    }
-  }
-  return changed;
 }
 
 }  // namespace bodyloom

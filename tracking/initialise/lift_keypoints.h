@@ -35,15 +35,4 @@ std::vector<LiftedFrame> LiftKeypoints(const KeypointSequence& keypoints, const 
                                        const std::vector<char>& cut_before, const LifterWeights& weights,
                                        const LiftOptions& options);
 
-struct ChooseLimbsOptions {
-  double speed = 3.0;    ///< lengths (torso + leg) a second, σ of a limb's landmarks relative to the body
-  double jitter = 0.05;  ///< lengths, σ of the guesses from frame to frame
-  double kernel = 3;     ///< a jump costs no more than this many σ
-};
-
-/// Picks one hypothesis of each limb in every frame: the path of least Σ −log weight + Σ ρ(jump), and writes it to
-/// `points` and `sigma`. Returns the number of frame–limb pairs in which that is not the likeliest hypothesis.
-int ChooseLimbs(const std::vector<double>& timestamps, const std::vector<char>& cut_before,
-                const ChooseLimbsOptions& options, std::vector<LiftedFrame>* frames);
-
 }  // namespace bodyloom

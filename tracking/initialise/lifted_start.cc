@@ -133,24 +133,17 @@ std::vector<FrameState> PosesFromLifted(const std::vector<LiftedFrame>& frames, 
   return states;
 }
 
-LiftedStart StartFromLifter(const KeypointSequence& keypoints, const std::vector<char>& cut_before,
-                            const Camera& camera, bool focal_known, const BodyModel& body, const Eigen::VectorXd& betas,
-                            const LifterWeights& weights, int num_threads) {
-  LiftedStart start;
-  LiftOptions lift_options;
-  lift_options.num_threads = num_threads;
-  start.frames = LiftKeypoints(keypoints, camera, focal_known, cut_before, weights, lift_options);
-  if (start.frames.empty()) return start;
-  ChooseLimbs(keypoints.timestamps, cut_before, {}, &start.frames);
-  start.metres = LifterMetres(body, betas);
-  start.initial.states = PosesFromLifted(start.frames, keypoints, camera, body, betas, start.metres);
-  if (start.initial.states.empty()) {
-    start.frames.clear();
-    return start;
+void StartFromLifted(const KeypointSequence& keypoints, const Camera& camera, const BodyModel& body,
+                     const Eigen::VectorXd& betas, LiftedStart* start) {
+  if (start->frames.empty()) return;
+  start->metres = LifterMetres(body, betas);
+  start->initial.states = PosesFromLifted(start->frames, keypoints, camera, body, betas, start->metres);
+  if (start->initial.states.empty()) {
+    start->frames.clear();
+    return;
   }
-  for (const LiftedFrame& frame : start.frames) start.initial.from_observation.push_back(frame.seen);
-  start.initial.betas = betas;
-  return start;
+  for (const LiftedFrame& frame : start->frames) start->initial.from_observation.push_back(frame.seen);
+  start->initial.betas = betas;
 }
 
 }  // namespace bodyloom

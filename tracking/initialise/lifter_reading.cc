@@ -40,6 +40,8 @@ class OutputReader {
     for (int m = 0; m < LifterOutput::kHypotheses; ++m) sum += result[m].weight = std::exp(double{logits[m] - largest});
     for (int m = 0; m < LifterOutput::kHypotheses; ++m) {
       result[m].weight /= sum;
+      result[m].points.fill(Vector3d::Zero());
+      result[m].sigma.fill(Vector2d::Zero());
       for (size_t i = 0; i < LifterOutput::LimbPoints(limb).size(); ++i) {
         const int offset = LifterOutput::PointOffset(from, m, static_cast<int>(i));
         result[m].points[i] = PointAt(offset);
@@ -93,9 +95,21 @@ void SetLimb(int limb, const LiftedLimb& guess, LiftedFrame* frame) {
   }
 }
 
-const LiftedLimb& Likeliest(const std::vector<LiftedLimb>& guesses) {
-  return *std::max_element(guesses.begin(), guesses.end(),
-                           [](const LiftedLimb& a, const LiftedLimb& b) { return a.weight < b.weight; });
+LiftedLimb MeanLimb(const std::vector<LiftedLimb>& guesses, const Matrix3d& camera_from_virtual) {
+  LiftedLimb mean;
+  mean.weight = 1;
+  for (size_t i = 0; i < mean.points.size(); ++i) {
+    Vector3d& point = mean.points[i] = Vector3d::Zero();
+    for (const LiftedLimb& guess : guesses) point += guess.weight * guess.points[i];
+    Vector2d squared = Vector2d::Zero();
+    for (const LiftedLimb& guess : guesses) {
+      const Vector3d off = camera_from_virtual.transpose() * (guess.points[i] - point);
+      const Vector2d spread(0.5 * off.head<2>().squaredNorm(), off.z() * off.z());
+      squared += guess.weight * (guess.sigma[i].cwiseAbs2() + 0.25 * spread);
+    }
+    mean.sigma[i] = squared.cwiseSqrt();
+  }
+  return mean;
 }
 
 LiftedFrame ReadLifter(const RowMatrixXf& plain, const RowMatrixXf& mirrored, Eigen::Index row,
@@ -126,7 +140,9 @@ LiftedFrame ReadLifter(const RowMatrixXf& plain, const RowMatrixXf& mirrored, Ei
       }
     }
   }
-  for (int limb = 0; limb < LifterOutput::kLimbs; ++limb) SetLimb(limb, Likeliest(frame.limbs[limb]), &frame);
+  for (int limb = 0; limb < LifterOutput::kLimbs; ++limb) {
+    SetLimb(limb, MeanLimb(frame.limbs[limb], camera_from_virtual), &frame);
+  }
   if (up.norm() > 1e-6) frame.up = (camera_from_virtual * up).normalized();
   return frame;
 }

@@ -21,8 +21,7 @@ struct LiftedLimb {
 struct LiftedFrame {
   bool seen = false;  ///< the frame shows at least one landmark; otherwise its neighbours speak for it
   Eigen::Matrix3d camera_from_virtual = Eigen::Matrix3d::Identity();
-  /// 21×3 relative to the mid-hip, camera axes, in units of the body's torso + leg length. Limbs: the likeliest
-  /// hypothesis, until ChooseLimbs() has spoken.
+  /// 21×3 relative to the mid-hip, camera axes, in units of the body's torso + leg length. Limbs: MeanLimb().
   MatrixX3d points;
   /// 21×2: scale of the error across and along the view, same units (lifter_weights.h says of which density).
   Eigen::Matrix<double, Eigen::Dynamic, 2> sigma;
@@ -42,7 +41,10 @@ LiftedFrame ReadLifter(const RowMatrixXf& plain, const RowMatrixXf& mirrored, Ei
 
 /// Takes a limb's guess into the frame's points and sigma.
 void SetLimb(int limb, const LiftedLimb& guess, LiftedFrame* frame);
-const LiftedLimb& Likeliest(const std::vector<LiftedLimb>& guesses);
+/// What is expected of a limb: the mean of its guesses by weight. Where they disagree the picture leaves the depth
+/// open, and the mean errs least; its sigma covers them: σ² = Σ w (σ_m² + d_m²/4), with d_m the guess's distance to the
+/// mean across (of one axis) and along the view (a coordinate's variance under the lifter's density is 4 σ²). Weight 1.
+LiftedLimb MeanLimb(const std::vector<LiftedLimb>& guesses, const Eigen::Matrix3d& camera_from_virtual);
 
 /// P(|error| ≤ radius) of the density that the lifter states (neural/lifter/lifter_loss.h): the error is r (σ_xy u_x,
 /// σ_xy u_y, σ_z u_z) with u uniform on the sphere and r ~ Gamma(3), so P = ∫₀¹ F(radius / √(σ_xy²(1 − c²) + σ_z² c²))

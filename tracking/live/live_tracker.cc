@@ -445,7 +445,7 @@ void LiveTracker::Impl::AskLifter() {
   const std::vector<LiftedFrame> read =
       LiftKeypoints(seen, PinholeNow(), layout_.knowledge == CameraKnowledge::kKnown, {}, *input_.lifter, options);
   if (read.empty()) return;
-  // What was read before is replaced where the network now sees something behind it; limbs are chosen along all.
+  // What was read before is replaced where the network now sees something behind it.
   const int first = std::max(0, samples - num_read);
   while (!lifted_times_.empty() && lifted_times_.back() >= seen.timestamps[first]) {
     lifted_times_.pop_back();
@@ -459,14 +459,12 @@ void LiveTracker::Impl::AskLifter() {
     lifted_.erase(lifted_.begin(), lifted_.end() - kLifterMemory);
     lifted_times_.erase(lifted_times_.begin(), lifted_times_.end() - kLifterMemory);
   }
-  std::vector<LiftedFrame> chosen = lifted_;
-  ChooseLimbs(lifted_times_, {}, {}, &chosen);
   const double metres = LifterMetres(*input_.body, window_->problem().betas);
   const int T = window_->num_frames(), shot = std::min(T, shot_frames_);
   for (int back = 0; back < shot && back <= (samples - 1 - first) * stride; ++back) {
-    const size_t later = chosen.size() - 1 - back / stride;
-    const LiftedFrame frame = back % stride == 0 ? chosen[later]
-                                                 : InterpolateLifted(chosen[later], chosen[later - 1],
+    const size_t later = lifted_.size() - 1 - back / stride;
+    const LiftedFrame frame = back % stride == 0 ? lifted_[later]
+                                                 : InterpolateLifted(lifted_[later], lifted_[later - 1],
                                                                      static_cast<double>(back % stride) / stride);
     const int slot = T - 1 - back;
     Record& record = records_[FirstInWindow() + slot];

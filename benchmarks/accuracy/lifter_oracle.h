@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What the lifter would say if it knew a part of the truth: to tell where a track's error comes from.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "geometry/arrays.h"
+#include "geometry/camera.h"
+#include "geometry/lifter_weights.h"
+#include "geometry/observations.h"
+#include "tracking/initialise/lift_keypoints.h"
+#include "tracking/track_sequence.h"
+
+namespace bodyloom {
+
+/// The lifter's reading of `keypoints` as the tracker would make it, corrected by the truth (T frames of COCO-17,
+/// camera axes, any unit): "truth", "torso", "lean", "best", "arms" or "legs" as bodyloom_bench_aist says; throws
+/// std::invalid_argument for another word. Frames whose truth is not finite stay as they are.
+std::vector<LiftedFrame> LiftWithOracle(const KeypointSequence& keypoints, CameraKnowledge knowledge,
+                                        const Camera& camera, const LifterWeights& weights,
+                                        const std::vector<MatrixX3d>& truth, const std::string& oracle);
+
+}  // namespace bodyloom

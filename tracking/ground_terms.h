@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The vertical and the ground of a clip, as terms of its problem: upright normals and standing feet
+/// (initialise/ground_plane.h, residuals/ground_contact.h). Every shot has its own.
+#pragma once
+
+#include <vector>
+
+#include "tracking/initialise/ground_plane.h"
+#include "tracking/residuals/lifted_pose.h"
+#include "tracking/sequence_problem.h"
+#include "tracking/track_sequence.h"
+
+namespace bodyloom {
+
+/// Why a term does not run, or empty when it does.
+std::string WhyNoUp(const TrackSequenceInput& input, const TrackSequenceOptions& options);
+std::string WhyNoGround(const TrackSequenceInput& input, const TrackSequenceOptions& options);
+
+/// Must not outlive what it is given. Without lifted frames, or switched off, it changes nothing.
+class GroundTerms {
+ public:
+  /// `problem` holds the whole clip, `lifted` what the lifter said of each of its frames (or nothing).
+  GroundTerms(const TrackSequenceInput& input, const TrackSequenceOptions& options,
+              const std::vector<LiftedFrame>& lifted, const LiftedLandmarks& landmarks, SequenceProblem* problem);
+
+  /// Looks for the ground with the states of `coarse`, which holds `frames` of the clip. True when there is one: then
+  /// `coarse` and `problem` (the whole clip) have their feet held and their trunks measured against its normal.
+  bool FindGround(const std::vector<int>& frames, SequenceProblem* coarse, SequenceProblem* problem);
+
+  void Summarise(TrackSequenceSummary* summary) const;
+
+ private:
+  struct Shot {
+    int begin = 0, end = 0;
+    UpEstimate up;
+    GroundPlane ground;
+  };
+  void SetUpright(const Shot& shot, const Eigen::Vector3d& up, SequenceProblem* problem) const;
+  void Hold(const Stance& stance, const GroundPlane& ground, FrameData* frame) const;
+
+  const GroundOptions options_;
+  const KeypointSequence* keypoints_;
+  const std::vector<LiftedFrame>& lifted_;
+  const LiftedLandmarks& landmarks_;
+  std::vector<Shot> shots_;
+  std::string why_not_;
+  int contact_frames_ = 0;
+};
+
+}  // namespace bodyloom

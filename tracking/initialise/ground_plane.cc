@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracking/initialise/ground_plane.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "geometry/check.h"
+#include "tracking/robust.h"
+
+namespace bodyloom {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr double kUpKernelRad = 0.17, kMaxUpSpreadDeg = 20;
+constexpr double kAcrossM = 0.02;  ///< σ of a stance's place across the view
+constexpr double kRadToDeg = 180 / M_PI;
+
+double WeightedMedian(std::vector<std::pair<double, double>> value_weight) {
+  std::sort(value_weight.begin(), value_weight.end());
+  double total = 0, sum = 0;
+  for (const auto& [value, weight] : value_weight) total += weight;
+  for (const auto& [value, weight] : value_weight) {
+    sum += weight;
+    if (2 * sum >= total) return value;
+  }
+  return 0;
+}
+
+/// The part of d that the camera sees from afar: without what goes along the ray to x.
+Vector3d AcrossView(const Vector3d& d, const Vector3d& x) {
+  const Vector3d ray = x.normalized();
+  return d - ray.dot(d) * ray;
+}
+
+std::vector<Stance> FindStances(const std::vector<std::array<FootPlace, 2>>& feet, std::span<const double> timestamps,
+                                const GroundPlaneOptions& options) {
+  const int T = static_cast<int>(feet.size());
+  std::vector<Stance> stances;
+  for (int foot = 0; foot < 2; ++foot) {
+    const auto stands = [&](int t) {
+      const FootPlace& place = feet[t][foot];
+      if (!place.seen || !(place.contact >= options.min_contact) || !place.ankle_m.allFinite()) return false;
+      const int before = std::max(0, t - 1), after = std::min(T - 1, t + 1);
+      const double seconds = timestamps[after] - timestamps[before];
+      const Vector3d moved = feet[after][foot].ankle_m - feet[before][foot].ankle_m;
+      return !(seconds > 0) || AcrossView(moved, place.ankle_m).norm() <= options.max_speed * seconds;
+    };
+    for (int t = 0; t < T;) {
+      if (!stands(t)) {
+        ++t;
+        continue;
+      }
+      Stance stance;
+      stance.foot = foot;
+      stance.begin = t;
+      Vector3d sum = Vector3d::Zero();
+      for (; t < T && stands(t); ++t) {
+        const Vector3d& at = feet[t][foot].ankle_m;
+        if (t > stance.begin && AcrossView(at - sum / (t - stance.begin), at).norm() > options.max_drift_m) break;
+        sum += at;
+      }
+      stance.end = t;
+      stance.place_m = sum / (stance.end - stance.begin);
+      stance.seconds = timestamps[stance.end - 1] - timestamps[stance.begin];
+      if (stance.seconds >= options.min_stance_s) stances.push_back(stance);
+    }
+  }
+  return stances;
+}
+
+}  // namespace
+
+UpEstimate EstimateUp(std::span<const LiftedFrame> frames) {
+  UpEstimate estimate;
+  Vector3d mean = Vector3d::Zero();
+  for (int pass = 0; pass < 6; ++pass) {
+    Vector3d sum = Vector3d::Zero();
+    for (const LiftedFrame& frame : frames) {
+      if (!frame.seen || !frame.up.allFinite()) continue;
+      double weight = 1 / std::max(1e-4, frame.up_sigma * frame.up_sigma);
+      if (pass > 0) weight /= 1 + (frame.up - mean).squaredNorm() / (kUpKernelRad * kUpKernelRad);
+      sum += weight * frame.up;
+    }
+    if (!(sum.norm() > 0)) return estimate;
+    mean = sum.normalized();
+  }
+  std::vector<std::pair<double, double>> angles;
+  for (const LiftedFrame& frame : frames) {
+    if (!frame.seen || !frame.up.allFinite()) continue;
+    angles.emplace_back(kRadToDeg * std::acos(std::clamp(frame.up.dot(mean), -1.0, 1.0)), 1);
+  }
+  estimate.up = mean;
+  estimate.spread_deg = WeightedMedian(std::move(angles));
+  estimate.found = estimate.spread_deg <= kMaxUpSpreadDeg;
+  return estimate;
+}
+
+GroundPlane EstimateGroundPlane(const std::vector<std::array<FootPlace, 2>>& feet, std::span<const double> timestamps,
+                                const Vector3d& up, const GroundPlaneOptions& options) {
+  BODYLOOM_CHECK(feet.size() == timestamps.size(), "ground: ", feet.size(), " frames of feet but ", timestamps.size(),
+                 " timestamps");
+  GroundPlane ground;
+  ground.normal = up;
+  std::vector<Stance> stances = FindStances(feet, timestamps, options);
+  double total = 0;
+  for (const Stance& stance : stances) total += stance.seconds;
+  if (total < options.min_total_s) {
+    ground.why = "no foot is seen to stand for long enough";
+    return ground;
+  }
+
+  // Heights above a plane through the camera that is tilted by (a, b) about up: linear in a, b and the offset.
+  const Vector3d e1 = up.unitOrthogonal(), e2 = up.cross(e1);
+  std::vector<std::pair<double, double>> heights;
+  for (const Stance& stance : stances) heights.emplace_back(up.dot(stance.place_m), stance.seconds);
+  Vector3d x(0, 0, WeightedMedian(heights));  // a, b, offset
+  for (int pass = 0; pass < 10; ++pass) {
+    Matrix3d H = Matrix3d::Zero();
+    H(0, 0) = H(1, 1) = 1 / (options.up_rad * options.up_rad);
+    Vector3d rhs = Vector3d::Zero();
+    for (const Stance& stance : stances) {
+      const Vector3d& p = stance.place_m;
+      const double along = up.dot(p.normalized()) * options.depth_m;
+      const double information = 1 / (options.height_m * options.height_m + along * along);
+      const Vector3d row(e1.dot(p), e2.dot(p), -1);
+      const double residual = up.dot(p) + row.dot(x);
+      // A second of standing counts twice what half a second does, and more than that is one place all the same.
+      const double weight =
+          std::min(1.0, stance.seconds) * information * GemanMcClure(residual * residual * information, 3).weight;
+      H += weight * row * row.transpose();
+      rhs -= weight * up.dot(p) * row;
+    }
+    if (!(H(2, 2) > 0)) break;
+    x = H.ldlt().solve(rhs);
+  }
+  const double length = (up + x[0] * e1 + x[1] * e2).norm();
+  ground.normal = (up + x[0] * e1 + x[1] * e2) / length;
+  ground.offset_m = x[2] / length;
+
+  double on_ground = 0;
+  std::vector<std::pair<double, double>> off;
+  for (Stance& stance : stances) {
+    const double height = ground.normal.dot(stance.place_m) - ground.offset_m;
+    off.emplace_back(std::abs(height), stance.seconds);
+    if (!(std::abs(height) <= options.off_ground_m)) continue;
+    on_ground += stance.seconds;
+    const Vector3d ray = stance.place_m.normalized();
+    const Vector3d step =
+        kAcrossM * kAcrossM * ground.normal + options.depth_m * options.depth_m * ray * ray.dot(ground.normal);
+    stance.place_m -= step * height / (ground.normal.dot(step) + options.height_m * options.height_m);
+    ground.stances.push_back(stance);
+  }
+  ground.share = on_ground / total;
+  ground.spread_m = 1.4826 * WeightedMedian(std::move(off));
+  if (on_ground < options.min_total_s || ground.share < options.min_share || ground.spread_m > options.max_spread_m) {
+    ground.why = "feet do not stand at one height";
+    ground.stances.clear();
+    return ground;
+  }
+  ground.found = true;
+  ground.why = std::to_string(ground.stances.size()) + " stances on it";
+  return ground;
+}
+
+}  // namespace bodyloom
