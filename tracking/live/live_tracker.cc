@@ -31,8 +31,7 @@ using Eigen::VectorXd;
 
 constexpr double kHistory_s = 4.2;  ///< what the lifter looks back on
 constexpr int kHistoryFrames = 512;
-constexpr int kLifterReach = 36;      ///< samples behind the oldest that is read; a little more than its own reach
-constexpr size_t kLifterMemory = 40;  ///< samples along which limbs are chosen
+constexpr int kLifterReach = 36;  ///< samples behind the oldest that is read; a little more than its own reach
 constexpr int kFirstShapeFrames = 60;
 
 constexpr size_t kEnoughDense = 100;  ///< keypoints of a frame beside which the lifter is not asked
@@ -131,8 +130,6 @@ class LiveTracker::Impl {
   int until_next_try_ = 0;  ///< frames in which TryLifted() rests
   Kinematics kinematics_;
   PointEvaluator points_;
-  std::vector<double> lifted_times_;  ///< of what the lifter said last
-  std::vector<LiftedFrame> lifted_;
   double last_seen_ = 0;
 };
 
@@ -244,8 +241,6 @@ void LiveTracker::Impl::EndShot() {
   tracking_ = false;
   shot_frames_ = 0;
   ++shot_;
-  lifted_.clear();
-  lifted_times_.clear();
 }
 
 int LiveTracker::Impl::NumOpen() const {
@@ -445,26 +440,13 @@ void LiveTracker::Impl::AskLifter() {
   const std::vector<LiftedFrame> read =
       LiftKeypoints(seen, PinholeNow(), layout_.knowledge == CameraKnowledge::kKnown, {}, *input_.lifter, options);
   if (read.empty()) return;
-  // What was read before is replaced where the network now sees something behind it.
   const int first = std::max(0, samples - num_read);
-  while (!lifted_times_.empty() && lifted_times_.back() >= seen.timestamps[first]) {
-    lifted_times_.pop_back();
-    lifted_.pop_back();
-  }
-  for (int i = first; i < samples; ++i) {
-    lifted_times_.push_back(seen.timestamps[i]);
-    lifted_.push_back(read[i]);
-  }
-  if (lifted_.size() > kLifterMemory) {
-    lifted_.erase(lifted_.begin(), lifted_.end() - kLifterMemory);
-    lifted_times_.erase(lifted_times_.begin(), lifted_times_.end() - kLifterMemory);
-  }
   const double metres = LifterMetres(*input_.body, window_->problem().betas);
   const int T = window_->num_frames(), shot = std::min(T, shot_frames_);
   for (int back = 0; back < shot && back <= (samples - 1 - first) * stride; ++back) {
-    const size_t later = lifted_.size() - 1 - back / stride;
-    const LiftedFrame frame = back % stride == 0 ? lifted_[later]
-                                                 : InterpolateLifted(lifted_[later], lifted_[later - 1],
+    const int later = samples - 1 - back / stride;
+    const LiftedFrame frame = back % stride == 0 ? read[later]
+                                                 : InterpolateLifted(read[later], read[later - 1],
                                                                      static_cast<double>(back % stride) / stride);
     const int slot = T - 1 - back;
     Record& record = records_[FirstInWindow() + slot];
@@ -474,8 +456,7 @@ void LiveTracker::Impl::AskLifter() {
     data.lifted_weight = options_.solve.lifter_weight;
     window_->Touch(slot);
   }
-  chosen.erase(chosen.begin(), chosen.end() - (samples - first));
-  TryLifted(chosen, stride, metres);
+  TryLifted({read.begin() + first, read.end()}, stride, metres);
 }
 
 unsigned LiveTracker::Impl::LimbsOff(const FrameState& state, const LiftedFrame& lifted, double metres) {
