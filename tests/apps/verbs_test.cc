@@ -181,6 +181,19 @@ TEST_F(Verbs, TrackIsTheSameTwice) {
   EXPECT_EQ(Contents(folder_ / "again.npz"), Contents(Shared("track.npz")));
 }
 
+TEST_F(Verbs, LiveTracksEveryFrameAndSaysSo) {
+  std::vector<std::string> command = TrackTo(folder_ / "live.npz");
+  command.insert(command.end(), {"--live", "3", "--json", folder_ / "live.json"});
+  RunWell(command);
+  const nlohmann::json summary = JsonOf(folder_ / "live.json");
+  EXPECT_EQ(summary["solver"], "chain, live");
+  EXPECT_EQ(summary["ran"][0]["what"], "live");
+  EXPECT_EQ(ReadTrack(folder_ / "live.npz").num_frames(), 12);
+  EXPECT_EQ(summary["frames_by_status"]["tracked"], 12);
+  command.insert(command.end(), {"--solver", "ceres"});
+  EXPECT_EQ(RunCommand(command).exit_code, 2);
+}
+
 TEST_F(Verbs, OverlayHasAFrameForEveryFrameOfTheTrack) {
   std::vector<std::string> command = TrackTo(folder_ / "track.npz");
   command.insert(command.end(), {"--video", Shared("clip/clip.mp4"), "--overlay", folder_ / "overlay.mp4",
