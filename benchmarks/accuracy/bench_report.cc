@@ -76,8 +76,9 @@ void CheckRows(const BenchReport& report) {
 std::string BenchNumber(double value) {
   if (!std::isfinite(value)) return "-";
   const double size = std::abs(value);
+  const bool whole = value == std::floor(value) && size < 1e9;
   char text[32];
-  snprintf(text, sizeof(text), size > 0 && size < 5e-4 ? "%.0e" : size < 10 ? "%.3f" : "%.1f", value);
+  snprintf(text, sizeof(text), whole ? "%.0f" : size < 5e-4 ? "%.0e" : size < 10 ? "%.3f" : "%.1f", value);
   return text;
 }
 

@@ -42,7 +42,8 @@ void HandOver(const BenchReport& report, const std::string& json_path);
 /// Commit of the source tree ("… with changes" when it has any), processor, cores, compiler and flags.
 std::vector<std::pair<std::string, std::string>> BenchEnvironment();
 
-/// A number as the tables show it: three digits after the point below ten, one above; tiny ones as 2e-07; "-" for none.
+/// A number as the tables show it: whole numbers as they are, else three digits after the point below ten, one above;
+/// tiny ones as 2e-07; "-" for none.
 std::string BenchNumber(double value);
 
 }  // namespace bodyloom
