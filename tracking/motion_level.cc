@@ -32,6 +32,9 @@ double TipAccelerationRms(const SequenceProblem& problem) {
 }
 
 Smoothness FitSmoothness(const SequenceProblem& problem, const Smoothness& smoothness) {
+  if (std::any_of(problem.cut_before.begin(), problem.cut_before.end(), [](char cut) { return cut != 0; })) {
+    return smoothness;
+  }
   const double rms = TipAccelerationRms(problem);
   if (!(rms > 0)) return smoothness;
   const double sigma = std::clamp(kSigmaOfRms * rms, kLeastSigma, kMostSigma);

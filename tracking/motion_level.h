@@ -17,7 +17,8 @@ inline constexpr double kSigmaOfRms = 4, kLeastSigma = 17, kMostSigma = 40;  ///
 double TipAccelerationRms(const SequenceProblem& problem);
 
 /// `smoothness` with both accelerations' σ scaled by the same factor: that of the tips becomes kSigmaOfRms × the rms,
-/// in [kLeastSigma, kMostSigma]. Unchanged when the rms is 0.
+/// in [kLeastSigma, kMostSigma]. Unchanged when the rms is 0, and for clips with cuts: one take's level says nothing of
+/// another's.
 Smoothness FitSmoothness(const SequenceProblem& problem, const Smoothness& smoothness);
 
 }  // namespace bodyloom

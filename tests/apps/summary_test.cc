@@ -45,6 +45,29 @@ TEST(TrackReport, JsonHoldsWhatScriptsRelyOn) {
   EXPECT_EQ(json["skipped"][0]["why"], "no --overlay");
 }
 
+TEST(TrackReport, TheGroundOrWhyThereIsNone) {
+  TrackReport report = SomeReport();
+  report.solve.ground.why = "no foot is seen to stand for long enough";
+  nlohmann::json ground = nlohmann::json::parse(ToJson(report))["ground"];
+  EXPECT_EQ(ground["found"], false);
+  EXPECT_EQ(ground["why"], "no foot is seen to stand for long enough");
+  EXPECT_FALSE(ground.contains("up_in_camera"));
+  EXPECT_FALSE(ground.contains("camera_height_m"));
+  EXPECT_THAT(ToText(report), HasSubstr("ground   none: no foot is seen to stand for long enough\n"));
+  GroundSummary& found = report.solve.ground;
+  found.has_up = found.has_plane = true;
+  found.up = Eigen::Vector3d(0, -0.5, 0.25);
+  found.camera_height_m = 1.25;
+  found.contact_frames = 7;
+  found.why = "3 stances on it";
+  ground = nlohmann::json::parse(ToJson(report))["ground"];
+  EXPECT_EQ(ground["found"], true);
+  EXPECT_EQ(ground["up_in_camera"], nlohmann::json({0.0, -0.5, 0.25}));
+  EXPECT_EQ(ground["camera_height_m"], 1.25);
+  EXPECT_EQ(ground["contact_frames"], 7);
+  EXPECT_THAT(ToText(report), HasSubstr("ground   1.25 m below the camera, feet held in 7 frames (3 stances on it)\n"));
+}
+
 TEST(TrackReport, SecondsSplitTheSolveAndLoseNothing) {
   const nlohmann::json seconds = nlohmann::json::parse(ToJson(SomeReport()))["seconds"];
   EXPECT_EQ(seconds["read"], 0.25);

@@ -3,6 +3,7 @@
 // run's configuration, and they make the errors that the run's last validation wrote down.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -64,7 +65,14 @@ TEST(LifterRecord, TheWeightsMakeTheErrorsThatTheRunWroteDown) {
     const RowMatrixXf output =
         RunLifter(BuiltinLifter(), Eigen::Map<const RowMatrixXf>(window.features.data(), T, kLifterInputs));
     for (Eigen::Index t = 0; t < T; ++t) {
-      const LiftedFrame frame = ReadLifter(output, {}, t, Eigen::Matrix3d::Identity());
+      LiftedFrame frame = ReadLifter(output, {}, t, Eigen::Matrix3d::Identity());
+      for (int limb = 0; limb < LifterOutput::kLimbs; ++limb) {  // the run wrote down the likeliest hypotheses' error
+        const std::vector<LiftedLimb> guesses = frame.limbs[limb];
+        SetLimb(limb,
+                *std::max_element(guesses.begin(), guesses.end(),
+                                  [](const LiftedLimb& a, const LiftedLimb& b) { return a.weight < b.weight; }),
+                &frame);
+      }
       const Eigen::Map<const Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>> truth(
           &window.points[size_t(t) * 3 * kLifterPoints], kLifterPoints, 3);
       sum += (frame.points - truth.cast<double>()).rowwise().norm().mean() / static_cast<double>(T);
