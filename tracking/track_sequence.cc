@@ -335,6 +335,8 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSe
     SolveOptions solve_options;
     solve_options.solver = options.solver == "chain" ? SequenceSolver::kChain : SequenceSolver::kCeres;
     solve_options.early_dense = options.skip_unneeded ? 300 : 0;
+    // Joints alone are evaluated as fast as skipped: 10 % slower with it on AIST++.
+    solve_options.skip_settled = options.skip_unneeded && input.dense != nullptr ? 0.01 : 0;
     solve_options.max_iterations = max_iterations;
     solve_options.num_threads = threads;
     solve_options.function_tolerance = tolerance;

@@ -23,6 +23,13 @@ Engine ChainEngine(int threads, int early_dense) {
   return engine;
 }
 
+Engine SkippingEngine(int threads) {
+  Engine engine = ChainEngine(threads, 0);
+  engine.name = "chain, settled frames";
+  engine.options.skip_settled = 0.01;
+  return engine;
+}
+
 Engine CeresEngine(int threads) {
   Engine engine{"ceres", {}};
   engine.options.num_threads = threads;

@@ -20,6 +20,8 @@ struct Engine {
 };
 
 Engine ChainEngine(int threads, int early_dense = 0);
+/// Leaves frames that have settled unlinearised (SolveOptions::skip_settled), as the tracker does.
+Engine SkippingEngine(int threads);
 Engine CeresEngine(int threads);     ///< analytic derivatives, one cost function a frame
 Engine AutoDiffEngine(int threads);  ///< autodiff_peer.h
 
