@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <string>
 
 #include "data_tools/video/image_file.h"
 #include "data_tools/video/video_reader.h"
@@ -48,10 +49,26 @@ TEST_F(TrainMotionVerb, TrainsGoesOnAndAnimates) {
   EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
   EXPECT_THAT(resumed.out, HasSubstr("step 5 of 5"));
 
-  const CommandResult animated = RunCommand(
-      {"animate", "motion", "--run", scratch_ / "run", "--data", scratch_ / "person", "--out", scratch_ / "a.mp4",
-       "--sheet", scratch_ / "a.png", "--json", scratch_ / "a.json", "--warmup", "2", "--threads", "1"});
+  const CommandResult animated = RunCommand({"animate",   "motion",
+                                             "--run",     scratch_ / "run",
+                                             "--data",    scratch_ / "person",
+                                             "--out",     scratch_ / "a.mp4",
+                                             "--sheet",   scratch_ / "a.png",
+                                             "--json",    scratch_ / "a.json",
+                                             "--warmup",  "2",
+                                             "--threads", "1",
+                                             "--like",    scratch_ / "person",
+                                             "--frames",  scratch_ / "a.csv"});
   ASSERT_EQ(animated.exit_code, 0) << animated.err;
+  // Every frame of the set is like itself.
+  EXPECT_THAT(animated.out, HasSubstr("frames of similarity 1.000 and more"));
+  std::ifstream csv(scratch_ / "a.csv");
+  std::string line;
+  int lines = 0;
+  for (std::getline(csv, line); std::getline(csv, line); ++lines) {
+    EXPECT_NEAR(std::stod(line.substr(line.rfind(',') + 1)), 1, 1e-3) << line;
+  }
+  EXPECT_EQ(lines, 14);
   EXPECT_THAT(animated.out, HasSubstr("14 frames"));
   EXPECT_THAT(animated.out, HasSubstr("outline IoU"));
   VideoReader video(scratch_ / "a.mp4");
@@ -61,6 +78,13 @@ TEST_F(TrainMotionVerb, TrainsGoesOnAndAnimates) {
       RunCommand({"animate", "motion", "--run", scratch_ / "run", "--track", scratch_ / "person/track.npz", "--out",
                   scratch_ / "b.mp4", "--view-yaw", "0:90", "--warmup", "0", "--threads", "1"});
   EXPECT_EQ(turned.exit_code, 0) << turned.err;
+
+  // Half as fast: twice the frames, less one.
+  const CommandResult slow =
+      RunCommand({"animate", "motion", "--run", scratch_ / "run", "--track", scratch_ / "person/track.npz", "--out",
+                  scratch_ / "slow.mp4", "--speed", "0.5", "--warmup", "0", "--threads", "1"});
+  EXPECT_EQ(slow.exit_code, 0) << slow.err;
+  EXPECT_THAT(slow.out, HasSubstr("27 frames"));
 
   // Other light: from a file of lights, and from an environment that is bright on one side.
   const auto relight = [&](const std::string& light) {
@@ -100,6 +124,7 @@ TEST_F(TrainMotionVerb, SaysWhatIsWrong) {
          scratch_ / "a.mp4"},
         1, "config.json: not there");
   fails({"animate", "motion", "--run", scratch_ / "run", "--out", scratch_ / "a.mp4"}, 2, "--track and --data");
+  EXPECT_EQ(Train("x", {"--device", "gpu"}).exit_code, 2);
 
   // A track of another clip.
   const CommandResult other = RunCommand({"synth-person", "--motion", "demo", "--frames", "20", "--out",
