@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <span>
 
@@ -156,23 +155,23 @@ class GuidedTrainer : public TrainedSystem {
     if (options_.preview) options_.preview(done, previews);
   }
 
-  [[nodiscard]] std::vector<double> Row(int done, bool validated) const override {
-    std::vector<double> row = {LinearDecayOverLastHalf(options_.learning_rate, done - 1, options_.steps),
-                               losses_.silhouette,
-                               losses_.labels,
-                               losses_.image,
-                               losses_.outline,
-                               losses_.balanced[kPerceptual],
-                               losses_.balanced[kContextual],
-                               losses_.balanced[kGan],
-                               losses_.balanced[kKl],
-                               losses_.discriminator,
-                               losses_.render};
-    for (const double score : {scores_.image_l1, scores_.psnr_db, scores_.silhouette_iou, scores_.label_iou,
-                               scores_.lpips, scores_.contextual}) {
-      row.push_back(validated ? score : std::numeric_limits<double>::quiet_NaN());
-    }
-    return row;
+  [[nodiscard]] std::vector<double> Row(int done) const override {
+    return {LinearDecayOverLastHalf(options_.learning_rate, done - 1, options_.steps),
+            losses_.silhouette,
+            losses_.labels,
+            losses_.image,
+            losses_.outline,
+            losses_.balanced[kPerceptual],
+            losses_.balanced[kContextual],
+            losses_.balanced[kGan],
+            losses_.balanced[kKl],
+            losses_.discriminator,
+            losses_.render};
+  }
+
+  [[nodiscard]] std::vector<double> ScoreRow() const override {
+    return {scores_.image_l1,  scores_.psnr_db, scores_.silhouette_iou,
+            scores_.label_iou, scores_.lpips,   scores_.contextual};
   }
 
   bool Report(int done, double seconds) override {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 
 #include "geometry/check.h"
@@ -144,8 +143,7 @@ class LifterTrainer : public TrainedSystem {
     best_distance_ = best / std::max(1, done);
   }
 
-  [[nodiscard]] std::vector<double> Row(int done, bool validated) const override {
-    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  [[nodiscard]] std::vector<double> Row(int done) const override {
     return {LearningRate(options_, done - 1),
             loss_.total.item<double>(),
             loss_.distance,
@@ -153,10 +151,10 @@ class LifterTrainer : public TrainedSystem {
             loss_.velocity,
             loss_.up,
             loss_.contact,
-            gradient_norm_,
-            validated ? distance_ : kNone,
-            validated ? best_distance_ : kNone};
+            gradient_norm_};
   }
+
+  [[nodiscard]] std::vector<double> ScoreRow() const override { return {distance_, best_distance_}; }
 
   bool Report(int done, double seconds) override {
     return !options_.progress || options_.progress({done, options_.steps, loss_.total.item<double>(), loss_.distance,

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <span>
 
@@ -140,20 +139,20 @@ class MotionTrainer : public TrainedSystem {
 
   [[nodiscard]] int ValidationsSinceBest() const override { return static_cast<int>(best_[1].item<double>()); }
 
-  [[nodiscard]] std::vector<double> Row(int done, bool validated) const override {
-    std::vector<double> row = {LinearDecayOverLastHalf(options_.learning_rate, done - 1, options_.steps),
-                               losses_.total,
-                               losses_.image,
-                               losses_.shape,
-                               losses_.normals,
-                               losses_.perceptual,
-                               losses_.generator,
-                               losses_.discriminator};
-    for (const double score : {scores_.image_l1, scores_.psnr_db, scores_.label_iou, scores_.foreground_iou,
-                               scores_.normal_deg, scores_.flicker}) {
-      row.push_back(validated ? score : std::numeric_limits<double>::quiet_NaN());
-    }
-    return row;
+  [[nodiscard]] std::vector<double> Row(int done) const override {
+    return {LinearDecayOverLastHalf(options_.learning_rate, done - 1, options_.steps),
+            losses_.total,
+            losses_.image,
+            losses_.shape,
+            losses_.normals,
+            losses_.perceptual,
+            losses_.generator,
+            losses_.discriminator};
+  }
+
+  [[nodiscard]] std::vector<double> ScoreRow() const override {
+    return {scores_.image_l1,       scores_.psnr_db,    scores_.label_iou,
+            scores_.foreground_iou, scores_.normal_deg, scores_.flicker};
   }
 
   bool Report(int done, double seconds) override {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <span>
 
@@ -157,14 +156,13 @@ class PhotoTrainer : public TrainedSystem {
     if (options_.preview) options_.preview(done, previews);
   }
 
-  [[nodiscard]] std::vector<double> Row(int done, bool validated) const override {
+  [[nodiscard]] std::vector<double> Row(int done) const override {
     const Losses& l = losses_;
-    std::vector<double> row = {Rate(done - 1), l.total,     l.perceptual, l.face,
-                               l.texture,      l.generator, l.alpha,      l.discriminator};
-    for (const double score : {scores_.image_l1, scores_.psnr_db, scores_.ssim, scores_.lpips, scores_.outline_iou}) {
-      row.push_back(validated ? score : std::numeric_limits<double>::quiet_NaN());
-    }
-    return row;
+    return {Rate(done - 1), l.total, l.perceptual, l.face, l.texture, l.generator, l.alpha, l.discriminator};
+  }
+
+  [[nodiscard]] std::vector<double> ScoreRow() const override {
+    return {scores_.image_l1, scores_.psnr_db, scores_.ssim, scores_.lpips, scores_.outline_iou};
   }
 
   bool Report(int done, double seconds) override {

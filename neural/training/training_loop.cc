@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <limits>
 
 #include "geometry/check.h"
 #include "geometry/in_range.h"
@@ -58,7 +59,10 @@ TrainingOutcome RunTraining(const TrainingRun& run, int total_steps, const std::
     const bool validates = system->HasValidation() && (last || done % run.validate_every == 0);
     if (validates) system->Validate(done, last);
     if (last || validates || done % run.report_every == 0) {
-      std::vector<double> row = system->Row(done, validates);
+      std::vector<double> row = system->Row(done);
+      for (const double score : system->ScoreRow()) {
+        row.push_back(validates ? score : std::numeric_limits<double>::quiet_NaN());
+      }
       row.push_back(seconds());
       log.Add(done, row);
       if (!system->Report(done, seconds())) {

@@ -23,8 +23,10 @@ class TrainedSystem {
   virtual void Validate(int done, bool last) = 0;
   /// How many validations came since the best one.
   [[nodiscard]] virtual int ValidationsSinceBest() const { return 0; }
-  /// A line of metrics.csv, without the step and the seconds. NaN: an empty cell.
-  [[nodiscard]] virtual std::vector<double> Row(int done, bool validated) const = 0;
+  /// A line of metrics.csv between the step and the seconds: first these, then the scores of a validation, whose cells
+  /// stay empty where there was none. NaN: an empty cell.
+  [[nodiscard]] virtual std::vector<double> Row(int done) const = 0;
+  [[nodiscard]] virtual std::vector<double> ScoreRow() const = 0;
   /// Tells the caller; false to stop.
   virtual bool Report(int done, double seconds) = 0;
 };
