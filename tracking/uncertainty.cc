@@ -75,8 +75,10 @@ Band AssembleBand(const SequenceProblem& problem) {
     band.first.push_back(MatrixXd::Zero(n, n));
     band.second.push_back(MatrixXd::Zero(n, n));
   }
-  const std::vector<double> levers = JointLevers(*layout.model);
+  const std::vector<int> shot = ShotOfFrames(problem.cut_before);
+  std::vector<double> joint_sigma;
   for (size_t t = 2; t < T; ++t) {
+    if (joint_sigma.empty() || shot[t] != shot[t - 1]) joint_sigma = JointAccelerationSigma(problem, shot[t]);
     if (problem.cut_before[t] || problem.cut_before[t - 1]) continue;
     const double dt0 = problem.timestamps[t - 1] - problem.timestamps[t - 2];
     const double dt1 = problem.timestamps[t] - problem.timestamps[t - 1];
@@ -88,12 +90,12 @@ Band AssembleBand(const SequenceProblem& problem) {
         w[k] = AxisAngleFromRotation(problem.states[t - 2 + k].rotations[joint]);
         values[k] = w[k].data();
       }
-      AddAcceleration(RotationAccelerationCost(dt0, dt1, problem.smoothness.tip_acceleration / levers[joint]), values,
-                      static_cast<int>(3 * a), t, &band);
+      AddAcceleration(RotationAccelerationCost(dt0, dt1, joint_sigma[joint]), values, static_cast<int>(3 * a), t,
+                      &band);
     }
     const double* values[3];
     for (int k = 0; k < 3; ++k) values[k] = problem.states[t - 2 + k].translation.data();
-    const std::array<double, 3> sigma = RootAccelerationSigma(problem);
+    const std::array<double, 3> sigma = RootAccelerationSigma(problem, shot[t]);
     AddAcceleration(VectorAccelerationCost(dt0, dt1, sigma.data()), values, layout.translation_column, t, &band);
   }
   return band;

@@ -289,7 +289,8 @@ std::vector<FrameState> LiveTracker::Impl::FindStates(int count) {
   LiftedStart lifted;
   TrackSequenceOptions options = options_.solve;
   options.num_threads = 1;
-  states = FindInitialStates(input, layout, options, &lifted).states;
+  KeypointSequence from_dense;
+  states = FindInitialStates(input, JointsToStartFrom(input, &from_dense), layout, options, &lifted).states;
   for (size_t i = 0; i < lifted.frames.size(); ++i) {
     Record& record = *(first + static_cast<std::ptrdiff_t>(i));
     record.lifted =
