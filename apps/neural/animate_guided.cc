@@ -139,11 +139,15 @@ void Run(const Request& request) {
   like.track = request.image_track;
   like.labels = request.image_labels;
   like.body = request.body;
-  const Photo photo = LoadPhoto(like, size, texture_size);
-  std::cout << photo.notes;
-  std::vector<PhotoFrame> photos = {photo.frame};
-  for (const std::string& view : request.views) {
-    photos.push_back(LoadPhoto(ParsePhotoRequest(view, "--views", like), size, texture_size).frame);
+  std::vector<PhotoRequest> requests = {like};
+  for (const std::string& view : request.views) requests.push_back(ParsePhotoRequest(view, "--views", like));
+  const std::vector<Photo> loaded = LoadPhotos(requests, size, texture_size);
+  const Photo& photo = loaded.front();
+  std::string notes;
+  std::vector<PhotoFrame> photos;
+  for (const Photo& one : loaded) {
+    notes += one.notes;
+    photos.push_back(one.frame);
   }
   const Track track = TargetTrack(request, photo);
   PhotoMapsOptions options;
@@ -169,11 +173,12 @@ void Run(const Request& request) {
   const PersonWindow& window = maps->window();
   std::optional<Background> background;
   if (request.background.empty()) {
-    std::cout << "background: the photo's, filled in where the person stood\n";
+    notes += "background: the photo's, filled in where the person stood\n";
   } else {
     background.emplace(request.background == kStudio ? "" : request.background, window.picture_width,
                        window.picture_height);
   }
+  std::cout << notes << std::flush;
   const Image filled =
       background ? Image()
                  : Resized(FilledBackground(photo.picture, photo.person), window.picture_width, window.picture_height);
@@ -251,6 +256,7 @@ void Run(const Request& request) {
         {"picture", {window.picture_width, window.picture_height}},
         {"computed_share", renderer.computed_share()},
         {"network_ms_median", Median(network_ms)},
+        {"notes", notes},
         {"seconds",
          {{"read", read_s}, {"source", source_s}, {"maps", maps_s}, {"networks", network_s}, {"frames", frames_s}}},
         {"output", request.out}};

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <memory>
@@ -75,20 +76,33 @@ std::vector<int> PartsNamed(const std::vector<std::string>& names) {
   return parts;
 }
 
-/// What the person looks like: the photo, more views of the same, a garment of another. Adds to `notes`.
-PartialTexture TextureOf(const Request& request, const Photo& photo, std::span<const uint8_t> texel_parts,
+/// The photo, more views of the same person, another one who lends a garment.
+std::vector<PhotoRequest> PhotosOf(const Request& request) {
+  std::vector<PhotoRequest> photos = {request.photo};
+  for (const std::string& view : request.views) photos.push_back(ParsePhotoRequest(view, "--views", request.photo));
+  if (!request.garment_from.empty()) {
+    photos.push_back(ParsePhotoRequest(request.garment_from, "--garment-from", request.photo));
+  }
+  return photos;
+}
+
+/// What the person looks like. Adds to `notes` how much the other one shows of what is lent.
+PartialTexture TextureOf(const Request& request, std::span<const Photo> photos, std::span<const uint8_t> texel_parts,
                          std::string* notes) {
-  const auto load = [&](const std::string& text, const char* option) {
-    const Photo other =
-        LoadPhoto(ParsePhotoRequest(text, option, request.photo), photo.frame.size, photo.frame.texture_size);
-    *notes += other.notes;
-    return PartialTextureOf(other.frame);
-  };
-  std::vector<PartialTexture> textures = {PartialTextureOf(photo.frame)};
-  for (const std::string& view : request.views) textures.push_back(load(view, "--views"));
-  const PartialTexture own = UnionOf(textures);
-  if (request.garment_from.empty()) return own;
-  return WithParts(own, load(request.garment_from, "--garment-from"), texel_parts, PartsNamed(request.parts));
+  std::vector<PartialTexture> textures;
+  for (const Photo& photo : photos) textures.push_back(PartialTextureOf(photo.frame));
+  if (request.garment_from.empty()) return UnionOf(textures);
+  const PartialTexture lent = std::move(textures.back());
+  textures.pop_back();
+  const std::vector<int> parts = PartsNamed(request.parts);
+  std::vector<uint8_t> of_garment(texel_parts.begin(), texel_parts.end());
+  for (uint8_t& part : of_garment) part = std::find(parts.begin(), parts.end(), int{part}) != parts.end() ? part : 0;
+  const double share = VisibleShare(lent, of_garment);
+  if (!(share > 0)) {
+    throw std::runtime_error("--garment-from " + request.garment_from + ": nothing of --parts is to be seen there");
+  }
+  *notes += Concatenate(request.garment_from, ": shows ", std::lround(100 * share), " % of --parts\n");
+  return WithParts(UnionOf(textures), lent, texel_parts, parts);
 }
 
 /// A median, 0 of nothing.
@@ -119,7 +133,8 @@ void Run(const Request& request) {
   const int S = profile.image_size, U = profile.texture_size;
   const int threads = request.threads > 0 ? request.threads : static_cast<int>(std::thread::hardware_concurrency());
   PartsNamed(request.parts);  // a wrong name is said before anything is read
-  const Photo photo = LoadPhoto(request.photo, S, U);
+  const std::vector<Photo> photos = LoadPhotos(PhotosOf(request), S, U);
+  const Photo& photo = photos.front();
   Track track = ReadTrack(request.track);
   if (request.shape == "photo") track.motion.betas = photo.track.motion.betas;
   PhotoMapsOptions options;
@@ -134,8 +149,9 @@ void Run(const Request& request) {
   }
   const PersonWindow& window = maps->window();
   const std::vector<uint8_t> texel_parts = PartsOfTexels(*photo.body, *maps->texels());
-  std::string notes = photo.notes;
-  const PartialTexture texture = TextureOf(request, photo, texel_parts, &notes);
+  std::string notes;
+  for (const Photo& one : photos) notes += one.notes;
+  const PartialTexture texture = TextureOf(request, photos, texel_parts, &notes);
   std::cout << notes << std::flush;
   PhotoRenderer renderer(CheckpointPath(request.run), run.config,
                          {request.whole_window ? -1 : run.reach, threads, request.device});

@@ -6,9 +6,22 @@
 #include <memory>
 #include <string>
 
+#include "neural/guided/guided_card.h"
 #include "neural/motion/motion_card.h"
+#include "neural/photo/photo_card.h"
 
 namespace bodyloom {
+namespace {
+
+std::string CardOf(const std::string& system, const std::string& profile) {
+  if (system == "photo") return PhotoCard({PhotoProfileNamed(profile)});
+  if (system == "animate") return GuidedCard({GuidedProfileNamed(profile)});
+  MotionConfig config;
+  config.profile = MotionProfileNamed(profile);
+  return MotionCard(config);
+}
+
+}  // namespace
 
 void AddCard(CLI::App& app, std::function<void()>* action) {
   CLI::App* verb = app.add_subcommand("card", "Prints a system's networks: names, shapes, parameters, multiply-adds");
@@ -17,18 +30,13 @@ void AddCard(CLI::App& app, std::function<void()>* action) {
   };
   auto request = std::make_shared<Request>();
   verb->add_option("system", request->system, "Which renderer")
-      ->check(CLI::IsMember({"motion"}))
+      ->check(CLI::IsMember({"motion", "photo", "animate"}))
       ->capture_default_str();
   verb->add_option("--profile", request->profile, "Sizes of the networks")
       ->check(CLI::IsMember({"paper", "cpu", "tiny"}))
       ->capture_default_str();
-  verb->callback([request, action] {
-    *action = [request] {
-      MotionConfig config;
-      config.profile = MotionProfileNamed(request->profile);
-      std::cout << MotionCard(config);
-    };
-  });
+  verb->callback(
+      [request, action] { *action = [request] { std::cout << CardOf(request->system, request->profile); }; });
 }
 
 }  // namespace bodyloom

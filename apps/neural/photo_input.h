@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -41,12 +42,14 @@ struct Photo {
   PersonWindow window;          ///< of one frame
   std::shared_ptr<const BodyModel> body;
   Track track;        ///< of one frame
-  std::string notes;  ///< lines for the user: what stands in for what
+  std::string notes;  ///< lines for the user, each beginning with the image: what stands in for what, what is missing
 };
 
-/// Throws std::runtime_error, one line naming the file: it cannot be read, the track is of another size or has no such
-/// frame, or shows nobody there.
-Photo LoadPhoto(const PhotoRequest& request, int size, int texture_size);
+/// In the order of the requests, of which there is at least one; all are of the first one's body. Files are read once.
+/// A picture of another size than its track's but of the same shape is brought to that size. Throws std::runtime_error,
+/// one line naming the file: it cannot be read, picture and track are of different shapes, there is no such frame, the
+/// track puts nobody into the picture, or nothing of the body is to be seen.
+std::vector<Photo> LoadPhotos(std::span<const PhotoRequest> requests, int size, int texture_size);
 
 /// "IMAGE:TRACK" or "IMAGE:TRACK:FRAME", as --views and --garment-from take it; a person set needs no track ("DIR" or
 /// "DIR::FRAME"). Throws UsageError naming the option.

@@ -4,32 +4,25 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "apps/exit_code.h"
 #include "apps/files.h"
-#include "apps/interrupt.h"
 #include "apps/neural/guided_people.h"
 #include "apps/neural/guided_preview.h"
 #include "apps/neural/guided_run.h"
+#include "apps/neural/training_session.h"
 #include "apps/neural/weights_folder.h"
-#include "apps/progress.h"
-#include "data_tools/formats/atomic_file.h"
 #include "data_tools/video/image_file.h"
 #include "neural/guided/train_guided.h"
 #include "neural/motion/clothes_reach.h"
 
 namespace bodyloom {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct Request {
   std::string data, body, out, profile = "cpu", label_loss = "ce", weights;
@@ -89,16 +82,9 @@ void Run(Request request) {
   }
   for (const std::string& part : request.without) LeaveOut(part, &config);
   options.labels_by_cross_entropy = request.label_loss == "ce";
-  if (options.num_threads == 0) options.num_threads = static_cast<int>(std::thread::hardware_concurrency());
   RequireReadable(request.data, "data");
-  RequireWritableFolder(request.out);
+  OpenTrainingRun(request.out, &options);
   options.vgg16 = ReadWeightsFolder(request.weights).vgg16;
-  options.run_dir = request.out;
-  const bool exists = fs::exists(CheckpointPath(request.out));
-  if (!options.resume && exists) {
-    throw UsageError(request.out + " holds a run already; go on with it by --resume, or choose another --out");
-  }
-  if (options.resume && !exists) throw UsageError(request.out + " holds no run to go on with");
 
   PeopleDataRequest people;
   people.data = request.data;
@@ -118,47 +104,35 @@ void Run(Request request) {
   run.reach = options.reach = ReachOf(data.source());
   run.notes = Notes(request);
   options.config_json = GuidedRunJson(run);
-  WriteFileAtomically((fs::path(request.out) / "config.json").string(), options.config_json);
+  WriteRunConfig(options);
   std::cout << data.source().num_frames.size() << " people to train on, " << options.validation.num_frames.size()
             << " kept for validation; profile " << request.profile << "; clothes reach " << run.reach
             << " px beyond the body\n"
             << std::flush;
 
-  Progress bar("training " + std::to_string(options.steps) + " steps");
+  TrainingBar bar(options.steps);
   options.progress = [&](const TrainGuidedProgress& progress) {
-    std::ostringstream stage;
-    stage.precision(3);
-    stage << "loss " << progress.loss << ", image " << progress.image;
-    if (progress.scores.frames > 0) stage << ", validation " << progress.scores.psnr_db << " dB";
-    bar.Update(stage.str(), static_cast<double>(progress.step) / progress.steps);
-    return !IsInterrupted();
+    return bar.Update(progress.step, {{"loss", progress.loss}, {"image", progress.image}},
+                      progress.scores.frames > 0 ? &progress.scores.psnr_db : nullptr);
   };
   options.preview = [&](int step, const std::vector<GuidedPreview>& previews) {
-    if (previews.empty()) return;
-    char name[64];
-    std::snprintf(name, sizeof name, "preview_%06d.png", step);
-    WriteImage((fs::path(request.out) / name).string(), GuidedPreviewSheet(previews));
+    if (!previews.empty()) WriteImage(PreviewPath(options, step), GuidedPreviewSheet(previews));
   };
   const TrainGuidedSummary summary = TrainGuided(data.source(), options);
-  if (summary.status == TrainingStatus::kNotFinite) throw std::runtime_error(request.out + ": " + summary.message);
-  if (summary.perceptual_stand_in) {
-    std::cout << "perceptual and contextual loss by a stand-in of random features (no VGG-16 weights given)\n";
-  }
+  RequireFinite(summary, request.out);
+  if (summary.perceptual_stand_in) SayStandIn("perceptual and contextual loss", "VGG-16");
   if (!summary.loss_weights.empty()) {
     std::printf("weights of the losses: VGG %.3g, contextual %.3g, adversarial %.3g, KL %.3g\n",
                 summary.loss_weights[0], summary.loss_weights[1], summary.loss_weights[2], summary.loss_weights[3]);
   }
-  std::printf("step %d of %d in %s\n", summary.steps, options.steps, ClockText(summary.seconds).c_str());
+  SayStep(summary, options.steps);
   const GuidedScores& s = summary.scores;
   if (s.frames > 0) {
     std::printf(
         "validation of %d pictures: L1 %.4f, PSNR %.2f dB, outline IoU %.3f, labels IoU %.3f, LPIPS (stand-in) %.4f\n",
         s.frames, s.image_l1, s.psnr_db, s.silhouette_iou, s.label_iou, s.lpips);
   }
-  std::printf("wrote %s\n", CheckpointPath(request.out).c_str());
-  if (summary.status == TrainingStatus::kStopped) {
-    throw std::runtime_error(request.out + ": " + summary.message + "; go on with --resume");
-  }
+  EndTrainingRun(summary, request.out);
 }
 
 }  // namespace

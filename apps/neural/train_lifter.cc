@@ -7,13 +7,11 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "apps/exit_code.h"
-#include "apps/interrupt.h"
-#include "apps/progress.h"
+#include "apps/neural/training_session.h"
 #include "data_tools/builtin_body.h"
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/lifter/lifter_weights_io.h"
@@ -130,18 +128,16 @@ void Run(Request request) {
   std::cout << "training on " << train.motions.size() << " clips, " << train.seconds / 60 << " minutes; validating on "
             << test.motions.size() << " clips, " << test.seconds / 60 << " minutes\n"
             << std::flush;
-  Progress bar("training " + std::to_string(options.steps) + " steps");
+  TrainingBar bar(options.steps);
   options.progress = [&](const TrainLifterProgress& progress) {
-    std::ostringstream stage;
-    stage.precision(3);
-    stage << "distance " << progress.distance;
-    if (progress.validation_distance > 0) stage << ", validation " << progress.validation_distance;
-    bar.Update(stage.str(), static_cast<double>(progress.step) / progress.steps);
-    return !IsInterrupted();
+    if (!(progress.validation_distance > 0))
+      return bar.Update(progress.step, {{"distance", progress.distance}}, nullptr);
+    return bar.Update(progress.step, {{"distance", progress.distance}, {"validation", progress.validation_distance}},
+                      nullptr);
   };
   TrainLifterResult result = TrainLifter(SourceOf(train_windows), SourceOf(test_windows), options);
   const TrainLifterSummary& summary = result.summary;
-  if (summary.status == TrainingStatus::kNotFinite) throw std::runtime_error(request.out + ": " + summary.message);
+  RequireFinite(summary, request.out);
   result.weights.recipe = config.dump();
   WriteLifterWeights((run / "lifter.npz").string(), result.weights);
   std::cout << "step " << summary.steps << " of " << options.steps << " in " << ClockText(summary.seconds)

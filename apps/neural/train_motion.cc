@@ -4,24 +4,19 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "apps/exit_code.h"
 #include "apps/files.h"
-#include "apps/interrupt.h"
 #include "apps/neural/motion_data.h"
 #include "apps/neural/motion_preview.h"
 #include "apps/neural/motion_run.h"
+#include "apps/neural/training_session.h"
 #include "apps/neural/weights_folder.h"
-#include "apps/progress.h"
-#include "data_tools/formats/atomic_file.h"
 #include "data_tools/video/image_file.h"
 #include "geometry/check.h"
 #include "neural/motion/clothes_reach.h"
@@ -30,8 +25,6 @@
 
 namespace bodyloom {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr int kShareStretch = 32;  ///< frames: with less of the data, whole stretches of so many are kept
 
@@ -180,19 +173,11 @@ void Run(Request request) {
     if (part == "surface") config.surface = false;
   }
   options.shape_by_cross_entropy = request.shape_loss == "ce";
-  if (options.num_threads == 0) options.num_threads = static_cast<int>(std::thread::hardware_concurrency());
-  request.data.num_threads = options.num_threads;
   RequireReadable(request.data.data, "data");
   RequireReadable(request.data.track, "track");
-  RequireWritableFolder(request.out);
+  OpenTrainingRun(request.out, &options);
+  request.data.num_threads = options.num_threads;
   options.vgg16 = ReadWeightsFolder(request.weights).vgg16;
-  const fs::path run_dir = request.out;
-  options.run_dir = request.out;
-  const bool exists = fs::exists(CheckpointPath(request.out));
-  if (!options.resume && exists) {
-    throw UsageError(request.out + " holds a run already; go on with it by --resume, or choose another --out");
-  }
-  if (options.resume && !exists) throw UsageError(request.out + " holds no run to go on with");
 
   MotionData data(request.data, config.profile, config.Multiple());
   std::cout << data.notes();
@@ -226,41 +211,28 @@ void Run(Request request) {
   const std::vector<double>& times = data.track().motion.timestamps;
   if (times.size() > 1) run.fps = static_cast<double>(times.size() - 1) / (times.back() - times.front());
   options.config_json = MotionRunJson(run);
-  WriteFileAtomically((run_dir / "config.json").string(), options.config_json);
+  WriteRunConfig(options);
   const PersonWindow& window = data.frames().window();
   std::cout << "window " << window.width << "x" << window.height << " px, " << run.pixels_per_metre
             << " px a metre; profile " << config.profile.name << "\n"
             << std::flush;
 
-  Progress bar("training " + std::to_string(options.steps) + " steps");
+  TrainingBar bar(options.steps);
   options.progress = [&](const TrainMotionProgress& progress) {
-    std::ostringstream stage;
-    stage.precision(3);
-    stage << "loss " << progress.loss << ", image " << progress.image;
-    if (progress.scores.frames > 0) stage << ", validation " << progress.scores.psnr_db << " dB";
-    bar.Update(stage.str(), static_cast<double>(progress.step) / progress.steps);
-    return !IsInterrupted();
+    return bar.Update(progress.step, {{"loss", progress.loss}, {"image", progress.image}},
+                      progress.scores.frames > 0 ? &progress.scores.psnr_db : nullptr);
   };
   options.preview = [&](int step, const std::vector<MotionPreview>& previews) {
-    if (previews.empty()) return;
-    char name[64];
-    std::snprintf(name, sizeof name, "preview_%06d.png", step);
-    WriteImage((run_dir / name).string(), MotionPreviewSheet(previews));
+    if (!previews.empty()) WriteImage(PreviewPath(options, step), MotionPreviewSheet(previews));
   };
   const TrainMotionSummary summary =
       TrainMotion([&](int t, bool with_truth, MotionFrame* frame) { data.Fill(t, with_truth, frame); }, options);
-  if (summary.status == TrainingStatus::kNotFinite) throw std::runtime_error(request.out + ": " + summary.message);
+  RequireFinite(summary, request.out);
   for (const std::string& loss : summary.losses_off) std::cout << "loss switched off: " << loss << "\n";
-  if (options.perceptual_weight > 0 && summary.perceptual_stand_in) {
-    std::cout << "perceptual loss by a stand-in of random features (no VGG-16 weights given)\n";
-  }
-  std::cout << "step " << summary.steps << " of " << options.steps << " in " << ClockText(summary.seconds) << "\n";
+  if (options.perceptual_weight > 0 && summary.perceptual_stand_in) SayStandIn("perceptual loss", "VGG-16");
+  SayStep(summary, options.steps);
   if (summary.scores.frames > 0) std::cout << ScoresText(summary.scores) << "\n";
-  std::cout << "wrote " << CheckpointPath(request.out) << "\n";
-  if (summary.status == TrainingStatus::kNoProgress) std::cout << summary.message << "\n";
-  if (summary.status == TrainingStatus::kStopped) {
-    throw std::runtime_error(request.out + ": " + summary.message + "; go on with --resume");
-  }
+  EndTrainingRun(summary, request.out);
 }
 
 }  // namespace

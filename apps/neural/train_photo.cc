@@ -8,21 +8,16 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numeric>
-#include <sstream>
 #include <string>
-#include <thread>
 #include <vector>
 
-#include "apps/exit_code.h"
 #include "apps/files.h"
-#include "apps/interrupt.h"
 #include "apps/neural/people_data.h"
 #include "apps/neural/photo_preview.h"
 #include "apps/neural/photo_run.h"
+#include "apps/neural/training_session.h"
 #include "apps/neural/weights_folder.h"
-#include "apps/progress.h"
 #include "data_tools/evaluation/ssim.h"
-#include "data_tools/formats/atomic_file.h"
 #include "data_tools/people/people_set.h"
 #include "data_tools/video/image_file.h"
 #include "neural/photo/photo_window.h"
@@ -72,25 +67,26 @@ std::string Notes(const Request& request) {
                                          {"texture", o.texture_weight},
                                          {"gan", o.gan_weight},
                                          {"alpha", o.alpha_weight}}},
+                                       {"gan_from", o.gan_from},
                                        {"vgg19", o.vgg19.source},
                                        {"sphereface", o.sphereface.source},
                                        {"threads", o.num_threads}};
   return json.dump();
 }
 
+std::string JudgedFrom(const TrainPhotoOptions& options) {
+  const int first = options.FirstJudgedStep(), all = options.TotalSteps();
+  if (first >= all) return "no discriminator\n";
+  if (first == all - options.steps) return "";
+  return "the discriminator joins after step " + std::to_string(first) + " of " + std::to_string(all) + "\n";
+}
+
 void Run(Request request) {
   TrainPhotoOptions& options = request.options;
   options.config.profile = PhotoProfileNamed(request.profile);
   options.config.variant = PhotoVariantNamed(request.variant);
-  if (options.num_threads == 0) options.num_threads = static_cast<int>(std::thread::hardware_concurrency());
   RequireReadable(request.data, "data");
-  RequireWritableFolder(request.out);
-  options.run_dir = request.out;
-  const bool exists = fs::exists(CheckpointPath(request.out));
-  if (!options.resume && exists) {
-    throw UsageError(request.out + " holds a run already; go on with it by --resume, or choose another --out");
-  }
-  if (options.resume && !exists) throw UsageError(request.out + " holds no run to go on with");
+  OpenTrainingRun(request.out, &options);
   WeightsFolder weights = ReadWeightsFolder(request.weights);
   if (!request.weights.empty()) std::cout << "weights: " << ToText(weights) << "\n";
   options.vgg19 = std::move(weights.vgg19);
@@ -115,35 +111,26 @@ void Run(Request request) {
   run.reach = options.reach = PhotoReach(data.source(), options.train);
   run.notes = Notes(request);
   options.config_json = PhotoRunJson(run);
-  WriteFileAtomically((fs::path(request.out) / "config.json").string(), options.config_json);
+  WriteRunConfig(options);
   std::cout << options.train.size() << " people to train on, " << options.validation.size()
             << " kept for validation; profile " << request.profile << ", variant " << request.variant
             << "; clothes reach " << run.reach << " px beyond the body\n"
-            << std::flush;
+            << JudgedFrom(options) << std::flush;
 
-  Progress bar("training " + std::to_string(options.TotalSteps()) + " steps");
+  TrainingBar bar(options.TotalSteps());
   options.ssim = [](const Image& truth, const Image& result) { return Ssim(truth, result, SsimPreset::kWang2004); };
   options.progress = [&](const TrainPhotoProgress& progress) {
-    std::ostringstream stage;
-    stage.precision(3);
-    stage << "loss " << progress.loss;
-    if (progress.scores.pictures > 0) stage << ", validation " << progress.scores.psnr_db << " dB";
-    bar.Update(stage.str(), static_cast<double>(progress.step) / progress.steps);
-    return !IsInterrupted();
+    return bar.Update(progress.step, {{"loss", progress.loss}},
+                      progress.scores.pictures > 0 ? &progress.scores.psnr_db : nullptr);
   };
   options.preview = [&](int step, const std::vector<PhotoPreview>& previews) {
-    char name[64];
-    std::snprintf(name, sizeof name, "preview_%06d.png", step);
-    WriteImage((fs::path(request.out) / name).string(), PhotoPreviewSheet(previews));
+    WriteImage(PreviewPath(options, step), PhotoPreviewSheet(previews));
   };
   const TrainPhotoSummary summary = TrainPhoto(data.source(), options);
-  if (summary.status == TrainingStatus::kNotFinite) throw std::runtime_error(request.out + ": " + summary.message);
+  RequireFinite(summary, request.out);
   for (const std::string& loss : summary.losses_off) std::cout << "loss switched off: " << loss << "\n";
-  if (options.perceptual_weight > 0 && summary.perceptual_stand_in) {
-    std::cout << "perceptual loss by a stand-in of random features (no VGG-19 weights given)\n";
-  }
-  std::cout << "step " << summary.steps << " of " << options.TotalSteps() << " in " << ClockText(summary.seconds)
-            << "\n";
+  if (options.perceptual_weight > 0 && summary.perceptual_stand_in) SayStandIn("perceptual loss", "VGG-19");
+  SayStep(summary, options.TotalSteps());
   const PhotoScores& s = summary.scores;
   if (s.pictures > 0) {
     std::printf("validation of %d pairs: L1 %.4f, PSNR %.2f dB, SSIM %.4f, LPIPS%s %.4f, outline IoU %.3f\n",
@@ -151,10 +138,7 @@ void Run(Request request) {
                 s.outline_iou);
     std::fflush(stdout);
   }
-  std::cout << "wrote " << CheckpointPath(request.out) << "\n";
-  if (summary.status == TrainingStatus::kStopped) {
-    throw std::runtime_error(request.out + ": " + summary.message + "; go on with --resume");
-  }
+  EndTrainingRun(summary, request.out);
 }
 
 }  // namespace
@@ -184,6 +168,10 @@ void AddTrainPhoto(CLI::App& train, std::function<void()>* action) {
   verb->add_option("--batch", options.batch, "Pairs in a batch")->capture_default_str();
   verb->add_option("--learning-rate", options.learning_rate, "At its highest")->capture_default_str();
   verb->add_option("--gan-weight", options.gan_weight, "Of the discriminator's judgement; 0: none")
+      ->capture_default_str();
+  verb->add_option("--gan-from", options.gan_from,
+                   "Share of --steps after which the discriminator joins (0: from the start, as in the paper)")
+      ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   verb->add_option("--validate-every", options.validate_every, "Steps")->capture_default_str();
   verb->add_option("--validation-pairs", options.validation_pairs, "A person that is kept for validation")

@@ -7,23 +7,24 @@
 #include <cstdint>
 #include <initializer_list>
 
+#include "geometry/split_mix.h"
+
 namespace bodyloom {
 
-/// SplitMix64 (Steele, Lea, Flood 2014): a counter through a mixing function.
 class HashRandom {
  public:
   /// A stream of its own for each seed and list of keys (what it is for, frame, joint, …).
-  HashRandom(uint64_t seed, std::initializer_list<uint64_t> keys) : state_(Mix(seed ^ 0x5bd1e9955bd1e995ULL)) {
-    for (const uint64_t key : keys) state_ = Mix(state_ ^ Mix(key + 0x9e3779b97f4a7c15ULL));
+  HashRandom(uint64_t seed, std::initializer_list<uint64_t> keys) : state_(MixBits(seed ^ 0x5bd1e9955bd1e995ULL)) {
+    for (const uint64_t key : keys) state_ = MixBits(state_ ^ Mix(key));
   }
 
   uint64_t Next() {
-    state_ += 0x9e3779b97f4a7c15ULL;
-    return Mix(state_);
+    state_ += kSplitMixStep;
+    return MixBits(state_);
   }
 
   /// In [0, 1).
-  double Uniform() { return static_cast<double>(Next() >> 11) * 0x1.0p-53; }
+  double Uniform() { return UniformOf(Next()); }
   double Uniform(double low, double high) { return low + (high - low) * Uniform(); }
 
   /// 0 … n−1. The bias of the remainder is below n/2^64.
@@ -39,12 +40,6 @@ class HashRandom {
   double Exponential() { return -std::log(1 - Uniform()); }
 
  private:
-  static uint64_t Mix(uint64_t z) {
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-    return z ^ (z >> 31);
-  }
-
   uint64_t state_;
 };
 

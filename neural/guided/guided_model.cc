@@ -73,4 +73,8 @@ GuidedResult GuidedModelImpl::forward(const GuidedSource& source, const Tensor& 
   return result;
 }
 
+PatchDiscriminator GuidedDiscriminator(const GuidedConfig& config) {
+  return PatchDiscriminator(PatchDiscriminatorOptions{3 + config.LabelChannels(), config.profile.discriminator_width});
+}
+
 }  // namespace bodyloom

@@ -23,6 +23,7 @@
 #include "neural/guided/guided_config.h"
 #include "neural/guided/render_net.h"
 #include "neural/guided/sil_net.h"
+#include "neural/networks/patch_discriminator.h"
 
 namespace bodyloom {
 
@@ -78,5 +79,8 @@ struct GuidedModelImpl : torch::nn::Module {
   RenderNet render{nullptr};
 };
 TORCH_MODULE(GuidedModel);
+
+/// The discriminator that a run trains against: it sees the true labels beside the picture.
+PatchDiscriminator GuidedDiscriminator(const GuidedConfig& config);
 
 }  // namespace bodyloom

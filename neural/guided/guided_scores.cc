@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "neural/guided/guided_scores.h"
 
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
 
 #include "geometry/check.h"
+#include "neural/metrics/class_overlap.h"
 #include "neural/metrics/contextual_similarity.h"
 #include "neural/metrics/lpips.h"
 
@@ -33,9 +33,9 @@ struct GuidedScorer::Impl {
   std::optional<Lpips> lpips;
   std::optional<ContextualMetric> contextual;
   int frames = 0;
-  double l1 = 0, squared = 0, foreground = 0, outline_both = 0, outline_either = 0;
+  double l1 = 0, squared = 0, foreground = 0;
   double lpips_sum = 0, lpips_squares = 0, contextual_sum = 0;
-  std::array<double, kPhotoLabels> both{}, either{}, occurs{};
+  ClassOverlap overlap{kPhotoLabels};
 };
 
 GuidedScorer::GuidedScorer(bool features) : impl_(std::make_unique<Impl>()) {
@@ -54,17 +54,8 @@ void GuidedScorer::Add(const GuidedPicture& picture, const PhotoFrame& truth) {
   Impl& s = *impl_;
   ++s.frames;
   for (size_t i = 0; i < pixels; ++i) {
-    const uint8_t label = picture.labels[i], true_label = truth.labels[i];
-    s.outline_both += label != 0 && true_label != 0 ? 1 : 0;
-    s.outline_either += label != 0 || true_label != 0 ? 1 : 0;
-    s.occurs[true_label] += 1;
-    s.either[true_label] += 1;
-    if (label == true_label) {
-      s.both[label] += 1;
-    } else {
-      s.either[label] += 1;
-    }
-    if (true_label == 0) continue;
+    s.overlap.Add(size_t{picture.labels[i]}, size_t{truth.labels[i]});
+    if (truth.labels[i] == 0) continue;
     s.foreground += 1;
     for (size_t c = 0; c < 3; ++c) {
       const double error = double(picture.image[c * pixels + i]) - truth.image[c * pixels + i];
@@ -87,14 +78,9 @@ GuidedScores GuidedScorer::Scores() const {
   if (s.frames == 0) return scores;
   scores.image_l1 = s.l1 / std::max(1.0, 3 * s.foreground);
   scores.psnr_db = -10 * std::log10(std::max(1e-12, s.squared / std::max(1.0, 3 * s.foreground)));
-  scores.silhouette_iou = s.outline_both / std::max(1.0, s.outline_either);
-  int classes = 0;
-  for (int k = 1; k < kPhotoLabels; ++k) {
-    if (s.occurs[k] == 0) continue;
-    ++classes;
-    scores.label_iou += s.both[k] / s.either[k];
-  }
-  if (classes > 0) scores.label_iou /= classes;
+  const auto or_zero = [](double iou) { return std::isnan(iou) ? 0 : iou; };
+  scores.silhouette_iou = or_zero(s.overlap.ForegroundIou());
+  scores.label_iou = or_zero(s.overlap.MeanIou(/*in_truth=*/true));
   const double n = s.frames, none = std::numeric_limits<double>::quiet_NaN();
   scores.lpips = s.lpips ? s.lpips_sum / n : none;
   scores.lpips_deviation = s.lpips ? std::sqrt(std::max(0.0, s.lpips_squares / n - scores.lpips * scores.lpips)) : none;

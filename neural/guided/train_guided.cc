@@ -20,7 +20,6 @@
 #include "neural/losses/gan_losses.h"
 #include "neural/losses/image_losses.h"
 #include "neural/losses/perceptual_loss.h"
-#include "neural/networks/patch_discriminator.h"
 #include "neural/networks/vgg.h"
 #include "neural/runtime.h"
 #include "neural/training/adam.h"
@@ -69,8 +68,7 @@ class GuidedTrainer : public TrainedSystem {
       : people_(people), options_(options), config_(options.config), balance_(kNumBalanced, options.balance_steps) {
     torch::manual_seed(options.seed);
     model_ = GuidedModel(config_);
-    discriminator_ =
-        PatchDiscriminator(PatchDiscriminatorOptions{3 + config_.LabelChannels(), config_.profile.discriminator_width});
+    discriminator_ = GuidedDiscriminator(config_);
     model_->to(NeuralDevice());
     discriminator_->to(NeuralDevice());
     vgg_ = MakeFeatureNetwork(FeatureTrunk::kVgg16, {"conv1_2", "conv2_2", "conv3_2", "conv4_2"}, options.vgg16,

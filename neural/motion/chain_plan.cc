@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "geometry/check.h"
-#include "neural/training/mix.h"
+#include "geometry/split_mix.h"
 
 namespace bodyloom {
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "neural/device.h"
+
 namespace bodyloom {
 
 using torch::Tensor;
@@ -23,15 +25,8 @@ void MotionScorer::Add(const MotionState& predicted, const MotionTruth& truth, i
   }
   last_error_ = error;
   if (predicted.labels.defined() && truth.labels.defined()) {
-    const Tensor said = predicted.labels.argmax(1), is = truth.labels.argmax(1);
-    both_.resize(config_.num_labels, 0);
-    either_.resize(config_.num_labels, 0);
-    for (int k = 0; k < config_.num_labels; ++k) {
-      both_[k] += (said.eq(k) & is.eq(k)).sum().item<double>();
-      either_[k] += (said.eq(k) | is.eq(k)).sum().item<double>();
-    }
-    foreground_both_ += (said.gt(0) & is.gt(0)).sum().item<double>();
-    foreground_either_ += (said.gt(0) | is.gt(0)).sum().item<double>();
+    if (overlap_.num_classes() == 0) overlap_ = ClassOverlap(config_.num_labels);
+    overlap_.Add(HostValues<uint8_t>(predicted.labels.argmax(1)), HostValues<uint8_t>(truth.labels.argmax(1)));
   }
   if (predicted.normals.defined() && truth.normals.defined()) {
     const Tensor norms = (predicted.normals.norm(2, 1) * truth.normals.norm(2, 1)).clamp_min(1e-9);
@@ -52,16 +47,9 @@ MotionScores MotionScorer::Scores() const {
   scores.psnr_db = -10 * std::log10(mean(squared_, foreground_));
   scores.flicker = mean(flicker_, foreground_with_past_);
   scores.normal_deg = mean(angle_deg_, foreground_with_normals_);
-  scores.foreground_iou = mean(foreground_both_, foreground_either_);
-  double sum = 0;
-  int classes = 0;
-  for (size_t k = 0; k < either_.size(); ++k) {
-    scores.class_iou.push_back(mean(both_[k], either_[k]));
-    if (k == 0 || either_[k] == 0) continue;
-    sum += both_[k] / either_[k];
-    ++classes;
-  }
-  scores.label_iou = mean(sum, classes);
+  scores.foreground_iou = overlap_.ForegroundIou();
+  for (int k = 0; k < overlap_.num_classes(); ++k) scores.class_iou.push_back(overlap_.Iou(k));
+  scores.label_iou = overlap_.MeanIou(/*in_truth=*/false);
   return scores;
 }
 

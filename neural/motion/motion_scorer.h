@@ -5,8 +5,8 @@
 #include <torch/torch.h>
 
 #include <limits>
-#include <vector>
 
+#include "neural/metrics/class_overlap.h"
 #include "neural/motion/frame_tensors.h"
 #include "neural/motion/motion_model.h"
 #include "neural/motion/motion_scores.h"
@@ -29,8 +29,7 @@ class MotionScorer {
   const MotionConfig& config_;
   double l1_ = 0, squared_ = 0, angle_deg_ = 0, flicker_ = 0;
   double foreground_ = 0, foreground_with_normals_ = 0, foreground_with_past_ = 0;  ///< pixels
-  std::vector<double> both_, either_;                                               ///< pixels by class
-  double foreground_both_ = 0, foreground_either_ = 0;
+  ClassOverlap overlap_{0};  ///< without classes until labels were compared
   torch::Tensor last_error_;
   double last_l1_ = std::numeric_limits<double>::quiet_NaN();
   int frames_ = 0;

@@ -27,11 +27,14 @@ int64_t OfConvolution(c10::ArrayRef<const c10::IValue> inputs) {
   const int64_t dims = weight.dim() - 2;
   const bool batched = input.dim() == weight.dim();
   const int64_t per_position = weight.numel() / weight.size(0);  // inputs (outputs, if transposed) a group, times taps
-  if (inputs[6].toBool()) return input.numel() * per_position;
+  int64_t positions = batched ? std::max<int64_t>(1, input.size(0)) : 1;
+  if (inputs[6].toBool()) {
+    for (int64_t i = -1 - dims; i < 0; ++i) positions *= input.size(i);
+    return positions * per_position;
+  }
   const std::vector<int64_t> stride = inputs[3].toIntVector(), padding = inputs[4].toIntVector(),
                              dilation = inputs[5].toIntVector();
   const auto at = [](const std::vector<int64_t>& values, int64_t i) { return values[values.size() == 1 ? 0 : i]; };
-  int64_t positions = batched ? input.size(0) : 1;
   for (int64_t i = 0; i < dims; ++i) {
     positions *= OutputSize(input.size(i - dims), weight.size(2 + i), at(stride, i), at(padding, i), at(dilation, i));
   }

@@ -9,7 +9,8 @@
 /// Multiply–adds are those of convolutions and products of matrices (linear layers), counted while `run` runs:
 /// convolution |output| · (channels in / groups) · kernel area, transposed convolution |input| · (channels out /
 /// groups) · kernel area (those that fall outside the output are counted too), n×k by k×m product n·k·m. Norms,
-/// activations and sampling are not counted.
+/// activations and sampling are not counted. An empty batch (of convolutions) counts as one picture: what a network
+/// would cost is known without its being computed.
 #pragma once
 
 #include <torch/torch.h>
@@ -28,12 +29,14 @@ int64_t CountMultiplyAdds(const std::function<void()>& run);
 std::string ArchitectureCard(const torch::nn::Module& module, const std::vector<std::vector<int64_t>>& inputs,
                              const std::function<void()>& run);
 
-/// For a module of one input: runs it on zeros of that shape, without gradients.
+/// For a module of one input: runs it on an empty batch of that shape, without gradients.
 template <class Module>
 std::string ArchitectureCard(torch::nn::ModuleHolder<Module>& module, const std::vector<int64_t>& input) {
   return ArchitectureCard(*module, {input}, [&] {
     const torch::NoGradGuard no_grad;
-    module->forward(torch::zeros(input));
+    std::vector<int64_t> nothing = input;
+    nothing[0] = 0;
+    module->forward(torch::zeros(nothing));
   });
 }
 

@@ -61,7 +61,7 @@ Tensor TransposedConv(const Tensor& x, const Tensor& weight, const Tensor& bias,
     }
   }
   const Tensor stacked = torch::stack(parities, 2);  // B × oc × 4 × H × W
-  return torch::pixel_shuffle(stacked.reshape({batch, -1, height, width}), 2);
+  return torch::pixel_shuffle(stacked.reshape({batch, 4 * stacked.size(1), height, width}), 2);
 }
 
 }  // namespace bodyloom

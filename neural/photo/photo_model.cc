@@ -60,4 +60,11 @@ PhotoResult PhotoModelImpl::forward(const TextureTensors& texture, const PoseTen
   return Render(Project(Complete(texture), pose));
 }
 
+MultiScaleDiscriminator PhotoDiscriminator(const PhotoConfig& config) {
+  const PhotoProfile& p = config.profile;
+  return MultiScaleDiscriminator(
+      PatchDiscriminatorOptions{config.RenderChannels() + 3, p.discriminator_width, p.discriminator_layers, 2},
+      p.discriminator_scales);
+}
+
 }  // namespace bodyloom

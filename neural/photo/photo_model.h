@@ -18,6 +18,7 @@
 #include <torch/torch.h>
 
 #include "neural/networks/feature_unet.h"
+#include "neural/networks/patch_discriminator.h"
 #include "neural/networks/residual_generator.h"
 #include "neural/photo/photo_config.h"
 #include "neural/photo/photo_tensors.h"
@@ -45,5 +46,8 @@ struct PhotoModelImpl : torch::nn::Module {
   ResidualGenerator render_net{nullptr};
 };
 TORCH_MODULE(PhotoModel);
+
+/// The discriminators that a run trains against: they see R beside the picture.
+MultiScaleDiscriminator PhotoDiscriminator(const PhotoConfig& config);
 
 }  // namespace bodyloom

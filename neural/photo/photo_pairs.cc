@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "geometry/check.h"
-#include "neural/training/mix.h"
+#include "geometry/split_mix.h"
 
 namespace bodyloom {
 namespace {

@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include "neural/metrics/class_overlap.h"
 #include "neural/metrics/lpips.h"
 #include "neural/people/photo_frame.h"
 #include "neural/photo/photo_picture.h"
@@ -38,7 +39,8 @@ class PhotoScorer {
   PictureSimilarity ssim_;
   int pictures_ = 0;
   bool stand_in_ = true;
-  double l1_ = 0, squared_ = 0, values_ = 0, ssim_sum_ = 0, lpips_sum_ = 0, both_ = 0, either_ = 0;
+  double l1_ = 0, squared_ = 0, values_ = 0, ssim_sum_ = 0, lpips_sum_ = 0;
+  ClassOverlap outline_{2};
 };
 
 }  // namespace bodyloom

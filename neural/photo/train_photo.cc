@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <span>
 
@@ -11,7 +12,6 @@
 #include "neural/device.h"
 #include "neural/losses/gan_losses.h"
 #include "neural/losses/perceptual_loss.h"
-#include "neural/networks/patch_discriminator.h"
 #include "neural/networks/vgg.h"
 #include "neural/photo/photo_batch.h"
 #include "neural/photo/photo_losses.h"
@@ -70,15 +70,12 @@ class PhotoTrainer : public TrainedSystem {
         config_(options.config),
         lpips_(MakeLpips(options)) {
     torch::manual_seed(options.seed);
-    const PhotoProfile& p = config_.profile;
     model_ = PhotoModel(config_);
-    discriminator_ = MultiScaleDiscriminator(
-        PatchDiscriminatorOptions{config_.RenderChannels() + 3, p.discriminator_width, p.discriminator_layers, 2},
-        p.discriminator_scales);
+    discriminator_ = PhotoDiscriminator(config_);
     model_->to(NeuralDevice());
     discriminator_->to(NeuralDevice());
     vgg_ = MakeFeatureNetwork(FeatureTrunk::kVgg19, {"relu1_1", "relu2_1", "relu3_1", "relu4_1", "relu5_1"},
-                              options.vgg19, p.perceptual_divisor);
+                              options.vgg19, config_.profile.perceptual_divisor);
     if (options.sphereface.empty()) {
       losses_off_.emplace_back("face: no weights of SphereFace given");
     } else {
@@ -125,7 +122,7 @@ class PhotoTrainer : public TrainedSystem {
       optimizer->zero_grad();
     }
     const PhotoBatch batch = batches_->Take();
-    losses_ = step < InpaintSteps() ? InpaintStep(batch) : RenderStep(batch);
+    losses_ = step < InpaintSteps() ? InpaintStep(batch) : RenderStep(batch, IsJudged(step));
     return losses_.IsFinite();
   }
 
@@ -158,7 +155,11 @@ class PhotoTrainer : public TrainedSystem {
 
   [[nodiscard]] std::vector<double> Row(int done) const override {
     const Losses& l = losses_;
-    return {Rate(done - 1), l.total, l.perceptual, l.face, l.texture, l.generator, l.alpha, l.discriminator};
+    const auto judged = [&](double loss) {
+      return IsJudged(done - 1) ? loss : std::numeric_limits<double>::quiet_NaN();
+    };
+    return {Rate(done - 1),      l.total, l.perceptual,           l.face, l.texture,
+            judged(l.generator), l.alpha, judged(l.discriminator)};
   }
 
   [[nodiscard]] std::vector<double> ScoreRow() const override {
@@ -180,6 +181,7 @@ class PhotoTrainer : public TrainedSystem {
 
   /// Steps before RenderNet's turn.
   [[nodiscard]] int InpaintSteps() const { return options_.TotalSteps() - options_.steps; }
+  [[nodiscard]] bool IsJudged(int step) const { return step >= options_.FirstJudgedStep(); }
   [[nodiscard]] double Rate(int step) const {
     const int before = InpaintSteps();
     return step < before ? LinearDecayOverLastHalf(options_.learning_rate, step, before)
@@ -202,14 +204,14 @@ class PhotoTrainer : public TrainedSystem {
     return model_->Complete(batch.source);
   }
 
-  Losses RenderStep(const PhotoBatch& batch) {
+  Losses RenderStep(const PhotoBatch& batch, bool judged) {
     Losses losses;
     const Tensor features = Features(batch);
     const Tensor projected = model_->Project(features, batch.pose);
     const PhotoResult result = model_->Render(projected);
     const Tensor condition = projected.detach();
     const auto judge = [&](const Tensor& image) { return discriminator_(torch::cat({condition, image}, 1)); };
-    if (options_.gan_weight > 0) {
+    if (judged) {
       const Tensor loss = DiscriminatorLoss(judge(batch.truth.image), judge(result.image.detach()));
       loss.backward();
       losses.discriminator = loss.item<double>();
@@ -237,7 +239,7 @@ class PhotoTrainer : public TrainedSystem {
     if (config_.variant == PhotoVariant::kFull && options_.texture_weight > 0) {
       add(options_.texture_weight, TextureLoss(features, batch.source, batch.target), &losses.texture);
     }
-    if (options_.gan_weight > 0) {
+    if (judged) {
       RequireGradients(discriminator_.get(), false);
       add(options_.gan_weight, GeneratorLoss(judge(result.image)), &losses.generator);
     }
@@ -274,6 +276,11 @@ int TrainPhotoOptions::TotalSteps() const {
   return steps + (inpaint_steps > 0 ? inpaint_steps : steps);
 }
 
+int TrainPhotoOptions::FirstJudgedStep() const {
+  if (!(gan_weight > 0)) return TotalSteps();
+  return TotalSteps() - steps + static_cast<int>(std::ceil(gan_from * steps));
+}
+
 bool TrainPhotoOptions::IsValid(std::string* why) const {
   const InRange in_range(why);
   if (train.empty()) {
@@ -284,8 +291,9 @@ bool TrainPhotoOptions::IsValid(std::string* why) const {
          in_range("inpaint_steps", inpaint_steps, 0, 1e8) && in_range("batch", batch, 1, 256) &&
          in_range("learning_rate", learning_rate, 0, 1) && in_range("perceptual_weight", perceptual_weight, 0, 1e6) &&
          in_range("face_weight", face_weight, 0, 1e6) && in_range("texture_weight", texture_weight, 0, 1e6) &&
-         in_range("gan_weight", gan_weight, 0, 1e6) && in_range("alpha_weight", alpha_weight, 0, 1e6) &&
-         in_range("reach", reach, 0, 4096) && in_range("preview_pairs", preview_pairs, 1, 64);
+         in_range("gan_weight", gan_weight, 0, 1e6) && in_range("gan_from", gan_from, 0, 1) &&
+         in_range("alpha_weight", alpha_weight, 0, 1e6) && in_range("reach", reach, 0, 4096) &&
+         in_range("preview_pairs", preview_pairs, 1, 64);
 }
 
 TrainPhotoSummary TrainPhoto(const PhotoSource& source, const TrainPhotoOptions& options) {

@@ -4,7 +4,9 @@
 ///   L_G = 10 L_p + 5 L_face + L_tex + L_adv + L_α       (Sarkar et al., ECCV 2020, Section 3.5)
 /// L_p: mean absolute differences of VGG-19's features relu1_1, 2_1, 3_1, 4_1, 5_1, unweighted; L_face, L_tex:
 /// neural/photo/photo_losses.h; L_adv: binary cross entropy of a discriminator on several scales that sees the feature
-/// image R (as it is: no gradient goes through it) beside the picture, updated every step; L_α, not in the paper:
+/// image R (as it is: no gradient goes through it) beside the picture, updated every step from the one at which it
+/// joins
+/// (`gan_from`; until then it neither learns nor judges); L_α, not in the paper:
 /// binary cross entropy of alpha against the labels' foreground. Adam 2e-4, β₁ 0.5, linear decay over the last half,
 /// for both sides.
 ///
@@ -54,6 +56,9 @@ struct TrainPhotoOptions : TrainingRun {
   int batch = 4;
   double learning_rate = 2e-4;
   double perceptual_weight = 10, face_weight = 5, texture_weight = 1, gan_weight = 1, alpha_weight = 1;
+  /// Share of `steps` after which the discriminator joins: 0, from the first step, is the paper's; 1: never. From a
+  /// cold start it makes every figure worse for hundreds of steps, which a short run does not get back.
+  double gan_from = 0.5;
   int reach = 0;                     ///< of clothes beyond the body, pixels (neural/photo/photo_window.h)
   WeightsFrom vgg19;                 ///< empty: a seeded stand-in of random features
   WeightsFrom sphereface;            ///< empty: no face loss
@@ -65,6 +70,8 @@ struct TrainPhotoOptions : TrainingRun {
 
   /// Of both stages.
   [[nodiscard]] int TotalSteps() const;
+  /// The first step (of both stages, from 0) that the discriminator takes part in; TotalSteps() where it never does.
+  [[nodiscard]] int FirstJudgedStep() const;
   [[nodiscard]] bool IsValid(std::string* why) const;
 };
 

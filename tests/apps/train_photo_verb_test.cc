@@ -49,6 +49,9 @@ class TrainPhotoVerb : public ::testing::Test {
 TEST_F(TrainPhotoVerb, TrainsGoesOnAndAnimates) {
   const CommandResult trained = Train("run", {"--steps", "2", "--validate-every", "2"});
   ASSERT_EQ(trained.exit_code, 0) << trained.err;
+  EXPECT_THAT(trained.out, HasSubstr("the discriminator joins after step 1 of 2"));
+  std::ifstream config(scratch_ / "run/config.json");
+  EXPECT_THAT(std::string((std::istreambuf_iterator<char>(config)), {}), HasSubstr("\"gan_from\": 0.5"));
   EXPECT_THAT(trained.out, HasSubstr("2 people to train on, 1 kept for validation"));
   EXPECT_THAT(trained.out, HasSubstr("step 2 of 2"));
   EXPECT_THAT(trained.out, HasSubstr("stand-in"));
@@ -85,6 +88,7 @@ TEST_F(TrainPhotoVerb, SaysWhatIsWrong) {
   };
   fails(Train("x", {"--resume"}), 2, "holds no run");
   fails(Train("x", {"--baseline", "best"}), 2, "baseline");
+  fails(Train("x", {"--gan-from", "200"}), 2, "gan-from");
   fails(Train("x", {"--weights", scratch_ / "nowhere"}), 1, "nowhere: not a folder");
   fs::create_directories(scratch_ / "weights");
   fails(Train("x", {"--weights", scratch_ / "weights"}), 1, "none of vgg16, vgg19");

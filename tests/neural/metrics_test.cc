@@ -9,6 +9,7 @@
 
 #include "neural/image_tensor.h"
 #include "neural/losses/contextual_loss.h"
+#include "neural/metrics/class_overlap.h"
 #include "neural/metrics/contextual_similarity.h"
 #include "neural/metrics/lpips.h"
 #include "neural/metrics/temporal_lpips.h"
@@ -220,6 +221,21 @@ TEST(ContextualMetric, IsTheSumOfTwoLayers) {
   EXPECT_LT(same.distance, 0.01);
   EXPECT_GT(value.distance, 10 * same.distance);
   EXPECT_GT(metric(a, RandomImage(16, 40, 3)).distance, 0) << "sizes may differ";
+}
+
+TEST(ClassOverlap, CountsWhatBothSay) {
+  ClassOverlap overlap(4);
+  EXPECT_TRUE(std::isnan(overlap.MeanIou(false)));
+  EXPECT_TRUE(std::isnan(overlap.ForegroundIou()));
+  overlap.Add({0, 0, 1, 1, 1, 3}, {0, 1, 1, 1, 2, 0});
+  EXPECT_DOUBLE_EQ(overlap.Iou(0), 1.0 / 3);
+  EXPECT_DOUBLE_EQ(overlap.Iou(1), 2.0 / 4);
+  EXPECT_EQ(overlap.Iou(2), 0);
+  EXPECT_EQ(overlap.Iou(3), 0);
+  EXPECT_DOUBLE_EQ(overlap.ForegroundIou(), 3.0 / 5);
+  EXPECT_DOUBLE_EQ(overlap.MeanIou(true), 0.5 / 2);  // class 3 is not there
+  EXPECT_DOUBLE_EQ(overlap.MeanIou(false), 0.5 / 3);
+  EXPECT_THROW(overlap.Add(std::vector<uint8_t>(1), std::vector<uint8_t>()), std::invalid_argument);
 }
 
 }  // namespace

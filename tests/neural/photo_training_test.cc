@@ -97,16 +97,24 @@ TEST(PhotoTraining, LearnsTwoPeopleByHeart) {
 
 TEST(PhotoTraining, AResumedRunEndsWithTheSameBytes) {
   const PhotoSource source = ToyPhotos(3, 3);
-  // kInpaint has two stages: one run is stopped in the first, one in the second.
+  // kInpaint has two stages: one run is stopped in the first, one in the second. The discriminator joins before the
+  // stop, right at it, and after it.
   const struct {
     PhotoVariant variant;
     int stop;
-  } cases[] = {{PhotoVariant::kFull, 3}, {PhotoVariant::kInpaint, 3}, {PhotoVariant::kInpaint, 9}};
-  for (const auto& [variant, stop] : cases) {
-    SCOPED_TRACE(Concatenate(ToText(variant), " stopped at ", stop));
-    const TrainPhotoOptions whole = ToyOptions("photo_whole", variant);
+    double gan_from;
+  } cases[] = {{PhotoVariant::kFull, 3, 0},
+               {PhotoVariant::kFull, 3, 0.5},
+               {PhotoVariant::kFull, 3, 0.8},
+               {PhotoVariant::kInpaint, 3, 0.5},
+               {PhotoVariant::kInpaint, 9, 0}};
+  for (const auto& [variant, stop, gan_from] : cases) {
+    SCOPED_TRACE(Concatenate(ToText(variant), " stopped at ", stop, ", judged from ", gan_from));
+    TrainPhotoOptions whole = ToyOptions("photo_whole", variant);
+    whole.gan_from = gan_from;
     ASSERT_EQ(TrainPhoto(source, whole).status, TrainingStatus::kFinished);
     TrainPhotoOptions parts = ToyOptions("photo_parts", variant);
+    parts.gan_from = gan_from;
     parts.progress = [stop = stop](const TrainPhotoProgress& progress) { return progress.step < stop; };
     const TrainPhotoSummary stopped = TrainPhoto(source, parts);
     EXPECT_EQ(stopped.status, TrainingStatus::kStopped);
@@ -118,6 +126,43 @@ TEST(PhotoTraining, AResumedRunEndsWithTheSameBytes) {
     EXPECT_EQ(finished.steps, whole.TotalSteps());
     EXPECT_EQ(Bytes(CheckpointPath(parts.run_dir)), Bytes(CheckpointPath(whole.run_dir)));
   }
+}
+
+TEST(PhotoTraining, TheDiscriminatorJoinsWhenItIsTold) {
+  const PhotoSource source = ToyPhotos(2, 3);
+  /// The checkpoint after six steps, and the cells of metrics.csv under "discriminator".
+  const auto train = [&](double gan_from, double gan_weight, std::vector<std::string>* cells) {
+    TrainPhotoOptions options = ToyOptions("photo_joins");
+    options.validation.clear();
+    options.gan_from = gan_from;
+    options.gan_weight = gan_weight;
+    options.report_every = 1;
+    EXPECT_EQ(TrainPhoto(source, options).status, TrainingStatus::kFinished);
+    std::istringstream lines(Bytes(options.run_dir + "/metrics.csv"));
+    std::string line;
+    std::getline(lines, line);
+    EXPECT_THAT(line, HasSubstr("step,learning_rate,loss,perceptual,face,texture,generator,alpha,discriminator"));
+    while (std::getline(lines, line)) {
+      std::istringstream columns(line);
+      for (int i = 0; i < 9; ++i) std::getline(columns, line, ',');
+      cells->push_back(line);
+    }
+    return Bytes(CheckpointPath(options.run_dir));
+  };
+  std::vector<std::string> first, half, never, none;
+  const std::string from_first = train(0, 1, &first), from_half = train(0.5, 1, &half),
+                    from_never = train(1, 1, &never);
+  EXPECT_EQ(std::count(first.begin(), first.end(), ""), 0);
+  ASSERT_EQ(half.size(), 6U);
+  for (int step = 0; step < 6; ++step) EXPECT_EQ(half[step].empty(), step < 3) << step;
+  EXPECT_EQ(std::count(never.begin(), never.end(), ""), 6);
+  EXPECT_NE(from_first, from_half);
+  EXPECT_NE(from_half, from_never);
+  EXPECT_EQ(from_never, train(0, 0, &none)) << "one that never joins is none";
+  TrainPhotoOptions options = ToyOptions("photo_joins", PhotoVariant::kInpaint);
+  EXPECT_EQ(options.FirstJudgedStep(), 9) << "half of the second stage";
+  options.gan_from = 0;
+  EXPECT_EQ(options.FirstJudgedStep(), 6);
 }
 
 TEST(PhotoTraining, EveryVariantTrainsAndWorks) {
@@ -198,6 +243,8 @@ TEST(PhotoTraining, RefusesWhatDoesNotFit) {
   refuses([](TrainPhotoOptions* o) { o->config.profile.image_size = 128; });
   refuses([](TrainPhotoOptions* o) { o->steps = 0; });
   refuses([](TrainPhotoOptions* o) { o->gan_weight = NAN; });
+  refuses([](TrainPhotoOptions* o) { o->gan_from = 1.5; });
+  refuses([](TrainPhotoOptions* o) { o->gan_from = NAN; });
 
   TrainPhotoOptions options = ToyOptions("photo_refuses");
   options.steps = 1;

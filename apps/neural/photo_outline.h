@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Where the tracked person is in a window of a photo, and in which clothes, when nobody has labelled the clothes.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "render/image.h"
+
+namespace bodyloom {
+
+/// What of `labels` (size × size, 0 background) belongs to the person of `parts` (0 off the body): pixels that a path
+/// through labelled pixels, no longer than a twelfth of the body's extent, joins to the body. Others become 0: there
+/// may be several people in a picture, and the track says which one is meant. Returns the share that was left out.
+double KeepPerson(std::span<const uint8_t> parts, int size, std::vector<uint8_t>* labels);
+
+struct PhotoOutline {
+  std::vector<uint8_t> labels;  ///< size × size
+  std::string note;             ///< how it was found, half a sentence for the user
+};
+
+/// By GrabCut from the tracked body (data_tools/people/photo_segmentation.h), in the part of the window that lies
+/// inside the picture; outside of it all is background. `alpha` (size × size or empty): the file's own transparency,
+/// which is then cut instead of the colours. Throws std::invalid_argument when the body is not in the picture.
+PhotoOutline OutlineOfPerson(const Image& window, std::span<const uint8_t> inside_picture,
+                             std::span<const uint8_t> alpha, std::span<const uint8_t> parts);
+
+}  // namespace bodyloom

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What the pose-guided renderer is made of: every network's parameters, shapes and multiply–adds, as text.
+#pragma once
+
+#include <string>
+
+#include "neural/guided/guided_config.h"
+
+namespace bodyloom {
+
+/// A section a network (neural/networks/architecture_card.h), of one frame of the profile's whole window once the
+/// source is encoded: SilNet, GarNet, RenderNet, and the discriminator of training; what encoding the source costs is a
+/// line of its own. Networks that are left out have no section.
+std::string GuidedCard(const GuidedConfig& config);
+
+}  // namespace bodyloom

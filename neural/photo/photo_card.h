@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What the one-photo renderer is made of: every network's parameters, shapes and multiply–adds, as text.
+#pragma once
+
+#include <string>
+
+#include "neural/photo/photo_config.h"
+
+namespace bodyloom {
+
+/// A section a network (neural/networks/architecture_card.h): FeatureNet of a photo's texture, RenderNet of one frame
+/// of the profile's whole image, the discriminators of a picture in training. A variant has those that it is made of.
+std::string PhotoCard(const PhotoConfig& config);
+
+}  // namespace bodyloom
