@@ -108,6 +108,31 @@ TEST(LiveTracker, SameBytesForAnyNumberOfThreads) {
   }
 }
 
+TEST(LiveTracker, SigmaIsThatOfTheWindowAndChangesNothing) {
+  LiveScene live = MakeLiveScene(26, true);
+  for (int t = 12; t < 18; ++t) {
+    live.frames[t].keypoints.clear();
+    live.frames[t].dense.clear();
+    live.frames[t].initialiser.reset();
+  }
+  LiveTracker tracker(live.input, live.options);
+  const std::vector<LiveFrame> with = RunAll(&tracker, live.frames, live.options.lag);
+  live.options.solve.estimate_uncertainty = false;
+  LiveTracker other(live.input, live.options);
+  const std::vector<LiveFrame> without = RunAll(&other, live.frames, live.options.lag);
+  for (size_t t = 0; t < with.size(); ++t) {
+    EXPECT_EQ(with[t].state.rotations, without[t].state.rotations) << t;
+    EXPECT_EQ(with[t].state.translation, without[t].state.translation) << t;
+    EXPECT_EQ(with[t].betas, without[t].betas) << t;
+    ASSERT_EQ(with[t].joint_sigma.size(), 24);
+    EXPECT_GT(with[t].joint_sigma.minCoeff(), 1e-3) << t;
+    EXPECT_LT(with[t].joint_sigma.maxCoeff(), 0.5) << t;
+    ASSERT_EQ(without[t].joint_sigma.size(), 24);
+    EXPECT_TRUE(without[t].joint_sigma.array().isNaN().all());
+  }
+  EXPECT_GT(with[15].joint_sigma.mean(), 2 * with[8].joint_sigma.mean());  // carried
+}
+
 TEST(LiveTracker, FramesWithoutObservationsAreCarriedAndThenLost) {
   LiveScene live = MakeLiveScene(60, false);  // 25 frames a second
   live.options.lost_after_s = 0.5;
@@ -124,6 +149,8 @@ TEST(LiveTracker, FramesWithoutObservationsAreCarriedAndThenLost) {
   EXPECT_TRUE(out[30].state.translation.allFinite());
   EXPECT_EQ(out[40].status, FrameStatus::kLost);
   EXPECT_FALSE(out[40].state.translation.allFinite());
+  EXPECT_TRUE(out[40].joint_sigma.array().isNaN().all());
+  EXPECT_TRUE(out[30].joint_sigma.allFinite());
   EXPECT_EQ(out[45].status, FrameStatus::kTracked);
   EXPECT_TRUE(out[45].cut_before);
   EXPECT_EQ(out[59].status, FrameStatus::kTracked);
@@ -232,6 +259,16 @@ TEST(TrackLive, FillsATrackOfTheWholeClip) {
   const TrackSequenceResult result = TrackLive(input, live.options);
   EXPECT_EQ(result.summary.status, SolveStatus::kConverged);
   EXPECT_EQ(result.track.num_frames(), 25);
+  LiveTracker tracker(live.input, live.options);
+  const std::vector<LiveFrame> out = RunAll(
+      &tracker,
+      [&]() {
+        std::vector<LiveObservations> frames = live.frames;
+        for (LiveObservations& frame : frames) frame.initialiser.reset();
+        return frames;
+      }(),
+      live.options.lag);
+  for (int t = 0; t < 25; ++t) EXPECT_EQ(result.track.joint_sigma.row(t).transpose(), out[t].joint_sigma) << t;
   EXPECT_EQ(result.summary.frames_by_status.at("tracked") + result.summary.frames_by_status.at("weak"), 25);
   EXPECT_LT(result.summary.dense_median_px, 6);
   EXPECT_EQ(result.summary.plan.front().what, "live");

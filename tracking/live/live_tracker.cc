@@ -54,7 +54,8 @@ class LiveTracker::Impl {
 
   /// The newest frame continues the shot.
   void Track(LiveRecord* newest);
-  LiveFrame HandOut(LiveRecord* record);
+  /// The records' frames, in order, which are not handed out yet.
+  std::vector<LiveFrame> HandOut(std::deque<LiveRecord>::iterator begin, std::deque<LiveRecord>::iterator end);
 
   const LiveSetup setup_;
   int64_t pushed_ = 0;
@@ -77,7 +78,8 @@ std::optional<LiveFrame> LiveTracker::Impl::Push(const LiveObservations& observa
   std::optional<LiveFrame> out;
   const auto waits = [](const LiveRecord& record) { return !record.handed_out; };
   if (std::count_if(records.begin(), records.end(), waits) > setup_.options.lag) {
-    out = HandOut(&*std::find_if(records.begin(), records.end(), waits));
+    const auto first = std::find_if(records.begin(), records.end(), waits);
+    out = std::move(HandOut(first, first + 1).front());
   }
   window.DropDone();
   return out;
@@ -107,32 +109,49 @@ void LiveTracker::Impl::Track(LiveRecord* newest) {
   window.Solve(setup_.options.iterations);
 }
 
-LiveFrame LiveTracker::Impl::HandOut(LiveRecord* record) {
+std::vector<LiveFrame> LiveTracker::Impl::HandOut(std::deque<LiveRecord>::iterator begin,
+                                                  std::deque<LiveRecord>::iterator end) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  const int num_joints = setup_.input.body->num_joints();
   LiveWindow& window = clip_->window;
   const SequenceProblem& problem = window.problem();
-  LiveFrame out;
-  out.index = record->index;
-  out.timestamp = record->timestamp;
-  out.cut_before = record->cut_before;
-  out.status = record->status;
-  if (record->in_window) out.state = problem.states[window.SlotOf(*record)];
-  if (!record->in_window || !IsFinite(out.state)) {
-    out.status = FrameStatus::kLost;
-    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-    out.state.rotations.assign(setup_.input.body->num_joints(), Matrix3d::Constant(kNaN));
-    out.state.translation.setConstant(kNaN);
+  std::vector<Eigen::VectorXd> sigma;
+  int first_slot = 0;
+  if (setup_.options.solve.estimate_uncertainty) {
+    const auto in_window = [](const LiveRecord& record) { return record.in_window; };
+    const auto first = std::find_if(begin, end, in_window);
+    if (first != end) first_slot = window.SlotOf(*first);
+    sigma = window.JointSigma(first_slot, first_slot + static_cast<int>(std::count_if(begin, end, in_window)));
   }
-  out.betas = problem.betas;
-  out.camera = setup_.layout.CameraAt(out.state, problem.log_focal);
-  record->handed_out = true;
-  return out;
+  std::vector<LiveFrame> frames;
+  for (auto record = begin; record != end; ++record) {
+    LiveFrame& out = frames.emplace_back();
+    out.index = record->index;
+    out.timestamp = record->timestamp;
+    out.cut_before = record->cut_before;
+    out.status = record->status;
+    out.joint_sigma.setConstant(num_joints, kNaN);
+    const int slot = record->in_window ? window.SlotOf(*record) : -1;
+    if (slot >= 0) out.state = problem.states[slot];
+    if (slot < 0 || !IsFinite(out.state)) {
+      out.status = FrameStatus::kLost;
+      out.state.rotations.assign(num_joints, Matrix3d::Constant(kNaN));
+      out.state.translation.setConstant(kNaN);
+    } else if (!sigma.empty()) {
+      out.joint_sigma = sigma[slot - first_slot];
+    }
+    out.betas = problem.betas;
+    out.camera = setup_.layout.CameraAt(out.state, problem.log_focal);
+    record->handed_out = true;
+  }
+  return frames;
 }
 
 std::vector<LiveFrame> LiveTracker::Impl::Finish() {
-  std::vector<LiveFrame> out;
-  for (LiveRecord& record : clip_->window.records()) {
-    if (!record.handed_out) out.push_back(HandOut(&record));
-  }
+  std::deque<LiveRecord>& records = clip_->window.records();
+  const auto first =
+      std::find_if(records.begin(), records.end(), [](const LiveRecord& record) { return !record.handed_out; });
+  std::vector<LiveFrame> out = HandOut(first, records.end());
   iterations_before_ = num_iterations();
   swaps_before_ = num_swaps_repaired();
   clip_ = std::make_unique<Clip>(setup_, pushed_);

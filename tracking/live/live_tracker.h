@@ -25,7 +25,8 @@ struct LiveTrackerOptions {
   int max_dense = 600;        ///< dense keypoints of a frame; of more, about this many stand for all
   double lost_after_s = 1;    ///< without any observation the person is lost
   double skip_settled = 0.1;  ///< SolveOptions::skip_settled
-  /// Camera knowledge, weights, threads, estimate_shape and skip_unneeded mean what they mean for TrackSequence().
+  /// Camera knowledge, weights, threads, estimate_shape, skip_unneeded and estimate_uncertainty mean what they mean for
+  /// TrackSequence().
   TrackSequenceOptions solve;
   /// False with the reason when a field is out of range.
   bool IsValid(std::string* why) const;
@@ -57,6 +58,9 @@ struct LiveFrame {
   FrameState state;         ///< NaN when lost
   Eigen::VectorXd betas;    ///< as known when the frame is handed out
   Camera camera;            ///< of the frame, with the focal length as known then
+  /// J standard deviations of the joints' positions, metres (uncertainty.h), as known then; NaN when lost, or without
+  /// TrackSequenceOptions::estimate_uncertainty.
+  Eigen::VectorXd joint_sigma;
 };
 
 class LiveTracker {

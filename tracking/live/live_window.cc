@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "tracking/image_terms.h"
 #include "tracking/input_checks.h"
 #include "tracking/track_result.h"
+#include "tracking/uncertainty.h"
 
 namespace bodyloom {
 namespace {
@@ -139,6 +141,17 @@ bool LiveWindow::Solve(int iterations) {
   }
   EndShot();
   return false;
+}
+
+std::vector<Eigen::VectorXd> LiveWindow::JointSigma(int begin, int end) {
+  const Eigen::VectorXd unknown =
+      Eigen::VectorXd::Constant(setup_.input.body->num_joints(), std::numeric_limits<double>::quiet_NaN());
+  std::vector<Eigen::VectorXd> sigma(std::max(0, end - begin), unknown);
+  if (begin >= end) return sigma;
+  lag_->VisitCovariance(begin, end, [&](int slot, const Eigen::MatrixXd& P) {
+    sigma[slot - begin] = JointSigmaOf(setup_.layout, problem().states[slot], problem().betas, P);
+  });
+  return sigma;
 }
 
 Camera LiveWindow::PinholeNow() const {

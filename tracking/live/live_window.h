@@ -46,6 +46,9 @@ class LiveWindow {
   /// False when the window had to be given up; the shot has ended then.
   bool Solve(int iterations);
   void EndShot();
+  /// J standard deviations of the joints' positions (JointSigmaOf()) in frames begin ≤ slot < end of the solver's
+  /// window; NaN where they cannot be told.
+  std::vector<Eigen::VectorXd> JointSigma(int begin, int end);
   /// Forgets records that nobody needs any more.
   void DropDone();
 

@@ -22,7 +22,8 @@ const std::vector<double>& TimesOf(const TrackSequenceInput& input) {
   return input.keypoints != nullptr ? input.keypoints->timestamps : input.dense->timestamps;
 }
 
-void Take(LiveFrame&& frame, bool weak, SequenceProblem* problem) {
+void Take(LiveFrame&& frame, bool weak, SequenceProblem* problem, RowMatrixXd* joint_sigma) {
+  joint_sigma->row(frame.index) = frame.joint_sigma.transpose();
   FrameState& state = problem->states[frame.index];
   state = std::move(frame.state);
   if (weak && frame.status != FrameStatus::kLost) {
@@ -71,7 +72,6 @@ std::vector<PlanEntry> PlanTrackLive(const TrackSequenceInput& input, const Live
   seen.part_labels = nullptr;
   TrackSequenceOptions solve = options.solve;
   solve.rendered_uv.weight = 0;
-  solve.estimate_uncertainty = false;
   std::vector<PlanEntry> plan = PlanTrackSequence(seen, solve);
   plan.insert(plan.begin(), {"live", true,
                              Concatenate("each frame is fitted when the ", options.lag,
@@ -105,11 +105,12 @@ TrackSequenceResult TrackLive(const TrackSequenceInput& input, const LiveTracker
   problem.cut_before.assign(T, 0);
   problem.timestamps = TimesOf(input);
   const bool weak = problem.layout.knowledge == CameraKnowledge::kWeak;
+  RowMatrixXd joint_sigma(T, input.body->num_joints());
   summary.status = SolveStatus::kConverged;
   int pushed = 0;
   for (int t = 0; t < T && summary.status == SolveStatus::kConverged; ++t, ++pushed) {
     if (std::optional<LiveFrame> frame = tracker.Push(ObservationsAt(input, t)))
-      Take(std::move(*frame), weak, &problem);
+      Take(std::move(*frame), weak, &problem, &joint_sigma);
     if (options.solve.progress && t % 16 == 0 && !options.solve.progress({"live", double(t) / T, 0})) {
       summary.status = SolveStatus::kStopped;
       summary.message = "stopped by the caller";
@@ -118,7 +119,7 @@ TrackSequenceResult TrackLive(const TrackSequenceInput& input, const LiveTracker
   problem.betas = tracker.betas();
   problem.log_focal = tracker.log_focal();
   summary.num_swaps_repaired = tracker.num_swaps_repaired();
-  for (LiveFrame& frame : tracker.Finish()) Take(std::move(frame), weak, &problem);
+  for (LiveFrame& frame : tracker.Finish()) Take(std::move(frame), weak, &problem, &joint_sigma);
   summary.iterations = static_cast<int>(tracker.num_iterations());
   if (summary.status == SolveStatus::kStopped) return result;
 
@@ -148,6 +149,7 @@ TrackSequenceResult TrackLive(const TrackSequenceInput& input, const LiveTracker
       found * problem.layout.num_frame_columns() + problem.layout.num_columns - problem.layout.beta_column;
   summary.seconds.emplace_back("live", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   FillTrack(input, problem, landmarks, &result);
+  result.track.joint_sigma = std::move(joint_sigma);
   return result;
 }
 
