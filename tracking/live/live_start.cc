@@ -67,7 +67,10 @@ bool StartShot(const LiveSetup& setup, LiveWindow* window) {
   for (int i = 0; i < open; ++i) {
     LiveRecord& record = *(records.end() - open + i);
     record.cut_before = i == 0 && record.index > window->first_index();
-    window->Add(&record, states[i], i == 0);
+    if (record.in_window)
+      window->Replace(&record, states[i], i == 0);
+    else
+      window->Add(&record, states[i], i == 0);
   }
   window->tracking = true;
   RestartShot(setup, 0, window);

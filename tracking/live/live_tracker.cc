@@ -40,6 +40,7 @@ class LiveTracker::Impl {
   [[nodiscard]] const LiveSetup& setup() const { return setup_; }
   [[nodiscard]] const SequenceProblem& problem() const { return clip_->window.problem(); }
   [[nodiscard]] int64_t num_iterations() const { return iterations_before_ + clip_->window.iterations(); }
+  [[nodiscard]] int64_t num_frames_left_out() const { return left_out_before_ + clip_->window.num_frames_left_out(); }
   [[nodiscard]] int num_swaps_repaired() const { return swaps_before_ + clip_->window.history().num_swaps_repaired(); }
 
  private:
@@ -59,7 +60,7 @@ class LiveTracker::Impl {
 
   const LiveSetup setup_;
   int64_t pushed_ = 0;
-  int64_t iterations_before_ = 0;  ///< of clips that have ended
+  int64_t iterations_before_ = 0, left_out_before_ = 0;  ///< of clips that have ended
   int swaps_before_ = 0;
   std::unique_ptr<Clip> clip_ = std::make_unique<Clip>(setup_, 0);
 };
@@ -154,6 +155,7 @@ std::vector<LiveFrame> LiveTracker::Impl::Finish() {
   std::vector<LiveFrame> out = HandOut(first, records.end());
   iterations_before_ = num_iterations();
   swaps_before_ = num_swaps_repaired();
+  left_out_before_ = num_frames_left_out();
   clip_ = std::make_unique<Clip>(setup_, pushed_);
   return out;
 }
@@ -170,5 +172,6 @@ const Eigen::VectorXd& LiveTracker::betas() const { return impl_->problem().beta
 double LiveTracker::log_focal() const { return impl_->problem().log_focal; }
 int64_t LiveTracker::num_iterations() const { return impl_->num_iterations(); }
 int LiveTracker::num_swaps_repaired() const { return impl_->num_swaps_repaired(); }
+int64_t LiveTracker::num_frames_left_out() const { return impl_->num_frames_left_out(); }
 
 }  // namespace bodyloom

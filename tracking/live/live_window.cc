@@ -39,8 +39,12 @@ LiveWindow::LiveWindow(const LiveSetup& setup, int64_t first_index)
       next_index_(first_index) {}
 
 LiveRecord& LiveWindow::Append(const LiveObservations& observations) {
-  const bool cut = history_.Add(observations.timestamp, observations.keypoints);
-  if (cut) EndShot();
+  const Continuity continuity =
+      history_.Add(observations.timestamp, observations.keypoints, tracking ? setup_.options.max_jump_s : 0);
+  if (continuity == Continuity::kCut) {
+    EndShot();
+    Release(history_.num_frames() - 1);
+  }
   LiveRecord& record = records_.emplace_back();
   record.index = next_index_++;
   ++frames_of_clip_;
@@ -56,6 +60,12 @@ LiveRecord& LiveWindow::Append(const LiveObservations& observations) {
     if (IsFinite(given)) record.initialiser = observations.initialiser;
   }
   record.seen = history_.NewestIsSeen() || !record.dense.empty();
+  if (continuity == Continuity::kHeld) {
+    record.held = {std::exchange(record.dense, {}), std::exchange(record.initialiser, std::nullopt),
+                   !observations.keypoints.empty()};
+    record.seen = false;
+    ++num_held_;
+  }
   if (record.seen) last_seen_s_ = record.timestamp;
   if (tracking && record.timestamp - last_seen_s_ > setup_.options.lost_after_s) {
     EndShot();
@@ -63,6 +73,23 @@ LiveRecord& LiveWindow::Append(const LiveObservations& observations) {
   }
   record.shot = shot_;
   return record;
+}
+
+void LiveWindow::Release(int count) {
+  for (auto it = records_.rbegin(); it != records_.rend() && count > 0; ++it, --count) {
+    if (!it->held || it->handed_out) return;  // what was handed out stays as it was
+    --num_held_;
+    it->dense = std::move(it->held->dense);
+    it->initialiser = std::move(it->held->initialiser);
+    it->seen = it->held->seen || !it->dense.empty();
+    it->held.reset();
+    it->shot = shot_;
+    it->lifted = LiftedPose();  // said of the person before
+    if (!it->in_window) continue;
+    const int slot = SlotOf(*it);
+    lag_->problem().frames[slot].lifted = nullptr;
+    lag_->Touch(slot);
+  }
 }
 
 void LiveWindow::EndShot() {
@@ -122,6 +149,17 @@ void LiveWindow::Add(LiveRecord* record, const FrameState& start, bool cut) {
   ++shot_frames_;
   lag_->problem().shape_prior.weight =
       std::max(1.0, setup_.options.solve.shape_prior_weight * static_cast<double>(frames_of_clip_));
+}
+
+void LiveWindow::Replace(LiveRecord* record, const FrameState& start, bool cut) {
+  const int slot = SlotOf(*record);
+  FrameData& frame = lag_->problem().frames[slot];
+  frame = Observe(start, record);
+  record->status = record->seen ? StatusOf(frame) : FrameStatus::kInterpolated;
+  lag_->problem().states[slot] = start;
+  lag_->Touch(slot);
+  if (cut) lag_->Cut(slot);
+  ++shot_frames_;
 }
 
 bool LiveWindow::Solve(int iterations) {

@@ -25,6 +25,14 @@ struct LiveRecord {
   std::vector<DenseKeypoint> dense;
   std::optional<BodyPose> initialiser;
   LiftedPose lifted;
+  /// What came with 2D joints that jumped away (Continuity::kHeld), until it is known whether they come back. `seen`,
+  /// `dense` and `initialiser` are those of an empty frame so long.
+  struct Held {
+    std::vector<DenseKeypoint> dense;
+    std::optional<BodyPose> initialiser;
+    bool seen = false;
+  };
+  std::optional<Held> held;
 };
 
 bool IsFinite(const FrameState& state);
@@ -41,6 +49,8 @@ class LiveWindow {
   LiveRecord& Append(const LiveObservations& observations);
   /// Puts the record, the first one that is not there yet, into the solver's window.
   void Add(LiveRecord* record, const FrameState& start, bool cut);
+  /// A record of the window, of which something else is known now, becomes the next frame of the shot.
+  void Replace(LiveRecord* record, const FrameState& start, bool cut);
   /// What the solver sees of a record.
   [[nodiscard]] FrameData Observe(const FrameState& state, LiveRecord* record) const;
   /// False when the window had to be given up; the shot has ended then.
@@ -75,14 +85,18 @@ class LiveWindow {
   [[nodiscard]] int64_t frames_of_clip() const { return frames_of_clip_; }
   [[nodiscard]] int64_t first_index() const { return first_index_; }
   [[nodiscard]] int64_t iterations() const { return iterations_; }
+  [[nodiscard]] int64_t num_frames_left_out() const { return num_held_; }
 
  private:
+  /// The last `count` records were held and belong to a shot of their own, as far as they are still open.
+  void Release(int count);
+
   const LiveSetup& setup_;
   std::unique_ptr<FixedLag> lag_;
   LiveHistory history_;
   std::deque<LiveRecord> records_;
   int64_t first_index_, next_index_;  ///< of the clip; of the next record
-  int64_t frames_of_clip_ = 0, iterations_ = 0;
+  int64_t frames_of_clip_ = 0, iterations_ = 0, num_held_ = 0;
   int shot_ = 0, shot_frames_ = 0;  ///< which one; its tracked frames so far
   double last_seen_s_ = 0;
 };
