@@ -34,10 +34,10 @@ std::string WhyNoGround(const TrackSequenceInput& input, const TrackSequenceOpti
 }
 
 GroundTerms::GroundTerms(const TrackSequenceInput& input, const TrackSequenceOptions& options,
-                         const std::vector<LiftedFrame>& lifted, const LiftedLandmarks& landmarks,
-                         SequenceProblem* problem)
+                         const KeypointSequence* keypoints, const std::vector<LiftedFrame>& lifted,
+                         const LiftedLandmarks& landmarks, SequenceProblem* problem)
     : options_(options.ground),
-      keypoints_(input.keypoints),
+      keypoints_(keypoints),
       lifted_(lifted),
       landmarks_(landmarks),
       why_not_(WhyNoGround(input, options)) {

@@ -19,8 +19,9 @@ std::string WhyNoGround(const TrackSequenceInput& input, const TrackSequenceOpti
 /// Must not outlive what it is given. Without lifted frames, or switched off, it changes nothing.
 class GroundTerms {
  public:
-  /// `problem` holds the whole clip, `lifted` what the lifter said of each of its frames (or nothing).
-  GroundTerms(const TrackSequenceInput& input, const TrackSequenceOptions& options,
+  /// `problem` holds the whole clip, `lifted` what the lifter said of each of its frames (or nothing) when it read
+  /// `keypoints`.
+  GroundTerms(const TrackSequenceInput& input, const TrackSequenceOptions& options, const KeypointSequence* keypoints,
               const std::vector<LiftedFrame>& lifted, const LiftedLandmarks& landmarks, SequenceProblem* problem);
 
   /// Looks for the ground with the states of `coarse`, which holds `frames` of the clip. True when there is one: then

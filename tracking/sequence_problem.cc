@@ -51,10 +51,30 @@ void ShapePriorRows(const SequenceProblem& problem, RowMatrixXd* A, VectorXd* b)
   (*b)[B] = (mean_height - height) / problem.shape_prior.height_sigma_m;
 }
 
-std::array<double, 3> RootAccelerationSigma(const SequenceProblem& problem) {
-  const double sigma = problem.smoothness.root_acceleration;
+std::vector<int> ShotOfFrames(const std::vector<char>& cut_before) {
+  std::vector<int> shot(cut_before.size(), 0);
+  for (size_t t = 1; t < shot.size(); ++t) shot[t] = shot[t - 1] + (cut_before[t] != 0 ? 1 : 0);
+  return shot;
+}
+
+const Smoothness& SmoothnessOf(const SequenceProblem& problem, int shot) {
+  return problem.smoothness[problem.smoothness.size() == 1 ? 0 : shot];
+}
+
+std::vector<double> JointAccelerationSigma(const SequenceProblem& problem, int shot) {
+  const Smoothness& smooth = SmoothnessOf(problem, shot);
+  std::vector<double> sigma = JointLevers(*problem.layout.model);
+  for (size_t j = 0; j < sigma.size(); ++j) {
+    sigma[j] = (smooth.of_joint.empty() ? smooth.tip_acceleration : smooth.of_joint[j]) / sigma[j];
+  }
+  return sigma;
+}
+
+std::array<double, 3> RootAccelerationSigma(const SequenceProblem& problem, int shot) {
+  const Smoothness& smooth = SmoothnessOf(problem, shot);
+  const double sigma = smooth.root_acceleration;
   const bool weak = problem.layout.knowledge == CameraKnowledge::kWeak;
-  return {weak ? problem.smoothness.weak_scale_acceleration : sigma, sigma, sigma};
+  return {weak ? smooth.weak_scale_acceleration : sigma, sigma, sigma};
 }
 
 SequenceProblem SelectFrames(const SequenceProblem& problem, const std::vector<int>& frames) {
@@ -159,15 +179,19 @@ void Unpack(Parameters& x, SequenceProblem* problem) {
 }
 
 void AddSmoothness(const SequenceProblem& problem, Parameters* x, ceres::Problem* ceres_problem) {
-  const std::vector<double> levers = JointLevers(*problem.layout.model);
-  const Smoothness& smooth = problem.smoothness;
-  const std::array<double, 3> root_sigma = RootAccelerationSigma(problem);
+  const std::vector<int> shot = ShotOfFrames(problem.cut_before);
+  std::vector<double> joint_sigma;
+  std::array<double, 3> root_sigma{};
   for (size_t t = 2; t < problem.states.size(); ++t) {
+    if (joint_sigma.empty() || shot[t] != shot[t - 1]) {
+      joint_sigma = JointAccelerationSigma(problem, shot[t]);
+      root_sigma = RootAccelerationSigma(problem, shot[t]);
+    }
     if (problem.cut_before[t] || problem.cut_before[t - 1]) continue;
     const double dt0 = problem.timestamps[t - 1] - problem.timestamps[t - 2];
     const double dt1 = problem.timestamps[t] - problem.timestamps[t - 1];
     for (int a = 0; a < x->num_active; ++a) {
-      const double sigma = smooth.tip_acceleration / levers[problem.layout.active_joints[a]];
+      const double sigma = joint_sigma[problem.layout.active_joints[a]];
       ceres_problem->AddResidualBlock(new RotationAccelerationCost(dt0, dt1, sigma), nullptr, x->Rotation(t - 2, a),
                                       x->Rotation(t - 1, a), x->Rotation(t, a));
     }

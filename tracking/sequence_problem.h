@@ -18,6 +18,7 @@ namespace bodyloom {
 /// σ of the smoothness terms.
 struct Smoothness {
   double tip_acceleration = 25;        ///< m/s²: of the far end of what a joint moves; sets each joint's angular σ
+  std::vector<double> of_joint;        ///< m/s²: tip_acceleration of each body joint by itself; empty: one for all
   double root_acceleration = 15;       ///< m/s²: of the translation across the view and along it
   double weak_scale_acceleration = 2;  ///< 1/s²: of log scale (weak perspective)
 };
@@ -39,7 +40,7 @@ struct SequenceProblem {
   Eigen::VectorXd betas;
   double log_focal = 0;
   double log_focal_prior = 0, log_focal_sigma = 0.25;
-  Smoothness smoothness;
+  std::vector<Smoothness> smoothness = {Smoothness()};  ///< of each shot, or one for all of them
   ShapePrior shape_prior;
 };
 
@@ -95,8 +96,15 @@ void SpreadFrames(const SequenceProblem& coarse, const std::vector<int>& frames,
 /// About `rate` frames a second, always with the first and last frame of every shot.
 std::vector<int> FramesAtRate(const SequenceProblem& problem, double rate);
 
+/// The shot of each frame, counted from 0: a cut begins the next one.
+std::vector<int> ShotOfFrames(const std::vector<char>& cut_before);
+
+/// σ of each body joint's angular acceleration, rad/s²: Smoothness over JointLevers(). Of SequenceProblem::smoothness
+/// the one of this shot.
+std::vector<double> JointAccelerationSigma(const SequenceProblem& problem, int shot = 0);
+
 /// σ of the acceleration of the three translation parameters (metres, or log scale and offsets for weak perspective).
-std::array<double, 3> RootAccelerationSigma(const SequenceProblem& problem);
+std::array<double, 3> RootAccelerationSigma(const SequenceProblem& problem, int shot = 0);
 
 /// Rest-pose distance from a joint to the farthest joint below it, metres (at least 0.1): the lever that turns a linear
 /// acceleration into an angular one.

@@ -142,7 +142,10 @@ std::vector<PlanEntry> PlanTrackSequence(const TrackSequenceInput& input, const 
     plan.push_back({what, runs, why});
   };
   const std::string no_lifter = WhyNoLifter(input, options);
-  add("lifter", no_lifter.empty(), no_lifter.empty() ? "starts from 2D joints" : no_lifter);
+  add("lifter", no_lifter.empty(),
+      !no_lifter.empty()           ? no_lifter
+      : input.keypoints != nullptr ? "starts from 2D joints"
+                                   : "starts from joints among the dense keypoints");
   add("hypotheses over the clip", input.initialiser == nullptr && !no_lifter.empty(),
       input.initialiser != nullptr ? "the initialiser gives the start"
       : no_lifter.empty()          ? "the lifter gives the start"

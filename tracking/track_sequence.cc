@@ -165,6 +165,21 @@ Camera StartCamera(const TrackSequenceInput& input, const TrackSequenceOptions& 
   return camera;
 }
 
+/// Hypotheses are off by a share of the body, while a dense keypoint's σ is in pixels: where the image is large, all of
+/// them would be outliers of the start. (The lifter's starts are near enough: with it this finds worse minima.)
+void WidenDenseKernels(double stature, SequenceProblem* problem) {
+  constexpr double kShareOfHeight = 0.008;  // the usual 4 σ of 1 px for a person 500 pixels high
+  for (size_t t = 0; t < problem->frames.size(); ++t) {
+    FrameData& frame = problem->frames[t];
+    if (frame.dense == nullptr || frame.dense->empty()) continue;
+    double sigma_px = 0;
+    for (const DenseKeypoint& point : *frame.dense) sigma_px += point.sigma_px;
+    sigma_px /= static_cast<double>(frame.dense->size());
+    const double share_px = kShareOfHeight * PersonHeightPx(problem->layout, problem->states[t], stature);
+    frame.dense_kernel = std::max(frame.dense_kernel, share_px / sigma_px);
+  }
+}
+
 }  // namespace
 
 bool TrackSequenceOptions::IsValid(std::string* why) const {
@@ -242,11 +257,13 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSe
     DropUnusable(&usable);
     input.dense = &usable;
   }
+  KeypointSequence from_dense;
+  const KeypointSequence* joints = JointsToStartFrom(input, &from_dense);
   summary.solver = options.solver;
   summary.plan = PlanTrackSequence(input, options);
   if (impossible > 0) {
     summary.plan.push_back({"2D joints of impossible frames", false,
-                            std::to_string(impossible) + " frames jump away from the person and back"});
+                            std::to_string(impossible) + " frames jump away from the person and back, or are flat"});
   }
   StageClock clock(&summary);
   const int threads = options.num_threads > 0 ? options.num_threads : std::max(1u, std::thread::hardware_concurrency());
@@ -261,7 +278,7 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSe
   problem.layout = FrameLayout::Make(model, options.camera_knowledge, camera, active, num_betas);
   problem.timestamps = *ExtentOf(input).timestamps;
   const size_t T = problem.timestamps.size();
-  problem.cut_before = input.keypoints != nullptr ? FindCuts(*input.keypoints) : std::vector<char>(T, 0);
+  problem.cut_before = joints != nullptr ? FindCuts(*joints) : std::vector<char>(T, 0);
   problem.betas = VectorXd::Zero(num_betas);
   problem.log_focal = problem.log_focal_prior = std::log(camera.fx);
   std::optional<MixturePrior> prior;
@@ -273,7 +290,7 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSe
     summary.status = SolveStatus::kStopped;
   }
   LiftedStart lifted;
-  const InitialStates initial = FindInitialStates(input, problem.layout, options, &lifted);
+  const InitialStates initial = FindInitialStates(input, joints, problem.layout, options, &lifted);
   if (initial.states.empty()) {
     summary.message =
         "no frame shows enough of the body to start from: a shoulder and a hip are needed, with some confidence";
@@ -321,7 +338,7 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSe
   // Detections of a frame and of its neighbours err together (COCO joints are not the body's, and detectors are off for
   // a third of a second at a time), so frames do not outvote the shape prior as independent measurements would.
   problem.shape_prior.weight = std::max(1.0, options.shape_prior_weight * static_cast<double>(T));
-  GroundTerms ground(input, options, lifted.frames, lifted_landmarks, &problem);
+  GroundTerms ground(input, options, joints, lifted.frames, lifted_landmarks, &problem);
   summary.num_parameters = static_cast<int>(T) * problem.layout.num_frame_columns() + problem.layout.num_columns -
                            problem.layout.beta_column;
 
@@ -368,13 +385,15 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSe
   if (pulled || coarse_to_fine || terms.has_dense_rounds() || terms.has_part_labels()) {
     SequenceProblem coarse = SelectFrames(problem, coarse_frames);
     if (pulled) {
+      if (lifted.frames.empty()) WidenDenseKernels(stature, &coarse);
       going = solve("fit near start", &coarse, options.start_pull, 8, 1e-3, options.max_iterations, 0.05, 0.3);
+      for (FrameData& frame : coarse.frames) frame.dense_kernel = FrameData{}.dense_kernel;
     }
     if (going && has_points)
       going = solve("fit coarse", &coarse, final_pull, 4, 1e-4, options.max_iterations, 0.3, 0.45);
     // What the first answer says of the clip: how lively it is, and where its ground is.
     if (going && options.fit_smoothness) {
-      problem.smoothness = coarse.smoothness = FitSmoothness(coarse, coarse.smoothness);
+      problem.smoothness = coarse.smoothness = FitSmoothness(coarse, coarse.smoothness[0]);
     }
     const bool has_ground = going && ground.FindGround(coarse_frames, &coarse, &problem);
     if (going && has_points && (options.fit_smoothness || has_ground)) {

@@ -227,10 +227,10 @@ void AddPrior(const SequenceProblem& problem, size_t t, Blocks* x, ceres::Proble
 void AddSmoothness(const SequenceProblem& problem, size_t t, Blocks* x, ceres::Problem* target) {
   const AccelerationFactors factors = AccelerationFactors::Of(problem.timestamps[t - 1] - problem.timestamps[t - 2],
                                                               problem.timestamps[t] - problem.timestamps[t - 1]);
-  const std::vector<double> levers = JointLevers(*problem.layout.model);
+  const std::vector<double> joint_sigma = JointAccelerationSigma(problem);
   for (int j = 0; j < x->joints; ++j) {
     target->AddResidualBlock(new ceres::AutoDiffCostFunction<RotationResidual, 3, 3, 3, 3>(
-                                 new RotationResidual{factors, levers[j] / problem.smoothness.tip_acceleration}),
+                                 new RotationResidual{factors, 1 / joint_sigma[j]}),
                              nullptr, x->Rotation(t - 2, j), x->Rotation(t - 1, j), x->Rotation(t, j));
   }
   target->AddResidualBlock(new ceres::AutoDiffCostFunction<VectorResidual, 3, 3, 3, 3>(

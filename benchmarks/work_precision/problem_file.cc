@@ -100,8 +100,8 @@ void WriteProblemFile(const WorkProblem& work, const std::string& path) {
                                                           problem.timestamps[t] - problem.timestamps[t - 1]);
     return i % 2 == 0 ? f.earlier : f.later;
   });
-  const std::vector<double> levers = JointLevers(body);
-  out["joint_inverse_sigma"] = Filled({J}, [&](int64_t j) { return levers[j] / problem.smoothness.tip_acceleration; });
+  const std::vector<double> joint_sigma = JointAccelerationSigma(problem);
+  out["joint_inverse_sigma"] = Filled({J}, [&](int64_t j) { return 1 / joint_sigma[j]; });
   const std::array<double, 3> root = RootAccelerationSigma(problem);
   out["root_inverse_sigma"] = Filled({3}, [&](int64_t c) { return 1 / root[c]; });
   const MixturePrior& prior = *work.prior;

@@ -13,6 +13,7 @@
 #include "data_tools/builtin_body.h"
 #include "data_tools/descriptors/describe_track.h"
 #include "data_tools/evaluation/truth_evaluation.h"
+#include "data_tools/lifter/lifter_weights_io.h"
 #include "data_tools/motion/load_motion.h"
 #include "data_tools/prior/pose_prior_io.h"
 #include "geometry/check.h"
@@ -46,6 +47,7 @@ TrackSequenceResult TrackOf(const SynthClip& clip, const TrackSequenceOptions& o
   TrackSequenceInput input;
   input.body = &BuiltinBody();
   input.prior = &BuiltinPosePrior();
+  input.lifter = &BuiltinLifter();
   input.keypoints = &clip.keypoints;
   input.dense = &clip.dense;
   input.camera = clip.truth.camera;

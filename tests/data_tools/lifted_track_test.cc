@@ -80,6 +80,49 @@ TEST(LiftedTrack, FindsThePoseInEveryCamera) {
   }
 }
 
+TrackSequenceResult TrackDenseAlone(const SynthClip& clip, CameraKnowledge knowledge) {
+  TrackSequenceInput input;
+  input.body = &BuiltinBody();
+  input.dense = &clip.dense;
+  input.prior = &BuiltinPosePrior();
+  input.lifter = &BuiltinLifter();
+  input.camera = clip.truth.camera;
+  TrackSequenceOptions options;
+  options.camera_knowledge = knowledge;
+  options.num_threads = 2;
+  return TrackSequence(input, options);
+}
+
+TEST(LiftedTrack, ReadsJointsAmongDenseKeypointsWhereThereAreNoOthers) {
+  SynthClipOptions synth;
+  synth.dense_per_frame = 200;
+  const SynthClip clip = MakeSynthClip(BuiltinBody(), DemoMotion(BuiltinBody(), 60, 20), synth);
+  for (const CameraKnowledge knowledge :
+       {CameraKnowledge::kKnown, CameraKnowledge::kUnknownFocal, CameraKnowledge::kWeak}) {
+    const TrackSequenceResult result = TrackDenseAlone(clip, knowledge);
+    ASSERT_TRUE(result.summary.IsUsable()) << result.summary.message;
+    EXPECT_TRUE(Ran(result, "lifter"));
+    EXPECT_TRUE(Ran(result, "vertical"));
+    EXPECT_FALSE(Ran(result, "2D joints (L_f)"));
+    // Weak perspective is not how the clip was seen, and the pose makes up for it.
+    EXPECT_LT(PaMpjpe(result, clip), knowledge == CameraKnowledge::kWeak ? 70 : 5) << static_cast<int>(knowledge);
+  }
+}
+
+TEST(LiftedTrack, DenseKeypointsAloneTellACut) {
+  Motion motion = DemoMotion(BuiltinBody(), 40, 20);
+  motion.trans.block(20, 0, 20, 1).array() += 1.5;  // from one frame to the next
+  SynthClipOptions synth;
+  synth.dense_per_frame = 200;
+  const SynthClip clip = MakeSynthClip(BuiltinBody(), motion, synth);
+  const TrackSequenceResult result = TrackDenseAlone(clip, CameraKnowledge::kKnown);
+  ASSERT_TRUE(result.summary.IsUsable());
+  for (const int t : {19, 20}) {
+    const double off = (result.track.joints[t].row(0) - clip.truth.joints[t].row(0)).head<2>().norm();
+    EXPECT_LT(off, 0.02) << "metres, frame " << t;
+  }
+}
+
 /// Mean speed of ankles, m/s, in frames in which the true ones stand.
 double SlidingOfFeet(const TrackSequenceResult& result, const SynthClip& clip) {
   double sum = 0;

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <numeric>
 
+#include "data_tools/lifter/lifter_weights_io.h"
 #include "data_tools/prior/pose_prior_io.h"
 #include "data_tools/synthetic/demo_motion.h"
 #include "geometry/rotation.h"
@@ -42,6 +43,7 @@ TrackSequenceInput InputOf(const BodyModel& body, const SynthClip& clip) {
       std::any_of(clip.dense.frames.begin(), clip.dense.frames.end(), [](const auto& frame) { return !frame.empty(); });
   if (dense) input.dense = &clip.dense;
   input.prior = &BuiltinPosePrior();
+  input.lifter = &BuiltinLifter();
   input.camera = clip.truth.camera;
   return input;
 }

@@ -85,7 +85,7 @@ TEST(Uncertainty, SpreadOfTheErrorsOfALinearProblem) {
   const int T = 16, kTrials = 400;
   SequenceProblem problem;
   problem.layout = FrameLayout::Make(body, CameraKnowledge::kKnown, MakePinhole(640, 480, 500), {0}, 0);
-  problem.smoothness.root_acceleration = 40;
+  problem.smoothness[0].root_acceleration = 40;
   std::mt19937_64 random(11);
   std::normal_distribution<double> normal;
   const auto noise = [&](double sigma) {
@@ -148,7 +148,7 @@ TEST(Uncertainty, SpreadOfTheErrorsOfTheWholeProblem) {
     std::mt19937_64 random(trial);
     std::normal_distribution<double> normal;
     const auto noise = [&](double s) { return Vector3d::NullaryExpr([&]() { return s * normal(random); }).eval(); };
-    problem.smoothness.tip_acceleration = problem.smoothness.root_acceleration = 1e4;  // says nothing
+    problem.smoothness[0].tip_acceleration = problem.smoothness[0].root_acceleration = 1e4;  // says nothing
     problem.shape_prior.sigma = 0.4;                                                   // as the scene draws it
     problem.betas = scene->betas;
     VectorXd gradient;

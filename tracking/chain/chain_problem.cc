@@ -61,17 +61,19 @@ ChainProblem::ChainProblem(const SequenceProblem& problem, bool shape_constant, 
   const FrameLayout& layout = problem.layout;
   for (int b = 0; b < layout.num_betas && !shape_constant_; ++b) shared_columns_.push_back(layout.beta_column + b);
   if (!focal_constant_) shared_columns_.push_back(layout.focal_column);
-  const std::vector<double> levers = JointLevers(*layout.model);
-  for (int j : layout.active_joints) {
-    inverse_sigma_.emplace_back(Eigen::Array3d::Constant(levers[j] / problem.smoothness.tip_acceleration));
+  for (size_t shot = 0; shot < problem.smoothness.size(); ++shot) {
+    std::vector<Eigen::Array3d>& inverse = inverse_sigma_.emplace_back();
+    const std::vector<double> joint_sigma = JointAccelerationSigma(problem, static_cast<int>(shot));
+    for (int j : layout.active_joints) inverse.emplace_back(Eigen::Array3d::Constant(1 / joint_sigma[j]));
+    const std::array<double, 3> root_sigma = RootAccelerationSigma(problem, static_cast<int>(shot));
+    inverse.emplace_back(1 / root_sigma[0], 1 / root_sigma[1], 1 / root_sigma[2]);
   }
-  const std::array<double, 3> root_sigma = RootAccelerationSigma(problem);
-  inverse_sigma_.emplace_back(1 / root_sigma[0], 1 / root_sigma[1], 1 / root_sigma[2]);
   Resize();
 }
 
 void ChainProblem::Resize() {
   const size_t T = problem_.states.size();
+  if (inverse_sigma_.size() > 1) shot_ = ShotOfFrames(problem_.cut_before);
   if (problem_.layout.num_betas > 0) ShapePriorRows(problem_, &shape_prior_, &shape_offset_);
   systems_.resize(T);
   anchors_.resize(T);
@@ -196,8 +198,9 @@ double ChainProblem::EvaluateChanges(const ChainPoint& point, bool derivatives) 
   for (int t = 2; t < T; ++t) {
     if (!HasAcceleration(t)) continue;
     const AccelerationFactors& f = factors_[t];
+    const std::vector<Eigen::Array3d>& inverse_sigma = InverseSigma(t);
     for (int a = 0; a < blocks_; ++a) {
-      sum += 0.5 * (inverse_sigma_[a] * (f.later * changes_[t].step[a] - f.earlier * changes_[t - 1].step[a]).array())
+      sum += 0.5 * (inverse_sigma[a] * (f.later * changes_[t].step[a] - f.earlier * changes_[t - 1].step[a]).array())
                        .square()
                        .sum();
     }
@@ -243,7 +246,7 @@ void ChainProblem::AccelerationOf(size_t end, int a, Matrix3d J[3], Eigen::Array
     J[1] = -(f.earlier + f.later) * Matrix3d::Identity();
     J[2] = f.later * Matrix3d::Identity();
   }
-  *weight = inverse_sigma_[a].square();
+  *weight = InverseSigma(end)[a].square();
   *force = (*weight * (f.later * last.step[a] - f.earlier * first.step[a]).array()).matrix();
 }
 

@@ -105,6 +105,9 @@ class ChainProblem : public ChainSource {
   void AddSharedPriors(const ChainPoint& point);
   [[nodiscard]] bool HasAcceleration(size_t t) const;
   /// Of joint (or translation) a in frames end − 2, end − 1, end: Jacobians of σ r, 1/σ², and r/σ.
+  [[nodiscard]] const std::vector<Eigen::Array3d>& InverseSigma(size_t t) const {
+    return inverse_sigma_[inverse_sigma_.size() > 1 ? shot_[t] : 0];
+  }
   void AccelerationOf(size_t end, int a, Eigen::Matrix3d J[3], Eigen::Array3d* weight, Eigen::Vector3d* force) const;
   /// Blocks of the matrix and gradient that the accelerations of frames t, t + 1 and t + 2 give to frame t.
   void AssembleAcceleration(size_t t);
@@ -116,14 +119,15 @@ class ChainProblem : public ChainSource {
   bool shape_constant_, focal_constant_;
   RowMatrixXd shape_prior_;  ///< residual = shape_prior_ β + shape_offset_
   Eigen::VectorXd shape_offset_;
-  std::vector<FrameSystem> systems_;                 ///< T, at their anchors
-  std::vector<Anchor> anchors_;                      ///< T
-  std::vector<char> skipped_;                        ///< T: the last evaluation took the anchor's
-  std::vector<Eigen::VectorXd> frame_gradient_;      ///< T, at the point linearised last
-  std::vector<Change> changes_;                      ///< T
-  std::vector<AccelerationFactors> factors_;         ///< T, of the acceleration that ends at each frame
-  std::vector<Eigen::Array3d> inverse_sigma_;        ///< n/3
-  std::vector<double> costs_, next_, second_, own_;  ///< T; T × n/3 blocks of 9
+  std::vector<FrameSystem> systems_;                        ///< T, at their anchors
+  std::vector<Anchor> anchors_;                             ///< T
+  std::vector<char> skipped_;                               ///< T: the last evaluation took the anchor's
+  std::vector<Eigen::VectorXd> frame_gradient_;             ///< T, at the point linearised last
+  std::vector<Change> changes_;                             ///< T
+  std::vector<AccelerationFactors> factors_;                ///< T, of the acceleration that ends at each frame
+  std::vector<std::vector<Eigen::Array3d>> inverse_sigma_;  ///< n/3 of each entry of SequenceProblem::smoothness
+  std::vector<int> shot_;                                   ///< T, where the shots differ in smoothness
+  std::vector<double> costs_, next_, second_, own_;         ///< T; T × n/3 blocks of 9
   Eigen::VectorXd gradient_, shared_gradient_, diagonal_;
   Eigen::MatrixXd shared_;
   const Eigen::VectorXd* damping_ = nullptr;

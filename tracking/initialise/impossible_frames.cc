@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/initialise/impossible_frames.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "tracking/initialise/swap_repair.h"
@@ -13,6 +15,52 @@ namespace {
 constexpr double kLongest_s = 0.5;
 constexpr double kJump = 0.15, kJumpSpeed = 4, kJumpSize = 1.8;  // body sizes, body sizes a second, ratio
 constexpr double kContinues = 0.1, kContinuesSpeed = 1, kSameSize = 1.5;
+
+constexpr double kFlat = 0.015;  // body sizes; a person in profile with closed legs is 0.05 across
+
+/// Standard deviation of the seen landmarks across the direction in which they spread most, pixels; infinite with fewer
+/// than five.
+double Thickness(const KeypointSequence& keypoints, int t) {
+  Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  int count = 0;
+  for (const int pass : {0, 1}) {
+    for (int k = 0; k < keypoints.num_points(); ++k) {
+      const Keypoint& point = keypoints.at(t, k);
+      if (!IsSeen(point)) continue;
+      const Eigen::Vector2d x(point.x, point.y);
+      if (pass == 0) {
+        mean += x;
+        ++count;
+      } else {
+        scatter += (x - mean) * (x - mean).transpose() / count;
+      }
+    }
+    if (count < 5) return std::numeric_limits<double>::infinity();
+    if (pass == 0) mean /= count;
+  }
+  const double half = 0.5 * scatter.trace();
+  return std::sqrt(std::max(0.0, half - std::sqrt(std::max(0.0, half * half - scatter.determinant()))));
+}
+
+int DropFlatFrames(const std::vector<double>& sizes, KeypointSequence* keypoints) {
+  std::vector<double> known;
+  for (const double size : sizes) {
+    if (size > 0) known.push_back(size);
+  }
+  if (known.empty()) return 0;
+  const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
+  std::nth_element(known.begin(), middle, known.end());
+  std::vector<int> flat;
+  for (int t = 0; t < keypoints->num_frames(); ++t) {
+    if (Thickness(*keypoints, t) < kFlat * std::max(sizes[t], *middle)) flat.push_back(t);
+  }
+  if (2 * flat.size() > known.size()) return 0;
+  for (const int t : flat) {
+    for (int k = 0; k < keypoints->num_points(); ++k) keypoints->at(t, k) = Keypoint();
+  }
+  return static_cast<int>(flat.size());
+}
 
 struct Change {
   double distance = 0;  ///< median of the common landmarks, in sizes of the smaller body
@@ -49,7 +97,10 @@ int DropImpossibleFrames(KeypointSequence* keypoints) {
   const int T = keypoints->num_frames();
   std::vector<double> sizes(T);
   for (int t = 0; t < T; ++t) sizes[t] = SeenBodySize(*keypoints, t);
-  int dropped = 0, good = -1;
+  int dropped = DropFlatFrames(sizes, keypoints), good = -1;
+  if (dropped > 0) {
+    for (int t = 0; t < T; ++t) sizes[t] = SeenBodySize(*keypoints, t);
+  }
   for (int t = 0; t < T; ++t) {
     if (sizes[t] <= 0) continue;
     const auto seconds = [&](int u) { return keypoints->timestamps[u] - keypoints->timestamps[good]; };

@@ -6,9 +6,11 @@
 
 namespace bodyloom {
 
-/// Makes all landmarks missing in frames that cannot show the person of their neighbours: the body jumps away from the
-/// last good frame and, within 0.5 s, a frame continues that one again. A jump that nothing returns from is a cut and
-/// stays. Bodies a and b, dt seconds apart, with sizes s (diagonal of the box around the seen landmarks):
+/// Makes all landmarks missing in frames that cannot show the person of their neighbours. Either no person looks like
+/// it: five landmarks or more on one line or in one place (the smaller standard deviation across them is below 1.5 % of
+/// a person's size: the larger of the frame's and the clip's median), unless most of the clip is so. Or the body jumps
+/// away from the last good frame and, within 0.5 s, a frame continues that one again. A jump that nothing returns from
+/// is a cut and stays. Bodies a and b, dt seconds apart, with sizes s (diagonal of the box around the seen landmarks):
 ///   jump:      median distance of common landmarks > (0.15 + 4 dt) min(s_a, s_b), or s changes by over 1.8 (1 + 4 dt)
 ///   continues: median distance < (0.1 + dt) min(s_a, s_b), and s changes by less than 1.5
 /// Frames with fewer than four seen landmarks are neither. Linear in the number of frames. Returns how many frames it

@@ -16,6 +16,7 @@
 #include "tracking/initialise/lifted_start.h"
 #include "tracking/initialise/swap_repair.h"
 #include "tracking/residuals/lifted_pose.h"
+#include "tracking/sequence_problem.h"
 
 namespace bodyloom {
 
@@ -30,8 +31,7 @@ namespace {
 /// a cut to the nearest of `frames` on the same side of it.
 std::vector<FrameState> FillFrames(const std::vector<int>& frames, const std::vector<FrameState>& known,
                                    const std::vector<double>& timestamps, const std::vector<char>& cut_before) {
-  std::vector<int> shot(timestamps.size(), 0);
-  for (size_t t = 1; t < timestamps.size(); ++t) shot[t] = shot[t - 1] + (cut_before[t] != 0 ? 1 : 0);
+  const std::vector<int> shot = ShotOfFrames(cut_before);
   std::vector<FrameState> states(timestamps.size());
   size_t next = 0;
   for (size_t t = 0; t < timestamps.size(); ++t) {
@@ -183,26 +183,26 @@ KeypointSequence JointsFromDense(const BodyModel& model, const DenseSequence& de
   return result;
 }
 
+const KeypointSequence* JointsToStartFrom(const TrackSequenceInput& input, KeypointSequence* from_dense) {
+  if (input.keypoints != nullptr || input.dense == nullptr) return input.keypoints;
+  *from_dense = JointsFromDense(*input.body, *input.dense);
+  return from_dense;
+}
+
 std::string WhyNoLifter(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
   if (input.lifter == nullptr) return "no lifter was given";
   if (input.initialiser != nullptr) return "an initialiser was given";
-  if (input.keypoints == nullptr) return "it reads 2D joints, and there are none";
+  if (input.keypoints == nullptr && input.dense == nullptr) return "it reads 2D joints, and there are none";
   if (options.lifter_weight == 0) return "switched off";
   if (!CompileLiftedLandmarks(*input.body, 0).IsUsable()) return "the body lacks its landmarks";
   return "";
 }
 
-InitialStates FindInitialStates(const TrackSequenceInput& input, const FrameLayout& layout,
-                                const TrackSequenceOptions& options, LiftedStart* lifted) {
+InitialStates FindInitialStates(const TrackSequenceInput& input, const KeypointSequence* keypoints,
+                                const FrameLayout& layout, const TrackSequenceOptions& options, LiftedStart* lifted) {
   const BodyModel& model = *input.body;
   InitialStates result;
   result.betas = VectorXd::Zero(layout.num_betas);
-  KeypointSequence from_dense;
-  const KeypointSequence* keypoints = input.keypoints;
-  if (keypoints == nullptr && input.dense != nullptr) {
-    from_dense = JointsFromDense(model, *input.dense);
-    keypoints = &from_dense;
-  }
   if (input.initialiser != nullptr) {
     const Eigen::Index given = std::min<Eigen::Index>(input.initialiser->betas.size(), layout.num_betas);
     result.betas.head(given) = input.initialiser->betas.head(given);

@@ -20,11 +20,12 @@ struct InitialStates {
 struct LiftedStart;
 
 /// The initialiser's poses when given; else the lifter's, when there is one that can read the observations; else joint
-/// hypotheses (from 2D joints, or from joints estimated out of dense keypoints) turned into poses by inverse kinematics
-/// and interpolated on SO(3) to every frame. `lifted`, when given, receives what the lifter said (its frames are empty
-/// when it was not asked or saw nothing).
-InitialStates FindInitialStates(const TrackSequenceInput& input, const FrameLayout& layout,
-                                const TrackSequenceOptions& options, LiftedStart* lifted = nullptr);
+/// hypotheses turned into poses by inverse kinematics and interpolated on SO(3) to every frame. `keypoints`:
+/// JointsToStartFrom(); null only with an initialiser. `lifted`, when given, receives what the lifter said (its frames
+/// are empty when it was not asked or saw nothing).
+InitialStates FindInitialStates(const TrackSequenceInput& input, const KeypointSequence* keypoints,
+                                const FrameLayout& layout, const TrackSequenceOptions& options,
+                                LiftedStart* lifted = nullptr);
 
 /// Why the lifter does not run, or empty when it does.
 std::string WhyNoLifter(const TrackSequenceInput& input, const TrackSequenceOptions& options);
@@ -33,6 +34,10 @@ std::string WhyNoLifter(const TrackSequenceInput& input, const TrackSequenceOpti
 /// rest pose, weighted by exp(−d²/2(6 cm)²); confidence grows with the number of such points. Good enough to start
 /// from.
 KeypointSequence JointsFromDense(const BodyModel& model, const DenseSequence& dense);
+
+/// The 2D joints to start from and to tell cuts by: the input's, else JointsFromDense() put into `from_dense`, else
+/// null.
+const KeypointSequence* JointsToStartFrom(const TrackSequenceInput& input, KeypointSequence* from_dense);
 
 /// Least-squares weak-perspective camera (log scale, tx, ty) from points (camera frame axes, metres) to pixels; false
 /// with fewer than two distinct points.

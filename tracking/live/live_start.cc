@@ -49,7 +49,8 @@ std::vector<FrameState> FindLiveStates(const LiveSetup& setup, int count, LiveWi
   LiftedStart lifted;
   TrackSequenceOptions options = setup.options.solve;
   options.num_threads = 1;
-  states = FindInitialStates(input, layout, options, &lifted).states;
+  KeypointSequence from_dense;
+  states = FindInitialStates(input, JointsToStartFrom(input, &from_dense), layout, options, &lifted).states;
   for (size_t i = 0; i < lifted.frames.size(); ++i) {
     LiveRecord& record = *(first + static_cast<std::ptrdiff_t>(i));
     record.lifted =
