@@ -430,7 +430,7 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSe
   clock.Book("finish");
   if (options.estimate_uncertainty) {
     // On the coarse frames: neighbours' detection errors are not independent, and their joints' spread changes slowly.
-    const RowMatrixXd sigma = JointPositionSigma(SelectFrames(problem, coarse_frames));
+    const RowMatrixXd sigma = JointPositionSigma(SelectFrames(problem, coarse_frames), threads);
     for (size_t i = 0, t = 0; t < T; ++t) {
       while (i + 1 < coarse_frames.size() &&
              std::abs(problem.timestamps[coarse_frames[i + 1]] - problem.timestamps[t]) <=

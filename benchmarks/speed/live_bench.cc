@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// The live tracker beside the solve of the whole clip: error on the same data, frames a second, latency, memory.
 ///
-///   bodyloom_bench_live [--sections real,synthetic,lags,long,skip] [--threads 2] [--frames 0] [--views c01,c05]
+///   bodyloom_bench_live [--sections real,synthetic,lags,long,skip,uncertainty] [--threads 2] [--frames 0] [--views
+///   c01,c05]
 ///                       [--lags 0,2,4,8,16] [--long 20000] [--repeat 1] [--json F]
 ///
 /// real: AIST++, 17 detected joints, scored in the other eight cameras (protocol aist-held-out). synthetic: the same
@@ -115,6 +116,8 @@ class Bench {
         Long();
       else if (section == "skip")
         Skip();
+      else if (section == "uncertainty")
+        Uncertainty();
       else
         BODYLOOM_CHECK(false, "--sections names '", section, "'");
     }
@@ -260,6 +263,30 @@ class Bench {
     }
   }
 
+  /// What joint_sigma costs: with it, without it and with it again, as the machine may change.
+  void Uncertainty() {
+    const std::string motion = arguments_.List("motions")[0];
+    for (const bool dense : {false, true}) {
+      const SynthClip clip = MakeClip(motion, dense);
+      TrackSequenceInput input;
+      Fill(&input);
+      input.keypoints = &clip.keypoints;
+      if (dense) input.dense = &clip.dense;
+      input.camera = clip.truth.camera;
+      for (const bool on : {true, false, true}) {
+        LiveTrackerOptions options = options_;
+        options.solve.estimate_uncertainty = on;
+        std::vector<double> speed = Speed(input, options, clip.keypoints.num_frames(), arguments_.Integer("repeat"));
+        BenchRow row{"uncertainty",
+                     {dense ? Concatenate(arguments_.Integer("dense"), " keypoints and joints") : std::string("joints"),
+                      on ? "with joint_sigma" : "without"},
+                     {kNaN, kNaN, kNaN, kNaN}};
+        row.values.insert(row.values.end(), speed.begin(), speed.end());
+        report_.rows.push_back(row);
+      }
+    }
+  }
+
   /// The solve of a whole clip with and without SolveOptions::skip_settled: error is the cost over the lowest.
   void Skip() {
     for (const std::string& frames : arguments_.List("skip_frames")) {
@@ -319,7 +346,7 @@ int main(int argc, char** argv) {
        {"sequences", "gBR_sBM_cAll_d06_mBR2_ch06,gJS_sBM_cAll_d03_mJS2_ch07"},
        {"views", "c01,c03,c05,c07,c08"},
        {"motions", motions + "gBR_sBM_cAll_d06_mBR2_ch06.pkl," + motions + "gJS_sBM_cAll_d03_mJS2_ch07.pkl"},
-       {"sections", "real,synthetic,lags,long,skip"},
+       {"sections", "real,synthetic,lags,long,skip,uncertainty"},
        {"frames", "0"},
        {"dense", "300"},
        {"threads", "2"},

@@ -32,6 +32,7 @@ struct SequenceScene {
   std::vector<CompiledPoint> landmarks;
   std::vector<std::vector<DenseKeypoint>> dense;
   std::vector<FrameState> truth;
+  Eigen::VectorXd betas;  ///< true ones
   SequenceProblem problem;
   SequenceScene() = default;
   SequenceScene(const SequenceScene&) = delete;
@@ -49,6 +50,7 @@ inline std::unique_ptr<SequenceScene> MakeSequenceScene(const SequenceSceneOptio
   const double focal = 1000;
   problem.layout = FrameLayout::Make(body, options.knowledge, MakePinhole(1280, 720, focal), AllJoints(body), B);
   const Eigen::VectorXd betas = Eigen::VectorXd::NullaryExpr(B, [&]() { return 0.4 * normal(random); });
+  scene->betas = betas;
   for (const Landmark& landmark : body.data().landmarks) {
     scene->landmarks.push_back(CompilePoint(body, landmark.vertices, landmark.weights, B));
   }

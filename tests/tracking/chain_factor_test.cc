@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <random>
+#include <utility>
 
 #include "tracking/chain/panel_simd.h"
 
@@ -152,6 +154,67 @@ TEST(ChainFactor, NearlySingularSystemsKeepASmallResidual) {
   }
 }
 
+/// Largest difference between the blocks that VisitInverse hands out and the dense inverse, relative to the largest
+/// entry of the latter; counts the frames.
+double InverseError(const RandomChain& chain, int begin, int end, int threads, int* visited) {
+  ChainFactor factor(chain.n, chain.s, chain.cuts);
+  VectorXd x, shared;
+  if (!factor.Solve(chain, chain.Shared(), chain.b.tail(chain.s), threads, &x, &shared)) return 1e300;
+  const int n = chain.n, s = chain.s;
+  const MatrixXd dense = chain.M.llt().solve(MatrixXd::Identity(chain.M.rows(), chain.M.rows()));
+  std::vector<double> errors(chain.T, -1);
+  factor.VisitInverse(begin, end, threads, [&](int t, const MatrixXd& P) {
+    MatrixXd expected(n + s, n + s);
+    expected << dense.block(t * n, t * n, n, n), dense.block(t * n, chain.T * n, n, s),
+        dense.block(chain.T * n, t * n, s, n), dense.bottomRightCorner(s, s);
+    errors[t] = (P - expected).cwiseAbs().maxCoeff() / dense.cwiseAbs().maxCoeff();
+  });
+  for (int t = 0; t < chain.T; ++t) EXPECT_EQ(errors[t] >= 0, t >= begin && t < end) << t;
+  *visited += static_cast<int>(std::count_if(errors.begin(), errors.end(), [](double e) { return e >= 0; }));
+  return *std::max_element(errors.begin(), errors.end());
+}
+
+TEST(ChainInverse, EqualsTheDenseInverse) {
+  uint64_t seed = 300;
+  int visited = 0, expected = 0;
+  for (int n : {3, 6, 9, 24, 75}) {
+    for (int s : {0, 1, 7, 11}) {
+      for (int T : {1, 2, 3, 4, 5, 8}) {
+        if (n == 75 && T > 5) continue;
+        EXPECT_LT(InverseError(RandomChain(T, n, s, CutsAt(T, {}), ++seed), 0, T, 2, &visited), 1e-9)
+            << n << " " << s << " " << T;
+        expected += T;
+      }
+    }
+  }
+  EXPECT_EQ(visited, expected);
+}
+
+TEST(ChainInverse, CutsAndPartsOfTheClip) {
+  uint64_t seed = 400;
+  int visited = 0;
+  for (const std::vector<int>& at : {std::vector<int>{}, {0}, {1}, {5}, {3, 4, 5}, {11}}) {
+    const RandomChain chain(12, 9, 4, CutsAt(12, at), ++seed);
+    for (const auto& [begin, end] : {std::pair(0, 12), {0, 1}, {11, 12}, {4, 7}, {5, 6}, {6, 6}, {2, 9}}) {
+      EXPECT_LT(InverseError(chain, begin, end, 1, &visited), 1e-10) << begin << " " << end;
+    }
+  }
+  EXPECT_EQ(visited, 6 * (12 + 1 + 1 + 3 + 1 + 7));
+}
+
+TEST(ChainInverse, SameBytesForAnyNumberOfThreads) {
+  const RandomChain chain(23, 12, 5, CutsAt(23, {7, 9}), 5);
+  ChainFactor factor(chain.n, chain.s, chain.cuts);
+  VectorXd x, shared;
+  std::vector<MatrixXd> expected(23), blocks(23);
+  for (int threads : {1, 2, 5}) {
+    ASSERT_TRUE(factor.Solve(chain, chain.Shared(), chain.b.tail(5), threads, &x, &shared));
+    factor.VisitInverse(0, 23, threads, [&](int t, const MatrixXd& P) { blocks[t] = P; });
+    if (threads == 1) expected = blocks;
+    for (int t = 0; t < 23; ++t) EXPECT_EQ(blocks[t], expected[t]) << threads;
+  }
+}
+
 TEST(PanelKernels, EveryInstructionSetAgrees) {
   const RandomChain chain(9, 33, 6, CutsAt(9, {}), 77);
   const VectorXd expected = chain.M.llt().solve(chain.b);
@@ -159,6 +222,8 @@ TEST(PanelKernels, EveryInstructionSetAgrees) {
   for (int64_t target : panel_internal::SimdTargets()) {
     panel_internal::ForceSimdTarget(target);
     EXPECT_LT(RelativeError(chain, 1), 1e-10) << panel_internal::SimdTargetName(target);
+    int visited = 0;
+    EXPECT_LT(InverseError(chain, 0, 9, 1, &visited), 1e-11) << panel_internal::SimdTargetName(target);
     ++tried;
   }
   panel_internal::ForceSimdTarget(0);

@@ -5,7 +5,9 @@
 
 #include <Eigen/Cholesky>
 
+#include "tests/support/dense_chain.h"
 #include "tests/support/sequence_scene.h"
+#include "tracking/chain/chain_covariance.h"
 
 namespace bodyloom {
 namespace {
@@ -23,34 +25,6 @@ SequenceProblem FirstFrames(const SequenceProblem& problem, int count) {
   return SelectFrames(problem, frames);
 }
 
-/// The undamped normal equations of a linearised chain, dense: frames, then shared values.
-void Dense(ChainProblem& chain, int T, MatrixXd* H, VectorXd* g) {
-  const int n = chain.frame_size(), s = chain.shared_size(), N = T * n + s;
-  static const VectorXd none = VectorXd::Zero(1000);
-  chain.SetDamping(&none);
-  H->setZero(N, N);
-  g->resize(N);
-  *g << chain.gradient(), chain.shared_gradient();
-  for (int t = 0; t < T; ++t) {
-    RowMatrixXd A = RowMatrixXd::Zero(n, n), B = RowMatrixXd::Zero(n, s + 1);
-    chain.AddFrame(t, A.data(), n, B.data(), s + 1);
-    H->block(t * n, t * n, n, n) = A.selfadjointView<Eigen::Upper>();
-    H->block(t * n, T * n, n, s) = B.leftCols(s);
-    for (int k = 1; k < 3 && t + k < T; ++k) {
-      const double* blocks = k == 1 ? chain.Next(t) : chain.Second(t);
-      for (int i = 0; i < n; i += 3, blocks += 9) {
-        H->block<3, 3>(t * n + i, (t + k) * n + i) +=
-            Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(blocks);
-      }
-    }
-    if (t + 1 < T && chain.DenseNext(t) != nullptr) {
-      H->block(t * n, (t + 1) * n, n, n) += Eigen::Map<const RowMatrixXd>(chain.DenseNext(t), n, n);
-    }
-  }
-  H->bottomRightCorner(s, s) = chain.shared().selfadjointView<Eigen::Lower>();
-  *H = MatrixXd(H->selfadjointView<Eigen::Upper>());
-}
-
 TEST(ChainPrior, MarginalStepsEqualThoseOfTheWholeSystem) {
   for (CameraKnowledge knowledge : {CameraKnowledge::kKnown, CameraKnowledge::kUnknownFocal}) {
     SequenceSceneOptions options;
@@ -64,7 +38,7 @@ TEST(ChainPrior, MarginalStepsEqualThoseOfTheWholeSystem) {
     chain.Linearise(x);
     MatrixXd H;
     VectorXd g;
-    Dense(chain, 6, &H, &g);
+    DenseSystem(chain, 6, &H, &g);
     const VectorXd whole = -H.ldlt().solve(g);
     // Two frames leave, one after the other.
     for (int gone = 0; gone < 2; ++gone) {
@@ -79,11 +53,13 @@ TEST(ChainPrior, MarginalStepsEqualThoseOfTheWholeSystem) {
       chain.Moved(1);
       chain.Linearise(x);
       const int T = 5 - gone, left = T * chain.frame_size() + chain.shared_size();
-      Dense(chain, T, &H, &g);
+      DenseSystem(chain, T, &H, &g);
       EXPECT_LT((-H.ldlt().solve(g) - whole.tail(left)).norm(), 1e-6 * whole.norm()) << gone;
       // And so does the block elimination, which must take up the dense coupling that the prior brings.
       ChainFactor factor(chain.frame_size(), chain.shared_size(), chain.cut_before());
       VectorXd step, shared, both(left);
+      const VectorXd none = VectorXd::Zero(T * chain.frame_size());
+      chain.SetDamping(&none);
       ASSERT_TRUE(factor.Solve(chain, chain.shared(), -chain.shared_gradient(), 2, &step, &shared));
       both << step, shared;
       EXPECT_LT((both - whole.tail(left)).norm(), 1e-6 * whole.norm()) << gone;
@@ -165,6 +141,33 @@ TEST(FixedLag, EqualsTheBatchOfAllFramesSoFarWhenEverythingIsLinear) {
         EXPECT_LT((a.translation - b.translation).norm(), 2e-7) << "window " << window << " frame " << t << " at " << i;
       }
     }
+  }
+}
+
+TEST(FixedLag, CovarianceEqualsTheBatchsWhenEverythingIsLinear) {
+  const auto scene = MakeSequenceScene({});
+  const int T = 20;
+  const SequenceProblem clip = LinearClip(*scene, T);
+  FixedLag lag(WithoutFrames(clip), 5, 1);
+  for (int t = 0; t < T; ++t) {
+    lag.Add(clip.frames[t], clip.states[t], clip.timestamps[t], clip.cut_before[t]);
+    lag.Solve(20, 0, 1e-15);
+    SequenceProblem batch = FirstFrames(clip, t + 1);
+    const int open = lag.num_frames();
+    for (int i = 0; i < open; ++i) batch.states[t + 1 - open + i] = lag.problem().states[i];
+    ChainProblem chain(batch, false, false, 1);
+    ChainFactor factor(chain.frame_size(), chain.shared_size(), chain.cut_before());
+    chain.Linearise({batch.states, batch.betas, batch.log_focal});
+    std::vector<MatrixXd> expected(t + 1);
+    ASSERT_TRUE(VisitCovariance(&chain, &factor, 0, t + 1, 1, [&](int i, const MatrixXd& P) { expected[i] = P; }));
+    int visited = 0;
+    ASSERT_TRUE(lag.VisitCovariance(0, open, [&](int i, const MatrixXd& P) {
+      const MatrixXd& whole = expected[t + 1 - open + i];
+      // What holds frames that nothing holds, 1e-6, is added again with every frame that leaves.
+      EXPECT_LT((P - whole).norm(), 1e-4 * whole.norm()) << "frame " << t << " at " << i;
+      ++visited;
+    }));
+    EXPECT_EQ(visited, open);
   }
 }
 

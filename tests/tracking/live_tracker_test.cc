@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
+#include <utility>
 
 #include "tests/support/sequence_scene.h"
 #include "tracking/live/live_history.h"
@@ -108,6 +110,31 @@ TEST(LiveTracker, SameBytesForAnyNumberOfThreads) {
   }
 }
 
+TEST(LiveTracker, SigmaIsThatOfTheWindowAndChangesNothing) {
+  LiveScene live = MakeLiveScene(26, true);
+  for (int t = 12; t < 18; ++t) {
+    live.frames[t].keypoints.clear();
+    live.frames[t].dense.clear();
+    live.frames[t].initialiser.reset();
+  }
+  LiveTracker tracker(live.input, live.options);
+  const std::vector<LiveFrame> with = RunAll(&tracker, live.frames, live.options.lag);
+  live.options.solve.estimate_uncertainty = false;
+  LiveTracker other(live.input, live.options);
+  const std::vector<LiveFrame> without = RunAll(&other, live.frames, live.options.lag);
+  for (size_t t = 0; t < with.size(); ++t) {
+    EXPECT_EQ(with[t].state.rotations, without[t].state.rotations) << t;
+    EXPECT_EQ(with[t].state.translation, without[t].state.translation) << t;
+    EXPECT_EQ(with[t].betas, without[t].betas) << t;
+    ASSERT_EQ(with[t].joint_sigma.size(), 24);
+    EXPECT_GT(with[t].joint_sigma.minCoeff(), 1e-3) << t;
+    EXPECT_LT(with[t].joint_sigma.maxCoeff(), 0.5) << t;
+    ASSERT_EQ(without[t].joint_sigma.size(), 24);
+    EXPECT_TRUE(without[t].joint_sigma.array().isNaN().all());
+  }
+  EXPECT_GT(with[15].joint_sigma.mean(), 2 * with[8].joint_sigma.mean());  // carried
+}
+
 TEST(LiveTracker, FramesWithoutObservationsAreCarriedAndThenLost) {
   LiveScene live = MakeLiveScene(60, false);  // 25 frames a second
   live.options.lost_after_s = 0.5;
@@ -124,6 +151,8 @@ TEST(LiveTracker, FramesWithoutObservationsAreCarriedAndThenLost) {
   EXPECT_TRUE(out[30].state.translation.allFinite());
   EXPECT_EQ(out[40].status, FrameStatus::kLost);
   EXPECT_FALSE(out[40].state.translation.allFinite());
+  EXPECT_TRUE(out[40].joint_sigma.array().isNaN().all());
+  EXPECT_TRUE(out[30].joint_sigma.allFinite());
   EXPECT_EQ(out[45].status, FrameStatus::kTracked);
   EXPECT_TRUE(out[45].cut_before);
   EXPECT_EQ(out[59].status, FrameStatus::kTracked);
@@ -139,6 +168,115 @@ TEST(LiveTracker, ACutBeginsAnotherShot) {
   const std::vector<LiveFrame> out = RunAll(&tracker, live.frames, live.options.lag);
   for (int t = 0; t < 40; ++t) EXPECT_EQ(out[t].cut_before, t == 20) << t;
   EXPECT_GT(out[20].state.translation.x() - out[19].state.translation.x(), 1.2);
+}
+
+/// Frames from ≤ t < to show somebody else, 500 px and two metres beside.
+void JumpAway(int from, int to, LiveScene* live) {
+  for (int t = from; t < to; ++t) {
+    for (Keypoint& point : live->frames[t].keypoints) point.x += 500;
+    for (DenseKeypoint& point : live->frames[t].dense) point.pixel.x() += 500;
+    live->frames[t].initialiser->trans.x() += 2;
+  }
+}
+
+std::vector<int> CutsOf(const std::vector<LiveFrame>& frames) {
+  std::vector<int> cuts;
+  for (const LiveFrame& frame : frames) {
+    if (frame.cut_before) cuts.push_back(static_cast<int>(frame.index));
+  }
+  return cuts;
+}
+
+// 25 frames a second: by default frames may be away for 0.15 s, four of them; here also for 0.3 s, eight.
+TEST(LiveTracker, AJumpAwayAndBackIsLeftOut) {
+  for (const bool dense : {false, true}) {
+    LiveScene truth = MakeLiveScene(50, dense);
+    LiveTracker undisturbed(truth.input, truth.options);
+    const std::vector<LiveFrame> expected = RunAll(&undisturbed, truth.frames, truth.options.lag);
+    for (const auto& [length, max_jump_s] : {std::pair(1, 0.15), {2, 0.15}, {4, 0.15}, {5, 0.3}}) {
+      LiveScene live = MakeLiveScene(50, dense);
+      JumpAway(20, 20 + length, &live);
+      live.options.max_jump_s = max_jump_s;
+      LiveTracker tracker(live.input, live.options);
+      const std::vector<LiveFrame> out = RunAll(&tracker, live.frames, live.options.lag);
+      EXPECT_TRUE(CutsOf(out).empty()) << length;
+      EXPECT_EQ(tracker.num_frames_left_out(), length);
+      for (int t = 0; t < 50; ++t) {
+        const bool away = t >= 20 && t < 20 + length;
+        EXPECT_EQ(out[t].status, away ? FrameStatus::kInterpolated : FrameStatus::kTracked) << t;
+        // Nobody is followed to the other place, and what comes after is as if nothing had happened.
+        EXPECT_LT((out[t].state.translation - expected[t].state.translation).norm(), away ? 0.15 : 0.1) << t;
+      }
+    }
+  }
+}
+
+TEST(LiveTracker, AJumpThatLastsIsACutAndSoIsTheWayBack) {
+  LiveScene live = MakeLiveScene(80, true);
+  JumpAway(20, 50, &live);
+  LiveTracker tracker(live.input, live.options);
+  const std::vector<LiveFrame> out = RunAll(&tracker, live.frames, live.options.lag);
+  EXPECT_EQ(CutsOf(out), (std::vector<int>{20, 50}));
+  for (int t = 0; t < 80; ++t) EXPECT_EQ(out[t].status, FrameStatus::kTracked) << t;
+  for (int t = 21; t < 50; ++t) EXPECT_GT(out[t].state.translation.x() - out[19].state.translation.x(), 1.0) << t;
+  EXPECT_EQ(tracker.num_frames_left_out(), 0);
+  // With more patience than lag, the first frames of a shot have been handed out before it is known to be one.
+  live.options.max_jump_s = 0.3;
+  LiveTracker patient(live.input, live.options);
+  const std::vector<LiveFrame> late = RunAll(&patient, live.frames, live.options.lag);
+  EXPECT_EQ(CutsOf(late), (std::vector<int>{24, 54}));
+  for (int t = 20; t < 24; ++t) EXPECT_EQ(late[t].status, FrameStatus::kInterpolated) << t;
+  EXPECT_EQ(late[24].status, FrameStatus::kTracked);
+  EXPECT_GT(late[24].state.translation.x() - late[19].state.translation.x(), 1.0);
+  // Without any, every jump is a cut.
+  live.options.max_jump_s = 0;
+  live = MakeLiveScene(40, true);
+  live.options.max_jump_s = 0;
+  JumpAway(20, 21, &live);
+  LiveTracker hasty(live.input, live.options);
+  EXPECT_EQ(CutsOf(RunAll(&hasty, live.frames, live.options.lag)), (std::vector<int>{20, 21}));
+}
+
+TEST(LiveTracker, AJumpWhileNothingWaitsIsLeftOutToo) {
+  LiveScene live = MakeLiveScene(40, true);
+  live.options.lag = 0;
+  JumpAway(20, 23, &live);
+  LiveTracker tracker(live.input, live.options);
+  const std::vector<LiveFrame> out = RunAll(&tracker, live.frames, 0);
+  EXPECT_TRUE(CutsOf(out).empty());
+  for (int t = 20; t < 23; ++t) {
+    EXPECT_EQ(out[t].status, FrameStatus::kInterpolated);
+    EXPECT_LT(std::abs(out[t].state.translation.x() - out[19].state.translation.x()), 0.3);
+  }
+  EXPECT_EQ(out[23].status, FrameStatus::kTracked);
+}
+
+TEST(LiveTracker, EveryFrameComesOutWhateverCame) {
+  for (const int lag : {0, 4}) {
+    for (const uint64_t seed : {1, 2, 3}) {
+      LiveScene live = MakeLiveScene(160, false);
+      std::mt19937_64 random(seed);
+      std::uniform_int_distribution<int> what(0, 7), length(1, 12);
+      double later_s = 0;
+      for (int t = 8; t < 160;) {
+        const int kind = what(random), end = std::min(160, t + length(random));
+        if (kind == 7) later_s += 0.4 * (end - t);  // a gap in time
+        if (kind <= 2) JumpAway(t, end, &live);
+        for (; t < end; ++t) {
+          live.frames[t].timestamp += later_s;
+          if (kind == 3) live.frames[t].keypoints.clear();
+          if (kind == 4) live.frames[t].keypoints.resize(live.input.landmarks.size());
+          if (kind >= 5) live.frames[t].initialiser.reset();
+        }
+      }
+      live.options.lag = lag;
+      LiveTracker tracker(live.input, live.options);
+      for (const LiveFrame& frame : RunAll(&tracker, live.frames, lag)) {
+        EXPECT_EQ(frame.state.translation.allFinite(), frame.status != FrameStatus::kLost) << frame.index;
+        EXPECT_EQ(frame.joint_sigma.allFinite(), frame.status != FrameStatus::kLost) << frame.index;
+      }
+    }
+  }
 }
 
 TEST(LiveTracker, NothingIsSeenAtAll) {
@@ -187,7 +325,7 @@ TEST(LiveHistory, MemoryIsBoundedAndTheSampleSpansTheShot) {
     for (int k = 0; k < 4; ++k) {
       points.push_back({300.0F + 40.0F * float(k % 2), 200.0F + 60.0F * float(k / 2) + float(t % 3), 0.9F});
     }
-    EXPECT_FALSE(history.Add(t / 30.0, points)) << t;
+    EXPECT_EQ(history.Add(t / 30.0, points, 0.15), Continuity::kContinues) << t;
     EXPECT_LE(history.num_frames(), 64 + 64 / 4 + 1);
     EXPECT_LE(history.Sample().num_frames(), 64);
   }
@@ -200,6 +338,44 @@ TEST(LiveHistory, MemoryIsBoundedAndTheSampleSpansTheShot) {
   EXPECT_EQ(recent.timestamps.front(), (4999 - 12) / 30.0);
 }
 
+std::vector<Keypoint> BodyAt(float x) {
+  std::vector<Keypoint> points;
+  for (int k = 0; k < 6; ++k) points.push_back({x + 40.0F * float(k % 2), 200.0F + 50.0F * float(k / 2), 0.9F});
+  return points;
+}
+
+TEST(LiveHistory, WhatJumpsAwayIsHeldUntilItIsKnown) {
+  const std::vector<std::string> names = {"left_shoulder", "right_shoulder", "left_hip",
+                                          "right_hip",     "left_knee",      "right_knee"};
+  using enum Continuity;
+  LiveHistory history(names, 640, 480, 2.0, 64);
+  int t = 0;
+  const auto add = [&](float x) { return history.Add(t++ / 30.0, x > 0 ? BodyAt(x) : std::vector<Keypoint>(), 0.11); };
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(add(300), kContinues);
+  // Away for three frames, of which one shows nothing, and back: they stay empty.
+  EXPECT_EQ(add(100), kHeld);
+  EXPECT_FALSE(history.NewestIsSeen());
+  EXPECT_EQ(add(0), kHeld);
+  EXPECT_EQ(add(100), kHeld);
+  EXPECT_EQ(add(310), kContinues);
+  EXPECT_EQ(history.num_frames(), 9);
+  EXPECT_EQ(history.Recent(2, 1).at(0, 0).confidence, 0);
+  // To one place and on to another: what begins is the shot of the last one.
+  EXPECT_EQ(add(100), kHeld);
+  EXPECT_EQ(add(100), kHeld);
+  EXPECT_EQ(add(500), kHeld);
+  EXPECT_EQ(add(500), kHeld);
+  EXPECT_EQ(add(500), kCut);
+  ASSERT_EQ(history.num_frames(), 3);
+  EXPECT_EQ(history.Recent(3, 1).at(0, 0).x, 500);
+  EXPECT_EQ(add(500), kContinues);
+  // Away, and nothing seen any more: after a second without the person it is a cut, seen or not.
+  EXPECT_EQ(add(100), kHeld);
+  int held = 0;
+  while (add(0) == kHeld) ++held;
+  EXPECT_NEAR(held, 29, 1);
+}
+
 TEST(LiveHistory, ExchangedSidesAreExchangedBack) {
   LiveHistory history({"left_shoulder", "right_shoulder", "left_hip", "right_hip", "left_knee", "right_knee"}, 640, 480,
                       2.0, 64);
@@ -207,34 +383,57 @@ TEST(LiveHistory, ExchangedSidesAreExchangedBack) {
     std::vector<Keypoint> points;
     for (int k = 0; k < 6; ++k) points.push_back({300.0F + 40.0F * float(k % 2), 200.0F + 50.0F * float(k / 2), 0.9F});
     if (t == 10) std::swap(points[4], points[5]);
-    EXPECT_FALSE(history.Add(t / 30.0, points));
+    EXPECT_EQ(history.Add(t / 30.0, points, 0.15), Continuity::kContinues);
     EXPECT_EQ(history.Recent(1, 1).at(0, 4).x, 300) << t;
   }
   EXPECT_EQ(history.num_swaps_repaired(), 1);
 }
 
+/// A live scene's observations as sequences, without the initialiser.
+struct RecordedClip {
+  KeypointSequence keypoints;
+  DenseSequence dense;
+  TrackSequenceInput input;
+  explicit RecordedClip(const LiveScene& live) {
+    keypoints.names = live.input.landmarks;
+    for (const LiveObservations& frame : live.frames) {
+      keypoints.timestamps.push_back(frame.timestamp);
+      dense.timestamps.push_back(frame.timestamp);
+      keypoints.points.insert(keypoints.points.end(), frame.keypoints.begin(), frame.keypoints.end());
+      dense.frames.push_back(frame.dense);
+    }
+    input.body = live.input.body;
+    input.camera = live.input.camera;
+    input.keypoints = &keypoints;
+    input.dense = &dense;
+  }
+};
+
 TEST(TrackLive, FillsATrackOfTheWholeClip) {
   LiveScene live = MakeLiveScene(25, true);
-  KeypointSequence keypoints;
-  keypoints.names = live.input.landmarks;
-  DenseSequence dense;
-  for (const LiveObservations& frame : live.frames) {
-    keypoints.timestamps.push_back(frame.timestamp);
-    dense.timestamps.push_back(frame.timestamp);
-    keypoints.points.insert(keypoints.points.end(), frame.keypoints.begin(), frame.keypoints.end());
-    dense.frames.push_back(frame.dense);
-  }
-  TrackSequenceInput input;
-  input.body = live.input.body;
-  input.camera = live.input.camera;
-  input.keypoints = &keypoints;
-  input.dense = &dense;
-  const TrackSequenceResult result = TrackLive(input, live.options);
+  const RecordedClip clip(live);
+  const TrackSequenceResult result = TrackLive(clip.input, live.options);
   EXPECT_EQ(result.summary.status, SolveStatus::kConverged);
   EXPECT_EQ(result.track.num_frames(), 25);
   EXPECT_EQ(result.summary.frames_by_status.at("tracked") + result.summary.frames_by_status.at("weak"), 25);
   EXPECT_LT(result.summary.dense_median_px, 6);
   EXPECT_EQ(result.summary.plan.front().what, "live");
+  for (LiveObservations& frame : live.frames) frame.initialiser.reset();
+  LiveTracker tracker(live.input, live.options);
+  const std::vector<LiveFrame> out = RunAll(&tracker, live.frames, live.options.lag);
+  for (int t = 0; t < 25; ++t) EXPECT_EQ(result.track.joint_sigma.row(t).transpose(), out[t].joint_sigma) << t;
+}
+
+TEST(TrackLive, SaysWhichFramesWereLeftOut) {
+  LiveScene live = MakeLiveScene(30, true);
+  JumpAway(15, 18, &live);
+  const RecordedClip clip(live);
+  const TrackSequenceResult result = TrackLive(clip.input, live.options);
+  for (int t = 0; t < 30; ++t) {
+    EXPECT_EQ(result.track.frame_status[t] == FrameStatus::kInterpolated, t >= 15 && t < 18) << t;
+  }
+  EXPECT_EQ(result.summary.plan.back().what, "2D joints of impossible frames");
+  EXPECT_EQ(result.summary.plan.back().why.substr(0, 8), "3 frames");
 }
 
 }  // namespace

@@ -40,14 +40,8 @@ struct ChainFactor::Panel {
 struct ChainFactor::Half {
   int begin = 0, count = 0, direction = 1;
   bool ok = true;
-  std::vector<Panel> panels;       ///< current, next, second; afterwards what is left over for the two middle frames
-  std::vector<double> shared_sum;  /// (s+1 rounded up)²: minus the arrow's products
-};
-
-struct ChainFactor::Segment {
-  int begin = 0, end = 0;
-  int middle = 0;  ///< first of the (up to) two frames that are eliminated last
-  std::vector<double> shared_sum;
+  std::vector<Panel>* panels = nullptr;  ///< current, next, second; afterwards what is left for the two middle frames
+  std::vector<double> shared_sum;        /// (s+1 rounded up)²: minus the arrow's products
 };
 
 namespace {
@@ -75,6 +69,8 @@ ChainFactor::ChainFactor(int frame_size, int shared_size, std::vector<char> cut_
                  n_, " values and ", s_, " shared ones; expected at least one frame of a multiple of 3");
   factor_.resize(cut_before_.size());
 }
+
+ChainFactor::~ChainFactor() = default;
 
 void ChainFactor::SetCuts(std::vector<char> cut_before) {
   BODYLOOM_CHECK(!cut_before.empty(), "chain: no frames");
@@ -135,12 +131,10 @@ void ChainFactor::Store(int t, const Panel& front) {
 }
 
 bool ChainFactor::Eliminate(const ChainSource& source, Half* half) {
-  if (half->panels.empty()) {
-    for (int i = 0; i < 3; ++i) half->panels.emplace_back(n_, b_columns_);
-  }
-  for (Panel& panel : half->panels) panel.Clear();
+  std::vector<Panel>& panels = *half->panels;
+  while (panels.size() < 3) panels.emplace_back(n_, b_columns_);
+  for (Panel& panel : panels) panel.Clear();
   half->shared_sum.assign(static_cast<size_t>(b_columns_) * b_columns_, 0.0);
-  std::vector<Panel>& panels = half->panels;
   for (int i = 0; i < half->count; ++i) {
     const int t = half->begin + i * half->direction;
     const bool back = half->direction < 0;
@@ -156,10 +150,14 @@ bool ChainFactor::Eliminate(const ChainSource& source, Half* half) {
   return true;
 }
 
-bool ChainFactor::EliminateMiddle(const ChainSource& source, Half* forward, Half* backward, Segment* segment) {
-  segment->shared_sum.assign(static_cast<size_t>(b_columns_) * b_columns_, 0.0);
-  const bool two = segment->end - segment->begin >= 2;
-  Panel first(n_, b_columns_), last(n_, b_columns_);
+bool ChainFactor::EliminateMiddle(const ChainSource& source, const Segment& segment, Half* forward, Half* backward,
+                                  std::vector<double>* shared_sum) {
+  shared_sum->assign(static_cast<size_t>(b_columns_) * b_columns_, 0.0);
+  const bool two = segment.end - segment.begin >= 2;
+  while (middle_panels_.size() < 2) middle_panels_.emplace_back(n_, b_columns_);
+  Panel &first = middle_panels_[0], &last = middle_panels_[1];
+  first.Clear();
+  last.Clear();
   const auto add = [&](const Panel& from, Panel* to, bool coupling) {
     for (int i = 0; i < n_; ++i) {
       const double* x = from.data + i * from.stride;
@@ -170,7 +168,7 @@ bool ChainFactor::EliminateMiddle(const ChainSource& source, Half* forward, Half
       for (int j = 0; j < n_; ++j) y[to->next + j] += x[from.next + j];
     }
   };
-  const int m = segment->middle;
+  const int m = segment.middle;
   source.AddFrame(m, first.data, first.stride, first.data + first.arrow, first.stride);
   if (two) {
     source.AddFrame(m + 1, last.data, last.stride, last.data + last.arrow, last.stride);
@@ -178,21 +176,21 @@ bool ChainFactor::EliminateMiddle(const ChainSource& source, Half* forward, Half
     AddDense(source.DenseNext(m), n_, first.data + first.next, first.stride);
   }
   if (forward->count > 0) {
-    add(forward->panels[0], &first, true);
-    add(forward->panels[1], &last, false);
+    add((*forward->panels)[0], &first, true);
+    add((*forward->panels)[1], &last, false);
   }
   if (backward->count > 0) {
-    add(backward->panels[0], &last, false);
-    add(backward->panels[1], &first, false);
-    const Panel& from = backward->panels[0];
+    add((*backward->panels)[0], &last, false);
+    add((*backward->panels)[1], &first, false);
+    const Panel& from = (*backward->panels)[0];
     for (int i = 0; i < n_; ++i) {
       for (int j = 0; j < n_; ++j) {
         first.data[j * first.stride + first.next + i] += from.data[i * from.stride + from.next + j];
       }
     }
   }
-  if (!Step(m, &first, two ? &last : nullptr, nullptr, &segment->shared_sum)) return false;
-  return !two || Step(m + 1, &last, nullptr, nullptr, &segment->shared_sum);
+  if (!Step(m, &first, two ? &last : nullptr, nullptr, shared_sum)) return false;
+  return !two || Step(m + 1, &last, nullptr, nullptr, shared_sum);
 }
 
 void ChainFactor::BackSubstitute(int t, int next, int second, const double* shared, double* frames) const {
@@ -212,25 +210,31 @@ void ChainFactor::BackSubstitute(int t, int next, int second, const double* shar
   }
 }
 
-bool ChainFactor::Solve(const ChainSource& source, const Eigen::MatrixXd& shared, const Eigen::VectorXd& shared_rhs,
-                        int num_threads, Eigen::VectorXd* frames, Eigen::VectorXd* shared_step) {
-  const int T = num_frames();
+std::vector<ChainFactor::Segment> ChainFactor::Segments() const {
   std::vector<Segment> segments;
-  std::vector<Half> halves;  // two a segment
-  for (int t = 0; t < T; ++t) {
+  for (int t = 0; t < num_frames(); ++t) {
     if (t == 0 || cut_before_[t]) segments.emplace_back().begin = t;
     segments.back().end = t + 1;
   }
   for (Segment& segment : segments) {
-    const int length = segment.end - segment.begin, ahead = std::max(0, (length - 2) / 2);
-    segment.middle = segment.begin + ahead;
+    segment.middle = segment.begin + std::max(0, (segment.end - segment.begin - 2) / 2);
+  }
+  return segments;
+}
+
+bool ChainFactor::Solve(const ChainSource& source, const Eigen::MatrixXd& shared, const Eigen::VectorXd& shared_rhs,
+                        int num_threads, Eigen::VectorXd* frames, Eigen::VectorXd* shared_step) {
+  const int T = num_frames();
+  const std::vector<Segment> segments = Segments();
+  std::vector<Half> halves;  // two a segment
+  for (const Segment& segment : segments) {
     Half& forward = halves.emplace_back();
     forward.begin = segment.begin;
-    forward.count = ahead;
+    forward.count = segment.middle - segment.begin;
     Half& backward = halves.emplace_back();
     backward.begin = segment.end - 1;
     backward.direction = -1;
-    backward.count = std::max(0, length - 2 - ahead);
+    backward.count = std::max(0, segment.end - segment.middle - 2);
   }
   Eigen::MatrixXd S = shared.selfadjointView<Eigen::Lower>();
   Eigen::VectorXd rhs = shared_rhs;
@@ -243,20 +247,23 @@ bool ChainFactor::Solve(const ChainSource& source, const Eigen::MatrixXd& shared
   };
   constexpr int kAtOnce = 8;  // segments whose panels are in memory at the same time
   const int num_segments = static_cast<int>(segments.size());
+  std::vector<double> middle_sum;
+  panels_.resize(std::max(panels_.size(), static_cast<size_t>(2 * std::min(kAtOnce, num_segments))));
   for (int first = 0; first < num_segments; first += kAtOnce) {
     const int last = std::min(first + kAtOnce, num_segments);
     ParallelFor(2 * (last - first), num_threads, [&](int i) {
       Half& half = halves[2 * first + i];
+      half.panels = &panels_[i];
       if (half.count > 0) half.ok = Eliminate(source, &half);
     });
     for (int i = first; i < last; ++i) {
       Half &forward = halves[2 * i], &backward = halves[2 * i + 1];
-      if (!forward.ok || !backward.ok || !EliminateMiddle(source, &forward, &backward, &segments[i])) return false;
+      if (!forward.ok || !backward.ok || !EliminateMiddle(source, segments[i], &forward, &backward, &middle_sum)) {
+        return false;
+      }
       subtract(forward.shared_sum);
       subtract(backward.shared_sum);
-      subtract(segments[i].shared_sum);
-      forward.panels.clear();
-      backward.panels.clear();
+      subtract(middle_sum);
     }
   }
   shared_step->setZero(s_);
@@ -264,6 +271,7 @@ bool ChainFactor::Solve(const ChainSource& source, const Eigen::MatrixXd& shared
     const Eigen::LLT<Eigen::MatrixXd> factor(S);
     if (factor.info() != Eigen::Success) return false;
     *shared_step = factor.solve(rhs);
+    shared_inverse_ = factor.solve(Eigen::MatrixXd::Identity(s_, s_));
   }
   frames->resize(static_cast<int64_t>(T) * n_);
   const double* y = shared_step->data();

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "geometry/check.h"
+#include "tracking/chain/chain_covariance.h"
 #include "tracking/chain_solver.h"
 
 namespace bodyloom {
@@ -65,6 +66,12 @@ void FixedLag::Cut(int t) {
   }
   chain_.Moved(0);
   factor_.SetCuts(problem_.cut_before);
+}
+
+bool FixedLag::VisitCovariance(int begin, int end, const std::function<void(int, const Eigen::MatrixXd&)>& visit) {
+  // The next solve begins by linearising here, too.
+  return std::isfinite(chain_.Linearise({problem_.states, problem_.betas, problem_.log_focal})) &&
+         bodyloom::VisitCovariance(&chain_, &factor_, begin, end, num_threads_, visit);
 }
 
 SolveReport FixedLag::Solve(int max_iterations, double skip_share, double function_tolerance) {

@@ -7,6 +7,8 @@
 /// would give for them.
 #pragma once
 
+#include <functional>
+
 #include "tracking/chain/chain_factor.h"
 #include "tracking/chain/chain_prior.h"
 #include "tracking/chain/chain_problem.h"
@@ -28,6 +30,10 @@ class FixedLag {
   /// At most this many iterations, with SolveOptions::skip_settled = `skip_share`. A failure
   /// leaves the states at the best point that was found.
   SolveReport Solve(int max_iterations, double skip_share, double function_tolerance = 1e-5);
+
+  /// VisitCovariance() of chain_covariance.h at the window's states, for frames begin ≤ t < end of it; frames that have
+  /// left count through the prior. Later solves are the same with it as without.
+  bool VisitCovariance(int begin, int end, const std::function<void(int, const Eigen::MatrixXd&)>& visit);
 
   /// Shape prior, betas, states and observations may be changed between calls; Touch(t) after the latter.
   [[nodiscard]] SequenceProblem& problem() { return problem_; }

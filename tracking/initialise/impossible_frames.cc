@@ -66,6 +66,9 @@ struct Change {
   double distance = 0;  ///< median of the common landmarks, in sizes of the smaller body
   double size = 1;      ///< ratio of the larger body to the smaller
   bool known = false;
+  [[nodiscard]] bool Continues(double seconds) const {
+    return known && distance < kContinues + kContinuesSpeed * seconds && size < kSameSize;
+  }
 };
 
 Change Between(const KeypointSequence& keypoints, const std::vector<double>& sizes, int a, int b) {
@@ -82,6 +85,13 @@ Change Between(const KeypointSequence& keypoints, const std::vector<double>& siz
 }
 
 }  // namespace
+
+bool ContinuesFrame(const KeypointSequence& keypoints, int a, int b) {
+  std::vector<double> sizes(keypoints.num_frames());
+  for (int t : {a, b}) sizes[t] = SeenBodySize(keypoints, t);
+  return sizes[a] > 0 && sizes[b] > 0 &&
+         Between(keypoints, sizes, a, b).Continues(keypoints.timestamps[b] - keypoints.timestamps[a]);
+}
 
 int DropImpossibleFrames(KeypointSequence* keypoints) {
   const int T = keypoints->num_frames();
@@ -104,9 +114,7 @@ int DropImpossibleFrames(KeypointSequence* keypoints) {
     int returns = t;
     if (jumps) {
       const auto continues = [&](int u) {
-        if (sizes[u] <= 0) return false;
-        const Change c = Between(*keypoints, sizes, good, u);
-        return c.known && c.distance < kContinues + kContinuesSpeed * seconds(u) && c.size < kSameSize;
+        return sizes[u] > 0 && Between(*keypoints, sizes, good, u).Continues(seconds(u));
       };
       int u = t + 1;
       while (u < T && seconds(u) <= kLongest_s && !continues(u)) ++u;

@@ -17,4 +17,7 @@ namespace bodyloom {
 /// emptied.
 int DropImpossibleFrames(KeypointSequence* keypoints);
 
+/// "Continues" for frames a and b of a sequence, where b is the later one.
+bool ContinuesFrame(const KeypointSequence& keypoints, int a, int b);
+
 }  // namespace bodyloom

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "geometry/check.h"
+#include "tracking/initialise/impossible_frames.h"
 #include "tracking/initialise/swap_repair.h"
 #include "tracking/input_checks.h"
 #include "tracking/observability.h"
@@ -13,6 +14,7 @@ namespace bodyloom {
 namespace {
 
 constexpr int kSwapFrames = 7;
+constexpr double kMaxGap_s = 1;  ///< as FindCuts()
 
 void Append(const KeypointSequence& from, int t, KeypointSequence* to) {
   const auto K = static_cast<std::ptrdiff_t>(from.names.size());
@@ -35,72 +37,113 @@ LiveHistory::LiveHistory(std::vector<std::string> names, int image_width, int im
   all_.names = std::move(names);
   all_.image_width = image_width;
   all_.image_height = image_height;
-  sample_ = last_seen_ = all_;
+  sample_ = last_seen_ = held_ = held_seen_ = all_;
 }
 
 void LiveHistory::Forget() {
-  for (KeypointSequence* keypoints : {&all_, &sample_, &last_seen_}) {
-    keypoints->points.clear();
-    keypoints->timestamps.clear();
-  }
+  for (KeypointSequence* keypoints : {&all_, &sample_, &last_seen_, &held_, &held_seen_}) *keypoints = Empty();
   sample_step_ = 1;
   since_sample_ = 0;
 }
 
-bool LiveHistory::Add(double timestamp, const std::vector<Keypoint>& points) {
+KeypointSequence LiveHistory::Empty() const {
+  KeypointSequence empty;
+  empty.convention = all_.convention;
+  empty.names = all_.names;
+  empty.image_width = all_.image_width;
+  empty.image_height = all_.image_height;
+  return empty;
+}
+
+bool LiveHistory::IsCut(const KeypointSequence& before, const KeypointSequence& frame) {
+  if (before.num_frames() == 0) return false;
+  KeypointSequence pair = before;
+  Append(frame, 0, &pair);
+  return FindCuts(pair)[1] != 0;
+}
+
+Continuity LiveHistory::Add(double timestamp, const std::vector<Keypoint>& points, double hold_s) {
   const size_t K = all_.names.size();
   BODYLOOM_CHECK(points.empty() || points.size() == K, "live: ", points.size(), " 2D joints in a frame, expected ", K);
-  KeypointSequence frame = all_;
+  KeypointSequence frame = Empty();
   frame.points.assign(K, Keypoint());
   frame.timestamps = {timestamp};
+  KeypointSequence nothing = frame;
   if (!points.empty()) frame.points = points;
   DropUnusable(&frame);
-  bool cut = false;
-  if (last_seen_.num_frames() > 0) {
+  const bool seen = SeenBodySize(frame, 0) > 0;
+  const bool gap = last_seen_.num_frames() > 0 && timestamp - last_seen_.timestamps[0] > kMaxGap_s;
+  if (held_.num_frames() == 0) {
+    if (!IsCut(last_seen_, frame)) {
+      Put(std::move(frame));
+      return Continuity::kContinues;
+    }
+    held_begin_ = 0;
+  } else {
     KeypointSequence pair = last_seen_;
     Append(frame, 0, &pair);
-    cut = FindCuts(pair)[1] != 0;
+    if (!gap && ContinuesFrame(pair, 0, 1)) {
+      held_ = held_seen_ = Empty();
+      Put(std::move(frame));
+      return Continuity::kContinues;
+    }
+    if (IsCut(held_seen_, frame)) held_begin_ = held_.num_frames();
   }
-  if (cut) Forget();
+  Append(frame, 0, &held_);
+  if (seen) held_seen_ = frame;
+  if (!gap && (!seen || (hold_s > 0 && timestamp - held_.timestamps[0] <= hold_s))) {
+    Append(nothing, 0, &all_);
+    DropOld();
+    return Continuity::kHeld;
+  }
+  const KeypointSequence held = std::move(held_);
+  const int begin = held_begin_;
+  Forget();
+  for (int t = begin; t < held.num_frames(); ++t) {
+    KeypointSequence one = Empty();
+    Append(held, t, &one);
+    Put(std::move(one));
+  }
+  return Continuity::kCut;
+}
+
+void LiveHistory::Put(KeypointSequence frame) {
   if (all_.num_frames() > 0) {
     KeypointSequence last = Recent(kSwapFrames - 1, 1);
     Append(frame, 0, &last);
     RepairSwaps(&last);
-    for (size_t k = 0; k < K; ++k) {  // both joints of a pair are counted
-      const Keypoint& repaired = last.at(last.num_frames() - 1, static_cast<int>(k));
+    for (int k = 0; k < frame.num_points(); ++k) {  // both joints of a pair are counted
+      const Keypoint& repaired = last.at(last.num_frames() - 1, k);
       num_swaps_repaired_ += repaired.confidence > 0 && repaired.x != frame.points[k].x;
       frame.points[k] = repaired;
     }
   }
   Append(frame, 0, &all_);
+  DropOld();
+  if (SeenBodySize(frame, 0) <= 0) return;
+  last_seen_ = frame;
+  if (++since_sample_ >= sample_step_) {
+    since_sample_ = 0;
+    Append(frame, 0, &sample_);
+  }
+  if (sample_.num_frames() >= max_frames_) {
+    KeypointSequence half = Empty();
+    for (int t = 0; t < sample_.num_frames(); t += 2) Append(sample_, t, &half);
+    sample_ = std::move(half);
+    sample_step_ *= 2;
+  }
+}
+
+void LiveHistory::DropOld() {
+  const double oldest = all_.timestamps.back() - seconds_;
   int old = 0;
-  while (all_.num_frames() - old > max_frames_ || all_.timestamps[old] < timestamp - seconds_) ++old;
+  while (all_.num_frames() - old > max_frames_ || all_.timestamps[old] < oldest) ++old;
   // Now and then many at once: erasing at the front moves everything behind.
   if (old > max_frames_ / 4) DropFrames(old, &all_);
-  if (SeenBodySize(frame, 0) > 0) {
-    last_seen_ = frame;
-    if (++since_sample_ >= sample_step_) {
-      since_sample_ = 0;
-      Append(frame, 0, &sample_);
-    }
-    if (sample_.num_frames() >= max_frames_) {
-      KeypointSequence half = frame;
-      half.points.clear();
-      half.timestamps.clear();
-      for (int t = 0; t < sample_.num_frames(); t += 2) Append(sample_, t, &half);
-      sample_ = std::move(half);
-      sample_step_ *= 2;
-    }
-  }
-  return cut;
 }
 
 KeypointSequence LiveHistory::Recent(int count, int stride) const {
-  KeypointSequence recent;
-  recent.convention = all_.convention;
-  recent.names = all_.names;
-  recent.image_width = all_.image_width;
-  recent.image_height = all_.image_height;
+  KeypointSequence recent = Empty();
   const int newest = all_.num_frames() - 1;
   for (int i = std::min(count - 1, newest / stride); i >= 0; --i) Append(all_, newest - i * stride, &recent);
   return recent;

@@ -10,15 +10,26 @@
 
 namespace bodyloom {
 
+/// How a frame follows the ones before.
+enum class Continuity {
+  kContinues,
+  kHeld,  ///< it jumps away; whether to come back is not known yet, and it counts as not seen
+  kCut    ///< it does not continue them; nor did the frames that were held
+};
+
 class LiveHistory {
  public:
   /// Keeps `seconds` of frames, at most `max_frames` of them, and as many of the thinned sample.
   LiveHistory(std::vector<std::string> names, int image_width, int image_height, double seconds, int max_frames);
 
   /// Appends a frame: unusable joints become missing, left–right pairs that jump to each other's place are exchanged
-  /// back (RepairSwaps() over the last frames). Returns true when it does not continue the frames before (FindCuts());
-  /// then these are forgotten.
-  bool Add(double timestamp, const std::vector<Keypoint>& points);
+  /// back (RepairSwaps() over the last frames).
+  ///
+  /// Frames from a jump on (FindCuts()) are held, and stay empty when one continues the frame before the jump again
+  /// (ContinuesFrame()). When one comes more than hold_s after the first of them there is a cut: all that was before is
+  /// forgotten, and the history begins with the held frames since the last jump among them. hold_s = 0, and more than a
+  /// second since the person was seen: a cut at once.
+  Continuity Add(double timestamp, const std::vector<Keypoint>& points, double hold_s);
 
   /// Frames …, newest − 2·stride, newest − stride, newest: at most `count`, oldest first.
   [[nodiscard]] KeypointSequence Recent(int count, int stride) const;
@@ -34,10 +45,20 @@ class LiveHistory {
   [[nodiscard]] int num_swaps_repaired() const { return num_swaps_repaired_ / 2; }
 
  private:
+  /// Whether `frame` cannot follow `before`: FindCuts().
+  [[nodiscard]] static bool IsCut(const KeypointSequence& before, const KeypointSequence& frame);
+  /// Appends a clean frame that continues the ones before.
+  void Put(KeypointSequence frame);
+  [[nodiscard]] KeypointSequence Empty() const;
+  void DropOld();
+
   KeypointSequence all_, sample_;
   double seconds_;
   int max_frames_, sample_step_ = 1, since_sample_ = 0, num_swaps_repaired_ = 0;
   KeypointSequence last_seen_;  ///< the newest frame that shows a person, alone
+  KeypointSequence held_;       ///< all frames since the jump
+  KeypointSequence held_seen_;  ///< the newest of them that shows a person, alone
+  int held_begin_ = 0;          ///< the first of them that the newest may continue
 };
 
 }  // namespace bodyloom

@@ -18,14 +18,18 @@
 namespace bodyloom {
 
 struct LiveTrackerOptions {
-  int lag = 4;                ///< frames: Push() of frame t returns frame t − lag. 0 to 60
-  int context = 4;            ///< frames before those that stay in the window; at least 2
-  int iterations = 2;         ///< of each frame
-  int start_iterations = 8;   ///< of each of the first lag + 1 frames of a shot
-  int max_dense = 600;        ///< dense keypoints of a frame; of more, about this many stand for all
-  double lost_after_s = 1;    ///< without any observation the person is lost
+  int lag = 4;               ///< frames: Push() of frame t returns frame t − lag. 0 to 60
+  int context = 4;           ///< frames before those that stay in the window; at least 2
+  int iterations = 2;        ///< of each frame
+  int start_iterations = 8;  ///< of each of the first lag + 1 frames of a shot
+  int max_dense = 600;       ///< dense keypoints of a frame; of more, about this many stand for all
+  double lost_after_s = 1;   ///< without any observation the person is lost
+  /// Frames whose 2D joints jump away from the person count as not seen until they come back, or until they have lasted
+  /// for longer than this; then there is a cut, at the first of them that has not been handed out. 0: a cut at once
+  double max_jump_s = 0.15;
   double skip_settled = 0.1;  ///< SolveOptions::skip_settled
-  /// Camera knowledge, weights, threads, estimate_shape and skip_unneeded mean what they mean for TrackSequence().
+  /// Camera knowledge, weights, threads, estimate_shape, skip_unneeded and estimate_uncertainty mean what they mean for
+  /// TrackSequence().
   TrackSequenceOptions solve;
   /// False with the reason when a field is out of range.
   bool IsValid(std::string* why) const;
@@ -57,6 +61,9 @@ struct LiveFrame {
   FrameState state;         ///< NaN when lost
   Eigen::VectorXd betas;    ///< as known when the frame is handed out
   Camera camera;            ///< of the frame, with the focal length as known then
+  /// J standard deviations of the joints' positions, metres (uncertainty.h), as known then; NaN when lost, or without
+  /// TrackSequenceOptions::estimate_uncertainty.
+  Eigen::VectorXd joint_sigma;
 };
 
 class LiveTracker {
@@ -79,6 +86,8 @@ class LiveTracker {
   [[nodiscard]] double log_focal() const;
   [[nodiscard]] int64_t num_iterations() const;
   [[nodiscard]] int num_swaps_repaired() const;
+  /// Frames that jumped away from the person and back.
+  [[nodiscard]] int64_t num_frames_left_out() const;
 
  private:
   class Impl;

@@ -22,7 +22,17 @@ const std::vector<double>& TimesOf(const TrackSequenceInput& input) {
   return input.keypoints != nullptr ? input.keypoints->timestamps : input.dense->timestamps;
 }
 
-void Take(LiveFrame&& frame, bool weak, SequenceProblem* problem) {
+/// What came out of the tracker, frame by frame.
+struct Taken {
+  SequenceProblem problem;
+  RowMatrixXd joint_sigma;
+  std::vector<FrameStatus> status;
+};
+
+void Take(LiveFrame&& frame, bool weak, Taken* taken) {
+  SequenceProblem* problem = &taken->problem;
+  taken->joint_sigma.row(frame.index) = frame.joint_sigma.transpose();
+  taken->status[frame.index] = frame.status;
   FrameState& state = problem->states[frame.index];
   state = std::move(frame.state);
   if (weak && frame.status != FrameStatus::kLost) {
@@ -71,7 +81,6 @@ std::vector<PlanEntry> PlanTrackLive(const TrackSequenceInput& input, const Live
   seen.part_labels = nullptr;
   TrackSequenceOptions solve = options.solve;
   solve.rendered_uv.weight = 0;
-  solve.estimate_uncertainty = false;
   std::vector<PlanEntry> plan = PlanTrackSequence(seen, solve);
   plan.insert(plan.begin(), {"live", true,
                              Concatenate("each frame is fitted when the ", options.lag,
@@ -98,18 +107,20 @@ TrackSequenceResult TrackLive(const TrackSequenceInput& input, const LiveTracker
   TrackSequenceSummary& summary = result.summary;
   summary.plan = PlanTrackLive(input, options);
   summary.solver = "chain, live";
-  SequenceProblem problem;
+  Taken taken;
+  SequenceProblem& problem = taken.problem;
   problem.layout = tracker.layout();
   problem.states.resize(T);
   problem.frames.resize(T);
   problem.cut_before.assign(T, 0);
   problem.timestamps = TimesOf(input);
   const bool weak = problem.layout.knowledge == CameraKnowledge::kWeak;
+  taken.joint_sigma.resize(T, input.body->num_joints());
+  taken.status.assign(T, FrameStatus::kLost);
   summary.status = SolveStatus::kConverged;
   int pushed = 0;
   for (int t = 0; t < T && summary.status == SolveStatus::kConverged; ++t, ++pushed) {
-    if (std::optional<LiveFrame> frame = tracker.Push(ObservationsAt(input, t)))
-      Take(std::move(*frame), weak, &problem);
+    if (std::optional<LiveFrame> frame = tracker.Push(ObservationsAt(input, t))) Take(std::move(*frame), weak, &taken);
     if (options.solve.progress && t % 16 == 0 && !options.solve.progress({"live", double(t) / T, 0})) {
       summary.status = SolveStatus::kStopped;
       summary.message = "stopped by the caller";
@@ -118,9 +129,13 @@ TrackSequenceResult TrackLive(const TrackSequenceInput& input, const LiveTracker
   problem.betas = tracker.betas();
   problem.log_focal = tracker.log_focal();
   summary.num_swaps_repaired = tracker.num_swaps_repaired();
-  for (LiveFrame& frame : tracker.Finish()) Take(std::move(frame), weak, &problem);
+  for (LiveFrame& frame : tracker.Finish()) Take(std::move(frame), weak, &taken);
   summary.iterations = static_cast<int>(tracker.num_iterations());
   if (summary.status == SolveStatus::kStopped) return result;
+  if (tracker.num_frames_left_out() > 0) {
+    summary.plan.push_back({"2D joints of impossible frames", false,
+                            Concatenate(tracker.num_frames_left_out(), " frames jump away from the person and back")});
+  }
 
   VectorXd gradient;
   const double stature = StatureOfMeanShape(*input.body, problem.layout.num_betas, &gradient);
@@ -130,6 +145,7 @@ TrackSequenceResult TrackLive(const TrackSequenceInput& input, const LiveTracker
     const FrameState& state = problem.states[t];
     if (!state.translation.allFinite()) continue;
     ++found;
+    if (taken.status[t] == FrameStatus::kInterpolated) continue;  // it may have been left out: nothing of it was used
     if (input.keypoints != nullptr) {
       problem.frames[t].landmarks =
           ObserveLandmarks(landmarks, *input.keypoints, t, PersonHeightPx(problem.layout, state, stature));
@@ -148,6 +164,7 @@ TrackSequenceResult TrackLive(const TrackSequenceInput& input, const LiveTracker
       found * problem.layout.num_frame_columns() + problem.layout.num_columns - problem.layout.beta_column;
   summary.seconds.emplace_back("live", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   FillTrack(input, problem, landmarks, &result);
+  result.track.joint_sigma = std::move(taken.joint_sigma);
   return result;
 }
 

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The lifter in a live tracker: read at its own rate on what is past, and again when frames have come behind.
+#pragma once
+
+#include <vector>
+
+#include "tracking/live/live_window.h"
+
+namespace bodyloom {
+
+/// What the lifter says of the window's last frames.
+struct LiveReading {
+  std::vector<LiftedFrame> frames;  ///< one frame every `stride`, the last of them the window's last; empty: not asked
+  int stride = 1;
+  double metres = 0;  ///< of its unit
+};
+
+class LiveLifter {
+ public:
+  /// The next frame counts as the first of a shot.
+  void Restart() { since_last_ = 0; }
+  /// Asks the lifter where its turn has come, and puts what it says into the window's frames of the current shot.
+  LiveReading Ask(const LiveSetup& setup, LiveWindow* window);
+
+ private:
+  int since_last_ = 0;  ///< frames
+};
+
+}  // namespace bodyloom

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What a live tracker knows before the first frame and does not change: body, camera, priors, which joints are
+/// unknowns.
+#pragma once
+
+#include <optional>
+
+#include "tracking/joint_limits.h"
+#include "tracking/live/live_tracker.h"
+#include "tracking/mixture_prior.h"
+#include "tracking/observability.h"
+#include "tracking/residuals/lifted_pose.h"
+
+namespace bodyloom {
+
+/// Points into itself: not to be copied.
+struct LiveSetup {
+  /// Throws std::invalid_argument when input or options cannot be.
+  LiveSetup(const LiveTrackerInput& given, const LiveTrackerOptions& chosen);
+  LiveSetup(const LiveSetup&) = delete;
+  LiveSetup& operator=(const LiveSetup&) = delete;
+
+  /// The clip's layout, shape and focal length at their priors' means, and no frames.
+  [[nodiscard]] SequenceProblem EmptyProblem() const;
+  /// Throws std::invalid_argument when a frame cannot come after one at `last_s` seconds (null: after none).
+  void CheckObservations(const LiveObservations& observations, const double* last_s) const;
+
+  const LiveTrackerInput input;
+  const LiveTrackerOptions options;
+  int threads = 1;
+  FrameLayout layout;
+  ObservedLandmarks landmarks;
+  LiftedLandmarks lifted_landmarks;
+  std::optional<MixturePrior> prior;
+  JointLimits limits;
+  double stature_m = 0;  ///< of the mean shape
+};
+
+}  // namespace bodyloom

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracking/live/live_window.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "tracking/image_terms.h"
+#include "tracking/input_checks.h"
+#include "tracking/track_result.h"
+#include "tracking/uncertainty.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr double kHistory_s = 4.2;  ///< what the lifter looks back on
+constexpr int kHistoryFrames = 512;
+
+std::unique_ptr<FixedLag> MakeLag(const LiveSetup& setup, SequenceProblem problem) {
+  auto lag = std::make_unique<FixedLag>(std::move(problem), setup.options.lag + setup.options.context, setup.threads);
+  lag->LimitDense(setup.options.max_dense);
+  return lag;
+}
+
+}  // namespace
+
+bool IsFinite(const FrameState& state) {
+  return state.translation.allFinite() && std::all_of(state.rotations.begin(), state.rotations.end(),
+                                                      [](const Eigen::Matrix3d& R) { return R.allFinite(); });
+}
+
+LiveWindow::LiveWindow(const LiveSetup& setup, int64_t first_index)
+    : setup_(setup),
+      lag_(MakeLag(setup, setup.EmptyProblem())),
+      history_(setup.input.landmarks, setup.layout.camera.width, setup.layout.camera.height, kHistory_s,
+               kHistoryFrames),
+      first_index_(first_index),
+      next_index_(first_index) {}
+
+LiveRecord& LiveWindow::Append(const LiveObservations& observations) {
+  const Continuity continuity =
+      history_.Add(observations.timestamp, observations.keypoints, tracking ? setup_.options.max_jump_s : 0);
+  if (continuity == Continuity::kCut) {
+    EndShot();
+    Release(history_.num_frames() - 1);
+  }
+  LiveRecord& record = records_.emplace_back();
+  record.index = next_index_++;
+  ++frames_of_clip_;
+  record.timestamp = observations.timestamp;
+  DenseSequence dense;
+  dense.frames = {observations.dense};
+  dense.image_width = setup_.layout.camera.width;
+  dense.image_height = setup_.layout.camera.height;
+  DropUnusable(&dense);
+  record.dense = std::move(dense.frames[0]);
+  if (observations.initialiser) {
+    const FrameState given{observations.initialiser->rotations, observations.initialiser->trans};
+    if (IsFinite(given)) record.initialiser = observations.initialiser;
+  }
+  record.seen = history_.NewestIsSeen() || !record.dense.empty();
+  if (continuity == Continuity::kHeld) {
+    record.held = {std::exchange(record.dense, {}), std::exchange(record.initialiser, std::nullopt),
+                   !observations.keypoints.empty()};
+    record.seen = false;
+    ++num_held_;
+  }
+  if (record.seen) last_seen_s_ = record.timestamp;
+  if (tracking && record.timestamp - last_seen_s_ > setup_.options.lost_after_s) {
+    EndShot();
+    history_.Forget();
+  }
+  record.shot = shot_;
+  return record;
+}
+
+void LiveWindow::Release(int count) {
+  for (auto it = records_.rbegin(); it != records_.rend() && count > 0; ++it, --count) {
+    if (!it->held || it->handed_out) return;  // what was handed out stays as it was
+    --num_held_;
+    it->dense = std::move(it->held->dense);
+    it->initialiser = std::move(it->held->initialiser);
+    it->seen = it->held->seen || !it->dense.empty();
+    it->held.reset();
+    it->shot = shot_;
+    it->lifted = LiftedPose();  // said of the person before
+    if (!it->in_window) continue;
+    const int slot = SlotOf(*it);
+    lag_->problem().frames[slot].lifted = nullptr;
+    lag_->Touch(slot);
+  }
+}
+
+void LiveWindow::EndShot() {
+  tracking = false;
+  shot_frames_ = 0;
+  ++shot_;
+}
+
+int LiveWindow::NumOpen() const {
+  int open = 0;
+  for (auto it = records_.rbegin(); it != records_.rend() && !it->handed_out && it->shot == shot_; ++it) ++open;
+  return open;
+}
+
+int LiveWindow::SlotOf(const LiveRecord& record) const {
+  return static_cast<int>(std::count_if(records_.begin(), records_.end(),
+                                        [&](const LiveRecord& r) { return r.in_window && r.index < record.index; }));
+}
+
+int LiveWindow::NumOfShotInWindow() const { return std::min(lag_->num_frames(), shot_frames_); }
+
+FrameData LiveWindow::Observe(const FrameState& state, LiveRecord* record) const {
+  const TrackSequenceOptions& solve = setup_.options.solve;
+  FrameData frame;
+  const double height_px = PersonHeightPx(setup_.layout, state, setup_.stature_m);
+  const auto back = static_cast<int>(records_.back().index - record->index);
+  const KeypointSequence recent = history_.Recent(back + 1, 1);
+  if (recent.num_frames() == back + 1) frame.landmarks = ObserveLandmarks(setup_.landmarks, recent, 0, height_px);
+  if (!record->dense.empty()) frame.dense = &record->dense;
+  if (setup_.prior) {
+    frame.prior = &*setup_.prior;
+    frame.prior_weight = solve.prior_weight;
+  }
+  frame.limits = &setup_.limits;
+  frame.upright_weight = solve.upright_weight;
+  frame.landmark_kernel = 4;
+  if (!record->lifted.points.empty()) {
+    frame.lifted = &record->lifted;
+    frame.lifted_weight = solve.lifter_weight;
+  }
+  if (record->initialiser) {
+    frame.initial_rotations = record->initialiser->rotations;
+    frame.initial_translation = record->initialiser->trans;
+    frame.initialiser_weight = solve.initialiser_weight;
+    if (setup_.layout.knowledge == CameraKnowledge::kWeak) frame.initial_translation = state.translation;
+  }
+  return frame;
+}
+
+void LiveWindow::Add(LiveRecord* record, const FrameState& start, bool cut) {
+  FrameData frame = Observe(start, record);
+  record->status = record->seen ? StatusOf(frame) : FrameStatus::kInterpolated;
+  if (lag_->Add(std::move(frame), start, record->timestamp, cut) > 0) {
+    std::find_if(records_.begin(), records_.end(), [](const LiveRecord& r) { return r.in_window; })->in_window = false;
+  }
+  record->in_window = true;
+  ++shot_frames_;
+  lag_->problem().shape_prior.weight =
+      std::max(1.0, setup_.options.solve.shape_prior_weight * static_cast<double>(frames_of_clip_));
+}
+
+void LiveWindow::Replace(LiveRecord* record, const FrameState& start, bool cut) {
+  const int slot = SlotOf(*record);
+  FrameData& frame = lag_->problem().frames[slot];
+  frame = Observe(start, record);
+  record->status = record->seen ? StatusOf(frame) : FrameStatus::kInterpolated;
+  lag_->problem().states[slot] = start;
+  lag_->Touch(slot);
+  if (cut) lag_->Cut(slot);
+  ++shot_frames_;
+}
+
+bool LiveWindow::Solve(int iterations) {
+  const SolveReport report = lag_->Solve(iterations, setup_.options.skip_settled);
+  iterations_ += report.iterations - 1;
+  if (report.status != SolveStatus::kFailure) return true;
+  // Nothing in the window can be trusted: begin again with the next frame, from the shape and focal length so far.
+  const SequenceProblem& failed = lag_->problem();
+  SequenceProblem problem = setup_.EmptyProblem();
+  if (failed.betas.allFinite()) problem.betas = failed.betas;
+  problem.shape_prior = failed.shape_prior;
+  if (std::isfinite(failed.log_focal)) problem.log_focal = failed.log_focal;
+  lag_ = MakeLag(setup_, std::move(problem));
+  for (LiveRecord& record : records_) {
+    if (!record.handed_out) record.status = FrameStatus::kLost;
+    record.in_window = false;
+  }
+  EndShot();
+  return false;
+}
+
+std::vector<Eigen::VectorXd> LiveWindow::JointSigma(int begin, int end) {
+  const Eigen::VectorXd unknown =
+      Eigen::VectorXd::Constant(setup_.input.body->num_joints(), std::numeric_limits<double>::quiet_NaN());
+  std::vector<Eigen::VectorXd> sigma(std::max(0, end - begin), unknown);
+  if (begin >= end) return sigma;
+  lag_->VisitCovariance(begin, end, [&](int slot, const Eigen::MatrixXd& P) {
+    sigma[slot - begin] = JointSigmaOf(setup_.layout, problem().states[slot], problem().betas, P);
+  });
+  return sigma;
+}
+
+Camera LiveWindow::PinholeNow() const {
+  Camera camera = setup_.layout.camera;
+  camera.model = CameraModel::kPinhole;
+  if (setup_.layout.focal_column >= 0) camera.fx = camera.fy = std::exp(problem().log_focal);
+  return camera;
+}
+
+void LiveWindow::DropDone() {
+  while (records_.size() > 1 && records_.front().handed_out && !records_.front().in_window) records_.pop_front();
+}
+
+}  // namespace bodyloom
