@@ -149,7 +149,7 @@ TEST(Uncertainty, SpreadOfTheErrorsOfTheWholeProblem) {
     std::normal_distribution<double> normal;
     const auto noise = [&](double s) { return Vector3d::NullaryExpr([&]() { return s * normal(random); }).eval(); };
     problem.smoothness[0].tip_acceleration = problem.smoothness[0].root_acceleration = 1e4;  // says nothing
-    problem.shape_prior.sigma = 0.4;                                                   // as the scene draws it
+    problem.shape_prior.sigma = 0.4;                                                         // as the scene draws it
     problem.betas = scene->betas;
     VectorXd gradient;
     const double stature = StatureOfMeanShape(scene->body, static_cast<int>(scene->betas.size()), &gradient);
