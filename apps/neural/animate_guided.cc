@@ -41,10 +41,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kStudio = "studio";
-
 struct Request {
-  std::string run, image, image_track, image_labels, track, data, out, body, background, sheet, uv_maps, json, score;
+  std::string run, image, image_track, image_labels, track, data, out, body, background = "photo", sheet, uv_maps, json,
+                                                                             score;
   std::vector<std::string> views;
   std::vector<int> score_photos = {1};
   int image_frame = 0, score_frames = 8, threads = 0;
@@ -120,8 +119,10 @@ void Run(const Request& request) {
   RequireReadable(request.track, "track");
   RequireReadable(request.data, "data");
   RequireReadable(request.score, "people set");
+  const PhotoBackground behind = ParsePhotoBackground(request.background);
+  RequireReadable(behind.path, "background");
   for (const std::string& path : {request.out, request.sheet, request.uv_maps, request.json}) RequireWritable(path);
-  RequireDistinct({request.image, request.track, request.image_track},
+  RequireDistinct({request.image, request.track, request.image_track, behind.path},
                   {request.out, request.sheet, request.uv_maps, request.json});
   const GuidedRun run = ReadGuidedRun(request.run);
   const int size = run.config.profile.image_size, texture_size = run.config.profile.texture_size;
@@ -172,11 +173,10 @@ void Run(const Request& request) {
 
   const PersonWindow& window = maps->window();
   std::optional<Background> background;
-  if (request.background.empty()) {
+  if (behind.own) {
     notes += "background: the photo's, filled in where the person stood\n";
   } else {
-    background.emplace(request.background == kStudio ? "" : request.background, window.picture_width,
-                       window.picture_height);
+    background.emplace(behind.path, window.picture_width, window.picture_height);
   }
   std::cout << notes << std::flush;
   const Image filled =
@@ -295,9 +295,7 @@ void AddAnimateGuided(CLI::App& animate, std::function<void()>* action) {
                    "Instead: a person set of the same person, whose motion is shown and whose pictures are compared");
   verb->add_option("--out", request->out, "The video, .mp4");
   verb->add_option("--body", request->body, "The tracks' body (default: the built-in body)");
-  verb->add_option("--background", request->background,
-                   "Image, video or folder of images behind the person, or the word studio (default: the photo's own, "
-                   "filled in)");
+  verb->add_option("--background", request->background, kPhotoBackgroundHelp)->capture_default_str();
   verb->add_flag("--as-seen", request->as_seen, "Do not complete the maps over virtual views (the paper's -A)");
   verb->add_flag(
       "--anywhere", request->anywhere,

@@ -41,7 +41,7 @@ namespace bodyloom {
 namespace {
 
 struct Request {
-  std::string run, track, out, background, view_yaw, shape = "photo", sheet, texture, json, garment_from;
+  std::string run, track, out, background = "photo", view_yaw, shape = "photo", sheet, texture, json, garment_from;
   std::vector<std::string> parts, views;
   PhotoRequest photo;
   int threads = 0;
@@ -118,14 +118,13 @@ void Run(const Request& request) {
   if (request.parts.empty() != request.garment_from.empty()) {
     throw UsageError("--garment-from and --parts belong together");
   }
-  const bool own_background = request.background == "photo";
-  const std::string background_path = own_background ? "" : request.background;
+  const PhotoBackground choice = ParsePhotoBackground(request.background);
   RequireReadable(request.photo.image, "image");
   RequireReadable(request.photo.track, "track of the image");
   RequireReadable(request.photo.labels, "part labels");
   RequireReadable(request.track, "track");
-  RequireReadable(background_path, "background");
-  RequireDistinct({request.track, request.photo.image, request.photo.track, request.photo.body, background_path},
+  RequireReadable(choice.path, "background");
+  RequireDistinct({request.track, request.photo.image, request.photo.track, request.photo.body, choice.path},
                   {request.out, request.sheet, request.texture, request.json});
   for (const std::string& path : {request.out, request.sheet, request.texture, request.json}) RequireWritable(path);
   const PhotoRun run = ReadPhotoRun(request.run);
@@ -161,9 +160,9 @@ void Run(const Request& request) {
   if (!request.texture.empty()) WriteImage(request.texture, PictureOf(completed, U, U));
   clock.Begin("render");
 
-  Background background(background_path, window.picture_width, window.picture_height);
+  Background background(choice.path, window.picture_width, window.picture_height);
   Image behind;
-  if (own_background) {
+  if (choice.own) {
     behind = Resized(FilledBackground(photo.picture, photo.person), window.picture_width, window.picture_height);
   }
   const int T = track.num_frames();
@@ -186,7 +185,7 @@ void Run(const Request& request) {
     for (int t = 0; t < T; ++t) {
       ThrowIfInterrupted();
       const PhotoFrame pose = poses.Take();
-      Image composed = own_background ? behind : background.Next();
+      Image composed = choice.own ? behind : background.Next();
       if (pose.size > 0) {
         const StageClock one;
         const PhotoPicture picture = renderer.Render(pose);
@@ -256,8 +255,7 @@ void AddAnimatePhoto(CLI::App& animate, std::function<void()>* action) {
   verb->add_option("--shape", request->shape, "Whose body shape moves: the photo's or the motion's")
       ->check(CLI::IsMember({"photo", "motion"}))
       ->capture_default_str();
-  verb->add_option("--background", request->background,
-                   "Image, video or folder of images behind the person; photo: the photo's own, filled in");
+  verb->add_option("--background", request->background, kPhotoBackgroundHelp)->capture_default_str();
   verb->add_option("--view-yaw", request->view_yaw,
                    "Turns the view about the person's vertical, degrees; FROM:TO turns it over the clip");
   verb->add_flag("--whole-window", request->whole_window, "Compute the background of the window too");

@@ -8,6 +8,13 @@
 #include "data_tools/video/image_file.h"
 
 namespace bodyloom {
+PhotoBackground ParsePhotoBackground(const std::string& option) {
+  PhotoBackground result;
+  result.own = option == "photo";
+  if (!result.own && option != "studio") result.path = option;
+  return result;
+}
+
 Background::Background(const std::string& path, int width, int height) : width_(width), height_(height) {
   if (path.empty()) {
     image_ = StudioBackdrop(width, height);

@@ -12,6 +12,17 @@
 
 namespace bodyloom {
 
+/// What --background means to the verbs that render from a photo.
+struct PhotoBackground {
+  bool own = false;  ///< the word `photo`: the photo's own, filled in where the person stood
+  std::string path;  ///< else an image, a video or a folder; empty: the word `studio`, a plain backdrop
+};
+PhotoBackground ParsePhotoBackground(const std::string& option);
+
+/// Of --background where it is one of those.
+inline constexpr const char* kPhotoBackgroundHelp =
+    "Behind the person: photo (the photo's own, filled in), studio (a plain backdrop), or an image, video or folder";
+
 class Background {
  public:
   /// `path`: an image, a video or a folder of images; empty: a studio's backdrop. Throws std::runtime_error naming it.

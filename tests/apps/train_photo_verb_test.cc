@@ -66,7 +66,7 @@ TEST_F(TrainPhotoVerb, TrainsGoesOnAndAnimates) {
   EXPECT_THAT(resumed.out, HasSubstr("step 3 of 3"));
 
   const CommandResult animated = Animate({"--sheet", scratch_ / "a.png", "--texture", scratch_ / "t.png", "--json",
-                                          scratch_ / "a.json", "--view-yaw", "0:90", "--background", "photo",
+                                          scratch_ / "a.json", "--view-yaw", "0:90", "--background", "studio",
                                           "--garment-from", (scratch_ / "people/p002/a0_v0") + "::1", "--parts",
                                           "top,bottom", "--views", (scratch_ / "people/p000/a0_v1") + "::1"});
   ASSERT_EQ(animated.exit_code, 0) << animated.err;
