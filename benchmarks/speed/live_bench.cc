@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 /// The live tracker beside the solve of the whole clip: error on the same data, frames a second, latency, memory.
 ///
-///   bodyloom_bench_live [--sections real,synthetic,lags,long,skip,uncertainty] [--threads 2] [--frames 0] [--views
-///   c01,c05]
-///                       [--lags 0,2,4,8,16] [--long 20000] [--repeat 1] [--json F]
+///   bodyloom_bench_live [--sections real,synthetic,lags,long,skip,uncertainty] [--uncertainty no] [--threads 2]
+///                       [--frames 0] [--views c01,c05] [--lags 0,2,4,8,16] [--long 20000] [--repeat 1] [--json F]
 ///
 /// real: AIST++, 17 detected joints, scored in the other eight cameras (protocol aist-held-out). synthetic: the same
 /// motions as 300 dense keypoints of 1 px noise, and as joints alone, with known truth (protocol known-truth).
 /// fps: frames over wall time of all Push() calls; cpu_ms: processor time a frame; push_…: one Push(), wall time.
+/// uncertainty: whether the poses come with joint_sigma (the section of that name compares both).
 /// mb_grown: resident memory after the clip over that after its first tenth.
 #include <algorithm>
 #include <chrono>
@@ -97,6 +97,7 @@ class Bench {
     report_.notes = {"error: real: median px in the other eight cameras; synthetic: mean projection, px at 512",
                      Concatenate("threads: ", arguments.Integer("threads"))};
     options_.solve.num_threads = arguments.Integer("threads");
+    options_.solve.estimate_uncertainty = arguments.Text("uncertainty") == "yes";
     options_.lag = arguments.Integer("lag");
     options_.context = arguments.Integer("context");
     options_.iterations = arguments.Integer("iterations");
@@ -347,6 +348,7 @@ int main(int argc, char** argv) {
        {"views", "c01,c03,c05,c07,c08"},
        {"motions", motions + "gBR_sBM_cAll_d06_mBR2_ch06.pkl," + motions + "gJS_sBM_cAll_d03_mJS2_ch07.pkl"},
        {"sections", "real,synthetic,lags,long,skip,uncertainty"},
+       {"uncertainty", "no"},
        {"frames", "0"},
        {"dense", "300"},
        {"threads", "2"},
