@@ -14,11 +14,12 @@ std::vector<double> TipAccelerationRms(const SequenceProblem& problem, int shot)
   std::vector<double> rms = JointLevers(*problem.layout.model);
   std::vector<char> active(rms.size(), 0);
   for (const int j : problem.layout.active_joints) active[j] = 1;
+  const auto [begin, end] = std::equal_range(shots.begin(), shots.end(), shot);
+  const auto first = static_cast<size_t>(begin - shots.begin()), last = static_cast<size_t>(end - shots.begin());
   for (size_t j = 0; j < rms.size(); ++j) {
     double squares = 0;
     int64_t count = 0;
-    for (size_t t = 2; active[j] != 0 && t < problem.states.size(); ++t) {
-      if (shots[t] != shot || shots[t - 2] != shot) continue;
+    for (size_t t = first + 2; active[j] != 0 && t < last; ++t) {
       const AccelerationFactors f = AccelerationFactors::Of(problem.timestamps[t - 1] - problem.timestamps[t - 2],
                                                             problem.timestamps[t] - problem.timestamps[t - 1]);
       const Eigen::Matrix3d &a = problem.states[t - 2].rotations[j], &b = problem.states[t - 1].rotations[j],

@@ -14,37 +14,12 @@ import torch
 import torch.nn.functional as F
 from torch import nn
 
+from torch_blocks import Down, Up
+
 PROFILES = {  # image, uv, features, encoder, decoders, discriminator, divisor of VGG's channels
     "cpu": (256, 128, 16, [16, 32, 64], [16, 32, 64, 128], 16, 4),
     "tiny": (128, 64, 8, [8, 16, 32], [8, 16, 32, 64], 8, 8),
 }
-
-
-def norm(x):
-    return F.leaky_relu(F.instance_norm(x), 0.2)
-
-
-class Down(nn.Module):
-    def __init__(self, i, o):
-        super().__init__()
-        self.a = nn.Conv2d(i, o, 3, 1, 1, bias=False)
-        self.b = nn.Conv2d(o, o, 3, 1, 1, bias=False)
-        self.c = nn.Conv2d(o, o, 4, 2, 1, bias=False)
-
-    def forward(self, x):
-        return norm(self.c(norm(self.b(norm(self.a(x))))))
-
-
-class Up(nn.Module):
-    def __init__(self, i, m, o):
-        super().__init__()
-        self.a = nn.Conv2d(i, m, 3, 1, 1, bias=False)
-        self.b = nn.Conv2d(m, m, 3, 1, 1, bias=False)
-        self.c = nn.Conv2d(m, m, 3, 1, 1, bias=False)
-        self.d = nn.ConvTranspose2d(m, o, 4, 2, 1)
-
-    def forward(self, x):
-        return F.leaky_relu(self.d(norm(self.c(norm(self.b(norm(self.a(x))))))), 0.2)
 
 
 class UNet(nn.Module):

@@ -14,6 +14,8 @@ import torch
 import torch.nn.functional as F
 from torch import nn
 
+from torch_blocks import Down, Up, lrelu
+
 PHOTO = {"cpu": (256, 256, 16, 16, 6), "tiny": (128, 128, 16, 16, 6)}  # window, texture, features, width, blocks
 # window, widths of SilNet and GarNet, of RenderNet's encoders and decoder, full size, modulation, latent
 GUIDED = {
@@ -21,10 +23,6 @@ GUIDED = {
     "tiny": (128, [8, 16, 32, 32], [8, 16, 32, 32], [8, 16, 32, 32], 8, 8, 16),
 }
 LABELS = 7
-
-
-def lrelu(x):
-    return F.leaky_relu(x, 0.2)
 
 
 def project(features, uv, body):
@@ -59,31 +57,6 @@ class PhotoRender(nn.Module):
             x = F.relu(F.instance_norm(conv(x)))
         x = self.last(torch.cat([x, r], 1))
         return torch.sigmoid(x[:, 3:]) * (0.5 * (torch.tanh(x[:, :3]) + 1))
-
-
-def norm(x):
-    return lrelu(F.instance_norm(x))
-
-
-class Down(nn.Module):
-    def __init__(self, i, o):
-        super().__init__()
-        self.a, self.b = nn.Conv2d(i, o, 3, 1, 1, bias=False), nn.Conv2d(o, o, 3, 1, 1, bias=False)
-        self.c = nn.Conv2d(o, o, 4, 2, 1, bias=False)
-
-    def forward(self, x):
-        return norm(self.c(norm(self.b(norm(self.a(x))))))
-
-
-class Up(nn.Module):
-    def __init__(self, i, m, o):
-        super().__init__()
-        self.a = nn.Conv2d(i, m, 3, 1, 1, bias=False)
-        self.b, self.c = (nn.Conv2d(m, m, 3, 1, 1, bias=False) for _ in range(2))
-        self.d = nn.ConvTranspose2d(m, o, 4, 2, 1)
-
-    def forward(self, x):
-        return lrelu(self.d(norm(self.c(norm(self.b(norm(self.a(x))))))))
 
 
 class Encoder(nn.Module):

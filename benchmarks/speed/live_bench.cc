@@ -212,15 +212,20 @@ class Bench {
     return MakeSynthClip(BuiltinBody(), FirstFrames(LoadMotion(motion), arguments_.Integer("frames")), synth);
   }
 
+  [[nodiscard]] static TrackSequenceInput InputOf(const SynthClip& clip, bool dense) {
+    TrackSequenceInput input;
+    Fill(&input);
+    input.keypoints = &clip.keypoints;
+    if (dense) input.dense = &clip.dense;
+    input.camera = clip.truth.camera;
+    return input;
+  }
+
   void Synthetic() {
     for (const std::string& motion : arguments_.List("motions")) {
       for (const bool dense : {true, false}) {
         const SynthClip clip = MakeClip(motion, dense);
-        TrackSequenceInput input;
-        Fill(&input);
-        input.keypoints = &clip.keypoints;
-        if (dense) input.dense = &clip.dense;
-        input.camera = clip.truth.camera;
+        const TrackSequenceInput input = InputOf(clip, dense);
         const std::string group = dense
                                       ? Concatenate("synthetic, ", arguments_.Integer("dense"), " keypoints and joints")
                                       : Concatenate("synthetic, ", clip.keypoints.num_points(), " joints");
@@ -249,13 +254,9 @@ class Bench {
 
   void Long() {
     const SynthClip clip = MakeClip(arguments_.List("motions")[0], true);
-    TrackSequenceInput input;
-    Fill(&input);
-    input.keypoints = &clip.keypoints;
-    input.camera = clip.truth.camera;
     const int frames = arguments_.Integer("long");
     for (const bool dense : {false, true}) {
-      if (dense) input.dense = &clip.dense;
+      const TrackSequenceInput input = InputOf(clip, dense);
       std::vector<double> speed = Speed(input, options_, frames, 1);
       BenchRow row{
           "long", {Concatenate(frames, " frames"), dense ? "live, dense" : "live, joints"}, {kNaN, kNaN, kNaN, kNaN}};
@@ -269,11 +270,7 @@ class Bench {
     const std::string motion = arguments_.List("motions")[0];
     for (const bool dense : {false, true}) {
       const SynthClip clip = MakeClip(motion, dense);
-      TrackSequenceInput input;
-      Fill(&input);
-      input.keypoints = &clip.keypoints;
-      if (dense) input.dense = &clip.dense;
-      input.camera = clip.truth.camera;
+      const TrackSequenceInput input = InputOf(clip, dense);
       for (const bool on : {true, false, true}) {
         LiveTrackerOptions options = options_;
         options.solve.estimate_uncertainty = on;

@@ -15,8 +15,11 @@ namespace {
 constexpr double kLongest_s = 0.5;
 constexpr double kJump = 0.15, kJumpSpeed = 4, kJumpSize = 1.8;  // body sizes, body sizes a second, ratio
 constexpr double kContinues = 0.1, kContinuesSpeed = 1, kSameSize = 1.5;
-
 constexpr double kFlat = 0.015;  // body sizes; a person in profile with closed legs is 0.05 across
+
+void Empty(int t, KeypointSequence* keypoints) {
+  for (int k = 0; k < keypoints->num_points(); ++k) keypoints->at(t, k) = Keypoint();
+}
 
 /// Standard deviation of the seen landmarks across the direction in which they spread most, pixels; infinite with fewer
 /// than five.
@@ -56,9 +59,7 @@ int DropFlatFrames(const std::vector<double>& sizes, KeypointSequence* keypoints
     if (Thickness(*keypoints, t) < kFlat * std::max(sizes[t], *middle)) flat.push_back(t);
   }
   if (2 * flat.size() > known.size()) return 0;
-  for (const int t : flat) {
-    for (int k = 0; k < keypoints->num_points(); ++k) keypoints->at(t, k) = Keypoint();
-  }
+  for (const int t : flat) Empty(t, keypoints);
   return static_cast<int>(flat.size());
 }
 
@@ -121,7 +122,7 @@ int DropImpossibleFrames(KeypointSequence* keypoints) {
       if (u < T && seconds(u) <= kLongest_s) returns = u;
     }
     for (; t < returns; ++t) {
-      for (int k = 0; k < keypoints->num_points(); ++k) keypoints->at(t, k) = Keypoint();
+      Empty(t, keypoints);
       ++dropped;
     }
     good = t;

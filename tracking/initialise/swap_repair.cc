@@ -18,7 +18,6 @@ constexpr double kSwappedCost = 0.6;  ///< of calling a frame swapped: labels ar
 constexpr double kJumpKernel = 3;     ///< jumps saturate at this many σ: a cut must not look like a reason to swap
 constexpr double kSpeed = 3;          ///< body sizes a second: σ of a joint's motion in the image
 constexpr double kJitter = 0.02;      ///< body sizes: σ of the detector
-constexpr double kMaxGapSeconds = 1.0;
 
 }  // namespace
 
@@ -82,7 +81,7 @@ std::vector<char> FindCuts(const KeypointSequence& keypoints) {
   std::vector<char> cuts(keypoints.num_frames(), 0);
   int previous = -1;  // the last frame that shows a person
   for (int t = 0; t < keypoints.num_frames(); ++t) {
-    if (t > 0 && keypoints.timestamps[t] - keypoints.timestamps[t - 1] > kMaxGapSeconds) cuts[t] = 1;
+    if (t > 0 && keypoints.timestamps[t] - keypoints.timestamps[t - 1] > kMaxGap_s) cuts[t] = 1;
     const double size = SeenBodySize(keypoints, t);
     if (size <= 0) continue;
     if (previous >= 0 && keypoints.timestamps[t] - keypoints.timestamps[previous] < 0.1) {

@@ -14,7 +14,9 @@ namespace bodyloom {
 /// shoulders with hips, and eyes with ears, are not tied together. Returns the number of exchanged pairs × frames.
 int RepairSwaps(KeypointSequence* keypoints);
 
-/// True where frame t does not continue frame t−1: a gap of more than a second, or the whole body jumping by more than
+inline constexpr double kMaxGap_s = 1;  ///< between frames of one shot
+
+/// True where frame t does not continue frame t−1: a gap of more than kMaxGap_s, or the whole body jumping by more than
 /// half its size within a tenth of a second. The first frame is never a cut.
 std::vector<char> FindCuts(const KeypointSequence& keypoints);
 

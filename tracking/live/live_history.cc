@@ -14,7 +14,6 @@ namespace bodyloom {
 namespace {
 
 constexpr int kSwapFrames = 7;
-constexpr double kMaxGap_s = 1;  ///< as FindCuts()
 
 void Append(const KeypointSequence& from, int t, KeypointSequence* to) {
   const auto K = static_cast<std::ptrdiff_t>(from.names.size());
