@@ -2,7 +2,10 @@
 /// ParallelFor(count, num_threads, body): calls body(i) once for every i in 0..count−1, on up to num_threads threads,
 /// the caller's among them. Which thread runs which i is left open, so a result is the same for any number of threads
 /// exactly when body(i) writes only what belongs to i. The first exception of a body is rethrown after all threads have
-/// stopped; indices not yet started are then skipped. With one thread, or one index, no thread is started.
+/// stopped; indices not yet started are then skipped. With one thread, or one index, no other thread takes part.
+///
+/// Threads are kept from one call to the next: starting one costs as much as many a loop (docs/concepts.md, "Threads").
+/// Calls may be nested, and come from several threads at once; a call that finds no free thread does its work alone.
 #pragma once
 
 #include <functional>

@@ -2,8 +2,11 @@
 #include "geometry/parallel.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <atomic>
+#include <chrono>
 #include <mutex>
 #include <set>
 #include <stdexcept>
@@ -54,6 +57,49 @@ TEST(ParallelFor, AnExceptionReachesTheCaller) {
     }
     EXPECT_LT(calls, 100000);
   }
+}
+
+TEST(ParallelFor, CallsMayBeNested) {
+  std::vector<int> calls(20 * 30, 0);
+  ParallelFor(20, 4, [&](int i) { ParallelFor(30, 3, [&](int j) { ++calls[30 * i + j]; }); });
+  EXPECT_EQ(calls, std::vector<int>(calls.size(), 1));
+}
+
+TEST(ParallelFor, CallsMayComeFromSeveralThreadsAtOnce) {
+  constexpr int kCallers = 6, kLoops = 2000, kCount = 5;
+  std::vector<int> calls(kCallers * kCount, 0);
+  {
+    std::vector<std::jthread> callers;
+    for (int c = 0; c < kCallers; ++c) {
+      callers.emplace_back([&, c] {
+        for (int k = 0; k < kLoops; ++k) ParallelFor(kCount, 3, [&](int i) { ++calls[c * kCount + i]; });
+      });
+    }
+  }
+  EXPECT_EQ(calls, std::vector<int>(calls.size(), kLoops));
+}
+
+TEST(ParallelFor, AThreadThatSleepsIsWokenOrDoneWithout) {
+  for (int k = 0; k < 20; ++k) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));  // longer than a kept thread waits awake
+    std::vector<int> calls(3, 0);
+    ParallelFor(3, 3, [&](int i) { ++calls[i]; });
+    EXPECT_EQ(calls, std::vector<int>(3, 1));
+  }
+}
+
+TEST(ParallelFor, WorksInAForkedProcess) {
+  ParallelFor(4, 4, [](int) {});  // kept threads exist, and stay behind
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    std::atomic<int> sum{0};
+    ParallelFor(100, 4, [&](int i) { sum += i; });
+    _exit(sum == 4950 ? 0 : 1);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
 }
 
 }  // namespace

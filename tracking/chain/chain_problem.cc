@@ -72,6 +72,7 @@ ChainProblem::ChainProblem(const SequenceProblem& problem, bool shape_constant, 
 }
 
 void ChainProblem::Resize() {
+  linearised_ = false;
   const size_t T = problem_.states.size();
   if (inverse_sigma_.size() > 1) shot_ = ShotOfFrames(problem_.cut_before);
   if (problem_.layout.num_betas > 0) ShapePriorRows(problem_, &shape_prior_, &shape_offset_);
@@ -104,6 +105,7 @@ void ChainProblem::Moved(int dropped) {
 void ChainProblem::LimitDense(int max_points) {
   if (max_points != max_dense_) {
     for (Anchor& anchor : anchors_) anchor.set = false;
+    linearised_ = false;
   }
   max_dense_ = max_points;
 }
@@ -219,6 +221,7 @@ double ChainProblem::SharedCost(const ChainPoint& point) const {
 }
 
 double ChainProblem::Cost(const ChainPoint& point) {
+  linearised_ = false;
   return EvaluateFrames(point, false) + EvaluateChanges(point, false) + EvaluatePrior(point, false) + SharedCost(point);
 }
 
@@ -304,14 +307,17 @@ double ChainProblem::EvaluatePrior(const ChainPoint& point, bool derivatives) {
   if (!derivatives) return cost;
   prior_gradient_ = prior_->m + Me;
   prior_matrix_ = prior_->M;
-  for (size_t i = 0; i < right.size(); ++i) {
-    const auto b = static_cast<Eigen::Index>(3 * i);
-    prior_gradient_.segment<3>(b) = (right[i].transpose() * prior_gradient_.segment<3>(b)).eval();
-    prior_matrix_.middleCols<3>(b) = (prior_matrix_.middleCols<3>(b) * right[i]).eval();
+  // RᵀMR = ((MR)ᵀR)ᵀ, symmetric: columns both times, which lie together in memory.
+  for (int pass = 0; pass < 2; ++pass) {
+    for (size_t i = 0; i < right.size(); ++i) {
+      const auto b = static_cast<Eigen::Index>(3 * i);
+      prior_matrix_.middleCols<3>(b) = (prior_matrix_.middleCols<3>(b) * right[i]).eval();
+    }
+    prior_matrix_.transposeInPlace();
   }
   for (size_t i = 0; i < right.size(); ++i) {
     const auto b = static_cast<Eigen::Index>(3 * i);
-    prior_matrix_.middleRows<3>(b) = (right[i].transpose() * prior_matrix_.middleRows<3>(b)).eval();
+    prior_gradient_.segment<3>(b) = (right[i].transpose() * prior_gradient_.segment<3>(b)).eval();
   }
   prior_next_ = prior_matrix_.block(0, n_, n_, n_);
   return cost;
@@ -326,7 +332,17 @@ void ChainProblem::AddPrior() {
   shared_ += prior_matrix_.bottomRightCorner(s, s);
 }
 
+bool ChainProblem::IsLinearisedAt(const ChainPoint& point) const {
+  const auto same = [](const FrameState& a, const FrameState& b) {
+    return a.rotations == b.rotations && a.translation == b.translation;
+  };
+  return linearised_ && point.log_focal == linearised_at_.log_focal && point.betas == linearised_at_.betas &&
+         std::equal(point.states.begin(), point.states.end(), linearised_at_.states.begin(),
+                    linearised_at_.states.end(), same);
+}
+
 double ChainProblem::Linearise(const ChainPoint& point) {
+  if (IsLinearisedAt(point)) return linearised_cost_;
   const int T = static_cast<int>(point.states.size()), s = shared_size();
   const double cost =
       EvaluateFrames(point, true) + EvaluateChanges(point, true) + EvaluatePrior(point, true) + SharedCost(point);
@@ -350,6 +366,9 @@ double ChainProblem::Linearise(const ChainPoint& point) {
   }
   AddSharedPriors(point);
   AddPrior();
+  linearised_ = true;
+  linearised_at_ = point;
+  linearised_cost_ = cost;
   return cost;
 }
 
@@ -448,7 +467,7 @@ void ChainProblem::AddFrame(int t, double* a, int64_t a_stride, double* b, int64
     double* arrow = b + i * b_stride;
     for (int j = 0; j < s; ++j) arrow[j] += column[shared_columns_[j]];
     if (prior_ != nullptr && t < 2) {
-      const auto p = prior_matrix_.row(offset + i);
+      const auto p = prior_matrix_.col(offset + i);  // symmetric
       for (int j = i; j < n_; ++j) row[j] += p[offset + j];
       for (int j = 0; j < s; ++j) arrow[j] += p[2 * n_ + j];
     }

@@ -35,24 +35,34 @@ class ChainProblem : public ChainSource {
   /// this share of their own size (root mean square: ½ dᵀHd ≤ share² c), and no unknown by more than 0.05 (radians,
   /// metres, log focal length, 0.03 betas). Cost c + gᵀd + ½ dᵀHd and gradient g + Hd stand for it, wrong by O(d³) and
   /// O(d²) times the residuals' curvature. 0: all frames are evaluated.
-  void SkipSettled(double share) { skip_share_ = share; }
+  void SkipSettled(double share) {
+    if (share != skip_share_) linearised_ = false;
+    skip_share_ = share;
+  }
   /// How many frames the last Cost() or Linearise() took from an earlier point.
   [[nodiscard]] int num_skipped() const { return num_skipped_; }
   /// A term beside the problem's own; borrowed, null: none. The problem must have two frames or more.
-  void SetPrior(const ChainPrior* prior) { prior_ = prior; }
+  void SetPrior(const ChainPrior* prior) {
+    prior_ = prior;
+    linearised_ = false;
+  }
 
   /// The borrowed problem has lost its first `dropped` frames, and may have got new ones at its end, other cuts or
   /// other shared priors since.
   void Moved(int dropped);
   /// Frame t has other observations than when it was evaluated last.
-  void Forget(int t) { anchors_[t].set = false; }
+  void Forget(int t) {
+    anchors_[t].set = false;
+    linearised_ = false;
+  }
   /// What frame 0 and the prior say about frames 1 and 2 and shared values, at the point linearised last, `point`.
   /// False when frame 0's matrix is singular.
   bool Marginalise(const ChainPoint& point, ChainPrior* prior) const;
 
   /// Cost alone; NaN where a frame's is not finite.
   double Cost(const ChainPoint& point);
-  /// Cost, and everything that the factorisation needs.
+  /// Cost, and everything that the factorisation needs. Costs nothing at the point where it was called last, unless
+  /// Cost() was called or something was changed since.
   double Linearise(const ChainPoint& point);
 
   // At the point linearised last.
@@ -81,6 +91,7 @@ class ChainProblem : public ChainSource {
   }
 
  private:
+  [[nodiscard]] bool IsLinearisedAt(const ChainPoint& point) const;
   /// The change from frame t − 1 to t: log(R₋ᵀR) of each active joint, then the translation's difference.
   struct Change {
     std::vector<Eigen::Vector3d> step;
@@ -115,6 +126,9 @@ class ChainProblem : public ChainSource {
   const SequenceProblem& problem_;
   int n_, blocks_, num_threads_, max_dense_ = 0, num_skipped_ = 0;
   double skip_share_ = 0;
+  bool linearised_ = false;  ///< all that Linearise() makes is there, for this point
+  ChainPoint linearised_at_;
+  double linearised_cost_ = 0;
   std::vector<int> shared_columns_;  ///< columns of a frame's matrix that are unknown and shared
   bool shape_constant_, focal_constant_;
   RowMatrixXd shape_prior_;  ///< residual = shape_prior_ β + shape_offset_
