@@ -17,6 +17,7 @@
 #include "apps/files.h"
 #include "apps/interrupt.h"
 #include "apps/neural/background.h"
+#include "apps/neural/composite.h"
 #include "apps/neural/guided_preview.h"
 #include "apps/neural/guided_run.h"
 #include "apps/neural/motion_preview.h"
@@ -48,7 +49,7 @@ struct Request {
   std::vector<int> score_photos = {1};
   int image_frame = 0, score_frames = 8, threads = 0;
   std::string device = "cpu";
-  bool as_seen = false, anywhere = false;
+  bool as_seen = false, anywhere = false, full_size = false;
 };
 
 nlohmann::ordered_json ScoresJson(const GuidedScores& s) {
@@ -172,16 +173,16 @@ void Run(const Request& request) {
   const double source_s = clock.total() - read_s;
 
   const PersonWindow& window = maps->window();
+  const PictureSize pictures = SizeOfPictures(window, track.camera, request.full_size);
   std::optional<Background> background;
   if (behind.own) {
     notes += "background: the photo's, filled in where the person stood\n";
   } else {
-    background.emplace(behind.path, window.picture_width, window.picture_height);
+    background.emplace(behind.path, pictures.width, pictures.height);
   }
   std::cout << notes << std::flush;
   const Image filled =
-      background ? Image()
-                 : Resized(FilledBackground(photo.picture, photo.person), window.picture_width, window.picture_height);
+      background ? Image() : Covering(FilledBackground(photo.picture, photo.person), pictures.width, pictures.height);
   const double fps = track.num_frames() > 1
                          ? (track.num_frames() - 1) / (track.motion.timestamps.back() - track.motion.timestamps.front())
                          : 30;
@@ -191,7 +192,7 @@ void Run(const Request& request) {
     truth.emplace(request.data);
     scorer.emplace(true);
   }
-  VideoWriter video(request.out, window.picture_width, window.picture_height, fps);
+  VideoWriter video(request.out, pictures.width, pictures.height, fps);
   const std::vector<int> on_sheet = EvenlySpreadFrames(track.num_frames(), 6);
   std::vector<Image> sheet;
   std::vector<double> network_ms;
@@ -213,7 +214,7 @@ void Run(const Request& request) {
         maps_s += mapped_s - start_s;
         network_s += drawn_s - mapped_s;
         network_ms.push_back(1e3 * (drawn_s - mapped_s));
-        Composite(picture.image, picture.alpha, size, size, window.corner[t].x(), window.corner[t].y(), &composed);
+        Composite(picture.image, picture.alpha, window, t, &composed);
         if (truth) {
           const PersonFrame picture_of_truth = truth->Read(t, {true, false, false, false});
           FillPicture({CutWindow(picture_of_truth.rgb, window, t), CutLabels(picture_of_truth.labels, window, t)},
@@ -253,7 +254,7 @@ void Run(const Request& request) {
         {"frames_kept", renderer.frames_kept()},
         {"photos", photos.size()},
         {"window", size},
-        {"picture", {window.picture_width, window.picture_height}},
+        {"picture", {pictures.width, pictures.height}},
         {"computed_share", renderer.computed_share()},
         {"network_ms_median", Median(network_ms)},
         {"notes", notes},
@@ -300,6 +301,7 @@ void AddAnimateGuided(CLI::App& animate, std::function<void()>* action) {
   verb->add_flag(
       "--anywhere", request->anywhere,
       "Compute the whole window: the person may be farther from the body than clothes ever were in training");
+  verb->add_flag("--full-size", request->full_size, kFullSizeHelp);
   verb->add_option("--sheet", request->sheet, "Contact sheet: photo, what is known, labels, result");
   verb->add_option("--uv-maps", request->uv_maps, "Picture of the coherent maps and the virtual views");
   verb->add_option("--json", request->json, "Report with times");

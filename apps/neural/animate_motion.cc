@@ -19,6 +19,8 @@
 #include "apps/files.h"
 #include "apps/interrupt.h"
 #include "apps/neural/background.h"
+#include "apps/neural/composite.h"
+#include "apps/neural/composite_score.h"
 #include "apps/neural/motion_data.h"
 #include "apps/neural/motion_errors.h"
 #include "apps/neural/motion_preview.h"
@@ -54,7 +56,7 @@ struct Request {
   int threads = 0, warmup = 50;
   double speed = 1;
   std::string device = "cpu";
-  bool anywhere = false;
+  bool anywhere = false, full_size = false;
 };
 
 /// The pictures of a frame side by side, for the contact sheet.
@@ -221,17 +223,22 @@ void Run(const Request& request) {
     EstimateLight(clip, &before, relighter.get());
   }
   lap(1);
-  Background background(request.background, window.picture_width, window.picture_height);
+  const PictureSize size = SizeOfPictures(window, track.camera, request.full_size);
+  Background background(request.background, size.width, size.height);
   const double fps = track.num_frames() > 1
                          ? (track.num_frames() - 1) / (track.motion.timestamps.back() - track.motion.timestamps.front())
                          : run.fps;
   MotionErrors errors(SimilarityTo(request, track, run.past, threads));
-  VideoWriter video(request.out, window.picture_width, window.picture_height, fps);
+  VideoWriter video(request.out, size.width, size.height, fps);
   const std::vector<int> on_sheet = EvenlySpreadFrames(track.num_frames(), 6);
   std::vector<Image> sheet;
   std::vector<double> network_ms;
   std::optional<Likeness> likeness;
   if (scored && std::min(window.width, window.height) >= Likeness::kSmallest) likeness.emplace();
+  std::optional<CompositeScore> composite;
+  if (scored && !request.background.empty()) {
+    composite.emplace(request.data, size.width, size.height);
+  }
   int lost = 0, sheet_columns = 1;
   {
     Progress progress("animate");
@@ -253,8 +260,8 @@ void Run(const Request& request) {
         if (likeness) likeness->Add(picture, frame);
         if (t > 0) network_ms.push_back(1e3 * network_s);  // the first frame warms up
         if (relighter) relighter->Apply(&picture);
-        Composite(picture.image, picture.alpha, picture.width, picture.height, window.corner[t].x(),
-                  window.corner[t].y(), &composed);
+        Composite(picture.image, picture.alpha, window, t, &composed);
+        if (composite) composite->Add(t, composed);
       } else {
         ++lost;
       }
@@ -287,7 +294,7 @@ void Run(const Request& request) {
     nlohmann::ordered_json json = {{"frames", track.num_frames()},
                                    {"frames_without_fit", lost},
                                    {"window", {window.width, window.height}},
-                                   {"picture", {window.picture_width, window.picture_height}},
+                                   {"picture", {size.width, size.height}},
                                    {"network_ms_median", median_ms},
                                    {"descriptors_kept", renderer.descriptors_kept()},
                                    {"projections_kept", renderer.projections_kept()},
@@ -300,6 +307,10 @@ void Run(const Request& request) {
       json["scores"]["lpips"] = likeness->Mean().lpips;
       json["scores"]["tlpips"] = likeness->Mean().tlpips;
       json["scores"]["lpips_is_stand_in"] = likeness->Mean().stand_in;
+    }
+    if (composite) {
+      json["scores"]["whole_picture_psnr_db"] = composite->psnr_db();
+      json["scores"]["rim_psnr_db"] = composite->rim_psnr_db();
     }
     WriteFileAtomically(request.json, json.dump(2) + "\n");
   }
@@ -319,6 +330,10 @@ void Run(const Request& request) {
         "against %s: L1 %.4f, PSNR %.2f dB, labels IoU %.3f, outline IoU %.3f, normals %.1f deg, flicker %.4f\n",
         request.data.c_str(), scores.image_l1, scores.psnr_db, scores.label_iou, scores.foreground_iou,
         scores.normal_deg, scores.flicker);
+  }
+  if (composite) {
+    std::printf("over %s: PSNR %.2f dB of the whole picture, %.2f dB within %d px of the outline\n",
+                request.background.c_str(), composite->psnr_db(), composite->rim_psnr_db(), CompositeScore::kRimPixels);
   }
   for (const MotionErrors::Quarter& quarter : quarters) {
     std::printf("  %d frames of similarity %.3f and more: L1 %.4f\n", quarter.frames, quarter.least_similarity,
@@ -351,6 +366,7 @@ void AddAnimateMotion(CLI::App& animate, std::function<void()>* action) {
       ->check(CLI::Range(0.05, 20.0))
       ->capture_default_str();
   verb->add_option("--background", request->background, "Image, video or folder of images behind the person");
+  verb->add_flag("--full-size", request->full_size, kFullSizeHelp);
   verb->add_option("--relight", request->relight,
                    "Other light: an environment image (equirectangular), or JSON with lights (docs/relighting.md)");
   verb->add_option("--warmup", request->warmup, "Passes of the first frame through the network before it counts")

@@ -19,6 +19,7 @@
 #include "apps/files.h"
 #include "apps/interrupt.h"
 #include "apps/neural/background.h"
+#include "apps/neural/composite.h"
 #include "apps/neural/motion_preview.h"
 #include "apps/neural/photo_input.h"
 #include "apps/neural/photo_run.h"
@@ -46,7 +47,7 @@ struct Request {
   PhotoRequest photo;
   int threads = 0;
   std::string device = "cpu";
-  bool whole_window = false;
+  bool whole_window = false, full_size = false;
 };
 
 /// DensePose's parts of "top", "bottom", "shoes", "head", "arms" (below the elbow, with hands) or a number.
@@ -160,15 +161,14 @@ void Run(const Request& request) {
   if (!request.texture.empty()) WriteImage(request.texture, PictureOf(completed, U, U));
   clock.Begin("render");
 
-  Background background(choice.path, window.picture_width, window.picture_height);
+  const PictureSize size = SizeOfPictures(window, track.camera, request.full_size);
+  Background background(choice.path, size.width, size.height);
   Image behind;
-  if (choice.own) {
-    behind = Resized(FilledBackground(photo.picture, photo.person), window.picture_width, window.picture_height);
-  }
+  if (choice.own) behind = Covering(FilledBackground(photo.picture, photo.person), size.width, size.height);
   const int T = track.num_frames();
   const std::vector<double>& times = track.motion.timestamps;
   const double fps = T > 1 && times.back() > times.front() ? (T - 1) / (times.back() - times.front()) : 30;
-  VideoWriter video(request.out, window.picture_width, window.picture_height, fps);
+  VideoWriter video(request.out, size.width, size.height, fps);
   const std::vector<int> on_sheet = EvenlySpreadFrames(T, 6);
   std::vector<Image> sheet = {PictureOf(photo.frame.image, S, S), PictureOf(texture.colour, U, U),
                               PictureOf(completed, U, U)};
@@ -190,7 +190,7 @@ void Run(const Request& request) {
         const StageClock one;
         const PhotoPicture picture = renderer.Render(pose);
         if (t > 0) network_ms.push_back(1e3 * one.total());  // the first frame warms up
-        Composite(picture.image, picture.alpha, S, S, window.corner[t].x(), window.corner[t].y(), &composed);
+        Composite(picture.image, picture.alpha, window, t, &composed);
       } else {
         ++lost;
       }
@@ -218,7 +218,7 @@ void Run(const Request& request) {
                                          {"texels_seen", visible},
                                          {"network_ms_median", median_ms},
                                          {"frames_per_second", T / std::max(1e-9, render_s)},
-                                         {"picture", {window.picture_width, window.picture_height}},
+                                         {"picture", {size.width, size.height}},
                                          {"notes", notes},
                                          {"seconds", stages},
                                          {"output", request.out}};
@@ -258,6 +258,7 @@ void AddAnimatePhoto(CLI::App& animate, std::function<void()>* action) {
   verb->add_option("--background", request->background, kPhotoBackgroundHelp)->capture_default_str();
   verb->add_option("--view-yaw", request->view_yaw,
                    "Turns the view about the person's vertical, degrees; FROM:TO turns it over the clip");
+  verb->add_flag("--full-size", request->full_size, kFullSizeHelp);
   verb->add_flag("--whole-window", request->whole_window, "Compute the background of the window too");
   verb->add_option("--sheet", request->sheet, "Contact sheet: photo, its texture, the completed one, six frames");
   verb->add_option("--texture", request->texture, "The completed texture as an image");

@@ -8,6 +8,7 @@
 #include "data_tools/video/image_file.h"
 
 namespace bodyloom {
+
 PhotoBackground ParsePhotoBackground(const std::string& option) {
   PhotoBackground result;
   result.own = option == "photo";
@@ -15,11 +16,20 @@ PhotoBackground ParsePhotoBackground(const std::string& option) {
   return result;
 }
 
+Image Covering(const Image& image, int width, int height) {
+  const double scale = std::max(static_cast<double>(width) / image.width, static_cast<double>(height) / image.height);
+  const int w = std::max(width, static_cast<int>(std::lround(image.width * scale)));
+  const int h = std::max(height, static_cast<int>(std::lround(image.height * scale)));
+  Image covering(width, height);
+  Paste(Resized(image, w, h), (width - w) / 2, (height - h) / 2, &covering);
+  return covering;
+}
+
 Background::Background(const std::string& path, int width, int height) : width_(width), height_(height) {
   if (path.empty()) {
     image_ = StudioBackdrop(width, height);
   } else if (IsImageName(path)) {
-    image_ = Resized(ReadImage(path), width, height);
+    image_ = Covering(ReadImage(path), width, height);
   } else {
     video_ = std::make_unique<VideoReader>(path);
   }
@@ -27,23 +37,8 @@ Background::Background(const std::string& path, int width, int height) : width_(
 
 const Image& Background::Next() {
   Image frame;
-  if (video_ && video_->Read(&frame)) image_ = Resized(frame, width_, height_);
+  if (video_ && video_->Read(&frame)) image_ = Covering(frame, width_, height_);
   return image_;
-}
-
-void Composite(std::span<const float> image, std::span<const float> alpha, int width, int height, int x, int y,
-               Image* background) {
-  const size_t area = size_t(width) * height;
-  for (int row = std::max(0, -y); row < std::min(height, background->height - y); ++row) {
-    for (int column = std::max(0, -x); column < std::min(width, background->width - x); ++column) {
-      const size_t i = size_t(row) * width + column;
-      uint8_t* to = background->pixel(x + column, y + row);
-      for (int c = 0; c < 3; ++c) {
-        const float value = 255 * image[area * (2 - c) + i] + (1 - alpha[i]) * static_cast<float>(to[c]);
-        to[c] = static_cast<uint8_t>(std::lround(std::clamp(value, 0.0F, 255.0F)));
-      }
-    }
-  }
 }
 
 }  // namespace bodyloom

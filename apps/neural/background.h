@@ -4,7 +4,6 @@
 #pragma once
 
 #include <memory>
-#include <span>
 #include <string>
 
 #include "data_tools/video/video_reader.h"
@@ -23,9 +22,13 @@ PhotoBackground ParsePhotoBackground(const std::string& option);
 inline constexpr const char* kPhotoBackgroundHelp =
     "Behind the person: photo (the photo's own, filled in), studio (a plain backdrop), or an image, video or folder";
 
+/// The middle of an image at width × height, as much of it as fills that; nothing is stretched.
+Image Covering(const Image& image, int width, int height);
+
 class Background {
  public:
-  /// `path`: an image, a video or a folder of images; empty: a studio's backdrop. Throws std::runtime_error naming it.
+  /// `path`: an image, a video or a folder of images (Covering()); empty: a studio's backdrop. Throws
+  /// std::runtime_error naming it.
   Background(const std::string& path, int width, int height);
 
   /// The next frame, width × height; a video that has ended keeps its last frame.
@@ -36,10 +39,5 @@ class Background {
   std::unique_ptr<VideoReader> video_;
   Image image_;
 };
-
-/// Lays a window's picture over the background: alpha · image is added to (1 − alpha) · background, at (x, y). `image`
-/// is planar RGB in [0, 1] already multiplied by alpha, as the renderers give it.
-void Composite(std::span<const float> image, std::span<const float> alpha, int width, int height, int x, int y,
-               Image* background);
 
 }  // namespace bodyloom

@@ -67,6 +67,25 @@ PixelMask MaskFrom(const Image& image) {
   return mask;
 }
 
+PixelMask RimOf(const PixelMask& mask, int pixels) {
+  RequireMask(mask.width, mask.height, &mask);
+  PixelMask rim = mask;
+  for (int y = 0; y < mask.height; ++y) {
+    for (int x = 0; x < mask.width; ++x) {
+      bool any = false, all = true;
+      for (int v = std::max(0, y - pixels); v <= std::min(mask.height - 1, y + pixels); ++v) {
+        for (int u = std::max(0, x - pixels); u <= std::min(mask.width - 1, x + pixels); ++u) {
+          const bool inside = mask.inside[static_cast<size_t>(v) * mask.width + u] != 0;
+          any = any || inside;
+          all = all && inside;
+        }
+      }
+      rim.inside[static_cast<size_t>(y) * mask.width + x] = any && !all ? 1 : 0;
+    }
+  }
+  return rim;
+}
+
 PlanarImage PlanarFrom(const Image& image) {
   PlanarImage planar{image.width, image.height, 3, {}};
   const size_t n = image.bgr.size() / 3;

@@ -23,6 +23,10 @@ struct PixelMask {
 /// Inside where a channel is 128 or more.
 PixelMask MaskFrom(const Image& image);
 
+/// The outline's surroundings: pixels that have a pixel inside and one outside of `mask` within `pixels` columns and
+/// rows. Beyond the picture's border is neither.
+PixelMask RimOf(const PixelMask& mask, int pixels);
+
 /// Channels one after the other, each width×height values in rows from the top. Values of any range.
 struct PlanarImage {
   int width = 0, height = 0, channels = 0;

@@ -49,16 +49,17 @@ TEST_F(TrainMotionVerb, TrainsGoesOnAndAnimates) {
   EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
   EXPECT_THAT(resumed.out, HasSubstr("step 5 of 5"));
 
-  const CommandResult animated = RunCommand({"animate",   "motion",
-                                             "--run",     scratch_ / "run",
-                                             "--data",    scratch_ / "person",
-                                             "--out",     scratch_ / "a.mp4",
-                                             "--sheet",   scratch_ / "a.png",
-                                             "--json",    scratch_ / "a.json",
-                                             "--warmup",  "2",
-                                             "--threads", "1",
-                                             "--like",    scratch_ / "person",
-                                             "--frames",  scratch_ / "a.csv"});
+  const CommandResult animated = RunCommand({"animate",      "motion",
+                                             "--run",        scratch_ / "run",
+                                             "--data",       scratch_ / "person",
+                                             "--out",        scratch_ / "a.mp4",
+                                             "--sheet",      scratch_ / "a.png",
+                                             "--json",       scratch_ / "a.json",
+                                             "--warmup",     "2",
+                                             "--threads",    "1",
+                                             "--like",       scratch_ / "person",
+                                             "--frames",     scratch_ / "a.csv",
+                                             "--background", scratch_ / "person/backgrounds"});
   ASSERT_EQ(animated.exit_code, 0) << animated.err;
   // Every frame of the set is like itself.
   EXPECT_THAT(animated.out, HasSubstr("frames of similarity 1.000 and more"));
@@ -71,6 +72,7 @@ TEST_F(TrainMotionVerb, TrainsGoesOnAndAnimates) {
   EXPECT_EQ(lines, 14);
   EXPECT_THAT(animated.out, HasSubstr("14 frames"));
   EXPECT_THAT(animated.out, HasSubstr("outline IoU"));
+  EXPECT_THAT(animated.out, HasSubstr("dB of the whole picture"));
   VideoReader video(scratch_ / "a.mp4");
   EXPECT_EQ(video.info().width, 96);
   EXPECT_TRUE(fs::exists(scratch_ / "a.png"));

@@ -79,6 +79,11 @@ TEST_F(TrainPhotoVerb, TrainsGoesOnAndAnimates) {
   const std::string report((std::istreambuf_iterator<char>(json)), {});
   EXPECT_THAT(report, HasSubstr("\"texels_seen\""));
   EXPECT_THAT(report, HasSubstr("\"frames_per_second\""));
+
+  const CommandResult large = Animate({"--full-size", "--background", "photo"});
+  ASSERT_EQ(large.exit_code, 0) << large.err;
+  VideoReader large_video(scratch_ / "a.mp4");
+  EXPECT_EQ(large_video.info().width, ReadImage(scratch_ / "people/p000/a0_v0/images/000000.png").width);
 }
 
 TEST_F(TrainPhotoVerb, SaysWhatIsWrong) {

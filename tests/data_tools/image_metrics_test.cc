@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -112,6 +113,24 @@ TEST(ImageMetrics, NormalAngles) {
   const NormalError missed = CompareNormals(picture({x}), picture({black}));
   EXPECT_TRUE(std::isnan(missed.mean_deg));
   EXPECT_EQ(missed.coverage, 0);
+}
+
+TEST(ImageMetrics, TheRimIsAsWideOnBothSidesOfTheOutline) {
+  PixelMask mask{9, 7, std::vector<uint8_t>(63, 0)};
+  for (int y = 0; y < 7; ++y) {
+    for (int x = 5; x < 9; ++x) mask.inside[y * 9 + x] = 1;
+  }
+  const PixelMask rim = RimOf(mask, 2);
+  for (int y = 0; y < 7; ++y) {
+    for (int x = 0; x < 9; ++x) EXPECT_EQ(rim.inside[y * 9 + x] != 0, x >= 3 && x <= 6) << x << ", " << y;
+  }
+  // Neither a picture that is all person nor one without a person has an outline, nor is there one of no width.
+  for (const uint8_t value : {0, 1}) {
+    const PixelMask rim_of_all = RimOf({9, 7, std::vector<uint8_t>(63, value)}, 2);
+    EXPECT_EQ(std::count(rim_of_all.inside.begin(), rim_of_all.inside.end(), 0), 63);
+  }
+  const PixelMask none = RimOf(mask, 0);
+  EXPECT_EQ(std::count(none.inside.begin(), none.inside.end(), 0), 63);
 }
 
 }  // namespace
