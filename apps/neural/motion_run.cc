@@ -24,6 +24,8 @@ std::string MotionRunJson(const MotionRun& run) {
                                  {"image_size", c.profile.image_size},
                                  {"uv_size", c.profile.uv_size},
                                  {"features", c.profile.features},
+                                 {"texture_size", c.profile.texture_size},
+                                 {"texture_features", c.profile.texture_features},
                                  {"encoder_widths", c.profile.encoder_widths},
                                  {"decoder_widths", c.profile.decoder_widths},
                                  {"discriminator_width", c.profile.discriminator_width},
@@ -34,6 +36,7 @@ std::string MotionRunJson(const MotionRun& run) {
                                  {"normals", c.normals},
                                  {"motion", c.motion},
                                  {"surface", c.surface},
+                                 {"texture", c.texture},
                                  {"pixels_per_metre", run.pixels_per_metre},
                                  {"fps", run.fps},
                                  {"past", run.past},
@@ -52,6 +55,8 @@ MotionRun ReadMotionRun(const std::string& run_dir) {
   const std::pair<const char*, int*> numbers[] = {{"image_size", &c.profile.image_size},
                                                   {"uv_size", &c.profile.uv_size},
                                                   {"features", &c.profile.features},
+                                                  {"texture_size", &c.profile.texture_size},
+                                                  {"texture_features", &c.profile.texture_features},
                                                   {"discriminator_width", &c.profile.discriminator_width},
                                                   {"perceptual_divisor", &c.profile.perceptual_divisor},
                                                   {"motion_channels", &c.motion_channels},
@@ -64,8 +69,9 @@ MotionRun ReadMotionRun(const std::string& run_dir) {
     const JsonNode list = root.At(key);
     for (size_t i = 0; i < list.size(); ++i) widths->push_back(list.At(i).Int());
   }
-  for (const auto& [key, flag] : {std::pair("shape", &c.shape), std::pair("normals", &c.normals),
-                                  std::pair("motion", &c.motion), std::pair("surface", &c.surface)}) {
+  for (const auto& [key, flag] :
+       {std::pair("shape", &c.shape), std::pair("normals", &c.normals), std::pair("motion", &c.motion),
+        std::pair("surface", &c.surface), std::pair("texture", &c.texture)}) {
     *flag = root.At(key).Flag();
   }
   run.pixels_per_metre = root.At("pixels_per_metre").Number();

@@ -171,6 +171,7 @@ void Run(Request request) {
     if (part == "normal") config.normals = false;
     if (part == "motion") config.motion = false;
     if (part == "surface") config.surface = false;
+    if (part == "texture") config.texture = false;
   }
   options.shape_by_cross_entropy = request.shape_loss == "ce";
   RequireReadable(request.data.data, "data");
@@ -252,11 +253,11 @@ void AddTrainMotion(CLI::App& train, std::function<void()>* action) {
   verb->add_option("--profile", request->profile, "Sizes of the networks")
       ->check(CLI::IsMember({"paper", "cpu", "tiny"}))
       ->capture_default_str();
-  verb->add_option(
-          "--without", request->without,
-          "Leave out a part, as the paper's ablations do; surface: the decoders do not see UV coordinates, as in "
-          "the paper")
-      ->check(CLI::IsMember({"shape", "normal", "motion", "surface"}));
+  verb->add_option("--without", request->without,
+                   "Leave out a part, as the paper's ablations do; surface, texture: the decoders see neither UV "
+                   "coordinates nor a "
+                   "learned texture, as in the paper")
+      ->check(CLI::IsMember({"shape", "normal", "motion", "surface", "texture"}));
   verb->add_option("--train", request->train, "Frames to train on, FIRST-LAST (default: the first four fifths)");
   verb->add_option("--validate", request->validate, "Frames to validate on (default: the last fifth)");
   verb->add_option("--validate-data", request->validate_data,

@@ -16,9 +16,9 @@ from torch import nn
 
 from torch_blocks import Down, Up
 
-PROFILES = {  # image, uv, features, encoder, decoders, discriminator, divisor of VGG's channels
-    "cpu": (256, 128, 16, [16, 32, 64], [16, 32, 64, 128], 16, 4),
-    "tiny": (128, 64, 8, [8, 16, 32], [8, 16, 32, 64], 8, 8),
+PROFILES = {  # image, uv, features, encoder, decoders, discriminator, divisor of VGG's channels, learned texture
+    "cpu": (256, 128, 16, [16, 32, 64], [16, 32, 64, 128], 16, 4, (8, 256)),
+    "tiny": (128, 64, 8, [8, 16, 32], [8, 16, 32, 64], 8, 8, (8, 128)),
 }
 
 
@@ -46,21 +46,26 @@ class UNet(nn.Module):
 class Model(nn.Module):
     def __init__(self, p):
         super().__init__()
-        _, _, d, encoder, decoders, _, _ = p
+        _, _, d, encoder, decoders, _, _, (c, s) = p
         self.encoder = UNet(33, [d], encoder)
-        self.shape = UNet(d + 3 + 7, [7], decoders)
-        self.appearance = UNet(d + 3 + 7 + 3 + 3, [3, 3], decoders)
+        self.shape = UNet(d + 3 + c + 7, [7], decoders)
+        self.appearance = UNet(d + 3 + c + 7 + 3 + 3, [3, 3], decoders)
+        self.texture = nn.Parameter(torch.zeros(1, c, s, s))
+        self.texel_labels = nn.Conv2d(c, 7, 1, bias=False)
+        self.texel_colour = nn.Conv2d(c, 3, 1, bias=False)
 
     def forward(self, motion, uv, body, past):
         f = self.encoder(motion)[0]
         grid = torch.stack([2 * uv[:, 0] - 1, 1 - 2 * uv[:, 1]], -1)
         f = body * F.grid_sample(f, grid, align_corners=False, padding_mode="border")
-        f = torch.cat([f, body * uv, body], 1)
-        logits = self.shape(torch.cat([f, past[0]], 1))[0]
+        texture = 10 * self.texture.expand(len(uv), -1, -1, -1)
+        texel = body * F.grid_sample(texture, grid, align_corners=False, padding_mode="border")
+        f = torch.cat([f, body * uv, body, texel], 1)
+        logits = self.shape(torch.cat([f, past[0]], 1))[0] + self.texel_labels(texel)
         labels = logits.softmax(1)
         a, n = self.appearance(torch.cat([f, labels, past[1], past[2]], 1))
         foreground = 1 - labels[:, :1]
-        n = torch.tanh(n)
+        a, n = a + self.texel_colour(texel), torch.tanh(n)
         return logits, labels, foreground * torch.sigmoid(a), foreground * n / n.norm(dim=1, keepdim=True).clamp_min(1e-6)
 
 

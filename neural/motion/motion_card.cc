@@ -21,6 +21,16 @@ std::string MotionCard(const MotionConfig& config) {
     add("shape decoder D_s", model->shape_decoder, {1, model->shape_decoder->options.in, side, side});
   }
   add("appearance decoder D_a", model->appearance_decoder, {1, model->appearance_decoder->options.in, side, side});
+  if (config.texture) {
+    const torch::NoGradGuard no_grad;
+    const torch::Tensor uv = torch::zeros({1, 2, side, side}), body = torch::ones({1, 1, side, side});
+    text += "\nlearned texture, with what classes and colour take from it\n" +
+            ArchitectureCard(*model->texture, {uv.sizes().vec(), body.sizes().vec()}, [&] {
+              const torch::Tensor texel = model->texture(uv, body);
+              if (config.shape) model->texture->labels_of_texel(texel);
+              model->texture->colour_of_texel(texel);
+            });
+  }
   add("discriminator D*, in training", discriminator, {1, 3 + config.num_labels, side, side});
   return text;
 }

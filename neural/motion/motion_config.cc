@@ -10,9 +10,9 @@ namespace bodyloom {
 
 const MotionProfile& MotionProfileNamed(const std::string& name) {
   static const std::vector<MotionProfile> profiles = {
-      {"paper", 512, 128, 16, {64, 128, 256}, {64, 128, 256, 512, 512}, 64, 1},
-      {"cpu", 256, 128, 16, {16, 32, 64}, {16, 32, 64, 128}, 16, 4},
-      {"tiny", 128, 64, 8, {8, 16, 32}, {8, 16, 32, 64}, 8, 8},
+      {"paper", 512, 128, 16, 512, 16, {64, 128, 256}, {64, 128, 256, 512, 512}, 64, 1},
+      {"cpu", 256, 128, 16, 256, 8, {16, 32, 64}, {16, 32, 64, 128}, 16, 4},
+      {"tiny", 128, 64, 8, 128, 8, {8, 16, 32}, {8, 16, 32, 64}, 8, 8},
   };
   for (const MotionProfile& profile : profiles) {
     if (profile.name == name) return profile;
@@ -24,6 +24,8 @@ bool MotionConfig::IsValid(std::string* why) const {
   const InRange in_range(why);
   bool valid = in_range("image_size", profile.image_size, 32, 8192) && in_range("uv_size", profile.uv_size, 8, 4096) &&
                in_range("features", profile.features, 1, 1024) &&
+               in_range("texture_size", profile.texture_size, 2, 4096) &&
+               in_range("texture_features", profile.texture_features, 1, 1024) &&
                in_range("levels of the encoder", static_cast<int>(profile.encoder_widths.size()), 1, 8) &&
                in_range("levels of the decoders", static_cast<int>(profile.decoder_widths.size()), 1, 8) &&
                in_range("discriminator_width", profile.discriminator_width, 1, 1024) &&
@@ -45,13 +47,13 @@ std::string ToText(const MotionConfig& config) {
   std::ostringstream text;
   const MotionProfile& p = config.profile;
   text << "motion renderer; image " << p.image_size << "; uv " << p.uv_size << "; features " << p.features
-       << "; encoder";
+       << "; texture " << p.texture_size << ' ' << p.texture_features << "; encoder";
   for (const int width : p.encoder_widths) text << ' ' << width;
   text << "; decoders";
   for (const int width : p.decoder_widths) text << ' ' << width;
   text << "; discriminator " << p.discriminator_width << "; motion channels " << config.motion_channels << "; labels "
        << config.num_labels << "; shape " << config.shape << "; normals " << config.normals << "; motion "
-       << config.motion << "; surface " << config.surface;
+       << config.motion << "; surface " << config.surface << "; learned texture " << config.texture;
   return text.str();
 }
 

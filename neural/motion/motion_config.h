@@ -10,9 +10,10 @@ namespace bodyloom {
 /// The paper gives blocks and resolutions but no channels or levels; these are this project's choice (docs/motion.md).
 struct MotionProfile {
   std::string name;
-  int image_size = 0;  ///< longer side of what is rendered, pixels
-  int uv_size = 0;     ///< side of the UV maps, texels
-  int features = 0;    ///< channels d of the motion descriptor f_3D
+  int image_size = 0;                          ///< longer side of what is rendered, pixels
+  int uv_size = 0;                             ///< side of the UV maps, texels
+  int features = 0;                            ///< channels d of the motion descriptor f_3D
+  int texture_size = 0, texture_features = 0;  ///< side, texels, and channels of the learned texture
   std::vector<int> encoder_widths, decoder_widths;
   int discriminator_width = 0;
   int perceptual_divisor = 1;  ///< channels of VGG are divided by this where a stand-in takes its place
@@ -33,6 +34,10 @@ struct MotionConfig {
   /// find out from normals and velocities alone which part of the body a pixel shows, and learn it slowly
   /// (docs/motion_renderer.md).
   bool surface = true;
+  /// The decoders also see a learned texture: values by texel that no motion changes, trained with the networks. Not in
+  /// the paper, whose networks must keep every check of a shirt in their weights; source: Thies, Zollhöfer, Nießner,
+  /// "Deferred Neural Rendering", SIGGRAPH 2019.
+  bool texture = true;
 
   /// A side of the images must be a multiple of this.
   [[nodiscard]] int Multiple() const { return 1 << profile.decoder_widths.size(); }

@@ -39,7 +39,12 @@ MotionModelImpl::MotionModelImpl(const MotionConfig& model_config) : config(mode
   std::string why;
   BODYLOOM_CHECK(config.IsValid(&why), "motion renderer: ", why);
   const MotionProfile& p = config.profile;
-  const int projected = !config.motion ? kUvChannels : p.features + (config.surface ? kUvChannels : 0);
+  const int projected = (config.motion ? p.features : 0) + (!config.motion || config.surface ? kUvChannels : 0) +
+                        (config.texture ? p.texture_features : 0);
+  if (config.texture) {
+    texture = register_module("texture",
+                              LearnedTexture(p.texture_size, p.texture_features, config.shape ? config.num_labels : 0));
+  }
   if (config.motion) {
     encoder = register_module("encoder", UNet(UNetOptions{config.motion_channels, {p.features}, p.encoder_widths}));
   }
@@ -60,18 +65,22 @@ Tensor MotionModelImpl::Encode(const Tensor& motion) {
   return encoder(motion)[0];
 }
 
-Tensor MotionModelImpl::Project(const Tensor& descriptor, const Tensor& uv, const Tensor& body) const {
+Tensor MotionModelImpl::Project(const Tensor& descriptor, const Tensor& uv, const Tensor& body) {
   std::vector<Tensor> parts;
   if (config.motion) parts.push_back(SampleUv(descriptor, uv, body));
   if (!config.motion || config.surface) parts.insert(parts.end(), {uv * body, body});
+  if (config.texture) parts.push_back(texture(uv, body));
   return torch::cat(parts, 1);
 }
 
 MotionStepResult MotionModelImpl::Decode(const Tensor& projected, const MotionState& before) {
   MotionStepResult result;
   std::vector<Tensor> input = {projected};
+  const Tensor texel =
+      config.texture ? projected.slice(1, projected.size(1) - config.profile.texture_features) : Tensor();
   if (config.shape) {
     result.label_logits = shape_decoder(torch::cat({projected, before.labels}, 1))[0];
+    if (config.texture) result.label_logits = result.label_logits + texture->labels_of_texel(texel);
     result.state.labels = torch::softmax(result.label_logits, 1);
     result.foreground = 1 - result.state.labels.slice(1, 0, 1);
     input.push_back(result.state.labels);
@@ -81,7 +90,8 @@ MotionStepResult MotionModelImpl::Decode(const Tensor& projected, const MotionSt
   input.push_back(before.image);
   if (config.normals) input.push_back(before.normals);
   const std::vector<Tensor> heads = appearance_decoder(torch::cat(input, 1));
-  result.state.image = result.foreground * torch::sigmoid(heads[0]);
+  const Tensor colour = config.texture ? heads[0] + texture->colour_of_texel(texel) : heads[0];
+  result.state.image = result.foreground * torch::sigmoid(colour);
   if (config.normals) result.state.normals = result.foreground * Unit(torch::tanh(heads[1]));
   return result;
 }

@@ -9,15 +9,17 @@
 /// Source: Yoon et al., "Learning Motion-Dependent Appearance for High-Fidelity Rendering of Dynamic Humans from a
 /// Single Camera", CVPR 2022, Section 3; channels and levels: neural/motion/motion_config.h.
 ///
-/// With `surface` (not in the paper) f̂ has the rendered UV coordinates (u, v, 1) beside Π f_3D.
-/// Without shape there is no ŝ: Â = sigmoid a must learn where the person ends. Without motion f̂ is the rendered UV
-/// itself, (u, v, 1) on the body and 0 elsewhere. Without normals n̂ is left out.
+/// With `surface` (not in the paper) f̂ has the rendered UV coordinates (u, v, 1) beside Π f_3D; with `texture`
+/// (neither) also Π of a learned texture. Without shape there is no ŝ: Â = sigmoid a must learn where the person ends.
+/// Without motion f̂ is the rendered UV itself, (u, v, 1) on the body and 0 elsewhere, and the learned texture. Without
+/// normals n̂ is left out.
 #pragma once
 
 #include <torch/torch.h>
 
 #include <vector>
 
+#include "neural/motion/learned_texture.h"
 #include "neural/motion/motion_config.h"
 #include "neural/networks/unet.h"
 
@@ -49,7 +51,7 @@ struct MotionModelImpl : torch::nn::Module {
   /// f_3D of B×channels×U×U.
   torch::Tensor Encode(const torch::Tensor& motion);
   /// f̂ from f_3D (ignored, and may be undefined, without motion).
-  torch::Tensor Project(const torch::Tensor& descriptor, const torch::Tensor& uv, const torch::Tensor& body) const;
+  torch::Tensor Project(const torch::Tensor& descriptor, const torch::Tensor& uv, const torch::Tensor& body);
   MotionStepResult Decode(const torch::Tensor& projected, const MotionState& before);
   MotionStepResult forward(const MotionInput& input, const MotionState& before);
   /// The past of a clip's first frame: zeros.
@@ -57,6 +59,7 @@ struct MotionModelImpl : torch::nn::Module {
 
   MotionConfig config;
   UNet encoder{nullptr}, shape_decoder{nullptr}, appearance_decoder{nullptr};
+  LearnedTexture texture{nullptr};
 };
 TORCH_MODULE(MotionModel);
 

@@ -29,7 +29,7 @@ using torch::Tensor;
 
 MotionConfig Toy() {
   MotionConfig config;
-  config.profile = {"toy", 32, 16, 4, {4, 8}, {4, 8}, 4, 16};
+  config.profile = {"toy", 32, 16, 4, 16, 4, {4, 8}, {4, 8}, 4, 16};
   config.motion_channels = 6;
   config.num_labels = 3;
   return config;
@@ -113,12 +113,14 @@ TEST(MotionModel, ProfilesHaveTheSizesThatTheyAreKnownFor) {
 }
 
 TEST(MotionModel, AblationsLeaveOutWhatTheyName) {
-  for (const int left_out : {0, 1, 2, 3}) {
+  for (const int left_out : {0, 1, 2, 3, 4}) {
     MotionConfig config = Toy();
     config.shape = left_out != 1;
     config.normals = left_out != 2;
     config.motion = left_out != 3;
+    config.texture = left_out != 4;
     MotionModel model(config);
+    EXPECT_EQ(model->texture.is_empty(), left_out == 4);
     EXPECT_EQ(model->encoder.is_empty(), left_out == 3);
     EXPECT_EQ(model->shape_decoder.is_empty(), left_out == 1);
     std::vector<MotionFrame> frames(2);
@@ -137,6 +139,39 @@ TEST(MotionModel, AblationsLeaveOutWhatTheyName) {
     // Where the background is certain there is nothing to see.
     EXPECT_TRUE(torch::allclose(result.foreground, 1 - result.state.labels.slice(1, 0, 1)));
     EXPECT_TRUE((result.state.image <= result.foreground + 1e-6).all().item<bool>());
+  }
+}
+
+/// Where the decoders say nothing, classes and colour are those of the texel that a pixel shows.
+TEST(MotionModel, ATexelShowsItsLearnedClassAndColour) {
+  const torch::NoGradGuard no_grad;
+  torch::manual_seed(4);
+  MotionModel model(Toy());
+  for (Tensor& parameter : model->shape_decoder->parameters()) parameter.zero_();
+  for (Tensor& parameter : model->appearance_decoder->parameters()) parameter.zero_();
+  model->texture->values.uniform_(-0.1, 0.1);
+  MotionFrame frame;
+  ToyFrame(0, false, &frame);
+  // Each pixel of the body shows the centre of one texel: (x, y) modulo 16, rows from the top at v = 1.
+  for (int i = 0; i < 32 * 32; ++i) {
+    frame.uv[i] = (static_cast<float>(i % 32 % 16) + 0.5F) / 16;
+    frame.uv[32 * 32 + i] = 1 - (static_cast<float>(i / 32 % 16) + 0.5F) / 16;
+  }
+  const MotionStepResult result =
+      model(InputOf(std::vector<MotionFrame>{frame}, model->config), model->Nothing(1, 32, 32));
+  const Tensor labels = model->texture->labels_of_texel->weight.flatten(1);
+  const Tensor colour = model->texture->colour_of_texel->weight.flatten(1);
+  for (const auto& [x, y] :
+       {std::pair(7, 9), std::pair(20, 15), std::pair(12, 23), std::pair(2, 2), std::pair(30, 12)}) {
+    const bool body = frame.body[y * 32 + x] != 0;
+    const Tensor texel = body ? 10 * model->texture->values[0].slice(1, y % 16, y % 16 + 1).slice(2, x % 16, x % 16 + 1)
+                              : torch::zeros({4, 1, 1});
+    const Tensor logits = labels.matmul(texel.flatten()), classes = torch::softmax(logits, 0);
+    const Tensor seen = (1 - classes[0]) * torch::sigmoid(colour.matmul(texel.flatten()));
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR(result.label_logits[0][k][y][x].item<float>(), logits[k].item<float>(), 1e-5) << x << ", " << y;
+      EXPECT_NEAR(result.state.image[0][k][y][x].item<float>(), seen[k].item<float>(), 1e-5) << x << ", " << y;
+    }
   }
 }
 
