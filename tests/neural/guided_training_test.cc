@@ -5,15 +5,14 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <limits>
-#include <sstream>
 
 #include "neural/guided/guided_model.h"
 #include "neural/guided/guided_renderer.h"
 #include "neural/guided/train_guided.h"
 #include "neural/runtime.h"
 #include "tests/neural/guided_toy.h"
+#include "tests/support/test_files.h"
 
 namespace bodyloom {
 namespace {
@@ -31,17 +30,8 @@ TrainGuidedOptions ToyOptions(const std::string& name) {
   options.num_threads = 1;
   options.reach = 2;
   options.report_every = options.checkpoint_every = options.validate_every = 4;
-  options.run_dir = (fs::path(::testing::TempDir()) / name).string();
-  fs::remove_all(options.run_dir);
-  fs::create_directories(options.run_dir);
+  options.run_dir = EmptyFolder(name);
   return options;
-}
-
-std::string Bytes(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::stringstream bytes;
-  bytes << file.rdbuf();
-  return bytes.str();
 }
 
 TEST(GuidedTraining, LearnsAPairByHeart) {
@@ -117,7 +107,7 @@ TEST(GuidedTraining, AResumedRunEndsWithTheSameBytes) {
     parts.progress = nullptr;
     parts.resume = true;
     ASSERT_EQ(TrainGuided(ToyPeople(3, 4), parts).status, TrainingStatus::kFinished);
-    EXPECT_EQ(Bytes(CheckpointPath(parts.run_dir)), Bytes(CheckpointPath(whole.run_dir))) << spectral;
+    EXPECT_EQ(FileBytes(CheckpointPath(parts.run_dir)), FileBytes(CheckpointPath(whole.run_dir))) << spectral;
   }
 }
 

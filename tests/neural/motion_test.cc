@@ -6,9 +6,7 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <limits>
-#include <sstream>
 
 #include "neural/motion/clothes_reach.h"
 #include "neural/motion/frame_tensors.h"
@@ -20,6 +18,7 @@
 #include "neural/motion/train_motion.h"
 #include "neural/networks/architecture_card.h"
 #include "neural/runtime.h"
+#include "tests/support/test_files.h"
 
 namespace bodyloom {
 namespace {
@@ -74,17 +73,8 @@ TrainMotionOptions ToyOptions(const std::string& name) {
   options.steps = 8;
   options.num_threads = 1;
   options.report_every = options.checkpoint_every = options.validate_every = 4;
-  options.run_dir = (fs::path(::testing::TempDir()) / name).string();
-  fs::remove_all(options.run_dir);
-  fs::create_directories(options.run_dir);
+  options.run_dir = EmptyFolder(name);
   return options;
-}
-
-std::string Bytes(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::stringstream bytes;
-  bytes << file.rdbuf();
-  return bytes.str();
 }
 
 int64_t Parameters(const torch::nn::Module& module) {
@@ -195,7 +185,7 @@ TEST(MotionModel, IsWhatItsCardsSay) {
     MotionConfig config;
     config.profile = MotionProfileNamed(profile);
     EXPECT_EQ(MotionCard(config),
-              Bytes(std::string(BODYLOOM_SOURCE_DIR) + "/tests/neural/cards/motion_" + profile + ".txt"));
+              FileBytes(std::string(BODYLOOM_SOURCE_DIR) + "/tests/neural/cards/motion_" + profile + ".txt"));
   }
 }
 
@@ -240,7 +230,7 @@ TEST(MotionTraining, AResumedRunEndsWithTheSameBytes) {
   parts.progress = nullptr;
   parts.resume = true;
   ASSERT_EQ(TrainMotion(ToyFrame, parts).status, TrainingStatus::kFinished);
-  EXPECT_EQ(Bytes(CheckpointPath(parts.run_dir)), Bytes(CheckpointPath(whole.run_dir)));
+  EXPECT_EQ(FileBytes(CheckpointPath(parts.run_dir)), FileBytes(CheckpointPath(whole.run_dir)));
 }
 
 TEST(MotionTraining, LossesWithoutTruthAreSwitchedOff) {

@@ -24,18 +24,12 @@
 #include "tests/neural/guided_toy.h"
 #include "tests/neural/toy_photos.h"
 #include "tests/support/gradient_check.h"
+#include "tests/support/test_files.h"
 
 namespace bodyloom {
 namespace {
 
 using torch::Tensor;
-
-std::string Bytes(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::stringstream bytes;
-  bytes << file.rdbuf();
-  return bytes.str();
-}
 
 /// The numbers of a card's lines that begin with `name`, by section.
 std::vector<int64_t> NumbersOf(const std::string& card, const std::string& name) {
@@ -62,7 +56,7 @@ TEST(Cards, AreWhatTheirFilesSay) {
   for (const char* profile : {"paper", "cpu", "tiny"}) {
     const std::string folder = std::string(BODYLOOM_SOURCE_DIR) + "/tests/neural/cards/";
     for (const std::string system : {"photo", "animate"}) {
-      EXPECT_EQ(CardOf(system, profile), Bytes(folder + system + "_" + profile + ".txt")) << system;
+      EXPECT_EQ(CardOf(system, profile), FileBytes(folder + system + "_" + profile + ".txt")) << system;
     }
   }
 }

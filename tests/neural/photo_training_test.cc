@@ -6,10 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <sstream>
+#include <string>
 
 #include "geometry/check.h"
 #include "neural/photo/photo_renderer.h"
@@ -17,11 +17,11 @@
 #include "neural/photo/train_photo.h"
 #include "neural/runtime.h"
 #include "tests/neural/toy_photos.h"
+#include "tests/support/test_files.h"
 
 namespace bodyloom {
 namespace {
 
-namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
 TrainPhotoOptions ToyOptions(const std::string& name, PhotoVariant variant = PhotoVariant::kFull) {
@@ -34,17 +34,8 @@ TrainPhotoOptions ToyOptions(const std::string& name, PhotoVariant variant = Pho
   options.reach = 2;
   options.num_threads = 1;
   options.report_every = options.checkpoint_every = options.validate_every = 3;
-  options.run_dir = (fs::path(::testing::TempDir()) / name).string();
-  fs::remove_all(options.run_dir);
-  fs::create_directories(options.run_dir);
+  options.run_dir = EmptyFolder(name);
   return options;
-}
-
-std::string Bytes(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::stringstream bytes;
-  bytes << file.rdbuf();
-  return bytes.str();
 }
 
 TEST(PhotoTraining, LearnsTwoPeopleByHeart) {
@@ -124,7 +115,7 @@ TEST(PhotoTraining, AResumedRunEndsWithTheSameBytes) {
     const TrainPhotoSummary finished = TrainPhoto(source, parts);
     ASSERT_EQ(finished.status, TrainingStatus::kFinished);
     EXPECT_EQ(finished.steps, whole.TotalSteps());
-    EXPECT_EQ(Bytes(CheckpointPath(parts.run_dir)), Bytes(CheckpointPath(whole.run_dir)));
+    EXPECT_EQ(FileBytes(CheckpointPath(parts.run_dir)), FileBytes(CheckpointPath(whole.run_dir)));
   }
 }
 
@@ -138,7 +129,7 @@ TEST(PhotoTraining, TheDiscriminatorJoinsWhenItIsTold) {
     options.gan_weight = gan_weight;
     options.report_every = 1;
     EXPECT_EQ(TrainPhoto(source, options).status, TrainingStatus::kFinished);
-    std::istringstream lines(Bytes(options.run_dir + "/metrics.csv"));
+    std::istringstream lines(FileBytes(options.run_dir + "/metrics.csv"));
     std::string line;
     std::getline(lines, line);
     EXPECT_THAT(line, HasSubstr("step,learning_rate,loss,perceptual,face,texture,generator,alpha,discriminator"));
@@ -147,7 +138,7 @@ TEST(PhotoTraining, TheDiscriminatorJoinsWhenItIsTold) {
       for (int i = 0; i < 9; ++i) std::getline(columns, line, ',');
       cells->push_back(line);
     }
-    return Bytes(CheckpointPath(options.run_dir));
+    return FileBytes(CheckpointPath(options.run_dir));
   };
   std::vector<std::string> first, half, never, none;
   const std::string from_first = train(0, 1, &first), from_half = train(0.5, 1, &half),
@@ -275,7 +266,7 @@ TEST(PhotoTraining, RefusesWhatDoesNotFit) {
   texture.size = 8;
   EXPECT_THROW(renderer.Encode(texture), std::invalid_argument);
   // A file cut off anywhere.
-  const std::string whole = Bytes(path);
+  const std::string whole = FileBytes(path);
   for (size_t size = 0; size < whole.size(); size += whole.size() / 23 + 1) {
     std::ofstream(path, std::ios::binary | std::ios::trunc).write(whole.data(), static_cast<std::streamsize>(size));
     fails(options.config);

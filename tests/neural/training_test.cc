@@ -9,12 +9,12 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
-#include <sstream>
 
 #include "neural/networks/unet.h"
 #include "neural/training/checkpoint.h"
 #include "neural/training/run_files.h"
 #include "neural/training/schedules.h"
+#include "tests/support/test_files.h"
 
 namespace bodyloom {
 namespace {
@@ -39,13 +39,6 @@ class TrainingFiles : public ::testing::Test {
 
 using Checkpoints = TrainingFiles;
 using MetricsLogs = TrainingFiles;
-
-std::string Bytes(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
 
 void WriteBytes(const std::string& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary | std::ios::trunc) << bytes;
@@ -84,11 +77,11 @@ TEST_F(MetricsLogs, LaterLinesAreWrittenAnew) {
   log.Add(10, {0.5, NAN});
   log.Add(20, {0.25, 3});
   log.Add(30, {0.125, NAN});
-  EXPECT_EQ(Bytes(Path("metrics.csv")), "step,loss,validation\n10,0.5,\n20,0.25,3\n30,0.125,\n");
+  EXPECT_EQ(FileBytes(Path("metrics.csv")), "step,loss,validation\n10,0.5,\n20,0.25,3\n30,0.125,\n");
   MetricsLog again(Path("metrics.csv"), {"loss", "validation"});
   again.KeepUpTo(20);
   again.Add(30, {7, 8});
-  EXPECT_EQ(Bytes(Path("metrics.csv")), "step,loss,validation\n10,0.5,\n20,0.25,3\n30,7,8\n");
+  EXPECT_EQ(FileBytes(Path("metrics.csv")), "step,loss,validation\n10,0.5,\n20,0.25,3\n30,7,8\n");
   EXPECT_THROW(again.Add(40, {1}), std::invalid_argument);
   MetricsLog other(Path("metrics.csv"), {"loss"});
   EXPECT_EQ(ErrorOf([&] { other.KeepUpTo(20); }),
@@ -103,9 +96,9 @@ TEST_F(MetricsLogs, FilesAppearWholeOrNotAtAll) {
   {
     RunFile file(Path("a.txt"));
     file.Write("new", 3);
-    EXPECT_EQ(Bytes(Path("a.txt")), "old");
+    EXPECT_EQ(FileBytes(Path("a.txt")), "old");
   }
-  EXPECT_EQ(Bytes(Path("a.txt")), "old");
+  EXPECT_EQ(FileBytes(Path("a.txt")), "old");
   EXPECT_FALSE(fs::exists(Path("a.txt.part")));
   EXPECT_THAT(ErrorOf([&] { WriteRunText(Path("none/a.txt"), "x"); }), StartsWith(Path("none/a.txt") + ": cannot be"));
   if (fs::exists("/dev/full")) {
@@ -178,7 +171,7 @@ TEST_F(Checkpoints, ARunGoesOnBitForBit) {
   second.Train(5);
   second.checkpoint.Save(Path("resumed.bin"));
 
-  EXPECT_EQ(Bytes(Path("whole.bin")), Bytes(Path("resumed.bin")));
+  EXPECT_EQ(FileBytes(Path("whole.bin")), FileBytes(Path("resumed.bin")));
   EXPECT_EQ(second.losses, std::vector<float>(whole.losses.begin() + 5, whole.losses.end()));
   EXPECT_NE(whole.losses[4], whole.losses[9]);
   EXPECT_FALSE(fs::exists(Path("half.bin.part")));
@@ -262,7 +255,7 @@ TEST_F(Checkpoints, DamagedFilesAreRefused) {
   small.Add("values", &values);
   small.Add("none", &none);
   small.Save(Path("good.bin"));
-  const std::string good = Bytes(Path("good.bin")), path = Path("bad.bin");
+  const std::string good = FileBytes(Path("good.bin")), path = Path("bad.bin");
   const auto error_of = [&](const std::string& bytes) {
     WriteBytes(path, bytes);
     const Tensor before = values;

@@ -8,13 +8,13 @@
 
 #include <chrono>
 #include <csignal>
-#include <fstream>
 #include <iterator>
 #include <random>
 #include <thread>
 
 #include "data_tools/track_io.h"
 #include "tests/apps/run_command.h"
+#include "tests/support/test_files.h"
 
 namespace bodyloom::stress {
 namespace {
@@ -40,11 +40,6 @@ bool KillAfter(const std::vector<std::string>& arguments, int milliseconds) {
   return WIFSIGNALED(status);
 }
 
-std::string Bytes(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
 TEST(Interruption, ATrackKilledAtARandomMomentIsWholeOrNotThereAndRunsAgain) {
   const ScratchFolder folder;
   const CommandResult synth = RunCommand(
@@ -59,14 +54,14 @@ TEST(Interruption, ATrackKilledAtARandomMomentIsWholeOrNotThereAndRunsAgain) {
   ASSERT_EQ(whole.exit_code, 0) << whole.err;
   const int run_ms = static_cast<int>(
       std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now() - start).count());
-  const std::string expected = Bytes(folder / "whole.npz");
+  const std::string expected = FileBytes(folder / "whole.npz");
   std::mt19937 random(3);
   int killed = 0, absent = 0;
   for (int i = 0; i < 8; ++i) {
     const std::string name = "killed" + std::to_string(i) + ".npz";
     killed +=
         KillAfter(track(name), 1 + static_cast<int>(random() % static_cast<unsigned>(run_ms + run_ms / 4))) ? 1 : 0;
-    const std::string bytes = Bytes(folder / name);
+    const std::string bytes = FileBytes(folder / name);
     if (bytes.empty()) {
       ++absent;
     } else {
@@ -74,7 +69,7 @@ TEST(Interruption, ATrackKilledAtARandomMomentIsWholeOrNotThereAndRunsAgain) {
     }
     if (i == 0) {
       EXPECT_EQ(RunCommand(track(name)).exit_code, 0);
-      EXPECT_EQ(Bytes(folder / name), expected);
+      EXPECT_EQ(FileBytes(folder / name), expected);
     }
   }
   EXPECT_GT(killed, 2);
