@@ -23,7 +23,6 @@ void CompositeScore::Add(int t, const Image& composed) {
   wanted.normals = wanted.iuv = wanted.background = false;
   PersonFrame frame = set_.Read(t, wanted);
   const Image truth = Resized(frame.rgb, width_, height_);
-  ++frames_;
   whole_.Add(Psnr(truth, composed));
   if (frame.labels.empty()) return;
   for (uint8_t& label : frame.labels.bgr) label = label == 0 ? 0 : 255;

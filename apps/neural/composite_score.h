@@ -20,7 +20,6 @@ class CompositeScore {
   /// The picture of the set's frame t.
   void Add(int t, const Image& composed);
 
-  [[nodiscard]] int frames() const { return frames_; }
   /// Mean over frames of the PSNR of the whole picture, dB.
   [[nodiscard]] double psnr_db() const { return whole_.Mean(); }
   /// Of the pixels within kRimPixels of the true person's outline (RimOf()); NaN where the set has no labels.
@@ -34,7 +33,7 @@ class CompositeScore {
     [[nodiscard]] double Mean() const;
   };
   PersonSet set_;
-  int width_, height_, frames_ = 0;
+  int width_, height_;
   Sum whole_, rim_;
 };
 
