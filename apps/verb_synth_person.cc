@@ -40,7 +40,8 @@ constexpr double kGap_s = 1;
 
 struct SynthPersonCommand {
   std::vector<std::string> motions;
-  MotionInput motion;  ///< rate and frames of each
+  std::vector<double> speeds = {1};  ///< each motion at each of them
+  MotionInput motion;                ///< rate and frames of each
   std::string body, out, sheet, garment = "skirt";
   bool quiet = false;
   MakePersonSetOptions set;
@@ -57,6 +58,9 @@ std::string CommandLine(const SynthPersonCommand& c) {
     std::snprintf(text.data(), text.size(), " %s %g", option, value);
     line += text.data();
   };
+  if (c.speeds != std::vector<double>{1}) {
+    for (const double speed : c.speeds) add("--speed", speed);
+  }
   add("--fps", c.motion.fps), add("--yaw", c.set.yaw_deg), add("--elevation", c.set.elevation_deg);
   line += " --first " + std::to_string(c.motion.first_frame) + " --frames " + std::to_string(c.motion.num_frames);
   return c.body.empty() ? line : line + " --body " + c.body;
@@ -69,8 +73,11 @@ Motion LoadMotions(const SynthPersonCommand& command, const BodyModel& body) {
   for (const std::string& name : command.motions) {
     MotionInput input = command.motion;
     input.motion = name;
-    motions.push_back(LoadMotionInput(input, body));
-    if (command.motions.size() > 1) motions.back() = ChangeUp(motions.back(), Motion::Up::kY, pelvis);
+    for (const double speed : command.speeds) {
+      input.speed = speed;
+      motions.push_back(LoadMotionInput(input, body));
+      if (command.motions.size() > 1) motions.back() = ChangeUp(motions.back(), Motion::Up::kY, pelvis);
+    }
   }
   return motions.size() == 1 ? motions.front() : JoinMotions(motions, kGap_s);
 }
@@ -78,6 +85,9 @@ Motion LoadMotions(const SynthPersonCommand& command, const BodyModel& body) {
 void SynthPerson(SynthPersonCommand command) {
   for (const std::string& motion : command.motions) {
     if (motion != "demo") RequireReadable(motion, "motion");
+  }
+  if (!(command.motion.fps > 0) && command.speeds != std::vector<double>{1}) {
+    throw UsageError("--speed needs --fps: the rate of the pictures");
   }
   RequireReadable(command.body, "body model");
   RequireWritableFolder(command.out);
@@ -142,6 +152,12 @@ void AddSynthPersonVerb(CLI::App& app, Action* action) {
       ->capture_default_str();
   verb->add_option("--fps", c.motion.fps, "resample the motion to this rate (0: as the file has it)")
       ->check(CLI::Range(0.0, 1000.0))
+      ->capture_default_str();
+  verb->add_option(
+          "--speed", c.speeds,
+          "plays each motion so many times as fast; several: at each of them, one after the other. --first and "
+          "--frames count frames at speed 1: the same poses at any speed")
+      ->check(CLI::Range(0.05, 20.0))
       ->capture_default_str();
   verb->add_option("--yaw", c.set.yaw_deg, "of the camera about the vertical, degrees; 0 sees the front")
       ->capture_default_str();

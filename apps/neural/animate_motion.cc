@@ -26,6 +26,7 @@
 #include "apps/neural/motion_preview.h"
 #include "apps/neural/motion_run.h"
 #include "apps/neural/relight_frames.h"
+#include "apps/neural/result_set.h"
 #include "apps/neural/view_angles.h"
 #include "apps/progress.h"
 #include "apps/stage_clock.h"
@@ -52,7 +53,7 @@ namespace {
 constexpr int kLargestSide = 4096;
 
 struct Request {
-  std::string run, track, data, out, body, background, sheet, json, view_yaw, relight, frames, like;
+  std::string run, track, data, out, body, background, sheet, json, view_yaw, relight, frames, like, set;
   int threads = 0, warmup = 50;
   double speed = 1;
   std::string device = "cpu";
@@ -190,6 +191,11 @@ void Run(const Request& request) {
                   {request.out, request.sheet, request.json, request.frames});
   for (const std::string& path : {request.out, request.sheet, request.json, request.frames}) RequireWritable(path);
   RequireReadable(request.like, "person set or track");
+  if (!request.set.empty()) {
+    RequireWritableFolder(request.set);
+    if (!request.view_yaw.empty()) throw UsageError("--set writes the track beside the pictures: not with --view-yaw");
+    RequireDistinct({request.data, request.like}, {request.set});
+  }
   std::unique_ptr<FrameRelighter> relighter;
   if (!request.relight.empty()) relighter = std::make_unique<FrameRelighter>(ReadRelight(request.relight));
   const MotionRun run = ReadMotionRun(request.run);
@@ -230,6 +236,11 @@ void Run(const Request& request) {
                          : run.fps;
   MotionErrors errors(SimilarityTo(request, track, run.past, threads));
   VideoWriter video(request.out, size.width, size.height, fps);
+  std::optional<ResultSet> set;
+  if (!request.set.empty()) {
+    set.emplace(request.set, track, run.config.shape, run.config.normals,
+                "bodyloom animate motion --run " + request.run + " --set " + request.set);
+  }
   const std::vector<int> on_sheet = EvenlySpreadFrames(track.num_frames(), 6);
   std::vector<Image> sheet;
   std::vector<double> network_ms;
@@ -266,6 +277,7 @@ void Run(const Request& request) {
         ++lost;
       }
       video.Write(composed);
+      if (set) set->Add(t, picture, window, composed);
       if (!request.sheet.empty() && std::binary_search(on_sheet.begin(), on_sheet.end(), t) && track.HasResult(t)) {
         const size_t before = sheet.size();
         AddToSheet(picture, composed, &sheet);
@@ -275,6 +287,7 @@ void Run(const Request& request) {
       progress.Update("rendering", static_cast<double>(t + 1) / track.num_frames());
     }
     video.Finish();
+    if (set) set->Finish();
   }
   lap(4);
   if (!sheet.empty()) {
@@ -366,7 +379,11 @@ void AddAnimateMotion(CLI::App& animate, std::function<void()>* action) {
       ->check(CLI::Range(0.05, 20.0))
       ->capture_default_str();
   verb->add_option("--background", request->background, "Image, video or folder of images behind the person");
-  verb->add_flag("--full-size", request->full_size, kFullSizeHelp);
+  CLI::Option* full_size = verb->add_flag("--full-size", request->full_size, kFullSizeHelp);
+  verb->add_option("--set", request->set,
+                   "Also a person set: pictures, labels and normals without loss, for `bodyloom metrics`")
+      ->type_name("DIR")
+      ->needs(full_size);
   verb->add_option("--relight", request->relight,
                    "Other light: an environment image (equirectangular), or JSON with lights (docs/relighting.md)");
   verb->add_option("--warmup", request->warmup, "Passes of the first frame through the network before it counts")

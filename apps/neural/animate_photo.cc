@@ -34,6 +34,7 @@
 #include "data_tools/video/video_writer.h"
 #include "geometry/check.h"
 #include "neural/photo/photo_renderer.h"
+#include "neural/photo/texture_guess.h"
 #include "neural/photo/train_photo.h"
 #include "neural/training/made_ahead.h"
 #include "render/contact_sheet.h"
@@ -151,7 +152,11 @@ void Run(const Request& request) {
   const std::vector<uint8_t> texel_parts = PartsOfTexels(*photo.body, *maps->texels());
   std::string notes;
   for (const Photo& one : photos) notes += one.notes;
-  const PartialTexture texture = TextureOf(request, photos, texel_parts, &notes);
+  PartialTexture texture = TextureOf(request, photos, texel_parts, &notes);
+  const std::vector<float> seen = texture.colour;
+  if (run.config.GuessesUnseen()) {
+    TextureGuess(U, texel_parts, PlacesOfTexels(*photo.body, *maps->texels())).Fill(&texture);
+  }
   std::cout << notes << std::flush;
   PhotoRenderer renderer(CheckpointPath(request.run), run.config,
                          {request.whole_window ? -1 : run.reach, threads, request.device});
@@ -170,8 +175,7 @@ void Run(const Request& request) {
   const double fps = T > 1 && times.back() > times.front() ? (T - 1) / (times.back() - times.front()) : 30;
   VideoWriter video(request.out, size.width, size.height, fps);
   const std::vector<int> on_sheet = EvenlySpreadFrames(T, 6);
-  std::vector<Image> sheet = {PictureOf(photo.frame.image, S, S), PictureOf(texture.colour, U, U),
-                              PictureOf(completed, U, U)};
+  std::vector<Image> sheet = {PictureOf(photo.frame.image, S, S), PictureOf(seen, U, U), PictureOf(completed, U, U)};
   std::vector<double> network_ms;
   int lost = 0;
   {

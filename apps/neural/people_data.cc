@@ -56,6 +56,7 @@ class PeopleData::Impl {
     source_.size = request.size, source_.texture_size = request.texture_size;
     for (const auto& frames : people_) source_.num_frames.push_back(static_cast<int>(frames.size()));
     source_.texel_parts = PartsOfTexels(*body_, *texels_);
+    source_.texel_places = PlacesOfTexels(*body_, *texels_);
     source_.fill = [this](int person, int frame, PhotoFrame* photo) { Fill(people_.at(person).at(frame), photo); };
   }
 

@@ -31,6 +31,8 @@ std::string PhotoRunJson(const PhotoRun& run) {
                                  {"discriminator_scales", p.discriminator_scales},
                                  {"perceptual_divisor", p.perceptual_divisor},
                                  {"render_passes_input", p.render_passes_input ? 1 : 0},
+                                 {"guesses_unseen", p.guesses_unseen ? 1 : 0},
+                                 {"render_up_kernel", p.render_up_kernel},
                                  {"reach", run.reach}};
   if (!run.notes.empty()) json["run"] = nlohmann::ordered_json::parse(run.notes);
   return json.dump(2) + "\n";
@@ -50,7 +52,7 @@ PhotoRun ReadPhotoRun(const std::string& run_dir) {
   }
   const JsonNode widths = root.At("feature_widths");
   for (size_t i = 0; i < widths.size(); ++i) p.feature_widths.push_back(widths.At(i).Int());
-  int passes_input = 0;
+  int passes_input = 0, guesses_unseen = 0;
   const std::pair<const char*, int*> numbers[] = {{"image_size", &p.image_size},
                                                   {"texture_size", &p.texture_size},
                                                   {"features", &p.features},
@@ -61,9 +63,12 @@ PhotoRun ReadPhotoRun(const std::string& run_dir) {
                                                   {"discriminator_scales", &p.discriminator_scales},
                                                   {"perceptual_divisor", &p.perceptual_divisor},
                                                   {"render_passes_input", &passes_input},
+                                                  {"guesses_unseen", &guesses_unseen},
+                                                  {"render_up_kernel", &p.render_up_kernel},
                                                   {"reach", &run.reach}};
   for (const auto& [key, value] : numbers) *value = root.At(key).Int();
   p.render_passes_input = passes_input != 0;
+  p.guesses_unseen = guesses_unseen != 0;
   std::string why;
   if (!run.config.IsValid(&why)) throw std::runtime_error(path + ": " + why);
   if (run.reach < 0 || run.reach > p.image_size) {

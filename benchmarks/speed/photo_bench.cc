@@ -70,10 +70,12 @@ void PhotoRenderer(const PhotoConfig& config) {
   model->eval();
   const int side = config.profile.image_size, texels = config.profile.texture_size;
   const Tensor features = torch::randn({1, config.TextureChannels(), texels, texels});
-  const TextureTensors texture = {torch::rand({1, 3, texels, texels}) * 2 - 1, torch::ones({1, 1, texels, texels})};
+  const Tensor colour = torch::rand({1, 3, texels, texels}) * 2 - 1;
+  const TextureTensors texture = {colour, torch::ones({1, 1, texels, texels}),
+                                  config.GuessesUnseen() ? torch::zeros_like(colour) : Tensor()};
   for (const Window& window : WindowsOf(side)) {
     const PoseTensors pose = {torch::rand({1, 2, window.height, window.width}), {}, Body(window.width, window.height)};
-    Print(Named("photo", window), [&] { model->Render(model->Project(features, pose)); });
+    Print(Named("photo", window), [&] { model->Render(model->Project(features, pose), pose.body); });
   }
   Print("photo: the photo encoded, once", [&] { model->Complete(texture); });
 }

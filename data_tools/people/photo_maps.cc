@@ -3,6 +3,7 @@
 
 #include "data_tools/people/posed_track.h"
 #include "geometry/check.h"
+#include "geometry/uv_bake.h"
 #include "render/resolve_pixels.h"
 #include "render/texel_sight.h"
 #include "render/visibility_buffer.h"
@@ -24,6 +25,18 @@ std::vector<uint8_t> PartsOfTexels(const BodyModel& body, const UvTexelTable& te
   std::vector<uint8_t> parts(size_t(texels.width) * texels.height, 0);
   for (size_t i = 0; i < texels.size(); ++i) parts[texels.pixel[i]] = body.data().face_part[texels.face[i]];
   return parts;
+}
+
+std::vector<float> PlacesOfTexels(const BodyModel& body, const UvTexelTable& texels) {
+  const MatrixX3d& vertices = body.data().v_template;
+  std::vector<float> values;
+  for (Eigen::Index v = 0; v < vertices.rows(); ++v) {
+    for (int a = 0; a < 3; ++a) values.push_back(static_cast<float>(vertices(v, a)));
+  }
+  const UvBaker baker(texels, body.data().faces);
+  std::vector<float> places(3 * static_cast<size_t>(baker.num_pixels()), 0);
+  baker.Bake(InterleaveChannels(values, body.num_vertices(), 3), body.num_vertices(), 3, places);
+  return places;
 }
 
 class PhotoMaps::Impl {

@@ -27,6 +27,9 @@ struct PhotoMapsOptions {
 /// U × U: DensePose's part of each texel (gutters too), 0 where the atlas is empty.
 std::vector<uint8_t> PartsOfTexels(const BodyModel& body, const UvTexelTable& texels);
 
+/// Planar 3 × U × U: where each texel lies on the body's template, metres; 0 where the atlas is empty.
+std::vector<float> PlacesOfTexels(const BodyModel& body, const UvTexelTable& texels);
+
 /// Planar.
 struct PhotoMap {
   std::vector<float> uv;            ///< 2 × S × S: atlas coordinates; 0 off the body

@@ -36,6 +36,8 @@ ResidualGeneratorImpl::ResidualGeneratorImpl(const ResidualGeneratorOptions& gen
   BODYLOOM_CHECK(options.in > 0 && options.out > 0 && options.width > 0 && options.blocks >= 0,
                  "generator: ", options.in, " to ", options.out, " channels, width ", options.width, ", ",
                  options.blocks, " blocks, expected positive numbers");
+  BODYLOOM_CHECK(options.up_kernel == 3 || options.up_kernel == 4, "generator: kernels of ", options.up_kernel,
+                 " on the way up, expected 3 or 4");
   int channels = options.width;
   first = register_module("first", Conv(options.in, channels, 7, 1, 0));
   for (int i = 0; i < kLevels; ++i, channels *= 2) {
@@ -49,26 +51,35 @@ ResidualGeneratorImpl::ResidualGeneratorImpl(const ResidualGeneratorOptions& gen
   for (int i = 0; i < kLevels; ++i, channels /= 2) {
     up.push_back(register_module(
         "up" + std::to_string(i),
-        Initialised(nn::ConvTranspose2d(
-            nn::ConvTranspose2dOptions(channels, channels / 2, 3).stride(2).padding(1).output_padding(1)))));
+        Initialised(nn::ConvTranspose2d(nn::ConvTranspose2dOptions(channels, channels / 2, options.up_kernel)
+                                            .stride(2)
+                                            .padding(1)
+                                            .output_padding(4 - options.up_kernel)))));
   }
-  last = register_module("last", Conv(channels + (options.passes_input ? options.in : 0), options.out, 7, 1, 0));
+  last = register_module("last", Conv(channels + options.passed, options.out, 7, 1, 0));
 }
 
-Tensor ResidualGeneratorImpl::forward(Tensor x) {
+Tensor ResidualGeneratorImpl::forward(Tensor x, const Tensor& passed) {
   BODYLOOM_CHECK(x.dim() == 4 && x.size(1) == options.in && x.size(2) % kResidualGeneratorMultiple == 0 &&
                      x.size(3) % kResidualGeneratorMultiple == 0 && x.size(2) >= 16 && x.size(3) >= 16,
                  "generator: an input of shape ", x.sizes(), ", expected B x ", options.in,
                  " x H x W, sides multiples of 8 and at least 16");
-  const Tensor input = x;
+  BODYLOOM_CHECK(options.passed == 0 ? !passed.defined()
+                                     : passed.defined() && passed.dim() == 4 && passed.size(0) == x.size(0) &&
+                                           passed.size(1) == options.passed && passed.size(2) == x.size(2) &&
+                                           passed.size(3) == x.size(3),
+                 "generator: what is passed by an input of shape ", x.sizes(), ", expected ", options.passed,
+                 " channels of its size");
   x = NormAndRelu(first(Reflected(x, 3)));
   for (nn::Conv2d& conv : down) x = NormAndRelu(conv(x));
   for (size_t i = 0; i < blocks.size(); i += 2) {
     const Tensor inner = NormAndRelu(blocks[i](Reflected(x, 1)));
     x = x + InstanceNorm(blocks[i + 1](Reflected(inner, 1)));
   }
-  for (nn::ConvTranspose2d& conv : up) x = NormAndRelu(TransposedConv(x, conv->weight, conv->bias, 1, 1));
-  return last(Reflected(options.passes_input ? torch::cat({x, input}, 1) : x, 3));
+  for (nn::ConvTranspose2d& conv : up) {
+    x = NormAndRelu(TransposedConv(x, conv->weight, conv->bias, 1, 4 - options.up_kernel));
+  }
+  return last(Reflected(options.passed > 0 ? torch::cat({x, passed}, 1) : x, 3));
 }
 
 }  // namespace bodyloom

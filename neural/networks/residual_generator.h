@@ -21,7 +21,11 @@ struct ResidualGeneratorOptions {
   int in = 0, out = 0;
   int width = 64;  ///< n
   int blocks = 6;
-  bool passes_input = false;  ///< the last convolution sees the input beside the finest map: not in the sources
+  int passed = 0;  ///< channels that the last convolution sees beside the finest map, given to it past all others: not
+                   ///< in the sources
+  /// 3, or 4 (Deconv(c, c/2, 4, stride 2, padding 1)): every pixel then meets four taps, where with 3 it is one, two or
+  /// four by turns, which shows as a grain of every other pixel. Not in the sources.
+  int up_kernel = 3;
 };
 
 /// Every side of the input is a multiple of this.
@@ -30,7 +34,8 @@ inline constexpr int kResidualGeneratorMultiple = 8;
 struct ResidualGeneratorImpl : torch::nn::Module {
   explicit ResidualGeneratorImpl(const ResidualGeneratorOptions& options);
   /// B×in×H×W → B×out×H×W, linear. H and W are multiples of 8 and at least 16; std::invalid_argument otherwise.
-  torch::Tensor forward(torch::Tensor x);
+  /// `passed`: B×options.passed×H×W; undefined where that is 0.
+  torch::Tensor forward(torch::Tensor x, const torch::Tensor& passed = {});
 
   ResidualGeneratorOptions options;
   torch::nn::Conv2d first{nullptr}, last{nullptr};

@@ -27,6 +27,7 @@ void CheckSame(const PartialTexture& a, const PartialTexture& b) {
   BODYLOOM_CHECK(a.size == b.size && a.colour.size() == 3 * Area(a.size) && a.visible.size() == Area(a.size) &&
                      b.colour.size() == a.colour.size() && b.visible.size() == a.visible.size(),
                  "partial textures of ", a.size, " and ", b.size, " texels a side, expected the same");
+  BODYLOOM_CHECK(a.guessed.empty() && b.guessed.empty(), "partial textures with guesses, expected what is seen alone");
 }
 
 void CopyTexel(const PartialTexture& from, size_t texel, PartialTexture* to) {

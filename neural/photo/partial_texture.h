@@ -13,23 +13,26 @@ namespace bodyloom {
 /// Planar; texels as in neural/people/photo_frame.h.
 struct PartialTexture {
   int size = 0;
-  std::vector<float> colour;     ///< 3 × U × U RGB in [0, 1]; 0 where not visible
+  std::vector<float> colour;     ///< 3 × U × U RGB in [0, 1]; 0 where neither visible nor guessed
   std::vector<uint8_t> visible;  ///< U × U, 0 or 1
+  std::vector<uint8_t> guessed;  ///< U × U, 0 or 1, never where visible (neural/photo/texture_guess.h); empty: nowhere
 };
 
 /// A texel is visible where texel_seen says so and the pixel nearest to texel_pixels shows the person (label other than
 /// 0; a frame without labels: a colour other than black). Its colour is the bilinear mean of the up to four pixels
 /// around texel_pixels that show the person, their weights made to sum to 1.
-/// Throws std::invalid_argument for a frame without a picture or with sizes that do not fit each other.
+/// Nothing is guessed. Throws std::invalid_argument for a frame without a picture or with sizes that do not fit each
+/// other.
 PartialTexture PartialTextureOf(const PhotoFrame& frame);
 
 /// `texture` where `texel_parts` is none of `parts`, `garment` elsewhere: colours and visibility are copied as they
 /// are, bit for bit. Texels that the garment's picture does not show become invisible: what the person wore there is
-/// not wanted. Source: Sarkar et al., ECCV 2020, Section 4.5.
+/// not wanted. Source: Sarkar et al., ECCV 2020, Section 4.5. Throws std::invalid_argument for textures of different
+/// sizes or with guesses: a guess is made of all that is seen in the end.
 PartialTexture WithParts(const PartialTexture& texture, const PartialTexture& garment,
                          std::span<const uint8_t> texel_parts, std::span<const int> parts);
 
-/// What any of the pictures shows of one person; where several do, the first one's colour counts.
+/// What any of the pictures shows of one person; where several do, the first one's colour counts. Throws as WithParts.
 PartialTexture UnionOf(std::span<const PartialTexture> textures);
 
 /// Share of the atlas's texels (part other than 0) that is visible.

@@ -8,6 +8,7 @@
 #include "neural/people/photo_frame.h"
 #include "neural/photo/photo_pairs.h"
 #include "neural/photo/photo_tensors.h"
+#include "neural/photo/texture_guess.h"
 
 namespace bodyloom {
 
@@ -18,7 +19,9 @@ struct PhotoBatch {
   std::vector<PhotoWindow> faces;  ///< in the windows of truth; width 0 where there is none
 };
 
-/// Windows: neural/photo/photo_window.h, the largest one's sides for all.
-PhotoBatch MakePhotoBatch(const PhotoSource& source, std::span<const PhotoPair> pairs, int reach, int smallest_side);
+/// Windows: neural/photo/photo_window.h, the largest one's sides for all. `guess`: what the source's texture is filled
+/// with where nothing is seen; null: with nothing.
+PhotoBatch MakePhotoBatch(const PhotoSource& source, std::span<const PhotoPair> pairs, int reach, int smallest_side,
+                          const TextureGuess* guess = nullptr);
 
 }  // namespace bodyloom

@@ -17,7 +17,16 @@ std::string PhotoCard(const PhotoConfig& config) {
   if (config.Completes()) {
     add("FeatureNet f, once a photo", model->feature_net, {1, model->feature_net->options.in, texels, texels});
   }
-  add("RenderNet g, a frame", model->render_net, {1, model->render_net->options.in, side, side});
+  const ResidualGeneratorOptions& render = model->render_net->options;
+  std::vector<std::vector<int64_t>> inputs = {{1, render.in, side, side}};
+  if (render.passed > 0) inputs.push_back({1, render.passed, side, side});
+  text +=
+      std::string(text.empty() ? "" : "\n") + "RenderNet g, a frame\n" +
+      ArchitectureCard(*model->render_net, inputs, [&] {
+        const torch::NoGradGuard no_grad;
+        const torch::Tensor passed = render.passed > 0 ? torch::zeros({0, render.passed, side, side}) : torch::Tensor();
+        model->render_net(torch::zeros({0, render.in, side, side}), passed);
+      });
   add("discriminators D, in training", discriminator, {1, discriminator->scales[0]->options.in, side, side});
   return text;
 }

@@ -23,8 +23,8 @@ const std::vector<std::pair<PhotoVariant, const char*>> kVariants = {{PhotoVaria
 const PhotoProfile& PhotoProfileNamed(const std::string& name) {
   static const std::vector<PhotoProfile> profiles = {
       {"paper", 256, 256, 16, {64, 128, 256, 512, 1024}, 64, 6, 64, 3, 3, 1},
-      {"cpu", 256, 256, 16, {16, 32, 64, 128, 256}, 16, 6, 16, 3, 3, 4, true},
-      {"tiny", 128, 128, 16, {8, 16, 32, 64, 128}, 16, 6, 8, 3, 2, 8, true},
+      {"cpu", 256, 256, 16, {16, 32, 64, 128, 256}, 16, 6, 16, 3, 3, 4, true, true, 4},
+      {"tiny", 128, 128, 16, {8, 16, 32, 64, 128}, 16, 6, 8, 3, 2, 8, true, true, 4},
   };
   for (const PhotoProfile& profile : profiles) {
     if (profile.name == name) return profile;
@@ -69,6 +69,7 @@ bool PhotoConfig::IsValid(std::string* why) const {
         in_range("features", p.features, 3, 1024) &&
         in_range("number of feature_widths", static_cast<int>(p.feature_widths.size()), 2, 8) &&
         in_range("render_width", p.render_width, 1, 1024) && in_range("render_blocks", p.render_blocks, 0, 64) &&
+        in_range("render_up_kernel", p.render_up_kernel, 3, 4) &&
         in_range("discriminator_width", p.discriminator_width, 1, 1024) &&
         in_range("discriminator_layers", p.discriminator_layers, 1, 8) &&
         in_range("discriminator_scales", p.discriminator_scales, 1, 8) &&
@@ -97,7 +98,7 @@ std::string ToText(const PhotoConfig& config) {
   for (const int width : p.feature_widths) text << ' ' << width;
   text << "; render " << p.render_width << " x " << p.render_blocks << "; discriminator " << p.discriminator_width
        << " x " << p.discriminator_layers << " x " << p.discriminator_scales << "; passes input "
-       << p.render_passes_input;
+       << p.render_passes_input << "; guesses unseen " << p.guesses_unseen << "; up kernel " << p.render_up_kernel;
   return text.str();
 }
 

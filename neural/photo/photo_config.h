@@ -18,9 +18,16 @@ struct PhotoProfile {
   int render_width = 0, render_blocks = 0;
   int discriminator_width = 0, discriminator_layers = 0, discriminator_scales = 0;
   int perceptual_divisor = 1;  ///< channels of VGG are divided by this where a stand-in takes its place
-  /// RenderNet's last convolution sees R too, and begins with its colours. Instance norm takes colours out of every map
-  /// before; how they come back is learned, which takes longer than two cores can wait. Not in the paper.
+  /// RenderNet's last convolution sees R, its colours filled outwards and the body's outline too, and begins with
+  /// those colours and that outline.
+  /// Instance norm takes colours out of every map before; how they come back is learned, which takes longer than two
+  /// cores can wait. Not in the paper.
   bool render_passes_input = false;
+  /// FeatureNet sees guesses at the colours of texels that the photo does not show (neural/photo/texture_guess.h). Not
+  /// in the paper.
+  bool guesses_unseen = false;
+  /// Of RenderNet's transposed convolutions: 3 (the paper's) or 4 (no grain of every other pixel).
+  int render_up_kernel = 3;
 };
 
 /// "paper" (the published sizes), "cpu" (256² and 256², trains and runs on two cores), "tiny" (128², for tests and
@@ -46,10 +53,15 @@ struct PhotoConfig {
 
   /// Whether there is a FeatureNet.
   [[nodiscard]] bool Completes() const { return variant != PhotoVariant::kWarp && variant != PhotoVariant::kWarpCond; }
+  /// Whether FeatureNet sees guesses.
+  [[nodiscard]] bool GuessesUnseen() const { return Completes() && profile.guesses_unseen; }
   /// Channels that FeatureNet makes; 0 without it.
   [[nodiscard]] int TextureChannels() const;
   /// Channels of what RenderNet sees: d, 3, 3 and 6.
   [[nodiscard]] int RenderChannels() const;
+  /// Channels that RenderNet's last convolution sees beside its own: three colours filled outwards, R and the body's
+  /// outline; or none.
+  [[nodiscard]] int PassedChannels() const { return profile.render_passes_input ? RenderChannels() + 4 : 0; }
   /// The smallest side of a picture that the discriminator takes.
   [[nodiscard]] int SmallestSide() const;
   [[nodiscard]] bool IsValid(std::string* why) const;

@@ -2,6 +2,7 @@
 #include "neural/photo/photo_model.h"
 
 #include "geometry/check.h"
+#include "neural/networks/pull_push.h"
 #include "neural/networks/uv_sampler.h"
 
 namespace bodyloom {
@@ -10,6 +11,8 @@ using torch::Tensor;
 
 namespace {
 
+constexpr int kFillLevels = 5;  ///< outwards by some 32 pixels, more than any clothes reach
+
 /// The first three outputs begin as the input's colours, the others near 0. `colours` is the first channel of the input
 /// among those that the convolution sees.
 void StartFromColours(torch::nn::Conv2dImpl* last, int colours) {
@@ -17,6 +20,14 @@ void StartFromColours(torch::nn::Conv2dImpl* last, int colours) {
   torch::nn::init::normal_(last->weight, 0, 0.02);
   const int64_t centre = last->weight.size(2) / 2;
   for (int c = 0; c < 3; ++c) last->weight[c][colours + c][centre][centre] += 1;
+}
+
+/// Alpha begins as the body, a pixel or two wider and soft, as clothes are: 4 inside, −2 outside, and in between the
+/// share of the kernel that sees the body.
+void StartFromBody(torch::nn::Conv2dImpl* last, int body) {
+  const torch::NoGradGuard no_grad;
+  last->weight[3][body] += 6.0 / static_cast<double>(last->weight[3][body].numel());
+  last->bias[3] -= 2;
 }
 
 }  // namespace
@@ -30,15 +41,21 @@ PhotoModelImpl::PhotoModelImpl(const PhotoConfig& model_config) : config(model_c
         register_module("feature_net", FeatureUNet(FeatureUNetOptions{4, config.TextureChannels(), p.feature_widths}));
     StartFromColours(feature_net->last.get(), p.feature_widths[0]);
   }
-  render_net = register_module("render_net",
-                               ResidualGenerator(ResidualGeneratorOptions{config.RenderChannels(), 4, p.render_width,
-                                                                          p.render_blocks, p.render_passes_input}));
-  if (p.render_passes_input) StartFromColours(render_net->last.get(), p.render_width);
+  render_net = register_module("render_net", ResidualGenerator(ResidualGeneratorOptions{
+                                                 config.RenderChannels(), 4, p.render_width, p.render_blocks,
+                                                 config.PassedChannels(), p.render_up_kernel}));
+  if (p.render_passes_input) {
+    StartFromColours(render_net->last.get(), p.render_width);
+    StartFromBody(render_net->last.get(), p.render_width + config.PassedChannels() - 1);
+  }
 }
 
 Tensor PhotoModelImpl::Complete(const TextureTensors& texture) {
   if (!config.Completes()) return texture.colour;
-  return feature_net(torch::cat({texture.colour, texture.visible}, 1));
+  BODYLOOM_CHECK(texture.guess.defined() == config.GuessesUnseen(), "photo renderer: a texture ",
+                 config.GuessesUnseen() ? "without" : "with", " guesses at what is not seen");
+  const Tensor colour = config.GuessesUnseen() ? texture.colour + texture.guess : texture.colour;
+  return feature_net(torch::cat({colour, texture.visible}, 1));
 }
 
 Tensor PhotoModelImpl::Project(const Tensor& features, const PoseTensors& pose) const {
@@ -47,8 +64,13 @@ Tensor PhotoModelImpl::Project(const Tensor& features, const PoseTensors& pose) 
   return torch::cat({projected, pose.uv * pose.body, pose.parts}, 1);
 }
 
-PhotoResult PhotoModelImpl::Render(const Tensor& projected) {
-  const Tensor raw = render_net(projected);
+PhotoResult PhotoModelImpl::Render(const Tensor& projected, const Tensor& body) {
+  Tensor passed;
+  // The colours come first: StartFromColours().
+  if (config.profile.render_passes_input) {
+    passed = torch::cat({PullPush(projected.slice(1, 0, 3), body, kFillLevels), projected, body}, 1);
+  }
+  const Tensor raw = render_net(projected, passed);
   PhotoResult result;
   result.alpha_logit = raw.slice(1, 3, 4);
   result.alpha = torch::sigmoid(result.alpha_logit);
@@ -57,7 +79,7 @@ PhotoResult PhotoModelImpl::Render(const Tensor& projected) {
 }
 
 PhotoResult PhotoModelImpl::forward(const TextureTensors& texture, const PoseTensors& pose) {
-  return Render(Project(Complete(texture), pose));
+  return Render(Project(Complete(texture), pose), pose.body);
 }
 
 MultiScaleDiscriminator PhotoDiscriminator(const PhotoConfig& config) {

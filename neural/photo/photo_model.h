@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 /// The networks of the one-photo renderer. Internal: includes LibTorch.
 ///
-///   F_s = f(T_s, M_s)            FeatureNet on the partial texture's colours and visibility, in UV; d channels
+///   F_s = f(T_s + G_s, M_s)      FeatureNet on the partial texture's colours, guesses at those of the other texels
+///                                (neural/photo/texture_guess.h; the paper has none) and visibility, in UV; d channels
 ///   R   = r(F_s, P_t)            bilinear look-up at the target pose's surface coordinates, 0 off the body
-///   c, α = tanh, sigmoid g(R)    RenderNet;  I = α (c + 1)/2
+///   c, α = tanh, sigmoid g(R)    RenderNet;  I = α (c + 1)/2. Where its last convolution sees R too
+///                                (PhotoProfile::render_passes_input), it also sees R's colours filled outwards from
+///                                the body (neural/networks/pull_push.h), which clothes beyond the body begin with,
+///                                and the body's outline
 /// Source: Sarkar et al., "Neural Re-Rendering of Humans from a Single Image", ECCV 2020, Sections 3.2–3.4. The paper's
 /// RenderNet has three outputs on its photographs' plain background; the fourth is this project's
 /// (docs/photo_renderer.md).
@@ -38,7 +42,8 @@ struct PhotoModelImpl : torch::nn::Module {
   torch::Tensor Complete(const TextureTensors& texture);
   /// R of F_s.
   [[nodiscard]] torch::Tensor Project(const torch::Tensor& features, const PoseTensors& pose) const;
-  PhotoResult Render(const torch::Tensor& projected);
+  /// `body`: PoseTensors::body of the same windows.
+  PhotoResult Render(const torch::Tensor& projected, const torch::Tensor& body);
   PhotoResult forward(const TextureTensors& texture, const PoseTensors& pose);
 
   PhotoConfig config;

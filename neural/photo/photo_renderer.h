@@ -28,7 +28,8 @@ class PhotoRenderer {
   PhotoRenderer(const PhotoRenderer&) = delete;
   PhotoRenderer& operator=(const PhotoRenderer&) = delete;
 
-  /// From now on this is the person. Throws std::invalid_argument for a texture of another size.
+  /// From now on this is the person. Throws std::invalid_argument for a texture of another size, and for one whose
+  /// unseen texels are not guessed where PhotoProfile::guesses_unseen wants it, or the other way round.
   void Encode(const PartialTexture& texture);
 
   /// The person in the pose of a frame (its picture, labels and texels are not looked at). Throws std::invalid_argument

@@ -13,10 +13,11 @@
 
 namespace bodyloom {
 
-/// T_s: colours 2c − 1 in [−1, 1] where visible, 0 elsewhere.
+/// T_s: colours 2c − 1 in [−1, 1].
 struct TextureTensors {
-  torch::Tensor colour;   ///< B×3×U×U
+  torch::Tensor colour;   ///< B×3×U×U, 0 where not visible
   torch::Tensor visible;  ///< B×1×U×U, 0 or 1
+  torch::Tensor guess;    ///< B×3×U×U, 0 where not guessed; undefined where nothing is
 };
 TextureTensors ToTensors(std::span<const PartialTexture> textures);
 

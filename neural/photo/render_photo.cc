@@ -20,8 +20,8 @@ PhotoPicture RenderPhoto(PhotoModel model, const torch::Tensor& features, const 
   if (std::all_of(pose.parts.begin(), pose.parts.end(), [](uint8_t part) { return part == 0; })) return picture;
   const PhotoWindow window =
       reach < 0 ? PhotoWindow{0, 0, S, S} : WindowAround(pose, reach, model->config.SmallestSide());
-  const PhotoResult result =
-      model->Render(model->Project(features, PoseOf(std::span(&pose, 1), std::span(&window, 1))));
+  const PoseTensors seen = PoseOf(std::span(&pose, 1), std::span(&window, 1));
+  const PhotoResult result = model->Render(model->Project(features, seen), seen.body);
   const auto paste = [&](const torch::Tensor& tensor, std::vector<float>* planar) {
     const std::vector<float> whole = HostValues<float>(tensor);
     auto from = whole.begin();

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "geometry/check.h"
@@ -17,6 +18,7 @@
 #include "neural/photo/photo_losses.h"
 #include "neural/photo/photo_model.h"
 #include "neural/photo/render_photo.h"
+#include "neural/photo/texture_guess.h"
 #include "neural/runtime.h"
 #include "neural/training/adam.h"
 #include "neural/training/made_ahead.h"
@@ -70,6 +72,7 @@ class PhotoTrainer : public TrainedSystem {
         config_(options.config),
         lpips_(MakeLpips(options)) {
     torch::manual_seed(options.seed);
+    if (config_.GuessesUnseen()) guess_.emplace(source.texture_size, source.texel_parts, source.texel_places);
     model_ = PhotoModel(config_);
     discriminator_ = PhotoDiscriminator(config_);
     model_->to(NeuralDevice());
@@ -140,12 +143,13 @@ class PhotoTrainer : public TrainedSystem {
       preview.pair = pairs[i];
       validation_source_.fill(pairs[i].person, pairs[i].source, &preview.source);
       validation_source_.fill(pairs[i].person, pairs[i].target, &preview.target);
-      const PartialTexture texture = PartialTextureOf(preview.source);
+      PartialTexture texture = PartialTextureOf(preview.source);
+      if (options_.preview && i % every == 0) preview.partial_texture = texture.colour;
+      if (guess_) guess_->Fill(&texture);
       const Tensor features = model_->Complete(ToTensors(std::span(&texture, 1)));
       preview.picture = RenderPhoto(model_, features, preview.target, options_.reach);
       scorer.Add(preview.picture, preview.target);
       if (!options_.preview || i % every != 0) continue;
-      preview.partial_texture = texture.colour;
       preview.completed_texture = HostValues<float>((0.5 * (features.slice(1, 0, 3) + 1)).clamp(0, 1));
       previews.push_back(std::move(preview));
     }
@@ -176,7 +180,7 @@ class PhotoTrainer : public TrainedSystem {
     for (int place = 0; place < options_.batch; ++place) {
       pairs.push_back(DrawPhotoPair(source_.num_frames, options_.train, options_.seed, step, place));
     }
-    return MakePhotoBatch(source_, pairs, options_.reach, config_.SmallestSide());
+    return MakePhotoBatch(source_, pairs, options_.reach, config_.SmallestSide(), guess_ ? &*guess_ : nullptr);
   }
 
   /// Steps before RenderNet's turn.
@@ -208,7 +212,7 @@ class PhotoTrainer : public TrainedSystem {
     Losses losses;
     const Tensor features = Features(batch);
     const Tensor projected = model_->Project(features, batch.pose);
-    const PhotoResult result = model_->Render(projected);
+    const PhotoResult result = model_->Render(projected, batch.pose.body);
     const Tensor condition = projected.detach();
     const auto judge = [&](const Tensor& image) { return discriminator_(torch::cat({condition, image}, 1)); };
     if (judged) {
@@ -254,6 +258,7 @@ class PhotoTrainer : public TrainedSystem {
 
   const PhotoSource& source_;
   const PhotoSource& validation_source_;
+  std::optional<TextureGuess> guess_;  ///< where the profile has one
   const TrainPhotoOptions& options_;
   const PhotoConfig& config_;
   Lpips lpips_;

@@ -46,6 +46,35 @@ TEST(SynthPersonVerb, SeveralMotionsFollowEachOtherWithAGap) {
   EXPECT_NEAR(times[5] - times[4], 1 / 30.0, 1e-9);
 }
 
+TEST(SynthPersonVerb, TheSamePosesAtTwoSpeeds) {
+  const ScratchFolder scratch;
+  const auto make = [&](const std::string& name, const std::vector<std::string>& speeds) {
+    std::vector<std::string> arguments = {"synth-person", "--motion",  "demo",  "--first",      "40",
+                                          "--frames",     "5",         "--out", scratch / name, "--size",
+                                          "64",           "--garment", "skirt"};
+    arguments.insert(arguments.end(), speeds.begin(), speeds.end());
+    const CommandResult result = RunCommand(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return PersonSet(scratch / name).track().motion;
+  };
+  const Motion normal = make("normal", {}), slow = make("slow", {"--speed", "0.5"}),
+               both = make("both", {"--speed", "1", "--speed", "0.5"});
+  ASSERT_EQ(normal.num_frames(), 5);
+  ASSERT_EQ(slow.num_frames(), 9);
+  ASSERT_EQ(both.num_frames(), 14);
+  for (int t = 0; t < 5; ++t) {
+    EXPECT_LT((normal.poses.row(t) - slow.poses.row(2 * t)).cwiseAbs().maxCoeff(), 1e-9) << t;
+    EXPECT_NEAR(slow.timestamps[2 * t], 2 * normal.timestamps[t], 1e-9);
+  }
+  EXPECT_GT((normal.poses.row(0) - normal.poses.row(4)).cwiseAbs().maxCoeff(), 1e-3) << "somebody who stands still";
+  EXPECT_THAT(PersonSet(scratch / "both").info().command, HasSubstr("--speed 1 --speed 0.5"));
+  const CommandResult rateless =
+      RunCommand({"synth-person", "--motion", "demo", "--out", scratch / "p", "--fps", "0", "--speed", "0.5"});
+  EXPECT_EQ(rateless.exit_code, 2);
+  EXPECT_THAT(rateless.err, HasSubstr("--speed needs --fps"));
+  EXPECT_EQ(RunCommand({"synth-person", "--motion", "demo", "--out", scratch / "p", "--speed", "0"}).exit_code, 2);
+}
+
 TEST(SynthPersonVerb, SaysWhatIsWrong) {
   const ScratchFolder scratch;
   const auto run = [&](const std::string& option, const std::string& value) {

@@ -81,6 +81,22 @@ TEST_F(TrainMotionVerb, TrainsGoesOnAndAnimates) {
                   scratch_ / "b.mp4", "--view-yaw", "0:90", "--warmup", "0", "--threads", "1"});
   EXPECT_EQ(turned.exit_code, 0) << turned.err;
 
+  // The pictures as a person set, which `metrics` compares with the truth, part by part.
+  const CommandResult as_set =
+      RunCommand({"animate", "motion", "--run", scratch_ / "run", "--data", scratch_ / "person", "--out",
+                  scratch_ / "c.mp4", "--full-size", "--set", scratch_ / "set", "--warmup", "2", "--threads", "1"});
+  ASSERT_EQ(as_set.exit_code, 0) << as_set.err;
+  const CommandResult compared =
+      RunCommand({"metrics", "--truth", scratch_ / "person", "--result", scratch_ / "set", "--quiet"});
+  EXPECT_EQ(compared.exit_code, 0) << compared.err;
+  EXPECT_THAT(compared.out, HasSubstr("images: 14 frames"));
+  EXPECT_THAT(compared.out, HasSubstr("labels: 14 frames"));
+  EXPECT_THAT(compared.out, HasSubstr("normals: 14 frames"));
+  const CommandResult no_size = RunCommand({"animate", "motion", "--run", scratch_ / "run", "--data",
+                                            scratch_ / "person", "--out", scratch_ / "c.mp4", "--set", scratch_ / "s"});
+  EXPECT_EQ(no_size.exit_code, 2);
+  EXPECT_THAT(no_size.err, HasSubstr("--set requires --full-size"));
+
   // Half as fast: twice the frames, less one.
   const CommandResult slow =
       RunCommand({"animate", "motion", "--run", scratch_ / "run", "--track", scratch_ / "person/track.npz", "--out",

@@ -34,6 +34,30 @@ PhotoMapsOptions Small() {
   return options;
 }
 
+TEST(PhotoMaps, TexelsLieOnTheTemplate) {
+  const BodyModel& body = BuiltinBody();
+  UvTexelOptions options;
+  options.width = options.height = kTexture;
+  const UvTexelTable texels = BuildUvTexelTable(body, options);
+  const std::vector<float> places = PlacesOfTexels(body, texels);
+  const size_t area = size_t(kTexture) * kTexture;
+  ASSERT_EQ(places.size(), 3 * area);
+  std::vector<bool> shows(area, false);
+  for (size_t i = 0; i < texels.size(); ++i) {
+    Eigen::Vector3d place = Eigen::Vector3d::Zero();
+    for (int corner = 0; corner < 3; ++corner) {
+      place += double(texels.barycentric[i][corner]) *
+               body.data().v_template.row(body.data().faces(texels.face[i], corner)).transpose();
+    }
+    const size_t at = texels.pixel[i];
+    shows[at] = true;
+    for (size_t a = 0; a < 3; ++a) EXPECT_NEAR(places[a * area + at], place[a], 1e-6);
+  }
+  for (size_t at = 0; at < area; ++at) {
+    if (!shows[at]) EXPECT_EQ(places[at], 0);
+  }
+}
+
 TEST(PhotoMaps, TexelsAppearAtPixelsThatShowThem) {
   const Track track = ShortTrack();
   const PhotoMaps maps(BuiltinBody(), track, Small());

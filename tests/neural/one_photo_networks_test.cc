@@ -77,11 +77,12 @@ TEST(Cards, AgreeWithSumsWorkedOutLayerByLayer) {
       if (l < levels) feature += Work(w[l + 1] + w[l], w[l], 3, side) + Work(w[l], w[l], 3, side);
     }
     const int64_t n = p.render_width, S = p.image_size;
-    int64_t render = Work(p.features, n, 7, S) + Work(n + (p.render_passes_input ? p.features : 0), 4, 7, S) +
+    int64_t render = Work(p.features, n, 7, S) + Work(n + (p.render_passes_input ? p.features + 4 : 0), 4, 7, S) +
                      2 * p.render_blocks * Work(8 * n, 8 * n, 3, S / 8);
     for (int l = 0; l < 3; ++l) {
       render += Work(n << l, n << (l + 1), 3, S >> (l + 1));  // down
-      render += Work(n << (l + 1), n << l, 3, S >> (l + 1));  // up: every pixel of the smaller side meets every tap
+      render += Work(n << (l + 1), n << l, p.render_up_kernel,
+                     S >> (l + 1));  // up: every pixel of the smaller side meets every tap
     }
     int64_t judges = 0;
     for (int scale = 0; scale < p.discriminator_scales; ++scale) {
@@ -322,7 +323,7 @@ TEST_F(PhotoByHeart, RenderNet) {
   const auto [first, last] = LearnByHeart(
       *model_->render_net,
       [&] {
-        const PhotoResult result = model_->Render(projected);
+        const PhotoResult result = model_->Render(projected, batch_.pose.body);
         alpha = result.alpha;
         return L1Loss(result.image, batch_.truth.image) +
                torch::binary_cross_entropy_with_logits(result.alpha_logit, batch_.truth.foreground);

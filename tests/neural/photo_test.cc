@@ -85,7 +85,7 @@ TEST(PhotoModel, ProfilesHaveTheirSizes) {
   EXPECT_NEAR(sizes("paper")[0], 31.4, 0.1);
   EXPECT_NEAR(sizes("paper")[1], 31.5, 0.1);
   EXPECT_NEAR(sizes("cpu")[0], 1.97, 0.03);
-  EXPECT_NEAR(sizes("cpu")[1], 1.99, 0.03);
+  EXPECT_NEAR(sizes("cpu")[1], 1.984 + 0.075, 0.002) << "with kernels of 16 for 9 taps on the way up";
   EXPECT_NEAR(sizes("tiny")[0], 0.49, 0.01);
   EXPECT_THROW(PhotoProfileNamed("gpu"), std::invalid_argument);
   EXPECT_THROW(PhotoVariantNamed("best"), std::invalid_argument);
@@ -145,7 +145,7 @@ TEST(PhotoModel, VariantsSeeWhatTheyAreNamedFor) {
       EXPECT_TRUE(torch::equal(projected.slice(1, 3, 5), toy.pose.uv));
       EXPECT_TRUE(torch::equal(projected.slice(1, 5, 6), toy.pose.parts));
     }
-    const PhotoResult result = model->Render(projected);
+    const PhotoResult result = model->Render(projected, toy.pose.body);
     EXPECT_EQ(result.image.sizes(), (std::vector<int64_t>{1, 3, kToySize, kToySize}));
     EXPECT_TRUE((result.image >= 0).all().item<bool>());
     EXPECT_TRUE((result.image <= result.alpha).all().item<bool>());
@@ -165,15 +165,15 @@ TEST(PhotoModel, BeginsWithTheColoursThatItIsShown) {
   EXPECT_LT(features.slice(1, 3).abs().mean().item<float>(), 0.3);
   // So does the picture, where the body is seen.
   const Tensor projected = model->Project(features, toy.pose);
-  const PhotoResult result = model->Render(projected);
+  const PhotoResult result = model->Render(projected, toy.pose.body);
   const Tensor shown = 0.5 * (torch::tanh(projected.slice(1, 0, 3)) + 1);
   EXPECT_LT(((result.image / result.alpha - shown) * toy.pose.body).abs().mean().item<float>(), 0.1);
 }
 
 TEST(PhotoModel, DerivativesAgreeWithDifferences) {
   torch::manual_seed(2);
-  for (const PhotoVariant variant : {PhotoVariant::kFull, PhotoVariant::kWarpCond}) {
-    PhotoConfig config = ToyPhotoConfig(variant);
+  for (PhotoConfig config :
+       {ToyPhotoConfig(), ToyPhotoConfig(PhotoVariant::kWarpCond), ToyGuessConfig(PhotoVariant::kFull)}) {
     config.profile.image_size = 16;
     config.profile.texture_size = 8;
     config.profile.feature_widths = {3, 4, 4};
@@ -194,11 +194,12 @@ TEST(PhotoModel, DerivativesAgreeWithDifferences) {
     const auto function = [&](const std::vector<Tensor>& x) {
       // The first filter of RenderNet is an input too.
       model->render_net->first->weight = torch::cat({x[1], parameter.detach().slice(0, 1, parameter.size(0))}, 0);
-      const PhotoResult result = model->forward({x[0] * visible, visible}, pose);
+      const Tensor guess = config.GuessesUnseen() ? 0.5 * x[0] * (1 - visible) : Tensor();
+      const PhotoResult result = model->forward({x[0] * visible, visible, guess}, pose);
       return (torch::cat({result.image, result.alpha_logit}, 1) * weights).sum();
     };
     const GradientCheck check = CheckGradients(function, inputs);
-    EXPECT_LT(check.max_error, 1e-5) << ToText(variant);
+    EXPECT_LT(check.max_error, 1e-5) << ToText(config);
     EXPECT_GT(check.num_nonzero, check.num_compared / 3);
   }
 }

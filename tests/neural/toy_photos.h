@@ -18,6 +18,14 @@ inline PhotoConfig ToyPhotoConfig(PhotoVariant variant = PhotoVariant::kFull) {
   return {{"toy", kToySize, kToyTexture, 4, {4, 8}, 4, 1, 4, 1, 2, 16, true}, variant};
 }
 
+/// With guesses at what is not seen, and the other kernel on the way up.
+inline PhotoConfig ToyGuessConfig(PhotoVariant variant = PhotoVariant::kFull) {
+  PhotoConfig config = ToyPhotoConfig(variant);
+  config.profile.guesses_unseen = true;
+  config.profile.render_up_kernel = 4;
+  return config;
+}
+
 /// Colour c of the card at (u, v).
 inline float ToyColour(int person, float u, float v, int c) {
   return 0.5F + 0.35F * std::sin(static_cast<float>(person + 1) * 1.7F + 2.0F * static_cast<float>(c) + 3 * u + 2 * v);
@@ -70,6 +78,16 @@ inline PhotoSource ToyPhotos(int persons, int frames) {
   for (int r = 0; r < kToyTexture; ++r) {
     const float v = 1 - (static_cast<float>(r) + 0.5F) / kToyTexture;
     source.texel_parts.insert(source.texel_parts.end(), kToyTexture, ToyPart(v));
+  }
+  source.texel_places.assign(3 * kToyTexture * kToyTexture, 0);
+  for (int r = 0; r < kToyTexture; ++r) {
+    for (int c = 0; c < kToyTexture; ++c) {
+      const int texels = kToyTexture * kToyTexture, k = r * kToyTexture + c;
+      const float u = (static_cast<float>(c) + 0.5F) / kToyTexture;
+      source.texel_places[k] = u < 0.5F ? 2 * u : 2 * (1 - u);
+      source.texel_places[texels + k] = 2 - 2 * (static_cast<float>(r) + 0.5F) / kToyTexture;
+      source.texel_places[2 * texels + k] = u < 0.5F ? 0.1F : 0;
+    }
   }
   source.fill = FillToyPhoto;
   return source;
