@@ -30,6 +30,16 @@ def project(features, uv, body):
     return body * F.grid_sample(features, grid, align_corners=False, padding_mode="border")
 
 
+def pull_push(x, mask, levels):
+    known = x * mask
+    if levels == 0 or x.shape[2] % 2 or x.shape[3] % 2:
+        return known
+    share = F.avg_pool2d(mask, 2)
+    coarse = (share > 0).float()
+    filled = pull_push(F.avg_pool2d(known, 2) / (share + 1 - coarse), coarse, levels - 1)
+    return known + (1 - mask) * F.interpolate(filled, scale_factor=2, mode="bilinear", align_corners=False)
+
+
 class Residual(nn.Module):
     def __init__(self, c):
         super().__init__()
@@ -45,17 +55,17 @@ class PhotoRender(nn.Module):
         self.first = nn.Conv2d(channels, n, 7, padding=3, padding_mode="reflect")
         self.down = nn.ModuleList(nn.Conv2d(n << i, n << i + 1, 3, 2, 1) for i in range(3))
         self.blocks = nn.Sequential(*(Residual(8 * n) for _ in range(blocks)))
-        self.up = nn.ModuleList(nn.ConvTranspose2d(n << i + 1, n << i, 3, 2, 1, 1) for i in (2, 1, 0))
-        self.last = nn.Conv2d(n + channels, 4, 7, padding=3, padding_mode="reflect")
+        self.up = nn.ModuleList(nn.ConvTranspose2d(n << i + 1, n << i, 4, 2, 1) for i in (2, 1, 0))
+        self.last = nn.Conv2d(n + 3 + channels + 1, 4, 7, padding=3, padding_mode="reflect")
 
-    def forward(self, r):
+    def forward(self, r, body):
         x = F.relu(F.instance_norm(self.first(r)))
         for conv in self.down:
             x = F.relu(F.instance_norm(conv(x)))
         x = self.blocks(x)
         for conv in self.up:
             x = F.relu(F.instance_norm(conv(x)))
-        x = self.last(torch.cat([x, r], 1))
+        x = self.last(torch.cat([x, pull_push(r[:, :3], body, 5), r, body], 1))
         return torch.sigmoid(x[:, 3:]) * (0.5 * (torch.tanh(x[:, :3]) + 1))
 
 
@@ -200,7 +210,7 @@ def main():
         pose = body * torch.rand(1, 3, h, w)
         codes = [torch.randn(1, c, h // cells, w // cells) for c in (p[1][-1], p[1][-1], p[6])]
         with torch.no_grad():
-            show(f"photo: {what}, {w}x{h}", lambda: photo(project(features, uv, body)))
+            show(f"photo: {what}, {w}x{h}", lambda: photo(project(features, uv, body), body))
             show(f"animate: {what}, {w}x{h}", lambda: guided(codes, pose, known_labels, known))
 
 
