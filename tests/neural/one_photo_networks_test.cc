@@ -329,8 +329,9 @@ TEST_F(PhotoByHeart, RenderNet) {
                torch::binary_cross_entropy_with_logits(result.alpha_logit, batch_.truth.foreground);
       },
       250, 5e-3);
-  EXPECT_GT(first, 0.5);
-  EXPECT_LT(last, 0.1 * first);
+  // Begins with the colours that it is shown and an outline near the body's: what is left is clothes and sharpness.
+  EXPECT_GT(first, 0.3);
+  EXPECT_LT(last, 0.05);
   EXPECT_GT(((alpha > 0.5) == (batch_.truth.foreground > 0.5)).to(torch::kFloat).mean().item<double>(), 0.99);
 }
 
