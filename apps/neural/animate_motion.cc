@@ -238,7 +238,7 @@ void Run(const Request& request) {
   VideoWriter video(request.out, size.width, size.height, fps);
   std::optional<ResultSet> set;
   if (!request.set.empty()) {
-    set.emplace(request.set, track, run.config.shape, run.config.normals,
+    set.emplace(request.set, track, fps, run.config.shape, run.config.normals,
                 "bodyloom animate motion --run " + request.run + " --set " + request.set);
   }
   const std::vector<int> on_sheet = EvenlySpreadFrames(track.num_frames(), 6);

@@ -153,7 +153,7 @@ void Run(const Request& request) {
   std::string notes;
   for (const Photo& one : photos) notes += one.notes;
   PartialTexture texture = TextureOf(request, photos, texel_parts, &notes);
-  const std::vector<float> seen = texture.colour;
+  const Image seen = PictureOf(texture.colour, U, U);
   if (run.config.GuessesUnseen()) {
     TextureGuess(U, texel_parts, PlacesOfTexels(*photo.body, *maps->texels())).Fill(&texture);
   }
@@ -175,7 +175,7 @@ void Run(const Request& request) {
   const double fps = T > 1 && times.back() > times.front() ? (T - 1) / (times.back() - times.front()) : 30;
   VideoWriter video(request.out, size.width, size.height, fps);
   const std::vector<int> on_sheet = EvenlySpreadFrames(T, 6);
-  std::vector<Image> sheet = {PictureOf(photo.frame.image, S, S), PictureOf(seen, U, U), PictureOf(completed, U, U)};
+  std::vector<Image> sheet = {PictureOf(photo.frame.image, S, S), seen, PictureOf(completed, U, U)};
   std::vector<double> network_ms;
   int lost = 0;
   {

@@ -11,14 +11,11 @@
 namespace bodyloom {
 namespace {
 
-PersonSetInfo InfoOf(const Track& track, bool labels, bool normals, const std::string& command) {
+PersonSetInfo InfoOf(const Track& track, double fps, bool labels, bool normals, const std::string& command) {
   PersonSetInfo info;
   info.num_frames = track.num_frames();
   info.width = track.camera.width, info.height = track.camera.height;
-  const std::vector<double>& times = track.motion.timestamps;
-  if (times.size() > 1 && times.back() > times.front()) {
-    info.fps = static_cast<double>(times.size() - 1) / (times.back() - times.front());
-  }
+  info.fps = fps;
   info.has = {labels, normals, false, false};
   info.command = command;
   return info;
@@ -49,8 +46,9 @@ PersonFrame SetFrameOf(const MotionPicture& picture, const PersonWindow& window,
   return frame;
 }
 
-ResultSet::ResultSet(const std::string& path, const Track& track, bool labels, bool normals, const std::string& command)
-    : info_(InfoOf(track, labels, normals, command)), writer_(path, info_, track) {}
+ResultSet::ResultSet(const std::string& path, const Track& track, double fps, bool labels, bool normals,
+                     const std::string& command)
+    : info_(InfoOf(track, fps, labels, normals, command)), writer_(path, info_, track) {}
 
 void ResultSet::Add(int t, const MotionPicture& picture, const PersonWindow& window, const Image& composed) {
   PersonFrame frame = SetFrameOf(picture, window, t, composed);

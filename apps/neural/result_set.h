@@ -20,7 +20,8 @@ PersonFrame SetFrameOf(const MotionPicture& picture, const PersonWindow& window,
 class ResultSet {
  public:
   /// Throws std::runtime_error when the folder cannot be written.
-  ResultSet(const std::string& path, const Track& track, bool labels, bool normals, const std::string& command);
+  ResultSet(const std::string& path, const Track& track, double fps, bool labels, bool normals,
+            const std::string& command);
   /// `picture` of no pixels: a frame without a fit, all background.
   void Add(int t, const MotionPicture& picture, const PersonWindow& window, const Image& composed);
   /// Until then the folder is no set.

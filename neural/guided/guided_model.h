@@ -5,8 +5,8 @@
 ///   G^t = softmax GarNet(G̃^t | P^t, S^t, {P^s, S^s, G^s})
 ///   I^t = S^t · sigmoid RenderNet(Ĩ^t, S̃^t | S^t, G^t, {I^s, S^s, G^s})
 /// Source: Yoon et al., "Pose-Guided Human Animation from a Single Image in the Wild", CVPR 2021, Section 3.1. P:
-/// colours of body parts (body_part_map.h); S: silhouette; G: garment labels; tilde: pseudo inputs, what is known of
-/// the target where it shows the bare body.
+/// colours of body parts (neural/people/body_part_map.h); S: silhouette; G: garment labels; tilde: pseudo inputs, what
+/// is known of the target where it shows the bare body.
 ///
 /// SilNet (sil_net.h) has an encoder of the source and one of the target, GarNet (gar_net.h) one for both; RenderNet:
 /// render_net.h. Pictures of the source fill the whole window, those of the target may be cropped to a box of code

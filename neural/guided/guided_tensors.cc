@@ -5,7 +5,7 @@
 
 #include "geometry/check.h"
 #include "neural/device.h"
-#include "neural/guided/body_part_map.h"
+#include "neural/people/body_part_map.h"
 
 namespace bodyloom {
 namespace {

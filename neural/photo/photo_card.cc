@@ -11,23 +11,23 @@ std::string PhotoCard(const PhotoConfig& config) {
   MultiScaleDiscriminator discriminator = PhotoDiscriminator(config);
   const int64_t side = config.profile.image_size, texels = config.profile.texture_size;
   std::string text;
-  const auto add = [&](const char* title, auto& network, const std::vector<int64_t>& input) {
-    text += std::string(text.empty() ? "" : "\n") + title + "\n" + ArchitectureCard(network, input);
+  const auto add = [&](const char* title, const std::string& card) {
+    text += std::string(text.empty() ? "" : "\n") + title + "\n" + card;
   };
   if (config.Completes()) {
-    add("FeatureNet f, once a photo", model->feature_net, {1, model->feature_net->options.in, texels, texels});
+    add("FeatureNet f, once a photo",
+        ArchitectureCard(model->feature_net, {1, model->feature_net->options.in, texels, texels}));
   }
   const ResidualGeneratorOptions& render = model->render_net->options;
   std::vector<std::vector<int64_t>> inputs = {{1, render.in, side, side}};
   if (render.passed > 0) inputs.push_back({1, render.passed, side, side});
-  text +=
-      std::string(text.empty() ? "" : "\n") + "RenderNet g, a frame\n" +
-      ArchitectureCard(*model->render_net, inputs, [&] {
+  add("RenderNet g, a frame", ArchitectureCard(*model->render_net, inputs, [&] {
         const torch::NoGradGuard no_grad;
         const torch::Tensor passed = render.passed > 0 ? torch::zeros({0, render.passed, side, side}) : torch::Tensor();
         model->render_net(torch::zeros({0, render.in, side, side}), passed);
-      });
-  add("discriminators D, in training", discriminator, {1, discriminator->scales[0]->options.in, side, side});
+      }));
+  add("discriminators D, in training",
+      ArchitectureCard(discriminator, {1, discriminator->scales[0]->options.in, side, side}));
   return text;
 }
 

@@ -11,7 +11,7 @@ using torch::Tensor;
 
 namespace {
 
-constexpr int kFillLevels = 5;  ///< outwards by some 32 pixels, more than any clothes reach
+constexpr int kFillLevels = 5;  ///< outwards by some 32 pixels
 
 /// The first three outputs begin as the input's colours, the others near 0. `colours` is the first channel of the input
 /// among those that the convolution sees.

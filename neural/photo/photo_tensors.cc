@@ -46,27 +46,23 @@ TextureTensors ToTensors(std::span<const PartialTexture> textures) {
   BODYLOOM_CHECK(!textures.empty(), "photo renderer: no textures");
   const auto B = static_cast<int64_t>(textures.size());
   const int64_t U = textures[0].size;
-  TextureTensors tensors = {torch::empty({B, 3, U, U}), torch::empty({B, 1, U, U}), Tensor()};
-  Tensor guessed = torch::zeros({B, 1, U, U});
-  bool any = false;
+  const Tensor rgb = torch::empty({B, 3, U, U}), visible = torch::empty({B, 1, U, U});
+  Tensor guessed;  // undefined where nothing is
   for (int64_t b = 0; b < B; ++b) {
     const PartialTexture& texture = textures[b];
     BODYLOOM_CHECK(texture.size == U && static_cast<int64_t>(texture.colour.size()) == 3 * U * U &&
                        static_cast<int64_t>(texture.visible.size()) == U * U,
                    "photo renderer: a texture of ", texture.size, " texels a side, expected ", U);
-    std::copy(texture.colour.begin(), texture.colour.end(), tensors.colour.data_ptr<float>() + b * 3 * U * U);
-    std::copy(texture.visible.begin(), texture.visible.end(), tensors.visible.data_ptr<float>() + b * U * U);
+    std::copy(texture.colour.begin(), texture.colour.end(), rgb.data_ptr<float>() + b * 3 * U * U);
+    std::copy(texture.visible.begin(), texture.visible.end(), visible.data_ptr<float>() + b * U * U);
     if (texture.guessed.empty()) continue;
     BODYLOOM_CHECK(texture.guessed.size() == texture.visible.size(), "photo renderer: guesses at ",
                    texture.guessed.size(), " texels, expected ", U, "²");
+    if (!guessed.defined()) guessed = torch::zeros({B, 1, U, U});
     std::copy(texture.guessed.begin(), texture.guessed.end(), guessed.data_ptr<float>() + b * U * U);
-    any = true;
   }
-  tensors = {OnDevice(tensors.colour), OnDevice(tensors.visible), OnDevice(guessed)};
-  const Tensor colour = 2 * tensors.colour - 1;
-  tensors.colour = colour * tensors.visible;
-  tensors.guess = any ? colour * tensors.guess : Tensor();
-  return tensors;
+  const Tensor colour = 2 * OnDevice(rgb) - 1, shown = OnDevice(visible);
+  return {colour * shown, shown, guessed.defined() ? colour * OnDevice(guessed) : Tensor()};
 }
 
 PoseTensors PoseOf(std::span<const PhotoFrame> frames, std::span<const PhotoWindow> windows) {

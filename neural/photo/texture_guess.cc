@@ -8,16 +8,12 @@
 #include <map>
 
 #include "geometry/check.h"
+#include "neural/people/body_part_map.h"
 
 namespace bodyloom {
 namespace {
 
 constexpr int kFinest = 6;  ///< cells of 1/64 of the extent, 2.7 cm of a person: some texels of a map of 128
-constexpr uint8_t kHead = 7;
-
-/// Limbs of DensePose's parts 1–24, left and right alike: torso, hand, foot, thigh, shin, upper arm, forearm, head.
-constexpr std::array<uint8_t, 25> kLimbOfPart = {0, 0, 0, 1, 1, 2, 2, 3, 3, 3, 3, 4, 4,
-                                                 4, 4, 5, 5, 5, 5, 6, 6, 6, 6, 7, 7};
 
 struct Mean {
   std::array<double, 3> sum{};
@@ -36,8 +32,7 @@ TextureGuess::TextureGuess(int texture_size, std::span<const uint8_t> texel_part
   low.fill(std::numeric_limits<float>::max()), high.fill(std::numeric_limits<float>::lowest());
   for (size_t k = 0; k < area; ++k) {
     if (texel_parts[k] == 0) continue;
-    BODYLOOM_CHECK(texel_parts[k] < kLimbOfPart.size(), "texture guess: part ", int(texel_parts[k]),
-                   ", expected 0 to 24");
+    BODYLOOM_CHECK(texel_parts[k] < kPhotoParts, "texture guess: part ", int(texel_parts[k]), ", expected 0 to 24");
     for (size_t a = 0; a < 3; ++a) {
       const float x = texel_places[a * area + k];
       BODYLOOM_CHECK(std::isfinite(x), "texture guess: texel ", k, " has no place");
@@ -54,19 +49,19 @@ TextureGuess::TextureGuess(int texture_size, std::span<const uint8_t> texel_part
     std::map<std::array<int, 4>, int> cells;
     const double per_cell = std::ldexp(1.0, l) / extent;
     for (const int k : texels_) {
-      const uint8_t limb = kLimbOfPart[texel_parts[k]];
+      const int limb = LimbOf(texel_parts[k]);
       const auto step = [&](double length) { return static_cast<int>(length * per_cell); };
       const std::array<int, 4> cell = {limb, step(std::abs(texel_places[k] - middle)),
                                        step(texel_places[area + k] - low[1]),
-                                       limb == kHead ? step(texel_places[2 * area + k] - low[2]) : 0};
+                                       limb == kHeadLimb ? step(texel_places[2 * area + k] - low[2]) : 0};
       level.cell.push_back(cells.emplace(cell, static_cast<int>(cells.size())).first->second);
     }
     level.num_cells = static_cast<int>(cells.size());
     levels_.push_back(std::move(level));
   }
   // Coarser than the limb's last cells: the limb as a whole, then everything.
-  Level limbs{{}, static_cast<int>(kHead) + 1};
-  for (const int k : texels_) limbs.cell.push_back(kLimbOfPart[texel_parts[k]]);
+  Level limbs{{}, kLimbs};
+  for (const int k : texels_) limbs.cell.push_back(LimbOf(texel_parts[k]));
   levels_.push_back(std::move(limbs));
   levels_.push_back({std::vector<int>(texels_.size(), 0), 1});
 }

@@ -144,12 +144,13 @@ class PhotoTrainer : public TrainedSystem {
       validation_source_.fill(pairs[i].person, pairs[i].source, &preview.source);
       validation_source_.fill(pairs[i].person, pairs[i].target, &preview.target);
       PartialTexture texture = PartialTextureOf(preview.source);
-      if (options_.preview && i % every == 0) preview.partial_texture = texture.colour;
+      const bool shown = options_.preview && i % every == 0;
+      if (shown) preview.partial_texture = texture.colour;
       if (guess_) guess_->Fill(&texture);
       const Tensor features = model_->Complete(ToTensors(std::span(&texture, 1)));
       preview.picture = RenderPhoto(model_, features, preview.target, options_.reach);
       scorer.Add(preview.picture, preview.target);
-      if (!options_.preview || i % every != 0) continue;
+      if (!shown) continue;
       preview.completed_texture = HostValues<float>((0.5 * (features.slice(1, 0, 3) + 1)).clamp(0, 1));
       previews.push_back(std::move(preview));
     }

@@ -81,7 +81,7 @@ TEST(ResultSet, IsAPersonSetOnlyWhenFinished) {
   Drawn drawn;
   drawn.window.corner = {{1, 1}, {0, 0}};
   const std::string folder = EmptyFolder("result_set");
-  ResultSet set(folder, track, true, true, "animate");
+  ResultSet set(folder, track, 25, true, true, "animate");
   set.Add(0, drawn.picture, drawn.window, Image(24, 16, {1, 2, 3}));
   EXPECT_THROW(PersonSet{folder}, std::runtime_error);
   set.Add(1, {}, drawn.window, Image(24, 16));  // no fit
@@ -95,7 +95,7 @@ TEST(ResultSet, IsAPersonSetOnlyWhenFinished) {
 
   drawn.picture.labels.clear();
   drawn.picture.normals.clear();
-  ResultSet bare(EmptyFolder("result_set_bare"), track, false, false, "animate");
+  ResultSet bare(EmptyFolder("result_set_bare"), track, 25, false, false, "animate");
   for (const int t : {0, 1}) bare.Add(t, drawn.picture, drawn.window, Image(24, 16));
   EXPECT_NO_THROW(bare.Finish());
 }

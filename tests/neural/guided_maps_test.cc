@@ -5,15 +5,23 @@
 #include <cmath>
 #include <set>
 
-#include "neural/guided/body_part_map.h"
 #include "neural/guided/choose_photos.h"
 #include "neural/guided/complete_maps.h"
 #include "neural/guided/guided_plan.h"
 #include "neural/guided/guided_scores.h"
+#include "neural/people/body_part_map.h"
 #include "tests/neural/guided_toy.h"
 
 namespace bodyloom {
 namespace {
+
+TEST(BodyPartMap, LeftAndRightAreTheSameLimb) {
+  // DensePose's charts 0 to 24.
+  const int limbs[] = {0, 1, 1, 3, 3, 4, 4, 5, 5, 5, 5, 6, 6, 6, 6, 7, 7, 7, 7, 8, 8, 8, 8, 2, 2};
+  for (int chart = 0; chart < 25; ++chart) EXPECT_EQ(LimbOf(chart), limbs[chart]) << chart;
+  EXPECT_EQ(LimbOf(23), kHeadLimb);
+  EXPECT_THROW(LimbOf(25), std::invalid_argument);
+}
 
 TEST(BodyPartMap, FourteenPartsThatAreFarApart) {
   std::set<int> parts;

@@ -14,29 +14,13 @@
 #include "geometry/check.h"
 #include "neural/photo/photo_renderer.h"
 #include "neural/photo/photo_window.h"
-#include "neural/photo/train_photo.h"
 #include "neural/runtime.h"
-#include "tests/neural/toy_photos.h"
-#include "tests/support/test_files.h"
+#include "tests/neural/toy_photo_training.h"
 
 namespace bodyloom {
 namespace {
 
 using ::testing::HasSubstr;
-
-TrainPhotoOptions ToyOptions(const std::string& name, PhotoVariant variant = PhotoVariant::kFull) {
-  TrainPhotoOptions options;
-  options.config = ToyPhotoConfig(variant);
-  options.train = {0, 1};
-  options.validation = {2};
-  options.batch = 2;
-  options.steps = 6;
-  options.reach = 2;
-  options.num_threads = 1;
-  options.report_every = options.checkpoint_every = options.validate_every = 3;
-  options.run_dir = EmptyFolder(name);
-  return options;
-}
 
 TEST(PhotoTraining, LearnsTwoPeopleByHeart) {
   const PhotoSource source = ToyPhotos(2, 2);

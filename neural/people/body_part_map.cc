@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/guided/body_part_map.h"
+#include "neural/people/body_part_map.h"
 
 #include "geometry/check.h"
 
@@ -53,6 +53,11 @@ int BodyPartOf(int chart) {
   BODYLOOM_CHECK(chart >= 0 && chart < static_cast<int>(kPartOfChart.size()), "body part map: chart ", chart,
                  ", expected 0 to 24");
   return kPartOfChart[chart];
+}
+
+int LimbOf(int chart) {
+  const int part = BodyPartOf(chart);
+  return part < kHandR ? part : kHandR + (part - kHandR) / 2;  // from the hands on, parts come in pairs
 }
 
 std::array<float, 3> BodyPartColour(int part) {

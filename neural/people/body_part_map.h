@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The pose map P of the pose-guided renderer: which part of the undressed body a pixel shows, as a colour.
+/// Parts of the body as the one-photo renderers tell them apart, and the pose map P of the pose-guided one: which part
+/// of the undressed body a pixel shows, as a colour.
 ///
 /// DensePose's 24 charts become 14 parts: torso, head, and on either side hand, foot, thigh, shin, upper arm, forearm.
 /// Fronts and backs share a part, as in the data that the method was published with (3DPeople), whose colours are not
@@ -17,6 +18,11 @@ inline constexpr int kBodyParts = 15;  ///< with the background, part 0
 
 /// Of DensePose's chart 0–24.
 int BodyPartOf(int chart);
+inline constexpr int kLimbs = 9, kHeadLimb = 2;
+/// The same with left and right alike: 0 background, 1 torso, 2 head, 3 hands, 4 feet, 5 thighs, 6 shins, 7 upper arms,
+/// 8 forearms.
+int LimbOf(int chart);
+
 /// RGB in [0, 1]; black for the background.
 std::array<float, 3> BodyPartColour(int part);
 
