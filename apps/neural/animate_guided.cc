@@ -49,7 +49,7 @@ struct Request {
   std::vector<int> score_photos = {1};
   int image_frame = 0, score_frames = 8, threads = 0;
   std::string device = "cpu";
-  bool as_seen = false, anywhere = false, full_size = false;
+  bool as_seen = false, virtual_views = false, anywhere = false, full_size = false;
 };
 
 nlohmann::ordered_json ScoresJson(const GuidedScores& s) {
@@ -108,6 +108,12 @@ Track TargetTrack(const Request& request, const Photo& photo) {
   return track;
 }
 
+std::optional<MapCompletion> CompletionOf(const Request& request) {
+  if (request.as_seen) return MapCompletion::kNone;
+  if (request.virtual_views) return MapCompletion::kVirtualViews;
+  return std::nullopt;
+}
+
 void Run(const Request& request) {
   const StageClock clock;
   if (request.score.empty() && (request.image.empty() || request.out.empty())) {
@@ -129,7 +135,7 @@ void Run(const Request& request) {
   const int size = run.config.profile.image_size, texture_size = run.config.profile.texture_size;
   const int threads = request.threads > 0 ? request.threads : static_cast<int>(std::thread::hardware_concurrency());
   GuidedRenderer renderer(CheckpointPath(request.run), run.config,
-                          {request.anywhere ? 0 : run.reach, !request.as_seen, threads, request.device});
+                          {request.anywhere ? 0 : run.reach, CompletionOf(request), threads, request.device});
   if (!request.score.empty()) {
     RunScore(request, run, &renderer);
     return;
@@ -163,10 +169,14 @@ void Run(const Request& request) {
     throw std::runtime_error((request.data.empty() ? request.track : request.data) + ": " + error.what());
   }
   const std::vector<uint8_t> texel_parts = PartsOfTexels(*photo.body, *maps->texels());
-  const std::vector<PhotoFrame> virtual_views = VirtualViews(*photo.body, photo.track.motion.betas, size, texture_size);
+  std::vector<PhotoFrame> virtual_views;
+  if (renderer.completion() == MapCompletion::kVirtualViews) {
+    virtual_views = VirtualViews(*photo.body, photo.track.motion.betas, size, texture_size);
+  }
+  const TexelNeighbours neighbours(texture_size, texel_parts, PlacesOfTexels(*photo.body, *maps->texels()));
   const double read_s = clock.total();
   try {
-    renderer.SetSource(photos, texel_parts, virtual_views);
+    renderer.SetSource(photos, {texel_parts, virtual_views, &neighbours});
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(request.image + ": " + error.what());
   }
@@ -253,6 +263,7 @@ void Run(const Request& request) {
         {"frames_without_fit", lost},
         {"frames_kept", renderer.frames_kept()},
         {"photos", photos.size()},
+        {"completion", ToText(renderer.completion())},
         {"window", size},
         {"picture", {pictures.width, pictures.height}},
         {"computed_share", renderer.computed_share()},
@@ -297,7 +308,11 @@ void AddAnimateGuided(CLI::App& animate, std::function<void()>* action) {
   verb->add_option("--out", request->out, "The video, .mp4");
   verb->add_option("--body", request->body, "The tracks' body (default: the built-in body)");
   verb->add_option("--background", request->background, kPhotoBackgroundHelp)->capture_default_str();
-  verb->add_flag("--as-seen", request->as_seen, "Do not complete the maps over virtual views (the paper's -A)");
+  verb->add_flag("--as-seen", request->as_seen, "Leave empty what the photos do not show (the paper's -A)");
+  verb->add_flag(
+          "--virtual-views", request->virtual_views,
+          "Complete the maps over six views drawn by the networks, as the paper does, instead of as the run says")
+      ->excludes("--as-seen");
   verb->add_flag(
       "--anywhere", request->anywhere,
       "Compute the whole window: the person may be farther from the body than clothes ever were in training");

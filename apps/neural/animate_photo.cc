@@ -33,8 +33,8 @@
 #include "data_tools/video/image_file.h"
 #include "data_tools/video/video_writer.h"
 #include "geometry/check.h"
+#include "neural/photo/guess_texture.h"
 #include "neural/photo/photo_renderer.h"
-#include "neural/photo/texture_guess.h"
 #include "neural/photo/train_photo.h"
 #include "neural/training/made_ahead.h"
 #include "render/contact_sheet.h"
@@ -155,7 +155,7 @@ void Run(const Request& request) {
   PartialTexture texture = TextureOf(request, photos, texel_parts, &notes);
   const Image seen = PictureOf(texture.colour, U, U);
   if (run.config.GuessesUnseen()) {
-    TextureGuess(U, texel_parts, PlacesOfTexels(*photo.body, *maps->texels())).Fill(&texture);
+    GuessTexture({U, texel_parts, PlacesOfTexels(*photo.body, *maps->texels())}, &texture);
   }
   std::cout << notes << std::flush;
   PhotoRenderer renderer(CheckpointPath(request.run), run.config,

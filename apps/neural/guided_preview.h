@@ -15,7 +15,7 @@ namespace bodyloom {
 /// A row a picture: source, what is known of the target, result and truth, then labels known, made and true.
 Image GuidedPreviewSheet(const std::vector<GuidedPreview>& previews);
 
-/// Appearance, labels and where texels are from (photos in greys, virtual views in colours, empty black); below, the
+/// Appearance, labels and where texels are from (photos in greys, what was made up in colours, empty black); below, the
 /// virtual views' pictures, then their labels.
 Image GuidedMapsSheet(const CoherentMaps& maps, std::span<const GuidedPicture> virtual_pictures, int num_photos);
 

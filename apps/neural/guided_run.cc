@@ -36,7 +36,11 @@ std::vector<std::pair<const char*, std::vector<int>*>> Widths(GuidedRun* run) {
 /// Switches, as 0 and 1.
 std::vector<std::pair<const char*, bool*>> Switches(GuidedRun* run) {
   return {{"one_hot_labels", &run->config.profile.one_hot_labels},
-          {"spectral_norm", &run->config.profile.spectral_norm}};
+          {"spectral_norm", &run->config.profile.spectral_norm},
+          {"fill_colours", &run->config.profile.fill_colours},
+          {"start_from_body", &run->config.profile.start_from_body},
+          {"outline_hints", &run->config.profile.outline_hints},
+          {"nearest_texels", &run->config.profile.nearest_texels}};
 }
 
 }  // namespace

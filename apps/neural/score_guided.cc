@@ -20,6 +20,7 @@ std::vector<ScoredPhotos> ScoreGuided(const ScoreGuidedRequest& request, const G
   const PhotoSource& source = people.source();
   const int most = *std::max_element(request.photos.begin(), request.photos.end());
   const int count = static_cast<int>(source.num_frames.size());
+  const TexelNeighbours neighbours(source.texture_size, source.texel_parts, source.texel_places);
   std::vector<std::unique_ptr<GuidedScorer>> scorers;
   std::vector<ScoredPhotos> scored;
   for (const int photos : request.photos) {
@@ -40,11 +41,12 @@ std::vector<ScoredPhotos> ScoreGuided(const ScoreGuidedRequest& request, const G
     }
     std::vector<PhotoFrame> photos(chosen.size());
     for (size_t i = 0; i < chosen.size(); ++i) source.fill(person, chosen[i], &photos[i]);
-    const std::vector<PhotoFrame> views = people.VirtualViewsOf(person);
+    std::vector<PhotoFrame> views;
+    if (renderer->completion() == MapCompletion::kVirtualViews) views = people.VirtualViewsOf(person);
     for (size_t n = 0; n < scored.size(); ++n) {
       ThrowIfInterrupted();
       const size_t used = std::min(photos.size(), static_cast<size_t>(scored[n].photos));
-      renderer->SetSource(std::span(photos).first(used), source.texel_parts, views);
+      renderer->SetSource(std::span(photos).first(used), {source.texel_parts, views, &neighbours});
       const CoherentMaps& maps = renderer->maps();
       double filled = 0, atlas = 0;
       for (size_t i = 0; i < maps.from.size(); ++i) {

@@ -45,7 +45,8 @@ CoherentMaps EmptyMaps(int size, std::span<const uint8_t> texel_parts) {
           std::vector<float>(3 * area),
           std::vector<uint8_t>(area),
           std::vector<uint8_t>(area),
-          {texel_parts.begin(), texel_parts.end()}};
+          {texel_parts.begin(), texel_parts.end()},
+          {}};
 }
 
 int FillEmptyTexels(const PhotoFrame& frame, const GuidedPicture& picture, uint8_t from,
@@ -94,13 +95,13 @@ PseudoPicture LookUp(const CoherentMaps& maps, const PhotoFrame& frame) {
   BODYLOOM_CHECK(frame.uv.size() == 2 * pixels && frame.parts.size() == pixels, "coherent maps: a frame of ",
                  frame.size, " px has ", frame.uv.size(), " coordinates and ", frame.parts.size(), " parts");
   PseudoPicture pseudo{frame.size, std::vector<float>(3 * pixels), std::vector<uint8_t>(pixels),
-                       std::vector<uint8_t>(pixels)};
+                       std::vector<uint8_t>(pixels), std::vector<float>(maps.extent.empty() ? 0 : pixels)};
   const auto size = static_cast<float>(maps.size);
   for (size_t i = 0; i < pixels; ++i) {
     const uint8_t part = frame.parts[i];
     if (part == 0) continue;
     const Around around = AroundPoint(frame.uv[i] * size - 0.5F, (1 - frame.uv[pixels + i]) * size - 0.5F, maps.size);
-    float all = 0, weight = 0, heaviest = 0;
+    float all = 0, weight = 0, heaviest = 0, extent = 0;
     std::array<float, 3> colour{};
     uint8_t label = 0;
     for (size_t k = 0; k < 4; ++k) {
@@ -108,6 +109,7 @@ PseudoPicture LookUp(const CoherentMaps& maps, const PhotoFrame& frame) {
       if (maps.texel_parts[texel] != part) continue;
       const float w = around.weight[k];
       all += w;
+      if (!maps.extent.empty()) extent += w * maps.extent[texel];
       if (maps.from[texel] == 0) continue;
       weight += w;
       for (size_t c = 0; c < 3; ++c) colour[c] += w * maps.appearance[c * texels + texel];
@@ -116,6 +118,7 @@ PseudoPicture LookUp(const CoherentMaps& maps, const PhotoFrame& frame) {
         label = maps.labels[texel];
       }
     }
+    if (!pseudo.extent.empty() && all > 0) pseudo.extent[i] = extent / all;
     if (!(weight > 0) || weight < 0.5F * all) continue;
     for (size_t c = 0; c < 3; ++c) pseudo.image[c * pixels + i] = colour[c] / weight;
     pseudo.labels[i] = label;

@@ -21,6 +21,7 @@ struct CoherentMaps {
   std::vector<uint8_t> labels;       ///< U × U
   std::vector<uint8_t> from;         ///< U × U: number of the picture that filled the texel, 0: empty
   std::vector<uint8_t> texel_parts;  ///< U × U: DensePose's part, 0 where the atlas is empty
+  std::vector<float> extent;         ///< U × U: how far clothes stand off (clothes_extent.h); empty: nobody knows
 };
 
 CoherentMaps EmptyMaps(int size, std::span<const uint8_t> texel_parts);
@@ -35,7 +36,7 @@ int FillEmptyTexels(const PhotoFrame& frame, const GuidedPicture& picture, uint8
 GuidedPicture OwnPicture(const PhotoFrame& frame);
 
 /// What the maps show of a pose, at the pixels of the bare body: bilinear among the filled texels of the pixel's part;
-/// label of the nearest of them. Nothing where less than half the weight is filled.
+/// label of the nearest of them. Nothing where less than half the weight is filled. The extent is bilinear among all.
 PseudoPicture LookUp(const CoherentMaps& maps, const PhotoFrame& frame);
 
 }  // namespace bodyloom

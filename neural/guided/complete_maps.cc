@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "geometry/check.h"
 
@@ -51,6 +52,16 @@ int Onto(int v, int from_first, int from_last, int to_first, int to_last) {
   return static_cast<int>(std::lround(to_first + t * (to_last - to_first)));
 }
 
+/// Where a network paints a face although it was told otherwise, what it was told.
+void TakeAwayFaces(const PseudoPicture& told, GuidedPicture* picture) {
+  const size_t pixels = picture->alpha.size();
+  for (size_t i = 0; i < pixels; ++i) {
+    if (picture->labels[i] != kFace || told.known[i] == 0 || told.labels[i] == kFace) continue;
+    picture->labels[i] = told.labels[i];
+    for (size_t c = 0; c < 3; ++c) picture->image[c * pixels + i] = told.image[c * pixels + i] * picture->alpha[i];
+  }
+}
+
 }  // namespace
 
 std::vector<uint8_t> TexelsOfTheBack(const PhotoFrame& front, const PhotoFrame& back) {
@@ -64,8 +75,8 @@ std::vector<uint8_t> TexelsOfTheBack(const PhotoFrame& front, const PhotoFrame& 
 PseudoPicture MirroredFront(const PhotoFrame& front, const GuidedPicture& picture, const PhotoFrame& back) {
   const Box from = BodyBox(back), to = BodyBox(front);
   const size_t pixels = size_t(back.size) * back.size;
-  PseudoPicture pseudo{back.size, std::vector<float>(3 * pixels), std::vector<uint8_t>(pixels),
-                       std::vector<uint8_t>(pixels)};
+  PseudoPicture pseudo{
+      back.size, std::vector<float>(3 * pixels), std::vector<uint8_t>(pixels), std::vector<uint8_t>(pixels), {}};
   if (to.right < 0) return pseudo;
   std::array<float, 3> behind_face{};
   const bool hair = MeanColour(picture, kHair, &behind_face);
@@ -97,10 +108,14 @@ std::vector<GuidedPicture> CompleteMaps(std::span<const PhotoFrame> views, const
   const std::vector<uint8_t> no_face = TexelsOfTheBack(views[kViewFront], views[kViewBack]);
   std::vector<GuidedPicture> pictures;
   for (int v = 0; v < kNumVirtualViews; ++v) {
-    const PseudoPicture pseudo = v == kViewBack
-                                     ? MirroredFront(views[kViewFront], pictures[kViewFront], views[kViewBack])
-                                     : LookUp(*maps, views[v]);
+    PseudoPicture pseudo = LookUp(*maps, views[v]);
+    if (v == kViewBack) {
+      std::vector<float> extent = std::move(pseudo.extent);
+      pseudo = MirroredFront(views[kViewFront], pictures[kViewFront], views[kViewBack]);
+      pseudo.extent = std::move(extent);
+    }
     pictures.push_back(draw(views[v], pseudo));
+    if (v == kViewBack) TakeAwayFaces(pseudo, &pictures.back());
     FillEmptyTexels(views[v], pictures.back(), static_cast<uint8_t>(first_number + v), no_face, maps);
   }
   return pictures;

@@ -7,11 +7,12 @@
 #include "geometry/check.h"
 #include "neural/guided/guided_plan.h"
 #include "neural/guided/guided_tensors.h"
+#include "neural/guided/source_maps.h"
 
 namespace bodyloom {
 
 GuidedBatch MakeGuidedBatch(const PhotoSource& people, const GuidedConfig& config, uint64_t seed, int64_t step,
-                            int batch, int reach) {
+                            int batch, int reach, const TexelNeighbours* neighbours) {
   std::vector<PhotoFrame> sources(batch), targets(batch);
   std::vector<std::vector<uint8_t>> known;
   for (int b = 0; b < batch; ++b) {
@@ -29,7 +30,19 @@ GuidedBatch MakeGuidedBatch(const PhotoSource& people, const GuidedConfig& confi
   result.box = PersonBox(targets, multiple, reach);
   if (result.box.width == 0) result.box = {0, 0, targets[0].size / multiple, targets[0].size / multiple};
   result.target = CroppedPixels(target, result.box, multiple);
-  result.pseudo = CroppedPixels(PseudoOf(target, known), result.box, multiple);
+  GuidedPseudo pseudo = PseudoOf(target, known);
+  if (config.profile.outline_hints) {
+    const SourceBody body = {people.texel_parts, {}, neighbours};
+    std::vector<PseudoPicture> warped;
+    for (int b = 0; b < batch; ++b) {
+      const CoherentMaps maps = MapsOfSource(std::span(&sources[b], 1), body, MapCompletion::kNearest, {}).maps;
+      warped.push_back(LookUp(maps, targets[b]));
+    }
+    const GuidedPseudo of_source = PseudoOf(warped);
+    pseudo.outline_classes = of_source.classes;
+    pseudo.extent = of_source.extent;
+  }
+  result.pseudo = CroppedPixels(pseudo, result.box, multiple);
   return result;
 }
 

@@ -9,6 +9,7 @@
 #include "neural/guided/guided_config.h"
 #include "neural/guided/guided_model.h"
 #include "neural/people/photo_frame.h"
+#include "neural/people/texel_neighbours.h"
 #include "neural/training/made_ahead.h"
 
 namespace bodyloom {
@@ -21,7 +22,8 @@ struct GuidedBatch {
 };
 
 /// Of step `step` (neural/guided/guided_plan.h). The box is that of all targets, grown by `reach` pixels.
+/// `neighbours`: of the people's atlas, for configurations with outline hints.
 GuidedBatch MakeGuidedBatch(const PhotoSource& people, const GuidedConfig& config, uint64_t seed, int64_t step,
-                            int batch, int reach);
+                            int batch, int reach, const TexelNeighbours* neighbours = nullptr);
 
 }  // namespace bodyloom

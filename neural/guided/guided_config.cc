@@ -55,8 +55,29 @@ const GuidedProfile& GuidedProfileNamed(const std::string& name) {
        false,
        16,
        4,
-       1024},
-      {"tiny", 128, 128, {8, 16, 32, 32}, {8, 16, 32, 32}, {8, 16, 32, 32}, 8, 8, 16, true, false, 8, 8, 256},
+       1024,
+       true,
+       true,
+       true,
+       true},
+      {"tiny",
+       128,
+       128,
+       {8, 16, 32, 32},
+       {8, 16, 32, 32},
+       {8, 16, 32, 32},
+       8,
+       8,
+       16,
+       true,
+       false,
+       8,
+       8,
+       256,
+       true,
+       true,
+       true,
+       true},
   };
   for (const GuidedProfile& profile : profiles) {
     if (profile.name == name) return profile;
@@ -90,6 +111,18 @@ std::vector<std::string> LeftOut(const GuidedConfig& config) {
     if (!(config.*flag)) parts.emplace_back(name);
   }
   return parts;
+}
+
+const char* ToText(MapCompletion completion) {
+  switch (completion) {
+    case MapCompletion::kNone:
+      return "none";
+    case MapCompletion::kVirtualViews:
+      return "virtual views";
+    case MapCompletion::kNearest:
+      return "nearest texels";
+  }
+  return "";
 }
 
 bool GuidedConfig::IsValid(std::string* why) const {
@@ -137,7 +170,9 @@ std::string ToText(const GuidedConfig& config) {
   widths("encoders", p.encoder_widths);
   widths("decoder", p.decoder_widths);
   text << "; full " << p.full_width << "; modulation " << p.modulation_width << "; latent " << p.latent << "; one-hot "
-       << p.one_hot_labels << "; spectral norm " << p.spectral_norm << "; discriminator " << p.discriminator_width;
+       << p.one_hot_labels << "; spectral norm " << p.spectral_norm << "; discriminator " << p.discriminator_width
+       << "; fill colours " << p.fill_colours << "; from body " << p.start_from_body << "; outline hints "
+       << p.outline_hints;
   for (const auto& [name, flag] : Flags()) {
     // Whether the maps are completed is a matter of inference alone: the networks are the same.
     if (flag != &GuidedConfig::uv_appearance) text << "; " << name << ' ' << config.*flag;

@@ -8,6 +8,16 @@
 
 namespace bodyloom {
 
+/// What becomes of texels that no photo shows.
+enum class MapCompletion {
+  kNone,          ///< they stay empty: the source warped as it is (the paper's −A)
+  kVirtualViews,  ///< six views of the body, drawn by the networks (complete_maps.h), as in the paper
+  kNearest        ///< the nearest texels that a photo shows, both sides, front and back as one (guess_maps.h)
+};
+
+/// "none", "virtual views", "nearest texels".
+const char* ToText(MapCompletion completion);
+
 /// The paper gives image and texture sizes but neither channels nor levels; these are this project's choice
 /// (docs/guided_renderer.md).
 struct GuidedProfile {
@@ -23,8 +33,12 @@ struct GuidedProfile {
   bool one_hot_labels = false;      ///< labels as seven channels; false: as one grey, as the paper feeds them
   bool spectral_norm = false;       ///< in RenderNet's decoder
   int discriminator_width = 0;
-  int perceptual_divisor = 1;  ///< channels of VGG are divided by this where a stand-in takes its place
-  int contextual_points = 0;   ///< positions that the contextual loss compares, drawn at random
+  int perceptual_divisor = 1;    ///< channels of VGG are divided by this where a stand-in takes its place
+  int contextual_points = 0;     ///< positions that the contextual loss compares, drawn at random
+  bool fill_colours = false;     ///< RenderNet's last convolution sees known colours carried on over their garment
+  bool start_from_body = false;  ///< SilNet sees the bare body as a map of its own, and begins as its outline
+  bool outline_hints = false;    ///< SilNet sees the clothes' labels and extent on the target's body
+  bool nearest_texels = false;   ///< the maps are completed by MapCompletion::kNearest, else over virtual views
 };
 
 /// "paper" (256², the published resolution), "cpu" (256², trains and runs on two cores), "tiny" (128², for tests).
@@ -44,6 +58,14 @@ struct GuidedConfig {
   bool uv_appearance = true;      ///< A: the maps completed over virtual views; without it the source warped as it is
 
   [[nodiscard]] int Levels() const { return static_cast<int>(profile.shape_widths.size()); }
+  [[nodiscard]] MapCompletion Completion() const {
+    if (!uv_appearance) return MapCompletion::kNone;
+    return profile.nearest_texels ? MapCompletion::kNearest : MapCompletion::kVirtualViews;
+  }
+  /// Whether somebody asks which texels are near each other.
+  [[nodiscard]] bool NeedsNeighbours() const {
+    return profile.outline_hints || Completion() == MapCompletion::kNearest;
+  }
   /// A side of the images must be a multiple of this; pictures are cropped at multiples of it.
   [[nodiscard]] int Multiple() const { return 1 << Levels(); }
   /// RenderNet sees the pose map where a network that would have told it the target's shape is left out.

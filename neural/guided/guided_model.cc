@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "neural/guided/guided_model.h"
 
+#include "neural/guided/carry_colours.h"
 #include "neural/losses/image_losses.h"
 #include "neural/people/photo_frame.h"
 
@@ -31,8 +32,11 @@ GuidedSource GuidedModelImpl::EncodeSource(const GuidedTensors& source) {
   return codes;
 }
 
-Tensor GuidedModelImpl::Silhouette(const GuidedSource& source, const Tensor& pose, const CodeBox& box) {
-  return sil(Cropped(source.sil_code, box), pose);
+Tensor GuidedModelImpl::Silhouette(const GuidedSource& source, const Tensor& pose, const GuidedPseudo& pseudo,
+                                   const CodeBox& box) {
+  const Tensor seen =
+      config.profile.outline_hints ? torch::cat({LabelMap(pseudo.outline_classes), pseudo.extent}, 1) : Tensor();
+  return sil(Cropped(source.sil_code, box), pose, seen);
 }
 
 Tensor GuidedModelImpl::Labels(const GuidedSource& source, const Tensor& pose, const Tensor& silhouette,
@@ -49,9 +53,12 @@ std::pair<Tensor, Tensor> GuidedModelImpl::Render(const Tensor& code, const Tens
   const Tensor labels = config.garments ? LabelMap(classes) : none.expand({-1, config.LabelChannels(), -1, -1});
   std::vector<Tensor> guide = {labels, config.silhouettes ? silhouette : none};
   if (config.PoseForRender()) guide.push_back(pose);
-  const Tensor seen = torch::cat({pseudo.image, pseudo.silhouette}, 1);
-  const Tensor colours = render(code.defined() ? Cropped(code, box) : code, torch::cat(guide, 1),
-                                config.pseudo_image ? seen : torch::zeros_like(seen));
+  Tensor seen = torch::cat({pseudo.image, pseudo.silhouette}, 1), shown = pseudo.image;
+  if (config.profile.fill_colours) {
+    shown = CarryColours(pseudo.image, pseudo.silhouette, pseudo.classes, config.garments ? classes : Tensor());
+  }
+  if (!config.pseudo_image) seen = torch::zeros_like(seen), shown = torch::zeros_like(shown);
+  const Tensor colours = render(code.defined() ? Cropped(code, box) : code, torch::cat(guide, 1), seen, shown);
   const Tensor outline = colours.size(1) == 4 ? torch::sigmoid(colours.slice(1, 3, 4)) : silhouette;
   return {torch::sigmoid(colours.slice(1, 0, 3)) * outline, outline};
 }
@@ -61,7 +68,7 @@ GuidedResult GuidedModelImpl::forward(const GuidedSource& source, const Tensor& 
   const torch::NoGradGuard no_grad;
   GuidedResult result;
   Tensor silhouette;
-  if (config.silhouettes) silhouette = torch::sigmoid(Silhouette(source, pose, box));
+  if (config.silhouettes) silhouette = torch::sigmoid(Silhouette(source, pose, pseudo, box));
   result.classes = torch::zeros_like(pseudo.classes);
   if (config.garments) {
     result.label_logits = Labels(source, pose, silhouette, pseudo.classes, box);

@@ -44,6 +44,8 @@ struct GuidedSource {
 /// What the target's pictures show of the source.
 struct GuidedPseudo {
   torch::Tensor classes, image, silhouette;  ///< G̃, Ĩ, S̃
+  /// What SilNet sees of the source on the target's body, where it does: labels, and how far clothes stand off.
+  torch::Tensor outline_classes, extent;
 };
 
 struct GuidedResult {
@@ -61,7 +63,8 @@ struct GuidedModelImpl : torch::nn::Module {
   /// Of the source's whole pictures. Parts whose networks are left out are undefined.
   GuidedSource EncodeSource(const GuidedTensors& source);
   /// B×1 logits of S^t; B×7 logits of G^t (`silhouette` undefined: SilNet is left out).
-  torch::Tensor Silhouette(const GuidedSource& source, const torch::Tensor& pose, const CodeBox& box);
+  torch::Tensor Silhouette(const GuidedSource& source, const torch::Tensor& pose, const GuidedPseudo& pseudo,
+                           const CodeBox& box);
   torch::Tensor Labels(const GuidedSource& source, const torch::Tensor& pose, const torch::Tensor& silhouette,
                        const torch::Tensor& pseudo_classes, const CodeBox& box);
   /// RenderNet alone. `code`: the source's code, drawn or not; silhouette and classes may be undefined where their

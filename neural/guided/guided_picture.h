@@ -20,6 +20,7 @@ struct PseudoPicture {
   std::vector<float> image;     ///< 3; 0 where nothing is known
   std::vector<uint8_t> labels;  ///< 0 where nothing is known
   std::vector<uint8_t> known;   ///< S̃
+  std::vector<float> extent;    ///< how far clothes stand off the body (clothes_extent.h); empty: nobody knows
 };
 
 }  // namespace bodyloom

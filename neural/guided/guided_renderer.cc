@@ -3,7 +3,6 @@
 
 #include "geometry/check.h"
 #include "neural/device.h"
-#include "neural/guided/complete_maps.h"
 #include "neural/guided/draw_pose.h"
 #include "neural/guided/guided_model.h"
 #include "neural/guided/guided_tensors.h"
@@ -28,57 +27,43 @@ class GuidedRenderer::Impl {
     model_->eval();
   }
 
-  void SetSource(std::span<const PhotoFrame> photos, std::span<const uint8_t> texel_parts,
-                 std::span<const PhotoFrame> virtual_views) {
+  void SetSource(std::span<const PhotoFrame> photos, const SourceBody& body) {
     const int size = config_.profile.image_size;
     BODYLOOM_CHECK(!photos.empty(), "pose-guided renderer: no photo");
     BODYLOOM_CHECK(photos[0].size == size, "pose-guided renderer: a photo of ", photos[0].size, " px, expected ", size);
     const torch::NoGradGuard no_grad;
-    const GuidedTensors source = TensorsOf(photos.first(1));
-    BODYLOOM_CHECK(source.image.defined(), "pose-guided renderer: the source has no picture");
-    source_ = model_->EncodeSource(source);
-    maps_ = EmptyMaps(photos[0].texture_size, texel_parts);
+    const GuidedTensors tensors = TensorsOf(photos.first(1));
+    BODYLOOM_CHECK(tensors.image.defined(), "pose-guided renderer: the source has no picture");
+    codes_ = model_->EncodeSource(tensors);
     last_ = {};
-    int filled = 0;
-    for (size_t i = 0; i < photos.size(); ++i) {
-      filled +=
-          FillEmptyTexels(photos[i], OwnPicture(photos[i]), static_cast<uint8_t>(i + 1), NoFace(virtual_views), &maps_);
-    }
-    BODYLOOM_CHECK(filled > 0, "pose-guided renderer: the photos show nothing of the body");
-    virtual_.clear();
-    if (!options_.complete || !config_.uv_appearance) return;
-    virtual_ = CompleteMaps(
-        virtual_views, [&](const PhotoFrame& frame, const PseudoPicture& pseudo) { return Draw(frame, pseudo); },
-        static_cast<int>(photos.size()) + 1, &maps_);
+    source_ = MapsOfSource(photos, body, completion(),
+                           [&](const PhotoFrame& frame, const PseudoPicture& pseudo) { return Draw(frame, pseudo); });
+    BODYLOOM_CHECK(source_.texels_seen > 0, "pose-guided renderer: the photos show nothing of the body");
   }
 
+  [[nodiscard]] MapCompletion completion() const { return options_.completion.value_or(config_.Completion()); }
+
   GuidedPicture Render(const PhotoFrame& frame) {
-    BODYLOOM_CHECK(maps_.size > 0, "pose-guided renderer: no source yet");
+    BODYLOOM_CHECK(source_.maps.size > 0, "pose-guided renderer: no source yet");
     ++frames_;
     if (last_.size > 0 && frame.uv == last_uv_ && frame.parts == last_parts_) {
       ++frames_kept_;
       return last_;
     }
-    last_ = Draw(frame, LookUp(maps_, frame));
+    last_ = Draw(frame, LookUp(source_.maps, frame));
     last_uv_ = frame.uv;
     last_parts_ = frame.parts;
     return last_;
   }
 
-  CoherentMaps maps_;
-  std::vector<GuidedPicture> virtual_;
+  SourceMaps source_;
   int64_t frames_ = 0, frames_kept_ = 0;
   double computed_ = 0;  ///< windows
 
  private:
-  static std::vector<uint8_t> NoFace(std::span<const PhotoFrame> views) {
-    if (views.size() != kNumVirtualViews) return {};
-    return TexelsOfTheBack(views[kViewFront], views[kViewBack]);
-  }
-
   GuidedPicture Draw(const PhotoFrame& frame, const PseudoPicture& pseudo) {
     double share = 0;
-    GuidedPicture picture = DrawGuided(&model_, source_, frame, pseudo, options_.reach, &share);
+    GuidedPicture picture = DrawGuided(&model_, codes_, frame, pseudo, options_.reach, &share);
     computed_ += share;
     ++drawn_;
     return picture;
@@ -87,7 +72,7 @@ class GuidedRenderer::Impl {
   GuidedConfig config_;
   GuidedRendererOptions options_;
   GuidedModel model_{nullptr};
-  GuidedSource source_;
+  GuidedSource codes_;
   GuidedPicture last_;
   std::vector<float> last_uv_;
   std::vector<uint8_t> last_parts_;
@@ -101,13 +86,13 @@ GuidedRenderer::GuidedRenderer(const std::string& checkpoint_path, const GuidedC
     : impl_(std::make_unique<Impl>(checkpoint_path, config, options)) {}
 GuidedRenderer::~GuidedRenderer() = default;
 
-void GuidedRenderer::SetSource(std::span<const PhotoFrame> photos, std::span<const uint8_t> texel_parts,
-                               std::span<const PhotoFrame> virtual_views) {
-  impl_->SetSource(photos, texel_parts, virtual_views);
+void GuidedRenderer::SetSource(std::span<const PhotoFrame> photos, const SourceBody& body) {
+  impl_->SetSource(photos, body);
 }
 GuidedPicture GuidedRenderer::Render(const PhotoFrame& frame) { return impl_->Render(frame); }
-const CoherentMaps& GuidedRenderer::maps() const { return impl_->maps_; }
-const std::vector<GuidedPicture>& GuidedRenderer::virtual_pictures() const { return impl_->virtual_; }
+MapCompletion GuidedRenderer::completion() const { return impl_->completion(); }
+const CoherentMaps& GuidedRenderer::maps() const { return impl_->source_.maps; }
+const std::vector<GuidedPicture>& GuidedRenderer::virtual_pictures() const { return impl_->source_.virtual_pictures; }
 int64_t GuidedRenderer::frames_kept() const { return impl_->frames_kept_; }
 double GuidedRenderer::computed_share() const {
   return impl_->drawn_ > 0 ? impl_->computed_ / static_cast<double>(impl_->drawn_) : 0;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,15 +12,16 @@
 #include "neural/guided/coherent_maps.h"
 #include "neural/guided/guided_config.h"
 #include "neural/guided/guided_picture.h"
+#include "neural/guided/source_maps.h"
 #include "neural/people/photo_frame.h"
 
 namespace bodyloom {
 
 struct GuidedRendererOptions {
-  int reach = 0;         ///< pixels from the body beyond which is background; 0: none, the whole window is computed
-  bool complete = true;  ///< the maps over virtual views; false: the source warped as it is (the paper's −A)
-  int num_threads = 0;   ///< 0: all cores
-  std::string device = "cpu";  ///< or "cuda"
+  int reach = 0;  ///< pixels from the body beyond which is background; 0: none, the whole window is computed
+  std::optional<MapCompletion> completion;  ///< absent: the configuration's
+  int num_threads = 0;                      ///< 0: all cores
+  std::string device = "cpu";               ///< or "cuda"
 };
 
 class GuidedRenderer {
@@ -32,17 +34,17 @@ class GuidedRenderer {
   GuidedRenderer& operator=(const GuidedRenderer&) = delete;
 
   /// `photos`: one or more pictures of the person, the first one the source whose triplet the networks see; the others
-  /// fill texels that earlier ones left empty. `virtual_views`: the six of complete_maps.h; may be empty when maps are
-  /// not completed. `texel_parts`: of the atlas. Throws std::invalid_argument for frames of other sizes, without
-  /// pictures or in which no body is seen.
-  void SetSource(std::span<const PhotoFrame> photos, std::span<const uint8_t> texel_parts,
-                 std::span<const PhotoFrame> virtual_views);
+  /// fill texels that earlier ones left empty. Throws std::invalid_argument as MapsOfSource (source_maps.h), for
+  /// frames of other sizes or without pictures, and for photos that show nothing of the body.
+  void SetSource(std::span<const PhotoFrame> photos, const SourceBody& body);
 
   /// The person in another pose; after SetSource.
   GuidedPicture Render(const PhotoFrame& frame);
 
   [[nodiscard]] const CoherentMaps& maps() const;
-  /// The virtual views as the networks drew them; empty when maps were not completed.
+  /// Which way the maps are completed.
+  [[nodiscard]] MapCompletion completion() const;
+  /// The virtual views as the networks drew them; empty where none were.
   [[nodiscard]] const std::vector<GuidedPicture>& virtual_pictures() const;
   /// Frames that were those before: they were not computed again.
   [[nodiscard]] int64_t frames_kept() const;

@@ -49,13 +49,16 @@ GuidedTensors TensorsOf(std::span<const PhotoFrame> frames) {
 }
 
 GuidedPseudo PseudoOf(std::span<const PseudoPicture> pictures) {
-  std::vector<Tensor> classes, images, silhouettes;
+  std::vector<Tensor> classes, images, silhouettes, extents;
   for (const PseudoPicture& picture : pictures) {
     classes.push_back(Filled(picture.labels, "pseudo labels", 1, picture.size, torch::kByte));
     images.push_back(Filled(picture.image, "the pseudo image", 3, picture.size, torch::kFloat));
     silhouettes.push_back(Filled(picture.known, "the pseudo silhouette", 1, picture.size, torch::kByte));
+    extents.push_back(picture.extent.empty() ? torch::zeros_like(silhouettes.back())
+                                             : Filled(picture.extent, "the extent", 1, picture.size, torch::kFloat));
   }
-  return {torch::cat(classes, 0), torch::cat(images, 0), torch::cat(silhouettes, 0)};
+  const Tensor labels = torch::cat(classes, 0);
+  return {labels, torch::cat(images, 0), torch::cat(silhouettes, 0), labels, torch::cat(extents, 0)};
 }
 
 GuidedPseudo PseudoOf(const GuidedTensors& truth, std::span<const std::vector<uint8_t>> known) {
@@ -64,7 +67,7 @@ GuidedPseudo PseudoOf(const GuidedTensors& truth, std::span<const std::vector<ui
     masks.push_back(Filled(mask, "known pixels", 1, static_cast<int>(truth.pose.size(2)), torch::kByte));
   }
   const Tensor silhouette = torch::cat(masks, 0) * truth.silhouette;
-  return {truth.classes * silhouette, truth.image * silhouette, silhouette};
+  return {truth.classes * silhouette, truth.image * silhouette, silhouette, {}, {}};
 }
 
 CodeBox PersonBox(std::span<const PhotoFrame> frames, int multiple, int reach) {
@@ -111,7 +114,8 @@ GuidedTensors CroppedPixels(const GuidedTensors& tensors, const CodeBox& box, in
 
 GuidedPseudo CroppedPixels(const GuidedPseudo& pseudo, const CodeBox& box, int multiple) {
   return {CroppedPixels(pseudo.classes, box, multiple), CroppedPixels(pseudo.image, box, multiple),
-          CroppedPixels(pseudo.silhouette, box, multiple)};
+          CroppedPixels(pseudo.silhouette, box, multiple), CroppedPixels(pseudo.outline_classes, box, multiple),
+          CroppedPixels(pseudo.extent, box, multiple)};
 }
 
 GuidedPicture PictureOf(const GuidedResult& result, const GuidedPseudo& pseudo, int64_t b, const CodeBox& box,

@@ -63,7 +63,7 @@ RenderCode RenderNetImpl::EncodeSource(const Tensor& triplet) {
   return {code.unsqueeze(2).unsqueeze(3).expand({-1, -1, deepest.size(2), deepest.size(3)}), {}};
 }
 
-Tensor RenderNetImpl::forward(const Tensor& code, const Tensor& guide, const Tensor& pseudo) {
+Tensor RenderNetImpl::forward(const Tensor& code, const Tensor& guide, const Tensor& pseudo, const Tensor& shown) {
   const std::vector<Tensor> guide_features = guide_encoder(guide), pseudo_features = pseudo_encoder(pseudo);
   const Tensor& deepest = guide_features.back();
   const Tensor z =
@@ -76,7 +76,7 @@ Tensor RenderNetImpl::forward(const Tensor& code, const Tensor& guide, const Ten
     x = torch::upsample_nearest2d(x, {2 * x.size(2), 2 * x.size(3)});
   }
   x = full->forward(x, {guide, pseudo});
-  return last(torch::cat({LeakyRelu(x), pseudo}, 1));
+  return last(torch::cat({LeakyRelu(x), shown, pseudo.slice(1, 3, 4)}, 1));
 }
 
 }  // namespace bodyloom

@@ -4,12 +4,12 @@
 ///   z ~ N(μ, σ²),  μ, log σ² = Conv3(enc_z(I^s, S^s, G^s))           (at the deepest level)
 ///   f = enc_G(G^t, S^t),  g = enc_I(Ĩ^t, S̃^t)                        (features of every level)
 ///   x = Conv3(z);  for each level, coarsest first: x = up2(ModulatedBlock(x | f_l, g_l));
-///   x = ModulatedBlock(x | (G^t, S^t), (Ĩ^t, S̃^t)),  result Conv3(LReLU(x), Ĩ^t, S̃^t)   (at full size)
+///   x = ModulatedBlock(x | (G^t, S^t), (Ĩ^t, S̃^t)),  result Conv3(LReLU(x), X^t, S̃^t)   (at full size)
 /// So both of the target's encoders condition every level, and the maps themselves the last one; the last convolution
-/// sees the pseudo image itself, so that what is known need not be painted anew. Without the latent
-/// code z = 0. Without L_KL the code is not drawn: z comes out of fully connected layers on the mean over enc_z's
-/// deepest features, the same at every place. Without SilNet and GarNet together a fourth channel outlines the person.
-/// Source: Yoon et al., CVPR 2021, Fig. 6, which gives neither channels nor levels.
+/// sees the known colours X^t themselves (Ĩ^t, or Ĩ^t carried on), so that what is known need not be painted anew.
+/// Without the latent code z = 0. Without L_KL the code is not drawn: z comes out of fully connected layers on the mean
+/// over enc_z's deepest features, the same at every place. Without SilNet and GarNet together a fourth channel outlines
+/// the person. Source: Yoon et al., CVPR 2021, Fig. 6, which gives neither channels nor levels.
 #pragma once
 
 #include <torch/torch.h>
@@ -35,8 +35,10 @@ struct RenderNetImpl : torch::nn::Module {
   /// B×(4 + label channels)×H×W: image, silhouette, labels.
   RenderCode EncodeSource(const torch::Tensor& triplet);
   /// code: B×latent at the deepest level (undefined: zero); guide: labels, silhouette and, where a network is left out,
-  /// the pose map; pseudo: B×4, Ĩ and S̃. Returns B×3 (4 where RenderNet outlines the person itself) linear.
-  torch::Tensor forward(const torch::Tensor& code, const torch::Tensor& guide, const torch::Tensor& pseudo);
+  /// the pose map; pseudo: B×4, Ĩ and S̃; shown: B×3, the colours that the last convolution sees, Ĩ or Ĩ carried on
+  /// beyond what is known of it (carry_colours.h). Returns B×3 (4 where RenderNet outlines the person itself) linear.
+  torch::Tensor forward(const torch::Tensor& code, const torch::Tensor& guide, const torch::Tensor& pseudo,
+                        const torch::Tensor& shown);
 
   GuidedConfig config;
   Encoder source_encoder{nullptr}, guide_encoder{nullptr}, pseudo_encoder{nullptr};

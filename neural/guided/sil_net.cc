@@ -3,18 +3,32 @@
 
 namespace bodyloom {
 
+using torch::Tensor;
+
 SilNetImpl::SilNetImpl(const GuidedConfig& config) {
   const std::vector<int>& widths = config.profile.shape_widths;
+  from_body = config.profile.start_from_body;
+  const int input = 3 + (config.profile.outline_hints ? config.LabelChannels() + 1 : 0) + (from_body ? 1 : 0);
   source_encoder = register_module("source_encoder", Encoder(4 + config.LabelChannels(), widths));
-  target_encoder = register_module("target_encoder", Encoder(3, widths));
-  decoder = register_module("decoder", SkipDecoder(2 * widths.back(), widths, 3, 1));
+  target_encoder = register_module("target_encoder", Encoder(input, widths));
+  decoder = register_module("decoder", SkipDecoder(2 * widths.back(), widths, input, 1));
+  if (!from_body) return;
+  // A new network outlines the bare body, a pixel wider and soft: 4 inside, −2 outside.
+  const torch::NoGradGuard no_grad;
+  Tensor body = decoder->head->weight[0][decoder->head->weight.size(1) - 1];
+  body += 6.0 / static_cast<double>(body.numel());
+  decoder->head->bias -= 2;
 }
 
-torch::Tensor SilNetImpl::EncodeSource(const torch::Tensor& triplet) { return source_encoder(triplet).back(); }
+Tensor SilNetImpl::EncodeSource(const Tensor& triplet) { return source_encoder(triplet).back(); }
 
-torch::Tensor SilNetImpl::forward(const torch::Tensor& source_code, const torch::Tensor& pose) {
-  const std::vector<torch::Tensor> features = target_encoder(pose);
-  return decoder(torch::cat({features.back(), source_code}, 1), pose, features);
+Tensor SilNetImpl::forward(const Tensor& source_code, const Tensor& pose, const Tensor& seen) {
+  std::vector<Tensor> inputs = {pose};
+  if (seen.defined()) inputs.push_back(seen);
+  if (from_body) inputs.push_back((pose.amax(1, /*keepdim=*/true) > 0).to(pose.scalar_type()));
+  const Tensor input = torch::cat(inputs, 1);
+  const std::vector<Tensor> features = target_encoder(input);
+  return decoder(torch::cat({features.back(), source_code}, 1), input, features);
 }
 
 }  // namespace bodyloom

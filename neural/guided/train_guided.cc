@@ -5,17 +5,18 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "geometry/check.h"
 #include "geometry/in_range.h"
 #include "neural/device.h"
 #include "neural/guided/choose_photos.h"
-#include "neural/guided/complete_maps.h"
 #include "neural/guided/draw_pose.h"
 #include "neural/guided/guided_batches.h"
 #include "neural/guided/guided_tensors.h"
 #include "neural/guided/loss_balance.h"
+#include "neural/guided/source_maps.h"
 #include "neural/losses/contextual_loss.h"
 #include "neural/losses/gan_losses.h"
 #include "neural/losses/image_losses.h"
@@ -66,6 +67,9 @@ class GuidedTrainer : public TrainedSystem {
  public:
   GuidedTrainer(const PhotoSource& people, const TrainGuidedOptions& options)
       : people_(people), options_(options), config_(options.config), balance_(kNumBalanced, options.balance_steps) {
+    if (config_.NeedsNeighbours()) {
+      neighbours_.emplace(people.texture_size, people.texel_parts, people.texel_places);
+    }
     torch::manual_seed(options.seed);
     model_ = GuidedModel(config_);
     discriminator_ = GuidedDiscriminator(config_);
@@ -100,7 +104,8 @@ class GuidedTrainer : public TrainedSystem {
   void Begin(int first_step) override {
     batches_ = std::make_unique<MadeAhead<GuidedBatch>>(
         std::max(0, options_.steps - first_step), [this, first_step](int64_t i) {
-          return MakeGuidedBatch(people_, config_, options_.seed, first_step + i, options_.batch, options_.reach);
+          return MakeGuidedBatch(people_, config_, options_.seed, first_step + i, options_.batch, options_.reach,
+                                 neighbours_ ? &*neighbours_ : nullptr);
         });
   }
 
@@ -121,16 +126,17 @@ class GuidedTrainer : public TrainedSystem {
       if (static_cast<int>(photos_.size()) <= person) photos_.push_back(ChoosePhotos(people, person, 1).front());
       PhotoFrame photo;
       people.fill(person, photos_[person], &photo);
-      CoherentMaps maps = EmptyMaps(photo.texture_size, people.texel_parts);
-      FillEmptyTexels(photo, OwnPicture(photo), 1, {}, &maps);
       const torch::NoGradGuard no_grad;
       const GuidedSource source = model_->EncodeSource(TensorsOf(std::span(&photo, 1)));
       const auto draw = [&](const PhotoFrame& frame, const PseudoPicture& pseudo) {
         return DrawGuided(&model_, source, frame, pseudo, options_.reach, nullptr);
       };
-      if (options_.validation_views && config_.uv_appearance) {
-        CompleteMaps(options_.validation_views(person), draw, 2, &maps);
-      }
+      MapCompletion completion = config_.Completion();
+      std::vector<PhotoFrame> views;
+      if (options_.validation_views) views = options_.validation_views(person);
+      if (completion == MapCompletion::kVirtualViews && views.empty()) completion = MapCompletion::kNone;
+      const SourceBody body = {people.texel_parts, views, neighbours_ ? &*neighbours_ : nullptr};
+      const CoherentMaps maps = MapsOfSource(std::span(&photo, 1), body, completion, draw).maps;
       const int frames = std::min(people.num_frames[person] - 1, options_.validation_frames);
       for (int k = 0; k < frames; ++k) {
         // Spread over the person's pictures but the photo.
@@ -208,7 +214,7 @@ class GuidedTrainer : public TrainedSystem {
     Tensor total = torch::zeros({}, truth.image.options());
     Tensor silhouette_logits;
     if (config_.silhouettes) {
-      silhouette_logits = model_->Silhouette(source, truth.pose, batch.box);
+      silhouette_logits = model_->Silhouette(source, truth.pose, batch.pseudo, batch.box);
       const Tensor loss = L1Loss(torch::sigmoid(silhouette_logits), truth.silhouette);
       losses.silhouette = loss.item<double>();
       total = total + loss;
@@ -303,6 +309,7 @@ class GuidedTrainer : public TrainedSystem {
   const TrainGuidedOptions& options_;
   const GuidedConfig& config_;
   LossBalance balance_;
+  std::optional<TexelNeighbours> neighbours_;  ///< where the maps are completed by them
   GuidedModel model_{nullptr};
   PatchDiscriminator discriminator_{nullptr};
   FeatureNetwork vgg_{nullptr};

@@ -15,7 +15,7 @@ struct PartialTexture {
   int size = 0;
   std::vector<float> colour;     ///< 3 × U × U RGB in [0, 1]; 0 where neither visible nor guessed
   std::vector<uint8_t> visible;  ///< U × U, 0 or 1
-  std::vector<uint8_t> guessed;  ///< U × U, 0 or 1, never where visible (neural/photo/texture_guess.h); empty: nowhere
+  std::vector<uint8_t> guessed;  ///< U × U, 0 or 1, never where visible (neural/photo/guess_texture.h); empty: nowhere
 };
 
 /// A texel is visible where texel_seen says so and the pixel nearest to texel_pixels shows the person (label other than

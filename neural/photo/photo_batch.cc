@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "neural/photo/guess_texture.h"
+
 namespace bodyloom {
 namespace {
 
@@ -17,7 +19,7 @@ PhotoWindow Inside(const PhotoWindow& box, const PhotoWindow& window) {
 }  // namespace
 
 PhotoBatch MakePhotoBatch(const PhotoSource& source, std::span<const PhotoPair> pairs, int reach, int smallest_side,
-                          const TextureGuess* guess) {
+                          const TexelNeighbours* guess) {
   std::vector<PartialTexture> from, to;
   std::vector<PhotoFrame> targets;
   std::vector<PhotoWindow> windows;
@@ -25,7 +27,7 @@ PhotoBatch MakePhotoBatch(const PhotoSource& source, std::span<const PhotoPair> 
   for (const PhotoPair& pair : pairs) {
     source.fill(pair.person, pair.source, &frame);
     from.push_back(PartialTextureOf(frame));
-    if (guess != nullptr) guess->Fill(&from.back());
+    if (guess != nullptr) GuessTexture(*guess, &from.back());
     targets.emplace_back();
     source.fill(pair.person, pair.target, &targets.back());
     to.push_back(PartialTextureOf(targets.back()));

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "neural/people/photo_frame.h"
+#include "neural/people/texel_neighbours.h"
 #include "neural/photo/photo_pairs.h"
 #include "neural/photo/photo_tensors.h"
-#include "neural/photo/texture_guess.h"
 
 namespace bodyloom {
 
@@ -22,6 +22,6 @@ struct PhotoBatch {
 /// Windows: neural/photo/photo_window.h, the largest one's sides for all. `guess`: what the source's texture is filled
 /// with where nothing is seen; null: with nothing.
 PhotoBatch MakePhotoBatch(const PhotoSource& source, std::span<const PhotoPair> pairs, int reach, int smallest_side,
-                          const TextureGuess* guess = nullptr);
+                          const TexelNeighbours* guess = nullptr);
 
 }  // namespace bodyloom

@@ -2,7 +2,7 @@
 /// The networks of the one-photo renderer. Internal: includes LibTorch.
 ///
 ///   F_s = f(T_s + G_s, M_s)      FeatureNet on the partial texture's colours, guesses at those of the other texels
-///                                (neural/photo/texture_guess.h; the paper has none) and visibility, in UV; d channels
+///                                (neural/photo/guess_texture.h; the paper has none) and visibility, in UV; d channels
 ///   R   = r(F_s, P_t)            bilinear look-up at the target pose's surface coordinates, 0 off the body
 ///   c, α = tanh, sigmoid g(R)    RenderNet;  I = α (c + 1)/2. Where its last convolution sees R too
 ///                                (PhotoProfile::render_passes_input), it also sees R's colours filled outwards from

@@ -14,11 +14,11 @@
 #include "neural/losses/gan_losses.h"
 #include "neural/losses/perceptual_loss.h"
 #include "neural/networks/vgg.h"
+#include "neural/photo/guess_texture.h"
 #include "neural/photo/photo_batch.h"
 #include "neural/photo/photo_losses.h"
 #include "neural/photo/photo_model.h"
 #include "neural/photo/render_photo.h"
-#include "neural/photo/texture_guess.h"
 #include "neural/runtime.h"
 #include "neural/training/adam.h"
 #include "neural/training/made_ahead.h"
@@ -146,7 +146,7 @@ class PhotoTrainer : public TrainedSystem {
       PartialTexture texture = PartialTextureOf(preview.source);
       const bool shown = options_.preview && i % every == 0;
       if (shown) preview.partial_texture = texture.colour;
-      if (guess_) guess_->Fill(&texture);
+      if (guess_) GuessTexture(*guess_, &texture);
       const Tensor features = model_->Complete(ToTensors(std::span(&texture, 1)));
       preview.picture = RenderPhoto(model_, features, preview.target, options_.reach);
       scorer.Add(preview.picture, preview.target);
@@ -259,7 +259,7 @@ class PhotoTrainer : public TrainedSystem {
 
   const PhotoSource& source_;
   const PhotoSource& validation_source_;
-  std::optional<TextureGuess> guess_;  ///< where the profile has one
+  std::optional<TexelNeighbours> guess_;  ///< where the profile has one
   const TrainPhotoOptions& options_;
   const PhotoConfig& config_;
   Lpips lpips_;

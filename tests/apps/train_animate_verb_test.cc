@@ -6,6 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "data_tools/video/image_file.h"
 #include "data_tools/video/video_reader.h"
 #include "tests/apps/run_command.h"
 
@@ -81,6 +82,15 @@ TEST_F(TrainAnimateVerb, TrainsGoesOnAndAnimates) {
   const CommandResult as_seen = Animate({"--image", one, "--track", other + "/track.npz", "--out", scratch_ / "b.mp4",
                                          "--as-seen", "--anywhere", "--background", "studio"});
   EXPECT_EQ(as_seen.exit_code, 0) << as_seen.err;
+  const CommandResult drawn =
+      Animate({"--image", one, "--track", other + "/track.npz", "--out", scratch_ / "c.mp4", "--virtual-views",
+               "--uv-maps", scratch_ / "drawn.png", "--json", scratch_ / "c.json", "--background", "studio"});
+  ASSERT_EQ(drawn.exit_code, 0) << drawn.err;
+  EXPECT_EQ(report["completion"], "nearest texels");
+  EXPECT_EQ(nlohmann::json::parse(std::ifstream(scratch_ / "c.json"))["completion"], "virtual views");
+  EXPECT_GT(ReadImage(scratch_ / "drawn.png").height, ReadImage(scratch_ / "maps.png").height)
+      << "the views are on the sheet";
+  EXPECT_EQ(Animate({"--image", one, "--virtual-views", "--as-seen"}).exit_code, 2);
 }
 
 TEST_F(TrainAnimateVerb, SaysWhatIsWrong) {

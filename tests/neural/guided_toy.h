@@ -23,6 +23,14 @@ inline GuidedConfig ToyGuided() {
   return config;
 }
 
+/// With everything that the small profiles add to the paper's networks.
+inline GuidedConfig ToyGuidedWithGuesses() {
+  GuidedConfig config = ToyGuided();
+  GuidedProfile& p = config.profile;
+  p.fill_colours = p.start_from_body = p.outline_hints = p.nearest_texels = true;
+  return config;
+}
+
 inline std::vector<uint8_t> ToyTexelParts() {
   std::vector<uint8_t> parts(kToyTexels * kToyTexels);
   for (int r = 0; r < kToyTexels; ++r) {
@@ -31,6 +39,21 @@ inline std::vector<uint8_t> ToyTexelParts() {
     }
   }
   return parts;
+}
+
+/// A head on a torso, both flat: the back lies behind the front, mirrored.
+inline std::vector<float> ToyTexelPlaces() {
+  constexpr int kTexels = kToyTexels * kToyTexels;
+  std::vector<float> places(3 * kTexels);
+  for (int r = 0; r < kToyTexels; ++r) {
+    for (int c = 0; c < kToyTexels; ++c) {
+      const int t = r * kToyTexels + c;
+      places[t] = static_cast<float>(c < 8 ? c : 15 - c) / 8;
+      places[kTexels + t] = 2 - static_cast<float>(r) / 8;
+      places[2 * kTexels + t] = c < 8 ? 0.1F : -0.1F;
+    }
+  }
+  return places;
 }
 
 /// Label and colour of a texel's person: face in front of the head, hair behind and on top of it, a shirt with a
@@ -119,6 +142,7 @@ inline PhotoSource ToyPeople(int people, int frames) {
   source.size = kToySide;
   source.texture_size = kToyTexels;
   source.texel_parts = ToyTexelParts();
+  source.texel_places = ToyTexelPlaces();
   source.fill = [](int person, int frame, PhotoFrame* out) { *out = ToyPhotoFrame(person, ToyPoseOf(frame), true); };
   return source;
 }

@@ -19,6 +19,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+const std::vector<uint8_t> texel_parts = ToyTexelParts();
+const std::vector<PhotoFrame> views = ToyViews();
+
 TrainGuidedOptions ToyOptions(const std::string& name) {
   TrainGuidedOptions options;
   options.config = ToyGuided();
@@ -58,11 +61,10 @@ TEST(GuidedTraining, LearnsAPairByHeart) {
   EXPECT_EQ(previews[0].frame, 1);
 
   // The same networks from their file; two views fill what one leaves open, and the same pose is not drawn again.
-  GuidedRenderer renderer(CheckpointPath(options.run_dir), options.config, {2, true, 1});
+  GuidedRenderer renderer(CheckpointPath(options.run_dir), options.config, {2, {}, 1});
   const std::vector<PhotoFrame> photos = {ToyPhotoFrame(0, ToyPoseOf(0), true), ToyPhotoFrame(0, {0, 0, true}, true)};
-  const std::vector<PhotoFrame> views = ToyViews();
   EXPECT_THROW(renderer.Render(photos[0]), std::invalid_argument);
-  renderer.SetSource(std::span(photos).first(1), ToyTexelParts(), views);
+  renderer.SetSource(std::span(photos).first(1), {texel_parts, views});
   EXPECT_EQ(renderer.virtual_pictures().size(), 6U);
   const GuidedPicture picture = renderer.Render(ToyPhotoFrame(0, ToyPoseOf(1), false));
   GuidedScorer scorer(false);
@@ -79,7 +81,7 @@ TEST(GuidedTraining, LearnsAPairByHeart) {
     }
   };
   count(&back_of_one);  // number 2 is the first virtual view: the front
-  renderer.SetSource(photos, ToyTexelParts(), views);
+  renderer.SetSource(photos, {texel_parts, views});
   count(&back_of_two);  // number 2 is the second photo
   EXPECT_EQ(back_of_one, 0);
   EXPECT_EQ(back_of_two, 128);
@@ -92,10 +94,12 @@ TEST(GuidedTraining, AResumedRunEndsWithTheSameBytes) {
   const struct {
     bool spectral;
     int balance_steps;
-  } cases[] = {{false, 3}, {true, 6}};
-  for (const auto& [spectral, balance_steps] : cases) {
+    GuidedConfig config;
+  } cases[] = {{false, 3, ToyGuided()}, {true, 6, ToyGuided()}, {false, 3, ToyGuidedWithGuesses()}};
+  for (const auto& [spectral, balance_steps, config] : cases) {
     TrainGuidedOptions whole = ToyOptions("guided_whole"), parts = ToyOptions("guided_parts");
     for (TrainGuidedOptions* options : {&whole, &parts}) {
+      options->config = config;
       options->config.profile.spectral_norm = spectral;
       options->balance_steps = balance_steps;
     }
@@ -124,14 +128,42 @@ TEST(GuidedTraining, EveryAblationTrainsAndDraws) {
     const TrainGuidedSummary summary = TrainGuided(ToyPeople(2, 4), options);
     ASSERT_EQ(summary.status, TrainingStatus::kFinished) << parts[0] << ": " << summary.message;
     EXPECT_EQ(summary.scores.frames, 6) << parts[0];
-    GuidedRenderer renderer(CheckpointPath(options.run_dir), options.config, {0, true, 1});
+    GuidedRenderer renderer(CheckpointPath(options.run_dir), options.config, {0, {}, 1});
     const PhotoFrame photo = ToyPhotoFrame(0, {}, true);
-    renderer.SetSource(std::span(&photo, 1), ToyTexelParts(), ToyViews());
+    renderer.SetSource(std::span(&photo, 1), {texel_parts, views});
     EXPECT_EQ(renderer.virtual_pictures().empty(), !options.config.uv_appearance);
     for (const float value : renderer.Render(ToyPhotoFrame(0, {1, 1, false}, false)).image) {
       ASSERT_TRUE(value >= 0 && value <= 1);
     }
   }
+}
+
+TEST(GuidedTraining, CompletesTheMapsByTheirNeighbours) {
+  TrainGuidedOptions options = ToyOptions("guided_nearest");
+  options.config = ToyGuidedWithGuesses();
+  options.validation_views = nullptr;  // nobody draws them
+  const PhotoSource people = ToyPeople(3, 4);
+  const TrainGuidedSummary summary = TrainGuided(people, options);
+  ASSERT_EQ(summary.status, TrainingStatus::kFinished) << summary.message;
+  const TexelNeighbours neighbours(kToyTexels, people.texel_parts, people.texel_places);
+  GuidedRenderer renderer(CheckpointPath(options.run_dir), options.config, {2, {}, 1});
+  const PhotoFrame photo = ToyPhotoFrame(0, {}, true), pose = ToyPhotoFrame(0, {2, 1, true}, false);
+  EXPECT_THROW(renderer.SetSource(std::span(&photo, 1), {texel_parts, views}), std::invalid_argument)
+      << "no neighbours";
+  renderer.SetSource(std::span(&photo, 1), {texel_parts, {}, &neighbours});
+  EXPECT_TRUE(renderer.virtual_pictures().empty());
+  for (const uint8_t from : renderer.maps().from) EXPECT_NE(from, 0);
+  const GuidedPicture guessed = renderer.Render(pose);
+  // The same networks and the paper's completion, and none.
+  for (const MapCompletion completion : {MapCompletion::kVirtualViews, MapCompletion::kNone}) {
+    GuidedRenderer other(CheckpointPath(options.run_dir), options.config, {2, completion, 1});
+    other.SetSource(std::span(&photo, 1), {texel_parts, views, &neighbours});
+    EXPECT_EQ(other.virtual_pictures().empty(), completion == MapCompletion::kNone);
+    EXPECT_NE(other.Render(pose).image, guessed.image);
+  }
+  PhotoSource placeless = people;
+  placeless.texel_places.clear();
+  EXPECT_THROW(TrainGuided(placeless, options), std::invalid_argument);
 }
 
 TEST(GuidedTraining, ALossThatIsNotANumberKeepsTheLastCheckpoint) {
@@ -149,9 +181,9 @@ TEST(GuidedTraining, ALossThatIsNotANumberKeepsTheLastCheckpoint) {
   EXPECT_NE(summary.message.find("checkpoint.bin holds step " + std::to_string(summary.steps)), std::string::npos)
       << summary.message;
   if (summary.steps == 0) return;
-  GuidedRenderer renderer(CheckpointPath(options.run_dir), options.config, {0, false, 1});
+  GuidedRenderer renderer(CheckpointPath(options.run_dir), options.config, {0, MapCompletion::kNone, 1});
   const PhotoFrame photo = ToyPhotoFrame(0, {}, true);
-  renderer.SetSource(std::span(&photo, 1), ToyTexelParts(), {});
+  renderer.SetSource(std::span(&photo, 1), {texel_parts, {}});
   for (const float value : renderer.Render(photo).image) ASSERT_TRUE(std::isfinite(value));
 }
 
@@ -170,16 +202,17 @@ TEST(GuidedTraining, RefusesWhatDoesNotFit) {
   const std::string path = CheckpointPath(options.run_dir);
   GuidedConfig other = ToyGuided();
   LeaveOut("gar", &other);
-  EXPECT_THROW(GuidedRenderer(path, other, {0, true, 1}), std::runtime_error);
-  GuidedRenderer renderer(path, ToyGuided(), {0, true, 1});
+  EXPECT_THROW(GuidedRenderer(path, other, {0, {}, 1}), std::runtime_error);
+  GuidedRenderer renderer(path, ToyGuided(), {0, {}, 1});
   const PhotoFrame photo = ToyPhotoFrame(0, {}, true), pose = ToyPhotoFrame(0, {}, false);
-  EXPECT_THROW(renderer.SetSource({}, ToyTexelParts(), ToyViews()), std::invalid_argument);
-  EXPECT_THROW(renderer.SetSource(std::span(&pose, 1), ToyTexelParts(), ToyViews()), std::invalid_argument);
-  EXPECT_THROW(renderer.SetSource(std::span(&photo, 1), ToyTexelParts(), {}), std::invalid_argument);
-  EXPECT_THROW(renderer.SetSource(std::span(&photo, 1), std::vector<uint8_t>(4), ToyViews()), std::invalid_argument);
+  const std::vector<uint8_t> few(4);
+  EXPECT_THROW(renderer.SetSource({}, {texel_parts, views}), std::invalid_argument);
+  EXPECT_THROW(renderer.SetSource(std::span(&pose, 1), {texel_parts, views}), std::invalid_argument);
+  EXPECT_THROW(renderer.SetSource(std::span(&photo, 1), {texel_parts, {}}), std::invalid_argument);
+  EXPECT_THROW(renderer.SetSource(std::span(&photo, 1), {few, views}), std::invalid_argument);
   fs::resize_file(path, fs::file_size(path) / 2);
   try {
-    GuidedRenderer broken(path, ToyGuided(), {0, true, 1});
+    GuidedRenderer broken(path, ToyGuided(), {0, {}, 1});
     FAIL() << "took half a checkpoint";
   } catch (const std::runtime_error& error) {
     EXPECT_EQ(std::string(error.what()).rfind(path, 0), 0U) << error.what();

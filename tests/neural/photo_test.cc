@@ -379,8 +379,8 @@ TEST(PhotoPairs, AreDrawnFromTheirNumbersAlone) {
 
 TEST(PhotoLosses, TextureLossCountsWhatEitherPictureShows) {
   const Tensor features = torch::zeros({1, 5, 2, 2});
-  TextureTensors source = {torch::full({1, 3, 2, 2}, 0.5), torch::zeros({1, 1, 2, 2})};
-  TextureTensors target = {torch::full({1, 3, 2, 2}, -0.2), torch::zeros({1, 1, 2, 2})};
+  TextureTensors source = {torch::full({1, 3, 2, 2}, 0.5), torch::zeros({1, 1, 2, 2}), {}};
+  TextureTensors target = {torch::full({1, 3, 2, 2}, -0.2), torch::zeros({1, 1, 2, 2}), {}};
   EXPECT_EQ(TextureLoss(features, source, target).item<float>(), 0);
   source.visible[0][0][0][1] = 1;
   EXPECT_FLOAT_EQ(TextureLoss(features, source, target).item<float>(), 0.5F);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/photo/texture_guess.h"
+#include "neural/photo/guess_texture.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -68,7 +68,7 @@ struct Atlas {
 constexpr std::array<float, 3> kRed = {1, 0, 0}, kGreen = {0, 1, 0}, kBlue = {0, 0, 1}, kWhite = {1, 1, 1},
                                kBlack = {0, 0, 0};
 
-TEST(TextureGuess, LooksOnTheOtherSideAtTheSameHeight) {
+TEST(GuessTexture, LooksOnTheOtherSideAtTheSameHeight) {
   // A person of 1.8 m from −0.8 to 0.8: shirt red above and green below, one blue sleeve, a white face, black hair.
   Atlas atlas({{kTorsoFront, {0.1F, 1.3F, 0.1F}, kRed, true},
                {kTorsoFront, {0.1F, 1.0F, 0.1F}, kGreen, true},
@@ -83,7 +83,7 @@ TEST(TextureGuess, LooksOnTheOtherSideAtTheSameHeight) {
                {kUpperArmLeft, {0.8F, 1.4F, 0}, kBlack, false},
                {kFootLeft, {0.1F, 0, 0}, kBlack, false}});
   const PartialTexture before = atlas.texture;
-  TextureGuess(atlas.size, atlas.parts, atlas.places).Fill(&atlas.texture);
+  GuessTexture({atlas.size, atlas.parts, atlas.places}, &atlas.texture);
   EXPECT_EQ(atlas.Colour(5), kRed) << "the back, beside red";
   EXPECT_EQ(atlas.Colour(6), kGreen) << "the back's other side, beside green";
   EXPECT_EQ(atlas.Colour(7), kBlue) << "the other sleeve";
@@ -101,7 +101,7 @@ TEST(TextureGuess, LooksOnTheOtherSideAtTheSameHeight) {
   }
 }
 
-TEST(TextureGuess, AgreesWithASlowTwin) {
+TEST(GuessTexture, AgreesWithASlowTwin) {
   uint64_t state = 5;
   const auto random = [&] { return UniformOf(state = Mix(state)); };
   const uint8_t parts[] = {1, 2, 3, 4, 7, 10, 15, 22, 23, 24};
@@ -115,7 +115,7 @@ TEST(TextureGuess, AgreesWithASlowTwin) {
     texels.push_back(texel);
   }
   Atlas atlas(texels);
-  TextureGuess(atlas.size, atlas.parts, atlas.places).Fill(&atlas.texture);
+  GuessTexture({atlas.size, atlas.parts, atlas.places}, &atlas.texture);
   std::array<double, 3> low = {9, 9, 9}, high = {-9, -9, -9};
   for (const Texel& texel : texels) {
     for (size_t a = 0; a < 3; ++a) {
@@ -151,35 +151,35 @@ TEST(TextureGuess, AgreesWithASlowTwin) {
   }
 }
 
-TEST(TextureGuess, OfNothingIsNothing) {
+TEST(GuessTexture, OfNothingIsNothing) {
   Atlas atlas({{kTorsoFront, {0, 1, 0}, kRed, false}, {kTorsoBack, {0, 1, 0}, kRed, false}});
-  TextureGuess(atlas.size, atlas.parts, atlas.places).Fill(&atlas.texture);
+  GuessTexture({atlas.size, atlas.parts, atlas.places}, &atlas.texture);
   EXPECT_THAT(atlas.texture.guessed, ::testing::Each(0));
   EXPECT_THAT(atlas.texture.colour, ::testing::Each(0.0F));
   const std::vector<uint8_t> no_parts(4, 0);
-  TextureGuess(2, no_parts, atlas.places).Fill(&atlas.texture);
+  GuessTexture({2, no_parts, atlas.places}, &atlas.texture);
   EXPECT_THAT(atlas.texture.guessed, ::testing::Each(0));
 }
 
-TEST(TextureGuess, SaysWhatIsWrong) {
+TEST(GuessTexture, SaysWhatIsWrong) {
   const Atlas good({{kTorsoFront, {0, 1, 0}, kRed, true}, {kTorsoBack, {0, 1, 0}, kRed, false}});
   Atlas atlas = good;
-  EXPECT_THAT([&] { TextureGuess(3, atlas.parts, atlas.places); },
+  EXPECT_THAT([&] { TexelNeighbours(3, atlas.parts, atlas.places); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("4 parts and 12 places of texels, expected 3²")));
-  EXPECT_THROW(TextureGuess(0, {}, {}), std::invalid_argument);
+  EXPECT_THROW(TexelNeighbours(0, {}, {}), std::invalid_argument);
   atlas.parts[0] = 25;
-  EXPECT_THAT([&] { TextureGuess(2, atlas.parts, atlas.places); },
+  EXPECT_THAT([&] { TexelNeighbours(2, atlas.parts, atlas.places); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("part 25")));
   atlas = good;
   atlas.places[1] = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_THAT([&] { TextureGuess(2, atlas.parts, atlas.places); },
+  EXPECT_THAT([&] { TexelNeighbours(2, atlas.parts, atlas.places); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("texel 1 has no place")));
-  const TextureGuess guess(2, good.parts, good.places);
+  const TexelNeighbours guess(2, good.parts, good.places);
   atlas = Atlas(std::vector<Texel>(9, {kTorsoFront, {0, 1, 0}, kRed, true}));
-  EXPECT_THAT([&] { guess.Fill(&atlas.texture); },
+  EXPECT_THAT([&] { GuessTexture(guess, &atlas.texture); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("a texture of 3 texels a side, expected 2")));
   atlas = good;
-  guess.Fill(&atlas.texture);
+  GuessTexture(guess, &atlas.texture);
   EXPECT_THROW((void)UnionOf(std::vector<PartialTexture>{good.texture, atlas.texture}), std::invalid_argument)
       << "guesses are made last";
 }
@@ -190,11 +190,11 @@ PartialTexture ToyTextureWithGuess(int person) {
   PhotoFrame frame;
   FillToyPhoto(person, 0, &frame);
   PartialTexture texture = PartialTextureOf(frame);
-  TextureGuess(kToyTexture, source.texel_parts, source.texel_places).Fill(&texture);
+  GuessTexture({kToyTexture, source.texel_parts, source.texel_places}, &texture);
   return texture;
 }
 
-TEST(TextureGuess, IsSeenByFeatureNetAlone) {
+TEST(GuessTexture, IsSeenByFeatureNetAlone) {
   const torch::NoGradGuard no_grad;
   const PartialTexture texture = ToyTextureWithGuess(0);
   PartialTexture bare = texture;
@@ -226,7 +226,7 @@ TEST(TextureGuess, IsSeenByFeatureNetAlone) {
   }
 }
 
-TEST(TextureGuess, TrainsResumesAndRenders) {
+TEST(GuessTexture, TrainsResumesAndRenders) {
   const PhotoSource source = ToyPhotos(3, 3);
   TrainPhotoOptions whole = ToyOptions("guess_whole", ToyGuessConfig());
   std::vector<PhotoPreview> previews;
@@ -246,7 +246,7 @@ TEST(TextureGuess, TrainsResumesAndRenders) {
   PartialTexture texture = PartialTextureOf(preview.source);
   EXPECT_EQ(preview.partial_texture, texture.colour) << "the preview shows what was seen";
   EXPECT_THROW(renderer.Encode(texture), std::invalid_argument);
-  TextureGuess(kToyTexture, source.texel_parts, source.texel_places).Fill(&texture);
+  GuessTexture({kToyTexture, source.texel_parts, source.texel_places}, &texture);
   renderer.Encode(texture);
   EXPECT_EQ(renderer.Render(preview.target).image, preview.picture.image);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A guess at what a picture does not show of the body's texture: the colours of the nearest texels that it does show,
-/// where both sides of the body and its front and back count as one place.
+/// A guess at what pictures do not show of the body's surface: the mean of the nearest texels that they do show, where
+/// both sides of the body and its front and back count as one place.
 ///
 /// In a rest pose every texel lies in cells of 1, ½, ¼, … of the body's largest extent. Left is folded onto right, and
 /// depth does not count but on the head, whose back has no face: a sleeve takes the other sleeve's colours, a back the
@@ -12,20 +12,23 @@
 #include <span>
 #include <vector>
 
-#include "neural/photo/partial_texture.h"
-
 namespace bodyloom {
 
-class TextureGuess {
+class TexelNeighbours {
  public:
   /// `texel_parts`: U × U, DensePose's part, 0 where the atlas is empty. `texel_places`: planar 3 × U × U, where the
   /// texels lie in the rest pose (x to a side, y up, z to the front; only lengths' ratios count). Throws
   /// std::invalid_argument for sizes that do not fit, parts above 24 and places that are not finite.
-  TextureGuess(int texture_size, std::span<const uint8_t> texel_parts, std::span<const float> texel_places);
+  TexelNeighbours(int texture_size, std::span<const uint8_t> texel_parts, std::span<const float> texel_places);
 
-  /// Fills `colour` and `guessed` where the atlas has a texel that is not visible; a texture that shows nothing stays
-  /// as it is. O(texels). Throws std::invalid_argument for a texture of another size.
-  void Fill(PartialTexture* texture) const;
+  /// Overwrites `values` (planar channels × U × U) at the texels of the atlas where `shown` (U × U) is 0 with the guess
+  /// made of those where it is 1. Returns U × U: 1 where it did; nowhere when nothing is shown. O(channels × texels).
+  /// Throws std::invalid_argument for arrays of other sizes.
+  std::vector<uint8_t> FillUnseen(std::span<const uint8_t> shown, int channels, std::span<float> values) const;
+
+  /// U × U: 1 for texels of the head behind the middle of its depth.
+  [[nodiscard]] const std::vector<uint8_t>& back_of_head() const { return back_of_head_; }
+  [[nodiscard]] int texture_size() const { return texture_size_; }
 
  private:
   struct Level {
@@ -33,6 +36,7 @@ class TextureGuess {
     int num_cells = 0;
   };
   int texture_size_ = 0;
+  std::vector<uint8_t> back_of_head_;
   std::vector<int> texels_;    ///< of the atlas that show the body
   std::vector<Level> levels_;  ///< the smallest cells first; last one cell of everything
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/photo/texture_guess.h"
+#include "neural/people/texel_neighbours.h"
 
 #include <algorithm>
 #include <array>
@@ -15,32 +15,38 @@ namespace {
 
 constexpr int kFinest = 6;  ///< cells of 1/64 of the extent, 2.7 cm of a person: some texels of a map of 128
 
-struct Mean {
-  std::array<double, 3> sum{};
-  int count = 0;
-};
-
 }  // namespace
 
-TextureGuess::TextureGuess(int texture_size, std::span<const uint8_t> texel_parts, std::span<const float> texel_places)
+TexelNeighbours::TexelNeighbours(int texture_size, std::span<const uint8_t> texel_parts,
+                                 std::span<const float> texel_places)
     : texture_size_(texture_size) {
   const size_t area = static_cast<size_t>(std::max(texture_size, 0)) * static_cast<size_t>(std::max(texture_size, 0));
   BODYLOOM_CHECK(texture_size > 0 && texel_parts.size() == area && texel_places.size() == 3 * area,
-                 "texture guess: ", texel_parts.size(), " parts and ", texel_places.size(),
+                 "texel neighbours: ", texel_parts.size(), " parts and ", texel_places.size(),
                  " places of texels, expected ", texture_size, "² and 3 x ", texture_size, "²");
   std::array<float, 3> low{}, high{};
   low.fill(std::numeric_limits<float>::max()), high.fill(std::numeric_limits<float>::lowest());
   for (size_t k = 0; k < area; ++k) {
     if (texel_parts[k] == 0) continue;
-    BODYLOOM_CHECK(texel_parts[k] < kPhotoParts, "texture guess: part ", int(texel_parts[k]), ", expected 0 to 24");
+    BODYLOOM_CHECK(texel_parts[k] < 25, "texel neighbours: part ", int(texel_parts[k]), ", expected 0 to 24");
     for (size_t a = 0; a < 3; ++a) {
       const float x = texel_places[a * area + k];
-      BODYLOOM_CHECK(std::isfinite(x), "texture guess: texel ", k, " has no place");
+      BODYLOOM_CHECK(std::isfinite(x), "texel neighbours: texel ", k, " has no place");
       low[a] = std::min(low[a], x), high[a] = std::max(high[a], x);
     }
     texels_.push_back(static_cast<int>(k));
   }
+  back_of_head_.assign(area, 0);
   if (texels_.empty()) return;
+  float front = std::numeric_limits<float>::lowest(), back = std::numeric_limits<float>::max();
+  for (const int k : texels_) {
+    if (LimbOf(texel_parts[k]) != kHeadLimb) continue;
+    front = std::max(front, texel_places[2 * area + k]), back = std::min(back, texel_places[2 * area + k]);
+  }
+  for (const int k : texels_) {
+    const bool behind = texel_places[2 * area + k] < 0.5 * (double(front) + back);
+    back_of_head_[k] = LimbOf(texel_parts[k]) == kHeadLimb && behind ? 1 : 0;
+  }
   const double extent =
       std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2], std::numeric_limits<float>::min()});
   const double middle = 0.5 * (double(low[0]) + high[0]);
@@ -66,33 +72,43 @@ TextureGuess::TextureGuess(int texture_size, std::span<const uint8_t> texel_part
   levels_.push_back({std::vector<int>(texels_.size(), 0), 1});
 }
 
-void TextureGuess::Fill(PartialTexture* texture) const {
+std::vector<uint8_t> TexelNeighbours::FillUnseen(std::span<const uint8_t> shown, int channels,
+                                                 std::span<float> values) const {
   const size_t area = static_cast<size_t>(texture_size_) * static_cast<size_t>(texture_size_);
-  BODYLOOM_CHECK(
-      texture->size == texture_size_ && texture->visible.size() == area && texture->colour.size() == 3 * area,
-      "texture guess: a texture of ", texture->size, " texels a side, expected ", texture_size_);
-  texture->guessed.assign(area, 0);
-  std::vector<std::vector<Mean>> means;
+  const auto C = static_cast<size_t>(std::max(channels, 0));
+  BODYLOOM_CHECK(shown.size() == area && channels > 0 && values.size() == C * area, "texel neighbours: ", shown.size(),
+                 " texels with ", values.size(), " values of ", channels, " channels, expected ", texture_size_,
+                 " texels a side");
+  struct Cells {
+    std::vector<double> sum;  ///< cell, channel
+    std::vector<int> count;
+  };
+  std::vector<Cells> of_levels;
   for (const Level& level : levels_) {
-    std::vector<Mean>& mean = means.emplace_back(level.num_cells);
+    Cells& cells =
+        of_levels.emplace_back(Cells{std::vector<double>(C * level.num_cells), std::vector<int>(level.num_cells)});
     for (size_t i = 0; i < texels_.size(); ++i) {
-      if (texture->visible[texels_[i]] == 0) continue;
-      Mean& of_cell = mean[level.cell[i]];
-      ++of_cell.count;
-      for (size_t c = 0; c < 3; ++c) of_cell.sum[c] += texture->colour[c * area + texels_[i]];
+      if (shown[texels_[i]] == 0) continue;
+      ++cells.count[level.cell[i]];
+      for (size_t c = 0; c < C; ++c) cells.sum[C * level.cell[i] + c] += values[c * area + texels_[i]];
     }
   }
+  std::vector<uint8_t> filled(area);
   for (size_t i = 0; i < texels_.size(); ++i) {
     const int k = texels_[i];
-    if (texture->visible[k] != 0) continue;
+    if (shown[k] != 0) continue;
     for (size_t l = 0; l < levels_.size(); ++l) {
-      const Mean& mean = means[l][levels_[l].cell[i]];
-      if (mean.count == 0) continue;
-      texture->guessed[k] = 1;
-      for (size_t c = 0; c < 3; ++c) texture->colour[c * area + k] = static_cast<float>(mean.sum[c] / mean.count);
+      const Cells& cells = of_levels[l];
+      const size_t cell = levels_[l].cell[i];
+      if (cells.count[cell] == 0) continue;
+      filled[k] = 1;
+      for (size_t c = 0; c < C; ++c) {
+        values[c * area + k] = static_cast<float>(cells.sum[C * cell + c] / cells.count[cell]);
+      }
       break;
     }
   }
+  return filled;
 }
 
 }  // namespace bodyloom

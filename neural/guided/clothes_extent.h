@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+/// How far clothes stand off the body, told by the outline of a photo: what tells a skirt from trousers where only the
+/// bare body of another pose is known.
+///
+/// A pixel of the person beside the body belongs to the nearest pixel on the body's rim (the larger of the distances
+/// along x and y). A rim pixel's extent is the largest distance of those that belong to it, in diagonals of the box
+/// around the torso's pixels (around all of the body's, over 3, where no torso is seen), so that it does not depend on
+/// how large the person appears. Every texel takes the mean extent of the nearest rim texels
+/// (neural/people/texel_neighbours.h).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "neural/people/photo_frame.h"
+#include "neural/people/texel_neighbours.h"
+
+namespace bodyloom {
+
+/// U × U, 0 where the atlas is empty, and everywhere when no rim is seen. Throws std::invalid_argument for a frame
+/// without labels and for sizes that do not fit.
+std::vector<float> ClothesExtent(const PhotoFrame& photo, const TexelNeighbours& neighbours);
+
+}  // namespace bodyloom

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "neural/guided/source_maps.h"
+
+#include "geometry/check.h"
+#include "neural/guided/clothes_extent.h"
+#include "neural/guided/guess_maps.h"
+
+namespace bodyloom {
+
+SourceMaps MapsOfSource(std::span<const PhotoFrame> photos, const SourceBody& body, MapCompletion completion,
+                        const DrawPose& draw) {
+  BODYLOOM_CHECK(!photos.empty(), "pose-guided renderer: no photo");
+  const bool views = body.virtual_views.size() == kNumVirtualViews;
+  BODYLOOM_CHECK(completion != MapCompletion::kVirtualViews || views, "virtual views: ", body.virtual_views.size(),
+                 ", expected ", int(kNumVirtualViews));
+  BODYLOOM_CHECK(completion != MapCompletion::kNearest || body.neighbours != nullptr,
+                 "pose-guided renderer: the maps are completed by the nearest texels, and nobody says which are near");
+  std::vector<uint8_t> no_face;
+  if (views && completion != MapCompletion::kNearest) {
+    no_face = TexelsOfTheBack(body.virtual_views[kViewFront], body.virtual_views[kViewBack]);
+  } else if (body.neighbours != nullptr) {
+    no_face = body.neighbours->back_of_head();
+  }
+  SourceMaps source = {EmptyMaps(photos[0].texture_size, body.texel_parts), 0, {}};
+  for (size_t i = 0; i < photos.size(); ++i) {
+    source.texels_seen +=
+        FillEmptyTexels(photos[i], OwnPicture(photos[i]), static_cast<uint8_t>(i + 1), no_face, &source.maps);
+  }
+  if (body.neighbours != nullptr) source.maps.extent = ClothesExtent(photos[0], *body.neighbours);
+  const int next = static_cast<int>(photos.size()) + 1;
+  if (completion == MapCompletion::kNearest) {
+    GuessRest(*body.neighbours, static_cast<uint8_t>(next), &source.maps);
+  } else if (completion == MapCompletion::kVirtualViews) {
+    source.virtual_pictures = CompleteMaps(body.virtual_views, draw, next, &source.maps);
+  }
+  return source;
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The coherent maps of a source: what its photos show, and what is made up for the rest.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "neural/guided/coherent_maps.h"
+#include "neural/guided/complete_maps.h"
+#include "neural/guided/guided_config.h"
+#include "neural/people/texel_neighbours.h"
+
+namespace bodyloom {
+
+/// What is known of the source apart from its photos. What the completion does not ask for may be absent.
+struct SourceBody {
+  std::span<const uint8_t> texel_parts;            ///< U × U: DensePose's part, 0 where the atlas is empty
+  std::span<const PhotoFrame> virtual_views = {};  ///< in the order of VirtualView; for MapCompletion::kVirtualViews
+  const TexelNeighbours* neighbours = nullptr;     ///< for MapCompletion::kNearest and for SilNet's hints
+};
+
+struct SourceMaps {
+  CoherentMaps maps;    ///< texels of photo i are from i + 1, the others from larger numbers
+  int texels_seen = 0;  ///< that the photos filled
+  std::vector<GuidedPicture> virtual_pictures;
+};
+
+/// Earlier photos come first. Texels of the back of the head (as the views or the neighbours tell it) take no face from
+/// a photo. `draw` may be empty where nothing is drawn. Throws std::invalid_argument for sizes that do not fit, and for
+/// what the completion asks for and is absent.
+SourceMaps MapsOfSource(std::span<const PhotoFrame> photos, const SourceBody& body, MapCompletion completion,
+                        const DrawPose& draw);
+
+}  // namespace bodyloom

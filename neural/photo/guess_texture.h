@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Colours of the texels that a picture does not show, from the nearest ones that it does.
+#pragma once
+
+#include "neural/people/texel_neighbours.h"
+#include "neural/photo/partial_texture.h"
+
+namespace bodyloom {
+
+/// Fills `colour` and `guessed` where the atlas has a texel that is not visible; a texture that shows nothing stays as
+/// it is. Throws std::invalid_argument for a texture of another size.
+void GuessTexture(const TexelNeighbours& neighbours, PartialTexture* texture);
+
+}  // namespace bodyloom
