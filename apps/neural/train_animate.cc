@@ -7,6 +7,7 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,7 @@
 #include "apps/neural/weights_folder.h"
 #include "data_tools/video/image_file.h"
 #include "neural/guided/train_guided.h"
-#include "neural/motion/clothes_reach.h"
+#include "neural/photo/photo_window.h"
 
 namespace bodyloom {
 namespace {
@@ -51,24 +52,10 @@ std::string Notes(const Request& request) {
   return json.dump();
 }
 
-/// How far clothes reach, from a few pictures of everybody.
 int ReachOf(const PhotoSource& people) {
-  constexpr int kFrames = 64;
-  std::vector<MotionFrame> frames;
-  const int persons = static_cast<int>(people.num_frames.size());
-  const int each = std::max(1, kFrames / persons);
-  for (int p = 0; p < persons && static_cast<int>(frames.size()) < kFrames; ++p) {
-    for (int k = 0; k < std::min(each, people.num_frames[p]); ++k) {
-      PhotoFrame photo;
-      people.fill(p, k * people.num_frames[p] / std::min(each, people.num_frames[p]), &photo);
-      MotionFrame frame;
-      frame.width = frame.height = photo.size;
-      for (const uint8_t part : photo.parts) frame.body.push_back(part != 0 ? 1.0F : 0.0F);
-      frame.labels = std::move(photo.labels);
-      frames.push_back(std::move(frame));
-    }
-  }
-  return std::min(ClothesReach(frames), people.size / 4);
+  std::vector<int> everybody(people.num_frames.size());
+  std::iota(everybody.begin(), everybody.end(), 0);
+  return std::min(PhotoReach(people, everybody), people.size / 4);
 }
 
 void Run(Request request) {

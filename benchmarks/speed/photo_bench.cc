@@ -98,7 +98,8 @@ void GuidedRenderer(const GuidedConfig& config) {
     const Tensor body = Body(window.width, window.height);
     const Tensor pose = body * torch::rand({1, 3, window.height, window.width});
     const Tensor labels = body * classes(window.width, window.height);
-    const GuidedPseudo pseudo = {labels, body * torch::rand_like(pose), body, labels, 0.1 * body};
+    const GuidedPseudo pseudo = {labels, body * torch::rand_like(pose), body, labels,
+                                 torch::cat({0.1 * body, body}, 1)};
     const CodeBox box = {0, 0, window.width / multiple, window.height / multiple};
     Print(Named("animate", window), [&] { model->forward(source, pose, pseudo, box); });
   }

@@ -103,4 +103,37 @@ std::vector<float> ClothesExtent(const PhotoFrame& photo, const TexelNeighbours&
   return extent;
 }
 
+std::vector<float> ClothedBody(const PhotoFrame& pose, std::span<const float> extent) {
+  const int size = pose.size;
+  const size_t pixels = size_t(size) * size;
+  BODYLOOM_CHECK(pose.parts.size() == pixels && extent.size() == pixels, "clothed body: a frame of ", size, " px with ",
+                 pose.parts.size(), " parts and ", extent.size(), " extents");
+  const auto scale = static_cast<float>(BodyScale(pose));
+  const auto far = static_cast<float>(-2 * size);
+  std::vector<float> left(pixels, far);  // what is left of the extents that reach a pixel
+  for (size_t i = 0; i < pixels; ++i) {
+    if (pose.parts[i] != 0) left[i] = scale * extent[i];
+  }
+  const auto relax = [&](int x, int y, int dx, int dy) {
+    if (x + dx < 0 || x + dx >= size || y + dy < 0 || y + dy >= size) return;
+    float& here = left[size_t(y) * size + x];
+    here = std::max(here, left[size_t(y + dy) * size + (x + dx)] - 1);
+  };
+  // A shortest path of king's moves need not turn back, so that two sweeps are exact.
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      for (const int dx : {-1, 0, 1}) relax(x, y, dx, -1);
+      relax(x, y, -1, 0);
+    }
+  }
+  for (int y = size - 1; y >= 0; --y) {
+    for (int x = size - 1; x >= 0; --x) {
+      for (const int dx : {-1, 0, 1}) relax(x, y, dx, 1);
+      relax(x, y, 1, 0);
+    }
+  }
+  for (size_t i = 0; i < pixels; ++i) left[i] = pose.parts[i] != 0 ? 1.0F : std::clamp(0.5F + left[i], 0.0F, 1.0F);
+  return left;
+}
+
 }  // namespace bodyloom

@@ -21,4 +21,11 @@ namespace bodyloom {
 /// without labels and for sizes that do not fit.
 std::vector<float> ClothesExtent(const PhotoFrame& photo, const TexelNeighbours& neighbours);
 
+/// Where clothes that stand off so far would be in another pose: with e(q) the extent at a pixel q of the body
+/// (`extent`, S × S, as looked up there) and s the diagonal above in this pose,
+///   1 on the body,   clamp(½ + max_q (s e(q) − |p − q|), 0, 1) at a pixel p beside it,
+/// the distance being the larger one along x and y. Exact, two sweeps. Throws std::invalid_argument for sizes that do
+/// not fit.
+std::vector<float> ClothedBody(const PhotoFrame& pose, std::span<const float> extent);
+
 }  // namespace bodyloom

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "geometry/check.h"
+#include "neural/guided/clothes_extent.h"
 
 namespace bodyloom {
 namespace {
@@ -94,8 +95,12 @@ PseudoPicture LookUp(const CoherentMaps& maps, const PhotoFrame& frame) {
   const size_t texels = maps.from.size(), pixels = size_t(frame.size) * frame.size;
   BODYLOOM_CHECK(frame.uv.size() == 2 * pixels && frame.parts.size() == pixels, "coherent maps: a frame of ",
                  frame.size, " px has ", frame.uv.size(), " coordinates and ", frame.parts.size(), " parts");
-  PseudoPicture pseudo{frame.size, std::vector<float>(3 * pixels), std::vector<uint8_t>(pixels),
-                       std::vector<uint8_t>(pixels), std::vector<float>(maps.extent.empty() ? 0 : pixels)};
+  PseudoPicture pseudo{frame.size,
+                       std::vector<float>(3 * pixels),
+                       std::vector<uint8_t>(pixels),
+                       std::vector<uint8_t>(pixels),
+                       std::vector<float>(maps.extent.empty() ? 0 : pixels),
+                       {}};
   const auto size = static_cast<float>(maps.size);
   for (size_t i = 0; i < pixels; ++i) {
     const uint8_t part = frame.parts[i];
@@ -124,6 +129,7 @@ PseudoPicture LookUp(const CoherentMaps& maps, const PhotoFrame& frame) {
     pseudo.labels[i] = label;
     pseudo.known[i] = 1;
   }
+  if (!maps.extent.empty()) pseudo.clothed = ClothedBody(frame, pseudo.extent);
   return pseudo;
 }
 

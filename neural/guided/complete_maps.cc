@@ -76,7 +76,7 @@ PseudoPicture MirroredFront(const PhotoFrame& front, const GuidedPicture& pictur
   const Box from = BodyBox(back), to = BodyBox(front);
   const size_t pixels = size_t(back.size) * back.size;
   PseudoPicture pseudo{
-      back.size, std::vector<float>(3 * pixels), std::vector<uint8_t>(pixels), std::vector<uint8_t>(pixels), {}};
+      back.size, std::vector<float>(3 * pixels), std::vector<uint8_t>(pixels), std::vector<uint8_t>(pixels), {}, {}};
   if (to.right < 0) return pseudo;
   std::array<float, 3> behind_face{};
   const bool hair = MeanColour(picture, kHair, &behind_face);
@@ -110,9 +110,10 @@ std::vector<GuidedPicture> CompleteMaps(std::span<const PhotoFrame> views, const
   for (int v = 0; v < kNumVirtualViews; ++v) {
     PseudoPicture pseudo = LookUp(*maps, views[v]);
     if (v == kViewBack) {
-      std::vector<float> extent = std::move(pseudo.extent);
-      pseudo = MirroredFront(views[kViewFront], pictures[kViewFront], views[kViewBack]);
-      pseudo.extent = std::move(extent);
+      PseudoPicture mirrored = MirroredFront(views[kViewFront], pictures[kViewFront], views[kViewBack]);
+      mirrored.extent = std::move(pseudo.extent);
+      mirrored.clothed = std::move(pseudo.clothed);
+      pseudo = std::move(mirrored);
     }
     pictures.push_back(draw(views[v], pseudo));
     if (v == kViewBack) TakeAwayFaces(pseudo, &pictures.back());

@@ -44,7 +44,8 @@ struct GuidedSource {
 /// What the target's pictures show of the source.
 struct GuidedPseudo {
   torch::Tensor classes, image, silhouette;  ///< G̃, Ĩ, S̃
-  /// What SilNet sees of the source on the target's body, where it does: labels, and how far clothes stand off.
+  /// What SilNet sees of the source, where it does: labels on the target's body, and B×2 how far clothes stand off it
+  /// and where that puts them.
   torch::Tensor outline_classes, extent;
 };
 

@@ -21,6 +21,7 @@ struct PseudoPicture {
   std::vector<uint8_t> labels;  ///< 0 where nothing is known
   std::vector<uint8_t> known;   ///< S̃
   std::vector<float> extent;    ///< how far clothes stand off the body (clothes_extent.h); empty: nobody knows
+  std::vector<float> clothed;   ///< the body as far as clothes would stand off; empty as well
 };
 
 }  // namespace bodyloom

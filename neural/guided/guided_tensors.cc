@@ -54,8 +54,11 @@ GuidedPseudo PseudoOf(std::span<const PseudoPicture> pictures) {
     classes.push_back(Filled(picture.labels, "pseudo labels", 1, picture.size, torch::kByte));
     images.push_back(Filled(picture.image, "the pseudo image", 3, picture.size, torch::kFloat));
     silhouettes.push_back(Filled(picture.known, "the pseudo silhouette", 1, picture.size, torch::kByte));
-    extents.push_back(picture.extent.empty() ? torch::zeros_like(silhouettes.back())
-                                             : Filled(picture.extent, "the extent", 1, picture.size, torch::kFloat));
+    const auto field = [&](const std::vector<float>& values, const char* name) {
+      return values.empty() ? torch::zeros_like(silhouettes.back())
+                            : Filled(values, name, 1, picture.size, torch::kFloat);
+    };
+    extents.push_back(torch::cat({field(picture.extent, "the extent"), field(picture.clothed, "the clothed body")}, 1));
   }
   const Tensor labels = torch::cat(classes, 0);
   return {labels, torch::cat(images, 0), torch::cat(silhouettes, 0), labels, torch::cat(extents, 0)};

@@ -17,7 +17,7 @@ struct SilNetImpl : torch::nn::Module {
   /// B×(4 + label channels)×H×W → the source's code, at the deepest level.
   torch::Tensor EncodeSource(const torch::Tensor& triplet);
   /// Code (of the same size as the target's deepest features), B×3 pose map and, with `outline_hints`, what is known of
-  /// the clothes on the target's body, B×(label channels + 1) (else undefined) → B×1 logits.
+  /// the clothes on the target's body, B×(label channels + 2) (else undefined) → B×1 logits.
   torch::Tensor forward(const torch::Tensor& source_code, const torch::Tensor& pose, const torch::Tensor& seen);
 
   bool from_body = false;  ///< the target's input ends with the bare body, 0 or 1

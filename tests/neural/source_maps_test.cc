@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "neural/guided/clothes_extent.h"
 #include "neural/guided/guess_maps.h"
@@ -117,6 +118,43 @@ TEST(ClothesExtent, IsLookedUpInAnotherPose) {
   EXPECT_NEAR(seen.extent[21 * kToySide + 13], 3 / std::hypot(12, 12), 1e-5) << "also where the photo shows nothing";
   EXPECT_EQ(seen.known[21 * kToySide + 13], 0);
   EXPECT_EQ(seen.extent[0], 0);
+}
+
+TEST(ClothedBody, AgreesWithASlowTwin) {
+  const PhotoFrame pose = ToyPhotoFrame(1, {2, -1, false}, false);
+  std::vector<float> extent(1024);
+  for (int i = 0; i < 1024; ++i) {
+    if (pose.parts[i] != 0) extent[i] = static_cast<float>((i * 37) % 11) / 60;
+  }
+  const std::vector<float> clothed = ClothedBody(pose, extent);
+  const double diagonal = std::hypot(12, 12);
+  int between = 0;
+  for (int p = 0; p < 1024; ++p) {
+    double most = -100;
+    for (int q = 0; q < 1024; ++q) {
+      if (pose.parts[q] == 0) continue;
+      const int distance = std::max(std::abs(p % kToySide - q % kToySide), std::abs(p / kToySide - q / kToySide));
+      most = std::max(most, diagonal * extent[q] - distance);
+    }
+    const double expected = pose.parts[p] != 0 ? 1 : std::clamp(0.5 + most, 0.0, 1.0);
+    EXPECT_NEAR(clothed[p], expected, 1e-5) << p;
+    between += expected > 0 && expected < 1 ? 1 : 0;
+  }
+  EXPECT_GT(between, 20);
+  EXPECT_THROW(ClothedBody(pose, std::vector<float>(4)), std::invalid_argument);
+}
+
+TEST(ClothedBody, ASkirtCanBeSeenFromBehindAndAtAnotherSize) {
+  // Three pixels wider in the photo: three pixels wider behind, too.
+  const TexelNeighbours neighbours = ToyNeighbours();
+  const PhotoFrame photo = InASkirt(3);
+  const CoherentMaps maps =
+      MapsOfSource(std::span(&photo, 1), {texel_parts, {}, &neighbours}, MapCompletion::kNone, {}).maps;
+  const PseudoPicture seen = LookUp(maps, ToyPhotoFrame(1, {0, 0, true}, false));
+  const auto at = [&](int x, int y) { return seen.clothed[y * kToySide + x]; };
+  EXPECT_EQ(at(10, 20), 1) << "the torso's last column";
+  EXPECT_NEAR(at(7, 20), 0.5, 1e-4) << "the skirt's last column";
+  EXPECT_EQ(at(6, 20), 0);
 }
 
 TEST(ClothesExtent, NeedsLabels) {
