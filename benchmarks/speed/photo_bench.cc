@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "neural/guided/coherent_maps.h"
 #include "neural/guided/guided_model.h"
 #include "neural/networks/architecture_card.h"
 #include "neural/photo/photo_model.h"
@@ -103,6 +104,20 @@ void GuidedRenderer(const GuidedConfig& config) {
     const CodeBox box = {0, 0, window.width / multiple, window.height / multiple};
     Print(Named("animate", window), [&] { model->forward(source, pose, pseudo, box); });
   }
+  // A body of two fifths of the window, as wide as a person with arms out.
+  PhotoFrame frame;
+  frame.size = side;
+  frame.parts.assign(size_t(side) * side, 0);
+  frame.uv.assign(2 * frame.parts.size(), 0.5F);
+  for (int y = side / 10; y < side - side / 10; ++y) {
+    std::fill_n(frame.parts.begin() + size_t(y) * side + side / 4, side / 2, uint8_t{2});
+  }
+  CoherentMaps maps =
+      EmptyMaps(config.profile.texture_size,
+                std::vector<uint8_t>(size_t(config.profile.texture_size) * config.profile.texture_size, 2));
+  std::fill(maps.from.begin(), maps.from.end(), uint8_t{1});
+  if (config.profile.outline_hints) maps.extent.assign(maps.from.size(), 0.1F);
+  Print("animate: pseudo inputs of a frame", [&] { LookUp(maps, frame); });
   Print("animate: the photo encoded, once", [&] { model->EncodeSource(photo); });
 }
 

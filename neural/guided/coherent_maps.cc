@@ -11,8 +11,6 @@
 namespace bodyloom {
 namespace {
 
-constexpr uint8_t kFace = 3;
-
 /// The four grid points around (x, y), clamped to the grid, with bilinear weights; the nearest first.
 struct Around {
   std::array<size_t, 4> index;
@@ -64,7 +62,7 @@ int FillEmptyTexels(const PhotoFrame& frame, const GuidedPicture& picture, uint8
     if (maps->from[i] != 0 || maps->texel_parts[i] == 0 || frame.texel_seen[i] == 0) continue;
     const Around around = AroundPoint(frame.texel_pixels[i], frame.texel_pixels[texels + i], frame.size);
     const uint8_t label = picture.labels[around.index[0]];
-    if (label == 0 || (label == kFace && !no_face.empty() && no_face[i] != 0)) continue;
+    if (label == 0 || (label == kFaceLabel && !no_face.empty() && no_face[i] != 0)) continue;
     float weight = 0;
     std::array<float, 3> colour{};
     for (size_t k = 0; k < 4; ++k) {

@@ -10,7 +10,6 @@
 namespace bodyloom {
 namespace {
 
-constexpr uint8_t kFace = 3, kHair = 4, kSkin = 5;
 constexpr int kEnoughPixels = 8;  ///< of hair, to know its colour
 
 struct Box {
@@ -56,7 +55,7 @@ int Onto(int v, int from_first, int from_last, int to_first, int to_last) {
 void TakeAwayFaces(const PseudoPicture& told, GuidedPicture* picture) {
   const size_t pixels = picture->alpha.size();
   for (size_t i = 0; i < pixels; ++i) {
-    if (picture->labels[i] != kFace || told.known[i] == 0 || told.labels[i] == kFace) continue;
+    if (picture->labels[i] != kFaceLabel || told.known[i] == 0 || told.labels[i] == kFaceLabel) continue;
     picture->labels[i] = told.labels[i];
     for (size_t c = 0; c < 3; ++c) picture->image[c * pixels + i] = told.image[c * pixels + i] * picture->alpha[i];
   }
@@ -79,8 +78,8 @@ PseudoPicture MirroredFront(const PhotoFrame& front, const GuidedPicture& pictur
       back.size, std::vector<float>(3 * pixels), std::vector<uint8_t>(pixels), std::vector<uint8_t>(pixels), {}, {}};
   if (to.right < 0) return pseudo;
   std::array<float, 3> behind_face{};
-  const bool hair = MeanColour(picture, kHair, &behind_face);
-  if (!hair) MeanColour(picture, kFace, &behind_face);
+  const bool hair = MeanColour(picture, kHairLabel, &behind_face);
+  if (!hair) MeanColour(picture, kFaceLabel, &behind_face);
   const size_t source_pixels = picture.alpha.size();
   for (int y = from.top; y <= from.bottom; ++y) {
     const int source_y = Onto(y, from.top, from.bottom, to.top, to.bottom);
@@ -89,12 +88,12 @@ PseudoPicture MirroredFront(const PhotoFrame& front, const GuidedPicture& pictur
       if (back.parts[i] == 0) continue;
       const size_t j = size_t(source_y) * front.size + Onto(x, from.left, from.right, to.right, to.left);
       if (picture.labels[j] == 0 || !(picture.alpha[j] > 0)) continue;
-      const bool face = picture.labels[j] == kFace;
+      const bool face = picture.labels[j] == kFaceLabel;
       for (size_t c = 0; c < 3; ++c) {
         pseudo.image[c * pixels + i] =
             face ? behind_face[c] : std::min(1.0F, picture.image[c * source_pixels + j] / picture.alpha[j]);
       }
-      pseudo.labels[i] = face ? (hair ? kHair : kSkin) : picture.labels[j];
+      pseudo.labels[i] = face ? (hair ? kHairLabel : kSkinLabel) : picture.labels[j];
       pseudo.known[i] = 1;
     }
   }

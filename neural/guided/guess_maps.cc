@@ -9,8 +9,6 @@
 namespace bodyloom {
 namespace {
 
-constexpr uint8_t kFace = 3, kHair = 4, kSkin = 5;
-
 /// The commonest label of the nearest filled texels, by texel.
 std::vector<uint8_t> NearestLabels(const TexelNeighbours& neighbours, std::span<const uint8_t> filled,
                                    std::span<const uint8_t> labels) {
@@ -38,9 +36,9 @@ int GuessRest(const TexelNeighbours& neighbours, uint8_t from, CoherentMaps* map
   std::vector<uint8_t> filled(texels);
   for (size_t i = 0; i < texels; ++i) filled[i] = maps->from[i] != 0 ? 1 : 0;
   std::vector<uint8_t> guess = NearestLabels(neighbours, filled, maps->labels);
-  const bool hair = std::find(maps->labels.begin(), maps->labels.end(), kHair) != maps->labels.end();
+  const bool hair = std::find(maps->labels.begin(), maps->labels.end(), kHairLabel) != maps->labels.end();
   std::vector<uint8_t> faceless = maps->labels;
-  std::replace(faceless.begin(), faceless.end(), kFace, hair ? kHair : kSkin);
+  std::replace(faceless.begin(), faceless.end(), kFaceLabel, hair ? kHairLabel : kSkinLabel);
   const std::vector<uint8_t> of_back = NearestLabels(neighbours, filled, faceless);
   for (size_t i = 0; i < texels; ++i) {
     if (neighbours.back_of_head()[i] != 0) guess[i] = of_back[i];

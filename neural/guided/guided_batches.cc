@@ -35,7 +35,7 @@ GuidedBatch MakeGuidedBatch(const PhotoSource& people, const GuidedConfig& confi
     const SourceBody body = {people.texel_parts, {}, neighbours};
     std::vector<PseudoPicture> warped;
     for (int b = 0; b < batch; ++b) {
-      const CoherentMaps maps = MapsOfSource(std::span(&sources[b], 1), body, MapCompletion::kNearest, {}).maps;
+      const CoherentMaps maps = MapsOfSource(std::span(&sources[b], 1), body, MapCompletion::kNearest, true, {}).maps;
       warped.push_back(LookUp(maps, targets[b]));
     }
     const GuidedPseudo of_source = PseudoOf(warped);

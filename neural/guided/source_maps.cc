@@ -8,13 +8,13 @@
 namespace bodyloom {
 
 SourceMaps MapsOfSource(std::span<const PhotoFrame> photos, const SourceBody& body, MapCompletion completion,
-                        const DrawPose& draw) {
+                        bool extent, const DrawPose& draw) {
   BODYLOOM_CHECK(!photos.empty(), "pose-guided renderer: no photo");
   const bool views = body.virtual_views.size() == kNumVirtualViews;
   BODYLOOM_CHECK(completion != MapCompletion::kVirtualViews || views, "virtual views: ", body.virtual_views.size(),
                  ", expected ", int(kNumVirtualViews));
-  BODYLOOM_CHECK(completion != MapCompletion::kNearest || body.neighbours != nullptr,
-                 "pose-guided renderer: the maps are completed by the nearest texels, and nobody says which are near");
+  BODYLOOM_CHECK((completion != MapCompletion::kNearest && !extent) || body.neighbours != nullptr,
+                 "pose-guided renderer: the maps ask for the nearest texels, and nobody says which are near");
   std::vector<uint8_t> no_face;
   if (views && completion != MapCompletion::kNearest) {
     no_face = TexelsOfTheBack(body.virtual_views[kViewFront], body.virtual_views[kViewBack]);
@@ -26,7 +26,7 @@ SourceMaps MapsOfSource(std::span<const PhotoFrame> photos, const SourceBody& bo
     source.texels_seen +=
         FillEmptyTexels(photos[i], OwnPicture(photos[i]), static_cast<uint8_t>(i + 1), no_face, &source.maps);
   }
-  if (body.neighbours != nullptr) source.maps.extent = ClothesExtent(photos[0], *body.neighbours);
+  if (extent) source.maps.extent = ClothesExtent(photos[0], *body.neighbours);
   const int next = static_cast<int>(photos.size()) + 1;
   if (completion == MapCompletion::kNearest) {
     GuessRest(*body.neighbours, static_cast<uint8_t>(next), &source.maps);

@@ -27,9 +27,10 @@ struct SourceMaps {
 };
 
 /// Earlier photos come first. Texels of the back of the head (as the views or the neighbours tell it) take no face from
-/// a photo. `draw` may be empty where nothing is drawn. Throws std::invalid_argument for sizes that do not fit, and for
-/// what the completion asks for and is absent.
+/// a photo. `extent`: whether anybody asks how far clothes stand off; the first photo tells, and body.neighbours must
+/// be there. `draw` may be empty where nothing is drawn. Throws std::invalid_argument for sizes that do not fit, and
+/// for what the completion asks for and is absent.
 SourceMaps MapsOfSource(std::span<const PhotoFrame> photos, const SourceBody& body, MapCompletion completion,
-                        const DrawPose& draw);
+                        bool extent, const DrawPose& draw);
 
 }  // namespace bodyloom

@@ -136,7 +136,8 @@ class GuidedTrainer : public TrainedSystem {
       if (options_.validation_views) views = options_.validation_views(person);
       if (completion == MapCompletion::kVirtualViews && views.empty()) completion = MapCompletion::kNone;
       const SourceBody body = {people.texel_parts, views, neighbours_ ? &*neighbours_ : nullptr};
-      const CoherentMaps maps = MapsOfSource(std::span(&photo, 1), body, completion, draw).maps;
+      const CoherentMaps maps =
+          MapsOfSource(std::span(&photo, 1), body, completion, config_.profile.outline_hints, draw).maps;
       const int frames = std::min(people.num_frames[person] - 1, options_.validation_frames);
       for (int k = 0; k < frames; ++k) {
         // Spread over the person's pictures but the photo.

@@ -28,6 +28,7 @@ struct PhotoFrame {
 };
 
 inline constexpr int kPhotoLabels = 7, kPhotoParts = 25;
+inline constexpr uint8_t kFaceLabel = 3, kHairLabel = 4, kSkinLabel = 5;
 
 /// Pictures of several people. Fill may be called by any thread, one call at a time a thread.
 struct PhotoSource {

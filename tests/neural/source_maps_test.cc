@@ -25,7 +25,7 @@ TEST(GuessRest, TheBackIsTheFrontAndItsHeadHasHair) {
   const PhotoFrame photo = ToyPhotoFrame(1, {}, true);
   const TexelNeighbours neighbours = ToyNeighbours();
   const SourceMaps source =
-      MapsOfSource(std::span(&photo, 1), {texel_parts, {}, &neighbours}, MapCompletion::kNearest, {});
+      MapsOfSource(std::span(&photo, 1), {texel_parts, {}, &neighbours}, MapCompletion::kNearest, false, {});
   EXPECT_EQ(source.texels_seen, 128);
   EXPECT_TRUE(source.virtual_pictures.empty());
   for (int t = 0; t < kTexels; ++t) {
@@ -54,7 +54,7 @@ TEST(GuessRest, WithoutHairTheBackOfTheHeadIsSkinOfTheFacesColour) {
   }
   const TexelNeighbours neighbours = ToyNeighbours();
   const CoherentMaps maps =
-      MapsOfSource(std::span(&photo, 1), {texel_parts, {}, &neighbours}, MapCompletion::kNearest, {}).maps;
+      MapsOfSource(std::span(&photo, 1), {texel_parts, {}, &neighbours}, MapCompletion::kNearest, false, {}).maps;
   for (int t = 0; t < kTexels / 2; ++t) {
     if (t % kToyTexels < 8) continue;
     EXPECT_EQ(maps.labels[t], 5) << t;
@@ -74,10 +74,11 @@ TEST(GuessRest, AMapThatHoldsNothingStaysEmpty) {
 TEST(MapsOfSource, SaysWhatIsMissing) {
   const PhotoFrame photo = ToyPhotoFrame(1, {}, true);
   const std::span<const PhotoFrame> one(&photo, 1);
-  EXPECT_THROW(MapsOfSource({}, {texel_parts}, MapCompletion::kNone, {}), std::invalid_argument);
-  EXPECT_THROW(MapsOfSource(one, {texel_parts, views}, MapCompletion::kNearest, {}), std::invalid_argument);
-  EXPECT_THROW(MapsOfSource(one, {texel_parts}, MapCompletion::kVirtualViews, {}), std::invalid_argument);
-  const SourceMaps none = MapsOfSource(one, {texel_parts}, MapCompletion::kNone, {});
+  EXPECT_THROW(MapsOfSource({}, {texel_parts}, MapCompletion::kNone, false, {}), std::invalid_argument);
+  EXPECT_THROW(MapsOfSource(one, {texel_parts, views}, MapCompletion::kNearest, false, {}), std::invalid_argument);
+  EXPECT_THROW(MapsOfSource(one, {texel_parts}, MapCompletion::kVirtualViews, false, {}), std::invalid_argument);
+  EXPECT_THROW(MapsOfSource(one, {texel_parts}, MapCompletion::kNone, true, {}), std::invalid_argument);
+  const SourceMaps none = MapsOfSource(one, {texel_parts}, MapCompletion::kNone, false, {});
   EXPECT_EQ(none.texels_seen, 128);
   EXPECT_TRUE(none.maps.extent.empty());
 }
@@ -111,7 +112,8 @@ TEST(ClothesExtent, IsHowFarTheyStandOff) {
 TEST(ClothesExtent, IsLookedUpInAnotherPose) {
   const TexelNeighbours neighbours = ToyNeighbours();
   const PhotoFrame photo = InASkirt(3);
-  CoherentMaps maps = MapsOfSource(std::span(&photo, 1), {texel_parts, {}, &neighbours}, MapCompletion::kNone, {}).maps;
+  CoherentMaps maps =
+      MapsOfSource(std::span(&photo, 1), {texel_parts, {}, &neighbours}, MapCompletion::kNone, true, {}).maps;
   const PhotoFrame behind = ToyPhotoFrame(1, {2, 1, true}, false);
   const PseudoPicture seen = LookUp(maps, behind);
   ASSERT_EQ(seen.extent.size(), 1024U);
@@ -149,7 +151,7 @@ TEST(ClothedBody, ASkirtCanBeSeenFromBehindAndAtAnotherSize) {
   const TexelNeighbours neighbours = ToyNeighbours();
   const PhotoFrame photo = InASkirt(3);
   const CoherentMaps maps =
-      MapsOfSource(std::span(&photo, 1), {texel_parts, {}, &neighbours}, MapCompletion::kNone, {}).maps;
+      MapsOfSource(std::span(&photo, 1), {texel_parts, {}, &neighbours}, MapCompletion::kNone, true, {}).maps;
   const PseudoPicture seen = LookUp(maps, ToyPhotoFrame(1, {0, 0, true}, false));
   const auto at = [&](int x, int y) { return seen.clothed[y * kToySide + x]; };
   EXPECT_EQ(at(10, 20), 1) << "the torso's last column";
