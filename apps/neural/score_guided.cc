@@ -67,6 +67,7 @@ std::vector<ScoredPhotos> ScoreGuided(const ScoreGuidedRequest& request, const G
         pictures.push_back(PictureOf(truth.image, size, size));
       }
     }
+    for (const auto& scorer : scorers) scorer->NextPerson();
     progress.Update("people", (person + 1.0) / count);
   }
   for (size_t n = 0; n < scored.size(); ++n) scored[n].scores = scorers[n]->Scores();

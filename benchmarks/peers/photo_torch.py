@@ -163,11 +163,12 @@ class Guided(nn.Module):
     def __init__(self, p):
         super().__init__()
         _, shape, encoder, decoder, full, modulation, latent = p
-        self.sil, self.gar = Shape(3, shape, 1), Shape(4 + LABELS, shape, LABELS)
+        self.sil, self.gar = Shape(6 + LABELS, shape, 1), Shape(4 + LABELS, shape, LABELS)
         self.render = GuidedRender(encoder, decoder, full, modulation, latent)
 
     def forward(self, codes, pose, known_labels, known):
-        silhouette = torch.sigmoid(self.sil(codes[0], pose))
+        clothes = torch.cat([pose, known_labels, pose], 1)  # in place of their extent and the body
+        silhouette = torch.sigmoid(self.sil(codes[0], clothes))
         logits = self.gar(codes[1], torch.cat([pose, silhouette, known_labels], 1))
         labels = F.one_hot(logits.argmax(1), LABELS).permute(0, 3, 1, 2).float()
         return silhouette * torch.sigmoid(self.render(codes[2], torch.cat([labels, silhouette], 1), known))

@@ -34,7 +34,10 @@ struct GuidedScorer::Impl {
   std::optional<ContextualMetric> contextual;
   int frames = 0;
   double l1 = 0, squared = 0, foreground = 0;
-  double lpips_sum = 0, lpips_squares = 0, contextual_sum = 0;
+  double lpips_sum = 0, contextual_sum = 0;
+  double around_means = 0;                  ///< of LPIPS, of the people before: Σ (d − their mean)²
+  int of_person = 0;                        ///< frames so far of this person
+  double person_mean = 0, around_mean = 0;  ///< of these
   ClassOverlap overlap{kPhotoLabels};
 };
 
@@ -67,8 +70,17 @@ void GuidedScorer::Add(const GuidedPicture& picture, const PhotoFrame& truth) {
   const Image image = Bytes(picture.image, picture.size), true_image = Bytes(truth.image, truth.size);
   const double distance = s.lpips->Distance(image, true_image).value;
   s.lpips_sum += distance;
-  s.lpips_squares += distance * distance;
+  // Welford: no difference of large sums.
+  const double from_mean = distance - s.person_mean;
+  s.person_mean += from_mean / ++s.of_person;
+  s.around_mean += from_mean * (distance - s.person_mean);
   s.contextual_sum += (*s.contextual)(image, true_image).distance;
+}
+
+void GuidedScorer::NextPerson() {
+  impl_->around_means += impl_->around_mean;
+  impl_->of_person = 0;
+  impl_->person_mean = impl_->around_mean = 0;
 }
 
 GuidedScores GuidedScorer::Scores() const {
@@ -83,7 +95,7 @@ GuidedScores GuidedScorer::Scores() const {
   scores.label_iou = or_zero(s.overlap.MeanIou(/*in_truth=*/true));
   const double n = s.frames, none = std::numeric_limits<double>::quiet_NaN();
   scores.lpips = s.lpips ? s.lpips_sum / n : none;
-  scores.lpips_deviation = s.lpips ? std::sqrt(std::max(0.0, s.lpips_squares / n - scores.lpips * scores.lpips)) : none;
+  scores.lpips_deviation = s.lpips ? std::sqrt((s.around_means + s.around_mean) / n) : none;
   scores.contextual = s.contextual ? s.contextual_sum / n : none;
   return scores;
 }

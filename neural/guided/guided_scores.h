@@ -13,13 +13,15 @@ namespace bodyloom {
 /// the whole window with a black background: they order results but compare with nobody else's figures.
 struct GuidedScores {
   int frames = 0;
-  double image_l1 = 0;         ///< mean |I − I_true| over foreground and channels
-  double psnr_db = 0;          ///< over the foreground, range 1
-  double silhouette_iou = 0;   ///< alpha at least ½
-  double label_iou = 0;        ///< mean over the classes other than the background that occur
-  double lpips = 0;            ///< mean over frames; NaN where not asked for
-  double lpips_deviation = 0;  ///< over frames: the paper's temporal stability
-  double contextual = 0;       ///< Σ −log CX, mean over frames; NaN where not asked for
+  double image_l1 = 0;        ///< mean |I − I_true| over foreground and channels
+  double psnr_db = 0;         ///< over the foreground, range 1
+  double silhouette_iou = 0;  ///< alpha at least ½
+  double label_iou = 0;       ///< mean over the classes other than the background that occur
+  double lpips = 0;           ///< mean over frames; NaN where not asked for
+  /// The paper's temporal stability: the standard deviation of LPIPS over a person's frames, pooled over people,
+  /// sqrt(Σ_p Σ_f (d_pf − mean_p)² / frames).
+  double lpips_deviation = 0;
+  double contextual = 0;  ///< Σ −log CX, mean over frames; NaN where not asked for
 };
 
 class GuidedScorer {
@@ -32,6 +34,8 @@ class GuidedScorer {
 
   /// `truth` has a picture of the same size; std::invalid_argument otherwise.
   void Add(const GuidedPicture& picture, const PhotoFrame& truth);
+  /// The frames that follow are of another person.
+  void NextPerson();
   [[nodiscard]] GuidedScores Scores() const;
 
  private:

@@ -154,6 +154,7 @@ class GuidedTrainer : public TrainedSystem {
         preview.source = photo;
         previews.push_back(std::move(preview));
       }
+      scorer.NextPerson();
     }
     scores_ = scorer.Scores();
     model_->train();

@@ -289,5 +289,34 @@ TEST(GuidedScores, AreWhatTheyShouldBe) {
   EXPECT_THROW(off.Add(picture, ToyPhotoFrame(1, {}, false)), std::invalid_argument);
 }
 
+TEST(GuidedScores, StabilityIsWithinAPerson) {
+  const PhotoFrame truth = ToyPhotoFrame(1, {}, true);
+  GuidedPicture darker = OwnPicture(truth), darkest = darker;
+  for (float& value : darker.image) value *= 0.8F;
+  for (float& value : darkest.image) value *= 0.5F;
+  const auto distance = [&](const GuidedPicture& picture) {
+    GuidedScorer scorer(true);
+    scorer.Add(picture, truth);
+    EXPECT_EQ(scorer.Scores().lpips_deviation, 0) << "one frame";
+    return scorer.Scores().lpips;
+  };
+  const double a = distance(darker), b = distance(darkest);
+  ASSERT_GT(std::abs(a - b), 1e-4);
+  // Two people who are each drawn the same in every frame, one of them badly: steady.
+  GuidedScorer steady(true), unsteady(true);
+  for (const GuidedPicture* person : {&darker, &darkest}) {
+    for (int k = 0; k < 3; ++k) steady.Add(*person, truth);
+    steady.NextPerson();
+  }
+  EXPECT_NEAR(steady.Scores().lpips, 0.5 * (a + b), 1e-12);
+  EXPECT_NEAR(steady.Scores().lpips_deviation, 0, 1e-12);
+  // One person, now well and now badly, after a steady one: two frames off their mean by half the difference.
+  for (int k = 0; k < 2; ++k) unsteady.Add(darker, truth);
+  unsteady.NextPerson();
+  unsteady.Add(darker, truth);
+  unsteady.Add(darkest, truth);
+  EXPECT_NEAR(unsteady.Scores().lpips_deviation, std::sqrt(2 * 0.25 * (a - b) * (a - b) / 4), 1e-9);
+}
+
 }  // namespace
 }  // namespace bodyloom
