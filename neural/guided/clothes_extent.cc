@@ -7,6 +7,7 @@
 
 #include "geometry/check.h"
 #include "neural/people/body_part_map.h"
+#include "neural/people/pixel_sweeps.h"
 
 namespace bodyloom {
 namespace {
@@ -20,29 +21,13 @@ std::vector<int> NearestOfBody(const PhotoFrame& photo) {
   for (size_t i = 0; i < nearest.size(); ++i) {
     if (photo.parts[i] != 0) nearest[i] = static_cast<int>(i);
   }
-  const auto distance = [&](int x, int y, int to) {
-    return to < 0 ? 2 * size : std::max(std::abs(x - to % size), std::abs(y - to / size));
+  const auto distance = [&](size_t from, int to) {
+    const int at = static_cast<int>(from);
+    return to < 0 ? 2 * size : std::max(std::abs(at % size - to % size), std::abs(at / size - to / size));
   };
-  const auto relax = [&](int x, int y, int dx, int dy) {
-    if (x + dx < 0 || x + dx >= size || y + dy < 0 || y + dy >= size) return;
-    const int there = nearest[size_t(y + dy) * size + (x + dx)];
-    int& here = nearest[size_t(y) * size + x];
-    if (distance(x, y, there) < distance(x, y, here)) here = there;
-  };
-  for (int y = 0; y < size; ++y) {
-    for (int x = 0; x < size; ++x) {
-      for (const int dx : {-1, 0, 1}) relax(x, y, dx, -1);
-      relax(x, y, -1, 0);
-    }
-    for (int x = size - 1; x >= 0; --x) relax(x, y, 1, 0);
-  }
-  for (int y = size - 1; y >= 0; --y) {
-    for (int x = size - 1; x >= 0; --x) {
-      for (const int dx : {-1, 0, 1}) relax(x, y, dx, 1);
-      relax(x, y, 1, 0);
-    }
-    for (int x = 0; x < size; ++x) relax(x, y, -1, 0);
-  }
+  SweepNeighbours(size, size, /*rows_back=*/true, [&](size_t here, size_t there) {
+    if (distance(here, nearest[there]) < distance(here, nearest[here])) nearest[here] = nearest[there];
+  });
   return nearest;
 }
 
@@ -114,24 +99,8 @@ std::vector<float> ClothedBody(const PhotoFrame& pose, std::span<const float> ex
   for (size_t i = 0; i < pixels; ++i) {
     if (pose.parts[i] != 0) left[i] = scale * extent[i];
   }
-  const auto relax = [&](int x, int y, int dx, int dy) {
-    if (x + dx < 0 || x + dx >= size || y + dy < 0 || y + dy >= size) return;
-    float& here = left[size_t(y) * size + x];
-    here = std::max(here, left[size_t(y + dy) * size + (x + dx)] - 1);
-  };
-  // A shortest path of king's moves need not turn back, so that two sweeps are exact.
-  for (int y = 0; y < size; ++y) {
-    for (int x = 0; x < size; ++x) {
-      for (const int dx : {-1, 0, 1}) relax(x, y, dx, -1);
-      relax(x, y, -1, 0);
-    }
-  }
-  for (int y = size - 1; y >= 0; --y) {
-    for (int x = size - 1; x >= 0; --x) {
-      for (const int dx : {-1, 0, 1}) relax(x, y, dx, 1);
-      relax(x, y, 1, 0);
-    }
-  }
+  SweepNeighbours(size, size, /*rows_back=*/false,
+                  [&](size_t here, size_t there) { left[here] = std::max(left[here], left[there] - 1); });
   for (size_t i = 0; i < pixels; ++i) left[i] = pose.parts[i] != 0 ? 1.0F : std::clamp(0.5F + left[i], 0.0F, 1.0F);
   return left;
 }

@@ -44,12 +44,11 @@ int GuessRest(const TexelNeighbours& neighbours, uint8_t from, CoherentMaps* map
     if (neighbours.back_of_head()[i] != 0) guess[i] = of_back[i];
   }
   int count = 0;
-  const std::vector<uint8_t> known = maps->labels;
   for (uint8_t k = 1; k < kPhotoLabels; ++k) {
     std::vector<uint8_t> of_label(texels);
     bool any = false;
     for (size_t i = 0; i < texels; ++i) {
-      of_label[i] = filled[i] != 0 && known[i] == k ? 1 : 0;
+      of_label[i] = filled[i] != 0 && maps->labels[i] == k ? 1 : 0;
       any = any || of_label[i] != 0;
     }
     std::vector<float> colours = maps->appearance;

@@ -133,7 +133,8 @@ class GuidedTrainer : public TrainedSystem {
       };
       MapCompletion completion = config_.Completion();
       std::vector<PhotoFrame> views;
-      if (options_.validation_views) views = options_.validation_views(person);
+      // Six drawings of the body, for nothing where the nearest texels do.
+      if (options_.validation_views && completion != MapCompletion::kNearest) views = options_.validation_views(person);
       if (completion == MapCompletion::kVirtualViews && views.empty()) completion = MapCompletion::kNone;
       const SourceBody body = {people.texel_parts, views, neighbours_ ? &*neighbours_ : nullptr};
       const CoherentMaps maps =

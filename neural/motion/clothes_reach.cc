@@ -5,6 +5,8 @@
 #include <limits>
 #include <vector>
 
+#include "neural/people/pixel_sweeps.h"
+
 namespace bodyloom {
 namespace {
 
@@ -14,25 +16,8 @@ std::vector<int> DistanceToBody(const MotionFrame& frame) {
   const int far = w + h;
   std::vector<int> distance(frame.body.size());
   for (size_t i = 0; i < distance.size(); ++i) distance[i] = frame.body[i] > 0 ? 0 : far;
-  // Two sweeps are exact for this distance: a shortest path of king's moves need not turn back.
-  const auto relax = [&](int x, int y, int dx, int dy) {
-    const int from_x = x + dx, from_y = y + dy;
-    if (from_x < 0 || from_x >= w || from_y < 0 || from_y >= h) return;
-    int& here = distance[size_t(y) * w + x];
-    here = std::min(here, distance[size_t(from_y) * w + from_x] + 1);
-  };
-  for (int y = 0; y < h; ++y) {
-    for (int x = 0; x < w; ++x) {
-      for (const int dx : {-1, 0, 1}) relax(x, y, dx, -1);
-      relax(x, y, -1, 0);
-    }
-  }
-  for (int y = h - 1; y >= 0; --y) {
-    for (int x = w - 1; x >= 0; --x) {
-      for (const int dx : {-1, 0, 1}) relax(x, y, dx, 1);
-      relax(x, y, 1, 0);
-    }
-  }
+  SweepNeighbours(w, h, /*rows_back=*/false,
+                  [&](size_t here, size_t there) { distance[here] = std::min(distance[here], distance[there] + 1); });
   return distance;
 }
 

@@ -9,6 +9,7 @@
 
 #include "geometry/check.h"
 #include "neural/people/body_part_map.h"
+#include "neural/people/photo_frame.h"
 
 namespace bodyloom {
 namespace {
@@ -28,7 +29,7 @@ TexelNeighbours::TexelNeighbours(int texture_size, std::span<const uint8_t> texe
   low.fill(std::numeric_limits<float>::max()), high.fill(std::numeric_limits<float>::lowest());
   for (size_t k = 0; k < area; ++k) {
     if (texel_parts[k] == 0) continue;
-    BODYLOOM_CHECK(texel_parts[k] < 25, "texel neighbours: part ", int(texel_parts[k]), ", expected 0 to 24");
+    BODYLOOM_CHECK(texel_parts[k] < kPhotoParts, "texel neighbours: part ", int(texel_parts[k]), ", expected 0 to 24");
     for (size_t a = 0; a < 3; ++a) {
       const float x = texel_places[a * area + k];
       BODYLOOM_CHECK(std::isfinite(x), "texel neighbours: texel ", k, " has no place");
