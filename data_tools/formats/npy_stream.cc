@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "data_tools/formats/element_type.h"
-#include "data_tools/formats/npz.h"
+#include "data_tools/formats/npy_header.h"
 #include "geometry/check.h"
 
 namespace bodyloom {
@@ -38,14 +38,14 @@ size_t ItemSize(DType dtype) {
 
 NpyStream::NpyStream(const std::string& path, DType dtype, std::vector<int64_t> shape) : path_(path), file_(path) {
   BODYLOOM_CHECK(!shape.empty(), "npy stream: a scalar has no records");
-  NdArray empty;  // its header is that of the whole
-  empty.dtype = dtype;
-  empty.item_size = ItemSize(dtype);
-  empty.shape = shape;
-  const std::optional<size_t> data_bytes = ArrayBytes(shape, empty.item_size);
-  BODYLOOM_CHECK(data_bytes && *data_bytes < size_t{1} << 62, "npy stream: an array of ", empty.ShapeText(),
+  NdArray whole;
+  whole.dtype = dtype;
+  whole.item_size = ItemSize(dtype);
+  whole.shape = shape;
+  const std::optional<size_t> data_bytes = ArrayBytes(shape, whole.item_size);
+  BODYLOOM_CHECK(data_bytes && *data_bytes < size_t{1} << 62, "npy stream: an array of ", whole.ShapeText(),
                  " elements is too large");
-  const std::string header = NpyBytes(empty);
+  const std::string header = NpyHeaderText(whole);
   header_bytes_ = header.size();
   num_records_ = shape[0];
   record_bytes_ = num_records_ > 0 ? *data_bytes / static_cast<size_t>(num_records_) : 0;

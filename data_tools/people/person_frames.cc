@@ -6,11 +6,12 @@
 #include <algorithm>
 #include <atomic>
 #include <filesystem>
+#include <optional>
 #include <utility>
 
 #include "data_tools/descriptors/describe_track.h"
 #include "data_tools/formats/half.h"
-#include "data_tools/formats/npz.h"
+#include "data_tools/formats/mapped_npy.h"
 #include "data_tools/people/posed_track.h"
 #include "geometry/check.h"
 #include "render/resolve_pixels.h"
@@ -79,14 +80,15 @@ class PersonFrames::Impl {
     static const HalfTable half;
     std::fill(maps.begin(), maps.end(), 0.0F);
     if (!track_.HasResult(t)) return;
-    for (size_t i = 0; i < map; ++i) maps[i] = half[normals_[map * t + i]];
+    const uint16_t* normals = Stored(t, 0);
+    for (size_t i = 0; i < map; ++i) maps[i] = half[normals[i]];
     const Matrix3f turn = posed_.Turn(t).cast<float>();
     if (posed_.turned()) TurnMap(turn, Texels(), maps.data());
     for (int k = 0; k < options_.past; ++k) {
       const int s = t - k;
       if (s < 0 || segment_[s] < 0 || segment_[s] != segment_[t]) continue;
       float* to = &maps[map * (1 + k)];
-      const uint16_t* from = &velocities_[map * s];
+      const uint16_t* from = Stored(s, 1);
       constexpr auto kScale = static_cast<float>(1 / kBodyLength);
       for (size_t i = 0; i < map; ++i) to[i] = kScale * half[from[i]];
       if (posed_.turned()) TurnMap(turn, Texels(), to);
@@ -129,6 +131,11 @@ class PersonFrames::Impl {
  private:
   [[nodiscard]] size_t Texels() const { return size_t(options_.uv_size) * options_.uv_size; }
 
+  /// Frame t's normals (0) or velocities (1), half precision.
+  [[nodiscard]] const uint16_t* Stored(int t, int which) const {
+    return &stored_->Values<uint16_t>()[3 * Texels() * (2 * static_cast<size_t>(t) + which)];
+  }
+
   void Describe() {
     DescribeTrackOptions describe;
     describe.texels.width = describe.texels.height = options_.uv_size;
@@ -137,14 +144,7 @@ class PersonFrames::Impl {
     describe.num_threads = options_.num_threads;
     const ScratchFile file{ScratchPath(options_.scratch_dir)};
     DescribeTrack(body_, track_, file.path.string(), describe);
-    const NdArray array = ReadNpy(file.path.string());
-    const size_t map = 3 * Texels();
-    const auto* halves = reinterpret_cast<const uint16_t*>(array.bytes.data());
-    for (int t = 0; t < track_.num_frames(); ++t) {
-      const uint16_t* from = halves + 2 * map * t;
-      normals_.insert(normals_.end(), from, from + map);
-      velocities_.insert(velocities_.end(), from + map, from + 2 * map);
-    }
+    stored_.emplace(file.path.string(), DType::kF16);
     std::vector<char> usable(track_.num_frames());
     for (int t = 0; t < track_.num_frames(); ++t) usable[t] = track_.HasResult(t);
     for (const VelocityStencil& stencil : VelocityStencils(track_.motion.timestamps, usable, describe.velocity)) {
@@ -157,8 +157,8 @@ class PersonFrames::Impl {
   PersonFramesOptions options_;
   PosedTrack posed_;
   PersonWindow window_;
-  std::vector<uint16_t> normals_, velocities_;  ///< half precision, frame by frame
-  std::vector<int> segment_;                    ///< gap-free run of each frame, −1: none
+  std::optional<MappedNpy> stored_;  ///< of each frame normals and velocities; its file has no name any more
+  std::vector<int> segment_;         ///< gap-free run of each frame, −1: none
 };
 
 PersonFrames::PersonFrames(const BodyModel& body, const Track& track, const PersonFramesOptions& options)

@@ -23,7 +23,7 @@ struct PersonFramesOptions {
   /// By frame: turns the view about the vertical (the camera's y) through the body's root, degrees; empty: the track's
   /// own view. The motion is turned with it, so that a view that moves adds no velocity of its own.
   std::vector<double> yaw_deg;
-  std::string scratch_dir;  ///< the maps pass through a file here while they are made; empty: the system's own place
+  std::string scratch_dir;  ///< the maps lie in a file without a name here; empty: the system's own place
   int num_threads = 1;
 };
 
@@ -32,9 +32,10 @@ class PersonFrames {
   static constexpr double kBodyLength = 1.7;  ///< metres: velocities are in body lengths a second
   static constexpr float kMaxSpeed = 5;       ///< and cut off at so many
 
-  /// Describes all frames (data_tools/descriptors/describe_track.h): memory is 12 bytes a texel and frame. Throws
-  /// std::invalid_argument when the track is not the body's or no frame has a result; std::runtime_error when the
-  /// scratch file cannot be written. Keeps references to body and track.
+  /// Describes all frames (data_tools/descriptors/describe_track.h): 12 bytes a texel and frame, on the disk; memory is
+  /// used as far as there is some (data_tools/formats/mapped_npy.h). Throws std::invalid_argument when the track is not
+  /// the body's or no frame has a result; std::runtime_error when the scratch file cannot be written. Keeps references
+  /// to body and track.
   PersonFrames(const BodyModel& body, const Track& track, const PersonFramesOptions& options);
   ~PersonFrames();
   PersonFrames(const PersonFrames&) = delete;

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What stands before the values of a .npy file. Source: numpy/lib/format.py.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "data_tools/formats/element_type.h"
+
+namespace bodyloom {
+
+/// More bytes than any header that is accepted takes, marks and all.
+inline constexpr size_t kMaxNpyHeaderBytes = (size_t{1} << 16) + 12;
+
+struct NpyHeader {
+  std::string descr;                ///< numpy's description of an element
+  std::optional<ElementType> type;  ///< none: neither numbers nor text
+  bool fortran_order = false;
+  std::vector<int64_t> shape;
+  size_t data_begin = 0;  ///< bytes before the values
+};
+
+/// Of a file of `file_bytes` bytes that begins with `head`: the whole file, or at least kMaxNpyHeaderBytes of it.
+/// Throws std::runtime_error "where: why" for what is not a header, is longer than 64 KiB, or promises (if its elements
+/// are numbers or text) more or fewer values than the file has room for.
+NpyHeader ParseNpyHeader(std::string_view head, size_t file_bytes, const std::string& where);
+
+/// What ParseNpyHeader reads, padded so that the values begin at a multiple of 64 bytes. Throws std::invalid_argument
+/// for arrays of kOther or kBF16 and of rank above some 32.
+std::string NpyHeaderText(const NdArray& array);
+
+}  // namespace bodyloom
