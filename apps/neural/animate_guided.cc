@@ -99,11 +99,7 @@ void RunScore(const Request& request, const GuidedRun& run, GuidedRenderer* rend
 /// The poses to show, in the shape of the person in the photo.
 Track TargetTrack(const Request& request, const Photo& photo) {
   Track track = request.data.empty() ? ReadTrack(request.track) : PersonSet(request.data).track();
-  if (track.motion.body != photo.track.motion.body) {
-    throw std::runtime_error(Concatenate(request.data.empty() ? request.track : request.data, ": a body \"",
-                                         track.motion.body, "\", the photo's track has \"", photo.track.motion.body,
-                                         "\""));
-  }
+  RequireBodyOf(photo, track, request.data.empty() ? request.track : request.data);
   track.motion.betas = photo.track.motion.betas;
   return track;
 }

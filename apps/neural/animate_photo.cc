@@ -137,6 +137,7 @@ void Run(const Request& request) {
   const std::vector<Photo> photos = LoadPhotos(PhotosOf(request), S, U);
   const Photo& photo = photos.front();
   Track track = ReadTrack(request.track);
+  RequireBodyOf(photo, track, request.track);
   if (request.shape == "photo") track.motion.betas = photo.track.motion.betas;
   PhotoMapsOptions options;
   options.size = S;

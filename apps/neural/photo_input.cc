@@ -274,8 +274,15 @@ std::vector<Photo> LoadPhotos(std::span<const PhotoRequest> requests, int size, 
       shown.picture = std::move(read[next++]);
     }
     photos.push_back(MakePhoto(request, std::move(shown), size, texture_size, &files));
+    RequireBodyOf(photos.front(), photos.back().track, request.track.empty() ? request.image : request.track);
   }
   return photos;
+}
+
+void RequireBodyOf(const Photo& photo, const Track& track, const std::string& path) {
+  if (track.motion.body == photo.track.motion.body) return;
+  throw std::runtime_error(Concatenate(path, ": a track of the body \"", track.motion.body, "\", the photo's is of \"",
+                                       photo.track.motion.body, "\"; fit both with the same --body"));
 }
 
 PhotoRequest ParsePhotoRequest(const std::string& text, const std::string& option, const PhotoRequest& like) {

@@ -48,8 +48,12 @@ struct Photo {
 /// In the order of the requests, of which there is at least one; all are of the first one's body. Files are read once.
 /// A picture of another size than its track's but of the same shape is brought to that size. Throws std::runtime_error,
 /// one line naming the file: it cannot be read, picture and track are of different shapes, there is no such frame, the
-/// track puts nobody into the picture, or nothing of the body is to be seen.
+/// track puts nobody into the picture, nothing of the body is to be seen, or the tracks are of different bodies.
 std::vector<Photo> LoadPhotos(std::span<const PhotoRequest> requests, int size, int texture_size);
+
+/// Poses and shape mean something only on the body that they were made for. Throws std::runtime_error naming `path`
+/// when the track is of another one than the photo's.
+void RequireBodyOf(const Photo& photo, const Track& track, const std::string& path);
 
 /// "IMAGE:TRACK" or "IMAGE:TRACK:FRAME", as --views and --garment-from take it; a person set needs no track ("DIR" or
 /// "DIR::FRAME"). Throws UsageError naming the option.

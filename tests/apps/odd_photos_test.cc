@@ -107,6 +107,12 @@ class OddPhotos : public ::testing::Test {
     away.motion.trans = -track_.motion.trans;
     WriteTrack(File("behind.npz"), away);
     Refuses("photo.png", "behind.npz", "is it this picture's track?", {}, "behind.npz");
+    Track other = track_;
+    other.motion.body = "another";
+    WriteTrack(File("other.npz"), other);
+    Refuses("photo.png", "me.npz: a track of the body", "the photo's is of \"another\"", {}, "other.npz");
+    Refuses("photo.png", "other.npz: a track of the body \"another\"", "the same --body",
+            {"--views", File("photo.png") + ":" + File("other.npz")});
   }
 
   ScratchFolder scratch_;
