@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "geometry/check.h"
+#include "tracking/chain/resting_frames.h"
 
 namespace bodyloom {
 namespace {
@@ -16,6 +17,8 @@ using Eigen::VectorXd;
 constexpr double kMinRelativeDecrease = 1e-3, kMinDiagonal = 1e-6, kMaxDiagonal = 1e32;
 constexpr double kStartRadius = 1e4, kMaxRadius = 1e16, kMinRadius = 1e-32;
 constexpr int kMaxInvalidSteps = 5;
+/// What an iteration counts for at least: resting frames cost some time too.
+constexpr double kLeastIteration = 0.25;
 constexpr double kEarlyTolerance = 1e-3;  ///< when all keypoints come in (SolveOptions::early_dense)
 
 /// The size of the trust region.
@@ -88,12 +91,25 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
   count();
   watch.To(&report.seconds_evaluation);
   report.initial_cost = report.final_cost = cost;
+  RestingFrames rest(options.rest_share);
+  double spent = 0;  // iterations, those of a part of the frames by its size
   const auto finish = [&](SolveStatus status, std::string message) {
+    factor->SetResting({});
+    chain.SetResting({});
     report.status = status;
     report.message = std::move(message);
     report.final_cost = cost;
     report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return report;
+  };
+  const auto move_all = [&]() {
+    if (!rest.any()) return false;
+    cost = chain.Linearise(x);
+    watch.To(&report.seconds_evaluation);
+    factor->SetResting({});
+    chain.SetResting({});
+    rest.Clear();
+    return true;
   };
   // All frames with all their keypoints, evaluated here: what may end the descent. False when that changed nothing.
   const auto make_whole = [&]() {
@@ -115,16 +131,18 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
   int invalid_steps = 0;
   bool rejected = false, moved = false,
        fresh = true;  // fresh: the point was reached by an accepted step, or is the first
-  for (int iteration = 0;; ++iteration) {
+  for (;; spent += std::max(kLeastIteration, rest.moving_share())) {
+    const int iteration = static_cast<int>(spent);
     if (options.on_iteration && !options.on_iteration(iteration, cost)) {
       return finish(SolveStatus::kStopped, "stopped by the caller");
     }
-    if (fresh &&
+    if (fresh && !rest.any() &&
         std::max(LargestOf(chain.gradient()), LargestOf(chain.shared_gradient())) <= options.gradient_tolerance) {
       if (!make_whole()) return finish(SolveStatus::kConverged, "the gradient is below its tolerance");
       if (!std::isfinite(cost)) return finish(SolveStatus::kFailure, "the cost of all keypoints is not finite");
     }
     if (iteration >= options.max_iterations) {
+      move_all();
       if (thinned || (skipping && !options.skip_to_the_end)) {
         chain.LimitDense(0);
         chain.SkipSettled(0);
@@ -132,6 +150,7 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
       }
       return finish(SolveStatus::kMaxIterations, Concatenate("still going after ", iteration, " iterations"));
     }
+    if (radius.value() < kMinRadius && move_all()) radius = Radius();
     if (radius.value() < kMinRadius) {
       return finish(SolveStatus::kConverged, "the trust region has shrunk to nothing");
     }
@@ -161,6 +180,7 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
       continue;
     }
     invalid_steps = 0;
+    rest.Tried(chain.gradient(), damping, step, chain.frame_size());
     chain.Plus(x, step, shared_step, &candidate);
     watch.To(&other_seconds);
     // Most steps are accepted, and the derivatives at the new point cost little once its cost is known: both at once,
@@ -172,11 +192,17 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
     const double change = cost - candidate_cost;
     const bool too_short = moved && std::sqrt(step.squaredNorm() + shared_step.squaredNorm()) <=
                                         options.parameter_tolerance * (x_norm + options.parameter_tolerance);
-    const bool settled = std::abs(change) <= (thinned ? kEarlyTolerance : options.function_tolerance) * cost;
+    const double tolerance = (thinned ? kEarlyTolerance : options.function_tolerance) * cost;
+    const bool settled = std::abs(change) <= tolerance;
     if (too_short || settled) {
       if (change > 0) {
         cost = candidate_cost;
         std::swap(x, candidate);
+      }
+      if (move_all()) {
+        fresh = true;
+        rejected = moved = false;
+        continue;
       }
       if (!make_whole()) {
         return finish(SolveStatus::kConverged,
@@ -211,6 +237,12 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
     x_norm = std::sqrt(chain.SquaredNorm(x));
     radius.Accepted(quality);
     moved = fresh = true;
+    const bool rested = rest.any();
+    rest.Taken(promised, tolerance);
+    if (rested || rest.any()) {
+      factor->SetResting(rest.frames());
+      chain.SetResting(rest.frames());
+    }
   }
 }
 

@@ -66,6 +66,11 @@ struct SolveOptions {
   /// as converged all frames are evaluated at the same point and iterations without the skip follow, so the answer is a
   /// minimum of the cost itself. 0: every frame in every iteration.
   double skip_settled = 0;
+  /// Chain only: frames whose steps promise little rest, and shape and focal length with them, while the others go on
+  /// (tracking/chain/resting_frames.h); this share of a step's decrease is left lying at a time. Only a step of all
+  /// frames may end the descent as converged. Steps of a part of the frames count for max_iterations by its size, a
+  /// quarter at least. 0: all frames move in every iteration.
+  double rest_share = 0;
   /// Leave it at that when max_iterations end the descent: the final cost may hold stand-ins.
   bool skip_to_the_end = false;
   bool shape_constant = false, focal_constant = false;

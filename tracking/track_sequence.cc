@@ -354,6 +354,7 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSe
     solve_options.early_dense = options.skip_unneeded ? 300 : 0;
     // Joints alone are evaluated as fast as skipped: 10 % slower with it on AIST++.
     solve_options.skip_settled = options.skip_unneeded && input.dense != nullptr ? 0.01 : 0;
+    solve_options.rest_share = options.skip_unneeded ? 0.05 : 0;
     solve_options.max_iterations = max_iterations;
     solve_options.num_threads = threads;
     solve_options.function_tolerance = tolerance;

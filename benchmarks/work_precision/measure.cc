@@ -30,6 +30,20 @@ Engine SkippingEngine(int threads) {
   return engine;
 }
 
+Engine RestingEngine(int threads) {
+  Engine engine = SkippingEngine(threads);
+  engine.name = "chain, settled and resting frames";
+  engine.options.rest_share = 0.05;
+  return engine;
+}
+
+Engine TrackerEngine(int threads) {
+  Engine engine = RestingEngine(threads);
+  engine.name = "chain, as the tracker";
+  engine.options.early_dense = 300;
+  return engine;
+}
+
 Engine CeresEngine(int threads) {
   Engine engine{"ceres", {}};
   engine.options.num_threads = threads;

@@ -22,6 +22,10 @@ struct Engine {
 Engine ChainEngine(int threads, int early_dense = 0);
 /// Leaves frames that have settled unlinearised (SolveOptions::skip_settled), as the tracker does.
 Engine SkippingEngine(int threads);
+/// And lets frames rest whose steps promise little (SolveOptions::rest_share), as the tracker does.
+Engine RestingEngine(int threads);
+/// And begins with few of many keypoints (SolveOptions::early_dense): all skips that the tracker uses.
+Engine TrackerEngine(int threads);
 Engine CeresEngine(int threads);     ///< analytic derivatives, one cost function a frame
 Engine AutoDiffEngine(int threads);  ///< autodiff_peer.h
 

@@ -39,7 +39,7 @@ void CountSection(WorkBench* bench) {
              true,
              {{"chain", {}}, {"Cramér–Rao", {}, true}}};
   const std::vector<Engine> engines = {CeresEngine(bench->threads), ChainEngine(bench->threads),
-                                       ChainEngine(bench->threads, 300)};
+                                       ChainEngine(bench->threads, 300), TrackerEngine(bench->threads)};
   for (const Engine& engine : engines) time.lines.push_back({engine.name, {}});
   for (int dense : {20, 100, 300, 1000, 5000}) {
     const auto work = MakeWorkProblem(bench->Options(50, dense));
@@ -59,7 +59,7 @@ void LengthSection(WorkBench* bench) {
   Plot memory{
       "work_precision_memory", "300 keypoints a frame", "frames", "peak memory of the solve, MB", true, true, {}};
   const std::vector<Engine> engines = {CeresEngine(bench->threads), ChainEngine(bench->threads),
-                                       SkippingEngine(bench->threads)};
+                                       SkippingEngine(bench->threads), RestingEngine(bench->threads)};
   for (const Engine& engine : engines) {
     time.lines.push_back({engine.name, {}});
     memory.lines.push_back({engine.name, {}});

@@ -87,7 +87,9 @@ void ChainProblem::Resize() {
                                           problem_.timestamps[t] - problem_.timestamps[t - 1]);
   }
   changes_.resize(T);
+  resting_.clear();
   costs_.resize(T);
+  acceleration_costs_.resize(T);
   next_.resize(T * 3 * n_);
   second_.resize(T * 3 * n_);
   own_.resize(T * 3 * n_);
@@ -135,6 +137,24 @@ bool ChainProblem::StepsFrom(const Anchor& anchor, const FrameState& state, cons
   return true;
 }
 
+void ChainProblem::SetResting(std::vector<char> resting) {
+  if (resting.empty() && resting_.empty()) return;
+  BODYLOOM_CHECK(resting.empty() || (linearised_ && prior_ == nullptr && resting.size() == systems_.size()),
+                 "chain: rest for ", resting.size(), " of ", systems_.size(),
+                 " frames, expected all of them, linearised, without a prior");
+  resting_ = std::move(resting);
+  if (resting_.empty() && linearised_) SumShared(linearised_at_);
+}
+
+bool ChainProblem::RestAll(int64_t first, int64_t last) const {
+  if (resting_.empty()) return false;
+  last = std::min(last, static_cast<int64_t>(resting_.size()) - 1);
+  for (int64_t t = std::max<int64_t>(0, first); t <= last; ++t) {
+    if (resting_[t] == 0) return false;
+  }
+  return true;
+}
+
 bool ChainProblem::HasAcceleration(size_t t) const {
   return t >= 2 && t < systems_.size() && !problem_.cut_before[t] && !problem_.cut_before[t - 1];
 }
@@ -145,7 +165,8 @@ double ChainProblem::EvaluateFrames(const ChainPoint& point, bool derivatives) {
     FrameSystem& system = systems_[t];
     Anchor& anchor = anchors_[t];
     VectorXd d;
-    skipped_[t] = 0;
+    skipped_[t] = Rests(t) ? 1 : 0;
+    if (Rests(t)) return;
     if (skip_share_ > 0 && anchor.set && StepsFrom(anchor, point.states[t], point, &d)) {
       VectorXd full = VectorXd::Zero(system.gradient.size());
       full.head(n_) = d.head(n_);
@@ -185,7 +206,7 @@ double ChainProblem::EvaluateChanges(const ChainPoint& point, bool derivatives) 
   const std::vector<int>& joints = problem_.layout.active_joints;
   ParallelFor(T, num_threads_, [&](int t) {
     // The change that ends at t has a part in the accelerations that end at t and at t + 1.
-    if (t == 0 || !(HasAcceleration(t) || HasAcceleration(t + 1))) return;
+    if (t == 0 || !(HasAcceleration(t) || HasAcceleration(t + 1)) || RestAll(t - 1, t)) return;
     Change& change = changes_[t];
     change.step.resize(blocks_);
     if (derivatives) change.right.resize(joints.size());
@@ -199,13 +220,20 @@ double ChainProblem::EvaluateChanges(const ChainPoint& point, bool derivatives) 
   double sum = 0;
   for (int t = 2; t < T; ++t) {
     if (!HasAcceleration(t)) continue;
+    double& cost = acceleration_costs_[t];
+    if (RestAll(t - 2, t)) {
+      sum += cost;
+      continue;
+    }
     const AccelerationFactors& f = factors_[t];
     const std::vector<Eigen::Array3d>& inverse_sigma = InverseSigma(t);
+    cost = 0;
     for (int a = 0; a < blocks_; ++a) {
-      sum += 0.5 * (inverse_sigma[a] * (f.later * changes_[t].step[a] - f.earlier * changes_[t - 1].step[a]).array())
-                       .square()
-                       .sum();
+      cost += 0.5 * (inverse_sigma[a] * (f.later * changes_[t].step[a] - f.earlier * changes_[t - 1].step[a]).array())
+                        .square()
+                        .sum();
     }
+    sum += cost;
   }
   return sum;
 }
@@ -341,21 +369,8 @@ bool ChainProblem::IsLinearisedAt(const ChainPoint& point) const {
                     linearised_at_.states.end(), same);
 }
 
-double ChainProblem::Linearise(const ChainPoint& point) {
-  if (IsLinearisedAt(point)) return linearised_cost_;
-  const int T = static_cast<int>(point.states.size()), s = shared_size();
-  const double cost =
-      EvaluateFrames(point, true) + EvaluateChanges(point, true) + EvaluatePrior(point, true) + SharedCost(point);
-  gradient_.resize(static_cast<Eigen::Index>(T) * n_);
-  diagonal_.resize(gradient_.size());
-  ParallelFor(T, num_threads_, [&](int t) {
-    const auto offset = static_cast<Eigen::Index>(t) * n_;
-    gradient_.segment(offset, n_) = frame_gradient_[t].head(n_);
-    AssembleAcceleration(t);
-    for (int i = 0; i < n_; ++i) {
-      diagonal_[offset + i] = systems_[t].H(i, i) + own_[static_cast<size_t>(offset) * 3 + i / 3 * 9 + i % 3 * 4];
-    }
-  });
+void ChainProblem::SumShared(const ChainPoint& point) {
+  const int T = static_cast<int>(systems_.size()), s = shared_size();
   shared_.setZero(s, s);
   shared_gradient_.setZero(s);
   for (int t = 0; t < T; ++t) {
@@ -365,6 +380,25 @@ double ChainProblem::Linearise(const ChainPoint& point) {
     }
   }
   AddSharedPriors(point);
+}
+
+double ChainProblem::Linearise(const ChainPoint& point) {
+  if (IsLinearisedAt(point)) return linearised_cost_;
+  const int T = static_cast<int>(point.states.size());
+  const double cost =
+      EvaluateFrames(point, true) + EvaluateChanges(point, true) + EvaluatePrior(point, true) + SharedCost(point);
+  gradient_.resize(static_cast<Eigen::Index>(T) * n_);
+  diagonal_.resize(gradient_.size());
+  ParallelFor(T, num_threads_, [&](int t) {
+    const auto offset = static_cast<Eigen::Index>(t) * n_;
+    if (RestAll(t - 2, t + 2)) return;
+    gradient_.segment(offset, n_) = frame_gradient_[t].head(n_);
+    AssembleAcceleration(t);
+    for (int i = 0; i < n_; ++i) {
+      diagonal_[offset + i] = systems_[t].H(i, i) + own_[static_cast<size_t>(offset) * 3 + i / 3 * 9 + i % 3 * 4];
+    }
+  });
+  if (resting_.empty()) SumShared(point);
   AddPrior();
   linearised_ = true;
   linearised_at_ = point;
@@ -479,6 +513,7 @@ void ChainProblem::Plus(const ChainPoint& x, const VectorXd& step, const VectorX
   const std::vector<int>& joints = problem_.layout.active_joints;
   *y = x;
   ParallelFor(static_cast<int>(x.states.size()), num_threads_, [&](int t) {
+    if (Rests(t)) return;
     FrameState& state = y->states[t];
     Eigen::Index at = static_cast<Eigen::Index>(t) * n_;
     for (int j : joints) {

@@ -39,6 +39,11 @@ class ChainProblem : public ChainSource {
     if (share != skip_share_) linearised_ = false;
     skip_share_ = share;
   }
+  /// The frames marked here (T of them; empty: none) and the shared values stay where Linearise() was called last:
+  /// until the next call points differ in the other frames only, and those and their neighbours alone are evaluated.
+  /// Exact; shared() and shared_gradient() are not kept up meanwhile. Throws std::invalid_argument unless the last call
+  /// was Linearise(), and with a prior.
+  void SetResting(std::vector<char> resting);
   /// How many frames the last Cost() or Linearise() took from an earlier point.
   [[nodiscard]] int num_skipped() const { return num_skipped_; }
   /// A term beside the problem's own; borrowed, null: none. The problem must have two frames or more.
@@ -111,7 +116,11 @@ class ChainProblem : public ChainSource {
   double EvaluatePrior(const ChainPoint& point, bool derivatives);
   void AddPrior();
   double EvaluateFrames(const ChainPoint& point, bool derivatives);
+  [[nodiscard]] bool Rests(size_t t) const { return !resting_.empty() && resting_[t] != 0; }
+  /// Whether the accelerations that frames first … last take part in are as they were.
+  [[nodiscard]] bool RestAll(int64_t first, int64_t last) const;
   double EvaluateChanges(const ChainPoint& point, bool derivatives);
+  void SumShared(const ChainPoint& point);
   double SharedCost(const ChainPoint& point) const;
   void AddSharedPriors(const ChainPoint& point);
   [[nodiscard]] bool HasAcceleration(size_t t) const;
@@ -141,7 +150,9 @@ class ChainProblem : public ChainSource {
   std::vector<AccelerationFactors> factors_;                ///< T, of the acceleration that ends at each frame
   std::vector<std::vector<Eigen::Array3d>> inverse_sigma_;  ///< n/3 of each entry of SequenceProblem::smoothness
   std::vector<int> shot_;                                   ///< T, where the shots differ in smoothness
-  std::vector<double> costs_, next_, second_, own_;         ///< T; T × n/3 blocks of 9
+  std::vector<char> resting_;                               ///< T, or empty: none
+  std::vector<double> costs_, acceleration_costs_;          ///< T; of the acceleration that ends at each frame
+  std::vector<double> next_, second_, own_;                 ///< T × n/3 blocks of 9
   Eigen::VectorXd gradient_, shared_gradient_, diagonal_;
   Eigen::MatrixXd shared_;
   const Eigen::VectorXd* damping_ = nullptr;
