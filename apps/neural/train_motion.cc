@@ -108,6 +108,7 @@ std::string Notes(const Request& request) {
                                        {"batch", o.batch},
                                        {"chain_length", o.chain_length},
                                        {"learning_rate", o.learning_rate},
+                                       {"average", o.average},
                                        {"discriminator_rate", o.discriminator_rate},
                                        {"shape_loss", request.shape_loss},
                                        {"weights",
@@ -270,6 +271,11 @@ void AddTrainMotion(CLI::App& train, std::function<void()>* action) {
   verb->add_option("--chain", options.chain_length, "Frames that the recurrence runs on before it starts anew")
       ->capture_default_str();
   verb->add_option("--learning-rate", options.learning_rate, "At its highest")->capture_default_str();
+  verb->add_option("--average", options.average,
+                   "Keep the average of the weights over the last part of the run, this share of the steps old in the "
+                   "mean (0: the last step's)")
+      ->check(CLI::Range(0.0, 0.5))
+      ->capture_default_str();
   verb->add_option("--shape-loss", request->shape_loss, "Of the classes: cross entropy or absolute differences")
       ->check(CLI::IsMember({"ce", "l1"}))
       ->capture_default_str();

@@ -21,6 +21,7 @@
 #include "neural/training/adam.h"
 #include "neural/training/schedules.h"
 #include "neural/training/training_loop.h"
+#include "neural/training/weight_average.h"
 
 namespace bodyloom {
 namespace {
@@ -71,7 +72,12 @@ class MotionTrainer : public TrainedSystem {
     discriminator_optimizer_ = MakeAdam(*discriminator_, options.discriminator_rate);
     checkpoint_ = std::make_unique<Checkpoint>(ToText(config_));
     checkpoint_->config_json = options.config_json;
-    checkpoint_->Add("model", model_.ptr().get());
+    if (options.average > 0) {
+      average_ = MotionModel(config_);
+      average_->to(NeuralDevice());
+      checkpoint_->Add("learner", model_.ptr().get());
+    }
+    checkpoint_->Add("model", Shown().ptr().get());
     checkpoint_->Add("discriminator", discriminator_.ptr().get());
     checkpoint_->Add("optimizer", optimizer_.get());
     checkpoint_->Add("discriminator_optimizer", discriminator_optimizer_.get());
@@ -99,7 +105,9 @@ class MotionTrainer : public TrainedSystem {
 
   bool Step(int step) override {
     losses_ = Learn(batches_->Take(), step);
-    return losses_.IsFinite();
+    if (!losses_.IsFinite()) return false;
+    if (average_) AverageWeights(*model_, step + 1, options_.average, average_.get());
+    return true;
   }
 
   [[nodiscard]] bool HasValidation() const override { return !options_.validation.empty(); }
@@ -108,7 +116,7 @@ class MotionTrainer : public TrainedSystem {
     const int max_frames = last ? 0 : kQuickFrames;
     std::vector<MotionPreview> previews;
     MotionScorer scorer(config_);
-    RollOut roll(model_, options_.warmup_iterations);
+    RollOut roll(Shown(), options_.warmup_iterations);
     for (const FrameRange& range : options_.validation) {
       roll.Restart();
       scorer.Restart();
@@ -161,6 +169,9 @@ class MotionTrainer : public TrainedSystem {
   }
 
  private:
+  /// What is validated and kept for inference.
+  [[nodiscard]] MotionModel& Shown() { return average_ ? average_ : model_; }
+
   /// The past of every chain, laid over its new window.
   MotionState PastOf(const MotionBatch& batch) {
     const int64_t h = batch.truth.image.size(2), w = batch.truth.image.size(3);
@@ -254,6 +265,7 @@ class MotionTrainer : public TrainedSystem {
   bool has_labels_ = false, has_normals_ = false;
   std::vector<std::string> losses_off_;
   MotionModel model_{nullptr};
+  MotionModel average_{nullptr};  ///< of model_'s weights; empty: not wanted
   PatchDiscriminator discriminator_{nullptr};
   FeatureNetwork vgg_{nullptr};
   std::unique_ptr<torch::optim::Adam> optimizer_, discriminator_optimizer_;
@@ -285,7 +297,7 @@ bool TrainMotionOptions::IsValid(std::string* why) const {
          in_range("discriminator_rate", discriminator_rate, 0, 1) && in_range("shape_weight", shape_weight, 0, 1e6) &&
          in_range("normal_weight", normal_weight, 0, 1e6) && in_range("perceptual_weight", perceptual_weight, 0, 1e6) &&
          in_range("gan_weight", gan_weight, 0, 1e6) && in_range("warmup_iterations", warmup_iterations, 0, 1000) &&
-         in_range("preview_frames", preview_frames, 1, 64);
+         in_range("average", average, 0, 0.5) && in_range("preview_frames", preview_frames, 1, 64);
 }
 
 TrainMotionSummary TrainMotion(const MotionFrameSource& source, const TrainMotionOptions& options) {

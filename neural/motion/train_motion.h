@@ -49,6 +49,9 @@ struct TrainMotionOptions : TrainingRun {
   double learning_rate = 1e-3, discriminator_rate = 2e-4;
   bool shape_by_cross_entropy = true;
   double shape_weight = 10, normal_weight = 1, perceptual_weight = 1, gan_weight = 0.01;
+  /// Validated and kept is the average of the weights over the last part of the run, this share of the steps old in the
+  /// mean (neural/training/weight_average.h); 0: the last step's weights.
+  double average = 0.1;
   int warmup_iterations = 10;  ///< of the first frame, before a roll-out counts
   WeightsFrom vgg16;           ///< empty: a seeded stand-in of random features
   int preview_frames = 4;

@@ -18,6 +18,7 @@
 #include "neural/motion/train_motion.h"
 #include "neural/networks/architecture_card.h"
 #include "neural/runtime.h"
+#include "neural/training/checkpoint.h"
 #include "tests/support/test_files.h"
 
 namespace bodyloom {
@@ -227,6 +228,44 @@ TEST(MotionTraining, AResumedRunEndsWithTheSameBytes) {
   const TrainMotionSummary stopped = TrainMotion(ToyFrame, parts);
   EXPECT_EQ(stopped.status, TrainingStatus::kStopped);
   EXPECT_EQ(stopped.steps, 4);
+  parts.progress = nullptr;
+  parts.resume = true;
+  ASSERT_EQ(TrainMotion(ToyFrame, parts).status, TrainingStatus::kFinished);
+  EXPECT_EQ(FileBytes(CheckpointPath(parts.run_dir)), FileBytes(CheckpointPath(whole.run_dir)));
+}
+
+TEST(MotionTraining, TheAverageIsBesideTheLearnerAndIsWhatIsShown) {
+  TrainMotionOptions last = ToyOptions("motion_last");
+  last.average = 0;
+  const TrainMotionSummary raw = TrainMotion(ToyFrame, last);
+  TrainMotionOptions whole = ToyOptions("motion_average");
+  whole.average = 0.2;
+  const TrainMotionSummary averaged = TrainMotion(ToyFrame, whole);
+  ASSERT_EQ(averaged.status, TrainingStatus::kFinished);
+  EXPECT_NE(averaged.scores.image_l1, raw.scores.image_l1);
+  MotionRenderer renderer(CheckpointPath(whole.run_dir), whole.config, {10, 0, true, 1});
+  for (int t = 24; t < 32; ++t) {
+    MotionFrame frame;
+    ToyFrame(t, true, &frame);
+    renderer.Next(frame);
+  }
+  EXPECT_NEAR(renderer.scores().image_l1, averaged.scores.image_l1, 1e-6);
+  // The learner goes the same way as without an average.
+  const auto model_of = [](const TrainMotionOptions& options, const char* name) {
+    torch::manual_seed(9);
+    MotionModel model(options.config);
+    Checkpoint checkpoint(ToText(options.config));
+    checkpoint.Add(name, model.ptr().get());
+    checkpoint.Load(CheckpointPath(options.run_dir), CheckpointPart::kModules);
+    return model;
+  };
+  const auto learner = model_of(whole, "learner")->parameters(), alone = model_of(last, "model")->parameters();
+  for (size_t i = 0; i < alone.size(); ++i) ASSERT_TRUE(torch::equal(learner[i], alone[i])) << i;
+  // And an interrupted run ends with the same bytes.
+  TrainMotionOptions parts = ToyOptions("motion_average_parts");
+  parts.average = 0.2;
+  parts.progress = [](const TrainMotionProgress& progress) { return progress.step < 4; };
+  ASSERT_EQ(TrainMotion(ToyFrame, parts).status, TrainingStatus::kStopped);
   parts.progress = nullptr;
   parts.resume = true;
   ASSERT_EQ(TrainMotion(ToyFrame, parts).status, TrainingStatus::kFinished);
