@@ -60,6 +60,22 @@ struct Request {
   bool anywhere = false, full_size = false;
 };
 
+/// What makes the set of --set again.
+std::string CommandLine(const Request& request) {
+  std::string line = "bodyloom animate motion";
+  const auto add = [&](const char* option, const std::string& value) {
+    if (!value.empty()) line += std::string(" ") + option + " " + value;
+  };
+  add("--run", request.run), add("--track", request.track), add("--data", request.data), add("--body", request.body);
+  add("--background", request.background), add("--relight", request.relight);
+  if (request.speed != 1) add("--speed", Concatenate(request.speed));
+  if (request.warmup != 50) add("--warmup", Concatenate(request.warmup));
+  line += request.anywhere ? " --anywhere" : "";
+  line += request.full_size ? " --full-size" : "";
+  add("--out", request.out), add("--set", request.set);
+  return line;
+}
+
 /// The pictures of a frame side by side, for the contact sheet.
 void AddToSheet(const MotionPicture& picture, const Image& composed, std::vector<Image>* pictures) {
   pictures->push_back(composed);
@@ -238,8 +254,7 @@ void Run(const Request& request) {
   VideoWriter video(request.out, size.width, size.height, fps);
   std::optional<ResultSet> set;
   if (!request.set.empty()) {
-    set.emplace(request.set, track, fps, run.config.shape, run.config.normals,
-                "bodyloom animate motion --run " + request.run + " --set " + request.set);
+    set.emplace(request.set, track, fps, run.config.shape, run.config.normals, CommandLine(request));
   }
   const std::vector<int> on_sheet = EvenlySpreadFrames(track.num_frames(), 6);
   std::vector<Image> sheet;

@@ -86,6 +86,11 @@ TEST_F(TrainMotionVerb, TrainsGoesOnAndAnimates) {
       RunCommand({"animate", "motion", "--run", scratch_ / "run", "--data", scratch_ / "person", "--out",
                   scratch_ / "c.mp4", "--full-size", "--set", scratch_ / "set", "--warmup", "2", "--threads", "1"});
   ASSERT_EQ(as_set.exit_code, 0) << as_set.err;
+  std::ifstream set_info(scratch_ / "set/person.json");
+  const std::string info((std::istreambuf_iterator<char>(set_info)), {});
+  EXPECT_THAT(info, HasSubstr("bodyloom animate motion --run " + std::string(scratch_ / "run") + " --data " +
+                              std::string(scratch_ / "person") + " --warmup 2 --full-size --out " +
+                              std::string(scratch_ / "c.mp4") + " --set " + std::string(scratch_ / "set")));
   const CommandResult compared =
       RunCommand({"metrics", "--truth", scratch_ / "person", "--result", scratch_ / "set", "--quiet"});
   EXPECT_EQ(compared.exit_code, 0) << compared.err;
