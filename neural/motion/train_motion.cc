@@ -42,7 +42,7 @@ const std::vector<std::string> kColumns = {"learning_rate",
                                            "validation_foreground_iou",
                                            "validation_normal_deg",
                                            "validation_flicker"};
-/// Intermediate validations look at so many frames of each range; the last one at all.
+/// metrics.csv holds the scores of so many frames of each range, so that its lines compare; the summary those of all.
 constexpr int kQuickFrames = 48;
 
 struct Losses {
@@ -92,7 +92,7 @@ class MotionTrainer : public TrainedSystem {
     static_cast<TrainingOutcome&>(summary) = RunTraining(options_, options_.steps, kColumns, checkpoint_.get(), this);
     summary.losses_off = losses_off_;
     summary.perceptual_stand_in = vgg_->is_stand_in;
-    summary.scores = scores_;
+    summary.scores = all_scores_.frames > 0 ? all_scores_ : scores_;
     return summary;
   }
 
@@ -113,21 +113,22 @@ class MotionTrainer : public TrainedSystem {
   [[nodiscard]] bool HasValidation() const override { return !options_.validation.empty(); }
 
   void Validate(int done, bool last) override {
-    const int max_frames = last ? 0 : kQuickFrames;
     std::vector<MotionPreview> previews;
-    MotionScorer scorer(config_);
+    MotionScorer quick(config_), all(config_);
     RollOut roll(Shown(), options_.warmup_iterations);
     for (const FrameRange& range : options_.validation) {
       roll.Restart();
-      scorer.Restart();
-      const int end = max_frames > 0 ? std::min(range.end, range.begin + max_frames) : range.end;
+      quick.Restart();
+      all.Restart();
+      const int quick_end = std::min(range.end, range.begin + kQuickFrames), end = last ? range.end : quick_end;
       const int every = std::max(1, (end - range.begin) / std::max(1, options_.preview_frames));
       for (int t = range.begin; t < end; ++t) {
         MotionFrame frame;
         (options_.validation_source ? options_.validation_source : source_)(t, true, &frame);
         const MotionStepResult result = roll.Next(frame);
         const MotionTruth truth = TruthOf(std::span(&frame, 1), config_);
-        scorer.Add(result.state, truth, frame.before_x, frame.before_y);
+        if (t < quick_end) quick.Add(result.state, truth, frame.before_x, frame.before_y);
+        if (last) all.Add(result.state, truth, frame.before_x, frame.before_y);
         if (!options_.preview || (t - range.begin) % every != every / 2) continue;
         MotionPreview preview;
         preview.frame = t, preview.width = frame.width, preview.height = frame.height;
@@ -138,7 +139,8 @@ class MotionTrainer : public TrainedSystem {
         previews.push_back(std::move(preview));
       }
     }
-    scores_ = scorer.Scores();
+    scores_ = quick.Scores();
+    if (last) all_scores_ = all.Scores();
     const bool better = scores_.image_l1 < best_[0].item<double>();
     best_ = better ? torch::tensor({scores_.image_l1, 0.0}, torch::kDouble)
                    : torch::tensor({best_[0].item<double>(), ValidationsSinceBest() + 1.0}, torch::kDouble);
@@ -270,8 +272,8 @@ class MotionTrainer : public TrainedSystem {
   FeatureNetwork vgg_{nullptr};
   std::unique_ptr<torch::optim::Adam> optimizer_, discriminator_optimizer_;
   std::unique_ptr<Checkpoint> checkpoint_;
-  MotionState past_;  ///< of the chains, B×…
-  MotionScores scores_;
+  MotionState past_;                  ///< of the chains, B×…
+  MotionScores scores_, all_scores_;  ///< of the last validation's first frames of each range, and of all of them
   Tensor best_ = torch::tensor({1e9, 0.0}, torch::kDouble);  ///< least L1 of a validation, and how many came since
   std::unique_ptr<MotionBatches> batches_;
   Losses losses_;  ///< of the last step

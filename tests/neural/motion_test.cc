@@ -7,6 +7,9 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include "neural/motion/clothes_reach.h"
 #include "neural/motion/frame_tensors.h"
@@ -270,6 +273,25 @@ TEST(MotionTraining, TheAverageIsBesideTheLearnerAndIsWhatIsShown) {
   parts.resume = true;
   ASSERT_EQ(TrainMotion(ToyFrame, parts).status, TrainingStatus::kFinished);
   EXPECT_EQ(FileBytes(CheckpointPath(parts.run_dir)), FileBytes(CheckpointPath(whole.run_dir)));
+}
+
+TEST(MotionTraining, TheLogsLastLineIsOfTheSameFramesAsThoseBeforeIt) {
+  TrainMotionOptions options = ToyOptions("motion_quick");
+  options.validation = {{0, 60}};
+  options.learning_rate = 0;  // nothing changes but what is looked at
+  options.average = 0;
+  const TrainMotionSummary summary = TrainMotion(ToyFrame, options);
+  EXPECT_EQ(summary.scores.frames, 60);
+  std::istringstream log(FileBytes((fs::path(options.run_dir) / "metrics.csv").string()));
+  std::vector<double> l1;
+  for (std::string line, cell; std::getline(log, line);) {
+    std::istringstream cells(line);
+    for (int i = 0; i < 10; ++i) std::getline(cells, cell, ',');  // step, rate, loss and its five parts, …
+    if (!cell.empty() && cell != "validation_l1") l1.push_back(std::stod(cell));
+  }
+  ASSERT_EQ(l1.size(), 2U);
+  EXPECT_EQ(l1[0], l1[1]);
+  EXPECT_NE(l1[1], summary.scores.image_l1);
 }
 
 TEST(MotionTraining, LossesWithoutTruthAreSwitchedOff) {
