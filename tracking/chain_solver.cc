@@ -172,6 +172,7 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
                                              (shared_damping.array() * shared_step.array().square()).sum() -
                                              chain.gradient().dot(step) - chain.shared_gradient().dot(shared_step));
     if (!(promised > 0)) {
+      if (move_all()) continue;
       if (++invalid_steps >= kMaxInvalidSteps) {
         return finish(SolveStatus::kFailure,
                       Concatenate(invalid_steps, " steps in a row could not be computed: the system is singular"));
