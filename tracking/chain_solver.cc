@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "geometry/check.h"
 #include "tracking/chain/resting_frames.h"
@@ -93,9 +94,12 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
   report.initial_cost = report.final_cost = cost;
   RestingFrames rest(options.rest_share);
   double spent = 0;  // iterations, those of a part of the frames by its size
+  const auto let_rest = [&](const std::vector<char>& frames) {
+    factor->SetResting(frames);
+    chain.SetResting(frames);
+  };
   const auto finish = [&](SolveStatus status, std::string message) {
-    factor->SetResting({});
-    chain.SetResting({});
+    let_rest({});
     report.status = status;
     report.message = std::move(message);
     report.final_cost = cost;
@@ -106,8 +110,7 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
     if (!rest.any()) return false;
     cost = chain.Linearise(x);
     watch.To(&report.seconds_evaluation);
-    factor->SetResting({});
-    chain.SetResting({});
+    let_rest({});
     rest.Clear();
     return true;
   };
@@ -238,12 +241,8 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
     x_norm = std::sqrt(chain.SquaredNorm(x));
     radius.Accepted(quality);
     moved = fresh = true;
-    const bool rested = rest.any();
     rest.Taken(promised, tolerance);
-    if (rested || rest.any()) {
-      factor->SetResting(rest.frames());
-      chain.SetResting(rest.frames());
-    }
+    let_rest(rest.frames());
   }
 }
 

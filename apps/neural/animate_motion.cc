@@ -69,7 +69,7 @@ std::string CommandLine(const Request& request) {
   add("--run", request.run), add("--track", request.track), add("--data", request.data), add("--body", request.body);
   add("--background", request.background), add("--relight", request.relight);
   if (request.speed != 1) add("--speed", Concatenate(request.speed));
-  if (request.warmup != 50) add("--warmup", Concatenate(request.warmup));
+  if (request.warmup != Request().warmup) add("--warmup", Concatenate(request.warmup));
   line += request.anywhere ? " --anywhere" : "";
   line += request.full_size ? " --full-size" : "";
   add("--out", request.out), add("--set", request.set);

@@ -11,7 +11,8 @@ namespace bodyloom {
 namespace {
 
 constexpr std::string_view kMagic("\x93NUMPY", 6);
-constexpr size_t kMaxHeader = size_t{1} << 16;
+constexpr size_t kLongestMark = 12;  ///< with version and the header's length
+constexpr size_t kMaxHeader = kMaxNpyHeaderBytes - kLongestMark;
 
 /// Parses the header's Python dictionary literal: exactly the keys descr (text), fortran_order (True/False) and shape
 /// (a tuple of integers), in any order.

@@ -11,7 +11,6 @@
 #include "data_tools/formats/npy_header.h"
 #include "data_tools/formats/printable.h"
 #include "data_tools/formats/zip.h"
-#include "geometry/check.h"
 
 namespace bodyloom {
 namespace {

@@ -15,7 +15,6 @@ namespace bodyloom {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-using RowMatrix3d = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 namespace {
 /// Radians, metres, log focal length: farther than this no quadratic stands for a frame.

@@ -33,7 +33,7 @@ void RestingFrames::Tried(const Eigen::VectorXd& gradient, const Eigen::VectorXd
   if (share_ <= 0) return;
   promises_.resize(step.size() / n);
   for (Eigen::Index t = 0; t < promises_.size(); ++t) {
-    if (any() && frames_[t] != 0) continue;
+    if (Rests(t)) continue;
     const auto d = step.segment(t * n, n);
     promises_[t] = 0.5 * (std::abs(gradient.segment(t * n, n).dot(d)) +
                           (damping.segment(t * n, n).array() * d.array().square()).sum());
@@ -51,10 +51,9 @@ void RestingFrames::Taken(double promised, double tolerance) {
 
 void RestingFrames::Plan(double more) {
   const Eigen::Index T = promises_.size();
-  const auto rests = [&](Eigen::Index t) { return any() && frames_[t] != 0; };
   std::vector<std::pair<double, Eigen::Index>> moving;
   for (Eigen::Index t = 0; t < T; ++t) {
-    if (!rests(t)) moving.emplace_back(promises_[t], t);
+    if (!Rests(t)) moving.emplace_back(promises_[t], t);
   }
   std::sort(moving.begin(), moving.end());
   std::vector<char> next(T, 1);
@@ -62,7 +61,7 @@ void RestingFrames::Plan(double more) {
     more -= promise;
     if (more >= 0) continue;
     for (Eigen::Index u = std::max<Eigen::Index>(0, t - kReach); u <= std::min(T - 1, t + kReach); ++u) {
-      if (!rests(u)) next[u] = 0;
+      if (!Rests(u)) next[u] = 0;
     }
   }
   for (Eigen::Index begin = 0, t = 0; t <= T; ++t) {
@@ -75,7 +74,7 @@ void RestingFrames::Plan(double more) {
   frames_ = std::move(next);
   moving_share_ = 1 - count / static_cast<double>(T);
   resting_promise_ = 0;
-  for (Eigen::Index t = 0; t < T; ++t) resting_promise_ += rests(t) ? promises_[t] : 0;
+  for (Eigen::Index t = 0; t < T; ++t) resting_promise_ += Rests(t) ? promises_[t] : 0;
 }
 
 }  // namespace bodyloom

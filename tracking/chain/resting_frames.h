@@ -36,6 +36,7 @@ class RestingFrames {
 
  private:
   void Plan(double more);
+  [[nodiscard]] bool Rests(Eigen::Index t) const { return any() && frames_[t] != 0; }
 
   double share_, resting_promise_ = 0, moving_share_ = 1;
   std::vector<char> frames_;
