@@ -78,6 +78,10 @@ struct SolveOptions {
   std::function<bool(int, double)> on_iteration;
 };
 
+/// What the tracker sets the skips to; settled frames only where there are dense keypoints.
+inline constexpr int kTrackerEarlyDense = 300;
+inline constexpr double kTrackerSkipSettled = 0.01, kTrackerRestShare = 0.05;
+
 struct SolveReport {
   SolveStatus status = SolveStatus::kFailure;
   int iterations = 0;

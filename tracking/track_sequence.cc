@@ -351,10 +351,12 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSe
     }
     SolveOptions solve_options;
     solve_options.solver = options.solver == "chain" ? SequenceSolver::kChain : SequenceSolver::kCeres;
-    solve_options.early_dense = options.skip_unneeded ? 300 : 0;
-    // Joints alone are evaluated as fast as skipped: 10 % slower with it on AIST++.
-    solve_options.skip_settled = options.skip_unneeded && input.dense != nullptr ? 0.01 : 0;
-    solve_options.rest_share = options.skip_unneeded ? 0.05 : 0;
+    if (options.skip_unneeded) {
+      solve_options.early_dense = kTrackerEarlyDense;
+      solve_options.rest_share = kTrackerRestShare;
+      // Joints alone are evaluated as fast as skipped: 10 % slower with it on AIST++.
+      if (input.dense != nullptr) solve_options.skip_settled = kTrackerSkipSettled;
+    }
     solve_options.max_iterations = max_iterations;
     solve_options.num_threads = threads;
     solve_options.function_tolerance = tolerance;

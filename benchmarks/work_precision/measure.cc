@@ -26,21 +26,21 @@ Engine ChainEngine(int threads, int early_dense) {
 Engine SkippingEngine(int threads) {
   Engine engine = ChainEngine(threads, 0);
   engine.name = "chain, settled frames";
-  engine.options.skip_settled = 0.01;
+  engine.options.skip_settled = kTrackerSkipSettled;
   return engine;
 }
 
 Engine RestingEngine(int threads) {
   Engine engine = SkippingEngine(threads);
   engine.name = "chain, settled and resting frames";
-  engine.options.rest_share = 0.05;
+  engine.options.rest_share = kTrackerRestShare;
   return engine;
 }
 
 Engine TrackerEngine(int threads) {
   Engine engine = RestingEngine(threads);
   engine.name = "chain, as the tracker";
-  engine.options.early_dense = 300;
+  engine.options.early_dense = kTrackerEarlyDense;
   return engine;
 }
 
@@ -130,10 +130,10 @@ WorkProblemOptions WorkBench::Options(int frames, int dense) const {
 
 void WorkBench::AddRow(const std::string& group, const std::string& problem, const std::string& engine,
                        std::vector<double> values) {
+  values.resize(kWorkColumns.size(), std::numeric_limits<double>::quiet_NaN());
   std::fprintf(stderr, "%s, %s, %s: %s ms wall, %s ms processor, error %s\n", group.c_str(), problem.c_str(),
                engine.c_str(), BenchNumber(values[0]).c_str(), BenchNumber(values[2]).c_str(),
                BenchNumber(values[5]).c_str());
-  values.resize(kWorkColumns.size(), std::numeric_limits<double>::quiet_NaN());
   report.rows.push_back({group, {problem, engine}, std::move(values)});
 }
 

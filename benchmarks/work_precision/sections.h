@@ -6,10 +6,11 @@
 
 namespace bodyloom {
 
-void SetSection(WorkBench* bench);        ///< 48 problems: performance profile, equality of costs
-void ToleranceSection(WorkBench* bench);  ///< 100 frames, function tolerance 1e-1 … 1e-7
-void CountSection(WorkBench* bench);      ///< 20 … 5,000 keypoints a frame
-void LengthSection(WorkBench* bench);     ///< --lengths, with peak memory
+void SetSection(WorkBench* bench);         ///< 48 problems: performance profile, equality of costs
+void ToleranceSection(WorkBench* bench);   ///< 100 frames, function tolerance 1e-1 … 1e-7
+void CountSection(WorkBench* bench);       ///< 20 … 5,000 keypoints a frame
+void EvaluationSection(WorkBench* bench);  ///< of one frame: its cost, and with derivatives
+void LengthSection(WorkBench* bench);      ///< --lengths, with peak memory
 void ThreadSection(WorkBench* bench);
 void PeerSection(WorkBench* bench);      ///< Ceres AutoDiff and PyTorch (Adam, L-BFGS), --peer_frames
 void TrackSection(WorkBench* bench);     ///< `track` as a whole: detections to a track

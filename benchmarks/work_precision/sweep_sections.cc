@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Error against time of the sequence solve: over tolerances, numbers of keypoints, lengths and threads.
+#include <algorithm>
+
 #include "benchmarks/work_precision/sections.h"
 #include "geometry/check.h"
+#include "tracking/frame_cost.h"
 
 namespace bodyloom {
 
@@ -52,6 +55,30 @@ void CountSection(WorkBench* bench) {
   }
   bench->report.plots.push_back(time);
   bench->report.plots.push_back(error);
+}
+
+void EvaluationSection(WorkBench* bench) {
+  FrameEvaluator evaluator;
+  FrameSystem system;
+  for (int dense : {20, 100, 300, 1000, 5000}) {
+    const auto work = MakeWorkProblem(bench->Options(50, dense));
+    const SequenceProblem& problem = work->problem;
+    const int rounds = std::max(1, 10000 / dense);
+    for (const bool derivatives : {false, true}) {
+      const auto evaluate_all = [&]() {
+        for (int round = 0; round < rounds; ++round) {
+          for (size_t t = 0; t < problem.frames.size(); ++t) {
+            evaluator.Evaluate(problem.layout, problem.frames[t], problem.states[t], problem.betas, problem.log_focal,
+                               derivatives, &system);
+          }
+        }
+      };
+      evaluate_all();  // the first one fills scratch memory
+      const Timing timing = MeasureAction(evaluate_all, bench->repeat, rounds * double(problem.frames.size()));
+      bench->AddRow("one evaluation", std::to_string(dense), derivatives ? "cost, gradient and matrix" : "cost",
+                    {timing.wall.median, timing.wall.spread_percent, timing.cpu.median, timing.cpu.spread_percent});
+    }
+  }
 }
 
 void LengthSection(WorkBench* bench) {

@@ -31,9 +31,11 @@ void RunSections(const BenchArguments& arguments, const std::string& command) {
   bench.report.notes = {"times: milliseconds a frame, medians of wall and processor time",
                         "error and bound: mean projection error, pixels at 512, unless the heading says otherwise"};
   const std::pair<const char*, void (*)(WorkBench*)> sections[] = {
-      {"set", SetSection},        {"tolerance", ToleranceSection}, {"counts", CountSection},
-      {"lengths", LengthSection}, {"threads", ThreadSection},      {"peers", PeerSection},
-      {"track", TrackSection},    {"describe", DescribeSection},   {"evaluate", EvaluateSection},
+      {"set", SetSection},           {"tolerance", ToleranceSection},
+      {"counts", CountSection},      {"lengths", LengthSection},
+      {"threads", ThreadSection},    {"peers", PeerSection},
+      {"track", TrackSection},       {"describe", DescribeSection},
+      {"evaluate", EvaluateSection}, {"evaluation", EvaluationSection},
       {"whole", WholeSection}};
   for (const std::string& name : arguments.List("sections")) {
     const auto* found = std::find_if(std::begin(sections), std::end(sections),

@@ -2,6 +2,7 @@
 #include "data_tools/video/image_file.h"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
@@ -44,6 +45,20 @@ bool NaturalLess(std::string_view a, std::string_view b) {
   return a < b;  // frame_1 and frame_01
 }
 
+/// Whether OpenCV will take the file for one of the formats that are read. It would try others too, whose libraries end
+/// the process over a file that is broken: GDCM takes whatever has "DICM" at byte 128 and is nothing else.
+bool BeginsAsAnImage(std::string_view bytes) {
+  using namespace std::string_view_literals;
+  const auto has = [&](size_t at, std::string_view text) {
+    return bytes.size() >= at + text.size() && bytes.substr(at, text.size()) == text;
+  };
+  // Told by libwebp, after this, from what follows; a broken one goes on to the next library.
+  if (has(0, "RIFF"sv)) return has(8, "WEBP"sv) && !has(128, "DICM"sv);
+  constexpr std::array kBeginnings = {
+      "\x89PNG\r\n\x1a\n"sv, "\xFF\xD8\xFF"sv, "BM"sv, "II*\0"sv, "MM\0*"sv, "II+\0"sv, "MM\0+"sv};
+  return std::any_of(kBeginnings.begin(), kBeginnings.end(), [&](auto beginning) { return has(0, beginning); });
+}
+
 }  // namespace
 
 bool IsImageName(const std::string& path) {
@@ -55,7 +70,7 @@ Image ReadImage(const std::string& path) {
   const std::string bytes = ReadFileBytes(path, kMaxFileBytes);
   cv::Mat decoded;
   try {
-    if (!bytes.empty()) {
+    if (BeginsAsAnImage(bytes)) {
       const cv::Mat view(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<char*>(bytes.data()));
       decoded = cv::imdecode(view, cv::IMREAD_COLOR);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Still images: PNG, JPEG and what else OpenCV decodes, in; PNG and JPEG out.
+/// Still images: PNG, JPEG, BMP, WebP and TIFF in; PNG and JPEG out.
 #pragma once
 
 #include <string>

@@ -56,6 +56,12 @@ TEST(FuzzFound, MatlabHeadersThatAskForGigabytes) {
   EXPECT_FALSE(AcceptsMat(MatOf({14, 0xa0, 6, 8, 0xfffffe06, 0xd8, 5, 0xe0000008})));
 }
 
+// OpenCV hands such files to GDCM, which ended the process.
+TEST(FuzzFound, ImagesThatAreTakenForDicom) {
+  EXPECT_FALSE(AcceptsImage(std::string(128, ';') + "DICM;"));
+  EXPECT_FALSE(AcceptsImage("RIFF;;;;WEBP" + std::string(116, ';') + "DICM;"));
+}
+
 // The body's landmarks, tracks and observations name their file; so must every array of whole numbers.
 TEST(FuzzFound, IndicesThatAreNoWholeNumbers) {
   const std::vector<double> values = {1.0625, 2};

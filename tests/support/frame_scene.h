@@ -17,14 +17,14 @@ namespace bodyloom {
 
 /// Points into itself (data, layout): not to be copied.
 struct FrameScene {
-  BodyModel body{ToyBodyData()};
+  BodyModel body;
   FrameLayout layout;
   FrameData data;
   FrameState state;
   Eigen::VectorXd betas;
   double log_focal = 0;
   std::vector<DenseKeypoint> dense;
-  FrameScene() = default;
+  explicit FrameScene(const BodyModelData& data = ToyBodyData()) : body(data) {}
   FrameScene(const FrameScene&) = delete;
   FrameScene& operator=(const FrameScene&) = delete;
 };

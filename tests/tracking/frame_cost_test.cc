@@ -10,10 +10,12 @@
 #include <cmath>
 #include <functional>
 #include <random>
+#include <string>
 
 #include "geometry/rotation.h"
 #include "tests/support/frame_scene.h"
 #include "tests/tracking/jet_twin.h"
+#include "tracking/chain/panel_simd.h"
 #include "tracking/residuals/compressed_frame_cost.h"
 #include "tracking/robust.h"
 
@@ -28,14 +30,15 @@ using twin::Jet;
 constexpr double kRelative = 1e-9;
 
 struct Scene : FrameScene {
+  using FrameScene::FrameScene;
   std::vector<CompiledPoint> compiled;
   std::vector<int> landmark_ids;
 };
 
 /// Random pose of the given size in front of the camera, with 17 landmarks and 40 dense keypoints seen with noise.
 std::unique_ptr<Scene> MakeScene(CameraKnowledge knowledge, double pose_size, uint64_t seed,
-                                 std::vector<int> active = {}) {
-  auto scene = std::make_unique<Scene>();
+                                 std::vector<int> active = {}, const BodyModelData& body = ToyBodyData()) {
+  auto scene = std::make_unique<Scene>(body);
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
   if (active.empty()) active = AllJoints(scene->body);
@@ -149,6 +152,30 @@ TEST(FrameCost, DenseKeypointsMatchAutomaticDerivatives) {
     }
   }
   EXPECT_GE(checked, 6 * 114 * 80);
+}
+
+/// The loops are compiled once per instruction set, with vectors of two to eight values; shapes do not fill them.
+TEST(FrameCost, DenseKeypointsMatchAutomaticDerivativesOnEveryInstructionSet) {
+  BodyModelData body = ToyBodyData();
+  const auto given = body.shapedirs.cols();
+  body.shapedirs.conservativeResize(Eigen::NoChange, 19);
+  for (Eigen::Index c = given; c < body.shapedirs.cols(); ++c) {
+    body.shapedirs.col(c) = 0.5F * body.shapedirs.col(c - given) - 0.3F * body.shapedirs.col(c - 2);
+  }
+  auto scene = MakeScene(CameraKnowledge::kUnknownFocal, 0.8, 5, {}, body);
+  scene->data.dense = &scene->dense;
+  const VectorXd betas = scene->betas;
+  for (const int num_betas : {0, 1, 7, 8, 9, 16, 19}) {
+    scene->layout = FrameLayout::Make(scene->body, CameraKnowledge::kUnknownFocal, scene->layout.camera,
+                                      scene->layout.active_joints, num_betas);
+    scene->betas = betas.head(num_betas);
+    for (const int64_t target : panel_internal::SimdTargets()) {
+      SCOPED_TRACE(panel_internal::SimdTargetName(target) + ", " + std::to_string(num_betas) + " components");
+      panel_internal::ForceSimdTarget(target);
+      EXPECT_GT(CheckPixels(*scene), 0);
+    }
+    panel_internal::ForceSimdTarget(0);
+  }
 }
 
 TEST(FrameCost, HeldJointsHaveNoColumns) {

@@ -21,7 +21,8 @@ void DensePoints::SetBody(const Kinematics& kinematics) {
     model_ = &model;
     betas_.resize(0);
     shaped_stamp_.assign(V, 0);
-    rest_stamp_.assign(V, 0);
+    posed_stamp_.assign(V, 0);
+    posed_.resize(3 * V);
     shaped_.resize(3 * V);
     rest_.resize(3 * V);
     vertices_.shape = vertices_.frame = 0;
@@ -49,9 +50,10 @@ void DensePoints::SetBody(const Kinematics& kinematics) {
   }
   ++vertices_.frame;
   vertices_.shaped_stamp = shaped_stamp_.data();
-  vertices_.rest_stamp = rest_stamp_.data();
+  vertices_.posed_stamp = posed_stamp_.data();
   vertices_.shaped = shaped_.data();
   vertices_.rest = rest_.data();
+  vertices_.posed = posed_.data();
   body_.influence_begin = model.influence_begin().data();
   body_.influence_joint = model.influence_joint().data();
   body_.influence_weight = model.influence_weight().data();
@@ -64,27 +66,42 @@ void DensePoints::SetBody(const Kinematics& kinematics) {
   body_.num_joints = model.num_joints();
   frame_.num_betas = static_cast<int>(betas_.size());
   frame_.betas = betas_.data();
-  frame_.G = kinematics.G[0].data();
-  frame_.t = kinematics.t[0].data();
-  frame_.p = kinematics.p[0].data();
   frame_.feature = kinematics.feature[0].data();
+  transform_.resize(static_cast<size_t>(16) * body_.num_joints);
+  for (int j = 0; j < body_.num_joints; ++j) {
+    Eigen::Map<Eigen::Matrix4d> transform(&transform_[16 * j]);
+    transform.topLeftCorner<3, 3>() = kinematics.G[j];
+    transform.topRightCorner<3, 1>() = kinematics.t[j];
+    transform.bottomRows<1>() << 0, 0, 0, 1;
+  }
+  frame_.transform = transform_.data();
+}
+
+void DensePoints::SetDerivatives(const Kinematics& kinematics) {
+  using RowsOfFour = Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>>;
+  const int B = frame_.num_betas, J = body_.num_joints;
+  frame_.dt_stride = panel_internal::RoundUp(B);
+  rotation_.assign(static_cast<size_t>(12) * J, 0.0);
+  joint_.assign(static_cast<size_t>(4) * J, 1.0);
+  feature_jacobian_.assign(static_cast<size_t>(36) * J, 0.0);
+  dt_.assign(static_cast<size_t>(3) * J * frame_.dt_stride, 0.0);
+  for (int j = 0; j < J; ++j) {
+    RowsOfFour(&rotation_[12 * j], 3, 4).leftCols<3>() = kinematics.G[j];
+    RowsOfFour(&joint_[4 * j], 1, 4).leftCols<3>() = kinematics.p[j].transpose();
+    RowsOfFour(&feature_jacobian_[36 * j], 9, 4).leftCols<3>() = kinematics.feature_jacobian[j];
+    Eigen::Map<RowMatrixXd>(&dt_[static_cast<size_t>(3) * j * frame_.dt_stride], 3, frame_.dt_stride).leftCols(B) =
+        kinematics.dt[j];
+  }
+  frame_.rotation = rotation_.data();
+  frame_.joint = joint_.data();
+  frame_.feature_jacobian = feature_jacobian_.data();
+  frame_.dt = dt_.data();
 }
 
 void DensePoints::Pose(const Kinematics& kinematics, const std::vector<DenseKeypoint>& keypoints, size_t step,
                        bool derivatives) {
   SetBody(kinematics);
-  if (derivatives) {
-    frame_.feature_jacobian = kinematics.feature_jacobian[0].data();
-    const int B = frame_.num_betas, J = body_.num_joints;
-    dt_.resize(static_cast<size_t>(3) * J * B);
-    double* next = dt_.data();
-    for (int j = 0; j < J; ++j) {
-      for (int c = 0; c < 3; ++c) {
-        for (int b = 0; b < B; ++b) *next++ = kinematics.dt[j](c, b);
-      }
-    }
-    frame_.dt = dt_.data();
-  }
+  if (derivatives) SetDerivatives(kinematics);
   const MatrixX3i& faces = kinematics.model->data().faces;
   points_.resize((keypoints.size() + step - 1) / step);
   positions_.resize(3 * points_.size());

@@ -51,6 +51,7 @@ class DensePoints {
     std::vector<int> points;
   };
   void SetBody(const Kinematics& kinematics);
+  void SetDerivatives(const Kinematics& kinematics);
   void FlushGroup(const Columns& columns, const Group& group, const std::vector<Row>& rows, double* H, int64_t stride,
                   double* gradient);
 
@@ -60,8 +61,9 @@ class DensePoints {
   dense_internal::Frame frame_;
   dense_internal::Vertices vertices_;
   std::vector<uint64_t> joints_of_vertex_;  ///< bit j: joint j moves it; empty for bodies of more than 64 joints
-  std::vector<int> shaped_stamp_, rest_stamp_;
-  std::vector<double> shaped_, rest_, dt_, positions_, A_, buffer_, products_;
+  std::vector<int> shaped_stamp_, posed_stamp_;
+  std::vector<double> shaped_, rest_, posed_, transform_, rotation_, joint_, feature_jacobian_, dt_, positions_, A_,
+      buffer_, products_;
   std::vector<dense_internal::Point> points_;
   std::vector<Group> groups_;
 };

@@ -18,10 +18,44 @@ using Lanes = hn::Vec<Tag>;
 
 HWY_INLINE Lanes LoadFloats(const float* p) { return hn::PromoteTo(Tag(), hn::LoadU(hn::Rebind<float, Tag>(), p)); }
 
-/// 2×3 times 3×n, added to 2×n: target_r[i] += Σ_c A_rc row_c[i], rows of float or of double.
-template <class T>
-HWY_INLINE void AddRows(const double (&A)[2][3], const T* HWY_RESTRICT row0, const T* HWY_RESTRICT row1,
-                        const T* HWY_RESTRICT row2, int n, double* HWY_RESTRICT target0, double* HWY_RESTRICT target1) {
+/// Four values: one vector, or two, or four.
+using QuadTag = hn::CappedTag<double, 4>;
+constexpr int kQuadLanes = static_cast<int>(hn::MaxLanes(QuadTag()));
+struct Quad {
+  hn::Vec<QuadTag> part[4 / kQuadLanes];
+};
+HWY_INLINE Quad LoadQuad(const double* p) {
+  Quad q;
+  for (int i = 0; i < 4 / kQuadLanes; ++i) q.part[i] = hn::LoadU(QuadTag(), p + i * kQuadLanes);
+  return q;
+}
+HWY_INLINE void StoreQuad(const Quad& q, double* p) {
+  for (int i = 0; i < 4 / kQuadLanes; ++i) hn::StoreU(q.part[i], QuadTag(), p + i * kQuadLanes);
+}
+HWY_INLINE Quad ZeroQuad() {
+  Quad q;
+  for (auto& part : q.part) part = hn::Zero(QuadTag());
+  return q;
+}
+/// s p + q.
+HWY_INLINE Quad MulAdd(double s, const Quad& p, const Quad& q) {
+  Quad sum;
+  for (int i = 0; i < 4 / kQuadLanes; ++i) {
+    sum.part[i] = hn::MulAdd(hn::Set(QuadTag(), s), p.part[i], q.part[i]);
+  }
+  return sum;
+}
+
+/// (G x + t, 1).
+HWY_INLINE Quad Transform(const double* HWY_RESTRICT transform, const double* HWY_RESTRICT x) {
+  return MulAdd(x[0], LoadQuad(transform),
+                MulAdd(x[1], LoadQuad(transform + 4), MulAdd(x[2], LoadQuad(transform + 8), LoadQuad(transform + 12))));
+}
+
+/// R×3 times 3×n, added to R×n: target_r[i] += Σ_c A_rc row_c[i], rows of float or of double.
+template <int R, int C, class T>
+HWY_INLINE void AddRows(const double (&A)[R][C], const T* HWY_RESTRICT row0, const T* HWY_RESTRICT row1,
+                        const T* HWY_RESTRICT row2, int n, double* HWY_RESTRICT const (&target)[R]) {
   const Tag d;
   const int N = static_cast<int>(hn::Lanes(d));
   int i = 0;
@@ -32,24 +66,23 @@ HWY_INLINE void AddRows(const double (&A)[2][3], const T* HWY_RESTRICT row0, con
     } else {
       x = hn::LoadU(d, row0 + i), y = hn::LoadU(d, row1 + i), z = hn::LoadU(d, row2 + i);
     }
-    Lanes sum = hn::MulAdd(hn::Set(d, A[0][0]), x, hn::LoadU(d, target0 + i));
-    sum = hn::MulAdd(hn::Set(d, A[0][1]), y, sum);
-    hn::StoreU(hn::MulAdd(hn::Set(d, A[0][2]), z, sum), d, target0 + i);
-    sum = hn::MulAdd(hn::Set(d, A[1][0]), x, hn::LoadU(d, target1 + i));
-    sum = hn::MulAdd(hn::Set(d, A[1][1]), y, sum);
-    hn::StoreU(hn::MulAdd(hn::Set(d, A[1][2]), z, sum), d, target1 + i);
+    for (int r = 0; r < R; ++r) {
+      Lanes sum = hn::MulAdd(hn::Set(d, A[r][0]), x, hn::LoadU(d, target[r] + i));
+      sum = hn::MulAdd(hn::Set(d, A[r][1]), y, sum);
+      hn::StoreU(hn::MulAdd(hn::Set(d, A[r][2]), z, sum), d, target[r] + i);
+    }
   }
   for (; i < n; ++i) {
     const double x = row0[i], y = row1[i], z = row2[i];
-    target0[i] += A[0][0] * x + A[0][1] * y + A[0][2] * z;
-    target1[i] += A[1][0] * x + A[1][1] * y + A[1][2] * z;
+    for (int r = 0; r < R; ++r) target[r][i] += A[r][0] * x + A[r][1] * y + A[r][2] * z;
   }
 }
 
-const double* RestVertex(const Body& body, const Frame& frame, const Vertices& vertices, int v) {
-  double* HWY_RESTRICT rest = vertices.rest + 3 * static_cast<int64_t>(v);
-  if (vertices.rest_stamp[v] == vertices.frame) return rest;
-  vertices.rest_stamp[v] = vertices.frame;
+/// Where a vertex is: computed when it is asked for first in a frame.
+const double* PosedVertex(const Body& body, const Frame& frame, const Vertices& vertices, int v) {
+  double* HWY_RESTRICT posed = vertices.posed + 3 * static_cast<int64_t>(v);
+  if (vertices.posed_stamp[v] == vertices.frame) return posed;
+  vertices.posed_stamp[v] = vertices.frame;
   double* HWY_RESTRICT shaped = vertices.shaped + 3 * static_cast<int64_t>(v);
   if (vertices.shaped_stamp[v] != vertices.shape) {
     vertices.shaped_stamp[v] = vertices.shape;
@@ -60,6 +93,7 @@ const double* RestVertex(const Body& body, const Frame& frame, const Vertices& v
       shaped[c] = sum;
     }
   }
+  double* HWY_RESTRICT rest = vertices.rest + 3 * static_cast<int64_t>(v);
   double x = shaped[0], y = shaped[1], z = shaped[2];
   if (body.corrective_begin != nullptr && body.corrective_begin[v] < body.corrective_begin[v + 1]) {
     const Tag d;
@@ -85,13 +119,14 @@ const double* RestVertex(const Body& body, const Frame& frame, const Vertices& v
   rest[0] = x;
   rest[1] = y;
   rest[2] = z;
-  return rest;
-}
-
-/// G x + t, column by column.
-HWY_INLINE void Transform(const double* HWY_RESTRICT G, const double* HWY_RESTRICT t, const double* HWY_RESTRICT x,
-                          double* HWY_RESTRICT y) {
-  for (int r = 0; r < 3; ++r) y[r] = t[r] + G[r] * x[0] + G[3 + r] * x[1] + G[6 + r] * x[2];
+  Quad sum = ZeroQuad();
+  for (int e = body.influence_begin[v]; e < body.influence_begin[v + 1]; ++e) {
+    sum = MulAdd(body.influence_weight[e], Transform(frame.transform + 16 * body.influence_joint[e], rest), sum);
+  }
+  double at[4];
+  StoreQuad(sum, at);
+  for (int c = 0; c < 3; ++c) posed[c] = at[c];
+  return posed;
 }
 
 void PosePointsHere(const Body& body, const Frame& frame, const Vertices& vertices, const Point* points, int n,
@@ -101,62 +136,96 @@ void PosePointsHere(const Body& body, const Frame& frame, const Vertices& vertic
     for (int k = 0; k < 3; ++k) {
       const double b = points[i].weight[k];
       if (b == 0) continue;
-      const int v = points[i].vertex[k];
-      const double* rest = RestVertex(body, frame, vertices, v);
-      for (int e = body.influence_begin[v]; e < body.influence_begin[v + 1]; ++e) {
-        const int joint = body.influence_joint[e];
-        const double w = b * body.influence_weight[e];
-        double y[3];
-        Transform(frame.G + 9 * joint, frame.t + 3 * joint, rest, y);
-        for (int c = 0; c < 3; ++c) sum[c] += w * y[c];
-      }
+      const double* posed = PosedVertex(body, frame, vertices, points[i].vertex[k]);
+      for (int c = 0; c < 3; ++c) sum[c] += b * posed[c];
     }
     for (int c = 0; c < 3; ++c) x[3 * i + c] = sum[c];
   }
 }
 
+/// What one vertex of a point adds: its weight in the point times …
+struct Corner {
+  double A[2][4];      ///< … A M, M = Σ w G: by the rest vertex
+  const float* shape;  ///< its rows of shapedirs
+};
+
+/// Rows by the shape: of the corners' rest vertices, and of the bones that move them, whose weights times A are given.
+HWY_INLINE void FillShape(const Frame& frame, int shape_stride, const Corner* corners, int num_corners,
+                          const double (*bone_A)[2][3], const int* bones, int num_bones,
+                          double* HWY_RESTRICT const (&target)[2]) {
+  const Tag d;
+  const hn::Rebind<float, Tag> d_float;
+  const int N = static_cast<int>(hn::Lanes(d));
+  for (int first = 0; first < frame.num_betas; first += N) {
+    const size_t left = static_cast<size_t>(frame.num_betas - first);
+    const bool whole = left >= static_cast<size_t>(N);
+    Lanes sum[2] = {hn::Zero(d), hn::Zero(d)};
+    for (int k = 0; k < num_corners; ++k) {
+      const float* HWY_RESTRICT shape = corners[k].shape + first;
+      for (int c = 0; c < 3; ++c) {
+        const float* HWY_RESTRICT row = shape + c * shape_stride;
+        const Lanes x =
+            hn::PromoteTo(d, whole ? hn::LoadU(d_float, row) : hn::MaskedLoad(hn::FirstN(d_float, left), d_float, row));
+        for (int r = 0; r < 2; ++r) sum[r] = hn::MulAdd(hn::Set(d, corners[k].A[r][c]), x, sum[r]);
+      }
+    }
+    for (int k = 0; k < num_bones; ++k) {
+      const double* HWY_RESTRICT dt = frame.dt + static_cast<int64_t>(3) * bones[k] * frame.dt_stride + first;
+      for (int c = 0; c < 3; ++c) {
+        const Lanes x = hn::LoadU(d, dt + c * frame.dt_stride);
+        for (int r = 0; r < 2; ++r) sum[r] = hn::MulAdd(hn::Set(d, bone_A[k][r][c]), x, sum[r]);
+      }
+    }
+    for (int r = 0; r < 2; ++r) {
+      if (whole) {
+        hn::StoreU(sum[r], d, target[r] + first);
+      } else {
+        hn::BlendedStore(sum[r], hn::FirstN(d, left), d, target[r] + first);
+      }
+    }
+  }
+}
+
 void FillRowsHere(const Body& body, const Frame& frame, const Vertices& vertices, const Group& group,
                   const Point* points, const int* chosen, int n, const double* A, double* rows, int64_t stride) {
-  // By the group's joints: what moves with the joint, its weight, and A times the correctives' matrices.
-  double moved[kMaxGroupJoints][4];
-  double corrective[kMaxGroupJoints][2][9];
-  bool has_corrective[kMaxGroupJoints];
-  const int B = frame.num_betas, N = group.num_joints;
+  // By the group's joints: what moves with the joint and its weight, and A times the correctives' matrices.
+  HWY_ALIGN double moved[kMaxGroupJoints][4];
+  HWY_ALIGN double corrective[kMaxGroupJoints][2][16];
+  bool has_corrective[kMaxGroupJoints], is_bone[kMaxGroupJoints];
+  int bones[kMaxGroupJoints], bone_joints[kMaxGroupJoints];
+  double bone_A[kMaxGroupJoints][2][3];
+  const int N = group.num_joints;
   for (int i = 0; i < n; ++i) {
     const Point& point = points[chosen[i]];
     const double* HWY_RESTRICT a = A + 6 * static_cast<int64_t>(chosen[i]);
     double* HWY_RESTRICT out[2] = {rows + 2 * i * stride, rows + (2 * i + 1) * stride};
-    double* HWY_RESTRICT beta[2] = {out[0] + group.beta_column, out[1] + group.beta_column};
-    for (int b = 0; b < B; ++b) beta[0][b] = beta[1][b] = 0;
     for (int q = 0; q < N; ++q) {
-      for (double& value : moved[q]) value = 0;
-      has_corrective[q] = false;
+      StoreQuad(ZeroQuad(), moved[q]);
+      has_corrective[q] = is_bone[q] = false;
     }
+    Corner corners[3];
+    int num_corners = 0, num_bones = 0;
     for (int k = 0; k < 3; ++k) {
       const double weight = point.weight[k];
       if (weight == 0) continue;
       const int v = point.vertex[k];
       const double* HWY_RESTRICT rest = vertices.rest + 3 * static_cast<int64_t>(v);
-      double M[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0};  // Σ w G
+      Quad M[3] = {ZeroQuad(), ZeroQuad(), ZeroQuad()};  // by rows
       for (int e = body.influence_begin[v]; e < body.influence_begin[v + 1]; ++e) {
-        const int joint = body.influence_joint[e];
+        const int joint = body.influence_joint[e], q = group.of_joint[joint];
         const double w = weight * body.influence_weight[e];
-        const double* HWY_RESTRICT G = frame.G + 9 * joint;
-        double y[3];
-        Transform(G, frame.t + 3 * joint, rest, y);
-        double* HWY_RESTRICT sum = moved[group.of_joint[joint]];
-        for (int c = 0; c < 3; ++c) sum[c] += w * y[c];
-        sum[3] += w;
-        for (int c = 0; c < 9; ++c) M[c] += w * G[c];
+        StoreQuad(MulAdd(w, Transform(frame.transform + 16 * joint, rest), LoadQuad(moved[q])), moved[q]);
+        for (int c = 0; c < 3; ++c) M[c] = MulAdd(w, LoadQuad(frame.rotation + 12 * joint + 4 * c), M[c]);
+        if (is_bone[q]) continue;
+        is_bone[q] = true;
+        bones[num_bones++] = q;
       }
-      double AM[2][3];
+      Corner& corner = corners[num_corners++];
+      corner.shape = body.shapedirs + 3 * static_cast<int64_t>(v) * body.shape_stride;
       for (int r = 0; r < 2; ++r) {
-        for (int c = 0; c < 3; ++c) {
-          AM[r][c] = a[3 * r] * M[3 * c] + a[3 * r + 1] * M[3 * c + 1] + a[3 * r + 2] * M[3 * c + 2];
-        }
+        const double* HWY_RESTRICT row = a + 3 * r;
+        StoreQuad(MulAdd(row[0], M[0], MulAdd(row[1], M[1], MulAdd(row[2], M[2], ZeroQuad()))), corner.A[r]);
       }
-      const float* HWY_RESTRICT s = body.shapedirs + 3 * static_cast<int64_t>(v) * body.shape_stride;
-      AddRows(AM, s, s + body.shape_stride, s + 2 * body.shape_stride, B, beta[0], beta[1]);
       if (body.corrective_begin == nullptr) continue;
       for (int e = body.corrective_begin[v]; e < body.corrective_begin[v + 1]; ++e) {
         const int q = group.of_joint[body.corrective_joint[e]];
@@ -165,46 +234,41 @@ void FillRowsHere(const Body& body, const Frame& frame, const Vertices& vertices
           for (int m = 0; m < 9; ++m) corrective[q][0][m] = corrective[q][1][m] = 0;
         }
         const float* HWY_RESTRICT block = body.corrective_block + 27 * static_cast<int64_t>(e);
-        AddRows(AM, block, block + 9, block + 18, 9, corrective[q][0], corrective[q][1]);
+        AddRows(corner.A, block, block + 9, block + 18, 9, {corrective[q][0], corrective[q][1]});
       }
     }
-    for (int q = 0; q < N; ++q) {
-      const double w = moved[q][3];
-      if (w == 0) continue;
-      const double* HWY_RESTRICT dt = frame.dt + 3 * static_cast<int64_t>(group.joints[q]) * B;
-      const double wA[2][3] = {{w * a[0], w * a[1], w * a[2]}, {w * a[3], w * a[4], w * a[5]}};
-      AddRows(wA, dt, dt + B, dt + 2 * B, B, beta[0], beta[1]);
+    for (int k = 0; k < num_bones; ++k) {
+      const double w = moved[bones[k]][3];
+      bone_joints[k] = group.joints[bones[k]];
+      for (int c = 0; c < 6; ++c) bone_A[k][c / 3][c % 3] = w * a[c];
     }
     // From the leaves up: what a joint moves, its parent moves too.
     for (int q = N - 1; q >= 0; --q) {
       if (group.parent[q] < 0) continue;
       double* HWY_RESTRICT sum = moved[group.parent[q]];
-      for (int c = 0; c < 4; ++c) sum[c] += moved[q][c];
+      StoreQuad(MulAdd(1, LoadQuad(moved[q]), LoadQuad(sum)), sum);
     }
     for (int q = 0; q < N; ++q) {
       const int column = group.column[q];
       if (column < 0) continue;
-      const int joint = group.joints[q];
-      const double* HWY_RESTRICT p = frame.p + 3 * joint;
-      const double* HWY_RESTRICT G = frame.G + 9 * joint;
-      const double lever[3] = {moved[q][0] - moved[q][3] * p[0], moved[q][1] - moved[q][3] * p[1],
-                               moved[q][2] - moved[q][3] * p[2]};
+      const double* HWY_RESTRICT rotation = frame.rotation + 12 * group.joints[q];
+      const double* HWY_RESTRICT F = frame.feature_jacobian + 36 * group.joints[q];
+      double lever[4];
+      StoreQuad(MulAdd(-moved[q][3], LoadQuad(frame.joint + 4 * group.joints[q]), LoadQuad(moved[q])), lever);
+      const Quad G[3] = {LoadQuad(rotation), LoadQuad(rotation + 4), LoadQuad(rotation + 8)};
       for (int r = 0; r < 2; ++r) {
-        // a · (G_m × lever) = G_m · (lever × a)
+        // a · (G_m × lever) = G_m · (lever × a), m = 0, 1, 2 in the lanes of a quad
         const double* HWY_RESTRICT row = a + 3 * r;
-        const double x = lever[1] * row[2] - lever[2] * row[1], y = lever[2] * row[0] - lever[0] * row[2],
-                     z = lever[0] * row[1] - lever[1] * row[0];
-        double* HWY_RESTRICT target = out[r] + column;
-        for (int m = 0; m < 3; ++m) target[m] = G[3 * m] * x + G[3 * m + 1] * y + G[3 * m + 2] * z;
-        if (!has_corrective[q]) continue;
-        const double* HWY_RESTRICT F = frame.feature_jacobian + 27 * joint;
-        for (int m = 0; m < 3; ++m) {
-          double sum = 0;
-          for (int k = 0; k < 9; ++k) sum += corrective[q][r][k] * F[9 * m + k];
-          target[m] += sum;
-        }
+        Quad sum = MulAdd(lever[0] * row[1] - lever[1] * row[0], G[2], ZeroQuad());
+        sum = MulAdd(lever[1] * row[2] - lever[2] * row[1], G[0], sum);
+        sum = MulAdd(lever[2] * row[0] - lever[0] * row[2], G[1], sum);
+        for (int k = 0; k < 9 && has_corrective[q]; ++k) sum = MulAdd(corrective[q][r][k], LoadQuad(F + 4 * k), sum);
+        // The fourth value lands in the next column, which is filled later.
+        StoreQuad(sum, out[r] + column);
       }
     }
+    double* HWY_RESTRICT beta[2] = {out[0] + group.beta_column, out[1] + group.beta_column};
+    FillShape(frame, body.shape_stride, corners, num_corners, bone_A, bone_joints, num_bones, beta);
   }
 }
 

@@ -21,25 +21,27 @@ struct Body {
   int shape_stride = 0, num_joints = 0;
 };
 
-/// The kinematic tree of one frame (kinematics.h).
+/// The kinematic tree of one frame (kinematics.h), in rows of four values, which vectors read at once.
 struct Frame {
-  int num_betas = 0;
+  int num_betas = 0, dt_stride = 0;
   const double* betas = nullptr;
-  const double* G = nullptr;                 ///< J × 3×3
-  const double* t = nullptr;                 ///< J × 3
-  const double* p = nullptr;                 ///< J × 3
-  const double* feature = nullptr;           ///< J × 9
-  const double* feature_jacobian = nullptr;  ///< J × 9×3, column by column
-  const double* dt = nullptr;                ///< J × 3 × num_betas, row by row
+  const double* transform = nullptr;  ///< J × 4 × 4: the columns of G with a 0 each, then t and 1
+  const double* feature = nullptr;    ///< J × 9
+  // Derivatives only:
+  const double* rotation = nullptr;          ///< J × 3 × 4: the rows of G with a 0 each
+  const double* joint = nullptr;             ///< J × 4: p and 1
+  const double* feature_jacobian = nullptr;  ///< J × 9 × 4: its rows with a 0 each
+  const double* dt = nullptr;                ///< J × 3 × dt_stride, zeros from num_betas on
 };
 
-/// Rest vertices: `shaped` belongs to a shape, `rest` (with correctives) to a frame. A stamp that is not the current
-/// one means that the vertex has not been computed yet.
+/// Vertices, 3 values each: `shaped` belongs to a shape, `rest` (with correctives) and `posed` to a frame. A stamp that
+/// is not the current one means that the vertex has not been computed yet.
 struct Vertices {
   int* shaped_stamp = nullptr;
-  int* rest_stamp = nullptr;
+  int* posed_stamp = nullptr;
   double* shaped = nullptr;
   double* rest = nullptr;
+  double* posed = nullptr;
   int shape = 0, frame = 0;
 };
 
@@ -56,7 +58,7 @@ struct Group {
   int num_joints = 0;
   const int* joints = nullptr;
   const int* parent = nullptr;    ///< index into `joints`, −1: none
-  const int* column = nullptr;    ///< first of its 3 columns in a row; −1: held
+  const int* column = nullptr;    ///< first of its 3 columns in a row, ascending; −1: held
   const int* of_joint = nullptr;  ///< J: index into `joints`
   int beta_column = 0;            ///< first of num_betas columns
 };
@@ -64,7 +66,7 @@ struct Group {
 inline constexpr int kMaxGroupJoints = 256;
 
 /// For points that PosePoints has posed in this frame: two rows each, A ∂x/∂δ_j and A ∂x/∂β, A the point's 2×3 matrix
-/// row by row. Other columns are left alone.
+/// row by row. The column behind the last joint's is overwritten; others are left alone.
 void FillRows(const Body& body, const Frame& frame, const Vertices& vertices, const Group& group, const Point* points,
               const int* chosen, int n, const double* A, double* rows, int64_t stride);
 
