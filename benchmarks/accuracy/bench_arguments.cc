@@ -44,9 +44,25 @@ std::vector<std::string> BenchArguments::List(const std::string& name) const {
   return items;
 }
 
+namespace {
+
+void PrintHelp(const std::string& program, const std::map<std::string, std::string>& known) {
+  std::printf("usage: %s [--OPTION VALUE]...\n\noptions and what they are unless said otherwise (lists: commas)\n",
+              program.c_str());
+  for (const auto& [name, value] : known) {
+    std::printf("  --%-18s %s\n", name.c_str(), value.empty() ? "none" : value.c_str());
+  }
+}
+
+}  // namespace
+
 int BenchMain(const std::string& program, int argc, char** argv, std::map<std::string, std::string> known,
               const std::function<void(const BenchArguments& arguments, const std::string& command)>& run) {
   try {
+    if (argc > 1 && (std::string(argv[1]) == "--help" || std::string(argv[1]) == "-h")) {
+      PrintHelp(program, known);
+      return 0;
+    }
     std::string command = program;
     for (int i = 1; i < argc; ++i) command += " " + std::string(argv[i]);
     run(BenchArguments(argc, argv, std::move(known)), command);

@@ -22,8 +22,8 @@ class BenchArguments {
   std::map<std::string, std::string> values_;
 };
 
-/// main() of a benchmark: runs it with its arguments and the command as it was called. Exit code 1, with one line on
-/// stderr, for anything thrown.
+/// main() of a benchmark: runs it with its arguments and the command as it was called. --help lists the options. Exit
+/// code 1, with one line on stderr, for anything thrown.
 int BenchMain(const std::string& program, int argc, char** argv, std::map<std::string, std::string> known,
               const std::function<void(const BenchArguments& arguments, const std::string& command)>& run);
 

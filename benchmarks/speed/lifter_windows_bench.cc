@@ -162,15 +162,7 @@ Times Measure(int windows, const std::function<void()>& work) {
   return best;
 }
 
-int Run(int argc, char** argv) {
-  const BenchArguments arguments(argc, argv,
-                                 {{"motion", ""},
-                                  {"windows", "4000"},
-                                  {"json", ""},
-                                  {"picture", ""},
-                                  {"first", "0"},
-                                  {"floor_poses", ""},
-                                  {"floor_work", ""}});
+void Run(const BenchArguments& arguments, const std::string& command) {
   const Library library = Motions(arguments.Text("motion"));
   LifterWindowOptions options;
   if (!arguments.Text("floor_work").empty()) options.floor_work = std::stod(arguments.Text("floor_work"));
@@ -183,7 +175,7 @@ int Run(int argc, char** argv) {
   if (!arguments.Text("floor_poses").empty()) DrawFloorPoses(generator.body(), arguments.Text("floor_poses"));
 
   const int windows = arguments.Integer("windows");
-  if (windows < 1) return 0;
+  if (windows < 1) return;
   BenchReport report;
   report.title = "Training windows of 81 frames";
   report.label_columns = {"what"};
@@ -220,20 +212,22 @@ int Run(int argc, char** argv) {
   stage("detections", [&](int i) { frames[i] = generator.Detect(i, scenes[i]); });
   stage("features, targets", [&](int i) { generator.MakeWindow(i, scenes[i], frames[i], &window); });
   report.notes = {"best of three rounds"};
-  for (int i = 0; i < argc; ++i) report.command += (i > 0 ? " " : "") + std::string(argv[i]);
+  report.command = command;
   std::fputs(BenchText(report).c_str(), stdout);
   if (!arguments.Text("json").empty()) WriteFileAtomically(arguments.Text("json"), BenchJson(report));
-  return 0;
 }
 
 }  // namespace
 }  // namespace bodyloom
 
 int main(int argc, char** argv) {
-  try {
-    return bodyloom::Run(argc, argv);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return 1;
-  }
+  return bodyloom::BenchMain("bodyloom_bench_lifter_windows", argc, argv,
+                             {{"motion", ""},
+                              {"windows", "4000"},
+                              {"json", ""},
+                              {"picture", ""},
+                              {"first", "0"},
+                              {"floor_poses", ""},
+                              {"floor_work", ""}},
+                             bodyloom::Run);
 }

@@ -239,11 +239,10 @@ void Overlay(int repetitions, BenchReport* report) {
   }
 }
 
-int Run(int argc, char** argv) {
-  const BenchArguments arguments(argc, argv, {{"sizes", "128,256,512,1024"}, {"repetitions", "100"}, {"json", ""}});
+void Run(const BenchArguments& arguments, const std::string& command) {
   BenchReport report;
   report.title = "Rasteriser: built-in body (7,874 vertices, 15,744 faces), T-pose, fills the frame";
-  report.command = "bodyloom_bench_raster";
+  report.command = command;
   report.label_columns = {"what"};
   report.value_columns = {"1 thread_processor_ms", "1 thread_median_ms", "1 thread_least_ms", "2 threads_median_ms",
                           "2 threads_least_ms",    "px_covered",         "px_wrong",          "uv_error_1e-6"};
@@ -257,17 +256,12 @@ int Run(int argc, char** argv) {
   Overlay(arguments.Integer("repetitions"), &report);
   std::printf("%s", BenchText(report).c_str());
   if (!arguments.Text("json").empty()) WriteFileAtomically(arguments.Text("json"), BenchJson(report));
-  return 0;
 }
 
 }  // namespace
 }  // namespace bodyloom
 
 int main(int argc, char** argv) {
-  try {
-    return bodyloom::Run(argc, argv);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "bodyloom_bench_raster: %s\n", error.what());
-    return 1;
-  }
+  return bodyloom::BenchMain("bodyloom_bench_raster", argc, argv,
+                             {{"sizes", "128,256,512,1024"}, {"repetitions", "100"}, {"json", ""}}, bodyloom::Run);
 }
