@@ -143,7 +143,10 @@ NdArray ArrayFromBytes(const ElementType& type, std::vector<int64_t> shape, bool
   array.bytes = fortran_order && array.shape.size() > 1 && !bytes.empty()
                     ? ReorderToC(array.shape, type.item_size, bytes)
                     : std::string(bytes);
-  if (type.big_endian) SwapBytes(type.dtype == DType::kUnicode ? 4 : type.item_size, &array.bytes);
+  // Bytes have no order, whatever their type string says.
+  if (type.big_endian && type.dtype != DType::kBytes) {
+    SwapBytes(type.dtype == DType::kUnicode ? 4 : type.item_size, &array.bytes);
+  }
   return array;
 }
 

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "data_tools/formats/element_type.h"
 #include "data_tools/formats/mat_headers.h"
 #include "tests/data_tools/fuzz_seeds.h"
 #include "tests/data_tools/temporary_file.h"
@@ -60,6 +61,17 @@ TEST(FuzzFound, MatlabHeadersThatAskForGigabytes) {
 TEST(FuzzFound, ImagesThatAreTakenForDicom) {
   EXPECT_FALSE(AcceptsImage(std::string(128, ';') + "DICM;"));
   EXPECT_FALSE(AcceptsImage("RIFF;;;;WEBP" + std::string(116, ';') + "DICM;"));
+}
+
+// Text of no bytes in the other order took forever; text of some was turned around.
+TEST(FuzzFound, BytesHaveNoOrder) {
+  const auto read = [](const std::string& type, const std::string& bytes) {
+    return ArrayFromBytes(*ParseElementType(type), {2}, false, bytes);
+  };
+  EXPECT_EQ(read(">a0", "").bytes, "");
+  EXPECT_EQ(read(">S3", "abcdef").bytes, "abcdef");
+  EXPECT_EQ(read(">u2", "abcd").bytes, "badc");
+  EXPECT_EQ(read(">U1", "abcdefgh").bytes, "dcbahgfe");
 }
 
 // The body's landmarks, tracks and observations name their file; so must every array of whole numbers.
