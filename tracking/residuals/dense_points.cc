@@ -69,7 +69,7 @@ void DensePoints::SetBody(const Kinematics& kinematics) {
   frame_.feature = kinematics.feature[0].data();
   transform_.resize(static_cast<size_t>(16) * body_.num_joints);
   for (int j = 0; j < body_.num_joints; ++j) {
-    Eigen::Map<Eigen::Matrix4d> transform(&transform_[16 * j]);
+    Eigen::Map<Eigen::Matrix4d> transform(transform_.data() + 16 * j);
     transform.topLeftCorner<3, 3>() = kinematics.G[j];
     transform.topRightCorner<3, 1>() = kinematics.t[j];
     transform.bottomRows<1>() << 0, 0, 0, 1;
@@ -86,11 +86,11 @@ void DensePoints::SetDerivatives(const Kinematics& kinematics) {
   feature_jacobian_.assign(static_cast<size_t>(36) * J, 0.0);
   dt_.assign(static_cast<size_t>(3) * J * frame_.dt_stride, 0.0);
   for (int j = 0; j < J; ++j) {
-    RowsOfFour(&rotation_[12 * j], 3, 4).leftCols<3>() = kinematics.G[j];
-    RowsOfFour(&joint_[4 * j], 1, 4).leftCols<3>() = kinematics.p[j].transpose();
-    RowsOfFour(&feature_jacobian_[36 * j], 9, 4).leftCols<3>() = kinematics.feature_jacobian[j];
-    Eigen::Map<RowMatrixXd>(&dt_[static_cast<size_t>(3) * j * frame_.dt_stride], 3, frame_.dt_stride).leftCols(B) =
-        kinematics.dt[j];
+    RowsOfFour(rotation_.data() + 12 * j, 3, 4).leftCols<3>() = kinematics.G[j];
+    RowsOfFour(joint_.data() + 4 * j, 1, 4).leftCols<3>() = kinematics.p[j].transpose();
+    RowsOfFour(feature_jacobian_.data() + 36 * j, 9, 4).leftCols<3>() = kinematics.feature_jacobian[j];
+    Eigen::Map<RowMatrixXd>(dt_.data() + static_cast<int64_t>(3) * j * frame_.dt_stride, 3, frame_.dt_stride)
+        .leftCols(B) = kinematics.dt[j];
   }
   frame_.rotation = rotation_.data();
   frame_.joint = joint_.data();
