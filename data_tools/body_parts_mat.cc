@@ -36,7 +36,6 @@ class MatFile {
     CheckMatHeaders(path);
     file_.reset(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
     if (file_ == nullptr) Fail("not a MATLAB file that can be opened, expected DensePose's UV_Processed.mat");
-    if (Mat_GetVersion(file_.get()) != MAT_FT_MAT5) Fail("not a MATLAB version 5 file, expected UV_Processed.mat");
   }
 
   [[noreturn]] void Fail(const std::string& message) const { throw std::runtime_error(path_ + ": " + message); }

@@ -16,7 +16,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr size_t kFileHeader = 128, kSignature = 126, kTag = 8;
+constexpr size_t kFileHeader = 128, kVersion = 124, kSignature = 126, kTag = 8;
 constexpr uint32_t kMatrix = 14, kCompressed = 15, kUint32 = 6, kInt32 = 5, kInt8 = 1;  // data types
 constexpr uint32_t kFirstNumericClass = 6, kLastNumericClass = 15;
 constexpr uint32_t kMaxDimensions = 16, kMaxName = 63;
@@ -84,10 +84,15 @@ void CheckMatHeaders(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) throw std::runtime_error(path + ": cannot be opened, expected a MATLAB file");
   const std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  if (bytes.size() < kFileHeader) return;
-  const std::string signature = bytes.substr(kSignature, 2);
-  if (signature != "IM" && signature != "MI") return;
-  const Words words(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size(), signature == "MI");
+  using namespace std::string_literals;
+  const std::string signature = bytes.size() < kFileHeader ? "" : bytes.substr(kSignature, 2);
+  const bool swapped = signature == "MI";
+  const std::string version = bytes.size() < kFileHeader ? "" : bytes.substr(kVersion, 2);
+  // libmatio takes whatever is neither 5 nor 7.3 for version 4, whose headers claim sizes too.
+  if ((signature != "IM" && !swapped) || version != (swapped ? "\1\0"s : "\0\1"s)) {
+    throw std::runtime_error(path + ": not a MATLAB version 5 file, expected one saved with -v6 or -v7");
+  }
+  const Words words(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size(), swapped);
   size_t at = kFileHeader;
   while (at < bytes.size()) {
     const auto fail = [&](const std::string& what) {
@@ -100,9 +105,9 @@ void CheckMatHeaders(const std::string& path) {
     if (type == kCompressed) {
       std::array<unsigned char, kLongestHead> head{};
       const size_t n = Inflate(words.bytes(at + kTag), size, &head);
-      fault = Fault(Words(head.data(), n, signature == "MI"));
+      fault = Fault(Words(head.data(), n, swapped));
     } else {
-      fault = Fault(Words(words.bytes(at), kTag + size, signature == "MI"));
+      fault = Fault(Words(words.bytes(at), kTag + size, swapped));
     }
     if (!fault.empty()) fail(fault);
     at += kTag + size;

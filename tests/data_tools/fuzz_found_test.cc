@@ -54,6 +54,14 @@ TEST(FuzzFound, MatlabHeadersThatAskForGigabytes) {
   EXPECT_THAT(with(0, 9), HasSubstr("data of type 9"));
   EXPECT_THAT(with(0, 15), HasSubstr("cut short"));  // not compressed data at all
   EXPECT_THAT(with(10, 1), HasSubstr("name takes 97 bytes"));
+  // Neither version 5 nor 7.3: taken for version 4, and 500 MB for a name of 187 bytes.
+  std::string other = MatOf(good);
+  for (const size_t at : {124, 125, 126, 127}) {
+    other[at] ^= 2;
+    EXPECT_THAT(ErrorOfMat(other), HasSubstr("not a MATLAB version 5 file")) << at;
+    other[at] ^= 2;
+  }
+  EXPECT_THAT(ErrorOfMat(other.substr(0, 127)), HasSubstr("not a MATLAB version 5 file"));
   EXPECT_FALSE(AcceptsMat(MatOf({14, 0xa0, 6, 8, 0xfffffe06, 0xd8, 5, 0xe0000008})));
 }
 
