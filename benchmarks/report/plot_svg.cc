@@ -10,7 +10,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr double kWidth = 640, kHeight = 420, kLeft = 70, kRight = 170, kTop = 40, kBottom = 55;
+constexpr double kWidth = 640, kHeight = 420, kLeft = 70, kRight = 170, kTop = 40, kBottom = 55, kLegendText = 40;
 constexpr std::array<const char*, 8> kColours = {"#1f6fb4", "#d1495b", "#2e8b57", "#8a5fbf",
                                                  "#c77800", "#00808a", "#b0307a", "#7a6a00"};
 
@@ -65,6 +65,15 @@ struct Axis {
   }
 };
 
+/// The longest name of the legend has to fit in, at some 7 pixels a letter.
+double WholeWidth(const Plot& plot) {
+  double width = kWidth;
+  for (const PlotLine& line : plot.lines) {
+    width = std::max(width, kWidth - kRight + kLegendText + 7 * static_cast<double>(line.name.size()));
+  }
+  return width;
+}
+
 }  // namespace
 
 std::string PlotSvg(const Plot& plot) {
@@ -83,9 +92,12 @@ std::string PlotSvg(const Plot& plot) {
   const auto across = [&](double v) { return kLeft + x.At(v) * (kWidth - kLeft - kRight); };
   const auto down = [&](double v) { return kHeight - kBottom - y.At(v) * (kHeight - kTop - kBottom); };
   char buffer[320];
-  std::string svg =
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 640 420\" width=\"640\" height=\"420\" "
-      "font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"640\" height=\"420\" fill=\"#ffffff\"/>\n";
+  std::snprintf(buffer, sizeof buffer,
+                "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %.0f %.0f\" width=\"%.0f\" height=\"%.0f\" "
+                "font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"100%%\" height=\"100%%\" "
+                "fill=\"#ffffff\"/>\n",
+                WholeWidth(plot), kHeight, WholeWidth(plot), kHeight);
+  std::string svg = buffer;
   svg += Text(kLeft, 24, "start", plot.title, "font-size=\"14\" font-weight=\"bold\"");
   for (double v : x.Ticks()) {
     std::snprintf(buffer, sizeof buffer, "<path d=\"M%.1f %.1fV%.1f\" stroke=\"#dddddd\"/>\n", across(v), kTop,
@@ -130,7 +142,7 @@ std::string PlotSvg(const Plot& plot) {
     std::snprintf(buffer, sizeof buffer, "<path d=\"M%.1f %.1fh22\" stroke=\"%s\" stroke-width=\"2.5\"%s/>\n",
                   kWidth - kRight + 12, legend - 4, colour, line.dashed ? " stroke-dasharray=\"6 4\"" : "");
     svg += buffer;
-    svg += Text(kWidth - kRight + 40, legend, "start", line.name);
+    svg += Text(kWidth - kRight + kLegendText, legend, "start", line.name);
   }
   return svg + "</svg>\n";
 }

@@ -182,5 +182,16 @@ TEST_F(Reports, PlotsAreWritten) {
   EXPECT_NE(svg.find("A title"), std::string::npos);
 }
 
+TEST(BenchPlot, ALongNameWidensThePicture) {
+  Plot plot = Report(1).plots[0];
+  const auto width = [&]() {
+    const std::string svg = PlotSvg(plot);
+    return std::stod(svg.substr(svg.find("width=\"") + 7));
+  };
+  const double before = width();
+  plot.lines[0].name = std::string(60, 'm');
+  EXPECT_GE(width(), before + 200);
+}
+
 }  // namespace
 }  // namespace bodyloom
