@@ -91,12 +91,13 @@ std::string PlotSvg(const Plot& plot) {
   y.Widen();
   const auto across = [&](double v) { return kLeft + x.At(v) * (kWidth - kLeft - kRight); };
   const auto down = [&](double v) { return kHeight - kBottom - y.At(v) * (kHeight - kTop - kBottom); };
+  const double width = WholeWidth(plot);
   char buffer[320];
   std::snprintf(buffer, sizeof buffer,
                 "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %.0f %.0f\" width=\"%.0f\" height=\"%.0f\" "
                 "font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"100%%\" height=\"100%%\" "
                 "fill=\"#ffffff\"/>\n",
-                WholeWidth(plot), kHeight, WholeWidth(plot), kHeight);
+                width, kHeight, width, kHeight);
   std::string svg = buffer;
   svg += Text(kLeft, 24, "start", plot.title, "font-size=\"14\" font-weight=\"bold\"");
   for (double v : x.Ticks()) {

@@ -52,29 +52,20 @@ HWY_INLINE Quad Transform(const double* HWY_RESTRICT transform, const double* HW
                 MulAdd(x[1], LoadQuad(transform + 4), MulAdd(x[2], LoadQuad(transform + 8), LoadQuad(transform + 12))));
 }
 
-/// R×3 times 3×n, added to R×n: target_r[i] += Σ_c A_rc row_c[i], rows of float or of double.
-template <int R, int C, class T>
-HWY_INLINE void AddRows(const double (&A)[R][C], const T* HWY_RESTRICT row0, const T* HWY_RESTRICT row1,
-                        const T* HWY_RESTRICT row2, int n, double* HWY_RESTRICT const (&target)[R]) {
+/// 2×3 times a corrective's 3×9 block, added to 2×9: target_r[i] += Σ_c A_rc block_c[i].
+HWY_INLINE void AddBlock(const double (&A)[2][4], const float* HWY_RESTRICT block, double (&target)[2][16]) {
   const Tag d;
   const int N = static_cast<int>(hn::Lanes(d));
-  int i = 0;
-  for (; i + N <= n; i += N) {
-    Lanes x, y, z;
-    if constexpr (sizeof(T) == sizeof(float)) {
-      x = LoadFloats(row0 + i), y = LoadFloats(row1 + i), z = LoadFloats(row2 + i);
-    } else {
-      x = hn::LoadU(d, row0 + i), y = hn::LoadU(d, row1 + i), z = hn::LoadU(d, row2 + i);
-    }
-    for (int r = 0; r < R; ++r) {
+  for (int i = 0; i < 8; i += N) {
+    const Lanes x = LoadFloats(block + i), y = LoadFloats(block + 9 + i), z = LoadFloats(block + 18 + i);
+    for (int r = 0; r < 2; ++r) {
       Lanes sum = hn::MulAdd(hn::Set(d, A[r][0]), x, hn::LoadU(d, target[r] + i));
       sum = hn::MulAdd(hn::Set(d, A[r][1]), y, sum);
       hn::StoreU(hn::MulAdd(hn::Set(d, A[r][2]), z, sum), d, target[r] + i);
     }
   }
-  for (; i < n; ++i) {
-    const double x = row0[i], y = row1[i], z = row2[i];
-    for (int r = 0; r < R; ++r) target[r][i] += A[r][0] * x + A[r][1] * y + A[r][2] * z;
+  for (int r = 0; r < 2; ++r) {
+    target[r][8] += A[r][0] * double{block[8]} + A[r][1] * double{block[17]} + A[r][2] * double{block[26]};
   }
 }
 
@@ -233,8 +224,7 @@ void FillRowsHere(const Body& body, const Frame& frame, const Vertices& vertices
           has_corrective[q] = true;
           for (int m = 0; m < 9; ++m) corrective[q][0][m] = corrective[q][1][m] = 0;
         }
-        const float* HWY_RESTRICT block = body.corrective_block + 27 * static_cast<int64_t>(e);
-        AddRows(corner.A, block, block + 9, block + 18, 9, {corrective[q][0], corrective[q][1]});
+        AddBlock(corner.A, body.corrective_block + 27 * static_cast<int64_t>(e), corrective[q]);
       }
     }
     for (int k = 0; k < num_bones; ++k) {
