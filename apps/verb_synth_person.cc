@@ -120,7 +120,7 @@ void SynthPerson(SynthPersonCommand command) {
     std::cout << "cloth            " << summary.cloth_vertices << " vertices, "
               << static_cast<int>(1e4 * summary.cloth_seconds / summary.frames) / 10.0
               << " ms a frame, stretched by at most " << static_cast<int>(1000 * summary.largest_stretch) / 10.0
-              << " %, " << summary.cuts << " cuts\n";
+              << " %, " << summary.cuts << " cuts, a leg through it in " << summary.frames_through << " frames\n";
   }
   std::cout << "wrote            " << command.out << "\n";
   if (!command.sheet.empty()) std::cout << "wrote            " << command.sheet << "\n";

@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-enum class Limb { kTrunk, kLeg, kArm };
+enum class Limb { kTrunk, kHips, kLeg, kArm };
 struct BoneOfLimb {
   int from, to;
   Limb limb;
@@ -20,7 +20,7 @@ struct BoneOfLimb {
 constexpr std::array<BoneOfLimb, 16> kBones = {{{0, 3, Limb::kTrunk},
                                                 {3, 6, Limb::kTrunk},
                                                 {6, 12, Limb::kTrunk},
-                                                {1, 2, Limb::kTrunk},
+                                                {1, 2, Limb::kHips},
                                                 {1, 4, Limb::kLeg},
                                                 {2, 5, Limb::kLeg},
                                                 {4, 7, Limb::kLeg},
@@ -35,12 +35,18 @@ constexpr std::array<BoneOfLimb, 16> kBones = {{{0, 3, Limb::kTrunk},
                                                 {21, 23, Limb::kArm}}};
 
 bool IsTrunkOrLeg(int joint) { return joint <= 11; }
+bool IsBelowWaist(int joint) { return joint == 0 || (IsTrunkOrLeg(joint) && joint % 3 != 0); }
+
+ClothSide SideOf(Limb limb) {
+  if (limb == Limb::kTrunk) return ClothSide::kAnywhere;
+  return limb == Limb::kArm ? ClothSide::kOutside : ClothSide::kInside;
+}
 
 /// Mean of the distances; for the trunk, which is no tube, the tenth part from below.
 double RadiusOf(std::vector<double> distances, Limb limb) {
   if (distances.empty()) return 0;
   std::sort(distances.begin(), distances.end());
-  if (limb == Limb::kTrunk) return 0.8 * distances[distances.size() / 10];
+  if (limb == Limb::kTrunk || limb == Limb::kHips) return 0.8 * distances[distances.size() / 10];
   double sum = 0;
   for (const double d : distances) sum += d;
   return (limb == Limb::kLeg ? 0.85 : 1.0) * sum / double(distances.size());
@@ -67,6 +73,7 @@ BodyObstacles::BodyObstacles(const BodyModel& body, const MatrixX3d& vertices, c
     if (!IsTrunkOrLeg(strongest[v])) continue;
     place[v] = static_cast<int>(vertices_.size());
     vertices_.push_back(v);
+    enclosed_.push_back(IsBelowWaist(strongest[v]) ? 1 : 0);
   }
   const MatrixX3i& faces = body.data().faces;
   std::vector<int> kept;
@@ -88,12 +95,13 @@ BodyObstacles::BodyObstacles(const BodyModel& body, const MatrixX3d& vertices, c
       if (along > 0 && along < 1) distances[along < 0.5 ? 0 : 1].push_back(distance);
     }
     bones_.push_back({bone.from, bone.to, RadiusOf(distances[0], bone.limb), RadiusOf(distances[1], bone.limb),
-                      bone.limb == Limb::kArm});
+                      bone.limb == Limb::kArm, SideOf(bone.limb)});
   }
 }
 
 ClothObstacles BodyObstacles::At(const MatrixX3d& vertices, const MatrixX3f& normals, const MatrixX3d& joints) const {
   ClothObstacles obstacles;
+  obstacles.enclosed = enclosed_;
   const auto n = static_cast<Eigen::Index>(vertices_.size());
   obstacles.points.resize(n, 3), obstacles.normals.resize(n, 3);
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -102,7 +110,7 @@ ClothObstacles BodyObstacles::At(const MatrixX3d& vertices, const MatrixX3f& nor
   }
   for (const Bone& bone : bones_) {
     obstacles.capsules.push_back({joints.row(bone.from).transpose(), joints.row(bone.to).transpose(), bone.radius_from,
-                                  bone.radius_to, bone.yields});
+                                  bone.radius_to, bone.yields, bone.belongs});
   }
   return obstacles;
 }

@@ -14,6 +14,12 @@ namespace {
 
 using Eigen::Vector3d;
 
+/// Cosine between a vertex' normal and the way out of an obstacle beyond which the inner side touches.
+constexpr double kInnerSide = 0.3;
+
+/// Around a face through which a limb has come, cloth is not held by limbs.
+constexpr double kFreed_m = 0.2;
+
 bool AllFinite(const std::vector<Vector3d>& points) {
   return std::all_of(points.begin(), points.end(), [](const Vector3d& p) { return p.allFinite(); });
 }
@@ -39,6 +45,34 @@ void BuildNeighbours(const MatrixX3i& faces, int num_points, std::vector<int>* b
     neighbours->push_back(b);
   }
   for (int i = 0; i < num_points; ++i) (*begin)[i + 1] += (*begin)[i];
+}
+
+/// Whether a + t·along passes through the triangle for some t in [0, 1).
+bool SegmentCrosses(const Vector3d& a, const Vector3d& along, const Vector3d& p, const Vector3d& q, const Vector3d& r) {
+  const Vector3d e1 = q - p, e2 = r - p, across = along.cross(e2);
+  const double det = e1.dot(across);
+  if (det == 0) return false;
+  const Vector3d from = a - p;
+  const double u = from.dot(across) / det;
+  if (u < 0 || u >= 1) return false;
+  const Vector3d beside = from.cross(e1);
+  const double v = along.dot(beside) / det, t = e2.dot(beside) / det;
+  return v >= 0 && u + v < 1 && t >= 0 && t < 1;
+}
+
+/// Calls crossed(f) for the faces that the segment from a to b passes through.
+template <typename Crossed>
+void ForEachCrossedFace(const MatrixX3i& faces, const std::vector<Vector3d>& positions, const Vector3d& a,
+                        const Vector3d& b, const Crossed& crossed) {
+  const Vector3d low = a.cwiseMin(b), high = a.cwiseMax(b), along = b - a;
+  for (int f = 0; f < faces.rows(); ++f) {
+    const Vector3d &p = positions[faces(f, 0)], &q = positions[faces(f, 1)], &r = positions[faces(f, 2)];
+    bool apart = false;  // most are
+    for (int c = 0; c < 3 && !apart; ++c) {
+      apart = (p[c] < low[c] && q[c] < low[c] && r[c] < low[c]) || (p[c] > high[c] && q[c] > high[c] && r[c] > high[c]);
+    }
+    if (!apart && SegmentCrosses(a, along, p, q, r)) crossed(f);
+  }
 }
 
 }  // namespace
@@ -67,6 +101,7 @@ bool ClothOptions::IsValid(std::string* why) const {
     return no("cloth: friction, damping and drag must not be negative");
   }
   if (!(max_speed > 0 && max_speed <= 1000)) return no("cloth: max_speed must be in (0, 1000]");
+  if (!(pass_speed >= 0 && pass_speed <= max_speed)) return no("cloth: pass_speed must be in [0, max_speed]");
   if (floor && !(floor->point.allFinite() && std::abs(floor->up.norm() - 1) < 1e-6)) {
     return no("cloth: the floor needs a finite point and a unit vector");
   }
@@ -99,7 +134,7 @@ ClothSimulation::ClothSimulation(ClothMesh mesh, std::vector<Vector3d> start, Cl
   BODYLOOM_CHECK(mesh_.faces.size() == 0 || (mesh_.faces.minCoeff() >= 0 && mesh_.faces.maxCoeff() < n),
                  "cloth: a face has a vertex outside 0 to ", n - 1);
   BuildNeighbours(surface_faces, static_cast<int>(obstacles_.points.rows()), &neighbour_begin_, &neighbour_);
-  nearest_.assign(n, -1), normal_.assign(n, Vector3d::Zero()), contact_.resize(n);
+  nearest_.assign(n, -1), normal_.assign(n, Vector3d::Zero()), contact_.resize(n), off_.resize(n);
   Restart(std::move(start), obstacles_);
   for (int f = 0; f < mesh_.faces.rows(); ++f) {  // air meets each vertex with a third of its faces
     const Vector3d &a = x_[mesh_.faces(f, 0)], &b = x_[mesh_.faces(f, 1)], &c = x_[mesh_.faces(f, 2)];
@@ -112,6 +147,9 @@ void ClothSimulation::CheckObstacles(const ClothObstacles& o) const {
                      o.normals.rows() == o.points.rows(),
                  "cloth: ", o.capsules.size(), " capsules, ", o.points.rows(), " points and ", o.normals.rows(),
                  " normals, expected ", obstacles_.capsules.size(), ", ", obstacles_.points.rows(), " and as many");
+  BODYLOOM_CHECK(o.enclosed.empty() || static_cast<Eigen::Index>(o.enclosed.size()) == o.points.rows(), "cloth: of ",
+                 o.enclosed.size(), " points it is said whether they are enclosed, expected none or all ",
+                 o.points.rows());
   BODYLOOM_CHECK(o.points.allFinite() && o.normals.allFinite(), "cloth: the obstacles are not finite");
   for (const Capsule& c : o.capsules) {
     BODYLOOM_CHECK(c.a.allFinite() && c.b.allFinite() && c.radius_a >= 0 && c.radius_b >= 0 &&
@@ -186,6 +224,22 @@ void ClothSimulation::UpdateVertexNormals() {
   }
 }
 
+void ClothSimulation::FindPierced() {
+  std::fill(off_.begin(), off_.end(), Vector3d::Zero());
+  for (const Capsule& capsule : obstacles_.capsules) {
+    if (capsule.belongs != ClothSide::kInside) continue;
+    const Vector3d along = capsule.b - capsule.a;
+    ForEachCrossedFace(mesh_.faces, x_, capsule.a, capsule.b, [&](int f) {
+      const Vector3d &p = x_[mesh_.faces(f, 0)], &q = x_[mesh_.faces(f, 1)], &r = x_[mesh_.faces(f, 2)];
+      const bool outwards = (q - p).cross(r - p).dot(along) > 0;
+      const Vector3d way = (outwards ? along : Vector3d(-along)).normalized(), middle = (p + q + r) / 3;
+      for (const int v : free_) {
+        if ((x_[v] - middle).squaredNorm() < kFreed_m * kFreed_m) off_[v] = way;
+      }
+    });
+  }
+}
+
 void ClothSimulation::PredictVertices(double h) {
   const double keep = std::exp(-h * options_.damping);
   for (const int i : free_) {
@@ -197,6 +251,7 @@ void ClothSimulation::PredictVertices(double h) {
          std::min(1.0, scale * options_.drag_tangential * v_t.norm()) * v_t;
     const double speed = v.norm();
     if (speed > options_.max_speed) v *= options_.max_speed / speed;
+    x_[i] += options_.pass_speed * h * off_[i];
     before_[i] = x_[i];
     x_[i] += h * v;
     contact_[i].depth_m = 0;
@@ -231,6 +286,11 @@ void ClothSimulation::Touch(int vertex, const Vector3d& normal, double depth_m, 
   contact_[vertex] = {normal, obstacle_velocity, depth_m};
 }
 
+bool ClothSimulation::LetsThrough(int vertex, ClothSide belongs, const Vector3d& away) const {
+  if (belongs == ClothSide::kInside) return !off_[vertex].isZero();
+  return belongs == ClothSide::kOutside && normal_[vertex].dot(away) > kInnerSide;
+}
+
 void ClothSimulation::WalkToNearest(int vertex) {
   int& at = nearest_[vertex];
   double best = (points_now_.row(at).transpose() - x_[vertex]).squaredNorm();
@@ -261,7 +321,7 @@ void ClothSimulation::SolveCapsules(const ClothObstacles& next, bool yielding, d
       Vector3d away;
       double along;
       const double depth = thickness - CapsuleDistance(now, p, &away, &along);
-      if (depth <= 0) continue;
+      if (depth <= 0 || LetsThrough(v, to.belongs, away)) continue;
       Touch(v, away, depth, ((1 - along) * (to.a - from.a) + along * (to.b - from.b)) / dt);
     }
   }
@@ -282,6 +342,8 @@ void ClothSimulation::SolveSurface(const ClothObstacles& next, double fraction, 
             .normalized();
     const double depth = thickness - normal.dot(d);
     if (depth <= 0) continue;
+    const bool inside = !next.enclosed.empty() && next.enclosed[i] != 0;
+    if (LetsThrough(v, inside ? ClothSide::kInside : ClothSide::kAnywhere, normal)) continue;
     Touch(v, normal, depth, (next.points.row(i) - obstacles_.points.row(i)).transpose() / dt);
   }
 }
@@ -319,6 +381,7 @@ void ClothSimulation::Step(double dt, ClothObstacles obstacles, const std::vecto
   for (const int v : pinned_) pinned_from.push_back(x_[v]);
   FindNearestPoints();
   UpdateVertexNormals();
+  FindPierced();
   for (int s = 1; s <= substeps; ++s) {
     const double fraction = double(s) / substeps;
     PredictVertices(h);
@@ -337,6 +400,13 @@ void ClothSimulation::Step(double dt, ClothObstacles obstacles, const std::vecto
     UpdateVelocities(h);
   }
   obstacles_ = std::move(obstacles);
+}
+
+int CrossingsOfSegment(const MatrixX3i& faces, const std::vector<Vector3d>& positions, const Vector3d& a,
+                       const Vector3d& b) {
+  int crossings = 0;
+  ForEachCrossedFace(faces, positions, a, b, [&](int) { ++crossings; });
+  return crossings;
 }
 
 double LargestStretch(const ClothMesh& mesh, const std::vector<Vector3d>& positions) {

@@ -18,10 +18,17 @@
 /// each substep it walks to a nearer neighbour if there is one and stays thickness_m above that point's tangent plane.
 /// Capsules catch what moved too fast for that. Cloth does not collide with itself.
 ///
+/// Sides: a leg belongs inside a skirt, an arm outside of it. Where the axis of something inside passes through a face,
+/// the limb has come through, or the cloth came down on its wrong side; pushing the cloth out would hold it there for
+/// good. So what is inside does not touch the cloth around that face, which goes along the axis, the way the face's
+/// normal points, at pass_speed until the limb is in again. What is outside does not touch the cloth's inner side: a
+/// skirt that has flown over the arms comes down again.
+///
 /// All links of one order, one thread: the same bytes each time. Finite input gives finite output.
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -49,12 +56,16 @@ struct ClothMesh {
   [[nodiscard]] int num_vertices() const { return static_cast<int>(mass_kg.size()); }
 };
 
+/// On which side of the cloth an obstacle belongs.
+enum class ClothSide { kAnywhere, kInside, kOutside };
+
 /// All points within radius_a of a, radius_b of b, and between them a radius between.
 struct Capsule {
   Eigen::Vector3d a = Eigen::Vector3d::Zero(), b = Eigen::Vector3d::Zero();
   double radius_a = 0, radius_b = 0;
   bool yields =
       false;  ///< touched before the links are solved: where an arm presses cloth into the body, cloth and body win
+  ClothSide belongs = ClothSide::kAnywhere;
 };
 
 /// How far outside the capsule a point is (negative: inside): its distance from the nearest point of the axis, minus
@@ -64,8 +75,9 @@ double CapsuleDistance(const Capsule& capsule, const Eigen::Vector3d& point, Eig
 /// What cloth collides with at one instant.
 struct ClothObstacles {
   std::vector<Capsule> capsules;
-  MatrixX3d points;   ///< of a closed surface
-  MatrixX3f normals;  ///< outwards, unit
+  MatrixX3d points;               ///< of a closed surface
+  MatrixX3f normals;              ///< outwards, unit
+  std::vector<uint8_t> enclosed;  ///< a point: 1 where it belongs inside the cloth (else anywhere); empty: nowhere
 };
 
 struct FloorPlane {
@@ -82,6 +94,7 @@ struct ClothOptions {
   double air_density = 1.2;      ///< kg/m³; 0: no drag
   double drag_normal = 1.1, drag_tangential = 0.05;
   double max_speed = 20;            ///< m/s
+  double pass_speed = 1.5;          ///< m/s, of what goes back through a limb
   std::optional<FloorPlane> floor;  ///< nothing falls below it
   [[nodiscard]] bool IsValid(std::string* why) const;
 };
@@ -115,10 +128,12 @@ class ClothSimulation {
   void FindNearestPoints();
   void WalkToNearest(int vertex);
   void UpdateVertexNormals();
+  void FindPierced();
   void PredictVertices(double h);
   void SolveLinks(double h);
   void SolveTethers();
   void Touch(int vertex, const Eigen::Vector3d& normal, double depth_m, const Eigen::Vector3d& obstacle_velocity);
+  bool LetsThrough(int vertex, ClothSide belongs, const Eigen::Vector3d& away) const;
   void SolveCapsules(const ClothObstacles& next, bool yielding, double fraction, double dt);
   void SolveSurface(const ClothObstacles& next, double fraction, double dt);
   void SolveFloor();
@@ -130,11 +145,17 @@ class ClothSimulation {
   std::vector<int> pinned_, free_;
   std::vector<Eigen::Vector3d> x_, before_, v_, normal_;
   std::vector<Contact> contact_;
+  std::vector<Eigen::Vector3d> off_;  ///< around pierced faces: the way off the limb, unit; else 0
   ClothObstacles obstacles_;
   MatrixX3d points_now_;  ///< of the substep
   std::vector<int> neighbour_begin_, neighbour_, nearest_;
   std::vector<int> cell_begin_, cell_entries_;  ///< scratch of FindNearestPoints
 };
+
+/// How often the segment from a to b passes through the faces: an odd number when one end is inside a tube of cloth and
+/// the other is not and the segment does not leave by its openings.
+int CrossingsOfSegment(const MatrixX3i& faces, const std::vector<Eigen::Vector3d>& positions, const Eigen::Vector3d& a,
+                       const Eigen::Vector3d& b);
 
 /// Largest ‖x_a − x_b‖ / rest − 1 over the links that do not stretch.
 double LargestStretch(const ClothMesh& mesh, const std::vector<Eigen::Vector3d>& positions);

@@ -76,7 +76,7 @@ ClothRun::ClothRun(const DressedPerson& person, Motion motion, const ClothRunOpt
                    motion_.timestamps[t], " s after ", motion_.timestamps[t - 1], " s, expected later");
   }
   BODYLOOM_CHECK(std::abs(options.up.norm() - 1) < 1e-6 && options.tick_s > 0 && options.move_in_s > 0 &&
-                     options.settle_s >= 0 && options.cut_speed > 0,
+                     options.settle_s >= 0 && options.cut_speed > 0 && options.cut_pause_s > 0,
                  "ClothRun: up, times and speeds must be positive, up a unit vector");
   if (person.garment().empty()) return;
   options_.cloth.gravity = -9.81 * options.up;
@@ -112,9 +112,25 @@ void ClothRun::MoveTo(const BodyPose& from, const BodyPose& to, double seconds) 
   }
 }
 
-void ClothRun::Settle(const BodyPose& from, const BodyPose& to) {
-  MoveTo(from, to, options_.move_in_s);
-  if (options_.settle_s > 0) MoveTo(to, to, options_.settle_s);
+/// The garment as sewn around the body, which then goes from its T-pose to the pose and rests. After a cut too: what a
+/// motion has done to the cloth (a fold that caught somewhere) is not carried into another one.
+void ClothRun::StartIn(const BodyPose& pose) {
+  const LooseGarment& garment = person_.garment();
+  BodyPose start = RestPose(person_.body());
+  start.rotations[0] = pose.rotations[0], start.trans = pose.trans;
+  const Vector3d pelvis = person_.rest_joints().row(0).transpose();
+  std::vector<Vector3d> sewn;
+  sewn.reserve(garment.sewn.size());
+  for (const Vector3d& p : garment.sewn) sewn.push_back(pose.rotations[0] * (p - pelvis) + pelvis + pose.trans);
+  Place place = PlaceAt(start);
+  if (simulation_) {
+    simulation_->Restart(std::move(sewn), std::move(place.obstacles));
+  } else {
+    simulation_.emplace(garment.cloth, std::move(sewn), std::move(place.obstacles), person_.obstacles().surface_faces(),
+                        options_.cloth);
+  }
+  MoveTo(start, pose, options_.move_in_s);
+  if (options_.settle_s > 0) MoveTo(pose, pose, options_.settle_s);
 }
 
 bool ClothRun::IsCut(int t) const {
@@ -122,47 +138,39 @@ bool ClothRun::IsCut(int t) const {
   const MatrixX3d before = PoseSkeleton(person_.body(), rest, PoseAt(t - 1)).joints,
                   after = PoseSkeleton(person_.body(), rest, PoseAt(t)).joints;
   const double dt = motion_.timestamps[t] - motion_.timestamps[t - 1];
-  return dt > 1 || (after - before).rowwise().norm().mean() > options_.cut_speed * dt;
+  return dt >= options_.cut_pause_s * (1 - 1e-9) || (after - before).rowwise().norm().mean() > options_.cut_speed * dt;
 }
 
 const std::vector<Vector3d>& ClothRun::Next() {
   BODYLOOM_CHECK(next_ < motion_.num_frames(), "ClothRun: ", motion_.num_frames(), " frames, one more was asked for");
   const int t = next_++;
-  const LooseGarment& garment = person_.garment();
-  if (garment.empty()) return none_;
+  if (person_.garment().empty()) return none_;
   const BodyPose pose = PoseAt(t);
-  const Vector3d pelvis = person_.rest_joints().row(0).transpose();
-  const auto carried = [&](const std::vector<Vector3d>& points, const Matrix3d& R, const Vector3d& from,
-                           const Vector3d& to) {
-    std::vector<Vector3d> result;
-    result.reserve(points.size());
-    for (const Vector3d& p : points) result.push_back(R * (p - from) + to);
-    return result;
-  };
-  if (t == 0) {
-    BodyPose start = RestPose(person_.body());
-    start.rotations[0] = pose.rotations[0], start.trans = pose.trans;
-    Place place = PlaceAt(start);
-    simulation_.emplace(garment.cloth, carried(garment.sewn, pose.rotations[0], pelvis, pelvis + pose.trans),
-                        std::move(place.obstacles), person_.obstacles().surface_faces(), options_.cloth);
-    Settle(start, pose);
-    return simulation_->positions();
+  if (t > 0 && !IsCut(t)) {
+    MoveTo(PoseAt(t - 1), pose, motion_.timestamps[t] - motion_.timestamps[t - 1]);
+  } else {
+    cuts_ += t > 0;
+    StartIn(pose);
   }
-  const BodyPose before = PoseAt(t - 1);
-  if (!IsCut(t)) {
-    MoveTo(before, pose, motion_.timestamps[t] - motion_.timestamps[t - 1]);
-    return simulation_->positions();
-  }
-  // The person stands somewhere else now: the cloth is carried there as it was, and then finds the new pose.
-  ++cuts_;
-  BodyPose start = before;
-  start.rotations[0] = pose.rotations[0], start.trans = pose.trans;
-  Place place = PlaceAt(start);
-  simulation_->Restart(carried(simulation_->positions(), pose.rotations[0] * before.rotations[0].transpose(),
-                               pelvis + before.trans, pelvis + pose.trans),
-                       std::move(place.obstacles));
-  Settle(start, pose);
   return simulation_->positions();
+}
+
+int ClothRun::legs_through() const {
+  if (!simulation_ || next_ == 0) return 0;
+  return LegsThroughCloth(simulation_->mesh().faces, simulation_->positions(),
+                          PoseSkeleton(person_.body(), person_.rest_joints(), PoseAt(next_ - 1)).joints);
+}
+
+int LegsThroughCloth(const MatrixX3i& faces, const std::vector<Vector3d>& cloth, const MatrixX3d& joints) {
+  int through = 0;
+  for (const int hip : {1, 2}) {
+    int crossings = 0;
+    for (const int from : {hip, hip + 3}) {
+      crossings += CrossingsOfSegment(faces, cloth, joints.row(from).transpose(), joints.row(from + 3).transpose());
+    }
+    through += crossings % 2;
+  }
+  return through;
 }
 
 double LargestDepth(const std::vector<Vector3d>& cloth, const ClothObstacles& obstacles) {

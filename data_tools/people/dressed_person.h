@@ -54,9 +54,10 @@ class DressedPerson {
 struct ClothRunOptions {
   Eigen::Vector3d up = Eigen::Vector3d::UnitY();  ///< of the motion's frame, unit
   double tick_s = 1.0 / 60;  ///< the body is posed at least this often, in between along shortest arcs
-  double move_in_s = 1.2;    ///< before frame 0 and after a cut: from the T-pose (the pose before) to the pose
+  double move_in_s = 1.2;    ///< before frame 0 and after a cut: as sewn, from the T-pose to the pose
   double settle_s = 1.3;     ///< and then at rest in it
   double cut_speed = 8;      ///< m/s: frames between which joints move faster than this on average are a cut
+  double cut_pause_s = 1;    ///< and frames this far apart or further
   bool has_floor = true;     ///< under the lowest point that the motion reaches
   ClothOptions cloth;        ///< gravity and floor are set from the above
 };
@@ -73,6 +74,8 @@ class ClothRun {
   const std::vector<Eigen::Vector3d>& Next();
 
   [[nodiscard]] int num_cuts() const { return cuts_; }
+  /// In the frame of the last Next(): LegsThroughCloth; 0 for a suit.
+  [[nodiscard]] int legs_through() const;
   [[nodiscard]] const ClothSimulation* simulation() const { return simulation_ ? &*simulation_ : nullptr; }
 
  private:
@@ -84,7 +87,7 @@ class ClothRun {
   Place PlaceAt(const BodyPose& pose);
   BodyPose PoseAt(int t) const;
   void MoveTo(const BodyPose& from, const BodyPose& to, double seconds);
-  void Settle(const BodyPose& from, const BodyPose& to);
+  void StartIn(const BodyPose& pose);
   bool IsCut(int t) const;
 
   const DressedPerson& person_;
@@ -95,6 +98,10 @@ class ClothRun {
   std::vector<Eigen::Vector3d> none_;
   int next_ = 0, cuts_ = 0;
 };
+
+/// How many legs have come through the cloth's faces: whose line from hip over knee to ankle (joints J×3) passes
+/// through them an odd number of times. A leg that stays inside, or leaves by the hem, does not.
+int LegsThroughCloth(const MatrixX3i& faces, const std::vector<Eigen::Vector3d>& cloth, const MatrixX3d& joints);
 
 /// How deep the cloth lies inside the clothed body: for each vertex of the cloth the signed distance to the tangent
 /// plane of the nearest point of trunk and legs, for those within 6 cm of it. Largest depth, metres (0: none inside).

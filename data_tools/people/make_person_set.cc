@@ -151,6 +151,7 @@ MakePersonSetSummary MakePersonSet(const std::string& folder, const BodyModel& b
       if (run.simulation() == nullptr) continue;
       summary.largest_stretch =
           std::max(summary.largest_stretch, LargestStretch(run.simulation()->mesh(), chunk.back()));
+      summary.frames_through += run.legs_through() > 0;
     }
     summary.cloth_seconds += SecondsSince(begin);
     return chunk;

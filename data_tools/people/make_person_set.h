@@ -37,6 +37,7 @@ struct MakePersonSetOptions {
 struct MakePersonSetSummary {
   bool finished = false;  ///< false: stopped by `progress`, or failed
   int frames = 0, cuts = 0, cloth_vertices = 0;
+  int frames_through = 0;                 ///< in which a leg has come through the cloth
   double seconds = 0, cloth_seconds = 0;  ///< wall time; of it in the cloth (beside drawing)
   double largest_stretch = 0;             ///< of the cloth's threads, over all frames
   [[nodiscard]] double frames_per_second() const { return seconds > 0 ? frames / seconds : 0; }

@@ -262,6 +262,101 @@ TEST(ClothSimulation, PinnedVerticesArriveAndJerksStayFinite) {
   EXPECT_LT(LargestStretch(sheet.mesh, s.positions()), 0.05) << "it finds its shape again";
 }
 
+TEST(ClothSimulation, CrossingsOfASegmentAreCounted) {
+  const Sheet sheet = MakeSheet(5, 0.4, false);  // [0, 0.4] × [0, 0.4] in the plane y = 0
+  const auto crossings = [&](const Vector3d& a, const Vector3d& b) {
+    return CrossingsOfSegment(sheet.mesh.faces, sheet.places, a, b);
+  };
+  for (int i = 0; i < 20; ++i) {
+    for (int j = 0; j < 20; ++j) {
+      const double x = 0.0103 + 0.019 * i, z = 0.0141 + 0.019 * j;
+      EXPECT_EQ(crossings({x, 0.3, z}, {x + 0.003, -0.2, z - 0.002}), 1);
+      EXPECT_EQ(crossings({x, 0.3, z}, {x, 0.01, z}), 0) << "ends above";
+      EXPECT_EQ(crossings({x, 0.1, z}, {x + 0.3, 0.1, z}), 0) << "along it";
+      EXPECT_EQ(crossings({x + 0.41, 0.3, z}, {x + 0.41, -0.3, z}), 0) << "beside it";
+    }
+  }
+}
+
+TEST(ClothSimulation, AnArmHoldsTheOuterSideAlone) {
+  const Sheet outer_up = MakeSheet(21, 0.6, false, Vector3d(-0.3, 0.12, -0.3));
+  Sheet outer_down = outer_up;
+  outer_down.mesh.faces.col(1).swap(outer_down.mesh.faces.col(2));
+  for (const ClothSide belongs : {ClothSide::kOutside, ClothSide::kAnywhere, ClothSide::kInside}) {
+    for (const bool inner_touches : {true, false}) {
+      const Sheet& sheet = inner_touches ? outer_up : outer_down;
+      ClothObstacles at;
+      at.capsules = {{Vector3d(-0.4, 0, 0), Vector3d(0.4, 0, 0), 0.1, 0.1}};
+      at.capsules[0].belongs = belongs;
+      ClothSimulation s(sheet.mesh, sheet.places, at, {});
+      for (int i = 0; i < 60; ++i) s.Step(1.0 / 60, at, {});
+      const bool falls = belongs == ClothSide::kOutside && inner_touches;
+      if (falls) {
+        EXPECT_LT(s.positions()[220].y(), -1);
+      } else {
+        EXPECT_GT(s.positions()[220].y(), 0.1);
+      }
+    }
+  }
+}
+
+/// A tube of cloth that hangs from a ring, around the vertical through 0.
+struct Tube {
+  ClothMesh mesh;
+  std::vector<Vector3d> places, pins;
+};
+
+Tube MakeTube(double radius, double length, int rings, int columns) {
+  Tube tube;
+  const auto id = [columns](int r, int j) { return r * columns + j % columns; };
+  tube.mesh.faces.resize(2 * (rings - 1) * columns, 3);
+  const double step = length / (rings - 1), side = 2 * radius * std::sin(M_PI / columns);
+  for (int r = 0, f = 0; r < rings; ++r) {
+    for (int j = 0; j < columns; ++j) {
+      const double angle = 2 * M_PI * j / columns;
+      tube.places.emplace_back(radius * std::sin(angle), -r * step, radius * std::cos(angle));
+      tube.mesh.mass_kg.push_back(r == 0 ? 0 : 0.25 * step * side);
+      if (r == 0) {
+        tube.pins.push_back(tube.places.back());
+        continue;
+      }
+      tube.mesh.links.push_back({id(r - 1, j), id(r, j), step, 0});
+      tube.mesh.links.push_back({id(r, j), id(r, j + 1), side, 0});
+      tube.mesh.links.push_back({id(r - 1, j), id(r, j + 1), std::hypot(side, step), 0.1});
+      tube.mesh.faces.row(f++) << id(r - 1, j), id(r, j), id(r, j + 1);
+      tube.mesh.faces.row(f++) << id(r - 1, j), id(r, j + 1), id(r - 1, j + 1);
+    }
+  }
+  return tube;
+}
+
+TEST(ClothSimulation, ALegThatCameThroughComesIn) {
+  const Tube tube = MakeTube(0.2, 0.6, 25, 50);
+  const auto leg = [](double angle, ClothSide belongs) {
+    ClothObstacles at;
+    at.capsules = {{Vector3d(0, -0.02, 0), Vector3d(0, -0.8 * std::cos(angle), 0.8 * std::sin(angle)), 0.06, 0.05}};
+    at.capsules[0].belongs = belongs;
+    return at;
+  };
+  const auto is_through = [&](const ClothSimulation& s, const ClothObstacles& at) {
+    return CrossingsOfSegment(tube.mesh.faces, s.positions(), at.capsules[0].a, at.capsules[0].b) % 2 == 1;
+  };
+  for (const ClothSide belongs : {ClothSide::kInside, ClothSide::kAnywhere}) {
+    ClothObstacles at = leg(0.6, belongs);  // 0.45 m forwards, where the tube ends at 0.2
+    ClothSimulation s(tube.mesh, tube.places, at, {});
+    EXPECT_TRUE(is_through(s, at));
+    for (int i = 0; i < 60; ++i) {
+      at = leg(0.6 * (1 - i / 59.0), belongs);
+      s.Step(1.0 / 60, at, tube.pins);
+    }
+    for (int i = 0; i < 60; ++i) s.Step(1.0 / 60, at, tube.pins);
+    EXPECT_EQ(is_through(s, at), belongs == ClothSide::kAnywhere) << "pushed out alone, it stays through";
+    if (belongs == ClothSide::kInside) {
+      EXPECT_LT(LargestStretch(tube.mesh, s.positions()), 0.1);
+    }
+  }
+}
+
 TEST(ClothSimulation, SameBytesEachTime) {
   const auto run = [] {
     const Sheet sheet = MakeSheet(11, 0.5, true);
@@ -304,8 +399,12 @@ TEST(ClothSimulation, ChecksItsContract) {
   ClothSimulation s(sheet.mesh, sheet.places, {}, {});
   EXPECT_THROW(s.Step(0, {}, sheet.pins), std::invalid_argument);
   EXPECT_THROW(s.Step(0.1, {}, {}), std::invalid_argument);
+  options = {}, options.pass_speed = -1;
+  EXPECT_THROW(make(sheet.mesh, sheet.places, options), std::invalid_argument);
   ClothObstacles more;
-  more.capsules.resize(1);
+  more.enclosed.resize(3);
+  EXPECT_THROW(s.Step(0.1, more, sheet.pins), std::invalid_argument);
+  more = {}, more.capsules.resize(1);
   EXPECT_THROW(s.Step(0.1, more, sheet.pins), std::invalid_argument);
 }
 

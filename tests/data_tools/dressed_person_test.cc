@@ -5,9 +5,12 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <filesystem>
 
 #include "data_tools/builtin_body.h"
 #include "data_tools/formats/atomic_file.h"
+#include "data_tools/motion/load_motion.h"
+#include "data_tools/motion/motion_tools.h"
 #include "data_tools/people/dressed_render.h"
 #include "data_tools/people/make_person_set.h"
 #include "geometry/rotation.h"
@@ -225,6 +228,51 @@ TEST(ClothRun, SettlesAgainAfterACut) {
   EXPECT_EQ(cuts, 1);
   EXPECT_LT(extremes.depth_m, 0.005);
   EXPECT_LT(extremes.stretch, 0.1);
+}
+
+TEST(ClothRun, ACutForgetsWhatWas) {
+  const DressedPerson person(BuiltinBody(), Eigen::VectorXd::Zero(10), GarmentKind::kSkirt, 1);
+  Motion alone = Turning(8, 30, [](double t) { return 2 * t; });
+  alone.poses.col(3).setConstant(-0.5);
+  Motion after = Turning(20, 30, [](double t) { return 9 * t; });
+  after.poses.bottomRows(8) = alone.poses, after.trans.bottomRows(8) = alone.trans;
+  for (int t = 0; t < 8; ++t)
+    after.timestamps[12 + t] = after.timestamps[11] + ClothRunOptions().cut_pause_s + t / 30.0;
+  ClothRunOptions options;
+  options.has_floor = false;  // which would be that of the whole motion
+  ClothRun run(person, after, options), fresh(person, alone, options);
+  for (int t = 0; t < 12; ++t) (void)run.Next();
+  for (int t = 0; t < 8; ++t) {
+    const std::vector<Vector3d>&a = run.Next(), &b = fresh.Next();
+    double furthest = 0;
+    for (size_t v = 0; v < a.size(); ++v) furthest = std::max(furthest, (a[v] - b[v]).norm());
+    EXPECT_LT(furthest, 1e-9) << t;
+  }
+  EXPECT_EQ(run.num_cuts(), 1);
+}
+
+TEST(ClothRun, LegsComeBackIntoTheSkirt) {
+  // A kick above the head goes through the skirt (as long as it lasts); after it the leg must come back in.
+  const std::string path = std::string(BODYLOOM_SHARED_DIR) + "/data/motion/cmu_bvh/05_08.bvh.gz";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no recording at " << path;
+  LoadMotionOptions load;
+  load.resample_fps = 30;
+  MakePersonSetOptions options;
+  options.garment = GarmentKind::kSkirt, options.seed = 3;
+  SynthCamera camera;
+  const Motion motion = PersonTrack(BuiltinBody(), TakeFrames(LoadMotion(path, load), 30, 90), options, &camera).motion;
+  const DressedPerson person(BuiltinBody(), motion.betas, options.garment, options.seed);
+  ClothRunOptions run_options;
+  run_options.up = camera.up_in_camera;
+  ClothRun run(person, motion, run_options);
+  EXPECT_EQ(run.legs_through(), 0) << "before the first frame";
+  int frames = 0;
+  for (int t = 0; t < motion.num_frames(); ++t) {
+    (void)run.Next();
+    if (t < 60) frames += run.legs_through() > 0;
+    EXPECT_EQ(t < 60 ? 0 : run.legs_through(), 0) << t;
+  }
+  EXPECT_GT(frames, 0) << "otherwise this shows nothing";
 }
 
 TEST(ClothRun, ChecksItsContract) {
