@@ -79,6 +79,39 @@ nlohmann::ordered_json NumberOrNull(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
 
+std::string ToText(const SpeedReaction& reaction, const std::string& label) {
+  std::string text =
+      "reaction of \"" + label + "\" to the speed: " + std::to_string(reaction.pairs) + " pairs of equal poses\n";
+  char line[200];
+  std::snprintf(line, sizeof line, "  IoU between the speeds: truth %.4f, result %.4f\n", reaction.truth_iou,
+                reaction.result_iou);
+  text += line;
+  for (size_t k = 0; k < reaction.extents.size(); ++k) {
+    const SpeedReaction::OfExtent& extent = reaction.extents[k];
+    std::snprintf(line, sizeof line,
+                  "  %-9s changes by ±%.4f, in the result by ±%.4f; correlation %6.3f, slope %6.3f\n",
+                  LabelExtent::kNames[k], extent.truth_std, extent.result_std, extent.correlation, extent.slope);
+    text += line;
+  }
+  return text;
+}
+
+nlohmann::ordered_json ToJson(const SpeedReaction& reaction, const std::string& label) {
+  nlohmann::ordered_json extents = nlohmann::ordered_json::object();
+  for (size_t k = 0; k < reaction.extents.size(); ++k) {
+    const SpeedReaction::OfExtent& extent = reaction.extents[k];
+    extents[LabelExtent::kNames[k]] = {{"truth_std", extent.truth_std},
+                                       {"result_std", extent.result_std},
+                                       {"correlation", NumberOrNull(extent.correlation)},
+                                       {"slope", NumberOrNull(extent.slope)}};
+  }
+  return {{"label", label},
+          {"pairs", reaction.pairs},
+          {"truth_iou", reaction.truth_iou},
+          {"result_iou", reaction.result_iou},
+          {"extents", extents}};
+}
+
 }  // namespace
 
 FrameMetric ImageMetric(SsimPreset preset, bool has_mask) {
@@ -179,7 +212,10 @@ MetricsReport RunMetrics(const MetricsCommand& command) {
   RequireReadable(command.truth, "truth");
   RequireReadable(command.result, "result");
   RequireReadable(command.mask, "mask");
-  RequireDistinct({command.truth, command.result, command.mask}, {command.json, command.csv});
+  RequireReadable(command.other_truth, "truth at another speed");
+  RequireReadable(command.other_result, "result at another speed");
+  RequireDistinct({command.truth, command.result, command.mask, command.other_truth, command.other_result},
+                  {command.json, command.csv});
   RequireWritable(command.json);
   RequireWritable(command.csv);
   const int num_threads = command.num_threads > 0 ? command.num_threads
@@ -205,6 +241,13 @@ MetricsReport RunMetrics(const MetricsCommand& command) {
       ThrowIfInterrupted();
       progress.Update(kind, fraction);
     }));
+  }
+  if (!command.other_truth.empty()) {
+    progress.Update("reaction", 0);
+    report.reacting = kLabelNames[static_cast<int>(command.reacting)];
+    report.reaction =
+        MeasureSpeedReaction(PersonSet(command.truth), PersonSet(command.result), PersonSet(command.other_truth),
+                             PersonSet(command.other_result), command.reacting, num_threads);
   }
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!command.json.empty()) WriteFileAtomically(command.json, ToJson(report));
@@ -239,6 +282,7 @@ std::string ToText(const MetricsReport& report) {
     }
   }
   for (const std::string& kind : report.only_one_side) text += kind + ": only one side has them, not compared\n";
+  if (report.reaction) text += ToText(*report.reaction, report.reacting);
   return text + Fixed(report.seconds, 1) + " s\n";
 }
 
@@ -255,10 +299,11 @@ std::string ToJson(const MetricsReport& report) {
     }
     kinds[table.kind] = {{"frames", table.rows.size()}, {"left_out", table.left_out}, {"metrics", columns}};
   }
-  const ordered_json json = {{"truth", report.truth},    {"result", report.result},
-                             {"mask", report.mask},      {"ssim_preset", report.preset},
-                             {"kinds", kinds},           {"only_one_side", report.only_one_side},
-                             {"seconds", report.seconds}};
+  ordered_json json = {{"truth", report.truth},    {"result", report.result},
+                       {"mask", report.mask},      {"ssim_preset", report.preset},
+                       {"kinds", kinds},           {"only_one_side", report.only_one_side},
+                       {"seconds", report.seconds}};
+  if (report.reaction) json["reaction"] = ToJson(*report.reaction, report.reacting);
   return json.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 

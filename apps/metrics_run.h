@@ -3,10 +3,12 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "apps/metrics_frames.h"
+#include "data_tools/evaluation/speed_reaction.h"
 #include "data_tools/evaluation/ssim.h"
 
 namespace bodyloom {
@@ -46,6 +48,8 @@ ColumnSummary Summarise(const MetricTable& table, size_t column);
 
 struct MetricsCommand {
   std::string truth, result, mask, json, csv;
+  std::string other_truth, other_result;        ///< person sets of the same poses at another speed; empty: none
+  PersonLabel reacting = PersonLabel::kBottom;  ///< whose reaction to the speed is measured
   SsimPreset preset = SsimPreset::kWang2004;
   bool common_only = false;
   int num_threads = 0;  ///< 0: all cores
@@ -57,6 +61,8 @@ struct MetricsReport {
   std::string truth, result, mask, preset;
   std::vector<MetricTable> tables;
   std::vector<std::string> only_one_side;  ///< kinds that one side alone has, not compared
+  std::optional<SpeedReaction> reaction;
+  std::string reacting;  ///< name of the label
   double seconds = 0;
 };
 

@@ -22,6 +22,9 @@ constexpr const char* kFooter =
     "inside\n"
     "the mask, bounds the normals, and gives --preset neuralbody its box; other presets look at the whole picture.\n"
     "Means and standard deviations are over frames; frames of equal pictures (PSNR inf) are counted apart.\n"
+    "Do clothes react to motion? --other-truth and --other-result are person sets of the same poses at another speed\n"
+    "(synth-person --speed, animate motion --set); how the garment changes from speed to speed is compared with how\n"
+    "it should.\n"
     "Examples:\n"
     "  bodyloom metrics --truth clip/images --result run/frames --json errors.json --csv frames.csv\n"
     "  bodyloom metrics --truth clip.mp4 --result rendered.mp4 --preset 3dgs\n\n";
@@ -40,6 +43,17 @@ void AddMetricsVerb(CLI::App& app, Action* action, std::vector<std::string> argu
   verb->add_option("--result", c.result, "folder or video to judge")->required()->type_name("PATH");
   verb->add_option("--mask", c.mask, "folder or video of masks: pixels of 128 or more count")->type_name("PATH");
   verb->add_option("--preset", *preset, "which SSIM")->check(CLI::IsMember(SsimPresetNames()))->capture_default_str();
+  CLI::Option* other_truth =
+      verb->add_option("--other-truth", c.other_truth, "person set of the same poses as --truth at another speed")
+          ->type_name("DIR");
+  CLI::Option* other_result =
+      verb->add_option("--other-result", c.other_result, "person set to judge against it")->type_name("DIR");
+  other_truth->needs(other_result), other_result->needs(other_truth);
+  auto reacting = std::make_shared<std::string>(kPersonLabelNames[static_cast<int>(c.reacting)]);
+  verb->add_option("--reacting", *reacting, "the garment whose reaction is measured")
+      ->check(CLI::IsMember({"top", "bottom"}))
+      ->needs(other_truth)
+      ->capture_default_str();
   verb->add_flag("--common", c.common_only, "compare the frames that both folders have, instead of asking for all");
   verb->add_option("--json", c.json, "also write the means as JSON")->type_name("FILE");
   verb->add_option("--csv", c.csv, "also write a line a frame")->type_name("FILE");
@@ -54,14 +68,16 @@ void AddMetricsVerb(CLI::App& app, Action* action, std::vector<std::string> argu
       ->type_name("DIR")
       ->needs(with_lpips);
   verb->add_flag("--quiet", c.quiet, "no progress");
-  verb->callback([command, preset, lpips, weights, action, arguments = std::move(arguments), more = std::move(more)] {
-    command->preset = SsimPresetFrom(*preset).value();
-    *action = [=] {
-      if (*lpips && !more) ExecNeural(arguments);
-      if (*lpips) command->more = more(*weights);
-      Metrics(*command);
-    };
-  });
+  verb->callback(
+      [command, preset, reacting, lpips, weights, action, arguments = std::move(arguments), more = std::move(more)] {
+        command->preset = SsimPresetFrom(*preset).value();
+        command->reacting = *reacting == "top" ? PersonLabel::kTop : PersonLabel::kBottom;
+        *action = [=] {
+          if (*lpips && !more) ExecNeural(arguments);
+          if (*lpips) command->more = more(*weights);
+          Metrics(*command);
+        };
+      });
 }
 
 }  // namespace bodyloom

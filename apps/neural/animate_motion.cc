@@ -57,7 +57,7 @@ struct Request {
   int threads = 0, warmup = 50;
   double speed = 1;
   std::string device = "cpu";
-  bool anywhere = false, full_size = false;
+  bool anywhere = false, full_size = false, without_past = false;
 };
 
 /// What makes the set of --set again.
@@ -71,6 +71,7 @@ std::string CommandLine(const Request& request) {
   if (request.speed != 1) add("--speed", Concatenate(request.speed));
   if (request.warmup != Request().warmup) add("--warmup", Concatenate(request.warmup));
   line += request.anywhere ? " --anywhere" : "";
+  line += request.without_past ? " --without-past" : "";
   line += request.full_size ? " --full-size" : "";
   add("--out", request.out), add("--set", request.set);
   return line;
@@ -275,10 +276,9 @@ void Run(const Request& request) {
       MotionPicture picture;
       if (track.HasResult(t)) {
         clip.Fill(t, &frame);
-        if (t > 0 && frames.Segment(t) != frames.Segment(t - 1)) {
-          renderer.Restart();
-          if (likeness) likeness->Restart();
-        }
+        const bool is_cut = t > 0 && frames.Segment(t) != frames.Segment(t - 1);
+        if (is_cut || request.without_past) renderer.Restart();
+        if (is_cut && likeness) likeness->Restart();
         lap(2);
         picture = renderer.Next(frame);
         const double network_s = lap(3);
@@ -404,6 +404,9 @@ void AddAnimateMotion(CLI::App& animate, std::function<void()>* action) {
   verb->add_option("--warmup", request->warmup, "Passes of the first frame through the network before it counts")
       ->capture_default_str()
       ->check(CLI::Range(0, 1000));
+  verb->add_flag("--without-past", request->without_past,
+                 "Every frame as if it were the first, warmed up from nothing: what its own motion says, not what the "
+                 "renderer's last pictures do");
   verb->add_flag("--anywhere", request->anywhere,
                  "The person may be farther from the body than clothes ever were in training");
   verb->add_option(

@@ -275,5 +275,28 @@ TEST_F(MetricsVerb, LpipsComesFromTheNeuralHalf) {
   EXPECT_EQ(RunCommand({"metrics", "--truth", "a", "--result", "b", "--weights", "c"}).exit_code, 2);
 }
 
+TEST_F(MetricsVerb, ReactionToTheSpeedOfTheTruthItselfIsWhole) {
+  for (const char* speed : {"1", "0.5"}) {
+    const CommandResult made =
+        RunCommand({"synth-person", "--motion", "demo", "--first", "40", "--frames", "20", "--fps", "30", "--speed",
+                    speed, "--size", "96", "--garment", "skirt", "--out", Path(speed), "--quiet"});
+    ASSERT_EQ(made.exit_code, kExitOk) << made.err;
+  }
+  const CommandResult run = Run({"--truth", Path("1"), "--result", Path("1"), "--other-truth", Path("0.5"),
+                                 "--other-result", Path("0.5"), "--json", Path("m.json"), "--quiet"});
+  ASSERT_EQ(run.exit_code, kExitOk) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("reaction of \"bottom\" to the speed: 10 pairs of equal poses"));
+  const auto reaction = nlohmann::json::parse(Contents(Path("m.json")))["reaction"];
+  EXPECT_EQ(reaction["pairs"], 10);
+  EXPECT_EQ(reaction["truth_iou"], reaction["result_iou"]);
+  for (const auto& [name, extent] : reaction["extents"].items()) {
+    EXPECT_NEAR(extent["slope"].get<double>(), 1, 1e-12) << name;
+    EXPECT_NEAR(extent["correlation"].get<double>(), 1, 1e-12) << name;
+  }
+  EXPECT_EQ(Run({"--truth", Path("1"), "--result", Path("1"), "--other-truth", Path("0.5")}).exit_code, kExitUsage);
+  ExpectError({"--truth", Path("1"), "--result", Path("1"), "--other-truth", Path("0.5"), "--other-result", Path("1")},
+              "frames of 96x96, expected");
+}
+
 }  // namespace
 }  // namespace bodyloom
