@@ -27,9 +27,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kLabelNames[] = {"background", "top", "bottom", "face", "hair", "skin", "shoes"};
-constexpr int kNumLabels = static_cast<int>(std::size(kLabelNames));
-
 const PixelMask* MaskOf(const FramePair& frame) { return frame.mask ? &*frame.mask : nullptr; }
 
 /// The labels of a grey picture.
@@ -42,9 +39,9 @@ std::vector<uint8_t> LabelsOf(const Image& image, const std::string& where) {
       throw std::runtime_error(
           Concatenate(where, ": pixel (", x, ", ", y, ") is coloured, expected a grey picture of labels"));
     }
-    if (bgr[0] >= kNumLabels) {
-      throw std::runtime_error(
-          Concatenate(where, ": pixel (", x, ", ", y, "): label ", int{bgr[0]}, ", expected 0 to ", kNumLabels - 1));
+    if (bgr[0] >= kNumPersonLabels) {
+      throw std::runtime_error(Concatenate(where, ": pixel (", x, ", ", y, "): label ", int{bgr[0]}, ", expected 0 to ",
+                                           kNumPersonLabels - 1));
     }
     labels[i] = bgr[0];
   }
@@ -79,9 +76,11 @@ nlohmann::ordered_json NumberOrNull(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
 
-std::string ToText(const SpeedReaction& reaction, const std::string& label) {
-  std::string text =
-      "reaction of \"" + label + "\" to the speed: " + std::to_string(reaction.pairs) + " pairs of equal poses\n";
+const char* NameOf(PersonLabel label) { return kPersonLabelNames[static_cast<size_t>(label)]; }
+
+std::string ToText(const SpeedReaction& reaction) {
+  std::string text = std::string("reaction of \"") + NameOf(reaction.label) +
+                     "\" to the speed: " + std::to_string(reaction.pairs) + " pairs of equal poses\n";
   char line[200];
   std::snprintf(line, sizeof line, "  IoU between the speeds: truth %.4f, result %.4f\n", reaction.truth_iou,
                 reaction.result_iou);
@@ -96,7 +95,7 @@ std::string ToText(const SpeedReaction& reaction, const std::string& label) {
   return text;
 }
 
-nlohmann::ordered_json ToJson(const SpeedReaction& reaction, const std::string& label) {
+nlohmann::ordered_json ToJson(const SpeedReaction& reaction) {
   nlohmann::ordered_json extents = nlohmann::ordered_json::object();
   for (size_t k = 0; k < reaction.extents.size(); ++k) {
     const SpeedReaction::OfExtent& extent = reaction.extents[k];
@@ -105,7 +104,7 @@ nlohmann::ordered_json ToJson(const SpeedReaction& reaction, const std::string& 
                                        {"correlation", NumberOrNull(extent.correlation)},
                                        {"slope", NumberOrNull(extent.slope)}};
   }
-  return {{"label", label},
+  return {{"label", NameOf(reaction.label)},
           {"pairs", reaction.pairs},
           {"truth_iou", reaction.truth_iou},
           {"result_iou", reaction.result_iou},
@@ -134,11 +133,12 @@ FrameMetric LabelMetric() {
   metric.columns = {{"label_miou", "mean IoU of the labels that either side has"},
                     {"label_accuracy", "share of pixels with the right label"},
                     {"mask_iou", "IoU of everything but the background"}};
-  for (const char* name : kLabelNames) metric.columns.push_back({std::string("iou_") + name, "IoU of this label"});
+  for (const char* name : kPersonLabelNames)
+    metric.columns.push_back({std::string("iou_") + name, "IoU of this label"});
   metric.compute = [](const FramePair& frame, const FramePair*) {
     const std::vector<uint8_t> truth = LabelsOf(frame.truth, "the truth of " + frame.where);
     const std::vector<uint8_t> result = LabelsOf(frame.result, frame.where);
-    const LabelOverlap overlap = CompareLabels(truth, result, kNumLabels);
+    const LabelOverlap overlap = CompareLabels(truth, result, kNumPersonLabels);
     const int width = frame.truth.width, height = frame.truth.height;
     std::vector<double> values = {overlap.mean_iou, overlap.accuracy,
                                   MaskIoU({width, height, truth}, {width, height, result})};
@@ -231,6 +231,12 @@ MetricsReport RunMetrics(const MetricsCommand& command) {
   const std::vector<std::pair<std::string, std::vector<FrameMetric>>> kinds = {
       {"images", of_images}, {"labels", {LabelMetric()}}, {"normals", {NormalMetric()}}};
   Progress progress("metrics", command.quiet ? Progress::Style::kSilent : Progress::DefaultStyle());
+  if (!command.other_truth.empty()) {  // first: sets that do not fit are said before an hour of comparing
+    progress.Update("reaction", 0);
+    report.reaction =
+        MeasureSpeedReaction(PersonSet(command.truth), PersonSet(command.result), PersonSet(command.other_truth),
+                             PersonSet(command.other_result), command.reacting, num_threads);
+  }
   for (const auto& [kind, metrics] : kinds) {
     const auto truth = FolderOf(command.truth, kind), result = FolderOf(command.result, kind);
     if (truth.has_value() != result.has_value()) report.only_one_side.push_back(kind);
@@ -241,13 +247,6 @@ MetricsReport RunMetrics(const MetricsCommand& command) {
       ThrowIfInterrupted();
       progress.Update(kind, fraction);
     }));
-  }
-  if (!command.other_truth.empty()) {
-    progress.Update("reaction", 0);
-    report.reacting = kLabelNames[static_cast<int>(command.reacting)];
-    report.reaction =
-        MeasureSpeedReaction(PersonSet(command.truth), PersonSet(command.result), PersonSet(command.other_truth),
-                             PersonSet(command.other_result), command.reacting, num_threads);
   }
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!command.json.empty()) WriteFileAtomically(command.json, ToJson(report));
@@ -282,7 +281,7 @@ std::string ToText(const MetricsReport& report) {
     }
   }
   for (const std::string& kind : report.only_one_side) text += kind + ": only one side has them, not compared\n";
-  if (report.reaction) text += ToText(*report.reaction, report.reacting);
+  if (report.reaction) text += ToText(*report.reaction);
   return text + Fixed(report.seconds, 1) + " s\n";
 }
 
@@ -303,7 +302,7 @@ std::string ToJson(const MetricsReport& report) {
                        {"mask", report.mask},      {"ssim_preset", report.preset},
                        {"kinds", kinds},           {"only_one_side", report.only_one_side},
                        {"seconds", report.seconds}};
-  if (report.reaction) json["reaction"] = ToJson(*report.reaction, report.reacting);
+  if (report.reaction) json["reaction"] = ToJson(*report.reaction);
   return json.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 

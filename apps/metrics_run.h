@@ -62,7 +62,6 @@ struct MetricsReport {
   std::vector<MetricTable> tables;
   std::vector<std::string> only_one_side;  ///< kinds that one side alone has, not compared
   std::optional<SpeedReaction> reaction;
-  std::string reacting;  ///< name of the label
   double seconds = 0;
 };
 

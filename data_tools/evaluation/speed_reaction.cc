@@ -9,6 +9,7 @@
 #include "data_tools/evaluation/image_metrics.h"
 #include "geometry/check.h"
 #include "geometry/parallel.h"
+#include "geometry/velocity_stencil.h"
 
 namespace bodyloom {
 namespace {
@@ -16,8 +17,7 @@ namespace {
 constexpr int kFewestPixels = 20;
 constexpr double kSamePose = 1e-3;     ///< radians
 constexpr double kSamePlace_m = 0.01;  ///< sets centre each motion on its mean place, which other frames move
-constexpr double kPause_s = 0.999;
-constexpr int kFramesAfterCut = 10;
+constexpr int kFramesAfterGap = 10;
 
 /// Value below which `share` of all counted columns (or rows) lie, in pixels.
 double Quantile(const std::vector<int>& counts, int total, double share) {
@@ -42,11 +42,15 @@ bool SamePose(const Track& a, int t, const Track& b, int u) {
          (a.motion.trans.row(t) - b.motion.trans.row(u)).cwiseAbs().maxCoeff() < kSamePlace_m;
 }
 
-/// How many frames of its clip lie before each frame.
-std::vector<int> FramesSinceCut(const Motion& motion) {
-  std::vector<int> since(motion.num_frames(), 0);
-  for (int t = 1; t < motion.num_frames(); ++t) {
-    since[t] = motion.timestamps[t] - motion.timestamps[t - 1] < kPause_s ? since[t - 1] + 1 : 0;
+/// How many frames of its gap-free run lie before each frame; −1: it has no result.
+std::vector<int> FramesSinceGap(const Track& track) {
+  std::vector<char> usable(track.num_frames());
+  for (int t = 0; t < track.num_frames(); ++t) usable[t] = track.HasResult(t);
+  const std::vector<VelocityStencil> runs = VelocityStencils(track.motion.timestamps, usable);
+  std::vector<int> since(track.num_frames(), -1);
+  for (int t = 0; t < track.num_frames(); ++t) {
+    if (runs[t].segment < 0) continue;
+    since[t] = t > 0 && runs[t].segment == runs[t - 1].segment ? since[t - 1] + 1 : 0;
   }
   return since;
 }
@@ -92,18 +96,19 @@ LabelExtent MeasureLabelExtent(const Image& labels, PersonLabel label, const Tra
   return extent;
 }
 
-std::vector<std::pair<int, int>> PairFramesByPose(const Track& a, const Track& b, int frames_after_cut) {
+std::vector<std::pair<int, int>> PairFramesByPose(const Track& a, const Track& b, int frames_after_gap) {
+  BODYLOOM_CHECK(frames_after_gap >= 0, "frames_after_gap is ", frames_after_gap);
   BODYLOOM_CHECK(a.motion.poses.cols() == b.motion.poses.cols(), "tracks of ", a.motion.poses.cols() / 3, " and ",
                  b.motion.poses.cols() / 3, " joints");
-  const std::vector<int> since_a = FramesSinceCut(a.motion), since_b = FramesSinceCut(b.motion);
+  const std::vector<int> since_a = FramesSinceGap(a), since_b = FramesSinceGap(b);
   std::multimap<double, int> frame_at;  // by one coordinate, of which few are equal
   for (int u = 0; u < b.num_frames(); ++u) {
-    if (b.HasResult(u) && since_b[u] >= frames_after_cut) frame_at.emplace(b.motion.trans(u, 0), u);
+    if (since_b[u] >= frames_after_gap) frame_at.emplace(b.motion.trans(u, 0), u);
   }
   std::vector<std::pair<int, int>> pairs;
   int last = -1;
   for (int t = 0; t < a.num_frames(); ++t) {
-    if (!a.HasResult(t) || since_a[t] < frames_after_cut) continue;
+    if (since_a[t] < frames_after_gap) continue;
     // Someone who stands still shows one pose often: the next one in order.
     int best = -1;
     const double x = a.motion.trans(t, 0);
@@ -128,7 +133,7 @@ SpeedReaction MeasureSpeedReaction(const PersonSet& truth, const PersonSet& resu
       throw std::runtime_error(set->path() + "/track.npz: has no joints, from which extents are measured");
     }
   }
-  const auto pairs = PairFramesByPose(track, other_track, kFramesAfterCut);
+  const auto pairs = PairFramesByPose(track, other_track, kFramesAfterGap);
   if (pairs.empty()) {
     throw std::runtime_error(Concatenate(other_truth.path(), ": shows none of the poses of ", truth.path(),
                                          " (ten frames after a cut and later)"));
@@ -155,6 +160,7 @@ SpeedReaction MeasureSpeedReaction(const PersonSet& truth, const PersonSet& resu
                                [](const Change& c) { return !std::isfinite(c.truth[0] + c.result[0]); }),
                 changes.end());
   SpeedReaction reaction;
+  reaction.label = label;
   reaction.pairs = static_cast<int>(changes.size());
   const double n = std::max<double>(1, reaction.pairs);
   for (const Change& c : changes) reaction.truth_iou += c.truth_iou / n, reaction.result_iou += c.result_iou / n;

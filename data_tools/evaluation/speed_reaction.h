@@ -31,8 +31,9 @@ struct LabelExtent {
 LabelExtent MeasureLabelExtent(const Image& labels, PersonLabel label, const Track& track, int t);
 
 /// Pairs (frame of a, frame of b), in order: poses equal to 1e-3 rad, places to 1 cm. Left out are the first
-/// `frames_after_cut` frames of each clip (a pause of a second begins one), whose past is not of their speed.
-std::vector<std::pair<int, int>> PairFramesByPose(const Track& a, const Track& b, int frames_after_cut);
+/// `frames_after_gap` (≥ 0) frames of each gap-free run (geometry/velocity_stencil.h), whose past is not of their
+/// speed.
+std::vector<std::pair<int, int>> PairFramesByPose(const Track& a, const Track& b, int frames_after_gap);
 
 struct SpeedReaction {
   struct OfExtent {
@@ -40,6 +41,7 @@ struct SpeedReaction {
     double correlation = std::numeric_limits<double>::quiet_NaN();  ///< of the two changes; NaN: one is constant
     double slope = std::numeric_limits<double>::quiet_NaN();        ///< Σ truth·result / Σ truth²
   };
+  PersonLabel label = PersonLabel::kBottom;
   int pairs = 0;  ///< with the label in all four pictures
   std::array<OfExtent, 4> extents;
   double truth_iou = 0, result_iou = 0;  ///< of the label between the two speeds, mean over the pairs

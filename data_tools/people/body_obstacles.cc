@@ -73,7 +73,7 @@ BodyObstacles::BodyObstacles(const BodyModel& body, const MatrixX3d& vertices, c
     if (!IsTrunkOrLeg(strongest[v])) continue;
     place[v] = static_cast<int>(vertices_.size());
     vertices_.push_back(v);
-    enclosed_.push_back(IsBelowWaist(strongest[v]) ? 1 : 0);
+    belongs_.push_back(IsBelowWaist(strongest[v]) ? ClothSide::kInside : ClothSide::kAnywhere);
   }
   const MatrixX3i& faces = body.data().faces;
   std::vector<int> kept;
@@ -101,7 +101,7 @@ BodyObstacles::BodyObstacles(const BodyModel& body, const MatrixX3d& vertices, c
 
 ClothObstacles BodyObstacles::At(const MatrixX3d& vertices, const MatrixX3f& normals, const MatrixX3d& joints) const {
   ClothObstacles obstacles;
-  obstacles.enclosed = enclosed_;
+  obstacles.belongs = belongs_;
   const auto n = static_cast<Eigen::Index>(vertices_.size());
   obstacles.points.resize(n, 3), obstacles.normals.resize(n, 3);
   for (Eigen::Index i = 0; i < n; ++i) {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// A posed, clothed body as what cloth collides with: the surface of trunk and legs point by point, and a capsule a
-/// bone that lies inside it (trunk and legs) or fills it (arms, hands). Legs belong
-/// inside a loose garment, arms outside.
+/// bone that lies inside it (trunk and legs) or fills it (arms, hands). Legs and hips belong inside a loose
+/// garment, arms outside.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "data_tools/people/cloth_simulation.h"
@@ -36,7 +35,7 @@ class BodyObstacles {
     ClothSide belongs;
   };
   std::vector<int> vertices_;
-  std::vector<uint8_t> enclosed_;  ///< of the vertices: legs
+  std::vector<ClothSide> belongs_;  ///< of the vertices
   MatrixX3i faces_;
   std::vector<Bone> bones_;
 };

@@ -147,9 +147,8 @@ void ClothSimulation::CheckObstacles(const ClothObstacles& o) const {
                      o.normals.rows() == o.points.rows(),
                  "cloth: ", o.capsules.size(), " capsules, ", o.points.rows(), " points and ", o.normals.rows(),
                  " normals, expected ", obstacles_.capsules.size(), ", ", obstacles_.points.rows(), " and as many");
-  BODYLOOM_CHECK(o.enclosed.empty() || static_cast<Eigen::Index>(o.enclosed.size()) == o.points.rows(), "cloth: of ",
-                 o.enclosed.size(), " points it is said whether they are enclosed, expected none or all ",
-                 o.points.rows());
+  BODYLOOM_CHECK(o.belongs.empty() || static_cast<Eigen::Index>(o.belongs.size()) == o.points.rows(), "cloth: of ",
+                 o.belongs.size(), " points it is said where they belong, expected none or all ", o.points.rows());
   BODYLOOM_CHECK(o.points.allFinite() && o.normals.allFinite(), "cloth: the obstacles are not finite");
   for (const Capsule& c : o.capsules) {
     BODYLOOM_CHECK(c.a.allFinite() && c.b.allFinite() && c.radius_a >= 0 && c.radius_b >= 0 &&
@@ -342,8 +341,7 @@ void ClothSimulation::SolveSurface(const ClothObstacles& next, double fraction, 
             .normalized();
     const double depth = thickness - normal.dot(d);
     if (depth <= 0) continue;
-    const bool inside = !next.enclosed.empty() && next.enclosed[i] != 0;
-    if (LetsThrough(v, inside ? ClothSide::kInside : ClothSide::kAnywhere, normal)) continue;
+    if (!next.belongs.empty() && LetsThrough(v, next.belongs[i], normal)) continue;
     Touch(v, normal, depth, (next.points.row(i) - obstacles_.points.row(i)).transpose() / dt);
   }
 }

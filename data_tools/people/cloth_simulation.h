@@ -28,7 +28,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -75,9 +74,9 @@ double CapsuleDistance(const Capsule& capsule, const Eigen::Vector3d& point, Eig
 /// What cloth collides with at one instant.
 struct ClothObstacles {
   std::vector<Capsule> capsules;
-  MatrixX3d points;               ///< of a closed surface
-  MatrixX3f normals;              ///< outwards, unit
-  std::vector<uint8_t> enclosed;  ///< a point: 1 where it belongs inside the cloth (else anywhere); empty: nowhere
+  MatrixX3d points;                ///< of a closed surface
+  MatrixX3f normals;               ///< outwards, unit
+  std::vector<ClothSide> belongs;  ///< a point; empty: anywhere
 };
 
 struct FloorPlane {

@@ -402,7 +402,7 @@ TEST(ClothSimulation, ChecksItsContract) {
   options = {}, options.pass_speed = -1;
   EXPECT_THROW(make(sheet.mesh, sheet.places, options), std::invalid_argument);
   ClothObstacles more;
-  more.enclosed.resize(3);
+  more.belongs.resize(3);
   EXPECT_THROW(s.Step(0.1, more, sheet.pins), std::invalid_argument);
   more = {}, more.capsules.resize(1);
   EXPECT_THROW(s.Step(0.1, more, sheet.pins), std::invalid_argument);
