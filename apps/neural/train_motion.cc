@@ -107,6 +107,7 @@ std::string Notes(const Request& request) {
                                        {"steps", o.steps},
                                        {"batch", o.batch},
                                        {"chain_length", o.chain_length},
+                                       {"walks", o.walks},
                                        {"learning_rate", o.learning_rate},
                                        {"average", o.average},
                                        {"discriminator_rate", o.discriminator_rate},
@@ -269,6 +270,9 @@ void AddTrainMotion(CLI::App& train, std::function<void()>* action) {
   verb->add_option("--steps", options.steps, "Batches to train on")->capture_default_str();
   verb->add_option("--batch", options.batch, "Frames in a batch")->capture_default_str();
   verb->add_option("--chain", options.chain_length, "Frames that the recurrence runs on before it starts anew")
+      ->capture_default_str();
+  verb->add_option("--walks", options.walks,
+                   "Stretches of the clip that every place of the batch goes through in turn, a frame each")
       ->capture_default_str();
   verb->add_option("--learning-rate", options.learning_rate, "At its highest")->capture_default_str();
   verb->add_option("--average", options.average,

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Which frames a recurrent network trains on, step by step.
 ///
-/// A batch holds `chains` places. Each walks through the clip frame by frame, so that what the network said of one
-/// frame is at hand as the input of the next (detached: nothing is propagated back through time). After `length`
-/// frames, or where a stretch of frames ends, it starts anew at a random frame: with the truth of the frame before as
-/// its past (share `from_truth`), or with nothing, as a clip begins. This follows the only published recipe for such a
-/// renderer (Kappel et al., "High-Fidelity Neural Human Motion Transfer from Monocular Video", CVPR 2021: own detached
-/// predictions, replaced by truth every 500 frames), with shorter walks because clips here are shorter.
+/// A batch holds `chains` places. Each belongs to `walks` walks that take turns: step s belongs to walk s mod `walks`
+/// of every place. A walk goes through the clip frame by frame, so that what the network said of one frame is at hand
+/// as the input of the next (detached: nothing is propagated back through time). After `length` frames, or where a
+/// stretch of frames ends, it starts anew at a random frame: with the truth of the frame before as its past (share
+/// `from_truth`), or with nothing, as a clip begins. This follows the only published recipe for such a renderer (Kappel
+/// et al., "High-Fidelity Neural Human Motion Transfer from Monocular Video", CVPR 2021: own detached predictions,
+/// replaced by truth every 500 frames), with shorter walks because clips here are shorter. Taking turns is this
+/// project's: neighbouring frames are nearly alike, and an optimizer whose every step shows it the next frame of one
+/// walk averages over few pictures (docs/motion_renderer.md). First walks are shorter the later they come, so that
+/// not all start anew at once.
 ///
 /// A function of the seed alone, so that a run can go on from any step.
 #pragma once
@@ -23,6 +27,7 @@ struct FrameRange {
 
 struct ChainStep {
   int frame = 0;
+  int walk = 0;             ///< of the places' walks, below Options::walks
   bool restart = false;     ///< the past is not the prediction of the step before
   bool from_truth = false;  ///< of a restart: the truth of frame − 1; otherwise nothing
 };
@@ -31,6 +36,7 @@ class ChainPlan {
  public:
   struct Options {
     int chains = 4;
+    int walks = 1;
     int length = 32;
     double from_truth = 0.75;
     uint64_t seed = 1;
@@ -50,7 +56,7 @@ class ChainPlan {
   std::vector<FrameRange> ranges_;
   std::vector<int64_t> frames_up_to_;
   Options options_;
-  std::vector<Walk> walks_;
+  std::vector<Walk> walks_;  ///< by walk, then by place
   int64_t step_ = 0;
 };
 

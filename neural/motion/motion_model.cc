@@ -21,12 +21,6 @@ Tensor Unit(const Tensor& x) { return x / (x.square().sum(1, true) + kTiny).sqrt
 
 }  // namespace
 
-MotionState MotionState::Detached() const {
-  MotionState result = *this;
-  for (Tensor* part : result.Parts()) *part = part->detach();
-  return result;
-}
-
 std::vector<Tensor*> MotionState::Parts() {
   std::vector<Tensor*> parts;
   for (Tensor* part : {&labels, &image, &normals}) {

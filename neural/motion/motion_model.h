@@ -32,10 +32,9 @@ struct MotionInput {
 
 /// What a frame hands on to the next. Parts that the configuration leaves out are undefined.
 struct MotionState {
-  torch::Tensor labels;   ///< B×K×h×w probabilities
-  torch::Tensor image;    ///< B×3×h×w
-  torch::Tensor normals;  ///< B×3×h×w
-  [[nodiscard]] MotionState Detached() const;
+  torch::Tensor labels;                               ///< B×K×h×w probabilities
+  torch::Tensor image;                                ///< B×3×h×w
+  torch::Tensor normals;                              ///< B×3×h×w
   [[nodiscard]] std::vector<torch::Tensor*> Parts();  ///< those that are defined
 };
 

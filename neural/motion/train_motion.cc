@@ -15,6 +15,7 @@
 #include "neural/motion/motion_batches.h"
 #include "neural/motion/motion_scorer.h"
 #include "neural/motion/roll_out.h"
+#include "neural/motion/walk_memory.h"
 #include "neural/networks/patch_discriminator.h"
 #include "neural/networks/vgg.h"
 #include "neural/runtime.h"
@@ -81,9 +82,8 @@ class MotionTrainer : public TrainedSystem {
     checkpoint_->Add("discriminator", discriminator_.ptr().get());
     checkpoint_->Add("optimizer", optimizer_.get());
     checkpoint_->Add("discriminator_optimizer", discriminator_optimizer_.get());
-    checkpoint_->Add("past_labels", &past_.labels);
-    checkpoint_->Add("past_image", &past_.image);
-    checkpoint_->Add("past_normals", &past_.normals);
+    memory_ = std::make_unique<WalkMemory>(model_->Nothing(1, first.height, first.width), options.batch, options.walks);
+    memory_->AddTo(checkpoint_.get());
     checkpoint_->Add("best", &best_);
   }
 
@@ -98,9 +98,11 @@ class MotionTrainer : public TrainedSystem {
 
   void Begin(int first_step) override {
     batches_ = std::make_unique<MotionBatches>(
-        source_, config_, ChainPlan(options_.train, {options_.batch, options_.chain_length, 0.75, options_.seed}),
+        source_, config_,
+        ChainPlan(options_.train,
+                  {options_.batch, options_.walks, options_.chain_length, /*from_truth=*/0.75, options_.seed}),
         first_step, options_.steps);
-    for (Tensor* part : past_.Parts()) *part = OnDevice(*part);
+    memory_->Begin();
   }
 
   bool Step(int step) override {
@@ -174,40 +176,11 @@ class MotionTrainer : public TrainedSystem {
   /// What is validated and kept for inference.
   [[nodiscard]] MotionModel& Shown() { return average_ ? average_ : model_; }
 
-  /// The past of every chain, laid over its new window.
-  MotionState PastOf(const MotionBatch& batch) {
-    const int64_t h = batch.truth.image.size(2), w = batch.truth.image.size(3);
-    std::vector<MotionState> each;
-    for (size_t c = 0; c < batch.steps.size(); ++c) {
-      MotionState state;
-      const MotionFrame& frame = batch.frames[c];
-      if (!batch.steps[c].restart) {
-        state = past_;
-        const auto at = static_cast<int64_t>(c);
-        for (Tensor* part : state.Parts()) *part = part->slice(0, at, at + 1);
-      } else if (batch.steps[c].from_truth) {
-        state = batch.past[c];
-      } else {
-        state = model_->Nothing(1, h, w);
-      }
-      for (Tensor* part : state.Parts()) *part = Shifted(*part, frame.before_x, frame.before_y);
-      each.push_back(state);
-    }
-    const auto join = [&](Tensor MotionState::*part) {
-      std::vector<Tensor> tensors;
-      for (const MotionState& state : each) {
-        if ((state.*part).defined()) tensors.push_back(state.*part);
-      }
-      return tensors.empty() ? Tensor() : torch::cat(tensors, 0);
-    };
-    return {join(&MotionState::labels), join(&MotionState::image), join(&MotionState::normals)};
-  }
-
   Losses Learn(const MotionBatch& batch, int step) {
     SetRate(optimizer_.get(), LinearDecayOverLastHalf(options_.learning_rate, step, options_.steps));
     SetRate(discriminator_optimizer_.get(), LinearDecayOverLastHalf(options_.discriminator_rate, step, options_.steps));
     const MotionTruth& truth = batch.truth;
-    const MotionStepResult result = model_(batch.input, PastOf(batch));
+    const MotionStepResult result = model_(batch.input, memory_->Before(batch));
     const MotionState& state = result.state;
     Losses losses;
     const auto condition = [&](const Tensor& image) {
@@ -254,10 +227,7 @@ class MotionTrainer : public TrainedSystem {
     losses.total = total.item<double>();
     if (!losses.IsFinite()) return losses;  // a step would spoil the weights
     optimizer_->step();
-    const MotionState detached = state.Detached();
-    past_.labels = detached.labels;
-    past_.image = detached.image;
-    past_.normals = detached.normals;
+    memory_->Keep(batch, state);
     return losses;
   }
 
@@ -272,7 +242,7 @@ class MotionTrainer : public TrainedSystem {
   FeatureNetwork vgg_{nullptr};
   std::unique_ptr<torch::optim::Adam> optimizer_, discriminator_optimizer_;
   std::unique_ptr<Checkpoint> checkpoint_;
-  MotionState past_;                  ///< of the chains, B×…
+  std::unique_ptr<WalkMemory> memory_;
   MotionScores scores_, all_scores_;  ///< of the last validation's first frames of each range, and of all of them
   Tensor best_ = torch::tensor({1e9, 0.0}, torch::kDouble);  ///< least L1 of a validation, and how many came since
   std::unique_ptr<MotionBatches> batches_;
@@ -295,11 +265,12 @@ bool TrainMotionOptions::IsValid(std::string* why) const {
     }
   }
   return IsValidRun(*this, why) && config.IsValid(why) && in_range("batch", batch, 1, 256) &&
-         in_range("chain_length", chain_length, 1, 1e6) && in_range("learning_rate", learning_rate, 0, 1) &&
-         in_range("discriminator_rate", discriminator_rate, 0, 1) && in_range("shape_weight", shape_weight, 0, 1e6) &&
-         in_range("normal_weight", normal_weight, 0, 1e6) && in_range("perceptual_weight", perceptual_weight, 0, 1e6) &&
-         in_range("gan_weight", gan_weight, 0, 1e6) && in_range("warmup_iterations", warmup_iterations, 0, 1000) &&
-         in_range("average", average, 0, 0.5) && in_range("preview_frames", preview_frames, 1, 64);
+         in_range("chain_length", chain_length, 1, 1e6) && in_range("walks", walks, 1, 1024) &&
+         in_range("learning_rate", learning_rate, 0, 1) && in_range("discriminator_rate", discriminator_rate, 0, 1) &&
+         in_range("shape_weight", shape_weight, 0, 1e6) && in_range("normal_weight", normal_weight, 0, 1e6) &&
+         in_range("perceptual_weight", perceptual_weight, 0, 1e6) && in_range("gan_weight", gan_weight, 0, 1e6) &&
+         in_range("warmup_iterations", warmup_iterations, 0, 1000) && in_range("average", average, 0, 0.5) &&
+         in_range("preview_frames", preview_frames, 1, 64);
 }
 
 TrainMotionSummary TrainMotion(const MotionFrameSource& source, const TrainMotionOptions& options) {

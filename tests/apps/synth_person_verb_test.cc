@@ -44,6 +44,9 @@ TEST(SynthPersonVerb, SeveralMotionsFollowEachOtherWithAGap) {
   const std::vector<double> times = set.track().motion.timestamps;
   EXPECT_NEAR(times[4] - times[3], 1, 1e-9);
   EXPECT_NEAR(times[5] - times[4], 1 / 30.0, 1e-9);
+  // The gap is a cut: the cloth of the second motion knows nothing of the first.
+  EXPECT_THAT(result.out, HasSubstr(" 1 cuts"));
+  for (int t = 0; t < 4; ++t) EXPECT_TRUE(set.Read(t).labels == set.Read(t + 4).labels) << t;
 }
 
 TEST(SynthPersonVerb, TheSamePosesAtTwoSpeeds) {

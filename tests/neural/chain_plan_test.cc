@@ -41,8 +41,36 @@ TEST(ChainPlan, WalksStayInsideARangeAndEndAfterTheirLength) {
   EXPECT_NEAR(double(from_truth) / restarts, 0.5 * 48 / 51, 0.06);
 }
 
+TEST(ChainPlan, WalksTakeTurnsAndDoNotStartAnewTogether) {
+  constexpr int kWalks = 4, kLength = 8;
+  ChainPlan plan({{0, 1000}}, {.chains = 2, .walks = kWalks, .length = kLength, .from_truth = 1, .seed = 5});
+  std::vector<std::vector<int>> restarts(kWalks);
+  std::vector<int> before(kWalks * 2, -1);
+  for (int step = 0; step < kWalks * 40; ++step) {
+    const std::vector<ChainStep> steps = plan.Next();
+    ASSERT_EQ(steps.size(), 2U);
+    for (int c = 0; c < 2; ++c) {
+      const ChainStep& s = steps[c];
+      EXPECT_EQ(s.walk, step % kWalks);
+      int& last = before[s.walk * 2 + c];
+      if (!s.restart) {
+        EXPECT_EQ(s.frame, last + 1);
+      }
+      EXPECT_FALSE(step < kWalks && !s.restart);
+      last = s.frame;
+      if (s.restart && c == 0 && last < 1000 - kLength) restarts[s.walk].push_back(step / kWalks);
+    }
+  }
+  // First walks of 8, 6, 4 and 2 frames, eight after that.
+  for (int w = 0; w < kWalks; ++w) {
+    ASSERT_GE(restarts[w].size(), 3U);
+    EXPECT_EQ(restarts[w][1], kLength * (kWalks - w) / kWalks) << w;
+    EXPECT_EQ(restarts[w][2], restarts[w][1] + kLength) << w;
+  }
+}
+
 TEST(ChainPlan, SkippingIsTheSameAsWalking) {
-  const ChainPlan::Options options{.chains = 4, .length = 5, .from_truth = 0.75, .seed = 9};
+  const ChainPlan::Options options{.chains = 4, .walks = 3, .length = 5, .from_truth = 0.75, .seed = 9};
   ChainPlan walked(kRanges, options), skipped(kRanges, options);
   for (int i = 0; i < 37; ++i) walked.Next();
   skipped.Skip(37);
@@ -50,16 +78,18 @@ TEST(ChainPlan, SkippingIsTheSameAsWalking) {
     const auto a = walked.Next(), b = skipped.Next();
     for (size_t c = 0; c < a.size(); ++c) {
       EXPECT_EQ(a[c].frame, b[c].frame);
+      EXPECT_EQ(a[c].walk, b[c].walk);
       EXPECT_EQ(a[c].restart, b[c].restart);
       EXPECT_EQ(a[c].from_truth, b[c].from_truth);
     }
   }
 }
 
-TEST(ChainPlan, RefusesEmptyRanges) {
+TEST(ChainPlan, RefusesEmptyRangesAndNoWalks) {
   EXPECT_THROW(ChainPlan({}, {}), std::invalid_argument);
   EXPECT_THROW(ChainPlan({{5, 5}}, {}), std::invalid_argument);
   EXPECT_THROW(ChainPlan({{-1, 5}}, {}), std::invalid_argument);
+  EXPECT_THROW(ChainPlan({{0, 5}}, {.walks = 0}), std::invalid_argument);
 }
 
 }  // namespace

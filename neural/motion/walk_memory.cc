@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "neural/motion/walk_memory.h"
+
+#include <utility>
+#include <vector>
+
+#include "geometry/check.h"
+#include "neural/device.h"
+
+namespace bodyloom {
+
+using torch::Tensor;
+
+WalkMemory::WalkMemory(MotionState nothing, int chains, int walks)
+    : nothing_(std::move(nothing)), said_(nothing_), chains_(chains), walks_(walks) {
+  for (Tensor* part : said_.Parts()) *part = part->repeat({walks_ * chains_, 1, 1, 1});
+}
+
+void WalkMemory::AddTo(Checkpoint* checkpoint) {
+  checkpoint->Add("past_labels", &said_.labels);
+  checkpoint->Add("past_image", &said_.image);
+  checkpoint->Add("past_normals", &said_.normals);
+}
+
+void WalkMemory::Begin() {
+  BODYLOOM_CHECK(said_.image.size(0) == walks_ * chains_, "motion training: the checkpoint holds ", said_.image.size(0),
+                 " walks, expected ", walks_ * chains_, ": go on with the batch and walks that the run began with");
+  for (Tensor* part : said_.Parts()) *part = OnDevice(*part);
+}
+
+MotionState WalkMemory::Before(const MotionBatch& batch) const {
+  std::vector<MotionState> each;
+  for (size_t c = 0; c < batch.steps.size(); ++c) {
+    const ChainStep& step = batch.steps[c];
+    MotionState state = nothing_;
+    if (!step.restart) {
+      state = said_;
+      const int64_t at = PlaceOf(step) + static_cast<int64_t>(c);
+      for (Tensor* part : state.Parts()) *part = part->slice(0, at, at + 1);
+    } else if (step.from_truth) {
+      state = batch.past[c];
+    }
+    for (Tensor* part : state.Parts()) *part = Shifted(*part, batch.frames[c].before_x, batch.frames[c].before_y);
+    each.push_back(state);
+  }
+  const auto join = [&](Tensor MotionState::*part) {
+    std::vector<Tensor> tensors;
+    for (const MotionState& state : each) {
+      if ((state.*part).defined()) tensors.push_back(state.*part);
+    }
+    return tensors.empty() ? Tensor() : torch::cat(tensors, 0);
+  };
+  return {join(&MotionState::labels), join(&MotionState::image), join(&MotionState::normals)};
+}
+
+void WalkMemory::Keep(const MotionBatch& batch, const MotionState& said) {
+  const torch::NoGradGuard no_grad;
+  const int64_t begin = PlaceOf(batch.steps.front());
+  for (Tensor MotionState::*part : {&MotionState::labels, &MotionState::image, &MotionState::normals}) {
+    if ((said_.*part).defined()) (said_.*part).slice(0, begin, begin + chains_).copy_(said.*part);
+  }
+}
+
+}  // namespace bodyloom
