@@ -16,6 +16,7 @@
 #include "apps/track_inputs.h"
 #include "apps/verbs.h"
 #include "data_tools/motion/motion_tools.h"
+#include "data_tools/people/dressed_person.h"
 #include "data_tools/people/make_person_set.h"
 #include "data_tools/people/person_sheet.h"
 #include "data_tools/video/image_file.h"
@@ -34,9 +35,6 @@ constexpr const char* kFooter =
     "  bodyloom synth-person --motion dance.pkl --out train --frames 600 --seed 3\n"
     "  bodyloom synth-person --motion walk.bvh --motion run.bvh --out test --seed 3 --garment coat --yaw 30 --size "
     "512\n\n";
-
-/// Seconds between two motions of one set: longer than anything that looks back.
-constexpr double kGap_s = 1;
 
 struct SynthPersonCommand {
   std::vector<std::string> motions;
@@ -79,7 +77,8 @@ Motion LoadMotions(const SynthPersonCommand& command, const BodyModel& body) {
       if (command.motions.size() > 1) motions.back() = ChangeUp(motions.back(), Motion::Up::kY, pelvis);
     }
   }
-  return motions.size() == 1 ? motions.front() : JoinMotions(motions, kGap_s);
+  // So far apart that the cloth of one motion is not led into the next.
+  return motions.size() == 1 ? motions.front() : JoinMotions(motions, ClothRunOptions().cut_pause_s);
 }
 
 void SynthPerson(SynthPersonCommand command) {

@@ -147,7 +147,7 @@ void OpenClip(const Request& request, const MotionRun& run, int threads, Clip* c
   PersonFramesOptions options;
   options.uv_size = run.config.profile.uv_size;
   options.past = run.past;
-  options.window.scale = run.pixels_per_metre / size;
+  options.window.scale = ScaleToSize(run.pixels_per_metre, size);
   options.window.multiple = run.config.Multiple();
   options.num_threads = threads;
   options.yaw_deg = ViewAngles(request.view_yaw, clip->own_track->num_frames());
@@ -236,13 +236,12 @@ void Run(const Request& request) {
   if (!scored && !(request.like.empty() && request.frames.empty())) {
     throw UsageError("--like and --frames compare with the pictures of --data: not without it, --view-yaw or --speed");
   }
-  const int reach = request.anywhere ? 0 : run.reach;
   MotionRenderer renderer(CheckpointPath(request.run), run.config,
-                          {request.warmup, reach, scored, threads, request.device});
+                          {request.warmup, run.reach, request.anywhere, scored, threads, request.device});
   lap(0);
   if (relighter && relighter->wants_frames()) {
     MotionRenderer before(CheckpointPath(request.run), run.config,
-                          {request.warmup, reach, false, threads, request.device});
+                          {request.warmup, run.reach, request.anywhere, false, threads, request.device});
     EstimateLight(clip, &before, relighter.get());
   }
   lap(1);

@@ -88,7 +88,7 @@ class MotionData::Impl {
     options.window.multiple = multiple;
     options.num_threads = std::max(1, request.num_threads);
     const double size = bodyloom::PixelsPerMetre(*body_, track_);
-    if (request.pixels_per_metre > 0 && size > 0) options.window.scale = request.pixels_per_metre / size;
+    if (request.pixels_per_metre > 0 && size > 0) options.window.scale = ScaleToSize(request.pixels_per_metre, size);
     try {
       frames_.emplace(*body_, track_, options);
     } catch (const std::invalid_argument& error) {

@@ -37,6 +37,7 @@ std::string MotionRunJson(const MotionRun& run) {
                                  {"motion", c.motion},
                                  {"surface", c.surface},
                                  {"texture", c.texture},
+                                 {"around_body", c.around_body},
                                  {"pixels_per_metre", run.pixels_per_metre},
                                  {"fps", run.fps},
                                  {"past", run.past},
@@ -74,12 +75,15 @@ MotionRun ReadMotionRun(const std::string& run_dir) {
         std::pair("surface", &c.surface), std::pair("texture", &c.texture)}) {
     *flag = root.At(key).Flag();
   }
+  // Runs from before there was a choice looked at whole windows.
+  c.around_body = root.Has("around_body") && root.At("around_body").Flag();
   run.pixels_per_metre = root.At("pixels_per_metre").Number();
   run.fps = root.At("fps").Number();
   std::string why;
   if (!run.config.IsValid(&why)) throw std::runtime_error(path + ": " + why);
-  if (run.reach < 0 || run.reach > run.config.profile.image_size || run.past < 0 || run.past > 10000 ||
-      3 + 3 * run.past != run.config.motion_channels || !(run.pixels_per_metre > 0) || !(run.fps > 0)) {
+  if (run.reach < (c.around_body ? 1 : 0) || run.reach > run.config.profile.image_size || run.past < 0 ||
+      run.past > 10000 || 3 + 3 * run.past != run.config.motion_channels || !(run.pixels_per_metre > 0) ||
+      !(run.fps > 0)) {
     throw std::runtime_error(path + ": past, reach, pixels_per_metre or fps do not make sense");
   }
   return run;

@@ -33,6 +33,7 @@ struct Request {
   std::string shape_loss = "ce", validate_data, out, profile = "cpu", weights;
   std::vector<std::string> without, train, validate;
   double share = 1;
+  bool whole_window = false;
   TrainMotionOptions options;
 };
 
@@ -206,9 +207,11 @@ void Run(Request request) {
   }
   ChooseFrames(request, data.frames(), validation ? &validation->frames() : nullptr, &options);
   MotionRun run;
+  options.reach = ReachOf(&data, options.train);
+  config.around_body = !request.whole_window && options.reach > 0;
   run.config = config;
   run.pixels_per_metre = data.PixelsPerMetre();
-  run.reach = ReachOf(&data, options.train);
+  run.reach = options.reach;
   run.past = data.frames().options().past;
   run.notes = Notes(request);
   const std::vector<double>& times = data.track().motion.timestamps;
@@ -217,7 +220,8 @@ void Run(Request request) {
   WriteRunConfig(options);
   const PersonWindow& window = data.frames().window();
   std::cout << "window " << window.width << "x" << window.height << " px, " << run.pixels_per_metre
-            << " px a metre; profile " << config.profile.name << "\n"
+            << " px a metre; profile " << config.profile.name
+            << (config.around_body ? Concatenate("; ", run.reach, " px around the body") : "; the whole window") << "\n"
             << std::flush;
 
   TrainingBar bar(options.steps);
@@ -274,6 +278,8 @@ void AddTrainMotion(CLI::App& train, std::function<void()>* action) {
   verb->add_option("--walks", options.walks,
                    "Stretches of the clip that every place of the batch goes through in turn, a frame each")
       ->capture_default_str();
+  verb->add_flag("--whole-window", request->whole_window,
+                 "The networks look at the whole window, not only at where the body is and as far as clothes reach");
   verb->add_option("--learning-rate", options.learning_rate, "At its highest")->capture_default_str();
   verb->add_option("--average", options.average,
                    "Keep the average of the weights over the last part of the run, this share of the steps old in the "

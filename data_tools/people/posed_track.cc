@@ -82,4 +82,9 @@ double PixelsPerMetre(const BodyModel& body, const Track& track) {
   return sizes[sizes.size() / 2];
 }
 
+double ScaleToSize(double wanted, double own) {
+  const double ratio = wanted / own;
+  return std::abs(ratio - 1) <= 0.02 ? 1 : ratio;
+}
+
 }  // namespace bodyloom

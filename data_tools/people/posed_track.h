@@ -40,4 +40,9 @@ class PosedTrack {
 /// Pixels of the track's picture a metre at the body's root, median over the frames; 0 when no frame has a result.
 double PixelsPerMetre(const BodyModel& body, const Track& track);
 
+/// By how much a picture of `own` pixels a metre is shrunk or enlarged to show a person at `wanted`: their ratio, but 1
+/// within 2 % of it. The median of a clip differs by that much between clips of one camera, and a size that is 2 % off
+/// is nothing to a network, while a picture that was resampled for it has lost its sharpness. Both above 0.
+double ScaleToSize(double wanted, double own);
+
 }  // namespace bodyloom

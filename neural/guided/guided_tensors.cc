@@ -5,6 +5,7 @@
 
 #include "geometry/check.h"
 #include "neural/device.h"
+#include "neural/people/aligned_box.h"
 #include "neural/people/body_part_map.h"
 
 namespace bodyloom {
@@ -74,7 +75,7 @@ GuidedPseudo PseudoOf(const GuidedTensors& truth, std::span<const std::vector<ui
 }
 
 CodeBox PersonBox(std::span<const PhotoFrame> frames, int multiple, int reach) {
-  int left = 1 << 30, top = 1 << 30, right = -1, bottom = -1;
+  PixelBox around = {1 << 30, 1 << 30, 0, 0};
   for (const PhotoFrame& frame : frames) {
     for (int y = 0; y < frame.size; ++y) {
       for (int x = 0; x < frame.size; ++x) {
@@ -82,27 +83,15 @@ CodeBox PersonBox(std::span<const PhotoFrame> frames, int multiple, int reach) {
         const bool body = frame.parts[i] != 0;
         if (!body && (frame.labels.empty() || frame.labels[i] == 0)) continue;
         const int grow = body ? reach : 0;
-        left = std::min(left, x - grow), right = std::max(right, x + grow);
-        top = std::min(top, y - grow), bottom = std::max(bottom, y + grow);
+        around = {std::min(around.x_begin, x - grow), std::min(around.y_begin, y - grow),
+                  std::max(around.x_end, x + 1 + grow), std::max(around.y_end, y + 1 + grow)};
       }
     }
   }
-  if (right < 0) return {};
-  const int cells = frames[0].size / multiple, least = std::min(cells, std::max(2, (31 + multiple) / multiple));
-  const auto span = [&](int first, int last, int64_t* begin, int64_t* count) {
-    int from = std::clamp(first, 0, frames[0].size - 1) / multiple;
-    int to = std::clamp(last, 0, frames[0].size - 1) / multiple;
-    while (to - from + 1 < least) {
-      if (from > 0) --from;
-      if (to - from + 1 < least && to + 1 < cells) ++to;
-    }
-    *begin = from;
-    *count = to - from + 1;
-  };
-  CodeBox box;
-  span(left, right, &box.x, &box.width);
-  span(top, bottom, &box.y, &box.height);
-  return box;
+  if (around.empty()) return {};
+  const int size = frames[0].size, least = LeastBoxSide(multiple);
+  const PixelBox box = AlignedBox(around, {0, 0, size, size}, multiple, least, least);
+  return {box.x_begin / multiple, box.y_begin / multiple, box.width() / multiple, box.height() / multiple};
 }
 
 Tensor CroppedPixels(const Tensor& map, const CodeBox& box, int multiple) {

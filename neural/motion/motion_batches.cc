@@ -7,7 +7,8 @@
 namespace bodyloom {
 namespace {
 
-MotionBatch MakeBatch(const MotionFrameSource& source, const MotionConfig& config, std::vector<ChainStep> steps) {
+MotionBatch MakeBatch(const MotionFrameSource& source, const MotionConfig& config, int reach,
+                      std::vector<ChainStep> steps) {
   MotionBatch batch;
   batch.frames.resize(steps.size());
   batch.past.resize(steps.size());
@@ -18,8 +19,11 @@ MotionBatch MakeBatch(const MotionFrameSource& source, const MotionConfig& confi
     source(steps[c].frame - 1, true, &before);
     batch.past[c] = TruthOf(std::span(&before, 1), config).State(config);
   }
-  batch.input = InputOf(batch.frames, config);
-  batch.truth = TruthOf(batch.frames, config);
+  batch.boxes = PersonBoxes(batch.frames, config.around_body ? reach : 0, config.Multiple());
+  std::vector<MotionFrame> seen;
+  for (size_t c = 0; c < steps.size(); ++c) seen.push_back(Within(batch.frames[c], batch.boxes[c]));
+  batch.input = InputOf(seen, config);
+  batch.truth = TruthOf(seen, config);
   for (MotionFrame& frame : batch.frames) {
     frame.motion = frame.uv = frame.body = frame.image = frame.normals = {};
     frame.labels = {};
@@ -30,9 +34,10 @@ MotionBatch MakeBatch(const MotionFrameSource& source, const MotionConfig& confi
 
 }  // namespace
 
-MotionBatches::MotionBatches(const MotionFrameSource& source, const MotionConfig& config, ChainPlan plan, int64_t first,
-                             int64_t last)
-    : plan_((plan.Skip(first), std::move(plan))),
-      ahead_(last - first, [this, &source, &config](int64_t) { return MakeBatch(source, config, plan_.Next()); }) {}
+MotionBatches::MotionBatches(const MotionFrameSource& source, const MotionConfig& config, int reach, ChainPlan plan,
+                             int64_t first, int64_t last)
+    : plan_((plan.Skip(first), std::move(plan))), ahead_(last - first, [this, &source, &config, reach](int64_t) {
+        return MakeBatch(source, config, reach, plan_.Next());
+      }) {}
 
 }  // namespace bodyloom

@@ -8,22 +8,24 @@
 
 #include "neural/motion/chain_plan.h"
 #include "neural/motion/frame_tensors.h"
+#include "neural/motion/person_box.h"
 #include "neural/training/made_ahead.h"
 
 namespace bodyloom {
 
 struct MotionBatch {
   std::vector<ChainStep> steps;
-  std::vector<MotionFrame> frames;  ///< only their windows' places are left
-  MotionInput input;
-  MotionTruth truth;
-  std::vector<MotionState> past;  ///< of the chains that restart from truth: 1×…; else without parts
+  std::vector<MotionFrame> frames;  ///< only their windows' sizes and places are left
+  std::vector<PixelBox> boxes;      ///< what the networks see of each window
+  MotionInput input;                ///< of the boxes
+  MotionTruth truth;                ///< of the boxes
+  std::vector<MotionState> past;    ///< whole windows of the chains that restart from truth: 1×…; else without parts
 };
 
-/// Steps first, first + 1, … last − 1 of a plan.
+/// Steps first, first + 1, … last − 1 of a plan. `reach`: of clothes, pixels (config.around_body).
 class MotionBatches {
  public:
-  MotionBatches(const MotionFrameSource& source, const MotionConfig& config, ChainPlan plan, int64_t first,
+  MotionBatches(const MotionFrameSource& source, const MotionConfig& config, int reach, ChainPlan plan, int64_t first,
                 int64_t last);
 
   /// The next batch; waits for it. Throws what the source threw.

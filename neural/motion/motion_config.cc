@@ -54,6 +54,7 @@ std::string ToText(const MotionConfig& config) {
   text << "; discriminator " << p.discriminator_width << "; motion channels " << config.motion_channels << "; labels "
        << config.num_labels << "; shape " << config.shape << "; normals " << config.normals << "; motion "
        << config.motion << "; surface " << config.surface << "; learned texture " << config.texture;
+  if (config.around_body) text << "; around the body";  // older checkpoints know whole windows only
   return text.str();
 }
 

@@ -38,6 +38,9 @@ struct MotionConfig {
   /// the paper, whose networks must keep every check of a shirt in their weights; source: Thies, Zollhöfer, Nießner,
   /// "Deferred Neural Rendering", SIGGRAPH 2019.
   bool texture = true;
+  /// The networks look only at where the body is and as far around it as clothes reach (neural/motion/person_box.h),
+  /// not at the whole window. Their instance norms depend on what they look at, so a run keeps to one of both.
+  bool around_body = false;
 
   /// A side of the images must be a multiple of this.
   [[nodiscard]] int Multiple() const { return 1 << profile.decoder_widths.size(); }

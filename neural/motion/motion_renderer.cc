@@ -34,7 +34,7 @@ class MotionRenderer::Impl {
       : config_(config),
         score_(options.score),
         scorer_(config_),
-        roll_(Loaded(path, config, options), options.warmup_iterations, options.reach) {}
+        roll_(Loaded(path, config, options), options.warmup_iterations, {options.reach, options.anywhere}) {}
 
   MotionPicture Next(const MotionFrame& frame) {
     const MotionStepResult result = roll_.Next(frame);

@@ -24,7 +24,8 @@ struct MotionPicture {
 
 struct MotionRendererOptions {
   int warmup_iterations = 50;  ///< of a clip's first frame, as Kappel et al., CVPR 2021
-  int reach = 0;               ///< pixels from the body beyond which is background; 0: none (roll_out.h)
+  int reach = 0;               ///< of clothes beyond the body, pixels (neural/motion/clothes_reach.h); 0: not known
+  bool anywhere = false;       ///< what lies beyond reach may still be the person (roll_out.h)
   bool score = false;          ///< compare every frame with the truth that it holds
   int num_threads = 0;         ///< 0: all cores
   std::string device = "cpu";  ///< or "cuda"

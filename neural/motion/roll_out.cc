@@ -2,6 +2,10 @@
 #include "neural/motion/roll_out.h"
 
 #include <span>
+#include <utility>
+
+#include "geometry/check.h"
+#include "neural/motion/person_box.h"
 
 namespace bodyloom {
 
@@ -13,6 +17,12 @@ bool Same(const Tensor& a, const Tensor& b) { return a.defined() && b.defined() 
 
 }  // namespace
 
+RollOut::RollOut(MotionModel model, int warmup_iterations, Reach reach)
+    : model_(std::move(model)), warmup_(warmup_iterations), reach_(reach) {
+  BODYLOOM_CHECK(!model_->config.around_body || reach_.pixels > 0, "motion renderer: a reach of ", reach_.pixels,
+                 " px, expected at least 1 for networks that look around the body");
+}
+
 void RollOut::Restart() {
   past_ = MotionState();
   last_ = MotionInput();
@@ -20,8 +30,8 @@ void RollOut::Restart() {
 }
 
 void RollOut::KeepWithinReach(const Tensor& body, MotionStepResult* result) const {
-  if (reach_ <= 0 || body.max().item<float>() <= 0) return;
-  const Tensor near = torch::max_pool2d(body, 2 * reach_ + 1, 1, reach_);
+  if (reach_.anywhere || reach_.pixels <= 0 || body.max().item<float>() <= 0) return;
+  const Tensor near = torch::max_pool2d(body, 2 * reach_.pixels + 1, 1, reach_.pixels);
   MotionState& state = result->state;
   state.image = state.image * near;
   if (state.normals.defined()) state.normals = state.normals * near;
@@ -35,12 +45,22 @@ void RollOut::KeepWithinReach(const Tensor& body, MotionStepResult* result) cons
 
 MotionStepResult RollOut::Next(const MotionFrame& frame) {
   const torch::NoGradGuard no_grad;
-  const MotionInput input = InputOf(std::span(&frame, 1), model_->config);
-  const bool same_motion = !model_->config.motion || Same(input.motion, last_.motion);
+  const MotionConfig& config = model_->config;
+  const std::span<const MotionFrame> one(&frame, 1);
+  PixelBox box = {0, 0, frame.width, frame.height};
+  MotionInput input;
+  if (config.around_body) {
+    box = PersonBoxes(one, reach_.pixels, config.Multiple()).front();
+    const MotionFrame seen = Within(frame, box);
+    input = InputOf(std::span(&seen, 1), config);
+  } else {
+    input = InputOf(one, config);
+  }
+  const bool same_motion = !config.motion || Same(input.motion, last_.motion);
   const bool same_surface = Same(input.uv, last_.uv) && Same(input.body, last_.body);
-  if (model_->config.motion && !same_motion) descriptor_ = model_->Encode(input.motion);
+  if (config.motion && !same_motion) descriptor_ = model_->Encode(input.motion);
   if (!same_motion || !same_surface) projected_ = model_->Project(descriptor_, input.uv, input.body);
-  descriptors_kept_ += model_->config.motion && same_motion;
+  descriptors_kept_ += config.motion && same_motion;
   projections_kept_ += same_motion && same_surface;
   last_ = input;
   int passes = 1;
@@ -50,12 +70,16 @@ MotionStepResult RollOut::Next(const MotionFrame& frame) {
     past_ = model_->Nothing(1, frame.height, frame.width);
     passes += warmup_;
   }
+  MotionState past = Within(past_, box);
   MotionStepResult result;
   for (int i = 0; i < passes; ++i) {
-    result = model_->Decode(projected_, past_);
+    result = model_->Decode(projected_, past);
     KeepWithinReach(input.body, &result);
-    past_ = result.state;
+    past = result.state;
   }
+  past_ = result.state = OnWindow(result.state, box, frame.height, frame.width);
+  result.foreground = OnWindow(result.foreground, box, frame.height, frame.width);
+  if (result.label_logits.defined() && config.around_body) result.label_logits = Tensor();  // of the box alone
   return result;
 }
 

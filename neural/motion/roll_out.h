@@ -7,17 +7,24 @@
 
 namespace bodyloom {
 
+/// How far clothes reach beyond the body, pixels along x or y; 0: not known.
+struct Reach {
+  int pixels = 0;
+  /// Even so may the person be anywhere in what the networks look at; otherwise what lies beyond reach is background:
+  /// the recurrence would keep a speck alive that it once put there.
+  bool anywhere = false;
+};
+
 /// Keeps the past. What does not change from one frame to the next is not computed again: the descriptor of the same
 /// motion maps, and its projection by the same surface coordinates; both exact.
 class RollOut {
  public:
   /// The first frame passes `warmup_iterations` times through the network before it counts, each time with its own last
-  /// answer as its past. What lies more than `reach` pixels (along x or y) from the body is background: the recurrence
-  /// would keep a speck alive that it once put there; 0: anything may be anywhere.
-  RollOut(MotionModel model, int warmup_iterations, int reach = 0)
-      : model_(std::move(model)), warmup_(warmup_iterations), reach_(reach) {}
+  /// answer as its past. Throws std::invalid_argument when the networks look around the body (config.around_body) and
+  /// it is not known how far.
+  RollOut(MotionModel model, int warmup_iterations, Reach reach = {});
 
-  /// The next frame. No gradients.
+  /// The next frame, its whole window. No gradients.
   MotionStepResult Next(const MotionFrame& frame);
   /// The next frame is the first of another clip.
   void Restart();
@@ -29,8 +36,9 @@ class RollOut {
   void KeepWithinReach(const torch::Tensor& body, MotionStepResult* result) const;
 
   MotionModel model_;
-  int warmup_, reach_;
-  MotionState past_;
+  int warmup_;
+  Reach reach_;
+  MotionState past_;  ///< whole window
   MotionInput last_;
   torch::Tensor descriptor_, projected_;
   int64_t descriptors_kept_ = 0, projections_kept_ = 0;

@@ -98,7 +98,7 @@ class MotionTrainer : public TrainedSystem {
 
   void Begin(int first_step) override {
     batches_ = std::make_unique<MotionBatches>(
-        source_, config_,
+        source_, config_, options_.reach,
         ChainPlan(options_.train,
                   {options_.batch, options_.walks, options_.chain_length, /*from_truth=*/0.75, options_.seed}),
         first_step, options_.steps);
@@ -117,7 +117,7 @@ class MotionTrainer : public TrainedSystem {
   void Validate(int done, bool last) override {
     std::vector<MotionPreview> previews;
     MotionScorer quick(config_), all(config_);
-    RollOut roll(Shown(), options_.warmup_iterations);
+    RollOut roll(Shown(), options_.warmup_iterations, {options_.reach, /*anywhere=*/true});
     for (const FrameRange& range : options_.validation) {
       roll.Restart();
       quick.Restart();
@@ -264,13 +264,17 @@ bool TrainMotionOptions::IsValid(std::string* why) const {
       return false;
     }
   }
-  return IsValidRun(*this, why) && config.IsValid(why) && in_range("batch", batch, 1, 256) &&
-         in_range("chain_length", chain_length, 1, 1e6) && in_range("walks", walks, 1, 1024) &&
-         in_range("learning_rate", learning_rate, 0, 1) && in_range("discriminator_rate", discriminator_rate, 0, 1) &&
-         in_range("shape_weight", shape_weight, 0, 1e6) && in_range("normal_weight", normal_weight, 0, 1e6) &&
-         in_range("perceptual_weight", perceptual_weight, 0, 1e6) && in_range("gan_weight", gan_weight, 0, 1e6) &&
-         in_range("warmup_iterations", warmup_iterations, 0, 1000) && in_range("average", average, 0, 0.5) &&
-         in_range("preview_frames", preview_frames, 1, 64);
+  if (config.around_body && reach < 1) {
+    if (why != nullptr) *why = Concatenate("reach ", reach, " px around the body, expected at least 1");
+    return false;
+  }
+  return IsValidRun(*this, why) && config.IsValid(why) && in_range("reach", reach, 0, 1e6) &&
+         in_range("batch", batch, 1, 256) && in_range("chain_length", chain_length, 1, 1e6) &&
+         in_range("walks", walks, 1, 1024) && in_range("learning_rate", learning_rate, 0, 1) &&
+         in_range("discriminator_rate", discriminator_rate, 0, 1) && in_range("shape_weight", shape_weight, 0, 1e6) &&
+         in_range("normal_weight", normal_weight, 0, 1e6) && in_range("perceptual_weight", perceptual_weight, 0, 1e6) &&
+         in_range("gan_weight", gan_weight, 0, 1e6) && in_range("warmup_iterations", warmup_iterations, 0, 1000) &&
+         in_range("average", average, 0, 0.5) && in_range("preview_frames", preview_frames, 1, 64);
 }
 
 TrainMotionSummary TrainMotion(const MotionFrameSource& source, const TrainMotionOptions& options) {

@@ -46,6 +46,7 @@ struct TrainMotionOptions : TrainingRun {
   MotionFrameSource validation_source;        ///< of another clip; empty: the same clip
   int batch = 4;
   int chain_length = 32;
+  int reach = 0;   ///< of clothes beyond the body, pixels; needed with config.around_body
   int walks = 16;  ///< that take turns at a place of the batch (neural/motion/chain_plan.h)
   double learning_rate = 1e-3, discriminator_rate = 2e-4;
   bool shape_by_cross_entropy = true;

@@ -6,6 +6,7 @@
 
 #include "geometry/check.h"
 #include "neural/device.h"
+#include "neural/motion/person_box.h"
 
 namespace bodyloom {
 
@@ -41,7 +42,7 @@ MotionState WalkMemory::Before(const MotionBatch& batch) const {
       state = batch.past[c];
     }
     for (Tensor* part : state.Parts()) *part = Shifted(*part, batch.frames[c].before_x, batch.frames[c].before_y);
-    each.push_back(state);
+    each.push_back(Within(state, batch.boxes[c]));
   }
   const auto join = [&](Tensor MotionState::*part) {
     std::vector<Tensor> tensors;
@@ -55,9 +56,15 @@ MotionState WalkMemory::Before(const MotionBatch& batch) const {
 
 void WalkMemory::Keep(const MotionBatch& batch, const MotionState& said) {
   const torch::NoGradGuard no_grad;
-  const int64_t begin = PlaceOf(batch.steps.front());
-  for (Tensor MotionState::*part : {&MotionState::labels, &MotionState::image, &MotionState::normals}) {
-    if ((said_.*part).defined()) (said_.*part).slice(0, begin, begin + chains_).copy_(said.*part);
+  const int64_t height = said_.image.size(2), width = said_.image.size(3);
+  for (int64_t c = 0; c < chains_; ++c) {
+    MotionState one = said;
+    for (Tensor* part : one.Parts()) *part = part->slice(0, c, c + 1);
+    const MotionState whole = OnWindow(one, batch.boxes[c], height, width);
+    const int64_t at = PlaceOf(batch.steps[c]) + c;
+    for (Tensor MotionState::*part : {&MotionState::labels, &MotionState::image, &MotionState::normals}) {
+      if ((said_.*part).defined()) (said_.*part).slice(0, at, at + 1).copy_(whole.*part);
+    }
   }
 }
 

@@ -21,16 +21,16 @@ class WalkMemory {
   /// After a checkpoint was loaded: onto the device. Throws std::invalid_argument when it holds other numbers of walks.
   void Begin();
 
-  /// The past of every place of a batch, moved to where its window is now, B×…: what its walk said of the frame before,
-  /// or, where the walk starts anew, batch.past or nothing.
+  /// The past of every place of a batch, moved to where its window is now, what its box sees of it, B×…: what its walk
+  /// said of the frame before, or, where the walk starts anew, batch.past or nothing.
   [[nodiscard]] MotionState Before(const MotionBatch& batch) const;
-  /// Keeps what was said of a batch, detached.
+  /// Keeps what was said of a batch's boxes, detached; outside of them is background.
   void Keep(const MotionBatch& batch, const MotionState& said);
 
  private:
   [[nodiscard]] int64_t PlaceOf(const ChainStep& step) const { return int64_t{step.walk} * chains_; }
 
-  MotionState nothing_, said_;  ///< said_: (walks·B)×…, those of one turn together
+  MotionState nothing_, said_;  ///< said_: (walks·B)×…, those of one turn together, whole windows
   int64_t chains_, walks_;
 };
 

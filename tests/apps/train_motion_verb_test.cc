@@ -9,6 +9,7 @@
 #include "data_tools/video/image_file.h"
 #include "data_tools/video/video_reader.h"
 #include "tests/apps/run_command.h"
+#include "tests/support/test_files.h"
 
 namespace bodyloom {
 namespace {
@@ -34,6 +35,27 @@ class TrainMotionVerb : public ::testing::Test {
   ScratchFolder scratch_;
 };
 
+TEST_F(TrainMotionVerb, WholeWindowsAreWhatOlderRunsLookAt) {
+  const CommandResult trained =
+      Train("run", {"--steps", "1", "--train", "0-9", "--validate", "10-10", "--whole-window"});
+  ASSERT_EQ(trained.exit_code, 0) << trained.err;
+  EXPECT_THAT(trained.out, HasSubstr("the whole window"));
+  const auto animate = [&] {
+    return RunCommand({"animate", "motion", "--run", scratch_ / "run", "--track", scratch_ / "person/track.npz",
+                       "--out", scratch_ / "a.mp4", "--warmup", "0"});
+  };
+  const std::string path = scratch_ / "run/config.json";
+  std::string text = FileBytes(path);
+  const std::string key = "  \"around_body\": false,\n";
+  ASSERT_NE(text.find(key), std::string::npos);
+  text.erase(text.find(key), key.size());  // as these runs wrote it
+  std::ofstream(path) << text;
+  EXPECT_EQ(animate().exit_code, 0) << animate().err;
+  text.insert(text.find("  \"pixels_per_metre\""), "  \"around_body\": true,\n");
+  std::ofstream(path) << text;
+  EXPECT_THAT(animate().err, HasSubstr("checkpoint.bin")) << "networks of whole windows taken for others";
+}
+
 TEST_F(TrainMotionVerb, TrainsGoesOnAndAnimates) {
   const CommandResult trained =
       Train("run", {"--steps", "3", "--train", "0-9", "--validate", "10-13", "--validate-every", "3"});
@@ -41,6 +63,7 @@ TEST_F(TrainMotionVerb, TrainsGoesOnAndAnimates) {
   EXPECT_THAT(trained.out, HasSubstr("step 3 of 3"));
   EXPECT_THAT(trained.out, HasSubstr("stand-in"));
   EXPECT_THAT(trained.out, HasSubstr("validation: L1"));
+  EXPECT_THAT(trained.out, HasSubstr("px around the body"));
   for (const char* file : {"config.json", "checkpoint.bin", "metrics.csv", "preview_000003.png"}) {
     EXPECT_TRUE(fs::exists(scratch_ / ("run/" + std::string(file)))) << file;
   }

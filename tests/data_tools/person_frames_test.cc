@@ -47,6 +47,14 @@ std::vector<float> Maps(const PersonFrames& frames, int t) {
   return maps;
 }
 
+TEST(ScaleToSize, LeavesPicturesOfNearlyTheSameSizeAlone) {
+  EXPECT_EQ(ScaleToSize(46.9, 46.67), 1);  // two clips of one camera
+  EXPECT_EQ(ScaleToSize(98.1, 100), 1);
+  EXPECT_NEAR(ScaleToSize(97, 100), 0.97, 1e-12);
+  EXPECT_NEAR(ScaleToSize(103, 100), 1.03, 1e-12);
+  EXPECT_NEAR(ScaleToSize(60, 120), 0.5, 1e-12);
+}
+
 TEST(PersonFrames, MapsAreTheDescriptorsOfTheTrack) {
   const Track track = ShortTrack();
   const PersonFrames frames(BuiltinBody(), track, Small());

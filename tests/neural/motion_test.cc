@@ -22,6 +22,7 @@
 #include "neural/networks/architecture_card.h"
 #include "neural/runtime.h"
 #include "neural/training/checkpoint.h"
+#include "tests/neural/toy_motion.h"
 #include "tests/support/test_files.h"
 
 namespace bodyloom {
@@ -29,58 +30,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using torch::Tensor;
-
-MotionConfig Toy() {
-  MotionConfig config;
-  config.profile = {"toy", 32, 16, 4, 16, 4, {4, 8}, {4, 8}, 4, 16};
-  config.motion_channels = 6;
-  config.num_labels = 3;
-  return config;
-}
-
-/// The person is a square that moves right; its shade and its label follow the first channel of the motion map.
-void ToyFrame(int t, bool with_truth, MotionFrame* frame) {
-  constexpr int kSide = 32, kArea = kSide * kSide;
-  *frame = {};
-  frame->width = frame->height = kSide;
-  frame->before_x = t > 0 && t % 4 == 0 ? -2 : 0;
-  const float level = 0.5F + 0.4F * std::sin(0.7F * static_cast<float>(t));
-  frame->motion.assign(6 * 16 * 16, level);
-  frame->uv.assign(2 * kArea, 0);
-  frame->body.assign(kArea, 0);
-  if (with_truth) {
-    frame->image.assign(3 * kArea, 0);
-    frame->normals.assign(3 * kArea, 0);
-    frame->labels.assign(kArea, 0);
-  }
-  for (int y = 8; y < 24; ++y) {
-    for (int x = 6 + t % 4; x < 22 + t % 4; ++x) {
-      const int i = y * kSide + x;
-      frame->uv[i] = static_cast<float>(x) / kSide;
-      frame->uv[kArea + i] = static_cast<float>(y) / kSide;
-      frame->body[i] = 1;
-      if (!with_truth) continue;
-      frame->labels[i] = y < 16 ? 1 : 2;
-      for (int c = 0; c < 3; ++c) frame->image[c * kArea + i] = level * (c == 0 ? 1.0F : 0.5F);
-      frame->normals[2 * kArea + i] = -1;
-    }
-  }
-}
-
-TrainMotionOptions ToyOptions(const std::string& name) {
-  TrainMotionOptions options;
-  options.config = Toy();
-  options.train = {{0, 24}};
-  options.validation = {{24, 32}};
-  options.batch = 2;
-  options.chain_length = 6;
-  options.walks = 3;
-  options.steps = 8;
-  options.num_threads = 1;
-  options.report_every = options.checkpoint_every = options.validate_every = 4;
-  options.run_dir = EmptyFolder(name);
-  return options;
-}
 
 int64_t Parameters(const torch::nn::Module& module) {
   int64_t count = 0;
@@ -213,7 +162,8 @@ TEST(MotionTraining, LearnsAClipByHeartAndRollsItOut) {
   EXPECT_TRUE(summary.perceptual_stand_in);
   EXPECT_EQ(previews.size(), 4U);
   // The same network from its file, scored apart from training.
-  MotionRenderer renderer(CheckpointPath(options.run_dir), options.config, {10, 0, true, 1});
+  MotionRenderer renderer(CheckpointPath(options.run_dir), options.config,
+                          {.warmup_iterations = 10, .score = true, .num_threads = 1});
   for (int t = 0; t < 4; ++t) {
     MotionFrame frame;
     ToyFrame(t, true, &frame);
@@ -255,7 +205,8 @@ TEST(MotionTraining, TheAverageIsBesideTheLearnerAndIsWhatIsShown) {
   const TrainMotionSummary averaged = TrainMotion(ToyFrame, whole);
   ASSERT_EQ(averaged.status, TrainingStatus::kFinished);
   EXPECT_NE(averaged.scores.image_l1, raw.scores.image_l1);
-  MotionRenderer renderer(CheckpointPath(whole.run_dir), whole.config, {10, 0, true, 1});
+  MotionRenderer renderer(CheckpointPath(whole.run_dir), whole.config,
+                          {.warmup_iterations = 10, .score = true, .num_threads = 1});
   for (int t = 24; t < 32; ++t) {
     MotionFrame frame;
     ToyFrame(t, true, &frame);
@@ -326,7 +277,7 @@ TEST(MotionTraining, ALossThatIsNotANumberKeepsTheLastCheckpoint) {
   EXPECT_GT(summary.steps, 0);
   EXPECT_NE(summary.message.find("checkpoint.bin holds step " + std::to_string(summary.steps)), std::string::npos)
       << summary.message;
-  MotionRenderer renderer(CheckpointPath(options.run_dir), options.config, {0, 0, false, 1});
+  MotionRenderer renderer(CheckpointPath(options.run_dir), options.config, {.warmup_iterations = 0, .num_threads = 1});
   MotionFrame frame;
   ToyFrame(3, false, &frame);
   for (const float value : renderer.Next(frame).image) ASSERT_TRUE(std::isfinite(value));
@@ -342,10 +293,10 @@ TEST(MotionTraining, RefusesWhatDoesNotFit) {
   const std::string path = CheckpointPath(options.run_dir);
   MotionConfig other = Toy();
   other.profile.decoder_widths = {4, 8, 8};
-  EXPECT_THROW(MotionRenderer(path, other, {0, 0, false, 1}), std::runtime_error);
+  EXPECT_THROW(MotionRenderer(path, other, {.warmup_iterations = 0, .num_threads = 1}), std::runtime_error);
   fs::resize_file(path, fs::file_size(path) / 2);
   try {
-    MotionRenderer renderer(path, Toy(), {0, 0, false, 1});
+    MotionRenderer renderer(path, Toy(), {.warmup_iterations = 0, .num_threads = 1});
     FAIL() << "took half a checkpoint";
   } catch (const std::runtime_error& error) {
     EXPECT_EQ(std::string(error.what()).rfind(path, 0), 0U) << error.what();
@@ -377,7 +328,7 @@ TEST(RollOut, NothingIsBeyondReach) {
   torch::manual_seed(6);
   const MotionConfig config = Toy();
   MotionModel model(config);  // untrained: sees the person everywhere
-  RollOut anywhere(model, 2), near(model, 2, 3);
+  RollOut anywhere(model, 2), near(model, 2, {3});
   MotionFrame frame;
   ToyFrame(1, false, &frame);
   const MotionStepResult all = anywhere.Next(frame), kept = near.Next(frame);
@@ -456,7 +407,8 @@ TEST(MotionTraining, DoesTheSameOnACard) {
   ToyFrame(0, false, &frame);
   MotionPicture pictures[2];
   for (const char* device : {"cpu", "cuda"}) {
-    MotionRenderer renderer(CheckpointPath(other.run_dir), other.config, {0, 3, false, 1, device});
+    MotionRenderer renderer(CheckpointPath(other.run_dir), other.config,
+                            {.warmup_iterations = 0, .reach = 3, .num_threads = 1, .device = device});
     pictures[device[1] == 'u'] = renderer.Next(frame);
   }
   EXPECT_THAT(pictures[1].image, ::testing::Pointwise(::testing::FloatNear(1e-3F), pictures[0].image));

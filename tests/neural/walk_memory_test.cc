@@ -25,6 +25,7 @@ MotionBatch Turn(int walk, std::vector<ChainStep> steps) {
   for (ChainStep& step : steps) step.walk = walk;
   batch.frames.resize(steps.size());
   batch.past.resize(steps.size());
+  batch.boxes.assign(steps.size(), {0, 0, kSide, kSide});
   batch.steps = std::move(steps);
   return batch;
 }
@@ -63,6 +64,26 @@ TEST(WalkMemory, ThePastMovesWithTheWindow) {
   const MotionState before = memory.Before(batch), said = Filled({5, 6});
   EXPECT_TRUE(torch::equal(before.image[0], said.image[0]));
   EXPECT_TRUE(torch::equal(before.image[1], Shifted(said.image, 1, -2)[1]));
+}
+
+TEST(WalkMemory, OutsideOfABoxIsBackground) {
+  WalkMemory memory = Memory();
+  MotionBatch batch = Turn(1, {{}, {}});
+  batch.boxes = {{0, 1, 2, 3}, {2, 2, 4, 4}};
+  MotionState said = Filled({5, 6});
+  for (Tensor* part : said.Parts()) *part = part->slice(2, 0, 2).slice(3, 0, 2);
+  memory.Keep(batch, said);
+  const MotionState seen = memory.Before(batch);
+  EXPECT_TRUE(torch::equal(seen.image, said.image));
+  EXPECT_TRUE(torch::equal(seen.labels, said.labels));
+  const MotionState whole = memory.Before(Turn(1, {{}, {}}));
+  EXPECT_EQ(whole.image[0][0][1][1].item<float>(), 105);
+  EXPECT_EQ(whole.image[0][0][0][1].item<float>(), 0);
+  EXPECT_EQ(whole.image[1][2][1][3].item<float>(), 0);
+  EXPECT_EQ(whole.image[1][2][3][3].item<float>(), 106);
+  EXPECT_EQ(whole.labels[0][0][0][0].item<float>(), 1);
+  EXPECT_EQ(whole.labels[0][1][0][0].item<float>(), 0);
+  EXPECT_EQ(whole.labels[0][1][2][1].item<float>(), 5);
 }
 
 TEST(WalkMemory, WhatIsKeptHasNoGradient) {

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "neural/motion/person_box.h"
+
+#include <algorithm>
+
+#include "neural/people/aligned_box.h"
+
+namespace bodyloom {
+
+using torch::Tensor;
+
+namespace {
+
+/// Empty without a body.
+PixelBox BodyBox(const MotionFrame& frame) {
+  PixelBox box = {frame.width, frame.height, 0, 0};
+  for (int y = 0; y < frame.height; ++y) {
+    for (int x = 0; x < frame.width; ++x) {
+      if (!(frame.body[size_t(y) * frame.width + x] > 0)) continue;
+      box = {std::min(box.x_begin, x), std::min(box.y_begin, y), std::max(box.x_end, x + 1),
+             std::max(box.y_end, y + 1)};
+    }
+  }
+  return box;
+}
+
+/// Of planes of the frame's size.
+template <class T>
+std::vector<T> PlanesWithin(const std::vector<T>& planes, int width, int height, const PixelBox& box) {
+  std::vector<T> result;
+  const size_t area = size_t(width) * height;
+  result.reserve(planes.size() / area * box.area());
+  for (size_t plane = 0; plane < planes.size(); plane += area) {
+    for (int y = box.y_begin; y < box.y_end; ++y) {
+      const auto row = planes.begin() + static_cast<std::ptrdiff_t>(plane + size_t(y) * width);
+      result.insert(result.end(), row + box.x_begin, row + box.x_end);
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<PixelBox> PersonBoxes(std::span<const MotionFrame> frames, int reach, int multiple) {
+  std::vector<PixelBox> needed;
+  int width = LeastBoxSide(multiple), height = width;
+  const PixelBox window = {0, 0, frames[0].width, frames[0].height};
+  if (reach <= 0) return std::vector<PixelBox>(frames.size(), window);
+  for (const MotionFrame& frame : frames) {
+    const PixelBox body = BodyBox(frame);
+    needed.push_back(body.empty() ? body : body.GrownBy(reach));
+    const PixelBox aligned = AlignedBox(needed.back(), window, multiple, width, height);
+    width = std::max(width, aligned.width());
+    height = std::max(height, aligned.height());
+  }
+  for (PixelBox& box : needed) box = AlignedBox(box, window, multiple, width, height);
+  return needed;
+}
+
+MotionFrame Within(const MotionFrame& frame, const PixelBox& box) {
+  const auto cut = [&](const auto& planes) { return PlanesWithin(planes, frame.width, frame.height, box); };
+  MotionFrame result;
+  result.width = box.width(), result.height = box.height();
+  result.before_x = frame.before_x, result.before_y = frame.before_y;
+  result.motion = frame.motion;
+  result.uv = cut(frame.uv), result.body = cut(frame.body);
+  result.image = cut(frame.image), result.labels = cut(frame.labels), result.normals = cut(frame.normals);
+  return result;
+}
+
+Tensor Within(const Tensor& map, const PixelBox& box) {
+  return map.slice(2, box.y_begin, box.y_end).slice(3, box.x_begin, box.x_end);
+}
+
+MotionState Within(const MotionState& state, const PixelBox& box) {
+  MotionState result = state;
+  for (Tensor* part : result.Parts()) *part = Within(*part, box);
+  return result;
+}
+
+Tensor OnWindow(const Tensor& inside, const PixelBox& box, int64_t height, int64_t width) {
+  if (inside.size(2) == height && inside.size(3) == width) return inside;
+  Tensor result = torch::zeros({inside.size(0), inside.size(1), height, width}, inside.options());
+  Within(result, box).copy_(inside);
+  return result;
+}
+
+MotionState OnWindow(const MotionState& inside, const PixelBox& box, int64_t height, int64_t width) {
+  MotionState result = inside;
+  for (Tensor* part : result.Parts()) *part = OnWindow(*part, box, height, width);
+  if (result.labels.defined() && !result.labels.is_same(inside.labels)) {
+    Tensor background = result.labels.slice(1, 0, 1);
+    background.fill_(1);
+    Within(background, box).copy_(inside.labels.slice(1, 0, 1));
+  }
+  return result;
+}
+
+}  // namespace bodyloom
