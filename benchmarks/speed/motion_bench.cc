@@ -7,11 +7,13 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "benchmarks/speed/bench_table.h"
 #include "neural/motion/motion_model.h"
+#include "neural/motion/person_box.h"
 #include "neural/motion/roll_out.h"
 #include "neural/motion/train_motion.h"
 #include "neural/networks/architecture_card.h"
@@ -23,8 +25,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A person of an ellipse in a window of that size; `t` changes everything that may change.
-void ToyFrame(const MotionConfig& config, int width, int height, int t, bool with_truth, MotionFrame* frame) {
+/// A window of width × height in which an ellipse of person_width × person_height stands for the person.
+struct ToyWindow {
+  int width, height, person_width, person_height;
+};
+
+/// The person fills most of the window.
+ToyWindow Filled(int width, int height) { return {width, height, width * 3 / 5, height * 9 / 10}; }
+
+/// `t` changes everything that may change.
+void ToyFrame(const MotionConfig& config, const ToyWindow& window, int t, bool with_truth, MotionFrame* frame) {
+  const int width = window.width, height = window.height;
   *frame = {};
   frame->width = width, frame->height = height;
   const size_t area = size_t(width) * height, texels = size_t(config.profile.uv_size) * config.profile.uv_size;
@@ -43,7 +54,10 @@ void ToyFrame(const MotionConfig& config, int width, int height, int t, bool wit
     for (int x = 0; x < width; ++x) {
       const float u = (static_cast<float>(x) + 0.5F) / static_cast<float>(width);
       const float v = (static_cast<float>(y) + 0.5F) / static_cast<float>(height);
-      if (std::hypot((u - 0.5F) / 0.3F, (v - 0.5F) / 0.45F) > 1) continue;
+      if (std::hypot((u - 0.5F) * 2 * float(width) / float(window.person_width),
+                     (v - 0.5F) * 2 * float(height) / float(window.person_height)) > 1) {
+        continue;
+      }
       const size_t i = size_t(y) * width + x;
       frame->uv[i] = u, frame->uv[area + i] = v, frame->body[i] = 1;
       if (!with_truth) continue;
@@ -88,17 +102,28 @@ void Inference(const MotionConfig& config, double peak) {
   MotionModel model(config);
   model->eval();
   const int side = config.profile.image_size;
-  for (const auto& [width, height, what] :
-       {std::tuple(side, side, "a frame, the whole picture"), std::tuple(side * 5 / 8, side, "the person's window")}) {
+  const int reach = side / 16;
+  struct Row {
+    const char* what;
+    ToyWindow window;
+    bool around_body;
+  };
+  for (const Row& row : {Row{"a frame, the whole picture", Filled(side, side), false},
+                         Row{"the person's window", Filled(side * 5 / 8, side), false},
+                         Row{"a smaller person, the whole window", {side, side, side * 3 / 8, side * 5 / 8}, false},
+                         Row{"a smaller person, around the body", {side, side, side * 3 / 8, side * 5 / 8}, true}}) {
+    model->config.around_body = row.around_body;
     std::vector<MotionFrame> frames(2);
-    for (int t = 0; t < 2; ++t) ToyFrame(config, width, height, t, false, &frames[t]);
-    RollOut roll(model, 0);
+    for (int t = 0; t < 2; ++t) ToyFrame(config, row.window, t, false, &frames[t]);
+    PixelBox seen = {0, 0, row.window.width, row.window.height};
+    if (row.around_body) seen = PersonBoxes(std::span(frames).first(1), reach, config.Multiple()).front();
+    RollOut roll(model, 0, {reach, /*anywhere=*/true});
     int t = 0;
     const auto next = [&] { roll.Next(frames[t++ % 2]); };
     const auto multiply_adds = static_cast<double>(CountMultiplyAdds(next));
     const Milliseconds moving = Time(15, next);
-    const std::string size = std::to_string(width) + "x" + std::to_string(height);
-    Print(std::string(what) + ", " + size, moving, ShareText(multiply_adds, moving, peak));
+    const std::string size = std::to_string(seen.width()) + "x" + std::to_string(seen.height());
+    Print(std::string(row.what) + ", " + size, moving, ShareText(multiply_adds, moving, peak));
     Print("the same, nothing moved since the frame before", Time(15, [&] { roll.Next(frames[0]); }), "exact");
   }
 }
@@ -111,7 +136,7 @@ void Training(const MotionConfig& config) {
   options.run_dir = (fs::temp_directory_path() / "bodyloom_bench_motion").string();
   const int side = config.profile.image_size;
   const auto source = [&](int t, bool with_truth, MotionFrame* frame) {
-    ToyFrame(config, side, side, t, with_truth, frame);
+    ToyFrame(config, Filled(side, side), t, with_truth, frame);
   };
   double seconds[2];
   const int steps[2] = {3, 13};

@@ -85,7 +85,8 @@ MotionStepResult MotionModelImpl::Decode(const Tensor& projected, const MotionSt
   if (config.normals) input.push_back(before.normals);
   const std::vector<Tensor> heads = appearance_decoder(torch::cat(input, 1));
   const Tensor colour = config.texture ? heads[0] + texture->colour_of_texel(texel) : heads[0];
-  result.state.image = result.foreground * torch::sigmoid(colour);
+  result.colour = torch::sigmoid(colour);
+  result.state.image = result.foreground * result.colour;
   if (config.normals) result.state.normals = result.foreground * Unit(torch::tanh(heads[1]));
   return result;
 }

@@ -42,6 +42,7 @@ struct MotionStepResult {
   MotionState state;
   torch::Tensor label_logits;  ///< B×K×h×w, undefined without shape
   torch::Tensor foreground;    ///< B×1×h×w, 1 without shape
+  torch::Tensor colour;        ///< B×3×h×w, sigmoid a: as if the person were everywhere
 };
 
 struct MotionModelImpl : torch::nn::Module {

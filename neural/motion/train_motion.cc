@@ -183,20 +183,23 @@ class MotionTrainer : public TrainedSystem {
     const MotionStepResult result = model_(batch.input, memory_->Before(batch));
     const MotionState& state = result.state;
     Losses losses;
-    const auto condition = [&](const Tensor& image) {
-      return has_labels_ ? torch::cat({truth.labels, image}, 1) : image;
+    // Where the person is, is the classes' affair: colour is judged where the person truly is. Judged as it is shown,
+    // it would turn dark where the person might be and mostly is not.
+    const Tensor image = has_labels_ && config_.shape ? truth.foreground * result.colour : state.image;
+    const auto condition = [&](const Tensor& picture) {
+      return has_labels_ ? torch::cat({truth.labels, picture}, 1) : picture;
     };
     if (options_.gan_weight > 0) {
       discriminator_optimizer_->zero_grad();
-      const Tensor loss = DiscriminatorLoss({discriminator_(condition(truth.image))},
-                                            {discriminator_(condition(state.image.detach()))});
+      const Tensor loss =
+          DiscriminatorLoss({discriminator_(condition(truth.image))}, {discriminator_(condition(image.detach()))});
       loss.backward();
       losses.discriminator = loss.item<double>();
       if (!std::isfinite(losses.discriminator)) return losses;
       discriminator_optimizer_->step();
     }
     optimizer_->zero_grad();
-    Tensor total = L1Loss(state.image, truth.image);
+    Tensor total = L1Loss(image, truth.image);
     losses.image = total.item<double>();
     const auto add = [&](double weight, const Tensor& loss, double* value) {
       *value = loss.item<double>();
@@ -216,11 +219,11 @@ class MotionTrainer : public TrainedSystem {
         const torch::NoGradGuard no_grad;
         target = vgg_(truth.image);
       }
-      add(options_.perceptual_weight, PerceptualLoss(vgg_(state.image), target), &losses.perceptual);
+      add(options_.perceptual_weight, PerceptualLoss(vgg_(image), target), &losses.perceptual);
     }
     if (options_.gan_weight > 0) {
       RequireGradients(discriminator_.get(), false);
-      add(options_.gan_weight, GeneratorLoss({discriminator_(condition(state.image))}), &losses.generator);
+      add(options_.gan_weight, GeneratorLoss({discriminator_(condition(image))}), &losses.generator);
     }
     total.backward();
     RequireGradients(discriminator_.get(), true);

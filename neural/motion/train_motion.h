@@ -5,7 +5,8 @@
 /// L_a, L_n: mean absolute differences of image and normals; L_s: cross entropy of the classes, or the mean absolute
 /// difference of probabilities (the paper does not say which norm; with absolute differences small classes are never
 /// learned, docs/motion_renderer.md); L_p: of VGG-16's features after
-/// conv 1-2, 2-2, 3-2 and 4-2; L_g: a patch discriminator's judgement of the image beside the true classes. Losses
+/// conv 1-2, 2-2, 3-2 and 4-2; L_g: a patch discriminator's judgement of the image beside the true classes. The image
+/// of L_a, L_p and L_g is the colour where the person truly is (not in the paper: docs/motion_renderer.md). Losses
 /// whose truth the clip does not have are switched off (`losses_off` says which). Recurrence:
 /// neural/motion/chain_plan.h.
 ///

@@ -246,6 +246,37 @@ TEST(MotionTraining, TheLogsLastLineIsOfTheSameFramesAsThoseBeforeIt) {
   EXPECT_NE(l1[1], summary.scores.image_l1);
 }
 
+TEST(MotionTraining, WherePeopleRarelyAreTheyHaveTheirColourAllTheSame) {
+  // The same frame each time; in three of ten its lower half is there.
+  const auto source = [](int t, bool with_truth, MotionFrame* frame) {
+    ToyFrame(0, with_truth, frame);
+    const bool there = (uint32_t(t) * 2654435761U >> 16) % 10 < 3;
+    if (!with_truth || there) return;
+    for (int i = 16 * 32; i < 32 * 32; ++i) {
+      frame->labels[i] = 0;
+      for (int c = 0; c < 3; ++c) frame->image[c * 32 * 32 + i] = frame->normals[c * 32 * 32 + i] = 0;
+    }
+  };
+  TrainMotionOptions options = ToyOptions("motion_rarely_there");
+  options.validation.clear();
+  options.train = {{0, 200}};
+  options.chain_length = 1;
+  options.steps = 200;
+  options.learning_rate = 5e-3;
+  ASSERT_EQ(TrainMotion(source, options).status, TrainingStatus::kFinished);
+  MotionRenderer renderer(CheckpointPath(options.run_dir), options.config, {.num_threads = 1});
+  MotionFrame frame;
+  source(0, false, &frame);
+  const MotionPicture picture = renderer.Next(frame);
+  double alpha = 0, red = 0;
+  for (int y = 18; y < 22; ++y) {
+    for (int x = 10; x < 18; ++x) alpha += picture.alpha[y * 32 + x] / 32, red += picture.image[y * 32 + x] / 32;
+  }
+  EXPECT_GT(alpha, 0.1);
+  EXPECT_LT(alpha, 0.6);
+  EXPECT_NEAR(red / alpha, 0.5, 0.1);
+}
+
 TEST(MotionTraining, LossesWithoutTruthAreSwitchedOff) {
   TrainMotionOptions options = ToyOptions("motion_no_truth");
   options.steps = 2;
