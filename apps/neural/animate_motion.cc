@@ -21,6 +21,7 @@
 #include "apps/neural/background.h"
 #include "apps/neural/composite.h"
 #include "apps/neural/composite_score.h"
+#include "apps/neural/freeze_option.h"
 #include "apps/neural/motion_data.h"
 #include "apps/neural/motion_errors.h"
 #include "apps/neural/motion_preview.h"
@@ -32,6 +33,7 @@
 #include "apps/stage_clock.h"
 #include "apps/track_inputs.h"
 #include "data_tools/formats/atomic_file.h"
+#include "data_tools/motion/freeze_track.h"
 #include "data_tools/motion/play_track.h"
 #include "data_tools/people/motion_similarity.h"
 #include "data_tools/people/person_frames.h"
@@ -53,7 +55,7 @@ namespace {
 constexpr int kLargestSide = 4096;
 
 struct Request {
-  std::string run, track, data, out, body, background, sheet, json, view_yaw, relight, frames, like, set;
+  std::string run, track, data, out, body, background, sheet, json, view_yaw, relight, frames, like, set, freeze;
   int threads = 0, warmup = 50;
   double speed = 1;
   std::string device = "cpu";
@@ -69,6 +71,7 @@ std::string CommandLine(const Request& request) {
   add("--run", request.run), add("--track", request.track), add("--data", request.data), add("--body", request.body);
   add("--background", request.background), add("--relight", request.relight);
   if (request.speed != 1) add("--speed", Concatenate(request.speed));
+  add("--freeze", request.freeze);
   if (request.warmup != Request().warmup) add("--warmup", Concatenate(request.warmup));
   line += request.anywhere ? " --anywhere" : "";
   line += request.without_past ? " --without-past" : "";
@@ -104,9 +107,10 @@ class Likeness {
 struct Clip {
   std::unique_ptr<MotionData> data;
   std::shared_ptr<const BodyModel> body;
-  std::optional<Track> own_track;
+  std::optional<Track> own_track;  ///< as it was read or played
+  std::optional<Track> shown;      ///< with what is shown more than once
   std::optional<PersonFrames> own_frames;
-  [[nodiscard]] const Track& track() const { return data ? data->track() : *own_track; }
+  [[nodiscard]] const Track& track() const { return data ? data->track() : *shown; }
   [[nodiscard]] const PersonFrames& frames() const { return data ? data->frames() : *own_frames; }
   void Fill(int t, MotionFrame* frame) const {
     if (data) {
@@ -117,9 +121,9 @@ struct Clip {
   }
 };
 
-/// Whether the result is compared: from another side or at another speed there is nothing to compare with.
+/// Whether the result is compared: from another side or in another time there is nothing to compare with.
 bool IsScored(const Request& request) {
-  return !request.data.empty() && request.view_yaw.empty() && request.speed == 1;
+  return !request.data.empty() && request.view_yaw.empty() && request.freeze.empty() && request.speed == 1;
 }
 
 void OpenClip(const Request& request, const MotionRun& run, int threads, Clip* clip) {
@@ -150,7 +154,16 @@ void OpenClip(const Request& request, const MotionRun& run, int threads, Clip* c
   options.window.scale = ScaleToSize(run.pixels_per_metre, size);
   options.window.multiple = run.config.Multiple();
   options.num_threads = threads;
-  options.yaw_deg = ViewAngles(request.view_yaw, clip->own_track->num_frames());
+  int last = clip->own_track->num_frames() - 1, first = 0;
+  if (request.freeze.empty()) {
+    clip->shown = clip->own_track;
+  } else {
+    const Freeze freeze = ReadFreeze(request.freeze, last + 1);
+    options.shown = FrozenAt(last + 1, freeze.frame, freeze.count);
+    clip->shown = FramesInOrder(*clip->own_track, options.shown);
+    first = freeze.frame, last = freeze.frame + freeze.count;
+  }
+  options.yaw_deg = ViewAngles(request.view_yaw, clip->shown->num_frames(), first, last);
   clip->own_frames.emplace(*clip->body, *clip->own_track, options);
 }
 
@@ -234,7 +247,8 @@ void Run(const Request& request) {
   }
   const bool scored = IsScored(request);
   if (!scored && !(request.like.empty() && request.frames.empty())) {
-    throw UsageError("--like and --frames compare with the pictures of --data: not without it, --view-yaw or --speed");
+    throw UsageError(
+        "--like and --frames compare with the pictures of --data: not without it, --view-yaw, --freeze or --speed");
   }
   MotionRenderer renderer(CheckpointPath(request.run), run.config,
                           {request.warmup, run.reach, request.anywhere, scored, threads, request.device});
@@ -382,9 +396,9 @@ void AddAnimateMotion(CLI::App& animate, std::function<void()>* action) {
   auto request = std::make_shared<Request>();
   verb->add_option("--run", request->run, "Folder of the trained run")->required();
   verb->add_option("--track", request->track, "The motion: a track, .npz (default: that of --data)");
-  verb->add_option(
-      "--data", request->data,
-      "A person set of the same person: the result is compared with its pictures (not with --view-yaw or --speed)");
+  verb->add_option("--data", request->data,
+                   "A person set of the same person: the result is compared with its pictures (not with --view-yaw, "
+                   "--freeze or --speed)");
   verb->add_option("--out", request->out, "The video, .mp4")->required();
   verb->add_option("--body", request->body, "The track's body (default: the built-in body)");
   verb->add_option("--view-yaw", request->view_yaw,
@@ -392,6 +406,9 @@ void AddAnimateMotion(CLI::App& animate, std::function<void()>* action) {
   verb->add_option("--speed", request->speed, "Plays the motion so many times as fast: clothes move differently")
       ->check(CLI::Range(0.05, 20.0))
       ->capture_default_str();
+  verb->add_option(
+      "--freeze", request->freeze,
+      "FRAME:COUNT: time stands still at that frame for so many more, while --view-yaw FROM:TO turns the view");
   verb->add_option("--background", request->background, "Image, video or folder of images behind the person");
   CLI::Option* full_size = verb->add_flag("--full-size", request->full_size, kFullSizeHelp);
   verb->add_option("--set", request->set,

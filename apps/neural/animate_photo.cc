@@ -142,7 +142,7 @@ void Run(const Request& request) {
   PhotoMapsOptions options;
   options.size = S;
   options.texture_size = U;
-  options.yaw_deg = ViewAngles(request.view_yaw, track.num_frames());
+  options.yaw_deg = ViewAngles(request.view_yaw, track.num_frames(), 0, track.num_frames() - 1);
   std::unique_ptr<PhotoMaps> maps;
   try {
     maps = std::make_unique<PhotoMaps>(*photo.body, track, options);

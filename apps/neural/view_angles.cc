@@ -8,7 +8,7 @@
 
 namespace bodyloom {
 
-std::vector<double> ViewAngles(const std::string& text, int num_frames) {
+std::vector<double> ViewAngles(const std::string& text, int num_frames, int first, int last) {
   if (text.empty()) return {};
   double from = 0, to = 0;
   char rest = 0;
@@ -19,7 +19,9 @@ std::vector<double> ViewAngles(const std::string& text, int num_frames) {
     to = from;
   }
   std::vector<double> angles;
-  for (int t = 0; t < num_frames; ++t) angles.push_back(from + (to - from) * t / std::max(1, num_frames - 1));
+  for (int t = 0; t < num_frames; ++t) {
+    angles.push_back(from + (to - from) * std::clamp(t - first, 0, last - first) / std::max(1, last - first));
+  }
   return angles;
 }
 

@@ -7,7 +7,8 @@
 
 namespace bodyloom {
 
-/// "30": every frame turned by 30°; "0:360": from 0 to 360 over the clip; "": none. Throws UsageError.
-std::vector<double> ViewAngles(const std::string& text, int num_frames);
+/// "30": every frame turned by 30°; "0:360": 0 up to frame `first`, 360 from frame `last` on, evenly in between; "":
+/// none. Throws UsageError.
+std::vector<double> ViewAngles(const std::string& text, int num_frames, int first, int last);
 
 }  // namespace bodyloom

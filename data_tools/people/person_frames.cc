@@ -12,6 +12,7 @@
 #include "data_tools/descriptors/describe_track.h"
 #include "data_tools/formats/half.h"
 #include "data_tools/formats/mapped_npy.h"
+#include "data_tools/motion/freeze_track.h"
 #include "data_tools/people/posed_track.h"
 #include "geometry/check.h"
 #include "render/resolve_pixels.h"
@@ -65,7 +66,12 @@ void TurnMap(const Matrix3f& turn, size_t count, float* planes) {
 class PersonFrames::Impl {
  public:
   Impl(const BodyModel& body, const Track& track, const PersonFramesOptions& options)
-      : body_(body), track_(track), options_(options), posed_(body, track, options.yaw_deg) {
+      : body_(body),
+        track_(track),
+        options_(options),
+        reordered_(options.shown.empty() ? std::nullopt : std::optional(FramesInOrder(track, options.shown))),
+        shown_(reordered_ ? *reordered_ : track),
+        posed_(body, shown_, options.yaw_deg) {
     BODYLOOM_CHECK(options.uv_size > 0 && options.past >= 0, "person frames: UV maps of ", options.uv_size, ", past ",
                    options.past);
     window_ =
@@ -79,14 +85,15 @@ class PersonFrames::Impl {
                    " values, expected ", map * (1 + options_.past));
     static const HalfTable half;
     std::fill(maps.begin(), maps.end(), 0.0F);
-    if (!track_.HasResult(t)) return;
-    const uint16_t* normals = Stored(t, 0);
+    if (!shown_.HasResult(t)) return;
+    const int now = InTrack(t);
+    const uint16_t* normals = Stored(now, 0);
     for (size_t i = 0; i < map; ++i) maps[i] = half[normals[i]];
     const Matrix3f turn = posed_.Turn(t).cast<float>();
     if (posed_.turned()) TurnMap(turn, Texels(), maps.data());
     for (int k = 0; k < options_.past; ++k) {
-      const int s = t - k;
-      if (s < 0 || segment_[s] < 0 || segment_[s] != segment_[t]) continue;
+      const int s = now - k;
+      if (s < 0 || segment_[s] < 0 || segment_[s] != segment_[now]) continue;
       float* to = &maps[map * (1 + k)];
       const uint16_t* from = Stored(s, 1);
       constexpr auto kScale = static_cast<float>(1 / kBodyLength);
@@ -102,9 +109,9 @@ class PersonFrames::Impl {
                    mask.size(), " values, expected ", 2 * area, " and ", area);
     std::fill(uv.begin(), uv.end(), 0.0F);
     std::fill(mask.begin(), mask.end(), 0.0F);
-    if (!track_.HasResult(t)) return;
+    if (!shown_.HasResult(t)) return;
     const MatrixX3d vertices = posed_.Vertices(t);
-    const Camera camera = CameraInWindow(track_.CameraAt(t), window_, t);
+    const Camera camera = CameraInWindow(shown_.CameraAt(t), window_, t);
     VisibilityBuffer buffer;
     buffer.Render(vertices, body_.data().faces, camera);
     ResolveRequest request;
@@ -125,13 +132,15 @@ class PersonFrames::Impl {
 
   [[nodiscard]] const PersonWindow& window() const { return window_; }
   [[nodiscard]] const PersonFramesOptions& options() const { return options_; }
-  [[nodiscard]] int num_frames() const { return track_.num_frames(); }
-  [[nodiscard]] int Segment(int t) const { return segment_.at(t); }
+  [[nodiscard]] int num_frames() const { return shown_.num_frames(); }
+  [[nodiscard]] int Segment(int t) const { return segment_.at(InTrack(t)); }
 
  private:
   [[nodiscard]] size_t Texels() const { return size_t(options_.uv_size) * options_.uv_size; }
 
-  /// Frame t's normals (0) or velocities (1), half precision.
+  [[nodiscard]] int InTrack(int t) const { return options_.shown.empty() ? t : options_.shown.at(t); }
+
+  /// The track's frame t: normals (0) or velocities (1), half precision.
   [[nodiscard]] const uint16_t* Stored(int t, int which) const {
     return &stored_->Values<uint16_t>()[3 * Texels() * (2 * static_cast<size_t>(t) + which)];
   }
@@ -155,10 +164,12 @@ class PersonFrames::Impl {
   const BodyModel& body_;
   const Track& track_;
   PersonFramesOptions options_;
+  std::optional<Track> reordered_;  ///< by options_.shown
+  const Track& shown_;
   PosedTrack posed_;
   PersonWindow window_;
   std::optional<MappedNpy> stored_;  ///< of each frame normals and velocities; its file has no name any more
-  std::vector<int> segment_;         ///< gap-free run of each frame, −1: none
+  std::vector<int> segment_;         ///< gap-free run of each frame of the track, −1: none
 };
 
 PersonFrames::PersonFrames(const BodyModel& body, const Track& track, const PersonFramesOptions& options)

@@ -23,6 +23,10 @@ struct PersonFramesOptions {
   /// By frame: turns the view about the vertical (the camera's y) through the body's root, degrees; empty: the track's
   /// own view. The motion is turned with it, so that a view that moves adds no velocity of its own.
   std::vector<double> yaw_deg;
+  /// Which frame of the track is shown when (data_tools/motion/freeze_track.h); empty: each in turn. One that is shown
+  /// again moves as it did the first time: time stands still, nothing comes to rest. All that is by frame here is by
+  /// frame shown.
+  std::vector<int> shown;
   std::string scratch_dir;  ///< the maps lie in a file without a name here; empty: the system's own place
   int num_threads = 1;
 };
@@ -46,7 +50,7 @@ class PersonFrames {
   [[nodiscard]] const PersonWindow& window() const;
   [[nodiscard]] const PersonFramesOptions& options() const;
 
-  /// Number of the gap-free run of frames that frame t belongs to; −1: it has no result.
+  /// Number of the track's gap-free run of frames that frame t belongs to; −1: it has no result.
   [[nodiscard]] int Segment(int t) const;
 
   /// [N_t, V_t, V_{t−1}, …] of the posed surface in the camera frame, channels × uv_size × uv_size: unit normals, and

@@ -35,6 +35,26 @@ class TrainMotionVerb : public ::testing::Test {
   ScratchFolder scratch_;
 };
 
+TEST_F(TrainMotionVerb, TimeStandsStillWhileTheViewTurns) {
+  ASSERT_EQ(Train("run", {"--steps", "1", "--train", "0-9", "--validate", "10-10"}).exit_code, 0);
+  const auto animate = [&](const std::string& freeze) {
+    return RunCommand({"animate", "motion", "--run", scratch_ / "run", "--track", scratch_ / "person/track.npz",
+                       "--out", scratch_ / "a.mp4", "--warmup", "0", "--freeze", freeze, "--view-yaw", "0:90"});
+  };
+  const CommandResult frozen = animate("5:4");
+  ASSERT_EQ(frozen.exit_code, 0) << frozen.err;
+  VideoReader video(scratch_ / "a.mp4");
+  Image picture;
+  int frames = 0;
+  while (video.Read(&picture)) ++frames;
+  EXPECT_EQ(frames, 18);
+  for (const char* wrong : {"14:4", "-1:4", "5", "5:0", "5:4x"}) {
+    const CommandResult refused = animate(wrong);
+    EXPECT_EQ(refused.exit_code, 2) << wrong;
+    EXPECT_THAT(refused.err, HasSubstr("frames 0 to 13")) << wrong;
+  }
+}
+
 TEST_F(TrainMotionVerb, WholeWindowsAreWhatOlderRunsLookAt) {
   const CommandResult trained =
       Train("run", {"--steps", "1", "--train", "0-9", "--validate", "10-10", "--whole-window"});
