@@ -6,23 +6,12 @@
 
 #include "data_tools/builtin_body.h"
 #include "data_tools/people/person_frames.h"
-#include "data_tools/synthetic/demo_motion.h"
-#include "data_tools/synthetic/synth_clip.h"
+#include "tests/support/short_track.h"
 
 namespace bodyloom {
 namespace {
 
 using ::testing::ElementsAre;
-
-Track ShortTrack() {
-  SynthClipOptions options;
-  options.camera.width = 320;
-  options.camera.height = 240;
-  options.dense_per_frame = 0;
-  options.keypoints = false;
-  options.num_threads = 1;
-  return MakeSynthClip(BuiltinBody(), DemoMotion(BuiltinBody(), 8, 4), options).truth;
-}
 
 TEST(FreezeTrack, ShowsOneFrameLonger) {
   EXPECT_THAT(FrozenAt(4, 1, 3), ElementsAre(0, 1, 1, 1, 1, 2, 3));

@@ -11,27 +11,14 @@
 #include "data_tools/builtin_body.h"
 #include "data_tools/descriptors/describe_track.h"
 #include "data_tools/formats/npz.h"
-#include "data_tools/synthetic/demo_motion.h"
-#include "data_tools/synthetic/synth_clip.h"
 #include "geometry/posed_body.h"
 #include "render/visibility_buffer.h"
+#include "tests/support/short_track.h"
 
 namespace bodyloom {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Two seconds of the demo's walk.
-Track ShortTrack() {
-  const Motion motion = DemoMotion(BuiltinBody(), 12, 6);
-  SynthClipOptions options;
-  options.camera.width = 320;
-  options.camera.height = 240;
-  options.dense_per_frame = 0;
-  options.keypoints = false;
-  options.num_threads = 1;
-  return MakeSynthClip(BuiltinBody(), motion, options).truth;
-}
 
 PersonFramesOptions Small() {
   PersonFramesOptions options;

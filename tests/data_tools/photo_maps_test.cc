@@ -9,23 +9,12 @@
 #include "data_tools/builtin_body.h"
 #include "data_tools/people/label_of_part.h"
 #include "data_tools/people/photo_segmentation.h"
-#include "data_tools/synthetic/demo_motion.h"
-#include "data_tools/synthetic/synth_clip.h"
+#include "tests/support/short_track.h"
 
 namespace bodyloom {
 namespace {
 
 constexpr int kSize = 96, kTexture = 64;
-
-Track ShortTrack() {
-  SynthClipOptions options;
-  options.camera.width = 320;
-  options.camera.height = 240;
-  options.dense_per_frame = 0;
-  options.keypoints = false;
-  options.num_threads = 1;
-  return MakeSynthClip(BuiltinBody(), DemoMotion(BuiltinBody(), 12, 6), options).truth;
-}
 
 PhotoMapsOptions Small() {
   PhotoMapsOptions options;

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A track of the built-in body without detections or noise.
+#pragma once
+
+#include "data_tools/builtin_body.h"
+#include "data_tools/synthetic/demo_motion.h"
+#include "data_tools/synthetic/synth_clip.h"
+
+namespace bodyloom {
+
+/// Two seconds of the demo's walk at 6 frames a second, in pictures of 320×240.
+inline Track ShortTrack() {
+  SynthClipOptions options;
+  options.camera.width = 320;
+  options.camera.height = 240;
+  options.dense_per_frame = 0;
+  options.keypoints = false;
+  options.num_threads = 1;
+  return MakeSynthClip(BuiltinBody(), DemoMotion(BuiltinBody(), 12, 6), options).truth;
+}
+
+}  // namespace bodyloom
