@@ -107,10 +107,9 @@ class Likeness {
 struct Clip {
   std::unique_ptr<MotionData> data;
   std::shared_ptr<const BodyModel> body;
-  std::optional<Track> own_track;  ///< as it was read or played
-  std::optional<Track> shown;      ///< with what is shown more than once
+  std::optional<Track> own_track;  ///< before anything is shown more than once
   std::optional<PersonFrames> own_frames;
-  [[nodiscard]] const Track& track() const { return data ? data->track() : *shown; }
+  [[nodiscard]] const Track& track() const { return data ? data->track() : own_frames->track(); }
   [[nodiscard]] const PersonFrames& frames() const { return data ? data->frames() : *own_frames; }
   void Fill(int t, MotionFrame* frame) const {
     if (data) {
@@ -154,16 +153,13 @@ void OpenClip(const Request& request, const MotionRun& run, int threads, Clip* c
   options.window.scale = ScaleToSize(run.pixels_per_metre, size);
   options.window.multiple = run.config.Multiple();
   options.num_threads = threads;
-  int last = clip->own_track->num_frames() - 1, first = 0;
-  if (request.freeze.empty()) {
-    clip->shown = clip->own_track;
-  } else {
-    const Freeze freeze = ReadFreeze(request.freeze, last + 1);
-    options.shown = FrozenAt(last + 1, freeze.frame, freeze.count);
-    clip->shown = FramesInOrder(*clip->own_track, options.shown);
-    first = freeze.frame, last = freeze.frame + freeze.count;
+  int num_frames = clip->own_track->num_frames(), first = 0, last = num_frames - 1;
+  if (!request.freeze.empty()) {
+    const Freeze freeze = ReadFreeze(request.freeze, num_frames);
+    options.shown = FrozenAt(num_frames, freeze.frame, freeze.count);
+    num_frames += freeze.count, first = freeze.frame, last = freeze.frame + freeze.count;
   }
-  options.yaw_deg = ViewAngles(request.view_yaw, clip->shown->num_frames(), first, last);
+  options.yaw_deg = ViewAngles(request.view_yaw, num_frames, first, last);
   clip->own_frames.emplace(*clip->body, *clip->own_track, options);
 }
 

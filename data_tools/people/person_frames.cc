@@ -132,7 +132,7 @@ class PersonFrames::Impl {
 
   [[nodiscard]] const PersonWindow& window() const { return window_; }
   [[nodiscard]] const PersonFramesOptions& options() const { return options_; }
-  [[nodiscard]] int num_frames() const { return shown_.num_frames(); }
+  [[nodiscard]] const Track& track() const { return shown_; }
   [[nodiscard]] int Segment(int t) const { return segment_.at(InTrack(t)); }
 
  private:
@@ -176,7 +176,8 @@ PersonFrames::PersonFrames(const BodyModel& body, const Track& track, const Pers
     : impl_(std::make_unique<Impl>(body, track, options)) {}
 PersonFrames::~PersonFrames() = default;
 
-int PersonFrames::num_frames() const { return impl_->num_frames(); }
+const Track& PersonFrames::track() const { return impl_->track(); }
+int PersonFrames::num_frames() const { return impl_->track().num_frames(); }
 int PersonFrames::Segment(int t) const { return impl_->Segment(t); }
 int PersonFrames::channels() const { return 3 + 3 * impl_->options().past; }
 const PersonWindow& PersonFrames::window() const { return impl_->window(); }

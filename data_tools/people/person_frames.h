@@ -49,6 +49,7 @@ class PersonFrames {
   [[nodiscard]] int channels() const;  ///< of the motion maps: 3 + 3·past
   [[nodiscard]] const PersonWindow& window() const;
   [[nodiscard]] const PersonFramesOptions& options() const;
+  [[nodiscard]] const Track& track() const;  ///< as it is shown
 
   /// Number of the track's gap-free run of frames that frame t belongs to; −1: it has no result.
   [[nodiscard]] int Segment(int t) const;

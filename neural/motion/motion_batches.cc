@@ -20,10 +20,9 @@ MotionBatch MakeBatch(const MotionFrameSource& source, const MotionConfig& confi
     batch.past[c] = TruthOf(std::span(&before, 1), config).State(config);
   }
   batch.boxes = PersonBoxes(batch.frames, config.around_body ? reach : 0, config.Multiple());
-  std::vector<MotionFrame> seen;
-  for (size_t c = 0; c < steps.size(); ++c) seen.push_back(Within(batch.frames[c], batch.boxes[c]));
-  batch.input = InputOf(seen, config);
-  batch.truth = TruthOf(seen, config);
+  for (size_t c = 0; c < steps.size(); ++c) batch.frames[c] = Within(std::move(batch.frames[c]), batch.boxes[c]);
+  batch.input = InputOf(batch.frames, config);
+  batch.truth = TruthOf(batch.frames, config);
   for (MotionFrame& frame : batch.frames) {
     frame.motion = frame.uv = frame.body = frame.image = frame.normals = {};
     frame.labels = {};

@@ -15,7 +15,7 @@ namespace bodyloom {
 
 struct MotionBatch {
   std::vector<ChainStep> steps;
-  std::vector<MotionFrame> frames;  ///< only their windows' sizes and places are left
+  std::vector<MotionFrame> frames;  ///< only their windows' places are left
   std::vector<PixelBox> boxes;      ///< what the networks see of each window
   MotionInput input;                ///< of the boxes
   MotionTruth truth;                ///< of the boxes

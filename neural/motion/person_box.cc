@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "geometry/check.h"
 #include "neural/people/aligned_box.h"
 
 namespace bodyloom {
@@ -13,6 +14,8 @@ namespace {
 
 /// Empty without a body.
 PixelBox BodyBox(const MotionFrame& frame) {
+  BODYLOOM_CHECK(frame.body.size() == size_t(frame.width) * frame.height, "motion renderer: a frame of ", frame.width,
+                 "x", frame.height, " with ", frame.body.size(), " values of body mask");
   PixelBox box = {frame.width, frame.height, 0, 0};
   for (int y = 0; y < frame.height; ++y) {
     for (int x = 0; x < frame.width; ++x) {
@@ -29,6 +32,8 @@ template <class T>
 std::vector<T> PlanesWithin(const std::vector<T>& planes, int width, int height, const PixelBox& box) {
   std::vector<T> result;
   const size_t area = size_t(width) * height;
+  BODYLOOM_CHECK(area > 0 && planes.size() % area == 0, "motion renderer: a frame of ", width, "x", height,
+                 " with pictures of ", planes.size(), " values, expected a multiple of its pixels");
   result.reserve(planes.size() / area * box.area());
   for (size_t plane = 0; plane < planes.size(); plane += area) {
     for (int y = box.y_begin; y < box.y_end; ++y) {
@@ -47,6 +52,8 @@ std::vector<PixelBox> PersonBoxes(std::span<const MotionFrame> frames, int reach
   const PixelBox window = {0, 0, frames[0].width, frames[0].height};
   if (reach <= 0) return std::vector<PixelBox>(frames.size(), window);
   for (const MotionFrame& frame : frames) {
+    BODYLOOM_CHECK(frame.width == window.x_end && frame.height == window.y_end, "motion renderer: a frame of ",
+                   frame.width, "x", frame.height, " beside one of ", window.x_end, "x", window.y_end);
     const PixelBox body = BodyBox(frame);
     needed.push_back(body.empty() ? body : body.GrownBy(reach));
     const PixelBox aligned = AlignedBox(needed.back(), window, multiple, width, height);
@@ -57,15 +64,12 @@ std::vector<PixelBox> PersonBoxes(std::span<const MotionFrame> frames, int reach
   return needed;
 }
 
-MotionFrame Within(const MotionFrame& frame, const PixelBox& box) {
-  const auto cut = [&](const auto& planes) { return PlanesWithin(planes, frame.width, frame.height, box); };
-  MotionFrame result;
-  result.width = box.width(), result.height = box.height();
-  result.before_x = frame.before_x, result.before_y = frame.before_y;
-  result.motion = frame.motion;
-  result.uv = cut(frame.uv), result.body = cut(frame.body);
-  result.image = cut(frame.image), result.labels = cut(frame.labels), result.normals = cut(frame.normals);
-  return result;
+MotionFrame Within(MotionFrame frame, const PixelBox& box) {
+  const auto cut = [&](auto* planes) { *planes = PlanesWithin(*planes, frame.width, frame.height, box); };
+  cut(&frame.uv), cut(&frame.body);
+  cut(&frame.image), cut(&frame.labels), cut(&frame.normals);
+  frame.width = box.width(), frame.height = box.height();
+  return frame;
 }
 
 Tensor Within(const Tensor& map, const PixelBox& box) {

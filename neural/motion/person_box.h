@@ -14,11 +14,13 @@ namespace bodyloom {
 
 /// A box a frame, all of one size: each holds its frame's body and `reach` pixels around it (what the window has of
 /// them) and lies among the networks' strides as the window does (neural/people/aligned_box.h). reach 0: whole windows.
-/// Frames are of one size, multiples of `multiple`, and hold their body masks.
+/// Frames' sides are multiples of `multiple`. Throws std::invalid_argument unless they are of one size and hold their
+/// body masks.
 std::vector<PixelBox> PersonBoxes(std::span<const MotionFrame> frames, int reach, int multiple);
 
 /// The box's pixels of a frame's maps and pictures; everything else as it is (before_x and before_y are the window's).
-MotionFrame Within(const MotionFrame& frame, const PixelBox& box);
+/// Throws std::invalid_argument when a picture is not of the frame's size.
+MotionFrame Within(MotionFrame frame, const PixelBox& box);
 
 /// The box's pixels of 1×…; a view.
 torch::Tensor Within(const torch::Tensor& map, const PixelBox& box);

@@ -46,16 +46,10 @@ void RollOut::KeepWithinReach(const Tensor& body, MotionStepResult* result) cons
 MotionStepResult RollOut::Next(const MotionFrame& frame) {
   const torch::NoGradGuard no_grad;
   const MotionConfig& config = model_->config;
-  const std::span<const MotionFrame> one(&frame, 1);
-  PixelBox box = {0, 0, frame.width, frame.height};
-  MotionInput input;
-  if (config.around_body) {
-    box = PersonBoxes(one, reach_.pixels, config.Multiple()).front();
-    const MotionFrame seen = Within(frame, box);
-    input = InputOf(std::span(&seen, 1), config);
-  } else {
-    input = InputOf(one, config);
-  }
+  const PixelBox box =
+      PersonBoxes(std::span(&frame, 1), config.around_body ? reach_.pixels : 0, config.Multiple()).front();
+  const MotionFrame seen = Within(frame, box);
+  const MotionInput input = InputOf(std::span(&seen, 1), config);
   const bool same_motion = !config.motion || Same(input.motion, last_.motion);
   const bool same_surface = Same(input.uv, last_.uv) && Same(input.body, last_.body);
   if (config.motion && !same_motion) descriptor_ = model_->Encode(input.motion);
@@ -79,7 +73,7 @@ MotionStepResult RollOut::Next(const MotionFrame& frame) {
   }
   past_ = result.state = OnWindow(result.state, box, frame.height, frame.width);
   result.foreground = OnWindow(result.foreground, box, frame.height, frame.width);
-  if (result.label_logits.defined() && config.around_body) result.label_logits = Tensor();  // of the box alone
+  result.label_logits = result.colour = Tensor();
   return result;
 }
 

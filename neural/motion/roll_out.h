@@ -24,7 +24,7 @@ class RollOut {
   /// it is not known how far.
   RollOut(MotionModel model, int warmup_iterations, Reach reach = {});
 
-  /// The next frame, its whole window. No gradients.
+  /// The next frame, its whole window: state and foreground (the rest is for training and undefined). No gradients.
   MotionStepResult Next(const MotionFrame& frame);
   /// The next frame is the first of another clip.
   void Restart();

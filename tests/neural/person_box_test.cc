@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <sstream>
+#include <array>
 
 #include "neural/motion/frame_tensors.h"
 #include "neural/motion/motion_renderer.h"
@@ -20,18 +20,8 @@ using torch::Tensor;
 
 constexpr int kWidth = 96, kHeight = 64, kMultiple = 4, kReach = 3;
 
-std::ostream& Show(std::ostream& out, const PixelBox& box) {
-  return out << box.x_begin << ".." << box.x_end << " x " << box.y_begin << ".." << box.y_end;
-}
-
-void ExpectBox(const PixelBox& box, const PixelBox& expected) {
-  std::ostringstream text;
-  Show(text, box) << ", expected ";
-  Show(text, expected);
-  EXPECT_TRUE(box.x_begin == expected.x_begin && box.x_end == expected.x_end && box.y_begin == expected.y_begin &&
-              box.y_end == expected.y_end)
-      << text.str();
-}
+std::array<int, 4> Sides(const PixelBox& box) { return {box.x_begin, box.y_begin, box.x_end, box.y_end}; }
+void ExpectBox(const PixelBox& box, const PixelBox& expected) { EXPECT_EQ(Sides(box), Sides(expected)); }
 
 MotionFrame Frame(int t, bool with_truth = true) {
   MotionFrame frame;
@@ -72,6 +62,16 @@ TEST(PersonBox, HoldsTheBodyAndItsReachAndIsOneSizeForABatch) {
   EXPECT_EQ(PersonBoxes(std::span(frames).first(1), kReach, kMultiple)[0].area(), 32U * 32);
 }
 
+TEST(PersonBox, RefusesFramesThatAreNotWhole) {
+  std::vector<MotionFrame> frames = {Frame(0), Frame(1)};
+  frames[1].body.pop_back();
+  EXPECT_THROW(PersonBoxes(frames, kReach, kMultiple), std::invalid_argument);
+  ToyFrameIn(kWidth, kHeight + 4, 1, true, &frames[1]);
+  EXPECT_THROW(PersonBoxes(frames, kReach, kMultiple), std::invalid_argument);
+  frames[0].image.pop_back();
+  EXPECT_THROW(Within(frames[0], {0, 0, 32, 32}), std::invalid_argument);
+}
+
 TEST(PersonBox, CutsFramesAndTensorsAlikeAndPutsThemBack) {
   const MotionConfig config = Toy();
   const PixelBox box = {4, 8, 40, 32};
@@ -96,7 +96,6 @@ TEST(PersonBox, ARollOutInItIsThatOfTheCutFrames) {
   MotionModel model(AroundBody());
   RollOut roll(model, 2, {kReach, /*anywhere=*/true});
   MotionModel same(Toy());
-  same->to(torch::kFloat);
   const torch::NoGradGuard no_grad;
   for (size_t i = 0; i < same->parameters().size(); ++i) same->parameters()[i].copy_(model->parameters()[i]);
   RollOut of_cut(same, 2);
