@@ -26,6 +26,7 @@
 #include "apps/neural/motion_errors.h"
 #include "apps/neural/motion_preview.h"
 #include "apps/neural/motion_run.h"
+#include "apps/neural/motion_scores_text.h"
 #include "apps/neural/relight_frames.h"
 #include "apps/neural/result_set.h"
 #include "apps/neural/view_angles.h"
@@ -363,10 +364,7 @@ void Run(const Request& request) {
                 static_cast<long long>(renderer.descriptors_kept()));
   }
   if (scored) {
-    std::printf(
-        "against %s: L1 %.4f, PSNR %.2f dB, labels IoU %.3f, outline IoU %.3f, normals %.1f deg, flicker %.4f\n",
-        request.data.c_str(), scores.image_l1, scores.psnr_db, scores.label_iou, scores.foreground_iou,
-        scores.normal_deg, scores.flicker);
+    std::printf("against %s: %s\n", request.data.c_str(), ScoresText(scores).c_str());
   }
   if (composite) {
     std::printf("over %s: PSNR %.2f dB of the whole picture, %.2f dB within %d px of the outline\n",

@@ -15,6 +15,7 @@
 #include "apps/neural/motion_data.h"
 #include "apps/neural/motion_preview.h"
 #include "apps/neural/motion_run.h"
+#include "apps/neural/motion_scores_text.h"
 #include "apps/neural/training_session.h"
 #include "apps/neural/weights_folder.h"
 #include "data_tools/video/image_file.h"
@@ -157,14 +158,6 @@ int ReachOf(MotionData* data, const std::vector<FrameRange>& ranges) {
   return ClothesReach(frames);
 }
 
-std::string ScoresText(const MotionScores& s) {
-  char line[256];
-  std::snprintf(line, sizeof line,
-                "validation: L1 %.4f, PSNR %.2f dB, labels IoU %.3f, outline IoU %.3f, normals %.1f deg", s.image_l1,
-                s.psnr_db, s.label_iou, s.foreground_iou, s.normal_deg);
-  return line;
-}
-
 void Run(Request request) {
   TrainMotionOptions& options = request.options;
   MotionConfig& config = options.config;
@@ -238,7 +231,7 @@ void Run(Request request) {
   for (const std::string& loss : summary.losses_off) std::cout << "loss switched off: " << loss << "\n";
   if (options.perceptual_weight > 0 && summary.perceptual_stand_in) SayStandIn("perceptual loss", "VGG-16");
   SayStep(summary, options.steps);
-  if (summary.scores.frames > 0) std::cout << ScoresText(summary.scores) << "\n";
+  if (summary.scores.frames > 0) std::cout << "validation: " << ScoresText(summary.scores) << "\n";
   EndTrainingRun(summary, request.out);
 }
 

@@ -50,10 +50,12 @@ std::vector<PixelBox> PersonBoxes(std::span<const MotionFrame> frames, int reach
   std::vector<PixelBox> needed;
   int width = LeastBoxSide(multiple), height = width;
   const PixelBox window = {0, 0, frames[0].width, frames[0].height};
-  if (reach <= 0) return std::vector<PixelBox>(frames.size(), window);
   for (const MotionFrame& frame : frames) {
     BODYLOOM_CHECK(frame.width == window.x_end && frame.height == window.y_end, "motion renderer: a frame of ",
                    frame.width, "x", frame.height, " beside one of ", window.x_end, "x", window.y_end);
+  }
+  if (reach <= 0) return std::vector<PixelBox>(frames.size(), window);
+  for (const MotionFrame& frame : frames) {
     const PixelBox body = BodyBox(frame);
     needed.push_back(body.empty() ? body : body.GrownBy(reach));
     const PixelBox aligned = AlignedBox(needed.back(), window, multiple, width, height);

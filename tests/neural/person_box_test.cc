@@ -67,7 +67,9 @@ TEST(PersonBox, RefusesFramesThatAreNotWhole) {
   frames[1].body.pop_back();
   EXPECT_THROW(PersonBoxes(frames, kReach, kMultiple), std::invalid_argument);
   ToyFrameIn(kWidth, kHeight + 4, 1, true, &frames[1]);
-  EXPECT_THROW(PersonBoxes(frames, kReach, kMultiple), std::invalid_argument);
+  for (const int reach : {0, kReach}) {
+    EXPECT_THROW(PersonBoxes(frames, reach, kMultiple), std::invalid_argument) << reach;
+  }
   frames[0].image.pop_back();
   EXPECT_THROW(Within(frames[0], {0, 0, 32, 32}), std::invalid_argument);
 }
