@@ -92,6 +92,13 @@ std::string ToText(const SpeedReaction& reaction) {
                   LabelExtent::kNames[k], extent.truth_std, extent.result_std, extent.correlation, extent.slope);
     text += line;
   }
+  text += "  by how much the truth differs, a quarter of the pairs each:\n";
+  for (const SpeedReaction::Quarter& quarter : reaction.quarters) {
+    std::snprintf(line, sizeof line,
+                  "  truth's IoU between the speeds %.4f: result's IoU with the truth %.4f, at the other speed %.4f\n",
+                  quarter.between_speeds, quarter.iou, quarter.other_iou);
+    if (quarter.pairs > 0) text += line;
+  }
   return text;
 }
 
@@ -104,11 +111,15 @@ nlohmann::ordered_json ToJson(const SpeedReaction& reaction) {
                                        {"correlation", NumberOrNull(extent.correlation)},
                                        {"slope", NumberOrNull(extent.slope)}};
   }
-  return {{"label", NameOf(reaction.label)},
-          {"pairs", reaction.pairs},
-          {"truth_iou", reaction.truth_iou},
-          {"result_iou", reaction.result_iou},
-          {"extents", extents}};
+  nlohmann::ordered_json quarters = nlohmann::ordered_json::array();
+  for (const SpeedReaction::Quarter& quarter : reaction.quarters) {
+    quarters.push_back({{"pairs", quarter.pairs},
+                        {"between_speeds", quarter.between_speeds},
+                        {"iou", quarter.iou},
+                        {"other_iou", quarter.other_iou}});
+  }
+  return {{"label", NameOf(reaction.label)},   {"pairs", reaction.pairs}, {"truth_iou", reaction.truth_iou},
+          {"result_iou", reaction.result_iou}, {"extents", extents},      {"quarters", quarters}};
 }
 
 }  // namespace

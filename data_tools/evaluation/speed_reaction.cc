@@ -140,21 +140,29 @@ SpeedReaction MeasureSpeedReaction(const PersonSet& truth, const PersonSet& resu
   }
   struct Change {
     std::array<double, 4> truth, result;
-    double truth_iou = 0, result_iou = 0;
+    double truth_iou = 0, result_iou = 0;  ///< between the speeds
+    double iou = 0, other_iou = 0;         ///< of the results with their truths
   };
   std::vector<Change> changes(pairs.size());
   ParallelFor(static_cast<int>(pairs.size()), num_threads, [&](int i) {
     const int t = pairs[i].first, u = pairs[i].second;
     const PersonPictures wanted{true, false, false, false};
+    struct Masks {
+      PixelMask here, there;
+    };
     const auto change = [&](const PersonSet& set, const PersonSet& other, std::array<double, 4>* difference) {
       const Image here = set.Read(t, wanted).labels, there = other.Read(u, wanted).labels;
       const LabelExtent a = MeasureLabelExtent(here, label, track, t),
                         b = MeasureLabelExtent(there, label, other_track, u);
       for (int k = 0; k < 4; ++k) (*difference)[k] = a.values[k] - b.values[k];
-      return MaskIoU(MaskOfLabel(here, label), MaskOfLabel(there, label));
+      return Masks{MaskOfLabel(here, label), MaskOfLabel(there, label)};
     };
-    changes[i].truth_iou = change(truth, other_truth, &changes[i].truth);
-    changes[i].result_iou = change(result, other_result, &changes[i].result);
+    const Masks of_truth = change(truth, other_truth, &changes[i].truth);
+    const Masks of_result = change(result, other_result, &changes[i].result);
+    changes[i].truth_iou = MaskIoU(of_truth.here, of_truth.there);
+    changes[i].result_iou = MaskIoU(of_result.here, of_result.there);
+    changes[i].iou = MaskIoU(of_truth.here, of_result.here);
+    changes[i].other_iou = MaskIoU(of_truth.there, of_result.there);
   });
   changes.erase(std::remove_if(changes.begin(), changes.end(),
                                [](const Change& c) { return !std::isfinite(c.truth[0] + c.result[0]); }),
@@ -179,6 +187,18 @@ SpeedReaction MeasureSpeedReaction(const PersonSet& truth, const PersonSet& resu
     extent.truth_std = std::sqrt(var_truth), extent.result_std = std::sqrt(var_result);
     if (var_truth > 0 && var_result > 0) extent.correlation = covariance / std::sqrt(var_truth * var_result);
     if (truth2 > 0) extent.slope = product / truth2;
+  }
+  std::stable_sort(changes.begin(), changes.end(),
+                   [](const Change& a, const Change& b) { return a.truth_iou > b.truth_iou; });
+  for (size_t i = 0; i < changes.size(); ++i) {
+    SpeedReaction::Quarter& quarter = reaction.quarters[i * reaction.quarters.size() / changes.size()];
+    ++quarter.pairs;
+    quarter.between_speeds += changes[i].truth_iou;
+    quarter.iou += changes[i].iou, quarter.other_iou += changes[i].other_iou;
+  }
+  for (SpeedReaction::Quarter& quarter : reaction.quarters) {
+    const double count = std::max(1, quarter.pairs);
+    quarter.between_speeds /= count, quarter.iou /= count, quarter.other_iou /= count;
   }
   return reaction;
 }

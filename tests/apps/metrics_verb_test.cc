@@ -293,6 +293,10 @@ TEST_F(MetricsVerb, ReactionToTheSpeedOfTheTruthItselfIsWhole) {
     EXPECT_NEAR(extent["slope"].get<double>(), 1, 1e-12) << name;
     EXPECT_NEAR(extent["correlation"].get<double>(), 1, 1e-12) << name;
   }
+  EXPECT_THAT(run.out, HasSubstr("a quarter of the pairs each"));
+  ASSERT_EQ(reaction["quarters"].size(), 4U);
+  EXPECT_GT(reaction["quarters"][0]["between_speeds"], reaction["quarters"][3]["between_speeds"]);
+  for (const auto& quarter : reaction["quarters"]) EXPECT_EQ(quarter["iou"], 1);
   EXPECT_EQ(Run({"--truth", Path("1"), "--result", Path("1"), "--other-truth", Path("0.5")}).exit_code, kExitUsage);
   ExpectError({"--truth", Path("1"), "--result", Path("1"), "--other-truth", Path("0.5"), "--other-result", Path("1")},
               "frames of 96x96, expected");

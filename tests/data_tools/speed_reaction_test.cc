@@ -126,6 +126,27 @@ TEST(SpeedReaction, AShareOfTheChangeIsTheSlope) {
   double iou = 0;
   for (int t = 10; t < kFrames; ++t) iou += 20.0 / (20 + flies(t)) / 30;
   EXPECT_NEAR(none.truth_iou, iou, 1e-12);
+  // Frames 10 to 39 in order of how far the skirt flies: 7 of 0 px, 7 of 4, 8 of 8, 8 of 12.
+  const std::array<std::array<int, 4>, 4> flown = {{{7, 1, 0, 0}, {0, 6, 1, 0}, {0, 0, 7, 1}, {0, 0, 0, 7}}};
+  for (int q = 0; q < 4; ++q) {
+    double between = 0, halves = 0;
+    int pairs = 0;
+    for (int k = 0; k < 4; ++k) {
+      pairs += flown[q][k];
+      between += flown[q][k] * 20.0 / (20 + 4 * k), halves += flown[q][k] * (20.0 + 2 * k) / (20 + 4 * k);
+    }
+    EXPECT_EQ(none.quarters[q].pairs, pairs) << q;
+    EXPECT_NEAR(none.quarters[q].between_speeds, between / pairs, 1e-12) << q;
+    EXPECT_NEAR(none.quarters[q].iou, between / pairs, 1e-12) << q;
+    EXPECT_NEAR(half.quarters[q].iou, halves / pairs, 1e-12) << q;
+    EXPECT_NEAR(same.quarters[q].iou, 1, 1e-12) << q;
+    EXPECT_NEAR(none.quarters[q].other_iou, 1, 1e-12) << q;
+  }
+  // Judged at the other speed, whoever hangs is right and whoever flies too far is not.
+  const SpeedReaction swapped =
+      MeasureSpeedReaction(other, other, truth, Dressed(folder.File("still"), fast, hangs), PersonLabel::kBottom, 2);
+  EXPECT_NEAR(swapped.quarters[3].iou, 1, 1e-12);
+  EXPECT_NEAR(swapped.quarters[3].other_iou, 20.0 / 32, 1e-12);
 }
 
 TEST(SpeedReaction, SaysWhatDoesNotFit) {
