@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "apps/neural/training_options.h"
 #include "neural/guided/guided_card.h"
 #include "neural/motion/motion_card.h"
 #include "neural/photo/photo_card.h"
@@ -32,9 +33,7 @@ void AddCard(CLI::App& app, std::function<void()>* action) {
   verb->add_option("system", request->system, "Which renderer")
       ->check(CLI::IsMember({"motion", "photo", "animate"}))
       ->capture_default_str();
-  verb->add_option("--profile", request->profile, "Sizes of the networks")
-      ->check(CLI::IsMember({"paper", "cpu", "tiny"}))
-      ->capture_default_str();
+  AddProfileOption(verb, &request->profile);
   verb->callback(
       [request, action] { *action = [request] { std::cout << CardOf(request->system, request->profile); }; });
 }

@@ -16,6 +16,7 @@
 #include "apps/neural/guided_people.h"
 #include "apps/neural/guided_preview.h"
 #include "apps/neural/guided_run.h"
+#include "apps/neural/training_options.h"
 #include "apps/neural/training_session.h"
 #include "apps/neural/weights_folder.h"
 #include "data_tools/video/image_file.h"
@@ -132,9 +133,7 @@ void AddTrainAnimate(CLI::App& train, std::function<void()>* action) {
   verb->add_option("--out", request->out, "Folder of the run: config.json, checkpoint.bin, metrics.csv, previews")
       ->required();
   verb->add_option("--body", request->body, "The set's body (default: the built-in body)");
-  verb->add_option("--profile", request->profile, "Sizes of the networks")
-      ->check(CLI::IsMember({"paper", "cpu", "tiny"}))
-      ->capture_default_str();
+  AddProfileOption(verb, &request->profile);
   verb->add_option("--image-size", request->image_size, "Pixels and texels a side (default: the profile's)")
       ->check(CLI::Range(32, 4096));
   verb->add_option("--without", request->without, "Leave out a part, as the paper's ablations do")
@@ -154,13 +153,7 @@ void AddTrainAnimate(CLI::App& train, std::function<void()>* action) {
       ->check(CLI::IsMember({"ce", "l1"}))
       ->capture_default_str();
   verb->add_option("--weights", request->weights, "Folder with trained weights: vgg16 (.safetensors, .pth)");
-  verb->add_option("--validate-every", options.validate_every, "Steps")->capture_default_str();
-  verb->add_option("--seed", options.seed, "Of weights and order of pictures")->capture_default_str();
-  verb->add_option("--threads", options.num_threads, "0: all cores")->capture_default_str();
-  verb->add_option("--device", options.device, "Where the networks run")
-      ->check(CLI::IsMember({"cpu", "cuda"}))
-      ->capture_default_str();
-  verb->add_flag("--resume", options.resume, "Go on with the run in --out");
+  AddTrainingOptions(verb, &options, "Of weights and order of pictures");
   verb->footer(
       "Example:\n"
       "  bodyloom synth-people --motions motions --out people\n"

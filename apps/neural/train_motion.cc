@@ -16,6 +16,7 @@
 #include "apps/neural/motion_preview.h"
 #include "apps/neural/motion_run.h"
 #include "apps/neural/motion_scores_text.h"
+#include "apps/neural/training_options.h"
 #include "apps/neural/training_session.h"
 #include "apps/neural/weights_folder.h"
 #include "data_tools/video/image_file.h"
@@ -249,9 +250,7 @@ void AddTrainMotion(CLI::App& train, std::function<void()>* action) {
   verb->add_option("--body", request->data.body, "The track's body (default: the built-in body)");
   verb->add_option("--part-labels", request->data.part_labels,
                    "For a video: DensePose's parts (.npz), for outline and classes");
-  verb->add_option("--profile", request->profile, "Sizes of the networks")
-      ->check(CLI::IsMember({"paper", "cpu", "tiny"}))
-      ->capture_default_str();
+  AddProfileOption(verb, &request->profile);
   verb->add_option("--without", request->without,
                    "Leave out a part, as the paper's ablations do; surface, texture: the decoders see neither UV "
                    "coordinates nor a "
@@ -282,17 +281,11 @@ void AddTrainMotion(CLI::App& train, std::function<void()>* action) {
   verb->add_option("--shape-loss", request->shape_loss, "Of the classes: cross entropy or absolute differences")
       ->check(CLI::IsMember({"ce", "l1"}))
       ->capture_default_str();
-  verb->add_option("--validate-every", options.validate_every, "Steps")->capture_default_str();
   verb->add_option("--patience", options.patience, "Stop after so many validations without a better one (0: never)")
       ->capture_default_str();
   verb->add_option("--weights", request->weights,
                    "Folder with trained networks: vgg16 (.pth or .safetensors) for the perceptual loss");
-  verb->add_option("--seed", options.seed, "Of weights and order of frames")->capture_default_str();
-  verb->add_option("--threads", options.num_threads, "0: all cores")->capture_default_str();
-  verb->add_option("--device", options.device, "Where the networks run")
-      ->check(CLI::IsMember({"cpu", "cuda"}))
-      ->capture_default_str();
-  verb->add_flag("--resume", options.resume, "Go on with the run in --out");
+  AddTrainingOptions(verb, &options, "Of weights and order of frames");
   verb->footer(
       "Example:\n"
       "  bodyloom synth-person --motion dance.pkl --out dancer --frames 600\n"

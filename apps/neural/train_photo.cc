@@ -15,6 +15,7 @@
 #include "apps/neural/people_data.h"
 #include "apps/neural/photo_preview.h"
 #include "apps/neural/photo_run.h"
+#include "apps/neural/training_options.h"
 #include "apps/neural/training_session.h"
 #include "apps/neural/weights_folder.h"
 #include "data_tools/evaluation/ssim.h"
@@ -151,9 +152,7 @@ void AddTrainPhoto(CLI::App& train, std::function<void()>* action) {
   verb->add_option("--out", request->out, "Folder of the run: config.json, checkpoint.bin, metrics.csv, previews")
       ->required();
   verb->add_option("--body", request->body, "The people's body (default: the built-in body)");
-  verb->add_option("--profile", request->profile, "Sizes of the networks")
-      ->check(CLI::IsMember({"paper", "cpu", "tiny"}))
-      ->capture_default_str();
+  AddProfileOption(verb, &request->profile);
   verb->add_option("--baseline", request->variant,
                    "One of the paper's simpler variants: colours completed beforehand; the seen colours warped, "
                    "without and with the target's pose; no loss on the texture")
@@ -173,15 +172,9 @@ void AddTrainPhoto(CLI::App& train, std::function<void()>* action) {
                    "Share of --steps after which the discriminator joins (0: from the start, as in the paper)")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
-  verb->add_option("--validate-every", options.validate_every, "Steps")->capture_default_str();
   verb->add_option("--validation-pairs", options.validation_pairs, "A person that is kept for validation")
       ->capture_default_str();
-  verb->add_option("--seed", options.seed, "Of weights and pairs")->capture_default_str();
-  verb->add_option("--threads", options.num_threads, "0: all cores")->capture_default_str();
-  verb->add_option("--device", options.device, "Where the networks run")
-      ->check(CLI::IsMember({"cpu", "cuda"}))
-      ->capture_default_str();
-  verb->add_flag("--resume", options.resume, "Go on with the run in --out");
+  AddTrainingOptions(verb, &options, "Of weights and pairs");
   verb->footer(
       "Example:\n"
       "  bodyloom synth-people --out people\n"
