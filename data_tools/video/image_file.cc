@@ -10,6 +10,7 @@
 
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/formats/file_extension.h"
+#include "data_tools/video/image_header.h"
 #include "geometry/check.h"
 #include "render/image_mat.h"
 
@@ -66,8 +67,15 @@ bool IsImageName(const std::string& path) {
   return std::find(kKnown.begin(), kKnown.end(), LowerExtension(path)) != kKnown.end();
 }
 
-Image ReadImage(const std::string& path) {
-  const std::string bytes = ReadFileBytes(path, kMaxFileBytes);
+Image ReadImage(const std::string& path) { return DecodeImage(ReadImageBytes(path), path); }
+
+std::string ReadImageBytes(const std::string& path) { return ReadFileBytes(path, kMaxFileBytes); }
+
+Image DecodeImage(const std::string& bytes, const std::string& path) {
+  if (const auto header = ReadImageHeader(bytes); header && header->width * header->height > int64_t{kMaxPixels}) {
+    throw std::runtime_error(Concatenate(path, ": an image of ", header->width, "x", header->height,
+                                         " pixels, expected at most ", kMaxPixels, "; scale it down"));
+  }
   cv::Mat decoded;
   try {
     if (BeginsAsAnImage(bytes)) {

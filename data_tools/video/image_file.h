@@ -15,6 +15,10 @@ bool IsImageName(const std::string& path);
 /// Throws std::runtime_error naming the file when it cannot be read or is no image of 1 to 2^26 pixels.
 Image ReadImage(const std::string& path);
 
+/// ReadImage in its two halves, for who looks at the file's bytes too: at most 2^28 of them; `path` is for messages.
+std::string ReadImageBytes(const std::string& path);
+Image DecodeImage(const std::string& bytes, const std::string& path);
+
 /// By the extension: .png, or .jpg/.jpeg (quality 95). Whole or not at all. Throws std::runtime_error naming the file,
 /// std::invalid_argument for an empty image.
 void WriteImage(const std::string& path, const Image& image);

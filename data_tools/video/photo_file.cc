@@ -6,42 +6,11 @@
 #include <optional>
 #include <stdexcept>
 
-#include "data_tools/formats/atomic_file.h"
 #include "data_tools/video/image_file.h"
+#include "data_tools/video/jpeg_header.h"
 
 namespace bodyloom {
 namespace {
-
-constexpr size_t kMaxFileBytes = size_t{1} << 28;
-
-struct Jpeg {
-  int components = 3;  ///< 1 grey, 3 colours, 4 inks
-  bool ends = false;   ///< an end-of-image marker comes after the first scan began
-};
-
-/// Of a file's bytes; nullopt when it is no JPEG. Source: ITU-T T.81, Annex B.
-std::optional<Jpeg> JpegOf(const std::string& bytes) {
-  const auto byte = [&](size_t i) { return i < bytes.size() ? static_cast<uint8_t>(bytes[i]) : uint8_t{0}; };
-  if (byte(0) != 0xFF || byte(1) != 0xD8) return std::nullopt;
-  Jpeg jpeg;
-  for (size_t at = 2; at + 3 < bytes.size();) {
-    if (byte(at) != 0xFF) return jpeg;  // no marker where one should be: the decoder will judge
-    const uint8_t marker = byte(at + 1);
-    if (marker == 0xFF) {  // filling
-      ++at;
-      continue;
-    }
-    const size_t length = size_t{byte(at + 2)} << 8 | byte(at + 3);
-    const bool frame = marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
-    if (frame) jpeg.components = byte(at + 9);
-    at += 2 + length;
-    if (marker != 0xDA) continue;
-    // Coded data never hold this pair but as the marker; a thumbnail's own lies before the scan.
-    jpeg.ends = bytes.find("\xFF\xD9", at) != std::string::npos;
-    return jpeg;
-  }
-  return jpeg;
-}
 
 bool HasNoColours(const Image& image) {
   for (size_t i = 0; i < image.bgr.size(); i += 3) {
@@ -84,15 +53,15 @@ void KeepTransparency(const std::string& bytes, PhotoFile* photo) {
 }  // namespace
 
 PhotoFile ReadPhoto(const std::string& path) {
-  const std::string bytes = ReadFileBytes(path, kMaxFileBytes);
-  const std::optional<Jpeg> jpeg = JpegOf(bytes);
+  const std::string bytes = ReadImageBytes(path);
+  const std::optional<JpegHeader> jpeg = ReadJpegHeader(bytes);
   const bool png = bytes.rfind("\x89PNG", 0) == 0;
   if ((jpeg && !jpeg->ends) || (png && bytes.find("IEND") == std::string::npos)) {
     throw std::runtime_error(path + (jpeg ? ": a JPEG" : ": a PNG") +
                              " that ends before its picture does, expected a whole one; copy it again");
   }
   PhotoFile photo;
-  photo.image = ReadImage(path);
+  photo.image = DecodeImage(bytes, path);
   if (jpeg && jpeg->components == 4)
     photo.notes.emplace_back("CMYK: read as RGB without its profile, colours may be off");
   if (HasNoColours(photo.image)) photo.notes.emplace_back("grey-scale: the person stays grey");

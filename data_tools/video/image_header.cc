@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "data_tools/video/image_header.h"
+
+#include <cstddef>
+#include <cstdlib>
+
+#include "data_tools/video/jpeg_header.h"
+
+namespace bodyloom {
+namespace {
+
+/// Whole numbers of a file's bytes; beyond the end there are zeros.
+class Bytes {
+ public:
+  explicit Bytes(std::string_view bytes) : bytes_(bytes) {}
+
+  [[nodiscard]] bool Has(size_t at, std::string_view text) const {
+    return bytes_.size() >= at + text.size() && bytes_.substr(at, text.size()) == text;
+  }
+  [[nodiscard]] uint64_t Number(size_t at, int count, bool big_endian) const {
+    uint64_t value = 0;
+    for (int i = 0; i < count; ++i) value = value << 8 | Byte(at + (big_endian ? i : count - 1 - i));
+    return value;
+  }
+  [[nodiscard]] uint64_t Big(size_t at, int count) const { return Number(at, count, true); }
+  [[nodiscard]] uint64_t Little(size_t at, int count) const { return Number(at, count, false); }
+  [[nodiscard]] size_t size() const { return bytes_.size(); }
+
+ private:
+  [[nodiscard]] uint8_t Byte(size_t at) const { return at < bytes_.size() ? static_cast<uint8_t>(bytes_[at]) : 0; }
+  std::string_view bytes_;
+};
+
+ImageHeader Bmp(const Bytes& bytes) {
+  if (bytes.Little(14, 4) == 12) {
+    return {static_cast<int64_t>(bytes.Little(18, 2)), static_cast<int64_t>(bytes.Little(20, 2))};
+  }
+  // Rows from the top have a negative height.
+  const auto height = static_cast<int32_t>(bytes.Little(22, 4));
+  return {static_cast<int32_t>(bytes.Little(18, 4)), std::abs(int64_t{height})};
+}
+
+ImageHeader WebP(const Bytes& bytes) {
+  constexpr uint64_t k14Bits = 0x3FFF;
+  const auto pixels = [](uint64_t value) { return static_cast<int64_t>(value); };
+  if (bytes.Has(12, "VP8X")) return {pixels(bytes.Little(24, 3)) + 1, pixels(bytes.Little(27, 3)) + 1};
+  if (bytes.Has(12, "VP8L")) {
+    const uint64_t sides = bytes.Little(21, 4);
+    return {pixels(sides & k14Bits) + 1, pixels(sides >> 14 & k14Bits) + 1};
+  }
+  if (bytes.Has(12, "VP8 ")) return {pixels(bytes.Little(26, 2) & k14Bits), pixels(bytes.Little(28, 2) & k14Bits)};
+  return {};
+}
+
+ImageHeader Tiff(const Bytes& bytes, bool big_endian) {
+  const auto number = [&](size_t at, int count) { return bytes.Number(at, count, big_endian); };
+  const bool big_tiff = number(2, 2) == 43;
+  const uint64_t directory = big_tiff ? number(8, 8) : number(4, 4);
+  if (directory >= bytes.size()) return {};
+  const uint64_t entries = number(directory, big_tiff ? 8 : 2);
+  const size_t entry_size = big_tiff ? 20 : 12;
+  ImageHeader header;
+  size_t at = directory + (big_tiff ? 8 : 2);
+  for (uint64_t i = 0; i < entries && at + entry_size <= bytes.size(); ++i, at += entry_size) {
+    const uint64_t tag = number(at, 2), type = number(at + 2, 2);
+    constexpr uint64_t kWidth = 256, kHeight = 257, kShort = 3, kLong8 = 16;
+    if (tag != kWidth && tag != kHeight) continue;
+    const uint64_t value = number(at + (big_tiff ? 12 : 8), type == kShort ? 2 : type == kLong8 ? 8 : 4);
+    // Not to overflow when it is asked how many pixels there are.
+    constexpr uint64_t kMost = uint64_t{1} << 31;
+    (tag == kWidth ? header.width : header.height) = static_cast<int64_t>(value < kMost ? value : kMost);
+  }
+  return header;
+}
+
+ImageHeader Of(std::string_view file) {
+  using namespace std::string_view_literals;
+  const Bytes bytes(file);
+  if (bytes.Has(0, "\x89PNG\r\n\x1a\n"sv) && bytes.Has(12, "IHDR"sv)) {
+    return {static_cast<int64_t>(bytes.Big(16, 4)), static_cast<int64_t>(bytes.Big(20, 4))};
+  }
+  if (const auto jpeg = ReadJpegHeader(file)) return {jpeg->width, jpeg->height};
+  if (bytes.Has(0, "BM"sv)) return Bmp(bytes);
+  if (bytes.Has(0, "RIFF"sv) && bytes.Has(8, "WEBP"sv)) return WebP(bytes);
+  if (bytes.Has(0, "II*\0"sv) || bytes.Has(0, "II+\0"sv)) return Tiff(bytes, false);
+  if (bytes.Has(0, "MM\0*"sv) || bytes.Has(0, "MM\0+"sv)) return Tiff(bytes, true);
+  return {};
+}
+
+}  // namespace
+
+std::optional<ImageHeader> ReadImageHeader(std::string_view bytes) {
+  const ImageHeader header = Of(bytes);
+  if (header.width < 1 || header.height < 1) return std::nullopt;
+  return header;
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What a JPEG says of itself before it is decoded.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+namespace bodyloom {
+
+struct JpegHeader {
+  int width = 0, height = 0;  ///< 0: no frame header was found
+  int components = 3;         ///< 1 grey, 3 colours, 4 inks
+  bool ends = false;          ///< an end-of-image marker comes after the first scan began
+};
+
+/// Of a file's bytes; nullopt when they are no JPEG. Source: ITU-T T.81, Annex B.
+std::optional<JpegHeader> ReadJpegHeader(std::string_view bytes);
+
+}  // namespace bodyloom
