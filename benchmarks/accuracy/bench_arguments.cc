@@ -9,15 +9,28 @@
 #include "geometry/check.h"
 
 namespace bodyloom {
+namespace {
+
+/// A line for each option: its name and what it is unless said otherwise.
+std::string Usage(const std::map<std::string, std::string>& known) {
+  if (known.empty()) return "it takes no options\n";
+  std::string lines = "options and what they are unless said otherwise (lists: commas)\n";
+  for (const auto& [name, value] : known) {
+    lines += "  --" + name + std::string(name.size() < 18 ? 18 - name.size() : 0, ' ') + " " +
+             (value.empty() ? "none" : value) + "\n";
+  }
+  return lines;
+}
+
+}  // namespace
 
 BenchArguments::BenchArguments(int argc, char** argv, std::map<std::string, std::string> known)
     : values_(std::move(known)) {
-  std::string usage = "options:";
-  for (const auto& [name, value] : values_) usage += " --" + name + " (" + (value.empty() ? "none" : value) + ")";
   for (int i = 1; i < argc; i += 2) {
     const std::string name = argv[i];
-    BODYLOOM_CHECK(name.starts_with("--") && values_.contains(name.substr(2)), "unknown option '", name, "'; ", usage);
-    BODYLOOM_CHECK(i + 1 < argc, "option '", name, "' needs a value; ", usage);
+    BODYLOOM_CHECK(name.starts_with("--") && values_.contains(name.substr(2)), "unknown option '", name,
+                   "', expected one of those that --help lists");
+    BODYLOOM_CHECK(i + 1 < argc, "option '", name, "' needs a value");
     values_[name.substr(2)] = argv[i + 1];
   }
 }
@@ -44,23 +57,12 @@ std::vector<std::string> BenchArguments::List(const std::string& name) const {
   return items;
 }
 
-namespace {
-
-void PrintHelp(const std::string& program, const std::map<std::string, std::string>& known) {
-  std::printf("usage: %s [--OPTION VALUE]...\n\noptions and what they are unless said otherwise (lists: commas)\n",
-              program.c_str());
-  for (const auto& [name, value] : known) {
-    std::printf("  --%-18s %s\n", name.c_str(), value.empty() ? "none" : value.c_str());
-  }
-}
-
-}  // namespace
-
 int BenchMain(const std::string& program, int argc, char** argv, std::map<std::string, std::string> known,
               const std::function<void(const BenchArguments& arguments, const std::string& command)>& run) {
   try {
     if (argc > 1 && (std::string(argv[1]) == "--help" || std::string(argv[1]) == "-h")) {
-      PrintHelp(program, known);
+      std::printf("usage: %s%s\n\n%s", program.c_str(), known.empty() ? "" : " [--OPTION VALUE]...",
+                  Usage(known).c_str());
       return 0;
     }
     std::string command = program;

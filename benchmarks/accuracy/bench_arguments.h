@@ -11,7 +11,7 @@ namespace bodyloom {
 
 class BenchArguments {
  public:
-  /// `known` maps each option to its default. Throws std::invalid_argument for anything else, naming what is known.
+  /// `known` maps each option to its default. Throws std::invalid_argument for anything else, naming it.
   BenchArguments(int argc, char** argv, std::map<std::string, std::string> known);
 
   [[nodiscard]] const std::string& Text(const std::string& name) const { return values_.at(name); }

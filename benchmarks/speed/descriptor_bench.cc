@@ -1,25 +1,47 @@
 // SPDX-License-Identifier: Apache-2.0
 // Time and error of everything from posed vertices to descriptor files and textures, on the built-in body:
-//   build/release/benchmarks/bodyloom_bench_descriptors [FOLDER [SECTION]]
-// SECTION: normals, velocities, bake, seams, stream or texture. FOLDER (default: the system's temporary folder) takes
+//   build/release/benchmarks/bodyloom_bench_descriptors [--section NAME] [--folder DIR]
+// NAME: normals, velocities, bake, seams, stream, texture or all. DIR (default: the system's temporary folder) takes
 // the files that are timed, and the textures to look at. Times are the median and the minimum of many repetitions, one
 // thread unless said.
 #include <filesystem>
+#include <functional>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/speed/descriptor_sections.h"
 #include "data_tools/builtin_body.h"
+#include "geometry/check.h"
+
+namespace bodyloom {
+namespace {
+
+void Run(const BenchArguments& arguments, const std::string&) {
+  const std::string &only = arguments.Text("section"), &folder = arguments.Text("folder");
+  const BodyModel& body = BuiltinBody();
+  const std::vector<std::pair<std::string, std::function<void()>>> sections = {
+      {"normals", [&] { BenchNormals(body); }},
+      {"velocities", [&] { BenchVelocities(body); }},
+      {"bake", [&] { BenchBake(body); }},
+      {"seams", [&] { BenchSeams(body); }},
+      {"stream", [&] { BenchStream(body, folder); }},
+      {"texture", [&] { BenchTexture(body, folder); }}};
+  bool known = false;
+  for (const auto& [name, bench] : sections) {
+    if (only != "all" && only != name) continue;
+    known = true;
+    bench();
+  }
+  BODYLOOM_CHECK(known, "--section is '", only, "', expected normals, velocities, bake, seams, stream, texture or all");
+}
+
+}  // namespace
+}  // namespace bodyloom
 
 int main(int argc, char** argv) {
-  const std::string folder = argc > 1 ? argv[1] : std::filesystem::temp_directory_path().string();
-  const std::string only = argc > 2 ? argv[2] : "";
-  const bodyloom::BodyModel& body = bodyloom::BuiltinBody();
-  const auto wanted = [&only](const char* section) { return only.empty() || only == section; };
-  if (wanted("normals")) bodyloom::BenchNormals(body);
-  if (wanted("velocities")) bodyloom::BenchVelocities(body);
-  if (wanted("bake")) bodyloom::BenchBake(body);
-  if (wanted("seams")) bodyloom::BenchSeams(body);
-  if (wanted("stream")) bodyloom::BenchStream(body, folder);
-  if (wanted("texture")) bodyloom::BenchTexture(body, folder);
-  return 0;
+  return bodyloom::BenchMain("bodyloom_bench_descriptors", argc, argv,
+                             {{"folder", std::filesystem::temp_directory_path().string()}, {"section", "all"}},
+                             bodyloom::Run);
 }

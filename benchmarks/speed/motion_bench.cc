@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a frame and a training step of the motion-dependent renderer cost, beside what this machine's convolutions can
-// do. `bodyloom_bench_motion [profile] [threads]`; the same networks in PyTorch: benchmarks/peers/motion_torch.py.
+// do. `bodyloom_bench_motion --profile cpu --threads 1`; the same networks in PyTorch:
+// benchmarks/peers/motion_torch.py.
 #include <torch/torch.h>
 
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/speed/bench_table.h"
 #include "neural/motion/motion_model.h"
 #include "neural/motion/person_box.h"
@@ -151,19 +152,23 @@ void Training(const MotionConfig& config) {
   Print("a training step, batch " + std::to_string(options.batch) + ", data and all", {step_ms, step_ms}, "mean of 10");
 }
 
+void Run(const BenchArguments& arguments, const std::string&) {
+  const std::string& profile = arguments.Text("profile");
+  const int threads = arguments.Integer("threads");
+  StartNeuralRuntime(threads);
+  MotionConfig config;
+  config.profile = MotionProfileNamed(profile);
+  Title("motion renderer, profile " + profile + ", " + std::to_string(threads) + " threads");
+  const double peak = Peak();
+  TransposedConvolutions(config.profile);
+  Inference(config, peak);
+  Training(config);
+}
+
 }  // namespace
 }  // namespace bodyloom
 
 int main(int argc, char** argv) {
-  const std::string profile = argc > 1 ? argv[1] : "cpu";
-  const int threads = argc > 2 ? std::atoi(argv[2]) : 1;
-  bodyloom::StartNeuralRuntime(threads);
-  bodyloom::MotionConfig config;
-  config.profile = bodyloom::MotionProfileNamed(profile);
-  bodyloom::Title("motion renderer, profile " + profile + ", " + std::to_string(threads) + " threads");
-  const double peak = bodyloom::Peak();
-  bodyloom::TransposedConvolutions(config.profile);
-  bodyloom::Inference(config, peak);
-  bodyloom::Training(config);
-  return 0;
+  return bodyloom::BenchMain("bodyloom_bench_motion", argc, argv, {{"profile", "cpu"}, {"threads", "1"}},
+                             bodyloom::Run);
 }

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a frame of the two one-photo renderers costs once the photo is encoded: in the whole window, and in the
-// person's. `bodyloom_bench_photo [profile] [threads]`; the same networks in PyTorch: benchmarks/peers/photo_torch.py.
-// Processor time beside the clock's, so that figures of a busy machine can be compared.
+// person's. `bodyloom_bench_photo --profile cpu --threads 1`; the same networks in PyTorch:
+// benchmarks/peers/photo_torch.py. Processor time beside the clock's, so that figures of a busy machine can be
+// compared.
 #include <torch/torch.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <ctime>
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "benchmarks/accuracy/bench_arguments.h"
 #include "neural/guided/coherent_maps.h"
 #include "neural/guided/guided_model.h"
 #include "neural/networks/architecture_card.h"
@@ -121,17 +122,20 @@ void GuidedRenderer(const GuidedConfig& config) {
   Print("animate: the photo encoded, once", [&] { model->EncodeSource(photo); });
 }
 
+void Run(const BenchArguments& arguments, const std::string&) {
+  const std::string& profile = arguments.Text("profile");
+  const int threads = arguments.Integer("threads");
+  StartNeuralRuntime(threads);
+  torch::manual_seed(1);
+  std::printf("\n## one-photo renderers, profile %s, %d threads\n\n", profile.c_str(), threads);
+  std::printf("| what | processor ms | least | clock ms | G multiply-adds |\n|---|---|---|---|---|\n");
+  PhotoRenderer({PhotoProfileNamed(profile)});
+  GuidedRenderer({GuidedProfileNamed(profile)});
+}
+
 }  // namespace
 }  // namespace bodyloom
 
 int main(int argc, char** argv) {
-  const std::string profile = argc > 1 ? argv[1] : "cpu";
-  const int threads = argc > 2 ? std::atoi(argv[2]) : 1;
-  bodyloom::StartNeuralRuntime(threads);
-  torch::manual_seed(1);
-  std::printf("\n## one-photo renderers, profile %s, %d threads\n\n", profile.c_str(), threads);
-  std::printf("| what | processor ms | least | clock ms | G multiply-adds |\n|---|---|---|---|---|\n");
-  bodyloom::PhotoRenderer({bodyloom::PhotoProfileNamed(profile)});
-  bodyloom::GuidedRenderer({bodyloom::GuidedProfileNamed(profile)});
-  return 0;
+  return bodyloom::BenchMain("bodyloom_bench_photo", argc, argv, {{"profile", "cpu"}, {"threads", "1"}}, bodyloom::Run);
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/speed/bench_table.h"
 #include "data_tools/evaluation/ssim.h"
 
@@ -43,8 +44,9 @@ void Section(int width, int height, int repetitions) {
 }  // namespace
 }  // namespace bodyloom
 
-int main() {
-  bodyloom::Section(256, 256, 51);
-  bodyloom::Section(1920, 1080, 11);
-  return 0;
+int main(int argc, char** argv) {
+  return bodyloom::BenchMain("bodyloom_bench_ssim", argc, argv, {}, [](const auto&, const std::string&) {
+    bodyloom::Section(256, 256, 51);
+    bodyloom::Section(1920, 1080, 11);
+  });
 }
