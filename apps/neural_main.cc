@@ -5,6 +5,8 @@
 #include <exception>
 #include <functional>
 #include <iostream>
+#include <string>
+#include <string_view>
 
 #include "apps/exit_code.h"
 #include "apps/interrupt.h"
@@ -20,9 +22,20 @@
 #include "apps/verbs.h"
 #include "neural/runtime.h"
 
+namespace {
+
+/// What a user calls this program: most of its verbs are reached as `bodyloom VERB` too.
+std::string CalledAs(int argc, char** argv) {
+  const std::string_view verb = argc > 1 ? argv[1] : "";
+  return verb == "train" || verb == "animate" || verb == "metrics" ? "bodyloom" : "bodyloom neural";
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
   bodyloom::InstallSignalHandlers();
-  CLI::App app("The verbs of bodyloom that need LibTorch.", "bodyloom neural");
+  const std::string name = CalledAs(argc, argv);
+  CLI::App app("The verbs of bodyloom that need LibTorch.", name);
   app.require_subcommand(1);
   app.footer(bodyloom::kExitCodeHelp);
   std::function<void()> action;
@@ -52,13 +65,13 @@ int main(int argc, char** argv) {
     if (error.get_exit_code() == 0) {
       return app.exit(error);
     }
-    std::cerr << "bodyloom neural: " << error.what() << "\nRun with --help for the options.\n";
+    std::cerr << name << ": " << error.what() << "\nRun with --help for the options.\n";
     return bodyloom::kExitUsage;
   } catch (const bodyloom::UsageError& error) {
-    std::cerr << "bodyloom neural: " << error.what() << "\nRun with --help for the options.\n";
+    std::cerr << name << ": " << error.what() << "\nRun with --help for the options.\n";
     return bodyloom::kExitUsage;
   } catch (const std::exception& error) {
-    std::cerr << "bodyloom neural: " << error.what() << "\n";
+    std::cerr << name << ": " << error.what() << "\n";
     return bodyloom::IsInterrupted() ? bodyloom::kExitInterrupted : bodyloom::kExitFailed;
   }
 }

@@ -11,6 +11,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/exec_neural.h"
@@ -37,48 +38,35 @@ void ExecNeural(const std::vector<std::string>& arguments) {
   throw std::runtime_error(program.string() + ": cannot be started: " + std::strerror(errno));
 }
 
-void AddNeuralVerb(CLI::App& app, Action* action) {
-  CLI::App* verb = app.add_subcommand("neural", "Runs a verb that needs LibTorch: `bodyloom neural doctor`");
-  verb->footer(
-      "Verbs:\n"
-      "  doctor   which LibTorch, how many threads, which matrix library, and what makes it slow\n"
-      "  card     what a system's networks are made of\n"
-      "  train    trains a network (also: bodyloom train)\n"
-      "  animate  renders a person with a trained network (also: bodyloom animate)\n"
-      "  metrics  with --lpips (also: bodyloom metrics)\n");
-  verb->prefix_command();  // everything after `neural` belongs to the other executable
-  verb->callback([verb, action] { *action = [arguments = verb->remaining()] { ExecNeural(arguments); }; });
-}
-
 namespace {
 
-/// A verb of this executable's own that the other one has under the same name.
-void AddNeuralVerbOfItsOwn(CLI::App& app, const char* name, const char* what, const char* footer, Action* action) {
+/// A verb whose arguments, --help too, go to the other executable, after those in `before`.
+void AddPassedOnVerb(CLI::App& app, const char* name, const char* what, std::vector<std::string> before,
+                     Action* action) {
   CLI::App* verb = app.add_subcommand(name, what);
-  verb->footer(footer);
   verb->prefix_command();
-  verb->callback([verb, action, name] {
-    std::vector<std::string> arguments = verb->remaining();
-    arguments.insert(arguments.begin(), name);
+  verb->set_help_flag();
+  verb->callback([verb, action, before = std::move(before)] {
+    std::vector<std::string> arguments = before;
+    const std::vector<std::string> remaining = verb->remaining();
+    arguments.insert(arguments.end(), remaining.begin(), remaining.end());
     *action = [arguments] { ExecNeural(arguments); };
   });
 }
 
 }  // namespace
 
+void AddNeuralVerb(CLI::App& app, Action* action) {
+  AddPassedOnVerb(app, "neural", "Runs a verb that needs LibTorch: `bodyloom neural doctor`", {}, action);
+}
+
 void AddTrainVerb(CLI::App& app, Action* action) {
-  AddNeuralVerbOfItsOwn(app, "train", "Trains a network: `bodyloom train motion --help`",
-                        "Networks:\n"
-                        "  lifter   from 2D joints to 3D, the start of `bodyloom track`\n"
-                        "  motion   how a person looks as a function of how the body has moved, from one video\n",
-                        action);
+  AddPassedOnVerb(app, "train", "Trains a network: `bodyloom train motion --help`", {"train"}, action);
 }
 
 void AddAnimateVerb(CLI::App& app, Action* action) {
-  AddNeuralVerbOfItsOwn(app, "animate", "Renders a person with a trained network: `bodyloom animate motion --help`",
-                        "Networks:\n"
-                        "  motion   of `bodyloom train motion`\n",
-                        action);
+  AddPassedOnVerb(app, "animate", "Renders a person with a trained network: `bodyloom animate motion --help`",
+                  {"animate"}, action);
 }
 
 }  // namespace bodyloom

@@ -12,42 +12,66 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-/// Every verb, sub-verbs included.
-const std::vector<std::vector<std::string>> kVerbs = {
-    {"track"},           {"synth"},        {"evaluate"}, {"export"}, {"body"},   {"body", "info"},
-    {"body", "convert"}, {"body", "make"}, {"demo"},     {"neural"}, {"version"}};
+using Verbs = std::vector<std::vector<std::string>>;
+
+/// Those of this program, sub-verbs included.
+const Verbs kOwnVerbs = {{"track"},   {"synth"},        {"synth-person"}, {"synth-people"},    {"evaluate"},
+                         {"metrics"}, {"export"},       {"render"},       {"describe"},        {"texture"},
+                         {"body"},    {"body", "info"}, {"body", "make"}, {"body", "convert"}, {"demo"},
+                         {"prior"},   {"motions"},      {"version"}};
+/// Those that it passes on to the program that LibTorch is linked with.
+const Verbs kNeuralVerbs = {{"neural"},          {"neural", "doctor"},  {"neural", "card"},   {"train"},
+                            {"train", "lifter"}, {"train", "motion"},   {"train", "photo"},   {"train", "animate"},
+                            {"animate"},         {"animate", "motion"}, {"animate", "photo"}, {"animate", "animate"}};
+
+/// All that were built.
+Verbs AllVerbs() {
+  Verbs verbs = kOwnVerbs;
+  if (BODYLOOM_HAS_NEURAL) verbs.insert(verbs.end(), kNeuralVerbs.begin(), kNeuralVerbs.end());
+  return verbs;
+}
+
+std::string Spelled(const std::vector<std::string>& verb) {
+  return verb.size() == 1 ? verb[0] : verb[0] + " " + verb[1];
+}
 
 TEST(CommandLine, HelpNamesEveryVerbExamplesAndExitCodes) {
   const CommandResult result = RunCommand({"--help"});
   EXPECT_EQ(result.exit_code, kExitOk);
   EXPECT_EQ(result.err, "");
-  for (const auto& verb : kVerbs) {
-    EXPECT_THAT(result.out, HasSubstr("\n  " + verb[0] + " ")) << verb[0];
+  for (const Verbs& verbs : {kOwnVerbs, kNeuralVerbs}) {
+    for (const auto& verb : verbs) EXPECT_THAT(result.out, HasSubstr("\n  " + verb[0] + " "));
   }
   EXPECT_THAT(result.out, HasSubstr("Examples:"));
   EXPECT_THAT(result.out, HasSubstr(kExitCodeHelp));
 }
 
 TEST(CommandLine, EveryVerbHasHelp) {
-  for (std::vector<std::string> verb : kVerbs) {
+  for (std::vector<std::string> verb : AllVerbs()) {
+    const std::string spelled = Spelled(verb);
     verb.emplace_back("--help");
     const CommandResult result = RunCommand(verb);
-    EXPECT_EQ(result.exit_code, kExitOk) << verb[0];
-    EXPECT_EQ(result.err, "") << verb[0];
-    EXPECT_THAT(result.out, HasSubstr("Usage: ")) << verb[0];
+    EXPECT_EQ(result.exit_code, kExitOk) << spelled;
+    EXPECT_EQ(result.err, "") << spelled;
+    EXPECT_THAT(result.out, HasSubstr("Usage: bodyloom " + spelled + " ["));
+  }
+}
+
+TEST(CommandLine, HelpOfAVerbNamesItsOwnVerbs) {
+  for (const std::vector<std::string>& verb : AllVerbs()) {
+    if (verb.size() == 1) continue;
+    EXPECT_THAT(RunCommand({verb[0], "--help"}).out, HasSubstr("\n  " + verb[1] + " ")) << verb[0];
   }
 }
 
 TEST(CommandLine, UnknownOptionsOfEveryVerbAreUsageErrors) {
-  for (std::vector<std::string> verb : kVerbs) {
-    if (verb[0] == "neural") {
-      continue;  // passes everything on
-    }
+  for (std::vector<std::string> verb : AllVerbs()) {
+    const std::string spelled = Spelled(verb);
     verb.emplace_back("--no-such-option");
     const CommandResult result = RunCommand(verb);
-    EXPECT_EQ(result.exit_code, kExitUsage) << verb[0];
-    EXPECT_EQ(result.out, "") << verb[0];
-    EXPECT_THAT(result.err, StartsWith("bodyloom: ")) << verb[0];
+    EXPECT_EQ(result.exit_code, kExitUsage) << spelled;
+    EXPECT_EQ(result.out, "") << spelled;
+    EXPECT_THAT(result.err, StartsWith(verb[0] == "neural" ? "bodyloom neural: " : "bodyloom: ")) << spelled;
   }
 }
 
