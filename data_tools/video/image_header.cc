@@ -31,9 +31,15 @@ class Bytes {
   std::string_view bytes_;
 };
 
+/// At most 2^31, so that it does not overflow to ask how many pixels there are.
+int64_t Side(uint64_t value) {
+  constexpr uint64_t kMost = uint64_t{1} << 31;
+  return static_cast<int64_t>(value < kMost ? value : kMost);
+}
+
 ImageHeader Bmp(const Bytes& bytes) {
   if (bytes.Little(14, 4) == 12) {
-    return {static_cast<int64_t>(bytes.Little(18, 2)), static_cast<int64_t>(bytes.Little(20, 2))};
+    return {Side(bytes.Little(18, 2)), Side(bytes.Little(20, 2))};
   }
   // Rows from the top have a negative height.
   const auto height = static_cast<int32_t>(bytes.Little(22, 4));
@@ -42,13 +48,12 @@ ImageHeader Bmp(const Bytes& bytes) {
 
 ImageHeader WebP(const Bytes& bytes) {
   constexpr uint64_t k14Bits = 0x3FFF;
-  const auto pixels = [](uint64_t value) { return static_cast<int64_t>(value); };
-  if (bytes.Has(12, "VP8X")) return {pixels(bytes.Little(24, 3)) + 1, pixels(bytes.Little(27, 3)) + 1};
+  if (bytes.Has(12, "VP8X")) return {Side(bytes.Little(24, 3) + 1), Side(bytes.Little(27, 3) + 1)};
   if (bytes.Has(12, "VP8L")) {
     const uint64_t sides = bytes.Little(21, 4);
-    return {pixels(sides & k14Bits) + 1, pixels(sides >> 14 & k14Bits) + 1};
+    return {Side((sides & k14Bits) + 1), Side((sides >> 14 & k14Bits) + 1)};
   }
-  if (bytes.Has(12, "VP8 ")) return {pixels(bytes.Little(26, 2) & k14Bits), pixels(bytes.Little(28, 2) & k14Bits)};
+  if (bytes.Has(12, "VP8 ")) return {Side(bytes.Little(26, 2) & k14Bits), Side(bytes.Little(28, 2) & k14Bits)};
   return {};
 }
 
@@ -66,9 +71,7 @@ ImageHeader Tiff(const Bytes& bytes, bool big_endian) {
     constexpr uint64_t kWidth = 256, kHeight = 257, kShort = 3, kLong8 = 16;
     if (tag != kWidth && tag != kHeight) continue;
     const uint64_t value = number(at + (big_tiff ? 12 : 8), type == kShort ? 2 : type == kLong8 ? 8 : 4);
-    // Not to overflow when it is asked how many pixels there are.
-    constexpr uint64_t kMost = uint64_t{1} << 31;
-    (tag == kWidth ? header.width : header.height) = static_cast<int64_t>(value < kMost ? value : kMost);
+    (tag == kWidth ? header.width : header.height) = Side(value);
   }
   return header;
 }
@@ -77,7 +80,7 @@ ImageHeader Of(std::string_view file) {
   using namespace std::string_view_literals;
   const Bytes bytes(file);
   if (bytes.Has(0, "\x89PNG\r\n\x1a\n"sv) && bytes.Has(12, "IHDR"sv)) {
-    return {static_cast<int64_t>(bytes.Big(16, 4)), static_cast<int64_t>(bytes.Big(20, 4))};
+    return {Side(bytes.Big(16, 4)), Side(bytes.Big(20, 4))};
   }
   if (const auto jpeg = ReadJpegHeader(file)) return {jpeg->width, jpeg->height};
   if (bytes.Has(0, "BM"sv)) return Bmp(bytes);

@@ -10,7 +10,7 @@
 namespace bodyloom {
 
 struct ImageHeader {
-  int64_t width = 0, height = 0;  ///< pixels as stored, at least 1; a camera's orientation may swap them
+  int64_t width = 0, height = 0;  ///< pixels as stored, 1 to 2^31; a camera's orientation may swap them
 };
 
 /// Of a PNG, JPEG, BMP, WebP or TIFF (its first picture); nullopt when the bytes are none or end before the size.

@@ -71,6 +71,14 @@ TEST(ImageHeader, FormatsThatOpenCvDoesNotWrite) {
   }
 }
 
+TEST(ImageHeader, SidesThatNoPictureHasCanBeMultiplied) {
+  std::string bytes = Encoded(".png", 37, 23);
+  bytes.replace(16, 8, 8, '\xFF');
+  const auto header = ReadImageHeader(bytes);
+  ASSERT_TRUE(header.has_value());
+  EXPECT_EQ(header->width * header->height, int64_t{1} << 62);
+}
+
 TEST(ImageHeader, NothingIsSaidOfWhatIsCutOrNoImage) {
   for (const char* extension : {".png", ".jpg", ".bmp", ".tiff", ".webp"}) {
     const std::string bytes = Encoded(extension, 37, 23);
