@@ -5,9 +5,9 @@
 
 #include "apps/fixed_text.h"
 #include "apps/report_page.h"
-#include "data_tools/video/video_reader.h"
-#include "geometry/check.h"
-#include "render/contact_sheet.h"
+#include "bodyloom/data_tools/video/video_reader.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/render/contact_sheet.h"
 
 namespace bodyloom {
 namespace {

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "apps/summary.h"
-#include "data_tools/evaluation/evaluation.h"
-#include "geometry/track.h"
-#include "render/image.h"
+#include "bodyloom/data_tools/evaluation/evaluation.h"
+#include "bodyloom/geometry/track.h"
+#include "bodyloom/render/image.h"
 
 namespace bodyloom {
 

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "bodyloom/pipelines/callbacks.h"
+
 namespace bodyloom {
 
 enum ExitCode : int {
@@ -18,12 +20,6 @@ enum ExitCode : int {
 constexpr const char* kExitCodeHelp =
     "Exit codes: 0 done, 1 failed (one line on stderr says why), 2 wrong usage, 130 interrupted.\n"
     "Output files are written whole or not at all.";
-
-/// The options contradict each other or one is missing; main() answers with exit code 2.
-class UsageError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 /// Unwinds the stack after Ctrl-C, so that temporary files go; main() answers with exit code 130.
 class Interrupted : public std::runtime_error {

@@ -58,7 +58,7 @@ int Run(int argc, char** argv) {
     std::cerr << "bodyloom: " << (unknown_verb ? "no verb or option \"" + app.remaining().front() + "\"" : error.what())
               << "\nRun with --help for the options.\n";
     return kExitUsage;
-  } catch (const UsageError& error) {
+  } catch (const RequestError& error) {
     std::cerr << "bodyloom: " << error.what() << "\nRun with --help for the options.\n";
     return kExitUsage;
   } catch (const std::exception& error) {

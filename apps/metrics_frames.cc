@@ -8,10 +8,10 @@
 #include <stdexcept>
 #include <utility>
 
-#include "data_tools/video/image_file.h"
-#include "data_tools/video/video_reader.h"
-#include "geometry/check.h"
-#include "geometry/parallel.h"
+#include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/data_tools/video/video_reader.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/parallel.h"
 
 namespace bodyloom {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "data_tools/evaluation/image_metrics.h"
-#include "render/image.h"
+#include "bodyloom/data_tools/evaluation/image_metrics.h"
+#include "bodyloom/render/image.h"
 
 namespace bodyloom {
 

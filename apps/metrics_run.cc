@@ -14,13 +14,13 @@
 #include <thread>
 #include <utility>
 
-#include "apps/files.h"
 #include "apps/fixed_text.h"
 #include "apps/interrupt.h"
 #include "apps/progress.h"
-#include "data_tools/formats/atomic_file.h"
-#include "geometry/check.h"
-#include "geometry/parallel.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/pipelines/files.h"
 
 namespace bodyloom {
 namespace {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "apps/metrics_frames.h"
-#include "data_tools/evaluation/speed_reaction.h"
-#include "data_tools/evaluation/ssim.h"
+#include "bodyloom/data_tools/evaluation/speed_reaction.h"
+#include "bodyloom/data_tools/evaluation/ssim.h"
 
 namespace bodyloom {
 

@@ -6,10 +6,10 @@
 #include <stdexcept>
 #include <vector>
 
-#include "data_tools/motion/load_motion.h"
-#include "data_tools/motion/motion_tools.h"
-#include "data_tools/synthetic/demo_motion.h"
-#include "geometry/check.h"
+#include "bodyloom/data_tools/motion/load_motion.h"
+#include "bodyloom/data_tools/motion/motion_tools.h"
+#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

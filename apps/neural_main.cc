@@ -20,7 +20,7 @@
 #include "apps/neural/train_motion.h"
 #include "apps/neural/train_photo.h"
 #include "apps/verbs.h"
-#include "neural/runtime.h"
+#include "bodyloom/neural/runtime.h"
 
 namespace {
 
@@ -67,7 +67,7 @@ int main(int argc, char** argv) {
     }
     std::cerr << name << ": " << error.what() << "\nRun with --help for the options.\n";
     return bodyloom::kExitUsage;
-  } catch (const bodyloom::UsageError& error) {
+  } catch (const bodyloom::RequestError& error) {
     std::cerr << name << ": " << error.what() << "\nRun with --help for the options.\n";
     return bodyloom::kExitUsage;
   } catch (const std::exception& error) {

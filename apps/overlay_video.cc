@@ -7,9 +7,9 @@
 #include <thread>
 
 #include "apps/track_video.h"
-#include "data_tools/video/video_writer.h"
-#include "geometry/check.h"
-#include "render/overlay.h"
+#include "bodyloom/data_tools/video/video_writer.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/render/overlay.h"
 
 namespace bodyloom {
 namespace {

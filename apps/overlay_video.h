@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "data_tools/observations/load_cameras.h"
-#include "geometry/body_model.h"
-#include "geometry/observations.h"
-#include "geometry/track.h"
+#include "bodyloom/data_tools/observations/load_cameras.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/observations.h"
+#include "bodyloom/geometry/track.h"
 
 namespace bodyloom {
 

@@ -6,10 +6,10 @@
 #include <stdexcept>
 
 #include "apps/fixed_text.h"
-#include "geometry/check.h"
-#include "render/contact_sheet.h"
-#include "render/overlay.h"
-#include "render/palette.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/render/contact_sheet.h"
+#include "bodyloom/render/overlay.h"
+#include "bodyloom/render/palette.h"
 
 namespace bodyloom {
 namespace {

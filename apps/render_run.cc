@@ -11,17 +11,17 @@
 #include <thread>
 
 #include "apps/exit_code.h"
-#include "apps/files.h"
 #include "apps/interrupt.h"
 #include "apps/progress.h"
 #include "apps/render_picture.h"
 #include "apps/render_sinks.h"
 #include "apps/track_inputs.h"
 #include "apps/track_video.h"
-#include "data_tools/formats/atomic_file.h"
-#include "data_tools/track_io.h"
-#include "data_tools/video/image_file.h"
-#include "geometry/check.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/pipelines/files.h"
 
 namespace bodyloom {
 namespace {
@@ -33,19 +33,21 @@ double Now() { return std::chrono::duration<double>(std::chrono::steady_clock::n
 void CheckOptions(const RenderCommand& command) {
   const bool is_npz = command.out.ends_with(".npz");
   if (!is_npz && !command.out.ends_with(".mp4") && !command.out.ends_with(".png")) {
-    throw UsageError("--out " + command.out + ": expected a name that ends in .mp4, .png or .npz");
+    throw RequestError("--out " + command.out + ": expected a name that ends in .mp4, .png or .npz");
   }
   if (command.what == "texture" && command.texture.empty()) {
-    throw UsageError("--what texture needs the picture to put on the body: give --texture FILE");
+    throw RequestError("--what texture needs the picture to put on the body: give --texture FILE");
   }
   if (command.what != "texture" && !command.texture.empty()) {
-    throw UsageError("--texture is only seen with --what texture, not with --what " + command.what);
+    throw RequestError("--texture is only seen with --what texture, not with --what " + command.what);
   }
   if (!command.video.empty() && (command.has_view_yaw || command.turntable)) {
-    throw UsageError("a video shows the person from its own camera alone: give --video, or --view-yaw and --turntable");
+    throw RequestError(
+        "a video shows the person from its own camera alone: give --video, or --view-yaw and --turntable");
   }
   if (is_npz && !command.video.empty() && command.what != "overlay" && command.what != "texture") {
-    throw UsageError("arrays of " + command.what + " hold the surface alone: leave --video out, or write .mp4 or .png");
+    throw RequestError("arrays of " + command.what +
+                       " hold the surface alone: leave --video out, or write .mp4 or .png");
   }
 }
 
@@ -116,7 +118,7 @@ std::pair<int, int> FrameRange(const std::string& text, int num_frames, const st
       return missing;
     }
     if (digits.size() > 9 || !std::all_of(digits.begin(), digits.end(), [](char c) { return c >= '0' && c <= '9'; })) {
-      throw UsageError("--frames " + text + ": expected a:b (frame b is left out), a:, :b, or one number");
+      throw RequestError("--frames " + text + ": expected a:b (frame b is left out), a:, :b, or one number");
     }
     return std::stoi(digits);
   };
@@ -130,7 +132,7 @@ std::pair<int, int> FrameRange(const std::string& text, int num_frames, const st
     end = first + 1;
   }
   if (first >= end) {
-    throw UsageError("--frames " + text + ": holds no frame; a:b is frame a to frame b-1");
+    throw RequestError("--frames " + text + ": holds no frame; a:b is frame a to frame b-1");
   }
   if (end > num_frames) {
     throw std::runtime_error(

@@ -28,10 +28,10 @@ struct RenderReport {
 };
 
 /// Frames "a:b" of num_frames (b excluded; either may be missing; "a" alone is one frame) as [first, last+1). Throws
-/// UsageError when the text is no such range, std::runtime_error beginning with `where` when it holds no frame.
+/// RequestError when the text is no such range, std::runtime_error beginning with `where` when it holds no frame.
 std::pair<int, int> FrameRange(const std::string& text, int num_frames, const std::string& where);
 
-/// Throws UsageError when options contradict each other, std::runtime_error naming a file that cannot be used. Nothing
+/// Throws RequestError when options contradict each other, std::runtime_error naming a file that cannot be used. Nothing
 /// is left behind then.
 RenderReport RunRender(const RenderCommand& command);
 

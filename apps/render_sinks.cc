@@ -8,12 +8,12 @@
 #include <stdexcept>
 
 #include "apps/exit_code.h"
-#include "data_tools/video/image_file.h"
-#include "geometry/check.h"
-#include "render/caption.h"
-#include "render/contact_sheet.h"
-#include "render/palette.h"
-#include "render/resolve_pixels.h"
+#include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/render/caption.h"
+#include "bodyloom/render/contact_sheet.h"
+#include "bodyloom/render/palette.h"
+#include "bodyloom/render/resolve_pixels.h"
 
 namespace bodyloom {
 namespace {
@@ -255,7 +255,7 @@ std::unique_ptr<RenderSink> MakeRenderSink(const std::string& path, RenderKind k
   if (path.ends_with(".npz")) {
     return std::make_unique<ArraySink>(path, kind, body, track, steps, options);
   }
-  throw UsageError("--out " + path + ": expected a name that ends in .mp4, .png or .npz");
+  throw RequestError("--out " + path + ": expected a name that ends in .mp4, .png or .npz");
 }
 
 }  // namespace bodyloom

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "apps/render_picture.h"
-#include "data_tools/formats/npz.h"
-#include "data_tools/video/video_writer.h"
+#include "bodyloom/data_tools/formats/npz.h"
+#include "bodyloom/data_tools/video/video_writer.h"
 
 namespace bodyloom {
 
@@ -29,7 +29,7 @@ class RenderSink {
   virtual void Finish() = 0;
 };
 
-/// By the extension of `path`: .mp4, .png or .npz (UsageError for others). The lines of `title` head the contact sheet.
+/// By the extension of `path`: .mp4, .png or .npz (RequestError for others). The lines of `title` head the contact sheet.
 /// Arrays of more than 2 GiB are refused (std::runtime_error).
 std::unique_ptr<RenderSink> MakeRenderSink(const std::string& path, RenderKind kind,
                                            const std::vector<std::string>& title, const BodyModel& body,

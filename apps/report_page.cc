@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <cstdio>
 
-#include "geometry/check.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

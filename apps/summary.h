@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/stage_clock.h"
-#include "tracking/track_sequence.h"
+#include "bodyloom/geometry/base/stopwatch.h"
+#include "bodyloom/tracking/track_sequence.h"
 
 namespace bodyloom {
 

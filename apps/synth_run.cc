@@ -4,19 +4,19 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
-#include "apps/files.h"
 #include "apps/interrupt.h"
 #include "apps/motion_input.h"
 #include "apps/progress.h"
 #include "apps/track_inputs.h"
 #include "apps/track_video.h"
-#include "data_tools/observations/load_cameras.h"
-#include "data_tools/observations/observations_npz.h"
-#include "data_tools/track_io.h"
-#include "data_tools/video/video_writer.h"
-#include "render/overlay.h"
-#include "render/palette.h"
-#include "render/shaded_mesh.h"
+#include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/data_tools/observations/load_cameras.h"
+#include "bodyloom/data_tools/observations/observations_npz.h"
+#include "bodyloom/data_tools/video/video_writer.h"
+#include "bodyloom/pipelines/files.h"
+#include "bodyloom/render/overlay.h"
+#include "bodyloom/render/palette.h"
+#include "bodyloom/render/shaded_mesh.h"
 
 namespace bodyloom {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "data_tools/synthetic/synth_clip.h"
+#include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
 
 namespace CLI {
 class App;

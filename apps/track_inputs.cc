@@ -3,20 +3,20 @@
 
 #include <stdexcept>
 
-#include "data_tools/body_io.h"
-#include "data_tools/builtin_body.h"
-#include "data_tools/formats/npz.h"
-#include "data_tools/lifter/lifter_weights_io.h"
-#include "data_tools/motion/load_motion.h"
-#include "data_tools/observations/iuv_to_dense.h"
-#include "data_tools/observations/load_detections.h"
-#include "data_tools/observations/observations_npz.h"
-#include "data_tools/observations/part_labels.h"
-#include "data_tools/prior/pose_prior_io.h"
-#include "data_tools/track_io.h"
-#include "data_tools/video/video_reader.h"
-#include "geometry/check.h"
-#include "tracking/initialise/part_keypoints.h"
+#include "bodyloom/data_tools/body/body_io.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/data_tools/formats/npz.h"
+#include "bodyloom/data_tools/learned/lifter_weights_io.h"
+#include "bodyloom/data_tools/learned/pose_prior_io.h"
+#include "bodyloom/data_tools/motion/load_motion.h"
+#include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/data_tools/observations/iuv_to_dense.h"
+#include "bodyloom/data_tools/observations/load_detections.h"
+#include "bodyloom/data_tools/observations/observations_npz.h"
+#include "bodyloom/data_tools/observations/part_labels.h"
+#include "bodyloom/data_tools/video/video_reader.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/tracking/initialise/part_keypoints.h"
 
 namespace bodyloom {
 namespace {

@@ -6,12 +6,12 @@
 #include <optional>
 
 #include "apps/track_options.h"
-#include "data_tools/observations/load_cameras.h"
-#include "geometry/body_model.h"
-#include "geometry/lifter_weights.h"
-#include "geometry/observations.h"
-#include "geometry/pose_prior.h"
-#include "geometry/track.h"
+#include "bodyloom/data_tools/observations/load_cameras.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/lifter_weights.h"
+#include "bodyloom/geometry/observations.h"
+#include "bodyloom/geometry/pose_prior.h"
+#include "bodyloom/geometry/track.h"
 
 namespace bodyloom {
 

@@ -172,34 +172,34 @@ CameraKnowledge CameraKnowledgeOf(const TrackCommand& command) {
 
 void CheckTrackOptions(const TrackCommand& command) {
   if (command.detections.empty() && command.dense.empty() && command.part_labels.empty()) {
-    throw UsageError("--detections is required (or --dense, or --part-labels)");
+    throw RequestError("--detections is required (or --dense, or --part-labels)");
   }
   if (command.dense_uv_sigma && command.dense.empty() && !command.detections.ends_with(".npz")) {
-    throw UsageError("--dense-uv-sigma is the noise of dense keypoints: give --dense");
+    throw RequestError("--dense-uv-sigma is the noise of dense keypoints: give --dense");
   }
   if (command.out.empty() && !command.plan) {
-    throw UsageError("--out is required (or --plan, to see what would be done)");
+    throw RequestError("--out is required (or --plan, to see what would be done)");
   }
   if (command.camera == "pinhole" && command.cameras.empty() && command.focal_px == 0) {
-    throw UsageError("--camera pinhole needs the intrinsics: give --cameras FILE or --focal PIXELS");
+    throw RequestError("--camera pinhole needs the intrinsics: give --cameras FILE or --focal PIXELS");
   }
   if (!command.cameras.empty() && command.focal_px > 0) {
-    throw UsageError("--cameras and --focal both give the focal length, expected one of them");
+    throw RequestError("--cameras and --focal both give the focal length, expected one of them");
   }
   if (!command.overlay.empty() && !command.overlay.ends_with(".mp4")) {
-    throw UsageError("--overlay " + command.overlay + ": expected a name that ends in .mp4");
+    throw RequestError("--overlay " + command.overlay + ": expected a name that ends in .mp4");
   }
   if (command.live_lag && command.solve.solver != "chain") {
-    throw UsageError("--live runs on the chain solver: leave out --solver " + command.solve.solver);
+    throw RequestError("--live runs on the chain solver: leave out --solver " + command.solve.solver);
   }
   if (command.live_lag && command.detections.empty() && command.dense.empty()) {
-    throw UsageError("--live does not use part labels: give --detections or --dense");
+    throw RequestError("--live does not use part labels: give --detections or --dense");
   }
   if (command.side_view && command.overlay.empty()) {
-    throw UsageError("--side-view is a part of the overlay: give --overlay FILE");
+    throw RequestError("--side-view is a part of the overlay: give --overlay FILE");
   }
   if (!command.reference.empty() && !command.side_view) {
-    throw UsageError("--reference is drawn in the side view: give --side-view");
+    throw RequestError("--reference is drawn in the side view: give --side-view");
   }
 }
 

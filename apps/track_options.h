@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "tracking/track_sequence.h"
+#include "bodyloom/tracking/track_sequence.h"
 
 namespace CLI {
 class App;
@@ -48,7 +48,7 @@ struct TrackCommand {
 /// Binds every field to its flag; defaults in --help are those of the struct.
 void AddTrackOptions(CLI::App& app, TrackCommand* command);
 
-/// Throws UsageError when options contradict each other or one is missing.
+/// Throws RequestError when options contradict each other or one is missing.
 void CheckTrackOptions(const TrackCommand& command);
 
 /// What --camera, --cameras and --focal say together.

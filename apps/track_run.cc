@@ -2,14 +2,14 @@
 #include "apps/track_run.h"
 
 #include "apps/exit_code.h"
-#include "apps/files.h"
 #include "apps/interrupt.h"
 #include "apps/overlay_video.h"
 #include "apps/progress.h"
 #include "apps/track_inputs.h"
-#include "data_tools/formats/atomic_file.h"
-#include "data_tools/track_io.h"
-#include "tracking/live/track_live.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/pipelines/files.h"
+#include "bodyloom/tracking/live/track_live.h"
 
 namespace bodyloom {
 namespace {

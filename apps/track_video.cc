@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "geometry/check.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

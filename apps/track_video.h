@@ -4,9 +4,9 @@
 
 #include <string>
 
-#include "data_tools/observations/load_cameras.h"
-#include "data_tools/video/video_reader.h"
-#include "geometry/track.h"
+#include "bodyloom/data_tools/observations/load_cameras.h"
+#include "bodyloom/data_tools/video/video_reader.h"
+#include "bodyloom/geometry/track.h"
 
 namespace bodyloom {
 

@@ -5,12 +5,12 @@
 #include <string>
 
 #include "apps/exit_code.h"
-#include "apps/files.h"
 #include "apps/track_inputs.h"
 #include "apps/verbs.h"
-#include "data_tools/body_io.h"
-#include "data_tools/body_making/make_builtin_body.h"
-#include "data_tools/builtin_body.h"
+#include "bodyloom/data_tools/body/body_io.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/data_tools/body_making/make_builtin_body.h"
+#include "bodyloom/pipelines/files.h"
 
 namespace bodyloom {
 namespace {

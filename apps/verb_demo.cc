@@ -7,16 +7,16 @@
 
 #include "apps/demo_page.h"
 #include "apps/exit_code.h"
-#include "apps/files.h"
 #include "apps/interrupt.h"
 #include "apps/synth_run.h"
 #include "apps/track_run.h"
 #include "apps/verbs.h"
-#include "data_tools/builtin_body.h"
-#include "data_tools/evaluation/truth_evaluation.h"
-#include "data_tools/formats/atomic_file.h"
-#include "data_tools/track_io.h"
-#include "data_tools/video/image_file.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/data_tools/evaluation/truth_evaluation.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/pipelines/files.h"
 
 namespace bodyloom {
 namespace {

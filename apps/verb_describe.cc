@@ -9,20 +9,20 @@
 #include <vector>
 
 #include "apps/exit_code.h"
-#include "apps/files.h"
 #include "apps/interrupt.h"
 #include "apps/progress.h"
-#include "apps/stage_clock.h"
 #include "apps/summary.h"
 #include "apps/track_inputs.h"
 #include "apps/verbs.h"
-#include "data_tools/descriptors/describe_track.h"
-#include "data_tools/descriptors/descriptor_header.h"
-#include "data_tools/formats/atomic_file.h"
-#include "data_tools/observations/load_cameras.h"
-#include "data_tools/track_io.h"
-#include "data_tools/video/image_file.h"
-#include "geometry/check.h"
+#include "bodyloom/data_tools/descriptors/describe_track.h"
+#include "bodyloom/data_tools/descriptors/descriptor_header.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/data_tools/observations/load_cameras.h"
+#include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/stopwatch.h"
+#include "bodyloom/pipelines/files.h"
 
 namespace bodyloom {
 namespace {
@@ -74,10 +74,10 @@ DescribeTrackOptions OptionsOf(const DescribeCommand& command) {
                               ? LevelCamera()
                               : FindCamera(LoadCameras(command.cameras), command.view, command.cameras).pose;
   } else if (!command.cameras.empty()) {
-    throw UsageError("--cameras is for --frame world");
+    throw RequestError("--cameras is for --frame world");
   }
   std::string why;
-  if (!options.IsValid(&why)) throw UsageError(why);
+  if (!options.IsValid(&why)) throw RequestError(why);
   return options;
 }
 
@@ -142,7 +142,8 @@ std::string Json(const DescribeTrackSummary& s, const DescribeCommand& command, 
 
 void RunDescribe(const DescribeCommand& command) {
   const StageClock clock;
-  if (!command.out.ends_with(".npy")) throw UsageError("--out " + command.out + ": expected a name that ends in .npy");
+  if (!command.out.ends_with(".npy"))
+    throw RequestError("--out " + command.out + ": expected a name that ends in .npy");
   const std::string header = DescriptorHeaderPath(command.out);
   const DescribeTrackOptions options = OptionsOf(command);
   RequireReadable(command.track, "track");

@@ -6,17 +6,17 @@
 #include <string>
 
 #include "apps/exit_code.h"
-#include "apps/files.h"
 #include "apps/track_inputs.h"
 #include "apps/verbs.h"
-#include "data_tools/evaluation/aist_evaluation.h"
-#include "data_tools/evaluation/part_label_evaluation.h"
-#include "data_tools/evaluation/pose2sim_evaluation.h"
-#include "data_tools/evaluation/truth_evaluation.h"
-#include "data_tools/formats/atomic_file.h"
-#include "data_tools/formats/npz.h"
-#include "data_tools/observations/part_labels.h"
-#include "data_tools/track_io.h"
+#include "bodyloom/data_tools/evaluation/aist_evaluation.h"
+#include "bodyloom/data_tools/evaluation/part_label_evaluation.h"
+#include "bodyloom/data_tools/evaluation/pose2sim_evaluation.h"
+#include "bodyloom/data_tools/evaluation/truth_evaluation.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/formats/npz.h"
+#include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/data_tools/observations/part_labels.h"
+#include "bodyloom/pipelines/files.h"
 
 namespace bodyloom {
 namespace {
@@ -58,7 +58,7 @@ Evaluation Evaluate(const EvaluateCommand& command) {
   }
   if (fs::exists(truth / "keypoints2d")) {
     if (command.sequence.empty()) {
-      throw UsageError("an AIST++ folder holds many clips: name one with --sequence");
+      throw RequestError("an AIST++ folder holds many clips: name one with --sequence");
     }
     const std::string cameras = command.cameras.empty() ? (truth / "cameras").string() : command.cameras;
     return EvaluateAist(track, command.truth, cameras, command.sequence, command.view.empty() ? "c01" : command.view);

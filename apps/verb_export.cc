@@ -9,17 +9,17 @@
 #include <string>
 
 #include "apps/exit_code.h"
-#include "apps/files.h"
 #include "apps/interrupt.h"
 #include "apps/track_inputs.h"
 #include "apps/verbs.h"
-#include "data_tools/formats/atomic_file.h"
-#include "data_tools/formats/npz.h"
-#include "data_tools/motion/amass.h"
-#include "data_tools/motion/bvh_writer.h"
-#include "data_tools/track_io.h"
-#include "geometry/check.h"
-#include "render/overlay.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/formats/npz.h"
+#include "bodyloom/data_tools/motion/amass.h"
+#include "bodyloom/data_tools/motion/bvh_writer.h"
+#include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/pipelines/files.h"
+#include "bodyloom/render/overlay.h"
 
 namespace bodyloom {
 namespace {

@@ -11,15 +11,15 @@
 #include <vector>
 
 #include "apps/exit_code.h"
-#include "apps/files.h"
 #include "apps/interrupt.h"
 #include "apps/verbs.h"
-#include "data_tools/evaluation/motion_quality.h"
-#include "data_tools/formats/atomic_file.h"
-#include "data_tools/motion/motion_library.h"
-#include "data_tools/motion/motion_sheet.h"
-#include "data_tools/motion/motion_split.h"
-#include "data_tools/video/image_file.h"
+#include "bodyloom/data_tools/evaluation/motion_quality.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/motion/motion_library.h"
+#include "bodyloom/data_tools/motion/motion_sheet.h"
+#include "bodyloom/data_tools/motion/motion_split.h"
+#include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/pipelines/files.h"
 
 namespace bodyloom {
 namespace {

@@ -4,11 +4,11 @@
 #include <memory>
 
 #include "apps/verbs.h"
-#include "data_tools/builtin_body.h"
-#include "data_tools/formats/files_below.h"
-#include "data_tools/motion/load_motion.h"
-#include "data_tools/prior/pose_prior_io.h"
-#include "data_tools/prior/pose_prior_learning.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/data_tools/formats/files_below.h"
+#include "bodyloom/data_tools/learned/pose_prior_io.h"
+#include "bodyloom/data_tools/learned/pose_prior_learning.h"
+#include "bodyloom/data_tools/motion/load_motion.h"
 
 namespace bodyloom {
 namespace {

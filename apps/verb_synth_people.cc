@@ -8,17 +8,17 @@
 #include <vector>
 
 #include "apps/exit_code.h"
-#include "apps/files.h"
 #include "apps/interrupt.h"
 #include "apps/motion_input.h"
 #include "apps/progress.h"
 #include "apps/track_inputs.h"
 #include "apps/verbs.h"
-#include "data_tools/motion/motion_library.h"
-#include "data_tools/motion/motion_tools.h"
-#include "data_tools/people/make_people_set.h"
-#include "data_tools/people/people_sheet.h"
-#include "data_tools/video/image_file.h"
+#include "bodyloom/data_tools/datasets/people_sheet.h"
+#include "bodyloom/data_tools/motion/motion_library.h"
+#include "bodyloom/data_tools/motion/motion_tools.h"
+#include "bodyloom/data_tools/synthesis/people/make_people_set.h"
+#include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/pipelines/files.h"
 
 namespace bodyloom {
 namespace {
@@ -86,8 +86,8 @@ std::vector<Motion> LoadMotions(const SynthPeopleCommand& command, const BodyMod
     VisitMotionLibrary(folders, {}, [&](LibraryClip&& clip) { take(clip.motion); });
   }
   if (motions.empty()) {
-    throw UsageError("--motions: none is as long as a clip, " + std::to_string(length) +
-                     " frames; give others, or fewer --frames or --every");
+    throw RequestError("--motions: none is as long as a clip, " + std::to_string(length) +
+                       " frames; give others, or fewer --frames or --every");
   }
   return motions;
 }

@@ -9,17 +9,17 @@
 #include <vector>
 
 #include "apps/exit_code.h"
-#include "apps/files.h"
 #include "apps/interrupt.h"
 #include "apps/motion_input.h"
 #include "apps/progress.h"
 #include "apps/track_inputs.h"
 #include "apps/verbs.h"
-#include "data_tools/motion/motion_tools.h"
-#include "data_tools/people/dressed_person.h"
-#include "data_tools/people/make_person_set.h"
-#include "data_tools/people/person_sheet.h"
-#include "data_tools/video/image_file.h"
+#include "bodyloom/data_tools/datasets/person_sheet.h"
+#include "bodyloom/data_tools/motion/motion_tools.h"
+#include "bodyloom/data_tools/synthesis/people/dressed_person.h"
+#include "bodyloom/data_tools/synthesis/people/make_person_set.h"
+#include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/pipelines/files.h"
 
 namespace bodyloom {
 namespace {
@@ -86,7 +86,7 @@ void SynthPerson(SynthPersonCommand command) {
     if (motion != "demo") RequireReadable(motion, "motion");
   }
   if (!(command.motion.fps > 0) && command.speeds != std::vector<double>{1}) {
-    throw UsageError("--speed needs --fps: the rate of the pictures");
+    throw RequestError("--speed needs --fps: the rate of the pictures");
   }
   RequireReadable(command.body, "body model");
   RequireWritableFolder(command.out);

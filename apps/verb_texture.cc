@@ -10,21 +10,21 @@
 #include <vector>
 
 #include "apps/exit_code.h"
-#include "apps/files.h"
 #include "apps/interrupt.h"
 #include "apps/progress.h"
-#include "apps/stage_clock.h"
 #include "apps/track_inputs.h"
 #include "apps/track_video.h"
 #include "apps/verbs.h"
-#include "data_tools/formats/atomic_file.h"
-#include "data_tools/track_io.h"
-#include "data_tools/video/image_file.h"
-#include "data_tools/video/video_reader.h"
-#include "geometry/check.h"
-#include "render/overlay.h"
-#include "render/texture_extract.h"
-#include "render/uv_fill.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/data_tools/video/video_reader.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/stopwatch.h"
+#include "bodyloom/pipelines/files.h"
+#include "bodyloom/render/overlay.h"
+#include "bodyloom/render/texture_extract.h"
+#include "bodyloom/render/uv_fill.h"
 
 namespace bodyloom {
 namespace {

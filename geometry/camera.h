@@ -7,7 +7,7 @@
 #include <array>
 #include <string>
 
-#include "geometry/arrays.h"
+#include "bodyloom/geometry/arrays.h"
 
 namespace bodyloom {
 

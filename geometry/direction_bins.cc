@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "geometry/direction_bins.h"
+#include "bodyloom/geometry/direction_bins.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "geometry/check.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "geometry/lifter_weights.h"
+#include "bodyloom/geometry/lifter_weights.h"
 
-#include "geometry/check.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 

@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/arrays.h"
+#include "bodyloom/geometry/arrays.h"
 
 namespace bodyloom {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "geometry/mesh_adjacency.h"
+#include "bodyloom/geometry/mesh_adjacency.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "geometry/check.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "geometry/arrays.h"
+#include "bodyloom/geometry/arrays.h"
 
 namespace bodyloom {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "geometry/normals.h"
+#include "bodyloom/geometry/normals.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "geometry/check.h"
-#include "geometry/normals_simd.h"
-#include "geometry/parallel.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/geometry/normals_simd.h"
 
 namespace bodyloom {
 

@@ -21,10 +21,10 @@
 #include <span>
 #include <vector>
 
-#include "geometry/arrays.h"
-#include "geometry/body_model.h"
-#include "geometry/mesh_adjacency.h"
-#include "geometry/posed_body.h"
+#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/mesh_adjacency.h"
+#include "bodyloom/geometry/posed_body.h"
 
 namespace bodyloom {
 

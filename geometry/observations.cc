@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "geometry/observations.h"
+#include "bodyloom/geometry/observations.h"
 
 namespace bodyloom {
 

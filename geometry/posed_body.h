@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "geometry/arrays.h"
-#include "geometry/body_model.h"
+#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/body_model.h"
 
 namespace bodyloom {
 

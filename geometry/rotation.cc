@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "geometry/rotation.h"
+#include "bodyloom/geometry/rotation.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/SVD>

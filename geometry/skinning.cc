@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "geometry/skinning.h"
+#include "bodyloom/geometry/skinning.h"
 
 #include <algorithm>
 #include <cstring>
@@ -8,9 +8,9 @@
 #include <numeric>
 #include <utility>
 
-#include "geometry/check.h"
-#include "geometry/parallel.h"
-#include "geometry/skinning_simd.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/geometry/skinning_simd.h"
 
 namespace bodyloom {
 

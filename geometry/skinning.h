@@ -22,9 +22,9 @@
 #include <string>
 #include <vector>
 
-#include "geometry/arrays.h"
-#include "geometry/body_model.h"
-#include "geometry/posed_body.h"
+#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/posed_body.h"
 
 namespace bodyloom {
 

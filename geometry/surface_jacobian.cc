@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "geometry/surface_jacobian.h"
+#include "bodyloom/geometry/surface_jacobian.h"
 
-#include "geometry/check.h"
-#include "geometry/rotation.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/rotation.h"
 
 namespace bodyloom {
 

@@ -16,8 +16,8 @@
 #include <span>
 #include <vector>
 
-#include "geometry/body_model.h"
-#include "geometry/posed_body.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/posed_body.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "geometry/surface_velocity.h"
+#include "bodyloom/geometry/surface_velocity.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,10 +8,10 @@
 #include <new>
 #include <numeric>
 
-#include "geometry/check.h"
-#include "geometry/parallel.h"
-#include "geometry/rotation.h"
-#include "geometry/skinning_simd.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/skinning_simd.h"
 
 namespace bodyloom {
 

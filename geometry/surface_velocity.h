@@ -23,12 +23,12 @@
 #include <string>
 #include <vector>
 
-#include "geometry/body_model.h"
-#include "geometry/camera.h"
-#include "geometry/posed_body.h"
-#include "geometry/skinning.h"
-#include "geometry/track.h"
-#include "geometry/velocity_stencil.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/camera.h"
+#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/skinning.h"
+#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/velocity_stencil.h"
 
 namespace bodyloom {
 

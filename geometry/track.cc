@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "geometry/track.h"
+#include "bodyloom/geometry/track.h"
 
-#include "geometry/check.h"
-#include "geometry/observations.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/observations.h"
 
 namespace bodyloom {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "geometry/arrays.h"
-#include "geometry/camera.h"
+#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/camera.h"
 
 namespace bodyloom {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "geometry/uv_bake.h"
+#include "bodyloom/geometry/uv_bake.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/check.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 

@@ -11,9 +11,9 @@
 #include <span>
 #include <vector>
 
-#include "geometry/arrays.h"
-#include "geometry/uv_bake_simd.h"
-#include "geometry/uv_texels.h"
+#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/uv_bake_simd.h"
+#include "bodyloom/geometry/uv_texels.h"
 
 namespace bodyloom {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "geometry/uv_charts.h"
+#include "bodyloom/geometry/uv_charts.h"
 
 #include <cmath>
 #include <map>
 #include <numeric>
 #include <tuple>
 
-#include "geometry/check.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -5,9 +5,9 @@
 
 #include <vector>
 
-#include "geometry/arrays.h"
-#include "geometry/body_model.h"
-#include "geometry/mesh_adjacency.h"
+#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/mesh_adjacency.h"
 
 namespace bodyloom {
 

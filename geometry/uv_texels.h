@@ -20,8 +20,8 @@
 #include <string>
 #include <vector>
 
-#include "geometry/body_model.h"
-#include "geometry/uv_charts.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/uv_charts.h"
 
 namespace bodyloom {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "geometry/vertex_normals.h"
+#include "bodyloom/geometry/vertex_normals.h"
 
-#include "geometry/check.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 

@@ -5,8 +5,8 @@
 
 #include <optional>
 
-#include "geometry/arrays.h"
-#include "geometry/normals.h"
+#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/normals.h"
 
 namespace bodyloom {
 

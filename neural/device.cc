@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/device.h"
+#include "bodyloom/neural/device.h"
 
 namespace bodyloom {
 namespace {

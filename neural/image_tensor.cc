@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/image_tensor.h"
+#include "bodyloom/neural/image_tensor.h"
 
 #include <cstring>
 
-#include "geometry/check.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 

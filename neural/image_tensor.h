@@ -4,7 +4,7 @@
 
 #include <torch/torch.h>
 
-#include "render/image.h"
+#include "bodyloom/render/image.h"
 
 namespace bodyloom {
 

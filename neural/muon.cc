@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/muon.h"
+#include "bodyloom/neural/muon.h"
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
 
-#include "geometry/check.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

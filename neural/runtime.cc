@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/runtime.h"
+#include "bodyloom/neural/runtime.h"
 
 #include <ATen/Parallel.h>
 #include <dlfcn.h>
@@ -14,8 +14,8 @@
 #include <stdexcept>
 #include <thread>
 
-#include "geometry/check.h"
-#include "neural/device.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/neural/device.h"
 
 namespace bodyloom {
 namespace {

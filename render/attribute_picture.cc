@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/attribute_picture.h"
+#include "bodyloom/render/attribute_picture.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "geometry/check.h"
-#include "geometry/parallel.h"
-#include "render/palette.h"
-#include "render/view_camera.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/render/palette.h"
+#include "bodyloom/render/view_camera.h"
 
 namespace bodyloom {
 namespace {

@@ -11,12 +11,12 @@
 #include <string>
 #include <vector>
 
-#include "geometry/body_model.h"
-#include "geometry/camera.h"
-#include "geometry/vertex_normals.h"
-#include "render/image.h"
-#include "render/resolve_pixels.h"
-#include "render/visibility_buffer.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/camera.h"
+#include "bodyloom/geometry/vertex_normals.h"
+#include "bodyloom/render/image.h"
+#include "bodyloom/render/resolve_pixels.h"
+#include "bodyloom/render/visibility_buffer.h"
 
 namespace bodyloom {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/caption.h"
+#include "bodyloom/render/caption.h"
 
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "render/image_mat.h"
-#include "render/palette.h"
+#include "bodyloom/render/image_mat.h"
+#include "bodyloom/render/palette.h"
 
 namespace bodyloom {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/chart_lookup.h"
+#include "bodyloom/render/chart_lookup.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "geometry/check.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/contact_sheet.h"
+#include "bodyloom/render/contact_sheet.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/check.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "render/image.h"
+#include "bodyloom/render/image.h"
 
 namespace bodyloom {
 

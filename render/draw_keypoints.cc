@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/draw_keypoints.h"
+#include "bodyloom/render/draw_keypoints.h"
 
 #include <algorithm>
 #include <array>
@@ -7,9 +7,9 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
-#include "geometry/check.h"
-#include "render/image_mat.h"
-#include "render/palette.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/render/image_mat.h"
+#include "bodyloom/render/palette.h"
 
 namespace bodyloom {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "geometry/arrays.h"
-#include "render/image.h"
+#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/render/image.h"
 
 namespace bodyloom {
 

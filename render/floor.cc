@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/floor.h"
+#include "bodyloom/render/floor.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -7,10 +7,10 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
-#include "geometry/check.h"
-#include "render/image_mat.h"
-#include "render/view_camera.h"
-#include "render/visibility_buffer.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/render/image_mat.h"
+#include "bodyloom/render/view_camera.h"
+#include "bodyloom/render/visibility_buffer.h"
 
 namespace bodyloom {
 namespace {

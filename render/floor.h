@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include "geometry/arrays.h"
-#include "geometry/camera.h"
-#include "render/image.h"
+#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/camera.h"
+#include "bodyloom/render/image.h"
 
 namespace bodyloom {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/follow_view.h"
+#include "bodyloom/render/follow_view.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/check.h"
-#include "geometry/posed_body.h"
-#include "geometry/rotation.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/rotation.h"
 
 namespace bodyloom {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "geometry/body_model.h"
-#include "geometry/track.h"
-#include "render/view_camera.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/track.h"
+#include "bodyloom/render/view_camera.h"
 
 namespace bodyloom {
 

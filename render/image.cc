@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/image.h"
+#include "bodyloom/render/image.h"
 
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "geometry/check.h"
-#include "render/image_mat.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/render/image_mat.h"
 
 namespace bodyloom {
 

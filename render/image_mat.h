@@ -4,7 +4,7 @@
 
 #include <opencv2/core/mat.hpp>
 
-#include "render/image.h"
+#include "bodyloom/render/image.h"
 
 namespace bodyloom {
 

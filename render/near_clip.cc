@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/near_clip.h"
+#include "bodyloom/render/near_clip.h"
 
 namespace bodyloom {
 namespace {

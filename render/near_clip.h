@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <array>
 
-#include "geometry/camera.h"
+#include "bodyloom/geometry/camera.h"
 
 namespace bodyloom {
 

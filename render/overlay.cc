@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/overlay.h"
+#include "bodyloom/render/overlay.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "geometry/check.h"
-#include "geometry/posed_body.h"
-#include "render/draw_keypoints.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/render/draw_keypoints.h"
 
 namespace bodyloom {
 namespace {

@@ -7,15 +7,15 @@
 #include <string>
 #include <vector>
 
-#include "geometry/body_model.h"
-#include "geometry/observations.h"
-#include "geometry/posed_body.h"
-#include "geometry/track.h"
-#include "render/caption.h"
-#include "render/floor.h"
-#include "render/follow_view.h"
-#include "render/image.h"
-#include "render/shaded_mesh.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/observations.h"
+#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/track.h"
+#include "bodyloom/render/caption.h"
+#include "bodyloom/render/floor.h"
+#include "bodyloom/render/follow_view.h"
+#include "bodyloom/render/image.h"
+#include "bodyloom/render/shaded_mesh.h"
 
 namespace bodyloom {
 

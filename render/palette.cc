@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/palette.h"
+#include "bodyloom/render/palette.h"
 
 #include <array>
 

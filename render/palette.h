@@ -2,7 +2,7 @@
 /// The colours of the project's pictures.
 #pragma once
 
-#include "render/image.h"
+#include "bodyloom/render/image.h"
 
 namespace bodyloom {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/parallel_phases.h"
+#include "bodyloom/render/parallel_phases.h"
 
 #include <atomic>
 #include <deque>
 #include <thread>
 
-#include "geometry/parallel.h"
+#include "bodyloom/geometry/base/parallel.h"
 
 namespace bodyloom {
 namespace {

@@ -11,8 +11,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "geometry/camera.h"
-#include "render/image.h"
+#include "bodyloom/geometry/camera.h"
+#include "bodyloom/render/image.h"
 
 namespace bodyloom {
 

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/resolve_pixels.h"
+#include "bodyloom/render/resolve_pixels.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
-#include "geometry/check.h"
-#include "geometry/parallel.h"
-#include "render/covered_span.h"
-#include "render/resolve_simd.h"
-#include "render/shaded_mesh.h"
-#include "render/visible_points.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/render/covered_span.h"
+#include "bodyloom/render/resolve_simd.h"
+#include "bodyloom/render/shaded_mesh.h"
+#include "bodyloom/render/visible_points.h"
 
 namespace bodyloom {
 namespace {

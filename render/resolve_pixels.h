@@ -18,9 +18,9 @@
 #include <span>
 #include <vector>
 
-#include "geometry/body_model.h"
-#include "geometry/camera.h"
-#include "render/visibility_buffer.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/camera.h"
+#include "bodyloom/render/visibility_buffer.h"
 
 namespace bodyloom {
 

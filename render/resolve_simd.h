@@ -6,7 +6,7 @@
 #include <array>
 #include <cstdint>
 
-#include "render/raster_simd.h"
+#include "bodyloom/render/raster_simd.h"
 
 namespace bodyloom::resolve_internal {
 

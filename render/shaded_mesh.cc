@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/shaded_mesh.h"
+#include "bodyloom/render/shaded_mesh.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -8,12 +8,12 @@
 #include <limits>
 #include <optional>
 
-#include "geometry/check.h"
-#include "geometry/parallel.h"
-#include "render/covered_span.h"
-#include "render/shade_simd.h"
-#include "render/view_camera.h"
-#include "render/visibility_buffer.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/render/covered_span.h"
+#include "bodyloom/render/shade_simd.h"
+#include "bodyloom/render/view_camera.h"
+#include "bodyloom/render/visibility_buffer.h"
 
 namespace bodyloom {
 namespace {

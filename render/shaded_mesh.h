@@ -4,12 +4,12 @@
 
 #include <vector>
 
-#include "geometry/arrays.h"
-#include "geometry/camera.h"
-#include "geometry/vertex_normals.h"
-#include "render/image.h"
-#include "render/palette.h"
-#include "render/visibility_buffer.h"
+#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/camera.h"
+#include "bodyloom/geometry/vertex_normals.h"
+#include "bodyloom/render/image.h"
+#include "bodyloom/render/palette.h"
+#include "bodyloom/render/visibility_buffer.h"
 
 namespace bodyloom {
 

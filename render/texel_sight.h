@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "geometry/camera.h"
-#include "geometry/uv_texels.h"
-#include "render/visibility_buffer.h"
+#include "bodyloom/geometry/camera.h"
+#include "bodyloom/geometry/uv_texels.h"
+#include "bodyloom/render/visibility_buffer.h"
 
 namespace bodyloom {
 

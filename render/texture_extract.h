@@ -12,10 +12,10 @@
 #include <string>
 #include <vector>
 
-#include "geometry/body_model.h"
-#include "geometry/uv_texels.h"
-#include "render/image.h"
-#include "render/texel_sight.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/uv_texels.h"
+#include "bodyloom/render/image.h"
+#include "bodyloom/render/texel_sight.h"
 
 namespace bodyloom {
 

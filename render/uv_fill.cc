@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/uv_fill.h"
+#include "bodyloom/render/uv_fill.h"
 
 #include <Eigen/SparseCholesky>
 #include <algorithm>
@@ -7,8 +7,8 @@
 #include <map>
 #include <utility>
 
-#include "geometry/check.h"
-#include "render/uv_sample.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/render/uv_sample.h"
 
 namespace bodyloom {
 namespace {

@@ -18,9 +18,9 @@
 #include <span>
 #include <vector>
 
-#include "geometry/body_model.h"
-#include "geometry/uv_texels.h"
-#include "render/uv_graph.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/uv_texels.h"
+#include "bodyloom/render/uv_graph.h"
 
 namespace bodyloom {
 

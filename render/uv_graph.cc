@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/uv_graph.h"
+#include "bodyloom/render/uv_graph.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "render/uv_sample.h"
+#include "bodyloom/render/uv_sample.h"
 
 namespace bodyloom {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "geometry/body_model.h"
-#include "geometry/uv_texels.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/uv_texels.h"
 
 namespace bodyloom {
 

@@ -11,10 +11,10 @@
 #include <span>
 #include <vector>
 
-#include "geometry/body_model.h"
-#include "geometry/uv_charts.h"
-#include "geometry/uv_texels.h"
-#include "render/visible_points.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/uv_charts.h"
+#include "bodyloom/geometry/uv_texels.h"
+#include "bodyloom/render/visible_points.h"
 
 namespace bodyloom {
 

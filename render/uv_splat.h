@@ -12,12 +12,12 @@
 #include <span>
 #include <vector>
 
-#include "geometry/body_model.h"
-#include "geometry/uv_texels.h"
-#include "render/chart_lookup.h"
-#include "render/image.h"
-#include "render/texture_extract.h"
-#include "render/uv_sample.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/uv_texels.h"
+#include "bodyloom/render/chart_lookup.h"
+#include "bodyloom/render/image.h"
+#include "bodyloom/render/texture_extract.h"
+#include "bodyloom/render/uv_sample.h"
 
 namespace bodyloom {
 

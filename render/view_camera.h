@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "geometry/arrays.h"
-#include "geometry/camera.h"
+#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/camera.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/visibility_buffer.h"
+#include "bodyloom/render/visibility_buffer.h"
 
 #include <algorithm>
 #include <array>
@@ -7,9 +7,9 @@
 #include <limits>
 #include <utility>
 
-#include "geometry/check.h"
-#include "render/near_clip.h"
-#include "render/parallel_phases.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/render/near_clip.h"
+#include "bodyloom/render/parallel_phases.h"
 
 namespace bodyloom {
 namespace {

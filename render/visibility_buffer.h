@@ -22,10 +22,10 @@
 #include <span>
 #include <vector>
 
-#include "geometry/arrays.h"
-#include "geometry/camera.h"
-#include "render/pixel_box.h"
-#include "render/raster_simd.h"
+#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/camera.h"
+#include "bodyloom/render/pixel_box.h"
+#include "bodyloom/render/raster_simd.h"
 
 namespace bodyloom {
 

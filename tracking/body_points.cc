@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/body_points.h"
+#include "bodyloom/tracking/body_points.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <map>
 #include <utility>
 
-#include "geometry/check.h"
-#include "geometry/rotation.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/rotation.h"
 
 namespace bodyloom {
 

@@ -13,8 +13,8 @@
 #include <span>
 #include <vector>
 
-#include "geometry/body_model.h"
-#include "tracking/kinematics.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/tracking/kinematics.h"
 
 namespace bodyloom {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/chain_solver.h"
+#include "bodyloom/tracking/chain_solver.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <utility>
 #include <vector>
 
-#include "geometry/check.h"
-#include "tracking/chain/resting_frames.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/stopwatch.h"
+#include "bodyloom/tracking/chain/resting_frames.h"
 
 namespace bodyloom {
 namespace {
@@ -57,29 +57,15 @@ size_t MostDense(const SequenceProblem& problem) {
   return most;
 }
 
-/// Adds the time since the last call to one of two sums.
-class Watch {
- public:
-  void To(double* seconds) {
-    const auto now = std::chrono::steady_clock::now();
-    *seconds += std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
-
 }  // namespace
 
 SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, ChainPoint* point,
                          const SolveOptions& options, bool thinned) {
-  const auto start = std::chrono::steady_clock::now();
+  Stopwatch watch;
   SolveReport report;
   ChainProblem& chain = *chain_problem;
   ChainPoint& x = *point;
   ChainPoint candidate;
-  Watch watch;
   double other_seconds = 0;
   if (thinned) chain.LimitDense(options.early_dense);
   bool skipping = options.skip_settled > 0;
@@ -90,7 +76,7 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
   };
   double cost = chain.Linearise(x);
   count();
-  watch.To(&report.seconds_evaluation);
+  report.seconds_evaluation += watch.Lap();
   report.initial_cost = report.final_cost = cost;
   RestingFrames rest(options.rest_share);
   double spent = 0;  // iterations, those of a part of the frames by its size
@@ -103,13 +89,13 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
     report.status = status;
     report.message = std::move(message);
     report.final_cost = cost;
-    report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    report.seconds = watch.seconds();
     return report;
   };
   const auto move_all = [&]() {
     if (!rest.any()) return false;
     cost = chain.Linearise(x);
-    watch.To(&report.seconds_evaluation);
+    report.seconds_evaluation += watch.Lap();
     let_rest({});
     rest.Clear();
     return true;
@@ -123,7 +109,7 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
     thinned = false;
     cost = chain.Linearise(x);
     count();
-    watch.To(&report.seconds_evaluation);
+    report.seconds_evaluation += watch.Lap();
     return true;
   };
   report.iterations = 1;
@@ -159,7 +145,7 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
     }
     fresh = false;
     ++report.iterations;
-    watch.To(&other_seconds);
+    other_seconds += watch.Lap();
     const VectorXd damping = Damping(chain.diagonal(), scale, radius.value());
     const VectorXd shared_damping = Damping(chain.shared().diagonal(), shared_scale, radius.value());
     Eigen::MatrixXd shared = chain.shared();
@@ -168,7 +154,7 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
     VectorXd step, shared_step;
     const bool solved =
         factor->Solve(chain, shared, -chain.shared_gradient(), options.num_threads, &step, &shared_step);
-    watch.To(&report.seconds_linear_solver);
+    report.seconds_linear_solver += watch.Lap();
     // −gᵀδ − ½ δᵀHδ with Hδ = −g − Λδ.
     const double promised = !solved ? 0.0
                                     : 0.5 * ((damping.array() * step.array().square()).sum() +
@@ -186,13 +172,13 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
     invalid_steps = 0;
     rest.Tried(chain.gradient(), damping, step, chain.frame_size());
     chain.Plus(x, step, shared_step, &candidate);
-    watch.To(&other_seconds);
+    other_seconds += watch.Lap();
     // Most steps are accepted, and the derivatives at the new point cost little once its cost is known: both at once,
     // unless the last step was rejected or this one promises to be the last.
     const bool both = !rejected && promised > options.function_tolerance * cost;
     const double candidate_cost = both ? chain.Linearise(candidate) : chain.Cost(candidate);
     count();
-    watch.To(&report.seconds_evaluation);
+    report.seconds_evaluation += watch.Lap();
     const double change = cost - candidate_cost;
     const bool too_short = moved && std::sqrt(step.squaredNorm() + shared_step.squaredNorm()) <=
                                         options.parameter_tolerance * (x_norm + options.parameter_tolerance);
@@ -223,7 +209,7 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
       if (both) {
         chain.Linearise(x);
         count();
-        watch.To(&report.seconds_evaluation);
+        report.seconds_evaluation += watch.Lap();
       }
       radius.Rejected();
       rejected = true;
@@ -231,10 +217,10 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
     }
     std::swap(x, candidate);
     if (!both) {
-      watch.To(&other_seconds);
+      other_seconds += watch.Lap();
       chain.Linearise(x);
       count();
-      watch.To(&report.seconds_evaluation);
+      report.seconds_evaluation += watch.Lap();
     }
     cost = candidate_cost;
     rejected = false;
@@ -247,7 +233,7 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
 }
 
 SolveReport SolveChain(SequenceProblem* problem, const SolveOptions& options) {
-  const auto start = std::chrono::steady_clock::now();
+  Stopwatch watch;
   ChainProblem chain(*problem, options.shape_constant, options.focal_constant, options.num_threads);
   ChainFactor factor(chain.frame_size(), chain.shared_size(), chain.cut_before());
   ChainPoint x{problem->states, problem->betas, problem->log_focal};
@@ -258,7 +244,7 @@ SolveReport SolveChain(SequenceProblem* problem, const SolveOptions& options) {
     problem->betas = x.betas;
     problem->log_focal = x.log_focal;
   }
-  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  report.seconds = watch.seconds();
   return report;
 }
 

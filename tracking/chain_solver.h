@@ -12,9 +12,9 @@
 /// Tingleff, "Methods for non-linear least squares problems", 2004.
 #pragma once
 
-#include "tracking/chain/chain_factor.h"
-#include "tracking/chain/chain_problem.h"
-#include "tracking/sequence_problem.h"
+#include "bodyloom/tracking/chain/chain_factor.h"
+#include "bodyloom/tracking/chain/chain_problem.h"
+#include "bodyloom/tracking/sequence_problem.h"
 
 namespace bodyloom {
 

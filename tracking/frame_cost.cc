@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/frame_cost.h"
+#include "bodyloom/tracking/frame_cost.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "geometry/check.h"
-#include "geometry/rotation.h"
-#include "tracking/chain/panel_simd.h"
-#include "tracking/residuals/lifted_pose.h"
-#include "tracking/residuals/part_label_term.h"
-#include "tracking/robust.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/tracking/chain/panel_simd.h"
+#include "bodyloom/tracking/residuals/lifted_pose.h"
+#include "bodyloom/tracking/residuals/part_label_term.h"
+#include "bodyloom/tracking/robust.h"
 
 namespace bodyloom {
 

@@ -23,17 +23,17 @@
 #include <array>
 #include <vector>
 
-#include "geometry/body_model.h"
-#include "geometry/camera.h"
-#include "geometry/observations.h"
-#include "geometry/track.h"
-#include "tracking/body_points.h"
-#include "tracking/joint_limits.h"
-#include "tracking/mixture_prior.h"
-#include "tracking/residuals/dense_points.h"
-#include "tracking/residuals/ground_contact.h"
-#include "tracking/residuals/visible_surface.h"
-#include "tracking/track_sequence.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/camera.h"
+#include "bodyloom/geometry/observations.h"
+#include "bodyloom/geometry/track.h"
+#include "bodyloom/tracking/body_points.h"
+#include "bodyloom/tracking/joint_limits.h"
+#include "bodyloom/tracking/mixture_prior.h"
+#include "bodyloom/tracking/residuals/dense_points.h"
+#include "bodyloom/tracking/residuals/ground_contact.h"
+#include "bodyloom/tracking/residuals/visible_surface.h"
+#include "bodyloom/tracking/track_sequence.h"
 
 namespace bodyloom {
 

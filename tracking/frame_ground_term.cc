@@ -2,8 +2,8 @@
 // Standing feet in FrameEvaluator (residuals/ground_contact.h).
 #include <cmath>
 
-#include "tracking/frame_cost.h"
-#include "tracking/robust.h"
+#include "bodyloom/tracking/frame_cost.h"
+#include "bodyloom/tracking/robust.h"
 
 namespace bodyloom {
 

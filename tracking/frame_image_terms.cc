@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tracking/frame_cost.h"
-#include "tracking/residuals/dense_whitening.h"
-#include "tracking/residuals/part_label_term.h"
-#include "tracking/residuals/rendered_uv_term.h"
-#include "tracking/robust.h"
+#include "bodyloom/tracking/frame_cost.h"
+#include "bodyloom/tracking/residuals/dense_whitening.h"
+#include "bodyloom/tracking/residuals/part_label_term.h"
+#include "bodyloom/tracking/residuals/rendered_uv_term.h"
+#include "bodyloom/tracking/robust.h"
 
 namespace bodyloom {
 

@@ -2,10 +2,10 @@
 // The lifter's term of FrameEvaluator (residuals/lifted_pose.h).
 #include <cmath>
 
-#include "tracking/frame_cost.h"
-#include "tracking/initialise/lifter_input.h"
-#include "tracking/residuals/lifted_pose.h"
-#include "tracking/robust.h"
+#include "bodyloom/tracking/frame_cost.h"
+#include "bodyloom/tracking/initialise/lifter_input.h"
+#include "bodyloom/tracking/residuals/lifted_pose.h"
+#include "bodyloom/tracking/robust.h"
 
 namespace bodyloom {
 

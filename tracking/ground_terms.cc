@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/ground_terms.h"
+#include "bodyloom/tracking/ground_terms.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "tracking/initialise/initial_states.h"
-#include "tracking/initialise/lifter_input.h"
-#include "tracking/kinematics.h"
+#include "bodyloom/tracking/initialise/initial_states.h"
+#include "bodyloom/tracking/initialise/lifter_input.h"
+#include "bodyloom/tracking/kinematics.h"
 
 namespace bodyloom {
 namespace {

@@ -5,10 +5,10 @@
 
 #include <vector>
 
-#include "tracking/initialise/ground_plane.h"
-#include "tracking/residuals/lifted_pose.h"
-#include "tracking/sequence_problem.h"
-#include "tracking/track_sequence.h"
+#include "bodyloom/tracking/initialise/ground_plane.h"
+#include "bodyloom/tracking/residuals/lifted_pose.h"
+#include "bodyloom/tracking/sequence_problem.h"
+#include "bodyloom/tracking/track_sequence.h"
 
 namespace bodyloom {
 

@@ -1,23 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/image_terms.h"
+#include "bodyloom/tracking/image_terms.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/parallel.h"
-#include "tracking/residuals/dense_whitening.h"
+#include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/tracking/residuals/dense_whitening.h"
+#include "bodyloom/tracking/track_result.h"
 
 namespace bodyloom {
-namespace {
-
-double Quantile(std::vector<double> values, double q) {
-  if (values.empty()) return 0;
-  const auto k = static_cast<std::ptrdiff_t>(std::lround(q * static_cast<double>(values.size() - 1)));
-  std::nth_element(values.begin(), values.begin() + k, values.end());
-  return values[k];
-}
-
-}  // namespace
 
 std::string WhyNoRenderedUv(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
   if (input.dense == nullptr) return "no dense keypoints in the input";
@@ -111,7 +102,7 @@ void ImageTerms::Summarise(const SequenceProblem& problem, TrackSequenceSummary*
       summary->num_observations += problem.frames[t].part_labels->num_rows();
   }
   const auto add = [&](const char* term, const std::vector<double>& px, int unmatched) {
-    summary->terms.push_back({term, static_cast<int>(px.size()), unmatched, Quantile(px, 0.5), Quantile(px, 0.95)});
+    summary->terms.push_back(SummarizeTerm(term, px, unmatched));
   };
   if (!rendered_uv_.empty()) add("rendered UV", residuals.rendered_uv_px, residuals.rendered_uv_unmatched);
   if (has_part_labels()) {

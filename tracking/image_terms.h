@@ -7,10 +7,10 @@
 #include <memory>
 #include <vector>
 
-#include "tracking/residuals/part_label_term.h"
-#include "tracking/residuals/rendered_uv_term.h"
-#include "tracking/sequence_problem.h"
-#include "tracking/track_sequence.h"
+#include "bodyloom/tracking/residuals/part_label_term.h"
+#include "bodyloom/tracking/residuals/rendered_uv_term.h"
+#include "bodyloom/tracking/sequence_problem.h"
+#include "bodyloom/tracking/track_sequence.h"
 
 namespace bodyloom {
 

@@ -2,8 +2,8 @@
 /// What TrackSequence refuses before it begins, and which observations it leaves out because they cannot be meant.
 #pragma once
 
-#include "geometry/observations.h"
-#include "tracking/track_sequence.h"
+#include "bodyloom/geometry/observations.h"
+#include "bodyloom/tracking/track_sequence.h"
 
 namespace bodyloom {
 

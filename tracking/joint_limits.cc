@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/joint_limits.h"
+#include "bodyloom/tracking/joint_limits.h"
 
 #include <utility>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/kinematics.h"
+#include "bodyloom/tracking/kinematics.h"
 
-#include "geometry/check.h"
-#include "geometry/rotation.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/rotation.h"
 
 namespace bodyloom {
 

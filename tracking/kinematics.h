@@ -8,7 +8,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "geometry/body_model.h"
+#include "bodyloom/geometry/body_model.h"
 
 namespace bodyloom {
 

@@ -9,8 +9,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "geometry/body_model.h"
-#include "geometry/pose_prior.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/pose_prior.h"
 
 namespace bodyloom {
 

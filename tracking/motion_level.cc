@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/motion_level.h"
+#include "bodyloom/tracking/motion_level.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/rotation.h"
-#include "tracking/residuals/acceleration_cost.h"
+#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/tracking/residuals/acceleration_cost.h"
 
 namespace bodyloom {
 

@@ -8,7 +8,7 @@
 
 #include <vector>
 
-#include "tracking/sequence_problem.h"
+#include "bodyloom/tracking/sequence_problem.h"
 
 namespace bodyloom {
 

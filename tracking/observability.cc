@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/observability.h"
+#include "bodyloom/tracking/observability.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "geometry/check.h"
-#include "tracking/kinematics.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/tracking/kinematics.h"
 
 namespace bodyloom {
 namespace {

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "geometry/body_model.h"
-#include "geometry/observations.h"
-#include "tracking/body_points.h"
-#include "tracking/frame_cost.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/observations.h"
+#include "bodyloom/tracking/body_points.h"
+#include "bodyloom/tracking/frame_cost.h"
 
 namespace bodyloom {
 

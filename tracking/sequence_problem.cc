@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/sequence_problem.h"
+#include "bodyloom/tracking/sequence_problem.h"
 
 #include <ceres/ceres.h>
 
@@ -7,14 +7,14 @@
 #include <cmath>
 #include <memory>
 
-#include "geometry/check.h"
-#include "geometry/rotation.h"
-#include "tracking/chain_solver.h"
-#include "tracking/residuals/acceleration_cost.h"
-#include "tracking/residuals/compressed_frame_cost.h"
-#include "tracking/residuals/linear_cost.h"
-#include "tracking/residuals/rotation_manifold.h"
-#include "tracking/serial_openmp.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/tracking/chain_solver.h"
+#include "bodyloom/tracking/residuals/acceleration_cost.h"
+#include "bodyloom/tracking/residuals/compressed_frame_cost.h"
+#include "bodyloom/tracking/residuals/linear_cost.h"
+#include "bodyloom/tracking/residuals/rotation_manifold.h"
+#include "bodyloom/tracking/serial_openmp.h"
 
 namespace bodyloom {
 

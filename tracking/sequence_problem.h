@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "tracking/frame_cost.h"
+#include "bodyloom/tracking/frame_cost.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/serial_openmp.h"
+#include "bodyloom/tracking/serial_openmp.h"
 
 #include <omp.h>
 

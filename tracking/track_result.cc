@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/track_result.h"
+#include "bodyloom/tracking/track_result.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
 
-#include "geometry/check.h"
-#include "geometry/posed_body.h"
-#include "tracking/ground_terms.h"
-#include "tracking/image_terms.h"
-#include "tracking/initialise/initial_states.h"
-#include "tracking/kinematics.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/percentile.h"
+#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/tracking/ground_terms.h"
+#include "bodyloom/tracking/image_terms.h"
+#include "bodyloom/tracking/initialise/initial_states.h"
+#include "bodyloom/tracking/kinematics.h"
 
 namespace bodyloom {
 
@@ -25,19 +26,20 @@ namespace {
 constexpr int kFewLandmarks = 6;
 constexpr int kFewDense = 20;
 
-double Percentile(std::vector<double> values, double q) {
-  if (values.empty()) return 0;
-  const size_t k = static_cast<size_t>(std::lround(q * static_cast<double>(values.size() - 1)));
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(k), values.end());
-  return values[k];
-}
-
 bool IsFinite(const FrameState& state) {
   return state.translation.allFinite() && std::all_of(state.rotations.begin(), state.rotations.end(),
                                                       [](const Eigen::Matrix3d& R) { return R.allFinite(); });
 }
 
 }  // namespace
+
+TermSummary SummarizeTerm(const std::string& term, const std::vector<double>& px, int unmatched) {
+  TermSummary summary{term, static_cast<int>(px.size()), unmatched, 0, 0};
+  if (px.empty()) return summary;
+  const std::vector<double> sorted = SortedFinite(px);
+  summary.median_px = SortedPercentile(sorted, 50), summary.p95_px = SortedPercentile(sorted, 95);
+  return summary;
+}
 
 FrameStatus StatusOf(const FrameData& frame) {
   const size_t dense = frame.dense != nullptr ? frame.dense->size() : 0;
@@ -121,14 +123,12 @@ void FillTrack(const TrackSequenceInput& input, const SequenceProblem& problem, 
       }
     }
   }
-  summary.reprojection_median_px = Percentile(landmark_errors, 0.5);
-  summary.reprojection_p95_px = Percentile(landmark_errors, 0.95);
-  summary.dense_median_px = Percentile(dense_errors, 0.5);
-  const auto add_term = [&](const char* term, const std::vector<double>& px) {
-    summary.terms.push_back({term, static_cast<int>(px.size()), 0, Percentile(px, 0.5), Percentile(px, 0.95)});
-  };
-  if (input.keypoints != nullptr) add_term("2D joints", landmark_errors);
-  if (input.dense != nullptr) add_term("dense keypoints", dense_errors);
+  const TermSummary joints = SummarizeTerm("2D joints", landmark_errors);
+  const TermSummary dense = SummarizeTerm("dense keypoints", dense_errors);
+  summary.reprojection_median_px = joints.median_px, summary.reprojection_p95_px = joints.p95_px;
+  summary.dense_median_px = dense.median_px;
+  if (input.keypoints != nullptr) summary.terms.push_back(joints);
+  if (input.dense != nullptr) summary.terms.push_back(dense);
 }
 
 std::vector<PlanEntry> PlanTrackSequence(const TrackSequenceInput& input, const TrackSequenceOptions& options) {

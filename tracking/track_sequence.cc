@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/track_sequence.h"
+#include "bodyloom/tracking/track_sequence.h"
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -12,44 +11,30 @@
 #include <sstream>
 #include <thread>
 
-#include "geometry/check.h"
-#include "geometry/in_range.h"
-#include "geometry/posed_body.h"
-#include "geometry/rotation.h"
-#include "tracking/ground_terms.h"
-#include "tracking/image_terms.h"
-#include "tracking/initialise/impossible_frames.h"
-#include "tracking/initialise/initial_states.h"
-#include "tracking/initialise/lifted_start.h"
-#include "tracking/initialise/swap_repair.h"
-#include "tracking/input_checks.h"
-#include "tracking/motion_level.h"
-#include "tracking/observability.h"
-#include "tracking/residuals/lifted_pose.h"
-#include "tracking/sequence_problem.h"
-#include "tracking/track_result.h"
-#include "tracking/uncertainty.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/in_range.h"
+#include "bodyloom/geometry/base/stopwatch.h"
+#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/tracking/ground_terms.h"
+#include "bodyloom/tracking/image_terms.h"
+#include "bodyloom/tracking/initialise/impossible_frames.h"
+#include "bodyloom/tracking/initialise/initial_states.h"
+#include "bodyloom/tracking/initialise/lifted_start.h"
+#include "bodyloom/tracking/initialise/swap_repair.h"
+#include "bodyloom/tracking/input_checks.h"
+#include "bodyloom/tracking/motion_level.h"
+#include "bodyloom/tracking/observability.h"
+#include "bodyloom/tracking/residuals/lifted_pose.h"
+#include "bodyloom/tracking/sequence_problem.h"
+#include "bodyloom/tracking/track_result.h"
+#include "bodyloom/tracking/uncertainty.h"
 
 namespace bodyloom {
 namespace {
 
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-
-class StageClock {
- public:
-  explicit StageClock(TrackSequenceSummary* summary) : summary_(summary) {}
-  /// Books the time since the last call under `stage`.
-  void Book(const std::string& stage) {
-    const auto now = std::chrono::steady_clock::now();
-    summary_->seconds.emplace_back(stage, std::chrono::duration<double>(now - last_).count());
-    last_ = now;
-  }
-
- private:
-  TrackSequenceSummary* summary_;
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 /// Length and image size of the clip, from whichever observations there are.
 struct ClipExtent {
@@ -265,7 +250,7 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSe
     summary.plan.push_back({"2D joints of impossible frames", false,
                             std::to_string(impossible) + " frames jump away from the person and back, or are flat"});
   }
-  StageClock clock(&summary);
+  StageClock clock;
   const int threads = options.num_threads > 0 ? options.num_threads : std::max(1u, std::thread::hardware_concurrency());
 
   // Which landmarks and joints take part.
@@ -444,6 +429,7 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& given, const TrackSe
     }
     clock.Book("uncertainty");
   }
+  summary.seconds = clock.seconds();
   return result;
 }
 

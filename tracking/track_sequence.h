@@ -9,13 +9,13 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/body_model.h"
-#include "geometry/camera.h"
-#include "geometry/lifter_weights.h"
-#include "geometry/observations.h"
-#include "geometry/pose_prior.h"
-#include "geometry/track.h"
-#include "tracking/initialise/joint_hypotheses.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/camera.h"
+#include "bodyloom/geometry/lifter_weights.h"
+#include "bodyloom/geometry/observations.h"
+#include "bodyloom/geometry/pose_prior.h"
+#include "bodyloom/geometry/track.h"
+#include "bodyloom/tracking/initialise/joint_hypotheses.h"
 
 namespace bodyloom {
 

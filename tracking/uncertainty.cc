@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/uncertainty.h"
+#include "bodyloom/tracking/uncertainty.h"
 
 #include <cmath>
 #include <limits>
 
-#include "geometry/rotation.h"
-#include "tracking/chain/chain_covariance.h"
-#include "tracking/kinematics.h"
+#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/tracking/chain/chain_covariance.h"
+#include "bodyloom/tracking/kinematics.h"
 
 namespace bodyloom {
 

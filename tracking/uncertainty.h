@@ -5,8 +5,8 @@
 
 #include <Eigen/Core>
 
-#include "geometry/arrays.h"
-#include "tracking/sequence_problem.h"
+#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/tracking/sequence_problem.h"
 
 namespace bodyloom {
 

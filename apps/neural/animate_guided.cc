@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "apps/exit_code.h"
-#include "apps/files.h"
 #include "apps/interrupt.h"
 #include "apps/neural/background.h"
 #include "apps/neural/composite.h"
@@ -25,17 +24,18 @@
 #include "apps/neural/score_guided.h"
 #include "apps/neural/virtual_views.h"
 #include "apps/progress.h"
-#include "apps/stage_clock.h"
-#include "data_tools/formats/atomic_file.h"
-#include "data_tools/people/person_set.h"
-#include "data_tools/people/photo_segmentation.h"
-#include "data_tools/track_io.h"
-#include "data_tools/video/image_file.h"
-#include "data_tools/video/video_writer.h"
-#include "geometry/check.h"
-#include "neural/guided/guided_renderer.h"
-#include "neural/guided/train_guided.h"
-#include "render/contact_sheet.h"
+#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/data_tools/datasets/photo_segmentation.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/data_tools/video/video_writer.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/stopwatch.h"
+#include "bodyloom/neural/guided/guided_renderer.h"
+#include "bodyloom/neural/guided/train_guided.h"
+#include "bodyloom/pipelines/files.h"
+#include "bodyloom/render/contact_sheet.h"
 
 namespace bodyloom {
 namespace {
@@ -113,10 +113,10 @@ std::optional<MapCompletion> CompletionOf(const Request& request) {
 void Run(const Request& request) {
   const StageClock clock;
   if (request.score.empty() && (request.image.empty() || request.out.empty())) {
-    throw UsageError("--image and --out are needed (or --score, to measure on a people set)");
+    throw RequestError("--image and --out are needed (or --score, to measure on a people set)");
   }
   if (request.score.empty() && request.track.empty() == request.data.empty()) {
-    throw UsageError("one of --track and --data is needed");
+    throw RequestError("one of --track and --data is needed");
   }
   RequireReadable(request.image, "image");
   RequireReadable(request.track, "track");

@@ -16,7 +16,6 @@
 #include <vector>
 
 #include "apps/exit_code.h"
-#include "apps/files.h"
 #include "apps/interrupt.h"
 #include "apps/neural/background.h"
 #include "apps/neural/composite.h"
@@ -31,24 +30,25 @@
 #include "apps/neural/result_set.h"
 #include "apps/neural/view_angles.h"
 #include "apps/progress.h"
-#include "apps/stage_clock.h"
 #include "apps/track_inputs.h"
-#include "data_tools/formats/atomic_file.h"
-#include "data_tools/motion/freeze_track.h"
-#include "data_tools/motion/play_track.h"
-#include "data_tools/people/motion_similarity.h"
-#include "data_tools/people/person_frames.h"
-#include "data_tools/people/person_set.h"
-#include "data_tools/people/posed_track.h"
-#include "data_tools/track_io.h"
-#include "data_tools/video/image_file.h"
-#include "data_tools/video/video_writer.h"
-#include "geometry/check.h"
-#include "neural/metrics/temporal_lpips.h"
-#include "neural/motion/motion_renderer.h"
-#include "neural/motion/motion_scores.h"
-#include "neural/motion/train_motion.h"
-#include "render/contact_sheet.h"
+#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/data_tools/descriptors/person_frames.h"
+#include "bodyloom/data_tools/descriptors/posed_track.h"
+#include "bodyloom/data_tools/evaluation/motion_similarity.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/motion/freeze_track.h"
+#include "bodyloom/data_tools/motion/play_track.h"
+#include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/data_tools/video/video_writer.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/stopwatch.h"
+#include "bodyloom/neural/metrics/temporal_lpips.h"
+#include "bodyloom/neural/motion/motion_renderer.h"
+#include "bodyloom/neural/motion/motion_scores.h"
+#include "bodyloom/neural/motion/train_motion.h"
+#include "bodyloom/pipelines/files.h"
+#include "bodyloom/render/contact_sheet.h"
 
 namespace bodyloom {
 namespace {
@@ -209,7 +209,7 @@ void Run(const Request& request) {
     counted_s = now_s;
     return took_s;
   };
-  if (request.track.empty() == request.data.empty()) throw UsageError("expected one of --track and --data");
+  if (request.track.empty() == request.data.empty()) throw RequestError("expected one of --track and --data");
   RequireReadable(request.track, "track");
   RequireReadable(request.background, "background");
   RequireReadable(request.data, "person set");
@@ -220,7 +220,8 @@ void Run(const Request& request) {
   RequireReadable(request.like, "person set or track");
   if (!request.set.empty()) {
     RequireWritableFolder(request.set);
-    if (!request.view_yaw.empty()) throw UsageError("--set writes the track beside the pictures: not with --view-yaw");
+    if (!request.view_yaw.empty())
+      throw RequestError("--set writes the track beside the pictures: not with --view-yaw");
     RequireDistinct({request.data, request.like}, {request.set});
   }
   std::unique_ptr<FrameRelighter> relighter;
@@ -244,7 +245,7 @@ void Run(const Request& request) {
   }
   const bool scored = IsScored(request);
   if (!scored && !(request.like.empty() && request.frames.empty())) {
-    throw UsageError(
+    throw RequestError(
         "--like and --frames compare with the pictures of --data: not without it, --view-yaw, --freeze or --speed");
   }
   MotionRenderer renderer(CheckpointPath(request.run), run.config,

@@ -16,7 +16,6 @@
 #include <vector>
 
 #include "apps/exit_code.h"
-#include "apps/files.h"
 #include "apps/interrupt.h"
 #include "apps/neural/background.h"
 #include "apps/neural/composite.h"
@@ -25,19 +24,20 @@
 #include "apps/neural/photo_run.h"
 #include "apps/neural/view_angles.h"
 #include "apps/progress.h"
-#include "apps/stage_clock.h"
-#include "data_tools/formats/atomic_file.h"
-#include "data_tools/people/label_of_part.h"
-#include "data_tools/people/photo_segmentation.h"
-#include "data_tools/track_io.h"
-#include "data_tools/video/image_file.h"
-#include "data_tools/video/video_writer.h"
-#include "geometry/check.h"
-#include "neural/photo/guess_texture.h"
-#include "neural/photo/photo_renderer.h"
-#include "neural/photo/train_photo.h"
-#include "neural/training/made_ahead.h"
-#include "render/contact_sheet.h"
+#include "bodyloom/data_tools/datasets/label_of_part.h"
+#include "bodyloom/data_tools/datasets/photo_segmentation.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/data_tools/video/video_writer.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/stopwatch.h"
+#include "bodyloom/neural/photo/guess_texture.h"
+#include "bodyloom/neural/photo/photo_renderer.h"
+#include "bodyloom/neural/photo/train_photo.h"
+#include "bodyloom/neural/training/made_ahead.h"
+#include "bodyloom/pipelines/files.h"
+#include "bodyloom/render/contact_sheet.h"
 
 namespace bodyloom {
 namespace {
@@ -72,7 +72,7 @@ std::vector<int> PartsNamed(const std::vector<std::string>& names) {
       parts.push_back(number);
     }
     if (parts.size() == before) {
-      throw UsageError("--parts " + name + ": expected top, bottom, shoes, head, arms or a DensePose part, 1 to 24");
+      throw RequestError("--parts " + name + ": expected top, bottom, shoes, head, arms or a DensePose part, 1 to 24");
     }
   }
   return parts;
@@ -118,7 +118,7 @@ void Run(const Request& request) {
   StageClock clock;
   clock.Begin("prepare");
   if (request.parts.empty() != request.garment_from.empty()) {
-    throw UsageError("--garment-from and --parts belong together");
+    throw RequestError("--garment-from and --parts belong together");
   }
   const PhotoBackground choice = ParsePhotoBackground(request.background);
   RequireReadable(request.photo.image, "image");

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "data_tools/video/image_file.h"
+#include "bodyloom/data_tools/video/image_file.h"
 
 namespace bodyloom {
 

@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
-#include "data_tools/video/video_reader.h"
-#include "render/image.h"
+#include "bodyloom/data_tools/video/video_reader.h"
+#include "bodyloom/render/image.h"
 
 namespace bodyloom {
 

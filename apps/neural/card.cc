@@ -7,9 +7,9 @@
 #include <string>
 
 #include "apps/neural/training_options.h"
-#include "neural/guided/guided_card.h"
-#include "neural/motion/motion_card.h"
-#include "neural/photo/photo_card.h"
+#include "bodyloom/neural/guided/guided_card.h"
+#include "bodyloom/neural/motion/motion_card.h"
+#include "bodyloom/neural/photo/photo_card.h"
 
 namespace bodyloom {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <span>
 
-#include "geometry/camera.h"
-#include "render/image.h"
-#include "render/person_window.h"
+#include "bodyloom/geometry/camera.h"
+#include "bodyloom/render/image.h"
+#include "bodyloom/render/person_window.h"
 
 namespace bodyloom {
 

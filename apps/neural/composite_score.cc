@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "data_tools/evaluation/image_metrics.h"
+#include "bodyloom/data_tools/evaluation/image_metrics.h"
 
 namespace bodyloom {
 

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "data_tools/people/person_set.h"
-#include "render/image.h"
+#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/render/image.h"
 
 namespace bodyloom {
 

@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "apps/exit_code.h"
-#include "geometry/check.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 
@@ -14,8 +14,9 @@ Freeze ReadFreeze(const std::string& text, int num_frames) {
   char rest = 0;
   if (std::sscanf(text.c_str(), "%d:%d%c", &freeze.frame, &freeze.count, &rest) != 2 || freeze.frame < 0 ||
       freeze.frame >= num_frames || freeze.count < 1 || freeze.count > kMost) {
-    throw UsageError(Concatenate("--freeze ", text, ": expected FRAME:COUNT, such as 40:60; the clip has frames 0 to ",
-                                 num_frames - 1, ", and COUNT is 1 to ", kMost));
+    throw RequestError(Concatenate("--freeze ", text,
+                                   ": expected FRAME:COUNT, such as 40:60; the clip has frames 0 to ", num_frames - 1,
+                                   ", and COUNT is 1 to ", kMost));
   }
   return freeze;
 }

@@ -11,7 +11,7 @@ struct Freeze {
   int count = 0;  ///< times that the frame is shown again
 };
 
-/// Of a clip of `num_frames`. Throws UsageError.
+/// Of a clip of `num_frames`. Throws RequestError.
 Freeze ReadFreeze(const std::string& text, int num_frames);
 
 }  // namespace bodyloom

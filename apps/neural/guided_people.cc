@@ -6,8 +6,8 @@
 
 #include "apps/neural/virtual_views.h"
 #include "apps/track_inputs.h"
-#include "data_tools/people/people_set.h"
-#include "data_tools/people/person_set.h"
+#include "bodyloom/data_tools/datasets/people_set.h"
+#include "bodyloom/data_tools/datasets/person_set.h"
 
 namespace bodyloom {
 

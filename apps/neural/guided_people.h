@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "apps/neural/people_data.h"
-#include "geometry/body_model.h"
-#include "neural/people/photo_frame.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/neural/people/photo_frame.h"
 
 namespace bodyloom {
 

@@ -5,7 +5,7 @@
 #include <array>
 
 #include "apps/neural/motion_preview.h"
-#include "render/contact_sheet.h"
+#include "bodyloom/render/contact_sheet.h"
 
 namespace bodyloom {
 namespace {

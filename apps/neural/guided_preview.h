@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "neural/guided/coherent_maps.h"
-#include "neural/guided/guided_picture.h"
-#include "neural/guided/train_guided.h"
-#include "render/image.h"
+#include "bodyloom/neural/guided/coherent_maps.h"
+#include "bodyloom/neural/guided/guided_picture.h"
+#include "bodyloom/neural/guided/train_guided.h"
+#include "bodyloom/render/image.h"
 
 namespace bodyloom {
 

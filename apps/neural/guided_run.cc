@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "apps/neural/run_config.h"
-#include "data_tools/observations/json_reader.h"
+#include "bodyloom/data_tools/formats/json_reader.h"
 
 namespace bodyloom {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "neural/guided/guided_config.h"
+#include "bodyloom/neural/guided/guided_config.h"
 
 namespace bodyloom {
 

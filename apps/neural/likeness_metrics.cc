@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "apps/neural/weights_folder.h"
-#include "neural/metrics/lpips.h"
-#include "neural/runtime.h"
+#include "bodyloom/neural/metrics/lpips.h"
+#include "bodyloom/neural/runtime.h"
 
 namespace bodyloom {
 

@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "apps/track_inputs.h"
-#include "data_tools/observations/part_labels.h"
-#include "data_tools/people/label_of_part.h"
-#include "data_tools/people/person_set.h"
-#include "data_tools/people/posed_track.h"
-#include "data_tools/track_io.h"
-#include "data_tools/video/video_reader.h"
-#include "geometry/check.h"
+#include "bodyloom/data_tools/datasets/label_of_part.h"
+#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/data_tools/descriptors/posed_track.h"
+#include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/data_tools/observations/part_labels.h"
+#include "bodyloom/data_tools/video/video_reader.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

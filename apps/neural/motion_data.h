@@ -5,10 +5,10 @@
 #include <memory>
 #include <string>
 
-#include "data_tools/people/person_frames.h"
-#include "geometry/track.h"
-#include "neural/motion/motion_config.h"
-#include "neural/motion/motion_frame.h"
+#include "bodyloom/data_tools/descriptors/person_frames.h"
+#include "bodyloom/geometry/track.h"
+#include "bodyloom/neural/motion/motion_config.h"
+#include "bodyloom/neural/motion/motion_frame.h"
 
 namespace bodyloom {
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
 
 namespace bodyloom {
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "render/contact_sheet.h"
+#include "bodyloom/render/contact_sheet.h"
 
 namespace bodyloom {
 namespace {

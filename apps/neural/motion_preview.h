@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "neural/motion/train_motion.h"
-#include "render/image.h"
+#include "bodyloom/neural/motion/train_motion.h"
+#include "bodyloom/render/image.h"
 
 namespace bodyloom {
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "neural/motion/motion_config.h"
+#include "bodyloom/neural/motion/motion_config.h"
 
 namespace bodyloom {
 

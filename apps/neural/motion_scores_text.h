@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "neural/motion/motion_scores.h"
+#include "bodyloom/neural/motion/motion_scores.h"
 
 namespace bodyloom {
 

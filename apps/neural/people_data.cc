@@ -9,9 +9,9 @@
 
 #include "apps/neural/photo_input.h"
 #include "apps/track_inputs.h"
-#include "data_tools/people/people_set.h"
-#include "data_tools/people/person_set.h"
-#include "geometry/check.h"
+#include "bodyloom/data_tools/datasets/people_set.h"
+#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "neural/people/photo_frame.h"
+#include "bodyloom/neural/people/photo_frame.h"
 
 namespace bodyloom {
 

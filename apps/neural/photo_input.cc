@@ -13,14 +13,14 @@
 #include "apps/neural/photo_outline.h"
 #include "apps/neural/photo_pictures.h"
 #include "apps/track_inputs.h"
-#include "data_tools/motion/motion_tools.h"
-#include "data_tools/observations/part_labels.h"
-#include "data_tools/people/label_of_part.h"
-#include "data_tools/people/person_set.h"
-#include "data_tools/people/posed_track.h"
-#include "data_tools/track_io.h"
-#include "geometry/check.h"
-#include "neural/photo/partial_texture.h"
+#include "bodyloom/data_tools/datasets/label_of_part.h"
+#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/data_tools/descriptors/posed_track.h"
+#include "bodyloom/data_tools/motion/motion_tools.h"
+#include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/data_tools/observations/part_labels.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/neural/photo/partial_texture.h"
 
 namespace bodyloom {
 namespace {
@@ -298,10 +298,10 @@ PhotoRequest ParsePhotoRequest(const std::string& text, const std::string& optio
     const std::string number = text.substr(second + 1);
     const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), request.frame);
     if (error != std::errc() || end != number.data() + number.size() || request.frame < 0) {
-      throw UsageError(option + " " + text + ": expected IMAGE:TRACK or IMAGE:TRACK:FRAME");
+      throw RequestError(option + " " + text + ": expected IMAGE:TRACK or IMAGE:TRACK:FRAME");
     }
   }
-  if (request.image.empty()) throw UsageError(option + " " + text + ": expected IMAGE:TRACK or IMAGE:TRACK:FRAME");
+  if (request.image.empty()) throw RequestError(option + " " + text + ": expected IMAGE:TRACK or IMAGE:TRACK:FRAME");
   return request;
 }
 

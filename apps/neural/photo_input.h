@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "data_tools/people/photo_maps.h"
-#include "geometry/body_model.h"
-#include "geometry/track.h"
-#include "neural/people/photo_frame.h"
-#include "render/image.h"
+#include "bodyloom/data_tools/descriptors/photo_maps.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/track.h"
+#include "bodyloom/neural/people/photo_frame.h"
+#include "bodyloom/render/image.h"
 
 namespace bodyloom {
 
@@ -56,7 +56,7 @@ std::vector<Photo> LoadPhotos(std::span<const PhotoRequest> requests, int size, 
 void RequireBodyOf(const Photo& photo, const Track& track, const std::string& path);
 
 /// "IMAGE:TRACK" or "IMAGE:TRACK:FRAME", as --views and --garment-from take it; a person set needs no track ("DIR" or
-/// "DIR::FRAME"). Throws UsageError naming the option.
+/// "DIR::FRAME"). Throws RequestError naming the option.
 PhotoRequest ParsePhotoRequest(const std::string& text, const std::string& option, const PhotoRequest& like);
 
 }  // namespace bodyloom

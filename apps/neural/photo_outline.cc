@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "data_tools/people/photo_segmentation.h"
-#include "geometry/check.h"
+#include "bodyloom/data_tools/datasets/photo_segmentation.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

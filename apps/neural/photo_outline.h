@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "render/image.h"
+#include "bodyloom/render/image.h"
 
 namespace bodyloom {
 
@@ -21,7 +21,7 @@ struct PhotoOutline {
   std::string note;             ///< how it was found, half a sentence for the user
 };
 
-/// By GrabCut from the tracked body (data_tools/people/photo_segmentation.h), in the part of the window that lies
+/// By GrabCut from the tracked body (data_tools/datasets/photo_segmentation.h), in the part of the window that lies
 /// inside the picture; outside of it all is background. `alpha` (size × size or empty): the file's own transparency,
 /// which is then cut instead of the colours. Throws std::invalid_argument when the body is not in the picture.
 PhotoOutline OutlineOfPerson(const Image& window, std::span<const uint8_t> inside_picture,

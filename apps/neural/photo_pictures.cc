@@ -7,9 +7,9 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "data_tools/video/image_file.h"
-#include "data_tools/video/video_reader.h"
-#include "geometry/check.h"
+#include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/data_tools/video/video_reader.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

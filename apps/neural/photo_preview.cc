@@ -2,7 +2,7 @@
 #include "apps/neural/photo_preview.h"
 
 #include "apps/neural/motion_preview.h"
-#include "render/contact_sheet.h"
+#include "bodyloom/render/contact_sheet.h"
 
 namespace bodyloom {
 

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "neural/photo/train_photo.h"
-#include "render/image.h"
+#include "bodyloom/neural/photo/train_photo.h"
+#include "bodyloom/render/image.h"
 
 namespace bodyloom {
 

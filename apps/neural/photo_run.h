@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "neural/photo/photo_config.h"
+#include "bodyloom/neural/photo/photo_config.h"
 
 namespace bodyloom {
 

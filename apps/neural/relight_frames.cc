@@ -6,10 +6,10 @@
 #include <set>
 #include <stdexcept>
 
-#include "data_tools/formats/file_extension.h"
-#include "data_tools/observations/json_reader.h"
-#include "data_tools/video/image_file.h"
-#include "geometry/check.h"
+#include "bodyloom/data_tools/formats/file_extension.h"
+#include "bodyloom/data_tools/formats/json_reader.h"
+#include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "neural/motion/motion_renderer.h"
-#include "render/relight.h"
-#include "render/sh_lighting.h"
-#include "tracking/fit_lighting.h"
+#include "bodyloom/neural/motion/motion_renderer.h"
+#include "bodyloom/render/lighting/fit_lighting.h"
+#include "bodyloom/render/lighting/relight.h"
+#include "bodyloom/render/lighting/sh_lighting.h"
 
 namespace bodyloom {
 

@@ -4,10 +4,10 @@
 
 #include <string>
 
-#include "data_tools/people/person_set.h"
-#include "neural/motion/motion_renderer.h"
-#include "render/image.h"
-#include "render/person_window.h"
+#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/neural/motion/motion_renderer.h"
+#include "bodyloom/render/image.h"
+#include "bodyloom/render/person_window.h"
 
 namespace bodyloom {
 

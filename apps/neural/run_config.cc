@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "data_tools/observations/json_reader.h"
+#include "bodyloom/data_tools/formats/json_reader.h"
 
 namespace bodyloom {
 

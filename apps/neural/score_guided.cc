@@ -9,8 +9,8 @@
 #include "apps/neural/guided_people.h"
 #include "apps/neural/motion_preview.h"
 #include "apps/progress.h"
-#include "neural/guided/choose_photos.h"
-#include "render/contact_sheet.h"
+#include "bodyloom/neural/guided/choose_photos.h"
+#include "bodyloom/render/contact_sheet.h"
 
 namespace bodyloom {
 

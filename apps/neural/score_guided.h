@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "neural/guided/guided_renderer.h"
-#include "neural/guided/guided_scores.h"
-#include "render/image.h"
+#include "bodyloom/neural/guided/guided_renderer.h"
+#include "bodyloom/neural/guided/guided_scores.h"
+#include "bodyloom/render/image.h"
 
 namespace bodyloom {
 

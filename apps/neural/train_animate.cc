@@ -12,16 +12,16 @@
 #include <vector>
 
 #include "apps/exit_code.h"
-#include "apps/files.h"
 #include "apps/neural/guided_people.h"
 #include "apps/neural/guided_preview.h"
 #include "apps/neural/guided_run.h"
 #include "apps/neural/training_options.h"
 #include "apps/neural/training_session.h"
 #include "apps/neural/weights_folder.h"
-#include "data_tools/video/image_file.h"
-#include "neural/guided/train_guided.h"
-#include "neural/photo/photo_window.h"
+#include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/neural/guided/train_guided.h"
+#include "bodyloom/neural/photo/photo_window.h"
+#include "bodyloom/pipelines/files.h"
 
 namespace bodyloom {
 namespace {
@@ -66,7 +66,7 @@ void Run(Request request) {
   if (request.image_size > 0) {
     config.profile.image_size = config.profile.texture_size = request.image_size;
     std::string why;
-    if (!config.IsValid(&why)) throw UsageError("--image-size: " + why);
+    if (!config.IsValid(&why)) throw RequestError("--image-size: " + why);
   }
   for (const std::string& part : request.without) LeaveOut(part, &config);
   options.labels_by_cross_entropy = request.label_loss == "ce";

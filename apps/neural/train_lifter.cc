@@ -12,13 +12,13 @@
 
 #include "apps/exit_code.h"
 #include "apps/neural/training_session.h"
-#include "data_tools/builtin_body.h"
-#include "data_tools/formats/atomic_file.h"
-#include "data_tools/lifter/lifter_weights_io.h"
-#include "data_tools/lifter/lifter_windows.h"
-#include "data_tools/motion/motion_library.h"
-#include "geometry/check.h"
-#include "neural/lifter/train_lifter.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/learned/lifter_weights_io.h"
+#include "bodyloom/data_tools/motion/motion_library.h"
+#include "bodyloom/data_tools/synthesis/lifter/lifter_windows.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/neural/lifter/train_lifter.h"
 
 namespace bodyloom {
 namespace {
@@ -121,7 +121,7 @@ void Run(Request request) {
   fs::create_directories(request.out);
   const fs::path run = request.out;
   if (!options.resume && fs::exists(CheckpointPath(request.out))) {
-    throw UsageError(request.out + " holds a run already; go on with it by --resume, or choose another --out");
+    throw RequestError(request.out + " holds a run already; go on with it by --resume, or choose another --out");
   }
   const nlohmann::ordered_json config = Describe(request, train, test);
   WriteFileAtomically((run / "config.json").string(), config.dump(2) + "\n");
@@ -182,7 +182,7 @@ void AddTrainLifter(CLI::App& train, std::function<void()>* action) {
       std::string why;
       TrainLifterOptions checked = request->options;
       checked.num_inputs = kLifterInputs;
-      if (!checked.IsValid(&why)) throw UsageError(why);
+      if (!checked.IsValid(&why)) throw RequestError(why);
       Run(*request);
     };
   });

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "apps/exit_code.h"
-#include "apps/files.h"
 #include "apps/neural/motion_data.h"
 #include "apps/neural/motion_preview.h"
 #include "apps/neural/motion_run.h"
@@ -19,11 +18,12 @@
 #include "apps/neural/training_options.h"
 #include "apps/neural/training_session.h"
 #include "apps/neural/weights_folder.h"
-#include "data_tools/video/image_file.h"
-#include "geometry/check.h"
-#include "neural/motion/clothes_reach.h"
-#include "neural/motion/train_motion.h"
-#include "render/contact_sheet.h"
+#include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/neural/motion/clothes_reach.h"
+#include "bodyloom/neural/motion/train_motion.h"
+#include "bodyloom/pipelines/files.h"
+#include "bodyloom/render/contact_sheet.h"
 
 namespace bodyloom {
 namespace {
@@ -44,7 +44,7 @@ FrameRange ParseRange(const std::string& text, const char* option) {
   int first = 0, last = 0;
   char rest = 0;
   if (std::sscanf(text.c_str(), "%d-%d%c", &first, &last, &rest) != 2 || first < 0 || last < first) {
-    throw UsageError(Concatenate(option, " ", text, ": expected FIRST-LAST, such as 0-149"));
+    throw RequestError(Concatenate(option, " ", text, ": expected FIRST-LAST, such as 0-149"));
   }
   return {first, last + 1};
 }
@@ -54,7 +54,7 @@ std::vector<FrameRange> Ranges(const std::vector<std::string>& texts, const char
   for (const std::string& text : texts) {
     ranges.push_back(ParseRange(text, option));
     if (ranges.back().end > num_frames) {
-      throw UsageError(Concatenate(option, " ", text, ": the clip has frames 0 to ", num_frames - 1));
+      throw RequestError(Concatenate(option, " ", text, ": the clip has frames 0 to ", num_frames - 1));
     }
   }
   return ranges;

@@ -11,18 +11,18 @@
 #include <string>
 #include <vector>
 
-#include "apps/files.h"
 #include "apps/neural/people_data.h"
 #include "apps/neural/photo_preview.h"
 #include "apps/neural/photo_run.h"
 #include "apps/neural/training_options.h"
 #include "apps/neural/training_session.h"
 #include "apps/neural/weights_folder.h"
-#include "data_tools/evaluation/ssim.h"
-#include "data_tools/people/people_set.h"
-#include "data_tools/video/image_file.h"
-#include "neural/photo/photo_window.h"
-#include "neural/photo/train_photo.h"
+#include "bodyloom/data_tools/datasets/people_set.h"
+#include "bodyloom/data_tools/evaluation/ssim.h"
+#include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/neural/photo/photo_window.h"
+#include "bodyloom/neural/photo/train_photo.h"
+#include "bodyloom/pipelines/files.h"
 
 namespace bodyloom {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "neural/training/training_run.h"
+#include "bodyloom/neural/training/training_run.h"
 
 namespace CLI {
 class App;

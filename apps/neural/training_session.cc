@@ -9,9 +9,9 @@
 #include <thread>
 
 #include "apps/exit_code.h"
-#include "apps/files.h"
 #include "apps/interrupt.h"
-#include "data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/pipelines/files.h"
 
 namespace bodyloom {
 
@@ -23,9 +23,9 @@ void OpenTrainingRun(const std::string& out, TrainingRun* run) {
   run->run_dir = out;
   const bool exists = fs::exists(CheckpointPath(out));
   if (!run->resume && exists) {
-    throw UsageError(out + " holds a run already; go on with it by --resume, or choose another --out");
+    throw RequestError(out + " holds a run already; go on with it by --resume, or choose another --out");
   }
-  if (run->resume && !exists) throw UsageError(out + " holds no run to go on with");
+  if (run->resume && !exists) throw RequestError(out + " holds no run to go on with");
 }
 
 void WriteRunConfig(const TrainingRun& run) {

@@ -7,11 +7,11 @@
 #include <utility>
 
 #include "apps/progress.h"
-#include "neural/training/training_run.h"
+#include "bodyloom/neural/training/training_run.h"
 
 namespace bodyloom {
 
-/// run_dir is `out` from now on, num_threads all cores where it was 0. Throws UsageError when there is a run to go on
+/// run_dir is `out` from now on, num_threads all cores where it was 0. Throws RequestError when there is a run to go on
 /// with and --resume was not given, or the other way about; std::runtime_error when the folder cannot be written.
 void OpenTrainingRun(const std::string& out, TrainingRun* run);
 

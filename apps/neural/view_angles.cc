@@ -14,7 +14,7 @@ std::vector<double> ViewAngles(const std::string& text, int num_frames, int firs
   char rest = 0;
   if (std::sscanf(text.c_str(), "%lf:%lf%c", &from, &to, &rest) != 2) {
     if (std::sscanf(text.c_str(), "%lf%c", &from, &rest) != 1) {
-      throw UsageError("--view-yaw " + text + ": expected degrees, such as 30 or 0:360");
+      throw RequestError("--view-yaw " + text + ": expected degrees, such as 30 or 0:360");
     }
     to = from;
   }

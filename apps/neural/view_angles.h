@@ -8,7 +8,7 @@
 namespace bodyloom {
 
 /// "30": every frame turned by 30°; "0:360": 0 up to frame `first`, 360 from frame `last` on, evenly in between; "":
-/// none. Throws UsageError.
+/// none. Throws RequestError.
 std::vector<double> ViewAngles(const std::string& text, int num_frames, int first, int last);
 
 }  // namespace bodyloom

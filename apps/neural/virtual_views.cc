@@ -4,9 +4,9 @@
 #include <Eigen/Geometry>
 
 #include "apps/neural/photo_input.h"
-#include "data_tools/people/photo_maps.h"
-#include "data_tools/people/posed_track.h"
-#include "neural/guided/complete_maps.h"
+#include "bodyloom/data_tools/descriptors/photo_maps.h"
+#include "bodyloom/data_tools/descriptors/posed_track.h"
+#include "bodyloom/neural/guided/complete_maps.h"
 
 namespace bodyloom {
 

@@ -5,9 +5,9 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "geometry/body_model.h"
-#include "geometry/track.h"
-#include "neural/people/photo_frame.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/track.h"
+#include "bodyloom/neural/people/photo_frame.h"
 
 namespace bodyloom {
 

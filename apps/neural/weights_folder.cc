@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "data_tools/formats/weights_file.h"
+#include "bodyloom/data_tools/formats/weights_file.h"
 
 namespace bodyloom {
 namespace {

@@ -9,7 +9,7 @@
 
 #include <string>
 
-#include "neural/networks/named_weights.h"
+#include "bodyloom/neural/networks/named_weights.h"
 
 namespace bodyloom {
 

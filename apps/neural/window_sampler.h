@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "render/person_window.h"
+#include "bodyloom/render/person_window.h"
 
 namespace bodyloom {
 

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <utility>
 
-#include "geometry/check.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -10,9 +10,9 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "data_tools/formats/atomic_file.h"
-#include "geometry/check.h"
-#include "tracking/metrics.h"
+#include "bodyloom/data_tools/evaluation/metrics.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

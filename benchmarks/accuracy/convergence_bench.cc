@@ -19,16 +19,16 @@
 
 #include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/accuracy/bench_report.h"
-#include "data_tools/builtin_body.h"
-#include "data_tools/formats/atomic_file.h"
-#include "data_tools/prior/pose_prior_io.h"
-#include "data_tools/synthetic/demo_motion.h"
-#include "data_tools/synthetic/hash_random.h"
-#include "data_tools/synthetic/synth_clip.h"
-#include "geometry/check.h"
-#include "geometry/rotation.h"
-#include "tracking/metrics.h"
-#include "tracking/track_sequence.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/data_tools/evaluation/metrics.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/learned/pose_prior_io.h"
+#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
+#include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/hash_random.h"
+#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/tracking/track_sequence.h"
 
 namespace bodyloom {
 namespace {

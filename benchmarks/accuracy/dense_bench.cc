@@ -15,13 +15,13 @@
 #include "benchmarks/accuracy/bench_report.h"
 #include "benchmarks/accuracy/dense_bound.h"
 #include "benchmarks/accuracy/dense_clips.h"
-#include "data_tools/builtin_body.h"
-#include "data_tools/evaluation/truth_evaluation.h"
-#include "data_tools/motion/load_motion.h"
-#include "data_tools/prior/pose_prior_io.h"
-#include "data_tools/synthetic/synth_clip.h"
-#include "geometry/check.h"
-#include "tracking/track_sequence.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/data_tools/evaluation/truth_evaluation.h"
+#include "bodyloom/data_tools/learned/pose_prior_io.h"
+#include "bodyloom/data_tools/motion/load_motion.h"
+#include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/tracking/track_sequence.h"
 
 namespace bodyloom {
 namespace {

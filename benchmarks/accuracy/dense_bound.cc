@@ -5,11 +5,11 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "geometry/posed_body.h"
-#include "geometry/rotation.h"
-#include "tracking/body_points.h"
-#include "tracking/frame_cost.h"
-#include "tracking/metrics_image.h"
+#include "bodyloom/data_tools/evaluation/metrics_image.h"
+#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/tracking/body_points.h"
+#include "bodyloom/tracking/frame_cost.h"
 
 namespace bodyloom {
 namespace {

@@ -2,9 +2,9 @@
 /// The Cramér–Rao bound of a synthetic clip's dense keypoints, as expected per-vertex projection error.
 #pragma once
 
-#include "data_tools/synthetic/synth_clip.h"
-#include "geometry/body_model.h"
-#include "tracking/cramer_rao.h"
+#include "bodyloom/data_tools/evaluation/cramer_rao.h"
+#include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
+#include "bodyloom/geometry/body_model.h"
 
 namespace bodyloom {
 

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "geometry/check.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 

@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "data_tools/synthetic/synth_clip.h"
-#include "geometry/track.h"
+#include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
+#include "bodyloom/geometry/track.h"
 
 namespace bodyloom {
 

@@ -17,15 +17,15 @@
 
 #include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/accuracy/bench_report.h"
-#include "data_tools/builtin_body.h"
-#include "data_tools/formats/npz.h"
-#include "data_tools/prior/pose_prior_io.h"
-#include "data_tools/video/image_file.h"
-#include "geometry/check.h"
-#include "render/contact_sheet.h"
-#include "render/overlay.h"
-#include "tracking/procrustes.h"
-#include "tracking/track_sequence.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/data_tools/formats/npz.h"
+#include "bodyloom/data_tools/learned/pose_prior_io.h"
+#include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/procrustes.h"
+#include "bodyloom/render/contact_sheet.h"
+#include "bodyloom/render/overlay.h"
+#include "bodyloom/tracking/track_sequence.h"
 
 namespace bodyloom {
 namespace {

@@ -25,16 +25,16 @@
 
 #include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/accuracy/bench_report.h"
-#include "data_tools/builtin_body.h"
-#include "data_tools/lifter/lifter_weights_io.h"
-#include "data_tools/lifter/lifter_windows.h"
-#include "data_tools/motion/motion_library.h"
-#include "geometry/check.h"
-#include "geometry/posed_body.h"
-#include "tracking/initialise/lifter_input.h"
-#include "tracking/initialise/lifter_network.h"
-#include "tracking/initialise/lifter_reading.h"
-#include "tracking/procrustes.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/data_tools/learned/lifter_weights_io.h"
+#include "bodyloom/data_tools/motion/motion_library.h"
+#include "bodyloom/data_tools/synthesis/lifter/lifter_windows.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/procrustes.h"
+#include "bodyloom/tracking/initialise/lifter_input.h"
+#include "bodyloom/tracking/initialise/lifter_network.h"
+#include "bodyloom/tracking/initialise/lifter_reading.h"
 
 namespace bodyloom {
 namespace {

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <array>
 
-#include "geometry/check.h"
-#include "geometry/rotation.h"
-#include "tracking/initialise/lifter_input.h"
-#include "tracking/initialise/swap_repair.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/tracking/initialise/lifter_input.h"
+#include "bodyloom/tracking/initialise/swap_repair.h"
 
 namespace bodyloom {
 namespace {

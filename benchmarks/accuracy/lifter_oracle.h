@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "geometry/arrays.h"
-#include "geometry/camera.h"
-#include "geometry/lifter_weights.h"
-#include "geometry/observations.h"
-#include "tracking/initialise/lift_keypoints.h"
-#include "tracking/track_sequence.h"
+#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/camera.h"
+#include "bodyloom/geometry/lifter_weights.h"
+#include "bodyloom/geometry/observations.h"
+#include "bodyloom/tracking/initialise/lift_keypoints.h"
+#include "bodyloom/tracking/track_sequence.h"
 
 namespace bodyloom {
 

@@ -5,7 +5,7 @@
 ///   bodyloom_bench_motions --motions FOLDER[,FOLDER…] [--frames 240] [--elevation 8,30] [--json F]
 ///
 /// Every test clip (its first frames at 30 a second) in front of a synthetic camera of known focal length, with a
-/// detector's noise (data_tools/synthetic/detection_noise.h), its toes and heels left out. pa: PA-MPJPE, mpjpe: mid-hip
+/// detector's noise (data_tools/synthesis/clips/detection_noise.h), its toes and heels left out. pa: PA-MPJPE, mpjpe: mid-hip
 /// aligned, both of COCO-17 in mm. slide: mean speed of the ankles, m/s, in frames in which the true ones stand (below
 /// 0.1 m/s). ground: clips in which one was found. Means over clips; the body's stature is the true one.
 #include <algorithm>
@@ -15,15 +15,15 @@
 
 #include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/accuracy/bench_report.h"
-#include "data_tools/builtin_body.h"
-#include "data_tools/lifter/lifter_weights_io.h"
-#include "data_tools/motion/motion_library.h"
-#include "data_tools/motion/motion_tools.h"
-#include "data_tools/prior/pose_prior_io.h"
-#include "data_tools/synthetic/synth_clip.h"
-#include "geometry/check.h"
-#include "tracking/metrics.h"
-#include "tracking/track_sequence.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/data_tools/evaluation/metrics.h"
+#include "bodyloom/data_tools/learned/lifter_weights_io.h"
+#include "bodyloom/data_tools/learned/pose_prior_io.h"
+#include "bodyloom/data_tools/motion/motion_library.h"
+#include "bodyloom/data_tools/motion/motion_tools.h"
+#include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/tracking/track_sequence.h"
 
 namespace bodyloom {
 namespace {

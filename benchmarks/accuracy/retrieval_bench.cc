@@ -20,10 +20,10 @@
 
 #include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/accuracy/bench_report.h"
-#include "data_tools/builtin_body.h"
-#include "data_tools/formats/atomic_file.h"
-#include "data_tools/people/motion_retrieval.h"
-#include "geometry/check.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/data_tools/evaluation/motion_retrieval.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

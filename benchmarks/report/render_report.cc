@@ -5,8 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "data_tools/formats/atomic_file.h"
-#include "geometry/check.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -12,8 +12,8 @@
 
 #include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/speed/descriptor_sections.h"
-#include "data_tools/builtin_body.h"
-#include "geometry/check.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "geometry/body_model.h"
+#include "bodyloom/geometry/body_model.h"
 
 namespace bodyloom {
 

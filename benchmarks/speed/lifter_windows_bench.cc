@@ -17,14 +17,14 @@
 
 #include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/accuracy/bench_report.h"
-#include "data_tools/builtin_body.h"
-#include "data_tools/formats/atomic_file.h"
-#include "data_tools/lifter/lifter_windows.h"
-#include "data_tools/motion/motion_library.h"
-#include "data_tools/synthetic/demo_motion.h"
-#include "data_tools/video/image_file.h"
-#include "geometry/parallel.h"
-#include "render/draw_keypoints.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/motion/motion_library.h"
+#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
+#include "bodyloom/data_tools/synthesis/lifter/lifter_windows.h"
+#include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/render/draw_keypoints.h"
 
 namespace bodyloom {
 namespace {

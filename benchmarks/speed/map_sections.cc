@@ -11,13 +11,13 @@
 #include "benchmarks/speed/bench_table.h"
 #include "benchmarks/speed/descriptor_sections.h"
 #include "benchmarks/speed/moving_body.h"
-#include "data_tools/descriptors/describe_track.h"
-#include "data_tools/formats/npz.h"
-#include "geometry/normals.h"
-#include "geometry/normals_simd.h"
-#include "geometry/uv_bake.h"
-#include "geometry/uv_charts.h"
-#include "render/uv_sample.h"
+#include "bodyloom/data_tools/descriptors/describe_track.h"
+#include "bodyloom/data_tools/formats/npz.h"
+#include "bodyloom/geometry/normals.h"
+#include "bodyloom/geometry/normals_simd.h"
+#include "bodyloom/geometry/uv_bake.h"
+#include "bodyloom/geometry/uv_charts.h"
+#include "bodyloom/render/uv_sample.h"
 
 namespace bodyloom {
 

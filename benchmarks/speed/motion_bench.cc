@@ -13,13 +13,13 @@
 
 #include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/speed/bench_table.h"
-#include "neural/motion/motion_model.h"
-#include "neural/motion/person_box.h"
-#include "neural/motion/roll_out.h"
-#include "neural/motion/train_motion.h"
-#include "neural/networks/architecture_card.h"
-#include "neural/networks/transposed_conv.h"
-#include "neural/runtime.h"
+#include "bodyloom/neural/motion/motion_model.h"
+#include "bodyloom/neural/motion/person_box.h"
+#include "bodyloom/neural/motion/roll_out.h"
+#include "bodyloom/neural/motion/train_motion.h"
+#include "bodyloom/neural/networks/architecture_card.h"
+#include "bodyloom/neural/networks/transposed_conv.h"
+#include "bodyloom/neural/runtime.h"
 
 namespace bodyloom {
 namespace {

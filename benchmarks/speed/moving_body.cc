@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "geometry/rotation.h"
+#include "bodyloom/geometry/rotation.h"
 
 namespace bodyloom {
 

@@ -2,9 +2,9 @@
 /// A motion that is known in closed form, for benchmarks of what comes after tracking.
 #pragma once
 
-#include "geometry/body_model.h"
-#include "geometry/posed_body.h"
-#include "geometry/track.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/track.h"
 
 namespace bodyloom {
 

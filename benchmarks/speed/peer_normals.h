@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "geometry/arrays.h"
+#include "bodyloom/geometry/arrays.h"
 
 namespace bodyloom {
 

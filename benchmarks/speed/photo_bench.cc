@@ -15,11 +15,11 @@
 #include <vector>
 
 #include "benchmarks/accuracy/bench_arguments.h"
-#include "neural/guided/coherent_maps.h"
-#include "neural/guided/guided_model.h"
-#include "neural/networks/architecture_card.h"
-#include "neural/photo/photo_model.h"
-#include "neural/runtime.h"
+#include "bodyloom/neural/guided/coherent_maps.h"
+#include "bodyloom/neural/guided/guided_model.h"
+#include "bodyloom/neural/networks/architecture_card.h"
+#include "bodyloom/neural/photo/photo_model.h"
+#include "bodyloom/neural/runtime.h"
 
 namespace bodyloom {
 namespace {

@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "geometry/skinning.h"
+#include "bodyloom/geometry/skinning.h"
 #include "tests/geometry/random_body.h"
 
 namespace bodyloom {

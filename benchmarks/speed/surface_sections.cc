@@ -9,8 +9,8 @@
 #include "benchmarks/speed/descriptor_sections.h"
 #include "benchmarks/speed/moving_body.h"
 #include "benchmarks/speed/peer_normals.h"
-#include "geometry/normals.h"
-#include "geometry/surface_velocity.h"
+#include "bodyloom/geometry/normals.h"
+#include "bodyloom/geometry/surface_velocity.h"
 
 namespace bodyloom {
 

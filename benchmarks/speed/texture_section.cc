@@ -11,13 +11,13 @@
 #include "benchmarks/speed/bench_table.h"
 #include "benchmarks/speed/descriptor_sections.h"
 #include "benchmarks/speed/moving_body.h"
-#include "data_tools/video/image_file.h"
-#include "geometry/surface_velocity.h"
-#include "geometry/uv_charts.h"
-#include "render/texture_extract.h"
-#include "render/uv_fill.h"
-#include "render/uv_sample.h"
-#include "render/visible_points.h"
+#include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/geometry/surface_velocity.h"
+#include "bodyloom/geometry/uv_charts.h"
+#include "bodyloom/render/texture_extract.h"
+#include "bodyloom/render/uv_fill.h"
+#include "bodyloom/render/uv_sample.h"
+#include "bodyloom/render/visible_points.h"
 
 namespace bodyloom {
 

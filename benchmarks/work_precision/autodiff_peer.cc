@@ -10,12 +10,12 @@
 #include <set>
 #include <utility>
 
-#include "geometry/check.h"
-#include "geometry/rotation.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/tracking/residuals/acceleration_cost.h"
+#include "bodyloom/tracking/residuals/linear_cost.h"
+#include "bodyloom/tracking/serial_openmp.h"
 #include "tests/tracking/jet_twin.h"
-#include "tracking/residuals/acceleration_cost.h"
-#include "tracking/residuals/linear_cost.h"
-#include "tracking/serial_openmp.h"
 
 namespace bodyloom {
 namespace {

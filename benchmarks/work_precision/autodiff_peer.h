@@ -3,7 +3,7 @@
 /// frame's prior, every derivative by Ceres' automatic differentiation, rotations as plain axis-angle blocks.
 #pragma once
 
-#include "tracking/sequence_problem.h"
+#include "bodyloom/tracking/sequence_problem.h"
 
 namespace bodyloom {
 

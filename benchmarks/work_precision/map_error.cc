@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "data_tools/formats/npz.h"
-#include "geometry/check.h"
-#include "geometry/normals.h"
-#include "geometry/skinning.h"
-#include "geometry/surface_velocity.h"
+#include "bodyloom/data_tools/formats/npz.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/normals.h"
+#include "bodyloom/geometry/skinning.h"
+#include "bodyloom/geometry/surface_velocity.h"
 
 namespace bodyloom {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "geometry/body_model.h"
-#include "geometry/track.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/track.h"
 
 namespace bodyloom {
 

@@ -11,7 +11,7 @@
 
 #include "benchmarks/accuracy/dense_bound.h"
 #include "benchmarks/work_precision/autodiff_peer.h"
-#include "data_tools/builtin_body.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
 
 namespace bodyloom {
 

@@ -9,8 +9,8 @@
 
 #include "benchmarks/work_precision/problem_file.h"
 #include "benchmarks/work_precision/sections.h"
-#include "geometry/check.h"
-#include "tests/data_tools/temporary_file.h"
+#include "bodyloom/geometry/base/check.h"
+#include "tests/data_tools/formats/temporary_file.h"
 
 namespace bodyloom {
 namespace {

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <functional>
 
-#include "data_tools/builtin_body.h"
-#include "data_tools/formats/npz.h"
-#include "geometry/check.h"
-#include "geometry/rotation.h"
-#include "tracking/residuals/acceleration_cost.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/data_tools/formats/npz.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/tracking/residuals/acceleration_cost.h"
 
 namespace bodyloom {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "benchmarks/accuracy/dense_clips.h"
 #include "benchmarks/work_precision/sections.h"
-#include "geometry/check.h"
-#include "geometry/rotation.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/rotation.h"
 
 namespace bodyloom {
 namespace {

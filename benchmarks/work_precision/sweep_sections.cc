@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "benchmarks/work_precision/sections.h"
-#include "geometry/check.h"
-#include "tracking/frame_cost.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/tracking/frame_cost.h"
 
 namespace bodyloom {
 

@@ -16,7 +16,7 @@
 #include <utility>
 
 #include "benchmarks/work_precision/sections.h"
-#include "geometry/check.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -6,11 +6,11 @@
 #include <numeric>
 
 #include "benchmarks/accuracy/dense_clips.h"
-#include "data_tools/builtin_body.h"
-#include "data_tools/motion/load_motion.h"
-#include "data_tools/prior/pose_prior_io.h"
-#include "data_tools/synthetic/demo_motion.h"
-#include "geometry/posed_body.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/data_tools/learned/pose_prior_io.h"
+#include "bodyloom/data_tools/motion/load_motion.h"
+#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
+#include "bodyloom/geometry/posed_body.h"
 
 namespace bodyloom {
 namespace {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "data_tools/synthetic/synth_clip.h"
-#include "tracking/mixture_prior.h"
-#include "tracking/sequence_problem.h"
+#include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
+#include "bodyloom/tracking/mixture_prior.h"
+#include "bodyloom/tracking/sequence_problem.h"
 
 namespace bodyloom {
 

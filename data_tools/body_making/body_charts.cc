@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/body_making/body_charts.h"
+#include "bodyloom/data_tools/body_making/body_charts.h"
 
 #include <algorithm>
 
-#include "geometry/check.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

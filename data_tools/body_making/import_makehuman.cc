@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/body_making/import_makehuman.h"
+#include "bodyloom/data_tools/body_making/import_makehuman.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -10,12 +10,12 @@
 #include <random>
 #include <stdexcept>
 
-#include "data_tools/body_making/makehuman_files.h"
-#include "data_tools/body_making/makehuman_population.h"
-#include "data_tools/body_making/makehuman_skinning.h"
-#include "data_tools/body_making/makehuman_tpose.h"
-#include "data_tools/body_making/subdivision.h"
-#include "geometry/check.h"
+#include "bodyloom/data_tools/body_making/makehuman_files.h"
+#include "bodyloom/data_tools/body_making/makehuman_population.h"
+#include "bodyloom/data_tools/body_making/makehuman_skinning.h"
+#include "bodyloom/data_tools/body_making/makehuman_tpose.h"
+#include "bodyloom/data_tools/body_making/subdivision.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

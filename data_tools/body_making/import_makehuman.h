@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/body_model.h"
+#include "bodyloom/geometry/body_model.h"
 
 namespace bodyloom {
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "data_tools/body_making/body_charts.h"
-#include "geometry/arrays.h"
-#include "geometry/body_model.h"
+#include "bodyloom/data_tools/body_making/body_charts.h"
+#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/body_model.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/body_making/makehuman_files.h"
+#include "bodyloom/data_tools/body_making/makehuman_files.h"
 
 #include <zlib.h>
 
@@ -12,11 +12,11 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "data_tools/formats/atomic_file.h"
-#include "data_tools/formats/obj.h"
-#include "data_tools/formats/printable.h"
-#include "data_tools/observations/json_reader.h"
-#include "geometry/check.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/formats/json_reader.h"
+#include "bodyloom/data_tools/formats/obj.h"
+#include "bodyloom/data_tools/formats/printable.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -16,8 +16,8 @@
 #include <string>
 #include <vector>
 
-#include "data_tools/body_making/quads.h"
-#include "geometry/arrays.h"
+#include "bodyloom/data_tools/body_making/quads.h"
+#include "bodyloom/geometry/arrays.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/body_making/makehuman_population.h"
+#include "bodyloom/data_tools/body_making/makehuman_population.h"
 
 #include <algorithm>
 #include <cmath>

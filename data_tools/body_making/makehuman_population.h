@@ -14,7 +14,7 @@
 #include <random>
 #include <string>
 
-#include "data_tools/body_making/makehuman_files.h"
+#include "bodyloom/data_tools/body_making/makehuman_files.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/body_making/makehuman_skinning.h"
+#include "bodyloom/data_tools/body_making/makehuman_skinning.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <numeric>
 #include <string_view>
 
-#include "data_tools/body_making/nonnegative_least_squares.h"
-#include "geometry/body_model.h"
+#include "bodyloom/data_tools/body_making/nonnegative_least_squares.h"
+#include "bodyloom/geometry/body_model.h"
 
 namespace bodyloom {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "data_tools/body_making/makehuman_files.h"
+#include "bodyloom/data_tools/body_making/makehuman_files.h"
 
 namespace bodyloom {
 

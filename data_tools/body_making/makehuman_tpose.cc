@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/body_making/makehuman_tpose.h"
+#include "bodyloom/data_tools/body_making/makehuman_tpose.h"
 
 #include <Eigen/Geometry>
 #include <array>
@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "geometry/rotation.h"
+#include "bodyloom/geometry/rotation.h"
 
 namespace bodyloom {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/body_making/nonnegative_least_squares.h"
+#include "bodyloom/data_tools/body_making/nonnegative_least_squares.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <vector>
 
-#include "geometry/check.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 

@@ -14,8 +14,8 @@
 
 #include <vector>
 
-#include "data_tools/body_making/quads.h"
-#include "geometry/arrays.h"
+#include "bodyloom/data_tools/body_making/quads.h"
+#include "bodyloom/geometry/arrays.h"
 
 namespace bodyloom {
 

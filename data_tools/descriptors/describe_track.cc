@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/descriptors/describe_track.h"
+#include "bodyloom/data_tools/descriptors/describe_track.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <memory>
 #include <set>
 #include <span>
 
-#include "data_tools/descriptors/descriptor_header.h"
-#include "data_tools/descriptors/descriptor_preview.h"
-#include "data_tools/descriptors/map_memory.h"
-#include "data_tools/descriptors/posed_frames.h"
-#include "data_tools/descriptors/seen_texels.h"
-#include "data_tools/formats/atomic_file.h"
-#include "data_tools/formats/npy_stream.h"
-#include "geometry/check.h"
-#include "geometry/normals_simd.h"
-#include "geometry/parallel.h"
-#include "geometry/skinning.h"
-#include "geometry/uv_bake.h"
+#include "bodyloom/data_tools/descriptors/descriptor_header.h"
+#include "bodyloom/data_tools/descriptors/descriptor_preview.h"
+#include "bodyloom/data_tools/descriptors/map_memory.h"
+#include "bodyloom/data_tools/descriptors/posed_frames.h"
+#include "bodyloom/data_tools/descriptors/seen_texels.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/formats/npy_stream.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/geometry/base/stopwatch.h"
+#include "bodyloom/geometry/normals_simd.h"
+#include "bodyloom/geometry/skinning.h"
+#include "bodyloom/geometry/uv_bake.h"
 
 namespace bodyloom {
 
@@ -31,27 +31,6 @@ using namespace describe_internal;  // NOLINT(google-build-using-namespace)
 namespace {
 
 constexpr int kFramesInFlight = 32;
-
-class Stopwatch {
- public:
-  explicit Stopwatch(std::vector<std::pair<std::string, double>>* seconds) : seconds_(*seconds) {}
-  void Add(const std::string& stage) {
-    const auto now = std::chrono::steady_clock::now();
-    const double passed = std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-    for (auto& [name, sum] : seconds_) {
-      if (name == stage) {
-        sum += passed;
-        return;
-      }
-    }
-    seconds_.emplace_back(stage, passed);
-  }
-
- private:
-  std::vector<std::pair<std::string, double>>& seconds_;
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 class Describer {
  public:
@@ -83,11 +62,11 @@ class Describer {
 
   DescribeTrackSummary Run(const std::string& path, const DescribeProgress& progress) {
     Summarise();
-    Stopwatch watch(&summary_.seconds);
+    StageClock clock;
     NpyStream stream(path, options_.half ? DType::kF16 : DType::kF32,
                      {static_cast<int64_t>(outputs_.size()), summary_.channels, table_.height, table_.width});
     summary_.bytes = stream.record_bytes() * outputs_.size();
-    watch.Add("prepare and reserve");
+    clock.Book("prepare and reserve");
     DescriptorPreview preview(options_, table_, outputs_, FramesWithFit());
     for (size_t first = 0; first < outputs_.size(); first += kFramesInFlight) {
       if (progress) progress(static_cast<double>(first) / static_cast<double>(outputs_.size()));
@@ -95,9 +74,9 @@ class Describer {
       const std::span<const int> outputs(&outputs_[first], count);
       Chunk chunk = PlanChunk(outputs);
       summary_.frames_skinned += posed_.Need(chunk.needed_vertices);
-      watch.Add("skin");
+      clock.Book("skin");
       MakeMaps(&chunk);
-      watch.Add("normals, velocities, bake");
+      clock.Book("normals, velocities, bake");
       std::vector<double> seen(count, 0);
       std::vector<int> made_again(count, 0);
       ParallelFor(count, options_.num_threads,
@@ -108,10 +87,11 @@ class Describer {
         if (preview.Wants(outputs[i])) AddToPreview(chunk, i, &preview);
       }
       for (Map& map : chunk.normal_maps) maps_.Return(&map);
-      watch.Add("write");
+      clock.Book("write");
     }
     stream.Finish();
-    watch.Add("flush to disk");
+    clock.Book("flush to disk");
+    summary_.seconds = clock.seconds();
     if (options_.preview_frames > 0) summary_.preview = preview.Picture();
     return summary_;
   }

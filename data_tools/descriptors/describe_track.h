@@ -24,13 +24,13 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/body_model.h"
-#include "geometry/camera.h"
-#include "geometry/normals.h"
-#include "geometry/surface_velocity.h"
-#include "geometry/track.h"
-#include "geometry/uv_texels.h"
-#include "render/image.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/camera.h"
+#include "bodyloom/geometry/normals.h"
+#include "bodyloom/geometry/surface_velocity.h"
+#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/uv_texels.h"
+#include "bodyloom/render/image.h"
 
 namespace bodyloom {
 

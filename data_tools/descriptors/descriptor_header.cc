@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/descriptors/descriptor_header.h"
+#include "bodyloom/data_tools/descriptors/descriptor_header.h"
 
 #include <nlohmann/json.hpp>
 

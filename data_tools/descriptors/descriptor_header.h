@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "data_tools/descriptors/describe_track.h"
+#include "bodyloom/data_tools/descriptors/describe_track.h"
 
 namespace bodyloom {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/descriptors/descriptor_preview.h"
+#include "bodyloom/data_tools/descriptors/descriptor_preview.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "data_tools/descriptors/describe_track.h"
-#include "data_tools/formats/ndarray.h"
-#include "render/caption.h"
+#include "bodyloom/data_tools/descriptors/describe_track.h"
+#include "bodyloom/data_tools/formats/ndarray.h"
+#include "bodyloom/render/caption.h"
 
 namespace bodyloom {
 namespace {

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "geometry/uv_texels.h"
-#include "render/image.h"
+#include "bodyloom/geometry/uv_texels.h"
+#include "bodyloom/render/image.h"
 
 namespace bodyloom {
 

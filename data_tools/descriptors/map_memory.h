@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/normals.h"
-#include "render/visibility_buffer.h"
+#include "bodyloom/geometry/normals.h"
+#include "bodyloom/render/visibility_buffer.h"
 
 namespace bodyloom::describe_internal {
 

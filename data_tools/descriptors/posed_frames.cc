@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/descriptors/posed_frames.h"
+#include "bodyloom/data_tools/descriptors/posed_frames.h"
 
 #include <algorithm>
 #include <cstring>

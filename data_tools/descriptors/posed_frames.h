@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "geometry/posed_body.h"
-#include "geometry/skinning.h"
+#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/skinning.h"
 
 namespace bodyloom::describe_internal {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/descriptors/seen_texels.h"
+#include "bodyloom/data_tools/descriptors/seen_texels.h"
 
 #include <algorithm>
 #include <cstring>
 
-#include "render/texel_sight.h"
+#include "bodyloom/render/texel_sight.h"
 
 namespace bodyloom::describe_internal {
 

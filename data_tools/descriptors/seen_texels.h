@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "geometry/body_model.h"
-#include "geometry/camera.h"
-#include "geometry/uv_texels.h"
-#include "render/visibility_buffer.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/camera.h"
+#include "bodyloom/geometry/uv_texels.h"
+#include "bodyloom/render/visibility_buffer.h"
 
 namespace bodyloom::describe_internal {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/evaluation/aist_evaluation.h"
+#include "bodyloom/data_tools/evaluation/aist_evaluation.h"
 
 #include <filesystem>
 
-#include "data_tools/formats/pickle.h"
-#include "data_tools/motion/load_motion.h"
-#include "data_tools/observations/aist_reader.h"
-#include "data_tools/observations/load_cameras.h"
+#include "bodyloom/data_tools/formats/pickle.h"
+#include "bodyloom/data_tools/motion/load_motion.h"
+#include "bodyloom/data_tools/observations/aist_reader.h"
+#include "bodyloom/data_tools/observations/load_cameras.h"
 
 namespace bodyloom {
 namespace {

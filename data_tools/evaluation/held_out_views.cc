@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/evaluation/held_out_views.h"
+#include "bodyloom/data_tools/evaluation/held_out_views.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/body_model.h"
-#include "geometry/check.h"
-#include "geometry/rotation.h"
-#include "tracking/metrics.h"
-#include "tracking/metrics_image.h"
+#include "bodyloom/data_tools/evaluation/metrics.h"
+#include "bodyloom/data_tools/evaluation/metrics_image.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/rotation.h"
 
 namespace bodyloom {
 namespace {

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "data_tools/evaluation/evaluation.h"
-#include "geometry/arrays.h"
-#include "geometry/camera.h"
-#include "geometry/observations.h"
-#include "geometry/track.h"
+#include "bodyloom/data_tools/evaluation/evaluation.h"
+#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/camera.h"
+#include "bodyloom/geometry/observations.h"
+#include "bodyloom/geometry/track.h"
 
 namespace bodyloom {
 
@@ -39,13 +39,13 @@ struct EvaluateHeldOutViewsOptions {
 /// the fitted view, and hip(·) the middle of COCO's hips:
 ///   clip_scale         s = argmin Σ ‖s (P − hip P) − (G − hip G)‖²
 ///   mpjpe_mm, mpjpe_scaled_mm   mean ‖(P − hip P) − (G − hip G)‖, and with s
-///   pa_mpjpe_mm, pa_p95_mm      after one similarity a frame (tracking/procrustes.h)
+///   pa_mpjpe_mm, pa_p95_mm      after one similarity a frame (geometry/procrustes.h)
 ///   accel_err_ms2, gt_accel_ms2 ‖P″ − G″‖ and ‖G″‖
 ///   root_err_mm        mean ‖hip P − hip G‖, and its parts across and along the viewing direction
 ///   heldout_*          distance in pixels of s (P − hip P) + hip G, carried into every other camera, to its detections
 ///   fitview_*          distance of P, through the clip's camera, to the fitted view's detections
 ///   fitview_own_*      the same through the track's own camera (differs when the focal length was estimated)
-/// and PCK, percent of person height (tracking/metrics_image.h); with `motion`, the angle between the track's joint
+/// and PCK, percent of person height (data_tools/evaluation/metrics_image.h); with `motion`, the angle between the track's joint
 /// rotations and SMPL's, both on the same 24 joints, the root's in the camera frame.
 /// A frame whose landmarks are not all finite is scored with the nearest frame that has them.
 /// Throws std::invalid_argument when the view is unknown, sizes disagree, or nothing overlaps.

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/evaluation/image_metrics.h"
+#include "bodyloom/data_tools/evaluation/image_metrics.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
 
-#include "geometry/check.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "render/image.h"
+#include "bodyloom/render/image.h"
 
 namespace bodyloom {
 

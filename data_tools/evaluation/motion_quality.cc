@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/evaluation/motion_quality.h"
+#include "bodyloom/data_tools/evaluation/motion_quality.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "data_tools/builtin_body.h"
-#include "data_tools/motion/motion_floor.h"
-#include "data_tools/motion/motion_tools.h"
-#include "data_tools/motion/smpl_rest.h"
-#include "geometry/body_model.h"
-#include "geometry/check.h"
-#include "geometry/rotation.h"
-#include "tracking/joint_limits.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/data_tools/motion/motion_floor.h"
+#include "bodyloom/data_tools/motion/motion_tools.h"
+#include "bodyloom/data_tools/motion/smpl_rest.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/tracking/joint_limits.h"
 
 namespace bodyloom {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/track.h"
+#include "bodyloom/geometry/track.h"
 
 namespace bodyloom {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/evaluation/part_label_evaluation.h"
+#include "bodyloom/data_tools/evaluation/part_label_evaluation.h"
 
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <numeric>
 
-#include "geometry/check.h"
-#include "geometry/posed_body.h"
-#include "render/visibility_buffer.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/render/visibility_buffer.h"
 
 namespace bodyloom {
 namespace {

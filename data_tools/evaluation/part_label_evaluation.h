@@ -2,10 +2,10 @@
 /// A track against part labels of the same video: how well the rendered body covers the person, and each part itself.
 #pragma once
 
-#include "data_tools/evaluation/evaluation.h"
-#include "geometry/body_model.h"
-#include "geometry/observations.h"
-#include "geometry/track.h"
+#include "bodyloom/data_tools/evaluation/evaluation.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/observations.h"
+#include "bodyloom/geometry/track.h"
 
 namespace bodyloom {
 

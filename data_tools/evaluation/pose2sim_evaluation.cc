@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/evaluation/pose2sim_evaluation.h"
+#include "bodyloom/data_tools/evaluation/pose2sim_evaluation.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <stdexcept>
 
-#include "data_tools/evaluation/triangulation.h"
-#include "data_tools/observations/load_cameras.h"
-#include "data_tools/observations/load_detections.h"
-#include "tracking/metrics.h"
-#include "tracking/metrics_image.h"
+#include "bodyloom/data_tools/evaluation/metrics.h"
+#include "bodyloom/data_tools/evaluation/metrics_image.h"
+#include "bodyloom/data_tools/evaluation/triangulation.h"
+#include "bodyloom/data_tools/observations/load_cameras.h"
+#include "bodyloom/data_tools/observations/load_detections.h"
 
 namespace bodyloom {
 namespace {

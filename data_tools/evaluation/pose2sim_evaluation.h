@@ -8,9 +8,9 @@
 
 #include <string>
 
-#include "data_tools/evaluation/evaluation.h"
-#include "data_tools/evaluation/held_out_views.h"
-#include "geometry/track.h"
+#include "bodyloom/data_tools/evaluation/evaluation.h"
+#include "bodyloom/data_tools/evaluation/held_out_views.h"
+#include "bodyloom/geometry/track.h"
 
 namespace bodyloom {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/evaluation/speed_reaction.h"
+#include "bodyloom/data_tools/evaluation/speed_reaction.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <stdexcept>
 
-#include "data_tools/evaluation/image_metrics.h"
-#include "geometry/check.h"
-#include "geometry/parallel.h"
-#include "geometry/velocity_stencil.h"
+#include "bodyloom/data_tools/evaluation/image_metrics.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/geometry/velocity_stencil.h"
 
 namespace bodyloom {
 namespace {

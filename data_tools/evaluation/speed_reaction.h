@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "data_tools/people/person_set.h"
-#include "geometry/track.h"
+#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/geometry/track.h"
 
 namespace bodyloom {
 

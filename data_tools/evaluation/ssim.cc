@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/evaluation/ssim.h"
+#include "bodyloom/data_tools/evaluation/ssim.h"
 
 #include <algorithm>
 #include <array>
@@ -9,8 +9,8 @@
 #include <limits>
 #include <numeric>
 
-#include "geometry/check.h"
-#include "render/ssim_rows.h"
+#include "bodyloom/data_tools/evaluation/ssim_rows.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/evaluation/triangulation.h"
+#include "bodyloom/data_tools/evaluation/triangulation.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <span>
 
-#include "geometry/camera.h"
+#include "bodyloom/geometry/camera.h"
 
 namespace bodyloom {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/evaluation/truth_evaluation.h"
+#include "bodyloom/data_tools/evaluation/truth_evaluation.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/check.h"
-#include "geometry/posed_body.h"
-#include "geometry/skinning.h"
-#include "tracking/metrics.h"
-#include "tracking/metrics_image.h"
+#include "bodyloom/data_tools/evaluation/metrics.h"
+#include "bodyloom/data_tools/evaluation/metrics_image.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/skinning.h"
 
 namespace bodyloom {
 namespace {

@@ -2,9 +2,9 @@
 /// A track against a known truth: synthetic clips, where body, pose, shape and camera are known.
 #pragma once
 
-#include "data_tools/evaluation/evaluation.h"
-#include "geometry/body_model.h"
-#include "geometry/track.h"
+#include "bodyloom/data_tools/evaluation/evaluation.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/track.h"
 
 namespace bodyloom {
 
@@ -16,7 +16,7 @@ struct EvaluateAgainstTruthOptions {
 
 /// Protocol "known-truth". Frame t of the track is compared with frame t of the truth, both posed on `body`, each seen
 /// through its own camera. A frame without a result (non-finite parameters) is scored with the nearest frame that has
-/// one. Values: per-vertex projection error (tracking/metrics_image.h), PVE, MPJPE (pelvis aligned, raw and with one
+/// one. Values: per-vertex projection error (data_tools/evaluation/metrics_image.h), PVE, MPJPE (pelvis aligned, raw and with one
 /// clip scale), PA-MPJPE, acceleration error, jitter, joint angles, root error, shape error in the rest pose, focal
 /// length. Millimetres, pixels, degrees, SI otherwise.
 /// Throws std::invalid_argument when the frame counts differ, there are no frames, or a pose does not fit the body.

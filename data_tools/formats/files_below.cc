@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/formats/files_below.h"
+#include "bodyloom/data_tools/formats/files_below.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/formats/ndarray.h"
+#include "bodyloom/data_tools/formats/ndarray.h"
 
 #include <algorithm>
 #include <bit>
@@ -8,9 +8,9 @@
 #include <limits>
 #include <utility>
 
-#include "data_tools/formats/half.h"
-#include "data_tools/formats/utf8.h"
-#include "geometry/check.h"
+#include "bodyloom/data_tools/formats/half.h"
+#include "bodyloom/data_tools/formats/utf8.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/formats/npz.h"
+#include "bodyloom/data_tools/formats/npz.h"
 
 #include <stdexcept>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "data_tools/formats/atomic_file.h"
-#include "data_tools/formats/element_type.h"
-#include "data_tools/formats/npy_header.h"
-#include "data_tools/formats/printable.h"
-#include "data_tools/formats/zip.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/formats/element_type.h"
+#include "bodyloom/data_tools/formats/npy_header.h"
+#include "bodyloom/data_tools/formats/printable.h"
+#include "bodyloom/data_tools/formats/zip.h"
 
 namespace bodyloom {
 namespace {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "geometry/arrays.h"
+#include "bodyloom/geometry/arrays.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/formats/pickle_machine.h"
+#include "bodyloom/data_tools/formats/pickle_machine.h"
 
 #include <charconv>
 #include <cstring>
@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "data_tools/formats/pickle_text.h"
-#include "data_tools/formats/printable.h"
-#include "geometry/check.h"
+#include "bodyloom/data_tools/formats/pickle_text.h"
+#include "bodyloom/data_tools/formats/printable.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

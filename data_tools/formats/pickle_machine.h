@@ -5,7 +5,7 @@
 
 #include <string_view>
 
-#include "data_tools/formats/pickle_node.h"
+#include "bodyloom/data_tools/formats/pickle_node.h"
 
 namespace bodyloom {
 

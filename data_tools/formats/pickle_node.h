@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "data_tools/formats/pickle.h"
+#include "bodyloom/data_tools/formats/pickle.h"
 
 namespace bodyloom {
 

@@ -6,10 +6,10 @@
 #include <span>
 #include <utility>
 
-#include "data_tools/formats/element_type.h"
-#include "data_tools/formats/pickle_node.h"
-#include "data_tools/formats/printable.h"
-#include "geometry/check.h"
+#include "bodyloom/data_tools/formats/element_type.h"
+#include "bodyloom/data_tools/formats/pickle_node.h"
+#include "bodyloom/data_tools/formats/printable.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/formats/pickle_text.h"
+#include "bodyloom/data_tools/formats/pickle_text.h"
 
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
 
-#include "data_tools/formats/utf8.h"
+#include "bodyloom/data_tools/formats/utf8.h"
 
 namespace bodyloom {
 namespace {

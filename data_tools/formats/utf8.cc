@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/formats/utf8.h"
+#include "bodyloom/data_tools/formats/utf8.h"
 
 namespace bodyloom {
 

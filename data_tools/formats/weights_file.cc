@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/formats/weights_file.h"
+#include "bodyloom/data_tools/formats/weights_file.h"
 
-#include "data_tools/formats/atomic_file.h"
-#include "data_tools/formats/safetensors.h"
-#include "data_tools/formats/torch_weights.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/formats/safetensors.h"
+#include "bodyloom/data_tools/formats/torch_weights.h"
 
 namespace bodyloom {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "data_tools/formats/ndarray.h"
+#include "bodyloom/data_tools/formats/ndarray.h"
 
 namespace bodyloom {
 

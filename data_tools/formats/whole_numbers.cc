@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/formats/whole_numbers.h"
+#include "bodyloom/data_tools/formats/whole_numbers.h"
 
 #include <stdexcept>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/formats/zip.h"
+#include "bodyloom/data_tools/formats/zip.h"
 
 #include <zlib.h>
 
@@ -10,8 +10,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "data_tools/formats/printable.h"
-#include "geometry/check.h"
+#include "bodyloom/data_tools/formats/printable.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/motion/aist_motion.h"
+#include "bodyloom/data_tools/motion/aist_motion.h"
 
 #include <cmath>
 #include <stdexcept>
 
-#include "data_tools/motion/skeleton_motion.h"
+#include "bodyloom/data_tools/motion/skeleton_motion.h"
 
 namespace bodyloom {
 namespace {

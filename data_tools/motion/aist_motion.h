@@ -8,8 +8,8 @@
 
 #include <string>
 
-#include "data_tools/formats/pickle.h"
-#include "geometry/track.h"
+#include "bodyloom/data_tools/formats/pickle.h"
+#include "bodyloom/geometry/track.h"
 
 namespace bodyloom {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/motion/amass.h"
+#include "bodyloom/data_tools/motion/amass.h"
 
 #include <cmath>
 #include <stdexcept>
 
-#include "data_tools/motion/motion_tools.h"
-#include "data_tools/motion/skeleton_motion.h"
-#include "geometry/check.h"
+#include "bodyloom/data_tools/motion/motion_tools.h"
+#include "bodyloom/data_tools/motion/skeleton_motion.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -10,8 +10,8 @@
 
 #include <string>
 
-#include "data_tools/formats/npz.h"
-#include "geometry/track.h"
+#include "bodyloom/data_tools/formats/npz.h"
+#include "bodyloom/geometry/track.h"
 
 namespace bodyloom {
 

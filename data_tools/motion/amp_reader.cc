@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/motion/amp_reader.h"
+#include "bodyloom/data_tools/motion/amp_reader.h"
 
 #include <Eigen/Geometry>
 #include <cmath>
 #include <stdexcept>
 
-#include "data_tools/formats/pickle.h"
-#include "data_tools/formats/printable.h"
-#include "data_tools/formats/whole_numbers.h"
+#include "bodyloom/data_tools/formats/pickle.h"
+#include "bodyloom/data_tools/formats/printable.h"
+#include "bodyloom/data_tools/formats/whole_numbers.h"
 
 namespace bodyloom {
 namespace {

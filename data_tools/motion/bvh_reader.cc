@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/motion/bvh_reader.h"
+#include "bodyloom/data_tools/motion/bvh_reader.h"
 
 #include <cmath>
 
-#include "data_tools/formats/printable.h"
-#include "data_tools/motion/text_scanner.h"
-#include "geometry/rotation.h"
+#include "bodyloom/data_tools/formats/printable.h"
+#include "bodyloom/data_tools/motion/text_scanner.h"
+#include "bodyloom/geometry/rotation.h"
 
 namespace bodyloom {
 namespace {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/motion/bvh_writer.h"
+#include "bodyloom/data_tools/motion/bvh_writer.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <vector>
 
-#include "data_tools/formats/atomic_file.h"
-#include "data_tools/motion/motion_tools.h"
-#include "geometry/check.h"
-#include "geometry/posed_body.h"
-#include "geometry/rotation.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/motion/motion_tools.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/rotation.h"
 
 namespace bodyloom {
 namespace {

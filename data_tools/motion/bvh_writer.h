@@ -5,8 +5,8 @@
 
 #include <string>
 
-#include "geometry/body_model.h"
-#include "geometry/track.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/track.h"
 
 namespace bodyloom {
 

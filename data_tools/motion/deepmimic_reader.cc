@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/motion/deepmimic_reader.h"
+#include "bodyloom/data_tools/motion/deepmimic_reader.h"
 
 #include <Eigen/Geometry>
 #include <cmath>
 #include <stdexcept>
 
-#include "geometry/rotation.h"
+#include "bodyloom/geometry/rotation.h"
 
 namespace bodyloom {
 namespace {

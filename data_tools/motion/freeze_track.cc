@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/motion/freeze_track.h"
+#include "bodyloom/data_tools/motion/freeze_track.h"
 
-#include "geometry/check.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 

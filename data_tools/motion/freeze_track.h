@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "geometry/track.h"
+#include "bodyloom/geometry/track.h"
 
 namespace bodyloom {
 

@@ -7,8 +7,8 @@
 
 #include <string>
 
-#include "data_tools/motion/retarget.h"
-#include "geometry/track.h"
+#include "bodyloom/data_tools/motion/retarget.h"
+#include "bodyloom/geometry/track.h"
 
 namespace bodyloom {
 

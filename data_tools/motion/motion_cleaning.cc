@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/motion/motion_cleaning.h"
+#include "bodyloom/data_tools/motion/motion_cleaning.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "data_tools/motion/motion_tools.h"
-#include "data_tools/motion/smpl_rest.h"
-#include "geometry/check.h"
-#include "geometry/rotation.h"
+#include "bodyloom/data_tools/motion/motion_tools.h"
+#include "bodyloom/data_tools/motion/smpl_rest.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/rotation.h"
 
 namespace bodyloom {
 namespace {

@@ -14,7 +14,7 @@
 
 #include <vector>
 
-#include "geometry/track.h"
+#include "bodyloom/geometry/track.h"
 
 namespace bodyloom {
 

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/motion/motion_floor.h"
+#include "bodyloom/data_tools/motion/motion_floor.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
-#include "data_tools/motion/smpl_rest.h"
-#include "geometry/check.h"
+#include "bodyloom/data_tools/motion/smpl_rest.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/percentile.h"
 
 namespace bodyloom {
 namespace {
@@ -24,12 +25,6 @@ constexpr std::array<double, 24> kClearance = {
     0.06, 0.06,  0.04,  0.04,  // shoulders, elbows
     0.03, 0.03,  0.02,  0.02   // wrists, hands
 };
-
-double Percentile(std::vector<double> values, double share) {
-  const auto nth = values.begin() + static_cast<long>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), nth, values.end());
-  return *nth;
-}
 
 }  // namespace
 
@@ -70,7 +65,7 @@ FloorEstimate EstimateFloor(std::span<const Motion> pieces) {
   }
   BODYLOOM_CHECK(!all.empty(), "EstimateFloor: no frames");
   if (support.empty()) {
-    floor.height_m = Percentile(all, 0.05);
+    floor.height_m = Percentile(all, 5);
     return floor;
   }
   std::sort(support.begin(), support.end());

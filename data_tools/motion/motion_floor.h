@@ -12,8 +12,8 @@
 
 #include <span>
 
-#include "geometry/arrays.h"
-#include "geometry/track.h"
+#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/track.h"
 
 namespace bodyloom {
 

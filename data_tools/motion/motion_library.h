@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "data_tools/motion/motion_cleaning.h"
-#include "geometry/track.h"
+#include "bodyloom/data_tools/motion/motion_cleaning.h"
+#include "bodyloom/geometry/track.h"
 
 namespace bodyloom {
 

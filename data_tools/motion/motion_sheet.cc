@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/motion/motion_sheet.h"
+#include "bodyloom/data_tools/motion/motion_sheet.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -7,13 +7,13 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "data_tools/motion/smpl_rest.h"
-#include "geometry/body_model.h"
-#include "geometry/check.h"
-#include "geometry/rotation.h"
-#include "render/contact_sheet.h"
-#include "render/image_mat.h"
-#include "render/palette.h"
+#include "bodyloom/data_tools/motion/smpl_rest.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/render/contact_sheet.h"
+#include "bodyloom/render/image_mat.h"
+#include "bodyloom/render/palette.h"
 
 namespace bodyloom {
 namespace {

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "geometry/track.h"
-#include "render/image.h"
+#include "bodyloom/geometry/track.h"
+#include "bodyloom/render/image.h"
 
 namespace bodyloom {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/motion/motion_split.h"
+#include "bodyloom/data_tools/motion/motion_split.h"
 
 #include <algorithm>
 #include <sstream>
 #include <stdexcept>
 
-#include "data_tools/formats/atomic_file.h"
-#include "data_tools/formats/printable.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/formats/printable.h"
 
 // Made by bodyloom_embed() in data_tools/CMakeLists.txt.
 extern "C" {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/motion/motion_tools.h"
+#include "bodyloom/data_tools/motion/motion_tools.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 
-#include "geometry/check.h"
-#include "geometry/rotation.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/rotation.h"
 
 namespace bodyloom {
 namespace {

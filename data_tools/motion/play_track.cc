@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/motion/play_track.h"
+#include "bodyloom/data_tools/motion/play_track.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "data_tools/motion/motion_tools.h"
-#include "geometry/check.h"
+#include "bodyloom/data_tools/motion/motion_tools.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "geometry/track.h"
+#include "bodyloom/geometry/track.h"
 
 namespace bodyloom {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/motion/retarget.h"
+#include "bodyloom/data_tools/motion/retarget.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "data_tools/motion/skeleton_map.h"
-#include "data_tools/motion/smpl_rest.h"
-#include "geometry/body_model.h"
-#include "geometry/rotation.h"
+#include "bodyloom/data_tools/motion/skeleton_map.h"
+#include "bodyloom/data_tools/motion/smpl_rest.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/rotation.h"
 
 namespace bodyloom {
 namespace {

@@ -23,8 +23,8 @@
 #include <array>
 #include <string>
 
-#include "data_tools/motion/skeleton_motion.h"
-#include "geometry/track.h"
+#include "bodyloom/data_tools/motion/skeleton_motion.h"
+#include "bodyloom/geometry/track.h"
 
 namespace bodyloom {
 

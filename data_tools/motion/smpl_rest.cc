@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/motion/smpl_rest.h"
+#include "bodyloom/data_tools/motion/smpl_rest.h"
 
 #include <array>
 #include <cmath>
 
-#include "geometry/body_model.h"
-#include "geometry/check.h"
-#include "geometry/rotation.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/rotation.h"
 
 namespace bodyloom {
 

@@ -6,8 +6,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "geometry/arrays.h"
-#include "geometry/track.h"
+#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/track.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/motion/text_scanner.h"
+#include "bodyloom/data_tools/motion/text_scanner.h"
 
 #include <zlib.h>
 
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "data_tools/formats/atomic_file.h"
-#include "data_tools/formats/printable.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/formats/printable.h"
 
 namespace bodyloom {
 namespace {

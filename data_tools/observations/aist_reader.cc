@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/observations/aist_reader.h"
+#include "bodyloom/data_tools/observations/aist_reader.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
 
-#include "data_tools/formats/printable.h"
-#include "data_tools/observations/keypoint_conventions.h"
+#include "bodyloom/data_tools/formats/printable.h"
+#include "bodyloom/data_tools/observations/keypoint_conventions.h"
 
 namespace bodyloom {
 namespace {

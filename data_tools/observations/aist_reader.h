@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "data_tools/formats/pickle.h"
-#include "geometry/arrays.h"
-#include "geometry/observations.h"
+#include "bodyloom/data_tools/formats/pickle.h"
+#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/observations.h"
 
 namespace bodyloom {
 

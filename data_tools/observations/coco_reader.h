@@ -9,8 +9,8 @@
 /// Source: cocodataset.org/#format-data, AlphaPose docs/output.md.
 #pragma once
 
-#include "data_tools/observations/json_reader.h"
-#include "data_tools/observations/people.h"
+#include "bodyloom/data_tools/formats/json_reader.h"
+#include "bodyloom/data_tools/observations/people.h"
 
 namespace bodyloom {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/observations/densepose_iuv.h"
+#include "bodyloom/data_tools/observations/densepose_iuv.h"
 
 #include <zlib.h>
 
 #include <algorithm>
 #include <stdexcept>
 
-#include "data_tools/formats/atomic_file.h"
-#include "data_tools/video/image_file.h"
-#include "render/image.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/render/image.h"
 
 namespace bodyloom {
 namespace {

@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "data_tools/observations/densepose_iuv.h"
-#include "geometry/body_model.h"
-#include "geometry/observations.h"
-#include "render/chart_lookup.h"
+#include "bodyloom/data_tools/observations/densepose_iuv.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/observations.h"
+#include "bodyloom/render/chart_lookup.h"
 
 namespace bodyloom {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/observations/keypoint_conventions.h"
+#include "bodyloom/data_tools/observations/keypoint_conventions.h"
 
-#include "geometry/observations.h"
+#include "bodyloom/geometry/observations.h"
 
 namespace bodyloom {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/observations/load_cameras.h"
+#include "bodyloom/data_tools/observations/load_cameras.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,11 +10,11 @@
 
 #include <Eigen/LU>
 
-#include "data_tools/formats/atomic_file.h"
-#include "data_tools/formats/printable.h"
-#include "data_tools/observations/json_reader.h"
-#include "geometry/check.h"
-#include "geometry/rotation.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/formats/json_reader.h"
+#include "bodyloom/data_tools/formats/printable.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/rotation.h"
 
 namespace bodyloom {
 namespace {

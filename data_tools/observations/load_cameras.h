@@ -21,7 +21,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/camera.h"
+#include "bodyloom/geometry/camera.h"
 
 namespace bodyloom {
 

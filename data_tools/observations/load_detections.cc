@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/observations/load_detections.h"
+#include "bodyloom/data_tools/observations/load_detections.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,18 +8,18 @@
 #include <stdexcept>
 #include <vector>
 
-#include "data_tools/formats/atomic_file.h"
-#include "data_tools/formats/npz.h"
-#include "data_tools/formats/pickle.h"
-#include "data_tools/formats/printable.h"
-#include "data_tools/observations/aist_reader.h"
-#include "data_tools/observations/blazepose_reader.h"
-#include "data_tools/observations/coco_reader.h"
-#include "data_tools/observations/json_reader.h"
-#include "data_tools/observations/observations_npz.h"
-#include "data_tools/observations/openpose_reader.h"
-#include "data_tools/observations/people.h"
-#include "geometry/check.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/formats/json_reader.h"
+#include "bodyloom/data_tools/formats/npz.h"
+#include "bodyloom/data_tools/formats/pickle.h"
+#include "bodyloom/data_tools/formats/printable.h"
+#include "bodyloom/data_tools/observations/aist_reader.h"
+#include "bodyloom/data_tools/observations/blazepose_reader.h"
+#include "bodyloom/data_tools/observations/coco_reader.h"
+#include "bodyloom/data_tools/observations/observations_npz.h"
+#include "bodyloom/data_tools/observations/openpose_reader.h"
+#include "bodyloom/data_tools/observations/people.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

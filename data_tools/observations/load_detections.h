@@ -9,7 +9,7 @@
 
 #include <string>
 
-#include "geometry/observations.h"
+#include "bodyloom/geometry/observations.h"
 
 namespace bodyloom {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/observations/observations_npz.h"
+#include "bodyloom/data_tools/observations/observations_npz.h"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "data_tools/formats/whole_numbers.h"
-#include "geometry/check.h"
+#include "bodyloom/data_tools/formats/whole_numbers.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

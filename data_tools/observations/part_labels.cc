@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/observations/part_labels.h"
+#include "bodyloom/data_tools/observations/part_labels.h"
 
 #include <algorithm>
 #include <array>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
-#include "data_tools/observations/observations_npz.h"
-#include "geometry/check.h"
+#include "bodyloom/data_tools/observations/observations_npz.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

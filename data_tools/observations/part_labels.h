@@ -5,8 +5,8 @@
 
 #include <string>
 
-#include "data_tools/formats/npz.h"
-#include "geometry/observations.h"
+#include "bodyloom/data_tools/formats/npz.h"
+#include "bodyloom/geometry/observations.h"
 
 namespace bodyloom {
 

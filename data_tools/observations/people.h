@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "data_tools/observations/keypoint_conventions.h"
-#include "geometry/observations.h"
+#include "bodyloom/data_tools/observations/keypoint_conventions.h"
+#include "bodyloom/geometry/observations.h"
 
 namespace bodyloom {
 

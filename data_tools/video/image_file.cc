@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/video/image_file.h"
+#include "bodyloom/data_tools/video/image_file.h"
 
 #include <algorithm>
 #include <array>
@@ -8,11 +8,11 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "data_tools/formats/atomic_file.h"
-#include "data_tools/formats/file_extension.h"
-#include "data_tools/video/image_header.h"
-#include "geometry/check.h"
-#include "render/image_mat.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/formats/file_extension.h"
+#include "bodyloom/data_tools/video/image_header.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/render/image_mat.h"
 
 namespace bodyloom {
 namespace {

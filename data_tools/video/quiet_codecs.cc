@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/video/quiet_codecs.h"
+#include "bodyloom/data_tools/video/quiet_codecs.h"
 
 #include <stdlib.h>
 

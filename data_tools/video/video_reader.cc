@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/video/video_reader.h"
+#include "bodyloom/data_tools/video/video_reader.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +9,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "data_tools/video/image_file.h"
-#include "data_tools/video/quiet_codecs.h"
-#include "render/image_mat.h"
+#include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/data_tools/video/quiet_codecs.h"
+#include "bodyloom/render/image_mat.h"
 
 namespace bodyloom {
 namespace fs = std::filesystem;

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "render/image.h"
+#include "bodyloom/render/image.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/video/video_writer.h"
+#include "bodyloom/data_tools/video/video_writer.h"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -12,10 +12,10 @@
 #include <opencv2/videoio.hpp>
 #include <stdexcept>
 
-#include "data_tools/formats/atomic_file.h"
-#include "data_tools/video/quiet_codecs.h"
-#include "geometry/check.h"
-#include "render/image_mat.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/video/quiet_codecs.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/render/image_mat.h"
 
 namespace bodyloom {
 

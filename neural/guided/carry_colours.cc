@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/guided/carry_colours.h"
+#include "bodyloom/neural/guided/carry_colours.h"
 
-#include "neural/networks/pull_push.h"
-#include "neural/people/photo_frame.h"
+#include "bodyloom/neural/networks/pull_push.h"
+#include "bodyloom/neural/people/photo_frame.h"
 
 namespace bodyloom {
 

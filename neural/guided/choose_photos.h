@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "neural/people/photo_frame.h"
+#include "bodyloom/neural/people/photo_frame.h"
 
 namespace bodyloom {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/guided/clothes_extent.h"
+#include "bodyloom/neural/guided/clothes_extent.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
-#include "geometry/check.h"
-#include "neural/people/body_part_map.h"
-#include "neural/people/pixel_sweeps.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/neural/people/body_part_map.h"
+#include "bodyloom/neural/people/pixel_sweeps.h"
 
 namespace bodyloom {
 namespace {

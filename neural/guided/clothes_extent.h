@@ -12,8 +12,8 @@
 #include <span>
 #include <vector>
 
-#include "neural/people/photo_frame.h"
-#include "neural/people/texel_neighbours.h"
+#include "bodyloom/neural/people/photo_frame.h"
+#include "bodyloom/neural/people/texel_neighbours.h"
 
 namespace bodyloom {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/guided/coder.h"
+#include "bodyloom/neural/guided/coder.h"
 
 #include <algorithm>
 #include <string>
 
-#include "geometry/check.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 

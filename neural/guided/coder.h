@@ -11,7 +11,7 @@
 
 #include <vector>
 
-#include "neural/networks/blocks.h"
+#include "bodyloom/neural/networks/blocks.h"
 
 namespace bodyloom {
 

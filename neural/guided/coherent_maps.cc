@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/guided/coherent_maps.h"
+#include "bodyloom/neural/guided/coherent_maps.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "geometry/check.h"
-#include "neural/guided/clothes_extent.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/neural/guided/clothes_extent.h"
 
 namespace bodyloom {
 namespace {

@@ -10,8 +10,8 @@
 #include <span>
 #include <vector>
 
-#include "neural/guided/guided_picture.h"
-#include "neural/people/photo_frame.h"
+#include "bodyloom/neural/guided/guided_picture.h"
+#include "bodyloom/neural/people/photo_frame.h"
 
 namespace bodyloom {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/guided/draw_pose.h"
+#include "bodyloom/neural/guided/draw_pose.h"
 
-#include "geometry/check.h"
-#include "neural/guided/guided_tensors.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/neural/guided/guided_tensors.h"
 
 namespace bodyloom {
 

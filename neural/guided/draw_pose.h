@@ -2,9 +2,9 @@
 /// One pose through the three networks. Internal: includes LibTorch.
 #pragma once
 
-#include "neural/guided/guided_model.h"
-#include "neural/guided/guided_picture.h"
-#include "neural/people/photo_frame.h"
+#include "bodyloom/neural/guided/guided_model.h"
+#include "bodyloom/neural/guided/guided_picture.h"
+#include "bodyloom/neural/people/photo_frame.h"
 
 namespace bodyloom {
 

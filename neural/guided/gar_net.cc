@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/guided/gar_net.h"
+#include "bodyloom/neural/guided/gar_net.h"
 
-#include "neural/people/photo_frame.h"
+#include "bodyloom/neural/people/photo_frame.h"
 
 namespace bodyloom {
 

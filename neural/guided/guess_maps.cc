@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/guided/guess_maps.h"
+#include "bodyloom/neural/guided/guess_maps.h"
 
 #include <algorithm>
 #include <vector>
 
-#include "geometry/check.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <span>
 
-#include "neural/guided/coherent_maps.h"
-#include "neural/people/texel_neighbours.h"
+#include "bodyloom/neural/guided/coherent_maps.h"
+#include "bodyloom/neural/people/texel_neighbours.h"
 
 namespace bodyloom {
 

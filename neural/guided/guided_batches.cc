@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/guided/guided_batches.h"
+#include "bodyloom/neural/guided/guided_batches.h"
 
 #include <utility>
 #include <vector>
 
-#include "geometry/check.h"
-#include "neural/guided/guided_plan.h"
-#include "neural/guided/guided_tensors.h"
-#include "neural/guided/source_maps.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/neural/guided/guided_plan.h"
+#include "bodyloom/neural/guided/guided_tensors.h"
+#include "bodyloom/neural/guided/source_maps.h"
 
 namespace bodyloom {
 

@@ -6,11 +6,11 @@
 
 #include <cstdint>
 
-#include "neural/guided/guided_config.h"
-#include "neural/guided/guided_model.h"
-#include "neural/people/photo_frame.h"
-#include "neural/people/texel_neighbours.h"
-#include "neural/training/made_ahead.h"
+#include "bodyloom/neural/guided/guided_config.h"
+#include "bodyloom/neural/guided/guided_model.h"
+#include "bodyloom/neural/people/photo_frame.h"
+#include "bodyloom/neural/people/texel_neighbours.h"
+#include "bodyloom/neural/training/made_ahead.h"
 
 namespace bodyloom {
 

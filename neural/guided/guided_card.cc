@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/guided/guided_card.h"
+#include "bodyloom/neural/guided/guided_card.h"
 
-#include "neural/guided/guided_model.h"
-#include "neural/networks/architecture_card.h"
+#include "bodyloom/neural/guided/guided_model.h"
+#include "bodyloom/neural/networks/architecture_card.h"
 
 namespace bodyloom {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/guided/guided_config.h"
+#include "bodyloom/neural/guided/guided_config.h"
 
 #include <sstream>
 #include <stdexcept>
 #include <utility>
 
-#include "geometry/in_range.h"
+#include "bodyloom/geometry/base/in_range.h"
 
 namespace bodyloom {
 namespace {

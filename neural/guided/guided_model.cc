@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/guided/guided_model.h"
+#include "bodyloom/neural/guided/guided_model.h"
 
-#include "neural/guided/carry_colours.h"
-#include "neural/losses/image_losses.h"
-#include "neural/people/photo_frame.h"
+#include "bodyloom/neural/guided/carry_colours.h"
+#include "bodyloom/neural/losses/image_losses.h"
+#include "bodyloom/neural/people/photo_frame.h"
 
 namespace bodyloom {
 

@@ -18,12 +18,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "neural/guided/coder.h"
-#include "neural/guided/gar_net.h"
-#include "neural/guided/guided_config.h"
-#include "neural/guided/render_net.h"
-#include "neural/guided/sil_net.h"
-#include "neural/networks/patch_discriminator.h"
+#include "bodyloom/neural/guided/coder.h"
+#include "bodyloom/neural/guided/gar_net.h"
+#include "bodyloom/neural/guided/guided_config.h"
+#include "bodyloom/neural/guided/render_net.h"
+#include "bodyloom/neural/guided/sil_net.h"
+#include "bodyloom/neural/networks/patch_discriminator.h"
 
 namespace bodyloom {
 

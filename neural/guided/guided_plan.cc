@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/guided/guided_plan.h"
+#include "bodyloom/neural/guided/guided_plan.h"
 
 #include <algorithm>
 #include <array>
 #include <random>
 
-#include "geometry/check.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/guided/guided_renderer.h"
+#include "bodyloom/neural/guided/guided_renderer.h"
 
-#include "geometry/check.h"
-#include "neural/device.h"
-#include "neural/guided/draw_pose.h"
-#include "neural/guided/guided_model.h"
-#include "neural/guided/guided_tensors.h"
-#include "neural/runtime.h"
-#include "neural/training/checkpoint.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/neural/device.h"
+#include "bodyloom/neural/guided/draw_pose.h"
+#include "bodyloom/neural/guided/guided_model.h"
+#include "bodyloom/neural/guided/guided_tensors.h"
+#include "bodyloom/neural/runtime.h"
+#include "bodyloom/neural/training/checkpoint.h"
 
 namespace bodyloom {
 

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "neural/guided/coherent_maps.h"
-#include "neural/guided/guided_config.h"
-#include "neural/guided/guided_picture.h"
-#include "neural/guided/source_maps.h"
-#include "neural/people/photo_frame.h"
+#include "bodyloom/neural/guided/coherent_maps.h"
+#include "bodyloom/neural/guided/guided_config.h"
+#include "bodyloom/neural/guided/guided_picture.h"
+#include "bodyloom/neural/guided/source_maps.h"
+#include "bodyloom/neural/people/photo_frame.h"
 
 namespace bodyloom {
 

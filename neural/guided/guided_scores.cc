@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/guided/guided_scores.h"
+#include "bodyloom/neural/guided/guided_scores.h"
 
 #include <cmath>
 #include <limits>
 #include <optional>
 
-#include "geometry/check.h"
-#include "neural/metrics/class_overlap.h"
-#include "neural/metrics/contextual_similarity.h"
-#include "neural/metrics/lpips.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/neural/metrics/class_overlap.h"
+#include "bodyloom/neural/metrics/contextual_similarity.h"
+#include "bodyloom/neural/metrics/lpips.h"
 
 namespace bodyloom {
 namespace {

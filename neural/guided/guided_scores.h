@@ -4,8 +4,8 @@
 
 #include <memory>
 
-#include "neural/guided/guided_picture.h"
-#include "neural/people/photo_frame.h"
+#include "bodyloom/neural/guided/guided_picture.h"
+#include "bodyloom/neural/people/photo_frame.h"
 
 namespace bodyloom {
 

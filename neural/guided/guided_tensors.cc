@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/guided/guided_tensors.h"
+#include "bodyloom/neural/guided/guided_tensors.h"
 
 #include <algorithm>
 
-#include "geometry/check.h"
-#include "neural/device.h"
-#include "neural/people/aligned_box.h"
-#include "neural/people/body_part_map.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/neural/device.h"
+#include "bodyloom/neural/people/aligned_box.h"
+#include "bodyloom/neural/people/body_part_map.h"
 
 namespace bodyloom {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/guided/loss_balance.h"
+#include "bodyloom/neural/guided/loss_balance.h"
 
 #include <algorithm>
 
-#include "geometry/check.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

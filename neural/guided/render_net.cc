@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/guided/render_net.h"
+#include "bodyloom/neural/guided/render_net.h"
 
 #include <algorithm>
 #include <string>

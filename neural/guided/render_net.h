@@ -16,9 +16,9 @@
 
 #include <vector>
 
-#include "neural/guided/coder.h"
-#include "neural/guided/guided_config.h"
-#include "neural/networks/spatial_modulation.h"
+#include "bodyloom/neural/guided/coder.h"
+#include "bodyloom/neural/guided/guided_config.h"
+#include "bodyloom/neural/networks/spatial_modulation.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/guided/sil_net.h"
+#include "bodyloom/neural/guided/sil_net.h"
 
 namespace bodyloom {
 

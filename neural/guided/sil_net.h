@@ -7,8 +7,8 @@
 
 #include <torch/torch.h>
 
-#include "neural/guided/coder.h"
-#include "neural/guided/guided_config.h"
+#include "bodyloom/neural/guided/coder.h"
+#include "bodyloom/neural/guided/guided_config.h"
 
 namespace bodyloom {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/guided/source_maps.h"
+#include "bodyloom/neural/guided/source_maps.h"
 
-#include "geometry/check.h"
-#include "neural/guided/clothes_extent.h"
-#include "neural/guided/guess_maps.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/neural/guided/clothes_extent.h"
+#include "bodyloom/neural/guided/guess_maps.h"
 
 namespace bodyloom {
 

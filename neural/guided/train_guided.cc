@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/guided/train_guided.h"
+#include "bodyloom/neural/guided/train_guided.h"
 
 #include <algorithm>
 #include <array>
@@ -8,25 +8,25 @@
 #include <optional>
 #include <span>
 
-#include "geometry/check.h"
-#include "geometry/in_range.h"
-#include "neural/device.h"
-#include "neural/guided/choose_photos.h"
-#include "neural/guided/draw_pose.h"
-#include "neural/guided/guided_batches.h"
-#include "neural/guided/guided_tensors.h"
-#include "neural/guided/loss_balance.h"
-#include "neural/guided/source_maps.h"
-#include "neural/losses/contextual_loss.h"
-#include "neural/losses/gan_losses.h"
-#include "neural/losses/image_losses.h"
-#include "neural/losses/perceptual_loss.h"
-#include "neural/networks/vgg.h"
-#include "neural/runtime.h"
-#include "neural/training/adam.h"
-#include "neural/training/made_ahead.h"
-#include "neural/training/schedules.h"
-#include "neural/training/training_loop.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/in_range.h"
+#include "bodyloom/neural/device.h"
+#include "bodyloom/neural/guided/choose_photos.h"
+#include "bodyloom/neural/guided/draw_pose.h"
+#include "bodyloom/neural/guided/guided_batches.h"
+#include "bodyloom/neural/guided/guided_tensors.h"
+#include "bodyloom/neural/guided/loss_balance.h"
+#include "bodyloom/neural/guided/source_maps.h"
+#include "bodyloom/neural/losses/contextual_loss.h"
+#include "bodyloom/neural/losses/gan_losses.h"
+#include "bodyloom/neural/losses/image_losses.h"
+#include "bodyloom/neural/losses/perceptual_loss.h"
+#include "bodyloom/neural/networks/vgg.h"
+#include "bodyloom/neural/runtime.h"
+#include "bodyloom/neural/training/adam.h"
+#include "bodyloom/neural/training/made_ahead.h"
+#include "bodyloom/neural/training/schedules.h"
+#include "bodyloom/neural/training/training_loop.h"
 
 namespace bodyloom {
 namespace {

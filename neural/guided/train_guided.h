@@ -20,12 +20,12 @@
 #include <string>
 #include <vector>
 
-#include "neural/guided/guided_config.h"
-#include "neural/guided/guided_picture.h"
-#include "neural/guided/guided_scores.h"
-#include "neural/networks/named_weights.h"
-#include "neural/people/photo_frame.h"
-#include "neural/training/training_run.h"
+#include "bodyloom/neural/guided/guided_config.h"
+#include "bodyloom/neural/guided/guided_picture.h"
+#include "bodyloom/neural/guided/guided_scores.h"
+#include "bodyloom/neural/networks/named_weights.h"
+#include "bodyloom/neural/people/photo_frame.h"
+#include "bodyloom/neural/training/training_run.h"
 
 namespace bodyloom {
 

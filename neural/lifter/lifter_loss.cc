@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/lifter/lifter_loss.h"
+#include "bodyloom/neural/lifter/lifter_loss.h"
 
 #include <vector>
 
-#include "geometry/lifter_weights.h"
+#include "bodyloom/geometry/lifter_weights.h"
 
 namespace bodyloom {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "geometry/lifter_weights.h"
+#include "bodyloom/geometry/lifter_weights.h"
 
 namespace bodyloom {
 

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/lifter/train_lifter.h"
+#include "bodyloom/neural/lifter/train_lifter.h"
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 
-#include "geometry/check.h"
-#include "geometry/in_range.h"
-#include "neural/lifter/lifter_loss.h"
-#include "neural/lifter/lifter_module.h"
-#include "neural/muon.h"
-#include "neural/runtime.h"
-#include "neural/training/made_ahead.h"
-#include "neural/training/schedules.h"
-#include "neural/training/training_loop.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/in_range.h"
+#include "bodyloom/neural/lifter/lifter_loss.h"
+#include "bodyloom/neural/lifter/lifter_module.h"
+#include "bodyloom/neural/muon.h"
+#include "bodyloom/neural/runtime.h"
+#include "bodyloom/neural/training/made_ahead.h"
+#include "bodyloom/neural/training/schedules.h"
+#include "bodyloom/neural/training/training_loop.h"
 
 namespace bodyloom {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/losses/contextual_loss.h"
+#include "bodyloom/neural/losses/contextual_loss.h"
 
 #include <ATen/CPUGeneratorImpl.h>
 
 #include <algorithm>
 #include <vector>
 
-#include "geometry/check.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -11,8 +11,8 @@
 
 #include <vector>
 
-#include "geometry/check.h"
-#include "neural/losses/image_losses.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/neural/losses/image_losses.h"
 
 namespace bodyloom {
 

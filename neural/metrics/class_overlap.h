@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "geometry/check.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 

@@ -17,8 +17,8 @@
 #include <memory>
 #include <string>
 
-#include "neural/networks/named_weights.h"
-#include "render/image.h"
+#include "bodyloom/neural/networks/named_weights.h"
+#include "bodyloom/render/image.h"
 
 namespace bodyloom {
 

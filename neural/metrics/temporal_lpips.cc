@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/metrics/temporal_lpips.h"
+#include "bodyloom/neural/metrics/temporal_lpips.h"
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,7 @@
 
 #include <optional>
 
-#include "neural/metrics/lpips.h"
+#include "bodyloom/neural/metrics/lpips.h"
 
 namespace bodyloom {
 

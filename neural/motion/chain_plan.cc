@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/motion/chain_plan.h"
+#include "bodyloom/neural/motion/chain_plan.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "geometry/check.h"
-#include "geometry/split_mix.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/split_mix.h"
 
 namespace bodyloom {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/motion/clothes_reach.h"
+#include "bodyloom/neural/motion/clothes_reach.h"
 
 #include <algorithm>
 #include <limits>
 #include <vector>
 
-#include "neural/people/pixel_sweeps.h"
+#include "bodyloom/neural/people/pixel_sweeps.h"
 
 namespace bodyloom {
 namespace {

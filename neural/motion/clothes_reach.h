@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "neural/motion/motion_frame.h"
+#include "bodyloom/neural/motion/motion_frame.h"
 
 namespace bodyloom {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/motion/frame_tensors.h"
+#include "bodyloom/neural/motion/frame_tensors.h"
 
 #include <algorithm>
 #include <functional>
 
-#include "geometry/check.h"
-#include "neural/device.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/neural/device.h"
 
 namespace bodyloom {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/motion/learned_texture.h"
+#include "bodyloom/neural/motion/learned_texture.h"
 
-#include "neural/networks/uv_sampler.h"
+#include "bodyloom/neural/networks/uv_sampler.h"
 
 namespace bodyloom {
 namespace {

@@ -6,10 +6,10 @@
 
 #include <vector>
 
-#include "neural/motion/chain_plan.h"
-#include "neural/motion/frame_tensors.h"
-#include "neural/motion/person_box.h"
-#include "neural/training/made_ahead.h"
+#include "bodyloom/neural/motion/chain_plan.h"
+#include "bodyloom/neural/motion/frame_tensors.h"
+#include "bodyloom/neural/motion/person_box.h"
+#include "bodyloom/neural/training/made_ahead.h"
 
 namespace bodyloom {
 

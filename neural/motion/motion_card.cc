@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/motion/motion_card.h"
+#include "bodyloom/neural/motion/motion_card.h"
 
-#include "neural/motion/motion_model.h"
-#include "neural/networks/architecture_card.h"
-#include "neural/networks/patch_discriminator.h"
+#include "bodyloom/neural/motion/motion_model.h"
+#include "bodyloom/neural/networks/architecture_card.h"
+#include "bodyloom/neural/networks/patch_discriminator.h"
 
 namespace bodyloom {
 

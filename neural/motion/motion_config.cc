@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/motion/motion_config.h"
+#include "bodyloom/neural/motion/motion_config.h"
 
 #include <sstream>
 #include <stdexcept>
 
-#include "geometry/in_range.h"
+#include "bodyloom/geometry/base/in_range.h"
 
 namespace bodyloom {
 

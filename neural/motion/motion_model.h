@@ -19,9 +19,9 @@
 
 #include <vector>
 
-#include "neural/motion/learned_texture.h"
-#include "neural/motion/motion_config.h"
-#include "neural/networks/unet.h"
+#include "bodyloom/neural/motion/learned_texture.h"
+#include "bodyloom/neural/motion/motion_config.h"
+#include "bodyloom/neural/networks/unet.h"
 
 namespace bodyloom {
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "neural/motion/motion_config.h"
-#include "neural/motion/motion_frame.h"
-#include "neural/motion/motion_scores.h"
+#include "bodyloom/neural/motion/motion_config.h"
+#include "bodyloom/neural/motion/motion_frame.h"
+#include "bodyloom/neural/motion/motion_scores.h"
 
 namespace bodyloom {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/motion/motion_scorer.h"
+#include "bodyloom/neural/motion/motion_scorer.h"
 
 #include <cmath>
 #include <limits>
 
-#include "neural/device.h"
+#include "bodyloom/neural/device.h"
 
 namespace bodyloom {
 

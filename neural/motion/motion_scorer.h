@@ -6,10 +6,10 @@
 
 #include <limits>
 
-#include "neural/metrics/class_overlap.h"
-#include "neural/motion/frame_tensors.h"
-#include "neural/motion/motion_model.h"
-#include "neural/motion/motion_scores.h"
+#include "bodyloom/neural/metrics/class_overlap.h"
+#include "bodyloom/neural/motion/frame_tensors.h"
+#include "bodyloom/neural/motion/motion_model.h"
+#include "bodyloom/neural/motion/motion_scores.h"
 
 namespace bodyloom {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/motion/person_box.h"
+#include "bodyloom/neural/motion/person_box.h"
 
 #include <algorithm>
 
-#include "geometry/check.h"
-#include "neural/people/aligned_box.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/neural/people/aligned_box.h"
 
 namespace bodyloom {
 

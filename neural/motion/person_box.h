@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "neural/motion/motion_frame.h"
-#include "neural/motion/motion_model.h"
-#include "render/pixel_box.h"
+#include "bodyloom/neural/motion/motion_frame.h"
+#include "bodyloom/neural/motion/motion_model.h"
+#include "bodyloom/render/pixel_box.h"
 
 namespace bodyloom {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/motion/roll_out.h"
+#include "bodyloom/neural/motion/roll_out.h"
 
 #include <span>
 #include <utility>
 
-#include "geometry/check.h"
-#include "neural/motion/person_box.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/neural/motion/person_box.h"
 
 namespace bodyloom {
 

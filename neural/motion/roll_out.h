@@ -2,8 +2,8 @@
 /// A clip rendered frame after frame from nothing but its motion. Internal: includes LibTorch.
 #pragma once
 
-#include "neural/motion/frame_tensors.h"
-#include "neural/motion/motion_model.h"
+#include "bodyloom/neural/motion/frame_tensors.h"
+#include "bodyloom/neural/motion/motion_model.h"
 
 namespace bodyloom {
 

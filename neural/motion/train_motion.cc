@@ -1,28 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/motion/train_motion.h"
+#include "bodyloom/neural/motion/train_motion.h"
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <span>
 
-#include "geometry/check.h"
-#include "geometry/in_range.h"
-#include "neural/device.h"
-#include "neural/losses/gan_losses.h"
-#include "neural/losses/image_losses.h"
-#include "neural/losses/perceptual_loss.h"
-#include "neural/motion/motion_batches.h"
-#include "neural/motion/motion_scorer.h"
-#include "neural/motion/roll_out.h"
-#include "neural/motion/walk_memory.h"
-#include "neural/networks/patch_discriminator.h"
-#include "neural/networks/vgg.h"
-#include "neural/runtime.h"
-#include "neural/training/adam.h"
-#include "neural/training/schedules.h"
-#include "neural/training/training_loop.h"
-#include "neural/training/weight_average.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/in_range.h"
+#include "bodyloom/neural/device.h"
+#include "bodyloom/neural/losses/gan_losses.h"
+#include "bodyloom/neural/losses/image_losses.h"
+#include "bodyloom/neural/losses/perceptual_loss.h"
+#include "bodyloom/neural/motion/motion_batches.h"
+#include "bodyloom/neural/motion/motion_scorer.h"
+#include "bodyloom/neural/motion/roll_out.h"
+#include "bodyloom/neural/motion/walk_memory.h"
+#include "bodyloom/neural/networks/patch_discriminator.h"
+#include "bodyloom/neural/networks/vgg.h"
+#include "bodyloom/neural/runtime.h"
+#include "bodyloom/neural/training/adam.h"
+#include "bodyloom/neural/training/schedules.h"
+#include "bodyloom/neural/training/training_loop.h"
+#include "bodyloom/neural/training/weight_average.h"
 
 namespace bodyloom {
 namespace {

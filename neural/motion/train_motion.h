@@ -18,12 +18,12 @@
 #include <string>
 #include <vector>
 
-#include "neural/motion/chain_plan.h"
-#include "neural/motion/motion_config.h"
-#include "neural/motion/motion_frame.h"
-#include "neural/motion/motion_scores.h"
-#include "neural/networks/named_weights.h"
-#include "neural/training/training_run.h"
+#include "bodyloom/neural/motion/chain_plan.h"
+#include "bodyloom/neural/motion/motion_config.h"
+#include "bodyloom/neural/motion/motion_frame.h"
+#include "bodyloom/neural/motion/motion_scores.h"
+#include "bodyloom/neural/networks/named_weights.h"
+#include "bodyloom/neural/training/training_run.h"
 
 namespace bodyloom {
 

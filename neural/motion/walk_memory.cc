@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/motion/walk_memory.h"
+#include "bodyloom/neural/motion/walk_memory.h"
 
 #include <utility>
 #include <vector>
 
-#include "geometry/check.h"
-#include "neural/device.h"
-#include "neural/motion/person_box.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/neural/device.h"
+#include "bodyloom/neural/motion/person_box.h"
 
 namespace bodyloom {
 

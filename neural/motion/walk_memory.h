@@ -5,9 +5,9 @@
 
 #include <cstdint>
 
-#include "neural/motion/motion_batches.h"
-#include "neural/motion/motion_model.h"
-#include "neural/training/checkpoint.h"
+#include "bodyloom/neural/motion/motion_batches.h"
+#include "bodyloom/neural/motion/motion_model.h"
+#include "bodyloom/neural/training/checkpoint.h"
 
 namespace bodyloom {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/networks/blocks.h"
+#include "bodyloom/neural/networks/blocks.h"
 
 #include <cmath>
 
-#include "geometry/check.h"
+#include "bodyloom/geometry/base/check.h"
 
-#include "neural/networks/transposed_conv.h"
+#include "bodyloom/neural/networks/transposed_conv.h"
 
 namespace bodyloom {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/networks/feature_unet.h"
+#include "bodyloom/neural/networks/feature_unet.h"
 
 #include <string>
 
-#include "geometry/check.h"
-#include "neural/networks/blocks.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/neural/networks/blocks.h"
 
 namespace bodyloom {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "neural/networks/named_weights.h"
+#include "bodyloom/neural/networks/named_weights.h"
 
 namespace bodyloom {
 

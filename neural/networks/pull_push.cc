@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/networks/pull_push.h"
+#include "bodyloom/neural/networks/pull_push.h"
 
-#include "geometry/check.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/networks/residual_generator.h"
+#include "bodyloom/neural/networks/residual_generator.h"
 
 #include <string>
 
-#include "geometry/check.h"
-#include "neural/networks/blocks.h"
-#include "neural/networks/transposed_conv.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/neural/networks/blocks.h"
+#include "bodyloom/neural/networks/transposed_conv.h"
 
 namespace bodyloom {
 

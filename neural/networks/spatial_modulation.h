@@ -17,7 +17,7 @@
 
 #include <vector>
 
-#include "neural/networks/spectral_norm.h"
+#include "bodyloom/neural/networks/spectral_norm.h"
 
 namespace bodyloom {
 

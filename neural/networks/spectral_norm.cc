@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/networks/spectral_norm.h"
+#include "bodyloom/neural/networks/spectral_norm.h"
 
-#include "neural/networks/blocks.h"
+#include "bodyloom/neural/networks/blocks.h"
 
 namespace bodyloom {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/networks/transposed_conv.h"
+#include "bodyloom/neural/networks/transposed_conv.h"
 
 #include <array>
 #include <vector>
 
-#include "geometry/check.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -13,7 +13,7 @@
 
 #include <vector>
 
-#include "neural/networks/blocks.h"
+#include "bodyloom/neural/networks/blocks.h"
 
 namespace bodyloom {
 

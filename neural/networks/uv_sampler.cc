@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/networks/uv_sampler.h"
+#include "bodyloom/neural/networks/uv_sampler.h"
 
-#include "geometry/check.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 

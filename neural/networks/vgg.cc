@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/networks/vgg.h"
+#include "bodyloom/neural/networks/vgg.h"
 
 #include <ATen/CPUGeneratorImpl.h>
 
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <utility>
 
-#include "geometry/check.h"
-#include "neural/device.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/neural/device.h"
 
 namespace bodyloom {
 namespace {

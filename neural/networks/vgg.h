@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-#include "neural/networks/load_weights.h"
+#include "bodyloom/neural/networks/load_weights.h"
 
 namespace bodyloom {
 

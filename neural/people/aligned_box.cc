@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/people/aligned_box.h"
+#include "bodyloom/neural/people/aligned_box.h"
 
 #include <algorithm>
 

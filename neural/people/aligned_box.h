@@ -2,7 +2,7 @@
 /// Boxes that networks with strides can look at instead of a whole window.
 #pragma once
 
-#include "render/pixel_box.h"
+#include "bodyloom/render/pixel_box.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/people/texel_neighbours.h"
+#include "bodyloom/neural/people/texel_neighbours.h"
 
 #include <algorithm>
 #include <array>
@@ -7,9 +7,9 @@
 #include <limits>
 #include <map>
 
-#include "geometry/check.h"
-#include "neural/people/body_part_map.h"
-#include "neural/people/photo_frame.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/neural/people/body_part_map.h"
+#include "bodyloom/neural/people/photo_frame.h"
 
 namespace bodyloom {
 namespace {

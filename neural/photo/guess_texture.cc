@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/photo/guess_texture.h"
+#include "bodyloom/neural/photo/guess_texture.h"
 
-#include "geometry/check.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 

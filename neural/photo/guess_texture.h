@@ -2,8 +2,8 @@
 /// Colours of the texels that a picture does not show, from the nearest ones that it does.
 #pragma once
 
-#include "neural/people/texel_neighbours.h"
-#include "neural/photo/partial_texture.h"
+#include "bodyloom/neural/people/texel_neighbours.h"
+#include "bodyloom/neural/photo/partial_texture.h"
 
 namespace bodyloom {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/photo/partial_texture.h"
+#include "bodyloom/neural/photo/partial_texture.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "geometry/check.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "neural/people/photo_frame.h"
+#include "bodyloom/neural/people/photo_frame.h"
 
 namespace bodyloom {
 

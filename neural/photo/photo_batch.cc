@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/photo/photo_batch.h"
+#include "bodyloom/neural/photo/photo_batch.h"
 
 #include <algorithm>
 
-#include "neural/photo/guess_texture.h"
+#include "bodyloom/neural/photo/guess_texture.h"
 
 namespace bodyloom {
 namespace {

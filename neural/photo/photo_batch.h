@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "neural/people/photo_frame.h"
-#include "neural/people/texel_neighbours.h"
-#include "neural/photo/photo_pairs.h"
-#include "neural/photo/photo_tensors.h"
+#include "bodyloom/neural/people/photo_frame.h"
+#include "bodyloom/neural/people/texel_neighbours.h"
+#include "bodyloom/neural/photo/photo_pairs.h"
+#include "bodyloom/neural/photo/photo_tensors.h"
 
 namespace bodyloom {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/photo/photo_card.h"
+#include "bodyloom/neural/photo/photo_card.h"
 
-#include "neural/networks/architecture_card.h"
-#include "neural/photo/photo_model.h"
+#include "bodyloom/neural/networks/architecture_card.h"
+#include "bodyloom/neural/photo/photo_model.h"
 
 namespace bodyloom {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/photo/photo_config.h"
+#include "bodyloom/neural/photo/photo_config.h"
 
 #include <algorithm>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
 
-#include "geometry/check.h"
-#include "geometry/in_range.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/in_range.h"
 
 namespace bodyloom {
 namespace {

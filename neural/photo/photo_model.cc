@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/photo/photo_model.h"
+#include "bodyloom/neural/photo/photo_model.h"
 
-#include "geometry/check.h"
-#include "neural/networks/pull_push.h"
-#include "neural/networks/uv_sampler.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/neural/networks/pull_push.h"
+#include "bodyloom/neural/networks/uv_sampler.h"
 
 namespace bodyloom {
 

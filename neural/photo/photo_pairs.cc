@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/photo/photo_pairs.h"
+#include "bodyloom/neural/photo/photo_pairs.h"
 
 #include <algorithm>
 
-#include "geometry/check.h"
-#include "geometry/split_mix.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/split_mix.h"
 
 namespace bodyloom {
 namespace {

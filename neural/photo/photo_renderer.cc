@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/photo/photo_renderer.h"
+#include "bodyloom/neural/photo/photo_renderer.h"
 
 #include <span>
 
-#include "geometry/check.h"
-#include "neural/device.h"
-#include "neural/photo/render_photo.h"
-#include "neural/runtime.h"
-#include "neural/training/checkpoint.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/neural/device.h"
+#include "bodyloom/neural/photo/render_photo.h"
+#include "bodyloom/neural/runtime.h"
+#include "bodyloom/neural/training/checkpoint.h"
 
 namespace bodyloom {
 

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "neural/people/photo_frame.h"
-#include "neural/photo/partial_texture.h"
-#include "neural/photo/photo_config.h"
-#include "neural/photo/photo_picture.h"
+#include "bodyloom/neural/people/photo_frame.h"
+#include "bodyloom/neural/photo/partial_texture.h"
+#include "bodyloom/neural/photo/photo_config.h"
+#include "bodyloom/neural/photo/photo_picture.h"
 
 namespace bodyloom {
 

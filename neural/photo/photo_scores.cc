@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/photo/photo_scores.h"
+#include "bodyloom/neural/photo/photo_scores.h"
 
 #include <cmath>
 #include <limits>
 
-#include "geometry/check.h"
-#include "neural/image_tensor.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/neural/image_tensor.h"
 
 namespace bodyloom {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <functional>
 
-#include "neural/metrics/class_overlap.h"
-#include "neural/metrics/lpips.h"
-#include "neural/people/photo_frame.h"
-#include "neural/photo/photo_picture.h"
+#include "bodyloom/neural/metrics/class_overlap.h"
+#include "bodyloom/neural/metrics/lpips.h"
+#include "bodyloom/neural/people/photo_frame.h"
+#include "bodyloom/neural/photo/photo_picture.h"
 
 namespace bodyloom {
 

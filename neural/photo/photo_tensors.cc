@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/photo/photo_tensors.h"
+#include "bodyloom/neural/photo/photo_tensors.h"
 
 #include <algorithm>
 
-#include "geometry/check.h"
-#include "neural/device.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/neural/device.h"
 
 namespace bodyloom {
 

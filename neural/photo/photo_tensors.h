@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "neural/people/photo_frame.h"
-#include "neural/photo/partial_texture.h"
-#include "neural/photo/photo_window.h"
+#include "bodyloom/neural/people/photo_frame.h"
+#include "bodyloom/neural/photo/partial_texture.h"
+#include "bodyloom/neural/photo/photo_window.h"
 
 namespace bodyloom {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/photo/photo_window.h"
+#include "bodyloom/neural/photo/photo_window.h"
 
 #include <algorithm>
 
-#include "geometry/check.h"
-#include "neural/motion/clothes_reach.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/neural/motion/clothes_reach.h"
 
 namespace bodyloom {
 namespace {

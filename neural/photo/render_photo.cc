@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/photo/render_photo.h"
+#include "bodyloom/neural/photo/render_photo.h"
 
 #include <algorithm>
 #include <span>
 #include <vector>
 
-#include "neural/device.h"
+#include "bodyloom/neural/device.h"
 
 namespace bodyloom {
 

@@ -2,8 +2,8 @@
 /// One pose rendered from the features of a source. Internal: includes LibTorch.
 #pragma once
 
-#include "neural/photo/photo_model.h"
-#include "neural/photo/photo_picture.h"
+#include "bodyloom/neural/photo/photo_model.h"
+#include "bodyloom/neural/photo/photo_picture.h"
 
 namespace bodyloom {
 

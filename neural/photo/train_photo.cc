@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/photo/train_photo.h"
+#include "bodyloom/neural/photo/train_photo.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,22 +8,22 @@
 #include <optional>
 #include <span>
 
-#include "geometry/check.h"
-#include "geometry/in_range.h"
-#include "neural/device.h"
-#include "neural/losses/gan_losses.h"
-#include "neural/losses/perceptual_loss.h"
-#include "neural/networks/vgg.h"
-#include "neural/photo/guess_texture.h"
-#include "neural/photo/photo_batch.h"
-#include "neural/photo/photo_losses.h"
-#include "neural/photo/photo_model.h"
-#include "neural/photo/render_photo.h"
-#include "neural/runtime.h"
-#include "neural/training/adam.h"
-#include "neural/training/made_ahead.h"
-#include "neural/training/schedules.h"
-#include "neural/training/training_loop.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/in_range.h"
+#include "bodyloom/neural/device.h"
+#include "bodyloom/neural/losses/gan_losses.h"
+#include "bodyloom/neural/losses/perceptual_loss.h"
+#include "bodyloom/neural/networks/vgg.h"
+#include "bodyloom/neural/photo/guess_texture.h"
+#include "bodyloom/neural/photo/photo_batch.h"
+#include "bodyloom/neural/photo/photo_losses.h"
+#include "bodyloom/neural/photo/photo_model.h"
+#include "bodyloom/neural/photo/render_photo.h"
+#include "bodyloom/neural/runtime.h"
+#include "bodyloom/neural/training/adam.h"
+#include "bodyloom/neural/training/made_ahead.h"
+#include "bodyloom/neural/training/schedules.h"
+#include "bodyloom/neural/training/training_loop.h"
 
 namespace bodyloom {
 namespace {

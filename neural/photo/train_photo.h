@@ -22,13 +22,13 @@
 #include <string>
 #include <vector>
 
-#include "neural/networks/named_weights.h"
-#include "neural/people/photo_frame.h"
-#include "neural/photo/photo_config.h"
-#include "neural/photo/photo_pairs.h"
-#include "neural/photo/photo_picture.h"
-#include "neural/photo/photo_scores.h"
-#include "neural/training/training_run.h"
+#include "bodyloom/neural/networks/named_weights.h"
+#include "bodyloom/neural/people/photo_frame.h"
+#include "bodyloom/neural/photo/photo_config.h"
+#include "bodyloom/neural/photo/photo_pairs.h"
+#include "bodyloom/neural/photo/photo_picture.h"
+#include "bodyloom/neural/photo/photo_scores.h"
+#include "bodyloom/neural/training/training_run.h"
 
 namespace bodyloom {
 

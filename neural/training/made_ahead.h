@@ -2,7 +2,6 @@
 /// Things made by a thread of their own, a few ahead of the one that is asked for: the batches of a training run.
 #pragma once
 
-#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
@@ -11,6 +10,8 @@
 #include <mutex>
 #include <thread>
 #include <utility>
+
+#include "bodyloom/geometry/base/stopwatch.h"
 
 namespace bodyloom {
 
@@ -35,10 +36,10 @@ class MadeAhead {
   /// The next one; waits for it. At most `count` times. Throws what `make` threw, once all made before it were taken.
   /// Adds the time it waited to waited_s().
   Item Take() {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return !ready_.empty() || error_ != nullptr; });
-    waited_s_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    waited_s_ += watch.seconds();
     if (ready_.empty()) std::rethrow_exception(error_);
     Item item = std::move(ready_.front());
     ready_.pop_front();

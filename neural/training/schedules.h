@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "geometry/check.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 

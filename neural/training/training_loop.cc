@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/training/training_loop.h"
+#include "bodyloom/neural/training/training_loop.h"
 
-#include <chrono>
 #include <filesystem>
 #include <limits>
 
-#include "geometry/check.h"
-#include "geometry/in_range.h"
-#include "neural/training/run_files.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/in_range.h"
+#include "bodyloom/geometry/base/stopwatch.h"
+#include "bodyloom/neural/training/run_files.h"
 
 namespace bodyloom {
 
@@ -38,8 +38,7 @@ TrainingOutcome RunTraining(const TrainingRun& run, int total_steps, const std::
     done = last_saved = static_cast<int>(checkpoint->step);
     log.KeepUpTo(done);
   }
-  const auto start = std::chrono::steady_clock::now();
-  const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
+  const Stopwatch watch;
   const auto save = [&] {
     checkpoint->step = last_saved = done;
     checkpoint->Save(path);
@@ -63,9 +62,9 @@ TrainingOutcome RunTraining(const TrainingRun& run, int total_steps, const std::
       for (const double score : system->ScoreRow()) {
         row.push_back(validates ? score : std::numeric_limits<double>::quiet_NaN());
       }
-      row.push_back(seconds());
+      row.push_back(watch.seconds());
       log.Add(done, row);
-      if (!system->Report(done, seconds())) {
+      if (!system->Report(done, watch.seconds())) {
         outcome.status = TrainingStatus::kStopped;
         outcome.message = Concatenate("stopped at step ", done);
       } else if (run.patience > 0 && system->ValidationsSinceBest() >= run.patience) {
@@ -76,7 +75,7 @@ TrainingOutcome RunTraining(const TrainingRun& run, int total_steps, const std::
     if (last || done % run.checkpoint_every == 0 || outcome.status != TrainingStatus::kFinished) save();
   }
   outcome.steps = done;
-  outcome.seconds = seconds();
+  outcome.seconds = watch.seconds();
   return outcome;
 }
 

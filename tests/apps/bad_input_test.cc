@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "apps/exit_code.h"
-#include "data_tools/formats/npz.h"
+#include "bodyloom/data_tools/formats/npz.h"
 #include "tests/apps/run_command.h"
 
 namespace bodyloom {

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/exit_code.h"
-#include "data_tools/formats/npz.h"
-#include "data_tools/video/image_file.h"
+#include "bodyloom/data_tools/formats/npz.h"
+#include "bodyloom/data_tools/video/image_file.h"
 #include "tests/apps/run_command.h"
 
 namespace bodyloom {

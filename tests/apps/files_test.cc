@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/files.h"
+#include "bodyloom/pipelines/files.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -71,8 +71,8 @@ TEST_F(Files, FoldersAreMade) {
 
 TEST_F(Files, ReadingAndWritingTheSameFileIsAMistake) {
   EXPECT_NO_THROW(RequireDistinct({"a", ""}, {"b", "", "c", ""}));
-  EXPECT_THROW(RequireDistinct({InFolder("there")}, {InFolder("x/../there")}), UsageError);
-  EXPECT_THROW(RequireDistinct({}, {"a", "b", "./a"}), UsageError);
+  EXPECT_THROW(RequireDistinct({InFolder("there")}, {InFolder("x/../there")}), RequestError);
+  EXPECT_THROW(RequireDistinct({}, {"a", "b", "./a"}), RequestError);
 }
 
 }  // namespace

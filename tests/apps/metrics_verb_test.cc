@@ -11,9 +11,9 @@
 
 #include "apps/exit_code.h"
 #include "apps/metrics_run.h"
-#include "data_tools/formats/atomic_file.h"
-#include "data_tools/video/image_file.h"
-#include "data_tools/video/video_writer.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/data_tools/video/video_writer.h"
 #include "tests/apps/run_command.h"
 
 namespace bodyloom {

@@ -9,12 +9,12 @@
 
 #include "apps/neural/photo_outline.h"
 #include "apps/neural/photo_pictures.h"
-#include "data_tools/formats/atomic_file.h"
-#include "data_tools/video/image_file.h"
-#include "data_tools/video/photo_file.h"
-#include "data_tools/video/video_writer.h"
-#include "tests/data_tools/expect_file_error.h"
-#include "tests/data_tools/temporary_file.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/data_tools/video/photo_file.h"
+#include "bodyloom/data_tools/video/video_writer.h"
+#include "tests/data_tools/formats/expect_file_error.h"
+#include "tests/data_tools/formats/temporary_file.h"
 #include "tests/support/odd_pictures.h"
 
 namespace bodyloom {

@@ -11,14 +11,14 @@
 
 #include "apps/exit_code.h"
 #include "apps/render_run.h"
-#include "data_tools/builtin_body.h"
-#include "data_tools/formats/npz.h"
-#include "data_tools/track_io.h"
-#include "data_tools/video/image_file.h"
-#include "data_tools/video/video_reader.h"
-#include "data_tools/video/video_writer.h"
-#include "render/overlay.h"
-#include "render/resolve_pixels.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/data_tools/formats/npz.h"
+#include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/data_tools/video/video_reader.h"
+#include "bodyloom/data_tools/video/video_writer.h"
+#include "bodyloom/render/overlay.h"
+#include "bodyloom/render/resolve_pixels.h"
 #include "tests/apps/run_command.h"
 
 namespace bodyloom {
@@ -343,7 +343,7 @@ TEST(FrameRange, ReadsWhatUsersWrite) {
   EXPECT_EQ(FrameRange("3:7", 10, "t"), std::make_pair(3, 7));
   EXPECT_THROW(FrameRange("10", 10, "t"), std::runtime_error);
   EXPECT_THROW(FrameRange("9:11", 10, "t"), std::runtime_error);
-  EXPECT_THROW(FrameRange("7:3", 10, "t"), UsageError);
+  EXPECT_THROW(FrameRange("7:3", 10, "t"), RequestError);
 }
 
 }  // namespace

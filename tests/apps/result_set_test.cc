@@ -7,9 +7,9 @@
 #include <cmath>
 #include <vector>
 
-#include "data_tools/builtin_body.h"
-#include "data_tools/synthetic/demo_motion.h"
-#include "data_tools/synthetic/synth_clip.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
+#include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
 #include "tests/support/test_files.h"
 
 namespace bodyloom {

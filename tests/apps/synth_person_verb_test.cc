@@ -3,9 +3,9 @@
 
 #include <filesystem>
 
-#include "data_tools/people/people_set.h"
-#include "data_tools/people/person_set.h"
-#include "data_tools/video/image_file.h"
+#include "bodyloom/data_tools/datasets/people_set.h"
+#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/data_tools/video/image_file.h"
 #include "tests/apps/run_command.h"
 
 namespace bodyloom {

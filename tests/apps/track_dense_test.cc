@@ -11,13 +11,13 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/exit_code.h"
-#include "data_tools/builtin_body.h"
-#include "data_tools/formats/npz.h"
-#include "data_tools/observations/observations_npz.h"
-#include "data_tools/track_io.h"
-#include "data_tools/video/image_file.h"
-#include "render/overlay.h"
-#include "render/visible_points.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/data_tools/formats/npz.h"
+#include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/data_tools/observations/observations_npz.h"
+#include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/render/overlay.h"
+#include "bodyloom/render/visible_points.h"
 #include "tests/apps/run_command.h"
 
 namespace bodyloom {

@@ -6,8 +6,8 @@
 #include <fstream>
 #include <string>
 
-#include "data_tools/video/image_file.h"
-#include "data_tools/video/video_reader.h"
+#include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/data_tools/video/video_reader.h"
 #include "tests/apps/run_command.h"
 #include "tests/support/test_files.h"
 

@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <fstream>
 
-#include "data_tools/formats/ndarray.h"
-#include "data_tools/formats/safetensors.h"
-#include "data_tools/video/image_file.h"
-#include "data_tools/video/video_reader.h"
+#include "bodyloom/data_tools/formats/ndarray.h"
+#include "bodyloom/data_tools/formats/safetensors.h"
+#include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/data_tools/video/video_reader.h"
 #include "tests/apps/run_command.h"
 
 namespace bodyloom {

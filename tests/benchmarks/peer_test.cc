@@ -9,8 +9,8 @@
 #include "benchmarks/work_precision/autodiff_peer.h"
 #include "benchmarks/work_precision/measure.h"
 #include "benchmarks/work_precision/problem_file.h"
-#include "data_tools/formats/npz.h"
-#include "geometry/check.h"
+#include "bodyloom/data_tools/formats/npz.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

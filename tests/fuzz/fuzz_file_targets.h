@@ -9,11 +9,11 @@
 #include <fstream>
 #include <string>
 
-#include "data_tools/body_io.h"
-#include "data_tools/motion/motion_split.h"
-#include "data_tools/observations/densepose_iuv.h"
-#include "data_tools/people/person_set.h"
-#include "data_tools/video/image_file.h"
+#include "bodyloom/data_tools/body/body_io.h"
+#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/data_tools/motion/motion_split.h"
+#include "bodyloom/data_tools/observations/densepose_iuv.h"
+#include "bodyloom/data_tools/video/image_file.h"
 #include "tests/fuzz/fuzz_accepts.h"
 #include "tests/support/toy_body.h"
 

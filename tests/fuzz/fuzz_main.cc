@@ -15,7 +15,7 @@ namespace bodyloom::fuzz {
 namespace {
 
 struct Target {
-  const char* name;  ///< of its seeds too (tests/data_tools/fuzz_seeds.h)
+  const char* name;  ///< of its seeds too (tests/data_tools/fuzz/fuzz_seeds.h)
   bool (*accepts)(const std::string&);
 };
 

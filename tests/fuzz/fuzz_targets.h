@@ -3,7 +3,7 @@
 /// A reader may refuse with std::runtime_error and nothing else; whatever it accepts must hold together.
 ///
 /// The same functions run under libFuzzer (tests/fuzz/*_fuzz.cc, clang) and under GoogleTest with fixed mutations
-/// (tests/data_tools/fuzz_corpus_test.cc, any compiler). Each returns whether the input was accepted.
+/// (tests/data_tools/fuzz/fuzz_corpus_test.cc, any compiler). Each returns whether the input was accepted.
 #pragma once
 
 #include <algorithm>
@@ -13,13 +13,13 @@
 #include <string>
 #include <utility>
 
-#include "data_tools/body_compact.h"
-#include "data_tools/body_smpl.h"
-#include "data_tools/formats/npz.h"
-#include "data_tools/formats/obj.h"
-#include "data_tools/formats/pickle.h"
-#include "data_tools/formats/weights_file.h"
-#include "data_tools/track_io.h"
+#include "bodyloom/data_tools/body/body_compact.h"
+#include "bodyloom/data_tools/body/body_smpl.h"
+#include "bodyloom/data_tools/formats/npz.h"
+#include "bodyloom/data_tools/formats/obj.h"
+#include "bodyloom/data_tools/formats/pickle.h"
+#include "bodyloom/data_tools/formats/weights_file.h"
+#include "bodyloom/data_tools/motion/track_io.h"
 #include "tests/fuzz/fuzz_accepts.h"
 
 namespace bodyloom::fuzz {

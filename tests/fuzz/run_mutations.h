@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/data_tools/fuzz_seeds.h"
+#include "tests/data_tools/fuzz/fuzz_seeds.h"
 
 namespace bodyloom::fuzz {
 

@@ -4,8 +4,8 @@
 #include <exception>
 #include <filesystem>
 
-#include "data_tools/formats/atomic_file.h"
-#include "tests/data_tools/fuzz_seeds.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "tests/data_tools/fuzz/fuzz_seeds.h"
 
 int main(int argc, char** argv) {
   if (argc != 2) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "geometry/camera.h"
+#include "bodyloom/geometry/camera.h"
 
 #include <gtest/gtest.h>
 

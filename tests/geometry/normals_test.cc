@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "geometry/normals.h"
+#include "bodyloom/geometry/normals.h"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "geometry/posed_body.h"
-#include "geometry/skinning_simd.h"
+#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/skinning_simd.h"
 #include "tests/support/meshes.h"
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "geometry/posed_body.h"
+#include "bodyloom/geometry/posed_body.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/rotation.h"
+#include "bodyloom/geometry/rotation.h"
 #include "tests/geometry/random_body.h"
 #include "tests/geometry/slow_body.h"
 #include "tests/support/toy_body.h"

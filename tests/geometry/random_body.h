@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "geometry/body_model.h"
-#include "geometry/posed_body.h"
-#include "geometry/rotation.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/rotation.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "geometry/skinning.h"
+#include "bodyloom/geometry/skinning.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/skinning_simd.h"
+#include "bodyloom/geometry/skinning_simd.h"
 #include "tests/geometry/random_body.h"
 #include "tests/support/toy_body.h"
 

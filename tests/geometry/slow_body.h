@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-#include "geometry/body_model.h"
+#include "bodyloom/geometry/body_model.h"
 
 namespace bodyloom {
 

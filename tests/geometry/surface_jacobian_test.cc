@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "geometry/surface_jacobian.h"
+#include "bodyloom/geometry/surface_jacobian.h"
 
 #include <ceres/jet.h>
 #include <gmock/gmock.h>
@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/rotation.h"
+#include "bodyloom/geometry/rotation.h"
 #include "tests/geometry/random_body.h"
 #include "tests/geometry/slow_body.h"
 #include "tests/support/toy_body.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "geometry/surface_velocity.h"
+#include "bodyloom/geometry/surface_velocity.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "geometry/rotation.h"
-#include "geometry/surface_jacobian.h"
+#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/surface_jacobian.h"
 #include "tests/geometry/random_body.h"
 #include "tests/support/toy_body.h"
 

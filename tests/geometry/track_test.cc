@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "geometry/track.h"
+#include "bodyloom/geometry/track.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "geometry/observations.h"
+#include "bodyloom/geometry/observations.h"
 
 namespace bodyloom {
 namespace {

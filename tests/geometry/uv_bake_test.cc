@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "geometry/uv_bake.h"
+#include "bodyloom/geometry/uv_bake.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "geometry/skinning_simd.h"
+#include "bodyloom/geometry/skinning_simd.h"
 #include "tests/support/meshes.h"
 
 namespace bodyloom {

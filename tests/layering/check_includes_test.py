@@ -29,23 +29,23 @@ class CheckIncludes(unittest.TestCase):
 
     def test_allowed(self):
         code, out = check({
-            "tracking/a.cc": '#include <ceres/ceres.h>\n#include "geometry/b.h"\n#include "tracking/a.h"\n',
-            "apps/verb.cc": '#include <CLI/CLI.hpp>\n#include "tracking/a.h"\n#include "data_tools/c.h"\n'})
+            "tracking/a.cc": '#include <ceres/ceres.h>\n#include "bodyloom/geometry/b.h"\n#include "bodyloom/tracking/a.h"\n',
+            "apps/verb.cc": '#include <CLI/CLI.hpp>\n#include "bodyloom/tracking/a.h"\n#include "bodyloom/data_tools/c.h"\n'})
         self.assertEqual((code, out), (0, "2 files checked, 0 faults\n"))
 
     def test_upward_include(self):
-        self.expect_fault({"geometry/a.cc": '#include <vector>\n#include "tracking/b.h"\n'},
+        self.expect_fault({"geometry/a.cc": '#include <vector>\n#include "bodyloom/tracking/b.h"\n'},
                           'geometry/a.cc:2: geometry/ includes "tracking/b.h"')
 
     def test_siblings_do_not_know_each_other(self):
-        self.expect_fault({"tracking/sub/a.cc": '#include "data_tools/b.h"\n'}, "tracking/sub/a.cc:1")
-        self.expect_fault({"data_tools/a.cc": '#include "tracking/b.h"\n'}, "data_tools/a.cc:1")
-        self.expect_fault({"neural/a.cc": '#include "tracking/b.h"\n'}, "neural/a.cc:1")
+        self.expect_fault({"tracking/sub/a.cc": '#include "bodyloom/data_tools/b.h"\n'}, "tracking/sub/a.cc:1")
+        self.expect_fault({"data_tools/a.cc": '#include "bodyloom/tracking/b.h"\n'}, "data_tools/a.cc:1")
+        self.expect_fault({"neural/a.cc": '#include "bodyloom/tracking/b.h"\n'}, "neural/a.cc:1")
 
     def test_evaluation_measures_with_tracking(self):
-        code, out = check({"data_tools/evaluation/a.cc": '#include "tracking/metrics.h"\n'})
+        code, out = check({"data_tools/evaluation/a.cc": '#include "bodyloom/data_tools/evaluation/metrics.h"\n'})
         self.assertEqual((code, out), (0, "1 files checked, 0 faults\n"))
-        self.expect_fault({"data_tools/formats/a.cc": '#include "tracking/metrics.h"\n'}, "data_tools/formats/a.cc:1")
+        self.expect_fault({"data_tools/formats/a.cc": '#include "bodyloom/data_tools/evaluation/metrics.h"\n'}, "data_tools/formats/a.cc:1")
 
     def test_third_party_outside_its_home(self):
         self.expect_fault({"geometry/a.cc": "#include <ceres/jet.h>\n"}, "expected only in benchmarks, tests, tracking")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/muon.h"
+#include "bodyloom/neural/muon.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neural/runtime.h"
+#include "bodyloom/neural/runtime.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/chart_lookup.h"
+#include "bodyloom/render/chart_lookup.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "render/visible_points.h"
+#include "bodyloom/render/visible_points.h"
 #include "tests/support/toy_body.h"
 
 namespace bodyloom {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/overlay.h"
+#include "bodyloom/render/overlay.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "geometry/rotation.h"
-#include "geometry/vertex_normals.h"
-#include "render/shaded_mesh.h"
-#include "render/visibility_buffer.h"
+#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/vertex_normals.h"
+#include "bodyloom/render/shaded_mesh.h"
+#include "bodyloom/render/visibility_buffer.h"
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 

@@ -5,9 +5,9 @@
 #include <Eigen/Core>
 #include <cmath>
 
-#include "geometry/body_model.h"
-#include "render/image.h"
-#include "render/visible_points.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/render/image.h"
+#include "bodyloom/render/visible_points.h"
 
 namespace bodyloom {
 

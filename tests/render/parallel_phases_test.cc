@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/parallel_phases.h"
+#include "bodyloom/render/parallel_phases.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/person_window.h"
+#include "bodyloom/render/person_window.h"
 
 #include <gtest/gtest.h>
 

@@ -6,13 +6,13 @@
 #include <cmath>
 #include <numeric>
 
-#include "render/caption.h"
-#include "render/contact_sheet.h"
-#include "render/draw_keypoints.h"
-#include "render/floor.h"
-#include "render/image.h"
-#include "render/palette.h"
-#include "render/pixel_box.h"
+#include "bodyloom/render/caption.h"
+#include "bodyloom/render/contact_sheet.h"
+#include "bodyloom/render/draw_keypoints.h"
+#include "bodyloom/render/floor.h"
+#include "bodyloom/render/image.h"
+#include "bodyloom/render/palette.h"
+#include "bodyloom/render/pixel_box.h"
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 

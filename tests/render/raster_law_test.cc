@@ -8,7 +8,7 @@
 #include <random>
 #include <string>
 
-#include "render/visibility_buffer.h"
+#include "bodyloom/render/visibility_buffer.h"
 #include "tests/support/raster_twin.h"
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/resolve_pixels.h"
+#include "bodyloom/render/resolve_pixels.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <random>
 #include <vector>
 
-#include "geometry/rotation.h"
-#include "render/shaded_mesh.h"
-#include "render/visible_points.h"
+#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/render/shaded_mesh.h"
+#include "bodyloom/render/visible_points.h"
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/shaded_mesh.h"
+#include "bodyloom/render/shaded_mesh.h"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <cmath>
 #include <random>
 
-#include "render/overlay.h"
-#include "render/raster_simd.h"
-#include "render/shade_simd.h"
-#include "render/view_camera.h"
+#include "bodyloom/render/overlay.h"
+#include "bodyloom/render/raster_simd.h"
+#include "bodyloom/render/shade_simd.h"
+#include "bodyloom/render/view_camera.h"
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 

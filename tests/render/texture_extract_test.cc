@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/texture_extract.h"
+#include "bodyloom/render/texture_extract.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "render/uv_splat.h"
+#include "bodyloom/render/uv_splat.h"
 #include "tests/render/painted_body.h"
 #include "tests/support/meshes.h"
 #include "tests/support/toy_body.h"

@@ -10,8 +10,8 @@
 #include <set>
 #include <utility>
 
-#include "geometry/observations.h"
-#include "geometry/posed_body.h"
+#include "bodyloom/geometry/observations.h"
+#include "bodyloom/geometry/posed_body.h"
 
 namespace bodyloom {
 namespace {

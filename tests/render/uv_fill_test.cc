@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/uv_fill.h"
+#include "bodyloom/render/uv_fill.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/visibility_buffer.h"
+#include "bodyloom/render/visibility_buffer.h"
 
 #include <gtest/gtest.h>
 

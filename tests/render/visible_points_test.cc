@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/visible_points.h"
+#include "bodyloom/render/visible_points.h"
 
 #include <gtest/gtest.h>
 

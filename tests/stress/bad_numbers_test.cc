@@ -4,7 +4,7 @@
 #include <functional>
 #include <limits>
 
-#include "data_tools/builtin_body.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
 #include "tests/stress/stress_support.h"
 
 namespace bodyloom::stress {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <ctime>
 
-#include "data_tools/builtin_body.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
 #include "tests/stress/stress_support.h"
 #include "tests/support/toy_body.h"
 

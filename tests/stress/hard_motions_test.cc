@@ -3,8 +3,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "data_tools/builtin_body.h"
-#include "data_tools/motion/load_motion.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/data_tools/motion/load_motion.h"
 #include "tests/stress/stress_support.h"
 
 namespace bodyloom::stress {

@@ -12,7 +12,7 @@
 #include <random>
 #include <thread>
 
-#include "data_tools/track_io.h"
+#include "bodyloom/data_tools/motion/track_io.h"
 #include "tests/apps/run_command.h"
 #include "tests/support/test_files.h"
 

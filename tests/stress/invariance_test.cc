@@ -7,12 +7,12 @@
 #include <set>
 #include <string>
 
-#include "data_tools/builtin_body.h"
-#include "data_tools/lifter/lifter_weights_io.h"
-#include "data_tools/synthetic/demo_motion.h"
-#include "geometry/posed_body.h"
-#include "geometry/rotation.h"
-#include "geometry/skinning.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/data_tools/learned/lifter_weights_io.h"
+#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
+#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/skinning.h"
 #include "tests/stress/stress_support.h"
 #include "tests/support/toy_poses.h"
 

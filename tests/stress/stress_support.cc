@@ -9,11 +9,11 @@
 #include <fstream>
 #include <numeric>
 
-#include "data_tools/lifter/lifter_weights_io.h"
-#include "data_tools/prior/pose_prior_io.h"
-#include "data_tools/synthetic/demo_motion.h"
-#include "geometry/rotation.h"
-#include "tracking/metrics.h"
+#include "bodyloom/data_tools/evaluation/metrics.h"
+#include "bodyloom/data_tools/learned/lifter_weights_io.h"
+#include "bodyloom/data_tools/learned/pose_prior_io.h"
+#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
+#include "bodyloom/geometry/rotation.h"
 
 namespace bodyloom::stress {
 namespace {

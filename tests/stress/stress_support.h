@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "data_tools/synthetic/synth_clip.h"
-#include "geometry/body_model.h"
-#include "tracking/track_sequence.h"
+#include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/tracking/track_sequence.h"
 
 namespace bodyloom::stress {
 

@@ -4,8 +4,8 @@
 
 #include <Eigen/Core>
 
-#include "geometry/arrays.h"
-#include "tracking/chain/chain_problem.h"
+#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/tracking/chain/chain_problem.h"
 
 namespace bodyloom {
 

@@ -18,8 +18,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "geometry/arrays.h"
-#include "geometry/camera.h"
+#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/camera.h"
 
 namespace bodyloom {
 

@@ -9,9 +9,9 @@
 #include <random>
 #include <vector>
 
-#include "geometry/rotation.h"
+#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/tracking/frame_cost.h"
 #include "tests/support/toy_body.h"
-#include "tracking/frame_cost.h"
 
 namespace bodyloom {
 

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/arrays.h"
-#include "geometry/body_model.h"
+#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/body_model.h"
 
 namespace bodyloom {
 

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "render/image.h"
-#include "render/image_mat.h"
+#include "bodyloom/render/image.h"
+#include "bodyloom/render/image_mat.h"
 
 namespace bodyloom {
 

@@ -8,11 +8,11 @@
 #include <random>
 #include <vector>
 
-#include "geometry/rotation.h"
+#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/tracking/joint_limits.h"
+#include "bodyloom/tracking/sequence_problem.h"
 #include "tests/support/frame_scene.h"
 #include "tests/support/toy_body.h"
-#include "tracking/joint_limits.h"
-#include "tracking/sequence_problem.h"
 
 namespace bodyloom {
 

@@ -22,7 +22,7 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/body_model.h"
+#include "bodyloom/geometry/body_model.h"
 
 namespace bodyloom {
 namespace toy_body_internal {

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <random>
 
-#include "geometry/body_model.h"
-#include "geometry/camera.h"
-#include "geometry/posed_body.h"
-#include "geometry/rotation.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/camera.h"
+#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/rotation.h"
 
 namespace bodyloom {
 

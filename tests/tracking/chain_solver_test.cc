@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/chain_solver.h"
+#include "bodyloom/tracking/chain_solver.h"
 
 #include <gtest/gtest.h>
 

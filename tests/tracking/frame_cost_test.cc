@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every term of the frame cost against automatic differentiation of an independent twin, to 1e-9 relative.
-#include "tracking/frame_cost.h"
+#include "bodyloom/tracking/frame_cost.h"
 
 #include <gtest/gtest.h>
 
@@ -12,12 +12,12 @@
 #include <random>
 #include <string>
 
-#include "geometry/rotation.h"
+#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/tracking/chain/panel_simd.h"
+#include "bodyloom/tracking/residuals/compressed_frame_cost.h"
+#include "bodyloom/tracking/robust.h"
 #include "tests/support/frame_scene.h"
 #include "tests/tracking/jet_twin.h"
-#include "tracking/chain/panel_simd.h"
-#include "tracking/residuals/compressed_frame_cost.h"
-#include "tracking/robust.h"
 
 namespace bodyloom {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Standing feet and the trunk's lean in the frame cost against automatic differentiation of their formulas.
-#include "tracking/residuals/ground_contact.h"
+#include "bodyloom/tracking/residuals/ground_contact.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <memory>
 #include <random>
 
+#include "bodyloom/tracking/robust.h"
 #include "tests/support/frame_scene.h"
 #include "tests/tracking/jet_twin.h"
-#include "tracking/robust.h"
 
 namespace bodyloom {
 namespace {

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // The tracker with rendered UV, silhouettes and part labels: from input to summary.
-#include "tracking/image_terms.h"
+#include "bodyloom/tracking/image_terms.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <functional>
 
-#include "data_tools/builtin_body.h"
-#include "data_tools/prior/pose_prior_io.h"
-#include "data_tools/synthetic/demo_motion.h"
-#include "data_tools/synthetic/perturbed_motion.h"
-#include "data_tools/synthetic/synth_clip.h"
-#include "geometry/posed_body.h"
-#include "render/visibility_buffer.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/data_tools/learned/pose_prior_io.h"
+#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
+#include "bodyloom/data_tools/synthesis/clips/perturbed_motion.h"
+#include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
+#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/render/visibility_buffer.h"
 
 namespace bodyloom {
 namespace {

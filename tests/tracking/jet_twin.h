@@ -8,10 +8,10 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "geometry/body_model.h"
-#include "geometry/camera.h"
-#include "geometry/rotation.h"
-#include "tracking/frame_cost.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/camera.h"
+#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/tracking/frame_cost.h"
 
 namespace bodyloom::twin {
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // The lifter's term of the frame cost against automatic differentiation of its formula.
-#include "tracking/residuals/lifted_pose.h"
+#include "bodyloom/tracking/residuals/lifted_pose.h"
 
 #include <gtest/gtest.h>
 
 #include <memory>
 #include <random>
 
+#include "bodyloom/tracking/initialise/lifter_input.h"
+#include "bodyloom/tracking/robust.h"
 #include "tests/support/frame_scene.h"
 #include "tests/tracking/jet_twin.h"
-#include "tracking/initialise/lifter_input.h"
-#include "tracking/robust.h"
 
 namespace bodyloom {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // How lively a motion is, against a joint that turns with a known acceleration.
-#include "tracking/motion_level.h"
+#include "bodyloom/tracking/motion_level.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "geometry/rotation.h"
+#include "bodyloom/geometry/rotation.h"
 #include "tests/support/frame_scene.h"
 
 namespace bodyloom {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/residuals/part_label_term.h"
+#include "bodyloom/tracking/residuals/part_label_term.h"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <functional>
 #include <memory>
 
-#include "geometry/rotation.h"
+#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/tracking/robust.h"
 #include "tests/support/frame_scene.h"
 #include "tests/tracking/jet_twin.h"
-#include "tracking/robust.h"
 
 namespace bodyloom {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // L_r and the covariance of dense keypoints: derivatives against Jets with the visible face held, and what unmatched
 // pixels cost.
-#include "tracking/residuals/rendered_uv_term.h"
+#include "bodyloom/tracking/residuals/rendered_uv_term.h"
 
 #include <gtest/gtest.h>
 
@@ -9,12 +9,12 @@
 #include <memory>
 #include <random>
 
-#include "geometry/rotation.h"
-#include "render/visible_points.h"
+#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/render/visible_points.h"
+#include "bodyloom/tracking/residuals/dense_whitening.h"
+#include "bodyloom/tracking/robust.h"
 #include "tests/support/frame_scene.h"
 #include "tests/tracking/jet_twin.h"
-#include "tracking/residuals/dense_whitening.h"
-#include "tracking/robust.h"
 
 namespace bodyloom {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/uncertainty.h"
+#include "bodyloom/tracking/uncertainty.h"
 
 #include <gtest/gtest.h>
 

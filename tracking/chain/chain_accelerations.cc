@@ -2,9 +2,9 @@
 // What the accelerations of ChainProblem's frames cost, and what they give to its matrix: each couples three frames.
 #include <algorithm>
 
-#include "geometry/parallel.h"
-#include "geometry/rotation.h"
-#include "tracking/chain/chain_problem.h"
+#include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/tracking/chain/chain_problem.h"
 
 namespace bodyloom {
 

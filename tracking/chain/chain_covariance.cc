@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/chain/chain_covariance.h"
+#include "bodyloom/tracking/chain/chain_covariance.h"
 
 namespace bodyloom {
 

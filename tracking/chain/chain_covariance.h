@@ -4,8 +4,8 @@
 
 #include <functional>
 
-#include "tracking/chain/chain_factor.h"
-#include "tracking/chain/chain_problem.h"
+#include "bodyloom/tracking/chain/chain_factor.h"
+#include "bodyloom/tracking/chain/chain_problem.h"
 
 namespace bodyloom {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/chain/chain_factor.h"
+#include "bodyloom/tracking/chain/chain_factor.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <utility>
 
-#include "geometry/check.h"
-#include "geometry/parallel.h"
-#include "tracking/chain/panel_simd.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/tracking/chain/panel_simd.h"
 
 namespace bodyloom {
 

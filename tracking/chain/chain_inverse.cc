@@ -4,11 +4,11 @@
 #include <mutex>
 #include <utility>
 
-#include "geometry/arrays.h"
-#include "geometry/check.h"
-#include "geometry/parallel.h"
-#include "tracking/chain/chain_factor.h"
-#include "tracking/chain/panel_simd.h"
+#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/tracking/chain/chain_factor.h"
+#include "bodyloom/tracking/chain/panel_simd.h"
 
 namespace bodyloom {
 

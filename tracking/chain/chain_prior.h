@@ -8,7 +8,7 @@
 #include <Eigen/Core>
 #include <array>
 
-#include "tracking/frame_cost.h"
+#include "bodyloom/tracking/frame_cost.h"
 
 namespace bodyloom {
 

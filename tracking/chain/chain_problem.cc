@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/chain/chain_problem.h"
+#include "bodyloom/tracking/chain/chain_problem.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "geometry/check.h"
-#include "geometry/parallel.h"
-#include "geometry/rotation.h"
-#include "tracking/chain/panel_simd.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/tracking/chain/panel_simd.h"
 
 namespace bodyloom {
 

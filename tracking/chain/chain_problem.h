@@ -10,10 +10,10 @@
 #include <mutex>
 #include <vector>
 
-#include "tracking/chain/chain_factor.h"
-#include "tracking/chain/chain_prior.h"
-#include "tracking/residuals/acceleration_cost.h"
-#include "tracking/sequence_problem.h"
+#include "bodyloom/tracking/chain/chain_factor.h"
+#include "bodyloom/tracking/chain/chain_prior.h"
+#include "bodyloom/tracking/residuals/acceleration_cost.h"
+#include "bodyloom/tracking/sequence_problem.h"
 
 namespace bodyloom {
 

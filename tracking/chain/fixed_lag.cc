@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/chain/fixed_lag.h"
+#include "bodyloom/tracking/chain/fixed_lag.h"
 
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <utility>
 
-#include "geometry/check.h"
-#include "tracking/chain/chain_covariance.h"
-#include "tracking/chain_solver.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/tracking/chain/chain_covariance.h"
+#include "bodyloom/tracking/chain_solver.h"
 
 namespace bodyloom {
 

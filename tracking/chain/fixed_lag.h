@@ -9,10 +9,10 @@
 
 #include <functional>
 
-#include "tracking/chain/chain_factor.h"
-#include "tracking/chain/chain_prior.h"
-#include "tracking/chain/chain_problem.h"
-#include "tracking/sequence_problem.h"
+#include "bodyloom/tracking/chain/chain_factor.h"
+#include "bodyloom/tracking/chain/chain_prior.h"
+#include "bodyloom/tracking/chain/chain_problem.h"
+#include "bodyloom/tracking/sequence_problem.h"
 
 namespace bodyloom {
 

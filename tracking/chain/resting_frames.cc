@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/chain/resting_frames.h"
+#include "bodyloom/tracking/chain/resting_frames.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/initialise/bone_ratio_shape.h"
+#include "bodyloom/tracking/initialise/bone_ratio_shape.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <vector>
 
-#include "geometry/posed_body.h"
-#include "tracking/initialise/joint_rays.h"
+#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/tracking/initialise/joint_rays.h"
 
 namespace bodyloom {
 

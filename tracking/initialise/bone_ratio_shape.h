@@ -4,10 +4,10 @@
 
 #include <Eigen/Core>
 
-#include "geometry/body_model.h"
-#include "geometry/camera.h"
-#include "geometry/observations.h"
-#include "tracking/initialise/joint_hypotheses.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/camera.h"
+#include "bodyloom/geometry/observations.h"
+#include "bodyloom/tracking/initialise/joint_hypotheses.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/initialise/ground_plane.h"
+#include "bodyloom/tracking/initialise/ground_plane.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <utility>
 
-#include "geometry/check.h"
-#include "tracking/robust.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/tracking/robust.h"
 
 namespace bodyloom {
 namespace {

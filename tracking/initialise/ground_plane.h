@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "tracking/initialise/lifter_reading.h"
+#include "bodyloom/tracking/initialise/lifter_reading.h"
 
 namespace bodyloom {
 

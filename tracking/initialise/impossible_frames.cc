@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/initialise/impossible_frames.h"
+#include "bodyloom/tracking/initialise/impossible_frames.h"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "tracking/initialise/swap_repair.h"
+#include "bodyloom/tracking/initialise/swap_repair.h"
 
 namespace bodyloom {
 namespace {

@@ -2,7 +2,7 @@
 /// Frames in which a detector followed something else.
 #pragma once
 
-#include "geometry/observations.h"
+#include "bodyloom/geometry/observations.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/initialise/initial_states.h"
+#include "bodyloom/tracking/initialise/initial_states.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,16 +7,16 @@
 #include <thread>
 #include <utility>
 
-#include "geometry/check.h"
-#include "geometry/posed_body.h"
-#include "geometry/rotation.h"
-#include "tracking/initialise/bone_ratio_shape.h"
-#include "tracking/initialise/inverse_kinematics.h"
-#include "tracking/initialise/joint_hypotheses.h"
-#include "tracking/initialise/lifted_start.h"
-#include "tracking/initialise/swap_repair.h"
-#include "tracking/residuals/lifted_pose.h"
-#include "tracking/sequence_problem.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/tracking/initialise/bone_ratio_shape.h"
+#include "bodyloom/tracking/initialise/inverse_kinematics.h"
+#include "bodyloom/tracking/initialise/joint_hypotheses.h"
+#include "bodyloom/tracking/initialise/lifted_start.h"
+#include "bodyloom/tracking/initialise/swap_repair.h"
+#include "bodyloom/tracking/residuals/lifted_pose.h"
+#include "bodyloom/tracking/sequence_problem.h"
 
 namespace bodyloom {
 

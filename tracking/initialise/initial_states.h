@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "tracking/frame_cost.h"
-#include "tracking/track_sequence.h"
+#include "bodyloom/tracking/frame_cost.h"
+#include "bodyloom/tracking/track_sequence.h"
 
 namespace bodyloom {
 

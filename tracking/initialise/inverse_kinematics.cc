@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/initialise/inverse_kinematics.h"
+#include "bodyloom/tracking/initialise/inverse_kinematics.h"
 
 #include <Eigen/Geometry>
 
-#include "geometry/check.h"
-#include "geometry/rotation.h"
-#include "tracking/initialise/joint_hypotheses.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/tracking/initialise/joint_hypotheses.h"
 
 namespace bodyloom {
 

@@ -8,8 +8,8 @@
 
 #include <Eigen/Core>
 
-#include "geometry/arrays.h"
-#include "geometry/posed_body.h"
+#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/posed_body.h"
 
 namespace bodyloom {
 

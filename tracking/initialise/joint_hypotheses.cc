@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/initialise/joint_hypotheses.h"
+#include "bodyloom/tracking/initialise/joint_hypotheses.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "geometry/check.h"
-#include "tracking/initialise/joint_rays.h"
-#include "tracking/initialise/limb_costs.h"
-#include "tracking/initialise/torso_states.h"
-#include "tracking/initialise/viterbi.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/tracking/initialise/joint_rays.h"
+#include "bodyloom/tracking/initialise/limb_costs.h"
+#include "bodyloom/tracking/initialise/torso_states.h"
+#include "bodyloom/tracking/initialise/viterbi.h"
 
 namespace bodyloom {
 

@@ -15,11 +15,11 @@
 #include <array>
 #include <vector>
 
-#include "geometry/arrays.h"
-#include "geometry/body_model.h"
-#include "geometry/camera.h"
-#include "geometry/observations.h"
-#include "geometry/pose_prior.h"
+#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/camera.h"
+#include "bodyloom/geometry/observations.h"
+#include "bodyloom/geometry/pose_prior.h"
 
 namespace bodyloom {
 

@@ -7,10 +7,10 @@
 #include <array>
 #include <vector>
 
-#include "geometry/arrays.h"
-#include "geometry/camera.h"
-#include "geometry/observations.h"
-#include "tracking/initialise/joint_hypotheses.h"
+#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/camera.h"
+#include "bodyloom/geometry/observations.h"
+#include "bodyloom/tracking/initialise/joint_hypotheses.h"
 
 namespace bodyloom::hypotheses_internal {
 

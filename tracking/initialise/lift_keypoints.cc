@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/initialise/lift_keypoints.h"
+#include "bodyloom/tracking/initialise/lift_keypoints.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/check.h"
-#include "geometry/parallel.h"
-#include "tracking/initialise/lifter_input.h"
-#include "tracking/initialise/lifter_network.h"
-#include "tracking/initialise/lifter_reading.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/tracking/initialise/lifter_input.h"
+#include "bodyloom/tracking/initialise/lifter_network.h"
+#include "bodyloom/tracking/initialise/lifter_reading.h"
 
 namespace bodyloom {
 namespace {

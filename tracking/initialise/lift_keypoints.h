@@ -11,11 +11,11 @@
 #include <array>
 #include <vector>
 
-#include "geometry/arrays.h"
-#include "geometry/camera.h"
-#include "geometry/lifter_weights.h"
-#include "geometry/observations.h"
-#include "tracking/initialise/lifter_reading.h"
+#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/camera.h"
+#include "bodyloom/geometry/lifter_weights.h"
+#include "bodyloom/geometry/observations.h"
+#include "bodyloom/tracking/initialise/lifter_reading.h"
 
 namespace bodyloom {
 

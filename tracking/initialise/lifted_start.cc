@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/initialise/lifted_start.h"
+#include "bodyloom/tracking/initialise/lifted_start.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "geometry/posed_body.h"
-#include "geometry/rotation.h"
-#include "tracking/initialise/inverse_kinematics.h"
-#include "tracking/initialise/joint_hypotheses.h"
-#include "tracking/initialise/lifter_input.h"
-#include "tracking/robust.h"
+#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/tracking/initialise/inverse_kinematics.h"
+#include "bodyloom/tracking/initialise/joint_hypotheses.h"
+#include "bodyloom/tracking/initialise/lifter_input.h"
+#include "bodyloom/tracking/robust.h"
 
 namespace bodyloom {
 namespace {

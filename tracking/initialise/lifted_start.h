@@ -4,11 +4,11 @@
 
 #include <vector>
 
-#include "geometry/camera.h"
-#include "geometry/lifter_weights.h"
-#include "geometry/observations.h"
-#include "tracking/initialise/initial_states.h"
-#include "tracking/initialise/lift_keypoints.h"
+#include "bodyloom/geometry/camera.h"
+#include "bodyloom/geometry/lifter_weights.h"
+#include "bodyloom/geometry/observations.h"
+#include "bodyloom/tracking/initialise/initial_states.h"
+#include "bodyloom/tracking/initialise/lift_keypoints.h"
 
 namespace bodyloom {
 

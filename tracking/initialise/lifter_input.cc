@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/initialise/lifter_input.h"
+#include "bodyloom/tracking/initialise/lifter_input.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <optional>
 
-#include "geometry/check.h"
-#include "geometry/observations.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/observations.h"
 
 namespace bodyloom {
 namespace {

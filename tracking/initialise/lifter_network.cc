@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/initialise/lifter_network.h"
+#include "bodyloom/tracking/initialise/lifter_network.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/check.h"
-#include "tracking/initialise/matrix_simd.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/tracking/initialise/matrix_simd.h"
 
 namespace bodyloom {
 namespace {

@@ -2,8 +2,8 @@
 /// Runs the lifter (geometry/lifter_weights.h) with plain matrix products: about a million of them a frame.
 #pragma once
 
-#include "geometry/arrays.h"
-#include "geometry/lifter_weights.h"
+#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/lifter_weights.h"
 
 namespace bodyloom {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/initialise/lifter_reading.h"
+#include "bodyloom/tracking/initialise/lifter_reading.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
-#include "tracking/initialise/lifter_input.h"
+#include "bodyloom/tracking/initialise/lifter_input.h"
 
 namespace bodyloom {
 namespace {

@@ -6,8 +6,8 @@
 #include <array>
 #include <vector>
 
-#include "geometry/arrays.h"
-#include "geometry/lifter_weights.h"
+#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/lifter_weights.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/initialise/limb_costs.h"
+#include "bodyloom/tracking/initialise/limb_costs.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,9 +6,9 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "geometry/direction_bins.h"
-#include "geometry/pose_prior.h"
-#include "tracking/initialise/joint_rays.h"
+#include "bodyloom/geometry/direction_bins.h"
+#include "bodyloom/geometry/pose_prior.h"
+#include "bodyloom/tracking/initialise/joint_rays.h"
 
 namespace bodyloom::hypotheses_internal {
 

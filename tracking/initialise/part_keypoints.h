@@ -9,10 +9,10 @@
 /// way it looks.
 ///
 /// The boundary between two charts is not the joint itself; it is taken as it stands, a median of less than 0.05 of the
-/// person's height away (tests/data_tools/part_labels_test.cc).
+/// person's height away (tests/data_tools/observations/part_labels_test.cc).
 #pragma once
 
-#include "geometry/observations.h"
+#include "bodyloom/geometry/observations.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/initialise/swap_repair.h"
+#include "bodyloom/tracking/initialise/swap_repair.h"
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
-#include "tracking/initialise/viterbi.h"
-#include "tracking/robust.h"
+#include "bodyloom/tracking/initialise/viterbi.h"
+#include "bodyloom/tracking/robust.h"
 
 namespace bodyloom {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "geometry/observations.h"
+#include "bodyloom/geometry/observations.h"
 
 namespace bodyloom {
 

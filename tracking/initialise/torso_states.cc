@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/initialise/torso_states.h"
+#include "bodyloom/tracking/initialise/torso_states.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "geometry/rotation.h"
+#include "bodyloom/geometry/rotation.h"
 
 namespace bodyloom::hypotheses_internal {
 

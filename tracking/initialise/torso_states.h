@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "tracking/initialise/joint_rays.h"
+#include "bodyloom/tracking/initialise/joint_rays.h"
 
 namespace bodyloom::hypotheses_internal {
 

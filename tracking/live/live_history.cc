@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/live/live_history.h"
+#include "bodyloom/tracking/live/live_history.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "geometry/check.h"
-#include "tracking/initialise/impossible_frames.h"
-#include "tracking/initialise/swap_repair.h"
-#include "tracking/input_checks.h"
-#include "tracking/observability.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/tracking/initialise/impossible_frames.h"
+#include "bodyloom/tracking/initialise/swap_repair.h"
+#include "bodyloom/tracking/input_checks.h"
+#include "bodyloom/tracking/observability.h"
 
 namespace bodyloom {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/observations.h"
+#include "bodyloom/geometry/observations.h"
 
 namespace bodyloom {
 

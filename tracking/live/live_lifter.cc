@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/live/live_lifter.h"
+#include "bodyloom/tracking/live/live_lifter.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "tracking/initialise/lifted_start.h"
-#include "tracking/initialise/lifter_input.h"
+#include "bodyloom/tracking/initialise/lifted_start.h"
+#include "bodyloom/tracking/initialise/lifter_input.h"
 
 namespace bodyloom {
 namespace {

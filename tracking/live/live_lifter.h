@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "tracking/live/live_window.h"
+#include "bodyloom/tracking/live/live_window.h"
 
 namespace bodyloom {
 

@@ -2,9 +2,9 @@
 /// Limbs on the wrong side of a live tracker's pose: the lifter's poses are tried against it.
 #pragma once
 
-#include "tracking/body_points.h"
-#include "tracking/live/live_lifter.h"
-#include "tracking/live/live_window.h"
+#include "bodyloom/tracking/body_points.h"
+#include "bodyloom/tracking/live/live_lifter.h"
+#include "bodyloom/tracking/live/live_window.h"
 
 namespace bodyloom {
 

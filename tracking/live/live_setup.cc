@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/live/live_setup.h"
+#include "bodyloom/tracking/live/live_setup.h"
 
 #include <algorithm>
 #include <cmath>
 #include <thread>
 
-#include "geometry/check.h"
-#include "tracking/input_checks.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/tracking/input_checks.h"
 
 namespace bodyloom {
 

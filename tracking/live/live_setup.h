@@ -5,11 +5,11 @@
 
 #include <optional>
 
-#include "tracking/joint_limits.h"
-#include "tracking/live/live_tracker.h"
-#include "tracking/mixture_prior.h"
-#include "tracking/observability.h"
-#include "tracking/residuals/lifted_pose.h"
+#include "bodyloom/tracking/joint_limits.h"
+#include "bodyloom/tracking/live/live_tracker.h"
+#include "bodyloom/tracking/mixture_prior.h"
+#include "bodyloom/tracking/observability.h"
+#include "bodyloom/tracking/residuals/lifted_pose.h"
 
 namespace bodyloom {
 

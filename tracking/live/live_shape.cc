@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/live/live_shape.h"
+#include "bodyloom/tracking/live/live_shape.h"
 
-#include "tracking/initialise/bone_ratio_shape.h"
+#include "bodyloom/tracking/initialise/bone_ratio_shape.h"
 
 namespace bodyloom {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/live/live_start.h"
+#include "bodyloom/tracking/live/live_start.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "geometry/posed_body.h"
-#include "tracking/initialise/initial_states.h"
-#include "tracking/initialise/lifted_start.h"
+#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/tracking/initialise/initial_states.h"
+#include "bodyloom/tracking/initialise/lifted_start.h"
 
 namespace bodyloom {
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/live/live_tracker.h"
+#include "bodyloom/tracking/live/live_tracker.h"
 
 #include <algorithm>
 #include <limits>
 #include <utility>
 
-#include "geometry/rotation.h"
-#include "tracking/live/live_limbs.h"
-#include "tracking/live/live_setup.h"
-#include "tracking/live/live_shape.h"
-#include "tracking/live/live_start.h"
-#include "tracking/live/live_window.h"
+#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/tracking/live/live_limbs.h"
+#include "bodyloom/tracking/live/live_setup.h"
+#include "bodyloom/tracking/live/live_shape.h"
+#include "bodyloom/tracking/live/live_start.h"
+#include "bodyloom/tracking/live/live_window.h"
 
 namespace bodyloom {
 namespace {

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "tracking/sequence_problem.h"
-#include "tracking/track_sequence.h"
+#include "bodyloom/tracking/sequence_problem.h"
+#include "bodyloom/tracking/track_sequence.h"
 
 namespace bodyloom {
 

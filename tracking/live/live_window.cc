@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/live/live_window.h"
+#include "bodyloom/tracking/live/live_window.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "tracking/image_terms.h"
-#include "tracking/input_checks.h"
-#include "tracking/track_result.h"
-#include "tracking/uncertainty.h"
+#include "bodyloom/tracking/image_terms.h"
+#include "bodyloom/tracking/input_checks.h"
+#include "bodyloom/tracking/track_result.h"
+#include "bodyloom/tracking/uncertainty.h"
 
 namespace bodyloom {
 namespace {

@@ -9,9 +9,9 @@
 #include <optional>
 #include <vector>
 
-#include "tracking/chain/fixed_lag.h"
-#include "tracking/live/live_history.h"
-#include "tracking/live/live_setup.h"
+#include "bodyloom/tracking/chain/fixed_lag.h"
+#include "bodyloom/tracking/live/live_history.h"
+#include "bodyloom/tracking/live/live_setup.h"
 
 namespace bodyloom {
 

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/live/track_live.h"
+#include "bodyloom/tracking/live/track_live.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <utility>
 
-#include "geometry/check.h"
-#include "geometry/posed_body.h"
-#include "tracking/image_terms.h"
-#include "tracking/input_checks.h"
-#include "tracking/observability.h"
-#include "tracking/track_result.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/stopwatch.h"
+#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/tracking/image_terms.h"
+#include "bodyloom/tracking/input_checks.h"
+#include "bodyloom/tracking/observability.h"
+#include "bodyloom/tracking/track_result.h"
 
 namespace bodyloom {
 
@@ -101,7 +101,7 @@ TrackSequenceResult TrackLive(const TrackSequenceInput& input, const LiveTracker
                  " of dense keypoints");
   BODYLOOM_CHECK(input.initialiser == nullptr || input.initialiser->num_frames() == T, "live: the initialiser has ",
                  input.initialiser != nullptr ? input.initialiser->num_frames() : 0, " frames, the detections ", T);
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   LiveTracker tracker(LiveInputFor(input), options);
   TrackSequenceResult result;
   TrackSequenceSummary& summary = result.summary;
@@ -162,7 +162,7 @@ TrackSequenceResult TrackLive(const TrackSequenceInput& input, const LiveTracker
   }
   summary.num_parameters =
       found * problem.layout.num_frame_columns() + problem.layout.num_columns - problem.layout.beta_column;
-  summary.seconds.emplace_back("live", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  summary.seconds.emplace_back("live", watch.seconds());
   FillTrack(input, problem, landmarks, &result);
   result.track.joint_sigma = std::move(taken.joint_sigma);
   return result;

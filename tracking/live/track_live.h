@@ -2,7 +2,7 @@
 /// A whole clip through the live tracker, frame by frame, as if it came from a camera.
 #pragma once
 
-#include "tracking/live/live_tracker.h"
+#include "bodyloom/tracking/live/live_tracker.h"
 
 namespace bodyloom {
 

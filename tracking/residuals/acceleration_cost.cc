@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/residuals/acceleration_cost.h"
+#include "bodyloom/tracking/residuals/acceleration_cost.h"
 
 #include <Eigen/Core>
 
-#include "geometry/check.h"
-#include "geometry/rotation.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/rotation.h"
 
 namespace bodyloom {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/residuals/compressed_frame_cost.h"
+#include "bodyloom/tracking/residuals/compressed_frame_cost.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "geometry/parallel.h"
-#include "geometry/rotation.h"
+#include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/geometry/rotation.h"
 
 namespace bodyloom {
 

@@ -14,7 +14,7 @@
 #include <memory>
 #include <vector>
 
-#include "tracking/frame_cost.h"
+#include "bodyloom/tracking/frame_cost.h"
 
 namespace bodyloom {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/residuals/dense_points.h"
+#include "bodyloom/tracking/residuals/dense_points.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "geometry/check.h"
-#include "tracking/chain/panel_simd.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/tracking/chain/panel_simd.h"
 
 namespace bodyloom {
 

@@ -12,10 +12,10 @@
 #include <span>
 #include <vector>
 
-#include "geometry/body_model.h"
-#include "geometry/observations.h"
-#include "tracking/kinematics.h"
-#include "tracking/residuals/dense_points_simd.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/observations.h"
+#include "bodyloom/tracking/kinematics.h"
+#include "bodyloom/tracking/residuals/dense_points_simd.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/residuals/dense_whitening.h"
+#include "bodyloom/tracking/residuals/dense_whitening.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>

@@ -11,9 +11,9 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "geometry/observations.h"
-#include "render/visibility_buffer.h"
-#include "tracking/frame_cost.h"
+#include "bodyloom/geometry/observations.h"
+#include "bodyloom/render/visibility_buffer.h"
+#include "bodyloom/tracking/frame_cost.h"
 
 namespace bodyloom {
 

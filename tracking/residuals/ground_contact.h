@@ -10,7 +10,7 @@
 
 #include <Eigen/Core>
 
-#include "tracking/body_points.h"
+#include "bodyloom/tracking/body_points.h"
 
 namespace bodyloom {
 

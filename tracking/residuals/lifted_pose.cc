@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/residuals/lifted_pose.h"
+#include "bodyloom/tracking/residuals/lifted_pose.h"
 
 #include <algorithm>
 
-#include "tracking/initialise/lifter_input.h"
+#include "bodyloom/tracking/initialise/lifter_input.h"
 
 namespace bodyloom {
 

@@ -11,9 +11,9 @@
 #include <memory>
 #include <vector>
 
-#include "geometry/body_model.h"
-#include "tracking/body_points.h"
-#include "tracking/initialise/lift_keypoints.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/tracking/body_points.h"
+#include "bodyloom/tracking/initialise/lift_keypoints.h"
 
 namespace bodyloom {
 

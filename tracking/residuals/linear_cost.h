@@ -6,7 +6,7 @@
 
 #include <utility>
 
-#include "geometry/arrays.h"
+#include "bodyloom/geometry/arrays.h"
 
 namespace bodyloom {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/residuals/part_label_term.h"
+#include "bodyloom/tracking/residuals/part_label_term.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "geometry/check.h"
-#include "render/visible_points.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/render/visible_points.h"
 
 namespace bodyloom {
 namespace {

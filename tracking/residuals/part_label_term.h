@@ -27,11 +27,11 @@
 #include <memory>
 #include <vector>
 
-#include "geometry/observations.h"
-#include "tracking/frame_cost.h"
-#include "tracking/residuals/distance_field.h"
-#include "tracking/residuals/part_map.h"
-#include "tracking/residuals/visible_surface.h"
+#include "bodyloom/geometry/observations.h"
+#include "bodyloom/tracking/frame_cost.h"
+#include "bodyloom/tracking/residuals/distance_field.h"
+#include "bodyloom/tracking/residuals/part_map.h"
+#include "bodyloom/tracking/residuals/visible_surface.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/residuals/part_map.h"
+#include "bodyloom/tracking/residuals/part_map.h"
 
 #include <algorithm>
 #include <array>

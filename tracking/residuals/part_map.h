@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "geometry/observations.h"
-#include "render/pixel_box.h"
+#include "bodyloom/geometry/observations.h"
+#include "bodyloom/render/pixel_box.h"
 
 namespace bodyloom {
 

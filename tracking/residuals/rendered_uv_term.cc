@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/residuals/rendered_uv_term.h"
+#include "bodyloom/tracking/residuals/rendered_uv_term.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -8,8 +8,8 @@
 #include <cmath>
 #include <utility>
 
-#include "geometry/check.h"
-#include "tracking/residuals/dense_whitening.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/tracking/residuals/dense_whitening.h"
 
 namespace bodyloom {
 

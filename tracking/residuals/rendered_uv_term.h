@@ -24,9 +24,9 @@
 #include <memory>
 #include <vector>
 
-#include "geometry/skinning.h"
-#include "tracking/frame_cost.h"
-#include "tracking/residuals/visible_surface.h"
+#include "bodyloom/geometry/skinning.h"
+#include "bodyloom/tracking/frame_cost.h"
+#include "bodyloom/tracking/residuals/visible_surface.h"
 
 namespace bodyloom {
 

@@ -8,7 +8,7 @@
 
 #include <ceres/manifold.h>
 
-#include "geometry/rotation.h"
+#include "bodyloom/geometry/rotation.h"
 
 namespace bodyloom {
 

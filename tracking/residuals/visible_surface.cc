@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/residuals/visible_surface.h"
+#include "bodyloom/tracking/residuals/visible_surface.h"
 
 namespace bodyloom {
 

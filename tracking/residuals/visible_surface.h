@@ -9,10 +9,10 @@
 #include <memory>
 #include <vector>
 
-#include "geometry/body_model.h"
-#include "geometry/camera.h"
-#include "geometry/skinning.h"
-#include "render/visibility_buffer.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/camera.h"
+#include "bodyloom/geometry/skinning.h"
+#include "bodyloom/render/visibility_buffer.h"
 
 namespace bodyloom {
 

@@ -8,8 +8,8 @@
 
 #include <vector>
 
-#include "data_tools/builtin_body.h"
-#include "geometry/posed_body.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/geometry/posed_body.h"
 
 namespace bodyloom {
 namespace {

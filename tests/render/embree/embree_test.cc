@@ -5,9 +5,9 @@
 #include <cmath>
 #include <random>
 
-#include "data_tools/builtin_body.h"
-#include "geometry/posed_body.h"
-#include "render/visibility_buffer.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/render/visibility_buffer.h"
 #include "tests/support/embree_twin.h"
 #include "tests/support/toy_poses.h"
 

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/data_tools/body/body_codec.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+
+#include "bodyloom/geometry/base/check.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr int64_t kLimit = int64_t{1} << 29;
+
+uint32_t ZigZag(int32_t x) { return (static_cast<uint32_t>(x) << 1) ^ (x < 0 ? ~uint32_t{0} : 0); }
+/// Whole numbers in proportion to `weights` that sum to `unit`: rounded down, the rest to the largest remainders.
+std::vector<int64_t> SharesOf(int64_t unit, const double* weights, int count) {
+  const double sum = std::accumulate(weights, weights + count, 0.0);
+  BODYLOOM_CHECK(count > 0 && std::abs(sum - 1) < 1e-3, "a row of weights sums to ", sum, ", expected 1");
+  std::vector<int64_t> shares(count);
+  std::vector<std::pair<double, int>> order(count);  // most negative first: rounded down furthest
+  int64_t missing = unit;
+  for (int k = 0; k < count; ++k) {
+    const double exact = weights[k] / sum * static_cast<double>(unit);
+    shares[k] = static_cast<int64_t>(std::floor(exact));
+    order[k] = {static_cast<double>(shares[k]) - exact, k};
+    missing -= shares[k];
+  }
+  std::sort(order.begin(), order.end());
+  for (int64_t k = 0; k < missing; ++k) ++shares[order[k % count].second];
+  return shares;
+}
+
+int32_t UnZigZag(uint32_t x) { return static_cast<int32_t>((x >> 1) ^ (~(x & 1) + 1)); }
+
+}  // namespace
+
+NdArray PackIntegers(const Integers& values) {
+  uint32_t all = 0;
+  for (const int32_t x : values) all |= ZigZag(x);
+  int planes = 1;
+  while (planes < 4 && (all >> (8 * planes)) != 0) ++planes;
+  const size_t n = values.size();
+  std::vector<uint8_t> bytes(n * static_cast<size_t>(planes));
+  for (int p = 0; p < planes; ++p) {
+    for (size_t i = 0; i < n; ++i) bytes[p * n + i] = static_cast<uint8_t>(ZigZag(values[i]) >> (8 * p));
+  }
+  return NdArray::FromUInt8(bytes.data(), {planes, static_cast<int64_t>(n)});
+}
+
+Integers UnpackIntegers(const NdArray& array, int64_t expected, const std::string& where) {
+  if (array.dtype != DType::kU8 || array.shape.size() != 2 || array.shape[0] < 1 || array.shape[0] > 4 ||
+      (expected >= 0 && array.shape[1] != expected)) {
+    throw std::runtime_error(Concatenate(where, ": ", array.ShapeText(), ", expected 1..4 byte planes of ",
+                                         expected >= 0 ? std::to_string(expected) : "n", " values"));
+  }
+  const auto n = static_cast<size_t>(array.shape[1]);
+  Integers values(n);
+  for (size_t i = 0; i < n; ++i) {
+    uint32_t x = 0;
+    for (int64_t p = 0; p < array.shape[0]; ++p) {
+      x |= static_cast<uint32_t>(static_cast<unsigned char>(array.bytes[p * n + i])) << (8 * p);
+    }
+    values[i] = UnZigZag(x);
+  }
+  return values;
+}
+
+int32_t OnGrid(double value, double step, const char* what) {
+  const double q = std::nearbyint(value / step);
+  BODYLOOM_CHECK(std::abs(q) < static_cast<double>(kLimit), what, " holds ", value,
+                 ", too large to be stored in steps of ", step);
+  return static_cast<int32_t>(q);
+}
+
+int64_t RoundedMean(int64_t sum, int64_t count) {
+  const int64_t numerator = 2 * sum + count, denominator = 2 * count;
+  const int64_t quotient = numerator / denominator;
+  return numerator % denominator < 0 ? quotient - 1 : quotient;
+}
+
+int32_t CheckedInteger(int64_t value, const std::string& where) {
+  if (value <= -kLimit || value >= kLimit)
+    throw std::runtime_error(where + ": a value out of range, the file is damaged");
+  return static_cast<int32_t>(value);
+}
+
+MeshPredictor::MeshPredictor(int num_vertices, const MatrixX3i& faces) : begin_(num_vertices + 1, 0) {
+  const auto each_edge = [&faces](const auto& use) {
+    for (Eigen::Index f = 0; f < faces.rows(); ++f) {
+      for (int c = 0; c < 3; ++c) {
+        const int a = faces(f, c), b = faces(f, (c + 1) % 3);
+        if (a != b) use(std::min(a, b), std::max(a, b));
+      }
+    }
+  };
+  each_edge([this](int, int high) { ++begin_[high + 1]; });
+  std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+  lower_.resize(begin_.back());
+  std::vector<int> next(begin_.begin(), begin_.end() - 1);
+  each_edge([&](int low, int high) { lower_[next[high]++] = low; });
+  int out = 0;  // an edge with two faces was counted twice: keep each neighbour once
+  for (int v = 0; v < num_vertices; ++v) {
+    const auto first = lower_.begin() + begin_[v], last = lower_.begin() + begin_[v + 1];
+    std::sort(first, last);
+    begin_[v] = out;
+    for (auto it = first; it != last; ++it) {
+      if (it == first || *it != *(it - 1)) lower_[out++] = *it;
+    }
+  }
+  begin_[num_vertices] = out;
+  lower_.resize(out);
+}
+
+void MeshPredictor::Predict(const Integers& values, int columns, int v, std::vector<int64_t>* prediction) const {
+  prediction->assign(columns, 0);
+  const auto count = end(v) - begin(v);
+  if (count == 0) {
+    if (v > 0) std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(v - 1) * columns, columns, prediction->begin());
+    return;
+  }
+  for (const int* u = begin(v); u != end(v); ++u) {
+    const int32_t* row = values.data() + static_cast<size_t>(*u) * columns;
+    for (int c = 0; c < columns; ++c) (*prediction)[c] += row[c];
+  }
+  for (int64_t& x : *prediction) x = RoundedMean(x, count);
+}
+
+Integers MeshPredictor::Residuals(const Integers& values, int columns) const {
+  const int n = static_cast<int>(begin_.size()) - 1;
+  BODYLOOM_CHECK(values.size() == static_cast<size_t>(n) * columns, values.size(), " values for ", n, " vertices of ",
+                 columns);
+  Integers residuals(values.size());
+  std::vector<int64_t> prediction;
+  for (int v = 0; v < n; ++v) {
+    Predict(values, columns, v, &prediction);
+    for (int c = 0; c < columns; ++c) {
+      const size_t i = static_cast<size_t>(v) * columns + c;
+      residuals[i] = static_cast<int32_t>(values[i] - prediction[c]);
+    }
+  }
+  return residuals;
+}
+
+Integers MeshPredictor::Restore(Integers residuals, int columns, const std::string& where) const {
+  const int n = static_cast<int>(begin_.size()) - 1;
+  BODYLOOM_CHECK(residuals.size() == static_cast<size_t>(n) * columns, residuals.size(), " residuals for ", n,
+                 " vertices of ", columns);
+  std::vector<int64_t> prediction;
+  for (int v = 0; v < n; ++v) {
+    Predict(residuals, columns, v, &prediction);
+    for (int c = 0; c < columns; ++c) {
+      const size_t i = static_cast<size_t>(v) * columns + c;
+      residuals[i] = CheckedInteger(residuals[i] + prediction[c], where);
+    }
+  }
+  return residuals;
+}
+
+PackedUnitRows PackUnitRows(const UnitRows& rows, int bits) {
+  const int64_t unit = int64_t{1} << bits;
+  Integers counts, columns, weights;
+  size_t begin = 0;
+  for (const int32_t count : rows.count) {
+    const std::vector<int64_t> q = SharesOf(unit, rows.weight.data() + begin, count);
+    // Shares of zero are dropped, so that packing what was unpacked changes nothing.
+    int kept = 0;
+    int32_t previous = 0;
+    for (int k = 0; k < count; ++k) {
+      if (q[k] == 0) continue;
+      columns.push_back(rows.column[begin + k] - previous);
+      previous = rows.column[begin + k];
+      weights.push_back(CheckedInteger(q[k], "weights"));
+      ++kept;
+    }
+    weights.pop_back();  // the last follows from the sum
+    counts.push_back(kept);
+    begin += count;
+  }
+  return {PackIntegers(counts), PackIntegers(columns), PackIntegers(weights)};
+}
+
+UnitRows UnpackUnitRows(const PackedUnitRows& packed, int bits, int64_t num_rows, int64_t num_columns,
+                        const std::string& where) {
+  const auto fail = [&](const std::string& message) { throw std::runtime_error(where + ": " + message); };
+  UnitRows rows;
+  rows.count = UnpackIntegers(packed.count, num_rows, where + " counts");
+  int64_t total = 0;
+  for (const int32_t count : rows.count) {
+    if (count < 1 || count > num_columns) fail(Concatenate("a row of ", count, " entries, expected 1..", num_columns));
+    total += count;
+  }
+  rows.column = UnpackIntegers(packed.column, total, where + " columns");
+  const Integers weights = UnpackIntegers(packed.weight, total - num_rows, where + " weights");
+  const int64_t unit = int64_t{1} << bits;
+  size_t entry = 0, stored = 0;
+  for (const int32_t count : rows.count) {
+    int64_t column = 0, left = unit;
+    for (int k = 0; k < count; ++k, ++entry) {
+      column += rows.column[entry];
+      if (column < 0 || column >= num_columns) {
+        fail(Concatenate("column ", column, ", expected 0..", num_columns - 1));
+      }
+      rows.column[entry] = static_cast<int32_t>(column);
+      const int64_t q = k + 1 < count ? weights[stored++] : left;
+      left -= q;
+      rows.weight.push_back(static_cast<double>(q) / static_cast<double>(unit));
+    }
+  }
+  return rows;
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The detectors' keypoints on bodies whose files do not bring them: COCO-17, toes and heels on SMPL's and SMPL-X's
+/// topology.
+#pragma once
+
+#include <vector>
+
+#include "bodyloom/geometry/body_model.h"
+
+namespace bodyloom {
+
+/// Nose, eyes, ears, toes and heels are single vertices; shoulders, elbows, wrists, hips, knees and ankles are the rows
+/// of the joint regressor (COCO's hips lie a little further out than SMPL's; the tracker's fixed offsets absorb that).
+/// Names as on the built-in body (CocoNames(), then left_big_toe, right_big_toe, left_small_toe, …). Empty for bodies
+/// with neither 6,890 nor 10,475 vertices, or without SMPL's first 22 joints.
+/// Source: vertex numbers from smplx vertex_ids.py.
+std::vector<Landmark> StandardLandmarks(const BodyModelData& body);
+
+}  // namespace bodyloom

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The built-in body: an adult mannequin in T-pose on SMPL's 24 joints, so that everything runs with no download.
+///
+/// 7,874 vertices, 15,744 triangles, 10 shape components in standard deviations (stature, sex, weight, age,
+/// proportions, …), pose correctives, 24 DensePose-style charts, an atlas, COCO-17 and foot landmarks. Body frame: x
+/// left, y up, z front, metres, pelvis joint of the mean shape at the origin. What it promises: docs/built_in_body.md.
+#pragma once
+
+#include "bodyloom/data_tools/body_making/make_builtin_body.h"
+#include "bodyloom/geometry/body_model.h"
+
+namespace bodyloom {
+
+/// The body, built once from the copy inside the library; thread-safe.
+const BodyModel& BuiltinBody();
+
+/// The sources compiled into the library.
+BuiltinBodySources EmbeddedBuiltinBodySources();
+
+}  // namespace bodyloom

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/data_tools/datasets/people_set.h"
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <stdexcept>
+
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/formats/json_reader.h"
+#include "bodyloom/geometry/base/check.h"
+
+namespace bodyloom {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kFormat = "bodyloom people set";
+constexpr int kVersion = 1;
+
+std::string FileOf(const std::string& path) { return (fs::path(path) / "people.json").string(); }
+
+/// A folder below the set and nowhere else.
+bool StaysInside(const fs::path& clip) {
+  if (clip.empty() || clip.is_absolute()) return false;
+  for (const fs::path& step : clip) {
+    if (step == ".." || step == ".") return false;
+  }
+  return true;
+}
+
+SetPerson ReadPerson(const JsonNode& node, const std::string& path) {
+  SetPerson person;
+  person.name = node.At("name").Text();
+  const std::string split = node.At("split").Text();
+  if (split != "train" && split != "test") node.At("split").Fail("\"train\" or \"test\"");
+  person.test = split == "test";
+  const JsonNode clips = node.At("clips");
+  if (!clips.is_array() || clips.size() == 0) clips.Fail("a list of at least one folder");
+  for (size_t i = 0; i < clips.size(); ++i) {
+    const std::string clip = clips.At(i).Text();
+    if (!StaysInside(clip)) clips.At(i).Fail("a folder below the set");
+    std::error_code error;
+    if (!fs::exists(fs::path(path) / clip / "person.json", error)) {
+      throw std::runtime_error(Concatenate((fs::path(path) / clip / "person.json").string(),
+                                           ": not there, expected it as people.json names the clip"));
+    }
+    person.clips.push_back(clip);
+  }
+  return person;
+}
+
+}  // namespace
+
+PeopleSet ReadPeopleSet(const std::string& path) {
+  const std::string file = FileOf(path);
+  if (fs::is_directory(path) && !fs::exists(file)) {
+    throw std::runtime_error(file + ": not there, expected it in a finished people set (it is written last)");
+  }
+  const nlohmann::json document = ReadJsonFile(file, {.max_bytes = 64 << 20, .max_depth = 16});
+  const JsonNode root(document, file);
+  if (root.At("format").Text() != kFormat) root.At("format").Fail(std::string("\"") + kFormat + "\"");
+  if (root.At("version").Integer() != kVersion) root.At("version").Fail(std::to_string(kVersion));
+  PeopleSet set;
+  set.path = path;
+  const int64_t size = root.At("size").Integer();
+  if (size < 1 || size > 16384) root.At("size").Fail("1 to 16384 pixels");
+  set.size = static_cast<int>(size);
+  const JsonNode people = root.At("people");
+  if (!people.is_array() || people.size() == 0) people.Fail("a list of at least one person");
+  std::set<std::string> names;
+  for (size_t i = 0; i < people.size(); ++i) {
+    set.people.push_back(ReadPerson(people.At(i), path));
+    if (!names.insert(set.people.back().name).second) people.At(i).At("name").Fail("a name that nobody else has");
+  }
+  if (root.Has("seed") && document["seed"].is_number_unsigned()) set.seed = document["seed"].get<uint64_t>();
+  if (root.Has("command") && root.At("command").is_string()) set.command = root.At("command").Text();
+  return set;
+}
+
+void WritePeopleSet(const PeopleSet& set) {
+  nlohmann::ordered_json json = {{"format", kFormat}, {"version", kVersion}, {"size", set.size}};
+  json["people"] = nlohmann::ordered_json::array();
+  for (const SetPerson& person : set.people) {
+    json["people"].push_back(
+        {{"name", person.name}, {"split", person.test ? "test" : "train"}, {"clips", person.clips}});
+  }
+  json["seed"] = set.seed, json["command"] = set.command;
+  const auto replace = nlohmann::ordered_json::error_handler_t::replace;  // a path may hold any bytes
+  WriteFileAtomically(FileOf(set.path), json.dump(2, ' ', false, replace) + "\n");
+}
+
+}  // namespace bodyloom

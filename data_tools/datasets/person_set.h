@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A person set: a folder with pictures of one person and what is known about every pixel. The appearance systems train
+/// on it; synthetic people are written as one, and recordings with labels of other programs can be.
+///
+///   DIR/person.json             {"format": "bodyloom person set", "version": 1, "frames": N, "width": W, "height": H,
+///                                "fps": f, "labels": [the seven names below, in this order],
+///                                "has": {"labels": b, "normals": b, "iuv": b, "background": b}}
+///                               and, as information, "seed", "garment", "motion", "command"
+///   DIR/images/000000.png       8-bit RGB
+///   DIR/labels/000000.png       8-bit, one channel: index into "labels"
+///   DIR/normals/000000.png      8-bit RGB: the unit normal of the visible (clothed) surface, camera frame (x right, y
+///                               down, z forward; z < 0 faces the camera), n = 2c/255 − 1; background (0, 0, 0)
+///   DIR/iuv/000000.png          the bare body's part (blue), u (green), v (red) as observations/densepose_iuv.h reads
+///                               them: u and v in 1/255, rounded down
+///   DIR/backgrounds/000000.png  8-bit RGB: the picture without the person
+///   DIR/track.npz               the track (data_tools/motion/track_io.h) of the N frames
+/// person.json is written last: a folder without it is no set, or an unfinished one.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "bodyloom/geometry/track.h"
+#include "bodyloom/render/image.h"
+
+namespace bodyloom {
+
+/// What a pixel shows; the names, in this order, are kPersonLabelNames.
+enum class PersonLabel : uint8_t { kBackground, kTop, kBottom, kFace, kHair, kSkin, kShoes };
+inline constexpr int kNumPersonLabels = 7;
+inline constexpr std::array<const char*, kNumPersonLabels> kPersonLabelNames = {"background", "top",  "bottom", "face",
+                                                                                "hair",       "skin", "shoes"};
+
+/// Which of the pictures beside `images` a set has, or a reader wants.
+struct PersonPictures {
+  bool labels = true, normals = true, iuv = true, background = true;
+};
+
+struct PersonSetInfo {
+  int num_frames = 0, width = 0, height = 0;
+  double fps = 30;
+  PersonPictures has;
+  // Information only.
+  uint64_t seed = 0;
+  std::string garment, motion, command;
+};
+
+/// The pictures of a frame; empty where a set has none or none was asked for. `labels` holds a label's index in all
+/// three channels.
+struct PersonFrame {
+  Image rgb, labels, normals, iuv, background;
+};
+
+/// 8-bit code of a component of a unit normal, and back: n = 2c/255 − 1, wrong by at most 1/255.
+uint8_t NormalCode(double component);
+inline double NormalOfCode(uint8_t code) { return 2.0 * code / 255 - 1; }
+
+/// Reads a set. May be shared by threads.
+class PersonSet {
+ public:
+  /// Reads person.json and sees that all files are there. Throws std::runtime_error naming the file, what was found
+  /// and what was expected.
+  explicit PersonSet(const std::string& path);
+
+  [[nodiscard]] const PersonSetInfo& info() const { return info_; }
+  [[nodiscard]] const std::string& path() const { return path_; }
+  /// Throws std::runtime_error when the track has another number of frames or another image size than the set.
+  [[nodiscard]] Track track() const;
+  /// The image of frame t and those of the wanted pictures that the set has. Throws std::runtime_error naming the file
+  /// when a picture cannot be read, is of another size, or a label is none of the seven; std::invalid_argument for a
+  /// frame outside 0..num_frames−1.
+  [[nodiscard]] PersonFrame Read(int t, const PersonPictures& wanted = {}) const;
+
+ private:
+  std::string path_;
+  PersonSetInfo info_;
+};
+
+/// Writes a set frame by frame. Write() may be called by several threads at once.
+class PersonSetWriter {
+ public:
+  /// Makes the folders. A set that stands there already is taken apart first: its person.json and pictures go. Throws
+  /// std::runtime_error naming the path, std::invalid_argument when sizes, rate or track make no sense.
+  PersonSetWriter(std::string path, const PersonSetInfo& info, const Track& track);
+
+  /// Writes the pictures of frame t that info.has names (and the image). Throws std::invalid_argument when one of them
+  /// is missing or of the wrong size, std::runtime_error when it cannot be written.
+  void Write(int t, const PersonFrame& frame) const;
+
+  /// Writes person.json. Throws std::runtime_error when a frame was never written.
+  void Finish() const;
+
+ private:
+  std::string path_;
+  PersonSetInfo info_;
+};
+
+}  // namespace bodyloom

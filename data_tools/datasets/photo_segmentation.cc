@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/data_tools/datasets/photo_segmentation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/photo.hpp>
+
+#include "bodyloom/data_tools/datasets/label_of_part.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/render/image_mat.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr int kGrabCutRounds = 4;
+constexpr double kSureInside = 0.015, kProbable = 0.03, kPossible = 1.0 / 12;  ///< of the body's extent
+constexpr double kLeastShare = 0.7;  ///< of the body's pixels that the outline must hold to be believed
+constexpr int kFillSide = 512;
+
+cv::Mat Disc(double radius) {
+  const int r = std::max(1, static_cast<int>(std::lround(radius)));
+  return cv::getStructuringElement(cv::MORPH_ELLIPSE, {2 * r + 1, 2 * r + 1});
+}
+
+/// The connected piece with the most pixels of the body.
+cv::Mat LargestPiece(const cv::Mat& inside, const cv::Mat& body) {
+  cv::Mat pieces;
+  const int count = cv::connectedComponents(inside, pieces);
+  std::vector<int> of_body(std::max(1, count), 0);
+  for (int y = 0; y < body.rows; ++y) {
+    for (int x = 0; x < body.cols; ++x) of_body[pieces.at<int>(y, x)] += body.at<uchar>(y, x) != 0;
+  }
+  of_body[0] = 0;
+  const auto best = static_cast<int>(std::max_element(of_body.begin(), of_body.end()) - of_body.begin());
+  return best == 0 ? cv::Mat::zeros(inside.size(), CV_8UC1) : cv::Mat(pieces == best);
+}
+
+cv::Mat OutlineOf(const Image& picture, const cv::Mat& body) {
+  const cv::Rect box = cv::boundingRect(body);
+  const double extent = std::max(box.width, box.height);
+  cv::Mat inside, probable, possible, mask(body.size(), CV_8UC1, cv::Scalar(cv::GC_BGD));
+  cv::erode(body, inside, Disc(kSureInside * extent));
+  cv::dilate(body, probable, Disc(kProbable * extent));
+  cv::dilate(body, possible, Disc(kPossible * extent));
+  mask.setTo(cv::GC_PR_BGD, possible);
+  mask.setTo(cv::GC_PR_FGD, probable);
+  mask.setTo(cv::GC_FGD, inside);
+  if (cv::countNonZero(inside) == 0 || cv::countNonZero(mask == cv::GC_BGD) == 0) return body;
+  cv::setRNGSeed(1);  // its mixtures start from k-means
+  cv::Mat background_model, foreground_model;
+  cv::grabCut(MatOf(picture), mask, {}, background_model, foreground_model, kGrabCutRounds, cv::GC_INIT_WITH_MASK);
+  cv::Mat outline = LargestPiece((mask == cv::GC_FGD) | (mask == cv::GC_PR_FGD), body);
+  const double kept = cv::countNonZero(outline & body) / std::max(1.0, double(cv::countNonZero(body)));
+  return kept < kLeastShare ? body : outline;
+}
+
+}  // namespace
+
+std::vector<uint8_t> LabelsFromBody(const Image& picture, const std::vector<uint8_t>& parts) {
+  const size_t area = size_t(picture.width) * picture.height;
+  BODYLOOM_CHECK(!picture.empty() && parts.size() == area, "labels from the body: a picture of ", picture.width, "x",
+                 picture.height, ", parts of ", parts.size(), " pixels");
+  cv::Mat body(picture.height, picture.width, CV_8UC1);
+  for (size_t i = 0; i < area; ++i) body.data[i] = parts[i] != 0 ? 255 : 0;
+  BODYLOOM_CHECK(cv::countNonZero(body) > 0, "labels from the body: the body is not in the picture");
+  const cv::Mat outline = OutlineOf(picture, body);
+  // For every pixel the nearest one of the body: OpenCV numbers the zeros of the picture it is given.
+  cv::Mat distance, nearest;
+  cv::distanceTransform(255 - body, distance, nearest, cv::DIST_L2, cv::DIST_MASK_5, cv::DIST_LABEL_PIXEL);
+  std::vector<uint8_t> part_of(area + 1, 0);
+  for (int y = 0; y < body.rows; ++y) {
+    for (int x = 0; x < body.cols; ++x) {
+      if (body.at<uchar>(y, x) != 0) part_of.at(nearest.at<int>(y, x)) = parts[size_t(y) * body.cols + x];
+    }
+  }
+  std::vector<uint8_t> labels(area, 0);
+  for (int y = 0; y < body.rows; ++y) {
+    for (int x = 0; x < body.cols; ++x) {
+      if (outline.at<uchar>(y, x) == 0) continue;
+      labels[size_t(y) * body.cols + x] = static_cast<uint8_t>(LabelOfPart(part_of.at(nearest.at<int>(y, x))));
+    }
+  }
+  return labels;
+}
+
+Image FilledBackground(const Image& picture, const std::vector<uint8_t>& hide) {
+  BODYLOOM_CHECK(!picture.empty() && hide.size() == size_t(picture.width) * picture.height,
+                 "filled background: a picture of ", picture.width, "x", picture.height, ", a mask of ", hide.size(),
+                 " pixels");
+  cv::Mat mask(picture.height, picture.width, CV_8UC1);
+  for (size_t i = 0; i < hide.size(); ++i) mask.data[i] = hide[i] != 0 ? 255 : 0;
+  const double scale = std::min(1.0, double(kFillSide) / std::max(picture.width, picture.height));
+  const cv::Mat whole = MatOf(picture);
+  cv::Mat small, small_mask, filled, enlarged;
+  cv::resize(whole, small, {}, scale, scale, cv::INTER_AREA);
+  cv::resize(mask, small_mask, small.size(), 0, 0, cv::INTER_AREA);
+  // What the person touches by half a pixel is tinted by it.
+  cv::dilate(small_mask > 0, small_mask, Disc(2));
+  cv::inpaint(small, small_mask, filled, 4, cv::INPAINT_TELEA);
+  cv::resize(filled, enlarged, whole.size(), 0, 0, cv::INTER_LINEAR);
+  cv::resize(small_mask, mask, whole.size(), 0, 0, cv::INTER_LINEAR);
+  Image result(picture.width, picture.height);
+  cv::Mat target = MatOf(&result);
+  whole.copyTo(target);
+  enlarged.copyTo(target, mask > 0);
+  return result;
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A tracked person as the one-photo renderers see it: in a square window around the body, the surface coordinates and
+/// part of every pixel, and for every texel of the UV atlas the pixel where it appears.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/uv_texels.h"
+#include "bodyloom/render/person_window.h"
+
+namespace bodyloom {
+
+struct PhotoMapsOptions {
+  int size = 256;               ///< S: pixels of the window's sides
+  int texture_size = 256;       ///< U: texels of the atlas' sides
+  double margin = 0.15;         ///< around the body (PersonWindowOptions::margin)
+  std::vector<double> yaw_deg;  ///< by frame: turns the view (PersonFramesOptions::yaw_deg); empty: the track's own
+  /// Texels of the body at that size, when a caller has them already (many clips of one body); null: made.
+  std::shared_ptr<const UvTexelTable> texels;
+  int num_threads = 1;
+};
+
+/// U × U: DensePose's part of each texel (gutters too), 0 where the atlas is empty.
+std::vector<uint8_t> PartsOfTexels(const BodyModel& body, const UvTexelTable& texels);
+
+/// Planar 3 × U × U: where each texel lies on the body's template, metres; 0 where the atlas is empty.
+std::vector<float> PlacesOfTexels(const BodyModel& body, const UvTexelTable& texels);
+
+/// Planar.
+struct PhotoMap {
+  std::vector<float> uv;            ///< 2 × S × S: atlas coordinates; 0 off the body
+  std::vector<uint8_t> parts;       ///< S × S: DensePose's part 1–24; 0 off the body
+  std::vector<float> texel_pixels;  ///< 2 × U × U: x, y in the window where the texel's point appears; 0 if not seen
+  std::vector<uint8_t> texel_seen;  ///< U × U
+};
+
+class PhotoMaps {
+ public:
+  /// Keeps references to body and track. Throws std::invalid_argument when sizes make no sense, the body has no parts
+  /// or atlas, the track is not the body's, or no frame shows it.
+  PhotoMaps(const BodyModel& body, const Track& track, const PhotoMapsOptions& options);
+  ~PhotoMaps();
+  PhotoMaps(PhotoMaps&&) noexcept;
+
+  [[nodiscard]] const PersonWindow& window() const;  ///< S × S
+  /// May be called by several threads. A frame without a result is empty: nothing seen.
+  [[nodiscard]] PhotoMap At(int t) const;
+  [[nodiscard]] const std::shared_ptr<const UvTexelTable>& texels() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace bodyloom

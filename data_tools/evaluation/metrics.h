@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+/// How far an estimated motion is from the true one: positions, motion over time, joint angles. Metres and seconds in.
+/// Errors in pixels are in data_tools/evaluation/metrics_image.h; protocols that read files in data_tools/evaluation/.
+///
+/// Shapes: a clip is T frames of P points (P×3), prediction and truth alike; anything else throws
+/// std::invalid_argument.
+/// Missing values: a point with a non-finite coordinate on either side is left out of every mean and counted in
+/// `missing`. A protocol that must not reward leaving out first fills such frames (NearestFramesWithResult).
+/// Definitions as in the evaluation code of WHAM, TRAM and GVHMR where they agree; deviations are stated.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bodyloom/geometry/arrays.h"
+
+namespace bodyloom {
+
+inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
+
+/// Distribution of a set of errors; NaN where there was nothing to measure.
+struct ErrorStatistics {
+  double mean = kNotMeasured;
+  double std_dev = kNotMeasured;  ///< of the population: √(mean of squares − square of mean)
+  double median = kNotMeasured, p95 = kNotMeasured, max = kNotMeasured;
+  int64_t count = 0;    ///< finite values
+  int64_t missing = 0;  ///< non-finite values, left out
+};
+ErrorStatistics Summarize(std::span<const double> values);
+
+/// For every frame the nearest frame that has a result, the earlier one in a tie; empty when none has.
+/// Scoring frame t with frame result[t] makes leaving out frames cost what standing still would.
+std::vector<int> NearestFramesWithResult(const std::vector<bool>& has_result);
+
+// ---- positions ------------------------------------------------------------------------------------------------------
+
+using Clip = std::span<const MatrixX3d>;
+
+/// T×3: mean of the points `root` of each frame (NaN when one of them is not finite). {0} is SMPL's pelvis, {1, 2} the
+/// middle of SMPL's hips, {11, 12} the middle of COCO's.
+MatrixX3d RootPositions(Clip points, const std::vector<int>& root);
+
+/// points_t − roots_t, row by row. roots is T×3.
+std::vector<MatrixX3d> RelativeTo(Clip points, const MatrixX3d& roots);
+
+/// The one scale of a clip: argmin_s Σ_{t,p} ‖s·prediction − truth‖² = Σ ⟨prediction, truth⟩ / Σ ‖prediction‖², both
+/// relative to their roots. A single camera cannot see it. NaN when the prediction is all zero or missing.
+double ClipScale(Clip prediction_from_root, Clip truth_from_root);
+
+/// Distances between corresponding points, metres.
+struct PositionError {
+  double mean = kNotMeasured;  ///< over all frames and points
+  ErrorStatistics frames;      ///< distribution of the frames' means (its p95 is a bad frame)
+  Eigen::VectorXd per_point;   ///< P: mean over frames of each point
+  int64_t count = 0, missing = 0;
+};
+
+/// Gathers a PositionError frame by frame, for clips too large to hold (all vertices of long clips).
+class PositionErrorAccumulator {
+ public:
+  /// Distances of one frame's P points, metres; a non-finite one is missing.
+  void AddFrame(const Eigen::VectorXd& distances);
+  [[nodiscard]] PositionError Result() const;
+
+ private:
+  std::vector<double> frame_means_;
+  Eigen::VectorXd point_sum_;
+  std::vector<int64_t> point_count_;
+  int64_t missing_ = 0;
+};
+
+/// mean_{t,p} ‖prediction − truth‖ with no alignment. MPJPE and PVE are this after RelativeTo the root:
+///   MPJPE        = MeanPositionError(RelativeTo(joints, root), …)
+///   scaled MPJPE = MeanPositionError(RelativeTo(joints, root), …, ClipScale(…))
+///   PVE          = MeanPositionError(RelativeTo(vertices, pelvis joint), …)
+/// `scale` multiplies the prediction.
+PositionError MeanPositionError(Clip prediction, Clip truth, double scale = 1);
+
+/// PA-MPJPE: each frame's prediction is first moved onto the truth by its own similarity (geometry/procrustes.h).
+/// A frame whose alignment has no points is missing.
+PositionError ProcrustesPositionError(Clip prediction, Clip truth);
+
+/// Where the root is, T×3 metres in the camera frame. Depth is what a single camera knows least, so it is kept apart.
+struct RootError {
+  ErrorStatistics distance;       ///< ‖prediction − truth‖
+  double lateral = kNotMeasured;  ///< mean distance in the image plane's directions (x, y)
+  double depth = kNotMeasured;    ///< mean |z difference|
+};
+RootError RootPositionError(const MatrixX3d& prediction, const MatrixX3d& truth);
+
+// ---- motion over time -----------------------------------------------------------------------------------------------
+
+/// Time derivatives of a clip by divided differences of real timestamps (T seconds, strictly increasing):
+///   order 1: x′, 2: x″, 3: x‴ = order! · [x_t … x_{t+order}],
+/// exact for polynomials of that degree and equal to the usual n-th difference × fpsⁿ at a constant frame rate.
+/// Returns max(0, T − order) frames. A stencil with a step above max_step_s crosses a gap and gives NaN;
+/// max_step_s = 0 means 1.5 times the median step.
+std::vector<MatrixX3d> TimeDerivative(Clip points, const std::vector<double>& timestamps, int order,
+                                      double max_step_s = 0);
+
+struct MotionError {
+  double mean = kNotMeasured;             ///< ‖difference of the derivatives‖ over frames and points
+  double mean_prediction = kNotMeasured;  ///< ‖derivative‖ of the prediction
+  double mean_truth = kNotMeasured;       ///< and of the truth
+  int64_t count = 0, missing = 0;
+};
+/// Acceleration error, m/s²: ‖x″ of prediction − x″ of truth‖. No alignment: positions in one and the same frame.
+MotionError AccelerationError(Clip prediction, Clip truth, const std::vector<double>& timestamps,
+                              double max_step_s = 0);
+
+/// Jitter, m/s³: mean ‖x‴‖ of one clip. (WHAM and GVHMR print this divided by 10.)
+double Jitter(Clip points, const std::vector<double>& timestamps, double max_step_s = 0);
+
+// ---- joint angles ---------------------------------------------------------------------------------------------------
+
+/// Geodesic angle between corresponding rotations, degrees in [0, 180].
+struct JointAngleError {
+  double mean_deg = kNotMeasured;  ///< joints 1…J−1 relative to their parents, over all frames
+  double root_deg = kNotMeasured;  ///< joint 0: the body's orientation in the frame of the poses
+  Eigen::VectorXd per_joint_deg;   ///< J: mean over frames
+  ErrorStatistics frames;          ///< distribution of the frames' means over joints 1…J−1
+  int64_t count = 0, missing = 0;  ///< joint rotations, the root's included
+};
+/// Poses are T×3J axis-angle, radians, both in the same camera or world frame.
+JointAngleError MeanJointAngleError(const RowMatrixXd& prediction, const RowMatrixXd& truth);
+
+}  // namespace bodyloom

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/data_tools/evaluation/motion_retrieval.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/hash_random.h"
+#include "bodyloom/geometry/observations.h"
+#include "bodyloom/geometry/posed_body.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr double kPeakShare = 0.9, kSlow = 1 / 3.0;
+constexpr int kReach = 4;
+
+/// Rows of one frame each, to rows of each frame and those before it.
+DescriptorRows WithPast(const DescriptorRows& rows, int past) {
+  BODYLOOM_CHECK(past >= 1, "descriptors of ", past, " frames");
+  DescriptorRows result(rows.rows(), rows.cols() * past);
+  for (Eigen::Index t = 0; t < rows.rows(); ++t) {
+    for (int k = 0; k < past; ++k) {
+      result.row(t).segment(rows.cols() * k, rows.cols()) = rows.row(std::max<Eigen::Index>(0, t - k));
+    }
+  }
+  return result;
+}
+
+DescriptorRows Standardised(const DescriptorRows& rows) {
+  DescriptorRows result = rows.colwise() - rows.rowwise().mean();
+  for (Eigen::Index t = 0; t < rows.rows(); ++t) {
+    const float norm = result.row(t).norm();
+    if (norm > 0) result.row(t) /= norm;
+  }
+  return result;
+}
+
+DescriptorRows Chosen(const DescriptorRows& rows, const std::vector<int>& frames) {
+  DescriptorRows chosen(Eigen::Index(frames.size()), rows.cols());
+  for (size_t i = 0; i < frames.size(); ++i) chosen.row(Eigen::Index(i)) = rows.row(frames[i]);
+  return chosen;
+}
+
+}  // namespace
+
+DescriptorRows KeypointTrajectories(const BodyModel& body, const Track& track, int past, double noise_px,
+                                    uint64_t seed) {
+  const int count = static_cast<int>(CocoNames().size());
+  DescriptorRows rows(track.num_frames(), 2 * count);
+  for (int t = 0; t < track.num_frames(); ++t) {
+    const BodyPose pose =
+        PoseFromAxisAngle(body, track.motion.poses.row(t).transpose(), track.motion.trans.row(t).transpose());
+    const MatrixX3d points = PoseLandmarks(body, track.motion.betas, pose, CocoNames());
+    HashRandom noise(seed, {uint64_t(t)});
+    Eigen::Matrix2Xd pixels(2, count);
+    for (int k = 0; k < count; ++k) {
+      Eigen::Vector2d pixel;
+      BODYLOOM_CHECK(track.CameraAt(t).Project(points.row(k).transpose(), &pixel), "frame ", t,
+                     ": a landmark is behind the camera");
+      pixels.col(k) = pixel + noise_px * Eigen::Vector2d(noise.Normal(), noise.Normal());
+    }
+    pixels.colwise() -= pixels.rowwise().mean().eval();
+    rows.row(t) = pixels.reshaped().transpose().cast<float>();
+  }
+  return WithPast(rows, past);
+}
+
+DescriptorRows DenseCoordinates(const PersonFrames& frames, int past) {
+  const size_t area = size_t(frames.window().width) * frames.window().height;
+  DescriptorRows rows(frames.num_frames(), Eigen::Index(2 * area));
+  std::vector<float> mask(area);
+  for (int t = 0; t < frames.num_frames(); ++t) frames.BodyMaps(t, {rows.row(t).data(), 2 * area}, mask);
+  return WithPast(rows, past);
+}
+
+DescriptorRows MotionDescriptors(const PersonFrames& frames, int past) {
+  BODYLOOM_CHECK(past >= 0 && past <= frames.options().past, "motion descriptors: ", past, " past frames of ",
+                 frames.options().past);
+  const size_t texels = size_t(frames.options().uv_size) * frames.options().uv_size;
+  const size_t size = (3 + 3 * size_t(past)) * texels;
+  DescriptorRows rows(frames.num_frames(), Eigen::Index(size));
+  std::vector<float> maps(frames.channels() * texels);
+  for (int t = 0; t < frames.num_frames(); ++t) {
+    frames.MotionMaps(t, maps);
+    std::copy_n(maps.begin(), size, rows.row(t).data());
+  }
+  return rows;
+}
+
+Eigen::MatrixXf NormalisedCrossCorrelation(const DescriptorRows& a, const DescriptorRows& b) {
+  BODYLOOM_CHECK(a.cols() == b.cols(), "descriptors of ", a.cols(), " and ", b.cols(), " values");
+  return Standardised(a) * Standardised(b).transpose();
+}
+
+std::vector<int> Peaks(std::span<const float> curve, double share, int reach) {
+  std::vector<int> peaks;
+  if (curve.empty()) return peaks;
+  const double least = share * *std::max_element(curve.begin(), curve.end());
+  const int count = static_cast<int>(curve.size());
+  for (int i = 1; i + 1 < count; ++i) {
+    const int begin = std::max(0, i - reach), end = std::min(count, i + reach + 1);
+    const auto largest = std::max_element(curve.begin() + begin, curve.begin() + end);
+    if (largest - curve.begin() == i && curve[i] >= least) peaks.push_back(i);
+  }
+  return peaks;
+}
+
+std::vector<int> TurningFrames(const TurningPerson& person, bool first) {
+  double fastest = 0;
+  for (const double rate : person.yaw_rate_deg_s) fastest = std::max(fastest, std::abs(rate));
+  std::vector<int> frames;
+  for (int t = 0; t < static_cast<int>(person.cycle.size()); ++t) {
+    const bool counts = first ? person.cycle[t] == 0 : person.cycle[t] > 0;
+    if (counts && std::abs(person.yaw_rate_deg_s[t]) > kSlow * fastest) frames.push_back(t);
+  }
+  return frames;
+}
+
+RetrievalScores ScoreRetrieval(const TurningPerson& person, const DescriptorRows& descriptors) {
+  BODYLOOM_CHECK(descriptors.rows() == Eigen::Index(person.cycle.size()), "retrieval: ", descriptors.rows(),
+                 " descriptors of ", person.cycle.size(), " frames");
+  RetrievalScores scores;
+  std::vector<int> reference, later;
+  for (int t = 0; t < static_cast<int>(person.cycle.size()); ++t) {
+    if (person.cycle[t] == 0) reference.push_back(t);
+    if (person.cycle[t] > 0) later.push_back(t);
+  }
+  BODYLOOM_CHECK(!reference.empty() && !later.empty(), "retrieval: expected at least two cycles");
+  const int cycles = person.cycle.back();
+  // (later × reference): a column is the curve of a frame of the first cycle, a row all that a later frame looks like.
+  const Eigen::MatrixXf correlation =
+      NormalisedCrossCorrelation(Chosen(descriptors, later), Chosen(descriptors, reference));
+  const std::vector<int> turning = TurningFrames(person, true);
+  for (size_t r = 0; r < reference.size(); ++r) {
+    if (!std::binary_search(turning.begin(), turning.end(), reference[r])) continue;
+    const auto peaks = Peaks({correlation.col(Eigen::Index(r)).data(), later.size()}, kPeakShare, kReach).size();
+    scores.peaks_a_cycle += double(peaks) / cycles / double(turning.size());
+    scores.one_peak_share += (peaks == size_t(cycles) ? 1.0 : 0.0) / double(turning.size());
+  }
+  const std::vector<int> queries = TurningFrames(person, false);
+  scores.queries = static_cast<int>(queries.size());
+  for (size_t q = 0; q < later.size(); ++q) {
+    if (!std::binary_search(queries.begin(), queries.end(), later[q])) continue;
+    Eigen::Index best = 0;
+    correlation.row(Eigen::Index(q)).maxCoeff(&best);
+    const int found = reference[best], t = later[q];
+    const bool right = (person.yaw_rate_deg_s[found] > 0) == (person.yaw_rate_deg_s[t] > 0);
+    scores.direction_share += (right ? 1.0 : 0.0) / scores.queries;
+    scores.yaw_error_deg += std::abs(person.yaw_deg[found] - person.yaw_deg[t]) / scores.queries;
+  }
+  return scores;
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+/// How well a descriptor tells the moments of a motion apart: nearest neighbours by normalised cross-correlation
+/// (Yoon et al., CVPR 2022, Fig. 4). A descriptor for which other moments look the same has several peaks a cycle.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "bodyloom/data_tools/descriptors/person_frames.h"
+#include "bodyloom/data_tools/evaluation/turning_person.h"
+
+namespace bodyloom {
+
+/// A row a frame.
+using DescriptorRows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// (A): COCO-17 in pixels relative to their mean, of each frame and the past − 1 before it (the first frame repeated),
+/// each coordinate off by N(0, noise_px²).
+DescriptorRows KeypointTrajectories(const BodyModel& body, const Track& track, int past, double noise_px,
+                                    uint64_t seed);
+/// (B): atlas coordinates (u, v) of each pixel of the frames' window, background 0, of each frame and the past − 1
+/// before it.
+DescriptorRows DenseCoordinates(const PersonFrames& frames, int past);
+/// (C): the 3D motion descriptor, 3 + 3·past channels over the atlas; with past 0 only its normals.
+DescriptorRows MotionDescriptors(const PersonFrames& frames, int past);
+
+/// Pearson's correlation of every row of `a` with every row of `b`, in [−1, 1]; 0 where a row is constant. Throws
+/// std::invalid_argument when lengths differ.
+Eigen::MatrixXf NormalisedCrossCorrelation(const DescriptorRows& a, const DescriptorRows& b);
+
+/// Where a curve has its largest value within `reach` samples either side (of equal ones the first), and at least
+/// `share` of its largest value of all. The first and last sample are no peaks: the curve may rise beyond them.
+std::vector<int> Peaks(std::span<const float> curve, double share, int reach);
+
+struct RetrievalScores {
+  double peaks_a_cycle = 0;    ///< mean over the frames of the first cycle
+  double one_peak_share = 0;   ///< of those frames: exactly as many peaks as cycles
+  double direction_share = 0;  ///< frames of the later cycles whose nearest neighbour in the first turns the same way
+  double yaw_error_deg = 0;    ///< mean difference to the nearest neighbour's yaw
+  int queries = 0;             ///< frames of the later cycles in the last two
+};
+
+/// Peaks above 0.9 of the largest value, 4 frames either side. Frames that turn slower than a third of the fastest have
+/// no direction and do not count; nor do they, for they lie where cycles meet, in the counts of peaks.
+RetrievalScores ScoreRetrieval(const TurningPerson& person, const DescriptorRows& descriptors);
+
+/// The frames that ScoreRetrieval counts, of cycle 0 (`first`) or of all later ones.
+std::vector<int> TurningFrames(const TurningPerson& person, bool first);
+
+}  // namespace bodyloom

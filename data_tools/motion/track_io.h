@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Track files: one .npz that AMASS readers understand and that is enough to evaluate a track without this project.
+///
+/// T frames of a body with J joints; metres, camera frame (x right, y down, z forward), radians, seconds:
+///   poses T×3J axis-angle    trans T×3      betas B        gender 'neutral'   mocap_framerate 1 / median time step
+///   body text ("bodyloom", "smpl", …)       timestamps T   frame_status uint8 T (0 tracked, 1 weak, 2 interpolated,
+///   3 lost: values NaN)      joints T×J×3   coco17 T×17×3 (not for bodies without these landmarks)
+///   joint_sigma T×J standard deviation of a joint's position (NaN: unknown)
+///   camera_model 'pinhole' or 'weak'        K 3×3          distortion 8 (OpenCV: k1 k2 p1 p2 k3 k4 k5 k6)
+///   image_size [width, height], pixels      camera T×3     (s, tx, ty), only with 'weak': pixel = s·(X + tx, Y + ty) +
+///   (cx, cy), s in pixels a metre, cx and cy from K
+/// There is no `camera` member for a pinhole camera: K and trans say everything.
+///
+/// The reader also takes tracks that others wrote. Needed are poses, trans and a camera (K, or camera T×3); without
+/// timestamps they follow from mocap_framerate or mocap_frame_rate, else 30 frames a second are assumed; betas may be
+/// T×B (their mean is taken); K may be T×3×3 when all frames agree; distortion may have 4, 5 or 8 values; frames whose
+/// pose or trans is NaN count as lost; `body` follows from the number of columns (72 smpl, 156 smplh, 165 smplx); an
+/// image_size of 0×0 says that the file does not tell.
+#pragma once
+
+#include <string>
+
+#include "bodyloom/data_tools/formats/npz.h"
+#include "bodyloom/geometry/track.h"
+
+namespace bodyloom {
+
+/// Throws std::invalid_argument when the track's arrays contradict each other (both sizes are named), and
+/// std::runtime_error when the file cannot be written.
+void WriteTrack(const std::string& path, const Track& track);
+
+/// Throws std::runtime_error naming file, member, what it holds and what was expected.
+Track ReadTrack(const std::string& path);
+
+/// The same from a file's bytes or arrays; `where` names it in messages.
+Track TrackFromArrays(const NpzArrays& arrays, const std::string& where);
+Track ReadTrackBytes(const std::string& bytes, const std::string& where);
+
+}  // namespace bodyloom

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/data_tools/synthesis/clips/rendered_labels.h"
+
+#include <utility>
+
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/render/visibility_buffer.h"
+
+namespace bodyloom {
+
+PartLabelSequence RenderPartLabels(const BodyModel& body, const Track& track, int block_px) {
+  BODYLOOM_CHECK(body.has_parts(), "RenderPartLabels: the body '", body.name(), "' has no parts");
+  BODYLOOM_CHECK(block_px >= 1, "RenderPartLabels: blocks of ", block_px, " px, expected at least 1");
+  PartLabelSequence labels;
+  labels.timestamps = track.motion.timestamps;
+  labels.image_width = track.camera.width;
+  labels.image_height = track.camera.height;
+  VisibilityBuffer buffer;
+  for (int t = 0; t < track.num_frames(); ++t) {
+    LabelImage image;
+    if (track.HasResult(t)) {
+      const BodyPose pose =
+          PoseFromAxisAngle(body, track.motion.poses.row(t).transpose(), track.motion.trans.row(t).transpose());
+      buffer.Render(PoseVertices(body, track.motion.betas, pose), body.data().faces, track.CameraAt(t));
+      // A block may stick out of the box by as much as it is wide.
+      const PixelBox box = buffer.box().GrownBy(block_px).ClippedTo({0, 0, labels.image_width, labels.image_height});
+      image = {box.x_begin, box.y_begin, box.width(), box.height(), {}};
+      for (int y = box.y_begin; y < box.y_end; ++y) {
+        for (int x = box.x_begin; x < box.x_end; ++x) {
+          const int face =
+              buffer.FaceAt(x / block_px * block_px + block_px / 2, y / block_px * block_px + block_px / 2);
+          image.labels.push_back(face < 0 ? PartLabelSequence::kBackground : body.data().face_part[face]);
+        }
+      }
+    }
+    labels.frames.push_back(std::move(image));
+  }
+  return labels;
+}
+
+}  // namespace bodyloom

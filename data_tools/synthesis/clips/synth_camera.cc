@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/data_tools/synthesis/clips/synth_camera.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/rotation.h"
+
+namespace bodyloom {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double kDegree = M_PI / 180;
+
+/// Rotation that takes the motion's world to one with y up.
+Matrix3d YUpFromWorld(Motion::Up up) {
+  switch (up) {
+    case Motion::Up::kY:
+      return Matrix3d::Identity();
+    case Motion::Up::kZ:
+      return RotationFromAxisAngle(Vector3d(-M_PI / 2, 0, 0));
+    case Motion::Up::kCamera:
+      return RotationFromAxisAngle(Vector3d(M_PI, 0, 0));
+  }
+  return Matrix3d::Identity();
+}
+
+/// A few hundred vertices of every frame, enough to know what the clip spans.
+std::vector<Vector3d> SampleSurface(const BodyModel& body, const Motion& motion) {
+  std::vector<int> vertices;
+  for (int v = 0; v < body.num_vertices(); v += std::max(1, body.num_vertices() / 300)) vertices.push_back(v);
+  std::vector<Vector3d> points;
+  for (int t = 0; t < motion.num_frames(); ++t) {
+    if (!motion.HasPose(t)) continue;
+    const BodyPose pose = PoseFromAxisAngle(body, motion.poses.row(t).transpose(), motion.trans.row(t).transpose());
+    const MatrixX3d frame = PoseVertices(body, motion.betas, pose, vertices);
+    for (int i = 0; i < frame.rows(); ++i) points.push_back(frame.row(i).transpose());
+  }
+  return points;
+}
+
+}  // namespace
+
+bool SynthCameraOptions::IsValid(std::string* why) const {
+  const auto no = [&](const std::string& text) {
+    if (why != nullptr) *why = text;
+    return false;
+  };
+  if (width < 16 || height < 16 || width > 16384 || height > 16384)
+    return no("synth camera: size must be 16 to 16384 px a side");
+  if (!(focal_px >= 0 && std::isfinite(focal_px))) return no("synth camera: focal_px must be positive, or 0");
+  if (!(std::abs(elevation_deg) <= 85)) return no("synth camera: elevation_deg must be in [-85, 85]");
+  if (!std::isfinite(yaw_deg)) return no("synth camera: yaw_deg must be finite");
+  if (!(fill > 0.02 && fill <= 1)) return no("synth camera: fill must be in (0.02, 1]");
+  return true;
+}
+
+SynthCamera PlaceSynthCamera(const BodyModel& body, const Motion& motion, const SynthCameraOptions& options) {
+  std::string why;
+  BODYLOOM_CHECK(options.IsValid(&why), why);
+  SynthCamera result;
+  const double focal_px = options.focal_px > 0 ? options.focal_px : 1.1 * std::max(options.width, options.height);
+  result.camera = MakePinhole(options.width, options.height, focal_px);
+  result.camera.distortion = options.distortion;
+  result.camera.model = options.model;
+
+  // World → y up → turned so that the camera stands on +z → y down, z away → tilted.
+  const Matrix3d look = RotationFromAxisAngle(Vector3d(M_PI, 0, 0));
+  const Matrix3d R = RotationFromAxisAngle(Vector3d(options.elevation_deg * kDegree, 0, 0)) * look *
+                     RotationFromAxisAngle(Vector3d(0, -options.yaw_deg * kDegree, 0)) * YUpFromWorld(motion.up);
+  std::vector<Vector3d> points = SampleSurface(body, motion);
+  BODYLOOM_CHECK(!points.empty(), "synth camera: the motion has no finite frame");
+  for (Vector3d& x : points) x = R * x;
+
+  // The distance and the sideways shift hang together: a few rounds of "centre the picture, then come as near as fits".
+  Eigen::AlignedBox3d box;
+  for (const Vector3d& x : points) box.extend(x);
+  Vector3d centre = box.center();
+  const double half_w = 0.5 * options.fill * options.width, half_h = 0.5 * options.fill * options.height;
+  double distance = 0;
+  if (options.model == CameraModel::kWeakPerspective) {
+    const Vector3d half = 0.5 * box.sizes();
+    result.camera.scale = std::min(half_w / std::max(half.x(), 1e-6), half_h / std::max(half.y(), 1e-6));
+    distance = 5;  // does not show, but puts the body in front of the camera
+  } else {
+    for (int round = 0; round < 12; ++round) {
+      // Without distortion a point at depth z + d is seen at f·x/(z + d).
+      distance = 0;
+      for (const Vector3d& x : points) {
+        const Vector3d r = x - centre;
+        distance = std::max({distance, focal_px * std::abs(r.x()) / half_w - r.z(),
+                             focal_px * std::abs(r.y()) / half_h - r.z(), 0.3 - r.z()});
+      }
+      Eigen::AlignedBox2d seen;
+      for (const Vector3d& x : points) {
+        const Vector3d r = x - centre;
+        seen.extend(Vector2d(r.x(), r.y()) / (r.z() + distance));
+      }
+      centre.head<2>() += 0.7 * distance * seen.center();
+    }
+  }
+  result.up_in_camera = R * YUpFromWorld(motion.up).transpose() * Vector3d::UnitY();
+  result.pose.camera_from_world_rotation = R;
+  result.pose.camera_from_world_translation = Vector3d(0, 0, distance) - centre;
+  return result;
+}
+
+Motion MotionInCamera(const BodyModel& body, const Motion& motion, const CameraPose& pose) {
+  Motion result = motion;
+  result.up = Motion::Up::kCamera;
+  const Vector3d pelvis = body.RestJoints(motion.betas).row(0).transpose();
+  const Matrix3d& R = pose.camera_from_world_rotation;
+  const Vector3d mean = body.data().pose_mean.size() > 0 ? Vector3d(body.data().pose_mean.head<3>()) : Vector3d::Zero();
+  for (int t = 0; t < motion.num_frames(); ++t) {
+    const Vector3d root = motion.poses.row(t).head<3>().transpose();
+    result.poses.row(t).head<3>() = (AxisAngleFromRotation(R * RotationFromAxisAngle(root + mean)) - mean).transpose();
+    const Vector3d trans = motion.trans.row(t).transpose();
+    result.trans.row(t) = (R * (pelvis + trans) + pose.camera_from_world_translation - pelvis).transpose();
+  }
+  return result;
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A clip with known truth: motion × body × camera → what detectors would have seen, with faults of stated size.
+///
+/// Dense keypoints: pixels of the visible body, drawn uniformly without repetition among those that the visibility
+/// buffer covers; each is labelled with the surface point under its centre. Faults, in this order:
+///   1. missing parts: each chart vanishes for intervals (`missing_part_share` of the time on average);
+///   2. UV noise: (u, v) += N(0, uv_sigma²) in chart units, on the surface point, the pixel stays;
+///   3. quantisation: u → ⌊255 u⌋/255, v alike, as 8-bit IUV images hold it (bias −0.5/255);
+///      after 2 and 3 the label is the surface point of the same chart nearest to the changed (u, v);
+///   4. outliers: a label is replaced by a random point of the surface (uniform by area) with `outlier_probability`;
+///   5. pixel noise: pixel += N(0, pixel_sigma_px²) on each coordinate.
+///   sigma_px of a keypoint is what these faults amount to in the image: √(pixel_sigma² + ½ (uv_sigma² + q²/12)
+///   ‖M‖²_F), q = 1/255 when quantised, M = d(pixel)/d(u, v) at the label, at least min_sigma_px; the sequence's
+///   uv_sigma and pixel_sigma_px say what it is made of; outliers do not announce themselves.
+/// 2D landmarks: detection_noise.h. Frames drop out whole in runs (`dropped_frame_share`). Frames are independent: the
+/// clip is the same for any number of threads, and the same bytes for the same seed.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "bodyloom/data_tools/synthesis/clips/detection_noise.h"
+#include "bodyloom/data_tools/synthesis/clips/perturbed_motion.h"
+#include "bodyloom/data_tools/synthesis/clips/synth_camera.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/observations.h"
+#include "bodyloom/geometry/track.h"
+
+namespace bodyloom {
+
+struct DenseFaultOptions {
+  double pixel_sigma_px = 0;
+  double uv_sigma = 0;       ///< chart units
+  bool quantise_uv = false;  ///< 8 bits, rounded down
+  double outlier_probability = 0;
+  double missing_part_share = 0;      ///< of the time of each part
+  double missing_part_seconds = 0.5;  ///< mean length of an absence
+  double min_sigma_px = 0.3;
+};
+
+struct SynthClipOptions {
+  uint64_t seed = 1;
+  SynthCameraOptions camera;
+  int dense_per_frame = 300;  ///< fewer when fewer pixels show the body; 0: no dense keypoints
+  DenseFaultOptions dense;
+  bool keypoints = true;  ///< COCO-17 and toes and heels, as far as the body has them
+  DetectionNoiseOptions detection;
+  double dropped_frame_share = 0;   ///< frames without any observation
+  double dropped_run_frames = 5;    ///< mean length of a gap
+  double initialiser_error_px = 0;  ///< mean per-vertex projection error at 512 px of the initialiser; 0: none
+  PerturbationOptions perturbation;
+  int num_threads = 0;  ///< 0: all cores
+  [[nodiscard]] bool IsValid(std::string* why) const;
+};
+
+/// What was done to the observations.
+struct SynthFaultCounts {
+  int dense = 0, dense_outliers = 0, dense_missing = 0, frames_dropped = 0, keypoints = 0, keypoints_hidden = 0;
+};
+
+struct SynthClip {
+  Track truth;  ///< camera frame
+  CameraPose camera_from_world;
+  Eigen::Vector3d up_in_camera;  ///< unit vector
+  DenseSequence dense;
+  DenseSequence dense_truth;  ///< the same pixels before faults 2–5 (same frames, same order)
+  KeypointSequence keypoints;
+  KeypointSequence keypoints_truth;  ///< exact; confidence 1 visible, 0.5 hidden by the body, 0 outside the image
+  Motion initialiser;                ///< camera frame; no frames when not asked for
+  double initialiser_error_px = 0;   ///< as measured
+  SynthFaultCounts counts;
+};
+
+/// Throws std::invalid_argument when an option is out of range, the motion has no frame, is not finite or has more
+/// columns than the body has joints, or UV faults or missing parts are asked of a body without charts.
+SynthClip MakeSynthClip(const BodyModel& body, const Motion& motion, const SynthClipOptions& options = {});
+
+}  // namespace bodyloom

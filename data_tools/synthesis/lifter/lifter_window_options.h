@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What random training windows are like. Probabilities are of a window unless said otherwise.
+#pragma once
+
+#include <string>
+
+#include "bodyloom/tracking/initialise/lifter_input.h"
+
+namespace bodyloom {
+
+struct LifterWindowOptions {
+  int num_frames = 81;
+  double rate = kLifterRate;  ///< frames a second
+
+  // Camera. Distances are in units of the body: metres for a person of the mean body's size.
+  double min_elevation_deg = -10, max_elevation_deg = 40;  ///< positive: the camera looks down on the person
+  double roll_sd_deg = 4;
+  double min_distance = 2.6, max_distance = 9;  ///< logarithmically uniform
+  double off_axis = 0.35;                       ///< sideways, of the distance; half of it up and down
+  double moving_camera = 0.15;                  ///< the camera turns after the person, and shakes
+  double focal_known = 0.6;
+  double focal_guess_sd = 0.3;  ///< of the logarithm of guessed over true focal length, where it is not known
+
+  // Motion.
+  double min_speed = 0.58, max_speed = 1.73;  ///< logarithmically uniform
+  double mirror = 0.5;
+  double as_recorded = 0.35;  ///< nothing of what follows is done, but for a quarter of the perturbation
+  double arm_exchange = 0.35, leg_exchange = 0.15;  ///< for each arm and leg: moves as in another clip
+  double spine_exchange = 0.2;
+  double perturbation = 1.2;                ///< smooth random turns of the joints: the level is uniform up to this
+  double squat = 0.35, lunge_share = 0.35;  ///< of the squats, this share has legs of their own
+  double leg_raise = 0.18, kick = 0.08, arm_raise = 0.25, bend = 0.1, lean = 0.2;
+  double floor_work = 0.22;  ///< lying, sitting, kneeling, crawling, rolling, upside down
+
+  // Bodies.
+  double shape_sd = 1.2;              ///< of each shape component
+  double bone_noise = 1;              ///< multiplies the spread of bone lengths: 0.02 each + 0.06 … 0.10 by group
+  double landmark_sd_m = 0.008;       ///< a landmark's place in the body
+  double biased_detector = 0.5;       ///< the detector means places of its own, the same on both sides
+  double detector_bias_sd_m = 0.012;  ///< how far off these are
+  // Detections (data_tools/synthesis/clips/detection_model.h).
+  double noise = 1;                     ///< multiplies it; 0: exact positions
+  double noise_spread = 0.3;            ///< sd of the logarithm of a window's own factor
+  bool model_confidence = true;         ///< false: 1 for every landmark that is there
+  double dropout = 0.01;                ///< of a point and frame
+  double pair_swap = 0.06;              ///< of a window and pair (elbows, wrists, knees, ankles): few frames
+  double body_swap = 0.03;              ///< all left and right points, for a stretch
+  double no_feet = 0.6, no_face = 0.1;  ///< points that the detector does not have
+  double missing_limb = 0.1, missing_lower_half = 0.08, nothing = 0.06;  ///< for a stretch
+  double border = 0.15;                                                  ///< the image ends across the body
+  double cut_off = 0.25;             ///< points below a confidence of 0.1 … 0.4 are not reported
+  double constant_confidence = 0.1;  ///< the detector says 1 for all it reports
+  double confidence_spread = 0.35;   ///< sd of the logarithm of the exponent that detectors' confidences differ by
+
+  [[nodiscard]] bool IsValid(std::string* why) const;
+
+  /// Motion as it was recorded, before the same cameras and detectors: for validation and tests.
+  static LifterWindowOptions AsRecorded() {
+    LifterWindowOptions options;
+    options.min_speed = options.max_speed = 1;
+    options.arm_exchange = options.leg_exchange = options.spine_exchange = options.perturbation = 0;
+    options.squat = options.leg_raise = options.kick = options.arm_raise = options.bend = options.lean = 0;
+    options.floor_work = 0;
+    return options;
+  }
+};
+
+}  // namespace bodyloom

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Endless random training windows for the lifter: recorded motion, made more varied, filmed by a random camera and
+/// seen through a detector's eyes. What is generated and why: docs/lifter_training_data.md.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "bodyloom/data_tools/synthesis/lifter/floor_work.h"
+#include "bodyloom/data_tools/synthesis/lifter/lifter_clips.h"
+#include "bodyloom/data_tools/synthesis/lifter/lifter_scene.h"
+#include "bodyloom/data_tools/synthesis/lifter/lifter_window_options.h"
+#include "bodyloom/data_tools/synthesis/lifter/pose_augmentation.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/track.h"
+
+namespace bodyloom {
+
+/// T frames. Targets are in each frame's virtual camera as MakeLifterInput computes it from these very detections;
+/// where the focal length is unknown, the features see rays that were made with a wrong one, and the targets are in the
+/// virtual camera of the right one: what is seen looks the same from there.
+struct LifterWindow {
+  std::vector<float> features;    ///< T·kLifterInputs
+  std::vector<float> points;      ///< T·21·3 relative to the mid-hip, in units of Lref
+  std::vector<float> up;          ///< T·3 unit
+  std::vector<float> contact;     ///< T·2 left, right: 0 or 1
+  std::vector<float> confidence;  ///< T·21 of the detections, 0: missing
+};
+
+class LifterWindowGenerator {
+ public:
+  /// `motions`: 24 joints, y up, on a flat floor where has_floor says so; copied into a compact form (24 quaternions a
+  /// frame at 60 frames a second). Throws std::invalid_argument, naming the motion by its index, for motions that
+  /// cannot be used, when there are none, when has_floor has another length, and for options that are not valid.
+  LifterWindowGenerator(const std::vector<Motion>& motions, const std::vector<char>& has_floor, const BodyModel& body,
+                        const LifterWindowOptions& options);
+
+  /// The same seed gives the same window, whatever thread asks. Thread-safe.
+  void Generate(uint64_t seed, LifterWindow* window) const;
+
+  /// The steps of Generate(), one after the other, for tests and pictures.
+  [[nodiscard]] PoseSequence MakePoses(uint64_t seed, const LifterPerson& person) const;
+  [[nodiscard]] LifterPerson MakePerson(uint64_t seed) const;
+  [[nodiscard]] LifterScene MakeScene(uint64_t seed, const LifterPerson& person, const PoseSequence& poses) const;
+  [[nodiscard]] LifterFrames Detect(uint64_t seed, const LifterScene& scene) const;
+  void MakeWindow(uint64_t seed, const LifterScene& scene, const LifterFrames& frames, LifterWindow* window) const;
+
+  [[nodiscard]] const LifterBody& body() const { return body_; }
+  [[nodiscard]] const LifterWindowOptions& options() const { return options_; }
+
+ private:
+  LifterWindowOptions options_;
+  LifterBody body_;
+  PoseLimits limits_;
+  std::vector<LifterClip> clips_;
+  ClipChoice choice_;
+};
+
+}  // namespace bodyloom

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/data_tools/synthesis/lifter/pose_augmentation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bodyloom/data_tools/synthesis/lifter/fast_random.h"
+#include "bodyloom/tracking/joint_limits.h"
+
+namespace bodyloom {
+
+using Eigen::Quaternionf;
+using Eigen::Vector3f;
+
+namespace {
+
+Vector3f X(float angle) { return {angle, 0, 0}; }
+Vector3f Z(float angle) { return {0, 0, angle}; }
+
+float Draw(HashRandom* random, double low, double high) { return static_cast<float>(random->Uniform(low, high)); }
+
+/// A leg flexed by `hip` and out by `out` in the pelvis' frame, its knee by `knee`, the foot turned back towards the
+/// floor by as much of it as `level_foot` says.
+void FlexLeg(int side, float hip, float out, float knee, float level_foot, int t, PoseSequence* poses) {
+  Quaternionf& q = poses->at(t, kLeftHip + side);
+  q = TurnBy(Z(side == 0 ? out : -out)) * TurnBy(X(-hip)) * q;
+  Quaternionf& k = poses->at(t, kLeftKnee + side);
+  k = k * TurnBy(X(knee));
+  Quaternionf& a = poses->at(t, kLeftAnkle + side);
+  a = a * TurnBy(X(level_foot * std::clamp(hip - knee, -0.7F, 0.7F)));
+}
+
+/// Both legs down, and the trunk forward as balance asks; or one leg before the other.
+void Squat(const LifterWindowOptions& options, HashRandom* random, PoseSequence* poses) {
+  const bool lunge = random->Uniform() < options.lunge_share;
+  float hip[2], knee[2], out[2];
+  hip[0] = Draw(random, 0.2, 1.9);
+  knee[0] = std::min(2.5F, hip[0] * Draw(random, 0.5, 1.8));
+  out[0] = out[1] = Draw(random, -0.1, 0.6);
+  hip[1] = hip[0];
+  knee[1] = knee[0];
+  if (lunge) {
+    hip[1] = Draw(random, -0.5, 0.6);
+    knee[1] = Draw(random, 0.2, 1.6);
+  }
+  const int first = random->Uniform() < 0.5 ? 0 : 1;
+  const float lean = Draw(random, -0.05, 0.45) * hip[0];
+  const std::vector<float> hump = RandomHump(poses->num_frames, options.rate, 0.3, 1.5, random);
+  for (int t = 0; t < poses->num_frames; ++t) {
+    if (hump[t] == 0) continue;
+    poses->at(t, kPelvis) = poses->at(t, kPelvis) * TurnBy(X(hump[t] * lean));
+    for (int i = 0; i < 2; ++i) {
+      FlexLeg(first ^ i, hump[t] * (hip[i] + lean), hump[t] * out[i], hump[t] * knee[i], 1, t, poses);
+    }
+  }
+}
+
+/// One leg up, forwards, sideways or back; or a quick kick.
+void RaiseLeg(const LifterWindowOptions& options, bool kick, HashRandom* random, PoseSequence* poses) {
+  const int side = random->Uniform() < 0.5 ? 0 : 1;
+  float hip = Draw(random, 0.3, 2.0), out = Draw(random, -0.2, 0.8), knee = Draw(random, 0, 1.9);
+  if (random->Uniform() < 0.3) {  // back
+    hip = Draw(random, -0.7, 0.1);
+    knee = Draw(random, 0, 2.1);
+  }
+  if (kick) {
+    hip = Draw(random, 0.8, 2.3);
+    out = Draw(random, -0.2, 1.2);
+    knee = Draw(random, 0, 0.3);
+  }
+  const std::vector<float> hump = kick ? RandomHump(poses->num_frames, options.rate, 0.15, 0.4, random)
+                                       : RandomHump(poses->num_frames, options.rate, 0.25, 1.2, random);
+  for (int t = 0; t < poses->num_frames; ++t) {
+    if (hump[t] == 0) continue;
+    // A kick bends the knee on its way up and down.
+    const float bent = kick ? hump[t] * knee + 4 * hump[t] * (1 - hump[t]) * 1.2F : hump[t] * knee;
+    FlexLeg(side, hump[t] * hip, hump[t] * out, bent, 0, t, poses);
+  }
+}
+
+/// An arm goes to a direction of its own, with its elbow bent.
+void RaiseArm(const LifterWindowOptions& options, int side, HashRandom* random, PoseSequence* poses) {
+  // On the sphere, in the trunk's frame, not across the trunk's far side and not far behind it.
+  const float turn = Draw(random, -0.6, 1.9), up = Draw(random, -1.0, 1.5);
+  const Vector3f direction(std::cos(up) * std::cos(turn), std::sin(up), std::cos(up) * std::sin(turn));
+  Quaternionf shoulder = Quaternionf::FromTwoVectors(Vector3f::UnitX(), direction) * TurnBy(X(Draw(random, -1, 1)));
+  Quaternionf elbow = TurnBy({0, -Draw(random, 0, 2.3), 0}) * TurnBy(X(Draw(random, -0.7, 0.7)));
+  if (side == 1) {
+    shoulder = MirrorRotation(shoulder);
+    elbow = MirrorRotation(elbow);
+  }
+  const std::vector<float> hump = RandomHump(poses->num_frames, options.rate, 0.25, 1.2, random);
+  for (int t = 0; t < poses->num_frames; ++t) {
+    if (hump[t] == 0) continue;
+    poses->at(t, kLeftShoulder + side) = Between(poses->at(t, kLeftShoulder + side), shoulder, hump[t]);
+    poses->at(t, kLeftElbow + side) = Between(poses->at(t, kLeftElbow + side), elbow, hump[t]);
+  }
+}
+
+/// The trunk goes forward (or a little back) over legs that stay where they are.
+void Bend(const LifterWindowOptions& options, HashRandom* random, PoseSequence* poses) {
+  const float pelvis = Draw(random, -0.2, 1.3), spine = Draw(random, -0.1, 0.4);
+  const std::vector<float> hump = RandomHump(poses->num_frames, options.rate, 0.3, 1.5, random);
+  for (int t = 0; t < poses->num_frames; ++t) {
+    if (hump[t] == 0) continue;
+    poses->at(t, kPelvis) = poses->at(t, kPelvis) * TurnBy(X(hump[t] * pelvis));
+    for (int side = 0; side < 2; ++side) {
+      Quaternionf& q = poses->at(t, kLeftHip + side);
+      q = TurnBy(X(-hump[t] * pelvis)) * q;
+    }
+    for (const int j : {kSpine1, kSpine2, kSpine3}) poses->at(t, j) = poses->at(t, j) * TurnBy(X(hump[t] * spine));
+  }
+}
+
+}  // namespace
+
+PoseLimits::PoseLimits(const BodyModel& body) {
+  for (const JointLimits::Range& range : JointLimits::ForBody(body).ranges) {
+    // What lies beyond the wrists moves no landmark.
+    if (range.joint >= kLeftWrist) continue;
+    ranges_[range.joint] = {true, range.lower.cast<float>().array(), range.upper.cast<float>().array()};
+  }
+}
+
+void PoseLimits::Apply(PoseSequence* poses) const {
+  for (int j = 0; j < kPoseJoints; ++j) {
+    const Range& range = ranges_[j];
+    if (!range.limited) continue;
+    const bool knee = j == kLeftKnee || j == kLeftKnee + 1;
+    const int elbow = j == kLeftElbow ? -1 : j == kLeftElbow + 1 ? 1 : 0;  // sign of flexion about y
+    for (int t = 0; t < poses->num_frames; ++t) {
+      Quaternionf& q = poses->at(t, j);
+      const Eigen::Array3f w = AxisAngleOf(q).array();
+      Eigen::Array3f inside = w;
+      if (knee) inside.x() = std::abs(inside.x());
+      if (elbow != 0) inside.y() = static_cast<float>(elbow) * std::abs(inside.y());
+      inside = inside.max(range.lower).min(range.upper);
+      if ((inside != w).any()) q = TurnBy(inside.matrix());
+    }
+  }
+}
+
+ClipChoice::ClipChoice(const std::vector<LifterClip>& clips) {
+  double sum = 0;
+  for (const LifterClip& clip : clips) up_to_.push_back(sum += std::sqrt(clip.duration_s));
+}
+
+size_t ClipChoice::operator()(HashRandom* random) const {
+  const double at = random->Uniform() * up_to_.back();
+  const auto it = std::upper_bound(up_to_.begin(), up_to_.end(), at);
+  return std::min(static_cast<size_t>(it - up_to_.begin()), up_to_.size() - 1);
+}
+
+void ExchangeLimbs(const std::vector<LifterClip>& clips, const ClipChoice& choice, const LifterWindowOptions& options,
+                   double step_s, HashRandom random, PoseSequence* poses) {
+  const auto exchange = [&](double probability, std::vector<int> joints) {
+    const bool wanted = random.Uniform() < probability, mirror = random.Uniform() < options.mirror;
+    const LifterClip& clip = clips[choice(&random)];
+    const double start_s = random.Uniform(0, clip.duration_s);
+    if (!wanted) return;
+    std::vector<int> source = joints;
+    if (mirror) std::transform(joints.begin(), joints.end(), source.begin(), MirrorJoint);
+    SampleJoints(clip, start_s, step_s, source, joints, mirror, poses);
+  };
+  for (int side = 0; side < 2; ++side) {
+    exchange(options.arm_exchange,
+             {kLeftCollar + side, kLeftShoulder + side, kLeftElbow + side, kLeftWrist + side, kLeftHand + side});
+    exchange(options.leg_exchange, {kLeftHip + side, kLeftKnee + side, kLeftAnkle + side, kLeftFoot + side});
+  }
+  exchange(options.spine_exchange, {kSpine1, kSpine2, kSpine3, kNeck, kHead});
+}
+
+void AddExercises(const LifterWindowOptions& options, HashRandom random, PoseSequence* poses) {
+  if (random.Uniform() < options.squat) Squat(options, &random, poses);
+  if (random.Uniform() < options.bend) Bend(options, &random, poses);
+  if (random.Uniform() < options.leg_raise) RaiseLeg(options, false, &random, poses);
+  if (random.Uniform() < options.kick) RaiseLeg(options, true, &random, poses);
+  for (int side = 0; side < 2; ++side) {
+    if (random.Uniform() < options.arm_raise) RaiseArm(options, side, &random, poses);
+  }
+  if (random.Uniform() < options.lean) {
+    const Vector3f tilt(Draw(&random, -0.5, 0.5), 0, Draw(&random, -0.5, 0.5));
+    const std::vector<float> hump = RandomHump(poses->num_frames, options.rate, 0.4, 2, &random);
+    for (int t = 0; t < poses->num_frames; ++t) {
+      if (hump[t] > 0) poses->at(t, kPelvis) = TurnBy(hump[t] * tilt) * poses->at(t, kPelvis);
+    }
+  }
+}
+
+void PerturbPoses(const LifterWindowOptions& options, float share, float root_share, HashRandom random,
+                  PoseSequence* poses) {
+  struct Row {
+    int joint;
+    Vector3f sd;
+  };
+  static const std::vector<Row> rows = {
+      {kPelvis, {.2F, .2F, .2F}},           {kSpine1, {.1F, .1F, .1F}},          {kSpine2, {.1F, .1F, .1F}},
+      {kSpine3, {.1F, .1F, .1F}},           {kNeck, {.15F, .15F, .15F}},         {kHead, {.2F, .2F, .2F}},
+      {kLeftHip, {.3F, .3F, .3F}},          {kLeftHip + 1, {.3F, .3F, .3F}},     {kLeftKnee, {.4F, .05F, .05F}},
+      {kLeftKnee + 1, {.4F, .05F, .05F}},   {kLeftAnkle, {.2F, .1F, .1F}},       {kLeftAnkle + 1, {.2F, .1F, .1F}},
+      {kLeftCollar, {.05F, .1F, .1F}},      {kLeftCollar + 1, {.05F, .1F, .1F}}, {kLeftShoulder, {.5F, .5F, .5F}},
+      {kLeftShoulder + 1, {.5F, .5F, .5F}}, {kLeftElbow, {.3F, .5F, .1F}},       {kLeftElbow + 1, {.3F, .5F, .1F}},
+  };
+  const float level = Draw(&random, 0, options.perturbation);
+  const float knot_frames = static_cast<float>(options.rate * random.Uniform(0.35, 1.2));
+  FastNormal normal(random);
+  std::vector<float> x, y, z;
+  for (const Row& row : rows) {
+    SmoothNoise(poses->num_frames, knot_frames, &normal, &x);
+    SmoothNoise(poses->num_frames, knot_frames, &normal, &y);
+    SmoothNoise(poses->num_frames, knot_frames, &normal, &z);
+    if (level == 0) continue;
+    const Vector3f sd = ((row.joint == kPelvis ? root_share : share) * level) * row.sd;
+    for (int t = 0; t < poses->num_frames; ++t) {
+      Quaternionf& q = poses->at(t, row.joint);
+      q = q * TurnBy(sd.cwiseProduct(Vector3f(x[t], y[t], z[t])));
+    }
+  }
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/data_tools/synthesis/people/dressed_render.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/hash_random.h"
+#include "bodyloom/render/view_camera.h"
+
+namespace bodyloom {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+constexpr float kInnerSide = 0.7F;
+
+/// The faces of clothed body and cloth as a body that does not move, which is what pixels are resolved against.
+BodyModel MeshOf(const DressedPerson& person) {
+  const MatrixX3i& body = person.body().data().faces;
+  const MatrixX3i& cloth = person.garment().drawn_faces;
+  const int V = person.body().num_vertices(), n = V + static_cast<int>(person.garment().drawn_from.size());
+  BodyModelData data;
+  data.name = "dressed";
+  data.joint_names = {"root"};
+  data.parents = {-1};
+  data.v_template = MatrixX3d::Zero(n, 3);
+  data.shapedirs.resize(3 * n, 0);
+  data.J_regressor.resize(1, n), data.J_regressor.insert(0, 0) = 1;
+  data.weights.resize(n, 1);
+  for (int v = 0; v < n; ++v) data.weights.insert(v, 0) = 1;
+  data.faces.resize(body.rows() + cloth.rows(), 3);
+  data.faces.topRows(body.rows()) = body;
+  data.faces.bottomRows(cloth.rows()) = cloth.array() + V;
+  return BodyModel(std::move(data));
+}
+
+PersonLight LightOf(const Vector3d& up_in_camera, uint64_t seed) {
+  HashRandom random(seed, {0x6c696768});
+  const Vector3d side = up_in_camera.cross(Vector3d::UnitZ()).normalized(), to_viewer = side.cross(up_in_camera);
+  const auto direction = [&](double azimuth, double height) {  // azimuth 0: from behind the camera
+    const Vector3d level = std::cos(azimuth) * to_viewer + std::sin(azimuth) * side;
+    return Vector3f((std::cos(height) * level + std::sin(height) * up_in_camera).cast<float>().normalized());
+  };
+  PersonLight light;
+  const double key = random.Uniform(0.3, 1.1) * (random.Uniform() < 0.5 ? -1 : 1);
+  light.towards = {direction(key, random.Uniform(0.4, 0.9)), direction(-1.5 * key, random.Uniform(0.0, 0.5))};
+  light.ambient = float(random.Uniform(0.5, 0.62));
+  light.strength = {float(random.Uniform(0.5, 0.65)), float(random.Uniform(0.1, 0.25))};
+  return light;
+}
+
+}  // namespace
+
+DressedScene::DressedScene(const DressedPerson& person, const Camera& camera, const Vector3d& up_in_camera,
+                           uint64_t seed, int samples)
+    : person_(person),
+      camera_(camera),
+      samples_(samples),
+      mesh_(MeshOf(person)),
+      places_(mesh_.num_vertices(), 3),
+      wardrobe_(person.outfit(), person.garment().around_m, seed),
+      background_(camera.width, camera.height, seed),
+      light_(LightOf(up_in_camera, seed)) {
+  BODYLOOM_CHECK(camera.model == CameraModel::kPinhole, "dressed scene: expected a pinhole camera");
+  BODYLOOM_CHECK(samples >= 1 && samples <= 8, "dressed scene: ", samples, " samples, expected 1..8");
+  places_ << person.body().data().v_template.cast<float>(), person.garment().pattern;
+}
+
+void DressedRenderer::Assemble(const BodyPose& pose, const std::vector<Vector3d>& cloth) {
+  const DressedPerson& person = scene_.person();
+  const MatrixX3i& faces = person.body().data().faces;
+  const LooseGarment& garment = person.garment();
+  BODYLOOM_CHECK(cloth.size() == garment.sewn.size(), "dressed person: ", cloth.size(), " vertices of cloth, expected ",
+                 garment.sewn.size());
+  const int V = person.body().num_vertices();
+  bare_ = person.BareVertices(pose);
+  vertices_.resize(scene_.mesh().num_vertices(), 3);
+  normals_.resize(scene_.mesh().num_vertices(), 3);
+  const MatrixX3d clothed = person.Clothed(bare_, bare_normals_.Compute(bare_, faces));
+  vertices_.topRows(V) = clothed;
+  normals_.topRows(V) = body_normals_.Compute(clothed, faces);
+  if (garment.empty()) return;
+  MatrixX3d places(static_cast<Eigen::Index>(cloth.size()), 3);
+  for (size_t v = 0; v < cloth.size(); ++v) places.row(static_cast<Eigen::Index>(v)) = cloth[v].transpose();
+  const MatrixX3f& normals = cloth_normals_.Compute(places, garment.cloth.faces);
+  for (size_t i = 0; i < garment.drawn_from.size(); ++i) {
+    vertices_.row(V + static_cast<Eigen::Index>(i)) = places.row(garment.drawn_from[i]);
+    normals_.row(V + static_cast<Eigen::Index>(i)) = normals.row(garment.drawn_from[i]);
+  }
+  is_inside_out_.resize(garment.cloth.faces.rows());
+  for (Eigen::Index f = 0; f < garment.cloth.faces.rows(); ++f) {
+    const auto corner = [&](int c) { return Vector3d(places.row(garment.cloth.faces(f, c)).transpose()); };
+    is_inside_out_[f] = corner(0).dot((corner(1) - corner(0)).cross(corner(2) - corner(0))) > 0;
+  }
+}
+
+void DressedRenderer::Resolve(const Camera& camera) {
+  buffer_.Render(vertices_, scene_.mesh().data().faces, camera, {.cull_back_faces = false});
+  ResolveRequest request;
+  request.normal = true;
+  request.vertex_normals = &normals_;
+  request.vertex_attributes = {{{scene_.places().data(), size_t(scene_.places().size())}, 3}};
+  ResolvePixels(buffer_, scene_.mesh(), vertices_, camera, request, &pixels_);
+}
+
+PersonLabel DressedRenderer::LabelOf(int face, const Vector3f& place) const {
+  const Outfit& outfit = scene_.person().outfit();
+  if (!IsCloth(face)) return outfit.LabelAt(place.cast<double>());
+  return outfit.kind() == GarmentKind::kCoat ? PersonLabel::kTop : PersonLabel::kBottom;
+}
+
+Vector3f DressedRenderer::NormalOf(int face, size_t at) const {
+  const Vector3f normal = Eigen::Map<const Vector3f>(&pixels_.normal[3 * at]);
+  return IsCloth(face) && is_inside_out_[face - scene_.num_body_faces()] ? Vector3f(-normal) : normal;
+}
+
+void DressedRenderer::DrawImage(const Image& background, Image* image) {
+  const int n = scene_.samples();
+  Resolve(ScaledCamera(scene_.camera(), n));
+  *image = background;
+  const PixelBox& box = buffer_.box();
+  const PersonLight& light = scene_.light();
+  const float share = 1.0F / float(n * n);
+  for (int y = box.y_begin / n; y * n < box.y_end; ++y) {
+    for (int x = box.x_begin / n; x * n < box.x_end; ++x) {
+      Vector3f sum = Vector3f::Zero();
+      int covered = 0;
+      for (int s = 0; s < n * n; ++s) {
+        const int i = x * n + s % n, j = y * n + s / n;
+        if (!box.Contains(i, j)) continue;
+        const size_t at = box.IndexOf(i, j);
+        const int face = buffer_.faces()[at];
+        if (face < 0) continue;
+        const Vector3f place = Eigen::Map<const Vector3f>(&pixels_.vertex_attributes[0][3 * at]);
+        const Vector3f normal = NormalOf(face, at);
+        float lit = light.ambient;
+        for (size_t k = 0; k < light.towards.size(); ++k) {
+          lit += light.strength[k] * std::max(0.0F, normal.dot(light.towards[k]));
+        }
+        if (IsCloth(face)) {
+          const bool inner = is_inside_out_[face - scene_.num_body_faces()] != 0;
+          sum += (inner ? kInnerSide : 1.0F) * lit * scene_.wardrobe().OfGarment(place);
+        } else {
+          sum += lit * scene_.wardrobe().OfBody(LabelOf(face, place), place);
+        }
+        ++covered;
+      }
+      if (covered == 0) continue;
+      uint8_t* const pixel = image->pixel(x, y);
+      const float behind = 1 - share * float(covered);
+      for (int k = 0; k < 3; ++k) {
+        const float value = share * sum[k] + behind * float(pixel[2 - k]);
+        pixel[2 - k] = static_cast<uint8_t>(std::lround(std::clamp(value, 0.0F, 255.0F)));
+      }
+    }
+  }
+}
+
+void DressedRenderer::DrawTruth(Image* labels, Image* normals) {
+  Resolve(scene_.camera());
+  const PixelBox& box = buffer_.box();
+  for (int y = box.y_begin; y < box.y_end; ++y) {
+    for (int x = box.x_begin; x < box.x_end; ++x) {
+      const size_t at = box.IndexOf(x, y);
+      const int face = buffer_.faces()[at];
+      if (face < 0) continue;
+      const Vector3f place = Eigen::Map<const Vector3f>(&pixels_.vertex_attributes[0][3 * at]);
+      std::fill_n(labels->pixel(x, y), 3, static_cast<uint8_t>(LabelOf(face, place)));
+      const Vector3f normal = NormalOf(face, at);
+      for (int k = 0; k < 3; ++k) normals->pixel(x, y)[2 - k] = NormalCode(normal[k]);
+    }
+  }
+}
+
+void DressedRenderer::DrawIuv(Image* iuv) {
+  const BodyModel& body = scene_.person().body();
+  buffer_.Render(bare_, body.data().faces, scene_.camera());
+  ResolveRequest request;
+  request.part = request.chart_uv = true;
+  ResolvePixels(buffer_, body, bare_, scene_.camera(), request, &pixels_);
+  const PixelBox& box = buffer_.box();
+  for (int y = box.y_begin; y < box.y_end; ++y) {
+    for (int x = box.x_begin; x < box.x_end; ++x) {
+      const size_t at = box.IndexOf(x, y);
+      if (pixels_.part[at] == 0) continue;
+      uint8_t* const pixel = iuv->pixel(x, y);
+      pixel[0] = pixels_.part[at];
+      for (int k = 0; k < 2; ++k) {
+        pixel[1 + k] = static_cast<uint8_t>(255 * std::clamp(pixels_.chart_uv[2 * at + k], 0.0F, 1.0F));
+      }
+    }
+  }
+}
+
+PersonFrame DressedRenderer::Render(const BodyPose& pose, const std::vector<Vector3d>& cloth, double time_s) {
+  Assemble(pose, cloth);
+  const Camera& camera = scene_.camera();
+  PersonFrame frame;
+  frame.background = scene_.background().At(time_s);
+  DrawImage(frame.background, &frame.rgb);
+  frame.labels = frame.normals = frame.iuv = Image(camera.width, camera.height);
+  DrawTruth(&frame.labels, &frame.normals);
+  if (scene_.person().body().has_parts() && scene_.person().body().data().face_iuv.rows() > 0) DrawIuv(&frame.iuv);
+  return frame;
+}
+
+}  // namespace bodyloom

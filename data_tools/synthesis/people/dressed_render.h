@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Pictures of a dressed person and the truth about every pixel.
+///
+/// The clothed body and the cloth (seen from both sides) go through one visibility buffer a resolution:
+/// - image: samples × samples samples a pixel. Colour = pattern (wardrobe.h) · (ambient + Σ light · max(0, n·l)),
+/// cloth's
+///   inner side at 0.7 of it, averaged with the background;
+/// - labels and normals: what the pixel's centre sees; normals are interpolated, and turned towards the viewer on cloth
+///   seen from inside;
+/// - iuv: the bare body without clothes, at the pixel's centre.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/data_tools/synthesis/people/dressed_person.h"
+#include "bodyloom/data_tools/synthesis/people/moving_background.h"
+#include "bodyloom/data_tools/synthesis/people/wardrobe.h"
+#include "bodyloom/geometry/camera.h"
+#include "bodyloom/geometry/vertex_normals.h"
+#include "bodyloom/render/resolve_pixels.h"
+#include "bodyloom/render/visibility_buffer.h"
+
+namespace bodyloom {
+
+struct PersonLight {
+  float ambient = 0.45F;
+  std::array<Eigen::Vector3f, 2> towards = {Eigen::Vector3f::UnitY(),
+                                            Eigen::Vector3f::UnitY()};  ///< unit, camera frame
+  std::array<float, 2> strength = {0.6F, 0.2F};
+};
+
+/// What does not change from frame to frame. Immutable, may be shared by threads; the person must outlive it.
+class DressedScene {
+ public:
+  /// Pinhole cameras only (std::invalid_argument otherwise). `up_in_camera`: lights come from above.
+  DressedScene(const DressedPerson& person, const Camera& camera, const Eigen::Vector3d& up_in_camera, uint64_t seed,
+               int samples = 2);
+
+  [[nodiscard]] const DressedPerson& person() const { return person_; }
+  [[nodiscard]] const Camera& camera() const { return camera_; }
+  [[nodiscard]] const Wardrobe& wardrobe() const { return wardrobe_; }
+  [[nodiscard]] const PersonLight& light() const { return light_; }
+  [[nodiscard]] const MovingBackground& background() const { return background_; }
+  [[nodiscard]] int samples() const { return samples_; }
+  /// Clothed body, then cloth, as one mesh; its faces are all that is used.
+  [[nodiscard]] const BodyModel& mesh() const { return mesh_; }
+  [[nodiscard]] int num_body_faces() const { return person_.body().num_faces(); }
+  /// Place on the template or on the cloth as sewn, three values a vertex of the mesh.
+  [[nodiscard]] const MatrixX3f& places() const { return places_; }
+
+ private:
+  const DressedPerson& person_;
+  Camera camera_;
+  int samples_;
+  BodyModel mesh_;
+  MatrixX3f places_;
+  Wardrobe wardrobe_;
+  MovingBackground background_;
+  PersonLight light_;
+};
+
+/// Draws frames of a scene. Keeps its memory between frames; one a thread.
+class DressedRenderer {
+ public:
+  explicit DressedRenderer(const DressedScene& scene) : scene_(scene) {}
+
+  /// `pose` in the camera frame; `cloth` as ClothRun gives it (in the camera frame).
+  PersonFrame Render(const BodyPose& pose, const std::vector<Eigen::Vector3d>& cloth, double time_s);
+
+ private:
+  void Assemble(const BodyPose& pose, const std::vector<Eigen::Vector3d>& cloth);
+  void Resolve(const Camera& camera);
+  [[nodiscard]] bool IsCloth(int face) const { return face >= scene_.num_body_faces(); }
+  [[nodiscard]] PersonLabel LabelOf(int face, const Eigen::Vector3f& place) const;
+  [[nodiscard]] Eigen::Vector3f NormalOf(int face, size_t at) const;
+  void DrawImage(const Image& background, Image* image);
+  void DrawTruth(Image* labels, Image* normals);
+  void DrawIuv(Image* iuv);
+
+  const DressedScene& scene_;
+  VertexNormalsOfMesh bare_normals_, body_normals_, cloth_normals_;
+  MatrixX3d bare_, vertices_;
+  MatrixX3f normals_;
+  std::vector<int8_t> is_inside_out_;  ///< by face of the cloth: seen from inside
+  VisibilityBuffer buffer_;
+  ResolvedPixels pixels_;
+};
+
+}  // namespace bodyloom

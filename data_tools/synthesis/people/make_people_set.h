@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Many synthetic people, each in several actions seen by several cameras (people_set.h), in the manner of 3DPeople
+/// (Pumarola et al., ICCV 2019): the seed makes bodies, clothes, colours and light, the motions make them move.
+///
+/// A clip takes `frames` frames, `every` apart, of a stretch of a motion chosen at random. The cloth runs once for all
+/// views of an action, through all frames in between. The camera follows the person across the floor, so that it fills
+/// the picture wherever it goes; height above the floor is kept. Views are spread evenly around the person from a
+/// random first one. The same bytes for any number of threads; clips are made in parallel.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/track.h"
+
+namespace bodyloom {
+
+struct MakePeopleSetOptions {
+  int people = 20, actions = 3, views = 2;
+  int frames = 6, every = 6;  ///< of a clip; frames of the motion between them
+  double test_share = 0.2;    ///< of the people: the last ones, at least one when there are two or more
+  int size_px = 256;
+  double elevation_low_deg = 0, elevation_high_deg = 20;
+  double shape_sigma = 1;
+  int samples = 2;  ///< a pixel along x and y
+  uint64_t seed = 1;
+  int num_threads = 0;                        ///< 0: all cores
+  std::string command;                        ///< information for people.json
+  std::function<bool(double)> progress = {};  ///< called with the finished fraction; false: stop
+  [[nodiscard]] bool IsValid(std::string* why) const;
+};
+
+struct MakePeopleSetSummary {
+  bool finished = false;  ///< false: stopped by `progress`
+  int pictures = 0;
+  /// Of one person in two different frames, by the number of ordered pairs that training may draw.
+  int64_t pairs = 0;
+  double seconds = 0;
+};
+
+/// Writes the set into `folder`. The motions must have y up and a regular clock. Throws std::invalid_argument when
+/// options are out of range or a motion cannot be used, std::runtime_error naming the file that cannot be written.
+MakePeopleSetSummary MakePeopleSet(const std::string& folder, const BodyModel& body, const std::vector<Motion>& motions,
+                                   const MakePeopleSetOptions& options = {});
+
+}  // namespace bodyloom

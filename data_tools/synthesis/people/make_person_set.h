@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+/// From a motion to a person set (person_set.h): the seed makes the person (shape, clothes, colours), the light and the
+/// background; the motion makes it move.
+///
+/// The cloth runs frame after frame on one thread while the frames before are drawn on the others, so memory does not
+/// grow with the length of the motion. The same bytes for any number of threads.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/data_tools/synthesis/clips/synth_camera.h"
+#include "bodyloom/data_tools/synthesis/people/dressed_person.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/track.h"
+
+namespace bodyloom {
+
+struct MakePersonSetOptions {
+  GarmentKind garment = GarmentKind::kSkirt;
+  uint64_t seed = 1;
+  int size_px = 256;   ///< images are square
+  double yaw_deg = 0;  ///< of the camera, about the vertical
+  double elevation_deg = 8;
+  double shape_sigma = 0.5;     ///< standard deviation of the body's shape components, cut at 2; 0: the mean shape
+  int samples = 2;              ///< a pixel along x and y
+  int num_threads = 0;          ///< 0: all cores
+  std::string motion, command;  ///< information for person.json
+  std::function<bool(double)> progress = {};               ///< called with the finished fraction; false: stop
+  std::function<void(int, const PersonFrame&)> look = {};  ///< called with every frame, in order
+  [[nodiscard]] bool IsValid(std::string* why) const;
+};
+
+struct MakePersonSetSummary {
+  bool finished = false;  ///< false: stopped by `progress`, or failed
+  int frames = 0, cuts = 0, cloth_vertices = 0;
+  int frames_through = 0;                 ///< in which a leg has come through the cloth
+  double seconds = 0, cloth_seconds = 0;  ///< wall time; of it in the cloth (beside drawing)
+  double largest_stretch = 0;             ///< of the cloth's threads, over all frames
+  [[nodiscard]] double frames_per_second() const { return seconds > 0 ? frames / seconds : 0; }
+};
+
+/// Shape components of the person of a seed.
+Eigen::VectorXd PersonBetas(const BodyModel& body, double sigma, uint64_t seed);
+
+/// A motion in the camera's frame as a track without error: every frame tracked, joints and landmarks where they are.
+Track TrueTrack(const BodyModel& body, const Motion& in_camera, const Camera& camera);
+
+/// The true track of a motion (world frame) of that body, and the camera: static, the whole motion in view.
+Track PersonTrack(const BodyModel& body, const Motion& motion, const MakePersonSetOptions& options,
+                  SynthCamera* camera);
+
+/// Writes the set. Throws std::invalid_argument when options are out of range or the motion is empty, not finite or not
+/// of SMPL's 24 joints, std::runtime_error naming the file that cannot be written.
+MakePersonSetSummary MakePersonSet(const std::string& folder, const BodyModel& body, const Motion& motion,
+                                   const MakePersonSetOptions& options = {});
+
+}  // namespace bodyloom

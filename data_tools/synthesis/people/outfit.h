@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What a synthetic person wears close to the skin, and where: top, trousers, shoes and hair are the body's own surface
+/// moved outwards, labelled by place.
+///
+/// A place on the surface is named by where it lies on the template (T-pose, metres, body frame), so cuts (sleeve,
+/// neckline, hairline, …) are smooth curves whatever the mesh, and stay on the skin when it moves. Any body on SMPL's
+/// first 24 joints with a T-pose template will do; its joints and height give the measures.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/geometry/body_model.h"
+
+namespace bodyloom {
+
+/// Suit: top and trousers. Skirt: top, bare legs and a loose skirt. Coat: trousers and a loose coat, with tight
+/// sleeves.
+enum class GarmentKind { kSuit, kSkirt, kCoat };
+
+std::string ToString(GarmentKind kind);
+/// "suit", "skirt" or "coat"; throws std::invalid_argument otherwise.
+GarmentKind GarmentKindFromString(const std::string& name);
+
+/// Where things end, metres on the template. The seed chooses within what people wear.
+struct OutfitCut {
+  double unit = 1;  ///< height of the body / 1.71 m: scales every length below
+  double waist_y = 0, neck_x = 0, neck_z = 0, neck_y = 0, neck_radius_x = 0, neck_radius_z = 0;
+  double sleeve_x = 0;                       ///< the top ends where |x| is larger
+  double hem_y = 0;                          ///< trousers (shorts under a skirt) end below
+  double shoe_y = 0;                         ///< shoes begin below
+  double head_y = 0;                         ///< neck and head begin above
+  double jaw_y = 0, jaw_z = 0;               ///< the jaw's line: y = jaw_y + ½(jaw_z − z)
+  double ear_y = 0, ear_z = 0;               ///< the hair's plane goes through here
+  double nape_y = 0;                         ///< hair ends below
+  double head_joint_y = 0, head_height = 0;  ///< of the head's joint, and of the crown above it
+};
+
+class Outfit {
+ public:
+  /// Throws std::invalid_argument when the body does not begin with SMPL's 24 joints.
+  Outfit(const BodyModel& body, GarmentKind kind, uint64_t seed);
+
+  [[nodiscard]] GarmentKind kind() const { return kind_; }
+  [[nodiscard]] const OutfitCut& cut() const { return cut_; }
+  /// Label of the place `on_template`; never background.
+  [[nodiscard]] PersonLabel LabelAt(const Eigen::Vector3d& on_template) const;
+  /// How far outside the skin the clothes (or hair) lie there, metres: at least 0, continuous.
+  [[nodiscard]] double OffsetAt(const Eigen::Vector3d& on_template) const;
+  /// The same for every vertex.
+  [[nodiscard]] const std::vector<double>& offsets_m() const { return offsets_m_; }
+
+ private:
+  [[nodiscard]] double HairDepth(const Eigen::Vector3d& p) const;
+  [[nodiscard]] double NeckHole(const Eigen::Vector3d& p) const;
+
+  GarmentKind kind_;
+  OutfitCut cut_;
+  double top_m_ = 0, trousers_m_ = 0, flare_m_ = 0, shoes_m_ = 0, hair_m_ = 0;
+  std::vector<double> offsets_m_;
+};
+
+}  // namespace bodyloom

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/data_tools/synthesis/people/wardrobe.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bodyloom/geometry/base/hash_random.h"
+
+namespace bodyloom {
+namespace {
+
+using Eigen::Vector3f;
+
+/// Hue in turns, saturation and value in [0, 1].
+Vector3f FromHsv(double hue, double saturation, double value) {
+  const auto channel = [&](double shift) {
+    const double k = std::fmod(shift + 6 * (hue - std::floor(hue)), 6.0);
+    return float(255 * value * (1 - saturation * std::clamp(std::min(k, 4 - k), 0.0, 1.0)));
+  };
+  return {channel(5), channel(3), channel(1)};
+}
+
+/// From the darkest (0) to the lightest (1) skin, in sRGB.
+Vector3f SkinColour(double lightness) {
+  const Vector3f dark(96, 62, 44), middle(202, 146, 110), light(250, 220, 198);
+  const auto t = static_cast<float>(2 * lightness);
+  return t < 1 ? Vector3f(dark + t * (middle - dark)) : Vector3f(middle + (t - 1) * (light - middle));
+}
+
+float LatticeValue(int x, int y, int z, uint64_t seed) {
+  uint64_t h = seed;
+  for (const int i : {x, y, z}) h = (h ^ static_cast<uint32_t>(i)) * 0x9e3779b97f4a7c15ULL, h ^= h >> 29;
+  return static_cast<float>((h * 0xbf58476d1ce4e5b9ULL) >> 40) * 0x1.0p-24F;
+}
+
+bool IsOdd(float x) { return (static_cast<int>(std::floor(x)) & 1) != 0; }
+
+}  // namespace
+
+float ValueNoise(const Vector3f& p, uint64_t seed) {
+  const Vector3f cell = p.array().floor();
+  Vector3f f = p - cell;
+  for (float& x : f) x = x * x * x * (x * (6 * x - 15) + 10);
+  const Eigen::Vector3i i = cell.cast<int>();
+  float corners[8];
+  for (int k = 0; k < 8; ++k) corners[k] = LatticeValue(i.x() + (k & 1), i.y() + (k >> 1 & 1), i.z() + (k >> 2), seed);
+  for (int k = 0; k < 4; ++k) corners[k] = corners[2 * k] + f.x() * (corners[2 * k + 1] - corners[2 * k]);
+  for (int k = 0; k < 2; ++k) corners[k] = corners[2 * k] + f.y() * (corners[2 * k + 1] - corners[2 * k]);
+  return corners[0] + f.z() * (corners[1] - corners[0]);
+}
+
+Vector3f SurfacePattern::At(const Vector3f& place_m) const {
+  const Vector3f p = place_m / cell_m;
+  switch (kind) {
+    case PatternKind::kPlain:
+      return colour;
+    case PatternKind::kStripes:
+      return IsOdd(p[axis]) ? other : colour;
+    case PatternKind::kChecks:
+      return IsOdd(p.x()) != (IsOdd(p.y()) != IsOdd(p.z())) ? other : colour;
+    case PatternKind::kDots: {
+      // Balls of the lattice: cut by a surface, discs.
+      const Vector3f d = 0.5F * p - Vector3f((0.5F * p).array().floor()) - Vector3f::Constant(0.5F);
+      return d.squaredNorm() < 0.36F * 0.36F ? other : colour;
+    }
+    case PatternKind::kNoise: {
+      const float n = 0.65F * ValueNoise(p, seed) + 0.35F * ValueNoise(2.3F * p, seed + 1);
+      return colour + std::clamp(1.6F * n - 0.3F, 0.0F, 1.0F) * (other - colour);
+    }
+  }
+  return colour;
+}
+
+Wardrobe::Wardrobe(const Outfit& outfit, double around_m, uint64_t seed) : cut_(outfit.cut()) {
+  HashRandom random(seed, {0x77617264});
+  const auto unit = static_cast<float>(cut_.unit);
+  const double hue = random.Uniform();
+  const auto dress = [&](PersonLabel label, double label_hue, PatternKind kind, double cell_m) {
+    SurfacePattern& p = patterns_[size_t(label)];
+    const double value = random.Uniform(0.55, 0.95);
+    p.kind = kind;
+    p.colour = FromHsv(label_hue, random.Uniform(0.45, 0.85), value);
+    p.other = FromHsv(label_hue + random.Uniform(-0.12, 0.12), random.Uniform(0.15, 0.6),
+                      value > 0.75 ? value - 0.45 : value + 0.35);
+    p.cell_m = float(cell_m) * unit;
+    p.axis = random.Uniform() < 0.7 ? 1 : 0;
+    p.seed = random.Next();
+  };
+  // Two different patterns of the four on top and bottom.
+  const int first = static_cast<int>(random.Below(4)), second = (first + 1 + static_cast<int>(random.Below(3))) % 4;
+  dress(PersonLabel::kTop, hue, PatternKind(1 + first), random.Uniform(0.032, 0.055));
+  dress(PersonLabel::kBottom, hue + random.Uniform(0.3, 0.7), PatternKind(1 + second), random.Uniform(0.032, 0.055));
+  dress(PersonLabel::kShoes, random.Uniform(), PatternKind::kPlain, 0.03);
+  dress(PersonLabel::kHair, 0.07, PatternKind::kNoise, 0.012);
+  dress(PersonLabel::kSkin, 0.06, PatternKind::kNoise, 0.08);
+  SurfacePattern& skin = patterns_[size_t(PersonLabel::kSkin)];
+  skin.colour = SkinColour(random.Uniform()), skin.other = 0.94F * skin.colour;
+  patterns_[size_t(PersonLabel::kFace)] = skin;
+  SurfacePattern& hair = patterns_[size_t(PersonLabel::kHair)];
+  hair.colour = FromHsv(random.Uniform(0.04, 0.12), random.Uniform(0.3, 0.8), random.Uniform(0.1, 0.6));
+  hair.other = 0.7F * hair.colour;
+
+  garment_ = of_label(outfit.kind() == GarmentKind::kCoat ? PersonLabel::kTop : PersonLabel::kBottom);
+  if (around_m > 0) {
+    const double periods = std::max(1.0, std::round(around_m / (2 * garment_.cell_m)));
+    garment_.cell_m = float(around_m / (2 * periods));
+  }
+}
+
+Vector3f Wardrobe::OfFace(const Vector3f& p) const {
+  const Vector3f skin = of_label(PersonLabel::kFace).At(p);
+  const auto H = static_cast<float>(cut_.head_height);
+  if (p.z() < 0.5 * (cut_.jaw_z + cut_.ear_z)) return skin;
+  const float x = std::abs(p.x()) / H, y = (p.y() - float(cut_.head_joint_y)) / H;
+  const auto inside = [&](float cx, float cy, float rx, float ry) {
+    const float dx = (x - cx) / rx, dy = (y - cy) / ry;
+    return dx * dx + dy * dy < 1;
+  };
+  if (inside(0.2F, 0.28F, 0.035F, 0.035F)) return {30, 24, 22};
+  if (inside(0.2F, 0.28F, 0.085F, 0.05F)) return {240, 238, 235};
+  if (inside(0.21F, 0.4F, 0.11F, 0.025F)) return of_label(PersonLabel::kHair).colour;
+  if (inside(0, -0.13F, 0.14F, 0.035F)) return skin.cwiseProduct(Vector3f(0.85F, 0.5F, 0.5F));
+  return skin;
+}
+
+Vector3f Wardrobe::OfBody(PersonLabel label, const Vector3f& p) const {
+  return label == PersonLabel::kFace ? OfFace(p) : of_label(label).At(p);
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Colours and patterns of a synthetic person, fixed to the surface: stripes, checks, dots and noise as functions of
+/// the place on the template (or on the cloth as sewn), distinct for every label and chosen by a seed.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+
+#include "bodyloom/data_tools/synthesis/people/outfit.h"
+
+namespace bodyloom {
+
+enum class PatternKind : uint8_t { kPlain, kStripes, kChecks, kDots, kNoise };
+
+struct SurfacePattern {
+  PatternKind kind = PatternKind::kPlain;
+  Eigen::Vector3f colour = Eigen::Vector3f::Constant(128), other = colour;  ///< red, green, blue, 0…255
+  float cell_m = 0.05F;                                                     ///< period / 2
+  int axis = 1;                                                             ///< stripes: coordinate that they count
+  uint64_t seed = 0;                                                        ///< noise
+  [[nodiscard]] Eigen::Vector3f At(const Eigen::Vector3f& place_m) const;
+};
+
+/// Smooth noise in [0, 1] of period-free lattice values, second derivatives continuous inside cells.
+float ValueNoise(const Eigen::Vector3f& p, uint64_t seed);
+
+class Wardrobe {
+ public:
+  /// `around_m`: after which the loose garment's pattern meets itself (its period is made to divide it); 0: none.
+  Wardrobe(const Outfit& outfit, double around_m, uint64_t seed);
+
+  /// Colour (red, green, blue, 0…255) of a place of the body's surface with that label.
+  [[nodiscard]] Eigen::Vector3f OfBody(PersonLabel label, const Eigen::Vector3f& on_template) const;
+  /// Colour of a place of the loose garment (way around, path down, 0).
+  [[nodiscard]] Eigen::Vector3f OfGarment(const Eigen::Vector3f& pattern_m) const { return garment_.At(pattern_m); }
+  [[nodiscard]] const SurfacePattern& of_label(PersonLabel label) const { return patterns_[size_t(label)]; }
+
+ private:
+  [[nodiscard]] Eigen::Vector3f OfFace(const Eigen::Vector3f& p) const;
+
+  OutfitCut cut_;
+  std::array<SurfacePattern, kNumPersonLabels> patterns_;
+  SurfacePattern garment_;
+};
+
+}  // namespace bodyloom

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+/// How a pipeline and its caller talk while it runs, and the errors that are the caller's to tell apart. A pipeline
+/// prints nothing, installs no signal handler and never ends the process.
+#pragma once
+
+#include <functional>
+#include <stdexcept>
+#include <string>
+
+namespace bodyloom {
+
+/// The request contradicts itself or lacks something (options that do not go together); the command answers with exit
+/// code 2. A file that cannot be used is a std::runtime_error, as everywhere.
+class RequestError : public std::invalid_argument {
+ public:
+  using std::invalid_argument::invalid_argument;
+};
+
+/// Thrown out of a pipeline whose progress callback returned false. What was being written is removed.
+class Cancelled : public std::runtime_error {
+ public:
+  Cancelled() : std::runtime_error("cancelled") {}
+};
+
+struct PipelineCallbacks {
+  /// Called now and then with the stage at work and how much of the whole job is done, in [0, 1]; false cancels the
+  /// job. It may be called from any one thread at a time. Without it the job runs through.
+  std::function<bool(const std::string& stage, double fraction)> progress;
+  /// A line that a user should read while the job runs (no newline at its end): what was left out, what was found.
+  std::function<void(const std::string& line)> message;
+
+  /// Calls `progress`, if any; throws Cancelled when it returns false.
+  void Update(const std::string& stage, double fraction) const {
+    if (progress && !progress(stage, fraction)) throw Cancelled();
+  }
+  /// Calls `message`, if any.
+  void Say(const std::string& line) const {
+    if (message) message(line);
+  }
+};
+
+}  // namespace bodyloom

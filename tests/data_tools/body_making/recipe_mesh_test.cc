@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Promises of assets/body/RECIPE.md, sections 1 and 2: the mesh.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include "bodyloom/data_tools/body_making/cage.h"
+#include "bodyloom/data_tools/formats/npz.h"
+#include "tests/data_tools/body_making/recipe_support.h"
+
+namespace bodyloom {
+namespace {
+
+/// One number for an array that notices a change of any coordinate: Σ sin(0.7371 i + phase) x_i.
+template <typename Array>
+double Fingerprint(const Array& values, Eigen::Index stride, Eigen::Index count, double phase) {
+  double sum = 0;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    sum += std::sin(0.7371 * static_cast<double>(i) + phase) * static_cast<double>(values.data()[i * stride]);
+  }
+  return sum;
+}
+
+TEST(RecipeMesh, Counts) {
+  const BodyModel& body = BuiltinBody();
+  EXPECT_EQ(body.name(), "bodyloom");
+  EXPECT_EQ(body.num_vertices(), 7874);
+  EXPECT_EQ(body.num_faces(), 15744);
+  EXPECT_EQ(body.num_joints(), 24);
+  EXPECT_EQ(body.num_betas(), 10);
+  const Cage cage = ParseCage(EmbeddedBuiltinBodySources().cage_text, "cage");
+  EXPECT_EQ(cage.vertices.rows(), 494);
+  EXPECT_EQ(cage.quads.size(), 492u);
+  EXPECT_EQ(cage.num_left_vertices, 261);
+  EXPECT_EQ(cage.num_left_quads, 246);
+}
+
+TEST(RecipeMesh, CageValences) {
+  const Cage cage = ParseCage(EmbeddedBuiltinBodySources().cage_text, "cage");
+  std::vector<int> valence(cage.vertices.rows(), 0);
+  for (const Quad& quad : cage.quads) {
+    for (int v : quad) ++valence[v];  // closed manifold: as many quads as edges around a vertex
+  }
+  std::map<int, int> histogram;
+  for (int n : valence) ++histogram[n];
+  EXPECT_EQ(histogram, (std::map<int, int>{{3, 58}, {4, 404}, {5, 14}, {6, 18}}));
+}
+
+TEST(RecipeMesh, AllQuads) {
+  const MatrixX3i& faces = BuiltinBody().data().faces;
+  std::set<std::set<int>> quads;
+  for (Eigen::Index f = 0; f < faces.rows(); f += 2) {
+    EXPECT_EQ(faces(f, 0), faces(f + 1, 0));
+    EXPECT_EQ(faces(f, 2), faces(f + 1, 1));
+    const std::set<int> corners = {faces(f, 0), faces(f, 1), faces(f, 2), faces(f + 1, 2)};
+    EXPECT_EQ(corners.size(), 4u) << "quad " << f / 2;
+    quads.insert(corners);
+  }
+  EXPECT_EQ(quads.size(), 7872u);
+}
+
+TEST(RecipeMesh, ClosedOrientedManifoldOfEulerCharacteristicTwo) {
+  const BodyModel& body = BuiltinBody();
+  std::set<std::pair<int, int>> directed;
+  for (Eigen::Index f = 0; f < body.num_faces(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      const auto edge = std::pair(body.data().faces(f, k), body.data().faces(f, (k + 1) % 3));
+      EXPECT_TRUE(directed.insert(edge).second) << edge.first << "->" << edge.second << " twice";
+    }
+  }
+  for (const auto& [a, b] : directed) EXPECT_TRUE(directed.contains({b, a})) << a << "-" << b << " is a border";
+  EXPECT_EQ(body.num_vertices() - static_cast<int>(directed.size()) / 2 + body.num_faces(), 2);
+  // One component, and around each vertex one fan: otherwise χ = 2 would not mean a sphere.
+  std::map<int, std::map<int, int>> next_around;
+  for (Eigen::Index f = 0; f < body.num_faces(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      next_around[body.data().faces(f, k)][body.data().faces(f, (k + 1) % 3)] = body.data().faces(f, (k + 2) % 3);
+    }
+  }
+  ASSERT_EQ(static_cast<int>(next_around.size()), body.num_vertices());
+  for (auto& [v, ring] : next_around) {
+    size_t steps = 1;
+    const int start = ring.begin()->first;
+    for (int at = ring.at(start); at != start && steps <= ring.size(); at = ring.at(at)) ++steps;
+    EXPECT_EQ(steps, ring.size()) << "vertex " << v << " joins two fans";
+  }
+  std::set<int> reached = {0};
+  std::vector<int> front = {0};
+  while (!front.empty()) {
+    const int v = front.back();
+    front.pop_back();
+    for (const auto& [neighbour, unused] : next_around[v]) {
+      if (reached.insert(neighbour).second) front.push_back(neighbour);
+    }
+  }
+  EXPECT_EQ(static_cast<int>(reached.size()), body.num_vertices());
+}
+
+TEST(RecipeMesh, MirrorSymmetric) {
+  const BodyModel& body = BuiltinBody();
+  const MatrixX3d& v = body.data().v_template;
+  const std::vector<int> mirror = MirrorByPosition(v);
+  std::set<std::array<int, 3>> faces;
+  const auto canonical = [](std::array<int, 3> t) {
+    std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+    return t;
+  };
+  for (Eigen::Index f = 0; f < body.num_faces(); ++f) {
+    faces.insert(canonical({body.data().faces(f, 0), body.data().faces(f, 1), body.data().faces(f, 2)}));
+  }
+  for (int i = 0; i < body.num_vertices(); ++i) {
+    ASSERT_GE(mirror[i], 0) << "vertex " << i;
+    EXPECT_LT((v.row(mirror[i]) - v.row(i).cwiseProduct(Eigen::RowVector3d(-1, 1, 1))).norm(), 1e-15);
+    for (int c = 0; c < 3; ++c) {
+      const Eigen::RowVectorXf expected = (c == 0 ? -1.0f : 1.0f) * body.data().shapedirs.row(3 * i + c);
+      EXPECT_LT((body.data().shapedirs.row(3 * mirror[i] + c) - expected).cwiseAbs().maxCoeff(), 1e-7f) << i;
+    }
+  }
+  for (const auto& t : faces) {
+    EXPECT_TRUE(faces.contains(canonical({mirror[t[0]], mirror[t[2]], mirror[t[1]]})));
+  }
+}
+
+TEST(RecipeMesh, Measures) {
+  const BodyModel& body = BuiltinBody();
+  const MatrixX3d& v = body.data().v_template;
+  const Eigen::RowVector3d low = v.colwise().minCoeff(), high = v.colwise().maxCoeff();
+  EXPECT_NEAR(high.y() - low.y(), 1.712, 0.0005);
+  EXPECT_NEAR(high.x() - low.x(), 1.705, 0.0005);
+  EXPECT_NEAR(low.y(), -0.973, 0.0006);
+  EXPECT_NEAR(high.y(), 0.740, 0.0005);
+  EXPECT_NEAR(MeshVolume(v, body.data().faces), 0.0662, 0.00005);
+  EXPECT_NEAR(MeshArea(v, body.data().faces), 1.714, 0.0005);
+  EXPECT_LT(body.joint_template().row(0).norm(), 1e-6) << "the regressed pelvis is the origin";
+  // Front is +z: the nose is in front of the head joint, the toes are in front of the ankle.
+  const MatrixX3d points = PoseLandmarks(body, {}, PoseFromAxisAngle(body, Eigen::VectorXd(), {0, 0, 0}),
+                                         {"nose", "left_big_toe", "left_ear"});
+  EXPECT_GT(points(0, 2), body.joint_template()(body.FindJoint("head"), 2) + 0.05);
+  EXPECT_GT(points(1, 2), body.joint_template()(body.FindJoint("l_ankle"), 2) + 0.1);
+  EXPECT_GT(points(2, 0), 0.05) << "x is the body's left";
+}
+
+/// The numbers were computed from the finished body's own arrays, stored apart from the cage.
+TEST(RecipeMesh, SubdivisionGivesTheFinishedBody) {
+  const BodyModelData& data = BuiltinBody().data();
+  const double expected_template[3] = {2.151249957930, 1.638872631670, -0.380276634098};
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_NEAR(Fingerprint(data.v_template, 1, data.v_template.size(), k), expected_template[k], 1e-6) << k;
+  }
+  EXPECT_LT((data.v_template.row(4000) - Eigen::RowVector3d(4.60586557e-02, 2.22488192e-03, 1.55662114e-01)).norm(),
+            1e-8);
+  EXPECT_LT((data.v_template.row(7873) - Eigen::RowVector3d(-1.29351340e-01, -9.57335253e-01, 1.76540162e-01)).norm(),
+            1e-8);
+  const double expected_shape[10] = {0.153680309,  -0.012881459, 0.073067617,  -0.035922410, 0.011503586,
+                                     -0.029324423, -0.037383493, -0.030916196, 0.030937146,  -0.028413548};
+  for (int b = 0; b < 10; ++b) {
+    const RowMatrixXf column = data.shapedirs.col(b);
+    // The finished arrays are rounded to 1e-6 m: 23,622 rounding errors add up to about 3e-5.
+    EXPECT_NEAR(Fingerprint(column, 1, column.rows(), b), expected_shape[b], 1e-4) << b;
+  }
+}
+
+TEST(RecipeMesh, OpenMeshAgrees) {
+  MakeBuiltinBodySummary summary;
+  MakeBuiltinBody(EmbeddedBuiltinBodySources(), &summary);
+  EXPECT_TRUE(summary.compared_with_openmesh);
+  EXPECT_TRUE(summary.openmesh_agreement.Equal()) << summary.openmesh_agreement.BriefReport();
+  EXPECT_LT(summary.openmesh_agreement.max_vertex_distance_m, 1e-14);
+  EXPECT_EQ(summary.cage_vertices, 494);
+  EXPECT_EQ(summary.cage_quads, 492);
+  EXPECT_EQ(summary.vertices, 7874);
+  EXPECT_EQ(summary.quads, 7872);
+}
+
+/// Every array against the finished body as it was first made, where that file is at hand.
+TEST(RecipeMesh, EqualsTheOriginalFile) {
+  const std::string path = std::string(BODYLOOM_SHARED_DIR) + "/assets/body/body.npz";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << "the original body.npz is not at " << path;
+  const NpzArrays original = ReadNpz(path);
+  const BodyModelData& data = BuiltinBody().data();
+  EXPECT_LT((RequireArray(original, "v_template", path).ToMatrix() - data.v_template).cwiseAbs().maxCoeff(), 1e-6);
+  const std::vector<float> shapedirs = RequireArray(original, "shapedirs", path).ToFloats();
+  const Eigen::Map<const RowMatrixXf> original_shape(shapedirs.data(), 3 * data.v_template.rows(), 10);
+  EXPECT_LT((original_shape - data.shapedirs).cwiseAbs().maxCoeff(), 1e-6f);
+  EXPECT_EQ(RequireArray(original, "f", path).ToMatrix(), data.faces.cast<double>());
+  // Weights are stored in steps of 1/65535; a row's largest absorbs the rounding of the others.
+  EXPECT_LT((RequireArray(original, "weights", path).ToMatrix() - RowMatrixXd(data.weights)).cwiseAbs().maxCoeff(),
+            2e-5);
+  EXPECT_LT(
+      (RequireArray(original, "J_regressor", path).ToMatrix() - RowMatrixXd(data.J_regressor)).cwiseAbs().maxCoeff(),
+      1e-7);
+  // Charts: the same faces in the same parts but for the arms, whose halves are now inner/outer (RECIPE.md, section 8).
+  const std::vector<int64_t> part = RequireArray(original, "part", path).ToInts();
+  const std::vector<float> iuv = RequireArray(original, "iu_uv", path).ToFloats();
+  for (size_t f = 0; f < part.size(); ++f) {
+    const auto limb = [](int64_t id) { return 2 * ((id - 15) / 4) + (id - 15) % 2; };  // of the arm parts 15..22
+    if (part[f] >= 15 && part[f] <= 22) {
+      EXPECT_EQ(limb(data.face_part[f]), limb(part[f])) << "face " << f;
+      continue;
+    }
+    ASSERT_EQ(int{data.face_part[f]}, part[f]) << "face " << f;
+    for (int k = 0; k < 6; ++k)
+      EXPECT_NEAR(data.face_iuv(static_cast<Eigen::Index>(f), k), iuv[6 * f + k], 1e-5) << "face " << f;
+  }
+}
+
+}  // namespace
+}  // namespace bodyloom

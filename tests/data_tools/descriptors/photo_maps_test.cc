@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/data_tools/descriptors/photo_maps.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/data_tools/datasets/label_of_part.h"
+#include "bodyloom/data_tools/datasets/photo_segmentation.h"
+#include "tests/support/short_track.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr int kSize = 96, kTexture = 64;
+
+PhotoMapsOptions Small() {
+  PhotoMapsOptions options;
+  options.size = kSize;
+  options.texture_size = kTexture;
+  return options;
+}
+
+TEST(PhotoMaps, TexelsLieOnTheTemplate) {
+  const BodyModel& body = BuiltinBody();
+  UvTexelOptions options;
+  options.width = options.height = kTexture;
+  const UvTexelTable texels = BuildUvTexelTable(body, options);
+  const std::vector<float> places = PlacesOfTexels(body, texels);
+  const size_t area = size_t(kTexture) * kTexture;
+  ASSERT_EQ(places.size(), 3 * area);
+  std::vector<bool> shows(area, false);
+  for (size_t i = 0; i < texels.size(); ++i) {
+    Eigen::Vector3d place = Eigen::Vector3d::Zero();
+    for (int corner = 0; corner < 3; ++corner) {
+      place += double(texels.barycentric[i][corner]) *
+               body.data().v_template.row(body.data().faces(texels.face[i], corner)).transpose();
+    }
+    const size_t at = texels.pixel[i];
+    shows[at] = true;
+    for (size_t a = 0; a < 3; ++a) EXPECT_NEAR(places[a * area + at], place[a], 1e-6);
+  }
+  for (size_t at = 0; at < area; ++at) {
+    if (shows[at]) continue;
+    EXPECT_EQ(places[at], 0);
+  }
+}
+
+TEST(PhotoMaps, TexelsAppearAtPixelsThatShowThem) {
+  const Track track = ShortTrack();
+  const PhotoMaps maps(BuiltinBody(), track, Small());
+  EXPECT_EQ(maps.window().width, kSize);
+  EXPECT_EQ(maps.window().height, kSize);
+  const std::vector<uint8_t> texel_parts = PartsOfTexels(BuiltinBody(), *maps.texels());
+  const PhotoMap map = maps.At(4);
+  const size_t area = size_t(kSize) * kSize, texels = size_t(kTexture) * kTexture;
+  int seen = 0, compared = 0;
+  std::vector<double> errors;
+  for (size_t i = 0; i < texels; ++i) {
+    if (map.texel_seen[i] == 0) continue;
+    ++seen;
+    ASSERT_GT(texel_parts[i], 0);
+    const int x = static_cast<int>(std::lround(map.texel_pixels[i]));
+    const int y = static_cast<int>(std::lround(map.texel_pixels[texels + i]));
+    ASSERT_TRUE(x >= 0 && y >= 0 && x < kSize && y < kSize);
+    const size_t at = size_t(y) * kSize + x;
+    ASSERT_NE(map.parts[at], 0);
+    if (map.parts[at] != texel_parts[i]) continue;  // a chart's border within half a pixel
+    ++compared;
+    const double u = (double(i % kTexture) + 0.5) / kTexture, v = 1 - (double(i / kTexture) + 0.5) / kTexture;
+    errors.push_back(std::hypot(map.uv[at] - u, map.uv[area + at] - v) * kTexture);
+  }
+  EXPECT_GT(seen, 300);
+  EXPECT_GT(compared, seen * 3 / 4);
+  // Half a pixel of 96 is a texel or so of 64.
+  std::nth_element(errors.begin(), errors.begin() + errors.size() / 2, errors.end());
+  EXPECT_LT(errors[errors.size() / 2], 1.5);
+}
+
+TEST(PhotoMaps, OneViewSeesAboutHalfOfTheBodyAndTwoSeeMost) {
+  const Track track = ShortTrack();
+  PhotoMapsOptions options = Small();
+  options.size = 256;
+  const PhotoMap front = PhotoMaps(BuiltinBody(), track, options).At(0);
+  options.yaw_deg.assign(track.num_frames(), 180);
+  const PhotoMaps behind(BuiltinBody(), track, options);
+  const PhotoMap back = behind.At(0);
+  int of_body = 0, of_front = 0, of_either = 0, of_both = 0;
+  const std::vector<uint8_t> parts = PartsOfTexels(BuiltinBody(), *behind.texels());
+  for (size_t i = 0; i < parts.size(); ++i) {
+    of_body += parts[i] != 0;
+    of_front += front.texel_seen[i];
+    of_either += front.texel_seen[i] | back.texel_seen[i];
+    of_both += front.texel_seen[i] & back.texel_seen[i];
+  }
+  EXPECT_GT(of_front, 0.2 * of_body);
+  EXPECT_LT(of_front, 0.5 * of_body);
+  EXPECT_GT(of_either, 1.6 * of_front);
+  EXPECT_LT(of_both, 0.1 * of_front);
+}
+
+TEST(PhotoMaps, AFrameWithoutAResultShowsNothing) {
+  Track track = ShortTrack();
+  track.motion.poses.row(2).setConstant(std::nan(""));
+  track.frame_status[2] = FrameStatus::kLost;
+  const PhotoMap map = PhotoMaps(BuiltinBody(), track, Small()).At(2);
+  EXPECT_THAT(map.parts, ::testing::Each(0));
+  EXPECT_THAT(map.texel_seen, ::testing::Each(0));
+  PhotoMapsOptions options = Small();
+  options.size = 0;
+  EXPECT_THROW(PhotoMaps(BuiltinBody(), track, options), std::invalid_argument);
+  options = Small();
+  options.texels = std::make_shared<UvTexelTable>();
+  EXPECT_THROW(PhotoMaps(BuiltinBody(), track, options), std::invalid_argument);
+}
+
+/// A grey disc of radius 27 on black, whose "body" is a disc of radius 24: part 9 on the left, 15 on the right.
+struct DiscPhoto {
+  Image picture{96, 96};
+  std::vector<uint8_t> parts = std::vector<uint8_t>(96 * 96, 0), person = parts;
+  DiscPhoto() {
+    for (int y = 0; y < 96; ++y) {
+      for (int x = 0; x < 96; ++x) {
+        const double r = std::hypot(x - 47.5, y - 47.5);
+        const size_t at = size_t(y) * 96 + x;
+        if (r < 24) parts[at] = x < 48 ? 9 : 15;
+        person[at] = r < 27 ? 1 : 0;
+        for (int c = 0; c < 3; ++c) {
+          picture.pixel(x, y)[c] = static_cast<uint8_t>((r < 27 ? 180 : 30) + 7 * ((x * 5 + y * 3 + c) % 3));
+        }
+      }
+    }
+  }
+};
+
+TEST(PhotoSegmentation, FindsTheOutlineAroundTheBodyAndTheNearestPart) {
+  const DiscPhoto photo;
+  const std::vector<uint8_t> labels = LabelsFromBody(photo.picture, photo.parts);
+  int wrong = 0;
+  for (size_t i = 0; i < labels.size(); ++i) {
+    wrong += (labels[i] != 0) != (photo.person[i] != 0);
+    if (labels[i] == 0) continue;
+    // Left of the middle a leg, right an arm in its sleeve.
+    const int x = static_cast<int>(i % 96);
+    if (std::abs(x - 47.5) > 3) {
+      EXPECT_EQ(labels[i], static_cast<uint8_t>(LabelOfPart(x < 48 ? 9 : 15))) << i;
+    }
+  }
+  EXPECT_LT(wrong, 100) << "of " << labels.size();
+  EXPECT_EQ(LabelsFromBody(photo.picture, photo.parts), labels) << "k-means started elsewhere";
+}
+
+TEST(PhotoSegmentation, FallsBackOnTheBodyWhereColoursSayNothing) {
+  DiscPhoto photo;
+  std::fill(photo.picture.bgr.begin(), photo.picture.bgr.end(), 90);
+  const std::vector<uint8_t> labels = LabelsFromBody(photo.picture, photo.parts);
+  int kept = 0, body = 0;
+  for (size_t i = 0; i < labels.size(); ++i) {
+    body += photo.parts[i] != 0;
+    kept += photo.parts[i] != 0 && labels[i] != 0;
+  }
+  EXPECT_GE(kept, 0.7 * body);
+  std::fill(photo.parts.begin(), photo.parts.end(), 0);
+  EXPECT_THROW(LabelsFromBody(photo.picture, photo.parts), std::invalid_argument);
+}
+
+TEST(PhotoSegmentation, TheBackgroundIsFilledAndTheRestKept) {
+  const DiscPhoto photo;
+  const Image filled = FilledBackground(photo.picture, photo.person);
+  for (int y = 0; y < 96; ++y) {
+    for (int x = 0; x < 96; ++x) {
+      const double r = std::hypot(x - 47.5, y - 47.5);
+      if (r > 34) {
+        ASSERT_EQ(filled.pixel(x, y)[1], photo.picture.pixel(x, y)[1]);
+      }
+      if (r < 27) {
+        ASSERT_LT(filled.pixel(x, y)[1], 60) << x << ", " << y;
+      }
+    }
+  }
+  EXPECT_THROW(FilledBackground(photo.picture, {}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace bodyloom

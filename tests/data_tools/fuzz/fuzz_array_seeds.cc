@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/data_tools/fuzz/fuzz_array_seeds.h"
+
+#include <matio.h>
+
+#include <memory>
+
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/formats/zip.h"
+#include "bodyloom/data_tools/learned/lifter_weights_io.h"
+#include "bodyloom/data_tools/learned/pose_prior_io.h"
+#include "bodyloom/data_tools/observations/observations_npz.h"
+#include "bodyloom/data_tools/video/image_file.h"
+#include "tests/data_tools/formats/temporary_file.h"
+#include "tests/fuzz/fuzz_targets.h"
+#include "tests/support/toy_body.h"
+
+namespace bodyloom::fuzz {
+namespace {
+
+/// What a writer writes.
+template <typename Write>
+std::string BytesOf(const std::string& name, const Write& write) {
+  const TemporaryFolder folder;
+  write(folder.File(name));
+  return ReadFileBytes(folder.File(name));
+}
+
+template <typename Write>
+std::string FramedBytesOf(const Write& write) {
+  return FrameArrays(ReadNpzBytes(BytesOf("arrays.npz", write), "arrays.npz"));
+}
+
+KeypointSequence TwoFrames() {
+  KeypointSequence keypoints;
+  keypoints.convention = "coco17";
+  keypoints.names = {"nose", "left_hip"};
+  keypoints.timestamps = {0, 0.04};
+  keypoints.points = {{1, 2, 0.5F}, {3, 4, 1}, {5, 6, 0}, {7, 8, 0.25F}};
+  keypoints.image_width = 640;
+  keypoints.image_height = 480;
+  return keypoints;
+}
+
+DenseSequence TwoDenseFrames() {
+  DenseSequence dense;
+  dense.frames.resize(2);
+  dense.frames[1].resize(2);
+  dense.timestamps = {0, 0.04};
+  dense.image_width = 640;
+  dense.image_height = 480;
+  dense.uv_sigma = 0.02;
+  return dense;
+}
+
+PosePrior SmallPrior() {
+  PosePrior prior = BuiltinPosePrior();
+  prior.joints.resize(2);
+  prior.log_weights = Eigen::VectorXd::Zero(1);
+  prior.means = RowMatrixXd::Zero(1, 6);
+  prior.covariances = {Eigen::MatrixXd::Identity(6, 6)};
+  return prior;
+}
+
+LifterWeights SmallLifter() {
+  LifterWeights weights;
+  weights.input = RowMatrixXf::Ones(2, 3);
+  weights.input_bias = weights.norm_scale = weights.norm_shift = Eigen::VectorXf::Ones(2);
+  LifterWeights::Block& block = weights.blocks.emplace_back();
+  block.norm_scale = block.norm_shift = block.dilated_bias = block.mix_bias = Eigen::VectorXf::Ones(2);
+  block.dilated = RowMatrixXf::Ones(2, 6);
+  block.mix = RowMatrixXf::Ones(2, 2);
+  weights.output = RowMatrixXf::Ones(LifterOutput::kSize, 2);
+  weights.output_bias = Eigen::VectorXf::Zero(LifterOutput::kSize);
+  weights.recipe = "none";
+  return weights;
+}
+
+std::string PartLabels() {
+  std::vector<uint8_t> labels(size_t{2} * 6 * 5, 0);
+  for (const size_t i : {7U, 8U, 12U, 13U, 37U, 38U, 42U}) labels[i] = 2;
+  NpzArrays arrays;
+  arrays["labels"] = NdArray::FromUInt8(labels.data(), {2, 6, 5});
+  const std::vector<double> times = {0, 0.04};
+  arrays["timestamps"] = NdArray::FromDoubles(times.data(), {2});
+  return FrameArrays(arrays);
+}
+
+/// DensePose's file for the toy body's first faces, each corner a point of its own.
+std::string MatBytes() {
+  constexpr size_t kFaces = 4;
+  const BodyModelData& body = ToyBody().data();
+  std::vector<double> faces(3 * kFaces), parts, vertices, u, v;
+  for (size_t f = 0; f < kFaces; ++f) {
+    parts.push_back(static_cast<double>(f + 1));
+    for (size_t c = 0; c < 3; ++c) {
+      faces[c * kFaces + f] = static_cast<double>(vertices.size() + 1);
+      vertices.push_back(body.faces(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(c)) + 1);
+      u.push_back(0.25);
+      v.push_back(0.5);
+    }
+  }
+  return BytesOf("parts.mat", [&](const std::string& path) {
+    const std::unique_ptr<mat_t, decltype(&Mat_Close)> file(Mat_CreateVer(path.c_str(), nullptr, MAT_FT_MAT5),
+                                                            &Mat_Close);
+    const auto add = [&](const char* name, size_t rows, size_t columns, std::vector<double> values) {
+      size_t dims[] = {rows, columns};
+      const std::unique_ptr<matvar_t, decltype(&Mat_VarFree)> variable(
+          Mat_VarCreate(name, MAT_C_DOUBLE, MAT_T_DOUBLE, 2, dims, values.data(), 0), &Mat_VarFree);
+      Mat_VarWrite(file.get(), variable.get(), MAT_COMPRESSION_NONE);
+    };
+    add("All_Faces", kFaces, 3, faces);
+    add("All_FaceIndices", kFaces, 1, parts);
+    add("All_vertices", 1, vertices.size(), vertices);
+    add("All_U_norm", u.size(), 1, u);
+    add("All_V_norm", v.size(), 1, v);
+  });
+}
+
+/// Two frames as AMASS stores them; not compressed, so that a mutation reaches the arrays.
+std::string AmassBytes() {
+  const std::vector<double> values(size_t{2} * 156, 0.1);
+  return MakeZip({{"poses.npy", NpyBytes(NdArray::FromDoubles(values.data(), {2, 156}))},
+                  {"trans.npy", NpyBytes(NdArray::FromDoubles(values.data(), {2, 3}))},
+                  {"betas.npy", NpyBytes(NdArray::FromDoubles(values.data(), {16}))},
+                  {"mocap_framerate.npy", NpyBytes(NdArray::FromDouble(120))}},
+                 0);
+}
+
+std::string PersonJson() {
+  std::string labels;
+  for (const char* name : kPersonLabelNames) labels += (labels.empty() ? "\"" : ", \"") + std::string(name) + "\"";
+  return R"({"format": "bodyloom person set", "version": 1, "frames": 1, "width": 4, "height": 3, "fps": 30, "labels": [)" +
+         labels +
+         R"(], "has": {"labels": true, "normals": false, "iuv": true, "background": false}, "seed": 3, "motion": ")" +
+         std::string(600, 'm') + R"("})";
+}
+
+}  // namespace
+
+void AddArraySeeds(std::map<std::string, std::vector<std::string>>* seeds) {
+  const KeypointSequence keypoints = TwoFrames();
+  const DenseSequence dense = TwoDenseFrames();
+  const auto write = [&](const std::string& path) { WriteObservations(path, &keypoints, &dense); };
+  (*seeds)["observations"] = {FramedBytesOf(write)};
+  (*seeds)["part_labels"] = {PartLabels()};
+  (*seeds)["pose_prior"] = {FramedBytesOf([](const std::string& path) { WritePosePrior(path, SmallPrior()); })};
+  (*seeds)["lifter"] = {FramedBytesOf([](const std::string& path) { WriteLifterWeights(path, SmallLifter()); })};
+  (*seeds)["left_half"] = {FrameArrays(ReadNpzBytes(EmbeddedBuiltinBodySources().parts_bytes, "parts.npz"))};
+  (*seeds)["motion"] = {(*seeds)["deepmimic"][0], AmassBytes()};
+  (*seeds)["detections_file"] = (*seeds)["detections"];
+  (*seeds)["detections_file"].push_back(BytesOf("observations.npz", write));
+  Image image(6, 4, {12, 200, 3});
+  (*seeds)["image"] = {BytesOf("image.png", [&](const std::string& path) { WriteImage(path, image); }),
+                       BytesOf("image.jpg", [&](const std::string& path) { WriteImage(path, image); })};
+  (*seeds)["person_set"] = {PersonJson()};
+  (*seeds)["split"] = {"# name class part\n05_02 dance train\ncmu_bvh/05_03  walk test\n"};
+  (*seeds)["mat"] = {MatBytes()};
+}
+
+}  // namespace bodyloom::fuzz

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/data_tools/fuzz/fuzz_text_seeds.h"
+
+#include "bodyloom/data_tools/observations/keypoint_conventions.h"
+#include "tests/support/stick_person.h"
+
+namespace bodyloom::fuzz {
+namespace {
+
+std::string OpenPosePerson(const KeypointConvention& convention) {
+  return R"({"person_id":[-1],"pose_keypoints_2d":[)" + StickNumbers(convention.names, 100, 200, 300) + "]}";
+}
+
+std::string CocoResult(int image) {
+  return R"({"image_id":)" + std::to_string(image) + R"(,"category_id":1,"score":0.9,"keypoints":[)" +
+         StickNumbers(Coco17().names, 100, 200, 300) + "]}";
+}
+
+std::string DeepMimicFrame(const std::string& seconds) {
+  std::string text = seconds + ",0.1,0.9,0.2,1,0,0,0";
+  for (const int n : {4, 4, 4, 1, 4, 4, 1, 4, 1, 4, 4, 1}) text += n == 4 ? ",1,0,0,0" : ",0.5";
+  return "[" + text + "]";
+}
+
+}  // namespace
+
+void AddTextSeeds(std::map<std::string, std::vector<std::string>>* seeds) {
+  (*seeds)["detections"] = {
+      R"({"version":1.3,"people":[)" + OpenPosePerson(Body25()) + "]}",
+      R"({"9.jpg":{"people":[)" + OpenPosePerson(Body25B()) + R"(]},"12.jpg":{"people":[]}})",
+      "[" + CocoResult(3) + "," + CocoResult(5) + "," + CocoResult(5) + "]",
+  };
+  (*seeds)["cameras"] = {
+      R"([{"name":"c01","size":[1920,1080],"matrix":[[1310,0,960],[0,1312,540],[0,0,1]],"distortions":[-0.1,0,0,0,0],)"
+      R"("rotation":[3.1,0,0],"translation":[-3,180,450]}])",
+      R"({"cameras":[{"name":"cam_01","size":[1088,1920],"K":[[1681,0,533],[0,1682,948],[0,0,1]],)"
+      R"("dist_k1k2p1p2":[-0.05,0.1,0.001,0.002],"rvec":[0,0,0],"tvec_m":[0.3,0.9,2.9]}]})",
+      R"({"width":640,"height":480,"fx":600})"};
+  (*seeds)["bvh"] = {
+      "HIERARCHY\nROOT Hips\n{\n  OFFSET 1 2 3\n"
+      "  CHANNELS 6 Zposition Xposition Yposition Yrotation Xrotation Zrotation\n"
+      "  JOINT Left Leg\n  {\n    OFFSET 0 -1e0 +.5\n    CHANNELS 3 Zrotation Yrotation Xrotation\n"
+      "    End Site\n    {\n      OFFSET 0 -2 0\n    }\n  }\n}\n"
+      "MOTION\nFrames: 2\nFrame Time: .0333333\n0 0 0 0 0 0 0 0 0\n30 10 20 90 10 20 5 6 7\n"};
+  (*seeds)["asf_amc"] = {
+      "# comment\n:version 1.10\n:units\n  mass 1.0\n  length 0.45\n  angle deg\n"
+      ":root\n  order TX TY TZ RX RY RZ\n  axis XYZ\n  position 0 0 0\n  orientation 0 0 0\n"
+      ":bonedata\n  begin\n    id 1\n    name thigh\n    direction 0 -2 0\n    length 7\n    axis 10 20 30 XYZ\n"
+      "    dof rx ry rz\n    limits (-160.0 20.0)\n           (-70.0 70.0)\n           (-60.0 70.0)\n  end\n"
+      ":hierarchy\n  begin\n    root thigh\n  end\n\f"
+      ":FULLY-SPECIFIED\n:DEGREES\n1\nroot 1 2 3 0 0 0\nthigh 0 0 0\n2\nroot 4 5 6 10 20 30\nthigh 40 50 60\n"};
+  (*seeds)["deepmimic"] = {R"({"Loop":"wrap","Frames":[)" + DeepMimicFrame("0.04") + "," + DeepMimicFrame("0") + "]}"};
+  (*seeds)["cage"] = {
+      "# half a cube\r\nv a 1 -1 -1\nv b 1 1 -1\nv c 1 1 1\nv d 1 -1 1\r\n\n"
+      "v e 0 -1 -1\nv f 0 1 -1 # on the plane\nv g 0.0 1 1\nv h 0 -1 1\n"
+      "f side a b c d\nf back e f b a\nf top|top|t2|t2 f g c b\nf front g h d c\nf bottom h e a d\n"};
+}
+
+}  // namespace bodyloom::fuzz

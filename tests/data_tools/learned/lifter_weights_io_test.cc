@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/data_tools/learned/lifter_weights_io.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <random>
+
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/formats/npz.h"
+#include "bodyloom/tracking/initialise/lifter_input.h"
+
+namespace bodyloom {
+namespace {
+
+LifterWeights SmallWeights() {
+  std::mt19937 random(1);
+  std::normal_distribution<float> normal;
+  const auto fill = [&](auto* array, Eigen::Index rows, Eigen::Index cols) {
+    array->resize(rows, cols);
+    for (Eigen::Index i = 0; i < array->size(); ++i) array->data()[i] = normal(random);
+  };
+  LifterWeights weights;
+  fill(&weights.input, 6, 3 * 5);
+  fill(&weights.input_bias, 6, 1);
+  for (const int dilation : {1, 4}) {
+    LifterWeights::Block& block = weights.blocks.emplace_back();
+    block.dilation = dilation;
+    fill(&block.norm_scale, 6, 1);
+    fill(&block.norm_shift, 6, 1);
+    fill(&block.dilated, 6, 18);
+    fill(&block.dilated_bias, 6, 1);
+    fill(&block.mix, 6, 6);
+    fill(&block.mix_bias, 6, 1);
+  }
+  fill(&weights.norm_scale, 6, 1);
+  fill(&weights.norm_shift, 6, 1);
+  fill(&weights.output, LifterOutput::kSize, 6);
+  fill(&weights.output_bias, LifterOutput::kSize, 1);
+  weights.recipe = "made up for a test";
+  return weights;
+}
+
+std::string TestPath(const std::string& name) { return (std::filesystem::path(testing::TempDir()) / name).string(); }
+
+std::string Bytes(const LifterWeights& weights) {
+  const std::string path = TestPath("lifter_weights.npz");
+  WriteLifterWeights(path, weights);
+  return ReadFileBytes(path);
+}
+
+/// "" when it reads.
+std::string ErrorOf(const std::string& bytes) {
+  try {
+    ReadLifterWeightsBytes(bytes, "some/lifter.npz");
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(LifterWeightsIo, MatricesComeBackToElevenBitsVectorsExactly) {
+  const LifterWeights written = SmallWeights(), read = ReadLifterWeightsBytes(Bytes(written), "x");
+  ASSERT_EQ(read.blocks.size(), 2U);
+  EXPECT_EQ(read.recipe, written.recipe);
+  EXPECT_EQ(read.reach(), 6);
+  EXPECT_EQ(read.num_parameters(), written.num_parameters());
+  EXPECT_TRUE(read.input_bias == written.input_bias);
+  EXPECT_TRUE(read.blocks[1].norm_shift == written.blocks[1].norm_shift);
+  EXPECT_EQ(read.blocks[1].dilation, 4);
+  for (Eigen::Index i = 0; i < written.output.size(); ++i) {
+    const float w = written.output.data()[i];
+    EXPECT_LE(std::abs(read.output.data()[i] - w), std::abs(w) / 2048 + 1e-7F);
+  }
+  EXPECT_EQ(Bytes(read), Bytes(ReadLifterWeightsBytes(Bytes(read), "x"))) << "what was read is written as it was";
+}
+
+TEST(LifterWeightsIo, TruncatedFilesAreNamed) {
+  const std::string bytes = Bytes(SmallWeights());
+  for (size_t size = 0; size < bytes.size(); size += 1 + size / 61) {
+    const std::string error = ErrorOf(bytes.substr(0, size));
+    EXPECT_NE(error.find("some/lifter.npz"), std::string::npos) << size << ": " << error;
+  }
+}
+
+TEST(LifterWeightsIo, FlippedBytesNeverCrash) {
+  const std::string bytes = Bytes(SmallWeights());
+  for (size_t at = 0; at < bytes.size(); at += 7) {
+    std::string damaged = bytes;
+    damaged[at] = static_cast<char>(damaged[at] ^ 0x5a);
+    const std::string error = ErrorOf(damaged);
+    if (!error.empty()) {
+      EXPECT_NE(error.find("some/lifter.npz"), std::string::npos) << error;
+    }
+  }
+}
+
+TEST(LifterWeightsIo, ContradictionsAreNamed) {
+  const NpzArrays good = ReadNpzBytes(Bytes(SmallWeights()), "x");
+  const auto error_with = [&](const std::function<void(NpzArrays*)>& change) {
+    NpzArrays arrays = good;
+    change(&arrays);
+    return ErrorOf(NpzBytes(arrays));
+  };
+  const auto has = [](const std::string& text, const std::string& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  };
+  for (const auto& [name, array] : good) {
+    has(error_with([&, key = name](NpzArrays* a) { a->erase(key); }), name);
+  }
+  const float nan = std::nanf("");
+  has(error_with(
+          [&](NpzArrays* a) { (*a)["norm_scale"] = NdArray::FromFloats(std::vector<float>(6, nan).data(), {6}); }),
+      "norm_scale holds numbers that are not finite");
+  has(error_with([&](NpzArrays* a) { (*a)["norm_scale"] = NdArray::FromFloats(std::vector<float>(5).data(), {5}); }),
+      "norm_scale is 5x1, expected 6x1");
+  const int32_t zero[2] = {1, 0};
+  has(error_with([&](NpzArrays* a) { (*a)["dilations"] = NdArray::FromInts32(zero, {2}); }), "block1.dilation is 0");
+  const std::vector<int32_t> many(1000, 1);
+  has(error_with([&](NpzArrays* a) { (*a)["dilations"] = NdArray::FromInts32(many.data(), {1000}); }), "1000 blocks");
+  has(error_with([&](NpzArrays* a) { (*a)["output"] = NdArray::FromString("text"); }), "output");
+}
+
+TEST(LifterWeightsIo, WeightsThatAreNotValidAreNotWritten) {
+  LifterWeights weights = SmallWeights();
+  weights.blocks[0].mix.resize(3, 3);
+  EXPECT_THROW(WriteLifterWeights(TestPath("never.npz"), weights), std::invalid_argument);
+  EXPECT_FALSE(std::filesystem::exists(TestPath("never.npz")));
+}
+
+TEST(BuiltinLifter, ReadsWhatTheTrackerFeedsIt) {
+  const LifterWeights& weights = BuiltinLifter();
+  EXPECT_EQ(weights.num_inputs(), kLifterInputs);
+  EXPECT_FALSE(weights.recipe.empty());
+  EXPECT_LT(std::filesystem::file_size(std::filesystem::path(BODYLOOM_SOURCE_DIR) / "assets/lifter/lifter.npz"),
+            4U << 20);
+}
+
+}  // namespace
+}  // namespace bodyloom

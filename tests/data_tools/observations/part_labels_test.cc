@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/data_tools/observations/part_labels.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/data_tools/evaluation/part_label_evaluation.h"
+#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
+#include "bodyloom/data_tools/synthesis/clips/rendered_labels.h"
+#include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
+#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/tracking/initialise/part_keypoints.h"
+#include "tests/data_tools/formats/expect_file_error.h"
+
+namespace bodyloom {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// One frame of 40×30 with a person of two parts, 12×20 px, at (10, 5).
+std::vector<uint8_t> SmallPerson() {
+  std::vector<uint8_t> labels(40 * 30, 0);
+  for (int y = 5; y < 25; ++y) {
+    for (int x = 10; x < 22; ++x) labels[y * 40 + x] = y < 15 ? 2 : 9;
+  }
+  return labels;
+}
+
+NpzArrays Archive(const std::vector<uint8_t>& labels, std::vector<int64_t> shape) {
+  return {{"labels", NdArray::FromUInt8(labels.data(), std::move(shape))}};
+}
+
+TEST(PartLabels, CutsToThePerson) {
+  const PartLabelSequence labels = PartLabelsFromNpz(Archive(SmallPerson(), {1, 30, 40}), "l.npz");
+  ASSERT_EQ(labels.num_frames(), 1);
+  EXPECT_EQ(labels.image_width, 40);
+  EXPECT_EQ(labels.image_height, 30);
+  const LabelImage& image = labels.frames[0];
+  EXPECT_EQ(image.x_begin, 10);
+  EXPECT_EQ(image.y_begin, 5);
+  EXPECT_EQ(image.width, 12);
+  EXPECT_EQ(image.height, 20);
+  EXPECT_EQ(image.At(10, 5), 2);
+  EXPECT_EQ(image.At(21, 24), 9);
+  EXPECT_EQ(image.At(9, 5), 0);
+}
+
+TEST(PartLabels, FarBlobsAreNotThePersonAndNearOnesAre) {
+  std::vector<uint8_t> bytes = SmallPerson();
+  bytes[5 * 40 + 38] = bytes[6 * 40 + 38] = 3;  // 16 px away
+  bytes[16 * 40 + 24] = 4;                      // 2 px away: a hand that something hides in part
+  ReadPartLabelsOptions options;
+  options.mend_strays = false;
+  int64_t dropped = 0;
+  const PartLabelSequence labels = PartLabelsFromNpz(Archive(bytes, {1, 30, 40}), "l.npz", options, &dropped);
+  EXPECT_EQ(dropped, 2);
+  EXPECT_EQ(labels.PartAt(0, 38, 5), 0);
+  EXPECT_EQ(labels.PartAt(0, 24, 16), 4);
+}
+
+TEST(PartLabels, ThinLinesOfFalseLabelsGiveWay) {
+  std::vector<uint8_t> bytes = SmallPerson();
+  for (int x = 10; x < 22; ++x) bytes[15 * 40 + x] = 7;  // between parts 2 and 9
+  bytes[10 * 40 + 16] = 20;                              // a speck inside part 2
+  const PartLabelSequence mended = PartLabelsFromNpz(Archive(bytes, {1, 30, 40}), "l.npz");
+  for (int y = 5; y < 25; ++y) {
+    for (int x = 10; x < 22; ++x) {
+      const int label = mended.PartAt(0, x, y);
+      EXPECT_EQ(label, y < 15 ? 2 : y > 15 ? 9 : label) << x << ", " << y;
+      EXPECT_TRUE(label == 2 || label == 9) << x << ", " << y << ": " << label;
+    }
+  }
+  ReadPartLabelsOptions options;
+  options.mend_strays = false;
+  EXPECT_EQ(PartLabelsFromNpz(Archive(bytes, {1, 30, 40}), "l.npz", options).PartAt(0, 16, 10), 20);
+}
+
+TEST(PartLabels, AnEmptyFrameIsNobody) {
+  const PartLabelSequence labels = PartLabelsFromNpz(Archive(std::vector<uint8_t>(2400, 0), {2, 30, 40}), "l.npz");
+  ASSERT_EQ(labels.num_frames(), 2);
+  EXPECT_TRUE(labels.frames[1].labels.empty());
+  EXPECT_NEAR(labels.timestamps[1], 1 / 30.0, 1e-12);
+}
+
+TEST(PartLabels, MalformedArchivesAreErrors) {
+  const auto error = [](const NpzArrays& arrays) {
+    return FileErrorOf("l.npz", [&] { PartLabelsFromNpz(arrays, "l.npz"); });
+  };
+  EXPECT_THAT(error({}), HasSubstr("labels"));
+  EXPECT_THAT(error(Archive(SmallPerson(), {30, 40})), HasSubstr("frames x height x width"));
+  EXPECT_THAT(error(Archive({}, {0, 30, 40})), HasSubstr("at least one frame"));
+  std::vector<uint8_t> bytes = SmallPerson();
+  bytes[7 * 40 + 12] = 25;
+  EXPECT_THAT(error(Archive(bytes, {1, 30, 40})), HasSubstr("frame 0, pixel (12, 7) is 25"));
+  const std::vector<double> doubles(1200, 1);
+  EXPECT_THAT(error({{"labels", NdArray::FromDoubles(doubles.data(), {1, 30, 40})}}), HasSubstr("uint8"));
+  NpzArrays late = Archive(SmallPerson(), {1, 30, 40});
+  const double times[2] = {0, 1};
+  late["timestamps"] = NdArray::FromDoubles(times, {2});
+  EXPECT_THAT(error(late), HasSubstr("1 frames but 2 timestamps"));
+}
+
+class LabelsOfADance : public ::testing::Test {
+ protected:
+  static const SynthClip& Clip() {
+    static const SynthClip clip = [] {
+      SynthClipOptions options;
+      options.dense_per_frame = 0;
+      return MakeSynthClip(BuiltinBody(), DemoMotion(BuiltinBody(), 24, 4), options);
+    }();
+    return clip;
+  }
+  static const PartLabelSequence& Labels() {
+    static const PartLabelSequence labels = RenderPartLabels(BuiltinBody(), Clip().truth);
+    return labels;
+  }
+};
+
+TEST_F(LabelsOfADance, TheTruthCoversItsOwnLabels) {
+  const Evaluation same = EvaluatePartLabels(Clip().truth, Labels(), BuiltinBody());
+  EXPECT_EQ(same.Value("silhouette_iou"), 1);
+  EXPECT_EQ(same.Value("part_iou"), 1);
+  EXPECT_EQ(same.Value("limb_iou"), 1);
+  EXPECT_EQ(same.Value("label_accuracy"), 1);
+  Track shifted = Clip().truth;
+  shifted.motion.trans.col(0).array() += 0.05;
+  const Evaluation moved = EvaluatePartLabels(shifted, Labels(), BuiltinBody());
+  EXPECT_LT(moved.Value("silhouette_iou"), 0.9);
+  EXPECT_LT(moved.Value("part_iou"), moved.Value("silhouette_iou"));
+  EXPECT_GT(moved.Value("limb_iou"), moved.Value("part_iou"));
+  Track lost = Clip().truth;
+  lost.motion.poses.setConstant(std::nan(""));
+  const Evaluation nothing = EvaluatePartLabels(lost, Labels(), BuiltinBody());
+  EXPECT_EQ(nothing.Value("silhouette_iou"), 0);
+  EXPECT_EQ(nothing.frames_without_result, nothing.frames);
+}
+
+TEST_F(LabelsOfADance, JointsAreWherePartsMeet) {
+  const KeypointSequence read = KeypointsFromPartLabels(Labels());
+  const KeypointSequence& truth = Clip().keypoints_truth;
+  ASSERT_EQ(read.num_frames(), truth.num_frames());
+  for (const std::string joint : {"elbow", "wrist", "hip", "knee", "ankle", "shoulder"}) {
+    std::vector<double> errors;
+    for (const std::string side : {"left_", "right_"}) {
+      const auto column = [&](const KeypointSequence& k) {
+        return std::find(k.names.begin(), k.names.end(), side + joint) - k.names.begin();
+      };
+      for (int t = 0; t < read.num_frames(); ++t) {
+        const Keypoint &a = read.at(t, int(column(read))), &b = truth.at(t, int(column(truth)));
+        if (!(a.confidence > 0)) continue;
+        errors.push_back(std::hypot(a.x - b.x, a.y - b.y) / Labels().frames[t].height);
+      }
+    }
+    ASSERT_GT(errors.size(), 24U) << joint << " is read in too few frames";
+    std::nth_element(errors.begin(), errors.begin() + errors.size() / 2, errors.end());
+    EXPECT_LT(errors[errors.size() / 2], 0.05) << joint << ": median distance as a share of the person's height";
+  }
+}
+
+TEST_F(LabelsOfADance, MirroredLabelsGiveMirroredJoints) {
+  // The charts of left and right exchanged (DensePose's own list of pairs): every left joint becomes a right one.
+  constexpr std::array<uint8_t, 25> kMirror = {0,  1,  2,  4,  3,  6,  5,  8,  7,  10, 9,  12, 11,
+                                               14, 13, 16, 15, 18, 17, 20, 19, 22, 21, 24, 23};
+  PartLabelSequence mirrored = Labels();
+  for (int label = 0; label < 25; ++label) mirrored.part_of_label[label] = kMirror[label];
+  const KeypointSequence a = KeypointsFromPartLabels(Labels()), b = KeypointsFromPartLabels(mirrored);
+  for (int t = 0; t < a.num_frames(); ++t) {
+    for (const auto& [left, right] : {std::pair(7, 8), std::pair(9, 10), std::pair(13, 14), std::pair(17, 18)}) {
+      EXPECT_EQ(a.at(t, left).x, b.at(t, right).x);
+      EXPECT_EQ(a.at(t, left).confidence, b.at(t, right).confidence);
+    }
+  }
+}
+
+TEST(PartKeypoints, NobodyGivesNothing) {
+  PartLabelSequence labels;
+  labels.image_width = labels.image_height = 10;
+  labels.timestamps = {0, 1};
+  labels.frames.resize(2);
+  labels.frames[1] = {2, 2, 3, 3, std::vector<uint8_t>(9, PartLabelSequence::kUnknown)};
+  for (const Keypoint& point : KeypointsFromPartLabels(labels).points) EXPECT_EQ(point.confidence, 0);
+  EXPECT_THROW(KeypointsFromPartLabels({}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace bodyloom

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/data_tools/observations/people.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+
+#include "bodyloom/data_tools/observations/frame_numbers.h"
+#include "tests/data_tools/formats/expect_file_error.h"
+#include "tests/support/stick_person.h"
+
+namespace bodyloom {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+DetectedPerson Stick(double x, double height_px, float confidence = 0.9F) {
+  DetectedPerson person;
+  for (const std::string& name : Coco17().names) {
+    const auto [px, py] = StickLandmark(name, x, 500, height_px);
+    person.points.push_back({static_cast<float>(px), static_cast<float>(py), confidence});
+  }
+  return person;
+}
+
+PeopleSequence Clip(int num_frames) {
+  PeopleSequence people;
+  people.convention = Coco17();
+  people.frames.resize(num_frames);
+  for (int t = 0; t < num_frames; ++t) people.timestamps.push_back(t / 30.0);
+  return people;
+}
+
+TEST(People, TwoPeopleWhoseOrderChangesStayApart) {
+  PeopleSequence people = Clip(40);
+  for (int t = 0; t < 40; ++t) {
+    people.frames[t] = {Stick(300 + 5 * t, 400), Stick(900 - 3 * t, 300)};
+    if (t % 3 == 1) std::swap(people.frames[t][0], people.frames[t][1]);
+  }
+  const KeypointSequence big = SelectPerson(people, 0, "p"), small = SelectPerson(people, 1, "p");
+  for (int t = 0; t < 40; ++t) {
+    EXPECT_NEAR(big.at(t, 0).x, 300 + 5 * t, 1e-2);
+    EXPECT_NEAR(small.at(t, 0).x, 900 - 3 * t, 1e-2);
+  }
+  EXPECT_THAT(FileErrorOf("p", [&] { SelectPerson(people, 2, "p"); }), HasSubstr("only 2 were found"));
+}
+
+TEST(People, AGapIsBridgedAndABlipIsNot) {
+  PeopleSequence people = Clip(100);
+  for (int t = 0; t < 100; ++t) {
+    if (t < 30 || t >= 60) people.frames[t].push_back(Stick(300 + 2 * t, 400));
+    if (t == 40) people.frames[t].push_back(Stick(1700, 100));
+  }
+  const std::vector<PersonTrack> tracks = LinkPeople(people);
+  ASSERT_EQ(tracks.size(), 2U);
+  EXPECT_EQ(tracks[0].detections.size(), 70U);
+  const KeypointSequence sequence = SelectPerson(people, 0, "p");
+  EXPECT_EQ(sequence.at(40, 0).confidence, 0) << "missing, not the blip";
+  EXPECT_NEAR(sequence.at(99, 0).x, 300 + 198, 1e-2);
+}
+
+TEST(People, IdentitiesOfTheDetectorWin) {
+  PeopleSequence people = Clip(4);
+  for (int t = 0; t < 4; ++t) {
+    people.frames[t] = {Stick(300, 400), Stick(320, 390)};
+    people.frames[t][0].identity = t < 2 ? 1 : 2;
+    people.frames[t][1].identity = t < 2 ? 2 : 1;
+  }
+  const KeypointSequence sequence = SelectPerson(people, 0, "p");
+  EXPECT_NE(sequence.at(1, 0).x, sequence.at(2, 0).x);
+  EXPECT_EQ(LinkPeople(people).size(), 2U);
+}
+
+TEST(People, ConfidencesAreClampedAndNaNsMissing) {
+  PeopleSequence people = Clip(1);
+  people.frames[0] = {Stick(300, 400, 3.5F)};
+  people.frames[0][0].points[4].x = std::numeric_limits<float>::quiet_NaN();
+  people.frames[0][0].points[5].confidence = -1;
+  const KeypointSequence sequence = SelectPerson(people, 0, "p");
+  EXPECT_EQ(sequence.at(0, 0).confidence, 1);
+  EXPECT_EQ(sequence.at(0, 4).confidence, 0);
+  EXPECT_EQ(sequence.at(0, 4).x, 0);
+  EXPECT_EQ(sequence.at(0, 5).confidence, 0);
+}
+
+TEST(People, NobodyIsAnError) {
+  const PeopleSequence people = Clip(3);
+  EXPECT_THAT(FileErrorOf("p.json", [&] { SelectPerson(people, 0, "p.json"); }), HasSubstr("no person in any of 3"));
+}
+
+TEST(FrameNumbers, FromNames) {
+  EXPECT_EQ(FrameNumberFromName("walk_000000000012_keypoints.json"), 12);
+  EXPECT_EQ(FrameNumberFromName("a/b2/cam01.0037.json"), 37);
+  EXPECT_EQ(FrameNumberFromName("cam01.0037"), 37);
+  EXPECT_EQ(FrameNumberFromName("0.jpg"), 0);
+  EXPECT_EQ(FrameNumberFromName("take3_keypoints.json"), 3);
+  EXPECT_EQ(FrameNumberFromName("frame.json"), -1);
+  EXPECT_EQ(FrameNumberFromName("12345678901234567890.json"), -1);
+}
+
+TEST(FrameNumbers, Grid) {
+  const FrameGrid grid = MakeFrameGrid({30, 10, 15}, 10, "g");
+  EXPECT_THAT(grid.index, ElementsAre(4, 0, 1));
+  ASSERT_EQ(grid.timestamps.size(), 5U);
+  EXPECT_NEAR(grid.timestamps[4], 3.0, 1e-12);
+  EXPECT_THAT(FileErrorOf("g", [] { MakeFrameGrid({1, 2, 1}, 10, "g"); }), HasSubstr("occurs twice"));
+  EXPECT_THAT(FileErrorOf("g", [] { MakeFrameGrid({0, 1, 100'000'000}, 10, "g"); }), HasSubstr("at most"));
+  EXPECT_THROW(MakeFrameGrid({1}, 0, "g"), std::invalid_argument);
+  EXPECT_THROW(MakeFrameGrid({1}, std::nan(""), "g"), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace bodyloom

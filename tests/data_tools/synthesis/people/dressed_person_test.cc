@@ -1,0 +1,365 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/data_tools/synthesis/people/dressed_person.h"
+
+#include <gmock/gmock.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <filesystem>
+
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/motion/load_motion.h"
+#include "bodyloom/data_tools/motion/motion_tools.h"
+#include "bodyloom/data_tools/synthesis/people/dressed_render.h"
+#include "bodyloom/data_tools/synthesis/people/make_person_set.h"
+#include "bodyloom/geometry/rotation.h"
+#include "tests/data_tools/formats/temporary_file.h"
+#include "tests/support/toy_body.h"
+
+namespace bodyloom {
+namespace {
+
+using Eigen::Vector3d;
+
+PersonLabel LabelAtLandmark(const Outfit& outfit, const BodyModel& body, const std::string& name) {
+  const Landmark& landmark = body.data().landmarks[body.FindLandmark(name)];
+  Vector3d p = Vector3d::Zero();
+  for (size_t i = 0; i < landmark.vertices.size(); ++i) {
+    p += landmark.weights[i] * body.data().v_template.row(landmark.vertices[i]).transpose();
+  }
+  return outfit.LabelAt(p);
+}
+
+TEST(Outfit, LabelsLieWhereTheyBelong) {
+  const BodyModel& body = BuiltinBody();
+  const MatrixX3d& joints = body.joint_template();
+  for (uint64_t seed = 1; seed <= 20; ++seed) {
+    const Outfit suit(body, GarmentKind::kSuit, seed), skirt(body, GarmentKind::kSkirt, seed);
+    for (const Outfit* outfit : {&suit, &skirt}) {
+      for (const char* name : {"nose", "left_eye", "right_eye"}) {
+        EXPECT_EQ(LabelAtLandmark(*outfit, body, name), PersonLabel::kFace) << name;
+      }
+      for (const char* name : {"left_big_toe", "right_heel", "left_small_toe"}) {
+        EXPECT_EQ(LabelAtLandmark(*outfit, body, name), PersonLabel::kShoes) << name;
+      }
+      const Vector3d crown = {0, body.data().v_template.col(1).maxCoeff(), joints(15, 2)};
+      EXPECT_EQ(outfit->LabelAt(crown), PersonLabel::kHair);
+      EXPECT_EQ(outfit->LabelAt(joints.row(22).transpose()), PersonLabel::kSkin) << "hand";
+      EXPECT_EQ(outfit->LabelAt(joints.row(9).transpose() + Vector3d(0, 0, 0.15)), PersonLabel::kTop) << "chest";
+      EXPECT_EQ(outfit->LabelAt(joints.row(1).transpose()), PersonLabel::kBottom) << "hip";
+    }
+    EXPECT_EQ(suit.LabelAt(0.5 * (joints.row(1) + joints.row(4)).transpose()), PersonLabel::kBottom) << "thigh";
+    EXPECT_EQ(skirt.LabelAt(joints.row(4).transpose()), PersonLabel::kSkin) << "knee";
+  }
+}
+
+TEST(Outfit, ClothesLieOutsideAndThicknessIsContinuous) {
+  const BodyModel& body = BuiltinBody();
+  const Outfit outfit(body, GarmentKind::kSuit, 3);
+  for (int v = 0; v < body.num_vertices(); ++v) {
+    const Vector3d p = body.data().v_template.row(v).transpose();
+    const double here = outfit.OffsetAt(p);
+    EXPECT_GE(here, 0);
+    EXPECT_LT(here, 0.035);
+    EXPECT_EQ(here, outfit.offsets_m()[v]);
+    for (const Vector3d& d : {Vector3d(1e-5, 0, 0), Vector3d(0, 1e-5, 0), Vector3d(0, 0, 1e-5)}) {
+      // Steps may lie only where the neck meets the shoulders' top, at head_y.
+      if (std::abs(p.y() - outfit.cut().head_y) <= 1e-4) continue;
+      EXPECT_LT(std::abs(outfit.OffsetAt(p + d) - here), 1e-4);
+    }
+  }
+  EXPECT_EQ(int(Outfit(ToyBody(), GarmentKind::kCoat, 1).offsets_m().size()), ToyBody().num_vertices());
+}
+
+TEST(LooseGarment, IsSewnAsItsPatternSays) {
+  const BodyModel& body = BuiltinBody();
+  for (const double slit_m : {-1.0, 0.25}) {
+    LooseGarmentOptions options;
+    options.waist_y_m = 0.09, options.length_m = 0.55, options.fullness = 0.5, options.slit_from_m = slit_m;
+    const MatrixX3d& vertices = body.data().v_template;
+    const LooseGarment g = CutLooseGarment(vertices, body.data().faces, 0.3, options);
+    const int closed = slit_m < 0 ? g.rings : static_cast<int>(slit_m / (0.55 / (g.rings - 1)));
+    EXPECT_EQ(int(g.sewn.size()), closed * g.columns + (g.rings - closed) * (g.columns + 1));
+    EXPECT_EQ(int(g.pins.size()), g.columns);
+    const std::vector<Vector3d> pinned = PinnedPlaces(g.pins, vertices, body.data().faces);
+    for (int j = 0; j < g.columns; ++j) {
+      EXPECT_EQ(g.cloth.mass_kg[j], 0);
+      EXPECT_NEAR((pinned[j] - g.sewn[j]).norm(), 0, 0.012) << "lifted along the face, sewn outwards";
+      EXPECT_NEAR(g.sewn[j].y(), 0.09, 1e-9);
+      const int hem = int(g.sewn.size()) - g.columns - (slit_m < 0 ? 0 : 1) + j;
+      EXPECT_NEAR((g.sewn[hem] - g.sewn[j]).norm(), 0.55, 1e-9) << "path from waist to hem";
+      EXPECT_NEAR(g.sewn[j].y() - g.sewn[hem].y(), 0.55 * std::sqrt(0.75), 1e-9);
+    }
+    double mass = 0, area = 0, outwards = 1;
+    for (const double m : g.cloth.mass_kg) mass += m;
+    for (int f = 0; f < g.cloth.faces.rows(); ++f) {
+      const Vector3d a = g.sewn[g.cloth.faces(f, 0)], b = g.sewn[g.cloth.faces(f, 1)], c = g.sewn[g.cloth.faces(f, 2)];
+      const Vector3d n = (b - a).cross(c - a);
+      area += 0.5 * n.norm();
+      outwards = std::min(outwards, n.normalized().dot(Vector3d(a.x(), 0, a.z()).normalized()));
+      for (int k = 0; k < 3; ++k) EXPECT_EQ(g.drawn_from[g.drawn_faces(f, k)], g.cloth.faces(f, k));
+      // No step of the pattern inside a face.
+      EXPECT_LT((g.pattern.row(g.drawn_faces(f, 0)) - g.pattern.row(g.drawn_faces(f, 2))).norm(), 0.06);
+    }
+    EXPECT_GT(outwards, 0.3);
+    EXPECT_LT(mass, 0.25 * area) << "the pinned ring's own share is not carried";
+    EXPECT_GT(mass, 0.9 * 0.25 * area);
+    EXPECT_NEAR(LargestStretch(g.cloth, g.sewn), 0, 1e-12);
+  }
+  EXPECT_THROW(CutLooseGarment(body.data().v_template, body.data().faces, 0.3, {.waist_y_m = 5}),
+               std::invalid_argument);
+  EXPECT_THROW(CutLooseGarment(body.data().v_template, body.data().faces, 0.3, {.fullness = 1}), std::invalid_argument);
+}
+
+/// Standing with the arms down, turned about the vertical by angle(t).
+template <typename Angle>
+Motion Turning(int frames, double fps, const Angle& angle) {
+  Motion motion;
+  motion.body = "bodyloom";
+  motion.poses = RowMatrixXd::Zero(frames, 72);
+  motion.trans = MatrixX3d::Zero(frames, 3);
+  for (int t = 0; t < frames; ++t) {
+    motion.poses(t, 3 * 16 + 2) = -1.1, motion.poses(t, 3 * 17 + 2) = 1.1;
+    motion.poses(t, 1) = angle(t / fps);
+    motion.timestamps.push_back(t / fps);
+  }
+  return motion;
+}
+
+/// Mean distance of the hem from the vertical through the pelvis.
+double HemRadius(const DressedPerson& person, const std::vector<Vector3d>& cloth) {
+  double sum = 0;
+  const int n = person.garment().columns;
+  for (int j = 0; j < n; ++j) sum += std::hypot(cloth[cloth.size() - n + j].x(), cloth[cloth.size() - n + j].z());
+  return sum / n;
+}
+
+TEST(ClothRun, ASpinFlaresTheSkirt) {
+  const DressedPerson person(BuiltinBody(), Eigen::VectorXd::Zero(10), GarmentKind::kSkirt, 1);
+  ClothRun run(person, Turning(60, 30, [](double t) { return 4.0 * t * std::min(t, 1.0); }), {});
+  const double at_rest = HemRadius(person, run.Next());
+  double widest = 0;
+  for (int t = 1; t < 60; ++t) widest = std::max(widest, HemRadius(person, run.Next()));
+  EXPECT_GT(widest, at_rest + 0.06);
+  EXPECT_EQ(run.num_cuts(), 0);
+}
+
+/// The cloth of the last frame, in the body's frame of that pose.
+std::vector<Vector3d> LastCloth(const DressedPerson& person, const Motion& motion) {
+  ClothRun run(person, motion, {});
+  std::vector<Vector3d> cloth;
+  for (int t = 0; t < motion.num_frames(); ++t) cloth = run.Next();
+  return cloth;
+}
+
+double MeanDistance(const std::vector<Vector3d>& a, const std::vector<Vector3d>& b) {
+  double sum = 0;
+  for (size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]).norm();
+  return sum / double(a.size());
+}
+
+TEST(ClothRun, TheSamePoseAtAnotherSpeedGivesOtherCloth) {
+  const DressedPerson person(BuiltinBody(), Eigen::VectorXd::Zero(10), GarmentKind::kSkirt, 1);
+  const auto swing = [](double phase) { return 0.8 * std::sin(phase); };
+  // Both end in the middle of a swing: same pose, 3.6 and 0.6 rad/s.
+  const auto end_at = [&](double rate) {
+    const int frames = static_cast<int>(std::lround(2 * M_PI / rate * 60)) + 1;
+    return Turning(frames, 60, [&](double t) { return swing(rate * t); });
+  };
+  const std::vector<Vector3d> fast = LastCloth(person, end_at(4.5)), again = LastCloth(person, end_at(4.5)),
+                              slow = LastCloth(person, end_at(0.75));
+  EXPECT_EQ(fast, again);
+  EXPECT_GT(MeanDistance(fast, slow), 0.02);
+}
+
+/// Largest depth in the body and stretch over a run.
+struct Extremes {
+  double depth_m = 0, stretch = 0;
+};
+
+Extremes RunAll(const DressedPerson& person, const Motion& motion, int* cuts = nullptr) {
+  ClothRun run(person, motion, {});
+  Extremes extremes;
+  for (int t = 0; t < motion.num_frames(); ++t) {
+    const std::vector<Vector3d>& cloth = run.Next();
+    for (const Vector3d& p : cloth) EXPECT_TRUE(p.allFinite());
+    const BodyPose pose =
+        PoseFromAxisAngle(person.body(), motion.poses.row(t).transpose(), motion.trans.row(t).transpose());
+    const MatrixX3i& faces = person.body().data().faces;
+    const MatrixX3d bare = person.BareVertices(pose), clothed = person.Clothed(bare, VertexNormals(bare, faces));
+    const MatrixX3d joints = PoseSkeleton(person.body(), person.rest_joints(), pose).joints;
+    extremes.depth_m = std::max(
+        extremes.depth_m, LargestDepth(cloth, person.obstacles().At(clothed, VertexNormals(clothed, faces), joints)));
+    extremes.stretch = std::max(extremes.stretch, LargestStretch(person.garment().cloth, cloth));
+  }
+  if (cuts != nullptr) *cuts = run.num_cuts();
+  return extremes;
+}
+
+TEST(ClothRun, StaysOutsideTheBodyAndKeepsItsLength) {
+  // A march with high knees, which lift the skirt.
+  const auto march = [](double fps) {
+    Motion motion = Turning(static_cast<int>(2 * fps), fps, [](double) { return 0.0; });
+    for (int t = 0; t < motion.num_frames(); ++t) {
+      const double phase = 2 * M_PI * 0.8 * t / fps;
+      motion.poses(t, 3) = -0.9 * std::max(0.0, std::sin(phase)),
+                      motion.poses(t, 6) = 0.9 * std::min(0.0, std::sin(phase));
+      motion.poses(t, 12) = -motion.poses(t, 3), motion.poses(t, 15) = -motion.poses(t, 6);
+    }
+    return motion;
+  };
+  for (const GarmentKind kind : {GarmentKind::kSkirt, GarmentKind::kCoat}) {
+    const DressedPerson person(BuiltinBody(), Eigen::VectorXd::Zero(10), kind, 1);
+    for (const double fps : {5.0, 60.0}) {
+      const Extremes extremes = RunAll(person, march(fps));
+      EXPECT_LT(extremes.depth_m, 0.01) << ToString(kind) << " at " << fps;
+      EXPECT_LT(extremes.stretch, 0.6) << ToString(kind) << " at " << fps;
+    }
+  }
+}
+
+TEST(ClothRun, SettlesAgainAfterACut) {
+  const DressedPerson person(BuiltinBody(), Eigen::VectorXd::Zero(10), GarmentKind::kSkirt, 1);
+  Motion motion = Turning(12, 30, [](double t) { return t < 0.2 ? 0.0 : 2.5; });
+  for (int t = 6; t < 12; ++t) motion.trans.row(t) << 3, 0, -2;
+  int cuts = 0;
+  const Extremes extremes = RunAll(person, motion, &cuts);
+  EXPECT_EQ(cuts, 1);
+  EXPECT_LT(extremes.depth_m, 0.005);
+  EXPECT_LT(extremes.stretch, 0.1);
+}
+
+TEST(ClothRun, ACutForgetsWhatWas) {
+  const DressedPerson person(BuiltinBody(), Eigen::VectorXd::Zero(10), GarmentKind::kSkirt, 1);
+  Motion alone = Turning(8, 30, [](double t) { return 2 * t; });
+  alone.poses.col(3).setConstant(-0.5);
+  Motion after = Turning(20, 30, [](double t) { return 9 * t; });
+  after.poses.bottomRows(8) = alone.poses, after.trans.bottomRows(8) = alone.trans;
+  for (int t = 0; t < 8; ++t)
+    after.timestamps[12 + t] = after.timestamps[11] + ClothRunOptions().cut_pause_s + t / 30.0;
+  ClothRunOptions options;
+  options.has_floor = false;  // which would be that of the whole motion
+  ClothRun run(person, after, options), fresh(person, alone, options);
+  for (int t = 0; t < 12; ++t) (void)run.Next();
+  for (int t = 0; t < 8; ++t) {
+    const std::vector<Vector3d>&a = run.Next(), &b = fresh.Next();
+    double furthest = 0;
+    for (size_t v = 0; v < a.size(); ++v) furthest = std::max(furthest, (a[v] - b[v]).norm());
+    EXPECT_LT(furthest, 1e-9) << t;
+  }
+  EXPECT_EQ(run.num_cuts(), 1);
+}
+
+TEST(ClothRun, LegsComeBackIntoTheSkirt) {
+  // A kick above the head goes through the skirt (as long as it lasts); after it the leg must come back in.
+  const std::string path = std::string(BODYLOOM_SHARED_DIR) + "/data/motion/cmu_bvh/05_08.bvh.gz";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no recording at " << path;
+  LoadMotionOptions load;
+  load.resample_fps = 30;
+  MakePersonSetOptions options;
+  options.garment = GarmentKind::kSkirt, options.seed = 3;
+  SynthCamera camera;
+  const Motion motion = PersonTrack(BuiltinBody(), TakeFrames(LoadMotion(path, load), 30, 90), options, &camera).motion;
+  const DressedPerson person(BuiltinBody(), motion.betas, options.garment, options.seed);
+  ClothRunOptions run_options;
+  run_options.up = camera.up_in_camera;
+  ClothRun run(person, motion, run_options);
+  EXPECT_EQ(run.legs_through(), 0) << "before the first frame";
+  int frames = 0;
+  for (int t = 0; t < motion.num_frames(); ++t) {
+    (void)run.Next();
+    if (t < 60) frames += run.legs_through() > 0;
+    EXPECT_EQ(t < 60 ? 0 : run.legs_through(), 0) << t;
+  }
+  EXPECT_GT(frames, 0) << "otherwise this shows nothing";
+}
+
+TEST(ClothRun, ChecksItsContract) {
+  const DressedPerson person(BuiltinBody(), Eigen::VectorXd::Zero(10), GarmentKind::kSuit, 1);
+  Motion motion = Turning(2, 30, [](double) { return 0.0; });
+  ClothRun run(person, motion, {});
+  EXPECT_TRUE(run.Next().empty()) << "a suit has no cloth";
+  (void)run.Next();
+  EXPECT_THROW((void)run.Next(), std::invalid_argument);
+  motion.timestamps[1] = 0;
+  EXPECT_THROW(ClothRun(person, motion, {}), std::invalid_argument);
+  motion.timestamps[1] = 1, motion.poses(1, 5) = NAN;
+  EXPECT_THROW(ClothRun(person, motion, {}), std::invalid_argument);
+}
+
+TEST(DressedRender, TruthIsConsistent) {
+  MakePersonSetOptions options;
+  options.size_px = 128, options.garment = GarmentKind::kSkirt;
+  const Motion motion = Turning(1, 30, [](double) { return 0.4; });
+  SynthCamera camera;
+  const Track track = PersonTrack(BuiltinBody(), motion, options, &camera);
+  const DressedPerson person(BuiltinBody(), track.motion.betas, options.garment, 1);
+  ClothRunOptions run_options;
+  run_options.up = camera.up_in_camera;
+  ClothRun run(person, track.motion, run_options);
+  const DressedScene scene(person, track.camera, camera.up_in_camera, 1);
+  DressedRenderer renderer(scene);
+  const BodyPose pose =
+      PoseFromAxisAngle(BuiltinBody(), track.motion.poses.row(0), track.motion.trans.row(0).transpose());
+  const PersonFrame frame = renderer.Render(pose, run.Next(), 0.5);
+  std::array<int, kNumPersonLabels> count{};
+  int towards_viewer = 0, person_pixels = 0, bare_outside = 0, changed_background = 0;
+  for (int y = 1; y < 127; ++y) {
+    for (int x = 1; x < 127; ++x) {
+      const int label = frame.labels.pixel(x, y)[0];
+      ++count[label];
+      const uint8_t* const n = frame.normals.pixel(x, y);
+      const Vector3d normal(NormalOfCode(n[2]), NormalOfCode(n[1]), NormalOfCode(n[0]));
+      if (label == 0) {
+        EXPECT_EQ(int(n[0]) + n[1] + n[2], 0);
+        bool alone = true;
+        for (int d = 0; d < 9; ++d) alone = alone && frame.labels.pixel(x + d % 3 - 1, y + d / 3 - 1)[0] == 0;
+        changed_background += alone && !(frame.rgb.at(x, y) == frame.background.at(x, y));
+      } else {
+        ++person_pixels;
+        EXPECT_NEAR(normal.norm(), 1, 0.012);
+        towards_viewer += normal.z() < 0.2;
+      }
+      bare_outside += label == 0 && frame.iuv.pixel(x, y)[0] > 0;
+    }
+  }
+  for (int label = 0; label < kNumPersonLabels; ++label) EXPECT_GT(count[label], 3) << kPersonLabelNames[label];
+  EXPECT_GT(person_pixels, 700);
+  EXPECT_GT(towards_viewer, 0.99 * person_pixels);
+  EXPECT_LE(bare_outside, 12) << "clothes lie outside the bare body";
+  EXPECT_LE(changed_background, 2);
+}
+
+TEST(MakePersonSet, SameBytesForAnyNumberOfThreads) {
+  const TemporaryFolder folder;
+  MakePersonSetOptions options;
+  options.size_px = 64, options.garment = GarmentKind::kCoat;
+  const Motion motion = Turning(20, 30, [](double t) { return t; });
+  const auto bytes = [&](int threads, uint64_t seed) {
+    const std::string path = folder.File(std::to_string(threads));
+    options.num_threads = threads, options.seed = seed;
+    const MakePersonSetSummary summary = MakePersonSet(path, BuiltinBody(), motion, options);
+    EXPECT_TRUE(summary.finished);
+    EXPECT_EQ(summary.frames, 20);
+    std::string all = ReadFileBytes(path + "/person.json") + ReadFileBytes(path + "/track.npz");
+    for (const char* kind : {"images", "labels", "normals", "iuv", "backgrounds"}) {
+      for (const char* frame : {"000000", "000007", "000016", "000019"}) {
+        all += ReadFileBytes(path + "/" + kind + "/" + frame + ".png");
+      }
+    }
+    return all;
+  };
+  const std::string one = bytes(1, 5);
+  EXPECT_TRUE(one == bytes(3, 5));
+  EXPECT_FALSE(one == bytes(2, 6)) << "another seed is another person";
+  const PersonSet set(folder.File("1"));
+  EXPECT_EQ(set.track().num_frames(), 20);
+  EXPECT_NEAR(set.info().fps, 30, 1e-9);
+  options.progress = [](double done) { return done < 0.5; };
+  EXPECT_FALSE(MakePersonSet(folder.File("stopped"), BuiltinBody(), motion, options).finished);
+  EXPECT_THROW(PersonSet(folder.File("stopped")), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace bodyloom

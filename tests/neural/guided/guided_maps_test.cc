@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the pose-guided renderer does without networks: pose maps, what is hidden in training, coherent maps.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "bodyloom/neural/guided/choose_photos.h"
+#include "bodyloom/neural/guided/complete_maps.h"
+#include "bodyloom/neural/guided/guided_plan.h"
+#include "bodyloom/neural/guided/guided_scores.h"
+#include "bodyloom/neural/people/body_part_map.h"
+#include "tests/neural/guided/guided_toy.h"
+
+namespace bodyloom {
+namespace {
+
+TEST(BodyPartMap, LeftAndRightAreTheSameLimb) {
+  // DensePose's charts 0 to 24.
+  const int limbs[] = {0, 1, 1, 3, 3, 4, 4, 5, 5, 5, 5, 6, 6, 6, 6, 7, 7, 7, 7, 8, 8, 8, 8, 2, 2};
+  for (int chart = 0; chart < 25; ++chart) EXPECT_EQ(LimbOf(chart), limbs[chart]) << chart;
+  EXPECT_EQ(LimbOf(23), kHeadLimb);
+  EXPECT_THROW(LimbOf(25), std::invalid_argument);
+}
+
+TEST(BodyPartMap, FourteenPartsThatAreFarApart) {
+  std::set<int> parts;
+  for (int chart = 1; chart < 25; ++chart) parts.insert(BodyPartOf(chart));
+  EXPECT_EQ(parts.size(), 14U);
+  EXPECT_FALSE(parts.contains(0));
+  EXPECT_EQ(BodyPartOf(0), 0);
+  // Front and back of the torso, both halves of the head; right and left are different parts.
+  EXPECT_EQ(BodyPartOf(1), BodyPartOf(2));
+  EXPECT_EQ(BodyPartOf(23), BodyPartOf(24));
+  for (const auto& [a, b] : {std::pair{3, 4}, {5, 6}, {7, 8}, {11, 12}, {15, 16}, {19, 20}}) {
+    EXPECT_NE(BodyPartOf(a), BodyPartOf(b));
+  }
+  EXPECT_EQ(BodyPartOf(7), BodyPartOf(9));
+  EXPECT_EQ(BodyPartOf(15), BodyPartOf(17));
+  for (int a = 0; a < kBodyParts; ++a) {
+    for (int b = 0; b < a; ++b) {
+      float largest = 0;
+      for (int c = 0; c < 3; ++c) largest = std::max(largest, std::abs(BodyPartColour(a)[c] - BodyPartColour(b)[c]));
+      EXPECT_GE(largest, 0.5F) << a << " and " << b;
+    }
+  }
+  const std::vector<uint8_t> charts = {0, 2, 4};
+  const std::vector<float> map = BodyPartMap(charts);
+  ASSERT_EQ(map.size(), 9U);
+  EXPECT_EQ(map[0] + map[3] + map[6], 0);
+  EXPECT_EQ(map[1] + map[4] + map[7], 3);
+  EXPECT_THROW(BodyPartMap(std::vector<uint8_t>{25}), std::invalid_argument);
+}
+
+TEST(GuidedPlan, SamplesAreFunctionsOfTheStep) {
+  const std::vector<int> frames = {5, 1, 3};
+  std::set<int> people;
+  std::set<std::pair<int, int>> pairs;
+  for (int64_t step = 0; step < 400; ++step) {
+    const GuidedSample a = GuidedSampleOf(7, step, 1, frames), b = GuidedSampleOf(7, step, 1, frames);
+    EXPECT_EQ(a.person, b.person);
+    EXPECT_EQ(a.source, b.source);
+    EXPECT_EQ(a.target, b.target);
+    EXPECT_LT(a.target, frames[a.person]);
+    EXPECT_EQ(a.source == a.target, frames[a.person] == 1);
+    people.insert(a.person);
+    if (a.person == 0) pairs.insert({a.source, a.target});
+  }
+  EXPECT_EQ(people.size(), 3U);
+  EXPECT_EQ(pairs.size(), 20U);
+  EXPECT_THROW(GuidedSampleOf(1, 0, 0, {}), std::invalid_argument);
+}
+
+TEST(GuidedPlan, OnlyTheBareBodyIsKnownAndNotAllOfIt) {
+  const PhotoFrame frame = ToyPhotoFrame(0, {}, true);
+  int body = 0, known_in_all = 0, whole = 0;
+  for (const uint8_t part : frame.parts) body += part != 0 ? 1 : 0;
+  std::set<std::vector<uint8_t>> masks;
+  for (int64_t step = 0; step < 100; ++step) {
+    const std::vector<uint8_t> known = KnownPixels(3, step, 0, kToySide, frame.parts);
+    EXPECT_EQ(known, KnownPixels(3, step, 0, kToySide, frame.parts));
+    int count = 0;
+    for (size_t i = 0; i < known.size(); ++i) {
+      if (known[i] == 0) continue;
+      ++count;
+      EXPECT_NE(frame.parts[i], 0);
+    }
+    known_in_all += count;
+    whole += count == body ? 1 : 0;
+    masks.insert(known);
+  }
+  EXPECT_GT(masks.size(), 60U);
+  EXPECT_GT(whole, 0);
+  EXPECT_LT(whole, 40);
+  EXPECT_GT(known_in_all, 100 * body / 3);
+  EXPECT_LT(known_in_all, 100 * body * 9 / 10);
+}
+
+TEST(CoherentMaps, AColourStaysTheSameWhereverThePersonGoes) {
+  const PhotoFrame source = ToyPhotoFrame(4, {}, true);
+  CoherentMaps maps = EmptyMaps(kToyTexels, ToyTexelParts());
+  EXPECT_EQ(FillEmptyTexels(source, OwnPicture(source), 1, {}, &maps), 128);
+  // Moved by whole pixels, the pixel of a point is the pixel of that point in every frame.
+  std::vector<PseudoPicture> pictures;
+  for (const auto& [dx, dy] : {std::pair{0, 0}, {3, 2}, {-4, 1}, {5, -3}}) {
+    const PhotoFrame frame = ToyPhotoFrame(4, {dx, dy, false}, true);
+    pictures.push_back(LookUp(maps, frame));
+    const PseudoPicture& shown = pictures.back();
+    for (int y = 6; y < 26; ++y) {
+      for (int x = 8; x < 24; ++x) {
+        const int here = (y + dy) * kToySide + x + dx, first = y * kToySide + x;
+        EXPECT_EQ(shown.known[here], pictures[0].known[first]);
+        EXPECT_EQ(shown.labels[here], pictures[0].labels[first]);
+        for (int c = 0; c < 3; ++c) {
+          EXPECT_NEAR(shown.image[c * 1024 + here], pictures[0].image[c * 1024 + first], 2e-7);
+        }
+        if (frame.parts[here] == 0) {
+          EXPECT_EQ(shown.known[here], 0);
+        }
+      }
+    }
+  }
+  // And it is the colour that the photo has there.
+  double error = 0;
+  int count = 0;
+  for (int i = 0; i < 1024; ++i) {
+    if (pictures[0].known[i] == 0) continue;
+    ++count;
+    for (int c = 0; c < 3; ++c) error += std::abs(pictures[0].image[c * 1024 + i] - source.image[c * 1024 + i]);
+    EXPECT_TRUE(pictures[0].labels[i] == source.labels[i] || source.labels[i + 32] != source.labels[i] ||
+                source.labels[i - 32] != source.labels[i]);
+  }
+  EXPECT_EQ(count, 64 + 144);
+  EXPECT_LT(error / (3 * count), 0.03);
+}
+
+TEST(CoherentMaps, TheFirstPictureOfATexelStays) {
+  const PhotoFrame front = ToyPhotoFrame(1, {}, true), behind = ToyPhotoFrame(2, {2, 1, true}, true);
+  const PhotoFrame other = ToyPhotoFrame(3, {1, 1, false}, true);
+  CoherentMaps maps = EmptyMaps(kToyTexels, ToyTexelParts());
+  FillEmptyTexels(front, OwnPicture(front), 1, {}, &maps);
+  const CoherentMaps before = maps;
+  EXPECT_EQ(FillEmptyTexels(other, OwnPicture(other), 2, {}, &maps), 0);
+  EXPECT_EQ(maps.appearance, before.appearance);
+  // Two views: the union.
+  EXPECT_EQ(FillEmptyTexels(behind, OwnPicture(behind), 3, {}, &maps), 128);
+  for (int t = 0; t < 256; ++t) {
+    EXPECT_EQ(maps.from[t], t % 16 < 8 ? 1 : 3);
+    if (before.from[t] != 0) {
+      EXPECT_EQ(maps.appearance[t], before.appearance[t]);
+    }
+  }
+  // What the photo does not show of the person fills nothing.
+  PhotoFrame empty = front;
+  empty.labels.assign(empty.labels.size(), 0);
+  CoherentMaps none = EmptyMaps(kToyTexels, ToyTexelParts());
+  EXPECT_EQ(FillEmptyTexels(empty, OwnPicture(empty), 1, {}, &none), 0);
+  EXPECT_THROW(FillEmptyTexels(ToyPhotoFrame(0, {}, false), GuidedPicture{}, 1, {}, &none), std::invalid_argument);
+}
+
+/// Draws what it was given, as if nothing were to be completed.
+GuidedPicture Repeat(const PhotoFrame& frame, const PseudoPicture& pseudo) {
+  GuidedPicture picture{frame.size, pseudo.image, std::vector<float>(pseudo.known.size()), pseudo.labels};
+  for (size_t i = 0; i < pseudo.known.size(); ++i) picture.alpha[i] = pseudo.known[i] != 0 ? 1.0F : 0.0F;
+  return picture;
+}
+
+TEST(CompleteMaps, TheBackIsTheFrontWithoutItsFace) {
+  const PhotoFrame source = ToyPhotoFrame(1, {1, 1, false}, true);
+  CoherentMaps maps = EmptyMaps(kToyTexels, ToyTexelParts());
+  FillEmptyTexels(source, OwnPicture(source), 1, {}, &maps);
+  const std::vector<GuidedPicture> pictures = CompleteMaps(ToyViews(), Repeat, 2, &maps);
+  ASSERT_EQ(pictures.size(), 6U);
+  int back = 0, shirt = 0, hair = 0, faces = 0;
+  for (int r = 0; r < kToyTexels; ++r) {
+    for (int c = 0; c < kToyTexels; ++c) {
+      const int t = r * kToyTexels + c;
+      faces += maps.labels[t] == 3 ? 1 : 0;
+      EXPECT_EQ(maps.from[t], c < 8 ? 1 : 3);  // the back view is number 2 + 1
+      if (c < 8) continue;
+      ++back;
+      EXPECT_NE(maps.labels[t], 3);
+      shirt += maps.labels[t] == 1 ? 1 : 0;
+      hair += maps.labels[t] == 4 ? 1 : 0;
+      if (r < 8 || r == 13 || r == 14) continue;  // head; where shirt and skin meet, the colours mix
+      // A texel of the back lies behind the one of the front that has the same place across the body.
+      for (int k = 0; k < 3; ++k) {
+        EXPECT_NEAR(maps.appearance[k * 256 + t], maps.appearance[k * 256 + t - 8], 0.03) << r << " " << c;
+      }
+    }
+  }
+  EXPECT_EQ(back, 128);
+  EXPECT_EQ(hair, 64);
+  EXPECT_EQ(shirt, 48);
+  EXPECT_GT(faces, 30);
+}
+
+TEST(CompleteMaps, NobodyPutsAFaceOnTheBack) {
+  // A parser that takes the back of a head for a face.
+  PhotoFrame behind = ToyPhotoFrame(1, {0, 0, true}, true);
+  for (uint8_t& label : behind.labels) {
+    if (label == 4) label = 3;
+  }
+  const std::vector<PhotoFrame> views = ToyViews();
+  const std::vector<uint8_t> no_face = TexelsOfTheBack(views[kViewFront], views[kViewBack]);
+  CoherentMaps maps = EmptyMaps(kToyTexels, ToyTexelParts());
+  EXPECT_EQ(FillEmptyTexels(behind, OwnPicture(behind), 1, no_face, &maps), 64);
+  const auto all_face = [](const PhotoFrame& frame, const PseudoPicture& pseudo) {
+    GuidedPicture picture = Repeat(frame, pseudo);
+    for (size_t i = 0; i < picture.labels.size(); ++i) {
+      if (frame.parts[i] == 0) continue;
+      picture.labels[i] = 3;
+      picture.alpha[i] = 1;
+    }
+    return picture;
+  };
+  CompleteMaps(views, all_face, 2, &maps);
+  int faces_in_front = 0;
+  for (int t = 0; t < 256; ++t) {
+    if (t % 16 >= 8) {
+      EXPECT_NE(maps.labels[t], 3);
+      EXPECT_NE(maps.from[t], 0) << "what the mirrored front told stays";
+    } else {
+      faces_in_front += maps.labels[t] == 3 ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(faces_in_front, 128);
+  EXPECT_THROW(CompleteMaps(std::span(views).first(5), Repeat, 2, &maps), std::invalid_argument);
+}
+
+TEST(CompleteMaps, WithoutHairTheBackOfTheHeadIsSkin) {
+  PhotoFrame front = ToyPhotoFrame(1, {}, true);
+  for (uint8_t& label : front.labels) {
+    if (label == 4) label = 3;
+  }
+  const PseudoPicture back =
+      MirroredFront(ToyPhotoFrame(1, {}, false), OwnPicture(front), ToyPhotoFrame(1, {0, 0, true}, false));
+  int skin = 0;
+  for (size_t i = 0; i < back.labels.size(); ++i) {
+    EXPECT_NE(back.labels[i], 3);
+    EXPECT_NE(back.labels[i], 4);
+    skin += back.labels[i] == 5 && i < size_t{14} * kToySide ? 1 : 0;
+  }
+  EXPECT_EQ(skin, 64);
+}
+
+TEST(ChoosePhotos, AFaceFirstThenWhatIsMissing) {
+  PhotoSource people = ToyPeople(1, 4);
+  people.fill = [](int, int frame, PhotoFrame* out) {
+    // From behind; half out of the window; whole; whole again.
+    const ToyPose poses[4] = {{0, 0, true}, {14, 0, false}, {0, 0, false}, {1, 0, false}};
+    *out = ToyPhotoFrame(0, poses[frame], true);
+  };
+  EXPECT_EQ(ChoosePhotos(people, 0, 1), (std::vector<int>{2}));
+  EXPECT_EQ(ChoosePhotos(people, 0, 2), (std::vector<int>{2, 0}));
+  EXPECT_EQ(ChoosePhotos(people, 0, 9).size(), 4U);
+}
+
+TEST(GuidedScores, AreWhatTheyShouldBe) {
+  const PhotoFrame truth = ToyPhotoFrame(1, {}, true);
+  GuidedPicture picture = OwnPicture(truth);
+  GuidedScorer perfect(true), off(false);
+  perfect.Add(picture, truth);
+  EXPECT_EQ(perfect.Scores().image_l1, 0);
+  EXPECT_EQ(perfect.Scores().silhouette_iou, 1);
+  EXPECT_EQ(perfect.Scores().label_iou, 1);
+  EXPECT_NEAR(perfect.Scores().lpips, 0, 1e-9);
+  // A quarter lighter on the person, all of it shirt, and as many pixels again taken for the person.
+  double people = 0, shirt = 0;
+  for (size_t i = 0; i < picture.labels.size(); ++i) {
+    if (truth.labels[i] == 0) continue;
+    people += 1;
+    shirt += truth.labels[i] == 1 ? 1 : 0;
+    picture.labels[i] = 1;
+    for (size_t c = 0; c < 3; ++c) picture.image[c * 1024 + i] += 0.25F;
+  }
+  int added = 0;
+  for (size_t i = 0; added < people; ++i) {
+    if (truth.labels[i] != 0) continue;
+    picture.labels[i] = 2;
+    ++added;
+  }
+  off.Add(picture, truth);
+  EXPECT_NEAR(off.Scores().image_l1, 0.25, 1e-6);
+  EXPECT_NEAR(off.Scores().psnr_db, -20 * std::log10(0.25), 1e-4);
+  EXPECT_NEAR(off.Scores().silhouette_iou, 0.5, 1e-9);
+  EXPECT_NEAR(off.Scores().label_iou, shirt / people / 4, 1e-9);
+  EXPECT_TRUE(std::isnan(off.Scores().lpips));
+  EXPECT_THROW(off.Add(picture, ToyPhotoFrame(1, {}, false)), std::invalid_argument);
+}
+
+TEST(GuidedScores, StabilityIsWithinAPerson) {
+  const PhotoFrame truth = ToyPhotoFrame(1, {}, true);
+  GuidedPicture darker = OwnPicture(truth), darkest = darker;
+  for (float& value : darker.image) value *= 0.8F;
+  for (float& value : darkest.image) value *= 0.5F;
+  const auto distance = [&](const GuidedPicture& picture) {
+    GuidedScorer scorer(true);
+    scorer.Add(picture, truth);
+    EXPECT_EQ(scorer.Scores().lpips_deviation, 0) << "one frame";
+    return scorer.Scores().lpips;
+  };
+  const double a = distance(darker), b = distance(darkest);
+  ASSERT_GT(std::abs(a - b), 1e-4);
+  // Two people who are each drawn the same in every frame, one of them badly: steady.
+  GuidedScorer steady(true), unsteady(true);
+  for (const GuidedPicture* person : {&darker, &darkest}) {
+    for (int k = 0; k < 3; ++k) steady.Add(*person, truth);
+    steady.NextPerson();
+  }
+  EXPECT_NEAR(steady.Scores().lpips, 0.5 * (a + b), 1e-12);
+  EXPECT_NEAR(steady.Scores().lpips_deviation, 0, 1e-12);
+  // One person, now well and now badly, after a steady one: two frames off their mean by half the difference.
+  for (int k = 0; k < 2; ++k) unsteady.Add(darker, truth);
+  unsteady.NextPerson();
+  unsteady.Add(darker, truth);
+  unsteady.Add(darkest, truth);
+  EXPECT_NEAR(unsteady.Scores().lpips_deviation, std::sqrt(2 * 0.25 * (a - b) * (a - b) / 4), 1e-9);
+}
+
+}  // namespace
+}  // namespace bodyloom

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is made up of a source that its photos do not show: labels, colours, how far clothes stand off.
+#include "bodyloom/neural/guided/source_maps.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "bodyloom/neural/guided/clothes_extent.h"
+#include "bodyloom/neural/guided/guess_maps.h"
+#include "tests/neural/guided/guided_toy.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr int kTexels = kToyTexels * kToyTexels;
+const std::vector<uint8_t> texel_parts = ToyTexelParts();
+const std::vector<PhotoFrame> views = ToyViews();
+
+TexelNeighbours ToyNeighbours() { return {kToyTexels, texel_parts, ToyTexelPlaces()}; }
+
+TEST(GuessRest, TheBackIsTheFrontAndItsHeadHasHair) {
+  const PhotoFrame photo = ToyPhotoFrame(1, {}, true);
+  const TexelNeighbours neighbours = ToyNeighbours();
+  const SourceMaps source =
+      MapsOfSource(std::span(&photo, 1), {texel_parts, {}, &neighbours}, MapCompletion::kNearest, false, {});
+  EXPECT_EQ(source.texels_seen, 128);
+  EXPECT_TRUE(source.virtual_pictures.empty());
+  for (int t = 0; t < kTexels; ++t) {
+    const int r = t / kToyTexels, c = t % kToyTexels;
+    EXPECT_EQ(source.maps.from[t], c < 8 ? 1 : 2) << t;
+    if (c < 8) continue;
+    if (r < 8) {
+      EXPECT_EQ(source.maps.labels[t], 4) << "hair at " << r << " " << c;
+      continue;
+    }
+    EXPECT_EQ(source.maps.labels[t], source.maps.labels[r * kToyTexels + 15 - c]) << r << " " << c;
+    if (r == 13 || r == 14) continue;  // where shirt and skin meet, the photo's own colours mix
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR(source.maps.appearance[k * kTexels + t], ToyColour(1, r, 15 - c, k), 0.03) << r << " " << c;
+    }
+  }
+}
+
+TEST(GuessRest, WithoutHairTheBackOfTheHeadIsSkinOfTheFacesColour) {
+  PhotoFrame photo = ToyPhotoFrame(1, {}, true);
+  for (int i = 0; i < 1024; ++i) {
+    if (photo.labels[i] == 4) photo.labels[i] = 3;
+    if (photo.labels[i] == 5) photo.labels[i] = 1;  // no skin either
+    if (photo.labels[i] != 3) continue;
+    for (int k = 0; k < 3; ++k) photo.image[k * 1024 + i] = 0.25F * static_cast<float>(k + 1);
+  }
+  const TexelNeighbours neighbours = ToyNeighbours();
+  const CoherentMaps maps =
+      MapsOfSource(std::span(&photo, 1), {texel_parts, {}, &neighbours}, MapCompletion::kNearest, false, {}).maps;
+  for (int t = 0; t < kTexels / 2; ++t) {
+    if (t % kToyTexels < 8) continue;
+    EXPECT_EQ(maps.labels[t], 5) << t;
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(maps.appearance[k * kTexels + t], 0.25 * (k + 1), 0.02) << t;
+  }
+}
+
+TEST(GuessRest, AMapThatHoldsNothingStaysEmpty) {
+  CoherentMaps maps = EmptyMaps(kToyTexels, texel_parts);
+  EXPECT_EQ(GuessRest(ToyNeighbours(), 1, &maps), 0);
+  EXPECT_TRUE(std::all_of(maps.from.begin(), maps.from.end(), [](uint8_t from) { return from == 0; }));
+  EXPECT_THROW(GuessRest(ToyNeighbours(), 0, &maps), std::invalid_argument);
+  EXPECT_THROW(GuessRest({2, std::vector<uint8_t>(4, 2), std::vector<float>(12, 0.5F)}, 1, &maps),
+               std::invalid_argument);
+}
+
+TEST(MapsOfSource, SaysWhatIsMissing) {
+  const PhotoFrame photo = ToyPhotoFrame(1, {}, true);
+  const std::span<const PhotoFrame> one(&photo, 1);
+  EXPECT_THROW(MapsOfSource({}, {texel_parts}, MapCompletion::kNone, false, {}), std::invalid_argument);
+  EXPECT_THROW(MapsOfSource(one, {texel_parts, views}, MapCompletion::kNearest, false, {}), std::invalid_argument);
+  EXPECT_THROW(MapsOfSource(one, {texel_parts}, MapCompletion::kVirtualViews, false, {}), std::invalid_argument);
+  EXPECT_THROW(MapsOfSource(one, {texel_parts}, MapCompletion::kNone, true, {}), std::invalid_argument);
+  const SourceMaps none = MapsOfSource(one, {texel_parts}, MapCompletion::kNone, false, {});
+  EXPECT_EQ(none.texels_seen, 128);
+  EXPECT_TRUE(none.maps.extent.empty());
+}
+
+/// The toy's clothes `wider` pixels wider on either side than its torso, as tall as it.
+PhotoFrame InASkirt(int wider) {
+  PhotoFrame frame = ToyPhotoFrame(1, {}, true);
+  for (int i = 0; i < 1024; ++i) frame.labels[i] = frame.parts[i] != 0 ? 1 : 0;
+  for (int y = 14; y < 26; ++y) {
+    for (int x = 10 - wider; x < 22 + wider; ++x) frame.labels[y * kToySide + x] = 1;
+  }
+  return frame;
+}
+
+TEST(ClothesExtent, IsHowFarTheyStandOff) {
+  const TexelNeighbours neighbours = ToyNeighbours();
+  const double diagonal = std::hypot(12, 12);
+  for (const int wider : {0, 1, 4}) {
+    const std::vector<float> extent = ClothesExtent(InASkirt(wider), neighbours);
+    ASSERT_EQ(extent.size(), size_t{kTexels});
+    // A texel beside the torso's rim at half its height, on the front and, by its neighbours, on the back.
+    for (const int column : {0, 7, 8, 15}) {
+      EXPECT_NEAR(extent[12 * kToyTexels + column], wider / diagonal, 1e-6) << wider << " at " << column;
+    }
+    EXPECT_NEAR(extent[4 * kToyTexels], 0, 1e-6) << "the head is bare";
+  }
+  const PhotoFrame trousers = InASkirt(0);
+  for (const float e : ClothesExtent(trousers, neighbours)) EXPECT_EQ(e, 0);
+}
+
+TEST(ClothesExtent, IsLookedUpInAnotherPose) {
+  const TexelNeighbours neighbours = ToyNeighbours();
+  const PhotoFrame photo = InASkirt(3);
+  CoherentMaps maps =
+      MapsOfSource(std::span(&photo, 1), {texel_parts, {}, &neighbours}, MapCompletion::kNone, true, {}).maps;
+  const PhotoFrame behind = ToyPhotoFrame(1, {2, 1, true}, false);
+  const PseudoPicture seen = LookUp(maps, behind);
+  ASSERT_EQ(seen.extent.size(), 1024U);
+  EXPECT_NEAR(seen.extent[21 * kToySide + 13], 3 / std::hypot(12, 12), 1e-5) << "also where the photo shows nothing";
+  EXPECT_EQ(seen.known[21 * kToySide + 13], 0);
+  EXPECT_EQ(seen.extent[0], 0);
+}
+
+TEST(ClothedBody, AgreesWithASlowTwin) {
+  const PhotoFrame pose = ToyPhotoFrame(1, {2, -1, false}, false);
+  std::vector<float> extent(1024);
+  for (int i = 0; i < 1024; ++i) {
+    if (pose.parts[i] != 0) extent[i] = static_cast<float>((i * 37) % 11) / 60;
+  }
+  const std::vector<float> clothed = ClothedBody(pose, extent);
+  const double diagonal = std::hypot(12, 12);
+  int between = 0;
+  for (int p = 0; p < 1024; ++p) {
+    double most = -100;
+    for (int q = 0; q < 1024; ++q) {
+      if (pose.parts[q] == 0) continue;
+      const int distance = std::max(std::abs(p % kToySide - q % kToySide), std::abs(p / kToySide - q / kToySide));
+      most = std::max(most, diagonal * extent[q] - distance);
+    }
+    const double expected = pose.parts[p] != 0 ? 1 : std::clamp(0.5 + most, 0.0, 1.0);
+    EXPECT_NEAR(clothed[p], expected, 1e-5) << p;
+    between += expected > 0 && expected < 1 ? 1 : 0;
+  }
+  EXPECT_GT(between, 20);
+  EXPECT_THROW(ClothedBody(pose, std::vector<float>(4)), std::invalid_argument);
+}
+
+TEST(ClothedBody, ASkirtCanBeSeenFromBehindAndAtAnotherSize) {
+  // Three pixels wider in the photo: three pixels wider behind, too.
+  const TexelNeighbours neighbours = ToyNeighbours();
+  const PhotoFrame photo = InASkirt(3);
+  const CoherentMaps maps =
+      MapsOfSource(std::span(&photo, 1), {texel_parts, {}, &neighbours}, MapCompletion::kNone, true, {}).maps;
+  const PseudoPicture seen = LookUp(maps, ToyPhotoFrame(1, {0, 0, true}, false));
+  const auto at = [&](int x, int y) { return seen.clothed[y * kToySide + x]; };
+  EXPECT_EQ(at(10, 20), 1) << "the torso's last column";
+  EXPECT_NEAR(at(7, 20), 0.5, 1e-4) << "the skirt's last column";
+  EXPECT_EQ(at(6, 20), 0);
+}
+
+TEST(ClothesExtent, NeedsLabels) {
+  const TexelNeighbours neighbours = ToyNeighbours();
+  EXPECT_THROW(ClothesExtent(ToyPhotoFrame(1, {}, false), neighbours), std::invalid_argument);
+  PhotoFrame away = ToyPhotoFrame(1, {100, 0, false}, true);
+  for (const float e : ClothesExtent(away, neighbours)) EXPECT_EQ(e, 0);
+}
+
+}  // namespace
+}  // namespace bodyloom

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/render/lighting/fit_lighting.h"
+
+#include <ceres/gradient_checker.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace bodyloom {
+namespace {
+
+using Eigen::Vector3d;
+
+struct Pixels {
+  MatrixX3d normals;
+  std::vector<double> light;
+  std::vector<uint8_t> labels;
+};
+
+ShVector Truth() {
+  return (AmbientLight({0.4, 0, 0}) + DirectionalLight({0.6, -0.7, -0.6}, {0.5, 0, 0})).row(0).transpose();
+}
+
+/// Normals that a camera sees; label 1 only looks down, away from the light, as a skirt's lower side would.
+Pixels SeenPixels(int count, double noise, double outliers, double albedo0, double albedo1) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform;
+  Pixels pixels{MatrixX3d(count, 3), {}, {}};
+  for (int i = 0; i < count; ++i) {
+    const uint8_t label = i % 3 == 0 ? 1 : 0;
+    Vector3d n;
+    do {
+      n = Vector3d(normal(random), normal(random), normal(random)).normalized();
+    } while (n.z() > -0.05 || (label == 1 && n.y() < -0.2));
+    const double shade = Truth().dot(ShBasis(n)), albedo = label == 1 ? albedo1 : albedo0;
+    double light = albedo * shade + noise * normal(random);
+    if (uniform(random) < outliers) light = uniform(random) < 0.7 ? 0.3 * light : 1.5;  // cast shadows, highlights
+    pixels.normals.row(i) = n;
+    pixels.light.push_back(light);
+    pixels.labels.push_back(label);
+  }
+  return pixels;
+}
+
+/// Largest difference of two shadings over what the camera sees.
+double ShadingError(const ShVector& a, const ShVector& b, const MatrixX3d& normals) {
+  double error = 0;
+  for (Eigen::Index i = 0; i < normals.rows(); ++i) {
+    error = std::max(error, std::abs((a - b).dot(ShBasis(normals.row(i).transpose()))));
+  }
+  return error;
+}
+
+TEST(FitLighting, RecoversTheLightExactlyWithoutNoise) {
+  const Pixels pixels = SeenPixels(3000, 0, 0, 1, 1);
+  const FitLightingResult result = FitLighting(pixels.normals, pixels.light);
+  EXPECT_EQ(result.summary.status, FitLightingStatus::kConverged);
+  EXPECT_LT(ShadingError(result.coefficients, Truth(), pixels.normals), 1e-3);
+  ASSERT_EQ(result.albedo.size(), 1U);
+  EXPECT_DOUBLE_EQ(result.albedo[0], 1);
+}
+
+TEST(FitLighting, RecoversTheLightUnderNoiseAndOutliers) {
+  const Pixels pixels = SeenPixels(6000, 0.01, 0.2, 1, 1);
+  const FitLightingResult result = FitLighting(pixels.normals, pixels.light);
+  EXPECT_EQ(result.summary.status, FitLightingStatus::kConverged);
+  EXPECT_LT(ShadingError(result.coefficients, Truth(), pixels.normals), 0.01);
+  EXPECT_NEAR(result.summary.sigma, 0.01, 0.004);
+  EXPECT_NEAR(result.summary.outlier_share, 0.2, 0.03);
+  EXPECT_EQ(result.summary.negative_share, 0);
+}
+
+TEST(FitLighting, ADarkSkirtIsNotShadow) {
+  const double bright = 1.3, dark = 0.3, mean = (2 * bright + dark) / 3;
+  const Pixels pixels = SeenPixels(6000, 0.005, 0.1, bright, dark);
+  const FitLightingResult result = FitLighting(pixels.normals, pixels.light, pixels.labels);
+  EXPECT_EQ(result.summary.status, FitLightingStatus::kConverged);
+  ASSERT_EQ(result.albedo.size(), 2U);
+  EXPECT_NEAR(result.albedo[0], bright / mean, 0.01);
+  EXPECT_NEAR(result.albedo[1], dark / mean, 0.01);
+  EXPECT_NEAR((2 * result.albedo[0] + result.albedo[1]) / 3, 1, 1e-9);
+  EXPECT_LT(ShadingError(result.coefficients, mean * Truth(), pixels.normals), 0.01);
+  // Without labels it is.
+  const FitLightingResult blind = FitLighting(pixels.normals, pixels.light);
+  EXPECT_GT(ShadingError(blind.coefficients, mean * Truth(), pixels.normals), 0.1);
+}
+
+TEST(FitLighting, NotEverySampleIsNeeded) {
+  const Pixels pixels = SeenPixels(6000, 0.01, 0.1, 1, 0.5);
+  FitLightingOptions options;
+  options.max_samples = 1500;
+  const FitLightingResult result = FitLighting(pixels.normals, pixels.light, pixels.labels, options);
+  EXPECT_EQ(result.summary.samples, 1500);
+  EXPECT_NEAR(result.albedo[0] / result.albedo[1], 2, 0.1);
+}
+
+/// Learned normals keep near the view: what they leave open must neither fail nor run away.
+TEST(FitLighting, NormalsOfANarrowRangeAreEnough) {
+  Pixels pixels = SeenPixels(4000, 0, 0, 1, 1);
+  for (Eigen::Index i = 0; i < pixels.normals.rows(); ++i) {
+    pixels.normals(i, 2) -= 3;
+    pixels.normals.row(i).normalize();
+    pixels.light[i] = Truth().dot(ShBasis(pixels.normals.row(i).transpose())) + 0.01 * std::sin(double(i * i));
+  }
+  const FitLightingResult result = FitLighting(pixels.normals, pixels.light);
+  EXPECT_LT(result.summary.spread, 1e-5);
+  ASSERT_TRUE(result.summary.IsUsable()) << ToString(result.summary.status);
+  EXPECT_LT(ShadingError(result.coefficients, Truth(), pixels.normals), 0.01);
+  EXPECT_LT(result.coefficients.norm(), 3 * Truth().norm());
+}
+
+TEST(FitLighting, NegativeShadingIsReported) {
+  Pixels pixels = SeenPixels(2000, 0, 0, 1, 1);
+  const ShVector light = DirectionalLight({0, 0, -1}, {1, 0, 0}).row(0).transpose();
+  // Seen from the side: light and shade.
+  for (Eigen::Index i = 0; i < pixels.normals.rows(); ++i) {
+    pixels.normals(i, 2) += 0.4;
+    pixels.normals.row(i).normalize();
+    pixels.light[i] = light.dot(ShBasis(pixels.normals.row(i).transpose()));
+  }
+  const FitLightingResult result = FitLighting(pixels.normals, pixels.light);
+  EXPECT_TRUE(result.summary.IsUsable());
+  EXPECT_GT(result.summary.negative_share, 0);
+  EXPECT_LT(result.summary.min_shading, 0);
+}
+
+TEST(FitLighting, WhatCannotBeFittedIsAStatus) {
+  Pixels pixels = SeenPixels(500, 0.01, 0, 1, 1);
+  MatrixX3d same = pixels.normals;
+  same.rowwise() = Eigen::RowVector3d(0, 0, -1);
+  const FitLightingResult alike = FitLighting(same, pixels.light);
+  EXPECT_EQ(alike.summary.status, FitLightingStatus::kNormalsTooAlike);
+  EXPECT_FALSE(alike.summary.IsUsable());
+  EXPECT_TRUE(alike.coefficients.isZero());
+
+  EXPECT_EQ(FitLighting(MatrixX3d(0, 3), {}).summary.status, FitLightingStatus::kTooFewSamples);
+  EXPECT_EQ(FitLighting(pixels.normals, std::vector<double>(500, 0.0)).summary.status, FitLightingStatus::kDark);
+  std::vector<double> broken(500, NAN);
+  const FitLightingResult none = FitLighting(pixels.normals, broken);
+  EXPECT_EQ(none.summary.status, FitLightingStatus::kTooFewSamples);
+  EXPECT_EQ(none.summary.left_out, 500);
+  EXPECT_THROW(FitLighting(pixels.normals, std::vector<double>(499)), std::invalid_argument);
+  EXPECT_THROW(FitLighting(pixels.normals, pixels.light, std::vector<uint8_t>(3)), std::invalid_argument);
+}
+
+TEST(FitLighting, DerivativesAreExact) {
+  const ShadedAlbedoCost cost(ShBasis(Vector3d(0.3, -0.5, 0.8).normalized()), 0.4, 0.03);
+  const ShVector coefficients = Truth();
+  const double albedo = 0.7;
+  const double* parameters[] = {coefficients.data(), &albedo};
+  const ceres::GradientChecker checker(&cost, static_cast<const std::vector<const ceres::Manifold*>*>(nullptr),
+                                       ceres::NumericDiffOptions());
+  ceres::GradientChecker::ProbeResults results;
+  EXPECT_TRUE(checker.Probe(parameters, 1e-8, &results)) << results.error_log;
+}
+
+}  // namespace
+}  // namespace bodyloom

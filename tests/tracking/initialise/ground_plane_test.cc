@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+// The vertical and the ground from feet whose truth is known: tilted cameras, noise in depth, and clips without ground.
+#include "bodyloom/tracking/initialise/ground_plane.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "bodyloom/geometry/rotation.h"
+
+namespace bodyloom {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr double kDegree = M_PI / 180, kAnkle = 0.08;
+
+double AngleDeg(const Vector3d& a, const Vector3d& b) {
+  return std::acos(std::clamp(a.normalized().dot(b.normalized()), -1.0, 1.0)) / kDegree;
+}
+
+/// Somebody steps about before a camera; every half second one foot is put somewhere else.
+struct Walk {
+  std::vector<std::array<FootPlace, 2>> feet;
+  std::vector<double> timestamps;
+  std::vector<std::array<Vector3d, 2>> truth_m;
+  Vector3d up;  ///< true, camera axes
+  double camera_height_m = 1.4;
+};
+
+struct WalkOptions {
+  double elevation_deg = 10, roll_deg = 0;
+  double depth_error = 0.02;  ///< of each stance, relative
+  double step_up_m = 0;       ///< of every step
+  double jitter_m = 0.005;
+  int steps = 12;
+  uint64_t seed = 1;
+};
+
+Walk MakeWalk(const WalkOptions& options) {
+  std::mt19937_64 random(options.seed);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  Walk walk;
+  // World: y up. The camera looks along −z, tilted down by the elevation.
+  const Matrix3d level = (Matrix3d() << 1, 0, 0, 0, -1, 0, 0, 0, -1).finished();
+  const Matrix3d camera_from_world = RotationFromAxisAngle(Vector3d(0, 0, options.roll_deg * kDegree)) *
+                                     RotationFromAxisAngle(Vector3d(options.elevation_deg * kDegree, 0, 0)) * level;
+  walk.up = camera_from_world.col(1);
+  const Vector3d camera(0, walk.camera_height_m, 4);
+  std::array<Vector3d, 2> place = {Vector3d(-0.1, kAnkle, 0), Vector3d(0.1, kAnkle, 0)};
+  std::array<double, 2> scale = {1, 1};
+  for (int step = 0; step < options.steps; ++step) {
+    const int moving = step % 2;
+    place[moving] =
+        Vector3d(0.8 * uniform(random) + 0.2 * moving, kAnkle + step * options.step_up_m, 1.2 * uniform(random));
+    scale[moving] = 1 + options.depth_error * normal(random);
+    for (int i = 0; i < 8; ++i) {
+      auto& both = walk.feet.emplace_back();
+      auto& truth = walk.truth_m.emplace_back();
+      for (int foot = 0; foot < 2; ++foot) {
+        const bool swings = foot == moving && i < 3;
+        truth[foot] = camera_from_world * (place[foot] - camera);
+        both[foot].contact = swings ? 0.05 : 0.8;
+        both[foot].seen = true;
+        both[foot].ankle_m = scale[foot] * truth[foot] + options.jitter_m * Vector3d(normal(random), normal(random), 0);
+        if (swings) both[foot].ankle_m += 0.2 * Vector3d(normal(random), normal(random), 0);
+      }
+      walk.timestamps.push_back(static_cast<double>(walk.timestamps.size()) / 15);
+    }
+  }
+  return walk;
+}
+
+TEST(GroundPlane, FindsTheKnownPlaneFromTiltedCameras) {
+  for (const double elevation : {-8.0, 0.0, 10.0, 25.0, 40.0}) {
+    for (const double roll : {-6.0, 0.0, 12.0}) {
+      WalkOptions options;
+      options.elevation_deg = elevation;
+      options.roll_deg = roll;
+      const Walk walk = MakeWalk(options);
+      // What the lifter says of up is a few degrees off.
+      const Vector3d said = RotationFromAxisAngle(Vector3d(0.03, 0, -0.02)) * walk.up;
+      const GroundPlane ground = EstimateGroundPlane(walk.feet, walk.timestamps, said, {});
+      ASSERT_TRUE(ground.found) << elevation << " " << roll << ": " << ground.why;
+      EXPECT_LT(AngleDeg(ground.normal, walk.up), 2.5) << elevation << " " << roll;
+      EXPECT_NEAR(kAnkle - ground.offset_m, walk.camera_height_m, 0.12) << elevation << " " << roll;
+      EXPECT_LT(ground.spread_m, 0.05);
+      EXPECT_GE(ground.share, 0.9);
+    }
+  }
+}
+
+TEST(GroundPlane, FeetOverruleAnUpThatIsOff) {
+  WalkOptions options;
+  options.depth_error = 0.002;
+  options.steps = 30;
+  const Walk walk = MakeWalk(options);
+  const Vector3d said = RotationFromAxisAngle(Vector3d(0.07, 0, 0.05)) * walk.up;
+  const GroundPlane ground = EstimateGroundPlane(walk.feet, walk.timestamps, said, {});
+  ASSERT_TRUE(ground.found) << ground.why;
+  EXPECT_GT(AngleDeg(said, walk.up), 4.5);
+  EXPECT_LT(AngleDeg(ground.normal, walk.up), 2);
+}
+
+TEST(GroundPlane, TheGroundTellsTheDepthOfAStance) {
+  WalkOptions options;
+  options.elevation_deg = 25;
+  options.depth_error = 0.03;
+  options.steps = 24;
+  const Walk walk = MakeWalk(options);
+  const GroundPlane ground = EstimateGroundPlane(walk.feet, walk.timestamps, walk.up, {});
+  ASSERT_TRUE(ground.found) << ground.why;
+  double before = 0, after = 0;
+  for (const Stance& stance : ground.stances) {
+    const Vector3d& truth = walk.truth_m[stance.begin][stance.foot];
+    before += (walk.feet[stance.begin][stance.foot].ankle_m - truth).squaredNorm();
+    after += (stance.place_m - truth).squaredNorm();
+  }
+  EXPECT_LT(after, 0.4 * before);
+}
+
+TEST(GroundPlane, StancesBeginAndEndWithTheFoot) {
+  WalkOptions options;
+  options.depth_error = options.jitter_m = 0;
+  const Walk walk = MakeWalk(options);
+  const GroundPlane ground = EstimateGroundPlane(walk.feet, walk.timestamps, walk.up, {});
+  ASSERT_TRUE(ground.found);
+  for (const Stance& stance : ground.stances) {
+    EXPECT_GE(stance.seconds, 0.1);
+    for (int t = stance.begin; t < stance.end; ++t) {
+      EXPECT_GT(walk.feet[t][stance.foot].contact, 0.5);
+      EXPECT_LT((walk.truth_m[t][stance.foot] - stance.place_m).norm(), 0.01) << "one place, not two";
+    }
+  }
+}
+
+TEST(GroundPlane, NoGroundIsSaid) {
+  const Walk walk = MakeWalk({});
+  Walk jumps = walk, legless = walk, slides = walk, broken = walk;
+  for (auto& both : jumps.feet) both[0].contact = both[1].contact = 0.1;
+  for (auto& both : legless.feet) both[0].seen = both[1].seen = false;
+  for (size_t t = 0; t < slides.feet.size(); ++t) {
+    for (auto& foot : slides.feet[t]) foot.ankle_m.x() += 1.0 * slides.timestamps[t];
+  }
+  for (auto& both : broken.feet) both[0].ankle_m.x() = both[1].contact = std::numeric_limits<double>::quiet_NaN();
+  for (const Walk* clip : {&jumps, &legless, &slides, &broken}) {
+    const GroundPlane ground = EstimateGroundPlane(clip->feet, clip->timestamps, clip->up, {});
+    EXPECT_FALSE(ground.found);
+    EXPECT_TRUE(ground.stances.empty());
+    EXPECT_FALSE(ground.why.empty());
+  }
+  EXPECT_FALSE(EstimateGroundPlane({}, {}, walk.up, {}).found);
+  EXPECT_THROW(EstimateGroundPlane(walk.feet, std::vector<double>(3, 0), walk.up, {}), std::invalid_argument);
+}
+
+TEST(GroundPlane, StairsAreNoGround) {
+  WalkOptions options;
+  options.step_up_m = 0.17;
+  const Walk walk = MakeWalk(options);
+  const GroundPlane ground = EstimateGroundPlane(walk.feet, walk.timestamps, walk.up, {});
+  EXPECT_FALSE(ground.found);
+  EXPECT_TRUE(ground.stances.empty());
+}
+
+std::vector<LiftedFrame> Ups(int count, double noise_rad, double wrong_share, uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform;
+  std::vector<LiftedFrame> frames(count);
+  for (LiftedFrame& frame : frames) {
+    frame.seen = true;
+    frame.up_sigma = 0.1;
+    const double size = uniform(random) < wrong_share ? 1.5 : noise_rad;
+    frame.up = RotationFromAxisAngle(Vector3d(size * normal(random), size * normal(random), size * normal(random))) *
+               Vector3d(0.1, -0.9, -0.3).normalized();
+  }
+  return frames;
+}
+
+TEST(EstimateUp, OneDirectionOfManyFrames) {
+  const Vector3d truth = Vector3d(0.1, -0.9, -0.3);
+  for (const double wrong : {0.0, 0.25}) {
+    const UpEstimate up = EstimateUp(Ups(200, 0.08, wrong, 5));
+    ASSERT_TRUE(up.found) << wrong;
+    EXPECT_LT(AngleDeg(up.up, truth), 2) << wrong;
+    EXPECT_NEAR(up.up.norm(), 1, 1e-12);
+  }
+  EXPECT_FALSE(EstimateUp(Ups(200, 1.5, 0, 6)).found) << "any direction is as good as another";
+  EXPECT_FALSE(EstimateUp({}).found);
+  auto unseen = Ups(20, 0, 0, 7);
+  for (LiftedFrame& frame : unseen) frame.seen = false;
+  EXPECT_FALSE(EstimateUp(unseen).found);
+  auto broken = Ups(20, 0.01, 0, 8);
+  broken[3].up.x() = std::numeric_limits<double>::quiet_NaN();
+  broken[4].up_sigma = 0;
+  EXPECT_LT(AngleDeg(EstimateUp(broken).up, truth), 2);
+}
+
+}  // namespace
+}  // namespace bodyloom

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/tracking/initialise/swap_repair.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "bodyloom/tracking/initialise/viterbi.h"
+
+namespace bodyloom {
+namespace {
+
+/// A person 400 px tall who walks to the right; ankles and wrists swing through each other at 1 Hz.
+KeypointSequence Walk(int frames, double fps) {
+  KeypointSequence k;
+  k.names = CocoNames();
+  std::mt19937_64 random(5);
+  std::normal_distribution<float> noise(0, 3);
+  for (int t = 0; t < frames; ++t) {
+    const double time = t / fps;
+    k.timestamps.push_back(time);
+    for (int i = 0; i < 17; ++i) {
+      const bool left = k.names[i].rfind("left_", 0) == 0;
+      const double down = i < 5 ? 0 : i < 7 ? 80 : i < 9 ? 150 : i < 11 ? 210 : i < 13 ? 200 : i < 15 ? 300 : 400;
+      const double swing = i < 7 || (i >= 11 && i < 13) ? 12 : 60;
+      const double phase = (left ? 1 : -1) * (i >= 11 ? 1 : -1) * swing * std::sin(2 * M_PI * time);
+      k.points.push_back({static_cast<float>(500 + 100 * time + phase) + noise(random),
+                          static_cast<float>(300 + down) + noise(random), 0.9F});
+    }
+  }
+  return k;
+}
+
+double Difference(const KeypointSequence& a, const KeypointSequence& b) {
+  double sum = 0;
+  for (size_t i = 0; i < a.points.size(); ++i)
+    sum += std::hypot(a.points[i].x - b.points[i].x, a.points[i].y - b.points[i].y);
+  return sum;
+}
+
+TEST(SwapRepair, LeavesCrossingLimbsAlone) {
+  for (double fps : {25.0, 60.0}) {
+    KeypointSequence k = Walk(200, fps);
+    const KeypointSequence before = k;
+    EXPECT_EQ(RepairSwaps(&k), 0) << fps;
+    EXPECT_EQ(Difference(k, before), 0);
+  }
+}
+
+TEST(SwapRepair, RepairsShortSwapsOfPairsThatAreApart) {
+  KeypointSequence k = Walk(120, 30);
+  const KeypointSequence truth = k;
+  int swapped = 0;
+  for (int start : {6, 50, 97}) {  // ankles are about 60 px apart at a quarter period (7.5 frames)
+    for (int t = start; t < start + 3; ++t) {
+      std::swap(k.at(t, 15), k.at(t, 16));
+      ++swapped;
+    }
+  }
+  ASSERT_GT(Difference(k, truth), 100);
+  const int repaired = RepairSwaps(&k);
+  EXPECT_GE(repaired, swapped - 1);
+  EXPECT_LE(repaired, swapped);
+  EXPECT_LT(Difference(k, truth), 250);  // at most one frame, where the ankles are close, is left
+}
+
+TEST(SwapRepair, MissingPointsAreNotTouched) {
+  KeypointSequence k = Walk(60, 30);
+  for (int t = 10; t < 20; ++t) k.at(t, 15).confidence = 0;
+  const KeypointSequence before = k;
+  EXPECT_EQ(RepairSwaps(&k), 0);
+  EXPECT_EQ(Difference(k, before), 0);
+  KeypointSequence empty;
+  EXPECT_EQ(RepairSwaps(&empty), 0);
+}
+
+TEST(Cuts, JumpsAndGapsAreFoundFastMotionIsNot) {
+  KeypointSequence k = Walk(100, 30);
+  for (size_t i = 40 * 17; i < k.points.size(); ++i) k.points[i].x += 450;  // another shot from frame 40 on
+  for (int t = 70; t < 100; ++t) k.timestamps[t] += 5;
+  const std::vector<char> cuts = FindCuts(k);
+  for (int t = 0; t < 100; ++t) EXPECT_EQ(cuts[t], t == 40 || t == 70) << t;
+}
+
+TEST(Viterbi, FindsTheCheapestOfAllPaths) {
+  std::mt19937_64 random(2);
+  std::uniform_real_distribution<double> unit;
+  std::vector<std::vector<double>> unary(5);
+  const int sizes[5] = {2, 3, 1, 4, 3};
+  for (int t = 0; t < 5; ++t) {
+    for (int s = 0; s < sizes[t]; ++s) unary[t].push_back(unit(random));
+  }
+  std::vector<double> table(5 * 16);
+  for (double& x : table) x = unit(random);
+  const auto transition = [&](size_t t, int a, int b) { return table[16 * t + 4 * a + b]; };
+  const auto cost = [&](const std::vector<int>& path) {
+    double sum = unary[0][path[0]];
+    for (size_t t = 1; t < path.size(); ++t) sum += unary[t][path[t]] + transition(t, path[t - 1], path[t]);
+    return sum;
+  };
+  double best = 1e30;
+  for (int code = 0; code < 2 * 3 * 1 * 4 * 3; ++code) {
+    std::vector<int> path;
+    for (int t = 0, rest = code; t < 5; ++t) {
+      path.push_back(rest % sizes[t]);
+      rest /= sizes[t];
+    }
+    best = std::min(best, cost(path));
+  }
+  EXPECT_DOUBLE_EQ(cost(Viterbi(unary, transition)), best);
+  EXPECT_TRUE(Viterbi({}, transition).empty());
+}
+
+}  // namespace
+}  // namespace bodyloom
