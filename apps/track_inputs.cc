@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "bodyloom/data_tools/body/body_io.h"
+#include "bodyloom/data_tools/body/body_or_builtin.h"
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/formats/npz.h"
 #include "bodyloom/data_tools/learned/lifter_weights_io.h"
@@ -119,13 +120,6 @@ TrackSequenceInput TrackInputs::ForTracker() const {
   input.lifter = lifter ? &*lifter : nullptr;
   input.camera = camera.camera;
   return input;
-}
-
-std::shared_ptr<const BodyModel> BodyOrBuiltin(const std::string& path) {
-  if (path.empty()) {
-    return {std::shared_ptr<void>(), &BuiltinBody()};  // lives as long as the program
-  }
-  return std::make_shared<const BodyModel>(LoadBody(path));
 }
 
 TrackInputs LoadTrackInputs(const TrackCommand& command) {

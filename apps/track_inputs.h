@@ -41,7 +41,4 @@ struct TrackInputs {
 /// other (image sizes, number of frames).
 TrackInputs LoadTrackInputs(const TrackCommand& command);
 
-/// The body in a file, or the built-in one for an empty path.
-std::shared_ptr<const BodyModel> BodyOrBuiltin(const std::string& path);
-
 }  // namespace bodyloom

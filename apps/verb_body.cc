@@ -5,9 +5,9 @@
 #include <string>
 
 #include "apps/exit_code.h"
-#include "apps/track_inputs.h"
 #include "apps/verbs.h"
 #include "bodyloom/data_tools/body/body_io.h"
+#include "bodyloom/data_tools/body/body_or_builtin.h"
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/body_making/make_builtin_body.h"
 #include "bodyloom/pipelines/files.h"

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "apps/exit_code.h"
-#include "apps/track_inputs.h"
 #include "apps/verbs.h"
+#include "bodyloom/data_tools/body/body_or_builtin.h"
 #include "bodyloom/data_tools/evaluation/aist_evaluation.h"
 #include "bodyloom/data_tools/evaluation/part_label_evaluation.h"
 #include "bodyloom/data_tools/evaluation/pose2sim_evaluation.h"

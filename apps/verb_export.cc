@@ -10,8 +10,8 @@
 
 #include "apps/exit_code.h"
 #include "apps/interrupt.h"
-#include "apps/track_inputs.h"
 #include "apps/verbs.h"
+#include "bodyloom/data_tools/body/body_or_builtin.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/formats/npz.h"
 #include "bodyloom/data_tools/motion/amass.h"

@@ -30,7 +30,7 @@
 #include "apps/neural/result_set.h"
 #include "apps/neural/view_angles.h"
 #include "apps/progress.h"
-#include "apps/track_inputs.h"
+#include "bodyloom/data_tools/body/body_or_builtin.h"
 #include "bodyloom/data_tools/datasets/person_set.h"
 #include "bodyloom/data_tools/descriptors/person_frames.h"
 #include "bodyloom/data_tools/descriptors/posed_track.h"

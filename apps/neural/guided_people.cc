@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "apps/neural/virtual_views.h"
-#include "apps/track_inputs.h"
+#include "bodyloom/data_tools/body/body_or_builtin.h"
 #include "bodyloom/data_tools/datasets/people_set.h"
 #include "bodyloom/data_tools/datasets/person_set.h"
 

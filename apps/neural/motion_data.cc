@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "apps/track_inputs.h"
+#include "bodyloom/data_tools/body/body_or_builtin.h"
 #include "bodyloom/data_tools/datasets/label_of_part.h"
 #include "bodyloom/data_tools/datasets/person_set.h"
 #include "bodyloom/data_tools/descriptors/posed_track.h"

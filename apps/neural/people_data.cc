@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "apps/neural/photo_input.h"
-#include "apps/track_inputs.h"
+#include "bodyloom/data_tools/body/body_or_builtin.h"
 #include "bodyloom/data_tools/datasets/people_set.h"
 #include "bodyloom/data_tools/datasets/person_set.h"
 #include "bodyloom/geometry/base/check.h"

@@ -12,7 +12,7 @@
 #include "apps/exit_code.h"
 #include "apps/neural/photo_outline.h"
 #include "apps/neural/photo_pictures.h"
-#include "apps/track_inputs.h"
+#include "bodyloom/data_tools/body/body_or_builtin.h"
 #include "bodyloom/data_tools/datasets/label_of_part.h"
 #include "bodyloom/data_tools/datasets/person_set.h"
 #include "bodyloom/data_tools/descriptors/posed_track.h"
