@@ -9,7 +9,7 @@
 #include <limits>
 #include <numeric>
 
-#include "bodyloom/data_tools/evaluation/ssim_rows.h"
+#include "bodyloom/data_tools/evaluation/ssim_rows_simd.h"
 #include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {

@@ -6,7 +6,7 @@
 /// AlphaPose's "idx" and PoseTrack's "track_id" are identities. Confidences above 1 (AlphaPose) count as 1; in
 /// annotations the third value is a flag: 0 missing, 1 labelled but hidden (confidence 0.5), 2 visible (1). 17, 23, 26,
 /// 133 (COCO-WholeBody) and 136 (Halpe) landmarks are read; face and hands are left out.
-/// Source: cocodataset.org/#format-data, AlphaPose docs/output.md.
+/// Source: cocodataset.org/#format-data, AlphaPose, "Output format".
 #pragma once
 
 #include "bodyloom/data_tools/formats/json_reader.h"

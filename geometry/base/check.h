@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// BODYLOOM_CHECK(condition, message...): throws std::invalid_argument when a caller broke a function's contract.
 /// The message parts are streamed: BODYLOOM_CHECK(n == m, "poses has ", n, " columns, the body needs ", m).
-/// Files and devices that cannot be used throw std::runtime_error instead (data_tools/file_error.h).
+/// Files and devices that cannot be used throw std::runtime_error instead.
 #pragma once
 
 #include <sstream>

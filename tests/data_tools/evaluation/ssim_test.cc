@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "bodyloom/data_tools/evaluation/ssim_rows.h"
+#include "bodyloom/data_tools/evaluation/ssim_rows_simd.h"
 
 namespace bodyloom {
 namespace {
