@@ -1,11 +1,11 @@
-# bodyloom_module(NAME [PUBLIC lib...] [PRIVATE lib...] [WITHOUT folder...])
+# bodyloom_module(NAME [PUBLIC lib...] [PRIVATE lib...] [WITHOUT folder...] [OWN_PRECOMPILED])
 #   One folder = one static library bodyloom_NAME with alias bodyloom::NAME, made of every .cc file in the folder and
 #   below it, WITHOUT the sub-folders that are libraries of their own.
 #   Baseline CPU flags everywhere: Debian's libceres.a is built for SSE2, and mixing in AVX-compiled Eigen code breaks
 #   its aligned allocations (docs/concepts.md, "Why no -march=native"). SIMD lives in Eigen-free *_simd.cc files that
 #   pick their instruction set at run time.
 function(bodyloom_module name)
-  cmake_parse_arguments(ARG "" "" "PUBLIC;PRIVATE;WITHOUT" ${ARGN})
+  cmake_parse_arguments(ARG "OWN_PRECOMPILED" "" "PUBLIC;PRIVATE;WITHOUT" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cc)
   foreach(folder IN LISTS ARG_WITHOUT)
     list(FILTER sources EXCLUDE REGEX "^${CMAKE_CURRENT_SOURCE_DIR}/${folder}/")
@@ -15,6 +15,9 @@ function(bodyloom_module name)
     $<BUILD_INTERFACE:${BODYLOOM_INCLUDE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(bodyloom_${name} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
   bodyloom_flags(bodyloom_${name})
+  if(NOT ARG_OWN_PRECOMPILED)
+    bodyloom_precompile(bodyloom_${name})
+  endif()
   add_library(bodyloom::${name} ALIAS bodyloom_${name})
   set_target_properties(bodyloom_${name} PROPERTIES EXPORT_NAME ${name})
   set_property(GLOBAL APPEND PROPERTY BODYLOOM_MODULES ${name})
