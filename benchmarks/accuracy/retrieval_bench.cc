@@ -6,7 +6,7 @@
 ///                            [--noise_deg 0,1] [--uv 32] [--window 48] [--seeds 3] [--threads 2] [--plot F.svg]
 ///                            [--json F]
 ///
-/// Rows of the table (docs/benchmarks.md, "Retrieval"): COCO-17 trajectories, atlas coordinates as the camera sees
+/// Rows of the table (docs/lab/retrieval.md): COCO-17 trajectories, atlas coordinates as the camera sees
 /// them, the 3D motion descriptor; the first with noise in pixels, the others from a track with noise in degrees. The
 /// plot shows, for the moment at which the person of the first seed, without noise, passes the middle of the first
 /// cycle's first half, its correlation with all later frames.

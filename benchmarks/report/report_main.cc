@@ -2,7 +2,7 @@
 /// What became of benchmarks' JSON (`./dev bench --render …`, `./dev bench --compare …`).
 ///
 ///   bodyloom_report --before A.json --after B.json          ratios of two commits, with their spread
-///   bodyloom_report --render F.json[,G.json] [--page docs/benchmarks.md] [--images docs/images]
+///   bodyloom_report --render F.json[,G.json] [--page docs/lab/run_time_against_error.md] [--images docs/images]
 #include <cstdio>
 #include <fstream>
 #include <sstream>
@@ -52,7 +52,7 @@ int main(int argc, char** argv) {
       {{"before", ""},
        {"after", ""},
        {"render", ""},
-       {"page", BODYLOOM_SOURCE_DIR "/docs/benchmarks.md"},
+       {"page", BODYLOOM_SOURCE_DIR "/docs/lab/run_time_against_error.md"},
        {"images", BODYLOOM_SOURCE_DIR "/docs/images"}},
       [](const bodyloom::BenchArguments& arguments, const std::string&) { bodyloom::RunReport(arguments); });
 }

@@ -6,7 +6,7 @@ that exist.
 usage: check_includes.py [ROOT]      exit 0 when all is well, 1 with one line a fault, 2 when there is nothing to check
 
 A room is a folder with a library of its own, or a top-level folder of programs. The rules are the tables below
-(CONTRIBUTING.md, "The house"). Faults read "file:line: what, expected what"; the last line counts what was found, so that
+(CONTRIBUTING.md, "Layers"). Faults read "file:line: what, expected what"; the last line counts what was found, so that
 two trees can be compared.
 """
 import pathlib
