@@ -20,42 +20,105 @@ def check(files):
         return done.returncode, done.stdout
 
 
+def include(*headers):
+    return "".join(f'#include "bodyloom/{header}"\n' for header in headers)
+
+
 class CheckIncludes(unittest.TestCase):
     def expect_fault(self, files, text):
         code, out = check(files)
         self.assertEqual(code, 1, out)
         self.assertIn(text, out)
-        self.assertIn("1 faults", out)
+        self.assertIn(" 1 faults", out)
+
+    def expect_allowed(self, files):
+        code, out = check(files)
+        self.assertEqual(code, 0, out)
+        self.assertIn(f"{len(files)} files checked, 0 faults; circles 0, upward includes 0", out)
 
     def test_allowed(self):
-        code, out = check({
-            "tracking/a.cc": '#include <ceres/ceres.h>\n#include "bodyloom/geometry/b.h"\n#include "bodyloom/tracking/a.h"\n',
-            "apps/verb.cc": '#include <CLI/CLI.hpp>\n#include "bodyloom/tracking/a.h"\n#include "bodyloom/data_tools/c.h"\n'})
-        self.assertEqual((code, out), (0, "2 files checked, 0 faults\n"))
+        self.expect_allowed({
+            "geometry/b.h": "", "geometry/base/check.h": "", "tracking/a.h": "", "pipelines/c.h": "", "tests/d.h": "",
+            "tracking/a.cc": "#include <ceres/ceres.h>\n" + include("geometry/b.h", "geometry/base/check.h", "tracking/a.h"),
+            "apps/verb.cc": "#include <CLI/CLI.hpp>\n" + include("tracking/a.h", "pipelines/c.h"),
+            "tests/d_test.cc": '#include "tests/d.h"\n'})
 
     def test_upward_include(self):
-        self.expect_fault({"geometry/a.cc": '#include <vector>\n#include "bodyloom/tracking/b.h"\n'},
+        self.expect_fault({"tracking/b.h": "", "geometry/a.cc": "#include <vector>\n" + include("tracking/b.h")},
                           'geometry/a.cc:2: geometry/ includes "tracking/b.h"')
 
-    def test_siblings_do_not_know_each_other(self):
-        self.expect_fault({"tracking/sub/a.cc": '#include "bodyloom/data_tools/b.h"\n'}, "tracking/sub/a.cc:1")
-        self.expect_fault({"data_tools/a.cc": '#include "bodyloom/tracking/b.h"\n'}, "data_tools/a.cc:1")
-        self.expect_fault({"neural/a.cc": '#include "bodyloom/tracking/b.h"\n'}, "neural/a.cc:1")
+    def test_the_bottom_knows_nobody(self):
+        self.expect_fault({"geometry/b.h": "", "geometry/base/a.cc": include("geometry/b.h")},
+                          'geometry/base/a.cc:1: geometry/base/ includes "geometry/b.h"')
 
-    def test_evaluation_measures_with_tracking(self):
-        code, out = check({"data_tools/evaluation/a.cc": '#include "bodyloom/data_tools/evaluation/metrics.h"\n'})
-        self.assertEqual((code, out), (0, "1 files checked, 0 faults\n"))
-        self.expect_fault({"data_tools/formats/a.cc": '#include "bodyloom/data_tools/evaluation/metrics.h"\n'}, "data_tools/formats/a.cc:1")
+    def test_siblings_do_not_know_each_other(self):
+        for one, other in (("tracking/sub", "data_tools"), ("data_tools", "tracking"), ("neural", "tracking"),
+                           ("data_tools/synthesis", "data_tools/evaluation"), ("data_tools/formats", "data_tools/evaluation")):
+            self.expect_fault({f"{other}/b.h": "", f"{one}/a.cc": include(f"{other}/b.h")}, f"{one}/a.cc:1")
+
+    def test_evaluation_and_synthesis_stand_above_tracking(self):
+        self.expect_allowed({"tracking/b.h": "", "data_tools/evaluation/a.cc": include("tracking/b.h"),
+                             "data_tools/synthesis/a.cc": include("tracking/b.h")})
+
+    def test_pipelines_stand_below_the_command(self):
+        self.expect_fault({"apps/b.h": "", "pipelines/a.cc": '#include "apps/b.h"\n'}, 'pipelines/ includes "apps/b.h"')
+        self.expect_fault({"pipelines/neural/b.h": "", "pipelines/a.cc": include("pipelines/neural/b.h")},
+                          "pipelines/a.cc:1: pipelines/ includes")
+        self.expect_allowed({"neural/motion/motion_config.h": "", "pipelines/a.cc": include("neural/motion/motion_config.h")})
+
+    def test_library_headers_have_a_prefix_and_those_of_programs_none(self):
+        self.expect_fault({"geometry/b.h": "", "geometry/a.cc": '#include "geometry/b.h"\n'},
+                          'expected "bodyloom/geometry/b.h"')
+        self.expect_fault({"tests/b.h": "", "tests/a.cc": include("tests/b.h")}, 'expected "tests/b.h"')
+        self.expect_fault({"tests/b.h": "", "tests/a.cc": '#include "b.h"\n'}, "expected a path from the project root")
+
+    def test_missing_header(self):
+        self.expect_fault({"geometry/a.cc": include("geometry/b.h")}, 'includes "bodyloom/geometry/b.h", which is not there')
+
+    def test_circle_of_units(self):
+        self.expect_fault({
+            "tracking/a.h": "void Fit();\n", "tracking/a.cc": include("tracking/b.h") + "void Fit() { Step(); }\n",
+            "tracking/b.h": "void Step();\n", "tracking/b.cc": include("tracking/a.h") + "void Step() { Fit(); }\n"},
+            "circle: tracking/a -> tracking/b -> tracking/a")
+
+    def test_helpers_may_take_what_a_facade_declares(self):
+        self.expect_allowed({
+            "tracking/a.h": "struct Options {};\nvoid Fit();\n",
+            "tracking/a.cc": include("tracking/b.h") + "void Fit() { Step({}); }\n",
+            "tracking/b.h": include("tracking/a.h") + "void Step(Options options);\n",
+            "tracking/b.cc": include("tracking/b.h") + "void Step(Options options) {}\n"})
+
+    def test_circle_of_sub_folders(self):
+        self.expect_fault({"tracking/x/a.h": "", "tracking/x/b.h": include("tracking/y/c.h"), "tracking/y/c.h": "",
+                           "tracking/y/d.h": include("tracking/x/a.h")},
+                          "circle: tracking/x -> tracking/y -> tracking/x")
 
     def test_third_party_outside_its_home(self):
-        self.expect_fault({"geometry/a.cc": "#include <ceres/jet.h>\n"}, "expected only in benchmarks, tests, tracking")
+        self.expect_fault({"geometry/a.cc": "#include <ceres/jet.h>\n"}, "expected only in benchmarks, examples, render/lighting")
         self.expect_fault({"tracking/a.cc": "#  include <torch/torch.h>\n"}, "tracking/a.cc:1")
 
     def test_heavy_header_in_a_header(self):
         self.expect_fault({"data_tools/a.h": "#include <nlohmann/json.hpp>\n"}, "expected only in .cc files")
 
+    def test_vector_code_is_named_for_it(self):
+        self.expect_fault({"tracking/a.cc": "#include <hwy/highway.h>\n"}, "expected only in *_simd.cc and -inl.h files")
+        self.expect_allowed({"tracking/a_simd.cc": "#include <hwy/highway.h>\n"})
+
     def test_relative_include(self):
         self.expect_fault({"geometry/a.cc": '#include "../render/b.h"\n'}, "expected a path from the project root")
+
+    def test_comments_name_files_that_exist(self):
+        self.expect_fault({"geometry/a.cc": "int a;  // as geometry/gone.h says\n"}, "names geometry/gone.h, which is not there")
+        self.expect_allowed({"geometry/b.h": "// geometry/b, geometry/b.h, geometry/{a,b}.h and geometry/*.h\n"})
+
+    def test_a_verb_is_short(self):
+        text = '#include <CLI/CLI.hpp>\nvoid A() { app.add_subcommand("a", ""); }\n'
+        self.expect_fault({"apps/verb_a.cc": text + "//\n" * 119}, "a verb of 121 lines, expected at most 120")
+        self.assertIn("longest verb 120", check({"apps/verb_a.cc": text + "//\n" * 118})[1])
+
+    def test_tests_link_libraries(self):
+        self.expect_fault({"apps/a.cc": "", "tests/CMakeLists.txt": "target_sources(t PRIVATE ${PROJECT_SOURCE_DIR}/apps/a.cc)\n"},
+                          "tests/CMakeLists.txt:1: compiles apps/a, expected a library")
 
     def test_nothing_to_check(self):
         self.assertEqual(check({"README.md": "no sources"})[0], 2)
