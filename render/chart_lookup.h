@@ -8,13 +8,9 @@
 #include <vector>
 
 #include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/surface_point.h"
 
 namespace bodyloom {
-
-struct SurfacePoint {
-  int face = -1;                                           ///< −1: the body has no such part
-  Eigen::Vector3d barycentric = Eigen::Vector3d(1, 0, 0);  ///< of the face's corners, each in [0, 1], sums to 1
-};
 
 /// Immutable after construction; may be shared by threads. Does not keep the body.
 class ChartLookup {

@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::MatrixXd;
 
-Eigen::Vector3d SurfacePoint(const BodyModel& body, const MatrixX3d& vertices, const DenseKeypoint& point) {
+Eigen::Vector3d PointInCamera(const BodyModel& body, const MatrixX3d& vertices, const DenseKeypoint& point) {
   Eigen::Vector3d x = Eigen::Vector3d::Zero();
   for (int c = 0; c < 3; ++c) x += point.barycentric[c] * vertices.row(body.data().faces(point.face, c)).transpose();
   return x;
@@ -30,8 +30,8 @@ std::vector<DenseKeypoint> Inliers(const BodyModel& body, const SynthClip& clip,
   for (size_t i = 0; i < clip.dense.frames[t].size(); ++i) {
     const DenseKeypoint& point = clip.dense.frames[t][i];
     Eigen::Vector2d at_label, at_truth;
-    if (!camera.Project(SurfacePoint(body, vertices, point), &at_label) ||
-        !camera.Project(SurfacePoint(body, vertices, clip.dense_truth.frames[t][i]), &at_truth)) {
+    if (!camera.Project(PointInCamera(body, vertices, point), &at_label) ||
+        !camera.Project(PointInCamera(body, vertices, clip.dense_truth.frames[t][i]), &at_truth)) {
       continue;
     }
     if ((at_label - at_truth).norm() <= outlier_sigmas * point.sigma_px) result.push_back(point);

@@ -99,7 +99,7 @@ ProjectionError PerVertexProjectionError(PixelClip prediction_px, PixelClip trut
   return errors.Result();
 }
 
-double PersonHeightPx(const KeypointSequence& detections, int frame, double min_confidence) {
+double DetectionBoxSidePx(const KeypointSequence& detections, int frame, double min_confidence) {
   constexpr int kFewestPoints = 5;
   double x_min = INFINITY, x_max = -INFINITY, y_min = INFINITY, y_max = -INFINITY;
   int count = 0;
@@ -120,7 +120,7 @@ void AddReprojectionErrors(PixelClip prediction_px, const KeypointSequence& dete
   CheckAgainstDetections("AddReprojectionErrors", prediction_px, detections);
   for (size_t t = 0; t < prediction_px.size(); ++t) {
     const int frame = static_cast<int>(t);
-    const double height_px = PersonHeightPx(detections, frame, min_confidence);
+    const double height_px = DetectionBoxSidePx(detections, frame, min_confidence);
     for (int k = 0; k < detections.num_points(); ++k) {
       const Keypoint& p = detections.at(frame, k);
       if (!IsUsed(p, min_confidence)) continue;
@@ -145,7 +145,7 @@ void AddCorrectKeypoints(PixelClip prediction_px, const KeypointSequence& detect
   BODYLOOM_CHECK(fraction > 0, "AddCorrectKeypoints: fraction ", fraction, " must be positive");
   for (size_t t = 0; t < prediction_px.size(); ++t) {
     const int frame = static_cast<int>(t);
-    const double size_px = reference == PckReference::kBox ? PersonHeightPx(detections, frame, min_confidence)
+    const double size_px = reference == PckReference::kBox ? DetectionBoxSidePx(detections, frame, min_confidence)
                                                            : TorsoPx(detections, frame, min_confidence);
     if (!(size_px > 0)) continue;
     for (int k = 0; k < detections.num_points(); ++k) {

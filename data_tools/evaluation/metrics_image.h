@@ -69,11 +69,11 @@ void AddReprojectionErrors(PixelClip prediction_px, const KeypointSequence& dete
 
 /// Longer side of the box around the detections of a frame with confidence above min_confidence: the person's height
 /// in pixels when it stands, and as good a measure of size when it does not. NaN with fewer than five detections.
-double PersonHeightPx(const KeypointSequence& detections, int frame, double min_confidence);
+double DetectionBoxSidePx(const KeypointSequence& detections, int frame, double min_confidence);
 
 /// What a PCK threshold is a fraction of.
 enum class PckReference {
-  kBox,    ///< longer side of the box around the frame's detections (PersonHeightPx); PCK@0.05, PCK@0.1
+  kBox,    ///< longer side of the box around the frame's detections (DetectionBoxSidePx); PCK@0.05, PCK@0.1
   kTorso,  ///< distance from left shoulder to right hip (or right shoulder to left hip when one is missing); PCK@0.2
 };
 /// Percentage of correct keypoints, counted over frames (and over cameras, by calling Add again).

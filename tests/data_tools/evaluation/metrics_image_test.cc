@@ -106,11 +106,11 @@ TEST(MetricsImageTest, ReprojectionErrorInPixelsAndHeights) {
 
 TEST(MetricsImageTest, PersonHeightNeedsFivePoints) {
   KeypointSequence detections = Detections(1);
-  EXPECT_DOUBLE_EQ(PersonHeightPx(detections, 0, 0.3), 400);
+  EXPECT_DOUBLE_EQ(DetectionBoxSidePx(detections, 0, 0.3), 400);
   for (int k = 5; k < 17; ++k) detections.at(0, k).confidence = 0;
-  EXPECT_DOUBLE_EQ(PersonHeightPx(detections, 0, 0.3), 100);
+  EXPECT_DOUBLE_EQ(DetectionBoxSidePx(detections, 0, 0.3), 100);
   detections.at(0, 2).confidence = 0;
-  EXPECT_TRUE(std::isnan(PersonHeightPx(detections, 0, 0.3)));
+  EXPECT_TRUE(std::isnan(DetectionBoxSidePx(detections, 0, 0.3)));
 }
 
 TEST(MetricsImageTest, PckThresholds) {
