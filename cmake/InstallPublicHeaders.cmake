@@ -1,5 +1,6 @@
 # Run by cmake --install. Installs the headers that cmake/public_headers.txt names and those that they include, under
 # `destination`, leaving out what begins with one of `without`. `source` is the project's folder.
+cmake_minimum_required(VERSION 3.25)
 file(STRINGS ${source}/cmake/public_headers.txt patterns REGEX "^[a-z]")
 set(todo "")
 foreach(pattern IN LISTS patterns)

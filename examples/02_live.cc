@@ -23,7 +23,7 @@ int main(int argc, char** argv) {
   bodyloom::LiveTracker tracker(bodyloom::WithBuiltins(input), options);
 
   const auto show = [](const bodyloom::LiveFrame& frame) {
-    std::cout << frame.timestamp << " s  " << ToString(frame.status) << "  pelvis at "
+    std::cout << frame.timestamp << " s  " << ToString(frame.status) << "  translation "
               << frame.state.translation.transpose() << " m\n";
   };
   for (int t = 0; t < clip.num_frames(); ++t) {

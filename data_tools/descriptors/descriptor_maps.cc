@@ -9,7 +9,7 @@
 #include "bodyloom/data_tools/descriptors/seen_texels.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/normals_simd.h"
+#include "bodyloom/geometry/uv_bake_simd.h"
 
 namespace bodyloom::describe_internal {
 
@@ -39,16 +39,13 @@ DescriptorMaps::DescriptorMaps(const BodyModel& body, const Track& track, const 
       options_(options),
       how_(how),
       poses_(PosesInFrame(body, track, options.frame, options.camera_pose)),
-      table_(BuildUvTexelTable(body, options.texels)),
-      baker_(table_, body.data().faces),
+      surface_(body, options.texels, options.weighting, options.normals),
       skinner_(body, {.num_threads = options.num_threads, .vertices = {}, .skip_resting_joints = true}),
       shape_(skinner_.Shape(track.motion.betas)),
       velocity_skinner_(body),
-      normals_(body.data().faces, body.num_vertices(), options.weighting),
-      template_normals_(options.normals ? TemplateNormals(body, options.weighting) : MatrixX3f()),
-      scratch_(body.num_vertices(), baker_.num_pixels()),
+      scratch_(body.num_vertices(), static_cast<int>(plane_size())),
       item_size_(how.half ? 2 : 4),
-      map_bytes_(3 * size_t(baker_.num_pixels()) * item_size_),
+      map_bytes_(3 * plane_size() * item_size_),
       zero_map_(map_bytes_, 0),
       maps_(map_bytes_),
       posed_(skinner_, shape_, poses_, body.num_vertices(), kFramesInFlight),
@@ -113,10 +110,9 @@ Map DescriptorMaps::Baked(Scratch* scratch, const Bake& bake) {
 
 Map DescriptorMaps::NormalMap(int t, Scratch* scratch, NormalSummary* summary, int* cancelled) {
   const PosedSkeleton skeleton = PoseSkeleton(body_, shape_.rest_joints, *poses_[t]);
-  *summary = normals_.Compute(posed_.Vertices(t), scratch->vertices, &scratch->normals,
-                              {&body_, &template_normals_, &skeleton});
-  normals_internal::PadVertices(scratch->vertices.data(), body_.num_vertices(), 1, scratch->padded.data());
-  return Baked(scratch, [&](std::span<float> planes) { *cancelled = baker_.BakeUnit(scratch->padded, planes); });
+  return Baked(scratch, [&](std::span<float> planes) {
+    *cancelled = surface_.Normals(posed_.Vertices(t), skeleton, scratch, summary, planes);
+  });
 }
 
 /// `velocities`: of the vertices, or empty to take differences.
@@ -130,9 +126,7 @@ Map DescriptorMaps::VelocityMap(int s, std::span<const float> velocities, Scratc
     DifferenceVertices(stencil, frames, posed_.roots().subspan(stencil.first_frame, frames.size()), scratch->vertices);
     velocities = scratch->vertices;
   }
-  normals_internal::PadVertices(velocities.data(), body_.num_vertices(), 1, scratch->padded.data());
-  return Baked(scratch,
-               [&](std::span<float> planes) { baker_.Bake(scratch->padded, body_.num_vertices(), 3, planes); });
+  return Baked(scratch, [&](std::span<float> planes) { surface_.Velocities(velocities, scratch, planes); });
 }
 
 std::vector<float> DescriptorMaps::AnalyticVelocities(std::span<const int> frames) const {
@@ -161,9 +155,9 @@ MatrixX3d DescriptorMaps::VerticesInCamera(int t) const {
 }
 
 Map DescriptorMaps::OnlySeen(int t, Maps maps, Scratch* scratch, double* share) const {
-  const SeenTexels sight = FindSeenTexels(table_, body_, VerticesInCamera(t), track_.CameraAt(t), &scratch->buffer);
+  const SeenTexels sight = FindSeenTexels(texels(), body_, VerticesInCamera(t), track_.CameraAt(t), &scratch->buffer);
   *share = sight.share;
-  return KeepSeen(table_, sight.seen, maps, item_size_);
+  return KeepSeen(texels(), sight.seen, maps, item_size_);
 }
 
 void DescriptorMaps::Make() {

@@ -11,7 +11,7 @@
 #include "bodyloom/data_tools/descriptors/descriptor_frames.h"
 #include "bodyloom/data_tools/descriptors/map_memory.h"
 #include "bodyloom/data_tools/descriptors/posed_frames.h"
-#include "bodyloom/geometry/uv_bake.h"
+#include "bodyloom/data_tools/descriptors/surface_maps.h"
 
 namespace bodyloom::describe_internal {
 
@@ -52,9 +52,9 @@ class DescriptorMaps {
   void Use(int i, const std::function<void(Maps, const FrameSummary&)>& use);
 
   [[nodiscard]] int channels() const { return options_.channels(); }
-  [[nodiscard]] size_t plane_size() const { return static_cast<size_t>(baker_.num_pixels()); }
+  [[nodiscard]] size_t plane_size() const { return surface_.num_pixels(); }
   [[nodiscard]] size_t map_bytes() const { return map_bytes_; }
-  [[nodiscard]] const UvTexelTable& texels() const { return table_; }
+  [[nodiscard]] const UvTexelTable& texels() const { return surface_.texels(); }
   [[nodiscard]] const std::vector<VelocityStencil>& stencils() const { return stencils_; }
   [[nodiscard]] bool HasFit(int t) const { return poses_[t].has_value(); }
   [[nodiscard]] const Counts& counts() const { return counts_; }
@@ -75,13 +75,10 @@ class DescriptorMaps {
   DescriptorOptions options_;
   DescriptorMapsOptions how_;
   std::vector<std::optional<BodyPose>> poses_;
-  UvTexelTable table_;
-  UvBaker baker_;
+  SurfaceMaps surface_;
   Skinner skinner_;
   ShapedBody shape_;
   VelocitySkinner velocity_skinner_;
-  MeshNormals normals_;
-  MatrixX3f template_normals_;
   ScratchPool scratch_;
   size_t item_size_, map_bytes_;
   Map zero_map_;
