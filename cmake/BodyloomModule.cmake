@@ -14,6 +14,8 @@ function(bodyloom_module name)
   add_library(bodyloom_${name} STATIC ${sources})
   target_include_directories(bodyloom_${name} PUBLIC
     $<BUILD_INTERFACE:${BODYLOOM_INCLUDE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  # Headers that only our source files include are no concern of whoever uses the library.
+  list(TRANSFORM ARG_PRIVATE REPLACE "^(nlohmann_json::nlohmann_json)$" "$<BUILD_INTERFACE:\\1>")
   target_compile_features(bodyloom_${name} PUBLIC cxx_std_20)
   target_link_libraries(bodyloom_${name} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
   bodyloom_flags(bodyloom_${name})

@@ -18,14 +18,9 @@
 
 #include "bodyloom/geometry/body_model.h"
 #include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/surface_point.h"
 
 namespace bodyloom {
-
-/// A point of the surface: Σ_c barycentric_c · (corner c of the face).
-struct SurfacePoint {
-  int face = 0;
-  Eigen::Vector3d barycentric = Eigen::Vector3d::UnitX();  ///< sums to 1 for a point in the face's plane
-};
 
 /// A point in the frame of the pose, metres, and its derivatives.
 struct PointJacobian {

@@ -8,13 +8,9 @@
 #include <vector>
 
 #include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/surface_point.h"
 
 namespace bodyloom {
-
-struct SurfacePoint {
-  int face = -1;                                           ///< −1: the body has no such part
-  Eigen::Vector3d barycentric = Eigen::Vector3d(1, 0, 0);  ///< of the face's corners, each in [0, 1], sums to 1
-};
 
 /// Immutable after construction; may be shared by threads. Does not keep the body.
 class ChartLookup {
@@ -24,7 +20,7 @@ class ChartLookup {
 
   /// The point of part 1..24 at (u, v); where the chart does not cover (u, v), the covered point nearest to it in chart
   /// units, whose distance goes to `gap` when asked for (0 inside). Of faces equally near the lowest index is taken.
-  /// A part that the body lacks, or coordinates that are not finite, give face −1.
+  /// Weights are in [0, 1]. A part that the body lacks, or coordinates that are not finite, give face −1.
   [[nodiscard]] SurfacePoint Find(int part, const Eigen::Vector2d& uv, double* gap = nullptr) const;
 
  private:
