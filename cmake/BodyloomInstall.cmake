@@ -1,26 +1,57 @@
-# `cmake --install`: the command, the libraries with their headers, and a package file for find_package(bodyloom).
+# `cmake --install`: the command, the libraries with their public headers, and a package file for find_package(bodyloom).
+#   component     what
+#   command       bin/bodyloom
+#   neural        bin/bodyloom-neural
+#   development   the libraries, include/bodyloom, lib/cmake/bodyloom
 include(CMakePackageConfigHelpers)
 set(bodyloom_config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/bodyloom)
 
+# One file of targets a library, so that a user needs no package that his components do not; and for the package file
+# what each of them needs, bottom first.
 get_property(bodyloom_modules GLOBAL PROPERTY BODYLOOM_MODULES)
+set(BODYLOOM_COMPONENTS ${bodyloom_modules})
+set(BODYLOOM_COMPONENT_NEEDS "")
 foreach(module IN LISTS bodyloom_modules)
-  install(TARGETS bodyloom_${module} EXPORT bodyloomTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/${module} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/bodyloom
-          FILES_MATCHING PATTERN "*.h")
+  install(TARGETS bodyloom_${module} EXPORT bodyloom_${module}
+          ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
+  install(EXPORT bodyloom_${module} NAMESPACE bodyloom:: DESTINATION ${bodyloom_config_dir} COMPONENT development)
+  get_property(needs GLOBAL PROPERTY BODYLOOM_NEEDS_${module})
+  get_property(finds GLOBAL PROPERTY BODYLOOM_FINDS_${module})
+  list(TRANSFORM finds REPLACE "^.+$" "\"\\0\"")
+  list(JOIN finds " " finds)
+  list(JOIN needs " " needs)
+  string(APPEND BODYLOOM_COMPONENT_NEEDS "set(bodyloom_needs_${module} ${needs})\nset(bodyloom_finds_${module} ${finds})\n")
 endforeach()
-foreach(command bodyloom_command bodyloom_neural_command)
-  if(TARGET ${command})
-    install(TARGETS ${command} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-  endif()
-endforeach()
-
-set(BODYLOOM_HAS_NEURAL OFF)
-if(TARGET bodyloom_neural)
-  set(BODYLOOM_HAS_NEURAL ON)
-endif()
-install(EXPORT bodyloomTargets NAMESPACE bodyloom:: DESTINATION ${bodyloom_config_dir})
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/bodyloomConfig.cmake.in
   ${PROJECT_BINARY_DIR}/bodyloomConfig.cmake INSTALL_DESTINATION ${bodyloom_config_dir})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/bodyloomConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/bodyloomConfig.cmake ${PROJECT_BINARY_DIR}/bodyloomConfigVersion.cmake
-  DESTINATION ${bodyloom_config_dir})
+        ${CMAKE_CURRENT_LIST_DIR}/FindMATIO.cmake
+        DESTINATION ${bodyloom_config_dir} COMPONENT development)
+
+# Which headers are public is looked up when they are installed: it follows from what they include then.
+set(without "")
+if(NOT TARGET bodyloom_neural)
+  set(without neural/ pipelines/neural/)
+endif()
+install(CODE "
+  set(source \"${PROJECT_SOURCE_DIR}\")
+  set(destination \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR}/bodyloom\")
+  set(without ${without})
+  include(\"${CMAKE_CURRENT_LIST_DIR}/InstallPublicHeaders.cmake\")" COMPONENT development)
+
+foreach(component command neural)
+  set(target bodyloom_command)
+  set(folder bodyloom)
+  if(component STREQUAL neural)
+    set(target bodyloom_neural_command)
+    set(folder bodyloom-neural)
+  endif()
+  if(TARGET ${target})
+    install(TARGETS ${target} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT ${component})
+    install(FILES ${PROJECT_SOURCE_DIR}/LICENSE RENAME copyright
+            DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/doc/${folder} COMPONENT ${component})
+  endif()
+endforeach()
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE RENAME copyright
+        DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/doc/libbodyloom-dev COMPONENT development)

@@ -1,6 +1,7 @@
 # bodyloom_module(NAME [PUBLIC lib...] [PRIVATE lib...] [WITHOUT folder...] [OWN_PRECOMPILED])
 #   One folder = one static library bodyloom_NAME with alias bodyloom::NAME, made of every .cc file in the folder and
 #   below it, WITHOUT the sub-folders that are libraries of their own.
+#   A user's find_package(bodyloom COMPONENTS NAME) brings it, with the modules that PUBLIC names.
 #   Baseline CPU flags everywhere: Debian's libceres.a is built for SSE2, and mixing in AVX-compiled Eigen code breaks
 #   its aligned allocations (docs/concepts.md, "Why no -march=native"). SIMD lives in Eigen-free *_simd.cc files that
 #   pick their instruction set at run time.
@@ -13,6 +14,9 @@ function(bodyloom_module name)
   add_library(bodyloom_${name} STATIC ${sources})
   target_include_directories(bodyloom_${name} PUBLIC
     $<BUILD_INTERFACE:${BODYLOOM_INCLUDE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  # Headers that only our source files include are no concern of whoever uses the library.
+  list(TRANSFORM ARG_PRIVATE REPLACE "^(nlohmann_json::nlohmann_json)$" "$<BUILD_INTERFACE:\\1>")
+  target_compile_features(bodyloom_${name} PUBLIC cxx_std_20)
   target_link_libraries(bodyloom_${name} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
   bodyloom_flags(bodyloom_${name})
   if(NOT ARG_OWN_PRECOMPILED)
@@ -21,6 +25,31 @@ function(bodyloom_module name)
   add_library(bodyloom::${name} ALIAS bodyloom_${name})
   set_target_properties(bodyloom_${name} PROPERTIES EXPORT_NAME ${name})
   set_property(GLOBAL APPEND PROPERTY BODYLOOM_MODULES ${name})
+  set(needs ${ARG_PUBLIC} ${ARG_PRIVATE})
+  list(FILTER needs INCLUDE REGEX "^bodyloom::")
+  list(TRANSFORM needs REPLACE "^bodyloom::" "")
+  set_property(GLOBAL PROPERTY BODYLOOM_NEEDS_${name} ${needs})
+endfunction()
+
+# bodyloom_find(MODULE PACKAGE [argument...])
+#   find_package(PACKAGE argument... REQUIRED) for a library, and for whoever uses it once it is installed.
+macro(bodyloom_find module)
+  find_package(${ARGN} REQUIRED)
+  string(REPLACE ";" " " bodyloom_find_arguments "${ARGN}")
+  set_property(GLOBAL APPEND PROPERTY BODYLOOM_FINDS_${module} "${bodyloom_find_arguments}")
+endmacro()
+
+# bodyloom::bodyloom: all libraries but those that need LibTorch.
+function(bodyloom_umbrella)
+  add_library(bodyloom_bodyloom INTERFACE)
+  get_property(modules GLOBAL PROPERTY BODYLOOM_MODULES)
+  list(FILTER modules EXCLUDE REGEX "^neural")
+  list(TRANSFORM modules PREPEND bodyloom:: OUTPUT_VARIABLE libraries)
+  target_link_libraries(bodyloom_bodyloom INTERFACE ${libraries})
+  add_library(bodyloom::bodyloom ALIAS bodyloom_bodyloom)
+  set_target_properties(bodyloom_bodyloom PROPERTIES EXPORT_NAME bodyloom)
+  set_property(GLOBAL APPEND PROPERTY BODYLOOM_MODULES bodyloom)
+  set_property(GLOBAL PROPERTY BODYLOOM_NEEDS_bodyloom ${modules})
 endfunction()
 
 # Headers are included as "bodyloom/tracking/track_sequence.h", in this tree, from add_subdirectory() and once installed

@@ -32,6 +32,6 @@ function(bodyloom_report)
   message(STATUS "  libraries  Eigen ${Eigen3_VERSION}, Ceres ${ceres}, OpenCV ${opencv}")
   message(STATUS "  neural     ${neural}")
   message(STATUS "  parts      apps ${BODYLOOM_BUILD_APPS}, tests ${BODYLOOM_BUILD_TESTS} (CGAL ${BODYLOOM_WITH_CGAL}), "
-                 "benchmarks ${BODYLOOM_BUILD_BENCHMARKS}, fuzzers ${BODYLOOM_BUILD_FUZZERS}")
+                 "benchmarks ${BODYLOOM_BUILD_BENCHMARKS}, examples ${BODYLOOM_BUILD_EXAMPLES}, fuzzers ${BODYLOOM_BUILD_FUZZERS}")
 endfunction()
 bodyloom_report()

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/uv_bake_simd.h"
 
 namespace bodyloom {
 
@@ -39,6 +40,12 @@ UvBaker::UvBaker(const UvTexelTable& table, const MatrixX3i& faces) : num_pixels
   for (const Block& block : blocks_) num_blank_ += std::min(4, num_pixels_ - block.pixel);
   num_blank_ -= static_cast<int>(table.size());
 }
+
+UvBaker::~UvBaker() = default;
+UvBaker::UvBaker(const UvBaker&) = default;
+UvBaker::UvBaker(UvBaker&&) noexcept = default;
+UvBaker& UvBaker::operator=(const UvBaker&) = default;
+UvBaker& UvBaker::operator=(UvBaker&&) noexcept = default;
 
 void UvBaker::Check(size_t attributes, int num_vertices, size_t maps, int num_channels) const {
   const size_t groups = (size_t(num_channels) + 3) / 4;

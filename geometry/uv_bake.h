@@ -12,10 +12,13 @@
 #include <vector>
 
 #include "bodyloom/geometry/arrays.h"
-#include "bodyloom/geometry/uv_bake_simd.h"
 #include "bodyloom/geometry/uv_texels.h"
 
 namespace bodyloom {
+
+namespace uv_bake_internal {
+struct Block;
+}
 
 /// Channels in groups of four, as the baker wants them: group g of vertex v is at [4 (g V + v)], channel 4g + c its
 /// entry c; a last group that is not full is padded with zeros. `values` is V×C, vertex-major.
@@ -25,6 +28,11 @@ class UvBaker {
  public:
   /// Keeps what it needs. Throws std::invalid_argument when a table's face is not one of `faces`.
   UvBaker(const UvTexelTable& table, const MatrixX3i& faces);
+  ~UvBaker();
+  UvBaker(const UvBaker&);
+  UvBaker(UvBaker&&) noexcept;
+  UvBaker& operator=(const UvBaker&);
+  UvBaker& operator=(UvBaker&&) noexcept;
 
   [[nodiscard]] int num_pixels() const { return num_pixels_; }
 

@@ -88,6 +88,7 @@ ChartLookup::ChartLookup(const BodyModel& body) {
 
 SurfacePoint ChartLookup::Find(int part, const Vector2d& uv, double* gap) const {
   SurfacePoint found;
+  found.face = -1;
   if (gap != nullptr) *gap = std::numeric_limits<double>::infinity();
   if (part < 1 || part > 24 || charts_[part].triangles.empty() || !uv.allFinite()) return found;
   const Chart& chart = charts_[part];

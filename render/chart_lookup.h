@@ -20,7 +20,7 @@ class ChartLookup {
 
   /// The point of part 1..24 at (u, v); where the chart does not cover (u, v), the covered point nearest to it in chart
   /// units, whose distance goes to `gap` when asked for (0 inside). Of faces equally near the lowest index is taken.
-  /// A part that the body lacks, or coordinates that are not finite, give face −1.
+  /// Weights are in [0, 1]. A part that the body lacks, or coordinates that are not finite, give face −1.
   [[nodiscard]] SurfacePoint Find(int part, const Eigen::Vector2d& uv, double* gap = nullptr) const;
 
  private:

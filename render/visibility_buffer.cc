@@ -5,11 +5,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <utility>
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/render/near_clip.h"
 #include "bodyloom/render/parallel_phases.h"
+#include "bodyloom/render/raster_simd.h"
 
 namespace bodyloom {
 namespace {
@@ -75,6 +77,28 @@ void SortByTile(int count, int tiles_across, int num_tiles, const BoxOf& box_of,
 
 }  // namespace
 
+/// Faces of one stretch of indices, sorted by the tiles they meet.
+struct VisibilityBuffer::Chunk {
+  int first = 0, last = 0;
+  raster_internal::SmallFaces small;
+  std::vector<LargeFace> large;
+  std::vector<int32_t> others;
+  std::vector<int32_t> small_begin, small_entries, large_begin, large_entries;  ///< by tile
+};
+
+/// What is drawn, on the screen.
+struct VisibilityBuffer::Drawing {
+  std::vector<ScreenVertex> vertices;
+  raster_internal::ScreenArrays screen;
+  std::vector<ScreenExtent> extents;
+  std::vector<Chunk> chunks;  ///< the last one holds pieces of clipped faces
+};
+
+VisibilityBuffer::VisibilityBuffer() = default;
+VisibilityBuffer::~VisibilityBuffer() = default;
+VisibilityBuffer::VisibilityBuffer(VisibilityBuffer&&) noexcept = default;
+VisibilityBuffer& VisibilityBuffer::operator=(VisibilityBuffer&&) noexcept = default;
+
 bool VisibilityBuffer::ToScreen(const Vector3d& point, ScreenVertex* screen) const {
   const bool is_pinhole = camera_.model == CameraModel::kPinhole;
   Eigen::Vector2d pixel;
@@ -88,21 +112,21 @@ bool VisibilityBuffer::ToScreen(const Vector3d& point, ScreenVertex* screen) con
 
 void VisibilityBuffer::ProjectChunk(const MatrixX3d& vertices, int chunk) {
   const int first = chunk * kVerticesAChunk, last = std::min(num_vertices_, first + kVerticesAChunk);
-  ScreenExtent& extent = extents_[chunk];
+  ScreenExtent& extent = drawing_->extents[chunk];
   if (is_linear_) {
-    raster_internal::ProjectVertices(ProjectionOf(camera_, options_.near_m), vertices.data(), first, last, screen_,
-                                     &extent);
+    raster_internal::ProjectVertices(ProjectionOf(camera_, options_.near_m), vertices.data(), first, last,
+                                     drawing_->screen, &extent);
     return;
   }
   for (int v = first; v < last; ++v) {
     const Vector3d point = vertices.row(v).transpose();
     extent.all_finite = extent.all_finite && point.allFinite();
-    if (ToScreen(point, &screen_vertices_[v])) {
-      Extend(screen_vertices_[v].x, screen_vertices_[v].y, &extent);
+    if (ToScreen(point, &drawing_->vertices[v])) {
+      Extend(drawing_->vertices[v].x, drawing_->vertices[v].y, &extent);
       projected_[v] = {camera_.fx * point.x() / point.z() + camera_.cx, camera_.fy * point.y() / point.z() + camera_.cy,
                        1 / point.z(), 0};
     } else {
-      screen_vertices_[v] = {kUnusable, 0, 0, 0};
+      drawing_->vertices[v] = {kUnusable, 0, 0, 0};
       projected_[v] = {0, 0, std::numeric_limits<double>::quiet_NaN(), 0};
       extent.all_usable = false;
     }
@@ -110,13 +134,13 @@ void VisibilityBuffer::ProjectChunk(const MatrixX3d& vertices, int chunk) {
 }
 
 void VisibilityBuffer::ClipFaces(const MatrixX3d& vertices, const MatrixX3i& faces, ScreenExtent* extent) {
-  Chunk& pieces = chunks_.back();
+  Chunk& pieces = drawing_->chunks.back();
   for (int f = 0; f < faces.rows(); ++f) {
     std::array<Vector3d, 3> corners;
     bool usable = true;
     for (int c = 0; c < 3; ++c) {
       corners[c] = vertices.row(faces(f, c)).transpose();
-      usable = usable && screen_vertices_[faces(f, c)].x != kUnusable;
+      usable = usable && drawing_->vertices[faces(f, c)].x != kUnusable;
     }
     if (usable) continue;
     const ClippedPolygon polygon = ClipTriangle(corners, camera_, options_.near_m, kGuardBandPx);
@@ -135,7 +159,7 @@ raster_internal::Box VisibilityBuffer::DrawnBox() const {
 
 void VisibilityBuffer::PrepareFaces(const MatrixX3d& vertices, const MatrixX3i& faces) {
   ScreenExtent all;
-  for (const ScreenExtent& extent : extents_) {
+  for (const ScreenExtent& extent : drawing_->extents) {
     if (extent.x_min <= extent.x_max) {
       Extend(extent.x_min, extent.y_min, &all);
       Extend(extent.x_max, extent.y_max, &all);
@@ -145,9 +169,9 @@ void VisibilityBuffer::PrepareFaces(const MatrixX3d& vertices, const MatrixX3i& 
   }
   BODYLOOM_CHECK(all.all_finite, "visibility buffer: vertices hold NaN or infinite values");
   const int num_faces = static_cast<int>(faces.rows()), faces_a_chunk = FacesAChunk(num_faces);
-  chunks_.resize(DivideUp(num_faces, faces_a_chunk) + 1);
-  for (size_t i = 0; i < chunks_.size(); ++i) {
-    Chunk& chunk = chunks_[i];
+  drawing_->chunks.resize(DivideUp(num_faces, faces_a_chunk) + 1);
+  for (size_t i = 0; i < drawing_->chunks.size(); ++i) {
+    Chunk& chunk = drawing_->chunks[i];
     chunk.first = std::min(num_faces, static_cast<int>(i) * faces_a_chunk);
     chunk.last = std::min(num_faces, chunk.first + faces_a_chunk);
     chunk.large.clear();
@@ -167,17 +191,17 @@ void VisibilityBuffer::PrepareFaces(const MatrixX3d& vertices, const MatrixX3i& 
 }
 
 void VisibilityBuffer::SetUpChunk(const MatrixX3i& faces, int index) {
-  Chunk& chunk = chunks_[index];
+  Chunk& chunk = drawing_->chunks[index];
   chunk.others.clear();
   chunk.small.Reserve(chunk.last - chunk.first);
-  raster_internal::SetUpFaces(faces.data(), chunk.first, chunk.last, screen_, DrawnBox(), options_.cull_back_faces,
-                              &chunk.small, &chunk.others);
+  raster_internal::SetUpFaces(faces.data(), chunk.first, chunk.last, drawing_->screen, DrawnBox(),
+                              options_.cull_back_faces, &chunk.small, &chunk.others);
   for (const int f : chunk.others) {
     LargeFace face;
     face.face = f;
     bool usable = true;
     for (int c = 0; c < 3; ++c) {
-      face.corners[c] = screen_vertices_[faces(f, c)];
+      face.corners[c] = drawing_->vertices[faces(f, c)];
       usable = usable && face.corners[c].x != kUnusable;  // else its pieces are in the last chunk
     }
     if (usable) chunk.large.push_back(face);
@@ -213,7 +237,7 @@ void VisibilityBuffer::DrawTile(int index) {
   const int x = index % tiles_across_ * kTileWidth, y = index / tiles_across_ * kTileHeight;
   const int width = std::min(kTileWidth, box_.width() - x), height = std::min(kTileHeight, box_.height() - y);
   int num_entries = 0;
-  for (const Chunk& chunk : chunks_) {
+  for (const Chunk& chunk : drawing_->chunks) {
     num_entries += chunk.small_begin[index + 1] - chunk.small_begin[index];
     num_entries += chunk.large_begin[index + 1] - chunk.large_begin[index];
   }
@@ -228,11 +252,11 @@ void VisibilityBuffer::DrawTile(int index) {
   raster_internal::Tile tile;
   tile.x = x, tile.y = y;
   raster_internal::ClearTile(&tile);
-  for (const Chunk& chunk : chunks_) {
+  for (const Chunk& chunk : drawing_->chunks) {
     raster_internal::DrawSmallFaces(chunk.small, chunk.small_entries.data() + chunk.small_begin[index],
                                     chunk.small_begin[index + 1] - chunk.small_begin[index], &tile);
   }
-  for (const Chunk& chunk : chunks_) {
+  for (const Chunk& chunk : drawing_->chunks) {
     raster_internal::DrawLargeFaces(chunk.large.data(), chunk.large_entries.data() + chunk.large_begin[index],
                                     chunk.large_begin[index + 1] - chunk.large_begin[index], DrawnBox(),
                                     options_.cull_back_faces, &tile);
@@ -260,15 +284,16 @@ void VisibilityBuffer::Render(const MatrixX3d& vertices, const MatrixX3i& faces,
   options_ = options;
   is_linear_ = camera.model == CameraModel::kWeakPerspective || !camera.HasDistortion();
 
+  if (drawing_ == nullptr) drawing_ = std::make_unique<Drawing>();
   const size_t room = static_cast<size_t>(num_vertices_) + kLanes;  // kernels write whole vectors
-  projected_.resize(room), screen_vertices_.resize(room);
-  screen_ = {projected_.data(), screen_vertices_.data()};
+  projected_.resize(room), drawing_->vertices.resize(room);
+  drawing_->screen = {projected_.data(), drawing_->vertices.data()};
   const int vertex_chunks = DivideUp(num_vertices_, kVerticesAChunk);
-  extents_.assign(vertex_chunks, {});
+  drawing_->extents.assign(vertex_chunks, {});
   RunPhases(options.num_threads,
             {{[&] { return vertex_chunks; }, [&](int i) { ProjectChunk(vertices, i); }},
              {[&] { return 1; }, [&](int) { PrepareFaces(vertices, faces); }},
-             {[&] { return static_cast<int>(chunks_.size()); }, [&](int i) { SetUpChunk(faces, i); }},
+             {[&] { return static_cast<int>(drawing_->chunks.size()); }, [&](int i) { SetUpChunk(faces, i); }},
              {[&] { return tiles_across_ * tiles_down_; }, [&](int i) { DrawTile(i); }}});
 }
 

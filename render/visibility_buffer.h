@@ -25,9 +25,15 @@
 #include "bodyloom/geometry/arrays.h"
 #include "bodyloom/geometry/camera.h"
 #include "bodyloom/render/pixel_box.h"
-#include "bodyloom/render/raster_simd.h"
+#include "bodyloom/render/projected_vertex.h"
 
 namespace bodyloom {
+
+namespace raster_internal {
+struct Box;
+struct ScreenExtent;
+struct ScreenVertex;
+}  // namespace raster_internal
 
 struct VisibilityOptions {
   bool cull_back_faces = true;  ///< faces are counter-clockwise seen from outside
@@ -39,6 +45,11 @@ struct VisibilityOptions {
 /// Keeps its memory between frames. Not for use by two threads at once.
 class VisibilityBuffer {
  public:
+  VisibilityBuffer();
+  ~VisibilityBuffer();
+  VisibilityBuffer(VisibilityBuffer&&) noexcept;
+  VisibilityBuffer& operator=(VisibilityBuffer&&) noexcept;
+
   /// Sees `faces` (F×3, indices into the V×3 vertices in the camera frame, metres) with `camera`. Throws
   /// std::invalid_argument when the camera has no image size, an index is out of range or a vertex is not finite; the
   /// buffer sees nothing then.
@@ -65,14 +76,8 @@ class VisibilityBuffer {
   [[nodiscard]] std::span<const ProjectedVertex> vertices() const { return {projected_.data(), size_t(num_vertices_)}; }
 
  private:
-  /// Faces of one stretch of indices, sorted by the tiles they meet.
-  struct Chunk {
-    int first = 0, last = 0;
-    raster_internal::SmallFaces small;
-    std::vector<raster_internal::LargeFace> large;
-    std::vector<int32_t> others;
-    std::vector<int32_t> small_begin, small_entries, large_begin, large_entries;  ///< by tile
-  };
+  struct Chunk;
+  struct Drawing;
   void ProjectChunk(const MatrixX3d& vertices, int chunk);
   [[nodiscard]] bool ToScreen(const Eigen::Vector3d& point, raster_internal::ScreenVertex* screen) const;
   void PrepareFaces(const MatrixX3d& vertices, const MatrixX3i& faces);
@@ -92,10 +97,7 @@ class VisibilityBuffer {
 
   int num_vertices_ = 0, tiles_across_ = 0, tiles_down_ = 0;
   std::vector<ProjectedVertex> projected_;
-  std::vector<raster_internal::ScreenVertex> screen_vertices_;
-  raster_internal::ScreenArrays screen_;
-  std::vector<raster_internal::ScreenExtent> extents_;
-  std::vector<Chunk> chunks_;  ///< the last one holds pieces of clipped faces
+  std::unique_ptr<Drawing> drawing_;
 };
 
 }  // namespace bodyloom

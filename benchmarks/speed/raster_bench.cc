@@ -21,6 +21,7 @@
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/geometry/posed_body.h"
 #include "bodyloom/render/overlay.h"
+#include "bodyloom/render/raster_simd.h"
 #include "bodyloom/render/resolve_pixels.h"
 #include "bodyloom/render/visibility_buffer.h"
 #include "bodyloom/render/visible_points.h"

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bodyloom/geometry/skinning_simd.h"
+#include "bodyloom/geometry/uv_bake_simd.h"
 #include "tests/support/meshes.h"
 
 namespace bodyloom {

@@ -8,6 +8,7 @@
 #include <random>
 #include <string>
 
+#include "bodyloom/render/raster_simd.h"
 #include "bodyloom/render/visibility_buffer.h"
 #include "tests/support/raster_twin.h"
 #include "tests/support/toy_body.h"

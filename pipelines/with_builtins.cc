@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/with_builtins.h"
+
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/data_tools/learned/lifter_weights_io.h"
+#include "bodyloom/data_tools/learned/pose_prior_io.h"
+
+namespace bodyloom {
+namespace {
+
+template <typename Input>
+void AddBuiltins(bool needs_lifter, Input* input) {
+  if (input->body == nullptr) input->body = &BuiltinBody();
+  if (input->prior == nullptr) input->prior = &BuiltinPosePrior();
+  if (input->lifter == nullptr && needs_lifter) input->lifter = &BuiltinLifter();
+}
+
+}  // namespace
+
+TrackSequenceInput WithBuiltins(TrackSequenceInput input) {
+  AddBuiltins(input.lifted == nullptr, &input);
+  return input;
+}
+
+LiveTrackerInput WithBuiltins(LiveTrackerInput input) {
+  AddBuiltins(true, &input);
+  return input;
+}
+
+}  // namespace bodyloom

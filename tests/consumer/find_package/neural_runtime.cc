@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+// LibTorch comes along with bodyloom::neural.
+#include <iostream>
+
+#include "bodyloom/neural/runtime.h"
+
+int main() {
+  std::cout << ToText(bodyloom::StartNeuralRuntime(1)) << "\n";
+  return 0;
+}

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// A clip is made, tracked and described with nothing but what is installed.
+#include <iostream>
+#include <vector>
+
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/data_tools/descriptors/descriptor_frames.h"
+#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
+#include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
+#include "bodyloom/pipelines/with_builtins.h"
+#include "bodyloom/tracking/track_sequence.h"
+
+int main() {
+  const bodyloom::BodyModel& body = bodyloom::BuiltinBody();
+  const bodyloom::SynthClip clip = bodyloom::MakeSynthClip(body, bodyloom::DemoMotion(body, 12, 30));
+  bodyloom::TrackSequenceInput input;
+  input.keypoints = &clip.keypoints;
+  input.camera = clip.truth.camera;
+  const auto [track, summary] = bodyloom::TrackSequence(bodyloom::WithBuiltins(input), {});
+  bodyloom::DescriptorFrames frames(body, track);
+  std::vector<float> planes(frames.frame_size());
+  frames.Planes(5, planes);
+  std::cout << summary.BriefReport() << "\n" << frames.channels() << " planes of a frame\n";
+  return summary.IsUsable() && track.num_frames() == 12 && frames.channels() == 33 ? 0 : 1;
+}

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/with_builtins.h"
+
+#include <gtest/gtest.h>
+
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/data_tools/learned/lifter_weights_io.h"
+#include "bodyloom/data_tools/learned/pose_prior_io.h"
+#include "bodyloom/tracking/initialise/lift_keypoints.h"
+
+namespace bodyloom {
+namespace {
+
+TEST(WithBuiltins, FillsInWhatTheInputDoesNotName) {
+  TrackSequenceInput input;
+  input.camera.width = 640;
+  const TrackSequenceInput all = WithBuiltins(input);
+  EXPECT_EQ(all.body, &BuiltinBody());
+  EXPECT_EQ(all.prior, &BuiltinPosePrior());
+  EXPECT_EQ(all.lifter, &BuiltinLifter());
+  EXPECT_EQ(all.camera.width, 640);
+  LiveTrackerInput live;
+  live.landmarks = {"nose"};
+  const LiveTrackerInput live_all = WithBuiltins(live);
+  EXPECT_EQ(live_all.body, &BuiltinBody());
+  EXPECT_EQ(live_all.prior, &BuiltinPosePrior());
+  EXPECT_EQ(live_all.lifter, &BuiltinLifter());
+  EXPECT_EQ(live_all.landmarks, live.landmarks);
+}
+
+TEST(WithBuiltins, LeavesWhatItNames) {
+  const BodyModel body = BuiltinBody();
+  const PosePrior prior = BuiltinPosePrior();
+  const LifterWeights lifter = BuiltinLifter();
+  TrackSequenceInput input;
+  input.body = &body;
+  input.prior = &prior;
+  input.lifter = &lifter;
+  const TrackSequenceInput same = WithBuiltins(input);
+  EXPECT_EQ(same.body, &body);
+  EXPECT_EQ(same.prior, &prior);
+  EXPECT_EQ(same.lifter, &lifter);
+}
+
+TEST(WithBuiltins, AnothersLandmarksTakeTheLiftersPlace) {
+  const std::vector<LiftedFrame> lifted(3);
+  TrackSequenceInput input;
+  input.lifted = &lifted;
+  EXPECT_EQ(WithBuiltins(input).lifter, nullptr);
+  EXPECT_EQ(WithBuiltins(input).prior, &BuiltinPosePrior());
+}
+
+}  // namespace
+}  // namespace bodyloom
