@@ -17,9 +17,10 @@ MAY_INCLUDE = {
     "tracking": {"geometry", "render"},
     "data_tools": {"geometry", "render"},
     "neural": {"geometry", "render"},
-    "apps": {"geometry", "render", "tracking", "data_tools", "neural"},
-    "benchmarks": {"geometry", "render", "tracking", "data_tools", "neural", "tests"},
-    "tests": {"geometry", "render", "tracking", "data_tools", "neural", "apps", "benchmarks"},
+    "pipelines": {"geometry", "render", "tracking", "data_tools", "neural"},
+    "apps": {"geometry", "render", "tracking", "data_tools", "neural", "pipelines"},
+    "benchmarks": {"geometry", "render", "tracking", "data_tools", "neural", "pipelines", "tests"},
+    "tests": {"geometry", "render", "tracking", "data_tools", "neural", "pipelines", "apps", "benchmarks"},
 }
 
 # Sub-folder -> what it may include besides: the evaluation protocols read files and measure with tracking's metrics; the
@@ -36,7 +37,7 @@ THIRD_PARTY = [
     (r"CGAL/", TEST_CODE, False),
     (r"embree3/", TEST_CODE, False),
     (r"OpenMesh/", {"geometry", "data_tools"} | TEST_CODE, False),
-    (r"nlohmann/(?!json_fwd)", {"data_tools", "apps"} | TEST_CODE, False),
+    (r"nlohmann/(?!json_fwd)", {"data_tools", "pipelines", "apps"} | TEST_CODE, False),
     (r"(matio|zlib)\.h", {"data_tools"} | TEST_CODE, False),
     (r"CLI/", {"apps"}, False),
     (r"hwy/", {"geometry", "render", "tracking"} | TEST_CODE, False),
