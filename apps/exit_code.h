@@ -2,9 +2,6 @@
 /// How the command ends: the exit codes that scripts may rely on, and the exceptions that lead to them.
 #pragma once
 
-#include <stdexcept>
-#include <string>
-
 #include "bodyloom/pipelines/callbacks.h"
 
 namespace bodyloom {
@@ -20,11 +17,5 @@ enum ExitCode : int {
 constexpr const char* kExitCodeHelp =
     "Exit codes: 0 done, 1 failed (one line on stderr says why), 2 wrong usage, 130 interrupted.\n"
     "Output files are written whole or not at all.";
-
-/// Unwinds the stack after Ctrl-C, so that temporary files go; main() answers with exit code 130.
-class Interrupted : public std::runtime_error {
- public:
-  Interrupted() : std::runtime_error("interrupted") {}
-};
 
 }  // namespace bodyloom

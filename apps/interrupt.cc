@@ -3,7 +3,7 @@
 
 #include <csignal>
 
-#include "apps/exit_code.h"
+#include "bodyloom/pipelines/callbacks.h"
 
 namespace bodyloom {
 namespace {
@@ -29,7 +29,7 @@ bool IsInterrupted() { return interrupt_flag != 0; }
 
 void ThrowIfInterrupted() {
   if (IsInterrupted()) {
-    throw Interrupted();
+    throw Cancelled();
   }
 }
 

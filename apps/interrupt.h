@@ -10,7 +10,7 @@ void InstallSignalHandlers();
 
 [[nodiscard]] bool IsInterrupted();
 
-/// Throws Interrupted (apps/exit_code.h) when the flag is up.
+/// Throws Cancelled (pipelines/callbacks.h) when the flag is up; main() answers with exit code 130.
 void ThrowIfInterrupted();
 
 }  // namespace bodyloom

@@ -70,6 +70,9 @@ int main(int argc, char** argv) {
   } catch (const bodyloom::RequestError& error) {
     std::cerr << name << ": " << error.what() << "\nRun with --help for the options.\n";
     return bodyloom::kExitUsage;
+  } catch (const bodyloom::Cancelled&) {
+    std::cerr << name << ": interrupted\n";
+    return bodyloom::kExitInterrupted;
   } catch (const std::exception& error) {
     std::cerr << name << ": " << error.what() << "\n";
     return bodyloom::IsInterrupted() ? bodyloom::kExitInterrupted : bodyloom::kExitFailed;

@@ -5,8 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <iostream>
+
+#include "bodyloom/pipelines/clock_text.h"
 
 namespace bodyloom {
 namespace {
@@ -24,17 +25,6 @@ std::string EtaText(double fraction, double elapsed_seconds) {
 
 }  // namespace
 
-std::string ClockText(double seconds) {
-  const auto whole = static_cast<long long>(std::max(0.0, std::round(seconds)));
-  char text[48];
-  if (whole >= 3600) {
-    std::snprintf(text, sizeof text, "%lld:%02lld:%02lld", whole / 3600, whole / 60 % 60, whole % 60);
-  } else {
-    std::snprintf(text, sizeof text, "%lld:%02lld", whole / 60, whole % 60);
-  }
-  return text;
-}
-
 Progress::Style Progress::DefaultStyle() { return isatty(STDERR_FILENO) != 0 ? Style::kBar : Style::kLines; }
 
 Progress::Progress(std::string title, Style style) : Progress(std::move(title), style, std::cerr) {}
@@ -42,9 +32,12 @@ Progress::Progress(std::string title, Style style) : Progress(std::move(title), 
 Progress::Progress(std::string title, Style style, std::ostream& out)
     : title_(std::move(title)), style_(style), out_(out) {}
 
-Progress::~Progress() {
+Progress::~Progress() { Wipe(); }
+
+void Progress::Wipe() {
   if (style_ == Style::kBar && drawn_width_ > 0) {
     out_ << "\r" << std::string(drawn_width_, ' ') << "\r" << std::flush;
+    drawn_width_ = 0;
   }
 }
 

@@ -8,9 +8,6 @@
 
 namespace bodyloom {
 
-/// "0:07", "12:34", "1:02:03".
-std::string ClockText(double seconds);
-
 class Progress {
  public:
   enum class Style { kBar, kLines, kSilent };
@@ -29,6 +26,9 @@ class Progress {
   /// `fraction` of the whole in [0, 1]; a smaller one than before is taken for the one before. A bar is redrawn at most
   /// ten times a second; a line is written when the stage changes and every ten seconds.
   void Update(const std::string& stage, double fraction);
+
+  /// Takes a bar off the screen, so that a line can be printed; the next Update() may draw it again.
+  void Wipe();
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -2,8 +2,7 @@
 #include "apps/track_options.h"
 
 #include <CLI/CLI.hpp>
-
-#include "apps/exit_code.h"
+#include <cstdio>
 
 namespace bodyloom {
 namespace {
@@ -15,14 +14,14 @@ CLI::Validator Quiet(CLI::Validator validator) {
 }
 
 /// "1920x1080" into two numbers.
-void AddImageSize(CLI::App& app, TrackCommand* command) {
+void AddImageSize(CLI::App& app, TrackRequest* request) {
   app.add_option_function<std::string>(
          "--image-size",
-         [command](const std::string& text) {
+         [request](const std::string& text) {
            char cross = 0, rest = 0;
            const int n =
-               std::sscanf(text.c_str(), "%d%c%d%c", &command->image_width, &cross, &command->image_height, &rest);
-           if (n != 3 || cross != 'x' || command->image_width <= 0 || command->image_height <= 0) {
+               std::sscanf(text.c_str(), "%d%c%d%c", &request->image_width, &cross, &request->image_height, &rest);
+           if (n != 3 || cross != 'x' || request->image_width <= 0 || request->image_height <= 0) {
              throw CLI::ValidationError("--image-size", "'" + text + "', expected WIDTHxHEIGHT as in 1920x1080");
            }
          },
@@ -32,8 +31,8 @@ void AddImageSize(CLI::App& app, TrackCommand* command) {
 
 }  // namespace
 
-void AddTrackOptions(CLI::App& app, TrackCommand* command) {
-  TrackCommand& c = *command;
+void AddTrackOptions(CLI::App& app, TrackRequest* request, bool* quiet) {
+  TrackRequest& c = *request;
   const std::string seen = "What was seen", camera = "The camera", known = "What else is known", wanted = "Results",
                     solve = "The solve";
   app.add_option(
@@ -86,7 +85,7 @@ void AddTrackOptions(CLI::App& app, TrackCommand* command) {
   app.add_option("--focal", c.focal_px, "focal length in pixels, for a centred camera without distortion")
       ->group(camera)
       ->check(Quiet(CLI::PositiveNumber));
-  AddImageSize(app, command);
+  AddImageSize(app, request);
   app.get_option("--image-size")->group(camera);
 
   app.add_option("--video", c.video, "the video (or a folder of images), for image size, frame rate and the overlay")
@@ -119,7 +118,7 @@ void AddTrackOptions(CLI::App& app, TrackCommand* command) {
   app.add_option("--json", c.json, "the closing summary as JSON")->group(wanted)->type_name("FILE");
   app.add_flag("--plan", c.plan, "print what would run, what is skipped and why; compute and write nothing")
       ->group(wanted);
-  app.add_flag("--quiet", c.quiet, "no progress and no summary on the screen")->group(wanted);
+  app.add_flag("--quiet", *quiet, "no progress and no summary on the screen")->group(wanted);
 
   TrackSequenceOptions& s = c.solve;
   app.add_option("--solver", s.solver,
@@ -159,48 +158,6 @@ void AddTrackOptions(CLI::App& app, TrackCommand* command) {
          "--no-skip", [&s] { s.skip_unneeded = false; },
          "solve also for joints that no landmark moves: nearly the same answer, slower")
       ->group(solve);
-}
-
-CameraKnowledge CameraKnowledgeOf(const TrackCommand& command) {
-  if (command.camera == "weak") {
-    return CameraKnowledge::kWeak;
-  }
-  const bool has_intrinsics = !command.cameras.empty() || command.focal_px > 0;
-  return command.camera == "pinhole" || (command.camera.empty() && has_intrinsics) ? CameraKnowledge::kKnown
-                                                                                   : CameraKnowledge::kUnknownFocal;
-}
-
-void CheckTrackOptions(const TrackCommand& command) {
-  if (command.detections.empty() && command.dense.empty() && command.part_labels.empty()) {
-    throw RequestError("--detections is required (or --dense, or --part-labels)");
-  }
-  if (command.dense_uv_sigma && command.dense.empty() && !command.detections.ends_with(".npz")) {
-    throw RequestError("--dense-uv-sigma is the noise of dense keypoints: give --dense");
-  }
-  if (command.out.empty() && !command.plan) {
-    throw RequestError("--out is required (or --plan, to see what would be done)");
-  }
-  if (command.camera == "pinhole" && command.cameras.empty() && command.focal_px == 0) {
-    throw RequestError("--camera pinhole needs the intrinsics: give --cameras FILE or --focal PIXELS");
-  }
-  if (!command.cameras.empty() && command.focal_px > 0) {
-    throw RequestError("--cameras and --focal both give the focal length, expected one of them");
-  }
-  if (!command.overlay.empty() && !command.overlay.ends_with(".mp4")) {
-    throw RequestError("--overlay " + command.overlay + ": expected a name that ends in .mp4");
-  }
-  if (command.live_lag && command.solve.solver != "chain") {
-    throw RequestError("--live runs on the chain solver: leave out --solver " + command.solve.solver);
-  }
-  if (command.live_lag && command.detections.empty() && command.dense.empty()) {
-    throw RequestError("--live does not use part labels: give --detections or --dense");
-  }
-  if (command.side_view && command.overlay.empty()) {
-    throw RequestError("--side-view is a part of the overlay: give --overlay FILE");
-  }
-  if (!command.reference.empty() && !command.side_view) {
-    throw RequestError("--reference is drawn in the side view: give --side-view");
-  }
 }
 
 }  // namespace bodyloom

@@ -4,10 +4,11 @@
 #include <memory>
 #include <string>
 
+#include "apps/command_callbacks.h"
 #include "apps/exec_neural.h"
 #include "apps/exit_code.h"
-#include "apps/metrics_run.h"
 #include "apps/verbs.h"
+#include "bodyloom/pipelines/score/compare_results.h"
 
 namespace bodyloom {
 namespace {
@@ -29,16 +30,15 @@ constexpr const char* kFooter =
     "  bodyloom metrics --truth clip/images --result run/frames --json errors.json --csv frames.csv\n"
     "  bodyloom metrics --truth clip.mp4 --result rendered.mp4 --preset 3dgs\n\n";
 
-void Metrics(const MetricsCommand& command) { std::cout << ToText(RunMetrics(command)); }
-
 }  // namespace
 
 void AddMetricsVerb(CLI::App& app, Action* action, std::vector<std::string> arguments, MoreMetrics more) {
   CLI::App* verb = app.add_subcommand("metrics", "Compares pictures with the truth: PSNR, SSIM, labels, normals");
   verb->footer(std::string(kFooter) + kExitCodeHelp);
-  auto command = std::make_shared<MetricsCommand>();
-  auto preset = std::make_shared<std::string>(ToText(command->preset));
-  MetricsCommand& c = *command;
+  auto request = std::make_shared<CompareResultsRequest>();
+  auto quiet = std::make_shared<bool>(false);
+  auto preset = std::make_shared<std::string>(ToText(request->preset));
+  CompareResultsRequest& c = *request;
   verb->add_option("--truth", c.truth, "folder or video with the truth")->required()->type_name("PATH");
   verb->add_option("--result", c.result, "folder or video to judge")->required()->type_name("PATH");
   verb->add_option("--mask", c.mask, "folder or video of masks: pixels of 128 or more count")->type_name("PATH");
@@ -67,17 +67,17 @@ void AddMetricsVerb(CLI::App& app, Action* action, std::vector<std::string> argu
   verb->add_option("--weights", *weights, "folder with alexnet and lpips_alex, .pth or .safetensors")
       ->type_name("DIR")
       ->needs(with_lpips);
-  verb->add_flag("--quiet", c.quiet, "no progress");
-  verb->callback(
-      [command, preset, reacting, lpips, weights, action, arguments = std::move(arguments), more = std::move(more)] {
-        command->preset = SsimPresetFrom(*preset).value();
-        command->reacting = *reacting == "top" ? PersonLabel::kTop : PersonLabel::kBottom;
-        *action = [=] {
-          if (*lpips && !more) ExecNeural(arguments);
-          if (*lpips) command->more = more(*weights);
-          Metrics(*command);
-        };
-      });
+  verb->add_flag("--quiet", *quiet, "no progress");
+  verb->callback([request, quiet, preset, reacting, lpips, weights, action, arguments = std::move(arguments),
+                  more = std::move(more)] {
+    request->preset = SsimPresetFrom(*preset).value();
+    request->reacting = *reacting == "top" ? PersonLabel::kTop : PersonLabel::kBottom;
+    *action = [=] {
+      if (*lpips && !more) ExecNeural(arguments);
+      if (*lpips) request->more = more(*weights);
+      std::cout << ToText(CompareResults(*request, CommandCallbacks(*quiet)));
+    };
+  });
 }
 
 }  // namespace bodyloom

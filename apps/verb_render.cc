@@ -4,9 +4,10 @@
 #include <memory>
 #include <string>
 
+#include "apps/command_callbacks.h"
 #include "apps/exit_code.h"
-#include "apps/render_run.h"
 #include "apps/verbs.h"
+#include "bodyloom/pipelines/render/render_track.h"
 
 namespace bodyloom {
 namespace {
@@ -31,9 +32,17 @@ constexpr const char* kFooter =
     "  bodyloom render --track track.npz --what normal --frames 42 --turntable --out turn.mp4\n"
     "  bodyloom render --track track.npz --what iuv --frames 0:30 --out iuv.npz\n\n";
 
-void Render(const RenderCommand& command) {
-  const RenderReport report = RunRender(command);
-  if (!command.quiet) {
+struct RenderArguments {
+  RenderTrackRequest request;
+  std::string what;
+  bool quiet = false;
+};
+
+void Render(const RenderArguments& arguments) {
+  RenderTrackRequest request = arguments.request;
+  request.what = RenderKindFromString(arguments.what);
+  const RenderTrackReport report = RenderTrack(request, CommandCallbacks(arguments.quiet));
+  if (!arguments.quiet) {
     std::cout << ToText(report);
   }
 }
@@ -44,10 +53,10 @@ void AddRenderVerb(CLI::App& app, Action* action) {
   CLI::App* verb =
       app.add_subcommand("render", "Shows a track: overlay, parts, IUV, normals, depth, texture; any side");
   verb->footer(std::string(kFooter) + kExitCodeHelp);
-  auto command = std::make_shared<RenderCommand>();
-  RenderCommand& c = *command;
+  auto arguments = std::make_shared<RenderArguments>();
+  RenderTrackRequest& c = arguments->request;
   verb->add_option("--track", c.track, "the track, .npz")->required()->type_name("FILE");
-  verb->add_option("--what", c.what, "what to show (below)")
+  verb->add_option("--what", arguments->what, "what to show (below)")
       ->required()
       ->check(CLI::IsMember({"overlay", "iuv", "parts", "normal", "depth", "texture"}))
       ->type_name("KIND");
@@ -56,12 +65,11 @@ void AddRenderVerb(CLI::App& app, Action* action) {
   verb->add_option("--body", c.body, "the track's body (default: the built-in body)")->type_name("FILE");
   verb->add_option("--frames", c.frames, "only frames a to b-1; one number: that frame (default: all)")
       ->type_name("a:b");
-  CLI::Option* yaw =
-      verb->add_option("--view-yaw", c.view_yaw_deg,
-                       "see the person from the side: degrees about the vertical, 90 is from its left; the camera "
-                       "follows the person")
-          ->check(CLI::Range(-3600.0, 3600.0))
-          ->type_name("DEG");
+  verb->add_option("--view-yaw", c.view_yaw_deg,
+                   "see the person from the side: degrees about the vertical, 90 is from its left; the camera "
+                   "follows the person")
+      ->check(CLI::Range(-3600.0, 3600.0))
+      ->type_name("DEG");
   verb->add_flag(
       "--turntable", c.turntable,
       "that camera makes one full turn over the frames (one frame: the pose is held, 120 pictures or 12 cells)");
@@ -71,11 +79,8 @@ void AddRenderVerb(CLI::App& app, Action* action) {
   verb->add_option("--threads", c.num_threads, "0: all cores; pictures are the same for any number")
       ->check(CLI::Range(0, 256))
       ->capture_default_str();
-  verb->add_flag("--quiet", c.quiet, "only errors");
-  verb->callback([command, yaw, action] {
-    command->has_view_yaw = yaw->count() > 0;
-    *action = [command] { Render(*command); };
-  });
+  verb->add_flag("--quiet", arguments->quiet, "only errors");
+  verb->callback([arguments, action] { *action = [arguments] { Render(*arguments); }; });
 }
 
 }  // namespace bodyloom

@@ -3,9 +3,11 @@
 #include <iostream>
 #include <memory>
 
+#include "apps/command_callbacks.h"
 #include "apps/exit_code.h"
-#include "apps/synth_run.h"
+#include "apps/synth_options.h"
 #include "apps/verbs.h"
+#include "bodyloom/pipelines/synthesis/synthesize_clip.h"
 
 namespace bodyloom {
 namespace {
@@ -18,25 +20,10 @@ constexpr const char* kFooter =
     "  bodyloom track --detections clip/observations.npz --cameras clip/camera.json --out track.npz\n"
     "  bodyloom evaluate --track track.npz --truth clip/truth.npz\n\n";
 
-void Synth(const SynthCommand& command) {
-  const SynthClip clip = RunSynth(command);
-  if (command.quiet) {
-    return;
-  }
-  const SynthFaultCounts& counts = clip.counts;
-  std::cout << clip.truth.num_frames() << " frames of " << clip.truth.camera.width << "x" << clip.truth.camera.height
-            << ", " << counts.frames_dropped << " without observations\n"
-            << "2D joints        " << counts.keypoints << ", " << counts.keypoints_hidden << " hidden by the body\n"
-            << "dense keypoints  " << counts.dense << ", " << counts.dense_outliers << " outliers, "
-            << counts.dense_missing << " lost with missing parts\n";
-  if (clip.initialiser.num_frames() > 0) {
-    std::cout << "initialiser      wrong by " << clip.initialiser_error_px << " px at 512\n";
-  }
-  const SynthFiles files = SynthFilesIn(command);
-  for (const std::string& path : {files.observations, files.truth, files.camera, files.initialiser, files.video}) {
-    if (!path.empty()) {
-      std::cout << "wrote            " << path << "\n";
-    }
+void Synth(const SynthesizeClipRequest& request, bool quiet) {
+  const SynthesizeClipReport report = SynthesizeClip(request, CommandCallbacks(quiet));
+  if (!quiet) {
+    std::cout << ToText(report);
   }
 }
 
@@ -45,9 +32,10 @@ void Synth(const SynthCommand& command) {
 void AddSynthVerb(CLI::App& app, Action* action) {
   CLI::App* verb = app.add_subcommand("synth", "Makes a clip with known truth: motion in, observations out");
   verb->footer(std::string(kFooter) + kExitCodeHelp);
-  auto command = std::make_shared<SynthCommand>();
-  AddSynthOptions(*verb, command.get());
-  verb->callback([command, action] { *action = [command] { Synth(*command); }; });
+  auto request = std::make_shared<SynthesizeClipRequest>();
+  auto quiet = std::make_shared<bool>(false);
+  AddSynthOptions(*verb, request.get(), quiet.get());
+  verb->callback([request, quiet, action] { *action = [request, quiet] { Synth(*request, *quiet); }; });
 }
 
 }  // namespace bodyloom

@@ -3,9 +3,11 @@
 #include <iostream>
 #include <memory>
 
+#include "apps/command_callbacks.h"
 #include "apps/exit_code.h"
-#include "apps/track_run.h"
+#include "apps/track_options.h"
 #include "apps/verbs.h"
+#include "bodyloom/pipelines/track/track_clip.h"
 
 namespace bodyloom {
 namespace {
@@ -22,11 +24,11 @@ constexpr const char* kFooter =
     "  what would be done, and why not the rest:\n"
     "    bodyloom track --detections coco.json --image-size 1920x1080 --plan\n\n";
 
-void TrackAndReport(const TrackCommand& command) {
-  const TrackReport report = RunTrack(command);
-  if (command.plan) {
+void TrackAndReport(const TrackRequest& request, bool quiet) {
+  const TrackReport report = TrackClip(request, CommandCallbacks(quiet));
+  if (request.plan) {
     std::cout << report.num_frames << " frames would be tracked:\n" << ToText(report.solve.plan);
-  } else if (!command.quiet) {
+  } else if (!quiet) {
     std::cout << ToText(report);
   }
 }
@@ -36,9 +38,10 @@ void TrackAndReport(const TrackCommand& command) {
 void AddTrackVerb(CLI::App& app, Action* action) {
   CLI::App* verb = app.add_subcommand("track", "Fits a body to a clip: detections in, track out");
   verb->footer(std::string(kFooter) + kExitCodeHelp);
-  auto command = std::make_shared<TrackCommand>();
-  AddTrackOptions(*verb, command.get());
-  verb->callback([command, action] { *action = [command] { TrackAndReport(*command); }; });
+  auto request = std::make_shared<TrackRequest>();
+  auto quiet = std::make_shared<bool>(false);
+  AddTrackOptions(*verb, request.get(), quiet.get());
+  verb->callback([request, quiet, action] { *action = [request, quiet] { TrackAndReport(*request, *quiet); }; });
 }
 
 }  // namespace bodyloom

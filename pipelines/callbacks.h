@@ -23,15 +23,27 @@ class Cancelled : public std::runtime_error {
 };
 
 struct PipelineCallbacks {
-  /// Called now and then with the stage at work and how much of the whole job is done, in [0, 1]; false cancels the
-  /// job. It may be called from any one thread at a time. Without it the job runs through.
+  /// The name of the work whose progress follows ("tracking 240 frames"), once it is known. A job that runs others
+  /// begins several, one after the other.
+  std::function<void(const std::string& work)> begin;
+  /// Called now and then with the stage at work and how much of the whole work is done, in [0, 1] (0 throughout when
+  /// its length is not known); false cancels the job. It may be called from any one thread at a time. Without it the
+  /// job runs through.
   std::function<bool(const std::string& stage, double fraction)> progress;
   /// A line that a user should read while the job runs (no newline at its end): what was left out, what was found.
   std::function<void(const std::string& line)> message;
 
-  /// Calls `progress`, if any; throws Cancelled when it returns false.
+  /// Calls `begin`, if any.
+  void Begin(const std::string& work) const {
+    if (begin) begin(work);
+  }
+  /// Calls `progress`, if any, and returns its answer: for code that stops by itself when it is told to.
+  [[nodiscard]] bool GoesOn(const std::string& stage, double fraction) const {
+    return !progress || progress(stage, fraction);
+  }
+  /// The same; throws Cancelled instead of returning false.
   void Update(const std::string& stage, double fraction) const {
-    if (progress && !progress(stage, fraction)) throw Cancelled();
+    if (!GoesOn(stage, fraction)) throw Cancelled();
   }
   /// Calls `message`, if any.
   void Say(const std::string& line) const {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/metrics_run.h"
+#include "bodyloom/pipelines/score/frame_metric.h"
 
 namespace bodyloom {
 

@@ -19,6 +19,7 @@
 #include "bodyloom/data_tools/synthesis/lifter/lifter_windows.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/neural/lifter/train_lifter.h"
+#include "bodyloom/pipelines/clock_text.h"
 
 namespace bodyloom {
 namespace {

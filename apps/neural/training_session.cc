@@ -11,6 +11,7 @@
 #include "apps/exit_code.h"
 #include "apps/interrupt.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/pipelines/clock_text.h"
 #include "bodyloom/pipelines/files.h"
 
 namespace bodyloom {

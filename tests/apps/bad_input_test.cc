@@ -9,7 +9,8 @@
 
 #include "apps/exit_code.h"
 #include "bodyloom/data_tools/formats/npz.h"
-#include "tests/apps/run_command.h"
+#include "tests/support/run_command.h"
+#include "tests/support/scratch_folder.h"
 
 namespace bodyloom {
 namespace {

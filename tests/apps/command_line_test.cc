@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "apps/exit_code.h"
-#include "tests/apps/run_command.h"
+#include "tests/support/run_command.h"
 
 namespace bodyloom {
 namespace {

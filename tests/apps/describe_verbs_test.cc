@@ -10,7 +10,8 @@
 #include "apps/exit_code.h"
 #include "bodyloom/data_tools/formats/npz.h"
 #include "bodyloom/data_tools/video/image_file.h"
-#include "tests/apps/run_command.h"
+#include "tests/support/run_command.h"
+#include "tests/support/scratch_folder.h"
 
 namespace bodyloom {
 namespace {

@@ -10,11 +10,11 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/exit_code.h"
-#include "apps/metrics_run.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/data_tools/video/video_writer.h"
-#include "tests/apps/run_command.h"
+#include "tests/support/run_command.h"
+#include "tests/support/scratch_folder.h"
 
 namespace bodyloom {
 namespace {
@@ -213,39 +213,6 @@ TEST_F(MetricsVerb, WhatCannotBeComparedIsNamed) {
   ExpectError({"--truth", truth, "--result", result, "--common", "--json", Path("m.json")}, "000000.png: not an image");
   EXPECT_FALSE(fs::exists(Path("m.json")));
   EXPECT_EQ(Run({"--truth", truth}).exit_code, kExitUsage);
-}
-
-TEST_F(MetricsVerb, FurtherMetricsSeeFramesInOrder) {
-  MetricsCommand command;
-  command.truth = Pictures("truth", {10, 20, 30, 40, 50});
-  command.result = Pictures("result", {11, 21, 31, 41, 51});
-  command.num_threads = 2;
-  command.quiet = true;
-  command.csv = Path("m.csv");
-  FrameMetric change;
-  change.columns = {{"change", "of the result since the frame before"}, {"level", "of the truth"}};
-  change.compute = [](const FramePair& frame, const FramePair* before) {
-    const double here = frame.result.at(0, 0).red;
-    return std::vector<double>{before == nullptr ? std::nan("") : here - before->result.at(0, 0).red,
-                               double(frame.truth.at(0, 0).red)};
-  };
-  command.more = {change};
-  const MetricsReport report = RunMetrics(command);
-  const MetricTable& table = report.tables.at(0);
-  ASSERT_EQ(table.columns.size(), 4U);
-  for (size_t i = 0; i < 5; ++i) {
-    EXPECT_EQ(table.rows[i].values[3], 10.0 * (i + 1));
-    if (i > 0) {
-      EXPECT_EQ(table.rows[i].values[2], 10);
-    }
-  }
-  const ColumnSummary summary = Summarise(table, 2);
-  EXPECT_EQ(summary.finite, 4);
-  EXPECT_EQ(summary.undefined, 1);
-  EXPECT_EQ(summary.std, 0);
-  EXPECT_THAT(Contents(Path("m.csv")), HasSubstr("frame,psnr_db,ssim_wang2004,change,level\n"));
-  command.more.front().compute = [](const FramePair&, const FramePair*) { return std::vector<double>{1}; };
-  EXPECT_THROW(RunMetrics(command), std::runtime_error);
 }
 
 TEST_F(MetricsVerb, LpipsComesFromTheNeuralHalf) {

@@ -9,7 +9,8 @@
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/motion/bvh_writer.h"
 #include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
-#include "tests/apps/run_command.h"
+#include "tests/support/run_command.h"
+#include "tests/support/scratch_folder.h"
 
 namespace bodyloom {
 namespace {

@@ -13,14 +13,6 @@ using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-TEST(ClockText, MinutesAndHours) {
-  EXPECT_EQ(ClockText(0), "0:00");
-  EXPECT_EQ(ClockText(7.4), "0:07");
-  EXPECT_EQ(ClockText(754), "12:34");
-  EXPECT_EQ(ClockText(3723), "1:02:03");
-  EXPECT_EQ(ClockText(-3), "0:00");
-}
-
 TEST(Progress, WritesOneLineAStageWhenNotATerminal) {
   std::ostringstream out;
   {
@@ -41,6 +33,19 @@ TEST(Progress, DrawsABarThatIsWipedAtTheEnd) {
   }
   EXPECT_THAT(out.str(), EndsWith(" \r"));
   EXPECT_THAT(out.str(), Not(HasSubstr("\n")));
+}
+
+TEST(Progress, ABarThatWasWipedIsDrawnAgain) {
+  std::ostringstream out;
+  Progress progress("tracking", Progress::Style::kBar, out);
+  progress.Update("fit", 0.25);
+  progress.Wipe();
+  EXPECT_THAT(out.str(), EndsWith(" \r"));
+  const size_t wiped = out.str().size();
+  progress.Wipe();
+  EXPECT_EQ(out.str().size(), wiped) << "nothing is left to wipe";
+  progress.Update("write", 0.75);
+  EXPECT_THAT(out.str().substr(wiped), HasSubstr("75 % write"));
 }
 
 TEST(Progress, NeverGoesBackAndStaysWithinBounds) {

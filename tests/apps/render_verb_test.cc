@@ -10,7 +10,6 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/exit_code.h"
-#include "apps/render_run.h"
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/formats/npz.h"
 #include "bodyloom/data_tools/motion/track_io.h"
@@ -19,7 +18,8 @@
 #include "bodyloom/data_tools/video/video_writer.h"
 #include "bodyloom/render/overlay.h"
 #include "bodyloom/render/resolve_pixels.h"
-#include "tests/apps/run_command.h"
+#include "tests/support/run_command.h"
+#include "tests/support/scratch_folder.h"
 
 namespace bodyloom {
 namespace {
@@ -333,17 +333,6 @@ TEST_F(RenderVerb, AFullDiskLeavesNothingBehind) {
     EXPECT_THAT(result.err, HasSubstr(Out(name)));
     EXPECT_THAT(folder_.Entries(), IsEmpty()) << name;
   }
-}
-
-TEST(FrameRange, ReadsWhatUsersWrite) {
-  EXPECT_EQ(FrameRange("", 10, "t"), std::make_pair(0, 10));
-  EXPECT_EQ(FrameRange("3", 10, "t"), std::make_pair(3, 4));
-  EXPECT_EQ(FrameRange("3:", 10, "t"), std::make_pair(3, 10));
-  EXPECT_EQ(FrameRange(":7", 10, "t"), std::make_pair(0, 7));
-  EXPECT_EQ(FrameRange("3:7", 10, "t"), std::make_pair(3, 7));
-  EXPECT_THROW(FrameRange("10", 10, "t"), std::runtime_error);
-  EXPECT_THROW(FrameRange("9:11", 10, "t"), std::runtime_error);
-  EXPECT_THROW(FrameRange("7:3", 10, "t"), RequestError);
 }
 
 }  // namespace

@@ -6,7 +6,8 @@
 #include "bodyloom/data_tools/datasets/people_set.h"
 #include "bodyloom/data_tools/datasets/person_set.h"
 #include "bodyloom/data_tools/video/image_file.h"
-#include "tests/apps/run_command.h"
+#include "tests/support/run_command.h"
+#include "tests/support/scratch_folder.h"
 
 namespace bodyloom {
 namespace {

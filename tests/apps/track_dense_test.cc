@@ -18,7 +18,8 @@
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/render/overlay.h"
 #include "bodyloom/render/visible_points.h"
-#include "tests/apps/run_command.h"
+#include "tests/support/run_command.h"
+#include "tests/support/scratch_folder.h"
 
 namespace bodyloom {
 namespace {

@@ -8,7 +8,8 @@
 
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/data_tools/video/video_reader.h"
-#include "tests/apps/run_command.h"
+#include "tests/support/run_command.h"
+#include "tests/support/scratch_folder.h"
 #include "tests/support/test_files.h"
 
 namespace bodyloom {

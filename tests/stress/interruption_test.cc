@@ -13,7 +13,8 @@
 #include <thread>
 
 #include "bodyloom/data_tools/motion/track_io.h"
-#include "tests/apps/run_command.h"
+#include "tests/support/run_command.h"
+#include "tests/support/scratch_folder.h"
 #include "tests/support/test_files.h"
 
 namespace bodyloom::stress {

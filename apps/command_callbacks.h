@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What a pipeline reports while it runs, on a terminal: progress on stderr, messages as lines; Ctrl-C cancels it.
+#pragma once
+
+#include <iostream>
+
+#include "bodyloom/pipelines/callbacks.h"
+
+namespace bodyloom {
+
+/// Work that has a name (PipelineCallbacks::begin) gets a bar or lines on stderr (apps/progress.h), nothing when
+/// `quiet`; work without one shows nothing. A raised interrupt flag (apps/interrupt.h) cancels the job. Messages go to
+/// `messages`, which must outlive the callbacks. The bar is wiped when the last copy of the callbacks goes.
+PipelineCallbacks CommandCallbacks(bool quiet = false, std::ostream& messages = std::cout);
+
+}  // namespace bodyloom

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The flags of `bodyloom synth`.
+#pragma once
+
+#include "bodyloom/pipelines/synthesis/synthesize_clip.h"
+
+namespace CLI {
+class App;
+}
+
+namespace bodyloom {
+
+/// Text for --help of the option that names a motion (MotionSource).
+constexpr const char* kMotionHelp =
+    "AMASS .npz, AIST++ .pkl, BVH, Acclaim .amc, DeepMimic JSON or AMP .npy; or the word demo";
+
+/// Binds every field of the request to its flag; defaults in --help are those of the struct. `quiet` is the verb's own.
+void AddSynthOptions(CLI::App& app, SynthesizeClipRequest* request, bool* quiet);
+
+}  // namespace bodyloom

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/body/convert_body.h"
+
+#include <utility>
+
+#include "bodyloom/pipelines/files.h"
+
+namespace bodyloom {
+
+ConvertBodyReport ConvertBody(const ConvertBodyRequest& request, const PipelineCallbacks& callbacks) {
+  RequireReadable(request.body, "body model");
+  RequireReadable(request.uv, "texture coordinates");
+  RequireReadable(request.parts, "body parts");
+  RequireDistinct({request.body, request.uv, request.parts}, {request.out});
+  RequireWritable(request.out);
+  BodyModelData body = LoadBodyData(request.body, request.load);
+  callbacks.Update("convert", 0);
+  if (!request.uv.empty()) {
+    UvFromObj(request.uv, &body);
+  }
+  if (!request.parts.empty()) {
+    const PartsSummary parts = PartsFromUvProcessedMat(request.parts, &body);
+    callbacks.Say(std::to_string(parts.faces_with_part) + " faces have a part, " +
+                  std::to_string(parts.faces_without_part) + " have none");
+  }
+  SaveBodyCompact(request.out, body);
+  return {DescribeBody(BodyModel(std::move(body))), request.out};
+}
+
+}  // namespace bodyloom

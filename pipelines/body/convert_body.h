@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Any readable body as one compact file, with texture coordinates and parts from other files if wanted.
+#pragma once
+
+#include <string>
+
+#include "bodyloom/data_tools/body/body_io.h"
+#include "bodyloom/pipelines/callbacks.h"
+
+namespace bodyloom {
+
+struct ConvertBodyRequest {
+  std::string body;   ///< SMPL, SMPL-H or SMPL-X .pkl or .npz
+  std::string uv;     ///< texture coordinates from an OBJ with the body's vertices; empty: the body's own
+  std::string parts;  ///< body parts from DensePose's UV_Processed.mat; empty: the body's own
+  std::string out;    ///< the compact body, .npz
+  LoadBodyOptions load;
+};
+
+struct ConvertBodyReport {
+  std::string description;  ///< DescribeBody of what was written
+  std::string out;
+};
+
+/// Says how many faces have a part when parts were given. Throws std::runtime_error naming a file that cannot be used,
+/// RequestError for a file both read and written, Cancelled.
+ConvertBodyReport ConvertBody(const ConvertBodyRequest& request, const PipelineCallbacks& callbacks = {});
+
+}  // namespace bodyloom

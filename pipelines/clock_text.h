@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Times in what people read.
+#pragma once
+
+#include <string>
+
+namespace bodyloom {
+
+/// "0:07", "12:34", "1:02:03"; rounded to seconds, 0 for negative ones.
+std::string ClockText(double seconds);
+
+}  // namespace bodyloom

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A track's surface motion as UV maps in a file: normals and velocities (data_tools/descriptors/describe_track.h).
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "bodyloom/data_tools/descriptors/describe_track.h"
+#include "bodyloom/pipelines/callbacks.h"
+
+namespace bodyloom {
+
+struct DescribeClipRequest {
+  std::string track;    ///< .npz
+  std::string body;     ///< the track's body; empty: the built-in one
+  std::string cameras;  ///< camera file with the pose for SurfaceFrame::kWorld; empty: a level camera, y up
+  std::string view;     ///< the camera's name in it
+  std::string out;      ///< the maps, .npy (and .json beside it)
+  std::string preview;  ///< a sheet of a few frames, .png; empty: none
+  std::string json;     ///< ToJson(DescribeClipReport); empty: none
+  /// camera_pose and preview_frames are set by DescribeClip.
+  DescribeTrackOptions options;
+};
+
+struct DescribeClipReport {
+  DescribeTrackSummary summary;
+  DescribeTrackOptions options;  ///< as used
+  std::string out;               ///< the maps
+  double total_seconds = 0;
+  size_t peak_memory_bytes = 0;
+};
+
+/// Describes every frame of the track and writes the maps, their header, and what else was asked for. Throws
+/// RequestError for options that contradict each other, std::runtime_error naming a file that cannot be used, or a track
+/// that is not this body's, and Cancelled. Nothing is left behind then.
+DescribeClipReport DescribeClip(const DescribeClipRequest& request, const PipelineCallbacks& callbacks = {});
+
+/// Counts, times and memory: some lines for a reader, the last one with a newline.
+std::string ToText(const DescribeClipReport& report);
+/// The same as one JSON object.
+std::string ToJson(const DescribeClipReport& report);
+
+}  // namespace bodyloom

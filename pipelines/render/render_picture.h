@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The pictures that RenderTrack makes: a frame of a track as its camera saw it, or from a camera that turns about the
+/// person.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/track.h"
+#include "bodyloom/render/attribute_picture.h"
+#include "bodyloom/render/floor.h"
+#include "bodyloom/render/follow_view.h"
+#include "bodyloom/render/image.h"
+#include "bodyloom/render/shaded_mesh.h"
+
+namespace bodyloom {
+
+/// What a picture shows.
+enum class RenderKind { kOverlay, kIuv, kParts, kNormal, kDepth, kTexture };
+/// "overlay", "iuv", …; throws std::invalid_argument for other names.
+RenderKind RenderKindFromString(const std::string& name);
+std::string ToString(RenderKind kind);
+
+struct RenderPictureOptions {
+  RenderKind kind = RenderKind::kOverlay;
+  bool new_view = false;    ///< from a camera that follows the person
+  double view_yaw_deg = 0;  ///< 90: from the person's left when it faces the camera
+  bool turntable = false;   ///< that camera will be turned
+  TexelAttribute texture = {};
+  int num_threads = 1;
+};
+
+/// A body in front of the camera that takes the picture.
+struct PlacedBody {
+  MatrixX3d vertices;  ///< camera frame of the view; no rows: the frame is lost
+  Camera camera;
+  CameraPose view_from_camera;  ///< identity for the track's own camera
+};
+
+/// Not for use by two threads at once. Borrows body, track and texture.
+class RenderPicture {
+ public:
+  /// Throws std::runtime_error, beginning with `where`, when the body lacks what is to be shown, the camera has no
+  /// image size, or a new view is asked of a track without any known frame.
+  RenderPicture(const BodyModel& body, const Track& track, const RenderPictureOptions& options,
+                const std::string& where);
+
+  [[nodiscard]] PlacedBody Place(int frame, double turn_deg) const;
+  /// Range of depth, metres, of these frames (nearest and furthest vertex, sampled): what colours depth maps.
+  void SetDepthRange(const std::vector<int>& frames);
+
+  /// `background` of the camera's size, or null: a studio (overlay), or nothing but a plain colour.
+  [[nodiscard]] Image Draw(int frame, double turn_deg, const Image* background);
+  /// "frame 12   0.40 s   tracked", and for a turned camera by how much.
+  [[nodiscard]] std::string Caption(int frame, double turn_deg) const;
+  /// What the colours mean; empty where they explain themselves.
+  [[nodiscard]] std::string Legend() const;
+
+ private:
+  void DrawStudio(int frame, const PlacedBody& placed, Image* image) const;
+
+  const BodyModel& body_;
+  const Track& track_;
+  RenderPictureOptions options_;
+  std::optional<FollowView> view_;
+  std::optional<Floor> floor_;  ///< the track's camera frame
+  Image studio_;
+  double near_m_ = 1, far_m_ = 5;
+  MeshDrawer mesh_;
+  AttributePainter attributes_;
+};
+
+}  // namespace bodyloom

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/score/compare_results.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/geometry/base/stopwatch.h"
+#include "bodyloom/pipelines/files.h"
+
+namespace bodyloom {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// DIR/kind when it is there; pictures may lie in DIR itself.
+std::optional<std::string> FolderOf(const std::string& path, const std::string& kind) {
+  const fs::path below = fs::path(path) / kind;
+  if (fs::is_directory(below)) return below.string();
+  if (kind == "images") return path;
+  return std::nullopt;
+}
+
+}  // namespace
+
+CompareResultsReport CompareResults(const CompareResultsRequest& request, const PipelineCallbacks& callbacks) {
+  const Stopwatch watch;
+  RequireReadable(request.truth, "truth");
+  RequireReadable(request.result, "result");
+  RequireReadable(request.mask, "mask");
+  RequireReadable(request.other_truth, "truth at another speed");
+  RequireReadable(request.other_result, "result at another speed");
+  RequireDistinct({request.truth, request.result, request.mask, request.other_truth, request.other_result},
+                  {request.json, request.csv});
+  RequireWritable(request.json);
+  RequireWritable(request.csv);
+  const int num_threads = request.num_threads > 0 ? request.num_threads
+                                                  : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  CompareResultsReport report;
+  report.truth = request.truth;
+  report.result = request.result;
+  report.mask = request.mask;
+  report.preset = ToText(request.preset);
+
+  std::vector<FrameMetric> of_images = {ImageMetric(request.preset, !request.mask.empty())};
+  of_images.insert(of_images.end(), request.more.begin(), request.more.end());
+  const std::vector<std::pair<std::string, std::vector<FrameMetric>>> kinds = {
+      {"images", of_images}, {"labels", {LabelMetric()}}, {"normals", {NormalMetric()}}};
+  callbacks.Begin("metrics");
+  if (!request.other_truth.empty()) {  // first: sets that do not fit are said before an hour of comparing
+    callbacks.Update("reaction", 0);
+    report.reaction =
+        MeasureSpeedReaction(PersonSet(request.truth), PersonSet(request.result), PersonSet(request.other_truth),
+                             PersonSet(request.other_result), request.reacting, num_threads);
+  }
+  for (const auto& [kind, metrics] : kinds) {
+    const auto truth = FolderOf(request.truth, kind), result = FolderOf(request.result, kind);
+    if (truth.has_value() != result.has_value()) report.only_one_side.push_back(kind);
+    if (!truth || !result) continue;
+    const std::string mask = kind == "labels" ? "" : request.mask;  // labels are compared everywhere
+    const auto frames = FramePairs::Open(*truth, *result, mask, request.common_only);
+    report.tables.push_back(CompareFrames(kind, frames.get(), metrics, num_threads,
+                                          [&, stage = kind](double fraction) { callbacks.Update(stage, fraction); }));
+  }
+  report.seconds = watch.seconds();
+  if (!request.json.empty()) WriteFileAtomically(request.json, ToJson(report));
+  if (!request.csv.empty()) WriteFileAtomically(request.csv, ToCsv(report));
+  return report;
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A track against what is known: errors by name, with units.
+#pragma once
+
+#include <string>
+
+#include "bodyloom/data_tools/evaluation/evaluation.h"
+#include "bodyloom/pipelines/callbacks.h"
+
+namespace bodyloom {
+
+struct EvaluateTrackRequest {
+  std::string track;  ///< .npz
+  /// What is known, and thereby the protocol: a track or part labels (.npz), an AIST++ folder (keypoints2d/), or a
+  /// Pose2Sim folder (calib_refined.json).
+  std::string truth;
+  std::string body;      ///< that both were made with; empty: the built-in one
+  std::string cameras;   ///< AIST++: camera folder; empty: truth/cameras
+  std::string sequence;  ///< AIST++: name of the clip
+  std::string view;      ///< camera that the track was fitted to; empty: c01 (AIST++), cam_01 (Pose2Sim)
+  std::string json;      ///< EvaluationJson; empty: not written
+};
+
+/// Measures the track and writes the numbers where asked for. Throws RequestError when an AIST++ clip is not named,
+/// std::runtime_error naming a file that cannot be used, Cancelled before the measuring begins.
+Evaluation EvaluateTrack(const EvaluateTrackRequest& request, const PipelineCallbacks& callbacks = {});
+
+}  // namespace bodyloom

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/score/frame_pairs.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <stdexcept>
+#include <utility>
+
+#include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/data_tools/video/video_reader.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/parallel.h"
+
+namespace bodyloom {
+namespace {
+
+namespace fs = std::filesystem;
+
+template <typename Picture>
+void RequireSize(const Picture& picture, const Image& truth, const std::string& where) {
+  if (picture.width == truth.width && picture.height == truth.height) return;
+  throw std::runtime_error(Concatenate(where, ": ", picture.width, "x", picture.height, " pixels, expected ",
+                                       truth.width, "x", truth.height, " as the truth has"));
+}
+
+using FilesByName = std::map<std::string, std::string>;
+
+FilesByName FilesOf(const std::string& folder) {
+  FilesByName files;
+  for (const std::string& path : ImageFilesOf(folder)) {
+    const auto [it, is_new] = files.emplace(fs::path(path).stem().string(), path);
+    if (!is_new) throw std::runtime_error(path + ": a second picture of this name beside " + it->second);
+  }
+  return files;
+}
+
+/// How many names of `of` are missing in `in`, with the first of them.
+std::pair<int, std::string> Missing(const FilesByName& of, const FilesByName& in) {
+  std::pair<int, std::string> missing;
+  for (const auto& [name, path] : of) {
+    if (in.count(name) > 0) continue;
+    if (missing.first++ == 0) missing.second = name;
+  }
+  return missing;
+}
+
+class FolderPairs : public FramePairs {
+ public:
+  FolderPairs(const std::string& truth, const std::string& result, const std::string& mask, bool common_only)
+      : truth_(FilesOf(truth)), result_(FilesOf(result)) {
+    const auto missing_result = Missing(truth_, result_), missing_truth = Missing(result_, truth_);
+    left_out_ = missing_result.first + missing_truth.first;
+    for (const std::string& path : ImageFilesOf(truth)) {  // in the order of numbers
+      const std::string name = fs::path(path).stem().string();
+      if (result_.count(name) > 0) names_.push_back(name);
+    }
+    if (names_.empty()) {
+      throw std::runtime_error(result + ": no picture has the name of one in " + truth + " ('" + truth_.begin()->first +
+                               "', …)");
+    }
+    if (!common_only) {
+      RequireNone(missing_result, result, truth);
+      RequireNone(missing_truth, truth, result);
+    }
+    if (mask.empty()) return;
+    mask_ = FilesOf(mask);
+    FilesByName compared;
+    for (const std::string& name : names_) compared.emplace(name, "");
+    const auto missing_mask = Missing(compared, mask_);
+    if (missing_mask.first > 0) {
+      throw std::runtime_error(Concatenate(mask, ": no mask '", missing_mask.second, "' (", missing_mask.first, " of ",
+                                           names_.size(), " frames have none)"));
+    }
+  }
+
+  std::vector<FramePair> Next(int count, int num_threads) override {
+    const int n = std::min(count, num_frames() - next_);
+    std::vector<FramePair> pairs(n);
+    ParallelFor(n, num_threads, [&](int i) {
+      FramePair& pair = pairs[i];
+      pair.name = names_[next_ + i];
+      pair.where = result_.at(pair.name);
+      pair.truth = ReadImage(truth_.at(pair.name));
+      pair.result = ReadImage(pair.where);
+      RequireSize(pair.result, pair.truth, pair.where);
+      if (mask_.empty()) return;
+      pair.mask = MaskFrom(ReadImage(mask_.at(pair.name)));
+      RequireSize(*pair.mask, pair.truth, mask_.at(pair.name));
+    });
+    next_ += n;
+    return pairs;
+  }
+  [[nodiscard]] int num_frames() const override { return static_cast<int>(names_.size()); }
+  [[nodiscard]] int num_left_out() const override { return left_out_; }
+
+ private:
+  static void RequireNone(const std::pair<int, std::string>& missing, const std::string& where,
+                          const std::string& other) {
+    if (missing.first == 0) return;
+    throw std::runtime_error(Concatenate(where, ": no picture '", missing.second, "', which ", other, " has (",
+                                         missing.first, " are missing; --common compares the common ones alone)"));
+  }
+
+  FilesByName truth_, result_, mask_;
+  std::vector<std::string> names_;
+  int next_ = 0, left_out_ = 0;
+};
+
+class VideoPairs : public FramePairs {
+ public:
+  VideoPairs(const std::string& truth, const std::string& result, const std::string& mask)
+      : truth_path_(truth), result_path_(result), mask_path_(mask), truth_(truth), result_(result) {
+    if (!mask.empty()) mask_ = std::make_unique<VideoReader>(mask);
+  }
+
+  std::vector<FramePair> Next(int count, int) override {
+    std::vector<FramePair> pairs;
+    for (int i = 0; i < count; ++i) {
+      FramePair pair;
+      char name[16];
+      std::snprintf(name, sizeof name, "%06d", truth_.next_frame());
+      pair.name = name;
+      pair.where = result_path_ + ": frame " + std::to_string(result_.next_frame());
+      const bool has_truth = truth_.Read(&pair.truth), has_result = result_.Read(&pair.result);
+      if (!has_truth && !has_result) break;
+      if (has_truth != has_result)
+        FailEnd(has_truth ? result_path_ : truth_path_, has_truth ? truth_path_ : result_path_, pair.name);
+      RequireSize(pair.result, pair.truth, pair.where);
+      if (mask_) {
+        Image mask;
+        if (!mask_->Read(&mask)) FailEnd(mask_path_, truth_path_, pair.name);
+        pair.mask = MaskFrom(mask);
+        RequireSize(*pair.mask, pair.truth, mask_path_);
+      }
+      pairs.push_back(std::move(pair));
+    }
+    return pairs;
+  }
+  [[nodiscard]] int num_frames() const override { return truth_.info().num_frames; }
+
+ private:
+  [[noreturn]] static void FailEnd(const std::string& ended, const std::string& goes_on, const std::string& name) {
+    throw std::runtime_error(ended + ": ends before frame " + name + ", which " + goes_on + " has");
+  }
+
+  std::string truth_path_, result_path_, mask_path_;
+  VideoReader truth_, result_;
+  std::unique_ptr<VideoReader> mask_;
+};
+
+}  // namespace
+
+std::unique_ptr<FramePairs> FramePairs::Open(const std::string& truth, const std::string& result,
+                                             const std::string& mask, bool common_only) {
+  const bool folders = fs::is_directory(truth) && fs::is_directory(result) && (mask.empty() || fs::is_directory(mask));
+  if (folders) return std::make_unique<FolderPairs>(truth, result, mask, common_only);
+  return std::make_unique<VideoPairs>(truth, result, mask);
+}
+
+}  // namespace bodyloom

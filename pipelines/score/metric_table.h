@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Metrics of one kind of picture: a row a frame, a column a metric.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "bodyloom/pipelines/score/frame_metric.h"
+
+namespace bodyloom {
+
+struct MetricRow {
+  std::string frame;
+  std::vector<double> values;  ///< as many as columns
+};
+
+/// One kind of picture: "images", "labels" or "normals".
+struct MetricTable {
+  std::string kind;
+  std::vector<MetricColumn> columns;
+  std::vector<MetricRow> rows;
+  int left_out = 0;  ///< frames that only one side has
+};
+
+struct ColumnSummary {
+  double mean = 0, std = 0;  ///< over the finite values (std of the population); NaN when there are none
+  int finite = 0;
+  int infinite = 0;   ///< PSNR of equal pictures
+  int undefined = 0;  ///< NaN: nothing to measure
+};
+ColumnSummary Summarise(const MetricTable& table, size_t column);
+
+/// Compares all frames, num_threads at a time; the table is the same for any number.
+MetricTable CompareFrames(const std::string& kind, FramePairs* frames, const std::vector<FrameMetric>& metrics,
+                          int num_threads, const std::function<void(double fraction)>& progress = {});
+
+}  // namespace bodyloom

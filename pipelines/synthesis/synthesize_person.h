@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Pictures of one dressed person with known truth: motions in, a person set out
+/// (data_tools/synthesis/people/make_person_set.h).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bodyloom/data_tools/synthesis/people/make_person_set.h"
+#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/pipelines/synthesis/motion_source.h"
+
+namespace bodyloom {
+
+struct SynthesizePersonRequest {
+  std::vector<std::string> motions;  ///< names of MotionSource; several follow each other with a gap
+  std::vector<double> speeds = {1};  ///< each motion at each of them
+  MotionSource motion{.fps = 30};    ///< rate and frames of each
+  std::string body;                  ///< empty: the built-in body
+  std::string out;                   ///< the folder
+  std::string sheet;                 ///< also a contact sheet, .png or .jpg; empty: none
+  /// progress, look, motion and command are set by SynthesizePerson.
+  MakePersonSetOptions set;
+};
+
+struct SynthesizePersonReport {
+  MakePersonSetSummary set;
+  int size_px = 0;                   ///< of the pictures
+  std::vector<std::string> outputs;  ///< the folder, and the sheet
+};
+
+/// Makes the set and its sheet. Throws RequestError for speeds without a rate, std::runtime_error naming a file that
+/// cannot be used, Cancelled.
+SynthesizePersonReport SynthesizePerson(const SynthesizePersonRequest& request,
+                                        const PipelineCallbacks& callbacks = {});
+
+/// Counts and times: some lines for a reader.
+std::string ToText(const SynthesizePersonReport& report);
+
+}  // namespace bodyloom

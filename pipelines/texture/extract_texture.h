@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The tracked person's texture, taken from the frames of the video (render/texture_extract.h).
+#pragma once
+
+#include <string>
+
+#include "bodyloom/geometry/base/stopwatch.h"
+#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/render/texture_extract.h"
+
+namespace bodyloom {
+
+/// What texels get that no frame shows: nothing, or the surface around them, carried on smoothly and across seams.
+enum class TextureFill { kNone, kPyramid, kLaplace };
+
+struct ExtractTextureRequest {
+  std::string track;       ///< .npz
+  std::string video;       ///< the video, or a folder of images
+  std::string body;        ///< the track's body; empty: the built-in one
+  std::string out;         ///< the texture, .png or .jpg
+  std::string confidence;  ///< how well each texel was seen, as a grey image; empty: none
+  std::string json;        ///< ToJson(ExtractTextureReport); empty: none
+  int size = 512;          ///< texels a side
+  int every = 1;           ///< looks at every n-th frame
+  TextureExtractOptions::Merge merge = TextureExtractOptions::Merge::kMedian;
+  TextureFill fill = TextureFill::kNone;
+  double trust = 0.1;  ///< with a fill, texels seen worse than this (0 to 1) are filled, too
+  int margin_px = -1;  ///< pixels around the body's outlines that are not used; -1: 1 % of the person's height
+};
+
+struct ExtractTextureReport {
+  std::string out;              ///< the texture
+  int width = 0, height = 0;    ///< texels
+  int track_frames = 0;         ///< frames of the track
+  int frames_used = 0;          ///< seen by a texel
+  int frames_without_fit = 0;   ///< lost or only interpolated, left out
+  int frames_beyond_video = 0;  ///< past the end of the video
+  int edge_margin_px = 0;       ///< as used
+  int texels = 0;               ///< that show the body
+  int texels_seen = 0;          ///< of them in at least one frame
+  bool filled = false;
+  StageSeconds seconds;
+  double total_seconds = 0;
+};
+
+/// Gathers, merges, fills and writes. Throws std::runtime_error naming a file that cannot be used, a body without UV
+/// coordinates or a clip in which the body is never seen; RequestError for a file both read and written; Cancelled.
+ExtractTextureReport ExtractTexture(const ExtractTextureRequest& request, const PipelineCallbacks& callbacks = {});
+
+/// Some lines for a reader, the last one with a newline.
+std::string ToText(const ExtractTextureReport& report);
+/// The same as one JSON object.
+std::string ToJson(const ExtractTextureReport& report);
+
+}  // namespace bodyloom

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/track/track_clip.h"
+
+#include <stdexcept>
+#include <utility>
+
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/pipelines/files.h"
+#include "bodyloom/pipelines/peak_memory.h"
+#include "bodyloom/pipelines/track/overlay_video.h"
+#include "bodyloom/pipelines/track/track_inputs.h"
+#include "bodyloom/tracking/live/track_live.h"
+
+namespace bodyloom {
+namespace {
+
+/// How progress is shared out: the overlay takes about as long as the solve.
+constexpr double kSolveShareWithOverlay = 0.5;
+
+void WriteOverlay(const TrackRequest& request, const TrackInputs& inputs, const Track& track, double start,
+                  const PipelineCallbacks& callbacks, TrackReport* report) {
+  OverlayVideo overlay;
+  overlay.body = inputs.body.get();
+  overlay.track = &track;
+  overlay.detected = inputs.keypoints ? &*inputs.keypoints : nullptr;
+  overlay.video = request.video;
+  overlay.video_offset = request.video_offset;
+  overlay.video_px_from_camera_px = inputs.camera.video_px_from_camera_px;
+  overlay.side_view = request.side_view;
+  overlay.reference = inputs.reference ? &*inputs.reference : nullptr;
+  overlay.progress = [&](double fraction) { callbacks.Update("overlay", start + (1 - start) * fraction); };
+  const OverlaySummary written = WriteOverlayVideo(request.overlay, overlay);
+  if (written.frames_without_video > 0) {
+    report->solve.plan.push_back({"video under " + std::to_string(written.frames_without_video) + " overlay frames",
+                                  false, "the video has no frame at their time"});
+  }
+  report->outputs.push_back(request.overlay);
+}
+
+/// The job's own steps, beside the solver's.
+std::vector<PlanEntry> OwnPlan(const TrackRequest& request) {
+  return {{"overlay video", !request.overlay.empty(), request.overlay.empty() ? "no --overlay" : request.overlay},
+          {"JSON summary", !request.json.empty(), request.json.empty() ? "no --json" : request.json}};
+}
+
+/// Everything that can be known to fail is made to fail now, before the long work.
+void CheckFiles(const TrackRequest& request) {
+  const std::vector<std::pair<std::string, std::string>> named_inputs = {
+      {request.detections, "detections"},
+      {request.dense, "dense keypoints"},
+      {request.part_labels, "part labels"},
+      {request.cameras, "cameras"},
+      {request.video, "video"},
+      {request.body, "body model"},
+      {request.init, "initialiser"},
+      {request.prior == "none" ? "" : request.prior, "pose prior"},
+      {request.lifter == "none" ? "" : request.lifter, "lifter"},
+      {request.reference, "reference track"}};
+  std::vector<std::string> inputs;
+  for (const auto& [path, what] : named_inputs) {
+    RequireReadable(path, what);
+    inputs.push_back(path);
+  }
+  const std::vector<std::string> outputs = {request.out, request.overlay, request.json};
+  RequireDistinct(inputs, outputs);
+  if (!request.plan) {
+    for (const std::string& path : outputs) {
+      RequireWritable(path);
+    }
+  }
+}
+
+TrackSequenceOptions OptionsFor(const TrackRequest& request, const TrackInputs& inputs) {
+  TrackSequenceOptions options = request.solve;
+  if (inputs.joints_from_labels) options.part_labels = PartLabelOptions::LabelsAlone();
+  return options;
+}
+
+LiveTrackerOptions LiveOptions(const TrackRequest& request, const TrackSequenceOptions& solve) {
+  LiveTrackerOptions live;
+  live.lag = *request.live_lag;
+  live.solve = solve;
+  return live;
+}
+
+TrackSequenceResult Solve(const TrackRequest& request, const TrackInputs& inputs, double share,
+                          const PipelineCallbacks& callbacks) {
+  TrackSequenceOptions options = OptionsFor(request, inputs);
+  options.camera_knowledge = CameraKnowledgeOf(request);
+  bool cancelled = false;
+  std::string stage;
+  options.progress = [&](const TrackProgress& at) {
+    stage = at.stage;
+    cancelled = !callbacks.GoesOn(stage, share * at.fraction);
+    return !cancelled;
+  };
+  TrackSequenceResult result = request.live_lag ? TrackLive(inputs.ForTracker(), LiveOptions(request, options))
+                                                : TrackSequence(inputs.ForTracker(), options);
+  if (cancelled || (!stage.empty() && !callbacks.GoesOn(stage, share))) throw Cancelled();
+  return result;
+}
+
+std::vector<PlanEntry> WholePlan(const TrackRequest& request, const TrackInputs& inputs) {
+  TrackSequenceOptions options = OptionsFor(request, inputs);
+  options.camera_knowledge = CameraKnowledgeOf(request);
+  std::vector<PlanEntry> plan = request.live_lag ? PlanTrackLive(inputs.ForTracker(), LiveOptions(request, options))
+                                                 : PlanTrackSequence(inputs.ForTracker(), options);
+  const std::vector<PlanEntry> own = OwnPlan(request);
+  plan.insert(plan.end(), own.begin(), own.end());
+  return plan;
+}
+
+}  // namespace
+
+TrackReport TrackClip(const TrackRequest& request, const PipelineCallbacks& callbacks) {
+  CheckTrackRequest(request);
+  CheckFiles(request);
+  StageClock clock;
+  clock.Begin("read");
+  const TrackInputs inputs = LoadTrackInputs(request);
+  TrackReport report;
+  report.detections = !request.detections.empty() ? request.detections
+                      : !request.dense.empty()    ? request.dense
+                                                  : request.part_labels;
+  report.num_frames = inputs.num_frames();
+  if (request.plan) {
+    report.solve.plan = WholePlan(request, inputs);
+    return report;
+  }
+  callbacks.Update("read", 0);
+  callbacks.Begin("tracking " + std::to_string(inputs.num_frames()) + " frames");
+  const double solve_share = request.overlay.empty() ? 1 : kSolveShareWithOverlay;
+  clock.Begin(kSolveStage);
+  TrackSequenceResult result = Solve(request, inputs, solve_share, callbacks);
+  report.solve = std::move(result.summary);
+  for (const PlanEntry& entry : OwnPlan(request)) {
+    report.solve.plan.push_back(entry);
+  }
+  if (report.solve.IsUsable()) {
+    clock.Begin("write");
+    WriteTrack(request.out, result.track);
+    report.outputs.push_back(request.out);
+    if (!request.overlay.empty()) {
+      clock.Begin("overlay");
+      WriteOverlay(request, inputs, result.track, solve_share, callbacks, &report);
+    }
+  }
+  clock.End();
+  report.seconds = clock.seconds();
+  report.total_seconds = clock.total();
+  report.peak_memory_bytes = PeakMemoryBytes();
+  if (!request.json.empty()) {
+    report.outputs.push_back(request.json);
+    WriteFileAtomically(request.json, ToJson(report));
+  }
+  if (!report.solve.IsUsable()) {
+    throw std::runtime_error(report.detections + ": nothing could be tracked: " + report.solve.message);
+  }
+  return report;
+}
+
+}  // namespace bodyloom

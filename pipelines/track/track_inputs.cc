@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/track/track_inputs.h"
+
+#include <stdexcept>
+
+#include "bodyloom/data_tools/body/body_io.h"
+#include "bodyloom/data_tools/body/body_or_builtin.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/data_tools/formats/npz.h"
+#include "bodyloom/data_tools/learned/lifter_weights_io.h"
+#include "bodyloom/data_tools/learned/pose_prior_io.h"
+#include "bodyloom/data_tools/motion/load_motion.h"
+#include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/data_tools/observations/iuv_to_dense.h"
+#include "bodyloom/data_tools/observations/load_detections.h"
+#include "bodyloom/data_tools/observations/observations_npz.h"
+#include "bodyloom/data_tools/observations/part_labels.h"
+#include "bodyloom/data_tools/video/video_reader.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/tracking/initialise/part_keypoints.h"
+
+namespace bodyloom {
+namespace {
+
+/// Camera file, focal length and image size as far as the request gives them.
+NamedCamera CameraFromRequest(const TrackRequest& request) {
+  NamedCamera camera;
+  camera.camera.width = request.image_width;
+  camera.camera.height = request.image_height;
+  if (!request.cameras.empty()) {
+    camera = FindCamera(LoadCameras(request.cameras, request.detections), request.view, request.cameras);
+    if (request.image_width > 0 &&
+        (camera.camera.width != request.image_width || camera.camera.height != request.image_height)) {
+      throw std::runtime_error(Concatenate(request.cameras, ": camera ", camera.name, " is for images of ",
+                                           camera.camera.width, "x", camera.camera.height, ", --image-size says ",
+                                           request.image_width, "x", request.image_height));
+    }
+  }
+  return camera;
+}
+
+/// Takes image size and frame rate from the video, or checks the size against what is known.
+void UseVideo(const std::string& path, TrackInputs* inputs) {
+  const VideoInfo info = VideoReader(path).info();
+  inputs->video_fps = info.fps;
+  Camera& camera = inputs->camera.camera;
+  if (camera.width == 0) {
+    camera.width = info.width;
+    camera.height = info.height;
+  }
+}
+
+/// Frame rate of observations that do not say; 0 when the request and the video do not say either.
+double FrameRate(const TrackRequest& request, const TrackInputs& inputs) {
+  return request.fps > 0 ? request.fps : inputs.video_fps;
+}
+
+Motion ReadInitialiser(const std::string& path, int num_frames) {
+  Motion motion = LoadMotion(path);
+  if (motion.up != Motion::Up::kCamera) {
+    throw std::runtime_error(path + ": poses in a world frame, expected the camera's (a track .npz)");
+  }
+  if (motion.num_frames() != num_frames) {
+    throw std::runtime_error(
+        Concatenate(path, ": ", motion.num_frames(), " frames, expected the ", num_frames, " of the detections"));
+  }
+  return motion;
+}
+
+/// Observations of this project's own form may hold either kind or both.
+struct Holds {
+  bool keypoints = true, dense = false;
+};
+
+Holds WhatItHolds(const std::string& path) {
+  if (!path.ends_with(".npz")) {
+    return {};
+  }
+  const NpzArrays arrays = ReadNpz(path);
+  return {HasKeypoints(arrays) || !HasDense(arrays), HasDense(arrays)};
+}
+
+/// The one image size of a clip: the camera's, which the observations may bring but not contradict.
+void AgreeOnImageSize(const std::string& path, int width, int height, Camera* camera) {
+  if (width == 0) {
+    return;
+  }
+  if (camera->width == 0) {
+    camera->width = width;
+    camera->height = height;
+  }
+  if (camera->width != width || camera->height != height) {
+    throw std::runtime_error(Concatenate(path, ": made for images of ", width, "x", height, ", the camera is for ",
+                                         camera->width, "x", camera->height));
+  }
+}
+
+void UseDense(const std::string& path, const TrackRequest& request, TrackInputs* inputs) {
+  LoadDenseOptions options;
+  const double fps = FrameRate(request, *inputs);
+  if (fps > 0) {
+    options.fps = fps;
+  }
+  options.person = request.person;
+  options.uv_sigma = request.dense_uv_sigma;
+  inputs->dense = LoadDense(path, *inputs->body, options);
+  AgreeOnImageSize(path, inputs->dense->image_width, inputs->dense->image_height, &inputs->camera.camera);
+}
+
+}  // namespace
+
+TrackSequenceInput TrackInputs::ForTracker() const {
+  TrackSequenceInput input;
+  input.body = body.get();
+  input.keypoints = keypoints ? &*keypoints : nullptr;
+  input.dense = dense ? &*dense : nullptr;
+  input.part_labels = part_labels ? &*part_labels : nullptr;
+  input.initialiser = initialiser ? &*initialiser : nullptr;
+  input.prior = prior ? &*prior : nullptr;
+  input.lifter = lifter ? &*lifter : nullptr;
+  input.camera = camera.camera;
+  return input;
+}
+
+TrackInputs LoadTrackInputs(const TrackRequest& request) {
+  TrackInputs inputs;
+  inputs.body = BodyOrBuiltin(request.body);
+  inputs.camera = CameraFromRequest(request);
+  Camera& camera = inputs.camera.camera;
+  if (!request.video.empty()) {
+    UseVideo(request.video, &inputs);
+  }
+  if (!request.detections.empty()) {
+    const Holds holds = WhatItHolds(request.detections);
+    if (holds.keypoints) {
+      LoadDetectionsOptions options;
+      options.view = request.view;
+      options.person = request.person;
+      options.fps = FrameRate(request, inputs);
+      options.image_width = camera.width;
+      options.image_height = camera.height;
+      options.min_confidence = request.min_confidence;
+      options.convention = request.convention;
+      inputs.keypoints = LoadDetections(request.detections, options);
+      AgreeOnImageSize(request.detections, inputs.keypoints->image_width, inputs.keypoints->image_height, &camera);
+    }
+    if (holds.dense && request.dense.empty()) {
+      UseDense(request.detections, request, &inputs);
+    }
+  }
+  if (!request.dense.empty()) {
+    UseDense(request.dense, request, &inputs);
+  }
+  if (!request.part_labels.empty()) {
+    ReadPartLabelsOptions options;
+    const double fps = FrameRate(request, inputs);
+    if (fps > 0) {
+      options.fps = fps;
+    }
+    inputs.part_labels = ReadPartLabels(request.part_labels, options);
+    AgreeOnImageSize(request.part_labels, inputs.part_labels->image_width, inputs.part_labels->image_height, &camera);
+    if (!inputs.keypoints && !inputs.dense) {
+      inputs.keypoints = KeypointsFromPartLabels(*inputs.part_labels);
+      inputs.joints_from_labels = true;
+    }
+  }
+  if (camera.width == 0) {
+    throw std::runtime_error(Concatenate(request.detections.empty() ? request.dense : request.detections,
+                                         ": does not say how large the images are; give --video, --cameras or "
+                                         "--image-size"));
+  }
+  if (!request.init.empty()) {
+    inputs.initialiser = ReadInitialiser(request.init, inputs.num_frames());
+  }
+  if (!request.reference.empty()) {
+    inputs.reference = ReadTrack(request.reference);
+    if (inputs.reference->num_frames() != inputs.num_frames()) {
+      throw std::runtime_error(Concatenate(request.reference, ": ", inputs.reference->num_frames(),
+                                           " frames, expected the ", inputs.num_frames(), " of the detections"));
+    }
+  }
+  // The lifter knows how detectors err. Joints read off labels err otherwise, and it makes worse of them than the joint
+  // hypotheses do (docs/benchmarks.md).
+  if (request.lifter != "none" && !(request.lifter.empty() && inputs.joints_from_labels)) {
+    inputs.lifter = request.lifter.empty() ? BuiltinLifter() : ReadLifterWeights(request.lifter);
+  }
+  if (request.prior != "none") {
+    inputs.prior = request.prior.empty() ? BuiltinPosePrior() : ReadPosePrior(request.prior);
+  }
+  if (request.focal_px > 0) {
+    camera = MakePinhole(camera.width, camera.height, request.focal_px);
+  }
+  return inputs;
+}
+
+}  // namespace bodyloom

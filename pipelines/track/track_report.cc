@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/track/track_report.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "bodyloom/pipelines/fixed_text.h"
+
+namespace bodyloom {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string Join(const std::vector<std::string>& parts, const std::string& separator) {
+  std::string text;
+  for (const std::string& part : parts) {
+    text += (text.empty() ? "" : separator) + part;
+  }
+  return text;
+}
+
+}  // namespace
+
+StageSeconds StagesOf(const TrackReport& report) {
+  StageSeconds all;
+  for (const auto& [stage, seconds] : report.seconds) {
+    if (stage != kSolveStage || report.solve.seconds.empty()) {
+      all.emplace_back(stage, seconds);
+      continue;
+    }
+    double rest = seconds;
+    for (const auto& [solver_stage, solver_seconds] : report.solve.seconds) {
+      all.emplace_back(solver_stage, solver_seconds);
+      rest -= solver_seconds;
+    }
+    all.emplace_back("solve, other", std::max(0.0, rest));
+  }
+  return all;
+}
+
+std::string ToText(const std::vector<PlanEntry>& plan) {
+  size_t width = 0;
+  for (const PlanEntry& entry : plan) {
+    width = std::max(width, entry.what.size());
+  }
+  std::string text;
+  for (const PlanEntry& entry : plan) {
+    text += std::string(entry.runs ? "  run   " : "  skip  ") + entry.what +
+            std::string(width - entry.what.size() + 2, ' ') + entry.why + "\n";
+  }
+  return text;
+}
+
+std::string ToText(const TrackReport& report) {
+  const TrackSequenceSummary& solve = report.solve;
+  std::string text = std::to_string(report.num_frames) + " frames: ";
+  std::vector<std::string> parts;
+  for (const auto& [status, count] : solve.frames_by_status) {
+    if (count > 0) {
+      parts.push_back(std::to_string(count) + " " + status);
+    }
+  }
+  text += (parts.empty() ? "none estimated" : Join(parts, ", ")) + "\n";
+  text += "solve    " + ToString(solve.status) + ", " + solve.solver + ", " + std::to_string(solve.iterations) +
+          " iterations" +
+          (solve.initial_cost > 0 ? ", cost " + Fixed(solve.initial_cost, 1) + " -> " + Fixed(solve.final_cost, 1)
+                                  : std::string()) +
+          (solve.message.empty() ? "" : " (" + solve.message + ")") + "\n";
+  text += "error    2D joints: median " + Fixed(solve.reprojection_median_px, 2) + " px, 95 % below " +
+          Fixed(solve.reprojection_p95_px, 2) + " px";
+  if (solve.dense_median_px > 0) {
+    text += "; dense keypoints: median " + Fixed(solve.dense_median_px, 2) + " px";
+  }
+  text += "\n";
+  if (solve.focal_px > 0) {
+    text += "camera   focal length " + Fixed(solve.focal_px, 1) + " px\n";
+  }
+  if (solve.num_swaps_repaired > 0) {
+    text += "repaired " + std::to_string(solve.num_swaps_repaired) + " left-right swaps in the detections\n";
+  }
+  if (solve.ground.has_plane) {
+    text += "ground   " + Fixed(solve.ground.camera_height_m, 2) + " m below the camera, feet held in " +
+            std::to_string(solve.ground.contact_frames) + " frames (" + solve.ground.why + ")\n";
+  } else if (!solve.ground.why.empty()) {
+    text += "ground   none: " + solve.ground.why + "\n";
+  }
+  parts.clear();
+  for (const auto& [stage, seconds] : StagesOf(report)) {
+    parts.push_back(stage + " " + Fixed(seconds, 2));
+  }
+  text += "time     " + Fixed(report.total_seconds, 2) + " s (" + Join(parts, ", ") + ")";
+  if (report.num_frames > 0 && report.total_seconds > 0) {
+    text += ", " + Fixed(1e3 * report.total_seconds / report.num_frames, 2) + " ms a frame";
+  }
+  text += "\nmemory   " + Fixed(static_cast<double>(report.peak_memory_bytes) / (1 << 20), 0) + " MiB at most\n";
+  for (const PlanEntry& entry : solve.plan) {
+    if (!entry.runs) {
+      text += "skipped  " + entry.what + ": " + entry.why + "\n";
+    }
+  }
+  for (const std::string& output : report.outputs) {
+    text += "wrote    " + output + "\n";
+  }
+  return text;
+}
+
+std::string ToJson(const TrackReport& report) {
+  const TrackSequenceSummary& solve = report.solve;
+  Json seconds = Json::object();
+  for (const auto& [stage, value] : StagesOf(report)) {
+    seconds[stage] = seconds.value(stage, 0.0) + value;
+  }
+  seconds["total"] = report.total_seconds;
+  Json skipped = Json::array(), ran = Json::array();
+  for (const PlanEntry& entry : solve.plan) {
+    (entry.runs ? ran : skipped).push_back({{"what", entry.what}, {"why", entry.why}});
+  }
+  const GroundSummary& ground = solve.ground;
+  Json ground_json = {{"found", ground.has_plane}, {"why", ground.why}, {"contact_frames", ground.contact_frames}};
+  if (ground.has_up) {
+    ground_json["up_in_camera"] = {ground.up.x(), ground.up.y(), ground.up.z()};
+    ground_json["up_spread_deg"] = ground.up_spread_deg;
+  }
+  if (ground.has_plane) {
+    ground_json["camera_height_m"] = ground.camera_height_m;
+    ground_json["height_spread_m"] = ground.height_spread_m;
+  }
+  const Json json = {
+      {"status", ToString(solve.status)},
+      {"message", solve.message},
+      {"detections", report.detections},
+      {"frames", report.num_frames},
+      {"frames_by_status", solve.frames_by_status},
+      {"solver", solve.solver},
+      {"iterations", solve.iterations},
+      {"initial_cost", solve.initial_cost},
+      {"final_cost", solve.final_cost},
+      {"observations", solve.num_observations},
+      {"parameters", solve.num_parameters},
+      {"reprojection_median_px", solve.reprojection_median_px},
+      {"reprojection_p95_px", solve.reprojection_p95_px},
+      {"dense_median_px", solve.dense_median_px},
+      {"focal_px", solve.focal_px},
+      {"swaps_repaired", solve.num_swaps_repaired},
+      {"ground", ground_json},
+      {"seconds", seconds},
+      {"peak_memory_bytes", report.peak_memory_bytes},
+      {"ran", ran},
+      {"skipped", skipped},
+      {"outputs", report.outputs},
+  };
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+/// How a clip was tracked: for a reader, and as JSON for a program.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "bodyloom/geometry/base/stopwatch.h"
+#include "bodyloom/tracking/track_sequence.h"
+
+namespace bodyloom {
+
+struct TrackReport {
+  TrackSequenceSummary solve;
+  int num_frames = 0;
+  StageSeconds seconds;  ///< TrackClip's own stages; the one named kSolveStage is split by solve.seconds
+  double total_seconds = 0;
+  size_t peak_memory_bytes = 0;
+  std::string detections;
+  std::vector<std::string> outputs;  ///< files written
+};
+
+constexpr const char* kSolveStage = "solve";
+
+/// The job's stages with the solve replaced by the solver's own stages and what they leave unexplained.
+StageSeconds StagesOf(const TrackReport& report);
+
+/// Frames by status, error, time by stage, what was skipped and why: about fifteen lines, the last one with a newline.
+std::string ToText(const TrackReport& report);
+
+/// The same as one JSON object; the keys are listed in docs/command.md. Numbers that are not finite become null.
+std::string ToJson(const TrackReport& report);
+
+/// A plan as lines "run   what: why" / "skip  what: why".
+std::string ToText(const std::vector<PlanEntry>& plan);
+
+}  // namespace bodyloom

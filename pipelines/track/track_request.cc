@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/track/track_request.h"
+
+#include "bodyloom/pipelines/callbacks.h"
+
+namespace bodyloom {
+
+CameraKnowledge CameraKnowledgeOf(const TrackRequest& request) {
+  if (request.camera == "weak") {
+    return CameraKnowledge::kWeak;
+  }
+  const bool has_intrinsics = !request.cameras.empty() || request.focal_px > 0;
+  return request.camera == "pinhole" || (request.camera.empty() && has_intrinsics) ? CameraKnowledge::kKnown
+                                                                                   : CameraKnowledge::kUnknownFocal;
+}
+
+void CheckTrackRequest(const TrackRequest& request) {
+  if (request.detections.empty() && request.dense.empty() && request.part_labels.empty()) {
+    throw RequestError("--detections is required (or --dense, or --part-labels)");
+  }
+  if (request.dense_uv_sigma && request.dense.empty() && !request.detections.ends_with(".npz")) {
+    throw RequestError("--dense-uv-sigma is the noise of dense keypoints: give --dense");
+  }
+  if (request.out.empty() && !request.plan) {
+    throw RequestError("--out is required (or --plan, to see what would be done)");
+  }
+  if (request.camera == "pinhole" && request.cameras.empty() && request.focal_px == 0) {
+    throw RequestError("--camera pinhole needs the intrinsics: give --cameras FILE or --focal PIXELS");
+  }
+  if (!request.cameras.empty() && request.focal_px > 0) {
+    throw RequestError("--cameras and --focal both give the focal length, expected one of them");
+  }
+  if (!request.overlay.empty() && !request.overlay.ends_with(".mp4")) {
+    throw RequestError("--overlay " + request.overlay + ": expected a name that ends in .mp4");
+  }
+  if (request.live_lag && request.solve.solver != "chain") {
+    throw RequestError("--live runs on the chain solver: leave out --solver " + request.solve.solver);
+  }
+  if (request.live_lag && request.detections.empty() && request.dense.empty()) {
+    throw RequestError("--live does not use part labels: give --detections or --dense");
+  }
+  if (request.side_view && request.overlay.empty()) {
+    throw RequestError("--side-view is a part of the overlay: give --overlay FILE");
+  }
+  if (!request.reference.empty() && !request.side_view) {
+    throw RequestError("--reference is drawn in the side view: give --side-view");
+  }
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What a track is made from: files by name (empty: not given), what is known besides, and what is to be written.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "bodyloom/tracking/track_sequence.h"
+
+namespace bodyloom {
+
+struct TrackRequest {
+  // What was seen.
+  std::string detections;                ///< 2D joints (and dense keypoints, when the file holds both)
+  std::string dense;                     ///< dense surface keypoints from a file or folder of their own
+  std::optional<double> dense_uv_sigma;  ///< their noise on the surface, chart units; none: what their source says
+  std::string part_labels;               ///< DensePose part of every pixel
+  std::string view;                      ///< camera of a file that has several
+  int person = 0;                        ///< 0: the largest and longest in view
+  double fps = 0;                        ///< of detections that do not say; 0: the video's, else 30
+  double min_confidence = 0;             ///< detections below count as missing
+  std::string convention;                ///< OpenPose model, when it should not be detected
+
+  // The camera.
+  std::string cameras;                    ///< calibration file or folder
+  std::string camera;                     ///< pinhole, unknown-focal or weak; empty: pinhole when intrinsics are given
+  double focal_px = 0;                    ///< intrinsics without a file: centred, undistorted
+  int image_width = 0, image_height = 0;  ///< when neither camera, video nor detections say
+
+  // What else is known.
+  std::string video;     ///< for the image size, the frame rate and the overlay
+  int video_offset = 0;  ///< video frame of the detections' time zero
+  std::string body;      ///< body model; empty: the built-in one
+  std::string init;      ///< poses of another system to start from and stay near, same frames
+  std::string prior;     ///< pose prior; empty: the built-in one; "none"
+  std::string lifter;    ///< weights of the network that starts from 2D joints; empty: built in; "none"
+
+  // What is wanted.
+  std::string out;         ///< the track, .npz; may be empty when only the plan is wanted
+  std::string overlay;     ///< video of the projected body, .mp4
+  std::string json;        ///< ToJson(TrackReport)
+  std::string reference;   ///< a known true track, drawn beside the estimate in the side view
+  bool side_view = false;  ///< the overlay also shows the body from its side, where depth errors show
+  bool plan = false;       ///< only find out what would run, what is skipped and why
+
+  TrackSequenceOptions solve;
+  std::optional<int> live_lag;  ///< frames; track as if the clip came from a camera (tracking/live/live_tracker.h)
+};
+
+/// Throws RequestError when fields contradict each other or one is missing. Looks at no file.
+void CheckTrackRequest(const TrackRequest& request);
+
+/// What `camera`, `cameras` and `focal_px` say together.
+CameraKnowledge CameraKnowledgeOf(const TrackRequest& request);
+
+}  // namespace bodyloom

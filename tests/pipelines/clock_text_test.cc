@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/clock_text.h"
+
+#include <gtest/gtest.h>
+
+namespace bodyloom {
+namespace {
+
+TEST(ClockText, MinutesAndHours) {
+  EXPECT_EQ(ClockText(0), "0:00");
+  EXPECT_EQ(ClockText(7.4), "0:07");
+  EXPECT_EQ(ClockText(754), "12:34");
+  EXPECT_EQ(ClockText(3723), "1:02:03");
+  EXPECT_EQ(ClockText(-3), "0:00");
+}
+
+}  // namespace
+}  // namespace bodyloom

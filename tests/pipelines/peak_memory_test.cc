@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/peak_memory.h"
+
+#include <gtest/gtest.h>
+
+namespace bodyloom {
+namespace {
+
+TEST(PeakMemory, IsThatOfAProcess) {
+  EXPECT_GT(PeakMemoryBytes(), size_t{1} << 20);
+  EXPECT_LT(PeakMemoryBytes(), size_t{1} << 36);
+}
+
+}  // namespace
+}  // namespace bodyloom

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/score/compare_results.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <stdexcept>
+
+#include "bodyloom/data_tools/video/image_file.h"
+#include "tests/support/scratch_folder.h"
+#include "tests/support/test_files.h"
+
+namespace bodyloom {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+Image Grey(int value) {
+  const auto v = static_cast<uint8_t>(value);
+  return Image(40, 30, {v, v, v});
+}
+
+class CompareResultsTest : public ::testing::Test {
+ protected:
+  std::string Path(const std::string& name) const { return folder_ / name; }
+  /// FOLDER/000000.png, … one grey picture a value.
+  std::string Pictures(const std::string& folder, const std::vector<int>& values) const {
+    fs::create_directories(Path(folder));
+    for (size_t i = 0; i < values.size(); ++i) {
+      char name[32];
+      std::snprintf(name, sizeof name, "/%06zu.png", i);
+      WriteImage(Path(folder) + name, Grey(values[i]));
+    }
+    return Path(folder);
+  }
+
+  ScratchFolder folder_;
+};
+
+TEST_F(CompareResultsTest, FurtherMetricsSeeFramesInOrder) {
+  CompareResultsRequest request;
+  request.truth = Pictures("truth", {10, 20, 30, 40, 50});
+  request.result = Pictures("result", {11, 21, 31, 41, 51});
+  request.num_threads = 2;
+  request.csv = Path("m.csv");
+  FrameMetric change;
+  change.columns = {{"change", "of the result since the frame before"}, {"level", "of the truth"}};
+  change.compute = [](const FramePair& frame, const FramePair* before) {
+    const double here = frame.result.at(0, 0).red;
+    return std::vector<double>{before == nullptr ? std::nan("") : here - before->result.at(0, 0).red,
+                               double(frame.truth.at(0, 0).red)};
+  };
+  request.more = {change};
+  const CompareResultsReport report = CompareResults(request);
+  const MetricTable& table = report.tables.at(0);
+  ASSERT_EQ(table.columns.size(), 4U);
+  for (size_t i = 0; i < 5; ++i) {
+    EXPECT_EQ(table.rows[i].values[3], 10.0 * (i + 1));
+    if (i > 0) {
+      EXPECT_EQ(table.rows[i].values[2], 10);
+    }
+  }
+  const ColumnSummary summary = Summarise(table, 2);
+  EXPECT_EQ(summary.finite, 4);
+  EXPECT_EQ(summary.undefined, 1);
+  EXPECT_EQ(summary.std, 0);
+  EXPECT_THAT(FileBytes(Path("m.csv")), HasSubstr("frame,psnr_db,ssim_wang2004,change,level\n"));
+  request.more.front().compute = [](const FramePair&, const FramePair*) { return std::vector<double>{1}; };
+  EXPECT_THROW(CompareResults(request), std::runtime_error);
+}
+
+TEST_F(CompareResultsTest, ACancelledComparisonWritesNothing) {
+  CompareResultsRequest request;
+  request.truth = Pictures("truth", {10, 20});
+  request.result = Pictures("result", {11, 21});
+  request.json = Path("m.json");
+  PipelineCallbacks callbacks;
+  std::vector<std::string> stages;
+  callbacks.progress = [&](const std::string& stage, double) {
+    stages.push_back(stage);
+    return false;
+  };
+  EXPECT_THROW(CompareResults(request, callbacks), Cancelled);
+  EXPECT_EQ(stages, std::vector<std::string>{"images"});
+  EXPECT_FALSE(fs::exists(request.json));
+}
+
+}  // namespace
+}  // namespace bodyloom

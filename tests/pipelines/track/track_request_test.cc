@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/track/track_request.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "bodyloom/pipelines/callbacks.h"
+
+namespace bodyloom {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+TrackRequest Complete() {
+  TrackRequest request;
+  request.detections = "clip.json";
+  request.out = "track.npz";
+  return request;
+}
+
+TEST(TrackRequest, DetectionsAndAPlaceForTheTrackAreEnough) { EXPECT_NO_THROW(CheckTrackRequest(Complete())); }
+
+TEST(TrackRequest, WhatIsMissingOrContradictsIsNamed) {
+  EXPECT_THAT([] { CheckTrackRequest({}); }, ThrowsMessage<RequestError>(HasSubstr("--detections is required")));
+  TrackRequest request = Complete();
+  request.out.clear();
+  EXPECT_THAT([&] { CheckTrackRequest(request); }, ThrowsMessage<RequestError>(HasSubstr("--out is required")));
+  request.plan = true;
+  EXPECT_NO_THROW(CheckTrackRequest(request));
+  request = Complete();
+  request.live_lag = 4;
+  request.solve.solver = "ceres";
+  EXPECT_THAT([&] { CheckTrackRequest(request); }, ThrowsMessage<RequestError>(HasSubstr("--live")));
+}
+
+TEST(TrackRequest, IntrinsicsMakeAPinhole) {
+  TrackRequest request = Complete();
+  EXPECT_EQ(CameraKnowledgeOf(request), CameraKnowledge::kUnknownFocal);
+  request.focal_px = 900;
+  EXPECT_EQ(CameraKnowledgeOf(request), CameraKnowledge::kKnown);
+  request.camera = "weak";
+  EXPECT_EQ(CameraKnowledgeOf(request), CameraKnowledge::kWeak);
+}
+
+}  // namespace
+}  // namespace bodyloom
