@@ -10,17 +10,10 @@
 
 #include "apps/exit_code.h"
 #include "apps/interrupt.h"
-#include "apps/neural/animate_guided.h"
-#include "apps/neural/animate_motion.h"
-#include "apps/neural/animate_photo.h"
-#include "apps/neural/card.h"
-#include "apps/neural/likeness_metrics.h"
-#include "apps/neural/train_animate.h"
-#include "apps/neural/train_lifter.h"
-#include "apps/neural/train_motion.h"
-#include "apps/neural/train_photo.h"
-#include "apps/verbs.h"
+#include "apps/neural/neural_verbs.h"
 #include "bodyloom/neural/runtime.h"
+#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/pipelines/neural/likeness_metrics.h"
 
 namespace {
 

@@ -1,16 +1,20 @@
-# bodyloom_module(NAME [PUBLIC lib...] [PRIVATE lib...] [WITHOUT folder...] [OWN_PRECOMPILED])
+# bodyloom_module(NAME [PUBLIC lib...] [PRIVATE lib...] [WITHOUT folder-or-file...] [SOURCES file...] [OWN_PRECOMPILED])
 #   One folder = one static library bodyloom_NAME with alias bodyloom::NAME, made of every .cc file in the folder and
-#   below it, WITHOUT the sub-folders that are libraries of their own.
+#   below it, WITHOUT the sub-folders and files that belong to libraries of their own; or of these SOURCES alone.
 #   A user's find_package(bodyloom COMPONENTS NAME) brings it, with the modules that PUBLIC names.
 #   Baseline CPU flags everywhere: Debian's libceres.a is built for SSE2, and mixing in AVX-compiled Eigen code breaks
 #   its aligned allocations (docs/concepts.md, "Why no -march=native"). SIMD lives in Eigen-free *_simd.cc files that
 #   pick their instruction set at run time.
 function(bodyloom_module name)
-  cmake_parse_arguments(ARG "OWN_PRECOMPILED" "" "PUBLIC;PRIVATE;WITHOUT" ${ARGN})
-  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cc)
-  foreach(folder IN LISTS ARG_WITHOUT)
-    list(FILTER sources EXCLUDE REGEX "^${CMAKE_CURRENT_SOURCE_DIR}/${folder}/")
-  endforeach()
+  cmake_parse_arguments(ARG "OWN_PRECOMPILED" "" "PUBLIC;PRIVATE;WITHOUT;SOURCES" ${ARGN})
+  if(ARG_SOURCES)
+    set(sources ${ARG_SOURCES})
+  else()
+    file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cc)
+    foreach(other IN LISTS ARG_WITHOUT)
+      list(FILTER sources EXCLUDE REGEX "^${CMAKE_CURRENT_SOURCE_DIR}/${other}(/|$)")
+    endforeach()
+  endif()
   add_library(bodyloom_${name} STATIC ${sources})
   target_include_directories(bodyloom_${name} PUBLIC
     $<BUILD_INTERFACE:${BODYLOOM_INCLUDE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)

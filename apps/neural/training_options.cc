@@ -2,6 +2,10 @@
 #include "apps/neural/training_options.h"
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/pipelines/callbacks.h"
 
 namespace bodyloom {
 
@@ -19,6 +23,19 @@ void AddTrainingOptions(CLI::App* verb, TrainingRun* run, const char* seed_help)
       ->check(CLI::IsMember({"cpu", "cuda"}))
       ->capture_default_str();
   verb->add_flag("--resume", run->resume, "Go on with the run in --out");
+}
+
+std::vector<FrameRange> ParseFrameRanges(const std::vector<std::string>& texts, const char* option) {
+  std::vector<FrameRange> ranges;
+  for (const std::string& text : texts) {
+    int first = 0, last = 0;
+    char rest = 0;
+    if (std::sscanf(text.c_str(), "%d-%d%c", &first, &last, &rest) != 2 || first < 0 || last < first) {
+      throw RequestError(Concatenate(option, " ", text, ": expected FIRST-LAST, such as 0-149"));
+    }
+    ranges.push_back({first, last + 1});
+  }
+  return ranges;
 }
 
 }  // namespace bodyloom

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "bodyloom/neural/motion/chain_plan.h"
 #include "bodyloom/neural/training/training_run.h"
 
 namespace CLI {
@@ -17,5 +19,8 @@ void AddProfileOption(CLI::App* verb, std::string* profile);
 
 /// --validate-every, --seed, --threads, --device, --resume. `seed_help`: "Of weights and pairs".
 void AddTrainingOptions(CLI::App* verb, TrainingRun* run, const char* seed_help);
+
+/// "12-40" (last frame included) → [12, 41), each. Throws RequestError naming the option.
+std::vector<FrameRange> ParseFrameRanges(const std::vector<std::string>& texts, const char* option);
 
 }  // namespace bodyloom

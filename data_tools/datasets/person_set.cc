@@ -146,6 +146,8 @@ void TakeApart(const std::string& path) {
 
 }  // namespace
 
+bool IsPersonSet(const std::string& path) { return fs::exists(FileOf(path, "person.json")); }
+
 uint8_t NormalCode(double component) {
   return static_cast<uint8_t>(std::lround(127.5 * (std::clamp(component, -1.0, 1.0) + 1)));
 }

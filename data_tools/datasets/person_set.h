@@ -57,6 +57,9 @@ struct PersonFrame {
 uint8_t NormalCode(double component);
 inline double NormalOfCode(uint8_t code) { return 2.0 * code / 255 - 1; }
 
+/// Whether the folder `path` holds a finished person set: person.json is there.
+bool IsPersonSet(const std::string& path);
+
 /// Reads a set. May be shared by threads.
 class PersonSet {
  public:

@@ -9,18 +9,10 @@
 
 #include "bodyloom/neural/motion/motion_config.h"
 #include "bodyloom/neural/motion/motion_frame.h"
+#include "bodyloom/neural/motion/motion_picture.h"
 #include "bodyloom/neural/motion/motion_scores.h"
 
 namespace bodyloom {
-
-/// Planar, window size.
-struct MotionPicture {
-  int width = 0, height = 0;
-  std::vector<float> image;     ///< 3, RGB in [0, 1], 0 on the background
-  std::vector<float> alpha;     ///< 1, probability of the foreground (1 throughout without the shape decoder)
-  std::vector<float> normals;   ///< 3, camera frame, shortened by alpha; empty without normals
-  std::vector<uint8_t> labels;  ///< likeliest class; empty without the shape decoder
-};
 
 struct MotionRendererOptions {
   int warmup_iterations = 50;  ///< of a clip's first frame, as Kappel et al., CVPR 2021

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <string>
 
-#include "apps/neural/guided_run.h"
-#include "apps/neural/motion_run.h"
-#include "apps/neural/photo_run.h"
-#include "apps/neural/relight_frames.h"
+#include "bodyloom/pipelines/people/relight_frames.h"
+#include "bodyloom/pipelines/runs/guided_run.h"
+#include "bodyloom/pipelines/runs/motion_run.h"
+#include "bodyloom/pipelines/runs/photo_run.h"
 #include "tests/fuzz/fuzz_file_targets.h"
 
 namespace bodyloom::fuzz {

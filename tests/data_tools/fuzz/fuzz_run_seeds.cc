@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/data_tools/fuzz/fuzz_run_seeds.h"
 
-#include "apps/neural/guided_run.h"
-#include "apps/neural/motion_run.h"
-#include "apps/neural/photo_run.h"
+#include "bodyloom/pipelines/runs/guided_run.h"
+#include "bodyloom/pipelines/runs/motion_run.h"
+#include "bodyloom/pipelines/runs/photo_run.h"
 
 namespace bodyloom::fuzz {
 

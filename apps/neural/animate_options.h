@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Options and lines that `bodyloom animate photo|animate|motion` share.
+#pragma once
+
+#include <string>
+
+#include "bodyloom/pipelines/neural/animation.h"
+#include "bodyloom/pipelines/people/background.h"
+
+namespace CLI {
+class App;
+}
+
+namespace bodyloom {
+
+/// Of --full-size.
+inline constexpr const char* kFullSizeHelp =
+    "Pictures as large as the track's, the person enlarged to them (default: as large as the networks draw)";
+
+/// Of --background of the verbs that render from a photo.
+inline constexpr const char* kPhotoBackgroundHelp =
+    "Behind the person: photo (the photo's own, filled in), studio (a plain backdrop), or an image, video or folder";
+
+/// What that option means.
+PhotoBackground ParsePhotoBackground(const std::string& option);
+
+/// --threads, --device.
+void AddDeviceOptions(CLI::App* verb, AnimationRequest* request);
+
+/// A line where frames have no fit.
+void PrintFramesWithoutFit(const AnimationSummary& summary);
+
+}  // namespace bodyloom

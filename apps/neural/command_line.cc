@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/neural/command_line.h"
+
+#include "bodyloom/geometry/base/check.h"
+
+namespace bodyloom {
+
+std::string CommandLine(const AnimateMotionRequest& request) {
+  std::string line = "bodyloom animate motion";
+  const auto add = [&](const char* option, const std::string& value) {
+    if (!value.empty()) line += std::string(" ") + option + " " + value;
+  };
+  add("--run", request.run), add("--track", request.track), add("--data", request.data), add("--body", request.body);
+  add("--background", request.background), add("--relight", request.relight);
+  if (request.speed != 1) add("--speed", Concatenate(request.speed));
+  add("--freeze", request.freeze);
+  if (request.warmup != AnimateMotionRequest().warmup) add("--warmup", Concatenate(request.warmup));
+  line += request.anywhere ? " --anywhere" : "";
+  line += request.without_past ? " --without-past" : "";
+  line += request.full_size ? " --full-size" : "";
+  add("--out", request.out), add("--set", request.set);
+  return line;
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The lines of `bodyloom animate animate`.
+#pragma once
+
+#include "bodyloom/pipelines/neural/guided/animate_guided.h"
+#include "bodyloom/pipelines/neural/guided/score_guided.h"
+
+namespace bodyloom {
+
+void Print(const AnimateGuidedSummary& summary, const AnimateGuidedRequest& request);
+
+/// A line a number of photos.
+void Print(const ScoreGuidedSummary& summary);
+
+}  // namespace bodyloom

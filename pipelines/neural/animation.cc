@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/neural/animation.h"
+
+#include <algorithm>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/geometry/base/percentile.h"
+#include "bodyloom/pipelines/files.h"
+#include "bodyloom/render/contact_sheet.h"
+
+namespace bodyloom {
+
+int ThreadsFor(int requested) {
+  return requested > 0 ? requested : static_cast<int>(std::thread::hardware_concurrency());
+}
+
+void RequireOutputs(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs) {
+  RequireDistinct(inputs, outputs);
+  for (const std::string& path : outputs) RequireWritable(path);
+}
+
+std::vector<std::string> FilesAmong(const std::vector<std::string>& paths) {
+  std::vector<std::string> files;
+  std::copy_if(paths.begin(), paths.end(), std::back_inserter(files),
+               [](const std::string& path) { return !path.empty(); });
+  return files;
+}
+
+double FramesPerSecond(const Track& track, double otherwise) {
+  const std::vector<double>& times = track.motion.timestamps;
+  if (times.size() < 2 || !(times.back() > times.front())) return otherwise;
+  return static_cast<double>(times.size() - 1) / (times.back() - times.front());
+}
+
+double MedianOf(std::span<const double> milliseconds) {
+  return milliseconds.empty() ? 0 : Percentile(milliseconds, 50);
+}
+
+void WriteSheet(const std::string& path, const std::vector<Image>& pictures, int columns, int cell_height_px) {
+  if (path.empty() || pictures.empty()) return;
+  ContactSheetOptions layout;
+  layout.columns = columns;
+  layout.cell_height_px = cell_height_px;
+  WriteImage(path, ContactSheet(pictures, layout));
+}
+
+nlohmann::ordered_json ToJson(const StageSeconds& seconds) {
+  nlohmann::ordered_json stages = nlohmann::ordered_json::object();
+  for (const auto& [stage, stage_s] : seconds) stages[stage] = stage_s;
+  return stages;
+}
+
+void WriteReport(const std::string& path, const nlohmann::ordered_json& report) {
+  if (!path.empty()) WriteFileAtomically(path, report.dump(2) + "\n");
+}
+
+void SayLines(const std::string& notes, const PipelineCallbacks& callbacks) {
+  std::istringstream lines(notes);
+  for (std::string line; std::getline(lines, line);) callbacks.Say(line);
+}
+
+}  // namespace bodyloom

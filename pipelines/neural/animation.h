@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Parts that the jobs which render a person with a trained network share.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bodyloom/geometry/base/stopwatch.h"
+#include "bodyloom/geometry/track.h"
+#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/pipelines/people/composite.h"
+#include "bodyloom/render/image.h"
+
+namespace bodyloom {
+
+struct AnimationRequest {
+  std::string run;             ///< folder of the trained run
+  std::string track;           ///< the motion, .npz
+  std::string body;            ///< the tracks' body; empty: the built-in body
+  std::string out;             ///< the video to write, .mp4
+  std::string sheet;           ///< a contact sheet to write; empty: none
+  std::string json;            ///< a report with times to write; empty: none
+  bool full_size = false;      ///< pictures as large as the track's; false: as large as the networks draw
+  int threads = 0;             ///< 0: all cores
+  std::string device = "cpu";  ///< where the networks run: "cpu" or "cuda"
+};
+
+struct AnimationSummary {
+  int frames = 0;
+  int frames_without_fit = 0;  ///< of them: they show the background alone
+  PictureSize picture;         ///< of the pictures written
+  double network_ms = 0;       ///< median over frames of the network's time; 0 without a frame
+  StageSeconds seconds;        ///< where the time went
+  double total_seconds = 0;
+  std::vector<std::string> written;  ///< the files, as the request names them
+};
+
+/// `requested`, or all cores for 0.
+int ThreadsFor(int requested);
+
+/// Throws as RequireDistinct and RequireWritable (pipelines/files.h).
+void RequireOutputs(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs);
+
+/// Those of the paths that are not empty.
+std::vector<std::string> FilesAmong(const std::vector<std::string>& paths);
+
+/// Mean rate of the track; `otherwise` with fewer than two frames, or two at the same time.
+double FramesPerSecond(const Track& track, double otherwise);
+
+/// The median, 0 of nothing.
+double MedianOf(std::span<const double> milliseconds);
+
+/// Writes a contact sheet; nothing without a path or without pictures.
+void WriteSheet(const std::string& path, const std::vector<Image>& pictures, int columns, int cell_height_px);
+
+/// {"stage": seconds, …}
+nlohmann::ordered_json ToJson(const StageSeconds& seconds);
+
+/// Writes a report, whole or not at all; an empty path: none.
+void WriteReport(const std::string& path, const nlohmann::ordered_json& report);
+
+/// Each line of `notes`, all of which end in a newline, as a message.
+void SayLines(const std::string& notes, const PipelineCallbacks& callbacks);
+
+}  // namespace bodyloom

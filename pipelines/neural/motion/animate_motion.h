@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Renders a person that the motion-dependent renderer learned, in any motion: what `bodyloom animate motion` does.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/pipelines/neural/animation.h"
+#include "bodyloom/pipelines/neural/motion/clip_scores.h"
+#include "bodyloom/render/lighting/fit_lighting.h"
+
+namespace bodyloom {
+
+/// One of `track` and `data` is given.
+struct AnimateMotionRequest : AnimationRequest {
+  std::string data;      ///< a person set of the same person: its motion is shown and, unless the view is turned, time
+                         ///< stands still or the speed is another, the result compared with its pictures
+  std::string view_yaw;  ///< degrees that the view is turned by: "30", or "0:360" over the clip
+  double speed = 1;      ///< the motion is played so many times as fast
+  std::string freeze;    ///< "FRAME:COUNT": that frame is shown so many times more; empty: none is
+  std::string background;     ///< an image, a video or a folder behind the person; empty: a plain backdrop
+  std::string relight;        ///< the light that shall be (pipelines/people/relight_frames.h); empty: as it is
+  int warmup = 50;            ///< passes of the first frame through the network before it counts
+  bool without_past = false;  ///< every frame as if it were the first
+  bool anywhere = false;      ///< the person may be farther from the body than clothes ever were in training
+  std::string like;           ///< with `data`: a person set or track whose motion each frame's is compared with
+  std::string frames;         ///< with `data`: a CSV to write, a line a frame (MotionErrors)
+  std::string set;            ///< a person set to write, of the result; empty: none
+  std::string set_command;    ///< the command that makes the set again, kept in it
+};
+
+struct AnimateMotionSummary : AnimationSummary {
+  int window_width = 0, window_height = 0;             ///< pixels that the networks draw
+  int shrunk_width = 0, shrunk_height = 0;             ///< of the whole picture at the networks' size
+  int64_t descriptors_kept = 0, projections_kept = 0;  ///< frames that did not move (MotionRenderer)
+  std::optional<FitLightingSummary> light;             ///< of the clip, where it was looked for
+  std::optional<ClipScores> scores;                    ///< against the pictures of `data`
+};
+
+/// Throws RequestError for a request that contradicts itself, std::runtime_error for files that cannot be used,
+/// Cancelled. The stages of `callbacks` are "light", where the clip's light is looked for, and "rendering".
+AnimateMotionSummary AnimateMotion(const AnimateMotionRequest& request, const PipelineCallbacks& callbacks);
+
+}  // namespace bodyloom

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/neural/motion/animated_clip.h"
+
+#include <stdexcept>
+
+#include "bodyloom/data_tools/body/body_or_builtin.h"
+#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/data_tools/descriptors/posed_track.h"
+#include "bodyloom/data_tools/motion/freeze_track.h"
+#include "bodyloom/data_tools/motion/play_track.h"
+#include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/pipelines/people/freeze.h"
+#include "bodyloom/pipelines/people/view_angles.h"
+
+namespace bodyloom {
+namespace {
+
+Track TrackOf(const AnimatedClipRequest& request) {
+  Track track = request.data.empty() ? ReadTrack(request.track) : PersonSet(request.data).track();
+  if (request.speed == 1) return track;
+  try {
+    return PlayedAtSpeed(track, request.speed);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(request.track + request.data + ": --speed: " + error.what());
+  }
+}
+
+}  // namespace
+
+AnimatedClip::AnimatedClip(const AnimatedClipRequest& request, const MotionRun& run) {
+  if (request.IsScored()) {
+    MotionDataRequest data;
+    data.data = request.data, data.body = request.body;
+    data.pixels_per_metre = run.pixels_per_metre;
+    data.num_threads = request.threads;
+    data_ = std::make_unique<MotionData>(data, run.config.profile, run.config.Multiple());
+    return;
+  }
+  own_track_ = TrackOf(request);
+  body_ = BodyOrBuiltin(request.body);
+  const double size = PixelsPerMetre(*body_, *own_track_);
+  if (!(size > 0)) {
+    throw std::runtime_error(request.track + request.data + ": no frame has a result, nothing to animate");
+  }
+  PersonFramesOptions options;
+  options.uv_size = run.config.profile.uv_size;
+  options.past = run.past;
+  options.window.scale = ScaleToSize(run.pixels_per_metre, size);
+  options.window.multiple = run.config.Multiple();
+  options.num_threads = request.threads;
+  int num_frames = own_track_->num_frames(), first = 0, last = num_frames - 1;
+  if (!request.freeze.empty()) {
+    const Freeze freeze = ReadFreeze(request.freeze, num_frames);
+    options.shown = FrozenAt(num_frames, freeze.frame, freeze.count);
+    num_frames += freeze.count, first = freeze.frame, last = freeze.frame + freeze.count;
+  }
+  options.yaw_deg = ViewAngles(request.view_yaw, num_frames, first, last);
+  own_frames_.emplace(*body_, *own_track_, options);
+}
+
+void AnimatedClip::Fill(int t, MotionFrame* frame) const {
+  if (data_) {
+    data_->Fill(t, true, frame);
+  } else {
+    FillMotion(*own_frames_, t, frame);
+  }
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The clip that the motion-dependent renderer animates: a track, or a person set whose pictures the result is compared
+/// with.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "bodyloom/data_tools/descriptors/person_frames.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/track.h"
+#include "bodyloom/neural/motion/motion_frame.h"
+#include "bodyloom/pipelines/neural/motion/motion_data.h"
+#include "bodyloom/pipelines/runs/motion_run.h"
+
+namespace bodyloom {
+
+struct AnimatedClipRequest {
+  std::string track;     ///< the motion, .npz; empty: that of `data`
+  std::string data;      ///< a person set of the same person; empty: `track` alone
+  std::string body;      ///< the track's body; empty: the built-in body
+  std::string view_yaw;  ///< how far the view is turned (pipelines/people/view_angles.h)
+  std::string freeze;    ///< where time stands still (pipelines/people/freeze.h); empty: nowhere
+  double speed = 1;      ///< the motion is played so many times as fast
+  int threads = 1;
+
+  /// Whether the result is compared with the pictures of `data`: from another side or in another time there is nothing
+  /// to compare with.
+  [[nodiscard]] bool IsScored() const { return !data.empty() && view_yaw.empty() && freeze.empty() && speed == 1; }
+};
+
+class AnimatedClip {
+ public:
+  /// At the size that the person of `run` was trained at. Throws std::runtime_error naming the file that cannot be used
+  /// or has nothing to animate, RequestError for `view_yaw` and `freeze`.
+  AnimatedClip(const AnimatedClipRequest& request, const MotionRun& run);
+
+  /// Frames are those shown: one shown again counts again.
+  [[nodiscard]] const Track& track() const { return data_ ? data_->track() : own_frames_->track(); }
+  [[nodiscard]] const PersonFrames& frames() const { return data_ ? data_->frames() : *own_frames_; }
+  /// What the network takes of frame t; with its truth where the clip is scored.
+  void Fill(int t, MotionFrame* frame) const;
+
+ private:
+  std::unique_ptr<MotionData> data_;
+  std::shared_ptr<const BodyModel> body_;
+  std::optional<Track> own_track_;  ///< before anything is shown more than once
+  std::optional<PersonFrames> own_frames_;
+};
+
+}  // namespace bodyloom

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/neural/motion/motion_data.h"
+
+#include <algorithm>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+#include "bodyloom/data_tools/body/body_or_builtin.h"
+#include "bodyloom/data_tools/datasets/label_of_part.h"
+#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/data_tools/descriptors/posed_track.h"
+#include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/data_tools/observations/part_labels.h"
+#include "bodyloom/data_tools/video/video_reader.h"
+#include "bodyloom/geometry/base/check.h"
+
+namespace bodyloom {
+namespace {
+
+/// The window's part of a frame's pictures.
+struct CutFrame {
+  Image image, normals;
+  std::vector<uint8_t> labels;
+};
+
+void FillTruth(const CutFrame& cut, MotionFrame* frame) {
+  const size_t area = size_t(frame->width) * frame->height;
+  frame->labels = cut.labels;
+  frame->image.assign(3 * area, 0);
+  frame->normals.assign(cut.normals.empty() ? 0 : 3 * area, 0);
+  for (size_t i = 0; i < area; ++i) {
+    if (!cut.labels.empty() && cut.labels[i] == 0) continue;
+    for (int c = 0; c < 3; ++c) frame->image[area * c + i] = static_cast<float>(cut.image.bgr[3 * i + 2 - c]) / 255;
+    if (cut.normals.empty()) continue;
+    Eigen::Vector3d n;
+    for (int c = 0; c < 3; ++c) n[c] = NormalOfCode(cut.normals.bgr[3 * i + 2 - c]);
+    // Shrunk normals are shorter than one, and those of the background point nowhere.
+    if (cut.normals.bgr[3 * i] + cut.normals.bgr[3 * i + 1] + cut.normals.bgr[3 * i + 2] == 0 || n.norm() < 0.3)
+      continue;
+    for (int c = 0; c < 3; ++c) frame->normals[area * c + i] = static_cast<float>(n[c] / n.norm());
+  }
+}
+
+}  // namespace
+
+void FillMotion(const PersonFrames& frames, int t, MotionFrame* frame) {
+  const PersonWindow& window = frames.window();
+  *frame = {};
+  frame->width = window.width;
+  frame->height = window.height;
+  if (t > 0) {
+    const Eigen::Vector2i moved = window.corner[t - 1] - window.corner[t];
+    frame->before_x = moved.x();
+    frame->before_y = moved.y();
+  }
+  const size_t area = size_t(window.width) * window.height, side = frames.options().uv_size;
+  frame->motion.resize(frames.channels() * side * side);
+  frame->uv.resize(2 * area);
+  frame->body.resize(area);
+  frames.MotionMaps(t, frame->motion);
+  frames.BodyMaps(t, frame->uv, frame->body);
+}
+
+class MotionData::Impl {
+ public:
+  Impl(const MotionDataRequest& request, const MotionProfile& profile, int multiple)
+      : body_(BodyOrBuiltin(request.body)) {
+    if (IsPersonSet(request.data)) {
+      set_.emplace(request.data);
+      track_ = request.track.empty() ? set_->track() : ReadTrack(request.track);
+      CheckSizes(request, set_->info().num_frames, set_->info().width, set_->info().height);
+      if (!request.part_labels.empty()) notes_ += "--part-labels are not used: the person set has labels of its own\n";
+    } else {
+      if (request.track.empty()) {
+        throw std::runtime_error(request.data +
+                                 ": no person.json there, so it is taken for a video, which needs --track");
+      }
+      track_ = ReadTrack(request.track);
+    }
+    PersonFramesOptions options;
+    options.uv_size = profile.uv_size;
+    options.window.max_side = profile.image_size;
+    options.window.multiple = multiple;
+    options.num_threads = std::max(1, request.num_threads);
+    const double size = bodyloom::PixelsPerMetre(*body_, track_);
+    if (request.pixels_per_metre > 0 && size > 0) options.window.scale = ScaleToSize(request.pixels_per_metre, size);
+    try {
+      frames_.emplace(*body_, track_, options);
+    } catch (const std::invalid_argument& error) {
+      throw std::runtime_error((request.track.empty() ? request.data : request.track) + ": " + error.what());
+    }
+    cut_.resize(track_.num_frames());
+    if (!set_) CutVideo(request);
+  }
+
+  void Fill(int t, bool with_truth, MotionFrame* frame) {
+    FillMotion(*frames_, t, frame);
+    if (with_truth) FillTruth(CutAt(t), frame);
+  }
+
+  [[nodiscard]] const PersonFrames& frames() const { return *frames_; }
+  [[nodiscard]] const Track& track() const { return track_; }
+  [[nodiscard]] double PixelsPerMetre() const {
+    return frames_->window().scale_y * bodyloom::PixelsPerMetre(*body_, track_);
+  }
+  [[nodiscard]] bool has_normals() const { return set_ && set_->info().has.normals; }
+  [[nodiscard]] const std::string& notes() const { return notes_; }
+  [[nodiscard]] LabelSource labels() const {
+    if (set_ && set_->info().has.labels) return LabelSource::kPersonSet;
+    return has_part_labels_ ? LabelSource::kPartLabels : LabelSource::kNone;
+  }
+
+ private:
+  void CheckSizes(const MotionDataRequest& request, int num_frames, int width, int height) {
+    const std::string track = request.track.empty() ? request.data + "/track.npz" : request.track;
+    if (num_frames < track_.num_frames()) {
+      throw std::runtime_error(Concatenate(track, ": ", track_.num_frames(), " frames, ", request.data, " has ",
+                                           num_frames, "; give the track of this very clip"));
+    }
+    if (num_frames > track_.num_frames()) {
+      notes_ += Concatenate(request.data, " has ", num_frames, " frames, the track ", track_.num_frames(),
+                            ": the later ones are not used\n");
+    }
+    if (width != track_.camera.width || height != track_.camera.height) {
+      throw std::runtime_error(Concatenate(track, ": made for pictures of ", track_.camera.width, "x",
+                                           track_.camera.height, ", ", request.data, " has ", width, "x", height));
+    }
+  }
+
+  /// Videos are read from the beginning: all windows are cut at once.
+  void CutVideo(const MotionDataRequest& request) {
+    std::optional<PartLabelSequence> parts;
+    if (!request.part_labels.empty()) {
+      parts = ReadPartLabels(request.part_labels);
+      has_part_labels_ = true;
+      notes_ += "body parts stand in for a parsing of the clothes\n";
+      if (static_cast<int>(parts->frames.size()) < track_.num_frames()) {
+        throw std::runtime_error(
+            Concatenate(request.part_labels, ": ", parts->frames.size(), " frames, the track ", track_.num_frames()));
+      }
+      if (parts->image_width != track_.camera.width || parts->image_height != track_.camera.height) {
+        throw std::runtime_error(Concatenate(request.part_labels, ": labels of ", parts->image_width, "x",
+                                             parts->image_height, ", the track was made for ", track_.camera.width, "x",
+                                             track_.camera.height));
+      }
+    }
+    VideoReader video(request.data);
+    Image picture;
+    int t = 0;
+    for (; t < track_.num_frames() && video.Read(&picture); ++t) {
+      if (t == 0) CheckSizes(request, std::max(video.info().num_frames, 1), picture.width, picture.height);
+      CutFrame cut;
+      cut.image = CutWindow(picture, frames_->window(), t);
+      if (parts)
+        cut.labels = CutLabels(LabelPicture(parts->frames[t], picture.width, picture.height), frames_->window(), t);
+      cut_[t] = std::move(cut);
+    }
+    if (t < track_.num_frames()) CheckSizes(request, t, track_.camera.width, track_.camera.height);
+  }
+
+  const CutFrame& CutAt(int t) {
+    const std::lock_guard lock(mutex_);
+    if (!cut_.at(t)) {
+      const PersonFrame picture = set_->Read(t, {true, true, false, false});
+      CutFrame cut;
+      cut.image = CutWindow(picture.rgb, frames_->window(), t);
+      if (!picture.labels.empty()) cut.labels = CutLabels(picture.labels, frames_->window(), t);
+      if (!picture.normals.empty()) cut.normals = CutWindow(picture.normals, frames_->window(), t);
+      cut_[t] = std::move(cut);
+    }
+    return *cut_[t];
+  }
+
+  std::shared_ptr<const BodyModel> body_;
+  std::optional<PersonSet> set_;
+  Track track_;
+  std::optional<PersonFrames> frames_;
+  std::mutex mutex_;
+  std::vector<std::optional<CutFrame>> cut_;
+  bool has_part_labels_ = false;
+  std::string notes_;
+};
+
+MotionData::MotionData(const MotionDataRequest& request, const MotionProfile& profile, int multiple)
+    : impl_(std::make_unique<Impl>(request, profile, multiple)) {}
+MotionData::~MotionData() = default;
+const PersonFrames& MotionData::frames() const { return impl_->frames(); }
+const Track& MotionData::track() const { return impl_->track(); }
+double MotionData::PixelsPerMetre() const { return impl_->PixelsPerMetre(); }
+LabelSource MotionData::labels() const { return impl_->labels(); }
+bool MotionData::has_normals() const { return impl_->has_normals(); }
+std::string MotionData::notes() const { return impl_->notes(); }
+void MotionData::Fill(int t, bool with_truth, MotionFrame* frame) { impl_->Fill(t, with_truth, frame); }
+
+}  // namespace bodyloom

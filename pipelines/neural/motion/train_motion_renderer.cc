@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/neural/motion/train_motion_renderer.h"
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/pipelines/files.h"
+#include "bodyloom/pipelines/neural/animation.h"
+#include "bodyloom/pipelines/neural/motion/motion_preview.h"
+#include "bodyloom/pipelines/neural/training_session.h"
+#include "bodyloom/pipelines/neural/weights_folder.h"
+#include "bodyloom/pipelines/runs/motion_run.h"
+
+namespace bodyloom {
+namespace {
+
+nlohmann::ordered_json RangesJson(const std::vector<FrameRange>& ranges) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const FrameRange& range : ranges) json.push_back({range.begin, range.end - 1});
+  return json;
+}
+
+std::string Notes(const TrainMotionRendererRequest& request, const TrainMotionOptions& o) {
+  const nlohmann::ordered_json json = {{"data", request.data.data},
+                                       {"track", request.data.track},
+                                       {"validate_data", request.validate_data},
+                                       {"train", RangesJson(o.train)},
+                                       {"validate", RangesJson(o.validation)},
+                                       {"share", request.frames.share},
+                                       {"seed", o.seed},
+                                       {"steps", o.steps},
+                                       {"batch", o.batch},
+                                       {"chain_length", o.chain_length},
+                                       {"walks", o.walks},
+                                       {"learning_rate", o.learning_rate},
+                                       {"average", o.average},
+                                       {"discriminator_rate", o.discriminator_rate},
+                                       {"shape_loss", o.shape_by_cross_entropy ? "ce" : "l1"},
+                                       {"weights",
+                                        {{"shape", o.shape_weight},
+                                         {"normals", o.normal_weight},
+                                         {"perceptual", o.perceptual_weight},
+                                         {"gan", o.gan_weight}}},
+                                       {"threads", o.num_threads}};
+  return json.dump();
+}
+
+/// The parts that the data has no truth for are left out.
+void LeaveOutUnknown(const MotionData& data, MotionConfig* config, const PipelineCallbacks& callbacks) {
+  if (data.labels() == LabelSource::kNone && config->shape) {
+    config->shape = false;
+    callbacks.Say("no labels: trained without shape, on the whole window with its background");
+  }
+  if (!data.has_normals() && config->normals) {
+    config->normals = false;
+    callbacks.Say("no normals: trained without them");
+  }
+}
+
+/// The clip that is for validation alone, at the same size; nullptr: there is none.
+std::unique_ptr<MotionData> ValidationData(const TrainMotionRendererRequest& request, const MotionDataRequest& like,
+                                           const MotionData& data, const MotionConfig& config) {
+  if (request.validate_data.empty()) return nullptr;
+  MotionDataRequest other = like;
+  other.data = request.validate_data;
+  other.track.clear();
+  other.pixels_per_metre = data.PixelsPerMetre();
+  return std::make_unique<MotionData>(other, config.profile, config.Multiple());
+}
+
+/// What it takes to use the checkpoint.
+MotionRun RunOf(const TrainMotionRendererRequest& request, const TrainMotionOptions& options, const MotionData& data) {
+  MotionRun run;
+  run.config = options.config;
+  run.pixels_per_metre = data.PixelsPerMetre();
+  run.reach = options.reach;
+  run.past = data.frames().options().past;
+  run.notes = Notes(request, options);
+  run.fps = FramesPerSecond(data.track(), run.fps);
+  return run;
+}
+
+void SayWhatIsTrained(const MotionRun& run, const PersonWindow& window, const PipelineCallbacks& callbacks) {
+  callbacks.Say(
+      Concatenate("window ", window.width, "x", window.height, " px, ", run.pixels_per_metre, " px a metre; profile ",
+                  run.config.profile.name,
+                  run.config.around_body ? Concatenate("; ", run.reach, " px around the body") : "; the whole window"));
+}
+
+}  // namespace
+
+TrainMotionRendererSummary TrainMotionRenderer(const TrainMotionRendererRequest& request,
+                                               const PipelineCallbacks& callbacks) {
+  TrainMotionOptions options = request.options;
+  MotionConfig& config = options.config;
+  RequireReadable(request.data.data, "data");
+  RequireReadable(request.data.track, "track");
+  OpenTrainingRun(request.out, &options);
+  options.vgg16 = ReadWeightsFolder(request.weights).vgg16;
+
+  MotionDataRequest data_request = request.data;
+  data_request.num_threads = options.num_threads;
+  MotionData data(data_request, config.profile, config.Multiple());
+  SayLines(data.notes(), callbacks);
+  LeaveOutUnknown(data, &config, callbacks);
+  config.motion_channels = data.frames().channels();
+  const std::unique_ptr<MotionData> validation = ValidationData(request, data_request, data, config);
+  if (validation) {
+    options.validation_source = [&](int t, bool with_truth, MotionFrame* frame) {
+      validation->Fill(t, with_truth, frame);
+    };
+  }
+  const TrainingFrames chosen =
+      ChooseFrames(request.frames, data.frames(), validation ? &validation->frames() : nullptr);
+  options.train = chosen.train, options.validation = chosen.validation;
+  options.reach = ReachOf(&data, options.train);
+  config.around_body = !request.whole_window && options.reach > 0;
+  const MotionRun run = RunOf(request, options, data);
+  options.config_json = MotionRunJson(run);
+  WriteRunConfig(options);
+  SayWhatIsTrained(run, data.frames().window(), callbacks);
+
+  const TrainingProgress to_caller(options.steps, callbacks);
+  options.progress = [&](const TrainMotionProgress& progress) {
+    return to_caller.Update(progress.step, {{"loss", progress.loss}, {"image", progress.image}},
+                            progress.scores.frames > 0 ? &progress.scores.psnr_db : nullptr);
+  };
+  options.preview = [&](int step, const std::vector<MotionPreview>& previews) {
+    if (!previews.empty()) WriteImage(PreviewPath(options, step), MotionPreviewSheet(previews));
+  };
+  const TrainMotionSummary summary =
+      TrainMotion([&](int t, bool with_truth, MotionFrame* frame) { data.Fill(t, with_truth, frame); }, options);
+  RequireFinite(summary, request.out);
+  return {summary, CheckpointPath(request.out)};
+}
+
+}  // namespace bodyloom

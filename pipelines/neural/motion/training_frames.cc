@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/neural/motion/training_frames.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/neural/motion/clothes_reach.h"
+#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/render/contact_sheet.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr int kShareStretch = 32;  ///< frames: with less of the data, whole stretches of so many are kept
+constexpr int kReachFrames = 64;   ///< that ReachOf looks at, at most
+
+void RequireInClip(const std::vector<FrameRange>& ranges, const char* option, int num_frames) {
+  for (const FrameRange& range : ranges) {
+    if (range.end <= num_frames) continue;
+    throw RequestError(
+        Concatenate(option, " ", range.begin, "-", range.end - 1, ": the clip has frames 0 to ", num_frames - 1));
+  }
+}
+
+std::vector<FrameRange> CutAtGaps(const std::vector<FrameRange>& ranges, const PersonFrames& frames) {
+  std::vector<FrameRange> cut;
+  for (const FrameRange& range : ranges) {
+    int begin = range.begin;
+    for (int t = range.begin; t < range.end; ++t) {
+      if (t + 1 < range.end && frames.Segment(t + 1) == frames.Segment(t)) continue;
+      if (frames.Segment(t) >= 0) cut.push_back({begin, t + 1});
+      begin = t + 1;
+    }
+  }
+  return cut;
+}
+
+/// Of every so many stretches the first.
+std::vector<FrameRange> TakeShare(const std::vector<FrameRange>& ranges, double share) {
+  if (share >= 1) return ranges;
+  std::vector<FrameRange> stretches;
+  for (const FrameRange& range : ranges) {
+    for (int begin = range.begin; begin < range.end; begin += kShareStretch) {
+      stretches.push_back({begin, std::min(range.end, begin + kShareStretch)});
+    }
+  }
+  const double count = std::max(1.0, share * static_cast<double>(stretches.size()));
+  std::vector<FrameRange> kept;
+  for (int i = 0; i < static_cast<int>(count + 0.5); ++i) {
+    kept.push_back(stretches[static_cast<size_t>(i * static_cast<double>(stretches.size()) / count)]);
+  }
+  return kept;
+}
+
+}  // namespace
+
+TrainingFrames ChooseFrames(const TrainingFramesRequest& request, const PersonFrames& frames,
+                            const PersonFrames* validation) {
+  const int T = frames.num_frames(), validation_frames = validation != nullptr ? validation->num_frames() : 0;
+  RequireInClip(request.train, "--train", T);
+  RequireInClip(request.validate, "--validate", validation_frames > 0 ? validation_frames : T);
+  TrainingFrames chosen = {request.train, request.validate};
+  if (validation_frames > 0 && chosen.validation.empty()) chosen.validation = {{0, validation_frames}};
+  if (chosen.train.empty()) {
+    // The end of the clip is kept for validation.
+    const int last = chosen.validation.empty() ? T - std::max(1, T / 5) : T;
+    chosen.train = {{0, last}};
+    if (chosen.validation.empty() && last < T) chosen.validation = {{last, T}};
+  }
+  chosen.train = TakeShare(CutAtGaps(chosen.train, frames), request.share);
+  chosen.validation = CutAtGaps(chosen.validation, validation != nullptr ? *validation : frames);
+  return chosen;
+}
+
+int ReachOf(MotionData* data, const std::vector<FrameRange>& ranges) {
+  if (data->labels() == LabelSource::kNone) return 0;
+  std::vector<int> all;
+  for (const FrameRange& range : ranges) {
+    for (int t = range.begin; t < range.end; ++t) all.push_back(t);
+  }
+  std::vector<MotionFrame> frames;
+  for (const int i : EvenlySpreadFrames(static_cast<int>(all.size()), kReachFrames)) {
+    MotionFrame frame;
+    data->Fill(all[i], true, &frame);
+    frame.motion = frame.uv = frame.image = frame.normals = {};
+    frames.push_back(std::move(frame));
+  }
+  return ClothesReach(frames);
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/neural/photo/people_data.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <mutex>
+#include <numeric>
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+#include "bodyloom/data_tools/body/body_or_builtin.h"
+#include "bodyloom/data_tools/datasets/people_set.h"
+#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/pipelines/neural/photo/photo_input.h"
+
+namespace bodyloom {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A person set's clip and the maps of its frames.
+struct Clip {
+  PersonSet set;
+  Track track;
+  std::optional<PhotoMaps> maps;
+  std::vector<std::optional<CutPhoto>> cut;
+
+  explicit Clip(const std::string& path) : set(path), track(set.track()), cut(set.info().num_frames) {}
+};
+
+struct FrameOfPerson {
+  Clip* clip = nullptr;
+  int t = 0;
+};
+
+}  // namespace
+
+class PeopleData::Impl {
+ public:
+  explicit Impl(const PeopleDataRequest& request) : request_(request), body_(BodyOrBuiltin(request.body)) {
+    if (IsPersonSet(request.data)) {
+      if (!request.test) AddPerson({request.data});
+    } else {
+      const PeopleSet set = ReadPeopleSet(request.data);
+      for (const SetPerson& person : set.people) {
+        if (person.test != request.test) continue;
+        std::vector<std::string> clips;
+        for (const std::string& clip : person.clips) clips.push_back((fs::path(set.path) / clip).string());
+        AddPerson(clips);
+      }
+    }
+    if (people_.empty()) {
+      throw std::runtime_error(request.data + (request.test ? ": nobody is kept for testing" : ": nobody to train on") +
+                               " in people.json");
+    }
+    source_.size = request.size, source_.texture_size = request.texture_size;
+    for (const auto& frames : people_) source_.num_frames.push_back(static_cast<int>(frames.size()));
+    source_.texel_parts = PartsOfTexels(*body_, *texels_);
+    source_.texel_places = PlacesOfTexels(*body_, *texels_);
+    source_.fill = [this](int person, int frame, PhotoFrame* photo) { Fill(people_.at(person).at(frame), photo); };
+  }
+
+  [[nodiscard]] const PhotoSource& source() const { return source_; }
+
+ private:
+  void AddPerson(const std::vector<std::string>& clips) {
+    std::vector<FrameOfPerson> frames;
+    for (const std::string& path : clips) {
+      clips_.push_back(std::make_unique<Clip>(path));
+      Clip& clip = *clips_.back();
+      if (!clip.set.info().has.labels) throw std::runtime_error(path + ": has no labels, which training needs");
+      PhotoMapsOptions options;
+      options.size = request_.size, options.texture_size = request_.texture_size, options.texels = texels_;
+      try {
+        clip.maps.emplace(*body_, clip.track, options);
+      } catch (const std::invalid_argument& error) {
+        throw std::runtime_error(path + ": " + error.what());
+      }
+      texels_ = clip.maps->texels();
+      for (int t = 0; t < clip.set.info().num_frames; ++t) frames.push_back({&clip, t});
+    }
+    people_.push_back(std::move(frames));
+  }
+
+  void Fill(const FrameOfPerson& from, PhotoFrame* photo) {
+    Clip& clip = *from.clip;
+    FillMaps(clip.maps->At(from.t), request_.size, request_.texture_size, photo);
+    {
+      const std::lock_guard lock(mutex_);
+      if (!clip.cut[from.t]) {
+        const PersonFrame picture = clip.set.Read(from.t, {true, false, false, false});
+        clip.cut[from.t] = {CutWindow(picture.rgb, clip.maps->window(), from.t),
+                            CutLabels(picture.labels, clip.maps->window(), from.t)};
+      }
+    }
+    FillPicture(*clip.cut[from.t], photo);
+  }
+
+  PeopleDataRequest request_;
+  std::shared_ptr<const BodyModel> body_;
+  std::shared_ptr<const UvTexelTable> texels_;
+  std::vector<std::unique_ptr<Clip>> clips_;
+  std::vector<std::vector<FrameOfPerson>> people_;
+  std::mutex mutex_;
+  PhotoSource source_;
+};
+
+PeopleData::PeopleData(const PeopleDataRequest& request) : impl_(std::make_unique<Impl>(request)) {}
+PeopleData::~PeopleData() = default;
+const PhotoSource& PeopleData::source() const { return impl_->source(); }
+
+bool HasTestPeople(const std::string& data) {
+  if (IsPersonSet(data)) return false;
+  const PeopleSet set = ReadPeopleSet(data);
+  return std::any_of(set.people.begin(), set.people.end(), [](const SetPerson& person) { return person.test; });
+}
+
+std::vector<int> Everybody(const PhotoSource& source) {
+  std::vector<int> persons(source.num_frames.size());
+  std::iota(persons.begin(), persons.end(), 0);
+  return persons;
+}
+
+}  // namespace bodyloom

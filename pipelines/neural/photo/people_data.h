@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+/// From a folder of many people to what the one-photo renderers train on.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bodyloom/neural/people/photo_frame.h"
+
+namespace bodyloom {
+
+struct PeopleDataRequest {
+  std::string data;  ///< a people set, or a person set (one person, all for training)
+  std::string body;  ///< empty: the built-in body
+  int size = 256;    ///< of the windows
+  int texture_size = 256;
+  bool test = false;  ///< the people kept for testing, instead of those to train on
+};
+
+/// Pictures are read when they are first asked for and kept (4 bytes a pixel); maps are made each time.
+class PeopleData {
+ public:
+  /// Throws std::runtime_error naming the file that cannot be used, or a set without such people.
+  explicit PeopleData(const PeopleDataRequest& request);
+  ~PeopleData();
+  PeopleData(const PeopleData&) = delete;
+  PeopleData& operator=(const PeopleData&) = delete;
+
+  /// Refers to this, which must outlive it.
+  [[nodiscard]] const PhotoSource& source() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Whether the set `data` has people kept for testing. Throws as PeopleData.
+bool HasTestPeople(const std::string& data);
+
+/// The numbers of all its people.
+std::vector<int> Everybody(const PhotoSource& source);
+
+}  // namespace bodyloom

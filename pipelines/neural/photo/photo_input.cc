@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/neural/photo/photo_input.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <stdexcept>
+#include <utility>
+
+#include "bodyloom/data_tools/body/body_or_builtin.h"
+#include "bodyloom/data_tools/datasets/label_of_part.h"
+#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/data_tools/descriptors/posed_track.h"
+#include "bodyloom/data_tools/motion/motion_tools.h"
+#include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/data_tools/observations/part_labels.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/neural/photo/partial_texture.h"
+#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/pipelines/people/photo_outline.h"
+#include "bodyloom/pipelines/people/photo_pictures.h"
+
+namespace bodyloom {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kWhole = 0.99;   ///< of the body's points in the picture: nothing is said
+constexpr double kOthers = 0.02;  ///< of the labels that are other people's: nothing is said
+
+/// The track's frame alone.
+Track TrackOfFrame(const Track& track, const std::string& path, int frame) {
+  const int t = track.num_frames() == 1 ? 0 : frame;
+  if (t >= track.num_frames()) {
+    throw std::runtime_error(Concatenate(path, ": ", track.num_frames(), " frames, asked for frame ", frame));
+  }
+  if (!track.HasResult(t)) {
+    throw std::runtime_error(Concatenate(path, ": frame ", t, " has no result; choose another by the frame's number"));
+  }
+  Track one = track;
+  one.motion = TakeFrames(track.motion, t, 1);
+  one.frame_status = {track.frame_status[t]};
+  const auto keep = [t](auto* values) {
+    if (!values->empty()) *values = {(*values)[t]};
+  };
+  keep(&one.joints), keep(&one.coco17);
+  if (one.joint_sigma.rows() > 0) one.joint_sigma = RowMatrixXd(track.joint_sigma.row(t));
+  if (one.weak_camera.rows() > 0) one.weak_camera = MatrixX3d(track.weak_camera.row(t));
+  return one;
+}
+
+/// Files that several photos share.
+struct Files {
+  std::shared_ptr<const BodyModel> body;
+  std::map<std::string, Track> tracks;
+
+  const Track& TrackOf(const std::string& path) {
+    const auto [place, is_new] = tracks.try_emplace(path);
+    if (is_new) place->second = ReadTrack(path);
+    return place->second;
+  }
+};
+
+/// A picture with its labels, when it has any.
+struct Shown {
+  PhotoFile picture;
+  Image labels;
+};
+
+Shown FromPersonSet(const PhotoRequest& request) {
+  const PersonSet set(request.image);
+  if (request.frame >= set.info().num_frames) {
+    throw std::runtime_error(
+        Concatenate(request.image, ": ", set.info().num_frames, " frames, asked for frame ", request.frame));
+  }
+  PersonFrame frame = set.Read(request.frame, {true, false, false, false});
+  Shown shown;
+  shown.picture.image = std::move(frame.rgb);
+  shown.labels = std::move(frame.labels);
+  return shown;
+}
+
+/// Grey value `values` as a picture, so that it can be cut and resized like one.
+Image GreyPicture(const std::vector<uint8_t>& values, int width, int height) {
+  Image grey(width, height);
+  for (size_t i = 0; i < values.size(); ++i) std::fill_n(&grey.bgr[3 * i], 3, values[i]);
+  return grey;
+}
+
+std::vector<uint8_t> FirstChannel(const Image& grey) {
+  std::vector<uint8_t> values(grey.bgr.size() / 3);
+  for (size_t i = 0; i < values.size(); ++i) values[i] = grey.bgr[3 * i];
+  return values;
+}
+
+/// The picture at the size that the track was made for, if it only was resized since.
+void BringToTrackSize(const std::string& image, const std::string& track_path, const Camera& camera, Shown* shown) {
+  Image& picture = shown->picture.image;
+  const int w = picture.width, h = picture.height;
+  if (w == camera.width && h == camera.height) return;
+  const double scale = double(w) / camera.width;
+  const bool same_shape = std::abs(h - scale * camera.height) <= std::max(1.0, scale);
+  if (!same_shape || !shown->labels.empty()) {
+    throw std::runtime_error(Concatenate(track_path, ": made for pictures of ", camera.width, "x", camera.height, ", ",
+                                         image, " has ", w, "x", h, "; give the picture that was tracked"));
+  }
+  shown->picture.notes.push_back(
+      Concatenate(w, "x", h, " pixels: resized to the ", camera.width, "x", camera.height, " of its track"));
+  if (!shown->picture.alpha.empty()) {
+    shown->picture.alpha = FirstChannel(Resized(GreyPicture(shown->picture.alpha, w, h), camera.width, camera.height));
+  }
+  picture = Resized(picture, camera.width, camera.height);
+}
+
+/// Share of the body's vertices inside the picture.
+double ShareInside(const BodyModel& body, const Track& track) {
+  const MatrixX3d vertices = PosedTrack(body, track).Vertices(0);
+  const Camera camera = track.CameraAt(0);
+  int inside = 0;
+  for (Eigen::Index i = 0; i < vertices.rows(); ++i) {
+    Eigen::Vector2d pixel;
+    inside += camera.Project(vertices.row(i).transpose(), &pixel) && pixel.x() >= -0.5 && pixel.y() >= -0.5 &&
+              pixel.x() < camera.width - 0.5 && pixel.y() < camera.height - 0.5;
+  }
+  return inside / std::max(1.0, double(vertices.rows()));
+}
+
+/// DensePose's parts of the clip as labels of the picture.
+Image LabelsOfParts(const PhotoRequest& request, const Image& picture) {
+  const PartLabelSequence parts = ReadPartLabels(request.labels);
+  if (parts.image_width != picture.width || parts.image_height != picture.height ||
+      request.frame >= parts.num_frames()) {
+    throw std::runtime_error(Concatenate(request.labels, ": ", parts.num_frames(), " frames of ", parts.image_width,
+                                         "x", parts.image_height, ", asked for frame ", request.frame, " of ",
+                                         picture.width, "x", picture.height));
+  }
+  return LabelPicture(parts.frames[request.frame], picture.width, picture.height);
+}
+
+}  // namespace
+
+void FillMaps(PhotoMap&& map, int size, int texture_size, PhotoFrame* frame) {
+  frame->size = size;
+  frame->uv = std::move(map.uv);
+  frame->parts = std::move(map.parts);
+  frame->texture_size = texture_size;
+  frame->texel_pixels = std::move(map.texel_pixels);
+  frame->texel_seen = std::move(map.texel_seen);
+  frame->image.clear();
+  frame->labels.clear();
+}
+
+void FillPicture(const CutPhoto& cut, PhotoFrame* frame) {
+  const size_t area = cut.labels.size();
+  frame->labels = cut.labels;
+  frame->image.assign(3 * area, 0);
+  for (size_t i = 0; i < area; ++i) {
+    if (cut.labels[i] == 0) continue;
+    for (int c = 0; c < 3; ++c) frame->image[area * c + i] = static_cast<float>(cut.image.bgr[3 * i + 2 - c]) / 255;
+  }
+}
+
+namespace {
+
+Photo MakePhoto(const PhotoRequest& request, Shown shown, int size, int texture_size, Files* files) {
+  Photo photo;
+  photo.body = files->body;
+  const std::string name = request.image + (request.frame > 0 ? Concatenate(", frame ", request.frame) : "");
+  const auto note = [&](const std::string& text) { photo.notes += name + ": " + text + "\n"; };
+  std::string track_path = request.track;
+  if (track_path.empty()) {
+    if (!IsPersonSet(request.image)) {
+      throw std::runtime_error(request.image + ": no person set, so its track must be given");
+    }
+    track_path = (fs::path(request.image) / "track.npz").string();
+  }
+  const Track& whole = files->TrackOf(track_path);
+  BringToTrackSize(request.image, track_path, whole.camera, &shown);
+  for (const std::string& text : shown.picture.notes) note(text);
+  photo.picture = std::move(shown.picture.image);
+  photo.track = TrackOfFrame(whole, track_path, request.frame);
+  const auto nobody = [&](const char* what) {
+    return std::runtime_error(Concatenate(track_path, ": ", what, " ", request.image, " (frame ", request.frame,
+                                          "); is it this picture's track?"));
+  };
+  double inside = 0;
+  try {
+    inside = ShareInside(*photo.body, photo.track);
+    if (inside == 0) throw nobody("its body lies outside");
+    PhotoMapsOptions options;
+    options.size = size, options.texture_size = texture_size;
+    const PhotoMaps maps(*photo.body, photo.track, options);
+    photo.window = maps.window();
+    FillMaps(maps.At(0), size, texture_size, &photo.frame);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(track_path + ": " + error.what());
+  }
+  if (inside < kWhole) {
+    note(Concatenate(std::lround(100 * (1 - inside)), " % of the body lies outside the picture: made up"));
+  }
+  Image labels = std::move(shown.labels);
+  bool of_parts = false;
+  if (labels.empty() && !request.labels.empty()) {
+    labels = LabelsOfParts(request, photo.picture);
+    note("body parts stand in for a parsing of the clothes");
+    of_parts = true;
+  }
+  CutPhoto cut;
+  cut.image = CutWindow(photo.picture, photo.window, 0);
+  if (labels.empty()) {
+    const auto cut_values = [&](const std::vector<uint8_t>& values) {
+      return CutLabels(GreyPicture(values, photo.picture.width, photo.picture.height), photo.window, 0);
+    };
+    const std::vector<uint8_t>& alpha = shown.picture.alpha;
+    const std::vector<uint8_t> everywhere(photo.picture.bgr.size() / 3, 1);
+    try {
+      PhotoOutline outline =
+          OutlineOfPerson(cut.image, cut_values(everywhere), alpha.empty() ? std::vector<uint8_t>() : cut_values(alpha),
+                          photo.frame.parts);
+      cut.labels = std::move(outline.labels);
+      note(outline.note);
+    } catch (const std::invalid_argument&) {
+      throw nobody("its body is not to be seen in");
+    }
+  } else {
+    cut.labels = CutLabels(labels, photo.window, 0);
+    if (of_parts && KeepPerson(photo.frame.parts, size, &cut.labels) > kOthers) {
+      note("there is more than one person: the one of the track counts");
+    }
+  }
+  if (std::all_of(cut.labels.begin(), cut.labels.end(), [](uint8_t label) { return label == 0; })) {
+    throw std::runtime_error(request.image + ": its labels show nobody where the track has the body");
+  }
+  FillPicture(cut, &photo.frame);
+  const PartialTexture texture = PartialTextureOf(photo.frame);
+  if (std::find(texture.visible.begin(), texture.visible.end(), 1) == texture.visible.end()) {
+    throw nobody("nothing of its body is to be seen in");
+  }
+  // The window's labels where they are in the picture.
+  photo.person.assign(size_t(photo.picture.width) * photo.picture.height, 0);
+  for (int y = 0; y < photo.picture.height; ++y) {
+    for (int x = 0; x < photo.picture.width; ++x) {
+      const int column = static_cast<int>(x * photo.window.scale_x) - photo.window.corner[0].x();
+      const int row = static_cast<int>(y * photo.window.scale_y) - photo.window.corner[0].y();
+      if (column < 0 || row < 0 || column >= size || row >= size) continue;
+      photo.person[size_t(y) * photo.picture.width + x] = cut.labels[size_t(row) * size + column] != 0 ? 1 : 0;
+    }
+  }
+  return photo;
+}
+
+}  // namespace
+
+std::vector<Photo> LoadPhotos(std::span<const PhotoRequest> requests, int size, int texture_size) {
+  BODYLOOM_CHECK(!requests.empty(), "photos: none asked for");
+  Files files;
+  files.body = BodyOrBuiltin(requests[0].body);
+  std::vector<PictureRequest> pictures;
+  for (const PhotoRequest& request : requests) {
+    if (!IsPersonSet(request.image)) pictures.push_back({request.image, request.frame});
+  }
+  std::vector<PhotoFile> read = ReadPictures(pictures);
+  std::vector<Photo> photos;
+  size_t next = 0;
+  for (const PhotoRequest& request : requests) {
+    Shown shown;
+    if (IsPersonSet(request.image)) {
+      shown = FromPersonSet(request);
+    } else {
+      shown.picture = std::move(read[next++]);
+    }
+    photos.push_back(MakePhoto(request, std::move(shown), size, texture_size, &files));
+    RequireBodyOf(photos.front(), photos.back().track, request.track.empty() ? request.image : request.track);
+  }
+  return photos;
+}
+
+void RequireBodyOf(const Photo& photo, const Track& track, const std::string& path) {
+  if (track.motion.body == photo.track.motion.body) return;
+  throw std::runtime_error(Concatenate(path, ": a track of the body \"", track.motion.body, "\", the photo's is of \"",
+                                       photo.track.motion.body, "\"; fit both with the same --body"));
+}
+
+PhotoRequest ParsePhotoRequest(const std::string& text, const std::string& option, const PhotoRequest& like) {
+  PhotoRequest request = like;
+  const size_t first = text.find(':'), second = first == std::string::npos ? first : text.find(':', first + 1);
+  request.image = text.substr(0, first);
+  request.track = first == std::string::npos
+                      ? ""
+                      : text.substr(first + 1, second == std::string::npos ? second : second - first - 1);
+  request.frame = 0;
+  request.labels.clear();
+  if (second != std::string::npos) {
+    const std::string number = text.substr(second + 1);
+    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), request.frame);
+    if (error != std::errc() || end != number.data() + number.size() || request.frame < 0) {
+      throw RequestError(option + " " + text + ": expected IMAGE:TRACK or IMAGE:TRACK:FRAME");
+    }
+  }
+  if (request.image.empty()) throw RequestError(option + " " + text + ": expected IMAGE:TRACK or IMAGE:TRACK:FRAME");
+  return request;
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What every job that trains a network does around its training: the run's folder, its progress, its end.
+#pragma once
+
+#include <initializer_list>
+#include <string>
+#include <utility>
+
+#include "bodyloom/neural/training/training_run.h"
+#include "bodyloom/pipelines/callbacks.h"
+
+namespace bodyloom {
+
+/// run_dir is `out` from now on, num_threads all cores where it was 0. Throws RequestError when there is a run to go on
+/// with and `run->resume` is not set, or the other way about; std::runtime_error when the folder cannot be written.
+void OpenTrainingRun(const std::string& out, TrainingRun* run);
+
+/// Throws RequestError when `out` holds a run already.
+void RequireNoRun(const std::string& out);
+
+/// config.json, from config_json.
+void WriteRunConfig(const TrainingRun& run);
+
+/// RUN/preview_000250.png.
+std::string PreviewPath(const TrainingRun& run, int step);
+
+/// Tells the caller of a job how its training goes. Unlike other jobs' a cancelled training ends with a checkpoint and a
+/// summary (TrainingStatus::kStopped), not with Cancelled.
+class TrainingProgress {
+ public:
+  TrainingProgress(int steps, const PipelineCallbacks& callbacks) : steps_(steps), callbacks_(callbacks) {}
+  /// The stage is "loss 0.12, image 0.034, validation 21.3 dB"; `psnr_db` nullptr: no validation yet. False once the
+  /// caller wants it to stop.
+  bool Update(int step, std::initializer_list<std::pair<const char*, double>> losses, const double* psnr_db) const;
+
+ private:
+  int steps_;
+  const PipelineCallbacks& callbacks_;
+};
+
+/// Throws std::runtime_error when training broke off at a loss that is no number.
+void RequireFinite(const TrainingOutcome& outcome, const std::string& out);
+
+}  // namespace bodyloom

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What the networks take and make, as pictures to look at. Planar: channel, row, column.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "bodyloom/render/image.h"
+
+namespace bodyloom {
+
+/// Planar RGB in [0, 1] to a picture; values beyond are cut off.
+Image PictureOf(std::span<const float> planar, int width, int height);
+
+/// Normals of the camera frame as colours: red right, green up, blue towards the viewer; black where there are none.
+Image NormalPicture(std::span<const float> planar, int width, int height);
+
+/// Classes of a person set (data_tools/datasets/person_set.h), a colour each; the background is black.
+Image LabelsPicture(std::span<const uint8_t> labels, int width, int height);
+
+}  // namespace bodyloom

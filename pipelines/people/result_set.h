@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A rendered clip as a person set, so that `bodyloom metrics` compares it with another, pixel by pixel.
+#pragma once
+
+#include <string>
+
+#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/neural/motion/motion_picture.h"
+#include "bodyloom/render/image.h"
+#include "bodyloom/render/person_window.h"
+
+namespace bodyloom {
+
+/// What the networks said of frame t's window, as pictures as large as `composed` (which is taken as the frame's
+/// image): the class of the window's nearest pixel, and normals between the four nearest, unit vectors where the class
+/// is not background. `picture` without labels or normals: those are left empty.
+PersonFrame SetFrameOf(const MotionPicture& picture, const PersonWindow& window, int t, const Image& composed);
+
+/// Writes images, labels and normals (as far as the networks make them) and the track as a person set.
+class ResultSet {
+ public:
+  /// Throws std::runtime_error when the folder cannot be written.
+  ResultSet(const std::string& path, const Track& track, double fps, bool labels, bool normals,
+            const std::string& command);
+  /// `picture` of no pixels: a frame without a fit, all background.
+  void Add(int t, const MotionPicture& picture, const PersonWindow& window, const Image& composed);
+  /// Until then the folder is no set.
+  void Finish() const;
+
+ private:
+  PersonSetInfo info_;
+  PersonSetWriter writer_;
+};
+
+}  // namespace bodyloom

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/runs/motion_run.h"
+
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <utility>
+
+#include "bodyloom/data_tools/formats/json_reader.h"
+#include "bodyloom/pipelines/runs/run_config.h"
+
+namespace bodyloom {
+
+namespace {
+
+constexpr const char* kProgram = "bodyloom train motion";
+
+}  // namespace
+
+std::string MotionRunJson(const MotionRun& run) {
+  const MotionConfig& c = run.config;
+  nlohmann::ordered_json json = {{"program", kProgram},
+                                 {"version", BODYLOOM_VERSION},
+                                 {"profile", c.profile.name},
+                                 {"image_size", c.profile.image_size},
+                                 {"uv_size", c.profile.uv_size},
+                                 {"features", c.profile.features},
+                                 {"texture_size", c.profile.texture_size},
+                                 {"texture_features", c.profile.texture_features},
+                                 {"encoder_widths", c.profile.encoder_widths},
+                                 {"decoder_widths", c.profile.decoder_widths},
+                                 {"discriminator_width", c.profile.discriminator_width},
+                                 {"perceptual_divisor", c.profile.perceptual_divisor},
+                                 {"motion_channels", c.motion_channels},
+                                 {"num_labels", c.num_labels},
+                                 {"shape", c.shape},
+                                 {"normals", c.normals},
+                                 {"motion", c.motion},
+                                 {"surface", c.surface},
+                                 {"texture", c.texture},
+                                 {"around_body", c.around_body},
+                                 {"pixels_per_metre", run.pixels_per_metre},
+                                 {"fps", run.fps},
+                                 {"past", run.past},
+                                 {"reach", run.reach}};
+  if (!run.notes.empty()) json["run"] = nlohmann::ordered_json::parse(run.notes);
+  return json.dump(2) + "\n";
+}
+
+MotionRun ReadMotionRun(const std::string& run_dir) {
+  const std::string path = RunConfigPath(run_dir);
+  const nlohmann::json json = ReadRunConfig(run_dir, kProgram);
+  const JsonNode root(json, path);
+  MotionRun run;
+  MotionConfig& c = run.config;
+  c.profile.name = root.At("profile").Text();
+  const std::pair<const char*, int*> numbers[] = {{"image_size", &c.profile.image_size},
+                                                  {"uv_size", &c.profile.uv_size},
+                                                  {"features", &c.profile.features},
+                                                  {"texture_size", &c.profile.texture_size},
+                                                  {"texture_features", &c.profile.texture_features},
+                                                  {"discriminator_width", &c.profile.discriminator_width},
+                                                  {"perceptual_divisor", &c.profile.perceptual_divisor},
+                                                  {"motion_channels", &c.motion_channels},
+                                                  {"num_labels", &c.num_labels},
+                                                  {"past", &run.past},
+                                                  {"reach", &run.reach}};
+  for (const auto& [key, value] : numbers) *value = root.At(key).Int();
+  for (const auto& [key, widths] : {std::pair("encoder_widths", &c.profile.encoder_widths),
+                                    std::pair("decoder_widths", &c.profile.decoder_widths)}) {
+    const JsonNode list = root.At(key);
+    for (size_t i = 0; i < list.size(); ++i) widths->push_back(list.At(i).Int());
+  }
+  for (const auto& [key, flag] :
+       {std::pair("shape", &c.shape), std::pair("normals", &c.normals), std::pair("motion", &c.motion),
+        std::pair("surface", &c.surface), std::pair("texture", &c.texture)}) {
+    *flag = root.At(key).Flag();
+  }
+  // Runs from before there was a choice looked at whole windows.
+  c.around_body = root.Has("around_body") && root.At("around_body").Flag();
+  run.pixels_per_metre = root.At("pixels_per_metre").Number();
+  run.fps = root.At("fps").Number();
+  std::string why;
+  if (!run.config.IsValid(&why)) throw std::runtime_error(path + ": " + why);
+  if (run.reach < (c.around_body ? 1 : 0) || run.reach > run.config.profile.image_size || run.past < 0 ||
+      run.past > 10000 || 3 + 3 * run.past != run.config.motion_channels || !(run.pixels_per_metre > 0) ||
+      !(run.fps > 0)) {
+    throw std::runtime_error(path + ": past, reach, pixels_per_metre or fps do not make sense");
+  }
+  return run;
+}
+
+}  // namespace bodyloom
