@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The verbs of the command, one file each (apps/verb_NAME.cc).
+/// The verbs of the command, one file each (apps/verb_*.cc).
 /// An Add function describes its verb to the parser and, when the user chose it, sets `action` to what is to be done;
 /// main() runs it after parsing. An action returns normally on success and throws otherwise (apps/exit_code.h).
 #pragma once

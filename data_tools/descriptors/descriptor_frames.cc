@@ -52,19 +52,6 @@ class DescriptorFrames::Impl {
   DescriptorMaps maps_;
 };
 
-bool DescriptorOptions::IsValid(std::string* why) const {
-  if (!texels.IsValid(why) || !velocity.IsValid(why)) return false;
-  const auto no = [why](const std::string& text) {
-    *why = text;
-    return false;
-  };
-  if (past < 0 || past > 1000) return no(Concatenate("past is ", past, ", expected 0..1000"));
-  if (past == 0 && !normals) return no("neither normals nor velocities asked for");
-  if (num_threads < 1 || num_threads > 1024)
-    return no(Concatenate("num_threads is ", num_threads, ", expected 1..1024"));
-  return true;
-}
-
 DescriptorFrames::DescriptorFrames(const BodyModel& body, const Track& track, const DescriptorOptions& options)
     : impl_(std::make_unique<Impl>(body, track, options)) {}
 DescriptorFrames::~DescriptorFrames() = default;

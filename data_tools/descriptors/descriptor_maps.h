@@ -8,10 +8,12 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/data_tools/descriptors/descriptor_frames.h"
+#include "bodyloom/data_tools/descriptors/descriptor_options.h"
 #include "bodyloom/data_tools/descriptors/map_memory.h"
 #include "bodyloom/data_tools/descriptors/posed_frames.h"
 #include "bodyloom/data_tools/descriptors/surface_maps.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/track.h"
 
 namespace bodyloom::describe_internal {
 

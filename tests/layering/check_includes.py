@@ -39,8 +39,8 @@ ROOMS = {
 for room in ROOMS:
     if room != "geometry/base":
         ROOMS[room] = ROOMS[room] | {"geometry/base"}
-# Headers of a room above that need nothing which the room lacks: room -> pattern of their paths.
-EXCEPTIONS = {"pipelines": r"neural/\w+/\w+_config\.h$"}
+# Headers of a room above that hold plain data and need no LibTorch: room -> pattern of their paths.
+EXCEPTIONS = {"pipelines": r"neural/\w+/\w+_(config|picture|scores)\.h$"}
 
 PROGRAMS = ("apps", "tests", "benchmarks", "examples")
 FOLDERS = sorted({room.split("/")[0] for room in ROOMS})
