@@ -50,7 +50,8 @@ void AddExportVerb(CLI::App& app, Action* action) {
   verb->callback([request, form, action] {
     *action = [request, form] {
       request->form = TrackFormFromString(*form);
-      std::cout << "wrote " << ExportTrack(*request, CommandCallbacks()).out << "\n";
+      const ExportTrackReport report = ExportTrack(*request, CommandCallbacks());
+      std::cout << "wrote " << report.out << "\n";
     };
   });
 }

@@ -13,12 +13,12 @@
 namespace bodyloom {
 
 struct SynthesizePersonRequest {
-  std::vector<std::string> motions;  ///< names of MotionSource; several follow each other with a gap
-  std::vector<double> speeds = {1};  ///< each motion at each of them
-  MotionSource motion{.fps = 30};    ///< rate and frames of each
-  std::string body;                  ///< empty: the built-in body
-  std::string out;                   ///< the folder
-  std::string sheet;                 ///< also a contact sheet, .png or .jpg; empty: none
+  std::vector<std::string> motions;            ///< names of MotionSource; several follow each other with a gap
+  std::vector<double> speeds = {1};            ///< each motion at each of them
+  MotionSource motion{.name = "", .fps = 30};  ///< rate and frames of each; `motions` name them
+  std::string body;                            ///< empty: the built-in body
+  std::string out;                             ///< the folder
+  std::string sheet;                           ///< also a contact sheet, .png or .jpg; empty: none
   /// progress, look, motion and command are set by SynthesizePerson.
   MakePersonSetOptions set;
 };

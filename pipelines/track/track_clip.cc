@@ -128,7 +128,6 @@ TrackReport TrackClip(const TrackRequest& request, const PipelineCallbacks& call
     report.solve.plan = WholePlan(request, inputs);
     return report;
   }
-  callbacks.Update("read", 0);
   callbacks.Begin("tracking " + std::to_string(inputs.num_frames()) + " frames");
   const double solve_share = request.overlay.empty() ? 1 : kSolveShareWithOverlay;
   clock.Begin(kSolveStage);

@@ -17,7 +17,7 @@ check_depends() {  # FILE
   depends=$(dpkg-deb --field "$1" Depends)
   printf '%s\n  depends on %s\n' "${1##*/}" "$depends"
   names=$(tr ',|' '\n\n' <<<"$depends" | sed 's/(.*//; s/:.*//; s/ //g' | sort -u)
-  [ -n "$names" ] || fail "$1 depends on nothing, not even on libc6"
+  [ -n "$names" ] || fail "$1 depends on nothing"
   for name in $names; do
     [ "$name" = bodyloom ] || dpkg-query -W "$name" >/dev/null 2>&1 || apt-cache show "$name" >/dev/null 2>&1 ||
       fail "$1 depends on $name, which is no package of this Debian"
@@ -26,7 +26,7 @@ check_depends() {  # FILE
 
 rm -rf "$root"
 mkdir -p "$root"
-for package in bodyloom bodyloom-neural; do
+for package in bodyloom bodyloom-neural libbodyloom-dev; do
   file=$packages/${package}_${version}_$architecture.deb
   if [ ! -f "$file" ]; then
     [ "$package" = bodyloom-neural ] || fail "$file was not made"
