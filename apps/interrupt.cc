@@ -3,8 +3,6 @@
 
 #include <csignal>
 
-#include "bodyloom/pipelines/callbacks.h"
-
 namespace bodyloom {
 namespace {
 
@@ -26,11 +24,5 @@ void InstallSignalHandlers() {
 }
 
 bool IsInterrupted() { return interrupt_flag != 0; }
-
-void ThrowIfInterrupted() {
-  if (IsInterrupted()) {
-    throw Cancelled();
-  }
-}
 
 }  // namespace bodyloom

@@ -10,7 +10,4 @@ void InstallSignalHandlers();
 
 [[nodiscard]] bool IsInterrupted();
 
-/// Throws Cancelled (pipelines/callbacks.h) when the flag is up; main() answers with exit code 130.
-void ThrowIfInterrupted();
-
 }  // namespace bodyloom
