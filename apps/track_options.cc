@@ -122,10 +122,11 @@ void AddTrackOptions(CLI::App& app, TrackCommand* command) {
   app.add_flag("--quiet", c.quiet, "no progress and no summary on the screen")->group(wanted);
 
   TrackSequenceOptions& s = c.solve;
-  app.add_option("--solver", s.solver,
-                 "the engine: chain, or ceres (the reference: the same problem, several times slower)")
+  app.add_option_function<std::string>(
+         "--solver", [&s](const std::string& word) { s.solver = SequenceSolverFromString(word); },
+         "the engine: chain, or ceres (the reference: the same problem, several times slower)")
       ->group(solve)
-      ->capture_default_str()
+      ->default_str(ToString(s.solver))
       ->check(CLI::IsMember({"ceres", "chain"}));
   app.add_option("--threads", s.num_threads, "at most 256; 0: all cores; results agree to rounding")
       ->group(solve)
@@ -189,8 +190,8 @@ void CheckTrackOptions(const TrackCommand& command) {
   if (!command.overlay.empty() && !command.overlay.ends_with(".mp4")) {
     throw RequestError("--overlay " + command.overlay + ": expected a name that ends in .mp4");
   }
-  if (command.live_lag && command.solve.solver != "chain") {
-    throw RequestError("--live runs on the chain solver: leave out --solver " + command.solve.solver);
+  if (command.live_lag && command.solve.solver != SequenceSolver::kChain) {
+    throw RequestError("--live runs on the chain solver: leave out --solver " + ToString(command.solve.solver));
   }
   if (command.live_lag && command.detections.empty() && command.dense.empty()) {
     throw RequestError("--live does not use part labels: give --detections or --dense");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/files.h"
+#include "bodyloom/pipelines/files.h"
 
 #include <unistd.h>
 
