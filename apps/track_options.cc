@@ -121,10 +121,11 @@ void AddTrackOptions(CLI::App& app, TrackRequest* request, bool* quiet) {
   app.add_flag("--quiet", *quiet, "no progress and no summary on the screen")->group(wanted);
 
   TrackSequenceOptions& s = c.solve;
-  app.add_option("--solver", s.solver,
-                 "the engine: chain, or ceres (the reference: the same problem, several times slower)")
+  app.add_option_function<std::string>(
+         "--solver", [&s](const std::string& word) { s.solver = SequenceSolverFromString(word); },
+         "the engine: chain, or ceres (the reference: the same problem, several times slower)")
       ->group(solve)
-      ->capture_default_str()
+      ->default_str(ToString(s.solver))
       ->check(CLI::IsMember({"ceres", "chain"}));
   app.add_option("--threads", s.num_threads, "at most 256; 0: all cores; results agree to rounding")
       ->group(solve)

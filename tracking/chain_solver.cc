@@ -20,7 +20,7 @@ constexpr double kStartRadius = 1e4, kMaxRadius = 1e16, kMinRadius = 1e-32;
 constexpr int kMaxInvalidSteps = 5;
 /// What an iteration counts for at least: resting frames cost some time too.
 constexpr double kLeastIteration = 0.25;
-constexpr double kEarlyTolerance = 1e-3;  ///< when all keypoints come in (SolveOptions::early_dense)
+constexpr double kEarlyTolerance = 1e-3;  ///< when all keypoints come in (ChainOptions::early_dense)
 
 /// The size of the trust region.
 class Radius {
@@ -52,7 +52,7 @@ double LargestOf(const VectorXd& x) { return x.size() > 0 ? x.cwiseAbs().maxCoef
 size_t MostDense(const SequenceProblem& problem) {
   size_t most = 0;
   for (const FrameData& frame : problem.frames) {
-    if (frame.dense != nullptr) most = std::max(most, frame.dense->size());
+    most = std::max(most, frame.dense.size());
   }
   return most;
 }
@@ -67,9 +67,9 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
   ChainPoint& x = *point;
   ChainPoint candidate;
   double other_seconds = 0;
-  if (thinned) chain.LimitDense(options.early_dense);
-  bool skipping = options.skip_settled > 0;
-  chain.SkipSettled(options.skip_settled);
+  if (thinned) chain.LimitDense(options.chain.early_dense);
+  bool skipping = options.chain.skip_settled > 0;
+  chain.SkipSettled(options.chain.skip_settled);
   const auto count = [&]() {
     report.frames_skipped += chain.num_skipped();
     report.frames_evaluated += static_cast<int64_t>(x.states.size()) - chain.num_skipped();
@@ -78,7 +78,7 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
   count();
   report.seconds_evaluation += watch.Lap();
   report.initial_cost = report.final_cost = cost;
-  RestingFrames rest(options.rest_share);
+  RestingFrames rest(options.chain.rest_share);
   double spent = 0;  // iterations, those of a part of the frames by its size
   const auto let_rest = [&](const std::vector<char>& frames) {
     factor->SetResting(frames);
@@ -132,7 +132,7 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
     }
     if (iteration >= options.max_iterations) {
       move_all();
-      if (thinned || (skipping && !options.skip_to_the_end)) {
+      if (thinned || (skipping && !options.chain.skip_to_the_end)) {
         chain.LimitDense(0);
         chain.SkipSettled(0);
         cost = chain.Cost(x);
@@ -237,7 +237,8 @@ SolveReport SolveChain(SequenceProblem* problem, const SolveOptions& options) {
   ChainProblem chain(*problem, options.shape_constant, options.focal_constant, options.num_threads);
   ChainFactor factor(chain.frame_size(), chain.shared_size(), chain.cut_before());
   ChainPoint x{problem->states, problem->betas, problem->log_focal};
-  const bool thin = options.early_dense > 0 && MostDense(*problem) > 2 * static_cast<size_t>(options.early_dense);
+  const bool thin =
+      options.chain.early_dense > 0 && MostDense(*problem) > 2 * static_cast<size_t>(options.chain.early_dense);
   SolveReport report = DescendChain(&chain, &factor, &x, options, thin);
   if (report.status != SolveStatus::kFailure) {
     problem->states = std::move(x.states);

@@ -15,6 +15,7 @@
 #include "bodyloom/tracking/chain/chain_factor.h"
 #include "bodyloom/tracking/chain/chain_problem.h"
 #include "bodyloom/tracking/sequence_problem.h"
+#include "bodyloom/tracking/solve_options.h"
 
 namespace bodyloom {
 
@@ -22,7 +23,7 @@ namespace bodyloom {
 SolveReport SolveChain(SequenceProblem* problem, const SolveOptions& options);
 
 /// The iterations alone, from `x` on, which holds the best point afterwards (also after a failure). The linearisations
-/// that `chain` holds already are used where options.skip_settled lets them. `early`: begin with options.early_dense.
+/// that `chain` holds already are used where options.chain.skip_settled lets them. `early`: begin with options.chain.early_dense.
 SolveReport DescendChain(ChainProblem* chain, ChainFactor* factor, ChainPoint* x, const SolveOptions& options,
                          bool early);
 

@@ -2,7 +2,9 @@
 #include "bodyloom/tracking/input_checks.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string>
 
 #include "bodyloom/geometry/base/check.h"
 
@@ -69,7 +71,102 @@ bool IsUsable(const DenseKeypoint& point, float reach) {
          (point.barycentric.array() <= 2).all();
 }
 
+void CheckDense(const TrackSequenceInput& input) {
+  for (const auto& frame : input.dense->frames) {
+    for (const DenseKeypoint& point : frame) {
+      BODYLOOM_CHECK(point.face >= 0 && point.face < input.body->num_faces(), "track: a dense keypoint names face ",
+                     point.face, ", the body '", input.body->name(), "' has ", input.body->num_faces());
+    }
+  }
+}
+
+void CheckPartLabels(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
+  const PartLabelSequence& labels = *input.part_labels;
+  BODYLOOM_CHECK(static_cast<int>(labels.timestamps.size()) == labels.num_frames(), "track: ", labels.num_frames(),
+                 " frames of part labels but ", labels.timestamps.size(), " timestamps");
+  BODYLOOM_CHECK(labels.image_width > 0 && labels.image_height > 0,
+                 "track: the part labels do not say how large their images are");
+  const bool alone = input.keypoints == nullptr && input.dense == nullptr;
+  BODYLOOM_CHECK(!alone || input.initialiser != nullptr,
+                 "track: part labels refine a start; give 2D joints, dense keypoints or an initialiser with them");
+  BODYLOOM_CHECK(!alone || options.camera_knowledge != CameraKnowledge::kWeak,
+                 "track: weak perspective needs 2D joints or dense keypoints besides part labels");
+  std::array<bool, 256> has_chart{};
+  if (!input.body->has_parts()) has_chart[labels.part_of_chart[0]] = true;
+  for (const uint8_t chart : input.body->data().face_part) has_chart[labels.part_of_chart[chart]] = true;
+  has_chart[PartLabelSequence::kBackground] = has_chart[PartLabelSequence::kUnknown] = true;
+  for (int t = 0; t < labels.num_frames(); ++t) {
+    const LabelImage& image = labels.frames[t];
+    const size_t expected = size_t(std::max(image.width, 0)) * size_t(std::max(image.height, 0));
+    BODYLOOM_CHECK(image.labels.size() == expected, "track: frame ", t, " holds ", image.labels.size(),
+                   " part labels for ", image.width, "x", image.height, " pixels");
+    BODYLOOM_CHECK(expected == 0 ||
+                       (image.x_begin >= 0 && image.y_begin >= 0 && image.x_begin <= labels.image_width - image.width &&
+                        image.y_begin <= labels.image_height - image.height),
+                   "track: the part labels of frame ", t, " cover ", image.width, "x", image.height, " pixels from (",
+                   image.x_begin, ", ", image.y_begin, "), outside the image of ", labels.image_width, "x",
+                   labels.image_height);
+    for (const uint8_t label : image.labels) {
+      BODYLOOM_CHECK(has_chart[labels.part_of_label[label]], "track: frame ", t, " has pixels of label ", int{label},
+                     " (part ", int{labels.part_of_label[label]}, "), which no chart of the body '", input.body->name(),
+                     "' belongs to");
+    }
+  }
+}
+
 }  // namespace
+
+ClipExtent ExtentOf(const TrackSequenceInput& input) {
+  ClipExtent extent;
+  const char* first = nullptr;
+  const auto add = [&](const auto* observations, const char* what) {
+    if (observations == nullptr) return;
+    if (first == nullptr) {
+      first = what;
+      extent.frames = observations->num_frames();
+      extent.timestamps = &observations->timestamps;
+    }
+    BODYLOOM_CHECK(observations->num_frames() == extent.frames, "track: ", extent.frames, " frames of ", first, " but ",
+                   observations->num_frames(), " of ", what);
+    const int w = observations->image_width, h = observations->image_height;
+    if (w == 0) return;
+    BODYLOOM_CHECK(extent.width == 0 || (extent.width == w && extent.height == h), "track: the ", what,
+                   " are for images of ", w, "x", h, ", other observations for ", extent.width, "x", extent.height);
+    extent.width = w;
+    extent.height = h;
+  };
+  add(input.keypoints, "2D joints");
+  add(input.dense, "dense keypoints");
+  add(input.part_labels, "part labels");
+  return extent;
+}
+
+void CheckInput(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
+  std::string why;
+  BODYLOOM_CHECK(options.IsValid(&why), "track: ", why);
+  BODYLOOM_CHECK(input.body != nullptr, "track: no body");
+  BODYLOOM_CHECK(input.keypoints != nullptr || input.dense != nullptr || input.part_labels != nullptr,
+                 "track: neither 2D joints nor dense keypoints nor part labels; give at least one");
+  for (const OwnTerm& term : options.own_terms) CheckOwnTerm(term, *input.body);
+  const ClipExtent extent = ExtentOf(input);
+  BODYLOOM_CHECK(extent.frames > 0, "track: the detections hold no frames");
+  if (input.initialiser != nullptr) {
+    BODYLOOM_CHECK(input.initialiser->num_frames() == extent.frames, "track: the initialiser has ",
+                   input.initialiser->num_frames(), " frames, the detections ", extent.frames);
+  }
+  if (input.dense != nullptr) CheckDense(input);
+  if (input.part_labels != nullptr) CheckPartLabels(input, options);
+  if (options.camera_knowledge == CameraKnowledge::kKnown) {
+    BODYLOOM_CHECK(extent.width == 0 || input.camera.width == 0 ||
+                       (extent.width == input.camera.width && extent.height == input.camera.height),
+                   "track: the detections are for images of ", extent.width, "x", extent.height,
+                   " but the camera is for ", input.camera.width, "x", input.camera.height);
+  } else {
+    BODYLOOM_CHECK(extent.width > 0 || input.camera.width > 0,
+                   "track: the image size is not known; it is needed when the focal length is not");
+  }
+  CheckNumbers(input, options);
+}
 
 void CheckNumbers(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
   if (input.keypoints != nullptr) {

@@ -2,10 +2,26 @@
 /// What TrackSequence refuses before it begins, and which observations it leaves out because they cannot be meant.
 #pragma once
 
+#include <vector>
+
 #include "bodyloom/geometry/observations.h"
-#include "bodyloom/tracking/track_sequence.h"
+#include "bodyloom/tracking/track_input.h"
+#include "bodyloom/tracking/track_options.h"
 
 namespace bodyloom {
+
+/// Length and image size of the clip, from whichever observations there are.
+struct ClipExtent {
+  int frames = 0, width = 0, height = 0;
+  const std::vector<double>* timestamps = nullptr;
+};
+
+/// Throws std::invalid_argument when the observations differ in length or image size.
+ClipExtent ExtentOf(const TrackSequenceInput& input);
+
+/// Throws std::invalid_argument for everything that TrackSequence() does not accept: options out of range, no body, no
+/// observations, sizes that differ, labels of no chart, and CheckNumbers().
+void CheckInput(const TrackSequenceInput& input, const TrackSequenceOptions& options);
 
 /// Throws std::invalid_argument, beginning with "track: ", when a number of the input cannot be:
 /// - observations: another number of points than frames × landmarks, or of timestamps than frames; timestamps that are

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 /// The clip as one least-squares problem: frames coupled to their neighbours by acceleration, all to shape and camera.
 ///
-/// The unknowns live here, in plain form; SolveSequence hands them to Ceres and takes them back. Work and memory grow
-/// linearly with the number of frames: a frame couples to two neighbours on each side and to the shared columns only.
+/// The unknowns live here, in plain form; no engine is known here (solve_sequence.h). Work and memory grow linearly with
+/// the number of frames: a frame couples to two neighbours on each side and to the shared columns only.
 #pragma once
 
 #include <array>
-#include <cstdint>
-#include <functional>
-#include <string>
 #include <vector>
 
-#include "bodyloom/tracking/frame_cost.h"
+#include "bodyloom/tracking/frame_data.h"
+#include "bodyloom/tracking/frame_layout.h"
+#include "bodyloom/tracking/shots.h"
 
 namespace bodyloom {
 
@@ -44,58 +43,12 @@ struct SequenceProblem {
   ShapePrior shape_prior;
 };
 
-/// The engines of SolveSequence: the same problem, the same rules of acceptance and of stopping.
-enum class SequenceSolver {
-  kCeres,  ///< Ceres with sparse Cholesky: the reference
-  kChain   ///< tracking/chain_solver.h
-};
+/// Whether frame t has cost functions with the next one (terms/own/own_costs.h) that take part: the next one is there and
+/// continues it.
+bool HasCostsWithNext(const SequenceProblem& problem, size_t t);
 
-struct SolveOptions {
-  SequenceSolver solver = SequenceSolver::kCeres;
-  int max_iterations = 50;
-  int num_threads = 1;
-  double function_tolerance = 1e-5;   ///< stop when |Δcost| is below this share of the cost
-  double gradient_tolerance = 1e-9;   ///< … when no component of the gradient is larger
-  double parameter_tolerance = 1e-9;  ///< … when the step is below this share of the unknowns' norm
-  /// Chain only: until the cost settles to a thousandth, frames with more than twice as many dense keypoints use about
-  /// this many, evenly chosen and weighted to stand for all; then all of them. What converges is always the whole
-  /// problem. 0: all from the beginning.
-  int early_dense = 0;
-  /// Chain only: frames whose residuals have moved by less than this share of their size since they were linearised
-  /// last are not evaluated again; a quadratic stands for them (ChainProblem::SkipSettled). Before the descent may end
-  /// as converged all frames are evaluated at the same point and iterations without the skip follow, so the answer is a
-  /// minimum of the cost itself. 0: every frame in every iteration.
-  double skip_settled = 0;
-  /// Chain only: frames whose steps promise little rest, and shape and focal length with them, while the others go on
-  /// (tracking/chain/resting_frames.h); this share of a step's decrease is left lying at a time. Only a step of all
-  /// frames may end the descent as converged. Steps of a part of the frames count for max_iterations by its size, a
-  /// quarter at least. 0: all frames move in every iteration.
-  double rest_share = 0;
-  /// Leave it at that when max_iterations end the descent: the final cost may hold stand-ins.
-  bool skip_to_the_end = false;
-  bool shape_constant = false, focal_constant = false;
-  /// Called after each iteration with (iteration, cost); false stops.
-  std::function<bool(int, double)> on_iteration;
-};
-
-/// What the tracker sets the skips to; settled frames only where there are dense keypoints.
-inline constexpr int kTrackerEarlyDense = 300;
-inline constexpr double kTrackerSkipSettled = 0.01, kTrackerRestShare = 0.05;
-
-struct SolveReport {
-  SolveStatus status = SolveStatus::kFailure;
-  int iterations = 0;
-  double initial_cost = 0, final_cost = 0, seconds = 0;
-  double seconds_evaluation = 0, seconds_linear_solver = 0;  ///< parts of `seconds`
-  int64_t frames_evaluated = 0, frames_skipped = 0;          ///< chain: frames × evaluations
-  std::string message;
-};
-
-/// The problem's states, betas and log_focal hold the answer afterwards. The answer is the same to the last bit for any
-/// number of threads. Throws std::invalid_argument when the problem's sizes contradict each other.
-SolveReport SolveSequence(SequenceProblem* problem, const SolveOptions& options);
-
-/// The same problem on a subset of the frames (ascending indices): a coarse solve in time. Frame data is copied.
+/// The same problem on a subset of the frames (ascending indices): a coarse solve in time. Frame data is copied; cost
+/// functions with a next frame that is not selected are left out.
 SequenceProblem SelectFrames(const SequenceProblem& problem, const std::vector<int>& frames);
 
 /// Takes the coarse answer back: shape and focal length, the selected frames' states, and for frames between them the
@@ -104,9 +57,6 @@ void SpreadFrames(const SequenceProblem& coarse, const std::vector<int>& frames,
 
 /// About `rate` frames a second, always with the first and last frame of every shot.
 std::vector<int> FramesAtRate(const SequenceProblem& problem, double rate);
-
-/// The shot of each frame, counted from 0: a cut begins the next one.
-std::vector<int> ShotOfFrames(const std::vector<char>& cut_before);
 
 /// σ of each body joint's angular acceleration, rad/s²: Smoothness over JointLevers(). Of SequenceProblem::smoothness
 /// the one of this shot.

@@ -4,19 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/percentile.h"
 #include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/tracking/ground_terms.h"
-#include "bodyloom/tracking/image_terms.h"
-#include "bodyloom/tracking/initialise/initial_states.h"
+#include "bodyloom/tracking/frame_cost.h"
 #include "bodyloom/tracking/kinematics.h"
 
 namespace bodyloom {
 
-using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
@@ -33,19 +27,12 @@ bool IsFinite(const FrameState& state) {
 
 }  // namespace
 
-TermSummary SummarizeTerm(const std::string& term, const std::vector<double>& px, int unmatched) {
-  TermSummary summary{term, static_cast<int>(px.size()), unmatched, 0, 0};
-  if (px.empty()) return summary;
-  const std::vector<double> sorted = SortedFinite(px);
-  summary.median_px = SortedPercentile(sorted, 50), summary.p95_px = SortedPercentile(sorted, 95);
-  return summary;
-}
-
 FrameStatus StatusOf(const FrameData& frame) {
-  const size_t dense = frame.dense != nullptr ? frame.dense->size() : 0;
-  if (frame.part_labels != nullptr && frame.part_labels->num_person_pixels() > 0) return FrameStatus::kTracked;
-  if (frame.landmarks.empty() && dense == 0) return FrameStatus::kInterpolated;
-  if (frame.landmarks.size() < kFewLandmarks && dense < kFewDense) return FrameStatus::kWeak;
+  const size_t dense = frame.dense.size(), joints = frame.landmarks.seen.size();
+  if (frame.part_labels.term != nullptr && frame.part_labels.term->num_person_pixels() > 0)
+    return FrameStatus::kTracked;
+  if (joints == 0 && dense == 0) return FrameStatus::kInterpolated;
+  if (joints < kFewLandmarks && dense < kFewDense) return FrameStatus::kWeak;
   return FrameStatus::kTracked;
 }
 
@@ -105,22 +92,12 @@ void FillTrack(const TrackSequenceInput& input, const SequenceProblem& problem, 
     ++summary.frames_by_status[ToString(status)];
 
     const Camera camera = track.CameraAt(t);
-    Vector2d pixel;
-    for (size_t i = 0; i < landmarks.names.size(); ++i) {
-      const Keypoint& seen = input.keypoints->at(t, landmarks.keypoint_column[i]);
-      if (!(seen.confidence > 0.3F)) continue;
-      if (camera.Project(points.Evaluate(kinematics, landmarks.points[i], false), &pixel)) {
-        landmark_errors.push_back((pixel - Vector2d(seen.x, seen.y)).norm());
-      }
+    if (input.keypoints != nullptr) {
+      AppendLandmarkErrors(landmarks, *input.keypoints, t, camera, kinematics, &landmark_errors);
     }
-    if (frame.dense != nullptr) {
+    if (frame.dense.points != nullptr) {
       vertices.NewFrame(kinematics);
-      for (const DenseKeypoint& point : *frame.dense) {
-        const Vector3d barycentric = point.barycentric.cast<double>();
-        const Vector3d x = points.Evaluate(kinematics, model.data().faces.row(point.face).data(), barycentric.data(),
-                                           &vertices, false);
-        if (camera.Project(x, &pixel)) dense_errors.push_back((pixel - point.pixel.cast<double>()).norm());
-      }
+      AppendDenseErrors(*frame.dense.points, camera, kinematics, &vertices, &dense_errors);
     }
   }
   const TermSummary joints = SummarizeTerm("2D joints", landmark_errors);
@@ -131,80 +108,24 @@ void FillTrack(const TrackSequenceInput& input, const SequenceProblem& problem, 
   if (input.dense != nullptr) summary.terms.push_back(dense);
 }
 
-std::vector<PlanEntry> PlanTrackSequence(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
-  std::vector<PlanEntry> plan;
-  const BodyModel& model = *input.body;
-  const bool dense = input.dense != nullptr;
-  const ObservedLandmarks landmarks = FindObservedLandmarks(model, input.keypoints, 0);
-  const bool labels = input.part_labels != nullptr;
-  const size_t active = FindActiveJoints(model, landmarks, dense || labels, options.skip_unneeded).size();
-  const auto add = [&](const std::string& what, bool runs, const std::string& why) {
-    plan.push_back({what, runs, why});
+void SummariseImageTerms(const SequenceProblem& problem, bool rendered_uv, bool part_labels,
+                         TrackSequenceSummary* summary) {
+  if (!rendered_uv && !part_labels) return;
+  FrameResiduals residuals;
+  FrameEvaluator evaluator;
+  FrameSystem system;
+  for (size_t t = 0; t < problem.frames.size(); ++t) {
+    evaluator.Evaluate(problem.layout, problem.frames[t], problem.states[t], problem.betas, problem.log_focal, false,
+                       &system, &residuals);
+    summary->num_observations += problem.frames[t].part_labels.num_rows();
+  }
+  const auto add = [&](const char* term, const std::vector<double>& px, int unmatched) {
+    summary->terms.push_back(SummarizeTerm(term, px, unmatched));
   };
-  const std::string no_lifter = WhyNoLifter(input, options);
-  add("lifter", no_lifter.empty(),
-      !no_lifter.empty()           ? no_lifter
-      : input.keypoints != nullptr ? "starts from 2D joints"
-                                   : "starts from joints among the dense keypoints");
-  add("hypotheses over the clip", input.initialiser == nullptr && !no_lifter.empty(),
-      input.initialiser != nullptr ? "the initialiser gives the start"
-      : no_lifter.empty()          ? "the lifter gives the start"
-                                   : "no initialiser and no lifter");
-  add("2D joints (L_f)", input.keypoints != nullptr,
-      input.keypoints != nullptr ? std::to_string(landmarks.names.size()) + " landmarks" : "no 2D joints in the input");
-  add("dense keypoints (L_f)", dense, dense ? "in the input" : "no dense keypoints in the input");
-  const auto add_unless = [&](const std::string& what, const std::string& why_not, const std::string& why) {
-    add(what, why_not.empty(), why_not.empty() ? why : why_not);
-  };
-  add_unless("rendered UV (L_r)", WhyNoRenderedUv(input, options),
-             "weight " + std::to_string(options.rendered_uv.weight));
-  add_unless("silhouette", WhyNoSilhouette(input, options), "of all labelled parts");
-  add_unless("part labels", WhyNoParts(input, options), "outline and pixels of each part");
-  const bool stays = input.initialiser != nullptr ? options.initialiser_weight > 0 : no_lifter.empty();
-  add("initialiser term (L_d)", stays,
-      stays ? Concatenate("weight ", input.initialiser != nullptr ? options.initialiser_weight : options.lifter_weight,
-                          input.initialiser != nullptr ? "" : ", of the lifter")
-            : "no initialiser and no lifter");
-  add_unless("vertical", WhyNoUp(input, options), "the trunk's lean is measured against it");
-  add_unless("ground", WhyNoGround(input, options), "looked for; standing feet are held to it when there is one");
-  add("pose prior", input.prior != nullptr, input.prior != nullptr ? "learned mixture" : "none was given");
-  const std::string joints = std::to_string(active) + " of " + std::to_string(model.num_joints());
-  add("joint rotations", true, joints + " joints are estimated");
-  if (active < static_cast<size_t>(model.num_joints())) {
-    add("remaining joints", false, "no observed landmark depends on them; held at rest");
-  }
-  add("surface vertices", dense || labels,
-      dense || labels ? "of dense keypoints and outlines; all of them only to see what is visible"
-                      : "2D joints are compiled to their bones");
-  add("shape", options.estimate_shape, options.estimate_shape ? "one for the clip" : "switched off");
-  add("focal length", options.camera_knowledge == CameraKnowledge::kUnknownFocal,
-      options.camera_knowledge == CameraKnowledge::kKnown  ? "known"
-      : options.camera_knowledge == CameraKnowledge::kWeak ? "weak perspective has none"
-                                                           : "estimated with the clip");
-  add("uncertainty", options.estimate_uncertainty, options.estimate_uncertainty ? "per joint" : "switched off");
-  return plan;
-}
-
-std::string TrackSequenceSummary::BriefReport() const {
-  std::ostringstream out;
-  out << ToString(status) << " after " << iterations << " iterations, cost " << initial_cost << " -> " << final_cost;
-  if (!frames_by_status.empty()) {
-    out << "\nframes:";
-    for (const auto& [name, count] : frames_by_status) {
-      if (count > 0) out << ' ' << count << ' ' << name;
-    }
-  }
-  if (reprojection_median_px > 0) {
-    out << "\n2D joints: median " << reprojection_median_px << " px, 95 % below " << reprojection_p95_px << " px";
-  }
-  if (dense_median_px > 0) out << "\ndense keypoints: median " << dense_median_px << " px";
-  for (const TermSummary& term : terms) {
-    if (term.term == "2D joints" || term.term == "dense keypoints") continue;
-    out << '\n'
-        << term.term << ": median " << term.median_px << " px, 95 % below " << term.p95_px << " px, "
-        << term.observations << " matched, " << term.unmatched << " not";
-  }
-  return out.str();
+  if (rendered_uv) add("rendered UV", residuals.rendered_uv_px, residuals.rendered_uv_unmatched);
+  if (!part_labels) return;
+  add("silhouette", residuals.silhouette_px, residuals.silhouette_unmatched);
+  add("part labels", residuals.part_px, residuals.part_unmatched);
 }
 
 }  // namespace bodyloom

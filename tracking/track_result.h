@@ -4,18 +4,21 @@
 
 #include "bodyloom/tracking/observability.h"
 #include "bodyloom/tracking/sequence_problem.h"
-#include "bodyloom/tracking/track_sequence.h"
+#include "bodyloom/tracking/track_input.h"
+#include "bodyloom/tracking/track_options.h"
+#include "bodyloom/tracking/track_summary.h"
 
 namespace bodyloom {
 
 /// By how much of the frame is observed: tracked, weak or interpolated.
 FrameStatus StatusOf(const FrameData& frame);
 
-/// How a term of image residuals ended; `px` holds |residual| of each observation that had a say, pixels (0 of nothing).
-TermSummary SummarizeTerm(const std::string& term, const std::vector<double>& px, int unmatched = 0);
-
 /// Fills result->track (poses, camera, status, joints, coco17) and the summary's errors and frame counts.
 void FillTrack(const TrackSequenceInput& input, const SequenceProblem& problem, const ObservedLandmarks& landmarks,
                TrackSequenceResult* result);
+
+/// Appends to the summary how the rendered UV and the silhouette with the part labels fit the whole clip, those that ran.
+void SummariseImageTerms(const SequenceProblem& problem, bool rendered_uv, bool part_labels,
+                         TrackSequenceSummary* summary);
 
 }  // namespace bodyloom

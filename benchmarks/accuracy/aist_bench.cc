@@ -137,7 +137,7 @@ BenchRow TrackAndScore(const Setting& setting, const MultiViewClip& clip, const 
   options.camera_knowledge = setting.knowledge;
   options.num_threads = setting.threads;
   options.lifter_weight = setting.lifter_weight;
-  options.solver = setting.solver;
+  options.solver = SequenceSolverFromString(setting.solver);
   if (!setting.ground) options.ground = GroundOptions::Off();
   std::vector<LiftedFrame> lifted;
   if (setting.oracle != "none") {

@@ -75,7 +75,7 @@ Outcome Solve(const Problem& problem, const Motion& start, const std::string& so
   input.camera = problem.clip.truth.camera;
   input.initialiser = &start;
   TrackSequenceOptions options;
-  options.solver = solver;
+  options.solver = SequenceSolverFromString(solver);
   options.num_threads = 1;
   options.initialiser_weight = 0;
   options.max_iterations = 100;

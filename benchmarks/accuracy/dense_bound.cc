@@ -128,8 +128,8 @@ ProjectionBound DenseBound(const BodyModel& body, const SynthClip& clip, const D
     const std::vector<DenseKeypoint> inliers =
         Inliers(body, clip, t, PoseVertices(body, betas, pose), options.outlier_sigmas);
     FrameData data;
-    data.dense = &inliers;
-    data.dense_kernel = 1e6;  // no robust weights: the bound of the Gaussian part
+    data.dense.points = &inliers;
+    data.dense.kernel = 1e6;  // no robust weights: the bound of the Gaussian part
     FrameSystem system;
     evaluator.Evaluate(layout, data, states.back(), betas, 0, true, &system);
     MatrixXd H = system.H.selfadjointView<Eigen::Lower>();

@@ -31,7 +31,8 @@
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/posed_body.h"
 #include "bodyloom/render/visibility_buffer.h"
-#include "bodyloom/tracking/image_terms.h"
+#include "bodyloom/tracking/solve_sequence.h"
+#include "bodyloom/tracking/terms/rendered_uv/rendered_uv.h"
 #include "bodyloom/tracking/track_sequence.h"
 
 namespace bodyloom {
@@ -177,13 +178,13 @@ BasinResult SolveFrame(const SynthClip& clip, const std::string& method, const s
   problem.timestamps = {0};
   problem.cut_before = {0};
   FrameData frame;
-  frame.dense = &clip.dense.frames[0];
-  frame.dense_kernel = 8;
+  frame.dense.points = &clip.dense.frames[0];
+  frame.dense.kernel = 8;
   const MixturePrior prior(BuiltinPosePrior(), body, joints);
-  frame.prior = &prior;
-  frame.prior_weight = options.prior_weight;
+  frame.prior.mixture = &prior;
+  frame.prior.weight = options.prior_weight;
   problem.frames = {frame};
-  const ImageTerms terms(input, options, problem.layout, 1);
+  const DenseRounds rounds(input, options, problem.layout, 1);
   SolveOptions solve;
   solve.max_iterations = 60;
   solve.shape_constant = true;
@@ -192,7 +193,7 @@ BasinResult SolveFrame(const SynthClip& clip, const std::string& method, const s
   const auto run = [&] { result.iterations += SolveSequence(&problem, solve).iterations; };
   if (method != "rendered UV") run();
   if (method != "reprojection") {
-    terms.StartDenseRound({0}, &problem);
+    rounds.Start({0}, &problem);
     run();
   }
   result.ms = 1e3 * std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

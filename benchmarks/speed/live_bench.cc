@@ -31,6 +31,7 @@
 #include "bodyloom/data_tools/observations/load_detections.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/tracking/live/track_live.h"
+#include "bodyloom/tracking/solve_sequence.h"
 
 namespace bodyloom {
 namespace {
@@ -285,7 +286,7 @@ class Bench {
     }
   }
 
-  /// The solve of a whole clip with and without SolveOptions::skip_settled: error is the cost over the lowest.
+  /// The solve of a whole clip with and without ChainOptions::skip_settled: error is the cost over the lowest.
   void Skip() {
     for (const std::string& frames : arguments_.List("skip_frames")) {
       WorkProblemOptions problem_options;
@@ -303,7 +304,7 @@ class Bench {
           SolveOptions options;
           options.solver = SequenceSolver::kChain;
           options.num_threads = arguments_.Integer("threads");
-          options.skip_settled = share;
+          options.chain.skip_settled = share;
           const std::clock_t cpu = std::clock();
           report = SolveSequence(&problem, options);
           times.emplace_back(1e3 * double(std::clock() - cpu) / CLOCKS_PER_SEC / problem_options.frames,

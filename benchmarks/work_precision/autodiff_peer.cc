@@ -187,7 +187,7 @@ struct Blocks {
 
 void AddKeypoints(const SequenceProblem& problem, size_t t, double* betas, Blocks* x, ceres::Problem* target) {
   const BodyModel& model = *problem.layout.model;
-  for (const DenseKeypoint& keypoint : *problem.frames[t].dense) {
+  for (const DenseKeypoint& keypoint : *problem.frames[t].dense.points) {
     auto residual = std::make_unique<KeypointResidual>();
     residual->model = &model;
     residual->camera = &problem.layout.camera;
@@ -206,17 +206,17 @@ void AddKeypoints(const SequenceProblem& problem, size_t t, double* betas, Block
     for (size_t i = 0; i + 1 < blocks.size(); ++i) cost->AddParameterBlock(3);
     cost->AddParameterBlock(problem.layout.num_betas);
     cost->SetNumResiduals(2);
-    target->AddResidualBlock(cost, new GemanMcClureLoss(problem.frames[t].dense_kernel), blocks);
+    target->AddResidualBlock(cost, new GemanMcClureLoss(problem.frames[t].dense.kernel), blocks);
   }
 }
 
 void AddPrior(const SequenceProblem& problem, size_t t, Blocks* x, ceres::Problem* target) {
   const FrameData& frame = problem.frames[t];
-  if (frame.prior == nullptr || frame.prior->empty()) return;
+  if (frame.prior.mixture == nullptr || frame.prior.mixture->empty()) return;
   auto* cost = new ceres::DynamicAutoDiffCostFunction<PriorResidual, kStride>(
-      new PriorResidual{frame.prior, std::sqrt(frame.prior_weight)});
+      new PriorResidual{frame.prior.mixture, std::sqrt(frame.prior.weight)});
   std::vector<double*> blocks;
-  for (int j : frame.prior->joints()) {
+  for (int j : frame.prior.mixture->joints()) {
     blocks.push_back(x->Rotation(t, j));
     cost->AddParameterBlock(3);
   }
@@ -244,9 +244,9 @@ void Check(const SequenceProblem& problem) {
                static_cast<int>(layout.active_joints.size()) == layout.model->num_joints() &&
                std::find(problem.cut_before.begin(), problem.cut_before.end(), 1) == problem.cut_before.end();
   for (const FrameData& frame : problem.frames) {
-    plain = plain && frame.dense != nullptr && frame.dense_whitening.empty() && frame.landmarks.empty() &&
-            frame.rendered_uv == nullptr && frame.part_labels == nullptr && frame.lifted == nullptr &&
-            frame.limits == nullptr && frame.upright_weight == 0 && frame.initialiser_weight == 0;
+    plain = plain && frame.dense.points != nullptr && frame.dense.whitening.empty() && frame.landmarks.seen.empty() &&
+            frame.rendered_uv.term == nullptr && frame.part_labels.term == nullptr && frame.lifted.pose == nullptr &&
+            frame.limits.limits == nullptr && frame.upright.weight == 0 && frame.initialiser.weight == 0;
   }
   BODYLOOM_CHECK(plain, "the AutoDiff peer states dense keypoints, pose prior, shape prior and accelerations only");
 }

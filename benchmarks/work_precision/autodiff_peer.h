@@ -4,6 +4,7 @@
 #pragma once
 
 #include "bodyloom/tracking/sequence_problem.h"
+#include "bodyloom/tracking/solve_options.h"
 
 namespace bodyloom {
 

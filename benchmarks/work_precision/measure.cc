@@ -19,28 +19,28 @@ Engine ChainEngine(int threads, int early_dense) {
   Engine engine{early_dense > 0 ? "chain, early points" : "chain", {}};
   engine.options.solver = SequenceSolver::kChain;
   engine.options.num_threads = threads;
-  engine.options.early_dense = early_dense;
+  engine.options.chain.early_dense = early_dense;
   return engine;
 }
 
 Engine SkippingEngine(int threads) {
   Engine engine = ChainEngine(threads, 0);
   engine.name = "chain, settled frames";
-  engine.options.skip_settled = kTrackerSkipSettled;
+  engine.options.chain.skip_settled = kTrackerSkipSettled;
   return engine;
 }
 
 Engine RestingEngine(int threads) {
   Engine engine = SkippingEngine(threads);
   engine.name = "chain, settled and resting frames";
-  engine.options.rest_share = kTrackerRestShare;
+  engine.options.chain.rest_share = kTrackerRestShare;
   return engine;
 }
 
 Engine TrackerEngine(int threads) {
   Engine engine = RestingEngine(threads);
   engine.name = "chain, as the tracker";
-  engine.options.early_dense = kTrackerEarlyDense;
+  engine.options.chain.early_dense = kTrackerEarlyDense;
   return engine;
 }
 

@@ -10,6 +10,7 @@
 #include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/accuracy/bench_report.h"
 #include "benchmarks/work_precision/work_problem.h"
+#include "bodyloom/tracking/solve_sequence.h"
 
 namespace bodyloom {
 
@@ -20,11 +21,11 @@ struct Engine {
 };
 
 Engine ChainEngine(int threads, int early_dense = 0);
-/// Leaves frames that have settled unlinearised (SolveOptions::skip_settled), as the tracker does.
+/// Leaves frames that have settled unlinearised (ChainOptions::skip_settled), as the tracker does.
 Engine SkippingEngine(int threads);
-/// And lets frames rest whose steps promise little (SolveOptions::rest_share), as the tracker does.
+/// And lets frames rest whose steps promise little (ChainOptions::rest_share), as the tracker does.
 Engine RestingEngine(int threads);
-/// And begins with few of many keypoints (SolveOptions::early_dense): all skips that the tracker uses.
+/// And begins with few of many keypoints (ChainOptions::early_dense): all skips that the tracker uses.
 Engine TrackerEngine(int threads);
 Engine CeresEngine(int threads);     ///< analytic derivatives, one cost function a frame
 Engine AutoDiffEngine(int threads);  ///< autodiff_peer.h

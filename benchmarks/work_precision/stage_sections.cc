@@ -84,7 +84,8 @@ void MeasureTrack(WorkBench* bench, const std::string& group, const std::string&
       MeasureAction([&] { result = TrackOf(made.clip, options); }, bench->repeat, made.clip.truth.num_frames());
   const double peak = PeakMegabytes() - before;
   const double error = TrackErrorPx(result.track, made.clip, bench->threads);
-  bench->AddRow(group, label, options.solver, Row(timing, result.summary.iterations, error, made.bound_px, peak));
+  bench->AddRow(group, label, ToString(options.solver),
+                Row(timing, result.summary.iterations, error, made.bound_px, peak));
   if (line != nullptr) line->points.emplace_back(timing.cpu.median, error);
 }
 
@@ -115,7 +116,7 @@ void TrackSection(WorkBench* bench) {
   TrackSequenceOptions options;
   options.num_threads = bench->threads;
   for (const std::string solver : {"ceres", "chain"}) {
-    options.solver = solver;
+    options.solver = SequenceSolverFromString(solver);
     PlotLine line{solver, {}};
     for (int iterations : {1, 2, 4, 8, 16}) {
       options.max_fine_iterations = iterations;

@@ -63,9 +63,9 @@ std::unique_ptr<WorkProblem> MakeWorkProblem(const WorkProblemOptions& options) 
         PoseFromAxisAngle(body, clip.initialiser.poses.row(t).transpose(), clip.initialiser.trans.row(t).transpose());
     problem.states.push_back({start.rotations, start.trans});
     FrameData frame;
-    frame.dense = &clip.dense.frames[t];
-    frame.prior = work->prior.get();
-    frame.prior_weight = 0.2;
+    frame.dense.points = &clip.dense.frames[t];
+    frame.prior.mixture = work->prior.get();
+    frame.prior.weight = 0.2;
     problem.frames.push_back(frame);
   }
   return work;

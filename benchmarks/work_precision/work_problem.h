@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
-#include "bodyloom/tracking/mixture_prior.h"
 #include "bodyloom/tracking/sequence_problem.h"
+#include "bodyloom/tracking/terms/pose_prior/mixture_prior.h"
 
 namespace bodyloom {
 

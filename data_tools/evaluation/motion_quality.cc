@@ -12,7 +12,7 @@
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/body_model.h"
 #include "bodyloom/geometry/rotation.h"
-#include "bodyloom/tracking/joint_limits.h"
+#include "bodyloom/tracking/terms/joint_limits.h"
 
 namespace bodyloom {
 namespace {

@@ -33,8 +33,8 @@ void CheckTrackRequest(const TrackRequest& request) {
   if (!request.overlay.empty() && !request.overlay.ends_with(".mp4")) {
     throw RequestError("--overlay " + request.overlay + ": expected a name that ends in .mp4");
   }
-  if (request.live_lag && request.solve.solver != "chain") {
-    throw RequestError("--live runs on the chain solver: leave out --solver " + request.solve.solver);
+  if (request.live_lag && request.solve.solver != SequenceSolver::kChain) {
+    throw RequestError("--live runs on the chain solver: leave out --solver " + ToString(request.solve.solver));
   }
   if (request.live_lag && request.detections.empty() && request.dense.empty()) {
     throw RequestError("--live does not use part labels: give --detections or --dense");

@@ -53,7 +53,7 @@ TEST(Peers, AutoDiffMinimisesTheSameCost) {
 
 TEST(Peers, AutoDiffRefusesWhatItDoesNotState) {
   const auto work = Problem(2, "pixel");
-  work->problem.frames[1].upright_weight = 1;
+  work->problem.frames[1].upright.weight = 1;
   SequenceProblem problem = work->problem;
   EXPECT_THROW(SolveWithAutoDiff(&problem, {}), std::invalid_argument);
 }

@@ -50,7 +50,7 @@ TrackSequenceInput InputOf(const BodyModel& body, const SynthClip& clip) {
 
 TrackSequenceOptions OptionsOf(const std::string& engine) {
   TrackSequenceOptions options;
-  options.solver = engine;
+  options.solver = SequenceSolverFromString(engine);
   options.num_threads = 1;
   options.estimate_uncertainty = false;
   return options;

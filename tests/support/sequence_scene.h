@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "bodyloom/geometry/rotation.h"
-#include "bodyloom/tracking/joint_limits.h"
 #include "bodyloom/tracking/sequence_problem.h"
+#include "bodyloom/tracking/terms/joint_limits.h"
 #include "tests/support/frame_scene.h"
 #include "tests/support/toy_body.h"
 
@@ -86,7 +86,8 @@ inline std::unique_ptr<SequenceScene> MakeSequenceScene(const SequenceSceneOptio
       LandmarkObservation observation;
       observation.point = &point;
       observation.sigma_px = 4;
-      if (see(points.Evaluate(kinematics, point, false), &observation.pixel)) frame.landmarks.push_back(observation);
+      if (see(points.Evaluate(kinematics, point, false), &observation.pixel))
+        frame.landmarks.seen.push_back(observation);
     }
     for (int i = 0; i < options.dense; ++i) {
       DenseKeypoint keypoint;
@@ -101,19 +102,19 @@ inline std::unique_ptr<SequenceScene> MakeSequenceScene(const SequenceSceneOptio
       keypoint.pixel = pixel.cast<float>();
       scene->dense[t].push_back(keypoint);
     }
-    frame.dense = &scene->dense[t];
-    frame.limits = &scene->limits;
-    frame.upright_weight = 1;
+    frame.dense.points = &scene->dense[t];
+    frame.limits.limits = &scene->limits;
+    frame.upright.weight = 1;
     problem.timestamps.push_back(t / 25.0);
     problem.cut_before.push_back(0);
     for (int j = 0; j < J; ++j) {
       state.rotations[j] = state.rotations[j] * RotationFromAxisAngle(RandomTurn(options.start_error, &random));
     }
     problem.states.push_back(state);
-    frame.dense_kernel = 12;
-    frame.initial_rotations = state.rotations;  // what few points leave open
-    frame.initial_translation = state.translation;
-    frame.initialiser_weight = 0.1;
+    frame.dense.kernel = 12;
+    frame.initialiser.rotations = state.rotations;  // what few points leave open
+    frame.initialiser.translation = state.translation;
+    frame.initialiser.weight = 0.1;
     problem.frames.push_back(frame);
   }
   problem.betas = Eigen::VectorXd::Zero(B);

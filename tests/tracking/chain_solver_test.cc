@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "bodyloom/tracking/solve_sequence.h"
 #include "tests/support/sequence_scene.h"
 
 namespace bodyloom {
@@ -69,9 +70,9 @@ TEST(ChainSolver, SameCostAsCeresWithCutsGapsAndUnevenTimes) {
   SequenceProblem& problem = scene->problem;
   problem.cut_before[5] = problem.cut_before[6] = 1;
   for (size_t t = 8; t < 12; ++t) problem.timestamps[t] += 0.1 * double(t - 7);
-  problem.frames[9].landmarks.clear();  // nothing was seen; the neighbours and the limits hold it
-  problem.frames[9].dense = nullptr;
-  problem.frames[9].initialiser_weight = 1e-3;
+  problem.frames[9].landmarks.seen.clear();  // nothing was seen; the neighbours and the limits hold it
+  problem.frames[9].dense.points = nullptr;
+  problem.frames[9].initialiser.weight = 1e-3;
   ExpectSameAsCeres(problem);
 }
 
@@ -182,7 +183,7 @@ TEST(ChainSolver, EarlyIterationsOnFewerPointsEndAtTheWholeProblem) {
   SequenceProblem all = owner->problem, early = owner->problem;
   SolveOptions options = Tight(SequenceSolver::kChain);
   const SolveReport whole = SolveSequence(&all, options);
-  options.early_dense = 40;
+  options.chain.early_dense = 40;
   const SolveReport report = SolveSequence(&early, options);
   ASSERT_EQ(report.status, SolveStatus::kConverged);
   EXPECT_NE(report.initial_cost, whole.initial_cost);  // it did start with fewer
@@ -190,7 +191,7 @@ TEST(ChainSolver, EarlyIterationsOnFewerPointsEndAtTheWholeProblem) {
   options.max_iterations = 1;  // ends among the few, and reports the cost of all
   early = owner->problem;
   const SolveReport one = SolveSequence(&early, options);
-  options.early_dense = 0;
+  options.chain.early_dense = 0;
   options.max_iterations = 0;
   EXPECT_NEAR(SolveSequence(&early, options).initial_cost, one.final_cost, 1e-12 * one.final_cost);
 }
@@ -211,7 +212,7 @@ TEST(ChainSolver, FramesMayRestOnTheWayToTheSameMinimum) {
     SolveOptions options = Tight(SequenceSolver::kChain);
     options.function_tolerance = 1e-9;
     const SolveReport all = SolveSequence(&moving, options);
-    options.rest_share = 0.05;
+    options.chain.rest_share = 0.05;
     const SolveReport some = SolveSequence(&resting, options);
     ASSERT_EQ(some.status, SolveStatus::kConverged) << some.message;
     EXPECT_EQ(all.frames_skipped, 0);
@@ -231,7 +232,7 @@ TEST(ChainSolver, AllFramesAreCountedAtTheLastIterationAlsoWhileSomeRest) {
   scene.frames = 40;
   const auto owner = MakeSequenceScene(scene);
   SolveOptions options = Tight(SequenceSolver::kChain);
-  options.rest_share = 0.05;
+  options.chain.rest_share = 0.05;
   for (int iterations = 1; iterations < 12; ++iterations) {
     SequenceProblem problem = owner->problem;
     options.max_iterations = iterations;

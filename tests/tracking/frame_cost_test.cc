@@ -51,7 +51,7 @@ std::unique_ptr<Scene> MakeScene(CameraKnowledge knowledge, double pose_size, ui
     scene->compiled.push_back(CompilePoint(scene->body, landmark.vertices, landmark.weights, scene->body.num_betas()));
   }
   for (const CompiledPoint& point : scene->compiled) {
-    scene->data.landmarks.push_back({&point, {640 + 200 * normal(random), 360 + 200 * normal(random)}, 8});
+    scene->data.landmarks.seen.push_back({&point, {640 + 200 * normal(random), 360 + 200 * normal(random)}, 8});
   }
   std::uniform_int_distribution<int> face(0, scene->body.num_faces() - 1);
   std::uniform_real_distribution<float> unit(0.0F, 1.0F);
@@ -64,8 +64,8 @@ std::unique_ptr<Scene> MakeScene(CameraKnowledge knowledge, double pose_size, ui
     point.sigma_px = 5 + unit(random);
     scene->dense.push_back(point);
   }
-  scene->data.landmark_kernel = 20;  // generic weights: neither all inliers nor all saturated
-  scene->data.dense_kernel = 25;
+  scene->data.landmarks.kernel = 20;  // generic weights: neither all inliers nor all saturated
+  scene->data.dense.kernel = 25;
   return scene;
 }
 
@@ -79,15 +79,15 @@ std::vector<Eigen::Matrix<Jet, 2, 1>> TwinPixels(const Scene& scene, int column)
   const auto add = [&](const twin::Vector3<Jet>& x, const Eigen::Vector2d& pixel, double sigma) {
     residuals.push_back((seeded.Project(x) - pixel.cast<Jet>()) / Jet(sigma));
   };
-  for (size_t i = 0; i < scene.data.landmarks.size(); ++i) {
+  for (size_t i = 0; i < scene.data.landmarks.seen.size(); ++i) {
     const Landmark& landmark = scene.body.data().landmarks[scene.landmark_ids[i]];
     const auto vertices = body.Vertices(landmark.vertices);
     twin::Vector3<Jet> x = twin::Vector3<Jet>::Zero();
     for (size_t n = 0; n < vertices.size(); ++n) x += vertices[n] * Jet(landmark.weights[n]);
-    add(x, scene.data.landmarks[i].pixel, scene.data.landmarks[i].sigma_px);
+    add(x, scene.data.landmarks.seen[i].pixel, scene.data.landmarks.seen[i].sigma_px);
   }
-  if (scene.data.dense != nullptr) {
-    for (const DenseKeypoint& point : *scene.data.dense) {
+  if (scene.data.dense.points != nullptr) {
+    for (const DenseKeypoint& point : *scene.data.dense.points) {
       const auto f = scene.body.data().faces.row(point.face);
       const auto v = body.Vertices({f[0], f[1], f[2]});
       twin::Vector3<Jet> x = twin::Vector3<Jet>::Zero();
@@ -109,7 +109,8 @@ void ExpectNear(const MatrixXd& actual, const MatrixXd& expected, double relativ
 /// Image terms: cost, gradient and Gauss–Newton matrix against the twin. Returns the number of derivatives compared.
 int CheckPixels(const Scene& scene) {
   const int p = scene.layout.num_columns;
-  const size_t n = scene.data.landmarks.size() + (scene.data.dense != nullptr ? scene.data.dense->size() : 0);
+  const size_t n =
+      scene.data.landmarks.seen.size() + (scene.data.dense.points != nullptr ? scene.data.dense.points->size() : 0);
   MatrixXd J(2 * n, p);
   VectorXd r(2 * n);
   double cost = 0;
@@ -118,7 +119,8 @@ int CheckPixels(const Scene& scene) {
     cost = 0;
     for (size_t i = 0; i < n; ++i) {
       const double s = residuals[i][0].a * residuals[i][0].a + residuals[i][1].a * residuals[i][1].a;
-      const double kernel = i < scene.data.landmarks.size() ? scene.data.landmark_kernel : scene.data.dense_kernel;
+      const double kernel =
+          i < scene.data.landmarks.seen.size() ? scene.data.landmarks.kernel : scene.data.dense.kernel;
       const RobustValue robust = GemanMcClure(s, kernel);
       cost += 0.5 * robust.rho;
       for (int c = 0; c < 2; ++c) {
@@ -147,7 +149,7 @@ TEST(FrameCost, DenseKeypointsMatchAutomaticDerivatives) {
   for (CameraKnowledge knowledge : {CameraKnowledge::kKnown, CameraKnowledge::kWeak}) {
     for (double size : {0.0, 0.4, 1.2}) {
       auto scene = MakeScene(knowledge, size, 11);
-      scene->data.dense = &scene->dense;
+      scene->data.dense.points = &scene->dense;
       checked += CheckPixels(*scene);
     }
   }
@@ -163,7 +165,7 @@ TEST(FrameCost, DenseKeypointsMatchAutomaticDerivativesOnEveryInstructionSet) {
     body.shapedirs.col(c) = 0.5F * body.shapedirs.col(c - given) - 0.3F * body.shapedirs.col(c - 2);
   }
   auto scene = MakeScene(CameraKnowledge::kUnknownFocal, 0.8, 5, {}, body);
-  scene->data.dense = &scene->dense;
+  scene->data.dense.points = &scene->dense;
   const VectorXd betas = scene->betas;
   for (const int num_betas : {0, 1, 7, 8, 9, 16, 19}) {
     scene->layout = FrameLayout::Make(scene->body, CameraKnowledge::kUnknownFocal, scene->layout.camera,
@@ -187,8 +189,8 @@ TEST(FrameCost, HeldJointsHaveNoColumns) {
 TEST(FrameCost, DerivativesAreNotZeroWhereTheResidualIs) {
   auto scene = MakeScene(CameraKnowledge::kKnown, 0.5, 5);
   const auto residuals = TwinPixels(*scene, 0);
-  for (size_t i = 0; i < scene->data.landmarks.size(); ++i) {
-    LandmarkObservation& observation = scene->data.landmarks[i];
+  for (size_t i = 0; i < scene->data.landmarks.seen.size(); ++i) {
+    LandmarkObservation& observation = scene->data.landmarks.seen[i];
     observation.pixel += observation.sigma_px * Eigen::Vector2d(residuals[i][0].a, residuals[i][1].a);
   }
   const FrameSystem system = Evaluate(*scene);
@@ -199,9 +201,9 @@ TEST(FrameCost, DerivativesAreNotZeroWhereTheResidualIs) {
 
 TEST(FrameCost, WeightsScaleLinearly) {
   auto scene = MakeScene(CameraKnowledge::kKnown, 0.5, 6);
-  scene->data.landmark_kernel = 1e6;  // quadratic
+  scene->data.landmarks.kernel = 1e6;  // quadratic
   const FrameSystem once = Evaluate(*scene);
-  for (LandmarkObservation& observation : scene->data.landmarks) observation.sigma_px /= 2;
+  for (LandmarkObservation& observation : scene->data.landmarks.seen) observation.sigma_px /= 2;
   const FrameSystem twice = Evaluate(*scene);
   EXPECT_NEAR(twice.cost, 4 * once.cost, 1e-6 * twice.cost);
   ExpectNear(twice.gradient, 4 * once.gradient, 1e-6, "gradient");
@@ -211,7 +213,7 @@ TEST(FrameCost, PointsBehindTheCameraCostTheSaturationAndAreCounted) {
   auto scene = MakeScene(CameraKnowledge::kKnown, 0.2, 8);
   scene->state.translation = {0, 0, -4};
   const FrameSystem system = Evaluate(*scene);
-  const double c = scene->data.landmark_kernel;
+  const double c = scene->data.landmarks.kernel;
   EXPECT_EQ(system.num_invalid, 17);
   EXPECT_DOUBLE_EQ(system.cost, 17 * 0.5 * c * c);
   EXPECT_EQ(system.gradient.norm(), 0);
@@ -220,7 +222,7 @@ TEST(FrameCost, PointsBehindTheCameraCostTheSaturationAndAreCounted) {
 /// Terms on the pose alone, each against central differences of the cost along right increments, and H against JᵀJ
 /// where the residual is linear near the point (checked through the gradient's change).
 void CheckPoseTerm(Scene* scene, const std::function<double(const FrameState&)>& twin_cost) {
-  scene->data.landmarks.clear();
+  scene->data.landmarks.seen.clear();
   const FrameSystem system = Evaluate(*scene);
   EXPECT_NEAR(system.cost, twin_cost(scene->state), kRelative * system.cost);
   ASSERT_GT(system.cost, 0);
@@ -244,7 +246,7 @@ TEST(FrameCost, JointLimitsMatchTheirFormula) {
   auto scene = MakeScene(CameraKnowledge::kKnown, 0.9, 21);
   const JointLimits limits = JointLimits::ForBody(scene->body);
   ASSERT_EQ(limits.ranges.size(), 19U);
-  scene->data.limits = &limits;
+  scene->data.limits.limits = &limits;
   CheckPoseTerm(scene.get(), [&](const FrameState& state) {
     double cost = 0;
     for (const JointLimits::Range& range : limits.ranges) {
@@ -253,7 +255,7 @@ TEST(FrameCost, JointLimitsMatchTheirFormula) {
         const double excess = w[c] > range.upper[c]   ? w[c] - range.upper[c]
                               : w[c] < range.lower[c] ? w[c] - range.lower[c]
                                                       : 0;
-        cost += 0.5 * excess * excess / (scene->data.limit_sigma * scene->data.limit_sigma);
+        cost += 0.5 * excess * excess / (scene->data.limits.sigma * scene->data.limits.sigma);
       }
     }
     return cost;
@@ -262,7 +264,7 @@ TEST(FrameCost, JointLimitsMatchTheirFormula) {
 
 TEST(FrameCost, UprightTermMatchesItsFormula) {
   auto scene = MakeScene(CameraKnowledge::kKnown, 0.9, 22);
-  scene->data.upright_weight = 3;
+  scene->data.upright.weight = 3;
   CheckPoseTerm(scene.get(), [&](const FrameState& state) {
     const double r = state.rotations[0](2, 1) / kUprightSigma;
     return 0.5 * 3 * GemanMcClure(r * r, kUprightKernel).rho;
@@ -271,16 +273,16 @@ TEST(FrameCost, UprightTermMatchesItsFormula) {
 
 TEST(FrameCost, InitialiserTermMatchesItsFormula) {
   auto scene = MakeScene(CameraKnowledge::kKnown, 0.6, 23);
-  scene->data.initial_rotations.assign(scene->body.num_joints(), Eigen::Matrix3d::Identity());
-  scene->data.initial_translation = {0.5, 0.5, 3};
-  scene->data.initialiser_weight = 0.7;
+  scene->data.initialiser.rotations.assign(scene->body.num_joints(), Eigen::Matrix3d::Identity());
+  scene->data.initialiser.translation = {0.5, 0.5, 3};
+  scene->data.initialiser.weight = 0.7;
   CheckPoseTerm(scene.get(), [&](const FrameState& state) {
     double cost = 0;
     for (const Eigen::Matrix3d& R : state.rotations) {
-      cost += 0.5 * 0.7 * twin::Log<double>(R).squaredNorm() / std::pow(scene->data.initialiser_sigma, 2);
+      cost += 0.5 * 0.7 * twin::Log<double>(R).squaredNorm() / std::pow(scene->data.initialiser.sigma, 2);
     }
-    return cost + 0.5 * 0.7 * (state.translation - scene->data.initial_translation).squaredNorm() /
-                      std::pow(scene->data.initialiser_translation_sigma, 2);
+    return cost + 0.5 * 0.7 * (state.translation - scene->data.initialiser.translation).squaredNorm() /
+                      std::pow(scene->data.initialiser.translation_sigma, 2);
   });
 }
 
@@ -305,8 +307,8 @@ TEST(FrameCost, PriorIsTheEnergyOfTheNearestComponent) {
   const PosePrior prior = RandomPrior(names, 3, 1);
   const MixturePrior mixture(prior, scene->body, scene->layout.active_joints);
   ASSERT_EQ(mixture.joints().size(), 21U);
-  scene->data.prior = &mixture;
-  scene->data.prior_weight = 0.4;
+  scene->data.prior.mixture = &mixture;
+  scene->data.prior.weight = 0.4;
   CheckPoseTerm(scene.get(), [&](const FrameState& state) {
     VectorXd x(prior.dim());
     for (int i = 0; i < 21; ++i) x.segment<3>(3 * i) = twin::Log<double>(state.rotations[i + 1]);
@@ -342,7 +344,7 @@ TEST(MixturePrior, MarginalOfASubsetOfJoints) {
 TEST(CompressedFrameCost, EqualsTheFullSystem) {
   for (CameraKnowledge knowledge : {CameraKnowledge::kKnown, CameraKnowledge::kUnknownFocal, CameraKnowledge::kWeak}) {
     auto scene = MakeScene(knowledge, 0.5, 31);
-    scene->data.dense = &scene->dense;
+    scene->data.dense.points = &scene->dense;
     const FrameSystem system = Evaluate(*scene);
     const CompressedFrameCost cost(scene->layout, scene->data, scene->state);
     std::vector<VectorXd> blocks;

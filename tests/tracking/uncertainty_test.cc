@@ -5,6 +5,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "bodyloom/tracking/solve_sequence.h"
 #include "tests/support/dense_chain.h"
 #include "tests/support/sequence_scene.h"
 
@@ -93,10 +94,10 @@ TEST(Uncertainty, SpreadOfTheErrorsOfALinearProblem) {
   };
   for (int t = 0; t < T; ++t) {
     FrameData frame;
-    frame.initial_rotations.assign(body.num_joints(), Eigen::Matrix3d::Identity());
-    frame.initialiser_weight = t % 5 == 3 || t == 9 ? 0 : 1 + t % 3;
+    frame.initialiser.rotations.assign(body.num_joints(), Eigen::Matrix3d::Identity());
+    frame.initialiser.weight = t % 5 == 3 || t == 9 ? 0 : 1 + t % 3;
     problem.frames.push_back(frame);
-    problem.states.push_back({frame.initial_rotations, Vector3d(0, 0, 4)});
+    problem.states.push_back({frame.initialiser.rotations, Vector3d(0, 0, 4)});
     problem.timestamps.push_back(t / 30.0 + (t > 7 ? 0.04 : 0));
     problem.cut_before.push_back(t == 12);
   }
@@ -120,8 +121,8 @@ TEST(Uncertainty, SpreadOfTheErrorsOfALinearProblem) {
     }
     for (int t = 0; t < T; ++t) {
       FrameData& frame = problem.frames[t];
-      const double weight = std::max(1e-9, frame.initialiser_weight);
-      frame.initial_translation = truth[t] + noise(frame.initialiser_translation_sigma / std::sqrt(weight));
+      const double weight = std::max(1e-9, frame.initialiser.weight);
+      frame.initialiser.translation = truth[t] + noise(frame.initialiser.translation_sigma / std::sqrt(weight));
     }
     SolveSequence(&problem, options);
     if (trial == 0) sigma = JointPositionSigma(problem, 1);  // the same for all
@@ -157,16 +158,16 @@ TEST(Uncertainty, SpreadOfTheErrorsOfTheWholeProblem) {
         stature + gradient.dot(scene->betas) + problem.shape_prior.height_sigma_m * normal(random);
     for (size_t t = 0; t < 4; ++t) {
       FrameData& frame = problem.frames[t];
-      for (LandmarkObservation& seen : frame.landmarks) seen.sigma_px = 2;
-      frame.landmark_kernel = frame.dense_kernel = 100;
-      frame.limits = nullptr;
-      frame.upright_weight = 0;
-      frame.initialiser_weight = 1;
+      for (LandmarkObservation& seen : frame.landmarks.seen) seen.sigma_px = 2;
+      frame.landmarks.kernel = frame.dense.kernel = 100;
+      frame.limits.limits = nullptr;
+      frame.upright.weight = 0;
+      frame.initialiser.weight = 1;
       problem.states[t] = scene->truth[t];
-      frame.initial_translation = scene->truth[t].translation + noise(frame.initialiser_translation_sigma);
+      frame.initialiser.translation = scene->truth[t].translation + noise(frame.initialiser.translation_sigma);
       for (int j = 0; j < 24; ++j) {
-        frame.initial_rotations[j] =
-            scene->truth[t].rotations[j] * RotationFromAxisAngle(noise(frame.initialiser_sigma));
+        frame.initialiser.rotations[j] =
+            scene->truth[t].rotations[j] * RotationFromAxisAngle(noise(frame.initialiser.sigma));
       }
     }
     SolveOptions solve;

@@ -54,10 +54,10 @@ void AddBlocks(const double* blocks, int n, bool transposed, double* target, int
   }
 }
 
-void AddDense(const double* block, int n, double* target, int64_t stride) {
+void AddDense(const double* block, int n, bool transposed, double* target, int64_t stride) {
   if (block == nullptr) return;
-  for (int i = 0; i < n; ++i, block += n, target += stride) {
-    for (int j = 0; j < n; ++j) target[j] += block[j];
+  for (int i = 0; i < n; ++i, target += stride) {
+    for (int j = 0; j < n; ++j) target[j] += transposed ? block[j * n + i] : block[i * n + j];
   }
 }
 
@@ -153,7 +153,7 @@ bool ChainFactor::Eliminate(const ChainSource& source, Half* half) {
     source.AddFrame(t, front.data, front.stride, front.data + front.arrow, front.stride);
     AddBlocks(source.Next(back ? t - 1 : t), n_, back, front.data + front.next, front.stride);
     AddBlocks(source.Second(back ? t - 2 : t), n_, back, front.data + front.second, front.stride);
-    if (!back) AddDense(source.DenseNext(t), n_, front.data + front.next, front.stride);
+    AddDense(source.DenseNext(back ? t - 1 : t), n_, back, front.data + front.next, front.stride);
     if (!Step(t, &panels[0], &panels[1], &panels[2], &half->shared_sum)) return false;
     std::rotate(panels.begin(), panels.begin() + 1, panels.end());
     panels[2].Clear();
@@ -184,7 +184,7 @@ bool ChainFactor::EliminateMiddle(const ChainSource& source, const Segment& segm
   if (two) {
     source.AddFrame(m + 1, last.data, last.stride, last.data + last.arrow, last.stride);
     AddBlocks(source.Next(m), n_, false, first.data + first.next, first.stride);
-    AddDense(source.DenseNext(m), n_, first.data + first.next, first.stride);
+    AddDense(source.DenseNext(m), n_, false, first.data + first.next, first.stride);
   }
   if (forward->count > 0) {
     add((*forward->panels)[0], &first, true);

@@ -8,6 +8,7 @@
 ///       ⎢           …              …  ⎥      B_t  n×s
 ///       ⎣ B₀ᵀ  B₁ᵀ  B₂ᵀ  …         S  ⎦      S  s×s
 ///
+/// (or C_t any matrix, ChainSource::DenseNext)
 /// solved exactly by block elimination, frame after frame, shared values last. A frame's elimination costs 4.2 n³
 /// multiplications and additions: C fills up, D does not (U⁻ᵀD stays lower triangular), so a third of a plain band
 /// factorisation's work is left out. Cuts divide the chain into independent segments. A segment is eliminated from both
@@ -37,8 +38,8 @@ class ChainSource {
   /// n/3 row-major 3×3 blocks of C_t (frame t with t + 1) and D_t (t with t + 2); not asked for across cuts.
   [[nodiscard]] virtual const double* Next(int t) const = 0;
   [[nodiscard]] virtual const double* Second(int t) const = 0;
-  /// n×n row-major block that is added to C_t where a coupling is not block diagonal, or null. Only the first frame of
-  /// a segment may have one (what a marginal prior couples, chain_prior.h).
+  /// n×n row-major block that is added to C_t where a coupling is not block diagonal, or null: what a marginal prior
+  /// couples (chain_prior.h), or a cost function on two frames' landmarks. Not asked for across cuts.
   [[nodiscard]] virtual const double* DenseNext(int /*t*/) const { return nullptr; }
 };
 

@@ -8,7 +8,7 @@
 #include <Eigen/Core>
 #include <array>
 
-#include "bodyloom/tracking/frame_cost.h"
+#include "bodyloom/tracking/frame_layout.h"
 
 namespace bodyloom {
 

@@ -89,6 +89,13 @@ void ChainProblem::Resize() {
   resting_.clear();
   costs_.resize(T);
   acceleration_costs_.resize(T);
+  has_pairs_ = false;
+  for (size_t t = 0; t < T; ++t) has_pairs_ = has_pairs_ || HasCostsWithNext(problem_, t);
+  pairs_.clear();
+  if (has_pairs_) {
+    pairs_.resize(T);
+    for (size_t t = 0; t < T; ++t) pairs_[t].coupled = HasCostsWithNext(problem_, t);
+  }
   next_.resize(T * 3 * n_);
   second_.resize(T * 3 * n_);
   own_.resize(T * 3 * n_);
@@ -101,6 +108,12 @@ void ChainProblem::Moved(int dropped) {
   const size_t kept = systems_.size() - static_cast<size_t>(dropped);
   for (size_t t = kept; t < anchors_.size(); ++t) anchors_[t].set = false;
   Resize();
+}
+
+void ChainProblem::SetPrior(const ChainPrior* prior) {
+  BODYLOOM_CHECK(prior == nullptr || !has_pairs_, "chain: a prior beside cost functions on neighbouring frames");
+  prior_ = prior;
+  linearised_ = false;
 }
 
 void ChainProblem::LimitDense(int max_points) {
@@ -208,7 +221,9 @@ double ChainProblem::SharedCost(const ChainPoint& point) const {
 
 double ChainProblem::Cost(const ChainPoint& point) {
   linearised_ = false;
-  return EvaluateFrames(point, false) + EvaluateChanges(point, false) + EvaluatePrior(point, false) + SharedCost(point);
+  const double cost =
+      EvaluateFrames(point, false) + EvaluateChanges(point, false) + EvaluatePrior(point, false) + SharedCost(point);
+  return has_pairs_ ? cost + EvaluatePairs(point, false) : cost;
 }
 
 void ChainProblem::AddSharedPriors(const ChainPoint& point) {
@@ -299,14 +314,21 @@ void ChainProblem::SumShared(const ChainPoint& point) {
       for (int j = 0; j <= i; ++j) shared_(i, j) += systems_[t].H(shared_columns_[i], shared_columns_[j]);
     }
   }
+  for (const Pair& pair : pairs_) {
+    if (!pair.coupled || shape_constant_) continue;
+    const int B = problem_.layout.num_betas;
+    shared_.topLeftCorner(B, B) += pair.J.rightCols(B).transpose() * pair.J.rightCols(B);
+    shared_gradient_.head(B) += pair.J.rightCols(B).transpose() * pair.r;
+  }
   AddSharedPriors(point);
 }
 
 double ChainProblem::Linearise(const ChainPoint& point) {
   if (IsLinearisedAt(point)) return linearised_cost_;
   const int T = static_cast<int>(point.states.size());
-  const double cost =
+  double cost =
       EvaluateFrames(point, true) + EvaluateChanges(point, true) + EvaluatePrior(point, true) + SharedCost(point);
+  if (has_pairs_) cost += EvaluatePairs(point, true);
   gradient_.resize(static_cast<Eigen::Index>(T) * n_);
   diagonal_.resize(gradient_.size());
   ParallelFor(T, num_threads_, [&](int t) {
@@ -317,6 +339,7 @@ double ChainProblem::Linearise(const ChainPoint& point) {
     for (int i = 0; i < n_; ++i) {
       diagonal_[offset + i] = systems_[t].H(i, i) + own_[static_cast<size_t>(offset) * 3 + i / 3 * 9 + i % 3 * 4];
     }
+    if (has_pairs_) AssemblePairs(t);
   });
   if (resting_.empty()) SumShared(point);
   AddPrior();
@@ -330,6 +353,7 @@ bool ChainProblem::Marginalise(const ChainPoint& point, ChainPrior* prior) const
   using panel_internal::RoundUp;
   const int T = static_cast<int>(point.states.size()), s = shared_size(), size = 2 * n_ + s;
   BODYLOOM_CHECK(T >= 3, "chain: ", T, " frames, expected three or more to take the first away");
+  BODYLOOM_CHECK(!has_pairs_, "chain: a frame with cost functions on its neighbour cannot be taken away");
   // Frame 0's rows: [A | C D B | right-hand side].
   const int x_begin = RoundUp(n_), x_columns = RoundUp(size + 1);
   const int64_t stride = panel_internal::RowStride(x_begin + x_columns);
@@ -427,6 +451,7 @@ void ChainProblem::AddFrame(int t, double* a, int64_t a_stride, double* b, int64
     }
     arrow[s] -= gradient_[offset + i];
   }
+  if (has_pairs_) AddPairs(t, a, a_stride, b, b_stride);
 }
 
 void ChainProblem::Plus(const ChainPoint& x, const VectorXd& step, const VectorXd& shared_step, ChainPoint* y) const {

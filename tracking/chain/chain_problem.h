@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// A SequenceProblem as the chain solver sees it: cost, gradient and Gauss–Newton matrix at a point, in the blocks of
 /// chain_factor.h. Frames come from FrameEvaluator, smoothness from the formulas of residuals/acceleration_cost.h,
-/// shared priors as in sequence_problem.h; nothing is approximated.
+/// shared priors as in sequence_problem.h, users' cost functions on neighbouring frames from terms/own; nothing is
+/// approximated.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,6 +13,7 @@
 
 #include "bodyloom/tracking/chain/chain_factor.h"
 #include "bodyloom/tracking/chain/chain_prior.h"
+#include "bodyloom/tracking/frame_cost.h"
 #include "bodyloom/tracking/residuals/acceleration_cost.h"
 #include "bodyloom/tracking/sequence_problem.h"
 
@@ -46,11 +48,9 @@ class ChainProblem : public ChainSource {
   void SetResting(std::vector<char> resting);
   /// How many frames the last Cost() or Linearise() took from an earlier point.
   [[nodiscard]] int num_skipped() const { return num_skipped_; }
-  /// A term beside the problem's own; borrowed, null: none. The problem must have two frames or more.
-  void SetPrior(const ChainPrior* prior) {
-    prior_ = prior;
-    linearised_ = false;
-  }
+  /// A term beside the problem's own; borrowed, null: none. The problem must have two frames or more, and no cost
+  /// functions on neighbouring frames.
+  void SetPrior(const ChainPrior* prior);
 
   /// The borrowed problem has lost its first `dropped` frames, and may have got new ones at its end, other cuts or
   /// other shared priors since.
@@ -92,7 +92,8 @@ class ChainProblem : public ChainSource {
   [[nodiscard]] const double* Next(int t) const override { return &next_[static_cast<size_t>(t) * 3 * n_]; }
   [[nodiscard]] const double* Second(int t) const override { return &second_[static_cast<size_t>(t) * 3 * n_]; }
   [[nodiscard]] const double* DenseNext(int t) const override {
-    return t == 0 && prior_ != nullptr ? prior_next_.data() : nullptr;
+    if (prior_ != nullptr) return t == 0 ? prior_next_.data() : nullptr;
+    return has_pairs_ && pairs_[t].coupled ? pairs_[t].next.data() : nullptr;
   }
 
  private:
@@ -109,6 +110,14 @@ class ChainProblem : public ChainSource {
     Eigen::VectorXd betas;
     double log_focal = 0, cost = 0;
   };
+  /// Cost functions on frames t and t + 1 (SequenceProblem's OwnCostsOfFrame::with_next), weighted by their losses.
+  struct Pair {
+    bool coupled = false;
+    double cost = 0;
+    RowMatrixXd J;      ///< columns: frame t, frame t + 1, betas
+    Eigen::VectorXd r;  ///< one a row of J
+    RowMatrixXd next;   ///< n×n, frame t with t + 1
+  };
   class Lease;
   void Resize();
   /// Steps from a frame's anchor: n values, then the shared ones that are unknown. False when one is too long.
@@ -120,6 +129,12 @@ class ChainProblem : public ChainSource {
   /// Whether the accelerations that frames first … last take part in are as they were.
   [[nodiscard]] bool RestAll(int64_t first, int64_t last) const;
   double EvaluateChanges(const ChainPoint& point, bool derivatives);
+  double EvaluatePairs(const ChainPoint& point, bool derivatives);
+  void EvaluatePair(int t, const ChainPoint& point, bool derivatives);
+  /// Adds to frame t's rows what its pairs give: AddFrame() without gradient and damping.
+  void AddPairs(int t, double* a, int64_t a_stride, double* b, int64_t b_stride) const;
+  /// Adds to frame t's gradient and diagonal what its pairs give.
+  void AssemblePairs(int t);
   void SumShared(const ChainPoint& point);
   double SharedCost(const ChainPoint& point) const;
   void AddSharedPriors(const ChainPoint& point);
@@ -155,6 +170,8 @@ class ChainProblem : public ChainSource {
   std::vector<double> next_, second_, own_;                 ///< T × n/3 blocks of 9
   Eigen::VectorXd gradient_, shared_gradient_, diagonal_;
   Eigen::MatrixXd shared_;
+  std::vector<Pair> pairs_;  ///< T, or empty
+  bool has_pairs_ = false;
   const Eigen::VectorXd* damping_ = nullptr;
   const ChainPrior* prior_ = nullptr;
   Eigen::MatrixXd prior_matrix_;  ///< at the point linearised last

@@ -79,8 +79,8 @@ SolveReport FixedLag::Solve(int max_iterations, double skip_share, double functi
   options.function_tolerance = function_tolerance;
   options.max_iterations = max_iterations;
   options.num_threads = num_threads_;
-  options.skip_settled = skip_share;
-  options.skip_to_the_end = true;
+  options.chain.skip_settled = skip_share;
+  options.chain.skip_to_the_end = true;
   ChainPoint x{std::move(problem_.states), problem_.betas, problem_.log_focal};
   const SolveReport report = DescendChain(&chain_, &factor_, &x, options, false);
   problem_.states = std::move(x.states);

@@ -13,6 +13,7 @@
 #include "bodyloom/tracking/chain/chain_prior.h"
 #include "bodyloom/tracking/chain/chain_problem.h"
 #include "bodyloom/tracking/sequence_problem.h"
+#include "bodyloom/tracking/solve_options.h"
 
 namespace bodyloom {
 
@@ -27,7 +28,7 @@ class FixedLag {
   /// continue the last one. Returns how many frames have gone (0 or 1).
   int Add(FrameData frame, FrameState start, double timestamp, bool cut_before);
 
-  /// At most this many iterations, with SolveOptions::skip_settled = `skip_share`. A failure
+  /// At most this many iterations, with ChainOptions::skip_settled = `skip_share`. A failure
   /// leaves the states at the best point that was found.
   SolveReport Solve(int max_iterations, double skip_share, double function_tolerance = 1e-5);
 

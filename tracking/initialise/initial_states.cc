@@ -13,10 +13,10 @@
 #include "bodyloom/tracking/initialise/bone_ratio_shape.h"
 #include "bodyloom/tracking/initialise/inverse_kinematics.h"
 #include "bodyloom/tracking/initialise/joint_hypotheses.h"
+#include "bodyloom/tracking/initialise/lifted_landmarks.h"
 #include "bodyloom/tracking/initialise/lifted_start.h"
 #include "bodyloom/tracking/initialise/swap_repair.h"
-#include "bodyloom/tracking/residuals/lifted_pose.h"
-#include "bodyloom/tracking/sequence_problem.h"
+#include "bodyloom/tracking/shots.h"
 
 namespace bodyloom {
 

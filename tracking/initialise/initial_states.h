@@ -5,8 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/tracking/frame_cost.h"
-#include "bodyloom/tracking/track_sequence.h"
+#include "bodyloom/tracking/frame_layout.h"
+#include "bodyloom/tracking/track_input.h"
+#include "bodyloom/tracking/track_options.h"
 
 namespace bodyloom {
 

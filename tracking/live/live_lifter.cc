@@ -52,8 +52,8 @@ LiveReading LiveLifter::Ask(const LiveSetup& setup, LiveWindow* window) {
     record.lifted =
         MakeLiftedPose(frame, setup.lifted_landmarks, reading.metres, setup.options.solve.lifter_min_sigma_m);
     FrameData& data = lag.problem().frames[slot];
-    data.lifted = &record.lifted;
-    data.lifted_weight = setup.options.solve.lifter_weight;
+    data.lifted.pose = &record.lifted;
+    data.lifted.weight = setup.options.solve.lifter_weight;
     lag.Touch(slot);
   }
   reading.frames.assign(read.begin() + first, read.end());

@@ -6,6 +6,7 @@
 
 #include "bodyloom/tracking/initialise/lifted_start.h"
 #include "bodyloom/tracking/initialise/lifter_input.h"
+#include "bodyloom/tracking/solve_sequence.h"
 
 namespace bodyloom {
 namespace {

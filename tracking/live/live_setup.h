@@ -5,11 +5,12 @@
 
 #include <optional>
 
-#include "bodyloom/tracking/joint_limits.h"
-#include "bodyloom/tracking/live/live_tracker.h"
-#include "bodyloom/tracking/mixture_prior.h"
+#include "bodyloom/tracking/initialise/lifted_landmarks.h"
+#include "bodyloom/tracking/live/live_options.h"
 #include "bodyloom/tracking/observability.h"
-#include "bodyloom/tracking/residuals/lifted_pose.h"
+#include "bodyloom/tracking/sequence_problem.h"
+#include "bodyloom/tracking/terms/joint_limits.h"
+#include "bodyloom/tracking/terms/pose_prior/mixture_prior.h"
 
 namespace bodyloom {
 

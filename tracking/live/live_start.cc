@@ -96,10 +96,10 @@ void RestartShot(const LiveSetup& setup, int count, LiveWindow* window) {
   std::vector<FrameData> observed(problem.frames.begin() + first, problem.frames.end());
   for (int slot = first; slot < T; ++slot) {
     FrameData& frame = problem.frames[slot];
-    frame.initial_rotations = problem.states[slot].rotations;
-    frame.initial_translation = problem.states[slot].translation;
-    frame.initialiser_weight = setup.options.solve.start_pull;
-    frame.landmark_kernel = 8;
+    frame.initialiser.rotations = problem.states[slot].rotations;
+    frame.initialiser.translation = problem.states[slot].translation;
+    frame.initialiser.weight = setup.options.solve.start_pull;
+    frame.landmarks.kernel = 8;
     lag.Touch(slot);
   }
   if (!window->Solve(setup.options.start_iterations)) return;

@@ -6,7 +6,6 @@
 #include <limits>
 #include <utility>
 
-#include "bodyloom/tracking/image_terms.h"
 #include "bodyloom/tracking/input_checks.h"
 #include "bodyloom/tracking/track_result.h"
 #include "bodyloom/tracking/uncertainty.h"
@@ -87,7 +86,7 @@ void LiveWindow::Release(int count) {
     it->lifted = LiftedPose();  // said of the person before
     if (!it->in_window) continue;
     const int slot = SlotOf(*it);
-    lag_->problem().frames[slot].lifted = nullptr;
+    lag_->problem().frames[slot].lifted.pose = nullptr;
     lag_->Touch(slot);
   }
 }
@@ -117,24 +116,24 @@ FrameData LiveWindow::Observe(const FrameState& state, LiveRecord* record) const
   const double height_px = PersonHeightPx(setup_.layout, state, setup_.stature_m);
   const auto back = static_cast<int>(records_.back().index - record->index);
   const KeypointSequence recent = history_.Recent(back + 1, 1);
-  if (recent.num_frames() == back + 1) frame.landmarks = ObserveLandmarks(setup_.landmarks, recent, 0, height_px);
-  if (!record->dense.empty()) frame.dense = &record->dense;
+  if (recent.num_frames() == back + 1) frame.landmarks.seen = ObserveLandmarks(setup_.landmarks, recent, 0, height_px);
+  if (!record->dense.empty()) frame.dense.points = &record->dense;
   if (setup_.prior) {
-    frame.prior = &*setup_.prior;
-    frame.prior_weight = solve.prior_weight;
+    frame.prior.mixture = &*setup_.prior;
+    frame.prior.weight = solve.prior_weight;
   }
-  frame.limits = &setup_.limits;
-  frame.upright_weight = solve.upright_weight;
-  frame.landmark_kernel = 4;
+  frame.limits.limits = &setup_.limits;
+  frame.upright.weight = solve.upright_weight;
+  frame.landmarks.kernel = 4;
   if (!record->lifted.points.empty()) {
-    frame.lifted = &record->lifted;
-    frame.lifted_weight = solve.lifter_weight;
+    frame.lifted.pose = &record->lifted;
+    frame.lifted.weight = solve.lifter_weight;
   }
   if (record->initialiser) {
-    frame.initial_rotations = record->initialiser->rotations;
-    frame.initial_translation = record->initialiser->trans;
-    frame.initialiser_weight = solve.initialiser_weight;
-    if (setup_.layout.knowledge == CameraKnowledge::kWeak) frame.initial_translation = state.translation;
+    frame.initialiser.rotations = record->initialiser->rotations;
+    frame.initialiser.translation = record->initialiser->trans;
+    frame.initialiser.weight = solve.initialiser_weight;
+    if (setup_.layout.knowledge == CameraKnowledge::kWeak) frame.initialiser.translation = state.translation;
   }
   return frame;
 }

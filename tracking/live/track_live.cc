@@ -8,7 +8,6 @@
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/tracking/image_terms.h"
 #include "bodyloom/tracking/input_checks.h"
 #include "bodyloom/tracking/observability.h"
 #include "bodyloom/tracking/track_result.h"
@@ -147,11 +146,11 @@ TrackSequenceResult TrackLive(const TrackSequenceInput& input, const LiveTracker
     ++found;
     if (taken.status[t] == FrameStatus::kInterpolated) continue;  // it may have been left out: nothing of it was used
     if (input.keypoints != nullptr) {
-      problem.frames[t].landmarks =
+      problem.frames[t].landmarks.seen =
           ObserveLandmarks(landmarks, *input.keypoints, t, PersonHeightPx(problem.layout, state, stature));
     }
-    if (input.dense != nullptr) problem.frames[t].dense = &input.dense->frames[t];
-    summary.num_observations += static_cast<int>(problem.frames[t].landmarks.size()) +
+    if (input.dense != nullptr) problem.frames[t].dense.points = &input.dense->frames[t];
+    summary.num_observations += static_cast<int>(problem.frames[t].landmarks.seen.size()) +
                                 (input.dense != nullptr ? static_cast<int>(input.dense->frames[t].size()) : 0);
   }
   if (found == 0) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "bodyloom/tracking/live/live_tracker.h"
+#include "bodyloom/tracking/track_sequence.h"
 
 namespace bodyloom {
 

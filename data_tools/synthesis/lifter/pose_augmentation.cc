@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "bodyloom/data_tools/synthesis/lifter/fast_random.h"
-#include "bodyloom/tracking/joint_limits.h"
+#include "bodyloom/tracking/terms/joint_limits.h"
 
 namespace bodyloom {
 

@@ -12,7 +12,7 @@
 
 namespace bodyloom {
 
-/// Limits of joint turns in the form that windows need (tracking/joint_limits.h).
+/// Limits of joint turns in the form that windows need (tracking/terms/joint_limits.h).
 class PoseLimits {
  public:
   explicit PoseLimits(const BodyModel& body);

@@ -55,7 +55,7 @@ TEST(ChainProblem, LinearisedAgainAfterAnyChangeItIsTheSameAsAnew) {
   EXPECT_FALSE(System(&chain, y) == first);
   EXPECT_TRUE(System(&chain, x) == first) << "after another point";
 
-  problem.frames[2].landmarks.resize(3);
+  problem.frames[2].landmarks.seen.resize(3);
   chain.Forget(2);
   const System fewer(&chain, x);
   EXPECT_FALSE(fewer == first) << "other observations";

@@ -6,6 +6,7 @@
 #include <Eigen/Cholesky>
 
 #include "bodyloom/tracking/chain/chain_covariance.h"
+#include "bodyloom/tracking/solve_sequence.h"
 #include "tests/support/dense_chain.h"
 #include "tests/support/sequence_scene.h"
 
@@ -109,12 +110,12 @@ SequenceProblem LinearClip(const SequenceScene& scene, int frames) {
   std::normal_distribution<double> normal;
   for (int t = 0; t < frames; ++t) {
     FrameData frame;
-    frame.initial_rotations.assign(24, Matrix3d::Identity());
-    frame.initial_translation =
+    frame.initialiser.rotations.assign(24, Matrix3d::Identity());
+    frame.initialiser.translation =
         Vector3d(0.3 * std::sin(0.3 * t), 0.02 * t, 4) + 0.1 * Vector3d::NullaryExpr([&]() { return normal(random); });
-    frame.initialiser_weight = t % 7 == 3 ? 0 : 0.5 + 0.1 * (t % 5);  // now and then nothing is seen
+    frame.initialiser.weight = t % 7 == 3 ? 0 : 0.5 + 0.1 * (t % 5);  // now and then nothing is seen
     problem.frames.push_back(frame);
-    problem.states.push_back({frame.initial_rotations, Vector3d(0, 0, 4)});
+    problem.states.push_back({frame.initialiser.rotations, Vector3d(0, 0, 4)});
     problem.timestamps.push_back(t / 30.0 + (t > 9 ? 0.05 : 0));
     problem.cut_before.push_back(t == 14);
   }
@@ -241,13 +242,13 @@ TEST(ChainSolver, SkippingSettledFramesEndsAtTheSameCost) {
     SequenceProblem skipped = all = start;
     const SolveReport whole = SolveSequence(&all, solve);
     EXPECT_EQ(whole.frames_skipped, 0);
-    solve.skip_settled = 0.03;
+    solve.chain.skip_settled = 0.03;
     const SolveReport report = SolveSequence(&skipped, solve);
     ASSERT_EQ(report.status, SolveStatus::kConverged);
     EXPECT_GT(report.frames_skipped, 10) << seed;
     EXPECT_NEAR(report.final_cost, whole.final_cost, 1e-6 * whole.final_cost) << seed;
     // The reported cost is that of the states, with nothing standing in.
-    solve.skip_settled = 0;
+    solve.chain.skip_settled = 0;
     solve.max_iterations = 0;
     EXPECT_NEAR(SolveSequence(&skipped, solve).initial_cost, report.final_cost, 1e-12 * report.final_cost);
   }

@@ -42,7 +42,7 @@ LiveScene MakeLiveScene(int count, bool dense) {
     LiveObservations frame;
     frame.timestamp = problem.timestamps[t];
     frame.keypoints.resize(live.input.landmarks.size());
-    for (const LandmarkObservation& seen : problem.frames[t].landmarks) {
+    for (const LandmarkObservation& seen : problem.frames[t].landmarks.seen) {
       const auto k = seen.point - live.scene->landmarks.data();
       frame.keypoints[k] = {static_cast<float>(seen.pixel.x()), static_cast<float>(seen.pixel.y()), 0.9F};
     }

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+/// One run of TrackSequence(): the clip's problem with all that its terms point to, and the steps that solve it.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "bodyloom/geometry/base/stopwatch.h"
+#include "bodyloom/tracking/initialise/lifted_landmarks.h"
+#include "bodyloom/tracking/initialise/lifted_start.h"
+#include "bodyloom/tracking/sequence_problem.h"
+#include "bodyloom/tracking/terms/ground_contact/clip_ground.h"
+#include "bodyloom/tracking/terms/joint_limits.h"
+#include "bodyloom/tracking/terms/landmarks.h"
+#include "bodyloom/tracking/terms/lifted/lifted_pose.h"
+#include "bodyloom/tracking/terms/part_labels/part_labels.h"
+#include "bodyloom/tracking/terms/pose_prior/mixture_prior.h"
+#include "bodyloom/tracking/terms/rendered_uv/rendered_uv.h"
+#include "bodyloom/tracking/track_input.h"
+#include "bodyloom/tracking/track_options.h"
+#include "bodyloom/tracking/track_stages.h"
+#include "bodyloom/tracking/track_summary.h"
+
+namespace bodyloom {
+
+/// Steps in the order in which they are to be called. Input and options must pass CheckInput() and, with the summary,
+/// outlive the run.
+class ClipFit {
+ public:
+  ClipFit(const TrackSequenceInput& given, const TrackSequenceOptions& options, TrackSequenceSummary* summary);
+  ClipFit(const ClipFit&) = delete;
+  ClipFit& operator=(const ClipFit&) = delete;
+
+  /// A starting pose for every frame. False, with the reason in the summary, when no frame shows enough to start from.
+  bool FindStart();
+  /// What each term has of each frame.
+  void Observe();
+  /// The stages on the coarse frames, and what each of them tells about the clip.
+  void FitCoarseFrames();
+  void FitAllFrames();
+  /// Track, summary and uncertainty.
+  void Finish(TrackSequenceResult* result);
+
+ private:
+  void CleanObservations();
+  void SetUpProblem();
+  void FitNearStart(SequenceProblem* coarse);
+  /// How lively the clip is and where its ground is, after a first answer; fits again when that changes something.
+  void LearnFromFirstAnswer(SequenceProblem* coarse);
+  void FitPartLabels(SequenceProblem* coarse);
+  void FitDense(SequenceProblem* coarse);
+  /// Uncertainty of every frame's joints: that of the coarse frame nearest in time.
+  void FillJointSigma(Track* track);
+  [[nodiscard]] bool has_points() const { return input_.keypoints != nullptr || input_.dense != nullptr; }
+  [[nodiscard]] size_t num_frames() const { return problem_.timestamps.size(); }
+
+  const TrackSequenceOptions& options_;
+  TrackSequenceSummary& summary_;
+  int threads_;
+  TrackSequenceInput input_;  ///< what was given, with the observations below in place of what cannot be meant
+  KeypointSequence keypoints_, joints_from_dense_;
+  DenseSequence dense_;
+  const KeypointSequence* joints_ = nullptr;  ///< to start from and to tell cuts by; null: none
+  int num_impossible_ = 0;
+  StageClock clock_;
+  ObservedLandmarks landmarks_;
+  std::optional<MixturePrior> prior_;
+  JointLimits limits_;
+  double stature_m_ = 0;  ///< of the mean shape
+  SequenceProblem problem_;
+  LiftedStart lifted_;
+  LiftedLandmarks lifted_landmarks_;
+  std::vector<LiftedPose> lifted_poses_;  ///< T, or empty
+  std::optional<ClipGround> ground_;
+  std::optional<DenseRounds> dense_rounds_;
+  std::optional<PartLabelRounds> part_label_rounds_;
+  std::vector<int> coarse_frames_;
+  Stages stages_{};
+  std::optional<StageRunner> runner_;
+};
+
+}  // namespace bodyloom

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+/// How a SequenceProblem is solved, and how that went; the engines' common ground.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+namespace bodyloom {
+
+/// The engines: the same problem, the same rules of acceptance and of stopping.
+enum class SequenceSolver {
+  kCeres,  ///< Ceres with sparse Cholesky: the reference (ceres_solver.h)
+  kChain   ///< several times faster on a chain of frames (chain_solver.h)
+};
+/// "ceres" or "chain".
+std::string ToString(SequenceSolver solver);
+/// The other way; throws std::invalid_argument for another word.
+SequenceSolver SequenceSolverFromString(const std::string& word);
+
+enum class SolveStatus { kFailure, kConverged, kMaxIterations, kStopped };
+std::string ToString(SolveStatus status);
+
+/// What the chain engine may leave out on its way; Ceres does not read it.
+struct ChainOptions {
+  /// Until the cost settles to a thousandth, frames with more than twice as many dense keypoints use about
+  /// this many, evenly chosen and weighted to stand for all; then all of them. What converges is always the whole
+  /// problem. 0: all from the beginning.
+  int early_dense = 0;
+  /// Frames whose residuals have moved by less than this share of their size since they were linearised
+  /// last are not evaluated again; a quadratic stands for them (ChainProblem::SkipSettled). Before the descent may end
+  /// as converged all frames are evaluated at the same point and iterations without the skip follow, so the answer is a
+  /// minimum of the cost itself. 0: every frame in every iteration.
+  double skip_settled = 0;
+  /// Frames whose steps promise little rest, and shape and focal length with them, while the others go on
+  /// (tracking/chain/resting_frames.h); this share of a step's decrease is left lying at a time. Only a step of all
+  /// frames may end the descent as converged. Steps of a part of the frames count for max_iterations by its size, a
+  /// quarter at least. 0: all frames move in every iteration.
+  double rest_share = 0;
+  /// Leave it at that when max_iterations end the descent: the final cost may hold stand-ins.
+  bool skip_to_the_end = false;
+};
+
+struct SolveOptions {
+  SequenceSolver solver = SequenceSolver::kCeres;
+  int max_iterations = 50;
+  int num_threads = 1;
+  double function_tolerance = 1e-5;   ///< stop when |Δcost| is below this share of the cost
+  double gradient_tolerance = 1e-9;   ///< … when no component of the gradient is larger
+  double parameter_tolerance = 1e-9;  ///< … when the step is below this share of the unknowns' norm
+  bool shape_constant = false, focal_constant = false;
+  ChainOptions chain;
+  /// Called after each iteration with (iteration, cost); false stops.
+  std::function<bool(int, double)> on_iteration;
+};
+
+/// What the tracker sets the skips to; settled frames only where there are dense keypoints.
+inline constexpr int kTrackerEarlyDense = 300;
+inline constexpr double kTrackerSkipSettled = 0.01, kTrackerRestShare = 0.05;
+
+struct SolveReport {
+  SolveStatus status = SolveStatus::kFailure;
+  int iterations = 0;
+  double initial_cost = 0, final_cost = 0, seconds = 0;
+  double seconds_evaluation = 0, seconds_linear_solver = 0;  ///< parts of `seconds`
+  int64_t frames_evaluated = 0, frames_skipped = 0;          ///< chain: frames × evaluations
+  std::string message;
+};
+
+}  // namespace bodyloom

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/tracking/solve_sequence.h"
+
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/tracking/ceres_solver.h"
+#include "bodyloom/tracking/chain_solver.h"
+
+namespace bodyloom {
+
+SolveReport SolveSequence(SequenceProblem* problem, const SolveOptions& options) {
+  const size_t T = problem->states.size();
+  BODYLOOM_CHECK(
+      T > 0 && problem->frames.size() == T && problem->timestamps.size() == T && problem->cut_before.size() == T,
+      "sequence: ", T, " states, ", problem->frames.size(), " frames, ", problem->timestamps.size(), " timestamps, ",
+      problem->cut_before.size(), " cut flags; expected the same number of each");
+  BODYLOOM_CHECK(problem->betas.size() == problem->layout.num_betas, "sequence: ", problem->betas.size(),
+                 " betas, the layout has ", problem->layout.num_betas);
+  return options.solver == SequenceSolver::kChain ? SolveChain(problem, options) : SolveWithCeres(problem, options);
+}
+
+}  // namespace bodyloom

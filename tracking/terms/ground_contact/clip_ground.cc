@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/tracking/terms/ground_contact/clip_ground.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "bodyloom/tracking/initialise/lifter_input.h"
+#include "bodyloom/tracking/kinematics.h"
+#include "bodyloom/tracking/terms/ground_contact/ground_contact.h"
+
+namespace bodyloom {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr float kSeenConfidence = 0.3F;
+constexpr double kAnkleHeight = 0.08;  ///< metres above the ground, of a foot that stands flat
+
+}  // namespace
+
+ClipGround::ClipGround(const TrackSequenceInput& input, const TrackSequenceOptions& options,
+                       const KeypointSequence* keypoints, const std::vector<LiftedFrame>& lifted,
+                       const LiftedLandmarks& landmarks, SequenceProblem* problem)
+    : options_(options.ground),
+      keypoints_(keypoints),
+      lifted_(lifted),
+      landmarks_(landmarks),
+      why_not_(WhyNoGround(input, options)) {
+  if (lifted.empty()) return;
+  const int T = static_cast<int>(lifted.size());
+  for (int begin = 0, end = 0; begin < T; begin = end) {
+    for (end = begin + 1; end < T && !problem->cut_before[end];) ++end;
+    Shot& shot = shots_.emplace_back();
+    shot.begin = begin;
+    shot.end = end;
+    shot.up = EstimateUp({lifted.data() + begin, lifted.data() + end});
+    if (shot.up.found) SetUpright(shot, shot.up.up, problem);
+  }
+}
+
+void ClipGround::SetUpright(const Shot& shot, const Vector3d& up, SequenceProblem* problem) const {
+  const Vector3d level = Vector3d::UnitZ() - up.z() * up;
+  // Seen from straight above or below, no direction of lean is hidden more than another.
+  if (!options_.use_up || level.norm() < 0.1) return;
+  for (int t = shot.begin; t < shot.end; ++t) problem->frames[t].upright.normal = level.normalized();
+}
+
+void ClipGround::Hold(const Stance& stance, const GroundPlane& ground, FrameData* frame) const {
+  GroundContact contact;
+  contact.point = &landmarks_.points[kLifterLeftAnkle + stance.foot];
+  contact.target_m = stance.place_m;
+  const Vector3d along = ground.normal.unitOrthogonal();
+  contact.whitening.row(0) = along.transpose() / options_.sigma_slide_m;
+  contact.whitening.row(1) = ground.normal.cross(along).transpose() / options_.sigma_slide_m;
+  contact.whitening.row(2) = ground.normal.transpose() / options_.sigma_height_m;
+  contact.whitening *= std::sqrt(options_.contact_weight);
+  frame->ground_contact.feet.push_back(contact);
+}
+
+bool ClipGround::FindGround(const std::vector<int>& frames, SequenceProblem* coarse, SequenceProblem* problem) {
+  if (lifted_.empty() || !why_not_.empty()) return false;
+  const FrameLayout& layout = problem->layout;
+  std::array<int, 2> column{-1, -1};
+  for (int foot = 0; foot < 2; ++foot) {
+    const std::string& name = LifterPointNames()[kLifterLeftAnkle + foot];
+    const auto it = std::find(keypoints_->names.begin(), keypoints_->names.end(), name);
+    if (it != keypoints_->names.end()) column[foot] = static_cast<int>(it - keypoints_->names.begin());
+  }
+  Kinematics kinematics;
+  PointEvaluator points;
+  std::vector<char> held(lifted_.size(), 0);
+  bool any = false;
+  for (Shot& shot : shots_) {
+    if (!shot.up.found) {
+      shot.ground.why = "the vertical is not clear";
+      continue;
+    }
+    std::vector<std::array<FootPlace, 2>> feet;
+    std::vector<double> timestamps;
+    std::vector<int> index;  // in `coarse`
+    for (size_t i = 0; i < frames.size(); ++i) {
+      const int t = frames[i];
+      if (t < shot.begin || t >= shot.end) continue;
+      const FrameState& state = coarse->states[i];
+      kinematics.Set(*layout.model, coarse->betas, state.rotations, Vector3d::Zero(), false);
+      std::array<FootPlace, 2>& both = feet.emplace_back();
+      for (int foot = 0; foot < 2; ++foot) {
+        both[foot].ankle_m =
+            points.Evaluate(kinematics, landmarks_.points[kLifterLeftAnkle + foot], false) + layout.BodyPlace(state);
+        both[foot].contact = lifted_[t].contact[foot];
+        both[foot].seen = column[foot] >= 0 && keypoints_->at(t, column[foot]).confidence >= kSeenConfidence;
+      }
+      timestamps.push_back(coarse->timestamps[i]);
+      index.push_back(static_cast<int>(i));
+    }
+    shot.ground = EstimateGroundPlane(feet, timestamps, shot.up.up, {});
+    if (!shot.ground.found) continue;
+    any = true;
+    SetUpright(shot, shot.ground.normal, problem);
+    for (const Stance& stance : shot.ground.stances) {
+      const int first = frames[index[stance.begin]], last = frames[index[stance.end - 1]];
+      for (int i = stance.begin; i < stance.end; ++i) Hold(stance, shot.ground, &coarse->frames[index[i]]);
+      for (int t = first; t <= last; ++t) {
+        Hold(stance, shot.ground, &problem->frames[t]);
+        held[t] = 1;
+      }
+    }
+    for (const int i : index) coarse->frames[i].upright.normal = problem->frames[frames[i]].upright.normal;
+  }
+  contact_frames_ = static_cast<int>(std::count(held.begin(), held.end(), 1));
+  return any;
+}
+
+void ClipGround::Summarise(TrackSequenceSummary* summary) const {
+  GroundSummary& result = summary->ground;
+  if (!why_not_.empty()) result.why = why_not_;
+  const auto longest = std::max_element(shots_.begin(), shots_.end(),
+                                        [](const Shot& a, const Shot& b) { return a.end - a.begin < b.end - b.begin; });
+  if (longest == shots_.end()) return;
+  result.has_up = longest->up.found;
+  result.up = longest->ground.found ? longest->ground.normal : longest->up.up;
+  result.up_spread_deg = longest->up.spread_deg;
+  result.contact_frames = contact_frames_;
+  if (!why_not_.empty()) return;
+  const GroundPlane& ground = longest->ground;
+  result.has_plane = ground.found;
+  result.why = ground.why;
+  if (!ground.found) return;
+  result.camera_height_m = kAnkleHeight - ground.offset_m;
+  result.height_spread_m = ground.spread_m;
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The vertical and the ground of a clip, as terms of its problem: upright normals and standing feet
+/// (initialise/ground_plane.h, terms/upright.h, ground_contact.h). Every shot has its own.
+#pragma once
+
+#include <vector>
+
+#include "bodyloom/tracking/initialise/ground_plane.h"
+#include "bodyloom/tracking/initialise/lifted_landmarks.h"
+#include "bodyloom/tracking/sequence_problem.h"
+#include "bodyloom/tracking/track_input.h"
+#include "bodyloom/tracking/track_options.h"
+#include "bodyloom/tracking/track_summary.h"
+
+namespace bodyloom {
+
+/// Must not outlive what it is given. Without lifted frames, or switched off, it changes nothing.
+class ClipGround {
+ public:
+  /// `problem` holds the whole clip, `lifted` what the lifter said of each of its frames (or nothing) when it read
+  /// `keypoints`.
+  ClipGround(const TrackSequenceInput& input, const TrackSequenceOptions& options, const KeypointSequence* keypoints,
+             const std::vector<LiftedFrame>& lifted, const LiftedLandmarks& landmarks, SequenceProblem* problem);
+
+  /// Looks for the ground with the states of `coarse`, which holds `frames` of the clip. True when there is one: then
+  /// `coarse` and `problem` (the whole clip) have their feet held and their trunks measured against its normal.
+  bool FindGround(const std::vector<int>& frames, SequenceProblem* coarse, SequenceProblem* problem);
+
+  void Summarise(TrackSequenceSummary* summary) const;
+
+ private:
+  struct Shot {
+    int begin = 0, end = 0;
+    UpEstimate up;
+    GroundPlane ground;
+  };
+  void SetUpright(const Shot& shot, const Eigen::Vector3d& up, SequenceProblem* problem) const;
+  void Hold(const Stance& stance, const GroundPlane& ground, FrameData* frame) const;
+
+  const GroundOptions options_;
+  const KeypointSequence* keypoints_;
+  const std::vector<LiftedFrame>& lifted_;
+  const LiftedLandmarks& landmarks_;
+  std::vector<Shot> shots_;
+  std::string why_not_;
+  int contact_frames_ = 0;
+};
+
+}  // namespace bodyloom

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/tracking/terms/ground_contact/ground_contact.h"
+
+#include <cmath>
+
+#include "bodyloom/tracking/frame_accumulator.h"
+#include "bodyloom/tracking/initialise/initial_states.h"
+#include "bodyloom/tracking/robust.h"
+#include "bodyloom/tracking/track_options.h"
+#include "bodyloom/tracking/track_summary.h"
+
+namespace bodyloom {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+void GroundContactOfFrame::Add(FrameAccumulator* sums) const {
+  if (feet.empty()) return;
+  const FrameLayout& layout = sums->layout();
+  const bool weak = layout.knowledge == CameraKnowledge::kWeak;
+  const Vector3d origin = layout.BodyPlace(sums->state());
+  const Vector3d offset = weak ? origin : Vector3d::Zero();  // elsewhere the kinematics have the translation
+  Matrix3d d_origin = Matrix3d::Identity();
+  if (weak) {
+    d_origin.col(0) = -origin.z() * Vector3d::UnitZ();
+    d_origin.col(1) = Vector3d::UnitX();
+    d_origin.col(2) = Vector3d::UnitY();
+  }
+  for (const GroundContact& contact : feet) {
+    const Vector3d x = sums->points().Evaluate(sums->kinematics(), *contact.point, sums->derivatives()) + offset;
+    const Vector3d residual = contact.whitening * (x - contact.target_m);
+    const RobustValue robust = GemanMcClure(residual.squaredNorm(), kContactKernel);
+    sums->AddCost(0.5 * robust.rho);
+    if (!sums->derivatives()) continue;
+    const double scale = std::sqrt(robust.weight);
+    auto rows = sums->NextRows(3);
+    sums->FillPointRows(rows);
+    rows.middleCols<3>(layout.translation_column) = d_origin;
+    const RowMatrixXd d_x = rows;
+    rows.noalias() = scale * contact.whitening * d_x;
+    sums->NextResiduals(3) = scale * residual;
+    sums->TakeRows(3);
+  }
+}
+
+std::string WhyNoGround(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
+  const std::string no_lifter = WhyNoLifter(input, options);
+  if (!no_lifter.empty()) return "the lifter says which feet stand, and " + no_lifter;
+  return options.ground.contact_weight > 0 ? "" : "switched off";
+}
+
+PlanEntry PlanGround(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
+  const std::string why_not = WhyNoGround(input, options);
+  return {"ground", why_not.empty(),
+          why_not.empty() ? "looked for; standing feet are held to it when there is one" : why_not};
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+/// 2D joints, L_f of paper A: a landmark of the body should appear where the detector saw it.
+///   ½ Σ_k ρ(‖(π(x_k) − y_k)/σ_k‖²)        ρ: Geman–McClure with c = `kernel` (robust.h)
+/// x_k: the landmark in the camera frame, metres; π(x_k), y_k, σ_k: pixels. A landmark that cannot be projected costs
+/// c²/2 and is counted. σ_k grows with the person's height in the image and with the detector's doubt
+/// (KeypointSigmaPx()). The first stage is wide (c = 8), the others narrow (4): a start is off by more than a detector.
+/// Derivatives: ∂π/∂x of the camera, ∂x/∂θ of body_points.h. Runs when the input has 2D joints.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/camera.h"
+#include "bodyloom/geometry/observations.h"
+#include "bodyloom/tracking/body_points.h"
+
+namespace bodyloom {
+
+class FrameAccumulator;
+struct PlanEntry;
+struct TrackSequenceInput;
+struct TrackSequenceOptions;
+
+/// A 2D joint: the compiled landmark, where it was seen, and how well.
+struct LandmarkObservation {
+  const CompiledPoint* point = nullptr;
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
+  double sigma_px = 1;
+};
+
+struct LandmarksOfFrame {
+  std::vector<LandmarkObservation> seen;
+  double kernel = 8;  ///< c, in σ
+
+  [[nodiscard]] int num_rows() const { return static_cast<int>(2 * seen.size()); }
+  void Add(FrameAccumulator* sums) const;
+};
+
+/// Landmarks that both the body and the detections have.
+struct ObservedLandmarks {
+  std::vector<std::string> names;
+  std::vector<int> keypoint_column;  ///< in the KeypointSequence
+  std::vector<CompiledPoint> points;
+};
+
+/// Empty when `keypoints` is null. Throws std::invalid_argument when the body has none of the detections' landmarks.
+ObservedLandmarks FindObservedLandmarks(const BodyModel& model, const KeypointSequence* keypoints, int num_betas);
+
+/// σ of a 2D joint in pixels, for a person `height_px` tall in the image: (0.022 + 0.033 (1 − confidence)^1.5) of it.
+/// It is larger than the detectors' white noise because their errors are correlated over a third of a second.
+double KeypointSigmaPx(double confidence, double height_px);
+
+/// The usable 2D joints of frame t.
+std::vector<LandmarkObservation> ObserveLandmarks(const ObservedLandmarks& landmarks, const KeypointSequence& keypoints,
+                                                  int t, double height_px);
+
+/// Detections below this confidence are ignored by the solver.
+inline constexpr double kMinConfidence = 0.1;
+
+/// Appends |π(x) − y|, pixels, of frame t's landmarks with a confidence above 0.3.
+void AppendLandmarkErrors(const ObservedLandmarks& landmarks, const KeypointSequence& keypoints, int t,
+                          const Camera& camera, const Kinematics& kinematics, std::vector<double>* errors_px);
+
+PlanEntry PlanLandmarks(const TrackSequenceInput& input, const TrackSequenceOptions& options);
+
+}  // namespace bodyloom

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+/// L_d of paper A when the initialiser is the lifter: landmarks relative to the mid-hip should be where it says, each
+/// as firmly as its own uncertainty allows.
+///   ½ w Σ_k ρ(‖W_k (x_k − ½(x_left_hip + x_right_hip) − y_k)‖²)     ρ: Geman–McClure
+/// W_k = R diag(1/σ_xy, 1/σ_xy, 1/σ_z) Rᵀ with R the axes in which the lifter looked. Depth is what it is asked for,
+/// and across the view the image knows better: σ_xy is rarely what decides.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "bodyloom/tracking/initialise/lift_keypoints.h"
+#include "bodyloom/tracking/initialise/lifted_landmarks.h"
+
+namespace bodyloom {
+
+class FrameAccumulator;
+
+struct LiftedPose {
+  struct Point {
+    int landmark = 0;
+    Eigen::Vector3d offset;     ///< from the mid-hip, camera axes, metres
+    Eigen::Matrix3d whitening;  ///< 1/m
+  };
+  const LiftedLandmarks* landmarks = nullptr;
+  std::vector<Point> points;
+};
+
+/// `metres` is the body's torso + leg length, `min_sigma_m` a floor of both scales: the body's landmarks are not the
+/// detector's.
+LiftedPose MakeLiftedPose(const LiftedFrame& frame, const LiftedLandmarks& landmarks, double metres,
+                          double min_sigma_m);
+
+struct LiftedOfFrame {
+  const LiftedPose* pose = nullptr;  ///< borrowed; null: none
+  double weight = 0;                 ///< w
+  double kernel = 3;                 ///< c of ρ, in σ
+
+  [[nodiscard]] bool runs() const { return pose != nullptr && weight > 0; }
+  [[nodiscard]] int num_rows() const { return runs() ? static_cast<int>(3 * pose->points.size()) + 3 : 0; }
+  void Add(FrameAccumulator* sums) const;
+};
+
+}  // namespace bodyloom

@@ -1,0 +1,381 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/tracking/terms/part_labels/part_label_term.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/render/visible_points.h"
+#include "bodyloom/tracking/frame_accumulator.h"
+
+namespace bodyloom {
+namespace {
+
+using Eigen::Matrix2d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr uint8_t kBackground = PartLabelSequence::kBackground, kUnknown = PartLabelSequence::kUnknown;
+constexpr int kFieldCells = 128;  ///< a field has about this many cells along the person
+constexpr int kMinCellPx = 3;     ///< finer cells would show the stairs of the mask in the field's slope
+constexpr int kMarginCells = 10;  ///< around what the field is of; farther away it goes on as a cone
+constexpr int kMaxSilhouette = 160, kMaxPartBorder = 10, kMaxPartOutline = 12, kMaxInside = 10;
+constexpr double kAlongBorder = 0.2;       ///< τ
+constexpr double kInsideSigmas = 3;        ///< σ of "somewhere on this part"
+constexpr double kBehindTolerance = 0.02;  ///< metres: neighbouring pixels of one surface
+constexpr double kReach = 0.25;            ///< of the person's height: farther apart nothing corresponds
+
+/// At most n of `items`, evenly spread.
+template <typename T>
+std::vector<T> Thinned(const std::vector<T>& items, size_t n) {
+  if (items.size() <= n) return items;
+  std::vector<T> result;
+  for (size_t k = 0; k < n; ++k) result.push_back(items[k * items.size() / n]);
+  return result;
+}
+
+/// Neither background nor unknown.
+bool IsPart(uint8_t part) { return part != kBackground && part != kUnknown; }
+
+}  // namespace
+
+PartLabelTerm::PartLabelTerm(const PartLabelSequence& labels, int t, std::shared_ptr<const Skinner> skinner,
+                             const PartLabelOptions& options)
+    : labels_(labels), t_(t), skinner_(std::move(skinner)), options_(options) {
+  BODYLOOM_CHECK(t >= 0 && t < labels.num_frames(), "part labels: frame ", t, " of ", labels.num_frames());
+  const PartMap map = MakePartMap(labels, t, kSpeckShare);
+  FindBoxes(map);
+  if (num_person_pixels_ < kMinPartPixels) {
+    num_person_pixels_ = 0;
+    return;
+  }
+  cell_px_ = std::max(kMinCellPx, std::max(boxes_[0].width(), boxes_[0].height()) / kFieldCells);
+  AddField(map, kBackground);
+  int parts = 0;
+  for (int p = 1; p < kUnknown; ++p) parts += pixels_of_part_[p] > 0;
+  if (parts > 1 && options.part_weight > 0) {  // a mask has nothing to say about parts
+    for (int p = 1; p < kUnknown; ++p) {
+      if (pixels_of_part_[p] >= kMinPartPixels) AddField(map, static_cast<uint8_t>(p));
+    }
+    SampleInside(map);
+  }
+  SampleBorders(map);
+}
+
+const DistanceField* PartLabelTerm::Field(uint8_t part) const {
+  const auto it = fields_.find(part);
+  return it == fields_.end() ? nullptr : &it->second;
+}
+
+std::vector<uint8_t> PartLabelTerm::PartOfFaces(const BodyModel& model) const {
+  std::vector<uint8_t> result(model.num_faces());
+  for (int f = 0; f < model.num_faces(); ++f) {
+    const uint8_t part = labels_.part_of_chart[model.has_parts() ? model.data().face_part[f] : 0];
+    result[f] = part == kBackground ? kUnknown : part;
+  }
+  return result;
+}
+
+void PartLabelTerm::FindBoxes(const PartMap& map) {
+  const auto grow = [](PixelBox* box, int x, int y) {
+    *box = box->empty() ? PixelBox{x, y, x + 1, y + 1}
+                        : PixelBox{std::min(box->x_begin, x), std::min(box->y_begin, y), std::max(box->x_end, x + 1),
+                                   std::max(box->y_end, y + 1)};
+  };
+  for (int y = map.box.y_begin; y < map.box.y_end; ++y) {
+    for (int x = map.box.x_begin; x < map.box.x_end; ++x) {
+      const uint8_t part = map.At(x, y);
+      if (!IsPart(part)) continue;
+      ++num_person_pixels_;
+      ++pixels_of_part_[part];
+      grow(&boxes_[part], x, y);
+      grow(&boxes_[0], x, y);
+    }
+  }
+}
+
+void PartLabelTerm::AddField(const PartMap& map, uint8_t part) {
+  // Beyond the image nothing is said; a cell of it is enough for the field to know.
+  const PixelBox box = boxes_[part].GrownBy(kMarginCells * cell_px_).ClippedTo(map.image.GrownBy(cell_px_));
+  using Pixel = DistanceField::Pixel;
+  std::array<Pixel, 256> kind;  // by part
+  kind.fill(part == kBackground ? Pixel::kInside : Pixel::kOutside);
+  kind[kBackground] = Pixel::kOutside;
+  if (part != kBackground) kind[part] = Pixel::kInside;
+  kind[kUnknown] = Pixel::kUnsaid;
+  const auto fill_row = [&](int y, Pixel* row) {
+    for (int x = box.x_begin; x < box.x_end; ++x) *row++ = kind[map.At(x, y)];
+  };
+  fields_.try_emplace(part, box.x_begin, box.y_begin, box.width(), box.height(), cell_px_, fill_row);
+}
+
+void PartLabelTerm::SampleBorders(const PartMap& map) {
+  std::vector<Border> silhouette;
+  std::map<std::pair<uint8_t, uint8_t>, std::vector<Border>> between;
+  const PixelBox box = boxes_[0].GrownBy(1).ClippedTo(map.image);
+  const auto look = [&](int x, int y, int dx, int dy) {
+    const uint8_t here = map.At(x, y), there = map.At(x + dx, y + dy);
+    if (here == there || here == kUnknown || there == kUnknown) return;
+    const Border border{Vector2d(x + 0.5 * dx, y + 0.5 * dy), std::min(here, there), std::max(here, there)};
+    (border.a == kBackground ? silhouette : between[{border.a, border.b}]).push_back(border);
+  };
+  for (int y = box.y_begin; y < box.y_end; ++y) {
+    for (int x = box.x_begin; x < box.x_end; ++x) {
+      look(x, y, 1, 0);
+      look(x, y, 0, 1);
+    }
+  }
+  if (options_.silhouette_weight > 0) borders_ = Thinned(silhouette, kMaxSilhouette);
+  if (fields_.size() < 2) return;
+  for (const auto& [pair, all] : between) {
+    const std::vector<Border> some = Thinned(all, kMaxPartBorder);
+    borders_.insert(borders_.end(), some.begin(), some.end());
+  }
+}
+
+void PartLabelTerm::SampleInside(const PartMap& map) {
+  std::array<std::vector<Inside>, 256> by_part;
+  const PixelBox& box = boxes_[0];
+  // A grid of at least kMaxInside points in the smallest part that counts is finer than needed elsewhere: thinned
+  // below.
+  const int step = std::max(1, cell_px_ / 2);
+  for (int y = box.y_begin; y < box.y_end; y += step) {
+    for (int x = box.x_begin; x < box.x_end; x += step) {
+      const uint8_t part = map.At(x, y);
+      if (IsPart(part) && fields_.contains(part)) by_part[part].push_back({x, y, part});
+    }
+  }
+  for (const std::vector<Inside>& all : by_part) {
+    const std::vector<Inside> some = Thinned(all, kMaxInside);
+    inside_.insert(inside_.end(), some.begin(), some.end());
+  }
+}
+
+std::vector<PartLabelTerm::Edge> PartLabelTerm::EdgesOfBody(const std::vector<uint8_t>& part_of_face,
+                                                            const VisibilityBuffer& buffer) const {
+  std::vector<Edge> edges;
+  const PixelBox& box = buffer.box();
+  const PixelBox image{0, 0, labels_.image_width, labels_.image_height};
+  constexpr std::array<std::pair<int, int>, 4> kNeighbours = {{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
+  for (int y = box.y_begin; y < box.y_end; ++y) {
+    for (int x = box.x_begin; x < box.x_end; ++x) {
+      const int face = buffer.faces()[box.IndexOf(x, y)];
+      if (face < 0) continue;
+      const uint8_t part = part_of_face[face];
+      for (const auto& [dx, dy] : kNeighbours) {
+        if (!image.Contains(x + dx, y + dy)) continue;  // the image ends here, not the body
+        const int neighbour = buffer.FaceAt(x + dx, y + dy);
+        if (neighbour == face) continue;
+        const uint8_t other = neighbour < 0 ? kBackground : part_of_face[neighbour];
+        if (other == part || other == kUnknown || (part == kUnknown && other != kBackground)) continue;
+        if (neighbour >= 0 && buffer.DepthAt(x, y) > buffer.DepthAt(x + dx, y + dy) + kBehindTolerance) continue;
+        edges.push_back({x, y, face, part, other});
+        if (other == kBackground) break;  // once is enough for the silhouette
+      }
+    }
+  }
+  return edges;
+}
+
+void PartLabelTerm::AddOutline(const std::vector<Edge>& edges, const BodyModel& model, const VisibleSurface& surface,
+                               const Camera& camera, double sigma_px) {
+  const auto add = [&](const Edge& edge, const DistanceField* field, bool is_silhouette) {
+    if (labels_.PartAt(t_, edge.x, edge.y) == kUnknown) return;
+    OutlinePoint point;
+    point.face = edge.face;
+    point.barycentric =
+        BarycentricAtPixel(surface.vertices(), model.data().faces, camera, edge.face, Vector2d(edge.x, edge.y));
+    point.field = field;
+    point.offset_px = -0.5;  // the centre of the last pixel inside
+    point.inverse_sigma = 1 / sigma_px;
+    point.is_silhouette = is_silhouette;
+    outline_.push_back(point);
+  };
+  std::vector<Edge> silhouette;
+  std::map<uint8_t, std::vector<Edge>> of_part;
+  for (const Edge& edge : edges) {
+    if (edge.other == kBackground) silhouette.push_back(edge);
+    if (Field(edge.part) != nullptr && edge.part != kUnknown) of_part[edge.part].push_back(edge);
+  }
+  if (options_.silhouette_weight > 0) {
+    for (const Edge& edge : Thinned(silhouette, kMaxSilhouette)) add(edge, Field(kBackground), true);
+  }
+  if (options_.part_weight > 0) {
+    for (const auto& [part, all] : of_part) {
+      for (const Edge& edge : Thinned(all, kMaxPartOutline)) add(edge, Field(part), false);
+    }
+  }
+}
+
+void PartLabelTerm::AddBorders(const std::vector<Edge>& edges, const BodyModel& model, const VisibleSurface& surface,
+                               const Camera& camera, double sigma_px, double reach_px) {
+  std::map<std::pair<uint8_t, uint8_t>, std::vector<const Edge*>> between;
+  for (const Edge& edge : edges) {
+    const auto key = edge.other == kBackground
+                         ? std::pair(kBackground, kBackground)
+                         : std::pair(std::min(edge.part, edge.other), std::max(edge.part, edge.other));
+    between[key].push_back(&edge);
+  }
+  for (const Border& border : borders_) {
+    const bool is_silhouette = border.a == kBackground;
+    const auto it = between.find(is_silhouette ? std::pair(kBackground, kBackground) : std::pair(border.a, border.b));
+    const Edge* nearest = nullptr;
+    double best = reach_px * reach_px;
+    if (it != between.end()) {
+      for (const Edge* edge : it->second) {
+        const double squared = (Vector2d(edge->x, edge->y) - border.pixel).squaredNorm();
+        if (squared < best) {
+          best = squared;
+          nearest = edge;
+        }
+      }
+    }
+    const DistanceField* field =
+        is_silhouette ? Field(kBackground) : (nearest != nullptr ? Field(nearest->part) : nullptr);
+    if (nearest == nullptr || field == nullptr) {
+      ++(is_silhouette ? silhouette_unmatched_ : part_unmatched_);
+      continue;
+    }
+    Eigen::RowVector2d gradient;
+    field->Evaluate(border.pixel, &gradient);
+    const double length = gradient.norm();
+    Target target;
+    target.face = nearest->face;
+    target.barycentric = BarycentricAtPixel(surface.vertices(), model.data().faces, camera, nearest->face,
+                                            Vector2d(nearest->x, nearest->y));
+    target.pixel = border.pixel;
+    target.is_silhouette = is_silhouette;
+    // On a ridge of the field no direction is across the border.
+    target.whitening = Matrix2d::Identity() * (kAlongBorder / sigma_px);
+    if (length > 0.1) {
+      const Vector2d n = gradient.transpose() / length;
+      target.pixel -= 0.5 * n;  // the outline's samples are centres of pixels, half a pixel inside
+      target.whitening += (1 - kAlongBorder) / sigma_px * n * n.transpose();
+    }
+    targets_.push_back(target);
+  }
+}
+
+void PartLabelTerm::AddInside(const std::vector<uint8_t>& part_of_face, const BodyModel& model,
+                              const VisibleSurface& surface, const Camera& camera, double sigma_px) {
+  const MatrixX3i& faces = model.data().faces;
+  struct Corner {
+    Vector2d pixel;
+    int face, corner;
+  };
+  std::map<uint8_t, std::vector<Corner>> facing;  // one entry a vertex and part, for parts that some pixel misses
+  std::vector<Inside> missed;
+  for (const Inside& inside : inside_) {
+    const int face = surface.buffer().FaceAt(inside.x, inside.y);
+    if (face >= 0 && part_of_face[face] == inside.part) continue;
+    missed.push_back(inside);
+    facing.try_emplace(inside.part);
+  }
+  if (missed.empty()) return;
+  std::vector<uint8_t> taken(model.num_vertices(), 0);
+  for (int f = 0; f < model.num_faces(); ++f) {
+    const uint8_t part = part_of_face[f];
+    const auto it = facing.find(part);
+    if (it == facing.end()) continue;
+    std::array<Vector2d, 3> pixel;
+    bool visible = true;
+    for (int c = 0; c < 3 && visible; ++c) visible = camera.Project(surface.vertices().row(faces(f, c)), &pixel[c]);
+    if (!visible) continue;
+    const Vector2d a = pixel[1] - pixel[0], b = pixel[2] - pixel[0];
+    if (a.x() * b.y() - a.y() * b.x() >= 0) continue;  // y is down: faces seen from outside turn clockwise
+    for (int c = 0; c < 3; ++c) {
+      if (taken[faces(f, c)] == part) continue;
+      taken[faces(f, c)] = part;
+      it->second.push_back({pixel[c], f, c});
+    }
+  }
+  for (const Inside& inside : missed) {
+    const Vector2d pixel(inside.x, inside.y);
+    const Corner* nearest = nullptr;
+    double best = std::numeric_limits<double>::infinity();
+    for (const Corner& corner : facing[inside.part]) {
+      const double squared = (corner.pixel - pixel).squaredNorm();
+      if (squared < best) {
+        best = squared;
+        nearest = &corner;
+      }
+    }
+    if (nearest == nullptr) {
+      ++part_unmatched_;
+      continue;
+    }
+    Target target;
+    target.face = nearest->face;
+    target.barycentric = Vector3d::Unit(nearest->corner);
+    target.pixel = pixel;
+    target.whitening = Matrix2d::Identity() / (kInsideSigmas * sigma_px);
+    targets_.push_back(target);
+  }
+}
+
+void PartLabelTerm::Weigh() {
+  std::array<double, 2> count = {0, 0};
+  for (const Target& target : targets_) ++count[target.is_silhouette];
+  for (const OutlinePoint& point : outline_) ++count[point.is_silhouette];
+  const std::array<double, 2> weight = {
+      options_.part_weight * std::min(1.0, kPartCount / std::max(1.0, count[0])),
+      options_.silhouette_weight * std::min(1.0, kSilhouetteCount / std::max(1.0, count[1]))};
+  for (Target& target : targets_) target.weight = weight[target.is_silhouette];
+  for (OutlinePoint& point : outline_) point.weight = weight[point.is_silhouette];
+}
+
+void PartLabelTerm::Correspond(const FrameLayout& layout, const FrameState& state, const Eigen::VectorXd& betas,
+                               double log_focal, double person_height_px, double kernel, VisibleSurface* surface) {
+  targets_.clear();
+  outline_.clear();
+  kernel_ = kernel;
+  silhouette_unmatched_ = part_unmatched_ = 0;
+  if (num_person_pixels_ == 0) return;
+  const BodyModel& model = *layout.model;
+  const Camera camera = layout.CameraAt(state, log_focal);
+  if (!surface->Render(skinner_, model, betas, state.rotations, layout.BodyTranslation(state), camera)) return;
+  const double sigma_px = std::max(0.5, options_.sigma_share * person_height_px);
+  const std::vector<uint8_t> part_of_face = PartOfFaces(model);
+  const std::vector<Edge> edges = EdgesOfBody(part_of_face, surface->buffer());
+  AddOutline(edges, model, *surface, camera, sigma_px);
+  AddBorders(edges, model, *surface, camera, sigma_px, kReach * person_height_px);
+  AddInside(part_of_face, model, *surface, camera, sigma_px);
+  Weigh();
+}
+
+void PartLabelsOfFrame::Add(FrameAccumulator* sums) const {
+  if (term == nullptr) return;
+  const MatrixX3i& faces = sums->layout().model->data().faces;
+  const Kinematics& kinematics = sums->kinematics();
+  const bool derivatives = sums->derivatives();
+  FrameResiduals* residuals = sums->residuals();
+  for (const PartLabelTerm::Target& target : term->targets()) {
+    const Vector3d x = sums->points().Evaluate(kinematics, faces.row(target.face).data(), target.barycentric.data(),
+                                               &sums->vertices(), derivatives);
+    sums->AddPixel(x, target.pixel, target.whitening, term->kernel(), target.weight);
+  }
+  for (const PartLabelTerm::OutlinePoint& point : term->outline()) {
+    const Vector3d x = sums->points().Evaluate(kinematics, faces.row(point.face).data(), point.barycentric.data(),
+                                               &sums->vertices(), derivatives);
+    FrameAccumulator::Projected at;
+    if (!sums->Project(x, &at)) {
+      sums->AddSaturated(term->kernel(), point.weight);
+      continue;
+    }
+    Eigen::RowVector2d gradient;
+    const double distance = point.field->Evaluate(at.pixel, &gradient) - point.offset_px;
+    if (residuals != nullptr) {
+      (point.is_silhouette ? residuals->silhouette_px : residuals->part_px).push_back(std::abs(distance));
+    }
+    sums->AddImageRows<1>(at, Eigen::Matrix<double, 1, 1>(distance * point.inverse_sigma),
+                          gradient * point.inverse_sigma, term->kernel(), point.weight);
+  }
+  if (residuals != nullptr) {
+    residuals->silhouette_unmatched += term->silhouette_unmatched();
+    residuals->part_unmatched += term->part_unmatched();
+  }
+}
+
+}  // namespace bodyloom

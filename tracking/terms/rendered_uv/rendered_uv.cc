@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/tracking/terms/rendered_uv/rendered_uv.h"
+
+#include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/tracking/terms/dense/dense_whitening.h"
+#include "bodyloom/tracking/track_input.h"
+#include "bodyloom/tracking/track_options.h"
+#include "bodyloom/tracking/track_summary.h"
+
+namespace bodyloom {
+
+std::string WhyNoRenderedUv(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
+  if (input.dense == nullptr) return "no dense keypoints in the input";
+  if (options.rendered_uv.weight == 0) return "switched off";
+  if (options.rendered_uv.only_with_uv_noise && !(input.dense->uv_sigma > 0)) {
+    return "the keypoints do not say that their noise lies on the surface";
+  }
+  if (!input.body->has_parts() || input.body->data().face_iuv.rows() == 0) return "the body has no charts";
+  if (input.camera.width <= 0 && input.dense->image_width <= 0) return "the image size is not known";
+  return "";
+}
+
+PlanEntry PlanRenderedUv(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
+  const std::string why_not = WhyNoRenderedUv(input, options);
+  return {"rendered UV (L_r)", why_not.empty(),
+          why_not.empty() ? "weight " + std::to_string(options.rendered_uv.weight) : why_not};
+}
+
+DenseRounds::DenseRounds(const TrackSequenceInput& input, const TrackSequenceOptions& options,
+                         const FrameLayout& layout, int num_threads)
+    : input_(input), num_threads_(num_threads) {
+  const BodyModel& model = *layout.model;
+  whitens_ = input.dense != nullptr && input.dense->uv_sigma > 0 && model.data().face_iuv.rows() > 0;
+  const bool uv = WhyNoRenderedUv(input, options).empty();
+  if (!uv && !whitens_) return;
+  skinner_ = std::make_shared<const Skinner>(model);
+  if (!uv) return;
+  for (const std::vector<DenseKeypoint>& frame : input.dense->frames) {
+    rendered_uv_.push_back(std::make_unique<RenderedUvTerm>(model, skinner_, frame, options.rendered_uv));
+  }
+}
+
+void DenseRounds::Start(const std::vector<int>& frames, SequenceProblem* problem) const {
+  if (!any()) return;
+  ParallelFor(static_cast<int>(frames.size()), num_threads_, [&](int i) {
+    FrameData& frame = problem->frames[i];
+    const FrameState& state = problem->states[i];
+    thread_local VisibleSurface surface;
+    const bool seen =
+        surface.Render(skinner_, *problem->layout.model, problem->betas, state.rotations,
+                       problem->layout.BodyTranslation(state), problem->layout.CameraAt(state, problem->log_focal));
+    frame.dense.whitening =
+        WhitenDense(problem->layout, state, problem->betas, problem->log_focal, *frame.dense.points,
+                    input_.dense->uv_sigma, input_.dense->pixel_sigma_px, seen ? &surface.buffer() : nullptr);
+    if (rendered_uv_.empty()) return;
+    RenderedUvTerm* term = rendered_uv_[frames[i]].get();
+    term->SetWhitening(frame.dense.whitening);
+    frame.rendered_uv.term = term;
+    frame.rendered_uv.kernel = frame.dense.kernel;
+    frame.dense.taken = &term->taken();
+  });
+}
+
+}  // namespace bodyloom

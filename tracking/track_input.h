@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What TrackSequence() looks at.
+#pragma once
+
+#include <vector>
+
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/camera.h"
+#include "bodyloom/geometry/lifter_weights.h"
+#include "bodyloom/geometry/observations.h"
+#include "bodyloom/geometry/pose_prior.h"
+#include "bodyloom/geometry/track.h"
+
+namespace bodyloom {
+
+struct LiftedFrame;
+
+/// Everything the tracker may look at. Pointers are borrowed and may be null unless noted.
+struct TrackSequenceInput {
+  const BodyModel* body = nullptr;              ///< required
+  const KeypointSequence* keypoints = nullptr;  ///< 2D joints; this or `dense` is required
+  const DenseSequence* dense = nullptr;         ///< dense surface keypoints
+  /// Part labels or a mask of each frame. They refine a start and do not find one: without 2D joints and dense
+  /// keypoints an initialiser is required, and weak perspective is not available.
+  const PartLabelSequence* part_labels = nullptr;
+  const Motion* initialiser = nullptr;    ///< camera-frame poses of another system, same frames (L_d of paper A)
+  const PosePrior* prior = nullptr;       ///< learned pose prior; without it only joint limits apply
+  const LifterWeights* lifter = nullptr;  ///< starts from 2D joints and stays as L_d; without it: joint hypotheses
+  /// 3D landmarks of every frame that take the place of what `lifter` would say of the 2D joints (initialise/
+  /// lift_keypoints.h): another lifter's, or a benchmark's.
+  const std::vector<LiftedFrame>* lifted = nullptr;
+  Camera camera;  ///< kKnown: all of it; otherwise only width and height (0: taken from the observations)
+};
+
+}  // namespace bodyloom

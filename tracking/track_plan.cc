@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/tracking/track_plan.h"
+
+#include <string>
+#include <utility>
+
+#include "bodyloom/tracking/initialise/initial_states.h"
+#include "bodyloom/tracking/observability.h"
+#include "bodyloom/tracking/terms/dense/dense.h"
+#include "bodyloom/tracking/terms/ground_contact/ground_contact.h"
+#include "bodyloom/tracking/terms/initialiser.h"
+#include "bodyloom/tracking/terms/landmarks.h"
+#include "bodyloom/tracking/terms/own/own_terms.h"
+#include "bodyloom/tracking/terms/part_labels/part_labels.h"
+#include "bodyloom/tracking/terms/pose_prior/pose_prior.h"
+#include "bodyloom/tracking/terms/rendered_uv/rendered_uv.h"
+#include "bodyloom/tracking/terms/upright.h"
+
+namespace bodyloom {
+
+std::vector<PlanEntry> PlanTrackSequence(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
+  std::vector<PlanEntry> plan;
+  const BodyModel& model = *input.body;
+  const auto add = [&](const std::string& what, bool runs, const std::string& why) {
+    plan.push_back({what, runs, why});
+  };
+  const std::string no_lifter = WhyNoLifter(input, options);
+  add("lifter", no_lifter.empty(),
+      !no_lifter.empty()           ? no_lifter
+      : input.keypoints != nullptr ? "starts from 2D joints"
+                                   : "starts from joints among the dense keypoints");
+  add("hypotheses over the clip", input.initialiser == nullptr && !no_lifter.empty(),
+      input.initialiser != nullptr ? "the initialiser gives the start"
+      : no_lifter.empty()          ? "the lifter gives the start"
+                                   : "no initialiser and no lifter");
+  for (const auto plan_of : {PlanLandmarks, PlanDense, PlanRenderedUv, PlanSilhouette, PlanParts, PlanInitialiser,
+                             PlanUp, PlanGround, PlanPosePrior}) {
+    plan.push_back(plan_of(input, options));
+  }
+  for (PlanEntry& entry : PlanOwnTerms(options.own_terms)) plan.push_back(std::move(entry));
+  const bool surface = input.dense != nullptr || input.part_labels != nullptr;
+  const ObservedLandmarks landmarks = FindObservedLandmarks(model, input.keypoints, 0);
+  const size_t active = FindActiveJoints(model, landmarks, surface, options.skip_unneeded, options.own_terms).size();
+  const std::string joints = std::to_string(active) + " of " + std::to_string(model.num_joints());
+  add("joint rotations", true, joints + " joints are estimated");
+  if (active < static_cast<size_t>(model.num_joints())) {
+    add("remaining joints", false, "no observed landmark depends on them; held at rest");
+  }
+  add("surface vertices", surface,
+      surface ? "of dense keypoints and outlines; all of them only to see what is visible"
+              : "2D joints are compiled to their bones");
+  add("shape", options.estimate_shape, options.estimate_shape ? "one for the clip" : "switched off");
+  add("focal length", options.camera_knowledge == CameraKnowledge::kUnknownFocal,
+      options.camera_knowledge == CameraKnowledge::kKnown  ? "known"
+      : options.camera_knowledge == CameraKnowledge::kWeak ? "weak perspective has none"
+                                                           : "estimated with the clip");
+  add("uncertainty", options.estimate_uncertainty, options.estimate_uncertainty ? "per joint" : "switched off");
+  return plan;
+}
+
+}  // namespace bodyloom

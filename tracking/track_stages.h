@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The solves of TrackSequence(), one after the other, in a table.
+#pragma once
+
+#include <functional>
+
+#include "bodyloom/geometry/base/stopwatch.h"
+#include "bodyloom/tracking/sequence_problem.h"
+#include "bodyloom/tracking/track_input.h"
+#include "bodyloom/tracking/track_options.h"
+#include "bodyloom/tracking/track_summary.h"
+
+namespace bodyloom {
+
+struct Stage {
+  const char* name;
+  double pull;             ///< weight of the initialiser's term (terms/initialiser.h)
+  double landmark_kernel;  ///< c of the 2D joints, in σ
+  double tolerance;        ///< relative change of the cost that ends it
+  int max_iterations;
+  double from, to;  ///< of the whole run, for progress
+};
+
+/// Coarse in time first: what a frame cannot decide alone its neighbours decide together, and 15 frames a second are
+/// enough to see how a person moves. All stages but the last solve the coarse frames.
+struct Stages {
+  Stage near_start;   ///< pulled towards the start, wide kernels; not from an initialiser
+  Stage coarse;       ///< what was seen against the priors
+  Stage again;        ///< with the clip's own smoothness and its ground
+  Stage part_labels;  ///< each round
+  Stage dense;        ///< each round: covariances of dense keypoints, rendered UV
+  Stage all;          ///< every frame: few steps when a coarse solve has settled what is slow to settle
+};
+/// `coarse_to_fine`: the coarse frames are fewer than all.
+Stages StagesFor(const TrackSequenceInput& input, const TrackSequenceOptions& options, bool coarse_to_fine);
+
+/// Solves stages and keeps the summary and the clock; once one has failed or was stopped, later ones do nothing.
+class StageRunner {
+ public:
+  /// All are borrowed.
+  StageRunner(const TrackSequenceInput& input, const TrackSequenceOptions& options, int num_threads, StageClock* clock,
+              TrackSequenceSummary* summary)
+      : input_(input), options_(options), num_threads_(num_threads), clock_(clock), summary_(summary) {}
+
+  /// True while the run may go on.
+  [[nodiscard]] bool going() const { return going_; }
+  bool Run(const Stage& stage, SequenceProblem* problem);
+
+ private:
+  const TrackSequenceInput& input_;
+  const TrackSequenceOptions& options_;
+  int num_threads_;
+  StageClock* clock_;
+  TrackSequenceSummary* summary_;
+  bool going_ = true;
+};
+
+}  // namespace bodyloom

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+/// How TrackSequence() went: what ran and why, how well it fits, how long it took.
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bodyloom/geometry/track.h"
+#include "bodyloom/tracking/solve_options.h"
+
+namespace bodyloom {
+
+/// One line of the plan: a step or part of the problem, whether it runs, and why.
+struct PlanEntry {
+  std::string what;
+  bool runs = false;
+  std::string why;
+};
+
+/// How well one term fits at the end, over all frames.
+struct TermSummary {
+  std::string term;                  ///< "2D joints", "dense keypoints", "rendered UV", "silhouette", "part labels"
+  int observations = 0;              ///< that had a say
+  int unmatched = 0;                 ///< that could not be used: hidden, another chart, another part, behind the camera
+  double median_px = 0, p95_px = 0;  ///< of |residual|, in pixels
+};
+
+/// How a user's own term ended.
+struct OwnTermSummary {
+  std::string name;
+  int num_costs = 0;  ///< cost functions that took part
+  double cost = 0;    ///< ½ Σ ρ of them, at the answer
+};
+
+/// What the clip showed of the vertical and the ground.
+struct GroundSummary {
+  bool has_up = false;
+  Eigen::Vector3d up = Eigen::Vector3d(0, -1, 0);  ///< world up in the camera frame, mean over the clip
+  double up_spread_deg = 0;                        ///< median angle of the frames' own up to it
+  bool has_plane = false;
+  std::string why;             ///< what was found, or why there is no ground
+  double camera_height_m = 0;  ///< of the camera above the ground
+  double height_spread_m = 0;  ///< robust σ of standing feet's heights before the ground held them
+  int contact_frames = 0;      ///< frames in which at least one foot was held
+};
+
+struct TrackSequenceSummary {
+  SolveStatus status = SolveStatus::kFailure;
+  std::string message;
+  std::string solver;
+  int iterations = 0;
+  double initial_cost = 0, final_cost = 0;
+  std::vector<std::pair<std::string, double>> seconds;         ///< by stage, in order of running
+  double seconds_evaluation = 0, seconds_linear_solver = 0;    ///< inside the solves
+  std::vector<PlanEntry> plan;                                 ///< what ran and what was skipped
+  std::map<std::string, int> frames_by_status;                 ///< "tracked", "weak", "interpolated", "lost"
+  double reprojection_median_px = 0, reprojection_p95_px = 0;  ///< of the used 2D joints (confidence > 0.3)
+  double dense_median_px = 0;                                  ///< of the dense keypoints, 0 without
+  std::vector<TermSummary> terms;                              ///< of every image term that ran
+  std::vector<OwnTermSummary> own_terms;                       ///< one a term of TrackSequenceOptions::own_terms
+  double focal_px = 0;                                         ///< used or estimated
+  int num_observations = 0, num_parameters = 0;
+  GroundSummary ground;
+  int num_swaps_repaired = 0;  ///< left–right pairs found exchanged in the detections
+  [[nodiscard]] bool IsUsable() const { return status != SolveStatus::kFailure; }
+  /// A few lines for a terminal.
+  [[nodiscard]] std::string BriefReport() const;
+};
+
+struct TrackSequenceResult {
+  Track track;
+  TrackSequenceSummary summary;
+};
+
+/// How a term of image residuals ended; `px` holds |residual| of each observation that had a say, pixels (0 of nothing).
+TermSummary SummarizeTerm(const std::string& term, const std::vector<double>& px, int unmatched = 0);
+
+}  // namespace bodyloom
