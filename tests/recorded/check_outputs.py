@@ -3,7 +3,7 @@
 """Runs the command on fixed inputs and compares what it writes, byte for byte, with recorded checksums: a change of
 structure alone leaves every file as it was.
 
-usage: check_outputs.py COMMAND RECORD [--write] [--only JOB]
+usage: check_outputs.py COMMAND RECORD [--write --made-with COMMIT] [--only JOB]
   COMMAND  the program `bodyloom` of a build; neural jobs are left out when no `bodyloom-neural` lies beside it
   RECORD   a JSON file of checksums, with the processor's instruction sets and the versions of what computes
   --write  make the record from this build instead of comparing
@@ -103,8 +103,23 @@ def checksum(path):
     return hashlib.sha256(data).hexdigest()
 
 
+def grouped(sums):
+    """The sums of a folder of many files become one."""
+    folders = {}
+    for name, value in sums.items():
+        folders.setdefault(name.rpartition("/")[0], {})[name] = value
+    result = {}
+    for folder, files in folders.items():
+        if folder and len(files) > 8:
+            lines = "".join(f"{name} {value}\n" for name, value in sorted(files.items()))
+            result[f"{folder}/*"] = hashlib.sha256(lines.encode()).hexdigest()
+        else:
+            result.update(files)
+    return dict(sorted(result.items()))
+
+
 def run_jobs(command, shared, only):
-    """Job -> {file: checksum} of every file that appeared while it ran, or None where it was left out."""
+    """Job -> {file or folder: checksum} of all files that appeared while it ran, or None where it was left out."""
     sums = {}
     with tempfile.TemporaryDirectory() as scratch:
         known = set()
@@ -120,7 +135,7 @@ def run_jobs(command, shared, only):
                     sys.exit(f"bodyloom {' '.join(line)}: exit code {done.returncode}: {done.stderr.strip()}")
             files = sorted(p for p in pathlib.Path(scratch).rglob("*") if p.is_file() and p not in known)
             known.update(files)
-            sums[job] = {str(p.relative_to(scratch)): checksum(p) for p in files if p.suffix not in (".mp4", ".log")}
+            sums[job] = grouped({str(p.relative_to(scratch)): checksum(p) for p in files if p.suffix not in (".mp4", ".log")})
             if only == job:
                 break
     return sums
@@ -131,7 +146,8 @@ def main():
     parser.add_argument("command", type=pathlib.Path)
     parser.add_argument("record", type=pathlib.Path)
     parser.add_argument("--write", action="store_true")
-    parser.add_argument("--only", default="")
+    parser.add_argument("--made-with", default="", help="with --write: the commit of the build")
+    parser.add_argument("--only", default="", help="up to this job")
     arguments = parser.parse_args()
     command = arguments.command.resolve()
     here = fingerprint(command)
@@ -142,7 +158,7 @@ def main():
             return 77
     sums = run_jobs(command, pathlib.Path(__file__).resolve().parents[3] / "shared/data", arguments.only)
     if arguments.write:
-        arguments.record.write_text(json.dumps({"made_on": here, "sha256": sums}, indent=1) + "\n", encoding="utf-8")
+        arguments.record.write_text(json.dumps({"made_with": arguments.made_with, "made_on": here, "sha256": sums}, indent=1) + "\n", encoding="utf-8")
         return 0
     faults = 0
     for job, files in sums.items():
