@@ -54,16 +54,14 @@ struct Apart {
   }
 };
 
-/// The translation, and two joints bent alike: the angle between their rotations by its cosine and one entry.
+/// The translation, and two joints bent like each other's mirror image, by two entries of their rotations.
 struct AlikeAndAt {
   Vector3d target;
   template <typename T>
   bool operator()(const T* translation, const T* left, const T* right, T* r) const {
     for (int c = 0; c < 3; ++c) r[c] = (translation[c] - target[c]) / 0.1;
-    T dot(0.0);
-    for (int k = 0; k < 9; ++k) dot += left[k] * right[k];
-    r[3] = (T(3.0) - dot) / 0.05;
-    r[4] = (left[1] + right[3]) / 0.1;  // entries (0, 1) and (1, 0): row by row
+    r[3] = (left[1] + right[1]) / 0.1;
+    r[4] = (left[5] - right[5]) / 0.1;  // entry (1, 2): row by row
     return true;
   }
 };
@@ -93,7 +91,7 @@ OwnTerm Pull(std::shared_ptr<ceres::LossFunction> loss = nullptr) {
 
 OwnTerm Distance() {
   return OwnTerm::OnLandmarks("distance", {"left_wrist", "right_ankle"}, [](int) {
-    return std::make_shared<ceres::AutoDiffCostFunction<Apart, 1, 3, 3>>(new Apart{0.9, 0.03});
+    return std::make_shared<ceres::AutoDiffCostFunction<Apart, 1, 3, 3>>(new Apart{0.9, 0.2});
   });
 }
 
@@ -280,16 +278,19 @@ TEST(OwnTerm, MovesTheWristOfATrack) {
   const TrackSequenceResult before = TrackWith(clip, SequenceSolver::kChain, {});
   ASSERT_TRUE(before.summary.IsUsable());
   EXPECT_TRUE(before.summary.own_terms.empty());
-  const auto target = [&](int t) { return Vector3d(before.track.coco17[t].row(9)) + Vector3d(0, -0.15, 0); };
+  const auto target = [&](int t) -> Vector3d {
+    return Vector3d(before.track.coco17[t].row(9)) + Vector3d(0, -0.15, 0);
+  };
   const auto term = OwnTerm::OnLandmarks("wrist", {"left_wrist"}, [&](int t) {
     return std::make_shared<ceres::AutoDiffCostFunction<PullTo, 3, 3>>(new PullTo{target(t), 0.02});
   });
   for (SequenceSolver solver : {SequenceSolver::kChain, SequenceSolver::kCeres}) {
     const TrackSequenceResult after = TrackWith(clip, solver, {term});
-    ASSERT_TRUE(after.summary.IsUsable());
+    ASSERT_TRUE(after.summary.IsUsable()) << after.summary.message;
     for (int t = 0; t < 12; ++t) {
       EXPECT_LT((Vector3d(after.track.coco17[t].row(9)) - target(t)).norm(), 0.05) << t;
-      EXPECT_LT((after.track.coco17[t].row(16) - before.track.coco17[t].row(16)).norm(), 0.06) << t;
+      // The other side's ankle stays where it was seen (its depth hardly is).
+      EXPECT_LT((after.track.coco17[t].row(16) - before.track.coco17[t].row(16)).head(2).norm(), 0.05) << t;
     }
     ASSERT_EQ(after.summary.own_terms.size(), 1U);
     EXPECT_EQ(after.summary.own_terms[0].name, "wrist");
