@@ -63,7 +63,8 @@ void AddMetricsVerb(CLI::App& app, Action* action, std::vector<std::string> argu
   auto lpips = std::make_shared<bool>(false);
   auto weights = std::make_shared<std::string>();
   CLI::Option* with_lpips = verb->add_flag(
-      "--lpips", *lpips, "also LPIPS and tLPIPS; without --weights by a stand-in that compares with nothing else");
+      "--lpips", *lpips,
+      "also LPIPS and tLPIPS; without --weights by a random-feature substitute that compares with nothing else");
   verb->add_option("--weights", *weights, "folder with alexnet and lpips_alex, .pth or .safetensors")
       ->type_name("DIR")
       ->needs(with_lpips);

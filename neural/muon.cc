@@ -22,7 +22,7 @@ Tensor Multiply(const Tensor& a, const Tensor& b) { return torch::conv1d(b.unsqu
 
 }  // namespace
 
-Tensor RoughlyOrthogonal(const Tensor& matrix) {
+Tensor ApproximateOrthogonalFactor(const Tensor& matrix) {
   const bool tall = matrix.size(0) > matrix.size(1);
   Tensor x = (tall ? matrix.t() : matrix).contiguous();
   x = x / (x.norm() + 1e-7);
@@ -47,7 +47,7 @@ void Muon::Step(double learning_rate) {
     if (!weight.grad().defined()) continue;
     momenta_[i].mul_(options_.momentum).add_(weight.grad());
     const Tensor ahead = weight.grad() + options_.momentum * momenta_[i];
-    const Tensor turn = RoughlyOrthogonal(ahead.reshape({weight.size(0), -1}));
+    const Tensor turn = ApproximateOrthogonalFactor(ahead.reshape({weight.size(0), -1}));
     const double size = 0.2 * std::sqrt(static_cast<double>(std::max(turn.size(0), turn.size(1))));
     weight.mul_(1 - learning_rate * options_.weight_decay).add_(turn.reshape(weight.sizes()), -learning_rate * size);
   }

@@ -18,7 +18,7 @@
 namespace bodyloom {
 
 /// The nearest orthogonal matrix (U Vᵀ of U Σ Vᵀ) to an m×n matrix, roughly: singular values end near 1, zeros stay.
-torch::Tensor RoughlyOrthogonal(const torch::Tensor& matrix);
+torch::Tensor ApproximateOrthogonalFactor(const torch::Tensor& matrix);
 
 class Muon {
  public:

@@ -27,8 +27,9 @@ void PrintScores(const AnimateMotionRequest& request, const ClipScores& scores) 
                 quarter.image_l1);
   }
   if (scores.likeness) {
-    std::printf("LPIPS %.4f, tLPIPS %.5f%s\n", scores.likeness->lpips, scores.likeness->tlpips,
-                scores.likeness->stand_in ? " (stand-in network: compares with nothing but itself)" : "");
+    std::printf(
+        "LPIPS %.4f, tLPIPS %.5f%s\n", scores.likeness->lpips, scores.likeness->tlpips,
+        scores.likeness->random_features ? " (random-feature substitute: compares with nothing but itself)" : "");
   }
 }
 

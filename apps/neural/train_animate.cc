@@ -39,7 +39,7 @@ void Run(const Parsed& parsed) {
   request.options.labels_by_cross_entropy = parsed.label_loss == "ce";
   const TrainGuidedRendererSummary summary =
       RunWithBar(TrainingTitle(request.options.steps), TrainGuidedRenderer, request);
-  if (summary.perceptual_stand_in) PrintStandIn("perceptual and contextual loss", "VGG-16");
+  if (summary.perceptual_random_features) PrintRandomFeatures("perceptual and contextual loss", "VGG-16");
   if (!summary.loss_weights.empty()) {
     std::printf("weights of the losses: VGG %.3g, contextual %.3g, adversarial %.3g, KL %.3g\n",
                 summary.loss_weights[0], summary.loss_weights[1], summary.loss_weights[2], summary.loss_weights[3]);
@@ -48,7 +48,8 @@ void Run(const Parsed& parsed) {
   const GuidedScores& s = summary.scores;
   if (s.frames > 0) {
     std::printf(
-        "validation of %d pictures: L1 %.4f, PSNR %.2f dB, outline IoU %.3f, labels IoU %.3f, LPIPS (stand-in) %.4f\n",
+        "validation of %d pictures: L1 %.4f, PSNR %.2f dB, outline IoU %.3f, labels IoU %.3f, LPIPS (random-feature "
+        "substitute) %.4f\n",
         s.frames, s.image_l1, s.psnr_db, s.silhouette_iou, s.label_iou, s.lpips);
   }
   PrintEnd(summary, summary.checkpoint, request.out);

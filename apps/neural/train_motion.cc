@@ -40,7 +40,8 @@ void Run(const Parsed& parsed) {
   const TrainMotionRendererSummary summary =
       RunWithBar(TrainingTitle(request.options.steps), TrainMotionRenderer, request);
   PrintLossesOff(summary.losses_off);
-  if (request.options.perceptual_weight > 0 && summary.perceptual_stand_in) PrintStandIn("perceptual loss", "VGG-16");
+  if (request.options.perceptual_weight > 0 && summary.perceptual_random_features)
+    PrintRandomFeatures("perceptual loss", "VGG-16");
   PrintStep(summary, request.options.steps);
   if (summary.scores.frames > 0) std::cout << "validation: " << ScoresText(summary.scores) << "\n";
   PrintEnd(summary, summary.checkpoint, request.out);

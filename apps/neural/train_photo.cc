@@ -26,13 +26,14 @@ void Run(const Parsed& parsed) {
   const TrainPhotoRendererSummary summary =
       RunWithBar(TrainingTitle(options.TotalSteps()), TrainPhotoRenderer, request);
   PrintLossesOff(summary.losses_off);
-  if (options.perceptual_weight > 0 && summary.perceptual_stand_in) PrintStandIn("perceptual loss", "VGG-19");
+  if (options.perceptual_weight > 0 && summary.perceptual_random_features)
+    PrintRandomFeatures("perceptual loss", "VGG-19");
   PrintStep(summary, options.TotalSteps());
   const PhotoScores& s = summary.scores;
   if (s.pictures > 0) {
     std::printf("validation of %d pairs: L1 %.4f, PSNR %.2f dB, SSIM %.4f, LPIPS%s %.4f, outline IoU %.3f\n",
-                s.pictures, s.image_l1, s.psnr_db, s.ssim, s.lpips_stand_in ? " (stand-in)" : "", s.lpips,
-                s.outline_iou);
+                s.pictures, s.image_l1, s.psnr_db, s.ssim,
+                s.lpips_random_features ? " (random-feature substitute)" : "", s.lpips, s.outline_iou);
     std::fflush(stdout);
   }
   PrintEnd(summary, summary.checkpoint, request.out);

@@ -12,8 +12,8 @@ void PrintLossesOff(const std::vector<std::string>& losses_off) {
   for (const std::string& loss : losses_off) std::cout << "loss switched off: " << loss << "\n";
 }
 
-void PrintStandIn(const char* losses, const char* network) {
-  std::cout << losses << " by a stand-in of random features (no " << network << " weights given)\n";
+void PrintRandomFeatures(const char* losses, const char* network) {
+  std::cout << losses << " by a random-feature substitute (no " << network << " weights given)\n";
 }
 
 void PrintStep(const TrainingOutcome& outcome, int steps) {

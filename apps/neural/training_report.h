@@ -16,8 +16,8 @@ std::string TrainingTitle(int steps);
 /// "loss switched off: shape: the frames have no labels", a line each.
 void PrintLossesOff(const std::vector<std::string>& losses_off);
 
-/// "perceptual loss by a stand-in of random features (no VGG-16 weights given)".
-void PrintStandIn(const char* losses, const char* network);
+/// "perceptual loss by a random-feature substitute (no VGG-16 weights given)".
+void PrintRandomFeatures(const char* losses, const char* network);
 
 /// "step 250 of 400 in 0:31".
 void PrintStep(const TrainingOutcome& outcome, int steps);

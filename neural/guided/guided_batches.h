@@ -10,7 +10,7 @@
 #include "bodyloom/neural/guided/guided_model.h"
 #include "bodyloom/neural/people/photo_frame.h"
 #include "bodyloom/neural/people/texel_neighbours.h"
-#include "bodyloom/neural/training/made_ahead.h"
+#include "bodyloom/neural/training/prefetcher.h"
 
 namespace bodyloom {
 

@@ -13,7 +13,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr int kStandInDivisor = 4;
+constexpr int kRandomFeaturesDivisor = 4;
 
 Image Bytes(const std::vector<float>& planar, int size) {
   Image image(size, size);
@@ -44,9 +44,9 @@ struct GuidedScorer::Impl {
 GuidedScorer::GuidedScorer(bool features) : impl_(std::make_unique<Impl>()) {
   if (!features) return;
   LpipsOptions options;
-  options.stand_in_divisor = kStandInDivisor;
+  options.random_features_divisor = kRandomFeaturesDivisor;
   impl_->lpips.emplace(options);
-  impl_->contextual.emplace(kStandInDivisor);
+  impl_->contextual.emplace(kRandomFeaturesDivisor);
 }
 GuidedScorer::~GuidedScorer() = default;
 

@@ -9,7 +9,7 @@
 
 namespace bodyloom {
 
-/// "Foreground" is the true one, labels other than the background. LPIPS and CS are stand-ins of random features, on
+/// "Foreground" is the true one, labels other than the background. LPIPS and CS are random-feature substitutes, on
 /// the whole window with a black background: they order results but compare with nobody else's figures.
 struct GuidedScores {
   int frames = 0;

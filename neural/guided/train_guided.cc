@@ -24,7 +24,7 @@
 #include "bodyloom/neural/networks/vgg.h"
 #include "bodyloom/neural/runtime.h"
 #include "bodyloom/neural/training/adam.h"
-#include "bodyloom/neural/training/made_ahead.h"
+#include "bodyloom/neural/training/prefetcher.h"
 #include "bodyloom/neural/training/schedules.h"
 #include "bodyloom/neural/training/training_loop.h"
 
@@ -93,7 +93,7 @@ class GuidedTrainer : public TrainedSystem {
     TrainGuidedSummary summary;
     model_->train();
     static_cast<TrainingOutcome&>(summary) = RunTraining(options_, options_.steps, kColumns, checkpoint_.get(), this);
-    summary.perceptual_stand_in = vgg_->is_stand_in;
+    summary.perceptual_random_features = vgg_->has_random_features;
     summary.scores = scores_;
     if (balance_.IsSet()) {
       for (int i = 0; i < kNumBalanced; ++i) summary.loss_weights.push_back(balance_.Weight(i));
@@ -102,7 +102,7 @@ class GuidedTrainer : public TrainedSystem {
   }
 
   void Begin(int first_step) override {
-    batches_ = std::make_unique<MadeAhead<GuidedBatch>>(
+    batches_ = std::make_unique<Prefetcher<GuidedBatch>>(
         std::max(0, options_.steps - first_step), [this, first_step](int64_t i) {
           return MakeGuidedBatch(people_, config_, options_.seed, first_step + i, options_.batch, options_.reach,
                                  neighbours_ ? &*neighbours_ : nullptr);
@@ -319,9 +319,9 @@ class GuidedTrainer : public TrainedSystem {
   std::unique_ptr<torch::optim::Adam> optimizer_, discriminator_optimizer_;
   std::unique_ptr<Checkpoint> checkpoint_;
   GuidedScores scores_;
-  std::vector<int> photos_;                          ///< of the people validated on
-  Losses losses_;                                    ///< of the last step
-  std::unique_ptr<MadeAhead<GuidedBatch>> batches_;  ///< last: its thread uses the rest
+  std::vector<int> photos_;                           ///< of the people validated on
+  Losses losses_;                                     ///< of the last step
+  std::unique_ptr<Prefetcher<GuidedBatch>> batches_;  ///< last: its thread uses the rest
 };
 
 }  // namespace

@@ -59,7 +59,7 @@ struct TrainGuidedOptions : TrainingRun {
   double kl_share = 0.01;
   double predicted_from = 2.0 / 3;  ///< 1: never
   int reach = 0;      ///< pixels that clothes reach beyond the body (0: not known, validates on whole windows)
-  WeightsFrom vgg16;  ///< empty: a seeded stand-in of random features
+  WeightsFrom vgg16;  ///< empty: a seeded random-feature substitute
   std::function<bool(const TrainGuidedProgress&)> progress;  ///< return false to stop after a checkpoint
   std::function<void(int step, const std::vector<GuidedPreview>&)> preview;
   [[nodiscard]] bool IsValid(std::string* why) const;
@@ -68,7 +68,7 @@ struct TrainGuidedOptions : TrainingRun {
 struct TrainGuidedSummary : TrainingOutcome {
   GuidedScores scores;
   std::vector<double> loss_weights;  ///< λ of VGG, contextual, adversarial, KL; empty while they are not set
-  bool perceptual_stand_in = true;
+  bool perceptual_random_features = true;
 };
 
 /// Throws std::invalid_argument for options that are not valid, std::runtime_error for files that cannot be used.

@@ -11,7 +11,7 @@
 #include "bodyloom/neural/lifter/lifter_module.h"
 #include "bodyloom/neural/muon.h"
 #include "bodyloom/neural/runtime.h"
-#include "bodyloom/neural/training/made_ahead.h"
+#include "bodyloom/neural/training/prefetcher.h"
 #include "bodyloom/neural/training/schedules.h"
 #include "bodyloom/neural/training/training_loop.h"
 
@@ -110,7 +110,7 @@ class LifterTrainer : public TrainedSystem {
 
   void Begin(int first_step) override {
     batches_ =
-        std::make_unique<MadeAhead<Batch>>(std::max(0, options_.steps - first_step), [this, first_step](int64_t i) {
+        std::make_unique<Prefetcher<Batch>>(std::max(0, options_.steps - first_step), [this, first_step](int64_t i) {
           const uint64_t step = first_step + i;
           return MakeBatch(train_, (options_.seed << 40) + step * uint64_t(options_.batch), options_.batch, options_);
         });
@@ -192,7 +192,7 @@ class LifterTrainer : public TrainedSystem {
   Checkpoint checkpoint_;
   LifterLoss loss_;  ///< of the last step
   double gradient_norm_ = 0, distance_ = 0, best_distance_ = 0;
-  std::unique_ptr<MadeAhead<Batch>> batches_;  ///< last: its thread uses the rest
+  std::unique_ptr<Prefetcher<Batch>> batches_;  ///< last: its thread uses the rest
 };
 
 }  // namespace

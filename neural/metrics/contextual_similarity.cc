@@ -15,14 +15,14 @@ struct ContextualMetric::Network {
   FeatureNetwork vgg{nullptr};
 };
 
-ContextualMetric::ContextualMetric(int stand_in_divisor, uint64_t stand_in_seed)
+ContextualMetric::ContextualMetric(int random_features_divisor, uint64_t random_features_seed)
     : network_(std::make_unique<Network>()) {
   FeatureNetworkOptions options;
   options.trunk = FeatureTrunk::kVgg19;
   options.taps = FeatureLayers(options.trunk, {"relu3_2", "relu4_2"});
   options.normalise = false;
-  options.stand_in_divisor = stand_in_divisor;
-  options.stand_in_seed = stand_in_seed;
+  options.random_features_divisor = random_features_divisor;
+  options.random_features_seed = random_features_seed;
   network_->vgg = FeatureNetwork(options);
 }
 
@@ -46,7 +46,7 @@ ContextualValue ContextualMetric::operator()(const Image& image, const Image& ta
     value.similarity += similarity;
     value.distance -= std::log(similarity);
   }
-  value.stand_in = network_->vgg->is_stand_in;
+  value.random_features = network_->vgg->has_random_features;
   return value;
 }
 

@@ -19,15 +19,15 @@
 namespace bodyloom {
 
 struct ContextualValue {
-  double similarity = 0;  ///< Σ CX over the two layers, 2 at best
-  double distance = 0;    ///< Σ −log CX, 0 at best
-  bool stand_in = true;   ///< not comparable with other programs' figures
+  double similarity = 0;        ///< Σ CX over the two layers, 2 at best
+  double distance = 0;          ///< Σ −log CX, 0 at best
+  bool random_features = true;  ///< not comparable with other programs' figures
 };
 
 class ContextualMetric {
  public:
-  /// A stand-in (of 1/divisor of the channels) until Load is called.
-  explicit ContextualMetric(int stand_in_divisor = 1, uint64_t stand_in_seed = 1);
+  /// A random-feature substitute (of 1/divisor of the channels) until Load is called.
+  explicit ContextualMetric(int random_features_divisor = 1, uint64_t random_features_seed = 1);
   ~ContextualMetric();
   ContextualMetric(ContextualMetric&&) noexcept;
   ContextualMetric& operator=(ContextualMetric&&) noexcept;

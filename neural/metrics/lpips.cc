@@ -23,8 +23,8 @@ FeatureNetworkOptions TrunkOptions(const LpipsOptions& options) {
   trunk.taps = alex ? FeatureLayers(trunk.trunk, {"relu1", "relu2", "relu3", "relu4", "relu5"})
                     : FeatureLayers(trunk.trunk, {"relu1_2", "relu2_2", "relu3_3", "relu4_3", "relu5_3"});
   trunk.normalise = false;  // LPIPS has its own shift and scale
-  trunk.stand_in_divisor = options.stand_in_divisor;
-  trunk.stand_in_seed = options.stand_in_seed;
+  trunk.random_features_divisor = options.random_features_divisor;
+  trunk.random_features_seed = options.random_features_seed;
   return trunk;
 }
 
@@ -77,7 +77,7 @@ void Lpips::Load(const NamedWeights& trunk, const std::string& trunk_source, con
   ++network_->generation;
 }
 
-bool Lpips::is_stand_in() const { return network_->trunk->is_stand_in; }
+bool Lpips::has_random_features() const { return network_->trunk->has_random_features; }
 
 LpipsFeatures Lpips::Features(const Image& image) const {
   const torch::NoGradGuard no_grad;
@@ -105,7 +105,7 @@ LpipsValue Lpips::Distance(const LpipsFeatures& a, const LpipsFeatures& b) const
                    " and ", y.sizes(), ")");
     value += (network_->heads->weights[k] * (x - y).square()).sum(1).mean().item<double>();
   }
-  return {value, is_stand_in()};
+  return {value, has_random_features()};
 }
 
 LpipsValue Lpips::Distance(const Image& a, const Image& b) const {

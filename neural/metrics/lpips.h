@@ -9,7 +9,7 @@
 /// Source: Zhang et al., "The Unreasonable Effectiveness of Deep Features as a Perceptual Metric", CVPR 2018, and
 /// version 0.1 of its program.
 ///
-/// Without the trained weights a stand-in measures (neural/networks/vgg.h, channel weights 1); its values say so and
+/// Without the trained weights a random-feature substitute measures (neural/networks/vgg.h, channel weights 1); its values say so and
 /// compare with nobody else's.
 #pragma once
 
@@ -26,13 +26,13 @@ enum class LpipsTrunk { kAlexNet, kVgg16 };
 
 struct LpipsOptions {
   LpipsTrunk trunk = LpipsTrunk::kAlexNet;
-  int stand_in_divisor = 1;  ///< of the stand-in's channels, for speed; trained weights need 1
-  uint64_t stand_in_seed = 1;
+  int random_features_divisor = 1;  ///< of the substitute's channels, for speed; trained weights need 1
+  uint64_t random_features_seed = 1;
 };
 
 struct LpipsValue {
   double value = 0;
-  bool stand_in = true;  ///< not comparable with other programs' figures
+  bool random_features = true;  ///< not comparable with other programs' figures
 };
 
 /// What the network sees in one image, kept for several comparisons.
@@ -45,19 +45,19 @@ class LpipsFeatures {
 
 class Lpips {
  public:
-  /// A stand-in until Load is called.
+  /// A random-feature substitute until Load is called.
   explicit Lpips(const LpipsOptions& options = {});
   ~Lpips();
   Lpips(Lpips&&) noexcept;
   Lpips& operator=(Lpips&&) noexcept;
 
   /// `trunk`: torchvision's weights ("features.0.weight", …); `heads`: LPIPS' own ("lin0.model.1.weight", …). Throws
-  /// std::runtime_error naming source and tensor when one does not fit (then the stand-in stays), std::invalid_argument
+  /// std::runtime_error naming source and tensor when one does not fit (then the substitute stays), std::invalid_argument
   /// for a network of divided channels.
   void Load(const NamedWeights& trunk, const std::string& trunk_source, const NamedWeights& heads,
             const std::string& heads_source);
 
-  [[nodiscard]] bool is_stand_in() const;
+  [[nodiscard]] bool has_random_features() const;
 
   /// At least 31 pixels a side (VGG-16: 16); std::invalid_argument otherwise. Features of a network that has loaded
   /// other weights since are refused too.

@@ -11,7 +11,7 @@ TemporalLpips::Frame TemporalLpips::Add(const Image& result, const Image& truth)
   Frame frame;
   const LpipsValue distance = lpips_.Distance(result_features, truth_features);
   frame.lpips = distance.value;
-  frame.stand_in = distance.stand_in;
+  frame.random_features = distance.random_features;
   if (follows_) {
     frame.tlpips = std::abs(lpips_.Distance(result_features, last_result_).value -
                             lpips_.Distance(truth_features, last_truth_).value);
@@ -27,7 +27,7 @@ TemporalLpips::Frame TemporalLpips::Add(const Image& result, const Image& truth)
 }
 
 TemporalLpipsMean TemporalLpips::Mean() const {
-  return {frames_, sum_lpips_ / std::max(1, frames_), sum_tlpips_ / std::max(1, pairs_), lpips_.is_stand_in()};
+  return {frames_, sum_lpips_ / std::max(1, frames_), sum_tlpips_ / std::max(1, pairs_), lpips_.has_random_features()};
 }
 
 }  // namespace bodyloom

@@ -17,7 +17,7 @@ struct TemporalLpipsMean {
   int frames = 0;
   double lpips = 0;   ///< mean over frames
   double tlpips = 0;  ///< mean over frames that follow another; 0 when none does
-  bool stand_in = true;
+  bool random_features = true;
 };
 
 class TemporalLpips {
@@ -25,7 +25,7 @@ class TemporalLpips {
   struct Frame {
     double lpips = 0;
     std::optional<double> tlpips;  ///< none for the first frame
-    bool stand_in = true;
+    bool random_features = true;
   };
 
   /// `lpips` must outlive this.

@@ -9,7 +9,7 @@
 #include "bodyloom/neural/motion/chain_plan.h"
 #include "bodyloom/neural/motion/frame_tensors.h"
 #include "bodyloom/neural/motion/person_box.h"
-#include "bodyloom/neural/training/made_ahead.h"
+#include "bodyloom/neural/training/prefetcher.h"
 
 namespace bodyloom {
 
@@ -34,7 +34,7 @@ class MotionBatches {
 
  private:
   ChainPlan plan_;
-  MadeAhead<MotionBatch> ahead_;
+  Prefetcher<MotionBatch> ahead_;
 };
 
 }  // namespace bodyloom

@@ -91,7 +91,7 @@ class MotionTrainer : public TrainedSystem {
     TrainMotionSummary summary;
     static_cast<TrainingOutcome&>(summary) = RunTraining(options_, options_.steps, kColumns, checkpoint_.get(), this);
     summary.losses_off = losses_off_;
-    summary.perceptual_stand_in = vgg_->is_stand_in;
+    summary.perceptual_random_features = vgg_->has_random_features;
     summary.scores = all_scores_.frames > 0 ? all_scores_ : scores_;
     return summary;
   }

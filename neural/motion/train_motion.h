@@ -56,7 +56,7 @@ struct TrainMotionOptions : TrainingRun {
   /// mean (neural/training/weight_average.h); 0: the last step's weights.
   double average = 0.1;
   int warmup_iterations = 10;  ///< of the first frame, before a roll-out counts
-  WeightsFrom vgg16;           ///< empty: a seeded stand-in of random features
+  WeightsFrom vgg16;           ///< empty: a seeded random-feature substitute
   int preview_frames = 4;
   std::function<bool(const TrainMotionProgress&)> progress;  ///< return false to stop after a checkpoint
   std::function<void(int step, const std::vector<MotionPreview>&)> preview;
@@ -66,7 +66,7 @@ struct TrainMotionOptions : TrainingRun {
 struct TrainMotionSummary : TrainingOutcome {
   MotionScores scores;
   std::vector<std::string> losses_off;  ///< "shape: the frames have no labels", …
-  bool perceptual_stand_in = true;
+  bool perceptual_random_features = true;
 };
 
 /// Throws std::invalid_argument for options that are not valid, std::runtime_error for files that cannot be used.

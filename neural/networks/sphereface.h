@@ -7,7 +7,7 @@
 /// "fc5.weight", whose classifier ("fc6.weight") is not needed.
 /// Source: Liu et al., "SphereFace: Deep Hypersphere Embedding for Face Recognition", CVPR 2017, Table 2.
 ///
-/// The trained weights are not part of this project, and random ones know nothing of faces: there is no stand-in.
+/// The trained weights are not part of this project, and random ones know nothing of faces: there is no substitute.
 #pragma once
 
 #include <torch/torch.h>

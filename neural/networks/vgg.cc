@@ -97,15 +97,15 @@ FeatureNetworkImpl::FeatureNetworkImpl(const FeatureNetworkOptions& network_opti
                      options.taps.front() >= 0 && options.taps.back() < static_cast<int>(plan.size()),
                  "feature network: ", options.taps.size(), " taps, expected one or more, ascending, from 0 to ",
                  plan.size() - 1);
-  BODYLOOM_CHECK(options.stand_in_divisor >= 1 && options.stand_in_divisor <= 32, "feature network: divisor ",
-                 options.stand_in_divisor, ", expected 1 to 32");
-  const torch::Generator generator = at::make_generator<at::CPUGeneratorImpl>(options.stand_in_seed);
+  BODYLOOM_CHECK(options.random_features_divisor >= 1 && options.random_features_divisor <= 32,
+                 "feature network: divisor ", options.random_features_divisor, ", expected 1 to 32");
+  const torch::Generator generator = at::make_generator<at::CPUGeneratorImpl>(options.random_features_seed);
   torch::nn::Sequential features;
   int channels = 3;
   for (int i = 0; i <= options.taps.back(); ++i) {
     layers_.push_back({plan[i]});
     if (plan[i].kind != LayerKind::kConv) continue;
-    const int to = plan[i].channels / options.stand_in_divisor;
+    const int to = plan[i].channels / options.random_features_divisor;
     torch::nn::Conv2d conv(
         torch::nn::Conv2dOptions(channels, to, plan[i].kernel).stride(plan[i].stride).padding(plan[i].padding));
     const torch::NoGradGuard no_grad;
@@ -124,8 +124,8 @@ FeatureNetworkImpl::FeatureNetworkImpl(const FeatureNetworkOptions& network_opti
 FeatureNetworkImpl::~FeatureNetworkImpl() = default;
 
 LoadWeightsReport FeatureNetworkImpl::Load(const NamedWeights& weights, const std::string& source) {
-  BODYLOOM_CHECK(options.stand_in_divisor == 1, "feature network: trained weights for a network of 1/",
-                 options.stand_in_divisor, " of the channels");
+  BODYLOOM_CHECK(options.random_features_divisor == 1, "feature network: trained weights for a network of 1/",
+                 options.random_features_divisor, " of the channels");
   LoadWeightsOptions load;
   if (weights.count("features.0.weight") == 0 && weights.count(layers_.front().plan.name + ".weight") != 0) {
     load.name_in_file = [this](const std::string& own) {  // "features.12.weight" → "conv3_2.weight"
@@ -134,7 +134,7 @@ LoadWeightsReport FeatureNetworkImpl::Load(const NamedWeights& weights, const st
     };
   }
   LoadWeightsReport report = LoadWeights(weights, source, this, load);
-  is_stand_in = false;
+  has_random_features = false;
   return report;
 }
 
@@ -170,11 +170,11 @@ std::vector<torch::Tensor> FeatureNetworkImpl::forward(torch::Tensor image) {
 }
 
 FeatureNetwork MakeFeatureNetwork(FeatureTrunk trunk, const std::vector<std::string>& layers,
-                                  const WeightsFrom& weights, int stand_in_divisor) {
+                                  const WeightsFrom& weights, int random_features_divisor) {
   FeatureNetworkOptions options;
   options.trunk = trunk;
   options.taps = FeatureLayers(trunk, layers);
-  if (weights.empty()) options.stand_in_divisor = stand_in_divisor;
+  if (weights.empty()) options.random_features_divisor = random_features_divisor;
   FeatureNetwork network(options);
   if (!weights.empty()) network->Load(weights.weights, weights.source);
   network->to(NeuralDevice());

@@ -6,10 +6,10 @@
 ///   28; VGG-19 conv3_2 = 12, conv4_2 = 21, …; AlexNet conv1 … conv5 = 0, 3, 6, 8, 10; the ReLU after each is one more.
 /// Sources: Simonyan & Zisserman, ICLR 2015 (configurations D and E); Krizhevsky 2014 (the one-column AlexNet).
 ///
-/// The trained weights are not part of this project. Without them the network is a stand-in: convolutions whose rows
+/// The trained weights are not part of this project. Without them the network is a random-feature substitute: convolutions whose rows
 /// (or, where there are fewer inputs than outputs, columns) are orthonormal times √2, drawn from a seed, biases 0.
 /// Random features of this kind compare images usefully, but figures made with them compare with nobody else's: every
-/// result says so (is_stand_in).
+/// result says so (has_random_features).
 #pragma once
 
 #include <torch/torch.h>
@@ -34,8 +34,8 @@ struct FeatureNetworkOptions {
   std::vector<int> taps;  ///< layers whose outputs are returned, ascending; nothing behind the last one is built
   /// RGB in [0, 1] is first mapped to (x − mean)/deviation of ImageNet: .485 .456 .406, .229 .224 .225.
   bool normalise = true;
-  int stand_in_divisor = 1;  ///< of the stand-in's channels, for speed; trained weights need 1
-  uint64_t stand_in_seed = 1;
+  int random_features_divisor = 1;  ///< of the substitute's channels, for speed; trained weights need 1
+  uint64_t random_features_seed = 1;
 };
 
 /// Parameters never require gradients; gradients flow to the input.
@@ -52,7 +52,7 @@ struct FeatureNetworkImpl : torch::nn::Module {
   std::vector<torch::Tensor> forward(torch::Tensor image);
 
   FeatureNetworkOptions options;
-  bool is_stand_in = true;
+  bool has_random_features = true;
 
  private:
   struct Layer;
@@ -61,9 +61,9 @@ struct FeatureNetworkImpl : torch::nn::Module {
 };
 TORCH_MODULE(FeatureNetwork);
 
-/// On the networks' device (neural/device.h), with the layers of these names as taps; `weights` empty: a stand-in whose
+/// On the networks' device (neural/device.h), with the layers of these names as taps; `weights` empty: a random-feature substitute whose
 /// channels are divided. Throws as FeatureNetworkImpl::Load.
 FeatureNetwork MakeFeatureNetwork(FeatureTrunk trunk, const std::vector<std::string>& layers,
-                                  const WeightsFrom& weights, int stand_in_divisor);
+                                  const WeightsFrom& weights, int random_features_divisor);
 
 }  // namespace bodyloom

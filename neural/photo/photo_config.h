@@ -17,7 +17,8 @@ struct PhotoProfile {
   std::vector<int> feature_widths;
   int render_width = 0, render_blocks = 0;
   int discriminator_width = 0, discriminator_layers = 0, discriminator_scales = 0;
-  int perceptual_divisor = 1;  ///< channels of VGG are divided by this where a stand-in takes its place
+  int perceptual_divisor =
+      1;  ///< channels of VGG are divided by this where a random-feature substitute takes its place
   /// RenderNet's last convolution sees R, its colours filled outwards and the body's outline too, and begins with
   /// those colours and that outline.
   /// Instance norm takes colours out of every map before; how they come back is learned, which takes longer than two

@@ -38,7 +38,7 @@ void PhotoScorer::Add(const PhotoPicture& result, const PhotoFrame& truth) {
   if (ssim_) ssim_sum_ += ssim_(true_picture, picture);
   const LpipsValue lpips = lpips_.Distance(true_picture, picture);
   lpips_sum_ += lpips.value;
-  stand_in_ = lpips.stand_in;
+  random_features_ = lpips.random_features;
   ++pictures_;
 }
 
@@ -51,7 +51,7 @@ PhotoScores PhotoScorer::Scores() const {
   scores.psnr_db = -10 * std::log10(mean(squared_, values_));
   scores.ssim = ssim_ ? mean(ssim_sum_, pictures_) : kNone;
   scores.lpips = mean(lpips_sum_, pictures_);
-  scores.lpips_stand_in = stand_in_;
+  scores.lpips_random_features = random_features_;
   scores.outline_iou = outline_.ForegroundIou();
   return scores;
 }

@@ -14,12 +14,12 @@ namespace bodyloom {
 /// Means over pictures. "Foreground" is the true one: labels other than the background, else what is not black.
 struct PhotoScores {
   int pictures = 0;
-  double image_l1 = 0;         ///< mean |I − Î| over foreground and channels
-  double psnr_db = 0;          ///< of the mean square over all pictures' foregrounds, range 1
-  double ssim = 0;             ///< as the caller's function says, on whole frames; NaN without one
-  double lpips = 0;            ///< on whole frames, black background
-  bool lpips_stand_in = true;  ///< not comparable with other programs' figures
-  double outline_iou = 0;      ///< of alpha > ½ and the true foreground
+  double image_l1 = 0;                ///< mean |I − Î| over foreground and channels
+  double psnr_db = 0;                 ///< of the mean square over all pictures' foregrounds, range 1
+  double ssim = 0;                    ///< as the caller's function says, on whole frames; NaN without one
+  double lpips = 0;                   ///< on whole frames, black background
+  bool lpips_random_features = true;  ///< not comparable with other programs' figures
+  double outline_iou = 0;             ///< of alpha > ½ and the true foreground
 };
 
 /// SSIM of two pictures of the same size.
@@ -38,7 +38,7 @@ class PhotoScorer {
   const Lpips& lpips_;
   PictureSimilarity ssim_;
   int pictures_ = 0;
-  bool stand_in_ = true;
+  bool random_features_ = true;
   double l1_ = 0, squared_ = 0, values_ = 0, ssim_sum_ = 0, lpips_sum_ = 0;
   ClassOverlap outline_{2};
 };

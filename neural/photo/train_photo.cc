@@ -21,7 +21,7 @@
 #include "bodyloom/neural/photo/render_photo.h"
 #include "bodyloom/neural/runtime.h"
 #include "bodyloom/neural/training/adam.h"
-#include "bodyloom/neural/training/made_ahead.h"
+#include "bodyloom/neural/training/prefetcher.h"
 #include "bodyloom/neural/training/schedules.h"
 #include "bodyloom/neural/training/training_loop.h"
 
@@ -106,15 +106,15 @@ class PhotoTrainer : public TrainedSystem {
     static_cast<TrainingOutcome&>(summary) =
         RunTraining(options_, options_.TotalSteps(), kColumns, checkpoint_.get(), this);
     summary.losses_off = losses_off_;
-    summary.perceptual_stand_in = vgg_->is_stand_in;
+    summary.perceptual_random_features = vgg_->has_random_features;
     summary.scores = scores_;
     return summary;
   }
 
   void Begin(int first_step) override {
     batches_ =
-        std::make_unique<MadeAhead<PhotoBatch>>(std::max(0, options_.TotalSteps() - first_step),
-                                                [this, first_step](int64_t i) { return BatchOf(first_step + i); });
+        std::make_unique<Prefetcher<PhotoBatch>>(std::max(0, options_.TotalSteps() - first_step),
+                                                 [this, first_step](int64_t i) { return BatchOf(first_step + i); });
   }
 
   bool Step(int step) override {
@@ -271,8 +271,8 @@ class PhotoTrainer : public TrainedSystem {
   std::unique_ptr<Adam> feature_optimizer_, render_optimizer_, discriminator_optimizer_;
   std::unique_ptr<Checkpoint> checkpoint_;
   PhotoScores scores_;
-  Losses losses_;                                   ///< of the last step
-  std::unique_ptr<MadeAhead<PhotoBatch>> batches_;  ///< last: its thread uses the rest
+  Losses losses_;                                    ///< of the last step
+  std::unique_ptr<Prefetcher<PhotoBatch>> batches_;  ///< last: its thread uses the rest
 };
 
 }  // namespace

@@ -13,7 +13,7 @@
 /// The variant kInpaint trains FeatureNet by L_tex alone for `inpaint_steps` steps, then fixes it and trains RenderNet
 /// for `steps` steps; the steps of both stages are counted through.
 ///
-/// Without VGG's weights a stand-in of random features takes its place; without SphereFace's L_face is left out
+/// Without VGG's weights a random-feature substitute takes its place; without SphereFace's L_face is left out
 /// (`losses_off` says so). Writes into run_dir: checkpoint.bin and metrics.csv. A run that goes on from a checkpoint
 /// ends with the same bytes as one that was never interrupted (same binary, machine and threads).
 #pragma once
@@ -60,9 +60,9 @@ struct TrainPhotoOptions : TrainingRun {
   /// cold start it makes every figure worse for hundreds of steps, which a short run does not get back.
   double gan_from = 0.5;
   int reach = 0;                     ///< of clothes beyond the body, pixels (neural/photo/photo_window.h)
-  WeightsFrom vgg19;                 ///< empty: a seeded stand-in of random features
+  WeightsFrom vgg19;                 ///< empty: a seeded random-feature substitute
   WeightsFrom sphereface;            ///< empty: no face loss
-  WeightsFrom alexnet, lpips_heads;  ///< empty: validation's LPIPS is a stand-in
+  WeightsFrom alexnet, lpips_heads;  ///< empty: validation's LPIPS is a random-feature substitute
   PictureSimilarity ssim;            ///< of validation; may be empty
   int preview_pairs = 4;
   std::function<bool(const TrainPhotoProgress&)> progress;  ///< return false to stop after a checkpoint
@@ -78,7 +78,7 @@ struct TrainPhotoOptions : TrainingRun {
 struct TrainPhotoSummary : TrainingOutcome {
   PhotoScores scores;
   std::vector<std::string> losses_off;
-  bool perceptual_stand_in = true;
+  bool perceptual_random_features = true;
 };
 
 /// Throws std::invalid_argument for options that are not valid or do not fit the source, std::runtime_error for files

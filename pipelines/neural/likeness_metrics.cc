@@ -20,8 +20,9 @@ std::vector<FrameMetric> LikenessMetrics(const std::string& weights_folder) {
     lpips->Load(weights.alexnet.weights, weights.alexnet.source, weights.lpips_heads.weights,
                 weights.lpips_heads.source);
   }
-  const std::string network = lpips->is_stand_in() ? "stand_in" : "alex";
-  const std::string of = lpips->is_stand_in() ? " of a stand-in network: compares with nothing but itself" : "";
+  const std::string network = lpips->has_random_features() ? "random_features" : "alex";
+  const std::string of =
+      lpips->has_random_features() ? " of a random-feature substitute: compares with nothing but itself" : "";
   FrameMetric metric;
   metric.columns = {{"lpips_" + network, "LPIPS v0.1" + of},
                     {"tlpips_" + network, "|LPIPS of the result's change - LPIPS of the truth's|" + of}};

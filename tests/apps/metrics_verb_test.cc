@@ -230,9 +230,9 @@ TEST_F(MetricsVerb, LpipsComesFromTheNeuralHalf) {
   const CommandResult result = RunCommand({"metrics", "--truth", Path("truth"), "--result", Path("result"), "--lpips",
                                            "--csv", Path("frames.csv"), "--threads", "2"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.out, HasSubstr("lpips_stand_in"));
+  EXPECT_THAT(result.out, HasSubstr("lpips_random_features"));
   const std::string csv = ReadFileBytes(Path("frames.csv"));
-  EXPECT_THAT(csv, HasSubstr("tlpips_stand_in"));
+  EXPECT_THAT(csv, HasSubstr("tlpips_random_features"));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 4);
   std::filesystem::create_directories(Path("empty"));
   const CommandResult none = RunCommand(

@@ -46,7 +46,7 @@ TEST_F(TrainAnimateVerb, TrainsGoesOnAndAnimates) {
   ASSERT_EQ(trained.exit_code, 0) << trained.err;
   EXPECT_THAT(trained.out, HasSubstr("1 people to train on, 1 kept for validation"));
   EXPECT_THAT(trained.out, HasSubstr("step 3 of 3"));
-  EXPECT_THAT(trained.out, HasSubstr("stand-in"));
+  EXPECT_THAT(trained.out, HasSubstr("random-feature substitute"));
   EXPECT_THAT(trained.out, HasSubstr("weights of the losses: VGG"));
   for (const char* file : {"config.json", "checkpoint.bin", "metrics.csv", "preview_000003.png"}) {
     EXPECT_TRUE(fs::exists(scratch_ / ("run/" + std::string(file)))) << file;

@@ -82,7 +82,7 @@ TEST_F(TrainMotionVerb, TrainsGoesOnAndAnimates) {
       Train("run", {"--steps", "3", "--train", "0-9", "--validate", "10-13", "--validate-every", "3"});
   ASSERT_EQ(trained.exit_code, 0) << trained.err;
   EXPECT_THAT(trained.out, HasSubstr("step 3 of 3"));
-  EXPECT_THAT(trained.out, HasSubstr("stand-in"));
+  EXPECT_THAT(trained.out, HasSubstr("random-feature substitute"));
   EXPECT_THAT(trained.out, HasSubstr("validation: L1"));
   EXPECT_THAT(trained.out, HasSubstr("px around the body"));
   for (const char* file : {"config.json", "checkpoint.bin", "metrics.csv", "preview_000003.png"}) {

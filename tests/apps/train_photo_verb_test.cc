@@ -55,7 +55,7 @@ TEST_F(TrainPhotoVerb, TrainsGoesOnAndAnimates) {
   EXPECT_THAT(std::string((std::istreambuf_iterator<char>(config)), {}), HasSubstr("\"gan_from\": 0.5"));
   EXPECT_THAT(trained.out, HasSubstr("2 people to train on, 1 kept for validation"));
   EXPECT_THAT(trained.out, HasSubstr("step 2 of 2"));
-  EXPECT_THAT(trained.out, HasSubstr("stand-in"));
+  EXPECT_THAT(trained.out, HasSubstr("random-feature substitute"));
   EXPECT_THAT(trained.out, HasSubstr("loss switched off: face"));
   EXPECT_THAT(trained.out, HasSubstr("validation of 2 pairs"));
   for (const char* file : {"config.json", "checkpoint.bin", "metrics.csv", "preview_000002.png"}) {

@@ -19,7 +19,7 @@ TEST(Muon, OrthogonalFactorsHaveSingularValuesNearOne) {
     Tensor v = std::get<0>(torch::linalg_qr(torch::randn({n, rank}, torch::kDouble)));
     const Tensor s = torch::logspace(0, -1.7, rank, 10, torch::kDouble);
     const Tensor matrix = torch::matmul(u * s, v.t());
-    const Tensor result = RoughlyOrthogonal(matrix);
+    const Tensor result = ApproximateOrthogonalFactor(matrix);
     ASSERT_EQ(result.sizes(), matrix.sizes());
     const Tensor values = torch::linalg_svdvals(result);
     EXPECT_GT(values.min().item<double>(), 0.3) << m << "x" << n;
@@ -28,7 +28,7 @@ TEST(Muon, OrthogonalFactorsHaveSingularValuesNearOne) {
     const Tensor core = torch::matmul(torch::matmul(u.t(), result), v);
     EXPECT_LT((core - torch::diag(torch::diag(core))).abs().max().item<double>(), 1e-9) << m << "x" << n;
   }
-  EXPECT_EQ(RoughlyOrthogonal(torch::zeros({4, 6})).abs().max().item<float>(), 0);
+  EXPECT_EQ(ApproximateOrthogonalFactor(torch::zeros({4, 6})).abs().max().item<float>(), 0);
 }
 
 TEST(Muon, StepsAsItsFormulaSays) {
@@ -41,7 +41,7 @@ TEST(Muon, StepsAsItsFormulaSays) {
     weight.mutable_grad() = gradient.clone();
     muon.Step(0.01);
     momentum = 0.9 * momentum + gradient;
-    const Tensor turn = RoughlyOrthogonal((gradient + 0.9 * momentum).reshape({6, 12})).reshape({6, 4, 3});
+    const Tensor turn = ApproximateOrthogonalFactor((gradient + 0.9 * momentum).reshape({6, 12})).reshape({6, 4, 3});
     expected = (1 - 0.01 * 0.1) * expected - 0.01 * 0.2 * std::sqrt(12.0) * turn;
     EXPECT_LT((weight.detach() - expected).abs().max().item<double>(), 1e-12) << step;
   }

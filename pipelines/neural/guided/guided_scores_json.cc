@@ -11,9 +11,9 @@ nlohmann::ordered_json ToJson(const GuidedScores& s) {
           {"psnr_db", s.psnr_db},
           {"silhouette_iou", s.silhouette_iou},
           {"label_iou", s.label_iou},
-          {"lpips_stand_in", s.lpips},
-          {"lpips_stand_in_deviation", s.lpips_deviation},
-          {"contextual_stand_in", s.contextual}};
+          {"lpips_random_features", s.lpips},
+          {"lpips_random_features_deviation", s.lpips_deviation},
+          {"contextual_random_features", s.contextual}};
 }
 
 }  // namespace bodyloom

@@ -8,7 +8,7 @@
 
 namespace bodyloom {
 
-/// One object; what features measured is called a stand-in's.
+/// One object; what features measured is named for it.
 nlohmann::ordered_json ToJson(const GuidedScores& scores);
 
 }  // namespace bodyloom

@@ -24,7 +24,7 @@ nlohmann::ordered_json ToJson(const ClipScores& scores) {
   if (scores.likeness) {
     json["lpips"] = scores.likeness->lpips;
     json["tlpips"] = scores.likeness->tlpips;
-    json["lpips_is_stand_in"] = scores.likeness->stand_in;
+    json["lpips_of_random_features"] = scores.likeness->random_features;
   }
   if (scores.composed) {
     json["whole_picture_psnr_db"] = scores.composed->psnr_db;

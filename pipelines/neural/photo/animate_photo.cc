@@ -11,7 +11,7 @@
 #include "bodyloom/data_tools/video/video_writer.h"
 #include "bodyloom/neural/photo/guess_texture.h"
 #include "bodyloom/neural/photo/photo_renderer.h"
-#include "bodyloom/neural/training/made_ahead.h"
+#include "bodyloom/neural/training/prefetcher.h"
 #include "bodyloom/neural/training/training_run.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/neural/photo/photo_backdrop.h"
@@ -128,7 +128,7 @@ class PhotoAnimation {
     VideoWriter video(request_.out, picture_.width, picture_.height, FramesPerSecond(track_, kDefaultFps));
     const std::vector<int> on_sheet = EvenlySpreadFrames(num_frames, kSheetFrames);
     // Maps of the next frames are made while the network is at work.
-    MadeAhead<PhotoFrame> poses(num_frames, [this](int64_t t) { return PoseAt(static_cast<int>(t)); });
+    Prefetcher<PhotoFrame> poses(num_frames, [this](int64_t t) { return PoseAt(static_cast<int>(t)); });
     for (int t = 0; t < num_frames; ++t) {
       const PhotoFrame pose = poses.Take();
       Image composed = backdrop.Next();

@@ -13,7 +13,7 @@ namespace {
 constexpr const char* kNotes =
     R"({"data":"people/dancer, first take","track":"","validate_data":"people/dancer, second take","train":[[0,119]],)"
     R"("validate":[[120,149]],"share":1.0,"seed":1,"steps":4000,"batch":4,"learning_rate":0.001,"weights":)"
-    R"({"shape":10.0,"normals":1.0,"perceptual":1.0,"gan":0.01},"vgg16":"stand-in of random features","threads":2})";
+    R"({"shape":10.0,"normals":1.0,"perceptual":1.0,"gan":0.01},"vgg16":"random-feature substitute","threads":2})";
 
 }  // namespace
 

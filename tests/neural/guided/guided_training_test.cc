@@ -54,7 +54,7 @@ TEST(GuidedTraining, LearnsAPairByHeart) {
   EXPECT_GT(summary.scores.silhouette_iou, 0.9);
   EXPECT_GT(summary.scores.label_iou, 0.7);
   EXPECT_LT(summary.scores.image_l1, 0.1);
-  EXPECT_TRUE(summary.perceptual_stand_in);
+  EXPECT_TRUE(summary.perceptual_random_features);
   ASSERT_EQ(summary.loss_weights.size(), 4U);
   EXPECT_EQ(summary.loss_weights[2], 0);  // nothing was judged
   ASSERT_EQ(previews.size(), 1U);

@@ -33,7 +33,7 @@ NamedWeights AlexNetWeights() {
   FeatureNetworkOptions options;
   options.trunk = FeatureTrunk::kAlexNet;
   options.taps = {11};
-  options.stand_in_seed = 5;
+  options.random_features_seed = 5;
   return ExportWeights(*FeatureNetwork(options));
 }
 
@@ -106,11 +106,11 @@ TEST(Lpips, LoadedWeightsGiveTheFormulasValue) {
   const NamedWeights trunk = AlexNetWeights(), heads = HeadWeights();
   Lpips lpips;
   const Image a = RandomImage(40, 33, 1), b = RandomImage(40, 33, 2);
-  EXPECT_TRUE(lpips.Distance(a, b).stand_in);
+  EXPECT_TRUE(lpips.Distance(a, b).random_features);
   const LpipsFeatures old = lpips.Features(a);
   lpips.Load(trunk, "alexnet.pth", heads, "alex.pth");
   const LpipsValue value = lpips.Distance(a, b);
-  EXPECT_FALSE(value.stand_in);
+  EXPECT_FALSE(value.random_features);
   const double expected = SlowLpips(a, b, trunk, heads);
   EXPECT_NEAR(value.value, expected, 1e-4 * expected);
   EXPECT_GT(expected, 0.01);
@@ -128,7 +128,7 @@ TEST(Lpips, IsASymmetricDistance) {
     EXPECT_EQ(lpips.Distance(a, far).value, lpips.Distance(far, a).value);
     EXPECT_GT(lpips.Distance(a, far).value, 4 * lpips.Distance(a, near).value);
     EXPECT_GT(lpips.Distance(a, near).value, 0);
-    EXPECT_TRUE(lpips.is_stand_in());
+    EXPECT_TRUE(lpips.has_random_features());
     EXPECT_THROW(static_cast<void>(lpips.Distance(a, RandomImage(32, 48, 1))), std::invalid_argument);
     EXPECT_THROW(static_cast<void>(lpips.Features(RandomImage(15, 48, 1))), std::invalid_argument);
   }
@@ -144,7 +144,7 @@ TEST(Lpips, FaultsNameTheFileAndTheTensor) {
     } catch (const std::runtime_error& error) {
       text = error.what();
     }
-    EXPECT_TRUE(lpips.is_stand_in());
+    EXPECT_TRUE(lpips.has_random_features());
     return text;
   };
   NamedWeights bad = heads;
@@ -173,7 +173,7 @@ TEST(TemporalLpips, ComparesChangesWithChanges) {
     const auto frame = temporal.Add(result[t], truth[t]);
     EXPECT_EQ(frame.lpips, lpips.Distance(result[t], truth[t]).value);
     EXPECT_EQ(frame.tlpips.has_value(), t > 0);
-    EXPECT_TRUE(frame.stand_in);
+    EXPECT_TRUE(frame.random_features);
     sum += frame.lpips;
     if (t == 0) continue;
     const double change =
@@ -185,7 +185,7 @@ TEST(TemporalLpips, ComparesChangesWithChanges) {
   EXPECT_EQ(temporal.Mean().frames, 3);
   EXPECT_NEAR(temporal.Mean().lpips, sum / 3, 1e-12);
   EXPECT_NEAR(temporal.Mean().tlpips, expected / 2, 1e-12);
-  EXPECT_TRUE(temporal.Mean().stand_in);
+  EXPECT_TRUE(temporal.Mean().random_features);
   // A still result of a still truth is as steady as the truth, whatever it looks like.
   TemporalLpips still(lpips);
   still.Add(result[0], truth[0]);
@@ -205,7 +205,7 @@ TEST(ContextualMetric, IsTheSumOfTwoLayers) {
   options.trunk = FeatureTrunk::kVgg19;
   options.taps = {13, 22};  // relu3_2, relu4_2
   options.normalise = false;
-  options.stand_in_divisor = 16;
+  options.random_features_divisor = 16;
   FeatureNetwork vgg(options);
   const auto fa = vgg(ToTensor(a)), fb = vgg(ToTensor(b));
   ContextualOptions sharp;
@@ -215,7 +215,7 @@ TEST(ContextualMetric, IsTheSumOfTwoLayers) {
   const ContextualValue value = metric(a, b);
   EXPECT_NEAR(value.similarity, first + second, 1e-6);
   EXPECT_NEAR(value.distance, -std::log(first) - std::log(second), 1e-5);
-  EXPECT_TRUE(value.stand_in);
+  EXPECT_TRUE(value.random_features);
   const ContextualValue same = metric(a, a);
   EXPECT_GT(same.similarity, 1.99);
   EXPECT_LT(same.distance, 0.01);

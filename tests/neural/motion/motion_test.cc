@@ -159,7 +159,7 @@ TEST(MotionTraining, LearnsAClipByHeartAndRollsItOut) {
   EXPECT_LT(summary.scores.image_l1, 0.1);
   EXPECT_GT(summary.scores.label_iou, 0.7);
   EXPECT_LT(summary.scores.normal_deg, 20);
-  EXPECT_TRUE(summary.perceptual_stand_in);
+  EXPECT_TRUE(summary.perceptual_random_features);
   EXPECT_EQ(previews.size(), 4U);
   // The same network from its file, scored apart from training.
   MotionRenderer renderer(CheckpointPath(options.run_dir), options.config,

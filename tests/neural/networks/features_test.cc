@@ -26,7 +26,7 @@ FeatureNetworkOptions Small(FeatureTrunk trunk, std::vector<int> taps) {
   FeatureNetworkOptions options;
   options.trunk = trunk;
   options.taps = std::move(taps);
-  options.stand_in_divisor = 16;
+  options.random_features_divisor = 16;
   return options;
 }
 
@@ -79,15 +79,15 @@ TEST(FeatureNetwork, IsConvolutionsRectifiersAndPools) {
   EXPECT_EQ(features[4].sizes(), Shape({1, 8, 4, 4}));
 }
 
-TEST(FeatureNetwork, StandInIsOrthogonalAndSeeded) {
+TEST(FeatureNetwork, RandomFeaturesAreOrthogonalAndSeeded) {
   FeatureNetworkOptions options = Small(FeatureTrunk::kVgg16, {4, 12});
   torch::manual_seed(1);
   FeatureNetwork a(options);
   torch::manual_seed(2);
   FeatureNetwork b(options);
-  options.stand_in_seed = 7;
+  options.random_features_seed = 7;
   FeatureNetwork c(options);
-  EXPECT_TRUE(a->is_stand_in);
+  EXPECT_TRUE(a->has_random_features);
   const Tensor weight = a->named_parameters()["features.12.weight"].flatten(1).to(torch::kDouble);
   const Tensor product = torch::mm(weight, weight.t());
   EXPECT_LT((product - 2 * torch::eye(product.size(0), torch::kDouble)).abs().max().item<double>(), 1e-5);
@@ -120,19 +120,19 @@ NamedWeights RandomWeights(const FeatureNetwork& network) {
   return weights;
 }
 
-TEST(LoadWeights, TrainedWeightsEndTheStandIn) {
+TEST(LoadWeights, TrainedWeightsReplaceTheRandomFeatures) {
   FeatureNetwork vgg(FirstLayers());
   NamedWeights weights = RandomWeights(vgg);
   weights["classifier.0.weight"] = {{2}, {1, 2}};
   const LoadWeightsReport report = vgg->Load(weights, "vgg.pth");
   EXPECT_THAT(report.unused, ElementsAre("classifier.0.weight"));
   EXPECT_TRUE(report.missing.empty());
-  EXPECT_FALSE(vgg->is_stand_in);
+  EXPECT_FALSE(vgg->has_random_features);
   const NamedWeights now = ExportWeights(*vgg);
   EXPECT_EQ(now.at("features.2.weight").values, weights["features.2.weight"].values);
   EXPECT_EQ(now.at("features.2.weight").shape, Shape({64, 64, 3, 3}));
   FeatureNetworkOptions small = FirstLayers();
-  small.stand_in_divisor = 2;
+  small.random_features_divisor = 2;
   EXPECT_THROW(FeatureNetwork(small)->Load(weights, "vgg.pth"), std::invalid_argument);
 }
 
@@ -158,7 +158,7 @@ std::string LoadError(const NamedWeights& weights) {
   }
   const NamedWeights after = ExportWeights(*vgg);
   for (const auto& item : before) EXPECT_EQ(item.second.values, after.at(item.first).values);
-  EXPECT_TRUE(vgg->is_stand_in);
+  EXPECT_TRUE(vgg->has_random_features);
   return text;
 }
 

@@ -444,7 +444,7 @@ TEST(PhotoScores, AreWhatTheyShouldBeBesideTheTruth) {
   EXPECT_EQ(perfect.Scores().outline_iou, 1);
   EXPECT_EQ(perfect.Scores().ssim, 0.75);
   EXPECT_EQ(perfect.Scores().lpips, 0);
-  EXPECT_TRUE(perfect.Scores().lpips_stand_in);
+  EXPECT_TRUE(perfect.Scores().lpips_random_features);
   PhotoScorer off(lpips, {});
   for (const float by : {0.1F, 0.3F}) {
     for (size_t i = 0; i < picture.image.size(); ++i) picture.image[i] = truth.image[i] + by;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Things made by a thread of their own, a few ahead of the one that is asked for: the batches of a training run.
+/// Items computed by a thread of their own before they are requested: the batches of a training run.
 #pragma once
 
 #include <condition_variable>
@@ -16,13 +16,13 @@
 namespace bodyloom {
 
 template <class Item>
-class MadeAhead {
+class Prefetcher {
  public:
   /// `make` is called `count` times, one call after the other, with 0, 1, … count − 1, on the other thread; at most
   /// `ahead` results wait.
-  MadeAhead(int64_t count, std::function<Item(int64_t)> make, size_t ahead = 3)
+  Prefetcher(int64_t count, std::function<Item(int64_t)> make, size_t ahead = 3)
       : make_(std::move(make)), ahead_(ahead), thread_([this, count] { Run(count); }) {}
-  ~MadeAhead() {
+  ~Prefetcher() {
     {
       const std::lock_guard lock(mutex_);
       stop_ = true;
@@ -30,8 +30,8 @@ class MadeAhead {
     changed_.notify_all();
     thread_.join();
   }
-  MadeAhead(const MadeAhead&) = delete;
-  MadeAhead& operator=(const MadeAhead&) = delete;
+  Prefetcher(const Prefetcher&) = delete;
+  Prefetcher& operator=(const Prefetcher&) = delete;
 
   /// The next one; waits for it. At most `count` times. Throws what `make` threw, once all made before it were taken.
   /// Adds the time it waited to waited_s().
