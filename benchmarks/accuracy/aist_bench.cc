@@ -16,7 +16,6 @@
 ///                  COCO's landmarks of that body and this one costs)
 #include <unistd.h>
 
-#include <chrono>
 #include <cstdio>
 #include <filesystem>
 
@@ -32,6 +31,7 @@
 #include "bodyloom/data_tools/observations/load_cameras.h"
 #include "bodyloom/data_tools/observations/load_detections.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/geometry/posed_body.h"
 #include "bodyloom/geometry/rotation.h"
 #include "bodyloom/tracking/track_sequence.h"
@@ -43,10 +43,6 @@ const std::vector<std::string> kEvaluated = {"pa_mpjpe_mm",           "mpjpe_sca
                                              "accel_err_ms2",         "heldout_median_px",  "heldout_p95_px",
                                              "fitview_own_median_px", "fitview_own_p95_px", "limb_angle_err_deg",
                                              "root_rotation_err_deg", "root_depth_err_mm"};
-
-double Seconds(std::chrono::steady_clock::time_point since) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
-}
 
 std::vector<double> Evaluated(const Evaluation& evaluation) {
   std::vector<double> values;
@@ -113,7 +109,7 @@ std::vector<std::pair<std::string, std::string>> Pairs(const std::vector<std::st
 }
 
 BenchRow TrackAndScore(const Setting& setting, const MultiViewClip& clip, const std::string& track_path) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   const NamedCamera camera =
       FindCamera(LoadCameras(setting.data + "/cameras", setting.sequence), setting.view, setting.data + "/cameras");
   LoadDetectionsOptions load;
@@ -146,11 +142,11 @@ BenchRow TrackAndScore(const Setting& setting, const MultiViewClip& clip, const 
                             TruthInCamera(clip, setting.view), setting.oracle);
     input.lifted = &lifted;
   }
-  const auto track_start = std::chrono::steady_clock::now();
+  const Stopwatch track_watch;
   const TrackSequenceResult result = TrackSequence(input, options);
-  const double track_s = Seconds(track_start);
+  const double track_s = track_watch.seconds();
   WriteTrack(track_path, result.track);
-  const double file_s = Seconds(start);
+  const double file_s = watch.seconds();
 
   const Evaluation evaluation = EvaluateAist(ReadTrack(track_path), clip, setting.view);
   BenchRow row;

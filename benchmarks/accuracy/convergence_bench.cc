@@ -11,7 +11,6 @@
 /// A solve succeeds when its mean joint error, pelvis on pelvis, is within 20 mm of what the same clip reaches from its
 /// true poses. Every cell has the same axes for every engine and version.
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -27,6 +26,8 @@
 #include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/hash_random.h"
+#include "bodyloom/geometry/base/percentile.h"
+#include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/geometry/rotation.h"
 #include "bodyloom/tracking/track_sequence.h"
 
@@ -80,10 +81,10 @@ Outcome Solve(const Problem& problem, const Motion& start, const std::string& so
   options.initialiser_weight = 0;
   options.max_iterations = 100;
   options.estimate_uncertainty = false;
-  const auto begin = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   const TrackSequenceResult result = TrackSequence(input, options);
   Outcome outcome;
-  outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  outcome.seconds = watch.seconds();
   outcome.iterations = result.summary.iterations;
   outcome.error_m = std::numeric_limits<double>::infinity();  // a failure
   if (result.summary.IsUsable()) {

@@ -8,7 +8,6 @@
 /// noise `pixel`: 1 px Gaussian. `densepose`: 1 px, UV noise 0.02 of a chart, 8-bit UV, 5 % outliers, each part missing
 /// 5 % of the time. Projection errors are pixels of the image scaled to 512 by its longer side (paper A, Table 4: 10.5
 /// ± 2.1 from real DensePose, its initialiser 14.8).
-#include <chrono>
 #include <cstdio>
 
 #include "benchmarks/accuracy/bench_arguments.h"
@@ -21,6 +20,7 @@
 #include "bodyloom/data_tools/motion/load_motion.h"
 #include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/tracking/track_sequence.h"
 
 namespace bodyloom {
@@ -45,9 +45,9 @@ BenchRow TrackAndScore(const std::string& noise, const std::string& name, const 
   input.camera = clip.truth.camera;
   TrackSequenceOptions options;
   options.num_threads = arguments.Integer("threads");
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   const TrackSequenceResult result = TrackSequence(input, options);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double seconds = watch.seconds();
 
   EvaluateAgainstTruthOptions evaluate;
   evaluate.num_threads = arguments.Integer("threads");

@@ -8,7 +8,6 @@
 /// mid-hip onto theirs ("placed": one camera does not see metric depth), and after a similarity fit of the 13 body
 /// joints ("aligned"). Joints: 12 limb joints and the nose of COCO's 17. Each system has joint centres of its own, so
 /// zero is not to be expected. The silhouette is their mesh's vertices, splatted and closed.
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -22,6 +21,7 @@
 #include "bodyloom/data_tools/learned/pose_prior_io.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/geometry/procrustes.h"
 #include "bodyloom/render/contact_sheet.h"
 #include "bodyloom/render/overlay.h"
@@ -158,9 +158,9 @@ void Run(const BenchArguments& arguments, const std::string& command) {
       input.camera = person.camera;
       TrackSequenceOptions options;
       options.num_threads = arguments.Integer("threads");
-      const auto start = std::chrono::steady_clock::now();
+      const Stopwatch watch;
       const TrackSequenceResult result = TrackSequence(input, options);
-      const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      const double seconds = watch.seconds();
       BODYLOOM_CHECK(result.summary.IsUsable(), "person ", subject, ": ", result.summary.message);
       const MatrixX3d ours = TrackVertices(BuiltinBody(), result.track, 0);
       const MatrixX3d& joints = result.track.coco17[0];

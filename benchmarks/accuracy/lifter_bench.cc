@@ -15,7 +15,6 @@
 /// there, from a known camera, with the measured noise (steady), or exact (exact).
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -30,6 +29,7 @@
 #include "bodyloom/data_tools/motion/motion_library.h"
 #include "bodyloom/data_tools/synthesis/lifter/lifter_windows.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/geometry/posed_body.h"
 #include "bodyloom/geometry/procrustes.h"
 #include "bodyloom/tracking/initialise/lifter_input.h"
@@ -87,13 +87,13 @@ class Scorer {
   void Score(const LifterWindow& window, Errors* errors) {
     const auto T = static_cast<Eigen::Index>(window.features.size() / kLifterInputs);
     const RowMatrixXf features = Eigen::Map<const RowMatrixXf>(window.features.data(), T, kLifterInputs);
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     const RowMatrixXf plain = RunLifter(weights_, features), mirrored = RunLifter(weights_, MirrorFeatures(features));
     std::vector<LiftedFrame> frames;
     for (Eigen::Index t = 0; t < T; ++t) {
       frames.push_back(ReadLifter(plain, mirrored, t, Eigen::Matrix3d::Identity()));
     }
-    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    seconds_ += watch.seconds();
     frames_ += static_cast<int>(T);
     for (Eigen::Index t = 0; t < T; ++t) ScoreFrame(frames[t], &window.points[size_t(t) * 3 * kLifterPoints], errors);
   }

@@ -14,7 +14,6 @@
 ///         two in turn.
 /// labels  clips tracked from part labels alone (of the truth, by blocks of so many pixels) from an initialiser.
 /// Errors: protocol known-truth (docs/evaluation.md), pixels at 512.
-#include <chrono>
 #include <cstdio>
 #include <functional>
 #include <numeric>
@@ -29,6 +28,7 @@
 #include "bodyloom/data_tools/motion/load_motion.h"
 #include "bodyloom/data_tools/synthesis/clips/rendered_labels.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/geometry/posed_body.h"
 #include "bodyloom/render/visibility_buffer.h"
 #include "bodyloom/tracking/solve_sequence.h"
@@ -63,9 +63,9 @@ TrackSequenceInput InputOf(const SynthClip& clip) {
 /// Tracks and scores: the value columns of whole clips.
 std::vector<double> TrackAndScore(const TrackSequenceInput& input, const TrackSequenceOptions& options,
                                   const SynthClip& clip) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   const TrackSequenceResult result = TrackSequence(input, options);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double seconds = watch.seconds();
   BODYLOOM_CHECK(result.summary.IsUsable(), "not tracked: ", result.summary.message);
   EvaluateAgainstTruthOptions evaluate;
   evaluate.num_threads = options.num_threads;
@@ -189,14 +189,14 @@ BasinResult SolveFrame(const SynthClip& clip, const std::string& method, const s
   solve.max_iterations = 60;
   solve.shape_constant = true;
   BasinResult result;
-  const auto begin = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   const auto run = [&] { result.iterations += SolveSequence(&problem, solve).iterations; };
   if (method != "rendered UV") run();
   if (method != "reprojection") {
     rounds.Start({0}, &problem);
     run();
   }
-  result.ms = 1e3 * std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  result.ms = 1e3 * watch.seconds();
   result.error_px = MeanProjectionErrorAt512(clip, problem.states[0]);
   return result;
 }

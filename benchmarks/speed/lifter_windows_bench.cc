@@ -8,7 +8,6 @@
 /// seed --first: detections above, the landmarks they stand for from the front and from the side below, upright by the
 /// target's own idea of up. --floor_poses draws three people for each way of being on the floor.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
@@ -24,6 +23,7 @@
 #include "bodyloom/data_tools/synthesis/lifter/lifter_windows.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/render/draw_keypoints.h"
 
 namespace bodyloom {
@@ -31,7 +31,6 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3f;
-using Clock = std::chrono::steady_clock;
 
 const double kNone = std::numeric_limits<double>::quiet_NaN();
 
@@ -152,11 +151,11 @@ Times Measure(int windows, const std::function<void()>& work) {
   };
   Times best{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   for (int round = 0; round < 3; ++round) {
-    const auto start = Clock::now();
+    const Stopwatch watch;
     const double processor_start = processor();
     work();
     best.processor_us = std::min(best.processor_us, (processor() - processor_start) * 1e6 / windows);
-    best.wall_us = std::min(best.wall_us, std::chrono::duration<double>(Clock::now() - start).count() * 1e6 / windows);
+    best.wall_us = std::min(best.wall_us, watch.seconds() * 1e6 / windows);
   }
   return best;
 }

@@ -10,7 +10,6 @@
 /// uncertainty: whether the poses come with joint_sigma (the section of that name compares both).
 /// mb_grown: resident memory after the clip over that after its first tenth.
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <ctime>
 #include <fstream>
@@ -30,6 +29,8 @@
 #include "bodyloom/data_tools/observations/load_cameras.h"
 #include "bodyloom/data_tools/observations/load_detections.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/percentile.h"
+#include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/tracking/live/track_live.h"
 #include "bodyloom/tracking/solve_sequence.h"
 
@@ -38,21 +39,12 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-double Since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 double ResidentMegabytes() {
   std::ifstream file("/proc/self/status");
   for (std::string line; std::getline(file, line);) {
     if (line.starts_with("VmRSS:")) return std::stod(line.substr(6)) / 1024;
   }
   return kNaN;
-}
-
-double Percentile(std::vector<double> values, double q) {
-  std::sort(values.begin(), values.end());
-  return values[static_cast<size_t>(q * static_cast<double>(values.size() - 1))];
 }
 
 /// fps, cpu_ms, push_median_ms, push_p99_ms, push_max_ms, mb_grown of `frames` frames; past the end of the clip it
@@ -71,15 +63,15 @@ std::vector<double> Speed(const TrackSequenceInput& input, const LiveTrackerOpti
       const int k = t % period;
       LiveObservations seen = ObservationsAt(input, k < T ? k : period - k);
       seen.timestamp = t * step;
-      const auto start = std::chrono::steady_clock::now();
+      const Stopwatch watch;
       tracker.Push(seen);
-      push_ms.push_back(1e3 * Since(start));
+      push_ms.push_back(1e3 * watch.seconds());
       if (t == frames / 10) early_mb = ResidentMegabytes();
     }
     double total = 0;
     for (double ms : push_ms) total += ms;
     runs.push_back({1e3 * frames / total, 1e3 * double(std::clock() - cpu) / CLOCKS_PER_SEC / frames,
-                    Percentile(push_ms, 0.5), Percentile(push_ms, 0.99), Percentile(push_ms, 1),
+                    Percentile(push_ms, 50), Percentile(push_ms, 99), Percentile(push_ms, 100),
                     ResidentMegabytes() - early_mb});
   }
   std::sort(runs.begin(), runs.end());
@@ -183,10 +175,10 @@ class Bench {
   template <typename Score>
   void Compare(const std::string& group, const std::string& name, const TrackSequenceInput& input, const Score& score) {
     const int T = input.keypoints != nullptr ? input.keypoints->num_frames() : input.dense->num_frames();
-    auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     const std::clock_t cpu = std::clock();
     const TrackSequenceResult batch = TrackSequence(input, options_.solve);
-    const double fps = T / Since(start), cpu_ms = 1e3 * double(std::clock() - cpu) / CLOCKS_PER_SEC / T;
+    const double fps = T / watch.seconds(), cpu_ms = 1e3 * double(std::clock() - cpu) / CLOCKS_PER_SEC / T;
     Evaluation evaluation;
     const double error = score(batch.track, &evaluation);
     Add(group, name, "batch", error, error, evaluation, {fps, cpu_ms, kNaN, kNaN, kNaN, kNaN});

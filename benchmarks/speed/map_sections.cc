@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -13,6 +12,7 @@
 #include "benchmarks/speed/moving_body.h"
 #include "bodyloom/data_tools/descriptors/describe_track.h"
 #include "bodyloom/data_tools/formats/npz.h"
+#include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/geometry/normals.h"
 #include "bodyloom/geometry/normals_simd.h"
 #include "bodyloom/geometry/uv_bake.h"
@@ -148,9 +148,9 @@ void BenchStream(const BodyModel& body, const std::string& folder) {
     int maps = 0;
     for (int repetition = 0; repetition < 3; ++repetition) {
       std::filesystem::remove(path);  // freeing an old file's pages is not part of the work
-      const auto start = std::chrono::steady_clock::now();
+      const Stopwatch watch;
       const DescribeTrackSummary summary = DescribeTrack(body, track, path, row.options);
-      const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      const double seconds = watch.seconds();
       double disk = 0;
       for (const auto& [stage, stage_seconds] : summary.seconds) {
         if (stage == "write" && row.options.reuse_past) disk += stage_seconds;

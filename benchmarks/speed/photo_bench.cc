@@ -6,7 +6,6 @@
 #include <torch/torch.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
@@ -15,6 +14,7 @@
 #include <vector>
 
 #include "benchmarks/accuracy/bench_arguments.h"
+#include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/neural/guided/coherent_maps.h"
 #include "bodyloom/neural/guided/guided_model.h"
 #include "bodyloom/neural/networks/architecture_card.h"
@@ -33,11 +33,11 @@ void Print(const std::string& what, const std::function<void()>& work) {
   const auto multiply_adds = static_cast<double>(CountMultiplyAdds(work));  // and plans the convolutions
   std::vector<double> processor_ms, clock_ms;
   for (int i = 0; i < kRepetitions; ++i) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     const std::clock_t processor = std::clock();
     work();
     processor_ms.push_back(1e3 * static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC);
-    clock_ms.push_back(1e3 * std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    clock_ms.push_back(1e3 * watch.seconds());
   }
   std::sort(processor_ms.begin(), processor_ms.end());
   std::sort(clock_ms.begin(), clock_ms.end());

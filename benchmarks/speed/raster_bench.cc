@@ -8,7 +8,6 @@
 /// (tests/support/embree_twin.h). uv_error: largest difference of a chart coordinate to the double-precision path.
 /// Times are of one picture, milliseconds: median with one thread, least with one, median and least with two.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
@@ -19,6 +18,7 @@
 #include "benchmarks/accuracy/bench_report.h"
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/geometry/posed_body.h"
 #include "bodyloom/render/overlay.h"
 #include "bodyloom/render/raster_simd.h"
@@ -50,11 +50,11 @@ Times Measure(int repetitions, const std::function<void()>& work) {
   std::vector<double> wall, processor;
   work();
   for (int i = 0; i < repetitions; ++i) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     const double processor_start = ProcessorSeconds();
     work();
     processor.push_back(1e3 * (ProcessorSeconds() - processor_start));
-    wall.push_back(1e3 * std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    wall.push_back(1e3 * watch.seconds());
   }
   std::sort(wall.begin(), wall.end());
   std::sort(processor.begin(), processor.end());

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -12,6 +11,7 @@
 #include "benchmarks/speed/descriptor_sections.h"
 #include "benchmarks/speed/moving_body.h"
 #include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/geometry/surface_velocity.h"
 #include "bodyloom/geometry/uv_charts.h"
 #include "bodyloom/render/texture_extract.h"
@@ -75,9 +75,9 @@ void BenchTexture(const BodyModel& body, const std::string& folder) {
     const VisiblePoints points = ResolveVisiblePoints(buffer, body, vertices, track.camera);
     const Image picture = ImageOf(ProjectUvMaps(body, charts, fine, paint, 3, points, 640, 640), 640, 640);
     if (t == 3) WriteImage((std::filesystem::path(folder) / "texture_bench_frame.png").string(), picture);
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     extractor.Add(picture, vertices, track.camera, t);
-    seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    seconds += watch.seconds();
   }
   Texture texture = extractor.Merge();
   const size_t pixels = size_t(512) * 512;

@@ -2,7 +2,6 @@
 #include "benchmarks/work_precision/measure.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
@@ -12,6 +11,7 @@
 #include "benchmarks/accuracy/dense_bound.h"
 #include "benchmarks/work_precision/autodiff_peer.h"
 #include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/geometry/base/stopwatch.h"
 
 namespace bodyloom {
 
@@ -92,13 +92,12 @@ std::vector<EngineRun> MeasureEngines(const WorkProblem& work, const std::vector
 }
 
 Timing MeasureAction(const std::function<void()>& action, int repeat, double divisor) {
-  using Clock = std::chrono::steady_clock;
   std::vector<double> wall, cpu;
   for (int round = 0; round < repeat; ++round) {
     const std::clock_t cpu_start = std::clock();
-    const auto start = Clock::now();
+    const Stopwatch watch;
     action();
-    wall.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count() / divisor);
+    wall.push_back(1e3 * watch.seconds() / divisor);
     cpu.push_back(1e3 * static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC / divisor);
   }
   return {TimeMs::Of(wall), TimeMs::Of(cpu)};
