@@ -1,4 +1,4 @@
-# bodyloom_module(NAME [PUBLIC lib...] [PRIVATE lib...] [WITHOUT folder-or-file...] [SOURCES file...] [OWN_PRECOMPILED])
+# bodyloom_module(NAME [PUBLIC lib...] [PRIVATE lib...] [WITHOUT folder-or-file...] [SOURCES file...])
 #   One folder = one static library bodyloom_NAME with alias bodyloom::NAME, made of every .cc file in the folder and
 #   below it, WITHOUT the sub-folders and files that belong to libraries of their own; or of these SOURCES alone.
 #   A user's find_package(bodyloom COMPONENTS NAME) brings it, with the modules that PUBLIC names.
@@ -6,7 +6,7 @@
 #   its aligned allocations (docs/concepts.md, "Why no -march=native"). SIMD lives in Eigen-free *_simd.cc files that
 #   pick their instruction set at run time.
 function(bodyloom_module name)
-  cmake_parse_arguments(ARG "OWN_PRECOMPILED" "" "PUBLIC;PRIVATE;WITHOUT;SOURCES" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "PUBLIC;PRIVATE;WITHOUT;SOURCES" ${ARGN})
   if(ARG_SOURCES)
     set(sources ${ARG_SOURCES})
   else()
@@ -23,9 +23,6 @@ function(bodyloom_module name)
   target_compile_features(bodyloom_${name} PUBLIC cxx_std_20)
   target_link_libraries(bodyloom_${name} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
   bodyloom_flags(bodyloom_${name})
-  if(NOT ARG_OWN_PRECOMPILED)
-    bodyloom_precompile(bodyloom_${name})
-  endif()
   add_library(bodyloom::${name} ALIAS bodyloom_${name})
   set_target_properties(bodyloom_${name} PROPERTIES EXPORT_NAME ${name})
   set_property(GLOBAL APPEND PROPERTY BODYLOOM_MODULES ${name})
