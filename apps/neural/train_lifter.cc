@@ -7,6 +7,7 @@
 #include "apps/command_callbacks.h"
 #include "apps/neural/neural_verbs.h"
 #include "apps/neural/training_report.h"
+#include "bodyloom/pipelines/clock_text.h"
 #include "bodyloom/pipelines/neural/lifter/train_lifter_network.h"
 
 namespace bodyloom {
