@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/neural/training_report.h"
-#include "bodyloom/pipelines/clock_text.h"
 
 #include <iostream>
 #include <stdexcept>
+
+#include "bodyloom/pipelines/clock_text.h"
 
 namespace bodyloom {
 

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "apps/progress.h"
 #include "bodyloom/neural/training/training_run.h"
 
 namespace bodyloom {

@@ -35,16 +35,6 @@ std::vector<double> Times(int frames, double fps) {
   return times;
 }
 
-TEST(MetricsTest, PercentileInterpolatesLikeNumpy) {
-  const std::vector<double> values = {4, 1, kNotMeasured, 3, 2};
-  EXPECT_DOUBLE_EQ(Percentile(values, 50), 2.5);
-  EXPECT_DOUBLE_EQ(Percentile(values, 95), 3.85);  // numpy.percentile([1, 2, 3, 4], 95)
-  EXPECT_DOUBLE_EQ(Percentile(values, 0), 1);
-  EXPECT_DOUBLE_EQ(Percentile(values, 100), 4);
-  EXPECT_TRUE(std::isnan(Percentile(std::vector<double>{}, 50)));
-  EXPECT_THROW(Percentile(values, 101), std::invalid_argument);
-}
-
 TEST(MetricsTest, SummarizeCountsWhatItLeavesOut) {
   const ErrorStatistics s = Summarize(std::vector<double>{2, 4, 4, 4, 5, 5, 7, 9, kNotMeasured, INFINITY});
   EXPECT_DOUBLE_EQ(s.mean, 5);
