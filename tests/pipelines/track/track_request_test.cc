@@ -30,7 +30,7 @@ TEST(TrackRequest, WhatIsMissingOrContradictsIsNamed) {
   EXPECT_NO_THROW(CheckTrackRequest(request));
   request = Complete();
   request.live_lag = 4;
-  request.solve.solver = "ceres";
+  request.solve.solver = SequenceSolver::kCeres;
   EXPECT_THAT([&] { CheckTrackRequest(request); }, ThrowsMessage<RequestError>(HasSubstr("--live")));
 }
 
