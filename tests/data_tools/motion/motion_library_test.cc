@@ -220,7 +220,7 @@ TEST(MotionSplit, MalformedLinesNameFileAndLine) {
   EXPECT_THAT(error(std::string(100000, 'x')), HasSubstr("1 words"));
 }
 
-/// The split that ships, on the recordings it was made for.
+/// The split that ships, on the folders of recordings it was made for; those beside them are not divided yet.
 class RealLibrary : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -237,7 +237,9 @@ TEST_F(RealLibrary, EveryClipIsNamedAndNoPerformerIsInBoth) {
   double test_s = 0;
   std::set<std::string> test_classes;
   int clips = 0;
-  summary = VisitMotionLibrary({motion_, aist_}, {}, [&](LibraryClip&& clip) {
+  const std::vector<std::string> divided = {motion_ + "/amp_cmu", motion_ + "/cmu_asfamc", motion_ + "/cmu_bvh",
+                                            motion_ + "/deepmimic", aist_};
+  summary = VisitMotionLibrary(divided, {}, [&](LibraryClip&& clip) {
     ++clips;
     by_performer[clip.source.substr(0, 3) + " " + clip.subject].insert(clip.test);
     std::string name;
