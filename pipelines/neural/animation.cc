@@ -11,6 +11,7 @@
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/geometry/base/percentile.h"
 #include "bodyloom/pipelines/files.h"
+#include "bodyloom/pipelines/neural/report_json.h"
 #include "bodyloom/render/contact_sheet.h"
 
 namespace bodyloom {

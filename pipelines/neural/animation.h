@@ -2,7 +2,6 @@
 /// Parts that the jobs which render a person with a trained network share.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 #include <vector>
@@ -54,12 +53,6 @@ double MedianOf(std::span<const double> milliseconds);
 
 /// Writes a contact sheet; nothing without a path or without pictures.
 void WriteSheet(const std::string& path, const std::vector<Image>& pictures, int columns, int cell_height_px);
-
-/// {"stage": seconds, …}
-nlohmann::ordered_json ToJson(const StageSeconds& seconds);
-
-/// Writes a report, whole or not at all; an empty path: none.
-void WriteReport(const std::string& path, const nlohmann::ordered_json& report);
 
 /// Each line of `notes`, all of which end in a newline, as a message.
 void SayLines(const std::string& notes, const PipelineCallbacks& callbacks);

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/pipelines/people/motion_errors_json.h"
 
 namespace bodyloom {
 

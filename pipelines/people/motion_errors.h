@@ -2,7 +2,6 @@
 /// A clip's errors by how much each frame's motion is like what was trained on.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -35,8 +34,5 @@ class MotionErrors {
   std::vector<float> similarity_;
   std::vector<Error> errors_;
 };
-
-/// [{"least_similarity": …, "image_l1": …, "frames": …}, …]
-nlohmann::ordered_json ToJson(const std::vector<MotionErrors::Quarter>& quarters);
 
 }  // namespace bodyloom

@@ -18,6 +18,8 @@
 #include "bodyloom/neural/training/training_run.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/neural/motion/animated_clip.h"
+#include "bodyloom/pipelines/neural/motion/clip_scores_json.h"
+#include "bodyloom/pipelines/neural/report_json.h"
 #include "bodyloom/pipelines/people/background.h"
 #include "bodyloom/pipelines/people/planar_picture.h"
 #include "bodyloom/pipelines/people/relight_frames.h"

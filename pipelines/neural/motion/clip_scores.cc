@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "bodyloom/pipelines/neural/motion/clip_scores_json.h"
+#include "bodyloom/pipelines/people/motion_errors_json.h"
 #include "bodyloom/pipelines/people/planar_picture.h"
 
 namespace bodyloom {

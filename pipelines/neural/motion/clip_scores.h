@@ -3,7 +3,6 @@
 #pragma once
 
 #include <memory>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,8 +30,6 @@ struct ClipScores {
   };
   std::optional<Composed> composed;  ///< over the set's own backgrounds
 };
-
-nlohmann::ordered_json ToJson(const ClipScores& scores);
 
 /// Collects them frame by frame.
 class ClipScorer {

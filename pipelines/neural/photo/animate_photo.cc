@@ -15,6 +15,7 @@
 #include "bodyloom/neural/training/training_run.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/neural/photo/photo_backdrop.h"
+#include "bodyloom/pipelines/neural/report_json.h"
 #include "bodyloom/pipelines/people/planar_picture.h"
 #include "bodyloom/pipelines/people/view_angles.h"
 #include "bodyloom/pipelines/runs/photo_run.h"
