@@ -17,6 +17,7 @@
 #include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/peak_memory.h"
+#include "bodyloom/pipelines/report_json.h"
 
 namespace bodyloom {
 namespace {
@@ -131,8 +132,7 @@ std::string ToText(const DescribeClipReport& report) {
 std::string ToJson(const DescribeClipReport& report) {
   const DescribeTrackSummary& s = report.summary;
   const double seconds = report.total_seconds;
-  nlohmann::ordered_json stages = nlohmann::ordered_json::object();
-  for (const auto& [stage, stage_seconds] : s.seconds) stages[stage] = stage_seconds;
+  nlohmann::ordered_json stages = ToJson(s.seconds);
   stages["total"] = seconds;
   const nlohmann::ordered_json json = {{"frames", s.frames},
                                        {"channels", s.channels},

@@ -3,15 +3,12 @@
 
 #include <algorithm>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/geometry/base/percentile.h"
 #include "bodyloom/pipelines/files.h"
-#include "bodyloom/pipelines/neural/report_json.h"
 #include "bodyloom/render/contact_sheet.h"
 
 namespace bodyloom {
@@ -48,16 +45,6 @@ void WriteSheet(const std::string& path, const std::vector<Image>& pictures, int
   layout.columns = columns;
   layout.cell_height_px = cell_height_px;
   WriteImage(path, ContactSheet(pictures, layout));
-}
-
-nlohmann::ordered_json ToJson(const StageSeconds& seconds) {
-  nlohmann::ordered_json stages = nlohmann::ordered_json::object();
-  for (const auto& [stage, stage_s] : seconds) stages[stage] = stage_s;
-  return stages;
-}
-
-void WriteReport(const std::string& path, const nlohmann::ordered_json& report) {
-  if (!path.empty()) WriteFileAtomically(path, report.dump(2) + "\n");
 }
 
 void SayLines(const std::string& notes, const PipelineCallbacks& callbacks) {

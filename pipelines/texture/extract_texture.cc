@@ -17,6 +17,7 @@
 #include "bodyloom/data_tools/video/video_reader.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/pipelines/files.h"
+#include "bodyloom/pipelines/report_json.h"
 #include "bodyloom/pipelines/track/track_video.h"
 #include "bodyloom/render/overlay.h"
 #include "bodyloom/render/uv_fill.h"
@@ -173,8 +174,7 @@ ExtractTextureReport ExtractTexture(const ExtractTextureRequest& request, const 
 }
 
 std::string ToJson(const ExtractTextureReport& report) {
-  nlohmann::ordered_json seconds = nlohmann::ordered_json::object();
-  for (const auto& [stage, stage_seconds] : report.seconds) seconds[stage] = stage_seconds;
+  const nlohmann::ordered_json seconds = ToJson(report.seconds);
   const nlohmann::ordered_json json = {{"size", {report.width, report.height}},
                                        {"track_frames", report.track_frames},
                                        {"frames_beyond_video", report.frames_beyond_video},

@@ -24,7 +24,7 @@ import sys
 import tempfile
 
 CLIP = ["--motion", "demo", "--first", "60", "--frames", "48", "--width", "320", "--height", "240", "--quiet"]
-# Job -> command lines, run in order in one scratch folder. {shared}: the folder with real recordings.
+# Job -> command lines, run in order in one scratch folder. {shared}: the folder with real recordings, linked into it.
 JOBS = {
     "synth": [["synth", *CLIP, "--out", "clip", "--realistic", "--init-error", "10"],
               ["synth", *CLIP, "--out", "points", "--dense", "200", "--uv-noise", "0.01", "--missing-parts", "0.1"]],
@@ -122,6 +122,8 @@ def run_jobs(command, shared, only):
     """Job -> {file or folder: checksum} of all files that appeared while it ran, or None where it was left out."""
     sums = {}
     with tempfile.TemporaryDirectory() as scratch:
+        # Reports name their inputs, so every checkout has to call the recordings by the same path.
+        pathlib.Path(scratch, "shared").symlink_to(shared)
         known = set()
         for job, lines in JOBS.items():
             needs_shared = any("{shared}" in word for line in lines for word in line)
@@ -129,7 +131,7 @@ def run_jobs(command, shared, only):
                 sums[job] = None
                 continue
             for line in lines:
-                line = [word.replace("{shared}", str(shared)) for word in line]
+                line = [word.replace("{shared}", "shared") for word in line]
                 done = subprocess.run([command, *line], cwd=scratch, capture_output=True, text=True, check=False)
                 if done.returncode != 0:
                     sys.exit(f"bodyloom {' '.join(line)}: exit code {done.returncode}: {done.stderr.strip()}")

@@ -17,8 +17,8 @@
 #include "bodyloom/pipelines/neural/guided/guided_scores_json.h"
 #include "bodyloom/pipelines/neural/guided/virtual_views.h"
 #include "bodyloom/pipelines/neural/photo/photo_backdrop.h"
-#include "bodyloom/pipelines/neural/report_json.h"
 #include "bodyloom/pipelines/people/planar_picture.h"
+#include "bodyloom/pipelines/report_json.h"
 #include "bodyloom/pipelines/runs/guided_run.h"
 #include "bodyloom/render/contact_sheet.h"
 

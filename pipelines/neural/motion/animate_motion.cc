@@ -19,11 +19,11 @@
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/neural/motion/animated_clip.h"
 #include "bodyloom/pipelines/neural/motion/clip_scores_json.h"
-#include "bodyloom/pipelines/neural/report_json.h"
 #include "bodyloom/pipelines/people/background.h"
 #include "bodyloom/pipelines/people/planar_picture.h"
 #include "bodyloom/pipelines/people/relight_frames.h"
 #include "bodyloom/pipelines/people/result_set.h"
+#include "bodyloom/pipelines/report_json.h"
 #include "bodyloom/pipelines/runs/motion_run.h"
 #include "bodyloom/render/contact_sheet.h"
 

@@ -15,9 +15,9 @@
 #include "bodyloom/neural/training/training_run.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/neural/photo/photo_backdrop.h"
-#include "bodyloom/pipelines/neural/report_json.h"
 #include "bodyloom/pipelines/people/planar_picture.h"
 #include "bodyloom/pipelines/people/view_angles.h"
+#include "bodyloom/pipelines/report_json.h"
 #include "bodyloom/pipelines/runs/photo_run.h"
 #include "bodyloom/render/contact_sheet.h"
 
