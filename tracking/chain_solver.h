@@ -23,7 +23,8 @@ namespace bodyloom {
 SolveReport SolveChain(SequenceProblem* problem, const SolveOptions& options);
 
 /// The iterations alone, from `x` on, which holds the best point afterwards (also after a failure). The linearisations
-/// that `chain` holds already are used where options.chain.skip_settled lets them. `early`: begin with options.chain.early_dense.
+/// that `chain` holds already are used where options.chain.skip_settled lets them. `early`: begin with
+/// options.chain.early_dense.
 SolveReport DescendChain(ChainProblem* chain, ChainFactor* factor, ChainPoint* x, const SolveOptions& options,
                          bool early);
 

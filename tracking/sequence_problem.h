@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// The clip as one least-squares problem: frames coupled to their neighbours by acceleration, all to shape and camera.
 ///
-/// The unknowns live here, in plain form; no engine is known here (solve_sequence.h). Work and memory grow linearly with
-/// the number of frames: a frame couples to two neighbours on each side and to the shared columns only.
+/// The unknowns live here, in plain form; no engine is known here (solve_sequence.h). Work and memory grow linearly
+/// with the number of frames: a frame couples to two neighbours on each side and to the shared columns only.
 #pragma once
 
 #include <array>
@@ -43,8 +43,8 @@ struct SequenceProblem {
   ShapePrior shape_prior;
 };
 
-/// Whether frame t has cost functions with the next one (terms/own/own_costs.h) that take part: the next one is there and
-/// continues it.
+/// Whether frame t has cost functions with the next one (terms/own/own_costs.h) that take part: the next one is there
+/// and continues it.
 bool HasCostsWithNext(const SequenceProblem& problem, size_t t);
 
 /// The same problem on a subset of the frames (ascending indices): a coarse solve in time. Frame data is copied; cost

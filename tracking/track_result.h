@@ -17,7 +17,8 @@ FrameStatus StatusOf(const FrameData& frame);
 void FillTrack(const TrackSequenceInput& input, const SequenceProblem& problem, const ObservedLandmarks& landmarks,
                TrackSequenceResult* result);
 
-/// Appends to the summary how the rendered UV and the silhouette with the part labels fit the whole clip, those that ran.
+/// Appends to the summary how the rendered UV and the silhouette with the part labels fit the whole clip, those that
+/// ran.
 void SummariseImageTerms(const SequenceProblem& problem, bool rendered_uv, bool part_labels,
                          TrackSequenceSummary* summary);
 

@@ -75,7 +75,8 @@ struct TrackSequenceResult {
   TrackSequenceSummary summary;
 };
 
-/// How a term of image residuals ended; `px` holds |residual| of each observation that had a say, pixels (0 of nothing).
+/// How a term of image residuals ended; `px` holds |residual| of each observation that had a say, pixels (0 of
+/// nothing).
 TermSummary SummarizeTerm(const std::string& term, const std::vector<double>& px, int unmatched = 0);
 
 }  // namespace bodyloom

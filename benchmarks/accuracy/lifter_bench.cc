@@ -5,11 +5,11 @@
 ///                         [--detections users|steady|exact] [--split test|train] [--json F]
 ///
 /// Motion that the split keeps for testing (or, to tell overfitting, that it trains on), by class, as recorded, through
-/// the generator's cameras and detectors (data_tools/synthesis/lifter); `--windows` random windows a class. Errors in mm of a
-/// body with the mean body's torso + leg length: mean per-joint error of the 17 COCO landmarks relative to the mid-hip
-/// (mpjpe), after a similarity (pa), of the limb hypotheses chosen by weight and by hindsight (best). Reliability:
-/// landmarks sorted by the probability that the lifter gives to being within 50 mm, against the share that is. Time:
-/// one thread, both runs (mirrored), a frame.
+/// the generator's cameras and detectors (data_tools/synthesis/lifter); `--windows` random windows a class. Errors in
+/// mm of a body with the mean body's torso + leg length: mean per-joint error of the 17 COCO landmarks relative to the
+/// mid-hip (mpjpe), after a similarity (pa), of the limb hypotheses chosen by weight and by hindsight (best).
+/// Reliability: landmarks sorted by the probability that the lifter gives to being within 50 mm, against the share that
+/// is. Time: one thread, both runs (mirrored), a frame.
 ///
 /// `--detections` tells what errors come from: users' detectors as in training (users), COCO-17 points that are all
 /// there, from a known camera, with the measured noise (steady), or exact (exact).

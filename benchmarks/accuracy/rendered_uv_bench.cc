@@ -7,8 +7,7 @@
 ///                              [--starts 15,30,45,60] [--trials 60] [--block 1,6] [--threads 2] [--json F]
 ///
 /// dense   whole clips tracked from dense keypoints and an initialiser: reprojection with one σ a keypoint;
-/// reprojection
-///         whitened by the UV covariance; rendered UV after it.
+///         reprojection whitened by the UV covariance; rendered UV after it.
 /// basin   single frames from starts of stated error, the shape known, densepose noise: success is a final per-vertex
 ///         projection error below 4 px at 512 px. Reprojection only, rendered UV only (unmatched pixels saturate), the
 ///         two in turn.

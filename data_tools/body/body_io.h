@@ -3,7 +3,7 @@
 ///   zip archive (.npz)  Bodyloom's compact body (body_compact.h), or named arrays: SMPL, SMPL-H (52 joints), SMPL-X
 ///                       (55 joints), and the dense form of the built-in body, which adds UV, parts and landmarks
 ///   anything else       a pickle: SMPL's official .pkl (Python 2, chumpy, scipy), read without Python
-///   (formats/pickle.h)
+///                       (formats/pickle.h)
 /// Keys and shapes in body_smpl.h.
 #pragma once
 

@@ -3,10 +3,9 @@
 /// of its left half (assets/body/cage_left_half.txt; layout in assets/body/RECIPE.md, section 3).
 ///
 /// Text format, one item a line, '#' starts a comment:
-///   v NAME X Y Z               metres, body frame (x = body's left, y up, z front), X ≥ 0; X = 0 lies on the mirror
-///   plane f CHART N1 N2 N3 N4        counter-clockwise seen from outside; CHART is one UV chart name for the whole
-///   quad or
-///                              four names joined by '|', one for each of the quad's first subdivision children
+///   v NAME X Y Z          metres, body frame (x = body's left, y up, z front), X ≥ 0; X = 0 lies on the mirror plane
+///   f CHART N1 N2 N3 N4   counter-clockwise seen from outside; CHART is one UV chart name for the whole quad or four
+///                         names joined by '|', one for each of the quad's first subdivision children
 /// The right half is the mirror image: x → −x, names get a ' appended, quad order reversed; vertices on the plane are
 /// shared. Vertices: left half in file order, then the mirrored ones in that order. Quads: left, then right, in file
 /// order.

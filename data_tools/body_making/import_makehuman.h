@@ -4,12 +4,10 @@
 ///
 /// num_people random adults (makehuman_population.h) are put into T-pose (makehuman_tpose.h) and aligned at the pelvis.
 ///   v_template, shapedirs  mean and area-weighted principal components, in metres per standard deviation, signed so
-///   that
-///                          the body grows taller
+///                          that the body grows taller
 ///   J_regressor            non-negative least squares from nearby skin to the joints of all those people
 ///   weights                the game-engine rig's, fingers to the hand, thumb to the wrist, ball to the foot, clavicle
-///   to
-///                          the collar; the torso's by height between the spine joints; smoothed; at most 4 a vertex
+///                          to the collar; the torso's by height between the spine joints; smoothed; at most 4 a vertex
 ///   posedirs               none: plain linear blend skinning
 ///   vt, ft                 of base.obj; no charts
 ///   landmarks              COCO-17, toes, heels

@@ -3,8 +3,7 @@
 ///
 /// Layout of the folder (that of the mpfb / MakeHuman asset repositories):
 ///   base.obj                              19,158 vertices in decimetres, x left, y up, z front; quads by group:
-///   "body",
-///                                         helper geometry, and a small cube "joint-…" at every joint
+///                                         "body", helper geometry, and a small cube "joint-…" at every joint
 ///   rigs/standard/rig.game_engine.json    53 bones: parent, head and tail as a joint cube or a mean of vertices
 ///   rigs/standard/weights.game_engine.json  bone → [[vertex, weight], …]
 ///   targets/macrodetails/**/*.target.gz   lines "vertex dx dy dz" in decimetres

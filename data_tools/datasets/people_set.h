@@ -5,8 +5,7 @@
 ///                      "people": [{"name": "p000", "split": "train" or "test", "clips": ["p000/a0_v0", …]}, …]}
 ///                     and, as information, "seed" and "command"
 ///   DIR/p000/a0_v0/   a person set (person_set.h): person 0 in action 0 seen by view 0; its frames need not follow
-///   each
-///                     other closely
+///                     each other closely
 /// All clips of a person show the same body in the same clothes. people.json is written last: a folder without it is no
 /// set, or an unfinished one.
 #pragma once

@@ -63,7 +63,8 @@ struct ProjectionBound {
 class ProjectionBoundAccumulator {
  public:
   void Add(const Eigen::MatrixXd& d_pixel_d_parameters, const Eigen::MatrixXd& covariance);
-  /// The bound in pixels times `scale` (SquareImageScale of data_tools/evaluation/metrics_image.h for images of 512×512).
+  /// The bound in pixels times `scale` (SquareImageScale of data_tools/evaluation/metrics_image.h for images of
+  /// 512×512).
   [[nodiscard]] ProjectionBound Result(double scale = 1) const;
 
  private:

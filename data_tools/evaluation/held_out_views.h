@@ -45,10 +45,10 @@ struct EvaluateHeldOutViewsOptions {
 ///   heldout_*          distance in pixels of s (P − hip P) + hip G, carried into every other camera, to its detections
 ///   fitview_*          distance of P, through the clip's camera, to the fitted view's detections
 ///   fitview_own_*      the same through the track's own camera (differs when the focal length was estimated)
-/// and PCK, percent of person height (data_tools/evaluation/metrics_image.h); with `motion`, the angle between the track's joint
-/// rotations and SMPL's, both on the same 24 joints, the root's in the camera frame.
-/// A frame whose landmarks are not all finite is scored with the nearest frame that has them.
-/// Throws std::invalid_argument when the view is unknown, sizes disagree, or nothing overlaps.
+/// and PCK, percent of person height (data_tools/evaluation/metrics_image.h); with `motion`, the angle between the
+/// track's joint rotations and SMPL's, both on the same 24 joints, the root's in the camera frame. A frame whose
+/// landmarks are not all finite is scored with the nearest frame that has them. Throws std::invalid_argument when the
+/// view is unknown, sizes disagree, or nothing overlaps.
 Evaluation EvaluateHeldOutViews(const Track& track, const MultiViewClip& clip, const std::string& view,
                                 const EvaluateHeldOutViewsOptions& options = {});
 

@@ -15,8 +15,8 @@ namespace bodyloom {
 struct MotionQuality {
   int frames = 0;
   double seconds = 0, fps = 0;
-  /// Share of the frames with a joint more than 5° beyond its limits (tracking/terms/joint_limits.h), and the largest excess:
-  /// of the body, and of the limbs' ends (ankles, toes, wrists), which recordings know least.
+  /// Share of the frames with a joint more than 5° beyond its limits (tracking/terms/joint_limits.h), and the largest
+  /// excess: of the body, and of the limbs' ends (ankles, toes, wrists), which recordings know least.
   double beyond_limits_share = 0, worst_excess_deg = 0;
   std::string worst_excess_joint;  ///< empty when none is beyond
   double ends_beyond_limits_share = 0, ends_worst_excess_deg = 0;

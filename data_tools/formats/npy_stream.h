@@ -20,8 +20,7 @@ class NpyStream {
  public:
   /// An array of `shape` (the first dimension counts the records), elements of `dtype` (numbers). Reserves the disk
   /// space where the file system can, so that a full disk shows now and not after an hour. Throws std::runtime_error
-  /// "path:
-  /// ..." when the file cannot be made, std::invalid_argument for a shape that no memory could address.
+  /// "path: ..." when the file cannot be made, std::invalid_argument for a shape that no memory could address.
   NpyStream(const std::string& path, DType dtype, std::vector<int64_t> shape);
   /// Without Finish() everything written is thrown away.
   ~NpyStream();

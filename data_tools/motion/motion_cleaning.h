@@ -8,8 +8,7 @@
 /// 2. Frames are broken, and left out, where a thigh is rolled about its own axis by more than 110° (the knee then
 ///    bends backwards) or a spine joint is turned by more than 80°.
 /// 3. The motion is cut at impossible steps and at gaps. What lies within 0.04 s of an impossible step or a broken
-/// frame
-///    goes with it, because recordings are smoothed over such places; so do pieces that are too short.
+///    frame goes with it, because recordings are smoothed over such places; so do pieces that are too short.
 #pragma once
 
 #include <vector>

@@ -6,12 +6,11 @@
 /// A_j, constant over the clip, says where SMPL's rest frame of j lies in the source's rest pose:
 /// - pelvis, spine, neck, head, collars: axes to axes; chains of another length are interpolated;
 /// - upper arm, forearm, thigh, shin: the shortest turn that takes SMPL's rest bone onto the source's, composed along
-/// the
-///   limb, so that limb directions agree exactly in every frame whatever the source's rest pose (T-pose, arms down,
+///   the limb, so that limb directions agree exactly in every frame whatever the source's rest pose (T-pose, arms down,
 ///   splayed legs);
 /// - upper arm and thigh are then turned about their own axis until elbow and knee bend in SMPL's natural plane:
-/// sources
-///   put the zero of that twist anywhere (CMU's elbow is 30° off), and it shows in how the limb bends, not at rest;
+///   sources put the zero of that twist anywhere (CMU's elbow is 30° off), and it shows in how the limb bends, not at
+///   rest;
 /// - foot: turned about the shin until its heading agrees; its slope is rest to rest, because flat is flat whatever
 ///   height the source gives its ankle;
 /// - hand: as the limb before the twist; the forearm takes half of the hand's twist (½ sin τ), as flesh does.

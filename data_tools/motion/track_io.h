@@ -7,8 +7,9 @@
 ///   3 lost: values NaN)      joints T×J×3   coco17 T×17×3 (not for bodies without these landmarks)
 ///   joint_sigma T×J standard deviation of a joint's position (NaN: unknown)
 ///   camera_model 'pinhole' or 'weak'        K 3×3          distortion 8 (OpenCV: k1 k2 p1 p2 k3 k4 k5 k6)
-///   image_size [width, height], pixels      camera T×3     (s, tx, ty), only with 'weak': pixel = s·(X + tx, Y + ty) +
-///   (cx, cy), s in pixels a metre, cx and cy from K
+///   image_size [width, height], pixels      camera T×3     (s, tx, ty), only with 'weak':
+///                                                          pixel = s·(X + tx, Y + ty) + (cx, cy), s in pixels a metre,
+///                                                          cx and cy from K
 /// There is no `camera` member for a pinhole camera: K and trans say everything.
 ///
 /// The reader also takes tracks that others wrote. Needed are poses, trans and a camera (K, or camera T×3); without

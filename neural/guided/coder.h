@@ -3,8 +3,8 @@
 ///
 /// Encoder: C-BLK(in, w_0), C-BLK(w_0, w_1), …; its features by level, level l with w_l channels at 1/2^(l+1) of the
 /// sides. SkipDecoder: D-BLK from the code at the deepest level upwards, at each level above it beside the encoder's
-/// features of that size, then a 3×3 convolution that
-/// also sees the encoder's input; result linear. Blocks: neural/networks/blocks.h.
+/// features of that size, then a 3×3 convolution that also sees the encoder's input; result linear. Blocks:
+/// neural/networks/blocks.h.
 #pragma once
 
 #include <torch/torch.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// GarNet: the garment labels in another pose, completed from what is known of them. Internal: includes LibTorch.
 ///
-/// One encoder sees the triplets {P, S, G} of the source and {P^t, S^t, G̃^t} of the target; their deepest features side
-/// by side are decoded, with the target's features skipped over at every level. Yoon et al., CVPR 2021, Fig. 5.
+/// One encoder sees the triplets {P, S, G} of the source and {P^t, S^t, G̃^t} of the target; their deepest features
+/// side by side are decoded, with the target's features skipped over at every level. Yoon et al., CVPR 2021, Fig. 5.
 #pragma once
 
 #include <torch/torch.h>

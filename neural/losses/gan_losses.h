@@ -2,8 +2,7 @@
 /// Losses of discriminator and generator from logits D. Internal: includes LibTorch.
 ///
 ///   kNonSaturating: discriminator ½ (mean softplus(−D(real)) + mean softplus(D(fake))), generator mean
-///   softplus(−D(fake))
-///     (binary cross entropy; Goodfellow et al. 2014, its non-saturating form for the generator);
+///     softplus(−D(fake)) (binary cross entropy; Goodfellow et al. 2014, its non-saturating form for the generator);
 ///   kLeastSquares: ½ (mean (D(real) − 1)² + mean D(fake)²), mean (D(fake) − 1)² (Mao et al. 2017).
 /// Several scales are summed, as Wang et al., CVPR 2018 do.
 ///

@@ -9,8 +9,8 @@
 /// Source: Zhang et al., "The Unreasonable Effectiveness of Deep Features as a Perceptual Metric", CVPR 2018, and
 /// version 0.1 of its program.
 ///
-/// Without the trained weights a random-feature substitute measures (neural/networks/vgg.h, channel weights 1); its values say so and
-/// compare with nobody else's.
+/// Without the trained weights a random-feature substitute measures (neural/networks/vgg.h, channel weights 1); its
+/// values say so and compare with nobody else's.
 #pragma once
 
 #include <cstdint>
@@ -52,8 +52,8 @@ class Lpips {
   Lpips& operator=(Lpips&&) noexcept;
 
   /// `trunk`: torchvision's weights ("features.0.weight", …); `heads`: LPIPS' own ("lin0.model.1.weight", …). Throws
-  /// std::runtime_error naming source and tensor when one does not fit (then the substitute stays), std::invalid_argument
-  /// for a network of divided channels.
+  /// std::runtime_error naming source and tensor when one does not fit (then the substitute stays),
+  /// std::invalid_argument for a network of divided channels.
   void Load(const NamedWeights& trunk, const std::string& trunk_source, const NamedWeights& heads,
             const std::string& heads_source);
 

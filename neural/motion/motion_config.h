@@ -7,7 +7,8 @@
 
 namespace bodyloom {
 
-/// The paper gives blocks and resolutions but no channels or levels; these are this project's choice (docs/motion_renderer.md).
+/// The paper gives blocks and resolutions but no channels or levels; these are this project's choice
+/// (docs/motion_renderer.md).
 struct MotionProfile {
   std::string name;
   int image_size = 0;                          ///< longer side of what is rendered, pixels

@@ -5,8 +5,7 @@
 /// learned scale and shift (epsilon 1e-5):
 ///   C-BLK(ic, oc)     = Conv(ic, oc, 3, 1, 1) LReLU+IN, Conv(oc, oc, 3, 1, 1) LReLU+IN, Conv(oc, oc, 4, 2, 1) LReLU+IN
 ///   D-BLK(ic, mc, oc) = Conv(ic, mc, 3, 1, 1) LReLU+IN, Conv(mc, mc, 3, 1, 1) LReLU+IN, Conv(mc, mc, 3, 1, 1)
-///   LReLU+IN,
-///                       Deconv(mc, oc, 4, 2, 1) LReLU
+///                       LReLU+IN, Deconv(mc, oc, 4, 2, 1) LReLU
 /// C-BLK halves an image's sides, D-BLK doubles them. Source: Yoon et al., "Learning Motion-Dependent Appearance for
 /// High-Fidelity Rendering of Dynamic Humans from a Single Camera", CVPR 2022, Fig. 11, which leaves the order inside
 /// "LReLU+IN" open.

@@ -6,10 +6,10 @@
 ///   28; VGG-19 conv3_2 = 12, conv4_2 = 21, …; AlexNet conv1 … conv5 = 0, 3, 6, 8, 10; the ReLU after each is one more.
 /// Sources: Simonyan & Zisserman, ICLR 2015 (configurations D and E); Krizhevsky 2014 (the one-column AlexNet).
 ///
-/// The trained weights are not part of this project. Without them the network is a random-feature substitute: convolutions whose rows
-/// (or, where there are fewer inputs than outputs, columns) are orthonormal times √2, drawn from a seed, biases 0.
-/// Random features of this kind compare images usefully, but figures made with them compare with nobody else's: every
-/// result says so (has_random_features).
+/// The trained weights are not part of this project. Without them the network is a random-feature substitute:
+/// convolutions whose rows (or, where there are fewer inputs than outputs, columns) are orthonormal times √2, drawn
+/// from a seed, biases 0. Random features of this kind compare images usefully, but figures made with them compare with
+/// nobody else's: every result says so (has_random_features).
 #pragma once
 
 #include <torch/torch.h>
@@ -61,8 +61,8 @@ struct FeatureNetworkImpl : torch::nn::Module {
 };
 TORCH_MODULE(FeatureNetwork);
 
-/// On the networks' device (neural/device.h), with the layers of these names as taps; `weights` empty: a random-feature substitute whose
-/// channels are divided. Throws as FeatureNetworkImpl::Load.
+/// On the networks' device (neural/device.h), with the layers of these names as taps; `weights` empty: a random-feature
+/// substitute whose channels are divided. Throws as FeatureNetworkImpl::Load.
 FeatureNetwork MakeFeatureNetwork(FeatureTrunk trunk, const std::vector<std::string>& layers,
                                   const WeightsFrom& weights, int random_features_divisor);
 

@@ -20,7 +20,8 @@ struct BuildBuiltinBodyReport {
   std::string out;
 };
 
-/// Throws std::runtime_error naming a file that cannot be used, RequestError for a file both read and written, Cancelled.
+/// Throws std::runtime_error naming a file that cannot be used, RequestError for a file both read and written,
+/// Cancelled.
 BuildBuiltinBodyReport BuildBuiltinBody(const BuildBuiltinBodyRequest& request,
                                         const PipelineCallbacks& callbacks = {});
 

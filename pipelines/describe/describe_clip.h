@@ -31,8 +31,8 @@ struct DescribeClipReport {
 };
 
 /// Describes every frame of the track and writes the maps, their header, and what else was asked for. Throws
-/// RequestError for options that contradict each other, std::runtime_error naming a file that cannot be used, or a track
-/// that is not this body's, and Cancelled. Nothing is left behind then.
+/// RequestError for options that contradict each other, std::runtime_error naming a file that cannot be used, or a
+/// track that is not this body's, and Cancelled. Nothing is left behind then.
 DescribeClipReport DescribeClip(const DescribeClipRequest& request, const PipelineCallbacks& callbacks = {});
 
 /// Counts, times and memory: some lines for a reader, the last one with a newline.

@@ -35,8 +35,8 @@ struct ExportTrackReport {
   std::string out;     ///< what was written
 };
 
-/// Throws std::runtime_error naming a file that cannot be used, a frame that the track lacks or has lost, or a body that
-/// is not the track's; RequestError for a file both read and written; Cancelled.
+/// Throws std::runtime_error naming a file that cannot be used, a frame that the track lacks or has lost, or a body
+/// that is not the track's; RequestError for a file both read and written; Cancelled.
 ExportTrackReport ExportTrack(const ExportTrackRequest& request, const PipelineCallbacks& callbacks = {});
 
 }  // namespace bodyloom

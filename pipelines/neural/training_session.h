@@ -24,8 +24,8 @@ void WriteRunConfig(const TrainingRun& run);
 /// RUN/preview_000250.png.
 std::string PreviewPath(const TrainingRun& run, int step);
 
-/// Tells the caller of a job how its training goes. Unlike other jobs' a cancelled training ends with a checkpoint and a
-/// summary (TrainingStatus::kStopped), not with Cancelled.
+/// Tells the caller of a job how its training goes. Unlike other jobs' a cancelled training ends with a checkpoint and
+/// a summary (TrainingStatus::kStopped), not with Cancelled.
 class TrainingProgress {
  public:
   TrainingProgress(int steps, const PipelineCallbacks& callbacks) : steps_(steps), callbacks_(callbacks) {}

@@ -29,8 +29,8 @@ class RenderSink {
   virtual void Finish() = 0;
 };
 
-/// By the extension of `path`: .mp4, .png or .npz (RequestError for others). The lines of `title` head the contact sheet.
-/// Arrays of more than 2 GiB are refused (std::runtime_error).
+/// By the extension of `path`: .mp4, .png or .npz (RequestError for others). The lines of `title` head the contact
+/// sheet. Arrays of more than 2 GiB are refused (std::runtime_error).
 std::unique_ptr<RenderSink> MakeRenderSink(const std::string& path, RenderKind kind,
                                            const std::vector<std::string>& title, const BodyModel& body,
                                            const Track& track, const std::vector<RenderStep>& steps,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// The light on a person from what its pixels show: nine spherical-harmonic coefficients of the shading
-/// (render/lighting/sh_lighting.h), with an albedo for each label as unknowns of the same problem, so that dark trousers are not
-/// taken for shadow.
+/// (render/lighting/sh_lighting.h), with an albedo for each label as unknowns of the same problem, so that dark
+/// trousers are not taken for shadow.
 ///
 ///   minimises ½ Σ_i ρ( (a_l(i) · c·Y(n_i) − y_i)² / σ² ) + ½ (w Σ_i (a_l(i) − 1)/N)² + ½ N (10⁻³/σ)² Σ_k>0 c_k²
 /// over c in R⁹ and the albedos a_l. The last term only decides what the normals leave open (seen from one side, 1, z

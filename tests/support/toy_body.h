@@ -8,8 +8,7 @@
 /// - 6 shape components: stature, girth, leg length, arm length, torso length, belly;
 /// - pose correctives at shoulders, elbows, hips and knees only, with generic (full-rank) blocks;
 /// - 24 charts numbered as DensePose's (left hand 4, torso back 1 and front 2, head right 23, left 24, …), each
-/// injective,
-///   and an atlas of 6×4 cells;
+///   injective, and an atlas of 6×4 cells;
 /// - landmarks: COCO-17 and {left,right}_{big_toe,small_toe,heel}.
 #pragma once
 

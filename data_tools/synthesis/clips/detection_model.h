@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// The numbers behind synthetic detections, for every maker of them (detection_noise.h for whole clips,
-/// data_tools/synthesis/lifter for training windows). Lengths in person heights. Source: medians over nine cameras of two dance
-/// clips.
+/// data_tools/synthesis/lifter for training windows). Lengths in person heights. Source: medians over nine cameras of
+/// two dance clips.
 #pragma once
 
 #include <cmath>

@@ -4,16 +4,13 @@
 /// All lengths are in person heights h (the height of the body in the image, pixels), as measured on nine-camera
 /// detections of dancers:
 /// - confidence: a typical value for each landmark, lowered to 16 % (with drift) when the body hides it; the nose, eyes
-/// and
-///   ears follow the direction c of the head relative to the camera through logistic curves; it drifts slowly;
+///   and ears follow the direction c of the head relative to the camera through logistic curves; it drifts slowly;
 /// - noise: σ = (0.006 + 0.024 (1 − confidence)^1.5) h, of which 0.85 σ drifts with a time constant of 0.25 s and 0.45
-/// σ is
-///   white, plus a constant offset of 0.005 h for each landmark of the clip; below a confidence of 0.35 all of it is
-///   multiplied by 1 + e, e exponential with mean 1, redrawn every 0.2 s;
+///   σ is white, plus a constant offset of 0.005 h for each landmark of the clip; below a confidence of 0.35 all of it
+///   is multiplied by 1 + e, e exponential with mean 1, redrawn every 0.2 s;
 /// - drop-outs: a landmark is missing in a given frame with `dropout_probability`;
 /// - swaps: left and right of elbows, wrists, knees and ankles are exchanged for a few frames, `swap_probability` of
-/// the
-///   frames of each pair.
+///   the frames of each pair.
 #pragma once
 
 #include <cstdint>

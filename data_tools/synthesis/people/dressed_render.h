@@ -3,8 +3,7 @@
 ///
 /// The clothed body and the cloth (seen from both sides) go through one visibility buffer a resolution:
 /// - image: samples × samples samples a pixel. Colour = pattern (wardrobe.h) · (ambient + Σ light · max(0, n·l)),
-/// cloth's
-///   inner side at 0.7 of it, averaged with the background;
+///   cloth's inner side at 0.7 of it, averaged with the background;
 /// - labels and normals: what the pixel's centre sees; normals are interpolated, and turned towards the viewer on cloth
 ///   seen from inside;
 /// - iuv: the bare body without clothes, at the pixel's centre.

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Dense keypoints, L_f of paper A: a point of the surface should appear at the pixel where the detector saw it.
 ///   ½ Σ_k w ρ(‖W_k (π(x_k) − y_k)‖²)      ρ: Geman–McClure with c = `kernel`
-/// x_k: face and barycentric coordinates of the detection, posed, camera frame, metres; W_k = I/σ_k, or the inverse root
-/// of the keypoint's covariance (dense_whitening.h), 1/px. Keypoints that another term takes (`taken`) are left out.
-/// w = 1, or the number that each of the evenly chosen keypoints stands for (FrameAccumulator::max_dense; frames with
-/// `taken` use all). What cannot be projected costs c²/2 and is counted. Many points share few joints, so their normal
-/// equations are summed set by set (dense_points.h). Runs when the input has dense keypoints.
+/// x_k: face and barycentric coordinates of the detection, posed, camera frame, metres; W_k = I/σ_k, or the inverse
+/// root of the keypoint's covariance (dense_whitening.h), 1/px. Keypoints that another term takes (`taken`) are left
+/// out. w = 1, or the number that each of the evenly chosen keypoints stands for (FrameAccumulator::max_dense; frames
+/// with `taken` use all). What cannot be projected costs c²/2 and is counted. Many points share few joints, so their
+/// normal equations are summed set by set (dense_points.h). Runs when the input has dense keypoints.
 #pragma once
 
 #include <Eigen/Core>

@@ -27,7 +27,8 @@ void EvaluateNeighbours(const OwnCost& cost, const FrameLayout& layout, const Fr
 
 /// The same as a Ceres cost function, before the loss. Parameter blocks: the axis-angle of each active joint and the
 /// translation of frame t, the same of frame t + 1, betas (if any). Jacobians are by right increments and must be used
-/// with RotationManifold. `first` and `second` give the rotations of joints that are not active. Everything is borrowed.
+/// with RotationManifold. `first` and `second` give the rotations of joints that are not active. Everything is
+/// borrowed.
 class NeighboursCost : public ceres::CostFunction {
  public:
   NeighboursCost(const OwnCost& cost, const FrameLayout& layout, const FrameState& first, const FrameState& second);

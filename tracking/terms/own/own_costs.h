@@ -54,8 +54,8 @@ OwnLoss EvaluateOwnLoss(const OwnCost& cost, double s);
 /// ½ ρ(s) of one cost function at a state; NaN when it cannot be evaluated.
 double OwnCostAt(const OwnCost& cost, const FrameLayout& layout, const FrameState& state, const Eigen::VectorXd& betas);
 
-/// o of x + o, the position of a point in the camera frame, with x relative to what the kinematics hold (zero unless the
-/// camera is weak), and its derivative by the translation's three columns.
+/// o of x + o, the position of a point in the camera frame, with x relative to what the kinematics hold (zero unless
+/// the camera is weak), and its derivative by the translation's three columns.
 Eigen::Vector3d OwnOrigin(const FrameLayout& layout, const FrameState& state, Eigen::Matrix3d* d_origin);
 
 }  // namespace bodyloom

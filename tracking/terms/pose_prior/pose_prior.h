@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// The learned pose prior: which poses people take.
 ///   ½ w E(x),   E(x) = min_k [ ‖L_k (x − μ_k)‖² + e_k ]      (mixture_prior.h)
-/// x: axis-angle of the prior's joints that are estimated, radians. No robust kernel: the minimum over the components is
-/// what keeps rare poses possible. Derivatives are those of the nearest component. Runs when a prior was given.
+/// x: axis-angle of the prior's joints that are estimated, radians. No robust kernel: the minimum over the components
+/// is what keeps rare poses possible. Derivatives are those of the nearest component. Runs when a prior was given.
 #pragma once
 
 #include "bodyloom/tracking/terms/pose_prior/mixture_prior.h"

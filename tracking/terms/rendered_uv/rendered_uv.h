@@ -24,8 +24,8 @@ struct TrackSequenceOptions;
 std::string WhyNoRenderedUv(const TrackSequenceInput& input, const TrackSequenceOptions& options);
 PlanEntry PlanRenderedUv(const TrackSequenceInput& input, const TrackSequenceOptions& options);
 
-/// The rounds of a clip with dense keypoints: their covariance and, where it runs, the rendered UV. Must not outlive the
-/// input and the layout's body.
+/// The rounds of a clip with dense keypoints: their covariance and, where it runs, the rendered UV. Must not outlive
+/// the input and the layout's body.
 class DenseRounds {
  public:
   DenseRounds(const TrackSequenceInput& input, const TrackSequenceOptions& options, const FrameLayout& layout,
