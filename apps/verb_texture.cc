@@ -62,7 +62,7 @@ void AddTextureVerb(CLI::App& app, Action* action) {
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1.0));
   verb->add_option("--margin", c.margin_px,
-                   "pixels around the body's outlines that are not used (default: 1 % of the person's height)")
+                   "pixels around the body's contours that are not used (default: 1 % of the person's height)")
       ->check(CLI::Range(0, 64));
   verb->add_option("--confidence", c.confidence, "how well each texel was seen, as a grey image")->type_name("FILE");
   verb->add_option("--json", c.json, "counts and times of the run")->type_name("FILE");

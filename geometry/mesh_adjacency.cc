@@ -38,7 +38,7 @@ MeshAdjacency BuildMeshAdjacency(const MatrixX3i& faces, int num_vertices) {
       mesh.opposite[edges[i].second] = edges[i + 1].second;
       mesh.opposite[edges[i + 1].second] = edges[i].second;
     } else {
-      ++(end - i == 1 ? mesh.num_border_edges : mesh.num_non_manifold_edges);
+      ++(end - i == 1 ? mesh.num_boundary_edges : mesh.num_non_manifold_edges);
     }
   }
   return mesh;

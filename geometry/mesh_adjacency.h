@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Which faces meet at a vertex and which lie across an edge, from position indices: a seam of the UV map is no border
-/// here.
+/// Which faces meet at a vertex and which lie across an edge, from position indices: a seam of the UV map is no
+/// boundary here.
 #pragma once
 
 #include <cstdint>
@@ -17,9 +17,9 @@ struct MeshAdjacency {
   std::vector<int> corner;  ///< 3·face + corner, ascending at each vertex
 
   /// Of each half-edge the one across it, that is, of the other face at the same two vertices, whichever way it runs;
-  /// −1 at the border of the mesh and where more than two faces meet.
+  /// −1 at the boundary of the mesh and where more than two faces meet.
   std::vector<int> opposite;
-  int num_border_edges = 0;        ///< edges with one face
+  int num_boundary_edges = 0;      ///< edges with one face
   int num_non_manifold_edges = 0;  ///< edges with more than two
 };
 

@@ -7,7 +7,7 @@
 ///
 /// Gutter: so that a bilinear lookup next to a seam is right, the texels around a chart continue its surface. Such a
 /// texel shows the face ACROSS the seam: the surface is unrolled over the edge in the template's metric and followed as
-/// far as the texel lies from it. Where the mesh ends, the border's value is held. Measured against nothing, nearest
+/// far as the texel lies from it. Where the mesh ends, the boundary's value is held. Measured against nothing, nearest
 /// dilation and this in docs/descriptors.md.
 ///
 /// What is odd about a UV map is counted, not hidden: parts outside [0,1]² are not shown (no wrapping); faces without

@@ -18,7 +18,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using DF = hn::CappedTag<float, kLanes>;
 using VF = hn::Vec<DF>;
 
-void FindOutline(const OutlineRow& row, float step_m, bool linear, int8_t* mask) {
+void FindContour(const ContourRow& row, float step_m, bool linear, int8_t* mask) {
   const DF d;
   const hn::Rebind<int32_t, DF> di;
   const hn::Rebind<int8_t, DF> db;
@@ -116,12 +116,12 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace bodyloom::shade_internal {
 
-HWY_EXPORT(FindOutline);
+HWY_EXPORT(FindContour);
 HWY_EXPORT(ShadePixels);
 HWY_EXPORT(BlendPixels);
 
-void FindOutline(const OutlineRow& row, float step_m, bool linear, int8_t* mask) {
-  HWY_DYNAMIC_DISPATCH(FindOutline)(row, step_m, linear, mask);
+void FindContour(const ContourRow& row, float step_m, bool linear, int8_t* mask) {
+  HWY_DYNAMIC_DISPATCH(FindContour)(row, step_m, linear, mask);
 }
 
 void ShadePixels(const ShadedRow& row) { HWY_DYNAMIC_DISPATCH(ShadePixels)(row); }

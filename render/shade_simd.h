@@ -10,8 +10,8 @@ namespace bodyloom::shade_internal {
 /// Rows of floats that kernels read or write may be touched up to this many entries beyond their end.
 inline constexpr int kLanes = 16;
 
-/// Nearness of `count` samples of a row and of their eight neighbours; see OutlineFinder.
-struct OutlineRow {
+/// Nearness of `count` samples of a row and of their eight neighbours; see ContourFinder.
+struct ContourRow {
   const float* here = nullptr;
   const float* neighbours[8] = {};
   int count = 0;
@@ -19,7 +19,7 @@ struct OutlineRow {
 
 /// mask = −1 where a neighbour is further away than the sample by more than step_m (metres), 0 elsewhere. Nearness is
 /// 1/z, or −z when `linear`. Touches nothing beyond `count`.
-void FindOutline(const OutlineRow& row, float step_m, bool linear, int8_t* mask);
+void FindContour(const ContourRow& row, float step_m, bool linear, int8_t* mask);
 
 /// Normals of any length and full colours (0…255) of `count` pixels in; lit colours in their place.
 struct ShadedRow {

@@ -68,9 +68,9 @@ class NormalSampler {
 
 /// Finds the samples where the surface ends: the background, or something at least 4 cm further away, begins within
 /// `radius` samples. The line lies on the nearer side.
-class OutlineFinder {
+class ContourFinder {
  public:
-  OutlineFinder(const VisibilityBuffer& buffer, const Camera& camera, int radius)
+  ContourFinder(const VisibilityBuffer& buffer, const Camera& camera, int radius)
       : buffer_(buffer),
         camera_(camera),
         radius_(radius),
@@ -92,9 +92,9 @@ class OutlineFinder {
     // Columns whose neighbours all lie in the box.
     const int inner_begin = std::clamp(box.x_begin + radius_, begin, end);
     const int inner_end = std::clamp(box.x_end - radius_, inner_begin, end);
-    for (int x = begin; x < inner_begin; ++x) mask[x - begin] = IsOutline(x, y) ? -1 : 0;
-    for (int x = inner_end; x < end; ++x) mask[x - begin] = IsOutline(x, y) ? -1 : 0;
-    shade_internal::OutlineRow row;
+    for (int x = begin; x < inner_begin; ++x) mask[x - begin] = IsContour(x, y) ? -1 : 0;
+    for (int x = inner_end; x < end; ++x) mask[x - begin] = IsContour(x, y) ? -1 : 0;
+    shade_internal::ContourRow row;
     row.here = RowAt(y) + (inner_begin - box.x_begin);
     row.count = inner_end - inner_begin;
     for (size_t k = 0; k < offsets_.size(); ++k) {
@@ -102,7 +102,7 @@ class OutlineFinder {
       row.neighbours[k] = RowAt(j) + (inner_begin + offsets_[k][0] - box.x_begin);
     }
     if (row.count > 0) {
-      shade_internal::FindOutline(row, kStep_m, camera_.model == CameraModel::kWeakPerspective,
+      shade_internal::FindContour(row, kStep_m, camera_.model == CameraModel::kWeakPerspective,
                                   mask + inner_begin - begin);
     }
   }
@@ -116,7 +116,7 @@ class OutlineFinder {
     return buffer_.nearness().data() + box.IndexOf(box.x_begin, y);
   }
 
-  [[nodiscard]] bool IsOutline(int x, int y) const {
+  [[nodiscard]] bool IsContour(int x, int y) const {
     const float here = RowAt(y)[x - buffer_.box().x_begin];
     const float limit = FurtherBy(kStep_m, here, camera_);
     return std::any_of(offsets_.begin(), offsets_.end(), [&](const auto& d) {
@@ -139,9 +139,9 @@ struct ShadingPoints {
   std::vector<float> nx, ny, nz, blue, green, red;
   std::vector<int> column;
   std::vector<float> cover;  ///< opacity × share of the pixel
-  std::vector<Colour> ink;   ///< what an outline mixes in
-  std::vector<uint8_t> outlined;
-  explicit ShadingPoints(int capacity) : column(capacity), cover(capacity), ink(capacity), outlined(capacity) {
+  std::vector<Colour> ink;   ///< what a contour mixes in
+  std::vector<uint8_t> on_contour;
+  explicit ShadingPoints(int capacity) : column(capacity), cover(capacity), ink(capacity), on_contour(capacity) {
     for (auto* values : {&nx, &ny, &nz, &blue, &green, &red}) values->resize(capacity + shade_internal::kLanes);
   }
 };
@@ -159,8 +159,8 @@ class MeshPainter {
       fine_.Project(vertices.row(v).transpose(), &pixel);
       pixels_.row(v) = pixel.transpose();
     }
-    const int radius = static_cast<int>(std::lround(style.outline_px * n_));
-    if (radius > 0) outline_.emplace(buffer_, fine_, radius);
+    const int radius = static_cast<int>(std::lround(style.contour_px * n_));
+    if (radius > 0) contour_.emplace(buffer_, fine_, radius);
     const PixelBox& box = buffer_.box();
     box_ = {box.x_begin / n_, box.y_begin / n_, (box.x_end + n_ - 1) / n_, (box.y_end + n_ - 1) / n_};
   }
@@ -191,7 +191,7 @@ class MeshPainter {
   /// The samples of one pixel, row by row; −1 outside the box.
   struct PixelSamples {
     std::array<int, 64> face;
-    std::array<uint8_t, 64> outlined;
+    std::array<uint8_t, 64> on_contour;
     bool any = false;
     bool is_smooth = true;  ///< all covered, one colour, no line, no step in depth
   };
@@ -230,8 +230,8 @@ class MeshPainter {
         const int face = buffer_.faces()[at];
         const float nearness = buffer_.nearness()[at];
         samples->face[s] = face;
-        samples->outlined[s] = outline_ && face >= 0 && mask_row[i] != 0;
-        lines |= samples->outlined[s];
+        samples->on_contour[s] = contour_ && face >= 0 && mask_row[i] != 0;
+        lines |= samples->on_contour[s];
         all &= face, any_missing |= face;
         nearest = std::max(nearest, nearness), furthest = std::min(furthest, nearness);
       }
@@ -249,7 +249,7 @@ class MeshPainter {
     return style_.face_colours.empty() ? style_.colour : style_.face_colours[face];
   }
 
-  void AddPoint(int column, int face, double x, double y, bool outlined, float share, NormalSampler* normals,
+  void AddPoint(int column, int face, double x, double y, bool on_contour, float share, NormalSampler* normals,
                 ShadingPoints* points) const {
     const int i = points->size++;
     const Vector3f normal = normals->At(face, x, y);
@@ -257,9 +257,9 @@ class MeshPainter {
     const Colour& c = ColourOf(face);
     points->blue[i] = c.blue, points->green[i] = c.green, points->red[i] = c.red;
     points->column[i] = column;
-    points->outlined[i] = outlined;
+    points->on_contour[i] = on_contour;
     points->ink[i] = c;
-    const double alpha = outlined ? std::max(style_.alpha, style_.outline_alpha) : style_.alpha;
+    const double alpha = on_contour ? std::max(style_.alpha, style_.contour_alpha) : style_.alpha;
     points->cover[i] = static_cast<float>(alpha) * share;
   }
 
@@ -269,9 +269,9 @@ class MeshPainter {
     FindSpan(y, &fine_begin, &fine_end);
     if (fine_begin >= fine_end) return;
     const PixelBox& box = buffer_.box();
-    for (int j = 0; j < n_ && outline_; ++j) {
+    for (int j = 0; j < n_ && contour_; ++j) {
       if (y * n_ + j < box.y_begin || y * n_ + j >= box.y_end) continue;
-      outline_->FindRow(y * n_ + j, fine_begin, fine_end, &scratch->mask[size_t(j) * box_.width() * n_]);
+      contour_->FindRow(y * n_ + j, fine_begin, fine_end, &scratch->mask[size_t(j) * box_.width() * n_]);
     }
     const int begin = fine_begin / n_, end = (fine_end + n_ - 1) / n_;
     ShadingPoints& points = scratch->points;
@@ -288,7 +288,7 @@ class MeshPainter {
       }
       for (int s = 0; s < n_ * n_; ++s) {
         if (samples.face[s] < 0) continue;
-        AddPoint(x - begin, samples.face[s], x * n_ + s % n_, y * n_ + s / n_, samples.outlined[s], share, normals,
+        AddPoint(x - begin, samples.face[s], x * n_ + s % n_, y * n_ + s / n_, samples.on_contour[s], share, normals,
                  &points);
       }
     }
@@ -297,13 +297,13 @@ class MeshPainter {
     for (auto* values : {&scratch->cover, &scratch->blue, &scratch->green, &scratch->red}) {
       std::fill_n(values->begin(), end - begin, 0.0F);
     }
-    const auto ink = static_cast<float>(style_.outline_alpha);
+    const auto ink = static_cast<float>(style_.contour_alpha);
     for (int i = 0; i < points.size; ++i) {
       const int x = points.column[i];
       const float cover = points.cover[i];
       scratch->cover[x] += cover;
-      const float keep = points.outlined[i] ? cover * (1 - ink) : cover;
-      const float line = points.outlined[i] ? cover * ink * 0.22F : 0;
+      const float keep = points.on_contour[i] ? cover * (1 - ink) : cover;
+      const float line = points.on_contour[i] ? cover * ink * 0.22F : 0;
       scratch->blue[x] += keep * points.blue[i] + line * points.ink[i].blue;
       scratch->green[x] += keep * points.green[i] + line * points.ink[i].green;
       scratch->red[x] += keep * points.red[i] + line * points.ink[i].red;
@@ -320,7 +320,7 @@ class MeshPainter {
   const VisibilityBuffer& buffer_;
   const MatrixX3f* normals_ = nullptr;  ///< null: nothing is in view
   MatrixX2d pixels_;
-  std::optional<OutlineFinder> outline_;
+  std::optional<ContourFinder> contour_;
   PixelBox box_;
 };
 

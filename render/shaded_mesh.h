@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Draws a mesh over an image: smooth shading by vertex normals, dark antialiased outline, transparency.
+/// Draws a mesh over an image: smooth shading by vertex normals, dark antialiased contour, transparency.
 #pragma once
 
 #include <vector>
@@ -17,8 +17,8 @@ struct MeshStyle {
   Colour colour = kBodyColour;
   std::vector<Colour> face_colours = {};  ///< F colours instead of `colour`, or empty
   double alpha = 1;                       ///< opacity of the surface
-  double outline_px = 1.4;     ///< width of the line along silhouettes and where a limb hides another; 0: none
-  double outline_alpha = 0.9;  ///< opacity of that line
+  double contour_px = 1.4;     ///< width of the line along silhouettes and where a limb hides another; 0: none
+  double contour_alpha = 0.9;  ///< opacity of that line
   int samples = 3;             ///< samples a pixel along x and y
   int num_threads = 1;         ///< the picture is the same for any number
 };

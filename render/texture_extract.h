@@ -22,7 +22,7 @@ namespace bodyloom {
 struct TextureExtractOptions {
   UvTexelOptions texels{.width = 512, .height = 512, .gutter = 1};
   TexelSightOptions sight{.min_cosine = 0.2, .bias_m = 0.003, .slope = 1.5, .whole_footprint = true};
-  /// Pixels this near to the body's outline, or to where a limb hides another (a step of edge_step_m in depth), are not
+  /// Pixels this near to the body's contour, or to where a limb hides another (a step of edge_step_m in depth), are not
   /// used: there the picture is blurred and the track a little off. 0 to 64.
   int edge_margin_px = 2;
   double edge_step_m = 0.05;

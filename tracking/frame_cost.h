@@ -5,7 +5,7 @@
 ///   ½ Σ ρ(‖W_k (π(x_k) − y_k)‖²)      2D joints and dense keypoints (L_f of paper A), Geman–McClure; W_k = I/σ_k, or
 ///                                    the inverse root of the keypoint's covariance (terms/dense/dense_whitening.h)
 /// + ½ λ_r Σ ρ(‖r_uv‖²)                dense keypoints in UV (L_r of paper A, terms/rendered_uv/rendered_uv_term.h)
-/// + ½ Σ w ρ(‖r‖²)                     outlines and part labels (terms/part_labels/part_label_term.h)
+/// + ½ Σ w ρ(‖r‖²)                     contours and part labels (terms/part_labels/part_label_term.h)
 /// + ½ w_prior (energy of the nearest mixture component)
 /// + ½ Σ (excess over joint limits / σ)²
 /// + ½ w ρ((n·u)² / σ²)               u: the root's up axis in the camera frame, n: horizontal, towards the scene; how

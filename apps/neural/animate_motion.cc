@@ -18,7 +18,7 @@ namespace {
 void PrintScores(const AnimateMotionRequest& request, const ClipScores& scores) {
   std::printf("against %s: %s\n", request.data.c_str(), ScoresText(scores.windows).c_str());
   if (scores.composed) {
-    std::printf("over %s: PSNR %.2f dB of the whole picture, %.2f dB within %d px of the outline\n",
+    std::printf("over %s: PSNR %.2f dB of the whole picture, %.2f dB within %d px of the contour\n",
                 request.background.c_str(), scores.composed->psnr_db, scores.composed->rim_psnr_db,
                 CompositeScore::kRimPixels);
   }

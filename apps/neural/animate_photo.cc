@@ -42,7 +42,7 @@ void AddAnimatePhoto(CLI::App& animate, Action* action) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   verb->add_option("--image-labels", request.photo.labels,
-                   "DensePose's parts of the photo, which give the outline (default: GrabCut)");
+                   "DensePose's parts of the photo, which give the silhouette (default: GrabCut)");
   verb->add_option("--track", request.track, "The motion: a track, .npz")->required();
   verb->add_option("--out", request.out, "The video, .mp4")->required();
   verb->add_option("--body", request.photo.body, "The tracks' body (default: the built-in body)");

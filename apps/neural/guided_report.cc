@@ -12,10 +12,11 @@ namespace {
 
 std::string ScoresText(const GuidedScores& s) {
   char line[256];
-  std::snprintf(line, sizeof line,
-                "L1 %.4f, PSNR %.2f dB, outline IoU %.3f, labels IoU %.3f, LPIPS %.4f (deviation %.4f), CS %.3f; LPIPS "
-                "and CS by a random-feature substitute",
-                s.image_l1, s.psnr_db, s.silhouette_iou, s.label_iou, s.lpips, s.lpips_deviation, s.contextual);
+  std::snprintf(
+      line, sizeof line,
+      "L1 %.4f, PSNR %.2f dB, silhouette IoU %.3f, labels IoU %.3f, LPIPS %.4f (deviation %.4f), CS %.3f; LPIPS "
+      "and CS by a random-feature substitute",
+      s.image_l1, s.psnr_db, s.silhouette_iou, s.label_iou, s.lpips, s.lpips_deviation, s.contextual);
   return line;
 }
 

@@ -48,7 +48,7 @@ void Run(const Parsed& parsed) {
   const GuidedScores& s = summary.scores;
   if (s.frames > 0) {
     std::printf(
-        "validation of %d pictures: L1 %.4f, PSNR %.2f dB, outline IoU %.3f, labels IoU %.3f, LPIPS (random-feature "
+        "validation of %d pictures: L1 %.4f, PSNR %.2f dB, silhouette IoU %.3f, labels IoU %.3f, LPIPS (random-feature "
         "substitute) %.4f\n",
         s.frames, s.image_l1, s.psnr_db, s.silhouette_iou, s.label_iou, s.lpips);
   }

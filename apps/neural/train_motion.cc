@@ -61,7 +61,7 @@ void AddTrainMotion(CLI::App& train, Action* action) {
       ->required();
   verb->add_option("--body", request.data.body, "The track's body (default: the built-in body)");
   verb->add_option("--part-labels", request.data.part_labels,
-                   "For a video: DensePose's parts (.npz), for outline and classes");
+                   "For a video: DensePose's parts (.npz), for silhouette and classes");
   AddProfileOption(verb, &parsed->profile);
   verb->add_option("--without", parsed->without,
                    "Leave out a part, as the paper's ablations do; surface, texture: the decoders see neither UV "

@@ -31,9 +31,9 @@ void Run(const Parsed& parsed) {
   PrintStep(summary, options.TotalSteps());
   const PhotoScores& s = summary.scores;
   if (s.pictures > 0) {
-    std::printf("validation of %d pairs: L1 %.4f, PSNR %.2f dB, SSIM %.4f, LPIPS%s %.4f, outline IoU %.3f\n",
+    std::printf("validation of %d pairs: L1 %.4f, PSNR %.2f dB, SSIM %.4f, LPIPS%s %.4f, silhouette IoU %.3f\n",
                 s.pictures, s.image_l1, s.psnr_db, s.ssim,
-                s.lpips_random_features ? " (random-feature substitute)" : "", s.lpips, s.outline_iou);
+                s.lpips_random_features ? " (random-feature substitute)" : "", s.lpips, s.silhouette_iou);
     std::fflush(stdout);
   }
   PrintEnd(summary, summary.checkpoint, request.out);

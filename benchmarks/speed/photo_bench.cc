@@ -117,7 +117,7 @@ void GuidedRenderer(const GuidedConfig& config) {
       EmptyMaps(config.profile.texture_size,
                 std::vector<uint8_t>(size_t(config.profile.texture_size) * config.profile.texture_size, 2));
   std::fill(maps.from.begin(), maps.from.end(), uint8_t{1});
-  if (config.profile.outline_hints) maps.extent.assign(maps.from.size(), 0.1F);
+  if (config.profile.contour_hints) maps.extent.assign(maps.from.size(), 0.1F);
   Print("animate: pseudo inputs of a frame", [&] { LookUp(maps, frame); });
   Print("animate: the photo encoded, once", [&] { model->EncodeSource(photo); });
 }

@@ -44,7 +44,7 @@ inline PersonLabel LabelOfPart(int part) {
 }
 
 /// A picture of `width` × `height` of these classes, in the first channel, as CutLabels takes labels. Unknown parts
-/// (255) inside the person's outline count as top.
+/// (255) inside the person's silhouette count as top.
 inline Image LabelPicture(const LabelImage& parts, int width, int height) {
   Image picture(width, height);
   for (int y = 0; y < height; ++y) {

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kGrabCutRounds = 4;
 constexpr double kSureInside = 0.015, kProbable = 0.03, kPossible = 1.0 / 12;  ///< of the body's extent
-constexpr double kLeastShare = 0.7;  ///< of the body's pixels that the outline must hold to be believed
+constexpr double kLeastShare = 0.7;  ///< of the body's pixels that the foreground must hold to be believed
 constexpr int kFillSide = 512;
 
 cv::Mat Disc(double radius) {
@@ -36,7 +36,7 @@ cv::Mat LargestPiece(const cv::Mat& inside, const cv::Mat& body) {
   return best == 0 ? cv::Mat::zeros(inside.size(), CV_8UC1) : cv::Mat(pieces == best);
 }
 
-cv::Mat OutlineOf(const Image& picture, const cv::Mat& body) {
+cv::Mat ForegroundMask(const Image& picture, const cv::Mat& body) {
   const cv::Rect box = cv::boundingRect(body);
   const double extent = std::max(box.width, box.height);
   cv::Mat inside, probable, possible, mask(body.size(), CV_8UC1, cv::Scalar(cv::GC_BGD));
@@ -50,9 +50,9 @@ cv::Mat OutlineOf(const Image& picture, const cv::Mat& body) {
   cv::setRNGSeed(1);  // its mixtures start from k-means
   cv::Mat background_model, foreground_model;
   cv::grabCut(MatOf(picture), mask, {}, background_model, foreground_model, kGrabCutRounds, cv::GC_INIT_WITH_MASK);
-  cv::Mat outline = LargestPiece((mask == cv::GC_FGD) | (mask == cv::GC_PR_FGD), body);
-  const double kept = cv::countNonZero(outline & body) / std::max(1.0, double(cv::countNonZero(body)));
-  return kept < kLeastShare ? body : outline;
+  cv::Mat foreground = LargestPiece((mask == cv::GC_FGD) | (mask == cv::GC_PR_FGD), body);
+  const double kept = cv::countNonZero(foreground & body) / std::max(1.0, double(cv::countNonZero(body)));
+  return kept < kLeastShare ? body : foreground;
 }
 
 }  // namespace
@@ -64,7 +64,7 @@ std::vector<uint8_t> LabelsFromBody(const Image& picture, const std::vector<uint
   cv::Mat body(picture.height, picture.width, CV_8UC1);
   for (size_t i = 0; i < area; ++i) body.data[i] = parts[i] != 0 ? 255 : 0;
   BODYLOOM_CHECK(cv::countNonZero(body) > 0, "labels from the body: the body is not in the picture");
-  const cv::Mat outline = OutlineOf(picture, body);
+  const cv::Mat foreground = ForegroundMask(picture, body);
   // For every pixel the nearest one of the body: OpenCV numbers the zeros of the picture it is given.
   cv::Mat distance, nearest;
   cv::distanceTransform(255 - body, distance, nearest, cv::DIST_L2, cv::DIST_MASK_5, cv::DIST_LABEL_PIXEL);
@@ -77,7 +77,7 @@ std::vector<uint8_t> LabelsFromBody(const Image& picture, const std::vector<uint
   std::vector<uint8_t> labels(area, 0);
   for (int y = 0; y < body.rows; ++y) {
     for (int x = 0; x < body.cols; ++x) {
-      if (outline.at<uchar>(y, x) == 0) continue;
+      if (foreground.at<uchar>(y, x) == 0) continue;
       labels[size_t(y) * body.cols + x] = static_cast<uint8_t>(LabelOfPart(part_of.at(nearest.at<int>(y, x))));
     }
   }

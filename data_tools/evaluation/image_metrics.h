@@ -23,7 +23,7 @@ struct PixelMask {
 /// Inside where a channel is 128 or more.
 PixelMask MaskFrom(const Image& image);
 
-/// The outline's surroundings: pixels that have a pixel inside and one outside of `mask` within `pixels` columns and
+/// The contour's surroundings: pixels that have a pixel inside and one outside of `mask` within `pixels` columns and
 /// rows. Beyond the picture's border is neither.
 PixelMask RimOf(const PixelMask& mask, int pixels);
 

@@ -2,8 +2,8 @@
 /// From DensePose labels to dense keypoints: each labelled pixel names a point of the surface by its body's charts.
 ///
 /// 8-bit U stands for [U/255, (U+1)/255) because it was rounded down, so u = min(1, (U + ½)/255), v alike. Pixels whose
-/// (u, v) lies further than `max_gap` outside the chart are dropped (mixed pixels at part borders), nearer ones go to
-/// the nearest point of the chart. Of a frame's pixels `per_frame` are kept: every part gets its share by area, and
+/// (u, v) lies further than `max_gap` outside the chart are dropped (mixed pixels at part boundaries), nearer ones go
+/// to the nearest point of the chart. Of a frame's pixels `per_frame` are kept: every part gets its share by area, and
 /// within a part the pixels are taken at equal steps along a Morton curve, which spreads them evenly over the part.
 #pragma once
 

@@ -31,7 +31,7 @@ GuidedBatch MakeGuidedBatch(const PhotoSource& people, const GuidedConfig& confi
   if (result.box.width == 0) result.box = {0, 0, targets[0].size / multiple, targets[0].size / multiple};
   result.target = CroppedPixels(target, result.box, multiple);
   GuidedPseudo pseudo = PseudoOf(target, known);
-  if (config.profile.outline_hints) {
+  if (config.profile.contour_hints) {
     const SourceBody body = {people.texel_parts, {}, neighbours};
     std::vector<PseudoPicture> warped;
     for (int b = 0; b < batch; ++b) {
@@ -39,7 +39,7 @@ GuidedBatch MakeGuidedBatch(const PhotoSource& people, const GuidedConfig& confi
       warped.push_back(LookUp(maps, targets[b]));
     }
     const GuidedPseudo of_source = PseudoOf(warped);
-    pseudo.outline_classes = of_source.classes;
+    pseudo.contour_classes = of_source.classes;
     pseudo.extent = of_source.extent;
   }
   result.pseudo = CroppedPixels(pseudo, result.box, multiple);

@@ -22,7 +22,7 @@ struct GuidedBatch {
 };
 
 /// Of step `step` (neural/guided/guided_plan.h). The box is that of all targets, grown by `reach` pixels.
-/// `neighbours`: of the people's atlas, for configurations with outline hints.
+/// `neighbours`: of the people's atlas, for configurations with contour hints.
 GuidedBatch MakeGuidedBatch(const PhotoSource& people, const GuidedConfig& config, uint64_t seed, int64_t step,
                             int batch, int reach, const TexelNeighbours* neighbours = nullptr);
 

@@ -12,7 +12,7 @@ std::string GuidedCard(const GuidedConfig& config) {
   const int64_t side = config.profile.image_size, cells = side / config.Multiple(),
                 triplet = 4 + config.LabelChannels();
   const int64_t guide = config.LabelChannels() + 1 + (config.PoseForRender() ? 3 : 0);
-  const int64_t hints = config.profile.outline_hints ? config.LabelChannels() + 2 : 0;
+  const int64_t hints = config.profile.contour_hints ? config.LabelChannels() + 2 : 0;
   using Shapes = std::vector<std::pair<int64_t, int64_t>>;
   std::string text;
   const auto pixels = [&](int64_t channels) { return torch::zeros({0, channels, side, side}); };

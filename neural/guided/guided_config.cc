@@ -172,7 +172,7 @@ std::string ToText(const GuidedConfig& config) {
   text << "; full " << p.full_width << "; modulation " << p.modulation_width << "; latent " << p.latent << "; one-hot "
        << p.one_hot_labels << "; spectral norm " << p.spectral_norm << "; discriminator " << p.discriminator_width
        << "; fill colours " << p.fill_colours << "; from body " << p.start_from_body << "; outline hints "
-       << p.outline_hints;
+       << p.contour_hints;
   for (const auto& [name, flag] : Flags()) {
     // Whether the maps are completed is a matter of inference alone: the networks are the same.
     if (flag != &GuidedConfig::uv_appearance) text << "; " << name << ' ' << config.*flag;

@@ -37,8 +37,8 @@ struct GuidedProfile {
       1;                      ///< channels of VGG are divided by this where a random-feature substitute takes its place
   int contextual_points = 0;  ///< positions that the contextual loss compares, drawn at random
   bool fill_colours = false;  ///< RenderNet's last convolution sees known colours carried on over their garment
-  bool start_from_body = false;  ///< SilNet sees the bare body as a map of its own, and begins as its outline
-  bool outline_hints = false;    ///< SilNet sees the clothes' labels and extent on the target's body
+  bool start_from_body = false;  ///< SilNet sees the bare body as a map of its own, and starts with its silhouette
+  bool contour_hints = false;    ///< SilNet sees the clothes' labels and extent on the target's body
   bool nearest_texels = false;   ///< the maps are completed by MapCompletion::kNearest, else over virtual views
 };
 
@@ -49,7 +49,7 @@ const GuidedProfile& GuidedProfileNamed(const std::string& name);
 struct GuidedConfig {
   GuidedProfile profile;
   // The paper's ablations (Table 2); all true: S+G+R. What is left out of the inputs is zero.
-  bool silhouettes = true;        ///< SilNet; without it RenderNet outlines the person itself (or GarNet does)
+  bool silhouettes = true;        ///< SilNet; without it RenderNet predicts the silhouette itself (or GarNet does)
   bool garments = true;           ///< GarNet
   bool source_silhouette = true;  ///< S^s, in all three networks
   bool source_labels = true;      ///< M^s, called G^s elsewhere in the paper
@@ -65,7 +65,7 @@ struct GuidedConfig {
   }
   /// Whether somebody asks which texels are near each other.
   [[nodiscard]] bool NeedsNeighbours() const {
-    return profile.outline_hints || Completion() == MapCompletion::kNearest;
+    return profile.contour_hints || Completion() == MapCompletion::kNearest;
   }
   /// A side of the images must be a multiple of this; pictures are cropped at multiples of it.
   [[nodiscard]] int Multiple() const { return 1 << Levels(); }

@@ -35,7 +35,7 @@ GuidedSource GuidedModelImpl::EncodeSource(const GuidedTensors& source) {
 Tensor GuidedModelImpl::Silhouette(const GuidedSource& source, const Tensor& pose, const GuidedPseudo& pseudo,
                                    const CodeBox& box) {
   const Tensor seen =
-      config.profile.outline_hints ? torch::cat({LabelMap(pseudo.outline_classes), pseudo.extent}, 1) : Tensor();
+      config.profile.contour_hints ? torch::cat({LabelMap(pseudo.contour_classes), pseudo.extent}, 1) : Tensor();
   return sil(Cropped(source.sil_code, box), pose, seen);
 }
 
@@ -59,8 +59,8 @@ std::pair<Tensor, Tensor> GuidedModelImpl::Render(const Tensor& code, const Tens
   }
   if (!config.pseudo_image) seen = torch::zeros_like(seen), shown = torch::zeros_like(shown);
   const Tensor colours = render(code.defined() ? Cropped(code, box) : code, torch::cat(guide, 1), seen, shown);
-  const Tensor outline = colours.size(1) == 4 ? torch::sigmoid(colours.slice(1, 3, 4)) : silhouette;
-  return {torch::sigmoid(colours.slice(1, 0, 3)) * outline, outline};
+  const Tensor mask = colours.size(1) == 4 ? torch::sigmoid(colours.slice(1, 3, 4)) : silhouette;
+  return {torch::sigmoid(colours.slice(1, 0, 3)) * mask, mask};
 }
 
 GuidedResult GuidedModelImpl::forward(const GuidedSource& source, const Tensor& pose, const GuidedPseudo& pseudo,

@@ -46,7 +46,7 @@ struct GuidedPseudo {
   torch::Tensor classes, image, silhouette;  ///< G̃, Ĩ, S̃
   /// What SilNet sees of the source, where it does: labels on the target's body, and B×2 how far clothes stand off it
   /// and where that puts them.
-  torch::Tensor outline_classes, extent;
+  torch::Tensor contour_classes, extent;
 };
 
 struct GuidedResult {

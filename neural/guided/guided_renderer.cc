@@ -36,7 +36,7 @@ class GuidedRenderer::Impl {
     BODYLOOM_CHECK(tensors.image.defined(), "pose-guided renderer: the source has no picture");
     codes_ = model_->EncodeSource(tensors);
     last_ = {};
-    source_ = MapsOfSource(photos, body, completion(), config_.profile.outline_hints,
+    source_ = MapsOfSource(photos, body, completion(), config_.profile.contour_hints,
                            [&](const PhotoFrame& frame, const PseudoPicture& pseudo) { return Draw(frame, pseudo); });
     BODYLOOM_CHECK(source_.texels_seen > 0, "pose-guided renderer: the photos show nothing of the body");
   }

@@ -106,7 +106,7 @@ GuidedTensors CroppedPixels(const GuidedTensors& tensors, const CodeBox& box, in
 
 GuidedPseudo CroppedPixels(const GuidedPseudo& pseudo, const CodeBox& box, int multiple) {
   return {CroppedPixels(pseudo.classes, box, multiple), CroppedPixels(pseudo.image, box, multiple),
-          CroppedPixels(pseudo.silhouette, box, multiple), CroppedPixels(pseudo.outline_classes, box, multiple),
+          CroppedPixels(pseudo.silhouette, box, multiple), CroppedPixels(pseudo.contour_classes, box, multiple),
           CroppedPixels(pseudo.extent, box, multiple)};
 }
 

@@ -6,10 +6,10 @@
 ///   x = Conv3(z);  for each level, coarsest first: x = up2(ModulatedBlock(x | f_l, g_l));
 ///   x = ModulatedBlock(x | (G^t, S^t), (Ĩ^t, S̃^t)),  result Conv3(LReLU(x), X^t, S̃^t)   (at full size)
 /// So both of the target's encoders condition every level, and the maps themselves the last one; the last convolution
-/// sees the known colours X^t themselves (Ĩ^t, or Ĩ^t carried on), so that what is known need not be painted anew.
+/// sees the known colours X^t themselves (Ĩ^t, or Ĩ^t carried on), so that what is known need not be painted again.
 /// Without the latent code z = 0. Without L_KL the code is not drawn: z comes out of fully connected layers on the mean
-/// over enc_z's deepest features, the same at every place. Without SilNet and GarNet together a fourth channel outlines
-/// the person. Source: Yoon et al., CVPR 2021, Fig. 6, which gives neither channels nor levels.
+/// over enc_z's deepest features, the same at every place. Without SilNet and GarNet together a fourth channel predicts
+/// the silhouette. Source: Yoon et al., CVPR 2021, Fig. 6, which gives neither channels nor levels.
 #pragma once
 
 #include <torch/torch.h>
@@ -36,7 +36,8 @@ struct RenderNetImpl : torch::nn::Module {
   RenderCode EncodeSource(const torch::Tensor& triplet);
   /// code: B×latent at the deepest level (undefined: zero); guide: labels, silhouette and, where a network is left out,
   /// the pose map; pseudo: B×4, Ĩ and S̃; shown: B×3, the colours that the last convolution sees, Ĩ or Ĩ carried on
-  /// beyond what is known of it (carry_colours.h). Returns B×3 (4 where RenderNet outlines the person itself) linear.
+  /// beyond what is known of it (carry_colours.h). Returns B×3 (4 where RenderNet predicts the silhouette itself)
+  /// linear.
   torch::Tensor forward(const torch::Tensor& code, const torch::Tensor& guide, const torch::Tensor& pseudo,
                         const torch::Tensor& shown);
 

@@ -8,17 +8,17 @@ using torch::Tensor;
 SilNetImpl::SilNetImpl(const GuidedConfig& config) {
   const std::vector<int>& widths = config.profile.shape_widths;
   from_body = config.profile.start_from_body;
-  const int input = 3 + (config.profile.outline_hints ? config.LabelChannels() + 2 : 0) + (from_body ? 1 : 0);
+  const int input = 3 + (config.profile.contour_hints ? config.LabelChannels() + 2 : 0) + (from_body ? 1 : 0);
   source_encoder = register_module("source_encoder", Encoder(4 + config.LabelChannels(), widths));
   target_encoder = register_module("target_encoder", Encoder(input, widths));
   decoder = register_module("decoder", SkipDecoder(2 * widths.back(), widths, input, 1));
   if (!from_body) return;
-  // A new network outlines what is likely: 4 inside, −2 outside. That is the body as far as clothes stood off the
+  // A new network predicts what is likely: 4 inside, −2 outside. That is the body as far as clothes stood off the
   // source, or else the bare body, a pixel wider and soft.
   const torch::NoGradGuard no_grad;
   Tensor weight = decoder->head->weight[0];
   const int64_t channels = weight.size(0);
-  if (config.profile.outline_hints) {
+  if (config.profile.contour_hints) {
     weight[channels - 2][1][1] += 6;
   } else {
     weight[channels - 1] += 6.0 / 9;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// SilNet: the person's outline in another pose. Internal: includes LibTorch.
+/// SilNet: the person's silhouette in another pose. Internal: includes LibTorch.
 ///
 /// Two encoders, of the source triplet {P, S, G} and of the target's pose map; their deepest features side by side are
 /// decoded, with the target's features skipped over at every level. Yoon et al., CVPR 2021, Fig. 4.
@@ -16,7 +16,7 @@ struct SilNetImpl : torch::nn::Module {
   explicit SilNetImpl(const GuidedConfig& config);
   /// B×(4 + label channels)×H×W → the source's code, at the deepest level.
   torch::Tensor EncodeSource(const torch::Tensor& triplet);
-  /// Code (of the same size as the target's deepest features), B×3 pose map and, with `outline_hints`, what is known of
+  /// Code (of the same size as the target's deepest features), B×3 pose map and, with `contour_hints`, what is known of
   /// the clothes on the target's body, B×(label channels + 2) (else undefined) → B×1 logits.
   torch::Tensor forward(const torch::Tensor& source_code, const torch::Tensor& pose, const torch::Tensor& seen);
 

@@ -54,7 +54,7 @@ const std::vector<std::string> kColumns = {"learning_rate",
 enum Balanced { kPerceptual, kContextual, kGan, kKl, kNumBalanced };
 
 struct Losses {
-  double silhouette = 0, labels = 0, image = 0, outline = 0, discriminator = 0, render = 0, total = 0;
+  double silhouette = 0, labels = 0, image = 0, mask = 0, discriminator = 0, render = 0, total = 0;
   std::array<double, kNumBalanced> balanced{};
   [[nodiscard]] bool IsFinite() const {
     double sum = total + discriminator;
@@ -138,7 +138,7 @@ class GuidedTrainer : public TrainedSystem {
       if (completion == MapCompletion::kVirtualViews && views.empty()) completion = MapCompletion::kNone;
       const SourceBody body = {people.texel_parts, views, neighbours_ ? &*neighbours_ : nullptr};
       const CoherentMaps maps =
-          MapsOfSource(std::span(&photo, 1), body, completion, config_.profile.outline_hints, draw).maps;
+          MapsOfSource(std::span(&photo, 1), body, completion, config_.profile.contour_hints, draw).maps;
       const int frames = std::min(people.num_frames[person] - 1, options_.validation_frames);
       for (int k = 0; k < frames; ++k) {
         // Spread over the person's pictures but the photo.
@@ -167,7 +167,7 @@ class GuidedTrainer : public TrainedSystem {
             losses_.silhouette,
             losses_.labels,
             losses_.image,
-            losses_.outline,
+            losses_.mask,
             losses_.balanced[kPerceptual],
             losses_.balanced[kContextual],
             losses_.balanced[kGan],
@@ -234,13 +234,13 @@ class GuidedTrainer : public TrainedSystem {
     const auto [silhouette, classes] = RenderInputs(batch, source, silhouette_logits, step);
     const RenderCode& code = source.render_code;
     const Tensor noise = code.log_variance.defined() ? RandnLike(code.mean) : Tensor();
-    const auto [image, outline] =
+    const auto [image, mask] =
         model_->Render(Draw(code, noise), truth.pose, silhouette, classes, batch.pseudo, batch.box);
     Tensor render = L1Loss(image, truth.image);
     losses.image = render.item<double>();
     if (!config_.silhouettes && !config_.garments) {
-      const Tensor loss = L1Loss(outline, truth.silhouette);
-      losses.outline = loss.item<double>();
+      const Tensor loss = L1Loss(mask, truth.silhouette);
+      losses.mask = loss.item<double>();
       render = render + loss;
     }
     if (options_.gan_share > 0) losses.discriminator = StepDiscriminator(truth, image.detach());

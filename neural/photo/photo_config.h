@@ -19,8 +19,8 @@ struct PhotoProfile {
   int discriminator_width = 0, discriminator_layers = 0, discriminator_scales = 0;
   int perceptual_divisor =
       1;  ///< channels of VGG are divided by this where a random-feature substitute takes its place
-  /// RenderNet's last convolution sees R, its colours filled outwards and the body's outline too, and begins with
-  /// those colours and that outline.
+  /// RenderNet's last convolution sees R, its colours filled outwards and the body's silhouette too, and begins with
+  /// those colours and that silhouette.
   /// Instance norm takes colours out of every map before; how they come back is learned, which takes longer than two
   /// cores can wait. Not in the paper.
   bool render_passes_input = false;
@@ -61,7 +61,7 @@ struct PhotoConfig {
   /// Channels of what RenderNet sees: d, 3, 3 and 6.
   [[nodiscard]] int RenderChannels() const;
   /// Channels that RenderNet's last convolution sees beside its own: three colours filled outwards, R and the body's
-  /// outline; or none.
+  /// silhouette; or none.
   [[nodiscard]] int PassedChannels() const { return profile.render_passes_input ? RenderChannels() + 4 : 0; }
   /// The smallest side of a picture that the discriminator takes.
   [[nodiscard]] int SmallestSide() const;

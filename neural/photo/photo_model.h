@@ -7,7 +7,7 @@
 ///   c, α = tanh, sigmoid g(R)    RenderNet;  I = α (c + 1)/2. Where its last convolution sees R too
 ///                                (PhotoProfile::render_passes_input), it also sees R's colours filled outwards from
 ///                                the body (neural/networks/pull_push.h), which clothes beyond the body begin with,
-///                                and the body's outline
+///                                and the body's silhouette
 /// Source: Sarkar et al., "Neural Re-Rendering of Humans from a Single Image", ECCV 2020, Sections 3.2–3.4. The paper's
 /// RenderNet has three outputs on its photographs' plain background; the fourth is this project's
 /// (docs/photo_renderer.md).

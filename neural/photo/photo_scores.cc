@@ -25,7 +25,7 @@ void PhotoScorer::Add(const PhotoPicture& result, const PhotoFrame& truth) {
     const bool shown = truth.labels.empty()
                            ? truth.image[i] > 0 || truth.image[pixels + i] > 0 || truth.image[2 * pixels + i] > 0
                            : truth.labels[i] != 0;
-    outline_.Add(result.alpha[i] > 0.5F ? 1 : 0, shown ? 1 : 0);
+    silhouette_.Add(result.alpha[i] > 0.5F ? 1 : 0, shown ? 1 : 0);
     if (!shown) continue;
     for (size_t c = 0; c < 3; ++c) {
       const double error = double{result.image[c * pixels + i]} - truth.image[c * pixels + i];
@@ -52,7 +52,7 @@ PhotoScores PhotoScorer::Scores() const {
   scores.ssim = ssim_ ? mean(ssim_sum_, pictures_) : kNone;
   scores.lpips = mean(lpips_sum_, pictures_);
   scores.lpips_random_features = random_features_;
-  scores.outline_iou = outline_.ForegroundIou();
+  scores.silhouette_iou = silhouette_.ForegroundIou();
   return scores;
 }
 

@@ -19,7 +19,7 @@ struct PhotoScores {
   double ssim = 0;                    ///< as the caller's function says, on whole frames; NaN without one
   double lpips = 0;                   ///< on whole frames, black background
   bool lpips_random_features = true;  ///< not comparable with other programs' figures
-  double outline_iou = 0;             ///< of alpha > ½ and the true foreground
+  double silhouette_iou = 0;          ///< of alpha > ½ and the true foreground
 };
 
 /// SSIM of two pictures of the same size.
@@ -40,7 +40,7 @@ class PhotoScorer {
   int pictures_ = 0;
   bool random_features_ = true;
   double l1_ = 0, squared_ = 0, values_ = 0, ssim_sum_ = 0, lpips_sum_ = 0;
-  ClassOverlap outline_{2};
+  ClassOverlap silhouette_{2};
 };
 
 }  // namespace bodyloom

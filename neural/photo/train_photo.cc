@@ -168,7 +168,7 @@ class PhotoTrainer : public TrainedSystem {
   }
 
   [[nodiscard]] std::vector<double> ScoreRow() const override {
-    return {scores_.image_l1, scores_.psnr_db, scores_.ssim, scores_.lpips, scores_.outline_iou};
+    return {scores_.image_l1, scores_.psnr_db, scores_.ssim, scores_.lpips, scores_.silhouette_iou};
   }
 
   bool Report(int done, double seconds) override {

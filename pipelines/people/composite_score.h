@@ -23,7 +23,7 @@ class CompositeScore {
 
   /// Mean over frames of the PSNR of the whole picture, dB.
   [[nodiscard]] double psnr_db() const { return whole_.Mean(); }
-  /// Of the pixels within kRimPixels of the true person's outline (RimOf()); NaN where the set has no labels.
+  /// Of the pixels within kRimPixels of the true person's contour (RimOf()); NaN where the set has no labels.
   [[nodiscard]] double rim_psnr_db() const { return rim_.Mean(); }
 
  private:

@@ -17,7 +17,7 @@ std::string ScoresText(const MotionScores& scores) {
   add("L1", 4, scores.image_l1, "");
   add("PSNR", 2, scores.psnr_db, " dB");
   add("labels IoU", 3, scores.label_iou, "");
-  add("outline IoU", 3, scores.foreground_iou, "");
+  add("silhouette IoU", 3, scores.foreground_iou, "");
   add("normals", 1, scores.normal_deg, " deg");
   add("flicker", 4, scores.flicker, "");
   return text;

@@ -39,7 +39,7 @@ std::vector<std::pair<const char*, bool*>> Switches(GuidedRun* run) {
           {"spectral_norm", &run->config.profile.spectral_norm},
           {"fill_colours", &run->config.profile.fill_colours},
           {"start_from_body", &run->config.profile.start_from_body},
-          {"outline_hints", &run->config.profile.outline_hints},
+          {"outline_hints", &run->config.profile.contour_hints},
           {"nearest_texels", &run->config.profile.nearest_texels}};
 }
 

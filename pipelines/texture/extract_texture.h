@@ -25,7 +25,7 @@ struct ExtractTextureRequest {
   TextureExtractOptions::Merge merge = TextureExtractOptions::Merge::kMedian;
   TextureFill fill = TextureFill::kNone;
   double trust = 0.1;  ///< with a fill, texels seen worse than this (0 to 1) are filled, too
-  int margin_px = -1;  ///< pixels around the body's outlines that are not used; -1: 1 % of the person's height
+  int margin_px = -1;  ///< pixels around the body's contours that are not used; -1: 1 % of the person's height
 };
 
 struct ExtractTextureReport {

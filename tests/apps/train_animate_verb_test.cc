@@ -62,7 +62,7 @@ TEST_F(TrainAnimateVerb, TrainsGoesOnAndAnimates) {
                                           "--uv-maps", scratch_ / "maps.png", "--json", scratch_ / "a.json"});
   ASSERT_EQ(animated.exit_code, 0) << animated.err;
   EXPECT_THAT(animated.out, HasSubstr("3 frames"));
-  EXPECT_THAT(animated.out, HasSubstr("outline IoU"));
+  EXPECT_THAT(animated.out, HasSubstr("silhouette IoU"));
   VideoReader video(scratch_ / "a.mp4");
   EXPECT_EQ(video.info().width, 64);  // the picture at the size at which the person fills the window
   EXPECT_TRUE(fs::exists(scratch_ / "a.png"));

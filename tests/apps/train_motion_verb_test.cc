@@ -115,7 +115,7 @@ TEST_F(TrainMotionVerb, TrainsGoesOnAndAnimates) {
   }
   EXPECT_EQ(lines, 14);
   EXPECT_THAT(animated.out, HasSubstr("14 frames"));
-  EXPECT_THAT(animated.out, HasSubstr("outline IoU"));
+  EXPECT_THAT(animated.out, HasSubstr("silhouette IoU"));
   EXPECT_THAT(animated.out, HasSubstr("dB of the whole picture"));
   VideoReader video(scratch_ / "a.mp4");
   EXPECT_EQ(video.info().width, 96);

@@ -328,7 +328,7 @@ TEST(Normals, RefuseWhatTheyCannotUse) {
 TEST(MeshAdjacency, FindsTheFaceAcrossEveryEdge) {
   const TestMesh sphere = UnitSphere(2);
   const MeshAdjacency mesh = BuildMeshAdjacency(sphere.faces, static_cast<int>(sphere.vertices.rows()));
-  EXPECT_EQ(mesh.num_border_edges, 0);
+  EXPECT_EQ(mesh.num_boundary_edges, 0);
   EXPECT_EQ(mesh.num_non_manifold_edges, 0);
   const auto vertex = [&](int half_edge, int step) { return sphere.faces(half_edge / 3, (half_edge % 3 + step) % 3); };
   for (int h = 0; h < static_cast<int>(mesh.opposite.size()); ++h) {
@@ -339,11 +339,11 @@ TEST(MeshAdjacency, FindsTheFaceAcrossEveryEdge) {
     ASSERT_EQ(vertex(h, 0), vertex(other, 1));
     ASSERT_EQ(vertex(h, 1), vertex(other, 0));
   }
-  // One face taken away leaves three border edges; one doubled makes three with too many faces.
+  // One face taken away leaves three boundary edges; one doubled makes three with too many faces.
   MatrixX3i faces(sphere.faces.rows(), 3);
   faces << sphere.faces.topRows(sphere.faces.rows() - 1), sphere.faces.row(0);
   const MeshAdjacency odd = BuildMeshAdjacency(faces, static_cast<int>(sphere.vertices.rows()));
-  EXPECT_EQ(odd.num_border_edges, 3);
+  EXPECT_EQ(odd.num_boundary_edges, 3);
   EXPECT_EQ(odd.num_non_manifold_edges, 3);
 }
 

@@ -46,7 +46,7 @@ TEST(UvCharts, OfTheSphereAreItsOctants) {
   const BodyModel body(SphereOfOctants(3));
   const UvCharts charts = FindUvCharts(body);
   EXPECT_EQ(charts.num_charts, 8);
-  EXPECT_EQ(charts.mesh.num_border_edges, 0);
+  EXPECT_EQ(charts.mesh.num_boundary_edges, 0);
   // Each octant has three sides of eight edges, each edge a seam from both of its faces.
   EXPECT_EQ(std::count(charts.is_seam.begin(), charts.is_seam.end(), 1), 8 * 3 * 8);
 }
@@ -162,7 +162,7 @@ TEST(UvTexels, InTheGutterFollowTheSurfaceAcrossTheSeam) {
                         right ? (uv.x() - 0.5) / 0.4 : (uv.y() - 0.1) / 0.8, 0);
       const bool beyond_sheet = expected.head<2>().minCoeff() < 0 || expected.head<2>().maxCoeff() > 1;
       const Vector3d found = PointOf(body, table.face[i], table.barycentric[i]);
-      if (beyond_sheet) {  // where the mesh ends the border is held
+      if (beyond_sheet) {  // where the mesh ends the boundary is held
         ASSERT_TRUE(table.in_gutter[i]);
         EXPECT_LT((found - expected).norm(), 0.15);
         ++held;
@@ -239,7 +239,7 @@ TEST(UvTexels, MakeSeamsThatLookupsDoNotSee) {
 TEST(UvTexels, CountWhatIsOddAboutAMap) {
   const UvTexelTable clean = BuildUvTexelTable(BodyModel(SphereOfOctants(2)));
   EXPECT_EQ(clean.overlapping + clean.contested + clean.faces_outside + clean.faces_without_area, 0);
-  // Charts that touch: the two halves of a cell's border belong to two charts.
+  // Charts that touch: the two halves of a cell's boundary belong to two charts.
   BodyModelData touching = SphereOfOctants(2, 0.0);
   const UvTexelTable close = BuildUvTexelTable(BodyModel(touching));
   EXPECT_GT(close.contested, 30);

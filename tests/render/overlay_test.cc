@@ -52,7 +52,7 @@ TEST(ShadedMesh, CoversWhatTheVisibilityBufferCovers) {
   const MatrixX3d vertices = PoseVertices(ToyBody(), Eigen::VectorXd(), RandomPose(ToyBody(), 21, 0.8, 2.5));
   const Image before(160, 160, {255, 0, 255});
   Image image = before;
-  DrawMesh(vertices, ToyBody().data().faces, camera, {.outline_px = 0}, &image);
+  DrawMesh(vertices, ToyBody().data().faces, camera, {.contour_px = 0}, &image);
   VisibilityBuffer fine;
   fine.Render(vertices, ToyBody().data().faces, ScaledCamera(camera, 3));
   int inside = 0, outside = 0;
@@ -97,7 +97,7 @@ TEST(ShadedMesh, IsBrighterTowardsTheLight) {
   Image image(100, 100);
   DrawMesh(vertices, faces, camera, {}, &image);
   EXPECT_GT(image.at(38, 35).green, image.at(62, 65).green + 20);
-  // The outline is dark, the sphere's rim at 99.5/2 + 150·(1/√15).
+  // The contour is dark, the sphere's rim at 99.5/2 + 150·(1/√15).
   EXPECT_LT(image.at(49 - 38, 49).green, image.at(35, 49).green / 2);
 }
 
@@ -105,8 +105,8 @@ TEST(ShadedMesh, AlphaLetsTheVideoThrough) {
   const Camera camera = MakePinhole(80, 80, 90);
   const MatrixX3d vertices = PoseVertices(ToyBody(), Eigen::VectorXd(), RandomPose(ToyBody(), 0, 0, 2));
   Image solid(80, 80, {0, 0, 0}), half = solid;
-  DrawMesh(vertices, ToyBody().data().faces, camera, {.alpha = 1, .outline_px = 0}, &solid);
-  DrawMesh(vertices, ToyBody().data().faces, camera, {.alpha = 0.5, .outline_px = 0}, &half);
+  DrawMesh(vertices, ToyBody().data().faces, camera, {.alpha = 1, .contour_px = 0}, &solid);
+  DrawMesh(vertices, ToyBody().data().faces, camera, {.alpha = 0.5, .contour_px = 0}, &half);
   EXPECT_NEAR(half.at(40, 35).blue, 0.5 * solid.at(40, 35).blue, 2);
   EXPECT_GT(solid.at(40, 35).blue, 80);
   Image wrong(81, 80);

@@ -66,10 +66,10 @@ TEST(MeshDrawer, OneLightAPixelLooksLikeOneASample) {
   const MatrixX3d vertices = ToyVertices(42, 2.2);
   const Image background(200, 200, {60, 140, 90});
   Image image = background, large(600, 600, {60, 140, 90});
-  const MeshStyle style{.face_colours = PartColours(), .alpha = 0.8, .outline_px = 1, .samples = 3};
+  const MeshStyle style{.face_colours = PartColours(), .alpha = 0.8, .contour_px = 1, .samples = 3};
   DrawMesh(vertices, ToyBody().data().faces, camera, style, &image);
   MeshStyle fine = style;
-  fine.samples = 1, fine.outline_px = 3;
+  fine.samples = 1, fine.contour_px = 3;
   DrawMesh(vertices, ToyBody().data().faces, ScaledCamera(camera, 3), fine, &large);
   double sum = 0;
   int worst = 0, touched = 0;
@@ -115,7 +115,7 @@ TEST(MeshDrawer, TouchesOnlyTheMeshAndItsLine) {
 }
 
 TEST(MeshDrawer, BordersOfTheImageEndNoSurface) {
-  // A wall that reaches beyond the image on all sides has no outline.
+  // A wall that reaches beyond the image on all sides has no contour.
   MatrixX3d vertices(4, 3);
   vertices << -9, -9, 2, 9, -9, 2, 9, 9, 2, -9, 9, 2;
   MatrixX3i faces(2, 3);
@@ -123,7 +123,7 @@ TEST(MeshDrawer, BordersOfTheImageEndNoSurface) {
   for (const int samples : {1, 2, 3}) {
     Image image(40, 30), plain(40, 30);
     DrawMesh(vertices, faces, MakePinhole(40, 30, 40), {.samples = samples}, &image);
-    DrawMesh(vertices, faces, MakePinhole(40, 30, 40), {.outline_px = 0, .samples = samples}, &plain);
+    DrawMesh(vertices, faces, MakePinhole(40, 30, 40), {.contour_px = 0, .samples = samples}, &plain);
     EXPECT_EQ(image, plain);
   }
 }

@@ -115,7 +115,7 @@ TEST(TextureExtract, SourceMapsSayWhereTheColourIs) {
   }
 }
 
-TEST(TextureExtract, StaysAwayFromOutlines) {
+TEST(TextureExtract, StaysAwayFromContours) {
   const BodyModel& body = ToyBody();
   const Camera camera = MakePinhole(200, 200, 240);
   const MatrixX3d vertices = Posed(2, 0.4);

@@ -50,7 +50,8 @@ TEST(UvSample, IsExactForLinearMapsAndKeepsChartsApart) {
 
 TEST(UvSample, DerivativesAreThoseOfTheValue) {
   const BodyModel body(SphereOfOctants(3));
-  const UvTexelTable table = BuildUvTexelTable(body, {.gutter = 0});  // so that taps are missing at the borders
+  const UvTexelTable table =
+      BuildUvTexelTable(body, {.gutter = 0});  // so that taps are missing at the charts' boundaries
   const UvCharts charts = FindUvCharts(body);
   std::vector<float> map(128 * 128);
   for (size_t p = 0; p < map.size(); ++p)

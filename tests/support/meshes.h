@@ -74,7 +74,7 @@ inline BodyModelData BodyOfMesh(const TestMesh& mesh, const MatrixX2f& vt, const
 }
 
 /// The unit sphere from an octahedron whose faces are split in four `levels` times, each octant a triangular chart of
-/// its own in an atlas of 4×2 cells, `margin` of a cell away from the cell's border. Octant i holds the points with
+/// its own in an atlas of 4×2 cells, `margin` of a cell away from the cell's boundary. Octant i holds the points with
 /// signs (i & 1, i & 2, i & 4: negative); odd ones are mirrored in UV, as charts of real bodies are.
 inline BodyModelData SphereOfOctants(int levels, double margin = 0.1) {
   TestMesh mesh;

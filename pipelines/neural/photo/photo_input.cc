@@ -19,7 +19,7 @@
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/neural/photo/partial_texture.h"
 #include "bodyloom/pipelines/callbacks.h"
-#include "bodyloom/pipelines/people/photo_outline.h"
+#include "bodyloom/pipelines/people/person_segmentation.h"
 #include "bodyloom/pipelines/people/photo_pictures.h"
 
 namespace bodyloom {
@@ -216,11 +216,11 @@ Photo MakePhoto(const PhotoRequest& request, Shown shown, int size, int texture_
     const std::vector<uint8_t>& alpha = shown.picture.alpha;
     const std::vector<uint8_t> everywhere(photo.picture.bgr.size() / 3, 1);
     try {
-      PhotoOutline outline =
-          OutlineOfPerson(cut.image, cut_values(everywhere), alpha.empty() ? std::vector<uint8_t>() : cut_values(alpha),
-                          photo.frame.parts);
-      cut.labels = std::move(outline.labels);
-      note(outline.note);
+      PersonSegmentation segmentation =
+          SegmentPerson(cut.image, cut_values(everywhere), alpha.empty() ? std::vector<uint8_t>() : cut_values(alpha),
+                        photo.frame.parts);
+      cut.labels = std::move(segmentation.labels);
+      note(segmentation.note);
     } catch (const std::invalid_argument&) {
       throw nobody("its body is not to be seen in");
     }

@@ -71,7 +71,7 @@ TEST(RecipeMesh, ClosedOrientedManifoldOfEulerCharacteristicTwo) {
       EXPECT_TRUE(directed.insert(edge).second) << edge.first << "->" << edge.second << " twice";
     }
   }
-  for (const auto& [a, b] : directed) EXPECT_TRUE(directed.contains({b, a})) << a << "-" << b << " is a border";
+  for (const auto& [a, b] : directed) EXPECT_TRUE(directed.contains({b, a})) << a << "-" << b << " is a boundary";
   EXPECT_EQ(body.num_vertices() - static_cast<int>(directed.size()) / 2 + body.num_faces(), 2);
   // One component, and around each vertex one fan: otherwise χ = 2 would not mean a sphere.
   std::map<int, std::map<int, int>> next_around;

@@ -56,7 +56,7 @@ TEST(PeopleSet, PeopleAreDividedAndStayThemselves) {
       EXPECT_NEAR(track.motion.timestamps[1] - track.motion.timestamps[0], 5 / 30.0, 1e-9);
       const Eigen::VectorXd& betas = track.motion.betas;
       of_person.insert({betas.begin(), betas.end()});
-      // Someone is there, whole: nothing of the person at the border.
+      // Someone is there, whole: nothing of the person at the image's boundary.
       const PersonFrame frame = frames.Read(1);
       int inside = 0;
       for (int y = 0; y < 64; ++y) {

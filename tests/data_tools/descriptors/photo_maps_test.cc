@@ -67,7 +67,7 @@ TEST(PhotoMaps, TexelsAppearAtPixelsThatShowThem) {
     ASSERT_TRUE(x >= 0 && y >= 0 && x < kSize && y < kSize);
     const size_t at = size_t(y) * kSize + x;
     ASSERT_NE(map.parts[at], 0);
-    if (map.parts[at] != texel_parts[i]) continue;  // a chart's border within half a pixel
+    if (map.parts[at] != texel_parts[i]) continue;  // a chart's boundary within half a pixel
     ++compared;
     const double u = (double(i % kTexture) + 0.5) / kTexture, v = 1 - (double(i / kTexture) + 0.5) / kTexture;
     errors.push_back(std::hypot(map.uv[at] - u, map.uv[area + at] - v) * kTexture);
@@ -135,7 +135,7 @@ struct DiscPhoto {
   }
 };
 
-TEST(PhotoSegmentation, FindsTheOutlineAroundTheBodyAndTheNearestPart) {
+TEST(PhotoSegmentation, FindsTheSilhouetteAroundTheBodyAndTheNearestPart) {
   const DiscPhoto photo;
   const std::vector<uint8_t> labels = LabelsFromBody(photo.picture, photo.parts);
   int wrong = 0;

@@ -115,7 +115,7 @@ TEST(ImageMetrics, NormalAngles) {
   EXPECT_EQ(missed.coverage, 0);
 }
 
-TEST(ImageMetrics, TheRimIsAsWideOnBothSidesOfTheOutline) {
+TEST(ImageMetrics, TheRimIsAsWideOnBothSidesOfTheContour) {
   PixelMask mask{9, 7, std::vector<uint8_t>(63, 0)};
   for (int y = 0; y < 7; ++y) {
     for (int x = 5; x < 9; ++x) mask.inside[y * 9 + x] = 1;
@@ -124,7 +124,7 @@ TEST(ImageMetrics, TheRimIsAsWideOnBothSidesOfTheOutline) {
   for (int y = 0; y < 7; ++y) {
     for (int x = 0; x < 9; ++x) EXPECT_EQ(rim.inside[y * 9 + x] != 0, x >= 3 && x <= 6) << x << ", " << y;
   }
-  // Neither a picture that is all person nor one without a person has an outline, nor is there one of no width.
+  // Neither a picture that is all person nor one without a person has a contour, nor is there one of no width.
   for (const uint8_t value : {0, 1}) {
     const PixelMask rim_of_all = RimOf({9, 7, std::vector<uint8_t>(63, value)}, 2);
     EXPECT_EQ(std::count(rim_of_all.inside.begin(), rim_of_all.inside.end(), 0), 63);

@@ -178,7 +178,7 @@ TEST(Ssim, ValuesOfIndependentPrograms) {
 TEST(Ssim, NeuralBodyLooksAtTheMasksBox) {
   const Pair pair = MakePair(80, 64);
   PixelMask mask{80, 64, std::vector<uint8_t>(80 * 64)};
-  mask.inside[10 * 80 + 45] = 1;  // a box of x 20..70, y 10..39 from two pixels on its border
+  mask.inside[10 * 80 + 45] = 1;  // a box of x 20..70, y 10..39 from two pixels on its boundary
   mask.inside[39 * 80 + 20] = 1;
   mask.inside[25 * 80 + 70] = 1;
   EXPECT_NEAR(Ssim(pair.truth, pair.result, SsimPreset::kNeuralBody, &mask), 0.9758645083986041, 1e-13);

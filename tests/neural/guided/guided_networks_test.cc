@@ -244,8 +244,8 @@ TEST(GuidedModel, AblationsLeaveOutWhatTheyName) {
   }
 }
 
-/// What a SilNet says that has learned nothing: its other convolutions are silent.
-Tensor NewOutline(const GuidedConfig& config, const Tensor& pose, const Tensor& seen) {
+/// Output of an untrained SilNet whose other convolutions are zero.
+Tensor UntrainedSilhouette(const GuidedConfig& config, const Tensor& pose, const Tensor& seen) {
   torch::manual_seed(14);
   const torch::NoGradGuard no_grad;
   SilNet network(config);
@@ -256,20 +256,20 @@ Tensor NewOutline(const GuidedConfig& config, const Tensor& pose, const Tensor& 
   return network(network->EncodeSource(torch::rand({1, 11, 32, 32})), pose, seen)[0][0];
 }
 
-TEST(SilNet, ANewOneOutlinesWhatIsLikely) {
+TEST(SilNet, AnUntrainedOnePredictsWhatIsLikely) {
   Tensor pose = torch::zeros({1, 3, 32, 32});
   pose.slice(2, 8, 24).slice(3, 10, 20).slice(1, 1, 2).fill_(0.5);
   GuidedConfig bare = ToyGuided();
   bare.profile.start_from_body = true;
-  const Tensor body = NewOutline(bare, pose, {});
+  const Tensor body = UntrainedSilhouette(bare, pose, {});
   EXPECT_NEAR(body[16][15].item<double>(), 4, 0.5);
   EXPECT_NEAR(body[16][20].item<double>(), 0, 0.5) << "beside the body";
   EXPECT_NEAR(body[16][21].item<double>(), -2, 0.5) << "a pixel farther";
   EXPECT_NEAR(body[2][2].item<double>(), -2, 0.5);
-  // Told of a skirt of three pixels, it outlines the skirt.
+  // Given a skirt of three pixels as input, it predicts the skirt.
   Tensor seen = torch::zeros({1, 9, 32, 32});
   seen.slice(2, 8, 24).slice(3, 7, 23).slice(1, 8, 9).fill_(1);
-  const Tensor skirt = NewOutline(ToyGuidedWithGuesses(), pose, seen);
+  const Tensor skirt = UntrainedSilhouette(ToyGuidedWithGuesses(), pose, seen);
   EXPECT_NEAR(skirt[16][15].item<double>(), 4, 0.7);
   EXPECT_NEAR(skirt[16][22].item<double>(), 4, 0.7);
   EXPECT_NEAR(skirt[16][24].item<double>(), -2, 0.7);

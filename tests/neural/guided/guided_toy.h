@@ -27,7 +27,7 @@ inline GuidedConfig ToyGuided() {
 inline GuidedConfig ToyGuidedWithGuesses() {
   GuidedConfig config = ToyGuided();
   GuidedProfile& p = config.profile;
-  p.fill_colours = p.start_from_body = p.outline_hints = p.nearest_texels = true;
+  p.fill_colours = p.start_from_body = p.contour_hints = p.nearest_texels = true;
   return config;
 }
 

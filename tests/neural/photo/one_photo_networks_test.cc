@@ -154,13 +154,13 @@ TEST(Derivatives, OfSilNetAndGarNet) {
   GarNet gar(SmallGuided());
   sil->to(torch::kDouble);
   gar->to(torch::kDouble);
-  const Tensor outline = Doubles(1, 8), classes = Doubles(7, 8);
+  const Tensor weights = Doubles(1, 8), classes = Doubles(7, 8);
   const Tensor sil_head = sil->decoder->head->weight.detach().clone(),
                gar_head = gar->decoder->head->weight.detach().clone();
   ExpectRightDerivatives(
       [&](const std::vector<Tensor>& in) {
         sil->decoder->head->weight = in[2];
-        return (outline * sil(sil->EncodeSource(in[0]), in[1], Tensor())).sum();
+        return (weights * sil(sil->EncodeSource(in[0]), in[1], Tensor())).sum();
       },
       {Doubles(5, 8), Doubles(3, 8), sil_head});
   ExpectRightDerivatives(
@@ -174,14 +174,14 @@ TEST(Derivatives, OfSilNetAndGarNet) {
 TEST(Derivatives, OfASilNetThatIsToldOfTheClothes) {
   torch::manual_seed(25);
   GuidedConfig config = SmallGuided();
-  config.profile.start_from_body = config.profile.outline_hints = true;
+  config.profile.start_from_body = config.profile.contour_hints = true;
   SilNet sil(config);
   sil->to(torch::kDouble);
-  const Tensor outline = Doubles(1, 8), pose = Doubles(3, 8);
+  const Tensor weights = Doubles(1, 8), pose = Doubles(3, 8);
   ExpectRightDerivatives(
       [&](const std::vector<Tensor>& in) {
         sil->decoder->head->weight = in[2];
-        return (outline * sil(sil->EncodeSource(in[0]), pose, in[1])).sum();
+        return (weights * sil(sil->EncodeSource(in[0]), pose, in[1])).sum();
       },
       {Doubles(5, 8), Doubles(3, 8), sil->decoder->head->weight.detach().clone()});
 }
@@ -286,9 +286,8 @@ TEST_F(GuidedByHeart, RenderNet) {
       *model_->render,
       [&] {
         const GuidedSource source = model_->EncodeSource(batch_.source);
-        const auto [image, outline] =
-            model_->Render(source.render_code.mean, batch_.target.pose, batch_.target.silhouette, batch_.target.classes,
-                           batch_.pseudo, batch_.box);
+        const auto [image, mask] = model_->Render(source.render_code.mean, batch_.target.pose, batch_.target.silhouette,
+                                                  batch_.target.classes, batch_.pseudo, batch_.box);
         return L1Loss(image, batch_.target.image);
       },
       150, 5e-3);
@@ -346,7 +345,7 @@ TEST_F(PhotoByHeart, RenderNet) {
                torch::binary_cross_entropy_with_logits(result.alpha_logit, batch_.truth.foreground);
       },
       250, 5e-3);
-  // Begins with the colours that it is shown and an outline near the body's: what is left is clothes and sharpness.
+  // Begins with the colours that it is shown and a silhouette near the body's: what is left is clothes and sharpness.
   EXPECT_GT(first, 0.3);
   EXPECT_LT(last, 0.05);
   EXPECT_GT(((alpha > 0.5) == (batch_.truth.foreground > 0.5)).to(torch::kFloat).mean().item<double>(), 0.99);

@@ -441,7 +441,7 @@ TEST(PhotoScores, AreWhatTheyShouldBeBesideTheTruth) {
   PhotoScorer perfect(lpips, [](const Image&, const Image&) { return 0.75; });
   perfect.Add(picture, truth);
   EXPECT_EQ(perfect.Scores().image_l1, 0);
-  EXPECT_EQ(perfect.Scores().outline_iou, 1);
+  EXPECT_EQ(perfect.Scores().silhouette_iou, 1);
   EXPECT_EQ(perfect.Scores().ssim, 0.75);
   EXPECT_EQ(perfect.Scores().lpips, 0);
   EXPECT_TRUE(perfect.Scores().lpips_random_features);
@@ -455,7 +455,7 @@ TEST(PhotoScores, AreWhatTheyShouldBeBesideTheTruth) {
   EXPECT_EQ(scores.pictures, 2);
   EXPECT_NEAR(scores.image_l1, 0.2, 1e-6);
   EXPECT_NEAR(scores.psnr_db, -10 * std::log10((0.01 + 0.09) / 2), 1e-4);
-  EXPECT_NEAR(scores.outline_iou, 28.0 * 44 / (64 * 64), 1e-6);
+  EXPECT_NEAR(scores.silhouette_iou, 28.0 * 44 / (64 * 64), 1e-6);
   EXPECT_TRUE(std::isnan(scores.ssim));
   EXPECT_GT(scores.lpips, 0);
   picture.size = 32;

@@ -38,7 +38,7 @@ TEST(PhotoTraining, LearnsTwoPeopleByHeart) {
   EXPECT_EQ(summary.scores.pictures, 4);
   // An untrained network paints grey, 0.25 off, and is half transparent everywhere.
   EXPECT_LT(summary.scores.image_l1, 0.1);
-  EXPECT_GT(summary.scores.outline_iou, 0.95);
+  EXPECT_GT(summary.scores.silhouette_iou, 0.95);
   EXPECT_TRUE(summary.perceptual_random_features);
   ASSERT_EQ(summary.losses_off.size(), 1U);
   EXPECT_THAT(summary.losses_off[0], HasSubstr("SphereFace"));

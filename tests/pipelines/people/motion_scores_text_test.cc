@@ -15,7 +15,7 @@ TEST(MotionScoresText, LeavesOutWhatWasNotMeasured) {
   scores.image_l1 = 0.05164, scores.psnr_db = 20.414, scores.label_iou = 0.8472, scores.foreground_iou = 0.912;
   scores.normal_deg = 25.31, scores.flicker = 0.0368;
   EXPECT_EQ(ScoresText(scores),
-            "L1 0.0516, PSNR 20.41 dB, labels IoU 0.847, outline IoU 0.912, normals 25.3 deg, flicker 0.0368");
+            "L1 0.0516, PSNR 20.41 dB, labels IoU 0.847, silhouette IoU 0.912, normals 25.3 deg, flicker 0.0368");
   scores.label_iou = scores.foreground_iou = scores.normal_deg = kNone;
   EXPECT_EQ(ScoresText(scores), "L1 0.0516, PSNR 20.41 dB, flicker 0.0368");
   scores.image_l1 = kNone;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Photographs of every kind as `animate photo` and `animate animate` read them, and the outline of the tracked person
-// in them.
+// Photographs of every kind as `animate photo` and `animate animate` read them, and the segmentation of the tracked
+// person in them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/data_tools/video/photo_file.h"
 #include "bodyloom/data_tools/video/video_writer.h"
-#include "bodyloom/pipelines/people/photo_outline.h"
+#include "bodyloom/pipelines/people/person_segmentation.h"
 #include "bodyloom/pipelines/people/photo_pictures.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
@@ -165,20 +165,20 @@ struct TwoPeople {
   }
 };
 
-TEST(PhotoOutline, TheNeighbourIsNotTaken) {
+TEST(PersonSegmentation, TheNeighbourIsNotTaken) {
   const std::vector<uint8_t> everywhere(96 * 96, 1);
   for (const int shift : {34, 29, 22, 14}) {  // apart, touching, behind, mostly hidden
     const TwoPeople two(shift);
-    const PhotoOutline outline = OutlineOfPerson(two.picture, everywhere, {}, two.parts);
+    const PersonSegmentation segmentation = SegmentPerson(two.picture, everywhere, {}, two.parts);
     int mine = 0, found = 0, taken = 0;
     for (size_t i = 0; i < two.parts.size(); ++i) {
       mine += two.person[i];
-      found += outline.labels[i] != 0 && two.person[i] != 0;
-      taken += outline.labels[i] != 0 && two.neighbour[i] != 0;
+      found += segmentation.labels[i] != 0 && two.person[i] != 0;
+      taken += segmentation.labels[i] != 0 && two.neighbour[i] != 0;
     }
     EXPECT_GT(found, 0.97 * mine) << shift;
     EXPECT_LT(taken, 0.02 * mine) << shift;
-    EXPECT_THAT(outline.note, HasSubstr("GrabCut"));
+    EXPECT_THAT(segmentation.note, HasSubstr("GrabCut"));
 
     // Labels of everybody in the picture (DensePose's): the same.
     std::vector<uint8_t> labels(two.parts.size());
@@ -200,7 +200,7 @@ TEST(PhotoOutline, TheNeighbourIsNotTaken) {
   EXPECT_EQ(labels, alone.person);
 }
 
-TEST(PhotoOutline, EndsAtThePicture) {
+TEST(PersonSegmentation, EndsAtThePicture) {
   const TwoPeople two(60);
   Image window = two.picture;
   std::vector<uint8_t> inside(96 * 96, 1);
@@ -211,32 +211,32 @@ TEST(PhotoOutline, EndsAtThePicture) {
       for (int c = 0; c < 3; ++c) window.pixel(x, y)[c] = 0;
     }
   }
-  const PhotoOutline outline = OutlineOfPerson(window, inside, {}, two.parts);
+  const PersonSegmentation segmentation = SegmentPerson(window, inside, {}, two.parts);
   int mine = 0, found = 0, wrong = 0;
   for (size_t i = 0; i < inside.size(); ++i) {
-    if (inside[i] == 0) EXPECT_EQ(outline.labels[i], 0) << i;
+    if (inside[i] == 0) EXPECT_EQ(segmentation.labels[i], 0) << i;
     mine += inside[i] != 0 && two.person[i] != 0;
-    found += outline.labels[i] != 0 && two.person[i] != 0;
-    wrong += outline.labels[i] != 0 && two.person[i] == 0;
+    found += segmentation.labels[i] != 0 && two.person[i] != 0;
+    wrong += segmentation.labels[i] != 0 && two.person[i] == 0;
   }
   EXPECT_GT(found, 0.97 * mine);
   EXPECT_LT(wrong, 0.03 * mine);
-  EXPECT_THROW(OutlineOfPerson(window, inside, {}, std::vector<uint8_t>(96 * 96, 0)), std::invalid_argument);
+  EXPECT_THROW(SegmentPerson(window, inside, {}, std::vector<uint8_t>(96 * 96, 0)), std::invalid_argument);
 }
 
-TEST(PhotoOutline, TransparencyCountsBeforeColours) {
+TEST(PersonSegmentation, TransparencyCountsBeforeColours) {
   const std::vector<uint8_t> everywhere(96 * 96, 1);
   TwoPeople two(60);
   // A body too thin to learn its colours from.
   std::vector<uint8_t> thin(96 * 96, 0);
   for (int y = 20; y < 70; ++y) thin[y * 96 + 36] = thin[y * 96 + 37] = 2;
-  const PhotoOutline bare = OutlineOfPerson(two.picture, everywhere, {}, thin);
+  const PersonSegmentation bare = SegmentPerson(two.picture, everywhere, {}, thin);
   EXPECT_THAT(bare.note, HasSubstr("the bare body's"));
   for (size_t i = 0; i < thin.size(); ++i) ASSERT_EQ(bare.labels[i] != 0, thin[i] != 0) << i;
   std::fill(two.picture.bgr.begin(), two.picture.bgr.end(), 90);
   std::vector<uint8_t> alpha;
   for (const uint8_t person : two.person) alpha.push_back(person != 0 ? 255 : 0);
-  const PhotoOutline cut_out = OutlineOfPerson(two.picture, everywhere, alpha, two.parts);
+  const PersonSegmentation cut_out = SegmentPerson(two.picture, everywhere, alpha, two.parts);
   EXPECT_THAT(cut_out.note, HasSubstr("transparency"));
   int wrong = 0;
   for (size_t i = 0; i < alpha.size(); ++i) wrong += (cut_out.labels[i] != 0) != (alpha[i] != 0);

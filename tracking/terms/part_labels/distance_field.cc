@@ -74,7 +74,7 @@ DistanceField::DistanceField(int x_begin, int y_begin, int width, int height, in
   std::array<std::vector<std::vector<float>>, 2> along;  // by kind, by node column: one value a pixel row
   for (auto& kind : along) kind.assign(columns_, std::vector<float>(height, kFar));
   std::vector<Pixel> row(width);
-  std::vector<Pixel> at_node(static_cast<size_t>(columns_) * rows_, Pixel::kUnsaid);
+  std::vector<Pixel> at_node(static_cast<size_t>(columns_) * rows_, Pixel::kUnknown);
   for (int y = 0; y < height; ++y) {
     fill_row(y_begin + y, row.data());
     for (int kind = 0; kind < 2; ++kind) {

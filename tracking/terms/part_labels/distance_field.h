@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Signed distance in pixels to the border of a region of an image: negative inside, zero half way between the last
+/// Signed distance in pixels to the boundary of a region of an image: negative inside, zero half way between the last
 /// pixel inside and the first outside, smooth (C¹) between.
 ///
 /// The distance is exact (Euclidean, all pixels) at the nodes of a grid of `cell_px`, and interpolated by Catmull–Rom
@@ -19,7 +19,8 @@ class DistanceField {
   enum class Pixel {
     kOutside,
     kInside,
-    kUnsaid,  ///< belongs to neither: distance to the inside minus distance to the outside, so the border runs half way
+    /// Belongs to neither: distance to the inside minus distance to the outside, so the boundary runs half way.
+    kUnknown,
   };
 
   /// Region of the pixels that `fill_row(y, row)` calls kInside; it writes the `width` pixels from (x_begin, y) on. The

@@ -21,8 +21,8 @@ constexpr uint8_t kBackground = PartLabelSequence::kBackground, kUnknown = PartL
 constexpr int kFieldCells = 128;  ///< a field has about this many cells along the person
 constexpr int kMinCellPx = 3;     ///< finer cells would show the stairs of the mask in the field's slope
 constexpr int kMarginCells = 10;  ///< around what the field is of; farther away it goes on as a cone
-constexpr int kMaxSilhouette = 160, kMaxPartBorder = 10, kMaxPartOutline = 12, kMaxInside = 10;
-constexpr double kAlongBorder = 0.2;       ///< τ
+constexpr int kMaxSilhouette = 160, kMaxPartBoundary = 10, kMaxPartContour = 12, kMaxInside = 10;
+constexpr double kAlongBoundary = 0.2;     ///< τ
 constexpr double kInsideSigmas = 3;        ///< σ of "somewhere on this part"
 constexpr double kBehindTolerance = 0.02;  ///< metres: neighbouring pixels of one surface
 constexpr double kReach = 0.25;            ///< of the person's height: farther apart nothing corresponds
@@ -61,7 +61,7 @@ PartLabelTerm::PartLabelTerm(const PartLabelSequence& labels, int t, std::shared
     }
     SampleInside(map);
   }
-  SampleBorders(map);
+  SampleBoundary(map);
 }
 
 const DistanceField* PartLabelTerm::Field(uint8_t part) const {
@@ -97,29 +97,29 @@ void PartLabelTerm::FindBoxes(const PartMap& map) {
 }
 
 void PartLabelTerm::AddField(const PartMap& map, uint8_t part) {
-  // Beyond the image nothing is said; a cell of it is enough for the field to know.
+  // Beyond the image nothing is known; one cell of it is enough for the field.
   const PixelBox box = boxes_[part].GrownBy(kMarginCells * cell_px_).ClippedTo(map.image.GrownBy(cell_px_));
   using Pixel = DistanceField::Pixel;
   std::array<Pixel, 256> kind;  // by part
   kind.fill(part == kBackground ? Pixel::kInside : Pixel::kOutside);
   kind[kBackground] = Pixel::kOutside;
   if (part != kBackground) kind[part] = Pixel::kInside;
-  kind[kUnknown] = Pixel::kUnsaid;
+  kind[kUnknown] = Pixel::kUnknown;
   const auto fill_row = [&](int y, Pixel* row) {
     for (int x = box.x_begin; x < box.x_end; ++x) *row++ = kind[map.At(x, y)];
   };
   fields_.try_emplace(part, box.x_begin, box.y_begin, box.width(), box.height(), cell_px_, fill_row);
 }
 
-void PartLabelTerm::SampleBorders(const PartMap& map) {
-  std::vector<Border> silhouette;
-  std::map<std::pair<uint8_t, uint8_t>, std::vector<Border>> between;
+void PartLabelTerm::SampleBoundary(const PartMap& map) {
+  std::vector<BoundarySample> silhouette;
+  std::map<std::pair<uint8_t, uint8_t>, std::vector<BoundarySample>> between;
   const PixelBox box = boxes_[0].GrownBy(1).ClippedTo(map.image);
   const auto look = [&](int x, int y, int dx, int dy) {
     const uint8_t here = map.At(x, y), there = map.At(x + dx, y + dy);
     if (here == there || here == kUnknown || there == kUnknown) return;
-    const Border border{Vector2d(x + 0.5 * dx, y + 0.5 * dy), std::min(here, there), std::max(here, there)};
-    (border.a == kBackground ? silhouette : between[{border.a, border.b}]).push_back(border);
+    const BoundarySample sample{Vector2d(x + 0.5 * dx, y + 0.5 * dy), std::min(here, there), std::max(here, there)};
+    (sample.a == kBackground ? silhouette : between[{sample.a, sample.b}]).push_back(sample);
   };
   for (int y = box.y_begin; y < box.y_end; ++y) {
     for (int x = box.x_begin; x < box.x_end; ++x) {
@@ -127,11 +127,11 @@ void PartLabelTerm::SampleBorders(const PartMap& map) {
       look(x, y, 0, 1);
     }
   }
-  if (options_.silhouette_weight > 0) borders_ = Thinned(silhouette, kMaxSilhouette);
+  if (options_.silhouette_weight > 0) boundary_ = Thinned(silhouette, kMaxSilhouette);
   if (fields_.size() < 2) return;
   for (const auto& [pair, all] : between) {
-    const std::vector<Border> some = Thinned(all, kMaxPartBorder);
-    borders_.insert(borders_.end(), some.begin(), some.end());
+    const std::vector<BoundarySample> some = Thinned(all, kMaxPartBoundary);
+    boundary_.insert(boundary_.end(), some.begin(), some.end());
   }
 }
 
@@ -179,11 +179,11 @@ std::vector<PartLabelTerm::Edge> PartLabelTerm::EdgesOfBody(const std::vector<ui
   return edges;
 }
 
-void PartLabelTerm::AddOutline(const std::vector<Edge>& edges, const BodyModel& model, const VisibleSurface& surface,
+void PartLabelTerm::AddContour(const std::vector<Edge>& edges, const BodyModel& model, const VisibleSurface& surface,
                                const Camera& camera, double sigma_px) {
   const auto add = [&](const Edge& edge, const DistanceField* field, bool is_silhouette) {
     if (labels_.PartAt(t_, edge.x, edge.y) == kUnknown) return;
-    OutlinePoint point;
+    ContourPoint point;
     point.face = edge.face;
     point.barycentric =
         BarycentricAtPixel(surface.vertices(), model.data().faces, camera, edge.face, Vector2d(edge.x, edge.y));
@@ -191,7 +191,7 @@ void PartLabelTerm::AddOutline(const std::vector<Edge>& edges, const BodyModel& 
     point.offset_px = -0.5;  // the centre of the last pixel inside
     point.inverse_sigma = 1 / sigma_px;
     point.is_silhouette = is_silhouette;
-    outline_.push_back(point);
+    contour_.push_back(point);
   };
   std::vector<Edge> silhouette;
   std::map<uint8_t, std::vector<Edge>> of_part;
@@ -204,13 +204,13 @@ void PartLabelTerm::AddOutline(const std::vector<Edge>& edges, const BodyModel& 
   }
   if (options_.part_weight > 0) {
     for (const auto& [part, all] : of_part) {
-      for (const Edge& edge : Thinned(all, kMaxPartOutline)) add(edge, Field(part), false);
+      for (const Edge& edge : Thinned(all, kMaxPartContour)) add(edge, Field(part), false);
     }
   }
 }
 
-void PartLabelTerm::AddBorders(const std::vector<Edge>& edges, const BodyModel& model, const VisibleSurface& surface,
-                               const Camera& camera, double sigma_px, double reach_px) {
+void PartLabelTerm::AddBoundary(const std::vector<Edge>& edges, const BodyModel& model, const VisibleSurface& surface,
+                                const Camera& camera, double sigma_px, double reach_px) {
   std::map<std::pair<uint8_t, uint8_t>, std::vector<const Edge*>> between;
   for (const Edge& edge : edges) {
     const auto key = edge.other == kBackground
@@ -218,14 +218,14 @@ void PartLabelTerm::AddBorders(const std::vector<Edge>& edges, const BodyModel& 
                          : std::pair(std::min(edge.part, edge.other), std::max(edge.part, edge.other));
     between[key].push_back(&edge);
   }
-  for (const Border& border : borders_) {
-    const bool is_silhouette = border.a == kBackground;
-    const auto it = between.find(is_silhouette ? std::pair(kBackground, kBackground) : std::pair(border.a, border.b));
+  for (const BoundarySample& sample : boundary_) {
+    const bool is_silhouette = sample.a == kBackground;
+    const auto it = between.find(is_silhouette ? std::pair(kBackground, kBackground) : std::pair(sample.a, sample.b));
     const Edge* nearest = nullptr;
     double best = reach_px * reach_px;
     if (it != between.end()) {
       for (const Edge* edge : it->second) {
-        const double squared = (Vector2d(edge->x, edge->y) - border.pixel).squaredNorm();
+        const double squared = (Vector2d(edge->x, edge->y) - sample.pixel).squaredNorm();
         if (squared < best) {
           best = squared;
           nearest = edge;
@@ -239,20 +239,20 @@ void PartLabelTerm::AddBorders(const std::vector<Edge>& edges, const BodyModel& 
       continue;
     }
     Eigen::RowVector2d gradient;
-    field->Evaluate(border.pixel, &gradient);
+    field->Evaluate(sample.pixel, &gradient);
     const double length = gradient.norm();
     Target target;
     target.face = nearest->face;
     target.barycentric = BarycentricAtPixel(surface.vertices(), model.data().faces, camera, nearest->face,
                                             Vector2d(nearest->x, nearest->y));
-    target.pixel = border.pixel;
+    target.pixel = sample.pixel;
     target.is_silhouette = is_silhouette;
-    // On a ridge of the field no direction is across the border.
-    target.whitening = Matrix2d::Identity() * (kAlongBorder / sigma_px);
+    // On a ridge of the field no direction is across the boundary.
+    target.whitening = Matrix2d::Identity() * (kAlongBoundary / sigma_px);
     if (length > 0.1) {
       const Vector2d n = gradient.transpose() / length;
-      target.pixel -= 0.5 * n;  // the outline's samples are centres of pixels, half a pixel inside
-      target.whitening += (1 - kAlongBorder) / sigma_px * n * n.transpose();
+      target.pixel -= 0.5 * n;  // the contour's samples are centres of pixels, half a pixel inside
+      target.whitening += (1 - kAlongBoundary) / sigma_px * n * n.transpose();
     }
     targets_.push_back(target);
   }
@@ -318,18 +318,18 @@ void PartLabelTerm::AddInside(const std::vector<uint8_t>& part_of_face, const Bo
 void PartLabelTerm::Weigh() {
   std::array<double, 2> count = {0, 0};
   for (const Target& target : targets_) ++count[target.is_silhouette];
-  for (const OutlinePoint& point : outline_) ++count[point.is_silhouette];
+  for (const ContourPoint& point : contour_) ++count[point.is_silhouette];
   const std::array<double, 2> weight = {
       options_.part_weight * std::min(1.0, kPartCount / std::max(1.0, count[0])),
       options_.silhouette_weight * std::min(1.0, kSilhouetteCount / std::max(1.0, count[1]))};
   for (Target& target : targets_) target.weight = weight[target.is_silhouette];
-  for (OutlinePoint& point : outline_) point.weight = weight[point.is_silhouette];
+  for (ContourPoint& point : contour_) point.weight = weight[point.is_silhouette];
 }
 
 void PartLabelTerm::Correspond(const FrameLayout& layout, const FrameState& state, const Eigen::VectorXd& betas,
                                double log_focal, double person_height_px, double kernel, VisibleSurface* surface) {
   targets_.clear();
-  outline_.clear();
+  contour_.clear();
   kernel_ = kernel;
   silhouette_unmatched_ = part_unmatched_ = 0;
   if (num_person_pixels_ == 0) return;
@@ -339,8 +339,8 @@ void PartLabelTerm::Correspond(const FrameLayout& layout, const FrameState& stat
   const double sigma_px = std::max(0.5, options_.sigma_share * person_height_px);
   const std::vector<uint8_t> part_of_face = PartOfFaces(model);
   const std::vector<Edge> edges = EdgesOfBody(part_of_face, surface->buffer());
-  AddOutline(edges, model, *surface, camera, sigma_px);
-  AddBorders(edges, model, *surface, camera, sigma_px, kReach * person_height_px);
+  AddContour(edges, model, *surface, camera, sigma_px);
+  AddBoundary(edges, model, *surface, camera, sigma_px, kReach * person_height_px);
   AddInside(part_of_face, model, *surface, camera, sigma_px);
   Weigh();
 }
@@ -356,7 +356,7 @@ void PartLabelsOfFrame::Add(FrameAccumulator* sums) const {
                                                &sums->vertices(), derivatives);
     sums->AddPixel(x, target.pixel, target.whitening, term->kernel(), target.weight);
   }
-  for (const PartLabelTerm::OutlinePoint& point : term->outline()) {
+  for (const PartLabelTerm::ContourPoint& point : term->contour()) {
     const Vector3d x = sums->points().Evaluate(kinematics, faces.row(point.face).data(), point.barycentric.data(),
                                                &sums->vertices(), derivatives);
     FrameAccumulator::Projected at;

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a part map (or a mask) of one frame says about the body: outlines that should coincide, and pixels that should
-/// be covered. Everything is per *part* (PartLabelSequence says what that is); the silhouette is the outline of all
+/// What a part map (or a mask) of one frame says about the body: contours that should coincide, and pixels that should
+/// be covered. Everything is per *part* (PartLabelSequence says what that is); the silhouette is the contour of all
 /// parts together.
 ///
-/// The detection gives, once: the signed distance field φ of the silhouette and of each part (distance_field.h), samples of their borders, and some pixels inside each part. A round, at its starting state,
-/// rasterises the body and sets up:
-///   outline → field   samples x of the body's own outline (it meets the background, or a part that is not nearer, in
-///                     the visibility buffer): r = φ(π(x)) / σ, both ways: the outline has to lie on the border
-///   border → outline  samples y of the detected border: the nearest sample x of the body's outline between the same
-///   two
-///                     parts, r = W (π(x) − y), W = (n nᵀ + τ² t tᵀ)/σ with n = ∇φ(y): across the border, and hardly
-///                     (τ = 0.2) along it. So the body fills the mask
-///   pixel → part      samples y inside part p where the body shows another part or nothing: the vertex of p that faces
-///                     the camera and projects nearest, r = (π(x) − y)/(3σ)
+/// The detection gives, once: the signed distance field φ of the silhouette and of each part (distance_field.h),
+/// samples of their boundaries, and some pixels inside each part. A round, at its starting state, rasterises the body
+/// and sets up:
+///   contour → field     samples x of the body's own contour (it meets the background, or a part that is not nearer,
+///                       in the visibility buffer): r = φ(π(x)) / σ, both ways: the contour has to lie on the boundary
+///   boundary → contour  samples y of the detected boundary: the nearest sample x of the body's contour between the
+///                       same two parts, r = W (π(x) − y), W = (n nᵀ + τ² t tᵀ)/σ with n = ∇φ(y): across the
+///                       boundary, and hardly (τ = 0.2) along it. So the body fills the mask
+///   pixel → part        samples y inside part p where the body shows another part or nothing: the vertex of p that
+///                       faces the camera and projects nearest, r = (π(x) − y)/(3σ)
 /// σ = sigma_share × the person's height in the image. Correspondences (x and y) stay during a round, φ and π are
 /// evaluated at every state. Each of the two terms counts as kSilhouetteCount or kPartCount observations at most,
 /// however many samples it has: neighbouring pixels err together.
-/// Unknown pixels and pixels beyond the image give no border. Pieces of the person or of a part below kSpeckShare of
+/// Unknown pixels and pixels beyond the image give no boundary. Pieces of the person or of a part below kSpeckShare of
 /// the largest are unknown (part_map.h); parts of fewer than kMinPartPixels pixels are left out.
 #pragma once
 
@@ -52,7 +52,7 @@ class PartLabelTerm {
     bool is_silhouette = false;
   };
   /// A surface point that should appear where the field is offset_px.
-  struct OutlinePoint {
+  struct ContourPoint {
     int face = 0;
     Eigen::Vector3d barycentric;
     const DistanceField* field = nullptr;
@@ -69,10 +69,10 @@ class PartLabelTerm {
                   double person_height_px, double kernel, VisibleSurface* surface);
 
   [[nodiscard]] const std::vector<Target>& targets() const { return targets_; }
-  [[nodiscard]] const std::vector<OutlinePoint>& outline() const { return outline_; }
-  [[nodiscard]] int num_rows() const { return static_cast<int>(2 * targets_.size() + outline_.size()); }
+  [[nodiscard]] const std::vector<ContourPoint>& contour() const { return contour_; }
+  [[nodiscard]] int num_rows() const { return static_cast<int>(2 * targets_.size() + contour_.size()); }
   [[nodiscard]] double kernel() const { return kernel_; }
-  /// Detected borders and pixels that found nothing on the body in this round.
+  /// Detected boundaries and pixels that found nothing on the body in this round.
   [[nodiscard]] int silhouette_unmatched() const { return silhouette_unmatched_; }
   [[nodiscard]] int part_unmatched() const { return part_unmatched_; }
   /// Pixels that show the person.
@@ -81,7 +81,7 @@ class PartLabelTerm {
   [[nodiscard]] const DistanceField* Field(uint8_t part) const;
 
  private:
-  struct Border {
+  struct BoundarySample {
     Eigen::Vector2d pixel;  ///< half way between two pixels
     uint8_t a = 0, b = 0;   ///< parts on both sides, a < b; 0 is the background
   };
@@ -96,14 +96,14 @@ class PartLabelTerm {
   };
   void FindBoxes(const PartMap& map);
   void AddField(const PartMap& map, uint8_t part);
-  void SampleBorders(const PartMap& map);
+  void SampleBoundary(const PartMap& map);
   void SampleInside(const PartMap& map);
   [[nodiscard]] std::vector<Edge> EdgesOfBody(const std::vector<uint8_t>& part_of_face,
                                               const VisibilityBuffer& buffer) const;
-  void AddOutline(const std::vector<Edge>& edges, const BodyModel& model, const VisibleSurface& surface,
+  void AddContour(const std::vector<Edge>& edges, const BodyModel& model, const VisibleSurface& surface,
                   const Camera& camera, double sigma_px);
-  void AddBorders(const std::vector<Edge>& edges, const BodyModel& model, const VisibleSurface& surface,
-                  const Camera& camera, double sigma_px, double reach_px);
+  void AddBoundary(const std::vector<Edge>& edges, const BodyModel& model, const VisibleSurface& surface,
+                   const Camera& camera, double sigma_px, double reach_px);
   void AddInside(const std::vector<uint8_t>& part_of_face, const BodyModel& model, const VisibleSurface& surface,
                  const Camera& camera, double sigma_px);
   void Weigh();
@@ -119,10 +119,10 @@ class PartLabelTerm {
   std::array<PixelBox, 256> boxes_;  ///< of each part; of the person at 0
   std::array<int, 256> pixels_of_part_{};
   std::map<uint8_t, DistanceField> fields_;  ///< of each part; of the silhouette at 0
-  std::vector<Border> borders_;
+  std::vector<BoundarySample> boundary_;
   std::vector<Inside> inside_;
   std::vector<Target> targets_;
-  std::vector<OutlinePoint> outline_;
+  std::vector<ContourPoint> contour_;
   double kernel_ = 4;
   int silhouette_unmatched_ = 0, part_unmatched_ = 0;
 };

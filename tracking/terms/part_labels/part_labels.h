@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The silhouette and the part labels in a frame and over a clip: outlines that should coincide and pixels that should be
-/// covered (part_label_term.h has the law), and the rounds in which they are matched.
+/// The silhouette and the part labels in a frame and over a clip: contours that should coincide and pixels that should
+/// be covered (part_label_term.h has the law), and the rounds in which they are matched.
 ///
 /// What corresponds to what is found at the start of a round and fixed during its solve; the kernel narrows from round
 /// to round (PartLabelOptions::start_kernel to kernel). Runs when the input has labels or masks; parts only for a body

@@ -22,10 +22,10 @@ double BruteForce(int width, int height, const std::vector<Pixel>& image, int x,
   for (int v = 0; v < height; ++v) {
     for (int u = 0; u < width; ++u) {
       double& nearest = image[v * width + u] == Pixel::kInside ? in : out;
-      if (image[v * width + u] != Pixel::kUnsaid) nearest = std::min(nearest, std::hypot(u - x, v - y));
+      if (image[v * width + u] != Pixel::kUnknown) nearest = std::min(nearest, std::hypot(u - x, v - y));
     }
   }
-  const Pixel here = x < width && y < height ? image[y * width + x] : Pixel::kUnsaid;
+  const Pixel here = x < width && y < height ? image[y * width + x] : Pixel::kUnknown;
   return here == Pixel::kInside ? 0.5 - out : here == Pixel::kOutside ? in - 0.5 : in - out;
 }
 
@@ -44,7 +44,7 @@ TEST(DistanceField, IsExactAtItsNodes) {
       std::vector<Pixel> image(width * height);
       for (Pixel& p : image) {
         const double u = std::uniform_real_distribution<>()(random);
-        p = u < share ? Pixel::kInside : u < share + 0.5 * (1 - share) ? Pixel::kOutside : Pixel::kUnsaid;
+        p = u < share ? Pixel::kInside : u < share + 0.5 * (1 - share) ? Pixel::kOutside : Pixel::kUnknown;
       }
       const DistanceField field = MakeField(width, height, cell, image, -7, 100);
       for (int y = 0; y < height; y += cell) {
@@ -104,8 +104,8 @@ TEST(DistanceField, GradientIsTheDerivativeOfWhatIsReturned) {
   EXPECT_GT(beyond, 100);
 }
 
-TEST(DistanceField, StaysFiniteWithoutABorder) {
-  for (const Pixel only : {Pixel::kInside, Pixel::kOutside, Pixel::kUnsaid}) {
+TEST(DistanceField, StaysFiniteWithoutABoundary) {
+  for (const Pixel only : {Pixel::kInside, Pixel::kOutside, Pixel::kUnknown}) {
     const DistanceField field = MakeField(9, 7, 2, std::vector<Pixel>(63, only));
     EXPECT_LE(std::abs(field.Evaluate(Vector2d(4, 3))), std::hypot(9, 7));
     EXPECT_TRUE(std::isfinite(field.Evaluate(Vector2d(-1e6, 1e6))));
@@ -115,11 +115,11 @@ TEST(DistanceField, StaysFiniteWithoutABorder) {
   EXPECT_THROW(MakeField(0, 4, 1, {}), std::invalid_argument);
 }
 
-TEST(DistanceField, BorderRunsThroughTheMiddleOfWhatIsUnsaid) {
-  // Columns 0–2 inside, 3–6 unsaid, 7–11 outside: the border is at 4.5.
+TEST(DistanceField, BoundaryRunsThroughTheMiddleOfWhatIsUnknown) {
+  // Columns 0–2 inside, 3–6 unknown, 7–11 outside: the boundary is at 4.5.
   std::vector<Pixel> image;
   for (int i = 0; i < 12 * 5; ++i) {
-    image.push_back(i % 12 < 3 ? Pixel::kInside : i % 12 < 7 ? Pixel::kUnsaid : Pixel::kOutside);
+    image.push_back(i % 12 < 3 ? Pixel::kInside : i % 12 < 7 ? Pixel::kUnknown : Pixel::kOutside);
   }
   const DistanceField field = MakeField(12, 5, 1, image);
   EXPECT_NEAR(field.Evaluate(Vector2d(4.5, 2)), 0, 1e-6);

@@ -84,7 +84,7 @@ TEST(PartLabelTerm, CostsLittleWhereItsLabelsComeFrom) {
   const auto scene = MakeScene();
   const auto term = MakeTerm(*scene, scene->truth);
   EXPECT_GT(term->num_person_pixels(), 4000);
-  EXPECT_GT(term->outline().size(), 200U);
+  EXPECT_GT(term->contour().size(), 200U);
   EXPECT_GT(term->targets().size(), 200U);
   EXPECT_EQ(term->silhouette_unmatched(), 0);
   FrameResiduals residuals;
@@ -108,7 +108,7 @@ TEST(PartLabelTerm, DerivativesMatchDifferences) {
   state.translation += Vector3d(0.05, -0.04, 0.1);
   const auto term = MakeTerm(*scene, state);
   EXPECT_GT(term->targets().size(), 150U);
-  EXPECT_GT(term->outline().size(), 150U);
+  EXPECT_GT(term->contour().size(), 150U);
   // Away from where the correspondences were made.
   state.rotations[0] = state.rotations[0] * RotationFromAxisAngle(Vector3d(0.02, 0.01, -0.03));
   const FrameSystem system = Evaluate(*scene, *term, state);
@@ -157,7 +157,7 @@ std::vector<Eigen::Matrix<Jet, 2, 1>> TwinPixels(const Scene& scene, const PartL
     barycentrics.push_back(barycentric);
   };
   for (const PartLabelTerm::Target& target : term.targets()) add(target.face, target.barycentric);
-  for (const PartLabelTerm::OutlinePoint& point : term.outline()) add(point.face, point.barycentric);
+  for (const PartLabelTerm::ContourPoint& point : term.contour()) add(point.face, point.barycentric);
   const auto vertices = frame.body.Vertices(corners);
   std::vector<Eigen::Matrix<Jet, 2, 1>> pixels;
   for (size_t i = 0; i < barycentrics.size(); ++i) {
@@ -171,7 +171,7 @@ std::vector<Eigen::Matrix<Jet, 2, 1>> TwinPixels(const Scene& scene, const PartL
 /// The term from its definition with the correspondences held, which is what a round does. The distance field's own
 /// derivative is checked where the field is (distance_field_test.cc). Returns the number of rows.
 int CheckAgainstTwin(const Scene& scene, const PartLabelTerm& term, const FrameState& state) {
-  const size_t num_targets = term.targets().size(), n = num_targets + term.outline().size();
+  const size_t num_targets = term.targets().size(), n = num_targets + term.contour().size();
   MatrixXd J = MatrixXd::Zero(static_cast<int>(2 * n), scene.layout.num_columns);
   VectorXd r = VectorXd::Zero(static_cast<int>(2 * n));
   double cost = 0;
@@ -186,7 +186,7 @@ int CheckAgainstTwin(const Scene& scene, const PartLabelTerm& term, const FrameS
         raw = target.whitening.cast<Jet>() * (pixels[i] - target.pixel.cast<Jet>());
         weight = target.weight;
       } else {
-        const PartLabelTerm::OutlinePoint& point = term.outline()[i - num_targets];
+        const PartLabelTerm::ContourPoint& point = term.contour()[i - num_targets];
         Eigen::RowVector2d slope;
         const double distance = point.field->Evaluate(Eigen::Vector2d(pixels[i][0].a, pixels[i][1].a), &slope);
         raw[0] = Jet(distance - point.offset_px);
@@ -235,7 +235,7 @@ double Fit(const Scene& scene, FrameState state, const PartLabelOptions& options
     for (int i = 0; i < 4; ++i) {
       const FrameSystem system = Evaluate(scene, *term, state);
       Eigen::MatrixXd H = system.H.selfadjointView<Eigen::Lower>();
-      H.diagonal().array() += 30;  // damping, for what an outline does not show
+      H.diagonal().array() += 30;  // damping, for what a contour does not show
       const int pose_columns = scene.layout.num_frame_columns();
       const VectorXd step =
           -H.topLeftCorner(pose_columns, pose_columns).ldlt().solve(system.gradient.head(pose_columns));
@@ -312,7 +312,7 @@ TEST(PartLabelTerm, AMaskIsASilhouetteWithoutParts) {
   EXPECT_EQ(term->Field(1), nullptr);
 }
 
-TEST(PartLabelTerm, MergedPartsHaveNoBorderBetweenThem) {
+TEST(PartLabelTerm, MergedPartsHaveNoBoundaryBetweenThem) {
   const auto scene = MakeScene();
   scene->labels.frames[0].labels[0] = 0;
   scene->labels.Merge(1, 2);
@@ -337,8 +337,8 @@ TEST(PartLabelTerm, NothingSeenAsksForNothing) {
   EXPECT_EQ(MakeTerm(*scene, scene->truth)->num_rows(), 0);
 }
 
-TEST(PartLabelTerm, UnknownPixelsHaveNoBorder) {
-  // The right half of the person is unknown: no border there, and the silhouette's points there have no residual.
+TEST(PartLabelTerm, UnknownPixelsHaveNoBoundary) {
+  // The right half of the person is unknown: no boundary there, and the silhouette's points there have no residual.
   const auto scene = MakeScene();
   LabelImage& image = scene->labels.frames[0];
   for (int y = 0; y < kHeight; ++y) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/people/photo_outline.h"
+#include "bodyloom/pipelines/people/person_segmentation.h"
 
 #include <algorithm>
 #include <utility>
@@ -38,7 +38,7 @@ double KeepPerson(std::span<const uint8_t> parts, int size, std::vector<uint8_t>
   const Box body = BoxOf(parts, size);
   const int reach = std::max(1, std::max(body.width(), body.height()) / 12);
   std::vector<int> steps(parts.size(), -1);
-  std::vector<std::pair<int, int>> border, next;
+  std::vector<std::pair<int, int>> frontier, next;
   size_t labelled = 0, kept = 0;
   for (int y = 0; y < size; ++y) {
     for (int x = 0; x < size; ++x) {
@@ -47,12 +47,12 @@ double KeepPerson(std::span<const uint8_t> parts, int size, std::vector<uint8_t>
       ++labelled;
       if (parts[i] == 0) continue;
       steps[i] = 0;
-      border.emplace_back(x, y);
+      frontier.emplace_back(x, y);
     }
   }
-  for (int step = 1; step <= reach && !border.empty(); ++step) {
+  for (int step = 1; step <= reach && !frontier.empty(); ++step) {
     next.clear();
-    for (const auto& [x, y] : border) {
+    for (const auto& [x, y] : frontier) {
       for (int ny = std::max(0, y - 1); ny <= std::min(size - 1, y + 1); ++ny) {
         for (int nx = std::max(0, x - 1); nx <= std::min(size - 1, x + 1); ++nx) {
           const size_t i = size_t(ny) * size + nx;
@@ -62,7 +62,7 @@ double KeepPerson(std::span<const uint8_t> parts, int size, std::vector<uint8_t>
         }
       }
     }
-    border.swap(next);
+    frontier.swap(next);
   }
   for (size_t i = 0; i < labels->size(); ++i) {
     if (steps[i] < 0) (*labels)[i] = 0;
@@ -71,8 +71,8 @@ double KeepPerson(std::span<const uint8_t> parts, int size, std::vector<uint8_t>
   return labelled == 0 ? 0 : 1 - static_cast<double>(kept) / static_cast<double>(labelled);
 }
 
-PhotoOutline OutlineOfPerson(const Image& window, std::span<const uint8_t> inside_picture,
-                             std::span<const uint8_t> alpha, std::span<const uint8_t> parts) {
+PersonSegmentation SegmentPerson(const Image& window, std::span<const uint8_t> inside_picture,
+                                 std::span<const uint8_t> alpha, std::span<const uint8_t> parts) {
   const int size = window.width;
   const Box box = BoxOf(inside_picture, size);
   Image cut(box.width(), box.height());
@@ -86,21 +86,21 @@ PhotoOutline OutlineOfPerson(const Image& window, std::span<const uint8_t> insid
     }
   }
   const std::vector<uint8_t> found = LabelsFromBody(cut, cut_parts);
-  PhotoOutline outline;
-  outline.labels.assign(parts.size(), 0);
+  PersonSegmentation segmentation;
+  segmentation.labels.assign(parts.size(), 0);
   bool is_body = true;
   for (int y = box.top; y < box.bottom; ++y) {
     for (int x = box.left; x < box.right; ++x) {
       const size_t i = size_t(y - box.top) * box.width() + (x - box.left);
-      outline.labels[size_t(y) * size + x] = found[i];
+      segmentation.labels[size_t(y) * size + x] = found[i];
       is_body = is_body && (found[i] != 0) == (cut_parts[i] != 0);
     }
   }
-  outline.note = is_body ? "no labels: the outline is the bare body's, classes are its parts'"
-                 : alpha.empty()
-                     ? "no labels: the outline is found by GrabCut from the tracked body, classes are its parts'"
-                     : "no labels: the outline is its transparency's, classes are the tracked body's parts'";
-  return outline;
+  segmentation.note = is_body ? "no labels: the outline is the bare body's, classes are its parts'"
+                      : alpha.empty()
+                          ? "no labels: the outline is found by GrabCut from the tracked body, classes are its parts'"
+                          : "no labels: the outline is its transparency's, classes are the tracked body's parts'";
+  return segmentation;
 }
 
 }  // namespace bodyloom

@@ -16,7 +16,7 @@ namespace bodyloom {
 /// may be several people in a picture, and the track says which one is meant. Returns the share that was left out.
 double KeepPerson(std::span<const uint8_t> parts, int size, std::vector<uint8_t>* labels);
 
-struct PhotoOutline {
+struct PersonSegmentation {
   std::vector<uint8_t> labels;  ///< size × size
   std::string note;             ///< how it was found, half a sentence for the user
 };
@@ -24,7 +24,7 @@ struct PhotoOutline {
 /// By GrabCut from the tracked body (data_tools/datasets/photo_segmentation.h), in the part of the window that lies
 /// inside the picture; outside of it all is background. `alpha` (size × size or empty): the file's own transparency,
 /// which is then cut instead of the colours. Throws std::invalid_argument when the body is not in the picture.
-PhotoOutline OutlineOfPerson(const Image& window, std::span<const uint8_t> inside_picture,
-                             std::span<const uint8_t> alpha, std::span<const uint8_t> parts);
+PersonSegmentation SegmentPerson(const Image& window, std::span<const uint8_t> inside_picture,
+                                 std::span<const uint8_t> alpha, std::span<const uint8_t> parts);
 
 }  // namespace bodyloom
