@@ -17,15 +17,15 @@ constexpr const char* kFooter =
     "What is compared:\n"
     "  two folders of pictures     matched by name without extension\n"
     "  two videos                  frame by frame\n"
-    "  two person sets             images/, labels/ (grey, 0 to 6) and normals/ (n = 2c/255 - 1), each by its own\n"
+    "  two single-person datasets  images/, labels/ (grey, 0 to 6) and normals/ (n = 2c/255 - 1), each by its own\n"
     "                              metrics, as far as both have them\n"
     "SSIM is never one number; docs/image_metrics.md says what each preset is and who uses it. --mask adds PSNR "
     "inside\n"
     "the mask, bounds the normals, and gives --preset neuralbody its box; other presets look at the whole picture.\n"
     "Means and standard deviations are over frames; frames of equal pictures (PSNR inf) are counted apart.\n"
-    "Do clothes react to motion? --other-truth and --other-result are person sets of the same poses at another speed\n"
-    "(synth-person --speed, animate motion --set); how the garment changes from speed to speed is compared with how\n"
-    "it should.\n"
+    "Do clothes react to motion? --other-truth and --other-result are single-person datasets of the same poses at\n"
+    "another speed (synth-person --speed, animate motion --set); how the garment changes from speed to speed is\n"
+    "compared with how it should.\n"
     "Examples:\n"
     "  bodyloom metrics --truth clip/images --result run/frames --json errors.json --csv frames.csv\n"
     "  bodyloom metrics --truth clip.mp4 --result rendered.mp4 --preset 3dgs\n\n";
@@ -44,10 +44,10 @@ void AddMetricsVerb(CLI::App& app, Action* action, std::vector<std::string> argu
   verb->add_option("--mask", c.mask, "folder or video of masks: pixels of 128 or more count")->type_name("PATH");
   verb->add_option("--preset", *preset, "which SSIM")->check(CLI::IsMember(SsimPresetNames()))->capture_default_str();
   CLI::Option* other_truth =
-      verb->add_option("--other-truth", c.other_truth, "person set of the same poses as --truth at another speed")
+      verb->add_option("--other-truth", c.other_truth, "dataset of the same poses as --truth at another speed")
           ->type_name("DIR");
   CLI::Option* other_result =
-      verb->add_option("--other-result", c.other_result, "person set to judge against it")->type_name("DIR");
+      verb->add_option("--other-result", c.other_result, "dataset to judge against it")->type_name("DIR");
   other_truth->needs(other_result), other_result->needs(other_truth);
   auto reacting = std::make_shared<std::string>(kPersonLabelNames[static_cast<int>(c.reacting)]);
   verb->add_option("--reacting", *reacting, "the garment whose reaction is measured")

@@ -34,7 +34,7 @@ ScoreGuidedSummary Score(const Options& options) {
 void Run(Options options) {
   AnimateGuidedRequest& request = options.request;
   if (options.score.empty() && (request.photo.image.empty() || request.out.empty())) {
-    throw RequestError("--image and --out are needed (or --score, to measure on a people set)");
+    throw RequestError("--image and --out are needed (or --score, to measure on a multi-person dataset)");
   }
   request.background = ParsePhotoBackground(options.background);
   if (options.as_seen) request.completion = MapCompletion::kNone;
@@ -55,16 +55,16 @@ void AddAnimateGuided(CLI::App& animate, Action* action) {
   AnimateGuidedRequest& request = options->request;
   verb->add_option("--run", request.run, "Folder of the trained run")->required();
   verb->add_option("--image", request.photo.image,
-                   "The photo: a picture, a video, a folder of pictures, or a person set");
-  verb->add_option("--image-track", request.photo.track, "Its track, .npz (default: the person set's own)");
-  verb->add_option("--image-frame", request.photo.frame, "Frame of a video or set that is the photo")
+                   "The photo: a picture, a video, a folder of pictures, or a single-person dataset");
+  verb->add_option("--image-track", request.photo.track, "Its track, .npz (default: the single-person dataset's own)");
+  verb->add_option("--image-frame", request.photo.frame, "Frame of a video or dataset that is the photo")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   verb->add_option("--image-labels", request.photo.labels, "DensePose's parts of the photo's clip (.npz)");
   verb->add_option("--views", request.views, "More pictures of the person, IMAGE:TRACK or IMAGE:TRACK:FRAME");
   verb->add_option("--track", request.track, "The motion: a track, .npz");
   verb->add_option("--data", request.data,
-                   "Instead: a person set of the same person, whose motion is shown and whose pictures are compared");
+                   "Instead: a dataset of the same person, whose motion is shown and whose pictures are compared");
   verb->add_option("--out", request.out, "The video, .mp4");
   verb->add_option("--body", request.photo.body, "The tracks' body (default: the built-in body)");
   verb->add_option("--background", options->background, kPhotoBackgroundHelp)->capture_default_str();
@@ -80,7 +80,7 @@ void AddAnimateGuided(CLI::App& animate, Action* action) {
   verb->add_option("--sheet", request.sheet, "Contact sheet: photo, what is known, labels, result");
   verb->add_option("--uv-maps", request.uv_maps, "Picture of the coherent maps and the virtual views");
   verb->add_option("--json", request.json, "Report with times");
-  verb->add_option("--score", options->score, "Instead: measure on the test people of this people set");
+  verb->add_option("--score", options->score, "Instead: measure on the test people of this multi-person dataset");
   verb->add_option("--score-photos", options->score_photos, "Numbers of photos to measure with, such as 1 2 4")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();

@@ -60,7 +60,7 @@ void AddAnimateMotion(CLI::App& animate, Action* action) {
   verb->add_option("--run", request->run, "Folder of the trained run")->required();
   verb->add_option("--track", request->track, "The motion: a track, .npz (default: that of --data)");
   verb->add_option("--data", request->data,
-                   "A person set of the same person: the result is compared with its pictures (not with --view-yaw, "
+                   "A dataset of the same person: the result is compared with its pictures (not with --view-yaw, "
                    "--freeze or --speed)");
   verb->add_option("--out", request->out, "The video, .mp4")->required();
   verb->add_option("--body", request->body, "The track's body (default: the built-in body)");
@@ -75,7 +75,7 @@ void AddAnimateMotion(CLI::App& animate, Action* action) {
   verb->add_option("--background", request->background, "Image, video or folder of images behind the person");
   CLI::Option* full_size = verb->add_flag("--full-size", request->full_size, kFullSizeHelp);
   verb->add_option("--set", request->set,
-                   "Also a person set: pictures, labels and normals without loss, for `bodyloom metrics`")
+                   "Also a single-person dataset: pictures, labels and normals without loss, for `bodyloom metrics`")
       ->type_name("DIR")
       ->needs(full_size);
   verb->add_option("--relight", request->relight,
@@ -90,7 +90,7 @@ void AddAnimateMotion(CLI::App& animate, Action* action) {
                  "The person may be farther from the body than clothes ever were in training");
   verb->add_option(
       "--like", request->like,
-      "A person set, or a track: with --data, the error by how much each frame's motion is like one there");
+      "A single-person dataset, or a track: with --data, the error by how much each frame's motion is like one there");
   verb->add_option("--frames", request->frames, "With --data: a line of CSV a frame, error and similarity");
   verb->add_option("--sheet", request->sheet, "Contact sheet of six frames: picture, labels, normals");
   verb->add_option("--json", request->json, "Report with times");

@@ -35,9 +35,10 @@ void AddAnimatePhoto(CLI::App& animate, Action* action) {
   auto options = std::make_shared<Options>();
   AnimatePhotoRequest& request = options->request;
   verb->add_option("--run", request.run, "Folder of a run of `bodyloom train photo`")->required();
-  verb->add_option("--image", request.photo.image, "The photo: a picture, a video, a folder of pictures, a person set")
+  verb->add_option("--image", request.photo.image,
+                   "The photo: a picture, a video, a folder of pictures, or a single-person dataset")
       ->required();
-  verb->add_option("--image-track", request.photo.track, "Its track, .npz (default: the person set's own)");
+  verb->add_option("--image-track", request.photo.track, "Its track, .npz (default: the single-person dataset's own)");
   verb->add_option("--image-frame", request.photo.frame, "Which frame of image and track")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();

@@ -62,10 +62,10 @@ void AddTrainAnimate(CLI::App& train, Action* action) {
   auto parsed = std::make_shared<Parsed>();
   TrainGuidedRendererRequest& request = parsed->request;
   TrainGuidedOptions& options = request.options;
-  verb->add_option("--data", request.data, "A people set (bodyloom synth-people)")->required();
+  verb->add_option("--data", request.data, "A multi-person dataset (bodyloom synth-people)")->required();
   verb->add_option("--out", request.out, "Folder of the run: config.json, checkpoint.bin, metrics.csv, previews")
       ->required();
-  verb->add_option("--body", request.body, "The set's body (default: the built-in body)");
+  verb->add_option("--body", request.body, "The dataset's body (default: the built-in body)");
   AddProfileOption(verb, &parsed->profile);
   verb->add_option("--image-size", parsed->image_size, "Pixels and texels a side (default: the profile's)")
       ->check(CLI::Range(32, 4096));

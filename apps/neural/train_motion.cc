@@ -54,9 +54,10 @@ void AddTrainMotion(CLI::App& train, Action* action) {
   auto parsed = std::make_shared<Parsed>();
   TrainMotionRendererRequest& request = parsed->request;
   TrainMotionOptions& options = request.options;
-  verb->add_option("--data", request.data.data, "A person set (bodyloom synth-person), or a video or folder of images")
+  verb->add_option("--data", request.data.data,
+                   "A single-person dataset (bodyloom synth-person), or a video or folder of images")
       ->required();
-  verb->add_option("--track", request.data.track, "The clip's track (default: the person set's own)");
+  verb->add_option("--track", request.data.track, "The clip's track (default: the single-person dataset's own)");
   verb->add_option("--out", request.out, "Folder of the run: config.json, checkpoint.bin, metrics.csv, previews")
       ->required();
   verb->add_option("--body", request.data.body, "The track's body (default: the built-in body)");
@@ -71,7 +72,7 @@ void AddTrainMotion(CLI::App& train, Action* action) {
   verb->add_option("--train", parsed->train, "Frames to train on, FIRST-LAST (default: the first four fifths)");
   verb->add_option("--validate", parsed->validate, "Frames to validate on (default: the last fifth)");
   verb->add_option("--validate-data", request.validate_data,
-                   "Validate on another person set of the same person, in another motion");
+                   "Validate on another dataset of the same person, in another motion");
   verb->add_option("--share", request.frames.share, "Of the training frames that is used, in stretches of 32")
       ->check(CLI::Range(0.001, 1.0))
       ->capture_default_str();

@@ -46,7 +46,8 @@ void AddTrainPhoto(CLI::App& train, Action* action) {
   auto parsed = std::make_shared<Parsed>();
   TrainPhotoRendererRequest& request = parsed->request;
   TrainPhotoOptions& options = request.options;
-  verb->add_option("--data", request.data, "A people set (bodyloom synth-people), or a person set")->required();
+  verb->add_option("--data", request.data, "A multi-person dataset (bodyloom synth-people), or a single-person dataset")
+      ->required();
   verb->add_option("--out", request.out, "Folder of the run: config.json, checkpoint.bin, metrics.csv, previews")
       ->required();
   verb->add_option("--body", request.body, "The people's body (default: the built-in body)");

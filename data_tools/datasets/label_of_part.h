@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/geometry/observations.h"
 #include "bodyloom/render/image.h"
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A contact sheet of a person set: evenly spread frames as columns; image, labels in colours, normals and IUV as rows.
+/// A contact sheet of a single-person dataset: evenly spread frames as columns; image, labels in colours, normals and
+/// IUV as rows.
 #pragma once
 
 #include <vector>
 
-#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/render/image.h"
 
 namespace bodyloom {

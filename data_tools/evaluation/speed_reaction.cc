@@ -55,8 +55,8 @@ std::vector<int> FramesSinceGap(const Track& track) {
   return since;
 }
 
-void RequireMatch(const PersonSet& truth, const PersonSet& result) {
-  const PersonSetInfo &a = truth.info(), &b = result.info();
+void RequireMatch(const SinglePersonDataset& truth, const SinglePersonDataset& result) {
+  const SinglePersonDatasetInfo &a = truth.info(), &b = result.info();
   if (!a.has.labels || !b.has.labels) {
     throw std::runtime_error((a.has.labels ? result : truth).path() + ": has no labels, which reactions are read from");
   }
@@ -123,8 +123,9 @@ std::vector<std::pair<int, int>> PairFramesByPose(const Track& a, const Track& b
   return pairs;
 }
 
-SpeedReaction MeasureSpeedReaction(const PersonSet& truth, const PersonSet& result, const PersonSet& other_truth,
-                                   const PersonSet& other_result, PersonLabel label, int num_threads) {
+SpeedReaction MeasureSpeedReaction(const SinglePersonDataset& truth, const SinglePersonDataset& result,
+                                   const SinglePersonDataset& other_truth, const SinglePersonDataset& other_result,
+                                   PersonLabel label, int num_threads) {
   RequireMatch(truth, result);
   RequireMatch(other_truth, other_result);
   const Track track = truth.track(), other_track = other_truth.track();
@@ -150,7 +151,8 @@ SpeedReaction MeasureSpeedReaction(const PersonSet& truth, const PersonSet& resu
     struct Masks {
       PixelMask here, there;
     };
-    const auto change = [&](const PersonSet& set, const PersonSet& other, std::array<double, 4>* difference) {
+    const auto change = [&](const SinglePersonDataset& set, const SinglePersonDataset& other,
+                            std::array<double, 4>* difference) {
       const Image here = set.Read(t, wanted).labels, there = other.Read(u, wanted).labels;
       const LabelExtent a = MeasureLabelExtent(here, label, track, t),
                         b = MeasureLabelExtent(there, label, other_track, u);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Whether rendered clothes react to how the body moves: the same poses at two speeds, in truth and in the result.
 ///
-/// Two person sets show the same poses at another speed (`synth-person --speed`), two results show what a renderer made
-/// of them (`animate motion --set`). Frames are paired by pose. Of each pair, how one garment's picture changes from
-/// one speed to the other is compared with how it should: a renderer that knows the pose alone changes nothing (slope
-/// 0), one that knows the motion changes as the truth does (correlation and slope 1).
+/// Two single-person datasets show the same poses at another speed (`synth-person --speed`), two results show what a
+/// renderer made of them (`animate motion --set`). Frames are paired by pose. Of each pair, how one garment's picture
+/// changes from one speed to the other is compared with how it should: a renderer that knows the pose alone changes
+/// nothing (slope 0), one that knows the motion changes as the truth does (correlation and slope 1).
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/geometry/track.h"
 
 namespace bodyloom {
@@ -58,7 +58,8 @@ struct SpeedReaction {
 
 /// Truths and results at two speeds; each result has the frames of its truth. Throws std::runtime_error naming a set
 /// that lacks labels, has another number of frames or another size, or when no frame shows the same pose.
-SpeedReaction MeasureSpeedReaction(const PersonSet& truth, const PersonSet& result, const PersonSet& other_truth,
-                                   const PersonSet& other_result, PersonLabel label, int num_threads);
+SpeedReaction MeasureSpeedReaction(const SinglePersonDataset& truth, const SinglePersonDataset& result,
+                                   const SinglePersonDataset& other_truth, const SinglePersonDataset& other_result,
+                                   PersonLabel label, int num_threads);
 
 }  // namespace bodyloom

@@ -15,7 +15,8 @@ Image PictureOf(std::span<const float> planar, int width, int height);
 /// Normals of the camera frame as colours: red right, green up, blue towards the viewer; black where there are none.
 Image NormalPicture(std::span<const float> planar, int width, int height);
 
-/// Classes of a person set (data_tools/datasets/person_set.h), a colour each; the background is black.
+/// Classes of a single-person dataset (data_tools/datasets/single_person_dataset.h), a colour each; the background is
+/// black.
 Image LabelsPicture(std::span<const uint8_t> labels, int width, int height);
 
 }  // namespace bodyloom

@@ -51,11 +51,11 @@ CompareResultsReport CompareResults(const CompareResultsRequest& request, const 
   const std::vector<std::pair<std::string, std::vector<FrameMetric>>> kinds = {
       {"images", of_images}, {"labels", {LabelMetric()}}, {"normals", {NormalMetric()}}};
   callbacks.Begin("metrics");
-  if (!request.other_truth.empty()) {  // first: sets that do not fit are said before an hour of comparing
+  if (!request.other_truth.empty()) {  // first: datasets that do not fit are refused before an hour of comparing
     callbacks.Update("reaction", 0);
-    report.reaction =
-        MeasureSpeedReaction(PersonSet(request.truth), PersonSet(request.result), PersonSet(request.other_truth),
-                             PersonSet(request.other_result), request.reacting, num_threads);
+    report.reaction = MeasureSpeedReaction(SinglePersonDataset(request.truth), SinglePersonDataset(request.result),
+                                           SinglePersonDataset(request.other_truth),
+                                           SinglePersonDataset(request.other_result), request.reacting, num_threads);
   }
   for (const auto& [kind, metrics] : kinds) {
     const auto truth = FolderOf(request.truth, kind), result = FolderOf(request.result, kind);

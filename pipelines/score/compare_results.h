@@ -16,7 +16,7 @@ namespace bodyloom {
 struct CompareResultsRequest {
   std::string truth, result;                    ///< folders or videos
   std::string mask;                             ///< folder or video of masks: pixels of 128 or more count; empty: none
-  std::string other_truth, other_result;        ///< person sets of the same poses at another speed; empty: none
+  std::string other_truth, other_result;        ///< datasets of the same poses at another speed; empty: none
   PersonLabel reacting = PersonLabel::kBottom;  ///< whose reaction to the speed is measured
   SsimPreset preset = SsimPreset::kWang2004;
   bool common_only = false;       ///< compares the frames that both sides have, instead of asking for all

@@ -25,7 +25,8 @@ struct FrameMetric {
 
 /// PSNR and SSIM of colour pictures, with a mask also PSNR inside it.
 FrameMetric ImageMetric(SsimPreset preset, bool has_mask);
-/// Overlap of the seven labels of a person set (grey pictures of 0..6), of all but the background, and accuracy.
+/// Overlap of the seven labels of a single-person dataset (grey pictures of 0..6), of all but the background, and
+/// accuracy.
 FrameMetric LabelMetric();
 /// Angle between normals, n = 2c/255 − 1; inside the mask where there is one.
 FrameMetric NormalMetric();

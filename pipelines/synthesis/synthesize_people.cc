@@ -80,7 +80,7 @@ SynthesizePeopleReport SynthesizePeople(const SynthesizePeopleRequest& request, 
   report.people = request.set.people;
   const std::vector<Motion> motions = LoadMotions(request, *body, &report.motions_too_short);
   callbacks.Update("people", 0);
-  MakePeopleSetOptions set = request.set;
+  MakeMultiPersonDatasetOptions set = request.set;
   set.command = CommandLine(request);
   callbacks.Begin("dressing " + std::to_string(set.people) + " people");
   bool cancelled = false;
@@ -88,7 +88,7 @@ SynthesizePeopleReport SynthesizePeople(const SynthesizePeopleRequest& request, 
     cancelled = cancelled || !callbacks.GoesOn("people", done);
     return !cancelled;
   };
-  report.set = MakePeopleSet(request.out, *body, motions, set);
+  report.set = MakeMultiPersonDataset(request.out, *body, motions, set);
   if (cancelled || !callbacks.GoesOn("people", 1)) throw Cancelled();
   report.outputs = {request.out};
   if (!request.sheet.empty()) {

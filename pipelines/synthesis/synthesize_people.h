@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Pictures of many dressed people with known truth (data_tools/synthesis/people/make_people_set.h).
+/// Pictures of many dressed people with known truth (data_tools/synthesis/people/make_multi_person_dataset.h).
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/synthesis/people/make_people_set.h"
+#include "bodyloom/data_tools/synthesis/people/make_multi_person_dataset.h"
 #include "bodyloom/pipelines/callbacks.h"
 
 namespace bodyloom {
@@ -16,18 +16,18 @@ struct SynthesizePeopleRequest {
   std::string out;                   ///< the folder
   std::string sheet;                 ///< also a contact sheet, .png or .jpg; empty: none
   /// progress and command are set by SynthesizePeople.
-  MakePeopleSetOptions set;
+  MakeMultiPersonDatasetOptions set;
 };
 
 struct SynthesizePeopleReport {
-  MakePeopleSetSummary set;
+  MakeMultiPersonDatasetSummary set;
   int people = 0;
   int motions_too_short = 0;         ///< for a clip, left out
   std::vector<std::string> outputs;  ///< the folder, and the sheet
 };
 
-/// Makes the set and its sheet. Throws RequestError when no motion is as long as a clip, std::runtime_error naming a
-/// file that cannot be used, Cancelled.
+/// Makes the dataset and its sheet. Throws RequestError when no motion is as long as a clip, std::runtime_error naming
+/// a file that cannot be used, Cancelled.
 SynthesizePeopleReport SynthesizePeople(const SynthesizePeopleRequest& request,
                                         const PipelineCallbacks& callbacks = {});
 

@@ -69,7 +69,7 @@ SynthesizePersonReport SynthesizePerson(const SynthesizePersonRequest& request, 
   const std::shared_ptr<const BodyModel> body = BodyOrBuiltin(request.body);
   const Motion motion = LoadMotions(request, *body);
   callbacks.Update("person", 0);
-  MakePersonSetOptions set = request.set;
+  MakeSinglePersonDatasetOptions set = request.set;
   set.motion.clear();
   for (const std::string& name : request.motions) {
     set.motion += (set.motion.empty() ? "" : " ") + std::filesystem::path(name).filename().string();
@@ -84,7 +84,7 @@ SynthesizePersonReport SynthesizePerson(const SynthesizePersonRequest& request, 
   PersonSheet sheet(motion.num_frames());
   if (!request.sheet.empty()) set.look = [&](int t, const PersonFrame& frame) { sheet.Take(t, frame); };
   SynthesizePersonReport report;
-  report.set = MakePersonSet(request.out, *body, motion, set);
+  report.set = MakeSinglePersonDataset(request.out, *body, motion, set);
   if (cancelled || !callbacks.GoesOn("person", 1)) throw Cancelled();
   report.size_px = set.size_px;
   report.outputs = {request.out};
@@ -96,7 +96,7 @@ SynthesizePersonReport SynthesizePerson(const SynthesizePersonRequest& request, 
 }
 
 std::string ToText(const SynthesizePersonReport& report) {
-  const MakePersonSetSummary& set = report.set;
+  const MakeSinglePersonDatasetSummary& set = report.set;
   std::ostringstream text;
   text << set.frames << " frames of " << report.size_px << "x" << report.size_px << " in " << ClockText(set.seconds)
        << ", " << static_cast<int>(set.frames_per_second() * 10) / 10.0 << " a second\n";

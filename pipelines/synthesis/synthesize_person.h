@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Pictures of one dressed person with known truth: motions in, a person set out
-/// (data_tools/synthesis/people/make_person_set.h).
+/// Pictures of one dressed person with known truth: motions in, a single-person dataset out
+/// (data_tools/synthesis/people/make_single_person_dataset.h).
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/synthesis/people/make_person_set.h"
+#include "bodyloom/data_tools/synthesis/people/make_single_person_dataset.h"
 #include "bodyloom/pipelines/callbacks.h"
 #include "bodyloom/pipelines/synthesis/motion_source.h"
 
@@ -20,17 +20,17 @@ struct SynthesizePersonRequest {
   std::string out;                             ///< the folder
   std::string sheet;                           ///< also a contact sheet, .png or .jpg; empty: none
   /// progress, look, motion and command are set by SynthesizePerson.
-  MakePersonSetOptions set;
+  MakeSinglePersonDatasetOptions set;
 };
 
 struct SynthesizePersonReport {
-  MakePersonSetSummary set;
+  MakeSinglePersonDatasetSummary set;
   int size_px = 0;                   ///< of the pictures
   std::vector<std::string> outputs;  ///< the folder, and the sheet
 };
 
-/// Makes the set and its sheet. Throws RequestError for speeds without a rate, std::runtime_error naming a file that
-/// cannot be used, Cancelled.
+/// Makes the dataset and its sheet. Throws RequestError for speeds without a rate, std::runtime_error naming a file
+/// that cannot be used, Cancelled.
 SynthesizePersonReport SynthesizePerson(const SynthesizePersonRequest& request,
                                         const PipelineCallbacks& callbacks = {});
 

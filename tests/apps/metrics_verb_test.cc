@@ -135,7 +135,7 @@ TEST_F(MetricsVerb, MasksAndPresets) {
   ExpectError({"--truth", truth, "--result", result, "--mask", Path("mask")}, "no mask '000000'");
 }
 
-TEST_F(MetricsVerb, PersonSets) {
+TEST_F(MetricsVerb, SinglePersonDatasets) {
   Pictures("truth/images", {10, 20});
   Pictures("result/images", {12, 20});
   Pictures("truth/labels", {1, 1});

@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
-#include "bodyloom/data_tools/datasets/people_set.h"
-#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/data_tools/datasets/multi_person_dataset.h"
+#include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"
@@ -22,7 +22,7 @@ TEST(SynthPersonVerb, WritesASetAndASheet) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, HasSubstr("5 frames of 96x96"));
   EXPECT_THAT(result.out, HasSubstr("cloth"));
-  const PersonSet set(scratch / "person");
+  const SinglePersonDataset set(scratch / "person");
   EXPECT_EQ(set.info().num_frames, 5);
   EXPECT_EQ(set.info().seed, 7);
   EXPECT_EQ(set.info().garment, "skirt");
@@ -38,7 +38,7 @@ TEST(SynthPersonVerb, SeveralMotionsFollowEachOtherWithAGap) {
       RunCommand({"synth-person", "--motion", "demo", "--motion", "demo", "--first", "40", "--frames", "4", "--out",
                   scratch / "person", "--size", "64", "--garment", "skirt"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  const PersonSet set(scratch / "person");
+  const SinglePersonDataset set(scratch / "person");
   EXPECT_EQ(set.info().num_frames, 8);
   EXPECT_NEAR(set.info().fps, 30, 1e-6);
   EXPECT_EQ(set.info().motion, "demo demo");
@@ -59,7 +59,7 @@ TEST(SynthPersonVerb, TheSamePosesAtTwoSpeeds) {
     arguments.insert(arguments.end(), speeds.begin(), speeds.end());
     const CommandResult result = RunCommand(arguments);
     EXPECT_EQ(result.exit_code, 0) << result.err;
-    return PersonSet(scratch / name).track().motion;
+    return SinglePersonDataset(scratch / name).track().motion;
   };
   const Motion normal = make("normal", {}), slow = make("slow", {"--speed", "0.5"}),
                both = make("both", {"--speed", "1", "--speed", "0.5"});
@@ -71,7 +71,7 @@ TEST(SynthPersonVerb, TheSamePosesAtTwoSpeeds) {
     EXPECT_NEAR(slow.timestamps[2 * t], 2 * normal.timestamps[t], 1e-9);
   }
   EXPECT_GT((normal.poses.row(0) - normal.poses.row(4)).cwiseAbs().maxCoeff(), 1e-3) << "somebody who stands still";
-  EXPECT_THAT(PersonSet(scratch / "both").info().command, HasSubstr("--speed 1 --speed 0.5"));
+  EXPECT_THAT(SinglePersonDataset(scratch / "both").info().command, HasSubstr("--speed 1 --speed 0.5"));
   const CommandResult rateless =
       RunCommand({"synth-person", "--motion", "demo", "--out", scratch / "p", "--fps", "0", "--speed", "0.5"});
   EXPECT_EQ(rateless.exit_code, 2);
@@ -112,7 +112,7 @@ TEST(SynthPeopleVerb, WritesASetAndASheet) {
                   "--views", "2", "--frames", "2", "--size", "64", "--sheet", scratch / "sheet.png"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, HasSubstr("8 pictures of 2 people"));
-  const PeopleSet set = ReadPeopleSet(scratch / "people");
+  const MultiPersonDataset set = ReadMultiPersonDataset(scratch / "people");
   EXPECT_EQ(set.people.size(), 2U);
   EXPECT_THAT(set.command, HasSubstr("--every 6"));
   EXPECT_GT(ReadImage(scratch / "sheet.png").width, 500);

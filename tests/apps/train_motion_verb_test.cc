@@ -125,7 +125,7 @@ TEST_F(TrainMotionVerb, TrainsGoesOnAndAnimates) {
                   scratch_ / "b.mp4", "--view-yaw", "0:90", "--warmup", "0", "--threads", "1"});
   EXPECT_EQ(turned.exit_code, 0) << turned.err;
 
-  // The pictures as a person set, which `metrics` compares with the truth, part by part.
+  // The pictures as a single-person dataset, which `metrics` compares with the truth, part by part.
   const CommandResult as_set =
       RunCommand({"animate", "motion", "--run", scratch_ / "run", "--data", scratch_ / "person", "--out",
                   scratch_ / "c.mp4", "--full-size", "--set", scratch_ / "set", "--warmup", "2", "--threads", "1"});

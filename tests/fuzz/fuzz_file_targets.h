@@ -10,7 +10,7 @@
 #include <string>
 
 #include "bodyloom/data_tools/body/body_io.h"
-#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/data_tools/motion/motion_split.h"
 #include "bodyloom/data_tools/observations/densepose_iuv.h"
 #include "bodyloom/data_tools/video/image_file.h"
@@ -65,7 +65,7 @@ inline bool AcceptsImage(const std::string& bytes) {
 }
 
 /// person.json of a set whose one frame is there.
-inline bool AcceptsPersonSet(const std::string& bytes) {
+inline bool AcceptsSinglePersonDataset(const std::string& bytes) {
   static const bool once = [] {
     for (const char* name : {"images", "labels", "normals", "iuv", "backgrounds"}) {
       Folder().Write(std::string("set/") + name + "/000000.png", "");
@@ -76,7 +76,7 @@ inline bool AcceptsPersonSet(const std::string& bytes) {
   (void)once;
   Folder().Write("set/person.json", bytes);
   return Accepts([&] {
-    const PersonSet set(Folder().path() + "/set");
+    const SinglePersonDataset set(Folder().path() + "/set");
     if (set.info().num_frames != 1 || !(set.info().fps > 0)) throw std::logic_error("frames that are not there");
   });
 }

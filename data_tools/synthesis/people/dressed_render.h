@@ -14,7 +14,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/data_tools/synthesis/people/dressed_person.h"
 #include "bodyloom/data_tools/synthesis/people/moving_background.h"
 #include "bodyloom/data_tools/synthesis/people/wardrobe.h"

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/geometry/body_model.h"
 
 namespace bodyloom {

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/data_tools/video/video_writer.h"
@@ -91,7 +91,7 @@ class GuidedAnimation {
   /// The poses to show, in the shape of the person in the photo.
   void OpenMotion() {
     const Photo& photo = photos_.front();
-    track_ = request_.data.empty() ? ReadTrack(request_.track) : PersonSet(request_.data).track();
+    track_ = request_.data.empty() ? ReadTrack(request_.track) : SinglePersonDataset(request_.data).track();
     RequireBodyOf(photo, track_, MotionPath());
     track_.motion.betas = photo.track.motion.betas;
     PhotoMapsOptions options;
@@ -129,7 +129,7 @@ class GuidedAnimation {
     PhotoBackdrop backdrop(request_.background, photos_.front(), picture_);
     SayLines(notes_, callbacks_);
     if (!request_.data.empty()) {
-      truth_ = std::make_unique<PersonSet>(request_.data);
+      truth_ = std::make_unique<SinglePersonDataset>(request_.data);
       scorer_ = std::make_unique<GuidedScorer>(true);
     }
     VideoWriter video(request_.out, picture_.width, picture_.height, FramesPerSecond(track_, kDefaultFps));
@@ -221,7 +221,7 @@ class GuidedAnimation {
   std::string notes_;
   Track track_;
   std::unique_ptr<PhotoMaps> maps_;
-  std::unique_ptr<PersonSet> truth_;
+  std::unique_ptr<SinglePersonDataset> truth_;
   std::unique_ptr<GuidedScorer> scorer_;
   PictureSize picture_;
   std::vector<Image> sheet_;

@@ -20,7 +20,7 @@ namespace bodyloom {
 struct AnimateGuidedRequest : AnimationRequest {
   PhotoRequest photo;              ///< what the person looks like
   std::vector<std::string> views;  ///< more pictures of the person, IMAGE:TRACK[:FRAME] (ParsePhotoRequest)
-  std::string data;  ///< a person set of the same person: its motion is shown, its pictures are compared with
+  std::string data;  ///< a dataset of the same person: its motion is shown, its pictures are compared with
   PhotoBackground background;
   std::optional<MapCompletion> completion;  ///< of what the photos do not show; absent: as the run says
   bool anywhere = false;  ///< the person may be farther from the body than clothes ever were in training

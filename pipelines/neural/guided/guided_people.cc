@@ -4,8 +4,8 @@
 #include <filesystem>
 
 #include "bodyloom/data_tools/body/body_or_builtin.h"
-#include "bodyloom/data_tools/datasets/people_set.h"
-#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/data_tools/datasets/multi_person_dataset.h"
+#include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/pipelines/neural/guided/virtual_views.h"
 
 namespace bodyloom {
@@ -14,14 +14,14 @@ namespace fs = std::filesystem;
 
 GuidedPeople::GuidedPeople(const PeopleDataRequest& request)
     : request_(request), data_(request), body_(BodyOrBuiltin(request.body)) {
-  if (IsPersonSet(request.data)) {
-    betas_.push_back(PersonSet(request.data).track().motion.betas);
+  if (IsSinglePersonDataset(request.data)) {
+    betas_.push_back(SinglePersonDataset(request.data).track().motion.betas);
     return;
   }
-  const PeopleSet set = ReadPeopleSet(request.data);
-  for (const SetPerson& person : set.people) {
+  const MultiPersonDataset set = ReadMultiPersonDataset(request.data);
+  for (const DatasetPerson& person : set.people) {
     if (person.test != request.test) continue;
-    betas_.push_back(PersonSet((fs::path(set.path) / person.clips.front()).string()).track().motion.betas);
+    betas_.push_back(SinglePersonDataset((fs::path(set.path) / person.clips.front()).string()).track().motion.betas);
   }
 }
 

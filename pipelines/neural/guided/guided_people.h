@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// People of a set as the pose-guided renderer takes them: their pictures, and virtual views of their bodies.
+/// People of a dataset as the pose-guided renderer takes them: their pictures, and virtual views of their bodies.
 #pragma once
 
 #include <Eigen/Core>

@@ -73,7 +73,7 @@ nlohmann::ordered_json Report(const std::vector<ScoredPhotos>& scored) {
 
 ScoreGuidedSummary ScoreGuided(const ScoreGuidedRequest& request, const PipelineCallbacks& callbacks) {
   BODYLOOM_CHECK(!request.photos.empty(), "score: no number of photos given");
-  RequireReadable(request.data, "people set");
+  RequireReadable(request.data, "multi-person dataset");
   RequireOutputs({}, {request.sheet, request.json});
   const GuidedRun run = ReadGuidedRun(request.run);
   GuidedRenderer renderer(

@@ -14,7 +14,7 @@ namespace bodyloom {
 
 struct ScoreGuidedRequest {
   std::string run;                ///< folder of the trained run
-  std::string data;               ///< a people set: its test people
+  std::string data;               ///< a multi-person dataset: its test people
   std::string body;               ///< empty: the built-in body
   std::vector<int> photos = {1};  ///< numbers of photos to animate from, each scored: 1, 2, 4
   int frames = 8;                 ///< of each person, spread over those that none of the numbers takes for photos
@@ -39,8 +39,8 @@ struct ScoreGuidedSummary {
   std::vector<std::string> written;  ///< the files, as the request names them
 };
 
-/// Throws std::runtime_error for files that cannot be used and sets without a picture to compare with, Cancelled. The
-/// stage of `callbacks` is "people".
+/// Throws std::runtime_error for files that cannot be used and datasets without a picture to compare with, Cancelled.
+/// The stage of `callbacks` is "people".
 ScoreGuidedSummary ScoreGuided(const ScoreGuidedRequest& request, const PipelineCallbacks& callbacks);
 
 }  // namespace bodyloom

@@ -10,7 +10,7 @@
 namespace bodyloom {
 
 struct TrainGuidedRendererRequest {
-  std::string data;     ///< a people set, or a person set (one person, all for training)
+  std::string data;     ///< a multi-person dataset, or a single-person dataset (one person, all for training)
   std::string body;     ///< the people's body; empty: the built-in body
   std::string out;      ///< folder of the run: config.json, checkpoint.bin, metrics.csv, previews
   std::string weights;  ///< folder with vgg16 (pipelines/neural/weights_folder.h); empty: none

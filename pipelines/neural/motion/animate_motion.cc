@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "bodyloom/data_tools/body/body_or_builtin.h"
-#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/data_tools/evaluation/motion_similarity.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/video/video_writer.h"
@@ -22,7 +22,7 @@
 #include "bodyloom/pipelines/people/background.h"
 #include "bodyloom/pipelines/people/planar_picture.h"
 #include "bodyloom/pipelines/people/relight_frames.h"
-#include "bodyloom/pipelines/people/result_set.h"
+#include "bodyloom/pipelines/people/rendered_dataset.h"
 #include "bodyloom/pipelines/report_json.h"
 #include "bodyloom/pipelines/runs/motion_run.h"
 #include "bodyloom/render/contact_sheet.h"
@@ -49,11 +49,11 @@ void CheckRequest(const AnimateMotionRequest& request) {
   if (request.track.empty() == request.data.empty()) throw RequestError("expected one of --track and --data");
   RequireReadable(request.track, "track");
   RequireReadable(request.background, "background");
-  RequireReadable(request.data, "person set");
+  RequireReadable(request.data, "single-person dataset");
   RequireReadable(request.relight, "light");
   RequireOutputs({request.track, request.background, request.body, request.relight},
                  {request.out, request.sheet, request.json, request.frames});
-  RequireReadable(request.like, "person set or track");
+  RequireReadable(request.like, "single-person dataset or track");
   if (request.set.empty()) return;
   RequireWritableFolder(request.set);
   if (!request.view_yaw.empty()) throw RequestError("--set writes the track beside the pictures: not with --view-yaw");
@@ -64,7 +64,7 @@ void CheckRequest(const AnimateMotionRequest& request) {
 std::vector<float> SimilarityTo(const AnimateMotionRequest& request, const Track& track, int past) {
   if (request.like.empty()) return {};
   const Track others =
-      std::filesystem::is_directory(request.like) ? PersonSet(request.like).track() : ReadTrack(request.like);
+      std::filesystem::is_directory(request.like) ? SinglePersonDataset(request.like).track() : ReadTrack(request.like);
   try {
     return SimilarityToNearest(*BodyOrBuiltin(request.body), track, others, past, ThreadsFor(request.threads));
   } catch (const std::invalid_argument& error) {
@@ -153,10 +153,10 @@ class MotionAnimation {
                                              request_.background.empty() ? "" : request_.data, picture_);
     }
     VideoWriter video(request_.out, picture_.width, picture_.height, fps);
-    std::unique_ptr<ResultSet> set;
+    std::unique_ptr<RenderedDataset> set;
     if (!request_.set.empty()) {
-      set = std::make_unique<ResultSet>(request_.set, track, fps, run_.config.shape, run_.config.normals,
-                                        request_.set_command);
+      set = std::make_unique<RenderedDataset>(request_.set, track, fps, run_.config.shape, run_.config.normals,
+                                              request_.set_command);
     }
     const std::vector<int> on_sheet = EvenlySpreadFrames(track.num_frames(), kSheetFrames);
     for (int t = 0; t < track.num_frames(); ++t) {

@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "bodyloom/data_tools/body/body_or_builtin.h"
-#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/data_tools/descriptors/posed_track.h"
 #include "bodyloom/data_tools/motion/freeze_track.h"
 #include "bodyloom/data_tools/motion/play_track.h"
@@ -16,7 +16,7 @@ namespace bodyloom {
 namespace {
 
 Track TrackOf(const AnimatedClipRequest& request) {
-  Track track = request.data.empty() ? ReadTrack(request.track) : PersonSet(request.data).track();
+  Track track = request.data.empty() ? ReadTrack(request.track) : SinglePersonDataset(request.data).track();
   if (request.speed == 1) return track;
   try {
     return PlayedAtSpeed(track, request.speed);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The clip that the motion-dependent renderer animates: a track, or a person set whose pictures the result is compared
-/// with.
+/// The clip that the motion-dependent renderer animates: a track, or a single-person dataset whose pictures the result
+/// is compared with.
 #pragma once
 
 #include <memory>
@@ -18,7 +18,7 @@ namespace bodyloom {
 
 struct AnimatedClipRequest {
   std::string track;     ///< the motion, .npz; empty: that of `data`
-  std::string data;      ///< a person set of the same person; empty: `track` alone
+  std::string data;      ///< a single-person dataset of the same person; empty: `track` alone
   std::string body;      ///< the track's body; empty: the built-in body
   std::string view_yaw;  ///< how far the view is turned (pipelines/people/view_angles.h)
   std::string freeze;    ///< where time stands still (pipelines/people/freeze.h); empty: nowhere

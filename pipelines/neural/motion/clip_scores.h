@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A rendered clip against the pictures of the person set it was rendered for.
+/// A rendered clip against the pictures of the single-person dataset it was rendered for.
 #pragma once
 
 #include <memory>
@@ -28,14 +28,14 @@ struct ClipScores {
     double psnr_db = 0;      ///< of the whole picture
     double rim_psnr_db = 0;  ///< within CompositeScore::kRimPixels of the person's contour
   };
-  std::optional<Composed> composed;  ///< over the set's own backgrounds
+  std::optional<Composed> composed;  ///< over the dataset's own backgrounds
 };
 
 /// Collects them frame by frame.
 class ClipScorer {
  public:
-  /// `similarity` by frame, or empty (MotionErrors). `set`: the person set whose whole pictures are compared, empty:
-  /// they are not. `picture`: the size of those written.
+  /// `similarity` by frame, or empty (MotionErrors). `set`: the single-person dataset whose whole pictures are
+  /// compared, empty: they are not. `picture`: the size of those written.
   ClipScorer(std::vector<float> similarity, const PersonWindow& window, const std::string& set, PictureSize picture);
 
   /// The next frame does not follow the one before.

@@ -9,7 +9,7 @@
 
 #include "bodyloom/data_tools/body/body_or_builtin.h"
 #include "bodyloom/data_tools/datasets/label_of_part.h"
-#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/data_tools/descriptors/posed_track.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/observations/part_labels.h"
@@ -67,11 +67,11 @@ class MotionData::Impl {
  public:
   Impl(const MotionDataRequest& request, const MotionProfile& profile, int multiple)
       : body_(BodyOrBuiltin(request.body)) {
-    if (IsPersonSet(request.data)) {
+    if (IsSinglePersonDataset(request.data)) {
       set_.emplace(request.data);
       track_ = request.track.empty() ? set_->track() : ReadTrack(request.track);
       CheckSizes(request, set_->info().num_frames, set_->info().width, set_->info().height);
-      if (!request.part_labels.empty()) notes_ += "--part-labels are not used: the person set has labels of its own\n";
+      if (!request.part_labels.empty()) notes_ += "--part-labels are not used: the dataset has labels of its own\n";
     } else {
       if (request.track.empty()) {
         throw std::runtime_error(request.data +
@@ -108,7 +108,7 @@ class MotionData::Impl {
   [[nodiscard]] bool has_normals() const { return set_ && set_->info().has.normals; }
   [[nodiscard]] const std::string& notes() const { return notes_; }
   [[nodiscard]] LabelSource labels() const {
-    if (set_ && set_->info().has.labels) return LabelSource::kPersonSet;
+    if (set_ && set_->info().has.labels) return LabelSource::kDataset;
     return has_part_labels_ ? LabelSource::kPartLabels : LabelSource::kNone;
   }
 
@@ -174,7 +174,7 @@ class MotionData::Impl {
   }
 
   std::shared_ptr<const BodyModel> body_;
-  std::optional<PersonSet> set_;
+  std::optional<SinglePersonDataset> set_;
   Track track_;
   std::optional<PersonFrames> frames_;
   std::mutex mutex_;

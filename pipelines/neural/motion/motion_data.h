@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// From files to what the motion-dependent renderer trains on: a person set, or a video with a track.
+/// From files to what the motion-dependent renderer trains on: a single-person dataset, or a video with a track.
 #pragma once
 
 #include <memory>
@@ -13,8 +13,8 @@
 namespace bodyloom {
 
 struct MotionDataRequest {
-  std::string data;             ///< a person set, a video or a folder of images
-  std::string track;            ///< empty: the person set's own
+  std::string data;             ///< a single-person dataset, a video or a folder of images
+  std::string track;            ///< empty: the single-person dataset's own
   std::string body;             ///< empty: the built-in body
   std::string part_labels;      ///< for a video: DensePose's parts, which stand in for a parsing of the clothes
   double pixels_per_metre = 0;  ///< of the window; 0: as large as the profile's image_size allows
@@ -22,7 +22,7 @@ struct MotionDataRequest {
 };
 
 /// Where MotionData's classes come from.
-enum class LabelSource { kNone, kPersonSet, kPartLabels };
+enum class LabelSource { kNone, kDataset, kPartLabels };
 
 class MotionData {
  public:

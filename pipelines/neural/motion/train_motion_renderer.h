@@ -13,7 +13,7 @@ namespace bodyloom {
 
 struct TrainMotionRendererRequest {
   MotionDataRequest data;
-  std::string validate_data;  ///< another person set of the same person, in another motion; empty: the same clip
+  std::string validate_data;  ///< another dataset of the same person, in another motion; empty: the same clip
   TrainingFramesRequest frames;
   std::string out;      ///< folder of the run: config.json, checkpoint.bin, metrics.csv, previews
   std::string weights;  ///< folder with vgg16 (pipelines/neural/weights_folder.h); empty: none

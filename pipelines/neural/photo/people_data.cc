@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "bodyloom/data_tools/body/body_or_builtin.h"
-#include "bodyloom/data_tools/datasets/people_set.h"
-#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/data_tools/datasets/multi_person_dataset.h"
+#include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/pipelines/neural/photo/photo_input.h"
 
@@ -20,9 +20,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A person set's clip and the maps of its frames.
+/// A single-person dataset's clip and the maps of its frames.
 struct Clip {
-  PersonSet set;
+  SinglePersonDataset set;
   Track track;
   std::optional<PhotoMaps> maps;
   std::vector<std::optional<CutPhoto>> cut;
@@ -40,11 +40,11 @@ struct FrameOfPerson {
 class PeopleData::Impl {
  public:
   explicit Impl(const PeopleDataRequest& request) : request_(request), body_(BodyOrBuiltin(request.body)) {
-    if (IsPersonSet(request.data)) {
+    if (IsSinglePersonDataset(request.data)) {
       if (!request.test) AddPerson({request.data});
     } else {
-      const PeopleSet set = ReadPeopleSet(request.data);
-      for (const SetPerson& person : set.people) {
+      const MultiPersonDataset set = ReadMultiPersonDataset(request.data);
+      for (const DatasetPerson& person : set.people) {
         if (person.test != request.test) continue;
         std::vector<std::string> clips;
         for (const std::string& clip : person.clips) clips.push_back((fs::path(set.path) / clip).string());
@@ -112,9 +112,9 @@ PeopleData::~PeopleData() = default;
 const PhotoSource& PeopleData::source() const { return impl_->source(); }
 
 bool HasTestPeople(const std::string& data) {
-  if (IsPersonSet(data)) return false;
-  const PeopleSet set = ReadPeopleSet(data);
-  return std::any_of(set.people.begin(), set.people.end(), [](const SetPerson& person) { return person.test; });
+  if (IsSinglePersonDataset(data)) return false;
+  const MultiPersonDataset set = ReadMultiPersonDataset(data);
+  return std::any_of(set.people.begin(), set.people.end(), [](const DatasetPerson& person) { return person.test; });
 }
 
 std::vector<int> Everybody(const PhotoSource& source) {

@@ -11,7 +11,7 @@
 namespace bodyloom {
 
 struct PeopleDataRequest {
-  std::string data;  ///< a people set, or a person set (one person, all for training)
+  std::string data;  ///< a multi-person dataset, or a single-person dataset (one person, all for training)
   std::string body;  ///< empty: the built-in body
   int size = 256;    ///< of the windows
   int texture_size = 256;
@@ -21,7 +21,7 @@ struct PeopleDataRequest {
 /// Pictures are read when they are first asked for and kept (4 bytes a pixel); maps are made each time.
 class PeopleData {
  public:
-  /// Throws std::runtime_error naming the file that cannot be used, or a set without such people.
+  /// Throws std::runtime_error naming the file that cannot be used, or a dataset without such people.
   explicit PeopleData(const PeopleDataRequest& request);
   ~PeopleData();
   PeopleData(const PeopleData&) = delete;
@@ -35,7 +35,7 @@ class PeopleData {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Whether the set `data` has people kept for testing. Throws as PeopleData.
+/// Whether the dataset `data` has people kept for testing. Throws as PeopleData.
 bool HasTestPeople(const std::string& data);
 
 /// The numbers of all its people.

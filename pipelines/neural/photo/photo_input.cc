@@ -11,7 +11,7 @@
 
 #include "bodyloom/data_tools/body/body_or_builtin.h"
 #include "bodyloom/data_tools/datasets/label_of_part.h"
-#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/data_tools/descriptors/posed_track.h"
 #include "bodyloom/data_tools/motion/motion_tools.h"
 #include "bodyloom/data_tools/motion/track_io.h"
@@ -69,8 +69,8 @@ struct Shown {
   Image labels;
 };
 
-Shown FromPersonSet(const PhotoRequest& request) {
-  const PersonSet set(request.image);
+Shown FromSinglePersonDataset(const PhotoRequest& request) {
+  const SinglePersonDataset set(request.image);
   if (request.frame >= set.info().num_frames) {
     throw std::runtime_error(
         Concatenate(request.image, ": ", set.info().num_frames, " frames, asked for frame ", request.frame));
@@ -171,8 +171,8 @@ Photo MakePhoto(const PhotoRequest& request, Shown shown, int size, int texture_
   const auto note = [&](const std::string& text) { photo.notes += name + ": " + text + "\n"; };
   std::string track_path = request.track;
   if (track_path.empty()) {
-    if (!IsPersonSet(request.image)) {
-      throw std::runtime_error(request.image + ": no person set, so its track must be given");
+    if (!IsSinglePersonDataset(request.image)) {
+      throw std::runtime_error(request.image + ": no single-person dataset, so its track must be given");
     }
     track_path = (fs::path(request.image) / "track.npz").string();
   }
@@ -259,15 +259,15 @@ std::vector<Photo> LoadPhotos(std::span<const PhotoRequest> requests, int size, 
   files.body = BodyOrBuiltin(requests[0].body);
   std::vector<PictureRequest> pictures;
   for (const PhotoRequest& request : requests) {
-    if (!IsPersonSet(request.image)) pictures.push_back({request.image, request.frame});
+    if (!IsSinglePersonDataset(request.image)) pictures.push_back({request.image, request.frame});
   }
   std::vector<PhotoFile> read = ReadPictures(pictures);
   std::vector<Photo> photos;
   size_t next = 0;
   for (const PhotoRequest& request : requests) {
     Shown shown;
-    if (IsPersonSet(request.image)) {
-      shown = FromPersonSet(request);
+    if (IsSinglePersonDataset(request.image)) {
+      shown = FromSinglePersonDataset(request);
     } else {
       shown.picture = std::move(read[next++]);
     }

@@ -28,9 +28,9 @@ void FillMaps(PhotoMap&& map, int size, int texture_size, PhotoFrame* frame);
 void FillPicture(const CutPhoto& cut, PhotoFrame* frame);
 
 struct PhotoRequest {
-  std::string image;   ///< a picture, a video, a folder of pictures, or a person set
+  std::string image;   ///< a picture, a video, a folder of pictures, or a single-person dataset
   int frame = 0;       ///< of the above, and of the track (a track of one frame: its only one)
-  std::string track;   ///< empty: the person set's own
+  std::string track;   ///< empty: the single-person dataset's own
   std::string labels;  ///< DensePose's parts of the clip, which stand in for a parsing of the clothes; or empty
   std::string body;    ///< empty: the built-in body
 };
@@ -55,8 +55,8 @@ std::vector<Photo> LoadPhotos(std::span<const PhotoRequest> requests, int size, 
 /// when the track is of another one than the photo's.
 void RequireBodyOf(const Photo& photo, const Track& track, const std::string& path);
 
-/// "IMAGE:TRACK" or "IMAGE:TRACK:FRAME", as --views and --garment-from take it; a person set needs no track ("DIR" or
-/// "DIR::FRAME"). Throws RequestError naming the option.
+/// "IMAGE:TRACK" or "IMAGE:TRACK:FRAME", as --views and --garment-from take it; a single-person dataset needs no track
+/// ("DIR" or "DIR::FRAME"). Throws RequestError naming the option.
 PhotoRequest ParsePhotoRequest(const std::string& text, const std::string& option, const PhotoRequest& like);
 
 }  // namespace bodyloom

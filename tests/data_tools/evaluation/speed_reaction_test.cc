@@ -80,12 +80,12 @@ TEST(SpeedReaction, PairsShowTheSamePoses) {
 }
 
 /// Writes a set whose skirt reaches from 20 − left(t) to 40 and returns it.
-PersonSet Dressed(const std::string& path, const Track& track, const std::function<int(int)>& left,
-                  bool has_labels = true) {
-  PersonSetInfo info;
+SinglePersonDataset Dressed(const std::string& path, const Track& track, const std::function<int(int)>& left,
+                            bool has_labels = true) {
+  SinglePersonDatasetInfo info;
   info.num_frames = track.num_frames(), info.width = kWidth, info.height = kHeight, info.fps = 30;
   info.has = {has_labels, false, false, false};
-  const PersonSetWriter writer(path, info, track);
+  const SinglePersonDatasetWriter writer(path, info, track);
   for (int t = 0; t < track.num_frames(); ++t) {
     PersonFrame frame;
     frame.rgb = Image(kWidth, kHeight);
@@ -93,7 +93,7 @@ PersonSet Dressed(const std::string& path, const Track& track, const std::functi
     writer.Write(t, frame);
   }
   writer.Finish();
-  return PersonSet(path);
+  return SinglePersonDataset(path);
 }
 
 TEST(SpeedReaction, AShareOfTheChangeIsTheSlope) {
@@ -102,8 +102,8 @@ TEST(SpeedReaction, AShareOfTheChangeIsTheSlope) {
   // The truth flies 0 to 12 px further out when fast; results: half of that, the other way, nothing.
   const auto flies = [](int t) { return 4 * (t % 4); };
   const auto hangs = [](int) { return 0; };
-  const PersonSet truth = Dressed(folder.File("truth"), fast, flies),
-                  other = Dressed(folder.File("other"), slow, hangs);
+  const SinglePersonDataset truth = Dressed(folder.File("truth"), fast, flies),
+                            other = Dressed(folder.File("other"), slow, hangs);
   const auto reaction = [&](const std::string& name, const std::function<int(int)>& left) {
     return MeasureSpeedReaction(truth, Dressed(folder.File(name), fast, left), other, other, PersonLabel::kBottom, 2);
   };
@@ -153,11 +153,12 @@ TEST(SpeedReaction, SaysWhatDoesNotFit) {
   const TemporaryFolder folder;
   const auto hangs = [](int) { return 0; };
   const Track fast = Moving(kFrames, 2), slow = Moving(2 * kFrames, 1);
-  const PersonSet truth = Dressed(folder.File("truth"), fast, hangs),
-                  other = Dressed(folder.File("other"), slow, hangs),
-                  bare = Dressed(folder.File("bare"), fast, hangs, false),
-                  elsewhere = Dressed(folder.File("elsewhere"), Moving(kFrames, -2), hangs);
-  const auto error = [&](const PersonSet& a, const PersonSet& b, const PersonSet& c, const PersonSet& d) {
+  const SinglePersonDataset truth = Dressed(folder.File("truth"), fast, hangs),
+                            other = Dressed(folder.File("other"), slow, hangs),
+                            bare = Dressed(folder.File("bare"), fast, hangs, false),
+                            elsewhere = Dressed(folder.File("elsewhere"), Moving(kFrames, -2), hangs);
+  const auto error = [&](const SinglePersonDataset& a, const SinglePersonDataset& b, const SinglePersonDataset& c,
+                         const SinglePersonDataset& d) {
     return FileErrorOf(folder.File(""), [&] { (void)MeasureSpeedReaction(a, b, c, d, PersonLabel::kBottom, 1); });
   };
   EXPECT_THAT(error(truth, other, other, other), HasSubstr("other: 80 frames of 64x60, expected 40"));
@@ -165,7 +166,7 @@ TEST(SpeedReaction, SaysWhatDoesNotFit) {
   EXPECT_THAT(error(truth, truth, elsewhere, elsewhere), HasSubstr("elsewhere: shows none of the poses"));
   Track without_joints = fast;
   without_joints.joints.clear();
-  const PersonSet jointless = Dressed(folder.File("jointless"), without_joints, hangs);
+  const SinglePersonDataset jointless = Dressed(folder.File("jointless"), without_joints, hangs);
   EXPECT_THAT(error(jointless, jointless, other, other), HasSubstr("jointless/track.npz: has no joints"));
 }
 

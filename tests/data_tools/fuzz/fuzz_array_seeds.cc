@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/formats/zip.h"
 #include "bodyloom/data_tools/learned/lifter_weights_io.h"
@@ -155,7 +155,7 @@ void AddArraySeeds(std::map<std::string, std::vector<std::string>>* seeds) {
   Image image(6, 4, {12, 200, 3});
   (*seeds)["image"] = {BytesOf("image.png", [&](const std::string& path) { WriteImage(path, image); }),
                        BytesOf("image.jpg", [&](const std::string& path) { WriteImage(path, image); })};
-  (*seeds)["person_set"] = {PersonJson()};
+  (*seeds)["single_person_dataset"] = {PersonJson()};
   (*seeds)["split"] = {"# name class part\n05_02 dance train\ncmu_bvh/05_03  walk test\n"};
   (*seeds)["mat"] = {MatBytes()};
 }

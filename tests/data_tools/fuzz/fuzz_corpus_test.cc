@@ -28,7 +28,7 @@ TEST(FuzzCorpus, LeftHalf) { RunMutations("left_half", AcceptsLeftHalf, 50); }
 TEST(FuzzCorpus, Motion) { RunMutations("motion", AcceptsMotion, 4000); }
 TEST(FuzzCorpus, DetectionsFile) { RunMutations("detections_file", AcceptsDetectionsFile, 4000); }
 TEST(FuzzCorpus, Image) { RunMutations("image", AcceptsImage, 500); }
-TEST(FuzzCorpus, PersonSet) { RunMutations("person_set", AcceptsPersonSet, 1000); }
+TEST(FuzzCorpus, SinglePersonDataset) { RunMutations("single_person_dataset", AcceptsSinglePersonDataset, 1000); }
 TEST(FuzzCorpus, Split) { RunMutations("split", AcceptsSplit, 4000); }
 TEST(FuzzCorpus, Mat) { RunMutations("mat", AcceptsMat, 300); }
 TEST(FuzzCorpus, Cage) { RunMutations("cage", AcceptsCage, 4000); }

@@ -12,7 +12,7 @@
 #include "bodyloom/data_tools/motion/load_motion.h"
 #include "bodyloom/data_tools/motion/motion_tools.h"
 #include "bodyloom/data_tools/synthesis/people/dressed_render.h"
-#include "bodyloom/data_tools/synthesis/people/make_person_set.h"
+#include "bodyloom/data_tools/synthesis/people/make_single_person_dataset.h"
 #include "bodyloom/geometry/rotation.h"
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/support/toy_body.h"
@@ -257,7 +257,7 @@ TEST(ClothRun, LegsComeBackIntoTheSkirt) {
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "no recording at " << path;
   LoadMotionOptions load;
   load.resample_fps = 30;
-  MakePersonSetOptions options;
+  MakeSinglePersonDatasetOptions options;
   options.garment = GarmentKind::kSkirt, options.seed = 3;
   SynthCamera camera;
   const Motion motion = PersonTrack(BuiltinBody(), TakeFrames(LoadMotion(path, load), 30, 90), options, &camera).motion;
@@ -289,7 +289,7 @@ TEST(ClothRun, ChecksItsContract) {
 }
 
 TEST(DressedRender, TruthIsConsistent) {
-  MakePersonSetOptions options;
+  MakeSinglePersonDatasetOptions options;
   options.size_px = 128, options.garment = GarmentKind::kSkirt;
   const Motion motion = Turning(1, 30, [](double) { return 0.4; });
   SynthCamera camera;
@@ -331,15 +331,15 @@ TEST(DressedRender, TruthIsConsistent) {
   EXPECT_LE(changed_background, 2);
 }
 
-TEST(MakePersonSet, SameBytesForAnyNumberOfThreads) {
+TEST(MakeSinglePersonDataset, SameBytesForAnyNumberOfThreads) {
   const TemporaryFolder folder;
-  MakePersonSetOptions options;
+  MakeSinglePersonDatasetOptions options;
   options.size_px = 64, options.garment = GarmentKind::kCoat;
   const Motion motion = Turning(20, 30, [](double t) { return t; });
   const auto bytes = [&](int threads, uint64_t seed) {
     const std::string path = folder.File(std::to_string(threads));
     options.num_threads = threads, options.seed = seed;
-    const MakePersonSetSummary summary = MakePersonSet(path, BuiltinBody(), motion, options);
+    const MakeSinglePersonDatasetSummary summary = MakeSinglePersonDataset(path, BuiltinBody(), motion, options);
     EXPECT_TRUE(summary.finished);
     EXPECT_EQ(summary.frames, 20);
     std::string all = ReadFileBytes(path + "/person.json") + ReadFileBytes(path + "/track.npz");
@@ -353,12 +353,12 @@ TEST(MakePersonSet, SameBytesForAnyNumberOfThreads) {
   const std::string one = bytes(1, 5);
   EXPECT_TRUE(one == bytes(3, 5));
   EXPECT_FALSE(one == bytes(2, 6)) << "another seed is another person";
-  const PersonSet set(folder.File("1"));
+  const SinglePersonDataset set(folder.File("1"));
   EXPECT_EQ(set.track().num_frames(), 20);
   EXPECT_NEAR(set.info().fps, 30, 1e-9);
   options.progress = [](double done) { return done < 0.5; };
-  EXPECT_FALSE(MakePersonSet(folder.File("stopped"), BuiltinBody(), motion, options).finished);
-  EXPECT_THROW(PersonSet(folder.File("stopped")), std::runtime_error);
+  EXPECT_FALSE(MakeSinglePersonDataset(folder.File("stopped"), BuiltinBody(), motion, options).finished);
+  EXPECT_THROW(SinglePersonDataset(folder.File("stopped")), std::runtime_error);
 }
 
 }  // namespace

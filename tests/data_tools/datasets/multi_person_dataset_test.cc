@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/datasets/people_set.h"
+#include "bodyloom/data_tools/datasets/multi_person_dataset.h"
 
 #include <gmock/gmock.h>
 
@@ -7,10 +7,10 @@
 #include <set>
 
 #include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
-#include "bodyloom/data_tools/synthesis/people/make_people_set.h"
+#include "bodyloom/data_tools/synthesis/people/make_multi_person_dataset.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 
@@ -20,8 +20,8 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-MakePeopleSetOptions Small() {
-  MakePeopleSetOptions options;
+MakeMultiPersonDatasetOptions Small() {
+  MakeMultiPersonDatasetOptions options;
   options.people = 3, options.actions = 2, options.views = 2, options.frames = 2, options.every = 5;
   options.size_px = 64, options.samples = 1;
   options.test_share = 0.34;
@@ -29,28 +29,29 @@ MakePeopleSetOptions Small() {
   return options;
 }
 
-MakePeopleSetSummary MakeSmall(const std::string& path, const MakePeopleSetOptions& options = Small()) {
-  return MakePeopleSet(path, BuiltinBody(), {DemoMotion(BuiltinBody(), 60, 30)}, options);
+MakeMultiPersonDatasetSummary MakeSmall(const std::string& path,
+                                        const MakeMultiPersonDatasetOptions& options = Small()) {
+  return MakeMultiPersonDataset(path, BuiltinBody(), {DemoMotion(BuiltinBody(), 60, 30)}, options);
 }
 
-TEST(PeopleSet, PeopleAreDividedAndStayThemselves) {
+TEST(MultiPersonDataset, PeopleAreDividedAndStayThemselves) {
   const TemporaryFolder folder;
   const std::string path = folder.File("people");
-  const MakePeopleSetSummary summary = MakeSmall(path);
+  const MakeMultiPersonDatasetSummary summary = MakeSmall(path);
   EXPECT_TRUE(summary.finished);
   EXPECT_EQ(summary.pictures, 24);
   EXPECT_EQ(summary.pairs, 3 * 8 * 7);
-  const PeopleSet set = ReadPeopleSet(path);
+  const MultiPersonDataset set = ReadMultiPersonDataset(path);
   ASSERT_EQ(set.people.size(), 3U);
   EXPECT_EQ(set.size, 64);
   EXPECT_FALSE(set.people[0].test || set.people[1].test);
   EXPECT_TRUE(set.people[2].test);
   std::set<std::vector<double>> shapes;
-  for (const SetPerson& person : set.people) {
+  for (const DatasetPerson& person : set.people) {
     ASSERT_EQ(person.clips.size(), 4U);
     std::set<std::vector<double>> of_person;
     for (const std::string& clip : person.clips) {
-      const PersonSet frames((fs::path(path) / clip).string());
+      const SinglePersonDataset frames((fs::path(path) / clip).string());
       EXPECT_EQ(frames.info().num_frames, 2);
       const Track track = frames.track();
       EXPECT_NEAR(track.motion.timestamps[1] - track.motion.timestamps[0], 5 / 30.0, 1e-9);
@@ -74,9 +75,9 @@ TEST(PeopleSet, PeopleAreDividedAndStayThemselves) {
   EXPECT_EQ(shapes.size(), 3U);
 }
 
-TEST(PeopleSet, IsTheSameForAnyNumberOfThreads) {
+TEST(MultiPersonDataset, IsTheSameForAnyNumberOfThreads) {
   const TemporaryFolder folder;
-  MakePeopleSetOptions options = Small();
+  MakeMultiPersonDatasetOptions options = Small();
   options.people = 2, options.views = 1;
   for (const int threads : {1, 3}) {
     options.num_threads = threads;
@@ -92,26 +93,27 @@ TEST(PeopleSet, IsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(files, 1 + 4 * (2 + 4 * 2));
 }
 
-TEST(PeopleSet, AStoppedOneIsNoSet) {
+TEST(MultiPersonDataset, AStoppedOneIsNoSet) {
   const TemporaryFolder folder;
-  MakePeopleSetOptions options = Small();
+  MakeMultiPersonDatasetOptions options = Small();
   options.people = 2, options.actions = 3, options.views = 1, options.num_threads = 1;
   MakeSmall(folder.File("people"), options);
   options.progress = [](double done) { return done > 0.4; };
   EXPECT_FALSE(MakeSmall(folder.File("people"), options).finished);
-  EXPECT_THAT(FileErrorOf("people.json", [&] { ReadPeopleSet(folder.File("people")); }), HasSubstr("written last"));
+  EXPECT_THAT(FileErrorOf("people.json", [&] { ReadMultiPersonDataset(folder.File("people")); }),
+              HasSubstr("written last"));
 }
 
-TEST(PeopleSet, BrokenSetsNameThePlace) {
+TEST(MultiPersonDataset, BrokenSetsNameThePlace) {
   const TemporaryFolder folder;
   const std::string path = folder.File("people");
-  MakePeopleSetOptions options = Small();
+  MakeMultiPersonDatasetOptions options = Small();
   options.people = 2, options.actions = 1, options.views = 1;
   MakeSmall(path, options);
   const std::string json = ReadFileBytes(path + "/people.json");
   for (size_t n = 0; n + 2 < json.size(); ++n) {
     WriteFileAtomically(path + "/people.json", json.substr(0, n));
-    FileErrorOf("people.json", [&] { ReadPeopleSet(path); });
+    FileErrorOf("people.json", [&] { ReadMultiPersonDataset(path); });
   }
   const auto with = [&](const std::string& from, const std::string& to, const std::string& where = "people.json") {
     std::string changed = json;
@@ -119,22 +121,22 @@ TEST(PeopleSet, BrokenSetsNameThePlace) {
     EXPECT_NE(at, std::string::npos) << from;
     changed.replace(at, from.size(), to);
     WriteFileAtomically(path + "/people.json", changed);
-    return FileErrorOf(where, [&] { ReadPeopleSet(path); });
+    return FileErrorOf(where, [&] { ReadMultiPersonDataset(path); });
   };
   EXPECT_THAT(with("people set", "crowd"), HasSubstr("expected \"bodyloom people set\""));
   EXPECT_THAT(with("\"version\": 1", "\"version\": 3"), HasSubstr("version"));
   EXPECT_THAT(with("\"size\": 64", "\"size\": -64"), HasSubstr("1 to 16384"));
   EXPECT_THAT(with("\"train\"", "\"both\""), HasSubstr("\"train\" or \"test\""));
-  EXPECT_THAT(with("p000/a0_v0", "p000/../../elsewhere"), HasSubstr("below the set"));
-  EXPECT_THAT(with("p000/a0_v0", "/etc"), HasSubstr("below the set"));
+  EXPECT_THAT(with("p000/a0_v0", "p000/../../elsewhere"), HasSubstr("below the dataset"));
+  EXPECT_THAT(with("p000/a0_v0", "/etc"), HasSubstr("below the dataset"));
   EXPECT_THAT(with("p000/a0_v0", "p000/a9_v0", "p000/a9_v0/person.json"), HasSubstr("names the clip"));
   EXPECT_THAT(with("\"p001\"", "\"p000\""), HasSubstr("nobody else"));
 }
 
-TEST(PeopleSet, MakingChecksItsContract) {
+TEST(MultiPersonDataset, MakingChecksItsContract) {
   const TemporaryFolder folder;
   const auto make = [&](auto change) {
-    MakePeopleSetOptions options = Small();
+    MakeMultiPersonDatasetOptions options = Small();
     change(&options);
     MakeSmall(folder.File("people"), options);
   };
@@ -142,7 +144,7 @@ TEST(PeopleSet, MakingChecksItsContract) {
   EXPECT_THROW(make([](auto* o) { o->every = 100; }), std::invalid_argument) << "the motion is shorter";
   EXPECT_THROW(make([](auto* o) { o->elevation_low_deg = 30; }), std::invalid_argument);
   EXPECT_THROW(make([](auto* o) { o->test_share = 1; }), std::invalid_argument);
-  EXPECT_THROW(MakePeopleSet(folder.File("people"), BuiltinBody(), {}, Small()), std::invalid_argument);
+  EXPECT_THROW(MakeMultiPersonDataset(folder.File("people"), BuiltinBody(), {}, Small()), std::invalid_argument);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A person set: a folder with pictures of one person and what is known about every pixel. The appearance systems train
-/// on it; synthetic people are written as one, and recordings with labels of other programs can be.
+/// A single-person dataset: a folder with pictures of one person and what is known about every pixel. The appearance
+/// systems train on it; synthetic people are written as one, and recordings with labels of other programs can be.
 ///
 ///   DIR/person.json             {"format": "bodyloom person set", "version": 1, "frames": N, "width": W, "height": H,
 ///                                "fps": f, "labels": [the seven names below, in this order],
@@ -14,7 +14,7 @@
 ///                               them: u and v in 1/255, rounded down
 ///   DIR/backgrounds/000000.png  8-bit RGB: the picture without the person
 ///   DIR/track.npz               the track (data_tools/motion/track_io.h) of the N frames
-/// person.json is written last: a folder without it is no set, or an unfinished one.
+/// person.json is written last: a folder without it is no dataset, or an unfinished one.
 #pragma once
 
 #include <array>
@@ -33,12 +33,12 @@ inline constexpr int kNumPersonLabels = 7;
 inline constexpr std::array<const char*, kNumPersonLabels> kPersonLabelNames = {"background", "top",  "bottom", "face",
                                                                                 "hair",       "skin", "shoes"};
 
-/// Which of the pictures beside `images` a set has, or a reader wants.
+/// Which of the pictures beside `images` a dataset has, or a reader wants.
 struct PersonPictures {
   bool labels = true, normals = true, iuv = true, background = true;
 };
 
-struct PersonSetInfo {
+struct SinglePersonDatasetInfo {
   int num_frames = 0, width = 0, height = 0;
   double fps = 30;
   PersonPictures has;
@@ -47,7 +47,7 @@ struct PersonSetInfo {
   std::string garment, motion, command;
 };
 
-/// The pictures of a frame; empty where a set has none or none was asked for. `labels` holds a label's index in all
+/// The pictures of a frame; empty where a dataset has none or none was asked for. `labels` holds a label's index in all
 /// three channels.
 struct PersonFrame {
   Image rgb, labels, normals, iuv, background;
@@ -57,36 +57,36 @@ struct PersonFrame {
 uint8_t NormalCode(double component);
 inline double NormalOfCode(uint8_t code) { return 2.0 * code / 255 - 1; }
 
-/// Whether the folder `path` holds a finished person set: person.json is there.
-bool IsPersonSet(const std::string& path);
+/// Whether the folder `path` holds a finished single-person dataset: person.json is there.
+bool IsSinglePersonDataset(const std::string& path);
 
-/// Reads a set. May be shared by threads.
-class PersonSet {
+/// Reads a dataset. May be shared by threads.
+class SinglePersonDataset {
  public:
   /// Reads person.json and sees that all files are there. Throws std::runtime_error naming the file, what was found
   /// and what was expected.
-  explicit PersonSet(const std::string& path);
+  explicit SinglePersonDataset(const std::string& path);
 
-  [[nodiscard]] const PersonSetInfo& info() const { return info_; }
+  [[nodiscard]] const SinglePersonDatasetInfo& info() const { return info_; }
   [[nodiscard]] const std::string& path() const { return path_; }
-  /// Throws std::runtime_error when the track has another number of frames or another image size than the set.
+  /// Throws std::runtime_error when the track has another number of frames or another image size than the dataset.
   [[nodiscard]] Track track() const;
-  /// The image of frame t and those of the wanted pictures that the set has. Throws std::runtime_error naming the file
-  /// when a picture cannot be read, is of another size, or a label is none of the seven; std::invalid_argument for a
-  /// frame outside 0..num_frames−1.
+  /// The image of frame t and those of the wanted pictures that the dataset has. Throws std::runtime_error naming the
+  /// file when a picture cannot be read, is of another size, or a label is none of the seven; std::invalid_argument for
+  /// a frame outside 0..num_frames−1.
   [[nodiscard]] PersonFrame Read(int t, const PersonPictures& wanted = {}) const;
 
  private:
   std::string path_;
-  PersonSetInfo info_;
+  SinglePersonDatasetInfo info_;
 };
 
-/// Writes a set frame by frame. Write() may be called by several threads at once.
-class PersonSetWriter {
+/// Writes a dataset frame by frame. Write() may be called by several threads at once.
+class SinglePersonDatasetWriter {
  public:
-  /// Makes the folders. A set that stands there already is taken apart first: its person.json and pictures go. Throws
+  /// Makes the folders. A dataset that is already there is taken apart first: its person.json and pictures go. Throws
   /// std::runtime_error naming the path, std::invalid_argument when sizes, rate or track make no sense.
-  PersonSetWriter(std::string path, const PersonSetInfo& info, const Track& track);
+  SinglePersonDatasetWriter(std::string path, const SinglePersonDatasetInfo& info, const Track& track);
 
   /// Writes the pictures of frame t that info.has names (and the image). Throws std::invalid_argument when one of them
   /// is missing or of the wrong size, std::runtime_error when it cannot be written.
@@ -97,7 +97,7 @@ class PersonSetWriter {
 
  private:
   std::string path_;
-  PersonSetInfo info_;
+  SinglePersonDatasetInfo info_;
 };
 
 }  // namespace bodyloom

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// From a motion to a person set (person_set.h): the seed makes the person (shape, clothes, colours), the light and the
-/// background; the motion makes it move.
+/// From a motion to a single-person dataset (single_person_dataset.h): the seed makes the person (shape, clothes,
+/// colours), the light and the background; the motion makes it move.
 ///
 /// The cloth runs frame after frame on one thread while the frames before are drawn on the others, so memory does not
 /// grow with the length of the motion. The same bytes for any number of threads.
@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/data_tools/synthesis/clips/synth_camera.h"
 #include "bodyloom/data_tools/synthesis/people/dressed_person.h"
 #include "bodyloom/geometry/body_model.h"
@@ -19,7 +19,7 @@
 
 namespace bodyloom {
 
-struct MakePersonSetOptions {
+struct MakeSinglePersonDatasetOptions {
   GarmentKind garment = GarmentKind::kSkirt;
   uint64_t seed = 1;
   int size_px = 256;   ///< images are square
@@ -34,7 +34,7 @@ struct MakePersonSetOptions {
   [[nodiscard]] bool IsValid(std::string* why) const;
 };
 
-struct MakePersonSetSummary {
+struct MakeSinglePersonDatasetSummary {
   bool finished = false;  ///< false: stopped by `progress`, or failed
   int frames = 0, cuts = 0, cloth_vertices = 0;
   int frames_through = 0;                 ///< in which a leg has come through the cloth
@@ -50,12 +50,13 @@ Eigen::VectorXd PersonBetas(const BodyModel& body, double sigma, uint64_t seed);
 Track TrueTrack(const BodyModel& body, const Motion& in_camera, const Camera& camera);
 
 /// The true track of a motion (world frame) of that body, and the camera: static, the whole motion in view.
-Track PersonTrack(const BodyModel& body, const Motion& motion, const MakePersonSetOptions& options,
+Track PersonTrack(const BodyModel& body, const Motion& motion, const MakeSinglePersonDatasetOptions& options,
                   SynthCamera* camera);
 
-/// Writes the set. Throws std::invalid_argument when options are out of range or the motion is empty, not finite or not
-/// of SMPL's 24 joints, std::runtime_error naming the file that cannot be written.
-MakePersonSetSummary MakePersonSet(const std::string& folder, const BodyModel& body, const Motion& motion,
-                                   const MakePersonSetOptions& options = {});
+/// Writes the dataset. Throws std::invalid_argument when options are out of range or the motion is empty, not finite or
+/// not of SMPL's 24 joints, std::runtime_error naming the file that cannot be written.
+MakeSinglePersonDatasetSummary MakeSinglePersonDataset(const std::string& folder, const BodyModel& body,
+                                                       const Motion& motion,
+                                                       const MakeSinglePersonDatasetOptions& options = {});
 
 }  // namespace bodyloom

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/synthesis/people/make_person_set.h"
+#include "bodyloom/data_tools/synthesis/people/make_single_person_dataset.h"
 
 #include <algorithm>
 #include <atomic>
@@ -57,18 +57,18 @@ bool HasCoco(const BodyModel& body) {
 
 }  // namespace
 
-bool MakePersonSetOptions::IsValid(std::string* why) const {
+bool MakeSinglePersonDatasetOptions::IsValid(std::string* why) const {
   const auto no = [&](const char* text) {
     if (why != nullptr) *why = text;
     return false;
   };
-  if (size_px < 32 || size_px > 4096) return no("person set: size_px must be 32 to 4096");
+  if (size_px < 32 || size_px > 4096) return no("single-person dataset: size_px must be 32 to 4096");
   if (!std::isfinite(yaw_deg) || !(std::abs(elevation_deg) <= 60)) {
-    return no("person set: yaw_deg must be finite, elevation_deg in [-60, 60]");
+    return no("single-person dataset: yaw_deg must be finite, elevation_deg in [-60, 60]");
   }
-  if (!(shape_sigma >= 0 && shape_sigma <= 2)) return no("person set: shape_sigma must be in [0, 2]");
-  if (samples < 1 || samples > 8) return no("person set: samples must be 1 to 8");
-  if (num_threads < 0 || num_threads > 1024) return no("person set: num_threads must be 0 to 1024");
+  if (!(shape_sigma >= 0 && shape_sigma <= 2)) return no("single-person dataset: shape_sigma must be in [0, 2]");
+  if (samples < 1 || samples > 8) return no("single-person dataset: samples must be 1 to 8");
+  if (num_threads < 0 || num_threads > 1024) return no("single-person dataset: num_threads must be 0 to 1024");
   return true;
 }
 
@@ -97,7 +97,7 @@ Track TrueTrack(const BodyModel& body, const Motion& in_camera, const Camera& ca
   return track;
 }
 
-Track PersonTrack(const BodyModel& body, const Motion& motion, const MakePersonSetOptions& options,
+Track PersonTrack(const BodyModel& body, const Motion& motion, const MakeSinglePersonDatasetOptions& options,
                   SynthCamera* camera) {
   Motion world = motion;
   world.body = body.name();
@@ -110,17 +110,18 @@ Track PersonTrack(const BodyModel& body, const Motion& motion, const MakePersonS
   return TrueTrack(body, MotionInCamera(body, world, camera->pose), camera->camera);
 }
 
-MakePersonSetSummary MakePersonSet(const std::string& folder, const BodyModel& body, const Motion& motion,
-                                   const MakePersonSetOptions& options) {
+MakeSinglePersonDatasetSummary MakeSinglePersonDataset(const std::string& folder, const BodyModel& body,
+                                                       const Motion& motion,
+                                                       const MakeSinglePersonDatasetOptions& options) {
   std::string why;
   BODYLOOM_CHECK(options.IsValid(&why), why);
-  CheckMotion(motion, "MakePersonSet");
-  BODYLOOM_CHECK(motion.num_frames() > 0, "MakePersonSet: a motion without frames");
+  CheckMotion(motion, "MakeSinglePersonDataset");
+  BODYLOOM_CHECK(motion.num_frames() > 0, "MakeSinglePersonDataset: a motion without frames");
   const Stopwatch watch;
   SynthCamera camera;
   const Track track = PersonTrack(body, motion, options, &camera);
   const int T = track.num_frames();
-  PersonSetInfo info;
+  SinglePersonDatasetInfo info;
   info.num_frames = T, info.width = info.height = options.size_px;
   info.fps =
       T > 1 && motion.timestamps[1] > motion.timestamps[0] ? 1 / (motion.timestamps[1] - motion.timestamps[0]) : 30;
@@ -128,13 +129,13 @@ MakePersonSetSummary MakePersonSet(const std::string& folder, const BodyModel& b
   info.motion = options.motion, info.command = options.command;
   const DressedPerson person(body, track.motion.betas, options.garment, options.seed);
   info.has.iuv = body.has_parts() && body.data().face_iuv.rows() > 0;
-  const PersonSetWriter writer(folder, info, track);
+  const SinglePersonDatasetWriter writer(folder, info, track);
   const DressedScene scene(person, track.camera, camera.up_in_camera, options.seed, options.samples);
   ClothRunOptions run_options;
   run_options.up = camera.up_in_camera;
   ClothRun run(person, track.motion, run_options);
 
-  MakePersonSetSummary summary;
+  MakeSinglePersonDatasetSummary summary;
   summary.cloth_vertices = person.garment().cloth.num_vertices();
   summary.largest_stretch = 0;
   const int threads = options.num_threads > 0 ? options.num_threads

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/people/result_set.h"
+#include "bodyloom/pipelines/people/rendered_dataset.h"
 
 #include <algorithm>
 #include <array>
@@ -11,8 +11,8 @@
 namespace bodyloom {
 namespace {
 
-PersonSetInfo InfoOf(const Track& track, double fps, bool labels, bool normals, const std::string& command) {
-  PersonSetInfo info;
+SinglePersonDatasetInfo InfoOf(const Track& track, double fps, bool labels, bool normals, const std::string& command) {
+  SinglePersonDatasetInfo info;
   info.num_frames = track.num_frames();
   info.width = track.camera.width, info.height = track.camera.height;
   info.fps = fps;
@@ -46,17 +46,17 @@ PersonFrame SetFrameOf(const MotionPicture& picture, const PersonWindow& window,
   return frame;
 }
 
-ResultSet::ResultSet(const std::string& path, const Track& track, double fps, bool labels, bool normals,
-                     const std::string& command)
+RenderedDataset::RenderedDataset(const std::string& path, const Track& track, double fps, bool labels, bool normals,
+                                 const std::string& command)
     : info_(InfoOf(track, fps, labels, normals, command)), writer_(path, info_, track) {}
 
-void ResultSet::Add(int t, const MotionPicture& picture, const PersonWindow& window, const Image& composed) {
+void RenderedDataset::Add(int t, const MotionPicture& picture, const PersonWindow& window, const Image& composed) {
   PersonFrame frame = SetFrameOf(picture, window, t, composed);
   if (info_.has.labels && frame.labels.width == 0) frame.labels = Image(composed.width, composed.height);
   if (info_.has.normals && frame.normals.width == 0) frame.normals = Image(composed.width, composed.height);
   writer_.Write(t, frame);
 }
 
-void ResultSet::Finish() const { writer_.Finish(); }
+void RenderedDataset::Finish() const { writer_.Finish(); }
 
 }  // namespace bodyloom

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/data_tools/datasets/single_person_dataset.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,7 +27,7 @@ constexpr int kVersion = 1;
 constexpr int kMostFrames = 1'000'000;
 constexpr int kMostPixels = 16384;
 
-/// A kind of picture: its folder, where it lies in a frame, and whether sets and readers name it.
+/// A kind of picture: its folder, where it lies in a frame, and whether datasets and readers name it.
 struct Kind {
   const char* folder;
   const char* name;  ///< in "has"; null: always there
@@ -60,16 +60,17 @@ int IntegerIn(const JsonNode& node, int64_t low, int64_t high) {
   return static_cast<int>(value);
 }
 
-PersonSetInfo ReadInfo(const std::string& path) {
+SinglePersonDatasetInfo ReadInfo(const std::string& path) {
   const std::string file = FileOf(path, "person.json");
   if (fs::is_directory(path) && !fs::exists(file)) {
-    throw std::runtime_error(file + ": not there, expected it in a finished person set (it is written last)");
+    throw std::runtime_error(file +
+                             ": not there, expected it in a finished single-person dataset (it is written last)");
   }
   const nlohmann::json document = ReadJsonFile(file, {.max_bytes = 1 << 20, .max_depth = 16});
   const JsonNode root(document, file);
   if (root.At("format").Text() != kFormat) root.At("format").Fail(std::string("\"") + kFormat + "\"");
   IntegerIn(root.At("version"), kVersion, kVersion);
-  PersonSetInfo info;
+  SinglePersonDatasetInfo info;
   info.num_frames = IntegerIn(root.At("frames"), 1, kMostFrames);
   info.width = IntegerIn(root.At("width"), 1, kMostPixels);
   info.height = IntegerIn(root.At("height"), 1, kMostPixels);
@@ -123,7 +124,7 @@ void MakeFolder(const std::string& folder) {
   if (error) throw std::runtime_error(folder + ": cannot make the folder: " + error.message());
 }
 
-/// Whether a file is named as frames of sets are: six digits (or more) and .png.
+/// Whether a file is named as frames of datasets are: six digits (or more) and .png.
 bool IsFrameName(const std::string& name) {
   return name.size() >= 10 && name.ends_with(".png") &&
          std::all_of(name.begin(), name.end() - 4, [](char c) { return c >= '0' && c <= '9'; });
@@ -146,13 +147,13 @@ void TakeApart(const std::string& path) {
 
 }  // namespace
 
-bool IsPersonSet(const std::string& path) { return fs::exists(FileOf(path, "person.json")); }
+bool IsSinglePersonDataset(const std::string& path) { return fs::exists(FileOf(path, "person.json")); }
 
 uint8_t NormalCode(double component) {
   return static_cast<uint8_t>(std::lround(127.5 * (std::clamp(component, -1.0, 1.0) + 1)));
 }
 
-PersonSet::PersonSet(const std::string& path) : path_(path), info_(ReadInfo(path)) {
+SinglePersonDataset::SinglePersonDataset(const std::string& path) : path_(path), info_(ReadInfo(path)) {
   std::error_code error;
   for (const Kind& kind : kKinds) {
     if (!IsIn(kind, info_.has)) continue;
@@ -165,7 +166,7 @@ PersonSet::PersonSet(const std::string& path) : path_(path), info_(ReadInfo(path
   }
 }
 
-Track PersonSet::track() const {
+Track SinglePersonDataset::track() const {
   const std::string file = FileOf(path_, "track.npz");
   Track track = ReadTrack(file);
   if (track.num_frames() != info_.num_frames) {
@@ -179,7 +180,7 @@ Track PersonSet::track() const {
   return track;
 }
 
-PersonFrame PersonSet::Read(int t, const PersonPictures& wanted) const {
+PersonFrame SinglePersonDataset::Read(int t, const PersonPictures& wanted) const {
   BODYLOOM_CHECK(t >= 0 && t < info_.num_frames, path_, ": frame ", t, ", expected 0 to ", info_.num_frames - 1);
   PersonFrame frame;
   for (const Kind& kind : kKinds) {
@@ -196,7 +197,8 @@ PersonFrame PersonSet::Read(int t, const PersonPictures& wanted) const {
   return frame;
 }
 
-PersonSetWriter::PersonSetWriter(std::string path, const PersonSetInfo& info, const Track& track)
+SinglePersonDatasetWriter::SinglePersonDatasetWriter(std::string path, const SinglePersonDatasetInfo& info,
+                                                     const Track& track)
     : path_(std::move(path)), info_(info) {
   BODYLOOM_CHECK(info.num_frames >= 1 && info.num_frames <= kMostFrames && track.num_frames() == info.num_frames, path_,
                  ": ", info.num_frames, " frames, ", track.num_frames(), " in the track");
@@ -212,7 +214,7 @@ PersonSetWriter::PersonSetWriter(std::string path, const PersonSetInfo& info, co
   WriteTrack(FileOf(path_, "track.npz"), track);
 }
 
-void PersonSetWriter::Write(int t, const PersonFrame& frame) const {
+void SinglePersonDatasetWriter::Write(int t, const PersonFrame& frame) const {
   BODYLOOM_CHECK(t >= 0 && t < info_.num_frames, path_, ": frame ", t, ", expected 0 to ", info_.num_frames - 1);
   for (const Kind& kind : kKinds) {
     if (!IsIn(kind, info_.has)) continue;
@@ -223,7 +225,7 @@ void PersonSetWriter::Write(int t, const PersonFrame& frame) const {
   }
 }
 
-void PersonSetWriter::Finish() const {
+void SinglePersonDatasetWriter::Finish() const {
   nlohmann::ordered_json json = {{"format", kFormat},          {"version", kVersion},    {"frames", info_.num_frames},
                                  {"width", info_.width},       {"height", info_.height}, {"fps", info_.fps},
                                  {"labels", kPersonLabelNames}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/data_tools/datasets/single_person_dataset.h"
 
 #include <gmock/gmock.h>
 
@@ -54,24 +54,24 @@ Track SampleTrack() {
   return track;
 }
 
-PersonSetInfo SampleInfo() {
-  PersonSetInfo info;
+SinglePersonDatasetInfo SampleInfo() {
+  SinglePersonDatasetInfo info;
   info.num_frames = kFrames, info.width = kWidth, info.height = kHeight, info.fps = 25;
   info.seed = 12345678901234567ULL, info.garment = "skirt", info.motion = "a walk.bvh", info.command = "bodyloom \"x\"";
   return info;
 }
 
-void WriteSample(const std::string& path, const PersonSetInfo& info = SampleInfo()) {
-  const PersonSetWriter writer(path, info, SampleTrack());
+void WriteSample(const std::string& path, const SinglePersonDatasetInfo& info = SampleInfo()) {
+  const SinglePersonDatasetWriter writer(path, info, SampleTrack());
   ParallelFor(kFrames, 3, [&](int t) { writer.Write(t, SampleFrame(t)); });
   writer.Finish();
 }
 
-TEST(PersonSet, ReturnsWhatWasWritten) {
+TEST(SinglePersonDataset, ReturnsWhatWasWritten) {
   const TemporaryFolder folder;
   const std::string path = folder.File("set");
   WriteSample(path);
-  const PersonSet set(path);
+  const SinglePersonDataset set(path);
   EXPECT_EQ(set.info().num_frames, kFrames);
   EXPECT_EQ(set.info().width, kWidth);
   EXPECT_EQ(set.info().height, kHeight);
@@ -91,7 +91,7 @@ TEST(PersonSet, ReturnsWhatWasWritten) {
   }
 }
 
-TEST(PersonSet, PngsAreWhatOtherProgramsExpect) {
+TEST(SinglePersonDataset, PngsAreWhatOtherProgramsExpect) {
   const TemporaryFolder folder;
   const std::string path = folder.File("set");
   WriteSample(path);
@@ -108,13 +108,13 @@ TEST(PersonSet, PngsAreWhatOtherProgramsExpect) {
   EXPECT_EQ(iuv.v[7], written.bgr[23]);
 }
 
-TEST(PersonSet, ReadsOnlyWhatIsWantedAndThere) {
+TEST(SinglePersonDataset, ReadsOnlyWhatIsWantedAndThere) {
   const TemporaryFolder folder;
-  PersonSetInfo info = SampleInfo();
+  SinglePersonDatasetInfo info = SampleInfo();
   info.has = {.labels = false, .normals = true, .iuv = true, .background = false};
   WriteSample(folder.File("set"), info);
   EXPECT_FALSE(std::filesystem::exists(folder.File("set/labels")));
-  const PersonSet set(folder.File("set"));
+  const SinglePersonDataset set(folder.File("set"));
   EXPECT_FALSE(set.info().has.labels);
   EXPECT_TRUE(set.info().has.normals);
   const PersonFrame frame = set.Read(1, {.labels = true, .normals = true, .iuv = false, .background = true});
@@ -127,45 +127,45 @@ TEST(PersonSet, ReadsOnlyWhatIsWantedAndThere) {
   EXPECT_THROW((void)set.Read(-1), std::invalid_argument);
 }
 
-TEST(PersonSet, AnUnfinishedSetIsRecognised) {
+TEST(SinglePersonDataset, AnUnfinishedSetIsRecognised) {
   const TemporaryFolder folder;
   const std::string path = folder.File("set");
-  const PersonSetWriter writer(path, SampleInfo(), SampleTrack());
+  const SinglePersonDatasetWriter writer(path, SampleInfo(), SampleTrack());
   for (int t = 0; t < kFrames - 1; ++t) writer.Write(t, SampleFrame(t));
-  EXPECT_THAT(FileErrorOf("person.json", [&] { PersonSet set(path); }), HasSubstr("finished"));
+  EXPECT_THAT(FileErrorOf("person.json", [&] { SinglePersonDataset set(path); }), HasSubstr("finished"));
   EXPECT_THAT(FileErrorOf("images/000005.png", [&] { writer.Finish(); }), HasSubstr("never written"));
   EXPECT_FALSE(std::filesystem::exists(path + "/person.json"));
-  FileErrorOf("nowhere", [&] { PersonSet set(folder.File("nowhere")); });
+  FileErrorOf("nowhere", [&] { SinglePersonDataset set(folder.File("nowhere")); });
 }
 
-TEST(PersonSet, AReplacedSetLeavesNothingBehind) {
+TEST(SinglePersonDataset, AReplacedSetLeavesNothingBehind) {
   const TemporaryFolder folder;
   const std::string path = folder.File("set");
   WriteSample(path);
   WriteFileAtomically(path + "/images/mine.png", "a user's own");
-  PersonSetInfo info = SampleInfo();
+  SinglePersonDatasetInfo info = SampleInfo();
   info.num_frames = 2;
   Track track = SampleTrack();
   track.motion.poses.conservativeResize(2, Eigen::NoChange);
   track.motion.trans.conservativeResize(2, Eigen::NoChange);
   track.motion.timestamps.resize(2), track.frame_status.resize(2);
-  const PersonSetWriter writer(path, info, track);
+  const SinglePersonDatasetWriter writer(path, info, track);
   EXPECT_FALSE(std::filesystem::exists(path + "/person.json")) << "the half-replaced set must not look finished";
   writer.Write(0, SampleFrame(0)), writer.Write(1, SampleFrame(1));
   writer.Finish();
-  EXPECT_EQ(PersonSet(path).info().num_frames, 2);
+  EXPECT_EQ(SinglePersonDataset(path).info().num_frames, 2);
   EXPECT_FALSE(std::filesystem::exists(path + "/labels/000002.png"));
   EXPECT_TRUE(std::filesystem::exists(path + "/images/mine.png"));
 }
 
-TEST(PersonSet, BrokenSetsNameTheFile) {
+TEST(SinglePersonDataset, BrokenSetsNameTheFile) {
   const TemporaryFolder folder;
   const std::string path = folder.File("set");
   WriteSample(path);
   const std::string json = ReadFileBytes(path + "/person.json");
   for (size_t n = 0; n + 2 < json.size(); ++n) {
     WriteFileAtomically(path + "/person.json", json.substr(0, n));
-    FileErrorOf("person.json", [&] { PersonSet set(path); });
+    FileErrorOf("person.json", [&] { SinglePersonDataset set(path); });
   }
   const auto with = [&](const std::string& from, const std::string& to) {
     std::string changed = json;
@@ -173,7 +173,7 @@ TEST(PersonSet, BrokenSetsNameTheFile) {
     EXPECT_NE(at, std::string::npos) << from;
     changed.replace(at, from.size(), to);
     WriteFileAtomically(path + "/person.json", changed);
-    return FileErrorOf("person.json", [&] { PersonSet set(path); });
+    return FileErrorOf("person.json", [&] { SinglePersonDataset set(path); });
   };
   EXPECT_THAT(with("bodyloom person set", "something"), HasSubstr("expected \"bodyloom person set\""));
   EXPECT_THAT(with("\"version\": 1", "\"version\": 2"), HasSubstr("version: found 2"));
@@ -187,19 +187,19 @@ TEST(PersonSet, BrokenSetsNameTheFile) {
   EXPECT_THAT(with("\"iuv\": true", "\"iuv\": 1"), HasSubstr("true or false"));
   EXPECT_THAT(with("\"normals\": true,", ""), HasSubstr("normals"));
   WriteFileAtomically(path + "/person.json", std::string(100'000, '['));
-  FileErrorOf("person.json", [&] { PersonSet set(path); });
+  FileErrorOf("person.json", [&] { SinglePersonDataset set(path); });
   // A promise of more frames than there are.
   std::string more = json;
   more.replace(more.find("\"frames\": 6"), 11, "\"frames\": 9");
   WriteFileAtomically(path + "/person.json", more);
-  EXPECT_THAT(FileErrorOf("images/000006.png", [&] { PersonSet set(path); }), HasSubstr("promises 9 frames"));
+  EXPECT_THAT(FileErrorOf("images/000006.png", [&] { SinglePersonDataset set(path); }), HasSubstr("promises 9 frames"));
 }
 
-TEST(PersonSet, BrokenPicturesAndTracksNameTheFile) {
+TEST(SinglePersonDataset, BrokenPicturesAndTracksNameTheFile) {
   const TemporaryFolder folder;
   const std::string path = folder.File("set");
   WriteSample(path);
-  const PersonSet set(path);
+  const SinglePersonDataset set(path);
   const std::string file = path + "/labels/000002.png";
   Image wrong = SampleFrame(2).labels;
   wrong.pixel(3, 4)[0] = wrong.pixel(3, 4)[1] = wrong.pixel(3, 4)[2] = 9;
@@ -224,23 +224,23 @@ TEST(PersonSet, BrokenPicturesAndTracksNameTheFile) {
   EXPECT_THAT(FileErrorOf("track.npz", [&] { (void)set.track(); }), HasSubstr("3 frames, expected 6"));
 }
 
-TEST(PersonSet, WritingChecksItsContract) {
+TEST(SinglePersonDataset, WritingChecksItsContract) {
   const TemporaryFolder folder;
-  const PersonSetWriter writer(folder.File("set"), SampleInfo(), SampleTrack());
+  const SinglePersonDatasetWriter writer(folder.File("set"), SampleInfo(), SampleTrack());
   PersonFrame frame = SampleFrame(0);
   frame.normals = Image();
   EXPECT_THROW(writer.Write(0, frame), std::invalid_argument);
   EXPECT_THROW(writer.Write(kFrames, SampleFrame(0)), std::invalid_argument);
-  PersonSetInfo info = SampleInfo();
+  SinglePersonDatasetInfo info = SampleInfo();
   info.num_frames = kFrames + 1;
-  EXPECT_THROW(PersonSetWriter(folder.File("b"), info, SampleTrack()), std::invalid_argument);
+  EXPECT_THROW(SinglePersonDatasetWriter(folder.File("b"), info, SampleTrack()), std::invalid_argument);
   info = SampleInfo(), info.width = 21;
-  EXPECT_THROW(PersonSetWriter(folder.File("b"), info, SampleTrack()), std::invalid_argument);
+  EXPECT_THROW(SinglePersonDatasetWriter(folder.File("b"), info, SampleTrack()), std::invalid_argument);
   info = SampleInfo(), info.fps = NAN;
-  EXPECT_THROW(PersonSetWriter(folder.File("b"), info, SampleTrack()), std::invalid_argument);
+  EXPECT_THROW(SinglePersonDatasetWriter(folder.File("b"), info, SampleTrack()), std::invalid_argument);
 }
 
-TEST(PersonSet, NormalsSurviveTheirCode) {
+TEST(SinglePersonDataset, NormalsSurviveTheirCode) {
   for (double n = -1; n <= 1; n += 1.0 / 512) EXPECT_NEAR(NormalOfCode(NormalCode(n)), n, 1.0001 / 255);
   EXPECT_EQ(NormalCode(-1), 0);
   EXPECT_EQ(NormalCode(1), 255);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A rendered clip as a person set, so that `bodyloom metrics` compares it with another, pixel by pixel.
+/// A rendered clip as a single-person dataset, so that `bodyloom metrics` compares it with another, pixel by pixel.
 #pragma once
 
 #include <string>
 
-#include "bodyloom/data_tools/datasets/person_set.h"
+#include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/neural/motion/motion_picture.h"
 #include "bodyloom/render/image.h"
 #include "bodyloom/render/person_window.h"
@@ -16,20 +16,20 @@ namespace bodyloom {
 /// is not background. `picture` without labels or normals: those are left empty.
 PersonFrame SetFrameOf(const MotionPicture& picture, const PersonWindow& window, int t, const Image& composed);
 
-/// Writes images, labels and normals (as far as the networks make them) and the track as a person set.
-class ResultSet {
+/// Writes images, labels and normals (as far as the networks make them) and the track as a single-person dataset.
+class RenderedDataset {
  public:
   /// Throws std::runtime_error when the folder cannot be written.
-  ResultSet(const std::string& path, const Track& track, double fps, bool labels, bool normals,
-            const std::string& command);
+  RenderedDataset(const std::string& path, const Track& track, double fps, bool labels, bool normals,
+                  const std::string& command);
   /// `picture` of no pixels: a frame without a fit, all background.
   void Add(int t, const MotionPicture& picture, const PersonWindow& window, const Image& composed);
   /// Until then the folder is no set.
   void Finish() const;
 
  private:
-  PersonSetInfo info_;
-  PersonSetWriter writer_;
+  SinglePersonDatasetInfo info_;
+  SinglePersonDatasetWriter writer_;
 };
 
 }  // namespace bodyloom

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A people set: a folder with clips of many people, what the one-photo renderers train on.
+/// A multi-person dataset: a folder with clips of many people, what the one-photo renderers train on.
 ///
 ///   DIR/people.json   {"format": "bodyloom people set", "version": 1, "size": S,
 ///                      "people": [{"name": "p000", "split": "train" or "test", "clips": ["p000/a0_v0", …]}, …]}
 ///                     and, as information, "seed" and "command"
-///   DIR/p000/a0_v0/   a person set (person_set.h): person 0 in action 0 seen by view 0; its frames need not follow
-///                     each other closely
+///   DIR/p000/a0_v0/   a single-person dataset (single_person_dataset.h): person 0 in action 0 seen by view 0; its
+///                     frames need not follow each other closely
 /// All clips of a person show the same body in the same clothes. people.json is written last: a folder without it is no
-/// set, or an unfinished one.
+/// dataset, or an unfinished one.
 #pragma once
 
 #include <cstdint>
@@ -16,26 +16,26 @@
 
 namespace bodyloom {
 
-struct SetPerson {
+struct DatasetPerson {
   std::string name;
   bool test = false;               ///< kept for testing
-  std::vector<std::string> clips;  ///< folders of person sets, below the set's own
+  std::vector<std::string> clips;  ///< folders of single-person datasets, below the dataset's own
 };
 
-struct PeopleSet {
+struct MultiPersonDataset {
   std::string path;
   int size = 0;  ///< pixels of the pictures' sides
-  std::vector<SetPerson> people;
+  std::vector<DatasetPerson> people;
   // Information only.
   uint64_t seed = 0;
   std::string command;
 };
 
 /// Throws std::runtime_error naming the file and place: no people.json, another format, no people, a clip whose folder
-/// leads out of the set or is not there.
-PeopleSet ReadPeopleSet(const std::string& path);
+/// leads out of the dataset or is not there.
+MultiPersonDataset ReadMultiPersonDataset(const std::string& path);
 
 /// Writes people.json alone. Throws std::runtime_error "path: why".
-void WritePeopleSet(const PeopleSet& set);
+void WriteMultiPersonDataset(const MultiPersonDataset& set);
 
 }  // namespace bodyloom

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/synthesis/people/make_people_set.h"
+#include "bodyloom/data_tools/synthesis/people/make_multi_person_dataset.h"
 
 #include <algorithm>
 #include <atomic>
@@ -10,11 +10,11 @@
 #include <mutex>
 #include <thread>
 
-#include "bodyloom/data_tools/datasets/people_set.h"
+#include "bodyloom/data_tools/datasets/multi_person_dataset.h"
 #include "bodyloom/data_tools/motion/motion_tools.h"
 #include "bodyloom/data_tools/synthesis/clips/synth_camera.h"
 #include "bodyloom/data_tools/synthesis/people/dressed_render.h"
-#include "bodyloom/data_tools/synthesis/people/make_person_set.h"
+#include "bodyloom/data_tools/synthesis/people/make_single_person_dataset.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/hash_random.h"
 #include "bodyloom/geometry/base/parallel.h"
@@ -56,7 +56,8 @@ std::vector<Vector3d> StepsToCentre(const Motion& motion, const Vector3d& rest_r
 
 class Maker {
  public:
-  Maker(fs::path folder, const BodyModel& body, const std::vector<Motion>& motions, const MakePeopleSetOptions& options)
+  Maker(fs::path folder, const BodyModel& body, const std::vector<Motion>& motions,
+        const MakeMultiPersonDatasetOptions& options)
       : folder_(std::move(folder)), body_(body), motions_(motions), options_(options) {
     for (int p = 0; p < options.people; ++p) {
       HashRandom random(options.seed, {kPersonKey, static_cast<uint64_t>(p)});
@@ -102,14 +103,14 @@ class Maker {
     }
   }
 
-  [[nodiscard]] PeopleSet Set() const {
-    PeopleSet set;
+  [[nodiscard]] MultiPersonDataset Set() const {
+    MultiPersonDataset set;
     set.path = folder_.string();
     set.size = options_.size_px, set.seed = options_.seed, set.command = options_.command;
     const int test =
         options_.people < 2 ? 0 : std::max(1, static_cast<int>(std::lround(options_.test_share * options_.people)));
     for (int p = 0; p < options_.people; ++p) {
-      SetPerson person{PersonName(p), p >= options_.people - test, {}};
+      DatasetPerson person{PersonName(p), p >= options_.people - test, {}};
       for (int a = 0; a < options_.actions; ++a) {
         for (int v = 0; v < options_.views; ++v) person.clips.push_back(ClipName(p, a, v));
       }
@@ -124,12 +125,12 @@ class Maker {
              const std::string& clip) const {
     const SynthCamera camera = PlaceSynthCamera(body_, motion, place);
     const Track track = TrueTrack(body_, MotionInCamera(body_, motion, camera.pose), camera.camera);
-    PersonSetInfo info;
+    SinglePersonDatasetInfo info;
     info.num_frames = track.num_frames(), info.width = info.height = options_.size_px;
     info.fps = track.num_frames() > 1 ? 1 / (motion.timestamps[1] - motion.timestamps[0]) : 30;
     info.seed = seed, info.garment = ToString(person.outfit().kind());
     info.has.background = false;
-    const PersonSetWriter writer((folder_ / clip).string(), info, track);
+    const SinglePersonDatasetWriter writer((folder_ / clip).string(), info, track);
     const DressedScene scene(person, camera.camera, camera.up_in_camera, seed, options_.samples);
     DressedRenderer renderer(scene);
     std::vector<Vector3d> seen;
@@ -147,22 +148,22 @@ class Maker {
   fs::path folder_;
   const BodyModel& body_;
   const std::vector<Motion>& motions_;
-  const MakePeopleSetOptions& options_;
+  const MakeMultiPersonDatasetOptions& options_;
   std::vector<uint64_t> seeds_;
   std::vector<std::unique_ptr<DressedPerson>> people_;
 };
 
 void CheckMotions(const std::vector<Motion>& motions, int length) {
-  BODYLOOM_CHECK(!motions.empty(), "people set: no motion");
+  BODYLOOM_CHECK(!motions.empty(), "multi-person dataset: no motion");
   for (size_t m = 0; m < motions.size(); ++m) {
-    CheckMotion(motions[m], "people set");
-    BODYLOOM_CHECK(motions[m].up == Motion::Up::kY, "people set: motion ", m, " has not y up");
-    BODYLOOM_CHECK(motions[m].num_frames() >= length, "people set: motion ", m, " has ", motions[m].num_frames(),
-                   " frames, a clip needs ", length);
+    CheckMotion(motions[m], "multi-person dataset");
+    BODYLOOM_CHECK(motions[m].up == Motion::Up::kY, "multi-person dataset: motion ", m, " has not y up");
+    BODYLOOM_CHECK(motions[m].num_frames() >= length, "multi-person dataset: motion ", m, " has ",
+                   motions[m].num_frames(), " frames, a clip needs ", length);
   }
 }
 
-/// A set that stands there already is no set from now on.
+/// A dataset that is already there is none from now on.
 void Forget(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
@@ -173,30 +174,31 @@ void Forget(const fs::path& folder) {
 
 }  // namespace
 
-bool MakePeopleSetOptions::IsValid(std::string* why) const {
+bool MakeMultiPersonDatasetOptions::IsValid(std::string* why) const {
   const auto no = [&](const char* text) {
     if (why != nullptr) *why = text;
     return false;
   };
   if (people < 1 || people > 999 || actions < 1 || actions > 999 || views < 1 || views > 64) {
-    return no("people set: people and actions must be 1 to 999, views 1 to 64");
+    return no("multi-person dataset: people and actions must be 1 to 999, views 1 to 64");
   }
   if (frames < 1 || frames > 10'000 || every < 1 || every > 1000) {
-    return no("people set: frames must be 1 to 10000, every 1 to 1000");
+    return no("multi-person dataset: frames must be 1 to 10000, every 1 to 1000");
   }
-  if (!(test_share >= 0 && test_share < 1)) return no("people set: test_share must be in [0, 1)");
-  if (size_px < 32 || size_px > 4096) return no("people set: size_px must be 32 to 4096");
+  if (!(test_share >= 0 && test_share < 1)) return no("multi-person dataset: test_share must be in [0, 1)");
+  if (size_px < 32 || size_px > 4096) return no("multi-person dataset: size_px must be 32 to 4096");
   if (!(elevation_low_deg >= -60 && elevation_high_deg <= 60 && elevation_low_deg <= elevation_high_deg)) {
-    return no("people set: elevations must be in [-60, 60], the lower one first");
+    return no("multi-person dataset: elevations must be in [-60, 60], the lower one first");
   }
-  if (!(shape_sigma >= 0 && shape_sigma <= 2)) return no("people set: shape_sigma must be in [0, 2]");
-  if (samples < 1 || samples > 8) return no("people set: samples must be 1 to 8");
-  if (num_threads < 0 || num_threads > 1024) return no("people set: num_threads must be 0 to 1024");
+  if (!(shape_sigma >= 0 && shape_sigma <= 2)) return no("multi-person dataset: shape_sigma must be in [0, 2]");
+  if (samples < 1 || samples > 8) return no("multi-person dataset: samples must be 1 to 8");
+  if (num_threads < 0 || num_threads > 1024) return no("multi-person dataset: num_threads must be 0 to 1024");
   return true;
 }
 
-MakePeopleSetSummary MakePeopleSet(const std::string& folder, const BodyModel& body, const std::vector<Motion>& motions,
-                                   const MakePeopleSetOptions& options) {
+MakeMultiPersonDatasetSummary MakeMultiPersonDataset(const std::string& folder, const BodyModel& body,
+                                                     const std::vector<Motion>& motions,
+                                                     const MakeMultiPersonDatasetOptions& options) {
   std::string why;
   BODYLOOM_CHECK(options.IsValid(&why), why);
   CheckMotions(motions, (options.frames - 1) * options.every + 1);
@@ -219,11 +221,11 @@ MakePeopleSetSummary MakePeopleSet(const std::string& folder, const BodyModel& b
     ++done;
     if (options.progress && !options.progress(double(done) / jobs.size())) stop = true;
   });
-  MakePeopleSetSummary summary;
+  MakeMultiPersonDatasetSummary summary;
   summary.seconds = watch.seconds();
   summary.pictures = done * options.views * options.frames;
   if (done < static_cast<int>(jobs.size())) return summary;
-  WritePeopleSet(maker.Set());
+  WriteMultiPersonDataset(maker.Set());
   const int64_t each = int64_t{options.actions} * options.views * options.frames;
   summary.pairs = options.people * each * (each - 1);
   summary.finished = true;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A rendered clip written as a person set.
-#include "bodyloom/pipelines/people/result_set.h"
+// A rendered clip written as a single-person dataset.
+#include "bodyloom/pipelines/people/rendered_dataset.h"
 
 #include <gtest/gtest.h>
 
@@ -35,7 +35,7 @@ struct Drawn {
   }
 };
 
-TEST(ResultSet, AtTheNetworksSizeClassesStayAndNormalsBecomeUnitVectors) {
+TEST(RenderedDataset, AtTheNetworksSizeClassesStayAndNormalsBecomeUnitVectors) {
   const Drawn drawn;
   const PersonFrame frame = SetFrameOf(drawn.picture, drawn.window, 0, Image(6, 4, {7, 8, 9}));
   EXPECT_EQ(frame.rgb, Image(6, 4, {7, 8, 9}));
@@ -56,7 +56,7 @@ TEST(ResultSet, AtTheNetworksSizeClassesStayAndNormalsBecomeUnitVectors) {
   }
 }
 
-TEST(ResultSet, EnlargedEveryPixelTakesTheNearestClass) {
+TEST(RenderedDataset, EnlargedEveryPixelTakesTheNearestClass) {
   const Drawn drawn;
   const PersonFrame frame = SetFrameOf(drawn.picture, drawn.window, 0, Image(18, 12));
   for (int y = 0; y < 12; ++y) {
@@ -72,7 +72,7 @@ TEST(ResultSet, EnlargedEveryPixelTakesTheNearestClass) {
   }
 }
 
-TEST(ResultSet, IsAPersonSetOnlyWhenFinished) {
+TEST(RenderedDataset, IsASinglePersonDatasetOnlyWhenFinished) {
   SynthClipOptions options;
   options.camera.width = 24, options.camera.height = 16;
   options.dense_per_frame = 0;
@@ -80,13 +80,13 @@ TEST(ResultSet, IsAPersonSetOnlyWhenFinished) {
   const Track track = MakeSynthClip(BuiltinBody(), DemoMotion(BuiltinBody(), 2, 25), options).truth;
   Drawn drawn;
   drawn.window.corner = {{1, 1}, {0, 0}};
-  const std::string folder = EmptyFolder("result_set");
-  ResultSet set(folder, track, 25, true, true, "animate");
+  const std::string folder = EmptyFolder("rendered_dataset");
+  RenderedDataset set(folder, track, 25, true, true, "animate");
   set.Add(0, drawn.picture, drawn.window, Image(24, 16, {1, 2, 3}));
-  EXPECT_THROW(PersonSet{folder}, std::runtime_error);
+  EXPECT_THROW(SinglePersonDataset{folder}, std::runtime_error);
   set.Add(1, {}, drawn.window, Image(24, 16));  // no fit
   set.Finish();
-  const PersonSet read(folder);
+  const SinglePersonDataset read(folder);
   EXPECT_EQ(read.info().num_frames, 2);
   EXPECT_NEAR(read.info().fps, 25, 1e-6);
   EXPECT_EQ(read.track().num_frames(), 2);
@@ -95,7 +95,7 @@ TEST(ResultSet, IsAPersonSetOnlyWhenFinished) {
 
   drawn.picture.labels.clear();
   drawn.picture.normals.clear();
-  ResultSet bare(EmptyFolder("result_set_bare"), track, 25, false, false, "animate");
+  RenderedDataset bare(EmptyFolder("rendered_dataset_bare"), track, 25, false, false, "animate");
   for (const int t : {0, 1}) bare.Add(t, drawn.picture, drawn.window, Image(24, 16));
   EXPECT_NO_THROW(bare.Finish());
 }

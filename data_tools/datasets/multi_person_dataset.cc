@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/datasets/people_set.h"
+#include "bodyloom/data_tools/datasets/multi_person_dataset.h"
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -20,7 +20,7 @@ constexpr int kVersion = 1;
 
 std::string FileOf(const std::string& path) { return (fs::path(path) / "people.json").string(); }
 
-/// A folder below the set and nowhere else.
+/// A folder below the dataset and nowhere else.
 bool StaysInside(const fs::path& clip) {
   if (clip.empty() || clip.is_absolute()) return false;
   for (const fs::path& step : clip) {
@@ -29,8 +29,8 @@ bool StaysInside(const fs::path& clip) {
   return true;
 }
 
-SetPerson ReadPerson(const JsonNode& node, const std::string& path) {
-  SetPerson person;
+DatasetPerson ReadPerson(const JsonNode& node, const std::string& path) {
+  DatasetPerson person;
   person.name = node.At("name").Text();
   const std::string split = node.At("split").Text();
   if (split != "train" && split != "test") node.At("split").Fail("\"train\" or \"test\"");
@@ -39,7 +39,7 @@ SetPerson ReadPerson(const JsonNode& node, const std::string& path) {
   if (!clips.is_array() || clips.size() == 0) clips.Fail("a list of at least one folder");
   for (size_t i = 0; i < clips.size(); ++i) {
     const std::string clip = clips.At(i).Text();
-    if (!StaysInside(clip)) clips.At(i).Fail("a folder below the set");
+    if (!StaysInside(clip)) clips.At(i).Fail("a folder below the dataset");
     std::error_code error;
     if (!fs::exists(fs::path(path) / clip / "person.json", error)) {
       throw std::runtime_error(Concatenate((fs::path(path) / clip / "person.json").string(),
@@ -52,16 +52,16 @@ SetPerson ReadPerson(const JsonNode& node, const std::string& path) {
 
 }  // namespace
 
-PeopleSet ReadPeopleSet(const std::string& path) {
+MultiPersonDataset ReadMultiPersonDataset(const std::string& path) {
   const std::string file = FileOf(path);
   if (fs::is_directory(path) && !fs::exists(file)) {
-    throw std::runtime_error(file + ": not there, expected it in a finished people set (it is written last)");
+    throw std::runtime_error(file + ": not there, expected it in a finished multi-person dataset (it is written last)");
   }
   const nlohmann::json document = ReadJsonFile(file, {.max_bytes = 64 << 20, .max_depth = 16});
   const JsonNode root(document, file);
   if (root.At("format").Text() != kFormat) root.At("format").Fail(std::string("\"") + kFormat + "\"");
   if (root.At("version").Integer() != kVersion) root.At("version").Fail(std::to_string(kVersion));
-  PeopleSet set;
+  MultiPersonDataset set;
   set.path = path;
   const int64_t size = root.At("size").Integer();
   if (size < 1 || size > 16384) root.At("size").Fail("1 to 16384 pixels");
@@ -78,10 +78,10 @@ PeopleSet ReadPeopleSet(const std::string& path) {
   return set;
 }
 
-void WritePeopleSet(const PeopleSet& set) {
+void WriteMultiPersonDataset(const MultiPersonDataset& set) {
   nlohmann::ordered_json json = {{"format", kFormat}, {"version", kVersion}, {"size", set.size}};
   json["people"] = nlohmann::ordered_json::array();
-  for (const SetPerson& person : set.people) {
+  for (const DatasetPerson& person : set.people) {
     json["people"].push_back(
         {{"name", person.name}, {"split", person.test ? "test" : "train"}, {"clips", person.clips}});
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Many synthetic people, each in several actions seen by several cameras (people_set.h), in the manner of 3DPeople
-/// (Pumarola et al., ICCV 2019): the seed makes bodies, clothes, colours and light, the motions make them move.
+/// Many synthetic people, each in several actions seen by several cameras (multi_person_dataset.h), in the manner of
+/// 3DPeople (Pumarola et al., ICCV 2019): the seed makes bodies, clothes, colours and light, the motions make them
+/// move.
 ///
 /// A clip takes `frames` frames, `every` apart, of a stretch of a motion chosen at random. The cloth runs once for all
 /// views of an action, through all frames in between. The camera follows the person across the floor, so that it fills
@@ -18,7 +19,7 @@
 
 namespace bodyloom {
 
-struct MakePeopleSetOptions {
+struct MakeMultiPersonDatasetOptions {
   int people = 20, actions = 3, views = 2;
   int frames = 6, every = 6;  ///< of a clip; frames of the motion between them
   double test_share = 0.2;    ///< of the people: the last ones, at least one when there are two or more
@@ -33,7 +34,7 @@ struct MakePeopleSetOptions {
   [[nodiscard]] bool IsValid(std::string* why) const;
 };
 
-struct MakePeopleSetSummary {
+struct MakeMultiPersonDatasetSummary {
   bool finished = false;  ///< false: stopped by `progress`
   int pictures = 0;
   /// Of one person in two different frames, by the number of ordered pairs that training may draw.
@@ -41,9 +42,10 @@ struct MakePeopleSetSummary {
   double seconds = 0;
 };
 
-/// Writes the set into `folder`. The motions must have y up and a regular clock. Throws std::invalid_argument when
+/// Writes the dataset into `folder`. The motions must have y up and a regular clock. Throws std::invalid_argument when
 /// options are out of range or a motion cannot be used, std::runtime_error naming the file that cannot be written.
-MakePeopleSetSummary MakePeopleSet(const std::string& folder, const BodyModel& body, const std::vector<Motion>& motions,
-                                   const MakePeopleSetOptions& options = {});
+MakeMultiPersonDatasetSummary MakeMultiPersonDataset(const std::string& folder, const BodyModel& body,
+                                                     const std::vector<Motion>& motions,
+                                                     const MakeMultiPersonDatasetOptions& options = {});
 
 }  // namespace bodyloom
