@@ -78,10 +78,11 @@ void AddTrainMotion(CLI::App& train, Action* action) {
       ->capture_default_str();
   verb->add_option("--steps", options.steps, "Batches to train on")->capture_default_str();
   verb->add_option("--batch", options.batch, "Frames in a batch")->capture_default_str();
-  verb->add_option("--chain", options.chain_length, "Frames that the recurrence runs on before it starts anew")
+  verb->add_option("--chain", options.rollout_length,
+                   "Frames of a truncated roll-out of the recurrence, before it restarts")
       ->capture_default_str();
-  verb->add_option("--walks", options.walks,
-                   "Stretches of the clip that every place of the batch goes through in turn, a frame each")
+  verb->add_option("--walks", options.rollouts,
+                   "Truncated roll-outs that every place of the batch steps through in turn, a frame each")
       ->capture_default_str();
   verb->add_flag("--whole-window", request.whole_window,
                  "The networks look at the whole window, not only at where the body is and as far as clothes reach");

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/neural/motion/chain_plan.h"
+#include "bodyloom/neural/motion/rollout_plan.h"
 #include "bodyloom/neural/training/training_run.h"
 
 namespace CLI {

@@ -8,7 +8,7 @@ namespace bodyloom {
 namespace {
 
 MotionBatch MakeBatch(const MotionFrameSource& source, const MotionConfig& config, int reach,
-                      std::vector<ChainStep> steps) {
+                      std::vector<RolloutStep> steps) {
   MotionBatch batch;
   batch.frames.resize(steps.size());
   batch.past.resize(steps.size());
@@ -33,7 +33,7 @@ MotionBatch MakeBatch(const MotionFrameSource& source, const MotionConfig& confi
 
 }  // namespace
 
-MotionBatches::MotionBatches(const MotionFrameSource& source, const MotionConfig& config, int reach, ChainPlan plan,
+MotionBatches::MotionBatches(const MotionFrameSource& source, const MotionConfig& config, int reach, RolloutPlan plan,
                              int64_t first, int64_t last)
     : plan_((plan.Skip(first), std::move(plan))), ahead_(last - first, [this, &source, &config, reach](int64_t) {
         return MakeBatch(source, config, reach, plan_.Next());

@@ -6,26 +6,26 @@
 
 #include <vector>
 
-#include "bodyloom/neural/motion/chain_plan.h"
 #include "bodyloom/neural/motion/frame_tensors.h"
 #include "bodyloom/neural/motion/person_box.h"
+#include "bodyloom/neural/motion/rollout_plan.h"
 #include "bodyloom/neural/training/prefetcher.h"
 
 namespace bodyloom {
 
 struct MotionBatch {
-  std::vector<ChainStep> steps;
+  std::vector<RolloutStep> steps;
   std::vector<MotionFrame> frames;  ///< only their windows' places are left
   std::vector<PixelBox> boxes;      ///< what the networks see of each window
   MotionInput input;                ///< of the boxes
   MotionTruth truth;                ///< of the boxes
-  std::vector<MotionState> past;    ///< whole windows of the chains that restart from truth: 1×…; else without parts
+  std::vector<MotionState> past;  ///< whole windows of the roll-outs that restart from truth: 1×…; else without parts
 };
 
 /// Steps first, first + 1, … last − 1 of a plan. `reach`: of clothes, pixels (config.around_body).
 class MotionBatches {
  public:
-  MotionBatches(const MotionFrameSource& source, const MotionConfig& config, int reach, ChainPlan plan, int64_t first,
+  MotionBatches(const MotionFrameSource& source, const MotionConfig& config, int reach, RolloutPlan plan, int64_t first,
                 int64_t last);
 
   /// The next batch; waits for it. Throws what the source threw.
@@ -33,7 +33,7 @@ class MotionBatches {
   [[nodiscard]] double waited_s() const { return ahead_.waited_s(); }
 
  private:
-  ChainPlan plan_;
+  RolloutPlan plan_;
   Prefetcher<MotionBatch> ahead_;
 };
 

@@ -15,7 +15,7 @@
 #include "bodyloom/neural/motion/motion_batches.h"
 #include "bodyloom/neural/motion/motion_scorer.h"
 #include "bodyloom/neural/motion/roll_out.h"
-#include "bodyloom/neural/motion/walk_memory.h"
+#include "bodyloom/neural/motion/rollout_memory.h"
 #include "bodyloom/neural/networks/patch_discriminator.h"
 #include "bodyloom/neural/networks/vgg.h"
 #include "bodyloom/neural/runtime.h"
@@ -82,7 +82,8 @@ class MotionTrainer : public TrainedSystem {
     checkpoint_->Add("discriminator", discriminator_.ptr().get());
     checkpoint_->Add("optimizer", optimizer_.get());
     checkpoint_->Add("discriminator_optimizer", discriminator_optimizer_.get());
-    memory_ = std::make_unique<WalkMemory>(model_->Nothing(1, first.height, first.width), options.batch, options.walks);
+    memory_ =
+        std::make_unique<RolloutMemory>(model_->Nothing(1, first.height, first.width), options.batch, options.rollouts);
     memory_->AddTo(checkpoint_.get());
     checkpoint_->Add("best", &best_);
   }
@@ -99,8 +100,8 @@ class MotionTrainer : public TrainedSystem {
   void Begin(int first_step) override {
     batches_ = std::make_unique<MotionBatches>(
         source_, config_, options_.reach,
-        ChainPlan(options_.train,
-                  {options_.batch, options_.walks, options_.chain_length, /*from_truth=*/0.75, options_.seed}),
+        RolloutPlan(options_.train,
+                    {options_.batch, options_.rollouts, options_.rollout_length, /*from_truth=*/0.75, options_.seed}),
         first_step, options_.steps);
     memory_->Begin();
   }
@@ -245,7 +246,7 @@ class MotionTrainer : public TrainedSystem {
   FeatureNetwork vgg_{nullptr};
   std::unique_ptr<torch::optim::Adam> optimizer_, discriminator_optimizer_;
   std::unique_ptr<Checkpoint> checkpoint_;
-  std::unique_ptr<WalkMemory> memory_;
+  std::unique_ptr<RolloutMemory> memory_;
   MotionScores scores_, all_scores_;  ///< of the last validation's first frames of each range, and of all of them
   Tensor best_ = torch::tensor({1e9, 0.0}, torch::kDouble);  ///< least L1 of a validation, and how many came since
   std::unique_ptr<MotionBatches> batches_;
@@ -272,8 +273,8 @@ bool TrainMotionOptions::IsValid(std::string* why) const {
     return false;
   }
   return IsValidRun(*this, why) && config.IsValid(why) && in_range("reach", reach, 0, 1e6) &&
-         in_range("batch", batch, 1, 256) && in_range("chain_length", chain_length, 1, 1e6) &&
-         in_range("walks", walks, 1, 1024) && in_range("learning_rate", learning_rate, 0, 1) &&
+         in_range("batch", batch, 1, 256) && in_range("rollout_length", rollout_length, 1, 1e6) &&
+         in_range("rollouts", rollouts, 1, 1024) && in_range("learning_rate", learning_rate, 0, 1) &&
          in_range("discriminator_rate", discriminator_rate, 0, 1) && in_range("shape_weight", shape_weight, 0, 1e6) &&
          in_range("normal_weight", normal_weight, 0, 1e6) && in_range("perceptual_weight", perceptual_weight, 0, 1e6) &&
          in_range("gan_weight", gan_weight, 0, 1e6) && in_range("warmup_iterations", warmup_iterations, 0, 1000) &&

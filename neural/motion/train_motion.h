@@ -4,11 +4,10 @@
 ///   L = L_a + 10 L_s + L_n + L_p + 0.01 L_g            (Yoon et al., CVPR 2022, eq. 8 and below)
 /// L_a, L_n: mean absolute differences of image and normals; L_s: cross entropy of the classes, or the mean absolute
 /// difference of probabilities (the paper does not say which norm; with absolute differences small classes are never
-/// learned, docs/motion_renderer.md); L_p: of VGG-16's features after
-/// conv 1-2, 2-2, 3-2 and 4-2; L_g: a patch discriminator's judgement of the image beside the true classes. The image
-/// of L_a, L_p and L_g is the colour where the person truly is (not in the paper: docs/motion_renderer.md). Losses
-/// whose truth the clip does not have are switched off (`losses_off` says which). Recurrence:
-/// neural/motion/chain_plan.h.
+/// learned, docs/motion_renderer.md); L_p: of VGG-16's features after conv 1-2, 2-2, 3-2 and 4-2; L_g: a patch
+/// discriminator's judgement of the image beside the true classes. The image of L_a, L_p and L_g is the colour where
+/// the person truly is (not in the paper: docs/motion_renderer.md). Losses whose truth the clip does not have are
+/// switched off (`losses_off` says which). Recurrence: neural/motion/rollout_plan.h.
 ///
 /// Writes into run_dir: checkpoint.bin and metrics.csv. A run that goes on from a checkpoint ends with the same bytes
 /// as one that was never interrupted (same binary, machine and threads).
@@ -18,10 +17,10 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/neural/motion/chain_plan.h"
 #include "bodyloom/neural/motion/motion_config.h"
 #include "bodyloom/neural/motion/motion_frame.h"
 #include "bodyloom/neural/motion/motion_scores.h"
+#include "bodyloom/neural/motion/rollout_plan.h"
 #include "bodyloom/neural/networks/named_weights.h"
 #include "bodyloom/neural/training/training_run.h"
 
@@ -46,9 +45,9 @@ struct TrainMotionOptions : TrainingRun {
   std::vector<FrameRange> train, validation;  ///< validation may be empty
   MotionFrameSource validation_source;        ///< of another clip; empty: the same clip
   int batch = 4;
-  int chain_length = 32;
-  int reach = 0;   ///< of clothes beyond the body, pixels; needed with config.around_body
-  int walks = 16;  ///< that take turns at a place of the batch (neural/motion/chain_plan.h)
+  int rollout_length = 32;
+  int reach = 0;      ///< of clothes beyond the body, pixels; needed with config.around_body
+  int rollouts = 16;  ///< that take turns at a place of the batch (neural/motion/rollout_plan.h)
   double learning_rate = 1e-3, discriminator_rate = 2e-4;
   bool shape_by_cross_entropy = true;
   double shape_weight = 10, normal_weight = 1, perceptual_weight = 1, gan_weight = 0.01;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "bodyloom/data_tools/descriptors/person_frames.h"
-#include "bodyloom/neural/motion/chain_plan.h"
+#include "bodyloom/neural/motion/rollout_plan.h"
 #include "bodyloom/pipelines/neural/motion/motion_data.h"
 
 namespace bodyloom {

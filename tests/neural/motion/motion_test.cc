@@ -260,7 +260,7 @@ TEST(MotionTraining, WherePeopleRarelyAreTheyHaveTheirColourAllTheSame) {
   TrainMotionOptions options = ToyOptions("motion_rarely_there");
   options.validation.clear();
   options.train = {{0, 200}};
-  options.chain_length = 1;
+  options.rollout_length = 1;
   options.steps = 200;
   options.learning_rate = 5e-3;
   ASSERT_EQ(TrainMotion(source, options).status, TrainingStatus::kFinished);

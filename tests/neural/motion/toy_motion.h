@@ -59,8 +59,8 @@ inline TrainMotionOptions ToyOptions(const std::string& name) {
   options.train = {{0, 24}};
   options.validation = {{24, 32}};
   options.batch = 2;
-  options.chain_length = 6;
-  options.walks = 3;
+  options.rollout_length = 6;
+  options.rollouts = 3;
   options.steps = 8;
   options.num_threads = 1;
   options.report_every = options.checkpoint_every = options.validate_every = 4;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/motion/walk_memory.h"
+#include "bodyloom/neural/motion/rollout_memory.h"
 
 #include <utility>
 #include <vector>
@@ -12,30 +12,31 @@ namespace bodyloom {
 
 using torch::Tensor;
 
-WalkMemory::WalkMemory(MotionState nothing, int chains, int walks)
-    : nothing_(std::move(nothing)), said_(nothing_), chains_(chains), walks_(walks) {
-  for (Tensor* part : said_.Parts()) *part = part->repeat({walks_ * chains_, 1, 1, 1});
+RolloutMemory::RolloutMemory(MotionState nothing, int places, int rollouts)
+    : nothing_(std::move(nothing)), last_(nothing_), places_(places), rollouts_(rollouts) {
+  for (Tensor* part : last_.Parts()) *part = part->repeat({rollouts_ * places_, 1, 1, 1});
 }
 
-void WalkMemory::AddTo(Checkpoint* checkpoint) {
-  checkpoint->Add("past_labels", &said_.labels);
-  checkpoint->Add("past_image", &said_.image);
-  checkpoint->Add("past_normals", &said_.normals);
+void RolloutMemory::AddTo(Checkpoint* checkpoint) {
+  checkpoint->Add("past_labels", &last_.labels);
+  checkpoint->Add("past_image", &last_.image);
+  checkpoint->Add("past_normals", &last_.normals);
 }
 
-void WalkMemory::Begin() {
-  BODYLOOM_CHECK(said_.image.size(0) == walks_ * chains_, "motion training: the checkpoint holds ", said_.image.size(0),
-                 " walks, expected ", walks_ * chains_, ": go on with the batch and walks that the run began with");
-  for (Tensor* part : said_.Parts()) *part = OnDevice(*part);
+void RolloutMemory::Begin() {
+  BODYLOOM_CHECK(last_.image.size(0) == rollouts_ * places_, "motion training: the checkpoint holds ",
+                 last_.image.size(0), " roll-outs, expected ", rollouts_ * places_,
+                 ": go on with the batch and the roll-outs (--walks) that the run began with");
+  for (Tensor* part : last_.Parts()) *part = OnDevice(*part);
 }
 
-MotionState WalkMemory::Before(const MotionBatch& batch) const {
+MotionState RolloutMemory::Before(const MotionBatch& batch) const {
   std::vector<MotionState> each;
   for (size_t c = 0; c < batch.steps.size(); ++c) {
-    const ChainStep& step = batch.steps[c];
+    const RolloutStep& step = batch.steps[c];
     MotionState state = nothing_;
     if (!step.restart) {
-      state = said_;
+      state = last_;
       const int64_t at = PlaceOf(step) + static_cast<int64_t>(c);
       for (Tensor* part : state.Parts()) *part = part->slice(0, at, at + 1);
     } else if (step.from_truth) {
@@ -54,16 +55,16 @@ MotionState WalkMemory::Before(const MotionBatch& batch) const {
   return {join(&MotionState::labels), join(&MotionState::image), join(&MotionState::normals)};
 }
 
-void WalkMemory::Keep(const MotionBatch& batch, const MotionState& said) {
+void RolloutMemory::Keep(const MotionBatch& batch, const MotionState& predicted) {
   const torch::NoGradGuard no_grad;
-  const int64_t height = said_.image.size(2), width = said_.image.size(3);
-  for (int64_t c = 0; c < chains_; ++c) {
-    MotionState one = said;
+  const int64_t height = last_.image.size(2), width = last_.image.size(3);
+  for (int64_t c = 0; c < places_; ++c) {
+    MotionState one = predicted;
     for (Tensor* part : one.Parts()) *part = part->slice(0, c, c + 1);
     const MotionState whole = OnWindow(one, batch.boxes[c], height, width);
     const int64_t at = PlaceOf(batch.steps[c]) + c;
     for (Tensor MotionState::*part : {&MotionState::labels, &MotionState::image, &MotionState::normals}) {
-      if ((said_.*part).defined()) (said_.*part).slice(0, at, at + 1).copy_(whole.*part);
+      if ((last_.*part).defined()) (last_.*part).slice(0, at, at + 1).copy_(whole.*part);
     }
   }
 }

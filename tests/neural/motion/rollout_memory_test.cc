@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/motion/walk_memory.h"
+#include "bodyloom/neural/motion/rollout_memory.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@ namespace {
 
 using torch::Tensor;
 
-constexpr int kChains = 2, kWalks = 3, kSide = 4;
+constexpr int kPlaces = 2, kRollouts = 3, kSide = 4;
 
 MotionState Filled(std::vector<float> values) {
   const Tensor column = torch::tensor(values).view({-1, 1, 1, 1});
@@ -20,9 +20,9 @@ MotionState Filled(std::vector<float> values) {
   return state;
 }
 
-MotionBatch Turn(int walk, std::vector<ChainStep> steps) {
+MotionBatch Turn(int rollout, std::vector<RolloutStep> steps) {
   MotionBatch batch;
-  for (ChainStep& step : steps) step.walk = walk;
+  for (RolloutStep& step : steps) step.rollout = rollout;
   batch.frames.resize(steps.size());
   batch.past.resize(steps.size());
   batch.boxes.assign(steps.size(), {0, 0, kSide, kSide});
@@ -30,11 +30,11 @@ MotionBatch Turn(int walk, std::vector<ChainStep> steps) {
   return batch;
 }
 
-WalkMemory Memory(int walks = kWalks) { return {Filled({0}), kChains, walks}; }
+RolloutMemory Memory(int rollouts = kRollouts) { return {Filled({0}), kPlaces, rollouts}; }
 
-TEST(WalkMemory, EveryWalkSeesWhatItSaidItself) {
-  WalkMemory memory = Memory();
-  for (int w = 0; w < kWalks; ++w) {
+TEST(RolloutMemory, EveryRolloutSeesItsOwnPrediction) {
+  RolloutMemory memory = Memory();
+  for (int w = 0; w < kRollouts; ++w) {
     memory.Keep(Turn(w, {{}, {}}), Filled({10.0F * static_cast<float>(w) + 1, 10.0F * static_cast<float>(w) + 2}));
   }
   for (const int w : {1, 0, 2}) {
@@ -46,8 +46,8 @@ TEST(WalkMemory, EveryWalkSeesWhatItSaidItself) {
   }
 }
 
-TEST(WalkMemory, AWalkThatStartsAnewSeesTheTruthOrNothing) {
-  WalkMemory memory = Memory();
+TEST(RolloutMemory, ARestartedRolloutSeesTheTruthOrNothing) {
+  RolloutMemory memory = Memory();
   memory.Keep(Turn(1, {{}, {}}), Filled({5, 6}));
   MotionBatch batch = Turn(1, {{.restart = true, .from_truth = true}, {.restart = true}});
   batch.past[0] = Filled({9});
@@ -56,26 +56,26 @@ TEST(WalkMemory, AWalkThatStartsAnewSeesTheTruthOrNothing) {
   EXPECT_TRUE(torch::equal(before.image, Filled({9, 0}).image));
 }
 
-TEST(WalkMemory, ThePastMovesWithTheWindow) {
-  WalkMemory memory = Memory();
+TEST(RolloutMemory, ThePastMovesWithTheWindow) {
+  RolloutMemory memory = Memory();
   memory.Keep(Turn(0, {{}, {}}), Filled({5, 6}));
   MotionBatch batch = Turn(0, {{}, {}});
   batch.frames[1].before_x = 1, batch.frames[1].before_y = -2;
-  const MotionState before = memory.Before(batch), said = Filled({5, 6});
-  EXPECT_TRUE(torch::equal(before.image[0], said.image[0]));
-  EXPECT_TRUE(torch::equal(before.image[1], Shifted(said.image, 1, -2)[1]));
+  const MotionState before = memory.Before(batch), predicted = Filled({5, 6});
+  EXPECT_TRUE(torch::equal(before.image[0], predicted.image[0]));
+  EXPECT_TRUE(torch::equal(before.image[1], Shifted(predicted.image, 1, -2)[1]));
 }
 
-TEST(WalkMemory, OutsideOfABoxIsBackground) {
-  WalkMemory memory = Memory();
+TEST(RolloutMemory, OutsideOfABoxIsBackground) {
+  RolloutMemory memory = Memory();
   MotionBatch batch = Turn(1, {{}, {}});
   batch.boxes = {{0, 1, 2, 3}, {2, 2, 4, 4}};
-  MotionState said = Filled({5, 6});
-  for (Tensor* part : said.Parts()) *part = part->slice(2, 0, 2).slice(3, 0, 2);
-  memory.Keep(batch, said);
+  MotionState predicted = Filled({5, 6});
+  for (Tensor* part : predicted.Parts()) *part = part->slice(2, 0, 2).slice(3, 0, 2);
+  memory.Keep(batch, predicted);
   const MotionState seen = memory.Before(batch);
-  EXPECT_TRUE(torch::equal(seen.image, said.image));
-  EXPECT_TRUE(torch::equal(seen.labels, said.labels));
+  EXPECT_TRUE(torch::equal(seen.image, predicted.image));
+  EXPECT_TRUE(torch::equal(seen.labels, predicted.labels));
   const MotionState whole = memory.Before(Turn(1, {{}, {}}));
   EXPECT_EQ(whole.image[0][0][1][1].item<float>(), 105);
   EXPECT_EQ(whole.image[0][0][0][1].item<float>(), 0);
@@ -86,23 +86,23 @@ TEST(WalkMemory, OutsideOfABoxIsBackground) {
   EXPECT_EQ(whole.labels[0][1][2][1].item<float>(), 5);
 }
 
-TEST(WalkMemory, WhatIsKeptHasNoGradient) {
-  WalkMemory memory = Memory();
-  MotionState said = Filled({1, 2});
-  said.image.requires_grad_(true);
-  memory.Keep(Turn(2, {{}, {}}), said);
+TEST(RolloutMemory, WhatIsKeptHasNoGradient) {
+  RolloutMemory memory = Memory();
+  MotionState predicted = Filled({1, 2});
+  predicted.image.requires_grad_(true);
+  memory.Keep(Turn(2, {{}, {}}), predicted);
   EXPECT_FALSE(memory.Before(Turn(2, {{}, {}})).image.requires_grad());
 }
 
-TEST(WalkMemory, ACheckpointOfOtherWalksIsRefused) {
-  const std::string path = EmptyFolder("walk_memory") + "/walks.bin";
-  WalkMemory written = Memory();
+TEST(RolloutMemory, ACheckpointOfOtherRolloutsIsRefused) {
+  const std::string path = EmptyFolder("rollout_memory") + "/rollouts.bin";
+  RolloutMemory written = Memory();
   written.Keep(Turn(1, {{}, {}}), Filled({7, 8}));
-  Checkpoint out("walks");
+  Checkpoint out("rollouts");
   written.AddTo(&out);
   out.Save(path);
-  WalkMemory same = Memory(), other = Memory(kWalks + 1);
-  Checkpoint in("walks"), in_other("walks");
+  RolloutMemory same = Memory(), other = Memory(kRollouts + 1);
+  Checkpoint in("rollouts"), in_other("rollouts");
   same.AddTo(&in);
   in.Load(path);
   same.Begin();
