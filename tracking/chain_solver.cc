@@ -8,7 +8,7 @@
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/tracking/chain/resting_frames.h"
+#include "bodyloom/tracking/chain/frozen_frames.h"
 
 namespace bodyloom {
 namespace {
@@ -18,7 +18,7 @@ using Eigen::VectorXd;
 constexpr double kMinRelativeDecrease = 1e-3, kMinDiagonal = 1e-6, kMaxDiagonal = 1e32;
 constexpr double kStartRadius = 1e4, kMaxRadius = 1e16, kMinRadius = 1e-32;
 constexpr int kMaxInvalidSteps = 5;
-/// What an iteration counts for at least: resting frames cost some time too.
+/// What an iteration counts for at least: frozen frames cost some time too.
 constexpr double kLeastIteration = 0.25;
 constexpr double kEarlyTolerance = 1e-3;  ///< when all keypoints come in (ChainOptions::early_dense)
 
@@ -68,8 +68,8 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
   ChainPoint candidate;
   double other_seconds = 0;
   if (thinned) chain.LimitDense(options.chain.early_dense);
-  bool skipping = options.chain.skip_settled > 0;
-  chain.SkipSettled(options.chain.skip_settled);
+  bool reusing = options.chain.reuse_linearisation > 0;
+  chain.ReuseLinearisation(options.chain.reuse_linearisation);
   const auto count = [&]() {
     report.frames_skipped += chain.num_skipped();
     report.frames_evaluated += static_cast<int64_t>(x.states.size()) - chain.num_skipped();
@@ -78,34 +78,34 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
   count();
   report.seconds_evaluation += watch.Lap();
   report.initial_cost = report.final_cost = cost;
-  RestingFrames rest(options.chain.rest_share);
+  FrozenFrames frozen(options.chain.frozen_share);
   double spent = 0;  // iterations, those of a part of the frames by its size
-  const auto let_rest = [&](const std::vector<char>& frames) {
-    factor->SetResting(frames);
-    chain.SetResting(frames);
+  const auto freeze = [&](const std::vector<char>& frames) {
+    factor->SetFrozen(frames);
+    chain.SetFrozen(frames);
   };
   const auto finish = [&](SolveStatus status, std::string message) {
-    let_rest({});
+    freeze({});
     report.status = status;
     report.message = std::move(message);
     report.final_cost = cost;
     report.seconds = watch.seconds();
     return report;
   };
-  const auto move_all = [&]() {
-    if (!rest.any()) return false;
+  const auto release_all = [&]() {
+    if (!frozen.any()) return false;
     cost = chain.Linearise(x);
     report.seconds_evaluation += watch.Lap();
-    let_rest({});
-    rest.Clear();
+    freeze({});
+    frozen.Clear();
     return true;
   };
   // All frames with all their keypoints, evaluated here: what may end the descent. False when that changed nothing.
   const auto make_whole = [&]() {
-    if (!thinned && !(skipping && chain.num_skipped() > 0)) return false;
+    if (!thinned && !(reusing && chain.num_skipped() > 0)) return false;
     chain.LimitDense(0);
-    if (!thinned) chain.SkipSettled(0);
-    skipping = skipping && thinned;
+    if (!thinned) chain.ReuseLinearisation(0);
+    reusing = reusing && thinned;
     thinned = false;
     cost = chain.Linearise(x);
     count();
@@ -120,26 +120,26 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
   int invalid_steps = 0;
   bool rejected = false, moved = false,
        fresh = true;  // fresh: the point was reached by an accepted step, or is the first
-  for (;; spent += std::max(kLeastIteration, rest.moving_share())) {
+  for (;; spent += std::max(kLeastIteration, frozen.moving_share())) {
     const int iteration = static_cast<int>(spent);
     if (options.on_iteration && !options.on_iteration(iteration, cost)) {
       return finish(SolveStatus::kStopped, "stopped by the caller");
     }
-    if (fresh && !rest.any() &&
+    if (fresh && !frozen.any() &&
         std::max(LargestOf(chain.gradient()), LargestOf(chain.shared_gradient())) <= options.gradient_tolerance) {
       if (!make_whole()) return finish(SolveStatus::kConverged, "the gradient is below its tolerance");
       if (!std::isfinite(cost)) return finish(SolveStatus::kFailure, "the cost of all keypoints is not finite");
     }
     if (iteration >= options.max_iterations) {
-      move_all();
-      if (thinned || (skipping && !options.chain.skip_to_the_end)) {
+      release_all();
+      if (thinned || (reusing && !options.chain.reuse_to_the_end)) {
         chain.LimitDense(0);
-        chain.SkipSettled(0);
+        chain.ReuseLinearisation(0);
         cost = chain.Cost(x);
       }
       return finish(SolveStatus::kMaxIterations, Concatenate("still going after ", iteration, " iterations"));
     }
-    if (radius.value() < kMinRadius && move_all()) radius = Radius();
+    if (radius.value() < kMinRadius && release_all()) radius = Radius();
     if (radius.value() < kMinRadius) {
       return finish(SolveStatus::kConverged, "the trust region has shrunk to nothing");
     }
@@ -156,12 +156,13 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
         factor->Solve(chain, shared, -chain.shared_gradient(), options.num_threads, &step, &shared_step);
     report.seconds_linear_solver += watch.Lap();
     // −gᵀδ − ½ δᵀHδ with Hδ = −g − Λδ.
-    const double promised = !solved ? 0.0
-                                    : 0.5 * ((damping.array() * step.array().square()).sum() +
-                                             (shared_damping.array() * shared_step.array().square()).sum() -
-                                             chain.gradient().dot(step) - chain.shared_gradient().dot(shared_step));
-    if (!(promised > 0)) {
-      if (move_all()) continue;
+    const double predicted_decrease =
+        !solved ? 0.0
+                : 0.5 * ((damping.array() * step.array().square()).sum() +
+                         (shared_damping.array() * shared_step.array().square()).sum() - chain.gradient().dot(step) -
+                         chain.shared_gradient().dot(shared_step));
+    if (!(predicted_decrease > 0)) {
+      if (release_all()) continue;
       if (++invalid_steps >= kMaxInvalidSteps) {
         return finish(SolveStatus::kFailure,
                       Concatenate(invalid_steps, " steps in a row could not be computed: the system is singular"));
@@ -170,12 +171,12 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
       continue;
     }
     invalid_steps = 0;
-    rest.Tried(chain.gradient(), damping, step, chain.frame_size());
+    frozen.Tried(chain.gradient(), damping, step, chain.frame_size());
     chain.Plus(x, step, shared_step, &candidate);
     other_seconds += watch.Lap();
     // Most steps are accepted, and the derivatives at the new point cost little once its cost is known: both at once,
-    // unless the last step was rejected or this one promises to be the last.
-    const bool both = !rejected && promised > options.function_tolerance * cost;
+    // unless the last step was rejected or this one is predicted to be the last.
+    const bool both = !rejected && predicted_decrease > options.function_tolerance * cost;
     const double candidate_cost = both ? chain.Linearise(candidate) : chain.Cost(candidate);
     count();
     report.seconds_evaluation += watch.Lap();
@@ -183,13 +184,13 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
     const bool too_short = moved && std::sqrt(step.squaredNorm() + shared_step.squaredNorm()) <=
                                         options.parameter_tolerance * (x_norm + options.parameter_tolerance);
     const double tolerance = (thinned ? kEarlyTolerance : options.function_tolerance) * cost;
-    const bool settled = std::abs(change) <= tolerance;
-    if (too_short || settled) {
+    const bool converged = std::abs(change) <= tolerance;
+    if (too_short || converged) {
       if (change > 0) {
         cost = candidate_cost;
         std::swap(x, candidate);
       }
-      if (move_all()) {
+      if (release_all()) {
         fresh = true;
         rejected = moved = false;
         continue;
@@ -201,10 +202,10 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
       if (!std::isfinite(cost)) return finish(SolveStatus::kFailure, "the cost of all keypoints is not finite");
       fresh = true;
       rejected = moved = false;
-      radius = Radius();  // what stood in for frames may have shrunk it
+      radius = Radius();  // reused linearisations may have shrunk it
       continue;
     }
-    const double quality = change / promised;
+    const double quality = change / predicted_decrease;
     if (!(quality > kMinRelativeDecrease)) {  // also when the candidate's cost is not finite
       if (both) {
         chain.Linearise(x);
@@ -227,8 +228,8 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
     x_norm = std::sqrt(chain.SquaredNorm(x));
     radius.Accepted(quality);
     moved = fresh = true;
-    rest.Taken(promised, tolerance);
-    let_rest(rest.frames());
+    frozen.Taken(predicted_decrease, tolerance);
+    freeze(frozen.frames());
   }
 }
 

@@ -23,22 +23,22 @@ std::string ToString(SolveStatus status);
 
 /// What the chain engine may leave out on its way; Ceres does not read it.
 struct ChainOptions {
-  /// Until the cost settles to a thousandth, frames with more than twice as many dense keypoints use about
-  /// this many, evenly chosen and weighted to stand for all; then all of them. What converges is always the whole
+  /// Until the cost changes by less than a thousandth, frames with more than twice as many dense keypoints use about
+  /// this many, evenly chosen and weighted to represent all; then all of them. What converges is always the whole
   /// problem. 0: all from the beginning.
   int early_dense = 0;
-  /// Frames whose residuals have moved by less than this share of their size since they were linearised
-  /// last are not evaluated again; a quadratic stands for them (ChainProblem::SkipSettled). Before the descent may end
-  /// as converged all frames are evaluated at the same point and iterations without the skip follow, so the answer is a
+  /// Frames whose residuals have moved by less than this share of their size since they were linearised last are not
+  /// evaluated again; their linearisation is reused (ChainProblem::ReuseLinearisation). Before the descent may end as
+  /// converged all frames are evaluated at the same point and iterations without reuse follow, so the answer is a
   /// minimum of the cost itself. 0: every frame in every iteration.
-  double skip_settled = 0;
-  /// Frames whose steps promise little rest, and shape and focal length with them, while the others go on
-  /// (tracking/chain/resting_frames.h); this share of a step's decrease is left lying at a time. Only a step of all
+  double reuse_linearisation = 0;
+  /// Frames of little predicted decrease are frozen, and shape and focal length with them, while the others go on
+  /// (tracking/chain/frozen_frames.h): at most this share of a step's predicted decrease at a time. Only a step of all
   /// frames may end the descent as converged. Steps of a part of the frames count for max_iterations by its size, a
   /// quarter at least. 0: all frames move in every iteration.
-  double rest_share = 0;
-  /// Leave it at that when max_iterations end the descent: the final cost may hold stand-ins.
-  bool skip_to_the_end = false;
+  double frozen_share = 0;
+  /// Also when max_iterations end the descent: the final cost may be that of reused linearisations.
+  bool reuse_to_the_end = false;
 };
 
 struct SolveOptions {
@@ -54,9 +54,9 @@ struct SolveOptions {
   std::function<bool(int, double)> on_iteration;
 };
 
-/// What the tracker sets the skips to; settled frames only where there are dense keypoints.
+/// What the tracker sets these to; linearisations are reused only where there are dense keypoints.
 inline constexpr int kTrackerEarlyDense = 300;
-inline constexpr double kTrackerSkipSettled = 0.01, kTrackerRestShare = 0.05;
+inline constexpr double kTrackerReuse = 0.01, kTrackerFrozenShare = 0.05;
 
 struct SolveReport {
   SolveStatus status = SolveStatus::kFailure;

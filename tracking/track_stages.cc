@@ -39,9 +39,9 @@ bool StageRunner::Run(const Stage& stage, SequenceProblem* problem) {
   solve.solver = options_.solver;
   if (options_.skip_unneeded) {
     solve.chain.early_dense = kTrackerEarlyDense;
-    solve.chain.rest_share = kTrackerRestShare;
+    solve.chain.frozen_share = kTrackerFrozenShare;
     // Joints alone are evaluated as fast as skipped: 10 % slower with it on AIST++.
-    if (input_.dense != nullptr) solve.chain.skip_settled = kTrackerSkipSettled;
+    if (input_.dense != nullptr) solve.chain.reuse_linearisation = kTrackerReuse;
   }
   solve.max_iterations = stage.max_iterations;
   solve.num_threads = num_threads_;

@@ -29,7 +29,7 @@ struct Stages {
   Stage again;        ///< with the clip's own smoothness and its ground
   Stage part_labels;  ///< each round
   Stage dense;        ///< each round: covariances of dense keypoints, rendered UV
-  Stage all;          ///< every frame: few steps when a coarse solve has settled what is slow to settle
+  Stage all;          ///< every frame: few steps when a coarse solve has converged in what converges slowly
 };
 /// `coarse_to_fine`: the coarse frames are fewer than all.
 Stages StagesFor(const TrackSequenceInput& input, const TrackSequenceOptions& options, bool coarse_to_fine);

@@ -94,7 +94,7 @@ class Bench {
     options_.lag = arguments.Integer("lag");
     options_.context = arguments.Integer("context");
     options_.iterations = arguments.Integer("iterations");
-    options_.skip_settled = std::stod(arguments.Text("skip"));
+    options_.reuse_linearisation = std::stod(arguments.Text("skip"));
     options_.solve.lifter_weight = std::stod(arguments.Text("lifter_weight"));
   }
 
@@ -278,7 +278,7 @@ class Bench {
     }
   }
 
-  /// The solve of a whole clip with and without ChainOptions::skip_settled: error is the cost over the lowest.
+  /// The solve of a whole clip with and without ChainOptions::reuse_linearisation: error is the cost over the lowest.
   void Skip() {
     for (const std::string& frames : arguments_.List("skip_frames")) {
       WorkProblemOptions problem_options;
@@ -296,7 +296,7 @@ class Bench {
           SolveOptions options;
           options.solver = SequenceSolver::kChain;
           options.num_threads = arguments_.Integer("threads");
-          options.chain.skip_settled = share;
+          options.chain.reuse_linearisation = share;
           const std::clock_t cpu = std::clock();
           report = SolveSequence(&problem, options);
           times.emplace_back(1e3 * double(std::clock() - cpu) / CLOCKS_PER_SEC / problem_options.frames,
@@ -306,7 +306,7 @@ class Bench {
         const auto [cpu_ms, wall_ms] = times[times.size() / 2];
         lowest = std::min(lowest, report.final_cost);
         rows.push_back(
-            {"solve of " + frames + " frames, skip_settled",
+            {"solve of " + frames + " frames, reuse_linearisation",
              {Concatenate(share),
               Concatenate(report.iterations, " iterations, skipped ",
                           100 * report.frames_skipped / (report.frames_skipped + report.frames_evaluated), " %")},

@@ -23,22 +23,22 @@ Engine ChainEngine(int threads, int early_dense) {
   return engine;
 }
 
-Engine SkippingEngine(int threads) {
+Engine ReusingEngine(int threads) {
   Engine engine = ChainEngine(threads, 0);
-  engine.name = "chain, settled frames";
-  engine.options.chain.skip_settled = kTrackerSkipSettled;
+  engine.name = "chain, reused linearisation";
+  engine.options.chain.reuse_linearisation = kTrackerReuse;
   return engine;
 }
 
-Engine RestingEngine(int threads) {
-  Engine engine = SkippingEngine(threads);
-  engine.name = "chain, settled and resting frames";
-  engine.options.chain.rest_share = kTrackerRestShare;
+Engine FreezingEngine(int threads) {
+  Engine engine = ReusingEngine(threads);
+  engine.name = "chain, reused and frozen frames";
+  engine.options.chain.frozen_share = kTrackerFrozenShare;
   return engine;
 }
 
 Engine TrackerEngine(int threads) {
-  Engine engine = RestingEngine(threads);
+  Engine engine = FreezingEngine(threads);
   engine.name = "chain, as the tracker";
   engine.options.chain.early_dense = kTrackerEarlyDense;
   return engine;

@@ -21,10 +21,10 @@ struct Engine {
 };
 
 Engine ChainEngine(int threads, int early_dense = 0);
-/// Leaves frames that have settled unlinearised (ChainOptions::skip_settled), as the tracker does.
-Engine SkippingEngine(int threads);
-/// And lets frames rest whose steps promise little (ChainOptions::rest_share), as the tracker does.
-Engine RestingEngine(int threads);
+/// Reuses the linearisation of frames that hardly move (ChainOptions::reuse_linearisation), as the tracker does.
+Engine ReusingEngine(int threads);
+/// And freezes frames of little predicted decrease (ChainOptions::frozen_share), as the tracker does.
+Engine FreezingEngine(int threads);
 /// And begins with few of many keypoints (ChainOptions::early_dense): all skips that the tracker uses.
 Engine TrackerEngine(int threads);
 Engine CeresEngine(int threads);     ///< analytic derivatives, one cost function a frame

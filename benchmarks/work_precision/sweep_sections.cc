@@ -86,7 +86,7 @@ void LengthSection(WorkBench* bench) {
   Plot memory{
       "work_precision_memory", "300 keypoints a frame", "frames", "peak memory of the solve, MB", true, true, {}};
   const std::vector<Engine> engines = {CeresEngine(bench->threads), ChainEngine(bench->threads),
-                                       SkippingEngine(bench->threads), RestingEngine(bench->threads)};
+                                       ReusingEngine(bench->threads), FreezingEngine(bench->threads)};
   for (const Engine& engine : engines) {
     time.lines.push_back({engine.name, {}});
     memory.lines.push_back({engine.name, {}});

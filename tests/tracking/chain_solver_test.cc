@@ -196,43 +196,43 @@ TEST(ChainSolver, EarlyIterationsOnFewerPointsEndAtTheWholeProblem) {
   EXPECT_NEAR(SolveSequence(&early, options).initial_cost, one.final_cost, 1e-12 * one.final_cost);
 }
 
-TEST(ChainSolver, FramesMayRestOnTheWayToTheSameMinimum) {
+TEST(ChainSolver, FrozenFramesEndAtTheSameMinimum) {
   for (const uint64_t seed : {1, 2, 3}) {
     SequenceSceneOptions scene;
     scene.frames = 40;
     scene.seed = seed;
     scene.outliers = 0;  // one minimum, whatever the path
     const auto owner = MakeSequenceScene(scene);
-    SequenceProblem moving = owner->problem, resting = owner->problem;
+    SequenceProblem moving = owner->problem, frozen = owner->problem;
     // Two frames far from where they belong, so that the others have to wait for them.
-    for (SequenceProblem* problem : {&moving, &resting}) {
+    for (SequenceProblem* problem : {&moving, &frozen}) {
       for (const int t : {11, 30}) problem->states[t].translation += Vector3d(0.2, -0.1, 0.3);
     }
-    SequenceProblem other = resting;
+    SequenceProblem other = frozen;
     SolveOptions options = Tight(SequenceSolver::kChain);
     options.function_tolerance = 1e-9;
     const SolveReport all = SolveSequence(&moving, options);
-    options.chain.rest_share = 0.05;
-    const SolveReport some = SolveSequence(&resting, options);
+    options.chain.frozen_share = 0.05;
+    const SolveReport some = SolveSequence(&frozen, options);
     ASSERT_EQ(some.status, SolveStatus::kConverged) << some.message;
     EXPECT_EQ(all.frames_skipped, 0);
     EXPECT_GT(some.frames_skipped, some.frames_evaluated / 10);
     EXPECT_NEAR(some.final_cost, all.final_cost, 1e-6 * all.final_cost);
-    EXPECT_LT((resting.betas - moving.betas).norm(), 1e-3);
+    EXPECT_LT((frozen.betas - moving.betas).norm(), 1e-3);
     options.num_threads = 3;
     const SolveReport threads = SolveSequence(&other, options);
     EXPECT_EQ(threads.final_cost, some.final_cost);
-    EXPECT_EQ(other.states[20].translation, resting.states[20].translation);
-    EXPECT_EQ(other.betas, resting.betas);
+    EXPECT_EQ(other.states[20].translation, frozen.states[20].translation);
+    EXPECT_EQ(other.betas, frozen.betas);
   }
 }
 
-TEST(ChainSolver, AllFramesAreCountedAtTheLastIterationAlsoWhileSomeRest) {
+TEST(ChainSolver, AllFramesAreCountedAtTheLastIterationAlsoWhileSomeAreFrozen) {
   SequenceSceneOptions scene;
   scene.frames = 40;
   const auto owner = MakeSequenceScene(scene);
   SolveOptions options = Tight(SequenceSolver::kChain);
-  options.chain.rest_share = 0.05;
+  options.chain.frozen_share = 0.05;
   for (int iterations = 1; iterations < 12; ++iterations) {
     SequenceProblem problem = owner->problem;
     options.max_iterations = iterations;

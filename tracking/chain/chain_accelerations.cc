@@ -21,7 +21,7 @@ double ChainProblem::EvaluateChanges(const ChainPoint& point, bool derivatives) 
   const std::vector<int>& joints = problem_.layout.active_joints;
   ParallelFor(T, num_threads_, [&](int t) {
     // The change that ends at t has a part in the accelerations that end at t and at t + 1.
-    if (t == 0 || !(HasAcceleration(t) || HasAcceleration(t + 1)) || RestAll(t - 1, t)) return;
+    if (t == 0 || !(HasAcceleration(t) || HasAcceleration(t + 1)) || AllFrozen(t - 1, t)) return;
     Change& change = changes_[t];
     change.step.resize(blocks_);
     if (derivatives) change.right.resize(joints.size());
@@ -36,7 +36,7 @@ double ChainProblem::EvaluateChanges(const ChainPoint& point, bool derivatives) 
   for (int t = 2; t < T; ++t) {
     if (!HasAcceleration(t)) continue;
     double& cost = acceleration_costs_[t];
-    if (RestAll(t - 2, t)) {
+    if (AllFrozen(t - 2, t)) {
       sum += cost;
       continue;
     }

@@ -75,18 +75,18 @@ ChainFactor::~ChainFactor() = default;
 void ChainFactor::SetCuts(std::vector<char> cut_before) {
   BODYLOOM_CHECK(!cut_before.empty(), "chain: no frames");
   cut_before_ = std::move(cut_before);
-  resting_.clear();
+  frozen_.clear();
   factor_.resize(cut_before_.size());
 }
 
-void ChainFactor::SetResting(std::vector<char> resting) {
-  BODYLOOM_CHECK(resting.empty() || resting.size() == cut_before_.size(), "chain: rest for ", resting.size(),
+void ChainFactor::SetFrozen(std::vector<char> frozen) {
+  BODYLOOM_CHECK(frozen.empty() || frozen.size() == cut_before_.size(), "chain: frozen marks for ", frozen.size(),
                  " frames, expected ", cut_before_.size(), " or none");
-  for (size_t t = 1; t + 1 < resting.size(); ++t) {
-    BODYLOOM_CHECK(resting[t] == 0 || resting[t - 1] != 0 || resting[t + 1] != 0, "chain: frame ", t,
-                   " would rest alone");
+  for (size_t t = 1; t + 1 < frozen.size(); ++t) {
+    BODYLOOM_CHECK(frozen[t] == 0 || frozen[t - 1] != 0 || frozen[t + 1] != 0, "chain: frame ", t,
+                   " would be frozen alone");
   }
-  resting_ = std::move(resting);
+  frozen_ = std::move(frozen);
 }
 
 bool ChainFactor::Step(int t, Panel* front, Panel* next, Panel* second, std::vector<double>* shared_sum) {
@@ -223,10 +223,10 @@ void ChainFactor::BackSubstitute(int t, int next, int second, const double* shar
 
 std::vector<ChainFactor::Segment> ChainFactor::Segments() const {
   std::vector<Segment> segments;
-  const auto rests = [&](int t) { return !resting_.empty() && resting_[t] != 0; };
+  const auto is_frozen = [&](int t) { return !frozen_.empty() && frozen_[t] != 0; };
   for (int t = 0; t < num_frames(); ++t) {
-    if (rests(t)) continue;
-    if (t == 0 || cut_before_[t] || rests(t - 1)) segments.emplace_back().begin = t;
+    if (is_frozen(t)) continue;
+    if (t == 0 || cut_before_[t] || is_frozen(t - 1)) segments.emplace_back().begin = t;
     segments.back().end = t + 1;
   }
   for (Segment& segment : segments) {
@@ -280,14 +280,14 @@ bool ChainFactor::Solve(const ChainSource& source, const Eigen::MatrixXd& shared
     }
   }
   shared_step->setZero(s_);
-  if (s_ > 0 && resting_.empty()) {
+  if (s_ > 0 && frozen_.empty()) {
     const Eigen::LLT<Eigen::MatrixXd> factor(S);
     if (factor.info() != Eigen::Success) return false;
     *shared_step = factor.solve(rhs);
     shared_inverse_ = factor.solve(Eigen::MatrixXd::Identity(s_, s_));
   }
   frames->resize(static_cast<int64_t>(T) * n_);
-  if (!resting_.empty()) frames->setZero();
+  if (!frozen_.empty()) frames->setZero();
   const double* y = shared_step->data();
   double* x = frames->data();
   for (const Segment& segment : segments) {

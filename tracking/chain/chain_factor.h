@@ -58,9 +58,9 @@ class ChainFactor {
 
   /// From now on the frames marked here (T of them; empty: none) and, while there are any, the shared values keep a
   /// step of zero: Solve() solves the system of the other frames alone.
-  void SetResting(std::vector<char> resting);
+  void SetFrozen(std::vector<char> frozen);
 
-  /// Blocks of M⁻¹ for the matrix of the last Solve(), which must have succeeded and had no frames at rest: visit(t, P)
+  /// Blocks of M⁻¹ for the matrix of the last Solve(), which must have succeeded and had no frozen frames: visit(t, P)
   /// gets, for each frame begin ≤ t < end, the (n + s)² block of its values and, after them, of the shared ones. Frames
   /// come in no particular order, from up to num_threads threads.
   ///
@@ -81,7 +81,7 @@ class ChainFactor {
   struct Half;
   class Inverse;
   class InversePool;
-  /// Frames between two cuts, or frames at rest; `middle` is the first of the (up to) two that are eliminated last.
+  /// Frames between two cuts, or frozen frames; `middle` is the first of the (up to) two that are eliminated last.
   struct Segment {
     int begin = 0, end = 0, middle = 0;
   };
@@ -97,7 +97,7 @@ class ChainFactor {
   int n_, s_;
   int b_columns_;  ///< of the arrow section of a panel: s + 1 rounded up
   std::vector<char> cut_before_;
-  std::vector<char> resting_;                ///< T, or empty: none
+  std::vector<char> frozen_;                 ///< T, or empty: none
   std::vector<std::vector<double>> factor_;  ///< T: rows of [U from the diagonal | W₁ | arrow and right-hand side | W₂]
   Eigen::MatrixXd shared_inverse_;           ///< s×s block of M⁻¹
   std::vector<std::vector<Panel>> panels_;  ///< scratch of the halves that are eliminated at the same time

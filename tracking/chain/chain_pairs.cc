@@ -14,7 +14,7 @@ namespace bodyloom {
 double ChainProblem::EvaluatePairs(const ChainPoint& point, bool derivatives) {
   const int T = static_cast<int>(point.states.size());
   ParallelFor(T, num_threads_, [&](int t) {
-    if (pairs_[t].coupled && !RestAll(t, t + 1)) EvaluatePair(t, point, derivatives);
+    if (pairs_[t].coupled && !AllFrozen(t, t + 1)) EvaluatePair(t, point, derivatives);
   });
   double sum = 0;
   for (const Pair& pair : pairs_) sum += pair.cost;

@@ -86,7 +86,7 @@ void ChainProblem::Resize() {
                                           problem_.timestamps[t] - problem_.timestamps[t - 1]);
   }
   changes_.resize(T);
-  resting_.clear();
+  frozen_.clear();
   costs_.resize(T);
   acceleration_costs_.resize(T);
   has_pairs_ = false;
@@ -149,20 +149,20 @@ bool ChainProblem::StepsFrom(const Anchor& anchor, const FrameState& state, cons
   return true;
 }
 
-void ChainProblem::SetResting(std::vector<char> resting) {
-  if (resting.empty() && resting_.empty()) return;
-  BODYLOOM_CHECK(resting.empty() || (linearised_ && prior_ == nullptr && resting.size() == systems_.size()),
-                 "chain: rest for ", resting.size(), " of ", systems_.size(),
+void ChainProblem::SetFrozen(std::vector<char> frozen) {
+  if (frozen.empty() && frozen_.empty()) return;
+  BODYLOOM_CHECK(frozen.empty() || (linearised_ && prior_ == nullptr && frozen.size() == systems_.size()),
+                 "chain: frozen marks for ", frozen.size(), " of ", systems_.size(),
                  " frames, expected all of them, linearised, without a prior");
-  resting_ = std::move(resting);
-  if (resting_.empty() && linearised_) SumShared(linearised_at_);
+  frozen_ = std::move(frozen);
+  if (frozen_.empty() && linearised_) SumShared(linearised_at_);
 }
 
-bool ChainProblem::RestAll(int64_t first, int64_t last) const {
-  if (resting_.empty()) return false;
-  last = std::min(last, static_cast<int64_t>(resting_.size()) - 1);
+bool ChainProblem::AllFrozen(int64_t first, int64_t last) const {
+  if (frozen_.empty()) return false;
+  last = std::min(last, static_cast<int64_t>(frozen_.size()) - 1);
   for (int64_t t = std::max<int64_t>(0, first); t <= last; ++t) {
-    if (resting_[t] == 0) return false;
+    if (frozen_[t] == 0) return false;
   }
   return true;
 }
@@ -173,15 +173,15 @@ double ChainProblem::EvaluateFrames(const ChainPoint& point, bool derivatives) {
     FrameSystem& system = systems_[t];
     Anchor& anchor = anchors_[t];
     VectorXd d;
-    skipped_[t] = Rests(t) ? 1 : 0;
-    if (Rests(t)) return;
-    if (skip_share_ > 0 && anchor.set && StepsFrom(anchor, point.states[t], point, &d)) {
+    skipped_[t] = IsFrozen(t) ? 1 : 0;
+    if (IsFrozen(t)) return;
+    if (reuse_share_ > 0 && anchor.set && StepsFrom(anchor, point.states[t], point, &d)) {
       VectorXd full = VectorXd::Zero(system.gradient.size());
       full.head(n_) = d.head(n_);
       for (int i = 0; i < s; ++i) full[shared_columns_[i]] = d[n_ + i];
       const VectorXd Hd = system.H.selfadjointView<Eigen::Lower>() * full;
       const double moved = 0.5 * full.dot(Hd);
-      if (moved <= skip_share_ * skip_share_ * anchor.cost) {
+      if (moved <= reuse_share_ * reuse_share_ * anchor.cost) {
         skipped_[t] = 1;
         costs_[t] = anchor.cost + system.gradient.dot(full) + moved;
         if (derivatives) frame_gradient_[t] = system.gradient + Hd;
@@ -196,7 +196,7 @@ double ChainProblem::EvaluateFrames(const ChainPoint& point, bool derivatives) {
     costs_[t] = system.cost;
     if (!derivatives) return;
     frame_gradient_[t] = system.gradient;
-    anchor.set = skip_share_ > 0 && std::isfinite(system.cost);
+    anchor.set = reuse_share_ > 0 && std::isfinite(system.cost);
     if (!anchor.set) return;
     anchor.state = point.states[t];
     anchor.betas = point.betas;
@@ -333,7 +333,7 @@ double ChainProblem::Linearise(const ChainPoint& point) {
   diagonal_.resize(gradient_.size());
   ParallelFor(T, num_threads_, [&](int t) {
     const auto offset = static_cast<Eigen::Index>(t) * n_;
-    if (RestAll(t - 2, t + 2)) return;
+    if (AllFrozen(t - 2, t + 2)) return;
     gradient_.segment(offset, n_) = frame_gradient_[t].head(n_);
     AssembleAcceleration(t);
     for (int i = 0; i < n_; ++i) {
@@ -341,7 +341,7 @@ double ChainProblem::Linearise(const ChainPoint& point) {
     }
     if (has_pairs_) AssemblePairs(t);
   });
-  if (resting_.empty()) SumShared(point);
+  if (frozen_.empty()) SumShared(point);
   AddPrior();
   linearised_ = true;
   linearised_at_ = point;
@@ -458,7 +458,7 @@ void ChainProblem::Plus(const ChainPoint& x, const VectorXd& step, const VectorX
   const std::vector<int>& joints = problem_.layout.active_joints;
   *y = x;
   ParallelFor(static_cast<int>(x.states.size()), num_threads_, [&](int t) {
-    if (Rests(t)) return;
+    if (IsFrozen(t)) return;
     FrameState& state = y->states[t];
     Eigen::Index at = static_cast<Eigen::Index>(t) * n_;
     for (int j : joints) {

@@ -35,17 +35,17 @@ class ChainProblem : public ChainSource {
   void LimitDense(int max_points);
   /// From now on a frame is not evaluated where its residuals have moved, since it was linearised last, by less than
   /// this share of their own size (root mean square: ½ dᵀHd ≤ share² c), and no unknown by more than 0.05 (radians,
-  /// metres, log focal length, 0.03 betas). Cost c + gᵀd + ½ dᵀHd and gradient g + Hd stand for it, wrong by O(d³) and
-  /// O(d²) times the residuals' curvature. 0: all frames are evaluated.
-  void SkipSettled(double share) {
-    if (share != skip_share_) linearised_ = false;
-    skip_share_ = share;
+  /// metres, log focal length, 0.03 betas). Its linearisation is reused: cost c + gᵀd + ½ dᵀHd and gradient g + Hd,
+  /// wrong by O(d³) and O(d²) times the residuals' curvature. 0: all frames are evaluated.
+  void ReuseLinearisation(double share) {
+    if (share != reuse_share_) linearised_ = false;
+    reuse_share_ = share;
   }
   /// The frames marked here (T of them; empty: none) and the shared values stay where Linearise() was called last:
   /// until the next call points differ in the other frames only, and those and their neighbours alone are evaluated.
   /// Exact; shared() and shared_gradient() are not kept up meanwhile. Throws std::invalid_argument unless the last call
   /// was Linearise(), and with a prior.
-  void SetResting(std::vector<char> resting);
+  void SetFrozen(std::vector<char> frozen);
   /// How many frames the last Cost() or Linearise() took from an earlier point.
   [[nodiscard]] int num_skipped() const { return num_skipped_; }
   /// A term beside the problem's own; borrowed, null: none. The problem must have two frames or more, and no cost
@@ -125,9 +125,9 @@ class ChainProblem : public ChainSource {
   double EvaluatePrior(const ChainPoint& point, bool derivatives);
   void AddPrior();
   double EvaluateFrames(const ChainPoint& point, bool derivatives);
-  [[nodiscard]] bool Rests(size_t t) const { return !resting_.empty() && resting_[t] != 0; }
+  [[nodiscard]] bool IsFrozen(size_t t) const { return !frozen_.empty() && frozen_[t] != 0; }
   /// Whether the accelerations that frames first … last take part in are as they were.
-  [[nodiscard]] bool RestAll(int64_t first, int64_t last) const;
+  [[nodiscard]] bool AllFrozen(int64_t first, int64_t last) const;
   double EvaluateChanges(const ChainPoint& point, bool derivatives);
   double EvaluatePairs(const ChainPoint& point, bool derivatives);
   void EvaluatePair(int t, const ChainPoint& point, bool derivatives);
@@ -149,7 +149,7 @@ class ChainProblem : public ChainSource {
 
   const SequenceProblem& problem_;
   int n_, blocks_, num_threads_, max_dense_ = 0, num_skipped_ = 0;
-  double skip_share_ = 0;
+  double reuse_share_ = 0;
   bool linearised_ = false;  ///< all that Linearise() makes is there, for this point
   ChainPoint linearised_at_;
   double linearised_cost_ = 0;
@@ -165,7 +165,7 @@ class ChainProblem : public ChainSource {
   std::vector<AccelerationFactors> factors_;                ///< T, of the acceleration that ends at each frame
   std::vector<std::vector<Eigen::Array3d>> inverse_sigma_;  ///< n/3 of each entry of SequenceProblem::smoothness
   std::vector<int> shot_;                                   ///< T, where the shots differ in smoothness
-  std::vector<char> resting_;                               ///< T, or empty: none
+  std::vector<char> frozen_;                                ///< T, or empty: none
   std::vector<double> costs_, acceleration_costs_;          ///< T; of the acceleration that ends at each frame
   std::vector<double> next_, second_, own_;                 ///< T × n/3 blocks of 9
   Eigen::VectorXd gradient_, shared_gradient_, diagonal_;

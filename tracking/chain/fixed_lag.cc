@@ -74,13 +74,13 @@ bool FixedLag::VisitCovariance(int begin, int end, const std::function<void(int,
          bodyloom::VisitCovariance(&chain_, &factor_, begin, end, num_threads_, visit);
 }
 
-SolveReport FixedLag::Solve(int max_iterations, double skip_share, double function_tolerance) {
+SolveReport FixedLag::Solve(int max_iterations, double reuse_share, double function_tolerance) {
   SolveOptions options;
   options.function_tolerance = function_tolerance;
   options.max_iterations = max_iterations;
   options.num_threads = num_threads_;
-  options.chain.skip_settled = skip_share;
-  options.chain.skip_to_the_end = true;
+  options.chain.reuse_linearisation = reuse_share;
+  options.chain.reuse_to_the_end = true;
   ChainPoint x{std::move(problem_.states), problem_.betas, problem_.log_focal};
   const SolveReport report = DescendChain(&chain_, &factor_, &x, options, false);
   problem_.states = std::move(x.states);

@@ -28,9 +28,9 @@ class FixedLag {
   /// continue the last one. Returns how many frames have gone (0 or 1).
   int Add(FrameData frame, FrameState start, double timestamp, bool cut_before);
 
-  /// At most this many iterations, with ChainOptions::skip_settled = `skip_share`. A failure
-  /// leaves the states at the best point that was found.
-  SolveReport Solve(int max_iterations, double skip_share, double function_tolerance = 1e-5);
+  /// At most this many iterations, with ChainOptions::reuse_linearisation = `reuse_share`. A failure leaves the states
+  /// at the best point that was found.
+  SolveReport Solve(int max_iterations, double reuse_share, double function_tolerance = 1e-5);
 
   /// VisitCovariance() of chain_covariance.h at the window's states, for frames begin ≤ t < end of it; frames that have
   /// left count through the prior. Later solves are the same with it as without.

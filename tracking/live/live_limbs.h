@@ -11,7 +11,7 @@ namespace bodyloom {
 class LiveLimbs {
  public:
   /// Where limbs of the window's last frames are not where the lifter says, tries its poses instead in a short solve,
-  /// of these limbs alone and of the whole body, and keeps what costs less. Rests for some readings after a try.
+  /// of these limbs alone and of the whole body, and keeps what costs less. Pauses for some readings after a try.
   void Try(const LiveSetup& setup, const LiveReading& reading, LiveWindow* window);
 
  private:
@@ -19,7 +19,7 @@ class LiveLimbs {
   unsigned LimbsOff(const LiveSetup& setup, const Eigen::VectorXd& betas, const FrameState& state,
                     const LiftedFrame& lifted, double metres);
 
-  int until_next_ = 0;  ///< readings in which Try() rests
+  int until_next_ = 0;  ///< readings in which Try() does nothing
   Kinematics kinematics_;
   PointEvaluator points_;
 };

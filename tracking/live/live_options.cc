@@ -22,7 +22,7 @@ bool LiveTrackerOptions::IsValid(std::string* why) const {
   return solve.IsValid(why) && in_range("lag", lag, 0, 60) && in_range("context", context, 3, 60) &&
          in_range("iterations", iterations, 1, 50) && in_range("start_iterations", start_iterations, 1, 50) &&
          in_range("max_dense", max_dense, 1, 1e7) && in_range("lost_after_s", lost_after_s, 0, 10) &&
-         in_range("max_jump_s", max_jump_s, 0, 1) && in_range("skip_settled", skip_settled, 0, 0.1);
+         in_range("max_jump_s", max_jump_s, 0, 1) && in_range("reuse_linearisation", reuse_linearisation, 0, 0.1);
 }
 
 }  // namespace bodyloom

@@ -30,7 +30,7 @@ struct LiveTrackerOptions {
   /// Frames whose 2D joints jump away from the person count as not seen until they come back, or until they have lasted
   /// for longer than this; then there is a cut, at the first of them that has not been handed out. 0: a cut at once
   double max_jump_s = 0.15;
-  double skip_settled = 0.1;  ///< ChainOptions::skip_settled
+  double reuse_linearisation = 0.1;  ///< ChainOptions::reuse_linearisation
   /// Camera knowledge, weights, threads, estimate_shape, skip_unneeded and estimate_uncertainty mean what they mean for
   /// TrackSequence(). The engine must be the chain, and own terms are refused.
   TrackSequenceOptions solve;

@@ -162,7 +162,7 @@ void LiveWindow::Replace(LiveRecord* record, const FrameState& start, bool cut) 
 }
 
 bool LiveWindow::Solve(int iterations) {
-  const SolveReport report = lag_->Solve(iterations, setup_.options.skip_settled);
+  const SolveReport report = lag_->Solve(iterations, setup_.options.reuse_linearisation);
   iterations_ += report.iterations - 1;
   if (report.status != SolveStatus::kFailure) return true;
   // Nothing in the window can be trusted: begin again with the next frame, from the shape and focal length so far.

@@ -118,13 +118,13 @@ TEST(ChainFactor, SameBytesForAnyNumberOfThreads) {
   }
 }
 
-TEST(ChainFactor, FramesAtRestStayAndTheOthersAreSolvedAlone) {
+TEST(ChainFactor, FrozenFramesStayAndTheOthersAreSolvedAlone) {
   const int T = 14, n = 9, s = 4;
   const RandomChain chain(T, n, s, CutsAt(T, {6}), 31);
   ChainFactor factor(n, s, chain.cuts);
   VectorXd x, shared;
   for (const std::vector<int>& at : {std::vector<int>{0, 1, 4, 5, 9, 10, 11}, {13}, {0, 6, 7}, {2, 3, 4, 5, 6, 7, 8}}) {
-    factor.SetResting(CutsAt(T, at));
+    factor.SetFrozen(CutsAt(T, at));
     ASSERT_TRUE(factor.Solve(chain, chain.Shared(), chain.b.tail(s), 2, &x, &shared));
     std::vector<int> moving;
     for (int t = 0; t < T; ++t) {
@@ -132,14 +132,14 @@ TEST(ChainFactor, FramesAtRestStayAndTheOthersAreSolvedAlone) {
     }
     const VectorXd expected = MatrixXd(chain.M(moving, moving)).llt().solve(VectorXd(chain.b(moving)));
     EXPECT_LT((x(moving) - expected).norm(), 1e-9 * expected.norm());
-    EXPECT_NEAR(x.squaredNorm(), expected.squaredNorm(), 1e-9 * expected.squaredNorm()) << "a frame at rest moved";
+    EXPECT_NEAR(x.squaredNorm(), expected.squaredNorm(), 1e-9 * expected.squaredNorm()) << "a frozen frame moved";
     EXPECT_EQ(shared, VectorXd::Zero(s));
   }
-  factor.SetResting({});
+  factor.SetFrozen({});
   ASSERT_TRUE(factor.Solve(chain, chain.Shared(), chain.b.tail(s), 2, &x, &shared));
   EXPECT_LT((x - chain.M.llt().solve(chain.b).head(T * n)).norm(), 1e-9 * x.norm());
-  EXPECT_THROW(factor.SetResting(std::vector<char>(T + 1)), std::invalid_argument);
-  EXPECT_THROW(factor.SetResting(CutsAt(T, {3})), std::invalid_argument);
+  EXPECT_THROW(factor.SetFrozen(std::vector<char>(T + 1)), std::invalid_argument);
+  EXPECT_THROW(factor.SetFrozen(CutsAt(T, {3})), std::invalid_argument);
 }
 
 TEST(ChainFactor, SaysWhenTheMatrixIsNotPositiveDefinite) {

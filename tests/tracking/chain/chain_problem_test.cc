@@ -79,27 +79,27 @@ TEST(ChainProblem, LinearisedAgainAfterAnyChangeItIsTheSameAsAnew) {
   EXPECT_TRUE(System(&chain, x) == stiff) << "the prior taken away";
 }
 
-/// While frames rest, what is evaluated beside the moving ones is what a problem that evaluates everything gives, to
-/// the last bit.
-TEST(ChainProblem, FramesAtRestChangeNothingButTheWork) {
+/// While frames are frozen, what is evaluated beside the moving ones is what a problem that evaluates everything gives,
+/// to the last bit.
+TEST(ChainProblem, FrozenFramesChangeNothingButTheWork) {
   SequenceSceneOptions options;
   options.frames = 16;
   const auto scene = MakeSequenceScene(options);
   const SequenceProblem& problem = scene->problem;
   ChainProblem chain(problem, false, false, 2);
   const ChainPoint x{problem.states, problem.betas, problem.log_focal};
-  EXPECT_THROW(chain.SetResting(std::vector<char>(16, 1)), std::invalid_argument) << "not linearised yet";
+  EXPECT_THROW(chain.SetFrozen(std::vector<char>(16, 1)), std::invalid_argument) << "not linearised yet";
   chain.Linearise(x);
-  EXPECT_THROW(chain.SetResting(std::vector<char>(15, 1)), std::invalid_argument);
-  std::vector<char> resting(16, 1);
-  for (const int t : {0, 6, 7, 13}) resting[t] = 0;
-  chain.SetResting(resting);
+  EXPECT_THROW(chain.SetFrozen(std::vector<char>(15, 1)), std::invalid_argument);
+  std::vector<char> frozen(16, 1);
+  for (const int t : {0, 6, 7, 13}) frozen[t] = 0;
+  chain.SetFrozen(frozen);
   const int n = chain.frame_size();
   const VectorXd step = VectorXd::Constant(16 * n, 0.02), none = VectorXd::Zero(chain.shared_size());
   ChainPoint y;
   chain.Plus(x, step, none, &y);
   for (int t = 0; t < 16; ++t) {
-    EXPECT_EQ(y.states[t].translation == x.states[t].translation, resting[t] != 0) << t;
+    EXPECT_EQ(y.states[t].translation == x.states[t].translation, frozen[t] != 0) << t;
   }
   ChainProblem other(problem, false, false, 2);
   EXPECT_EQ(chain.Cost(y), other.Cost(y));
@@ -113,13 +113,13 @@ TEST(ChainProblem, FramesAtRestChangeNothingButTheWork) {
   }
   EXPECT_EQ(chain.Linearise(x), other.Linearise(x)) << "back again";
   EXPECT_EQ(chain.gradient(), other.gradient());
-  chain.SetResting({});
+  chain.SetFrozen({});
   EXPECT_EQ(chain.shared(), other.shared());
   EXPECT_EQ(chain.shared_gradient(), other.shared_gradient());
-  // Woken where only the cost is known, the next linearisation makes everything.
-  chain.SetResting(resting);
+  // Released where only the cost is known, the next linearisation makes everything.
+  chain.SetFrozen(frozen);
   chain.Cost(y);
-  chain.SetResting({});
+  chain.SetFrozen({});
   EXPECT_EQ(chain.Linearise(y), other.Linearise(y));
   EXPECT_EQ(chain.shared(), other.shared());
 }

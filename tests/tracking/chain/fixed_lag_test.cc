@@ -222,7 +222,7 @@ TEST(FixedLag, SameBytesForAnyNumberOfThreads) {
   }
 }
 
-TEST(ChainSolver, SkippingSettledFramesEndsAtTheSameCost) {
+TEST(ChainSolver, ReusedLinearisationsEndAtTheSameCost) {
   for (uint64_t seed : {1, 2, 3}) {
     SequenceSceneOptions options;
     options.frames = 20;
@@ -239,18 +239,18 @@ TEST(ChainSolver, SkippingSettledFramesEndsAtTheSameCost) {
     SequenceProblem all = start;
     SolveSequence(&all, solve);
     for (size_t t = 0; t < 10; ++t) start.states[t] = all.states[t];
-    SequenceProblem skipped = all = start;
+    SequenceProblem reused = all = start;
     const SolveReport whole = SolveSequence(&all, solve);
     EXPECT_EQ(whole.frames_skipped, 0);
-    solve.chain.skip_settled = 0.03;
-    const SolveReport report = SolveSequence(&skipped, solve);
+    solve.chain.reuse_linearisation = 0.03;
+    const SolveReport report = SolveSequence(&reused, solve);
     ASSERT_EQ(report.status, SolveStatus::kConverged);
     EXPECT_GT(report.frames_skipped, 10) << seed;
     EXPECT_NEAR(report.final_cost, whole.final_cost, 1e-6 * whole.final_cost) << seed;
-    // The reported cost is that of the states, with nothing standing in.
-    solve.chain.skip_settled = 0;
+    // The reported cost is that of the states, with no linearisation reused.
+    solve.chain.reuse_linearisation = 0;
     solve.max_iterations = 0;
-    EXPECT_NEAR(SolveSequence(&skipped, solve).initial_cost, report.final_cost, 1e-12 * report.final_cost);
+    EXPECT_NEAR(SolveSequence(&reused, solve).initial_cost, report.final_cost, 1e-12 * report.final_cost);
   }
 }
 

@@ -191,15 +191,15 @@ void ExpectEnginesAgree(const std::vector<OwnTerm>& terms, SequenceSceneOptions 
   const SolveReport ceres = SolveSequence(&by_ceres, options);
   options.solver = SequenceSolver::kChain;
   const SolveReport chain = SolveSequence(&by_chain, options);
-  options.chain.rest_share = kTrackerRestShare;
-  options.chain.skip_settled = kTrackerSkipSettled;
-  SequenceProblem by_skipping = scene->problem;
-  const SolveReport skipping = SolveSequence(&by_skipping, options);
+  options.chain.frozen_share = kTrackerFrozenShare;
+  options.chain.reuse_linearisation = kTrackerReuse;
+  SequenceProblem by_reuse = scene->problem;
+  const SolveReport reuse = SolveSequence(&by_reuse, options);
   ASSERT_EQ(ceres.status, SolveStatus::kConverged) << ceres.message;
   ASSERT_EQ(chain.status, SolveStatus::kConverged) << chain.message;
   EXPECT_NEAR(chain.initial_cost, ceres.initial_cost, 1e-10 * ceres.initial_cost);
   EXPECT_NEAR(chain.final_cost, ceres.final_cost, 1e-6 * ceres.final_cost);
-  EXPECT_NEAR(skipping.final_cost, ceres.final_cost, 1e-6 * ceres.final_cost);
+  EXPECT_NEAR(reuse.final_cost, ceres.final_cost, 1e-6 * ceres.final_cost);
   double moved = 0;
   for (size_t t = 0; t < without.states.size(); ++t) {
     moved += (without.states[t].translation - by_chain.states[t].translation).norm();
