@@ -62,7 +62,7 @@ LifterWindowOptions WindowOptions(const std::string& detections) {
   options.moving_camera = 0;
   options.focal_known = options.no_feet = 1;
   options.dropout = options.pair_swap = options.body_swap = options.no_face = 0;
-  options.missing_limb = options.missing_lower_half = options.nothing = options.border = options.cut_off = 0;
+  options.missing_limb = options.missing_lower_half = options.nothing = options.image_border = options.cut_off = 0;
   options.constant_confidence = options.confidence_spread = 0;
   if (detections == "exact") {
     options.noise = 0;

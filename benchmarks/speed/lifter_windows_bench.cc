@@ -2,7 +2,7 @@
 /// Training windows a second, with one and two threads, and where the time goes.
 ///
 ///   bodyloom_bench_lifter_windows [--motion FOLDER] [--windows 4000] [--json F] [--picture F.png] [--first 0]
-///                                 [--floor_poses F.png] [--floor_work 0..1]
+///                                 [--floor_poses F.png] [--floor_share 0..1]
 ///
 /// Motion: the demo motion, or what the motion library finds in FOLDER for training. --picture draws six windows from
 /// seed --first: detections above, the landmarks they stand for from the front and from the side below, upright by the
@@ -163,7 +163,7 @@ Times Measure(int windows, const std::function<void()>& work) {
 void Run(const BenchArguments& arguments, const std::string& command) {
   const Library library = Motions(arguments.Text("motion"));
   LifterWindowOptions options;
-  if (!arguments.Text("floor_work").empty()) options.floor_work = std::stod(arguments.Text("floor_work"));
+  if (!arguments.Text("floor_share").empty()) options.floor_poses = std::stod(arguments.Text("floor_share"));
   double seconds = 0;
   for (const Motion& m : library.motions) seconds += m.timestamps.back() - m.timestamps.front();
   const LifterWindowGenerator generator(library.motions, library.has_floor, BuiltinBody(), options);
@@ -226,6 +226,6 @@ int main(int argc, char** argv) {
                               {"picture", ""},
                               {"first", "0"},
                               {"floor_poses", ""},
-                              {"floor_work", ""}},
+                              {"floor_share", ""}},
                              bodyloom::Run);
 }

@@ -79,12 +79,12 @@ void MeasureFloor(const std::vector<MatrixX3d>& joints, double dt, MotionQuality
   }
   quality->sunk_share = static_cast<double>(sunk) / T;
   quality->contact_share = static_cast<double>(speeds.size()) / std::max(T - 1, 1);
-  quality->skate_m_s = quality->skate_p95_m_s = NAN;
+  quality->foot_sliding_m_s = quality->foot_sliding_p95_m_s = NAN;
   if (speeds.empty()) return;
   std::sort(speeds.begin(), speeds.end());
-  quality->skate_m_s = 0;
-  for (const double speed : speeds) quality->skate_m_s += speed / static_cast<double>(speeds.size());
-  quality->skate_p95_m_s = speeds[static_cast<size_t>(0.95 * static_cast<double>(speeds.size() - 1))];
+  quality->foot_sliding_m_s = 0;
+  for (const double speed : speeds) quality->foot_sliding_m_s += speed / static_cast<double>(speeds.size());
+  quality->foot_sliding_p95_m_s = speeds[static_cast<size_t>(0.95 * static_cast<double>(speeds.size() - 1))];
 }
 
 void MeasureSpeeds(const std::vector<MatrixX3d>& joints, double dt, MotionQuality* quality) {
@@ -131,7 +131,8 @@ MotionQuality MeasureMotionQuality(const Motion& motion, bool has_floor) {
   MeasureSpeeds(joints, dt, &quality);
   MeasureTurns(motion, dt, &quality);
   if (!has_floor) {
-    quality.skate_m_s = quality.skate_p95_m_s = quality.contact_share = quality.sunk_share = quality.deepest_m = NAN;
+    quality.foot_sliding_m_s = quality.foot_sliding_p95_m_s = quality.contact_share = quality.sunk_share =
+        quality.deepest_m = NAN;
   }
   const auto upside_down =
       std::count_if(joints.begin(), joints.end(), [](const MatrixX3d& frame) { return frame(kHead, 1) < frame(0, 1); });
@@ -141,7 +142,7 @@ MotionQuality MeasureMotionQuality(const Motion& motion, bool has_floor) {
   flag(quality.beyond_limits_share > 0.2 || quality.worst_excess_deg > 40, "limits");
   flag(quality.ends_beyond_limits_share > 0.2 || quality.ends_worst_excess_deg > 40, "ends");
   flag(quality.flips > 0, "flips");
-  flag(quality.skate_m_s > 0.3, "skate");
+  flag(quality.foot_sliding_m_s > 0.3, "skate");
   flag(quality.sunk_share > 0.1, "sunk");
   flag(quality.worst_speed_m_s > 20, "speed");
   flag(quality.worst_acceleration_m_s2 > 1000, "acceleration");

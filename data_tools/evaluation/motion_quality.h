@@ -21,11 +21,11 @@ struct MotionQuality {
   std::string worst_excess_joint;  ///< empty when none is beyond
   double ends_beyond_limits_share = 0, ends_worst_excess_deg = 0;
   std::string ends_worst_excess_joint;
-  /// Foot skate: of the steps in which a toe joint is less than 5 cm + its clearance above the floor at both ends and
+  /// Foot sliding: of the steps in which a toe joint is less than 5 cm + its clearance above the floor at both ends and
   /// moves up or down slower than 0.2 m/s, the mean horizontal speed of the slower such toe, m/s, and its 95th
   /// percentile. One foot bears the person; it should stand still. NaN without such steps or without a floor. A
   /// dancer's slide and a runner's low swing count as well.
-  double skate_m_s = 0, skate_p95_m_s = 0;
+  double foot_sliding_m_s = 0, foot_sliding_p95_m_s = 0;
   double contact_share = 0;  ///< of the steps, with such a toe
   /// Share of the frames whose lowest point is more than 5 cm below the floor, and the deepest.
   double sunk_share = 0, deepest_m = 0;
@@ -39,14 +39,14 @@ struct MotionQuality {
   double worst_turn_rad_s = 0;  ///< of a joint relative to its parent
   std::string worst_turn_joint;
   /// What is suspicious, one word each: "limits" (the body beyond in more than 20 % of the frames, or by more than
-  /// 40°), "ends" (the same of the ends), "flips" (of the body), "skate" (mean above 0.3 m/s), "sunk" (more than 10 %
-  /// of the frames), "speed" (above 20 m/s), "acceleration" (above 1000 m/s², jerked by hand or machine), "upside_down"
-  /// (the head below the pelvis in more than half of the frames).
+  /// 40°), "ends" (the same of the ends), "flips" (of the body), "skate" (foot sliding above 0.3 m/s in the mean),
+  /// "sunk" (more than 10 % of the frames), "speed" (above 20 m/s), "acceleration" (above 1000 m/s², jerked by hand or
+  /// machine), "upside_down" (the head below the pelvis in more than half of the frames).
   std::vector<std::string> flags;
 };
 
 /// Of 24 joints with y up and a regular clock; throws std::invalid_argument otherwise. Without a flat floor
-/// (`has_floor` false) skate and sinking are NaN.
+/// (`has_floor` false) foot sliding and sinking are NaN.
 MotionQuality MeasureMotionQuality(const Motion& motion, bool has_floor);
 
 }  // namespace bodyloom

@@ -34,10 +34,10 @@ std::string ClipLine(const SurveyedClip& report) {
   const LibraryClip& clip = report.clip;
   const MotionQuality& q = report.quality;
   const std::string floor = clip.has_floor ? Line("%6.2f", clip.floor_shift_m) : "     -";
-  const std::string skate = std::isfinite(q.skate_m_s) ? Line("%5.2f", q.skate_m_s) : "    -";
+  const std::string sliding = std::isfinite(q.foot_sliding_m_s) ? Line("%5.2f", q.foot_sliding_m_s) : "    -";
   return Line("%-40s %-9s %-5s %5.1f %3.0f %5.1f%% %3.0f %4.0f%% %s %s %5d %5.1f %5.0f  %s\n", clip.name.c_str(),
               clip.motion_class.c_str(), clip.test ? "test" : "train", q.seconds, q.fps, 100 * q.beyond_limits_share,
-              q.worst_excess_deg, 100 * q.ends_beyond_limits_share, skate.c_str(), floor.c_str(), q.flips,
+              q.worst_excess_deg, 100 * q.ends_beyond_limits_share, sliding.c_str(), floor.c_str(), q.flips,
               q.worst_speed_m_s, q.worst_acceleration_m_s2, Joined(q.flags).c_str());
 }
 
@@ -88,8 +88,8 @@ nlohmann::ordered_json ClipJson(const SurveyedClip& report) {
           {"beyond_limits_share", q.beyond_limits_share},
           {"worst_excess_deg", q.worst_excess_deg},
           {"worst_excess_joint", q.worst_excess_joint},
-          {"skate_m_s", q.skate_m_s},
-          {"skate_p95_m_s", q.skate_p95_m_s},
+          {"skate_m_s", q.foot_sliding_m_s},
+          {"skate_p95_m_s", q.foot_sliding_p95_m_s},
           {"contact_share", q.contact_share},
           {"sunk_share", q.sunk_share},
           {"deepest_m", q.deepest_m},

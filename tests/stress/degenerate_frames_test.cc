@@ -131,7 +131,7 @@ TEST_P(DegenerateFrames, OneFrameAndTwo) {
       options.camera_knowledge = knowledge;
       const TrackSequenceResult result = Fit(InputOf(BuiltinBody(), clip), options);
       ASSERT_TRUE(result.summary.IsUsable()) << result.summary.message;
-      EXPECT_LT(ErrorMm(result, clip), 120);  // depth flips have no neighbours to ask
+      EXPECT_LT(ErrorMm(result, clip), 120);  // no neighbours decide between depth reversals
     }
   }
 }

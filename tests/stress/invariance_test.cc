@@ -202,7 +202,7 @@ void ExpectTurnedAnswer(const LifterWeights* lifter, double roll_metres, const s
              24;
     }
     // A roll changes nothing that the tracker assumes, and little for the lifter; a pan or tilt changes what "upright"
-    // and "in the image plane" mean, and may tip a limb into its other flip.
+    // and "in the image plane" mean, and may tip a limb into its depth reversal.
     EXPECT_LT(away.norm(), turn.metres) << turn.axis_deg.transpose();
     EXPECT_LT(sum, turn.metres) << turn.axis_deg.transpose();
   }

@@ -184,7 +184,7 @@ void LoseStretches(const LifterWindowOptions& options, HashRandom random, Lifter
 
 /// An image border through the person: what lies beyond it is not seen, or guessed on the border with low confidence.
 void CutAtBorder(const LifterWindowOptions& options, HashRandom random, LifterFrames* frames) {
-  if (random.Uniform() >= options.border) return;
+  if (random.Uniform() >= options.image_border) return;
   const int edge = static_cast<int>(random.Below(5));  // bottom twice as often
   const bool guesses = random.Uniform() < 0.4;
   const bool vertical = edge >= 2;

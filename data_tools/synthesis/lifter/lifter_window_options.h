@@ -30,7 +30,7 @@ struct LifterWindowOptions {
   double perturbation = 1.2;                ///< smooth random turns of the joints: the level is uniform up to this
   double squat = 0.35, lunge_share = 0.35;  ///< of the squats, this share has legs of their own
   double leg_raise = 0.18, kick = 0.08, arm_raise = 0.25, bend = 0.1, lean = 0.2;
-  double floor_work = 0.22;  ///< lying, sitting, kneeling, crawling, rolling, upside down
+  double floor_poses = 0.22;  ///< lying, sitting, kneeling, crawling, rolling, upside down
 
   // Bodies.
   double shape_sd = 1.2;              ///< of each shape component
@@ -47,7 +47,7 @@ struct LifterWindowOptions {
   double body_swap = 0.03;              ///< all left and right points, for a stretch
   double no_feet = 0.6, no_face = 0.1;  ///< points that the detector does not have
   double missing_limb = 0.1, missing_lower_half = 0.08, nothing = 0.06;  ///< for a stretch
-  double border = 0.15;                                                  ///< the image ends across the body
+  double image_border = 0.15;                                            ///< the image ends across the body
   double cut_off = 0.25;             ///< points below a confidence of 0.1 … 0.4 are not reported
   double constant_confidence = 0.1;  ///< the detector says 1 for all it reports
   double confidence_spread = 0.35;   ///< sd of the logarithm of the exponent that detectors' confidences differ by
@@ -60,7 +60,7 @@ struct LifterWindowOptions {
     options.min_speed = options.max_speed = 1;
     options.arm_exchange = options.leg_exchange = options.spine_exchange = options.perturbation = 0;
     options.squat = options.leg_raise = options.kick = options.arm_raise = options.bend = options.lean = 0;
-    options.floor_work = 0;
+    options.floor_poses = 0;
     return options;
   }
 };

@@ -94,7 +94,7 @@ bool LifterWindowOptions::IsValid(std::string* why) const {
                                     {"arm_raise", arm_raise},
                                     {"bend", bend},
                                     {"lean", lean},
-                                    {"floor_work", floor_work},
+                                    {"floor_poses", floor_poses},
                                     {"biased_detector", biased_detector},
                                     {"dropout", dropout},
                                     {"pair_swap", pair_swap},
@@ -104,7 +104,7 @@ bool LifterWindowOptions::IsValid(std::string* why) const {
                                     {"missing_limb", missing_limb},
                                     {"missing_lower_half", missing_lower_half},
                                     {"nothing", nothing},
-                                    {"border", border},
+                                    {"image_border", image_border},
                                     {"cut_off", cut_off},
                                     {"constant_confidence", constant_confidence}}) {
     if (!between(value, 0, 1)) return no(std::string(name) + " must be in [0, 1]");
@@ -142,9 +142,9 @@ PoseSequence LifterWindowGenerator::MakePoses(uint64_t seed, const LifterPerson&
     return poses;
   }
   ExchangeLimbs(clips_, choice_, options_, step, HashRandom(seed, {kLimbs}), &poses);
-  const bool floor = HashRandom(seed, {kWhetherFloor}).Uniform() < options_.floor_work;
+  const bool floor = HashRandom(seed, {kWhetherFloor}).Uniform() < options_.floor_poses;
   if (floor) {
-    AddFloorWork(body_, person, options_, HashRandom(seed, {kFloor}), &poses);
+    AddFloorPoses(body_, person, options_, HashRandom(seed, {kFloor}), &poses);
   } else {
     AddExercises(options_, HashRandom(seed, {kExercises}), &poses);
   }

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "bodyloom/data_tools/synthesis/lifter/floor_work.h"
+#include "bodyloom/data_tools/synthesis/lifter/floor_poses.h"
 #include "bodyloom/data_tools/synthesis/lifter/lifter_clips.h"
 #include "bodyloom/data_tools/synthesis/lifter/lifter_scene.h"
 #include "bodyloom/data_tools/synthesis/lifter/lifter_window_options.h"

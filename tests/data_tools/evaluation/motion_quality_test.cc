@@ -23,7 +23,7 @@ TEST(MotionQuality, AWalkIsSound) {
   EXPECT_EQ(quality.frames, 181);
   EXPECT_NEAR(quality.fps, 60, 1e-9);
   EXPECT_NEAR(quality.seconds, 3, 1e-9);
-  EXPECT_LT(quality.skate_m_s, 0.1) << "the bearing foot stands still";
+  EXPECT_LT(quality.foot_sliding_m_s, 0.1) << "the bearing foot stands still";
   EXPECT_GT(quality.contact_share, 0.8);
   EXPECT_EQ(quality.beyond_limits_share, 0);
   EXPECT_EQ(quality.flips + quality.ends_flips, 0);
@@ -34,10 +34,10 @@ TEST(MotionQuality, SlidingSinkingAndHangingUpsideDownAreSeen) {
   Motion motion = StandingMotion(50, 2);
   for (int t = 0; t < motion.num_frames(); ++t) motion.trans(t, 2) = 0.5 * motion.timestamps[t];
   MotionQuality quality = MeasureMotionQuality(motion, true);
-  EXPECT_NEAR(quality.skate_m_s, 0.5, 1e-9);
-  EXPECT_NEAR(quality.skate_p95_m_s, 0.5, 1e-9);
+  EXPECT_NEAR(quality.foot_sliding_m_s, 0.5, 1e-9);
+  EXPECT_NEAR(quality.foot_sliding_p95_m_s, 0.5, 1e-9);
   EXPECT_THAT(quality.flags, ElementsAre("skate"));
-  EXPECT_TRUE(std::isnan(MeasureMotionQuality(motion, false).skate_m_s));
+  EXPECT_TRUE(std::isnan(MeasureMotionQuality(motion, false).foot_sliding_m_s));
 
   motion = StandingMotion(50, 2);
   motion.trans.col(1).array() -= 0.08;

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "bodyloom/data_tools/synthesis/lifter/fast_random.h"
-#include "bodyloom/data_tools/synthesis/lifter/floor_work.h"
+#include "bodyloom/data_tools/synthesis/lifter/floor_poses.h"
 #include "bodyloom/geometry/posed_body.h"
 #include "bodyloom/tracking/terms/joint_limits.h"
 #include "tests/data_tools/synthesis/lifter/lifter_support.h"
@@ -290,12 +290,12 @@ TEST(FloorPoses, LyingIsLyingAndTheFaceLooksTheRightWay) {
 TEST(WorldMotion, StandsOnTheFloorWhateverThePoses) {
   const LifterBody body(ToyBody());
   LifterWindowOptions options;
-  options.floor_work = 1;
+  options.floor_poses = 1;
   for (uint64_t seed = 0; seed < 30; ++seed) {
     const LifterPerson person = body.RandomPerson({1.2, 1, 0.008, 0, 0}, HashRandom(seed, {}));
     PoseSequence poses;
     SampleClip(CompactClip(ShortDemoMotion(), true, body), 0.1 * seed, 0.05, 41, &poses);
-    if (seed % 2 == 0) AddFloorWork(body, person, options, HashRandom(seed, {}), &poses);
+    if (seed % 2 == 0) AddFloorPoses(body, person, options, HashRandom(seed, {}), &poses);
     const WorldMotion motion = PoseInWorld(body, person, poses, 20);
     for (int t = 0; t < 41; ++t) {
       float lowest = 1e9F;

@@ -103,7 +103,7 @@ TEST(LifterWindows, WithoutNoiseRaysAndTargetsAgree) {
   options.shape_sd = 1.2;
   options.bone_noise = 1;
   options.landmark_sd_m = 0.008;
-  options.floor_work = 0.3;
+  options.floor_poses = 0.3;
   options.moving_camera = 0.5;
   const LifterWindowGenerator exact = Generator(options);
   options.focal_known = 0;
@@ -441,7 +441,7 @@ TEST(LifterDetections, PointsGoMissingAsOftenAsAsked) {
       Share(options, 200, [](const LifterFrames& f) { return Missing(f, 0, 21) > 0 && Missing(f, 0, 21) % 21 == 0; }),
       1, 0.05);
   options = PlainOptions();
-  options.border = 1;
+  options.image_border = 1;
   EXPECT_GT(Share(options, 200, any), 0.4);
   options = PlainOptions();
   options.cut_off = 1;  // of a person in plain view only the far ear is ever below
@@ -523,7 +523,7 @@ TEST(LifterWindows, RejectsOptionsOutOfRange) {
   EXPECT_TRUE(rejected([](auto* o) { o->num_frames = 0; }));
   EXPECT_TRUE(rejected([](auto* o) { o->rate = std::numeric_limits<double>::quiet_NaN(); }));
   EXPECT_TRUE(rejected([](auto* o) { o->min_distance = 10; }));
-  EXPECT_TRUE(rejected([](auto* o) { o->floor_work = 1.5; }));
+  EXPECT_TRUE(rejected([](auto* o) { o->floor_poses = 1.5; }));
   EXPECT_TRUE(rejected([](auto* o) { o->noise = -1; }));
   EXPECT_TRUE(rejected([](auto* o) { o->max_elevation_deg = -20; }));
 }

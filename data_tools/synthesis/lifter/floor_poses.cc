@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/synthesis/lifter/floor_work.h"
+#include "bodyloom/data_tools/synthesis/lifter/floor_poses.h"
 
 #include <algorithm>
 #include <cmath>
@@ -405,8 +405,8 @@ std::vector<Quaternionf> RandomFloorPose(int kind, const LifterBody& body, const
   return pose;
 }
 
-void AddFloorWork(const LifterBody& body, const LifterPerson& person, const LifterWindowOptions& options,
-                  HashRandom random, PoseSequence* poses) {
+void AddFloorPoses(const LifterBody& body, const LifterPerson& person, const LifterWindowOptions& options,
+                   HashRandom random, PoseSequence* poses) {
   const int T = poses->num_frames;
   std::vector<Quaternionf> key[2];
   const int kind = DrawKind(&random), next = DrawKind(&random);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// People on the ground: what recorded motion holds too little of.
+/// Floor poses: people on the ground, of whom recorded motion holds too little.
 ///
 /// A table of ways to be down there (on the back, belly or side; sitting with straight, bent or crossed legs; kneeling;
 /// hands and knees, plank, bear, crab; deep squat; upside down), each a range of trunk tilts, leg angles and arm
@@ -26,7 +26,7 @@ std::vector<Eigen::Quaternionf> RandomFloorPose(int kind, const LifterBody& body
 /// Puts the window's person on the ground: for the whole window or going down or getting up in it, in one pose or from
 /// one to another, still or rolling or crawling, with some of the recorded movement of limbs and head left in.
 /// poses->clearance becomes 0 on the ground.
-void AddFloorWork(const LifterBody& body, const LifterPerson& person, const LifterWindowOptions& options,
-                  HashRandom random, PoseSequence* poses);
+void AddFloorPoses(const LifterBody& body, const LifterPerson& person, const LifterWindowOptions& options,
+                   HashRandom random, PoseSequence* poses);
 
 }  // namespace bodyloom
