@@ -13,7 +13,7 @@ void AddCard(CLI::App& app, Action* action);
 void AddTrainLifter(CLI::App& train, Action* action);
 void AddTrainMotion(CLI::App& train, Action* action);
 void AddTrainPhoto(CLI::App& train, Action* action);
-void AddTrainAnimate(CLI::App& train, Action* action);
+void AddTrainGuided(CLI::App& train, Action* action);
 
 // Below `animate`.
 void AddAnimateMotion(CLI::App& animate, Action* action);

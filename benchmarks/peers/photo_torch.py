@@ -199,7 +199,7 @@ def main():
     p = GUIDED[profile]
     photo, guided = PhotoRender(d, n, blocks).eval(), Guided(p).eval()
     print(f"\n## PyTorch {torch.__version__}, profile {profile}, {threads} threads; RenderNet of photo has "
-          f"{parameters(photo)} parameters, the chain of animate {parameters(guided)} without the photo's encoders\n")
+          f"{parameters(photo)} parameters, the chain of guided {parameters(guided)} without the photo's encoders\n")
     print("| what | processor ms | least | clock ms |")
     print("|---|---|---|---|")
     cells = 1 << len(p[1])
@@ -212,7 +212,7 @@ def main():
         codes = [torch.randn(1, c, h // cells, w // cells) for c in (p[1][-1], p[1][-1], p[6])]
         with torch.no_grad():
             show(f"photo: {what}, {w}x{h}", lambda: photo(project(features, uv, body), body))
-            show(f"animate: {what}, {w}x{h}", lambda: guided(codes, pose, known_labels, known))
+            show(f"guided: {what}, {w}x{h}", lambda: guided(codes, pose, known_labels, known))
 
 
 if __name__ == "__main__":

@@ -103,7 +103,7 @@ void GuidedRenderer(const GuidedConfig& config) {
     const GuidedPseudo pseudo = {labels, body * torch::rand_like(pose), body, labels,
                                  torch::cat({0.1 * body, body}, 1)};
     const CodeBox box = {0, 0, window.width / multiple, window.height / multiple};
-    Print(Named("animate", window), [&] { model->forward(source, pose, pseudo, box); });
+    Print(Named("guided", window), [&] { model->forward(source, pose, pseudo, box); });
   }
   // A body of two fifths of the window, as wide as a person with arms out.
   PhotoFrame frame;
@@ -118,8 +118,8 @@ void GuidedRenderer(const GuidedConfig& config) {
                 std::vector<uint8_t>(size_t(config.profile.texture_size) * config.profile.texture_size, 2));
   std::fill(maps.from.begin(), maps.from.end(), uint8_t{1});
   if (config.profile.contour_hints) maps.extent.assign(maps.from.size(), 0.1F);
-  Print("animate: pseudo inputs of a frame", [&] { LookUp(maps, frame); });
-  Print("animate: the photo encoded, once", [&] { model->EncodeSource(photo); });
+  Print("guided: pseudo inputs of a frame", [&] { LookUp(maps, frame); });
+  Print("guided: the photo encoded, once", [&] { model->EncodeSource(photo); });
 }
 
 void Run(const BenchArguments& arguments, const std::string&) {

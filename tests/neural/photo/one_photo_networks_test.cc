@@ -55,7 +55,7 @@ const std::string& CardOf(const std::string& system, const std::string& profile)
 TEST(Cards, AreWhatTheirFilesSay) {
   for (const char* profile : {"paper", "cpu", "tiny"}) {
     const std::string folder = std::string(BODYLOOM_SOURCE_DIR) + "/tests/neural/cards/";
-    for (const std::string system : {"photo", "animate"}) {
+    for (const std::string system : {"photo", "guided"}) {
       EXPECT_EQ(CardOf(system, profile), FileBytes(folder + system + "_" + profile + ".txt")) << system;
     }
   }
@@ -102,13 +102,13 @@ TEST(Cards, AgreeWithSumsWorkedOutLayerByLayer) {
   const std::map<std::string, std::pair<int64_t, int64_t>> known = {{"cpu", {3757081, 3926065152}},
                                                                     {"tiny", {828553, 584646656}}};
   for (const auto& [name, sizes] : known) {
-    const std::string& card = CardOf("animate", name);
+    const std::string& card = CardOf("guided", name);
     const std::vector<int64_t> parameters = NumbersOf(card, "parameters "), work = NumbersOf(card, "multiply-adds ");
     ASSERT_EQ(parameters.size(), 4U);
     EXPECT_EQ(parameters[0] + parameters[1] + parameters[2], sizes.first) << name;
     EXPECT_EQ(work[0] + work[1] + work[2], sizes.second) << name;
   }
-  const std::string& paper = CardOf("animate", "paper");
+  const std::string& paper = CardOf("guided", "paper");
   const std::vector<int64_t> parameters = NumbersOf(paper, "parameters "), work = NumbersOf(paper, "multiply-adds ");
   EXPECT_NEAR(1e-6 * static_cast<double>(parameters[0] + parameters[1] + parameters[2]), 210.4, 0.05);
   EXPECT_NEAR(1e-9 * static_cast<double>(work[0] + work[1] + work[2]), 146.9, 0.05);

@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-class TrainAnimateVerb : public ::testing::Test {
+class TrainGuidedVerb : public ::testing::Test {
  protected:
   void SetUp() override {
     if (BODYLOOM_HAS_NEURAL == 0) GTEST_SKIP() << "built without LibTorch";
@@ -41,7 +41,7 @@ class TrainAnimateVerb : public ::testing::Test {
   ScratchFolder scratch_;
 };
 
-TEST_F(TrainAnimateVerb, TrainsGoesOnAndAnimates) {
+TEST_F(TrainGuidedVerb, TrainsGoesOnAndAnimates) {
   const CommandResult trained = Train("run", {"--steps", "3", "--balance-steps", "2", "--without", "kl"});
   ASSERT_EQ(trained.exit_code, 0) << trained.err;
   EXPECT_THAT(trained.out, HasSubstr("1 people to train on, 1 kept for validation"));
@@ -94,7 +94,7 @@ TEST_F(TrainAnimateVerb, TrainsGoesOnAndAnimates) {
   EXPECT_EQ(Animate({"--image", one, "--virtual-views", "--as-seen"}).exit_code, 2);
 }
 
-TEST_F(TrainAnimateVerb, SaysWhatIsWrong) {
+TEST_F(TrainGuidedVerb, SaysWhatIsWrong) {
   EXPECT_THAT(Train("x", {"--resume"}).err, HasSubstr("holds no run"));
   EXPECT_EQ(Train("x", {"--without", "hat"}).exit_code, 2);
   const CommandResult odd = RunCommand({"train", "animate", "--data", scratch_ / "people", "--out", scratch_ / "x",

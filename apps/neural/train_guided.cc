@@ -57,7 +57,7 @@ void Run(const Parsed& parsed) {
 
 }  // namespace
 
-void AddTrainAnimate(CLI::App& train, Action* action) {
+void AddTrainGuided(CLI::App& train, Action* action) {
   CLI::App* verb = train.add_subcommand("animate", "Trains a renderer that animates anybody from one photo");
   auto parsed = std::make_shared<Parsed>();
   TrainGuidedRendererRequest& request = parsed->request;
