@@ -7,7 +7,7 @@
 namespace bodyloom {
 namespace {
 
-/// A validator whose range is said in the option's own words.
+/// A validator whose range is described in the option's own words.
 CLI::Validator Quiet(CLI::Validator validator) {
   validator.description("");
   return validator;

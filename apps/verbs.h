@@ -23,8 +23,8 @@ void AddSynthVerb(CLI::App& app, Action* action);
 void AddSynthPersonVerb(CLI::App& app, Action* action);
 void AddSynthPeopleVerb(CLI::App& app, Action* action);
 void AddEvaluateVerb(CLI::App& app, Action* action);
-/// Metrics that need LibTorch are asked of `more` (with the folder of --weights); without it the command goes on in
-/// the executable that has them, which takes `arguments`, those of this one.
+/// Metrics that need LibTorch are requested from `more` (with the folder of --weights); without it the command goes on
+/// in the executable that has them, which takes `arguments`, those of this one.
 using MoreMetrics = std::function<std::vector<FrameMetric>(const std::string& weights)>;
 void AddMetricsVerb(CLI::App& app, Action* action, std::vector<std::string> arguments, MoreMetrics more = {});
 void AddExportVerb(CLI::App& app, Action* action);

@@ -36,7 +36,7 @@ struct Camera {
   [[nodiscard]] Eigen::Matrix3d K() const;
 
   /// Pixel of `point_in_camera`. Valid for z > kMinDepth (pinhole) and any finite point (weak perspective); elsewhere
-  /// returns false and sets the outputs to zero. The Jacobian, when asked for, is d pixel / d point_in_camera.
+  /// returns false and sets the outputs to zero. The Jacobian, when requested, is d pixel / d point_in_camera.
   /// Distortion is only meaningful inside the lens' field of view: at and beyond the radius where the radial model
   /// folds back (d r_distorted / d r <= 0) the point is reported invalid.
   bool Project(const Eigen::Vector3d& point_in_camera, Eigen::Vector2d* pixel,

@@ -64,8 +64,8 @@ struct LabelImage {
 /// part_of_label[l], and a face of chart c (BodyModelData::face_part) belongs to part part_of_chart[c]. A part may hold
 /// several charts (upper arm outside and inside), and several labels; Merge() joins two parts on both sides. The start
 /// is the identity, so labels 1–24 are the charts 1–24.
-///   part 0     background: the pixel does not show the person; a chart of part 0 is never labelled and asks for
-///   nothing part 255   unknown: nothing is said about the pixel (nor about the chart)
+///   part 0     background: the pixel does not show the person; a chart of part 0 is never labelled and has no term
+///   part 255   unknown: nothing is known about the pixel (nor about the chart)
 /// A mask has one label for the whole person: AsMask().
 struct PartLabelSequence {
   static constexpr uint8_t kBackground = 0, kUnknown = 255;

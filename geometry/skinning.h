@@ -13,7 +13,7 @@
 /// over their coefficients, because reading those (17 MB for SMPL) costs more than using them once.
 ///
 /// Determinism: a frame's vertices are the same to the bit whatever the number of threads and whatever other frames and
-/// vertices are asked for. Instruction sets differ in the last bits (fused multiply-add or not).
+/// vertices are requested. Instruction sets differ in the last bits (fused multiply-add or not).
 #pragma once
 
 #include <Eigen/Core>

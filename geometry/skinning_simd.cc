@@ -56,7 +56,7 @@ template <int e, class Lanes, class D>
 HWY_INLINE void AddFeature(D d, const float* HWY_RESTRICT block, const float* HWY_RESTRICT features,
                            Point<Lanes>& sum) {
   const Lanes feature = Lanes::Load(d, features + e * kFrameLanes);
-  std::atomic_signal_fence(std::memory_order_acq_rel);  // keeps g++ from loading it anew for each of its three uses
+  std::atomic_signal_fence(std::memory_order_acq_rel);  // keeps g++ from loading it again for each of its three uses
   sum.x = Lanes::Fill(d, block[e]).Times(feature, sum.x);
   sum.y = Lanes::Fill(d, block[9 + e]).Times(feature, sum.y);
   sum.z = Lanes::Fill(d, block[18 + e]).Times(feature, sum.z);

@@ -13,7 +13,7 @@
 namespace bodyloom {
 
 /// T frames of SMPL-style parameters. The frame of `trans` and of the root rotation is whatever the source says
-/// (`y_up` tells worlds with y up from those with z up); tracks are in the camera frame.
+/// (`y_up` distinguishes worlds with y up from those with z up); tracks are in the camera frame.
 struct Motion {
   std::string body;                ///< body family: "smpl" (24 joints), "smplh" (52), "smplx" (55)
   RowMatrixXd poses;               ///< T×3J axis-angle, radians

@@ -19,7 +19,7 @@ class ChartLookup {
   explicit ChartLookup(const BodyModel& body);
 
   /// The point of part 1..24 at (u, v); where the chart does not cover (u, v), the covered point nearest to it in chart
-  /// units, whose distance goes to `gap` when asked for (0 inside). Of faces equally near the lowest index is taken.
+  /// units, whose distance goes to `gap` when requested (0 inside). Of faces equally near the lowest index is taken.
   /// Weights are in [0, 1]. A part that the body lacks, or coordinates that are not finite, give face −1.
   [[nodiscard]] SurfacePoint Find(int part, const Eigen::Vector2d& uv, double* gap = nullptr) const;
 

@@ -22,7 +22,7 @@ struct FollowViewOptions {
   OrbitOptions orbit;
   int width = 0, height = 0;
   bool follows = true;  ///< false: stands still and sees the whole clip's space
-  bool turns = false;   ///< will be asked for other yaws: far enough and centred for all of them
+  bool turns = false;   ///< will be seen from other yaws: far enough and centred for all of them
 };
 
 class FollowView {

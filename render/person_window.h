@@ -3,8 +3,8 @@
 /// picture.
 ///
 /// All frames are shrunk by the same factor, so that the person's size stays what it is; the window then moves by whole
-/// pixels of the shrunk picture, and only when the person would leave it, so that what a network said of the frame
-/// before can be laid over this one exactly.
+/// pixels of the shrunk picture, and only when the person would leave it, so that what a network predicted for the
+/// frame before can be laid over this one exactly.
 #pragma once
 
 #include <Eigen/Core>

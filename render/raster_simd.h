@@ -90,9 +90,9 @@ struct LargeFace {
   int32_t face;
 };
 
-/// Of faces first..last−1 (F×3 row-major): culls what is turned away (when asked), has no area or meets no pixel centre
-/// of the box; appends the others to `small`, and to `others` the indices of those that are large or have an unusable
-/// corner.
+/// Of faces first..last−1 (F×3 row-major): culls what is turned away (when requested), has no area or meets no pixel
+/// centre of the box; appends the others to `small`, and to `others` the indices of those that are large or have an
+/// unusable corner.
 void SetUpFaces(const int32_t* faces, int first, int last, const ScreenArrays& screen, const Box& box,
                 bool cull_back_faces, SmallFaces* small, std::vector<int32_t>* others);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the visible surface carries, pixel by pixel, and only what was asked for: part, chart and atlas coordinates
+/// What the visible surface carries, pixel by pixel, and only what was requested: part, chart and atlas coordinates
 /// (together with the part: IUV), depth, normal, barycentrics, any attribute given by vertex or by texel of a UV map.
 ///
 /// The surface point of a pixel is where the ray through its centre meets the plane of the face that the visibility
@@ -55,7 +55,7 @@ struct ResolveRequest {
 };
 
 /// Row-major over the buffer's box, channels interleaved. Background: part 0, all else 0 but depth +infinity. What was
-/// not asked for is empty.
+/// not requested is empty.
 struct ResolvedPixels {
   PixelBox box;
   std::vector<uint8_t> part;
@@ -67,7 +67,7 @@ struct ResolvedPixels {
 
 /// Resolves every pixel of the buffer's box; the same bytes for any number of threads. `vertices_in_camera`, the body's
 /// faces and `camera` must be those that were rendered. Memory of `result` is used again. Throws std::invalid_argument
-/// when something is asked of a body that lacks it, or an attribute's size does not fit.
+/// when something is requested from a body that lacks it, or an attribute's size does not fit.
 void ResolvePixels(const VisibilityBuffer& buffer, const BodyModel& body, const MatrixX3d& vertices_in_camera,
                    const Camera& camera, const ResolveRequest& request, ResolvedPixels* result);
 

@@ -21,7 +21,7 @@ struct BufferRow {
 };
 
 /// Three barycentrics, and 1 where they hold; 0 where the face is seen edge-on, does not project whole, or lies far
-/// beside the pixel, so that float says nothing.
+/// beside the pixel, where float cannot decide.
 using Barycentrics = std::array<float, 4>;
 
 /// Appends the covered pixels to arrays with room for end − begin; how many there are.

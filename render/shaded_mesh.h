@@ -27,7 +27,7 @@ struct MeshStyle {
 /// from the upper left of the viewer. Only the mesh's box is touched. Where all samples of a pixel see one smooth
 /// stretch of surface in one colour, light is computed once, in its middle.
 ///
-/// Keeps its memory between pictures: taking 20 MB anew for each costs as much as drawing. Not for use by two threads
+/// Keeps its memory between pictures: allocating 20 MB for each costs as much as drawing. Not for use by two threads
 /// at once.
 class MeshDrawer {
  public:

@@ -108,7 +108,7 @@ class Viewer {
     } else if (face.normal.z() < 0) {
       expected = (face.offset - face.normal.x() * ray.x() - face.normal.y() * ray.y()) / face.normal.z();
     }
-    // Near the face's own horizon its plane says nothing about a pixel away.
+    // Near the face's own horizon its plane does not reach a pixel away.
     if (!(std::abs(expected - point.z()) <= 2 * tolerance)) expected = point.z();
     return std::abs(depth - expected) <= tolerance;
   }

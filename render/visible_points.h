@@ -24,7 +24,7 @@ struct VisiblePointsRequest {
   bool depth = false;     ///< z, metres
 };
 
-/// One entry a covered pixel, rows from top to bottom, pixels from left to right. Arrays not asked for are empty.
+/// One entry a covered pixel, rows from top to bottom, pixels from left to right. Arrays not requested are empty.
 struct VisiblePoints {
   std::vector<int> x, y;  ///< pixel
   std::vector<int> face;
@@ -44,7 +44,7 @@ Eigen::Vector3d BarycentricAtPixel(const MatrixX3d& vertices_in_camera, const Ma
 Eigen::Vector2f ChartUvAt(const BodyModel& body, int face, const Eigen::Vector3d& barycentric);
 
 /// Resolves every covered pixel of the buffer. `vertices_in_camera`, the body's faces and `camera` must be those that
-/// were rendered. Throws std::invalid_argument when parts or chart coordinates are asked of a body without them.
+/// were rendered. Throws std::invalid_argument when parts or chart coordinates are requested from a body without them.
 VisiblePoints ResolveVisiblePoints(const VisibilityBuffer& buffer, const BodyModel& body,
                                    const MatrixX3d& vertices_in_camera, const Camera& camera,
                                    const VisiblePointsRequest& request = {});

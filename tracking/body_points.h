@@ -38,7 +38,7 @@ struct CompiledPoint {
 CompiledPoint CompilePoint(const BodyModel& model, std::span<const int> vertices, std::span<const double> weights,
                            int num_betas);
 
-/// Position of one point and, when asked for, its derivative by the listed joints; reused between points.
+/// Position of one point and, when requested, its derivative by the listed joints; reused between points.
 class PointEvaluator {
  public:
   /// Posed position; `kinematics` must hold derivatives when Jacobian() is called afterwards.
@@ -58,7 +58,7 @@ class PointEvaluator {
   /// d x / d β, 3×B.
   [[nodiscard]] const Kinematics::Matrix3Bd& ShapeJacobian() const { return shape_; }
 
-  /// Rest positions (shape and correctives applied) of the vertices that were asked for in the current frame.
+  /// Rest positions (shape and correctives applied) of the vertices that were requested in the current frame.
   class VertexCache {
    public:
     void NewFrame(const Kinematics& kinematics);

@@ -47,7 +47,7 @@ void WidenDenseKernels(double stature, SequenceProblem* problem) {
     double sigma_px = 0;
     for (const DenseKeypoint& point : *frame.dense.points) sigma_px += point.sigma_px;
     sigma_px /= static_cast<double>(frame.dense.size());
-    const double share_px = kShareOfHeight * PersonHeightPx(problem->layout, problem->states[t], stature);
+    const double share_px = kShareOfHeight * UprightHeightPx(problem->layout, problem->states[t], stature);
     frame.dense.kernel = std::max(frame.dense.kernel, share_px / sigma_px);
   }
 }
@@ -119,7 +119,7 @@ bool ClipFit::FindStart() {
   problem_.betas = initial.betas;
   problem_.shape_prior.mean = initial.betas;
   clock_.Book("initialise");
-  // What the lifter said stays as a term.
+  // What the lifter predicted stays as a term.
   if (!lifted_.frames.empty()) {
     lifted_landmarks_ = CompileLiftedLandmarks(*input_.body, problem_.layout.num_betas);
   }
@@ -135,7 +135,7 @@ void ClipFit::Observe() {
   for (size_t t = 0; t < T; ++t) {
     FrameData& frame = problem_.frames[t];
     if (input_.keypoints != nullptr) {
-      const double height_px = PersonHeightPx(problem_.layout, problem_.states[t], stature_m_);
+      const double height_px = UprightHeightPx(problem_.layout, problem_.states[t], stature_m_);
       frame.landmarks.seen = ObserveLandmarks(landmarks_, *input_.keypoints, static_cast<int>(t), height_px);
     }
     if (input_.dense != nullptr) frame.dense.points = &input_.dense->frames[t];

@@ -35,7 +35,7 @@ class ClipFit {
   bool FindStart();
   /// What each term has of each frame.
   void Observe();
-  /// The stages on the coarse frames, and what each of them tells about the clip.
+  /// The stages on the coarse frames, and what each of them gives of the clip.
   void FitCoarseFrames();
   void FitAllFrames();
   /// Track, summary and uncertainty.
@@ -60,7 +60,7 @@ class ClipFit {
   TrackSequenceInput input_;  ///< what was given, with the observations below in place of what cannot be meant
   KeypointSequence keypoints_, joints_from_dense_;
   DenseSequence dense_;
-  const KeypointSequence* joints_ = nullptr;  ///< to start from and to tell cuts by; null: none
+  const KeypointSequence* joints_ = nullptr;  ///< to start from and to find cuts by; null: none
   int num_impossible_ = 0;
   StageClock clock_;
   ObservedLandmarks landmarks_;

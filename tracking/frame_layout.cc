@@ -66,7 +66,7 @@ FrameState InterpolateStates(const FrameState& a, const FrameState& b, double s)
   return result;
 }
 
-double PersonHeightPx(const FrameLayout& layout, const FrameState& state, double stature_m) {
+double UprightHeightPx(const FrameLayout& layout, const FrameState& state, double stature_m) {
   if (layout.knowledge == CameraKnowledge::kWeak) return std::exp(state.translation[0]) * stature_m;
   return layout.camera.fy * stature_m / std::max(state.translation.z(), 0.3);
 }

@@ -44,6 +44,6 @@ struct FrameLayout {
 FrameState InterpolateStates(const FrameState& a, const FrameState& b, double s);
 
 /// Image height of an upright body of this stature at a frame's depth, pixels: the yardstick of detection noise.
-double PersonHeightPx(const FrameLayout& layout, const FrameState& state, double stature_m);
+double UprightHeightPx(const FrameLayout& layout, const FrameState& state, double stature_m);
 
 }  // namespace bodyloom

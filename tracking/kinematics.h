@@ -25,7 +25,7 @@ struct Kinematics {
   std::vector<Matrix93d> feature_jacobian;           ///< J: d vec_rowmajor(R_j) / d δ_j
   std::vector<Eigen::Matrix<double, 9, 1>> feature;  ///< J: vec_rowmajor(R_j − I)
 
-  /// Sets shape and pose. `rotations` holds J matrices. Derivatives are filled only when asked for.
+  /// Sets shape and pose. `rotations` holds J matrices. Derivatives are filled only when requested.
   void Set(const BodyModel& body, const Eigen::VectorXd& shape, const std::vector<Eigen::Matrix3d>& rotations,
            const Eigen::Vector3d& trans, bool derivatives);
 };

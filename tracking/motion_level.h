@@ -3,7 +3,7 @@
 ///
 /// One σ of acceleration for everybody is too stiff for a break dance and too loose for somebody who stands: the first
 /// loses the motion, the second follows the detector's noise. So it is with one σ for all joints: arms swing while the
-/// spine hardly moves. A first solve tells which is which.
+/// spine hardly moves. A first solve shows which is which.
 #pragma once
 
 #include <vector>

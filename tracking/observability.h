@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Which joints the observations can tell anything about.
+/// Observability: which joints the observations determine.
 #pragma once
 
 #include <span>

@@ -26,7 +26,7 @@ struct TrackSequenceInput {
   const Motion* initialiser = nullptr;    ///< camera-frame poses of another system, same frames (L_d of paper A)
   const PosePrior* prior = nullptr;       ///< learned pose prior; without it only joint limits apply
   const LifterWeights* lifter = nullptr;  ///< starts from 2D joints and stays as L_d; without it: joint hypotheses
-  /// 3D landmarks of every frame that take the place of what `lifter` would say of the 2D joints (initialise/
+  /// 3D landmarks of every frame that take the place of what `lifter` would predict from the 2D joints (initialise/
   /// lift_keypoints.h): another lifter's, or a benchmark's.
   const std::vector<LiftedFrame>* lifted = nullptr;
   Camera camera;  ///< kKnown: all of it; otherwise only width and height (0: taken from the observations)

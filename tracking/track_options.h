@@ -30,7 +30,7 @@ struct TrackSequenceOptions {
   int max_iterations = 50;                         ///< of each stage
   int max_fine_iterations = 8;                     ///< of the last stage, when a coarse one came before
   double initialiser_weight = 0.1;                 ///< λ_d of paper A, per frame
-  /// λ_d when the lifter is the initialiser (0: it is not asked), and a floor of its own uncertainty in metres. Found
+  /// λ_d when the lifter is the initialiser (0: it is not used), and a floor of its own uncertainty in metres. Found
   /// on cameras c02, c04, c06 and c09 of the clips of docs/benchmarks.md, whose other cameras are reported there:
   /// weights 0.03 to 0.4 differ by 2 mm.
   double lifter_weight = 0.12, lifter_min_sigma_m = 0.08;

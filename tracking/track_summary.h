@@ -23,7 +23,7 @@ struct PlanEntry {
 /// How well one term fits at the end, over all frames.
 struct TermSummary {
   std::string term;                  ///< "2D joints", "dense keypoints", "rendered UV", "silhouette", "part labels"
-  int observations = 0;              ///< that had a say
+  int observations = 0;              ///< with a weight
   int unmatched = 0;                 ///< that could not be used: hidden, another chart, another part, behind the camera
   double median_px = 0, p95_px = 0;  ///< of |residual|, in pixels
 };
@@ -75,7 +75,7 @@ struct TrackSequenceResult {
   TrackSequenceSummary summary;
 };
 
-/// How a term of image residuals ended; `px` holds |residual| of each observation that had a say, pixels (0 of
+/// How a term of image residuals ended; `px` holds |residual| of each observation with a weight, pixels (0 of
 /// nothing).
 TermSummary SummarizeTerm(const std::string& term, const std::vector<double>& px, int unmatched = 0);
 

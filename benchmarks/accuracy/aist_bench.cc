@@ -6,7 +6,7 @@
 ///                       [--frames 0] [--ground yes|no] [--oracle none|truth|torso|lean|best|arms|legs[,…]] [--json F]
 ///
 /// Seconds: `file_s` from detections file to written track (body and prior included), `track_s` the tracker alone.
-/// `--oracle` tells what the error comes from: what the lifter says is replaced, in part, by the truth before the
+/// `--oracle` tells what the error comes from: what the lifter predicts is replaced, in part, by the truth before the
 /// solve. truth: all landmarks; torso, lean: the body is turned so that shoulders and hips lie as they do in truth
 /// (lean: only about the camera's x axis); best: of each limb the hypothesis nearest to the truth; arms, legs: those
 /// landmarks.

@@ -11,7 +11,7 @@
 namespace bodyloom {
 namespace {
 
-/// A line for each option: its name and what it is unless said otherwise.
+/// A line for each option: its name and its default.
 std::string Usage(const std::map<std::string, std::string>& known) {
   if (known.empty()) return "it takes no options\n";
   std::string lines = "options and what they are unless said otherwise (lists: commas)\n";

@@ -76,7 +76,7 @@ struct Errors {
   int frames = 0;
 };
 struct Reliability {
-  std::array<double, kBins> said{}, was{};
+  std::array<double, kBins> predicted{}, was{};
   std::array<int, kBins> count{};
 };
 
@@ -106,7 +106,7 @@ class Scorer {
     for (int k = 0; k < 17; ++k) {
       for (int c = 0; c < 3; ++c) expected(k, c) = metres_ * truth[3 * k + c];
     }
-    const MatrixX3d said = metres_ * frame.points.topRows(17);
+    const MatrixX3d predicted = metres_ * frame.points.topRows(17);
     LiftedFrame best = frame;
     for (int limb = 0; limb < LifterOutput::kLimbs; ++limb) {
       const auto points = LifterOutput::LimbPoints(limb);
@@ -120,10 +120,11 @@ class Scorer {
                                 [&](const LiftedLimb& a, const LiftedLimb& b) { return off(a) < off(b); }),
               &best);
     }
-    errors->joint += (said - expected).rowwise().norm().mean();
+    errors->joint += (predicted - expected).rowwise().norm().mean();
     errors->best += (metres_ * best.points.topRows(17) - expected).rowwise().norm().mean();
-    errors->depth += (said - expected).col(2).cwiseAbs().mean();
-    errors->aligned += (AlignPoints(said, expected).target_from_source.Apply(said) - expected).rowwise().norm().mean();
+    errors->depth += (predicted - expected).col(2).cwiseAbs().mean();
+    errors->aligned +=
+        (AlignPoints(predicted, expected).target_from_source.Apply(predicted) - expected).rowwise().norm().mean();
     ++errors->frames;
     for (int k = 0; k < 17; ++k) {
       double probability = ProbabilityWithin(kRadius / metres_, frame.sigma.row(k).transpose());
@@ -140,8 +141,8 @@ class Scorer {
         }
       }
       const int bin = std::clamp(static_cast<int>(probability * kBins), 0, kBins - 1);
-      reliability_.said[bin] += probability;
-      reliability_.was[bin] += (said.row(k) - expected.row(k)).norm() <= kRadius ? 1 : 0;
+      reliability_.predicted[bin] += probability;
+      reliability_.was[bin] += (predicted.row(k) - expected.row(k)).norm() <= kRadius ? 1 : 0;
       ++reliability_.count[bin];
     }
   }
@@ -207,7 +208,7 @@ void Run(const BenchArguments& arguments, const std::string& command) {
                   kNotMeasured,
                   kNotMeasured,
                   kNotMeasured,
-                  100 * reliability.said[bin] / n,
+                  100 * reliability.predicted[bin] / n,
                   100 * reliability.was[bin] / n,
                   n};
     report.rows.push_back(row);

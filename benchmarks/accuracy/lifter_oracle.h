@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the lifter would say if it knew a part of the truth: to tell where a track's error comes from.
+/// What the lifter would predict if it knew a part of the truth: shows where a track's error comes from.
 #pragma once
 
 #include <string>

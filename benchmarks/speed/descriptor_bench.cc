@@ -3,7 +3,7 @@
 //   build/release/benchmarks/bodyloom_bench_descriptors [--section NAME] [--folder DIR]
 // NAME: normals, velocities, bake, seams, stream, texture or all. DIR (default: the system's temporary folder) takes
 // the files that are timed, and the textures to look at. Times are the median and the minimum of many repetitions, one
-// thread unless said.
+// thread unless stated.
 #include <filesystem>
 #include <functional>
 #include <string>

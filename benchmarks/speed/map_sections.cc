@@ -141,7 +141,7 @@ void BenchStream(const BodyModel& body, const std::string& folder) {
   add("33 channels, float16, 2 threads", [](auto* o) { o->half = true; });
   add("6 channels (past 1), float32, 2 threads", [](auto* o) { o->past = 1; });
   add("33 channels, float32, analytic, 2 threads", [](auto* o) { o->analytic = true; });
-  add("33 channels, float32, past maps baked anew, 2 threads", [](auto* o) { o->reuse_past = false; });
+  add("33 channels, float32, past maps baked again, 2 threads", [](auto* o) { o->reuse_past = false; });
   add("33 channels, float32, only texels seen, 2 threads", [](auto* o) { o->seen_only = true; });
   for (const Row& row : rows) {
     double best = 0, compute = 0, rate = 0;

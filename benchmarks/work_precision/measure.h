@@ -52,8 +52,8 @@ struct Timing {
 };
 Timing MeasureAction(const std::function<void()>& action, int repeat, double divisor);
 
-/// The Cramér–Rao bound as mean projection error, pixels at 512, with what smoothness tells when there are three
-/// frames or more.
+/// The Cramér–Rao bound as mean projection error, pixels at 512, with the information of smoothness when there are
+/// three frames or more.
 double BoundPx(const WorkProblem& work);
 
 /// Highest resident memory of the process since the last reset, MB.

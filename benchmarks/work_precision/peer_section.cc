@@ -32,7 +32,7 @@ struct TorchSetting {
   }
 };
 
-/// What the C++ engines say the cost of this state is.
+/// The cost of this state by the C++ engines.
 double CostOf(const SequenceProblem& answer) {
   SequenceProblem judged = answer;
   SolveOptions judge;

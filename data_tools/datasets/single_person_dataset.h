@@ -47,7 +47,7 @@ struct SinglePersonDatasetInfo {
   std::string garment, motion, command;
 };
 
-/// The pictures of a frame; empty where a dataset has none or none was asked for. `labels` holds a label's index in all
+/// The pictures of a frame; empty where a dataset has none or none was requested. `labels` holds a label's index in all
 /// three channels.
 struct PersonFrame {
   Image rgb, labels, normals, iuv, background;

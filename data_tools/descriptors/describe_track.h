@@ -23,7 +23,7 @@ namespace bodyloom {
 struct DescribeTrackOptions : DescriptorOptions {
   bool half = false;  ///< float16
   int every = 1;      ///< describes frames 0, every, 2·every, …; velocities are of consecutive frames all the same
-  bool reuse_past = true;  ///< false: bakes all velocity maps of a frame anew; same bytes, for comparison
+  bool reuse_past = true;  ///< false: bakes all velocity maps of a frame again; same bytes, for comparison
   int preview_frames = 0;  ///< rows of the preview, 0: none
   [[nodiscard]] bool IsValid(std::string* why) const;
 };

@@ -31,8 +31,8 @@ namespace bodyloom {
 class DescriptorFrames {
  public:
   /// Borrows body and track. Throws std::invalid_argument when options are not valid, the track has no frames, is not
-  /// this body's, its times do not grow (naming the frame), the body has no UV map, or seen_only is asked of a track
-  /// without an image size.
+  /// this body's, its times do not grow (naming the frame), the body has no UV map, or seen_only is requested for a
+  /// track without an image size.
   DescriptorFrames(const BodyModel& body, const Track& track, const DescriptorOptions& options = {});
   ~DescriptorFrames();
   DescriptorFrames(DescriptorFrames&&) noexcept;

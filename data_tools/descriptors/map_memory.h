@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Memory that the workers of DescriptorMaps share, so that none is taken anew for every map.
+/// Memory that the workers of DescriptorMaps share, so that none is allocated for every map.
 #pragma once
 
 #include <memory>

@@ -148,7 +148,7 @@ class PersonFrames::Impl {
   void Describe() {
     DescribeTrackOptions describe;
     describe.texels.width = describe.texels.height = options_.uv_size;
-    describe.past = 1;  // the maps of the frames before are theirs, and put together when asked for
+    describe.past = 1;  // the maps of the frames before are theirs, and put together when requested
     describe.half = true;
     describe.num_threads = options_.num_threads;
     const ScratchFile file{ScratchPath(options_.scratch_dir)};

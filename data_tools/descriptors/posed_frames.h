@@ -18,7 +18,7 @@ class PosedFrames {
   PosedFrames(const Skinner& skinner, const ShapedBody& shape, const std::vector<std::optional<BodyPose>>& poses,
               int num_vertices, int room);
 
-  /// Poses the frames that are not there yet, lets go of those not in `needed` (rising). Returns how many it posed.
+  /// Poses the frames that are not there yet, releases those not in `needed` (ascending). Returns how many it posed.
   int Need(std::span<const int> needed);
 
   /// V×3, relative to the root, of a frame in the last Need.

@@ -16,7 +16,7 @@ namespace bodyloom::describe_internal {
 /// Immutable and safe to share between threads. Texels that show nothing are left as they are.
 class SurfaceMaps {
  public:
-  /// Borrows the body. Throws std::invalid_argument when it has no UV map. `normals`: whether any will be asked for.
+  /// Borrows the body. Throws std::invalid_argument when it has no UV map. `normals`: whether any will be requested.
   SurfaceMaps(const BodyModel& body, const UvTexelOptions& texels, NormalWeighting weighting, bool normals);
 
   [[nodiscard]] const UvTexelTable& texels() const { return table_; }

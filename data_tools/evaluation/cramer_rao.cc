@@ -21,7 +21,7 @@ struct Group {
   MatrixXd coupling;         ///< to the shared parameters
 };
 
-/// Copies block (a, b), a <= b, of the band into `target`, transposed when asked.
+/// Copies block (a, b), a <= b, of the band into `target`, transposed on request.
 void Place(const ClipInformation& information, int a, int b, bool transposed, Eigen::Ref<MatrixXd> target) {
   const int k = b - a;
   if (k >= static_cast<int>(information.band.size())) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What an evaluation says: the protocol in words, named numbers, and their breakdown by joint or camera.
+/// The result of an evaluation: the protocol in words, named numbers, and their breakdown by joint or camera.
 #pragma once
 
 #include <span>

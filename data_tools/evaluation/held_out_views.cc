@@ -96,7 +96,7 @@ void AddJointAngles(const Track& track, const std::vector<int>& source, const Mu
     truth.row(t).head<3>() = AxisAngleFromRotation(own.pose.camera_from_world_rotation * root).transpose();
   }
   const JointAngleError angles = MeanJointAngleError(poses, truth);
-  // COCO's landmarks say nothing about hands, feet and single vertebrae; these eight carry the motion.
+  // COCO's landmarks do not determine hands, feet and single vertebrae; these eight carry the motion.
   double limbs = 0;
   const std::vector<int> limb_joints = {1, 2, 4, 5, 16, 17, 18, 19};
   for (int j : limb_joints) limbs += angles.per_joint_deg[j] / static_cast<double>(limb_joints.size());

@@ -138,7 +138,7 @@ Evaluation EvaluateAgainstTruth(const Track& track, const Track& truth, const Bo
       MeanJointAngleError(WithColumns(poses, columns), WithColumns(truth.motion.poses, columns));
   result.Add("joint_angle_err_deg", angles.mean_deg, "rotation error of joints relative to their parents");
   result.Add("root_rotation_err_deg", angles.root_deg, "rotation error of the body in the camera frame");
-  // A weak-perspective camera says nothing about where the body stands.
+  // A weak-perspective camera does not determine where the body stands.
   const bool has_depth = track.camera.model == CameraModel::kPinhole && truth.camera.model == CameraModel::kPinhole;
   const RootError root = has_depth ? RootPositionError(roots, true_roots) : RootError{};
   result.Add("root_err_mm", root.distance.mean * kMm, "pelvis error");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a file's name says of its kind.
+/// The kind of a file by its name.
 #pragma once
 
 #include <cctype>

@@ -38,7 +38,7 @@ class JsonNode {
   [[nodiscard]] bool Has(const std::string& key) const;
   [[nodiscard]] std::vector<std::string> Keys() const;
 
-  // Everything below throws std::runtime_error naming the place when the value is not what was asked for.
+  // Everything below throws std::runtime_error naming the place when the value is not what was requested.
   [[nodiscard]] JsonNode At(const std::string& key) const;
   [[nodiscard]] JsonNode At(size_t index) const;
   [[nodiscard]] double Number() const;    ///< finite

@@ -4,7 +4,7 @@
 /// The reader checks every claim before memory is taken: header at most 64 KiB, shape product without overflow, size
 /// equal to the bytes present, deflate ratio at most 1100:1. Object arrays are never unpickled: in an archive they
 /// arrive as DType::kOther without contents (SMPL-X files hold some beside the arrays that matter) and are refused when
-/// asked for. Members that are not arrays are passed over. Source: numpy/lib/format.py, APPNOTE.TXT.
+/// requested. Members that are not arrays are passed over. Source: numpy/lib/format.py, APPNOTE.TXT.
 #pragma once
 
 #include <map>

@@ -41,7 +41,7 @@ constexpr StorageType kStorageTypes[] = {
     {"torch.ShortStorage", {DType::kI16, 2, false}},  {"torch.CharStorage", {DType::kI8, 1, false}},
     {"torch.ByteStorage", {DType::kU8, 1, false}},    {"torch.BoolStorage", {DType::kBool, 1, false}}};
 
-/// What a persistent id says: a run of elements in a keyed storage.
+/// What a persistent id means: a run of elements in a keyed storage.
 struct StorageId {
   std::string key;
   ElementType type;

@@ -35,7 +35,7 @@ enum Smpl {
   kWrist = 20
 };
 
-/// A limb must bend this much on average (sine), and always in nearly the same direction, to tell its twist.
+/// A limb must bend this much on average (sine), and always in nearly the same direction, to determine its twist.
 constexpr double kLeastBend = 0.1;
 constexpr double kLeastCoherence = 0.8;
 /// A limb whose rest pose bends less than this (sine) is straight at rest; bending is counted from there.

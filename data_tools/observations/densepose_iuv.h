@@ -20,7 +20,7 @@ enum class IuvOrder { kDetect, kBlueIsPart, kRedIsPart };
 struct IuvImage {
   int width = 0, height = 0;
   std::vector<uint8_t> part, u, v;
-  IuvOrder order = IuvOrder::kDetect;  ///< as found; kDetect when the image is empty and does not tell
+  IuvOrder order = IuvOrder::kDetect;  ///< as found; kDetect when the image is empty and does not decide
 };
 
 /// Throws std::runtime_error naming the file: not a PNG of 8-bit colour, or no channel (or not the chosen one) holds

@@ -18,7 +18,7 @@
 
 namespace bodyloom {
 
-/// Standard deviation of DensePose's U and V, chart units, where nobody says better. No published figure is in these
+/// Standard deviation of DensePose's U and V, chart units, where none is given. No published figure is in these
 /// units, so this is an estimate between two bounds. Below: 8 bits rounded down alone give 1/(255 √12) = 0.0011. Above:
 /// people who label rendered bodies err by 2 cm on small parts to 7 cm on the torso (Güler et al., DensePose, CVPR
 /// 2018, section 2.1), a tenth of those charts and more, much of it shared by neighbouring pixels. 0.03 of a torso's

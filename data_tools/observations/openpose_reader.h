@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 /// OpenPose's JSON: {"version": 1.3, "people": [{"person_id": [-1], "pose_keypoints_2d": [x, y, c, …], …}]} per frame.
 ///
-/// x and y are pixels, c is in [0, 1], 0,0,0 means missing. The order of people says nothing. `people` may be empty and
-/// may hold empty objects. The number of landmarks tells the model, except that BODY_25 and BODY_25B both have 25: they
-/// are told apart by whether landmark 1 lies between landmarks 2 and 5 (a neck between shoulders) or the first three
-/// form a face. Also read: a list of such frames in one file, a table {"12.jpg": {"people": …}}, and the older key
-/// "pose_keypoints". Source: OpenPose doc/02_output.md.
+/// x and y are pixels, c is in [0, 1], 0,0,0 means missing. The order of people means nothing. `people` may be empty
+/// and may hold empty objects. The number of landmarks gives the model, except that BODY_25 and BODY_25B both have 25:
+/// they are told apart by whether landmark 1 lies between landmarks 2 and 5 (a neck between shoulders) or the first
+/// three form a face. Also read: a list of such frames in one file, a table {"12.jpg": {"people": …}}, and the older
+/// key "pose_keypoints". Source: OpenPose doc/02_output.md.
 #pragma once
 
 #include <string>

@@ -24,7 +24,7 @@ struct ReadPartLabelsOptions {
 bool HasPartLabels(const NpzArrays& arrays);
 
 /// Each frame's labels, cut to the person's box. Blobs of labels apart from the person (min_share, max_gap) become
-/// background; `dropped_pixels`, when asked for, counts them over the clip. Throws std::runtime_error naming the file,
+/// background; `dropped_pixels`, when requested, counts them over the clip. Throws std::runtime_error naming the file,
 /// the key, and what was expected: shape, type, a label above highest_label (with its frame and pixel), timestamps that
 /// do not increase.
 PartLabelSequence ReadPartLabels(const std::string& path, const ReadPartLabelsOptions& options = {},

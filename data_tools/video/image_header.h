@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What an image file says of its size, so that a few bytes that promise a billion pixels are refused before a decoder
+/// The size that an image file claims, so that a few bytes that promise a billion pixels are refused before a decoder
 /// makes room for them.
 #pragma once
 

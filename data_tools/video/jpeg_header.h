@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a JPEG says of itself before it is decoded.
+/// What the header of a JPEG claims, before it is decoded.
 #pragma once
 
 #include <optional>

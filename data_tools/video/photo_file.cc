@@ -19,7 +19,7 @@ bool HasNoColours(const Image& image) {
   return true;
 }
 
-/// The file's depth is said, its transparency laid over white.
+/// The file's depth is noted, its transparency laid over white.
 void KeepTransparency(const std::string& bytes, PhotoFile* photo) {
   const cv::Mat view(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<char*>(bytes.data()));
   cv::Mat whole;

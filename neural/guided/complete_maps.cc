@@ -51,13 +51,13 @@ int Onto(int v, int from_first, int from_last, int to_first, int to_last) {
   return static_cast<int>(std::lround(to_first + t * (to_last - to_first)));
 }
 
-/// Where a network paints a face although it was told otherwise, what it was told.
-void TakeAwayFaces(const PseudoPicture& told, GuidedPicture* picture) {
+/// Where a network paints a face against its pseudo input, the pseudo input.
+void TakeAwayFaces(const PseudoPicture& pseudo, GuidedPicture* picture) {
   const size_t pixels = picture->alpha.size();
   for (size_t i = 0; i < pixels; ++i) {
-    if (picture->labels[i] != kFaceLabel || told.known[i] == 0 || told.labels[i] == kFaceLabel) continue;
-    picture->labels[i] = told.labels[i];
-    for (size_t c = 0; c < 3; ++c) picture->image[c * pixels + i] = told.image[c * pixels + i] * picture->alpha[i];
+    if (picture->labels[i] != kFaceLabel || pseudo.known[i] == 0 || pseudo.labels[i] == kFaceLabel) continue;
+    picture->labels[i] = pseudo.labels[i];
+    for (size_t c = 0; c < 3; ++c) picture->image[c * pixels + i] = pseudo.image[c * pixels + i] * picture->alpha[i];
   }
 }
 

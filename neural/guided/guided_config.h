@@ -63,13 +63,13 @@ struct GuidedConfig {
     if (!uv_appearance) return MapCompletion::kNone;
     return profile.nearest_texels ? MapCompletion::kNearest : MapCompletion::kVirtualViews;
   }
-  /// Whether somebody asks which texels are near each other.
+  /// Whether the neighbours of texels are needed.
   [[nodiscard]] bool NeedsNeighbours() const {
     return profile.contour_hints || Completion() == MapCompletion::kNearest;
   }
   /// A side of the images must be a multiple of this; pictures are cropped at multiples of it.
   [[nodiscard]] int Multiple() const { return 1 << Levels(); }
-  /// RenderNet sees the pose map where a network that would have told it the target's shape is left out.
+  /// RenderNet sees the pose map where a network that would give it the target's shape is left out.
   [[nodiscard]] bool PoseForRender() const { return !silhouettes || !garments; }
   [[nodiscard]] int LabelChannels() const { return profile.one_hot_labels ? 7 : 1; }
   [[nodiscard]] bool IsValid(std::string* why) const;

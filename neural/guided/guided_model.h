@@ -35,7 +35,7 @@ struct GuidedTensors {
   torch::Tensor image;       ///< B×3×H×W, 0 on the background
 };
 
-/// What is asked of the source once.
+/// Codes of the source, computed once.
 struct GuidedSource {
   torch::Tensor sil_code, gar_code;
   RenderCode render_code;

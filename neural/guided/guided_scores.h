@@ -17,11 +17,11 @@ struct GuidedScores {
   double psnr_db = 0;         ///< over the foreground, range 1
   double silhouette_iou = 0;  ///< alpha at least ½
   double label_iou = 0;       ///< mean over the classes other than the background that occur
-  double lpips = 0;           ///< mean over frames; NaN where not asked for
+  double lpips = 0;           ///< mean over frames; NaN where not requested
   /// The paper's temporal stability: the standard deviation of LPIPS over a person's frames, pooled over people,
   /// sqrt(Σ_p Σ_f (d_pf − mean_p)² / frames).
   double lpips_deviation = 0;
-  double contextual = 0;  ///< Σ −log CX, mean over frames; NaN where not asked for
+  double contextual = 0;  ///< Σ −log CX, mean over frames; NaN where not requested
 };
 
 class GuidedScorer {

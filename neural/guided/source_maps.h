@@ -13,7 +13,7 @@
 
 namespace bodyloom {
 
-/// What is known of the source apart from its photos. What the completion does not ask for may be absent.
+/// What is known of the source apart from its photos. What the completion does not need may be absent.
 struct SourceBody {
   std::span<const uint8_t> texel_parts;            ///< U × U: DensePose's part, 0 where the atlas is empty
   std::span<const PhotoFrame> virtual_views = {};  ///< in the order of VirtualView; for MapCompletion::kVirtualViews
@@ -26,10 +26,10 @@ struct SourceMaps {
   std::vector<GuidedPicture> virtual_pictures;
 };
 
-/// Earlier photos come first. Texels of the back of the head (as the views or the neighbours tell it) take no face from
-/// a photo. `extent`: whether anybody asks how far clothes stand off; the first photo tells, and body.neighbours must
+/// Earlier photos come first. Texels of the back of the head (by the views or the neighbours) take no face from a
+/// photo. `extent`: whether the clothes' extent is needed; it is measured on the first photo, and body.neighbours must
 /// be there. `draw` may be empty where nothing is drawn. Throws std::invalid_argument for sizes that do not fit, and
-/// for what the completion asks for and is absent.
+/// for what the completion needs and is absent.
 SourceMaps MapsOfSource(std::span<const PhotoFrame> photos, const SourceBody& body, MapCompletion completion,
                         bool extent, const DrawPose& draw);
 

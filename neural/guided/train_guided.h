@@ -55,7 +55,7 @@ struct TrainGuidedOptions : TrainingRun {
   bool labels_by_cross_entropy = true;
   int balance_steps = 200;
   double perceptual_share = 1, contextual_share = 1, gan_share = 1;  ///< of the balanced λ
-  /// At its balanced weight the divergence is driven to 0 within 300 steps and the code says nothing of the source.
+  /// At its balanced weight the divergence is driven to 0 within 300 steps and the code holds nothing of the source.
   double kl_share = 0.01;
   double predicted_from = 2.0 / 3;  ///< 1: never
   int reach = 0;      ///< pixels that clothes reach beyond the body (0: not known, validates on whole windows)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Trains the lifter (geometry/lifter_weights.h): AdamW with a cosine schedule on windows that a source makes up as
-/// they are asked for, exponential moving average of the weights, validation on windows of other seeds.
+/// they are needed, exponential moving average of the weights, validation on windows of other seeds.
 ///
 /// A run folder holds `metrics.csv` (a line every `report_every` steps), `checkpoint.bin` (replaced whole or not at
 /// all) and, at the end, what the caller writes. A run that was interrupted goes on from its checkpoint and ends with
@@ -17,7 +17,7 @@
 
 namespace bodyloom {
 
-/// One window of T frames: what the network reads and what it should say (tracking/initialise/lifter_input.h,
+/// One window of T frames: what the network reads and what it should predict (tracking/initialise/lifter_input.h,
 /// geometry/lifter_weights.h).
 struct LifterExample {
   std::vector<float> features;  ///< T·num_inputs

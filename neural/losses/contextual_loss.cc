@@ -13,7 +13,7 @@ namespace {
 
 using torch::Tensor;
 
-constexpr int64_t kRowsAtOnce = 1024;  // bounds the memory when no gradient is asked for
+constexpr int64_t kRowsAtOnce = 1024;  // bounds the memory when no gradient is requested
 
 /// B×C×h×w → B×C×N, a draw of N = max_points positions when there are more.
 Tensor Points(const Tensor& features, const ContextualOptions& options) {

@@ -14,20 +14,21 @@ namespace bodyloom {
 /// Counts pixels; class 0 is the background. Ratios of nothing are NaN.
 class ClassOverlap {
  public:
-  explicit ClassOverlap(int num_classes) : both_(num_classes), said_(num_classes), true_(num_classes) {}
+  explicit ClassOverlap(int num_classes) : both_(num_classes), predicted_(num_classes), true_(num_classes) {}
 
   /// One pixel: the class it was given and its own, both below the number of classes.
-  void Add(size_t said, size_t truth) {
-    both_[said] += said == truth ? 1 : 0;
-    ++said_[said];
+  void Add(size_t predicted, size_t truth) {
+    both_[predicted] += predicted == truth ? 1 : 0;
+    ++predicted_[predicted];
     ++true_[truth];
-    foreground_both_ += said != 0 && truth != 0 ? 1 : 0;
-    foreground_either_ += said != 0 || truth != 0 ? 1 : 0;
+    foreground_both_ += predicted != 0 && truth != 0 ? 1 : 0;
+    foreground_either_ += predicted != 0 || truth != 0 ? 1 : 0;
   }
   /// As many of each; throws std::invalid_argument otherwise.
-  void Add(const std::vector<uint8_t>& said, const std::vector<uint8_t>& truth) {
-    BODYLOOM_CHECK(said.size() == truth.size(), "class overlap: ", said.size(), " pixels beside ", truth.size());
-    for (size_t i = 0; i < said.size(); ++i) Add(size_t{said[i]}, size_t{truth[i]});
+  void Add(const std::vector<uint8_t>& predicted, const std::vector<uint8_t>& truth) {
+    BODYLOOM_CHECK(predicted.size() == truth.size(), "class overlap: ", predicted.size(), " pixels beside ",
+                   truth.size());
+    for (size_t i = 0; i < predicted.size(); ++i) Add(size_t{predicted[i]}, size_t{truth[i]});
   }
 
   [[nodiscard]] int num_classes() const { return static_cast<int>(both_.size()); }
@@ -46,13 +47,13 @@ class ClassOverlap {
   }
 
  private:
-  [[nodiscard]] int64_t Either(int k) const { return said_[k] + true_[k] - both_[k]; }
+  [[nodiscard]] int64_t Either(int k) const { return predicted_[k] + true_[k] - both_[k]; }
   static double Ratio(int64_t part, int64_t whole) {
     return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole)
                      : std::numeric_limits<double>::quiet_NaN();
   }
 
-  std::vector<int64_t> both_, said_, true_;
+  std::vector<int64_t> both_, predicted_, true_;
   int64_t foreground_both_ = 0, foreground_either_ = 0;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The batches of a training run, made by a thread of their own a few steps ahead. Internal: includes LibTorch.
+/// The batches of a training run, prefetched by a thread of their own. Internal: includes LibTorch.
 #pragma once
 
 #include <torch/torch.h>

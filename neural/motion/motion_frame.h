@@ -25,7 +25,7 @@ struct MotionFrame {
   std::vector<float> normals;   ///< 3 × height × width unit normals in the camera frame, 0 on the background
 };
 
-/// Fills frame t of a clip; truth only when asked for. Called from one thread other than the caller's.
+/// Fills frame t of a clip; truth only when requested. Called from one thread other than the caller's.
 using MotionFrameSource = std::function<void(int t, bool with_truth, MotionFrame* frame)>;
 
 }  // namespace bodyloom

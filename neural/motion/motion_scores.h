@@ -6,8 +6,8 @@
 
 namespace bodyloom {
 
-/// Of frames rolled out by the network from nothing, each stretch anew. "Foreground" is the true one: labels other than
-/// the background.
+/// Means over frames of roll-outs, one a stretch, that begin with nothing. "Foreground" is the true one: labels other
+/// than the background.
 struct MotionScores {
   double image_l1 = 0;            ///< mean |Â − A| over the foreground and channels
   double psnr_db = 0;             ///< over the foreground, range 1

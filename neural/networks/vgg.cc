@@ -160,7 +160,7 @@ std::vector<torch::Tensor> FeatureNetworkImpl::forward(torch::Tensor image) {
     } else if (layer.plan.kind == LayerKind::kPool) {
       x = torch::max_pool2d(x, layer.plan.kernel, layer.plan.stride);
     } else if (tap > 0 && options.taps[tap - 1] == i - 1) {
-      x = torch::relu(x);  // the value before the ReLU was asked for
+      x = torch::relu(x);  // the value before the ReLU was requested
     } else {
       x = torch::relu_(x);
     }

@@ -57,7 +57,7 @@ struct FeatureNetworkImpl : torch::nn::Module {
  private:
   struct Layer;
   std::vector<Layer> layers_;
-  torch::Tensor mean_, deviation_;  ///< of ImageNet; buffers would be asked for in weight files
+  torch::Tensor mean_, deviation_;  ///< of ImageNet; buffers would be requested in weight files
 };
 TORCH_MODULE(FeatureNetwork);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Parts of the body as the one-photo renderers tell them apart, and the pose map P of the pose-guided one: which part
+/// Parts of the body as the one-photo renderers distinguish them, and the pose map P of the pose-guided one: which part
 /// of the undressed body a pixel shows, as a colour.
 ///
 /// DensePose's 24 charts become 14 parts: torso, head, and on either side hand, foot, thigh, shin, upper arm, forearm.

@@ -36,7 +36,7 @@ struct PhotoSource {
   int size = 0, texture_size = 0;    ///< of all frames
   std::vector<uint8_t> texel_parts;  ///< U × U: DensePose's part of each texel, 0 where the atlas is empty
   /// Planar 3 × U × U: where each texel lies on the body at rest (x to its left, y up, z to its front, metres), 0 where
-  /// the atlas is empty. May be empty where nobody asks for it.
+  /// the atlas is empty. May be empty where it is not needed.
   std::vector<float> texel_places;
   std::function<void(int person, int frame, PhotoFrame*)> fill;
 };

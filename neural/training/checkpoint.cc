@@ -82,7 +82,7 @@ NamedTensors OptimizerState(const std::string& name, torch::optim::Optimizer& op
                             : StateOf<torch::optim::AdamParamState>(name, optimizer);
 }
 
-/// Tensors of a file, each to be asked for once.
+/// Tensors of a file, each to be requested once.
 class Contents {
  public:
   Contents(std::string path, const NamedTensors& tensors) : path_(std::move(path)) {
@@ -110,7 +110,7 @@ class Contents {
     }
     return tensor;
   }
-  /// What begins with `prefix` and was not asked for.
+  /// What begins with `prefix` and was not requested.
   void ExpectNoMore(const std::string& prefix) const {
     for (const auto& item : tensors_) {
       if (item.first.rfind(prefix, 0) == 0 && asked_.count(item.first) == 0) {

@@ -25,7 +25,7 @@ struct CheckpointInfo {
   int64_t step = 0;
 };
 
-/// What a file says of itself, to build the right networks before they are loaded. Checks the file as Load does.
+/// What a file declares of itself, to build the right networks before they are loaded. Checks the file as Load does.
 CheckpointInfo ReadCheckpointInfo(const std::string& path);
 
 enum class CheckpointPart { kAll, kModules };

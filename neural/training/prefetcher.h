@@ -19,9 +19,9 @@ template <class Item>
 class Prefetcher {
  public:
   /// `make` is called `count` times, one call after the other, with 0, 1, … count − 1, on the other thread; at most
-  /// `ahead` results wait.
-  Prefetcher(int64_t count, std::function<Item(int64_t)> make, size_t ahead = 3)
-      : make_(std::move(make)), ahead_(ahead), thread_([this, count] { Run(count); }) {}
+  /// `depth` results wait.
+  Prefetcher(int64_t count, std::function<Item(int64_t)> make, size_t depth = 3)
+      : make_(std::move(make)), depth_(depth), thread_([this, count] { Run(count); }) {}
   ~Prefetcher() {
     {
       const std::lock_guard lock(mutex_);
@@ -54,7 +54,7 @@ class Prefetcher {
       for (int64_t i = 0; i < count; ++i) {
         Item item = make_(i);
         std::unique_lock lock(mutex_);
-        changed_.wait(lock, [&] { return stop_ || ready_.size() < ahead_; });
+        changed_.wait(lock, [&] { return stop_ || ready_.size() < depth_; });
         if (stop_) return;
         ready_.push_back(std::move(item));
         changed_.notify_all();
@@ -67,7 +67,7 @@ class Prefetcher {
   }
 
   std::function<Item(int64_t)> make_;
-  size_t ahead_;
+  size_t depth_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Item> ready_;

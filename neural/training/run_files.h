@@ -34,8 +34,8 @@ class MetricsLog {
   /// A new log with these columns behind "step"; an existing file is replaced at the first Add.
   MetricsLog(std::string path, std::vector<std::string> columns);
 
-  /// Keeps the lines of an existing file up to `step` (a run that goes on from a checkpoint writes later ones anew); no
-  /// file is an empty log. Throws std::runtime_error when the file's columns are others.
+  /// Keeps the lines of an existing file up to `step` (a run that goes on from a checkpoint writes later ones again);
+  /// no file is an empty log. Throws std::runtime_error when the file's columns are others.
   void KeepUpTo(int64_t step);
 
   /// Values in the columns' order; NaN leaves a cell empty. Throws std::invalid_argument for another number of values.

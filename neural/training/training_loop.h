@@ -15,7 +15,7 @@ class TrainedSystem {
  public:
   virtual ~TrainedSystem() = default;
 
-  /// Called once, before the first step; batches of earlier steps will not be asked for.
+  /// Called once, before the first step; batches of earlier steps will not be requested.
   virtual void Begin(int first_step) = 0;
   /// False when a loss is not finite; the weights are then those of before.
   virtual bool Step(int step) = 0;

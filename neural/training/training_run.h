@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What every training run is told, and how it ended.
+/// Options that every training run has, and how it ended.
 #pragma once
 
 #include <cstdint>

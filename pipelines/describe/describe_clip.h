@@ -30,7 +30,7 @@ struct DescribeClipReport {
   size_t peak_memory_bytes = 0;
 };
 
-/// Describes every frame of the track and writes the maps, their header, and what else was asked for. Throws
+/// Describes every frame of the track and writes the maps, their header, and what else was requested. Throws
 /// RequestError for options that contradict each other, std::runtime_error naming a file that cannot be used, or a
 /// track that is not this body's, and Cancelled. Nothing is left behind then.
 DescribeClipReport DescribeClip(const DescribeClipRequest& request, const PipelineCallbacks& callbacks = {});

@@ -30,7 +30,7 @@ struct SurveyMotionsReport {
   MotionLibrarySummary library;
 };
 
-/// Reads, cleans and measures every motion, and writes what was asked for. Throws std::runtime_error naming a file that
+/// Reads, cleans and measures every motion, and writes what was requested. Throws std::runtime_error naming a file that
 /// cannot be used, also when no file holds a motion; Cancelled.
 SurveyMotionsReport SurveyMotions(const SurveyMotionsRequest& request, const PipelineCallbacks& callbacks = {});
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The pictures that are asked for, out of stills, folders and videos.
+/// Requested pictures out of stills, folders and videos.
 #pragma once
 
 #include <span>
@@ -15,7 +15,7 @@ struct PictureRequest {
   int frame = 0;     ///< of a video or folder; a still has one picture for every number
 };
 
-/// In the order of the requests. A video is decoded once, as far as the last frame that is asked of it. Throws
+/// In the order of the requests. A video is decoded once, as far as the last frame requested from it. Throws
 /// std::runtime_error naming the file that cannot be read or has no such frame.
 std::vector<PhotoFile> ReadPictures(std::span<const PictureRequest> requests);
 

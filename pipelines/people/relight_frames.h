@@ -13,8 +13,8 @@
 
 namespace bodyloom {
 
-/// What the file asks for. Brightness is relative: light of strength 1 from everywhere leaves the person, on the
-/// average, as bright as it is.
+/// The light that a file requests. Brightness is relative: light of strength 1 from everywhere leaves the person, on
+/// the average, as bright as it is.
 struct RelightRequest {
   ShLighting light = ShLighting::Zero();  ///< camera frame
   bool estimate = true;                   ///< false: the frames are taken as evenly lit

@@ -11,7 +11,7 @@
 
 namespace bodyloom {
 
-/// What the networks said of frame t's window, as pictures as large as `composed` (which is taken as the frame's
+/// The networks' prediction of frame t's window, as pictures as large as `composed` (which is taken as the frame's
 /// image): the class of the window's nearest pixel, and normals between the four nearest, unit vectors where the class
 /// is not background. `picture` without labels or normals: those are left empty.
 PersonFrame SetFrameOf(const MotionPicture& picture, const PersonWindow& window, int t, const Image& composed);

@@ -43,7 +43,7 @@ struct PlacedBody {
 class RenderPicture {
  public:
   /// Throws std::runtime_error, beginning with `where`, when the body lacks what is to be shown, the camera has no
-  /// image size, or a new view is asked of a track without any known frame.
+  /// image size, or a new view is requested from a track without any known frame.
   RenderPicture(const BodyModel& body, const Track& track, const RenderPictureOptions& options,
                 const std::string& where);
 

@@ -41,7 +41,7 @@ struct RenderTrackReport {
 /// RequestError when the text is no such range, std::runtime_error beginning with `where` when it holds no frame.
 std::pair<int, int> FrameRange(const std::string& text, int num_frames, const std::string& where);
 
-/// Draws the chosen frames and writes what was asked for. Throws RequestError when the request contradicts itself,
+/// Draws the chosen frames and writes what was requested. Throws RequestError when the request contradicts itself,
 /// std::runtime_error naming a file that cannot be used, Cancelled. Nothing is left behind then.
 RenderTrackReport RenderTrack(const RenderTrackRequest& request, const PipelineCallbacks& callbacks = {});
 

@@ -19,13 +19,13 @@ struct CompareResultsRequest {
   std::string other_truth, other_result;        ///< datasets of the same poses at another speed; empty: none
   PersonLabel reacting = PersonLabel::kBottom;  ///< whose reaction to the speed is measured
   SsimPreset preset = SsimPreset::kWang2004;
-  bool common_only = false;       ///< compares the frames that both sides have, instead of asking for all
+  bool common_only = false;       ///< compares the frames that both sides have, instead of requiring all
   std::vector<FrameMetric> more;  ///< further metrics of images, after PSNR and SSIM
   std::string json, csv;          ///< ToJson and ToCsv of the report; empty: not written
   int num_threads = 0;            ///< 0: all cores; numbers are the same for any number
 };
 
-/// Pictures in both folders, or in images/, labels/ and normals/ below both, or two videos; writes the files asked for.
+/// Pictures in both folders, or in images/, labels/ and normals/ below both, or two videos; writes the files requested.
 /// Throws std::runtime_error naming a file that cannot be used, Cancelled; nothing is left behind then.
 CompareResultsReport CompareResults(const CompareResultsRequest& request, const PipelineCallbacks& callbacks = {});
 

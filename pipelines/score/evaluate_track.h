@@ -21,7 +21,7 @@ struct EvaluateTrackRequest {
   std::string json;      ///< EvaluationJson; empty: not written
 };
 
-/// Measures the track and writes the numbers where asked for. Throws RequestError when an AIST++ clip is not named,
+/// Measures the track and writes the numbers where requested. Throws RequestError when an AIST++ clip is not named,
 /// std::runtime_error naming a file that cannot be used, Cancelled before the measuring begins.
 Evaluation EvaluateTrack(const EvaluateTrackRequest& request, const PipelineCallbacks& callbacks = {});
 

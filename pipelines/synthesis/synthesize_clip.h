@@ -24,7 +24,7 @@ struct SynthClipFiles {
   std::string observations;  ///< observations.npz: 2D joints and dense keypoints
   std::string truth;         ///< truth.npz: the true track
   std::string camera;        ///< camera.json
-  std::string initialiser;   ///< initialiser.npz, or empty when none was asked for
+  std::string initialiser;   ///< initialiser.npz, or empty when none was requested
   std::string video;         ///< clip.mp4, or empty
 };
 

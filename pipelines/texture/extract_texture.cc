@@ -46,7 +46,7 @@ struct Gathered {
   int used = 0, passed_over = 0, beyond_video = 0;  ///< frames of the track
 };
 
-/// Pixels around contours that are not used, when the user did not say: tracks are off by about a hundredth of the
+/// Pixels around contours that are not used, when the user gave none: tracks are off by about a hundredth of the
 /// person's height (of the joints, in the median frame).
 int DefaultMargin(const Track& track) {
   std::vector<double> heights_px;

@@ -8,7 +8,7 @@
 
 namespace bodyloom {
 
-/// Checks the request, its inputs and its outputs, tracks, and writes what was asked for. With request.plan nothing is
+/// Checks the request, its inputs and its outputs, tracks, and writes what was requested. With request.plan nothing is
 /// computed or written and the report holds the plan alone.
 /// Throws RequestError for a request that contradicts itself, Cancelled (nothing is written after it), and
 /// std::runtime_error naming a file that cannot be used, or saying that nothing could be tracked; then the JSON summary

@@ -50,7 +50,7 @@ void UseVideo(const std::string& path, TrackInputs* inputs) {
   }
 }
 
-/// Frame rate of observations that do not say; 0 when the request and the video do not say either.
+/// Frame rate of observations that give none; 0 when the request and the video give none either.
 double FrameRate(const TrackRequest& request, const TrackInputs& inputs) {
   return request.fps > 0 ? request.fps : inputs.video_fps;
 }

@@ -13,11 +13,11 @@ struct TrackRequest {
   // What was seen.
   std::string detections;                ///< 2D joints (and dense keypoints, when the file holds both)
   std::string dense;                     ///< dense surface keypoints from a file or folder of their own
-  std::optional<double> dense_uv_sigma;  ///< their noise on the surface, chart units; none: what their source says
+  std::optional<double> dense_uv_sigma;  ///< their noise on the surface, chart units; none: their source's
   std::string part_labels;               ///< DensePose part of every pixel
   std::string view;                      ///< camera of a file that has several
   int person = 0;                        ///< 0: the largest and longest in view
-  double fps = 0;                        ///< of detections that do not say; 0: the video's, else 30
+  double fps = 0;                        ///< of detections that give none; 0: the video's, else 30
   double min_confidence = 0;             ///< detections below count as missing
   std::string convention;                ///< OpenPose model, when it should not be detected
 
@@ -25,7 +25,7 @@ struct TrackRequest {
   std::string cameras;                    ///< calibration file or folder
   std::string camera;                     ///< pinhole, unknown-focal or weak; empty: pinhole when intrinsics are given
   double focal_px = 0;                    ///< intrinsics without a file: centred, undistorted
-  int image_width = 0, image_height = 0;  ///< when neither camera, video nor detections say
+  int image_width = 0, image_height = 0;  ///< when neither camera, video nor detections give it
 
   // What else is known.
   std::string video;     ///< for the image size, the frame rate and the overlay
@@ -50,7 +50,7 @@ struct TrackRequest {
 /// Throws RequestError when fields contradict each other or one is missing. Looks at no file.
 void CheckTrackRequest(const TrackRequest& request);
 
-/// What `camera`, `cameras` and `focal_px` say together.
+/// What `camera`, `cameras` and `focal_px` amount to.
 CameraKnowledge CameraKnowledgeOf(const TrackRequest& request);
 
 }  // namespace bodyloom

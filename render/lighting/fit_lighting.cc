@@ -92,7 +92,7 @@ class Fit {
     const double median = Median(all);
     if (!(median > 0)) return false;
     for (const auto& lights : by_label) {
-      // A label as good as black would have no say in the light; it starts a little brighter.
+      // A label as good as black would have no weight in the light; it starts a little brighter.
       result_.albedo.push_back(lights.empty() ? 0 : std::max(0.05, Median(lights) / median));
       share_.push_back(double(lights.size()) / double(samples_.size()));
     }

@@ -13,7 +13,7 @@
 /// What is left out are orders 4, 6, …: for light from a single direction at most 3/32 of its strength (at n·ω = 0;
 /// 1/16 at n = ±ω).
 ///
-/// Frame: that of the normals. The renderers' is the camera frame (x right, y down, z forward); lights are told in the
+/// Frame: that of the normals. The renderers' is the camera frame (x right, y down, z forward); lights are given in the
 /// viewer's axes (x right, y up, z towards the viewer), see CameraFromViewer.
 #pragma once
 

@@ -17,7 +17,7 @@ namespace bodyloom {
 
 struct RandomBodyOptions {
   int num_vertices = 300, num_joints = 24, num_betas = 10, num_faces = 100;
-  /// Joints that correct a vertex, chosen anew for each vertex; J−1 or more: all of them, as in SMPL.
+  /// Joints that correct a vertex, chosen for each vertex; J−1 or more: all of them, as in SMPL.
   int correctives_per_vertex = 3;
   unsigned seed = 1;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers that no detector, camera or clock should say.
+// Numbers that no detector, camera or clock should give.
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -52,7 +52,7 @@ TEST_P(BadNumbers, HugeAndDenormalDetectionsAreOutliers) {
   const TrackSequenceResult expected = Fit(input, OptionsOf(GetParam()));
   struct Fault {
     float value;
-    double mm;  ///< a landmark in the corner of the image is a lie that can be told; the others are left out
+    double mm;  ///< a landmark in the corner of the image is a number that can be believed; the others are left out
   };
   for (const Fault& fault : {Fault{1e6F, 20}, Fault{1e30F, 20}, Fault{-1e30F, 20}, Fault{kTiny, 45}}) {
     KeypointSequence bad = Clip().keypoints;

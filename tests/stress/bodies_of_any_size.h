@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The toy body (tests/support/toy_body.h) with as many vertices as asked for: the same person, finer or coarser.
+/// The toy body (tests/support/toy_body.h) with as many vertices as requested: the same person, finer or coarser.
 #pragma once
 
 #include "bodyloom/geometry/body_model.h"

@@ -48,7 +48,7 @@ TEST_P(BrokenClips, HalfTheBodyUnseenFor200Frames) {
   EXPECT_LT(MeanErrorMm(result, clip, 0, 40), 80);
   EXPECT_LT(MeanErrorMm(result, clip, 260, 300), 80);
   EXPECT_LT(MeanErrorMm(result, clip, 50, 250), 200);
-  // The legs stay legs: knees do not fly, and the answer says that it does not know them.
+  // The legs stay legs: knees do not fly, and the answer gives them as unknown.
   const int ankle = BuiltinBody().FindJoint("l_ankle"), elbow = BuiltinBody().FindJoint("l_elbow");
   ASSERT_TRUE(ankle >= 0 && elbow >= 0);
   EXPECT_GT(result.track.joint_sigma(150, ankle), 2 * result.track.joint_sigma(20, ankle));
@@ -148,7 +148,7 @@ TEST_P(BrokenClips, AJumpOfTheFocalLengthMovesThePersonAndKeepsThePose) {
   ASSERT_TRUE(result.summary.IsUsable()) << result.summary.message;
   EXPECT_LT(MeanErrorMm(result, clip, 0, 30), 80);
   EXPECT_LT(MeanErrorMm(result, clip, 30, 60), 100);
-  EXPECT_NEAR(result.track.joints[45](0, 2) / clip.truth.joints[45](0, 2), 0.5, 0.1);  // nearer, as the image says
+  EXPECT_NEAR(result.track.joints[45](0, 2) / clip.truth.joints[45](0, 2), 0.5, 0.1);  // nearer, as in the image
 }
 
 TEST_P(BrokenClips, OneTakeInThreeFramesIsSeen) {

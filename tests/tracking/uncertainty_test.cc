@@ -79,8 +79,9 @@ INSTANTIATE_TEST_SUITE_P(, UncertaintyOf,
                          testing::Values(CameraKnowledge::kKnown, CameraKnowledge::kUnknownFocal,
                                          CameraKnowledge::kWeak));
 
-// Everything is linear, and everything that is measured or assumed is drawn as the cost says: accelerations, and
-// positions of which some are missing. Then the spread of the error is what is reported, in every frame.
+// Everything is linear, and everything that is measured or assumed is drawn from the distribution of the cost:
+// accelerations, and positions of which some are missing. Then the spread of the error is what is reported, in every
+// frame.
 TEST(Uncertainty, SpreadOfTheErrorsOfALinearProblem) {
   const BodyModel body(ToyBodyData());
   const int T = 16, kTrials = 400;
@@ -149,7 +150,7 @@ TEST(Uncertainty, SpreadOfTheErrorsOfTheWholeProblem) {
     std::mt19937_64 random(trial);
     std::normal_distribution<double> normal;
     const auto noise = [&](double s) { return Vector3d::NullaryExpr([&]() { return s * normal(random); }).eval(); };
-    problem.smoothness[0].tip_acceleration = problem.smoothness[0].root_acceleration = 1e4;  // says nothing
+    problem.smoothness[0].tip_acceleration = problem.smoothness[0].root_acceleration = 1e4;  // without weight
     problem.shape_prior.sigma = 0.4;                                                         // as the scene draws it
     problem.betas = scene->betas;
     VectorXd gradient;

@@ -16,9 +16,9 @@
 /// threads work, and the sums are taken in the same order however many threads there are.
 ///
 /// Memory: 8 n (2n + s + 4) bytes a frame, and scratch memory that is kept from one solve to the next: where windows of
-/// a few frames are solved again and again, asking the system for it would take as long as the elimination. Source of
-/// the elimination: any text on block band Cholesky; from both ends: "burn at both ends" (twisted) factorisation, van
-/// der Vorst 1987.
+/// a few frames are solved again and again, computing it from the system would take as long as the elimination. Source
+/// of the elimination: any text on block band Cholesky; from both ends: "burn at both ends" (twisted) factorisation,
+/// van der Vorst 1987.
 #pragma once
 
 #include <Eigen/Core>
@@ -35,11 +35,11 @@ class ChainSource {
   virtual ~ChainSource() = default;
   /// Adds frame t's upper triangle of A_t to a, (B_t | right-hand side) to b; row-major with strides.
   virtual void AddFrame(int t, double* a, int64_t a_stride, double* b, int64_t b_stride) const = 0;
-  /// n/3 row-major 3×3 blocks of C_t (frame t with t + 1) and D_t (t with t + 2); not asked for across cuts.
+  /// n/3 row-major 3×3 blocks of C_t (frame t with t + 1) and D_t (t with t + 2); not requested across cuts.
   [[nodiscard]] virtual const double* Next(int t) const = 0;
   [[nodiscard]] virtual const double* Second(int t) const = 0;
   /// n×n row-major block that is added to C_t where a coupling is not block diagonal, or null: what a marginal prior
-  /// couples (chain_prior.h), or a cost function on two frames' landmarks. Not asked for across cuts.
+  /// couples (chain_prior.h), or a cost function on two frames' landmarks. Not requested across cuts.
   [[nodiscard]] virtual const double* DenseNext(int /*t*/) const { return nullptr; }
 };
 
@@ -67,7 +67,7 @@ class ChainFactor {
   /// With rows [U | W₁ | W₂ | Y] of the factor, V = U⁻ᵀ, K_i = U⁻¹W_i, and C = the inverse given the shared values:
   ///   C_tu = −K₁ C_1u − K₂ C_2u (u = the next two frames),   C_tt = VᵀV − K₁ C_1t − K₂ C_2t,
   ///   G_t = −U⁻¹Y − K₁ G_1 − K₂ G_2,   P_tt = C_tt + G_t P_ss G_tᵀ,   P_ts = G_t P_ss
-  /// from the middle of a segment, where the elimination ended, outwards as far as is asked: 7 n³ multiplications and
+  /// from the middle of a segment, where the elimination ended, outwards as far as requested: 7 n³ multiplications and
   /// additions a frame, no memory that grows with the clip. Source: Takahashi, Fagan, Chen 1973 (selected inverse).
   void VisitInverse(int begin, int end, int num_threads,
                     const std::function<void(int, const Eigen::MatrixXd&)>& visit) const;

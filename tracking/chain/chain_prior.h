@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What frames that have left a chain still say about the two that are now first, and about shape and focal length:
+/// The prior that frames which have left a chain leave on the two that are now first, and on shape and focal length:
 ///   ½ eᵀ M e + mᵀ e,   e = x ⊟ x̄ = (log(R̄ᵀR) of each active joint, t − t̄ of both frames; β − β̄; log f − log f̄)
 /// M and m are what is left of the normal equations when the frames before are eliminated (a Schur complement). For
 /// linear measurements nothing is lost by it; for others, what left stays linearised where it was.

@@ -60,7 +60,7 @@ class ChainProblem : public ChainSource {
     anchors_[t].set = false;
     linearised_ = false;
   }
-  /// What frame 0 and the prior say about frames 1 and 2 and shared values, at the point linearised last, `point`.
+  /// The marginal of frame 0 and the prior on frames 1 and 2 and shared values, at the point linearised last, `point`.
   /// False when frame 0's matrix is singular.
   bool Marginalise(const ChainPoint& point, ChainPrior* prior) const;
 

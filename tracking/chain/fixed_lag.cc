@@ -50,7 +50,7 @@ void FixedLag::Cut(int t) {
   BODYLOOM_CHECK(t >= 0 && t < num_frames(), "fixed lag: a cut at frame ", t, " of ", num_frames());
   problem_.cut_before[t] = 1;
   if (t <= 1 && prior_.set) {
-    // What it says about shape and focal length once nothing is known of the first two poses.
+    // Its marginal on shape and focal length once nothing is known of the first two poses.
     const int p = 2 * chain_.frame_size(), s = chain_.shared_size();
     const Eigen::MatrixXd coupling = prior_.M.topRightCorner(p, s);
     const Eigen::LDLT<Eigen::MatrixXd> poses(prior_.M.topLeftCorner(p, p) + 1e-6 * Eigen::MatrixXd::Identity(p, p));

@@ -40,7 +40,7 @@ class FixedLag {
   [[nodiscard]] SequenceProblem& problem() { return problem_; }
   [[nodiscard]] const SequenceProblem& problem() const { return problem_; }
   void Touch(int t) { chain_.Forget(t); }
-  /// Frame t of the window does not continue the one before. Nothing that is said about frames before stays.
+  /// Frame t of the window does not continue the one before. Nothing of the frames before stays.
   void Cut(int t);
   void LimitDense(int max_points) { chain_.LimitDense(max_points); }
   [[nodiscard]] int num_frames() const { return static_cast<int>(problem_.states.size()); }

@@ -12,7 +12,7 @@
 namespace bodyloom {
 
 /// Shape components whose bone lengths have the ratios that the clip shows: a bone's largest projections over the clip
-/// (90th percentile, relative to the body's apparent size) tell its length wherever it once lay in the image plane.
+/// (90th percentile, relative to the body's apparent size) give its length wherever it once lay in the image plane.
 /// Fits log ratios of torso, thighs, shins, upper arms and forearms with σ = 0.03, and N(0, 1) on each component; a log
 /// ratio counts at most 0.35 from the mean body's. Zero without enough frames.
 Eigen::VectorXd EstimateShape(const KeypointSequence& keypoints, const Camera& camera, const BodyModel& model,

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Which way is up, and the ground that feet stand on, from one shot of one camera that does not move.
 ///
-/// The lifter says where up is in every frame; over a shot these directions are one measurement. A foot stands while
-/// the lifter calls it so and its ankle keeps its place across the view. Ankles of stances lie in one plane across up
-/// if there is a ground: it is fitted to them with the lifter's up as prior, robustly, allowing for what a single
-/// camera does not know: the depth of each stance. Somebody who jumps all the time, hangs, climbs stairs or is seen
-/// from the knees up has no ground, and that is said.
+/// The lifter predicts where up is in every frame; over a shot these directions are one measurement. A foot stands
+/// while the lifter calls it so and its ankle keeps its place across the view. Ankles of stances lie in one plane
+/// across up if there is a ground: it is fitted to them with the lifter's up as prior, robustly, allowing for what a
+/// single camera does not know: the depth of each stance. Somebody who jumps all the time, hangs, climbs stairs or is
+/// seen from the knees up has no ground, which is reported.
 #pragma once
 
 #include <Eigen/Core>
@@ -46,7 +46,7 @@ struct GroundPlaneOptions {
   double min_contact = 0.35;
   double max_speed = 0.4;      ///< m/s, of a standing ankle across the view
   double max_drift_m = 0.06;   ///< of a standing ankle from its mean place so far, across the view
-  double min_stance_s = 0.1;   ///< shorter ones say nothing
+  double min_stance_s = 0.1;   ///< shorter ones do not count
   double min_total_s = 0.4;    ///< of stances on the ground
   double min_share = 0.75;     ///< of the stances' time that must be on the ground
   double height_m = 0.03;      ///< σ of a standing ankle's height: heels rise

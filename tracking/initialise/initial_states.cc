@@ -49,7 +49,7 @@ std::vector<FrameState> FillFrames(const std::vector<int>& frames, const std::ve
   return states;
 }
 
-/// Hypotheses of every shot by itself: what lies beyond a cut says nothing about depth, heading or limbs. A shot that
+/// Hypotheses of every shot by itself: what lies beyond a cut does not bear on depth, heading or limbs. A shot that
 /// nowhere shows both shoulders and both hips well is taken with what it has: faint joints first, then a hidden
 /// shoulder or hip where its partner is.
 JointHypothesesResult FindHypothesesOfShots(const KeypointSequence& keypoints, const std::vector<char>& cut_before,

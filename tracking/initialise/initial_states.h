@@ -22,8 +22,8 @@ struct LiftedStart;
 
 /// The initialiser's poses when given; else the lifter's, when there is one that can read the observations; else joint
 /// hypotheses turned into poses by inverse kinematics and interpolated on SO(3) to every frame. `keypoints`:
-/// JointsToStartFrom(); null only with an initialiser. `lifted`, when given, receives what the lifter said (its frames
-/// are empty when it was not asked or saw nothing).
+/// JointsToStartFrom(); null only with an initialiser. `lifted`, when given, receives what the lifter predicted (its
+/// frames are empty when it was not run or saw nothing).
 InitialStates FindInitialStates(const TrackSequenceInput& input, const KeypointSequence* keypoints,
                                 const FrameLayout& layout, const TrackSequenceOptions& options,
                                 LiftedStart* lifted = nullptr);
@@ -36,7 +36,7 @@ std::string WhyNoLifter(const TrackSequenceInput& input, const TrackSequenceOpti
 /// from.
 KeypointSequence JointsFromDense(const BodyModel& model, const DenseSequence& dense);
 
-/// The 2D joints to start from and to tell cuts by: the input's, else JointsFromDense() put into `from_dense`, else
+/// The 2D joints to start from and to find cuts by: the input's, else JointsFromDense() put into `from_dense`, else
 /// null.
 const KeypointSequence* JointsToStartFrom(const TrackSequenceInput& input, KeypointSequence* from_dense);
 

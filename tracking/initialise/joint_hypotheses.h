@@ -6,7 +6,7 @@
 ///    by which parts of the face are seen, by how plausible the best limb hypotheses would be, and by angular speed.
 /// 3. Limbs: every limb has four hypotheses (each of its two bones points towards the camera or away: the sphere around
 ///    the known end meets the viewing ray twice); a trellis over the clip picks them by the learned density of limb
-///    directions, by what low confidence says about occlusion behind the torso, and by continuity.
+///    directions, by what low confidence implies about occlusion behind the torso, and by continuity.
 /// Source: Lee & Chen 1985 for the binary tree of hypotheses; the cues and their statistics are described in
 /// docs/tracking.md.
 #pragma once

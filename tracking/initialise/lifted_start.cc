@@ -45,7 +45,7 @@ std::optional<Vector3d> PlaceOnRays(const std::vector<Sight>& sights, const Matr
       b -= weight * across * x;
     }
     const Eigen::LDLT<Matrix3d> solver(A);
-    // Rays that are nearly parallel do not tell the depth.
+    // Rays that are nearly parallel do not determine the depth.
     if (solver.info() != Eigen::Success || !(solver.vectorD().minCoeff() > 1e-6 * solver.vectorD().maxCoeff())) {
       return std::nullopt;
     }

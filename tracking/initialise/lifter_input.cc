@@ -31,8 +31,8 @@ struct Part {
   int from, to;
   float share;
 };
-// What tells the size when neither torso nor legs do. Parts on the head are short, so noise doubles them easily: they
-// are asked last.
+// What gives the size when neither torso nor legs do. Parts on the head are short, so noise doubles them easily: they
+// come last.
 constexpr Part kLimbs[] = {
     {kLifterLeftShoulder, kLifterLeftShoulder + 1, 0.269F},  {kLifterLeftShoulder, kLifterLeftElbow, 0.186F},
     {kLifterLeftShoulder + 1, kLifterLeftElbow + 1, 0.186F}, {kLifterLeftElbow, kLifterLeftWrist, 0.183F},
@@ -117,7 +117,7 @@ std::optional<float> BodyScale(const Frame& frame) {
   return std::nullopt;
 }
 
-/// The largest size that a seen part asks for: foreshortening only makes parts look shorter.
+/// The largest size that a seen part implies: foreshortening only makes parts look shorter.
 std::optional<float> RoughScale(const Frame& frame) {
   for (const std::span<const Part> parts : {std::span<const Part>(kLimbs), std::span<const Part>(kHead)}) {
     float scale = 0;

@@ -18,10 +18,10 @@
 ///   log S + 1.3 (0 when the focal length is unknown); focal_known (0 or 1); S_t/S − 0.9 (0 where S_t is unknown);
 ///   the motion of the centre ray since the frame before, in units of S, along x and y of the virtual camera, in
 ///   [−2, 2] (0 at the first frame and where this frame or the one before shows nothing);
-///   for each of the kLifterBones bones what its foreshortening says: √(max(0, m² − l²)), its extent in depth if it has
-///   its full length m somewhere near, and m itself, where l is its length in this frame and m the 90th percentile of
-///   the lengths of the bone and its mirror image over the same window, both divided by S and at most 4 (0 where an end
-///   is missing). A network can find this by itself, but it takes long: it needs maxima over seconds.
+///   for each of the kLifterBones bones what its foreshortening implies: √(max(0, m² − l²)), its extent in depth if it
+///   has its full length m somewhere near, and m itself, where l is its length in this frame and m the 90th percentile
+///   of the lengths of the bone and its mirror image over the same window, both divided by S and at most 4 (0 where an
+///   end is missing). A network can find this by itself, but it takes long: it needs maxima over seconds.
 ///
 /// A point counts as seen when its coordinates are finite, its confidence is positive and its ray lies within 84° of
 /// the body's middle. Everything is finite for every input; a clip in which nothing is seen gives zero coordinates.

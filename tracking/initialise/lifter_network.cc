@@ -42,7 +42,7 @@ Rows Around(const Rows& rows, int dilation, int num_frames) {
   return around;
 }
 
-/// out(t) = bias + Σ_k W_k x(t + (k − 1) dilation), k = 0, 1, 2, for the rows t that are asked for; x is zero outside.
+/// out(t) = bias + Σ_k W_k x(t + (k − 1) dilation), k = 0, 1, 2, for the rows t that are requested; x is zero outside.
 /// `place[t]` is the row of x that holds frame t.
 RowMatrixXf Convolve(const RowMatrixXf& x, const std::vector<int>& place, const Rows& rows, const RowMatrixXf& weight,
                      const Eigen::VectorXf& bias, int dilation) {

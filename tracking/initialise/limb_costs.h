@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// The four hypotheses of a limb (each of its two bones points towards the camera or away) and what each costs: the
-/// learned density of its directions in the torso's frame, and what confidence says about occlusion by the torso.
+/// learned density of its directions in the torso's frame, and what confidence implies about occlusion by the torso.
 #pragma once
 
 #include <Eigen/Core>

@@ -44,7 +44,7 @@ double FaceCost(const Rays& rays, const Matrix3d& torso, double depth) {
                 0.5 * mismatch(kRightEye, 0.95 * Logistic((front * 0.9 - left * 0.4 + 0.3) / 0.3)) +
                 0.5 * mismatch(kLeftEar, 0.9 * Logistic((left + 0.35) / 0.3)) +
                 0.5 * mismatch(kRightEar, 0.9 * Logistic((-left + 0.35) / 0.3));
-  // Sideways position of the nose between or before the ears tells which way the head looks.
+  // Sideways position of the nose between or before the ears shows which way the head looks.
   Vector2d ears = Vector2d::Zero();
   int count = 0;
   for (int k : {kLeftEar, kRightEar}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The torso orientations that a frame may have: heading × tilt, turned in the image as the detections say, and what
+/// The torso orientations that a frame may have: heading × tilt, turned in the image as the detections are, and what
 /// each costs by shoulders, hips, lean and face.
 #pragma once
 

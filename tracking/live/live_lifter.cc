@@ -11,7 +11,7 @@ namespace bodyloom {
 namespace {
 
 constexpr int kReach = 36;            ///< samples behind the oldest that is read; a little more than the network's own
-constexpr size_t kEnoughDense = 100;  ///< keypoints of a frame beside which it is not asked
+constexpr size_t kEnoughDense = 100;  ///< keypoints of a frame beside which it is not run
 
 }  // namespace
 

@@ -8,9 +8,9 @@
 
 namespace bodyloom {
 
-/// What the lifter says of the window's last frames.
+/// The lifter's predictions for the window's last frames.
 struct LiveReading {
-  std::vector<LiftedFrame> frames;  ///< one frame every `stride`, the last of them the window's last; empty: not asked
+  std::vector<LiftedFrame> frames;  ///< one frame every `stride`, the last of them the window's last; empty: not run
   int stride = 1;
   double metres = 0;  ///< of its unit
 };
@@ -19,7 +19,7 @@ class LiveLifter {
  public:
   /// The next frame counts as the first of a shot.
   void Restart() { since_last_ = 0; }
-  /// Asks the lifter where its turn has come, and puts what it says into the window's frames of the current shot.
+  /// Runs the lifter where its turn has come, and puts its predictions into the window's frames of the current shot.
   LiveReading Ask(const LiveSetup& setup, LiveWindow* window);
 
  private:

@@ -48,7 +48,7 @@ void LiveLimbs::Try(const LiveSetup& setup, const LiveReading& reading, LiveWind
   FixedLag& lag = window->lag();
   const int T = lag.num_frames(), samples = static_cast<int>(lifted.size());
   const int count = (samples - 1) * stride + 1;  // the last frames of the window, which the samples span
-  // Dense keypoints tell limbs apart by themselves.
+  // Dense keypoints distinguish limbs by themselves.
   if (until_next_ > 0 || samples < 2 || count > window->NumOfShotInWindow() ||
       !window->records().back().dense.empty() || setup.layout.knowledge == CameraKnowledge::kWeak) {
     return;
@@ -101,7 +101,8 @@ void LiveLimbs::Try(const LiveSetup& setup, const LiveReading& reading, LiveWind
     found = true;
   }
   if (!found) return;
-  // What the frames before say about the pose was said of another one: the first of these begins a shot for the solver.
+  // What the frames before imply about the pose belongs to another one: the first of these begins a shot for the
+  // solver.
   for (int t = 0; t < count; ++t) {
     problem.states[T - count + t] = best.states[t];
     lag.Touch(T - count + t);

@@ -10,8 +10,9 @@ namespace bodyloom {
 
 class LiveLimbs {
  public:
-  /// Where limbs of the window's last frames are not where the lifter says, tries its poses instead in a short solve,
-  /// of these limbs alone and of the whole body, and keeps what costs less. Pauses for some readings after a try.
+  /// Where limbs of the window's last frames are not where the lifter predicts them, tries its poses instead in a short
+  /// solve, of these limbs alone and of the whole body, and keeps what costs less. Pauses for some readings after a
+  /// try.
   void Try(const LiveSetup& setup, const LiveReading& reading, LiveWindow* window);
 
  private:

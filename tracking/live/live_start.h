@@ -14,8 +14,8 @@ std::vector<FrameState> FindLiveStates(const LiveSetup& setup, int count, LiveWi
 /// Begins a shot with the open frames, from the first that was seen on. False when they do not show enough.
 bool StartShot(const LiveSetup& setup, LiveWindow* window);
 
-/// Solves the shot's frames in the window anew: first near their start, then free. With `count` > 0 the last `count` of
-/// them get new starting states first, where these can be found.
+/// Solves the shot's frames in the window again: first near their start, then free. With `count` > 0 the last `count`
+/// of them get new starting states first, where these can be found.
 void RestartShot(const LiveSetup& setup, int count, LiveWindow* window);
 
 }  // namespace bodyloom

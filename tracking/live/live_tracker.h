@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Tracks a person while the frames come in: one frame in, the pose of the frame `lag` frames before out.
 ///
-/// The last frames are solved together by a fixed-lag smoother (tracking/chain/fixed_lag.h); what older frames said
+/// The last frames are solved together by a fixed-lag smoother (tracking/chain/fixed_lag.h); what older frames implied
 /// about pose, shape and focal length stays as a prior. Time and memory of a frame are bounded, whatever comes: every
 /// frame gets a status and none is waited for. How it works, and what it costs: docs/live.md.
 #pragma once

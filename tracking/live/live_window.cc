@@ -83,7 +83,7 @@ void LiveWindow::Release(int count) {
     it->seen = it->held->seen || !it->dense.empty();
     it->held.reset();
     it->shot = shot_;
-    it->lifted = LiftedPose();  // said of the person before
+    it->lifted = LiftedPose();  // predicted for the person before
     if (!it->in_window) continue;
     const int slot = SlotOf(*it);
     lag_->problem().frames[slot].lifted.pose = nullptr;
@@ -113,7 +113,7 @@ int LiveWindow::NumOfShotInWindow() const { return std::min(lag_->num_frames(), 
 FrameData LiveWindow::Observe(const FrameState& state, LiveRecord* record) const {
   const TrackSequenceOptions& solve = setup_.options.solve;
   FrameData frame;
-  const double height_px = PersonHeightPx(setup_.layout, state, setup_.stature_m);
+  const double height_px = UprightHeightPx(setup_.layout, state, setup_.stature_m);
   const auto back = static_cast<int>(records_.back().index - record->index);
   const KeypointSequence recent = history_.Recent(back + 1, 1);
   if (recent.num_frames() == back + 1) frame.landmarks.seen = ObserveLandmarks(setup_.landmarks, recent, 0, height_px);

@@ -57,7 +57,7 @@ class LiveWindow {
   bool Solve(int iterations);
   void EndShot();
   /// J standard deviations of the joints' positions (JointSigmaOf()) in frames begin ≤ slot < end of the solver's
-  /// window; NaN where they cannot be told.
+  /// window; NaN where they cannot be determined.
   std::vector<Eigen::VectorXd> JointSigma(int begin, int end);
   /// Forgets records that nobody needs any more.
   void DropDone();

@@ -147,7 +147,7 @@ TrackSequenceResult TrackLive(const TrackSequenceInput& input, const LiveTracker
     if (taken.status[t] == FrameStatus::kInterpolated) continue;  // it may have been left out: nothing of it was used
     if (input.keypoints != nullptr) {
       problem.frames[t].landmarks.seen =
-          ObserveLandmarks(landmarks, *input.keypoints, t, PersonHeightPx(problem.layout, state, stature));
+          ObserveLandmarks(landmarks, *input.keypoints, t, UprightHeightPx(problem.layout, state, stature));
     }
     if (input.dense != nullptr) problem.frames[t].dense.points = &input.dense->frames[t];
     summary.num_observations += static_cast<int>(problem.frames[t].landmarks.seen.size()) +

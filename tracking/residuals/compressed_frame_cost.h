@@ -4,7 +4,7 @@
 /// With H = JᵀJ and g = Jᵀr of the frame's weighted residuals, the rows are R δ + y with RᵀR = H and y = R⁻ᵀ g, and one
 /// last row √(2·cost − yᵀy) with zero Jacobian, which also carries the part of the robust kernels that a weighted
 /// residual does not show, √Σ(ρ − ρ′s). Cost, gradient and Gauss–Newton step equal those of the full system; when only
-/// residuals are asked for, everything is in the last row.
+/// residuals are requested, everything is in the last row.
 #pragma once
 
 #include <ceres/cost_function.h>
@@ -33,9 +33,9 @@ class CompressedFrameCost : public ceres::CostFunction {
   const FrameState& held_;
 };
 
-/// All frames of a clip, evaluated together: Ceres asks once for each new point, the frames are spread over threads,
-/// and its cost functions only hand out what lies ready. Ceres itself then runs on one thread: its own threads add up
-/// gradients in the order in which they finish, which changes the last bits from run to run.
+/// All frames of a clip, evaluated together: Ceres evaluates once for each new point, the frames are spread over
+/// threads, and its cost functions only hand out what lies ready. Ceres itself then runs on one thread: its own threads
+/// add up gradients in the order in which they finish, which changes the last bits from run to run.
 class FrameBatch : public ceres::EvaluationCallback {
  public:
   explicit FrameBatch(int num_threads) : num_threads_(num_threads) {}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A wrong motion that is as wrong as asked: stands for another system's output that initialises the tracker.
+/// A perturbed motion, wrong by a given amount: in place of another system's output that initialises the tracker.
 #pragma once
 
 #include <cstdint>

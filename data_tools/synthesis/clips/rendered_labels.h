@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Part labels of a known track: what a perfect detector would say of every pixel.
+/// Part labels of a known track: what a perfect detector would predict for every pixel.
 #pragma once
 
 #include "bodyloom/geometry/body_model.h"

@@ -247,7 +247,7 @@ class ClipMaker {
         names_.size() >= num_coco && std::equal(CocoNames().begin(), CocoNames().end(), names_.begin());
     if (has_coco) clip_.truth.coco17[t] = points.topRows(static_cast<Eigen::Index>(num_coco));
     DetectionFrame& frame = detection_frames_[t];
-    frame.person_height_px = PersonHeight(t, vertices);
+    frame.person_height_px = UprightHeightPx(t, vertices);
     frame.hidden.assign(names_.size(), false);
     frame.head_cosine.assign(names_.size(), 1.0);
     for (size_t k = 0; k < names_.size(); ++k) {
@@ -274,12 +274,12 @@ class ClipMaker {
     for (int k = 0; k < 3; ++k) frame->head_cosine[k] = forward.dot(to_camera);
     frame->head_cosine[3] = left.dot(to_camera);
     frame->head_cosine[4] = -left.dot(to_camera);
-    // For these the direction tells better than a depth test whether they are in view.
+    // For these the direction decides better than a depth test whether they are in view.
     for (int k = 0; k < 5; ++k) frame->hidden[k] = false;
   }
 
   /// The body's stature at its distance from the camera, pixels.
-  [[nodiscard]] double PersonHeight(int t, const MatrixX3d& vertices) const {
+  [[nodiscard]] double UprightHeightPx(int t, const MatrixX3d& vertices) const {
     const double stature_m = body_.data().v_template.col(1).maxCoeff() - body_.data().v_template.col(1).minCoeff();
     if (camera().model == CameraModel::kWeakPerspective) return clip_.truth.CameraAt(t).scale * stature_m;
     return camera().fy * stature_m / std::max(vertices.col(2).mean(), 0.1);

@@ -67,13 +67,13 @@ struct SynthClip {
   DenseSequence dense_truth;  ///< the same pixels before faults 2–5 (same frames, same order)
   KeypointSequence keypoints;
   KeypointSequence keypoints_truth;  ///< exact; confidence 1 visible, 0.5 hidden by the body, 0 outside the image
-  Motion initialiser;                ///< camera frame; no frames when not asked for
+  Motion initialiser;                ///< camera frame; no frames when not requested
   double initialiser_error_px = 0;   ///< as measured
   SynthFaultCounts counts;
 };
 
 /// Throws std::invalid_argument when an option is out of range, the motion has no frame, is not finite or has more
-/// columns than the body has joints, or UV faults or missing parts are asked of a body without charts.
+/// columns than the body has joints, or UV faults or missing parts are requested for a body without charts.
 SynthClip MakeSynthClip(const BodyModel& body, const Motion& motion, const SynthClipOptions& options = {});
 
 }  // namespace bodyloom

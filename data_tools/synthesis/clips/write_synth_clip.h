@@ -8,7 +8,7 @@
 /// | keypoints.json   | the 2D landmarks as OpenPose BODY_25: a list with one {"version", "people"} a frame    |
 /// | cameras.json     | intrinsics and pose of the camera (observations/load_cameras.h, form 3)                |
 /// | initialiser.npz  | the perturbed motion as a track, when the clip has one                                 |
-/// | video.mp4        | the person in clothes on a plain floor, when asked for                                 |
+/// | video.mp4        | the person in clothes on a plain floor, when requested                                 |
 /// | clip.json        | seed, fault options, and what they did                                                 |
 #pragma once
 

@@ -29,7 +29,7 @@ LifterClip CompactClip(const Motion& motion, bool has_floor, const LifterBody& b
 void SampleClip(const LifterClip& clip, double start_s, double step_s, int num_frames, PoseSequence* poses);
 
 /// The same for the listed joints alone, written into `poses` (which has frames already): target[i] takes the rotations
-/// of source[i], mirrored when asked for.
+/// of source[i], mirrored when requested.
 void SampleJoints(const LifterClip& clip, double start_s, double step_s, const std::vector<int>& source,
                   const std::vector<int>& target, bool mirror, PoseSequence* poses);
 

@@ -49,7 +49,7 @@ struct LifterWindowOptions {
   double missing_limb = 0.1, missing_lower_half = 0.08, nothing = 0.06;  ///< for a stretch
   double image_border = 0.15;                                            ///< the image ends across the body
   double cut_off = 0.25;             ///< points below a confidence of 0.1 … 0.4 are not reported
-  double constant_confidence = 0.1;  ///< the detector says 1 for all it reports
+  double constant_confidence = 0.1;  ///< the confidence is 1 for all it reports
   double confidence_spread = 0.35;   ///< sd of the logarithm of the exponent that detectors' confidences differ by
 
   [[nodiscard]] bool IsValid(std::string* why) const;

@@ -30,7 +30,7 @@ void FlexLeg(int side, float hip, float out, float knee, float level_foot, int t
   a = a * TurnBy(X(level_foot * std::clamp(hip - knee, -0.7F, 0.7F)));
 }
 
-/// Both legs down, and the trunk forward as balance asks; or one leg before the other.
+/// Both legs down, and the trunk forward as balance requires; or one leg before the other.
 void Squat(const LifterWindowOptions& options, HashRandom* random, PoseSequence* poses) {
   const bool lunge = random->Uniform() < options.lunge_share;
   float hip[2], knee[2], out[2];

@@ -57,8 +57,8 @@ struct LooseGarment {
 LooseGarment CutLooseGarment(const MatrixX3d& vertices, const MatrixX3i& faces, double arm_x_m,
                              const LooseGarmentOptions& options);
 
-/// What an outfit's kind and seed ask for on a body with these joints (J×3, T-pose, SMPL's tree) and pinned ring height
-/// scaled along; for a suit, which has none, length_m is 0.
+/// The garment of an outfit's kind and seed on a body with these joints (J×3, T-pose, SMPL's tree) and pinned ring
+/// height scaled along; for a suit, which has none, length_m is 0.
 LooseGarmentOptions LooseGarmentOf(const Outfit& outfit, const MatrixX3d& rest_joints, uint64_t seed);
 
 /// Where the pinned vertices are on a body's posed, clothed surface.

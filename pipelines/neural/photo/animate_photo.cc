@@ -84,7 +84,7 @@ class PhotoAnimation {
   [[nodiscard]] int TextureSize() const { return run_.config.profile.texture_size; }
 
   void OpenPhotos() {
-    PartsNamed(request_.garment.parts);  // a wrong name is said before anything is read
+    PartsNamed(request_.garment.parts);  // a wrong name is refused before anything is read
     photos_ = LoadPhotos(PhotosOf(request_), Size(), TextureSize());
     for (const Photo& photo : photos_) notes_ += photo.notes;
   }

@@ -18,7 +18,7 @@ struct PeopleDataRequest {
   bool test = false;  ///< the people kept for testing, instead of those to train on
 };
 
-/// Pictures are read when they are first asked for and kept (4 bytes a pixel); maps are made each time.
+/// Pictures are read when they are first requested and kept (4 bytes a pixel); maps are made each time.
 class PeopleData {
  public:
   /// Throws std::runtime_error naming the file that cannot be used, or a dataset without such people.

@@ -27,8 +27,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kWhole = 0.99;   ///< of the body's points in the picture: nothing is said
-constexpr double kOthers = 0.02;  ///< of the labels that are other people's: nothing is said
+constexpr double kWhole = 0.99;   ///< of the body's points in the picture: no note
+constexpr double kOthers = 0.02;  ///< of the labels that are other people's: no note
 
 /// The track's frame alone.
 Track TrackOfFrame(const Track& track, const std::string& path, int frame) {

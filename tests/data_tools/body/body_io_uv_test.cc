@@ -65,7 +65,7 @@ TEST(UvFromObj, QuadsMatchEitherDiagonal) {
   std::string text = ObjOf(body);
   text.erase(text.find("\nf ") + 1);
   for (Eigen::Index f = 0; f < body.faces.rows(); f += 2) {
-    // The two triangles (a, b, c), (a, c, d) of a quad, told as (b, c, d, a).
+    // The two triangles (a, b, c), (a, c, d) of a quad, given as (b, c, d, a).
     std::ostringstream line;
     for (const int v : {body.faces(f, 1), body.faces(f, 2), body.faces(f + 1, 2), body.faces(f, 0)}) {
       line << " " << v + 1 << "/" << v - 50;  // UV by its distance from the last

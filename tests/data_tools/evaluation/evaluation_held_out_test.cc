@@ -113,7 +113,7 @@ TEST(EvaluationHeldOutTest, RootAndScaleAreForgivenInTheOtherViewsOnly) {
   EXPECT_GT(e.Value("root_depth_err_mm"), 500);
 }
 
-// Turning everything about the viewing axis by ten degrees is a similarity: PA-MPJPE forgives it, the angles tell it.
+// Turning everything about the viewing axis by ten degrees is a similarity: PA-MPJPE forgives it, the angles do not.
 TEST(EvaluationHeldOutTest, AWrongOrientationShows) {
   Scene scene = MakeScene();
   const Eigen::Matrix3d turn = RotationFromAxisAngle({0, 0.1, 0});

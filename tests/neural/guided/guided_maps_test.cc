@@ -219,7 +219,7 @@ TEST(CompleteMaps, NobodyPutsAFaceOnTheBack) {
   for (int t = 0; t < 256; ++t) {
     if (t % 16 >= 8) {
       EXPECT_NE(maps.labels[t], 3);
-      EXPECT_NE(maps.from[t], 0) << "what the mirrored front told stays";
+      EXPECT_NE(maps.from[t], 0) << "what the mirrored front gave stays";
     } else {
       faces_in_front += maps.labels[t] == 3 ? 1 : 0;
     }

@@ -39,7 +39,7 @@ TrainGuidedOptions ToyOptions(const std::string& name) {
 
 TEST(GuidedTraining, LearnsAPairByHeart) {
   TrainGuidedOptions options = ToyOptions("guided_learns");
-  // One person in two poses: what it is asked is what it has learned.
+  // One person in two poses: it is tested on what it has learned.
   options.validation = ToyPeople(1, 2);
   options.steps = 260;
   options.batch = 2;

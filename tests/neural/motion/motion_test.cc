@@ -86,7 +86,7 @@ TEST(MotionModel, AblationsLeaveOutWhatTheyName) {
   }
 }
 
-/// Where the decoders say nothing, classes and colour are those of the texel that a pixel shows.
+/// Where the decoders add nothing, classes and colour are those of the texel that a pixel shows.
 TEST(MotionModel, ATexelShowsItsLearnedClassAndColour) {
   const torch::NoGradGuard no_grad;
   torch::manual_seed(4);

@@ -251,34 +251,34 @@ class GuidedByHeart : public ::testing::Test {
 };
 
 TEST_F(GuidedByHeart, SilNet) {
-  Tensor said;
+  Tensor predicted;
   const auto [first, last] = LearnByHeart(
       *model_->sil,
       [&] {
-        said = torch::sigmoid(
+        predicted = torch::sigmoid(
             model_->Silhouette(model_->EncodeSource(batch_.source), batch_.target.pose, batch_.pseudo, batch_.box));
-        return L1Loss(said, batch_.target.silhouette);
+        return L1Loss(predicted, batch_.target.silhouette);
       },
       100, 5e-3);
   EXPECT_GT(first, 0.3);
   EXPECT_LT(last, 0.01);
-  EXPECT_GT(((said > 0.5) == (batch_.target.silhouette > 0.5)).to(torch::kFloat).mean().item<double>(), 0.99);
+  EXPECT_GT(((predicted > 0.5) == (batch_.target.silhouette > 0.5)).to(torch::kFloat).mean().item<double>(), 0.99);
 }
 
 TEST_F(GuidedByHeart, GarNet) {
   const Tensor classes = batch_.target.classes.squeeze(1).to(torch::kLong);
-  Tensor said;
+  Tensor predicted;
   const auto [first, last] = LearnByHeart(
       *model_->gar,
       [&] {
-        said = model_->Labels(model_->EncodeSource(batch_.source), batch_.target.pose, batch_.target.silhouette,
-                              batch_.pseudo.classes, batch_.box);
-        return SoftLabelCrossEntropy(said, OneHot(classes, kPhotoLabels));
+        predicted = model_->Labels(model_->EncodeSource(batch_.source), batch_.target.pose, batch_.target.silhouette,
+                                   batch_.pseudo.classes, batch_.box);
+        return SoftLabelCrossEntropy(predicted, OneHot(classes, kPhotoLabels));
       },
       100, 5e-3);
   EXPECT_GT(first, 0.3);
   EXPECT_LT(last, 0.02);
-  EXPECT_TRUE(torch::equal(said.argmax(1), classes));
+  EXPECT_TRUE(torch::equal(predicted.argmax(1), classes));
 }
 
 TEST_F(GuidedByHeart, RenderNet) {

@@ -318,7 +318,7 @@ TEST(PhotoWindow, IsAroundTheBodyAndInsideTheFrame) {
   EXPECT_LE(near.x, kCardLeft - 2);
   EXPECT_GE(near.x + near.width, kCardLeft + kCardWidth + 2);
   EXPECT_EQ(WindowAround(frame, 5, 16).width, 64);    // 24 + 10 pixels
-  EXPECT_EQ(WindowAround(frame, 2, 40).width, 64);    // as large as asked for
+  EXPECT_EQ(WindowAround(frame, 2, 40).width, 64);    // as large as requested
   EXPECT_EQ(WindowAround(frame, 99, 16).height, 64);  // never beyond the frame
   frame.parts.assign(frame.parts.size(), 0);
   const PhotoWindow nobody = WindowAround(frame, 2, 16);

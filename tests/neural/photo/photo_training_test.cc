@@ -276,7 +276,7 @@ TEST(PhotoRenderer, ComputesOnlyWhatIsNearTheBody) {
     for (int x = 0; x < kToySize; ++x) {
       const size_t i = static_cast<size_t>(y) * kToySize + x;
       const bool inside = x >= window.x && x < window.x + window.width && y >= window.y && y < window.y + window.height;
-      // An untrained network is half transparent wherever it is asked.
+      // An untrained network is half transparent everywhere.
       ASSERT_EQ(cut.alpha[i] > 0, inside) << x << ' ' << y;
       ASSERT_GT(whole.alpha[i], 0);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a run says of itself in one line.
+// The scores of a run in one line.
 #include "bodyloom/pipelines/people/motion_scores_text.h"
 
 #include <gtest/gtest.h>

@@ -51,7 +51,7 @@ TEST_F(PhotoFiles, OrdinaryOnesComeWithoutANote) {
     EXPECT_THAT(photo.alpha, IsEmpty());
     EXPECT_EQ(photo.image.width, 24);
   }
-  // Opaque throughout: an alpha channel that says nothing.
+  // Opaque throughout: an alpha channel without information.
   WriteTransparentPng(folder_.File("a.png"), Blocks(), std::vector<uint8_t>(24 * 16, 255));
   EXPECT_THAT(ReadPhoto(folder_.File("a.png")).notes, IsEmpty());
   EXPECT_EQ(ReadPhoto(folder_.File("a.png")).image, Blocks());

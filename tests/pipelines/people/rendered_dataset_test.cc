@@ -15,7 +15,7 @@
 namespace bodyloom {
 namespace {
 
-/// A window of 3 × 2 pixels at (1, 1) of a picture of 6 × 4, and what networks said of it.
+/// A window of 3 × 2 pixels at (1, 1) of a picture of 6 × 4, and what networks predicted for it.
 struct Drawn {
   PersonWindow window;
   MotionPicture picture;

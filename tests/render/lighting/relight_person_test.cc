@@ -118,7 +118,7 @@ TEST(RelightPerson, ThePictureInOtherLightIsWhatOtherLightWouldShow) {
   const MatrixX3d seen = normals.topRows(Eigen::Index(luminance.size()));
   const FitLightingResult fit = FitLighting(seen, luminance, labels);
   ASSERT_TRUE(fit.summary.IsUsable()) << ToString(fit.summary.status);
-  // The picture does not tell the light's brightness: taken from the truth, as a user sets it by eye.
+  // The picture does not determine the light's brightness: taken from the truth, as a user sets it by eye.
   const ShLighting old_light = mean / fit.summary.mean_shading * Vector3d::Ones() * fit.coefficients.transpose();
   Relight(old_light, after.Lighting(), scene.normals, scene.alpha, {}, image);
   const double relit_db = Psnr(image, truth, scene);

@@ -44,12 +44,12 @@ TEST(ChainProblem, LinearisedAgainAfterAnyChangeItIsTheSameAsAnew) {
   const VectorXd step = VectorXd::Constant(static_cast<Eigen::Index>(x.states.size()) * chain.frame_size(), 0.01);
   ChainPoint y;
   chain.Plus(x, step, VectorXd::Constant(chain.shared_size(), 0.01), &y);
-  const auto anew = [&](const ChainPoint& at) {
+  const auto from_scratch = [&](const ChainPoint& at) {
     ChainProblem other(problem, false, false, 2);
     return System(&other, at);
   };
   const System first(&chain, x), second(&chain, x);
-  EXPECT_TRUE(first == anew(x) && second == first);
+  EXPECT_TRUE(first == from_scratch(x) && second == first);
   chain.Cost(y);
   EXPECT_TRUE(System(&chain, x) == first) << "after the cost elsewhere";
   EXPECT_FALSE(System(&chain, y) == first);
@@ -59,19 +59,19 @@ TEST(ChainProblem, LinearisedAgainAfterAnyChangeItIsTheSameAsAnew) {
   chain.Forget(2);
   const System fewer(&chain, x);
   EXPECT_FALSE(fewer == first) << "other observations";
-  EXPECT_TRUE(fewer == anew(x));
+  EXPECT_TRUE(fewer == from_scratch(x));
 
   problem.cut_before[3] = 1;
   chain.Moved(0);
   const System cut(&chain, x);
   EXPECT_FALSE(cut == fewer) << "a cut";
-  EXPECT_TRUE(cut == anew(x));
+  EXPECT_TRUE(cut == from_scratch(x));
 
   problem.shape_prior.weight *= 2;
   chain.Moved(0);
   const System stiff(&chain, x);
   EXPECT_FALSE(stiff == cut) << "another shape prior";
-  EXPECT_TRUE(stiff == anew(x));
+  EXPECT_TRUE(stiff == from_scratch(x));
 
   chain.SetPrior(&stiff.prior);
   EXPECT_FALSE(System(&chain, x) == stiff) << "a prior";

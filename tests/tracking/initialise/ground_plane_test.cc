@@ -82,9 +82,9 @@ TEST(GroundPlane, FindsTheKnownPlaneFromTiltedCameras) {
       options.elevation_deg = elevation;
       options.roll_deg = roll;
       const Walk walk = MakeWalk(options);
-      // What the lifter says of up is a few degrees off.
-      const Vector3d said = RotationFromAxisAngle(Vector3d(0.03, 0, -0.02)) * walk.up;
-      const GroundPlane ground = EstimateGroundPlane(walk.feet, walk.timestamps, said, {});
+      // The lifter's up is a few degrees off.
+      const Vector3d lifter_up = RotationFromAxisAngle(Vector3d(0.03, 0, -0.02)) * walk.up;
+      const GroundPlane ground = EstimateGroundPlane(walk.feet, walk.timestamps, lifter_up, {});
       ASSERT_TRUE(ground.found) << elevation << " " << roll << ": " << ground.why;
       EXPECT_LT(AngleDeg(ground.normal, walk.up), 2.5) << elevation << " " << roll;
       EXPECT_NEAR(kAnkle - ground.offset_m, walk.camera_height_m, 0.12) << elevation << " " << roll;
@@ -99,10 +99,10 @@ TEST(GroundPlane, FeetOverruleAnUpThatIsOff) {
   options.depth_error = 0.002;
   options.steps = 30;
   const Walk walk = MakeWalk(options);
-  const Vector3d said = RotationFromAxisAngle(Vector3d(0.07, 0, 0.05)) * walk.up;
-  const GroundPlane ground = EstimateGroundPlane(walk.feet, walk.timestamps, said, {});
+  const Vector3d lifter_up = RotationFromAxisAngle(Vector3d(0.07, 0, 0.05)) * walk.up;
+  const GroundPlane ground = EstimateGroundPlane(walk.feet, walk.timestamps, lifter_up, {});
   ASSERT_TRUE(ground.found) << ground.why;
-  EXPECT_GT(AngleDeg(said, walk.up), 4.5);
+  EXPECT_GT(AngleDeg(lifter_up, walk.up), 4.5);
   EXPECT_LT(AngleDeg(ground.normal, walk.up), 2);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // From 2D landmarks to lifted frames: phases, mirror, cuts, the mean of hypotheses, odd clips. The network is random
-// here: what it says is another test's business.
+// here: what it predicts is another test's business.
 #include "bodyloom/tracking/initialise/lift_keypoints.h"
 
 #include <gtest/gtest.h>
@@ -210,7 +210,7 @@ TEST(MeanLimb, WeighsTheGuessesAndCoversThem) {
 }
 
 TEST(StartFromLifted, PlacesTheHipsWhereTheRaysMeet) {
-  // Whatever the network says of the shape, the mid-hip is where it fits the image best: in front, near the middle.
+  // Whatever the network predicts of the shape, the mid-hip is where it fits the image best: in front, near the middle.
   const BodyModel body{ToyBodyData()};
   const KeypointSequence clip = Wave(20, 20);
   LiftedStart start;

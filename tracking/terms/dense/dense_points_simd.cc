@@ -69,7 +69,7 @@ HWY_INLINE void AddBlock(const double (&A)[2][4], const float* HWY_RESTRICT bloc
   }
 }
 
-/// Where a vertex is: computed when it is asked for first in a frame.
+/// Where a vertex is: computed when it is requested first in a frame.
 const double* PosedVertex(const Body& body, const Frame& frame, const Vertices& vertices, int v) {
   double* HWY_RESTRICT posed = vertices.posed + 3 * static_cast<int64_t>(v);
   if (vertices.posed_stamp[v] == vertices.frame) return posed;

@@ -17,8 +17,8 @@ namespace bodyloom {
 /// Must not outlive what it is given. Without lifted frames, or switched off, it changes nothing.
 class ClipGround {
  public:
-  /// `problem` holds the whole clip, `lifted` what the lifter said of each of its frames (or nothing) when it read
-  /// `keypoints`.
+  /// `problem` holds the whole clip, `lifted` what the lifter predicted for each of its frames (or nothing) when it
+  /// read `keypoints`.
   ClipGround(const TrackSequenceInput& input, const TrackSequenceOptions& options, const KeypointSequence* keypoints,
              const std::vector<LiftedFrame>& lifted, const LiftedLandmarks& landmarks, SequenceProblem* problem);
 

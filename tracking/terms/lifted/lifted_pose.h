@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-/// L_d of paper A when the initialiser is the lifter: landmarks relative to the mid-hip should be where it says, each
-/// as firmly as its own uncertainty allows.
+/// L_d of paper A when the initialiser is the lifter: landmarks relative to the mid-hip should be where it predicts
+/// them, each as firmly as its own uncertainty allows.
 ///   ½ w Σ_k ρ(‖W_k (x_k − ½(x_left_hip + x_right_hip) − y_k)‖²)     ρ: Geman–McClure
-/// W_k = R diag(1/σ_xy, 1/σ_xy, 1/σ_z) Rᵀ with R the axes in which the lifter looked. Depth is what it is asked for,
-/// and across the view the image knows better: σ_xy is rarely what decides.
+/// W_k = R diag(1/σ_xy, 1/σ_xy, 1/σ_z) Rᵀ with R the axes in which the lifter looked. What it adds is
+/// depth; across the view the image is the better measurement: σ_xy rarely decides.
 #pragma once
 
 #include <Eigen/Core>

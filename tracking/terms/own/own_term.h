@@ -10,7 +10,7 @@
 ///                when it is wanted, then for each joint its rotation (9 numbers: the 3×3 matrix row by row, that takes
 ///                the joint's axes to its parent's, the root's to the camera's; the identity is the T-pose)
 ///   neighbours   the landmarks of frame t, then the same landmarks of frame t + 1, 3 numbers each; never across a cut
-/// A cost function gives its derivatives by these numbers, as Ceres asks for them; the chain rule to increments on
+/// A cost function gives its derivatives by these numbers, as Ceres requests them; the chain rule to increments on
 /// SO(3), to translation and to the shape is the tracker's. A rotation matrix is read rather than an axis-angle because
 /// a person who faces the camera has a root near π, where axis-angles jump. Evaluate() is called from several threads;
 /// false, or a number that is not finite, rejects the step.

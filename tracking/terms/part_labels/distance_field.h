@@ -29,7 +29,7 @@ class DistanceField {
   DistanceField(int x_begin, int y_begin, int width, int height, int cell_px,
                 const std::function<void(int y, Pixel* row)>& fill_row);
 
-  /// Distance at any finite position, with its derivative when asked for.
+  /// Distance at any finite position, with its derivative when requested.
   double Evaluate(const Eigen::Vector2d& pixel, Eigen::RowVector2d* gradient = nullptr) const;
 
  private:

@@ -10,7 +10,7 @@ struct PartLabelOptions {
   double part_weight = 1;                ///< of each part's contour and pixels; 0: off
   double sigma_share = 0.01;             ///< σ of a contour as a share of the person's height in the image
   double start_kernel = 16, kernel = 4;  ///< c of the robust kernel in σ, in the first and in the last round
-  int rounds = 5;          ///< solves on the coarse frames; what corresponds to what is found anew before each
+  int rounds = 5;          ///< solves on the coarse frames; what corresponds to what is found again before each
   int max_iterations = 8;  ///< of each round
 
   /// For clips whose 2D joints were read off the labels themselves: they add nothing to the labels but a start, and the

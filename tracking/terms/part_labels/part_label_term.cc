@@ -55,7 +55,7 @@ PartLabelTerm::PartLabelTerm(const PartLabelSequence& labels, int t, std::shared
   AddField(map, kBackground);
   int parts = 0;
   for (int p = 1; p < kUnknown; ++p) parts += pixels_of_part_[p] > 0;
-  if (parts > 1 && options.part_weight > 0) {  // a mask has nothing to say about parts
+  if (parts > 1 && options.part_weight > 0) {  // a mask does not know parts
     for (int p = 1; p < kUnknown; ++p) {
       if (pixels_of_part_[p] >= kMinPartPixels) AddField(map, static_cast<uint8_t>(p));
     }

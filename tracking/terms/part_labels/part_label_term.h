@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a part map (or a mask) of one frame says about the body: contours that should coincide, and pixels that should
+/// Residuals of a part map (or a mask) of one frame: contours that should coincide, and pixels that should
 /// be covered. Everything is per *part* (PartLabelSequence says what that is); the silhouette is the contour of all
 /// parts together.
 ///

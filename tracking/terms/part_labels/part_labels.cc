@@ -47,7 +47,7 @@ void PartLabelRounds::Start(const std::vector<int>& frames, double kernel, Seque
   ParallelFor(static_cast<int>(frames.size()), num_threads_, [&](int i) {
     thread_local VisibleSurface surface;
     PartLabelTerm& term = *part_labels_[frames[i]];
-    const double height_px = PersonHeightPx(problem->layout, problem->states[i], stature_m_);
+    const double height_px = UprightHeightPx(problem->layout, problem->states[i], stature_m_);
     term.Correspond(problem->layout, problem->states[i], problem->betas, problem->log_focal, height_px, kernel,
                     &surface);
     problem->frames[i].part_labels.term = &term;

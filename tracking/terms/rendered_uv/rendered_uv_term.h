@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// L_r of paper A for one frame: what chart coordinates the fitted body shows at a detected pixel, against what the
-/// detector said.
+/// L_r of paper A for one frame: what chart coordinates the fitted body shows at a detected pixel, against the
+/// detected ones.
 ///
 ///   r = W M₀ (uv(p; θ) − uv_detected(p))        when the pixel p sees the chart that the detector named
 /// uv(p; θ) is where the ray through p meets the face that the visibility buffer found at the nearest whole pixel, in

@@ -25,7 +25,7 @@ struct Scene : FrameScene {
   LiftedPose lifted;
 };
 
-/// A random pose and a lifter that says something else.
+/// A random pose and a lifter that predicts another.
 std::unique_ptr<Scene> MakeScene(CameraKnowledge knowledge, double pose_size, uint64_t seed,
                                  std::vector<int> active = {}) {
   auto scene = std::make_unique<Scene>();

@@ -43,7 +43,7 @@ struct PullTo {
   }
 };
 
-/// The distance of two points, which no linear residual can say.
+/// The distance of two points, which no linear residual can express.
 struct Apart {
   double metres, sigma;
   template <typename T>
