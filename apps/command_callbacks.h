@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a pipeline reports while it runs, on a terminal: progress on stderr, messages as lines; Ctrl-C cancels it.
+/// Callbacks of the command: a pipeline's reports on a terminal, progress on stderr, messages as lines; Ctrl-C cancels
+/// it.
 #pragma once
 
 #include <iostream>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// From this executable to the one that is linked with LibTorch.
+/// Hands a verb over to the executable that is linked with LibTorch.
 #pragma once
 
 #include <string>

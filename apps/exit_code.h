@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How the command ends: the exit codes that scripts may rely on, and the exceptions that lead to them.
+/// Exit codes of the command: those that scripts may rely on, and the exceptions that lead to them.
 #pragma once
 
 #include "bodyloom/pipelines/callbacks.h"

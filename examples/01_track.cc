@@ -13,7 +13,7 @@ int main(int argc, char** argv) {
     std::cerr << "usage: 01_track DETECTIONS TRACK.npz\n";
     return 2;
   }
-  // OpenPose, COCO, AlphaPose, MediaPipe, AIST++ or Bodyloom's own: told by content.
+  // OpenPose, COCO, AlphaPose, MediaPipe, AIST++ or Bodyloom's own: recognised by content.
   const bodyloom::KeypointSequence keypoints = bodyloom::LoadDetections(argv[1]);
   bodyloom::TrackSequenceInput input;
   input.keypoints = &keypoints;

@@ -26,7 +26,7 @@ namespace bodyloom {
 /// Where things stand in the network's output of one frame.
 struct LifterOutput {
   static constexpr int kPoints = 21;     ///< landmarks: CocoNames(), big toes, heels (LifterPointNames())
-  static constexpr int kHypotheses = 3;  ///< of each limb
+  static constexpr int kHypotheses = 3;  ///< hypotheses of each limb
   static constexpr int kPerPoint = 5;    ///< x, y, z, log σ_xy, log σ_z
   static constexpr int kLimbs = 4;       ///< left arm, right arm, left leg, right leg
   static constexpr std::array<int, 9> kTorso = {0, 1, 2, 3, 4, 5, 6, 11, 12};  ///< face, shoulders, hips

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Which faces meet at a vertex and which lie across an edge, from position indices: a seam of the UV map is no
-/// boundary here.
+/// Mesh adjacency: which faces meet at a vertex and which lie across an edge, from position indices: a seam of the UV
+/// map is no boundary here.
 #pragma once
 
 #include <cstdint>

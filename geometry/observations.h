@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What detectors saw in a clip: 2D keypoints, dense surface keypoints and part labels, one person, one camera.
+/// Observations of a clip: 2D keypoints, dense surface keypoints and part labels, one person, one camera.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Which poses people take: a mixture of Gaussians over the joint rotations, and densities of limb directions.
-/// Learned from motion capture by `bodyloom prior` (data_tools/learned/pose_prior_learning.h), stored in
-/// assets/prior.
+/// The pose prior: a mixture of Gaussians over the joint rotations, and densities of limb directions. Learned from
+/// motion capture by `bodyloom prior` (data_tools/learned/pose_prior_learning.h), stored in assets/prior.
 #pragma once
 
 #include <Eigen/Core>

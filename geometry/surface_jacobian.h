@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How points of the body move when pose, shape or translation change: exact first derivatives of the body model,
+/// The surface Jacobian, by pose, shape and translation: exact first derivatives of the body model,
 /// geometry/body_model.h, pose correctives and shape-dependent joints included. Double, one frame.
 ///
 /// Joint rotations vary on the right: R_j ← R_j exp([δ_j]×), which is smooth everywhere, π included. For a vertex v

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Which surface point each texel of a UV map shows. Made once for a body and a size; baking is then one weighted sum
-/// of three vertices a texel (geometry/uv_bake.h).
+/// The surface point of each texel of a UV map. Made once for a body and a size; baking is then one weighted sum of
+/// three vertices a texel (geometry/uv_bake.h).
 ///
 /// Texel (row r, column c) of an H×W map is centred at u = (c + 0.5)/W, v = 1 − (r + 0.5)/H. It shows the face whose UV
 /// triangle holds its centre, at the centre's barycentric coordinates; of several faces the lowest.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How a quantity known at frames becomes its rate of change: for each frame a few neighbours and their weights,
+/// Velocity stencils: the rate of change of a quantity known at frames, for each frame by a few neighbours and weights,
 ///   d x/dt (t_i) ≈ Σ_k weights[k] · x(first_frame + k),     Σ weights = 0, unit 1/s.
 /// Weights are those of a polynomial through (or, Savitzky–Golay, fitted by least squares to) the neighbours at their
 /// actual times, differentiated at t_i; so they are exact for polynomials of that degree at any spacing.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Where the networks live, one device a process. Internal: includes LibTorch.
+/// The device of the networks, one a process. Internal: includes LibTorch.
 ///
 /// Frames become tensors on this device and networks are moved to it when they are made; what is read back comes
 /// through HostValues. Everything between follows its inputs.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What LibTorch runs on: version, threads, and the matrix library behind it, with a warning where that one is slow.
+/// The runtime of LibTorch: version, threads, and the matrix library behind it, with a warning where that one is slow.
 #pragma once
 
 #include <string>

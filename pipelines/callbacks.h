@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How a pipeline and its caller talk while it runs, and the errors that are the caller's to tell apart. A pipeline
+/// Callbacks between a pipeline and its caller while it runs, and the errors that the caller distinguishes. A pipeline
 /// prints nothing, installs no signal handler and never ends the process.
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Times in what people read.
+/// Times as text for people.
 #pragma once
 
 #include <string>

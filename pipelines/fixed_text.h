@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Numbers in what people read.
+/// Numbers as text for people.
 #pragma once
 
 #include <cstdio>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How much memory a job took.
+/// Peak memory of a job.
 #pragma once
 
 #include <cstddef>

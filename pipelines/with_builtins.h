@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the tracker uses unless it is told otherwise: the built-in body, pose prior and lifter.
+/// Defaults of the tracker: the built-in body, pose prior and lifter.
 #pragma once
 
 #include "bodyloom/tracking/live/live_tracker.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the surface carries, as colours for people to look at. (Programs want the numbers: render/resolve_pixels.h.)
+/// Attributes of the surface as colours for people to look at. (Programs want the numbers: render/resolve_pixels.h.)
 ///
 ///   parts    the chart's colour (render/palette.h)
 ///   iuv      red = u, green = v of the chart, blue rises with the part's number

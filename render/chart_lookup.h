@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// From chart coordinates back to the surface: the inverse of ChartUvAt (render/visible_points.h), as needed for
+/// Surface points from chart coordinates: the inverse of ChartUvAt (render/visible_points.h), as needed for
 /// DensePose-style (part, u, v) labels.
 #pragma once
 

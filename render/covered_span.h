@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Where a row of a visibility buffer sees anything: most of a person's box is background, which is passed over eight
+/// The covered span of a row of a visibility buffer: most of a person's box is background, which is passed over eight
 /// pixels at a time.
 #pragma once
 

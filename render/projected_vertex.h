@@ -3,7 +3,7 @@
 
 namespace bodyloom {
 
-/// Where a vertex is seen, not rounded; lens distortion left out.
+/// A projected vertex, not rounded; lens distortion left out.
 struct ProjectedVertex {
   double x_px, y_px;
   double nearness;  ///< 1/z, or −z for weak perspective; NaN: behind the near plane, outside the lens or guard band

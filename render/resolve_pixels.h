@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the visible surface carries, pixel by pixel, and only what was requested: part, chart and atlas coordinates
-/// (together with the part: IUV), depth, normal, barycentrics, any attribute given by vertex or by texel of a UV map.
+/// Attributes of the visible surface, pixel by pixel, and only those that were requested: part, chart and atlas
+/// coordinates (together with the part: IUV), depth, normal, barycentrics, any attribute given by vertex or by texel of
+/// a UV map.
 ///
 /// The surface point of a pixel is where the ray through its centre meets the plane of the face that the visibility
 /// buffer found, from the unrounded vertices: with λ the barycentrics of the pixel in the projected face,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Which texels of a UV map a camera sees, and where: texel → surface point → pixel, tested against the visibility
-/// buffer. The way from the map to the image; the other way is render/uv_sample.h.
+/// Visibility of the texels of a UV map in a camera, and where they are seen: texel → surface point → pixel, tested
+/// against the visibility buffer. The way from the map to the image; the other way is render/uv_sample.h.
 ///
 /// A texel is seen when its surface point projects into the image, its face looks at the camera by at least min_cosine,
 /// and the pixels around the projection show the same piece of surface: their depth, carried along the face's plane, is

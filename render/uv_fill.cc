@@ -84,7 +84,7 @@ struct GutterTaps {
 
 struct PyramidFill::Pyramid {
   struct Level {
-    std::vector<int> parent;  ///< of each node; empty on the coarsest level
+    std::vector<int> parent;  ///< parent of each node; empty on the coarsest level
     std::vector<int> begin, neighbour;
     [[nodiscard]] int size() const { return static_cast<int>(begin.size()) - 1; }
   };

@@ -11,7 +11,7 @@
 namespace bodyloom {
 
 struct UvGraph {
-  std::vector<int> pixel;      ///< of each node: the texels inside a chart, in the order of rows
+  std::vector<int> pixel;      ///< pixel of each node: the texels inside a chart, in the order of rows
   std::vector<int> begin;      ///< nodes + 1
   std::vector<int> neighbour;  ///< nodes, ascending at each
   int num_seam_links = 0;      ///< edges that cross a seam

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// From UV maps into the image: Π of Yoon et al. (eq. 5), f(x) = f_uv(u(x)), with derivatives by (u, v).
+/// Sampling of UV maps into the image: Π of Yoon et al. (eq. 5), f(x) = f_uv(u(x)), with derivatives by (u, v).
 ///
 /// Lookups are bilinear in float (cv::remap rounds coordinates to 1/32 of a texel) and check charts: a tap that belongs
 /// to another chart, or to none, is left out and the others are scaled to sum 1. So nothing bleeds where charts lie

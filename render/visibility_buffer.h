@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Which face of a mesh each pixel sees, and how near it is: one id and one depth a pixel, nothing else. Attributes are
-/// resolved afterwards for the pixels that need them (render/resolve_pixels.h, render/visible_points.h).
+/// The visibility buffer, the visible face of a mesh at each pixel and how near it is: one id and one depth a pixel,
+/// nothing else. Attributes are resolved afterwards for the pixels that need them (render/resolve_pixels.h,
+/// render/visible_points.h).
 ///
 /// - A pixel sees what its centre sees (integer coordinates, geometry/camera.h).
 /// - Vertices are projected and rounded to 1/256 px; edge functions are integers with the top-left rule, so that two

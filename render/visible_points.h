@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What each visible pixel shows of the body: the point on the surface and, on request, its part and chart coordinates.
+/// Visible points of the body, one a covered pixel: the point on the surface and, on request, its part and chart
+/// coordinates.
 ///
 /// The point is where the ray through the pixel's centre meets the plane of the face that the visibility buffer found,
 /// computed in double from the unrounded vertices: perspective correct, exact for distorted lenses too, and free of the

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How much of the camera a solve may take for granted.
+/// Camera knowledge: how much of the camera a solve takes as known.
 #pragma once
 
 namespace bodyloom {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// One run of TrackSequence(): the clip's problem with all that its terms point to, and the steps that solve it.
+/// The fit of a clip, one run of TrackSequence(): the clip's problem with all that its terms point to, and the steps
+/// that solve it.
 #pragma once
 
 #include <optional>

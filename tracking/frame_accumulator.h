@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the terms of a frame add up to: its cost and its normal equations.
+/// Sums of a frame's terms: its cost and its normal equations.
 ///
 /// A term hands over rows of residuals and Jacobian, or squares of blocks that it knows itself. Rotations are
 /// differentiated by right increments. Points that cannot be projected cost the kernel's saturation c² with a zero

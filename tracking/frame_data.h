@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Everything known about one frame: what each term has of it. Borrowed pointers outlive the cost.
+/// Data of one frame, term by term. Borrowed pointers outlive the cost.
 #pragma once
 
 #include "bodyloom/tracking/terms/dense/dense.h"

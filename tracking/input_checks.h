@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What TrackSequence refuses before it begins, and which observations it leaves out because they cannot be meant.
+/// Input checks of TrackSequence: what it refuses before it begins, and which observations it leaves out as impossible.
 #pragma once
 
 #include <vector>

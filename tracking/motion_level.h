@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How lively a clip's motion is, and the smoothness that suits it.
+/// The motion level of a clip, and the smoothness that suits it.
 ///
 /// One σ of acceleration for everybody is too stiff for a break dance and too loose for somebody who stands: the first
 /// loses the motion, the second follows the detector's noise. So it is with one σ for all joints: arms swing while the

@@ -24,7 +24,7 @@ struct Smoothness {
 
 struct ShapePrior {
   Eigen::VectorXd mean;  ///< B; empty: zero
-  double sigma = 1.0;    ///< of each beta; the body's components are in standard deviations
+  double sigma = 1.0;    ///< standard deviation of each beta; the body's components are in standard deviations
   double weight = 1.0;   ///< how many times the prior counts
   double height_m = 0;   ///< 0: the mean body's. Metric scale cannot be seen by one camera
   double height_sigma_m = 0.005;
@@ -39,7 +39,7 @@ struct SequenceProblem {
   Eigen::VectorXd betas;
   double log_focal = 0;
   double log_focal_prior = 0, log_focal_sigma = 0.25;
-  std::vector<Smoothness> smoothness = {Smoothness()};  ///< of each shot, or one for all of them
+  std::vector<Smoothness> smoothness = {Smoothness()};  ///< smoothness of each shot, or one for all of them
   ShapePrior shape_prior;
 };
 

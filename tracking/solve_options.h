@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How a SequenceProblem is solved, and how that went; the engines' common ground.
+/// Options and report of a solve of a SequenceProblem, common to both engines.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What TrackSequence() looks at.
+/// Input of TrackSequence().
 #pragma once
 
 #include <vector>

@@ -27,7 +27,7 @@ struct TrackSequenceOptions {
   CameraKnowledge camera_knowledge = CameraKnowledge::kKnown;
   SequenceSolver solver = SequenceSolver::kChain;  ///< the engine; both solve the same problem
   int num_threads = 0;                             ///< 0: all cores
-  int max_iterations = 50;                         ///< of each stage
+  int max_iterations = 50;                         ///< solver iterations of a stage
   int max_fine_iterations = 8;                     ///< of the last stage, when a coarse one came before
   double initialiser_weight = 0.1;                 ///< λ_d of paper A, per frame
   /// λ_d when the lifter is the initialiser (0: it is not used), and a floor of its own uncertainty in metres. Found

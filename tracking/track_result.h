@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// From the solved problem to the track and the summary that users see.
+/// The track and the summary from the solved problem.
 #pragma once
 
 #include "bodyloom/tracking/observability.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How TrackSequence() went: what ran and why, how well it fits, how long it took.
+/// The summary of TrackSequence(): what ran and why, how well it fits, how long it took.
 #pragma once
 
 #include <Eigen/Core>

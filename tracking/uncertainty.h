@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How well each joint's position is known: from the same normal equations that the solve used (docs/chain_solver.md,
+/// Uncertainty of each joint's position: from the same normal equations that the solve used (docs/chain_solver.md,
 /// "Uncertainty").
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a benchmark hands over: rows of labels and numbers, their mean and spread by group, commit and machine.
+/// A benchmark's report: rows of labels and numbers, their mean and spread by group, commit and machine.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the lifter would predict if it knew a part of the truth: shows where a track's error comes from.
+/// Oracle of the lifter: its predictions with a part of the truth, which show where a track's error comes from.
 #pragma once
 
 #include <string>

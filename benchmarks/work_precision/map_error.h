@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How far descriptor maps are from the surface that they describe.
+/// Error of descriptor maps against the surface that they describe.
 #pragma once
 
 #include <Eigen/Core>

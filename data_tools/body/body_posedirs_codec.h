@@ -13,7 +13,7 @@ namespace bodyloom {
 
 struct PackedPoseCorrectives {
   NdArray count;  ///< blocks of each vertex
-  NdArray joint;  ///< of each block: difference to the vertex's block before it
+  NdArray joint;  ///< joint of each block, as the difference to the vertex's block before it
   NdArray block;  ///< 27 residuals of each block
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// From MakeHuman's 53 bones to SMPL's 24 joints: skinning weights and joint regressor.
+/// Skinning weights and joint regressor for SMPL's 24 joints from MakeHuman's 53 bones.
 #pragma once
 
 #include <vector>

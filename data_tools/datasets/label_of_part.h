@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What class of clothing a part of the body is taken for where nobody labelled the clothes.
+/// Clothing class of a body part, for photos without labels of the clothes.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a renderer needs of a photo that nobody labelled: where the person is, and what is behind.
+/// Segmentation of an unlabelled photo: the person's labels, and the background without the person.
 #pragma once
 
 #include <cstdint>

@@ -11,7 +11,7 @@
 
 namespace bodyloom {
 
-/// What a frame's descriptor holds.
+/// Options of a frame's descriptor: what it holds.
 struct DescriptorOptions {
   UvTexelOptions texels;
   int past = 10;        ///< velocity maps a frame, its own included; 0 to 1000

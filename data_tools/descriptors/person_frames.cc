@@ -168,7 +168,7 @@ class PersonFrames::Impl {
   const Track& shown_;
   PosedTrack posed_;
   PersonWindow window_;
-  std::optional<MappedNpy> stored_;  ///< of each frame normals and velocities; its file has no name any more
+  std::optional<MappedNpy> stored_;  ///< normals and velocities of each frame; its file has no name any more
   std::vector<int> segment_;         ///< gap-free run of each frame of the track, −1: none
 };
 

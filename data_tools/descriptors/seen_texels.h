@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Which texels of the body's maps a frame's camera sees, and maps of these alone.
+/// Visible texels of the body's maps in a frame, and maps of these alone.
 #pragma once
 
 #include <span>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// From the vertices of one posed body to a map of three planes over its atlas: unit normals, or velocities.
+/// Surface maps of one posed body: its unit normals, or its velocities, as three planes over the atlas.
 #pragma once
 
 #include <span>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How far one picture is from another: PSNR, overlap of masks and labels, angle between normals. (SSIM: ssim.h.)
+/// Metrics of two pictures: PSNR, overlap of masks and labels, angle between normals. (SSIM: ssim.h.)
 ///
 /// All are computed in double, on pictures of equal size (else std::invalid_argument with both sizes). NaN means that
 /// there was nothing to measure: no pixel in the mask, a mask or label that neither picture holds.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How far an estimated motion is from the true one: positions, motion over time, joint angles. Metres and seconds in.
-/// Errors in pixels are in data_tools/evaluation/metrics_image.h; protocols that read files in data_tools/evaluation/.
+/// Errors of an estimated motion against the true one: positions, motion over time, joint angles. Metres and seconds
+/// in. Errors in pixels are in data_tools/evaluation/metrics_image.h; protocols that read files in
+/// data_tools/evaluation/.
 ///
 /// Shapes: a clip is T frames of P points (P×3), prediction and truth alike; anything else throws
 /// std::invalid_argument.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How far an estimated motion is from what a camera saw, in pixels. Metric errors are in
+/// Image errors of an estimated motion: its distance from what a camera saw, in pixels. Metric errors are in
 /// data_tools/evaluation/metrics.h.
 ///
 /// Shapes: T frames of K×2 pixels. A point that has no projection is a row of NaN; it is left out of distances and

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How sound a recorded motion is: numbers of one clip, and what is suspicious about it.
+/// Quality of a recorded motion: numbers of one clip, and what is suspicious about it.
 ///
 /// Joints are those of the mean SMPL skeleton (smpl_rest.h); velocities are differences of neighbouring frames,
 /// accelerations second differences. `y = 0` is the floor (data_tools/motion/motion_floor.h).

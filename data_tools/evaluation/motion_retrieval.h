@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How well a descriptor tells the moments of a motion apart: nearest neighbours by normalised cross-correlation
-/// (Yoon et al., CVPR 2022, Fig. 4). A descriptor for which other moments look the same has several peaks a cycle.
+/// Retrieval of moments of a motion by a descriptor: nearest neighbours by normalised cross-correlation (Yoon et al.,
+/// CVPR 2022, Fig. 4). A descriptor for which other moments look the same has several peaks a cycle.
 #pragma once
 
 #include <Eigen/Core>

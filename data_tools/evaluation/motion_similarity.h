@@ -8,7 +8,7 @@
 
 namespace bodyloom {
 
-/// How much each frame's motion is like one that others show: the largest normalised cross-correlation, in [−1, 1], of
+/// Similarity of each frame's motion to those of other frames: the largest normalised cross-correlation, in [−1, 1], of
 /// its motion descriptor (normals and the velocities of `past` frames over an atlas of 32²) with that of any frame of
 /// `others`, which may be the same track (then 1). NaN for a frame without a result. Yoon et al., CVPR 2022, Fig. 6.
 /// Memory: 4 · 1024 · (3 + 3 past) bytes a frame of both. Throws as PersonFrames.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Whether rendered clothes react to how the body moves: the same poses at two speeds, in truth and in the result.
+/// Reaction of rendered clothes to the speed of the body: the same poses at two speeds, in truth and in the result.
 ///
 /// Two single-person datasets show the same poses at another speed (`synth-person --speed`), two results show what a
 /// renderer made of them (`animate motion --set`). Frames are paired by pose. Of each pair, how one garment's picture

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What stands before the values of a .npy file. Source: numpy/lib/format.py.
+/// The header of a .npy file, before its values. Source: numpy/lib/format.py.
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the pickle machine works on: values under construction, the budget they are charged to, and the meaning of the
-/// few globals that are understood. Internal to pickle.cc and pickle_objects.cc.
+/// Nodes of the pickle machine: values under construction, the budget they are charged to, and the meaning of the few
+/// globals that are understood. Internal to pickle.cc and pickle_objects.cc.
 #pragma once
 
 #include <memory>

@@ -16,7 +16,7 @@ struct LearnPosePriorOptions {
   int num_components = 8;
   double sample_rate = 15;  ///< frames a second that are looked at
   double floor_rad = 0.06;  ///< standard deviation added to every rotation: what mocap does not vary, people do
-  double shrinkage = 0.1;   ///< of each covariance towards its diagonal
+  double shrinkage = 0.1;   ///< shrinkage of each covariance towards its diagonal
   int num_directions = 200;
   double direction_sigma_deg = 12;  ///< smoothing of the direction densities
   double uniform_share = 0.02;      ///< of the direction densities: the impossible stays possible

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// One call for every form of recorded motion: tells the format by content and returns SMPL's 24 joints.
+/// Loads recorded motion of any form: recognises the format by content and returns SMPL's 24 joints.
 ///
 /// Read: AMASS and track .npz, AIST++ motions .pkl, BVH, Acclaim .amc with its .asf, DeepMimic JSON, AMP .npy; the text
 /// forms may be gzipped. Skeletons other than SMPL's are retargeted (retarget.h).

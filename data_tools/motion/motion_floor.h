@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Where the floor of a recorded motion is, and whether it has one.
+/// The floor of a recorded motion: its height, and whether there is one.
 ///
 /// A joint lies above the skin's lowest point by about its clearance (measured on the built-in body: toes 1 cm, ankles
 /// 7 cm, …). The lowest point of a frame is min over joints of height − clearance; it bears the person when its joint

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Which joints of a foreign skeleton are a person's hips, knees, elbows, …
+/// The joint map of a foreign skeleton: which of its joints are a person's hips, knees, elbows, …
 ///
 /// Knees, ankles, toes, elbows, wrists and the head are found by name (the vocabularies of CMU, Mixamo, Acclaim, Biped,
 /// DeepMimic, AMP, SMPL); the rest by topology, because names of the rest disagree between vocabularies ("LeftShoulder"

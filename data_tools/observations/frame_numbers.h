@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// From the numbers that detectors put into file names and image ids to frame indices and timestamps.
+/// Frame indices and timestamps from the numbers that detectors put into file names and image ids.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ int64_t FrameNumberFromName(const std::string& file_name);
 
 /// Frames on a regular grid.
 struct FrameGrid {
-  std::vector<int> index;          ///< of each input number: its frame
+  std::vector<int> index;          ///< frame of each input number
   std::vector<double> timestamps;  ///< T seconds: number / fps, so that a clip that starts at frame 100 says so
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// From DensePose labels to dense keypoints: each labelled pixel names a point of the surface by its body's charts.
+/// Dense keypoints from DensePose labels: each labelled pixel names a point of the surface by its body's charts.
 ///
 /// 8-bit U stands for [U/255, (U+1)/255) because it was rounded down, so u = min(1, (U + ½)/255), v alike. Pixels whose
 /// (u, v) lies further than `max_gap` outside the chart are dropped (mixed pixels at part boundaries), nearer ones go

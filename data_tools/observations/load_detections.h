@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// One call for every form of 2D detections: tells the format by content and returns one person's landmarks.
+/// Loads 2D detections of any form: recognises the format by content and returns one person's landmarks.
 ///
 /// Read: a folder of OpenPose JSON files (or a folder of such folders, one a view), OpenPose frames in one file, COCO
 /// results or annotations and AlphaPose, BlazePose/MediaPipe dumps, AIST++ keypoints2d pickles, the project's own .npz.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The size that an image file claims, so that a few bytes that promise a billion pixels are refused before a decoder
+/// The size in an image file's header, so that a few bytes that promise a billion pixels are refused before a decoder
 /// makes room for them.
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the header of a JPEG claims, before it is decoded.
+/// The header of a JPEG, read before the file is decoded.
 #pragma once
 
 #include <optional>

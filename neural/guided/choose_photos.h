@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Which pictures of a person to animate from.
+/// Chooses the pictures of a person to animate from.
 #pragma once
 
 #include <vector>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How far clothes stand off the body, measured at the silhouette of a photo: which distinguishes a skirt from trousers
-/// where only the bare body of another pose is known.
+/// The extent of clothes: how far they stand off the body at the silhouette of a photo, which distinguishes a skirt
+/// from trousers where only the bare body of another pose is known.
 ///
 /// A pixel of the person beside the body belongs to the nearest pixel on the body's rim (the larger of the distances
 /// along x and y). A rim pixel's extent is the largest distance of those that belong to it, in diagonals of the box

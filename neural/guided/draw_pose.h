@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// One pose through the three networks. Internal: includes LibTorch.
+/// Renders one pose through the three networks. Internal: includes LibTorch.
 #pragma once
 
 #include "bodyloom/neural/guided/guided_model.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the pose-guided renderer is made of: every network's parameters, shapes and multiply–adds, as text.
+/// The architecture card of the pose-guided renderer: every network's parameters, shapes and multiply–adds, as text.
 #pragma once
 
 #include <string>

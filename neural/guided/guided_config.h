@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the pose-guided renderer (Yoon et al., "Pose-Guided Human Animation from a Single Image in the Wild", CVPR
-/// 2021) consists of: sizes, and which parts are left out.
+/// Configuration of the pose-guided renderer (Yoon et al., "Pose-Guided Human Animation from a Single Image in the
+/// Wild", CVPR 2021): sizes, and which parts are left out.
 #pragma once
 
 #include <string>

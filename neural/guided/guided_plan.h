@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a step of training looks at, and what it hides: functions of (seed, step, place in the batch) alone.
+/// The plan of a training step, what it looks at and what it hides: functions of (seed, step, place in the batch)
+/// alone.
 ///
 /// A sample is two pictures of one person. Of the target only what lies on the bare body is known, less random patches:
 /// rectangles, and now and then whole charts of the surface, as a photo from one side leaves them out (Yoon et al.,

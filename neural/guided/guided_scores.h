@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How drawn people differ from true ones.
+/// Scores of rendered people against true ones.
 #pragma once
 
 #include <memory>

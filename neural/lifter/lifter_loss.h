@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the lifter is trained on, and how good it is. Internal: includes LibTorch.
+/// The lifter's training loss and its errors. Internal: includes LibTorch.
 ///
 /// A landmark with error d = (d_xy, d_z), scales σ_xy, σ_z: r² = |d_xy|²/σ_xy² + d_z²/σ_z², density
 /// exp(−r) / (8π σ_xy² σ_z), a Laplace density in three dimensions, so

@@ -60,7 +60,7 @@ struct TrainLifterOptions : TrainingRun {
 
 struct TrainLifterSummary : TrainingOutcome {
   double validation_distance = 0;       ///< mean |d| of the likeliest hypotheses, in torso + leg lengths
-  double validation_best_distance = 0;  ///< of each limb's best hypothesis
+  double validation_best_distance = 0;  ///< error of each limb's best hypothesis
 };
 
 struct TrainLifterResult {

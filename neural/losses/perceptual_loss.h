@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How different two images look to a feature network. Internal: includes LibTorch.
+/// The perceptual loss: the difference of two images in the features of a network. Internal: includes LibTorch.
 ///
 /// Takes features, not images, so that those of a target which does not change are computed once:
 ///   FeatureNetwork vgg(options);

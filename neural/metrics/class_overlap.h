@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How far two labellings of the same pixels agree: intersection over union, by class and of the foreground.
+/// Agreement of two labellings of the same pixels: intersection over union, by class and of the foreground.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +24,7 @@ class ClassOverlap {
     foreground_both_ += predicted != 0 && truth != 0 ? 1 : 0;
     foreground_either_ += predicted != 0 || truth != 0 ? 1 : 0;
   }
-  /// As many of each; throws std::invalid_argument otherwise.
+  /// As many predicted as true labels; throws std::invalid_argument otherwise.
   void Add(const std::vector<uint8_t>& predicted, const std::vector<uint8_t>& truth) {
     BODYLOOM_CHECK(predicted.size() == truth.size(), "class overlap: ", predicted.size(), " pixels beside ",
                    truth.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How far clothes and hair reach beyond the body, so that a renderer need not look for the person elsewhere.
+/// The reach of clothes and hair beyond the body, so that a renderer need not look for the person elsewhere.
 #pragma once
 
 #include <span>

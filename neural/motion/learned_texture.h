@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a texel of a person looks like whatever the motion: values by texel, trained with the networks. Internal:
-/// includes LibTorch.
+/// A learned texture, the appearance of a person whatever the motion: values by texel, trained with the networks.
+/// Internal: includes LibTorch.
 ///
 ///   x = gain · Π T          C channels at the pixels that see the body, 0 elsewhere
 ///   A x, B x                what the classes' and the colour's logits are without anything that the networks add

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the motion-dependent renderer is made of: every network's parameters, shapes and multiply–adds, as text.
+/// The architecture card of the motion-dependent renderer: every network's parameters, shapes and multiply–adds, as
+/// text.
 #pragma once
 
 #include <string>

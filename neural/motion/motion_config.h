@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the motion-dependent renderer (Yoon et al., CVPR 2022) consists of: sizes, and which parts are left out.
+/// Configuration of the motion-dependent renderer (Yoon et al., CVPR 2022): sizes, and which parts are left out.
 #pragma once
 
 #include <string>

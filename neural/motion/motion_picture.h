@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the motion-dependent renderer makes of a frame.
+/// A picture rendered by the motion-dependent renderer.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How a rolled-out clip differs from the truth. Internal: includes LibTorch.
+/// Scores of a rolled-out clip against the truth. Internal: includes LibTorch.
 #pragma once
 
 #include <torch/torch.h>

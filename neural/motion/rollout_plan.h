@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Which frames a recurrent network trains on, step by step.
+/// The plan of truncated roll-outs: which frames a recurrent network trains on, step by step.
 ///
 /// A batch holds `places` places. Each belongs to `rollouts` truncated roll-outs that take turns: step s belongs to
 /// roll-out s mod `rollouts` of every place. A roll-out goes through the clip frame by frame, so that the network's

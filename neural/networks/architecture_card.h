@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a network is made of, as text that a test can hold. Internal: includes LibTorch.
+/// The architecture card of a network, as text that a test can hold. Internal: includes LibTorch.
 ///
 ///   encoder0.conv1.weight   64 x 33 x 3 x 3   19008
 ///   …

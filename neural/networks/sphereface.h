@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Whose face a picture shows, as the twenty-layer network of SphereFace sees it. Internal: includes LibTorch.
+/// SphereFace: features of a face by the published twenty-layer network. Internal: includes LibTorch.
 ///
 /// 3×112×96 → 512 numbers. Stages s = 1 … 4 of 64, 128, 256, 512 channels: Conv(3×3, stride 2) PReLU, then 1, 2, 4 and
 /// 1 residual units x + PReLU Conv PReLU Conv x (3×3, stride 1); fully connected 512·7·6 → 512. PReLU has a slope a

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Two sweeps over a picture in which every pixel hears of its eight neighbours.
+/// Two sweeps over a picture in which every pixel is updated from its eight neighbours.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the one-photo renderer (Sarkar et al., ECCV 2020) consists of: sizes, and which of the paper's variants it is.
+/// Configuration of the one-photo renderer (Sarkar et al., ECCV 2020): sizes, and which of the paper's variants it is.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Which pictures a step of training sees: pairs of one person in two poses.
+/// Training pairs of a step: pictures of one person in two poses.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the one-photo renderer makes of a pose.
+/// A picture rendered by the one-photo renderer.
 #pragma once
 
 #include <vector>

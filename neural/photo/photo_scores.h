@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How rendered pictures differ from true ones.
+/// Scores of rendered pictures against true ones.
 #pragma once
 
 #include <functional>

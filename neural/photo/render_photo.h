@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// One pose rendered from the features of a source. Internal: includes LibTorch.
+/// Renders one pose from the features of a source. Internal: includes LibTorch.
 #pragma once
 
 #include "bodyloom/neural/photo/photo_model.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Everything at once: a clip is made, tracked, evaluated and shown on one page.
+/// The demo: a clip is made, tracked, evaluated and shown on one page.
 #pragma once
 
 #include <cstdint>

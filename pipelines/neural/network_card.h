@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the networks of a renderer are made of: what `bodyloom neural card` prints.
+/// Architecture cards of a renderer's networks, which `bodyloom neural card` prints.
 #pragma once
 
 #include <string>

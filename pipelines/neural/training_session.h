@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What every job that trains a network does around its training: the run's folder, its progress, its end.
+/// A training session, around the training of any network: the run's folder, its progress, its end.
 #pragma once
 
 #include <initializer_list>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What stands behind an animated person: a picture, a video that is played to and fro no further than its end, or a
+/// The background of an animated person: a picture, a video that is played to and fro no further than its end, or a
 /// plain backdrop.
 #pragma once
 

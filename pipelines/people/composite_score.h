@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How well a person laid over a single-person dataset's backgrounds fits the dataset's own pictures.
+/// Score of a person composited over a single-person dataset's backgrounds, against the dataset's own pictures.
 #pragma once
 
 #include <string>

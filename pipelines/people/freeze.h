@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Where and how long time stands still, as `--freeze FRAME:COUNT` gives it.
+/// A freeze, time that stands still at a frame, as `--freeze FRAME:COUNT` gives it.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Where the tracked person is in a window of a photo, and in which clothes, when nobody has labelled the clothes.
+/// Segmentation of the tracked person in a window of a photo, with clothing classes, where there are no labels.
 #pragma once
 
 #include <cstdint>

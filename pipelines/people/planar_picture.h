@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the networks take and make, as pictures to look at. Planar: channel, row, column.
+/// Planar images (channel, row, column) of the networks as pictures to look at.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How far every frame's view is turned about the person's vertical, as `--view-yaw` gives it.
+/// View angles: how far every frame's view is turned about the person's vertical, as `--view-yaw` gives it.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the window around a person has at the pixels of a picture of the same shape, as large or larger.
+/// Samples of the window around a person at the pixels of a picture of the same shape, as large or larger.
 #pragma once
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Where the pictures of RenderTrack go: a video, a contact sheet, or arrays. A file appears whole at Finish(),
-/// or not at all.
+/// Sinks for the pictures of RenderTrack: a video, a contact sheet, or arrays. A file appears whole at Finish(), or not
+/// at all.
 #pragma once
 
 #include <memory>

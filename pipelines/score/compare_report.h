@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How two sets of pictures compare: as text, as JSON, and as a table of frames.
+/// The report of a comparison of two sets of pictures: as text, as JSON, and as a table of frames.
 #pragma once
 
 #include <optional>

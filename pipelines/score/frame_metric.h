@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What is measured of a frame beside its truth: PSNR and SSIM of pictures, overlap of labels, angles of normals.
+/// Metrics of a frame against its truth: PSNR and SSIM of pictures, overlap of labels, angles of normals.
 #pragma once
 
 #include <functional>

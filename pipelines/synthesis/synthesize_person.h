@@ -14,8 +14,8 @@ namespace bodyloom {
 
 struct SynthesizePersonRequest {
   std::vector<std::string> motions;            ///< names of MotionSource; several follow each other with a gap
-  std::vector<double> speeds = {1};            ///< each motion at each of them
-  MotionSource motion{.name = "", .fps = 30};  ///< rate and frames of each; `motions` name them
+  std::vector<double> speeds = {1};            ///< speeds; each motion is played at each of them
+  MotionSource motion{.name = "", .fps = 30};  ///< rate and frames of each motion; `motions` name them
   std::string body;                            ///< empty: the built-in body
   std::string out;                             ///< the folder
   std::string sheet;                           ///< also a contact sheet, .png or .jpg; empty: none

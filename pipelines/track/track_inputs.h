@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// From file names to what the tracker takes: everything that a request names, checked against each other.
+/// The tracker's inputs from file names: everything that a request names, checked against each other.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How a clip was tracked: for a reader, and as JSON for a program.
+/// The report of a tracked clip: as text for a reader, and as JSON for a program.
 #pragma once
 
 #include <cstddef>

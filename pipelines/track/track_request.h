@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a track is made from: files by name (empty: not given), what is known besides, and what is to be written.
+/// The request for a track: files by name (empty: not given), what is known besides, and what is to be written.
 #pragma once
 
 #include <optional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What every fuzz target stands on: a reader may refuse with one line that names the file, and nothing else.
+/// The contract of every fuzz target: a reader may refuse with one line that names the file, and nothing else.
 #pragma once
 
 #include <stdexcept>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the fuzzers call: every reader of untrusted binary files and meshes, on bytes (text: fuzz_text_targets.h).
-/// A reader may refuse with std::runtime_error and nothing else; whatever it accepts must hold together.
+/// Fuzz targets: every reader of untrusted binary files and meshes, on bytes (text: fuzz_text_targets.h). A reader may
+/// refuse with std::runtime_error and nothing else; whatever it accepts must hold together.
 ///
 /// The same functions run under libFuzzer (tests/fuzz/fuzz_main.cc, clang) and under GoogleTest with fixed mutations
 /// (tests/data_tools/fuzz/fuzz_corpus_test.cc, any compiler). Each returns whether the input was accepted.

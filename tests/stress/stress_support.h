@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the stability suite shares: the engines it runs on, clips with known truth, and what every answer must keep.
-/// The cases and what they promise: docs/stability.md.
+/// Support of the stability suite: the engines it runs on, clips with known truth, and what every answer must keep. The
+/// cases and what they promise: docs/stability.md.
 #pragma once
 
 #include <gtest/gtest.h>

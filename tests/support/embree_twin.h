@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What Embree's ray tracer sees: an independent judge of the visibility buffer, and the peer that benchmarks compare
-/// with. Only where Debian's libembree-dev is installed.
+/// Embree's ray tracer: an independent judge of the visibility buffer, and the peer that benchmarks compare with. Only
+/// where Debian's libembree-dev is installed.
 ///
 /// Embree works in float, on rays through pixel centres; the visibility buffer rounds corners to 1/256 px. So the two
 /// may differ beside edges. The policy of every comparison: a pixel is compared when its centre lies further than

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// One frame of a toy body before a camera, with what the frame cost needs; tests of its terms add what was seen.
+/// A scene of one frame of a toy body before a camera, with what the frame cost needs; tests of its terms add
+/// observations.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Runs the real executable as a user would, and keeps what it said.
+/// Runs the real executable as a user would, and keeps its output.
 #pragma once
 
 #include <optional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How well a linearised chain's unknowns are known.
+/// Covariance of a linearised chain's unknowns.
 #pragma once
 
 #include <functional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Which way is up, and the ground that feet stand on, from one shot of one camera that does not move.
+/// The ground plane, and which way is up, from one shot of one camera that does not move.
 ///
 /// The lifter predicts where up is in every frame; over a shot these directions are one measurement. A foot stands
 /// while the lifter calls it so and its ankle keeps its place across the view. Ankles of stances lie in one plane

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// From one camera's 2D joints to 3D joints, without a start: what the depth ambiguity allows, chosen over the clip.
+/// Hypotheses of 3D joints from one camera's 2D joints, without a start: what the depth ambiguity allows, chosen over
+/// the clip.
 ///
 /// 1. Depth of the root from the image size of torso and legs (the largest over a few seconds is unforeshortened).
 /// 2. Torso orientation: a trellis over heading and tilt; each state is scored by how its shoulders and hips project,

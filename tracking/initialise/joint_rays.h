@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the search for 3D joints (joint_hypotheses.h) knows of a clip before it chooses anything: the rays of the
-/// detections, the lengths of the body, and how far away the body is.
+/// Viewing rays for the search for 3D joints (joint_hypotheses.h): the rays of the detections, the lengths of the body,
+/// and how far away the body is.
 #pragma once
 
 #include <Eigen/Core>

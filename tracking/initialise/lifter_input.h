@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the lifter sees of a clip: detections as viewing rays, turned and scaled so that every person looks alike.
+/// Input features of the lifter: detections as viewing rays, turned and scaled so that every person looks alike.
 ///
 /// The generator of training windows and the tracker both call this, so that training and use cannot differ.
 ///

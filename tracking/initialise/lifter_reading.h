@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// From the numbers that the lifter writes to landmarks, hypotheses and their uncertainty.
+/// Landmarks, hypotheses and their uncertainty from the lifter's outputs.
 #pragma once
 
 #include <Eigen/Core>

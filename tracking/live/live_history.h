@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a live tracker remembers of the 2D joints: the last seconds, cleaned, and a thinned sample of the whole shot.
-/// Memory is bounded.
+/// A live tracker's history of the 2D joints: the last seconds, cleaned, and a thinned sample of the whole shot. Memory
+/// is bounded.
 #pragma once
 
 #include <string>

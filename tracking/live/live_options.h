@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a live tracker is given: options, what stays the same, frames as they come; and what it hands out.
+/// Options and data of a live tracker: what stays the same, frames as they come, and its results.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,8 +23,8 @@ namespace bodyloom {
 struct LiveTrackerOptions {
   int lag = 4;               ///< frames: Push() of frame t returns frame t − lag. 0 to 60
   int context = 4;           ///< frames before those that stay in the window; at least 2
-  int iterations = 2;        ///< of each frame
-  int start_iterations = 8;  ///< of each of the first lag + 1 frames of a shot
+  int iterations = 2;        ///< solver iterations a frame
+  int start_iterations = 8;  ///< the same for the first lag + 1 frames of a shot
   int max_dense = 600;       ///< dense keypoints of a frame; of more, about this many stand for all
   double lost_after_s = 1;   ///< without any observation the person is lost
   /// Frames whose 2D joints jump away from the person count as not seen until they come back, or until they have lasted

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a live tracker knows before the first frame and does not change: body, camera, priors, which joints are
-/// unknowns.
+/// The setup of a live tracker, fixed before the first frame: body, camera, priors, which joints are unknowns.
 #pragma once
 
 #include <optional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How a shot of a live tracker begins: starting poses, and solves of all its first frames together.
+/// The start of a shot of a live tracker: starting poses, and solves of all its first frames together.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How far joints turn: the term
+/// Joint limits: the term
 ///   ½ Σ_j ‖e_j / σ‖²,   e_j = LimitExcess() of joint j's axis-angle, radians
 /// in every frame, for the joints that are estimated; no kernel, because beyond the box nobody can be. The limits are
 /// a box on the axis-angle of each joint's rotation from the T-pose, in SMPL's joint frames

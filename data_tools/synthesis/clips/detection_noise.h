@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Makes exact 2D landmarks look like a detector's: confidence, noise that depends on it, drift, drop-outs, swaps.
+/// Detection noise on exact 2D landmarks: confidence, noise that depends on it, drift, drop-outs, swaps.
 ///
 /// All lengths are in person heights h (the height of the body in the image, pixels), as measured on nine-camera
 /// detections of dancers:

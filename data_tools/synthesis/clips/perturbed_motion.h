@@ -15,9 +15,9 @@ struct PerturbationOptions {
   double root_rad = 0.12, spine_rad = 0.06, hip_rad = 0.16, knee_rad = 0.22, shoulder_rad = 0.25, elbow_rad = 0.28,
          end_rad = 0.15;
   double sideways_m = 0.02, depth_m = 0.15;  ///< translation across and along the view
-  double shape = 0.3;                        ///< of each beta
+  double shape = 0.3;                        ///< error of each beta
   double time_constant_s = 0.4;              ///< errors drift like this
-  double constant_share = 0.5;               ///< of each error's variance that stays for the whole clip
+  double constant_share = 0.5;               ///< share of each error's variance that stays for the whole clip
 };
 
 /// Mean over frames and vertices of the distance between the projections of two motions in the camera frame, in pixels

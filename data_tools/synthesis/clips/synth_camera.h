@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Puts a camera before a motion: fixed, upright, as near as keeps the whole clip in view.
+/// The camera of a synthetic clip: fixed, upright, as near as keeps the whole motion in view.
 #pragma once
 
 #include <string>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a detector reports of a scene: confidences that know about occlusion, noise that depends on them, and all the
-/// ways in which points go missing or change sides.
+/// Detections of a lifter's training scene: confidences that know about occlusion, noise that depends on them, and all
+/// the ways in which points go missing or change sides.
 ///
 /// Confidence: the typical value of the landmark (face: by the direction of the head), × 0.16 where the trunk (three
 /// capsules between shoulders and hips, radius 9–13 cm) or a leg (radius 7 cm) lies more than 9 cm in front of it,

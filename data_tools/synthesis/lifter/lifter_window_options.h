@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What random training windows are like. Probabilities are of a window unless said otherwise.
+/// Options of the lifter's random training windows. Probabilities are of a window unless stated otherwise.
 #pragma once
 
 #include <string>
@@ -33,7 +33,7 @@ struct LifterWindowOptions {
   double floor_poses = 0.22;  ///< lying, sitting, kneeling, crawling, rolling, upside down
 
   // Bodies.
-  double shape_sd = 1.2;              ///< of each shape component
+  double shape_sd = 1.2;              ///< standard deviation of each shape component
   double bone_noise = 1;              ///< multiplies the spread of bone lengths: 0.02 each + 0.06 … 0.10 by group
   double landmark_sd_m = 0.008;       ///< a landmark's place in the body
   double biased_detector = 0.5;       ///< the detector means places of its own, the same on both sides

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What is done to a stretch of recorded motion so that no two windows are alike.
+/// Augmentation of a stretch of recorded motion, so that no two windows are alike.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// From a motion to a single-person dataset (single_person_dataset.h): the seed makes the person (shape, clothes,
+/// Makes a single-person dataset (single_person_dataset.h) from a motion: the seed makes the person (shape, clothes,
 /// colours), the light and the background; the motion makes it move.
 ///
 /// The cloth runs frame after frame on one thread while the frames before are drawn on the others, so memory does not

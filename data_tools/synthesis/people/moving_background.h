@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What stands behind a synthetic person: a picture made of gradients, noise and a few shapes, slowly panning.
+/// The background of a synthetic person: a picture made of gradients, noise and a few shapes, slowly panning.
 #pragma once
 
 #include <Eigen/Core>

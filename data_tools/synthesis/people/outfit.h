@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a synthetic person wears close to the skin, and where: top, trousers, shoes and hair are the body's own surface
-/// moved outwards, labelled by place.
+/// The outfit of a synthetic person close to the skin, and where it lies: top, trousers, shoes and hair are the body's
+/// own surface moved outwards, labelled by place.
 ///
 /// A place on the surface is named by where it lies on the template (T-pose, metres, body frame), so cuts (sleeve,
 /// neckline, hairline, …) are smooth curves whatever the mesh, and stay on the skin when it moves. Any body on SMPL's

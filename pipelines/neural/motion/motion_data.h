@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// From files to what the motion-dependent renderer trains on: a single-person dataset, or a video with a track.
+/// Training data of the motion-dependent renderer from files: a single-person dataset, or a video with a track.
 #pragma once
 
 #include <memory>

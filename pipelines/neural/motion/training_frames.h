@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Which frames of a clip the motion-dependent renderer trains and validates on.
+/// Training and validation frames of a clip for the motion-dependent renderer.
 #pragma once
 
 #include <vector>

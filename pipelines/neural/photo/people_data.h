@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// From a folder of many people to what the one-photo renderers train on.
+/// Training data of the one-photo renderers from a multi-person dataset.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a person looks like who is rendered from photos: the texture that they show, parts of it lent by somebody else.
+/// Appearance of a person rendered from photos: the texture that they show, parts of it lent by somebody else.
 #pragma once
 
 #include <cstdint>

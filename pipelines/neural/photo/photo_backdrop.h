@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What stands behind a person who is rendered from a photo, frame by frame.
+/// The background of a person rendered from a photo, frame by frame.
 #pragma once
 
 #include <optional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// One picture of a person, from the files a user has, as the one-photo renderers take it; and the poses to show.
+/// Input of the one-photo renderers from a user's files: one picture of a person, and the poses to show.
 #pragma once
 
 #include <cstdint>

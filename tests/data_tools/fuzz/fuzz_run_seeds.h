@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the neural verbs read beside weights and pictures, small and valid: where the fuzzers of fuzz_run_targets.h
-/// start.
+/// Seeds for what the neural verbs read beside weights and pictures, small and valid: where the fuzzers of
+/// fuzz_run_targets.h start.
 #pragma once
 
 #include <map>

@@ -33,7 +33,7 @@ struct Walk {
 
 struct WalkOptions {
   double elevation_deg = 10, roll_deg = 0;
-  double depth_error = 0.02;  ///< of each stance, relative
+  double depth_error = 0.02;  ///< relative depth error of each stance
   double step_up_m = 0;       ///< of every step
   double jitter_m = 0.005;
   int steps = 12;

@@ -6,12 +6,12 @@ namespace bodyloom {
 
 /// Part labels and silhouettes (part_label_term.h).
 struct PartLabelOptions {
-  double silhouette_weight = 1;          ///< of the contour of all parts together; 0: off
-  double part_weight = 1;                ///< of each part's contour and pixels; 0: off
+  double silhouette_weight = 1;          ///< weight of the contour of all parts together; 0: off
+  double part_weight = 1;                ///< weight of each part's contour and pixels; 0: off
   double sigma_share = 0.01;             ///< σ of a contour as a share of the person's height in the image
   double start_kernel = 16, kernel = 4;  ///< c of the robust kernel in σ, in the first and in the last round
   int rounds = 5;          ///< solves on the coarse frames; what corresponds to what is found again before each
-  int max_iterations = 8;  ///< of each round
+  int max_iterations = 8;  ///< solver iterations of a round
 
   /// For clips whose 2D joints were read off the labels themselves: they add nothing to the labels but a start, and the
   /// labels are all there is against the priors. Weights 10 and 30, found on the first half of the real clip of

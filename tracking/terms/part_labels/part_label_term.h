@@ -116,9 +116,9 @@ class PartLabelTerm {
   PartLabelOptions options_;
   int num_person_pixels_ = 0;
   int cell_px_ = 1;
-  std::array<PixelBox, 256> boxes_;  ///< of each part; of the person at 0
+  std::array<PixelBox, 256> boxes_;  ///< box of each part; the person's at 0
   std::array<int, 256> pixels_of_part_{};
-  std::map<uint8_t, DistanceField> fields_;  ///< of each part; of the silhouette at 0
+  std::map<uint8_t, DistanceField> fields_;  ///< field of each part; the silhouette's at 0
   std::vector<BoundarySample> boundary_;
   std::vector<Inside> inside_;
   std::vector<Target> targets_;

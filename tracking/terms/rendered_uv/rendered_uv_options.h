@@ -13,7 +13,7 @@ struct RenderedUvOptions {
   bool only_with_uv_noise = true;
   int max_points = 1000;    ///< keypoints of a frame that are taken in UV, spread evenly over the parts
   int rounds = 1;           ///< solves on the coarse frames; whitening is refreshed before each
-  int max_iterations = 8;   ///< of each round
+  int max_iterations = 8;   ///< solver iterations of a round
   double min_cosine = 0.5;  ///< between the ray and the surface normal; more grazing pixels are left to reprojection
   /// What an unmatched pixel costs: true: its reprojection error, so that it still pulls; false: the kernel's
   /// saturation.
