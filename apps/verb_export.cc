@@ -15,7 +15,7 @@ namespace bodyloom {
 namespace {
 
 constexpr const char* kFooter =
-    "What is written (camera frame, metres, unless said otherwise):\n"
+    "What is written (camera frame, metres, unless stated otherwise):\n"
     "  vertices   .npy, frames x vertices x 3, float32; lost frames are NaN\n"
     "  joints     .npy, frames x joints x 3, float64; lost frames are NaN\n"
     "  obj        a folder with frame_000000.obj ..., lost frames left out; with --frame one .obj file\n"

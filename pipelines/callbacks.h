@@ -37,7 +37,7 @@ struct PipelineCallbacks {
   void Begin(const std::string& work) const {
     if (begin) begin(work);
   }
-  /// Calls `progress`, if any, and returns its answer: for code that stops by itself when it is told to.
+  /// Calls `progress`, if any, and returns its answer: for code that stops by itself on request.
   [[nodiscard]] bool GoesOn(const std::string& stage, double fraction) const {
     return !progress || progress(stage, fraction);
   }

@@ -219,8 +219,8 @@ void CheckRequest(const BodyModel& body, const MatrixX3d& vertices, const Resolv
 
 /// Empty when not requested. Rows are cleared when they are written, while they are in the cache.
 template <class T>
-void Prepare(bool asked, size_t size, std::vector<T>* values) {
-  values->resize(asked ? size : 0);
+void Prepare(bool requested, size_t size, std::vector<T>* values) {
+  values->resize(requested ? size : 0);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace {
 /// A line for each option: its name and its default.
 std::string Usage(const std::map<std::string, std::string>& known) {
   if (known.empty()) return "it takes no options\n";
-  std::string lines = "options and what they are unless said otherwise (lists: commas)\n";
+  std::string lines = "options and what they are unless stated otherwise (lists: commas)\n";
   for (const auto& [name, value] : known) {
     lines += "  --" + name + std::string(name.size() < 18 ? 18 - name.size() : 0, ' ') + " " +
              (value.empty() ? "none" : value) + "\n";

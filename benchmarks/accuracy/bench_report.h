@@ -27,7 +27,7 @@ struct BenchReport {
   bool summarise = true;    ///< close each group with the mean and spread of its rows
 };
 
-/// A table a group, each closed by "mean" and "std" (population, over its rows) when asked for, then notes, commit and
+/// A table a group, each closed by "mean" and "std" (population, over its rows) when requested, then notes, commit and
 /// machine.
 std::string BenchText(const BenchReport& report);
 

@@ -26,7 +26,7 @@ const Track& Checked(const BodyModel& body, const Track& track, const Descriptor
   BODYLOOM_CHECK(track.motion.poses.cols() <= 3 * body.num_joints(), "describe: the track has ",
                  track.motion.poses.cols() / 3, " joints, the body '", body.name(), "' has ", body.num_joints());
   BODYLOOM_CHECK(!options.seen_only || (track.camera.width > 0 && track.camera.height > 0),
-                 "describe: only seen texels were asked for, but the track does not say how large its images are");
+                 "describe: only seen texels were requested, but the track does not say how large its images are");
   return track;
 }
 

@@ -12,7 +12,7 @@ bool DescriptorOptions::IsValid(std::string* why) const {
     return false;
   };
   if (past < 0 || past > 1000) return no(Concatenate("past is ", past, ", expected 0..1000"));
-  if (past == 0 && !normals) return no("neither normals nor velocities asked for");
+  if (past == 0 && !normals) return no("neither normals nor velocities requested");
   if (num_threads < 1 || num_threads > 1024)
     return no(Concatenate("num_threads is ", num_threads, ", expected 1..1024"));
   return true;

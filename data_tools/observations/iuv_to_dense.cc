@@ -95,7 +95,7 @@ class InstanceFollower {
     int chosen = present[0];
     if (last_.empty()) {
       if (person_ >= static_cast<int>(present.size())) {
-        throw std::runtime_error(where + ": person " + std::to_string(person_) + " asked for, but only " +
+        throw std::runtime_error(where + ": person " + std::to_string(person_) + " requested, but only " +
                                  std::to_string(present.size()) + " are in this frame (0 is the largest)");
       }
       chosen = present[person_];

@@ -147,7 +147,7 @@ KeypointSequence SelectPerson(const PeopleSequence& people, int person, const st
     throw std::runtime_error(where + ": no person in any of " + std::to_string(people.frames.size()) + " frames");
   }
   if (person >= static_cast<int>(tracks.size())) {
-    throw std::runtime_error(where + ": person " + std::to_string(person) + " asked for, but only " +
+    throw std::runtime_error(where + ": person " + std::to_string(person) + " requested, but only " +
                              std::to_string(tracks.size()) + " were found (0 is the largest)");
   }
   KeypointSequence sequence;

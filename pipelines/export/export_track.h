@@ -9,7 +9,7 @@
 
 namespace bodyloom {
 
-/// What is written; camera frame and metres, unless said otherwise.
+/// What is written; camera frame and metres, unless stated otherwise.
 enum class TrackForm {
   kVertices,  ///< .npy, frames x vertices x 3, float32; lost frames are NaN
   kJoints,    ///< .npy, frames x joints x 3, float64; lost frames are NaN

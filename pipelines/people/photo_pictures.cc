@@ -20,7 +20,7 @@ bool ReadStill(const PictureRequest& request, PhotoFile* picture) {
     const std::vector<std::string> files = ImageFilesOf(request.path);
     if (request.frame >= static_cast<int>(files.size())) {
       throw std::runtime_error(
-          Concatenate(request.path, ": ", files.size(), " pictures, asked for number ", request.frame));
+          Concatenate(request.path, ": ", files.size(), " pictures, requested number ", request.frame));
     }
     *picture = ReadPhoto(files[request.frame]);
     return true;
@@ -56,10 +56,10 @@ std::vector<PhotoFile> ReadPictures(std::span<const PictureRequest> requests) {
       const int frame = requests[i].frame;
       video.Skip(std::max(0, frame - video.next_frame()));
       if (video.next_frame() == frame && !video.Read(&picture)) {
-        throw std::runtime_error(Concatenate(path, ": ", video.next_frame(), " frames, asked for frame ", frame));
+        throw std::runtime_error(Concatenate(path, ": ", video.next_frame(), " frames, requested frame ", frame));
       }
       if (video.next_frame() < frame) {
-        throw std::runtime_error(Concatenate(path, ": ", video.next_frame(), " frames, asked for frame ", frame));
+        throw std::runtime_error(Concatenate(path, ": ", video.next_frame(), " frames, requested frame ", frame));
       }
       pictures[i].image = picture;
     }

@@ -113,7 +113,7 @@ TEST_F(TrainGuidedVerb, SaysWhatIsWrong) {
   fails({"--image", person, "--out", out}, 2, "one of --track and --data");
   fails({"--image", scratch_ / "nobody.png", "--track", track, "--out", out}, 1, "nobody.png");
   fails({"--image", person, "--track", track, "--background", scratch_ / "no.jpg", "--out", out}, 1, "no.jpg");
-  fails({"--image", person, "--image-frame", "9", "--track", track, "--out", out}, 1, "asked for frame 9");
+  fails({"--image", person, "--image-frame", "9", "--track", track, "--out", out}, 1, "requested frame 9");
   fails({"--image", person, "--track", track, "--views", person + ":x:y", "--out", out}, 2, "--views");
   fails({"--score", scratch_ / "run"}, 1, "people.json");
 

@@ -112,7 +112,7 @@ TEST_F(TrainPhotoVerb, SaysWhatIsWrong) {
   fails(Animate({"--garment-from", scratch_ / "people/p002/a0_v0"}), 2, "belong together");
   fails(Animate({"--garment-from", scratch_ / "people/p002/a0_v0", "--parts", "hat"}), 2, "--parts hat");
   fails(Animate({"--garment-from", scratch_ / "nobody", "--parts", "top"}), 1, "nobody");
-  fails(Animate({"--image-frame", "7"}), 1, "asked for frame 7");
+  fails(Animate({"--image-frame", "7"}), 1, "requested frame 7");
   fails(Animate({"--view-yaw", "left"}), 2, "--view-yaw left");
 
   // The run's files: another config, a checkpoint that was cut off.

@@ -35,7 +35,7 @@ std::string Contents(const std::string& path) {
 
 nlohmann::json JsonOf(const std::string& path) { return nlohmann::json::parse(Contents(path)); }
 
-/// Ends well, or shows what it said.
+/// Ends well, or shows its output.
 CommandResult RunWell(const std::vector<std::string>& arguments) {
   CommandResult result = RunCommand(arguments);
   EXPECT_EQ(result.exit_code, kExitOk) << arguments[0] << ": " << result.err;

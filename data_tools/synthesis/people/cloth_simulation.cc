@@ -148,7 +148,7 @@ void ClothSimulation::CheckObstacles(const ClothObstacles& o) const {
                  "cloth: ", o.capsules.size(), " capsules, ", o.points.rows(), " points and ", o.normals.rows(),
                  " normals, expected ", obstacles_.capsules.size(), ", ", obstacles_.points.rows(), " and as many");
   BODYLOOM_CHECK(o.belongs.empty() || static_cast<Eigen::Index>(o.belongs.size()) == o.points.rows(), "cloth: of ",
-                 o.belongs.size(), " points it is said where they belong, expected none or all ", o.points.rows());
+                 o.belongs.size(), " points with a place where they belong, expected none or all ", o.points.rows());
   BODYLOOM_CHECK(o.points.allFinite() && o.normals.allFinite(), "cloth: the obstacles are not finite");
   for (const Capsule& c : o.capsules) {
     BODYLOOM_CHECK(c.a.allFinite() && c.b.allFinite() && c.radius_a >= 0 && c.radius_b >= 0 &&

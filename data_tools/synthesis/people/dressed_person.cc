@@ -142,7 +142,7 @@ bool ClothRun::IsCut(int t) const {
 }
 
 const std::vector<Vector3d>& ClothRun::Next() {
-  BODYLOOM_CHECK(next_ < motion_.num_frames(), "ClothRun: ", motion_.num_frames(), " frames, one more was asked for");
+  BODYLOOM_CHECK(next_ < motion_.num_frames(), "ClothRun: ", motion_.num_frames(), " frames, one more was requested");
   const int t = next_++;
   if (person_.garment().empty()) return none_;
   const BodyPose pose = PoseAt(t);

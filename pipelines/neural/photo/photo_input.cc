@@ -34,7 +34,7 @@ constexpr double kOthers = 0.02;  ///< of the labels that are other people's: no
 Track TrackOfFrame(const Track& track, const std::string& path, int frame) {
   const int t = track.num_frames() == 1 ? 0 : frame;
   if (t >= track.num_frames()) {
-    throw std::runtime_error(Concatenate(path, ": ", track.num_frames(), " frames, asked for frame ", frame));
+    throw std::runtime_error(Concatenate(path, ": ", track.num_frames(), " frames, requested frame ", frame));
   }
   if (!track.HasResult(t)) {
     throw std::runtime_error(Concatenate(path, ": frame ", t, " has no result; choose another by the frame's number"));
@@ -73,7 +73,7 @@ Shown FromSinglePersonDataset(const PhotoRequest& request) {
   const SinglePersonDataset set(request.image);
   if (request.frame >= set.info().num_frames) {
     throw std::runtime_error(
-        Concatenate(request.image, ": ", set.info().num_frames, " frames, asked for frame ", request.frame));
+        Concatenate(request.image, ": ", set.info().num_frames, " frames, requested frame ", request.frame));
   }
   PersonFrame frame = set.Read(request.frame, {true, false, false, false});
   Shown shown;
@@ -133,7 +133,7 @@ Image LabelsOfParts(const PhotoRequest& request, const Image& picture) {
   if (parts.image_width != picture.width || parts.image_height != picture.height ||
       request.frame >= parts.num_frames()) {
     throw std::runtime_error(Concatenate(request.labels, ": ", parts.num_frames(), " frames of ", parts.image_width,
-                                         "x", parts.image_height, ", asked for frame ", request.frame, " of ",
+                                         "x", parts.image_height, ", requested frame ", request.frame, " of ",
                                          picture.width, "x", picture.height));
   }
   return LabelPicture(parts.frames[request.frame], picture.width, picture.height);
@@ -254,7 +254,7 @@ Photo MakePhoto(const PhotoRequest& request, Shown shown, int size, int texture_
 }  // namespace
 
 std::vector<Photo> LoadPhotos(std::span<const PhotoRequest> requests, int size, int texture_size) {
-  BODYLOOM_CHECK(!requests.empty(), "photos: none asked for");
+  BODYLOOM_CHECK(!requests.empty(), "photos: none requested");
   Files files;
   files.body = BodyOrBuiltin(requests[0].body);
   std::vector<PictureRequest> pictures;

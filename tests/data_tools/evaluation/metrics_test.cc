@@ -225,7 +225,7 @@ TEST(MetricsTest, NothingIsDifferencedAcrossAGap) {
   EXPECT_EQ(e.missing, 2);
   EXPECT_EQ(e.count, 6);
   EXPECT_EQ(Jitter(clip, times), 0);
-  EXPECT_GT(Jitter(clip, times, 2.0), 1);  // unless told to
+  EXPECT_GT(Jitter(clip, times, 2.0), 1);  // unless requested
 }
 
 TEST(MetricsTest, ShortClipsHaveNoDerivative) {

@@ -128,7 +128,7 @@ TEST_F(PhotoFiles, AVideoIsDecodedOnceForAllItsFrames) {
   }
   EXPECT_EQ(pictures[1].image, Blocks());
   const PictureRequest beyond[] = {{video, 3}, {video, 9}};
-  EXPECT_THAT(FileErrorOf(video, [&] { (void)ReadPictures(beyond); }), HasSubstr("9 frames, asked for frame 9"));
+  EXPECT_THAT(FileErrorOf(video, [&] { (void)ReadPictures(beyond); }), HasSubstr("9 frames, requested frame 9"));
   const PictureRequest none[] = {{folder_.File("nothing"), 0}};
   FileErrorOf("nothing", [&] { (void)ReadPictures(none); });
 }
