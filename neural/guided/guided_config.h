@@ -33,10 +33,9 @@ struct GuidedProfile {
   bool one_hot_labels = false;      ///< labels as seven channels; false: as one grey, as the paper feeds them
   bool spectral_norm = false;       ///< in RenderNet's decoder
   int discriminator_width = 0;
-  int perceptual_divisor =
-      1;                      ///< channels of VGG are divided by this where a random-feature substitute takes its place
-  int contextual_points = 0;  ///< positions that the contextual loss compares, drawn at random
-  bool fill_colours = false;  ///< RenderNet's last convolution sees known colours carried on over their garment
+  int perceptual_divisor = 1;    ///< divides VGG's channels where a random-feature substitute takes its place
+  int contextual_points = 0;     ///< positions that the contextual loss compares, drawn at random
+  bool fill_colours = false;     ///< RenderNet's last convolution sees known colours carried on over their garment
   bool start_from_body = false;  ///< SilNet sees the bare body as a map of its own, and starts with its silhouette
   bool contour_hints = false;    ///< SilNet sees the clothes' labels and extent on the target's body
   bool nearest_texels = false;   ///< the maps are completed by MapCompletion::kNearest, else over virtual views

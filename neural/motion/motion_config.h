@@ -17,8 +17,7 @@ struct MotionProfile {
   int texture_size = 0, texture_features = 0;  ///< side, texels, and channels of the learned texture
   std::vector<int> encoder_widths, decoder_widths;
   int discriminator_width = 0;
-  int perceptual_divisor =
-      1;  ///< channels of VGG are divided by this where a random-feature substitute takes its place
+  int perceptual_divisor = 1;  ///< divides VGG's channels where a random-feature substitute takes its place
 };
 
 /// "paper" (512², the published resolutions), "cpu" (256², trains and runs on two cores), "tiny" (128², for tests).

@@ -17,8 +17,7 @@ struct PhotoProfile {
   std::vector<int> feature_widths;
   int render_width = 0, render_blocks = 0;
   int discriminator_width = 0, discriminator_layers = 0, discriminator_scales = 0;
-  int perceptual_divisor =
-      1;  ///< channels of VGG are divided by this where a random-feature substitute takes its place
+  int perceptual_divisor = 1;  ///< divides VGG's channels where a random-feature substitute takes its place
   /// RenderNet's last convolution sees R, its colours filled outwards and the body's silhouette too, and begins with
   /// those colours and that silhouette.
   /// Instance norm takes colours out of every map before; how they come back is learned, which takes longer than two
