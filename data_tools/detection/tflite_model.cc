@@ -79,7 +79,8 @@ class Reader {
     ReadTensors(graphs[0].Tables(0, kMaxTables), root.Tables(4, kMaxTables));
     model_.inputs = Ends(graphs[0], 1, "inputs");
     for (const int input : model_.inputs) {
-      if (descriptions_[input].constant) Fail(TensorPlace(input), "an input of the network that is constant");
+      if (descriptions_[input].constant)
+        Fail(TensorPlace(input), "an input of the network that is constant, expected none of its values");
       MarkComputed(input, TensorPlace(input));
     }
     const std::vector<FlatTable> operators = graphs[0].Tables(3, kMaxTables);
@@ -88,7 +89,7 @@ class Reader {
     for (const int output : model_.outputs) {
       const bool input = std::count(model_.inputs.begin(), model_.inputs.end(), output) != 0;
       if (!descriptions_[output].computed || input) {
-        Fail(TensorPlace(output), "an output of the network that no operator writes");
+        Fail(TensorPlace(output), "an output of the network that no operator writes, expected one that is computed");
       }
     }
     return std::move(model_);
@@ -179,7 +180,8 @@ class Reader {
 
   void MarkComputed(int tensor, const std::string& place) {
     if (descriptions_[tensor].computed || descriptions_[tensor].constant) {
-      Fail(place, Concatenate("writes tensor ", tensor, ", which has its values already"));
+      Fail(place, Concatenate("writes tensor ", tensor,
+                              ", which has its values already, expected one that nothing else writes"));
     }
     descriptions_[tensor].computed = true;
     computed_ += model_.tensors[tensor].size();

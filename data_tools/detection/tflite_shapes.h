@@ -14,8 +14,8 @@ struct TflitePads {
   int before = 0, after = 0;
 };
 
-/// TensorFlow's SAME: total = max((⌈size / stride⌉ − 1)·stride + kernel − size, 0), the smaller half before. Uneven when
-/// the total is odd: a 3×3 kernel of stride 2 on an even size has 0 before and 1 after.
+/// TensorFlow's SAME: total = max((⌈size / stride⌉ − 1)·stride + kernel − size, 0), the smaller half before. Uneven
+/// when the total is odd: a 3×3 kernel of stride 2 on an even size has 0 before and 1 after.
 TflitePads SamePads(int size, int kernel, int stride);
 
 /// Shape of the operator's result. Its inputs' shapes and the int32 constants must be there. Throws std::runtime_error
