@@ -88,7 +88,7 @@ FlatTable CompressedDimension(const FlatTable& sparsity, const std::vector<int>&
   const std::vector<FlatTable> dimensions = sparsity.Tables(2, rank);
   if (dimensions.size() != rank) Fail(place, Concatenate(dimensions.size(), " sparse axes, expected ", rank));
   for (size_t i = 0; i < rank; ++i) {
-    const int format = dimensions[i].Number<int8_t>(0, 0), expected = i + 1 == rank ? 1 : 0;
+    const int format = dimensions[i].Number<uint8_t>(0, 0), expected = i + 1 == rank ? 1 : 0;
     const int size = dimensions[i].Number<int32_t>(1, 0);
     // The compressed axis is as long as the shape says; writers leave its own number out.
     if (format != expected || (expected == 0 && size != shape[i])) {

@@ -117,8 +117,8 @@ class Reader {
       TfliteTensor& tensor = model_.tensors.emplace_back();
       tensor.name = PrintableText(tables[i].Bytes(3));
       const std::string place = TensorPlace(static_cast<int>(i));
-      const int type = tables[i].Number<int8_t>(1, 0);
-      if (type < 0 || type > 2) {
+      const int type = tables[i].Number<uint8_t>(1, 0);
+      if (type > 2) {
         Fail(place, Concatenate("type ", type, ", expected 0 (float32), 1 (float16) or 2 (int32)"));
       }
       if (tables[i].Number<uint8_t>(5, 0) != 0) Fail(place, "a variable, expected a constant or a computed tensor");
@@ -280,7 +280,7 @@ class Reader {
       Fail(place, Concatenate("options of kind ", kind, ", expected ", known.options));
     }
     const auto window = [&](int stride_w, int stride_h) {
-      const int padding = options->Number<int8_t>(0, 0);
+      const int padding = options->Number<uint8_t>(0, 0);
       if (padding != 0 && padding != 1)
         Fail(place, Concatenate("padding ", padding, ", expected 0 (SAME) or 1 (VALID)"));
       op->same_padding = padding == 0;
@@ -291,7 +291,7 @@ class Reader {
       }
     };
     const auto activation = [&](int field) {
-      const int found = options->Number<int8_t>(field, 0);
+      const int found = options->Number<uint8_t>(field, 0);
       if (found != 0 && found != 3) Fail(place, Concatenate("activation ", found, ", expected 0 (none) or 3 (relu6)"));
       op->relu6 = found == 3;
     };

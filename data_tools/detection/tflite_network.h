@@ -26,7 +26,8 @@ struct TfliteValues {
 
 /// One object is used by one thread at a time; several in several threads do not disturb each other. How many threads
 /// dnn itself uses is a setting of the whole process (cv::setNumThreads), which is left as it is: with objects in
-/// several threads set it to 1. The results do not depend on it.
+/// several threads set it to 1. Equal numbers of threads give equal bits; other numbers cut the convolutions elsewhere
+/// and round otherwise (1e-4 of the pose detector's 224 pixels with 3 instead of 1).
 class TfliteNetwork {
  public:
   /// The layers that the wanted outputs need; `wanted_outputs` are places among model.outputs, none = all. The kernels

@@ -4,10 +4,13 @@
 /// not fetch them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <opencv2/core/utility.hpp>
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "bodyloom/data_tools/detection/model_files.h"
@@ -108,6 +111,7 @@ void ExpectLandmarks(const Landmarks& expected) {
   // Without the mask's branch, in two threads at once: the same bits.
   std::vector<std::vector<TfliteValues>> without(2);
   std::vector<std::thread> threads;
+  threads.reserve(without.size());
   for (std::vector<TfliteValues>& own : without) {
     threads.emplace_back([&] {
       TfliteNetwork branch(*model, {0, 1, 3, 4});
@@ -153,6 +157,29 @@ TEST(PoseNetworks, Heavy) {
                    {-28.53919, 12.92596},
                    {-10.34958, 8.32931},
                    {0.05565, 0.56821}});
+}
+
+TEST(PoseNetworks, HowManyThreadsOpenCvUsesChangesRoundingAlone) {
+  const int before = cv::getNumThreads();
+  for (const char* file : {kPoseDetectorFile, kPoseLandmarkLiteFile, kPoseLandmarkFullFile}) {
+    const std::optional<TfliteModel> model = ModelIfThere(file);
+    if (!model) GTEST_SKIP() << file << " is not there; ./dev models fetches it";
+    std::vector<TfliteValues> expected;
+    for (const int threads : {1, 2, 3}) {
+      cv::setNumThreads(threads);
+      TfliteNetwork network(*model);
+      std::vector<TfliteValues> outputs = network.Run(Pattern(network.input_shape(), false));
+      for (size_t i = 0; i < expected.size(); ++i) {
+        float largest = 0;
+        for (size_t j = 0; j < expected[i].values.size(); ++j) {
+          largest = std::max(largest, std::abs(outputs[i].values[j] - expected[i].values[j]));
+        }
+        EXPECT_LT(largest, 2e-3F) << file << " output " << i << ", " << threads << " threads";
+      }
+      expected = std::move(outputs);
+    }
+  }
+  cv::setNumThreads(before);
 }
 
 TEST(PoseNetworks, CutDetector) {

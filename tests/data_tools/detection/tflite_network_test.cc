@@ -248,6 +248,7 @@ TEST(TfliteNetwork, TwoThreadsGiveTheBitsOfOne) {
   const auto input = [&](int run) { return SomeFloats(InputOf(model).size(), static_cast<uint32_t>(run)); };
   for (int run = 0; run < kRuns; ++run) expected[static_cast<size_t>(run)] = alone.Run(input(run));
   std::vector<std::thread> threads;
+  threads.reserve(2);
   std::vector<int> different(2, 0);
   for (size_t t = 0; t < 2; ++t) {
     threads.emplace_back([&, t] {

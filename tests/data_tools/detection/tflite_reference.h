@@ -33,7 +33,10 @@ class ReferenceImage {
   int h, w, c;
 
  private:
-  [[nodiscard]] size_t Place(int y, int x, int k) const { return static_cast<size_t>((y * w + x) * c + k); }
+  [[nodiscard]] size_t Place(int y, int x, int k) const {
+    const int place = (y * w + x) * c + k;
+    return static_cast<size_t>(place);
+  }
   std::vector<float>* values_;
 };
 

@@ -168,6 +168,7 @@ class TfliteWriter {
   }
   static std::vector<uint16_t> Halves(const std::vector<float>& values) {
     std::vector<uint16_t> halves;
+    halves.reserve(values.size());
     for (const float value : values) halves.push_back(HalfOf(value));
     return halves;
   }
