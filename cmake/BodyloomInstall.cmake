@@ -1,6 +1,6 @@
 # `cmake --install`: the command, the libraries with their public headers, and a package file for find_package(bodyloom).
 #   component     what
-#   command       bin/bodyloom
+#   command       bin/bodyloom, and share/bodyloom/models where ./dev models fetched them
 #   neural        bin/bodyloom-neural
 #   development   the libraries, include/bodyloom, lib/cmake/bodyloom
 include(CMakePackageConfigHelpers)
@@ -53,5 +53,19 @@ foreach(component command neural)
             DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/doc/${folder} COMPONENT ${component})
   endif()
 endforeach()
+
+# The pose detector's networks, where the command looks for them (data_tools/detection/model_files.h), with their list.
+file(STRINGS ${CMAKE_CURRENT_LIST_DIR}/models.txt models REGEX "^file ")
+list(TRANSFORM models REPLACE "^file +([^ ]+) .*" "${PROJECT_SOURCE_DIR}/build/models/\\1")
+set(models_there TRUE)
+foreach(model IN LISTS models)
+  if(NOT EXISTS ${model})
+    set(models_there FALSE)
+  endif()
+endforeach()
+if(models_there AND TARGET bodyloom_command)
+  install(FILES ${models} ${CMAKE_CURRENT_LIST_DIR}/models.txt
+          DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/bodyloom/models COMPONENT command)
+endif()
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE RENAME copyright
         DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/doc/libbodyloom-dev COMPONENT development)

@@ -2,7 +2,7 @@
 /// IEEE half precision, as .npy files and descriptors hold it.
 #pragma once
 
-#include <cmath>
+#include <bit>
 #include <cstdint>
 #include <limits>
 
@@ -16,9 +16,9 @@ inline float FloatFromHalf(uint16_t half) {
   if (exponent == 31) {
     value = fraction == 0 ? std::numeric_limits<float>::infinity() : std::numeric_limits<float>::quiet_NaN();
   } else if (exponent == 0) {
-    value = std::ldexp(static_cast<float>(fraction), -24);
-  } else {
-    value = std::ldexp(static_cast<float>(fraction + 1024), exponent - 25);
+    value = static_cast<float>(fraction) * 0x1p-24F;
+  } else {  // the same bits with another bias; weights of networks come by the million
+    value = std::bit_cast<float>(static_cast<uint32_t>((exponent + 112) << 23 | fraction << 13));
   }
   return (half & 0x8000) != 0 ? -value : value;
 }

@@ -7,6 +7,7 @@
 
 #include "tests/fuzz/fuzz_array_targets.h"
 #include "tests/fuzz/fuzz_file_targets.h"
+#include "tests/fuzz/fuzz_network_targets.h"
 #include "tests/fuzz/fuzz_run_targets.h"
 #include "tests/fuzz/fuzz_targets.h"
 #include "tests/fuzz/fuzz_text_targets.h"
@@ -43,7 +44,8 @@ constexpr Target kTargets[] = {{"npz", AcceptsNpz},
                                {"split", AcceptsSplit},
                                {"mat", AcceptsMat},
                                {"run_config", AcceptsRunConfig},
-                               {"relight", AcceptsRelight}};
+                               {"relight", AcceptsRelight},
+                               {"tflite", AcceptsTflite}};
 
 const Target& Chosen() {
   static const Target& chosen = [&]() -> const Target& {

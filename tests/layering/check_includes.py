@@ -16,7 +16,7 @@ import sys
 BASE = {"geometry"}
 SEEN = BASE | {"render"}
 JUDGED = SEEN | {"tracking", "data_tools"}
-WHOLE = JUDGED | {"render/lighting", "data_tools/synthesis", "data_tools/evaluation"}
+WHOLE = JUDGED | {"render/lighting", "data_tools/detection", "data_tools/synthesis", "data_tools/evaluation"}
 # Room -> rooms whose headers it may include (always its own). A file belongs to the longest path that fits.
 ROOMS = {
     "geometry/base": set(),
@@ -25,6 +25,7 @@ ROOMS = {
     "render/lighting": SEEN,
     "tracking": SEEN,
     "data_tools": SEEN,
+    "data_tools/detection": SEEN | {"data_tools"},
     "data_tools/synthesis": JUDGED,
     "data_tools/evaluation": JUDGED,
     "neural": SEEN,
@@ -50,8 +51,9 @@ LIBRARIES = {room for room in ROOMS if not room.startswith(PROGRAMS)}
 # Third-party header -> (rooms that may include it, whether a header file of ours may).
 THIRD_PARTY = [
     (r"ceres/", {"tracking", "render/lighting", "examples"} | TEST_CODE, True),
-    (r"opencv2/", {"render", "render/lighting", "data_tools", "data_tools/synthesis", "data_tools/evaluation", "pipelines",
-                   "pipelines/neural"} | TEST_CODE, True),
+    (r"opencv2/dnn", {"data_tools/detection"} | TEST_CODE, False),
+    (r"opencv2/", {"render", "render/lighting", "data_tools", "data_tools/detection", "data_tools/synthesis",
+                   "data_tools/evaluation", "pipelines", "pipelines/neural"} | TEST_CODE, True),
     (r"(torch|ATen|c10|caffe2)/", {"neural", "pipelines/neural"} | TEST_CODE, True),
     (r"CGAL/", TEST_CODE, False),
     (r"embree3/", TEST_CODE, False),

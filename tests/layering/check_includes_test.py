@@ -60,6 +60,18 @@ class CheckIncludes(unittest.TestCase):
         self.expect_allowed({"tracking/b.h": "", "data_tools/evaluation/a.cc": include("tracking/b.h"),
                              "data_tools/synthesis/a.cc": include("tracking/b.h")})
 
+    def test_detection_stands_above_data_tools_and_beside_tracking(self):
+        self.expect_allowed({"data_tools/b.h": "", "data_tools/detection/a.cc": include("data_tools/b.h")})
+        self.expect_fault({"tracking/b.h": "", "data_tools/detection/a.cc": include("tracking/b.h")},
+                          "data_tools/detection/a.cc:1: data_tools/detection/ includes")
+        self.expect_fault({"data_tools/detection/b.h": "", "data_tools/a.cc": include("data_tools/detection/b.h")},
+                          "data_tools/a.cc:1: data_tools/ includes")
+
+    def test_networks_of_opencv_are_for_detection(self):
+        self.expect_allowed({"data_tools/detection/a.cc": "#include <opencv2/dnn.hpp>\n"})
+        self.expect_fault({"data_tools/a.cc": "#include <opencv2/dnn.hpp>\n"}, "data_tools/ includes <opencv2/dnn.hpp>")
+        self.expect_fault({"data_tools/detection/a.h": "#include <opencv2/dnn.hpp>\n"}, "a header includes <opencv2/dnn.hpp>")
+
     def test_pipelines_stand_below_the_command(self):
         self.expect_fault({"apps/b.h": "", "pipelines/a.cc": '#include "apps/b.h"\n'}, 'pipelines/ includes "apps/b.h"')
         self.expect_fault({"pipelines/neural/b.h": "", "pipelines/a.cc": include("pipelines/neural/b.h")},

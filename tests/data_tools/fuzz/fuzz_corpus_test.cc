@@ -2,6 +2,7 @@
 /// The fuzzers' functions on a few thousand fixed mutations of valid files.
 #include "tests/fuzz/fuzz_array_targets.h"
 #include "tests/fuzz/fuzz_file_targets.h"
+#include "tests/fuzz/fuzz_network_targets.h"
 #include "tests/fuzz/fuzz_targets.h"
 #include "tests/fuzz/fuzz_text_targets.h"
 #include "tests/fuzz/run_mutations.h"
@@ -31,6 +32,7 @@ TEST(FuzzCorpus, Image) { RunMutations("image", AcceptsImage, 500); }
 TEST(FuzzCorpus, SinglePersonDataset) { RunMutations("single_person_dataset", AcceptsSinglePersonDataset, 1000); }
 TEST(FuzzCorpus, Split) { RunMutations("split", AcceptsSplit, 4000); }
 TEST(FuzzCorpus, Mat) { RunMutations("mat", AcceptsMat, 300); }
+TEST(FuzzCorpus, Tflite) { RunMutations("tflite", AcceptsTflite, 4000); }
 TEST(FuzzCorpus, Cage) { RunMutations("cage", AcceptsCage, 4000); }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "bodyloom/data_tools/formats/safetensors.h"
 #include "bodyloom/data_tools/formats/zip.h"
 #include "tests/data_tools/body/small_body.h"
+#include "tests/data_tools/detection/small_networks.h"
 #include "tests/data_tools/formats/pickle_writer.h"
 #include "tests/data_tools/formats/torch_stream.h"
 #include "tests/data_tools/fuzz/fuzz_array_seeds.h"
@@ -118,6 +119,7 @@ std::map<std::string, std::vector<std::string>> Seeds() {
   seeds["track"] = {NpzBytes(TrackArrays(false)), FrameArrays(TrackArrays(false)), FrameArrays(TrackArrays(true))};
   seeds["obj"] = {"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 1 1\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\nf 1 2 3 4\nf -1 -2 -3\n",
                   "# x\nmtllib a\ng b\nv\t1e3 -2.5 +0\r\nv 1 2 3\nv 1 2 4 1 1 1\nf 1//1 2//1 3//1\n"};
+  for (const TfliteWriter& network : SmallNetworks()) seeds["tflite"].push_back(network.Bytes());
   AddTextSeeds(&seeds);
   AddRunSeeds(&seeds);
   AddArraySeeds(&seeds);

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+/// BlazePose's own networks against TensorFlow Lite's results for a made input: value k = (7·row + 13·column +
+/// 29·channel) mod 256, as k/255 for the landmarks and k/127.5 − 1 for the detector. Skipped where `./dev models` could
+/// not fetch them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/core/utility.hpp>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "bodyloom/data_tools/detection/model_files.h"
+#include "bodyloom/data_tools/detection/tflite_network.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "tests/data_tools/formats/expect_file_error.h"
+
+namespace bodyloom {
+namespace {
+
+std::optional<TfliteModel> ModelIfThere(const std::string& file) {
+  std::string path;
+  try {
+    path = FindModelFile(file);
+  } catch (const std::runtime_error&) {
+    return std::nullopt;
+  }
+  return ReadTfliteModel(path);
+}
+
+std::vector<float> Pattern(const std::vector<int>& shape, bool detector) {
+  std::vector<float> values;
+  for (int row = 0; row < shape[1]; ++row) {
+    for (int column = 0; column < shape[2]; ++column) {
+      for (int channel = 0; channel < shape[3]; ++channel) {
+        const auto k = static_cast<float>((7 * row + 13 * column + 29 * channel) % 256);
+        values.push_back(detector ? k / 127.5F - 1 : k / 255);
+      }
+    }
+  }
+  return values;
+}
+
+struct Spread {
+  double mean, deviation;
+};
+
+void ExpectSpread(const TfliteValues& output, const Spread& expected, double tolerance, const std::string& what) {
+  double mean = 0, square = 0;
+  for (const float value : output.values) mean += value;
+  mean /= static_cast<double>(output.values.size());
+  for (const float value : output.values) square += (value - mean) * (value - mean);
+  EXPECT_NEAR(mean, expected.mean, tolerance) << what;
+  EXPECT_NEAR(std::sqrt(square / static_cast<double>(output.values.size())), expected.deviation, tolerance) << what;
+}
+
+void ExpectFirst(const TfliteValues& output, const std::vector<double>& expected, double tolerance,
+                 const std::string& what) {
+  for (size_t i = 0; i < expected.size(); ++i)
+    EXPECT_NEAR(output.values[i], expected[i], tolerance) << what << " " << i;
+}
+
+TEST(PoseNetworks, Detector) {
+  const std::optional<TfliteModel> model = ModelIfThere(kPoseDetectorFile);
+  if (!model) GTEST_SKIP() << kPoseDetectorFile << " is not there; ./dev models fetches it";
+  EXPECT_EQ(model->operators.size(), 109U);
+  TfliteNetwork network(*model);
+  ASSERT_EQ(network.input_shape(), (std::vector<int>{1, 224, 224, 3}));
+  const std::vector<TfliteValues> outputs = network.Run(Pattern(network.input_shape(), true));
+  ASSERT_EQ(outputs.size(), 2U);
+  ASSERT_EQ(outputs[0].shape, (std::vector<int>{1, 2254, 12}));
+  ASSERT_EQ(outputs[1].shape, (std::vector<int>{1, 2254, 1}));
+  ExpectSpread(outputs[0], {-1.90978, 66.98011}, 5e-5, "boxes");
+  ExpectSpread(outputs[1], {-56.87803, 63.75568}, 5e-5, "scores");
+  ExpectFirst(outputs[0], {0.0886, -3.5152, 5.2196, -0.3981}, 1e-3, "boxes");
+  ExpectFirst(outputs[1], {-84.1387, -6.1739, -101.0979, -7.4267}, 1e-3, "scores");
+}
+
+struct Landmarks {
+  const char* file;
+  size_t operators;
+  Spread points;
+  std::vector<double> first;
+  double presence;
+  Spread mask, heatmap, world;
+};
+
+// Tolerances: what TensorFlow Lite's own builds differ by on a pattern like this (4e-3 crop pixels, 0.6 mask logits).
+void ExpectLandmarks(const Landmarks& expected) {
+  const std::optional<TfliteModel> model = ModelIfThere(expected.file);
+  if (!model) GTEST_SKIP() << expected.file << " is not there; ./dev models fetches it";
+  const std::string what = expected.file;
+  EXPECT_EQ(model->operators.size(), expected.operators) << what;
+  TfliteNetwork network(*model);
+  ASSERT_EQ(network.input_shape(), (std::vector<int>{1, 256, 256, 3}));
+  const std::vector<float> input = Pattern(network.input_shape(), false);
+  const std::vector<TfliteValues> outputs = network.Run(input);
+  const std::vector<std::vector<int>> shapes = {{1, 195}, {1, 1}, {1, 256, 256, 1}, {1, 64, 64, 39}, {1, 117}};
+  ASSERT_EQ(outputs.size(), shapes.size());
+  for (size_t i = 0; i < shapes.size(); ++i) ASSERT_EQ(outputs[i].shape, shapes[i]) << what;
+  ExpectSpread(outputs[0], expected.points, 1e-3, what + " points");
+  ExpectFirst(outputs[0], expected.first, 4e-3, what + " points");
+  ExpectFirst(outputs[1], {expected.presence}, 1e-4, what + " presence");
+  ExpectSpread(outputs[2], expected.mask, 5e-3, what + " mask");
+  ExpectSpread(outputs[3], expected.heatmap, 5e-5, what + " heatmap");
+  ExpectSpread(outputs[4], expected.world, 2e-5, what + " world");
+
+  // Without the mask's branch, in two threads at once: the same bits.
+  std::vector<std::vector<TfliteValues>> without(2);
+  std::vector<std::thread> threads;
+  threads.reserve(without.size());
+  for (std::vector<TfliteValues>& own : without) {
+    threads.emplace_back([&] {
+      TfliteNetwork branch(*model, {0, 1, 3, 4});
+      EXPECT_LT(branch.num_operators(), network.num_operators()) << what;
+      for (int run = 0; run < 2; ++run) own = branch.Run(input);
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (const std::vector<TfliteValues>& own : without) {
+    ASSERT_EQ(own.size(), 4U);
+    for (size_t i = 0; i < 4; ++i) EXPECT_EQ(own[i].values, outputs[i < 2 ? i : i + 1].values) << what << " " << i;
+  }
+}
+
+TEST(PoseNetworks, Lite) {
+  ExpectLandmarks({kPoseLandmarkLiteFile,
+                   129,
+                   {49.72257, 67.93967},
+                   {134.224, 98.1994, -46.5972, -2.493},
+                   0.0,
+                   {-56.64063, 30.37614},
+                   {-7.60897, 6.29151},
+                   {-0.05248, 0.26141}});
+}
+
+TEST(PoseNetworks, Full) {
+  ExpectLandmarks({kPoseLandmarkFullFile,
+                   140,
+                   {35.02411, 58.32686},
+                   {110.1057, 36.4751, -55.3545, -0.5243},
+                   0.1053,
+                   {-45.07447, 149.25655},
+                   {-7.57063, 4.94127},
+                   {-0.11560, 0.22635}});
+}
+
+TEST(PoseNetworks, Heavy) {
+  ExpectLandmarks({kPoseLandmarkHeavyFile,
+                   293,
+                   {50.34144, 73.70656},
+                   {129.8806, 157.3062, -0.1647, -11.6031},
+                   0.2997,
+                   {-28.53919, 12.92596},
+                   {-10.34958, 8.32931},
+                   {0.05565, 0.56821}});
+}
+
+TEST(PoseNetworks, HowManyThreadsOpenCvUsesChangesRoundingAlone) {
+  const int before = cv::getNumThreads();
+  for (const char* file : {kPoseDetectorFile, kPoseLandmarkLiteFile, kPoseLandmarkFullFile}) {
+    const std::optional<TfliteModel> model = ModelIfThere(file);
+    if (!model) GTEST_SKIP() << file << " is not there; ./dev models fetches it";
+    std::vector<TfliteValues> expected;
+    for (const int threads : {1, 2, 3}) {
+      cv::setNumThreads(threads);
+      TfliteNetwork network(*model);
+      std::vector<TfliteValues> outputs = network.Run(Pattern(network.input_shape(), false));
+      for (size_t i = 0; i < expected.size(); ++i) {
+        float largest = 0;
+        for (size_t j = 0; j < expected[i].values.size(); ++j) {
+          largest = std::max(largest, std::abs(outputs[i].values[j] - expected[i].values[j]));
+        }
+        EXPECT_LT(largest, 2e-3F) << file << " output " << i << ", " << threads << " threads";
+      }
+      expected = std::move(outputs);
+    }
+  }
+  cv::setNumThreads(before);
+}
+
+TEST(PoseNetworks, CutDetector) {
+  if (!ModelIfThere(kPoseDetectorFile)) GTEST_SKIP() << kPoseDetectorFile << " is not there; ./dev models fetches it";
+  const std::string bytes = ReadFileBytes(FindModelFile(kPoseDetectorFile));
+  for (size_t length = 0; length < bytes.size(); length += bytes.size() / 100) {
+    FileErrorOf("cut", [&] { ParseTfliteModel(std::string_view(bytes).substr(0, length), "cut"); });
+  }
+}
+
+}  // namespace
+}  // namespace bodyloom

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Small networks that use every operator and every way of storing constants between them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tests/data_tools/detection/tflite_writer.h"
+
+namespace bodyloom {
+
+/// The first has three outputs (a row of numbers, their logistic, an image that the others do not need) and one input,
+/// 1×8×8×3, as BlazePose's landmark networks; the second is built as its detector.
+inline std::vector<TfliteWriter> SmallNetworks() {
+  using Writer = TfliteWriter;
+  Writer landmarks;
+  {
+    Writer& w = landmarks;
+    const int input = w.Input({1, 8, 8, 3});
+    const int down = w.Conv(input, {4, 3, 3, 3}, {1, 4, 4, 4}, true, 2, true);
+    const int block = w.Conv(w.Depthwise(down, 3, 3, {1, 4, 4, 4}, true, 1, true), {4, 1, 1, 4}, {1, 4, 4, 4}, true, 1);
+    const int sum = w.Apply(Writer::kAdd, {down, block}, {1, 4, 4, 4}, {{0, 3}});
+    const int pooled =
+        w.Apply(Writer::kMaxPool2d, {sum}, {1, 2, 2, 4}, {{0, 1}, {1, 2}, {2, 2}, {3, 2}, {4, 2}, {5, 0}});
+    const int wide = w.Pad(pooled, {0, 0, 0, 0, 0, 0, 0, 2}, {1, 2, 2, 6});
+    const int row = w.Conv(wide, {5, 2, 2, 6}, {1, 1, 1, 5}, false, 1, false, Writer::Storage::kFloat32);
+    const int flat = w.Apply(Writer::kReshape, {row, w.Ints({2}, {-1, 5})}, {1, 5});
+    const int size = w.Ints({2}, {8, 8});
+    const int large = w.Apply(Writer::kResizeBilinear, {sum, size}, {1, 8, 8, 4}, {{2, 0}, {3, 1}});
+    const int mask = w.Conv(large, {1, 1, 1, 4}, {1, 8, 8, 1}, true, 1, false, Writer::Storage::kFloat16, false);
+    w.outputs = {flat, w.Apply(Writer::kLogistic, {flat}, {1, 5}), mask};
+  }
+  Writer detector;
+  {
+    Writer& w = detector;
+    const int input = w.Input({1, 8, 8, 3});
+    const int pad = w.Pad(input, {0, 0, 0, 1, 0, 1, 0, 0}, {1, 9, 9, 3});
+    const int down = w.Conv(pad, {8, 3, 3, 3}, {1, 4, 4, 8}, false, 2, true);
+    const int sparse = w.Conv(down, {16, 1, 1, 8}, {1, 4, 4, 16}, true, 1, true, Writer::Storage::kSparse);
+    const int even = w.Pad(sparse, {0, 0, 2, 2, 2, 2, 0, 0}, {1, 8, 8, 16});
+    const int smooth = w.Depthwise(even, 5, 5, {1, 4, 4, 16}, false, 1);
+    const int spread = w.Apply(Writer::kDepthToSpace, {smooth}, {1, 8, 8, 4}, {{0, 2}});
+    const int fine = w.Apply(Writer::kReshape, {spread, w.Ints({3}, {1, 128, 2})}, {1, 128, 2});
+    const int coarse = w.Apply(Writer::kReshape, {sparse, w.Ints({3}, {1, -1, 2})}, {1, 128, 2});
+    w.outputs = {w.Apply(Writer::kConcatenation, {fine, coarse}, {1, 256, 2}, {{0, 1}, {1, 0}})};
+  }
+  return {landmarks, detector};
+}
+
+}  // namespace bodyloom
