@@ -26,7 +26,8 @@ class VideoPackets {
   [[nodiscard]] double fps() const;
   /// Frames to be shown, as the container says; 0 when it does not.
   [[nodiscard]] int num_frames() const;
-  /// After the end: what shows that the file should have gone on ("its index promises 24 frames"); "" when nothing does.
+  /// After the end: what shows that the file should have gone on ("its index promises 24 frames"); "" when nothing
+  /// does.
   [[nodiscard]] std::string CutOff() const;
 
  private:

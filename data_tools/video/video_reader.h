@@ -38,9 +38,9 @@ class VideoReader {
   /// Passes over up to `count` frames without converting them; returns how many there were.
   int Skip(int count);
 
-  /// Passes over the frames that are shown before `seconds` on the clock of frame_time(), so that Read returns the first
-  /// one at or after it (to a microsecond); returns how many there were. Throws std::runtime_error for a folder, which
-  /// has no clock.
+  /// Passes over the frames that are shown before `seconds` on the clock of frame_time(), so that Read returns the
+  /// first one at or after it (to a microsecond); returns how many there were. Throws std::runtime_error for a folder,
+  /// which has no clock.
   int SkipTo(double seconds);
 
   /// Index of the frame that Read returns next.

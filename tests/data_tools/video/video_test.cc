@@ -72,6 +72,31 @@ TEST(Video, SameFramesGiveTheSameBytes) {
   EXPECT_EQ(ReadFileBytes(folder.File("a.mp4")), ReadFileBytes(folder.File("b.mp4")));
 }
 
+/// Colours go to YCbCr and come back by the same matrix, which the file names.
+TEST(Video, ColoursComeBack) {
+  const TemporaryFolder folder;
+  const std::string path = folder.File("clip.mp4");
+  Image image(64, 48);
+  for (int y = 0; y < 48; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      const int k = x / 16 + 4 * (y / 12);
+      uint8_t* p = image.pixel(x, y);
+      p[0] = 16 * k, p[1] = 255 - 13 * k, p[2] = 40 + 11 * (k % 7);
+    }
+  }
+  VideoWriter writer(path, 64, 48, 25);
+  for (int i = 0; i < 3; ++i) writer.Write(image);
+  writer.Finish();
+  VideoReader reader(path);
+  Image frame;
+  ASSERT_TRUE(reader.Read(&frame));
+  for (int y = 6; y < 48; y += 12) {
+    for (int x = 8; x < 64; x += 16) {
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(frame.pixel(x, y)[c], image.pixel(x, y)[c], 8) << x << ", " << y;
+    }
+  }
+}
+
 TEST(Video, SkipsFrames) {
   const TemporaryFolder folder;
   const std::string path = folder.File("clip.mp4");
@@ -139,6 +164,7 @@ TEST(Video, RefusesPlacesThatCannotBeWritten) {
   EXPECT_NE(FileErrorOf(text, [&] { VideoWriter(text, 64, 64, 25); }).find("expected .mp4"), std::string::npos);
   EXPECT_THROW(VideoWriter(folder.File("a.mp4"), 0, 64, 25), std::invalid_argument);
   EXPECT_THROW(VideoWriter(folder.File("a.mp4"), 64, 64, 0), std::invalid_argument);
+  EXPECT_THROW(VideoWriter(folder.File("a.mp4"), 16384, 16384, 25), std::invalid_argument) << "it could not be read";
   VideoWriter writer(folder.File("a.mp4"), 96, 64, 25);
   EXPECT_THROW(writer.Write(NumberedPicture(0, 64, 64)), std::invalid_argument);
 }
