@@ -28,6 +28,7 @@ TEST(FuzzCorpus, LeftHalf) { RunMutations("left_half", AcceptsLeftHalf, 50); }
 TEST(FuzzCorpus, Motion) { RunMutations("motion", AcceptsMotion, 4000); }
 TEST(FuzzCorpus, DetectionsFile) { RunMutations("detections_file", AcceptsDetectionsFile, 4000); }
 TEST(FuzzCorpus, Image) { RunMutations("image", AcceptsImage, 500); }
+TEST(FuzzCorpus, Video) { RunMutations("video", AcceptsVideo, 300); }
 TEST(FuzzCorpus, PersonSet) { RunMutations("person_set", AcceptsPersonSet, 1000); }
 TEST(FuzzCorpus, Split) { RunMutations("split", AcceptsSplit, 4000); }
 TEST(FuzzCorpus, Mat) { RunMutations("mat", AcceptsMat, 300); }
