@@ -11,6 +11,7 @@
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/formats/file_extension.h"
 #include "bodyloom/data_tools/video/image_header.h"
+#include "bodyloom/data_tools/video/picture_limits.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/render/image_mat.h"
 
@@ -19,7 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr size_t kMaxPixels = size_t{1} << 26;
 constexpr size_t kMaxFileBytes = size_t{1} << 28;
 
 /// True when a comes before b, runs of digits compared by value.
@@ -72,9 +72,9 @@ Image ReadImage(const std::string& path) { return DecodeImage(ReadImageBytes(pat
 std::string ReadImageBytes(const std::string& path) { return ReadFileBytes(path, kMaxFileBytes); }
 
 Image DecodeImage(const std::string& bytes, const std::string& path) {
-  if (const auto header = ReadImageHeader(bytes); header && header->width * header->height > int64_t{kMaxPixels}) {
+  if (const auto header = ReadImageHeader(bytes); header && header->width * header->height > kMaxPicturePixels) {
     throw std::runtime_error(Concatenate(path, ": an image of ", header->width, "x", header->height,
-                                         " pixels, expected at most ", kMaxPixels, "; scale it down"));
+                                         " pixels, expected at most ", kMaxPicturePixels, "; scale it down"));
   }
   cv::Mat decoded;
   try {
@@ -85,10 +85,10 @@ Image DecodeImage(const std::string& bytes, const std::string& path) {
   } catch (const cv::Exception&) {  // a header that promises too much; reported below like any other nonsense
     decoded.release();
   }
-  if (decoded.empty() || decoded.total() > kMaxPixels) {
+  if (decoded.empty() || decoded.total() > size_t{kMaxPicturePixels}) {
     throw std::runtime_error(path +
                              ": not an image that can be decoded, expected PNG, JPEG, BMP, WebP or TIFF of at most " +
-                             std::to_string(kMaxPixels) + " pixels");
+                             std::to_string(kMaxPicturePixels) + " pixels");
   }
   Image image(decoded.cols, decoded.rows);
   cv::Mat target = MatOf(&image);

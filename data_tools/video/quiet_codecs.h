@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Keeps OpenCV and ffmpeg from writing to the terminal: this library reports faults by exceptions.
+/// Keeps ffmpeg's libraries from writing to the terminal: this library reports faults by exceptions.
 #pragma once
 
 namespace bodyloom {
 
-/// Takes effect once a process; what the user has set by OPENCV_LOG_LEVEL or OPENCV_FFMPEG_LOGLEVEL stays.
+/// Takes effect once a process; a level other than the libraries' own that a program has set by av_log_set_level stays.
 void QuietCodecs();
 
 }  // namespace bodyloom

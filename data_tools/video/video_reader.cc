@@ -2,131 +2,172 @@
 #include "bodyloom/data_tools/video/video_reader.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
-#include <opencv2/imgproc.hpp>
-#include <opencv2/videoio.hpp>
+#include <limits>
 #include <stdexcept>
 #include <vector>
 
+#include "bodyloom/data_tools/video/frame_decoder.h"
+#include "bodyloom/data_tools/video/frame_image.h"
 #include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/data_tools/video/quiet_codecs.h"
-#include "bodyloom/render/image_mat.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
-namespace fs = std::filesystem;
 
 class VideoReader::Source {
  public:
-  explicit Source(const std::string& path) : path_(path) {
-    std::error_code error;
-    if (!fs::exists(path, error)) throw std::runtime_error(path + ": no such video or folder of images");
-    is_folder_ = fs::is_directory(path, error);
-    if (is_folder_) {
-      files_ = ImageFilesOf(path);
-      info_.num_frames = static_cast<int>(files_.size());
-    } else {
-      Open();
-    }
-    has_pending_ = Decode(&pending_);
-    if (!has_pending_) throw std::runtime_error(path + ": the video holds no frame that can be decoded");
-    info_.width = pending_.width;
-    info_.height = pending_.height;
+  virtual ~Source() = default;
+  virtual bool Read(Image* frame) = 0;
+  virtual int Skip(int count) = 0;
+  virtual int SkipTo(double seconds) = 0;
+  [[nodiscard]] virtual double frame_time() const = 0;
+  [[nodiscard]] virtual std::string warning() const = 0;
+  [[nodiscard]] const VideoInfo& info() const { return info_; }
+  [[nodiscard]] int next_frame() const { return next_; }
+
+ protected:
+  void RequireSize(const std::string& where, int width, int height) const {
+    if (width == info_.width && height == info_.height) return;
+    throw std::runtime_error(Concatenate(where, ": image of ", width, "x", height, " pixels, expected ", info_.width,
+                                         "x", info_.height, " as the first frame"));
   }
 
-  bool Read(Image* frame) {
-    if (has_pending_) {
-      has_pending_ = false;
-      *frame = std::move(pending_);
-      ++next_;
-      return true;
-    }
-    if (!Decode(frame)) {
-      // What a container promises may be off by a few frames; a tenth of the video is not a few.
-      if (next_ < info_.num_frames - std::max(2, info_.num_frames / 10)) {
-        throw std::runtime_error(path_ + ": frame " + std::to_string(next_) +
-                                 ": cannot be decoded, the file promises " + std::to_string(info_.num_frames) +
-                                 " frames; it is damaged or cut off");
-      }
-      return false;
-    }
-    if (frame->width != info_.width || frame->height != info_.height) {
-      throw std::runtime_error((is_folder_ ? files_[next_] : path_ + ": frame " + std::to_string(next_)) +
-                               ": image of " + SizeText(frame->width, frame->height) + " pixels, expected " +
-                               SizeText(info_.width, info_.height) + " as the first frame");
+  VideoInfo info_;
+  int next_ = 0;
+};
+
+class VideoReader::FolderSource : public Source {
+ public:
+  explicit FolderSource(const std::string& path) : path_(path), files_(ImageFilesOf(path)) {
+    first_ = ReadImage(files_[0]);
+    info_.width = first_.width;
+    info_.height = first_.height;
+    info_.num_frames = static_cast<int>(files_.size());
+  }
+
+  bool Read(Image* frame) override {
+    if (next_ >= info_.num_frames) return false;
+    if (next_ == 0 && !first_.empty()) {
+      *frame = std::move(first_);
+      first_ = Image();
+    } else {
+      *frame = ReadImage(files_[next_]);
+      RequireSize(files_[next_], frame->width, frame->height);
     }
     ++next_;
     return true;
   }
 
-  [[nodiscard]] const VideoInfo& info() const { return info_; }
-  [[nodiscard]] int next_frame() const { return next_; }
-
- private:
-  static std::string SizeText(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
-
-  void Open() {
-    if (!fs::is_regular_file(path_)) throw std::runtime_error(path_ + ": neither a regular file nor a folder");
-    if (fs::file_size(path_) == 0) throw std::runtime_error(path_ + ": the file is empty, expected a video");
-    QuietCodecs();
-    // An absolute path: ffmpeg would take "name:rest" for a protocol.
-    bool opened = false;
-    try {
-      opened = capture_.open(fs::absolute(path_).string(), cv::CAP_FFMPEG);
-    } catch (const cv::Exception&) {
-      opened = false;
-    }
-    if (!opened) throw std::runtime_error(path_ + ": not a video that ffmpeg can decode");
-    const double fps = capture_.get(cv::CAP_PROP_FPS), count = capture_.get(cv::CAP_PROP_FRAME_COUNT);
-    if (std::isfinite(fps) && fps > 0 && fps < 10000) info_.fps = fps;
-    if (std::isfinite(count) && count > 0 && count < 1e8) info_.num_frames = static_cast<int>(count);
+  int Skip(int count) override {
+    const int skipped = std::clamp(count, 0, info_.num_frames - next_);
+    next_ += skipped;
+    return skipped;
   }
 
-  bool Decode(Image* frame) {
-    if (is_folder_) {
-      const size_t index = static_cast<size_t>(next_);
-      if (index >= files_.size()) return false;
-      *frame = ReadImage(files_[index]);
-      return true;
+  int SkipTo(double seconds) override {
+    throw std::runtime_error(Concatenate(path_, ": a folder of images has no clock to find ", seconds,
+                                         " s on, expected the number of a frame"));
+  }
+
+  [[nodiscard]] double frame_time() const override { return std::numeric_limits<double>::quiet_NaN(); }
+  [[nodiscard]] std::string warning() const override { return ""; }
+
+ private:
+  std::string path_;
+  std::vector<std::string> files_;
+  Image first_;  ///< read on opening to learn the size
+};
+
+class VideoReader::FileSource : public Source {
+ public:
+  explicit FileSource(const std::string& path)
+      : path_(path), decoder_(path), converter_(path, decoder_.packets().stream()) {
+    if (!Peek()) throw std::runtime_error(path + ": the video holds no frame that can be decoded");
+    converter_.Convert(decoder_.frame(), &first_);
+    info_.width = first_.width;
+    info_.height = first_.height;
+    info_.fps = decoder_.packets().fps();
+    info_.num_frames = decoder_.packets().num_frames();
+  }
+
+  bool Read(Image* frame) override {
+    if (!Peek()) return false;
+    const AVFrame& decoded = decoder_.frame();
+    RequireSize(Concatenate(path_, ": frame ", next_), converter_.WidthOf(decoded), converter_.HeightOf(decoded));
+    if (!first_.empty()) {
+      *frame = std::move(first_);
+    } else {
+      converter_.Convert(decoded, frame);
     }
-    cv::Mat mat;
-    try {
-      if (!capture_.read(mat) || mat.empty()) return false;
-    } catch (const cv::Exception& error) {
-      throw std::runtime_error(path_ + ": frame " + std::to_string(next_) + ": cannot be decoded");
-    }
-    if (mat.channels() == 1) cv::cvtColor(mat, mat, cv::COLOR_GRAY2BGR);
-    if (mat.type() != CV_8UC3) {
-      throw std::runtime_error(path_ + ": frame " + std::to_string(next_) + ": decoded to OpenCV type " +
-                               std::to_string(mat.type()) + ", expected 8-bit colour");
-    }
-    if (frame->width != mat.cols || frame->height != mat.rows) *frame = Image(mat.cols, mat.rows);
-    cv::Mat target = MatOf(frame);
-    mat.copyTo(target);
+    Pass();
     return true;
   }
 
+  int Skip(int count) override {
+    int skipped = 0;
+    for (; skipped < count && Peek(); ++skipped) Pass();
+    return skipped;
+  }
+
+  int SkipTo(double seconds) override {
+    constexpr double kMicrosecond = 1e-6;
+    int skipped = 0;
+    for (; Peek() && decoder_.time() < seconds - kMicrosecond; ++skipped) Pass();
+    return skipped;
+  }
+
+  [[nodiscard]] double frame_time() const override { return time_s_; }
+
+  [[nodiscard]] std::string warning() const override {
+    std::string what;
+    const auto add = [&what](const std::string& part) { what += (what.empty() ? "" : "; ") + part; };
+    if (decoder_.num_lost() > 0) add(Concatenate(decoder_.num_lost(), " frames cannot be decoded and are left out"));
+    if (decoder_.num_damaged() > 0) add(Concatenate(decoder_.num_damaged(), " frames are damaged"));
+    const std::string cut_off = ended_ ? decoder_.packets().CutOff() : "";
+    if (!cut_off.empty()) add(Concatenate("cut off or damaged after ", next_, " frames (", cut_off, ")"));
+    return what.empty() ? "" : path_ + ": " + what;
+  }
+
+ private:
+  /// Whether there is another frame; it is decoded.
+  bool Peek() {
+    if (!has_frame_ && !ended_) {
+      has_frame_ = decoder_.Next();
+      ended_ = !has_frame_;
+    }
+    return has_frame_;
+  }
+
+  void Pass() {
+    first_ = Image();
+    has_frame_ = false;
+    time_s_ = decoder_.time();
+    ++next_;
+  }
+
   std::string path_;
-  bool is_folder_ = false;
-  std::vector<std::string> files_;
-  cv::VideoCapture capture_;
-  VideoInfo info_;
-  Image pending_;  ///< the first frame, decoded on opening to learn the true size
-  bool has_pending_ = false;
-  int next_ = 0;
+  FrameDecoder decoder_;
+  FrameImage converter_;
+  Image first_;  ///< converted on opening, so that what cannot be is refused there
+  bool has_frame_ = false, ended_ = false;
+  double time_s_ = 0;
 };
 
-VideoReader::VideoReader(const std::string& path) : source_(std::make_unique<Source>(path)) {}
+VideoReader::VideoReader(const std::string& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) {
+    source_ = std::make_unique<FolderSource>(path);
+  } else {
+    source_ = std::make_unique<FileSource>(path);
+  }
+}
 VideoReader::~VideoReader() = default;
 const VideoInfo& VideoReader::info() const { return source_->info(); }
 bool VideoReader::Read(Image* frame) { return source_->Read(frame); }
+int VideoReader::Skip(int count) { return source_->Skip(count); }
+int VideoReader::SkipTo(double seconds) { return source_->SkipTo(seconds); }
 int VideoReader::next_frame() const { return source_->next_frame(); }
-
-int VideoReader::Skip(int count) {
-  Image ignored;
-  int skipped = 0;
-  while (skipped < count && source_->Read(&ignored)) ++skipped;
-  return skipped;
-}
+double VideoReader::frame_time() const { return source_->frame_time(); }
+std::string VideoReader::warning() const { return source_->warning(); }
 
 }  // namespace bodyloom

@@ -205,6 +205,7 @@ RenderTrackReport RenderTrack(const RenderTrackRequest& request, const PipelineC
   }
   sink->Finish();
   report.legend = picture.Legend();
+  if (video != nullptr && !video->warning().empty()) callbacks.Say(video->warning());
   if (video != nullptr && end == track.num_frames()) {
     report.video_frames_left = video->FramesAfter(track.motion.timestamps.back());
   }

@@ -14,6 +14,7 @@
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/data_tools/video/video_frame_times.h"
 #include "bodyloom/data_tools/video/video_reader.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/pipelines/files.h"
@@ -72,7 +73,8 @@ int VideoOffset(const std::string& path, const Track& track) {
   if (track.num_frames() == 0) return 0;
   const double fps = info.fps > 0 ? info.fps : VideoFrameRate(track.motion.timestamps);
   const int first = static_cast<int>(std::lround(track.motion.timestamps[0] * fps));
-  const bool is_cut = info.num_frames > 0 && (info.num_frames == track.num_frames() || first >= info.num_frames);
+  const int num_frames = info.num_frames > 0 ? info.num_frames : static_cast<int>(VideoFrameTimes(path).size());
+  const bool is_cut = num_frames > 0 && (num_frames == track.num_frames() || first >= num_frames);
   return is_cut ? -first : 0;
 }
 
@@ -134,6 +136,7 @@ ExtractTextureReport ExtractTexture(const ExtractTextureRequest& request, const 
   TextureExtractor extractor(*body, options);
   clock.Begin("gather");
   const Gathered gathered = Gather(request, *body, track, &video, &extractor, callbacks);
+  if (!video.warning().empty()) callbacks.Say(video.warning());
   clock.Begin("merge");
   Texture texture = extractor.Merge();
   if (texture.num_seen == 0) {

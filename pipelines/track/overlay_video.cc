@@ -56,6 +56,7 @@ OverlaySummary WriteOverlayVideo(const std::string& path, const OverlayVideo& wh
     what.progress(static_cast<double>(t + 1) / track.num_frames());
   }
   writer.Finish();
+  if (video != nullptr) summary.video_warning = video->warning();
   return summary;
 }
 

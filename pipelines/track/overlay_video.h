@@ -29,6 +29,7 @@ struct OverlayVideo {
 
 struct OverlaySummary {
   int frames = 0, frames_without_video = 0;
+  std::string video_warning;  ///< VideoReader::warning() of the video below; "" when nothing was wrong
 };
 
 /// Frame t of the track goes over the video frame shown at its timestamp. Where the video has ended the backdrop stands

@@ -35,6 +35,7 @@ void WriteOverlay(const TrackRequest& request, const TrackInputs& inputs, const 
     report->solve.plan.push_back({"video under " + std::to_string(written.frames_without_video) + " overlay frames",
                                   false, "the video has no frame at their time"});
   }
+  if (!written.video_warning.empty()) callbacks.Say(written.video_warning);
   report->outputs.push_back(request.overlay);
 }
 

@@ -19,6 +19,8 @@ class TrackVideo {
              int video_offset = 0);
 
   [[nodiscard]] const VideoInfo& info() const { return reader_.info(); }
+  /// What was wrong with the video so far (VideoReader::warning); "" when nothing was.
+  [[nodiscard]] std::string warning() const { return reader_.warning(); }
   /// From pixels of the track's camera to those of the video.
   [[nodiscard]] const Matrix2x3d& map() const { return map_; }
   /// The track as a camera with the video's pixels would have seen it.

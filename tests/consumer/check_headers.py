@@ -12,7 +12,7 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 # Inner loops and what is shared by source files alone.
 INTERNAL = re.compile(r"(-inl|_internal)\.h$")
 # Libraries that only source files may need.
-PRIVATE = re.compile(r"(hwy|nlohmann|CLI|OpenMesh|torch|ATen|c10|CGAL|gtest|gmock)/|(matio|zlib)\.h$")
+PRIVATE = re.compile(r"(hwy|nlohmann|CLI|OpenMesh|torch|ATen|c10|CGAL|gtest|gmock|libav\w+|libswscale)/|(matio|zlib)\.h$")
 
 
 def faults_of(root, path):

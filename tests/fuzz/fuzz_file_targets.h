@@ -14,6 +14,8 @@
 #include "bodyloom/data_tools/motion/motion_split.h"
 #include "bodyloom/data_tools/observations/densepose_iuv.h"
 #include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/data_tools/video/video_frame_times.h"
+#include "bodyloom/data_tools/video/video_reader.h"
 #include "tests/fuzz/fuzz_accepts.h"
 #include "tests/support/toy_body.h"
 
@@ -62,6 +64,27 @@ inline bool AcceptsImage(const std::string& bytes) {
     }
   });
   return image || iuv;
+}
+
+/// Whatever a video claims to be: frames of one size, each later than the one before.
+inline bool AcceptsVideo(const std::string& bytes) {
+  const std::string path = Folder().Write("video", bytes);
+  const bool times = Accepts([&] { VideoFrameTimes(path); });
+  const bool frames = Accepts([&] {
+    constexpr int kEnough = 50;
+    VideoReader reader(path);
+    Image frame;
+    double last = -1;
+    for (int i = 0; i < kEnough && reader.Read(&frame); ++i) {
+      if (frame.width != reader.info().width || frame.height != reader.info().height) {
+        throw std::logic_error("a frame of another size");
+      }
+      if (!(reader.frame_time() > last)) throw std::logic_error("a clock that stands");
+      last = reader.frame_time();
+    }
+    if (!IsOneLine(reader.warning())) throw std::logic_error("a warning of several lines");
+  });
+  return frames && times;
 }
 
 /// person.json of a set whose one frame is there.

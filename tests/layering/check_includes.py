@@ -48,7 +48,7 @@ FOLDERS = sorted({room.split("/")[0] for room in ROOMS})
 TEST_CODE = {"tests", "benchmarks"}
 LIBRARIES = {room for room in ROOMS if not room.startswith(PROGRAMS)}
 
-# Third-party header -> (rooms that may include it, whether a header file of ours may).
+# Third-party header -> (rooms or folders of theirs that may include it, whether a header file of ours may).
 THIRD_PARTY = [
     (r"ceres/", {"tracking", "render/lighting", "examples"} | TEST_CODE, True),
     (r"opencv2/dnn", {"data_tools/detection"} | TEST_CODE, False),
@@ -61,6 +61,7 @@ THIRD_PARTY = [
     (r"nlohmann/(?!json_fwd)", {"data_tools", "data_tools/synthesis", "data_tools/evaluation", "pipelines",
                                 "pipelines/neural"} | TEST_CODE, False),
     (r"(matio|zlib)\.h", {"data_tools"} | TEST_CODE, False),
+    (r"lib(av\w+|swscale|swresample)/", {"data_tools/video"} | TEST_CODE, False),
     (r"CLI/", {"apps", "apps/neural"}, False),
     (r"hwy/", LIBRARIES | TEST_CODE, False),
     (r"(gtest|gmock)/", TEST_CODE, True),
@@ -140,7 +141,8 @@ class Tree:
         room = room_of(name)
         for pattern, homes, in_headers in THIRD_PARTY:
             if re.match(pattern, header):
-                if room not in homes:
+                inner = tuple(home + "/" for home in homes if home not in ROOMS)
+                if room not in homes and not name.startswith(inner):
                     self.fault(f"{place}: {room}/ includes <{header}>, expected only in {', '.join(sorted(homes))}")
                 elif name.endswith(".h") and not in_headers and room not in TEST_CODE:
                     self.fault(f"{place}: a header includes <{header}>, expected only in .cc files")

@@ -109,6 +109,13 @@ class CheckIncludes(unittest.TestCase):
         self.expect_fault({"geometry/a.cc": "#include <ceres/jet.h>\n"}, "expected only in benchmarks, examples, render/lighting")
         self.expect_fault({"tracking/a.cc": "#  include <torch/torch.h>\n"}, "tracking/a.cc:1")
 
+    def test_third_party_of_one_folder_of_a_room(self):
+        self.expect_allowed({"data_tools/video/a.cc": "#include <libavcodec/avcodec.h>\n"})
+        self.expect_fault({"data_tools/formats/a.cc": "#include <libavcodec/avcodec.h>\n"}, "data_tools/formats/a.cc:1")
+        self.expect_fault({"pipelines/a.cc": "#include <libswscale/swscale.h>\n"}, "pipelines/a.cc:1")
+        self.expect_fault({"data_tools/video/a.h": "#include <libavutil/frame.h>\n"}, "expected only in .cc files")
+        self.expect_fault({"data_tools/synthesis/a.cc": "#include <zlib.h>\n"}, "data_tools/synthesis/a.cc:1")
+
     def test_heavy_header_in_a_header(self):
         self.expect_fault({"data_tools/a.h": "#include <nlohmann/json.hpp>\n"}, "expected only in .cc files")
 

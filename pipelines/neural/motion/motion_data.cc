@@ -150,7 +150,8 @@ class MotionData::Impl {
     Image picture;
     int t = 0;
     for (; t < track_.num_frames() && video.Read(&picture); ++t) {
-      if (t == 0) CheckSizes(request, std::max(video.info().num_frames, 1), picture.width, picture.height);
+      const int promised = video.info().num_frames;  // 0 where the container does not say: counted below
+      if (t == 0) CheckSizes(request, promised > 0 ? promised : track_.num_frames(), picture.width, picture.height);
       CutFrame cut;
       cut.image = CutWindow(picture, frames_->window(), t);
       if (parts)

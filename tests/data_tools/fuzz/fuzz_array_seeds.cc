@@ -13,6 +13,7 @@
 #include "bodyloom/data_tools/learned/pose_prior_io.h"
 #include "bodyloom/data_tools/observations/observations_npz.h"
 #include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/data_tools/video/video_writer.h"
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/fuzz/fuzz_targets.h"
 #include "tests/support/toy_body.h"
@@ -138,6 +139,12 @@ std::string PersonJson() {
          std::string(600, 'm') + R"("})";
 }
 
+void WriteThreeFrames(const std::string& path) {
+  VideoWriter writer(path, 32, 16, 25);
+  for (const uint8_t level : {20, 120, 220}) writer.Write(Image(32, 16, {level, 100, 3}));
+  writer.Finish();
+}
+
 }  // namespace
 
 void AddArraySeeds(std::map<std::string, std::vector<std::string>>* seeds) {
@@ -155,6 +162,7 @@ void AddArraySeeds(std::map<std::string, std::vector<std::string>>* seeds) {
   Image image(6, 4, {12, 200, 3});
   (*seeds)["image"] = {BytesOf("image.png", [&](const std::string& path) { WriteImage(path, image); }),
                        BytesOf("image.jpg", [&](const std::string& path) { WriteImage(path, image); })};
+  (*seeds)["video"] = {BytesOf("video.mp4", WriteThreeFrames)};
   (*seeds)["single_person_dataset"] = {PersonJson()};
   (*seeds)["split"] = {"# name class part\n05_02 dance train\ncmu_bvh/05_03  walk test\n"};
   (*seeds)["mat"] = {MatBytes()};

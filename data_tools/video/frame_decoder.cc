@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/data_tools/video/frame_decoder.h"
+
+extern "C" {
+#include <libavcodec/avcodec.h>
+#include <libavformat/avformat.h>
+}
+
+#include <optional>
+#include <stdexcept>
+
+#include "bodyloom/data_tools/video/picture_limits.h"
+#include "bodyloom/geometry/base/check.h"
+
+namespace bodyloom {
+namespace {
+
+LibavPtr<AVCodecContext> OpenDecoder(const VideoPackets& packets) {
+  const AVStream& stream = packets.stream();
+  const AVCodec* decoder = avcodec_find_decoder(stream.codecpar->codec_id);
+  if (decoder == nullptr) {
+    throw std::runtime_error(packets.path() + ": a video coded as " + avcodec_get_name(stream.codecpar->codec_id) +
+                             ", for which this ffmpeg has no decoder");
+  }
+  LibavPtr<AVCodecContext> codec(avcodec_alloc_context3(decoder));
+  if (!codec) throw std::bad_alloc();
+  int result = avcodec_parameters_to_context(codec.get(), stream.codecpar);
+  codec->pkt_timebase = stream.time_base;
+  codec->max_pixels = kMaxPicturePixels;
+  codec->thread_count = 0;
+  codec->thread_type = FF_THREAD_FRAME | FF_THREAD_SLICE;
+  if (result >= 0) result = avcodec_open2(codec.get(), decoder, nullptr);
+  if (result < 0) {
+    throw std::runtime_error(packets.path() + ": a video coded as " + decoder->name + " that cannot be decoded (" +
+                             LibavReason(result) + ")");
+  }
+  return codec;
+}
+
+}  // namespace
+
+FrameClock ClockOf(const VideoPackets& packets) {
+  const AVRational tick = packets.stream().time_base;
+  return {tick.num, tick.den, 1 / (packets.fps() > 0 ? packets.fps() : 25)};
+}
+
+FrameDecoder::FrameDecoder(const std::string& path)
+    : packets_(path),
+      codec_(OpenDecoder(packets_)),
+      frame_(NewLibavFrame()),
+      packet_(NewLibavPacket()),
+      clock_(ClockOf(packets_)) {}
+
+bool FrameDecoder::Feed() {
+  if (draining_) return false;
+  draining_ = !packets_.Next(packet_.get());
+  // Without a packet it hands out what it has kept back. Another answer than 0 is a frame that it could not decode.
+  if (avcodec_send_packet(codec_.get(), draining_ ? nullptr : packet_.get()) < 0) ++lost_;
+  return true;
+}
+
+bool FrameDecoder::Next() {
+  constexpr int kPatience = 10'000;  // no decoder should fail for ever without taking a packet
+  for (int failures = 0; failures < kPatience;) {
+    const int result = avcodec_receive_frame(codec_.get(), frame_.get());
+    if (result == AVERROR_EOF) return false;
+    if (result == AVERROR(EAGAIN)) {
+      if (!Feed()) return false;
+    } else if (result < 0) {
+      ++lost_;
+      ++failures;
+    } else {
+      damaged_ += frame_->decode_error_flags != 0;
+      const int64_t timestamp = frame_->best_effort_timestamp;
+      time_s_ = clock_.Next(timestamp == AV_NOPTS_VALUE ? std::nullopt : std::optional(timestamp));
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/data_tools/video/frame_image.h"
+
+extern "C" {
+#include <libavformat/avformat.h>
+#include <libavutil/frame.h>
+#include <libavutil/opt.h>
+#include <libavutil/pixdesc.h>
+#include <libswscale/swscale.h>
+}
+
+#include <opencv2/core.hpp>
+#include <stdexcept>
+
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/render/image_mat.h"
+
+namespace bodyloom {
+namespace {
+
+const int32_t* DisplayMatrixOf(const AVStream& stream) {
+  size_t size = 0;
+  const uint8_t* data = av_stream_get_side_data(&stream, AV_PKT_DATA_DISPLAYMATRIX, &size);
+  return size >= 9 * sizeof(int32_t) ? reinterpret_cast<const int32_t*>(data) : nullptr;
+}
+
+/// JPEG's formats, and grey unless it says otherwise, use all 256 values.
+bool HasFullRange(const AVFrame& frame) {
+  switch (frame.format) {
+    case AV_PIX_FMT_YUVJ420P:
+    case AV_PIX_FMT_YUVJ422P:
+    case AV_PIX_FMT_YUVJ444P:
+    case AV_PIX_FMT_YUVJ440P:
+    case AV_PIX_FMT_YUVJ411P:
+      return true;
+    default:
+      break;
+  }
+  if (frame.color_range != AVCOL_RANGE_UNSPECIFIED) return frame.color_range == AVCOL_RANGE_JPEG;
+  const AVPixFmtDescriptor* format = av_pix_fmt_desc_get(static_cast<AVPixelFormat>(frame.format));
+  return format != nullptr && format->nb_components <= 2 && (format->flags & AV_PIX_FMT_FLAG_RGB) == 0;
+}
+
+/// Where chroma was sampled, in 1/256 of a luma pixel from the first one.
+void SetChromaLocation(SwsContext* scaler, const AVPixFmtDescriptor& format, int location) {
+  const bool centred =
+      location == AVCHROMA_LOC_CENTER || location == AVCHROMA_LOC_TOP || location == AVCHROMA_LOC_BOTTOM;
+  const bool top = location == AVCHROMA_LOC_TOPLEFT || location == AVCHROMA_LOC_TOP;
+  const bool bottom = location == AVCHROMA_LOC_BOTTOMLEFT || location == AVCHROMA_LOC_BOTTOM;
+  if (format.log2_chroma_w == 1) av_opt_set_int(scaler, "src_h_chr_pos", centred ? 128 : 0, 0);
+  if (format.log2_chroma_h == 1) av_opt_set_int(scaler, "src_v_chr_pos", top ? 0 : bottom ? 256 : 128, 0);
+}
+
+/// Blue, green and red of a converted frame side by side.
+void Interleave(const AVFrame& converted, cv::Mat* bgr) {
+  const auto plane = [&](int index, int type) {
+    return cv::Mat(converted.height, converted.width, type, converted.data[index], converted.linesize[index]);
+  };
+  if (converted.format == AV_PIX_FMT_GBRP) {
+    const cv::Mat planes[] = {plane(1, CV_8UC1), plane(0, CV_8UC1), plane(2, CV_8UC1)};
+    cv::merge(planes, 3, *bgr);
+  } else {
+    plane(0, CV_8UC3).copyTo(*bgr);
+  }
+}
+
+}  // namespace
+
+FrameImage::FrameImage(const std::string& path, const AVStream& stream)
+    : path_(path), orientation_(OrientationOf(DisplayMatrixOf(stream))), converted_(NewLibavFrame()) {}
+
+int FrameImage::WidthOf(const AVFrame& frame) const { return orientation_.transpose ? frame.height : frame.width; }
+int FrameImage::HeightOf(const AVFrame& frame) const { return orientation_.transpose ? frame.width : frame.height; }
+
+void FrameImage::Prepare(const Kind& kind) {
+  const auto format = static_cast<AVPixelFormat>(kind.format);
+  const AVPixFmtDescriptor* description = av_pix_fmt_desc_get(format);
+  const char* name = description != nullptr ? description->name : "unknown";
+  kind_ = Kind();
+  scaler_.reset(sws_alloc_context());
+  if (!scaler_) throw std::bad_alloc();
+  if (description == nullptr || sws_isSupportedInput(format) == 0) {
+    throw std::runtime_error(Concatenate(path_, ": pixels of the format ", name, ", which cannot be converted"));
+  }
+  SwsContext* scaler = scaler_.get();
+  av_frame_unref(converted_.get());
+  av_opt_set_int(scaler, "srcw", kind.width, 0);
+  av_opt_set_int(scaler, "srch", kind.height, 0);
+  av_opt_set_int(scaler, "dstw", kind.width, 0);
+  av_opt_set_int(scaler, "dsth", kind.height, 0);
+  av_opt_set_int(scaler, "src_format", format, 0);
+  // From YUV to packed colours the library takes a short cut that is darker by 1 to 1.5 levels and repeats chroma, or a
+  // slow way; to planes it is fast and right. Colours that are RGB already are only moved.
+  const bool is_rgb = (description->flags & (AV_PIX_FMT_FLAG_RGB | AV_PIX_FMT_FLAG_PAL)) != 0;
+  converted_->format = is_rgb ? AV_PIX_FMT_BGR24 : AV_PIX_FMT_GBRP;
+  av_opt_set_int(scaler, "dst_format", converted_->format, 0);
+  av_opt_set_int(scaler, "sws_flags", SWS_BILINEAR | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INT, 0);
+  SetChromaLocation(scaler, *description, kind.chroma_location);
+  converted_->width = kind.width;
+  converted_->height = kind.height;
+  if (sws_init_context(scaler, nullptr, nullptr) < 0 || av_frame_get_buffer(converted_.get(), 0) < 0) {
+    throw std::runtime_error(Concatenate(path_, ": pixels of the format ", name, ", ", kind.width, "x", kind.height,
+                                         ", which cannot be converted"));
+  }
+  constexpr int kOne = 1 << 16;
+  sws_setColorspaceDetails(scaler, sws_getCoefficients(kind.colour_space), kind.full_range ? 1 : 0,
+                           sws_getCoefficients(SWS_CS_DEFAULT), 1, 0, kOne, kOne);
+  kind_ = kind;
+}
+
+void FrameImage::Convert(const AVFrame& frame, Image* image) {
+  const Kind kind = {frame.width,      frame.height,          frame.format,
+                     frame.colorspace, frame.chroma_location, HasFullRange(frame)};
+  if (kind != kind_) Prepare(kind);
+  sws_scale(scaler_.get(), frame.data, frame.linesize, 0, frame.height, converted_->data, converted_->linesize);
+  const int width = WidthOf(frame), height = HeightOf(frame);
+  if (image->width != width || image->height != height) *image = Image(width, height);
+  cv::Mat shown = MatOf(image);
+  if (orientation_.transpose) {
+    if (as_stored_.width != frame.width || as_stored_.height != frame.height)
+      as_stored_ = Image(frame.width, frame.height);
+    cv::Mat stored = MatOf(&as_stored_);
+    Interleave(*converted_, &stored);
+    cv::transpose(stored, shown);
+  } else {
+    Interleave(*converted_, &shown);
+  }
+  if (orientation_.flip_columns || orientation_.flip_rows) {
+    const int code = orientation_.flip_columns && orientation_.flip_rows ? -1 : orientation_.flip_columns ? 1 : 0;
+    cv::flip(shown, shown, code);
+  }
+}
+
+}  // namespace bodyloom

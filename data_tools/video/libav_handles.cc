@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/data_tools/video/libav_handles.h"
+
+extern "C" {
+#include <libavcodec/avcodec.h>
+#include <libavformat/avformat.h>
+#include <libswscale/swscale.h>
+}
+
+#include <new>
+
+namespace bodyloom {
+
+void LibavDeleter::operator()(AVCodecContext* context) const { avcodec_free_context(&context); }
+void LibavDeleter::operator()(AVFormatContext* context) const { avformat_close_input(&context); }
+void LibavDeleter::operator()(AVFrame* frame) const { av_frame_free(&frame); }
+void LibavDeleter::operator()(AVPacket* packet) const { av_packet_free(&packet); }
+void LibavDeleter::operator()(SwsContext* context) const { sws_freeContext(context); }
+
+LibavPtr<AVFrame> NewLibavFrame() {
+  LibavPtr<AVFrame> frame(av_frame_alloc());
+  if (!frame) throw std::bad_alloc();
+  return frame;
+}
+
+LibavPtr<AVPacket> NewLibavPacket() {
+  LibavPtr<AVPacket> packet(av_packet_alloc());
+  if (!packet) throw std::bad_alloc();
+  return packet;
+}
+
+std::string LibavReason(int error) {
+  char text[AV_ERROR_MAX_STRING_SIZE] = "";
+  av_strerror(error, text, sizeof text);
+  return text;
+}
+
+}  // namespace bodyloom

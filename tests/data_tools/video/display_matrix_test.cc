@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// Turns and mirror images against the matrix's own formula, against ffmpeg's, and as a phone's clip.
+#include "bodyloom/data_tools/video/display_matrix.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <string>
+
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/video/video_reader.h"
+#include "tests/data_tools/formats/temporary_file.h"
+#include "tests/data_tools/video/clip_maker.h"
+
+namespace bodyloom {
+namespace {
+
+/// a, b, c, d of the turns and mirror images of a square.
+constexpr std::array<std::array<int, 4>, 8> kTurns = {{{1, 0, 0, 1},
+                                                       {0, 1, -1, 0},
+                                                       {-1, 0, 0, -1},
+                                                       {0, -1, 1, 0},
+                                                       {-1, 0, 0, 1},
+                                                       {1, 0, 0, -1},
+                                                       {0, 1, 1, 0},
+                                                       {0, -1, -1, 0}}};
+
+/// A picture with its pixels where the matrix's formula takes them.
+Image Moved(const Image& image, const std::array<int, 4>& turn) {
+  const auto [a, b, c, d] = turn;
+  Image moved(a != 0 ? image.width : image.height, a != 0 ? image.height : image.width);
+  for (int q = 0; q < image.height; ++q) {
+    for (int p = 0; p < image.width; ++p) {
+      const int x = a * p + c * q + (a + c < 0 ? moved.width - 1 : 0);
+      const int y = b * p + d * q + (b + d < 0 ? moved.height - 1 : 0);
+      std::copy_n(image.pixel(p, q), 3, moved.pixel(x, y));
+    }
+  }
+  return moved;
+}
+
+TEST(DisplayMatrix, NearestOrientation) {
+  EXPECT_EQ(OrientationOf(nullptr), DisplayOrientation());
+  const int32_t upright[9] = {65536, 0, 0, 0, 65536, 0, 0, 0, 1 << 30};
+  EXPECT_EQ(OrientationOf(upright), DisplayOrientation());
+  const int32_t clockwise[9] = {0, 65536, 0, -65536, 0, 0, 0, 0, 1 << 30};
+  EXPECT_EQ(OrientationOf(clockwise), (DisplayOrientation{true, true, false}));
+  const int32_t nearly[9] = {-4000, 65000, 0, -65000, -4000, 0, 0, 0, 1 << 30};
+  EXPECT_EQ(OrientationOf(nearly), (DisplayOrientation{true, true, false}));
+  const int32_t edge[9] = {INT32_MIN, INT32_MIN, 0, INT32_MIN, INT32_MIN, 0, 0, 0, 0};
+  EXPECT_EQ(OrientationOf(edge), (DisplayOrientation{false, true, true}));
+}
+
+TEST(DisplayMatrix, AllTurnsAndMirrorImages) {
+  const TemporaryFolder folder;
+  const std::string clip = folder.File("clip.mp4"), turned = folder.File("turned.mp4"),
+                    shown = folder.File("shown.png");
+  Ffmpeg(NumberedInput(folder, 7) + "-c:v libx264rgb -qp 0 " + clip);
+  const std::string bytes = ReadFileBytes(clip);
+  for (const auto& turn : kTurns) {
+    WriteTurned(bytes, turn, turned);
+    VideoReader reader(turned);
+    reader.Skip(6);
+    Image frame;
+    ASSERT_TRUE(reader.Read(&frame));
+    EXPECT_EQ(frame.width, reader.info().width);
+    const std::string what = ::testing::PrintToString(turn);
+    EXPECT_EQ(frame, Moved(NumberedPicture(6), turn)) << what;
+    Ffmpeg("-i " + turned + " -vf select='eq(n\\,6)' -frames:v 1 " + shown);
+    EXPECT_EQ(frame, ReadImage(shown)) << what;
+  }
+}
+
+/// As ffmpeg notes a rotation when it is told to, which is by the opposite sense in some of its versions.
+TEST(DisplayMatrix, NotedRotations) {
+  const TemporaryFolder folder;
+  const std::string clip = folder.File("clip.mp4"), turned = folder.File("turned.mov"),
+                    shown = folder.File("shown.png");
+  Ffmpeg(NumberedInput(folder, 12) + "-c:v libx264 -pix_fmt yuv420p -qp 4 " + clip);
+  std::set<int> found;
+  for (const std::string degrees : {"90", "180", "270"}) {
+    Ffmpeg("-i " + clip + " -c copy -metadata:s:v:0 rotate=" + degrees + " " + turned);
+    Ffmpeg("-i " + turned + " -vf select='eq(n\\,0)' -frames:v 1 " + shown);
+    VideoReader reader(turned);
+    EXPECT_EQ(reader.info().width, degrees == "180" ? 96 : 64);
+    EXPECT_EQ(reader.info().height, degrees == "180" ? 64 : 96);
+    Image frame;
+    for (int i = 0; i < 12; ++i) {
+      ASSERT_TRUE(reader.Read(&frame));
+      if (i == 0) {
+        EXPECT_LT(MeanDifference(frame, ReadImage(shown)), 2.5) << degrees;
+      }
+      for (int turn = 1; turn < 4; ++turn) {
+        if (MeanDifference(frame, Moved(NumberedPicture(i), kTurns[turn])) < 2.5) found.insert(12 * turn + i);
+      }
+    }
+  }
+  EXPECT_EQ(found.size(), 36U) << "every frame in every turn";
+}
+
+}  // namespace
+}  // namespace bodyloom
