@@ -9,7 +9,7 @@
 #include "bodyloom/neural/motion/chain_plan.h"
 #include "bodyloom/neural/motion/frame_tensors.h"
 #include "bodyloom/neural/motion/person_box.h"
-#include "bodyloom/neural/training/prefetcher.h"
+#include "bodyloom/geometry/base/prefetcher.h"
 
 namespace bodyloom {
 
