@@ -23,6 +23,7 @@ int Run(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(std::string(kExamples) + kExitCodeHelp);
   Action action;
+  AddDetectVerb(app, &action);
   AddTrackVerb(app, &action);
   AddSynthVerb(app, &action);
   AddSynthPersonVerb(app, &action);

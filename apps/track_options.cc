@@ -4,6 +4,8 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
+#include "apps/detector_options.h"
+
 namespace bodyloom {
 namespace {
 
@@ -72,6 +74,18 @@ void AddTrackOptions(CLI::App& app, TrackRequest* request, bool* quiet) {
       ->group(seen)
       ->check(CLI::IsMember({"body25", "body25b", "openpose_coco18", "coco17", "halpe26"}));
 
+  const std::string detect = "Detection (without the above, people are detected in --video)";
+  AddDetectorOptions(app, &c.detector, &c.models, detect);
+  app.add_flag_callback(
+         "--no-mask", [&c] { c.use_mask = false; }, "do not use the person's mask")
+      ->group(detect);
+  app.add_option("--from", c.from_s, "begin at this second of the video")
+      ->group(detect)
+      ->check(Quiet(CLI::NonNegativeNumber));
+  app.add_option("--to", c.to_s, "end with this second (default: the end)")
+      ->group(detect)
+      ->check(Quiet(CLI::NonNegativeNumber));
+
   app.add_option(
          "--cameras", c.cameras,
          "calibration: an AIST++ camera folder or setting, a Pose2Sim calib_refined.json, or this project's JSON")
@@ -88,7 +102,9 @@ void AddTrackOptions(CLI::App& app, TrackRequest* request, bool* quiet) {
   AddImageSize(app, request);
   app.get_option("--image-size")->group(camera);
 
-  app.add_option("--video", c.video, "the video (or a folder of images), for image size, frame rate and the overlay")
+  app.add_option("--video", c.video,
+                 "the video (or a folder of images), for image size, frame rate and the overlay; alone, people are "
+                 "detected in it")
       ->group(known)
       ->type_name("FILE");
   app.add_option("--video-offset", c.video_offset, "video frame that belongs to the detections' frame number 0")

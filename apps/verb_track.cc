@@ -14,6 +14,8 @@ namespace {
 
 constexpr const char* kFooter =
     "Examples:\n"
+    "  a video and nothing else (the networks come with ./dev models):\n"
+    "    bodyloom track --video clip.mp4 --out track.npz --overlay overlay.mp4 --side-view\n"
     "  OpenPose's output folder and the video it was made from; the focal length is estimated:\n"
     "    bodyloom track --detections openpose_json/ --video clip.mp4 --out track.npz --overlay overlay.mp4\n"
     "  one calibrated camera of an AIST++ clip:\n"
@@ -36,7 +38,7 @@ void TrackAndReport(const TrackRequest& request, bool quiet) {
 }  // namespace
 
 void AddTrackVerb(CLI::App& app, Action* action) {
-  CLI::App* verb = app.add_subcommand("track", "Fits a body to a clip: detections in, track out");
+  CLI::App* verb = app.add_subcommand("track", "Fits a body to a clip: a video or detections in, track out");
   verb->footer(std::string(kFooter) + kExitCodeHelp);
   auto request = std::make_shared<TrackRequest>();
   auto quiet = std::make_shared<bool>(false);

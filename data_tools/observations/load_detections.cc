@@ -19,6 +19,7 @@
 #include "bodyloom/data_tools/observations/observations_npz.h"
 #include "bodyloom/data_tools/observations/openpose_reader.h"
 #include "bodyloom/data_tools/observations/people.h"
+#include "bodyloom/data_tools/observations/people_npz.h"
 #include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
@@ -146,6 +147,7 @@ KeypointSequence ReadBytes(const std::string& bytes, const std::string& path, co
   if (bytes.compare(0, 4, "PK\x03\x04") == 0) {
     const NpzArrays arrays = ReadNpzBytes(bytes, path);
     if (HasKeypoints(arrays)) return KeypointsFromNpz(arrays, path);
+    if (HasPeople(arrays)) return SelectPerson(PeopleFromNpz(arrays, path), options.person, path);
     throw std::runtime_error(path + ": an .npz without 'keypoints'" +
                              (HasDense(arrays) ? " (it holds dense keypoints)" : "") + "; " + kExpected);
   }

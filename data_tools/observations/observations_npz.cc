@@ -40,16 +40,6 @@ double OptionalSigma(const NpzArrays& arrays, const std::string& key, const std:
   return sigma;
 }
 
-void ImageSizeFromNpz(const NpzArrays& arrays, const std::string& where, int* width, int* height) {
-  if (arrays.find("image_size") == arrays.end()) return;
-  const std::vector<double> size = RequireShape(arrays, "image_size", {2}, where).ToDoubles();
-  if (!(size[0] >= 0 && size[1] >= 0 && size[0] <= 100000 && size[1] <= 100000)) {
-    Fail(where, "image_size", std::to_string(size[0]) + " x " + std::to_string(size[1]) + ", expected pixels");
-  }
-  *width = static_cast<int>(size[0]);
-  *height = static_cast<int>(size[1]);
-}
-
 }  // namespace
 
 std::vector<double> TimestampsFromNpz(const NpzArrays& arrays, const std::string& where) {
@@ -67,6 +57,30 @@ std::vector<double> TimestampsFromNpz(const NpzArrays& arrays, const std::string
     }
   }
   return timestamps;
+}
+
+void ImageSizeFromNpz(const NpzArrays& arrays, const std::string& where, int* width, int* height) {
+  if (arrays.find("image_size") == arrays.end()) return;
+  const std::vector<double> size = RequireShape(arrays, "image_size", {2}, where).ToDoubles();
+  if (!(size[0] >= 0 && size[1] >= 0 && size[0] <= 100000 && size[1] <= 100000)) {
+    Fail(where, "image_size", std::to_string(size[0]) + " x " + std::to_string(size[1]) + ", expected pixels");
+  }
+  *width = static_cast<int>(size[0]);
+  *height = static_cast<int>(size[1]);
+}
+
+std::vector<std::string> KeypointNamesFromNpz(const NpzArrays& arrays, const std::string& where) {
+  const NdArray& names = RequireArray(arrays, "keypoint_names", where);
+  if (!names.is_text() || names.shape.size() != 1) Fail(where, "keypoint_names", "expected a list of text");
+  return names.ToStrings();
+}
+
+std::string ConventionNameFromNpz(const NpzArrays& arrays) {
+  if (const auto found = arrays.find("keypoint_convention"); found != arrays.end() && found->second.is_text()) {
+    const std::vector<std::string> text = found->second.ToStrings();
+    if (!text.empty()) return text[0];
+  }
+  return "custom";
 }
 
 void WriteObservations(const std::string& path, const KeypointSequence* keypoints, const DenseSequence* dense) {
@@ -125,14 +139,8 @@ KeypointSequence KeypointsFromNpz(const NpzArrays& arrays, const std::string& wh
   KeypointSequence sequence;
   sequence.timestamps = TimestampsFromNpz(arrays, where);
   ImageSizeFromNpz(arrays, where, &sequence.image_width, &sequence.image_height);
-  const NdArray& names = RequireArray(arrays, "keypoint_names", where);
-  if (!names.is_text() || names.shape.size() != 1) Fail(where, "keypoint_names", "expected a list of text");
-  sequence.names = names.ToStrings();
-  sequence.convention = "custom";
-  if (const auto found = arrays.find("keypoint_convention"); found != arrays.end() && found->second.is_text()) {
-    const std::vector<std::string> text = found->second.ToStrings();
-    if (!text.empty()) sequence.convention = text[0];
-  }
+  sequence.names = KeypointNamesFromNpz(arrays, where);
+  sequence.convention = ConventionNameFromNpz(arrays);
   const auto num_frames = static_cast<int64_t>(sequence.timestamps.size());
   const auto num_points = static_cast<int64_t>(sequence.names.size());
   const std::vector<float> values = RequireShape(arrays, "keypoints", {num_frames, num_points, 3}, where).ToFloats();

@@ -6,11 +6,27 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
+#include "bodyloom/data_tools/formats/printable.h"
 #include "bodyloom/data_tools/observations/observations_npz.h"
 #include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {
+
+constexpr const char *kMaskKind = "person", *kDensePoseKind = "densepose";
+
+/// Whether the labels are a mask of the person.
+bool IsMask(const NpzArrays& arrays, const std::string& where) {
+  const auto found = arrays.find("label_kind");
+  if (found == arrays.end()) return false;
+  const std::string kind =
+      found->second.is_text() && found->second.num_elements() == 1 ? found->second.ToStrings()[0] : "";
+  if (kind != kMaskKind && kind != kDensePoseKind) {
+    throw std::runtime_error(where + ": label_kind: '" + PrintableText(kind) + "', expected the text \"" + kMaskKind +
+                             "\" or \"" + kDensePoseKind + "\"");
+  }
+  return kind == kMaskKind;
+}
 
 /// Pixels between two boxes, 0 when they meet.
 int Gap(const cv::Rect& a, const cv::Rect& b) {
@@ -101,6 +117,35 @@ LabelImage CutPerson(const cv::Mat& labels, const ReadPartLabelsOptions& options
 
 }  // namespace
 
+void WriteMask(const std::string& path, const PartLabelSequence& mask) {
+  BODYLOOM_CHECK(mask.frames.size() == mask.timestamps.size() && !mask.frames.empty(),
+                 "WriteMask: ", mask.frames.size(), " frames and ", mask.timestamps.size(), " timestamps");
+  const size_t width = size_t(mask.image_width), height = size_t(mask.image_height);
+  constexpr size_t kMostBytes = (size_t{1} << 32) - (size_t{1} << 20);
+  if (mask.frames.size() > kMostBytes / std::max<size_t>(1, width * height)) {
+    throw std::runtime_error(Concatenate(path, ": ", mask.frames.size(), " masks of ", width, "x", height,
+                                         " pixels are more than the 4 GiB that one file holds; take fewer frames"));
+  }
+  std::vector<uint8_t> labels(mask.frames.size() * width * height, 0);
+  for (size_t t = 0; t < mask.frames.size(); ++t) {
+    const LabelImage& frame = mask.frames[t];
+    if (frame.labels.empty()) continue;
+    BODYLOOM_CHECK(frame.x_begin >= 0 && frame.y_begin >= 0 && frame.x_begin + frame.width <= mask.image_width &&
+                       frame.y_begin + frame.height <= mask.image_height,
+                   "WriteMask: the rectangle of frame ", t, " leaves the image");
+    for (int y = 0; y < frame.height; ++y) {
+      const uint8_t* from = &frame.labels[size_t(y) * frame.width];
+      uint8_t* to = &labels[(t * height + frame.y_begin + y) * width + frame.x_begin];
+      std::transform(from, from + frame.width, to, [](uint8_t label) { return uint8_t(label != 0); });
+    }
+  }
+  NpzArrays arrays;
+  arrays["labels"] = NdArray::FromUInt8(labels.data(), {int64_t(mask.frames.size()), int64_t(height), int64_t(width)});
+  arrays["label_kind"] = NdArray::FromString(kMaskKind);
+  arrays["timestamps"] = NdArray::FromDoubles(mask.timestamps.data(), {int64_t(mask.timestamps.size())});
+  WriteNpz(path, arrays);
+}
+
 bool HasPartLabels(const NpzArrays& arrays) { return arrays.find("labels") != arrays.end(); }
 
 PartLabelSequence PartLabelsFromNpz(const NpzArrays& arrays, const std::string& where,
@@ -139,6 +184,7 @@ PartLabelSequence PartLabelsFromNpz(const NpzArrays& arrays, const std::string& 
     const cv::Mat labels(static_cast<int>(H), static_cast<int>(W), CV_8U, const_cast<uint8_t*>(first));
     sequence.frames.push_back(CutPerson(labels, options, dropped_pixels));
   }
+  if (IsMask(arrays, where)) sequence.AsMask();
   return sequence;
 }
 

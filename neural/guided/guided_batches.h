@@ -10,7 +10,7 @@
 #include "bodyloom/neural/guided/guided_model.h"
 #include "bodyloom/neural/people/photo_frame.h"
 #include "bodyloom/neural/people/texel_neighbours.h"
-#include "bodyloom/neural/training/prefetcher.h"
+#include "bodyloom/geometry/base/prefetcher.h"
 
 namespace bodyloom {
 

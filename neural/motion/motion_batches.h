@@ -6,10 +6,10 @@
 
 #include <vector>
 
+#include "bodyloom/geometry/base/prefetcher.h"
 #include "bodyloom/neural/motion/frame_tensors.h"
 #include "bodyloom/neural/motion/person_box.h"
 #include "bodyloom/neural/motion/rollout_plan.h"
-#include "bodyloom/neural/training/prefetcher.h"
 
 namespace bodyloom {
 

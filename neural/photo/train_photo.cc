@@ -21,7 +21,7 @@
 #include "bodyloom/neural/photo/render_photo.h"
 #include "bodyloom/neural/runtime.h"
 #include "bodyloom/neural/training/adam.h"
-#include "bodyloom/neural/training/prefetcher.h"
+#include "bodyloom/geometry/base/prefetcher.h"
 #include "bodyloom/neural/training/schedules.h"
 #include "bodyloom/neural/training/training_loop.h"
 

@@ -118,12 +118,13 @@ TrackReport TrackClip(const TrackRequest& request, const PipelineCallbacks& call
   CheckTrackRequest(request);
   CheckFiles(request);
   StageClock clock;
-  clock.Begin("read");
-  const TrackInputs inputs = LoadTrackInputs(request);
+  clock.Begin(DetectsPeople(request) ? "detect" : "read");
+  const TrackInputs inputs = LoadTrackInputs(request, callbacks);
   TrackReport report;
-  report.detections = !request.detections.empty() ? request.detections
-                      : !request.dense.empty()    ? request.dense
-                                                  : request.part_labels;
+  report.detections = !request.detections.empty()    ? request.detections
+                      : !request.dense.empty()       ? request.dense
+                      : !request.part_labels.empty() ? request.part_labels
+                                                     : request.video;
   report.num_frames = inputs.num_frames();
   if (request.plan) {
     report.solve.plan = WholePlan(request, inputs);

@@ -17,6 +17,7 @@
 #include "bodyloom/data_tools/observations/part_labels.h"
 #include "bodyloom/data_tools/video/video_reader.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/pipelines/detect/detect_people.h"
 #include "bodyloom/tracking/initialise/part_keypoints.h"
 
 namespace bodyloom {
@@ -107,6 +108,27 @@ void UseDense(const std::string& path, const TrackRequest& request, TrackInputs*
   AgreeOnImageSize(path, inputs->dense->image_width, inputs->dense->image_height, &inputs->camera.camera);
 }
 
+/// Detects people in the video: the chosen one's landmarks, and the mask.
+void UseDetectedPeople(const TrackRequest& request, const PipelineCallbacks& callbacks, TrackInputs* inputs) {
+  DetectPeopleRequest detect;
+  detect.video = request.video;
+  detect.models = request.models;
+  detect.fps = request.fps;
+  detect.from_s = request.from_s;
+  detect.to_s = request.to_s;
+  detect.detector.network = request.detector;
+  detect.detector.masks = request.use_mask;
+  callbacks.Begin("detecting people");
+  const DetectedClip clip = DetectPeople(detect, callbacks);
+  AgreeOnImageSize(request.video, clip.people.image_width, clip.people.image_height, &inputs->camera.camera);
+  inputs->keypoints = SelectPerson(clip.people, request.person, request.video);
+  for (Keypoint& point : inputs->keypoints->points) {
+    if (!(point.confidence >= request.min_confidence)) point = {};
+  }
+  if (request.use_mask) inputs->part_labels = MaskOfPerson(clip, request.person);
+  inputs->detector = clip.detector;
+}
+
 }  // namespace
 
 TrackSequenceInput TrackInputs::ForTracker() const {
@@ -122,7 +144,7 @@ TrackSequenceInput TrackInputs::ForTracker() const {
   return input;
 }
 
-TrackInputs LoadTrackInputs(const TrackRequest& request) {
+TrackInputs LoadTrackInputs(const TrackRequest& request, const PipelineCallbacks& callbacks) {
   TrackInputs inputs;
   inputs.body = BodyOrBuiltin(request.body);
   inputs.camera = CameraFromRequest(request);
@@ -164,6 +186,7 @@ TrackInputs LoadTrackInputs(const TrackRequest& request) {
       inputs.joints_from_labels = true;
     }
   }
+  if (DetectsPeople(request)) UseDetectedPeople(request, callbacks, &inputs);
   if (camera.width == 0) {
     throw std::runtime_error(Concatenate(request.detections.empty() ? request.dense : request.detections,
                                          ": does not say how large the images are; give --video, --cameras or "

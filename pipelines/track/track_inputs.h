@@ -5,12 +5,14 @@
 #include <memory>
 #include <optional>
 
+#include "bodyloom/data_tools/detection/people_detector.h"
 #include "bodyloom/data_tools/observations/load_cameras.h"
 #include "bodyloom/geometry/body_model.h"
 #include "bodyloom/geometry/lifter_weights.h"
 #include "bodyloom/geometry/observations.h"
 #include "bodyloom/geometry/pose_prior.h"
 #include "bodyloom/geometry/track.h"
+#include "bodyloom/pipelines/callbacks.h"
 #include "bodyloom/pipelines/track/track_request.h"
 
 namespace bodyloom {
@@ -25,6 +27,7 @@ struct TrackInputs {
   std::optional<PosePrior> prior;
   std::optional<LifterWeights> lifter;
   std::optional<Track> reference;
+  std::optional<PeopleDetectorSummary> detector;  ///< of people detected in the video
   NamedCamera camera;  ///< intrinsics, pose and the way to the video's pixels, as far as known
   double video_fps = 0;
 
@@ -37,8 +40,8 @@ struct TrackInputs {
   [[nodiscard]] TrackSequenceInput ForTracker() const;
 };
 
-/// Reads what the request names. Throws std::runtime_error naming file and place, also when two files contradict each
+/// Reads what the request names, and detects people when there is nothing but a video. Throws Cancelled, std::runtime_error naming file and place, also when two files contradict each
 /// other (image sizes, number of frames).
-TrackInputs LoadTrackInputs(const TrackRequest& request);
+TrackInputs LoadTrackInputs(const TrackRequest& request, const PipelineCallbacks& callbacks = {});
 
 }  // namespace bodyloom

@@ -14,9 +14,19 @@ CameraKnowledge CameraKnowledgeOf(const TrackRequest& request) {
                                                                                    : CameraKnowledge::kUnknownFocal;
 }
 
+bool DetectsPeople(const TrackRequest& request) {
+  return request.detections.empty() && request.dense.empty() && request.part_labels.empty() && !request.video.empty();
+}
+
 void CheckTrackRequest(const TrackRequest& request) {
-  if (request.detections.empty() && request.dense.empty() && request.part_labels.empty()) {
-    throw RequestError("--detections is required (or --dense, or --part-labels)");
+  if (request.detections.empty() && request.dense.empty() && request.part_labels.empty() && request.video.empty()) {
+    throw RequestError("--video is required (or --detections, --dense or --part-labels)");
+  }
+  if (request.plan && DetectsPeople(request)) {
+    throw RequestError("--plan needs detections: what runs depends on them (bodyloom detect makes them)");
+  }
+  if ((request.from_s > 0 || request.to_s >= 0) && !DetectsPeople(request)) {
+    throw RequestError("--from and --to are for a video in which people are detected: leave out the detections");
   }
   if (request.dense_uv_sigma && request.dense.empty() && !request.detections.ends_with(".npz")) {
     throw RequestError("--dense-uv-sigma is the noise of dense keypoints: give --dense");
@@ -36,7 +46,7 @@ void CheckTrackRequest(const TrackRequest& request) {
   if (request.live_lag && request.solve.solver != SequenceSolver::kChain) {
     throw RequestError("--live runs on the chain solver: leave out --solver " + ToString(request.solve.solver));
   }
-  if (request.live_lag && request.detections.empty() && request.dense.empty()) {
+  if (request.live_lag && request.detections.empty() && request.dense.empty() && !request.part_labels.empty()) {
     throw RequestError("--live does not use part labels: give --detections or --dense");
   }
   if (request.side_view && request.overlay.empty()) {

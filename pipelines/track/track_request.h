@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "bodyloom/data_tools/detection/pose_detector.h"
 #include "bodyloom/tracking/track_sequence.h"
 
 namespace bodyloom {
@@ -21,6 +22,12 @@ struct TrackRequest {
   double min_confidence = 0;             ///< detections below count as missing
   std::string convention;                ///< OpenPose model, when it should not be detected
 
+  // Detection, when nothing of the above is given and a video is (pipelines/detect/detect_people.h).
+  PoseNetworkSize detector = PoseNetworkSize::kHeavy;
+  std::string models;            ///< folder of the networks; empty: where they are installed
+  bool use_mask = true;          ///< the person's mask becomes the silhouette term
+  double from_s = 0, to_s = -1;  ///< the part of the video, seconds; to_s < 0: to the end
+
   // The camera.
   std::string cameras;                    ///< calibration file or folder
   std::string camera;                     ///< pinhole, unknown-focal or weak; empty: pinhole when intrinsics are given
@@ -28,7 +35,7 @@ struct TrackRequest {
   int image_width = 0, image_height = 0;  ///< when neither camera, video nor detections give it
 
   // What else is known.
-  std::string video;     ///< for the image size, the frame rate and the overlay
+  std::string video;     ///< for the image size, the frame rate and the overlay; alone: people are detected in it
   int video_offset = 0;  ///< video frame of the detections' time zero
   std::string body;      ///< body model; empty: the built-in one
   std::string init;      ///< poses of another system to start from and stay near, same frames
@@ -49,6 +56,9 @@ struct TrackRequest {
 
 /// Throws RequestError when fields contradict each other or one is missing. Looks at no file.
 void CheckTrackRequest(const TrackRequest& request);
+
+/// Whether people are to be detected in the video: it is all that was given.
+bool DetectsPeople(const TrackRequest& request);
 
 /// What `camera`, `cameras` and `focal_px` amount to.
 CameraKnowledge CameraKnowledgeOf(const TrackRequest& request);

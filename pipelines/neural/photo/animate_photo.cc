@@ -11,7 +11,7 @@
 #include "bodyloom/data_tools/video/video_writer.h"
 #include "bodyloom/neural/photo/guess_texture.h"
 #include "bodyloom/neural/photo/photo_renderer.h"
-#include "bodyloom/neural/training/prefetcher.h"
+#include "bodyloom/geometry/base/prefetcher.h"
 #include "bodyloom/neural/training/training_run.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/neural/photo/photo_backdrop.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Items computed by a thread of their own before they are requested: the batches of a training run.
+/// Items computed by a thread of their own before they are requested: batches of a training run, frames of a video.
 #pragma once
 
 #include <condition_variable>

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/detector_options.h"
+
+#include <CLI/CLI.hpp>
+#include <map>
+
+namespace bodyloom {
+namespace {
+
+const std::map<std::string, PoseNetworkSize> kNetworks = {
+    {"lite", PoseNetworkSize::kLite}, {"full", PoseNetworkSize::kFull}, {"heavy", PoseNetworkSize::kHeavy}};
+
+}  // namespace
+
+void AddDetectorOptions(CLI::App& app, PoseNetworkSize* network, std::string* models, const std::string& group) {
+  app.add_option("--detector", *network,
+                 "size of the pose network: lite, full or heavy (default), each slower and surer")
+      ->transform(CLI::CheckedTransformer(kNetworks, CLI::ignore_case).description(""))
+      ->group(group)
+      ->type_name("SIZE");
+  app.add_option("--models", *models, "folder of the networks (default: $BODYLOOM_MODELS, or where they are installed)")
+      ->group(group)
+      ->type_name("DIR");
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Everybody's 2D landmarks in the project's own file of observations (.npz): one row a person and frame.
+///
+/// | key                | shape  | type | meaning                                                          |
+/// |--------------------|--------|------|------------------------------------------------------------------|
+/// | timestamps         | T      | f8   | seconds, strictly increasing                                     |
+/// | image_size         | 2      | i4   | width, height in pixels; 0, 0 when not known                     |
+/// | people_frame       | N      | i4   | frame of each row, not decreasing                                |
+/// | people_identity    | N      | i4   | who it is, where the detector followed people; −1: not known     |
+/// | people_keypoints   | N×K×3  | f4   | x_px, y_px, confidence in [0,1] (0: missing)                     |
+/// | keypoint_names     | K      | text | landmark names                                                   |
+/// | keypoint_convention| scalar | text | "mediapipe33", …                                                 |
+#pragma once
+
+#include <string>
+
+#include "bodyloom/data_tools/formats/npz.h"
+#include "bodyloom/data_tools/observations/people.h"
+
+namespace bodyloom {
+
+/// Throws std::invalid_argument when frames, timestamps and landmarks do not fit each other; std::runtime_error naming
+/// the path when it cannot be written.
+void WritePeople(const std::string& path, const PeopleSequence& people);
+
+bool HasPeople(const NpzArrays& arrays);
+/// Throws std::runtime_error naming `where`, the key, what it holds and what was expected.
+PeopleSequence PeopleFromNpz(const NpzArrays& arrays, const std::string& where);
+
+}  // namespace bodyloom

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A video detected, from files to files: everybody's 2D landmarks, and one person's mask.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bodyloom/geometry/base/stopwatch.h"
+#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/pipelines/detect/detect_people.h"
+
+namespace bodyloom {
+
+struct DetectClipRequest {
+  DetectPeopleRequest detect;  ///< detector.masks follows from `mask`
+  std::string out;             ///< everybody's landmarks, .npz (people_npz.h); empty: none
+  std::string mask;            ///< one person's mask, .npz (part_labels.h); empty: none
+  int person = 0;              ///< whose mask: 0 is the largest and longest in view
+  std::string json;            ///< ToJson(DetectClipReport); empty: none
+};
+
+/// One person found, in LinkPeople()'s order.
+struct FoundPerson {
+  int frames = 0;                  ///< seen in
+  double first_s = 0, last_s = 0;  ///< seconds
+  double height_px = 0;            ///< median extent of the landmarks from top to bottom
+  double visible = 0;              ///< mean share of landmarks with a confidence of at least ½
+};
+
+struct DetectClipReport {
+  std::string video;
+  int width = 0, height = 0, frames = 0, frames_with_people = 0;
+  PoseNetworkSize network = PoseNetworkSize::kHeavy;
+  std::vector<FoundPerson> people;
+  PeopleDetectorSummary detector;
+  StageSeconds seconds;
+  double total_seconds = 0;
+  std::vector<std::string> outputs;  ///< files written
+};
+
+/// Detects and writes. Throws RequestError when nothing is to be written or files coincide, std::runtime_error naming a
+/// file that cannot be used or saying that nobody was found, Cancelled (nothing is written after it).
+DetectClipReport DetectClip(const DetectClipRequest& request, const PipelineCallbacks& callbacks = {});
+
+/// What FoundPerson says of each person of a clip.
+std::vector<FoundPerson> FoundPeople(const PeopleSequence& people);
+
+/// Some lines for a reader, the last one with a newline.
+std::string ToText(const DetectClipReport& report);
+/// The same as one JSON object.
+std::string ToJson(const DetectClipReport& report);
+
+}  // namespace bodyloom

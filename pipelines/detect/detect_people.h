@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Everybody in a video, in memory: frames are decoded by one thread while people are detected by others.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bodyloom/data_tools/detection/people_detector.h"
+#include "bodyloom/data_tools/observations/people.h"
+#include "bodyloom/geometry/observations.h"
+#include "bodyloom/pipelines/callbacks.h"
+
+namespace bodyloom {
+
+struct DetectPeopleRequest {
+  std::string video;             ///< the video, or a folder of images
+  std::string models;            ///< folder of the networks; empty: where they are installed (model_files.h)
+  double fps = 0;                ///< of a folder of images, or a video that does not say; 0: 30
+  double from_s = 0, to_s = -1;  ///< seconds from the first frame, both included; to_s < 0: to the end
+  PeopleDetectorOptions detector;
+};
+
+struct DetectedClip {
+  PeopleSequence people;                       ///< MediaPipe33(); identities −1
+  std::vector<std::vector<LabelImage>> masks;  ///< [frame][person as in people.frames]; empty unless asked for
+  PeopleDetectorSummary detector;
+  double decode_wait_seconds = 0;  ///< in which detection waited for a frame
+};
+
+/// Throws std::runtime_error naming a file that cannot be used, RequestError for a span that holds no frame, Cancelled.
+DetectedClip DetectPeople(const DetectPeopleRequest& request, const PipelineCallbacks& callbacks = {});
+
+/// Person number `person` of LinkPeople()'s order as a mask; frames without that person are empty. Throws
+/// std::invalid_argument when the clip has no masks or not that many people.
+PartLabelSequence MaskOfPerson(const DetectedClip& clip, int person);
+
+}  // namespace bodyloom
