@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <utility>
 
@@ -28,38 +29,46 @@ struct FrameGroup {
 class FrameSource {
  public:
   explicit FrameSource(const DetectPeopleRequest& request)
-      : reader_(request.video), from_s_(request.from_s), to_s_(request.to_s) {
-    const double said = reader_.info().fps;
-    fps_ = said > 0 ? said : request.fps > 0 ? request.fps : kUsualFps;
-    const int first = int(std::ceil(from_s_ * fps_ - 1e-6));
-    if (reader_.Skip(first) < first) {
-      throw RequestError(Concatenate(request.video, ": ends before second ", from_s_, ", where the clip should begin"));
+      : reader_(request.video), is_folder_(std::filesystem::is_directory(request.video)), to_s_(request.to_s) {
+    const double fps = info().fps > 0 ? info().fps : request.fps;
+    if (fps > 0) fps_ = fps;
+    if (request.from_s > 0) {
+      is_folder_ ? reader_.Skip(int(std::ceil(request.from_s * fps_ - kSameTime))) : reader_.SkipTo(request.from_s);
     }
+    first_ = reader_.next_frame();
   }
 
   [[nodiscard]] const VideoInfo& info() const { return reader_.info(); }
-  /// 0 when the video does not say how long it is.
+  /// About how many frames there are; 0 when the video does not say how long it is.
   [[nodiscard]] int num_frames() const {
     if (info().num_frames <= 0) return 0;
-    const double end = to_s_ < 0 ? std::numeric_limits<double>::infinity() : std::floor(to_s_ * fps_ + 1e-6) + 1;
-    return int(std::max(0.0, std::min<double>(info().num_frames, end) - std::ceil(from_s_ * fps_ - 1e-6)));
+    const double end = to_s_ < 0 ? info().num_frames : std::min<double>(info().num_frames, to_s_ * fps_ + 1);
+    return std::max(1, int(end) - first_);
   }
 
   FrameGroup Next() {
     FrameGroup group;
-    while (int(group.frames.size()) < PeopleDetector::kFramesAtOnce) {
-      const double time = reader_.next_frame() / fps_;
+    while (!at_end_ && int(group.frames.size()) < PeopleDetector::kFramesAtOnce) {
       Image frame;
-      if ((to_s_ >= 0 && time > to_s_ + 1e-6 / fps_) || !reader_.Read(&frame)) break;
+      at_end_ = !reader_.Read(&frame);
+      const double time = is_folder_ ? (reader_.next_frame() - 1) / fps_ : reader_.frame_time();
+      at_end_ = at_end_ || (to_s_ >= 0 && time > to_s_ + kSameTime);
+      if (at_end_) break;
       group.frames.push_back(std::move(frame));
       group.times.push_back(time);
     }
     return group;
   }
 
+  /// What was wrong with the video; only between calls of Next().
+  [[nodiscard]] std::string warning() const { return reader_.warning(); }
+
  private:
+  static constexpr double kSameTime = 1e-6;  ///< seconds
   VideoReader reader_;
-  double from_s_, to_s_, fps_ = kUsualFps;
+  bool is_folder_, at_end_ = false;
+  double to_s_, fps_ = kUsualFps;
+  int first_ = 0;
 };
 
 DetectedPerson ToPerson(const DetectedPose& pose) {
@@ -108,6 +117,8 @@ DetectedClip DetectPeople(const DetectPeopleRequest& request, const PipelineCall
   if (clip.people.frames.empty()) {
     throw RequestError(Concatenate(request.video, ": no frame from second ", request.from_s, " on"));
   }
+  // The video's end has been taken, so the other thread reads no more of it.
+  if (const std::string warning = source.warning(); !warning.empty()) callbacks.Say(warning);
   clip.detector = detector.summary();
   clip.decode_wait_seconds = groups.waited_s();
   return clip;

@@ -2,6 +2,7 @@
 #include "bodyloom/pipelines/track/track_inputs.h"
 
 #include <stdexcept>
+#include <utility>
 
 #include "bodyloom/data_tools/body/body_io.h"
 #include "bodyloom/data_tools/body/body_or_builtin.h"
@@ -18,6 +19,8 @@
 #include "bodyloom/data_tools/video/video_reader.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/pipelines/detect/detect_people.h"
+#include "bodyloom/pipelines/track/move_observations.h"
+#include "bodyloom/pipelines/track/track_video.h"
 #include "bodyloom/tracking/initialise/part_keypoints.h"
 
 namespace bodyloom {
@@ -120,12 +123,21 @@ void UseDetectedPeople(const TrackRequest& request, const PipelineCallbacks& cal
   detect.detector.masks = request.use_mask;
   callbacks.Begin("detecting people");
   const DetectedClip clip = DetectPeople(detect, callbacks);
-  AgreeOnImageSize(request.video, clip.people.image_width, clip.people.image_height, &inputs->camera.camera);
-  inputs->keypoints = SelectPerson(clip.people, request.person, request.video);
-  for (Keypoint& point : inputs->keypoints->points) {
+  // The camera has a size by now: that of its calibration, or the video's.
+  const Camera& camera = inputs->camera.camera;
+  const Matrix2x3d map = VideoFromCameraPixels(inputs->camera.video_px_from_camera_px, camera, clip.people.image_width,
+                                               clip.people.image_height, request.video);
+  const bool same_pixels = map.isApprox(NamedCamera().video_px_from_camera_px);
+  KeypointSequence keypoints = SelectPerson(clip.people, request.person, request.video);
+  for (Keypoint& point : keypoints.points) {
     if (!(point.confidence >= request.min_confidence)) point = {};
   }
-  if (request.use_mask) inputs->part_labels = MaskOfPerson(clip, request.person);
+  inputs->keypoints =
+      same_pixels ? std::move(keypoints) : MovedToCamera(std::move(keypoints), map, camera.width, camera.height);
+  if (request.use_mask) {
+    PartLabelSequence mask = MaskOfPerson(clip, request.person);
+    inputs->part_labels = same_pixels ? std::move(mask) : MovedToCamera(mask, map, camera.width, camera.height);
+  }
   inputs->detector = clip.detector;
 }
 

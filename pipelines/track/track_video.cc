@@ -3,34 +3,33 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <stdexcept>
 
+#include "bodyloom/data_tools/video/video_frame_times.h"
 #include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
-namespace {
-
-/// The map for a video that is a scaled copy of what the camera saw; `map` itself when it says more than identity.
-Matrix2x3d MapToVideo(const Matrix2x3d& map, const Camera& camera, const VideoInfo& video, const std::string& path) {
+Matrix2x3d VideoFromCameraPixels(const Matrix2x3d& map, const Camera& camera, int width, int height,
+                                 const std::string& path) {
   if (!map.isApprox(NamedCamera().video_px_from_camera_px)) {
     return map;
   }
-  const double sx = static_cast<double>(video.width) / camera.width,
-               sy = static_cast<double>(video.height) / camera.height;
+  const double sx = static_cast<double>(width) / camera.width, sy = static_cast<double>(height) / camera.height;
   if (!(std::abs(sx / sy - 1) <= 0.01)) {
-    throw std::runtime_error(Concatenate(path, ": frames of ", video.width, "x", video.height,
-                                         ", expected those of the camera, ", camera.width, "x", camera.height,
-                                         ", or a scaled copy of them"));
+    throw std::runtime_error(Concatenate(path, ": frames of ", width, "x", height, ", expected those of the camera, ",
+                                         camera.width, "x", camera.height, ", or a scaled copy of them"));
   }
   // Pixel centres lie at integers, so the image's corner (-0.5, -0.5) is what stays.
   return (Matrix2x3d() << sx, 0, 0.5 * (sx - 1), 0, sy, 0.5 * (sy - 1)).finished();
 }
 
-}  // namespace
-
 TrackVideo::TrackVideo(const std::string& path, const Track& track, const Matrix2x3d& map, int video_offset)
-    : reader_(path), map_(MapToVideo(map, track.camera, reader_.info(), path)), offset_(video_offset) {
+    : reader_(path),
+      map_(VideoFromCameraPixels(map, track.camera, reader_.info().width, reader_.info().height, path)),
+      offset_(video_offset) {
   fps_ = info().fps > 0 ? info().fps : VideoFrameRate(track.motion.timestamps);
+  if (!std::filesystem::is_directory(path)) times_ = VideoFrameTimes(path);
 }
 
 Track TrackVideo::Moved(Track track) const {
@@ -49,9 +48,25 @@ Track TrackVideo::Moved(Track track) const {
   return track;
 }
 
-int TrackVideo::IndexAt(double time_s) const { return static_cast<int>(std::lround(time_s * fps_)) + offset_; }
+int TrackVideo::IndexAt(double time_s) const {
+  if (times_.empty()) return static_cast<int>(std::lround(time_s * fps_)) + offset_;
+  // The track's time zero, and by it the track's time, on the video's clock.
+  const int last = int(times_.size()) - 1;
+  const double zero =
+      offset_ < 0 ? offset_ / fps_ : times_[size_t(std::min(offset_, last))] + std::max(0, offset_ - last) / fps_;
+  const double time = zero + time_s, half_frame = 0.5 / fps_;
+  if (time < -half_frame) return -1;
+  if (time > times_.back() + half_frame) return last + 1;
+  const auto after = std::lower_bound(times_.begin(), times_.end(), time);
+  if (after == times_.end()) return last;
+  const int index = int(after - times_.begin());
+  return index > 0 && time - times_[size_t(index) - 1] < *after - time ? index - 1 : index;
+}
 
-int TrackVideo::FramesAfter(double time_s) const { return std::max(0, info().num_frames - 1 - IndexAt(time_s)); }
+int TrackVideo::FramesAfter(double time_s) const {
+  const int num_frames = times_.empty() ? info().num_frames : int(times_.size());
+  return std::max(0, num_frames - 1 - IndexAt(time_s));
+}
 
 const Image* TrackVideo::At(double time_s) {
   const int index = IndexAt(time_s);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "bodyloom/data_tools/observations/load_cameras.h"
 #include "bodyloom/data_tools/video/video_reader.h"
@@ -37,11 +38,17 @@ class TrackVideo {
 
   VideoReader reader_;
   Matrix2x3d map_;
+  std::vector<double> times_;  ///< when each frame of the video is shown, seconds; empty for a folder of images
   double fps_ = 30;
   int offset_ = 0;
   Image frame_;
   bool has_frame_ = false;
 };
+
+/// From pixels of a camera to those of a video of width × height: `map` where it is more than identity, else the scale
+/// between the two. Throws std::runtime_error naming `path` when the video is no scaled copy of what the camera saw.
+Matrix2x3d VideoFromCameraPixels(const Matrix2x3d& map, const Camera& camera, int width, int height,
+                                 const std::string& path);
 
 /// Frames a second of a video whose frames have these timestamps: 1 / their median step, within [1, 240]; 30 for one
 /// frame.

@@ -117,7 +117,7 @@ TEST_F(BadInput, ImageSizeThatContradictsTheDetectionsIsSaid) {
 TEST_F(BadInput, OptionsThatContradictEachOtherAreUsageErrors) {
   WriteDetections("d.json");
   const std::string d = folder_ / "d.json", o = folder_ / "o.npz";
-  ExpectUsageError({"track", "--out", o}, "--detections is required");
+  ExpectUsageError({"track", "--out", o}, "--video is required");
   ExpectUsageError({"track", "--detections", d}, "--out is required");
   ExpectUsageError({"track", "--detections", d, "--out", o, "--camera", "pinhole"}, "--cameras FILE or --focal");
   ExpectUsageError({"track", "--detections", d, "--out", o, "--camera", "fisheye"}, "fisheye");

@@ -14,6 +14,7 @@
 #include "bodyloom/geometry/posed_body.h"
 #include "bodyloom/tracking/initialise/part_keypoints.h"
 #include "tests/data_tools/formats/expect_file_error.h"
+#include "tests/data_tools/formats/temporary_file.h"
 
 namespace bodyloom {
 namespace {
@@ -46,6 +47,42 @@ TEST(PartLabels, CutsToThePerson) {
   EXPECT_EQ(image.At(10, 5), 2);
   EXPECT_EQ(image.At(21, 24), 9);
   EXPECT_EQ(image.At(9, 5), 0);
+}
+
+TEST(PartLabels, AMaskComesBackAsOne) {
+  PartLabelSequence mask;
+  mask.image_width = 40;
+  mask.image_height = 30;
+  mask.timestamps = {0, 0.5, 0.75};
+  mask.frames = {{.x_begin = 10, .y_begin = 5, .width = 12, .height = 20, .labels = std::vector<uint8_t>(240, 7)},
+                 {},
+                 {.x_begin = 30, .y_begin = 20, .width = 10, .height = 10, .labels = std::vector<uint8_t>(100, 1)}};
+  const TemporaryFolder folder;
+  WriteMask(folder.File("mask.npz"), mask);
+  const PartLabelSequence read = ReadPartLabels(folder.File("mask.npz"));
+  EXPECT_EQ(read.timestamps, mask.timestamps);
+  EXPECT_EQ(read.part_of_chart[5], 1) << "every chart belongs to the person";
+  for (int t = 0; t < 3; ++t) {
+    for (int y = 0; y < 30; ++y) {
+      for (int x = 0; x < 40; ++x) {
+        ASSERT_EQ(read.PartAt(t, x, y), mask.frames[t].At(x, y) != 0 ? 1 : 0) << t << ": " << x << ", " << y;
+      }
+    }
+  }
+  mask.frames[2].x_begin = 31;
+  EXPECT_THROW(WriteMask(folder.File("other.npz"), mask), std::invalid_argument);
+  mask.timestamps.pop_back();
+  EXPECT_THROW(WriteMask(folder.File("other.npz"), mask), std::invalid_argument);
+}
+
+TEST(PartLabels, TheKindOfLabelsIsOneOfTwo) {
+  NpzArrays archive = Archive(SmallPerson(), {1, 30, 40});
+  archive["label_kind"] = NdArray::FromString("densepose");
+  EXPECT_EQ(PartLabelsFromNpz(archive, "l.npz").PartAt(0, 10, 5), 2);
+  archive["label_kind"] = NdArray::FromString("cat");
+  EXPECT_THAT(FileErrorOf("l.npz", [&] { PartLabelsFromNpz(archive, "l.npz"); }), HasSubstr("label_kind: 'cat'"));
+  archive["label_kind"] = NdArray::FromDouble(3);
+  EXPECT_THAT(FileErrorOf("l.npz", [&] { PartLabelsFromNpz(archive, "l.npz"); }), HasSubstr("label_kind"));
 }
 
 TEST(PartLabels, FarBlobsAreNotThePersonAndNearOnesAre) {

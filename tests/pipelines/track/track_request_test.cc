@@ -22,7 +22,7 @@ TrackRequest Complete() {
 TEST(TrackRequest, DetectionsAndAPlaceForTheTrackAreEnough) { EXPECT_NO_THROW(CheckTrackRequest(Complete())); }
 
 TEST(TrackRequest, WhatIsMissingOrContradictsIsNamed) {
-  EXPECT_THAT([] { CheckTrackRequest({}); }, ThrowsMessage<RequestError>(HasSubstr("--detections is required")));
+  EXPECT_THAT([] { CheckTrackRequest({}); }, ThrowsMessage<RequestError>(HasSubstr("--video is required")));
   TrackRequest request = Complete();
   request.out.clear();
   EXPECT_THAT([&] { CheckTrackRequest(request); }, ThrowsMessage<RequestError>(HasSubstr("--out is required")));
@@ -32,6 +32,21 @@ TEST(TrackRequest, WhatIsMissingOrContradictsIsNamed) {
   request.live_lag = 4;
   request.solve.solver = SequenceSolver::kCeres;
   EXPECT_THAT([&] { CheckTrackRequest(request); }, ThrowsMessage<RequestError>(HasSubstr("--live")));
+}
+
+TEST(TrackRequest, AVideoAloneIsDetected) {
+  TrackRequest request;
+  request.video = "clip.mp4";
+  request.out = "track.npz";
+  request.from_s = 1;
+  EXPECT_NO_THROW(CheckTrackRequest(request));
+  EXPECT_TRUE(DetectsPeople(request));
+  request.plan = true;
+  EXPECT_THAT([&] { CheckTrackRequest(request); }, ThrowsMessage<RequestError>(HasSubstr("--plan needs detections")));
+  request.plan = false;
+  request.detections = "clip.json";
+  EXPECT_FALSE(DetectsPeople(request));
+  EXPECT_THAT([&] { CheckTrackRequest(request); }, ThrowsMessage<RequestError>(HasSubstr("--from and --to")));
 }
 
 TEST(TrackRequest, IntrinsicsMakeAPinhole) {
