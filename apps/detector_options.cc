@@ -7,15 +7,20 @@
 namespace bodyloom {
 namespace {
 
-const std::map<std::string, PoseNetworkSize> kNetworks = {
-    {"lite", PoseNetworkSize::kLite}, {"full", PoseNetworkSize::kFull}, {"heavy", PoseNetworkSize::kHeavy}};
+std::map<std::string, PoseNetworkSize> NetworksByName() {
+  std::map<std::string, PoseNetworkSize> networks;
+  for (const PoseNetworkSize size : {PoseNetworkSize::kLite, PoseNetworkSize::kFull, PoseNetworkSize::kHeavy}) {
+    networks[ToText(size)] = size;
+  }
+  return networks;
+}
 
 }  // namespace
 
 void AddDetectorOptions(CLI::App& app, PoseNetworkSize* network, std::string* models, const std::string& group) {
   app.add_option("--detector", *network,
                  "size of the pose network: lite, full or heavy (default), each slower and surer")
-      ->transform(CLI::CheckedTransformer(kNetworks, CLI::ignore_case).description(""))
+      ->transform(CLI::CheckedTransformer(NetworksByName(), CLI::ignore_case).description(""))
       ->group(group)
       ->type_name("SIZE");
   app.add_option("--models", *models, "folder of the networks (default: $BODYLOOM_MODELS, or where they are installed)")

@@ -13,19 +13,16 @@ namespace bodyloom {
 namespace {
 
 /// Places among the landmark network's outputs.
-enum LandmarkOutput { kLandmarks, kPresence, kMask, kHeatmaps, kWorld, kNumLandmarkOutputs };
+enum LandmarkOutput { kLandmarks, kPresence, kMask, kHeatmaps, kWorld };
 
-const char* LandmarkFile(PoseNetworkSize size) {
-  switch (size) {
-    case PoseNetworkSize::kLite:
-      return kPoseLandmarkLiteFile;
-    case PoseNetworkSize::kFull:
-      return kPoseLandmarkFullFile;
-    case PoseNetworkSize::kHeavy:
-      return kPoseLandmarkHeavyFile;
-  }
-  return "";
-}
+struct NetworkOfSize {
+  const char *name, *file;
+};
+/// In the order of PoseNetworkSize.
+constexpr NetworkOfSize kNetworks[] = {
+    {"lite", kPoseLandmarkLiteFile}, {"full", kPoseLandmarkFullFile}, {"heavy", kPoseLandmarkHeavyFile}};
+
+const NetworkOfSize& NetworkOf(PoseNetworkSize size) { return kNetworks[static_cast<size_t>(size)]; }
 
 /// Throws unless the network has an input of size × size colours and outputs of these numbers of values.
 void CheckNetwork(const TfliteModel& model, int size, const std::vector<size_t>& outputs) {
@@ -44,17 +41,7 @@ void CheckNetwork(const TfliteModel& model, int size, const std::vector<size_t>&
 
 }  // namespace
 
-std::string ToText(PoseNetworkSize size) {
-  switch (size) {
-    case PoseNetworkSize::kLite:
-      return "lite";
-    case PoseNetworkSize::kFull:
-      return "full";
-    case PoseNetworkSize::kHeavy:
-      return "heavy";
-  }
-  return "";
-}
+std::string ToText(PoseNetworkSize size) { return NetworkOf(size).name; }
 
 class PoseModels {
  public:
@@ -65,7 +52,7 @@ class PoseModels {
 std::shared_ptr<const PoseModels> ReadPoseModels(const std::string& folder, PoseNetworkSize size) {
   constexpr size_t n = kPoseNetworkLandmarks;
   auto models = std::make_shared<PoseModels>(ReadTfliteModel(FindModelFile(kPoseDetectorFile, folder)),
-                                             ReadTfliteModel(FindModelFile(LandmarkFile(size), folder)));
+                                             ReadTfliteModel(FindModelFile(NetworkOf(size).file, folder)));
   CheckNetwork(models->people, kPersonDetectorSize, {size_t(kPersonDetectorAnchors) * 12, kPersonDetectorAnchors});
   CheckNetwork(models->landmarks, kPoseNetworkSize,
                {n * 5, 1, size_t(kPoseNetworkSize) * kPoseNetworkSize, n * kPoseHeatmapSize * kPoseHeatmapSize, n * 3});

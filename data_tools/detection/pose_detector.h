@@ -31,7 +31,7 @@ std::shared_ptr<const PoseModels> ReadPoseModels(const std::string& folder, Pose
 
 class PoseDetector {
  public:
-  /// with_mask: poses bring a mask, which takes the network about 15 % longer.
+  /// with_mask: poses bring a mask, which takes `heavy` a tenth longer and `full` half (docs/lab/pose_detector.md).
   PoseDetector(const std::shared_ptr<const PoseModels>& models, bool with_mask);
   ~PoseDetector();
   PoseDetector(PoseDetector&&) noexcept;

@@ -7,8 +7,7 @@
 /// middle of the hips and a point on the body's circle, from which the next frame's region comes; 35 to 38 are not used.
 ///
 /// Places are refined by the heatmaps: with p = sigmoid(logit) in the 7 × 7 cells about the landmark's cell, cut at the
-/// border, and max p at least ½, x = Σ p·column / Σ p / 64 and y likewise. Refinement takes the median error on real
-/// video from 17 to 11 px (docs/lab/pose_detector.md).
+/// border, and max p at least ½, x = Σ p·column / Σ p / 64 and y likewise.
 /// Source: MediaPipe, pose_landmarks_by_roi_cpu.pbtxt: TensorsToPoseLandmarksAndSegmentation,
 /// RefineLandmarksFromHeatmapCalculator, LandmarkProjectionCalculator, WorldLandmarkProjectionCalculator.
 #pragma once

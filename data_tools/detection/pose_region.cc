@@ -9,6 +9,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/render/image_mat.h"
 
 namespace bodyloom {
 namespace {
@@ -73,9 +74,8 @@ std::vector<float> CropRegion(const Image& image, const PoseRegion& region, int 
   const Eigen::Vector2d origin = region.ImageFromFraction({0, 0});
   const double step = region.side / size, c = step * std::cos(region.rotation), s = step * std::sin(region.rotation);
   const cv::Matx23d image_from_crop(c, -s, origin.x(), s, c, origin.y());
-  const cv::Mat source(image.height, image.width, CV_8UC3, const_cast<uint8_t*>(image.bgr.data()));
   cv::Mat crop;
-  cv::warpAffine(source, crop, image_from_crop, {size, size}, cv::INTER_LINEAR | cv::WARP_INVERSE_MAP,
+  cv::warpAffine(MatOf(image), crop, image_from_crop, {size, size}, cv::INTER_LINEAR | cv::WARP_INVERSE_MAP,
                  cv::BORDER_CONSTANT, cv::Scalar::all(0));
   std::vector<float> result(size_t(size) * size * 3);
   float* to = result.data();

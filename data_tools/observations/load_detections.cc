@@ -173,9 +173,7 @@ KeypointSequence Finish(KeypointSequence sequence, const std::string& path, cons
     sequence.image_width = options.image_width;
     sequence.image_height = options.image_height;
   }
-  for (Keypoint& p : sequence.points) {
-    if (!(p.confidence >= options.min_confidence)) p = {};
-  }
+  DropUnsure(options.min_confidence, &sequence);
   if (CoordinateBounds(sequence).seen == 0) {
     throw std::runtime_error(path + ": nobody was detected in any of " + std::to_string(sequence.num_frames()) +
                              " frames");
@@ -196,6 +194,12 @@ void CheckOptions(const LoadDetectionsOptions& options) {
 }
 
 }  // namespace
+
+void DropUnsure(double min_confidence, KeypointSequence* sequence) {
+  for (Keypoint& p : sequence->points) {
+    if (!(p.confidence >= min_confidence)) p = {};
+  }
+}
 
 KeypointSequence DetectionsFromBytes(const std::string& bytes, const std::string& where,
                                      const LoadDetectionsOptions& options) {

@@ -31,4 +31,7 @@ KeypointSequence LoadDetections(const std::string& path, const LoadDetectionsOpt
 KeypointSequence DetectionsFromBytes(const std::string& bytes, const std::string& where,
                                      const LoadDetectionsOptions& options = {});
 
+/// Landmarks with less confidence, or one that is not a number, become missing.
+void DropUnsure(double min_confidence, KeypointSequence* sequence);
+
 }  // namespace bodyloom

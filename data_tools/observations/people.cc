@@ -140,7 +140,7 @@ std::vector<PersonTrack> LinkPeople(const PeopleSequence& people) {
   return result;
 }
 
-KeypointSequence SelectPerson(const PeopleSequence& people, int person, const std::string& where) {
+PersonTrack PersonOf(const PeopleSequence& people, int person, const std::string& where) {
   BODYLOOM_CHECK(person >= 0, "person ", person, " must not be negative");
   const std::vector<PersonTrack> tracks = LinkPeople(people);
   if (tracks.empty()) {
@@ -150,6 +150,10 @@ KeypointSequence SelectPerson(const PeopleSequence& people, int person, const st
     throw std::runtime_error(where + ": person " + std::to_string(person) + " requested, but only " +
                              std::to_string(tracks.size()) + " were found (0 is the largest)");
   }
+  return tracks[person];
+}
+
+KeypointSequence KeypointsOf(const PeopleSequence& people, const PersonTrack& person) {
   KeypointSequence sequence;
   sequence.convention = people.convention.name;
   sequence.names = people.convention.names;
@@ -157,13 +161,17 @@ KeypointSequence SelectPerson(const PeopleSequence& people, int person, const st
   sequence.image_width = people.image_width;
   sequence.image_height = people.image_height;
   sequence.points.resize(people.frames.size() * sequence.names.size());
-  for (const auto& [t, index] : tracks[person].detections) {
+  for (const auto& [t, index] : person.detections) {
     for (int k = 0; k < sequence.num_points(); ++k) {
       const Keypoint& p = people.frames[t][index].points[k];
       if (IsSeen(p)) sequence.at(t, k) = {p.x, p.y, std::min(1.0F, p.confidence)};
     }
   }
   return sequence;
+}
+
+KeypointSequence SelectPerson(const PeopleSequence& people, int person, const std::string& where) {
+  return KeypointsOf(people, PersonOf(people, person, where));
 }
 
 }  // namespace bodyloom

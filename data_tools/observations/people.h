@@ -38,9 +38,15 @@ struct PersonTrack {
 /// All tracks, heaviest first: index 0 is the person who is largest, best seen and longest in the picture.
 std::vector<PersonTrack> LinkPeople(const PeopleSequence& people);
 
-/// The landmarks of person number `person` in LinkPeople's order; frames without that person are missing.
-/// Confidences are clamped to [0, 1]; non-finite points become missing. Throws std::runtime_error beginning with
-/// `where` when nobody was seen at all or there are not that many people.
+/// Person number `person` in LinkPeople's order. Throws std::runtime_error beginning with `where` when nobody was seen at
+/// all or there are not that many people.
+PersonTrack PersonOf(const PeopleSequence& people, int person, const std::string& where);
+
+/// The landmarks of one of them; frames without that person are missing. Confidences are clamped to [0, 1]; non-finite
+/// points become missing.
+KeypointSequence KeypointsOf(const PeopleSequence& people, const PersonTrack& person);
+
+/// KeypointsOf(PersonOf()). Throws as PersonOf.
 KeypointSequence SelectPerson(const PeopleSequence& people, int person, const std::string& where);
 
 }  // namespace bodyloom

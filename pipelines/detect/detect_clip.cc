@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 
 #include "bodyloom/data_tools/formats/atomic_file.h"
@@ -80,17 +81,15 @@ DetectClipReport DetectClip(const DetectClipRequest& request, const PipelineCall
   if (report.people.empty()) {
     throw std::runtime_error(Concatenate(detect.video, ": nobody was found in ", report.frames, " frames"));
   }
-  if (!request.mask.empty() && request.person >= int(report.people.size())) {
-    throw std::runtime_error(Concatenate(detect.video, ": person ", request.person, " requested, but only ",
-                                         report.people.size(), " were found (0 is the largest)"));
-  }
+  std::optional<PersonTrack> masked;
+  if (!request.mask.empty()) masked = PersonOf(clip.people, request.person, detect.video);
   clock.Begin("write");
   if (!request.out.empty()) {
     WritePeople(request.out, clip.people);
     report.outputs.push_back(request.out);
   }
-  if (!request.mask.empty()) {
-    WriteMask(request.mask, MaskOfPerson(clip, request.person));
+  if (masked) {
+    WriteMask(request.mask, MaskOfPerson(clip, *masked));
     report.outputs.push_back(request.mask);
   }
   clock.End();

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <utility>
 
@@ -29,11 +28,11 @@ struct FrameGroup {
 class FrameSource {
  public:
   explicit FrameSource(const DetectPeopleRequest& request)
-      : reader_(request.video), is_folder_(std::filesystem::is_directory(request.video)), to_s_(request.to_s) {
+      : reader_(request.video), has_clock_(!std::isnan(reader_.frame_time())), to_s_(request.to_s) {
     const double fps = info().fps > 0 ? info().fps : request.fps;
     if (fps > 0) fps_ = fps;
     if (request.from_s > 0) {
-      is_folder_ ? reader_.Skip(int(std::ceil(request.from_s * fps_ - kSameTime))) : reader_.SkipTo(request.from_s);
+      has_clock_ ? reader_.SkipTo(request.from_s) : reader_.Skip(int(std::ceil(request.from_s * fps_ - kSameTime)));
     }
     first_ = reader_.next_frame();
   }
@@ -51,7 +50,7 @@ class FrameSource {
     while (!at_end_ && int(group.frames.size()) < PeopleDetector::kFramesAtOnce) {
       Image frame;
       at_end_ = !reader_.Read(&frame);
-      const double time = is_folder_ ? (reader_.next_frame() - 1) / fps_ : reader_.frame_time();
+      const double time = has_clock_ ? reader_.frame_time() : (reader_.next_frame() - 1) / fps_;
       at_end_ = at_end_ || (to_s_ >= 0 && time > to_s_ + kSameTime);
       if (at_end_) break;
       group.frames.push_back(std::move(frame));
@@ -66,7 +65,8 @@ class FrameSource {
  private:
   static constexpr double kSameTime = 1e-6;  ///< seconds
   VideoReader reader_;
-  bool is_folder_, at_end_ = false;
+  bool has_clock_;  ///< a folder of images has none
+  bool at_end_ = false;
   double to_s_, fps_ = kUsualFps;
   int first_ = 0;
 };
@@ -120,20 +120,17 @@ DetectedClip DetectPeople(const DetectPeopleRequest& request, const PipelineCall
   // The video's end has been taken, so the other thread reads no more of it.
   if (const std::string warning = source.warning(); !warning.empty()) callbacks.Say(warning);
   clip.detector = detector.summary();
-  clip.decode_wait_seconds = groups.waited_s();
   return clip;
 }
 
-PartLabelSequence MaskOfPerson(const DetectedClip& clip, int person) {
-  const std::vector<PersonTrack> tracks = LinkPeople(clip.people);
+PartLabelSequence MaskOfPerson(const DetectedClip& clip, const PersonTrack& person) {
   BODYLOOM_CHECK(clip.masks.size() == clip.people.frames.size(), "the clip was detected without masks");
-  BODYLOOM_CHECK(person >= 0 && person < int(tracks.size()), "person ", person, " of ", tracks.size());
   PartLabelSequence mask;
   mask.frames.resize(clip.masks.size());
   mask.timestamps = clip.people.timestamps;
   mask.image_width = clip.people.image_width;
   mask.image_height = clip.people.image_height;
-  for (const auto& [frame, index] : tracks[size_t(person)].detections) {
+  for (const auto& [frame, index] : person.detections) {
     mask.frames[size_t(frame)] = clip.masks[size_t(frame)][size_t(index)];
   }
   mask.AsMask();

@@ -24,14 +24,13 @@ struct DetectedClip {
   PeopleSequence people;                       ///< MediaPipe33(); identities −1
   std::vector<std::vector<LabelImage>> masks;  ///< [frame][person as in people.frames]; empty unless asked for
   PeopleDetectorSummary detector;
-  double decode_wait_seconds = 0;  ///< in which detection waited for a frame
 };
 
 /// Throws std::runtime_error naming a file that cannot be used, RequestError for a span that holds no frame, Cancelled.
 DetectedClip DetectPeople(const DetectPeopleRequest& request, const PipelineCallbacks& callbacks = {});
 
-/// Person number `person` of LinkPeople()'s order as a mask; frames without that person are empty. Throws
-/// std::invalid_argument when the clip has no masks or not that many people.
-PartLabelSequence MaskOfPerson(const DetectedClip& clip, int person);
+/// One of the clip's people (PersonOf()) as a mask; frames without that person are empty. Throws std::invalid_argument
+/// when the clip has no masks.
+PartLabelSequence MaskOfPerson(const DetectedClip& clip, const PersonTrack& person);
 
 }  // namespace bodyloom

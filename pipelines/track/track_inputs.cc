@@ -128,17 +128,15 @@ void UseDetectedPeople(const TrackRequest& request, const PipelineCallbacks& cal
   const Matrix2x3d map = VideoFromCameraPixels(inputs->camera.video_px_from_camera_px, camera, clip.people.image_width,
                                                clip.people.image_height, request.video);
   const bool same_pixels = map.isApprox(NamedCamera().video_px_from_camera_px);
-  KeypointSequence keypoints = SelectPerson(clip.people, request.person, request.video);
-  for (Keypoint& point : keypoints.points) {
-    if (!(point.confidence >= request.min_confidence)) point = {};
-  }
+  const PersonTrack person = PersonOf(clip.people, request.person, request.video);
+  KeypointSequence keypoints = KeypointsOf(clip.people, person);
+  DropUnsure(request.min_confidence, &keypoints);
   inputs->keypoints =
       same_pixels ? std::move(keypoints) : MovedToCamera(std::move(keypoints), map, camera.width, camera.height);
   if (request.use_mask) {
-    PartLabelSequence mask = MaskOfPerson(clip, request.person);
+    PartLabelSequence mask = MaskOfPerson(clip, person);
     inputs->part_labels = same_pixels ? std::move(mask) : MovedToCamera(mask, map, camera.width, camera.height);
   }
-  inputs->detector = clip.detector;
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <memory>
 #include <optional>
 
-#include "bodyloom/data_tools/detection/people_detector.h"
 #include "bodyloom/data_tools/observations/load_cameras.h"
 #include "bodyloom/geometry/body_model.h"
 #include "bodyloom/geometry/lifter_weights.h"
@@ -27,7 +26,6 @@ struct TrackInputs {
   std::optional<PosePrior> prior;
   std::optional<LifterWeights> lifter;
   std::optional<Track> reference;
-  std::optional<PeopleDetectorSummary> detector;  ///< of people detected in the video
   NamedCamera camera;  ///< intrinsics, pose and the way to the video's pixels, as far as known
   double video_fps = 0;
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <stdexcept>
 
 #include "bodyloom/data_tools/video/video_frame_times.h"
@@ -29,7 +28,7 @@ TrackVideo::TrackVideo(const std::string& path, const Track& track, const Matrix
       map_(VideoFromCameraPixels(map, track.camera, reader_.info().width, reader_.info().height, path)),
       offset_(video_offset) {
   fps_ = info().fps > 0 ? info().fps : VideoFrameRate(track.motion.timestamps);
-  if (!std::filesystem::is_directory(path)) times_ = VideoFrameTimes(path);
+  times_ = VideoFrameTimes(path);
 }
 
 Track TrackVideo::Moved(Track track) const {
