@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "bodyloom/data_tools/detection/tflite_model.h"
 #include "tests/data_tools/detection/tflite_writer.h"
 
 namespace bodyloom {
@@ -45,6 +46,22 @@ inline std::vector<TfliteWriter> SmallNetworks() {
     w.outputs = {w.Apply(Writer::kConcatenation, {fine, coarse}, {1, 256, 2}, {{0, 1}, {1, 0}})};
   }
   return {landmarks, detector};
+}
+
+/// A constant's values, to compare.
+inline std::vector<float> ValuesOf(const TfliteTensor& tensor) {
+  return {tensor.values().begin(), tensor.values().end()};
+}
+
+/// A convolution of a 1×4×4×2 input; its tensors are 0 input, 1 kernel, 2 bias, 3 output.
+inline TfliteWriter OneConvolution() {
+  using Writer = TfliteWriter;
+  Writer writer;
+  const int input = writer.Input({1, 4, 4, 2}), kernel = writer.Floats({3, 1, 1, 2}, {1, 2, 3, 4, 5, 6});
+  const int bias = writer.Floats({3}, {7, 8, 9});
+  writer.outputs = {
+      writer.Apply(Writer::kConv2d, {input, kernel, bias}, {1, 4, 4, 3}, {{0, 0}, {1, 1}, {2, 1}, {3, 3}})};
+  return writer;
 }
 
 }  // namespace bodyloom

@@ -41,4 +41,8 @@ inline Motion MirroredMotion(const Motion& motion) {
   return mirrored;
 }
 
+inline LifterWindowGenerator Generator(const LifterWindowOptions& options, const Motion& motion = ShortDemoMotion()) {
+  return LifterWindowGenerator({motion}, {1}, ToyBody(), options);
+}
+
 }  // namespace bodyloom
