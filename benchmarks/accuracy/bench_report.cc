@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "benchmarks/accuracy/bench_arguments.h"
 #include "bodyloom/data_tools/evaluation/metrics.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/geometry/base/check.h"
@@ -83,7 +84,7 @@ std::string BenchNumber(double value) {
 }
 
 std::vector<std::pair<std::string, std::string>> BenchEnvironment() {
-  const std::string git = "git -C '" BODYLOOM_SOURCE_DIR "' ";
+  const std::string git = "git -C '" + SourceDir() + "' ";
   std::string commit = FirstLineOf(git + "rev-parse --short=12 HEAD");
   if (commit.empty()) commit = "unknown";
   if (!FirstLineOf(git + "status --porcelain --untracked-files=no").empty()) commit += " with changes";

@@ -224,7 +224,7 @@ void Run(const BenchArguments& arguments, const std::string& command) {
 int main(int argc, char** argv) {
   return bodyloom::BenchMain(
       "bodyloom_bench_lifter", argc, argv,
-      {{"motions", BODYLOOM_SOURCE_DIR "/../shared/data/motion," BODYLOOM_SOURCE_DIR "/../shared/data/aistpp/motions"},
+      {{"motions", SourceDir() + "/../shared/data/motion," SourceDir() + "/../shared/data/aistpp/motions"},
        {"lifter", "built-in"},
        {"windows", "200"},
        {"detections", "users"},

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/work_precision/problem_file.h"
 #include "benchmarks/work_precision/sections.h"
 #include "bodyloom/geometry/base/check.h"
@@ -109,7 +110,7 @@ class PeerProblem {
     for (const std::string& text : settings) {
       const TorchSetting setting = TorchSetting::Parse(text);
       const std::string call =
-          Concatenate("/usr/bin/python3 " BODYLOOM_SOURCE_DIR "/benchmarks/peers/pytorch_fit.py ", problem_path, " ",
+          Concatenate("/usr/bin/python3 ", SourceDir(), "/benchmarks/peers/pytorch_fit.py ", problem_path, " ",
                       answer_path, " ", setting.options, " --threads ", bench_->threads);
       if (std::system(call.c_str()) != 0) {
         bench_->report.notes.push_back("PyTorch: failed: " + setting.options);

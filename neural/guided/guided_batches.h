@@ -6,11 +6,11 @@
 
 #include <cstdint>
 
+#include "bodyloom/geometry/base/prefetcher.h"
 #include "bodyloom/neural/guided/guided_config.h"
 #include "bodyloom/neural/guided/guided_model.h"
 #include "bodyloom/neural/people/photo_frame.h"
 #include "bodyloom/neural/people/texel_neighbours.h"
-#include "bodyloom/geometry/base/prefetcher.h"
 
 namespace bodyloom {
 

@@ -10,6 +10,7 @@
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/in_range.h"
+#include "bodyloom/geometry/base/prefetcher.h"
 #include "bodyloom/neural/device.h"
 #include "bodyloom/neural/guided/choose_photos.h"
 #include "bodyloom/neural/guided/draw_pose.h"
@@ -24,7 +25,6 @@
 #include "bodyloom/neural/networks/vgg.h"
 #include "bodyloom/neural/runtime.h"
 #include "bodyloom/neural/training/adam.h"
-#include "bodyloom/geometry/base/prefetcher.h"
 #include "bodyloom/neural/training/schedules.h"
 #include "bodyloom/neural/training/training_loop.h"
 

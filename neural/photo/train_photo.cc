@@ -10,6 +10,7 @@
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/in_range.h"
+#include "bodyloom/geometry/base/prefetcher.h"
 #include "bodyloom/neural/device.h"
 #include "bodyloom/neural/losses/gan_losses.h"
 #include "bodyloom/neural/losses/perceptual_loss.h"
@@ -21,7 +22,6 @@
 #include "bodyloom/neural/photo/render_photo.h"
 #include "bodyloom/neural/runtime.h"
 #include "bodyloom/neural/training/adam.h"
-#include "bodyloom/geometry/base/prefetcher.h"
 #include "bodyloom/neural/training/schedules.h"
 #include "bodyloom/neural/training/training_loop.h"
 

@@ -11,6 +11,7 @@
 #include "benchmarks/work_precision/problem_file.h"
 #include "bodyloom/data_tools/formats/npz.h"
 #include "bodyloom/geometry/base/check.h"
+#include "tests/support/paths.h"
 
 namespace bodyloom {
 namespace {
@@ -69,8 +70,8 @@ TEST(Peers, PyTorchStatesTheSameCost) {
   const std::string problem = folder / "problem.npz", answer = folder / "answer.npz";
   WriteProblemFile(*work, problem);
   for (const std::string method : {"adam --rate 0.02", "lbfgs --rate 1"}) {
-    const std::string call = "/usr/bin/python3 " BODYLOOM_SOURCE_DIR "/benchmarks/peers/pytorch_fit.py " + problem +
-                             " " + answer + " --threads 1 --iterations 20 --method " + method;
+    const std::string call = "/usr/bin/python3 " + SourceDir() + "/benchmarks/peers/pytorch_fit.py " + problem + " " +
+                             answer + " --threads 1 --iterations 20 --method " + method;
     ASSERT_EQ(std::system(call.c_str()), 0) << call;
     const std::vector<double> cost = RequireArray(ReadNpz(answer), "cost", answer).ToDoubles();
     const double initial = InitialCost(work->problem);

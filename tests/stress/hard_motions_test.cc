@@ -6,6 +6,7 @@
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/motion/load_motion.h"
 #include "tests/stress/stress_support.h"
+#include "tests/support/paths.h"
 
 namespace bodyloom::stress {
 namespace {
@@ -25,7 +26,7 @@ constexpr HardMotion kMotions[] = {
     {"deepmimic/humanoid3d_dance_spin.txt", 150, 15}, {"amp_cmu/amp_humanoid_backflip.npy", 180, 15}};
 
 TEST_P(HardMotions, AcrobaticsAt16FramesASecond) {
-  const std::string folder = BODYLOOM_SHARED_DIR "/data/motion/";
+  const std::string folder = SharedDir() + "/data/motion/";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no recorded motion: " << folder << " is not there";
   for (const HardMotion& hard : kMotions) {
     SCOPED_TRACE(hard.file);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/run_command.h"
+#include "tests/support/paths.h"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -30,6 +31,7 @@ struct Pipe {
 /// In the child: never returns.
 [[noreturn]] void BecomeCommand(const std::vector<std::string>& arguments, const CommandOptions& options, int out,
                                 int err) {
+  const std::string command = CommandPath();
   dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
   dup2(out, STDOUT_FILENO);
   dup2(err, STDERR_FILENO);
@@ -40,12 +42,12 @@ struct Pipe {
   if (!options.work_folder.empty() && chdir(options.work_folder.c_str()) != 0) {
     _exit(126);
   }
-  std::vector<char*> argv = {const_cast<char*>(BODYLOOM_EXECUTABLE)};
+  std::vector<char*> argv = {const_cast<char*>(command.c_str())};
   for (const std::string& argument : arguments) {
     argv.push_back(const_cast<char*>(argument.c_str()));
   }
   argv.push_back(nullptr);
-  execv(BODYLOOM_EXECUTABLE, argv.data());
+  execv(command.c_str(), argv.data());
   _exit(127);
 }
 
@@ -91,7 +93,7 @@ CommandResult RunCommand(const std::vector<std::string>& arguments, const Comman
   waitpid(child, &status, 0);
   result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   if (result.exit_code == 127) {
-    throw std::runtime_error(std::string(BODYLOOM_EXECUTABLE) + " cannot be started");
+    throw std::runtime_error(CommandPath() + " cannot be started");
   }
   return result;
 }

@@ -19,6 +19,7 @@
 #include "tests/data_tools/body/small_body.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
+#include "tests/support/paths.h"
 
 namespace bodyloom {
 namespace {
@@ -350,7 +351,7 @@ TEST(BodyIo, DescribesWhatABodyHas) {
 }
 
 TEST(BodyIo, BuiltInBodyDenseAndCompact) {
-  const std::string path = std::string(BODYLOOM_SHARED_DIR) + "/assets/body/body.npz";
+  const std::string path = SharedDir() + "/assets/body/body.npz";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "no dense built-in body at " << path;
   const BodyModel body = LoadBody(path);
   EXPECT_EQ(body.name(), "bodyloom");

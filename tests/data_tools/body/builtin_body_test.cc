@@ -14,12 +14,13 @@
 #include "bodyloom/data_tools/formats/printable.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
+#include "tests/support/paths.h"
 
 namespace bodyloom {
 namespace {
 
-const char kCagePath[] = BODYLOOM_SOURCE_DIR "/assets/body/cage_left_half.txt";
-const char kPartsPath[] = BODYLOOM_SOURCE_DIR "/assets/body/builtin_body.npz";
+const std::string kCagePath = SourceDir() + "/assets/body/cage_left_half.txt";
+const std::string kPartsPath = SourceDir() + "/assets/body/builtin_body.npz";
 
 TEST(BuiltinBody, IsBuiltOnce) { EXPECT_EQ(&BuiltinBody(), &BuiltinBody()); }
 

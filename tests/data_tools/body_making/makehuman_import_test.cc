@@ -10,6 +10,7 @@
 #include "tests/data_tools/body_making/mini_makehuman.h"
 #include "tests/data_tools/body_making/recipe_support.h"
 #include "tests/data_tools/formats/temporary_file.h"
+#include "tests/support/paths.h"
 
 namespace bodyloom {
 namespace {
@@ -108,7 +109,7 @@ TEST(MakeHumanImport, RefusesInvalidOptions) {
 class MakeHumanAssets : public testing::Test {
  protected:
   void SetUp() override {
-    const std::string folder = std::string(BODYLOOM_SHARED_DIR) + "/data/makehuman";
+    const std::string folder = SharedDir() + "/data/makehuman";
     if (!std::filesystem::exists(folder + "/base.obj")) GTEST_SKIP() << "MakeHuman's assets are not at " << folder;
     if (body_ == nullptr) body_ = new BodyModel(ImportMakeHuman(folder, FewPeople(100), &summary_));
   }

@@ -10,6 +10,7 @@
 #include "bodyloom/data_tools/body_making/cage.h"
 #include "bodyloom/data_tools/formats/npz.h"
 #include "tests/data_tools/body_making/recipe_support.h"
+#include "tests/support/paths.h"
 
 namespace bodyloom {
 namespace {
@@ -177,7 +178,7 @@ TEST(RecipeMesh, OpenMeshAgrees) {
 
 /// Every array against the finished body as it was first made, where that file is at hand.
 TEST(RecipeMesh, EqualsTheOriginalFile) {
-  const std::string path = std::string(BODYLOOM_SHARED_DIR) + "/assets/body/body.npz";
+  const std::string path = SharedDir() + "/assets/body/body.npz";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "the original body.npz is not at " << path;
   const NpzArrays original = ReadNpz(path);
   const BodyModelData& data = BuiltinBody().data();

@@ -11,6 +11,7 @@
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
+#include "tests/support/paths.h"
 
 namespace bodyloom {
 namespace {
@@ -51,7 +52,7 @@ TEST(ModelFiles, FoundOrMissing) {
 
 // ./dev fetches these.
 TEST(ModelFiles, AreThoseOfTheList) {
-  std::ifstream list(std::string(BODYLOOM_SOURCE_DIR) + "/cmake/models.txt");
+  std::ifstream list(SourceDir() + "/cmake/models.txt");
   std::vector<std::string> names;
   for (std::string line; std::getline(list, line);) {
     if (line.rfind("file ", 0) == 0) names.push_back(line.substr(6, line.find(' ', 6) - 6));

@@ -15,11 +15,12 @@
 #include "bodyloom/data_tools/formats/npz.h"
 #include "bodyloom/geometry/rotation.h"
 #include "tests/data_tools/formats/temporary_file.h"
+#include "tests/support/paths.h"
 
 namespace bodyloom {
 namespace {
 
-const std::string kShared = BODYLOOM_SHARED_DIR;
+const std::string kShared = SharedDir();
 const std::string kAist = kShared + "/data/aistpp";
 const char* const kSequences[] = {"gBR_sBM_cAll_d06_mBR2_ch06", "gJS_sBM_cAll_d03_mJS2_ch07"};
 

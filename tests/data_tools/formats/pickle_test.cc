@@ -9,6 +9,7 @@
 
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/pickle_writer.h"
+#include "tests/support/paths.h"
 
 namespace bodyloom {
 namespace {
@@ -318,7 +319,7 @@ TEST(Pickle, RefusesEveryTruncation) {
 }
 
 TEST(Pickle, ReadsRealMotionFiles) {
-  const std::filesystem::path folder = std::filesystem::path(BODYLOOM_SHARED_DIR) / "data/aistpp";
+  const std::filesystem::path folder = std::filesystem::path(SharedDir()) / "data/aistpp";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no AIST++ annotations at " << folder;
   int files = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {

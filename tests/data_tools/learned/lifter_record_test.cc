@@ -16,11 +16,12 @@
 #include "bodyloom/data_tools/synthesis/lifter/lifter_windows.h"
 #include "bodyloom/tracking/initialise/lifter_network.h"
 #include "bodyloom/tracking/initialise/lifter_reading.h"
+#include "tests/support/paths.h"
 
 namespace bodyloom {
 namespace {
 
-const std::string kRun = BODYLOOM_SOURCE_DIR "/assets/lifter/run";
+const std::string kRun = SourceDir() + "/assets/lifter/run";
 
 /// The last line of metrics.csv, by column.
 std::map<std::string, double> LastMetrics() {
@@ -45,7 +46,7 @@ TEST(LifterRecord, TheWeightsCarryTheRunsConfiguration) {
 }
 
 TEST(LifterRecord, TheWeightsMakeTheErrorsThatTheRunWroteDown) {
-  const std::string folder = BODYLOOM_SHARED_DIR "/data/motion";
+  const std::string folder = SharedDir() + "/data/motion";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not there: no motion to validate on";
   MotionLibraryOptions library;
   library.visit_train = false;

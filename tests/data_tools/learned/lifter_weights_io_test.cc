@@ -11,6 +11,7 @@
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/formats/npz.h"
 #include "bodyloom/tracking/initialise/lifter_input.h"
+#include "tests/support/paths.h"
 
 namespace bodyloom {
 namespace {
@@ -134,8 +135,7 @@ TEST(BuiltinLifter, ReadsWhatTheTrackerFeedsIt) {
   const LifterWeights& weights = BuiltinLifter();
   EXPECT_EQ(weights.num_inputs(), kLifterInputs);
   EXPECT_FALSE(weights.recipe.empty());
-  EXPECT_LT(std::filesystem::file_size(std::filesystem::path(BODYLOOM_SOURCE_DIR) / "assets/lifter/lifter.npz"),
-            4U << 20);
+  EXPECT_LT(std::filesystem::file_size(std::filesystem::path(SourceDir()) / "assets/lifter/lifter.npz"), 4U << 20);
 }
 
 }  // namespace

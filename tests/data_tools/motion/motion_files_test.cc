@@ -22,6 +22,7 @@
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/pickle_writer.h"
 #include "tests/data_tools/formats/temporary_file.h"
+#include "tests/support/paths.h"
 #include "tests/support/toy_body.h"
 
 namespace bodyloom {
@@ -167,7 +168,7 @@ TEST(AistMotion, BothShapesAndErrors) {
 }
 
 TEST(AistMotion, RealFilesAgreeWithTheirKeypoints) {
-  const std::string folder = std::string(BODYLOOM_SHARED_DIR) + "/data/aistpp/motions";
+  const std::string folder = SharedDir() + "/data/aistpp/motions";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no recordings in " << folder;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const Motion motion = LoadMotion(entry.path().string());

@@ -19,6 +19,7 @@
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/data_tools/motion/motion_support.h"
+#include "tests/support/paths.h"
 
 namespace bodyloom {
 namespace {
@@ -226,7 +227,7 @@ class RealLibrary : public ::testing::Test {
   void SetUp() override {
     if (!std::filesystem::exists(motion_)) GTEST_SKIP() << "no recordings in " << motion_;
   }
-  const std::string shared_ = std::string(BODYLOOM_SHARED_DIR) + "/data";
+  const std::string shared_ = SharedDir() + "/data";
   const std::string motion_ = shared_ + "/motion", aist_ = shared_ + "/aistpp/motions";
 };
 

@@ -18,6 +18,7 @@
 #include "bodyloom/geometry/body_model.h"
 #include "bodyloom/geometry/rotation.h"
 #include "tests/data_tools/formats/expect_file_error.h"
+#include "tests/support/paths.h"
 
 namespace bodyloom {
 namespace {
@@ -293,7 +294,7 @@ class RealMotion : public ::testing::Test {
   void SetUp() override {
     if (!std::filesystem::exists(folder_)) GTEST_SKIP() << "no recordings in " << folder_;
   }
-  const std::string folder_ = std::string(BODYLOOM_SHARED_DIR) + "/data/motion";
+  const std::string folder_ = SharedDir() + "/data/motion";
 };
 
 TEST_F(RealMotion, EveryClipLoadsAndMovesLikeAPerson) {

@@ -9,6 +9,7 @@
 #include "bodyloom/geometry/rotation.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
+#include "tests/support/paths.h"
 
 namespace bodyloom {
 namespace {
@@ -144,7 +145,7 @@ TEST_F(LoadCamerasTest, MalformedFilesAreErrors) {
 }
 
 TEST(RealCameras, EverySettingLoads) {
-  const std::string data = std::string(BODYLOOM_SHARED_DIR) + "/data";
+  const std::string data = SharedDir() + "/data";
   if (!std::filesystem::exists(data + "/aistpp")) GTEST_SKIP() << "no recordings in " << data;
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(data + "/aistpp/cameras")) {

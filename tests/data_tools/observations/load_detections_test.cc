@@ -14,6 +14,7 @@
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/pickle_writer.h"
 #include "tests/data_tools/formats/temporary_file.h"
+#include "tests/support/paths.h"
 #include "tests/support/stick_person.h"
 
 namespace bodyloom {
@@ -300,7 +301,7 @@ class RealDetections : public ::testing::Test {
   void SetUp() override {
     if (!std::filesystem::exists(data_ + "/aistpp")) GTEST_SKIP() << "no recordings in " << data_;
   }
-  const std::string data_ = std::string(BODYLOOM_SHARED_DIR) + "/data";
+  const std::string data_ = SharedDir() + "/data";
 };
 
 TEST_F(RealDetections, Aist) {

@@ -17,6 +17,7 @@
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/data_tools/video/clip_maker.h"
+#include "tests/support/paths.h"
 
 namespace bodyloom {
 namespace {
@@ -247,7 +248,7 @@ TEST(ImageFile, TruncatedImagesAreRefusedOrShowWhatIsThere) {
 }
 
 TEST(Video, ReadsARealPhoneVideo) {
-  const std::string path = std::string(BODYLOOM_SHARED_DIR) + "/data/tfjs_pose/pose_squats.mp4";
+  const std::string path = SharedDir() + "/data/tfjs_pose/pose_squats.mp4";
   if (!fs::exists(path)) GTEST_SKIP() << path << " is not here";
   VideoReader reader(path);
   EXPECT_NEAR(reader.info().fps, 5, 1e-6);

@@ -23,6 +23,7 @@
 #include "bodyloom/neural/runtime.h"
 #include "bodyloom/neural/training/checkpoint.h"
 #include "tests/neural/motion/toy_motion.h"
+#include "tests/support/paths.h"
 #include "tests/support/test_files.h"
 
 namespace bodyloom {
@@ -138,8 +139,7 @@ TEST(MotionModel, IsWhatItsCardsSay) {
   for (const char* profile : {"tiny", "cpu"}) {
     MotionConfig config;
     config.profile = MotionProfileNamed(profile);
-    EXPECT_EQ(MotionCard(config),
-              FileBytes(std::string(BODYLOOM_SOURCE_DIR) + "/tests/neural/cards/motion_" + profile + ".txt"));
+    EXPECT_EQ(MotionCard(config), FileBytes(SourceDir() + "/tests/neural/cards/motion_" + profile + ".txt"));
   }
 }
 

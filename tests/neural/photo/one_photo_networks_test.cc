@@ -24,6 +24,7 @@
 #include "tests/neural/guided/guided_toy.h"
 #include "tests/neural/photo/toy_photos.h"
 #include "tests/support/gradient_check.h"
+#include "tests/support/paths.h"
 #include "tests/support/test_files.h"
 
 namespace bodyloom {
@@ -54,7 +55,7 @@ const std::string& CardOf(const std::string& system, const std::string& profile)
 /// Whole architectures, as `bodyloom neural card` prints them: a change of a shape anywhere is a change of these files.
 TEST(Cards, AreWhatTheirFilesSay) {
   for (const char* profile : {"paper", "cpu", "tiny"}) {
-    const std::string folder = std::string(BODYLOOM_SOURCE_DIR) + "/tests/neural/cards/";
+    const std::string folder = SourceDir() + "/tests/neural/cards/";
     for (const std::string system : {"photo", "guided"}) {
       EXPECT_EQ(CardOf(system, profile), FileBytes(folder + system + "_" + profile + ".txt")) << system;
     }

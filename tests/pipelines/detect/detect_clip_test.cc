@@ -12,6 +12,7 @@
 #include "bodyloom/data_tools/detection/model_files.h"
 #include "bodyloom/data_tools/observations/load_detections.h"
 #include "bodyloom/data_tools/observations/part_labels.h"
+#include "tests/support/paths.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/test_files.h"
 
@@ -43,7 +44,7 @@ class DetectClipOnRealVideo : public ::testing::Test {
     return request;
   }
 
-  const std::string data_ = std::string(BODYLOOM_SHARED_DIR) + "/data/tfjs_pose/", squats_ = data_ + "pose_squats.mp4";
+  const std::string data_ = SharedDir() + "/data/tfjs_pose/", squats_ = data_ + "pose_squats.mp4";
   const ScratchFolder folder_;
 };
 

@@ -15,6 +15,7 @@
 #include "bodyloom/data_tools/synthesis/people/make_single_person_dataset.h"
 #include "bodyloom/geometry/rotation.h"
 #include "tests/data_tools/formats/temporary_file.h"
+#include "tests/support/paths.h"
 #include "tests/support/toy_body.h"
 
 namespace bodyloom {
@@ -253,7 +254,7 @@ TEST(ClothRun, ACutForgetsWhatWas) {
 
 TEST(ClothRun, LegsComeBackIntoTheSkirt) {
   // A kick above the head goes through the skirt (as long as it lasts); after it the leg must come back in.
-  const std::string path = std::string(BODYLOOM_SHARED_DIR) + "/data/motion/cmu_bvh/05_08.bvh.gz";
+  const std::string path = SharedDir() + "/data/motion/cmu_bvh/05_08.bvh.gz";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "no recording at " << path;
   LoadMotionOptions load;
   load.resample_fps = 30;
