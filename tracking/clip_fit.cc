@@ -23,13 +23,13 @@ namespace {
 
 using Eigen::VectorXd;
 
-/// The camera the problem starts with. An unknown focal length starts at 0.9 of the longer side (58° field of view).
+/// The camera the problem starts with.
 Camera StartCamera(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
   const ClipExtent extent = ExtentOf(input);
   const int width = input.camera.width > 0 ? input.camera.width : extent.width;
   const int height = input.camera.height > 0 ? input.camera.height : extent.height;
   if (options.camera_knowledge != CameraKnowledge::kKnown) {
-    return MakePinhole(width, height, 0.9 * std::max(width, height));
+    return MakePinhole(width, height, StartFocalPx(width, height));
   }
   Camera camera = input.camera;
   camera.width = width;
@@ -238,7 +238,8 @@ void ClipFit::Finish(TrackSequenceResult* result) {
 
 void ClipFit::FillJointSigma(Track* track) {
   // On the coarse frames: neighbours' detection errors are not independent, and their joints' spread changes slowly.
-  const RowMatrixXd sigma = JointPositionSigma(SelectFrames(problem_, coarse_frames_), threads_);
+  const RowMatrixXd sigma =
+      JointPositionSigma(SelectFrames(problem_, coarse_frames_), threads_, &summary_.focal_log_sigma);
   const auto distance = [&](size_t i, size_t t) {
     return std::abs(problem_.timestamps[coarse_frames_[i]] - problem_.timestamps[t]);
   };

@@ -65,6 +65,13 @@ void CheckInitialiser(const Motion& start) {
                  " from the camera, expected metres, at most ", kMaxDistance_m);
 }
 
+void CheckGround(const KnownGround& ground) {
+  BODYLOOM_CHECK(std::abs(ground.up.norm() - 1) < 1e-6, "track: the ground's vertical has length ", ground.up.norm(),
+                 ", expected a unit vector");
+  BODYLOOM_CHECK(std::isfinite(ground.camera_height_m), "track: the camera's height above the ground is ",
+                 ground.camera_height_m, ", expected metres");
+}
+
 bool IsUsable(const DenseKeypoint& point, float reach) {
   return IsWithin(point.pixel.x(), reach) && IsWithin(point.pixel.y(), reach) && point.sigma_px > 0 &&
          std::isfinite(point.sigma_px) && (point.barycentric.array() >= -1).all() &&
@@ -179,6 +186,7 @@ void CheckNumbers(const TrackSequenceInput& input, const TrackSequenceOptions& o
   CheckTimes(input.dense, "dense keypoints");
   CheckTimes(input.part_labels, "part labels");
   if (options.camera_knowledge == CameraKnowledge::kKnown) CheckCamera(input.camera);
+  if (input.ground != nullptr) CheckGround(*input.ground);
   CheckBody(*input.body);
   if (input.initialiser != nullptr) CheckInitialiser(*input.initialiser);
 }

@@ -38,7 +38,7 @@ struct SequenceProblem {
   std::vector<char> cut_before;    ///< true where frame t does not continue frame t−1
   Eigen::VectorXd betas;
   double log_focal = 0;
-  double log_focal_prior = 0, log_focal_sigma = 0.25;
+  double log_focal_prior = 0, log_focal_sigma = FocalPrior().log_sigma;
   std::vector<Smoothness> smoothness = {Smoothness()};  ///< smoothness of each shot, or one for all of them
   ShapePrior shape_prior;
 };

@@ -62,6 +62,9 @@ struct TrackSequenceSummary {
   std::vector<TermSummary> terms;                              ///< of every image term that ran
   std::vector<OwnTermSummary> own_terms;                       ///< one a term of TrackSequenceOptions::own_terms
   double focal_px = 0;                                         ///< used or estimated
+  /// Standard deviation of log focal_px when it was estimated with uncertainty; 0 when it was known, NaN when its
+  /// spread is not known.
+  double focal_log_sigma = 0;
   int num_observations = 0, num_parameters = 0;
   GroundSummary ground;
   int num_swaps_repaired = 0;  ///< left–right pairs found exchanged in the detections

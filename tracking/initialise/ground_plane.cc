@@ -73,6 +73,48 @@ std::vector<Stance> FindStances(const std::vector<std::array<FootPlace, 2>>& fee
   return stances;
 }
 
+double TotalSeconds(const std::vector<Stance>& stances) {
+  double total = 0;
+  for (const Stance& stance : stances) total += stance.seconds;
+  return total;
+}
+
+/// Keeps the stances on the plane of `ground`, moved towards it. Returns the seconds that they last.
+double Stand(std::vector<Stance> stances, const GroundPlaneOptions& options, GroundPlane* ground) {
+  const double total = TotalSeconds(stances);
+  double on_ground = 0;
+  std::vector<std::pair<double, double>> off;
+  for (Stance& stance : stances) {
+    const double height = ground->normal.dot(stance.place_m) - ground->offset_m;
+    off.emplace_back(std::abs(height), stance.seconds);
+    if (!(std::abs(height) <= options.off_ground_m)) continue;
+    on_ground += stance.seconds;
+    const Vector3d ray = stance.place_m.normalized();
+    const Vector3d step =
+        kAcrossM * kAcrossM * ground->normal + options.depth_m * options.depth_m * ray * ray.dot(ground->normal);
+    stance.place_m -= step * height / (ground->normal.dot(step) + options.height_m * options.height_m);
+    ground->stances.push_back(stance);
+  }
+  ground->share = on_ground / total;
+  ground->spread_m = 1.4826 * WeightedMedian(std::move(off));
+  return on_ground;
+}
+
+/// What Stand() found is the ground, or `why` not.
+GroundPlane Accepted(GroundPlane ground, bool accepted, const std::string& why) {
+  ground.found = accepted;
+  ground.why = accepted ? std::to_string(ground.stances.size()) + " stances on it" : why;
+  if (!accepted) ground.stances.clear();
+  return ground;
+}
+
+constexpr const char* kNobodyStands = "no foot is seen to stand for long enough";
+
+void CheckFeet(const std::vector<std::array<FootPlace, 2>>& feet, std::span<const double> timestamps) {
+  BODYLOOM_CHECK(feet.size() == timestamps.size(), "ground: ", feet.size(), " frames of feet but ", timestamps.size(),
+                 " timestamps");
+}
+
 }  // namespace
 
 UpEstimate EstimateUp(std::span<const LiftedFrame> frames) {
@@ -102,17 +144,11 @@ UpEstimate EstimateUp(std::span<const LiftedFrame> frames) {
 
 GroundPlane EstimateGroundPlane(const std::vector<std::array<FootPlace, 2>>& feet, std::span<const double> timestamps,
                                 const Vector3d& up, const GroundPlaneOptions& options) {
-  BODYLOOM_CHECK(feet.size() == timestamps.size(), "ground: ", feet.size(), " frames of feet but ", timestamps.size(),
-                 " timestamps");
+  CheckFeet(feet, timestamps);
   GroundPlane ground;
   ground.normal = up;
-  std::vector<Stance> stances = FindStances(feet, timestamps, options);
-  double total = 0;
-  for (const Stance& stance : stances) total += stance.seconds;
-  if (total < options.min_total_s) {
-    ground.why = "no foot is seen to stand for long enough";
-    return ground;
-  }
+  const std::vector<Stance> stances = FindStances(feet, timestamps, options);
+  if (TotalSeconds(stances) < options.min_total_s) return Accepted(ground, false, kNobodyStands);
 
   // Heights above a plane through the camera that is tilted by (a, b) about up: linear in a, b and the offset.
   const Vector3d e1 = up.unitOrthogonal(), e2 = up.cross(e1);
@@ -142,29 +178,22 @@ GroundPlane EstimateGroundPlane(const std::vector<std::array<FootPlace, 2>>& fee
   ground.normal = (up + x[0] * e1 + x[1] * e2) / length;
   ground.offset_m = x[2] / length;
 
-  double on_ground = 0;
-  std::vector<std::pair<double, double>> off;
-  for (Stance& stance : stances) {
-    const double height = ground.normal.dot(stance.place_m) - ground.offset_m;
-    off.emplace_back(std::abs(height), stance.seconds);
-    if (!(std::abs(height) <= options.off_ground_m)) continue;
-    on_ground += stance.seconds;
-    const Vector3d ray = stance.place_m.normalized();
-    const Vector3d step =
-        kAcrossM * kAcrossM * ground.normal + options.depth_m * options.depth_m * ray * ray.dot(ground.normal);
-    stance.place_m -= step * height / (ground.normal.dot(step) + options.height_m * options.height_m);
-    ground.stances.push_back(stance);
-  }
-  ground.share = on_ground / total;
-  ground.spread_m = 1.4826 * WeightedMedian(std::move(off));
-  if (on_ground < options.min_total_s || ground.share < options.min_share || ground.spread_m > options.max_spread_m) {
-    ground.why = "feet do not stand at one height";
-    ground.stances.clear();
-    return ground;
-  }
-  ground.found = true;
-  ground.why = std::to_string(ground.stances.size()) + " stances on it";
-  return ground;
+  const double on_ground = Stand(stances, options, &ground);
+  const bool accepted =
+      on_ground >= options.min_total_s && ground.share >= options.min_share && ground.spread_m <= options.max_spread_m;
+  return Accepted(std::move(ground), accepted, "feet do not stand at one height");
+}
+
+GroundPlane StandOnPlane(const std::vector<std::array<FootPlace, 2>>& feet, std::span<const double> timestamps,
+                         const Vector3d& normal, double offset_m, const GroundPlaneOptions& options) {
+  CheckFeet(feet, timestamps);
+  GroundPlane ground;
+  ground.normal = normal;
+  ground.offset_m = offset_m;
+  std::vector<Stance> stances = FindStances(feet, timestamps, options);
+  if (TotalSeconds(stances) < options.min_total_s) return Accepted(ground, false, kNobodyStands);
+  const double on_ground = Stand(std::move(stances), options, &ground);
+  return Accepted(std::move(ground), on_ground >= options.min_total_s, "feet do not stand on the given plane");
 }
 
 }  // namespace bodyloom

@@ -71,4 +71,9 @@ struct GroundPlane {
 GroundPlane EstimateGroundPlane(const std::vector<std::array<FootPlace, 2>>& feet, std::span<const double> timestamps,
                                 const Eigen::Vector3d& up, const GroundPlaneOptions& options);
 
+/// The same for a plane that is known: {x : normal · x = offset_m} is where ankles of standing feet are. Found when
+/// feet stand on it for min_total_s; places are moved onto it.
+GroundPlane StandOnPlane(const std::vector<std::array<FootPlace, 2>>& feet, std::span<const double> timestamps,
+                         const Eigen::Vector3d& normal, double offset_m, const GroundPlaneOptions& options);
+
 }  // namespace bodyloom

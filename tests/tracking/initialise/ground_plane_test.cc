@@ -123,6 +123,25 @@ TEST(GroundPlane, TheGroundTellsTheDepthOfAStance) {
   EXPECT_LT(after, 0.4 * before);
 }
 
+TEST(GroundPlane, FeetStandOnAPlaneThatIsGiven) {
+  WalkOptions options;
+  options.depth_error = 0.03;
+  const Walk walk = MakeWalk(options);
+  const GroundPlane given = StandOnPlane(walk.feet, walk.timestamps, walk.up, kAnkle - walk.camera_height_m, {});
+  ASSERT_TRUE(given.found) << given.why;
+  EXPECT_EQ(given.normal, walk.up);
+  EXPECT_EQ(given.offset_m, kAnkle - walk.camera_height_m);
+  double before = 0, after = 0;
+  for (const Stance& stance : given.stances) {
+    const Vector3d& truth = walk.truth_m[stance.begin][stance.foot];
+    before += std::abs(walk.up.dot(walk.feet[stance.begin][stance.foot].ankle_m - truth));
+    after += std::abs(walk.up.dot(stance.place_m - truth));
+  }
+  EXPECT_LT(after, before);
+  // Half a metre higher nobody stands.
+  EXPECT_FALSE(StandOnPlane(walk.feet, walk.timestamps, walk.up, kAnkle - walk.camera_height_m + 0.5, {}).found);
+}
+
 TEST(GroundPlane, StancesBeginAndEndWithTheFoot) {
   WalkOptions options;
   options.depth_error = options.jitter_m = 0;

@@ -17,6 +17,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr float kSeenConfidence = 0.3F;
+constexpr double kKnownUpRad = 0.005;  ///< σ of a vertical that is given
 constexpr double kAnkleHeight = 0.08;  ///< metres above the ground, of a foot that stands flat
 
 }  // namespace
@@ -26,6 +27,7 @@ ClipGround::ClipGround(const TrackSequenceInput& input, const TrackSequenceOptio
                        const LiftedLandmarks& landmarks, SequenceProblem* problem)
     : options_(options.ground),
       keypoints_(keypoints),
+      known_(input.ground),
       lifted_(lifted),
       landmarks_(landmarks),
       why_not_(WhyNoGround(input, options)) {
@@ -37,6 +39,10 @@ ClipGround::ClipGround(const TrackSequenceInput& input, const TrackSequenceOptio
     shot.begin = begin;
     shot.end = end;
     shot.up = EstimateUp({lifted.data() + begin, lifted.data() + end});
+    if (known_ != nullptr) {
+      shot.up.found = true;
+      shot.up.up = known_->up;
+    }
     if (shot.up.found) SetUpright(shot, shot.up.up, problem);
   }
 }
@@ -58,6 +64,19 @@ void ClipGround::Hold(const Stance& stance, const GroundPlane& ground, FrameData
   contact.whitening.row(2) = ground.normal.transpose() / options_.sigma_height_m;
   contact.whitening *= std::sqrt(options_.contact_weight);
   frame->ground_contact.feet.push_back(contact);
+}
+
+GroundPlane ClipGround::PlaneUnder(const std::vector<std::array<FootPlace, 2>>& feet,
+                                   const std::vector<double>& timestamps, const Vector3d& up) const {
+  GroundPlaneOptions options;
+  if (known_ == nullptr) return EstimateGroundPlane(feet, timestamps, up, options);
+  if (known_->has_plane) {
+    // Somebody may stand on a box: then the plane is not theirs, but the vertical is.
+    const GroundPlane known = StandOnPlane(feet, timestamps, up, kAnkleHeight - known_->camera_height_m, options);
+    if (known.found) return known;
+  }
+  options.up_rad = kKnownUpRad;
+  return EstimateGroundPlane(feet, timestamps, up, options);
 }
 
 bool ClipGround::FindGround(const std::vector<int>& frames, SequenceProblem* coarse, SequenceProblem* problem) {
@@ -96,7 +115,7 @@ bool ClipGround::FindGround(const std::vector<int>& frames, SequenceProblem* coa
       timestamps.push_back(coarse->timestamps[i]);
       index.push_back(static_cast<int>(i));
     }
-    shot.ground = EstimateGroundPlane(feet, timestamps, shot.up.up, {});
+    shot.ground = PlaneUnder(feet, timestamps, shot.up.up);
     if (!shot.ground.found) continue;
     any = true;
     SetUpright(shot, shot.ground.normal, problem);

@@ -3,6 +3,7 @@
 /// (initialise/ground_plane.h, terms/upright.h, ground_contact.h). Every shot has its own.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "bodyloom/tracking/initialise/ground_plane.h"
@@ -34,11 +35,15 @@ class ClipGround {
     UpEstimate up;
     GroundPlane ground;
   };
+  /// The plane that feet stand on in a shot whose vertical is found.
+  [[nodiscard]] GroundPlane PlaneUnder(const std::vector<std::array<FootPlace, 2>>& feet,
+                                       const std::vector<double>& timestamps, const Eigen::Vector3d& up) const;
   void SetUpright(const Shot& shot, const Eigen::Vector3d& up, SequenceProblem* problem) const;
   void Hold(const Stance& stance, const GroundPlane& ground, FrameData* frame) const;
 
   const GroundOptions options_;
   const KeypointSequence* keypoints_;
+  const KnownGround* known_;
   const std::vector<LiftedFrame>& lifted_;
   const LiftedLandmarks& landmarks_;
   std::vector<Shot> shots_;

@@ -2,7 +2,17 @@
 /// Options of the vertical and of the ground.
 #pragma once
 
+#include <Eigen/Core>
+
 namespace bodyloom {
+
+/// A vertical, and a ground, that is known before a clip is fitted: from a calibration, or from somebody else in the
+/// same view (tracking/people).
+struct KnownGround {
+  Eigen::Vector3d up = Eigen::Vector3d(0, -1, 0);  ///< camera axes, unit
+  bool has_plane = false;
+  double camera_height_m = 0;  ///< of the camera above the plane
+};
 
 /// Which way is up, and the ground that feet stand on, read off the clip (initialise/ground_plane.h). Needs the lifter.
 struct GroundOptions {

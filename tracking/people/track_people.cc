@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/tracking/people/track_people.h"
+
+#include <algorithm>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/tracking/input_checks.h"
+#include "bodyloom/tracking/track_sequence.h"
+
+namespace bodyloom {
+namespace {
+
+/// A person's observations, copied so that weight can be taken from what others hide.
+struct OwnObservations {
+  std::optional<KeypointSequence> keypoints;
+  std::optional<DenseSequence> dense;
+  std::optional<PartLabelSequence> part_labels;
+
+  explicit OwnObservations(const TrackSequenceInput& input) {
+    if (input.keypoints != nullptr) keypoints = *input.keypoints;
+    if (input.dense != nullptr) dense = *input.dense;
+    if (input.part_labels != nullptr) part_labels = *input.part_labels;
+  }
+  [[nodiscard]] PersonInScene InScene(const BodyModel* body, const TrackSequenceResult& result) {
+    return {.body = body,
+            .track = result.summary.IsUsable() ? &result.track : nullptr,
+            .keypoints = keypoints ? &*keypoints : nullptr,
+            .dense = dense ? &*dense : nullptr,
+            .part_labels = part_labels ? &*part_labels : nullptr};
+  }
+  void GiveTo(TrackSequenceInput* input) const {
+    if (keypoints) input->keypoints = &*keypoints;
+    if (dense) input->dense = &*dense;
+    if (part_labels) input->part_labels = &*part_labels;
+  }
+};
+
+/// Fits of several people behind one progress callback. Once it has said stop, every further fit is stopped too.
+class Fits {
+ public:
+  Fits(const TrackSequenceOptions& options, size_t num_fits) : options_(options), num_fits_(double(num_fits)) {}
+
+  TrackSequenceResult Run(const TrackSequenceInput& input, CameraKnowledge knowledge) {
+    TrackSequenceOptions options = options_;
+    options.camera_knowledge = knowledge;
+    if (options_.progress) {
+      options.progress = [this](TrackProgress at) {
+        at.fraction = (done_ + at.fraction) / num_fits_;
+        stopped_ = stopped_ || !options_.progress(at);
+        return !stopped_;
+      };
+    }
+    TrackSequenceResult result = TrackSequence(input, options);
+    ++done_;
+    return result;
+  }
+  [[nodiscard]] bool stopped() const { return stopped_; }
+
+ private:
+  const TrackSequenceOptions& options_;
+  double num_fits_;
+  int done_ = 0;
+  bool stopped_ = false;
+};
+
+void CheckOneCamera(const std::vector<TrackSequenceInput>& people) {
+  BODYLOOM_CHECK(!people.empty(), "track: nobody to track");
+  for (const TrackSequenceInput& person : people) {
+    BODYLOOM_CHECK(person.camera.width == people[0].camera.width && person.camera.height == people[0].camera.height,
+                   "track: people of images of ", people[0].camera.width, "x", people[0].camera.height, " and ",
+                   person.camera.width, "x", person.camera.height, ", expected one camera");
+  }
+}
+
+}  // namespace
+
+TrackPeopleResult TrackPeople(std::vector<TrackSequenceInput> people, const TrackSequenceOptions& options) {
+  CheckOneCamera(people);
+  const size_t n = people.size();
+  const bool alone = n == 1 || options.camera_knowledge == CameraKnowledge::kWeak;
+  Fits fits(options, alone ? n : 2 * n);
+  TrackPeopleResult result;
+  result.summary.hidden.resize(n);
+  result.summary.fitted_again.resize(n, 0);
+  std::vector<TrackSequenceSummary> summaries;
+  for (const TrackSequenceInput& person : people) {
+    result.people.push_back(fits.Run(person, options.camera_knowledge));
+    summaries.push_back(result.people.back().summary);
+  }
+  const ClipExtent extent = ExtentOf(people[0]);
+  const int width = people[0].camera.width > 0 ? people[0].camera.width : extent.width;
+  const int height = people[0].camera.height > 0 ? people[0].camera.height : extent.height;
+  SharedScene& scene = result.summary.scene;
+  scene = JoinScenes(summaries, FocalPrior::ForImage(width, height));
+  if (alone || fits.stopped()) return result;
+
+  std::vector<OwnObservations> own(people.begin(), people.end());
+  std::vector<PersonInScene> in_scene;
+  for (size_t i = 0; i < n; ++i) in_scene.push_back(own[i].InScene(people[i].body, result.people[i]));
+  const int threads =
+      options.num_threads > 0 ? options.num_threads : std::max(1, int(std::thread::hardware_concurrency()));
+  result.summary.hidden = TakeWeightFromHidden(in_scene, threads);
+
+  const bool shares_focal = options.camera_knowledge == CameraKnowledge::kUnknownFocal && scene.focal_px > 0;
+  for (size_t i = 0; i < n && !fits.stopped(); ++i) {
+    TrackSequenceInput& person = people[i];
+    if (!result.people[i].summary.IsUsable()) continue;
+    const bool shares_ground = scene.has_up && person.ground == nullptr;
+    if (!shares_focal && !shares_ground && !result.summary.hidden[i].any()) continue;
+    if (shares_focal) person.camera = MakePinhole(width, height, scene.focal_px);
+    if (shares_ground) person.ground = &scene.ground;
+    own[i].GiveTo(&person);
+    TrackSequenceResult again = fits.Run(person, shares_focal ? CameraKnowledge::kKnown : options.camera_knowledge);
+    if (!again.summary.IsUsable() || fits.stopped()) continue;
+    again.summary.focal_log_sigma = shares_focal ? scene.focal_log_sigma : again.summary.focal_log_sigma;
+    result.people[i] = std::move(again);
+    result.summary.fitted_again[i] = 1;
+  }
+  return result;
+}
+
+}  // namespace bodyloom
