@@ -248,7 +248,7 @@ void Run(const BenchArguments& arguments, const std::string& command) {
 
 int main(int argc, char** argv) {
   return bodyloom::BenchMain("bodyloom_bench_aist", argc, argv,
-                             {{"data", SourceDir() + "/../shared/data/aistpp"},
+                             {{"data", bodyloom::SourceDir() + "/../shared/data/aistpp"},
                               {"sequences", "gBR_sBM_cAll_d06_mBR2_ch06,gJS_sBM_cAll_d03_mJS2_ch07"},
                               {"views", "c01,c03,c05,c07,c08"},
                               {"focal", "known,unknown"},

@@ -94,7 +94,7 @@ void Run(const BenchArguments& arguments, const std::string& command) {
 }  // namespace bodyloom
 
 int main(int argc, char** argv) {
-  const std::string data = SourceDir() + "/../shared/data/aistpp/motions/";
+  const std::string data = bodyloom::SourceDir() + "/../shared/data/aistpp/motions/";
   return bodyloom::BenchMain(
       "bodyloom_bench_dense", argc, argv,
       {{"motions", data + "gBR_sBM_cAll_d06_mBR2_ch06.pkl," + data + "gJS_sBM_cAll_d03_mJS2_ch07.pkl"},

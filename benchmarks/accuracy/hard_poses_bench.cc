@@ -194,6 +194,6 @@ void Run(const BenchArguments& arguments, const std::string& command) {
 int main(int argc, char** argv) {
   return bodyloom::BenchMain(
       "bodyloom_bench_hard_poses", argc, argv,
-      {{"data", SourceDir() + "/../shared/data/mhr_sam3d"}, {"threads", "2"}, {"picture", ""}, {"json", ""}},
+      {{"data", bodyloom::SourceDir() + "/../shared/data/mhr_sam3d"}, {"threads", "2"}, {"picture", ""}, {"json", ""}},
       bodyloom::Run);
 }

@@ -222,13 +222,13 @@ void Run(const BenchArguments& arguments, const std::string& command) {
 }  // namespace bodyloom
 
 int main(int argc, char** argv) {
-  return bodyloom::BenchMain(
-      "bodyloom_bench_lifter", argc, argv,
-      {{"motions", SourceDir() + "/../shared/data/motion," SourceDir() + "/../shared/data/aistpp/motions"},
-       {"lifter", "built-in"},
-       {"windows", "200"},
-       {"detections", "users"},
-       {"split", "test"},
-       {"json", ""}},
-      bodyloom::Run);
+  return bodyloom::BenchMain("bodyloom_bench_lifter", argc, argv,
+                             {{"motions", bodyloom::SourceDir() + "/../shared/data/motion," + bodyloom::SourceDir() +
+                                              "/../shared/data/aistpp/motions"},
+                              {"lifter", "built-in"},
+                              {"windows", "200"},
+                              {"detections", "users"},
+                              {"split", "test"},
+                              {"json", ""}},
+                             bodyloom::Run);
 }

@@ -134,11 +134,11 @@ void Run(const BenchArguments& arguments, const std::string& command) {
 }  // namespace bodyloom
 
 int main(int argc, char** argv) {
-  return bodyloom::BenchMain(
-      "bodyloom_bench_motions", argc, argv,
-      {{"motions", SourceDir() + "/../shared/data/motion," SourceDir() + "/../shared/data/aistpp/motions"},
-       {"frames", "240"},
-       {"elevation", "8,30"},
-       {"json", ""}},
-      bodyloom::Run);
+  return bodyloom::BenchMain("bodyloom_bench_motions", argc, argv,
+                             {{"motions", bodyloom::SourceDir() + "/../shared/data/motion," + bodyloom::SourceDir() +
+                                              "/../shared/data/aistpp/motions"},
+                              {"frames", "240"},
+                              {"elevation", "8,30"},
+                              {"json", ""}},
+                             bodyloom::Run);
 }

@@ -267,7 +267,7 @@ void Run(const BenchArguments& arguments, const std::string& command) {
 }  // namespace bodyloom
 
 int main(int argc, char** argv) {
-  const std::string data = SourceDir() + "/../shared/data/aistpp/motions/";
+  const std::string data = bodyloom::SourceDir() + "/../shared/data/aistpp/motions/";
   return bodyloom::BenchMain(
       "bodyloom_bench_rendered_uv", argc, argv,
       {{"what", "dense,basin,labels"},

@@ -52,7 +52,7 @@ int main(int argc, char** argv) {
       {{"before", ""},
        {"after", ""},
        {"render", ""},
-       {"page", SourceDir() + "/docs/lab/run_time_against_error.md"},
-       {"images", SourceDir() + "/docs/images"}},
+       {"page", bodyloom::SourceDir() + "/docs/lab/run_time_against_error.md"},
+       {"images", bodyloom::SourceDir() + "/docs/images"}},
       [](const bodyloom::BenchArguments& arguments, const std::string&) { bodyloom::RunReport(arguments); });
 }

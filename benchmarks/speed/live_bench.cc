@@ -329,7 +329,7 @@ class Bench {
 }  // namespace bodyloom
 
 int main(int argc, char** argv) {
-  const std::string data = SourceDir() + "/../shared/data/aistpp";
+  const std::string data = bodyloom::SourceDir() + "/../shared/data/aistpp";
   const std::string motions = data + "/motions/";
   return bodyloom::BenchMain(
       "bodyloom_bench_live", argc, argv,
