@@ -3,10 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <string>
-#include <thread>
 
+#include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/tracking/initialise/impossible_frames.h"
 #include "bodyloom/tracking/initialise/initial_states.h"
 #include "bodyloom/tracking/initialise/swap_repair.h"
@@ -55,11 +56,7 @@ void WidenDenseKernels(double stature, SequenceProblem* problem) {
 }  // namespace
 
 ClipFit::ClipFit(const TrackSequenceInput& given, const TrackSequenceOptions& options, TrackSequenceSummary* summary)
-    : options_(options),
-      summary_(*summary),
-      threads_(options.num_threads > 0 ? options.num_threads
-                                       : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()))),
-      input_(given) {
+    : options_(options), summary_(*summary), threads_(ThreadsFor(options.num_threads)), input_(given) {
   CleanObservations();
   joints_ = JointsToStartFrom(input_, &joints_from_dense_);
   summary_.solver = ToString(options.solver);
@@ -229,6 +226,7 @@ void ClipFit::Finish(TrackSequenceResult* result) {
   summary_.own_terms = SummariseOwnTerms(options_.own_terms, problem_);
   ground_->Summarise(&summary_);
   clock_.Book("finish");
+  summary_.focal_log_sigma = problem_.layout.focal_column < 0 ? 0 : std::numeric_limits<double>::quiet_NaN();
   if (options_.estimate_uncertainty) {
     FillJointSigma(&result->track);
     clock_.Book("uncertainty");

@@ -44,16 +44,15 @@ RowMatrixXd JointPositionSigma(const SequenceProblem& problem, int num_threads, 
   const auto T = static_cast<int>(problem.states.size());
   RowMatrixXd sigma =
       RowMatrixXd::Constant(T, problem.layout.model->num_joints(), std::numeric_limits<double>::quiet_NaN());
-  const bool focal_known = problem.layout.focal_column < 0;
-  if (focal_log_sigma != nullptr) *focal_log_sigma = focal_known ? 0 : std::numeric_limits<double>::quiet_NaN();
   ChainProblem chain(problem, false, false, num_threads);
   if (!std::isfinite(chain.Linearise({problem.states, problem.betas, problem.log_focal}))) return sigma;
   ChainFactor factor(chain.frame_size(), chain.shared_size(), chain.cut_before());
   VisitCovariance(&chain, &factor, 0, T, num_threads, [&](int t, const MatrixXd& P) {
     sigma.row(t) = JointSigmaOf(problem.layout, problem.states[t], problem.betas, P).transpose();
     // The last of the shared values, the same in every frame's covariance.
-    if (t == 0 && !focal_known && focal_log_sigma != nullptr)
+    if (t == 0 && focal_log_sigma != nullptr && problem.layout.focal_column >= 0) {
       *focal_log_sigma = std::sqrt(P(P.rows() - 1, P.cols() - 1));
+    }
   });
   return sigma;
 }

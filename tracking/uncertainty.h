@@ -19,8 +19,8 @@ Eigen::VectorXd JointSigmaOf(const FrameLayout& layout, const FrameState& state,
 /// T×J of these at the problem's current state, with shape and focal length unknown. Observations, priors and
 /// smoothness count with the weights they have in the cost, so a limb that nobody saw has the spread of the prior. NaN
 /// where the system is singular. Linear in the number of frames; the same bytes for any number of threads.
-/// `focal_log_sigma`, unless null, becomes the standard deviation of the logarithm of the focal length: 0 when that is
-/// known.
+/// `focal_log_sigma`, unless null, becomes the standard deviation of the logarithm of the focal length; it stays as it is
+/// when the focal length is known or the system singular.
 RowMatrixXd JointPositionSigma(const SequenceProblem& problem, int num_threads, double* focal_log_sigma = nullptr);
 
 }  // namespace bodyloom

@@ -20,7 +20,9 @@
 namespace bodyloom {
 
 struct SharedScene {
-  double focal_px = 0;         ///< 0: nobody was tracked with a pinhole camera
+  /// 0: nobody was tracked with a pinhole camera, or nobody's focal length has a spread
+  /// (TrackSequenceOptions::estimate_uncertainty).
+  double focal_px = 0;
   double focal_log_sigma = 0;  ///< of log focal_px; 0 when the focal length was known
   bool has_up = false;
   KnownGround ground;  ///< valid when has_up

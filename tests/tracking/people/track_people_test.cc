@@ -83,6 +83,18 @@ TEST(TrackPeople, HaveOneFocalLengthAndOneVertical) {
   EXPECT_LE(fractions.back(), 1);
 }
 
+TEST(TrackPeople, FocalLengthsWhoseSpreadIsNotKnownAreNotTakenForKnownOnes) {
+  const SynthClip a = Clip(1), b = Clip(2);
+  TrackSequenceOptions options = Options();
+  options.estimate_uncertainty = false;
+  const TrackPeopleResult together = TrackPeople({InputOf(a), InputOf(b)}, options);
+  EXPECT_EQ(together.summary.scene.focal_px, 0);
+  for (const TrackSequenceResult& person : together.people) {
+    EXPECT_TRUE(std::isnan(person.summary.focal_log_sigma));
+    EXPECT_GT(person.track.camera.fx, 0);
+  }
+}
+
 TEST(TrackPeople, StopsWhenItIsTold) {
   const SynthClip a = Clip(1), b = Clip(2);
   TrackSequenceOptions options = Options();
