@@ -5,16 +5,18 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <utility>
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/posed_body.h"
 #include "bodyloom/geometry/skinning.h"
 #include "bodyloom/tracking/visible_surface.h"
 
 namespace bodyloom {
 namespace {
 
+constexpr int kMomentsOfRun = 16;
 constexpr float kHiddenShare = 0.2F;      ///< of its confidence that a hidden joint keeps
 constexpr double kNearerM = 0.05;         ///< by which another body must be nearer to hide
 constexpr double kMarginOfHeight = 0.01;  ///< by which a silhouette is widened over labels
@@ -28,37 +30,28 @@ struct Appearance {
 /// One person's body as the camera sees it.
 struct SeenBody {
   Appearance of;
-  VisibleSurface surface;
+  VisibleSurface* surface = nullptr;
   double depth_m = 0;  ///< of the pelvis
+  [[nodiscard]] const VisibilityBuffer& buffer() const { return surface->buffer(); }
 };
-
-/// Of one person: its bodies share skinner and shape.
-std::shared_ptr<const Skinner> SkinnerOf(const PersonInScene& person) {
-  return std::make_shared<const Skinner>(*person.body);
-}
 
 bool Pose(const PersonInScene& person, const std::shared_ptr<const Skinner>& skinner, SeenBody* body) {
   const Track& track = *person.track;
-  const int t = body->of.frame, J = person.body->num_joints();
-  std::vector<Eigen::Matrix3d> rotations;
-  for (int j = 0; j < J; ++j)
-    rotations.push_back(RotationFromAxisAngle(track.motion.poses.row(t).segment<3>(3 * j).transpose()));
-  Eigen::VectorXd betas = Eigen::VectorXd::Zero(person.body->num_betas());
-  const Eigen::Index n = std::min(betas.size(), track.motion.betas.size());
-  betas.head(n) = track.motion.betas.head(n);
+  const int t = body->of.frame;
+  const BodyPose pose =
+      PoseFromAxisAngle(*person.body, track.motion.poses.row(t).transpose(), track.motion.trans.row(t).transpose());
   body->depth_m = track.joints[size_t(t)](0, 2);
-  return body->surface.Render(skinner, *person.body, betas, rotations, track.motion.trans.row(t).transpose(),
-                              track.camera);
+  return body->surface->Render(skinner, *person.body, track.motion.betas, pose.rotations, pose.trans, track.camera);
 }
 
 /// How far away person `self` is at a pixel.
 double OwnDepth(const SeenBody& self, int x, int y) {
-  const double depth = self.surface.buffer().DepthAt(x, y);
+  const double depth = self.buffer().DepthAt(x, y);
   return std::isfinite(depth) ? depth : self.depth_m;
 }
 
 bool IsHidden(const SeenBody& self, const SeenBody& other, int x, int y) {
-  return other.surface.buffer().DepthAt(x, y) < OwnDepth(self, x, y) - kNearerM;
+  return other.buffer().DepthAt(x, y) < OwnDepth(self, x, y) - kNearerM;
 }
 
 void Widen(const PixelBox& by, int image_width, int image_height, LabelImage* image) {
@@ -78,16 +71,14 @@ void Widen(const PixelBox& by, int image_width, int image_height, LabelImage* im
 /// Labels hidden by `other`, on a grid of the margin's step, each hidden point with the square around it.
 int HideLabels(const SeenBody& self, const SeenBody& other, int image_width, int image_height, LabelImage* image) {
   if (image->labels.empty()) return 0;
-  const PixelBox& box = other.surface.buffer().box();
-  const double height_px = self.surface.buffer().box().y_end - self.surface.buffer().box().y_begin;
-  const int margin = std::max(1, int(std::lround(kMarginOfHeight * height_px)));
-  const PixelBox reach{box.x_begin - margin, box.y_begin - margin, box.x_end + margin, box.y_end + margin};
+  const PixelBox& box = other.buffer().box();
+  const int margin = std::max(1, int(std::lround(kMarginOfHeight * self.buffer().box().height())));
   bool widened = false;
   int hidden = 0;
   for (int y = box.y_begin; y < box.y_end; y += margin) {
     for (int x = box.x_begin; x < box.x_end; x += margin) {
       if (!IsHidden(self, other, x, y)) continue;
-      if (!widened) Widen(reach, image_width, image_height, image);
+      if (!widened) Widen(box.GrownBy(margin), image_width, image_height, image);
       widened = true;
       const int x0 = std::max(x - margin, image->x_begin), x1 = std::min(x + margin + 1, image->x_begin + image->width);
       const int y0 = std::max(y - margin, image->y_begin),
@@ -138,8 +129,18 @@ HiddenCounts Hide(const SeenBody& self, const std::vector<const SeenBody*>& othe
   return counts;
 }
 
-bool Overlap(const PixelBox& a, const PixelBox& b) {
-  return a.x_begin < b.x_end && b.x_begin < a.x_end && a.y_begin < b.y_end && b.y_begin < a.y_end;
+/// What everybody seen at one moment hides of the others, by person.
+std::vector<std::pair<size_t, HiddenCounts>> HideInMoment(const std::vector<SeenBody>& bodies,
+                                                          const std::vector<PersonInScene>& people) {
+  std::vector<std::pair<size_t, HiddenCounts>> counts;
+  for (const SeenBody& body : bodies) {
+    std::vector<const SeenBody*> others;
+    for (const SeenBody& other : bodies) {
+      if (&other != &body && !body.buffer().box().ClippedTo(other.buffer().box()).empty()) others.push_back(&other);
+    }
+    if (!others.empty()) counts.emplace_back(body.of.person, Hide(body, others, people[body.of.person]));
+  }
+  return counts;
 }
 
 }  // namespace
@@ -152,7 +153,7 @@ std::vector<HiddenCounts> TakeWeightFromHidden(const std::vector<PersonInScene>&
     if (track == nullptr) continue;
     BODYLOOM_CHECK(track->camera.model == CameraModel::kPinhole, "occlusion: person ", i,
                    " has no place in space, expected a pinhole camera");
-    skinners[i] = SkinnerOf(people[i]);
+    skinners[i] = std::make_shared<const Skinner>(*people[i].body);
     for (int t = 0; t < track->num_frames(); ++t) {
       if (track->HasResult(t)) by_time[track->motion.timestamps[size_t(t)]].push_back({i, t});
     }
@@ -161,29 +162,25 @@ std::vector<HiddenCounts> TakeWeightFromHidden(const std::vector<PersonInScene>&
   for (auto& [time, appearances] : by_time) {
     if (appearances.size() > 1) moments.push_back(std::move(appearances));
   }
-  std::vector<std::vector<HiddenCounts>> counts(moments.size());
-  ParallelFor(int(moments.size()), num_threads, [&](int m) {
-    std::vector<SeenBody> bodies(moments[size_t(m)].size());
-    for (size_t i = 0; i < bodies.size(); ++i) {
-      bodies[i].of = moments[size_t(m)][i];
-      if (!Pose(people[bodies[i].of.person], skinners[bodies[i].of.person], &bodies[i])) return;
-    }
-    counts[size_t(m)].resize(bodies.size());
-    for (size_t i = 0; i < bodies.size(); ++i) {
-      std::vector<const SeenBody*> others;
-      for (const SeenBody& other : bodies) {
-        if (&other != &bodies[i] && Overlap(bodies[i].surface.buffer().box(), other.surface.buffer().box())) {
-          others.push_back(&other);
-        }
+  std::vector<std::vector<std::pair<size_t, HiddenCounts>>> counts(moments.size());
+  // Moments in runs: a person's shape and memory are kept from one to the next.
+  const int num_runs = (int(moments.size()) + kMomentsOfRun - 1) / kMomentsOfRun;
+  ParallelFor(num_runs, num_threads, [&](int run) {
+    std::vector<VisibleSurface> surfaces(people.size());
+    const size_t end = std::min(moments.size(), size_t(run + 1) * kMomentsOfRun);
+    for (size_t m = size_t(run) * kMomentsOfRun; m < end; ++m) {
+      std::vector<SeenBody> bodies;
+      for (const Appearance& appearance : moments[m]) {
+        SeenBody& body = bodies.emplace_back(SeenBody{appearance, &surfaces[appearance.person]});
+        if (!Pose(people[appearance.person], skinners[appearance.person], &body)) bodies.pop_back();
       }
-      if (!others.empty()) counts[size_t(m)][i] = Hide(bodies[i], others, people[bodies[i].of.person]);
+      counts[m] = HideInMoment(bodies, people);
     }
   });
   std::vector<HiddenCounts> sums(people.size());
-  for (size_t m = 0; m < moments.size(); ++m) {
-    for (size_t i = 0; i < counts[m].size(); ++i) {
-      HiddenCounts& sum = sums[moments[m][i].person];
-      const HiddenCounts& add = counts[m][i];
+  for (const auto& of_moment : counts) {
+    for (const auto& [person, add] : of_moment) {
+      HiddenCounts& sum = sums[person];
       sum.frames += add.frames, sum.keypoints += add.keypoints, sum.dense += add.dense, sum.pixels += add.pixels;
     }
   }
