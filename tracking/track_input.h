@@ -30,8 +30,8 @@ struct TrackSequenceInput {
   /// 3D landmarks of every frame that take the place of what `lifter` would predict from the 2D joints (initialise/
   /// lift_keypoints.h): another lifter's, or a benchmark's.
   const std::vector<LiftedFrame>* lifted = nullptr;
-  /// The vertical and the ground; without it they are looked for in the clip. It holds for every shot;
-  /// the live tracker does not use it.
+  /// The vertical and the ground; without it they are looked for in the clip. It holds for every shot; the live
+  /// tracker does not use it.
   const KnownGround* ground = nullptr;
   Camera camera;  ///< kKnown: all of it; otherwise only width and height (0: taken from the observations)
 };

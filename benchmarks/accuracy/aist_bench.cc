@@ -35,6 +35,7 @@
 #include "bodyloom/geometry/posed_body.h"
 #include "bodyloom/geometry/rotation.h"
 #include "bodyloom/tracking/track_sequence.h"
+#include "tests/support/paths.h"
 
 namespace bodyloom {
 namespace {
@@ -248,7 +249,7 @@ void Run(const BenchArguments& arguments, const std::string& command) {
 
 int main(int argc, char** argv) {
   return bodyloom::BenchMain("bodyloom_bench_aist", argc, argv,
-                             {{"data", bodyloom::SourceDir() + "/../shared/data/aistpp"},
+                             {{"data", bodyloom::SharedDir() + "/data/aistpp"},
                               {"sequences", "gBR_sBM_cAll_d06_mBR2_ch06,gJS_sBM_cAll_d03_mJS2_ch07"},
                               {"views", "c01,c03,c05,c07,c08"},
                               {"focal", "known,unknown"},

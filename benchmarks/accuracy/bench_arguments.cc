@@ -57,8 +57,6 @@ std::vector<std::string> BenchArguments::List(const std::string& name) const {
   return items;
 }
 
-std::string SourceDir() { return BODYLOOM_SOURCE_DIR; }
-
 int BenchMain(const std::string& program, int argc, char** argv, std::map<std::string, std::string> known,
               const std::function<void(const BenchArguments& arguments, const std::string& command)>& run) {
   try {

@@ -22,9 +22,6 @@ class BenchArguments {
   std::map<std::string, std::string> values_;
 };
 
-/// The checkout, whose recordings and documents are the defaults.
-std::string SourceDir();
-
 /// main() of a benchmark: runs it with its arguments and the command as it was called. --help lists the options. Exit
 /// code 1, with one line on stderr, for anything thrown.
 int BenchMain(const std::string& program, int argc, char** argv, std::map<std::string, std::string> known,

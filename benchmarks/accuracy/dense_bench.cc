@@ -22,6 +22,7 @@
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/tracking/track_sequence.h"
+#include "tests/support/paths.h"
 
 namespace bodyloom {
 namespace {
@@ -94,7 +95,7 @@ void Run(const BenchArguments& arguments, const std::string& command) {
 }  // namespace bodyloom
 
 int main(int argc, char** argv) {
-  const std::string data = bodyloom::SourceDir() + "/../shared/data/aistpp/motions/";
+  const std::string data = bodyloom::SharedDir() + "/data/aistpp/motions/";
   return bodyloom::BenchMain(
       "bodyloom_bench_dense", argc, argv,
       {{"motions", data + "gBR_sBM_cAll_d06_mBR2_ch06.pkl," + data + "gJS_sBM_cAll_d03_mJS2_ch07.pkl"},

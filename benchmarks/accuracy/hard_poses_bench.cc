@@ -26,6 +26,7 @@
 #include "bodyloom/render/contact_sheet.h"
 #include "bodyloom/render/overlay.h"
 #include "bodyloom/tracking/track_sequence.h"
+#include "tests/support/paths.h"
 
 namespace bodyloom {
 namespace {
@@ -194,6 +195,6 @@ void Run(const BenchArguments& arguments, const std::string& command) {
 int main(int argc, char** argv) {
   return bodyloom::BenchMain(
       "bodyloom_bench_hard_poses", argc, argv,
-      {{"data", bodyloom::SourceDir() + "/../shared/data/mhr_sam3d"}, {"threads", "2"}, {"picture", ""}, {"json", ""}},
+      {{"data", bodyloom::SharedDir() + "/data/mhr_sam3d"}, {"threads", "2"}, {"picture", ""}, {"json", ""}},
       bodyloom::Run);
 }

@@ -33,6 +33,7 @@
 #include "bodyloom/tracking/solve_sequence.h"
 #include "bodyloom/tracking/terms/rendered_uv/rendered_uv.h"
 #include "bodyloom/tracking/track_sequence.h"
+#include "tests/support/paths.h"
 
 namespace bodyloom {
 namespace {
@@ -267,7 +268,7 @@ void Run(const BenchArguments& arguments, const std::string& command) {
 }  // namespace bodyloom
 
 int main(int argc, char** argv) {
-  const std::string data = bodyloom::SourceDir() + "/../shared/data/aistpp/motions/";
+  const std::string data = bodyloom::SharedDir() + "/data/aistpp/motions/";
   return bodyloom::BenchMain(
       "bodyloom_bench_rendered_uv", argc, argv,
       {{"what", "dense,basin,labels"},

@@ -12,6 +12,7 @@
 #include "benchmarks/report/render_report.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/geometry/base/check.h"
+#include "tests/support/paths.h"
 
 namespace bodyloom {
 namespace {

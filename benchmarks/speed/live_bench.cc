@@ -33,6 +33,7 @@
 #include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/tracking/live/track_live.h"
 #include "bodyloom/tracking/solve_sequence.h"
+#include "tests/support/paths.h"
 
 namespace bodyloom {
 namespace {
@@ -329,7 +330,7 @@ class Bench {
 }  // namespace bodyloom
 
 int main(int argc, char** argv) {
-  const std::string data = bodyloom::SourceDir() + "/../shared/data/aistpp";
+  const std::string data = bodyloom::SharedDir() + "/data/aistpp";
   const std::string motions = data + "/motions/";
   return bodyloom::BenchMain(
       "bodyloom_bench_live", argc, argv,

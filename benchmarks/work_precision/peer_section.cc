@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/work_precision/problem_file.h"
 #include "benchmarks/work_precision/sections.h"
 #include "bodyloom/geometry/base/check.h"
 #include "tests/data_tools/formats/temporary_file.h"
+#include "tests/support/paths.h"
 
 namespace bodyloom {
 namespace {

@@ -15,9 +15,9 @@
 #include <iterator>
 #include <utility>
 
-#include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/work_precision/sections.h"
 #include "bodyloom/geometry/base/check.h"
+#include "tests/support/paths.h"
 
 namespace bodyloom {
 namespace {
@@ -51,7 +51,7 @@ void RunSections(const BenchArguments& arguments, const std::string& command) {
 }  // namespace bodyloom
 
 int main(int argc, char** argv) {
-  const std::string data = bodyloom::SourceDir() + "/../shared/data/aistpp/motions/";
+  const std::string data = bodyloom::SharedDir() + "/data/aistpp/motions/";
   return bodyloom::BenchMain(
       "bodyloom_bench_work_precision", argc, argv,
       {{"motions", data + "gBR_sBM_cAll_d06_mBR2_ch06.pkl," + data + "gJS_sBM_cAll_d03_mJS2_ch07.pkl"},

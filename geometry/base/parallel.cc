@@ -139,6 +139,10 @@ class Helpers {
 
 }  // namespace
 
+int ThreadsFor(int requested) {
+  return requested > 0 ? requested : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
 void ParallelFor(int count, int num_threads, const std::function<void(int)>& body) {
   if (num_threads <= 1 || count <= 1) {
     for (int i = 0; i < count; ++i) body(i);

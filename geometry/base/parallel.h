@@ -12,6 +12,9 @@
 
 namespace bodyloom {
 
+/// The number of threads that an option asks for: `requested` when it is positive, else one a core.
+int ThreadsFor(int requested);
+
 void ParallelFor(int count, int num_threads, const std::function<void(int)>& body);
 
 }  // namespace bodyloom

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <iterator>
 #include <sstream>
-#include <thread>
 
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/geometry/base/percentile.h"
@@ -12,10 +11,6 @@
 #include "bodyloom/render/contact_sheet.h"
 
 namespace bodyloom {
-
-int ThreadsFor(int requested) {
-  return requested > 0 ? requested : static_cast<int>(std::thread::hardware_concurrency());
-}
 
 void RequireOutputs(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs) {
   RequireDistinct(inputs, outputs);

@@ -36,9 +36,6 @@ struct AnimationSummary {
   std::vector<std::string> written;  ///< the files, as the request names them
 };
 
-/// `requested`, or all cores for 0.
-int ThreadsFor(int requested);
-
 /// Throws as RequireDistinct and RequireWritable (pipelines/files.h).
 void RequireOutputs(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs);
 

@@ -6,13 +6,13 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
-#include <thread>
 
 #include "bodyloom/data_tools/body/body_or_builtin.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/render/render_sinks.h"
@@ -160,8 +160,7 @@ RenderTrackReport RenderTrack(const RenderTrackRequest& request, const PipelineC
   options.new_view = request.view_yaw_deg.has_value() || request.turntable;
   options.view_yaw_deg = request.view_yaw_deg.value_or(0);
   options.turntable = request.turntable;
-  options.num_threads =
-      request.num_threads > 0 ? request.num_threads : std::max(1U, std::thread::hardware_concurrency());
+  options.num_threads = ThreadsFor(request.num_threads);
   Image texture;
   std::vector<float> texels;
   if (!request.texture.empty()) {

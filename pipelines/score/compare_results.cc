@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/pipelines/score/compare_results.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <thread>
 #include <utility>
 
 #include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/pipelines/files.h"
 
@@ -38,8 +37,7 @@ CompareResultsReport CompareResults(const CompareResultsRequest& request, const 
                   {request.json, request.csv});
   RequireWritable(request.json);
   RequireWritable(request.csv);
-  const int num_threads = request.num_threads > 0 ? request.num_threads
-                                                  : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  const int num_threads = ThreadsFor(request.num_threads);
   CompareResultsReport report;
   report.truth = request.truth;
   report.result = request.result;

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <thread>
 
 #include "bodyloom/data_tools/video/video_writer.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/pipelines/track/track_video.h"
 #include "bodyloom/render/overlay.h"
 
@@ -39,7 +39,7 @@ OverlaySummary WriteOverlayVideo(const std::string& path, const OverlayVideo& wh
   }
   OverlayOptions options;
   options.side_view = what.side_view;
-  options.num_threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  options.num_threads = ThreadsFor(0);
   const OverlayRenderer renderer(*what.body, track, options, what.reference);
   VideoWriter writer(path, renderer.width(), renderer.height(), fps);
   OverlaySummary summary;

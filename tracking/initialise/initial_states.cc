@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <thread>
 #include <utility>
 
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/geometry/posed_body.h"
 #include "bodyloom/geometry/rotation.h"
 #include "bodyloom/tracking/initialise/bone_ratio_shape.h"
@@ -220,8 +220,7 @@ InitialStates FindInitialStates(const TrackSequenceInput& input, const KeypointS
       result.betas = EstimateShape(*keypoints, camera, model, layout.num_betas, options.hypotheses);
     }
     if (WhyNoLifter(input, options).empty()) {
-      const int threads = options.num_threads > 0 ? options.num_threads
-                                                  : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+      const int threads = ThreadsFor(options.num_threads);
       LiftOptions lift;
       lift.num_threads = threads;
       LiftedStart start;

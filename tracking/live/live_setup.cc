@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <thread>
 
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/tracking/input_checks.h"
 
 namespace bodyloom {
@@ -23,8 +23,7 @@ LiveSetup::LiveSetup(const LiveTrackerInput& given, const LiveTrackerOptions& ch
   numbers.body = input.body;
   numbers.camera = input.camera;
   CheckNumbers(numbers, options.solve);
-  threads = options.solve.num_threads > 0 ? options.solve.num_threads
-                                          : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  threads = ThreadsFor(options.solve.num_threads);
   const int num_betas = options.solve.estimate_shape ? std::min(model.num_betas(), 10) : 0;
   KeypointSequence names;
   names.names = input.landmarks;

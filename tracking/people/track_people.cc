@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/tracking/people/track_people.h"
 
-#include <algorithm>
 #include <optional>
-#include <thread>
 #include <utility>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/tracking/input_checks.h"
+#include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/tracking/track_sequence.h"
 
 namespace bodyloom {
@@ -86,13 +84,13 @@ TrackPeopleResult TrackPeople(std::vector<TrackSequenceInput> people, const Trac
   result.summary.hidden.resize(n);
   result.summary.fitted_again.resize(n, 0);
   std::vector<TrackSequenceSummary> summaries;
+  int width = 0, height = 0;
   for (const TrackSequenceInput& person : people) {
     result.people.push_back(fits.Run(person, options.camera_knowledge));
-    summaries.push_back(result.people.back().summary);
+    const auto& [track, summary] = result.people.back();
+    summaries.push_back(summary);
+    if (summary.IsUsable()) width = track.camera.width, height = track.camera.height;
   }
-  const ClipExtent extent = ExtentOf(people[0]);
-  const int width = people[0].camera.width > 0 ? people[0].camera.width : extent.width;
-  const int height = people[0].camera.height > 0 ? people[0].camera.height : extent.height;
   SharedScene& scene = result.summary.scene;
   scene = JoinScenes(summaries, FocalPrior::ForImage(width, height));
   if (alone || fits.stopped()) return result;
@@ -100,8 +98,7 @@ TrackPeopleResult TrackPeople(std::vector<TrackSequenceInput> people, const Trac
   std::vector<OwnObservations> own(people.begin(), people.end());
   std::vector<PersonInScene> in_scene;
   for (size_t i = 0; i < n; ++i) in_scene.push_back(own[i].InScene(people[i].body, result.people[i]));
-  const int threads =
-      options.num_threads > 0 ? options.num_threads : std::max(1, int(std::thread::hardware_concurrency()));
+  const int threads = ThreadsFor(options.num_threads);
   result.summary.hidden = TakeWeightFromHidden(in_scene, threads);
 
   const bool shares_focal = options.camera_knowledge == CameraKnowledge::kUnknownFocal && scene.focal_px > 0;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <thread>
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/hash_random.h"
@@ -349,8 +348,7 @@ SynthClip MakeSynthClip(const BodyModel& body, const Motion& motion, const Synth
   truth.coco17.resize(T);
   truth.joint_sigma = RowMatrixXd::Zero(T, body.num_joints());
 
-  const int num_threads = options.num_threads > 0 ? options.num_threads
-                                                  : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  const int num_threads = ThreadsFor(options.num_threads);
   clip.dense.pixel_sigma_px = options.dense.pixel_sigma_px;
   clip.dense.uv_sigma =
       std::hypot(options.dense.uv_sigma, options.dense.quantise_uv ? 1 / (255 * std::sqrt(12.0)) : 0.0);

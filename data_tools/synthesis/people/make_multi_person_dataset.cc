@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <memory>
 #include <mutex>
-#include <thread>
 
 #include "bodyloom/data_tools/datasets/multi_person_dataset.h"
 #include "bodyloom/data_tools/motion/motion_tools.h"
@@ -209,8 +208,7 @@ MakeMultiPersonDatasetSummary MakeMultiPersonDataset(const std::string& folder, 
   for (int p = 0; p < options.people; ++p) {
     for (int a = 0; a < options.actions; ++a) jobs.push_back({p, a});
   }
-  const int threads = options.num_threads > 0 ? options.num_threads
-                                              : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const int threads = ThreadsFor(options.num_threads);
   std::atomic<bool> stop{false};
   std::mutex mutex;
   int done = 0;

@@ -8,7 +8,6 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <thread>
 #include <utility>
 
 #include "bodyloom/data_tools/motion/motion_tools.h"
@@ -138,8 +137,7 @@ MakeSinglePersonDatasetSummary MakeSinglePersonDataset(const std::string& folder
   MakeSinglePersonDatasetSummary summary;
   summary.cloth_vertices = person.garment().cloth.num_vertices();
   summary.largest_stretch = 0;
-  const int threads = options.num_threads > 0 ? options.num_threads
-                                              : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const int threads = ThreadsFor(options.num_threads);
   using Chunk = std::vector<std::vector<Vector3d>>;  // cloth, by frame
   const auto simulate = [&](int first) {
     const Stopwatch cloth_watch;

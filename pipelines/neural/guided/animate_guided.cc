@@ -10,6 +10,7 @@
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/data_tools/video/video_writer.h"
+#include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/neural/guided/guided_renderer.h"
 #include "bodyloom/neural/training/training_run.h"
 #include "bodyloom/pipelines/files.h"

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/neural/guided/choose_photos.h"
 #include "bodyloom/neural/guided/guided_renderer.h"
 #include "bodyloom/neural/training/training_run.h"

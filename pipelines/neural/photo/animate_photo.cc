@@ -9,6 +9,7 @@
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/data_tools/video/video_writer.h"
+#include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/geometry/base/prefetcher.h"
 #include "bodyloom/neural/photo/guess_texture.h"
 #include "bodyloom/neural/photo/photo_renderer.h"
