@@ -7,7 +7,7 @@
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/render/draw_keypoints.h"
+#include "bodyloom/render/overlay_landmarks.h"
 
 namespace bodyloom {
 namespace {
@@ -78,40 +78,6 @@ void OverlayRenderer::PlaceSideView(const std::vector<MatrixX3d>& joints, const 
   side_backdrop_ = StudioBackdrop(view.width, view.height);
 }
 
-void OverlayRenderer::DrawLandmarks(int frame, const KeypointSequence* detected, const BodyPose& pose,
-                                    Image* image) const {
-  DrawnKeypoints seen, projected;
-  projected.names = detected != nullptr ? detected->names : CocoNames();
-  std::erase_if(projected.names, [&](const std::string& name) { return body_.FindLandmark(name) < 0; });
-  const MatrixX3d points = PoseLandmarks(body_, track_.motion.betas, pose, projected.names);
-  const Camera camera = track_.CameraAt(frame);
-  projected.pixels.resize(points.rows(), 2);
-  for (int k = 0; k < points.rows(); ++k) {
-    Eigen::Vector2d pixel;
-    if (!camera.Project(points.row(k).transpose(), &pixel)) pixel.setConstant(std::nan(""));
-    projected.pixels.row(k) = pixel.transpose();
-  }
-  const double size = std::max(2.0, image->height / 220.0);
-  if (options_.skeleton) {
-    DrawKeypoints(projected, {.size_px = size}, image);
-  }
-  if (detected == nullptr) return;
-  BODYLOOM_CHECK(frame < detected->num_frames(), "overlay: frame ", frame, " is outside the ", detected->num_frames(),
-                 " frames of detections");
-  seen.names = projected.names;
-  seen.min_confidence = options_.min_confidence;
-  seen.pixels.resize(points.rows(), 2);
-  for (size_t k = 0; k < seen.names.size(); ++k) {
-    const auto it = std::find(detected->names.begin(), detected->names.end(), seen.names[k]);
-    const Keypoint& p = detected->at(frame, static_cast<int>(it - detected->names.begin()));
-    seen.pixels.row(k) << p.x, p.y;
-    seen.confidence.push_back(p.confidence);
-  }
-  if (!options_.skeleton) DrawKeypoints(projected, {.size_px = 1.25 * size, .bones = false, .hollow = true}, image);
-  DrawResiduals(seen, projected, 0.4 * size, image);
-  DrawKeypoints(seen, {.size_px = 0.8 * size, .bones = false}, image);
-}
-
 MeshStyle OverlayRenderer::Style(double alpha) const {
   return {.face_colours = face_colours_, .alpha = alpha, .samples = Samples(), .num_threads = options_.num_threads};
 }
@@ -167,13 +133,14 @@ Image OverlayRenderer::Render(int frame, const OverlayFrame& what) const {
     const double alpha = what.background != nullptr ? options_.alpha : 1;
     drawer_.Draw(vertices, body_.data().faces, camera, Style(alpha), &view);
   }
-  if (pose && (options_.skeleton || what.detected != nullptr)) DrawLandmarks(frame, what.detected, *pose, &view);
+  if (pose && (options_.skeleton || what.detected != nullptr)) {
+    DrawOverlayLandmarks({.body = &body_, .betas = track_.motion.betas, .pose = *pose, .camera = camera}, what.detected,
+                         frame, {.skeleton = options_.skeleton, .min_confidence = options_.min_confidence}, &view);
+  }
   const double caption_height = std::max(9.0, view.height / 48.0);
   DrawCaption(what.caption, Corner::kTopLeft, caption_height, &view);
   if (what.detected != nullptr) {
-    DrawCaption({{"detected", CaptionLine::Mark::kDisc, kLeftColour},
-                 {options_.skeleton ? "estimated (bones)" : "estimated", CaptionLine::Mark::kRing, kPaperColour}},
-                Corner::kBottomLeft, caption_height, &view);
+    DrawCaption(LandmarkLegend(options_.skeleton), Corner::kBottomLeft, caption_height, &view);
   }
   if (!side_) return view;
 

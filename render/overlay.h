@@ -69,7 +69,6 @@ class OverlayRenderer {
   [[nodiscard]] Image Render(int frame, const OverlayFrame& what) const;
 
  private:
-  void DrawLandmarks(int frame, const KeypointSequence* detected, const BodyPose& pose, Image* image) const;
   void PlaceSideView(const std::vector<MatrixX3d>& joints, const std::vector<MatrixX3d>& leaders);
   [[nodiscard]] Image Backdrop(const MatrixX3d& vertices, const Camera& camera) const;
   /// Large pictures need fewer samples a pixel to look smooth.

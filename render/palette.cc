@@ -1,9 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/render/palette.h"
 
+#include <algorithm>
 #include <array>
 
 namespace bodyloom {
+
+Colour PersonColour(int number) {
+  static constexpr std::array<Colour, 6> kColours = {
+      {kBodyColour, {232, 190, 96}, {178, 92, 112}, {150, 212, 158}, {120, 84, 170}, {226, 156, 208}}};
+  return kColours[size_t(std::max(0, number)) % kColours.size()];
+}
 
 Colour PartColour(int part) {
   static constexpr std::array<Colour, 25> kColours = {{

@@ -15,6 +15,10 @@ inline constexpr Colour kDetectedColour{80, 220, 120};
 inline constexpr Colour kInkColour{26, 32, 44};
 inline constexpr Colour kPaperColour{248, 249, 251};
 
+/// Colour of one of several people: the estimated body's for 0, then five others that are told apart in grey too, over
+/// and over.
+Colour PersonColour(int number);
+
 /// Colour of a DensePose-style chart 1..24 (grey for 0): warm on the person's left, cool on its right, the back of a
 /// limb darker than its front.
 Colour PartColour(int part);
