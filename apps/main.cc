@@ -13,16 +13,18 @@ namespace {
 
 constexpr const char* kExamples =
     "Examples:\n"
+    "  bodyloom run clip.mp4 --out results               everybody in a video, and nothing but the video needed\n"
     "  bodyloom demo --out demo                          everything at once, on a clip made on the spot\n"
     "  bodyloom track --detections keypoints.json --video clip.mp4 --out track.npz --overlay overlay.mp4\n"
     "  bodyloom export --track track.npz --what bvh --out motion.bvh\n"
     "  bodyloom track --help                             the options of one verb, with examples\n\n";
 
 int Run(int argc, char** argv) {
-  CLI::App app("Follows one person through a single-camera video with a parametric body.", "bodyloom");
+  CLI::App app("Follows people through a single-camera video with a parametric body.", "bodyloom");
   app.require_subcommand(1);
   app.footer(std::string(kExamples) + kExitCodeHelp);
   Action action;
+  AddRunVerb(app, &action);
   AddDetectVerb(app, &action);
   AddTrackVerb(app, &action);
   AddSynthVerb(app, &action);

@@ -9,6 +9,9 @@
 namespace bodyloom {
 namespace {
 
+constexpr const char *kSeen = "What was seen", *kCamera = "The camera", *kKnown = "What else is known",
+                     *kWanted = "Results", *kSolve = "The solve";
+
 /// A validator whose range is described in the option's own words.
 CLI::Validator Quiet(CLI::Validator validator) {
   validator.description("");
@@ -33,48 +36,8 @@ void AddImageSize(CLI::App& app, TrackRequest* request) {
 
 }  // namespace
 
-void AddTrackOptions(CLI::App& app, TrackRequest* request, bool* quiet) {
+void AddDetectionOptions(CLI::App& app, TrackRequest* request, const std::string& detect) {
   TrackRequest& c = *request;
-  const std::string seen = "What was seen", camera = "The camera", known = "What else is known", wanted = "Results",
-                    solve = "The solve";
-  app.add_option(
-         "--detections", c.detections,
-         "2D joints of a detector: a folder of OpenPose JSON files, a COCO, AlphaPose or MediaPipe JSON, an AIST++ "
-         "keypoints2d pickle, or this project's .npz")
-      ->group(seen)
-      ->type_name("FILE");
-  app.add_option("--dense", c.dense,
-                 "dense surface keypoints: a folder of DensePose *_IUV.png (one a frame), or this project's .npz")
-      ->group(seen)
-      ->type_name("FILE");
-  app.add_option("--dense-uv-sigma", c.dense_uv_sigma,
-                 "noise of the dense keypoints' U and V, standard deviation in chart units, 0: not known, which leaves "
-                 "out whitening and rendered UV (default: what the .npz says; 0.03 for DensePose images)")
-      ->group(seen)
-      ->check(Quiet(CLI::Range(0.0, 1.0)));
-  app.add_option(
-         "--part-labels", c.part_labels,
-         "DensePose part of every pixel: .npz with uint8 `labels`, frames x height x width; alone or beside the "
-         "others")
-      ->group(seen)
-      ->type_name("FILE");
-  app.add_option("--view", c.view, "camera of a file that holds several, as c01")->group(seen)->type_name("NAME");
-  app.add_option("--person", c.person, "which person when there are several: 0 is the largest and longest in view")
-      ->group(seen)
-      ->check(Quiet(CLI::NonNegativeNumber))
-      ->capture_default_str();
-  app.add_option("--fps", c.fps, "frame rate of detections that do not say (default: the video's, else 30)")
-      ->group(seen)
-      ->check(Quiet(CLI::PositiveNumber));
-  app.add_option("--min-confidence", c.min_confidence, "detections below (0 to 1) count as missing")
-      ->group(seen)
-      ->check(Quiet(CLI::Range(0.0, 1.0)))
-      ->capture_default_str();
-  app.add_option("--convention", c.convention, "landmark order of OpenPose files when it is not recognised")
-      ->group(seen)
-      ->check(CLI::IsMember({"body25", "body25b", "openpose_coco18", "coco17", "halpe26"}));
-
-  const std::string detect = "Detection (without the above, people are detected in --video)";
   AddDetectorOptions(app, &c.detector, &c.models, detect);
   app.add_flag_callback(
          "--no-mask", [&c] { c.use_mask = false; }, "do not use the person's mask")
@@ -85,96 +48,150 @@ void AddTrackOptions(CLI::App& app, TrackRequest* request, bool* quiet) {
   app.add_option("--to", c.to_s, "end with this second (default: the end)")
       ->group(detect)
       ->check(Quiet(CLI::NonNegativeNumber));
+}
 
+void AddCalibrationOptions(CLI::App& app, TrackRequest* request) {
+  TrackRequest& c = *request;
   app.add_option(
          "--cameras", c.cameras,
          "calibration: an AIST++ camera folder or setting, a Pose2Sim calib_refined.json, or this project's JSON")
-      ->group(camera)
+      ->group(kCamera)
       ->type_name("FILE");
+  app.add_option("--focal", c.focal_px, "focal length in pixels, for a centred camera without distortion")
+      ->group(kCamera)
+      ->check(Quiet(CLI::PositiveNumber));
+}
+
+void AddLearnedOptions(CLI::App& app, TrackRequest* request) {
+  TrackRequest& c = *request;
+  app.add_option("--body", c.body, "body model: SMPL, SMPL-H or SMPL-X .pkl or .npz (default: the built-in body)")
+      ->group(kKnown)
+      ->type_name("FILE");
+  app.add_option("--prior", c.prior, "pose prior file, or none (default: the built-in one)")
+      ->group(kKnown)
+      ->type_name("FILE");
+
+  app.add_option("--lifter", c.lifter, "weights of the network that starts from 2D joints, or none (default: built in)")
+      ->group(kKnown)
+      ->type_name("FILE");
+}
+
+void AddSolveOptions(CLI::App& app, TrackSequenceOptions* options) {
+  TrackSequenceOptions& s = *options;
+  app.add_option_function<std::string>(
+         "--solver", [&s](const std::string& word) { s.solver = SequenceSolverFromString(word); },
+         "the engine: chain, or ceres (the reference: the same problem, several times slower)")
+      ->group(kSolve)
+      ->default_str(ToString(s.solver))
+      ->check(CLI::IsMember({"ceres", "chain"}));
+  app.add_option("--threads", s.num_threads, "at most 256; 0: all cores; results agree to rounding")
+      ->group(kSolve)
+      ->check(Quiet(CLI::Range(0, 256)))
+      ->capture_default_str();
+  app.add_option("--max-iterations", s.max_iterations, "of each stage")
+      ->group(kSolve)
+      ->check(Quiet(CLI::PositiveNumber))
+      ->capture_default_str();
+  app.add_flag_callback(
+         "--no-ground", [&s] { s.ground = GroundOptions::Off(); },
+         "look for neither the vertical nor the ground that feet stand on")
+      ->group(kSolve);
+  app.add_flag_callback(
+         "--no-shape", [&s] { s.estimate_shape = false; }, "keep the body's mean shape")
+      ->group(kSolve);
+  app.add_flag_callback(
+         "--no-uncertainty", [&s] { s.estimate_uncertainty = false; }, "leave out joint_sigma")
+      ->group(kSolve);
+  app.add_flag_callback(
+         "--no-skip", [&s] { s.skip_unneeded = false; },
+         "solve also for joints that no landmark moves: nearly the same answer, slower")
+      ->group(kSolve);
+}
+
+void AddTrackOptions(CLI::App& app, TrackRequest* request, bool* quiet) {
+  TrackRequest& c = *request;
+  app.add_option(
+         "--detections", c.detections,
+         "2D joints of a detector: a folder of OpenPose JSON files, a COCO, AlphaPose or MediaPipe JSON, an AIST++ "
+         "keypoints2d pickle, or this project's .npz")
+      ->group(kSeen)
+      ->type_name("FILE");
+  app.add_option("--dense", c.dense,
+                 "dense surface keypoints: a folder of DensePose *_IUV.png (one a frame), or this project's .npz")
+      ->group(kSeen)
+      ->type_name("FILE");
+  app.add_option("--dense-uv-sigma", c.dense_uv_sigma,
+                 "noise of the dense keypoints' U and V, standard deviation in chart units, 0: not known, which leaves "
+                 "out whitening and rendered UV (default: what the .npz says; 0.03 for DensePose images)")
+      ->group(kSeen)
+      ->check(Quiet(CLI::Range(0.0, 1.0)));
+  app.add_option(
+         "--part-labels", c.part_labels,
+         "DensePose part of every pixel: .npz with uint8 `labels`, frames x height x width; alone or beside the "
+         "others")
+      ->group(kSeen)
+      ->type_name("FILE");
+  app.add_option("--view", c.view, "camera of a file that holds several, as c01")->group(kSeen)->type_name("NAME");
+  app.add_option("--person", c.person, "which person when there are several: 0 is the largest and longest in view")
+      ->group(kSeen)
+      ->check(Quiet(CLI::NonNegativeNumber))
+      ->capture_default_str();
+  app.add_option("--fps", c.fps, "frame rate of detections that do not say (default: the video's, else 30)")
+      ->group(kSeen)
+      ->check(Quiet(CLI::PositiveNumber));
+  app.add_option("--min-confidence", c.min_confidence, "detections below (0 to 1) count as missing")
+      ->group(kSeen)
+      ->check(Quiet(CLI::Range(0.0, 1.0)))
+      ->capture_default_str();
+  app.add_option("--convention", c.convention, "landmark order of OpenPose files when it is not recognised")
+      ->group(kSeen)
+      ->check(CLI::IsMember({"body25", "body25b", "openpose_coco18", "coco17", "halpe26"}));
+
+  AddDetectionOptions(app, request, "Detection (without the above, people are detected in --video)");
+  AddCalibrationOptions(app, request);
   app.add_option("--camera", c.camera,
                  "pinhole: intrinsics from --cameras or --focal; unknown-focal: the focal length is estimated; weak: "
                  "weak perspective (default: pinhole when intrinsics are given, else unknown-focal)")
-      ->group(camera)
+      ->group(kCamera)
       ->check(CLI::IsMember({"pinhole", "unknown-focal", "weak"}));
-  app.add_option("--focal", c.focal_px, "focal length in pixels, for a centred camera without distortion")
-      ->group(camera)
-      ->check(Quiet(CLI::PositiveNumber));
   AddImageSize(app, request);
-  app.get_option("--image-size")->group(camera);
+  app.get_option("--image-size")->group(kCamera);
 
   app.add_option("--video", c.video,
                  "the video (or a folder of images), for image size, frame rate and the overlay; alone, people are "
                  "detected in it")
-      ->group(known)
+      ->group(kKnown)
       ->type_name("FILE");
   app.add_option("--video-offset", c.video_offset, "video frame that belongs to the detections' frame number 0")
-      ->group(known)
+      ->group(kKnown)
       ->capture_default_str();
-  app.add_option("--body", c.body, "body model: SMPL, SMPL-H or SMPL-X .pkl or .npz (default: the built-in body)")
-      ->group(known)
-      ->type_name("FILE");
   app.add_option("--init", c.init, "poses of another system to start from and stay near, same frames")
-      ->group(known)
+      ->group(kKnown)
       ->type_name("FILE");
-  app.add_option("--prior", c.prior, "pose prior file, or none (default: the built-in one)")
-      ->group(known)
-      ->type_name("FILE");
-
-  app.add_option("--lifter", c.lifter, "weights of the network that starts from 2D joints, or none (default: built in)")
-      ->group(known)
-      ->type_name("FILE");
-
-  app.add_option("--out", c.out, "the track, .npz (required unless --plan)")->group(wanted)->type_name("FILE");
-  app.add_option("--overlay", c.overlay, "video with the projected body, .mp4")->group(wanted)->type_name("FILE");
+  AddLearnedOptions(app, request);
+  app.add_option("--out", c.out, "the track, .npz (required unless --plan)")->group(kWanted)->type_name("FILE");
+  app.add_option("--overlay", c.overlay, "video with the projected body, .mp4")->group(kWanted)->type_name("FILE");
   app.add_flag("--side-view", c.side_view, "the overlay also shows the body from its side, where depth errors show")
-      ->group(wanted);
+      ->group(kWanted);
   app.add_option("--reference", c.reference, "a known true track, drawn beside the estimate in the side view")
-      ->group(wanted)
+      ->group(kWanted)
       ->type_name("FILE");
-  app.add_option("--json", c.json, "the closing summary as JSON")->group(wanted)->type_name("FILE");
+  app.add_option("--json", c.json, "the closing summary as JSON")->group(kWanted)->type_name("FILE");
   app.add_flag("--plan", c.plan, "print what would run, what is skipped and why; compute and write nothing")
-      ->group(wanted);
-  app.add_flag("--quiet", *quiet, "no progress and no summary on the screen")->group(wanted);
+      ->group(kWanted);
+  app.add_flag("--quiet", *quiet, "no progress and no summary on the screen")->group(kWanted);
 
-  TrackSequenceOptions& s = c.solve;
-  app.add_option_function<std::string>(
-         "--solver", [&s](const std::string& word) { s.solver = SequenceSolverFromString(word); },
-         "the engine: chain, or ceres (the reference: the same problem, several times slower)")
-      ->group(solve)
-      ->default_str(ToString(s.solver))
-      ->check(CLI::IsMember({"ceres", "chain"}));
-  app.add_option("--threads", s.num_threads, "at most 256; 0: all cores; results agree to rounding")
-      ->group(solve)
-      ->check(Quiet(CLI::Range(0, 256)))
-      ->capture_default_str();
-  app.add_option("--max-iterations", s.max_iterations, "of each stage")
-      ->group(solve)
-      ->check(Quiet(CLI::PositiveNumber))
-      ->capture_default_str();
-  app.add_option("--init-weight", s.initialiser_weight, "how strongly the track stays near --init")
-      ->group(solve)
+  AddSolveOptions(app, &c.solve);
+  app.add_option("--init-weight", c.solve.initialiser_weight, "how strongly the track stays near --init")
+      ->group(kSolve)
       ->check(Quiet(CLI::NonNegativeNumber))
       ->capture_default_str();
   app.add_option("--live", c.live_lag,
                  "track frame by frame as if the clip came from a camera: each pose is final when this many frames "
                  "after it have been seen (4 is a good number), and nothing later changes it")
-      ->group(solve)
+      ->group(kSolve)
       ->type_name("LAG")
       ->check(Quiet(CLI::Range(0, 60)));
-  app.add_flag_callback(
-         "--no-ground", [&s] { s.ground = GroundOptions::Off(); },
-         "look for neither the vertical nor the ground that feet stand on")
-      ->group(solve);
-  app.add_flag_callback(
-         "--no-shape", [&s] { s.estimate_shape = false; }, "keep the body's mean shape")
-      ->group(solve);
-  app.add_flag_callback(
-         "--no-uncertainty", [&s] { s.estimate_uncertainty = false; }, "leave out joint_sigma")
-      ->group(solve);
-  app.add_flag_callback(
-         "--no-skip", [&s] { s.skip_unneeded = false; },
-         "solve also for joints that no landmark moves: nearly the same answer, slower")
-      ->group(solve);
 }
 
 }  // namespace bodyloom

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The flags of `bodyloom track`.
+/// The flags of `bodyloom track`, and those groups of them that other verbs that track have too.
 #pragma once
+
+#include <string>
 
 #include "bodyloom/pipelines/track/track_request.h"
 
@@ -9,6 +11,15 @@ class App;
 }
 
 namespace bodyloom {
+
+/// --detector, --models, --no-mask, --from and --to, in this group of the help.
+void AddDetectionOptions(CLI::App& app, TrackRequest* request, const std::string& group);
+/// --cameras and --focal.
+void AddCalibrationOptions(CLI::App& app, TrackRequest* request);
+/// --body, --prior and --lifter.
+void AddLearnedOptions(CLI::App& app, TrackRequest* request);
+/// --solver, --threads, --max-iterations and the switches that leave something out.
+void AddSolveOptions(CLI::App& app, TrackSequenceOptions* options);
 
 /// Binds every field of the request to its flag; defaults in --help are those of the struct. `quiet` is the verb's own.
 void AddTrackOptions(CLI::App& app, TrackRequest* request, bool* quiet);

@@ -18,6 +18,7 @@ struct FrameMetric;
 
 using Action = std::function<void()>;
 
+void AddRunVerb(CLI::App& app, Action* action);
 void AddDetectVerb(CLI::App& app, Action* action);
 void AddTrackVerb(CLI::App& app, Action* action);
 void AddSynthVerb(CLI::App& app, Action* action);

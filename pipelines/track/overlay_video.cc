@@ -25,6 +25,23 @@ KeypointSequence MovedKeypoints(KeypointSequence keypoints, const Matrix2x3d& ma
   return keypoints;
 }
 
+/// Writes one picture for each of these times; `draw` gets its index and the video's frame, null where there is none.
+OverlaySummary WriteFrames(VideoWriter* writer, const std::vector<double>& times, TrackVideo* video,
+                           const std::function<Image(int, const Image*)>& draw,
+                           const std::function<void(double)>& progress) {
+  OverlaySummary summary;
+  for (size_t t = 0; t < times.size(); ++t) {
+    const Image* background = video != nullptr ? video->At(times[t]) : nullptr;
+    summary.frames_without_video += video != nullptr && background == nullptr;
+    writer->Write(draw(int(t), background));
+    ++summary.frames;
+    progress(double(t + 1) / double(times.size()));
+  }
+  writer->Finish();
+  if (video != nullptr) summary.video_warning = video->warning();
+  return summary;
+}
+
 }  // namespace
 
 OverlaySummary WriteOverlayVideo(const std::string& path, const OverlayVideo& what) {
@@ -42,22 +59,45 @@ OverlaySummary WriteOverlayVideo(const std::string& path, const OverlayVideo& wh
   options.num_threads = ThreadsFor(0);
   const OverlayRenderer renderer(*what.body, track, options, what.reference);
   VideoWriter writer(path, renderer.width(), renderer.height(), fps);
-  OverlaySummary summary;
-  for (int t = 0; t < track.num_frames(); ++t) {
+  const auto draw = [&](int t, const Image* background) {
     OverlayFrame frame;
     frame.detected = what.detected != nullptr ? &detected : nullptr;
-    if (video != nullptr) {
-      frame.background = video->At(track.motion.timestamps[t]);
-      summary.frames_without_video += frame.background == nullptr;
-    }
+    frame.background = background;
     frame.caption = {{Concatenate("frame ", t, ", ", ToString(track.frame_status[t]))}};
-    writer.Write(renderer.Render(t, frame));
-    ++summary.frames;
-    what.progress(static_cast<double>(t + 1) / track.num_frames());
+    return renderer.Render(t, frame);
+  };
+  return WriteFrames(&writer, track.motion.timestamps, video.get(), draw, what.progress);
+}
+
+OverlaySummary WritePeopleOverlayVideo(const std::string& path, const PeopleOverlayVideo& what) {
+  BODYLOOM_CHECK(!what.people.empty(), "overlay: nobody to draw");
+  // Only now and here in the video's pixels.
+  std::vector<Track> tracks;
+  std::vector<KeypointSequence> detected;
+  std::unique_ptr<TrackVideo> video;
+  if (!what.video.empty()) {
+    video = std::make_unique<TrackVideo>(what.video, *what.people[0].track, what.video_px_from_camera_px);
   }
-  writer.Finish();
-  if (video != nullptr) summary.video_warning = video->warning();
-  return summary;
+  for (const PersonInOverlay& person : what.people) {
+    tracks.push_back(video != nullptr ? video->Moved(*person.track) : *person.track);
+    detected.push_back(person.detected != nullptr ? *person.detected : KeypointSequence());
+    if (video == nullptr) continue;
+    detected.back() =
+        MovedKeypoints(std::move(detected.back()), video->map(), video->info().width, video->info().height);
+  }
+  std::vector<PersonInOverlay> people = what.people;
+  for (size_t i = 0; i < people.size(); ++i) {
+    people[i].track = &tracks[i];
+    if (people[i].detected != nullptr) people[i].detected = &detected[i];
+  }
+  OverlayOptions options;
+  options.side_view = what.side_view;
+  options.up_in_camera = what.up_in_camera;
+  options.num_threads = ThreadsFor(0);
+  const PeopleOverlay overlay(std::move(people), options);
+  VideoWriter writer(path, overlay.width(), overlay.height(), VideoFrameRate(overlay.timestamps()));
+  const auto draw = [&](int moment, const Image* background) { return overlay.Render(moment, background); };
+  return WriteFrames(&writer, overlay.timestamps(), video.get(), draw, what.progress);
 }
 
 }  // namespace bodyloom

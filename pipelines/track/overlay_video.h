@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Writes a track as a video: the projected body over the frames it was fitted to.
+/// Writes tracks as a video: projected bodies over the frames they were fitted to.
 #pragma once
 
 #include <functional>
@@ -10,6 +10,7 @@
 #include "bodyloom/geometry/body_model.h"
 #include "bodyloom/geometry/observations.h"
 #include "bodyloom/geometry/track.h"
+#include "bodyloom/render/people_overlay.h"
 
 namespace bodyloom {
 
@@ -23,7 +24,6 @@ struct OverlayVideo {
   int video_offset = 0;                        ///< video frame of the track's time zero
   Matrix2x3d video_px_from_camera_px = NamedCamera().video_px_from_camera_px;
   bool side_view = false;
-  int num_stills = 0;  ///< pictures to keep, spread over the clip
   std::function<void(double fraction)> progress = [](double) {};
 };
 
@@ -36,5 +36,19 @@ struct OverlaySummary {
 /// in and is counted. Throws std::runtime_error when the video's size fits neither the camera nor a scaled copy of it,
 /// and when `path` cannot be written; nothing is left behind then.
 OverlaySummary WriteOverlayVideo(const std::string& path, const OverlayVideo& what);
+
+/// Several people in one picture (render/people_overlay.h).
+struct PeopleOverlayVideo {
+  std::vector<PersonInOverlay> people;
+  // As above.
+  std::string video;
+  Matrix2x3d video_px_from_camera_px = NamedCamera().video_px_from_camera_px;
+  bool side_view = false;
+  Eigen::Vector3d up_in_camera = -Eigen::Vector3d::UnitY();
+  std::function<void(double fraction)> progress = [](double) {};
+};
+
+/// One picture for every moment at which somebody was followed. Throws as WriteOverlayVideo() and PeopleOverlay.
+OverlaySummary WritePeopleOverlayVideo(const std::string& path, const PeopleOverlayVideo& what);
 
 }  // namespace bodyloom

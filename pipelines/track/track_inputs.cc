@@ -4,55 +4,19 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/data_tools/body/body_io.h"
-#include "bodyloom/data_tools/body/body_or_builtin.h"
-#include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/data_tools/learned/lifter_weights_io.h"
-#include "bodyloom/data_tools/learned/pose_prior_io.h"
 #include "bodyloom/data_tools/motion/load_motion.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/observations/iuv_to_dense.h"
 #include "bodyloom/data_tools/observations/load_detections.h"
 #include "bodyloom/data_tools/observations/observations_npz.h"
 #include "bodyloom/data_tools/observations/part_labels.h"
-#include "bodyloom/data_tools/video/video_reader.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/pipelines/detect/detect_people.h"
-#include "bodyloom/pipelines/track/move_observations.h"
-#include "bodyloom/pipelines/track/track_video.h"
+#include "bodyloom/pipelines/track/detected_people.h"
 #include "bodyloom/tracking/initialise/part_keypoints.h"
 
 namespace bodyloom {
 namespace {
-
-/// Camera file, focal length and image size as far as the request gives them.
-NamedCamera CameraFromRequest(const TrackRequest& request) {
-  NamedCamera camera;
-  camera.camera.width = request.image_width;
-  camera.camera.height = request.image_height;
-  if (!request.cameras.empty()) {
-    camera = FindCamera(LoadCameras(request.cameras, request.detections), request.view, request.cameras);
-    if (request.image_width > 0 &&
-        (camera.camera.width != request.image_width || camera.camera.height != request.image_height)) {
-      throw std::runtime_error(Concatenate(request.cameras, ": camera ", camera.name, " is for images of ",
-                                           camera.camera.width, "x", camera.camera.height, ", --image-size says ",
-                                           request.image_width, "x", request.image_height));
-    }
-  }
-  return camera;
-}
-
-/// Takes image size and frame rate from the video, or checks the size against what is known.
-void UseVideo(const std::string& path, TrackInputs* inputs) {
-  const VideoInfo info = VideoReader(path).info();
-  inputs->video_fps = info.fps;
-  Camera& camera = inputs->camera.camera;
-  if (camera.width == 0) {
-    camera.width = info.width;
-    camera.height = info.height;
-  }
-}
 
 /// Frame rate of observations that give none; 0 when the request and the video give none either.
 double FrameRate(const TrackRequest& request, const TrackInputs& inputs) {
@@ -113,30 +77,11 @@ void UseDense(const std::string& path, const TrackRequest& request, TrackInputs*
 
 /// Detects people in the video: the chosen one's landmarks, and the mask.
 void UseDetectedPeople(const TrackRequest& request, const PipelineCallbacks& callbacks, TrackInputs* inputs) {
-  DetectPeopleRequest detect;
-  detect.video = request.video;
-  detect.models = request.models;
-  detect.fps = request.fps;
-  detect.from_s = request.from_s;
-  detect.to_s = request.to_s;
-  detect.detector.network = request.detector;
-  detect.detector.masks = request.use_mask;
-  callbacks.Begin("detecting people");
-  const DetectedClip clip = DetectPeople(detect, callbacks);
-  // The camera has a size by now: that of its calibration, or the video's.
-  const Camera& camera = inputs->camera.camera;
-  const Matrix2x3d map = VideoFromCameraPixels(inputs->camera.video_px_from_camera_px, camera, clip.people.image_width,
-                                               clip.people.image_height, request.video);
-  const bool same_pixels = map.isApprox(NamedCamera().video_px_from_camera_px);
+  const DetectedClip clip = DetectForTracking(request, callbacks);
   const PersonTrack person = PersonOf(clip.people, request.person, request.video);
-  KeypointSequence keypoints = KeypointsOf(clip.people, person);
-  DropUnsure(request.min_confidence, &keypoints);
-  inputs->keypoints =
-      same_pixels ? std::move(keypoints) : MovedToCamera(std::move(keypoints), map, camera.width, camera.height);
-  if (request.use_mask) {
-    PartLabelSequence mask = MaskOfPerson(clip, person);
-    inputs->part_labels = same_pixels ? std::move(mask) : MovedToCamera(mask, map, camera.width, camera.height);
-  }
+  DetectedObservations seen = ObservationsOf(clip, person, WholeClip(clip), request, *inputs);
+  inputs->keypoints = std::move(seen.keypoints);
+  inputs->part_labels = std::move(seen.mask);
 }
 
 }  // namespace
@@ -155,13 +100,8 @@ TrackSequenceInput TrackInputs::ForTracker() const {
 }
 
 TrackInputs LoadTrackInputs(const TrackRequest& request, const PipelineCallbacks& callbacks) {
-  TrackInputs inputs;
-  inputs.body = BodyOrBuiltin(request.body);
-  inputs.camera = CameraFromRequest(request);
+  TrackInputs inputs{LoadSceneInputs(request)};
   Camera& camera = inputs.camera.camera;
-  if (!request.video.empty()) {
-    UseVideo(request.video, &inputs);
-  }
   if (!request.detections.empty()) {
     const Holds holds = WhatItHolds(request.detections);
     if (holds.keypoints) {
@@ -214,12 +154,7 @@ TrackInputs LoadTrackInputs(const TrackRequest& request, const PipelineCallbacks
   }
   // The lifter knows how detectors err. Joints read off labels err otherwise, and it makes worse of them than the joint
   // hypotheses do (docs/benchmarks.md).
-  if (request.lifter != "none" && !(request.lifter.empty() && inputs.joints_from_labels)) {
-    inputs.lifter = request.lifter.empty() ? BuiltinLifter() : ReadLifterWeights(request.lifter);
-  }
-  if (request.prior != "none") {
-    inputs.prior = request.prior.empty() ? BuiltinPosePrior() : ReadPosePrior(request.prior);
-  }
+  if (request.lifter.empty() && inputs.joints_from_labels) inputs.lifter.reset();
   if (request.focal_px > 0) {
     camera = MakePinhole(camera.width, camera.height, request.focal_px);
   }

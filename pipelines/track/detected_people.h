@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+/// People detected in a video, as observations for the tracker: in the pixels of its camera.
+#pragma once
+
+#include <optional>
+#include <utility>
+
+#include "bodyloom/data_tools/observations/people.h"
+#include "bodyloom/geometry/observations.h"
+#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/pipelines/detect/detect_people.h"
+#include "bodyloom/pipelines/track/scene_inputs.h"
+#include "bodyloom/pipelines/track/track_request.h"
+
+namespace bodyloom {
+
+/// What one person showed.
+struct DetectedObservations {
+  KeypointSequence keypoints;
+  std::optional<PartLabelSequence> mask;  ///< none when the request uses no masks
+};
+
+/// First and last frame, both included.
+using FrameSpan = std::pair<int, int>;
+FrameSpan WholeClip(const DetectedClip& clip);
+/// From the person's first detection to the last.
+FrameSpan SpanOf(const PersonTrack& person);
+
+/// DetectPeople() as the request's fields on detection say; at most `max_people` at a time (0: everybody).
+DetectedClip DetectForTracking(const TrackRequest& request, const PipelineCallbacks& callbacks, int max_people = 0);
+
+/// The person's landmarks and mask in those frames; where it was not seen they are missing. Landmarks whose confidence
+/// is below request.min_confidence are missing too. Throws std::runtime_error when the scene's camera is for images of
+/// other proportions than the video's.
+DetectedObservations ObservationsOf(const DetectedClip& clip, const PersonTrack& person, FrameSpan frames,
+                                    const TrackRequest& request, const SceneInputs& scene);
+
+}  // namespace bodyloom

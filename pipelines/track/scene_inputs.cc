@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/track/scene_inputs.h"
+
+#include <stdexcept>
+
+#include "bodyloom/data_tools/body/body_or_builtin.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/data_tools/learned/lifter_weights_io.h"
+#include "bodyloom/data_tools/learned/pose_prior_io.h"
+#include "bodyloom/data_tools/video/video_reader.h"
+#include "bodyloom/geometry/base/check.h"
+
+namespace bodyloom {
+namespace {
+
+/// Camera file, focal length and image size as far as the request gives them.
+NamedCamera CameraFromRequest(const TrackRequest& request) {
+  NamedCamera camera;
+  camera.camera.width = request.image_width;
+  camera.camera.height = request.image_height;
+  if (!request.cameras.empty()) {
+    camera = FindCamera(LoadCameras(request.cameras, request.detections), request.view, request.cameras);
+    if (request.image_width > 0 &&
+        (camera.camera.width != request.image_width || camera.camera.height != request.image_height)) {
+      throw std::runtime_error(Concatenate(request.cameras, ": camera ", camera.name, " is for images of ",
+                                           camera.camera.width, "x", camera.camera.height, ", --image-size says ",
+                                           request.image_width, "x", request.image_height));
+    }
+  }
+  return camera;
+}
+
+/// Takes image size and frame rate from the video, or checks the size against what is known.
+void UseVideo(const std::string& path, SceneInputs* inputs) {
+  const VideoInfo info = VideoReader(path).info();
+  inputs->video_fps = info.fps;
+  Camera& camera = inputs->camera.camera;
+  if (camera.width == 0) {
+    camera.width = info.width;
+    camera.height = info.height;
+  }
+}
+
+}  // namespace
+
+SceneInputs LoadSceneInputs(const TrackRequest& request) {
+  SceneInputs inputs;
+  inputs.body = BodyOrBuiltin(request.body);
+  inputs.camera = CameraFromRequest(request);
+  if (!request.video.empty()) UseVideo(request.video, &inputs);
+  if (request.lifter != "none") {
+    inputs.lifter = request.lifter.empty() ? BuiltinLifter() : ReadLifterWeights(request.lifter);
+  }
+  if (request.prior != "none") {
+    inputs.prior = request.prior.empty() ? BuiltinPosePrior() : ReadPosePrior(request.prior);
+  }
+  return inputs;
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What a request says of the scene, whoever is in it: body model, camera, and what was learned.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "bodyloom/data_tools/observations/load_cameras.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/lifter_weights.h"
+#include "bodyloom/geometry/pose_prior.h"
+#include "bodyloom/pipelines/track/track_request.h"
+
+namespace bodyloom {
+
+struct SceneInputs {
+  std::shared_ptr<const BodyModel> body;
+  std::optional<PosePrior> prior;
+  std::optional<LifterWeights> lifter;
+  NamedCamera camera;  ///< intrinsics, pose and the way to the video's pixels, as far as known; without --focal
+  double video_fps = 0;
+};
+
+/// Reads what the request names; the camera has the video's size where nothing else says. Throws std::runtime_error
+/// naming file and place.
+SceneInputs LoadSceneInputs(const TrackRequest& request);
+
+}  // namespace bodyloom

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/track/track_people_clip.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/data_tools/observations/people_npz.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/pipelines/files.h"
+#include "bodyloom/pipelines/peak_memory.h"
+#include "bodyloom/pipelines/track/detected_people.h"
+#include "bodyloom/pipelines/track/overlay_video.h"
+#include "bodyloom/pipelines/track/scene_inputs.h"
+#include "bodyloom/pipelines/track/track_video.h"
+#include "bodyloom/tracking/people/track_people.h"
+
+namespace bodyloom {
+namespace {
+
+std::string FileIn(const TrackPeopleClipRequest& request, const std::string& name) {
+  return (std::filesystem::path(request.out) / name).string();
+}
+
+std::string TrackFile(const TrackPeopleClipRequest& request, int number) {
+  return FileIn(request, Concatenate("person_", number, ".npz"));
+}
+
+void CheckRequest(const TrackPeopleClipRequest& request) {
+  if (request.out.empty()) throw RequestError("--out is required: the folder for the results");
+  if (request.track.video.empty()) throw RequestError("the video is required");
+  if (request.person && request.max_people > 0) {
+    throw RequestError("--person and --people both choose who is tracked, expected one of them");
+  }
+  if (request.track.camera == "weak") {
+    throw RequestError("weak perspective puts nobody into a common space: use track for one person at a time");
+  }
+  if (request.track.live_lag) throw RequestError("everybody together cannot be tracked live: use track --live");
+  TrackRequest track = request.track;
+  track.out = TrackFile(request, 0);
+  track.overlay = request.overlay ? FileIn(request, "overlay.mp4") : "";
+  CheckTrackRequest(track);
+  BODYLOOM_CHECK(DetectsPeople(track), "the request holds other observations than a video");
+  for (const auto& [path, what] :
+       std::vector<std::pair<std::string, std::string>>{{track.video, "video"},
+                                                        {track.cameras, "cameras"},
+                                                        {track.body, "body model"},
+                                                        {track.prior == "none" ? "" : track.prior, "pose prior"},
+                                                        {track.lifter == "none" ? "" : track.lifter, "lifter"}}) {
+    RequireReadable(path, what);
+  }
+  RequireWritableFolder(request.out);
+}
+
+/// Numbers of those to be tracked, in LinkPeople()'s order.
+std::vector<int> ChoosePeople(const TrackPeopleClipRequest& request, const DetectedClip& clip,
+                              const std::vector<PersonTrack>& everybody) {
+  const std::string& video = request.track.video;
+  if (request.person) {
+    PersonOf(clip.people, *request.person, video);  // throws when there is no such person
+    return {*request.person};
+  }
+  const std::vector<double>& times = clip.people.timestamps;
+  const double fps = VideoFrameRate(times);
+  const double least_frames = std::min(request.least_seconds * fps, 0.5 * double(times.size()));
+  std::vector<int> chosen;
+  for (size_t i = 0; i < everybody.size(); ++i) {
+    if (request.max_people > 0 && int(chosen.size()) == request.max_people) break;
+    if (double(everybody[i].detections.size()) >= least_frames) chosen.push_back(int(i));
+  }
+  if (chosen.empty()) {
+    throw std::runtime_error(everybody.empty() ? Concatenate(video, ": nobody was found in ", times.size(), " frames")
+                                               : Concatenate(video, ": nobody was seen for ", request.least_seconds,
+                                                             " s; --person 0 takes whoever was seen most"));
+  }
+  return chosen;
+}
+
+/// Tracks them; progress is that of all fits.
+TrackPeopleResult Solve(const TrackPeopleClipRequest& request, const SceneInputs& scene,
+                        const std::vector<DetectedObservations>& seen, const PipelineCallbacks& callbacks) {
+  std::vector<TrackSequenceInput> inputs;
+  for (const DetectedObservations& person : seen) {
+    TrackSequenceInput& input = inputs.emplace_back();
+    input.body = scene.body.get();
+    input.keypoints = &person.keypoints;
+    input.part_labels = person.mask ? &*person.mask : nullptr;
+    input.prior = scene.prior ? &*scene.prior : nullptr;
+    input.lifter = scene.lifter ? &*scene.lifter : nullptr;
+    input.camera = scene.camera.camera;
+    if (request.track.focal_px > 0) {
+      input.camera = MakePinhole(input.camera.width, input.camera.height, request.track.focal_px);
+    }
+  }
+  TrackSequenceOptions options = request.track.solve;
+  options.camera_knowledge = CameraKnowledgeOf(request.track);
+  bool cancelled = false;
+  options.progress = [&](const TrackProgress& at) {
+    cancelled = !callbacks.GoesOn(at.stage, at.fraction);
+    return !cancelled;
+  };
+  TrackPeopleResult result = TrackPeople(std::move(inputs), options);
+  if (cancelled) throw Cancelled();
+  return result;
+}
+
+void WriteOverlay(const TrackPeopleClipRequest& request, const SceneInputs& scene, const TrackPeopleResult& result,
+                  const std::vector<DetectedObservations>& seen, const PipelineCallbacks& callbacks,
+                  TrackPeopleReport* report) {
+  PeopleOverlayVideo overlay;
+  for (size_t i = 0; i < seen.size(); ++i) {
+    if (report->people[i].track.empty()) continue;
+    overlay.people.push_back({.body = scene.body.get(),
+                              .track = &result.people[i].track,
+                              .detected = &seen[i].keypoints,
+                              .number = report->people[i].number});
+  }
+  overlay.video = request.track.video;
+  overlay.video_px_from_camera_px = scene.camera.video_px_from_camera_px;
+  overlay.side_view = request.track.side_view;
+  if (result.summary.scene.has_up) overlay.up_in_camera = result.summary.scene.ground.up;
+  callbacks.Begin("drawing the overlay");
+  overlay.progress = [&](double fraction) { callbacks.Update("overlay", fraction); };
+  const std::string path = FileIn(request, "overlay.mp4");
+  WritePeopleOverlayVideo(path, overlay);
+  report->outputs.push_back(path);
+}
+
+/// What the detections say of the clip and of those chosen.
+TrackPeopleReport StartReport(const TrackPeopleClipRequest& request, const DetectedClip& clip,
+                              const std::vector<int>& chosen) {
+  TrackPeopleReport report;
+  report.video = request.track.video;
+  report.width = clip.people.image_width;
+  report.height = clip.people.image_height;
+  report.num_frames = int(clip.people.frames.size());
+  report.fps = VideoFrameRate(clip.people.timestamps);
+  report.network = request.track.detector;
+  const std::vector<FoundPerson> found = FoundPeople(clip.people);
+  report.num_found = int(found.size());
+  for (const int number : chosen) {
+    TrackedPerson& person = report.people.emplace_back();
+    person.number = number;
+    person.seen = found[size_t(number)];
+  }
+  return report;
+}
+
+}  // namespace
+
+TrackPeopleReport TrackPeopleClip(const TrackPeopleClipRequest& request, const PipelineCallbacks& callbacks) {
+  CheckRequest(request);
+  StageClock clock;
+  clock.Begin("read");
+  const SceneInputs scene = LoadSceneInputs(request.track);
+  clock.Begin("detect");
+  const DetectedClip clip = DetectForTracking(request.track, callbacks, request.max_people);
+  const std::vector<PersonTrack> everybody = LinkPeople(clip.people);
+  const std::vector<int> chosen = ChoosePeople(request, clip, everybody);
+  TrackPeopleReport report = StartReport(request, clip, chosen);
+  clock.Begin("write");
+  report.outputs.push_back(FileIn(request, "detections.npz"));
+  WritePeople(report.outputs.back(), clip.people);
+
+  std::vector<DetectedObservations> seen;
+  for (const int number : chosen) {
+    const PersonTrack& person = everybody[size_t(number)];
+    seen.push_back(ObservationsOf(clip, person, SpanOf(person), request.track, scene));
+  }
+  callbacks.Begin(Concatenate("tracking ", seen.size(), seen.size() == 1 ? " person" : " people"));
+  clock.Begin("track");
+  const TrackPeopleResult result = Solve(request, scene, seen, callbacks);
+  report.scene = result.summary.scene;
+  clock.Begin("write");
+  bool any_tracked = false;
+  for (size_t i = 0; i < seen.size(); ++i) {
+    TrackedPerson& person = report.people[i];
+    person.solve = result.people[i].summary;
+    person.hidden = result.summary.hidden[i];
+    person.fitted_again = result.summary.fitted_again[i] != 0;
+    if (!person.solve.IsUsable()) continue;
+    any_tracked = true;
+    person.track = TrackFile(request, person.number);
+    WriteTrack(person.track, result.people[i].track);
+    report.outputs.push_back(person.track);
+  }
+  if (request.overlay && any_tracked) {
+    clock.Begin("overlay");
+    WriteOverlay(request, scene, result, seen, callbacks, &report);
+  }
+  clock.End();
+  report.seconds = clock.seconds();
+  report.total_seconds = clock.total();
+  report.peak_memory_bytes = PeakMemoryBytes();
+  report.outputs.push_back(FileIn(request, "summary.json"));
+  WriteFileAtomically(report.outputs.back(), ToJson(report));
+  if (!any_tracked) {
+    throw std::runtime_error(request.track.video + ": nobody could be tracked: " + report.people[0].solve.message);
+  }
+  return report;
+}
+
+}  // namespace bodyloom

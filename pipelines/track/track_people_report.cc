@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/track/track_people_report.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/pipelines/fixed_text.h"
+#include "bodyloom/pipelines/report_json.h"
+
+namespace bodyloom {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string PersonText(const TrackedPerson& person) {
+  std::string text =
+      Concatenate("person ", person.number, " ", person.seen.frames, " frames, ", Fixed(person.seen.first_s, 2), " to ",
+                  Fixed(person.seen.last_s, 2), " s, ", Fixed(person.seen.height_px, 0), " px tall: ");
+  if (person.track.empty()) return text + "could not be tracked (" + person.solve.message + ")\n";
+  std::string statuses;
+  for (const auto& [status, count] : person.solve.frames_by_status) {
+    if (count > 0) statuses += Concatenate(statuses.empty() ? "" : ", ", count, " ", status);
+  }
+  text += statuses + "; 2D joints: median " + Fixed(person.solve.reprojection_median_px, 2) + " px\n";
+  if (person.hidden.any()) {
+    text += Concatenate("         partly hidden by others in ", person.hidden.frames, " frames\n");
+  }
+  return text;
+}
+
+std::string SceneText(const SharedScene& scene) {
+  std::string text;
+  if (scene.focal_px > 0) {
+    text += "camera   focal length " + Fixed(scene.focal_px, 1) + " px, " +
+            (scene.focal_log_sigma == 0
+                 ? std::string("known")
+                 : "estimated within " + Fixed(100 * scene.focal_log_sigma, 1) + " % (standard deviation)") +
+            "\n";
+  }
+  if (scene.has_up && scene.ground.has_plane) {
+    text += "ground   " + Fixed(scene.ground.camera_height_m, 2) + " m below the camera (" + scene.why + ")\n";
+  } else {
+    text += "ground   none: " + scene.why + "\n";
+  }
+  return text;
+}
+
+Json SceneJson(const SharedScene& scene) {
+  Json json = {{"focal_px", scene.focal_px}, {"focal_log_sigma", scene.focal_log_sigma}, {"ground", scene.why}};
+  if (scene.has_up) {
+    const Eigen::Vector3d& up = scene.ground.up;
+    json["up_in_camera"] = {up.x(), up.y(), up.z()};
+    if (scene.ground.has_plane) json["camera_height_m"] = scene.ground.camera_height_m;
+  }
+  return json;
+}
+
+Json PersonJson(const TrackedPerson& person) {
+  const TrackSequenceSummary& solve = person.solve;
+  return {{"number", person.number},
+          {"track", person.track},
+          {"frames", person.seen.frames},
+          {"first_s", person.seen.first_s},
+          {"last_s", person.seen.last_s},
+          {"height_px", person.seen.height_px},
+          {"visible", person.seen.visible},
+          {"status", ToString(solve.status)},
+          {"message", solve.message},
+          {"frames_by_status", solve.frames_by_status},
+          {"reprojection_median_px", solve.reprojection_median_px},
+          {"reprojection_p95_px", solve.reprojection_p95_px},
+          {"focal_px", solve.focal_px},
+          {"swaps_repaired", solve.num_swaps_repaired},
+          {"hidden_frames", person.hidden.frames},
+          {"fitted_again", person.fitted_again}};
+}
+
+}  // namespace
+
+std::string ToText(const TrackPeopleReport& report) {
+  std::string text = Concatenate("frames   ", report.num_frames, " of ", report.width, "x", report.height, " pixels, ",
+                                 Fixed(report.fps, 2), " a second\n");
+  for (const TrackedPerson& person : report.people) text += PersonText(person);
+  if (const int others = report.num_found - int(report.people.size()); others > 0) {
+    text += Concatenate("left out ", others, " more, seen too briefly or not asked for\n");
+  }
+  text += SceneText(report.scene);
+  std::string stages;
+  for (const auto& [stage, seconds] : report.seconds) {
+    stages += (stages.empty() ? "" : ", ") + stage + " " + Fixed(seconds, 2);
+  }
+  text += "time     " + Fixed(report.total_seconds, 2) + " s (" + stages + "), " +
+          Fixed(report.num_frames / std::max(1e-9, report.total_seconds), 1) + " frames a second with " +
+          ToText(report.network) + "\n";
+  text += "memory   " + Fixed(double(report.peak_memory_bytes) / (1 << 20), 0) + " MiB at most\n";
+  for (const std::string& path : report.outputs) text += "wrote    " + path + "\n";
+  return text;
+}
+
+std::string ToJson(const TrackPeopleReport& report) {
+  Json people = Json::array();
+  for (const TrackedPerson& person : report.people) people.push_back(PersonJson(person));
+  const Json json = {{"video", report.video},
+                     {"image_size", {report.width, report.height}},
+                     {"frames", report.num_frames},
+                     {"fps", report.fps},
+                     {"network", ToText(report.network)},
+                     {"people_found", report.num_found},
+                     {"people", people},
+                     {"scene", SceneJson(report.scene)},
+                     {"seconds", ToJson(report.seconds)},
+                     {"total_seconds", report.total_seconds},
+                     {"peak_memory_bytes", report.peak_memory_bytes},
+                     {"outputs", report.outputs}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The report of a video in which everybody was tracked: as text for a reader, and as JSON for a program.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "bodyloom/data_tools/detection/pose_detector.h"
+#include "bodyloom/geometry/base/stopwatch.h"
+#include "bodyloom/pipelines/detect/detect_clip.h"
+#include "bodyloom/tracking/people/occlusion.h"
+#include "bodyloom/tracking/people/shared_scene.h"
+#include "bodyloom/tracking/track_summary.h"
+
+namespace bodyloom {
+
+struct TrackedPerson {
+  int number = 0;  ///< in LinkPeople()'s order
+  FoundPerson seen;
+  TrackSequenceSummary solve;
+  HiddenCounts hidden;        ///< by other people
+  bool fitted_again = false;  ///< with what all fits say of the scene
+  std::string track;          ///< file; empty when it could not be tracked (solve.message)
+};
+
+struct TrackPeopleReport {
+  std::string video;
+  int width = 0, height = 0, num_frames = 0;
+  double fps = 0;
+  PoseNetworkSize network = PoseNetworkSize::kHeavy;
+  int num_found = 0;  ///< people in the detections, also those who were left out
+  std::vector<TrackedPerson> people;
+  SharedScene scene;
+  StageSeconds seconds;
+  double total_seconds = 0;
+  size_t peak_memory_bytes = 0;
+  std::vector<std::string> outputs;  ///< files written
+};
+
+/// Who was followed, the scene, time by stage, files: some lines, the last one with a newline.
+std::string ToText(const TrackPeopleReport& report);
+
+/// The same as one JSON object; the keys are listed in docs/command.md. Numbers that are not finite become null.
+std::string ToJson(const TrackPeopleReport& report);
+
+}  // namespace bodyloom

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Everybody in a real video. Skipped where the recordings or the networks (./dev models) are missing.
+#include "bodyloom/pipelines/track/track_people_clip.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "bodyloom/data_tools/detection/model_files.h"
+#include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/data_tools/observations/load_detections.h"
+#include "bodyloom/data_tools/video/video_reader.h"
+#include "tests/support/paths.h"
+#include "tests/support/scratch_folder.h"
+#include "tests/support/test_files.h"
+
+namespace bodyloom {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+class TrackPeopleClipOnRealVideo : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::exists(video_)) GTEST_SKIP() << video_ << " is not there";
+    try {
+      FindModelFile(kPoseDetectorFile);
+    } catch (const std::runtime_error& error) {
+      GTEST_SKIP() << error.what();
+    }
+  }
+
+  /// Two people, a few frames from the middle of the clip.
+  [[nodiscard]] TrackPeopleClipRequest TwoPeople() const {
+    TrackPeopleClipRequest request;
+    request.track.video = video_;
+    request.track.from_s = 0.5;
+    request.track.to_s = 0.7;
+    request.track.detector = PoseNetworkSize::kFull;
+    request.least_seconds = 0.1;
+    request.out = folder_ / "out";
+    return request;
+  }
+
+  const std::string video_ = SharedDir() + "/data/pose2sim/two_people/cam01.mp4";
+  const ScratchFolder folder_;
+};
+
+TEST_F(TrackPeopleClipOnRealVideo, GivesEverybodyATrackInOneSpaceAndOnePicture) {
+  const TrackPeopleClipRequest request = TwoPeople();
+  const TrackPeopleReport report = TrackPeopleClip(request);
+  EXPECT_EQ(report.num_frames, 13);
+  ASSERT_EQ(report.people.size(), 2U);
+  const Track first = ReadTrack(request.out + "/person_0.npz"), second = ReadTrack(request.out + "/person_1.npz");
+  EXPECT_EQ(first.camera.fx, second.camera.fx) << "one camera";
+  EXPECT_EQ(first.camera.fx, report.scene.focal_px);
+  for (int i = 0; i < 2; ++i) {
+    const Track& track = i == 0 ? first : second;
+    ASSERT_EQ(track.num_frames(), 13);
+    EXPECT_NEAR(track.motion.timestamps[0], 0.5, 0.01) << "the video's time";
+    // The body's landmarks lie on those that the detector saw of this person: the other one stands half a height away.
+    LoadDetectionsOptions options;
+    options.person = i;
+    const KeypointSequence seen = LoadDetections(request.out + "/detections.npz", options);
+    std::vector<double> errors;
+    for (int t = 0; t < 13; ++t) {
+      for (size_t k = 5; k < 17; ++k) {
+        const auto it = std::find(seen.names.begin(), seen.names.end(), CocoNames()[k]);
+        const Keypoint& p = seen.at(t, int(it - seen.names.begin()));
+        Eigen::Vector2d pixel;
+        ASSERT_TRUE(track.CameraAt(t).Project(track.coco17[size_t(t)].row(Eigen::Index(k)).transpose(), &pixel));
+        errors.push_back((pixel - Eigen::Vector2d(p.x, p.y)).norm());
+      }
+    }
+    std::nth_element(errors.begin(), errors.begin() + errors.size() / 2, errors.end());
+    EXPECT_LT(errors[errors.size() / 2], 0.04 * report.people[size_t(i)].seen.height_px) << "person " << i;
+  }
+  // They stand apart by more than a body's width.
+  EXPECT_GT((first.joints[6].row(0) - second.joints[6].row(0)).norm(), 0.4);
+  VideoReader overlay(request.out + "/overlay.mp4");
+  EXPECT_EQ(overlay.info().width, report.width);
+  EXPECT_EQ(overlay.info().num_frames, 13);
+  const nlohmann::json json = nlohmann::json::parse(FileBytes(request.out + "/summary.json"));
+  EXPECT_EQ(json["people"].size(), 2U);
+  EXPECT_EQ(json["people"][1]["track"], request.out + "/person_1.npz");
+  EXPECT_THAT(ToText(report), HasSubstr("person 1 13 frames"));
+}
+
+TEST_F(TrackPeopleClipOnRealVideo, ThoseAskedForAlone) {
+  TrackPeopleClipRequest request = TwoPeople();
+  request.track.to_s = 0.6;
+  request.person = 1;
+  request.overlay = false;
+  const TrackPeopleReport report = TrackPeopleClip(request);
+  ASSERT_EQ(report.people.size(), 1U);
+  EXPECT_EQ(report.people[0].number, 1);
+  EXPECT_EQ(report.num_found, 2);
+  EXPECT_TRUE(std::filesystem::exists(request.out + "/person_1.npz"));
+  EXPECT_FALSE(std::filesystem::exists(request.out + "/person_0.npz"));
+  EXPECT_FALSE(std::filesystem::exists(request.out + "/overlay.mp4"));
+  request.person = 7;
+  EXPECT_THAT([&] { TrackPeopleClip(request); }, ThrowsMessage<std::runtime_error>(HasSubstr("7")));
+}
+
+TEST_F(TrackPeopleClipOnRealVideo, CancelledItKeepsWhatWasDetected) {
+  TrackPeopleClipRequest request = TwoPeople();
+  request.track.to_s = 0.6;
+  PipelineCallbacks callbacks;
+  std::string work;
+  callbacks.begin = [&](const std::string& name) { work = name; };
+  callbacks.progress = [&](const std::string&, double) { return work != "tracking 2 people"; };
+  EXPECT_THROW(TrackPeopleClip(request, callbacks), Cancelled);
+  EXPECT_EQ(work, "tracking 2 people");
+  std::vector<std::string> left;
+  for (const auto& entry : std::filesystem::directory_iterator(request.out)) left.push_back(entry.path().filename());
+  EXPECT_EQ(left, std::vector<std::string>{"detections.npz"});
+}
+
+TEST(TrackPeopleClip, WhatContradictsItselfIsNamed) {
+  TrackPeopleClipRequest request;
+  const auto run = [&] { TrackPeopleClip(request); };
+  EXPECT_THAT(run, ThrowsMessage<RequestError>(HasSubstr("--out is required")));
+  const ScratchFolder folder;
+  request.out = folder / "out";
+  EXPECT_THAT(run, ThrowsMessage<RequestError>(HasSubstr("the video is required")));
+  request.track.video = folder / "clip.mp4";
+  EXPECT_THAT(run, ThrowsMessage<std::runtime_error>(HasSubstr("clip.mp4")));
+  request.person = 0;
+  request.max_people = 2;
+  EXPECT_THAT(run, ThrowsMessage<RequestError>(HasSubstr("--person and --people")));
+  request.person.reset();
+  request.track.camera = "weak";
+  EXPECT_THAT(run, ThrowsMessage<RequestError>(HasSubstr("weak perspective")));
+  request.track.camera = "";
+  request.track.live_lag = 3;
+  EXPECT_THAT(run, ThrowsMessage<RequestError>(HasSubstr("--live")));
+  EXPECT_FALSE(std::filesystem::exists(request.out)) << "nothing was made";
+}
+
+}  // namespace
+}  // namespace bodyloom
