@@ -3,6 +3,7 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "apps/command_callbacks.h"
 #include "apps/exit_code.h"
@@ -19,9 +20,13 @@ constexpr const char* kFooter =
     "  an AIST++ folder (keypoints2d/, keypoints3d/)    aist-held-out: 3D joints, and the cameras that were not "
     "fitted\n"
     "  a Pose2Sim folder (calib_refined.json)           pose2sim-held-out: the other camera\n"
+    "Without a truth, two calibrated cameras that ran together are enough: joints triangulated from their detections\n"
+    "(--seen) stand in for it, and the camera that was not fitted judges (rig-held-out).\n"
     "Examples:\n"
     "  bodyloom evaluate --track track.npz --truth clip/truth.npz --json errors.json\n"
-    "  bodyloom evaluate --track track.npz --truth aistpp --cameras aistpp/cameras --sequence SEQ --view c01\n\n";
+    "  bodyloom evaluate --track track.npz --truth aistpp --cameras aistpp/cameras --sequence SEQ --view c01\n"
+    "  bodyloom evaluate --track one/person_1.npz --cameras rig.json --view cam1 --seen cam1:1=one/detections.npz\n"
+    "    --seen cam2:0=two/detections.npz\n\n";
 
 }  // namespace
 
@@ -31,10 +36,18 @@ void AddEvaluateVerb(CLI::App& app, Action* action) {
   auto request = std::make_shared<EvaluateTrackRequest>();
   EvaluateTrackRequest& c = *request;
   verb->add_option("--track", c.track, "the track, .npz")->required()->type_name("FILE");
-  verb->add_option("--truth", c.truth, "what is known (below)")->required()->type_name("PATH");
+  verb->add_option("--truth", c.truth, "what is known (below)")->type_name("PATH");
+  verb->add_option_function<std::vector<std::string>>(
+          "--seen",
+          [request](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) request->seen.push_back(RigDetectionsFromText(text));
+          },
+          "instead of --truth: what a calibrated camera saw of the person, VIEW[:PERSON]=FILE, once a camera")
+      ->type_name("TEXT");
   verb->add_option("--body", c.body, "body that both were made with (default: the built-in body)")->type_name("FILE");
   verb->add_option("--json", c.json, "also write the numbers as JSON")->type_name("FILE");
-  verb->add_option("--cameras", c.cameras, "AIST++: camera folder (default: TRUTH/cameras)")->type_name("DIR");
+  verb->add_option("--cameras", c.cameras, "AIST++: camera folder (default: TRUTH/cameras); --seen: the calibration")
+      ->type_name("PATH");
   verb->add_option("--sequence", c.sequence, "AIST++: name of the clip")->type_name("NAME");
   verb->add_option("--view", c.view, "camera that the track was fitted to (default: c01, cam_01)")->type_name("NAME");
   verb->callback([request, action] {

@@ -9,6 +9,7 @@
 #include "bodyloom/data_tools/evaluation/aist_evaluation.h"
 #include "bodyloom/data_tools/evaluation/part_label_evaluation.h"
 #include "bodyloom/data_tools/evaluation/pose2sim_evaluation.h"
+#include "bodyloom/data_tools/evaluation/triangulated_clip.h"
 #include "bodyloom/data_tools/evaluation/truth_evaluation.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/formats/npz.h"
@@ -36,6 +37,10 @@ Evaluation Evaluate(const EvaluateTrackRequest& request, const PipelineCallbacks
   const fs::path truth = request.truth;
   const Track track = ReadTrack(request.track);
   callbacks.Update("measure", 0);
+  if (!request.seen.empty()) {
+    return EvaluateTriangulatedClip(track, ReadRigClip(request.cameras, request.seen, request.view, track),
+                                    request.view);
+  }
   if (!fs::is_directory(truth)) {
     return EvaluateAgainstFile(request, track);
   }
@@ -57,6 +62,13 @@ Evaluation Evaluate(const EvaluateTrackRequest& request, const PipelineCallbacks
 }  // namespace
 
 Evaluation EvaluateTrack(const EvaluateTrackRequest& request, const PipelineCallbacks& callbacks) {
+  if (request.truth.empty() == request.seen.empty()) {
+    throw RequestError("what is the track compared with? expected --truth, or --seen of two cameras and more");
+  }
+  if (!request.seen.empty() && (request.cameras.empty() || request.view.empty())) {
+    throw RequestError("--seen needs the calibration, --cameras, and the camera that was fitted, --view");
+  }
+  for (const RigDetections& one : request.seen) RequireReadable(one.detections, "detections");
   RequireReadable(request.track, "track");
   RequireReadable(request.truth, "truth");
   RequireReadable(request.body, "body model");

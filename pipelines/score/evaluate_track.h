@@ -3,9 +3,11 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "bodyloom/data_tools/evaluation/evaluation.h"
 #include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/pipelines/score/rig_clip.h"
 
 namespace bodyloom {
 
@@ -14,6 +16,9 @@ struct EvaluateTrackRequest {
   /// What is known, and thereby the protocol: a track or part labels (.npz), an AIST++ folder (keypoints2d/), or a
   /// Pose2Sim folder (calib_refined.json).
   std::string truth;
+  /// Instead of `truth`: what the calibrated cameras of a rig saw of the person, two or more; `cameras` is the
+  /// calibration, `view` the camera that the track was fitted to (rig_clip.h).
+  std::vector<RigDetections> seen;
   std::string body;      ///< that both were made with; empty: the built-in one
   std::string cameras;   ///< AIST++: camera folder; empty: truth/cameras
   std::string sequence;  ///< AIST++: name of the clip
@@ -21,8 +26,8 @@ struct EvaluateTrackRequest {
   std::string json;      ///< EvaluationJson; empty: not written
 };
 
-/// Measures the track and writes the numbers where requested. Throws RequestError when an AIST++ clip is not named,
-/// std::runtime_error naming a file that cannot be used, Cancelled before the measuring begins.
+/// Measures the track and writes the numbers where requested. Throws RequestError when an AIST++ clip is not named, or
+/// not exactly one of `truth` and `seen` is given, std::runtime_error naming a file that cannot be used, Cancelled before the measuring begins.
 Evaluation EvaluateTrack(const EvaluateTrackRequest& request, const PipelineCallbacks& callbacks = {});
 
 }  // namespace bodyloom

@@ -100,7 +100,8 @@ TrackSequenceInput TrackInputs::ForTracker() const {
 }
 
 TrackInputs LoadTrackInputs(const TrackRequest& request, const PipelineCallbacks& callbacks) {
-  TrackInputs inputs{LoadSceneInputs(request)};
+  TrackInputs inputs;
+  static_cast<SceneInputs&>(inputs) = LoadSceneInputs(request);
   Camera& camera = inputs.camera.camera;
   if (!request.detections.empty()) {
     const Holds holds = WhatItHolds(request.detections);

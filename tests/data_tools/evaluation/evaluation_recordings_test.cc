@@ -178,7 +178,7 @@ TEST(EvaluationRecordingsTest, Pose2SimTriangulatesAndScores) {
   EXPECT_NEAR(e.Value("pa_mpjpe_mm"), 0, 1e-6);
 
   Pose2SimOptions strict;
-  strict.max_triangulation_px = 3;
+  strict.triangulation.max_triangulation_px = 3;
   const Evaluation fewer = EvaluatePose2Sim(track, ReadPose2SimClip(folder, strict), "cam_01", strict);
   EXPECT_LT(fewer.Value("triangulated_percent"), e.Value("triangulated_percent") - 10);
   EXPECT_LT(fewer.Value("triangulation_p95_px"), 6);

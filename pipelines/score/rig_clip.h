@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+/// One person as the calibrated cameras of a rig saw it, from files: a calibration and each camera's detections.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bodyloom/data_tools/evaluation/held_out_views.h"
+#include "bodyloom/geometry/track.h"
+
+namespace bodyloom {
+
+/// What one camera saw.
+struct RigDetections {
+  std::string view;        ///< name of the camera in the calibration
+  int person = 0;          ///< in the order of LinkPeople()
+  std::string detections;  ///< any file of 2D joints (load_detections.h), in the pixels of the camera's video
+};
+
+/// "VIEW=FILE" or "VIEW:PERSON=FILE". Throws RequestError saying what was expected.
+RigDetections RigDetectionsFromText(const std::string& text);
+
+/// The clip from the track's first frame on. The cameras ran together: their frames of one number are one moment, and
+/// the frame of the track's first timestamp is looked up in the detections of `view`, the camera that it was fitted to.
+/// Joints are triangulated (triangulated_clip.h). Throws RequestError when there are fewer than two cameras or `view` is
+/// none of them, std::runtime_error naming a file that cannot be used or whose frames do not reach the track.
+MultiViewClip ReadRigClip(const std::string& cameras, const std::vector<RigDetections>& seen, const std::string& view,
+                          const Track& track);
+
+}  // namespace bodyloom
