@@ -25,7 +25,7 @@ int Run(int argc, char** argv) {
   app.footer(std::string(kExamples) + kExitCodeHelp);
   Action action;
   AddRunVerb(app, &action);
-  AddDetectVerb(app, &action);
+  AddDetectVerb(app, &action, {argv + 1, argv + argc});
   AddTrackVerb(app, &action);
   AddSynthVerb(app, &action);
   AddSynthPersonVerb(app, &action);

@@ -3,9 +3,12 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "apps/command_callbacks.h"
 #include "apps/detector_options.h"
+#include "apps/exec_neural.h"
 #include "apps/exit_code.h"
 #include "apps/verbs.h"
 #include "bodyloom/pipelines/detect/detect_clip.h"
@@ -17,24 +20,50 @@ constexpr const char* kFooter =
     "Everybody in the video is found and followed by BlazePose (33 landmarks), on the processor. The networks come "
     "with\n"
     "./dev models, from --models, or from the folder that $BODYLOOM_MODELS names.\n"
+    "--dense-model is DensePose as TorchScript (docs/detection.md), which needs the neural half of the program.\n"
     "Examples:\n"
+    "  bodyloom detect --video clip.mp4 --dense-model densepose_r50_fpn_dl.torchscript --dense-out dense.npz\n"
     "  bodyloom detect --video clip.mp4 --out detections.npz --mask mask.npz\n"
     "then\n"
     "  bodyloom track --detections detections.npz --part-labels mask.npz --video clip.mp4 --out track.npz\n\n";
 
+struct Parsed {
+  DetectClipRequest request;
+  std::string dense_model, device = "cpu", colours;
+  bool quiet = false;
+};
+
+void AddDenseOptions(CLI::App* verb, Parsed* parsed) {
+  constexpr const char* kGroup = "Dense keypoints";
+  const auto add = [&](const char* name, std::string* value, const char* help, const char* type) {
+    return verb->add_option(name, *value, help)->group(kGroup)->type_name(type);
+  };
+  CLI::Option* model = add("--dense-model", &parsed->dense_model, "DensePose as a TorchScript file", "FILE");
+  CLI::Option* out = add("--dense-out", &parsed->request.dense, "one person's dense keypoints, .npz", "FILE");
+  model->needs(out), out->needs(model);
+  add("--body", &parsed->request.body, "body on whose faces they lie (default: the built-in body)", "FILE")->needs(out);
+  add("--device", &parsed->device, "where the network runs", "")
+      ->check(CLI::IsMember({"cpu", "cuda"}))
+      ->capture_default_str()
+      ->needs(out);
+  add("--dense-colours", &parsed->colours, "order in which the network is given colours (default: as its form is)", "")
+      ->check(CLI::IsMember({"rgb", "bgr"}))
+      ->needs(out);
+}
+
 }  // namespace
 
-void AddDetectVerb(CLI::App& app, Action* action) {
+void AddDetectVerb(CLI::App& app, Action* action, std::vector<std::string> arguments, MakeChartDetector dense) {
   CLI::App* verb = app.add_subcommand("detect", "Finds the people in a video and their 2D landmarks");
   verb->footer(std::string(kFooter) + kExitCodeHelp);
-  auto request = std::make_shared<DetectClipRequest>();
-  auto quiet = std::make_shared<bool>(false);
+  auto parsed = std::make_shared<Parsed>();
+  DetectClipRequest* request = &parsed->request;
   DetectPeopleRequest& detect = request->detect;
   PeopleDetectorOptions& detector = detect.detector;
   verb->add_option("--video", detect.video, "the video, or a folder of images")->required()->type_name("PATH");
   verb->add_option("--out", request->out, "everybody's landmarks, .npz")->type_name("FILE");
   verb->add_option("--mask", request->mask, "the mask of one person, .npz")->type_name("FILE");
-  verb->add_option("--person", request->person, "whose mask: 0 is the largest and longest in view")
+  verb->add_option("--person", request->person, "whose mask and dense keypoints: 0 is the largest and longest in view")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
   verb->add_option("--people", detector.max_people, "follow at most so many people at a time (0: everybody)")
@@ -54,11 +83,16 @@ void AddDetectVerb(CLI::App& app, Action* action) {
       ->capture_default_str()
       ->check(CLI::Range(1, 8));
   verb->add_option("--json", request->json, "who was found, and times")->type_name("FILE");
-  verb->add_flag("--quiet", *quiet, "print nothing but errors");
-  verb->callback([request, quiet, action] {
-    *action = [request, quiet] {
-      const DetectClipReport report = DetectClip(*request, CommandCallbacks(*quiet));
-      if (!*quiet) std::cout << ToText(report);
+  verb->add_flag("--quiet", parsed->quiet, "print nothing but errors");
+  AddDenseOptions(verb, parsed.get());
+  verb->callback([parsed, action, arguments = std::move(arguments), dense = std::move(dense)] {
+    *action = [=] {
+      if (!parsed->dense_model.empty()) {
+        if (!dense) ExecNeural(arguments);
+        parsed->request.dense_detector = dense(parsed->dense_model, parsed->device, parsed->colours);
+      }
+      const DetectClipReport report = DetectClip(parsed->request, CommandCallbacks(parsed->quiet));
+      if (!parsed->quiet) std::cout << ToText(report);
     };
   });
 }

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "bodyloom/pipelines/detect/detect_dense.h"
+
 namespace CLI {
 class App;
 }
@@ -19,7 +21,12 @@ struct FrameMetric;
 using Action = std::function<void()>;
 
 void AddRunVerb(CLI::App& app, Action* action);
-void AddDetectVerb(CLI::App& app, Action* action);
+/// Dense keypoints need LibTorch: their detector comes from `dense`, given --dense-model, --device and --dense-colours
+/// ("" when not said); without it the command goes on in the executable that has it, which takes `arguments`, those of
+/// this one.
+using MakeChartDetector =
+    std::function<ChartDetector(const std::string& model, const std::string& device, const std::string& colours)>;
+void AddDetectVerb(CLI::App& app, Action* action, std::vector<std::string> arguments, MakeChartDetector dense = {});
 void AddTrackVerb(CLI::App& app, Action* action);
 void AddSynthVerb(CLI::App& app, Action* action);
 void AddSynthPersonVerb(CLI::App& app, Action* action);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The command `bodyloom-neural`: the verbs that need LibTorch. `bodyloom neural VERB`, `bodyloom train …` and
-// `bodyloom animate …` start it.
+// `bodyloom animate …` start it, `bodyloom metrics --lpips` and `bodyloom detect --dense-model` too.
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <functional>
@@ -13,6 +13,7 @@
 #include "apps/neural/neural_verbs.h"
 #include "bodyloom/neural/runtime.h"
 #include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/pipelines/neural/densepose_detector.h"
 #include "bodyloom/pipelines/neural/likeness_metrics.h"
 
 namespace {
@@ -20,7 +21,15 @@ namespace {
 /// What a user calls this program: most of its verbs are reached as `bodyloom VERB` too.
 std::string CalledAs(int argc, char** argv) {
   const std::string_view verb = argc > 1 ? argv[1] : "";
-  return verb == "train" || verb == "animate" || verb == "metrics" ? "bodyloom" : "bodyloom neural";
+  return verb == "train" || verb == "animate" || verb == "metrics" || verb == "detect" ? "bodyloom" : "bodyloom neural";
+}
+
+bodyloom::ChartDetector DenseDetector(const std::string& model, const std::string& device, const std::string& colours) {
+  using bodyloom::DensePoseColours;
+  return bodyloom::DensePoseDetector({model, device,
+                                      colours.empty()    ? DensePoseColours::kOfForm
+                                      : colours == "rgb" ? DensePoseColours::kRgb
+                                                         : DensePoseColours::kBgr});
 }
 
 }  // namespace
@@ -50,6 +59,7 @@ int main(int argc, char** argv) {
   bodyloom::AddAnimateGuided(*animate, &action);
   bodyloom::AddCard(app, &action);
   bodyloom::AddMetricsVerb(app, &action, {}, bodyloom::LikenessMetrics);
+  bodyloom::AddDetectVerb(app, &action, {}, DenseDetector);
   try {
     app.parse(argc, argv);
     action();

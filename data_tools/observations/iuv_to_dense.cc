@@ -21,8 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kParts = 24;
-/// Standard deviation of a place that is known to a pixel: 1/√12.
-constexpr double kPixelWidthSigma = 0.28867513459481287;
 constexpr const char* kIuvEnding = "_IUV.png";
 
 /// Bits of x and y interleaved: pixels near each other on the curve are near each other in the image.
@@ -61,6 +59,44 @@ std::array<size_t, kParts + 1> Quotas(const std::array<std::vector<uint32_t>, kP
     if (quota[order[k]] < pixels[order[k]].size()) ++quota[order[k]], ++given;
   }
   return quota;
+}
+
+/// A rectangle of an image: its top-left pixel, its width, and how many pixels it has.
+struct Rectangle {
+  int x_begin, y_begin, width;
+  size_t num_pixels;
+};
+
+/// The dense keypoints of a rectangle whose pixel i shows part(i) at uv(i).
+template <class Part, class Uv>
+std::vector<DenseKeypoint> Sample(const Rectangle& rectangle, const Part& part_of, const Uv& uv_of,
+                                  const ChartLookup& charts, const IuvToDenseOptions& options) {
+  BODYLOOM_CHECK(options.per_frame >= 0 && options.sigma_px > 0 && options.max_gap >= 0, "IuvToDense: per_frame ",
+                 options.per_frame, ", sigma_px ", options.sigma_px, ", max_gap ", options.max_gap);
+  std::array<std::vector<uint32_t>, kParts + 1> pixels;
+  for (size_t i = 0; i < rectangle.num_pixels; ++i) {
+    const uint8_t part = part_of(i);
+    if (part > 0 && part <= kParts) pixels[part].push_back(static_cast<uint32_t>(i));
+  }
+  const std::array<size_t, kParts + 1> quota = Quotas(pixels, static_cast<size_t>(options.per_frame));
+  const auto width = static_cast<uint32_t>(rectangle.width);
+  std::vector<DenseKeypoint> points;
+  for (int part = 1; part <= kParts; ++part) {
+    std::vector<uint32_t>& list = pixels[part];
+    std::sort(list.begin(), list.end(),
+              [width](uint32_t a, uint32_t b) { return Morton(a % width, a / width) < Morton(b % width, b / width); });
+    for (size_t k = 0; k < quota[part]; ++k) {
+      // The middle of the k-th of quota equal stretches.
+      const uint32_t i = list[(2 * k + 1) * list.size() / (2 * quota[part])];
+      double gap = 0;
+      const SurfacePoint point = charts.Find(part, uv_of(i), &gap);
+      if (point.face < 0 || !(gap <= options.max_gap)) continue;
+      const Eigen::Vector2f pixel(static_cast<float>(rectangle.x_begin + static_cast<int>(i % width)),
+                                  static_cast<float>(rectangle.y_begin + static_cast<int>(i / width)));
+      points.push_back({point.face, point.barycentric.cast<float>(), pixel, static_cast<float>(options.sigma_px)});
+    }
+  }
+  return points;
 }
 
 /// The INDS image beside an IUV image; empty when there is none.
@@ -208,35 +244,20 @@ DenseSequence ReadDense(const std::string& path, const BodyModel& body, const Lo
 
 std::vector<DenseKeypoint> IuvToDense(const IuvImage& iuv, const ChartLookup& charts, const IuvToDenseOptions& options,
                                       const std::vector<uint8_t>& mask) {
-  BODYLOOM_CHECK(options.per_frame >= 0 && options.sigma_px > 0 && options.max_gap >= 0, "IuvToDense: per_frame ",
-                 options.per_frame, ", sigma_px ", options.sigma_px, ", max_gap ", options.max_gap);
   BODYLOOM_CHECK(mask.empty() || mask.size() == iuv.part.size(), "IuvToDense: mask of ", mask.size(),
                  " pixels, image of ", iuv.part.size());
-  std::array<std::vector<uint32_t>, kParts + 1> pixels;
-  for (size_t i = 0; i < iuv.part.size(); ++i) {
-    if (iuv.part[i] == 0 || iuv.part[i] > kParts || (!mask.empty() && mask[i] == 0)) continue;
-    pixels[iuv.part[i]].push_back(static_cast<uint32_t>(i));
-  }
-  const std::array<size_t, kParts + 1> quota = Quotas(pixels, static_cast<size_t>(options.per_frame));
-  const auto width = static_cast<uint32_t>(iuv.width);
-  std::vector<DenseKeypoint> points;
-  for (int part = 1; part <= kParts; ++part) {
-    std::vector<uint32_t>& list = pixels[part];
-    std::sort(list.begin(), list.end(),
-              [width](uint32_t a, uint32_t b) { return Morton(a % width, a / width) < Morton(b % width, b / width); });
-    for (size_t k = 0; k < quota[part]; ++k) {
-      // The middle of the k-th of quota equal stretches.
-      const uint32_t i = list[(2 * k + 1) * list.size() / (2 * quota[part])];
-      const Eigen::Vector2d uv(std::min(1.0, (iuv.u[i] + 0.5) / 255), std::min(1.0, (iuv.v[i] + 0.5) / 255));
-      double gap = 0;
-      const SurfacePoint point = charts.Find(part, uv, &gap);
-      if (point.face < 0 || !(gap <= options.max_gap)) continue;
-      points.push_back({point.face, point.barycentric.cast<float>(),
-                        Eigen::Vector2f(static_cast<float>(i % width), static_cast<float>(i / width)),
-                        static_cast<float>(options.sigma_px)});
-    }
-  }
-  return points;
+  const auto part = [&](size_t i) { return mask.empty() || mask[i] != 0 ? iuv.part[i] : uint8_t{0}; };
+  const auto uv = [&](size_t i) {
+    return Eigen::Vector2d(std::min(1.0, (iuv.u[i] + 0.5) / 255), std::min(1.0, (iuv.v[i] + 0.5) / 255));
+  };
+  return Sample({0, 0, iuv.width, iuv.part.size()}, part, uv, charts, options);
+}
+
+std::vector<DenseKeypoint> IuvToDense(const ChartImage& image, const ChartLookup& charts,
+                                      const IuvToDenseOptions& options) {
+  return Sample(
+      {image.x_begin, image.y_begin, image.width, image.part.size()}, [&](size_t i) { return image.part[i]; },
+      [&](size_t i) { return Eigen::Vector2d(image.u[i], image.v[i]); }, charts, options);
 }
 
 bool HoldsDenseKeypoints(const std::string& path) {

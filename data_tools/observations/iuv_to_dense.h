@@ -13,6 +13,7 @@
 
 #include "bodyloom/data_tools/observations/densepose_iuv.h"
 #include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/chart_image.h"
 #include "bodyloom/geometry/observations.h"
 #include "bodyloom/render/chart_lookup.h"
 
@@ -25,6 +26,9 @@ namespace bodyloom {
 /// chart that is 100 px high in the image is 3 px, the sigma_px below. What a wrong value costs: docs/tracking.md.
 constexpr double kDensePoseUvSigma = 0.03;
 
+/// Standard deviation of a place in the image that is known to a pixel, in pixels: 1/√12.
+constexpr double kPixelWidthSigma = 0.28867513459481287;
+
 struct IuvToDenseOptions {
   int per_frame = 1000;   ///< at most; 0: every pixel
   double sigma_px = 3;    ///< standard deviation given to each keypoint
@@ -34,6 +38,9 @@ struct IuvToDenseOptions {
 /// `mask` chooses pixels (empty: all); it has one entry a pixel.
 std::vector<DenseKeypoint> IuvToDense(const IuvImage& iuv, const ChartLookup& charts, const IuvToDenseOptions& options,
                                       const std::vector<uint8_t>& mask = {});
+/// The same of charts that were not rounded to bytes.
+std::vector<DenseKeypoint> IuvToDense(const ChartImage& image, const ChartLookup& charts,
+                                      const IuvToDenseOptions& options);
 
 struct LoadDenseOptions {
   IuvToDenseOptions sampling;
@@ -51,7 +58,7 @@ bool HoldsDenseKeypoints(const std::string& path);
 
 /// Dense keypoints of a clip: a folder of IUV images (one a frame; numbers in the names are frame numbers), a single
 /// IUV image, or the project's .npz (observations_npz.h). The labels of an image belong to pixels, not to points: their
-/// pixel_sigma_px is that of a pixel's width, 1/√12. Throws std::runtime_error naming the file: images that differ
+/// pixel_sigma_px is kPixelWidthSigma. Throws std::runtime_error naming the file: images that differ
 /// in size or channel order, faces that the body does not have, no labelled pixel in any frame; std::invalid_argument
 /// when the body has no charts.
 DenseSequence LoadDense(const std::string& path, const BodyModel& body, const LoadDenseOptions& options = {});

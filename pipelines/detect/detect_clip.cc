@@ -2,11 +2,14 @@
 #include "bodyloom/pipelines/detect/detect_clip.h"
 
 #include <algorithm>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
 
+#include "bodyloom/data_tools/body/body_or_builtin.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/observations/observations_npz.h"
 #include "bodyloom/data_tools/observations/part_labels.h"
 #include "bodyloom/data_tools/observations/people_npz.h"
 #include "bodyloom/geometry/base/check.h"
@@ -21,12 +24,16 @@ namespace {
 constexpr float kVisible = 0.5F;
 
 void CheckFiles(const DetectClipRequest& request) {
-  if (request.out.empty() && request.mask.empty() && request.json.empty()) {
-    throw RequestError("nothing to write: expected --out, --mask or --json");
+  const std::vector<std::string> outputs = {request.out, request.mask, request.dense, request.json};
+  if (std::all_of(outputs.begin(), outputs.end(), [](const std::string& path) { return path.empty(); })) {
+    throw RequestError("nothing to write: expected --out, --mask, --dense-out or --json");
+  }
+  if (!request.dense.empty() && !request.dense.ends_with(".npz")) {
+    throw RequestError(request.dense + ": dense keypoints are written as .npz");
   }
   RequireReadable(request.detect.video, "video");
-  RequireDistinct({request.detect.video}, {request.out, request.mask, request.json});
-  for (const std::string& path : {request.out, request.mask, request.json}) RequireWritable(path);
+  RequireDistinct({request.detect.video, request.body}, outputs);
+  for (const std::string& path : outputs) RequireWritable(path);
 }
 
 double HeightPx(const DetectedPerson& person) {
@@ -38,6 +45,63 @@ double HeightPx(const DetectedPerson& person) {
 double VisibleShare(const DetectedPerson& person) {
   const auto seen = [](const Keypoint& p) { return p.confidence >= kVisible; };
   return double(std::count_if(person.points.begin(), person.points.end(), seen)) / double(person.points.size());
+}
+
+/// Everybody's landmarks, and what the report says of them.
+DetectedClip DetectLandmarks(const DetectClipRequest& request, const PipelineCallbacks& callbacks, StageClock* clock,
+                             DetectClipReport* report) {
+  DetectPeopleRequest detect = request.detect;
+  detect.detector.masks = !request.mask.empty();
+  callbacks.Begin("detecting people");
+  clock->Begin("detect");
+  DetectedClip clip = DetectPeople(detect, callbacks);
+  const auto has_people = [](const std::vector<DetectedPerson>& people) { return !people.empty(); };
+  FoundLandmarks& found = report->landmarks.emplace();
+  found.network = detect.detector.network;
+  found.frames_with_people = int(std::count_if(clip.people.frames.begin(), clip.people.frames.end(), has_people));
+  found.people = FoundPeople(clip.people);
+  found.detector = clip.detector;
+  report->width = clip.people.image_width;
+  report->height = clip.people.image_height;
+  report->frames = int(clip.people.frames.size());
+  if (found.people.empty()) {
+    throw std::runtime_error(Concatenate(detect.video, ": nobody was found in ", report->frames, " frames"));
+  }
+  return clip;
+}
+
+void ReportDense(const DetectedDense& detected, DetectClipReport* report) {
+  size_t points = 0;
+  for (const auto& frame : detected.dense.frames) points += frame.size();
+  report->width = detected.dense.image_width;
+  report->height = detected.dense.image_height;
+  report->frames = detected.dense.num_frames();
+  report->dense = {detected.people, detected.frames_seen, double(points) / detected.frames_seen};
+}
+
+nlohmann::ordered_json ToJson(const std::vector<FoundPerson>& people) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const FoundPerson& person : people) {
+    list.push_back({{"frames", person.frames},
+                    {"first_s", person.first_s},
+                    {"last_s", person.last_s},
+                    {"height_px", person.height_px},
+                    {"visible", person.visible}});
+  }
+  return list;
+}
+
+std::string ToText(const std::vector<FoundPerson>& people) {
+  std::string text;
+  constexpr size_t kMostShown = 10;
+  for (size_t i = 0; i < std::min(kMostShown, people.size()); ++i) {
+    const FoundPerson& person = people[i];
+    text += Concatenate("person ", i, " ", person.frames, " frames, ", Fixed(person.first_s, 2), " to ",
+                        Fixed(person.last_s, 2), " s, ", Fixed(person.height_px, 0), " px tall, ",
+                        Fixed(100 * person.visible, 0), " % of the landmarks visible\n");
+  }
+  if (people.size() > kMostShown) text += Concatenate("and ", people.size() - kMostShown, " more\n");
+  return text;
 }
 
 }  // namespace
@@ -62,84 +126,80 @@ std::vector<FoundPerson> FoundPeople(const PeopleSequence& people) {
 
 DetectClipReport DetectClip(const DetectClipRequest& request, const PipelineCallbacks& callbacks) {
   CheckFiles(request);
-  StageClock clock;
-  DetectPeopleRequest detect = request.detect;
-  detect.detector.masks = !request.mask.empty();
-  callbacks.Begin("detecting people");
-  clock.Begin("detect");
-  const DetectedClip clip = DetectPeople(detect, callbacks);
+  const bool wants_dense = !request.dense.empty();
+  BODYLOOM_CHECK(!wants_dense || request.dense_detector, "DetectClip: dense keypoints without a detector");
   DetectClipReport report;
-  report.video = detect.video;
-  report.network = detect.detector.network;
-  report.width = clip.people.image_width;
-  report.height = clip.people.image_height;
-  report.frames = int(clip.people.frames.size());
-  report.frames_with_people = int(std::count_if(clip.people.frames.begin(), clip.people.frames.end(),
-                                                [](const auto& people) { return !people.empty(); }));
-  report.people = FoundPeople(clip.people);
-  report.detector = clip.detector;
-  if (report.people.empty()) {
-    throw std::runtime_error(Concatenate(detect.video, ": nobody was found in ", report.frames, " frames"));
-  }
+  report.video = request.detect.video;
+  const std::shared_ptr<const BodyModel> body = wants_dense ? BodyOrBuiltin(request.body) : nullptr;
+  const bool wants_landmarks = !wants_dense || !request.out.empty() || !request.mask.empty();
+  StageClock clock;
+  DetectedClip clip;
   std::optional<PersonTrack> masked;
-  if (!request.mask.empty()) masked = PersonOf(clip.people, request.person, detect.video);
+  if (wants_landmarks) {
+    clip = DetectLandmarks(request, callbacks, &clock, &report);
+    if (!request.mask.empty()) masked = PersonOf(clip.people, request.person, report.video);
+  }
+  DetectedDense dense;
+  if (wants_dense) {
+    callbacks.Begin("detecting dense keypoints");
+    clock.Begin("dense");
+    const DetectPeopleRequest& detect = request.detect;
+    dense = DetectDense({detect.video, {detect.fps, detect.from_s, detect.to_s}, request.person, {}},
+                        request.dense_detector, *body, wants_landmarks ? &clip.people : nullptr, callbacks);
+    ReportDense(dense, &report);
+  }
   clock.Begin("write");
-  if (!request.out.empty()) {
-    WritePeople(request.out, clip.people);
-    report.outputs.push_back(request.out);
-  }
-  if (masked) {
-    WriteMask(request.mask, MaskOfPerson(clip, *masked));
-    report.outputs.push_back(request.mask);
-  }
+  const auto wrote = [&report](const std::string& path) { report.outputs.push_back(path); };
+  if (!request.out.empty()) WritePeople(request.out, clip.people), wrote(request.out);
+  if (masked) WriteMask(request.mask, MaskOfPerson(clip, *masked)), wrote(request.mask);
+  if (wants_dense) WriteObservations(request.dense, nullptr, &dense.dense), wrote(request.dense);
   clock.End();
   report.seconds = clock.seconds();
   report.total_seconds = clock.total();
   if (!request.json.empty()) {
-    report.outputs.push_back(request.json);
+    wrote(request.json);
     WriteFileAtomically(request.json, ToJson(report));
   }
   return report;
 }
 
 std::string ToJson(const DetectClipReport& report) {
-  nlohmann::ordered_json people = nlohmann::ordered_json::array();
-  for (const FoundPerson& person : report.people) {
-    people.push_back({{"frames", person.frames},
-                      {"first_s", person.first_s},
-                      {"last_s", person.last_s},
-                      {"height_px", person.height_px},
-                      {"visible", person.visible}});
+  nlohmann::ordered_json json = {
+      {"video", report.video}, {"image_size", {report.width, report.height}}, {"frames", report.frames}};
+  if (report.landmarks) {
+    const FoundLandmarks& found = *report.landmarks;
+    json["frames_with_people"] = found.frames_with_people;
+    json["network"] = ToText(found.network);
+    json["people"] = ToJson(found.people);
+    json["searches"] = found.detector.searches;
+    json["regions"] = found.detector.regions;
+    json["search_seconds"] = found.detector.search_seconds;
+    json["landmark_seconds"] = found.detector.landmark_seconds;
   }
-  const nlohmann::ordered_json json = {{"video", report.video},
-                                       {"image_size", {report.width, report.height}},
-                                       {"frames", report.frames},
-                                       {"frames_with_people", report.frames_with_people},
-                                       {"network", ToText(report.network)},
-                                       {"people", people},
-                                       {"searches", report.detector.searches},
-                                       {"regions", report.detector.regions},
-                                       {"search_seconds", report.detector.search_seconds},
-                                       {"landmark_seconds", report.detector.landmark_seconds},
-                                       {"seconds", ToJson(report.seconds)},
-                                       {"total_seconds", report.total_seconds}};
+  if (report.dense) {
+    json["dense"] = {{"people", report.dense->people},
+                     {"frames_seen", report.dense->frames_seen},
+                     {"keypoints", report.dense->keypoints}};
+  }
+  json["seconds"] = ToJson(report.seconds);
+  json["total_seconds"] = report.total_seconds;
   return json.dump(1) + "\n";
 }
 
 std::string ToText(const DetectClipReport& report) {
-  std::string text = Concatenate("frames   ", report.frames, " of ", report.width, "x", report.height, " pixels, ",
-                                 report.frames_with_people, " with people\n");
-  constexpr size_t kMostShown = 10;
-  for (size_t i = 0; i < std::min(kMostShown, report.people.size()); ++i) {
-    const FoundPerson& person = report.people[i];
-    text += Concatenate("person ", i, " ", person.frames, " frames, ", Fixed(person.first_s, 2), " to ",
-                        Fixed(person.last_s, 2), " s, ", Fixed(person.height_px, 0), " px tall, ",
-                        Fixed(100 * person.visible, 0), " % of the landmarks visible\n");
+  std::string text = Concatenate("frames   ", report.frames, " of ", report.width, "x", report.height, " pixels");
+  if (report.landmarks) {
+    text += Concatenate(", ", report.landmarks->frames_with_people, " with people\n", ToText(report.landmarks->people));
+  } else {
+    text += "\n";
   }
-  if (report.people.size() > kMostShown) text += Concatenate("and ", report.people.size() - kMostShown, " more\n");
+  if (report.dense) {
+    text += Concatenate("dense    ", Fixed(report.dense->keypoints, 0), " keypoints a frame in ",
+                        report.dense->frames_seen, " frames, one of ", report.dense->people, " people\n");
+  }
   text += Concatenate("time     ", Fixed(report.total_seconds, 2), " s, ",
-                      Fixed(report.frames / std::max(1e-9, report.total_seconds), 1), " frames a second with ",
-                      ToText(report.network), "\n");
+                      Fixed(report.frames / std::max(1e-9, report.total_seconds), 1), " frames a second",
+                      report.landmarks ? std::string(" with ") + ToText(report.landmarks->network) : "", "\n");
   for (const std::string& path : report.outputs) text += "wrote    " + path + "\n";
   return text;
 }

@@ -1,22 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A video detected, from files to files: everybody's 2D landmarks, and one person's mask.
+/// A video detected, from files to files: everybody's 2D landmarks, one person's mask and dense keypoints.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/pipelines/detect/detect_dense.h"
 #include "bodyloom/pipelines/detect/detect_people.h"
 
 namespace bodyloom {
 
 struct DetectClipRequest {
-  DetectPeopleRequest detect;  ///< detector.masks follows from `mask`
-  std::string out;             ///< everybody's landmarks, .npz (people_npz.h); empty: none
-  std::string mask;            ///< one person's mask, .npz (part_labels.h); empty: none
-  int person = 0;              ///< whose mask: 0 is the largest and longest in view
-  std::string json;            ///< ToJson(DetectClipReport); empty: none
+  DetectPeopleRequest detect;    ///< detector.masks follows from `mask`
+  std::string out;               ///< everybody's landmarks, .npz (people_npz.h); empty: none
+  std::string mask;              ///< one person's mask, .npz (part_labels.h); empty: none
+  std::string dense;             ///< one person's dense keypoints, .npz (observations_npz.h); empty: none
+  ChartDetector dense_detector;  ///< what finds them; needed for `dense`
+  std::string body;              ///< on whose faces they lie; empty: the built-in body
+  int person = 0;                ///< whose mask and dense keypoints: 0 is the largest and longest in view
+  std::string json;              ///< ToJson(DetectClipReport); empty: none
 };
 
 /// One person found, in LinkPeople()'s order.
@@ -27,19 +32,34 @@ struct FoundPerson {
   double visible = 0;              ///< mean share of landmarks with a confidence of at least ½
 };
 
-struct DetectClipReport {
-  std::string video;
-  int width = 0, height = 0, frames = 0, frames_with_people = 0;
+/// What the landmark networks found.
+struct FoundLandmarks {
+  int frames_with_people = 0;
   PoseNetworkSize network = PoseNetworkSize::kHeavy;
   std::vector<FoundPerson> people;
   PeopleDetectorSummary detector;
+};
+
+/// What the dense detector found.
+struct FoundDense {
+  int people = 0, frames_seen = 0;  ///< DetectedDense
+  double keypoints = 0;             ///< mean of the frames in which the person was seen
+};
+
+struct DetectClipReport {
+  std::string video;
+  int width = 0, height = 0, frames = 0;
+  std::optional<FoundLandmarks> landmarks;  ///< when they were looked for
+  std::optional<FoundDense> dense;
   StageSeconds seconds;
   double total_seconds = 0;
   std::vector<std::string> outputs;  ///< files written
 };
 
-/// Detects and writes. Throws RequestError when nothing is to be written or files coincide, std::runtime_error naming a
-/// file that cannot be used or saying that nobody was found, Cancelled (nothing is written after it).
+/// Detects and writes. Landmarks are looked for unless nothing but dense keypoints is to be written; where they are,
+/// they say who is meant by `person` (DetectDense). Throws RequestError when nothing is to be written or files coincide,
+/// std::runtime_error naming a file that cannot be used or saying that nobody was found, Cancelled (nothing is written
+/// after it).
 DetectClipReport DetectClip(const DetectClipRequest& request, const PipelineCallbacks& callbacks = {});
 
 /// What FoundPerson says of each person of a clip.

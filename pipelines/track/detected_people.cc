@@ -13,16 +13,16 @@ namespace {
 
 /// Keeps elements [first, last] of what has `each` of them a frame.
 template <typename T>
-void Cut(FrameSpan frames, size_t each, std::vector<T>* all) {
+void Cut(ClipFrames frames, size_t each, std::vector<T>* all) {
   const auto begin = all->begin() + std::ptrdiff_t(each) * frames.first;
   *all = std::vector<T>(begin, begin + std::ptrdiff_t(each) * (frames.second - frames.first + 1));
 }
 
 }  // namespace
 
-FrameSpan WholeClip(const DetectedClip& clip) { return {0, int(clip.people.frames.size()) - 1}; }
+ClipFrames WholeClip(const DetectedClip& clip) { return {0, int(clip.people.frames.size()) - 1}; }
 
-FrameSpan SpanOf(const PersonTrack& person) {
+ClipFrames SpanOf(const PersonTrack& person) {
   return {person.detections.front().first, person.detections.back().first};
 }
 
@@ -40,7 +40,7 @@ DetectedClip DetectForTracking(const TrackRequest& request, const PipelineCallba
   return DetectPeople(detect, callbacks);
 }
 
-DetectedObservations ObservationsOf(const DetectedClip& clip, const PersonTrack& person, FrameSpan frames,
+DetectedObservations ObservationsOf(const DetectedClip& clip, const PersonTrack& person, ClipFrames frames,
                                     const TrackRequest& request, const SceneInputs& scene) {
   BODYLOOM_CHECK(0 <= frames.first && frames.first <= frames.second && frames.second <= WholeClip(clip).second,
                  "frames ", frames.first, " to ", frames.second, " of a clip of ", clip.people.frames.size());

@@ -21,10 +21,10 @@ struct DetectedObservations {
 };
 
 /// First and last frame, both included.
-using FrameSpan = std::pair<int, int>;
-FrameSpan WholeClip(const DetectedClip& clip);
+using ClipFrames = std::pair<int, int>;
+ClipFrames WholeClip(const DetectedClip& clip);
 /// From the person's first detection to the last.
-FrameSpan SpanOf(const PersonTrack& person);
+ClipFrames SpanOf(const PersonTrack& person);
 
 /// DetectPeople() as the request's fields on detection say; at most `max_people` at a time (0: everybody).
 DetectedClip DetectForTracking(const TrackRequest& request, const PipelineCallbacks& callbacks, int max_people = 0);
@@ -32,7 +32,7 @@ DetectedClip DetectForTracking(const TrackRequest& request, const PipelineCallba
 /// The person's landmarks and mask in those frames; where it was not seen they are missing. Landmarks whose confidence
 /// is below request.min_confidence are missing too. Throws std::runtime_error when the scene's camera is for images of
 /// other proportions than the video's.
-DetectedObservations ObservationsOf(const DetectedClip& clip, const PersonTrack& person, FrameSpan frames,
+DetectedObservations ObservationsOf(const DetectedClip& clip, const PersonTrack& person, ClipFrames frames,
                                     const TrackRequest& request, const SceneInputs& scene);
 
 }  // namespace bodyloom

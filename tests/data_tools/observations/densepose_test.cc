@@ -112,6 +112,43 @@ TEST(DensePose, LabelsComeBackAsTheSurfacePointsTheyShow) {
   EXPECT_LT(bias.norm(), 0.05) << "bytes are rounded down: half a step is added back";
 }
 
+TEST(DensePose, ChartsThatWereNotRoundedComeBackWithinAHundredthOfAPixel) {
+  const BodyModel& body = ToyBody();
+  const LabelledView view = MakeView();
+  VisibilityBuffer buffer;
+  buffer.Render(view.vertices, body.data().faces, view.camera);
+  const VisiblePoints visible =
+      ResolveVisiblePoints(buffer, body, view.vertices, view.camera, {.part = true, .chart_uv = true});
+  ChartImage image;
+  image.x_begin = 40;
+  image.y_begin = 30;
+  image.width = kWidth - 40;
+  image.height = kHeight - 30;
+  image.part.assign(size_t(image.width) * size_t(image.height), 0);
+  image.u.assign(image.part.size(), 0);
+  image.v.assign(image.part.size(), 0);
+  for (size_t k = 0; k < visible.size(); ++k) {
+    if (visible.x[k] < 40 || visible.y[k] < 30) continue;
+    const size_t i = size_t(visible.y[k] - 30) * size_t(image.width) + size_t(visible.x[k] - 40);
+    image.part[i] = visible.part[k];
+    image.u[i] = float(visible.chart_uv[k].x());
+    image.v[i] = float(visible.chart_uv[k].y());
+  }
+  const std::vector<DenseKeypoint> points = IuvToDense(image, ChartLookup(body), {.per_frame = 500, .sigma_px = 2});
+  ASSERT_EQ(points.size(), 500U);
+  double sum = 0;
+  for (const DenseKeypoint& point : points) {
+    EXPECT_EQ(point.sigma_px, 2);
+    Eigen::Vector3d x = Eigen::Vector3d::Zero();
+    for (int c = 0; c < 3; ++c)
+      x += double{point.barycentric[c]} * view.vertices.row(body.data().faces(point.face, c)).transpose();
+    Eigen::Vector2d pixel;
+    ASSERT_TRUE(view.camera.Project(x, &pixel));
+    sum += (pixel - point.pixel.cast<double>()).norm();
+  }
+  EXPECT_LT(sum / 500, 0.01) << "bytes: 0.3";
+}
+
 TEST(DensePose, SamplingIsStratified) {
   const LabelledView view = MakeView();
   const ChartLookup charts(ToyBody());

@@ -51,9 +51,10 @@ class DetectClipOnRealVideo : public ::testing::Test {
 TEST_F(DetectClipOnRealVideo, FindsTheLandmarksThatTheOriginalFound) {
   const DetectClipReport report = DetectClip(Squats());
   EXPECT_EQ(report.frames, 10);
-  EXPECT_EQ(report.frames_with_people, 10);
-  ASSERT_EQ(report.people.size(), 1U);
-  EXPECT_GT(report.people[0].height_px, 400);
+  ASSERT_TRUE(report.landmarks.has_value());
+  EXPECT_EQ(report.landmarks->frames_with_people, 10);
+  ASSERT_EQ(report.landmarks->people.size(), 1U);
+  EXPECT_GT(report.landmarks->people[0].height_px, 400);
   const KeypointSequence found = LoadDetections(folder_ / "detections.npz");
   const KeypointSequence reference = LoadDetections(data_ + "pose_squats.full.json");
   ASSERT_EQ(found.num_frames(), 10);

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/neural/densepose/densepose_network.h"
+
+#include <torch/script.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <stdexcept>
+#include <utility>
+
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/neural/densepose/densepose_output.h"
+#include "bodyloom/neural/densepose/paste_charts.h"
+#include "bodyloom/neural/densepose/vision_operators.h"
+#include "bodyloom/neural/device.h"
+
+namespace bodyloom {
+namespace {
+
+/// DensePose's mean colour, to which its networks' own padding amounts: 103.53, 116.28, 123.675.
+constexpr Colour kMeanColour = {124, 116, 104};
+
+/// The line of a message of LibTorch's that says what is wrong: after the heading, before the stack.
+std::string OneLine(const std::exception& error) {
+  const auto* from_torch = dynamic_cast<const c10::Error*>(&error);
+  const std::string text = from_torch != nullptr ? from_torch->what_without_backtrace() : error.what();
+  size_t begin = text.find_first_not_of(" \n");
+  // "The following operation failed in the TorchScript interpreter": the reason is the last line.
+  if (text.find("RuntimeError: ") != std::string::npos) begin = text.rfind("RuntimeError: ");
+  if (begin == std::string::npos) return "no reason given";
+  const std::string line = text.substr(begin, text.find('\n', begin) - begin);
+  return line.substr(0, line.find_last_not_of(" .:") + 1);
+}
+
+torch::jit::Module Load(const std::string& path) {
+  if (!std::ifstream(path, std::ios::binary).is_open()) {
+    throw std::runtime_error(path + ": cannot be read, expected DensePose as a TorchScript file");
+  }
+  RegisterVisionOperators();
+  try {
+    return torch::jit::load(path, torch::kCPU);
+  } catch (const std::exception& error) {
+    throw std::runtime_error(path + ": cannot be loaded as TorchScript (" + OneLine(error) +
+                             "); expected DensePose as torch.jit.save writes it");
+  }
+}
+
+/// Half floats become floats, and everything goes to the networks' device.
+void Prepare(torch::jit::Module* module) {
+  const auto convert = [](torch::Tensor tensor) {
+    const bool is_half = tensor.scalar_type() == torch::kHalf || tensor.scalar_type() == torch::kBFloat16;
+    tensor.set_data(OnDevice(is_half ? tensor.to(torch::kFloat) : tensor));
+  };
+  for (const torch::Tensor& parameter : module->parameters()) convert(parameter);
+  for (const torch::Tensor& buffer : module->buffers()) convert(buffer);
+  module->eval();
+}
+
+DensePoseForm FormOf(const torch::jit::Module& module, const std::string& path) {
+  constexpr const char* kExpected =
+      ", expected DensePose's: a picture in; boxes, coarse and fine segmentation, u and v out, as five tensors or as a "
+      "dictionary of tensors";
+  const auto forward = module.find_method("forward");
+  if (!forward) throw std::runtime_error(path + ": the program has no forward()" + kExpected);
+  const c10::FunctionSchema& schema = forward->function().getSchema();
+  const auto& arguments = schema.arguments();  // the first is the module itself
+  bool takes_picture = arguments.size() >= 2 && arguments[1].type()->kind() == c10::TypeKind::TensorType;
+  for (size_t i = 2; i < arguments.size(); ++i) takes_picture = takes_picture && arguments[i].default_value();
+  if (!takes_picture) {
+    throw std::runtime_error(Concatenate(path, ": forward() takes ", arguments.size() - 1,
+                                         " arguments that are not one picture", kExpected));
+  }
+  std::optional<DensePoseForm> form;
+  if (schema.returns().size() == 1) form = DensePoseFormOf(*schema.returns()[0].type());
+  if (!form) {
+    const std::string returns = schema.returns().size() == 1 ? schema.returns()[0].type()->annotation_str() : "nothing";
+    throw std::runtime_error(path + ": forward() returns " + returns + kExpected);
+  }
+  return *form;
+}
+
+Image PaddedToSquare(const Image& picture) {
+  const int side = std::max(picture.width, picture.height);
+  Image square(side, side, kMeanColour);
+  Paste(picture, 0, 0, &square);
+  return square;
+}
+
+bool IsInside(const ChartDetection& box, const Image& picture) {
+  const double x = (box.x0 + box.x1) / 2, y = (box.y0 + box.y1) / 2;
+  return x >= 0 && y >= 0 && x <= picture.width && y <= picture.height;
+}
+
+}  // namespace
+
+struct DensePoseNetwork::Impl {
+  std::string path;
+  mutable torch::jit::Module module;
+  DensePoseForm form = DensePoseForm::kTuple;
+  bool rgb = true;
+
+  [[nodiscard]] torch::Tensor Input(const Image& picture) const {
+    const Image square = PaddedToSquare(picture);
+    torch::Tensor pixels =
+        torch::from_blob(const_cast<uint8_t*>(square.bgr.data()), {square.height, square.width, 3}, torch::kByte);
+    if (rgb) pixels = pixels.flip(2);
+    pixels = form == DensePoseForm::kTuple ? pixels.permute({2, 0, 1}) : pixels.to(torch::kFloat);
+    return OnDevice(pixels.contiguous().clone());
+  }
+
+  [[nodiscard]] c10::IValue Forward(const Image& picture) const {
+    try {
+      return module.forward({Input(picture)});
+    } catch (const std::exception& error) {
+      throw std::runtime_error(Concatenate(path, ": the network failed on a picture of ", picture.width, "x",
+                                           picture.height, " pixels (", OneLine(error), ")"));
+    }
+  }
+};
+
+DensePoseNetwork::DensePoseNetwork(const std::string& path, DensePoseColours colours)
+    : impl_(std::make_unique<Impl>(Impl{path, Load(path)})) {
+  impl_->form = FormOf(impl_->module, path);
+  impl_->rgb =
+      colours == DensePoseColours::kOfForm ? impl_->form == DensePoseForm::kTuple : colours == DensePoseColours::kRgb;
+  Prepare(&impl_->module);
+}
+DensePoseNetwork::~DensePoseNetwork() = default;
+DensePoseNetwork::DensePoseNetwork(DensePoseNetwork&&) noexcept = default;
+DensePoseNetwork& DensePoseNetwork::operator=(DensePoseNetwork&&) noexcept = default;
+
+std::vector<ChartDetection> DensePoseNetwork::Detect(const Image& picture) const {
+  BODYLOOM_CHECK(!picture.empty(), "DensePose: an empty picture");
+  const torch::NoGradGuard no_grad;
+  // Without it the first pictures are spent on programs for their exact numbers of people.
+  const torch::jit::GraphOptimizerEnabledGuard no_specialising(false);
+  const DensePoseOutput output = CheckedDensePoseOutput(impl_->Forward(picture), impl_->form, impl_->path);
+  std::vector<ChartDetection> people;
+  for (int64_t i = 0; i < output.boxes.size(0); ++i) {
+    const float* box = output.boxes.data_ptr<float>() + 4 * i;
+    ChartDetection person = {box[0], box[1], box[2], box[3], output.scores.data_ptr<float>()[i], {}};
+    if (!IsInside(person, picture)) continue;
+    const auto planes_of = [i](const torch::Tensor& planes) { return planes[i].data_ptr<float>(); };
+    const ChartPlanes planes = {int(output.coarse.size(1)), int(output.coarse.size(2)), int(output.coarse.size(3)),
+                                planes_of(output.coarse),   planes_of(output.fine),     planes_of(output.u),
+                                planes_of(output.v)};
+    person.charts = PasteCharts(planes, person, picture.width, picture.height);
+    const std::vector<uint8_t>& part = person.charts.part;
+    if (std::any_of(part.begin(), part.end(), [](uint8_t p) { return p > 0; })) people.push_back(std::move(person));
+  }
+  return people;
+}
+
+}  // namespace bodyloom
