@@ -77,7 +77,8 @@ std::vector<MatrixX3d> JointsTogether(const std::vector<PersonInOverlay>& people
 
 }  // namespace
 
-PeopleOverlay::PeopleOverlay(std::vector<PersonInOverlay> people, const OverlayOptions& options)
+PeopleOverlay::PeopleOverlay(std::vector<PersonInOverlay> people, const OverlayOptions& options,
+                             const std::optional<Floor>& ground)
     : people_(std::move(people)), options_(options) {
   std::string why;
   BODYLOOM_CHECK(options.IsValid(&why), why);
@@ -88,7 +89,8 @@ PeopleOverlay::PeopleOverlay(std::vector<PersonInOverlay> people, const OverlayO
   }
   backdrop_ = StudioBackdrop(camera().width, camera().height);
   const std::vector<MatrixX3d> joints = JointsTogether(people_, frames_, timestamps_.size());
-  floor_ = FloorUnder(joints, options.up_in_camera);
+  floor_ = ground ? ground : FloorUnder(joints, options.up_in_camera);
+  BODYLOOM_CHECK(floor_, "overlay: nobody has a pose in any frame");
   if (!options.side_view) return;
   FollowViewOptions view;
   view.orbit = {.yaw_deg = options.side_yaw_deg,
@@ -173,7 +175,7 @@ Image PeopleOverlay::Render(int moment, const Image* background) const {
                    "overlay: the video is ", background->width, "x", background->height, ", the camera ",
                    camera().width, "x", camera().height);
     view = *background;
-  } else if (options_.floor && floor_ && has_bodies) {
+  } else if (options_.floor && has_bodies) {
     DrawFloorGrid(*floor_, scene.vertices.colwise().mean().transpose(), {}, camera(), &view);
     DrawShadow(scene.vertices, scene.faces, *floor_, camera(), 0.35, &view);
   }

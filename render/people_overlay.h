@@ -31,8 +31,9 @@ class PeopleOverlay {
   /// Tracks of one camera (pinhole) and one clip: frames of two people are the same moment when their timestamps are
   /// equal. Of the options `colours`, `skeleton` and `body` are not used. Throws std::invalid_argument when there is
   /// nobody, when the image sizes differ or are not known, when a camera is not a pinhole, and when options are out of
-  /// range.
-  PeopleOverlay(std::vector<PersonInOverlay> people, const OverlayOptions& options = {});
+  /// range. `ground`: where the floor is, camera frame; without it just under the lowest joint of all.
+  explicit PeopleOverlay(std::vector<PersonInOverlay> people, const OverlayOptions& options = {},
+                         const std::optional<Floor>& ground = std::nullopt);
 
   /// The moments at which anybody was followed, seconds, increasing.
   [[nodiscard]] const std::vector<double>& timestamps() const { return timestamps_; }

@@ -94,7 +94,7 @@ OverlaySummary WritePeopleOverlayVideo(const std::string& path, const PeopleOver
   options.side_view = what.side_view;
   options.up_in_camera = what.up_in_camera;
   options.num_threads = ThreadsFor(0);
-  const PeopleOverlay overlay(std::move(people), options);
+  const PeopleOverlay overlay(std::move(people), options, what.ground);
   VideoWriter writer(path, overlay.width(), overlay.height(), VideoFrameRate(overlay.timestamps()));
   const auto draw = [&](int moment, const Image* background) { return overlay.Render(moment, background); };
   return WriteFrames(&writer, overlay.timestamps(), video.get(), draw, what.progress);

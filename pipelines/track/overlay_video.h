@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,7 @@ struct PeopleOverlayVideo {
   Matrix2x3d video_px_from_camera_px = NamedCamera().video_px_from_camera_px;
   bool side_view = false;
   Eigen::Vector3d up_in_camera = -Eigen::Vector3d::UnitY();
+  std::optional<Floor> ground;  ///< camera frame; none: just under the lowest joint of all
   std::function<void(double fraction)> progress = [](double) {};
 };
 

@@ -122,7 +122,11 @@ void WriteOverlay(const TrackPeopleClipRequest& request, const SceneInputs& scen
   overlay.video = request.track.video;
   overlay.video_px_from_camera_px = scene.camera.video_px_from_camera_px;
   overlay.side_view = request.track.side_view;
-  if (result.summary.scene.has_up) overlay.up_in_camera = result.summary.scene.ground.up;
+  const SharedScene& shared = result.summary.scene;
+  if (shared.has_up) overlay.up_in_camera = shared.ground.up;
+  if (shared.has_up && shared.ground.has_plane) {
+    overlay.ground = Floor{-shared.ground.camera_height_m * shared.ground.up, shared.ground.up};
+  }
   callbacks.Begin("drawing the overlay");
   overlay.progress = [&](double fraction) { callbacks.Update("overlay", fraction); };
   const std::string path = FileIn(request, "overlay.mp4");

@@ -110,6 +110,17 @@ TEST(PeopleOverlay, TheSideViewShowsWhoStandsInFront) {
   EXPECT_GT(std::abs(blue / num_blue - yellow / num_yellow), 75);
 }
 
+TEST(PeopleOverlay, AGroundThatIsKnownIsWhereTheFloorIs) {
+  const Track track = Standing(0, 3, 0, 2);
+  const std::vector<PersonInOverlay> person = {{.body = &ToyBody(), .track = &track}};
+  const std::optional<Floor> under = FloorUnder(TrackJoints(ToyBody(), track), -Eigen::Vector3d::UnitY());
+  ASSERT_TRUE(under);
+  const Image usual = PeopleOverlay(person).Render(0, nullptr);
+  EXPECT_EQ(PeopleOverlay(person, {}, under).Render(0, nullptr), usual);
+  EXPECT_NE(PeopleOverlay(person, {}, Floor{under->point + Eigen::Vector3d(0, 0.3, 0), under->up}).Render(0, nullptr),
+            usual);
+}
+
 TEST(PeopleOverlay, RefusesWhatDoesNotFit) {
   EXPECT_THROW(PeopleOverlay({}), std::invalid_argument);
   const Track track = Standing(0, 3, 0, 2);
