@@ -96,7 +96,7 @@ Track TrueTrack(const BodyModel& body, const Motion& in_camera, const Camera& ca
   return track;
 }
 
-Track PersonTrack(const BodyModel& body, const Motion& motion, const MakeSinglePersonDatasetOptions& options,
+Track TrackInView(const BodyModel& body, const Motion& motion, const MakeSinglePersonDatasetOptions& options,
                   SynthCamera* camera) {
   Motion world = motion;
   world.body = body.name();
@@ -118,7 +118,7 @@ MakeSinglePersonDatasetSummary MakeSinglePersonDataset(const std::string& folder
   BODYLOOM_CHECK(motion.num_frames() > 0, "MakeSinglePersonDataset: a motion without frames");
   const Stopwatch watch;
   SynthCamera camera;
-  const Track track = PersonTrack(body, motion, options, &camera);
+  const Track track = TrackInView(body, motion, options, &camera);
   const int T = track.num_frames();
   SinglePersonDatasetInfo info;
   info.num_frames = T, info.width = info.height = options.size_px;

@@ -50,7 +50,7 @@ Eigen::VectorXd PersonBetas(const BodyModel& body, double sigma, uint64_t seed);
 Track TrueTrack(const BodyModel& body, const Motion& in_camera, const Camera& camera);
 
 /// The true track of a motion (world frame) of that body, and the camera: static, the whole motion in view.
-Track PersonTrack(const BodyModel& body, const Motion& motion, const MakeSinglePersonDatasetOptions& options,
+Track TrackInView(const BodyModel& body, const Motion& motion, const MakeSinglePersonDatasetOptions& options,
                   SynthCamera* camera);
 
 /// Writes the dataset. Throws std::invalid_argument when options are out of range or the motion is empty, not finite or

@@ -261,7 +261,7 @@ TEST(ClothRun, LegsComeBackIntoTheSkirt) {
   MakeSinglePersonDatasetOptions options;
   options.garment = GarmentKind::kSkirt, options.seed = 3;
   SynthCamera camera;
-  const Motion motion = PersonTrack(BuiltinBody(), TakeFrames(LoadMotion(path, load), 30, 90), options, &camera).motion;
+  const Motion motion = TrackInView(BuiltinBody(), TakeFrames(LoadMotion(path, load), 30, 90), options, &camera).motion;
   const DressedPerson person(BuiltinBody(), motion.betas, options.garment, options.seed);
   ClothRunOptions run_options;
   run_options.up = camera.up_in_camera;
@@ -294,7 +294,7 @@ TEST(DressedRender, TruthIsConsistent) {
   options.size_px = 128, options.garment = GarmentKind::kSkirt;
   const Motion motion = Turning(1, 30, [](double) { return 0.4; });
   SynthCamera camera;
-  const Track track = PersonTrack(BuiltinBody(), motion, options, &camera);
+  const Track track = TrackInView(BuiltinBody(), motion, options, &camera);
   const DressedPerson person(BuiltinBody(), track.motion.betas, options.garment, 1);
   ClothRunOptions run_options;
   run_options.up = camera.up_in_camera;
