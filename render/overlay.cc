@@ -36,6 +36,19 @@ bool OverlayOptions::IsValid(std::string* why) const {
   return true;
 }
 
+FollowViewOptions OverlayOptions::SideView(int height) const {
+  FollowViewOptions view;
+  view.orbit = {.yaw_deg = side_yaw_deg, .elevation_deg = side_elevation_deg, .up_in_camera = up_in_camera};
+  view.width = 2 * static_cast<int>(std::lround(0.5 * height * side_aspect));
+  view.height = height;
+  view.follows = side_follows;
+  return view;
+}
+
+double OverlayCaptionHeight(int image_height) { return std::max(9.0, image_height / 48.0); }
+
+int OverlaySamples(int image_height) { return image_height >= 600 ? 2 : 3; }
+
 MatrixX3d TrackVertices(const BodyModel& body, const Track& track, int frame) {
   BODYLOOM_CHECK(frame >= 0 && frame < track.num_frames(), "frame ", frame, " is outside the track's ",
                  track.num_frames(), " frames");
@@ -61,47 +74,36 @@ OverlayRenderer::OverlayRenderer(const BodyModel& body, const Track& track, cons
   const std::vector<MatrixX3d> joints = TrackJoints(body, track);
   const std::vector<MatrixX3d> leaders = reference != nullptr ? TrackJoints(body, *reference) : joints;
   floor_ = FloorUnder(leaders, options.up_in_camera);
-  if (options.side_view) PlaceSideView(joints, leaders);
-}
-
-void OverlayRenderer::PlaceSideView(const std::vector<MatrixX3d>& joints, const std::vector<MatrixX3d>& leaders) {
+  if (!options.side_view) return;
   BODYLOOM_CHECK(leaders.size() == joints.size(), "overlay: the track has ", joints.size(), " frames, its reference ",
                  leaders.size());
-  FollowViewOptions view;
-  view.orbit = {.yaw_deg = options_.side_yaw_deg,
-                .elevation_deg = options_.side_elevation_deg,
-                .up_in_camera = options_.up_in_camera};
-  view.width = 2 * static_cast<int>(std::lround(0.5 * track_.camera.height * options_.side_aspect));
-  view.height = track_.camera.height;
-  view.follows = options_.side_follows;
-  side_.emplace(leaders, track_.motion.timestamps, view, joints);
-  side_backdrop_ = StudioBackdrop(view.width, view.height);
+  side_.emplace(leaders, track.motion.timestamps, options.SideView(track.camera.height), joints);
 }
 
 MeshStyle OverlayRenderer::Style(double alpha) const {
-  return {.face_colours = face_colours_, .alpha = alpha, .samples = Samples(), .num_threads = options_.num_threads};
+  return {.face_colours = face_colours_,
+          .alpha = alpha,
+          .samples = OverlaySamples(track_.camera.height),
+          .num_threads = options_.num_threads};
 }
 
-void OverlayRenderer::DrawSide(int frame, Image* panel) const {
+Image OverlayRenderer::Side(int frame) const {
   const MatrixX3i& faces = body_.data().faces;
-  const View view = side_->At(frame);
-  const Eigen::Matrix3d& R = view.from_camera.camera_from_world_rotation;
-  const Vector3d& t = view.from_camera.camera_from_world_translation;
-  const Floor floor{R * floor_->point + t, R * floor_->up};
-  DrawFloorGrid(floor, R * side_->CentreAt(frame) + t, {}, view.camera, panel);
-
+  SidePanel::Picture panel = side_->At(frame, *floor_);
   const auto draw = [&](const MatrixX3d& vertices_in_camera, const MeshStyle& style) {
     if (vertices_in_camera.rows() == 0) return;
-    const MatrixX3d vertices = view.Apply(vertices_in_camera);
-    DrawShadow(vertices, faces, floor, view.camera, 0.3, panel);
-    drawer_.Draw(vertices, faces, view.camera, style, panel);
+    const MatrixX3d vertices = panel.view.Apply(vertices_in_camera);
+    DrawShadow(vertices, faces, panel.floor, panel.view.camera, 0.3, &panel.image);
+    drawer_.Draw(vertices, faces, panel.view.camera, style, &panel.image);
   };
   if (reference_ != nullptr) {
-    draw(TrackVertices(body_, *reference_, frame),
-         {.colour = kReferenceColour, .samples = Samples(), .num_threads = options_.num_threads});
+    draw(TrackVertices(body_, *reference_, frame), {.colour = kReferenceColour,
+                                                    .samples = OverlaySamples(track_.camera.height),
+                                                    .num_threads = options_.num_threads});
   }
   const double alpha = reference_ != nullptr ? options_.alpha : 1;
   draw(TrackVertices(body_, track_, frame), Style(alpha));
+  return std::move(panel.image);
 }
 
 Image OverlayRenderer::Backdrop(const MatrixX3d& vertices, const Camera& camera) const {
@@ -137,25 +139,21 @@ Image OverlayRenderer::Render(int frame, const OverlayFrame& what) const {
     DrawOverlayLandmarks({.body = &body_, .betas = track_.motion.betas, .pose = *pose, .camera = camera}, what.detected,
                          frame, {.skeleton = options_.skeleton, .min_confidence = options_.min_confidence}, &view);
   }
-  const double caption_height = std::max(9.0, view.height / 48.0);
+  const double caption_height = OverlayCaptionHeight(view.height);
   DrawCaption(what.caption, Corner::kTopLeft, caption_height, &view);
   if (what.detected != nullptr) {
     DrawCaption(LandmarkLegend(options_.skeleton), Corner::kBottomLeft, caption_height, &view);
   }
   if (!side_) return view;
 
-  Image panel = side_backdrop_;
-  DrawSide(frame, &panel);
+  Image panel = Side(frame);
   std::vector<CaptionLine> legend = {{"seen from the side"}};
   if (reference_ != nullptr) {
     legend = {{"estimate", CaptionLine::Mark::kDisc, kBodyColour},
               {"truth", CaptionLine::Mark::kDisc, kReferenceColour}};
   }
   DrawCaption(legend, Corner::kBottomRight, caption_height, &panel);
-  Image both(width(), height());
-  Paste(view, 0, 0, &both);
-  Paste(panel, view.width, 0, &both);
-  return both;
+  return Beside(view, panel);
 }
 
 }  // namespace bodyloom

@@ -16,6 +16,7 @@
 #include "bodyloom/render/follow_view.h"
 #include "bodyloom/render/image.h"
 #include "bodyloom/render/shaded_mesh.h"
+#include "bodyloom/render/side_panel.h"
 
 namespace bodyloom {
 
@@ -43,7 +44,14 @@ struct OverlayOptions {
   int num_threads = 1;            ///< the picture is the same for any number
   /// False with the reason when a field is out of range.
   bool IsValid(std::string* why) const;
+  /// The view of the side panel beside a picture of this height.
+  [[nodiscard]] FollowViewOptions SideView(int height) const;
 };
+
+/// Height of the letters of an overlay's captions, pixels.
+double OverlayCaptionHeight(int image_height);
+/// Samples a pixel along x and y of bodies in an overlay: large pictures need fewer to look smooth.
+int OverlaySamples(int image_height);
 
 /// What one picture shows besides the body. Pointers are borrowed and may be null.
 struct OverlayFrame {
@@ -61,7 +69,7 @@ class OverlayRenderer {
                   const Track* reference = nullptr);
 
   /// Size of the pictures, side panel included.
-  [[nodiscard]] int width() const { return track_.camera.width + side_backdrop_.width; }
+  [[nodiscard]] int width() const { return track_.camera.width + (side_ ? side_->width() : 0); }
   [[nodiscard]] int height() const { return track_.camera.height; }
 
   /// Frames that the track has lost show no body. Throws std::invalid_argument when `frame` is not in the track or the
@@ -69,20 +77,17 @@ class OverlayRenderer {
   [[nodiscard]] Image Render(int frame, const OverlayFrame& what) const;
 
  private:
-  void PlaceSideView(const std::vector<MatrixX3d>& joints, const std::vector<MatrixX3d>& leaders);
   [[nodiscard]] Image Backdrop(const MatrixX3d& vertices, const Camera& camera) const;
-  /// Large pictures need fewer samples a pixel to look smooth.
-  [[nodiscard]] int Samples() const { return track_.camera.height >= 600 ? 2 : 3; }
   [[nodiscard]] MeshStyle Style(double alpha) const;
-  void DrawSide(int frame, Image* panel) const;
+  [[nodiscard]] Image Side(int frame) const;
 
   const BodyModel& body_;
   const Track& track_;
   const Track* reference_;
   OverlayOptions options_;
   std::vector<Colour> face_colours_;
-  std::optional<FollowView> side_;
-  Image backdrop_, side_backdrop_;
+  std::optional<SidePanel> side_;
+  Image backdrop_;
   std::optional<Floor> floor_;  ///< camera frame
   mutable MeshDrawer drawer_;   ///< memory used again
 };

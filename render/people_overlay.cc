@@ -91,16 +91,7 @@ PeopleOverlay::PeopleOverlay(std::vector<PersonInOverlay> people, const OverlayO
   const std::vector<MatrixX3d> joints = JointsTogether(people_, frames_, timestamps_.size());
   floor_ = ground ? ground : FloorUnder(joints, options.up_in_camera);
   BODYLOOM_CHECK(floor_, "overlay: nobody has a pose in any frame");
-  if (!options.side_view) return;
-  FollowViewOptions view;
-  view.orbit = {.yaw_deg = options.side_yaw_deg,
-                .elevation_deg = options.side_elevation_deg,
-                .up_in_camera = options.up_in_camera};
-  view.width = 2 * static_cast<int>(std::lround(0.5 * camera().height * options.side_aspect));
-  view.height = camera().height;
-  view.follows = options.side_follows;
-  side_.emplace(joints, timestamps_, view);
-  side_backdrop_ = StudioBackdrop(view.width, view.height);
+  if (options.side_view) side_.emplace(joints, timestamps_, options.SideView(camera().height));
 }
 
 PeopleOverlay::Scene PeopleOverlay::SceneAt(int moment) const {
@@ -131,24 +122,22 @@ PeopleOverlay::Scene PeopleOverlay::SceneAt(int moment) const {
 MeshStyle PeopleOverlay::Style(const Scene& scene, double alpha) const {
   return {.face_colours = scene.colours,
           .alpha = alpha,
-          .samples = camera().height >= 600 ? 2 : 3,
+          .samples = OverlaySamples(camera().height),
           .num_threads = options_.num_threads};
 }
 
-void PeopleOverlay::DrawSide(int moment, const Scene& scene, Image* panel) const {
-  const View view = side_->At(moment);
-  const Eigen::Matrix3d& R = view.from_camera.camera_from_world_rotation;
-  const Eigen::Vector3d& t = view.from_camera.camera_from_world_translation;
-  const Floor floor{R * floor_->point + t, R * floor_->up};
-  DrawFloorGrid(floor, R * side_->CentreAt(moment) + t, {}, view.camera, panel);
-  if (scene.vertices.rows() == 0) return;
-  const MatrixX3d vertices = view.Apply(scene.vertices);
-  DrawShadow(vertices, scene.faces, floor, view.camera, 0.3, panel);
-  drawer_.Draw(vertices, scene.faces, view.camera, Style(scene, 1), panel);
+Image PeopleOverlay::Side(int moment, const Scene& scene) const {
+  SidePanel::Picture panel = side_->At(moment, *floor_);
+  if (scene.vertices.rows() > 0) {
+    const MatrixX3d vertices = panel.view.Apply(scene.vertices);
+    DrawShadow(vertices, scene.faces, panel.floor, panel.view.camera, 0.3, &panel.image);
+    drawer_.Draw(vertices, scene.faces, panel.view.camera, Style(scene, 1), &panel.image);
+  }
+  return std::move(panel.image);
 }
 
 void PeopleOverlay::DrawCaptions(int moment, Image* image) const {
-  const double height = std::max(9.0, image->height / 48.0);
+  const double height = OverlayCaptionHeight(image->height);
   const double ms = std::round(1000 * timestamps_[size_t(moment)]);
   std::vector<CaptionLine> lines = {{Concatenate(ms / 1000, " s")}};
   bool any_detected = false;
@@ -197,13 +186,9 @@ Image PeopleOverlay::Render(int moment, const Image* background) const {
   }
   DrawCaptions(moment, &view);
   if (!side_) return view;
-  Image panel = side_backdrop_;
-  DrawSide(moment, scene, &panel);
-  DrawCaption({{"seen from the side"}}, Corner::kBottomRight, std::max(9.0, view.height / 48.0), &panel);
-  Image both(width(), height());
-  Paste(view, 0, 0, &both);
-  Paste(panel, view.width, 0, &both);
-  return both;
+  Image panel = Side(moment, scene);
+  DrawCaption({{"seen from the side"}}, Corner::kBottomRight, OverlayCaptionHeight(view.height), &panel);
+  return Beside(view, panel);
 }
 
 }  // namespace bodyloom

@@ -10,10 +10,10 @@
 #include "bodyloom/geometry/observations.h"
 #include "bodyloom/geometry/track.h"
 #include "bodyloom/render/floor.h"
-#include "bodyloom/render/follow_view.h"
 #include "bodyloom/render/image.h"
 #include "bodyloom/render/overlay.h"
 #include "bodyloom/render/shaded_mesh.h"
+#include "bodyloom/render/side_panel.h"
 
 namespace bodyloom {
 
@@ -38,7 +38,7 @@ class PeopleOverlay {
   /// The moments at which anybody was followed, seconds, increasing.
   [[nodiscard]] const std::vector<double>& timestamps() const { return timestamps_; }
   /// Size of the pictures, side panel included.
-  [[nodiscard]] int width() const { return camera().width + side_backdrop_.width; }
+  [[nodiscard]] int width() const { return camera().width + (side_ ? side_->width() : 0); }
   [[nodiscard]] int height() const { return camera().height; }
 
   /// The picture of one moment; `background` has the camera's size or is null: a plain backdrop. Whoever is not there
@@ -57,16 +57,16 @@ class PeopleOverlay {
   [[nodiscard]] const Camera& camera() const { return people_[0].track->camera; }
   [[nodiscard]] Scene SceneAt(int moment) const;
   [[nodiscard]] MeshStyle Style(const Scene& scene, double alpha) const;
-  void DrawSide(int moment, const Scene& scene, Image* panel) const;
+  [[nodiscard]] Image Side(int moment, const Scene& scene) const;
   void DrawCaptions(int moment, Image* image) const;
 
   std::vector<PersonInOverlay> people_;
   OverlayOptions options_;
   std::vector<double> timestamps_;
   std::vector<std::vector<int>> frames_;  ///< [person][moment]: frame of the person's track, −1: not there
-  std::optional<FollowView> side_;
+  std::optional<SidePanel> side_;
   std::optional<Floor> floor_;  ///< camera frame
-  Image backdrop_, side_backdrop_;
+  Image backdrop_;
   mutable MeshDrawer drawer_;  ///< memory used again
 };
 

@@ -66,7 +66,9 @@ TEST(PeopleOverlay, TheNearerBodyCoversWhicheverComesFirst) {
       covered += of_front && of_back && picture.at(x, y) == front_alone.at(x, y);
       both_seen += of_front && of_back;
       // The dark line along the front body's contour falls onto the other body's pixels too: only where it is alone.
-      if (!of_front && !of_back) ASSERT_EQ(picture.at(x, y), video.at(0, 0)) << x << " " << y;
+      if (!of_front && !of_back) {
+        ASSERT_EQ(picture.at(x, y), video.at(0, 0)) << x << " " << y;
+      }
     }
   }
   EXPECT_GT(both_seen, 1000);
