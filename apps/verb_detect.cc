@@ -70,11 +70,12 @@ void AddDetectVerb(CLI::App& app, Action* action, std::vector<std::string> argum
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
   AddDetectorOptions(*verb, &detector.network, &detect.models, "Options");
-  verb->add_option("--from", detect.from_s, "begin at this second")
+  verb->add_option("--from", detect.span.from_s, "begin at this second")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
-  verb->add_option("--to", detect.to_s, "end with this second (default: the end)")->check(CLI::NonNegativeNumber);
-  verb->add_option("--fps", detect.fps, "frame rate of a folder of images (default 30)")->check(CLI::PositiveNumber);
+  verb->add_option("--to", detect.span.to_s, "end with this second (default: the end)")->check(CLI::NonNegativeNumber);
+  verb->add_option("--fps", detect.span.fps, "frame rate of a folder of images (default 30)")
+      ->check(CLI::PositiveNumber);
   verb->add_option("--search-interval", detector.search_interval, "frames between searches for new people")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);

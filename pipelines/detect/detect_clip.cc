@@ -59,7 +59,7 @@ DetectedClip DetectLandmarks(const DetectClipRequest& request, const PipelineCal
   FoundLandmarks& found = report->landmarks.emplace();
   found.network = detect.detector.network;
   found.frames_with_people = int(std::count_if(clip.people.frames.begin(), clip.people.frames.end(), has_people));
-  found.people = FoundPeople(clip.people);
+  found.people = FoundPeople(clip.people, LinkPeople(clip.people));
   found.detector = clip.detector;
   report->width = clip.people.image_width;
   report->height = clip.people.image_height;
@@ -106,9 +106,9 @@ std::string ToText(const std::vector<FoundPerson>& people) {
 
 }  // namespace
 
-std::vector<FoundPerson> FoundPeople(const PeopleSequence& people) {
+std::vector<FoundPerson> FoundPeople(const PeopleSequence& people, const std::vector<PersonTrack>& tracks) {
   std::vector<FoundPerson> found;
-  for (const PersonTrack& track : LinkPeople(people)) {
+  for (const PersonTrack& track : tracks) {
     FoundPerson& person = found.emplace_back();
     person.frames = int(track.detections.size());
     person.first_s = people.timestamps[size_t(track.detections.front().first)];
@@ -143,9 +143,8 @@ DetectClipReport DetectClip(const DetectClipRequest& request, const PipelineCall
   if (wants_dense) {
     callbacks.Begin("detecting dense keypoints");
     clock.Begin("dense");
-    const DetectPeopleRequest& detect = request.detect;
-    dense = DetectDense({detect.video, {detect.fps, detect.from_s, detect.to_s}, request.person, {}},
-                        request.dense_detector, *body, wants_landmarks ? &clip.people : nullptr, callbacks);
+    dense = DetectDense({report.video, request.detect.span, request.person, {}}, request.dense_detector, *body,
+                        wants_landmarks ? &clip.people : nullptr, callbacks);
     ReportDense(dense, &report);
   }
   clock.Begin("write");

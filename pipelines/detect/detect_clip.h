@@ -62,8 +62,8 @@ struct DetectClipReport {
 /// after it).
 DetectClipReport DetectClip(const DetectClipRequest& request, const PipelineCallbacks& callbacks = {});
 
-/// What FoundPerson says of each person of a clip.
-std::vector<FoundPerson> FoundPeople(const PeopleSequence& people);
+/// What FoundPerson says of each of the clip's people; `tracks` is LinkPeople(people).
+std::vector<FoundPerson> FoundPeople(const PeopleSequence& people, const std::vector<PersonTrack>& tracks);
 
 /// Some lines for a reader, the last one with a newline.
 std::string ToText(const DetectClipReport& report);

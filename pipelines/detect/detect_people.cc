@@ -8,7 +8,6 @@
 #include "bodyloom/data_tools/detection/landmark_confidence.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/prefetcher.h"
-#include "bodyloom/pipelines/detect/frame_source.h"
 
 namespace bodyloom {
 namespace {
@@ -47,7 +46,7 @@ DetectedPerson ToPerson(const DetectedPose& pose) {
 }  // namespace
 
 DetectedClip DetectPeople(const DetectPeopleRequest& request, const PipelineCallbacks& callbacks) {
-  FrameSource source(request.video, {request.fps, request.from_s, request.to_s});
+  FrameSource source(request.video, request.span);
   PeopleDetector detector(request.models, request.detector);
   DetectedClip clip;
   clip.people.convention = MediaPipe33();
@@ -71,7 +70,7 @@ DetectedClip DetectPeople(const DetectPeopleRequest& request, const PipelineCall
     callbacks.Update("detect", num_frames > 0 ? std::min(1.0, clip.people.frames.size() / double(num_frames)) : 0);
   }
   if (clip.people.frames.empty()) {
-    throw RequestError(Concatenate(request.video, ": no frame from second ", request.from_s, " on"));
+    throw RequestError(Concatenate(request.video, ": no frame from second ", request.span.from_s, " on"));
   }
   // The video's end has been taken, so the other thread reads no more of it.
   if (const std::string warning = source.warning(); !warning.empty()) callbacks.Say(warning);

@@ -9,14 +9,14 @@
 #include "bodyloom/data_tools/observations/people.h"
 #include "bodyloom/geometry/observations.h"
 #include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/pipelines/detect/frame_source.h"
 
 namespace bodyloom {
 
 struct DetectPeopleRequest {
-  std::string video;             ///< the video, or a folder of images
-  std::string models;            ///< folder of the networks; empty: where they are installed (model_files.h)
-  double fps = 0;                ///< of a folder of images, or a video that does not say; 0: 30
-  double from_s = 0, to_s = -1;  ///< seconds from the first frame, both included; to_s < 0: to the end
+  std::string video;   ///< the video, or a folder of images
+  std::string models;  ///< folder of the networks; empty: where they are installed (model_files.h)
+  FrameSpan span;
   PeopleDetectorOptions detector;
 };
 

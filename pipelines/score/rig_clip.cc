@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "bodyloom/data_tools/evaluation/triangulated_clip.h"
+#include "bodyloom/data_tools/observations/cut_frames.h"
 #include "bodyloom/data_tools/observations/load_cameras.h"
 #include "bodyloom/data_tools/observations/load_detections.h"
 #include "bodyloom/geometry/base/check.h"
@@ -38,13 +39,6 @@ int FrameAt(const std::vector<double>& timestamps, double time_s) {
   const auto nearest = std::min_element(timestamps.begin(), timestamps.end(), nearer);
   if (nearest == timestamps.end() || std::abs(*nearest - time_s) > 0.5 / VideoFrameRate(timestamps)) return -1;
   return int(nearest - timestamps.begin());
-}
-
-KeypointSequence FramesFrom(int first, KeypointSequence keypoints) {
-  keypoints.points.erase(keypoints.points.begin(),
-                         keypoints.points.begin() + std::ptrdiff_t(first) * keypoints.num_points());
-  keypoints.timestamps.erase(keypoints.timestamps.begin(), keypoints.timestamps.begin() + first);
-  return keypoints;
 }
 
 }  // namespace
@@ -95,7 +89,8 @@ MultiViewClip ReadRigClip(const std::string& cameras, const std::vector<RigDetec
       throw std::runtime_error(
           Concatenate(seen[v].detections, ": ", detections.num_frames(), " frames, the track begins at frame ", first));
     }
-    detections = FramesFrom(first, std::move(detections));
+    const int last = detections.num_frames() - 1;
+    detections = CutFrames(std::move(detections), first, last);
   }
   clip.coco17_in_world = TriangulateViews(clip.views);
   return clip;

@@ -43,12 +43,27 @@ void UseVideo(const std::string& path, SceneInputs* inputs) {
 
 }  // namespace
 
+TrackSequenceInput SceneInputs::ForTracker() const {
+  TrackSequenceInput input;
+  input.body = body.get();
+  input.prior = prior ? &*prior : nullptr;
+  input.lifter = lifter ? &*lifter : nullptr;
+  input.camera = camera.camera;
+  return input;
+}
+
+void UseFocal(const TrackRequest& request, Camera* camera) {
+  if (request.focal_px > 0) *camera = MakePinhole(camera->width, camera->height, request.focal_px);
+}
+
 SceneInputs LoadSceneInputs(const TrackRequest& request) {
   SceneInputs inputs;
   inputs.body = BodyOrBuiltin(request.body);
   inputs.camera = CameraFromRequest(request);
   if (!request.video.empty()) UseVideo(request.video, &inputs);
-  if (request.lifter != "none") {
+  // The lifter knows how detectors err. Joints read off labels err otherwise, and it makes worse of them than the joint
+  // hypotheses do (docs/benchmarks.md).
+  if (request.lifter != "none" && !(request.lifter.empty() && ReadsJointsOffLabels(request))) {
     inputs.lifter = request.lifter.empty() ? BuiltinLifter() : ReadLifterWeights(request.lifter);
   }
   if (request.prior != "none") {

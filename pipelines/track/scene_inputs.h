@@ -10,6 +10,7 @@
 #include "bodyloom/geometry/lifter_weights.h"
 #include "bodyloom/geometry/pose_prior.h"
 #include "bodyloom/pipelines/track/track_request.h"
+#include "bodyloom/tracking/track_input.h"
 
 namespace bodyloom {
 
@@ -17,12 +18,18 @@ struct SceneInputs {
   std::shared_ptr<const BodyModel> body;
   std::optional<PosePrior> prior;
   std::optional<LifterWeights> lifter;
-  NamedCamera camera;  ///< intrinsics, pose and the way to the video's pixels, as far as known; without --focal
+  NamedCamera camera;  ///< intrinsics, pose and the way to the video's pixels, as far as known (UseFocal)
   double video_fps = 0;
+
+  /// What the tracker is told of the scene; pointers into this object.
+  [[nodiscard]] TrackSequenceInput ForTracker() const;
 };
 
 /// Reads what the request names; the camera has the video's size where nothing else says. Throws std::runtime_error
 /// naming file and place.
 SceneInputs LoadSceneInputs(const TrackRequest& request);
+
+/// A focal length of the request's, if any, makes the camera a pinhole of its image size, which must be known by now.
+void UseFocal(const TrackRequest& request, Camera* camera);
 
 }  // namespace bodyloom

@@ -47,24 +47,8 @@ std::vector<PlanEntry> OwnPlan(const TrackRequest& request) {
 
 /// Everything that can be known to fail is made to fail now, before the long work.
 void CheckFiles(const TrackRequest& request) {
-  const std::vector<std::pair<std::string, std::string>> named_inputs = {
-      {request.detections, "detections"},
-      {request.dense, "dense keypoints"},
-      {request.part_labels, "part labels"},
-      {request.cameras, "cameras"},
-      {request.video, "video"},
-      {request.body, "body model"},
-      {request.init, "initialiser"},
-      {request.prior == "none" ? "" : request.prior, "pose prior"},
-      {request.lifter == "none" ? "" : request.lifter, "lifter"},
-      {request.reference, "reference track"}};
-  std::vector<std::string> inputs;
-  for (const auto& [path, what] : named_inputs) {
-    RequireReadable(path, what);
-    inputs.push_back(path);
-  }
   const std::vector<std::string> outputs = {request.out, request.overlay, request.json};
-  RequireDistinct(inputs, outputs);
+  RequireDistinct(RequireTrackInputs(request), outputs);
   if (!request.plan) {
     for (const std::string& path : outputs) {
       RequireWritable(path);

@@ -2,7 +2,9 @@
 #include "bodyloom/pipelines/track/track_inputs.h"
 
 #include <stdexcept>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "bodyloom/data_tools/formats/npz.h"
 #include "bodyloom/data_tools/motion/load_motion.h"
@@ -12,6 +14,7 @@
 #include "bodyloom/data_tools/observations/observations_npz.h"
 #include "bodyloom/data_tools/observations/part_labels.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/track/detected_people.h"
 #include "bodyloom/tracking/initialise/part_keypoints.h"
 
@@ -86,16 +89,32 @@ void UseDetectedPeople(const TrackRequest& request, const PipelineCallbacks& cal
 
 }  // namespace
 
+std::vector<std::string> RequireTrackInputs(const TrackRequest& request) {
+  const std::vector<std::pair<std::string, std::string>> named_inputs = {
+      {request.detections, "detections"},
+      {request.dense, "dense keypoints"},
+      {request.part_labels, "part labels"},
+      {request.cameras, "cameras"},
+      {request.video, "video"},
+      {request.body, "body model"},
+      {request.init, "initialiser"},
+      {request.prior == "none" ? "" : request.prior, "pose prior"},
+      {request.lifter == "none" ? "" : request.lifter, "lifter"},
+      {request.reference, "reference track"}};
+  std::vector<std::string> inputs;
+  for (const auto& [path, what] : named_inputs) {
+    RequireReadable(path, what);
+    inputs.push_back(path);
+  }
+  return inputs;
+}
+
 TrackSequenceInput TrackInputs::ForTracker() const {
-  TrackSequenceInput input;
-  input.body = body.get();
+  TrackSequenceInput input = SceneInputs::ForTracker();
   input.keypoints = keypoints ? &*keypoints : nullptr;
   input.dense = dense ? &*dense : nullptr;
   input.part_labels = part_labels ? &*part_labels : nullptr;
   input.initialiser = initialiser ? &*initialiser : nullptr;
-  input.prior = prior ? &*prior : nullptr;
-  input.lifter = lifter ? &*lifter : nullptr;
-  input.camera = camera.camera;
   return input;
 }
 
@@ -132,10 +151,8 @@ TrackInputs LoadTrackInputs(const TrackRequest& request, const PipelineCallbacks
     }
     inputs.part_labels = ReadPartLabels(request.part_labels, options);
     AgreeOnImageSize(request.part_labels, inputs.part_labels->image_width, inputs.part_labels->image_height, &camera);
-    if (!inputs.keypoints && !inputs.dense) {
-      inputs.keypoints = KeypointsFromPartLabels(*inputs.part_labels);
-      inputs.joints_from_labels = true;
-    }
+    inputs.joints_from_labels = ReadsJointsOffLabels(request);
+    if (inputs.joints_from_labels) inputs.keypoints = KeypointsFromPartLabels(*inputs.part_labels);
   }
   if (DetectsPeople(request)) UseDetectedPeople(request, callbacks, &inputs);
   if (camera.width == 0) {
@@ -153,12 +170,7 @@ TrackInputs LoadTrackInputs(const TrackRequest& request, const PipelineCallbacks
                                            " frames, expected the ", inputs.num_frames(), " of the detections"));
     }
   }
-  // The lifter knows how detectors err. Joints read off labels err otherwise, and it makes worse of them than the joint
-  // hypotheses do (docs/benchmarks.md).
-  if (request.lifter.empty() && inputs.joints_from_labels) inputs.lifter.reset();
-  if (request.focal_px > 0) {
-    camera = MakePinhole(camera.width, camera.height, request.focal_px);
-  }
+  UseFocal(request, &camera);
   return inputs;
 }
 

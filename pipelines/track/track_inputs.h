@@ -3,6 +3,8 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "bodyloom/geometry/observations.h"
 #include "bodyloom/geometry/track.h"
@@ -28,6 +30,9 @@ struct TrackInputs : SceneInputs {
   /// Pointers into this object.
   [[nodiscard]] TrackSequenceInput ForTracker() const;
 };
+
+/// Every file that the request names. Throws std::runtime_error naming one that is not there or cannot be read.
+std::vector<std::string> RequireTrackInputs(const TrackRequest& request);
 
 /// Reads what the request names, and detects people when there is nothing but a video. Throws Cancelled, and
 /// std::runtime_error naming file and place, also when two files contradict each other (image sizes, number of frames).

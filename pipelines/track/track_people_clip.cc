@@ -16,6 +16,7 @@
 #include "bodyloom/pipelines/track/detected_people.h"
 #include "bodyloom/pipelines/track/overlay_video.h"
 #include "bodyloom/pipelines/track/scene_inputs.h"
+#include "bodyloom/pipelines/track/track_inputs.h"
 #include "bodyloom/pipelines/track/track_video.h"
 #include "bodyloom/tracking/people/track_people.h"
 
@@ -45,14 +46,8 @@ void CheckRequest(const TrackPeopleClipRequest& request) {
   track.overlay = request.overlay ? FileIn(request, "overlay.mp4") : "";
   CheckTrackRequest(track);
   BODYLOOM_CHECK(DetectsPeople(track), "the request holds other observations than a video");
-  for (const auto& [path, what] :
-       std::vector<std::pair<std::string, std::string>>{{track.video, "video"},
-                                                        {track.cameras, "cameras"},
-                                                        {track.body, "body model"},
-                                                        {track.prior == "none" ? "" : track.prior, "pose prior"},
-                                                        {track.lifter == "none" ? "" : track.lifter, "lifter"}}) {
-    RequireReadable(path, what);
-  }
+  RequireDistinct(RequireTrackInputs(track),
+                  {FileIn(request, "detections.npz"), track.out, track.overlay, FileIn(request, "summary.json")});
   RequireWritableFolder(request.out);
 }
 
@@ -85,16 +80,9 @@ TrackPeopleResult Solve(const TrackPeopleClipRequest& request, const SceneInputs
                         const std::vector<DetectedObservations>& seen, const PipelineCallbacks& callbacks) {
   std::vector<TrackSequenceInput> inputs;
   for (const DetectedObservations& person : seen) {
-    TrackSequenceInput& input = inputs.emplace_back();
-    input.body = scene.body.get();
+    TrackSequenceInput& input = inputs.emplace_back(scene.ForTracker());
     input.keypoints = &person.keypoints;
     input.part_labels = person.mask ? &*person.mask : nullptr;
-    input.prior = scene.prior ? &*scene.prior : nullptr;
-    input.lifter = scene.lifter ? &*scene.lifter : nullptr;
-    input.camera = scene.camera.camera;
-    if (request.track.focal_px > 0) {
-      input.camera = MakePinhole(input.camera.width, input.camera.height, request.track.focal_px);
-    }
   }
   TrackSequenceOptions options = request.track.solve;
   options.camera_knowledge = CameraKnowledgeOf(request.track);
@@ -136,7 +124,7 @@ void WriteOverlay(const TrackPeopleClipRequest& request, const SceneInputs& scen
 
 /// What the detections say of the clip and of those chosen.
 TrackPeopleReport StartReport(const TrackPeopleClipRequest& request, const DetectedClip& clip,
-                              const std::vector<int>& chosen) {
+                              const std::vector<PersonTrack>& everybody, const std::vector<int>& chosen) {
   TrackPeopleReport report;
   report.video = request.track.video;
   report.width = clip.people.image_width;
@@ -144,7 +132,7 @@ TrackPeopleReport StartReport(const TrackPeopleClipRequest& request, const Detec
   report.num_frames = int(clip.people.frames.size());
   report.fps = VideoFrameRate(clip.people.timestamps);
   report.network = request.track.detector;
-  const std::vector<FoundPerson> found = FoundPeople(clip.people);
+  const std::vector<FoundPerson> found = FoundPeople(clip.people, everybody);
   report.num_found = int(found.size());
   for (const int number : chosen) {
     TrackedPerson& person = report.people.emplace_back();
@@ -160,12 +148,13 @@ TrackPeopleReport TrackPeopleClip(const TrackPeopleClipRequest& request, const P
   CheckRequest(request);
   StageClock clock;
   clock.Begin("read");
-  const SceneInputs scene = LoadSceneInputs(request.track);
+  SceneInputs scene = LoadSceneInputs(request.track);
+  UseFocal(request.track, &scene.camera.camera);
   clock.Begin("detect");
   const DetectedClip clip = DetectForTracking(request.track, callbacks, request.max_people);
   const std::vector<PersonTrack> everybody = LinkPeople(clip.people);
   const std::vector<int> chosen = ChoosePeople(request, clip, everybody);
-  TrackPeopleReport report = StartReport(request, clip, chosen);
+  TrackPeopleReport report = StartReport(request, clip, everybody, chosen);
   clock.Begin("write");
   report.outputs.push_back(FileIn(request, "detections.npz"));
   WritePeople(report.outputs.back(), clip.people);

@@ -18,6 +18,10 @@ bool DetectsPeople(const TrackRequest& request) {
   return request.detections.empty() && request.dense.empty() && request.part_labels.empty() && !request.video.empty();
 }
 
+bool ReadsJointsOffLabels(const TrackRequest& request) {
+  return request.detections.empty() && request.dense.empty() && !request.part_labels.empty();
+}
+
 void CheckTrackRequest(const TrackRequest& request) {
   if (request.detections.empty() && request.dense.empty() && request.part_labels.empty() && request.video.empty()) {
     throw RequestError("--video is required (or --detections, --dense or --part-labels)");
@@ -46,7 +50,7 @@ void CheckTrackRequest(const TrackRequest& request) {
   if (request.live_lag && request.solve.solver != SequenceSolver::kChain) {
     throw RequestError("--live runs on the chain solver: leave out --solver " + ToString(request.solve.solver));
   }
-  if (request.live_lag && request.detections.empty() && request.dense.empty() && !request.part_labels.empty()) {
+  if (request.live_lag && ReadsJointsOffLabels(request)) {
     throw RequestError("--live does not use part labels: give --detections or --dense");
   }
   if (request.side_view && request.overlay.empty()) {

@@ -60,6 +60,9 @@ void CheckTrackRequest(const TrackRequest& request);
 /// Whether people are to be detected in the video: it is all that was given.
 bool DetectsPeople(const TrackRequest& request);
 
+/// Whether 2D joints are to be read off the part labels: they are all that was seen.
+bool ReadsJointsOffLabels(const TrackRequest& request);
+
 /// What `camera`, `cameras` and `focal_px` amount to.
 CameraKnowledge CameraKnowledgeOf(const TrackRequest& request);
 

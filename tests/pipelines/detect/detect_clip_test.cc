@@ -9,10 +9,10 @@
 #include <cmath>
 #include <filesystem>
 
-#include "bodyloom/data_tools/detection/model_files.h"
 #include "bodyloom/data_tools/observations/load_detections.h"
 #include "bodyloom/data_tools/observations/part_labels.h"
 #include "tests/support/paths.h"
+#include "tests/support/real_video.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/test_files.h"
 
@@ -25,19 +25,14 @@ using ::testing::ThrowsMessage;
 class DetectClipOnRealVideo : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (!std::filesystem::exists(squats_)) GTEST_SKIP() << squats_ << " is not there";
-    try {
-      FindModelFile(kPoseDetectorFile);
-    } catch (const std::runtime_error& error) {
-      GTEST_SKIP() << error.what();
-    }
+    if (const std::string why = WhyNoDetection(squats_); !why.empty()) GTEST_SKIP() << why;
   }
 
   /// The first second and a bit of a woman who squats, 5 frames a second.
   [[nodiscard]] DetectClipRequest Squats() const {
     DetectClipRequest request;
     request.detect.video = squats_;
-    request.detect.to_s = 1.9;
+    request.detect.span.to_s = 1.9;
     request.detect.detector.network = PoseNetworkSize::kFull;
     request.detect.detector.max_people = 1;
     request.out = folder_ / "detections.npz";
@@ -74,7 +69,7 @@ TEST_F(DetectClipOnRealVideo, FindsTheLandmarksThatTheOriginalFound) {
 
 TEST_F(DetectClipOnRealVideo, ResultsDoNotDependOnTheNumberOfThreads) {
   DetectClipRequest request = Squats();
-  request.detect.to_s = 0.7;
+  request.detect.span.to_s = 0.7;
   DetectClip(request);
   const std::string two = FileBytes(request.out);
   request.detect.detector.num_threads = 1;
@@ -84,7 +79,7 @@ TEST_F(DetectClipOnRealVideo, ResultsDoNotDependOnTheNumberOfThreads) {
 
 TEST_F(DetectClipOnRealVideo, TheMaskIsWhereTheLandmarksAre) {
   DetectClipRequest request = Squats();
-  request.detect.to_s = 0.3;
+  request.detect.span.to_s = 0.3;
   request.mask = folder_ / "mask.npz";
   const DetectClipReport report = DetectClip(request);
   EXPECT_EQ(report.outputs, (std::vector<std::string>{request.out, request.mask}));
@@ -113,11 +108,11 @@ TEST_F(DetectClipOnRealVideo, ACancelledOneLeavesNothingBehind) {
 
 TEST_F(DetectClipOnRealVideo, SpansWithoutAFrameAreRefused) {
   DetectClipRequest request = Squats();
-  request.detect.from_s = 1000;
-  request.detect.to_s = -1;
+  request.detect.span.from_s = 1000;
+  request.detect.span.to_s = -1;
   EXPECT_THAT([&] { DetectClip(request); }, ThrowsMessage<RequestError>(HasSubstr("no frame from second 1000")));
-  request.detect.from_s = 2;
-  request.detect.to_s = 1;
+  request.detect.span.from_s = 2;
+  request.detect.span.to_s = 1;
   EXPECT_THAT([&] { DetectClip(request); }, ThrowsMessage<RequestError>(HasSubstr("from <= to")));
 }
 
@@ -142,7 +137,7 @@ TEST(DetectClip, PeopleAreDescribedInTheirOrder) {
   };
   for (int t = 0; t < 3; ++t) people.frames[t].push_back(somebody(100, 320, 0.9F));
   people.frames[1].push_back(somebody(900, 64, 0.9F));
-  const std::vector<FoundPerson> found = FoundPeople(people);
+  const std::vector<FoundPerson> found = FoundPeople(people, LinkPeople(people));
   ASSERT_EQ(found.size(), 2U);
   EXPECT_EQ(found[0].frames, 3);
   EXPECT_EQ(found[0].first_s, 0);

@@ -86,7 +86,7 @@ class DetectDenseClip : public ::testing::Test {
   [[nodiscard]] DetectClipRequest ClipRequest() const {
     DetectClipRequest request;
     request.detect.video = folder_ / "clip";
-    request.detect.fps = 10;
+    request.detect.span.fps = 10;
     request.dense = folder_ / "dense.npz";
     request.dense_detector = FindRectangles;
     return request;

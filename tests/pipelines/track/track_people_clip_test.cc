@@ -9,11 +9,12 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "bodyloom/data_tools/detection/model_files.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/observations/load_detections.h"
 #include "bodyloom/data_tools/video/video_reader.h"
 #include "tests/support/paths.h"
+#include "tests/support/real_video.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/test_files.h"
 
@@ -26,12 +27,7 @@ using ::testing::ThrowsMessage;
 class TrackPeopleClipOnRealVideo : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (!std::filesystem::exists(video_)) GTEST_SKIP() << video_ << " is not there";
-    try {
-      FindModelFile(kPoseDetectorFile);
-    } catch (const std::runtime_error& error) {
-      GTEST_SKIP() << error.what();
-    }
+    if (const std::string why = WhyNoDetection(video_); !why.empty()) GTEST_SKIP() << why;
   }
 
   /// Two people, a few frames from the middle of the clip.
@@ -139,6 +135,13 @@ TEST(TrackPeopleClip, WhatContradictsItselfIsNamed) {
   request.track.live_lag = 3;
   EXPECT_THAT(run, ThrowsMessage<RequestError>(HasSubstr("--live")));
   EXPECT_FALSE(std::filesystem::exists(request.out)) << "nothing was made";
+  // The results would replace the video.
+  request.track.live_lag.reset();
+  request.out = folder / ".";
+  request.track.video = folder / "overlay.mp4";
+  WriteFileAtomically(request.track.video, "a video");
+  EXPECT_THAT(run, ThrowsMessage<RequestError>(HasSubstr("overlay.mp4")));
+  EXPECT_EQ(FileBytes(request.track.video), "a video");
 }
 
 }  // namespace
