@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/pipelines/track/track_people_report.h"
 
-#include <cmath>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/pipelines/fixed_text.h"
+#include "bodyloom/pipelines/list_text.h"
 #include "bodyloom/pipelines/report_json.h"
 
 namespace bodyloom {
@@ -18,11 +19,8 @@ std::string PersonText(const TrackedPerson& person) {
       Concatenate("person ", person.number, " ", person.seen.frames, " frames, ", Fixed(person.seen.first_s, 2), " to ",
                   Fixed(person.seen.last_s, 2), " s, ", Fixed(person.seen.height_px, 0), " px tall: ");
   if (person.track.empty()) return text + "could not be tracked (" + person.solve.message + ")\n";
-  std::string statuses;
-  for (const auto& [status, count] : person.solve.frames_by_status) {
-    if (count > 0) statuses += Concatenate(statuses.empty() ? "" : ", ", count, " ", status);
-  }
-  text += statuses + "; 2D joints: median " + Fixed(person.solve.reprojection_median_px, 2) + " px\n";
+  text += CountsText(person.solve.frames_by_status) + "; 2D joints: median " +
+          Fixed(person.solve.reprojection_median_px, 2) + " px\n";
   if (person.hidden.any()) {
     text += Concatenate("         partly hidden by others in ", person.hidden.frames, " frames\n");
   }
@@ -86,11 +84,7 @@ std::string ToText(const TrackPeopleReport& report) {
     text += Concatenate("left out ", others, " more, seen too briefly or not asked for\n");
   }
   text += SceneText(report.scene);
-  std::string stages;
-  for (const auto& [stage, seconds] : report.seconds) {
-    stages += (stages.empty() ? "" : ", ") + stage + " " + Fixed(seconds, 2);
-  }
-  text += "time     " + Fixed(report.total_seconds, 2) + " s (" + stages + "), " +
+  text += "time     " + Fixed(report.total_seconds, 2) + " s (" + StagesText(report.seconds) + "), " +
           Fixed(report.num_frames / std::max(1e-9, report.total_seconds), 1) + " frames a second with " +
           ToText(report.network) + "\n";
   text += "memory   " + Fixed(double(report.peak_memory_bytes) / (1 << 20), 0) + " MiB at most\n";

@@ -5,19 +5,12 @@
 #include <nlohmann/json.hpp>
 
 #include "bodyloom/pipelines/fixed_text.h"
+#include "bodyloom/pipelines/list_text.h"
 
 namespace bodyloom {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string Join(const std::vector<std::string>& parts, const std::string& separator) {
-  std::string text;
-  for (const std::string& part : parts) {
-    text += (text.empty() ? "" : separator) + part;
-  }
-  return text;
-}
 
 }  // namespace
 
@@ -54,13 +47,8 @@ std::string ToText(const std::vector<PlanEntry>& plan) {
 std::string ToText(const TrackReport& report) {
   const TrackSequenceSummary& solve = report.solve;
   std::string text = std::to_string(report.num_frames) + " frames: ";
-  std::vector<std::string> parts;
-  for (const auto& [status, count] : solve.frames_by_status) {
-    if (count > 0) {
-      parts.push_back(std::to_string(count) + " " + status);
-    }
-  }
-  text += (parts.empty() ? "none estimated" : Join(parts, ", ")) + "\n";
+  const std::string counts = CountsText(solve.frames_by_status);
+  text += (counts.empty() ? "none estimated" : counts) + "\n";
   text += "solve    " + ToString(solve.status) + ", " + solve.solver + ", " + std::to_string(solve.iterations) +
           " iterations" +
           (solve.initial_cost > 0 ? ", cost " + Fixed(solve.initial_cost, 1) + " -> " + Fixed(solve.final_cost, 1)
@@ -84,11 +72,7 @@ std::string ToText(const TrackReport& report) {
   } else if (!solve.ground.why.empty()) {
     text += "ground   none: " + solve.ground.why + "\n";
   }
-  parts.clear();
-  for (const auto& [stage, seconds] : StagesOf(report)) {
-    parts.push_back(stage + " " + Fixed(seconds, 2));
-  }
-  text += "time     " + Fixed(report.total_seconds, 2) + " s (" + Join(parts, ", ") + ")";
+  text += "time     " + Fixed(report.total_seconds, 2) + " s (" + StagesText(StagesOf(report)) + ")";
   if (report.num_frames > 0 && report.total_seconds > 0) {
     text += ", " + Fixed(1e3 * report.total_seconds / report.num_frames, 2) + " ms a frame";
   }
