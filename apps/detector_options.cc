@@ -17,12 +17,20 @@ std::map<std::string, PoseNetworkSize> NetworksByName() {
 
 }  // namespace
 
-void AddDetectorOptions(CLI::App& app, PoseNetworkSize* network, std::string* models, const std::string& group) {
+void AddDetectorOptions(CLI::App& app, PoseNetworkSize* network, double* detect_rate, std::string* models,
+                        const std::string& group) {
   app.add_option("--detector", *network,
                  "size of the pose network: lite, full or heavy (default), each slower and surer")
       ->transform(CLI::CheckedTransformer(NetworksByName(), CLI::ignore_case).description(""))
       ->group(group)
       ->type_name("SIZE");
+  app.add_option(
+         "--detect-rate", *detect_rate,
+         "while everybody moves slowly, detect only so many frames a second and interpolate between them, without "
+         "masks (default: every frame)")
+      ->check(CLI::PositiveNumber)
+      ->group(group)
+      ->type_name("HZ");
   app.add_option("--models", *models, "folder of the networks (default: $BODYLOOM_MODELS, or where they are installed)")
       ->group(group)
       ->type_name("DIR");

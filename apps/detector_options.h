@@ -12,7 +12,8 @@ class App;
 
 namespace bodyloom {
 
-/// --detector and --models, in this group of the help.
-void AddDetectorOptions(CLI::App& app, PoseNetworkSize* network, std::string* models, const std::string& group);
+/// --detector, --detect-rate and --models, in this group of the help.
+void AddDetectorOptions(CLI::App& app, PoseNetworkSize* network, double* detect_rate, std::string* models,
+                        const std::string& group);
 
 }  // namespace bodyloom

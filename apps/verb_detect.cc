@@ -69,7 +69,7 @@ void AddDetectVerb(CLI::App& app, Action* action, std::vector<std::string> argum
   verb->add_option("--people", detector.max_people, "follow at most so many people at a time (0: everybody)")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
-  AddDetectorOptions(*verb, &detector.network, &detect.models, "Options");
+  AddDetectorOptions(*verb, &detector.network, &detect.detect_rate, &detect.models, "Options");
   verb->add_option("--from", detect.span.from_s, "begin at this second")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);

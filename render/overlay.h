@@ -60,7 +60,7 @@ struct OverlayFrame {
   std::vector<CaptionLine> caption = {};       ///< top left
 };
 
-/// Not for use by two threads at once.
+/// Not for use by two threads at once; copies are.
 class OverlayRenderer {
  public:
   /// Borrows everything. `reference`, when given, is the true track: it stands beside the estimate in the side view.

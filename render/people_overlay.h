@@ -25,7 +25,7 @@ struct PersonInOverlay {
   int number = 0;                              ///< in the caption; chooses the colour (PersonColour)
 };
 
-/// Not for use by two threads at once.
+/// Not for use by two threads at once; copies are.
 class PeopleOverlay {
  public:
   /// Tracks of one camera (pinhole) and one clip: frames of two people are the same moment when their timestamps are

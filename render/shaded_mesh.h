@@ -31,6 +31,12 @@ struct MeshStyle {
 /// at once.
 class MeshDrawer {
  public:
+  MeshDrawer() = default;
+  /// A copy draws in memory of its own, for another thread.
+  MeshDrawer(const MeshDrawer&) : MeshDrawer() {}
+  MeshDrawer& operator=(const MeshDrawer&) { return *this; }
+  ~MeshDrawer() = default;
+
   /// Throws std::invalid_argument when sizes differ.
   void Draw(const MatrixX3d& vertices_in_camera, const MatrixX3i& faces, const Camera& camera, const MeshStyle& style,
             Image* image);

@@ -47,6 +47,7 @@ const std::vector<std::string> kEvaluated = {"pa_mpjpe_mm",           "mpjpe_sca
 
 std::vector<double> Evaluated(const Evaluation& evaluation) {
   std::vector<double> values;
+  values.reserve(kEvaluated.size());
   for (const std::string& name : kEvaluated) {
     values.push_back(evaluation.values.empty() ? kNotMeasured : evaluation.Value(name));
   }

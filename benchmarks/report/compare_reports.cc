@@ -48,8 +48,9 @@ ComparedColumn Mean(const std::vector<ComparedValue>& values, const std::string&
 }
 
 std::string Percent(double value) {
+  if (!std::isfinite(value)) return "";
   char text[32];
-  std::snprintf(text, sizeof text, std::isfinite(value) ? "± %.1f %%" : "", value);
+  std::snprintf(text, sizeof text, "± %.1f %%", value);
   return text;
 }
 

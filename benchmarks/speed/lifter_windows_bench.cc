@@ -112,7 +112,8 @@ void DrawFloorPoses(const LifterBody& body, const std::string& path) {
   Image image(static_cast<int>(kColumns * kPeople * kSize), static_cast<int>(rows * kSize), {250, 250, 250});
   const std::vector<float> all(kLifterPoints, 1);
   for (int kind = 0; kind < NumFloorPoses(); ++kind) {
-    std::printf("row %d, column %d: %s\n", kind / kColumns, kind % kColumns, FloorPoseName(kind));
+    const int row = kind / kColumns, column = kind % kColumns;
+    std::printf("row %d, column %d: %s\n", row, column, FloorPoseName(kind));
     for (int i = 0; i < kPeople / 2; ++i) {
       HashRandom random(static_cast<uint64_t>(i), {static_cast<uint64_t>(kind)});
       const LifterPerson person = body.Person({});
@@ -126,11 +127,10 @@ void DrawFloorPoses(const LifterBody& body, const std::string& path) {
         for (const Vector3f& p : posed.point) {
           points.emplace_back((view == 0 ? p.z() - middle.z() : p.x() - middle.x()) / 1.3, 0.8 - (p.y() - floor) / 1.3);
         }
-        DrawPerson(points, all, Vector2d(kind % kColumns * kPeople + 2 * i + view, kind / kColumns) * kSize, kSize,
-                   &image);
+        DrawPerson(points, all, Vector2d(column * kPeople + 2 * i + view, row) * kSize, kSize, &image);
       }
     }
-    const int y = static_cast<int>((kind / kColumns + 0.5 + 0.8 / 2.3) * kSize);
+    const int y = static_cast<int>((row + 0.5 + 0.8 / 2.3) * kSize);
     for (int x = 0; x < image.width; ++x) {
       for (int c = 0; c < 3; ++c) image.pixel(x, y)[c] = 170;
     }

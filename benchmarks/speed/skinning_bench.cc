@@ -75,18 +75,18 @@ void Report(benchmark::State& state, const BodyModel& model, const std::vector<B
   state.SetLabel(summary.simd_target);
 }
 
-void BM_Skinning(benchmark::State& state) {
+void SkinningAll(benchmark::State& state) {
   const BodyModel& model = Body(static_cast<int>(state.range(0)));
   Report(state, model, Poses(model, static_cast<int>(state.range(1))), static_cast<int>(state.range(2)), true);
 }
-BENCHMARK(BM_Skinning)
+BENCHMARK(SkinningAll)
     ->ArgNames({"body", "frames", "threads"})
     ->ArgsProduct({{kSmpl, kSmplX, kLocal}, {1, 8, 32, 256}, {1, 2}})
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 
 /// Only the arms move: what skipping the correctives of resting joints saves.
-void BM_SkinningArmsOnly(benchmark::State& state) {
+void SkinningArmsOnly(benchmark::State& state) {
   const BodyModel& model = Body(kSmpl);
   std::vector<BodyPose> poses = Poses(model, 256);
   for (BodyPose& pose : poses) {
@@ -94,13 +94,14 @@ void BM_SkinningArmsOnly(benchmark::State& state) {
   }
   Report(state, model, poses, 1, state.range(0) != 0);
 }
-BENCHMARK(BM_SkinningArmsOnly)->ArgName("skip")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(SkinningArmsOnly)->ArgName("skip")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 /// 300 surface keypoints touch at most 900 vertices: what leaving out the others saves.
-void BM_SkinningUsedVertices(benchmark::State& state) {
+void SkinningUsedVertices(benchmark::State& state) {
   const BodyModel& model = Body(static_cast<int>(state.range(0)));
   const std::vector<BodyPose> poses = Poses(model, 256);
   std::vector<int> used;
+  used.reserve(900);
   for (int i = 0; i < 900; ++i) used.push_back(static_cast<int>(int64_t{i} * model.num_vertices() / 900));
   const Skinner some(model, {.num_threads = 1, .vertices = used}), all(model);
   const Eigen::VectorXd betas = RandomBetas(model.num_betas(), 1);
@@ -132,14 +133,14 @@ void BM_SkinningUsedVertices(benchmark::State& state) {
                          benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
   state.counters["largest_difference_um"] = 1e6 * largest;
 }
-BENCHMARK(BM_SkinningUsedVertices)
+BENCHMARK(SkinningUsedVertices)
     ->ArgNames({"body", "skip"})
     ->ArgsProduct({{kSmpl, kLocal}, {0, 1}})
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 
 /// The single-frame path in double, for comparison.
-void BM_PoseVertices(benchmark::State& state) {
+void SinglePoseVertices(benchmark::State& state) {
   const BodyModel& model = Body(static_cast<int>(state.range(0)));
   const Eigen::VectorXd betas = RandomBetas(model.num_betas(), 1);
   const BodyPose pose = RandomPose(model, 1, 1.5);
@@ -147,7 +148,7 @@ void BM_PoseVertices(benchmark::State& state) {
   state.counters["ms_per_frame"] =
       benchmark::Counter(1e-3, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
-BENCHMARK(BM_PoseVertices)->ArgName("body")->Arg(kSmpl)->Arg(kSmplX)->Arg(kLocal)->Unit(benchmark::kMillisecond);
+BENCHMARK(SinglePoseVertices)->ArgName("body")->Arg(kSmpl)->Arg(kSmplX)->Arg(kLocal)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace bodyloom

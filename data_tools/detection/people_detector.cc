@@ -2,10 +2,10 @@
 #include "bodyloom/data_tools/detection/people_detector.h"
 
 #include <algorithm>
-#include <opencv2/core/utility.hpp>
 #include <optional>
 
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/geometry/base/stopwatch.h"
 
 namespace bodyloom {
@@ -32,7 +32,9 @@ class PeopleDetector::Follower {
   Follower(const std::string& folder, const PeopleDetectorOptions& options) : options_(options) {
     BODYLOOM_CHECK(options.IsValid(), "people detector: an option is outside its range");
     const std::shared_ptr<const PoseModels> models = ReadPoseModels(folder, options.network);
-    for (int i = 0; i < std::max(1, options.num_threads); ++i) detectors_.emplace_back(models, options.masks);
+    detectors_.reserve(size_t(options.num_threads));
+    detectors_.emplace_back(models, options.masks);
+    while (int(detectors_.size()) < options.num_threads) detectors_.emplace_back(detectors_.front());
   }
 
   std::vector<std::vector<DetectedPose>> Detect(std::span<const Image> frames) {
@@ -134,27 +136,14 @@ class PeopleDetector::Follower {
     return pose.presence >= options_.min_presence && pose.hips.allFinite() && pose.rim.allFinite();
   }
 
-  /// body(i, a detector of its own) for i in 0..count−1. Inside OpenCV's own loop, as its networks then run on one thread
-  /// each: several networks side by side use the processor better than one network on several threads.
+  /// body(i, a detector that no other thread uses meanwhile) for i in 0..count−1. Networks run on one thread each: several
+  /// side by side use the processor better than one on several threads.
   template <typename Body>
   void InParallel(int count, const Body& body) {
     const int workers = std::min(count, int(detectors_.size()));
-    std::vector<std::exception_ptr> errors(size_t(std::max(0, workers)));
-    cv::parallel_for_(
-        cv::Range(0, workers),
-        [&](const cv::Range& range) {
-          for (int worker = range.start; worker < range.end; ++worker) {
-            try {
-              for (int i = worker; i < count; i += workers) body(i, detectors_[size_t(worker)]);
-            } catch (...) {
-              errors[size_t(worker)] = std::current_exception();
-            }
-          }
-        },
-        workers);
-    for (const std::exception_ptr& error : errors) {
-      if (error) std::rethrow_exception(error);
-    }
+    ParallelFor(workers, workers, [&](int worker) {
+      for (int i = worker; i < count; i += workers) body(i, detectors_[size_t(worker)]);
+    });
   }
 
   PeopleDetectorOptions options_;

@@ -2,7 +2,7 @@
 /// Everybody in the frames of a clip, by BlazePose: people are looked for now and then, and followed from frame to frame
 /// in between.
 ///
-/// Frames come in groups of kFramesAtOnce. All frames of a group are looked at in the regions that the frame before the
+/// Frames come in groups of up to kFramesAtOnce. All frames of a group are looked at in the regions that the frame before the
 /// group left (RegionAroundBody of its two region points), so that they can run side by side; results do not depend on
 /// the number of threads. New people are looked for in a group's first frame: when nobody is followed, and every
 /// `search_interval` frames unless max_people are followed already. A person is lost when the network says in every frame
@@ -47,7 +47,7 @@ class PeopleDetector {
   PeopleDetector(PeopleDetector&&) noexcept;
   PeopleDetector& operator=(PeopleDetector&&) noexcept;
 
-  /// The next frames of the clip, all of one size: at most kFramesAtOnce, fewer only at its end. Returns the people of
+  /// The next frames of the clip, all of one size: a group of 1 to kFramesAtOnce. Returns the people of
   /// each, those followed longest first. Throws std::invalid_argument for another number or another size.
   std::vector<std::vector<DetectedPose>> Detect(std::span<const Image> frames);
 

@@ -97,6 +97,7 @@ class PoseDetector::Networks {
 
 PoseDetector::PoseDetector(const std::shared_ptr<const PoseModels>& models, bool with_mask)
     : networks_(std::make_unique<Networks>(*models, with_mask)) {}
+PoseDetector::PoseDetector(const PoseDetector& other) : networks_(std::make_unique<Networks>(*other.networks_)) {}
 PoseDetector::~PoseDetector() = default;
 PoseDetector::PoseDetector(PoseDetector&&) noexcept = default;
 PoseDetector& PoseDetector::operator=(PoseDetector&&) noexcept = default;

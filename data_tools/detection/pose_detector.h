@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// BlazePose on one picture: the person detector and the landmark network of MediaPipe Pose, from their .tflite files.
 ///
-/// Networks run through OpenCV's dnn on the processor. An object serves one thread at a time; each thread needs one of
-/// its own (some 30 MB for `heavy`).
+/// Networks run on the processor. An object serves one thread at a time; copies share the kernels, so that one for each
+/// thread costs little.
 #pragma once
 
 #include <memory>
@@ -33,6 +33,8 @@ class PoseDetector {
  public:
   /// with_mask: poses bring a mask, which takes `heavy` a tenth longer and `full` half (docs/lab/pose_detector.md).
   PoseDetector(const std::shared_ptr<const PoseModels>& models, bool with_mask);
+  PoseDetector(const PoseDetector& other);
+  PoseDetector& operator=(const PoseDetector&) = delete;
   ~PoseDetector();
   PoseDetector(PoseDetector&&) noexcept;
   PoseDetector& operator=(PoseDetector&&) noexcept;

@@ -11,7 +11,8 @@ namespace bodyloom {
 namespace {
 
 constexpr int kWindowRadius = 3;
-constexpr double kMinHeat = 0.5, kMaskThreshold = 0.5;
+constexpr double kMinHeat = 0.5;
+constexpr float kMaskThreshold = 0.5F;
 
 double Sigmoid(double logit) { return 1 / (1 + std::exp(-logit)); }
 
@@ -42,23 +43,37 @@ Refined RefineByHeatmap(std::span<const float> heatmaps, int k, const Eigen::Vec
 }
 
 /// Bilinear value of probabilities on a grid whose point (column, row) lies at fraction column/256, row/256; 0 outside.
-double MaskAt(std::span<const float> probability, const Eigen::Vector2d& fraction) {
-  constexpr int n = kPoseNetworkSize;
-  const Eigen::Vector2d at = fraction * n;
-  const int x0 = int(std::floor(at.x())), y0 = int(std::floor(at.y()));
-  const double ax = at.x() - x0, ay = at.y() - y0;
-  const auto value = [probability](int x, int y) {
-    return x < 0 || y < 0 || x >= n || y >= n ? 0.0 : double(probability[size_t(y) * n + x]);
-  };
-  return (1 - ay) * ((1 - ax) * value(x0, y0) + ax * value(x0 + 1, y0)) +
-         ay * ((1 - ax) * value(x0, y0 + 1) + ax * value(x0 + 1, y0 + 1));
-}
+/// The network's mask, as probabilities, between its pixels: bilinear, 0 outside.
+class MaskSampler {
+ public:
+  explicit MaskSampler(std::span<const float> logits) : values_(size_t{kSide} * kSide, 0.0F) {
+    for (int y = 0; y < kSize; ++y) {
+      std::transform(&logits[size_t(y) * kSize], &logits[size_t(y) * kSize] + kSize,
+                     &values_[size_t(y + 1) * kSide + 1], [](float v) { return float(Sigmoid(v)); });
+    }
+  }
+
+  /// At a column and a row of the mask.
+  [[nodiscard]] float At(float x, float y) const {
+    x = std::clamp(x, -1.0F, float(kSize)) + 1;
+    y = std::clamp(y, -1.0F, float(kSize)) + 1;
+    const int x0 = int(x), y0 = int(y);
+    const float ax = x - float(x0), ay = y - float(y0);
+    const float* at = &values_[size_t(y0) * kSide + size_t(x0)];
+    const float upper = at[0] + ax * (at[1] - at[0]), lower = at[kSide] + ax * (at[kSide + 1] - at[kSide]);
+    return upper + ay * (lower - upper);
+  }
+
+ private:
+  /// One pixel of zeros before the mask, two behind: where all that is outside is clamped to.
+  static constexpr int kSize = kPoseNetworkSize, kSide = kSize + 3;
+  std::vector<float> values_;
+};
 
 LabelImage MaskInImage(std::span<const float> logits, const PoseRegion& region, int image_width, int image_height) {
-  std::vector<float> probability(logits.size());
-  std::transform(logits.begin(), logits.end(), probability.begin(), [](float v) { return float(Sigmoid(v)); });
+  const MaskSampler sampler(logits);
   Eigen::Array2d low = Eigen::Array2d::Constant(1e9), high = -low;
-  for (const Eigen::Vector2d corner :
+  for (const Eigen::Vector2d& corner :
        {Eigen::Vector2d(0, 0), Eigen::Vector2d(1, 0), Eigen::Vector2d(0, 1), Eigen::Vector2d(1, 1)}) {
     const Eigen::Array2d pixel = region.ImageFromFraction(corner).array();
     low = low.min(pixel);
@@ -73,12 +88,16 @@ LabelImage MaskInImage(std::span<const float> logits, const PoseRegion& region, 
   mask.width = int(high.x() - low.x());
   mask.height = int(high.y() - low.y());
   mask.labels.resize(size_t(mask.width) * mask.height);
-  // Fractions change linearly along a row.
-  const Eigen::Vector2d step = Eigen::Rotation2Dd(-region.rotation) * Eigen::Vector2d(1 / region.side, 0);
+  // Places in the network's mask change linearly along a row.
+  const Eigen::Vector2f step =
+      (Eigen::Rotation2Dd(-region.rotation) * Eigen::Vector2d(kPoseNetworkSize / region.side, 0)).cast<float>();
   for (int y = 0; y < mask.height; ++y) {
-    const Eigen::Vector2d start = region.FractionFromImage({double(mask.x_begin), double(mask.y_begin + y)});
+    const Eigen::Vector2d pixel(mask.x_begin, mask.y_begin + y);
+    const Eigen::Vector2f start = (kPoseNetworkSize * region.FractionFromImage(pixel)).cast<float>();
+    uint8_t* to = &mask.labels[size_t(y) * mask.width];
     for (int x = 0; x < mask.width; ++x) {
-      mask.labels[size_t(y) * mask.width + x] = MaskAt(probability, start + x * step) >= kMaskThreshold ? 1 : 0;
+      const float along = float(x);
+      to[x] = sampler.At(start.x() + along * step.x(), start.y() + along * step.y()) >= kMaskThreshold ? 1 : 0;
     }
   }
   return mask;
@@ -96,7 +115,9 @@ DetectedPose DecodePose(const PoseNetworkOutputs& outputs, const PoseRegion& reg
                  "logits or none, got ",
                  outputs.landmarks.size(), ", ", outputs.world.size(), ", ", outputs.heatmaps.size(), " and ",
                  outputs.mask.size());
-  DetectedPose result{.presence = outputs.presence, .region = region};
+  DetectedPose result;
+  result.presence = outputs.presence;
+  result.region = region;
   const Eigen::Rotation2Dd turn(region.rotation);
   for (int k = 0; k < 35; ++k) {
     const float* raw = &outputs.landmarks[size_t(k) * 5];

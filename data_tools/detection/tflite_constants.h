@@ -33,7 +33,7 @@ class TfliteBudget {
   size_t bytes_;
 };
 
-/// The values of a constant of this shape in C order, 64-byte aligned, as the convolutions of OpenCV's dnn read them.
+/// The values of a constant of this shape in C order, 64-byte aligned, as vector kernels like them.
 /// Throws std::runtime_error "place: what was found, expected what": another number of bytes than the shape needs,
 /// values that are not finite, a sparse layout other than rows of the last axis (tflite_model.h) or one that does not
 /// fit.

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Runs a network of a TensorFlow Lite file with OpenCV's dnn: the layers are built one by one from the model, as dnn
-/// 4.6 reads no .tflite file.
+/// Runs a network of a TensorFlow Lite file with oneDNN.
 ///
-/// What differs between the two, beside memory order (N×H×W×C against N×C×H×W):
-///   PAD of rows and columns   becomes the padding of the convolutions behind it where that is the same at both ends
-///   uneven padding            a Padding layer in front: a convolution of dnn 4.6 throws on it
-///   RESHAPE                   transposed to TFLite's order first, and back when the result is an image
-///   DEPTH_TO_SPACE            splits channels as (row, column, channel); two reshapes and a transposition
+/// Images stay in TFLite's order of memory (N×H×W×C), so that RESHAPE, CONCATENATION and DEPTH_TO_SPACE only copy.
+///   PAD of rows and columns   becomes the padding of the convolutions behind it
+///   ADD                       of a convolution's result to a tensor that nobody reads later is done by the convolution,
+///                             in place; so is relu6
+///   intermediate tensors      share buffers when they are not needed at the same time
 /// Results agree with TensorFlow Lite's own to rounding.
 #pragma once
 
@@ -24,17 +23,16 @@ struct TfliteValues {
   std::vector<float> values;
 };
 
-/// One object is used by one thread at a time; several in several threads do not disturb each other. How many threads
-/// dnn itself uses is a setting of the whole process (cv::setNumThreads), which is left as it is: with objects in
-/// several threads set it to 1. Equal numbers of threads give equal bits; other numbers cut the convolutions elsewhere
-/// and round otherwise (1e-4 of the pose detector's 224 pixels with 3 instead of 1).
+/// One object is used by one thread at a time, and runs on that thread alone. Several in several threads do not disturb
+/// each other; copies share the kernels, nearly all of the memory. Equal inputs give equal bits.
 class TfliteNetwork {
  public:
-  /// The layers that the wanted outputs need; `wanted_outputs` are places among model.outputs, none = all. The kernels
-  /// of 1×1 convolutions, nearly all of the memory, are shared with the model and its other networks; the model itself
+  /// The operators that the wanted outputs need; `wanted_outputs` are places among model.outputs, none = all. The model
   /// need not outlive the network. Throws std::invalid_argument for a place that is not there, and for a model with
   /// other than one input of shape 1×H×W×C.
   explicit TfliteNetwork(const TfliteModel& model, const std::vector<int>& wanted_outputs = {});
+  TfliteNetwork(const TfliteNetwork& other);
+  TfliteNetwork& operator=(const TfliteNetwork&) = delete;
   ~TfliteNetwork();
   TfliteNetwork(TfliteNetwork&&) noexcept;
   TfliteNetwork& operator=(TfliteNetwork&&) noexcept;

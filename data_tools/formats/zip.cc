@@ -192,9 +192,10 @@ std::string Unpack(const Bytes& in, const Entry& entry, std::string_view packed)
   return bytes;
 }
 
-std::string Deflate(const std::string& bytes, int level) {
+std::string Deflate(const std::string& bytes, int level, ZipPacking packing) {
+  const int strategy = packing == ZipPacking::kRuns ? Z_RLE : Z_DEFAULT_STRATEGY;
   z_stream stream{};
-  if (deflateInit2(&stream, level, Z_DEFLATED, -MAX_WBITS, 9, Z_DEFAULT_STRATEGY) != Z_OK) throw std::bad_alloc();
+  if (deflateInit2(&stream, level, Z_DEFLATED, -MAX_WBITS, 9, strategy) != Z_OK) throw std::bad_alloc();
   std::string packed(deflateBound(&stream, bytes.size()), '\0');
   stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
   stream.avail_in = static_cast<uInt>(bytes.size());
@@ -258,12 +259,12 @@ std::vector<ZipMember> ReadZip(std::string_view archive, const std::string& wher
   return members;
 }
 
-std::string MakeZip(const std::vector<ZipMember>& members, int level) {
+std::string MakeZip(const std::vector<ZipMember>& members, int level, ZipPacking packing) {
   std::string archive, directory;
   for (const ZipMember& member : members) {
     BODYLOOM_CHECK(member.bytes.size() < kIn64 && member.name.size() <= std::numeric_limits<uint16_t>::max(),
                    "zip member '", member.name, "' of ", member.bytes.size(), " bytes, expected less than 4 GiB");
-    const std::string packed = Deflate(member.bytes, level);
+    const std::string packed = Deflate(member.bytes, level, packing);
     const bool deflated = packed.size() < member.bytes.size();
     const std::string& body = deflated ? packed : member.bytes;
     Entry entry;

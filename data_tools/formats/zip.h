@@ -25,8 +25,12 @@ bool LooksLikeZip(std::string_view bytes);
 /// was expected; together the members take at most max_bytes, which is checked before memory is taken.
 std::vector<ZipMember> ReadZip(std::string_view archive, const std::string& where, size_t max_bytes);
 
+/// How members are deflated: by whatever repeats, or by runs of one byte alone, which is fast.
+enum class ZipPacking { kGeneral, kRuns };
+
 /// The archive of the members in the given order: fixed dates, deflated where that is smaller, so that equal members
-/// give equal bytes. level 1..9 as in zlib. Throws std::invalid_argument for archives beyond 4 GiB.
-std::string MakeZip(const std::vector<ZipMember>& members, int level = 6);
+/// give equal bytes. level 1..9 as in zlib; kRuns takes no notice of it. Throws std::invalid_argument for archives beyond
+/// 4 GiB.
+std::string MakeZip(const std::vector<ZipMember>& members, int level = 6, ZipPacking packing = ZipPacking::kGeneral);
 
 }  // namespace bodyloom

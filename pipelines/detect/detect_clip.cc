@@ -168,6 +168,7 @@ std::string ToJson(const DetectClipReport& report) {
   if (report.landmarks) {
     const FoundLandmarks& found = *report.landmarks;
     json["frames_with_people"] = found.frames_with_people;
+    json["frames_detected"] = found.detector.frames;
     json["network"] = ToText(found.network);
     json["people"] = ToJson(found.people);
     json["searches"] = found.detector.searches;

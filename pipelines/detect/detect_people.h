@@ -18,6 +18,9 @@ struct DetectPeopleRequest {
   std::string models;  ///< folder of the networks; empty: where they are installed (model_files.h)
   FrameSpan span;
   PeopleDetectorOptions detector;
+  /// Frames a second that are detected while everybody moves slowly; those between are filled in (FillBetween()), without
+  /// masks. 0: all.
+  double detect_rate = 0;
 };
 
 struct DetectedClip {

@@ -22,6 +22,8 @@ class FrameSource {
   [[nodiscard]] const VideoInfo& info() const { return reader_.info(); }
   /// About how many frames there are; 0 when the video does not say how long it is.
   [[nodiscard]] int num_frames() const;
+  /// Frames a second: the video's, else the span's, else 30.
+  [[nodiscard]] double fps() const { return fps_; }
   /// False at the end. Another thread may read than made the source, one at a time.
   bool Read(Image* frame, double* time_s);
   /// What was wrong with the video; not while another thread reads.

@@ -24,6 +24,7 @@ DetectedClip DetectForTracking(const TrackRequest& request, const PipelineCallba
   detect.detector.network = request.detector;
   detect.detector.masks = request.use_mask;
   detect.detector.max_people = max_people;
+  detect.detect_rate = request.detect_rate;
   callbacks.Begin("detecting people");
   return DetectPeople(detect, callbacks);
 }

@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
+#include <optional>
 
 #include "bodyloom/data_tools/video/video_writer.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/geometry/base/prefetcher.h"
 #include "bodyloom/pipelines/track/track_video.h"
 #include "bodyloom/render/overlay.h"
 
@@ -25,17 +28,46 @@ KeypointSequence MovedKeypoints(KeypointSequence keypoints, const Matrix2x3d& ma
   return keypoints;
 }
 
-/// Writes one picture for each of these times; `draw` gets its index and the video's frame, null where there is none.
+/// Pictures that are drawn side by side, and how many of them had no frame of the video.
+struct DrawnFrames {
+  std::vector<Image> pictures;
+  int without_video = 0;
+};
+
+/// Writes one picture for each of these times; `draw(renderer, index, frame of the video or null)` runs in several threads at
+/// once, each with a renderer of its own. Pictures are read and drawn while those before them are encoded.
+template <typename Renderer>
 OverlaySummary WriteFrames(VideoWriter* writer, const std::vector<double>& times, TrackVideo* video,
-                           const std::function<Image(int, const Image*)>& draw,
+                           const Renderer& renderer,
+                           const std::function<Image(const Renderer&, int, const Image*)>& draw,
                            const std::function<void(double)>& progress) {
+  const int num_threads = ThreadsFor(0), num_times = int(times.size());
+  const std::vector<Renderer> renderers(size_t(num_threads), renderer);
+  const auto draw_group = [&](int64_t group) {
+    const int first = int(group) * num_threads, count = std::min(num_threads, num_times - first);
+    std::vector<std::optional<Image>> backgrounds(static_cast<size_t>(count));
+    DrawnFrames drawn;
+    for (int i = 0; video != nullptr && i < count; ++i) {
+      if (const Image* background = video->At(times[size_t(first + i)])) backgrounds[size_t(i)] = *background;
+      drawn.without_video += backgrounds[size_t(i)] ? 0 : 1;
+    }
+    drawn.pictures.resize(size_t(count));
+    ParallelFor(count, num_threads, [&](int i) {
+      const std::optional<Image>& background = backgrounds[size_t(i)];
+      drawn.pictures[size_t(i)] = draw(renderers[size_t(i)], first + i, background ? &*background : nullptr);
+    });
+    return drawn;
+  };
   OverlaySummary summary;
-  for (size_t t = 0; t < times.size(); ++t) {
-    const Image* background = video != nullptr ? video->At(times[t]) : nullptr;
-    summary.frames_without_video += video != nullptr && background == nullptr;
-    writer->Write(draw(int(t), background));
-    ++summary.frames;
-    progress(double(t + 1) / double(times.size()));
+  const int num_groups = (num_times + num_threads - 1) / num_threads;
+  Prefetcher<DrawnFrames> groups(num_groups, draw_group, 1);
+  for (int group = 0; group < num_groups; ++group) {
+    const DrawnFrames drawn = groups.Take();
+    summary.frames_without_video += drawn.without_video;
+    for (const Image& picture : drawn.pictures) {
+      writer->Write(picture);
+      progress(double(++summary.frames) / num_times);
+    }
   }
   writer->Finish();
   if (video != nullptr) summary.video_warning = video->warning();
@@ -56,17 +88,17 @@ OverlaySummary WriteOverlayVideo(const std::string& path, const OverlayVideo& wh
   }
   OverlayOptions options;
   options.side_view = what.side_view;
-  options.num_threads = ThreadsFor(0);
+  options.num_threads = 1;  // a picture each: WriteFrames()
   const OverlayRenderer renderer(*what.body, track, options, what.reference);
   VideoWriter writer(path, renderer.width(), renderer.height(), fps);
-  const auto draw = [&](int t, const Image* background) {
+  const auto draw = [&](const OverlayRenderer& own, int t, const Image* background) {
     OverlayFrame frame;
     frame.detected = what.detected != nullptr ? &detected : nullptr;
     frame.background = background;
     frame.caption = {{Concatenate("frame ", t, ", ", ToString(track.frame_status[t]))}};
-    return renderer.Render(t, frame);
+    return own.Render(t, frame);
   };
-  return WriteFrames(&writer, track.motion.timestamps, video.get(), draw, what.progress);
+  return WriteFrames<OverlayRenderer>(&writer, track.motion.timestamps, video.get(), renderer, draw, what.progress);
 }
 
 OverlaySummary WritePeopleOverlayVideo(const std::string& path, const PeopleOverlayVideo& what) {
@@ -93,11 +125,13 @@ OverlaySummary WritePeopleOverlayVideo(const std::string& path, const PeopleOver
   OverlayOptions options;
   options.side_view = what.side_view;
   options.up_in_camera = what.up_in_camera;
-  options.num_threads = ThreadsFor(0);
+  options.num_threads = 1;  // a picture each: WriteFrames()
   const PeopleOverlay overlay(std::move(people), options, what.ground);
   VideoWriter writer(path, overlay.width(), overlay.height(), VideoFrameRate(overlay.timestamps()));
-  const auto draw = [&](int moment, const Image* background) { return overlay.Render(moment, background); };
-  return WriteFrames(&writer, overlay.timestamps(), video.get(), draw, what.progress);
+  const auto draw = [](const PeopleOverlay& own, int moment, const Image* background) {
+    return own.Render(moment, background);
+  };
+  return WriteFrames<PeopleOverlay>(&writer, overlay.timestamps(), video.get(), overlay, draw, what.progress);
 }
 
 }  // namespace bodyloom

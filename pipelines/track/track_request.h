@@ -25,6 +25,7 @@ struct TrackRequest {
   // Detection, when nothing of the above is given and a video is (pipelines/detect/detect_people.h).
   PoseNetworkSize detector = PoseNetworkSize::kHeavy;
   std::string models;            ///< folder of the networks; empty: where they are installed
+  double detect_rate = 0;        ///< frames a second that are detected on slow motion; 0: all
   bool use_mask = true;          ///< the person's mask becomes the silhouette term
   double from_s = 0, to_s = -1;  ///< the part of the video, seconds; to_s < 0: to the end
 

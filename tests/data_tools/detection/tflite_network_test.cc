@@ -10,6 +10,7 @@
 
 #include "bodyloom/data_tools/detection/tflite_shapes.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/hash_random.h"
 #include "tests/data_tools/detection/small_networks.h"
 #include "tests/data_tools/detection/tflite_reference.h"
 #include "tests/data_tools/detection/tflite_writer.h"
@@ -213,6 +214,49 @@ TEST(TfliteNetwork, WholeNetworks) {
   for (const Writer& writer : SmallNetworks()) ExpectAsReference(writer, "whole");
 }
 
+/// Graphs of 30 random operators on one size of image, where tensors are read once, twice or never, soon or late, and
+/// wanted or not: which buffers are shared, and which sums are done in place, differs in each.
+TEST(TfliteNetwork, RandomGraphs) {
+  size_t compared = 0;
+  for (uint64_t seed = 0; seed < 60; ++seed) {
+    HashRandom random(seed, {1});
+    const auto below = [&random](size_t n) { return static_cast<size_t>(random.Uniform() * static_cast<double>(n)); };
+    const std::vector<int> shape = {1, 5, 6, 4}, padded = {1, 7, 8, 4};
+    Writer writer;
+    std::vector<int> images = {writer.Input(shape)};
+    // Mostly the latest: chains with now and then a long link.
+    const auto any = [&] { return random.Uniform() < 0.6 ? images.back() : images[below(images.size())]; };
+    for (int i = 0; i < 30; ++i) {
+      const bool relu6 = random.Uniform() < 0.3;
+      switch (below(6)) {
+        case 0:
+          images.push_back(writer.Conv(any(), {4, 1, 1, 4}, shape, true, 1, relu6));
+          break;
+        case 1:
+          images.push_back(writer.Depthwise(any(), 3, 3, shape, true, 1, relu6));
+          break;
+        case 2: {
+          const int pad = writer.Pad(any(), {0, 0, 1, 1, 0, 2, 0, 0}, padded);
+          images.push_back(writer.Depthwise(pad, 3, 3, shape, false, 1, relu6));
+          if (relu6) images.push_back(writer.Conv(pad, {4, 3, 3, 4}, shape, false, 1));
+          break;
+        }
+        case 3: {
+          const int flat = writer.Apply(Writer::kReshape, {any(), writer.Ints({2}, {1, 120})}, {1, 120});
+          images.push_back(writer.Apply(Writer::kReshape, {flat, writer.Ints({4}, shape)}, shape));
+          break;
+        }
+        default:
+          images.push_back(writer.Apply(Writer::kAdd, {any(), any()}, shape, {{0, relu6 ? 3 : 0}}));
+      }
+    }
+    const auto computed = [&] { return images[1 + below(images.size() - 1)]; };
+    writer.outputs = {images.back(), computed(), computed()};
+    compared += ExpectAsReference(writer, Concatenate("seed ", seed), 1e-5);
+  }
+  EXPECT_GT(compared, 40'000U);
+}
+
 TEST(TfliteNetwork, WhatNoWantedOutputNeedsIsLeftOut) {
   const TfliteModel model = ModelOf(SmallNetworks()[0]);
   ASSERT_EQ(model.outputs.size(), 3U);
@@ -240,6 +284,19 @@ TEST(TfliteNetwork, OutlivesItsModel) {
   for (size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(outputs[i].values, expected[i].values);
 }
 
+TEST(TfliteNetwork, CopiesShareKernelsAndNothingThatARunChanges) {
+  const TfliteModel model = ModelOf(SmallNetworks()[0]);
+  const std::vector<float> input = InputOf(model), other(input.size(), 0.5F);
+  auto first = std::make_unique<TfliteNetwork>(model);
+  const std::vector<TfliteValues> expected = first->Run(input);
+  TfliteNetwork copy(*first);
+  copy.Run(other);
+  first.reset();
+  const std::vector<TfliteValues> outputs = copy.Run(input);
+  ASSERT_EQ(outputs.size(), expected.size());
+  for (size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(outputs[i].values, expected[i].values);
+}
+
 TEST(TfliteNetwork, TwoThreadsGiveTheBitsOfOne) {
   const TfliteModel model = ModelOf(SmallNetworks()[0]);
   TfliteNetwork alone(model);
@@ -252,7 +309,7 @@ TEST(TfliteNetwork, TwoThreadsGiveTheBitsOfOne) {
   std::vector<int> different(2, 0);
   for (size_t t = 0; t < 2; ++t) {
     threads.emplace_back([&, t] {
-      TfliteNetwork own(model);
+      TfliteNetwork own = t == 0 ? TfliteNetwork(alone) : TfliteNetwork(model);
       for (int run = 0; run < kRuns; ++run) {
         const std::vector<TfliteValues> outputs = own.Run(input(run));
         for (size_t i = 0; i < outputs.size(); ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// TensorFlow Lite's operators in plain loops over N×H×W×C, sums in double: what OpenCV's layers are compared with.
+/// TensorFlow Lite's operators in plain loops over N×H×W×C, sums in double: what the network that runs is compared with.
 #pragma once
 
 #include <algorithm>

@@ -228,6 +228,20 @@ TEST(Npz, DetectsEveryFlippedDataByte) {
   }
 }
 
+TEST(Zip, RunsOfOneByteArePackedFastAndReadBack) {
+  // Rows of a mask, and noise that has no runs.
+  std::string mask(size_t{200} * 300, '\0'), noise(60'000, '\0');
+  for (size_t y = 50; y < 150; ++y) std::fill_n(&mask[y * 300 + y], 80, '\1');
+  uint32_t state = 1;
+  for (char& value : noise) value = static_cast<char>((state = state * 1664525 + 1013904223) >> 24);
+  const std::string archive = MakeZip({{"mask", mask}, {"noise", noise}}, 6, ZipPacking::kRuns);
+  const std::vector<ZipMember> read = ReadZip(archive, "runs.zip", size_t{1} << 20);
+  ASSERT_EQ(read.size(), 2U);
+  EXPECT_EQ(read[0].bytes, mask);
+  EXPECT_EQ(read[1].bytes, noise);
+  EXPECT_LT(archive.size(), noise.size() + mask.size() / 20);
+}
+
 TEST(Npz, RefusesZipBombs) {
   // 64 MiB of zeros deflate to 64 KiB: allowed by ratio, refused by the caller's limit.
   const std::string bomb = MakeZip({{"x.npy", std::string(size_t{64} << 20, '\0')}});

@@ -99,6 +99,40 @@ TEST_F(DetectClipOnRealVideo, TheMaskIsWhereTheLandmarksAre) {
   }
 }
 
+/// A man who balances slowly, 60 frames a second.
+TEST_F(DetectClipOnRealVideo, FewerFramesAreDetectedOfSlowMotion) {
+  DetectClipRequest request = Squats();
+  request.detect.video = SharedDir() + "/data/pose2sim/balancing/videos/cam01.mp4";
+  if (const std::string why = WhyNoDetection(request.detect.video); !why.empty()) GTEST_SKIP() << why;
+  request.detect.span.to_s = 0.7;
+  request.mask = folder_ / "mask.npz";
+  const DetectClipReport all = DetectClip(request);
+  const KeypointSequence expected = LoadDetections(request.out);
+  request.detect.detect_rate = 20;
+  const DetectClipReport few = DetectClip(request);
+  const KeypointSequence found = LoadDetections(request.out);
+  EXPECT_EQ(all.landmarks->detector.frames, all.frames);
+  EXPECT_LT(few.landmarks->detector.frames, all.frames / 2);
+  EXPECT_GE(few.landmarks->detector.frames, all.frames / 3);
+  EXPECT_EQ(few.frames, all.frames);
+  EXPECT_EQ(few.landmarks->frames_with_people, all.landmarks->frames_with_people);
+  ASSERT_EQ(found.num_frames(), expected.num_frames());
+  std::vector<double> differences;
+  for (int t = 0; t < found.num_frames(); ++t) {
+    for (int k = 11; k < 33; ++k) {
+      differences.push_back(std::hypot(found.at(t, k).x - expected.at(t, k).x, found.at(t, k).y - expected.at(t, k).y));
+    }
+  }
+  std::sort(differences.begin(), differences.end());
+  EXPECT_LT(differences[differences.size() / 2], 2);  // of a man 760 px tall, where the detector errs by 11
+  int masks = 0;
+  for (const LabelImage& frame : ReadPartLabels(request.mask).frames) masks += frame.labels.empty() ? 0 : 1;
+  EXPECT_EQ(masks, few.landmarks->detector.frames);
+
+  request.detect.detect_rate = -1;
+  EXPECT_THROW(DetectClip(request), RequestError);
+}
+
 TEST_F(DetectClipOnRealVideo, ACancelledOneLeavesNothingBehind) {
   PipelineCallbacks callbacks;
   callbacks.progress = [](const std::string&, double) { return false; };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <vector>
 
 namespace bodyloom {
 namespace {
@@ -11,42 +12,79 @@ constexpr uint8_t kBackground = PartLabelSequence::kBackground, kUnknown = PartL
 
 bool IsPart(uint8_t part) { return part != kBackground && part != kUnknown; }
 
-/// 4-connected pieces; with `by_part` a piece has one part, else any. Small ones become unknown.
-void RemoveSpecks(bool by_part, double speck_share, PartMap* map) {
-  const int width = map->box.width(), height = map->box.height();
-  std::vector<int> piece(map->parts.size(), -1), stack;
-  std::vector<int> size_of_piece;
-  std::array<int, 256> largest{};  // by part; of the person at 0
-  for (size_t start = 0; start < map->parts.size(); ++start) {
-    if (piece[start] >= 0 || !IsPart(map->parts[start])) continue;
-    const int id = static_cast<int>(size_of_piece.size());
-    int size = 0;
-    stack.assign(1, static_cast<int>(start));
-    piece[start] = id;
-    while (!stack.empty()) {
-      const int at = stack.back();
-      stack.pop_back();
-      ++size;
-      const auto visit = [&](int next) {
-        const uint8_t part = map->parts[next];
-        if (piece[next] >= 0 || !IsPart(part) || (by_part && part != map->parts[start])) return;
-        piece[next] = id;
-        stack.push_back(next);
-      };
-      const int x = at % width, y = at / width;
-      if (x > 0) visit(at - 1);
-      if (x + 1 < width) visit(at + 1);
-      if (y > 0) visit(at - width);
-      if (y + 1 < height) visit(at + width);
+/// Pixels of one row that lie together and belong to one piece: columns begin..end−1.
+struct Run {
+  int row, begin, end;
+  uint8_t part;
+};
+
+/// 4-connected pieces, as sets of runs that touch.
+class Pieces {
+ public:
+  /// With `by_part` a piece has one part, else any.
+  Pieces(const PartMap& map, bool by_part) : by_part_(by_part) {
+    const int width = map.box.width();
+    size_t above = 0;  // the first run of the row above
+    for (int y = 0; y < map.box.height(); ++y) {
+      const size_t here = runs_.size();
+      const uint8_t* parts = &map.parts[static_cast<size_t>(y) * width];
+      for (int x = 0; x < width;) {
+        const int begin = x++;
+        if (!IsPart(parts[begin])) continue;
+        while (x < width && IsPart(parts[x]) && (!by_part || parts[x] == parts[begin])) ++x;
+        runs_.push_back({y, begin, x, parts[begin]});
+        first_.push_back(static_cast<int>(first_.size()));
+      }
+      JoinRows(above, here);
+      above = here;
     }
-    size_of_piece.push_back(size);
-    int& record = largest[by_part ? map->parts[start] : 0];
-    record = std::max(record, size);
+    pixels_.assign(runs_.size(), 0);
+    for (size_t i = 0; i < runs_.size(); ++i) pixels_[PieceOf(i)] += runs_[i].end - runs_[i].begin;
   }
-  for (size_t i = 0; i < map->parts.size(); ++i) {
-    if (piece[i] < 0) continue;
-    const int record = largest[by_part ? map->parts[i] : 0];
-    if (size_of_piece[piece[i]] < speck_share * record) map->parts[i] = kUnknown;
+
+  [[nodiscard]] const std::vector<Run>& runs() const { return runs_; }
+  /// Pixels of the piece that run i belongs to.
+  [[nodiscard]] int PixelsAround(size_t i) { return pixels_[PieceOf(i)]; }
+
+ private:
+  void JoinRows(size_t above, size_t here) {
+    size_t a = above;
+    for (size_t b = here; b < runs_.size(); ++b) {
+      while (a < here && runs_[a].end <= runs_[b].begin) ++a;
+      for (size_t c = a; c < here && runs_[c].begin < runs_[b].end; ++c) {
+        if (!by_part_ || runs_[c].part == runs_[b].part) first_[PieceOf(b)] = static_cast<int>(PieceOf(c));
+      }
+    }
+  }
+
+  /// The run that stands for the piece of run i.
+  size_t PieceOf(size_t i) {
+    while (static_cast<size_t>(first_[i]) != i) {
+      first_[i] = first_[static_cast<size_t>(first_[i])];
+      i = static_cast<size_t>(first_[i]);
+    }
+    return i;
+  }
+
+  bool by_part_;
+  std::vector<Run> runs_;
+  std::vector<int> first_;  ///< another run of the same piece, or the run itself
+  std::vector<int> pixels_;
+};
+
+/// Pieces smaller than this share of the largest (of their part, or of the person) become unknown.
+void RemoveSpecks(bool by_part, double speck_share, PartMap* map) {
+  Pieces pieces(*map, by_part);
+  std::array<int, 256> largest{};  // by part; of the person at 0
+  for (size_t i = 0; i < pieces.runs().size(); ++i) {
+    int& record = largest[by_part ? pieces.runs()[i].part : 0];
+    record = std::max(record, pieces.PixelsAround(i));
+  }
+  for (size_t i = 0; i < pieces.runs().size(); ++i) {
+    const Run& run = pieces.runs()[i];
+    if (pieces.PixelsAround(i) >= speck_share * largest[by_part ? run.part : 0]) continue;
+    uint8_t* row = &map->parts[static_cast<size_t>(run.row) * map->box.width()];
+    std::fill(row + run.begin, row + run.end, kUnknown);
   }
 }
 
