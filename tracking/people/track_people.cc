@@ -6,6 +6,7 @@
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/tracking/initialise/stature.h"
 #include "bodyloom/tracking/track_sequence.h"
 
 namespace bodyloom {
@@ -92,7 +93,10 @@ TrackPeopleResult TrackPeople(std::vector<TrackSequenceInput> people, const Trac
     if (summary.IsUsable()) width = track.camera.width, height = track.camera.height;
   }
   SharedScene& scene = result.summary.scene;
-  scene = JoinScenes(summaries, FocalPrior::ForImage(width, height));
+  CommonGroundOptions ground;
+  // Weak perspective has no distances, and a shape that is kept has one size.
+  if (options.camera_knowledge == CameraKnowledge::kWeak || !options.estimate_shape) ground.size_sigma = 0;
+  scene = JoinScenes(summaries, FocalPrior::ForImage(width, height), ground);
   if (alone || fits.stopped()) return result;
 
   std::vector<OwnObservations> own(people.begin(), people.end());
@@ -108,7 +112,10 @@ TrackPeopleResult TrackPeople(std::vector<TrackSequenceInput> people, const Trac
     const bool shares_ground = scene.has_up && person.ground == nullptr;
     if (!shares_focal && !shares_ground && !result.summary.hidden[i].any()) continue;
     if (shares_focal) person.camera = MakePinhole(width, height, scene.focal_px);
-    if (shares_ground) person.ground = &scene.ground;
+    if (shares_ground) {
+      person.ground = &scene.ground;
+      if (scene.size[i] != 1) person.stature_m = scene.size[i] * AssumedStature(person);
+    }
     own[i].GiveTo(&person);
     TrackSequenceResult again = fits.Run(person, shares_focal ? CameraKnowledge::kKnown : options.camera_knowledge);
     if (!again.summary.IsUsable() || fits.stopped()) continue;
