@@ -22,10 +22,9 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double kKernel = 3;           ///< c of ρ, and the distance in σ within which a foot is on the plane
-constexpr double kMostSizeSigmas = 3;   ///< of log s, of somebody who stands on the plane
-constexpr double kLeastShare = 0.5;     ///< of their standing time on it
-constexpr double kLowestPlaces = 0.15;  ///< quantile of a person's standing time
+constexpr double kKernel = 3;          ///< c of ρ, and the distance in σ within which a foot is on the plane
+constexpr double kMostSizeSigmas = 3;  ///< of log s, of somebody who stands on the plane
+constexpr double kLeastShare = 0.5;    ///< of their standing time on it
 
 double Seconds(const StandingPerson& person) {
   double sum = 0;
@@ -38,8 +37,8 @@ double SigmaOf(const StandingFoot& stance, const Vector3d& up) {
   return std::hypot(feet.height_m, up.dot(stance.place_m.normalized()) * feet.depth_m);
 }
 
-/// Height of the camera above the person's places, by which `share` of the standing time is lower.
-double CameraHeightAbove(const StandingPerson& person, const Vector3d& up, double share) {
+/// Median height of the camera above the person's places, weighted by time.
+double CameraHeightAbove(const StandingPerson& person, const Vector3d& up) {
   std::vector<std::pair<double, double>> heights;  // of the places, seconds
   for (const StandingFoot& stance : person.stances) heights.emplace_back(up.dot(stance.place_m), stance.seconds);
   std::sort(heights.begin(), heights.end());
@@ -47,7 +46,7 @@ double CameraHeightAbove(const StandingPerson& person, const Vector3d& up, doubl
   double sum = 0;
   for (const auto& [height, seconds] : heights) {
     sum += seconds;
-    if (sum >= share * total) return -height;
+    if (2 * sum >= total) return -height;
   }
   return -heights.back().first;
 }
@@ -68,9 +67,7 @@ class Solver {
     Fit best;
     std::vector<Fit> starts = {OfSizeOne(stands)};
     if (sizes) {
-      for (const double share : {0.5, kLowestPlaces}) {
-        if (auto start = OnOnePlane(stands, share)) starts.push_back(std::move(*start));
-      }
+      if (auto start = OnOnePlane(stands)) starts.push_back(std::move(*start));
     }
     for (Fit& start : starts) {
       Solve(stands, sizes, &start);
@@ -95,10 +92,10 @@ class Solver {
       if (!stands[i]) continue;
       all.stances.insert(all.stances.end(), people_[i].stances.begin(), people_[i].stances.end());
     }
-    return {up_, CameraHeightAbove(all, up_, 0.5), std::vector<double>(people_.size(), 0)};
+    return {up_, CameraHeightAbove(all, up_), std::vector<double>(people_.size(), 0)};
   }
   /// Everybody on one plane: h at the geometric mean of people's own. None when it is above some and below others.
-  [[nodiscard]] std::optional<Fit> OnOnePlane(const std::vector<char>& stands, double share) const {
+  [[nodiscard]] std::optional<Fit> OnOnePlane(const std::vector<char>& stands) const {
     Fit fit{up_, 0, std::vector<double>(people_.size(), 0)};
     // Where sizes are known, these say how high the camera is.
     bool any_known = false;
@@ -107,7 +104,7 @@ class Solver {
     int count = 0;
     for (size_t i = 0; i < people_.size(); ++i) {
       if (!stands[i]) continue;
-      const double own = CameraHeightAbove(people_[i], up_, share);
+      const double own = CameraHeightAbove(people_[i], up_);
       if (own == 0 || own * sign < 0) return std::nullopt;
       sign = own;
       fit.log_size[i] = std::log(std::abs(own));

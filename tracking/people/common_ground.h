@@ -9,8 +9,8 @@
 /// depth); w_ij = its seconds, at most 1: EstimateGroundPlane()'s. u₀: the verticals of the fits. 8 %: adults' statures
 /// spread by 5.4 % about their common mean (the built-in body's first component), and a fit's proportions make a
 /// person seem larger or smaller by as much again. Only ratios of sizes are seen, so the common factor is the prior's:
-/// 1. Ceres solves it, from three starts because ρ has plateaus: every person's median height on one plane, their
-/// lowest places on one plane, all of size 1; the least cost counts.
+/// 1. Ceres solves it, from two starts because ρ has plateaus: the plane through everybody's median height, and all of
+/// size 1; the lower cost counts.
 ///
 /// Left out, one after the other, and of size 1: whoever stands for less than 0.4 s in all; whoever would have to be
 /// off by more than 3 × 8 % (they stand on something else); whoever is not on the plane for half of their standing time.
