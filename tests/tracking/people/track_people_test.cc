@@ -153,6 +153,39 @@ TEST(TrackPeople, FeetOnOneFloorTellWhoIsTaller) {
   EXPECT_GT(DepthOf(TrackSequence(inputs[1], options).track), 1.1 * small.depth_m) << "alone, of average stature";
 }
 
+TEST(TrackPeople, FeetAreComparedAtOneFocalLength) {
+  constexpr double kTall = 1.05, kSmall = 0.88;
+  const SeenPerson tall = OnFloor(kTall, {-0.9, 0, -0.5}, 1), small = OnFloor(kSmall, {0.9, 0, 0.3}, 2);
+  const SynthClip clip = Clip(1);
+  std::vector<TrackSequenceInput> inputs(2, InputOf(clip));
+  inputs[0].keypoints = &tall.keypoints;
+  inputs[1].keypoints = &small.keypoints;
+  for (TrackSequenceInput& input : inputs) input.camera.width = 1280, input.camera.height = 720;
+  TrackSequenceOptions options = Options();
+  int fits = 0;
+  std::string stage;
+  options.progress = [&](const TrackProgress& at) {
+    fits += at.stage == "initialise" && stage != at.stage;
+    stage = at.stage;
+    return true;
+  };
+  const TrackPeopleResult together = TrackPeople(inputs, options);
+  EXPECT_EQ(fits, 6) << "alone, with the joined focal length, and with the ground";
+  const SharedScene& scene = together.summary.scene;
+  ASSERT_TRUE(scene.ground.has_plane) << scene.why;
+  EXPECT_NEAR(scene.size[0] / scene.size[1], kTall / kSmall, 0.06 * kTall / kSmall);
+  EXPECT_GT(scene.focal_log_sigma, 0.1) << "one that was joined is not known";
+  for (const TrackSequenceResult& person : together.people) {
+    EXPECT_EQ(person.track.camera.fx, scene.focal_px);
+    EXPECT_EQ(person.summary.focal_log_sigma, scene.focal_log_sigma);
+  }
+  // Where nobody looks for feet there is nothing to compare.
+  fits = 0;
+  options.ground = GroundOptions::Off();
+  TrackPeople(inputs, options);
+  EXPECT_EQ(fits, 4);
+}
+
 TEST(TrackSequence, DistanceFollowsTheStatureThatIsGiven) {
   const SynthClip clip = Clip(3);
   TrackSequenceInput input = InputOf(clip);
