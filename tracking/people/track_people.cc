@@ -78,6 +78,7 @@ void CheckOneCamera(const std::vector<TrackSequenceInput>& people) {
 SharedScene Join(const std::vector<TrackSequenceResult>& people, const FocalPrior& prior,
                  const TrackSequenceOptions& options) {
   std::vector<TrackSequenceSummary> summaries;
+  summaries.reserve(people.size());
   for (const TrackSequenceResult& person : people) summaries.push_back(person.summary);
   CommonGroundOptions ground;
   // Weak perspective has no distances, and a shape that is kept has one size.
