@@ -67,6 +67,10 @@ void AddLearnedOptions(CLI::App& app, TrackRequest* request) {
   app.add_option("--body", c.body, "body model: SMPL, SMPL-H or SMPL-X .pkl or .npz (default: the built-in body)")
       ->group(kKnown)
       ->type_name("FILE");
+  app.add_option("--stature", c.stature_m,
+                 "the person's height in metres, from which distances follow (default: average)")
+      ->group(kKnown)
+      ->check(Quiet(CLI::Range(0.5, 2.5)));
   app.add_option("--prior", c.prior, "pose prior file, or none (default: the built-in one)")
       ->group(kKnown)
       ->type_name("FILE");

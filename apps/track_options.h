@@ -16,7 +16,7 @@ namespace bodyloom {
 void AddDetectionOptions(CLI::App& app, TrackRequest* request, const std::string& group);
 /// --cameras and --focal.
 void AddCalibrationOptions(CLI::App& app, TrackRequest* request);
-/// --body, --prior and --lifter.
+/// --body, --stature, --prior and --lifter.
 void AddLearnedOptions(CLI::App& app, TrackRequest* request);
 /// --solver, --threads, --max-iterations and the switches that leave something out.
 void AddSolveOptions(CLI::App& app, TrackSequenceOptions* options);

@@ -10,6 +10,7 @@
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/tracking/initialise/impossible_frames.h"
 #include "bodyloom/tracking/initialise/initial_states.h"
+#include "bodyloom/tracking/initialise/stature.h"
 #include "bodyloom/tracking/initialise/swap_repair.h"
 #include "bodyloom/tracking/input_checks.h"
 #include "bodyloom/tracking/motion_level.h"
@@ -100,8 +101,8 @@ void ClipFit::SetUpProblem() {
   problem_.log_focal = problem_.log_focal_prior = std::log(camera.fx);
   if (input_.prior != nullptr && input_.prior->num_components() > 0) prior_.emplace(*input_.prior, model, active);
   limits_ = JointLimits::ForBody(model);
-  VectorXd gradient;
-  stature_m_ = StatureOfMeanShape(model, num_betas, &gradient);
+  stature_m_ = AssumedStature(input_);
+  problem_.shape_prior.height_m = summary_.stature_m = input_.stature_m;
 }
 
 bool ClipFit::FindStart() {
@@ -224,7 +225,7 @@ void ClipFit::Finish(TrackSequenceResult* result) {
   FillTrack(input_, problem_, landmarks_, result);
   SummariseImageTerms(problem_, dense_rounds_->has_rendered_uv(), part_label_rounds_->any(), &summary_);
   summary_.own_terms = SummariseOwnTerms(options_.own_terms, problem_);
-  ground_->Summarise(&summary_);
+  ground_->Summarise(problem_, &summary_);
   clock_.Book("finish");
   summary_.focal_log_sigma = problem_.layout.focal_column < 0 ? 0 : std::numeric_limits<double>::quiet_NaN();
   if (options_.estimate_uncertainty) {

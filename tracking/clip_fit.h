@@ -67,7 +67,7 @@ class ClipFit {
   ObservedLandmarks landmarks_;
   std::optional<MixturePrior> prior_;
   JointLimits limits_;
-  double stature_m_ = 0;  ///< of the mean shape
+  double stature_m_ = 0;  ///< AssumedStature()
   SequenceProblem problem_;
   LiftedStart lifted_;
   LiftedLandmarks lifted_landmarks_;

@@ -7,11 +7,13 @@
 #include <string>
 
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/tracking/initialise/stature.h"
 
 namespace bodyloom {
 namespace {
 
 constexpr double kMinBody_m = 0.3, kMaxBody_m = 10, kMaxDistance_m = 1000;
+constexpr double kLeastSize = 0.4, kMostSize = 1.6;  // of the mean body
 constexpr float kMinDenseSigma_px = 0.01F;
 
 /// Farthest coordinate that a detection may have, pixels.
@@ -53,6 +55,14 @@ void CheckBody(const BodyModel& body) {
   const double extent = (v.colwise().maxCoeff() - v.colwise().minCoeff()).maxCoeff();
   BODYLOOM_CHECK(extent >= kMinBody_m && extent <= kMaxBody_m, "track: the body '", body.name(), "' measures ", extent,
                  " from end to end, expected ", kMinBody_m, " to ", kMaxBody_m, " metres; convert it");
+}
+
+void CheckStature(const TrackSequenceInput& input) {
+  TrackSequenceInput mean = input;
+  mean.stature_m = 0;
+  const double least = kLeastSize * AssumedStature(mean), most = kMostSize * AssumedStature(mean);
+  BODYLOOM_CHECK(input.stature_m >= least && input.stature_m <= most, "track: the person's stature is ",
+                 input.stature_m, ", expected metres, for the body '", input.body->name(), "' ", least, " to ", most);
 }
 
 void CheckInitialiser(const Motion& start) {
@@ -172,6 +182,8 @@ void CheckInput(const TrackSequenceInput& input, const TrackSequenceOptions& opt
     BODYLOOM_CHECK(extent.width > 0 || input.camera.width > 0,
                    "track: the image size is not known; it is needed when the focal length is not");
   }
+  BODYLOOM_CHECK(input.stature_m == 0 || options.estimate_shape, "track: a stature of ", input.stature_m,
+                 " m is given, but the mean shape is to be kept");
   CheckNumbers(input, options);
 }
 
@@ -188,6 +200,7 @@ void CheckNumbers(const TrackSequenceInput& input, const TrackSequenceOptions& o
   if (options.camera_knowledge == CameraKnowledge::kKnown) CheckCamera(input.camera);
   if (input.ground != nullptr) CheckGround(*input.ground);
   CheckBody(*input.body);
+  if (input.stature_m != 0) CheckStature(input);
   if (input.initialiser != nullptr) CheckInitialiser(*input.initialiser);
 }
 

@@ -28,6 +28,7 @@ void CheckInput(const TrackSequenceInput& input, const TrackSequenceOptions& opt
 ///   not finite and strictly increasing;
 /// - a known camera: an intrinsic that is not finite, a focal length that is not positive;
 /// - the body: less than 0.3 m or more than 10 m from end to end (millimetres, centimetres, feet);
+/// - a stature that is given: less than 0.4 or more than 1.6 times the mean body's;
 /// - the initialiser: values that are not finite, or a person on average more than 1 km from the camera.
 void CheckNumbers(const TrackSequenceInput& input, const TrackSequenceOptions& options);
 

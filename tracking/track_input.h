@@ -33,6 +33,9 @@ struct TrackSequenceInput {
   /// The vertical and the ground; without it they are looked for in the clip. It holds for every shot; the live
   /// tracker does not use it.
   const KnownGround* ground = nullptr;
+  /// The person's stature, metres, which one camera does not see: distances follow it. 0: the mean body's, else 0.4 to
+  /// 1.6 times that. The live tracker does not use it.
+  double stature_m = 0;
   Camera camera;  ///< kKnown: all of it; otherwise only width and height (0: taken from the observations)
 };
 

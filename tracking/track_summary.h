@@ -35,16 +35,24 @@ struct OwnTermSummary {
   double cost = 0;    ///< ½ Σ ρ of them, at the answer
 };
 
+/// A foot that stands where it is over the frames [begin, end).
+struct StandingFoot {
+  int foot = 0, begin = 0, end = 0;  ///< foot 0: left
+  double seconds = 0;
+  Eigen::Vector3d place_m = Eigen::Vector3d::Zero();  ///< on the floor under its ankle, mean of its frames; camera axes
+};
+
 /// What the clip showed of the vertical and the ground.
 struct GroundSummary {
   bool has_up = false;
   Eigen::Vector3d up = Eigen::Vector3d(0, -1, 0);  ///< world up in the camera frame, mean over the clip
   double up_spread_deg = 0;                        ///< median angle of the frames' own up to it
   bool has_plane = false;
-  std::string why;             ///< what was found, or why there is no ground
-  double camera_height_m = 0;  ///< of the camera above the ground
-  double height_spread_m = 0;  ///< robust σ of standing feet's heights before the ground held them
-  int contact_frames = 0;      ///< frames in which at least one foot was held
+  std::string why;                    ///< what was found, or why there is no ground
+  double camera_height_m = 0;         ///< of the camera above the ground
+  double height_spread_m = 0;         ///< robust σ of standing feet's heights before the ground held them
+  int contact_frames = 0;             ///< frames in which at least one foot was held
+  std::vector<StandingFoot> stances;  ///< all of the longest shot, on the plane or not, where the answer has them
 };
 
 struct TrackSequenceSummary {
@@ -65,6 +73,7 @@ struct TrackSequenceSummary {
   /// Standard deviation of log focal_px when it was estimated with uncertainty; 0 when it was known, NaN when its
   /// spread is not known.
   double focal_log_sigma = 0;
+  double stature_m = 0;  ///< at which the body was held because it was given; 0: the mean body's
   int num_observations = 0, num_parameters = 0;
   GroundSummary ground;
   int num_swaps_repaired = 0;  ///< left–right pairs found exchanged in the detections

@@ -49,6 +49,7 @@ TrackSequenceInput SceneInputs::ForTracker() const {
   input.prior = prior ? &*prior : nullptr;
   input.lifter = lifter ? &*lifter : nullptr;
   input.camera = camera.camera;
+  input.stature_m = stature_m;
   return input;
 }
 
@@ -59,6 +60,7 @@ void UseFocal(const TrackRequest& request, Camera* camera) {
 SceneInputs LoadSceneInputs(const TrackRequest& request) {
   SceneInputs inputs;
   inputs.body = BodyOrBuiltin(request.body);
+  inputs.stature_m = request.stature_m;
   inputs.camera = CameraFromRequest(request);
   if (!request.video.empty()) UseVideo(request.video, &inputs);
   // The lifter knows how detectors err. Joints read off labels err otherwise, and it makes worse of them than the joint

@@ -20,6 +20,7 @@ struct SceneInputs {
   std::optional<LifterWeights> lifter;
   NamedCamera camera;  ///< intrinsics, pose and the way to the video's pixels, as far as known (UseFocal)
   double video_fps = 0;
+  double stature_m = 0;  ///< of whoever is tracked; 0: the mean body's
 
   /// What the tracker is told of the scene; pointers into this object.
   [[nodiscard]] TrackSequenceInput ForTracker() const;

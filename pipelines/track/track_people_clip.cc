@@ -37,6 +37,9 @@ void CheckRequest(const TrackPeopleClipRequest& request) {
   if (request.person && request.max_people > 0) {
     throw RequestError("--person and --people both choose who is tracked, expected one of them");
   }
+  if (request.track.stature_m > 0 && !request.person && request.max_people != 1) {
+    throw RequestError("--stature is one person's: say whose with --person, or give --people 1");
+  }
   if (request.track.camera == "weak") {
     throw RequestError("weak perspective puts nobody into a common space: use track for one person at a time");
   }

@@ -21,6 +21,9 @@ std::string PersonText(const TrackedPerson& person) {
   if (person.track.empty()) return text + "could not be tracked (" + person.solve.message + ")\n";
   text += CountsText(person.solve.frames_by_status) + "; 2D joints: median " +
           Fixed(person.solve.reprojection_median_px, 2) + " px\n";
+  if (person.solve.stature_m > 0) {
+    text += "         taken to be " + Fixed(person.solve.stature_m, 2) + " m tall\n";
+  }
   if (person.hidden.any()) {
     text += Concatenate("         partly hidden by others in ", person.hidden.frames, " frames\n");
   }
@@ -69,6 +72,7 @@ Json PersonJson(const TrackedPerson& person) {
           {"reprojection_median_px", solve.reprojection_median_px},
           {"reprojection_p95_px", solve.reprojection_p95_px},
           {"focal_px", solve.focal_px},
+          {"stature_m", solve.stature_m},
           {"swaps_repaired", solve.num_swaps_repaired},
           {"hidden_frames", person.hidden.frames},
           {"fitted_again", person.fitted_again}};

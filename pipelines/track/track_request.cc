@@ -44,6 +44,12 @@ void CheckTrackRequest(const TrackRequest& request) {
   if (!request.cameras.empty() && request.focal_px > 0) {
     throw RequestError("--cameras and --focal both give the focal length, expected one of them");
   }
+  if (request.stature_m > 0 && !request.solve.estimate_shape) {
+    throw RequestError("--stature changes the shape that --no-shape keeps, expected one of them");
+  }
+  if (request.stature_m > 0 && request.live_lag) {
+    throw RequestError("--live does not use --stature: leave it out");
+  }
   if (!request.overlay.empty() && !request.overlay.ends_with(".mp4")) {
     throw RequestError("--overlay " + request.overlay + ": expected a name that ends in .mp4");
   }

@@ -38,6 +38,7 @@ struct TrackRequest {
   // What else is known.
   std::string video;     ///< for the image size, the frame rate and the overlay; alone: people are detected in it
   int video_offset = 0;  ///< video frame of the detections' time zero
+  double stature_m = 0;  ///< of the person; 0: the mean body's
   std::string body;      ///< body model; empty: the built-in one
   std::string init;      ///< poses of another system to start from and stay near, same frames
   std::string prior;     ///< pose prior; empty: the built-in one; "none"

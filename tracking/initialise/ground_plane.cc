@@ -37,42 +37,6 @@ Vector3d AcrossView(const Vector3d& d, const Vector3d& x) {
   return d - ray.dot(d) * ray;
 }
 
-std::vector<Stance> FindStances(const std::vector<std::array<FootPlace, 2>>& feet, std::span<const double> timestamps,
-                                const GroundPlaneOptions& options) {
-  const int T = static_cast<int>(feet.size());
-  std::vector<Stance> stances;
-  for (int foot = 0; foot < 2; ++foot) {
-    const auto stands = [&](int t) {
-      const FootPlace& place = feet[t][foot];
-      if (!place.seen || !(place.contact >= options.min_contact) || !place.ankle_m.allFinite()) return false;
-      const int before = std::max(0, t - 1), after = std::min(T - 1, t + 1);
-      const double seconds = timestamps[after] - timestamps[before];
-      const Vector3d moved = feet[after][foot].ankle_m - feet[before][foot].ankle_m;
-      return !(seconds > 0) || AcrossView(moved, place.ankle_m).norm() <= options.max_speed * seconds;
-    };
-    for (int t = 0; t < T;) {
-      if (!stands(t)) {
-        ++t;
-        continue;
-      }
-      Stance stance;
-      stance.foot = foot;
-      stance.begin = t;
-      Vector3d sum = Vector3d::Zero();
-      for (; t < T && stands(t); ++t) {
-        const Vector3d& at = feet[t][foot].ankle_m;
-        if (t > stance.begin && AcrossView(at - sum / (t - stance.begin), at).norm() > options.max_drift_m) break;
-        sum += at;
-      }
-      stance.end = t;
-      stance.place_m = sum / (stance.end - stance.begin);
-      stance.seconds = timestamps[stance.end - 1] - timestamps[stance.begin];
-      if (stance.seconds >= options.min_stance_s) stances.push_back(stance);
-    }
-  }
-  return stances;
-}
-
 double TotalSeconds(const std::vector<Stance>& stances) {
   double total = 0;
   for (const Stance& stance : stances) total += stance.seconds;
@@ -142,9 +106,45 @@ UpEstimate EstimateUp(std::span<const LiftedFrame> frames) {
   return estimate;
 }
 
+std::vector<Stance> FindStances(const std::vector<std::array<FootPlace, 2>>& feet, std::span<const double> timestamps,
+                                const GroundPlaneOptions& options) {
+  CheckFeet(feet, timestamps);
+  const int T = static_cast<int>(feet.size());
+  std::vector<Stance> stances;
+  for (int foot = 0; foot < 2; ++foot) {
+    const auto stands = [&](int t) {
+      const FootPlace& place = feet[t][foot];
+      if (!place.seen || !(place.contact >= options.min_contact) || !place.ankle_m.allFinite()) return false;
+      const int before = std::max(0, t - 1), after = std::min(T - 1, t + 1);
+      const double seconds = timestamps[after] - timestamps[before];
+      const Vector3d moved = feet[after][foot].ankle_m - feet[before][foot].ankle_m;
+      return !(seconds > 0) || AcrossView(moved, place.ankle_m).norm() <= options.max_speed * seconds;
+    };
+    for (int t = 0; t < T;) {
+      if (!stands(t)) {
+        ++t;
+        continue;
+      }
+      Stance stance;
+      stance.foot = foot;
+      stance.begin = t;
+      Vector3d sum = Vector3d::Zero();
+      for (; t < T && stands(t); ++t) {
+        const Vector3d& at = feet[t][foot].ankle_m;
+        if (t > stance.begin && AcrossView(at - sum / (t - stance.begin), at).norm() > options.max_drift_m) break;
+        sum += at;
+      }
+      stance.end = t;
+      stance.place_m = sum / (stance.end - stance.begin);
+      stance.seconds = timestamps[stance.end - 1] - timestamps[stance.begin];
+      if (stance.seconds >= options.min_stance_s) stances.push_back(stance);
+    }
+  }
+  return stances;
+}
+
 GroundPlane EstimateGroundPlane(const std::vector<std::array<FootPlace, 2>>& feet, std::span<const double> timestamps,
                                 const Vector3d& up, const GroundPlaneOptions& options) {
-  CheckFeet(feet, timestamps);
   GroundPlane ground;
   ground.normal = up;
   const std::vector<Stance> stances = FindStances(feet, timestamps, options);
@@ -186,7 +186,6 @@ GroundPlane EstimateGroundPlane(const std::vector<std::array<FootPlace, 2>>& fee
 
 GroundPlane StandOnPlane(const std::vector<std::array<FootPlace, 2>>& feet, std::span<const double> timestamps,
                          const Vector3d& normal, double offset_m, const GroundPlaneOptions& options) {
-  CheckFeet(feet, timestamps);
   GroundPlane ground;
   ground.normal = normal;
   ground.offset_m = offset_m;

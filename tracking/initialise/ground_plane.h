@@ -28,6 +28,8 @@ struct UpEstimate {
 /// spread exceeds 20°: then the camera turns, or the lifter does not know.
 UpEstimate EstimateUp(std::span<const LiftedFrame> frames);
 
+inline constexpr double kAnkleHeight = 0.08;  ///< metres above the floor, of the ankle of a foot that stands flat
+
 /// One foot in one frame.
 struct FootPlace {
   Eigen::Vector3d ankle_m = Eigen::Vector3d::Zero();  ///< camera frame
@@ -65,6 +67,10 @@ struct GroundPlane {
   double share = 0;                                    ///< of the stances' time on the plane
   std::vector<Stance> stances;  ///< on the plane; their places are moved towards it as the σ above weigh them
 };
+
+/// Where feet stand, on whatever. `feet` and `timestamps` as below.
+std::vector<Stance> FindStances(const std::vector<std::array<FootPlace, 2>>& feet, std::span<const double> timestamps,
+                                const GroundPlaneOptions& options);
 
 /// `feet` and `timestamps` (seconds, increasing) have the same number of frames. Throws std::invalid_argument
 /// otherwise.

@@ -15,6 +15,7 @@
 #include "bodyloom/tracking/initialise/joint_hypotheses.h"
 #include "bodyloom/tracking/initialise/lifted_landmarks.h"
 #include "bodyloom/tracking/initialise/lifted_start.h"
+#include "bodyloom/tracking/initialise/stature.h"
 #include "bodyloom/tracking/initialise/swap_repair.h"
 #include "bodyloom/tracking/shots.h"
 
@@ -206,6 +207,7 @@ InitialStates FindInitialStates(const TrackSequenceInput& input, const KeypointS
   if (input.initialiser != nullptr) {
     const Eigen::Index given = std::min<Eigen::Index>(input.initialiser->betas.size(), layout.num_betas);
     result.betas.head(given) = input.initialiser->betas.head(given);
+    if (input.stature_m > 0) result.betas = WithStature(model, result.betas, input.stature_m);
     for (int t = 0; t < input.initialiser->num_frames(); ++t) {
       const BodyPose pose = PoseFromAxisAngle(model, input.initialiser->poses.row(t).transpose(),
                                               input.initialiser->trans.row(t).transpose());
@@ -218,6 +220,7 @@ InitialStates FindInitialStates(const TrackSequenceInput& input, const KeypointS
     camera.model = CameraModel::kPinhole;
     if (layout.num_betas > 0) {
       result.betas = EstimateShape(*keypoints, camera, model, layout.num_betas, options.hypotheses);
+      if (input.stature_m > 0) result.betas = WithStature(model, result.betas, input.stature_m);
     }
     if (WhyNoLifter(input, options).empty()) {
       const int threads = ThreadsFor(options.num_threads);

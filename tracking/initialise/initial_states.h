@@ -14,8 +14,8 @@ namespace bodyloom {
 struct InitialStates {
   std::vector<FrameState> states;      ///< T, or empty when no frame shows a torso
   std::vector<char> from_observation;  ///< T: a hypothesis was made for this frame (others are interpolated)
-  Eigen::VectorXd betas;               ///< shape that fits the clip's bone ratios (initialiser: its own betas, or zero)
-  double cost = 0;                     ///< of the hypotheses
+  Eigen::VectorXd betas;  ///< of the clip's bone ratios (initialiser: its own, or zero), of the stature given
+  double cost = 0;        ///< of the hypotheses
 };
 
 struct LiftedStart;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "bodyloom/geometry/base/check.h"
 
@@ -13,34 +12,42 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kUpFloorDeg = 2;  ///< of the spread of a person's vertical
-constexpr double kSameGroundShare = 0.15;
 
 int TrackedFrames(const TrackSequenceSummary& person) {
   const auto it = person.frames_by_status.find("tracked");
   return it == person.frames_by_status.end() ? 0 : it->second;
 }
 
-void JoinFocalLengths(const std::vector<const TrackSequenceSummary*>& people, const FocalPrior& prior,
+void JoinFocalLengths(const std::vector<const TrackSequenceSummary*>& people, bool alone, const FocalPrior& prior,
                       SharedScene* scene) {
-  double information = 0, sum = 0;
-  int count = 0;
+  constexpr double kShared = kFocalFitLogSigma * kFocalFitLogSigma;
+  const double prior_information = 1 / (prior.log_sigma * prior.log_sigma);
+  double weights = 0, sum = 0, variance = 0;
+  bool any = false;
   for (const TrackSequenceSummary* person : people) {
-    if (person->focal_log_sigma == 0) {
+    if (person->focal_log_sigma == 0 || (alone && person->focal_log_sigma > 0)) {
       scene->focal_px = person->focal_px;
+      scene->focal_log_sigma =
+          person->focal_log_sigma == 0 ? 0 : std::hypot(person->focal_log_sigma, kFocalFitLogSigma);
       return;
     }
     if (!(person->focal_log_sigma > 0) || !(person->focal_px > 0)) continue;
+    any = true;
+    const double posterior = 1 / (person->focal_log_sigma * person->focal_log_sigma);
+    const double measured = posterior - prior_information;
     // A posterior is never wider than its prior but by rounding.
-    const double own = 1 / std::pow(std::min(person->focal_log_sigma, prior.log_sigma), 2);
-    information += own;
-    sum += own * std::log(person->focal_px);
-    ++count;
+    if (!(measured > 1e-9 * prior_information)) continue;
+    const double answer = (posterior * std::log(person->focal_px) - prior_information * prior.log_mean) / measured;
+    const double weight = 1 / (1 / measured + kShared);
+    weights += weight;
+    sum += weight * answer;
+    variance += weight * weight / measured;
   }
-  if (count == 0) return;
-  const double again = (count - 1) / (prior.log_sigma * prior.log_sigma);
-  information -= again;
-  sum -= again * prior.log_mean;
-  scene->focal_px = std::exp(sum / information);
+  if (!any) return;
+  const double measured = weights > 0 ? 1 / (kShared + variance / (weights * weights)) : 0;
+  const double information = prior_information + measured;
+  const double mean = weights > 0 ? sum / weights : prior.log_mean;
+  scene->focal_px = std::exp((prior_information * prior.log_mean + measured * mean) / information);
   scene->focal_log_sigma = 1 / std::sqrt(information);
 }
 
@@ -54,52 +61,62 @@ void JoinVerticals(const std::vector<const TrackSequenceSummary*>& people, Share
   if (scene->has_up) scene->ground.up = sum.normalized();
 }
 
-void JoinGrounds(const std::vector<const TrackSequenceSummary*>& people, SharedScene* scene) {
-  std::vector<std::pair<double, int>> heights;  // of the camera, frames of contact
-  int total = 0;
-  for (const TrackSequenceSummary* person : people) {
-    const GroundSummary& ground = person->ground;
-    if (!ground.has_plane || ground.contact_frames <= 0) continue;
-    heights.emplace_back(ground.camera_height_m, ground.contact_frames);
-    total += ground.contact_frames;
+/// Stances of everybody; none of those who are left out. A person who is seen at depth z with one focal length is seen
+/// as large at z f'/f with another, f'.
+std::vector<StandingPerson> StandingPeople(const std::vector<TrackSequenceSummary>& people, double focal_px) {
+  std::vector<StandingPerson> standing(people.size());
+  for (size_t i = 0; i < people.size(); ++i) {
+    if (!people[i].IsUsable()) continue;
+    standing[i].size_known = people[i].stature_m > 0;
+    standing[i].stances = people[i].ground.stances;
+    if (!(focal_px > 0) || !(people[i].focal_px > 0)) continue;
+    for (StandingFoot& stance : standing[i].stances) stance.place_m.z() *= focal_px / people[i].focal_px;
   }
-  if (heights.empty()) {
-    scene->why = "nobody's feet show a ground";
+  return standing;
+}
+
+void JoinGrounds(const std::vector<TrackSequenceSummary>& people, const CommonGroundOptions& options,
+                 SharedScene* scene) {
+  const CommonGround common = FindCommonGround(StandingPeople(people, scene->focal_px), scene->ground.up, options);
+  scene->why = common.why;
+  if (common.found) {
+    scene->ground = common.ground;
+    scene->size = common.size;
     return;
   }
-  std::sort(heights.begin(), heights.end());
-  int sum = 0;
-  const auto median = std::find_if(heights.begin(), heights.end(), [&](const std::pair<double, int>& height) {
-    sum += height.second;
-    return 2 * sum >= total;
-  });
-  double agreeing = 0, mean = 0;
-  for (const auto& [height, frames] : heights) {
-    if (std::abs(height - median->first) > kSameGroundShare * std::abs(median->first)) continue;
-    agreeing += frames;
-    mean += frames * height;
+  // One person alone on a plane has it to themselves, when the others do not stand elsewhere for longer.
+  double total_s = 0, alone_s = 0;
+  const GroundSummary* alone = nullptr;
+  for (size_t i = 0; i < people.size(); ++i) {
+    double seconds = 0;
+    for (const StandingFoot& stance : people[i].ground.stances) seconds += stance.seconds;
+    if (people[i].IsUsable()) total_s += seconds;
+    if (common.stands[i]) alone = &people[i].ground, alone_s = seconds;
   }
-  if (!(2 * agreeing > total)) {
-    scene->why = "people's feet do not stand on one plane";
+  if (alone == nullptr || 2 * alone_s <= total_s) return;
+  if (!alone->has_plane) {
+    scene->why = alone->why;
     return;
   }
   scene->ground.has_plane = true;
-  scene->ground.camera_height_m = mean / agreeing;
-  scene->why = Concatenate("feet of ", agreeing, " frames stand on it");
+  scene->ground.camera_height_m = alone->camera_height_m;
+  scene->why = Concatenate("feet of ", alone->contact_frames, " frames stand on it");
 }
 
 }  // namespace
 
-SharedScene JoinScenes(const std::vector<TrackSequenceSummary>& people, const FocalPrior& prior) {
+SharedScene JoinScenes(const std::vector<TrackSequenceSummary>& people, const FocalPrior& prior,
+                       const CommonGroundOptions& options) {
   std::vector<const TrackSequenceSummary*> usable;
   for (const TrackSequenceSummary& person : people) {
     if (person.IsUsable()) usable.push_back(&person);
   }
   SharedScene scene;
-  JoinFocalLengths(usable, prior, &scene);
+  scene.size.assign(people.size(), 1);
+  JoinFocalLengths(usable, people.size() == 1, prior, &scene);
   JoinVerticals(usable, &scene);
   if (scene.has_up) {
-    JoinGrounds(usable, &scene);
+    JoinGrounds(people, options, &scene);
   } else {
     scene.why = "the vertical is not clear";
   }

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/tracking/people/track_people.h"
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/tracking/initialise/stature.h"
 #include "bodyloom/tracking/track_sequence.h"
 
 namespace bodyloom {
@@ -73,26 +75,42 @@ void CheckOneCamera(const std::vector<TrackSequenceInput>& people) {
   }
 }
 
+SharedScene Join(const std::vector<TrackSequenceResult>& people, const FocalPrior& prior,
+                 const TrackSequenceOptions& options) {
+  std::vector<TrackSequenceSummary> summaries;
+  summaries.reserve(people.size());
+  for (const TrackSequenceResult& person : people) summaries.push_back(person.summary);
+  CommonGroundOptions ground;
+  // Weak perspective has no distances, and a shape that is kept has one size.
+  if (options.camera_knowledge == CameraKnowledge::kWeak || !options.estimate_shape) ground.size_sigma = 0;
+  return JoinScenes(summaries, prior, ground);
+}
+
+auto NumStanding(const std::vector<TrackSequenceResult>& people) {
+  return std::count_if(people.begin(), people.end(), [](const TrackSequenceResult& person) {
+    return person.summary.IsUsable() && !person.summary.ground.stances.empty();
+  });
+}
+
 }  // namespace
 
 TrackPeopleResult TrackPeople(std::vector<TrackSequenceInput> people, const TrackSequenceOptions& options) {
   CheckOneCamera(people);
   const size_t n = people.size();
   const bool alone = n == 1 || options.camera_knowledge == CameraKnowledge::kWeak;
-  Fits fits(options, alone ? n : 2 * n);
+  const bool unknown_focal = options.camera_knowledge == CameraKnowledge::kUnknownFocal;
+  Fits fits(options, alone ? n : unknown_focal ? 3 * n : 2 * n);
   TrackPeopleResult result;
   result.summary.hidden.resize(n);
   result.summary.fitted_again.resize(n, 0);
-  std::vector<TrackSequenceSummary> summaries;
   int width = 0, height = 0;
   for (const TrackSequenceInput& person : people) {
     result.people.push_back(fits.Run(person, options.camera_knowledge));
     const auto& [track, summary] = result.people.back();
-    summaries.push_back(summary);
     if (summary.IsUsable()) width = track.camera.width, height = track.camera.height;
   }
   SharedScene& scene = result.summary.scene;
-  scene = JoinScenes(summaries, FocalPrior::ForImage(width, height));
+  scene = Join(result.people, FocalPrior::ForImage(width, height), options);
   if (alone || fits.stopped()) return result;
 
   std::vector<OwnObservations> own(people.begin(), people.end());
@@ -101,20 +119,39 @@ TrackPeopleResult TrackPeople(std::vector<TrackSequenceInput> people, const Trac
   const int threads = ThreadsFor(options.num_threads);
   result.summary.hidden = TakeWeightFromHidden(in_scene, threads);
 
-  const bool shares_focal = options.camera_knowledge == CameraKnowledge::kUnknownFocal && scene.focal_px > 0;
+  const bool shares_focal = unknown_focal && scene.focal_px > 0;
+  const auto fit_again = [&](size_t i) {
+    own[i].GiveTo(&people[i]);
+    if (shares_focal) people[i].camera = MakePinhole(width, height, scene.focal_px);
+    TrackSequenceResult again = fits.Run(people[i], shares_focal ? CameraKnowledge::kKnown : options.camera_knowledge);
+    if (!again.summary.IsUsable() || fits.stopped()) return;
+    result.people[i] = std::move(again);
+    result.summary.fitted_again[i] = 1;
+  };
+  if (shares_focal && NumStanding(result.people) >= 2) {
+    // Where feet are follows the focal length: they are compared after everybody has the same.
+    for (size_t i = 0; i < n && !fits.stopped(); ++i) {
+      if (result.people[i].summary.IsUsable()) fit_again(i);
+    }
+    const double log_sigma = scene.focal_log_sigma;
+    scene = Join(result.people, FocalPrior::ForImage(width, height), options);
+    scene.focal_log_sigma = log_sigma;
+  }
   for (size_t i = 0; i < n && !fits.stopped(); ++i) {
     TrackSequenceInput& person = people[i];
     if (!result.people[i].summary.IsUsable()) continue;
     const bool shares_ground = scene.has_up && person.ground == nullptr;
     if (!shares_focal && !shares_ground && !result.summary.hidden[i].any()) continue;
-    if (shares_focal) person.camera = MakePinhole(width, height, scene.focal_px);
-    if (shares_ground) person.ground = &scene.ground;
-    own[i].GiveTo(&person);
-    TrackSequenceResult again = fits.Run(person, shares_focal ? CameraKnowledge::kKnown : options.camera_knowledge);
-    if (!again.summary.IsUsable() || fits.stopped()) continue;
-    again.summary.focal_log_sigma = shares_focal ? scene.focal_log_sigma : again.summary.focal_log_sigma;
-    result.people[i] = std::move(again);
-    result.summary.fitted_again[i] = 1;
+    if (shares_ground) {
+      person.ground = &scene.ground;
+      if (scene.size[i] != 1) person.stature_m = scene.size[i] * AssumedStature(person);
+    }
+    fit_again(i);
+  }
+  for (size_t i = 0; i < n; ++i) {
+    if (shares_focal && result.summary.fitted_again[i] != 0) {
+      result.people[i].summary.focal_log_sigma = scene.focal_log_sigma;
+    }
   }
   return result;
 }

@@ -91,8 +91,11 @@ TEST_F(TrackPeopleClipOnRealVideo, ThoseAskedForAlone) {
   request.track.to_s = 0.6;
   request.person = 1;
   request.overlay = false;
+  request.track.stature_m = 1.4;
   const TrackPeopleReport report = TrackPeopleClip(request);
   ASSERT_EQ(report.people.size(), 1U);
+  EXPECT_EQ(report.people[0].solve.stature_m, 1.4);
+  EXPECT_THAT(ToText(report), HasSubstr("1.40 m tall"));
   EXPECT_EQ(report.people[0].number, 1);
   EXPECT_EQ(report.num_found, 2);
   EXPECT_TRUE(std::filesystem::exists(request.out + "/person_1.npz"));
@@ -129,6 +132,9 @@ TEST(TrackPeopleClip, WhatContradictsItselfIsNamed) {
   request.max_people = 2;
   EXPECT_THAT(run, ThrowsMessage<RequestError>(HasSubstr("--person and --people")));
   request.person.reset();
+  request.track.stature_m = 1.6;
+  EXPECT_THAT(run, ThrowsMessage<RequestError>(HasSubstr("--stature is one person's")));
+  request.track.stature_m = 0;
   request.track.camera = "weak";
   EXPECT_THAT(run, ThrowsMessage<RequestError>(HasSubstr("weak perspective")));
   request.track.camera = "";

@@ -34,6 +34,17 @@ TEST(TrackRequest, WhatIsMissingOrContradictsIsNamed) {
   EXPECT_THAT([&] { CheckTrackRequest(request); }, ThrowsMessage<RequestError>(HasSubstr("--live")));
 }
 
+TEST(TrackRequest, AStatureNeedsAShapeAndAWholeClip) {
+  TrackRequest request = Complete();
+  request.stature_m = 1.6;
+  EXPECT_NO_THROW(CheckTrackRequest(request));
+  request.live_lag = 4;
+  EXPECT_THAT([&] { CheckTrackRequest(request); }, ThrowsMessage<RequestError>(HasSubstr("--stature")));
+  request.live_lag.reset();
+  request.solve.estimate_shape = false;
+  EXPECT_THAT([&] { CheckTrackRequest(request); }, ThrowsMessage<RequestError>(HasSubstr("--no-shape")));
+}
+
 TEST(TrackRequest, AVideoAloneIsDetected) {
   TrackRequest request;
   request.video = "clip.mp4";

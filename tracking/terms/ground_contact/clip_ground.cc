@@ -18,7 +18,6 @@ using Eigen::Vector3d;
 
 constexpr float kSeenConfidence = 0.3F;
 constexpr double kKnownUpRad = 0.005;  ///< σ of a vertical that is given
-constexpr double kAnkleHeight = 0.08;  ///< metres above the ground, of a foot that stands flat
 
 }  // namespace
 
@@ -115,6 +114,12 @@ bool ClipGround::FindGround(const std::vector<int>& frames, SequenceProblem* coa
       timestamps.push_back(coarse->timestamps[i]);
       index.push_back(static_cast<int>(i));
     }
+    for (const Stance& stance : FindStances(feet, timestamps, {})) {
+      shot.stances.push_back({.foot = stance.foot,
+                              .begin = frames[index[stance.begin]],
+                              .end = frames[index[stance.end - 1]] + 1,
+                              .seconds = stance.seconds});
+    }
     shot.ground = PlaneUnder(feet, timestamps, shot.up.up);
     if (!shot.ground.found) continue;
     any = true;
@@ -133,7 +138,23 @@ bool ClipGround::FindGround(const std::vector<int>& frames, SequenceProblem* coa
   return any;
 }
 
-void ClipGround::Summarise(TrackSequenceSummary* summary) const {
+void ClipGround::PlaceOnFloor(const SequenceProblem& problem, const Vector3d& up,
+                              std::vector<StandingFoot>* stances) const {
+  Kinematics kinematics;
+  PointEvaluator points;
+  for (StandingFoot& stance : *stances) {
+    Vector3d sum = Vector3d::Zero();
+    for (int t = stance.begin; t < stance.end; ++t) {
+      const FrameState& state = problem.states[t];
+      kinematics.Set(*problem.layout.model, problem.betas, state.rotations, Vector3d::Zero(), false);
+      sum += points.Evaluate(kinematics, landmarks_.points[kLifterLeftAnkle + stance.foot], false) +
+             problem.layout.BodyPlace(state);
+    }
+    stance.place_m = sum / (stance.end - stance.begin) - kAnkleHeight * up;
+  }
+}
+
+void ClipGround::Summarise(const SequenceProblem& problem, TrackSequenceSummary* summary) const {
   GroundSummary& result = summary->ground;
   if (!why_not_.empty()) result.why = why_not_;
   const auto longest = std::max_element(shots_.begin(), shots_.end(),
@@ -144,6 +165,8 @@ void ClipGround::Summarise(TrackSequenceSummary* summary) const {
   result.up_spread_deg = longest->up.spread_deg;
   result.contact_frames = contact_frames_;
   if (!why_not_.empty()) return;
+  result.stances = longest->stances;
+  PlaceOnFloor(problem, result.up, &result.stances);
   const GroundPlane& ground = longest->ground;
   result.has_plane = ground.found;
   result.why = ground.why;

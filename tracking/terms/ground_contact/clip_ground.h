@@ -27,17 +27,22 @@ class ClipGround {
   /// `coarse` and `problem` (the whole clip) have their feet held and their trunks measured against its normal.
   bool FindGround(const std::vector<int>& frames, SequenceProblem* coarse, SequenceProblem* problem);
 
-  void Summarise(TrackSequenceSummary* summary) const;
+  /// Of the longest shot, with the answer in `problem` (the whole clip).
+  void Summarise(const SequenceProblem& problem, TrackSequenceSummary* summary) const;
 
  private:
   struct Shot {
     int begin = 0, end = 0;
     UpEstimate up;
     GroundPlane ground;
+    std::vector<StandingFoot> stances;  ///< without their places
   };
   /// The plane that feet stand on in a shot whose vertical is found.
   [[nodiscard]] GroundPlane PlaneUnder(const std::vector<std::array<FootPlace, 2>>& feet,
                                        const std::vector<double>& timestamps, const Eigen::Vector3d& up) const;
+  /// Where the answer puts the stances.
+  void PlaceOnFloor(const SequenceProblem& problem, const Eigen::Vector3d& up,
+                    std::vector<StandingFoot>* stances) const;
   void SetUpright(const Shot& shot, const Eigen::Vector3d& up, SequenceProblem* problem) const;
   void Hold(const Stance& stance, const GroundPlane& ground, FrameData* frame) const;
 

@@ -2,6 +2,7 @@
 #include "bodyloom/tracking/terms/part_labels/part_labels.h"
 
 #include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/tracking/initialise/stature.h"
 #include "bodyloom/tracking/track_input.h"
 #include "bodyloom/tracking/track_options.h"
 #include "bodyloom/tracking/track_summary.h"
@@ -31,9 +32,7 @@ PlanEntry PlanParts(const TrackSequenceInput& input, const TrackSequenceOptions&
 
 PartLabelRounds::PartLabelRounds(const TrackSequenceInput& input, const TrackSequenceOptions& options,
                                  const FrameLayout& layout, int num_threads)
-    : num_threads_(num_threads) {
-  Eigen::VectorXd unused;
-  stature_m_ = StatureOfMeanShape(*layout.model, 0, &unused);
+    : num_threads_(num_threads), stature_m_(AssumedStature(input)) {
   if (!WhyNoSilhouette(input, options).empty() && !WhyNoParts(input, options).empty()) return;
   const auto skinner = std::make_shared<const Skinner>(*layout.model);
   part_labels_.resize(input.part_labels->num_frames());
