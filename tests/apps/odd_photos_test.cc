@@ -75,7 +75,9 @@ class OddPhotos : public ::testing::Test {
     fs::remove(File("out.mp4"));
     const CommandResult result = Animate(image, more, track);
     EXPECT_EQ(result.exit_code, code) << result.out;
-    if (code == 1) EXPECT_EQ(result.NumErrorLines(), 1) << result.err;
+    if (code == 1) {
+      EXPECT_EQ(result.NumErrorLines(), 1) << result.err;
+    }
     EXPECT_THAT(result.err, HasSubstr(named));
     EXPECT_THAT(result.err, HasSubstr(what));
     EXPECT_FALSE(fs::exists(File("out.mp4")));

@@ -214,7 +214,9 @@ TEST(PersonSegmentation, EndsAtThePicture) {
   const PersonSegmentation segmentation = SegmentPerson(window, inside, {}, two.parts);
   int mine = 0, found = 0, wrong = 0;
   for (size_t i = 0; i < inside.size(); ++i) {
-    if (inside[i] == 0) EXPECT_EQ(segmentation.labels[i], 0) << i;
+    if (inside[i] == 0) {
+      EXPECT_EQ(segmentation.labels[i], 0) << i;
+    }
     mine += inside[i] != 0 && two.person[i] != 0;
     found += segmentation.labels[i] != 0 && two.person[i] != 0;
     wrong += segmentation.labels[i] != 0 && two.person[i] == 0;
