@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "apps/detector_options.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {
@@ -80,8 +81,8 @@ void AddLearnedOptions(CLI::App& app, TrackRequest* request) {
       ->type_name("FILE");
 }
 
-void AddSolveOptions(CLI::App& app, TrackSequenceOptions* options) {
-  TrackSequenceOptions& s = *options;
+void AddSolveOptions(CLI::App& app, TrackRequest* request) {
+  TrackSequenceOptions& s = request->solve;
   app.add_option_function<std::string>(
          "--solver", [&s](const std::string& word) { s.solver = SequenceSolverFromString(word); },
          "the engine: chain, or ceres (the reference: the same problem, several times slower)")
@@ -100,6 +101,12 @@ void AddSolveOptions(CLI::App& app, TrackSequenceOptions* options) {
          "--no-ground", [&s] { s.ground = GroundOptions::Off(); },
          "look for neither the vertical nor the ground that feet stand on")
       ->group(kSolve);
+  app.add_option("--straight-knees", request->straight_knees,
+                 Concatenate("how strongly knees are kept straight, 1/rad, 0: not at all (default: ",
+                             kBlazePoseStraightKnees, " for BlazePose's joints, which every raw video has, else 0)"))
+      ->group(kSolve)
+      ->type_name("W")
+      ->check(Quiet(CLI::Range(0.0, 100.0)));
   app.add_flag_callback(
          "--no-shape", [&s] { s.estimate_shape = false; }, "keep the body's mean shape")
       ->group(kSolve);
@@ -185,7 +192,7 @@ void AddTrackOptions(CLI::App& app, TrackRequest* request, bool* quiet) {
       ->group(kWanted);
   app.add_flag("--quiet", *quiet, "no progress and no summary on the screen")->group(kWanted);
 
-  AddSolveOptions(app, &c.solve);
+  AddSolveOptions(app, request);
   app.add_option("--init-weight", c.solve.initialiser_weight, "how strongly the track stays near --init")
       ->group(kSolve)
       ->check(Quiet(CLI::NonNegativeNumber))

@@ -18,8 +18,8 @@ void AddDetectionOptions(CLI::App& app, TrackRequest* request, const std::string
 void AddCalibrationOptions(CLI::App& app, TrackRequest* request);
 /// --body, --stature, --prior and --lifter.
 void AddLearnedOptions(CLI::App& app, TrackRequest* request);
-/// --solver, --threads, --max-iterations and the switches that leave something out.
-void AddSolveOptions(CLI::App& app, TrackSequenceOptions* options);
+/// --solver, --threads, --max-iterations, --straight-knees and the switches that leave something out.
+void AddSolveOptions(CLI::App& app, TrackRequest* request);
 
 /// Binds every field of the request to its flag; defaults in --help are those of the struct. `quiet` is the verb's own.
 void AddTrackOptions(CLI::App& app, TrackRequest* request, bool* quiet);

@@ -57,7 +57,7 @@ void AddRunVerb(CLI::App& app, Action* action) {
   AddDetectionOptions(*verb, &track, "Detection");
   AddCalibrationOptions(*verb, &track);
   AddLearnedOptions(*verb, &track);
-  AddSolveOptions(*verb, &track.solve);
+  AddSolveOptions(*verb, &track);
   verb->callback([=] {
     *action = [=] {
       request->overlay = !*no_overlay;

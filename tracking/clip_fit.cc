@@ -2,6 +2,7 @@
 #include "bodyloom/tracking/clip_fit.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -129,6 +130,7 @@ bool ClipFit::FindStart() {
 
 void ClipFit::Observe() {
   const size_t T = num_frames();
+  const std::array<int, 2> knees = FindKnees(*input_.body);
   problem_.frames.resize(T);
   for (size_t t = 0; t < T; ++t) {
     FrameData& frame = problem_.frames[t];
@@ -147,6 +149,7 @@ void ClipFit::Observe() {
       frame.lifted.weight = options_.lifter_weight;
     }
     frame.upright.weight = options_.upright_weight;
+    frame.straight_knees = {knees, options_.straight_knees_weight};
     frame.initialiser.rotations = problem_.states[t].rotations;
     frame.initialiser.translation = problem_.states[t].translation;
     summary_.num_observations += static_cast<int>(frame.landmarks.seen.size() + frame.dense.size());

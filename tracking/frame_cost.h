@@ -12,6 +12,7 @@
 ///                                    far the trunk leans towards or away from the camera, which a camera barely sees
 ///                                    (cos is flat): people are mostly upright. Saturates, so bending and lying stay
 ///                                    free
+/// + ½ w² Σ ρ(θ²)                    flexion of the knees (terms/straight_knees.h)
 /// + ½ λ_d (‖log(R̄ᵀR)‖²/σ_R² + ‖t − t̄‖²/σ_t²)  initialiser (L_d of paper A)
 /// + ½ λ_d Σ ρ(‖W (x − x_hips − y)‖²)         the lifter as initialiser (terms/lifted/lifted_pose.h)
 /// + ½ Σ ρ(‖W (x − a)‖²)              feet that stand (terms/ground_contact/ground_contact.h)

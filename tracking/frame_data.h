@@ -12,6 +12,7 @@
 #include "bodyloom/tracking/terms/part_labels/part_label_term.h"
 #include "bodyloom/tracking/terms/pose_prior/pose_prior.h"
 #include "bodyloom/tracking/terms/rendered_uv/rendered_uv_term.h"
+#include "bodyloom/tracking/terms/straight_knees.h"
 #include "bodyloom/tracking/terms/upright.h"
 
 namespace bodyloom {
@@ -27,6 +28,7 @@ struct FrameData {
   PosePriorOfFrame prior;
   JointLimitsOfFrame limits;
   UprightOfFrame upright;
+  StraightKneesOfFrame straight_knees;
   InitialiserOfFrame initialiser;
   OwnCostsOfFrame own;
 
@@ -42,6 +44,7 @@ struct FrameData {
     visit(prior);
     visit(limits);
     visit(upright);
+    visit(straight_knees);
     visit(initialiser);
     visit(own);
   }

@@ -21,6 +21,7 @@ bool TrackSequenceOptions::IsValid(std::string* why) const {
   const InRange in_range(why);
   if (!in_range("function_tolerance", function_tolerance, 0, 1) || !in_range("lifter_weight", lifter_weight, 0, 1e6) ||
       !in_range("lifter_min_sigma_m", lifter_min_sigma_m, 1e-6, 1e3) ||
+      !in_range("straight_knees_weight", straight_knees_weight, 0, 1e6) ||
       !in_range("ground.contact_weight", ground.contact_weight, 0, 1e6) ||
       !in_range("ground.sigma_height_m", ground.sigma_height_m, 1e-4, 1e3) ||
       !in_range("ground.sigma_slide_m", ground.sigma_slide_m, 1e-4, 1e3) ||
@@ -32,6 +33,7 @@ bool TrackSequenceOptions::IsValid(std::string* why) const {
       !in_range("part_labels.silhouette_weight", part_labels.silhouette_weight, 0, 1e6) ||
       !in_range("part_labels.part_weight", part_labels.part_weight, 0, 1e6) ||
       !in_range("part_labels.sigma_share", part_labels.sigma_share, 1e-4, 1) ||
+      !in_range("part_labels.clothes_sigma_share", part_labels.clothes_sigma_share, 0, 1) ||
       !in_range("part_labels.start_kernel", part_labels.start_kernel, 0.1, 1e6) ||
       !in_range("part_labels.kernel", part_labels.kernel, 0.1, 1e6) ||
       !in_range("part_labels.rounds", part_labels.rounds, 1, 100) ||

@@ -34,9 +34,12 @@ struct TrackSequenceOptions {
   /// on cameras c02, c04, c06 and c09 of the clips of docs/benchmarks.md, whose other cameras are reported there:
   /// weights 0.03 to 0.4 differ by 2 mm.
   double lifter_weight = 0.12, lifter_min_sigma_m = 0.08;
-  double prior_weight = 0.2;        ///< of the pose prior's energy, per frame
-  double start_pull = 1.0;          ///< pull towards the hypotheses in the first stage (rotation σ 0.2 rad)
-  double upright_weight = 1.0;      ///< of the trunk not leaning out of the image plane, per frame
+  double prior_weight = 0.2;    ///< of the pose prior's energy, per frame
+  double start_pull = 1.0;      ///< pull towards the hypotheses in the first stage (rotation σ 0.2 rad)
+  double upright_weight = 1.0;  ///< of the trunk not leaning out of the image plane, per frame
+  /// Of knees being straight, 1/rad (terms/straight_knees.h); 0: off. For detectors whose hips lie low on the body, as
+  /// BlazePose's do.
+  double straight_knees_weight = 0;
   double coarse_rate = 15;          ///< frames a second of the coarse stages
   double shape_prior_weight = 0.3;  ///< of the shape prior, a frame
   bool fit_smoothness = true;       ///< σ of accelerations from the clip's own motion (motion_level.h)

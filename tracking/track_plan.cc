@@ -14,6 +14,7 @@
 #include "bodyloom/tracking/terms/part_labels/part_labels.h"
 #include "bodyloom/tracking/terms/pose_prior/pose_prior.h"
 #include "bodyloom/tracking/terms/rendered_uv/rendered_uv.h"
+#include "bodyloom/tracking/terms/straight_knees.h"
 #include "bodyloom/tracking/terms/upright.h"
 
 namespace bodyloom {
@@ -37,6 +38,7 @@ std::vector<PlanEntry> PlanTrackSequence(const TrackSequenceInput& input, const 
                              PlanUp, PlanGround, PlanPosePrior}) {
     plan.push_back(plan_of(input, options));
   }
+  if (options.straight_knees_weight > 0) plan.push_back(PlanStraightKnees(options.straight_knees_weight));
   for (PlanEntry& entry : PlanOwnTerms(options.own_terms)) plan.push_back(std::move(entry));
   const bool surface = input.dense != nullptr || input.part_labels != nullptr;
   const ObservedLandmarks landmarks = FindObservedLandmarks(model, input.keypoints, 0);

@@ -159,6 +159,7 @@ void Run(const BenchArguments& arguments, const std::string& command) {
       input.camera = person.camera;
       TrackSequenceOptions options;
       options.num_threads = arguments.Integer("threads");
+      options.part_labels.clothes_sigma_share = 0;  // these masks are of bare bodies
       const Stopwatch watch;
       const TrackSequenceResult result = TrackSequence(input, options);
       const double seconds = watch.seconds();

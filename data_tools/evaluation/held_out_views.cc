@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bodyloom/data_tools/evaluation/knee_flexion.h"
 #include "bodyloom/data_tools/evaluation/metrics.h"
 #include "bodyloom/data_tools/evaluation/metrics_image.h"
 #include "bodyloom/geometry/base/check.h"
@@ -180,6 +181,7 @@ Evaluation EvaluateHeldOutViews(const Track& track, const MultiViewClip& clip, c
   fitted.Report("fitview", "the fitted view, true camera", &result);
   fitted_own.Report("fitview_own", "the fitted view, the track's camera", &result);
 
+  AddKneeFlexion(track.motion, clip.motion.num_frames() > 0 ? &clip.motion : nullptr, &result);
   AddJointAngles(track, source, clip, own, &result);
   result.breakdowns.push_back(std::move(by_view));
   AddBreakdown("pa_mpjpe_mm", CocoNames(), pa.per_point * kMm, &result);

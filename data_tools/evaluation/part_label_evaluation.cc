@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "bodyloom/data_tools/evaluation/knee_flexion.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/posed_body.h"
 #include "bodyloom/render/visibility_buffer.h"
@@ -138,6 +139,7 @@ Evaluation EvaluatePartLabels(const Track& track, const PartLabelSequence& label
   evaluation.Add("limb_iou", Mean(joined), "the same with the two charts of a bone, of torso and of head joined");
   evaluation.Add("label_accuracy", person > 0 ? double(right) / double(person) : 0,
                  "share of the person's pixels that show the labelled chart");
+  AddKneeFlexion(track.motion, nullptr, &evaluation);
   EvaluationBreakdown breakdown;
   breakdown.name = "part_iou_by_chart";
   for (int c = 1; c < kCharts; ++c) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bodyloom/data_tools/evaluation/knee_flexion.h"
 #include "bodyloom/data_tools/evaluation/metrics.h"
 #include "bodyloom/data_tools/evaluation/metrics_image.h"
 #include "bodyloom/geometry/base/check.h"
@@ -138,6 +139,7 @@ Evaluation EvaluateAgainstTruth(const Track& track, const Track& truth, const Bo
       MeanJointAngleError(WithColumns(poses, columns), WithColumns(truth.motion.poses, columns));
   result.Add("joint_angle_err_deg", angles.mean_deg, "rotation error of joints relative to their parents");
   result.Add("root_rotation_err_deg", angles.root_deg, "rotation error of the body in the camera frame");
+  AddKneeFlexion(estimate, &truth.motion, &result);
   // A weak-perspective camera does not determine where the body stands.
   const bool has_depth = track.camera.model == CameraModel::kPinhole && truth.camera.model == CameraModel::kPinhole;
   const RootError root = has_depth ? RootPositionError(roots, true_roots) : RootError{};

@@ -7,6 +7,7 @@
 
 #include "bodyloom/data_tools/body/body_or_builtin.h"
 #include "bodyloom/data_tools/evaluation/aist_evaluation.h"
+#include "bodyloom/data_tools/evaluation/knee_flexion.h"
 #include "bodyloom/data_tools/evaluation/part_label_evaluation.h"
 #include "bodyloom/data_tools/evaluation/pose2sim_evaluation.h"
 #include "bodyloom/data_tools/evaluation/triangulated_clip.h"
@@ -37,6 +38,7 @@ Evaluation Evaluate(const EvaluateTrackRequest& request, const PipelineCallbacks
   const fs::path truth = request.truth;
   const Track track = ReadTrack(request.track);
   callbacks.Update("measure", 0);
+  if (request.truth.empty() && request.seen.empty()) return EvaluateAlone(track);
   if (!request.seen.empty()) {
     return EvaluateTriangulatedClip(track, ReadRigClip(request.cameras, request.seen, request.view, track),
                                     request.view);
@@ -62,8 +64,9 @@ Evaluation Evaluate(const EvaluateTrackRequest& request, const PipelineCallbacks
 }  // namespace
 
 Evaluation EvaluateTrack(const EvaluateTrackRequest& request, const PipelineCallbacks& callbacks) {
-  if (request.truth.empty() == request.seen.empty()) {
-    throw RequestError("what is the track compared with? expected --truth, or --seen of two cameras and more");
+  if (!request.truth.empty() && !request.seen.empty()) {
+    throw RequestError(
+        "what is the track compared with? expected --truth, or --seen of two cameras and more, not both");
   }
   if (!request.seen.empty() && (request.cameras.empty() || request.view.empty())) {
     throw RequestError("--seen needs the calibration, --cameras, and the camera that was fitted, --view");

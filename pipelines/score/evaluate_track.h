@@ -14,7 +14,7 @@ namespace bodyloom {
 struct EvaluateTrackRequest {
   std::string track;  ///< .npz
   /// What is known, and thereby the protocol: a track or part labels (.npz), an AIST++ folder (keypoints2d/), or a
-  /// Pose2Sim folder (calib_refined.json).
+  /// Pose2Sim folder (calib_refined.json). Neither this nor `seen`: the track alone (knee_flexion.h).
   std::string truth;
   /// Instead of `truth`: what the calibrated cameras of a rig saw of the person, two or more; `cameras` is the
   /// calibration, `view` the camera that the track was fitted to (rig_clip.h).
@@ -27,7 +27,8 @@ struct EvaluateTrackRequest {
 };
 
 /// Measures the track and writes the numbers where requested. Throws RequestError when an AIST++ clip is not named, or
-/// not exactly one of `truth` and `seen` is given, std::runtime_error naming a file that cannot be used, Cancelled before the measuring begins.
+/// both `truth` and `seen` are given, std::runtime_error naming a file that cannot be used, Cancelled before the
+/// measuring begins.
 Evaluation EvaluateTrack(const EvaluateTrackRequest& request, const PipelineCallbacks& callbacks = {});
 
 }  // namespace bodyloom

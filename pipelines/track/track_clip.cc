@@ -58,6 +58,7 @@ void CheckFiles(const TrackRequest& request) {
 
 TrackSequenceOptions OptionsFor(const TrackRequest& request, const TrackInputs& inputs) {
   TrackSequenceOptions options = request.solve;
+  options.straight_knees_weight = StraightKneesWeight(request, inputs.keypoints ? inputs.keypoints->convention : "");
   if (inputs.joints_from_labels) options.part_labels = PartLabelOptions::LabelsAlone();
   return options;
 }

@@ -89,6 +89,7 @@ TrackPeopleResult Solve(const TrackPeopleClipRequest& request, const SceneInputs
   }
   TrackSequenceOptions options = request.track.solve;
   options.camera_knowledge = CameraKnowledgeOf(request.track);
+  options.straight_knees_weight = StraightKneesWeight(request.track, seen.front().keypoints.convention);
   bool cancelled = false;
   options.progress = [&](const TrackProgress& at) {
     cancelled = !callbacks.GoesOn(at.stage, at.fraction);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/pipelines/track/track_request.h"
 
+#include "bodyloom/data_tools/observations/keypoint_conventions.h"
 #include "bodyloom/pipelines/callbacks.h"
 
 namespace bodyloom {
@@ -12,6 +13,10 @@ CameraKnowledge CameraKnowledgeOf(const TrackRequest& request) {
   const bool has_intrinsics = !request.cameras.empty() || request.focal_px > 0;
   return request.camera == "pinhole" || (request.camera.empty() && has_intrinsics) ? CameraKnowledge::kKnown
                                                                                    : CameraKnowledge::kUnknownFocal;
+}
+
+double StraightKneesWeight(const TrackRequest& request, const std::string& convention) {
+  return request.straight_knees.value_or(convention == MediaPipe33().name ? kBlazePoseStraightKnees : 0);
 }
 
 bool DetectsPeople(const TrackRequest& request) {

@@ -52,7 +52,8 @@ struct TrackRequest {
   bool side_view = false;  ///< the overlay also shows the body from its side, where depth errors show
   bool plan = false;       ///< only find out what would run, what is skipped and why
 
-  TrackSequenceOptions solve;
+  TrackSequenceOptions solve;            ///< its straight_knees_weight is StraightKneesWeight()
+  std::optional<double> straight_knees;  ///< 1/rad; none: kBlazePoseStraightKnees for BlazePose's joints, else 0
   std::optional<int> live_lag;  ///< frames; track as if the clip came from a camera (tracking/live/live_tracker.h)
 };
 
@@ -64,6 +65,13 @@ bool DetectsPeople(const TrackRequest& request);
 
 /// Whether 2D joints are to be read off the part labels: they are all that was seen.
 bool ReadsJointsOffLabels(const TrackRequest& request);
+
+/// Weight of straight knees for BlazePose's joints, 1/rad, whose hips lie 4 cm lower than other detectors'. Found on AIST++
+/// (docs/lab/pose_detector.md).
+inline constexpr double kBlazePoseStraightKnees = 3;
+
+/// TrackSequenceOptions::straight_knees_weight for joints of that convention (KeypointSequence::convention).
+double StraightKneesWeight(const TrackRequest& request, const std::string& convention);
 
 /// What `camera`, `cameras` and `focal_px` amount to.
 CameraKnowledge CameraKnowledgeOf(const TrackRequest& request);

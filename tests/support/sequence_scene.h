@@ -105,6 +105,7 @@ inline std::unique_ptr<SequenceScene> MakeSequenceScene(const SequenceSceneOptio
     frame.dense.points = &scene->dense[t];
     frame.limits.limits = &scene->limits;
     frame.upright.weight = 1;
+    frame.straight_knees = {FindKnees(body), 0.5};
     problem.timestamps.push_back(t / 25.0);
     problem.cut_before.push_back(0);
     for (int j = 0; j < J; ++j) {

@@ -163,6 +163,7 @@ TEST(Uncertainty, SpreadOfTheErrorsOfTheWholeProblem) {
       frame.landmarks.kernel = frame.dense.kernel = 100;
       frame.limits.limits = nullptr;
       frame.upright.weight = 0;
+      frame.straight_knees.weight = 0;
       frame.initialiser.weight = 1;
       problem.states[t] = scene->truth[t];
       frame.initialiser.translation = scene->truth[t].translation + noise(frame.initialiser.translation_sigma);

@@ -36,6 +36,7 @@ LiveSetup::LiveSetup(const LiveTrackerInput& given, const LiveTrackerOptions& ch
   layout = FrameLayout::Make(model, options.solve.camera_knowledge, camera, active, num_betas);
   if (input.prior != nullptr && input.prior->num_components() > 0) prior.emplace(*input.prior, model, active);
   limits = JointLimits::ForBody(model);
+  knees = FindKnees(model);
   if (input.lifter != nullptr) lifted_landmarks = CompileLiftedLandmarks(model, num_betas);
   VectorXd gradient;
   stature_m = StatureOfMeanShape(model, num_betas, &gradient);

@@ -2,6 +2,7 @@
 /// The setup of a live tracker, fixed before the first frame: body, camera, priors, which joints are unknowns.
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "bodyloom/tracking/initialise/lifted_landmarks.h"
@@ -33,6 +34,7 @@ struct LiveSetup {
   LiftedLandmarks lifted_landmarks;
   std::optional<MixturePrior> prior;
   JointLimits limits;
+  std::array<int, 2> knees = {-1, -1};
   double stature_m = 0;  ///< of the mean shape
 };
 

@@ -124,6 +124,7 @@ FrameData LiveWindow::Observe(const FrameState& state, LiveRecord* record) const
   }
   frame.limits.limits = &setup_.limits;
   frame.upright.weight = solve.upright_weight;
+  frame.straight_knees = {setup_.knees, solve.straight_knees_weight};
   frame.landmarks.kernel = 4;
   if (!record->lifted.points.empty()) {
     frame.lifted.pose = &record->lifted;

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "bodyloom/data_tools/evaluation/knee_flexion.h"
 #include "bodyloom/geometry/posed_body.h"
 #include "bodyloom/geometry/rotation.h"
 #include "tests/support/toy_body.h"
@@ -52,6 +53,29 @@ TEST(EvaluationTruthTest, ThePerfectTrackHasNoError) {
   EXPECT_NEAR(e.Value("pa_mpjpe_mm"), 0, 1e-9);
   EXPECT_NEAR(e.Value("clip_scale"), 1, 1e-12);
   EXPECT_GT(e.Value("gt_accel_ms2"), 0);
+}
+
+TEST(EvaluationTruthTest, KneesAreMeasuredInDegrees) {
+  Track truth = TrueTrack();
+  truth.motion.poses.middleCols<6>(12).setZero();
+  Track track = truth;
+  for (int t = 0; t < kFrames; ++t) {
+    track.motion.poses(t, 12) = 0.1 * t;  // the left knee; the right one stays straight
+    track.motion.poses(t, 13) = 2;        // a twist is no flexion
+    truth.motion.poses(t, 12) = truth.motion.poses(t, 15) = 0.5;
+  }
+  track.motion.poses.row(kFrames - 1).setConstant(NAN);
+  const Evaluation e = EvaluateAgainstTruth(track, truth, ToyBody());
+  EXPECT_NEAR(e.Value("gt_knee_flexion_deg"), 0.5 * 180 / M_PI, 1e-12);
+  EXPECT_EQ(e.Value("knee_flexion_deg"), 0);  // of 22 numbers 12 are zero
+  for (int t = 0; t < kFrames; ++t) track.motion.poses(t, 15) = 0.25;
+  const Evaluation alone = EvaluateAlone(track);
+  EXPECT_EQ(alone.protocol, "track-alone");
+  EXPECT_EQ(alone.frames, kFrames);
+  EXPECT_EQ(alone.frames_without_result, 1);
+  EXPECT_NEAR(alone.Value("knee_flexion_deg"), 0.25 * 180 / M_PI, 1e-12);
+  track.motion.poses.setConstant(NAN);
+  EXPECT_TRUE(std::isnan(EvaluateAlone(track).Value("knee_flexion_deg")));
 }
 
 TEST(EvaluationTruthTest, AShiftedRootMovesThePictureAndNothingElse) {

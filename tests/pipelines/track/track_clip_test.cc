@@ -3,8 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 
+#include "bodyloom/data_tools/formats/npz.h"
+#include "bodyloom/data_tools/observations/observations_npz.h"
+#include "bodyloom/pipelines/score/evaluate_track.h"
 #include "bodyloom/pipelines/synthesis/synthesize_clip.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/test_files.h"
@@ -56,6 +60,55 @@ TEST(TrackClip, ACancelledOneLeavesNothingBehind) {
   callbacks.progress = [&](const std::string&, double done) { return done < 0.2; };
   EXPECT_THROW(TrackClip(request, callbacks), Cancelled);
   EXPECT_EQ(folder.Entries(), std::vector<std::string>{"clip"});
+}
+
+/// Whether the plan for these joints, said to be of that convention, has straight knees.
+bool PlansStraightKnees(TrackRequest request, const std::string& convention, const ScratchFolder& folder) {
+  KeypointSequence joints = KeypointsFromNpz(ReadNpz(request.detections), request.detections);
+  joints.convention = convention;
+  request.detections = folder / (convention + ".npz");
+  WriteObservations(request.detections, &joints, nullptr);
+  request.plan = true;
+  const std::vector<PlanEntry> plan = TrackClip(request).solve.plan;
+  return std::any_of(plan.begin(), plan.end(),
+                     [](const PlanEntry& entry) { return entry.what == "straight knees" && entry.runs; });
+}
+
+TEST(TrackClip, KneesAreKeptStraightForBlazePosesJointsOnly) {
+  const ScratchFolder folder;
+  TrackRequest request;
+  const SynthClipFiles clip = SmallClip(folder);
+  request.detections = clip.observations;
+  request.cameras = clip.camera;
+  EXPECT_FALSE(PlansStraightKnees(request, "coco17", folder));
+  EXPECT_TRUE(PlansStraightKnees(request, "mediapipe33", folder));
+  request.straight_knees = 0;
+  EXPECT_FALSE(PlansStraightKnees(request, "mediapipe33", folder));
+  request.straight_knees = 0.5;
+  EXPECT_TRUE(PlansStraightKnees(request, "coco17", folder));
+}
+
+TEST(TrackClip, StraightKneesStraightenKnees) {
+  const ScratchFolder folder;
+  const SynthClipFiles clip = SmallClip(folder);
+  const auto flexion_deg = [&](double weight) {
+    TrackRequest request;
+    request.detections = clip.observations;
+    request.cameras = clip.camera;
+    request.out = folder / "track.npz";
+    request.straight_knees = weight;
+    TrackClip(request);
+    EvaluateTrackRequest evaluate;  // nothing to compare with
+    evaluate.track = request.out;
+    evaluate.json = folder / "knees.json";
+    const Evaluation alone = EvaluateTrack(evaluate);
+    EXPECT_EQ(alone.protocol, "track-alone");
+    EXPECT_EQ(FileBytes(evaluate.json), EvaluationJson(alone));
+    return alone.Value("knee_flexion_deg");
+  };
+  const double without = flexion_deg(0);
+  EXPECT_GT(without, 3);
+  EXPECT_LT(flexion_deg(5), 0.5 * without);
 }
 
 }  // namespace

@@ -60,6 +60,18 @@ TEST(TrackRequest, AVideoAloneIsDetected) {
   EXPECT_THAT([&] { CheckTrackRequest(request); }, ThrowsMessage<RequestError>(HasSubstr("--from and --to")));
 }
 
+TEST(TrackRequest, KneesAreKeptStraightForBlazePosesJoints) {
+  TrackRequest request = Complete();
+  EXPECT_EQ(StraightKneesWeight(request, "coco17"), 0);
+  EXPECT_EQ(StraightKneesWeight(request, "body25"), 0);
+  EXPECT_EQ(StraightKneesWeight(request, ""), 0);
+  EXPECT_EQ(StraightKneesWeight(request, "mediapipe33"), kBlazePoseStraightKnees);
+  request.straight_knees = 0;
+  EXPECT_EQ(StraightKneesWeight(request, "mediapipe33"), 0);
+  request.straight_knees = 1.5;
+  EXPECT_EQ(StraightKneesWeight(request, "coco17"), 1.5);
+}
+
 TEST(TrackRequest, IntrinsicsMakeAPinhole) {
   TrackRequest request = Complete();
   EXPECT_EQ(CameraKnowledgeOf(request), CameraKnowledge::kUnknownFocal);

@@ -36,6 +36,12 @@ std::vector<T> Thinned(const std::vector<T>& items, size_t n) {
   return result;
 }
 
+/// One part for the whole person: what clothes and hair add to it is part of it.
+bool IsMask(const PartLabelSequence& labels) {
+  const auto is_same = [&](uint8_t part) { return part == labels.part_of_chart[1]; };
+  return std::all_of(labels.part_of_chart.begin() + 1, labels.part_of_chart.begin() + kUnknown, is_same);
+}
+
 /// Neither background nor unknown.
 bool IsPart(uint8_t part) { return part != kBackground && part != kUnknown; }
 
@@ -180,7 +186,7 @@ std::vector<PartLabelTerm::Edge> PartLabelTerm::EdgesOfBody(const std::vector<ui
 }
 
 void PartLabelTerm::AddContour(const std::vector<Edge>& edges, const BodyModel& model, const VisibleSurface& surface,
-                               const Camera& camera, double sigma_px) {
+                               const Camera& camera, const Sigmas& sigmas) {
   const auto add = [&](const Edge& edge, const DistanceField* field, bool is_silhouette) {
     if (labels_.PartAt(t_, edge.x, edge.y) == kUnknown) return;
     ContourPoint point;
@@ -189,7 +195,8 @@ void PartLabelTerm::AddContour(const std::vector<Edge>& edges, const BodyModel& 
         BarycentricAtPixel(surface.vertices(), model.data().faces, camera, edge.face, Vector2d(edge.x, edge.y));
     point.field = field;
     point.offset_px = -0.5;  // the centre of the last pixel inside
-    point.inverse_sigma = 1 / sigma_px;
+    point.inverse_sigma = 1 / sigmas.contour_px;
+    point.inverse_sigma_inside = is_silhouette ? 1 / sigmas.clothes_px : point.inverse_sigma;
     point.is_silhouette = is_silhouette;
     contour_.push_back(point);
   };
@@ -210,7 +217,7 @@ void PartLabelTerm::AddContour(const std::vector<Edge>& edges, const BodyModel& 
 }
 
 void PartLabelTerm::AddBoundary(const std::vector<Edge>& edges, const BodyModel& model, const VisibleSurface& surface,
-                                const Camera& camera, double sigma_px, double reach_px) {
+                                const Camera& camera, const Sigmas& sigmas, double reach_px) {
   std::map<std::pair<uint8_t, uint8_t>, std::vector<const Edge*>> between;
   for (const Edge& edge : edges) {
     const auto key = edge.other == kBackground
@@ -248,11 +255,14 @@ void PartLabelTerm::AddBoundary(const std::vector<Edge>& edges, const BodyModel&
     target.pixel = sample.pixel;
     target.is_silhouette = is_silhouette;
     // On a ridge of the field no direction is across the boundary.
-    target.whitening = Matrix2d::Identity() * (kAlongBoundary / sigma_px);
+    target.whitening = target.whitening_inside = Matrix2d::Identity() * (kAlongBoundary / sigmas.contour_px);
     if (length > 0.1) {
       const Vector2d n = gradient.transpose() / length;
+      target.outward = n;
       target.pixel -= 0.5 * n;  // the contour's samples are centres of pixels, half a pixel inside
-      target.whitening += (1 - kAlongBoundary) / sigma_px * n * n.transpose();
+      const double share_inside = is_silhouette ? sigmas.contour_px / sigmas.clothes_px : 1;
+      target.whitening += (1 - kAlongBoundary) / sigmas.contour_px * n * n.transpose();
+      target.whitening_inside += (share_inside - kAlongBoundary) / sigmas.contour_px * n * n.transpose();
     }
     targets_.push_back(target);
   }
@@ -310,7 +320,7 @@ void PartLabelTerm::AddInside(const std::vector<uint8_t>& part_of_face, const Bo
     target.face = nearest->face;
     target.barycentric = Vector3d::Unit(nearest->corner);
     target.pixel = pixel;
-    target.whitening = Matrix2d::Identity() / (kInsideSigmas * sigma_px);
+    target.whitening = target.whitening_inside = Matrix2d::Identity() / (kInsideSigmas * sigma_px);
     targets_.push_back(target);
   }
 }
@@ -337,10 +347,12 @@ void PartLabelTerm::Correspond(const FrameLayout& layout, const FrameState& stat
   const Camera camera = layout.CameraAt(state, log_focal);
   if (!surface->Render(skinner_, model, betas, state.rotations, layout.BodyTranslation(state), camera)) return;
   const double sigma_px = std::max(0.5, options_.sigma_share * person_height_px);
+  const double clothes_px = std::max(sigma_px, options_.clothes_sigma_share * person_height_px);
+  const Sigmas sigmas{sigma_px, IsMask(labels_) ? clothes_px : sigma_px};
   const std::vector<uint8_t> part_of_face = PartOfFaces(model);
   const std::vector<Edge> edges = EdgesOfBody(part_of_face, surface->buffer());
-  AddContour(edges, model, *surface, camera, sigma_px);
-  AddBoundary(edges, model, *surface, camera, sigma_px, kReach * person_height_px);
+  AddContour(edges, model, *surface, camera, sigmas);
+  AddBoundary(edges, model, *surface, camera, sigmas, kReach * person_height_px);
   AddInside(part_of_face, model, *surface, camera, sigma_px);
   Weigh();
 }
@@ -354,7 +366,13 @@ void PartLabelsOfFrame::Add(FrameAccumulator* sums) const {
   for (const PartLabelTerm::Target& target : term->targets()) {
     const Vector3d x = sums->points().Evaluate(kinematics, faces.row(target.face).data(), target.barycentric.data(),
                                                &sums->vertices(), derivatives);
-    sums->AddPixel(x, target.pixel, target.whitening, term->kernel(), target.weight);
+    FrameAccumulator::Projected at;
+    if (!sums->Project(x, &at)) {
+      sums->AddSaturated(term->kernel(), target.weight);
+      continue;
+    }
+    const Matrix2d& whitening = target.WhiteningAt(at.pixel);
+    sums->AddImageRows<2>(at, whitening * (at.pixel - target.pixel), whitening, term->kernel(), target.weight);
   }
   for (const PartLabelTerm::ContourPoint& point : term->contour()) {
     const Vector3d x = sums->points().Evaluate(kinematics, faces.row(point.face).data(), point.barycentric.data(),
@@ -369,8 +387,9 @@ void PartLabelsOfFrame::Add(FrameAccumulator* sums) const {
     if (residuals != nullptr) {
       (point.is_silhouette ? residuals->silhouette_px : residuals->part_px).push_back(std::abs(distance));
     }
-    sums->AddImageRows<1>(at, Eigen::Matrix<double, 1, 1>(distance * point.inverse_sigma),
-                          gradient * point.inverse_sigma, term->kernel(), point.weight);
+    const double inverse_sigma = point.InverseSigmaAt(distance);
+    sums->AddImageRows<1>(at, Eigen::Matrix<double, 1, 1>(distance * inverse_sigma), gradient * inverse_sigma,
+                          term->kernel(), point.weight);
   }
   if (residuals != nullptr) {
     residuals->silhouette_unmatched += term->silhouette_unmatched();

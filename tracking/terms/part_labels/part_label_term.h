@@ -13,7 +13,9 @@
 ///                       boundary, and hardly (τ = 0.2) along it. So the body fills the mask
 ///   pixel → part        samples y inside part p where the body shows another part or nothing: the vertex of p that
 ///                       faces the camera and projects nearest, r = (π(x) − y)/(3σ)
-/// σ = sigma_share × the person's height in the image. Correspondences (x and y) stay during a round, φ and π are
+/// σ = sigma_share × the person's height in the image. The silhouette of a mask takes clothes_sigma_share for σ across
+/// the boundary wherever the body is inside (φ < 0, or n·(π(x) − y) < 0): clothes and hair reach beyond the body, the
+/// body never beyond them. Both costs and their derivatives are continuous where the body crosses. Correspondences (x and y) stay during a round, φ and π are
 /// evaluated at every state. Each of the two terms counts as kSilhouetteCount or kPartCount observations at most,
 /// however many samples it has: neighbouring pixels err together.
 /// Unknown pixels and pixels beyond the image give no boundary. Pieces of the person or of a part below kSpeckShare of
@@ -47,17 +49,25 @@ class PartLabelTerm {
     int face = 0;
     Eigen::Vector3d barycentric;
     Eigen::Vector2d pixel;
-    Eigen::Matrix2d whitening;
+    Eigen::Vector2d outward = Eigen::Vector2d::Zero();  ///< n; zero where no direction is across the boundary
+    Eigen::Matrix2d whitening;                          ///< of a point outside the boundary or on it
+    Eigen::Matrix2d whitening_inside;                   ///< of a point inside
     double weight = 0;
     bool is_silhouette = false;
+    [[nodiscard]] const Eigen::Matrix2d& WhiteningAt(const Eigen::Vector2d& at) const {
+      return outward.dot(at - pixel) < 0 ? whitening_inside : whitening;
+    }
   };
   /// A surface point that should appear where the field is offset_px.
   struct ContourPoint {
     int face = 0;
     Eigen::Vector3d barycentric;
     const DistanceField* field = nullptr;
-    double offset_px = 0, inverse_sigma = 0, weight = 0;
+    double offset_px = 0, inverse_sigma = 0, inverse_sigma_inside = 0, weight = 0;
     bool is_silhouette = false;
+    [[nodiscard]] double InverseSigmaAt(double distance) const {
+      return distance < 0 ? inverse_sigma_inside : inverse_sigma;
+    }
   };
 
   /// Reads frame t of the labels, which must be in order (TrackSequence checks them). `skinner` poses all vertices.
@@ -94,6 +104,10 @@ class PartLabelTerm {
     int x, y, face;
     uint8_t part, other;  ///< 0: the background
   };
+  /// σ in pixels: of a contour, and of the silhouette where the body is inside it.
+  struct Sigmas {
+    double contour_px, clothes_px;
+  };
   void FindBoxes(const PartMap& map);
   void AddField(const PartMap& map, uint8_t part);
   void SampleBoundary(const PartMap& map);
@@ -101,9 +115,9 @@ class PartLabelTerm {
   [[nodiscard]] std::vector<Edge> EdgesOfBody(const std::vector<uint8_t>& part_of_face,
                                               const VisibilityBuffer& buffer) const;
   void AddContour(const std::vector<Edge>& edges, const BodyModel& model, const VisibleSurface& surface,
-                  const Camera& camera, double sigma_px);
+                  const Camera& camera, const Sigmas& sigmas);
   void AddBoundary(const std::vector<Edge>& edges, const BodyModel& model, const VisibleSurface& surface,
-                   const Camera& camera, double sigma_px, double reach_px);
+                   const Camera& camera, const Sigmas& sigmas, double reach_px);
   void AddInside(const std::vector<uint8_t>& part_of_face, const BodyModel& model, const VisibleSurface& surface,
                  const Camera& camera, double sigma_px);
   void Weigh();

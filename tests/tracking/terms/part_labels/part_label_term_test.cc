@@ -183,7 +183,10 @@ int CheckAgainstTwin(const Scene& scene, const PartLabelTerm& term, const FrameS
       double weight;
       if (i < num_targets) {
         const PartLabelTerm::Target& target = term.targets()[i];
-        raw = target.whitening.cast<Jet>() * (pixels[i] - target.pixel.cast<Jet>());
+        const Vector2d off(pixels[i][0].a - target.pixel.x(), pixels[i][1].a - target.pixel.y());
+        const bool is_inside = target.outward.dot(off) < 0;
+        raw = (is_inside ? target.whitening_inside : target.whitening).cast<Jet>() *
+              (pixels[i] - target.pixel.cast<Jet>());
         weight = target.weight;
       } else {
         const PartLabelTerm::ContourPoint& point = term.contour()[i - num_targets];
@@ -191,7 +194,7 @@ int CheckAgainstTwin(const Scene& scene, const PartLabelTerm& term, const FrameS
         const double distance = point.field->Evaluate(Eigen::Vector2d(pixels[i][0].a, pixels[i][1].a), &slope);
         raw[0] = Jet(distance - point.offset_px);
         raw[0].v[0] = slope[0] * pixels[i][0].v[0] + slope[1] * pixels[i][1].v[0];
-        raw[0] *= Jet(point.inverse_sigma);
+        raw[0] *= Jet(raw[0].a < 0 ? point.inverse_sigma_inside : point.inverse_sigma);
         weight = point.weight;
       }
       const RobustValue robust = GemanMcClure(raw[0].a * raw[0].a + raw[1].a * raw[1].a, term.kernel());
@@ -226,6 +229,63 @@ TEST(PartLabelTerm, MatchesAutomaticDerivativesInEveryCamera) {
     state.rotations[0] = state.rotations[0] * RotationFromAxisAngle(Vector3d(0.02, 0.01, -0.03));
     EXPECT_GT(CheckAgainstTwin(*scene, *term, state), 600) << static_cast<int>(knowledge);
   }
+}
+
+TEST(PartLabelTerm, AMaskMatchesAutomaticDerivativesOnBothSides) {
+  const auto scene = MakeScene();
+  scene->labels.AsMask();
+  FrameState state = scene->truth;
+  state.translation += Vector3d(0.05, -0.04, 0.1);
+  const auto term = MakeTerm(*scene, state);
+  EXPECT_GT(CheckAgainstTwin(*scene, *term, state), 300);
+}
+
+/// A mask that reaches `grown_px` pixels beyond the body on all sides; negative: that stays so far inside.
+std::unique_ptr<Scene> MakeMaskScene(int grown_px) {
+  auto scene = MakeScene();
+  LabelImage& image = scene->labels.frames[0];
+  const std::vector<uint8_t> body = image.labels;
+  const int reach = std::abs(grown_px);
+  for (int y = reach; y < kHeight - reach; ++y) {
+    for (int x = reach; x < kWidth - reach; ++x) {
+      int seen = 0;
+      for (int v = y - reach; v <= y + reach; ++v) {
+        for (int u = x - reach; u <= x + reach; ++u) seen += body[v * kWidth + u] > 0;
+      }
+      const int needed = grown_px >= 0 ? 1 : (2 * reach + 1) * (2 * reach + 1);
+      image.labels[y * kWidth + x] = seen >= needed;
+    }
+  }
+  scene->labels.AsMask();
+  return scene;
+}
+
+TEST(PartLabelTerm, ClothesBeyondTheBodyCostLittle) {
+  PartLabelOptions loose, tight;
+  loose.clothes_sigma_share = 3 * loose.sigma_share;
+  tight.clothes_sigma_share = 0;
+  const auto dressed = MakeMaskScene(4), narrow = MakeMaskScene(-2);
+  const auto cost = [&](const Scene& scene, const PartLabelOptions& options) {
+    return Evaluate(scene, *MakeTerm(scene, scene.truth, options, 100), scene.truth).cost;
+  };
+  // Quadratic within so wide a kernel: three times σ costs a ninth. Part of each residual is along the boundary.
+  EXPECT_NEAR(cost(*dressed, loose) / cost(*dressed, tight), 1.0 / 9, 0.06);
+  // A body that reaches beyond the mask costs what it did.
+  EXPECT_GT(cost(*narrow, tight), 1);
+  EXPECT_NEAR(cost(*narrow, loose) / cost(*narrow, tight), 1, 0.02);
+}
+
+TEST(PartLabelTerm, ClothesAreAMasksAlone) {
+  const auto scene = MakeScene();
+  FrameState moved = scene->truth;
+  moved.translation.x() += 0.1;
+  PartLabelOptions loose;
+  loose.clothes_sigma_share = 0.05;
+  const double of_labels = Evaluate(*scene, *MakeTerm(*scene, moved), moved).cost;
+  EXPECT_EQ(Evaluate(*scene, *MakeTerm(*scene, moved, loose), moved).cost, of_labels);
+  scene->labels.AsMask();
+  EXPECT_LT(Evaluate(*scene, *MakeTerm(*scene, moved, loose), moved).cost,
+            0.95 * Evaluate(*scene, *MakeTerm(*scene, moved, {.clothes_sigma_share = 0}), moved).cost);
 }
 
 /// Gauss–Newton steps with rounds; returns the largest distance of a joint from the truth, metres.
@@ -303,7 +363,7 @@ TEST(PartLabelTerm, AMaskIsASilhouetteWithoutParts) {
   const auto of_parts = MakeTerm(*scene, moved, silhouette);
   const FrameSystem expected = Evaluate(*scene, *of_parts, moved);
   scene->labels.AsMask();
-  const auto term = MakeTerm(*scene, moved);
+  const auto term = MakeTerm(*scene, moved, {.clothes_sigma_share = 0});
   const FrameSystem system = Evaluate(*scene, *term, moved);
   EXPECT_EQ(term->num_person_pixels(), of_parts->num_person_pixels());
   EXPECT_GT(system.cost, 1);

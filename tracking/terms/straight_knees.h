@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Knees are straight where nothing says otherwise.
+///   ½ w² Σ_k ρ(θ_k²)        ρ: Geman–McClure with c = kStraightKneesKernel, radians
+/// θ_k: flexion of knee k, radians: the x component of its axis-angle (joint_limits.h has the frame; 0 in the T-pose,
+/// where thigh and shin are in line). A detector whose hips lie lower on the body than the body's own makes thighs
+/// short in the image, and a short thigh looks like a bent knee; with how far legs point out of the image plane a
+/// camera sees a bend of up to 40° hardly at all (cos is flat). The kernel lets go of knees that are bent far, as in a
+/// squat: the pull is largest at 13° and an eighth of that at 60°. Runs in every frame and for both knees where they are estimated and w > 0.
+#pragma once
+
+#include <array>
+
+#include "bodyloom/geometry/body_model.h"
+
+namespace bodyloom {
+
+class FrameAccumulator;
+struct PlanEntry;
+
+inline constexpr double kStraightKneesKernel = 0.4;
+
+/// Joint indices of the left and the right knee; −1 where the body has none of that name.
+std::array<int, 2> FindKnees(const BodyModel& model);
+
+struct StraightKneesOfFrame {
+  std::array<int, 2> knees = {-1, -1};  ///< FindKnees()
+  double weight = 0;                    ///< w, 1/rad
+
+  [[nodiscard]] static int num_rows() { return 0; }  ///< adds to the matrix directly
+  void Add(FrameAccumulator* sums) const;
+};
+
+/// The entry of a solve with w > 0.
+PlanEntry PlanStraightKnees(double weight);
+
+}  // namespace bodyloom
