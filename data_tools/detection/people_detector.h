@@ -2,12 +2,12 @@
 /// Everybody in the frames of a clip, by BlazePose: people are looked for now and then, and followed from frame to frame
 /// in between.
 ///
-/// Frames come in groups of up to kFramesAtOnce. All frames of a group are looked at in the regions that the frame before the
-/// group left (RegionAroundBody of its two region points), so that they can run side by side; results do not depend on
-/// the number of threads. New people are looked for in a group's first frame: when nobody is followed, and every
-/// `search_interval` frames unless max_people are followed already. A person is lost when the network says in every frame
-/// of a group that nobody is there. Two regions that show the same landmarks (PoseDistance below 0.1) are one person; the
-/// one followed longer stays.
+/// Frames come in groups of up to kFramesAtOnce. All frames of a group are looked at in the regions that the frame
+/// before the group left (RegionAroundBody of its two region points), so that they can run side by side; results do not
+/// depend on the number of threads. New people are looked for in a group's first frame: when nobody is followed, and
+/// every `search_interval` frames unless max_people are followed already. A person is lost when the network says in
+/// every frame of a group that nobody is there. Two regions that show the same landmarks (PoseDistance below 0.1) are
+/// one person; the one followed longer stays.
 #pragma once
 
 #include <memory>

@@ -15,9 +15,9 @@
 ///                       faces the camera and projects nearest, r = (π(x) − y)/(3σ)
 /// σ = sigma_share × the person's height in the image. The silhouette of a mask takes clothes_sigma_share for σ across
 /// the boundary wherever the body is inside (φ < 0, or n·(π(x) − y) < 0): clothes and hair reach beyond the body, the
-/// body never beyond them. Both costs and their derivatives are continuous where the body crosses. Correspondences (x and y) stay during a round, φ and π are
-/// evaluated at every state. Each of the two terms counts as kSilhouetteCount or kPartCount observations at most,
-/// however many samples it has: neighbouring pixels err together.
+/// body never beyond them. Both costs and their derivatives are continuous where the body crosses. Correspondences (x
+/// and y) stay during a round, φ and π are evaluated at every state. Each of the two terms counts as kSilhouetteCount or
+/// kPartCount observations at most, however many samples it has: neighbouring pixels err together.
 /// Unknown pixels and pixels beyond the image give no boundary. Pieces of the person or of a part below kSpeckShare of
 /// the largest are unknown (part_map.h); parts of fewer than kMinPartPixels pixels are left out.
 #pragma once
