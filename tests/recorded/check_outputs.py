@@ -78,7 +78,7 @@ def fingerprint(command):
         if line.startswith("flags"):
             flags = set(line.split())
             break
-    sets = [f for f in ("sse4_2", "avx2", "fma", "avx512f", "avx512bw", "avx512_vnni", "avx512_bf16", "amx_tile") if f in flags]
+    sets = [f for f in ("sse4_2", "avx2", "fma", "avx512f", "avx512bw", "avx512_vnni", "avx512_bf16") if f in flags]
     libraries = []
     for package in ("libceres-dev", "libopencv-dev", "libeigen3-dev", "libtorch-dev", "g++"):
         done = subprocess.run(["dpkg-query", "-W", "-f", "${Version}", package], capture_output=True, text=True, check=False)
