@@ -88,6 +88,7 @@ void DrawWindows(const LifterWindowGenerator& generator, uint64_t first, const s
     for (int m = 0; m < kMoments; ++m) {
       const size_t t = static_cast<size_t>(m) * (T - 1) / (kMoments - 1);
       std::vector<Vector2d> seen;
+      seen.reserve(kLifterPoints);
       const float* f = &window.features[t * kLifterInputs];
       for (int k = 0; k < kLifterPoints; ++k) seen.emplace_back(f[3 * k], f[3 * k + 1]);
       const std::vector<float> confidence(&window.confidence[t * kLifterPoints],

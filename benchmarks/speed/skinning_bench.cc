@@ -36,6 +36,7 @@ const BodyModel& Body(int kind) {
 
 std::vector<BodyPose> Poses(const BodyModel& model, int num_frames) {
   std::vector<BodyPose> poses;
+  poses.reserve(static_cast<size_t>(num_frames));
   for (int t = 0; t < num_frames; ++t) poses.push_back(RandomPose(model, t, 1.5));
   return poses;
 }

@@ -562,7 +562,7 @@ TfliteNetwork::TfliteNetwork(const TfliteModel& model, const std::vector<int>& w
   }
   if (wanted.empty()) wanted = model.outputs;
   const OneThread one_thread;
-  ProgramBuilder(model, wanted, program.get());
+  const ProgramBuilder builder(model, wanted, program.get());
   impl_ = std::make_unique<Impl>(std::move(program));
 }
 

@@ -76,9 +76,9 @@ struct OutputDeleter {
 
 }  // namespace
 
-class VideoEncoder::Stream {
+class VideoEncoder::Output {
  public:
-  Stream(const std::string& file, const std::string& path, int width, int height, double fps)
+  Output(const std::string& file, const std::string& path, int width, int height, double fps)
       : width_((width + 1) / 2 * 2), height_((height + 1) / 2 * 2), frame_(NewLibavFrame()), packet_(NewLibavPacket()) {
     QuietCodecs();
     constexpr int kMostOfAFraction = 65535;  // MPEG-4's
@@ -175,7 +175,7 @@ class VideoEncoder::Stream {
 };
 
 VideoEncoder::VideoEncoder(const std::string& file, const std::string& path, int width, int height, double fps)
-    : stream_(std::make_unique<Stream>(file, path, width, height, fps)) {}
+    : stream_(std::make_unique<Output>(file, path, width, height, fps)) {}
 VideoEncoder::~VideoEncoder() = default;
 void VideoEncoder::Write(const Image& frame) { stream_->Write(frame); }
 std::string VideoEncoder::Finish() { return stream_->Finish(); }

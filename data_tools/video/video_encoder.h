@@ -27,8 +27,8 @@ class VideoEncoder {
   [[nodiscard]] const std::string& codec() const;
 
  private:
-  class Stream;
-  std::unique_ptr<Stream> stream_;
+  class Output;
+  std::unique_ptr<Output> stream_;
 };
 
 }  // namespace bodyloom

@@ -48,7 +48,8 @@ OverlaySummary WriteFrames(VideoWriter* writer, const std::vector<double>& times
     std::vector<std::optional<Image>> backgrounds(static_cast<size_t>(count));
     DrawnFrames drawn;
     for (int i = 0; video != nullptr && i < count; ++i) {
-      if (const Image* background = video->At(times[size_t(first + i)])) backgrounds[size_t(i)] = *background;
+      if (const Image* background = video->At(times[static_cast<size_t>(first) + static_cast<size_t>(i)]))
+        backgrounds[size_t(i)] = *background;
       drawn.without_video += backgrounds[size_t(i)] ? 0 : 1;
     }
     drawn.pictures.resize(size_t(count));
