@@ -9,6 +9,7 @@
 
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/data_tools/observations/part_labels.h"
 #include "bodyloom/data_tools/observations/people_npz.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/pipelines/files.h"
@@ -31,11 +32,18 @@ std::string TrackFile(const TrackPeopleClipRequest& request, int number) {
   return FileIn(request, Concatenate("person_", number, ".npz"));
 }
 
+std::string MaskFile(const TrackPeopleClipRequest& request, int number) {
+  return FileIn(request, Concatenate("mask_", number, ".npz"));
+}
+
 void CheckRequest(const TrackPeopleClipRequest& request) {
   if (request.out.empty()) throw RequestError("--out is required: the folder for the results");
   if (request.track.video.empty()) throw RequestError("the video is required");
   if (request.person && request.max_people > 0) {
     throw RequestError("--person and --people both choose who is tracked, expected one of them");
+  }
+  if (request.masks && !request.track.use_mask) {
+    throw RequestError("--masks writes what --no-mask leaves out, expected one of them");
   }
   if (request.track.stature_m > 0 && !request.person && request.max_people != 1) {
     throw RequestError("--stature is one person's: say whose with --person, or give --people 1");
@@ -50,7 +58,8 @@ void CheckRequest(const TrackPeopleClipRequest& request) {
   CheckTrackRequest(track);
   BODYLOOM_CHECK(DetectsPeople(track), "the request holds other observations than a video");
   RequireDistinct(RequireTrackInputs(track),
-                  {FileIn(request, "detections.npz"), track.out, track.overlay, FileIn(request, "summary.json")});
+                  {FileIn(request, "detections.npz"), track.out, request.masks ? MaskFile(request, 0) : "",
+                   track.overlay, FileIn(request, "summary.json")});
   RequireWritableFolder(request.out);
 }
 
@@ -162,6 +171,10 @@ TrackPeopleReport TrackPeopleClip(const TrackPeopleClipRequest& request, const P
   clock.Begin("write");
   report.outputs.push_back(FileIn(request, "detections.npz"));
   WritePeople(report.outputs.back(), clip.people);
+  for (const int number : request.masks ? chosen : std::vector<int>()) {
+    report.outputs.push_back(MaskFile(request, number));
+    WriteMask(report.outputs.back(), MaskOfPerson(clip, everybody[size_t(number)]));
+  }
 
   std::vector<DetectedObservations> seen;
   for (const int number : chosen) {

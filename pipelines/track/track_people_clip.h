@@ -20,12 +20,14 @@ struct TrackPeopleClipRequest {
   std::optional<int> person;   ///< only this one, numbered as LinkPeople() does (0: the largest and longest in view)
   double least_seconds = 0.5;  ///< whoever is seen for less is left out; in short clips half of the clip
   bool overlay = true;
+  bool masks = false;  ///< each person's mask is written too
 };
 
 /// Writes into the folder:
 ///   detections.npz   everybody's landmarks (people_npz.h), before anything else is computed
 ///   person_I.npz     the track of person I (track_io.h) from the first frame that shows it to the last, with the
 ///                    video's times; all tracks are in one camera frame
+///   mask_I.npz       with `masks`: the mask of person I in every frame of the clip (part_labels.h), in the video's pixels
 ///   overlay.mp4      all of them over the video (render/people_overlay.h)
 ///   summary.json     ToJson(TrackPeopleReport)
 /// Files of these names are replaced; tracks of people whom this run does not find stay. Throws RequestError for a

@@ -16,7 +16,7 @@ std::string FileErrorOf(const std::string& where, const Action& action) {
   try {
     action();
   } catch (const std::runtime_error& error) {
-    const std::string message = error.what();
+    std::string message = error.what();
     EXPECT_NE(message.find(where), std::string::npos) << message;
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
     return message;

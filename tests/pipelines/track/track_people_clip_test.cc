@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -12,6 +13,7 @@
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/observations/load_detections.h"
+#include "bodyloom/data_tools/observations/part_labels.h"
 #include "bodyloom/data_tools/video/video_reader.h"
 #include "tests/support/paths.h"
 #include "tests/support/real_video.h"
@@ -91,6 +93,7 @@ TEST_F(TrackPeopleClipOnRealVideo, ThoseAskedForAlone) {
   request.track.to_s = 0.6;
   request.person = 1;
   request.overlay = false;
+  request.masks = true;
   request.track.stature_m = 1.4;
   const TrackPeopleReport report = TrackPeopleClip(request);
   ASSERT_EQ(report.people.size(), 1U);
@@ -100,6 +103,11 @@ TEST_F(TrackPeopleClipOnRealVideo, ThoseAskedForAlone) {
   EXPECT_EQ(report.num_found, 2);
   EXPECT_TRUE(std::filesystem::exists(request.out + "/person_1.npz"));
   EXPECT_FALSE(std::filesystem::exists(request.out + "/person_0.npz"));
+  EXPECT_FALSE(std::filesystem::exists(request.out + "/mask_0.npz"));
+  const PartLabelSequence mask = ReadPartLabels(request.out + "/mask_1.npz");
+  ASSERT_EQ(mask.num_frames(), report.num_frames);
+  EXPECT_EQ(mask.image_width, report.width);
+  EXPECT_GT(std::count(mask.frames[0].labels.begin(), mask.frames[0].labels.end(), 1), 10000);
   EXPECT_FALSE(std::filesystem::exists(request.out + "/overlay.mp4"));
   request.person = 7;
   EXPECT_THAT([&] { TrackPeopleClip(request); }, ThrowsMessage<std::runtime_error>(HasSubstr("7")));
@@ -123,6 +131,12 @@ TEST(TrackPeopleClip, WhatContradictsItselfIsNamed) {
   TrackPeopleClipRequest request;
   const auto run = [&] { TrackPeopleClip(request); };
   EXPECT_THAT(run, ThrowsMessage<RequestError>(HasSubstr("--out is required")));
+  request.out = "x";
+  request.masks = true;
+  request.track.video = "clip.mp4";
+  request.track.use_mask = false;
+  EXPECT_THAT(run, ThrowsMessage<RequestError>(HasSubstr("--masks")));
+  request = {};
   const ScratchFolder folder;
   request.out = folder / "out";
   EXPECT_THAT(run, ThrowsMessage<RequestError>(HasSubstr("the video is required")));
