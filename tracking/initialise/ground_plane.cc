@@ -153,6 +153,7 @@ GroundPlane EstimateGroundPlane(const std::vector<std::array<FootPlace, 2>>& fee
   // Heights above a plane through the camera that is tilted by (a, b) about up: linear in a, b and the offset.
   const Vector3d e1 = up.unitOrthogonal(), e2 = up.cross(e1);
   std::vector<std::pair<double, double>> heights;
+  heights.reserve(stances.size());
   for (const Stance& stance : stances) heights.emplace_back(up.dot(stance.place_m), stance.seconds);
   Vector3d x(0, 0, WeightedMedian(heights));  // a, b, offset
   for (int pass = 0; pass < 10; ++pass) {

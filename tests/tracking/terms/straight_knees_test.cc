@@ -59,7 +59,7 @@ void CheckAgainstTwin(const FrameScene& scene) {
 TEST(StraightKnees, MatchAutomaticDerivatives) {
   const auto scene = MakeScene();
   CheckAgainstTwin(*scene);
-  const auto [left, right] = scene->data.straight_knees.knees;
+  const int left = scene->data.straight_knees.knees[0], right = scene->data.straight_knees.knees[1];
   const auto bend = [&](const Vector3d& a, const Vector3d& b) {
     scene->state.rotations[left] = RotationFromAxisAngle(a);
     scene->state.rotations[right] = RotationFromAxisAngle(b);

@@ -71,7 +71,7 @@ GroundPlane ClipGround::PlaneUnder(const std::vector<std::array<FootPlace, 2>>& 
   if (known_ == nullptr) return EstimateGroundPlane(feet, timestamps, up, options);
   if (known_->has_plane) {
     // Somebody may stand on a box: then the plane is not theirs, but the vertical is.
-    const GroundPlane known = StandOnPlane(feet, timestamps, up, kAnkleHeight - known_->camera_height_m, options);
+    GroundPlane known = StandOnPlane(feet, timestamps, up, kAnkleHeight - known_->camera_height_m, options);
     if (known.found) return known;
   }
   options.up_rad = kKnownUpRad;
