@@ -42,8 +42,8 @@ Refined RefineByHeatmap(std::span<const float> heatmaps, int k, const Eigen::Vec
   return {weighted / sum / n, peak};
 }
 
-/// Bilinear value of probabilities on a grid whose point (column, row) lies at fraction column/256, row/256; 0 outside.
-/// The network's mask, as probabilities, between its pixels: bilinear, 0 outside.
+/// The network's mask, as probabilities, between its pixels: bilinear, 0 outside. Pixel (column, row) lies at fraction
+/// column/256, row/256 of the crop.
 class MaskSampler {
  public:
   explicit MaskSampler(std::span<const float> logits) : values_(size_t{kSide} * kSide, 0.0F) {

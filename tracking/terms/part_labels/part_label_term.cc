@@ -42,9 +42,6 @@ bool IsMask(const PartLabelSequence& labels) {
   return std::all_of(labels.part_of_chart.begin() + 1, labels.part_of_chart.begin() + kUnknown, is_same);
 }
 
-/// Neither background nor unknown.
-bool IsPart(uint8_t part) { return part != kBackground && part != kUnknown; }
-
 }  // namespace
 
 PartLabelTerm::PartLabelTerm(const PartLabelSequence& labels, int t, std::shared_ptr<const Skinner> skinner,

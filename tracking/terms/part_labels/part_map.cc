@@ -8,10 +8,6 @@
 namespace bodyloom {
 namespace {
 
-constexpr uint8_t kBackground = PartLabelSequence::kBackground, kUnknown = PartLabelSequence::kUnknown;
-
-bool IsPart(uint8_t part) { return part != kBackground && part != kUnknown; }
-
 /// Pixels of one row that lie together and belong to one piece: columns begin..end−1.
 struct Run {
   int row, begin, end;
@@ -84,7 +80,7 @@ void RemoveSpecks(bool by_part, double speck_share, PartMap* map) {
     const Run& run = pieces.runs()[i];
     if (pieces.PixelsAround(i) >= speck_share * largest[by_part ? run.part : 0]) continue;
     uint8_t* row = &map->parts[static_cast<size_t>(run.row) * map->box.width()];
-    std::fill(row + run.begin, row + run.end, kUnknown);
+    std::fill(row + run.begin, row + run.end, PartLabelSequence::kUnknown);
   }
 }
 

@@ -21,6 +21,11 @@ struct PartMap {
   }
 };
 
+/// Neither background nor unknown.
+inline bool IsPart(uint8_t part) {
+  return part != PartLabelSequence::kBackground && part != PartLabelSequence::kUnknown;
+}
+
 /// Frame t of the labels. Specks become unknown: 4-connected pieces of the person smaller than `speck_share` of its
 /// largest piece, then pieces of a part smaller than that share of the part's largest piece. Detectors leave such
 /// pieces on furniture and at the seams between parts.

@@ -15,8 +15,6 @@ namespace {
 
 constexpr uint8_t kBackground = PartLabelSequence::kBackground, kUnknown = PartLabelSequence::kUnknown;
 
-bool IsPart(uint8_t part) { return part != kBackground && part != kUnknown; }
-
 PartLabelSequence OneFrame(int width, int height, std::vector<uint8_t> labels) {
   PartLabelSequence sequence;
   sequence.image_width = width;
