@@ -26,8 +26,8 @@ struct SourceMaps {
   std::vector<GuidedPicture> virtual_pictures;
 };
 
-/// Earlier photos come first. Texels of the back of the head (by the views or the neighbours) take no face from a
-/// photo. `extent`: whether the clothes' extent is needed; it is measured on the first photo, and body.neighbours must
+/// Earlier photos come first. What a photo shows of the back of the head (by the views or the neighbours) stays; where
+/// no photo's labels have hair, it is hair whatever they call it (CallFacesBehindHair). `extent`: whether the clothes' extent is needed; it is measured on the first photo, and body.neighbours must
 /// be there. `draw` may be empty where nothing is drawn. Throws std::invalid_argument for sizes that do not fit, and
 /// for what the completion needs and is absent.
 SourceMaps MapsOfSource(std::span<const PhotoFrame> photos, const SourceBody& body, MapCompletion completion,

@@ -233,8 +233,9 @@ TEST(CompleteMaps, WithoutHairTheBackOfTheHeadIsSkin) {
   for (uint8_t& label : front.labels) {
     if (label == 4) label = 3;
   }
-  const PseudoPicture back =
-      MirroredFront(ToyPhotoFrame(1, {}, false), OwnPicture(front), ToyPhotoFrame(1, {0, 0, true}, false));
+  CoherentMaps maps = EmptyMaps(kToyTexels, ToyTexelParts());
+  const PhotoFrame behind = ToyPhotoFrame(1, {0, 0, true}, false);
+  const PseudoPicture back = MirroredFront(ToyPhotoFrame(1, {}, false), OwnPicture(front), behind, maps);
   int skin = 0;
   for (size_t i = 0; i < back.labels.size(); ++i) {
     EXPECT_NE(back.labels[i], 3);
@@ -242,6 +243,17 @@ TEST(CompleteMaps, WithoutHairTheBackOfTheHeadIsSkin) {
     skin += back.labels[i] == 5 && i < size_t{14} * kToySide ? 1 : 0;
   }
   EXPECT_EQ(skin, 64);
+  // Unless a photo showed some of its back.
+  maps.labels[9] = 4, maps.from[9] = 1;
+  for (int k = 0; k < 3; ++k) maps.appearance[k * kToyTexels * kToyTexels + 9] = 0.25F * static_cast<float>(k + 1);
+  const PseudoPicture haired = MirroredFront(ToyPhotoFrame(1, {}, false), OwnPicture(front), behind, maps);
+  int hair = 0;
+  for (size_t i = 0; i < haired.labels.size(); ++i) {
+    if (haired.labels[i] != 4) continue;
+    ++hair;
+    for (int k = 0; k < 3; ++k) EXPECT_FLOAT_EQ(haired.image[k * 1024 + i], 0.25F * static_cast<float>(k + 1));
+  }
+  EXPECT_EQ(hair, 64);
 }
 
 TEST(ChoosePhotos, AFaceFirstThenWhatIsMissing) {

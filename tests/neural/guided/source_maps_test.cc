@@ -62,6 +62,89 @@ TEST(GuessRest, WithoutHairTheBackOfTheHeadIsSkinOfTheFacesColour) {
   }
 }
 
+/// As body parts stand in for a parsing: all of the head is face, and there is skin elsewhere (the toy's lowest rows,
+/// blue as no head is).
+PhotoFrame LabelledByParts(const ToyPose& pose) {
+  PhotoFrame photo = ToyPhotoFrame(1, pose, true);
+  for (int i = 0; i < 1024; ++i) {
+    if (photo.labels[i] == 4) photo.labels[i] = 3;
+    if (photo.labels[i] != 5) continue;
+    for (int k = 0; k < 3; ++k) photo.image[k * 1024 + i] = k == 2 ? 1.0F : 0.0F;
+  }
+  return photo;
+}
+
+TEST(MapsOfSource, ABackOfTheHeadThatIsSeenStaysWhateverItIsCalled) {
+  const TexelNeighbours neighbours = ToyNeighbours();
+  const PhotoFrame photos[] = {LabelledByParts({}), LabelledByParts({2, 1, true})};
+  const auto repeat = [](const PhotoFrame& frame, const PseudoPicture& pseudo) {
+    GuidedPicture picture{frame.size, pseudo.image, std::vector<float>(pseudo.known.size()), pseudo.labels};
+    std::copy(pseudo.known.begin(), pseudo.known.end(), picture.alpha.begin());
+    return picture;
+  };
+  for (const MapCompletion completion : {MapCompletion::kNone, MapCompletion::kNearest, MapCompletion::kVirtualViews}) {
+    const SourceMaps source = MapsOfSource(photos, {texel_parts, views, &neighbours}, completion, false, repeat);
+    EXPECT_EQ(source.texels_seen, 256) << ToText(completion);
+    for (int t = 0; t < kTexels / 2; ++t) {
+      if (t % kToyTexels < 8) continue;
+      EXPECT_EQ(source.maps.from[t], 2) << ToText(completion) << " at " << t;
+      EXPECT_EQ(source.maps.labels[t], 4) << "a parsing without hair calls it face at " << t;
+      for (int k = 0; k < 3; ++k) {
+        EXPECT_NEAR(source.maps.appearance[k * kTexels + t], ToyColour(1, t / kToyTexels, t % kToyTexels, k), 0.03);
+      }
+    }
+  }
+  // Where the parsing knows hair, what it calls a face there is one: the skin before the ears.
+  PhotoFrame behind = ToyPhotoFrame(1, {0, 0, true}, true);
+  for (int y = 10; y < 14; ++y) {
+    for (int x = 12; x < 20; ++x) behind.labels[y * kToySide + x] = 3;
+  }
+  const CoherentMaps maps =
+      MapsOfSource(std::span(&behind, 1), {texel_parts, {}, &neighbours}, MapCompletion::kNone, false, {}).maps;
+  for (int r = 0; r < 8; ++r) {
+    EXPECT_EQ(maps.from[r * kToyTexels + 10], 1);
+    EXPECT_EQ(maps.labels[r * kToyTexels + 10], r < 4 ? 4 : 3) << r;
+  }
+}
+
+TEST(GuessRest, WhatIsUnseenOfTheBackOfTheHeadIsHairThatIsSeen) {
+  const TexelNeighbours neighbours = ToyNeighbours();
+  PhotoFrame behind = LabelledByParts({0, 0, true});
+  // Of the back of the head its left half.
+  for (int y = 0; y < 14; ++y) {
+    for (int x = 16; x < kToySide; ++x) behind.labels[y * kToySide + x] = 0;
+  }
+  const PhotoFrame photos[] = {LabelledByParts({}), behind};
+  const CoherentMaps maps =
+      MapsOfSource(photos, {texel_parts, {}, &neighbours}, MapCompletion::kNearest, false, {}).maps;
+  int guessed = 0;
+  for (int t = 0; t < kTexels / 2; ++t) {
+    if (t % kToyTexels < 8) continue;
+    guessed += maps.from[t] == 3 ? 1 : 0;
+    EXPECT_EQ(maps.labels[t], 4) << t;
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR(maps.appearance[k * kTexels + t], ToyColour(1, t / kToyTexels, t % kToyTexels, k), 0.06) << t;
+    }
+  }
+  EXPECT_EQ(guessed, 32);
+}
+
+TEST(GuessRest, WithoutHairTheBackOfTheHeadNeverHasTheHandsColour) {
+  const TexelNeighbours neighbours = ToyNeighbours();
+  const PhotoFrame photo = LabelledByParts({});
+  const CoherentMaps maps =
+      MapsOfSource(std::span(&photo, 1), {texel_parts, {}, &neighbours}, MapCompletion::kNearest, false, {}).maps;
+  for (int t = 0; t < kTexels / 2; ++t) {
+    const int r = t / kToyTexels, c = t % kToyTexels;
+    if (c < 8) continue;
+    EXPECT_EQ(maps.labels[t], 5) << t;
+    if (r == 2 || r == 3) continue;  // where face and what lies above it mix
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR(maps.appearance[k * kTexels + t], ToyColour(1, r, 15 - c, k), 0.06) << r << " " << c;
+    }
+  }
+}
+
 TEST(GuessRest, AMapThatHoldsNothingStaysEmpty) {
   CoherentMaps maps = EmptyMaps(kToyTexels, texel_parts);
   EXPECT_EQ(GuessRest(ToyNeighbours(), 1, &maps), 0);
