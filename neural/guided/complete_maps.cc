@@ -79,10 +79,10 @@ void TakeAwayFaces(const PseudoPicture& pseudo, GuidedPicture* picture) {
 }  // namespace
 
 std::vector<uint8_t> TexelsOfTheBack(const PhotoFrame& front, const PhotoFrame& back) {
-  BODYLOOM_CHECK(front.texel_seen.size() == back.texel_seen.size(), "virtual views: ", front.texel_seen.size(), " and ",
-                 back.texel_seen.size(), " texels");
-  std::vector<uint8_t> texels(front.texel_seen.size());
-  for (size_t i = 0; i < texels.size(); ++i) texels[i] = back.texel_seen[i] != 0 && front.texel_seen[i] == 0 ? 1 : 0;
+  BODYLOOM_CHECK(front.texel_cosine.size() == back.texel_cosine.size(), "virtual views: ", front.texel_cosine.size(), " and ",
+                 back.texel_cosine.size(), " texels");
+  std::vector<uint8_t> texels(front.texel_cosine.size());
+  for (size_t i = 0; i < texels.size(); ++i) texels[i] = back.texel_cosine[i] != 0 && front.texel_cosine[i] == 0 ? 1 : 0;
   return texels;
 }
 
