@@ -15,6 +15,7 @@
 #include "bodyloom/neural/losses/gan_losses.h"
 #include "bodyloom/neural/losses/perceptual_loss.h"
 #include "bodyloom/neural/networks/vgg.h"
+#include "bodyloom/neural/people/back_of_head.h"
 #include "bodyloom/neural/photo/guess_texture.h"
 #include "bodyloom/neural/photo/photo_batch.h"
 #include "bodyloom/neural/photo/photo_losses.h"
@@ -85,6 +86,7 @@ class PhotoTrainer : public TrainedSystem {
       sphereface_ = SphereFace();
       sphereface_->Load(options.sphereface.weights, options.sphereface.source);
       sphereface_->to(NeuralDevice());
+      back_of_head_ = HeadTexelsOf(source.texel_parts, source.texel_places).back;
     }
     if (config_.variant == PhotoVariant::kNoInt) losses_off_.emplace_back("texture: left out by no-int");
     checkpoint_ = std::make_unique<Checkpoint>(ToText(config_));
@@ -181,7 +183,8 @@ class PhotoTrainer : public TrainedSystem {
     for (int place = 0; place < options_.batch; ++place) {
       pairs.push_back(DrawPhotoPair(source_.num_frames, options_.train, options_.seed, step, place));
     }
-    return MakePhotoBatch(source_, pairs, options_.reach, config_.SmallestSide(), guess_ ? &*guess_ : nullptr);
+    return MakePhotoBatch(source_, pairs, options_.reach, config_.SmallestSide(), guess_ ? &*guess_ : nullptr,
+                          back_of_head_);
   }
 
   /// Steps before RenderNet's turn.
@@ -260,6 +263,7 @@ class PhotoTrainer : public TrainedSystem {
   const PhotoSource& source_;
   const PhotoSource& validation_source_;
   std::optional<TexelNeighbours> guess_;  ///< where the profile has one
+  std::vector<uint8_t> back_of_head_;     ///< where faces are judged
   const TrainPhotoOptions& options_;
   const PhotoConfig& config_;
   Lpips lpips_;
