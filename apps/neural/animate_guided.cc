@@ -36,6 +36,10 @@ void Run(Options options) {
   if (options.score.empty() && (request.photo.image.empty() || request.out.empty())) {
     throw RequestError("--image and --out are needed (or --score, to measure on a multi-person dataset)");
   }
+  if (!options.score.empty() &&
+      (request.shape_of_motion || !request.view_yaw.empty() || !request.garment.from.empty())) {
+    throw RequestError("--score measures people as they are: not with --shape, --view-yaw or --garment-from");
+  }
   request.background = ParsePhotoBackground(options.background);
   if (options.as_seen) request.completion = MapCompletion::kNone;
   if (options.virtual_views) request.completion = MapCompletion::kVirtualViews;
@@ -61,7 +65,7 @@ void AddAnimateGuided(CLI::App& animate, Action* action) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   verb->add_option("--image-labels", request.photo.labels, "DensePose's parts of the photo's clip (.npz)");
-  verb->add_option("--views", request.views, "More pictures of the person, IMAGE:TRACK or IMAGE:TRACK:FRAME");
+  AddPhotoOptions(verb, &request);
   verb->add_option("--track", request.track, "The motion: a track, .npz");
   verb->add_option("--data", request.data,
                    "Instead: a dataset of the same person, whose motion is shown and whose pictures are compared");

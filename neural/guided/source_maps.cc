@@ -7,6 +7,18 @@
 #include "bodyloom/neural/people/guess_unseen.h"
 
 namespace bodyloom {
+namespace {
+
+/// The photo with its texels where `lent` is as told, without the others.
+PhotoFrame ShownAlone(const PhotoFrame& photo, std::span<const uint8_t> lent, bool where_lent) {
+  PhotoFrame shown = photo;
+  for (size_t i = 0; i < lent.size(); ++i) {
+    if ((lent[i] != 0) != where_lent) shown.texel_cosine[i] = 0;
+  }
+  return shown;
+}
+
+}  // namespace
 
 SourceMaps MapsOfSource(std::span<const PhotoFrame> photos, const SourceBody& body, MapCompletion completion,
                         bool extent, const DrawPose& draw) {
@@ -23,12 +35,25 @@ SourceMaps MapsOfSource(std::span<const PhotoFrame> photos, const SourceBody& bo
     behind = body.neighbours->back_of_head();
   }
   SourceMaps source = {EmptyMaps(photos[0].texture_size, body.texel_parts), 0, {}};
+  const std::span<const uint8_t> lent = body.lent_texels;
+  BODYLOOM_CHECK(lent.empty() || (photos.size() > 1 && lent.size() == photos[0].texel_cosine.size() &&
+                                  lent.size() == photos.back().texel_cosine.size()),
+                 "pose-guided renderer: ", lent.size(), " texels lent among ", photos.size(), " photos");
   for (size_t i = 0; i < photos.size(); ++i) {
-    source.texels_seen +=
-        FillEmptyTexels(photos[i], OwnPicture(photos[i]), static_cast<uint8_t>(i + 1), {}, &source.maps);
+    const PhotoFrame shown =
+        lent.empty() ? photos[i] : ShownAlone(photos[i], lent, /*where_lent=*/i + 1 == photos.size());
+    source.texels_seen += FillEmptyTexels(shown, OwnPicture(shown), static_cast<uint8_t>(i + 1), {}, &source.maps);
   }
   if (!behind.empty()) CallFacesBehindHair(behind, source.maps.labels);
-  if (extent) source.maps.extent = ClothesExtent(photos[0], *body.neighbours);
+  if (extent) {
+    source.maps.extent = ClothesExtent(photos[0], *body.neighbours);
+    if (!lent.empty()) {
+      const std::vector<float> of_lender = ClothesExtent(photos.back(), *body.neighbours);
+      for (size_t i = 0; i < lent.size(); ++i) {
+        if (lent[i] != 0) source.maps.extent[i] = of_lender[i];
+      }
+    }
+  }
   const int next = static_cast<int>(photos.size()) + 1;
   if (completion == MapCompletion::kNearest) {
     GuessRest(*body.neighbours, static_cast<uint8_t>(next), &source.maps);

@@ -92,6 +92,27 @@ TEST_F(TrainGuidedVerb, TrainsGoesOnAndAnimates) {
   EXPECT_GT(ReadImage(scratch_ / "drawn.png").height, ReadImage(scratch_ / "maps.png").height)
       << "the views are on the sheet";
   EXPECT_EQ(Animate({"--image", one, "--virtual-views", "--as-seen"}).exit_code, 2);
+  // As `animate photo` has them: from another side, in the motion's shape, in another one's clothes.
+  const auto animated_with = [&](const std::string& name, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"--image",      one,
+                                          "--track",      scratch_ / "people/p000/a0_v0/track.npz",
+                                          "--out",        scratch_ / (name + ".mp4"),
+                                          "--sheet",      scratch_ / (name + ".png"),
+                                          "--json",       scratch_ / (name + ".json"),
+                                          "--background", "studio"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const CommandResult result = Animate(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return ReadImage(scratch_ / (name + ".png")).bgr;
+  };
+  const std::vector<uint8_t> plain = animated_with("plain", {});
+  EXPECT_EQ(animated_with("same", {"--shape", "photo", "--view-yaw", "0"}), plain);
+  EXPECT_NE(animated_with("turned", {"--view-yaw", "0:90"}), plain);
+  EXPECT_NE(animated_with("shape", {"--shape", "motion"}), plain);
+  const std::string lender = (scratch_ / "people/p000/a0_v0") + "::1";
+  EXPECT_NE(animated_with("lent", {"--garment-from", lender, "--parts", "top,bottom"}), plain);
+  EXPECT_THAT(nlohmann::json::parse(std::ifstream(scratch_ / "lent.json"))["notes"].get<std::string>(),
+              HasSubstr("% of --parts"));
 }
 
 TEST_F(TrainGuidedVerb, SaysWhatIsWrong) {
@@ -116,6 +137,12 @@ TEST_F(TrainGuidedVerb, SaysWhatIsWrong) {
   fails({"--image", person, "--image-frame", "9", "--track", track, "--out", out}, 1, "requested frame 9");
   fails({"--image", person, "--track", track, "--views", person + ":x:y", "--out", out}, 2, "--views");
   fails({"--score", scratch_ / "run"}, 1, "people.json");
+  fails({"--score", scratch_ / "people", "--view-yaw", "30"}, 2, "--score measures people as they are");
+  fails({"--image", person, "--data", person, "--out", out, "--view-yaw", "30"}, 2, "--data compares");
+  fails({"--image", person, "--track", track, "--out", out, "--view-yaw", "left"}, 2, "--view-yaw left");
+  fails({"--image", person, "--track", track, "--out", out, "--garment-from", person}, 2, "belong together");
+  fails({"--image", person, "--track", track, "--out", out, "--garment-from", person, "--parts", "hat"}, 2,
+        "--parts hat");
 
   // A run whose checkpoint was cut off, one of another profile, and no run at all.
   const std::string config = scratch_ / "run/config.json", checkpoint = scratch_ / "run/checkpoint.bin";

@@ -166,6 +166,32 @@ TEST(MapsOfSource, SaysWhatIsMissing) {
   EXPECT_TRUE(none.maps.extent.empty());
 }
 
+TEST(MapsOfSource, AnotherOneLendsWhatIsWornAndNothingElse) {
+  const TexelNeighbours neighbours = ToyNeighbours();
+  std::vector<uint8_t> lent(kTexels);
+  for (int t = kTexels / 2; t < kTexels; ++t) lent[t] = 1;  // the torso
+  // Of the lender the head is seen better than the person's own: it says nothing all the same.
+  const PhotoFrame photos[] = {ToyPhotoFrame(1, {}, true), ToyPhotoFrame(1, {0, 0, true}, true),
+                               ToyPhotoFrame(2, {1, 1, false}, true)};
+  const CoherentMaps maps =
+      MapsOfSource(photos, {texel_parts, {}, &neighbours, lent}, MapCompletion::kNone, false, {}).maps;
+  for (int t = 0; t < kTexels; ++t) {
+    const int r = t / kToyTexels, c = t % kToyTexels;
+    const int from = r < 8 ? (c < 8 ? 1 : 2) : (c < 8 ? 3 : 0);
+    ASSERT_EQ(maps.from[t], from) << "of the back of the torso nobody shows what is lent: " << r << " " << c;
+    if (from == 0 || r == 2 || r == 3 || r == 13 || r == 14) continue;  // where two labels' colours mix
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR(maps.appearance[k * kTexels + t], ToyColour(r < 8 ? 1 : 2, r, c, k), 0.03) << r << " " << c;
+    }
+  }
+  const std::span<const PhotoFrame> all(photos);
+  EXPECT_THROW(MapsOfSource(all.first(1), {texel_parts, {}, &neighbours, lent}, MapCompletion::kNone, false, {}),
+               std::invalid_argument);
+  EXPECT_THROW(
+      MapsOfSource(all, {texel_parts, {}, &neighbours, std::span(lent).first(4)}, MapCompletion::kNone, false, {}),
+      std::invalid_argument);
+}
+
 /// The toy's clothes `wider` pixels wider on either side than its torso, as tall as it.
 PhotoFrame InASkirt(int wider) {
   PhotoFrame frame = ToyPhotoFrame(1, {}, true);
@@ -240,6 +266,18 @@ TEST(ClothedBody, ASkirtCanBeSeenFromBehindAndAtAnotherSize) {
   EXPECT_EQ(at(10, 20), 1) << "the torso's last column";
   EXPECT_NEAR(at(7, 20), 0.5, 1e-4) << "the skirt's last column";
   EXPECT_EQ(at(6, 20), 0);
+}
+
+TEST(ClothesExtent, OfWhatIsLentIsTheLenders) {
+  const TexelNeighbours neighbours = ToyNeighbours();
+  const PhotoFrame photos[] = {InASkirt(1), InASkirt(4)};
+  std::vector<uint8_t> lent(kTexels);
+  for (int t = kTexels / 2; t < kTexels; ++t) lent[t] = t % kToyTexels < 8 ? 1 : 0;  // the torso's front
+  const std::vector<float> extent =
+      MapsOfSource(photos, {texel_parts, {}, &neighbours, lent}, MapCompletion::kNone, true, {}).maps.extent;
+  const double diagonal = std::hypot(12, 12);
+  EXPECT_NEAR(extent[12 * kToyTexels], 4 / diagonal, 1e-6);
+  EXPECT_NEAR(extent[12 * kToyTexels + 15], 1 / diagonal, 1e-6);
 }
 
 TEST(ClothesExtent, NeedsLabels) {
