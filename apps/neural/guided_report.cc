@@ -6,6 +6,7 @@
 #include <string>
 
 #include "apps/neural/animate_options.h"
+#include "bodyloom/pipelines/neural/photo/people_data.h"
 
 namespace bodyloom {
 namespace {
@@ -38,8 +39,8 @@ void Print(const AnimateGuidedSummary& summary, const AnimateGuidedRequest& requ
 
 void Print(const ScoreGuidedSummary& summary) {
   for (const ScoredPhotos& s : summary.scored) {
-    std::printf("%d photo%s (%.0f %% of the texels): %s\n", s.photos, s.photos == 1 ? "" : "s", 100 * s.texels_seen,
-                ScoresText(s.scores).c_str());
+    std::printf("%d photo%s (%.0f %% of the texels; %s given): %s\n", s.photos, s.photos == 1 ? "" : "s",
+                100 * s.texels_seen, kGivenOfPeople, ScoresText(s.scores).c_str());
   }
 }
 

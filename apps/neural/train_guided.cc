@@ -10,6 +10,7 @@
 #include "apps/neural/training_options.h"
 #include "apps/neural/training_report.h"
 #include "bodyloom/pipelines/neural/guided/train_guided_renderer.h"
+#include "bodyloom/pipelines/neural/photo/people_data.h"
 
 namespace bodyloom {
 namespace {
@@ -48,9 +49,9 @@ void Run(const Parsed& parsed) {
   const GuidedScores& s = summary.scores;
   if (s.frames > 0) {
     std::printf(
-        "validation of %d pictures: L1 %.4f, PSNR %.2f dB, silhouette IoU %.3f, labels IoU %.3f, LPIPS (random-feature "
-        "substitute) %.4f\n",
-        s.frames, s.image_l1, s.psnr_db, s.silhouette_iou, s.label_iou, s.lpips);
+        "validation of %d pictures (%s given): L1 %.4f, PSNR %.2f dB, silhouette IoU %.3f, labels IoU %.3f, LPIPS "
+        "(random-feature substitute) %.4f\n",
+        s.frames, kGivenOfPeople, s.image_l1, s.psnr_db, s.silhouette_iou, s.label_iou, s.lpips);
   }
   PrintEnd(summary, summary.checkpoint, request.out);
 }

@@ -8,6 +8,7 @@
 #include "apps/neural/neural_verbs.h"
 #include "apps/neural/training_options.h"
 #include "apps/neural/training_report.h"
+#include "bodyloom/pipelines/neural/photo/people_data.h"
 #include "bodyloom/pipelines/neural/photo/train_photo_renderer.h"
 
 namespace bodyloom {
@@ -31,9 +32,10 @@ void Run(const Parsed& parsed) {
   PrintStep(summary, options.TotalSteps());
   const PhotoScores& s = summary.scores;
   if (s.pictures > 0) {
-    std::printf("validation of %d pairs: L1 %.4f, PSNR %.2f dB, SSIM %.4f, LPIPS%s %.4f, silhouette IoU %.3f\n",
-                s.pictures, s.image_l1, s.psnr_db, s.ssim,
-                s.lpips_random_features ? " (random-feature substitute)" : "", s.lpips, s.silhouette_iou);
+    std::printf(
+        "validation of %d pairs (%s given): L1 %.4f, PSNR %.2f dB, SSIM %.4f, LPIPS%s %.4f, silhouette IoU %.3f\n",
+        s.pictures, kGivenOfPeople, s.image_l1, s.psnr_db, s.ssim,
+        s.lpips_random_features ? " (random-feature substitute)" : "", s.lpips, s.silhouette_iou);
     std::fflush(stdout);
   }
   PrintEnd(summary, summary.checkpoint, request.out);

@@ -77,6 +77,9 @@ TEST_F(TrainGuidedVerb, TrainsGoesOnAndAnimates) {
   ASSERT_EQ(scored.exit_code, 0) << scored.err;
   const nlohmann::json scores = nlohmann::json::parse(std::ifstream(scratch_ / "s.json"))["scores"];
   ASSERT_EQ(scores.size(), 2U);
+  EXPECT_THAT(scored.out, HasSubstr("true labels and bodies given"));
+  EXPECT_THAT(trained.out, HasSubstr("true labels and bodies given"));
+  EXPECT_EQ(nlohmann::json::parse(std::ifstream(scratch_ / "s.json"))["given"], "true labels and bodies");
   EXPECT_EQ(scores[0]["frames"], 2);
   EXPECT_GT(scores[1]["texels_seen"].get<double>(), scores[0]["texels_seen"].get<double>());
 

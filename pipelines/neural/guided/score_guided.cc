@@ -66,6 +66,7 @@ nlohmann::ordered_json Report(const std::vector<ScoredPhotos>& scored) {
     rows.push_back(row);
   }
   nlohmann::ordered_json report = nlohmann::ordered_json::object();
+  report["given"] = kGivenOfPeople;
   report["scores"] = rows;
   return report;
 }
