@@ -18,6 +18,22 @@ PhotoFrame ShownAlone(const PhotoFrame& photo, std::span<const uint8_t> lent, bo
   return shown;
 }
 
+/// Puts a photo's texels into the maps that it sees at a larger cosine than those before it. Returns how many were empty.
+int TakeBetterSeen(const CoherentMaps& of_photo, std::span<const float> cosine, std::vector<float>* seen_at,
+                   CoherentMaps* maps) {
+  const size_t texels = maps->from.size();
+  int filled = 0;
+  for (size_t i = 0; i < texels; ++i) {
+    if (of_photo.from[i] == 0 || !(cosine[i] > (*seen_at)[i])) continue;
+    filled += maps->from[i] == 0 ? 1 : 0;
+    (*seen_at)[i] = cosine[i];
+    maps->from[i] = of_photo.from[i];
+    maps->labels[i] = of_photo.labels[i];
+    for (size_t c = 0; c < 3; ++c) maps->appearance[c * texels + i] = of_photo.appearance[c * texels + i];
+  }
+  return filled;
+}
+
 }  // namespace
 
 SourceMaps MapsOfSource(std::span<const PhotoFrame> photos, const SourceBody& body, MapCompletion completion,
@@ -39,10 +55,13 @@ SourceMaps MapsOfSource(std::span<const PhotoFrame> photos, const SourceBody& bo
   BODYLOOM_CHECK(lent.empty() || (photos.size() > 1 && lent.size() == photos[0].texel_cosine.size() &&
                                   lent.size() == photos.back().texel_cosine.size()),
                  "pose-guided renderer: ", lent.size(), " texels lent among ", photos.size(), " photos");
+  std::vector<float> seen_at(source.maps.from.size());  // cosines
   for (size_t i = 0; i < photos.size(); ++i) {
     const PhotoFrame shown =
         lent.empty() ? photos[i] : ShownAlone(photos[i], lent, /*where_lent=*/i + 1 == photos.size());
-    source.texels_seen += FillEmptyTexels(shown, OwnPicture(shown), static_cast<uint8_t>(i + 1), {}, &source.maps);
+    CoherentMaps of_photo = EmptyMaps(source.maps.size, body.texel_parts);
+    FillEmptyTexels(shown, OwnPicture(shown), static_cast<uint8_t>(i + 1), {}, &of_photo);
+    source.texels_seen += TakeBetterSeen(of_photo, shown.texel_cosine, &seen_at, &source.maps);
   }
   if (!behind.empty()) CallFacesBehindHair(behind, source.maps.labels);
   if (extent) {

@@ -166,6 +166,34 @@ TEST(MapsOfSource, SaysWhatIsMissing) {
   EXPECT_TRUE(none.maps.extent.empty());
 }
 
+TEST(MapsOfSource, ThePhotoThatSeesATexelMostFromTheFrontFillsIt) {
+  PhotoFrame photos[] = {ToyPhotoFrame(1, {}, true), ToyPhotoFrame(2, {1, 1, false}, true)};
+  for (int t = 0; t < kTexels; ++t) {
+    if (photos[0].texel_cosine[t] == 0) continue;
+    photos[0].texel_cosine[t] = 0.5F;
+    photos[1].texel_cosine[t] = t % 3 == 0 ? 0.5F : t % 3 == 1 ? 0.4F : 0.6F;
+  }
+  // Where it shows nobody it fills nothing, however well it is seen.
+  for (int y = 0; y < 8; ++y) {
+    for (int x = 0; x < kToySide; ++x) photos[1].labels[y * kToySide + x] = 0;
+  }
+  const SourceMaps source = MapsOfSource(photos, {texel_parts}, MapCompletion::kNone, false, {});
+  EXPECT_EQ(source.texels_seen, 128);
+  int of_second = 0;
+  for (int t = 0; t < kTexels; ++t) {
+    const int r = t / kToyTexels, c = t % kToyTexels;
+    if (c >= 8) continue;
+    const bool second = t % 3 == 2 && r > 0;
+    of_second += second ? 1 : 0;
+    ASSERT_EQ(source.maps.from[t], second ? 2 : 1) << r << " " << c;
+    if (r == 2 || r == 3 || r == 13 || r == 14) continue;  // where two labels' colours mix
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR(source.maps.appearance[k * kTexels + t], ToyColour(second ? 2 : 1, r, c, k), 0.03) << r << " " << c;
+    }
+  }
+  EXPECT_GT(of_second, 30);
+}
+
 TEST(MapsOfSource, AnotherOneLendsWhatIsWornAndNothingElse) {
   const TexelNeighbours neighbours = ToyNeighbours();
   std::vector<uint8_t> lent(kTexels);
