@@ -10,7 +10,7 @@
 
 namespace bodyloom {
 
-/// What a renderer is given of a dataset's people when it is scored on them, and of nobody else's photo.
+/// What a renderer is given of a dataset's people when it is scored on them; of a photo of anybody else they are estimates.
 inline constexpr const char* kGivenOfPeople = "true labels and bodies";
 
 struct PeopleDataRequest {

@@ -134,6 +134,19 @@ TEST(GuessTexture, StaysWithinAGarmentAndHairIsNoFace) {
   EXPECT_EQ(atlas.texture.labels, before.labels) << "guesses are not shown";
 }
 
+TEST(GuessTexture, ABackOfTheHeadThatIsCalledFaceIsHair) {
+  constexpr uint8_t kFace = 3, kSkin = 5;
+  // As body parts stand in for a parsing: a white face, black hair behind called face as well, a red hand.
+  Atlas atlas({{kHead, {0.02F, 1.7F, 0.12F}, kWhite, true, kFace},
+               {kHead, {0.02F, 1.7F, 0.02F}, kWhite, true, kFace},
+               {kHead, {0.02F, 1.79F, -0.12F}, kBlack, true, kFace},
+               {kUpperArmLeft, {0.8F, 1.4F, 0}, kRed, true, kSkin},
+               {kHead, {0.02F, 1.7F, -0.01F}, kBlue, false},
+               {kTorsoFront, {0.1F, 0, 0}, kBlue, false}});
+  GuessTexture({atlas.size, atlas.parts, atlas.places}, &atlas.texture);
+  EXPECT_EQ(atlas.Colour(4), kBlack) << "hair, though a cheek is nearer";
+}
+
 TEST(GuessTexture, AgreesWithASlowTwin) {
   uint64_t state = 5;
   const auto random = [&] { return UniformOf(state = Mix(state)); };
