@@ -69,6 +69,11 @@ void AddAnimateMotion(CLI::App& animate, Action* action) {
   verb->add_option("--speed", request->speed, "Plays the motion so many times as fast: clothes move differently")
       ->check(CLI::Range(0.05, 20.0))
       ->capture_default_str();
+  auto shape = std::make_shared<std::string>("run");
+  verb->add_option("--shape", *shape,
+                   "Whose body moves: run (the person who was trained on, as motion transfer means it), or track")
+      ->check(CLI::IsMember({"run", "track"}))
+      ->capture_default_str();
   verb->add_option(
       "--freeze", request->freeze,
       "FRAME:COUNT: time stands still at that frame for so many more, while --view-yaw FROM:TO turns the view");
@@ -96,7 +101,10 @@ void AddAnimateMotion(CLI::App& animate, Action* action) {
   verb->add_option("--json", request->json, "Report with times");
   AddDeviceOptions(verb, request.get());
   verb->footer("Example:\n  bodyloom animate motion --run run --track dance.npz --out dance.mp4 --view-yaw 0:360");
-  verb->callback([request, action] { *action = [request] { Run(*request); }; });
+  verb->callback([request, shape, action] {
+    request->shape_of_track = *shape == "track";
+    *action = [request] { Run(*request); };
+  });
 }
 
 }  // namespace bodyloom

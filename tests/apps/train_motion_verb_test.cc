@@ -88,6 +88,7 @@ TEST_F(TrainMotionVerb, TrainsGoesOnAndAnimates) {
   for (const char* file : {"config.json", "checkpoint.bin", "metrics.csv", "preview_000003.png"}) {
     EXPECT_TRUE(fs::exists(scratch_ / ("run/" + std::string(file)))) << file;
   }
+  EXPECT_THAT(FileBytes(scratch_ / "run/config.json"), HasSubstr("\"betas\": ["));
   EXPECT_EQ(Train("run", {"--steps", "5"}).exit_code, 2) << "took the folder of another run";
   const CommandResult resumed = Train("run", {"--steps", "5", "--train", "0-9", "--validate", "10-13", "--resume"});
   EXPECT_EQ(resumed.exit_code, 0) << resumed.err;

@@ -37,13 +37,8 @@ constexpr const char *kPrepare = "prepare", *kLight = "light", *kMaps = "maps", 
                      *kCompose = "compose and encode";
 
 AnimatedClipRequest ClipOf(const AnimateMotionRequest& request) {
-  return {request.track,
-          request.data,
-          request.body,
-          request.view_yaw,
-          request.freeze,
-          request.speed,
-          ThreadsFor(request.threads)};
+  return {request.track,  request.data,  request.body,           request.view_yaw,
+          request.freeze, request.speed, request.shape_of_track, ThreadsFor(request.threads)};
 }
 
 void CheckRequest(const AnimateMotionRequest& request) {
@@ -109,6 +104,7 @@ class MotionAnimation {
 
   void OpenClip() {
     clip_ = std::make_unique<AnimatedClip>(ClipOf(request_), run_);
+    SayLines(clip_->notes(), callbacks_);
     const PersonWindow& window = clip_->frames().window();
     if (std::max({window.width, window.height, window.picture_width, window.picture_height}) > kLargestSide) {
       throw std::runtime_error(Concatenate(request_.track,

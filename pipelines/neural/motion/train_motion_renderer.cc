@@ -80,6 +80,7 @@ MotionRun RunOf(const TrainMotionRendererRequest& request, const TrainMotionOpti
   run.past = data.frames().options().past;
   run.notes = Notes(request, options);
   run.fps = FramesPerSecond(data.track(), run.fps);
+  run.betas = data.track().motion.betas;
   return run;
 }
 
