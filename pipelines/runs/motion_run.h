@@ -13,7 +13,7 @@ namespace bodyloom {
 struct MotionRun {
   MotionConfig config;
   double pixels_per_metre = 0;  ///< of the window: the size that the person was trained at
-  double fps = 30;
+  double fps = 30;              ///< of the clip; motion is shown at this rate
   int reach = 0;  ///< pixels that clothes reach beyond the body (neural/motion/clothes_reach.h), 0: not known
   int past = 10;  ///< velocities of so many frames
   std::optional<Eigen::VectorXd> betas;  ///< the person's shape; absent in runs from before they held it

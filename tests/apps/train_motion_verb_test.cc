@@ -56,6 +56,28 @@ TEST_F(TrainMotionVerb, TimeStandsStillWhileTheViewTurns) {
   }
 }
 
+TEST_F(TrainMotionVerb, MotionIsShownAtTheRunsRate) {
+  ASSERT_EQ(Train("run", {"--steps", "1", "--train", "0-9", "--validate", "10-10"}).exit_code, 0);
+  const std::string path = scratch_ / "run/config.json";
+  std::string text = FileBytes(path);
+  const std::string rate = "\"fps\": 30.0";
+  ASSERT_NE(text.find(rate), std::string::npos);
+  text.replace(text.find(rate), rate.size(), "\"fps\": 15.0");  // as if it had been trained on half the rate
+  std::ofstream(path) << text;
+  const auto animate = [&](const std::string& option, const std::string& of) {
+    return RunCommand({"animate", "motion", "--run", scratch_ / "run", option, scratch_ / of, "--out",
+                       scratch_ / "a.mp4", "--warmup", "0"});
+  };
+  const CommandResult shown = animate("--track", "person/track.npz");
+  ASSERT_EQ(shown.exit_code, 0) << shown.err;
+  EXPECT_THAT(shown.out, HasSubstr("30 frames a second, is shown at the run's 15"));
+  EXPECT_THAT(shown.out, HasSubstr("7 frames"));
+  EXPECT_NEAR(VideoReader(scratch_ / "a.mp4").info().fps, 15, 0.01);
+  const CommandResult scored = animate("--data", "person");
+  EXPECT_EQ(scored.exit_code, 1);
+  EXPECT_THAT(scored.err, HasSubstr("pictures at 30 frames a second, expected 15 as in training"));
+}
+
 TEST_F(TrainMotionVerb, WholeWindowsAreWhatOlderRunsLookAt) {
   const CommandResult trained =
       Train("run", {"--steps", "1", "--train", "0-9", "--validate", "10-10", "--whole-window"});

@@ -11,6 +11,8 @@
 #include "bodyloom/data_tools/body/body_or_builtin.h"
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/data_tools/evaluation/motion_similarity.h"
+#include "bodyloom/data_tools/motion/motion_tools.h"
+#include "bodyloom/data_tools/motion/resample_track.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/video/video_writer.h"
 #include "bodyloom/geometry/base/check.h"
@@ -19,6 +21,7 @@
 #include "bodyloom/neural/training/training_run.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/neural/motion/animated_clip.h"
+#include "bodyloom/pipelines/neural/motion/clip_rate.h"
 #include "bodyloom/pipelines/neural/motion/clip_scores_json.h"
 #include "bodyloom/pipelines/people/background.h"
 #include "bodyloom/pipelines/people/planar_picture.h"
@@ -57,11 +60,12 @@ void CheckRequest(const AnimateMotionRequest& request) {
 }
 
 /// Of each frame to the nearest of `like`; empty without it.
-std::vector<float> SimilarityTo(const AnimateMotionRequest& request, const Track& track, int past) {
+std::vector<float> SimilarityTo(const AnimateMotionRequest& request, const Track& track, int past, double fps) {
   if (request.like.empty()) return {};
-  const Track others =
+  Track others =
       std::filesystem::is_directory(request.like) ? SinglePersonDataset(request.like).track() : ReadTrack(request.like);
   try {
+    if (!IsAtRate(others, fps)) others = ResampleTrack(others, fps);
     return SimilarityToNearest(*BodyOrBuiltin(request.body), track, others, past, ThreadsFor(request.threads));
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(request.like + ": " + error.what());
@@ -144,9 +148,9 @@ class MotionAnimation {
     const PersonWindow& window = clip_->frames().window();
     picture_ = SizeOfPictures(window, track.camera, request_.full_size);
     Background background(request_.background, picture_.width, picture_.height);
-    const double fps = FramesPerSecond(track, run_.fps);
+    const double own_fps = FrameRateWithoutGaps(track.motion), fps = own_fps > 0 ? own_fps : run_.fps;
     if (scored_) {
-      scorer_ = std::make_unique<ClipScorer>(SimilarityTo(request_, track, run_.past), window,
+      scorer_ = std::make_unique<ClipScorer>(SimilarityTo(request_, track, run_.past, run_.fps), window,
                                              request_.background.empty() ? "" : request_.data, picture_);
     }
     VideoWriter video(request_.out, picture_.width, picture_.height, fps);

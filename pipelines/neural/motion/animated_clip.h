@@ -34,7 +34,8 @@ struct AnimatedClipRequest {
 
 class AnimatedClip {
  public:
-  /// At the size that the person of `run` was trained at. The body has that person's shape, whosever motion it is,
+  /// At the size that the person of `run` was trained at, and at the run's frame rate, which its networks' past has: a
+  /// track at another is resampled (data_tools/motion/resample_track.h), a clip to be scored refused. The body has that person's shape, whosever motion it is,
   /// unless the clip is scored (the person's pictures come with their own track), the request says otherwise or the run
   /// does not hold it. Throws std::runtime_error naming the file that cannot be used or has nothing to animate,
   /// RequestError for `view_yaw` and `freeze`.
@@ -43,7 +44,7 @@ class AnimatedClip {
   /// Frames are those shown: one shown again counts again.
   [[nodiscard]] const Track& track() const { return data_ ? data_->track() : own_frames_->track(); }
   [[nodiscard]] const PersonFrames& frames() const { return data_ ? data_->frames() : *own_frames_; }
-  /// Lines for the user: whose shape is posed where the track's is another.
+  /// Lines for the user: the rate and the shape that are not the track's own.
   [[nodiscard]] const std::string& notes() const { return notes_; }
   /// What the network takes of frame t; with its truth where the clip is scored.
   void Fill(int t, MotionFrame* frame) const;

@@ -5,10 +5,12 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "bodyloom/data_tools/motion/motion_tools.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/neural/animation.h"
+#include "bodyloom/pipelines/neural/motion/clip_rate.h"
 #include "bodyloom/pipelines/neural/motion/motion_preview.h"
 #include "bodyloom/pipelines/neural/training_session.h"
 #include "bodyloom/pipelines/neural/weights_folder.h"
@@ -68,7 +70,10 @@ std::unique_ptr<MotionData> ValidationData(const TrainMotionRendererRequest& req
   other.data = request.validate_data;
   other.track.clear();
   other.pixels_per_metre = data.PixelsPerMetre();
-  return std::make_unique<MotionData>(other, config.profile, config.Multiple());
+  auto validation = std::make_unique<MotionData>(other, config.profile, config.Multiple());
+  const double fps = FrameRateWithoutGaps(data.track().motion);
+  if (fps > 0) RequireRate(validation->track(), fps, request.validate_data, "make it at that rate");
+  return validation;
 }
 
 /// What it takes to use the checkpoint.
@@ -79,7 +84,8 @@ MotionRun RunOf(const TrainMotionRendererRequest& request, const TrainMotionOpti
   run.reach = options.reach;
   run.past = data.frames().options().past;
   run.notes = Notes(request, options);
-  run.fps = FramesPerSecond(data.track(), run.fps);
+  const double fps = FrameRateWithoutGaps(data.track().motion);
+  if (fps > 0) run.fps = fps;
   run.betas = data.track().motion.betas;
   return run;
 }
