@@ -23,13 +23,8 @@ void PrintScores(const AnimateMotionRequest& request, const ClipScores& scores) 
                 CompositeScore::kRimPixels);
   }
   for (const MotionErrors::Quarter& quarter : scores.by_similarity) {
-    std::printf("  %d frames of similarity %.3f and more: L1 %.4f\n", quarter.frames, quarter.least_similarity,
-                quarter.image_l1);
-  }
-  if (scores.likeness) {
-    std::printf(
-        "LPIPS %.4f, tLPIPS %.5f%s\n", scores.likeness->lpips, scores.likeness->tlpips,
-        scores.likeness->random_features ? " (random-feature substitute: compares with nothing but itself)" : "");
+    std::printf("  %d frames of similarity %.3f and more: %s\n", quarter.frames, quarter.least_similarity,
+                ScoresText(quarter.scores, scores.windows.lpips_random_features).c_str());
   }
 }
 
@@ -97,6 +92,7 @@ void AddAnimateMotion(CLI::App& animate, Action* action) {
       "--like", request->like,
       "A single-person dataset, or a track: with --data, the error by how much each frame's motion is like one there");
   verb->add_option("--frames", request->frames, "With --data: a line of CSV a frame, error and similarity");
+  AddLikenessWeights(verb, &request->weights, "alexnet and lpips_alex, for LPIPS and tLPIPS");
   verb->add_option("--sheet", request->sheet, "Contact sheet of six frames: picture, labels, normals");
   verb->add_option("--json", request->json, "Report with times");
   AddDeviceOptions(verb, request.get());

@@ -13,6 +13,13 @@ PhotoBackground ParsePhotoBackground(const std::string& option) {
   return result;
 }
 
+void AddLikenessWeights(CLI::App* verb, std::string* weights, const char* what) {
+  verb->add_option("--weights", *weights,
+                   std::string("Folder with trained weights (.safetensors, .pth): ") + what +
+                       "; without them random features measure, which compare with nothing else")
+      ->type_name("DIR");
+}
+
 void AddDeviceOptions(CLI::App* verb, AnimationRequest* request) {
   verb->add_option("--threads", request->threads, "0: all cores")->check(CLI::NonNegativeNumber);
   verb->add_option("--device", request->device, "Where the networks run")

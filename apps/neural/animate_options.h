@@ -24,6 +24,9 @@ inline constexpr const char* kPhotoBackgroundHelp =
 /// What that option means.
 PhotoBackground ParsePhotoBackground(const std::string& option);
 
+/// --weights of the verbs that print LPIPS or contextual scores; `what`: the files' names and what they are for.
+void AddLikenessWeights(CLI::App* verb, std::string* weights, const char* what);
+
 /// --threads, --device.
 void AddDeviceOptions(CLI::App* verb, AnimationRequest* request);
 

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "bodyloom/data_tools/video/image_file.h"
@@ -138,6 +139,19 @@ TEST_F(TrainMotionVerb, TrainsGoesOnAndAnimates) {
   }
   EXPECT_EQ(lines, 14);
   EXPECT_THAT(animated.out, HasSubstr("14 frames"));
+  for (const std::string& text : {trained.out, animated.out}) {
+    for (const char* score : {"SSIM ", "tLPIPS (random features) ", ", LPIPS (random features) "}) {
+      EXPECT_THAT(text, HasSubstr(score));
+    }
+  }
+  const nlohmann::json scores = nlohmann::json::parse(FileBytes(scratch_ / "a.json"))["scores"];
+  for (const char* score : {"ssim", "lpips", "tlpips"}) {
+    EXPECT_GT(scores[score], 0) << score;
+    EXPECT_GT(scores["by_similarity"][3][score], 0) << score;
+  }
+  EXPECT_EQ(scores["ssim_preset"], "wang2004");
+  EXPECT_EQ(scores["lpips_of_random_features"], true);
+  EXPECT_EQ(FileBytes(scratch_ / "a.csv").rfind("frame,image_l1,ssim,lpips,tlpips,similarity\n0,0.", 0), 0U);
   EXPECT_THAT(animated.out, HasSubstr("silhouette IoU"));
   EXPECT_THAT(animated.out, HasSubstr("dB of the whole picture"));
   VideoReader video(scratch_ / "a.mp4");
@@ -216,6 +230,10 @@ TEST_F(TrainMotionVerb, SaysWhatIsWrong) {
   fails({"animate", "motion", "--run", scratch_ / "run", "--out", scratch_ / "a.mp4"}, 2, "--track and --data");
   EXPECT_EQ(Train("x", {"--device", "gpu"}).exit_code, 2);
 
+  // Weights for the scores: from a folder that holds some, and only where there are scores.
+  fs::create_directories(scratch_ / "empty");
+  EXPECT_THAT(Train("x", {"--weights", scratch_ / "empty"}).err, HasSubstr("empty: none of vgg16"));
+
   // A track of another clip.
   const CommandResult other = RunCommand({"synth-person", "--motion", "demo", "--frames", "20", "--out",
                                           scratch_ / "other", "--size", "96", "--garment", "suit"});
@@ -229,6 +247,12 @@ TEST_F(TrainMotionVerb, SaysWhatIsWrong) {
     return RunCommand({"animate", "motion", "--run", scratch_ / "run", "--track", scratch_ / "person/track.npz",
                        "--out", scratch_ / "a.mp4"});
   };
+  fails({"animate", "motion", "--run", scratch_ / "run", "--data", scratch_ / "person", "--out", scratch_ / "a.mp4",
+         "--weights", scratch_ / "empty"},
+        1, "empty: none of vgg16");
+  fails({"animate", "motion", "--run", scratch_ / "run", "--track", scratch_ / "person/track.npz", "--out",
+         scratch_ / "a.mp4", "--weights", scratch_ / "empty"},
+        2, "--weights");
   std::ifstream config(scratch_ / "run/config.json");
   std::string text((std::istreambuf_iterator<char>(config)), {});
   std::string changed = text;

@@ -23,6 +23,8 @@
 #include "bodyloom/pipelines/neural/motion/animated_clip.h"
 #include "bodyloom/pipelines/neural/motion/clip_rate.h"
 #include "bodyloom/pipelines/neural/motion/clip_scores_json.h"
+#include "bodyloom/pipelines/neural/weights_folder.h"
+#include "bodyloom/pipelines/neural/window_ssim.h"
 #include "bodyloom/pipelines/people/background.h"
 #include "bodyloom/pipelines/people/planar_picture.h"
 #include "bodyloom/pipelines/people/relight_frames.h"
@@ -116,16 +118,25 @@ class MotionAnimation {
                                            window.picture_width, "x", window.picture_height, " px, at most ",
                                            kLargestSide, " a side; the track's person is too small in its picture"));
     }
-    if (!scored_ && !(request_.like.empty() && request_.frames.empty())) {
+    if (!scored_ && !(request_.like.empty() && request_.frames.empty() && request_.weights.empty())) {
       throw RequestError(
-          "--like and --frames compare with the pictures of --data: not without it, --view-yaw, --freeze or --speed");
+          "--like, --frames and --weights compare with the pictures of --data: not without it, nor with --view-yaw, "
+          "--freeze or --speed");
     }
     renderer_ = OpenRenderer(scored_);
   }
 
   [[nodiscard]] std::unique_ptr<MotionRenderer> OpenRenderer(bool score) const {
-    const MotionRendererOptions options = {
-        request_.warmup, run_.reach, request_.anywhere, score, ThreadsFor(request_.threads), request_.device};
+    MotionRendererOptions options;
+    options.warmup_iterations = request_.warmup;
+    options.reach = run_.reach, options.anywhere = request_.anywhere;
+    options.num_threads = ThreadsFor(request_.threads), options.device = request_.device;
+    options.score = score;
+    if (score) {
+      const WeightsFolder weights = ReadWeightsFolder(request_.weights);
+      options.lpips = std::make_shared<const Lpips>(LpipsFrom(weights.alexnet, weights.lpips_heads));
+      options.ssim = WindowSsim;
+    }
     return std::make_unique<MotionRenderer>(CheckpointPath(request_.run), run_.config, options);
   }
 
@@ -150,7 +161,7 @@ class MotionAnimation {
     Background background(request_.background, picture_.width, picture_.height);
     const double own_fps = FrameRateWithoutGaps(track.motion), fps = own_fps > 0 ? own_fps : run_.fps;
     if (scored_) {
-      scorer_ = std::make_unique<ClipScorer>(SimilarityTo(request_, track, run_.past, run_.fps), window,
+      scorer_ = std::make_unique<ClipScorer>(SimilarityTo(request_, track, run_.past, run_.fps),
                                              request_.background.empty() ? "" : request_.data, picture_);
     }
     VideoWriter video(request_.out, picture_.width, picture_.height, fps);
@@ -186,13 +197,13 @@ class MotionAnimation {
     const PersonFrames& frames = clip_->frames();
     clip_->Fill(t, &frame_);
     const bool is_cut = t > 0 && frames.Segment(t) != frames.Segment(t - 1);
-    if (is_cut || request_.without_past) renderer_->Restart();
-    if (is_cut && scorer_) scorer_->Restart();
+    if (is_cut) renderer_->Restart();
+    if (request_.without_past) renderer_->ForgetPast();
     clock_.Book(kMaps);
     MotionPicture picture = renderer_->Next(frame_);
     const double network_s = clock_.Book(kNetwork);
     if (t > 0) network_ms_.push_back(1e3 * network_s);  // the first frame warms up
-    if (scorer_) scorer_->AddWindow(t, picture, frame_, renderer_->last_l1());
+    if (scorer_) scorer_->AddWindow(t, renderer_->last_scores());
     if (relighter_) relighter_->Apply(&picture);
     Composite(picture.image, picture.alpha, frames.window(), t, composed);
     if (scorer_) scorer_->AddComposed(t, *composed);

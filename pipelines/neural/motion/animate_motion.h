@@ -28,6 +28,7 @@ struct AnimateMotionRequest : AnimationRequest {
   bool anywhere = false;        ///< the person may be farther from the body than clothes ever were in training
   std::string like;             ///< with `data`: a dataset or track whose motion each frame's is compared with
   std::string frames;           ///< with `data`: a CSV to write, a line a frame (MotionErrors)
+  std::string weights;          ///< with `data`: folder with alexnet and lpips_alex (weights_folder.h); empty: none
   std::string set;              ///< a single-person dataset to write, of the result; empty: none
   std::string set_command;      ///< the command that makes the dataset again, kept in it
 };

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <utility>
 #include <vector>
 
 #include "bodyloom/data_tools/motion/motion_tools.h"
@@ -14,6 +15,7 @@
 #include "bodyloom/pipelines/neural/motion/motion_preview.h"
 #include "bodyloom/pipelines/neural/training_session.h"
 #include "bodyloom/pipelines/neural/weights_folder.h"
+#include "bodyloom/pipelines/neural/window_ssim.h"
 #include "bodyloom/pipelines/runs/motion_run.h"
 
 namespace bodyloom {
@@ -106,7 +108,10 @@ TrainMotionRendererSummary TrainMotionRenderer(const TrainMotionRendererRequest&
   RequireReadable(request.data.data, "data");
   RequireReadable(request.data.track, "track");
   OpenTrainingRun(request.out, &options);
-  options.vgg16 = ReadWeightsFolder(request.weights).vgg16;
+  WeightsFolder weights = ReadWeightsFolder(request.weights);
+  options.vgg16 = std::move(weights.vgg16);
+  options.alexnet = std::move(weights.alexnet), options.lpips_heads = std::move(weights.lpips_heads);
+  options.ssim = WindowSsim;
 
   MotionDataRequest data_request = request.data;
   data_request.num_threads = options.num_threads;
