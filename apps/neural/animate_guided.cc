@@ -26,7 +26,7 @@ ScoreGuidedSummary Score(const Options& options) {
   request.run = a.run, request.data = options.score, request.body = a.photo.body;
   request.photos = options.score_photos, request.frames = options.score_frames;
   request.completion = a.completion, request.anywhere = a.anywhere;
-  request.sheet = a.sheet, request.json = a.json;
+  request.sheet = a.sheet, request.json = a.json, request.weights = a.weights;
   request.threads = a.threads, request.device = a.device;
   return RunWithBar("scores", ScoreGuided, request);
 }
@@ -91,6 +91,7 @@ void AddAnimateGuided(CLI::App& animate, Action* action) {
   verb->add_option("--score-frames", options->score_frames, "Pictures of each person to compare with")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
+  AddLikenessWeights(verb, &request.weights, "alexnet and lpips_alex for LPIPS, vgg19 for contextual scores");
   AddDeviceOptions(verb, &request);
   verb->footer(
       "Example:\n"

@@ -28,6 +28,13 @@ void AddPhotoOptions(CLI::App* verb, PhotoAnimationRequest* request) {
                    "Turns the view about the person's vertical, degrees; FROM:TO turns it over the clip");
 }
 
+void AddLikenessWeights(CLI::App* verb, std::string* weights, const char* what) {
+  verb->add_option("--weights", *weights,
+                   std::string("Folder with trained weights (.safetensors, .pth): ") + what +
+                       "; without them random features measure, which compare with nothing else")
+      ->type_name("DIR");
+}
+
 void AddDeviceOptions(CLI::App* verb, AnimationRequest* request) {
   verb->add_option("--threads", request->threads, "0: all cores")->check(CLI::NonNegativeNumber);
   verb->add_option("--device", request->device, "Where the networks run")

@@ -26,6 +26,9 @@ PhotoBackground ParsePhotoBackground(const std::string& option);
 /// --views, --garment-from, --parts, --shape, --view-yaw.
 void AddPhotoOptions(CLI::App* verb, PhotoAnimationRequest* request);
 
+/// --weights of the verbs that print LPIPS or contextual scores; `what`: the files' names and what they are for.
+void AddLikenessWeights(CLI::App* verb, std::string* weights, const char* what);
+
 /// --threads, --device.
 void AddDeviceOptions(CLI::App* verb, AnimationRequest* request);
 

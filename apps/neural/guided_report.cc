@@ -12,12 +12,12 @@ namespace bodyloom {
 namespace {
 
 std::string ScoresText(const GuidedScores& s) {
-  char line[256];
-  std::snprintf(
-      line, sizeof line,
-      "L1 %.4f, PSNR %.2f dB, silhouette IoU %.3f, labels IoU %.3f, LPIPS %.4f (deviation %.4f), CS %.3f; LPIPS "
-      "and CS by a random-feature substitute",
-      s.image_l1, s.psnr_db, s.silhouette_iou, s.label_iou, s.lpips, s.lpips_deviation, s.contextual);
+  char line[320];
+  std::snprintf(line, sizeof line,
+                "L1 %.4f, PSNR %.2f dB, silhouette IoU %.3f, labels IoU %.3f, LPIPS%s %.4f (deviation %.4f), CS%s %.3f",
+                s.image_l1, s.psnr_db, s.silhouette_iou, s.label_iou,
+                s.lpips_random_features ? " (random features)" : "", s.lpips, s.lpips_deviation,
+                s.contextual_random_features ? " (random features, a quarter of the channels)" : "", s.contextual);
   return line;
 }
 

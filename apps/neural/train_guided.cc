@@ -49,9 +49,10 @@ void Run(const Parsed& parsed) {
   const GuidedScores& s = summary.scores;
   if (s.frames > 0) {
     std::printf(
-        "validation of %d pictures (%s given): L1 %.4f, PSNR %.2f dB, silhouette IoU %.3f, labels IoU %.3f, LPIPS "
-        "(random-feature substitute) %.4f\n",
-        s.frames, kGivenOfPeople, s.image_l1, s.psnr_db, s.silhouette_iou, s.label_iou, s.lpips);
+        "validation of %d pictures (%s given): L1 %.4f, PSNR %.2f dB, silhouette IoU %.3f, labels IoU %.3f, LPIPS%s "
+        "%.4f\n",
+        s.frames, kGivenOfPeople, s.image_l1, s.psnr_db, s.silhouette_iou, s.label_iou,
+        s.lpips_random_features ? " (random features)" : "", s.lpips);
   }
   PrintEnd(summary, summary.checkpoint, request.out);
 }
@@ -86,7 +87,9 @@ void AddTrainGuided(CLI::App& train, Action* action) {
   verb->add_option("--label-loss", parsed->label_loss, "Of the garment labels: cross entropy or absolute differences")
       ->check(CLI::IsMember({"ce", "l1"}))
       ->capture_default_str();
-  verb->add_option("--weights", request.weights, "Folder with trained weights: vgg16 (.safetensors, .pth)");
+  verb->add_option("--weights", request.weights,
+                   "Folder with trained weights (.safetensors, .pth): vgg16 for the losses, alexnet and lpips_alex for "
+                   "validation's LPIPS");
   AddTrainingOptions(verb, &options, "Of weights and order of pictures");
   verb->footer(
       "Example:\n"

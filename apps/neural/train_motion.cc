@@ -98,7 +98,8 @@ void AddTrainMotion(CLI::App& train, Action* action) {
   verb->add_option("--patience", options.patience, "Stop after so many validations without a better one (0: never)")
       ->capture_default_str();
   verb->add_option("--weights", request.weights,
-                   "Folder with trained networks: vgg16 (.pth or .safetensors) for the perceptual loss");
+                   "Folder with trained networks (.pth or .safetensors): vgg16 for the perceptual loss, alexnet and "
+                   "lpips_alex for validation's LPIPS");
   AddTrainingOptions(verb, &options, "Of weights and order of frames");
   verb->footer(
       "Example:\n"

@@ -119,7 +119,7 @@ class GuidedTrainer : public TrainedSystem {
   void Validate(int done, bool last) override {
     model_->eval();
     const PhotoSource& people = options_.validation;
-    GuidedScorer scorer(last);
+    GuidedScorer scorer(last, options_.score_weights);
     std::vector<GuidedPreview> previews;
     const int count = std::min(static_cast<int>(people.num_frames.size()), options_.validation_people);
     for (int person = 0; person < count; ++person) {

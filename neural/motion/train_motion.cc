@@ -42,7 +42,8 @@ const std::vector<std::string> kColumns = {"learning_rate",
                                            "validation_label_iou",
                                            "validation_foreground_iou",
                                            "validation_normal_deg",
-                                           "validation_flicker"};
+                                           "validation_flicker",
+                                           "validation_ssim"};
 /// metrics.csv holds the scores of so many frames of each range, so that its lines compare; the summary those of all.
 constexpr int kQuickFrames = 48;
 
@@ -117,7 +118,10 @@ class MotionTrainer : public TrainedSystem {
 
   void Validate(int done, bool last) override {
     std::vector<MotionPreview> previews;
-    MotionScorer quick(config_), all(config_);
+    // LPIPS and tLPIPS take their time: at the end alone.
+    const auto lpips =
+        last ? std::make_shared<const Lpips>(LpipsFrom(options_.alexnet, options_.lpips_heads)) : nullptr;
+    MotionScorer quick(config_, {nullptr, options_.ssim}), all(config_, {lpips, options_.ssim});
     RollOut roll(Shown(), options_.warmup_iterations, {options_.reach, /*anywhere=*/true});
     for (const FrameRange& range : options_.validation) {
       roll.Restart();
@@ -164,8 +168,8 @@ class MotionTrainer : public TrainedSystem {
   }
 
   [[nodiscard]] std::vector<double> ScoreRow() const override {
-    return {scores_.image_l1,       scores_.psnr_db,    scores_.label_iou,
-            scores_.foreground_iou, scores_.normal_deg, scores_.flicker};
+    return {scores_.image_l1,   scores_.psnr_db, scores_.label_iou, scores_.foreground_iou,
+            scores_.normal_deg, scores_.flicker, scores_.ssim};
   }
 
   bool Report(int done, double seconds) override {

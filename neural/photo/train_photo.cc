@@ -51,15 +51,6 @@ struct Losses {
   [[nodiscard]] bool IsFinite() const { return std::isfinite(total + discriminator); }
 };
 
-Lpips MakeLpips(const TrainPhotoOptions& options) {
-  Lpips lpips;
-  if (!options.alexnet.empty() && !options.lpips_heads.empty()) {
-    lpips.Load(options.alexnet.weights, options.alexnet.source, options.lpips_heads.weights,
-               options.lpips_heads.source);
-  }
-  return lpips;
-}
-
 const PhotoSource& ValidationSource(const PhotoSource& source, const TrainPhotoOptions& options) {
   return options.validation_source != nullptr ? *options.validation_source : source;
 }
@@ -71,7 +62,7 @@ class PhotoTrainer : public TrainedSystem {
         validation_source_(ValidationSource(source, options)),
         options_(options),
         config_(options.config),
-        lpips_(MakeLpips(options)) {
+        lpips_(LpipsFrom(options.alexnet, options.lpips_heads)) {
     torch::manual_seed(options.seed);
     if (config_.GuessesUnseen()) guess_.emplace(source.texture_size, source.texel_parts, source.texel_places);
     model_ = PhotoModel(config_);

@@ -4,8 +4,10 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "bodyloom/data_tools/formats/json_reader.h"
+#include "bodyloom/geometry/base/check.h"
 #include "bodyloom/pipelines/runs/run_config.h"
 
 namespace bodyloom {
@@ -13,6 +15,15 @@ namespace bodyloom {
 namespace {
 
 constexpr const char* kProgram = "bodyloom train motion";
+constexpr size_t kMostShapeComponents = 1000;
+
+Eigen::VectorXd ReadShape(const JsonNode& betas) {
+  if (!betas.is_array() || betas.size() > kMostShapeComponents) {
+    betas.Fail(Concatenate("a list of at most ", kMostShapeComponents, " numbers"));
+  }
+  const std::vector<double> numbers = betas.Numbers(static_cast<int>(betas.size()));
+  return Eigen::Map<const Eigen::VectorXd>(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
+}
 
 }  // namespace
 
@@ -42,6 +53,7 @@ std::string MotionRunJson(const MotionRun& run) {
                                  {"fps", run.fps},
                                  {"past", run.past},
                                  {"reach", run.reach}};
+  if (run.betas) json["betas"] = std::vector<double>(run.betas->begin(), run.betas->end());
   if (!run.notes.empty()) json["run"] = nlohmann::ordered_json::parse(run.notes);
   return json.dump(2) + "\n";
 }
@@ -79,6 +91,8 @@ MotionRun ReadMotionRun(const std::string& run_dir) {
   c.around_body = root.Has("around_body") && root.At("around_body").Flag();
   run.pixels_per_metre = root.At("pixels_per_metre").Number();
   run.fps = root.At("fps").Number();
+  // Runs from before motion was carried over without its person's shape do not hold their own.
+  if (root.Has("betas")) run.betas = ReadShape(root.At("betas"));
   std::string why;
   if (!run.config.IsValid(&why)) throw std::runtime_error(path + ": " + why);
   if (run.reach < (c.around_body ? 1 : 0) || run.reach > run.config.profile.image_size || run.past < 0 ||

@@ -70,6 +70,14 @@ TEST_F(TrainGuidedVerb, TrainsGoesOnAndAnimates) {
   const nlohmann::json report = nlohmann::json::parse(std::ifstream(scratch_ / "a.json"));
   EXPECT_EQ(report["photos"], 2);
   EXPECT_EQ(report["scores"]["frames"], 3);
+  // Named by what measures, on the screen and in the file.
+  EXPECT_THAT(trained.out, HasSubstr("LPIPS (random features) "));
+  EXPECT_THAT(animated.out, HasSubstr("LPIPS (random features) "));
+  EXPECT_THAT(animated.out, HasSubstr("CS (random features, a quarter of the channels) "));
+  for (const char* score :
+       {"lpips_random_features", "lpips_deviation_random_features", "contextual_quarter_random_features"}) {
+    EXPECT_TRUE(report["scores"].contains(score)) << score;
+  }
   EXPECT_GT(report["computed_share"].get<double>(), 0.1);
 
   const CommandResult scored = Animate({"--score", scratch_ / "people", "--score-photos", "1", "2", "--score-frames",
@@ -146,6 +154,11 @@ TEST_F(TrainGuidedVerb, SaysWhatIsWrong) {
   fails({"--image", person, "--track", track, "--out", out, "--garment-from", person}, 2, "belong together");
   fails({"--image", person, "--track", track, "--out", out, "--garment-from", person, "--parts", "hat"}, 2,
         "--parts hat");
+  fs::create_directories(scratch_ / "empty");
+  const std::string empty = scratch_ / "empty";
+  fails({"--score", scratch_ / "people", "--weights", empty}, 1, "empty: none of vgg16");
+  fails({"--image", person, "--data", person, "--out", out, "--weights", empty}, 1, "empty: none of vgg16");
+  fails({"--image", person, "--track", track, "--out", out, "--weights", empty}, 2, "--weights");
 
   // A run whose checkpoint was cut off, one of another profile, and no run at all.
   const std::string config = scratch_ / "run/config.json", checkpoint = scratch_ / "run/checkpoint.bin";

@@ -15,6 +15,7 @@
 #include "bodyloom/neural/training/training_run.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/neural/guided/guided_preview.h"
+#include "bodyloom/pipelines/neural/guided/guided_score_weights.h"
 #include "bodyloom/pipelines/neural/guided/guided_scores_json.h"
 #include "bodyloom/pipelines/neural/guided/virtual_views.h"
 #include "bodyloom/pipelines/neural/photo/photo_backdrop.h"
@@ -34,6 +35,7 @@ void CheckRequest(const AnimateGuidedRequest& request) {
   if (!request.data.empty() && !(request.view_yaw.empty() && request.garment.from.empty())) {
     throw RequestError("--data compares with its own pictures: not with --view-yaw or --garment-from");
   }
+  if (request.data.empty() && !request.weights.empty()) throw RequestError("--weights measure the pictures of --data");
   RequireReadable(request.photo.image, "image");
   RequireReadable(request.track, "track");
   RequireReadable(request.data, "data");
@@ -121,7 +123,7 @@ class GuidedAnimation {
     SayLines(notes_, callbacks_);
     if (!request_.data.empty()) {
       truth_ = std::make_unique<SinglePersonDataset>(request_.data);
-      scorer_ = std::make_unique<GuidedScorer>(true);
+      scorer_ = std::make_unique<GuidedScorer>(true, ReadGuidedScoreWeights(request_.weights));
     }
     VideoWriter video(request_.out, picture_.width, picture_.height, FramesPerSecond(track_, kDefaultFps));
     const std::vector<int> on_sheet = EvenlySpreadFrames(num_frames, kSheetFrames);

@@ -18,6 +18,7 @@ struct AnimateGuidedRequest : PhotoAnimationRequest {
   std::string data;  ///< a dataset of the same person: its motion is shown, its pictures are compared with
   std::optional<MapCompletion> completion;  ///< of what the photos do not show; absent: as the run says
   bool anywhere = false;  ///< the person may be farther from the body than clothes ever were in training
+  std::string weights;    ///< with `data`: folder with alexnet, lpips_alex and vgg19 (weights_folder.h); empty: none
   std::string uv_maps;    ///< a picture of the coherent maps to write; empty: not written
 };
 

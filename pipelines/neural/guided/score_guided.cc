@@ -15,6 +15,7 @@
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/neural/animation.h"
 #include "bodyloom/pipelines/neural/guided/guided_people.h"
+#include "bodyloom/pipelines/neural/guided/guided_score_weights.h"
 #include "bodyloom/pipelines/neural/guided/guided_scores_json.h"
 #include "bodyloom/pipelines/people/planar_picture.h"
 #include "bodyloom/pipelines/report_json.h"
@@ -89,8 +90,9 @@ ScoreGuidedSummary ScoreGuided(const ScoreGuidedRequest& request, const Pipeline
   std::vector<std::unique_ptr<GuidedScorer>> scorers;
   ScoreGuidedSummary summary;
   std::vector<ScoredPhotos>& scored = summary.scored;
+  const GuidedScoreWeights weights = ReadGuidedScoreWeights(request.weights);
   for (const int photos : request.photos) {
-    scorers.push_back(std::make_unique<GuidedScorer>(true));
+    scorers.push_back(std::make_unique<GuidedScorer>(true, weights));
     scored.push_back({photos, {}, 0});
   }
   std::vector<Image> sheet;

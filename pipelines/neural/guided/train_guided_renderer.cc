@@ -12,6 +12,7 @@
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/neural/guided/guided_people.h"
 #include "bodyloom/pipelines/neural/guided/guided_preview.h"
+#include "bodyloom/pipelines/neural/guided/guided_score_weights.h"
 #include "bodyloom/pipelines/neural/training_session.h"
 #include "bodyloom/pipelines/neural/weights_folder.h"
 #include "bodyloom/pipelines/runs/guided_run.h"
@@ -48,6 +49,7 @@ TrainGuidedRendererSummary TrainGuidedRenderer(const TrainGuidedRendererRequest&
   RequireReadable(request.data, "data");
   OpenTrainingRun(request.out, &options);
   options.vgg16 = ReadWeightsFolder(request.weights).vgg16;
+  options.score_weights = ReadGuidedScoreWeights(request.weights);
 
   PeopleDataRequest people;
   people.data = request.data;
