@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/neural/guided/source_maps.h"
 
+#include <optional>
+
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/neural/guided/clothes_extent.h"
 #include "bodyloom/neural/guided/guess_maps.h"
@@ -18,7 +20,8 @@ PhotoFrame ShownAlone(const PhotoFrame& photo, std::span<const uint8_t> lent, bo
   return shown;
 }
 
-/// Puts a photo's texels into the maps that it sees at a larger cosine than those before it. Returns how many were empty.
+/// Puts a photo's texels into the maps that it sees at a larger cosine than those before it. Returns how many were
+/// empty.
 int TakeBetterSeen(const CoherentMaps& of_photo, std::span<const float> cosine, std::vector<float>* seen_at,
                    CoherentMaps* maps) {
   const size_t texels = maps->from.size();
@@ -57,8 +60,9 @@ SourceMaps MapsOfSource(std::span<const PhotoFrame> photos, const SourceBody& bo
                  "pose-guided renderer: ", lent.size(), " texels lent among ", photos.size(), " photos");
   std::vector<float> seen_at(source.maps.from.size());  // cosines
   for (size_t i = 0; i < photos.size(); ++i) {
-    const PhotoFrame shown =
-        lent.empty() ? photos[i] : ShownAlone(photos[i], lent, /*where_lent=*/i + 1 == photos.size());
+    std::optional<PhotoFrame> part;
+    if (!lent.empty()) part = ShownAlone(photos[i], lent, /*where_lent=*/i + 1 == photos.size());
+    const PhotoFrame& shown = part ? *part : photos[i];
     CoherentMaps of_photo = EmptyMaps(source.maps.size, body.texel_parts);
     FillEmptyTexels(shown, OwnPicture(shown), static_cast<uint8_t>(i + 1), {}, &of_photo);
     source.texels_seen += TakeBetterSeen(of_photo, shown.texel_cosine, &seen_at, &source.maps);

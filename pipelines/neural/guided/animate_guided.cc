@@ -123,7 +123,7 @@ class GuidedAnimation {
     SayLines(notes_, callbacks_);
     if (!request_.data.empty()) {
       truth_ = std::make_unique<SinglePersonDataset>(request_.data);
-      scorer_ = std::make_unique<GuidedScorer>(true, ReadGuidedScoreWeights(request_.weights));
+      scorer_ = std::make_unique<GuidedScorer>(true, GuidedScoreWeightsOf(ReadWeightsFolder(request_.weights)));
     }
     VideoWriter video(request_.out, picture_.width, picture_.height, FramesPerSecond(track_, kDefaultFps));
     const std::vector<int> on_sheet = EvenlySpreadFrames(num_frames, kSheetFrames);

@@ -90,7 +90,7 @@ ScoreGuidedSummary ScoreGuided(const ScoreGuidedRequest& request, const Pipeline
   std::vector<std::unique_ptr<GuidedScorer>> scorers;
   ScoreGuidedSummary summary;
   std::vector<ScoredPhotos>& scored = summary.scored;
-  const GuidedScoreWeights weights = ReadGuidedScoreWeights(request.weights);
+  const GuidedScoreWeights weights = GuidedScoreWeightsOf(ReadWeightsFolder(request.weights));
   for (const int photos : request.photos) {
     scorers.push_back(std::make_unique<GuidedScorer>(true, weights));
     scored.push_back({photos, {}, 0});

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <utility>
 #include <vector>
 
 #include "bodyloom/data_tools/video/image_file.h"
@@ -48,8 +49,9 @@ TrainGuidedRendererSummary TrainGuidedRenderer(const TrainGuidedRendererRequest&
   TrainGuidedOptions options = request.options;
   RequireReadable(request.data, "data");
   OpenTrainingRun(request.out, &options);
-  options.vgg16 = ReadWeightsFolder(request.weights).vgg16;
-  options.score_weights = ReadGuidedScoreWeights(request.weights);
+  WeightsFolder weights = ReadWeightsFolder(request.weights);
+  options.vgg16 = std::move(weights.vgg16);
+  options.score_weights = GuidedScoreWeightsOf(std::move(weights));
 
   PeopleDataRequest people;
   people.data = request.data;

@@ -35,10 +35,10 @@ struct AnimatedClipRequest {
 class AnimatedClip {
  public:
   /// At the size that the person of `run` was trained at, and at the run's frame rate, which its networks' past has: a
-  /// track at another is resampled (data_tools/motion/resample_track.h), a clip to be scored refused. The body has that person's shape, whosever motion it is,
-  /// unless the clip is scored (the person's pictures come with their own track), the request says otherwise or the run
-  /// does not hold it. Throws std::runtime_error naming the file that cannot be used or has nothing to animate,
-  /// RequestError for `view_yaw` and `freeze`.
+  /// track at another is resampled (data_tools/motion/resample_track.h), a clip to be scored refused. The body has that
+  /// person's shape, whosever motion it is, unless the clip is scored (the person's pictures come with their own
+  /// track), the request says otherwise or the run does not hold it. Throws std::runtime_error naming the file that
+  /// cannot be used or has nothing to animate, RequestError for `view_yaw` and `freeze`.
   AnimatedClip(const AnimatedClipRequest& request, const MotionRun& run);
 
   /// Frames are those shown: one shown again counts again.

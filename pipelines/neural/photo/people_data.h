@@ -10,7 +10,8 @@
 
 namespace bodyloom {
 
-/// What a renderer is given of a dataset's people when it is scored on them; of a photo of anybody else they are estimates.
+/// What a renderer is given of a dataset's people when it is scored on them; of a photo of anybody else they are
+/// estimates.
 inline constexpr const char* kGivenOfPeople = "true labels and bodies";
 
 struct PeopleDataRequest {

@@ -30,9 +30,9 @@ struct PhotoAnimationRequest : AnimationRequest {
 std::vector<PhotoRequest> PhotosWanted(const PhotoAnimationRequest& request);
 
 /// What the body of `photo` shows in the motion `track`, read from `path`, from the requested side, in windows of
-/// size × size pixels with texture_size × texture_size texels. The track takes the photo's shape, unless the motion's is
-/// requested; the maps refer to it. Throws RequestError for a view_yaw that does not parse, std::runtime_error naming
-/// `path` for a motion of another body and one that shows nobody.
+/// size × size pixels with texture_size × texture_size texels. The track takes the photo's shape, unless the motion's
+/// is requested; the maps refer to it. Throws RequestError for a view_yaw that does not parse, std::runtime_error
+/// naming `path` for a motion of another body and one that shows nobody.
 std::unique_ptr<PhotoMaps> MapsOfMotion(const PhotoAnimationRequest& request, const Photo& photo,
                                         const std::string& path, int size, int texture_size, Track* track);
 

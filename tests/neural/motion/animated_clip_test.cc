@@ -72,13 +72,7 @@ TEST_F(AnimatedClips, AFasterTrackIsShownAtTheRunsRate) {
   run_.betas = driver_.motion.betas;
   const AnimatedClip slow(Request(), run_);
   const Track at_rate = driver_;
-  SynthClipOptions options;
-  options.camera.width = 320;
-  options.camera.height = 240;
-  options.dense_per_frame = 0;
-  options.keypoints = false;
-  options.num_threads = 1;
-  driver_ = MakeSynthClip(BuiltinBody(), DemoMotion(BuiltinBody(), 24, 12), options).truth;
+  driver_ = ShortTrack(12);
   driver_.motion.betas = at_rate.motion.betas;
   const AnimatedClip fast(Request(), run_);
   EXPECT_EQ(slow.notes(), "");
