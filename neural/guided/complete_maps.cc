@@ -79,10 +79,11 @@ void TakeAwayFaces(const PseudoPicture& pseudo, GuidedPicture* picture) {
 }  // namespace
 
 std::vector<uint8_t> TexelsOfTheBack(const PhotoFrame& front, const PhotoFrame& back) {
-  BODYLOOM_CHECK(front.texel_cosine.size() == back.texel_cosine.size(), "virtual views: ", front.texel_cosine.size(), " and ",
-                 back.texel_cosine.size(), " texels");
+  BODYLOOM_CHECK(front.texel_cosine.size() == back.texel_cosine.size(), "virtual views: ", front.texel_cosine.size(),
+                 " and ", back.texel_cosine.size(), " texels");
   std::vector<uint8_t> texels(front.texel_cosine.size());
-  for (size_t i = 0; i < texels.size(); ++i) texels[i] = back.texel_cosine[i] != 0 && front.texel_cosine[i] == 0 ? 1 : 0;
+  for (size_t i = 0; i < texels.size(); ++i)
+    texels[i] = back.texel_cosine[i] != 0 && front.texel_cosine[i] == 0 ? 1 : 0;
   return texels;
 }
 

@@ -3,10 +3,10 @@
 /// are so far.
 ///
 /// The back is drawn from the front: nothing is known of it, but clothes are mostly the same on both sides. Its pseudo
-/// inputs are patches of the front's finished picture, mirrored (body box onto body box), the face replaced by hair (the
-/// front's, else what the maps have; by skin where no hair is seen). Texels that only the back view sees never show a face, whoever fills them;
-/// where a network paints one on the back although it was given hair, the hair stays. Source: Yoon
-/// et al., CVPR 2021, Section 3.2 and Fig. 7.
+/// inputs are patches of the front's finished picture, mirrored (body box onto body box), the face replaced by hair
+/// (the front's, else what the maps have; by skin where no hair is seen). Texels that only the back view sees never
+/// show a face, whoever fills them; where a network paints one on the back although it was given hair, the hair stays.
+/// Source: Yoon et al., CVPR 2021, Section 3.2 and Fig. 7.
 #pragma once
 
 #include <array>

@@ -29,10 +29,11 @@ struct SourceMaps {
   std::vector<GuidedPicture> virtual_pictures;
 };
 
-/// Of several photos the one that sees a texel at the largest cosine fills it, the first of equals. What a photo shows of the back of the head (by the views or the neighbours) stays; where
-/// no photo's labels have hair, it is hair whatever they call it (CallFacesBehindHair). `extent`: whether the clothes' extent is needed; it is measured on the first photo (on the last one where that
-/// lends), and body.neighbours must be there. `draw` may be empty where nothing is drawn. Throws std::invalid_argument for sizes that do not fit, and
-/// for what the completion needs and is absent.
+/// Of several photos the one that sees a texel at the largest cosine fills it, the first of equals. What a photo shows
+/// of the back of the head (by the views or the neighbours) stays; where no photo's labels have hair, it is hair
+/// whatever they call it (CallFacesBehindHair). `extent`: whether the clothes' extent is needed; it is measured on the
+/// first photo (on the last one where that lends), and body.neighbours must be there. `draw` may be empty where nothing
+/// is drawn. Throws std::invalid_argument for sizes that do not fit, and for what the completion needs and is absent.
 SourceMaps MapsOfSource(std::span<const PhotoFrame> photos, const SourceBody& body, MapCompletion completion,
                         bool extent, const DrawPose& draw);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Trains the motion-dependent renderer on one person's clip.
 ///
-///   L = L_a + 10 L_s + L_n + L_p + 0.01 L_g            (Yoon et al., CVPR 2022, eq. 8 and below)
+///   L = L_a + 10 L_s + L_n + L_p + 0.01 L_g            (Yoon et al., CVPR 2022, eq. 9 and below)
 /// L_a, L_n: mean absolute differences of image and normals; L_s: cross entropy of the classes, or the mean absolute
 /// difference of probabilities (the paper does not say which norm; with absolute differences small classes are never
 /// learned, docs/motion_renderer.md); L_p: of VGG-16's features after conv 1-2, 2-2, 3-2 and 4-2; L_g: a patch

@@ -20,11 +20,10 @@ struct PartialTexture {
   std::vector<uint8_t> guessed;  ///< U × U, 0 or 1, never where visible (neural/photo/guess_texture.h); empty: nowhere
 };
 
-/// A texel is visible where texel_cosine is not 0 and the pixel nearest to texel_pixels shows the person (label other than
-/// 0; a frame without labels: a colour other than black). Its colour is the bilinear mean of the up to four pixels
-/// around texel_pixels that show the person, their weights made to sum to 1.
-/// Nothing is guessed. Throws std::invalid_argument for a frame without a picture or with sizes that do not fit each
-/// other.
+/// A texel is visible where texel_cosine is not 0 and the pixel nearest to texel_pixels shows the person (label other
+/// than 0; a frame without labels: a colour other than black). Its colour is the bilinear mean of the up to four pixels
+/// around texel_pixels that show the person, their weights made to sum to 1. Nothing is guessed. Throws
+/// std::invalid_argument for a frame without a picture or with sizes that do not fit each other.
 PartialTexture PartialTextureOf(const PhotoFrame& frame);
 
 /// `texture` where `texel_parts` is none of `parts`, `garment` elsewhere: colours and visibility are copied as they

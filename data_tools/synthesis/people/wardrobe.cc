@@ -116,7 +116,7 @@ Wardrobe::Wardrobe(const Outfit& outfit, double around_m, uint64_t seed) : cut_(
 }
 
 Vector3f Wardrobe::OfFace(const Vector3f& p) const {
-  const Vector3f skin = of_label(PersonLabel::kFace).At(p);
+  Vector3f skin = of_label(PersonLabel::kFace).At(p);
   const auto H = static_cast<float>(cut_.head_height);
   if (p.z() < 0.5 * (cut_.jaw_z + cut_.ear_z)) return skin;
   const float x = std::abs(p.x()) / H, y = (p.y() - float(cut_.head_joint_y)) / H;

@@ -71,7 +71,8 @@ TEST(PhotoMaps, TexelsAppearAtPixelsThatShowThem) {
     ASSERT_NE(map.parts[at], 0);
     if (map.parts[at] != texel_parts[i]) continue;  // a chart's boundary within half a pixel
     ++compared;
-    const double u = (double(i % kTexture) + 0.5) / kTexture, v = 1 - (double(i / kTexture) + 0.5) / kTexture;
+    const size_t row = i / kTexture, column = i % kTexture;
+    const double u = (double(column) + 0.5) / kTexture, v = 1 - (double(row) + 0.5) / kTexture;
     errors.push_back(std::hypot(map.uv[at] - u, map.uv[area + at] - v) * kTexture);
   }
   EXPECT_GT(seen, 300);

@@ -31,8 +31,8 @@ Track TurningAt(const std::vector<double>& times) {
 }
 
 std::vector<double> Regular(int frames, double fps) {
-  std::vector<double> times;
-  for (int t = 0; t < frames; ++t) times.push_back(t / fps);
+  std::vector<double> times(frames);
+  for (int t = 0; t < frames; ++t) times[t] = t / fps;
   return times;
 }
 

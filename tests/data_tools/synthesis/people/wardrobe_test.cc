@@ -78,9 +78,9 @@ TEST(Wardrobe, AFifthIsPlainAndTwoPatternsDiffer) {
   }
   // Five standard deviations of 2000 draws.
   for (const auto& kinds : {tops, bottoms}) {
-    for (const int count : kinds) EXPECT_NEAR(count, kPeople / 5, 90);
+    for (const int count : kinds) EXPECT_NEAR(count, kPeople / 5.0, 90);
   }
-  EXPECT_NEAR(both_plain, kPeople / 25, 45);
+  EXPECT_NEAR(both_plain, kPeople / 25.0, 45);
 }
 
 }  // namespace
