@@ -10,6 +10,7 @@
 #include "apps/neural/neural_verbs.h"
 #include "apps/neural/training_options.h"
 #include "apps/neural/training_report.h"
+#include "apps/surface_motion_options.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/pipelines/neural/motion/train_motion_renderer.h"
 #include "bodyloom/pipelines/people/motion_scores_text.h"
@@ -63,6 +64,7 @@ void AddTrainMotion(CLI::App& train, Action* action) {
   verb->add_option("--body", request.data.body, "The track's body (default: the built-in body)");
   verb->add_option("--part-labels", request.data.part_labels,
                    "For a video: DensePose's parts (.npz), for silhouette and classes");
+  AddSurfaceMotionOptions(verb, &request.data.motion, &request.cameras, &request.view);
   AddProfileOption(verb, &parsed->profile);
   verb->add_option("--without", parsed->without,
                    "Leave out a part, as the paper's ablations do; surface, texture: the decoders see neither UV "

@@ -79,6 +79,25 @@ TEST_F(TrainMotionVerb, MotionIsShownAtTheRunsRate) {
   EXPECT_THAT(scored.err, HasSubstr("pictures at 30 frames a second, expected 15 as in training"));
 }
 
+TEST_F(TrainMotionVerb, AxesAndVelocitiesAreChosenAsThoseOfDescribe) {
+  const CommandResult trained = Train("run", {"--steps", "1", "--train", "0-9", "--validate", "10-10", "--frame",
+                                              "body", "--velocity", "central", "--longest-step", "0.1"});
+  ASSERT_EQ(trained.exit_code, 0) << trained.err;
+  EXPECT_THAT(trained.out, HasSubstr("velocities central in the body frame"));
+  const nlohmann::json config = nlohmann::json::parse(FileBytes(scratch_ / "run/config.json"));
+  EXPECT_EQ(config["surface_motion"]["frame"], "body");
+  EXPECT_EQ(config["surface_motion"]["velocity"], "central");
+  EXPECT_EQ(config["surface_motion"]["longest_step_s"], 0.1);
+  const CommandResult animated =
+      RunCommand({"animate", "motion", "--run", scratch_ / "run", "--data", scratch_ / "person", "--out",
+                  scratch_ / "a.mp4", "--warmup", "0", "--like", scratch_ / "person"});
+  EXPECT_EQ(animated.exit_code, 0) << animated.err;
+  EXPECT_THAT(animated.out, HasSubstr("frames of similarity 1.000 and more"));
+  EXPECT_EQ(Train("x", {"--velocity", "forward"}).exit_code, 2);
+  EXPECT_THAT(Train("x", {"--cameras", scratch_ / "person/track.npz"}).err, HasSubstr("--frame world"));
+  EXPECT_THAT(Train("x", {"--window", "0"}).err, HasSubstr("window_s is 0"));
+}
+
 TEST_F(TrainMotionVerb, WholeWindowsAreWhatOlderRunsLookAt) {
   const CommandResult trained =
       Train("run", {"--steps", "1", "--train", "0-9", "--validate", "10-10", "--whole-window"});

@@ -62,13 +62,14 @@ void CheckRequest(const AnimateMotionRequest& request) {
 }
 
 /// Of each frame to the nearest of `like`; empty without it.
-std::vector<float> SimilarityTo(const AnimateMotionRequest& request, const Track& track, int past, double fps) {
+std::vector<float> SimilarityTo(const AnimateMotionRequest& request, const Track& track, const MotionRun& run) {
   if (request.like.empty()) return {};
   Track others =
       std::filesystem::is_directory(request.like) ? SinglePersonDataset(request.like).track() : ReadTrack(request.like);
   try {
-    if (!IsAtRate(others, fps)) others = ResampleTrack(others, fps);
-    return SimilarityToNearest(*BodyOrBuiltin(request.body), track, others, past, ThreadsFor(request.threads));
+    if (!IsAtRate(others, run.fps)) others = ResampleTrack(others, run.fps);
+    return SimilarityToNearest(*BodyOrBuiltin(request.body), track, others, run.past, ThreadsFor(request.threads),
+                               run.motion);
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(request.like + ": " + error.what());
   }
@@ -161,7 +162,7 @@ class MotionAnimation {
     Background background(request_.background, picture_.width, picture_.height);
     const double own_fps = FrameRateWithoutGaps(track.motion), fps = own_fps > 0 ? own_fps : run_.fps;
     if (scored_) {
-      scorer_ = std::make_unique<ClipScorer>(SimilarityTo(request_, track, run_.past, run_.fps),
+      scorer_ = std::make_unique<ClipScorer>(SimilarityTo(request_, track, run_),
                                              request_.background.empty() ? "" : request_.data, picture_);
     }
     VideoWriter video(request_.out, picture_.width, picture_.height, fps);

@@ -41,6 +41,7 @@ AnimatedClip::AnimatedClip(const AnimatedClipRequest& request, const MotionRun& 
     MotionDataRequest data;
     data.data = request.data, data.body = request.body;
     data.pixels_per_metre = run.pixels_per_metre;
+    data.motion = run.motion;
     data.num_threads = request.threads;
     data_ = std::make_unique<MotionData>(data, run.config.profile, run.config.Multiple());
     RequireRate(data_->track(), run.fps, request.data, "its track.npz as --track is shown at that rate");
@@ -56,6 +57,7 @@ AnimatedClip::AnimatedClip(const AnimatedClipRequest& request, const MotionRun& 
   PersonFramesOptions options;
   options.uv_size = run.config.profile.uv_size;
   options.past = run.past;
+  options.motion = run.motion;
   options.window.scale = ScaleToSize(run.pixels_per_metre, size);
   options.window.multiple = run.config.Multiple();
   options.num_threads = request.threads;

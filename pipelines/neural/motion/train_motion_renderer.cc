@@ -9,6 +9,7 @@
 #include "bodyloom/data_tools/motion/motion_tools.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/pipelines/describe/axes_pose.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/neural/animation.h"
 #include "bodyloom/pipelines/neural/motion/clip_rate.h"
@@ -85,6 +86,7 @@ MotionRun RunOf(const TrainMotionRendererRequest& request, const TrainMotionOpti
   run.pixels_per_metre = data.PixelsPerMetre();
   run.reach = options.reach;
   run.past = data.frames().options().past;
+  run.motion = data.frames().options().motion;
   run.notes = Notes(request, options);
   const double fps = FrameRateWithoutGaps(data.track().motion);
   if (fps > 0) run.fps = fps;
@@ -93,10 +95,10 @@ MotionRun RunOf(const TrainMotionRendererRequest& request, const TrainMotionOpti
 }
 
 void SayWhatIsTrained(const MotionRun& run, const PersonWindow& window, const PipelineCallbacks& callbacks) {
-  callbacks.Say(
-      Concatenate("window ", window.width, "x", window.height, " px, ", run.pixels_per_metre, " px a metre; profile ",
-                  run.config.profile.name,
-                  run.config.around_body ? Concatenate("; ", run.reach, " px around the body") : "; the whole window"));
+  callbacks.Say(Concatenate(
+      "window ", window.width, "x", window.height, " px, ", run.pixels_per_metre, " px a metre; profile ",
+      run.config.profile.name, "; velocities ", VelocityName(run.motion), " in the ", ToString(run.motion.frame),
+      " frame", run.config.around_body ? Concatenate("; ", run.reach, " px around the body") : "; the whole window"));
 }
 
 }  // namespace
@@ -115,6 +117,8 @@ TrainMotionRendererSummary TrainMotionRenderer(const TrainMotionRendererRequest&
 
   MotionDataRequest data_request = request.data;
   data_request.num_threads = options.num_threads;
+  SetAxesPose(request.cameras, request.view, &data_request.motion);
+  if (std::string why; !data_request.motion.IsValid(&why)) throw RequestError(why);
   MotionData data(data_request, config.profile, config.Multiple());
   SayLines(data.notes(), callbacks);
   LeaveOutUnknown(data, &config, callbacks);

@@ -67,6 +67,19 @@ TEST_F(AnimatedClips, AShapeOfAnotherBodyIsRefused) {
   EXPECT_THROW(AnimatedClip(Request(), run_), std::runtime_error);
 }
 
+TEST_F(AnimatedClips, MotionIsDescribedAsInTraining) {
+  const AnimatedClip camera(Request(), run_);
+  run_.motion.frame = SurfaceFrame::kBody;
+  SetVelocity("central", &run_.motion);
+  const AnimatedClip body(Request(), run_);
+  EXPECT_EQ(body.frames().options().motion.frame, SurfaceFrame::kBody);
+  const size_t values = size_t(body.frames().channels()) * 64 * 64;
+  std::vector<float> in_camera(values), in_body(values);
+  camera.frames().MotionMaps(5, in_camera);
+  body.frames().MotionMaps(5, in_body);
+  EXPECT_NE(in_camera, in_body);
+}
+
 /// Ten past maps span the time that they spanned in training.
 TEST_F(AnimatedClips, AFasterTrackIsShownAtTheRunsRate) {
   run_.betas = driver_.motion.betas;
