@@ -14,7 +14,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kDescribeFooter =
     "OUT.npy holds frames x channels x height x width: the normal (3) and the velocities of this and the past frames "
     "(3\n"
     "each, m/s), as maps over the body's UV atlas. numpy.load(OUT, mmap_mode='r') opens it; OUT.json beside it names "
@@ -49,7 +49,7 @@ DescribeClipRequest RequestOf(const DescribeArguments& arguments) {
 void AddDescribeVerb(CLI::App& app, Action* action) {
   CLI::App* verb =
       app.add_subcommand("describe", "Exports a track's surface motion as UV maps: normals and velocities");
-  verb->footer(std::string(kFooter) + kExitCodeHelp);
+  verb->footer(std::string(kDescribeFooter) + kExitCodeHelp);
   auto arguments = std::make_shared<DescribeArguments>();
   DescribeArguments& a = *arguments;
   DescribeClipRequest& c = a.request;

@@ -16,7 +16,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kDetectFooter =
     "Everybody in the video is found and followed by BlazePose (33 landmarks), on the processor. The networks come "
     "with\n"
     "./dev models, from --models, or from the folder that $BODYLOOM_MODELS names.\n"
@@ -55,7 +55,7 @@ void AddDenseOptions(CLI::App* verb, Parsed* parsed) {
 
 void AddDetectVerb(CLI::App& app, Action* action, std::vector<std::string> arguments, MakeChartDetector dense) {
   CLI::App* verb = app.add_subcommand("detect", "Finds the people in a video and their 2D landmarks");
-  verb->footer(std::string(kFooter) + kExitCodeHelp);
+  verb->footer(std::string(kDetectFooter) + kExitCodeHelp);
   auto parsed = std::make_shared<Parsed>();
   DetectClipRequest* request = &parsed->request;
   DetectPeopleRequest& detect = request->detect;

@@ -12,7 +12,7 @@
 namespace bodyloom {
 namespace {
 
-struct Options {
+struct AnimateGuidedArguments {
   AnimateGuidedRequest request;
   std::string background = "photo", score;
   std::vector<int> score_photos = {1};
@@ -20,7 +20,7 @@ struct Options {
   bool as_seen = false, virtual_views = false;
 };
 
-ScoreGuidedSummary Score(const Options& options) {
+ScoreGuidedSummary Score(const AnimateGuidedArguments& options) {
   const AnimateGuidedRequest& a = options.request;
   ScoreGuidedRequest request;
   request.run = a.run, request.data = options.score, request.body = a.photo.body;
@@ -31,7 +31,7 @@ ScoreGuidedSummary Score(const Options& options) {
   return RunWithBar("scores", ScoreGuided, request);
 }
 
-void Run(Options options) {
+void Run(AnimateGuidedArguments options) {
   AnimateGuidedRequest& request = options.request;
   if (options.score.empty() && (request.photo.image.empty() || request.out.empty())) {
     throw RequestError("--image and --out are needed (or --score, to measure on a multi-person dataset)");
@@ -55,7 +55,7 @@ void Run(Options options) {
 void AddAnimateGuided(CLI::App& animate, Action* action) {
   CLI::App* verb =
       animate.add_subcommand("animate", "Animates the person of a photo, as `bodyloom train animate` learned to");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<AnimateGuidedArguments>();
   AnimateGuidedRequest& request = options->request;
   verb->add_option("--run", request.run, "Folder of the trained run")->required();
   verb->add_option("--image", request.photo.image,

@@ -12,12 +12,12 @@
 namespace bodyloom {
 namespace {
 
-struct Options {
+struct AnimatePhotoArguments {
   AnimatePhotoRequest request;
   std::string background = "photo";
 };
 
-void Run(const Options& options) {
+void Run(const AnimatePhotoArguments& options) {
   AnimatePhotoRequest request = options.request;
   request.background = ParsePhotoBackground(options.background);
   const AnimatePhotoSummary summary = RunWithBar("animate", AnimatePhoto, request);
@@ -31,7 +31,7 @@ void Run(const Options& options) {
 
 void AddAnimatePhoto(CLI::App& animate, Action* action) {
   CLI::App* verb = animate.add_subcommand("photo", "Renders a person from one photo, in any motion");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<AnimatePhotoArguments>();
   AnimatePhotoRequest& request = options->request;
   verb->add_option("--run", request.run, "Folder of a run of `bodyloom train photo`")->required();
   verb->add_option("--image", request.photo.image,

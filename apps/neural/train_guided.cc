@@ -15,14 +15,14 @@
 namespace bodyloom {
 namespace {
 
-struct Parsed {
+struct TrainGuidedArguments {
   TrainGuidedRendererRequest request;
   std::string profile = "cpu", label_loss = "ce";
   std::vector<std::string> without;
   int image_size = 0;
 };
 
-GuidedConfig ConfigOf(const Parsed& parsed) {
+GuidedConfig ConfigOf(const TrainGuidedArguments& parsed) {
   GuidedConfig config;
   config.profile = GuidedProfileNamed(parsed.profile);
   if (parsed.image_size > 0) {
@@ -34,7 +34,7 @@ GuidedConfig ConfigOf(const Parsed& parsed) {
   return config;
 }
 
-void Run(const Parsed& parsed) {
+void RunTrainGuided(const TrainGuidedArguments& parsed) {
   TrainGuidedRendererRequest request = parsed.request;
   request.options.config = ConfigOf(parsed);
   request.options.labels_by_cross_entropy = parsed.label_loss == "ce";
@@ -61,9 +61,9 @@ void Run(const Parsed& parsed) {
 
 void AddTrainGuided(CLI::App& train, Action* action) {
   CLI::App* verb = train.add_subcommand("animate", "Trains a renderer that animates anybody from one photo");
-  auto parsed = std::make_shared<Parsed>();
+  auto parsed = std::make_shared<TrainGuidedArguments>();
   TrainGuidedRendererRequest& request = parsed->request;
-  TrainGuidedOptions& options = request.options;
+  TrainGuidedArguments& options = request.options;
   verb->add_option("--data", request.data, "A multi-person dataset (bodyloom synth-people)")->required();
   verb->add_option("--out", request.out, "Folder of the run: config.json, checkpoint.bin, metrics.csv, previews")
       ->required();
@@ -97,7 +97,7 @@ void AddTrainGuided(CLI::App& train, Action* action) {
       "  bodyloom train animate --data people --out run\n"
       "  bodyloom animate animate --run run --image photo.jpg --image-track photo.npz --track dance.npz --out "
       "dance.mp4");
-  verb->callback([parsed, action] { *action = [parsed] { Run(*parsed); }; });
+  verb->callback([parsed, action] { *action = [parsed] { RunTrainGuided(*parsed); }; });
 }
 
 }  // namespace bodyloom

@@ -18,13 +18,13 @@
 namespace bodyloom {
 namespace {
 
-struct Parsed {
+struct TrainMotionArguments {
   TrainMotionRendererRequest request;
   std::string shape_loss = "ce", profile = "cpu";
   std::vector<std::string> without, train, validate;
 };
 
-void Run(const Parsed& parsed) {
+void RunTrainMotion(const TrainMotionArguments& parsed) {
   TrainMotionRendererRequest request = parsed.request;
   MotionConfig& config = request.options.config;
   config.profile = MotionProfileNamed(parsed.profile);
@@ -52,9 +52,9 @@ void Run(const Parsed& parsed) {
 
 void AddTrainMotion(CLI::App& train, Action* action) {
   CLI::App* verb = train.add_subcommand("motion", "Trains a renderer of one person's motion-dependent appearance");
-  auto parsed = std::make_shared<Parsed>();
+  auto parsed = std::make_shared<TrainMotionArguments>();
   TrainMotionRendererRequest& request = parsed->request;
-  TrainMotionOptions& options = request.options;
+  TrainMotionArguments& options = request.options;
   verb->add_option("--data", request.data.data,
                    "A single-person dataset (bodyloom synth-person), or a video or folder of images")
       ->required();
@@ -108,7 +108,7 @@ void AddTrainMotion(CLI::App& train, Action* action) {
       "  bodyloom synth-person --motion dance.pkl --out dancer --frames 600\n"
       "  bodyloom train motion --data dancer --out run --steps 4000\n"
       "  bodyloom animate motion --run run --track other.npz --out other.mp4");
-  verb->callback([parsed, action] { *action = [parsed] { Run(*parsed); }; });
+  verb->callback([parsed, action] { *action = [parsed] { RunTrainMotion(*parsed); }; });
 }
 
 }  // namespace bodyloom

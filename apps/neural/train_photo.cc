@@ -14,14 +14,14 @@
 namespace bodyloom {
 namespace {
 
-struct Parsed {
+struct TrainPhotoArguments {
   TrainPhotoRendererRequest request;
   std::string profile = "cpu", variant = "full";
 };
 
-void Run(const Parsed& parsed) {
+void RunTrainPhoto(const TrainPhotoArguments& parsed) {
   TrainPhotoRendererRequest request = parsed.request;
-  TrainPhotoOptions& options = request.options;
+  TrainPhotoArguments& options = request.options;
   options.config.profile = PhotoProfileNamed(parsed.profile);
   options.config.variant = PhotoVariantNamed(parsed.variant);
   const TrainPhotoRendererSummary summary =
@@ -45,9 +45,9 @@ void Run(const Parsed& parsed) {
 
 void AddTrainPhoto(CLI::App& train, Action* action) {
   CLI::App* verb = train.add_subcommand("photo", "Trains a renderer that needs one photo of a person");
-  auto parsed = std::make_shared<Parsed>();
+  auto parsed = std::make_shared<TrainPhotoArguments>();
   TrainPhotoRendererRequest& request = parsed->request;
-  TrainPhotoOptions& options = request.options;
+  TrainPhotoArguments& options = request.options;
   verb->add_option("--data", request.data, "A multi-person dataset (bodyloom synth-people), or a single-person dataset")
       ->required();
   verb->add_option("--out", request.out, "Folder of the run: config.json, checkpoint.bin, metrics.csv, previews")
@@ -81,7 +81,7 @@ void AddTrainPhoto(CLI::App& train, Action* action) {
       "  bodyloom synth-people --out people\n"
       "  bodyloom train photo --data people --out run --steps 4000\n"
       "  bodyloom animate photo --run run --image me.jpg --image-track me.npz --track dance.npz --out me.mp4");
-  verb->callback([parsed, action] { *action = [parsed] { Run(*parsed); }; });
+  verb->callback([parsed, action] { *action = [parsed] { RunTrainPhoto(*parsed); }; });
 }
 
 }  // namespace bodyloom

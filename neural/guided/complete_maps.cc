@@ -12,12 +12,12 @@ namespace {
 
 constexpr int kEnoughPixels = 8;  ///< of hair, to know its colour
 
-struct Box {
+struct PixelBox {
   int left = 0, top = 0, right = -1, bottom = -1;  ///< last pixels included
 };
 
-Box BodyBox(const PhotoFrame& frame) {
-  Box box{frame.size, frame.size, -1, -1};
+PixelBox BodyBox(const PhotoFrame& frame) {
+  PixelBox box{frame.size, frame.size, -1, -1};
   for (int y = 0; y < frame.size; ++y) {
     for (int x = 0; x < frame.size; ++x) {
       if (frame.parts[size_t(y) * frame.size + x] == 0) continue;
@@ -89,7 +89,7 @@ std::vector<uint8_t> TexelsOfTheBack(const PhotoFrame& front, const PhotoFrame& 
 
 PseudoPicture MirroredFront(const PhotoFrame& front, const GuidedPicture& picture, const PhotoFrame& back,
                             const CoherentMaps& maps) {
-  const Box from = BodyBox(back), to = BodyBox(front);
+  const PixelBox from = BodyBox(back), to = BodyBox(front);
   const size_t pixels = size_t(back.size) * back.size;
   PseudoPicture pseudo{
       back.size, std::vector<float>(3 * pixels), std::vector<uint8_t>(pixels), std::vector<uint8_t>(pixels), {}, {}};

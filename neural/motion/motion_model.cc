@@ -14,10 +14,10 @@ namespace {
 using torch::Tensor;
 
 constexpr int kUvChannels = 3;  // u, v, 1
-constexpr double kTiny = 1e-6;
+constexpr double kTinyLength = 1e-6;
 
 /// Unit vectors; nearly zero ones stay short instead of being blown up.
-Tensor Unit(const Tensor& x) { return x / (x.square().sum(1, true) + kTiny).sqrt(); }
+Tensor Unit(const Tensor& x) { return x / (x.square().sum(1, true) + kTinyLength).sqrt(); }
 
 }  // namespace
 

@@ -29,25 +29,25 @@ namespace {
 
 using torch::Tensor;
 
-const std::vector<std::string> kColumns = {"learning_rate",
-                                           "loss",
-                                           "image",
-                                           "shape",
-                                           "normals",
-                                           "perceptual",
-                                           "generator",
-                                           "discriminator",
-                                           "validation_l1",
-                                           "validation_psnr_db",
-                                           "validation_label_iou",
-                                           "validation_foreground_iou",
-                                           "validation_normal_deg",
-                                           "validation_flicker",
-                                           "validation_ssim"};
+const std::vector<std::string> kMotionColumns = {"learning_rate",
+                                                 "loss",
+                                                 "image",
+                                                 "shape",
+                                                 "normals",
+                                                 "perceptual",
+                                                 "generator",
+                                                 "discriminator",
+                                                 "validation_l1",
+                                                 "validation_psnr_db",
+                                                 "validation_label_iou",
+                                                 "validation_foreground_iou",
+                                                 "validation_normal_deg",
+                                                 "validation_flicker",
+                                                 "validation_ssim"};
 /// metrics.csv holds the scores of so many frames of each range, so that its lines compare; the summary those of all.
 constexpr int kQuickFrames = 48;
 
-struct Losses {
+struct MotionLosses {
   double total = 0, image = 0, shape = 0, normals = 0, perceptual = 0, generator = 0, discriminator = 0;
   [[nodiscard]] bool IsFinite() const { return std::isfinite(total + discriminator); }
 };
@@ -91,7 +91,8 @@ class MotionTrainer : public TrainedSystem {
 
   TrainMotionSummary Run() {
     TrainMotionSummary summary;
-    static_cast<TrainingOutcome&>(summary) = RunTraining(options_, options_.steps, kColumns, checkpoint_.get(), this);
+    static_cast<TrainingOutcome&>(summary) =
+        RunTraining(options_, options_.steps, kMotionColumns, checkpoint_.get(), this);
     summary.losses_off = losses_off_;
     summary.perceptual_random_features = vgg_->has_random_features;
     summary.scores = all_scores_.frames > 0 ? all_scores_ : scores_;
@@ -181,13 +182,13 @@ class MotionTrainer : public TrainedSystem {
   /// What is validated and kept for inference.
   [[nodiscard]] MotionModel& Shown() { return average_ ? average_ : model_; }
 
-  Losses Learn(const MotionBatch& batch, int step) {
+  MotionLosses Learn(const MotionBatch& batch, int step) {
     SetRate(optimizer_.get(), LinearDecayOverLastHalf(options_.learning_rate, step, options_.steps));
     SetRate(discriminator_optimizer_.get(), LinearDecayOverLastHalf(options_.discriminator_rate, step, options_.steps));
     const MotionTruth& truth = batch.truth;
     const MotionStepResult result = model_(batch.input, memory_->Before(batch));
     const MotionState& state = result.state;
-    Losses losses;
+    MotionLosses losses;
     // Where the person is, is the classes' affair: colour is judged where the person truly is. Judged as it is shown,
     // it would turn dark where the person might be and mostly is not.
     const Tensor image = has_labels_ && config_.shape ? truth.foreground * result.colour : state.image;
@@ -254,7 +255,7 @@ class MotionTrainer : public TrainedSystem {
   MotionScores scores_, all_scores_;  ///< of the last validation's first frames of each range, and of all of them
   Tensor best_ = torch::tensor({1e9, 0.0}, torch::kDouble);  ///< least L1 of a validation, and how many came since
   std::unique_ptr<MotionBatches> batches_;
-  Losses losses_;  ///< of the last step
+  MotionLosses losses_;  ///< of the last step
 };
 
 }  // namespace

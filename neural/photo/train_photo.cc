@@ -32,21 +32,21 @@ namespace {
 using torch::Tensor;
 using torch::optim::Adam;
 
-const std::vector<std::string> kColumns = {"learning_rate",
-                                           "loss",
-                                           "perceptual",
-                                           "face",
-                                           "texture",
-                                           "generator",
-                                           "alpha",
-                                           "discriminator",
-                                           "validation_l1",
-                                           "validation_psnr_db",
-                                           "validation_ssim",
-                                           "validation_lpips",
-                                           "validation_outline_iou"};
+const std::vector<std::string> kPhotoColumns = {"learning_rate",
+                                                "loss",
+                                                "perceptual",
+                                                "face",
+                                                "texture",
+                                                "generator",
+                                                "alpha",
+                                                "discriminator",
+                                                "validation_l1",
+                                                "validation_psnr_db",
+                                                "validation_ssim",
+                                                "validation_lpips",
+                                                "validation_outline_iou"};
 
-struct Losses {
+struct PhotoLosses {
   double total = 0, perceptual = 0, face = 0, texture = 0, generator = 0, alpha = 0, discriminator = 0;
   [[nodiscard]] bool IsFinite() const { return std::isfinite(total + discriminator); }
 };
@@ -97,7 +97,7 @@ class PhotoTrainer : public TrainedSystem {
   TrainPhotoSummary Run() {
     TrainPhotoSummary summary;
     static_cast<TrainingOutcome&>(summary) =
-        RunTraining(options_, options_.TotalSteps(), kColumns, checkpoint_.get(), this);
+        RunTraining(options_, options_.TotalSteps(), kPhotoColumns, checkpoint_.get(), this);
     summary.losses_off = losses_off_;
     summary.perceptual_random_features = vgg_->has_random_features;
     summary.scores = scores_;
@@ -152,7 +152,7 @@ class PhotoTrainer : public TrainedSystem {
   }
 
   [[nodiscard]] std::vector<double> Row(int done) const override {
-    const Losses& l = losses_;
+    const PhotoLosses& l = losses_;
     const auto judged = [&](double loss) {
       return IsJudged(done - 1) ? loss : std::numeric_limits<double>::quiet_NaN();
     };
@@ -187,8 +187,8 @@ class PhotoTrainer : public TrainedSystem {
                          : LinearDecayOverLastHalf(options_.learning_rate, step - before, options_.steps);
   }
 
-  Losses InpaintStep(const PhotoBatch& batch) {
-    Losses losses;
+  PhotoLosses InpaintStep(const PhotoBatch& batch) {
+    PhotoLosses losses;
     const Tensor loss = TextureLoss(model_->Complete(batch.source), batch.source, batch.target);
     loss.backward();
     losses.total = losses.texture = loss.item<double>();
@@ -203,8 +203,8 @@ class PhotoTrainer : public TrainedSystem {
     return model_->Complete(batch.source);
   }
 
-  Losses RenderStep(const PhotoBatch& batch, bool judged) {
-    Losses losses;
+  PhotoLosses RenderStep(const PhotoBatch& batch, bool judged) {
+    PhotoLosses losses;
     const Tensor features = Features(batch);
     const Tensor projected = model_->Project(features, batch.pose);
     const PhotoResult result = model_->Render(projected, batch.pose.body);
@@ -266,7 +266,7 @@ class PhotoTrainer : public TrainedSystem {
   std::unique_ptr<Adam> feature_optimizer_, render_optimizer_, discriminator_optimizer_;
   std::unique_ptr<Checkpoint> checkpoint_;
   PhotoScores scores_;
-  Losses losses_;                                    ///< of the last step
+  PhotoLosses losses_;                               ///< of the last step
   std::unique_ptr<Prefetcher<PhotoBatch>> batches_;  ///< last: its thread uses the rest
 };
 

@@ -13,9 +13,9 @@
 namespace bodyloom {
 namespace {
 
-constexpr size_t kFramesAhead = 2;
+constexpr size_t kPicturesAhead = 2;
 /// Landmarks below it are where the detector would put them if they were seen, which may be far from the person.
-constexpr float kVisible = 0.5F;
+constexpr float kVisibleLandmark = 0.5F;
 
 /// A detection without its picture: its box, and the keypoints that were sampled from it.
 struct FoundCharts {
@@ -30,7 +30,7 @@ struct FoundClip {
   int width = 0, height = 0;
 };
 
-struct TimedFrame {
+struct TimedPicture {
   Image picture;
   double time_s = 0;
 };
@@ -44,15 +44,15 @@ FoundClip FindCharts(const DetectDenseRequest& request, const ChartDetector& det
   clip.height = source.info().height;
   const int num_frames = source.num_frames();
   // Decoding is endless as far as the prefetcher knows: an empty picture is the end.
-  Prefetcher<TimedFrame> frames(
+  Prefetcher<TimedPicture> frames(
       std::numeric_limits<int64_t>::max(),
       [&](int64_t) {
-        TimedFrame frame;
+        TimedPicture frame;
         if (!source.Read(&frame.picture, &frame.time_s)) frame.picture = Image();
         return frame;
       },
-      kFramesAhead);
-  for (TimedFrame frame = frames.Take(); !frame.picture.empty(); frame = frames.Take()) {
+      kPicturesAhead);
+  for (TimedPicture frame = frames.Take(); !frame.picture.empty(); frame = frames.Take()) {
     std::vector<FoundCharts>& found = clip.frames.emplace_back();
     for (ChartDetection& detection : detector(frame.picture)) {
       std::vector<DenseKeypoint> points = IuvToDense(detection.charts, charts, request.sampling);
@@ -90,7 +90,7 @@ PeopleSequence BoxesAsPeople(const FoundClip& clip) {
 
 /// The rectangle of the landmarks that are visible, or of all when none is.
 ChartDetection RectangleOf(const DetectedPerson& person) {
-  const auto is_visible = [](const Keypoint& p) { return p.confidence >= kVisible; };
+  const auto is_visible = [](const Keypoint& p) { return p.confidence >= kVisibleLandmark; };
   const bool some = std::any_of(person.points.begin(), person.points.end(), is_visible);
   constexpr double kMost = std::numeric_limits<double>::max();
   ChartDetection box = {kMost, kMost, -kMost, -kMost, 1, {}};

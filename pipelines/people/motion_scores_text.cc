@@ -8,7 +8,7 @@ namespace bodyloom {
 namespace {
 
 /// "name value, name value, …", without values that are NaN.
-class Line {
+class ScoreLine {
  public:
   void Add(const std::string& name, int digits, double value, const char* unit = "") {
     if (std::isnan(value)) return;
@@ -31,7 +31,7 @@ class Line {
 }  // namespace
 
 std::string ScoresText(const MotionScores& scores) {
-  Line line;
+  ScoreLine line;
   line.Add("L1", 4, scores.image_l1);
   line.Add("PSNR", 2, scores.psnr_db, " dB");
   line.AddLikeness(scores.ssim, scores.lpips, scores.tlpips, scores.lpips_random_features);
@@ -43,7 +43,7 @@ std::string ScoresText(const MotionScores& scores) {
 }
 
 std::string ScoresText(const MotionFrameScores& scores, bool lpips_random_features) {
-  Line line;
+  ScoreLine line;
   line.Add("L1", 4, scores.image_l1);
   line.AddLikeness(scores.ssim, scores.lpips, scores.tlpips, lpips_random_features);
   return line.text();

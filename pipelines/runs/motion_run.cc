@@ -15,7 +15,7 @@ namespace bodyloom {
 
 namespace {
 
-constexpr const char* kProgram = "bodyloom train motion";
+constexpr const char* kMotionProgram = "bodyloom train motion";
 constexpr size_t kMostShapeComponents = 1000;
 
 Eigen::VectorXd ReadShape(const JsonNode& betas) {
@@ -71,7 +71,7 @@ SurfaceMotion ReadMotion(const JsonNode& json) {
 
 std::string MotionRunJson(const MotionRun& run) {
   const MotionConfig& c = run.config;
-  nlohmann::ordered_json json = {{"program", kProgram},
+  nlohmann::ordered_json json = {{"program", kMotionProgram},
                                  {"version", BODYLOOM_VERSION},
                                  {"profile", c.profile.name},
                                  {"image_size", c.profile.image_size},
@@ -103,7 +103,7 @@ std::string MotionRunJson(const MotionRun& run) {
 
 MotionRun ReadMotionRun(const std::string& run_dir) {
   const std::string path = RunConfigPath(run_dir);
-  const nlohmann::json json = ReadRunConfig(run_dir, kProgram);
+  const nlohmann::json json = ReadRunConfig(run_dir, kMotionProgram);
   const JsonNode root(json, path);
   MotionRun run;
   MotionConfig& c = run.config;

@@ -27,8 +27,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr int kSheetFrames = 6, kSheetColumns = 5, kSmallestCell = 160;
-constexpr double kDefaultFps = 30;
+constexpr int kSheetColumns = 5, kSmallestCell = 160;
 
 void CheckRequest(const AnimateGuidedRequest& request) {
   if (request.track.empty() == request.data.empty()) throw RequestError("one of --track and --data is needed");

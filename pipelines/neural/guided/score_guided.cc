@@ -25,7 +25,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr int kSheetColumns = 4, kSmallestCell = 128;
+constexpr int kPairColumns = 4, kSmallestPairCell = 128;
 
 /// A person's photos, and the pictures to compare with.
 struct PersonPhotos {
@@ -123,7 +123,7 @@ ScoreGuidedSummary ScoreGuided(const ScoreGuidedRequest& request, const Pipeline
     }
   }
   for (size_t n = 0; n < scored.size(); ++n) scored[n].scores = scorers[n]->Scores();
-  WriteSheet(request.sheet, sheet, kSheetColumns, std::max(kSmallestCell, run.config.profile.image_size));
+  WriteSheet(request.sheet, sheet, kPairColumns, std::max(kSmallestPairCell, run.config.profile.image_size));
   WriteReport(request.json, Report(scored));
   summary.written = FilesAmong({request.sheet, request.json});
   return summary;

@@ -37,7 +37,6 @@ namespace bodyloom {
 namespace {
 
 constexpr int kLargestSide = 4096;
-constexpr int kSheetFrames = 6;
 constexpr const char *kPrepare = "prepare", *kLight = "light", *kMaps = "maps", *kNetwork = "network",
                      *kCompose = "compose and encode";
 

@@ -24,8 +24,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr int kSheetFrames = 6, kSheetColumns = 3;
-constexpr double kDefaultFps = 30;
+constexpr int kPhotoSheetColumns = 3;
 
 void CheckRequest(const AnimatePhotoRequest& request) {
   RequireReadable(request.photo.image, "image");
@@ -60,7 +59,7 @@ class PhotoAnimation {
     clock_.Begin("render");
     RenderFrames();
     clock_.End();
-    WriteSheet(request_.sheet, sheet_, kSheetColumns, Size());
+    WriteSheet(request_.sheet, sheet_, kPhotoSheetColumns, Size());
     AnimatePhotoSummary summary = Summarise();
     WriteReport(request_.json, Report(summary));
     summary.total_seconds = clock_.total();
