@@ -17,9 +17,8 @@ std::map<std::string, PoseNetworkSize> NetworksByName() {
 
 }  // namespace
 
-void AddDetectorOptions(CLI::App& app, PoseNetworkSize* network, double* detect_rate, std::string* models,
-                        const std::string& group) {
-  app.add_option("--detector", *network,
+void AddDetectorOptions(CLI::App& app, FrameDetectorOptions* detector, double* detect_rate, const std::string& group) {
+  app.add_option("--detector", detector->blazepose.network,
                  "size of the pose network: lite, full or heavy (default), each slower and surer")
       ->transform(CLI::CheckedTransformer(NetworksByName(), CLI::ignore_case).description(""))
       ->group(group)
@@ -31,9 +30,20 @@ void AddDetectorOptions(CLI::App& app, PoseNetworkSize* network, double* detect_
       ->check(CLI::PositiveNumber)
       ->group(group)
       ->type_name("HZ");
-  app.add_option("--models", *models, "folder of the networks (default: $BODYLOOM_MODELS, or where they are installed)")
+  app.add_option("--models", detector->models,
+                 "folder of the networks (default: $BODYLOOM_MODELS, or where they are installed)")
       ->group(group)
       ->type_name("DIR");
+  CLI::Option* pose_model =
+      app.add_option("--pose-model", detector->pose_model,
+                     "an ONNX network in place of BlazePose: YOLOv8-pose, YOLO11-pose or RTMPose (no masks)")
+          ->group(group)
+          ->type_name("FILE");
+  app.add_option("--box-model", detector->box_model,
+                 "an ONNX network that finds people for RTMPose: YOLOv8 or YOLO11 (default: BlazePose finds them)")
+      ->group(group)
+      ->type_name("FILE")
+      ->needs(pose_model);
 }
 
 }  // namespace bodyloom
