@@ -94,6 +94,7 @@ void ProtoMessage::AddFloats(const ProtoField& field, std::vector<float>* to) co
   if (field.kind != ProtoKind::kBytes || field.bytes.size() % sizeof(float) != 0) {
     Fail(Concatenate("field ", field.number, ": expected float32 numbers"));
   }
+  if (field.bytes.empty()) return;
   const size_t before = to->size();
   to->resize(before + field.bytes.size() / sizeof(float));
   std::memcpy(to->data() + before, field.bytes.data(), field.bytes.size());

@@ -11,6 +11,7 @@ namespace bodyloom {
 namespace {
 
 constexpr double kLeastScore = 0.25, kSamePersonOverlap = 0.7;
+constexpr size_t kMostPeople = 300;
 
 double Overlap(const PersonBox& a, const PersonBox& b) {
   const auto area = [](const PersonBox& box) { return (box.x1 - box.x0) * (box.y1 - box.y0); };
@@ -78,6 +79,7 @@ std::vector<YoloPerson> DecodeYolo(std::span<const float> output, int classes, i
                    [](const auto& a, const auto& b) { return a.first.score > b.first.score; });
   std::vector<YoloPerson> people;
   for (const auto& [box, anchor] : candidates) {
+    if (people.size() == kMostPeople) break;
     const auto is_same = [&b = box](const YoloPerson& other) { return Overlap(b, other.box) > kSamePersonOverlap; };
     if (std::any_of(people.begin(), people.end(), is_same)) continue;
     YoloPerson& person = people.emplace_back();

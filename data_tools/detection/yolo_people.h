@@ -5,8 +5,8 @@
 /// together: x and y of a box's middle, its width and height in pixels of the letterbox; one score a class, 0 to 1; then,
 /// of a pose network, x, y and visibility (0 to 1) of each landmark. Pose networks know one class, a person; of networks
 /// with more, class 0 is the person (COCO's order), and an anchor counts when no other class is surer.
-/// Boxes that overlap a surer one (intersection over union above 0.7) are left out, as are scores below ¼: the defaults
-/// of the networks' own program.
+/// Boxes that overlap a surer one (intersection over union above 0.7) are left out, as are scores below ¼ and all but the
+/// 300 surest: the defaults of the networks' own program.
 /// Source: Ultralytics, nn/modules/head.py and utils/ops.py (non_max_suppression).
 #pragma once
 

@@ -63,6 +63,14 @@ TEST(DecodeYolo, OverlappingBoxesAreOnePerson) {
   EXPECT_DOUBLE_EQ((people[2].box.x0 + people[2].box.x1) / 2, 2 * (500 - 10));
 }
 
+TEST(DecodeYolo, TheSurestThreeHundred) {
+  Output output(5, 301);
+  for (size_t i = 0; i < 301; ++i) output.Set(i, 0, {float(100 * i), 0, 50, 50, i == 7 ? 0.5F : 0.6F});
+  const std::vector<YoloPerson> people = DecodeYolo(output.numbers(), 1, 0, HalfSize());
+  ASSERT_EQ(people.size(), 300U);
+  EXPECT_GT(people.back().box.score, 0.55);
+}
+
 TEST(DecodeYolo, OfSeveralClassesThePersonIsTheFirst) {
   Output output(4 + 3, 3);
   output.Set(0, 0, {100, 100, 50, 50, 0.6F, 0.1F, 0.5F});
