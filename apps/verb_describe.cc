@@ -7,13 +7,14 @@
 
 #include "apps/command_callbacks.h"
 #include "apps/exit_code.h"
+#include "apps/surface_motion_options.h"
 #include "apps/verbs.h"
 #include "bodyloom/pipelines/describe/describe_clip.h"
 
 namespace bodyloom {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kDescribeFooter =
     "OUT.npy holds frames x channels x height x width: the normal (3) and the velocities of this and the past frames "
     "(3\n"
     "each, m/s), as maps over the body's UV atlas. numpy.load(OUT, mmap_mode='r') opens it; OUT.json beside it names "
@@ -28,7 +29,7 @@ constexpr const char* kFooter =
 
 struct DescribeArguments {
   DescribeClipRequest request;
-  std::string velocity = "savgol", frame = "camera", dtype = "f32", channels = "all", weighting = "area";
+  std::string dtype = "f32", channels = "all", weighting = "area";
   int size = 128;
 };
 
@@ -36,13 +37,6 @@ DescribeClipRequest RequestOf(const DescribeArguments& arguments) {
   DescribeClipRequest request = arguments.request;
   DescribeTrackOptions& options = request.options;
   options.texels.width = options.texels.height = arguments.size;
-  options.analytic = arguments.velocity == "analytic";
-  options.velocity.scheme = arguments.velocity == "backward"  ? VelocityScheme::kBackward
-                            : arguments.velocity == "central" ? VelocityScheme::kCentral
-                                                              : VelocityScheme::kSavitzkyGolay;
-  options.frame = arguments.frame == "world"  ? SurfaceFrame::kWorld
-                  : arguments.frame == "body" ? SurfaceFrame::kBody
-                                              : SurfaceFrame::kCamera;
   options.weighting = arguments.weighting == "angle" ? NormalWeighting::kAngle : NormalWeighting::kArea;
   options.half = arguments.dtype == "f16";
   options.normals = arguments.channels != "velocity";
@@ -55,7 +49,7 @@ DescribeClipRequest RequestOf(const DescribeArguments& arguments) {
 void AddDescribeVerb(CLI::App& app, Action* action) {
   CLI::App* verb =
       app.add_subcommand("describe", "Exports a track's surface motion as UV maps: normals and velocities");
-  verb->footer(std::string(kFooter) + kExitCodeHelp);
+  verb->footer(std::string(kDescribeFooter) + kExitCodeHelp);
   auto arguments = std::make_shared<DescribeArguments>();
   DescribeArguments& a = *arguments;
   DescribeClipRequest& c = a.request;
@@ -68,20 +62,7 @@ void AddDescribeVerb(CLI::App& app, Action* action) {
   verb->add_option("--past", c.options.past, "velocity maps a frame, its own included")
       ->capture_default_str()
       ->check(CLI::Range(0, 1000));
-  verb->add_option("--velocity", a.velocity, "backward, central, savgol or analytic")
-      ->capture_default_str()
-      ->check(CLI::IsMember(std::vector<std::string>{"backward", "central", "savgol", "analytic"}))
-      ->type_name("SCHEME");
-  verb->add_option("--window", c.options.velocity.window_s, "savgol and analytic: time the fit spans, s")
-      ->capture_default_str();
-  verb->add_option("--longest-step", c.options.velocity.longest_step_s,
-                   "a longer step between frames is a gap, s (default: 1.5 times the median)");
-  verb->add_option("--frame", a.frame, "axes of normals and velocities: camera, world or body")
-      ->capture_default_str()
-      ->check(CLI::IsMember(std::vector<std::string>{"camera", "world", "body"}))
-      ->type_name("FRAME");
-  verb->add_option("--cameras", c.cameras, "camera file with the pose for --frame world")->type_name("FILE");
-  verb->add_option("--view", c.view, "the camera's name in it")->type_name("NAME");
+  AddSurfaceMotionOptions(verb, &c.options, &c.cameras, &c.view);
   verb->add_option("--channels", a.channels, "all, normal or velocity")
       ->capture_default_str()
       ->check(CLI::IsMember(std::vector<std::string>{"all", "normal", "velocity"}))

@@ -16,11 +16,11 @@
 namespace bodyloom {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kDetectFooter =
     "Everybody in the video is found and followed by BlazePose (33 landmarks), on the processor. The networks come "
     "with\n"
     "./dev models, from --models, or from the folder that $BODYLOOM_MODELS names.\n"
-    "--pose-model is a network of your own in its place, as an ONNX file (docs/detection.md).\n"
+    "--pose-model is YOLO-pose or RTMPose in its place, as an ONNX file of yours (docs/detection.md).\n"
     "--dense-model is DensePose as TorchScript (docs/detection.md), which needs the neural half of the program.\n"
     "Examples:\n"
     "  bodyloom detect --video clip.mp4 --dense-model densepose_r50_fpn_dl.torchscript --dense-out dense.npz\n"
@@ -57,7 +57,7 @@ void AddDenseOptions(CLI::App* verb, Parsed* parsed) {
 
 void AddDetectVerb(CLI::App& app, Action* action, std::vector<std::string> arguments, MakeChartDetector dense) {
   CLI::App* verb = app.add_subcommand("detect", "Finds the people in a video and their 2D landmarks");
-  verb->footer(std::string(kFooter) + kExitCodeHelp);
+  verb->footer(std::string(kDetectFooter) + kExitCodeHelp);
   auto parsed = std::make_shared<Parsed>();
   DetectClipRequest* request = &parsed->request;
   DetectPeopleRequest& detect = request->detect;
@@ -78,11 +78,11 @@ void AddDetectVerb(CLI::App& app, Action* action, std::vector<std::string> argum
   verb->add_option("--to", detect.span.to_s, "end with this second (default: the end)")->check(CLI::NonNegativeNumber);
   verb->add_option("--fps", detect.span.fps, "frame rate of a folder of images (default 30)")
       ->check(CLI::PositiveNumber);
-  verb->add_option("--search-interval", blazepose.search_interval, "frames between searches for new people")
+  verb->add_option("--search-interval", blazepose.search_interval, "frames between BlazePose's searches for new people")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
   verb->add_option("--tiles", blazepose.tile_levels,
-                   "search squares of down to 1/N of the longer side: finds people from about 0.28/N of it")
+                   "BlazePose searches squares of down to 1/N of the longer side: finds people from about 0.28/N of it")
       ->capture_default_str()
       ->check(CLI::Range(1, 8));
   verb->add_option("--json", request->json, "who was found, and times")->type_name("FILE");

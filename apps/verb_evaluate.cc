@@ -13,7 +13,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kEvaluateFooter =
     "What --truth may be, and the protocol it selects:\n"
     "  a track .npz (bodyloom synth writes truth.npz)   known-truth: vertices, joints, angles, camera\n"
     "  part labels .npz (uint8 labels)                  part-labels: overlap of the rendered body with each part\n"
@@ -33,7 +33,7 @@ constexpr const char* kFooter =
 
 void AddEvaluateVerb(CLI::App& app, Action* action) {
   CLI::App* verb = app.add_subcommand("evaluate", "Compares a track with what is known: errors by name, with units");
-  verb->footer(std::string(kFooter) + kExitCodeHelp);
+  verb->footer(std::string(kEvaluateFooter) + kExitCodeHelp);
   auto request = std::make_shared<EvaluateTrackRequest>();
   EvaluateTrackRequest& c = *request;
   verb->add_option("--track", c.track, "the track, .npz")->required()->type_name("FILE");

@@ -14,7 +14,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kExportFooter =
     "What is written (camera frame, metres, unless stated otherwise):\n"
     "  vertices   .npy, frames x vertices x 3, float32; lost frames are NaN\n"
     "  joints     .npy, frames x joints x 3, float64; lost frames are NaN\n"
@@ -35,7 +35,7 @@ std::vector<std::string> SortedNames() {
 
 void AddExportVerb(CLI::App& app, Action* action) {
   CLI::App* verb = app.add_subcommand("export", "Writes a track in another form: vertices, joints, OBJ, AMASS, BVH");
-  verb->footer(std::string(kFooter) + kExitCodeHelp);
+  verb->footer(std::string(kExportFooter) + kExitCodeHelp);
   auto request = std::make_shared<ExportTrackRequest>();
   auto form = std::make_shared<std::string>();
   ExportTrackRequest& c = *request;

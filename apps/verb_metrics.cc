@@ -13,7 +13,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kMetricsFooter =
     "What is compared:\n"
     "  two folders of pictures     matched by name without extension\n"
     "  two videos                  frame by frame\n"
@@ -34,7 +34,7 @@ constexpr const char* kFooter =
 
 void AddMetricsVerb(CLI::App& app, Action* action, std::vector<std::string> arguments, MoreMetrics more) {
   CLI::App* verb = app.add_subcommand("metrics", "Compares pictures with the truth: PSNR, SSIM, labels, normals");
-  verb->footer(std::string(kFooter) + kExitCodeHelp);
+  verb->footer(std::string(kMetricsFooter) + kExitCodeHelp);
   auto request = std::make_shared<CompareResultsRequest>();
   auto quiet = std::make_shared<bool>(false);
   auto preset = std::make_shared<std::string>(ToText(request->preset));

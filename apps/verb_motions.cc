@@ -12,7 +12,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kMotionsFooter =
     "The table, a line a clip:\n"
     "  limits   share of frames with a joint of the body more than 5 degrees beyond its limits, and the worst excess\n"
     "  ends     the same share for ankles, toes and wrists\n"
@@ -29,7 +29,7 @@ constexpr const char* kFooter =
 
 void AddMotionsVerb(CLI::App& app, Action* action) {
   CLI::App* verb = app.add_subcommand("motions", "Collects motions for training: quality, classes, split, pictures");
-  verb->footer(std::string(kFooter) + kExitCodeHelp);
+  verb->footer(std::string(kMotionsFooter) + kExitCodeHelp);
   auto request = std::make_shared<SurveyMotionsRequest>();
   SurveyMotionsRequest& c = *request;
   verb->add_option("--motions", c.motions, "motion files, or folders of them (BVH, ASF/AMC, AMASS, ...)")

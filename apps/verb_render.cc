@@ -12,7 +12,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kRenderFooter =
     "What is shown:\n"
     "  overlay  the body, shaded, over the video or in a studio with a floor\n"
     "  iuv      chart coordinates: red u, green v, blue the part   parts   DensePose's 24 charts in colours\n"
@@ -52,7 +52,7 @@ void Render(const RenderArguments& arguments) {
 void AddRenderVerb(CLI::App& app, Action* action) {
   CLI::App* verb =
       app.add_subcommand("render", "Shows a track: overlay, parts, IUV, normals, depth, texture; any side");
-  verb->footer(std::string(kFooter) + kExitCodeHelp);
+  verb->footer(std::string(kRenderFooter) + kExitCodeHelp);
   auto arguments = std::make_shared<RenderArguments>();
   RenderTrackRequest& c = arguments->request;
   verb->add_option("--track", c.track, "the track, .npz")->required()->type_name("FILE");

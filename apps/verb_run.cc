@@ -13,7 +13,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kRunFooter =
     "Writes detections.npz, person_0.npz, person_1.npz ... (0 is the largest and longest in view), overlay.mp4 and\n"
     "summary.json into the folder. Everybody is tracked in one camera frame, with one focal length and one ground.\n"
     "Examples:\n"
@@ -29,7 +29,7 @@ constexpr const char* kFooter =
 
 void AddRunVerb(CLI::App& app, Action* action) {
   CLI::App* verb = app.add_subcommand("run", "A raw video to everybody in it: detected, linked, tracked, drawn");
-  verb->footer(std::string(kFooter) + kExitCodeHelp);
+  verb->footer(std::string(kRunFooter) + kExitCodeHelp);
   auto request = std::make_shared<TrackPeopleClipRequest>();
   auto quiet = std::make_shared<bool>(false);
   auto no_overlay = std::make_shared<bool>(false);

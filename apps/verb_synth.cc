@@ -12,7 +12,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kSynthFooter =
     "Examples:\n"
     "  bodyloom synth --motion demo --out clip --realistic --video\n"
     "  bodyloom synth --motion dance.bvh --out clip --fps 30 --dense 300 --uv-noise 0.02 --init-error 14.8\n"
@@ -31,7 +31,7 @@ void Synth(const SynthesizeClipRequest& request, bool quiet) {
 
 void AddSynthVerb(CLI::App& app, Action* action) {
   CLI::App* verb = app.add_subcommand("synth", "Makes a clip with known truth: motion in, observations out");
-  verb->footer(std::string(kFooter) + kExitCodeHelp);
+  verb->footer(std::string(kSynthFooter) + kExitCodeHelp);
   auto request = std::make_shared<SynthesizeClipRequest>();
   auto quiet = std::make_shared<bool>(false);
   AddSynthOptions(*verb, request.get(), quiet.get());

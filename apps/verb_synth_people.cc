@@ -12,7 +12,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kSynthPeopleFooter =
     "Writes a multi-person dataset: a folder of single-person datasets, one a person, action and view, and\n"
     "people.json, which says who is kept for testing. Everything of a person comes from the seed: body, clothes\n"
     "(suit, skirt or coat), colours and light. Each action is a stretch of a motion chosen at random; the camera\n"
@@ -30,7 +30,7 @@ void SynthPeople(const SynthesizePeopleRequest& request, bool quiet) {
 
 void AddSynthPeopleVerb(CLI::App& app, Action* action) {
   CLI::App* verb = app.add_subcommand("synth-people", "Makes pictures of many dressed people with known truth");
-  verb->footer(std::string(kFooter) + kExitCodeHelp);
+  verb->footer(std::string(kSynthPeopleFooter) + kExitCodeHelp);
   auto request = std::make_shared<SynthesizePeopleRequest>();
   auto quiet = std::make_shared<bool>(false);
   SynthesizePeopleRequest& c = *request;

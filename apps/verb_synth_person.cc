@@ -13,7 +13,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kSynthPersonFooter =
     "Writes a folder: images, labels (background top bottom face hair skin shoes), normals of the clothed surface, IUV "
     "of\n"
     "the body, backgrounds, the true track (track.npz) and person.json. The seed makes the person, the clothes' "
@@ -42,7 +42,7 @@ void SynthPerson(const SynthPersonArguments& arguments) {
 
 void AddSynthPersonVerb(CLI::App& app, Action* action) {
   CLI::App* verb = app.add_subcommand("synth-person", "Makes pictures of a dressed person with known truth");
-  verb->footer(std::string(kFooter) + kExitCodeHelp);
+  verb->footer(std::string(kSynthPersonFooter) + kExitCodeHelp);
   auto arguments = std::make_shared<SynthPersonArguments>();
   SynthesizePersonRequest& c = arguments->request;
   verb->add_option("--motion", c.motions, std::string(kMotionHelp) + "; several follow each other with a gap")

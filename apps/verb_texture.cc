@@ -13,7 +13,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kTextureFooter =
     "Each texel of the body's UV atlas looks for itself in the frames: where the camera sees it, its colour is taken, "
     "and\n"
     "the best nine views are merged. Texels that no frame shows stay black, or are filled with --fill. Frames without "
@@ -40,7 +40,7 @@ ExtractTextureRequest RequestOf(const TextureArguments& arguments) {
 
 void AddTextureVerb(CLI::App& app, Action* action) {
   CLI::App* verb = app.add_subcommand("texture", "Takes the tracked person's texture from the video");
-  verb->footer(std::string(kFooter) + kExitCodeHelp);
+  verb->footer(std::string(kTextureFooter) + kExitCodeHelp);
   auto arguments = std::make_shared<TextureArguments>();
   ExtractTextureRequest& c = arguments->request;
   verb->add_option("--track", c.track, "the track, .npz")->required()->type_name("FILE");

@@ -12,7 +12,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kTrackFooter =
     "Examples:\n"
     "  a video and nothing else (the networks come with ./dev models):\n"
     "    bodyloom track --video clip.mp4 --out track.npz --overlay overlay.mp4 --side-view\n"
@@ -39,7 +39,7 @@ void TrackAndReport(const TrackRequest& request, bool quiet) {
 
 void AddTrackVerb(CLI::App& app, Action* action) {
   CLI::App* verb = app.add_subcommand("track", "Fits a body to a clip: a video or detections in, track out");
-  verb->footer(std::string(kFooter) + kExitCodeHelp);
+  verb->footer(std::string(kTrackFooter) + kExitCodeHelp);
   auto request = std::make_shared<TrackRequest>();
   auto quiet = std::make_shared<bool>(false);
   AddTrackOptions(*verb, request.get(), quiet.get());

@@ -16,6 +16,10 @@ function(bodyloom_module name)
     endforeach()
   endif()
   add_library(bodyloom_${name} STATIC ${sources})
+  # A SIMD file is read once for each instruction set, with its own target pragmas: it is compiled by itself.
+  set(simd_sources ${sources})
+  list(FILTER simd_sources INCLUDE REGEX "_simd\\.cc$")
+  set_source_files_properties(${simd_sources} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   target_include_directories(bodyloom_${name} PUBLIC
     $<BUILD_INTERFACE:${BODYLOOM_INCLUDE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   # Headers that only our source files include are no concern of whoever uses the library.

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "bodyloom/geometry/aligned_floats.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/geometry/skinning_simd.h"
@@ -24,17 +25,6 @@ namespace {
 constexpr int kVerticesPerTask = 64;
 /// Frames whose skeletons are held at a time.
 constexpr int kGroupsPerPass = 8;
-
-struct AlignedDelete {
-  void operator()(float* p) const { ::operator delete[](p, std::align_val_t(64)); }
-};
-using AlignedFloats = std::unique_ptr<float[], AlignedDelete>;
-
-AlignedFloats ZeroFloats(size_t n) {
-  AlignedFloats result(static_cast<float*>(::operator new[](n * sizeof(float), std::align_val_t(64))));
-  std::memset(result.get(), 0, n * sizeof(float));
-  return result;
-}
 
 /// Skeletons of up to kFrameLanes frames, side by side as the inner loop wants them.
 struct FrameGroup {

@@ -8,6 +8,7 @@
 #include <new>
 #include <numeric>
 
+#include "bodyloom/geometry/aligned_floats.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/geometry/rotation.h"
@@ -94,27 +95,20 @@ PoseRates RatesOf(const VelocityStencil& stencil, std::span<const BodyPose* cons
 
 namespace {
 
-struct AlignedDelete {
-  void operator()(float* p) const { ::operator delete[](p, std::align_val_t(64)); }
-};
-
 /// kFrameLanes frames of n values each, as the skinning loop wants them.
 class LaneArray {
  public:
-  explicit LaneArray(int n)
-      : values_(static_cast<float*>(::operator new[](size_t(n) * kFrameLanes * sizeof(float), std::align_val_t(64)))) {
-    std::memset(values_.get(), 0, size_t(n) * kFrameLanes * sizeof(float));
-  }
+  explicit LaneArray(int n) : values_(ZeroFloats(size_t(n) * kFrameLanes)) {}
   void Set(int entry, size_t frame, double value) {
     values_[size_t(entry) * kFrameLanes + frame] = static_cast<float>(value);
   }
   [[nodiscard]] const float* data() const { return values_.get(); }
 
  private:
-  std::unique_ptr<float[], AlignedDelete> values_;
+  AlignedFloats values_;
 };
 
-constexpr int kVerticesPerTask = 512;
+constexpr int kVerticesPerVelocityTask = 512;
 
 }  // namespace
 
@@ -199,8 +193,8 @@ void VelocitySkinner::Velocities(const ShapedBody& shape, std::span<const BodyPo
     corrective_frames.features = feature_rates.data();
     corrective_frames.bones = bones.data();
     corrective_frames.float_output = corrective_part.data();
-    ParallelFor((V + kVerticesPerTask - 1) / kVerticesPerTask, num_threads, [&](int task) {
-      const int begin = task * kVerticesPerTask, end = std::min(V, begin + kVerticesPerTask);
+    ParallelFor((V + kVerticesPerVelocityTask - 1) / kVerticesPerVelocityTask, num_threads, [&](int task) {
+      const int begin = task * kVerticesPerVelocityTask, end = std::min(V, begin + kVerticesPerVelocityTask);
       SkinVertices(moving, frames, begin, end);
       if (corrects) SkinVertices(correcting, corrective_frames, begin, end);
       for (size_t f = 0; f < count; ++f) {

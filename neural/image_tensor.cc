@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/neural/image_tensor.h"
 
-#include <cstring>
+#include <algorithm>
+#include <cstdlib>
 
 #include "bodyloom/geometry/base/check.h"
 
@@ -25,6 +26,18 @@ Image ToImage(const torch::Tensor& rgb) {
   image.height = static_cast<int>(planes.size(1));
   image.bgr.assign(bytes.data_ptr<uint8_t>(), bytes.data_ptr<uint8_t>() + bytes.numel());
   return image;
+}
+
+torch::Tensor Shifted(const torch::Tensor& image, int x, int y) {
+  if (x == 0 && y == 0) return image;
+  const int64_t h = image.size(2), w = image.size(3), dx = std::abs(x), dy = std::abs(y);
+  torch::Tensor result = torch::zeros_like(image);
+  if (dx >= w || dy >= h) return result;
+  const int64_t from_x = std::max(0, -x), from_y = std::max(0, -y), to_x = std::max(0, x), to_y = std::max(0, y);
+  result.slice(2, to_y, to_y + h - dy)
+      .slice(3, to_x, to_x + w - dx)
+      .copy_(image.slice(2, from_y, from_y + h - dy).slice(3, from_x, from_x + w - dx));
+  return result;
 }
 
 }  // namespace bodyloom

@@ -9,6 +9,11 @@
 
 namespace bodyloom {
 
+bool IsFinite(const FrameState& state) {
+  return state.translation.allFinite() && std::all_of(state.rotations.begin(), state.rotations.end(),
+                                                      [](const Eigen::Matrix3d& R) { return R.allFinite(); });
+}
+
 using Eigen::Vector3d;
 
 FrameLayout FrameLayout::Make(const BodyModel& model, CameraKnowledge knowledge, const Camera& camera,

@@ -16,6 +16,8 @@ struct FrameState {
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();
 };
 
+bool IsFinite(const FrameState& state);
+
 /// Which unknowns a frame has and in which column of its Jacobian they stand; shared by all frames of a clip.
 struct FrameLayout {
   const BodyModel* model = nullptr;

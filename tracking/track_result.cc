@@ -20,11 +20,6 @@ namespace {
 constexpr int kFewLandmarks = 6;
 constexpr int kFewDense = 20;
 
-bool IsFinite(const FrameState& state) {
-  return state.translation.allFinite() && std::all_of(state.rotations.begin(), state.rotations.end(),
-                                                      [](const Eigen::Matrix3d& R) { return R.allFinite(); });
-}
-
 }  // namespace
 
 FrameStatus StatusOf(const FrameData& frame) {

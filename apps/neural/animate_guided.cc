@@ -12,7 +12,7 @@
 namespace bodyloom {
 namespace {
 
-struct Options {
+struct AnimateGuidedArguments {
   AnimateGuidedRequest request;
   std::string background = "photo", score;
   std::vector<int> score_photos = {1};
@@ -20,21 +20,25 @@ struct Options {
   bool as_seen = false, virtual_views = false;
 };
 
-ScoreGuidedSummary Score(const Options& options) {
+ScoreGuidedSummary Score(const AnimateGuidedArguments& options) {
   const AnimateGuidedRequest& a = options.request;
   ScoreGuidedRequest request;
   request.run = a.run, request.data = options.score, request.body = a.photo.body;
   request.photos = options.score_photos, request.frames = options.score_frames;
   request.completion = a.completion, request.anywhere = a.anywhere;
-  request.sheet = a.sheet, request.json = a.json;
+  request.sheet = a.sheet, request.json = a.json, request.weights = a.weights;
   request.threads = a.threads, request.device = a.device;
   return RunWithBar("scores", ScoreGuided, request);
 }
 
-void Run(Options options) {
+void Run(AnimateGuidedArguments options) {
   AnimateGuidedRequest& request = options.request;
   if (options.score.empty() && (request.photo.image.empty() || request.out.empty())) {
     throw RequestError("--image and --out are needed (or --score, to measure on a multi-person dataset)");
+  }
+  if (!options.score.empty() &&
+      (request.shape_of_motion || !request.view_yaw.empty() || !request.garment.from.empty())) {
+    throw RequestError("--score measures people as they are: not with --shape, --view-yaw or --garment-from");
   }
   request.background = ParsePhotoBackground(options.background);
   if (options.as_seen) request.completion = MapCompletion::kNone;
@@ -51,7 +55,7 @@ void Run(Options options) {
 void AddAnimateGuided(CLI::App& animate, Action* action) {
   CLI::App* verb =
       animate.add_subcommand("animate", "Animates the person of a photo, as `bodyloom train animate` learned to");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<AnimateGuidedArguments>();
   AnimateGuidedRequest& request = options->request;
   verb->add_option("--run", request.run, "Folder of the trained run")->required();
   verb->add_option("--image", request.photo.image,
@@ -61,7 +65,7 @@ void AddAnimateGuided(CLI::App& animate, Action* action) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   verb->add_option("--image-labels", request.photo.labels, "DensePose's parts of the photo's clip (.npz)");
-  verb->add_option("--views", request.views, "More pictures of the person, IMAGE:TRACK or IMAGE:TRACK:FRAME");
+  AddPhotoOptions(verb, &request);
   verb->add_option("--track", request.track, "The motion: a track, .npz");
   verb->add_option("--data", request.data,
                    "Instead: a dataset of the same person, whose motion is shown and whose pictures are compared");
@@ -87,6 +91,7 @@ void AddAnimateGuided(CLI::App& animate, Action* action) {
   verb->add_option("--score-frames", options->score_frames, "Pictures of each person to compare with")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
+  AddLikenessWeights(verb, &request.weights, "alexnet and lpips_alex for LPIPS, vgg19 for contextual scores");
   AddDeviceOptions(verb, &request);
   verb->footer(
       "Example:\n"

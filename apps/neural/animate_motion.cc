@@ -23,13 +23,8 @@ void PrintScores(const AnimateMotionRequest& request, const ClipScores& scores) 
                 CompositeScore::kRimPixels);
   }
   for (const MotionErrors::Quarter& quarter : scores.by_similarity) {
-    std::printf("  %d frames of similarity %.3f and more: L1 %.4f\n", quarter.frames, quarter.least_similarity,
-                quarter.image_l1);
-  }
-  if (scores.likeness) {
-    std::printf(
-        "LPIPS %.4f, tLPIPS %.5f%s\n", scores.likeness->lpips, scores.likeness->tlpips,
-        scores.likeness->random_features ? " (random-feature substitute: compares with nothing but itself)" : "");
+    std::printf("  %d frames of similarity %.3f and more: %s\n", quarter.frames, quarter.least_similarity,
+                ScoresText(quarter.scores, scores.windows.lpips_random_features).c_str());
   }
 }
 
@@ -69,6 +64,11 @@ void AddAnimateMotion(CLI::App& animate, Action* action) {
   verb->add_option("--speed", request->speed, "Plays the motion so many times as fast: clothes move differently")
       ->check(CLI::Range(0.05, 20.0))
       ->capture_default_str();
+  auto shape = std::make_shared<std::string>("run");
+  verb->add_option("--shape", *shape,
+                   "Whose body moves: run (the person who was trained on, as motion transfer means it), or track")
+      ->check(CLI::IsMember({"run", "track"}))
+      ->capture_default_str();
   verb->add_option(
       "--freeze", request->freeze,
       "FRAME:COUNT: time stands still at that frame for so many more, while --view-yaw FROM:TO turns the view");
@@ -92,11 +92,15 @@ void AddAnimateMotion(CLI::App& animate, Action* action) {
       "--like", request->like,
       "A single-person dataset, or a track: with --data, the error by how much each frame's motion is like one there");
   verb->add_option("--frames", request->frames, "With --data: a line of CSV a frame, error and similarity");
+  AddLikenessWeights(verb, &request->weights, "alexnet and lpips_alex, for LPIPS and tLPIPS");
   verb->add_option("--sheet", request->sheet, "Contact sheet of six frames: picture, labels, normals");
   verb->add_option("--json", request->json, "Report with times");
   AddDeviceOptions(verb, request.get());
   verb->footer("Example:\n  bodyloom animate motion --run run --track dance.npz --out dance.mp4 --view-yaw 0:360");
-  verb->callback([request, action] { *action = [request] { Run(*request); }; });
+  verb->callback([request, shape, action] {
+    request->shape_of_track = *shape == "track";
+    *action = [request] { Run(*request); };
+  });
 }
 
 }  // namespace bodyloom

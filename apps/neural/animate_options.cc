@@ -13,6 +13,28 @@ PhotoBackground ParsePhotoBackground(const std::string& option) {
   return result;
 }
 
+void AddPhotoOptions(CLI::App* verb, PhotoAnimationRequest* request) {
+  verb->add_option("--views", request->views,
+                   "More pictures of the person, IMAGE:TRACK[:FRAME]: what they show is added");
+  verb->add_option("--garment-from", request->garment.from, "Another person, IMAGE:TRACK[:FRAME], who lends --parts");
+  verb->add_option("--parts", request->garment.parts, "top, bottom, shoes, head, arms, or DensePose parts 1 to 24")
+      ->delimiter(',');
+  verb->add_option_function<std::string>(
+          "--shape", [request](const std::string& whose) { request->shape_of_motion = whose == "motion"; },
+          "Whose body shape moves: the photo's or the motion's")
+      ->check(CLI::IsMember({"photo", "motion"}))
+      ->default_str("photo");
+  verb->add_option("--view-yaw", request->view_yaw,
+                   "Turns the view about the person's vertical, degrees; FROM:TO turns it over the clip");
+}
+
+void AddLikenessWeights(CLI::App* verb, std::string* weights, const char* what) {
+  verb->add_option("--weights", *weights,
+                   std::string("Folder with trained weights (.safetensors, .pth): ") + what +
+                       "; without them random features measure, which compare with nothing else")
+      ->type_name("DIR");
+}
+
 void AddDeviceOptions(CLI::App* verb, AnimationRequest* request) {
   verb->add_option("--threads", request->threads, "0: all cores")->check(CLI::NonNegativeNumber);
   verb->add_option("--device", request->device, "Where the networks run")

@@ -4,8 +4,7 @@
 
 #include <string>
 
-#include "bodyloom/pipelines/neural/animation.h"
-#include "bodyloom/pipelines/people/background.h"
+#include "bodyloom/pipelines/neural/photo/photo_animation.h"
 
 namespace CLI {
 class App;
@@ -23,6 +22,12 @@ inline constexpr const char* kPhotoBackgroundHelp =
 
 /// What that option means.
 PhotoBackground ParsePhotoBackground(const std::string& option);
+
+/// --views, --garment-from, --parts, --shape, --view-yaw.
+void AddPhotoOptions(CLI::App* verb, PhotoAnimationRequest* request);
+
+/// --weights of the verbs that print LPIPS or contextual scores; `what`: the files' names and what they are for.
+void AddLikenessWeights(CLI::App* verb, std::string* weights, const char* what);
 
 /// --threads, --device.
 void AddDeviceOptions(CLI::App* verb, AnimationRequest* request);

@@ -12,15 +12,14 @@
 namespace bodyloom {
 namespace {
 
-struct Options {
+struct AnimatePhotoArguments {
   AnimatePhotoRequest request;
-  std::string background = "photo", shape = "photo";
+  std::string background = "photo";
 };
 
-void Run(const Options& options) {
+void Run(const AnimatePhotoArguments& options) {
   AnimatePhotoRequest request = options.request;
   request.background = ParsePhotoBackground(options.background);
-  request.shape_of_motion = options.shape == "motion";
   const AnimatePhotoSummary summary = RunWithBar("animate", AnimatePhoto, request);
   std::printf("%d frames, %.0f %% of the texture seen, network %.0f ms a frame, %.1f frames/s rendered and written\n",
               summary.frames, 100 * summary.texels_seen, summary.network_ms, summary.frames_per_second);
@@ -32,7 +31,7 @@ void Run(const Options& options) {
 
 void AddAnimatePhoto(CLI::App& animate, Action* action) {
   CLI::App* verb = animate.add_subcommand("photo", "Renders a person from one photo, in any motion");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<AnimatePhotoArguments>();
   AnimatePhotoRequest& request = options->request;
   verb->add_option("--run", request.run, "Folder of a run of `bodyloom train photo`")->required();
   verb->add_option("--image", request.photo.image,
@@ -47,17 +46,8 @@ void AddAnimatePhoto(CLI::App& animate, Action* action) {
   verb->add_option("--track", request.track, "The motion: a track, .npz")->required();
   verb->add_option("--out", request.out, "The video, .mp4")->required();
   verb->add_option("--body", request.photo.body, "The tracks' body (default: the built-in body)");
-  verb->add_option("--views", request.views,
-                   "More pictures of the person, IMAGE:TRACK[:FRAME]: what they show is added");
-  verb->add_option("--garment-from", request.garment.from, "Another person, IMAGE:TRACK[:FRAME], who lends --parts");
-  verb->add_option("--parts", request.garment.parts, "top, bottom, shoes, head, arms, or DensePose parts 1 to 24")
-      ->delimiter(',');
-  verb->add_option("--shape", options->shape, "Whose body shape moves: the photo's or the motion's")
-      ->check(CLI::IsMember({"photo", "motion"}))
-      ->capture_default_str();
+  AddPhotoOptions(verb, &request);
   verb->add_option("--background", options->background, kPhotoBackgroundHelp)->capture_default_str();
-  verb->add_option("--view-yaw", request.view_yaw,
-                   "Turns the view about the person's vertical, degrees; FROM:TO turns it over the clip");
   verb->add_flag("--full-size", request.full_size, kFullSizeHelp);
   verb->add_flag("--whole-window", request.whole_window, "Compute the background of the window too");
   verb->add_option("--sheet", request.sheet, "Contact sheet: photo, its texture, the completed one, six frames");

@@ -13,6 +13,7 @@ std::string CommandLine(const AnimateMotionRequest& request) {
   add("--run", request.run), add("--track", request.track), add("--data", request.data), add("--body", request.body);
   add("--background", request.background), add("--relight", request.relight);
   if (request.speed != 1) add("--speed", Concatenate(request.speed));
+  if (request.shape_of_track) add("--shape", "track");
   add("--freeze", request.freeze);
   if (request.warmup != AnimateMotionRequest().warmup) add("--warmup", Concatenate(request.warmup));
   line += request.anywhere ? " --anywhere" : "";

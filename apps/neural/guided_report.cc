@@ -6,17 +6,18 @@
 #include <string>
 
 #include "apps/neural/animate_options.h"
+#include "bodyloom/pipelines/neural/photo/people_data.h"
 
 namespace bodyloom {
 namespace {
 
 std::string ScoresText(const GuidedScores& s) {
-  char line[256];
-  std::snprintf(
-      line, sizeof line,
-      "L1 %.4f, PSNR %.2f dB, silhouette IoU %.3f, labels IoU %.3f, LPIPS %.4f (deviation %.4f), CS %.3f; LPIPS "
-      "and CS by a random-feature substitute",
-      s.image_l1, s.psnr_db, s.silhouette_iou, s.label_iou, s.lpips, s.lpips_deviation, s.contextual);
+  char line[320];
+  std::snprintf(line, sizeof line,
+                "L1 %.4f, PSNR %.2f dB, silhouette IoU %.3f, labels IoU %.3f, LPIPS%s %.4f (deviation %.4f), CS%s %.3f",
+                s.image_l1, s.psnr_db, s.silhouette_iou, s.label_iou,
+                s.lpips_random_features ? " (random features)" : "", s.lpips, s.lpips_deviation,
+                s.contextual_random_features ? " (random features, a quarter of the channels)" : "", s.contextual);
   return line;
 }
 
@@ -38,8 +39,8 @@ void Print(const AnimateGuidedSummary& summary, const AnimateGuidedRequest& requ
 
 void Print(const ScoreGuidedSummary& summary) {
   for (const ScoredPhotos& s : summary.scored) {
-    std::printf("%d photo%s (%.0f %% of the texels): %s\n", s.photos, s.photos == 1 ? "" : "s", 100 * s.texels_seen,
-                ScoresText(s.scores).c_str());
+    std::printf("%d photo%s (%.0f %% of the texels; %s given): %s\n", s.photos, s.photos == 1 ? "" : "s",
+                100 * s.texels_seen, kGivenOfPeople, ScoresText(s.scores).c_str());
   }
 }
 

@@ -10,18 +10,19 @@
 #include "apps/neural/training_options.h"
 #include "apps/neural/training_report.h"
 #include "bodyloom/pipelines/neural/guided/train_guided_renderer.h"
+#include "bodyloom/pipelines/neural/photo/people_data.h"
 
 namespace bodyloom {
 namespace {
 
-struct Parsed {
+struct TrainGuidedArguments {
   TrainGuidedRendererRequest request;
   std::string profile = "cpu", label_loss = "ce";
   std::vector<std::string> without;
   int image_size = 0;
 };
 
-GuidedConfig ConfigOf(const Parsed& parsed) {
+GuidedConfig ConfigOf(const TrainGuidedArguments& parsed) {
   GuidedConfig config;
   config.profile = GuidedProfileNamed(parsed.profile);
   if (parsed.image_size > 0) {
@@ -33,7 +34,7 @@ GuidedConfig ConfigOf(const Parsed& parsed) {
   return config;
 }
 
-void Run(const Parsed& parsed) {
+void RunTrainGuided(const TrainGuidedArguments& parsed) {
   TrainGuidedRendererRequest request = parsed.request;
   request.options.config = ConfigOf(parsed);
   request.options.labels_by_cross_entropy = parsed.label_loss == "ce";
@@ -48,9 +49,10 @@ void Run(const Parsed& parsed) {
   const GuidedScores& s = summary.scores;
   if (s.frames > 0) {
     std::printf(
-        "validation of %d pictures: L1 %.4f, PSNR %.2f dB, silhouette IoU %.3f, labels IoU %.3f, LPIPS (random-feature "
-        "substitute) %.4f\n",
-        s.frames, s.image_l1, s.psnr_db, s.silhouette_iou, s.label_iou, s.lpips);
+        "validation of %d pictures (%s given): L1 %.4f, PSNR %.2f dB, silhouette IoU %.3f, labels IoU %.3f, LPIPS%s "
+        "%.4f\n",
+        s.frames, kGivenOfPeople, s.image_l1, s.psnr_db, s.silhouette_iou, s.label_iou,
+        s.lpips_random_features ? " (random features)" : "", s.lpips);
   }
   PrintEnd(summary, summary.checkpoint, request.out);
 }
@@ -59,9 +61,9 @@ void Run(const Parsed& parsed) {
 
 void AddTrainGuided(CLI::App& train, Action* action) {
   CLI::App* verb = train.add_subcommand("animate", "Trains a renderer that animates anybody from one photo");
-  auto parsed = std::make_shared<Parsed>();
+  auto parsed = std::make_shared<TrainGuidedArguments>();
   TrainGuidedRendererRequest& request = parsed->request;
-  TrainGuidedOptions& options = request.options;
+  TrainGuidedArguments& options = request.options;
   verb->add_option("--data", request.data, "A multi-person dataset (bodyloom synth-people)")->required();
   verb->add_option("--out", request.out, "Folder of the run: config.json, checkpoint.bin, metrics.csv, previews")
       ->required();
@@ -85,7 +87,9 @@ void AddTrainGuided(CLI::App& train, Action* action) {
   verb->add_option("--label-loss", parsed->label_loss, "Of the garment labels: cross entropy or absolute differences")
       ->check(CLI::IsMember({"ce", "l1"}))
       ->capture_default_str();
-  verb->add_option("--weights", request.weights, "Folder with trained weights: vgg16 (.safetensors, .pth)");
+  verb->add_option("--weights", request.weights,
+                   "Folder with trained weights (.safetensors, .pth): vgg16 for the losses, alexnet and lpips_alex for "
+                   "validation's LPIPS");
   AddTrainingOptions(verb, &options, "Of weights and order of pictures");
   verb->footer(
       "Example:\n"
@@ -93,7 +97,7 @@ void AddTrainGuided(CLI::App& train, Action* action) {
       "  bodyloom train animate --data people --out run\n"
       "  bodyloom animate animate --run run --image photo.jpg --image-track photo.npz --track dance.npz --out "
       "dance.mp4");
-  verb->callback([parsed, action] { *action = [parsed] { Run(*parsed); }; });
+  verb->callback([parsed, action] { *action = [parsed] { RunTrainGuided(*parsed); }; });
 }
 
 }  // namespace bodyloom

@@ -13,12 +13,12 @@
 namespace bodyloom {
 namespace {
 
-struct Parsed {
+struct TrainLifterArguments {
   TrainLifterNetworkRequest request;
   std::string optimizer = "muon";
 };
 
-void Run(const Parsed& parsed) {
+void RunTrainLifter(const TrainLifterArguments& parsed) {
   TrainLifterNetworkRequest request = parsed.request;
   request.options.muon = parsed.optimizer == "muon";
   const TrainLifterNetworkSummary summary =
@@ -34,9 +34,9 @@ void Run(const Parsed& parsed) {
 
 void AddTrainLifter(CLI::App& train, Action* action) {
   CLI::App* verb = train.add_subcommand("lifter", "Trains the network that lifts 2D joints to 3D from recorded motion");
-  auto parsed = std::make_shared<Parsed>();
+  auto parsed = std::make_shared<TrainLifterArguments>();
   TrainLifterNetworkRequest& request = parsed->request;
-  TrainLifterOptions& options = request.options;
+  TrainLifterArguments& options = request.options;
   verb->add_option("--motions", request.motions, "Motion files, or folders of them (BVH, ASF/AMC, AMASS, …)")
       ->required();
   verb->add_option("--out", request.out, "Folder of the run: config.json, metrics.csv, checkpoint.bin, lifter.npz")
@@ -58,7 +58,7 @@ void AddTrainLifter(CLI::App& train, Action* action) {
   verb->footer(
       "Example:\n  bodyloom train lifter --motions motion/ aistpp/motions --out run --steps 12000\n"
       "Then: bodyloom track --lifter run/lifter.npz ...");
-  verb->callback([parsed, action] { *action = [parsed] { Run(*parsed); }; });
+  verb->callback([parsed, action] { *action = [parsed] { RunTrainLifter(*parsed); }; });
 }
 
 }  // namespace bodyloom

@@ -10,6 +10,7 @@
 #include "apps/neural/neural_verbs.h"
 #include "apps/neural/training_options.h"
 #include "apps/neural/training_report.h"
+#include "apps/surface_motion_options.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/pipelines/neural/motion/train_motion_renderer.h"
 #include "bodyloom/pipelines/people/motion_scores_text.h"
@@ -17,13 +18,13 @@
 namespace bodyloom {
 namespace {
 
-struct Parsed {
+struct TrainMotionArguments {
   TrainMotionRendererRequest request;
   std::string shape_loss = "ce", profile = "cpu";
   std::vector<std::string> without, train, validate;
 };
 
-void Run(const Parsed& parsed) {
+void RunTrainMotion(const TrainMotionArguments& parsed) {
   TrainMotionRendererRequest request = parsed.request;
   MotionConfig& config = request.options.config;
   config.profile = MotionProfileNamed(parsed.profile);
@@ -51,9 +52,9 @@ void Run(const Parsed& parsed) {
 
 void AddTrainMotion(CLI::App& train, Action* action) {
   CLI::App* verb = train.add_subcommand("motion", "Trains a renderer of one person's motion-dependent appearance");
-  auto parsed = std::make_shared<Parsed>();
+  auto parsed = std::make_shared<TrainMotionArguments>();
   TrainMotionRendererRequest& request = parsed->request;
-  TrainMotionOptions& options = request.options;
+  TrainMotionArguments& options = request.options;
   verb->add_option("--data", request.data.data,
                    "A single-person dataset (bodyloom synth-person), or a video or folder of images")
       ->required();
@@ -63,6 +64,7 @@ void AddTrainMotion(CLI::App& train, Action* action) {
   verb->add_option("--body", request.data.body, "The track's body (default: the built-in body)");
   verb->add_option("--part-labels", request.data.part_labels,
                    "For a video: DensePose's parts (.npz), for silhouette and classes");
+  AddSurfaceMotionOptions(verb, &request.data.motion, &request.cameras, &request.view);
   AddProfileOption(verb, &parsed->profile);
   verb->add_option("--without", parsed->without,
                    "Leave out a part, as the paper's ablations do; surface, texture: the decoders see neither UV "
@@ -98,14 +100,15 @@ void AddTrainMotion(CLI::App& train, Action* action) {
   verb->add_option("--patience", options.patience, "Stop after so many validations without a better one (0: never)")
       ->capture_default_str();
   verb->add_option("--weights", request.weights,
-                   "Folder with trained networks: vgg16 (.pth or .safetensors) for the perceptual loss");
+                   "Folder with trained networks (.pth or .safetensors): vgg16 for the perceptual loss, alexnet and "
+                   "lpips_alex for validation's LPIPS");
   AddTrainingOptions(verb, &options, "Of weights and order of frames");
   verb->footer(
       "Example:\n"
       "  bodyloom synth-person --motion dance.pkl --out dancer --frames 600\n"
       "  bodyloom train motion --data dancer --out run --steps 4000\n"
       "  bodyloom animate motion --run run --track other.npz --out other.mp4");
-  verb->callback([parsed, action] { *action = [parsed] { Run(*parsed); }; });
+  verb->callback([parsed, action] { *action = [parsed] { RunTrainMotion(*parsed); }; });
 }
 
 }  // namespace bodyloom

@@ -8,19 +8,20 @@
 #include "apps/neural/neural_verbs.h"
 #include "apps/neural/training_options.h"
 #include "apps/neural/training_report.h"
+#include "bodyloom/pipelines/neural/photo/people_data.h"
 #include "bodyloom/pipelines/neural/photo/train_photo_renderer.h"
 
 namespace bodyloom {
 namespace {
 
-struct Parsed {
+struct TrainPhotoArguments {
   TrainPhotoRendererRequest request;
   std::string profile = "cpu", variant = "full";
 };
 
-void Run(const Parsed& parsed) {
+void RunTrainPhoto(const TrainPhotoArguments& parsed) {
   TrainPhotoRendererRequest request = parsed.request;
-  TrainPhotoOptions& options = request.options;
+  TrainPhotoArguments& options = request.options;
   options.config.profile = PhotoProfileNamed(parsed.profile);
   options.config.variant = PhotoVariantNamed(parsed.variant);
   const TrainPhotoRendererSummary summary =
@@ -31,9 +32,10 @@ void Run(const Parsed& parsed) {
   PrintStep(summary, options.TotalSteps());
   const PhotoScores& s = summary.scores;
   if (s.pictures > 0) {
-    std::printf("validation of %d pairs: L1 %.4f, PSNR %.2f dB, SSIM %.4f, LPIPS%s %.4f, silhouette IoU %.3f\n",
-                s.pictures, s.image_l1, s.psnr_db, s.ssim,
-                s.lpips_random_features ? " (random-feature substitute)" : "", s.lpips, s.silhouette_iou);
+    std::printf(
+        "validation of %d pairs (%s given): L1 %.4f, PSNR %.2f dB, SSIM %.4f, LPIPS%s %.4f, silhouette IoU %.3f\n",
+        s.pictures, kGivenOfPeople, s.image_l1, s.psnr_db, s.ssim,
+        s.lpips_random_features ? " (random-feature substitute)" : "", s.lpips, s.silhouette_iou);
     std::fflush(stdout);
   }
   PrintEnd(summary, summary.checkpoint, request.out);
@@ -43,9 +45,9 @@ void Run(const Parsed& parsed) {
 
 void AddTrainPhoto(CLI::App& train, Action* action) {
   CLI::App* verb = train.add_subcommand("photo", "Trains a renderer that needs one photo of a person");
-  auto parsed = std::make_shared<Parsed>();
+  auto parsed = std::make_shared<TrainPhotoArguments>();
   TrainPhotoRendererRequest& request = parsed->request;
-  TrainPhotoOptions& options = request.options;
+  TrainPhotoArguments& options = request.options;
   verb->add_option("--data", request.data, "A multi-person dataset (bodyloom synth-people), or a single-person dataset")
       ->required();
   verb->add_option("--out", request.out, "Folder of the run: config.json, checkpoint.bin, metrics.csv, previews")
@@ -79,7 +81,7 @@ void AddTrainPhoto(CLI::App& train, Action* action) {
       "  bodyloom synth-people --out people\n"
       "  bodyloom train photo --data people --out run --steps 4000\n"
       "  bodyloom animate photo --run run --image me.jpg --image-track me.npz --track dance.npz --out me.mp4");
-  verb->callback([parsed, action] { *action = [parsed] { Run(*parsed); }; });
+  verb->callback([parsed, action] { *action = [parsed] { RunTrainPhoto(*parsed); }; });
 }
 
 }  // namespace bodyloom

@@ -50,7 +50,7 @@ BenchRow TrackAndScore(const std::string& noise, const std::string& name, const 
   const TrackSequenceResult result = TrackSequence(input, options);
   const double seconds = watch.seconds();
 
-  EvaluateAgainstTruthOptions evaluate;
+  VertexErrorOptions evaluate;
   evaluate.num_threads = arguments.Integer("threads");
   const Evaluation evaluation = EvaluateAgainstTruth(result.track, clip.truth, body, evaluate);
   DenseBoundOptions smooth;

@@ -67,7 +67,7 @@ std::vector<double> TrackAndScore(const TrackSequenceInput& input, const TrackSe
   const TrackSequenceResult result = TrackSequence(input, options);
   const double seconds = watch.seconds();
   BODYLOOM_CHECK(result.summary.IsUsable(), "not tracked: ", result.summary.message);
-  EvaluateAgainstTruthOptions evaluate;
+  VertexErrorOptions evaluate;
   evaluate.num_threads = options.num_threads;
   const Evaluation e = EvaluateAgainstTruth(result.track, clip.truth, *input.body, evaluate);
   std::fprintf(stderr, "%s\nevaluation %.2f s, linear solver %.2f s", result.summary.BriefReport().c_str(),

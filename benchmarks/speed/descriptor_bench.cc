@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Time and error of everything from posed vertices to descriptor files and textures, on the built-in body:
-//   build/release/benchmarks/bodyloom_bench_descriptors [--section NAME] [--folder DIR]
-// NAME: normals, velocities, bake, seams, stream, texture or all. DIR (default: the system's temporary folder) takes
+//   build/release/benchmarks/bodyloom_bench_descriptors [--section NAME] [--folder DIR] [--track NPZ [--truth NPZ]]
+// NAME: normals, velocities, tracked, bake, seams, stream, texture or all. `tracked` is of --track: its jitter, and the
+// velocities' errors against --truth (bodyloom synth … --fps 120); without --track it is left out. DIR (default: the system's temporary folder) takes
 // the files that are timed, and the textures to look at. Times are the median and the minimum of many repetitions, one
 // thread unless stated.
 #include <filesystem>
@@ -24,6 +25,10 @@ void Run(const BenchArguments& arguments, const std::string&) {
   const std::vector<std::pair<std::string, std::function<void()>>> sections = {
       {"normals", [&] { BenchNormals(body); }},
       {"velocities", [&] { BenchVelocities(body); }},
+      {"tracked",
+       [&] {
+         if (!arguments.Text("track").empty()) BenchTracked(body, arguments.Text("track"), arguments.Text("truth"));
+       }},
       {"bake", [&] { BenchBake(body); }},
       {"seams", [&] { BenchSeams(body); }},
       {"stream", [&] { BenchStream(body, folder); }},
@@ -34,14 +39,16 @@ void Run(const BenchArguments& arguments, const std::string&) {
     known = true;
     bench();
   }
-  BODYLOOM_CHECK(known, "--section is '", only, "', expected normals, velocities, bake, seams, stream, texture or all");
+  BODYLOOM_CHECK(known, "--section is '", only,
+                 "', expected normals, velocities, tracked, bake, seams, stream, texture or all");
 }
 
 }  // namespace
 }  // namespace bodyloom
 
 int main(int argc, char** argv) {
-  return bodyloom::BenchMain("bodyloom_bench_descriptors", argc, argv,
-                             {{"folder", std::filesystem::temp_directory_path().string()}, {"section", "all"}},
-                             bodyloom::Run);
+  return bodyloom::BenchMain(
+      "bodyloom_bench_descriptors", argc, argv,
+      {{"folder", std::filesystem::temp_directory_path().string()}, {"section", "all"}, {"track", ""}, {"truth", ""}},
+      bodyloom::Run);
 }

@@ -10,6 +10,9 @@ namespace bodyloom {
 
 void BenchNormals(const BodyModel& body);
 void BenchVelocities(const BodyModel& body);
+/// Jitter of a track and, with a truth at a finer rate that has frames at the track's times (`truth` empty: none), the
+/// error of every velocity scheme against it, in camera and body axes.
+void BenchTracked(const BodyModel& body, const std::string& track, const std::string& truth);
 void BenchBake(const BodyModel& body);
 /// Error of bilinear lookups in a baked map of normals, next to seams and away from them.
 void BenchSeams(const BodyModel& body);

@@ -55,7 +55,7 @@ TrackSequenceResult TrackOf(const SynthClip& clip, const TrackSequenceOptions& o
 }
 
 double TrackErrorPx(const Track& track, const SynthClip& clip, int threads) {
-  EvaluateAgainstTruthOptions options;
+  VertexErrorOptions options;
   options.num_threads = threads;
   options.vertex_step = 10;
   return EvaluateAgainstTruth(track, clip.truth, BuiltinBody(), options).Value("projection_mean_px");
@@ -227,7 +227,7 @@ void EvaluateSection(WorkBench* bench) {
             {{"every n-th vertex", {}}}};
   double all = 0;
   for (int step : {1, 3, 10, 30, 100, 300}) {
-    EvaluateAgainstTruthOptions options;
+    VertexErrorOptions options;
     options.num_threads = bench->threads;
     options.vertex_step = step;
     double value = 0;
@@ -256,7 +256,7 @@ void WholeSection(WorkBench* bench) {
     track_options.num_threads = bench->threads;
     DescribeTrackOptions describe = MapOptions(*bench, 128);
     describe.past = 10;
-    EvaluateAgainstTruthOptions evaluate;
+    VertexErrorOptions evaluate;
     evaluate.num_threads = bench->threads;
     evaluate.vertex_step = 10;
     Track track;

@@ -15,7 +15,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr const char* kFormat = "bodyloom-body-1";
+constexpr const char* kCompactFormat = "bodyloom-body-1";
 constexpr double kTemplateGrid = 1.0 / (1 << 21), kShapeGrid = 1.0 / (1 << 22), kUvGrid = 1.0 / (1 << 20);
 constexpr int kSkinningBits = 21, kRegressorBits = 28;
 
@@ -72,9 +72,9 @@ void PutRows(const std::string& name, const UnitRows& rows, int bits, NpzArrays*
 }
 
 /// Reads the members of a compact file, naming file and member in every complaint.
-class Reader {
+class CompactBodyReader {
  public:
-  Reader(const NpzArrays& arrays, const std::string& where) : arrays_(arrays), where_(where) {}
+  CompactBodyReader(const NpzArrays& arrays, const std::string& where) : arrays_(arrays), where_(where) {}
 
   [[nodiscard]] bool Has(const std::string& name) const { return arrays_.count(name) > 0; }
   [[nodiscard]] const NdArray& Array(const std::string& name) const { return RequireArray(arrays_, name, where_); }
@@ -144,7 +144,7 @@ void PutSurface(const BodyModelData& body, NpzArrays* out) {
   }
 }
 
-void ReadSurface(const Reader& in, const std::vector<double>& lags, BodyModelData* body) {
+void ReadSurface(const CompactBodyReader& in, const std::vector<double>& lags, BodyModelData* body) {
   const int64_t F = body->faces.rows();
   if (in.Has("vt") && in.Has("ft")) {
     const NdArray& packed = in.Array("vt");
@@ -182,7 +182,7 @@ NpzArrays CompactFromBody(const BodyModelData& body) {
   const auto V = static_cast<int>(body.v_template.rows());
   const auto B = static_cast<int>(body.shapedirs.cols());
   NpzArrays out;
-  out["format"] = NdArray::FromString(kFormat);
+  out["format"] = NdArray::FromString(kCompactFormat);
   out["name"] = NdArray::FromString(body.name);
   if (!body.joint_names.empty()) out["joint_names"] = NdArray::FromStrings(body.joint_names);
   out["parents"] = NdArray::FromInts32(body.parents.data(), {static_cast<int64_t>(body.parents.size())});
@@ -228,10 +228,11 @@ NpzArrays CompactFromBody(const BodyModelData& body) {
 }
 
 BodyModelData BodyFromCompact(const NpzArrays& arrays, const std::string& where, const LoadBodyOptions& options) {
-  const Reader in(arrays, where);
+  const CompactBodyReader in(arrays, where);
   const std::vector<std::string> format = in.Texts("format");
-  if (format.size() != 1 || format[0] != kFormat) {
-    in.Fail("format", Concatenate("'", format.empty() ? "" : PrintableText(format[0]), "', expected '", kFormat, "'"));
+  if (format.size() != 1 || format[0] != kCompactFormat) {
+    in.Fail("format",
+            Concatenate("'", format.empty() ? "" : PrintableText(format[0]), "', expected '", kCompactFormat, "'"));
   }
   BodyModelData body;
   const std::vector<std::string> name = in.Texts("name");

@@ -11,7 +11,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr char kFormat[] = "bodyloom built-in body 1";
+constexpr char kLeftHalfFormat[] = "bodyloom built-in body 1";
 constexpr double kWeightUnit = 1.0 / 65535;  // of `weight`: a row sums to 65535
 constexpr double kChartUnit = 1.0 / 65534;   // of `chart_uv`: even, so that the middle of a chart is exact
 constexpr double kCorrectiveUnit_m = 5e-5;   // of `corrective_block`
@@ -20,13 +20,14 @@ constexpr double kMaxShape_m = 10;
 constexpr int64_t kMaxComponents = 1000;
 constexpr size_t kMaxFileBytes = size_t{1} << 28;
 
-class Reader {
+class LeftHalfReader {
  public:
-  Reader(const std::string& npz_bytes, const std::string& where)
+  LeftHalfReader(const std::string& npz_bytes, const std::string& where)
       : where_(where), arrays_(ReadNpzBytes(npz_bytes, where, kMaxFileBytes)) {
     const std::vector<std::string> format = Text("format");
-    if (format.size() != 1 || format[0] != kFormat) {
-      Fail("format", "'" + PrintableText(format.empty() ? "" : format[0]) + "'", std::string("'") + kFormat + "'");
+    if (format.size() != 1 || format[0] != kLeftHalfFormat) {
+      Fail("format", "'" + PrintableText(format.empty() ? "" : format[0]) + "'",
+           std::string("'") + kLeftHalfFormat + "'");
     }
   }
 
@@ -91,7 +92,7 @@ class Reader {
 };
 
 /// Rows of (index, weight), each summing to 1. `name` is the array of the weights.
-std::vector<WeightedIndices> SparseRowsOf(const Reader& reader, const std::string& name,
+std::vector<WeightedIndices> SparseRowsOf(const LeftHalfReader& reader, const std::string& name,
                                           const std::vector<int64_t>& counts, const std::vector<int64_t>& indices,
                                           const std::vector<double>& weights) {
   std::vector<WeightedIndices> rows(counts.size());
@@ -109,7 +110,7 @@ std::vector<WeightedIndices> SparseRowsOf(const Reader& reader, const std::strin
   return rows;
 }
 
-Eigen::MatrixXd ReadCageShape(const Reader& reader, const LeftHalfSizes& sizes) {
+Eigen::MatrixXd ReadCageShape(const LeftHalfReader& reader, const LeftHalfSizes& sizes) {
   const NdArray& array = reader.Numbers("cage_shape", {-1, sizes.cage_vertices, 3});
   const int64_t components = array.shape[0];
   if (components > kMaxComponents)
@@ -125,7 +126,7 @@ Eigen::MatrixXd ReadCageShape(const Reader& reader, const LeftHalfSizes& sizes) 
   return shape;
 }
 
-void ReadCorrectives(const Reader& reader, const LeftHalfSizes& sizes, LeftHalfArrays* arrays) {
+void ReadCorrectives(const LeftHalfReader& reader, const LeftHalfSizes& sizes, LeftHalfArrays* arrays) {
   int64_t total = 0;
   const auto counts = reader.Counts("corrective_count", sizes.left_vertices, sizes.joints, &total);
   const auto joints = reader.Ints("corrective_joint", {total}, 1, sizes.joints - 1);
@@ -149,7 +150,7 @@ void ReadCorrectives(const Reader& reader, const LeftHalfSizes& sizes, LeftHalfA
   }
 }
 
-void ReadCharts(const Reader& reader, const LeftHalfSizes& sizes, LeftHalfArrays* arrays) {
+void ReadCharts(const LeftHalfReader& reader, const LeftHalfSizes& sizes, LeftHalfArrays* arrays) {
   const auto num_kinds = static_cast<int64_t>(ChartKinds().size());
   const std::vector<std::string> names = reader.Text("chart_names");
   for (size_t c = 0; c < ChartKinds().size(); ++c) {
@@ -180,7 +181,7 @@ void ReadCharts(const Reader& reader, const LeftHalfSizes& sizes, LeftHalfArrays
 }  // namespace
 
 LeftHalfArrays ReadLeftHalfArrays(const std::string& npz_bytes, const std::string& where, const LeftHalfSizes& sizes) {
-  const Reader reader(npz_bytes, where);
+  const LeftHalfReader reader(npz_bytes, where);
   LeftHalfArrays arrays;
   arrays.cage_shape = ReadCageShape(reader, sizes);
 

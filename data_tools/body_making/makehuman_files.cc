@@ -17,6 +17,7 @@
 #include "bodyloom/data_tools/formats/obj.h"
 #include "bodyloom/data_tools/formats/printable.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/refuse.h"
 
 namespace bodyloom {
 namespace {
@@ -27,10 +28,6 @@ constexpr size_t kMaxMeshBytes = size_t{64} << 20;
 constexpr size_t kMaxTargetBytes = size_t{16} << 20;
 constexpr size_t kMaxTargets = 5000;
 constexpr size_t kMaxBones = 1000;
-
-[[noreturn]] void Fail(const std::string& path, const std::string& message) {
-  throw std::runtime_error(path + ": " + message);
-}
 
 /// The group ("g NAME") of each face in the order of the file.
 std::vector<std::string> GroupOfFaces(std::string_view text) {
@@ -52,7 +49,7 @@ void ReadMesh(const std::string& path, MakeHumanFiles* files) {
   const ObjMesh mesh = ReadObjBytes(text, path);
   const std::vector<std::string> groups = GroupOfFaces(text);
   if (static_cast<int>(groups.size()) != mesh.num_faces())
-    Fail(path, "indented faces, expected lines that start with f");
+    Refuse(path, "indented faces, expected lines that start with f");
   files->vertices_dm = mesh.positions;
   files->uv = mesh.uv;
   std::set<int> body_vertices;
@@ -63,22 +60,22 @@ void ReadMesh(const std::string& path, MakeHumanFiles* files) {
       cubes[groups[f]].insert(&mesh.corner_position[first], &mesh.corner_position[first] + corners);
     }
     if (groups[f] != "body") continue;
-    if (corners != 4) Fail(path, Concatenate("a body face of ", corners, " corners, expected quads"));
+    if (corners != 4) Refuse(path, Concatenate("a body face of ", corners, " corners, expected quads"));
     Quad quad, quad_uv;
     for (int k = 0; k < 4; ++k) {
       quad[k] = mesh.corner_position[first + k];
       quad_uv[k] = mesh.corner_uv[first + k];
-      if (quad_uv[k] < 0) Fail(path, "a body face without texture coordinates");
+      if (quad_uv[k] < 0) Refuse(path, "a body face without texture coordinates");
       body_vertices.insert(quad[k]);
     }
     files->quads.push_back(quad);
     files->quads_uv.push_back(quad_uv);
   }
-  if (files->quads.empty()) Fail(path, "no faces in group 'body', expected MakeHuman's base mesh (hm08)");
+  if (files->quads.empty()) Refuse(path, "no faces in group 'body', expected MakeHuman's base mesh (hm08)");
   files->num_body_vertices = static_cast<int>(body_vertices.size());
   if (*body_vertices.rbegin() + 1 != files->num_body_vertices) {
-    Fail(path, Concatenate("the body uses ", body_vertices.size(), " vertices up to number ",
-                           *body_vertices.rbegin() + 1, ", expected the body's vertices first and without gaps"));
+    Refuse(path, Concatenate("the body uses ", body_vertices.size(), " vertices up to number ",
+                             *body_vertices.rbegin() + 1, ", expected the body's vertices first and without gaps"));
   }
   for (const auto& [name, vertices] : cubes) files->joint_cubes[name].assign(vertices.begin(), vertices.end());
 }
@@ -152,7 +149,7 @@ void ReadWeights(const std::string& path, MakeHumanFiles* files) {
     }
   }
   for (int v = 0; v < files->num_body_vertices; ++v) {
-    if (!(sums[v] > 1e-3)) Fail(path, Concatenate("body vertex ", v, " has no weights"));
+    if (!(sums[v] > 1e-3)) Refuse(path, Concatenate("body vertex ", v, " has no weights"));
   }
   for (auto& entry : entries) entry = {entry.row(), entry.col(), entry.value() / sums[entry.row()]};
   files->bone_weights.resize(files->num_body_vertices, static_cast<Eigen::Index>(files->bones.size()));
@@ -177,7 +174,7 @@ MakeHumanTarget ParseTarget(std::string_view text, const std::string& path, Eige
       double value = 0;
       const auto [last, error] = std::from_chars(line.data() + begin, line.data() + stop, value);
       if (count == 4 || error != std::errc() || last != line.data() + stop || !(std::abs(value) <= 1e6)) {
-        Fail(path, Concatenate("line ", line_number, ": '", PrintableText(line), "', expected: vertex dx dy dz"));
+        Refuse(path, Concatenate("line ", line_number, ": '", PrintableText(line), "', expected: vertex dx dy dz"));
       }
       values[count++] = value;
       begin = stop;
@@ -185,8 +182,8 @@ MakeHumanTarget ParseTarget(std::string_view text, const std::string& path, Eige
     if (count == 0) continue;
     if (count != 4 || values[0] != std::floor(values[0]) || values[0] < 0 ||
         values[0] >= static_cast<double>(num_vertices)) {
-      Fail(path, Concatenate("line ", line_number, ": '", PrintableText(line),
-                             "', expected: vertex dx dy dz with a vertex 0..", num_vertices - 1));
+      Refuse(path, Concatenate("line ", line_number, ": '", PrintableText(line),
+                               "', expected: vertex dx dy dz with a vertex 0..", num_vertices - 1));
     }
     target.vertices.push_back(static_cast<int>(values[0]));
     for (int c = 1; c < 4; ++c) offsets.push_back(static_cast<float>(values[c]));
@@ -196,12 +193,12 @@ MakeHumanTarget ParseTarget(std::string_view text, const std::string& path, Eige
 }
 
 void ReadTargets(const std::string& folder, MakeHumanFiles* files) {
-  if (!fs::is_directory(folder)) Fail(folder, "no such folder, expected MakeHuman's macro targets");
+  if (!fs::is_directory(folder)) Refuse(folder, "no such folder, expected MakeHuman's macro targets");
   std::vector<fs::path> paths;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     if (entry.is_regular_file() && entry.path().filename().string().ends_with(".target.gz"))
       paths.push_back(entry.path());
-    if (paths.size() > kMaxTargets) Fail(folder, "more than 5000 targets");
+    if (paths.size() > kMaxTargets) Refuse(folder, "more than 5000 targets");
   }
   for (const fs::path& path : paths) {
     std::string name = path.filename().string();
@@ -222,7 +219,7 @@ int MakeHumanFiles::FindBone(const std::string& name) const {
 std::string ReadGzip(const std::string& path, size_t max_bytes) {
   const std::string packed = ReadFileBytes(path, max_bytes);
   z_stream stream{};
-  if (inflateInit2(&stream, 15 + 16) != Z_OK) Fail(path, "zlib cannot start");
+  if (inflateInit2(&stream, 15 + 16) != Z_OK) Refuse(path, "zlib cannot start");
   std::string out;
   std::string buffer(size_t{1} << 16, '\0');
   stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));
@@ -236,8 +233,8 @@ std::string ReadGzip(const std::string& path, size_t max_bytes) {
   }
   const size_t position = stream.total_in;
   inflateEnd(&stream);
-  if (out.size() > max_bytes) Fail(path, Concatenate("holds more than ", max_bytes, " bytes"));
-  if (state != Z_STREAM_END) Fail(path, Concatenate("byte ", position, ": the gzip stream is damaged or cut short"));
+  if (out.size() > max_bytes) Refuse(path, Concatenate("holds more than ", max_bytes, " bytes"));
+  if (state != Z_STREAM_END) Refuse(path, Concatenate("byte ", position, ": the gzip stream is damaged or cut short"));
   return out;
 }
 

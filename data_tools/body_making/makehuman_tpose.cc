@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "bodyloom/geometry/base/units.h"
 #include "bodyloom/geometry/rotation.h"
 
 namespace bodyloom {
@@ -17,7 +18,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kClavicleRaise = 10 * kDegree;
 constexpr double kFootYaw = 7 * kDegree;
 

@@ -15,8 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kFormat = "bodyloom people set";
-constexpr int kVersion = 1;
+constexpr const char* kMultiPersonFormat = "bodyloom people set";
+constexpr int kMultiPersonVersion = 1;
 
 std::string FileOf(const std::string& path) { return (fs::path(path) / "people.json").string(); }
 
@@ -59,8 +59,9 @@ MultiPersonDataset ReadMultiPersonDataset(const std::string& path) {
   }
   const nlohmann::json document = ReadJsonFile(file, {.max_bytes = 64 << 20, .max_depth = 16});
   const JsonNode root(document, file);
-  if (root.At("format").Text() != kFormat) root.At("format").Fail(std::string("\"") + kFormat + "\"");
-  if (root.At("version").Integer() != kVersion) root.At("version").Fail(std::to_string(kVersion));
+  if (root.At("format").Text() != kMultiPersonFormat)
+    root.At("format").Fail(std::string("\"") + kMultiPersonFormat + "\"");
+  if (root.At("version").Integer() != kMultiPersonVersion) root.At("version").Fail(std::to_string(kMultiPersonVersion));
   MultiPersonDataset set;
   set.path = path;
   const int64_t size = root.At("size").Integer();
@@ -79,7 +80,7 @@ MultiPersonDataset ReadMultiPersonDataset(const std::string& path) {
 }
 
 void WriteMultiPersonDataset(const MultiPersonDataset& set) {
-  nlohmann::ordered_json json = {{"format", kFormat}, {"version", kVersion}, {"size", set.size}};
+  nlohmann::ordered_json json = {{"format", kMultiPersonFormat}, {"version", kMultiPersonVersion}, {"size", set.size}};
   json["people"] = nlohmann::ordered_json::array();
   for (const DatasetPerson& person : set.people) {
     json["people"].push_back(

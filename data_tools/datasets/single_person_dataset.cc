@@ -22,31 +22,33 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kFormat = "bodyloom person set";
-constexpr int kVersion = 1;
+constexpr const char* kSinglePersonFormat = "bodyloom person set";
+constexpr int kSinglePersonVersion = 1;
 constexpr int kMostFrames = 1'000'000;
 constexpr int kMostPixels = 16384;
 
 /// A kind of picture: its folder, where it lies in a frame, and whether datasets and readers name it.
-struct Kind {
+struct FolderKind {
   const char* folder;
   const char* name;  ///< in "has"; null: always there
   Image PersonFrame::*picture;
   bool PersonPictures::*flag;
 };
 
-const std::array<Kind, 5> kKinds = {
+const std::array<FolderKind, 5> kKinds = {
     {{"images", nullptr, &PersonFrame::rgb, nullptr},
      {"labels", "labels", &PersonFrame::labels, &PersonPictures::labels},
      {"normals", "normals", &PersonFrame::normals, &PersonPictures::normals},
      {"iuv", "iuv", &PersonFrame::iuv, &PersonPictures::iuv},
      {"backgrounds", "background", &PersonFrame::background, &PersonPictures::background}}};
 
-bool IsIn(const Kind& kind, const PersonPictures& pictures) { return kind.flag == nullptr || pictures.*kind.flag; }
+bool IsIn(const FolderKind& kind, const PersonPictures& pictures) {
+  return kind.flag == nullptr || pictures.*kind.flag;
+}
 
 std::string FileOf(const std::string& path, const char* name) { return (fs::path(path) / name).string(); }
 
-std::string FrameFile(const std::string& path, const Kind& kind, int t) {
+std::string FrameFile(const std::string& path, const FolderKind& kind, int t) {
   std::array<char, 32> name{};
   std::snprintf(name.data(), name.size(), "%06d.png", t);
   return (fs::path(path) / kind.folder / name.data()).string();
@@ -68,8 +70,9 @@ SinglePersonDatasetInfo ReadInfo(const std::string& path) {
   }
   const nlohmann::json document = ReadJsonFile(file, {.max_bytes = 1 << 20, .max_depth = 16});
   const JsonNode root(document, file);
-  if (root.At("format").Text() != kFormat) root.At("format").Fail(std::string("\"") + kFormat + "\"");
-  IntegerIn(root.At("version"), kVersion, kVersion);
+  if (root.At("format").Text() != kSinglePersonFormat)
+    root.At("format").Fail(std::string("\"") + kSinglePersonFormat + "\"");
+  IntegerIn(root.At("version"), kSinglePersonVersion, kSinglePersonVersion);
   SinglePersonDatasetInfo info;
   info.num_frames = IntegerIn(root.At("frames"), 1, kMostFrames);
   info.width = IntegerIn(root.At("width"), 1, kMostPixels);
@@ -82,7 +85,7 @@ SinglePersonDatasetInfo ReadInfo(const std::string& path) {
     if (labels.At(i).Text() != kPersonLabelNames[i]) labels.At(i).Fail(std::string("\"") + kPersonLabelNames[i] + "\"");
   }
   const JsonNode has = root.At("has");
-  for (const Kind& kind : kKinds) {
+  for (const FolderKind& kind : kKinds) {
     if (kind.flag != nullptr) info.has.*kind.flag = has.At(kind.name).Flag();
   }
   if (root.Has("seed") && document["seed"].is_number_unsigned()) info.seed = document["seed"].get<uint64_t>();
@@ -135,7 +138,7 @@ void TakeApart(const std::string& path) {
   if (!fs::exists(FileOf(path, "person.json"), error)) return;
   fs::remove(FileOf(path, "person.json"), error);
   if (error) throw std::runtime_error(FileOf(path, "person.json") + ": cannot remove: " + error.message());
-  for (const Kind& kind : kKinds) {
+  for (const FolderKind& kind : kKinds) {
     std::vector<fs::path> frames;
     for (fs::directory_iterator it(fs::path(path) / kind.folder, error), end; !error && it != end;
          it.increment(error)) {
@@ -155,7 +158,7 @@ uint8_t NormalCode(double component) {
 
 SinglePersonDataset::SinglePersonDataset(const std::string& path) : path_(path), info_(ReadInfo(path)) {
   std::error_code error;
-  for (const Kind& kind : kKinds) {
+  for (const FolderKind& kind : kKinds) {
     if (!IsIn(kind, info_.has)) continue;
     for (int t = 0; t < info_.num_frames; ++t) {
       if (const std::string file = FrameFile(path_, kind, t); !fs::exists(file, error)) {
@@ -183,7 +186,7 @@ Track SinglePersonDataset::track() const {
 PersonFrame SinglePersonDataset::Read(int t, const PersonPictures& wanted) const {
   BODYLOOM_CHECK(t >= 0 && t < info_.num_frames, path_, ": frame ", t, ", expected 0 to ", info_.num_frames - 1);
   PersonFrame frame;
-  for (const Kind& kind : kKinds) {
+  for (const FolderKind& kind : kKinds) {
     if (!IsIn(kind, info_.has) || !IsIn(kind, wanted)) continue;
     const std::string file = FrameFile(path_, kind, t);
     Image image = ReadImage(file);
@@ -208,7 +211,7 @@ SinglePersonDatasetWriter::SinglePersonDatasetWriter(std::string path, const Sin
                  " in the track");
   BODYLOOM_CHECK(std::isfinite(info.fps) && info.fps > 0, path_, ": ", info.fps, " frames a second");
   TakeApart(path_);
-  for (const Kind& kind : kKinds) {
+  for (const FolderKind& kind : kKinds) {
     if (IsIn(kind, info_.has)) MakeFolder(FileOf(path_, kind.folder));
   }
   WriteTrack(FileOf(path_, "track.npz"), track);
@@ -216,7 +219,7 @@ SinglePersonDatasetWriter::SinglePersonDatasetWriter(std::string path, const Sin
 
 void SinglePersonDatasetWriter::Write(int t, const PersonFrame& frame) const {
   BODYLOOM_CHECK(t >= 0 && t < info_.num_frames, path_, ": frame ", t, ", expected 0 to ", info_.num_frames - 1);
-  for (const Kind& kind : kKinds) {
+  for (const FolderKind& kind : kKinds) {
     if (!IsIn(kind, info_.has)) continue;
     const Image& image = frame.*kind.picture;
     BODYLOOM_CHECK(image.width == info_.width && image.height == info_.height, FrameFile(path_, kind, t), ": ",
@@ -226,10 +229,11 @@ void SinglePersonDatasetWriter::Write(int t, const PersonFrame& frame) const {
 }
 
 void SinglePersonDatasetWriter::Finish() const {
-  nlohmann::ordered_json json = {{"format", kFormat},          {"version", kVersion},    {"frames", info_.num_frames},
-                                 {"width", info_.width},       {"height", info_.height}, {"fps", info_.fps},
+  nlohmann::ordered_json json = {{"format", kSinglePersonFormat}, {"version", kSinglePersonVersion},
+                                 {"frames", info_.num_frames},    {"width", info_.width},
+                                 {"height", info_.height},        {"fps", info_.fps},
                                  {"labels", kPersonLabelNames}};
-  for (const Kind& kind : kKinds) {
+  for (const FolderKind& kind : kKinds) {
     if (kind.flag != nullptr) json["has"][kind.name] = info_.has.*kind.flag;
     for (int t = 0; t < info_.num_frames && IsIn(kind, info_.has); ++t) {
       if (const std::string file = FrameFile(path_, kind, t); !fs::exists(file)) {

@@ -16,19 +16,6 @@ Json Rows(const Eigen::Matrix3d& m) {
 
 }  // namespace
 
-std::string VelocityName(const DescribeTrackOptions& options) {
-  if (options.analytic) return "analytic";
-  switch (options.velocity.scheme) {
-    case VelocityScheme::kBackward:
-      return "backward";
-    case VelocityScheme::kCentral:
-      return "central";
-    case VelocityScheme::kSavitzkyGolay:
-      return "savgol";
-  }
-  return "unknown";
-}
-
 std::string DescriptorHeaderJson(const BodyModel& body, const Track& track, const DescribeTrackOptions& options,
                                  const DescribeTrackSummary& summary, const std::vector<int>& outputs) {
   const UvTexelTable& texels = summary.texels;

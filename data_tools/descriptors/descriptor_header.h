@@ -13,7 +13,4 @@ namespace bodyloom {
 std::string DescriptorHeaderJson(const BodyModel& body, const Track& track, const DescribeTrackOptions& options,
                                  const DescribeTrackSummary& summary, const std::vector<int>& outputs);
 
-/// "backward", "central", "savgol" or "analytic".
-std::string VelocityName(const DescribeTrackOptions& options);
-
 }  // namespace bodyloom

@@ -6,7 +6,7 @@
 namespace bodyloom {
 
 bool DescriptorOptions::IsValid(std::string* why) const {
-  if (!texels.IsValid(why) || !velocity.IsValid(why)) return false;
+  if (!texels.IsValid(why) || !SurfaceMotion::IsValid(why)) return false;
   const auto no = [why](const std::string& text) {
     *why = text;
     return false;

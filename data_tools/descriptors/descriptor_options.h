@@ -3,23 +3,17 @@
 
 #include <string>
 
-#include "bodyloom/geometry/camera.h"
+#include "bodyloom/data_tools/descriptors/surface_motion.h"
 #include "bodyloom/geometry/normals.h"
-#include "bodyloom/geometry/surface_velocity.h"
 #include "bodyloom/geometry/uv_texels.h"
-#include "bodyloom/geometry/velocity_stencil.h"
 
 namespace bodyloom {
 
 /// Options of a frame's descriptor: what it holds.
-struct DescriptorOptions {
+struct DescriptorOptions : SurfaceMotion {
   UvTexelOptions texels;
   int past = 10;        ///< velocity maps a frame, its own included; 0 to 1000
   bool normals = true;  ///< the three channels of N
-  VelocityStencilOptions velocity;
-  bool analytic = false;  ///< velocities by the body model's derivative instead of differences of vertices
-  SurfaceFrame frame = SurfaceFrame::kCamera;
-  CameraPose camera_pose;  ///< for SurfaceFrame::kWorld
   NormalWeighting weighting = NormalWeighting::kArea;
   bool seen_only = false;  ///< texels that the frame's camera does not see are zero
   int num_threads = 1;     ///< 1 to 1024; the same values for any number

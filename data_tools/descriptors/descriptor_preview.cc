@@ -7,6 +7,7 @@
 #include "bodyloom/data_tools/descriptors/describe_track.h"
 #include "bodyloom/data_tools/formats/ndarray.h"
 #include "bodyloom/render/caption.h"
+#include "bodyloom/render/unit_byte.h"
 
 namespace bodyloom {
 namespace {
@@ -15,8 +16,6 @@ constexpr int kGap = 4;
 constexpr int kSide = 256;  ///< pixels a map
 constexpr int kLabel = 36;  ///< above it
 constexpr Colour kBackground = {24, 24, 28};
-
-uint8_t Byte(double x) { return static_cast<uint8_t>(std::clamp(std::lround(255 * x), 0L, 255L)); }
 
 }  // namespace
 
@@ -73,7 +72,8 @@ Image DescriptorPreview::Picture() const {
       const std::vector<float>& values = rows_[r].maps[i];
       for (const int p : table_.pixel) {
         const float scale = is_velocity(i) ? 0.5F / fastest : 0.5F;
-        for (int c = 0; c < 3; ++c) map.bgr[3 * size_t(p) + 2 - c] = Byte(0.5 + scale * values[size_t(c) * pixels + p]);
+        for (int c = 0; c < 3; ++c)
+          map.bgr[3 * size_t(p) + 2 - c] = UnitByte(0.5 + scale * values[size_t(c) * pixels + p]);
       }
       const size_t k = columns_[i] - (options_.normals ? 1 : 0);
       const std::string name = is_velocity(i) ? "velocity t" + (k > 0 ? "-" + std::to_string(k) : std::string())

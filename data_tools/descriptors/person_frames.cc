@@ -89,8 +89,9 @@ class PersonFrames::Impl {
     const int now = InTrack(t);
     const uint16_t* normals = Stored(now, 0);
     for (size_t i = 0; i < map; ++i) maps[i] = half[normals[i]];
-    const Matrix3f turn = posed_.Turn(t).cast<float>();
-    if (posed_.turned()) TurnMap(turn, Texels(), maps.data());
+    const Matrix3f turn = TurnOfAxes(t).cast<float>();
+    const bool turned = posed_.turned() && options_.motion.frame != SurfaceFrame::kBody;
+    if (turned) TurnMap(turn, Texels(), maps.data());
     for (int k = 0; k < options_.past; ++k) {
       const int s = now - k;
       if (s < 0 || segment_[s] < 0 || segment_[s] != segment_[now]) continue;
@@ -98,7 +99,7 @@ class PersonFrames::Impl {
       const uint16_t* from = Stored(s, 1);
       constexpr auto kScale = static_cast<float>(1 / kBodyLength);
       for (size_t i = 0; i < map; ++i) to[i] = kScale * half[from[i]];
-      if (posed_.turned()) TurnMap(turn, Texels(), to);
+      if (turned) TurnMap(turn, Texels(), to);
       for (size_t i = 0; i < map; ++i) to[i] = std::clamp(to[i], -kMaxSpeed, kMaxSpeed);
     }
   }
@@ -140,6 +141,13 @@ class PersonFrames::Impl {
 
   [[nodiscard]] int InTrack(int t) const { return options_.shown.empty() ? t : options_.shown.at(t); }
 
+  /// Frame t's turn of the view, in the axes of the maps: as if the body turned before a camera that stays.
+  [[nodiscard]] Eigen::Matrix3d TurnOfAxes(int t) const {
+    if (options_.motion.frame != SurfaceFrame::kWorld) return posed_.Turn(t);
+    const Eigen::Matrix3d& camera_from_world = options_.motion.camera_pose.camera_from_world_rotation;
+    return camera_from_world.transpose() * posed_.Turn(t) * camera_from_world;
+  }
+
   /// The track's frame t: normals (0) or velocities (1), half precision.
   [[nodiscard]] const uint16_t* Stored(int t, int which) const {
     return &stored_->Values<uint16_t>()[3 * Texels() * (2 * static_cast<size_t>(t) + which)];
@@ -147,6 +155,7 @@ class PersonFrames::Impl {
 
   void Describe() {
     DescribeTrackOptions describe;
+    static_cast<SurfaceMotion&>(describe) = options_.motion;
     describe.texels.width = describe.texels.height = options_.uv_size;
     describe.past = 1;  // the maps of the frames before are theirs, and put together when requested
     describe.half = true;

@@ -9,19 +9,21 @@
 #include <string>
 #include <vector>
 
+#include "bodyloom/data_tools/descriptors/surface_motion.h"
 #include "bodyloom/geometry/body_model.h"
 #include "bodyloom/geometry/track.h"
-#include "bodyloom/geometry/velocity_stencil.h"
 #include "bodyloom/render/person_window.h"
 
 namespace bodyloom {
 
 struct PersonFramesOptions {
-  int uv_size = 128;  ///< of the motion maps
-  int past = 10;      ///< velocities of so many frames
+  int uv_size = 128;     ///< of the motion maps
+  int past = 10;         ///< velocities of so many frames
+  SurfaceMotion motion;  ///< axes and velocities of the motion maps
   PersonWindowOptions window;
   /// By frame: turns the view about the vertical (the camera's y) through the body's root, degrees; empty: the track's
-  /// own view. The motion is turned with it, so that a view that moves adds no velocity of its own.
+  /// own view. The motion is turned with it (about the same vertical in world axes; body axes know of no view), so that
+  /// a view that moves adds no velocity of its own.
   std::vector<double> yaw_deg;
   /// Which frame of the track is shown when (data_tools/motion/freeze_track.h); empty: each in turn. One that is shown
   /// again moves as it did the first time: time stands still, nothing comes to rest. All that is by frame here is by
@@ -54,9 +56,9 @@ class PersonFrames {
   /// Number of the track's gap-free run of frames that frame t belongs to; −1: it has no result.
   [[nodiscard]] int Segment(int t) const;
 
-  /// [N_t, V_t, V_{t−1}, …] of the posed surface in the camera frame, channels × uv_size × uv_size: unit normals, and
-  /// velocities in body lengths a second; zero where there is no frame to look back to. A frame without a result is
-  /// zero.
+  /// [N_t, V_t, V_{t−1}, …] of the posed surface in the axes of options().motion, channels × uv_size × uv_size: unit
+  /// normals, and velocities in body lengths a second; zero where there is no frame to look back to. A frame without a
+  /// result is zero.
   void MotionMaps(int t, std::span<float> maps) const;
 
   /// What the pixels of frame t's window see of the body: atlas coordinates (2 × height × width, 0 elsewhere) and a

@@ -64,7 +64,7 @@ class PhotoMaps::Impl {
     map.uv.assign(2 * area, 0);
     map.parts.assign(area, 0);
     map.texel_pixels.assign(2 * texels, 0);
-    map.texel_seen.assign(texels, 0);
+    map.texel_cosine.assign(texels, 0);
     if (!track_.HasResult(t)) return map;
     const MatrixX3d vertices = posed_.Vertices(t);
     const Camera camera = CameraInWindow(track_.CameraAt(t), window_, t);
@@ -80,7 +80,7 @@ class PhotoMaps::Impl {
       const size_t at = table_->pixel[i];
       map.texel_pixels[at] = seen[i].x_px;
       map.texel_pixels[texels + at] = seen[i].y_px;
-      map.texel_seen[at] = 1;
+      map.texel_cosine[at] = seen[i].cosine;
     }
     return map;
   }

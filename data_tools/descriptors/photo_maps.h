@@ -35,7 +35,7 @@ struct PhotoMap {
   std::vector<float> uv;            ///< 2 × S × S: atlas coordinates; 0 off the body
   std::vector<uint8_t> parts;       ///< S × S: DensePose's part 1–24; 0 off the body
   std::vector<float> texel_pixels;  ///< 2 × U × U: x, y in the window where the texel's point appears; 0 if not seen
-  std::vector<uint8_t> texel_seen;  ///< U × U
+  std::vector<float> texel_cosine;  ///< U × U: of the angle between normal and line of sight; 0 if not seen
 };
 
 class PhotoMaps {

@@ -136,7 +136,7 @@ class RtmPoseFrames : public FrameDetector {
       const std::vector<std::vector<DetectedPose>> poses = blazepose_->Detect(frames);
       for (size_t f = 0; f < frames.size(); ++f) {
         for (const DetectedPose& pose : poses[f]) {
-          const Rectangle r = VisibleRectangle(ToPerson(pose));
+          const ImageRectangle r = VisibleRectangle(ToPerson(pose));
           boxes[f].push_back({r.x0, r.y0, r.x1, r.y1, pose.presence});
         }
       }

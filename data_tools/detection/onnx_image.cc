@@ -14,11 +14,10 @@ namespace {
 
 constexpr int64_t kLongest = 64;  ///< side of a window, stride
 
-[[noreturn]] void Fail(const std::string& what) { throw std::runtime_error(what); }
-
 std::array<int64_t, 2> Pair(const std::vector<int64_t>& values, const std::string& what, int64_t least) {
   if (values.size() != 2 || std::min(values[0], values[1]) < least || std::max(values[0], values[1]) > kLongest) {
-    Fail(Concatenate(what, " of ", OnnxShapeText(values), ", expected two numbers from ", least, " to ", kLongest));
+    throw std::runtime_error(
+        Concatenate(what, " of ", OnnxShapeText(values), ", expected two numbers from ", least, " to ", kLongest));
   }
   return {values[0], values[1]};
 }
@@ -45,7 +44,8 @@ std::vector<int64_t> FactorsOf(const OnnxArguments& arguments, const std::vector
   }
   const bool fit = factors.size() == shape.size() && factors[0] == 1 && factors[1] == 1;
   if (!fit || std::min(factors[2], factors[3]) < 1 || std::max(factors[2], factors[3]) > kLongest) {
-    Fail(Concatenate("another size than a whole multiple of ", OnnxShapeText(shape), "'s rows and columns"));
+    throw std::runtime_error(
+        Concatenate("another size than a whole multiple of ", OnnxShapeText(shape), "'s rows and columns"));
   }
   return factors;
 }
@@ -59,7 +59,7 @@ OnnxWindow::OnnxWindow(const OnnxArguments& arguments, std::array<int64_t, 2> ke
   stride = Pair(node.Integers("strides", {1, 1}), "a stride", 1);
   dilation = Pair(node.Integers("dilations", {1, 1}), "a dilation", 1);
   const std::vector<int64_t> pads = node.Integers("pads", {0, 0, 0, 0});
-  if (pads.size() != 4) Fail(Concatenate(pads.size(), " numbers of padding, expected 4"));
+  if (pads.size() != 4) throw std::runtime_error(Concatenate(pads.size(), " numbers of padding, expected 4"));
   const std::string automatic = node.Text("auto_pad", "NOTSET");
   for (size_t axis = 0; axis < 2; ++axis) {
     const int64_t extent = dilation[axis] * (kernel[axis] - 1) + 1;
@@ -72,10 +72,11 @@ OnnxWindow::OnnxWindow(const OnnxArguments& arguments, std::array<int64_t, 2> ke
       after[axis] = total - before[axis];
     }
     if (std::min(before[axis], after[axis]) < 0 || std::max(before[axis], after[axis]) >= extent) {
-      Fail(Concatenate("padding of ", before[axis], " and ", after[axis], ", expected 0 to ", extent - 1));
+      throw std::runtime_error(
+          Concatenate("padding of ", before[axis], " and ", after[axis], ", expected 0 to ", extent - 1));
     }
     if (image[axis] + before[axis] + after[axis] < extent) {
-      Fail(Concatenate("a window of ", extent, " on an image of ", image[axis]));
+      throw std::runtime_error(Concatenate("a window of ", extent, " on an image of ", image[axis]));
     }
   }
 }
@@ -91,7 +92,8 @@ int64_t OnnxWindow::Count(size_t axis, int64_t length, bool ceil) const {
 const OnnxTensor& OnnxImage(const OnnxArguments& arguments) {
   const OnnxTensor& input = arguments.FloatInput(0);
   if (input.rank() != 4 || input.size() == 0) {
-    Fail("an input of " + OnnxShapeText(input.shape) + ", expected number x channels x rows x columns");
+    throw std::runtime_error("an input of " + OnnxShapeText(input.shape) +
+                             ", expected number x channels x rows x columns");
   }
   return input;
 }
@@ -141,7 +143,8 @@ OnnxTensor OnnxGlobalAveragePool(const OnnxArguments& arguments) {
 
 OnnxTensor OnnxEnlarge(const OnnxArguments& arguments) {
   const OnnxTensor& image = OnnxImage(arguments);
-  if (arguments.node().Text("mode", "nearest") != "nearest") Fail("an interpolation other than nearest");
+  if (arguments.node().Text("mode", "nearest") != "nearest")
+    throw std::runtime_error("an interpolation other than nearest");
   const std::vector<int64_t> factors = FactorsOf(arguments, image.shape);
   const int64_t width = image.shape[3];
   std::vector<int64_t> shape = {image.shape[0], image.shape[1], image.shape[2] * factors[2], width * factors[3]};
@@ -162,7 +165,8 @@ OnnxTensor OnnxBatchNormalization(const OnnxArguments& arguments) {
   const auto channels = size_t(image.shape[1]), pixels = size_t(image.shape[2] * image.shape[3]);
   const float epsilon = arguments.node().Float("epsilon", 1e-5F);
   for (size_t i = 1; i < 5; ++i) {
-    if (arguments.Floats(i).size() != channels) Fail(Concatenate("input ", i, ", expected ", channels, " numbers"));
+    if (arguments.Floats(i).size() != channels)
+      throw std::runtime_error(Concatenate("input ", i, ", expected ", channels, " numbers"));
   }
   std::vector<float> values = *image.floats;
   for (size_t i = 0; i < values.size(); ++i) {

@@ -11,13 +11,14 @@
 #include "bodyloom/data_tools/formats/half.h"
 #include "bodyloom/data_tools/formats/printable.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/refuse.h"
 
 namespace bodyloom {
 namespace {
 
 constexpr size_t kMostBytes = size_t{1} << 30, kMostNodes = 20'000, kMostAttributes = 100, kMostAxes = 8;
 constexpr size_t kMostUnpacked = 16;  // bytes of constants a byte of the file
-enum Type : int64_t { kFloat = 1, kInt32 = 6, kInt64 = 7, kBool = 9, kHalf = 10 };
+enum OnnxType : int64_t { kOnnxFloat = 1, kOnnxInt32 = 6, kOnnxInt64 = 7, kOnnxBool = 9, kOnnxHalf = 10 };
 
 /// What a tensor's message holds.
 struct StoredTensor {
@@ -39,9 +40,9 @@ std::vector<To> Unpacked(std::string_view raw, To (*convert)(Stored)) {
   return values;
 }
 
-class Reader {
+class OnnxReader {
  public:
-  Reader(std::string_view bytes, const std::string& name)
+  OnnxReader(std::string_view bytes, const std::string& name)
       : bytes_(bytes), name_(name), budget_(kMostUnpacked * bytes.size()) {
     model_.name = name;
   }
@@ -54,17 +55,13 @@ class Reader {
       if (field.number == 7) graph = model.Bytes(field), has_graph = true;
       if (field.number == 8) ReadOperatorSet(model.Bytes(field));
     }
-    if (!has_graph) Fail("not an ONNX file", "no graph in it");
-    if (model_.opset < 7) Fail("operators", Concatenate("version ", model_.opset, ", expected 7 or later"));
+    if (!has_graph) Refuse(name_, "not an ONNX file", "no graph in it");
+    if (model_.opset < 7) Refuse(name_, "operators", Concatenate("version ", model_.opset, ", expected 7 or later"));
     ReadGraph(graph);
     return std::move(model_);
   }
 
  private:
-  [[noreturn]] void Fail(const std::string& place, const std::string& what) const {
-    throw std::runtime_error(name_ + ": " + place + ": " + what);
-  }
-
   [[nodiscard]] ProtoMessage Message(std::string_view bytes, const std::string& place) const {
     return {bytes, name_ + ": " + place};
   }
@@ -90,13 +87,14 @@ class Reader {
       if (field.number == 5) AddConstant(graph.Bytes(field));
       if (field.number == 11) inputs.push_back(graph.Bytes(field));
       if (field.number == 12) outputs.push_back(graph.Bytes(field));
-      if (field.number == 15) Fail("graph", "sparse constants, expected dense ones");
+      if (field.number == 15) Refuse(name_, "graph", "sparse constants, expected dense ones");
     }
-    if (nodes.size() > kMostNodes) Fail("graph", Concatenate(nodes.size(), " nodes, expected at most ", kMostNodes));
+    if (nodes.size() > kMostNodes)
+      Refuse(name_, "graph", Concatenate(nodes.size(), " nodes, expected at most ", kMostNodes));
     ReadInputs(inputs);
     for (size_t i = 0; i < nodes.size(); ++i) ReadNode(nodes[i], Concatenate("node ", i));
     for (const std::string_view output : outputs) model_.outputs.push_back(Known(Value(output).first, "outputs"));
-    if (model_.outputs.empty()) Fail("graph", "no outputs");
+    if (model_.outputs.empty()) Refuse(name_, "graph", "no outputs");
     model_.num_tensors = int(number_.size());
   }
 
@@ -109,7 +107,7 @@ class Reader {
       model_.input_shape = std::move(shape);
       ++count;
     }
-    if (count != 1) Fail("inputs", Concatenate(count, " of them, expected one picture"));
+    if (count != 1) Refuse(name_, "inputs", Concatenate(count, " of them, expected one picture"));
   }
 
   /// Name and shape.
@@ -137,7 +135,8 @@ class Reader {
         }
       }
     }
-    if (shape.size() > kMostAxes) Fail("shape", Concatenate(shape.size(), " axes, expected at most ", kMostAxes));
+    if (shape.size() > kMostAxes)
+      Refuse(name_, "shape", Concatenate(shape.size(), " axes, expected at most ", kMostAxes));
     return shape;
   }
 
@@ -152,14 +151,15 @@ class Reader {
 
   int Define(const std::string& name, const std::string& place) {
     const auto [at, is_new] = number_.emplace(name, int(number_.size()));
-    if (!is_new) Fail(place, "'" + PrintableText(name) + "' is written twice");
+    if (!is_new) Refuse(name_, place, "'" + PrintableText(name) + "' is written twice");
     return at->second;
   }
 
   [[nodiscard]] int Known(const std::string& name, const std::string& place) const {
     const auto at = number_.find(name);
     if (at == number_.end()) {
-      Fail(place, "'" + PrintableText(name) + "' is not there, expected a constant or what a node before it writes");
+      Refuse(name_, place,
+             "'" + PrintableText(name) + "' is not there, expected a constant or what a node before it writes");
     }
     return at->second;
   }
@@ -180,8 +180,8 @@ class Reader {
     }
     if (node.name.empty()) node.name = place;
     place = "node '" + node.name + "' (" + node.op + ")";
-    if (!standard) Fail(place, "an operator of its author's own, expected one of the standard");
-    if (attributes.size() > kMostAttributes) Fail(place, Concatenate(attributes.size(), " attributes"));
+    if (!standard) Refuse(name_, place, "an operator of its author's own, expected one of the standard");
+    if (attributes.size() > kMostAttributes) Refuse(name_, place, Concatenate(attributes.size(), " attributes"));
     for (const std::string_view attribute : attributes) ReadAttribute(attribute, place, &node);
     for (const std::string& input : inputs) node.inputs.push_back(input.empty() ? -1 : Known(input, place));
     for (const std::string& output : outputs) node.outputs.push_back(output.empty() ? -1 : Define(output, place));
@@ -213,7 +213,7 @@ class Reader {
         case 6:
         case 10:
         case 11:
-          Fail(place, "a graph within the graph, expected none");
+          Refuse(name_, place, "a graph within the graph, expected none");
         default:
           break;
       }
@@ -254,7 +254,7 @@ class Reader {
           stored.has_raw = true;
           break;
         case 14:
-          if (tensor.Integer(field) != 0) Fail(place, "weights in another file, expected them in this one");
+          if (tensor.Integer(field) != 0) Refuse(name_, place, "weights in another file, expected them in this one");
           break;
         default:
           break;
@@ -264,16 +264,16 @@ class Reader {
   }
 
   OnnxTensor Tensor(const StoredTensor& stored, const std::string& place) {
-    if (stored.shape.size() > kMostAxes) Fail(place, Concatenate(stored.shape.size(), " axes"));
+    if (stored.shape.size() > kMostAxes) Refuse(name_, place, Concatenate(stored.shape.size(), " axes"));
     size_t size = 0;
     try {
       size = OnnxShapeSize(stored.shape);
     } catch (const std::runtime_error& error) {
-      Fail(place, error.what());
+      Refuse(name_, place, error.what());
     }
-    const bool is_float = stored.type == kFloat || stored.type == kHalf;
+    const bool is_float = stored.type == kOnnxFloat || stored.type == kOnnxHalf;
     const size_t bytes = size * (is_float ? sizeof(float) : sizeof(int64_t));
-    if (bytes > budget_) Fail(place, "constants that are much larger than the file");
+    if (bytes > budget_) Refuse(name_, place, "constants that are much larger than the file");
     budget_ -= bytes;
     if (stored.has_raw) CheckBytes(stored, size, place);
     if (is_float) {
@@ -287,19 +287,20 @@ class Reader {
   }
 
   void CheckBytes(const StoredTensor& stored, size_t size, const std::string& place) const {
-    const size_t each = stored.type == kInt64 ? 8 : stored.type == kHalf ? 2 : stored.type == kBool ? 1 : 4;
+    const size_t each = stored.type == kOnnxInt64 ? 8 : stored.type == kOnnxHalf ? 2 : stored.type == kOnnxBool ? 1 : 4;
     if (stored.raw.size() != size * each) {
-      Fail(place, Concatenate(stored.raw.size(), " bytes, expected ", size * each, " for a shape of ",
-                              OnnxShapeText(stored.shape)));
+      Refuse(name_, place,
+             Concatenate(stored.raw.size(), " bytes, expected ", size * each, " for a shape of ",
+                         OnnxShapeText(stored.shape)));
     }
   }
 
   void CheckCount(size_t found, size_t size, const std::string& place) const {
-    if (found != size) Fail(place, Concatenate(found, " numbers, expected ", size));
+    if (found != size) Refuse(name_, place, Concatenate(found, " numbers, expected ", size));
   }
 
   static std::vector<float> Floats(const StoredTensor& stored) {
-    if (stored.type == kFloat) {
+    if (stored.type == kOnnxFloat) {
       if (!stored.has_raw) return stored.floats;
       return Unpacked<float, float>(stored.raw, [](float value) { return value; });
     }
@@ -312,14 +313,15 @@ class Reader {
   [[nodiscard]] std::vector<int64_t> Ints(const StoredTensor& stored, const std::string& place) const {
     const auto widen = [](auto value) { return int64_t(value); };
     switch (stored.type) {
-      case kInt32:
+      case kOnnxInt32:
         return stored.has_raw ? Unpacked<int32_t, int64_t>(stored.raw, widen) : stored.ints;
-      case kInt64:
+      case kOnnxInt64:
         return stored.has_raw ? Unpacked<int64_t, int64_t>(stored.raw, widen) : stored.ints;
-      case kBool:
+      case kOnnxBool:
         return stored.has_raw ? Unpacked<uint8_t, int64_t>(stored.raw, widen) : stored.ints;
       default:
-        Fail(place, Concatenate("numbers of type ", stored.type, ", expected float32, float16, int32, int64 or bool"));
+        Refuse(name_, place,
+               Concatenate("numbers of type ", stored.type, ", expected float32, float16, int32, int64 or bool"));
     }
   }
 
@@ -357,7 +359,7 @@ std::string OnnxNode::Text(const std::string& key, const std::string& absent) co
   return attribute == nullptr ? absent : attribute->text;
 }
 
-OnnxModel ParseOnnxModel(std::string_view bytes, const std::string& name) { return Reader(bytes, name).Read(); }
+OnnxModel ParseOnnxModel(std::string_view bytes, const std::string& name) { return OnnxReader(bytes, name).Read(); }
 
 OnnxModel ReadOnnxModel(const std::string& path) { return ParseOnnxModel(ReadFileBytes(path, kMostBytes), path); }
 

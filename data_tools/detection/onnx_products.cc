@@ -17,12 +17,10 @@ namespace {
 
 using dnnl::memory;
 
-constexpr auto kFloat = memory::data_type::f32;
-
-[[noreturn]] void Fail(const std::string& what) { throw std::runtime_error(what); }
+constexpr auto kProductType = memory::data_type::f32;
 
 memory::desc Plain(const std::vector<int64_t>& shape) {
-  return {{shape[0], shape[1], shape[2], shape[3]}, kFloat, memory::format_tag::nchw};
+  return {{shape[0], shape[1], shape[2], shape[3]}, kProductType, memory::format_tag::nchw};
 }
 
 const dnnl::engine& Engine() {
@@ -43,7 +41,7 @@ void Multiply(bool transpose_a, bool transpose_b, int64_t rows, int64_t columns,
   const dnnl::status status =
       dnnl::sgemm(transpose_a ? 'T' : 'N', transpose_b ? 'T' : 'N', rows, columns, inner, alpha, a,
                   transpose_a ? rows : inner, b, transpose_b ? inner : columns, 0.0F, c, columns);
-  if (status != dnnl::status::success) Fail("a product of matrices failed");
+  if (status != dnnl::status::success) throw std::runtime_error("a product of matrices failed");
 }
 
 }  // namespace
@@ -60,32 +58,33 @@ OnnxConvolution::OnnxConvolution(const OnnxArguments& arguments, bool swish) : i
   const OnnxTensor &image = OnnxImage(arguments), &kernel = arguments.Input(1);
   const std::vector<float>& values = arguments.Floats(1);
   const int64_t groups = arguments.node().Integer("group", 1);
-  if (kernel.rank() != 4 || kernel.size() == 0) Fail("a kernel of " + OnnxShapeText(kernel.shape));
+  if (kernel.rank() != 4 || kernel.size() == 0) throw std::runtime_error("a kernel of " + OnnxShapeText(kernel.shape));
   const int64_t out = kernel.shape[0], channels = image.shape[1];
   if (groups < 1 || out % groups != 0 || channels % groups != 0 || kernel.shape[1] != channels / groups) {
-    Fail(Concatenate("a kernel of ", OnnxShapeText(kernel.shape), " in ", groups, " groups on an image of ",
-                     OnnxShapeText(image.shape)));
+    throw std::runtime_error(Concatenate("a kernel of ", OnnxShapeText(kernel.shape), " in ", groups,
+                                         " groups on an image of ", OnnxShapeText(image.shape)));
   }
   const OnnxWindow window(arguments, {kernel.shape[2], kernel.shape[3]}, {image.shape[2], image.shape[3]});
   if (window.kernel != std::array{kernel.shape[2], kernel.shape[3]})
-    Fail("a window of another shape than the kernel's");
+    throw std::runtime_error("a window of another shape than the kernel's");
   Impl& made = *impl_;
   made.in = image.shape;
   made.out = {image.shape[0], out, window.Count(0, image.shape[2]), window.Count(1, image.shape[3])};
   OnnxShapeSize(made.out);
   made.has_bias = arguments.Has(2);
   if (made.has_bias && int64_t(arguments.Floats(2).size()) != out)
-    Fail(Concatenate("a bias, expected ", out, " numbers"));
+    throw std::runtime_error(Concatenate("a bias, expected ", out, " numbers"));
 
   const auto any = [](const std::vector<int64_t>& shape) {
-    return memory::desc({shape[0], shape[1], shape[2], shape[3]}, kFloat, memory::format_tag::any);
+    return memory::desc({shape[0], shape[1], shape[2], shape[3]}, kProductType, memory::format_tag::any);
   };
   const memory::dims kernel_dims =
       groups == 1 ? memory::dims(kernel.shape)
                   : memory::dims{groups, out / groups, kernel.shape[1], kernel.shape[2], kernel.shape[3]};
-  const memory::desc plain_kernel(kernel_dims, kFloat,
+  const memory::desc plain_kernel(kernel_dims, kProductType,
                                   groups == 1 ? memory::format_tag::oihw : memory::format_tag::goihw),
-      any_kernel(kernel_dims, kFloat, memory::format_tag::any), bias_desc({out}, kFloat, memory::format_tag::x);
+      any_kernel(kernel_dims, kProductType, memory::format_tag::any),
+      bias_desc({out}, kProductType, memory::format_tag::x);
   const auto dims = [](const std::array<int64_t, 2>& pair) { return memory::dims{pair[0], pair[1]}; };
   const memory::dims dilation = {window.dilation[0] - 1, window.dilation[1] - 1};
   using Convolution = dnnl::convolution_forward;
@@ -124,7 +123,7 @@ OnnxConvolution& OnnxConvolution::operator=(OnnxConvolution&&) noexcept = defaul
 OnnxTensor OnnxConvolution::Run(const OnnxTensor& image) const {
   const Impl& made = *impl_;
   if (image.shape != made.in || !image.has_floats()) {
-    Fail("an image of " + OnnxShapeText(image.shape) + ", expected " + OnnxShapeText(made.in));
+    throw std::runtime_error("an image of " + OnnxShapeText(image.shape) + ", expected " + OnnxShapeText(made.in));
   }
   std::vector<float> result(OnnxShapeSize(made.out));
   dnnl::stream stream(Engine());
@@ -145,13 +144,13 @@ OnnxTensor OnnxConvolution::Run(const OnnxTensor& image) const {
 
 OnnxTensor OnnxMatMul(const OnnxArguments& arguments) {
   OnnxTensor a = arguments.FloatInput(0), b = arguments.FloatInput(1);
-  if (a.rank() == 0 || b.rank() == 0) Fail("a product with a single number");
+  if (a.rank() == 0 || b.rank() == 0) throw std::runtime_error("a product with a single number");
   const bool row = a.rank() == 1, column = b.rank() == 1;
   if (row) a = a.Reshaped({1, a.shape[0]});
   if (column) b = b.Reshaped({b.shape[0], 1});
   const int64_t rows = a.shape[size_t(a.rank() - 2)], inner = a.shape.back(), columns = b.shape.back();
   if (b.shape[size_t(b.rank() - 2)] != inner) {
-    Fail("a product of " + OnnxShapeText(a.shape) + " and " + OnnxShapeText(b.shape));
+    throw std::runtime_error("a product of " + OnnxShapeText(a.shape) + " and " + OnnxShapeText(b.shape));
   }
   const std::vector<int64_t> a_batch(a.shape.begin(), a.shape.end() - 2), b_batch(b.shape.begin(), b.shape.end() - 2);
   std::vector<int64_t> shape = OnnxBroadcastShape(a_batch, b_batch);
@@ -178,12 +177,12 @@ OnnxTensor OnnxMatMul(const OnnxArguments& arguments) {
 
 OnnxTensor OnnxGemm(const OnnxArguments& arguments) {
   const OnnxTensor &a = arguments.FloatInput(0), &b = arguments.FloatInput(1);
-  if (a.rank() != 2 || b.rank() != 2) Fail("other than two matrices");
+  if (a.rank() != 2 || b.rank() != 2) throw std::runtime_error("other than two matrices");
   const bool turn_a = arguments.node().Integer("transA", 0) != 0, turn_b = arguments.node().Integer("transB", 0) != 0;
   const int64_t rows = a.shape[turn_a ? 1 : 0], inner = a.shape[turn_a ? 0 : 1];
   const int64_t columns = b.shape[turn_b ? 0 : 1];
   if (b.shape[turn_b ? 1 : 0] != inner) {
-    Fail("a product of " + OnnxShapeText(a.shape) + " and " + OnnxShapeText(b.shape));
+    throw std::runtime_error("a product of " + OnnxShapeText(a.shape) + " and " + OnnxShapeText(b.shape));
   }
   std::vector<float> result(OnnxShapeSize({rows, columns}));
   Multiply(turn_a, turn_b, rows, columns, inner, arguments.node().Float("alpha", 1), a.floats->data(), b.floats->data(),

@@ -13,8 +13,6 @@
 namespace bodyloom {
 namespace {
 
-[[noreturn]] void Fail(const std::string& what) { throw std::runtime_error(what); }
-
 size_t Product(const std::vector<int64_t>& shape, size_t from, size_t to) {
   return OnnxShapeSize({shape.begin() + std::ptrdiff_t(from), shape.begin() + std::ptrdiff_t(to)});
 }
@@ -57,7 +55,8 @@ struct Taken {
 };
 
 Taken SliceOf(int64_t begin, int64_t end, int64_t step, int64_t length) {
-  if (step == 0 || step == std::numeric_limits<int64_t>::min()) Fail(Concatenate("a slice in steps of ", step));
+  if (step == 0 || step == std::numeric_limits<int64_t>::min())
+    throw std::runtime_error(Concatenate("a slice in steps of ", step));
   const auto limited = [length](int64_t at, int64_t low, int64_t high) {
     return std::clamp(at < 0 ? std::max(at, -length - 1) + length : at, low, high);
   };
@@ -88,7 +87,8 @@ OnnxTensor Sliced(const OnnxTensor& tensor, int axis, const Taken& taken) {
 }
 
 int64_t Found(int64_t index, int64_t length) {
-  if (index < -length || index >= length) Fail(Concatenate("entry ", index, " of an axis of ", length));
+  if (index < -length || index >= length)
+    throw std::runtime_error(Concatenate("entry ", index, " of an axis of ", length));
   return index < 0 ? index + length : index;
 }
 
@@ -97,7 +97,7 @@ std::vector<int64_t> ShapeFor(const OnnxTensor& tensor, std::vector<int64_t> wan
   for (size_t i = 0; i < wanted.size(); ++i) {
     if (wanted[i] == 0 && !keep_zeros && i < tensor.shape.size()) wanted[i] = tensor.shape[i];
     if (wanted[i] == -1) {
-      if (open >= 0) Fail(OnnxShapeText(wanted) + " leaves two axes open");
+      if (open >= 0) throw std::runtime_error(OnnxShapeText(wanted) + " leaves two axes open");
       open = int64_t(i);
     }
   }
@@ -107,7 +107,7 @@ std::vector<int64_t> ShapeFor(const OnnxTensor& tensor, std::vector<int64_t> wan
   const auto size = int64_t(tensor.size());
   if (open >= 0 && known > 0 && size % known == 0) wanted[size_t(open)] = size / known;
   if (std::count(wanted.begin(), wanted.end(), -1) > 0 || int64_t(OnnxShapeSize(wanted)) != size) {
-    Fail(OnnxShapeText(tensor.shape) + " cannot become " + OnnxShapeText(wanted));
+    throw std::runtime_error(OnnxShapeText(tensor.shape) + " cannot become " + OnnxShapeText(wanted));
   }
   return wanted;
 }
@@ -118,7 +118,7 @@ std::vector<int64_t> Squeezed(const std::vector<int64_t>& shape, const std::vect
   std::vector<int64_t> result;
   for (size_t i = 0; i < shape.size(); ++i) {
     if (axes.empty() ? shape[i] == 1 : bool(gone[i])) {
-      if (shape[i] != 1) Fail(Concatenate("axis ", i, " of ", OnnxShapeText(shape), " is no 1"));
+      if (shape[i] != 1) throw std::runtime_error(Concatenate("axis ", i, " of ", OnnxShapeText(shape), " is no 1"));
       continue;
     }
     result.push_back(shape[i]);
@@ -130,7 +130,8 @@ std::vector<int64_t> Unsqueezed(const std::vector<int64_t>& shape, const std::ve
   const size_t rank = shape.size() + axes.size();
   std::vector<bool> is_new(rank, false);
   for (const int64_t axis : axes) is_new[size_t(OnnxAxis(axis, int(rank)))] = true;
-  if (size_t(std::count(is_new.begin(), is_new.end(), true)) != axes.size()) Fail("an axis is named twice");
+  if (size_t(std::count(is_new.begin(), is_new.end(), true)) != axes.size())
+    throw std::runtime_error("an axis is named twice");
   std::vector<int64_t> result;
   size_t next = 0;
   for (size_t i = 0; i < rank; ++i) result.push_back(is_new[i] ? 1 : shape[next++]);
@@ -147,12 +148,12 @@ OnnxTensor OnnxConcat(const OnnxArguments& arguments) {
   for (size_t i = 0; i < arguments.num_inputs(); ++i) {
     std::vector<int64_t> other = arguments.Input(i).shape;
     if (other.size() != shape.size() || arguments.Input(i).has_floats() != first.has_floats()) {
-      Fail("tensors of different ranks or kinds side by side");
+      throw std::runtime_error("tensors of different ranks or kinds side by side");
     }
     std::swap(other[size_t(axis)], shape[size_t(axis)]);
     if (!std::equal(shape.begin(), shape.begin() + axis, other.begin()) ||
         !std::equal(shape.begin() + axis + 1, shape.end(), other.begin() + axis + 1)) {
-      Fail(OnnxShapeText(arguments.Input(i).shape) + " beside " + OnnxShapeText(first.shape));
+      throw std::runtime_error(OnnxShapeText(arguments.Input(i).shape) + " beside " + OnnxShapeText(first.shape));
     }
     shape[size_t(axis)] += other[size_t(axis)];
   }
@@ -193,11 +194,12 @@ std::vector<OnnxTensor> OnnxSplit(const OnnxArguments& arguments) {
   int64_t begin = 0;
   std::vector<OnnxTensor> result;
   for (const int64_t part : parts) {
-    if (part < 0 || part > length - begin) Fail(Concatenate("parts of an axis of ", length, " that do not fit it"));
+    if (part < 0 || part > length - begin)
+      throw std::runtime_error(Concatenate("parts of an axis of ", length, " that do not fit it"));
     result.push_back(Part(input, axis, begin, part));
     begin += part;
   }
-  if (begin != length) Fail(Concatenate("parts of ", begin, " for an axis of ", length));
+  if (begin != length) throw std::runtime_error(Concatenate("parts of ", begin, " for an axis of ", length));
   return result;
 }
 
@@ -209,7 +211,7 @@ OnnxTensor OnnxSlice(const OnnxArguments& arguments) {
   for (size_t i = axes.size(); axes.size() < begins.size(); ++i) axes.push_back(int64_t(i));
   steps.resize(std::max(steps.size(), begins.size()), 1);
   if (ends.size() != begins.size() || axes.size() != begins.size() || steps.size() != begins.size()) {
-    Fail("starts, ends, axes and steps of different numbers");
+    throw std::runtime_error("starts, ends, axes and steps of different numbers");
   }
   for (size_t i = 0; i < begins.size(); ++i) {
     const int axis = OnnxAxis(axes[i], result.rank());
@@ -227,7 +229,7 @@ OnnxTensor OnnxTranspose(const OnnxArguments& arguments) {
   std::vector<int64_t> sorted = order;
   std::sort(sorted.begin(), sorted.end());
   for (size_t i = 0; i < sorted.size(); ++i) {
-    if (sorted.size() != rank || sorted[i] != int64_t(i)) Fail("an order that is none of the axes");
+    if (sorted.size() != rank || sorted[i] != int64_t(i)) throw std::runtime_error("an order that is none of the axes");
   }
   std::vector<size_t> stride(rank, 1);
   for (size_t i = rank; i-- > 1;) stride[i - 1] = stride[i] * size_t(input.shape[i]);
@@ -274,13 +276,14 @@ OnnxTensor OnnxScatterNd(const OnnxArguments& arguments) {
   const OnnxTensor &input = arguments.Input(0), &index = arguments.Input(1);
   const std::vector<int64_t>& places = arguments.Ints(1);
   if (index.rank() == 0 || index.shape.back() < 1 || index.shape.back() > input.rank()) {
-    Fail("places of " + OnnxShapeText(index.shape));
+    throw std::runtime_error("places of " + OnnxShapeText(index.shape));
   }
   const auto depth = size_t(index.shape.back());
   const size_t row = Product(input.shape, depth, input.shape.size()), count = places.size() / depth;
   std::vector<float> values = arguments.Floats(0);
   const std::vector<float>& updates = arguments.Floats(2);
-  if (updates.size() != count * row) Fail(Concatenate(updates.size(), " values, expected ", count * row));
+  if (updates.size() != count * row)
+    throw std::runtime_error(Concatenate(updates.size(), " values, expected ", count * row));
   for (size_t i = 0; i < count; ++i) {
     size_t at = 0;
     for (size_t k = 0; k < depth; ++k) {
@@ -312,7 +315,8 @@ OnnxTensor OnnxExpand(const OnnxArguments& arguments) {
 OnnxTensor OnnxTile(const OnnxArguments& arguments) {
   OnnxTensor result = arguments.Input(0);
   const std::vector<int64_t>& times = arguments.Ints(1);
-  if (int(times.size()) != result.rank()) Fail(Concatenate(times.size(), " numbers for ", result.rank(), " axes"));
+  if (int(times.size()) != result.rank())
+    throw std::runtime_error(Concatenate(times.size(), " numbers for ", result.rank(), " axes"));
   for (size_t axis = 0; axis < times.size(); ++axis) {
     std::vector<int64_t> shape = result.shape;
     shape.insert(shape.begin() + std::ptrdiff_t(axis), 1);
@@ -330,7 +334,8 @@ OnnxTensor OnnxCast(const OnnxArguments& arguments) {
   const int64_t type = arguments.node().Integer("to", 0);
   const bool to_floats = type == 1 || type == 10 || type == 11;
   if (!to_floats && type != 6 && type != 7 && type != 9) {
-    Fail(Concatenate("numbers of type ", type, ", expected float32, float16, int32, int64 or bool"));
+    throw std::runtime_error(
+        Concatenate("numbers of type ", type, ", expected float32, float16, int32, int64 or bool"));
   }
   if (to_floats && !input.has_floats()) {
     return {input.shape, std::vector<float>(input.ints->begin(), input.ints->end())};
@@ -341,7 +346,7 @@ OnnxTensor OnnxCast(const OnnxArguments& arguments) {
     values = *input.ints;
   } else {
     for (const float value : *input.floats) {
-      if (!(std::abs(value) < 9e18F)) Fail("a number too large to be whole");
+      if (!(std::abs(value) < 9e18F)) throw std::runtime_error("a number too large to be whole");
       values.push_back(type == 9 ? int64_t(value != 0) : int64_t(value));
     }
   }
@@ -375,7 +380,7 @@ OnnxTensor OnnxConstant(const OnnxArguments& arguments) {
   if (const OnnxAttribute* number = value("value_int"); number && number->ints.size() == 1) return {{}, number->ints};
   if (const OnnxAttribute* list = value("value_floats")) return {{int64_t(list->floats.size())}, list->floats};
   if (const OnnxAttribute* list = value("value_ints")) return {{int64_t(list->ints.size())}, list->ints};
-  Fail("a constant without numbers");
+  throw std::runtime_error("a constant without numbers");
 }
 
 OnnxTensor OnnxConstantOfShape(const OnnxArguments& arguments) {
@@ -383,7 +388,7 @@ OnnxTensor OnnxConstantOfShape(const OnnxArguments& arguments) {
   const size_t size = OnnxShapeSize(shape);
   if (!arguments.node().Has("value")) return {shape, std::vector<float>(size, 0.0F)};
   const OnnxTensor value = OnnxConstant(arguments);
-  if (value.size() != 1) Fail(Concatenate(value.size(), " numbers, expected 1"));
+  if (value.size() != 1) throw std::runtime_error(Concatenate(value.size(), " numbers, expected 1"));
   if (value.has_floats()) return {shape, std::vector<float>(size, (*value.floats)[0])};
   return {shape, std::vector<int64_t>(size, (*value.ints)[0])};
 }
@@ -391,7 +396,8 @@ OnnxTensor OnnxConstantOfShape(const OnnxArguments& arguments) {
 OnnxTensor OnnxRange(const OnnxArguments& arguments) {
   const auto range = []<typename T>(const std::vector<T>& begin, const std::vector<T>& end,
                                     const std::vector<T>& step) {
-    if (begin.size() != 1 || end.size() != 1 || step.size() != 1 || step[0] == 0) Fail("a range without an end");
+    if (begin.size() != 1 || end.size() != 1 || step.size() != 1 || step[0] == 0)
+      throw std::runtime_error("a range without an end");
     const double count = std::ceil((double(end[0]) - double(begin[0])) / double(step[0]));
     const size_t size = OnnxShapeSize({count > 0 ? int64_t(std::min(count, 1e12)) : 0});
     std::vector<T> values(size);

@@ -8,15 +8,12 @@
 
 #include "bodyloom/data_tools/formats/half.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/refuse.h"
 
 namespace bodyloom {
 namespace {
 
 constexpr std::align_val_t kAlignment{64};
-
-[[noreturn]] void Fail(const std::string& place, const std::string& message) {
-  throw std::runtime_error(place + ": " + message);
-}
 
 size_t SizeOf(const std::vector<int>& shape) {
   size_t product = 1;
@@ -24,7 +21,7 @@ size_t SizeOf(const std::vector<int>& shape) {
   return product;
 }
 
-std::shared_ptr<float[]> AlignedFloats(size_t size) {
+std::shared_ptr<float[]> AllocateFloats(size_t size) {
   auto* values = static_cast<float*>(::operator new(size * sizeof(float), kAlignment));
   return {values, [](float* p) { ::operator delete(p, kAlignment); }};
 }
@@ -36,12 +33,12 @@ class StoredFloats {
       : half_(stored.type == TfliteType::kFloat16), halves_(stored.bytes), floats_(stored.bytes), place_(place) {
     const size_t bytes = size * (half_ ? sizeof(uint16_t) : sizeof(float));
     if (stored.bytes.size() != bytes) {
-      Fail(place, Concatenate(stored.bytes.size(), " bytes of values, expected ", bytes));
+      Refuse(place, Concatenate(stored.bytes.size(), " bytes of values, expected ", bytes));
     }
   }
   [[nodiscard]] float operator[](size_t i) const {
     const float value = half_ ? FloatFromHalf(halves_[i]) : floats_[i];
-    if (!std::isfinite(value)) Fail(place_, Concatenate("value ", i, " is ", value, ", expected a finite one"));
+    if (!std::isfinite(value)) Refuse(place_, Concatenate("value ", i, " is ", value, ", expected a finite one"));
     return value;
   }
 
@@ -59,7 +56,7 @@ class SparseIndices {
     kind_ = dimension.Number<uint8_t>(field, 0);
     const std::optional<FlatTable> table = dimension.Table(field + 1);
     if (kind_ < 1 || kind_ > 3 || !table) {
-      Fail(place, Concatenate(what, " of kind ", int{kind_}, ", expected 1 (int32), 2 (uint16) or 3 (uint8)"));
+      Refuse(place, Concatenate(what, " of kind ", int{kind_}, ", expected 1 (int32), 2 (uint16) or 3 (uint8)"));
     }
     if (kind_ == 1) longs_ = table->Numbers<int32_t>(0);
     if (kind_ == 2) shorts_ = table->Numbers<uint16_t>(0);
@@ -83,17 +80,17 @@ FlatTable CompressedDimension(const FlatTable& sparsity, const std::vector<int>&
   const FlatNumbers<int32_t> order = sparsity.Numbers<int32_t>(0);
   bool in_order = order.size() == rank;
   for (size_t i = 0; in_order && i < rank; ++i) in_order = order[i] == static_cast<int32_t>(i);
-  if (!in_order) Fail(place, "a sparse constant whose axes are reordered, expected them in order");
-  if (sparsity.Numbers<int32_t>(1).size() != 0) Fail(place, "a sparse constant of blocks, expected single values");
+  if (!in_order) Refuse(place, "a sparse constant whose axes are reordered, expected them in order");
+  if (sparsity.Numbers<int32_t>(1).size() != 0) Refuse(place, "a sparse constant of blocks, expected single values");
   const std::vector<FlatTable> dimensions = sparsity.Tables(2, rank);
-  if (dimensions.size() != rank) Fail(place, Concatenate(dimensions.size(), " sparse axes, expected ", rank));
+  if (dimensions.size() != rank) Refuse(place, Concatenate(dimensions.size(), " sparse axes, expected ", rank));
   for (size_t i = 0; i < rank; ++i) {
     const int format = dimensions[i].Number<uint8_t>(0, 0), expected = i + 1 == rank ? 1 : 0;
     const int size = dimensions[i].Number<int32_t>(1, 0);
     // The compressed axis is as long as the shape says; writers leave its own number out.
     if (format != expected || (expected == 0 && size != shape[i])) {
-      Fail(place, Concatenate("sparse axis ", i, " of format ", format, " and size ", size, ", expected ", expected,
-                              " and ", shape[i]));
+      Refuse(place, Concatenate("sparse axis ", i, " of format ", format, " and size ", size, ", expected ", expected,
+                                " and ", shape[i]));
     }
   }
   return dimensions.back();
@@ -106,19 +103,20 @@ void Scatter(const TfliteStored& stored, const std::vector<int>& shape, const st
   const auto num_columns = static_cast<size_t>(shape.back());
   const size_t num_rows = SizeOf(shape) / num_columns, count = columns.size();
   if (starts.size() != num_rows + 1 || starts[0] != 0 || starts[num_rows] != static_cast<int64_t>(count)) {
-    Fail(place, Concatenate(starts.size(), " row starts for ", num_rows, " rows, expected one more, from 0 to the ",
-                            count, " columns"));
+    Refuse(place, Concatenate(starts.size(), " row starts for ", num_rows, " rows, expected one more, from 0 to the ",
+                              count, " columns"));
   }
   const StoredFloats there(stored, count, place);
   for (size_t row = 0, i = 0; row < num_rows; ++row) {
     const int64_t end = starts[row + 1];
     if (end < static_cast<int64_t>(i) || end > static_cast<int64_t>(count)) {
-      Fail(place, Concatenate("row ", row, " ends at value ", end, ", expected ", i, " to ", count));
+      Refuse(place, Concatenate("row ", row, " ends at value ", end, ", expected ", i, " to ", count));
     }
     for (int64_t last = -1; i < static_cast<size_t>(end); ++i) {
       const int64_t column = columns[i];
       if (column <= last || column >= static_cast<int64_t>(num_columns)) {
-        Fail(place, Concatenate("column ", column, " in row ", row, ", expected ", last + 1, " to ", num_columns - 1));
+        Refuse(place,
+               Concatenate("column ", column, " in row ", row, ", expected ", last + 1, " to ", num_columns - 1));
       }
       values[row * num_columns + static_cast<size_t>(column)] = there[i];
       last = column;
@@ -130,17 +128,17 @@ void Scatter(const TfliteStored& stored, const std::vector<int>& shape, const st
 
 void TfliteBudget::Take(size_t bytes, const std::string& place) {
   if (bytes > bytes_) {
-    Fail(place, "constants of more than 16 times the file's bytes once unpacked, expected at most that");
+    Refuse(place, "constants of more than 16 times the file's bytes once unpacked, expected at most that");
   }
   bytes_ -= bytes;
 }
 
 std::shared_ptr<const float[]> TfliteFloats(const TfliteStored& stored, const std::vector<int>& shape,
                                             const std::string& place, TfliteBudget* budget) {
-  if (stored.type == TfliteType::kInt32) Fail(place, "a constant of int32, expected float32 or float16");
+  if (stored.type == TfliteType::kInt32) Refuse(place, "a constant of int32, expected float32 or float16");
   const size_t size = SizeOf(shape);
   budget->Take(size * sizeof(float), place);
-  const std::shared_ptr<float[]> values = AlignedFloats(size);
+  const std::shared_ptr<float[]> values = AllocateFloats(size);
   if (stored.sparsity) {
     std::fill_n(values.get(), size, 0.0F);
     Scatter(stored, shape, place, values.get());
@@ -155,7 +153,8 @@ std::vector<int32_t> TfliteInts(const TfliteStored& stored, const std::vector<in
                                 TfliteBudget* budget) {
   const size_t size = SizeOf(shape);
   if (stored.type != TfliteType::kInt32 || stored.sparsity || stored.bytes.size() != size * sizeof(int32_t)) {
-    Fail(place, Concatenate(stored.bytes.size(), " bytes of a constant of another type, expected ", size, " of int32"));
+    Refuse(place,
+           Concatenate(stored.bytes.size(), " bytes of a constant of another type, expected ", size, " of int32"));
   }
   budget->Take(stored.bytes.size(), place);
   const FlatNumbers<int32_t> there(stored.bytes);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/data_tools/detection/tflite_network.h"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <dnnl.hpp>
 #include <functional>
@@ -13,6 +11,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "bodyloom/data_tools/detection/one_thread.h"
 #include "bodyloom/data_tools/detection/tflite_shapes.h"
 #include "bodyloom/geometry/base/check.h"
 
@@ -25,19 +24,6 @@ constexpr auto kFloat = memory::data_type::f32;
 constexpr auto kForward = dnnl::prop_kind::forward_inference;
 
 bool IsImage(const std::vector<int>& shape) { return shape.size() == 4; }
-
-/// oneDNN cuts its work for as many threads as OpenMP would give this thread, when a primitive is made and when it runs.
-/// With one, several networks in several threads share the processor, and equal inputs give equal bits.
-class OneThread {
- public:
-  OneThread() : before_(omp_get_max_threads()) { omp_set_num_threads(1); }
-  ~OneThread() { omp_set_num_threads(before_); }
-  OneThread(const OneThread&) = delete;
-  OneThread& operator=(const OneThread&) = delete;
-
- private:
-  int before_;
-};
 
 /// An image N×H×W×C in TFLite's order of memory, as oneDNN names it; any other shape as one row of channels.
 memory::desc DescOf(const std::vector<int>& shape) {

@@ -10,7 +10,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr double kLeastScore = 0.25, kSamePersonOverlap = 0.7;
+constexpr double kLeastScore = 0.25, kSameBoxOverlap = 0.7;
 constexpr size_t kMostPeople = 300;
 
 double Overlap(const PersonBox& a, const PersonBox& b) {
@@ -80,7 +80,7 @@ std::vector<YoloPerson> DecodeYolo(std::span<const float> output, int classes, i
   std::vector<YoloPerson> people;
   for (const auto& [box, anchor] : candidates) {
     if (people.size() == kMostPeople) break;
-    const auto is_same = [&b = box](const YoloPerson& other) { return Overlap(b, other.box) > kSamePersonOverlap; };
+    const auto is_same = [&b = box](const YoloPerson& other) { return Overlap(b, other.box) > kSameBoxOverlap; };
     if (std::any_of(people.begin(), people.end(), is_same)) continue;
     YoloPerson& person = people.emplace_back();
     person.box = box;

@@ -6,6 +6,7 @@
 
 #include "bodyloom/data_tools/evaluation/evaluation.h"
 #include "bodyloom/data_tools/evaluation/held_out_views.h"
+#include "bodyloom/geometry/body_model.h"
 #include "bodyloom/geometry/track.h"
 
 namespace bodyloom {
@@ -17,8 +18,12 @@ MultiViewClip ReadAistClip(const std::string& annotations_folder, const std::str
                            const std::string& sequence);
 
 /// Protocol "aist-held-out": EvaluateHeldOutViews on that clip. `view` is the camera the track was fitted to ("c01").
-Evaluation EvaluateAist(const Track& track, const MultiViewClip& clip, const std::string& view);
+/// With the body that the track was made with, also the per-vertex projection error of paper A, Table 4, against the
+/// recording's own SMPL motion on that body (pseudo_truth.h: as published on a body of SMPL's 6,890 vertices, fitted to
+/// the 3D joints on any other).
+Evaluation EvaluateAist(const Track& track, const MultiViewClip& clip, const std::string& view,
+                        const BodyModel* body = nullptr);
 Evaluation EvaluateAist(const Track& track, const std::string& annotations_folder, const std::string& cameras_folder,
-                        const std::string& sequence, const std::string& view);
+                        const std::string& sequence, const std::string& view, const BodyModel* body = nullptr);
 
 }  // namespace bodyloom

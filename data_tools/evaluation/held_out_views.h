@@ -27,7 +27,8 @@ struct MultiViewClip {
   std::vector<RigView> views;
   std::vector<MatrixX3d> coco17_in_world;  ///< T of 17×3 metres; NaN where not known
   Motion motion;                           ///< T SMPL poses in the world frame; num_frames() = 0 when there are none
-  double fps = 0;                          ///< nominal: positions are differenced with it, not with rounded timestamps
+  double motion_scale = 1;  ///< metres of the world a metre of the motion's body (its shape is the template's)
+  double fps = 0;           ///< nominal: positions are differenced with it, not with rounded timestamps
 };
 
 struct EvaluateHeldOutViewsOptions {

@@ -14,7 +14,7 @@ namespace bodyloom {
 namespace {
 
 /// Sum and number of the finite values it was given.
-struct Mean {
+struct FiniteMean {
   double sum = 0;
   int64_t count = 0, missing = 0;
   void Add(double value) {
@@ -117,7 +117,7 @@ void PositionErrorAccumulator::AddFrame(const Eigen::VectorXd& distances) {
   }
   BODYLOOM_CHECK(distances.size() == point_sum_.size(), "PositionErrorAccumulator: frame ", frame_means_.size(),
                  " has ", distances.size(), " points, frame 0 has ", point_sum_.size());
-  Mean frame;
+  FiniteMean frame;
   for (Eigen::Index p = 0; p < distances.size(); ++p) {
     frame.Add(distances[p]);
     if (!std::isfinite(distances[p])) continue;
@@ -164,7 +164,7 @@ RootError RootPositionError(const MatrixX3d& prediction, const MatrixX3d& truth)
   BODYLOOM_CHECK(prediction.rows() == truth.rows(), "RootPositionError: prediction has ", prediction.rows(),
                  " frames, truth has ", truth.rows());
   std::vector<double> distances;
-  Mean lateral, depth;
+  FiniteMean lateral, depth;
   for (Eigen::Index t = 0; t < truth.rows(); ++t) {
     const Eigen::RowVector3d d = prediction.row(t) - truth.row(t);
     distances.push_back(d.norm());
@@ -210,7 +210,7 @@ MotionError AccelerationError(Clip prediction, Clip truth, const std::vector<dou
   CheckSameShape("AccelerationError", prediction, truth);
   const std::vector<MatrixX3d> a = TimeDerivative(prediction, timestamps, 2, max_step_s);
   const std::vector<MatrixX3d> b = TimeDerivative(truth, timestamps, 2, max_step_s);
-  Mean error, mean_prediction, mean_truth;
+  FiniteMean error, mean_prediction, mean_truth;
   for (size_t t = 0; t < a.size(); ++t) {
     for (Eigen::Index p = 0; p < a[t].rows(); ++p) {
       error.Add((a[t].row(p) - b[t].row(p)).norm());
@@ -222,7 +222,7 @@ MotionError AccelerationError(Clip prediction, Clip truth, const std::vector<dou
 }
 
 double Jitter(Clip points, const std::vector<double>& timestamps, double max_step_s) {
-  Mean mean;
+  FiniteMean mean;
   for (const MatrixX3d& jerk : TimeDerivative(points, timestamps, 3, max_step_s)) {
     for (Eigen::Index p = 0; p < jerk.rows(); ++p) mean.Add(jerk.row(p).norm());
   }
@@ -234,11 +234,11 @@ JointAngleError MeanJointAngleError(const RowMatrixXd& prediction, const RowMatr
                  "MeanJointAngleError: prediction is ", prediction.rows(), "x", prediction.cols(), ", truth ",
                  truth.rows(), "x", truth.cols(), ", expected the same T×3J");
   const Eigen::Index T = truth.rows(), J = truth.cols() / 3;
-  std::vector<Mean> joints(J);
+  std::vector<FiniteMean> joints(J);
   std::vector<double> frame_means;
-  Mean body;
+  FiniteMean body;
   for (Eigen::Index t = 0; t < T; ++t) {
-    Mean frame;
+    FiniteMean frame;
     for (Eigen::Index j = 0; j < J; ++j) {
       const Eigen::Vector3d a = prediction.row(t).segment<3>(3 * j), b = truth.row(t).segment<3>(3 * j);
       const double angle_deg =

@@ -5,6 +5,7 @@
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/hash_random.h"
+#include "bodyloom/geometry/base/units.h"
 #include "bodyloom/geometry/posed_body.h"
 #include "bodyloom/geometry/rotation.h"
 
@@ -14,7 +15,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kDegree = M_PI / 180, kDistance_m = 4;
+constexpr double kDistance_m = 4;
 constexpr int kPelvis = 0, kLeftShoulder = 16, kRightShoulder = 17, kLeftElbow = 18, kRightElbow = 19;
 
 Matrix3d Turn(double x_deg, double y_deg, double z_deg) {

@@ -14,7 +14,7 @@
 namespace bodyloom {
 namespace {
 
-[[noreturn]] void Fail(const std::string& path, const std::string& action) {
+[[noreturn]] void FailWithErrno(const std::string& path, const std::string& action) {
   throw std::runtime_error(path + ": cannot " + action + ": " + std::strerror(errno));
 }
 
@@ -38,7 +38,7 @@ void SyncFolderOf(const std::string& path) {
 std::string ReadFileBytes(const std::string& path, size_t max_bytes) {
   // Without O_NONBLOCK, opening a pipe that nobody writes to would wait forever.
   const int fd = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-  if (fd < 0) Fail(path, "open for reading");
+  if (fd < 0) FailWithErrno(path, "open for reading");
   struct stat info {};
   if (::fstat(fd, &info) != 0 || !S_ISREG(info.st_mode)) {
     ::close(fd);
@@ -56,7 +56,7 @@ std::string ReadFileBytes(const std::string& path, size_t max_bytes) {
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) {
       ::close(fd);
-      Fail(path, "read");
+      FailWithErrno(path, "read");
     }
     if (n == 0) break;
     done += static_cast<size_t>(n);
@@ -69,7 +69,7 @@ std::string ReadFileBytes(const std::string& path, size_t max_bytes) {
 void WriteFileAtomically(const std::string& path, const std::string& bytes) {
   AtomicPath file(path);
   const int fd = ::open(file.temporary().c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (fd < 0) Fail(path, "open for writing");
+  if (fd < 0) FailWithErrno(path, "open for writing");
   size_t done = 0;
   while (done < bytes.size()) {
     const ssize_t n = ::write(fd, bytes.data() + done, bytes.size() - done);
@@ -78,11 +78,11 @@ void WriteFileAtomically(const std::string& path, const std::string& bytes) {
       const int reason = errno;
       ::close(fd);
       errno = reason;
-      Fail(path, "write (" + std::to_string(done) + " of " + std::to_string(bytes.size()) + " bytes written)");
+      FailWithErrno(path, "write (" + std::to_string(done) + " of " + std::to_string(bytes.size()) + " bytes written)");
     }
     done += static_cast<size_t>(n);
   }
-  if (::close(fd) != 0) Fail(path, "close");
+  if (::close(fd) != 0) FailWithErrno(path, "close");
   file.Commit();
 }
 
@@ -94,11 +94,11 @@ AtomicPath::~AtomicPath() {
 
 void AtomicPath::Commit() {
   const int fd = ::open(temporary_.c_str(), O_RDONLY | O_CLOEXEC);
-  if (fd < 0) Fail(target_, "finish (no output was written)");
+  if (fd < 0) FailWithErrno(target_, "finish (no output was written)");
   const bool synced = ::fsync(fd) == 0;
   ::close(fd);
-  if (!synced) Fail(target_, "flush to disk");
-  if (::rename(temporary_.c_str(), target_.c_str()) != 0) Fail(target_, "move the finished file into place");
+  if (!synced) FailWithErrno(target_, "flush to disk");
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) FailWithErrno(target_, "move the finished file into place");
   committed_ = true;
   SyncFolderOf(target_);
 }

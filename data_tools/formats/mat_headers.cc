@@ -23,9 +23,9 @@ constexpr uint32_t kMaxDimensions = 16, kMaxName = 63;
 /// Tag of the matrix, its flags, dimensions, and the tag of its name.
 constexpr size_t kLongestHead = kTag + 2 * kTag + kTag + 4 * kMaxDimensions + kTag;
 
-class Words {
+class HeaderWords {
  public:
-  Words(const unsigned char* bytes, size_t size, bool swapped) : bytes_(bytes), size_(size), swapped_(swapped) {}
+  HeaderWords(const unsigned char* bytes, size_t size, bool swapped) : bytes_(bytes), size_(size), swapped_(swapped) {}
   [[nodiscard]] bool Has(size_t at, size_t n) const { return at <= size_ && n <= size_ - at; }
   [[nodiscard]] uint32_t At(size_t at) const {
     uint32_t word;
@@ -54,7 +54,7 @@ size_t Inflate(const unsigned char* bytes, size_t size, std::array<unsigned char
 }
 
 /// What is wrong with the head of a matrix; empty: nothing.
-std::string Fault(const Words& head) {
+std::string Fault(const HeaderWords& head) {
   if (!head.Has(0, 4 * kTag)) return "a variable that is cut short";
   if (head.At(0) != kMatrix) return Concatenate("data of type ", head.At(0), ", expected a matrix");
   if (head.At(kTag) != kUint32 || head.At(kTag + 4) != 8) return "a matrix without flags";
@@ -92,7 +92,7 @@ void CheckMatHeaders(const std::string& path) {
   if ((signature != "IM" && !swapped) || version != (swapped ? "\1\0"s : "\0\1"s)) {
     throw std::runtime_error(path + ": not a MATLAB version 5 file, expected one saved with -v6 or -v7");
   }
-  const Words words(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size(), swapped);
+  const HeaderWords words(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size(), swapped);
   size_t at = kFileHeader;
   while (at < bytes.size()) {
     const auto fail = [&](const std::string& what) {
@@ -105,9 +105,9 @@ void CheckMatHeaders(const std::string& path) {
     if (type == kCompressed) {
       std::array<unsigned char, kLongestHead> head{};
       const size_t n = Inflate(words.bytes(at + kTag), size, &head);
-      fault = Fault(Words(head.data(), n, swapped));
+      fault = Fault(HeaderWords(head.data(), n, swapped));
     } else {
-      fault = Fault(Words(words.bytes(at), kTag + size, swapped));
+      fault = Fault(HeaderWords(words.bytes(at), kTag + size, swapped));
     }
     if (!fault.empty()) fail(fault);
     at += kTag + size;

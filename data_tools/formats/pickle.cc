@@ -98,6 +98,14 @@ const PickleValue* PickleValue::Find(const std::string& key) const {
   return nullptr;
 }
 
+const NdArray& RequireNumbers(const PickleValue& file, const std::string& key, const std::string& where) {
+  const PickleValue* value = file.Find(key);
+  if (value == nullptr || value->kind != PickleValue::Kind::kArray || !value->array.is_number()) {
+    throw std::runtime_error(where + ": no array '" + key + "'");
+  }
+  return value->array;
+}
+
 void PickleContext::Fail(const std::string& message) const {
   throw std::runtime_error(Concatenate(where_, ": byte ", offset, ": ", message));
 }

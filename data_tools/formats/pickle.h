@@ -42,6 +42,9 @@ struct PickleValue {
   [[nodiscard]] const PickleValue* Find(const std::string& key) const;
 };
 
+/// The array of numbers that `file` has under this key. Throws std::runtime_error with `where` when there is none.
+const NdArray& RequireNumbers(const PickleValue& file, const std::string& key, const std::string& where);
+
 struct PickleLimits {
   size_t max_bytes = size_t{1} << 31;  ///< of all arrays and strings together
   int max_depth = 200;

@@ -20,7 +20,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr size_t kMaxHeader = 100'000'000;
+constexpr size_t kMaxTensorHeader = 100'000'000;
 constexpr size_t kLengthBytes = 8;
 constexpr const char* kMetadata = "__metadata__";
 
@@ -63,7 +63,7 @@ json ParseHeader(std::string_view text, const std::string& where) {
   }
 }
 
-struct Entry {
+struct TensorEntry {
   std::string name;
   const TypeName* type = nullptr;
   std::vector<int64_t> shape;
@@ -82,11 +82,11 @@ std::optional<std::vector<int64_t>> WholeNumbers(const json& entry, const char* 
   return numbers;
 }
 
-Entry ParseEntry(const std::string& name, const json& value, uint64_t data_bytes, const std::string& where) {
+TensorEntry ParseEntry(const std::string& name, const json& value, uint64_t data_bytes, const std::string& where) {
   const std::string place = where + ": tensor '" + PrintableText(name) + "': ";
   const auto fail = [&](const std::string& message) { throw std::runtime_error(place + message); };
   if (!value.is_object()) fail("expected an object with dtype, shape and data_offsets");
-  Entry entry;
+  TensorEntry entry;
   entry.name = name;
   const auto dtype = value.find("dtype");
   if (dtype == value.end() || !dtype->is_string()) fail("expected its dtype as text");
@@ -119,11 +119,12 @@ Entry ParseEntry(const std::string& name, const json& value, uint64_t data_bytes
 }
 
 /// In the order of their bytes; throws unless they lie one behind the other from the first byte to the last.
-void RequireCover(std::vector<Entry>* entries, uint64_t data_bytes, const std::string& where) {
-  std::sort(entries->begin(), entries->end(),
-            [](const Entry& a, const Entry& b) { return std::pair(a.begin, a.end) < std::pair(b.begin, b.end); });
+void RequireCover(std::vector<TensorEntry>* entries, uint64_t data_bytes, const std::string& where) {
+  std::sort(entries->begin(), entries->end(), [](const TensorEntry& a, const TensorEntry& b) {
+    return std::pair(a.begin, a.end) < std::pair(b.begin, b.end);
+  });
   uint64_t at = 0;
-  for (const Entry& entry : *entries) {
+  for (const TensorEntry& entry : *entries) {
     if (entry.begin != at) {
       throw std::runtime_error(Concatenate(where, ": tensor '", PrintableText(entry.name), "': starts at byte ",
                                            entry.begin, " of the data, expected ", at, " (",
@@ -143,15 +144,15 @@ WeightsFile SafetensorsFromBytes(std::string_view bytes, const std::string& wher
   if (bytes.size() < kLengthBytes) fail(Concatenate(bytes.size(), " bytes, expected a safetensors file (at least 8)"));
   uint64_t length = 0;
   for (size_t i = kLengthBytes; i-- > 0;) length = (length << 8) | static_cast<unsigned char>(bytes[i]);
-  if (length > kMaxHeader || length > bytes.size() - kLengthBytes) {
+  if (length > kMaxTensorHeader || length > bytes.size() - kLengthBytes) {
     fail(Concatenate("a header of ", length, " bytes, expected at most ",
-                     std::min<size_t>(kMaxHeader, bytes.size() - kLengthBytes),
+                     std::min<size_t>(kMaxTensorHeader, bytes.size() - kLengthBytes),
                      " (the file is truncated or not of safetensors)"));
   }
   const json header = ParseHeader(bytes.substr(kLengthBytes, length), where);
   const std::string_view data = bytes.substr(kLengthBytes + length);
   WeightsFile file;
-  std::vector<Entry> entries;
+  std::vector<TensorEntry> entries;
   for (const auto& [name, value] : header.items()) {
     if (name != kMetadata) {
       entries.push_back(ParseEntry(name, value, data.size(), where));
@@ -164,7 +165,7 @@ WeightsFile SafetensorsFromBytes(std::string_view bytes, const std::string& wher
     }
   }
   RequireCover(&entries, data.size(), where);
-  for (Entry& entry : entries) {
+  for (TensorEntry& entry : entries) {
     const ElementType type{entry.type->dtype, entry.type->item_size, false};
     file.tensors[entry.name] =
         ArrayFromBytes(type, std::move(entry.shape), false, data.substr(entry.begin, entry.end - entry.begin));
@@ -205,7 +206,8 @@ std::string SafetensorsBytes(const std::map<std::string, NdArray>& tensors,
     BODYLOOM_CHECK(false, "names and metadata of tensors: ", error.what(), ", expected UTF-8");
   }
   text.append((kLengthBytes - text.size() % kLengthBytes) % kLengthBytes, ' ');
-  BODYLOOM_CHECK(text.size() <= kMaxHeader, "a header of ", text.size(), " bytes, expected at most ", kMaxHeader);
+  BODYLOOM_CHECK(text.size() <= kMaxTensorHeader, "a header of ", text.size(), " bytes, expected at most ",
+                 kMaxTensorHeader);
   std::string bytes;
   bytes.reserve(kLengthBytes + text.size() + data.size());
   for (size_t i = 0; i < kLengthBytes; ++i) bytes.push_back(static_cast<char>(text.size() >> (8 * i)));

@@ -27,7 +27,7 @@ using Kind = PickleValue::Kind;
 constexpr std::string_view kLegacyMagic("\x80\x02\x8a\x0a\x6c\xfc\x9c\x46\xf9\x20\x6a\xa8\x50\x19.", 15);
 constexpr int64_t kLegacyProtocol = 1001;
 constexpr size_t kMaxEntries = 200'000;
-constexpr size_t kMaxName = 1024;
+constexpr size_t kMaxTensorName = 1024;
 constexpr size_t kMaxRank = 32;
 
 struct StorageType {
@@ -69,7 +69,7 @@ class TensorCollector {
 
   void Collect(const std::string& name, const PickleValue& value) {
     if (++entries_ > kMaxEntries) Fail(name, Concatenate("more than ", kMaxEntries, " entries"));
-    if (name.size() > kMaxName) Fail(name, Concatenate("a name of ", name.size(), " bytes"));
+    if (name.size() > kMaxTensorName) Fail(name, Concatenate("a name of ", name.size(), " bytes"));
     if (value.kind == Kind::kDict) {
       for (const auto& [key, entry] : value.dict) Collect(name.empty() ? key : name + "." + key, *entry);
       return;

@@ -24,9 +24,9 @@ constexpr size_t kMaxRatio = 1100;
 constexpr uint64_t kIn64 = 0xFFFFFFFF;  // a 32-bit field that says "see the zip64 record"
 
 /// Little-endian fields of the archive; reading past the end is a truncated file.
-class Bytes {
+class ArchiveBytes {
  public:
-  Bytes(std::string_view bytes, const std::string& where) : bytes_(bytes), where_(where) {}
+  ArchiveBytes(std::string_view bytes, const std::string& where) : bytes_(bytes), where_(where) {}
 
   [[nodiscard]] size_t size() const { return bytes_.size(); }
   [[nodiscard]] uint64_t U16(size_t at) const { return Unsigned(at, 2); }
@@ -56,12 +56,12 @@ struct Directory {
   uint64_t offset = 0, size = 0, entries = 0;
 };
 
-struct Entry {
+struct DirectoryEntry {
   std::string name;
   uint64_t flags = 0, method = 0, crc = 0, packed_size = 0, size = 0, header = 0;
 };
 
-Directory FindDirectory(const Bytes& in) {
+Directory FindDirectory(const ArchiveBytes& in) {
   if (in.size() < kEndSize) in.Fail(Concatenate(in.size(), " bytes, expected a zip archive (at least 22)"));
   const size_t lowest = in.size() - std::min<size_t>(in.size(), kEndSize + 65535);
   size_t end = in.size() - kEndSize + 1;
@@ -89,7 +89,7 @@ Directory FindDirectory(const Bytes& in) {
 }
 
 /// Replaces the fields that say kIn64 by those of the entry's zip64 record.
-void ApplyZip64(const Bytes& in, size_t extra, size_t extra_size, Entry* entry) {
+void ApplyZip64(const ArchiveBytes& in, size_t extra, size_t extra_size, DirectoryEntry* entry) {
   const size_t end = extra + extra_size;
   while (extra + 4 <= end) {
     const uint64_t id = in.U16(extra), size = in.U16(extra + 2);
@@ -108,14 +108,14 @@ void ApplyZip64(const Bytes& in, size_t extra, size_t extra_size, Entry* entry) 
   }
 }
 
-std::vector<Entry> ReadDirectory(const Bytes& in, const Directory& directory) {
-  std::vector<Entry> entries;
+std::vector<DirectoryEntry> ReadDirectory(const ArchiveBytes& in, const Directory& directory) {
+  std::vector<DirectoryEntry> entries;
   std::set<std::string> names;
   size_t at = directory.offset;
   for (uint64_t i = 0; i < directory.entries; ++i) {
     if (in.U32(at) != kDirectoryEntry) in.Fail(Concatenate("byte ", at, ": expected directory entry ", i));
     const size_t name_size = in.U16(at + 28), extra_size = in.U16(at + 30), comment_size = in.U16(at + 32);
-    Entry entry;
+    DirectoryEntry entry;
     entry.flags = in.U16(at + 8);
     entry.method = in.U16(at + 10);
     entry.crc = in.U32(at + 16);
@@ -132,7 +132,7 @@ std::vector<Entry> ReadDirectory(const Bytes& in, const Directory& directory) {
 }
 
 /// Where a member's packed bytes start, after its own header.
-size_t PackedBegin(const Bytes& in, const Entry& entry, uint64_t directory_offset) {
+size_t PackedBegin(const ArchiveBytes& in, const DirectoryEntry& entry, uint64_t directory_offset) {
   const std::string member = "member '" + PrintableText(entry.name) + "': ";
   if ((entry.flags & 1) != 0) in.Fail(member + "is encrypted, expected a plain archive");
   if (entry.method != kStored && entry.method != kDeflated) {
@@ -156,7 +156,7 @@ size_t PackedBegin(const Bytes& in, const Entry& entry, uint64_t directory_offse
   return begin;
 }
 
-std::string Unpack(const Bytes& in, const Entry& entry, std::string_view packed) {
+std::string Unpack(const ArchiveBytes& in, const DirectoryEntry& entry, std::string_view packed) {
   std::string bytes;
   if (entry.method == kStored) {
     bytes = std::string(packed);
@@ -212,7 +212,7 @@ void Put(uint64_t value, int length, std::string* out) {
 }
 
 /// The fields shared by a member's header and its directory entry, from "version needed" to "extra length".
-void PutCommon(const Entry& entry, std::string* out) {
+void PutCommon(const DirectoryEntry& entry, std::string* out) {
   Put(20, 2, out);
   Put(0, 2, out);
   Put(entry.method, 2, out);
@@ -232,12 +232,12 @@ bool LooksLikeZip(std::string_view bytes) {
 }
 
 std::vector<ZipMember> ReadZip(std::string_view archive, const std::string& where, size_t max_bytes) {
-  const Bytes in(archive, where);
+  const ArchiveBytes in(archive, where);
   const Directory directory = FindDirectory(in);
-  const std::vector<Entry> entries = ReadDirectory(in, directory);
+  const std::vector<DirectoryEntry> entries = ReadDirectory(in, directory);
   std::vector<std::pair<size_t, size_t>> extents;  // packed bytes [begin, end) of each member
   size_t total = 0;
-  for (const Entry& entry : entries) {
+  for (const DirectoryEntry& entry : entries) {
     const size_t begin = PackedBegin(in, entry, directory.offset);
     extents.emplace_back(begin, begin + entry.packed_size);
     if (entry.size > max_bytes - total) {
@@ -267,7 +267,7 @@ std::string MakeZip(const std::vector<ZipMember>& members, int level, ZipPacking
     const std::string packed = Deflate(member.bytes, level, packing);
     const bool deflated = packed.size() < member.bytes.size();
     const std::string& body = deflated ? packed : member.bytes;
-    Entry entry;
+    DirectoryEntry entry;
     entry.name = member.name;
     entry.method = deflated ? kDeflated : kStored;
     entry.crc = crc32_z(0, reinterpret_cast<const Bytef*>(member.bytes.data()), member.bytes.size());

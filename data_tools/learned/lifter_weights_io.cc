@@ -30,9 +30,9 @@ NdArray HalfMatrix(const RowMatrixXf& matrix) {
 NdArray Vector(const Eigen::VectorXf& vector) { return NdArray::FromFloats(vector.data(), {vector.size()}); }
 
 /// Reads arrays of one archive; sizes against each other are LifterWeights::IsValid's business.
-class Reader {
+class WeightsReader {
  public:
-  Reader(const NpzArrays& arrays, const std::string& where) : arrays_(arrays), where_(where) {}
+  WeightsReader(const NpzArrays& arrays, const std::string& where) : arrays_(arrays), where_(where) {}
 
   [[nodiscard]] const NdArray& Floats(const std::string& name, size_t dimensions) const {
     const NdArray& array = RequireArray(arrays_, name, where_);
@@ -90,7 +90,7 @@ void WriteLifterWeights(const std::string& path, const LifterWeights& weights) {
 
 LifterWeights ReadLifterWeightsBytes(const std::string& bytes, const std::string& where) {
   const NpzArrays arrays = ReadNpzBytes(bytes, where, size_t{1} << 28);
-  const Reader reader(arrays, where);
+  const WeightsReader reader(arrays, where);
   LifterWeights weights;
   const std::vector<int64_t> dilations = WholeNumbers(RequireArray(arrays, "dilations", where), "dilations", where);
   if (dilations.size() > kMostBlocks) {

@@ -33,13 +33,13 @@ int MirrorJoint(const BodyModel& body, int j) {
   return mirror < 0 ? j : mirror;
 }
 
-struct Sample {
+struct PoseSample {
   VectorXd pose;  ///< 3J axis-angle
   double weight;
 };
 
-std::vector<Sample> CollectSamples(const std::vector<Motion>& motions, const BodyModel& body, double rate) {
-  std::vector<Sample> samples;
+std::vector<PoseSample> CollectSamples(const std::vector<Motion>& motions, const BodyModel& body, double rate) {
+  std::vector<PoseSample> samples;
   for (const Motion& motion : motions) {
     BODYLOOM_CHECK(motion.poses.cols() == 3 * body.num_joints(), "pose prior: a motion has ", motion.poses.cols(),
                    " pose values, the body has 3J = ", 3 * body.num_joints());
@@ -144,8 +144,8 @@ bool LimbDirections(const BodyModel& body, const MatrixX3d& joints, const Limb& 
   return upper->allFinite() && lower->allFinite();
 }
 
-RowMatrixXf LimbDensity(const std::vector<Sample>& samples, const std::vector<MatrixX3d>& joints, const BodyModel& body,
-                        const Limb& limb, const LearnPosePriorOptions& options) {
+RowMatrixXf LimbDensity(const std::vector<PoseSample>& samples, const std::vector<MatrixX3d>& joints,
+                        const BodyModel& body, const Limb& limb, const LearnPosePriorOptions& options) {
   const DirectionBins bins(options.num_directions);
   const int N = bins.size();
   MatrixXd counts = MatrixXd::Zero(N, N);
@@ -195,7 +195,7 @@ PosePrior LearnPosePrior(const std::vector<Motion>& motions, const BodyModel& bo
                          const LearnPosePriorOptions& options) {
   std::string why;
   BODYLOOM_CHECK(options.IsValid(&why), "pose prior: ", why);
-  const std::vector<Sample> samples = CollectSamples(motions, body, options.sample_rate);
+  const std::vector<PoseSample> samples = CollectSamples(motions, body, options.sample_rate);
   BODYLOOM_CHECK(!samples.empty(), "pose prior: the motions hold no usable frame");
   PosePrior prior;
   std::vector<int> joints;

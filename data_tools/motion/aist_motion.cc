@@ -5,17 +5,10 @@
 #include <stdexcept>
 
 #include "bodyloom/data_tools/motion/skeleton_motion.h"
+#include "bodyloom/geometry/base/units.h"
 
 namespace bodyloom {
 namespace {
-
-const NdArray& RequireNumbers(const PickleValue& file, const std::string& key, const std::string& where) {
-  const PickleValue* value = file.Find(key);
-  if (value == nullptr || value->kind != PickleValue::Kind::kArray || !value->array.is_number()) {
-    throw std::runtime_error(where + ": no array '" + key + "'");
-  }
-  return value->array;
-}
 
 double ScalingOf(const PickleValue& file, const std::string& where) {
   const PickleValue* value = file.Find("smpl_scaling");
@@ -32,6 +25,8 @@ double ScalingOf(const PickleValue& file, const std::string& where) {
 }
 
 }  // namespace
+
+double AistBodyScale(const PickleValue& file, const std::string& where) { return kCentimetre * ScalingOf(file, where); }
 
 bool IsAistMotion(const PickleValue& file) { return file.Find("smpl_poses") != nullptr; }
 

@@ -13,8 +13,12 @@
 
 namespace bodyloom {
 
+inline constexpr double kAistFps = 60;  ///< of the recordings, whose files do not say it
+
 bool IsAistMotion(const PickleValue& file);
+/// smpl_scaling / 100: metres of the world a metre of the body. Throws as below.
+double AistBodyScale(const PickleValue& file, const std::string& where);
 /// Throws std::runtime_error naming `where`, the key, what it holds and what was expected.
-Motion AistMotionFromPickle(const PickleValue& file, const std::string& where, double fps = 60);
+Motion AistMotionFromPickle(const PickleValue& file, const std::string& where, double fps = kAistFps);
 
 }  // namespace bodyloom

@@ -5,14 +5,14 @@
 
 #include "bodyloom/data_tools/formats/printable.h"
 #include "bodyloom/data_tools/motion/text_scanner.h"
+#include "bodyloom/geometry/base/units.h"
 #include "bodyloom/geometry/rotation.h"
 
 namespace bodyloom {
 namespace {
 
-constexpr int kMostJoints = 2000;
+constexpr int kMostBvhJoints = 2000;
 constexpr double kSlowestFrame = 10;  ///< seconds
-constexpr double kDegree = M_PI / 180;
 
 struct Channel {
   int joint = 0;
@@ -49,7 +49,7 @@ struct Hierarchy {
 
 /// Adds a joint with its OFFSET; returns its index.
 int AddJoint(TextScanner* scanner, Hierarchy* h, const std::string& name, int parent) {
-  if (h->offsets.size() >= kMostJoints) scanner->Fail("more than " + std::to_string(kMostJoints) + " joints");
+  if (h->offsets.size() >= kMostBvhJoints) scanner->Fail("more than " + std::to_string(kMostBvhJoints) + " joints");
   scanner->Expect("OFFSET");
   Eigen::Vector3d offset;
   for (double& value : offset) value = scanner->Number("an offset");

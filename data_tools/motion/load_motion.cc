@@ -21,8 +21,8 @@
 namespace bodyloom {
 namespace {
 
-constexpr double kAistFps = 60, kAcclaimFps = 120;
-constexpr const char* kExpected =
+constexpr double kAcclaimFps = 120;
+constexpr const char* kExpectedMotion =
     "expected AMASS .npz (poses, trans), AIST++ motions .pkl, .bvh, .amc with its .asf, DeepMimic JSON or AMP .npy";
 
 bool HasExtension(const std::string& path, const std::string& extension) {
@@ -48,7 +48,7 @@ bool SkeletonFromText(const std::string& text, const std::string& path, const Lo
   if (!first.empty() && (first[0] == '{' || first[0] == '[')) {
     const nlohmann::json json = ParseJson(text, path);
     const JsonNode document(json, path);
-    if (!IsDeepMimicJson(document)) throw std::runtime_error(path + ": JSON without 'Frames'; " + kExpected);
+    if (!IsDeepMimicJson(document)) throw std::runtime_error(path + ": JSON without 'Frames'; " + kExpectedMotion);
     *skeleton = DeepMimicFromJson(document);
     return true;
   }
@@ -57,21 +57,21 @@ bool SkeletonFromText(const std::string& text, const std::string& path, const Lo
 
 Motion ReadBytes(const std::string& bytes, const std::string& path, const LoadMotionOptions& options,
                  RetargetSummary* summary) {
-  if (bytes.empty()) throw std::runtime_error(path + ": the file is empty; " + kExpected);
+  if (bytes.empty()) throw std::runtime_error(path + ": the file is empty; " + kExpectedMotion);
   if (bytes.compare(0, 4, "PK\x03\x04") == 0) {
     const NpzArrays arrays = ReadNpzBytes(bytes, path);
-    if (!IsAmass(arrays)) throw std::runtime_error(path + ": an .npz without 'poses' and 'trans'; " + kExpected);
+    if (!IsAmass(arrays)) throw std::runtime_error(path + ": an .npz without 'poses' and 'trans'; " + kExpectedMotion);
     return AmassFromNpz(arrays, path);
   }
   if (IsObjectNpy(bytes)) return RetargetToSmpl(AmpFromNpyBytes(bytes, path), path, summary);
   if (bytes[0] == '\x80' || bytes.compare(0, 2, "(d") == 0) {
     const PicklePtr file = ReadPickle(bytes, path);
-    if (!IsAistMotion(*file)) throw std::runtime_error(path + ": a pickle without 'smpl_poses'; " + kExpected);
+    if (!IsAistMotion(*file)) throw std::runtime_error(path + ": a pickle without 'smpl_poses'; " + kExpectedMotion);
     return AistMotionFromPickle(*file, path, options.fps > 0 ? options.fps : kAistFps);
   }
   SkeletonMotion skeleton;
   if (SkeletonFromText(bytes, path, options, &skeleton)) return RetargetToSmpl(skeleton, path, summary);
-  throw std::runtime_error(path + ": unknown kind of file; " + kExpected);
+  throw std::runtime_error(path + ": unknown kind of file; " + kExpectedMotion);
 }
 
 }  // namespace

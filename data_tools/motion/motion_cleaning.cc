@@ -7,13 +7,13 @@
 #include "bodyloom/data_tools/motion/motion_tools.h"
 #include "bodyloom/data_tools/motion/smpl_rest.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/units.h"
 #include "bodyloom/geometry/rotation.h"
 
 namespace bodyloom {
 namespace {
 
 constexpr double kRounding = 1e-6;  // of times that are sums of frame steps
-constexpr double kDegree = M_PI / 180;
 constexpr double kMaxThighRoll = 110 * kDegree, kMaxSpineTurn = 80 * kDegree, kMaxAnkleTurn = 110 * kDegree;
 
 Eigen::Matrix3d RotationOf(const Motion& motion, int t, int j) {

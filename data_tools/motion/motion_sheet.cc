@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kRoom_m = 2.2;    ///< height that a row shows
 constexpr double kBelow_m = 0.12;  ///< of it, below y = 0
-constexpr int kLabelHeight_px = 18, kHead = 15, kSubpixelBits = 4;
+constexpr int kLabelHeight_px = 18, kHeadJoint = 15, kSubpixelBits = 4;
 constexpr Colour kMiddle{120, 126, 140}, kFloor{196, 200, 208};
 
 cv::Scalar ScalarOf(Colour colour) { return {double(colour.blue), double(colour.green), double(colour.red)}; }
@@ -55,7 +55,7 @@ void DrawFigure(const MatrixX3d& joints, const Eigen::Vector3d& right, const Eig
     cv::line(*mat, at(SmplParents()[j]), at(j), ScalarOf(ColourOf(j)), 2, cv::LINE_AA, kSubpixelBits);
   }
   const int radius = static_cast<int>(std::lround(0.09 * scale.px_per_m * (1 << kSubpixelBits)));
-  cv::circle(*mat, at(kHead), radius, ScalarOf(kMiddle), cv::FILLED, cv::LINE_AA, kSubpixelBits);
+  cv::circle(*mat, at(kHeadJoint), radius, ScalarOf(kMiddle), cv::FILLED, cv::LINE_AA, kSubpixelBits);
 }
 
 /// The body's left in the horizontal plane; the first axis when the pelvis lies on its side.

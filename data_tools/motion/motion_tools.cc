@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/percentile.h"
 #include "bodyloom/geometry/rotation.h"
 
 namespace bodyloom {
@@ -62,14 +63,18 @@ Motion ResampleMotion(const Motion& motion, double fps) {
     while (next + 1 < times.size() && times[next] < time) ++next;
     const double s = std::clamp((time - times[next - 1]) / (times[next] - times[next - 1]), 0.0, 1.0);
     out.timestamps[t] = time;
-    out.trans.row(t) = (1 - s) * motion.trans.row(next - 1) + s * motion.trans.row(next);
-    for (int j = 0; 3 * j < motion.poses.cols(); ++j) {
-      const Eigen::Matrix3d a = RotationFromAxisAngle(motion.poses.block<1, 3>(next - 1, 3 * j).transpose());
-      const Eigen::Matrix3d b = RotationFromAxisAngle(motion.poses.block<1, 3>(next, 3 * j).transpose());
-      out.poses.block<1, 3>(t, 3 * j) = AxisAngleFromRotation(InterpolateRotation(a, b, s)).transpose();
-    }
+    InterpolateFrame(motion, static_cast<int>(next) - 1, static_cast<int>(next), s, t, &out);
   }
   return out;
+}
+
+void InterpolateFrame(const Motion& motion, int before, int after, double share, int to, Motion* out) {
+  out->trans.row(to) = (1 - share) * motion.trans.row(before) + share * motion.trans.row(after);
+  for (int j = 0; 3 * j < motion.poses.cols(); ++j) {
+    const Eigen::Matrix3d a = RotationFromAxisAngle(motion.poses.block<1, 3>(before, 3 * j).transpose());
+    const Eigen::Matrix3d b = RotationFromAxisAngle(motion.poses.block<1, 3>(after, 3 * j).transpose());
+    out->poses.block<1, 3>(to, 3 * j) = AxisAngleFromRotation(InterpolateRotation(a, b, share)).transpose();
+  }
 }
 
 Motion TakeFrames(const Motion& motion, int first, int count, int step) {
@@ -125,6 +130,21 @@ double FrameRate(const Motion& motion) {
     if (!(std::abs(times[t] - times[t - 1] - step) < kClockTolerance * step)) return 0;
   }
   return 1 / step;
+}
+
+double FrameRateWithoutGaps(const Motion& motion) {
+  const std::vector<double>& times = motion.timestamps;
+  std::vector<double> steps;
+  for (size_t t = 1; t < times.size(); ++t) steps.push_back(times[t] - times[t - 1]);
+  const double longest = 1.5 * Percentile(steps, 50);
+  double sum = 0;
+  int count = 0;
+  for (const double step : steps) {
+    if (!(step <= longest)) continue;
+    sum += step;
+    ++count;
+  }
+  return sum > 0 ? count / sum : 0;
 }
 
 void CheckMotion(const Motion& motion, const char* caller) {

@@ -18,6 +18,10 @@ Motion ChangeUp(const Motion& motion, Motion::Up up, const Eigen::Vector3d& rest
 /// within rounding. A motion of one frame stays as it is. Throws std::invalid_argument for fps that is not positive.
 Motion ResampleMotion(const Motion& motion, double fps);
 
+/// Frame `to` of `out`: `motion` between its frames `before` and `after`, `share` in [0, 1] of the way: rotations along
+/// the shortest arc, the place linearly. Sizes are the caller's responsibility.
+void InterpolateFrame(const Motion& motion, int before, int after, double share, int to, Motion* out);
+
 /// Frames first, first + step, … (count of them) as they are. Throws std::invalid_argument when the motion does not
 /// have them.
 Motion TakeFrames(const Motion& motion, int first, int count, int step = 1);
@@ -31,6 +35,10 @@ Motion JoinMotions(const std::vector<Motion>& motions, double gap_s);
 /// Frames per second of a motion with a regular clock; 0 when its steps differ by more than 1 % (a gap) or it has fewer
 /// than two frames.
 double FrameRate(const Motion& motion);
+
+/// Frames per second between a motion's gaps: of the steps that are at most 1.5 times the median one, their number over
+/// their sum. 0 with fewer than two frames.
+double FrameRateWithoutGaps(const Motion& motion);
 
 /// Throws std::invalid_argument unless poses, trans and timestamps have T rows each, poses 3J columns, and all is
 /// finite.

@@ -8,26 +8,18 @@
 
 #include "bodyloom/data_tools/formats/printable.h"
 #include "bodyloom/data_tools/observations/keypoint_conventions.h"
+#include "bodyloom/geometry/base/units.h"
 
 namespace bodyloom {
 namespace {
 
 constexpr double kMicrosecond = 1e-6;
-constexpr double kCentimetre = 1e-2;
 constexpr int64_t kMostViews = 99;  ///< names have two digits
 
 std::string ViewName(int64_t index) {
   char name[16];
   std::snprintf(name, sizeof(name), "c%02d", static_cast<int>(index) + 1);
   return name;
-}
-
-const NdArray& RequireNumbers(const PickleValue& file, const std::string& key, const std::string& where) {
-  const PickleValue* value = file.Find(key);
-  if (value == nullptr || value->kind != PickleValue::Kind::kArray || !value->array.is_number()) {
-    throw std::runtime_error(where + ": no array '" + key + "'");
-  }
-  return value->array;
 }
 
 int64_t FindView(const std::string& view, int64_t num_views, const std::string& where) {

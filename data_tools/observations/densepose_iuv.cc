@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kMostPart = 24;
 constexpr size_t kMostFileBytes = size_t{1} << 28;
-constexpr size_t kMostPixels = size_t{1} << 26;
+constexpr size_t kMostIuvPixels = size_t{1} << 26;
 
 /// Checks what decides whether a PNG's bytes are labels: anything but 8 bits would be rescaled. And the frame of chunks
 /// with their checksums, so that a damaged file is reported by place and never reaches the decoder, which would print.
@@ -32,9 +32,9 @@ void CheckPng(const std::string& path, bool needs_colour) {
     throw std::runtime_error(path + ": " + std::to_string(depth) + " bits a channel, " + (is_grey ? "grey" : "colour") +
                              "; expected 8-bit" + (needs_colour ? " colour (I, U, V)" : ""));
   }
-  if (number(16) == 0 || number(20) == 0 || number(16) * number(20) > kMostPixels) {
+  if (number(16) == 0 || number(20) == 0 || number(16) * number(20) > kMostIuvPixels) {
     throw std::runtime_error(path + ": " + std::to_string(number(16)) + "x" + std::to_string(number(20)) +
-                             " pixels, expected 1 to " + std::to_string(kMostPixels));
+                             " pixels, expected 1 to " + std::to_string(kMostIuvPixels));
   }
   for (size_t at = 8;;) {  // chunks: length, type, data, checksum of type and data
     if (bytes.size() - at < 12 || number(at) > bytes.size() - at - 12) {

@@ -12,7 +12,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr int64_t kMostFrames = 1'000'000;
+constexpr int64_t kMostNumbers = 1'000'000;
 constexpr size_t kMostDigits = 15;
 
 bool IsDigit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
@@ -50,10 +50,10 @@ FrameGrid MakeFrameGrid(const std::vector<int64_t>& numbers, double fps, const s
   }
   step = std::max<int64_t>(1, step);
   const int64_t num_frames = (sorted.back() - sorted.front()) / step + 1;
-  if (num_frames > kMostFrames) {
+  if (num_frames > kMostNumbers) {
     throw std::runtime_error(where + ": frame numbers " + std::to_string(sorted.front()) + " to " +
                              std::to_string(sorted.back()) + " span " + std::to_string(num_frames) +
-                             " frames, at most " + std::to_string(kMostFrames) + " are read");
+                             " frames, at most " + std::to_string(kMostNumbers) + " are read");
   }
   grid.index.reserve(numbers.size());
   for (const int64_t number : numbers) grid.index.push_back(static_cast<int>((number - sorted.front()) / step));

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kParts = 24;
+constexpr int kDenseParts = 24;
 constexpr const char* kIuvEnding = "_IUV.png";
 
 /// Bits of x and y interleaved: pixels near each other on the curve are near each other in the image.
@@ -36,26 +36,27 @@ uint64_t Morton(uint32_t x, uint32_t y) {
 }
 
 /// How many of `total` each part gets: by area, largest remainders first.
-std::array<size_t, kParts + 1> Quotas(const std::array<std::vector<uint32_t>, kParts + 1>& pixels, size_t total) {
+std::array<size_t, kDenseParts + 1> Quotas(const std::array<std::vector<uint32_t>, kDenseParts + 1>& pixels,
+                                           size_t total) {
   size_t all = 0;
   for (const auto& list : pixels) all += list.size();
-  std::array<size_t, kParts + 1> quota{};
+  std::array<size_t, kDenseParts + 1> quota{};
   if (total == 0 || total >= all) {
-    for (int p = 0; p <= kParts; ++p) quota[p] = pixels[p].size();
+    for (int p = 0; p <= kDenseParts; ++p) quota[p] = pixels[p].size();
     return quota;
   }
-  std::array<double, kParts + 1> remainder{};
+  std::array<double, kDenseParts + 1> remainder{};
   size_t given = 0;
-  for (int p = 0; p <= kParts; ++p) {
+  for (int p = 0; p <= kDenseParts; ++p) {
     const double share = static_cast<double>(total) * static_cast<double>(pixels[p].size()) / static_cast<double>(all);
     quota[p] = static_cast<size_t>(share);
     remainder[p] = share - std::floor(share);
     given += quota[p];
   }
-  std::array<int, kParts + 1> order;
+  std::array<int, kDenseParts + 1> order;
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return remainder[a] > remainder[b]; });
-  for (int k = 0; given < total; k = (k + 1) % (kParts + 1)) {
+  for (int k = 0; given < total; k = (k + 1) % (kDenseParts + 1)) {
     if (quota[order[k]] < pixels[order[k]].size()) ++quota[order[k]], ++given;
   }
   return quota;
@@ -69,19 +70,19 @@ struct Rectangle {
 
 /// The dense keypoints of a rectangle whose pixel i shows part(i) at uv(i).
 template <class Part, class Uv>
-std::vector<DenseKeypoint> Sample(const Rectangle& rectangle, const Part& part_of, const Uv& uv_of,
-                                  const ChartLookup& charts, const IuvToDenseOptions& options) {
+std::vector<DenseKeypoint> SampleChart(const Rectangle& rectangle, const Part& part_of, const Uv& uv_of,
+                                       const ChartLookup& charts, const IuvToDenseOptions& options) {
   BODYLOOM_CHECK(options.per_frame >= 0 && options.sigma_px > 0 && options.max_gap >= 0, "IuvToDense: per_frame ",
                  options.per_frame, ", sigma_px ", options.sigma_px, ", max_gap ", options.max_gap);
-  std::array<std::vector<uint32_t>, kParts + 1> pixels;
+  std::array<std::vector<uint32_t>, kDenseParts + 1> pixels;
   for (size_t i = 0; i < rectangle.num_pixels; ++i) {
     const uint8_t part = part_of(i);
-    if (part > 0 && part <= kParts) pixels[part].push_back(static_cast<uint32_t>(i));
+    if (part > 0 && part <= kDenseParts) pixels[part].push_back(static_cast<uint32_t>(i));
   }
-  const std::array<size_t, kParts + 1> quota = Quotas(pixels, static_cast<size_t>(options.per_frame));
+  const std::array<size_t, kDenseParts + 1> quota = Quotas(pixels, static_cast<size_t>(options.per_frame));
   const auto width = static_cast<uint32_t>(rectangle.width);
   std::vector<DenseKeypoint> points;
-  for (int part = 1; part <= kParts; ++part) {
+  for (int part = 1; part <= kDenseParts; ++part) {
     std::vector<uint32_t>& list = pixels[part];
     std::sort(list.begin(), list.end(),
               [width](uint32_t a, uint32_t b) { return Morton(a % width, a / width) < Morton(b % width, b / width); });
@@ -250,12 +251,12 @@ std::vector<DenseKeypoint> IuvToDense(const IuvImage& iuv, const ChartLookup& ch
   const auto uv = [&](size_t i) {
     return Eigen::Vector2d(std::min(1.0, (iuv.u[i] + 0.5) / 255), std::min(1.0, (iuv.v[i] + 0.5) / 255));
   };
-  return Sample({0, 0, iuv.width, iuv.part.size()}, part, uv, charts, options);
+  return SampleChart({0, 0, iuv.width, iuv.part.size()}, part, uv, charts, options);
 }
 
 std::vector<DenseKeypoint> IuvToDense(const ChartImage& image, const ChartLookup& charts,
                                       const IuvToDenseOptions& options) {
-  return Sample(
+  return SampleChart(
       {image.x_begin, image.y_begin, image.width, image.part.size()}, [&](size_t i) { return image.part[i]; },
       [&](size_t i) { return Eigen::Vector2d(image.u[i], image.v[i]); }, charts, options);
 }

@@ -14,6 +14,7 @@
 #include "bodyloom/data_tools/formats/json_reader.h"
 #include "bodyloom/data_tools/formats/printable.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/units.h"
 #include "bodyloom/geometry/rotation.h"
 
 namespace bodyloom {
@@ -21,7 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kCentimetre = 1e-2;
 constexpr double kRotationTolerance = 1e-3;
 /// Skew that no camera of today has, but that rounding may leave, as a share of the focal length.
 constexpr double kMostSkew = 1e-6;

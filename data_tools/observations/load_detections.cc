@@ -13,6 +13,7 @@
 #include "bodyloom/data_tools/formats/npz.h"
 #include "bodyloom/data_tools/formats/pickle.h"
 #include "bodyloom/data_tools/formats/printable.h"
+#include "bodyloom/data_tools/motion/aist_motion.h"
 #include "bodyloom/data_tools/observations/aist_reader.h"
 #include "bodyloom/data_tools/observations/blazepose_reader.h"
 #include "bodyloom/data_tools/observations/coco_reader.h"
@@ -27,13 +28,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kUsualFps = 30, kAistFps = 60;
+constexpr double kUsualFps = 30;
 /// A clip whose every landmark lies within this many units of the corner cannot be in pixels.
 constexpr double kMostNormalised = 3;
 /// Share of landmarks that may lie outside the image (plus a tenth of its size) before the size is called wrong.
 constexpr double kMostOutside = 0.5;
-constexpr size_t kMostFileBytes = size_t{2} << 30;
-constexpr const char* kExpected =
+constexpr size_t kMostDetectionBytes = size_t{2} << 30;
+constexpr const char* kExpectedDetections =
     "expected OpenPose JSON (a folder or a file), COCO or AlphaPose JSON, BlazePose/MediaPipe JSON, an AIST++ "
     "keypoints2d .pkl, or this project's .npz with 'keypoints'";
 
@@ -54,7 +55,7 @@ std::vector<std::string> SortedEntries(const std::string& folder, bool folders) 
 std::string FolderOfView(const std::string& folder, const std::string& view) {
   if (!SortedEntries(folder, /*folders=*/false).empty()) return folder;
   const std::vector<std::string> names = SortedEntries(folder, /*folders=*/true);
-  if (names.empty()) throw std::runtime_error(folder + ": no .json files in this folder; " + kExpected);
+  if (names.empty()) throw std::runtime_error(folder + ": no .json files in this folder; " + kExpectedDetections);
   for (const std::string& name : names) {
     if (name == view || name == view + "_json" || (view.empty() && names.size() == 1)) {
       return (fs::path(folder) / name).string();
@@ -132,7 +133,7 @@ void CheckImageSize(const KeypointSequence& sequence, const std::string& where) 
 /// One person's landmarks as the file has them.
 KeypointSequence ReadBytes(const std::string& bytes, const std::string& path, const LoadDetectionsOptions& options) {
   const double fps = options.fps > 0 ? options.fps : kUsualFps;
-  if (bytes.empty()) throw std::runtime_error(path + ": the file is empty; " + kExpected);
+  if (bytes.empty()) throw std::runtime_error(path + ": the file is empty; " + kExpectedDetections);
   if (StartsLikeJson(bytes)) {
     const nlohmann::json json = ParseJson(bytes, path);
     const JsonNode document(json, path);
@@ -142,23 +143,23 @@ KeypointSequence ReadBytes(const std::string& bytes, const std::string& path, co
     if (IsCocoJson(document)) return SelectPerson(CocoFromJson(document, fps), options.person, path);
     if (IsBlazePoseJson(document)) return SelectPerson(BlazePoseFromJson(document, fps), options.person, path);
     throw std::runtime_error(path + ": JSON that holds no known detections" +
-                             (document.size() == 0 ? " (it is empty)" : "") + "; " + kExpected);
+                             (document.size() == 0 ? " (it is empty)" : "") + "; " + kExpectedDetections);
   }
   if (bytes.compare(0, 4, "PK\x03\x04") == 0) {
     const NpzArrays arrays = ReadNpzBytes(bytes, path);
     if (HasKeypoints(arrays)) return KeypointsFromNpz(arrays, path);
     if (HasPeople(arrays)) return SelectPerson(PeopleFromNpz(arrays, path), options.person, path);
     throw std::runtime_error(path + ": an .npz without 'keypoints'" +
-                             (HasDense(arrays) ? " (it holds dense keypoints)" : "") + "; " + kExpected);
+                             (HasDense(arrays) ? " (it holds dense keypoints)" : "") + "; " + kExpectedDetections);
   }
   if (StartsLikePickle(bytes)) {
     const PicklePtr file = ReadPickle(bytes, path);
     if (IsAistKeypoints2d(*file)) {
       return AistKeypoints2dFromPickle(*file, path, options.view, options.fps > 0 ? options.fps : kAistFps);
     }
-    throw std::runtime_error(path + ": a pickle without 'keypoints2d'; " + kExpected);
+    throw std::runtime_error(path + ": a pickle without 'keypoints2d'; " + kExpectedDetections);
   }
-  throw std::runtime_error(path + ": unknown kind of file; " + kExpected);
+  throw std::runtime_error(path + ": unknown kind of file; " + kExpectedDetections);
 }
 
 /// What the caller knows, and the checks that every format needs.
@@ -210,7 +211,8 @@ KeypointSequence DetectionsFromBytes(const std::string& bytes, const std::string
 KeypointSequence LoadDetections(const std::string& path, const LoadDetectionsOptions& options) {
   CheckOptions(options);
   std::error_code ignored;
-  if (!fs::is_directory(path, ignored)) return DetectionsFromBytes(ReadFileBytes(path, kMostFileBytes), path, options);
+  if (!fs::is_directory(path, ignored))
+    return DetectionsFromBytes(ReadFileBytes(path, kMostDetectionBytes), path, options);
   const std::string folder = FolderOfView(path, options.view);
   const PeopleSequence people =
       ReadOpenPoseFolder(folder, options.fps > 0 ? options.fps : kUsualFps, options.convention);

@@ -7,15 +7,12 @@
 
 #include "bodyloom/data_tools/formats/whole_numbers.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/refuse.h"
 
 namespace bodyloom {
 namespace {
 
 constexpr float kBarycentricTolerance = 1e-3F;
-
-[[noreturn]] void Fail(const std::string& where, const std::string& key, const std::string& message) {
-  throw std::runtime_error(where + ": " + key + ": " + message);
-}
 
 const NdArray& RequireShape(const NpzArrays& arrays, const std::string& key, const std::vector<int64_t>& shape,
                             const std::string& where) {
@@ -23,9 +20,9 @@ const NdArray& RequireShape(const NpzArrays& arrays, const std::string& key, con
   if (!array.is_number() || array.shape != shape) {
     NdArray expected;
     expected.shape = shape;
-    Fail(where, key,
-         "shape " + array.ShapeText() + (array.is_number() ? "" : " of no numbers") + ", expected numbers, " +
-             expected.ShapeText());
+    Refuse(where, key,
+           "shape " + array.ShapeText() + (array.is_number() ? "" : " of no numbers") + ", expected numbers, " +
+               expected.ShapeText());
   }
   return array;
 }
@@ -35,7 +32,7 @@ double OptionalSigma(const NpzArrays& arrays, const std::string& key, const std:
   if (arrays.find(key) == arrays.end()) return 0;
   const double sigma = RequireShape(arrays, key, {}, where).ToDoubles()[0];
   if (!(sigma >= 0) || !std::isfinite(sigma)) {
-    Fail(where, key, std::to_string(sigma) + ", expected a standard deviation, or 0 when it is not known");
+    Refuse(where, key, std::to_string(sigma) + ", expected a standard deviation, or 0 when it is not known");
   }
   return sigma;
 }
@@ -45,15 +42,15 @@ double OptionalSigma(const NpzArrays& arrays, const std::string& key, const std:
 std::vector<double> TimestampsFromNpz(const NpzArrays& arrays, const std::string& where) {
   const NdArray& array = RequireArray(arrays, "timestamps", where);
   if (!array.is_number() || array.shape.size() != 1) {
-    Fail(where, "timestamps", "shape " + array.ShapeText() + ", expected one number a frame");
+    Refuse(where, "timestamps", "shape " + array.ShapeText() + ", expected one number a frame");
   }
   std::vector<double> timestamps = array.ToDoubles();
-  if (timestamps.empty()) Fail(where, "timestamps", "no frames");
+  if (timestamps.empty()) Refuse(where, "timestamps", "no frames");
   for (size_t t = 0; t < timestamps.size(); ++t) {
     if (!std::isfinite(timestamps[t]) || (t > 0 && !(timestamps[t] > timestamps[t - 1]))) {
-      Fail(where, "timestamps",
-           "entry " + std::to_string(t) + " is " + std::to_string(timestamps[t]) +
-               ", expected finite, increasing seconds");
+      Refuse(where, "timestamps",
+             "entry " + std::to_string(t) + " is " + std::to_string(timestamps[t]) +
+                 ", expected finite, increasing seconds");
     }
   }
   return timestamps;
@@ -63,7 +60,7 @@ void ImageSizeFromNpz(const NpzArrays& arrays, const std::string& where, int* wi
   if (arrays.find("image_size") == arrays.end()) return;
   const std::vector<double> size = RequireShape(arrays, "image_size", {2}, where).ToDoubles();
   if (!(size[0] >= 0 && size[1] >= 0 && size[0] <= 100000 && size[1] <= 100000)) {
-    Fail(where, "image_size", std::to_string(size[0]) + " x " + std::to_string(size[1]) + ", expected pixels");
+    Refuse(where, "image_size", std::to_string(size[0]) + " x " + std::to_string(size[1]) + ", expected pixels");
   }
   *width = static_cast<int>(size[0]);
   *height = static_cast<int>(size[1]);
@@ -71,7 +68,7 @@ void ImageSizeFromNpz(const NpzArrays& arrays, const std::string& where, int* wi
 
 std::vector<std::string> KeypointNamesFromNpz(const NpzArrays& arrays, const std::string& where) {
   const NdArray& names = RequireArray(arrays, "keypoint_names", where);
-  if (!names.is_text() || names.shape.size() != 1) Fail(where, "keypoint_names", "expected a list of text");
+  if (!names.is_text() || names.shape.size() != 1) Refuse(where, "keypoint_names", "expected a list of text");
   return names.ToStrings();
 }
 
@@ -169,24 +166,24 @@ DenseSequence DenseFromNpz(const NpzArrays& arrays, const std::string& where) {
   for (int64_t i = 0; i < n; ++i) {
     const std::string entry = "entry " + std::to_string(i);
     if (frame[i] < 0 || frame[i] >= dense.num_frames()) {
-      Fail(where, "dense_frame",
-           entry + " is " + std::to_string(frame[i]) + ", expected 0 to " + std::to_string(dense.num_frames() - 1));
+      Refuse(where, "dense_frame",
+             entry + " is " + std::to_string(frame[i]) + ", expected 0 to " + std::to_string(dense.num_frames() - 1));
     }
     if (face[i] < 0 || face[i] > 100'000'000) {
-      Fail(where, "dense_face", entry + " is " + std::to_string(face[i]) + ", expected a face index");
+      Refuse(where, "dense_face", entry + " is " + std::to_string(face[i]) + ", expected a face index");
     }
     DenseKeypoint point;
     point.face = static_cast<int>(face[i]);
     point.barycentric = {barycentric[3 * i], barycentric[3 * i + 1], barycentric[3 * i + 2]};
     if (!(std::abs(point.barycentric.sum() - 1) < kBarycentricTolerance) ||
         !(point.barycentric.minCoeff() > -kBarycentricTolerance)) {
-      Fail(where, "dense_barycentric", entry + ": weights must not be negative and sum to 1");
+      Refuse(where, "dense_barycentric", entry + ": weights must not be negative and sum to 1");
     }
     point.pixel = {pixel[2 * i], pixel[2 * i + 1]};
-    if (!point.pixel.allFinite()) Fail(where, "dense_pixel", entry + " is not finite");
+    if (!point.pixel.allFinite()) Refuse(where, "dense_pixel", entry + " is not finite");
     point.sigma_px = sigma[i];
     if (!(point.sigma_px > 0) || !std::isfinite(point.sigma_px)) {
-      Fail(where, "dense_sigma_px", entry + " is " + std::to_string(point.sigma_px) + ", expected a positive number");
+      Refuse(where, "dense_sigma_px", entry + " is " + std::to_string(point.sigma_px) + ", expected a positive number");
     }
     dense.frames[frame[i]].push_back(point);
   }

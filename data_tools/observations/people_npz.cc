@@ -8,15 +8,10 @@
 #include "bodyloom/data_tools/formats/whole_numbers.h"
 #include "bodyloom/data_tools/observations/observations_npz.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/refuse.h"
 
 namespace bodyloom {
-namespace {
-
-[[noreturn]] void Fail(const std::string& where, const std::string& key, const std::string& message) {
-  throw std::runtime_error(where + ": " + key + ": " + message);
-}
-
-}  // namespace
+namespace {}  // namespace
 
 void WritePeople(const std::string& path, const PeopleSequence& people) {
   const size_t num_points = people.convention.names.size();
@@ -61,22 +56,23 @@ PeopleSequence PeopleFromNpz(const NpzArrays& arrays, const std::string& where) 
       WholeNumbers(RequireArray(arrays, "people_identity", where), "people_identity", where);
   const auto rows = int64_t(frames.size()), num_points = int64_t(people.convention.names.size());
   if (identities.size() != frames.size()) {
-    Fail(where, "people_identity", Concatenate(identities.size(), " entries, expected the ", rows, " of people_frame"));
+    Refuse(where, "people_identity",
+           Concatenate(identities.size(), " entries, expected the ", rows, " of people_frame"));
   }
   const NdArray& array = RequireArray(arrays, "people_keypoints", where);
   if (!array.is_number() || array.shape != std::vector<int64_t>{rows, num_points, 3}) {
-    Fail(where, "people_keypoints",
-         Concatenate("shape ", array.ShapeText(), ", expected numbers, ", rows, " x ", num_points, " x 3"));
+    Refuse(where, "people_keypoints",
+           Concatenate("shape ", array.ShapeText(), ", expected numbers, ", rows, " x ", num_points, " x 3"));
   }
   const std::vector<float> values = array.ToFloats();
   for (int64_t row = 0; row < rows; ++row) {
     const std::string entry = "entry " + std::to_string(row);
     if (frames[row] < 0 || frames[row] >= int64_t(people.frames.size()) || (row > 0 && frames[row] < frames[row - 1])) {
-      Fail(where, "people_frame",
-           Concatenate(entry, " is ", frames[row], ", expected 0 to ", people.frames.size() - 1, ", not decreasing"));
+      Refuse(where, "people_frame",
+             Concatenate(entry, " is ", frames[row], ", expected 0 to ", people.frames.size() - 1, ", not decreasing"));
     }
     if (identities[row] < -1 || identities[row] > 1'000'000'000) {
-      Fail(where, "people_identity", Concatenate(entry, " is ", identities[row], ", expected -1 or a number from 0"));
+      Refuse(where, "people_identity", Concatenate(entry, " is ", identities[row], ", expected -1 or a number from 0"));
     }
     DetectedPerson person;
     person.identity = int(identities[row]);

@@ -11,11 +11,11 @@ constexpr float kVisible = 0.5F;
 
 }  // namespace
 
-Rectangle VisibleRectangle(const DetectedPerson& person) {
+ImageRectangle VisibleRectangle(const DetectedPerson& person) {
   const auto is_visible = [](const Keypoint& p) { return p.confidence >= kVisible; };
   const bool some = std::any_of(person.points.begin(), person.points.end(), is_visible);
   constexpr double kMost = std::numeric_limits<double>::max();
-  Rectangle box = {kMost, kMost, -kMost, -kMost};
+  ImageRectangle box = {kMost, kMost, -kMost, -kMost};
   for (const Keypoint& p : person.points) {
     if (some ? !is_visible(p) : !(p.confidence > 0)) continue;
     box.x0 = std::min(box.x0, double{p.x}), box.x1 = std::max(box.x1, double{p.x});

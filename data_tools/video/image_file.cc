@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr size_t kMaxFileBytes = size_t{1} << 28;
+constexpr size_t kMaxPictureBytes = size_t{1} << 28;
 
 /// True when a comes before b, runs of digits compared by value.
 bool NaturalLess(std::string_view a, std::string_view b) {
@@ -69,7 +69,7 @@ bool IsImageName(const std::string& path) {
 
 Image ReadImage(const std::string& path) { return DecodeImage(ReadImageBytes(path), path); }
 
-std::string ReadImageBytes(const std::string& path) { return ReadFileBytes(path, kMaxFileBytes); }
+std::string ReadImageBytes(const std::string& path) { return ReadFileBytes(path, kMaxPictureBytes); }
 
 Image DecodeImage(const std::string& bytes, const std::string& path) {
   if (const auto header = ReadImageHeader(bytes); header && header->width * header->height > kMaxPicturePixels) {

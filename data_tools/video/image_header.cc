@@ -10,9 +10,9 @@ namespace bodyloom {
 namespace {
 
 /// Whole numbers of a file's bytes; beyond the end there are zeros.
-class Bytes {
+class HeaderBytes {
  public:
-  explicit Bytes(std::string_view bytes) : bytes_(bytes) {}
+  explicit HeaderBytes(std::string_view bytes) : bytes_(bytes) {}
 
   [[nodiscard]] bool Has(size_t at, std::string_view text) const {
     return bytes_.size() >= at + text.size() && bytes_.substr(at, text.size()) == text;
@@ -37,7 +37,7 @@ int64_t Side(uint64_t value) {
   return static_cast<int64_t>(value < kMost ? value : kMost);
 }
 
-ImageHeader Bmp(const Bytes& bytes) {
+ImageHeader Bmp(const HeaderBytes& bytes) {
   if (bytes.Little(14, 4) == 12) {
     return {Side(bytes.Little(18, 2)), Side(bytes.Little(20, 2))};
   }
@@ -46,7 +46,7 @@ ImageHeader Bmp(const Bytes& bytes) {
   return {static_cast<int32_t>(bytes.Little(18, 4)), std::abs(int64_t{height})};
 }
 
-ImageHeader WebP(const Bytes& bytes) {
+ImageHeader WebP(const HeaderBytes& bytes) {
   constexpr uint64_t k14Bits = 0x3FFF;
   if (bytes.Has(12, "VP8X")) return {Side(bytes.Little(24, 3) + 1), Side(bytes.Little(27, 3) + 1)};
   if (bytes.Has(12, "VP8L")) {
@@ -57,7 +57,7 @@ ImageHeader WebP(const Bytes& bytes) {
   return {};
 }
 
-ImageHeader Tiff(const Bytes& bytes, bool big_endian) {
+ImageHeader Tiff(const HeaderBytes& bytes, bool big_endian) {
   const auto number = [&](size_t at, int count) { return bytes.Number(at, count, big_endian); };
   const bool big_tiff = number(2, 2) == 43;
   const uint64_t directory = big_tiff ? number(8, 8) : number(4, 4);
@@ -78,7 +78,7 @@ ImageHeader Tiff(const Bytes& bytes, bool big_endian) {
 
 ImageHeader Of(std::string_view file) {
   using namespace std::string_view_literals;
-  const Bytes bytes(file);
+  const HeaderBytes bytes(file);
   if (bytes.Has(0, "\x89PNG\r\n\x1a\n"sv) && bytes.Has(12, "IHDR"sv)) {
     return {Side(bytes.Big(16, 4)), Side(bytes.Big(20, 4))};
   }

@@ -51,7 +51,7 @@ CoherentMaps EmptyMaps(int size, std::span<const uint8_t> texel_parts) {
 int FillEmptyTexels(const PhotoFrame& frame, const GuidedPicture& picture, uint8_t from,
                     std::span<const uint8_t> no_face, CoherentMaps* maps) {
   const size_t texels = maps->from.size(), pixels = size_t(frame.size) * frame.size;
-  BODYLOOM_CHECK(from > 0 && frame.texture_size == maps->size && frame.texel_seen.size() == texels &&
+  BODYLOOM_CHECK(from > 0 && frame.texture_size == maps->size && frame.texel_cosine.size() == texels &&
                      frame.texel_pixels.size() == 2 * texels && picture.size == frame.size &&
                      picture.image.size() == 3 * pixels && picture.alpha.size() == pixels &&
                      picture.labels.size() == pixels && (no_face.empty() || no_face.size() == texels),
@@ -59,7 +59,7 @@ int FillEmptyTexels(const PhotoFrame& frame, const GuidedPicture& picture, uint8
                  maps->size, " and a picture of ", picture.size);
   int filled = 0;
   for (size_t i = 0; i < texels; ++i) {
-    if (maps->from[i] != 0 || maps->texel_parts[i] == 0 || frame.texel_seen[i] == 0) continue;
+    if (maps->from[i] != 0 || maps->texel_parts[i] == 0 || frame.texel_cosine[i] == 0) continue;
     const Around around = AroundPoint(frame.texel_pixels[i], frame.texel_pixels[texels + i], frame.size);
     const uint8_t label = picture.labels[around.index[0]];
     if (label == 0 || (label == kFaceLabel && !no_face.empty() && no_face[i] != 0)) continue;

@@ -12,12 +12,12 @@ namespace {
 
 constexpr int kEnoughPixels = 8;  ///< of hair, to know its colour
 
-struct Box {
+struct PixelBox {
   int left = 0, top = 0, right = -1, bottom = -1;  ///< last pixels included
 };
 
-Box BodyBox(const PhotoFrame& frame) {
-  Box box{frame.size, frame.size, -1, -1};
+PixelBox BodyBox(const PhotoFrame& frame) {
+  PixelBox box{frame.size, frame.size, -1, -1};
   for (int y = 0; y < frame.size; ++y) {
     for (int x = 0; x < frame.size; ++x) {
       if (frame.parts[size_t(y) * frame.size + x] == 0) continue;
@@ -44,6 +44,21 @@ bool MeanColour(const GuidedPicture& picture, uint8_t label, std::array<float, 3
   return true;
 }
 
+/// Of the maps' hair; false where they have none.
+bool MeanHair(const CoherentMaps& maps, std::array<float, 3>* colour) {
+  const size_t texels = maps.labels.size();
+  std::array<double, 3> sum{};
+  int count = 0;
+  for (size_t i = 0; i < texels; ++i) {
+    if (maps.labels[i] != kHairLabel) continue;
+    ++count;
+    for (size_t c = 0; c < 3; ++c) sum[c] += maps.appearance[c * texels + i];
+  }
+  if (count == 0) return false;
+  for (size_t c = 0; c < 3; ++c) (*colour)[c] = static_cast<float>(sum[c] / count);
+  return true;
+}
+
 /// v of [from_first, from_last] → [to_first, to_last], ends onto ends.
 int Onto(int v, int from_first, int from_last, int to_first, int to_last) {
   if (from_last <= from_first) return to_first;
@@ -64,21 +79,23 @@ void TakeAwayFaces(const PseudoPicture& pseudo, GuidedPicture* picture) {
 }  // namespace
 
 std::vector<uint8_t> TexelsOfTheBack(const PhotoFrame& front, const PhotoFrame& back) {
-  BODYLOOM_CHECK(front.texel_seen.size() == back.texel_seen.size(), "virtual views: ", front.texel_seen.size(), " and ",
-                 back.texel_seen.size(), " texels");
-  std::vector<uint8_t> texels(front.texel_seen.size());
-  for (size_t i = 0; i < texels.size(); ++i) texels[i] = back.texel_seen[i] != 0 && front.texel_seen[i] == 0 ? 1 : 0;
+  BODYLOOM_CHECK(front.texel_cosine.size() == back.texel_cosine.size(), "virtual views: ", front.texel_cosine.size(),
+                 " and ", back.texel_cosine.size(), " texels");
+  std::vector<uint8_t> texels(front.texel_cosine.size());
+  for (size_t i = 0; i < texels.size(); ++i)
+    texels[i] = back.texel_cosine[i] != 0 && front.texel_cosine[i] == 0 ? 1 : 0;
   return texels;
 }
 
-PseudoPicture MirroredFront(const PhotoFrame& front, const GuidedPicture& picture, const PhotoFrame& back) {
-  const Box from = BodyBox(back), to = BodyBox(front);
+PseudoPicture MirroredFront(const PhotoFrame& front, const GuidedPicture& picture, const PhotoFrame& back,
+                            const CoherentMaps& maps) {
+  const PixelBox from = BodyBox(back), to = BodyBox(front);
   const size_t pixels = size_t(back.size) * back.size;
   PseudoPicture pseudo{
       back.size, std::vector<float>(3 * pixels), std::vector<uint8_t>(pixels), std::vector<uint8_t>(pixels), {}, {}};
   if (to.right < 0) return pseudo;
   std::array<float, 3> behind_face{};
-  const bool hair = MeanColour(picture, kHairLabel, &behind_face);
+  const bool hair = MeanColour(picture, kHairLabel, &behind_face) || MeanHair(maps, &behind_face);
   if (!hair) MeanColour(picture, kFaceLabel, &behind_face);
   const size_t source_pixels = picture.alpha.size();
   for (int y = from.top; y <= from.bottom; ++y) {
@@ -109,7 +126,7 @@ std::vector<GuidedPicture> CompleteMaps(std::span<const PhotoFrame> views, const
   for (int v = 0; v < kNumVirtualViews; ++v) {
     PseudoPicture pseudo = LookUp(*maps, views[v]);
     if (v == kViewBack) {
-      PseudoPicture mirrored = MirroredFront(views[kViewFront], pictures[kViewFront], views[kViewBack]);
+      PseudoPicture mirrored = MirroredFront(views[kViewFront], pictures[kViewFront], views[kViewBack], *maps);
       mirrored.extent = std::move(pseudo.extent);
       mirrored.clothed = std::move(pseudo.clothed);
       pseudo = std::move(mirrored);

@@ -34,8 +34,8 @@ class GuidedRenderer {
   GuidedRenderer& operator=(const GuidedRenderer&) = delete;
 
   /// `photos`: one or more pictures of the person, the first one the source whose triplet the networks see; the others
-  /// fill texels that earlier ones left empty. Throws std::invalid_argument as MapsOfSource (source_maps.h), for
-  /// frames of other sizes or without pictures, and for photos that show nothing of the body.
+  /// fill texels that earlier ones left empty or see less from the front. Throws std::invalid_argument as MapsOfSource
+  /// (source_maps.h), for frames of other sizes or without pictures, and for photos that show nothing of the body.
   void SetSource(std::span<const PhotoFrame> photos, const SourceBody& body);
 
   /// The person in another pose; after SetSource.

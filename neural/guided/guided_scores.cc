@@ -13,7 +13,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr int kRandomFeaturesDivisor = 4;
+constexpr int kContextualRandomFeaturesDivisor = 4;
 
 Image Bytes(const std::vector<float>& planar, int size) {
   Image image(size, size);
@@ -35,18 +35,19 @@ struct GuidedScorer::Impl {
   int frames = 0;
   double l1 = 0, squared = 0, foreground = 0;
   double lpips_sum = 0, contextual_sum = 0;
-  double around_means = 0;                  ///< of LPIPS, of the people before: Σ (d − their mean)²
+  double around_means = 0;  ///< of LPIPS, of the people before: Σ (d − their mean)²
+  bool contextual_random_features = true;
   int of_person = 0;                        ///< frames so far of this person
   double person_mean = 0, around_mean = 0;  ///< of these
   ClassOverlap overlap{kPhotoLabels};
 };
 
-GuidedScorer::GuidedScorer(bool features) : impl_(std::make_unique<Impl>()) {
+GuidedScorer::GuidedScorer(bool features, const GuidedScoreWeights& weights) : impl_(std::make_unique<Impl>()) {
   if (!features) return;
-  LpipsOptions options;
-  options.random_features_divisor = kRandomFeaturesDivisor;
-  impl_->lpips.emplace(options);
-  impl_->contextual.emplace(kRandomFeaturesDivisor);
+  impl_->lpips.emplace(LpipsFrom(weights.alexnet, weights.lpips_heads));
+  const bool trained = !weights.vgg19.empty();
+  impl_->contextual.emplace(trained ? 1 : kContextualRandomFeaturesDivisor);
+  if (trained) impl_->contextual->Load(weights.vgg19.weights, weights.vgg19.source);
 }
 GuidedScorer::~GuidedScorer() = default;
 
@@ -74,7 +75,9 @@ void GuidedScorer::Add(const GuidedPicture& picture, const PhotoFrame& truth) {
   const double from_mean = distance - s.person_mean;
   s.person_mean += from_mean / ++s.of_person;
   s.around_mean += from_mean * (distance - s.person_mean);
-  s.contextual_sum += (*s.contextual)(image, true_image).distance;
+  const ContextualValue contextual = (*s.contextual)(image, true_image);
+  s.contextual_sum += contextual.distance;
+  s.contextual_random_features = contextual.random_features;
 }
 
 void GuidedScorer::NextPerson() {
@@ -96,6 +99,8 @@ GuidedScores GuidedScorer::Scores() const {
   const double n = s.frames, none = std::numeric_limits<double>::quiet_NaN();
   scores.lpips = s.lpips ? s.lpips_sum / n : none;
   scores.lpips_deviation = s.lpips ? std::sqrt((s.around_means + s.around_mean) / n) : none;
+  scores.lpips_random_features = !s.lpips || s.lpips->has_random_features();
+  scores.contextual_random_features = s.contextual_random_features;
   scores.contextual = s.contextual ? s.contextual_sum / n : none;
   return scores;
 }

@@ -5,12 +5,15 @@
 #include <memory>
 
 #include "bodyloom/neural/guided/guided_picture.h"
+#include "bodyloom/neural/networks/named_weights.h"
 #include "bodyloom/neural/people/photo_frame.h"
 
 namespace bodyloom {
 
-/// "Foreground" is the true one, labels other than the background. LPIPS and CS are random-feature substitutes, on
-/// the whole window with a black background: they order results but compare with nobody else's figures.
+/// "Foreground" is the true one, labels other than the background. LPIPS and CS are of the whole window with a black
+/// background. Without trained weights random features measure: they order results but compare with nobody else's
+/// figures. LPIPS' are those of all renderers (neural/metrics/lpips.h); CS' are of a quarter of VGG-19's channels, for
+/// speed.
 struct GuidedScores {
   int frames = 0;
   double image_l1 = 0;        ///< mean |I − I_true| over foreground and channels
@@ -22,12 +25,18 @@ struct GuidedScores {
   /// sqrt(Σ_p Σ_f (d_pf − mean_p)² / frames).
   double lpips_deviation = 0;
   double contextual = 0;  ///< Σ −log CX, mean over frames; NaN where not requested
+  bool lpips_random_features = true, contextual_random_features = true;
+};
+
+/// Trained weights for LPIPS (alexnet and lpips_heads) and CS (vgg19); what is empty is measured by random features.
+struct GuidedScoreWeights {
+  WeightsFrom alexnet, lpips_heads, vgg19;
 };
 
 class GuidedScorer {
  public:
-  /// `features`: with LPIPS and CS, which take their time.
-  explicit GuidedScorer(bool features);
+  /// `features`: with LPIPS and CS, which take their time. Throws std::runtime_error naming weights that do not fit.
+  explicit GuidedScorer(bool features, const GuidedScoreWeights& weights = {});
   ~GuidedScorer();
   GuidedScorer(const GuidedScorer&) = delete;
   GuidedScorer& operator=(const GuidedScorer&) = delete;

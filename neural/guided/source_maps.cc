@@ -1,11 +1,43 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/neural/guided/source_maps.h"
 
+#include <optional>
+
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/neural/guided/clothes_extent.h"
 #include "bodyloom/neural/guided/guess_maps.h"
+#include "bodyloom/neural/people/guess_unseen.h"
 
 namespace bodyloom {
+namespace {
+
+/// The photo with its texels where `lent` is as told, without the others.
+PhotoFrame ShownAlone(const PhotoFrame& photo, std::span<const uint8_t> lent, bool where_lent) {
+  PhotoFrame shown = photo;
+  for (size_t i = 0; i < lent.size(); ++i) {
+    if ((lent[i] != 0) != where_lent) shown.texel_cosine[i] = 0;
+  }
+  return shown;
+}
+
+/// Puts a photo's texels into the maps that it sees at a larger cosine than those before it. Returns how many were
+/// empty.
+int TakeBetterSeen(const CoherentMaps& of_photo, std::span<const float> cosine, std::vector<float>* seen_at,
+                   CoherentMaps* maps) {
+  const size_t texels = maps->from.size();
+  int filled = 0;
+  for (size_t i = 0; i < texels; ++i) {
+    if (of_photo.from[i] == 0 || !(cosine[i] > (*seen_at)[i])) continue;
+    filled += maps->from[i] == 0 ? 1 : 0;
+    (*seen_at)[i] = cosine[i];
+    maps->from[i] = of_photo.from[i];
+    maps->labels[i] = of_photo.labels[i];
+    for (size_t c = 0; c < 3; ++c) maps->appearance[c * texels + i] = of_photo.appearance[c * texels + i];
+  }
+  return filled;
+}
+
+}  // namespace
 
 SourceMaps MapsOfSource(std::span<const PhotoFrame> photos, const SourceBody& body, MapCompletion completion,
                         bool extent, const DrawPose& draw) {
@@ -15,18 +47,36 @@ SourceMaps MapsOfSource(std::span<const PhotoFrame> photos, const SourceBody& bo
                  ", expected ", int(kNumVirtualViews));
   BODYLOOM_CHECK((completion != MapCompletion::kNearest && !extent) || body.neighbours != nullptr,
                  "pose-guided renderer: the maps ask for the nearest texels, and nobody says which are near");
-  std::vector<uint8_t> no_face;
+  std::vector<uint8_t> behind;  // of the head
   if (views && completion != MapCompletion::kNearest) {
-    no_face = TexelsOfTheBack(body.virtual_views[kViewFront], body.virtual_views[kViewBack]);
+    behind = TexelsOfTheBack(body.virtual_views[kViewFront], body.virtual_views[kViewBack]);
   } else if (body.neighbours != nullptr) {
-    no_face = body.neighbours->back_of_head();
+    behind = body.neighbours->back_of_head();
   }
   SourceMaps source = {EmptyMaps(photos[0].texture_size, body.texel_parts), 0, {}};
+  const std::span<const uint8_t> lent = body.lent_texels;
+  BODYLOOM_CHECK(lent.empty() || (photos.size() > 1 && lent.size() == photos[0].texel_cosine.size() &&
+                                  lent.size() == photos.back().texel_cosine.size()),
+                 "pose-guided renderer: ", lent.size(), " texels lent among ", photos.size(), " photos");
+  std::vector<float> seen_at(source.maps.from.size());  // cosines
   for (size_t i = 0; i < photos.size(); ++i) {
-    source.texels_seen +=
-        FillEmptyTexels(photos[i], OwnPicture(photos[i]), static_cast<uint8_t>(i + 1), no_face, &source.maps);
+    std::optional<PhotoFrame> part;
+    if (!lent.empty()) part = ShownAlone(photos[i], lent, /*where_lent=*/i + 1 == photos.size());
+    const PhotoFrame& shown = part ? *part : photos[i];
+    CoherentMaps of_photo = EmptyMaps(source.maps.size, body.texel_parts);
+    FillEmptyTexels(shown, OwnPicture(shown), static_cast<uint8_t>(i + 1), {}, &of_photo);
+    source.texels_seen += TakeBetterSeen(of_photo, shown.texel_cosine, &seen_at, &source.maps);
   }
-  if (extent) source.maps.extent = ClothesExtent(photos[0], *body.neighbours);
+  if (!behind.empty()) CallFacesBehindHair(behind, source.maps.labels);
+  if (extent) {
+    source.maps.extent = ClothesExtent(photos[0], *body.neighbours);
+    if (!lent.empty()) {
+      const std::vector<float> of_lender = ClothesExtent(photos.back(), *body.neighbours);
+      for (size_t i = 0; i < lent.size(); ++i) {
+        if (lent[i] != 0) source.maps.extent[i] = of_lender[i];
+      }
+    }
+  }
   const int next = static_cast<int>(photos.size()) + 1;
   if (completion == MapCompletion::kNearest) {
     GuessRest(*body.neighbours, static_cast<uint8_t>(next), &source.maps);

@@ -18,6 +18,9 @@ struct SourceBody {
   std::span<const uint8_t> texel_parts;            ///< U × U: DensePose's part, 0 where the atlas is empty
   std::span<const PhotoFrame> virtual_views = {};  ///< in the order of VirtualView; for MapCompletion::kVirtualViews
   const TexelNeighbours* neighbours = nullptr;     ///< for MapCompletion::kNearest and for SilNet's hints
+  /// U × U: 1 where the last photo, somebody else's, says what is worn, and nobody else; elsewhere it says nothing.
+  /// Empty: nobody lends anything.
+  std::span<const uint8_t> lent_texels = {};
 };
 
 struct SourceMaps {
@@ -26,10 +29,11 @@ struct SourceMaps {
   std::vector<GuidedPicture> virtual_pictures;
 };
 
-/// Earlier photos come first. Texels of the back of the head (by the views or the neighbours) take no face from a
-/// photo. `extent`: whether the clothes' extent is needed; it is measured on the first photo, and body.neighbours must
-/// be there. `draw` may be empty where nothing is drawn. Throws std::invalid_argument for sizes that do not fit, and
-/// for what the completion needs and is absent.
+/// Of several photos the one that sees a texel at the largest cosine fills it, the first of equals. What a photo shows
+/// of the back of the head (by the views or the neighbours) stays; where no photo's labels have hair, it is hair
+/// whatever they call it (CallFacesBehindHair). `extent`: whether the clothes' extent is needed; it is measured on the
+/// first photo (on the last one where that lends), and body.neighbours must be there. `draw` may be empty where nothing
+/// is drawn. Throws std::invalid_argument for sizes that do not fit, and for what the completion needs and is absent.
 SourceMaps MapsOfSource(std::span<const PhotoFrame> photos, const SourceBody& body, MapCompletion completion,
                         bool extent, const DrawPose& draw);
 

@@ -33,27 +33,27 @@ namespace {
 
 using torch::Tensor;
 
-const std::vector<std::string> kColumns = {"learning_rate",
-                                           "silhouette",
-                                           "labels",
-                                           "image",
-                                           "outline",
-                                           "perceptual",
-                                           "contextual",
-                                           "generator",
-                                           "kl",
-                                           "discriminator",
-                                           "render",
-                                           "validation_l1",
-                                           "validation_psnr_db",
-                                           "validation_silhouette_iou",
-                                           "validation_label_iou",
-                                           "validation_lpips",
-                                           "validation_contextual"};
+const std::vector<std::string> kGuidedColumns = {"learning_rate",
+                                                 "silhouette",
+                                                 "labels",
+                                                 "image",
+                                                 "outline",
+                                                 "perceptual",
+                                                 "contextual",
+                                                 "generator",
+                                                 "kl",
+                                                 "discriminator",
+                                                 "render",
+                                                 "validation_l1",
+                                                 "validation_psnr_db",
+                                                 "validation_silhouette_iou",
+                                                 "validation_label_iou",
+                                                 "validation_lpips",
+                                                 "validation_contextual"};
 
 enum Balanced { kPerceptual, kContextual, kGan, kKl, kNumBalanced };
 
-struct Losses {
+struct GuidedLosses {
   double silhouette = 0, labels = 0, image = 0, mask = 0, discriminator = 0, render = 0, total = 0;
   std::array<double, kNumBalanced> balanced{};
   [[nodiscard]] bool IsFinite() const {
@@ -92,7 +92,8 @@ class GuidedTrainer : public TrainedSystem {
   TrainGuidedSummary Run() {
     TrainGuidedSummary summary;
     model_->train();
-    static_cast<TrainingOutcome&>(summary) = RunTraining(options_, options_.steps, kColumns, checkpoint_.get(), this);
+    static_cast<TrainingOutcome&>(summary) =
+        RunTraining(options_, options_.steps, kGuidedColumns, checkpoint_.get(), this);
     summary.perceptual_random_features = vgg_->has_random_features;
     summary.scores = scores_;
     if (balance_.IsSet()) {
@@ -119,7 +120,7 @@ class GuidedTrainer : public TrainedSystem {
   void Validate(int done, bool last) override {
     model_->eval();
     const PhotoSource& people = options_.validation;
-    GuidedScorer scorer(last);
+    GuidedScorer scorer(last, options_.score_weights);
     std::vector<GuidedPreview> previews;
     const int count = std::min(static_cast<int>(people.num_frames.size()), options_.validation_people);
     for (int person = 0; person < count; ++person) {
@@ -208,11 +209,11 @@ class GuidedTrainer : public TrainedSystem {
     return {silhouette.detach(), classes};
   }
 
-  Losses Learn(const GuidedBatch& batch, int step) {
+  GuidedLosses Learn(const GuidedBatch& batch, int step) {
     SetRate(optimizer_.get(), LinearDecayOverLastHalf(options_.learning_rate, step, options_.steps));
     SetRate(discriminator_optimizer_.get(), LinearDecayOverLastHalf(options_.discriminator_rate, step, options_.steps));
     const GuidedTensors& truth = batch.target;
-    Losses losses;
+    GuidedLosses losses;
     const GuidedSource source = model_->EncodeSource(batch.source);
     Tensor total = torch::zeros({}, truth.image.options());
     Tensor silhouette_logits;
@@ -275,7 +276,7 @@ class GuidedTrainer : public TrainedSystem {
 
   /// λ-weighted sum; while the weights are not set the losses are only measured.
   Tensor BalancedLosses(const GuidedBatch& batch, const Tensor& image, const RenderCode& code, int step,
-                        Losses* losses) {
+                        GuidedLosses* losses) {
     const torch::AutoGradMode mode(balance_.IsSet());
     Tensor sum = torch::zeros({}, image.options().requires_grad(false));
     const auto add = [&](Balanced which, const Tensor& loss) {
@@ -320,7 +321,7 @@ class GuidedTrainer : public TrainedSystem {
   std::unique_ptr<Checkpoint> checkpoint_;
   GuidedScores scores_;
   std::vector<int> photos_;                           ///< of the people validated on
-  Losses losses_;                                     ///< of the last step
+  GuidedLosses losses_;                               ///< of the last step
   std::unique_ptr<Prefetcher<GuidedBatch>> batches_;  ///< last: its thread uses the rest
 };
 

@@ -60,6 +60,7 @@ struct TrainGuidedOptions : TrainingRun {
   double predicted_from = 2.0 / 3;  ///< 1: never
   int reach = 0;      ///< pixels that clothes reach beyond the body (0: not known, validates on whole windows)
   WeightsFrom vgg16;  ///< empty: a seeded random-feature substitute
+  GuidedScoreWeights score_weights;                          ///< of the last validation
   std::function<bool(const TrainGuidedProgress&)> progress;  ///< return false to stop after a checkpoint
   std::function<void(int step, const std::vector<GuidedPreview>&)> preview;
   [[nodiscard]] bool IsValid(std::string* why) const;

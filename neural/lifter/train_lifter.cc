@@ -21,16 +21,16 @@ namespace {
 using torch::Tensor;
 
 constexpr uint64_t kValidationSeeds = uint64_t{1} << 62;
-const std::vector<std::string> kColumns = {"learning_rate",
-                                           "loss",
-                                           "distance",
-                                           "nll",
-                                           "velocity",
-                                           "up",
-                                           "contact",
-                                           "gradient_norm",
-                                           "validation_distance",
-                                           "validation_best_distance"};
+const std::vector<std::string> kLifterColumns = {"learning_rate",
+                                                 "loss",
+                                                 "distance",
+                                                 "nll",
+                                                 "velocity",
+                                                 "up",
+                                                 "contact",
+                                                 "gradient_norm",
+                                                 "validation_distance",
+                                                 "validation_best_distance"};
 
 struct Batch {
   Tensor features;  ///< B×inputs×T
@@ -101,7 +101,8 @@ class LifterTrainer : public TrainedSystem {
 
   TrainLifterResult Run() {
     TrainLifterResult result;
-    static_cast<TrainingOutcome&>(result.summary) = RunTraining(options_, options_.steps, kColumns, &checkpoint_, this);
+    static_cast<TrainingOutcome&>(result.summary) =
+        RunTraining(options_, options_.steps, kLifterColumns, &checkpoint_, this);
     result.summary.validation_distance = distance_;
     result.summary.validation_best_distance = best_distance_;
     result.weights = ExportLifter(average_);

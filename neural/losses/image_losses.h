@@ -3,7 +3,7 @@
 ///
 /// All are means over everything they count (batch, pixels, channels), so that weights keep their meaning when the size
 /// of an image changes. Tensors of one call have the same shape (masks: one channel), type and device; std::
-/// invalid_argument otherwise. Source of what is compared: Yoon et al., CVPR 2022, Section 3.3, which leaves the norms
+/// invalid_argument otherwise. Source of what is compared: Yoon et al., CVPR 2022, Section 3.2, which leaves the norms
 /// open; L1 is this project's choice.
 #pragma once
 

@@ -114,4 +114,14 @@ LpipsValue Lpips::Distance(const Image& a, const Image& b) const {
   return Distance(Features(a), Features(b));
 }
 
+Lpips LpipsFrom(const WeightsFrom& alexnet, const WeightsFrom& heads) {
+  Lpips lpips;
+  if (!alexnet.empty() && !heads.empty()) lpips.Load(alexnet.weights, alexnet.source, heads.weights, heads.source);
+  return lpips;
+}
+
+std::string LpipsName(const char* name, bool random_features) {
+  return std::string(name) + (random_features ? "_random_features" : "_alex");
+}
+
 }  // namespace bodyloom

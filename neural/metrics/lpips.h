@@ -71,4 +71,10 @@ class Lpips {
   std::unique_ptr<Network> network_;
 };
 
+/// On AlexNet with these weights; the substitute when either is empty. Throws as Lpips::Load.
+Lpips LpipsFrom(const WeightsFrom& alexnet, const WeightsFrom& heads);
+
+/// Name of a figure by what measured it: NAME_alex or NAME_random_features.
+std::string LpipsName(const char* name, bool random_features);
+
 }  // namespace bodyloom

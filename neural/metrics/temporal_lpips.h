@@ -2,9 +2,11 @@
 /// LPIPS and tLPIPS of a video, frame by frame, each frame's features computed once.
 ///
 /// tLPIPS of frame t = |LPIPS(s_t, s_{t−1}) − LPIPS(g_t, g_{t−1})| with result s and truth g: whether the result
-/// changes as much as the truth does. A video's value is the mean over its frames but the first (of every cut). Tables
-/// print 100 times that. Source: Chu et al., "Learning Temporal Coherence via Self-Supervision for GAN-based Video
-/// Generation", 2020 (which crops and drops two frames at each end; this does not), as used by Yoon et al., CVPR 2022.
+/// changes as much as the truth does. Pictures that are windows which follow a person are laid over each other first
+/// (Shifted, neural/image_tensor.h): a window that jumps is no change of the picture. A video's value is the mean over
+/// its frames but the first (of every cut). Tables print 100 times that. Source: Chu et al., "Learning Temporal
+/// Coherence via Self-Supervision for GAN-based Video Generation", 2020 (which crops and drops two frames at each end;
+/// this does not), as used by Yoon et al., CVPR 2022.
 #pragma once
 
 #include <optional>
@@ -17,6 +19,7 @@ struct TemporalLpipsMean {
   int frames = 0;
   double lpips = 0;   ///< mean over frames
   double tlpips = 0;  ///< mean over frames that follow another; 0 when none does
+  int pairs = 0;      ///< of them
   bool random_features = true;
 };
 
@@ -31,9 +34,9 @@ class TemporalLpips {
   /// `lpips` must outlive this.
   explicit TemporalLpips(const Lpips& lpips) : lpips_(lpips) {}
 
-  /// The next frame. Throws std::invalid_argument when the images differ in size, from each other or from the frame
-  /// before.
-  Frame Add(const Image& result, const Image& truth);
+  /// The next frame. The pictures of the frame before lie at (before_x, before_y) in these; what they do not reach is
+  /// black. Throws std::invalid_argument when the images differ in size, from each other or from the frame before.
+  Frame Add(const Image& result, const Image& truth, int before_x = 0, int before_y = 0);
 
   /// The next frame does not follow the last one: it has no tLPIPS.
   void Restart() { follows_ = false; }
@@ -41,8 +44,16 @@ class TemporalLpips {
   [[nodiscard]] TemporalLpipsMean Mean() const;
 
  private:
+  /// A frame's picture, to be laid elsewhere, and what the network sees in it where it lies.
+  struct Seen {
+    Image image;
+    LpipsFeatures features;
+  };
+  /// How far a picture is from the one before it.
+  [[nodiscard]] double Change(const Seen& now, const Seen& before, int before_x, int before_y) const;
+
   const Lpips& lpips_;
-  LpipsFeatures last_result_, last_truth_;
+  Seen last_result_, last_truth_;
   bool follows_ = false;
   int frames_ = 0, pairs_ = 0;
   double sum_lpips_ = 0, sum_tlpips_ = 0;

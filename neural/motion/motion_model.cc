@@ -14,10 +14,10 @@ namespace {
 using torch::Tensor;
 
 constexpr int kUvChannels = 3;  // u, v, 1
-constexpr double kTiny = 1e-6;
+constexpr double kTinyLength = 1e-6;
 
 /// Unit vectors; nearly zero ones stay short instead of being blown up.
-Tensor Unit(const Tensor& x) { return x / (x.square().sum(1, true) + kTiny).sqrt(); }
+Tensor Unit(const Tensor& x) { return x / (x.square().sum(1, true) + kTinyLength).sqrt(); }
 
 }  // namespace
 
@@ -104,18 +104,6 @@ MotionState MotionModelImpl::Nothing(int64_t batch, int64_t height, int64_t widt
   state.image = zeros(3);
   if (config.normals) state.normals = zeros(3);
   return state;
-}
-
-Tensor Shifted(const Tensor& image, int x, int y) {
-  if (x == 0 && y == 0) return image;
-  const int64_t h = image.size(2), w = image.size(3), dx = std::abs(x), dy = std::abs(y);
-  Tensor result = torch::zeros_like(image);
-  if (dx >= w || dy >= h) return result;
-  const int64_t from_x = std::max(0, -x), from_y = std::max(0, -y), to_x = std::max(0, x), to_y = std::max(0, y);
-  result.slice(2, to_y, to_y + h - dy)
-      .slice(3, to_x, to_x + w - dx)
-      .copy_(image.slice(2, from_y, from_y + h - dy).slice(3, from_x, from_x + w - dx));
-  return result;
 }
 
 }  // namespace bodyloom

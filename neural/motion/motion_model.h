@@ -63,7 +63,4 @@ struct MotionModelImpl : torch::nn::Module {
 };
 TORCH_MODULE(MotionModel);
 
-/// The picture moved by (x, y) pixels, right and down; what comes in is zero.
-torch::Tensor Shifted(const torch::Tensor& image, int x, int y);
-
 }  // namespace bodyloom

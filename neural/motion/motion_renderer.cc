@@ -33,7 +33,7 @@ class MotionRenderer::Impl {
   Impl(const std::string& path, const MotionConfig& config, const MotionRendererOptions& options)
       : config_(config),
         score_(options.score),
-        scorer_(config_),
+        scorer_(config_, {options.lpips, options.ssim}),
         roll_(Loaded(path, config, options), options.warmup_iterations, {options.reach, options.anywhere}) {}
 
   MotionPicture Next(const MotionFrame& frame) {
@@ -49,12 +49,13 @@ class MotionRenderer::Impl {
     return picture;
   }
 
+  void ForgetPast() { roll_.Restart(); }
   void Restart() {
     roll_.Restart();
     scorer_.Restart();
   }
   [[nodiscard]] MotionScores scores() const { return scorer_.Scores(); }
-  [[nodiscard]] double last_l1() const { return scorer_.last_l1(); }
+  [[nodiscard]] MotionFrameScores last_scores() const { return scorer_.last(); }
   [[nodiscard]] const RollOut& roll() const { return roll_; }
 
  private:
@@ -71,8 +72,9 @@ MotionRenderer::~MotionRenderer() = default;
 
 MotionPicture MotionRenderer::Next(const MotionFrame& frame) { return impl_->Next(frame); }
 void MotionRenderer::Restart() { impl_->Restart(); }
+void MotionRenderer::ForgetPast() { impl_->ForgetPast(); }
 MotionScores MotionRenderer::scores() const { return impl_->scores(); }
-double MotionRenderer::last_l1() const { return impl_->last_l1(); }
+MotionFrameScores MotionRenderer::last_scores() const { return impl_->last_scores(); }
 int64_t MotionRenderer::descriptors_kept() const { return impl_->roll().descriptors_kept(); }
 int64_t MotionRenderer::projections_kept() const { return impl_->roll().projections_kept(); }
 

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "bodyloom/neural/metrics/lpips.h"
+#include "bodyloom/neural/metrics/picture_similarity.h"
 #include "bodyloom/neural/motion/motion_config.h"
 #include "bodyloom/neural/motion/motion_frame.h"
 #include "bodyloom/neural/motion/motion_picture.h"
@@ -19,6 +21,9 @@ struct MotionRendererOptions {
   int reach = 0;               ///< of clothes beyond the body, pixels (neural/motion/clothes_reach.h); 0: not known
   bool anywhere = false;       ///< what lies beyond reach may still be the person (roll_out.h)
   bool score = false;          ///< compare every frame with the truth that it holds
+  /// With `score`: whole windows too, by LPIPS and tLPIPS (empty: not) and SSIM (empty: not).
+  std::shared_ptr<const Lpips> lpips = {};
+  PictureSimilarity ssim = {};
   int num_threads = 0;         ///< 0: all cores
   std::string device = "cpu";  ///< or "cuda"
 };
@@ -37,11 +42,13 @@ class MotionRenderer {
   MotionPicture Next(const MotionFrame& frame);
   /// The next frame begins another clip.
   void Restart();
+  /// The next frame is rendered as if it began another clip, but is still compared as the one that follows.
+  void ForgetPast();
 
   /// Of all frames compared so far.
   [[nodiscard]] MotionScores scores() const;
-  /// image_l1 of the last frame compared.
-  [[nodiscard]] double last_l1() const;
+  /// Of the last frame compared.
+  [[nodiscard]] MotionFrameScores last_scores() const;
 
   /// Frames whose motion maps (and surface coordinates) were those of the frame before: their descriptors
   /// (projections) were not computed again.

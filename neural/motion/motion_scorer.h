@@ -4,34 +4,50 @@
 
 #include <torch/torch.h>
 
-#include <limits>
+#include <memory>
+#include <optional>
 
 #include "bodyloom/neural/metrics/class_overlap.h"
+#include "bodyloom/neural/metrics/picture_similarity.h"
+#include "bodyloom/neural/metrics/temporal_lpips.h"
 #include "bodyloom/neural/motion/frame_tensors.h"
 #include "bodyloom/neural/motion/motion_model.h"
 #include "bodyloom/neural/motion/motion_scores.h"
 
 namespace bodyloom {
 
+/// Of whole windows beside the foreground's scores. Windows below kSmallestSide are not compared by them.
+struct WindowScoring {
+  static constexpr int kSmallestSide = 32;  ///< pixels, that LPIPS' network takes
+  std::shared_ptr<const Lpips> lpips;       ///< empty: neither LPIPS nor tLPIPS
+  PictureSimilarity ssim;
+};
+
 /// Sums over frames, one at a time in order; windows may move between them.
 class MotionScorer {
  public:
-  explicit MotionScorer(const MotionConfig& config) : config_(config) {}
+  explicit MotionScorer(const MotionConfig& config, const WindowScoring& windows = {});
   /// One frame (B = 1) and where the window of the frame before lies in this one.
   void Add(const MotionState& predicted, const MotionTruth& truth, int before_x, int before_y);
   /// The next frame does not follow the last one.
-  void Restart() { last_error_ = torch::Tensor(); }
+  void Restart();
   [[nodiscard]] MotionScores Scores() const;
-  /// image_l1 of the frame added last; NaN before.
-  [[nodiscard]] double last_l1() const { return last_l1_; }
+  /// Of the frame added last.
+  [[nodiscard]] const MotionFrameScores& last() const { return last_; }
 
  private:
+  void CompareWindows(const torch::Tensor& predicted, const torch::Tensor& truth, int before_x, int before_y);
+
   const MotionConfig& config_;
+  WindowScoring windows_;
+  std::optional<TemporalLpips> temporal_;
+  double ssim_ = 0;
+  int windows_compared_ = 0;
   double l1_ = 0, squared_ = 0, angle_deg_ = 0, flicker_ = 0;
   double foreground_ = 0, foreground_with_normals_ = 0, foreground_with_past_ = 0;  ///< pixels
   ClassOverlap overlap_{0};  ///< without classes until labels were compared
   torch::Tensor last_error_;
-  double last_l1_ = std::numeric_limits<double>::quiet_NaN();
+  MotionFrameScores last_;
   int frames_ = 0;
 };
 

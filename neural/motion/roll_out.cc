@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/neural/image_tensor.h"
 #include "bodyloom/neural/motion/person_box.h"
 
 namespace bodyloom {

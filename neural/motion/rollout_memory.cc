@@ -6,6 +6,7 @@
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/neural/device.h"
+#include "bodyloom/neural/image_tensor.h"
 #include "bodyloom/neural/motion/person_box.h"
 
 namespace bodyloom {

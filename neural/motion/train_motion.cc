@@ -29,24 +29,25 @@ namespace {
 
 using torch::Tensor;
 
-const std::vector<std::string> kColumns = {"learning_rate",
-                                           "loss",
-                                           "image",
-                                           "shape",
-                                           "normals",
-                                           "perceptual",
-                                           "generator",
-                                           "discriminator",
-                                           "validation_l1",
-                                           "validation_psnr_db",
-                                           "validation_label_iou",
-                                           "validation_foreground_iou",
-                                           "validation_normal_deg",
-                                           "validation_flicker"};
+const std::vector<std::string> kMotionColumns = {"learning_rate",
+                                                 "loss",
+                                                 "image",
+                                                 "shape",
+                                                 "normals",
+                                                 "perceptual",
+                                                 "generator",
+                                                 "discriminator",
+                                                 "validation_l1",
+                                                 "validation_psnr_db",
+                                                 "validation_label_iou",
+                                                 "validation_foreground_iou",
+                                                 "validation_normal_deg",
+                                                 "validation_flicker",
+                                                 "validation_ssim"};
 /// metrics.csv holds the scores of so many frames of each range, so that its lines compare; the summary those of all.
 constexpr int kQuickFrames = 48;
 
-struct Losses {
+struct MotionLosses {
   double total = 0, image = 0, shape = 0, normals = 0, perceptual = 0, generator = 0, discriminator = 0;
   [[nodiscard]] bool IsFinite() const { return std::isfinite(total + discriminator); }
 };
@@ -90,7 +91,8 @@ class MotionTrainer : public TrainedSystem {
 
   TrainMotionSummary Run() {
     TrainMotionSummary summary;
-    static_cast<TrainingOutcome&>(summary) = RunTraining(options_, options_.steps, kColumns, checkpoint_.get(), this);
+    static_cast<TrainingOutcome&>(summary) =
+        RunTraining(options_, options_.steps, kMotionColumns, checkpoint_.get(), this);
     summary.losses_off = losses_off_;
     summary.perceptual_random_features = vgg_->has_random_features;
     summary.scores = all_scores_.frames > 0 ? all_scores_ : scores_;
@@ -117,7 +119,10 @@ class MotionTrainer : public TrainedSystem {
 
   void Validate(int done, bool last) override {
     std::vector<MotionPreview> previews;
-    MotionScorer quick(config_), all(config_);
+    // LPIPS and tLPIPS take their time: at the end alone.
+    const auto lpips =
+        last ? std::make_shared<const Lpips>(LpipsFrom(options_.alexnet, options_.lpips_heads)) : nullptr;
+    MotionScorer quick(config_, {nullptr, options_.ssim}), all(config_, {lpips, options_.ssim});
     RollOut roll(Shown(), options_.warmup_iterations, {options_.reach, /*anywhere=*/true});
     for (const FrameRange& range : options_.validation) {
       roll.Restart();
@@ -164,8 +169,8 @@ class MotionTrainer : public TrainedSystem {
   }
 
   [[nodiscard]] std::vector<double> ScoreRow() const override {
-    return {scores_.image_l1,       scores_.psnr_db,    scores_.label_iou,
-            scores_.foreground_iou, scores_.normal_deg, scores_.flicker};
+    return {scores_.image_l1,   scores_.psnr_db, scores_.label_iou, scores_.foreground_iou,
+            scores_.normal_deg, scores_.flicker, scores_.ssim};
   }
 
   bool Report(int done, double seconds) override {
@@ -177,13 +182,13 @@ class MotionTrainer : public TrainedSystem {
   /// What is validated and kept for inference.
   [[nodiscard]] MotionModel& Shown() { return average_ ? average_ : model_; }
 
-  Losses Learn(const MotionBatch& batch, int step) {
+  MotionLosses Learn(const MotionBatch& batch, int step) {
     SetRate(optimizer_.get(), LinearDecayOverLastHalf(options_.learning_rate, step, options_.steps));
     SetRate(discriminator_optimizer_.get(), LinearDecayOverLastHalf(options_.discriminator_rate, step, options_.steps));
     const MotionTruth& truth = batch.truth;
     const MotionStepResult result = model_(batch.input, memory_->Before(batch));
     const MotionState& state = result.state;
-    Losses losses;
+    MotionLosses losses;
     // Where the person is, is the classes' affair: colour is judged where the person truly is. Judged as it is shown,
     // it would turn dark where the person might be and mostly is not.
     const Tensor image = has_labels_ && config_.shape ? truth.foreground * result.colour : state.image;
@@ -250,7 +255,7 @@ class MotionTrainer : public TrainedSystem {
   MotionScores scores_, all_scores_;  ///< of the last validation's first frames of each range, and of all of them
   Tensor best_ = torch::tensor({1e9, 0.0}, torch::kDouble);  ///< least L1 of a validation, and how many came since
   std::unique_ptr<MotionBatches> batches_;
-  Losses losses_;  ///< of the last step
+  MotionLosses losses_;  ///< of the last step
 };
 
 }  // namespace

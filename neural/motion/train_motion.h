@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Trains the motion-dependent renderer on one person's clip.
 ///
-///   L = L_a + 10 L_s + L_n + L_p + 0.01 L_g            (Yoon et al., CVPR 2022, eq. 8 and below)
+///   L = L_a + 10 L_s + L_n + L_p + 0.01 L_g            (Yoon et al., CVPR 2022, eq. 9 and below)
 /// L_a, L_n: mean absolute differences of image and normals; L_s: cross entropy of the classes, or the mean absolute
 /// difference of probabilities (the paper does not say which norm; with absolute differences small classes are never
 /// learned, docs/motion_renderer.md); L_p: of VGG-16's features after conv 1-2, 2-2, 3-2 and 4-2; L_g: a patch
@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "bodyloom/neural/metrics/picture_similarity.h"
 #include "bodyloom/neural/motion/motion_config.h"
 #include "bodyloom/neural/motion/motion_frame.h"
 #include "bodyloom/neural/motion/motion_scores.h"
@@ -54,8 +55,10 @@ struct TrainMotionOptions : TrainingRun {
   /// Validated and kept is the average of the weights over the last part of the run, this share of the steps old in the
   /// mean (neural/training/weight_average.h); 0: the last step's weights.
   double average = 0.1;
-  int warmup_iterations = 10;  ///< of the first frame, before a roll-out counts
-  WeightsFrom vgg16;           ///< empty: a seeded random-feature substitute
+  int warmup_iterations = 10;        ///< of the first frame, before a roll-out counts
+  WeightsFrom vgg16;                 ///< empty: a seeded random-feature substitute
+  WeightsFrom alexnet, lpips_heads;  ///< of validation's LPIPS; either empty: a random-feature substitute
+  PictureSimilarity ssim;            ///< of validation
   int preview_frames = 4;
   std::function<bool(const TrainMotionProgress&)> progress;  ///< return false to stop after a checkpoint
   std::function<void(int step, const std::vector<MotionPreview>&)> preview;

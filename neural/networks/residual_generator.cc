@@ -14,7 +14,7 @@ namespace nn = torch::nn;
 
 namespace {
 
-constexpr int kLevels = 3;
+constexpr int kGeneratorLevels = 3;
 
 template <class Convolution>
 Convolution Initialised(Convolution conv) {
@@ -40,7 +40,7 @@ ResidualGeneratorImpl::ResidualGeneratorImpl(const ResidualGeneratorOptions& gen
                  " on the way up, expected 3 or 4");
   int channels = options.width;
   first = register_module("first", Conv(options.in, channels, 7, 1, 0));
-  for (int i = 0; i < kLevels; ++i, channels *= 2) {
+  for (int i = 0; i < kGeneratorLevels; ++i, channels *= 2) {
     down.push_back(register_module("down" + std::to_string(i), Conv(channels, 2 * channels, 3, 2, 1)));
   }
   for (int i = 0; i < options.blocks; ++i) {
@@ -48,7 +48,7 @@ ResidualGeneratorImpl::ResidualGeneratorImpl(const ResidualGeneratorOptions& gen
       blocks.push_back(register_module("block" + std::to_string(i) + half, Conv(channels, channels, 3, 1, 0)));
     }
   }
-  for (int i = 0; i < kLevels; ++i, channels /= 2) {
+  for (int i = 0; i < kGeneratorLevels; ++i, channels /= 2) {
     up.push_back(register_module(
         "up" + std::to_string(i),
         Initialised(nn::ConvTranspose2d(nn::ConvTranspose2dOptions(channels, channels / 2, options.up_kernel)

@@ -9,10 +9,10 @@ using torch::Tensor;
 
 namespace {
 
-constexpr double kTiny = 1e-12;
+constexpr double kTinyNorm = 1e-12;
 constexpr int kFirstIterations = 8;  ///< so that a network starts near its true scale
 
-Tensor Unit(const Tensor& x) { return x / (x.norm() + kTiny); }
+Tensor Normalized(const Tensor& x) { return x / (x.norm() + kTinyNorm); }
 
 }  // namespace
 
@@ -23,7 +23,7 @@ Tensor SpectralScale(const Tensor& weight, const Tensor& u, const Tensor& v) {
 SpectralConvImpl::SpectralConvImpl(int from, int to, int kernel, bool bias, bool normalise)
     : conv(register_module("conv", MakeConv(from, to, kernel, 1, kernel / 2, bias))) {
   if (!normalise) return;
-  u = register_buffer("u", Unit(torch::randn({to})));
+  u = register_buffer("u", Normalized(torch::randn({to})));
   v = register_buffer("v", torch::zeros({int64_t{from} * kernel * kernel}));
   for (int i = 0; i < kFirstIterations; ++i) Iterate();
 }
@@ -32,8 +32,8 @@ void SpectralConvImpl::Iterate() {
   const torch::NoGradGuard no_grad;
   const Tensor matrix = conv->weight.flatten(1);
   // New tensors, not in place: a backward pass may still hold the old ones.
-  v.set_data(Unit(torch::mv(matrix.t(), u)));
-  u.set_data(Unit(torch::mv(matrix, v)));
+  v.set_data(Normalized(torch::mv(matrix.t(), u)));
+  u.set_data(Normalized(torch::mv(matrix, v)));
 }
 
 Tensor SpectralConvImpl::forward(const Tensor& x) {

@@ -19,8 +19,9 @@ struct PhotoFrame {
 
   int texture_size = 0;             ///< U
   std::vector<float> texel_pixels;  ///< 2 × U × U: x and y in the window where the texel's point appears
-  /// U × U: 1 where the texel's point is on the surface, in the window and hidden by nothing of the body.
-  std::vector<uint8_t> texel_seen;
+  /// U × U: where the texel's point is on the surface, in the window and hidden by nothing of the body, the cosine of
+  /// the angle between the surface's normal and the line of sight; 0 where it is not seen.
+  std::vector<float> texel_cosine;
 
   // What a picture shows; empty where there is no picture (a pose to be rendered).
   std::vector<float> image;     ///< 3 × S × S RGB in [0, 1], 0 on the background

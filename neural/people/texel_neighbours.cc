@@ -6,8 +6,10 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <utility>
 
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/neural/people/back_of_head.h"
 #include "bodyloom/neural/people/body_part_map.h"
 #include "bodyloom/neural/people/photo_frame.h"
 
@@ -37,17 +39,10 @@ TexelNeighbours::TexelNeighbours(int texture_size, std::span<const uint8_t> texe
     }
     texels_.push_back(static_cast<int>(k));
   }
-  back_of_head_.assign(area, 0);
+  head_.assign(area, 0), back_of_head_.assign(area, 0);
   if (texels_.empty()) return;
-  float front = std::numeric_limits<float>::lowest(), back = std::numeric_limits<float>::max();
-  for (const int k : texels_) {
-    if (LimbOf(texel_parts[k]) != kHeadLimb) continue;
-    front = std::max(front, texel_places[2 * area + k]), back = std::min(back, texel_places[2 * area + k]);
-  }
-  for (const int k : texels_) {
-    const bool behind = texel_places[2 * area + k] < 0.5 * (double(front) + back);
-    back_of_head_[k] = LimbOf(texel_parts[k]) == kHeadLimb && behind ? 1 : 0;
-  }
+  HeadTexels of_head = HeadTexelsOf(texel_parts, texel_places);
+  head_ = std::move(of_head.head), back_of_head_ = std::move(of_head.back);
   const double extent =
       std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2], std::numeric_limits<float>::min()});
   const double middle = 0.5 * (double(low[0]) + high[0]);

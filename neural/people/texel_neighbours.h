@@ -26,7 +26,8 @@ class TexelNeighbours {
   /// Throws std::invalid_argument for arrays of other sizes.
   std::vector<uint8_t> FillUnseen(std::span<const uint8_t> shown, int channels, std::span<float> values) const;
 
-  /// U × U: 1 for texels of the head behind the middle of its depth.
+  /// U × U: 1 for texels of the head; of those behind the middle of its depth.
+  [[nodiscard]] const std::vector<uint8_t>& head() const { return head_; }
   [[nodiscard]] const std::vector<uint8_t>& back_of_head() const { return back_of_head_; }
   [[nodiscard]] int texture_size() const { return texture_size_; }
 
@@ -36,7 +37,7 @@ class TexelNeighbours {
     int num_cells = 0;
   };
   int texture_size_ = 0;
-  std::vector<uint8_t> back_of_head_;
+  std::vector<uint8_t> head_, back_of_head_;
   std::vector<int> texels_;    ///< of the atlas that show the body
   std::vector<Level> levels_;  ///< the smallest cells first; last one cell of everything
 };

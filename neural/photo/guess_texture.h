@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Colours of the texels that a picture does not show, from the nearest ones that it does.
+/// Colours of the texels that a picture does not show, from the nearest ones that it does of the same label: one
+/// garment, hair, skin or face (neural/people/guess_unseen.h).
 #pragma once
 
 #include "bodyloom/neural/people/texel_neighbours.h"

@@ -18,14 +18,17 @@ void CheckSizes(const PhotoFrame& frame) {
       frame.size > 0 && frame.image.size() == 3 * pixels && (frame.labels.empty() || frame.labels.size() == pixels),
       "partial texture: a picture of ", frame.image.size(), " values with ", frame.labels.size(),
       " labels, expected 3 x ", frame.size, "² and ", frame.size, "²");
-  BODYLOOM_CHECK(frame.texture_size > 0 && frame.texel_pixels.size() == 2 * texels && frame.texel_seen.size() == texels,
-                 "partial texture: ", frame.texel_pixels.size(), " places and ", frame.texel_seen.size(),
-                 " texels, expected 2 x ", frame.texture_size, "² and ", frame.texture_size, "²");
+  BODYLOOM_CHECK(
+      frame.texture_size > 0 && frame.texel_pixels.size() == 2 * texels && frame.texel_cosine.size() == texels,
+      "partial texture: ", frame.texel_pixels.size(), " places and ", frame.texel_cosine.size(),
+      " texels, expected 2 x ", frame.texture_size, "² and ", frame.texture_size, "²");
 }
 
 void CheckSame(const PartialTexture& a, const PartialTexture& b) {
   BODYLOOM_CHECK(a.size == b.size && a.colour.size() == 3 * Area(a.size) && a.visible.size() == Area(a.size) &&
-                     b.colour.size() == a.colour.size() && b.visible.size() == a.visible.size(),
+                     b.colour.size() == a.colour.size() && b.visible.size() == a.visible.size() &&
+                     a.labels.size() == Area(a.size) && b.labels.size() == a.labels.size() &&
+                     a.cosine.size() == Area(a.size) && b.cosine.size() == a.cosine.size(),
                  "partial textures of ", a.size, " and ", b.size, " texels a side, expected the same");
   BODYLOOM_CHECK(a.guessed.empty() && b.guessed.empty(), "partial textures with guesses, expected what is seen alone");
 }
@@ -33,6 +36,8 @@ void CheckSame(const PartialTexture& a, const PartialTexture& b) {
 void CopyTexel(const PartialTexture& from, size_t texel, PartialTexture* to) {
   const size_t texels = to->visible.size();
   to->visible[texel] = from.visible[texel];
+  to->labels[texel] = from.labels[texel];
+  to->cosine[texel] = from.cosine[texel];
   for (size_t c = 0; c < 3; ++c) to->colour[c * texels + texel] = from.colour[c * texels + texel];
 }
 
@@ -52,10 +57,13 @@ PartialTexture PartialTextureOf(const PhotoFrame& frame) {
   texture.size = frame.texture_size;
   texture.colour.assign(3 * texels, 0);
   texture.visible.assign(texels, 0);
+  texture.labels.assign(texels, 0);
+  texture.cosine.assign(texels, 0);
   for (size_t k = 0; k < texels; ++k) {
     const float x = frame.texel_pixels[k], y = frame.texel_pixels[texels + k];
-    if (frame.texel_seen[k] == 0 || !(std::abs(x) < 2 * S && std::abs(y) < 2 * S)) continue;
-    if (!shows_person(static_cast<int>(std::floor(x + 0.5F)), static_cast<int>(std::floor(y + 0.5F)))) continue;
+    if (frame.texel_cosine[k] == 0 || !(std::abs(x) < 2 * S && std::abs(y) < 2 * S)) continue;
+    const int nearest_x = static_cast<int>(std::floor(x + 0.5F)), nearest_y = static_cast<int>(std::floor(y + 0.5F));
+    if (!shows_person(nearest_x, nearest_y)) continue;
     const float x0 = std::floor(x), y0 = std::floor(y);
     float weight = 0;
     std::array<float, 3> colour = {};
@@ -69,6 +77,8 @@ PartialTexture PartialTextureOf(const PhotoFrame& frame) {
       for (size_t c = 0; c < 3; ++c) colour[c] += w * frame.image[c * pixels + i];
     }
     texture.visible[k] = 1;
+    texture.labels[k] = frame.labels.empty() ? 1 : frame.labels[static_cast<size_t>(nearest_y) * S + nearest_x];
+    texture.cosine[k] = frame.texel_cosine[k];
     for (size_t c = 0; c < 3; ++c) texture.colour[c * texels + k] = colour[c] / weight;
   }
   return texture;
@@ -92,7 +102,7 @@ PartialTexture UnionOf(std::span<const PartialTexture> textures) {
   for (const PartialTexture& texture : textures.subspan(1)) {
     CheckSame(result, texture);
     for (size_t k = 0; k < result.visible.size(); ++k) {
-      if (result.visible[k] == 0) CopyTexel(texture, k, &result);
+      if (texture.cosine[k] > result.cosine[k]) CopyTexel(texture, k, &result);
     }
   }
   return result;

@@ -15,14 +15,15 @@ struct PartialTexture {
   int size = 0;
   std::vector<float> colour;     ///< 3 × U × U RGB in [0, 1]; 0 where neither visible nor guessed
   std::vector<uint8_t> visible;  ///< U × U, 0 or 1
+  std::vector<uint8_t> labels;   ///< U × U: the picture's label there (1 of a picture without labels); 0: not visible
+  std::vector<float> cosine;     ///< U × U: of the line of sight to the surface's normal; 0: not visible
   std::vector<uint8_t> guessed;  ///< U × U, 0 or 1, never where visible (neural/photo/guess_texture.h); empty: nowhere
 };
 
-/// A texel is visible where texel_seen says so and the pixel nearest to texel_pixels shows the person (label other than
-/// 0; a frame without labels: a colour other than black). Its colour is the bilinear mean of the up to four pixels
-/// around texel_pixels that show the person, their weights made to sum to 1.
-/// Nothing is guessed. Throws std::invalid_argument for a frame without a picture or with sizes that do not fit each
-/// other.
+/// A texel is visible where texel_cosine is not 0 and the pixel nearest to texel_pixels shows the person (label other
+/// than 0; a frame without labels: a colour other than black). Its colour is the bilinear mean of the up to four pixels
+/// around texel_pixels that show the person, their weights made to sum to 1. Nothing is guessed. Throws
+/// std::invalid_argument for a frame without a picture or with sizes that do not fit each other.
 PartialTexture PartialTextureOf(const PhotoFrame& frame);
 
 /// `texture` where `texel_parts` is none of `parts`, `garment` elsewhere: colours and visibility are copied as they
@@ -32,7 +33,8 @@ PartialTexture PartialTextureOf(const PhotoFrame& frame);
 PartialTexture WithParts(const PartialTexture& texture, const PartialTexture& garment,
                          std::span<const uint8_t> texel_parts, std::span<const int> parts);
 
-/// What any of the pictures shows of one person; where several do, the first one's colour counts. Throws as WithParts.
+/// What any of the pictures shows of one person; where several do, the one counts that sees the texel most from the
+/// front (the largest cosine; the first of equals). Throws as WithParts.
 PartialTexture UnionOf(std::span<const PartialTexture> textures);
 
 /// Share of the atlas's texels (part other than 0) that is visible.

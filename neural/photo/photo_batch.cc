@@ -19,7 +19,7 @@ PhotoWindow Inside(const PhotoWindow& box, const PhotoWindow& window) {
 }  // namespace
 
 PhotoBatch MakePhotoBatch(const PhotoSource& source, std::span<const PhotoPair> pairs, int reach, int smallest_side,
-                          const TexelNeighbours* guess) {
+                          const TexelNeighbours* guess, std::span<const uint8_t> back_of_head) {
   std::vector<PartialTexture> from, to;
   std::vector<PhotoFrame> targets;
   std::vector<PhotoWindow> windows;
@@ -39,7 +39,9 @@ PhotoBatch MakePhotoBatch(const PhotoSource& source, std::span<const PhotoPair> 
   batch.target = ToTensors(to);
   batch.pose = PoseOf(targets, windows);
   batch.truth = PictureTensorsOf(targets, windows);
-  for (size_t i = 0; i < targets.size(); ++i) batch.faces.push_back(Inside(FaceBox(targets[i]), windows[i]));
+  for (size_t i = 0; i < targets.size() && !back_of_head.empty(); ++i) {
+    batch.faces.push_back(Inside(FaceBox(targets[i], back_of_head), windows[i]));
+  }
   return batch;
 }
 

@@ -16,12 +16,13 @@ struct PhotoBatch {
   TextureTensors source, target;   ///< T_s and T_t
   PoseTensors pose;                ///< P_t
   PictureTensors truth;            ///< I_t
-  std::vector<PhotoWindow> faces;  ///< in the windows of truth; width 0 where there is none
+  std::vector<PhotoWindow> faces;  ///< in the windows of truth; width 0 where none looks at the camera; or empty
 };
 
 /// Windows: neural/photo/photo_window.h, the largest one's sides for all. `guess`: what the source's texture is filled
-/// with where nothing is seen; null: with nothing.
+/// with where nothing is seen; null: with nothing. `back_of_head` (neural/people/back_of_head.h): for the faces; empty:
+/// nobody looks at them.
 PhotoBatch MakePhotoBatch(const PhotoSource& source, std::span<const PhotoPair> pairs, int reach, int smallest_side,
-                          const TexelNeighbours* guess = nullptr);
+                          const TexelNeighbours* guess = nullptr, std::span<const uint8_t> back_of_head = {});
 
 }  // namespace bodyloom

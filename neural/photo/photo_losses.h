@@ -15,8 +15,8 @@ namespace bodyloom {
 /// target shows; colours 2c − 1.
 torch::Tensor TextureLoss(const torch::Tensor& features, const TextureTensors& source, const TextureTensors& target);
 
-/// L_face: mean |N(I) − N(I_t)| over the faces of at least 16 pixels a side, their boxes enlarged to 112 × 96 by
-/// bilinear interpolation; a zero without gradient when there is none.
+/// L_face: mean |N(I) − N(I_t)| over the faces (photo_window.h, FaceBox) of at least 16 pixels a side, their boxes
+/// enlarged to 112 × 96 by bilinear interpolation; a zero without gradient when there is none.
 torch::Tensor FaceLoss(SphereFace network, const torch::Tensor& image, const torch::Tensor& truth,
                        const std::vector<PhotoWindow>& faces);
 

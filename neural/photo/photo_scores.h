@@ -2,10 +2,11 @@
 /// Scores of rendered pictures against true ones.
 #pragma once
 
-#include <functional>
+#include <utility>
 
 #include "bodyloom/neural/metrics/class_overlap.h"
 #include "bodyloom/neural/metrics/lpips.h"
+#include "bodyloom/neural/metrics/picture_similarity.h"
 #include "bodyloom/neural/people/photo_frame.h"
 #include "bodyloom/neural/photo/photo_picture.h"
 
@@ -21,9 +22,6 @@ struct PhotoScores {
   bool lpips_random_features = true;  ///< not comparable with other programs' figures
   double silhouette_iou = 0;          ///< of alpha > ½ and the true foreground
 };
-
-/// SSIM of two pictures of the same size.
-using PictureSimilarity = std::function<double(const Image& truth, const Image& result)>;
 
 class PhotoScorer {
  public:

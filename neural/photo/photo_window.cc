@@ -9,6 +9,9 @@
 namespace bodyloom {
 namespace {
 
+constexpr uint8_t kFirstOfHead = 23;        ///< of DensePose's parts
+constexpr double kLooksAtCamera = 2.0 / 3;  ///< of the head's pixels are of its front
+
 /// Box of the pixels whose part is at least `first`.
 PhotoWindow BoxOfParts(const PhotoFrame& frame, uint8_t first) {
   const int S = frame.size;
@@ -81,6 +84,23 @@ int PhotoReach(const PhotoSource& source, std::span<const int> persons, int num_
   return ClothesReach(frames);
 }
 
-PhotoWindow FaceBox(const PhotoFrame& frame) { return BoxOfParts(frame, 23); }
+PhotoWindow FaceBox(const PhotoFrame& frame, std::span<const uint8_t> back_of_head) {
+  const PhotoWindow box = BoxOfParts(frame, kFirstOfHead);
+  const int S = frame.size, U = frame.texture_size;
+  const size_t area = static_cast<size_t>(S) * S;
+  BODYLOOM_CHECK(frame.uv.size() == 2 * area && back_of_head.size() == static_cast<size_t>(U) * U,
+                 "face: ", frame.uv.size(), " coordinates of ", S, "x", S, " pixels and ", back_of_head.size(),
+                 " texels, expected ", U, "x", U);
+  int pixels = 0, front = 0;
+  for (size_t i = 0; i < area; ++i) {
+    if (frame.parts[i] < kFirstOfHead) continue;
+    const auto side = static_cast<float>(U);
+    const int column = std::clamp(static_cast<int>(frame.uv[i] * side), 0, U - 1);
+    const int row = std::clamp(static_cast<int>((1 - frame.uv[area + i]) * side), 0, U - 1);
+    ++pixels;
+    front += back_of_head[static_cast<size_t>(row) * U + column] == 0 ? 1 : 0;
+  }
+  return front >= kLooksAtCamera * pixels ? box : PhotoWindow{};
+}
 
 }  // namespace bodyloom

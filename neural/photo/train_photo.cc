@@ -15,6 +15,7 @@
 #include "bodyloom/neural/losses/gan_losses.h"
 #include "bodyloom/neural/losses/perceptual_loss.h"
 #include "bodyloom/neural/networks/vgg.h"
+#include "bodyloom/neural/people/back_of_head.h"
 #include "bodyloom/neural/photo/guess_texture.h"
 #include "bodyloom/neural/photo/photo_batch.h"
 #include "bodyloom/neural/photo/photo_losses.h"
@@ -31,33 +32,24 @@ namespace {
 using torch::Tensor;
 using torch::optim::Adam;
 
-const std::vector<std::string> kColumns = {"learning_rate",
-                                           "loss",
-                                           "perceptual",
-                                           "face",
-                                           "texture",
-                                           "generator",
-                                           "alpha",
-                                           "discriminator",
-                                           "validation_l1",
-                                           "validation_psnr_db",
-                                           "validation_ssim",
-                                           "validation_lpips",
-                                           "validation_outline_iou"};
+const std::vector<std::string> kPhotoColumns = {"learning_rate",
+                                                "loss",
+                                                "perceptual",
+                                                "face",
+                                                "texture",
+                                                "generator",
+                                                "alpha",
+                                                "discriminator",
+                                                "validation_l1",
+                                                "validation_psnr_db",
+                                                "validation_ssim",
+                                                "validation_lpips",
+                                                "validation_outline_iou"};
 
-struct Losses {
+struct PhotoLosses {
   double total = 0, perceptual = 0, face = 0, texture = 0, generator = 0, alpha = 0, discriminator = 0;
   [[nodiscard]] bool IsFinite() const { return std::isfinite(total + discriminator); }
 };
-
-Lpips MakeLpips(const TrainPhotoOptions& options) {
-  Lpips lpips;
-  if (!options.alexnet.empty() && !options.lpips_heads.empty()) {
-    lpips.Load(options.alexnet.weights, options.alexnet.source, options.lpips_heads.weights,
-               options.lpips_heads.source);
-  }
-  return lpips;
-}
 
 const PhotoSource& ValidationSource(const PhotoSource& source, const TrainPhotoOptions& options) {
   return options.validation_source != nullptr ? *options.validation_source : source;
@@ -70,7 +62,7 @@ class PhotoTrainer : public TrainedSystem {
         validation_source_(ValidationSource(source, options)),
         options_(options),
         config_(options.config),
-        lpips_(MakeLpips(options)) {
+        lpips_(LpipsFrom(options.alexnet, options.lpips_heads)) {
     torch::manual_seed(options.seed);
     if (config_.GuessesUnseen()) guess_.emplace(source.texture_size, source.texel_parts, source.texel_places);
     model_ = PhotoModel(config_);
@@ -85,6 +77,7 @@ class PhotoTrainer : public TrainedSystem {
       sphereface_ = SphereFace();
       sphereface_->Load(options.sphereface.weights, options.sphereface.source);
       sphereface_->to(NeuralDevice());
+      back_of_head_ = HeadTexelsOf(source.texel_parts, source.texel_places).back;
     }
     if (config_.variant == PhotoVariant::kNoInt) losses_off_.emplace_back("texture: left out by no-int");
     checkpoint_ = std::make_unique<Checkpoint>(ToText(config_));
@@ -104,7 +97,7 @@ class PhotoTrainer : public TrainedSystem {
   TrainPhotoSummary Run() {
     TrainPhotoSummary summary;
     static_cast<TrainingOutcome&>(summary) =
-        RunTraining(options_, options_.TotalSteps(), kColumns, checkpoint_.get(), this);
+        RunTraining(options_, options_.TotalSteps(), kPhotoColumns, checkpoint_.get(), this);
     summary.losses_off = losses_off_;
     summary.perceptual_random_features = vgg_->has_random_features;
     summary.scores = scores_;
@@ -159,7 +152,7 @@ class PhotoTrainer : public TrainedSystem {
   }
 
   [[nodiscard]] std::vector<double> Row(int done) const override {
-    const Losses& l = losses_;
+    const PhotoLosses& l = losses_;
     const auto judged = [&](double loss) {
       return IsJudged(done - 1) ? loss : std::numeric_limits<double>::quiet_NaN();
     };
@@ -181,7 +174,8 @@ class PhotoTrainer : public TrainedSystem {
     for (int place = 0; place < options_.batch; ++place) {
       pairs.push_back(DrawPhotoPair(source_.num_frames, options_.train, options_.seed, step, place));
     }
-    return MakePhotoBatch(source_, pairs, options_.reach, config_.SmallestSide(), guess_ ? &*guess_ : nullptr);
+    return MakePhotoBatch(source_, pairs, options_.reach, config_.SmallestSide(), guess_ ? &*guess_ : nullptr,
+                          back_of_head_);
   }
 
   /// Steps before RenderNet's turn.
@@ -193,8 +187,8 @@ class PhotoTrainer : public TrainedSystem {
                          : LinearDecayOverLastHalf(options_.learning_rate, step - before, options_.steps);
   }
 
-  Losses InpaintStep(const PhotoBatch& batch) {
-    Losses losses;
+  PhotoLosses InpaintStep(const PhotoBatch& batch) {
+    PhotoLosses losses;
     const Tensor loss = TextureLoss(model_->Complete(batch.source), batch.source, batch.target);
     loss.backward();
     losses.total = losses.texture = loss.item<double>();
@@ -209,8 +203,8 @@ class PhotoTrainer : public TrainedSystem {
     return model_->Complete(batch.source);
   }
 
-  Losses RenderStep(const PhotoBatch& batch, bool judged) {
-    Losses losses;
+  PhotoLosses RenderStep(const PhotoBatch& batch, bool judged) {
+    PhotoLosses losses;
     const Tensor features = Features(batch);
     const Tensor projected = model_->Project(features, batch.pose);
     const PhotoResult result = model_->Render(projected, batch.pose.body);
@@ -260,6 +254,7 @@ class PhotoTrainer : public TrainedSystem {
   const PhotoSource& source_;
   const PhotoSource& validation_source_;
   std::optional<TexelNeighbours> guess_;  ///< where the profile has one
+  std::vector<uint8_t> back_of_head_;     ///< where faces are judged
   const TrainPhotoOptions& options_;
   const PhotoConfig& config_;
   Lpips lpips_;
@@ -271,7 +266,7 @@ class PhotoTrainer : public TrainedSystem {
   std::unique_ptr<Adam> feature_optimizer_, render_optimizer_, discriminator_optimizer_;
   std::unique_ptr<Checkpoint> checkpoint_;
   PhotoScores scores_;
-  Losses losses_;                                    ///< of the last step
+  PhotoLosses losses_;                               ///< of the last step
   std::unique_ptr<Prefetcher<PhotoBatch>> batches_;  ///< last: its thread uses the rest
 };
 

@@ -3,10 +3,11 @@
 ///
 ///   L_G = 10 L_p + 5 L_face + L_tex + L_adv + L_α       (Sarkar et al., ECCV 2020, Section 3.5)
 /// L_p: mean absolute differences of VGG-19's features relu1_1, 2_1, 3_1, 4_1, 5_1, unweighted; L_face, L_tex:
-/// neural/photo/photo_losses.h; L_adv: binary cross entropy of a discriminator on several scales that sees the feature
-/// image R (as it is: no gradient goes through it) beside the picture, updated every step from the one at which it
-/// joins (`gan_from`; until then it neither learns nor judges); L_α, not in the paper: binary cross entropy of alpha
-/// against the labels' foreground. Adam 2e-4, β₁ 0.5, linear decay over the last half, for both sides.
+/// neural/photo/photo_losses.h, faces being heads that look at the camera; L_adv: binary cross entropy of a
+/// discriminator on several scales that sees the feature image R (as it is: no gradient goes through it) beside the
+/// picture, updated every step from the one at which it joins (`gan_from`; until then it neither learns nor judges);
+/// L_α, not in the paper: binary cross entropy of alpha against the labels' foreground. Adam 2e-4, β₁ 0.5, linear decay
+/// over the last half, for both sides.
 ///
 /// The variant kInpaint trains FeatureNet by L_tex alone for `inpaint_steps` steps, then fixes it and trains RenderNet
 /// for `steps` steps; the steps of both stages are counted through.

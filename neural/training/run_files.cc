@@ -11,6 +11,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -70,6 +71,22 @@ void WriteRunText(const std::string& path, const std::string& text) {
   file.Commit();
 }
 
+namespace {
+
+std::vector<std::string> Cells(const std::string& line) {
+  std::vector<std::string> cells(1);
+  for (const char c : line) {
+    if (c == ',') {
+      cells.emplace_back();
+    } else {
+      cells.back() += c;
+    }
+  }
+  return cells;
+}
+
+}  // namespace
+
 MetricsLog::MetricsLog(std::string path, std::vector<std::string> columns)
     : path_(std::move(path)), header_("step"), num_columns_(columns.size()) {
   for (const std::string& column : columns) header_ += "," + column;
@@ -81,11 +98,23 @@ void MetricsLog::KeepUpTo(int64_t step) {
   std::ifstream file(path_);
   std::string line;
   if (!std::getline(file, line)) return;
-  if (line != header_) {
+  // By column of this log: its place in the file's lines; none: an earlier version did not write it.
+  const std::vector<std::string> columns = Cells(header_), theirs = Cells(line);
+  std::vector<std::optional<size_t>> place(columns.size());
+  size_t found = 0;
+  for (size_t i = 0; i < columns.size(); ++i) {
+    if (found < theirs.size() && columns[i] == theirs[found]) place[i] = found++;
+  }
+  if (found != theirs.size() || !place[0]) {
     throw std::runtime_error(path_ + ": line 1: columns \"" + line + "\", expected \"" + header_ + "\"");
   }
   while (std::getline(file, line)) {
-    if (std::atoll(line.c_str()) <= step) text_ += line + "\n";
+    if (std::atoll(line.c_str()) > step) continue;
+    const std::vector<std::string> cells = Cells(line);
+    for (size_t i = 0; i < columns.size(); ++i) {
+      text_ += (i > 0 ? "," : "") + (place[i] && *place[i] < cells.size() ? cells[*place[i]] : std::string());
+    }
+    text_ += "\n";
   }
 }
 

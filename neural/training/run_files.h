@@ -35,7 +35,8 @@ class MetricsLog {
   MetricsLog(std::string path, std::vector<std::string> columns);
 
   /// Keeps the lines of an existing file up to `step` (a run that goes on from a checkpoint writes later ones again);
-  /// no file is an empty log. Throws std::runtime_error when the file's columns are others.
+  /// no file is an empty log. Columns that the file lacks, as one of an earlier version may, are left empty in its
+  /// lines; throws std::runtime_error when it has others, or in another order.
   void KeepUpTo(int64_t step);
 
   /// Values in the columns' order; NaN leaves a cell empty. Throws std::invalid_argument for another number of values.

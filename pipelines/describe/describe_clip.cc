@@ -8,13 +8,12 @@
 #include <stdexcept>
 
 #include "bodyloom/data_tools/body/body_or_builtin.h"
-#include "bodyloom/data_tools/descriptors/descriptor_header.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/observations/load_cameras.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/stopwatch.h"
+#include "bodyloom/pipelines/describe/axes_pose.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/peak_memory.h"
 #include "bodyloom/pipelines/report_json.h"
@@ -24,23 +23,10 @@ namespace {
 
 constexpr int kPreviewFrames = 6;
 
-/// A level camera: the world's y is up and its z points at the camera.
-CameraPose LevelCamera() {
-  CameraPose pose;
-  pose.camera_from_world_rotation = Eigen::Vector3d(1, -1, -1).asDiagonal();
-  return pose;
-}
-
 DescribeTrackOptions OptionsOf(const DescribeClipRequest& request) {
   DescribeTrackOptions options = request.options;
   options.preview_frames = request.preview.empty() ? 0 : kPreviewFrames;
-  if (options.frame == SurfaceFrame::kWorld) {
-    options.camera_pose = request.cameras.empty()
-                              ? LevelCamera()
-                              : FindCamera(LoadCameras(request.cameras), request.view, request.cameras).pose;
-  } else if (!request.cameras.empty()) {
-    throw RequestError("--cameras is for --frame world");
-  }
+  SetAxesPose(request.cameras, request.view, &options);
   std::string why;
   if (!options.IsValid(&why)) throw RequestError(why);
   return options;

@@ -14,7 +14,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr size_t kFramesAhead = 2;
+constexpr size_t kPicturesAhead = 2;
 
 /// A detection without its picture: its box, and the keypoints that were sampled from it.
 struct FoundCharts {
@@ -29,7 +29,7 @@ struct FoundClip {
   int width = 0, height = 0;
 };
 
-struct TimedFrame {
+struct TimedPicture {
   Image picture;
   double time_s = 0;
 };
@@ -43,15 +43,15 @@ FoundClip FindCharts(const DetectDenseRequest& request, const ChartDetector& det
   clip.height = source.info().height;
   const int num_frames = source.num_frames();
   // Decoding is endless as far as the prefetcher knows: an empty picture is the end.
-  Prefetcher<TimedFrame> frames(
+  Prefetcher<TimedPicture> frames(
       std::numeric_limits<int64_t>::max(),
       [&](int64_t) {
-        TimedFrame frame;
+        TimedPicture frame;
         if (!source.Read(&frame.picture, &frame.time_s)) frame.picture = Image();
         return frame;
       },
-      kFramesAhead);
-  for (TimedFrame frame = frames.Take(); !frame.picture.empty(); frame = frames.Take()) {
+      kPicturesAhead);
+  for (TimedPicture frame = frames.Take(); !frame.picture.empty(); frame = frames.Take()) {
     std::vector<FoundCharts>& found = clip.frames.emplace_back();
     for (ChartDetection& detection : detector(frame.picture)) {
       std::vector<DenseKeypoint> points = IuvToDense(detection.charts, charts, request.sampling);
@@ -88,7 +88,7 @@ PeopleSequence BoxesAsPeople(const FoundClip& clip) {
 }
 
 ChartDetection RectangleOf(const DetectedPerson& person) {
-  const Rectangle r = VisibleRectangle(person);
+  const ImageRectangle r = VisibleRectangle(person);
   return {r.x0, r.y0, r.x1, r.y1, 1, {}};
 }
 

@@ -26,6 +26,9 @@ struct AnimationRequest {
   std::string device = "cpu";  ///< where the networks run: "cpu" or "cuda"
 };
 
+inline constexpr double kDefaultFps = 30;  ///< of a track without times
+inline constexpr int kSheetFrames = 6;     ///< of the clip, on a contact sheet
+
 struct AnimationSummary {
   int frames = 0;
   int frames_without_fit = 0;  ///< of them: they show the background alone

@@ -3,26 +3,43 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <utility>
 
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/pipelines/people/motion_errors_json.h"
 
 namespace bodyloom {
+namespace {
 
-void MotionErrors::Add(int frame, double image_l1) {
+constexpr std::pair<const char*, double MotionFrameScores::*> kColumns[] = {{"image_l1", &MotionFrameScores::image_l1},
+                                                                            {"ssim", &MotionFrameScores::ssim},
+                                                                            {"lpips", &MotionFrameScores::lpips},
+                                                                            {"tlpips", &MotionFrameScores::tlpips}};
+
+}  // namespace
+
+void MotionErrors::Add(int frame, const MotionFrameScores& scores) {
   errors_.push_back(
-      {frame, image_l1, similarity_.empty() ? std::numeric_limits<float>::quiet_NaN() : similarity_.at(frame)});
+      {frame, scores, similarity_.empty() ? std::numeric_limits<float>::quiet_NaN() : similarity_.at(frame)});
 }
 
 void MotionErrors::WriteCsv(const std::string& path) const {
   std::ostringstream text;
-  text << "frame,image_l1,similarity\n";
+  text << "frame";
+  for (const auto& [name, value] : kColumns) text << ',' << name;
+  text << ",similarity\n";
+  const auto add = [&](double value) {
+    text << ',';
+    if (!std::isnan(value)) text << value;
+  };
   for (const Error& error : errors_) {
-    text << error.frame << ',' << error.image_l1 << ',';
-    if (!std::isnan(error.similarity)) text << error.similarity;
+    text << error.frame;
+    for (const auto& [name, value] : kColumns) add(error.scores.*value);
+    add(error.similarity);
     text << '\n';
   }
   WriteFileAtomically(path, text.str());
@@ -31,7 +48,7 @@ void MotionErrors::WriteCsv(const std::string& path) const {
 std::vector<MotionErrors::Quarter> MotionErrors::Quarters() const {
   std::vector<Error> sorted;
   std::copy_if(errors_.begin(), errors_.end(), std::back_inserter(sorted),
-               [](const Error& e) { return std::isfinite(e.similarity) && std::isfinite(e.image_l1); });
+               [](const Error& e) { return std::isfinite(e.similarity) && std::isfinite(e.scores.image_l1); });
   if (sorted.size() < 4) return {};
   std::stable_sort(sorted.begin(), sorted.end(),
                    [](const Error& a, const Error& b) { return a.similarity < b.similarity; });
@@ -40,7 +57,16 @@ std::vector<MotionErrors::Quarter> MotionErrors::Quarters() const {
     const size_t begin = q * sorted.size() / 4, end = (q + 1) * sorted.size() / 4;
     quarters[q].least_similarity = sorted[begin].similarity;
     quarters[q].frames = static_cast<int>(end - begin);
-    for (size_t i = begin; i < end; ++i) quarters[q].image_l1 += sorted[i].image_l1 / static_cast<double>(end - begin);
+    for (const auto& [name, value] : kColumns) {
+      double sum = 0;
+      int count = 0;
+      for (size_t i = begin; i < end; ++i) {
+        if (std::isnan(sorted[i].scores.*value)) continue;
+        sum += sorted[i].scores.*value;
+        ++count;
+      }
+      if (count > 0) quarters[q].scores.*value = sum / count;
+    }
   }
   return quarters;
 }
@@ -48,8 +74,10 @@ std::vector<MotionErrors::Quarter> MotionErrors::Quarters() const {
 nlohmann::ordered_json ToJson(const std::vector<MotionErrors::Quarter>& quarters) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const MotionErrors::Quarter& quarter : quarters) {
-    json.push_back(
-        {{"least_similarity", quarter.least_similarity}, {"image_l1", quarter.image_l1}, {"frames", quarter.frames}});
+    nlohmann::ordered_json row = {{"least_similarity", quarter.least_similarity}};
+    for (const auto& [name, value] : kColumns) row[name] = quarter.scores.*value;
+    row["frames"] = quarter.frames;
+    json.push_back(row);
   }
   return json;
 }

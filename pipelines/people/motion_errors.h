@@ -3,7 +3,10 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "bodyloom/neural/motion/motion_scores.h"
 
 namespace bodyloom {
 
@@ -12,13 +15,15 @@ class MotionErrors {
  public:
   /// `similarity` by frame of the clip (data_tools/evaluation/motion_similarity.h), or empty.
   explicit MotionErrors(std::vector<float> similarity) : similarity_(std::move(similarity)) {}
-  void Add(int frame, double image_l1);
+  void Add(int frame, const MotionFrameScores& scores);
 
-  /// A line a frame: frame, image_l1, similarity. The file appears whole or not at all.
+  /// A line a frame: frame, image_l1, ssim, lpips, tlpips, similarity; what was not measured is empty. The file appears
+  /// whole or not at all.
   void WriteCsv(const std::string& path) const;
 
   struct Quarter {
-    double least_similarity = 0, image_l1 = 0;
+    double least_similarity = 0;
+    MotionFrameScores scores;  ///< means over the frames where each was measured
     int frames = 0;
   };
   /// The frames in four parts of equal size, the least similar first; empty without similarities or with fewer than
@@ -28,7 +33,7 @@ class MotionErrors {
  private:
   struct Error {
     int frame;
-    double image_l1;
+    MotionFrameScores scores;
     float similarity;
   };
   std::vector<float> similarity_;

@@ -8,7 +8,7 @@
 
 namespace bodyloom {
 
-/// [{"least_similarity": …, "image_l1": …, "frames": …}, …]
+/// [{"least_similarity": …, "image_l1": …, "ssim": …, "lpips": …, "tlpips": …, "frames": …}, …]; null: not measured
 nlohmann::ordered_json ToJson(const std::vector<MotionErrors::Quarter>& quarters);
 
 }  // namespace bodyloom

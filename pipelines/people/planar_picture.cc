@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "bodyloom/render/unit_byte.h"
+
 namespace bodyloom {
 namespace {
 
@@ -12,15 +14,13 @@ namespace {
 constexpr std::array<Colour, 7> kLabelColours = {
     {{0, 0, 0}, {66, 135, 205}, {216, 120, 50}, {246, 205, 160}, {120, 72, 40}, {226, 172, 128}, {150, 60, 160}}};
 
-uint8_t Byte(float value) { return static_cast<uint8_t>(std::lround(255 * std::clamp(value, 0.0F, 1.0F))); }
-
 }  // namespace
 
 Image PictureOf(std::span<const float> planar, int width, int height) {
   Image image(width, height);
   const size_t area = size_t(width) * height;
   for (size_t i = 0; i < area; ++i) {
-    for (int c = 0; c < 3; ++c) image.bgr[3 * i + c] = Byte(planar[area * (2 - c) + i]);
+    for (int c = 0; c < 3; ++c) image.bgr[3 * i + c] = UnitByte(planar[area * (2 - c) + i]);
   }
   return image;
 }
@@ -31,9 +31,9 @@ Image NormalPicture(std::span<const float> planar, int width, int height) {
   for (size_t i = 0; i < area; ++i) {
     const float x = planar[i], y = planar[area + i], z = planar[2 * area + i];
     if (x * x + y * y + z * z < 0.04F) continue;
-    image.bgr[3 * i] = Byte(0.5F * (1 - z));
-    image.bgr[3 * i + 1] = Byte(0.5F * (1 - y));
-    image.bgr[3 * i + 2] = Byte(0.5F * (1 + x));
+    image.bgr[3 * i] = UnitByte(0.5F * (1 - z));
+    image.bgr[3 * i + 1] = UnitByte(0.5F * (1 - y));
+    image.bgr[3 * i + 2] = UnitByte(0.5F * (1 + x));
   }
   return image;
 }

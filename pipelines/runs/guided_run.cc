@@ -12,7 +12,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr const char* kProgram = "bodyloom train animate";
+constexpr const char* kGuidedProgram = "bodyloom train animate";
 
 std::vector<std::pair<const char*, int*>> Numbers(GuidedRun* run) {
   GuidedProfile& p = run->config.profile;
@@ -48,7 +48,7 @@ std::vector<std::pair<const char*, bool*>> Switches(GuidedRun* run) {
 std::string GuidedRunJson(const GuidedRun& run) {
   GuidedRun copy = run;
   nlohmann::ordered_json json = {
-      {"program", kProgram}, {"version", BODYLOOM_VERSION}, {"profile", run.config.profile.name}};
+      {"program", kGuidedProgram}, {"version", BODYLOOM_VERSION}, {"profile", run.config.profile.name}};
   for (const auto& [key, value] : Numbers(&copy)) json[key] = *value;
   for (const auto& [key, value] : Widths(&copy)) json[key] = *value;
   for (const auto& [key, value] : Switches(&copy)) json[key] = *value ? 1 : 0;
@@ -59,7 +59,7 @@ std::string GuidedRunJson(const GuidedRun& run) {
 
 GuidedRun ReadGuidedRun(const std::string& run_dir) {
   const std::string path = RunConfigPath(run_dir);
-  const nlohmann::json json = ReadRunConfig(run_dir, kProgram);
+  const nlohmann::json json = ReadRunConfig(run_dir, kGuidedProgram);
   const JsonNode root(json, path);
   GuidedRun run;
   run.config.profile.name = root.At("profile").Text();

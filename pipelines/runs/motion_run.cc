@@ -1,24 +1,77 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/pipelines/runs/motion_run.h"
 
+#include <Eigen/Dense>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "bodyloom/data_tools/formats/json_reader.h"
+#include "bodyloom/geometry/base/check.h"
 #include "bodyloom/pipelines/runs/run_config.h"
 
 namespace bodyloom {
 
 namespace {
 
-constexpr const char* kProgram = "bodyloom train motion";
+constexpr const char* kMotionProgram = "bodyloom train motion";
+constexpr size_t kMostShapeComponents = 1000;
+
+Eigen::VectorXd ReadShape(const JsonNode& betas) {
+  if (!betas.is_array() || betas.size() > kMostShapeComponents) {
+    betas.Fail(Concatenate("a list of at most ", kMostShapeComponents, " numbers"));
+  }
+  const std::vector<double> numbers = betas.Numbers(static_cast<int>(betas.size()));
+  return Eigen::Map<const Eigen::VectorXd>(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
+}
+
+nlohmann::ordered_json MotionJson(const SurfaceMotion& motion) {
+  nlohmann::ordered_json json = {{"frame", ToString(motion.frame)},
+                                 {"velocity", VelocityName(motion)},
+                                 {"window_s", motion.velocity.window_s},
+                                 {"order", motion.velocity.order},
+                                 {"longest_step_s", motion.velocity.longest_step_s}};
+  if (motion.frame == SurfaceFrame::kWorld) {
+    const Eigen::Matrix3d rows = motion.camera_pose.camera_from_world_rotation.transpose();
+    const Eigen::Vector3d& translation = motion.camera_pose.camera_from_world_translation;
+    json["camera_from_world_rotation"] = std::vector<double>(rows.data(), rows.data() + 9);
+    json["camera_from_world_translation"] = std::vector<double>(translation.begin(), translation.end());
+  }
+  return json;
+}
+
+SurfaceMotion ReadMotion(const JsonNode& json) {
+  SurfaceMotion motion;
+  std::string why;
+  try {
+    motion.frame = SurfaceFrameNamed(json.At("frame").Text());
+    SetVelocity(json.At("velocity").Text(), &motion);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(json.place() + ": " + error.what());
+  }
+  motion.velocity.window_s = json.At("window_s").Number();
+  motion.velocity.order = json.At("order").Int();
+  motion.velocity.longest_step_s = json.At("longest_step_s").Number();
+  if (!motion.IsValid(&why)) throw std::runtime_error(json.place() + ": " + why);
+  if (motion.frame == SurfaceFrame::kWorld) {
+    const std::vector<double> rows = json.At("camera_from_world_rotation").Numbers(9);
+    const Eigen::Matrix3d rotation = Eigen::Map<const Eigen::Matrix3d>(rows.data()).transpose();
+    if (!(rotation * rotation.transpose()).isIdentity(1e-6) || rotation.determinant() < 0) {
+      json.At("camera_from_world_rotation").Fail("a rotation");
+    }
+    motion.camera_pose.camera_from_world_rotation = rotation;
+    const std::vector<double> translation = json.At("camera_from_world_translation").Numbers(3);
+    motion.camera_pose.camera_from_world_translation = Eigen::Map<const Eigen::Vector3d>(translation.data());
+  }
+  return motion;
+}
 
 }  // namespace
 
 std::string MotionRunJson(const MotionRun& run) {
   const MotionConfig& c = run.config;
-  nlohmann::ordered_json json = {{"program", kProgram},
+  nlohmann::ordered_json json = {{"program", kMotionProgram},
                                  {"version", BODYLOOM_VERSION},
                                  {"profile", c.profile.name},
                                  {"image_size", c.profile.image_size},
@@ -42,13 +95,15 @@ std::string MotionRunJson(const MotionRun& run) {
                                  {"fps", run.fps},
                                  {"past", run.past},
                                  {"reach", run.reach}};
+  json["surface_motion"] = MotionJson(run.motion);
+  if (run.betas) json["betas"] = std::vector<double>(run.betas->begin(), run.betas->end());
   if (!run.notes.empty()) json["run"] = nlohmann::ordered_json::parse(run.notes);
   return json.dump(2) + "\n";
 }
 
 MotionRun ReadMotionRun(const std::string& run_dir) {
   const std::string path = RunConfigPath(run_dir);
-  const nlohmann::json json = ReadRunConfig(run_dir, kProgram);
+  const nlohmann::json json = ReadRunConfig(run_dir, kMotionProgram);
   const JsonNode root(json, path);
   MotionRun run;
   MotionConfig& c = run.config;
@@ -79,6 +134,9 @@ MotionRun ReadMotionRun(const std::string& run_dir) {
   c.around_body = root.Has("around_body") && root.At("around_body").Flag();
   run.pixels_per_metre = root.At("pixels_per_metre").Number();
   run.fps = root.At("fps").Number();
+  if (root.Has("surface_motion")) run.motion = ReadMotion(root.At("surface_motion"));
+  // Runs from before motion was carried over without its person's shape do not hold their own.
+  if (root.Has("betas")) run.betas = ReadShape(root.At("betas"));
   std::string why;
   if (!run.config.IsValid(&why)) throw std::runtime_error(path + ": " + why);
   if (run.reach < (c.around_body ? 1 : 0) || run.reach > run.config.profile.image_size || run.past < 0 ||

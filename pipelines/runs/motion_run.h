@@ -2,8 +2,11 @@
 /// config.json of a run of the motion-dependent renderer: what it takes to use its checkpoint.
 #pragma once
 
+#include <Eigen/Core>
+#include <optional>
 #include <string>
 
+#include "bodyloom/data_tools/descriptors/surface_motion.h"
 #include "bodyloom/neural/motion/motion_config.h"
 
 namespace bodyloom {
@@ -11,10 +14,12 @@ namespace bodyloom {
 struct MotionRun {
   MotionConfig config;
   double pixels_per_metre = 0;  ///< of the window: the size that the person was trained at
-  double fps = 30;
-  int reach = 0;      ///< pixels that clothes reach beyond the body (neural/motion/clothes_reach.h), 0: not known
-  int past = 10;      ///< velocities of so many frames
-  std::string notes;  ///< JSON object of what else is known: data, frames, options
+  double fps = 30;              ///< of the clip; motion is shown at this rate
+  int reach = 0;         ///< pixels that clothes reach beyond the body (neural/motion/clothes_reach.h), 0: not known
+  int past = 10;         ///< velocities of so many frames
+  SurfaceMotion motion;  ///< axes and velocities of the motion maps; older runs: those that were the only ones
+  std::optional<Eigen::VectorXd> betas;  ///< the person's shape; absent in runs from before they held it
+  std::string notes;                     ///< JSON object of what else is known: data, frames, options
 };
 
 std::string MotionRunJson(const MotionRun& run);

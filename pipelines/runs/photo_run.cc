@@ -10,13 +10,13 @@
 namespace bodyloom {
 namespace {
 
-constexpr const char* kProgram = "bodyloom train photo";
+constexpr const char* kPhotoProgram = "bodyloom train photo";
 
 }  // namespace
 
 std::string PhotoRunJson(const PhotoRun& run) {
   const PhotoProfile& p = run.config.profile;
-  nlohmann::ordered_json json = {{"program", kProgram},
+  nlohmann::ordered_json json = {{"program", kPhotoProgram},
                                  {"version", BODYLOOM_VERSION},
                                  {"profile", p.name},
                                  {"variant", ToText(run.config.variant)},
@@ -40,7 +40,7 @@ std::string PhotoRunJson(const PhotoRun& run) {
 
 PhotoRun ReadPhotoRun(const std::string& run_dir) {
   const std::string path = RunConfigPath(run_dir);
-  const nlohmann::json json = ReadRunConfig(run_dir, kProgram);
+  const nlohmann::json json = ReadRunConfig(run_dir, kPhotoProgram);
   const JsonNode root(json, path);
   PhotoRun run;
   PhotoProfile& p = run.config.profile;

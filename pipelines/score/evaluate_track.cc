@@ -51,7 +51,8 @@ Evaluation Evaluate(const EvaluateTrackRequest& request, const PipelineCallbacks
       throw RequestError("an AIST++ folder holds many clips: name one with --sequence");
     }
     const std::string cameras = request.cameras.empty() ? (truth / "cameras").string() : request.cameras;
-    return EvaluateAist(track, request.truth, cameras, request.sequence, request.view.empty() ? "c01" : request.view);
+    return EvaluateAist(track, request.truth, cameras, request.sequence, request.view.empty() ? "c01" : request.view,
+                        BodyOrBuiltin(request.body).get());
   }
   if (fs::exists(truth / "calib_refined.json")) {
     return EvaluatePose2Sim(track, request.truth, request.view.empty() ? "cam_01" : request.view);

@@ -21,18 +21,17 @@
 #include "bodyloom/pipelines/report_json.h"
 #include "bodyloom/pipelines/track/track_video.h"
 #include "bodyloom/render/overlay.h"
+#include "bodyloom/render/unit_byte.h"
 #include "bodyloom/render/uv_fill.h"
 
 namespace bodyloom {
 namespace {
 
-uint8_t Byte(float x) { return static_cast<uint8_t>(std::clamp(std::lround(255 * x), 0L, 255L)); }
-
 Image ColourImage(const Texture& texture, const std::vector<float>& planes) {
   Image image(texture.width, texture.height);
   const size_t pixels = size_t(texture.width) * texture.height;
   for (size_t p = 0; p < pixels; ++p) {
-    for (size_t c = 0; c < 3; ++c) image.bgr[3 * p + c] = Byte(planes[c * pixels + p]);
+    for (size_t c = 0; c < 3; ++c) image.bgr[3 * p + c] = UnitByte(planes[c * pixels + p]);
   }
   return image;
 }

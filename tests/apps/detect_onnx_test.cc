@@ -70,6 +70,21 @@ TEST_F(DetectOnnx, FilesThatAreNoNetworkEndInOneLine) {
   EXPECT_THAT(folder_.Entries(), Not(Contains("found.npz")));
 }
 
+TEST_F(DetectOnnx, TrackAndRunRefuseTheSameFilesBeforeTheyWrite) {
+  Write("text.onnx", "not a network");
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"track", "--video", folder_ / "clip", "--out", folder_ / "out.npz"},
+        {"run", folder_ / "clip", "--out", folder_ / "out"}}) {
+    std::vector<std::string> arguments = command;
+    arguments.insert(arguments.end(), {"--pose-model", folder_ / "text.onnx"});
+    const CommandResult result = RunCommand(arguments);
+    EXPECT_EQ(result.exit_code, kExitFailed) << result.err;
+    EXPECT_EQ(result.NumErrorLines(), 1) << result.err;
+    EXPECT_THAT(result.err, HasSubstr(folder_ / "text.onnx" + ": not an ONNX file"));
+  }
+  EXPECT_THAT(folder_.Entries(), Not(Contains("out.npz")));
+}
+
 TEST_F(DetectOnnx, WrongUse) {
   for (const auto& [arguments, words] :
        {std::pair<std::vector<std::string>, std::string>{{"--box-model", folder_ / "net.onnx"}, "--pose-model"},

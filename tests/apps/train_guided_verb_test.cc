@@ -70,6 +70,14 @@ TEST_F(TrainGuidedVerb, TrainsGoesOnAndAnimates) {
   const nlohmann::json report = nlohmann::json::parse(std::ifstream(scratch_ / "a.json"));
   EXPECT_EQ(report["photos"], 2);
   EXPECT_EQ(report["scores"]["frames"], 3);
+  // Named by what measures, on the screen and in the file.
+  EXPECT_THAT(trained.out, HasSubstr("LPIPS (random features) "));
+  EXPECT_THAT(animated.out, HasSubstr("LPIPS (random features) "));
+  EXPECT_THAT(animated.out, HasSubstr("CS (random features, a quarter of the channels) "));
+  for (const char* score :
+       {"lpips_random_features", "lpips_deviation_random_features", "contextual_quarter_random_features"}) {
+    EXPECT_TRUE(report["scores"].contains(score)) << score;
+  }
   EXPECT_GT(report["computed_share"].get<double>(), 0.1);
 
   const CommandResult scored = Animate({"--score", scratch_ / "people", "--score-photos", "1", "2", "--score-frames",
@@ -77,6 +85,9 @@ TEST_F(TrainGuidedVerb, TrainsGoesOnAndAnimates) {
   ASSERT_EQ(scored.exit_code, 0) << scored.err;
   const nlohmann::json scores = nlohmann::json::parse(std::ifstream(scratch_ / "s.json"))["scores"];
   ASSERT_EQ(scores.size(), 2U);
+  EXPECT_THAT(scored.out, HasSubstr("true labels and bodies given"));
+  EXPECT_THAT(trained.out, HasSubstr("true labels and bodies given"));
+  EXPECT_EQ(nlohmann::json::parse(std::ifstream(scratch_ / "s.json"))["given"], "true labels and bodies");
   EXPECT_EQ(scores[0]["frames"], 2);
   EXPECT_GT(scores[1]["texels_seen"].get<double>(), scores[0]["texels_seen"].get<double>());
 
@@ -92,6 +103,27 @@ TEST_F(TrainGuidedVerb, TrainsGoesOnAndAnimates) {
   EXPECT_GT(ReadImage(scratch_ / "drawn.png").height, ReadImage(scratch_ / "maps.png").height)
       << "the views are on the sheet";
   EXPECT_EQ(Animate({"--image", one, "--virtual-views", "--as-seen"}).exit_code, 2);
+  // As `animate photo` has them: from another side, in the motion's shape, in another one's clothes.
+  const auto animated_with = [&](const std::string& name, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"--image",      one,
+                                          "--track",      scratch_ / "people/p000/a0_v0/track.npz",
+                                          "--out",        scratch_ / (name + ".mp4"),
+                                          "--sheet",      scratch_ / (name + ".png"),
+                                          "--json",       scratch_ / (name + ".json"),
+                                          "--background", "studio"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const CommandResult result = Animate(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return ReadImage(scratch_ / (name + ".png")).bgr;
+  };
+  const std::vector<uint8_t> plain = animated_with("plain", {});
+  EXPECT_EQ(animated_with("same", {"--shape", "photo", "--view-yaw", "0"}), plain);
+  EXPECT_NE(animated_with("turned", {"--view-yaw", "0:90"}), plain);
+  EXPECT_NE(animated_with("shape", {"--shape", "motion"}), plain);
+  const std::string lender = (scratch_ / "people/p000/a0_v0") + "::1";
+  EXPECT_NE(animated_with("lent", {"--garment-from", lender, "--parts", "top,bottom"}), plain);
+  EXPECT_THAT(nlohmann::json::parse(std::ifstream(scratch_ / "lent.json"))["notes"].get<std::string>(),
+              HasSubstr("% of --parts"));
 }
 
 TEST_F(TrainGuidedVerb, SaysWhatIsWrong) {
@@ -116,6 +148,17 @@ TEST_F(TrainGuidedVerb, SaysWhatIsWrong) {
   fails({"--image", person, "--image-frame", "9", "--track", track, "--out", out}, 1, "requested frame 9");
   fails({"--image", person, "--track", track, "--views", person + ":x:y", "--out", out}, 2, "--views");
   fails({"--score", scratch_ / "run"}, 1, "people.json");
+  fails({"--score", scratch_ / "people", "--view-yaw", "30"}, 2, "--score measures people as they are");
+  fails({"--image", person, "--data", person, "--out", out, "--view-yaw", "30"}, 2, "--data compares");
+  fails({"--image", person, "--track", track, "--out", out, "--view-yaw", "left"}, 2, "--view-yaw left");
+  fails({"--image", person, "--track", track, "--out", out, "--garment-from", person}, 2, "belong together");
+  fails({"--image", person, "--track", track, "--out", out, "--garment-from", person, "--parts", "hat"}, 2,
+        "--parts hat");
+  fs::create_directories(scratch_ / "empty");
+  const std::string empty = scratch_ / "empty";
+  fails({"--score", scratch_ / "people", "--weights", empty}, 1, "empty: none of vgg16");
+  fails({"--image", person, "--data", person, "--out", out, "--weights", empty}, 1, "empty: none of vgg16");
+  fails({"--image", person, "--track", track, "--out", out, "--weights", empty}, 2, "--weights");
 
   // A run whose checkpoint was cut off, one of another profile, and no run at all.
   const std::string config = scratch_ / "run/config.json", checkpoint = scratch_ / "run/checkpoint.bin";

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "bodyloom/data_tools/video/image_file.h"
@@ -56,6 +57,47 @@ TEST_F(TrainMotionVerb, TimeStandsStillWhileTheViewTurns) {
   }
 }
 
+TEST_F(TrainMotionVerb, MotionIsShownAtTheRunsRate) {
+  ASSERT_EQ(Train("run", {"--steps", "1", "--train", "0-9", "--validate", "10-10"}).exit_code, 0);
+  const std::string path = scratch_ / "run/config.json";
+  std::string text = FileBytes(path);
+  const std::string rate = "\"fps\": 30.0";
+  ASSERT_NE(text.find(rate), std::string::npos);
+  text.replace(text.find(rate), rate.size(), "\"fps\": 15.0");  // as if it had been trained on half the rate
+  std::ofstream(path) << text;
+  const auto animate = [&](const std::string& option, const std::string& of) {
+    return RunCommand({"animate", "motion", "--run", scratch_ / "run", option, scratch_ / of, "--out",
+                       scratch_ / "a.mp4", "--warmup", "0"});
+  };
+  const CommandResult shown = animate("--track", "person/track.npz");
+  ASSERT_EQ(shown.exit_code, 0) << shown.err;
+  EXPECT_THAT(shown.out, HasSubstr("30 frames a second, is shown at the run's 15"));
+  EXPECT_THAT(shown.out, HasSubstr("7 frames"));
+  EXPECT_NEAR(VideoReader(scratch_ / "a.mp4").info().fps, 15, 0.01);
+  const CommandResult scored = animate("--data", "person");
+  EXPECT_EQ(scored.exit_code, 1);
+  EXPECT_THAT(scored.err, HasSubstr("pictures at 30 frames a second, expected 15 as in training"));
+}
+
+TEST_F(TrainMotionVerb, AxesAndVelocitiesAreChosenAsThoseOfDescribe) {
+  const CommandResult trained = Train("run", {"--steps", "1", "--train", "0-9", "--validate", "10-10", "--frame",
+                                              "body", "--velocity", "central", "--longest-step", "0.1"});
+  ASSERT_EQ(trained.exit_code, 0) << trained.err;
+  EXPECT_THAT(trained.out, HasSubstr("velocities central in the body frame"));
+  const nlohmann::json config = nlohmann::json::parse(FileBytes(scratch_ / "run/config.json"));
+  EXPECT_EQ(config["surface_motion"]["frame"], "body");
+  EXPECT_EQ(config["surface_motion"]["velocity"], "central");
+  EXPECT_EQ(config["surface_motion"]["longest_step_s"], 0.1);
+  const CommandResult animated =
+      RunCommand({"animate", "motion", "--run", scratch_ / "run", "--data", scratch_ / "person", "--out",
+                  scratch_ / "a.mp4", "--warmup", "0", "--like", scratch_ / "person"});
+  EXPECT_EQ(animated.exit_code, 0) << animated.err;
+  EXPECT_THAT(animated.out, HasSubstr("frames of similarity 1.000 and more"));
+  EXPECT_EQ(Train("x", {"--velocity", "forward"}).exit_code, 2);
+  EXPECT_THAT(Train("x", {"--cameras", scratch_ / "person/track.npz"}).err, HasSubstr("--frame world"));
+  EXPECT_THAT(Train("x", {"--window", "0"}).err, HasSubstr("window_s is 0"));
+}
+
 TEST_F(TrainMotionVerb, WholeWindowsAreWhatOlderRunsLookAt) {
   const CommandResult trained =
       Train("run", {"--steps", "1", "--train", "0-9", "--validate", "10-10", "--whole-window"});
@@ -88,6 +130,7 @@ TEST_F(TrainMotionVerb, TrainsGoesOnAndAnimates) {
   for (const char* file : {"config.json", "checkpoint.bin", "metrics.csv", "preview_000003.png"}) {
     EXPECT_TRUE(fs::exists(scratch_ / ("run/" + std::string(file)))) << file;
   }
+  EXPECT_THAT(FileBytes(scratch_ / "run/config.json"), HasSubstr("\"betas\": ["));
   EXPECT_EQ(Train("run", {"--steps", "5"}).exit_code, 2) << "took the folder of another run";
   const CommandResult resumed = Train("run", {"--steps", "5", "--train", "0-9", "--validate", "10-13", "--resume"});
   EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
@@ -115,6 +158,19 @@ TEST_F(TrainMotionVerb, TrainsGoesOnAndAnimates) {
   }
   EXPECT_EQ(lines, 14);
   EXPECT_THAT(animated.out, HasSubstr("14 frames"));
+  for (const std::string& text : {trained.out, animated.out}) {
+    for (const char* score : {"SSIM ", "tLPIPS (random features) ", ", LPIPS (random features) "}) {
+      EXPECT_THAT(text, HasSubstr(score));
+    }
+  }
+  const nlohmann::json scores = nlohmann::json::parse(FileBytes(scratch_ / "a.json"))["scores"];
+  for (const char* score : {"ssim", "lpips", "tlpips"}) {
+    EXPECT_GT(scores[score], 0) << score;
+    EXPECT_GT(scores["by_similarity"][3][score], 0) << score;
+  }
+  EXPECT_EQ(scores["ssim_preset"], "wang2004");
+  EXPECT_EQ(scores["lpips_of_random_features"], true);
+  EXPECT_EQ(FileBytes(scratch_ / "a.csv").rfind("frame,image_l1,ssim,lpips,tlpips,similarity\n0,0.", 0), 0U);
   EXPECT_THAT(animated.out, HasSubstr("silhouette IoU"));
   EXPECT_THAT(animated.out, HasSubstr("dB of the whole picture"));
   VideoReader video(scratch_ / "a.mp4");
@@ -193,6 +249,10 @@ TEST_F(TrainMotionVerb, SaysWhatIsWrong) {
   fails({"animate", "motion", "--run", scratch_ / "run", "--out", scratch_ / "a.mp4"}, 2, "--track and --data");
   EXPECT_EQ(Train("x", {"--device", "gpu"}).exit_code, 2);
 
+  // Weights for the scores: from a folder that holds some, and only where there are scores.
+  fs::create_directories(scratch_ / "empty");
+  EXPECT_THAT(Train("x", {"--weights", scratch_ / "empty"}).err, HasSubstr("empty: none of vgg16"));
+
   // A track of another clip.
   const CommandResult other = RunCommand({"synth-person", "--motion", "demo", "--frames", "20", "--out",
                                           scratch_ / "other", "--size", "96", "--garment", "suit"});
@@ -206,6 +266,12 @@ TEST_F(TrainMotionVerb, SaysWhatIsWrong) {
     return RunCommand({"animate", "motion", "--run", scratch_ / "run", "--track", scratch_ / "person/track.npz",
                        "--out", scratch_ / "a.mp4"});
   };
+  fails({"animate", "motion", "--run", scratch_ / "run", "--data", scratch_ / "person", "--out", scratch_ / "a.mp4",
+         "--weights", scratch_ / "empty"},
+        1, "empty: none of vgg16");
+  fails({"animate", "motion", "--run", scratch_ / "run", "--track", scratch_ / "person/track.npz", "--out",
+         scratch_ / "a.mp4", "--weights", scratch_ / "empty"},
+        2, "--weights");
   std::ifstream config(scratch_ / "run/config.json");
   std::string text((std::istreambuf_iterator<char>(config)), {});
   std::string changed = text;

@@ -57,7 +57,7 @@ TEST_F(TrainPhotoVerb, TrainsGoesOnAndAnimates) {
   EXPECT_THAT(trained.out, HasSubstr("step 2 of 2"));
   EXPECT_THAT(trained.out, HasSubstr("random-feature substitute"));
   EXPECT_THAT(trained.out, HasSubstr("loss switched off: face"));
-  EXPECT_THAT(trained.out, HasSubstr("validation of 2 pairs"));
+  EXPECT_THAT(trained.out, HasSubstr("validation of 2 pairs (true labels and bodies given)"));
   for (const char* file : {"config.json", "checkpoint.bin", "metrics.csv", "preview_000002.png"}) {
     EXPECT_TRUE(fs::exists(scratch_ / ("run/" + std::string(file)))) << file;
   }

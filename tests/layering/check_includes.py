@@ -34,7 +34,7 @@ ROOMS = {
     "apps": WHOLE | {"pipelines"},
     "apps/neural": WHOLE | {"pipelines", "pipelines/neural", "neural", "apps"},
     "examples": WHOLE | {"pipelines"},
-    "benchmarks": WHOLE | {"pipelines", "neural", "tests"},
+    "benchmarks": WHOLE | {"pipelines", "pipelines/neural", "neural", "tests"},
     "tests": WHOLE | {"pipelines", "pipelines/neural", "neural", "apps", "benchmarks"},
 }
 for room in ROOMS:

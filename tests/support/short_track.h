@@ -8,15 +8,15 @@
 
 namespace bodyloom {
 
-/// Two seconds of the demo's walk at 6 frames a second, in pictures of 320×240.
-inline Track ShortTrack() {
+/// Two seconds of the demo's walk, at 6 frames a second unless told otherwise, in pictures of 320×240.
+inline Track ShortTrack(int fps = 6) {
   SynthClipOptions options;
   options.camera.width = 320;
   options.camera.height = 240;
   options.dense_per_frame = 0;
   options.keypoints = false;
   options.num_threads = 1;
-  return MakeSynthClip(BuiltinBody(), DemoMotion(BuiltinBody(), 12, 6), options).truth;
+  return MakeSynthClip(BuiltinBody(), DemoMotion(BuiltinBody(), 2 * fps, fps), options).truth;
 }
 
 }  // namespace bodyloom

@@ -21,7 +21,7 @@ using Eigen::Vector3d;
 
 constexpr double kRayKernel = 0.15;  ///< metres off its ray at which a landmark stops pulling
 constexpr double kNearest = 0.3;     ///< metres; a person nearer than that is a failed estimate
-constexpr double kMinConfidence = 0.1;
+constexpr double kMinLiftConfidence = 0.1;
 
 struct Sight {
   int landmark;
@@ -63,7 +63,7 @@ std::vector<Sight> SightsOf(const KeypointSequence& keypoints, const std::array<
   for (int k = 0; k < kLifterPoints; ++k) {
     if (columns[k] < 0) continue;
     const Keypoint& point = keypoints.at(t, columns[k]);
-    if (!(point.confidence >= kMinConfidence) || !std::isfinite(point.x) || !std::isfinite(point.y)) continue;
+    if (!(point.confidence >= kMinLiftConfidence) || !std::isfinite(point.x) || !std::isfinite(point.y)) continue;
     const Eigen::Vector2d ray = camera.Unproject({point.x, point.y});
     if (!ray.allFinite()) continue;
     const double c = std::min(1.0F, point.confidence);

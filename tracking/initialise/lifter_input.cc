@@ -33,12 +33,12 @@ struct Part {
 };
 // What gives the size when neither torso nor legs do. Parts on the head are short, so noise doubles them easily: they
 // come last.
-constexpr Part kLimbs[] = {
+constexpr Part kSizeParts[] = {
     {kLifterLeftShoulder, kLifterLeftShoulder + 1, 0.269F},  {kLifterLeftShoulder, kLifterLeftElbow, 0.186F},
     {kLifterLeftShoulder + 1, kLifterLeftElbow + 1, 0.186F}, {kLifterLeftElbow, kLifterLeftWrist, 0.183F},
     {kLifterLeftElbow + 1, kLifterLeftWrist + 1, 0.183F},
 };
-constexpr Part kHead[] = {
+constexpr Part kHeadParts[] = {
     {kLifterNose, kLifterLeftEar, 0.122F},
     {kLifterNose, kLifterLeftEar + 1, 0.122F},
     {kLifterLeftEar, kLifterLeftEar + 1, 0.105F},
@@ -119,7 +119,7 @@ std::optional<float> BodyScale(const Frame& frame) {
 
 /// The largest size that a seen part implies: foreshortening only makes parts look shorter.
 std::optional<float> RoughScale(const Frame& frame) {
-  for (const std::span<const Part> parts : {std::span<const Part>(kLimbs), std::span<const Part>(kHead)}) {
+  for (const std::span<const Part> parts : {std::span<const Part>(kSizeParts), std::span<const Part>(kHeadParts)}) {
     float scale = 0;
     for (const Part& part : parts) {
       if (frame.seen[part.from] && frame.seen[part.to])

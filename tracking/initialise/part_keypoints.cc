@@ -14,7 +14,7 @@ using Eigen::Vector2d;
 
 /// DensePose's charts by what they show; two a limb bone (front and back, or outside and inside).
 enum Region : uint8_t {
-  kNothing = 0,
+  kNoPart = 0,
   kTorso,
   kHeadRight,
   kHeadLeft,
@@ -29,7 +29,7 @@ enum Region : uint8_t {
 constexpr int kLeft = 0, kRight = 1;
 constexpr uint8_t kTorsoBack = 1, kTorsoFront = 2;
 // Chart 0 (background) to 24. Source: DensePose, challenge/*/data_format.md; 5 is the left foot.
-constexpr std::array<uint8_t, 25> kRegionOfChart = {kNothing,
+constexpr std::array<uint8_t, 25> kRegionOfChart = {kNoPart,
                                                     kTorso,
                                                     kTorso,
                                                     kHand + kRight,
@@ -101,9 +101,9 @@ class RegionImage {
     for (int y = 0; y < height_; ++y) {
       for (int x = 0; x < width_; ++x) {
         const uint8_t chart = labels.part_of_label[image.labels[size_t(y) * width_ + x]];
-        const uint8_t region = chart <= 24 ? kRegionOfChart[chart] : uint8_t{kNothing};
+        const uint8_t region = chart <= 24 ? kRegionOfChart[chart] : uint8_t{kNoPart};
         regions_[size_t(y) * width_ + x] = region;
-        if (region == kNothing) continue;
+        if (region == kNoPart) continue;
         ++count_[region];
         sum_[region] += Vector2d(x + x_, y + y_);
         front_ += chart == kTorsoFront;

@@ -10,7 +10,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr int kReach = 36;            ///< samples behind the oldest that is read; a little more than the network's own
+constexpr int kLifterReach = 36;      ///< samples behind the oldest that is read; a little more than the network's own
 constexpr size_t kEnoughDense = 100;  ///< keypoints of a frame beside which it is not run
 
 }  // namespace
@@ -30,7 +30,7 @@ LiveReading LiveLifter::Ask(const LiveSetup& setup, LiveWindow* window) {
   since_last_ = 0;
   // The newest, and those not handed out yet again.
   const int num_read = (setup.options.lag + stride - 1) / stride + 1;
-  const KeypointSequence seen = window->history().Recent(kReach + num_read, stride);
+  const KeypointSequence seen = window->history().Recent(kLifterReach + num_read, stride);
   const int samples = seen.num_frames();
   LiftOptions options;
   options.all_phases = false;

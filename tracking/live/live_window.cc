@@ -24,11 +24,6 @@ std::unique_ptr<FixedLag> MakeLag(const LiveSetup& setup, SequenceProblem proble
 
 }  // namespace
 
-bool IsFinite(const FrameState& state) {
-  return state.translation.allFinite() && std::all_of(state.rotations.begin(), state.rotations.end(),
-                                                      [](const Eigen::Matrix3d& R) { return R.allFinite(); });
-}
-
 LiveWindow::LiveWindow(const LiveSetup& setup, int64_t first_index)
     : setup_(setup),
       lag_(MakeLag(setup, setup.EmptyProblem())),

@@ -35,8 +35,6 @@ struct LiveRecord {
   std::optional<Held> held;
 };
 
-bool IsFinite(const FrameState& state);
-
 /// Frames of the window point into it: not to be copied.
 class LiveWindow {
  public:

@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "bodyloom/data_tools/synthesis/clips/smooth_curve.h"
+#include "bodyloom/data_tools/synthesis/pose_joints.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/units.h"
 #include "bodyloom/geometry/posed_body.h"
 #include "bodyloom/geometry/rotation.h"
 
@@ -18,33 +20,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-enum Joint {
-  kPelvis,
-  kLeftHip,
-  kRightHip,
-  kSpine1,
-  kLeftKnee,
-  kRightKnee,
-  kSpine2,
-  kLeftAnkle,
-  kRightAnkle,
-  kSpine3,
-  kLeftToes,
-  kRightToes,
-  kNeck,
-  kLeftCollar,
-  kRightCollar,
-  kHead,
-  kLeftShoulder,
-  kRightShoulder,
-  kLeftElbow,
-  kRightElbow,
-  kLeftWrist,
-  kRightWrist
-};
-
-constexpr double kDegree = M_PI / 180;
 
 Matrix3d TurnX(double degrees) { return RotationFromAxisAngle(Vector3d(degrees * kDegree, 0, 0)); }
 Matrix3d TurnY(double degrees) { return RotationFromAxisAngle(Vector3d(0, degrees * kDegree, 0)); }
@@ -232,7 +207,7 @@ class Choreography {
   void PlaceFoot(const FootState& foot, int side, Vector3d* ankle, Matrix3d* sole) const {
     const Vector3d rest_ankle = Rest(kLeftAnkle + side) - Vector3d(0, floor_, 0);
     // Pivots relative to the ankle: the ball of the foot, and the heel behind it.
-    const Vector3d to_ball = Vector3d(0, -rest_ankle.y(), Bone(kLeftAnkle + side, kLeftToes + side).z());
+    const Vector3d to_ball = Vector3d(0, -rest_ankle.y(), Bone(kLeftAnkle + side, kLeftFoot + side).z());
     const Vector3d to_heel = Vector3d(0, -rest_ankle.y(), -0.45 * to_ball.z());
     const Vector3d by_heel = to_ball - TurnX(foot.heel_up_deg) * to_ball;
     const Vector3d by_toes = to_heel - TurnX(-foot.toes_up_deg) * to_heel;
@@ -280,7 +255,7 @@ class Choreography {
     pose->rotations[kLeftHip + side] = pelvis.transpose() * upper;
     pose->rotations[kLeftKnee + side] = upper.transpose() * lower;
     pose->rotations[kLeftAnkle + side] = lower.transpose() * sole;
-    pose->rotations[kLeftToes + side] = TurnX(-foot.toes_deg);
+    pose->rotations[kLeftFoot + side] = TurnX(-foot.toes_deg);
   }
 
   static void MoveUpperBody(double t, const Torso& torso, BodyPose* pose) {
@@ -321,10 +296,10 @@ class Choreography {
         wrist = InterpolateRotation(wrist, TurnY(-13 * sway), wave);
         collar = wave;
       }
-      pose->rotations[left ? kLeftCollar : kRightCollar] = TurnZ(s * (-3 + 15 * collar));
-      pose->rotations[left ? kLeftShoulder : kRightShoulder] = shoulder;
-      pose->rotations[left ? kLeftElbow : kRightElbow] = elbow;
-      pose->rotations[left ? kLeftWrist : kRightWrist] = wrist;
+      pose->rotations[kLeftCollar + (left ? 0 : 1)] = TurnZ(s * (-3 + 15 * collar));
+      pose->rotations[kLeftShoulder + (left ? 0 : 1)] = shoulder;
+      pose->rotations[kLeftElbow + (left ? 0 : 1)] = elbow;
+      pose->rotations[kLeftWrist + (left ? 0 : 1)] = wrist;
     }
   }
 

@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-enum Stream : uint64_t { kDrifting = 101, kConstant, kShape };
+enum PerturbationStream : uint64_t { kDrifting = 101, kConstant, kShape };
 
 double JointSize(const PerturbationOptions& o, const BodyModel& body, int joint) {
   const std::string name = body.data().joint_names.empty() ? "" : body.data().joint_names[joint];

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/units.h"
 #include "bodyloom/geometry/posed_body.h"
 #include "bodyloom/geometry/rotation.h"
 
@@ -17,8 +18,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-constexpr double kDegree = M_PI / 180;
 
 /// Rotation that takes the motion's world to one with y up.
 Matrix3d YUpFromWorld(Motion::Up up) {

@@ -21,7 +21,7 @@ using Eigen::Matrix2d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-enum Stream : uint64_t { kPixels = 201, kFaults, kDroppedFrames, kMissingParts, kDetection, kInitialiser };
+enum ClipStream : uint64_t { kPixels = 201, kFaults, kDroppedFrames, kMissingParts, kDetection, kInitialiser };
 
 const std::vector<std::string>& LandmarkNames() {
   static const std::vector<std::string> names = [] {

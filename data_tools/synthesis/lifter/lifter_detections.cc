@@ -15,13 +15,23 @@ using Eigen::Vector3f;
 
 namespace {
 
-enum Stream : uint64_t { kMood = 401, kSlow, kWhite, kOffset, kTail, kDropout, kSwaps, kMissing, kDetector };
+enum NoiseStream : uint64_t {
+  kMood = 401,
+  kSlow,
+  kWhiteNoise,
+  kOffsetNoise,
+  kTailNoise,
+  kDropoutNoise,
+  kSwaps,
+  kMissing,
+  kDetector
+};
 
 constexpr float kPersonHeight = 1.3F;  // in Lref
 constexpr float kBehind = 0.09F, kSoftness = 0.03F, kTurnedAway = 0.10F, kTurnedAwayFactor = 0.85F;
 
 /// What hides points behind it: from joint to joint. Points in `own` (a bit each) belong to it.
-struct Capsule {
+struct LimbCapsule {
   int from, from_other, to, to_other;  ///< means of two points
   float radius;
   uint32_t own;
@@ -30,7 +40,7 @@ constexpr uint32_t Bit(int k) { return 1U << k; }
 constexpr uint32_t kTrunkPoints = Bit(5) | Bit(6) | Bit(11) | Bit(12);
 constexpr uint32_t kLegPoints[2] = {Bit(11) | Bit(13) | Bit(15) | Bit(17) | Bit(19),
                                     Bit(12) | Bit(14) | Bit(16) | Bit(18) | Bit(20)};
-constexpr Capsule kCapsules[] = {
+constexpr LimbCapsule kCapsules[] = {
     {5, 6, 11, 12, .13F, kTrunkPoints},    {5, 5, 11, 11, .09F, kTrunkPoints},    {6, 6, 12, 12, .09F, kTrunkPoints},
     {11, 11, 13, 13, .07F, kLegPoints[0]}, {13, 13, 15, 15, .06F, kLegPoints[0]}, {12, 12, 14, 14, .07F, kLegPoints[1]},
     {14, 14, 16, 16, .06F, kLegPoints[1]},
@@ -48,7 +58,7 @@ void HideBehindBody(const Vector3f* p, float size, std::array<float, kLifterPoin
     distance[k] = p[k].norm();
     ray[k] = p[k] / distance[k];
   }
-  for (const Capsule& c : kCapsules) {
+  for (const LimbCapsule& c : kCapsules) {
     const Vector3f a = 0.5F * (p[c.from] + p[c.from_other]), d = 0.5F * (p[c.to] + p[c.to_other]) - a;
     const float aa = a.squaredNorm(), ad = a.dot(d), dd = d.squaredNorm(), reach = (c.radius + 3 * kSoftness) * size;
     for (int k = 5; k < kLifterPoints; ++k) {
@@ -221,8 +231,9 @@ LifterFrames DetectScene(const LifterScene& scene, const LifterWindowOptions& op
   const float noise = static_cast<float>(options.noise * std::exp(options.noise_spread * detector.Normal()));
   std::array<float, kLifterPoints> typical{}, joint_factor{}, offset_x{}, offset_y{}, mood{}, slow_x{}, slow_y{},
       tail{};
-  HashRandom offset(seed, {kOffset});
-  FastNormal mood_normal(HashRandom(seed, {kMood})), slow(HashRandom(seed, {kSlow})), white(HashRandom(seed, {kWhite}));
+  HashRandom offset(seed, {kOffsetNoise});
+  FastNormal mood_normal(HashRandom(seed, {kMood})), slow(HashRandom(seed, {kSlow})),
+      white(HashRandom(seed, {kWhiteNoise}));
   for (int k = 0; k < kLifterPoints; ++k) {
     typical[k] = static_cast<float>(OpenConfidence(LandmarkKind(LifterPointNames()[k])));
     offset_x[k] = static_cast<float>(kConstantNoise * offset.Normal());
@@ -236,7 +247,7 @@ LifterFrames DetectScene(const LifterScene& scene, const LifterWindowOptions& op
   const float keep_mood = std::exp(-dt / static_cast<float>(kConfidenceDriftSeconds));
   const float keep_slow = std::exp(-dt / static_cast<float>(kSlowNoiseSeconds));
   const float new_mood = std::sqrt(1 - keep_mood * keep_mood), new_slow = std::sqrt(1 - keep_slow * keep_slow);
-  HashRandom tail_random(seed, {kTail}), dropout(seed, {kDropout});
+  HashRandom tail_random(seed, {kTailNoise}), dropout(seed, {kDropoutNoise});
   const int tail_frames = std::max(1, static_cast<int>(std::lround(kHeavyTailSeconds * options.rate)));
   std::array<float, kLifterPoints> hiding{};
   std::array<float, kLifterPoints> face{};

@@ -17,7 +17,7 @@ using Eigen::Vector3f;
 
 namespace {
 
-enum Stream : uint64_t {
+enum WindowStream : uint64_t {
   kClip = 301,
   kLimbs,
   kExercises,

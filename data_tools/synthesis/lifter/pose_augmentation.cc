@@ -14,8 +14,8 @@ using Eigen::Vector3f;
 
 namespace {
 
-Vector3f X(float angle) { return {angle, 0, 0}; }
-Vector3f Z(float angle) { return {0, 0, angle}; }
+Vector3f AboutX(float angle) { return {angle, 0, 0}; }
+Vector3f AboutZ(float angle) { return {0, 0, angle}; }
 
 float Draw(HashRandom* random, double low, double high) { return static_cast<float>(random->Uniform(low, high)); }
 
@@ -23,11 +23,11 @@ float Draw(HashRandom* random, double low, double high) { return static_cast<flo
 /// floor by as much of it as `level_foot` says.
 void FlexLeg(int side, float hip, float out, float knee, float level_foot, int t, PoseSequence* poses) {
   Quaternionf& q = poses->at(t, kLeftHip + side);
-  q = TurnBy(Z(side == 0 ? out : -out)) * TurnBy(X(-hip)) * q;
+  q = TurnBy(AboutZ(side == 0 ? out : -out)) * TurnBy(AboutX(-hip)) * q;
   Quaternionf& k = poses->at(t, kLeftKnee + side);
-  k = k * TurnBy(X(knee));
+  k = k * TurnBy(AboutX(knee));
   Quaternionf& a = poses->at(t, kLeftAnkle + side);
-  a = a * TurnBy(X(level_foot * std::clamp(hip - knee, -0.7F, 0.7F)));
+  a = a * TurnBy(AboutX(level_foot * std::clamp(hip - knee, -0.7F, 0.7F)));
 }
 
 /// Both legs down, and the trunk forward as balance requires; or one leg before the other.
@@ -48,7 +48,7 @@ void Squat(const LifterWindowOptions& options, HashRandom* random, PoseSequence*
   const std::vector<float> hump = RandomHump(poses->num_frames, options.rate, 0.3, 1.5, random);
   for (int t = 0; t < poses->num_frames; ++t) {
     if (hump[t] == 0) continue;
-    poses->at(t, kPelvis) = poses->at(t, kPelvis) * TurnBy(X(hump[t] * lean));
+    poses->at(t, kPelvis) = poses->at(t, kPelvis) * TurnBy(AboutX(hump[t] * lean));
     for (int i = 0; i < 2; ++i) {
       FlexLeg(first ^ i, hump[t] * (hip[i] + lean), hump[t] * out[i], hump[t] * knee[i], 1, t, poses);
     }
@@ -83,8 +83,9 @@ void RaiseArm(const LifterWindowOptions& options, int side, HashRandom* random, 
   // On the sphere, in the trunk's frame, not across the trunk's far side and not far behind it.
   const float turn = Draw(random, -0.6, 1.9), up = Draw(random, -1.0, 1.5);
   const Vector3f direction(std::cos(up) * std::cos(turn), std::sin(up), std::cos(up) * std::sin(turn));
-  Quaternionf shoulder = Quaternionf::FromTwoVectors(Vector3f::UnitX(), direction) * TurnBy(X(Draw(random, -1, 1)));
-  Quaternionf elbow = TurnBy({0, -Draw(random, 0, 2.3), 0}) * TurnBy(X(Draw(random, -0.7, 0.7)));
+  Quaternionf shoulder =
+      Quaternionf::FromTwoVectors(Vector3f::UnitX(), direction) * TurnBy(AboutX(Draw(random, -1, 1)));
+  Quaternionf elbow = TurnBy({0, -Draw(random, 0, 2.3), 0}) * TurnBy(AboutX(Draw(random, -0.7, 0.7)));
   if (side == 1) {
     shoulder = MirrorRotation(shoulder);
     elbow = MirrorRotation(elbow);
@@ -103,12 +104,12 @@ void Bend(const LifterWindowOptions& options, HashRandom* random, PoseSequence* 
   const std::vector<float> hump = RandomHump(poses->num_frames, options.rate, 0.3, 1.5, random);
   for (int t = 0; t < poses->num_frames; ++t) {
     if (hump[t] == 0) continue;
-    poses->at(t, kPelvis) = poses->at(t, kPelvis) * TurnBy(X(hump[t] * pelvis));
+    poses->at(t, kPelvis) = poses->at(t, kPelvis) * TurnBy(AboutX(hump[t] * pelvis));
     for (int side = 0; side < 2; ++side) {
       Quaternionf& q = poses->at(t, kLeftHip + side);
-      q = TurnBy(X(-hump[t] * pelvis)) * q;
+      q = TurnBy(AboutX(-hump[t] * pelvis)) * q;
     }
-    for (const int j : {kSpine1, kSpine2, kSpine3}) poses->at(t, j) = poses->at(t, j) * TurnBy(X(hump[t] * spine));
+    for (const int j : {kSpine1, kSpine2, kSpine3}) poses->at(t, j) = poses->at(t, j) * TurnBy(AboutX(hump[t] * spine));
   }
 }
 

@@ -4,37 +4,11 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <array>
 #include <vector>
 
+#include "bodyloom/data_tools/synthesis/pose_joints.h"
+
 namespace bodyloom {
-
-inline constexpr int kPoseJoints = 24;
-
-enum PoseJoint : int {
-  kPelvis = 0,
-  kLeftHip = 1,
-  kSpine1 = 3,
-  kLeftKnee = 4,
-  kSpine2 = 6,
-  kLeftAnkle = 7,
-  kSpine3 = 9,
-  kLeftFoot = 10,
-  kNeck = 12,
-  kLeftCollar = 13,
-  kHead = 15,
-  kLeftShoulder = 16,
-  kLeftElbow = 18,
-  kLeftWrist = 20,
-  kLeftHand = 22,
-};  // right = left + 1
-
-/// The joint on the other side.
-inline int MirrorJoint(int joint) {
-  static constexpr std::array<int, kPoseJoints> kMirror = {0,  2,  1,  3,  5,  4,  6,  8,  7,  9,  11, 10,
-                                                           12, 14, 13, 15, 17, 16, 19, 18, 21, 20, 23, 22};
-  return kMirror[joint];
-}
 
 /// The same turn seen in a mirror at x = 0.
 inline Eigen::Quaternionf MirrorRotation(const Eigen::Quaternionf& q) { return {q.w(), q.x(), -q.y(), -q.z()}; }

@@ -16,7 +16,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr float kInnerSide = 0.7F;
+constexpr float kInnerShade = 0.7F;
 
 /// The faces of clothed body and cloth as a body that does not move, which is what pixels are resolved against.
 BodyModel MeshOf(const DressedPerson& person) {
@@ -143,7 +143,7 @@ void DressedRenderer::DrawImage(const Image& background, Image* image) {
         }
         if (IsCloth(face)) {
           const bool inner = is_inside_out_[face - scene_.num_body_faces()] != 0;
-          sum += (inner ? kInnerSide : 1.0F) * lit * scene_.wardrobe().OfGarment(place);
+          sum += (inner ? kInnerShade : 1.0F) * lit * scene_.wardrobe().OfGarment(place);
         } else {
           sum += lit * scene_.wardrobe().OfBody(LabelOf(face, place), place);
         }

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "bodyloom/data_tools/synthesis/clips/smooth_curve.h"
+#include "bodyloom/data_tools/synthesis/pose_joints.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/hash_random.h"
 
@@ -15,18 +16,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kUsualHeight_m = 1.71;
-/// SMPL's joints.
-enum {
-  kPelvis = 0,
-  kSpine1 = 3,
-  kKnee = 4,
-  kAnkle = 7,
-  kNeck = 12,
-  kHead = 15,
-  kShoulder = 16,
-  kElbow = 18,
-  kWrist = 20
-};
 
 /// The hair's plane rises from the ears to the forehead at this slope.
 const Vector3d kHairNormal = Vector3d(0, 0.81, -0.584).normalized();
@@ -69,7 +58,7 @@ Outfit::Outfit(const BodyModel& body, GarmentKind kind, uint64_t seed) : kind_(k
   c.neck_x = joints(kNeck, 0), c.neck_z = joints(kNeck, 2);
   c.neck_y = joints(kNeck, 1) - 0.045 * c.unit;
   c.neck_radius_x = between(0.07, 0.095) * c.unit, c.neck_radius_z = between(0.07, 0.12) * c.unit;
-  const double shoulder = joints(kShoulder, 0), elbow = joints(kElbow, 0), wrist = joints(kWrist, 0);
+  const double shoulder = joints(kLeftShoulder, 0), elbow = joints(kLeftElbow, 0), wrist = joints(kLeftWrist, 0);
   switch (kind == GarmentKind::kCoat ? 2 : random.Below(3)) {
     case 0:
       c.sleeve_x = shoulder + between(0.35, 0.7) * (elbow - shoulder);
@@ -80,7 +69,7 @@ Outfit::Outfit(const BodyModel& body, GarmentKind kind, uint64_t seed) : kind_(k
     default:
       c.sleeve_x = wrist - 0.015 * c.unit;
   }
-  const double knee = joints(kKnee, 1), ankle = joints(kAnkle, 1);
+  const double knee = joints(kLeftKnee, 1), ankle = joints(kLeftAnkle, 1);
   const bool long_trousers = kind == GarmentKind::kCoat || random.Uniform() < 0.7;
   c.hem_y = kind == GarmentKind::kSkirt ? 0.7 * joints(1, 1) + 0.3 * knee
             : long_trousers             ? ankle + 0.01 * c.unit

@@ -33,6 +33,8 @@ float LatticeValue(int x, int y, int z, uint64_t seed) {
   return static_cast<float>((h * 0xbf58476d1ce4e5b9ULL) >> 40) * 0x1.0p-24F;
 }
 
+constexpr double kPlainShare = 0.2;  ///< of tops and of bottoms: each of the five patterns is as likely
+
 bool IsOdd(float x) { return (static_cast<int>(std::floor(x)) & 1) != 0; }
 
 }  // namespace
@@ -86,10 +88,16 @@ Wardrobe::Wardrobe(const Outfit& outfit, double around_m, uint64_t seed) : cut_(
     p.axis = random.Uniform() < 0.7 ? 1 : 0;
     p.seed = random.Next();
   };
-  // Two different patterns of the four on top and bottom.
+  // Two different patterns of the four on top and bottom, either of them plain instead for one person in five. That is
+  // drawn apart, so that it changes nothing else of a seed's person.
   const int first = static_cast<int>(random.Below(4)), second = (first + 1 + static_cast<int>(random.Below(3))) % 4;
-  dress(PersonLabel::kTop, hue, PatternKind(1 + first), random.Uniform(0.032, 0.055));
-  dress(PersonLabel::kBottom, hue + random.Uniform(0.3, 0.7), PatternKind(1 + second), random.Uniform(0.032, 0.055));
+  HashRandom plain(seed, {0x706c6169});
+  const auto unless_plain = [&](int pattern) {
+    return plain.Uniform() < kPlainShare ? PatternKind::kPlain : PatternKind(1 + pattern);
+  };
+  const PatternKind of_top = unless_plain(first), of_bottom = unless_plain(second);
+  dress(PersonLabel::kTop, hue, of_top, random.Uniform(0.032, 0.055));
+  dress(PersonLabel::kBottom, hue + random.Uniform(0.3, 0.7), of_bottom, random.Uniform(0.032, 0.055));
   dress(PersonLabel::kShoes, random.Uniform(), PatternKind::kPlain, 0.03);
   dress(PersonLabel::kHair, 0.07, PatternKind::kNoise, 0.012);
   dress(PersonLabel::kSkin, 0.06, PatternKind::kNoise, 0.08);
@@ -108,7 +116,7 @@ Wardrobe::Wardrobe(const Outfit& outfit, double around_m, uint64_t seed) : cut_(
 }
 
 Vector3f Wardrobe::OfFace(const Vector3f& p) const {
-  const Vector3f skin = of_label(PersonLabel::kFace).At(p);
+  Vector3f skin = of_label(PersonLabel::kFace).At(p);
   const auto H = static_cast<float>(cut_.head_height);
   if (p.z() < 0.5 * (cut_.jaw_z + cut_.ear_z)) return skin;
   const float x = std::abs(p.x()) / H, y = (p.y() - float(cut_.head_joint_y)) / H;
@@ -121,6 +129,11 @@ Vector3f Wardrobe::OfFace(const Vector3f& p) const {
   if (inside(0.21F, 0.4F, 0.11F, 0.025F)) return of_label(PersonLabel::kHair).colour;
   if (inside(0, -0.13F, 0.14F, 0.035F)) return skin.cwiseProduct(Vector3f(0.85F, 0.5F, 0.5F));
   return skin;
+}
+
+Vector3f Wardrobe::OfGarment(const Vector3f& p) const {
+  if (garment_.kind != PatternKind::kDots) return garment_.At(p);
+  return garment_.At({p.x(), p.y(), garment_.cell_m});  // through the middle of the balls, not between them
 }
 
 Vector3f Wardrobe::OfBody(PersonLabel label, const Vector3f& p) const {

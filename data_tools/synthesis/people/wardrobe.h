@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Colours and patterns of a synthetic person, fixed to the surface: stripes, checks, dots and noise as functions of
-/// the place on the template (or on the cloth as sewn), distinct for every label and chosen by a seed.
+/// the place on the template (or on the cloth as sewn), distinct for every label and chosen by a seed. Top and bottom
+/// are plain for one person in five each, else of two different patterns.
 #pragma once
 
 #include <Eigen/Core>
@@ -33,7 +34,7 @@ class Wardrobe {
   /// Colour (red, green, blue, 0…255) of a place of the body's surface with that label.
   [[nodiscard]] Eigen::Vector3f OfBody(PersonLabel label, const Eigen::Vector3f& on_template) const;
   /// Colour of a place of the loose garment (way around, path down, 0).
-  [[nodiscard]] Eigen::Vector3f OfGarment(const Eigen::Vector3f& pattern_m) const { return garment_.At(pattern_m); }
+  [[nodiscard]] Eigen::Vector3f OfGarment(const Eigen::Vector3f& pattern_m) const;
   [[nodiscard]] const SurfacePattern& of_label(PersonLabel label) const { return patterns_[size_t(label)]; }
 
  private:

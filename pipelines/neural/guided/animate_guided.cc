@@ -15,6 +15,7 @@
 #include "bodyloom/neural/training/training_run.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/neural/guided/guided_preview.h"
+#include "bodyloom/pipelines/neural/guided/guided_score_weights.h"
 #include "bodyloom/pipelines/neural/guided/guided_scores_json.h"
 #include "bodyloom/pipelines/neural/guided/virtual_views.h"
 #include "bodyloom/pipelines/neural/photo/photo_backdrop.h"
@@ -26,11 +27,14 @@
 namespace bodyloom {
 namespace {
 
-constexpr int kSheetFrames = 6, kSheetColumns = 5, kSmallestCell = 160;
-constexpr double kDefaultFps = 30;
+constexpr int kSheetColumns = 5, kSmallestCell = 160;
 
 void CheckRequest(const AnimateGuidedRequest& request) {
   if (request.track.empty() == request.data.empty()) throw RequestError("one of --track and --data is needed");
+  if (!request.data.empty() && !(request.view_yaw.empty() && request.garment.from.empty())) {
+    throw RequestError("--data compares with its own pictures: not with --view-yaw or --garment-from");
+  }
+  if (request.data.empty() && !request.weights.empty()) throw RequestError("--weights measure the pictures of --data");
   RequireReadable(request.photo.image, "image");
   RequireReadable(request.track, "track");
   RequireReadable(request.data, "data");
@@ -46,9 +50,10 @@ class GuidedAnimation {
       : request_(request), callbacks_(callbacks) {}
 
   AnimateGuidedSummary Run() {
+    const std::vector<PhotoRequest> wanted = PhotosWanted(request_);
     CheckRequest(request_);
     OpenRun();
-    OpenPhotos();
+    OpenPhotos(wanted);
     OpenMotion();
     EncodePhotos();
     RenderFrames();
@@ -77,38 +82,24 @@ class GuidedAnimation {
                                                                ThreadsFor(request_.threads), request_.device});
   }
 
-  void OpenPhotos() {
-    std::vector<PhotoRequest> requests = {request_.photo};
-    for (const std::string& view : request_.views) {
-      requests.push_back(ParsePhotoRequest(view, "--views", request_.photo));
-    }
-    photos_ = LoadPhotos(requests, Size(), TextureSize());
+  void OpenPhotos(const std::vector<PhotoRequest>& wanted) {
+    photos_ = LoadPhotos(wanted, Size(), TextureSize());
     for (const Photo& photo : photos_) {
       notes_ += photo.notes;
       frames_of_photos_.push_back(photo.frame);
     }
   }
 
-  /// The poses to show, in the shape of the person in the photo.
   void OpenMotion() {
-    const Photo& photo = photos_.front();
     track_ = request_.data.empty() ? ReadTrack(request_.track) : SinglePersonDataset(request_.data).track();
-    RequireBodyOf(photo, track_, MotionPath());
-    track_.motion.betas = photo.track.motion.betas;
-    PhotoMapsOptions options;
-    options.size = Size();
-    options.texture_size = TextureSize();
-    options.num_threads = ThreadsFor(request_.threads);
-    try {
-      maps_ = std::make_unique<PhotoMaps>(*photo.body, track_, options);
-    } catch (const std::invalid_argument& error) {
-      throw std::runtime_error(MotionPath() + ": " + error.what());
-    }
+    maps_ = MapsOfMotion(request_, photos_.front(), MotionPath(), Size(), TextureSize(), &track_);
   }
 
   void EncodePhotos() {
     const Photo& photo = photos_.front();
     const std::vector<uint8_t> texel_parts = PartsOfTexels(*photo.body, *maps_->texels());
+    std::vector<uint8_t> lent;
+    if (!request_.garment.from.empty()) lent = LentTexels(request_.garment, photos_.back(), texel_parts, &notes_);
     std::vector<PhotoFrame> virtual_views;
     if (renderer_->completion() == MapCompletion::kVirtualViews) {
       virtual_views = VirtualViews(*photo.body, photo.track.motion.betas, Size(), TextureSize());
@@ -116,7 +107,7 @@ class GuidedAnimation {
     const TexelNeighbours neighbours(TextureSize(), texel_parts, PlacesOfTexels(*photo.body, *maps_->texels()));
     read_s_ = watch_.Lap();
     try {
-      renderer_->SetSource(frames_of_photos_, {texel_parts, virtual_views, &neighbours});
+      renderer_->SetSource(frames_of_photos_, {texel_parts, virtual_views, &neighbours, lent});
     } catch (const std::invalid_argument& error) {
       throw std::runtime_error(request_.photo.image + ": " + error.what());
     }
@@ -131,7 +122,7 @@ class GuidedAnimation {
     SayLines(notes_, callbacks_);
     if (!request_.data.empty()) {
       truth_ = std::make_unique<SinglePersonDataset>(request_.data);
-      scorer_ = std::make_unique<GuidedScorer>(true);
+      scorer_ = std::make_unique<GuidedScorer>(true, GuidedScoreWeightsOf(ReadWeightsFolder(request_.weights)));
     }
     VideoWriter video(request_.out, picture_.width, picture_.height, FramesPerSecond(track_, kDefaultFps));
     const std::vector<int> on_sheet = EvenlySpreadFrames(num_frames, kSheetFrames);

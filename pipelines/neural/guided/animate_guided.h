@@ -5,25 +5,20 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "bodyloom/neural/guided/guided_config.h"
 #include "bodyloom/neural/guided/guided_scores.h"
 #include "bodyloom/pipelines/callbacks.h"
-#include "bodyloom/pipelines/neural/animation.h"
-#include "bodyloom/pipelines/neural/photo/photo_input.h"
-#include "bodyloom/pipelines/people/background.h"
+#include "bodyloom/pipelines/neural/photo/photo_animation.h"
 
 namespace bodyloom {
 
-/// One of `track` and `data` is given. The body is the photo's; `body` is not looked at.
-struct AnimateGuidedRequest : AnimationRequest {
-  PhotoRequest photo;              ///< what the person looks like
-  std::vector<std::string> views;  ///< more pictures of the person, IMAGE:TRACK[:FRAME] (ParsePhotoRequest)
+/// One of `track` and `data` is given; with `data` neither view_yaw nor garment.
+struct AnimateGuidedRequest : PhotoAnimationRequest {
   std::string data;  ///< a dataset of the same person: its motion is shown, its pictures are compared with
-  PhotoBackground background;
   std::optional<MapCompletion> completion;  ///< of what the photos do not show; absent: as the run says
   bool anywhere = false;  ///< the person may be farther from the body than clothes ever were in training
+  std::string weights;    ///< with `data`: folder with alexnet, lpips_alex and vgg19 (weights_folder.h); empty: none
   std::string uv_maps;    ///< a picture of the coherent maps to write; empty: not written
 };
 

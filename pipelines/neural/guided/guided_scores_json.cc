@@ -3,6 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "bodyloom/neural/metrics/lpips.h"
+
 namespace bodyloom {
 
 nlohmann::ordered_json ToJson(const GuidedScores& s) {
@@ -11,9 +13,9 @@ nlohmann::ordered_json ToJson(const GuidedScores& s) {
           {"psnr_db", s.psnr_db},
           {"silhouette_iou", s.silhouette_iou},
           {"label_iou", s.label_iou},
-          {"lpips_random_features", s.lpips},
-          {"lpips_random_features_deviation", s.lpips_deviation},
-          {"contextual_random_features", s.contextual}};
+          {LpipsName("lpips", s.lpips_random_features), s.lpips},
+          {LpipsName("lpips_deviation", s.lpips_random_features), s.lpips_deviation},
+          {s.contextual_random_features ? "contextual_quarter_random_features" : "contextual_vgg19", s.contextual}};
 }
 
 }  // namespace bodyloom

@@ -15,6 +15,7 @@
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/neural/animation.h"
 #include "bodyloom/pipelines/neural/guided/guided_people.h"
+#include "bodyloom/pipelines/neural/guided/guided_score_weights.h"
 #include "bodyloom/pipelines/neural/guided/guided_scores_json.h"
 #include "bodyloom/pipelines/people/planar_picture.h"
 #include "bodyloom/pipelines/report_json.h"
@@ -24,7 +25,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr int kSheetColumns = 4, kSmallestCell = 128;
+constexpr int kPairColumns = 4, kSmallestPairCell = 128;
 
 /// A person's photos, and the pictures to compare with.
 struct PersonPhotos {
@@ -66,6 +67,7 @@ nlohmann::ordered_json Report(const std::vector<ScoredPhotos>& scored) {
     rows.push_back(row);
   }
   nlohmann::ordered_json report = nlohmann::ordered_json::object();
+  report["given"] = kGivenOfPeople;
   report["scores"] = rows;
   return report;
 }
@@ -88,8 +90,9 @@ ScoreGuidedSummary ScoreGuided(const ScoreGuidedRequest& request, const Pipeline
   std::vector<std::unique_ptr<GuidedScorer>> scorers;
   ScoreGuidedSummary summary;
   std::vector<ScoredPhotos>& scored = summary.scored;
+  const GuidedScoreWeights weights = GuidedScoreWeightsOf(ReadWeightsFolder(request.weights));
   for (const int photos : request.photos) {
-    scorers.push_back(std::make_unique<GuidedScorer>(true));
+    scorers.push_back(std::make_unique<GuidedScorer>(true, weights));
     scored.push_back({photos, {}, 0});
   }
   std::vector<Image> sheet;
@@ -120,7 +123,7 @@ ScoreGuidedSummary ScoreGuided(const ScoreGuidedRequest& request, const Pipeline
     }
   }
   for (size_t n = 0; n < scored.size(); ++n) scored[n].scores = scorers[n]->Scores();
-  WriteSheet(request.sheet, sheet, kSheetColumns, std::max(kSmallestCell, run.config.profile.image_size));
+  WriteSheet(request.sheet, sheet, kPairColumns, std::max(kSmallestPairCell, run.config.profile.image_size));
   WriteReport(request.json, Report(scored));
   summary.written = FilesAmong({request.sheet, request.json});
   return summary;

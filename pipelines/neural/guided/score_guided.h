@@ -23,6 +23,7 @@ struct ScoreGuidedRequest {
   /// A contact sheet to write, a row a person: the photo, then pseudo image, result, truth for the first number of
   /// photos; empty: none.
   std::string sheet;
+  std::string weights;         ///< folder with alexnet, lpips_alex and vgg19 (weights_folder.h); empty: none
   std::string json;            ///< a report to write; empty: none
   int threads = 0;             ///< 0: all cores
   std::string device = "cpu";  ///< where the networks run: "cpu" or "cuda"

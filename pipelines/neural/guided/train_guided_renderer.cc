@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <utility>
 #include <vector>
 
 #include "bodyloom/data_tools/video/image_file.h"
@@ -12,6 +13,7 @@
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/neural/guided/guided_people.h"
 #include "bodyloom/pipelines/neural/guided/guided_preview.h"
+#include "bodyloom/pipelines/neural/guided/guided_score_weights.h"
 #include "bodyloom/pipelines/neural/training_session.h"
 #include "bodyloom/pipelines/neural/weights_folder.h"
 #include "bodyloom/pipelines/runs/guided_run.h"
@@ -47,7 +49,9 @@ TrainGuidedRendererSummary TrainGuidedRenderer(const TrainGuidedRendererRequest&
   TrainGuidedOptions options = request.options;
   RequireReadable(request.data, "data");
   OpenTrainingRun(request.out, &options);
-  options.vgg16 = ReadWeightsFolder(request.weights).vgg16;
+  WeightsFolder weights = ReadWeightsFolder(request.weights);
+  options.vgg16 = std::move(weights.vgg16);
+  options.score_weights = GuidedScoreWeightsOf(std::move(weights));
 
   PeopleDataRequest people;
   people.data = request.data;

@@ -10,10 +10,11 @@
 namespace bodyloom {
 
 struct TrainGuidedRendererRequest {
-  std::string data;     ///< a multi-person dataset, or a single-person dataset (one person, all for training)
-  std::string body;     ///< the people's body; empty: the built-in body
-  std::string out;      ///< folder of the run: config.json, checkpoint.bin, metrics.csv, previews
-  std::string weights;  ///< folder with vgg16 (pipelines/neural/weights_folder.h); empty: none
+  std::string data;  ///< a multi-person dataset, or a single-person dataset (one person, all for training)
+  std::string body;  ///< the people's body; empty: the built-in body
+  std::string out;   ///< folder of the run: config.json, checkpoint.bin, metrics.csv, previews
+  std::string
+      weights;  ///< folder with vgg16, alexnet, lpips_alex, vgg19 (pipelines/neural/weights_folder.h); empty: none
   /// Configuration and numbers; what follows from files (people, reach, weights, run_dir) is filled in by the job.
   TrainGuidedOptions options;
 };

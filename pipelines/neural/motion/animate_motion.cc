@@ -11,6 +11,8 @@
 #include "bodyloom/data_tools/body/body_or_builtin.h"
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/data_tools/evaluation/motion_similarity.h"
+#include "bodyloom/data_tools/motion/motion_tools.h"
+#include "bodyloom/data_tools/motion/resample_track.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/video/video_writer.h"
 #include "bodyloom/geometry/base/check.h"
@@ -19,7 +21,10 @@
 #include "bodyloom/neural/training/training_run.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/neural/motion/animated_clip.h"
+#include "bodyloom/pipelines/neural/motion/clip_rate.h"
 #include "bodyloom/pipelines/neural/motion/clip_scores_json.h"
+#include "bodyloom/pipelines/neural/weights_folder.h"
+#include "bodyloom/pipelines/neural/window_ssim.h"
 #include "bodyloom/pipelines/people/background.h"
 #include "bodyloom/pipelines/people/planar_picture.h"
 #include "bodyloom/pipelines/people/relight_frames.h"
@@ -32,18 +37,12 @@ namespace bodyloom {
 namespace {
 
 constexpr int kLargestSide = 4096;
-constexpr int kSheetFrames = 6;
 constexpr const char *kPrepare = "prepare", *kLight = "light", *kMaps = "maps", *kNetwork = "network",
                      *kCompose = "compose and encode";
 
 AnimatedClipRequest ClipOf(const AnimateMotionRequest& request) {
-  return {request.track,
-          request.data,
-          request.body,
-          request.view_yaw,
-          request.freeze,
-          request.speed,
-          ThreadsFor(request.threads)};
+  return {request.track,  request.data,  request.body,           request.view_yaw,
+          request.freeze, request.speed, request.shape_of_track, ThreadsFor(request.threads)};
 }
 
 void CheckRequest(const AnimateMotionRequest& request) {
@@ -62,12 +61,14 @@ void CheckRequest(const AnimateMotionRequest& request) {
 }
 
 /// Of each frame to the nearest of `like`; empty without it.
-std::vector<float> SimilarityTo(const AnimateMotionRequest& request, const Track& track, int past) {
+std::vector<float> SimilarityTo(const AnimateMotionRequest& request, const Track& track, const MotionRun& run) {
   if (request.like.empty()) return {};
-  const Track others =
+  Track others =
       std::filesystem::is_directory(request.like) ? SinglePersonDataset(request.like).track() : ReadTrack(request.like);
   try {
-    return SimilarityToNearest(*BodyOrBuiltin(request.body), track, others, past, ThreadsFor(request.threads));
+    if (!IsAtRate(others, run.fps)) others = ResampleTrack(others, run.fps);
+    return SimilarityToNearest(*BodyOrBuiltin(request.body), track, others, run.past, ThreadsFor(request.threads),
+                               run.motion);
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(request.like + ": " + error.what());
   }
@@ -109,6 +110,7 @@ class MotionAnimation {
 
   void OpenClip() {
     clip_ = std::make_unique<AnimatedClip>(ClipOf(request_), run_);
+    SayLines(clip_->notes(), callbacks_);
     const PersonWindow& window = clip_->frames().window();
     if (std::max({window.width, window.height, window.picture_width, window.picture_height}) > kLargestSide) {
       throw std::runtime_error(Concatenate(request_.track,
@@ -116,16 +118,25 @@ class MotionAnimation {
                                            window.picture_width, "x", window.picture_height, " px, at most ",
                                            kLargestSide, " a side; the track's person is too small in its picture"));
     }
-    if (!scored_ && !(request_.like.empty() && request_.frames.empty())) {
+    if (!scored_ && !(request_.like.empty() && request_.frames.empty() && request_.weights.empty())) {
       throw RequestError(
-          "--like and --frames compare with the pictures of --data: not without it, --view-yaw, --freeze or --speed");
+          "--like, --frames and --weights compare with the pictures of --data: not without it, nor with --view-yaw, "
+          "--freeze or --speed");
     }
     renderer_ = OpenRenderer(scored_);
   }
 
   [[nodiscard]] std::unique_ptr<MotionRenderer> OpenRenderer(bool score) const {
-    const MotionRendererOptions options = {
-        request_.warmup, run_.reach, request_.anywhere, score, ThreadsFor(request_.threads), request_.device};
+    MotionRendererOptions options;
+    options.warmup_iterations = request_.warmup;
+    options.reach = run_.reach, options.anywhere = request_.anywhere;
+    options.num_threads = ThreadsFor(request_.threads), options.device = request_.device;
+    options.score = score;
+    if (score) {
+      const WeightsFolder weights = ReadWeightsFolder(request_.weights);
+      options.lpips = std::make_shared<const Lpips>(LpipsFrom(weights.alexnet, weights.lpips_heads));
+      options.ssim = WindowSsim;
+    }
     return std::make_unique<MotionRenderer>(CheckpointPath(request_.run), run_.config, options);
   }
 
@@ -148,9 +159,9 @@ class MotionAnimation {
     const PersonWindow& window = clip_->frames().window();
     picture_ = SizeOfPictures(window, track.camera, request_.full_size);
     Background background(request_.background, picture_.width, picture_.height);
-    const double fps = FramesPerSecond(track, run_.fps);
+    const double own_fps = FrameRateWithoutGaps(track.motion), fps = own_fps > 0 ? own_fps : run_.fps;
     if (scored_) {
-      scorer_ = std::make_unique<ClipScorer>(SimilarityTo(request_, track, run_.past), window,
+      scorer_ = std::make_unique<ClipScorer>(SimilarityTo(request_, track, run_),
                                              request_.background.empty() ? "" : request_.data, picture_);
     }
     VideoWriter video(request_.out, picture_.width, picture_.height, fps);
@@ -186,13 +197,13 @@ class MotionAnimation {
     const PersonFrames& frames = clip_->frames();
     clip_->Fill(t, &frame_);
     const bool is_cut = t > 0 && frames.Segment(t) != frames.Segment(t - 1);
-    if (is_cut || request_.without_past) renderer_->Restart();
-    if (is_cut && scorer_) scorer_->Restart();
+    if (is_cut) renderer_->Restart();
+    if (request_.without_past) renderer_->ForgetPast();
     clock_.Book(kMaps);
     MotionPicture picture = renderer_->Next(frame_);
     const double network_s = clock_.Book(kNetwork);
     if (t > 0) network_ms_.push_back(1e3 * network_s);  // the first frame warms up
-    if (scorer_) scorer_->AddWindow(t, picture, frame_, renderer_->last_l1());
+    if (scorer_) scorer_->AddWindow(t, renderer_->last_scores());
     if (relighter_) relighter_->Apply(&picture);
     Composite(picture.image, picture.alpha, frames.window(), t, composed);
     if (scorer_) scorer_->AddComposed(t, *composed);

@@ -15,20 +15,22 @@ namespace bodyloom {
 
 /// One of `track` and `data` is given.
 struct AnimateMotionRequest : AnimationRequest {
-  std::string data;        ///< a dataset of the same person: its motion is shown and, unless the view is turned, time
-                           ///< stands still or the speed is another, the result compared with its pictures
-  std::string view_yaw;    ///< degrees that the view is turned by: "30", or "0:360" over the clip
-  double speed = 1;        ///< the motion is played so many times as fast
-  std::string freeze;      ///< "FRAME:COUNT": that frame is shown so many times more; empty: none is
-  std::string background;  ///< an image, a video or a folder behind the person; empty: a plain backdrop
-  std::string relight;     ///< the light that shall be (pipelines/people/relight_frames.h); empty: as it is
-  int warmup = 50;         ///< passes of the first frame through the network before it counts
-  bool without_past = false;  ///< every frame as if it were the first
-  bool anywhere = false;      ///< the person may be farther from the body than clothes ever were in training
-  std::string like;           ///< with `data`: a dataset or track whose motion each frame's is compared with
-  std::string frames;         ///< with `data`: a CSV to write, a line a frame (MotionErrors)
-  std::string set;            ///< a single-person dataset to write, of the result; empty: none
-  std::string set_command;    ///< the command that makes the dataset again, kept in it
+  std::string data;      ///< a dataset of the same person: its motion is shown and, unless the view is turned, time
+                         ///< stands still or the speed is another, the result compared with its pictures
+  std::string view_yaw;  ///< degrees that the view is turned by: "30", or "0:360" over the clip
+  double speed = 1;      ///< the motion is played so many times as fast
+  bool shape_of_track = false;  ///< poses the track's shape, not that of the person who was trained on
+  std::string freeze;           ///< "FRAME:COUNT": that frame is shown so many times more; empty: none is
+  std::string background;       ///< an image, a video or a folder behind the person; empty: a plain backdrop
+  std::string relight;          ///< the light that shall be (pipelines/people/relight_frames.h); empty: as it is
+  int warmup = 50;              ///< passes of the first frame through the network before it counts
+  bool without_past = false;    ///< every frame as if it were the first
+  bool anywhere = false;        ///< the person may be farther from the body than clothes ever were in training
+  std::string like;             ///< with `data`: a dataset or track whose motion each frame's is compared with
+  std::string frames;           ///< with `data`: a CSV to write, a line a frame (MotionErrors)
+  std::string weights;          ///< with `data`: folder with alexnet and lpips_alex (weights_folder.h); empty: none
+  std::string set;              ///< a single-person dataset to write, of the result; empty: none
+  std::string set_command;      ///< the command that makes the dataset again, kept in it
 };
 
 struct AnimateMotionSummary : AnimationSummary {

@@ -2,26 +2,35 @@
 #include "bodyloom/pipelines/neural/motion/animated_clip.h"
 
 #include <stdexcept>
+#include <utility>
 
 #include "bodyloom/data_tools/body/body_or_builtin.h"
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/data_tools/descriptors/posed_track.h"
 #include "bodyloom/data_tools/motion/freeze_track.h"
 #include "bodyloom/data_tools/motion/play_track.h"
+#include "bodyloom/data_tools/motion/resample_track.h"
+#include "bodyloom/data_tools/motion/shape_track.h"
 #include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/pipelines/neural/motion/clip_rate.h"
 #include "bodyloom/pipelines/people/freeze.h"
 #include "bodyloom/pipelines/people/view_angles.h"
 
 namespace bodyloom {
 namespace {
 
-Track TrackOf(const AnimatedClipRequest& request) {
+Track TrackOf(const AnimatedClipRequest& request, double fps, std::string* notes) {
   Track track = request.data.empty() ? ReadTrack(request.track) : SinglePersonDataset(request.data).track();
-  if (request.speed == 1) return track;
   try {
-    return PlayedAtSpeed(track, request.speed);
+    const bool at_rate = IsAtRate(track, fps);
+    if (!at_rate) {
+      *notes += Concatenate("the motion, ", RateText(track), ", is shown at the run's ", fps, " frames a second\n");
+    }
+    if (request.speed != 1) return PlayedAtSpeed(track, request.speed, at_rate ? 0 : fps);
+    return at_rate ? track : ResampleTrack(track, fps);
   } catch (const std::invalid_argument& error) {
-    throw std::runtime_error(request.track + request.data + ": --speed: " + error.what());
+    throw std::runtime_error(request.track + request.data + ": " + error.what());
   }
 }
 
@@ -32,12 +41,15 @@ AnimatedClip::AnimatedClip(const AnimatedClipRequest& request, const MotionRun& 
     MotionDataRequest data;
     data.data = request.data, data.body = request.body;
     data.pixels_per_metre = run.pixels_per_metre;
+    data.motion = run.motion;
     data.num_threads = request.threads;
     data_ = std::make_unique<MotionData>(data, run.config.profile, run.config.Multiple());
+    RequireRate(data_->track(), run.fps, request.data, "its track.npz as --track is shown at that rate");
     return;
   }
-  own_track_ = TrackOf(request);
+  own_track_ = TrackOf(request, run.fps, &notes_);
   body_ = BodyOrBuiltin(request.body);
+  if (!request.shape_of_track) TakeShapeOf(run);
   const double size = PixelsPerMetre(*body_, *own_track_);
   if (!(size > 0)) {
     throw std::runtime_error(request.track + request.data + ": no frame has a result, nothing to animate");
@@ -45,6 +57,7 @@ AnimatedClip::AnimatedClip(const AnimatedClipRequest& request, const MotionRun& 
   PersonFramesOptions options;
   options.uv_size = run.config.profile.uv_size;
   options.past = run.past;
+  options.motion = run.motion;
   options.window.scale = ScaleToSize(run.pixels_per_metre, size);
   options.window.multiple = run.config.Multiple();
   options.num_threads = request.threads;
@@ -56,6 +69,23 @@ AnimatedClip::AnimatedClip(const AnimatedClipRequest& request, const MotionRun& 
   }
   options.yaw_deg = ViewAngles(request.view_yaw, num_frames, first, last);
   own_frames_.emplace(*body_, *own_track_, options);
+}
+
+void AnimatedClip::TakeShapeOf(const MotionRun& run) {
+  if (!run.betas) {
+    notes_ += "the run does not hold its person's shape (runs of earlier versions do not): the track's is posed\n";
+    return;
+  }
+  try {
+    Track shaped = WithShape(*body_, *own_track_, *run.betas);
+    if (shaped.motion.betas != own_track_->motion.betas) {
+      notes_ += "the track is of a person of another shape: its motion is carried over to the run's person\n";
+    }
+    own_track_ = std::move(shaped);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(std::string("the run's person or the track's does not fit the body (--body): ") +
+                             error.what());
+  }
 }
 
 void AnimatedClip::Fill(int t, MotionFrame* frame) const {

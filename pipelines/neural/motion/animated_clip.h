@@ -23,6 +23,8 @@ struct AnimatedClipRequest {
   std::string view_yaw;  ///< how far the view is turned (pipelines/people/view_angles.h)
   std::string freeze;    ///< where time stands still (pipelines/people/freeze.h); empty: nowhere
   double speed = 1;      ///< the motion is played so many times as fast
+  /// The track's own shape is posed instead of that of the run's person (data_tools/motion/shape_track.h).
+  bool shape_of_track = false;
   int threads = 1;
 
   /// Whether the result is compared with the pictures of `data`: from another side or in another time there is nothing
@@ -32,21 +34,29 @@ struct AnimatedClipRequest {
 
 class AnimatedClip {
  public:
-  /// At the size that the person of `run` was trained at. Throws std::runtime_error naming the file that cannot be used
-  /// or has nothing to animate, RequestError for `view_yaw` and `freeze`.
+  /// At the size that the person of `run` was trained at, and at the run's frame rate, which its networks' past has: a
+  /// track at another is resampled (data_tools/motion/resample_track.h), a clip to be scored refused. The body has that
+  /// person's shape, whosever motion it is, unless the clip is scored (the person's pictures come with their own
+  /// track), the request says otherwise or the run does not hold it. Throws std::runtime_error naming the file that
+  /// cannot be used or has nothing to animate, RequestError for `view_yaw` and `freeze`.
   AnimatedClip(const AnimatedClipRequest& request, const MotionRun& run);
 
   /// Frames are those shown: one shown again counts again.
   [[nodiscard]] const Track& track() const { return data_ ? data_->track() : own_frames_->track(); }
   [[nodiscard]] const PersonFrames& frames() const { return data_ ? data_->frames() : *own_frames_; }
+  /// Lines for the user: the rate and the shape that are not the track's own.
+  [[nodiscard]] const std::string& notes() const { return notes_; }
   /// What the network takes of frame t; with its truth where the clip is scored.
   void Fill(int t, MotionFrame* frame) const;
 
  private:
+  void TakeShapeOf(const MotionRun& run);
+
   std::unique_ptr<MotionData> data_;
   std::shared_ptr<const BodyModel> body_;
   std::optional<Track> own_track_;  ///< before anything is shown more than once
   std::optional<PersonFrames> own_frames_;
+  std::string notes_;
 };
 
 }  // namespace bodyloom

@@ -2,20 +2,15 @@
 /// A rendered clip against the pictures of the single-person dataset it was rendered for.
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "bodyloom/neural/metrics/temporal_lpips.h"
-#include "bodyloom/neural/motion/motion_frame.h"
-#include "bodyloom/neural/motion/motion_picture.h"
 #include "bodyloom/neural/motion/motion_scores.h"
 #include "bodyloom/pipelines/people/composite.h"
 #include "bodyloom/pipelines/people/composite_score.h"
 #include "bodyloom/pipelines/people/motion_errors.h"
 #include "bodyloom/render/image.h"
-#include "bodyloom/render/person_window.h"
 
 namespace bodyloom {
 
@@ -23,7 +18,6 @@ namespace bodyloom {
 struct ClipScores {
   MotionScores windows;                              ///< the person alone, in its window
   std::vector<MotionErrors::Quarter> by_similarity;  ///< empty without a clip to be like
-  std::optional<TemporalLpipsMean> likeness;         ///< of the windows, both on black
   struct Composed {
     double psnr_db = 0;      ///< of the whole picture
     double rim_psnr_db = 0;  ///< within CompositeScore::kRimPixels of the person's contour
@@ -36,12 +30,10 @@ class ClipScorer {
  public:
   /// `similarity` by frame, or empty (MotionErrors). `set`: the single-person dataset whose whole pictures are
   /// compared, empty: they are not. `picture`: the size of those written.
-  ClipScorer(std::vector<float> similarity, const PersonWindow& window, const std::string& set, PictureSize picture);
+  ClipScorer(std::vector<float> similarity, const std::string& set, PictureSize picture);
 
-  /// The next frame does not follow the one before.
-  void Restart();
-  /// Frame t's window, its truth, and its mean |difference|.
-  void AddWindow(int t, const MotionPicture& picture, const MotionFrame& truth, double image_l1);
+  /// Frame t's window, as the renderer compared it.
+  void AddWindow(int t, const MotionFrameScores& scores) { errors_.Add(t, scores); }
   /// Frame t's whole picture.
   void AddComposed(int t, const Image& composed);
 
@@ -50,12 +42,7 @@ class ClipScorer {
   [[nodiscard]] ClipScores Scores(const MotionScores& windows) const;
 
  private:
-  struct Likeness {
-    Lpips lpips;
-    TemporalLpips temporal{lpips};
-  };
   MotionErrors errors_;
-  std::unique_ptr<Likeness> likeness_;
   std::optional<CompositeScore> composed_;
 };
 

@@ -81,6 +81,7 @@ class MotionData::Impl {
     }
     PersonFramesOptions options;
     options.uv_size = profile.uv_size;
+    options.motion = request.motion;
     options.window.max_side = profile.image_size;
     options.window.multiple = multiple;
     options.num_threads = std::max(1, request.num_threads);

@@ -17,6 +17,7 @@ struct MotionDataRequest {
   std::string track;            ///< empty: the single-person dataset's own
   std::string body;             ///< empty: the built-in body
   std::string part_labels;      ///< for a video: DensePose's parts, which stand in for a parsing of the clothes
+  SurfaceMotion motion;         ///< axes and velocities of the motion maps
   double pixels_per_metre = 0;  ///< of the window; 0: as large as the profile's image_size allows
   int num_threads = 0;
 };

@@ -3,15 +3,20 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <utility>
 #include <vector>
 
+#include "bodyloom/data_tools/motion/motion_tools.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/pipelines/describe/axes_pose.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/neural/animation.h"
+#include "bodyloom/pipelines/neural/motion/clip_rate.h"
 #include "bodyloom/pipelines/neural/motion/motion_preview.h"
 #include "bodyloom/pipelines/neural/training_session.h"
 #include "bodyloom/pipelines/neural/weights_folder.h"
+#include "bodyloom/pipelines/neural/window_ssim.h"
 #include "bodyloom/pipelines/runs/motion_run.h"
 
 namespace bodyloom {
@@ -68,7 +73,10 @@ std::unique_ptr<MotionData> ValidationData(const TrainMotionRendererRequest& req
   other.data = request.validate_data;
   other.track.clear();
   other.pixels_per_metre = data.PixelsPerMetre();
-  return std::make_unique<MotionData>(other, config.profile, config.Multiple());
+  auto validation = std::make_unique<MotionData>(other, config.profile, config.Multiple());
+  const double fps = FrameRateWithoutGaps(data.track().motion);
+  if (fps > 0) RequireRate(validation->track(), fps, request.validate_data, "make it at that rate");
+  return validation;
 }
 
 /// What it takes to use the checkpoint.
@@ -78,16 +86,19 @@ MotionRun RunOf(const TrainMotionRendererRequest& request, const TrainMotionOpti
   run.pixels_per_metre = data.PixelsPerMetre();
   run.reach = options.reach;
   run.past = data.frames().options().past;
+  run.motion = data.frames().options().motion;
   run.notes = Notes(request, options);
-  run.fps = FramesPerSecond(data.track(), run.fps);
+  const double fps = FrameRateWithoutGaps(data.track().motion);
+  if (fps > 0) run.fps = fps;
+  run.betas = data.track().motion.betas;
   return run;
 }
 
 void SayWhatIsTrained(const MotionRun& run, const PersonWindow& window, const PipelineCallbacks& callbacks) {
-  callbacks.Say(
-      Concatenate("window ", window.width, "x", window.height, " px, ", run.pixels_per_metre, " px a metre; profile ",
-                  run.config.profile.name,
-                  run.config.around_body ? Concatenate("; ", run.reach, " px around the body") : "; the whole window"));
+  callbacks.Say(Concatenate(
+      "window ", window.width, "x", window.height, " px, ", run.pixels_per_metre, " px a metre; profile ",
+      run.config.profile.name, "; velocities ", VelocityName(run.motion), " in the ", ToString(run.motion.frame),
+      " frame", run.config.around_body ? Concatenate("; ", run.reach, " px around the body") : "; the whole window"));
 }
 
 }  // namespace
@@ -99,10 +110,15 @@ TrainMotionRendererSummary TrainMotionRenderer(const TrainMotionRendererRequest&
   RequireReadable(request.data.data, "data");
   RequireReadable(request.data.track, "track");
   OpenTrainingRun(request.out, &options);
-  options.vgg16 = ReadWeightsFolder(request.weights).vgg16;
+  WeightsFolder weights = ReadWeightsFolder(request.weights);
+  options.vgg16 = std::move(weights.vgg16);
+  options.alexnet = std::move(weights.alexnet), options.lpips_heads = std::move(weights.lpips_heads);
+  options.ssim = WindowSsim;
 
   MotionDataRequest data_request = request.data;
   data_request.num_threads = options.num_threads;
+  SetAxesPose(request.cameras, request.view, &data_request.motion);
+  if (std::string why; !data_request.motion.IsValid(&why)) throw RequestError(why);
   MotionData data(data_request, config.profile, config.Multiple());
   SayLines(data.notes(), callbacks);
   LeaveOutUnknown(data, &config, callbacks);

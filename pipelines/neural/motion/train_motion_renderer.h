@@ -14,9 +14,10 @@ namespace bodyloom {
 struct TrainMotionRendererRequest {
   MotionDataRequest data;
   std::string validate_data;  ///< another dataset of the same person, in another motion; empty: the same clip
+  std::string cameras, view;  ///< the camera's pose where data.motion is in world axes; empty: a level camera
   TrainingFramesRequest frames;
   std::string out;      ///< folder of the run: config.json, checkpoint.bin, metrics.csv, previews
-  std::string weights;  ///< folder with vgg16 (pipelines/neural/weights_folder.h); empty: none
+  std::string weights;  ///< folder with vgg16, alexnet, lpips_alex (pipelines/neural/weights_folder.h); empty: none
   bool whole_window =
       false;  ///< the networks look at the whole window, not only as far around the body as clothes reach
   /// Profile, parts and numbers; what follows from files (frames, channels, reach, run_dir) is filled in by the job.

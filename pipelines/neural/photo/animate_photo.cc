@@ -17,7 +17,6 @@
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/neural/photo/photo_backdrop.h"
 #include "bodyloom/pipelines/people/planar_picture.h"
-#include "bodyloom/pipelines/people/view_angles.h"
 #include "bodyloom/pipelines/report_json.h"
 #include "bodyloom/pipelines/runs/photo_run.h"
 #include "bodyloom/render/contact_sheet.h"
@@ -25,13 +24,9 @@
 namespace bodyloom {
 namespace {
 
-constexpr int kSheetFrames = 6, kSheetColumns = 3;
-constexpr double kDefaultFps = 30;
+constexpr int kPhotoSheetColumns = 3;
 
 void CheckRequest(const AnimatePhotoRequest& request) {
-  if (request.garment.parts.empty() != request.garment.from.empty()) {
-    throw RequestError("--garment-from and --parts belong together");
-  }
   RequireReadable(request.photo.image, "image");
   RequireReadable(request.photo.track, "track of the image");
   RequireReadable(request.photo.labels, "part labels");
@@ -39,16 +34,6 @@ void CheckRequest(const AnimatePhotoRequest& request) {
   RequireReadable(request.background.path, "background");
   RequireOutputs({request.track, request.photo.image, request.photo.track, request.photo.body, request.background.path},
                  {request.out, request.sheet, request.texture, request.json});
-}
-
-/// The photo, more views of the same person, another one who lends a garment.
-std::vector<PhotoRequest> PhotosOf(const AnimatePhotoRequest& request) {
-  std::vector<PhotoRequest> photos = {request.photo};
-  for (const std::string& view : request.views) photos.push_back(ParsePhotoRequest(view, "--views", request.photo));
-  if (!request.garment.from.empty()) {
-    photos.push_back(ParsePhotoRequest(request.garment.from, "--garment-from", request.photo));
-  }
-  return photos;
 }
 
 /// What is opened once and used by every stage.
@@ -59,9 +44,10 @@ class PhotoAnimation {
 
   AnimatePhotoSummary Run() {
     clock_.Begin("prepare");
+    const std::vector<PhotoRequest> wanted = PhotosWanted(request_);
     CheckRequest(request_);
     run_ = ReadPhotoRun(request_.run);
-    OpenPhotos();
+    OpenPhotos(wanted);
     OpenMotion();
     FindAppearance();
     SayLines(notes_, callbacks_);
@@ -73,7 +59,7 @@ class PhotoAnimation {
     clock_.Begin("render");
     RenderFrames();
     clock_.End();
-    WriteSheet(request_.sheet, sheet_, kSheetColumns, Size());
+    WriteSheet(request_.sheet, sheet_, kPhotoSheetColumns, Size());
     AnimatePhotoSummary summary = Summarise();
     WriteReport(request_.json, Report(summary));
     summary.total_seconds = clock_.total();
@@ -84,26 +70,14 @@ class PhotoAnimation {
   [[nodiscard]] int Size() const { return run_.config.profile.image_size; }
   [[nodiscard]] int TextureSize() const { return run_.config.profile.texture_size; }
 
-  void OpenPhotos() {
-    PartsNamed(request_.garment.parts);  // a wrong name is refused before anything is read
-    photos_ = LoadPhotos(PhotosOf(request_), Size(), TextureSize());
+  void OpenPhotos(const std::vector<PhotoRequest>& wanted) {
+    photos_ = LoadPhotos(wanted, Size(), TextureSize());
     for (const Photo& photo : photos_) notes_ += photo.notes;
   }
 
   void OpenMotion() {
-    const Photo& photo = photos_.front();
     track_ = ReadTrack(request_.track);
-    RequireBodyOf(photo, track_, request_.track);
-    if (!request_.shape_of_motion) track_.motion.betas = photo.track.motion.betas;
-    PhotoMapsOptions options;
-    options.size = Size();
-    options.texture_size = TextureSize();
-    options.yaw_deg = ViewAngles(request_.view_yaw, track_.num_frames(), 0, track_.num_frames() - 1);
-    try {
-      maps_ = std::make_unique<PhotoMaps>(*photo.body, track_, options);
-    } catch (const std::invalid_argument& error) {
-      throw std::runtime_error(request_.track + ": " + error.what());
-    }
+    maps_ = MapsOfMotion(request_, photos_.front(), request_.track, Size(), TextureSize(), &track_);
   }
 
   void FindAppearance() {

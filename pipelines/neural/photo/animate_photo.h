@@ -3,26 +3,15 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "bodyloom/pipelines/callbacks.h"
-#include "bodyloom/pipelines/neural/animation.h"
-#include "bodyloom/pipelines/neural/photo/photo_appearance.h"
-#include "bodyloom/pipelines/neural/photo/photo_input.h"
-#include "bodyloom/pipelines/people/background.h"
+#include "bodyloom/pipelines/neural/photo/photo_animation.h"
 
 namespace bodyloom {
 
-/// The body is the photo's; `body` is not looked at.
-struct AnimatePhotoRequest : AnimationRequest {
-  PhotoRequest photo;              ///< what the person looks like
-  std::vector<std::string> views;  ///< more pictures of the person, IMAGE:TRACK[:FRAME] (ParsePhotoRequest)
-  LentGarment garment;             ///< both of its parts are given, or none
-  PhotoBackground background;
-  std::string view_yaw;          ///< degrees that the view is turned by: "30", or "0:360" over the clip
-  bool shape_of_motion = false;  ///< the body has the shape of the motion's track; false: the photo's
-  bool whole_window = false;     ///< the background of the window is computed too
-  std::string texture;           ///< the completed texture to write as an image; empty: not written
+struct AnimatePhotoRequest : PhotoAnimationRequest {
+  bool whole_window = false;  ///< the background of the window is computed too
+  std::string texture;        ///< the completed texture to write as an image; empty: not written
 };
 
 struct AnimatePhotoSummary : AnimationSummary {

@@ -10,6 +10,10 @@
 
 namespace bodyloom {
 
+/// What a renderer is given of a dataset's people when it is scored on them; of a photo of anybody else they are
+/// estimates.
+inline constexpr const char* kGivenOfPeople = "true labels and bodies";
+
 struct PeopleDataRequest {
   std::string data;  ///< a multi-person dataset, or a single-person dataset (one person, all for training)
   std::string body;  ///< empty: the built-in body

@@ -39,6 +39,19 @@ std::vector<int> PartsNamed(const std::vector<std::string>& names) {
   return parts;
 }
 
+std::vector<uint8_t> LentTexels(const LentGarment& garment, const Photo& lender, std::span<const uint8_t> texel_parts,
+                                std::string* notes) {
+  const std::vector<int> parts = PartsNamed(garment.parts);
+  std::vector<uint8_t> of_garment(texel_parts.begin(), texel_parts.end());
+  for (uint8_t& part : of_garment) part = std::find(parts.begin(), parts.end(), int{part}) != parts.end() ? 1 : 0;
+  const double share = VisibleShare(PartialTextureOf(lender.frame), of_garment);
+  if (!(share > 0)) {
+    throw std::runtime_error("--garment-from " + garment.from + ": nothing of --parts is to be seen there");
+  }
+  *notes += Concatenate(garment.from, ": shows ", std::lround(100 * share), " % of --parts\n");
+  return of_garment;
+}
+
 PartialTexture AppearanceOf(std::span<const Photo> photos, const LentGarment& garment,
                             std::span<const uint8_t> texel_parts, std::string* notes) {
   std::vector<PartialTexture> textures;
@@ -46,15 +59,8 @@ PartialTexture AppearanceOf(std::span<const Photo> photos, const LentGarment& ga
   if (garment.from.empty()) return UnionOf(textures);
   const PartialTexture lent = std::move(textures.back());
   textures.pop_back();
-  const std::vector<int> parts = PartsNamed(garment.parts);
-  std::vector<uint8_t> of_garment(texel_parts.begin(), texel_parts.end());
-  for (uint8_t& part : of_garment) part = std::find(parts.begin(), parts.end(), int{part}) != parts.end() ? part : 0;
-  const double share = VisibleShare(lent, of_garment);
-  if (!(share > 0)) {
-    throw std::runtime_error("--garment-from " + garment.from + ": nothing of --parts is to be seen there");
-  }
-  *notes += Concatenate(garment.from, ": shows ", std::lround(100 * share), " % of --parts\n");
-  return WithParts(UnionOf(textures), lent, texel_parts, parts);
+  LentTexels(garment, photos.back(), texel_parts, notes);
+  return WithParts(UnionOf(textures), lent, texel_parts, PartsNamed(garment.parts));
 }
 
 }  // namespace bodyloom

@@ -22,9 +22,13 @@ struct LentGarment {
 /// RequestError for other names.
 std::vector<int> PartsNamed(const std::vector<std::string>& names);
 
-/// The union of what the photos show; where somebody lends, the last of them shows what. Adds to `notes` a line that
-/// says how much of the parts it shows. Throws std::runtime_error when it shows nothing of them, RequestError for names
-/// of parts.
+/// U × U: 1 where `garment` replaces what the person wears by what `lender` does. Adds to `notes` a line that says how
+/// much of that the lender's photo shows. Throws std::runtime_error when it shows nothing of it.
+std::vector<uint8_t> LentTexels(const LentGarment& garment, const Photo& lender, std::span<const uint8_t> texel_parts,
+                                std::string* notes);
+
+/// The union of what the photos show; where somebody lends, the last of them shows what. Adds to `notes` and throws
+/// as LentTexels.
 PartialTexture AppearanceOf(std::span<const Photo> photos, const LentGarment& garment,
                             std::span<const uint8_t> texel_parts, std::string* notes);
 

@@ -147,7 +147,7 @@ void FillMaps(PhotoMap&& map, int size, int texture_size, PhotoFrame* frame) {
   frame->parts = std::move(map.parts);
   frame->texture_size = texture_size;
   frame->texel_pixels = std::move(map.texel_pixels);
-  frame->texel_seen = std::move(map.texel_seen);
+  frame->texel_cosine = std::move(map.texel_cosine);
   frame->image.clear();
   frame->labels.clear();
 }

@@ -42,7 +42,7 @@ std::string Notes(const std::string& data, const TrainPhotoOptions& o) {
   return json.dump();
 }
 
-void ReadWeights(const std::string& folder, TrainPhotoOptions* options, const PipelineCallbacks& callbacks) {
+void ReadPerceptualWeights(const std::string& folder, TrainPhotoOptions* options, const PipelineCallbacks& callbacks) {
   WeightsFolder weights = ReadWeightsFolder(folder);
   if (!folder.empty()) callbacks.Say("weights: " + ToText(weights));
   options->vgg19 = std::move(weights.vgg19);
@@ -70,7 +70,7 @@ TrainPhotoRendererSummary TrainPhotoRenderer(const TrainPhotoRendererRequest& re
   TrainPhotoOptions options = request.options;
   RequireReadable(request.data, "data");
   OpenTrainingRun(request.out, &options);
-  ReadWeights(request.weights, &options, callbacks);
+  ReadPerceptualWeights(request.weights, &options, callbacks);
 
   PeopleDataRequest people;
   people.data = request.data;

@@ -5,13 +5,18 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/descriptors/describe_track.h"
 #include "bodyloom/data_tools/formats/npz.h"
 #include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/rotation.h"
 #include "bodyloom/render/visibility_buffer.h"
 #include "tests/support/short_track.h"
 
@@ -89,6 +94,83 @@ TEST(PersonFrames, ATurnedViewTurnsMotionAndPicture) {
     }
   }
   EXPECT_GT(moved, 10);
+}
+
+/// The same person, through a camera that pans by 3° a frame about its own centre.
+Track SeenByAPanningCamera(const Track& track) {
+  Track panned = track;
+  const Eigen::Vector3d rest_root = BuiltinBody().RestJoints(track.motion.betas).row(0);
+  for (int t = 0; t < track.num_frames(); ++t) {
+    const Eigen::Matrix3d pan = Eigen::AngleAxisd(0.05 * t, Eigen::Vector3d::UnitY()).toRotationMatrix();
+    panned.motion.poses.row(t).head<3>() =
+        AxisAngleFromRotation(pan * RotationFromAxisAngle(track.motion.poses.row(t).head<3>().transpose()));
+    panned.motion.trans.row(t) = pan * (rest_root + track.motion.trans.row(t).transpose()) - rest_root;
+  }
+  return panned;
+}
+
+TEST(PersonFrames, ACameraThatMovesIsNoMotionInTheBodysAxes) {
+  const Track track = ShortTrack(), panned = SeenByAPanningCamera(track);
+  PersonFramesOptions options = Small();
+  const auto largest_difference = [&](SurfaceFrame frame) {
+    options.motion.frame = frame;
+    const PersonFrames still(BuiltinBody(), track, options), moving(BuiltinBody(), panned, options);
+    const std::vector<float> a = Maps(still, 4), b = Maps(moving, 4);
+    float largest = 0;
+    for (size_t i = 3 * 32 * 32; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
+    return largest;
+  };
+  EXPECT_LT(largest_difference(SurfaceFrame::kBody), 2e-3);
+  EXPECT_GT(largest_difference(SurfaceFrame::kCamera), 0.3) << "the camera hardly moves";
+}
+
+TEST(PersonFrames, AxesAndVelocitiesAreThoseRequested) {
+  const Track track = ShortTrack();
+  PersonFramesOptions options = Small();
+  const std::vector<float> by_default = Maps(PersonFrames(BuiltinBody(), track, options), 5);
+  SetVelocity("backward", &options.motion);
+  options.motion.frame = SurfaceFrame::kWorld;
+  options.motion.camera_pose = LevelCamera();
+  const PersonFrames frames(BuiltinBody(), track, options);
+  const std::vector<float> world = Maps(frames, 5);
+  DescriptorOptions expected_options;
+  static_cast<SurfaceMotion&>(expected_options) = options.motion;
+  expected_options.texels.width = expected_options.texels.height = 32;
+  expected_options.past = 4;
+  DescriptorFrames expected(BuiltinBody(), track, expected_options);
+  std::vector<float> planes(expected.frame_size());
+  expected.Planes(5, planes);
+  const size_t map = 3 * 32 * 32;
+  double off_default = 0;
+  for (size_t i = 0; i < world.size(); ++i) {
+    const float value = planes[i] * (i < map ? 1.0F : static_cast<float>(1 / PersonFrames::kBodyLength));
+    ASSERT_NEAR(world[i], value, 1e-3F * std::abs(value) + 1e-6F) << i;
+    off_default += std::abs(world[i] - by_default[i]);
+  }
+  EXPECT_GT(off_default, 100);
+  // A view turned by 90°: the world's y is up, so x takes the place of −z there.
+  options.yaw_deg.assign(track.num_frames(), 90);
+  const std::vector<float> turned = Maps(PersonFrames(BuiltinBody(), track, options), 5);
+  options.motion.frame = SurfaceFrame::kBody;
+  const std::vector<float> body_turned = Maps(PersonFrames(BuiltinBody(), track, options), 5);
+  options.yaw_deg.clear();
+  EXPECT_EQ(Maps(PersonFrames(BuiltinBody(), track, options), 5), body_turned) << "body axes know of no view";
+  for (size_t i = 0; i < 32 * 32; ++i) {
+    ASSERT_NEAR(turned[i], -world[2 * 32 * 32 + i], 1e-5);
+    ASSERT_NEAR(turned[32 * 32 + i], world[32 * 32 + i], 1e-5);
+    ASSERT_NEAR(turned[2 * 32 * 32 + i], world[i], 1e-5);
+  }
+}
+
+TEST(SurfaceMotion, NamesAreThoseOfTheCommand) {
+  SurfaceMotion motion;
+  for (const std::string& name : VelocityNames()) {
+    SetVelocity(name, &motion);
+    EXPECT_EQ(VelocityName(motion), name);
+  }
+  for (const std::string& name : SurfaceFrameNames()) EXPECT_EQ(ToString(SurfaceFrameNamed(name)), name);
+  EXPECT_THROW(SetVelocity("forward", &motion), std::invalid_argument);
+  EXPECT_THROW(SurfaceFrameNamed("ground"), std::invalid_argument);
 }
 
 TEST(PersonFrames, PixelsShowTheBodyWhereItIs) {

@@ -9,6 +9,7 @@
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/datasets/label_of_part.h"
 #include "bodyloom/data_tools/datasets/photo_segmentation.h"
+#include "bodyloom/data_tools/descriptors/posed_track.h"
 #include "tests/support/short_track.h"
 
 namespace bodyloom {
@@ -59,7 +60,8 @@ TEST(PhotoMaps, TexelsAppearAtPixelsThatShowThem) {
   int seen = 0, compared = 0;
   std::vector<double> errors;
   for (size_t i = 0; i < texels; ++i) {
-    if (map.texel_seen[i] == 0) continue;
+    EXPECT_EQ(map.texel_cosine[i] == 0, map.texel_pixels[i] == 0 && map.texel_pixels[texels + i] == 0);
+    if (map.texel_cosine[i] == 0) continue;
     ++seen;
     ASSERT_GT(texel_parts[i], 0);
     const int x = static_cast<int>(std::lround(map.texel_pixels[i]));
@@ -69,7 +71,8 @@ TEST(PhotoMaps, TexelsAppearAtPixelsThatShowThem) {
     ASSERT_NE(map.parts[at], 0);
     if (map.parts[at] != texel_parts[i]) continue;  // a chart's boundary within half a pixel
     ++compared;
-    const double u = (double(i % kTexture) + 0.5) / kTexture, v = 1 - (double(i / kTexture) + 0.5) / kTexture;
+    const size_t row = i / kTexture, column = i % kTexture;
+    const double u = (double(column) + 0.5) / kTexture, v = 1 - (double(row) + 0.5) / kTexture;
     errors.push_back(std::hypot(map.uv[at] - u, map.uv[area + at] - v) * kTexture);
   }
   EXPECT_GT(seen, 300);
@@ -91,14 +94,37 @@ TEST(PhotoMaps, OneViewSeesAboutHalfOfTheBodyAndTwoSeeMost) {
   const std::vector<uint8_t> parts = PartsOfTexels(BuiltinBody(), *behind.texels());
   for (size_t i = 0; i < parts.size(); ++i) {
     of_body += parts[i] != 0;
-    of_front += front.texel_seen[i];
-    of_either += front.texel_seen[i] | back.texel_seen[i];
-    of_both += front.texel_seen[i] & back.texel_seen[i];
+    const bool seen_in_front = front.texel_cosine[i] > 0, seen_behind = back.texel_cosine[i] > 0;
+    of_front += seen_in_front;
+    of_either += seen_in_front || seen_behind;
+    of_both += seen_in_front && seen_behind;
   }
   EXPECT_GT(of_front, 0.2 * of_body);
   EXPECT_LT(of_front, 0.5 * of_body);
   EXPECT_GT(of_either, 1.6 * of_front);
   EXPECT_LT(of_both, 0.1 * of_front);
+}
+
+TEST(PhotoMaps, CosinesAreThoseOfTheFaces) {
+  const Track track = ShortTrack();
+  const PhotoMaps maps(BuiltinBody(), track, Small());
+  const PhotoMap map = maps.At(4);
+  const MatrixX3d vertices = PosedTrack(BuiltinBody(), track).Vertices(4);
+  const MatrixX3i& faces = BuiltinBody().data().faces;
+  int compared = 0, slant = 0;
+  for (size_t i = 0; i < maps.texels()->size(); ++i) {
+    const float cosine = map.texel_cosine[maps.texels()->pixel[i]];
+    if (cosine == 0) continue;
+    Eigen::Vector3d corners[3];
+    for (int k = 0; k < 3; ++k) corners[k] = vertices.row(faces(maps.texels()->face[i], k)).transpose();
+    const Eigen::Vector3d normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
+    // From anywhere on the face: a metre or more away rays hardly differ.
+    EXPECT_NEAR(cosine, -normal.dot(corners[0].normalized()), 0.03);
+    ++compared;
+    slant += cosine < 0.5 ? 1 : 0;
+  }
+  EXPECT_GT(compared, 300);
+  EXPECT_GT(slant, 30);
 }
 
 TEST(PhotoMaps, AFrameWithoutAResultShowsNothing) {
@@ -107,7 +133,7 @@ TEST(PhotoMaps, AFrameWithoutAResultShowsNothing) {
   track.frame_status[2] = FrameStatus::kLost;
   const PhotoMap map = PhotoMaps(BuiltinBody(), track, Small()).At(2);
   EXPECT_THAT(map.parts, ::testing::Each(0));
-  EXPECT_THAT(map.texel_seen, ::testing::Each(0));
+  EXPECT_THAT(map.texel_cosine, ::testing::Each(0.0F));
   PhotoMapsOptions options = Small();
   options.size = 0;
   EXPECT_THROW(PhotoMaps(BuiltinBody(), track, options), std::invalid_argument);

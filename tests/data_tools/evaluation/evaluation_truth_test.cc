@@ -99,7 +99,7 @@ TEST(EvaluationTruthTest, AShiftedRootMovesThePictureAndNothingElse) {
     for (Eigen::Index v = 0; v < vertices.rows(); ++v, ++count) sum += 0.05 * 1300 / vertices(v, 2) * 512 / 1920;
   }
   EXPECT_NEAR(e.Value("projection_mean_px"), sum / count, 1e-5);  // vertices are skinned in float
-  EvaluateAgainstTruthOptions options;
+  VertexErrorOptions options;
   options.num_threads = 2;
   EXPECT_EQ(EvaluateAgainstTruth(track, truth, ToyBody(), options).Value("pve_mm"), e.Value("pve_mm"));
   options.image_side_px = 1920;
@@ -182,7 +182,7 @@ TEST(EvaluationTruthTest, BrokenContractsThrow) {
   shorter.motion.poses.conservativeResize(kFrames - 1, 72);
   EXPECT_THROW(EvaluateAgainstTruth(shorter, truth, ToyBody()), std::invalid_argument);
   EXPECT_THROW(EvaluateAgainstTruth({}, {}, ToyBody()), std::invalid_argument);
-  EvaluateAgainstTruthOptions options;
+  VertexErrorOptions options;
   options.vertex_step = 0;
   EXPECT_THROW(EvaluateAgainstTruth(truth, truth, ToyBody(), options), std::invalid_argument);
   EXPECT_THROW(static_cast<void>(EvaluateAgainstTruth(truth, truth, ToyBody()).Value("nonsense")),

@@ -26,6 +26,9 @@ void AddRunSeeds(std::map<std::string, std::vector<std::string>>* seeds) {
   motion.past = 10;
   motion.config.motion_channels = 3 + 3 * motion.past;
   motion.reach = 3;
+  motion.motion.frame = SurfaceFrame::kWorld;
+  motion.motion.camera_pose = LevelCamera();
+  motion.betas = Eigen::Vector3d(0.5, -1, 2);
   motion.notes = kNotes;
   PhotoRun photo;
   photo.config.profile = PhotoProfileNamed("tiny");

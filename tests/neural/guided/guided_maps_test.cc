@@ -9,8 +9,12 @@
 #include "bodyloom/neural/guided/complete_maps.h"
 #include "bodyloom/neural/guided/guided_plan.h"
 #include "bodyloom/neural/guided/guided_scores.h"
+#include "bodyloom/neural/image_tensor.h"
+#include "bodyloom/neural/metrics/contextual_similarity.h"
+#include "bodyloom/neural/metrics/lpips.h"
 #include "bodyloom/neural/people/body_part_map.h"
 #include "tests/neural/guided/guided_toy.h"
+#include "tests/neural/metrics/named_features.h"
 
 namespace bodyloom {
 namespace {
@@ -233,8 +237,9 @@ TEST(CompleteMaps, WithoutHairTheBackOfTheHeadIsSkin) {
   for (uint8_t& label : front.labels) {
     if (label == 4) label = 3;
   }
-  const PseudoPicture back =
-      MirroredFront(ToyPhotoFrame(1, {}, false), OwnPicture(front), ToyPhotoFrame(1, {0, 0, true}, false));
+  CoherentMaps maps = EmptyMaps(kToyTexels, ToyTexelParts());
+  const PhotoFrame behind = ToyPhotoFrame(1, {0, 0, true}, false);
+  const PseudoPicture back = MirroredFront(ToyPhotoFrame(1, {}, false), OwnPicture(front), behind, maps);
   int skin = 0;
   for (size_t i = 0; i < back.labels.size(); ++i) {
     EXPECT_NE(back.labels[i], 3);
@@ -242,6 +247,17 @@ TEST(CompleteMaps, WithoutHairTheBackOfTheHeadIsSkin) {
     skin += back.labels[i] == 5 && i < size_t{14} * kToySide ? 1 : 0;
   }
   EXPECT_EQ(skin, 64);
+  // Unless a photo showed some of its back.
+  maps.labels[9] = 4, maps.from[9] = 1;
+  for (int k = 0; k < 3; ++k) maps.appearance[k * kToyTexels * kToyTexels + 9] = 0.25F * static_cast<float>(k + 1);
+  const PseudoPicture haired = MirroredFront(ToyPhotoFrame(1, {}, false), OwnPicture(front), behind, maps);
+  int hair = 0;
+  for (size_t i = 0; i < haired.labels.size(); ++i) {
+    if (haired.labels[i] != 4) continue;
+    ++hair;
+    for (int k = 0; k < 3; ++k) EXPECT_FLOAT_EQ(haired.image[k * 1024 + i], 0.25F * static_cast<float>(k + 1));
+  }
+  EXPECT_EQ(hair, 64);
 }
 
 TEST(ChoosePhotos, AFaceFirstThenWhatIsMissing) {
@@ -287,6 +303,36 @@ TEST(GuidedScores, AreWhatTheyShouldBe) {
   EXPECT_NEAR(off.Scores().label_iou, shirt / people / 4, 1e-9);
   EXPECT_TRUE(std::isnan(off.Scores().lpips));
   EXPECT_THROW(off.Add(picture, ToyPhotoFrame(1, {}, false)), std::invalid_argument);
+}
+
+TEST(GuidedScores, TrainedWeightsMeasureWhereTheyAreGiven) {
+  const PhotoFrame truth = ToyPhotoFrame(1, {}, true);
+  GuidedPicture darker = OwnPicture(truth);
+  for (float& value : darker.image) value *= 0.8F;
+  const auto scores = [&](const GuidedScoreWeights& weights) {
+    GuidedScorer scorer(true, weights);
+    scorer.Add(darker, truth);
+    return scorer.Scores();
+  };
+  const FeatureTrunk vgg = FeatureTrunk::kVgg19;
+  const GuidedScoreWeights weights = {{AlexNetWeights(), "alexnet.pth"},
+                                      {HeadWeights(), "lpips_alex.pth"},
+                                      {TrunkWeights(vgg, FeatureLayers(vgg, {"relu4_2"})[0]), "vgg19.pth"}};
+  const GuidedScores trained = scores(weights), random = scores({});
+  const Image picture = ToImage(torch::tensor(darker.image).view({3, 32, 32}));
+  const Image true_picture = ToImage(torch::tensor(truth.image).view({3, 32, 32}));
+  EXPECT_FALSE(trained.lpips_random_features || trained.contextual_random_features);
+  EXPECT_NEAR(trained.lpips, LpipsFrom(weights.alexnet, weights.lpips_heads).Distance(picture, true_picture).value,
+              1e-4 * trained.lpips);
+  ContextualMetric contextual;
+  contextual.Load(weights.vgg19.weights, "vgg19.pth");
+  EXPECT_NEAR(trained.contextual, contextual(picture, true_picture).distance, 1e-4 * trained.contextual);
+  EXPECT_TRUE(random.lpips_random_features && random.contextual_random_features);
+  // The substitute is that of every other renderer.
+  EXPECT_NEAR(random.lpips, Lpips().Distance(picture, true_picture).value, 1e-4 * random.lpips);
+  // Either without the other.
+  const GuidedScores half = scores({weights.alexnet, weights.lpips_heads, {}});
+  EXPECT_TRUE(!half.lpips_random_features && half.contextual_random_features);
 }
 
 TEST(GuidedScores, StabilityIsWithinAPerson) {

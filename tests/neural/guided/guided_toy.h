@@ -83,7 +83,7 @@ inline PhotoFrame ToyPhotoFrame(int person, const ToyPose& pose, bool picture) {
   frame.parts.assign(kArea, 0);
   frame.texture_size = kToyTexels;
   frame.texel_pixels.assign(2 * kTexels, 0);
-  frame.texel_seen.assign(kTexels, 0);
+  frame.texel_cosine.assign(kTexels, 0);
   if (picture) {
     frame.image.assign(3 * kArea, 0);
     frame.labels.assign(kArea, 0);
@@ -126,7 +126,7 @@ inline PhotoFrame ToyPhotoFrame(int person, const ToyPose& pose, bool picture) {
         if (x < 0 || y < 0 || x > kToySide - 1 || y > kToySide - 1) continue;
         frame.texel_pixels[texel] = x;
         frame.texel_pixels[kTexels + texel] = y;
-        frame.texel_seen[texel] = 1;
+        frame.texel_cosine[texel] = 1;
       }
     }
   }

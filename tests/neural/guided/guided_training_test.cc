@@ -6,6 +6,8 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <set>
+#include <sstream>
 
 #include "bodyloom/neural/guided/guided_model.h"
 #include "bodyloom/neural/guided/guided_renderer.h"
@@ -134,6 +136,53 @@ TEST(GuidedTraining, EveryAblationTrainsAndDraws) {
     EXPECT_EQ(renderer.virtual_pictures().empty(), !options.config.uv_appearance);
     for (const float value : renderer.Render(ToyPhotoFrame(0, {1, 1, false}, false)).image) {
       ASSERT_TRUE(value >= 0 && value <= 1);
+    }
+  }
+}
+
+/// Names of the losses of a run's metrics.csv that are 0 in its last row.
+std::set<std::string> LossesAtZero(const std::string& run_dir) {
+  std::istringstream lines(FileBytes(run_dir + "/metrics.csv"));
+  std::string names, row, line, name, value;
+  std::getline(lines, names);
+  while (std::getline(lines, line)) row = line;
+  std::set<std::string> zero;
+  std::istringstream of_names(names), of_row(row);
+  while (std::getline(of_names, name, ',') && std::getline(of_row, value, ',')) {
+    if (name == "render") break;  // validation follows
+    if (name != "step" && std::stod(value) == 0) zero.insert(name);
+  }
+  return zero;
+}
+
+TEST(GuidedTraining, AnAblationTakesAwayItsTermAlone) {
+  const struct {
+    std::vector<std::string> parts;
+    std::set<std::string> zero;  ///< "outline": the silhouette that RenderNet draws where no other network does
+  } cases[] = {{{}, {"outline"}},
+               {{"sil"}, {"outline", "silhouette"}},
+               {{"gar"}, {"outline", "labels"}},
+               {{"sil", "gar"}, {"silhouette", "labels"}},
+               {{"source-silhouette"}, {"outline"}},
+               {{"source-labels"}, {"outline"}},
+               {{"latent"}, {"outline", "kl"}},
+               {{"kl"}, {"outline", "kl"}},
+               {{"pseudo-image"}, {"outline"}},
+               {{"uv-appearance"}, {"outline"}}};
+  for (const auto& [parts, zero] : cases) {
+    TrainGuidedOptions options = ToyOptions("guided_terms");
+    for (const std::string& part : parts) LeaveOut(part, &options.config);
+    EXPECT_EQ(LeftOut(options.config), parts);
+    options.validation = {};
+    options.steps = options.report_every = options.checkpoint_every = 4;
+    options.balance_steps = 2;
+    const TrainGuidedSummary summary = TrainGuided(ToyPeople(2, 4), options);
+    ASSERT_EQ(summary.status, TrainingStatus::kFinished);
+    const std::string name = parts.empty() ? "full" : parts.back();
+    EXPECT_EQ(LossesAtZero(options.run_dir), zero) << name;
+    ASSERT_EQ(summary.loss_weights.size(), 4U);
+    for (size_t loss = 0; loss < 4; ++loss) {
+      EXPECT_EQ(summary.loss_weights[loss] == 0, loss == 3 && zero.contains("kl")) << name << ", loss " << loss;
     }
   }
 }

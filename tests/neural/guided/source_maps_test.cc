@@ -62,6 +62,89 @@ TEST(GuessRest, WithoutHairTheBackOfTheHeadIsSkinOfTheFacesColour) {
   }
 }
 
+/// As body parts stand in for a parsing: all of the head is face, and there is skin elsewhere (the toy's lowest rows,
+/// blue as no head is).
+PhotoFrame LabelledByParts(const ToyPose& pose) {
+  PhotoFrame photo = ToyPhotoFrame(1, pose, true);
+  for (int i = 0; i < 1024; ++i) {
+    if (photo.labels[i] == 4) photo.labels[i] = 3;
+    if (photo.labels[i] != 5) continue;
+    for (int k = 0; k < 3; ++k) photo.image[k * 1024 + i] = k == 2 ? 1.0F : 0.0F;
+  }
+  return photo;
+}
+
+TEST(MapsOfSource, ABackOfTheHeadThatIsSeenStaysWhateverItIsCalled) {
+  const TexelNeighbours neighbours = ToyNeighbours();
+  const PhotoFrame photos[] = {LabelledByParts({}), LabelledByParts({2, 1, true})};
+  const auto repeat = [](const PhotoFrame& frame, const PseudoPicture& pseudo) {
+    GuidedPicture picture{frame.size, pseudo.image, std::vector<float>(pseudo.known.size()), pseudo.labels};
+    std::copy(pseudo.known.begin(), pseudo.known.end(), picture.alpha.begin());
+    return picture;
+  };
+  for (const MapCompletion completion : {MapCompletion::kNone, MapCompletion::kNearest, MapCompletion::kVirtualViews}) {
+    const SourceMaps source = MapsOfSource(photos, {texel_parts, views, &neighbours}, completion, false, repeat);
+    EXPECT_EQ(source.texels_seen, 256) << ToText(completion);
+    for (int t = 0; t < kTexels / 2; ++t) {
+      if (t % kToyTexels < 8) continue;
+      EXPECT_EQ(source.maps.from[t], 2) << ToText(completion) << " at " << t;
+      EXPECT_EQ(source.maps.labels[t], 4) << "a parsing without hair calls it face at " << t;
+      for (int k = 0; k < 3; ++k) {
+        EXPECT_NEAR(source.maps.appearance[k * kTexels + t], ToyColour(1, t / kToyTexels, t % kToyTexels, k), 0.03);
+      }
+    }
+  }
+  // Where the parsing knows hair, what it calls a face there is one: the skin before the ears.
+  PhotoFrame behind = ToyPhotoFrame(1, {0, 0, true}, true);
+  for (int y = 10; y < 14; ++y) {
+    for (int x = 12; x < 20; ++x) behind.labels[y * kToySide + x] = 3;
+  }
+  const CoherentMaps maps =
+      MapsOfSource(std::span(&behind, 1), {texel_parts, {}, &neighbours}, MapCompletion::kNone, false, {}).maps;
+  for (int r = 0; r < 8; ++r) {
+    EXPECT_EQ(maps.from[r * kToyTexels + 10], 1);
+    EXPECT_EQ(maps.labels[r * kToyTexels + 10], r < 4 ? 4 : 3) << r;
+  }
+}
+
+TEST(GuessRest, WhatIsUnseenOfTheBackOfTheHeadIsHairThatIsSeen) {
+  const TexelNeighbours neighbours = ToyNeighbours();
+  PhotoFrame behind = LabelledByParts({0, 0, true});
+  // Of the back of the head its left half.
+  for (int y = 0; y < 14; ++y) {
+    for (int x = 16; x < kToySide; ++x) behind.labels[y * kToySide + x] = 0;
+  }
+  const PhotoFrame photos[] = {LabelledByParts({}), behind};
+  const CoherentMaps maps =
+      MapsOfSource(photos, {texel_parts, {}, &neighbours}, MapCompletion::kNearest, false, {}).maps;
+  int guessed = 0;
+  for (int t = 0; t < kTexels / 2; ++t) {
+    if (t % kToyTexels < 8) continue;
+    guessed += maps.from[t] == 3 ? 1 : 0;
+    EXPECT_EQ(maps.labels[t], 4) << t;
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR(maps.appearance[k * kTexels + t], ToyColour(1, t / kToyTexels, t % kToyTexels, k), 0.06) << t;
+    }
+  }
+  EXPECT_EQ(guessed, 32);
+}
+
+TEST(GuessRest, WithoutHairTheBackOfTheHeadNeverHasTheHandsColour) {
+  const TexelNeighbours neighbours = ToyNeighbours();
+  const PhotoFrame photo = LabelledByParts({});
+  const CoherentMaps maps =
+      MapsOfSource(std::span(&photo, 1), {texel_parts, {}, &neighbours}, MapCompletion::kNearest, false, {}).maps;
+  for (int t = 0; t < kTexels / 2; ++t) {
+    const int r = t / kToyTexels, c = t % kToyTexels;
+    if (c < 8) continue;
+    EXPECT_EQ(maps.labels[t], 5) << t;
+    if (r == 2 || r == 3) continue;  // where face and what lies above it mix
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR(maps.appearance[k * kTexels + t], ToyColour(1, r, 15 - c, k), 0.06) << r << " " << c;
+    }
+  }
+}
+
 TEST(GuessRest, AMapThatHoldsNothingStaysEmpty) {
   CoherentMaps maps = EmptyMaps(kToyTexels, texel_parts);
   EXPECT_EQ(GuessRest(ToyNeighbours(), 1, &maps), 0);
@@ -81,6 +164,60 @@ TEST(MapsOfSource, SaysWhatIsMissing) {
   const SourceMaps none = MapsOfSource(one, {texel_parts}, MapCompletion::kNone, false, {});
   EXPECT_EQ(none.texels_seen, 128);
   EXPECT_TRUE(none.maps.extent.empty());
+}
+
+TEST(MapsOfSource, ThePhotoThatSeesATexelMostFromTheFrontFillsIt) {
+  PhotoFrame photos[] = {ToyPhotoFrame(1, {}, true), ToyPhotoFrame(2, {1, 1, false}, true)};
+  for (int t = 0; t < kTexels; ++t) {
+    if (photos[0].texel_cosine[t] == 0) continue;
+    photos[0].texel_cosine[t] = 0.5F;
+    photos[1].texel_cosine[t] = t % 3 == 0 ? 0.5F : t % 3 == 1 ? 0.4F : 0.6F;
+  }
+  // Where it shows nobody it fills nothing, however well it is seen.
+  for (int y = 0; y < 8; ++y) {
+    for (int x = 0; x < kToySide; ++x) photos[1].labels[y * kToySide + x] = 0;
+  }
+  const SourceMaps source = MapsOfSource(photos, {texel_parts}, MapCompletion::kNone, false, {});
+  EXPECT_EQ(source.texels_seen, 128);
+  int of_second = 0;
+  for (int t = 0; t < kTexels; ++t) {
+    const int r = t / kToyTexels, c = t % kToyTexels;
+    if (c >= 8) continue;
+    const bool second = t % 3 == 2 && r > 0;
+    of_second += second ? 1 : 0;
+    ASSERT_EQ(source.maps.from[t], second ? 2 : 1) << r << " " << c;
+    if (r == 2 || r == 3 || r == 13 || r == 14) continue;  // where two labels' colours mix
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR(source.maps.appearance[k * kTexels + t], ToyColour(second ? 2 : 1, r, c, k), 0.03) << r << " " << c;
+    }
+  }
+  EXPECT_GT(of_second, 30);
+}
+
+TEST(MapsOfSource, AnotherOneLendsWhatIsWornAndNothingElse) {
+  const TexelNeighbours neighbours = ToyNeighbours();
+  std::vector<uint8_t> lent(kTexels);
+  for (int t = kTexels / 2; t < kTexels; ++t) lent[t] = 1;  // the torso
+  // Of the lender the head is seen better than the person's own: it says nothing all the same.
+  const PhotoFrame photos[] = {ToyPhotoFrame(1, {}, true), ToyPhotoFrame(1, {0, 0, true}, true),
+                               ToyPhotoFrame(2, {1, 1, false}, true)};
+  const CoherentMaps maps =
+      MapsOfSource(photos, {texel_parts, {}, &neighbours, lent}, MapCompletion::kNone, false, {}).maps;
+  for (int t = 0; t < kTexels; ++t) {
+    const int r = t / kToyTexels, c = t % kToyTexels;
+    const int from = r < 8 ? (c < 8 ? 1 : 2) : (c < 8 ? 3 : 0);
+    ASSERT_EQ(maps.from[t], from) << "of the back of the torso nobody shows what is lent: " << r << " " << c;
+    if (from == 0 || r == 2 || r == 3 || r == 13 || r == 14) continue;  // where two labels' colours mix
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR(maps.appearance[k * kTexels + t], ToyColour(r < 8 ? 1 : 2, r, c, k), 0.03) << r << " " << c;
+    }
+  }
+  const std::span<const PhotoFrame> all(photos);
+  EXPECT_THROW(MapsOfSource(all.first(1), {texel_parts, {}, &neighbours, lent}, MapCompletion::kNone, false, {}),
+               std::invalid_argument);
+  EXPECT_THROW(
+      MapsOfSource(all, {texel_parts, {}, &neighbours, std::span(lent).first(4)}, MapCompletion::kNone, false, {}),
+      std::invalid_argument);
 }
 
 /// The toy's clothes `wider` pixels wider on either side than its torso, as tall as it.
@@ -157,6 +294,18 @@ TEST(ClothedBody, ASkirtCanBeSeenFromBehindAndAtAnotherSize) {
   EXPECT_EQ(at(10, 20), 1) << "the torso's last column";
   EXPECT_NEAR(at(7, 20), 0.5, 1e-4) << "the skirt's last column";
   EXPECT_EQ(at(6, 20), 0);
+}
+
+TEST(ClothesExtent, OfWhatIsLentIsTheLenders) {
+  const TexelNeighbours neighbours = ToyNeighbours();
+  const PhotoFrame photos[] = {InASkirt(1), InASkirt(4)};
+  std::vector<uint8_t> lent(kTexels);
+  for (int t = kTexels / 2; t < kTexels; ++t) lent[t] = t % kToyTexels < 8 ? 1 : 0;  // the torso's front
+  const std::vector<float> extent =
+      MapsOfSource(photos, {texel_parts, {}, &neighbours, lent}, MapCompletion::kNone, true, {}).maps.extent;
+  const double diagonal = std::hypot(12, 12);
+  EXPECT_NEAR(extent[12 * kToyTexels], 4 / diagonal, 1e-6);
+  EXPECT_NEAR(extent[12 * kToyTexels + 15], 1 / diagonal, 1e-6);
 }
 
 TEST(ClothesExtent, NeedsLabels) {

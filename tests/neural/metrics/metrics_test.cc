@@ -14,6 +14,7 @@
 #include "bodyloom/neural/metrics/lpips.h"
 #include "bodyloom/neural/metrics/temporal_lpips.h"
 #include "bodyloom/neural/networks/vgg.h"
+#include "tests/neural/metrics/named_features.h"
 
 namespace bodyloom {
 namespace {
@@ -26,27 +27,6 @@ Image RandomImage(int width, int height, uint32_t seed) {
   Image image(width, height);
   for (uint8_t& v : image.bgr) v = static_cast<uint8_t>(random() & 255U);
   return image;
-}
-
-/// Weights of the shapes of AlexNet, and of LPIPS' heads: what a user's files hold.
-NamedWeights AlexNetWeights() {
-  FeatureNetworkOptions options;
-  options.trunk = FeatureTrunk::kAlexNet;
-  options.taps = {11};
-  options.random_features_seed = 5;
-  return ExportWeights(*FeatureNetwork(options));
-}
-
-NamedWeights HeadWeights() {
-  NamedWeights heads;
-  std::mt19937 random(3);
-  const std::array<int64_t, 5> channels = {64, 192, 384, 256, 256};
-  for (int k = 0; k < 5; ++k) {
-    NamedArray& array = heads["lin" + std::to_string(k) + ".model.1.weight"];
-    array.shape = {1, channels[k], 1, 1};
-    for (int c = 0; c < channels[k]; ++c) array.values.push_back(static_cast<float>(random() % 1000) / 1000.0F);
-  }
-  return heads;
 }
 
 Tensor WeightOf(const NamedWeights& weights, const std::string& name) {
@@ -196,6 +176,51 @@ TEST(TemporalLpips, ComparesChangesWithChanges) {
   EXPECT_FALSE(temporal.Add(result[0], truth[1]).tlpips.has_value());
   EXPECT_EQ(temporal.Mean().frames, 4);
   EXPECT_NEAR(temporal.Mean().tlpips, expected / 2, 1e-12);
+}
+
+/// A window of 40×36 of a picture, its top-left pixel at (x, y); black outside.
+Image WindowAt(const Image& picture, int x, int y) {
+  Image window(40, 36);
+  for (int row = 0; row < 36; ++row) {
+    for (int column = 0; column < 40; ++column) {
+      const int from_x = x + column, from_y = y + row;
+      if (from_x < 0 || from_y < 0 || from_x >= picture.width || from_y >= picture.height) continue;
+      for (int c = 0; c < 3; ++c) window.pixel(column, row)[c] = picture.pixel(from_x, from_y)[c];
+    }
+  }
+  return window;
+}
+
+TEST(TemporalLpips, AWindowThatJumpsIsNoChange) {
+  const Lpips lpips({LpipsTrunk::kAlexNet, 16, 1});
+  // People who stand still on black, 20 pixels wide and high, in windows that follow nobody in particular.
+  const Image result = RandomImage(20, 20, 1), truth = RandomImage(20, 20, 2);
+  TemporalLpips temporal(lpips), blind(lpips);
+  int last_x = 0, last_y = 0;
+  for (const auto& [x, y] : {std::pair(-9, -8), std::pair(-12, -8), std::pair(-5, -14), std::pair(-5, -14)}) {
+    const Image s = WindowAt(result, x, y), g = WindowAt(truth, x, y);
+    const auto frame = temporal.Add(s, g, last_x - x, last_y - y);
+    blind.Add(s, g);
+    EXPECT_NEAR(frame.tlpips.value_or(0), 0, 1e-12) << x;
+    last_x = x, last_y = y;
+  }
+  EXPECT_EQ(temporal.Mean().pairs, 3);
+  EXPECT_GT(blind.Mean().tlpips, 0.01) << "nothing to be taken for a change";
+}
+
+TEST(LpipsFrom, TakesTrainedWeightsWhereBothAreThere) {
+  const WeightsFrom trunk = {AlexNetWeights(), "alexnet.pth"}, heads = {HeadWeights(), "lpips_alex.pth"};
+  const Image a = RandomImage(40, 33, 1), b = RandomImage(40, 33, 2);
+  const double expected = SlowLpips(a, b, trunk.weights, heads.weights);
+  EXPECT_NEAR(LpipsFrom(trunk, heads).Distance(a, b).value, expected, 1e-4 * expected);
+  const double substitute = Lpips().Distance(a, b).value;
+  for (const bool has_trunk : {false, true}) {
+    const Lpips lpips = has_trunk ? LpipsFrom(trunk, {}) : LpipsFrom({}, heads);
+    EXPECT_TRUE(lpips.has_random_features());
+    EXPECT_EQ(lpips.Distance(a, b).value, substitute);
+  }
+  EXPECT_EQ(LpipsName("tlpips", false), "tlpips_alex");
+  EXPECT_EQ(LpipsName("lpips", true), "lpips_random_features");
 }
 
 TEST(ContextualMetric, IsTheSumOfTwoLayers) {

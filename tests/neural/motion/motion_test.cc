@@ -7,10 +7,12 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <memory>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "bodyloom/neural/image_tensor.h"
 #include "bodyloom/neural/motion/clothes_reach.h"
 #include "bodyloom/neural/motion/frame_tensors.h"
 #include "bodyloom/neural/motion/motion_card.h"
@@ -22,6 +24,7 @@
 #include "bodyloom/neural/networks/architecture_card.h"
 #include "bodyloom/neural/runtime.h"
 #include "bodyloom/neural/training/checkpoint.h"
+#include "tests/neural/metrics/named_features.h"
 #include "tests/neural/motion/toy_motion.h"
 #include "tests/support/paths.h"
 #include "tests/support/test_files.h"
@@ -418,6 +421,80 @@ TEST(MotionScores, AreZeroForTheTruthAndWhatTheyShouldBeBesideIt) {
   EXPECT_EQ(scores.class_iou[2], 0);
   EXPECT_NEAR(scores.foreground_iou, 256.0 / 1024, 1e-6);
   EXPECT_NEAR(scores.label_iou, 0.5 * 128 / 1024, 1e-6);
+}
+
+/// A still picture in a window that jumps, and one that is off by a constant: what the whole window's scores are of.
+TEST(MotionScores, WholeWindowsAreComparedWhereTheyWere) {
+  const MotionConfig config = Toy();
+  const auto lpips = std::make_shared<const Lpips>(LpipsOptions{LpipsTrunk::kAlexNet, 16, 1});
+  const auto share_of_equal_bytes = [](const Image& truth, const Image& result) {
+    int equal = 0;
+    for (size_t i = 0; i < truth.bgr.size(); ++i) equal += truth.bgr[i] == result.bgr[i];
+    return static_cast<double>(equal) / static_cast<double>(truth.bgr.size());
+  };
+  MotionScorer still(config, {lpips, share_of_equal_bytes});
+  for (int t = 0; t < 4; ++t) {  // the square moves right by one a frame: so does what it is seen through
+    MotionFrame frame;
+    ToyFrame(t, true, &frame);
+    for (int y = 0; y < 32; ++y) {  // a pattern that is the square's own
+      for (int x = 0; x < 32; ++x) {
+        for (int c = 0; c < 3; ++c) {
+          frame.image[c * 1024 + y * 32 + x] =
+              frame.body[y * 32 + x] * static_cast<float>((5 * (x - t) + 3 * y + c) % 11) / 11;
+        }
+      }
+    }
+    const MotionTruth truth = TruthOf(std::span(&frame, 1), config);
+    MotionState state = truth.State(config);
+    state.image = 0.5 * truth.image;
+    still.Add(state, truth, t > 0 ? 1 : 0, 0);
+    EXPECT_GT(still.last().lpips, 0);
+    EXPECT_GT(still.last().ssim, 0.5) << "the background is equal";
+    EXPECT_LT(still.last().ssim, 1);
+    EXPECT_EQ(std::isnan(still.last().tlpips), t == 0);
+    EXPECT_NEAR(t > 0 ? still.last().tlpips : 0, 0, 1e-12);
+  }
+  const MotionScores scores = still.Scores();
+  EXPECT_NEAR(scores.tlpips, 0, 1e-12);
+  EXPECT_NEAR(scores.flicker, 0, 1e-6) << "aligned alike";
+  EXPECT_NEAR(scores.ssim, still.last().ssim, 1e-3);
+  EXPECT_TRUE(scores.lpips_random_features);
+  // Not requested, not measured.
+  EXPECT_TRUE(std::isnan(MotionScorer(config).Scores().ssim));
+  EXPECT_TRUE(std::isnan(MotionScorer(config).Scores().lpips));
+}
+
+TEST(MotionTraining, ValidatesWithSsimAndLpips) {
+  TrainMotionOptions options = ToyOptions("motion_likeness");
+  options.steps = 4;
+  options.alexnet = {AlexNetWeights(), "alexnet.pth"};
+  options.lpips_heads = {HeadWeights(), "lpips_alex.pth"};
+  options.ssim = [](const Image&, const Image&) { return 0.75; };
+  const TrainMotionSummary summary = TrainMotion(ToyFrame, options);
+  EXPECT_EQ(summary.scores.ssim, 0.75);
+  EXPECT_FALSE(summary.scores.lpips_random_features);
+  EXPECT_GT(summary.scores.lpips, 0);
+  EXPECT_GT(summary.scores.tlpips, 0);
+  EXPECT_NE(FileBytes((fs::path(options.run_dir) / "metrics.csv").string()).find("validation_ssim"), std::string::npos);
+  // The same from the checkpoint, and without a past the frames still follow each other.
+  MotionRenderer renderer(CheckpointPath(options.run_dir), options.config,
+                          {.warmup_iterations = 10,
+                           .score = true,
+                           .lpips = std::make_shared<const Lpips>(LpipsFrom(options.alexnet, options.lpips_heads)),
+                           .ssim = options.ssim,
+                           .num_threads = 1});
+  for (const bool forget : {false, true}) {
+    renderer.Restart();
+    for (int t = 24; t < 28; ++t) {
+      MotionFrame frame;
+      ToyFrame(t, true, &frame);
+      if (forget) renderer.ForgetPast();
+      renderer.Next(frame);
+      EXPECT_EQ(std::isnan(renderer.last_scores().tlpips), t == 24);
+    }
+  }
+  EXPECT_EQ(renderer.scores().ssim, 0.75);
+  EXPECT_EQ(renderer.scores().frames, 8);
 }
 
 TEST(MotionTraining, DoesTheSameOnACard) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "bodyloom/neural/image_tensor.h"
 #include "tests/support/test_files.h"
 
 namespace bodyloom {

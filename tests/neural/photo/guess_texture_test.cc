@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <torch/torch.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -33,6 +34,7 @@ struct Texel {
   std::array<float, 3> place;
   std::array<float, 3> colour;
   bool visible;
+  uint8_t label = 1;
 };
 
 /// A square atlas of them; the rest of it is empty.
@@ -45,9 +47,13 @@ struct Atlas {
     texture.size = size;
     texture.visible.assign(area, 0);
     texture.colour.assign(3 * area, 0);
+    texture.labels.assign(area, 0);
+    texture.cosine.assign(area, 0);
     for (size_t k = 0; k < texels.size(); ++k) {
       parts[k] = texels[k].part;
       texture.visible[k] = texels[k].visible ? 1 : 0;
+      texture.labels[k] = texels[k].visible ? texels[k].label : 0;
+      texture.cosine[k] = texels[k].visible ? 1.0F : 0.0F;
       for (size_t c = 0; c < 3; ++c) {
         places[c * area + k] = texels[k].place[c];
         if (texels[k].visible) texture.colour[c * area + k] = texels[k].colour[c];
@@ -101,6 +107,46 @@ TEST(GuessTexture, LooksOnTheOtherSideAtTheSameHeight) {
   }
 }
 
+TEST(GuessTexture, StaysWithinAGarmentAndHairIsNoFace) {
+  constexpr uint8_t kTop = 1, kBottom = 2, kFace = 3, kHair = 4;
+  // A belt between a red shirt and green trousers, all within the smallest cells; a white face and black hair.
+  Atlas atlas({{kTorsoFront, {0.1F, 1.003F, 0.1F}, kRed, true, kTop},
+               {kTorsoFront, {0.1F, 1.002F, 0.1F}, kGreen, true, kBottom},
+               {kTorsoFront, {0.101F, 1.001F, 0.1F}, kGreen, true, kBottom},
+               {kHead, {0.02F, 1.7F, 0.12F}, kWhite, true, kFace},
+               {kHead, {0.02F, 1.7F, -0.01F}, kWhite, true, kFace},
+               {kHead, {0.02F, 1.7F, 0.0F}, kWhite, true, kFace},
+               {kHead, {0.02F, 1.79F, 0.0F}, kBlack, true, kHair},
+               {kTorsoBack, {0.1F, 1.002F, -0.1F}, kBlue, false},
+               {kHead, {-0.02F, 1.7F, -0.01F}, kBlue, false},
+               {kHead, {-0.02F, 1.7F, 0.12F}, kBlue, false},
+               {kFootLeft, {0.1F, 0, 0}, kBlue, false},
+               {kFootLeft, {0.8F, 0, -0.14F}, kBlue, false},
+               {kHead, {0.0F, 1.75F, -0.12F}, kBlue, false}});
+  const PartialTexture before = atlas.texture;
+  GuessTexture({atlas.size, atlas.parts, atlas.places}, &atlas.texture);
+  EXPECT_EQ(atlas.Colour(7), kGreen) << "two of three are trousers";
+  EXPECT_EQ(atlas.Colour(8), kBlack) << "the back of the head is hair, however near the cheek is";
+  EXPECT_EQ(atlas.Colour(9), kWhite) << "the face's other half";
+  EXPECT_EQ(atlas.Colour(12), kBlack);
+  const std::array<float, 3> foot = atlas.Colour(10);
+  EXPECT_TRUE(foot == kWhite || foot == kGreen || foot == kRed || foot == kBlack) << "no mixture";
+  EXPECT_EQ(atlas.texture.labels, before.labels) << "guesses are not shown";
+}
+
+TEST(GuessTexture, ABackOfTheHeadThatIsCalledFaceIsHair) {
+  constexpr uint8_t kFace = 3, kSkin = 5;
+  // As body parts stand in for a parsing: a white face, black hair behind called face as well, a red hand.
+  Atlas atlas({{kHead, {0.02F, 1.7F, 0.12F}, kWhite, true, kFace},
+               {kHead, {0.02F, 1.7F, 0.02F}, kWhite, true, kFace},
+               {kHead, {0.02F, 1.79F, -0.12F}, kBlack, true, kFace},
+               {kUpperArmLeft, {0.8F, 1.4F, 0}, kRed, true, kSkin},
+               {kHead, {0.02F, 1.7F, -0.01F}, kBlue, false},
+               {kTorsoFront, {0.1F, 0, 0}, kBlue, false}});
+  GuessTexture({atlas.size, atlas.parts, atlas.places}, &atlas.texture);
+  EXPECT_EQ(atlas.Colour(4), kBlack) << "hair, though a cheek is nearer";
+}
+
 TEST(GuessTexture, AgreesWithASlowTwin) {
   uint64_t state = 5;
   const auto random = [&] { return UniformOf(state = Mix(state)); };
@@ -112,6 +158,7 @@ TEST(GuessTexture, AgreesWithASlowTwin) {
     for (float& x : texel.place) x = static_cast<float>(2 * random() - 1);
     for (float& c : texel.colour) c = static_cast<float>(random());
     texel.visible = random() < 0.1;
+    texel.label = random() < 0.5 ? 1 : random() < 0.5 ? 2 : 6;
     texels.push_back(texel);
   }
   Atlas atlas(texels);
@@ -136,17 +183,26 @@ TEST(GuessTexture, AgreesWithASlowTwin) {
   };
   for (size_t k = 0; k < texels.size(); ++k) {
     if (texels[k].visible) continue;
+    const auto near = [&](const Texel& other, int level) {
+      if (!other.visible) return false;
+      if (level < -1) return true;
+      return level < 0 ? limb.at(texels[k].part) == limb.at(other.part) : same_cell(texels[k], other, level);
+    };
+    std::array<int, 7> votes{};
+    for (int level = 6; level >= -2 && *std::max_element(votes.begin(), votes.end()) == 0; --level) {
+      for (const Texel& other : texels) votes[other.label] += near(other, level) ? 1 : 0;
+    }
+    const auto label = std::max_element(votes.begin(), votes.end()) - votes.begin();
     std::array<double, 3> sum{};
     int count = 0;
-    for (int level = 6; level >= -1 && count == 0; --level) {
+    for (int level = 6; level >= -2 && count == 0; --level) {
       for (const Texel& other : texels) {
-        if (!other.visible) continue;
-        if (level >= 0 ? !same_cell(texels[k], other, level) : limb.at(texels[k].part) != limb.at(other.part)) continue;
+        if (other.label != label || !near(other, level)) continue;
         ++count;
         for (size_t c = 0; c < 3; ++c) sum[c] += other.colour[c];
       }
     }
-    ASSERT_GT(count, 0) << "thirty seen texels of six limbs";
+    ASSERT_GT(count, 0) << "thirty seen texels";
     for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(atlas.Colour(k)[c], sum[c] / count, 1e-6) << k;
   }
 }

@@ -276,6 +276,8 @@ TEST(PartialTexture, GarmentsComeFromTheOtherAndAllElseStaysBitForBit) {
     const PartialTexture& from = garment ? other : own;
     (garment ? taken : kept) += from.visible[k];
     ASSERT_EQ(dressed.visible[k], from.visible[k]);
+    ASSERT_EQ(dressed.labels[k], from.labels[k]);
+    ASSERT_EQ(dressed.cosine[k], from.cosine[k]);
     for (size_t c = 0; c < 3; ++c) {
       ASSERT_EQ(std::memcmp(&dressed.colour[c * T + k], &from.colour[c * T + k], sizeof(float)), 0);
     }
@@ -299,11 +301,19 @@ TEST(PartialTexture, TwoPicturesShowMoreThanOne) {
     source.fill(0, t, &frame);
     textures[t] = PartialTextureOf(frame);
   }
-  textures[1].visible[0] = 1;  // also seen by the first, which counts
-  textures[1].colour[0] = 0.123F;
+  // Three texels that both see: the first picture better, as well, at a grazing angle.
+  for (const int k : {0, 1, 2}) {
+    textures[1].visible[k] = textures[1].labels[k] = 1;
+    textures[1].cosine[k] = 0.5F;
+    textures[1].colour[k] = 0.123F;
+  }
+  textures[0].cosine[0] = 0.6F, textures[0].cosine[1] = 0.5F, textures[0].cosine[2] = 0.2F;
   const PartialTexture both = UnionOf(textures);
   EXPECT_NEAR(VisibleShare(both, source.texel_parts), 1, 1e-9);
   EXPECT_EQ(both.colour[0], textures[0].colour[0]);
+  EXPECT_EQ(both.colour[1], textures[0].colour[1]);
+  EXPECT_EQ(both.colour[2], 0.123F);
+  EXPECT_EQ(both.cosine[2], 0.5F);
   EXPECT_EQ(both.colour[kToyTexture - 1], textures[1].colour[kToyTexture - 1]);
   textures[1].size = 8;
   EXPECT_THROW(UnionOf(textures), std::invalid_argument);

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/neural/networks/sphereface.h"
 #include "bodyloom/neural/photo/photo_renderer.h"
 #include "bodyloom/neural/photo/photo_window.h"
 #include "bodyloom/neural/runtime.h"
@@ -182,6 +183,41 @@ TEST(PhotoTraining, InpaintingTrainsOneNetworkAfterTheOther) {
   EXPECT_EQ(textures[0], textures[1]) << "the first network was not fixed";
   EXPECT_EQ(textures[1], textures[2]);
   EXPECT_NE(pictures[0], pictures[1]) << "the second network did not learn";
+}
+
+/// The face's column of a run's metrics.csv, summed.
+double FaceLossOf(const std::string& run_dir) {
+  std::istringstream lines(FileBytes(run_dir + "/metrics.csv"));
+  std::string line;
+  std::getline(lines, line);
+  const auto cell = [](const std::string& row, int column) {
+    std::istringstream cells(row);
+    std::string value;
+    for (int c = 0; c <= column; ++c) std::getline(cells, value, ',');
+    return value;
+  };
+  int column = 0;
+  while (cell(line, column) != "face") ++column;
+  double sum = 0;
+  while (std::getline(lines, line)) sum += std::stod(cell(line, column));
+  return sum;
+}
+
+TEST(PhotoTraining, FacesCountThatLookAtTheCamera) {
+  torch::manual_seed(5);
+  for (const int side : {0, 1}) {  // the toy's fronts, its backs
+    PhotoSource source = ToyPhotos(3, 3);
+    source.texel_parts.assign(source.texel_parts.size(), 23);
+    source.fill = [side](int person, int frame, PhotoFrame* photo) {
+      FillToyPhoto(person, 2 * frame + side, photo);
+      for (uint8_t& part : photo->parts) part = part != 0 ? 23 : 0;
+    };
+    TrainPhotoOptions options = ToyOptions("photo_faces");
+    options.steps = options.report_every = options.checkpoint_every = options.validate_every = 1;
+    options.sphereface = {ExportWeights(*SphereFace()), "faces.pth"};
+    ASSERT_EQ(TrainPhoto(source, options).status, TrainingStatus::kFinished);
+    EXPECT_EQ(FaceLossOf(options.run_dir) > 0, side == 0);
+  }
 }
 
 TEST(PhotoTraining, ALossThatIsNotANumberKeepsTheLastCheckpoint) {

@@ -58,14 +58,14 @@ inline void FillToyPhoto(int person, int frame, PhotoFrame* photo) {
   }
   photo->texture_size = U;
   photo->texel_pixels.assign(2 * T, 0);
-  photo->texel_seen.assign(T, 0);
+  photo->texel_cosine.assign(T, 0);
   for (int r = 0; r < U; ++r) {
     for (int c = 0; c < U; ++c) {
       const float u = (static_cast<float>(c) + 0.5F) / U, v = 1 - (static_cast<float>(r) + 0.5F) / U;
       const float x = static_cast<float>(left) - 0.5F + (u - u0) / 0.5F * kCardWidth;
       photo->texel_pixels[r * U + c] = x;
       photo->texel_pixels[T + r * U + c] = kCardTop - 0.5F + (1 - v) * kCardHeight;
-      photo->texel_seen[r * U + c] = u >= u0 && u < u0 + 0.5F;
+      photo->texel_cosine[r * U + c] = u >= u0 && u < u0 + 0.5F ? 1.0F : 0.0F;
     }
   }
 }

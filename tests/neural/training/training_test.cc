@@ -86,6 +86,12 @@ TEST_F(MetricsLogs, LaterLinesAreWrittenAnew) {
   MetricsLog other(Path("metrics.csv"), {"loss"});
   EXPECT_EQ(ErrorOf([&] { other.KeepUpTo(20); }),
             Path("metrics.csv") + ": line 1: columns \"step,loss,validation\", expected \"step,loss\"");
+  // A column that an earlier version did not write is empty in its lines.
+  MetricsLog more(Path("metrics.csv"), {"loss", "added", "validation", "last"});
+  more.KeepUpTo(20);
+  EXPECT_EQ(more.text(), "step,loss,added,validation,last\n10,0.5,,,\n20,0.25,,3,\n");
+  MetricsLog order(Path("metrics.csv"), {"validation", "loss"});
+  EXPECT_THAT(ErrorOf([&] { order.KeepUpTo(20); }), ::testing::HasSubstr("expected \"step,validation,loss\""));
   MetricsLog none(Path("none.csv"), {"loss"});
   none.KeepUpTo(20);
   EXPECT_EQ(none.text(), "step,loss\n");

@@ -25,7 +25,7 @@ constexpr int kMaxSilhouette = 160, kMaxPartBoundary = 10, kMaxPartContour = 12,
 constexpr double kAlongBoundary = 0.2;     ///< τ
 constexpr double kInsideSigmas = 3;        ///< σ of "somewhere on this part"
 constexpr double kBehindTolerance = 0.02;  ///< metres: neighbouring pixels of one surface
-constexpr double kReach = 0.25;            ///< of the person's height: farther apart nothing corresponds
+constexpr double kBoundaryReach = 0.25;    ///< of the person's height: farther apart nothing corresponds
 
 /// At most n of `items`, evenly spread.
 template <typename T>
@@ -349,7 +349,7 @@ void PartLabelTerm::Correspond(const FrameLayout& layout, const FrameState& stat
   const std::vector<uint8_t> part_of_face = PartOfFaces(model);
   const std::vector<Edge> edges = EdgesOfBody(part_of_face, surface->buffer());
   AddContour(edges, model, *surface, camera, sigmas);
-  AddBoundary(edges, model, *surface, camera, sigmas, kReach * person_height_px);
+  AddBoundary(edges, model, *surface, camera, sigmas, kBoundaryReach * person_height_px);
   AddInside(part_of_face, model, *surface, camera, sigma_px);
   Weigh();
 }

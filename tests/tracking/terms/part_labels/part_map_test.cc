@@ -24,7 +24,8 @@ PartLabelSequence OneFrame(int width, int height, std::vector<uint8_t> labels) {
   return sequence;
 }
 
-/// One pixel of a piece after the other, by looking at all pixels again and again: slow, and nothing like what it judges.
+/// One pixel of a piece after the other, by looking at all pixels again and again: slow, and nothing like what it
+/// judges.
 void RemoveSpecksSlowly(int width, int height, bool by_part, double share, std::vector<uint8_t>* parts) {
   std::vector<int> piece(parts->size());
   for (size_t i = 0; i < piece.size(); ++i) piece[i] = static_cast<int>(i);

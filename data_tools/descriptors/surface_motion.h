@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+/// How the motion of a body's surface is described: in which axes, and by which velocities. Descriptor files and the
+/// motion-dependent renderer share it, and the names of its values.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bodyloom/geometry/camera.h"
+#include "bodyloom/geometry/surface_velocity.h"
+#include "bodyloom/geometry/velocity_stencil.h"
+
+namespace bodyloom {
+
+struct SurfaceMotion {
+  VelocityStencilOptions velocity;
+  bool analytic = false;  ///< velocities by the body model's derivative instead of differences of vertices
+  /// Of normals and velocities. A camera that moves adds its own motion to kCamera; kWorld has one pose for the clip;
+  /// kBody knows nothing of the camera.
+  SurfaceFrame frame = SurfaceFrame::kCamera;
+  CameraPose camera_pose;  ///< for SurfaceFrame::kWorld
+  /// False with the reason when a field is out of range.
+  [[nodiscard]] bool IsValid(std::string* why) const { return velocity.IsValid(why); }
+};
+
+/// Names of the velocities, the four that follow.
+const std::vector<std::string>& VelocityNames();
+/// "backward", "central", "savgol" or "analytic".
+std::string VelocityName(const SurfaceMotion& motion);
+/// Sets scheme and `analytic`. Throws std::invalid_argument for other names, listing these.
+void SetVelocity(const std::string& name, SurfaceMotion* motion);
+
+/// "camera", "world", "body" (ToString, geometry/surface_velocity.h).
+const std::vector<std::string>& SurfaceFrameNames();
+/// Throws std::invalid_argument for other names, listing these.
+SurfaceFrame SurfaceFrameNamed(const std::string& name);
+
+/// A level camera: the world's y is up and its z points at the camera.
+CameraPose LevelCamera();
+
+}  // namespace bodyloom

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The surfaces of two tracks of one person, vertex by vertex.
+#pragma once
+
+#include <vector>
+
+#include "bodyloom/data_tools/evaluation/evaluation.h"
+#include "bodyloom/data_tools/evaluation/metrics.h"
+#include "bodyloom/data_tools/evaluation/metrics_image.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/track.h"
+
+namespace bodyloom {
+
+struct VertexErrorOptions {
+  int vertex_step = 1;      ///< every n-th vertex is compared (1: all); the mean moves by well under a percent up to 10
+  int num_threads = 1;      ///< of skinning; the result is the same
+  int image_side_px = 512;  ///< projection errors are for an image scaled to this by its longer side
+};
+
+struct VertexErrors {
+  ProjectionError projection;  ///< each body through its own track's camera, pixels
+  PositionError position;      ///< after moving pelvis onto pelvis, metres
+};
+
+/// Frame source[t] of `track` against frame t of `truth`, t < source.size(), both posed on `body` in the camera frame.
+/// The image is the truth's (camera.width × height). Throws std::invalid_argument when a pose or shape does not fit the
+/// body, a frame is not there, or vertex_step is below 1.
+VertexErrors CompareVertices(const Track& track, const std::vector<int>& source, const Track& truth,
+                             const BodyModel& body, const VertexErrorOptions& options = {});
+
+/// Adds projection_mean_px and its spreads, root mean square and 95th percentile.
+void AddProjectionError(const ProjectionError& error, int image_side_px, Evaluation* evaluation);
+
+}  // namespace bodyloom

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/data_tools/motion/resample_track.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "bodyloom/data_tools/motion/motion_tools.h"
+#include "bodyloom/geometry/base/check.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr double kLongestStep = 1.5;   ///< in steps
+constexpr double kSameInstant = 1e-6;  ///< in steps of the new rate
+
+/// What one frame of the result shows: between two frames of the track, or nothing (before = −1).
+struct Instant {
+  double time = 0;
+  int before = -1, after = -1;
+  double share = 0;  ///< of `after`
+};
+
+/// The instants of the result, in order.
+std::vector<Instant> Plan(const Track& track, double fps) {
+  const std::vector<double>& times = track.motion.timestamps;
+  const int T = track.num_frames();
+  const double longest = kLongestStep * std::max(1 / FrameRateWithoutGaps(track.motion), 1 / fps);
+  std::vector<int> next_result(T + 1, T);  // the first frame with a result, from a frame on
+  for (int t = T - 1; t >= 0; --t) next_result[t] = track.HasResult(t) ? t : next_result[t + 1];
+  std::vector<Instant> instants;
+  int now = 0, last_result = -1;  // the last frame that is not later, and the last of those that has a result
+  if (track.HasResult(0)) last_result = 0;
+  for (int64_t k = 0;; ++k) {
+    const double time = times.front() + static_cast<double>(k) / fps, same = kSameInstant / fps;
+    if (time > times.back() + same) break;
+    while (now + 1 < T && times[now + 1] <= time + same) {
+      if (track.HasResult(++now)) last_result = now;
+    }
+    const int after = now + 1 < T ? next_result[now + 1] : T;
+    if (last_result == now && std::abs(times[now] - time) <= same) {
+      instants.push_back({time, now, now, 0});
+    } else if (last_result >= 0 && after < T && times[after] - times[last_result] <= longest) {
+      instants.push_back({time, last_result, after, (time - times[last_result]) / (times[after] - times[last_result])});
+    } else if (now + 1 < T && times[now + 1] - times[now] > longest) {
+      // The clock jumps: on to the first instant that is not before the next frame.
+      k = std::max(k, static_cast<int64_t>(std::ceil((times[now + 1] - times.front()) * fps - kSameInstant)) - 1);
+    } else {
+      instants.push_back({time});
+    }
+  }
+  return instants;
+}
+
+}  // namespace
+
+Track ResampleTrack(const Track& track, double fps) {
+  BODYLOOM_CHECK(fps > 0 && fps < 1e5, "a track at ", fps, " frames a second, expected more than 0 and below 1e5");
+  BODYLOOM_CHECK(track.num_frames() > 0, "resampling: the track has no frames");
+  if (track.num_frames() == 1) return track;
+  for (int t = 1; t < track.num_frames(); ++t) {
+    BODYLOOM_CHECK(track.motion.timestamps[t] > track.motion.timestamps[t - 1], "resampling: frame ", t,
+                   " is not later than the one before");
+  }
+  const std::vector<Instant> instants = Plan(track, fps);
+  const auto T = static_cast<Eigen::Index>(instants.size());
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  Track out;
+  out.camera = track.camera;
+  out.motion.body = track.motion.body;
+  out.motion.betas = track.motion.betas;
+  out.motion.up = track.motion.up;
+  out.motion.poses = RowMatrixXd::Constant(T, track.motion.poses.cols(), kNone);
+  out.motion.trans = MatrixX3d::Constant(T, 3, kNone);
+  out.weak_camera = MatrixX3d::Constant(track.weak_camera.rows() > 0 ? T : 0, 3, kNone);
+  for (int t = 0; t < T; ++t) {
+    const auto& [time, before, after, share] = instants[t];
+    out.motion.timestamps.push_back(time);
+    out.frame_status.push_back(before < 0 ? FrameStatus::kLost : track.frame_status.at(share < 0.5 ? before : after));
+    if (before < 0) continue;
+    if (before == after) {
+      out.motion.poses.row(t) = track.motion.poses.row(before);
+      out.motion.trans.row(t) = track.motion.trans.row(before);
+    } else {
+      InterpolateFrame(track.motion, before, after, share, t, &out.motion);
+    }
+    if (out.weak_camera.rows() == 0) continue;
+    out.weak_camera.row(t) = (1 - share) * track.weak_camera.row(before) + share * track.weak_camera.row(after);
+  }
+  return out;
+}
+
+}  // namespace bodyloom

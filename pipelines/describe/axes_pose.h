@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "bodyloom/data_tools/descriptors/surface_motion.h"
+
+namespace bodyloom {
+
+/// The camera's pose for SurfaceFrame::kWorld: that of `view` in the camera file, or a level camera without one; other
+/// axes need none. Throws RequestError for a camera file with other axes, std::runtime_error for one that cannot be
+/// used.
+void SetAxesPose(const std::string& cameras, const std::string& view, SurfaceMotion* motion);
+
+}  // namespace bodyloom

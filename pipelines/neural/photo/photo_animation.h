@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Parts that the jobs which render a person from photos share: who is shown, in which motion, from where.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bodyloom/data_tools/descriptors/photo_maps.h"
+#include "bodyloom/geometry/track.h"
+#include "bodyloom/pipelines/neural/animation.h"
+#include "bodyloom/pipelines/neural/photo/photo_appearance.h"
+#include "bodyloom/pipelines/neural/photo/photo_input.h"
+#include "bodyloom/pipelines/people/background.h"
+
+namespace bodyloom {
+
+/// The body is the photo's; `body` is not looked at.
+struct PhotoAnimationRequest : AnimationRequest {
+  PhotoRequest photo;              ///< what the person looks like
+  std::vector<std::string> views;  ///< more pictures of the person, IMAGE:TRACK[:FRAME] (ParsePhotoRequest)
+  LentGarment garment;             ///< both of its parts are given, or none
+  PhotoBackground background;
+  std::string view_yaw;          ///< degrees that the view is turned by: "30", or "0:360" over the clip
+  bool shape_of_motion = false;  ///< the body has the shape of the motion's track; false: the photo's
+};
+
+/// The photo, more views of the same person, the one who lends. Throws RequestError for texts that do not parse, for
+/// names of parts that are none, and for a lender without parts or parts without a lender.
+std::vector<PhotoRequest> PhotosWanted(const PhotoAnimationRequest& request);
+
+/// What the body of `photo` shows in the motion `track`, read from `path`, from the requested side, in windows of
+/// size × size pixels with texture_size × texture_size texels. The track takes the photo's shape, unless the motion's
+/// is requested; the maps refer to it. Throws RequestError for a view_yaw that does not parse, std::runtime_error
+/// naming `path` for a motion of another body and one that shows nobody.
+std::unique_ptr<PhotoMaps> MapsOfMotion(const PhotoAnimationRequest& request, const Photo& photo,
+                                        const std::string& path, int size, int texture_size, Track* track);
+
+}  // namespace bodyloom

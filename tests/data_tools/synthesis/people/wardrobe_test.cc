@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/data_tools/synthesis/people/wardrobe.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <string>
+
+#include "bodyloom/data_tools/body/builtin_body.h"
+
+namespace bodyloom {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr double kAround_m = 2.1;
+constexpr PersonLabel kTop = PersonLabel::kTop, kBottom = PersonLabel::kBottom;
+
+Wardrobe WardrobeOf(GarmentKind kind, uint64_t seed) {
+  return {Outfit(BuiltinBody(), kind, seed), kind == GarmentKind::kSuit ? 0 : kAround_m, seed};
+}
+
+TEST(Wardrobe, EveryPatternButThePlainOneShowsBothColoursOnLooseCloth) {
+  std::array<int, 5> garments{};
+  for (uint64_t seed = 1; seed <= 60; ++seed) {
+    for (const GarmentKind kind : {GarmentKind::kSkirt, GarmentKind::kCoat}) {
+      const Wardrobe wardrobe = WardrobeOf(kind, seed);
+      const SurfacePattern& pattern = wardrobe.of_label(kind == GarmentKind::kCoat ? kTop : kBottom);
+      ++garments[size_t(pattern.kind)];
+      if (pattern.kind == PatternKind::kPlain || pattern.kind == PatternKind::kNoise) continue;
+      int other = 0, all = 0;
+      for (float y = 0; y < 0.6F; y += 0.004F) {
+        for (float x = 0; x < static_cast<float>(kAround_m); x += 0.004F, ++all) {
+          const Vector3f colour = wardrobe.OfGarment({x, y, 0});
+          ASSERT_TRUE(colour == pattern.colour || colour == pattern.other);
+          other += colour == pattern.other ? 1 : 0;
+        }
+      }
+      const double share = double(other) / all;
+      // Dots are discs of radius 0.36 in squares of 1.
+      EXPECT_NEAR(share, pattern.kind == PatternKind::kDots ? M_PI * 0.36 * 0.36 : 0.5, 0.06)
+          << int(pattern.kind) << " of seed " << seed;
+    }
+  }
+  for (const PatternKind kind : {PatternKind::kStripes, PatternKind::kChecks, PatternKind::kDots}) {
+    EXPECT_GT(garments[size_t(kind)], 5) << int(kind);
+  }
+}
+
+TEST(Wardrobe, TheLooseGarmentMeetsItself) {
+  for (uint64_t seed = 1; seed <= 30; ++seed) {
+    const Wardrobe wardrobe = WardrobeOf(GarmentKind::kSkirt, seed);
+    if (wardrobe.of_label(kBottom).kind == PatternKind::kNoise) continue;  // has no period
+    int differ = 0;
+    for (float x = 0.0013F; x < 0.5F; x += 0.01F) {
+      for (float y = 0.0017F; y < 0.5F; y += 0.01F) {
+        differ += wardrobe.OfGarment({x, y, 0}) != wardrobe.OfGarment({x + static_cast<float>(kAround_m), y, 0});
+      }
+    }
+    EXPECT_LT(differ, 25) << "of 2500, by rounding, seed " << seed;
+  }
+}
+
+TEST(Wardrobe, AFifthIsPlainAndTwoPatternsDiffer) {
+  constexpr int kPeople = 2000;
+  std::array<int, 5> tops{}, bottoms{};
+  int both_plain = 0;
+  for (uint64_t seed = 1; seed <= kPeople; ++seed) {
+    const Wardrobe wardrobe = WardrobeOf(GarmentKind::kSuit, seed);
+    const PatternKind top = wardrobe.of_label(kTop).kind, bottom = wardrobe.of_label(kBottom).kind;
+    ++tops[size_t(top)], ++bottoms[size_t(bottom)];
+    both_plain += top == PatternKind::kPlain && bottom == top ? 1 : 0;
+    EXPECT_TRUE(top != bottom || top == PatternKind::kPlain) << seed;
+    EXPECT_NE(wardrobe.of_label(kTop).colour, wardrobe.of_label(kBottom).colour);
+    if (top != PatternKind::kPlain) continue;
+    const Vector3f colour = wardrobe.of_label(kTop).colour;
+    for (float y = 0; y < 0.5F; y += 0.03F) EXPECT_EQ(wardrobe.OfBody(kTop, {0.1F, y, 0.05F}), colour);
+  }
+  // Five standard deviations of 2000 draws.
+  for (const auto& kinds : {tops, bottoms}) {
+    for (const int count : kinds) EXPECT_NEAR(count, kPeople / 5.0, 90);
+  }
+  EXPECT_NEAR(both_plain, kPeople / 25.0, 45);
+}
+
+}  // namespace
+}  // namespace bodyloom
