@@ -86,14 +86,6 @@ const std::map<std::string, Operator>& Operators() {
   return operators;
 }
 
-/// One thing that runs.
-struct OnnxStep {
-  OnnxNode node;
-  Operator run = nullptr;
-  std::optional<OnnxConvolution> convolution;
-  std::vector<int> last;  ///< tensors that nobody reads later
-};
-
 /// Whether the two nodes behind a convolution are x · sigmoid(x) of its result, and nobody else reads either.
 bool IsSwish(const std::vector<OnnxNode>& nodes, const std::vector<int>& uses, size_t conv, size_t* sigmoid,
              size_t* product) {
@@ -115,10 +107,18 @@ bool IsSwish(const std::vector<OnnxNode>& nodes, const std::vector<int>& uses, s
 }  // namespace
 
 struct OnnxNetwork::Program {
+  /// One thing that runs.
+  struct Step {
+    OnnxNode node;
+    Operator run = nullptr;
+    std::optional<OnnxConvolution> convolution;
+    std::vector<int> last;  ///< tensors that nobody reads later
+  };
+
   std::string name;
   int64_t opset = 0;
   std::vector<int64_t> input_shape;
-  std::vector<OnnxStep> steps;
+  std::vector<Step> steps;
   std::vector<OnnxTensor>
       constants;  ///< by tensor; those that are computed, and what only convolutions read, are empty
   std::vector<bool> is_constant;
@@ -137,7 +137,7 @@ struct OnnxNetwork::Program {
     return inputs;
   }
 
-  void Run(const OnnxStep& step, std::vector<OnnxTensor>* values) const {
+  void Run(const Step& step, std::vector<OnnxTensor>* values) const {
     std::vector<OnnxTensor> results;
     const std::vector<const OnnxTensor*> inputs = Inputs(step.node, *values);
     try {
@@ -163,7 +163,7 @@ struct OnnxNetwork::Program {
     }
   }
 
-  void MakeConvolution(OnnxStep* step, bool swish, const std::vector<OnnxTensor>& values) const {
+  void MakeConvolution(Step* step, bool swish, const std::vector<OnnxTensor>& values) const {
     for (size_t i = 1; i < step->node.inputs.size(); ++i) {
       const int input = step->node.inputs[i];
       if (input >= 0 && !is_constant[size_t(input)]) Fail(step->node, "weights that are computed, expected constants");
@@ -193,7 +193,7 @@ struct OnnxNetwork::Program {
     std::vector<char> done(nodes.size(), 0);
     for (size_t i = 0; i < nodes.size(); ++i) {
       if (done[i] != 0) continue;
-      OnnxStep step;
+      Step step;
       size_t sigmoid = 0, product = 0;
       const bool swish = nodes[i].op == "Conv" && IsSwish(nodes, uses, i, &sigmoid, &product);
       step.node = nodes[i];
@@ -238,7 +238,7 @@ struct OnnxNetwork::Program {
     std::vector<bool> needed(constants.size(), false);
     for (const int output : outputs) needed[size_t(output)] = true;
     for (size_t i = steps.size(); i-- > 0;) {
-      OnnxStep& step = steps[i];
+      Step& step = steps[i];
       for (const std::vector<int>* tensors : {&step.node.inputs, &step.node.outputs}) {
         for (const int tensor : *tensors) {
           if (tensor < 0 || needed[size_t(tensor)]) continue;
@@ -289,7 +289,7 @@ std::vector<OnnxTensor> OnnxNetwork::Run(std::vector<float> input) const {
   const OneThread one_thread;
   std::vector<OnnxTensor> values = program.constants;
   values[size_t(program.input)] = OnnxTensor(program.input_shape, std::move(input));
-  for (const OnnxStep& step : program.steps) {
+  for (const Step& step : program.steps) {
     program.Run(step, &values);
     for (const int tensor : step.last) values[size_t(tensor)] = OnnxTensor();
   }
