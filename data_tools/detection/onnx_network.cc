@@ -289,7 +289,7 @@ std::vector<OnnxTensor> OnnxNetwork::Run(std::vector<float> input) const {
   const OneThread one_thread;
   std::vector<OnnxTensor> values = program.constants;
   values[size_t(program.input)] = OnnxTensor(program.input_shape, std::move(input));
-  for (const Step& step : program.steps) {
+  for (const Program::Step& step : program.steps) {
     program.Run(step, &values);
     for (const int tensor : step.last) values[size_t(tensor)] = OnnxTensor();
   }
