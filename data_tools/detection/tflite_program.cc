@@ -65,7 +65,8 @@ class TfliteProgramBuilder {
       }
     }
     for (const int tensor : wanted) ++uses_[size_t(Unpadded(tensor))];  // that is: kept to the end
-    program->input = NewBuffer(ShapeOf(model.inputs[0]));
+    program->input_shape = ShapeOf(model.inputs[0]);
+    program->input = NewBuffer(program->input_shape);
     Place(model.inputs[0], program->input);
     for (size_t i = 0; i < needed_.size(); ++i) {
       if (needed_[i] && model.operators[i].kind != TfliteKind::kPad) i = Add(i);
