@@ -63,6 +63,9 @@ void CheckTrackRequest(const TrackRequest& request) {
   if (!request.overlay.empty() && !request.overlay.ends_with(".mp4")) {
     throw RequestError("--overlay " + request.overlay + ": expected a name that ends in .mp4");
   }
+  if (request.solve.velocity_weight > 0 && request.live_lag) {
+    throw RequestError("--live does not use --velocity-weight: leave it out");
+  }
   if (request.live_lag && request.solve.solver != SequenceSolver::kChain) {
     throw RequestError("--live runs on the chain solver: leave out --solver " + ToString(request.solve.solver));
   }
