@@ -39,7 +39,7 @@ void AddImageSize(CLI::App& app, TrackRequest* request) {
 
 void AddDetectionOptions(CLI::App& app, TrackRequest* request, const std::string& detect) {
   TrackRequest& c = *request;
-  AddDetectorOptions(app, &c.detector, &c.detect_rate, &c.models, detect);
+  AddDetectorOptions(app, &c.detector, &c.detect_rate, detect);
   app.add_flag_callback(
          "--no-mask", [&c] { c.use_mask = false; }, "do not use the person's mask")
       ->group(detect);
