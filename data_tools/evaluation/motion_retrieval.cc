@@ -117,37 +117,48 @@ std::vector<int> TurningFrames(const TurningPerson& person, bool first) {
   return frames;
 }
 
-RetrievalScores ScoreRetrieval(const TurningPerson& person, const DescriptorRows& descriptors) {
+RetrievalScores ScoreRetrieval(const TurningPerson& person, const DescriptorRows& descriptors,
+                               const std::vector<bool>& defined) {
   BODYLOOM_CHECK(descriptors.rows() == Eigen::Index(person.cycle.size()), "retrieval: ", descriptors.rows(),
                  " descriptors of ", person.cycle.size(), " frames");
+  BODYLOOM_CHECK(defined.empty() || defined.size() == person.cycle.size(), "retrieval: ", defined.size(), " marks of ",
+                 person.cycle.size(), " frames");
+  const auto is_defined = [&](int t) { return defined.empty() || defined[size_t(t)]; };
   RetrievalScores scores;
   std::vector<int> reference, later;
   for (int t = 0; t < static_cast<int>(person.cycle.size()); ++t) {
-    if (person.cycle[t] == 0) reference.push_back(t);
+    if (person.cycle[t] == 0 && is_defined(t)) reference.push_back(t);
     if (person.cycle[t] > 0) later.push_back(t);
   }
-  BODYLOOM_CHECK(!reference.empty() && !later.empty(), "retrieval: expected at least two cycles");
+  BODYLOOM_CHECK(!reference.empty() && !later.empty(), "retrieval: expected at least two cycles that are described");
   const int cycles = person.cycle.back();
   // (later × reference): a column is the curve of a frame of the first cycle, a row all that a later frame looks like.
-  const Eigen::MatrixXf correlation =
-      NormalisedCrossCorrelation(Chosen(descriptors, later), Chosen(descriptors, reference));
+  Eigen::MatrixXf correlation = NormalisedCrossCorrelation(Chosen(descriptors, later), Chosen(descriptors, reference));
+  for (size_t q = 0; q < later.size(); ++q) {
+    if (!is_defined(later[q])) correlation.row(Eigen::Index(q)).setConstant(-1);
+  }
+  int asked = 0;
+  for (const int t : TurningFrames(person, true)) asked += is_defined(t) ? 1 : 0;
   const std::vector<int> turning = TurningFrames(person, true);
   for (size_t r = 0; r < reference.size(); ++r) {
     if (!std::binary_search(turning.begin(), turning.end(), reference[r])) continue;
     const auto peaks = Peaks({correlation.col(Eigen::Index(r)).data(), later.size()}, kPeakShare, kReach).size();
-    scores.peaks_a_cycle += double(peaks) / cycles / double(turning.size());
-    scores.one_peak_share += (peaks == size_t(cycles) ? 1.0 : 0.0) / double(turning.size());
+    scores.peaks_a_cycle += double(peaks) / cycles / asked;
+    scores.one_peak_share += (peaks == size_t(cycles) ? 1.0 : 0.0) / asked;
   }
   const std::vector<int> queries = TurningFrames(person, false);
   scores.queries = static_cast<int>(queries.size());
+  int answered = 0;
+  for (const int t : queries) answered += is_defined(t) ? 1 : 0;
+  scores.answered_share = double(answered) / scores.queries;
   for (size_t q = 0; q < later.size(); ++q) {
-    if (!std::binary_search(queries.begin(), queries.end(), later[q])) continue;
+    if (!is_defined(later[q]) || !std::binary_search(queries.begin(), queries.end(), later[q])) continue;
     Eigen::Index best = 0;
     correlation.row(Eigen::Index(q)).maxCoeff(&best);
     const int found = reference[best], t = later[q];
     const bool right = (person.yaw_rate_deg_s[found] > 0) == (person.yaw_rate_deg_s[t] > 0);
-    scores.direction_share += (right ? 1.0 : 0.0) / scores.queries;
-    scores.yaw_error_deg += std::abs(person.yaw_deg[found] - person.yaw_deg[t]) / scores.queries;
+    scores.direction_share += (right ? 1.0 : 0.0) / answered;
+    scores.yaw_error_deg += std::abs(person.yaw_deg[found] - person.yaw_deg[t]) / answered;
   }
   return scores;
 }
