@@ -1,41 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 // `bodyloom neural ...` becomes `bodyloom-neural ...`: LibTorch adds 0.4 s to the start of any program linked with it,
 // so what needs it lives in an executable of its own, beside this one.
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
-#include <cerrno>
 #include <cstdlib>
-#include <cstring>
-#include <filesystem>
-#include <memory>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "apps/exec_beside.h"
 #include "apps/exec_neural.h"
 #include "apps/verbs.h"
 
 namespace bodyloom {
 
 void ExecNeural(const std::vector<std::string>& arguments) {
-  const std::filesystem::path program =
-      std::filesystem::read_symlink("/proc/self/exe").parent_path() / "bodyloom-neural";
-  std::vector<char*> argv = {const_cast<char*>(program.c_str())};
-  for (const std::string& argument : arguments) {
-    argv.push_back(const_cast<char*>(argument.c_str()));
-  }
-  argv.push_back(nullptr);
   // Threads that spin between operations take the processor from whatever else runs: beside other work a network took
   // 1.6 times as long. A user's own choice stays.
   setenv("OMP_WAIT_POLICY", "passive", 0);
-  execv(program.c_str(), argv.data());
-  if (errno == ENOENT) {
-    throw std::runtime_error(program.string() +
-                             ": not there: the neural verbs were not built; install libtorch-dev and build again");
-  }
-  throw std::runtime_error(program.string() + ": cannot be started: " + std::strerror(errno));
+  ExecBeside("bodyloom-neural", arguments);
+  throw std::runtime_error(ProgramBeside("bodyloom-neural").string() +
+                           ": not there: the neural verbs were not built; install libtorch-dev and build again");
 }
 
 namespace {

@@ -17,6 +17,7 @@
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/peak_memory.h"
 #include "bodyloom/pipelines/report_json.h"
+#include "bodyloom/pipelines/track_fits_body.h"
 
 namespace bodyloom {
 namespace {
@@ -53,11 +54,7 @@ DescribeClipReport DescribeClip(const DescribeClipRequest& request, const Pipeli
         (request.body.empty() ? body->name() : request.body) +
         ": a body without UV coordinates, expected vt and ft (bodyloom body convert --uv adds them)");
   }
-  if (track.motion.poses.cols() > 3 * body->num_joints()) {
-    throw std::runtime_error(Concatenate(request.track, ": ", track.motion.poses.cols() / 3, " joints, the body '",
-                                         body->name(), "' has ", body->num_joints(),
-                                         "; give the track's own with --body"));
-  }
+  RequireTrackFitsBody(track, *body, request.track);
   callbacks.Begin("describe");
   try {
     report.summary = DescribeTrack(*body, track, request.out, report.options,

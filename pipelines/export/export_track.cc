@@ -17,6 +17,7 @@
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/pipelines/files.h"
+#include "bodyloom/pipelines/track_fits_body.h"
 #include "bodyloom/render/overlay.h"
 
 namespace bodyloom {
@@ -121,11 +122,7 @@ ExportTrackReport ExportTrack(const ExportTrackRequest& request, const PipelineC
         Concatenate(request.track, ": ", track.num_frames(), " frames, expected one with number ", request.frame));
   }
   const std::shared_ptr<const BodyModel> body = BodyOrBuiltin(request.body);
-  if (track.motion.poses.cols() > 3 * body->num_joints()) {
-    throw std::runtime_error(Concatenate(request.track, ": ", track.motion.poses.cols() / 3, " joints (body '",
-                                         track.motion.body, "'), the body '", body->name(), "' has ",
-                                         body->num_joints(), "; give the track's own with --body"));
-  }
+  RequireTrackFitsBody(track, *body, request.track);
   switch (request.form) {
     case TrackForm::kVertices:
       ExportVertices(track, *body, request, callbacks);
