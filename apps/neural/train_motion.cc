@@ -20,7 +20,7 @@ namespace {
 
 struct TrainMotionArguments {
   TrainMotionRendererRequest request;
-  std::string shape_loss = "ce", profile = "cpu";
+  std::string shape_loss = "ce", profile = "cpu", descriptor = ToText(MotionDescriptor::kSurface);
   std::vector<std::string> without, train, validate;
 };
 
@@ -28,6 +28,7 @@ void RunTrainMotion(const TrainMotionArguments& parsed) {
   TrainMotionRendererRequest request = parsed.request;
   MotionConfig& config = request.options.config;
   config.profile = MotionProfileNamed(parsed.profile);
+  config.descriptor = MotionDescriptorNamed(parsed.descriptor);
   for (const std::string& part : parsed.without) {
     if (part == "shape") config.shape = false;
     if (part == "normal") config.normals = false;
@@ -66,6 +67,11 @@ void AddTrainMotion(CLI::App& train, Action* action) {
                    "For a video: DensePose's parts (.npz), for silhouette and classes");
   AddSurfaceMotionOptions(verb, &request.data.motion, &request.cameras, &request.view);
   AddProfileOption(verb, &parsed->profile);
+  verb->add_option("--descriptor", parsed->descriptor,
+                   "What the networks are told of the motion: normals and velocities of the body's surface, or, to "
+                   "compare with, dense UV coordinates and keypoints of ten frames as 2D systems take them")
+      ->check(CLI::IsMember(MotionDescriptorNames()))
+      ->capture_default_str();
   verb->add_option("--without", parsed->without,
                    "Leave out a part, as the paper's ablations do; surface, texture: the decoders see neither UV "
                    "coordinates nor a "

@@ -79,6 +79,13 @@ MultiPersonDataset ReadMultiPersonDataset(const std::string& path) {
   return set;
 }
 
+ClipPlace PlaceOfClip(const std::string& clip) {
+  const size_t at = clip.rfind("_v");
+  const bool numbered = at != std::string::npos && at > 0 && at + 2 < clip.size() &&
+                        clip.find_first_not_of("0123456789", at + 2) == std::string::npos;
+  return numbered ? ClipPlace{clip.substr(0, at), clip.substr(at + 1)} : ClipPlace{clip, clip};
+}
+
 void WriteMultiPersonDataset(const MultiPersonDataset& set) {
   nlohmann::ordered_json json = {{"format", kMultiPersonFormat}, {"version", kMultiPersonVersion}, {"size", set.size}};
   json["people"] = nlohmann::ordered_json::array();

@@ -35,6 +35,14 @@ struct MultiPersonDataset {
 /// leads out of the dataset or is not there.
 MultiPersonDataset ReadMultiPersonDataset(const std::string& path);
 
+/// What a clip's name says of it: views of one action have equal actions, frame by frame of the same poses; clips of one
+/// view were taken from the same side. Of "p000/a0_v1": "p000/a0" and "v1"; a clip whose name does not end in _v and a
+/// number is an action and a view of its own.
+struct ClipPlace {
+  std::string action, view;
+};
+ClipPlace PlaceOfClip(const std::string& clip);
+
 /// Writes people.json alone. Throws std::runtime_error "path: why".
 void WriteMultiPersonDataset(const MultiPersonDataset& set);
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -15,6 +16,7 @@
 #include "bodyloom/data_tools/formats/mapped_npy.h"
 #include "bodyloom/data_tools/motion/freeze_track.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/observations.h"
 #include "bodyloom/render/resolve_pixels.h"
 #include "bodyloom/render/visibility_buffer.h"
 
@@ -131,6 +133,20 @@ class PersonFrames::Impl {
     }
   }
 
+  [[nodiscard]] Eigen::Matrix<double, Eigen::Dynamic, 2> Keypoints(int t) const {
+    const std::vector<std::string>& names = CocoNames();
+    Eigen::Matrix<double, Eigen::Dynamic, 2> pixels(names.size(), 2);
+    pixels.fill(std::numeric_limits<double>::quiet_NaN());
+    if (!shown_.HasResult(t)) return pixels;
+    const MatrixX3d points = posed_.Landmarks(t, names);
+    const Camera camera = CameraInWindow(shown_.CameraAt(t), window_, t);
+    for (Eigen::Index k = 0; k < points.rows(); ++k) {
+      Eigen::Vector2d pixel;
+      if (camera.Project(points.row(k).transpose(), &pixel)) pixels.row(k) = pixel.transpose();
+    }
+    return pixels;
+  }
+
   [[nodiscard]] const PersonWindow& window() const { return window_; }
   [[nodiscard]] const PersonFramesOptions& options() const { return options_; }
   [[nodiscard]] const Track& track() const { return shown_; }
@@ -192,6 +208,7 @@ int PersonFrames::channels() const { return 3 + 3 * impl_->options().past; }
 const PersonWindow& PersonFrames::window() const { return impl_->window(); }
 const PersonFramesOptions& PersonFrames::options() const { return impl_->options(); }
 void PersonFrames::MotionMaps(int t, std::span<float> maps) const { impl_->MotionMaps(t, maps); }
+Eigen::Matrix<double, Eigen::Dynamic, 2> PersonFrames::Keypoints(int t) const { return impl_->Keypoints(t); }
 void PersonFrames::BodyMaps(int t, std::span<float> uv, std::span<float> mask) const { impl_->BodyMaps(t, uv, mask); }
 
 }  // namespace bodyloom

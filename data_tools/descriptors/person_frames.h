@@ -65,6 +65,11 @@ class PersonFrames {
   /// mask (height × width). May be called by several threads.
   void BodyMaps(int t, std::span<float> uv, std::span<float> mask) const;
 
+  /// The 17 keypoints of COCO (CocoNames, geometry/observations.h) of frame t's body, pixels of its window, 17×2; NaN
+  /// for those behind the camera and for a frame without a result. May be called by several threads. Throws
+  /// std::invalid_argument when the body lacks one.
+  [[nodiscard]] Eigen::Matrix<double, Eigen::Dynamic, 2> Keypoints(int t) const;
+
  private:
   class Impl;
   std::unique_ptr<Impl> impl_;

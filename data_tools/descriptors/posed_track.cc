@@ -40,11 +40,19 @@ MatrixX3d PosedTrack::Vertices(int t) const {
   const BodyPose pose =
       PoseFromAxisAngle(body_, track_.motion.poses.row(t).transpose(), track_.motion.trans.row(t).transpose());
   skinner_.Skin(shape_, std::span(&pose, 1), {vertices.data(), static_cast<size_t>(vertices.size())});
-  if (turned()) {
-    const Eigen::RowVector3d root = Root(t).transpose();
-    vertices = ((vertices.rowwise() - root) * Turn(t).transpose()).rowwise() + root;
-  }
-  return vertices;
+  return Turned(t, std::move(vertices));
+}
+
+MatrixX3d PosedTrack::Landmarks(int t, const std::vector<std::string>& names) const {
+  const BodyPose pose =
+      PoseFromAxisAngle(body_, track_.motion.poses.row(t).transpose(), track_.motion.trans.row(t).transpose());
+  return Turned(t, PoseLandmarks(body_, track_.motion.betas, pose, names));
+}
+
+MatrixX3d PosedTrack::Turned(int t, MatrixX3d points) const {
+  if (!turned()) return points;
+  const Eigen::RowVector3d root = Root(t).transpose();
+  return ((points.rowwise() - root) * Turn(t).transpose()).rowwise() + root;
 }
 
 std::vector<PersonExtent> PosedTrack::Extents(int num_threads) const {

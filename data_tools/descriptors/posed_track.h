@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 
 #include "bodyloom/geometry/body_model.h"
@@ -26,10 +27,15 @@ class PosedTrack {
   [[nodiscard]] Eigen::Vector3d Root(int t) const;
   /// V×3 in the (turned) camera frame.
   [[nodiscard]] MatrixX3d Vertices(int t) const;
+  /// The landmarks of these names, n×3, likewise. Throws std::invalid_argument when the body lacks one.
+  [[nodiscard]] MatrixX3d Landmarks(int t, const std::vector<std::string>& names) const;
   /// What the body spans in the picture of every frame; empty where it has no result or does not show.
   [[nodiscard]] std::vector<PersonExtent> Extents(int num_threads) const;
 
  private:
+  /// Points of frame t as the turned camera sees them.
+  [[nodiscard]] MatrixX3d Turned(int t, MatrixX3d points) const;
+
   const BodyModel& body_;
   const Track& track_;
   Skinner skinner_;

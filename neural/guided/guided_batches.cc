@@ -16,7 +16,7 @@ GuidedBatch MakeGuidedBatch(const PhotoSource& people, const GuidedConfig& confi
   std::vector<PhotoFrame> sources(batch), targets(batch);
   std::vector<std::vector<uint8_t>> known;
   for (int b = 0; b < batch; ++b) {
-    const GuidedSample sample = GuidedSampleOf(seed, step, b, people.num_frames);
+    const GuidedSample sample = GuidedSampleOf(seed, step, b, people);
     people.fill(sample.person, sample.source, &sources[b]);
     people.fill(sample.person, sample.target, &targets[b]);
     known.push_back(KnownPixels(seed, step, b, targets[b].size, targets[b].parts));
@@ -32,7 +32,7 @@ GuidedBatch MakeGuidedBatch(const PhotoSource& people, const GuidedConfig& confi
   result.target = CroppedPixels(target, result.box, multiple);
   GuidedPseudo pseudo = PseudoOf(target, known);
   if (config.profile.contour_hints) {
-    const SourceBody body = {people.texel_parts, {}, neighbours};
+    const SourceBody body = {people.texel_parts, {}, neighbours, {}, config.source_labels};
     std::vector<PseudoPicture> warped;
     for (int b = 0; b < batch; ++b) {
       const CoherentMaps maps = MapsOfSource(std::span(&sources[b], 1), body, MapCompletion::kNearest, true, {}).maps;

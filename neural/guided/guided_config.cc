@@ -177,6 +177,8 @@ std::string ToText(const GuidedConfig& config) {
     // Whether the maps are completed is a matter of inference alone: the networks are the same.
     if (flag != &GuidedConfig::uv_appearance) text << "; " << name << ' ' << config.*flag;
   }
+  // Older checkpoints saw in the target what is left out of the source.
+  if (!config.source_silhouette || !config.source_labels) text << "; the same in the target";
   return text.str();
 }
 

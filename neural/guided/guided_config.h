@@ -48,14 +48,15 @@ const GuidedProfile& GuidedProfileNamed(const std::string& name);
 struct GuidedConfig {
   GuidedProfile profile;
   // The paper's ablations (Table 2); all true: S+G+R. What is left out of the inputs is zero.
-  bool silhouettes = true;        ///< SilNet; without it RenderNet predicts the silhouette itself (or GarNet does)
-  bool garments = true;           ///< GarNet
-  bool source_silhouette = true;  ///< S^s, in all three networks
-  bool source_labels = true;      ///< M^s, called G^s elsewhere in the paper
-  bool latent = true;             ///< z^s
-  bool kl = true;                 ///< L_KL; without it the code is not drawn, and made by fully connected layers
-  bool pseudo_image = true;       ///< Ĩ^t and S̃^t
-  bool uv_appearance = true;      ///< A: the maps completed over virtual views; without it the source warped as it is
+  bool silhouettes = true;  ///< SilNet; without it RenderNet predicts the silhouette itself (or GarNet does)
+  bool garments = true;     ///< GarNet
+  /// S^s, "from the entire pipeline": also what comes of it in the target, S̃^t and how far clothes stand off.
+  bool source_silhouette = true;
+  bool source_labels = true;  ///< M^s, called G^s elsewhere in the paper, and with it G̃^t, in the same way
+  bool latent = true;         ///< z^s
+  bool kl = true;             ///< L_KL; without it the code is not drawn, and made by fully connected layers
+  bool pseudo_image = true;   ///< Ĩ^t and S̃^t
+  bool uv_appearance = true;  ///< A: the maps completed over virtual views; without it the source warped as it is
 
   [[nodiscard]] int Levels() const { return static_cast<int>(profile.shape_widths.size()); }
   [[nodiscard]] MapCompletion Completion() const {

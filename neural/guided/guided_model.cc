@@ -20,10 +20,17 @@ Tensor GuidedModelImpl::LabelMap(const Tensor& classes) const {
   return OneHot(classes.squeeze(1).to(torch::kLong), kPhotoLabels).to(classes.scalar_type());
 }
 
+Tensor GuidedModelImpl::SourceLabelMap(const Tensor& classes) const {
+  const Tensor labels = LabelMap(classes);
+  return config.source_labels ? labels : torch::zeros_like(labels);
+}
+
+Tensor GuidedModelImpl::OfSourceSilhouette(const Tensor& map) const {
+  return config.source_silhouette ? map : torch::zeros_like(map);
+}
+
 GuidedSource GuidedModelImpl::EncodeSource(const GuidedTensors& source) {
-  Tensor labels = LabelMap(source.classes);
-  if (!config.source_labels) labels = torch::zeros_like(labels);
-  const Tensor silhouette = config.source_silhouette ? source.silhouette : torch::zeros_like(source.silhouette);
+  const Tensor labels = SourceLabelMap(source.classes), silhouette = OfSourceSilhouette(source.silhouette);
   const Tensor shape = torch::cat({source.pose, silhouette, labels}, 1);
   GuidedSource codes;
   if (config.silhouettes) codes.sil_code = sil->EncodeSource(shape);
@@ -34,15 +41,16 @@ GuidedSource GuidedModelImpl::EncodeSource(const GuidedTensors& source) {
 
 Tensor GuidedModelImpl::Silhouette(const GuidedSource& source, const Tensor& pose, const GuidedPseudo& pseudo,
                                    const CodeBox& box) {
-  const Tensor seen =
-      config.profile.contour_hints ? torch::cat({LabelMap(pseudo.contour_classes), pseudo.extent}, 1) : Tensor();
+  const Tensor seen = config.profile.contour_hints
+                          ? torch::cat({SourceLabelMap(pseudo.contour_classes), OfSourceSilhouette(pseudo.extent)}, 1)
+                          : Tensor();
   return sil(Cropped(source.sil_code, box), pose, seen);
 }
 
 Tensor GuidedModelImpl::Labels(const GuidedSource& source, const Tensor& pose, const Tensor& silhouette,
                                const Tensor& pseudo_classes, const CodeBox& box) {
   const Tensor known = silhouette.defined() ? silhouette : torch::zeros_like(pseudo_classes);
-  return gar(Cropped(source.gar_code, box), torch::cat({pose, known, LabelMap(pseudo_classes)}, 1));
+  return gar(Cropped(source.gar_code, box), torch::cat({pose, known, SourceLabelMap(pseudo_classes)}, 1));
 }
 
 std::pair<Tensor, Tensor> GuidedModelImpl::Render(const Tensor& code, const Tensor& pose, const Tensor& silhouette,
@@ -53,9 +61,11 @@ std::pair<Tensor, Tensor> GuidedModelImpl::Render(const Tensor& code, const Tens
   const Tensor labels = config.garments ? LabelMap(classes) : none.expand({-1, config.LabelChannels(), -1, -1});
   std::vector<Tensor> guide = {labels, config.silhouettes ? silhouette : none};
   if (config.PoseForRender()) guide.push_back(pose);
-  Tensor seen = torch::cat({pseudo.image, pseudo.silhouette}, 1), shown = pseudo.image;
-  if (config.profile.fill_colours) {
-    shown = CarryColours(pseudo.image, pseudo.silhouette, pseudo.classes, config.garments ? classes : Tensor());
+  Tensor seen = torch::cat({pseudo.image, OfSourceSilhouette(pseudo.silhouette)}, 1), shown = pseudo.image;
+  // Colours can be carried on only where it is known which are there, and within a garment where garments are known.
+  if (config.profile.fill_colours && config.source_silhouette) {
+    shown = CarryColours(pseudo.image, pseudo.silhouette, pseudo.classes,
+                         config.garments && config.source_labels ? classes : Tensor());
   }
   if (!config.pseudo_image) seen = torch::zeros_like(seen), shown = torch::zeros_like(shown);
   const Tensor colours = render(code.defined() ? Cropped(code, box) : code, torch::cat(guide, 1), seen, shown);

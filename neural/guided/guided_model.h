@@ -61,6 +61,11 @@ struct GuidedModelImpl : torch::nn::Module {
 
   /// Class numbers as the networks see them: B×7 of 0 and 1, or B×1 of greys number/6.
   [[nodiscard]] torch::Tensor LabelMap(const torch::Tensor& classes) const;
+  /// The same of labels that come from the source, be it of its own picture or carried to the target's: zero where the
+  /// source's labels are left out.
+  [[nodiscard]] torch::Tensor SourceLabelMap(const torch::Tensor& classes) const;
+  /// What comes from the source's silhouette: itself, S̃, the clothes' extent; zero where that is left out.
+  [[nodiscard]] torch::Tensor OfSourceSilhouette(const torch::Tensor& map) const;
   /// Of the source's whole pictures. Parts whose networks are left out are undefined.
   GuidedSource EncodeSource(const GuidedTensors& source);
   /// B×1 logits of S^t; B×7 logits of G^t (`silhouette` undefined: SilNet is left out).

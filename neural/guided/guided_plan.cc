@@ -6,6 +6,7 @@
 #include <random>
 
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/neural/people/photo_partner.h"
 
 namespace bodyloom {
 namespace {
@@ -30,15 +31,16 @@ int Below(int n, std::mt19937_64* random) { return std::min(n - 1, static_cast<i
 
 }  // namespace
 
-GuidedSample GuidedSampleOf(uint64_t seed, int64_t step, int place, std::span<const int> num_frames) {
+GuidedSample GuidedSampleOf(uint64_t seed, int64_t step, int place, const PhotoSource& people) {
+  const std::vector<int>& num_frames = people.num_frames;
   BODYLOOM_CHECK(!num_frames.empty(), "guided plan: nobody");
   std::mt19937_64 random = Generator(seed, step, place, 0);
   GuidedSample sample;
   sample.person = Below(static_cast<int>(num_frames.size()), &random);
   const int frames = num_frames[sample.person];
   BODYLOOM_CHECK(frames > 0, "guided plan: person ", sample.person, " has no picture");
-  sample.source = sample.target = Below(frames, &random);
-  if (frames > 1) sample.target = (sample.source + 1 + Below(frames - 1, &random)) % frames;
+  sample.source = Below(frames, &random);
+  sample.target = PartnerOf(people, sample.person, sample.source, PartnerDiffers::kPoseAndView, Uniform(&random));
   return sample;
 }
 

@@ -36,7 +36,9 @@ class GuidedRenderer::Impl {
     BODYLOOM_CHECK(tensors.image.defined(), "pose-guided renderer: the source has no picture");
     codes_ = model_->EncodeSource(tensors);
     last_ = {};
-    source_ = MapsOfSource(photos, body, completion(), config_.profile.contour_hints,
+    SourceBody known = body;
+    known.garments_known = config_.source_labels;
+    source_ = MapsOfSource(photos, known, completion(), config_.profile.contour_hints,
                            [&](const PhotoFrame& frame, const PseudoPicture& pseudo) { return Draw(frame, pseudo); });
     BODYLOOM_CHECK(source_.texels_seen > 0, "pose-guided renderer: the photos show nothing of the body");
   }

@@ -115,8 +115,10 @@ GuidedPicture PictureOf(const GuidedResult& result, const GuidedPseudo& pseudo, 
   const size_t pixels = size_t(size) * size;
   GuidedPicture picture{size, std::vector<float>(3 * pixels), std::vector<float>(pixels), std::vector<uint8_t>(pixels)};
   const std::vector<float> image = HostValues<float>(result.image[b]), alpha = HostValues<float>(result.silhouette[b]);
-  const std::vector<float> labels =
-      HostValues<float>(result.label_logits.defined() ? result.classes[b] : pseudo.classes[b]);
+  // Where the silhouette has the person GarNet's likeliest garment counts, whatever it thinks of the background.
+  const std::vector<float> labels = HostValues<float>(
+      result.label_logits.defined() ? result.label_logits[b].slice(0, 1).argmax(0).to(torch::kFloat) + 1
+                                    : pseudo.classes[b]);
   const int64_t width = box.width * multiple, height = box.height * multiple, area = width * height;
   for (int64_t y = 0; y < height; ++y) {
     for (int64_t x = 0; x < width; ++x) {

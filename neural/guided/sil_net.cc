@@ -14,11 +14,11 @@ SilNetImpl::SilNetImpl(const GuidedConfig& config) {
   decoder = register_module("decoder", SkipDecoder(2 * widths.back(), widths, input, 1));
   if (!from_body) return;
   // A new network predicts what is likely: 4 inside, −2 outside. That is the body as far as clothes stood off the
-  // source, or else the bare body, a pixel wider and soft.
+  // source, or else (or where nobody knows) the bare body, a pixel wider and soft.
   const torch::NoGradGuard no_grad;
   Tensor weight = decoder->head->weight[0];
   const int64_t channels = weight.size(0);
-  if (config.profile.contour_hints) {
+  if (config.profile.contour_hints && config.source_silhouette) {
     weight[channels - 2][1][1] += 6;
   } else {
     weight[channels - 1] += 6.0 / 9;

@@ -20,6 +20,13 @@ PhotoFrame ShownAlone(const PhotoFrame& photo, std::span<const uint8_t> lent, bo
   return shown;
 }
 
+/// The photo, of whose labels only person and background are left.
+PhotoFrame WithoutGarments(const PhotoFrame& photo) {
+  PhotoFrame shown = photo;
+  for (uint8_t& label : shown.labels) label = label != 0 ? 1 : 0;
+  return shown;
+}
+
 /// Puts a photo's texels into the maps that it sees at a larger cosine than those before it. Returns how many were
 /// empty.
 int TakeBetterSeen(const CoherentMaps& of_photo, std::span<const float> cosine, std::vector<float>* seen_at,
@@ -62,6 +69,7 @@ SourceMaps MapsOfSource(std::span<const PhotoFrame> photos, const SourceBody& bo
   for (size_t i = 0; i < photos.size(); ++i) {
     std::optional<PhotoFrame> part;
     if (!lent.empty()) part = ShownAlone(photos[i], lent, /*where_lent=*/i + 1 == photos.size());
+    if (!body.garments_known) part = WithoutGarments(part ? *part : photos[i]);
     const PhotoFrame& shown = part ? *part : photos[i];
     CoherentMaps of_photo = EmptyMaps(source.maps.size, body.texel_parts);
     FillEmptyTexels(shown, OwnPicture(shown), static_cast<uint8_t>(i + 1), {}, &of_photo);

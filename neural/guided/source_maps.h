@@ -21,6 +21,9 @@ struct SourceBody {
   /// U × U: 1 where the last photo, somebody else's, says what is worn, and nobody else; elsewhere it says nothing.
   /// Empty: nobody lends anything.
   std::span<const uint8_t> lent_texels = {};
+  /// False: of the photos' labels it is known only which are not the background; those of the maps are 1 where a photo
+  /// fills them.
+  bool garments_known = true;
 };
 
 struct SourceMaps {

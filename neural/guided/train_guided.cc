@@ -137,7 +137,8 @@ class GuidedTrainer : public TrainedSystem {
       // Six drawings of the body, for nothing where the nearest texels do.
       if (options_.validation_views && completion != MapCompletion::kNearest) views = options_.validation_views(person);
       if (completion == MapCompletion::kVirtualViews && views.empty()) completion = MapCompletion::kNone;
-      const SourceBody body = {people.texel_parts, views, neighbours_ ? &*neighbours_ : nullptr};
+      const SourceBody body = {
+          people.texel_parts, views, neighbours_ ? &*neighbours_ : nullptr, {}, config_.source_labels};
       const CoherentMaps maps =
           MapsOfSource(std::span(&photo, 1), body, completion, config_.profile.contour_hints, draw).maps;
       const int frames = std::min(people.num_frames[person] - 1, options_.validation_frames);

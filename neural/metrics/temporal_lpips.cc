@@ -9,10 +9,14 @@
 
 namespace bodyloom {
 
-double TemporalLpips::Change(const Seen& now, const Seen& before, int before_x, int before_y) const {
-  if (before_x == 0 && before_y == 0) return lpips_.Distance(now.features, before.features).value;
-  const Image moved = ToImage(Shifted(ToTensor(before.image), before_x, before_y));
-  return lpips_.Distance(now.features, lpips_.Features(moved)).value;
+double TemporalLpipsOf(const Lpips& lpips, const LpipsFeatures& result, const LpipsFeatures& result_before,
+                       const LpipsFeatures& truth, const LpipsFeatures& truth_before) {
+  return std::abs(lpips.Distance(result, result_before).value - lpips.Distance(truth, truth_before).value);
+}
+
+LpipsFeatures TemporalLpips::Moved(const Seen& picture, int x, int y) const {
+  if (x == 0 && y == 0) return picture.features;
+  return lpips_.Features(ToImage(Shifted(ToTensor(picture.image), x, y)));
 }
 
 TemporalLpips::Frame TemporalLpips::Add(const Image& result, const Image& truth, int before_x, int before_y) {
@@ -22,8 +26,8 @@ TemporalLpips::Frame TemporalLpips::Add(const Image& result, const Image& truth,
   frame.lpips = distance.value;
   frame.random_features = distance.random_features;
   if (follows_) {
-    frame.tlpips = std::abs(Change(seen_result, last_result_, before_x, before_y) -
-                            Change(seen_truth, last_truth_, before_x, before_y));
+    frame.tlpips = TemporalLpipsOf(lpips_, seen_result.features, Moved(last_result_, before_x, before_y),
+                                   seen_truth.features, Moved(last_truth_, before_x, before_y));
     sum_tlpips_ += *frame.tlpips;
     ++pairs_;
   }

@@ -15,6 +15,10 @@
 
 namespace bodyloom {
 
+/// | d(s_t, s_{t−1}) − d(g_t, g_{t−1}) | of the four pictures' features, d being `lpips`.
+double TemporalLpipsOf(const Lpips& lpips, const LpipsFeatures& result, const LpipsFeatures& result_before,
+                       const LpipsFeatures& truth, const LpipsFeatures& truth_before);
+
 struct TemporalLpipsMean {
   int frames = 0;
   double lpips = 0;   ///< mean over frames
@@ -49,8 +53,8 @@ class TemporalLpips {
     Image image;
     LpipsFeatures features;
   };
-  /// How far a picture is from the one before it.
-  [[nodiscard]] double Change(const Seen& now, const Seen& before, int before_x, int before_y) const;
+  /// What the network sees in a picture moved by (x, y).
+  [[nodiscard]] LpipsFeatures Moved(const Seen& picture, int x, int y) const;
 
   const Lpips& lpips_;
   Seen last_result_, last_truth_;

@@ -47,7 +47,9 @@ MotionInput InputOf(std::span<const MotionFrame> frames, const MotionConfig& con
   CheckSizes(frames);
   const int64_t h = frames[0].height, w = frames[0].width, U = config.profile.uv_size;
   MotionInput input;
-  if (config.motion) {
+  if (config.motion && config.descriptor == MotionDescriptor::kDense2d) {
+    input.motion = Stack(frames, &MotionFrame::dense, "dense coordinates", config.motion_channels, h, w, torch::kFloat);
+  } else if (config.motion) {
     input.motion = Stack(frames, &MotionFrame::motion, "motion maps", config.motion_channels, U, U, torch::kFloat);
   }
   input.uv = Stack(frames, &MotionFrame::uv, "UV", 2, h, w, torch::kFloat);

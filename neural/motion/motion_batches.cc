@@ -24,7 +24,7 @@ MotionBatch MakeBatch(const MotionFrameSource& source, const MotionConfig& confi
   batch.input = InputOf(batch.frames, config);
   batch.truth = TruthOf(batch.frames, config);
   for (MotionFrame& frame : batch.frames) {
-    frame.motion = frame.uv = frame.body = frame.image = frame.normals = {};
+    frame.motion = frame.dense = frame.uv = frame.body = frame.image = frame.normals = {};
     frame.labels = {};
   }
   batch.steps = std::move(steps);

@@ -16,7 +16,12 @@ std::string MotionCard(const MotionConfig& config) {
   const auto add = [&](const char* title, auto& network, const std::vector<int64_t>& input) {
     text += std::string(text.empty() ? "" : "\n") + title + "\n" + ArchitectureCard(network, input);
   };
-  if (config.motion) add("motion encoder E, a frame's UV maps", model->encoder, {1, config.motion_channels, uv, uv});
+  if (config.motion && config.descriptor == MotionDescriptor::kSurface) {
+    add("motion encoder E, a frame's UV maps", model->encoder, {1, config.motion_channels, uv, uv});
+  } else if (config.motion) {
+    add("motion encoder E, a frame's picture and those before it", model->encoder,
+        {1, config.motion_channels, side, side});
+  }
   if (config.shape) {
     add("shape decoder D_s", model->shape_decoder, {1, model->shape_decoder->options.in, side, side});
   }

@@ -20,6 +20,23 @@ const MotionProfile& MotionProfileNamed(const std::string& name) {
   throw std::invalid_argument("profile \"" + name + "\": expected paper, cpu or tiny");
 }
 
+const char* ToText(MotionDescriptor descriptor) {
+  return descriptor == MotionDescriptor::kSurface ? "surface" : "dense2d";
+}
+
+const std::vector<std::string>& MotionDescriptorNames() {
+  static const std::vector<std::string> names = {ToText(MotionDescriptor::kSurface),
+                                                 ToText(MotionDescriptor::kDense2d)};
+  return names;
+}
+
+MotionDescriptor MotionDescriptorNamed(const std::string& name) {
+  for (const MotionDescriptor descriptor : {MotionDescriptor::kSurface, MotionDescriptor::kDense2d}) {
+    if (name == ToText(descriptor)) return descriptor;
+  }
+  throw std::invalid_argument("descriptor \"" + name + "\": expected surface or dense2d");
+}
+
 bool MotionConfig::IsValid(std::string* why) const {
   const InRange in_range(why);
   bool valid = in_range("image_size", profile.image_size, 32, 8192) && in_range("uv_size", profile.uv_size, 8, 4096) &&
@@ -40,6 +57,11 @@ bool MotionConfig::IsValid(std::string* why) const {
       *why = "uv_size " + std::to_string(profile.uv_size) + " is not a multiple of " + std::to_string(multiple);
     return false;
   }
+  if (valid && descriptor == MotionDescriptor::kDense2d &&
+      profile.encoder_widths.size() > profile.decoder_widths.size()) {
+    if (why != nullptr) *why = "dense2d: the encoder has more levels than the decoders, whose pictures it works on";
+    return false;
+  }
   return valid;
 }
 
@@ -55,6 +77,7 @@ std::string ToText(const MotionConfig& config) {
        << config.num_labels << "; shape " << config.shape << "; normals " << config.normals << "; motion "
        << config.motion << "; surface " << config.surface << "; learned texture " << config.texture;
   if (config.around_body) text << "; around the body";  // older checkpoints know whole windows only
+  if (config.descriptor == MotionDescriptor::kDense2d) text << "; descriptor " << ToText(config.descriptor);
   return text.str();
 }
 

@@ -24,9 +24,24 @@ struct MotionProfile {
 /// Throws std::invalid_argument for other names, listing these.
 const MotionProfile& MotionProfileNamed(const std::string& name);
 
+/// What the networks are told of the motion.
+enum class MotionDescriptor {
+  kSurface,  ///< normals and velocities of the body's surface, in UV: the paper's
+  /// Dense UV coordinates and keypoints of ten frames, in the picture's plane, as Wang et al., "Dance In the Wild",
+  /// 2021, describe motion: what the paper compares its own descriptor with (data_tools/descriptors/dense_history.h).
+  /// The encoder works on pictures and its features go straight to the decoders.
+  kDense2d
+};
+/// "surface", "dense2d".
+const char* ToText(MotionDescriptor descriptor);
+/// Throws std::invalid_argument for other names, listing these.
+MotionDescriptor MotionDescriptorNamed(const std::string& name);
+const std::vector<std::string>& MotionDescriptorNames();
+
 struct MotionConfig {
   MotionProfile profile;
-  int motion_channels = 33;  ///< N_t and the velocities of ten frames
+  MotionDescriptor descriptor = MotionDescriptor::kSurface;
+  int motion_channels = 33;  ///< of the descriptor: N_t and the velocities of ten frames
   int num_labels = 7;        ///< classes of the shape decoder; label 0 is the background
   // The paper's ablations (Table 3): without the shape decoder; without predicted surface normals; with rendered UV
   // coordinates in place of the projected motion descriptor.

@@ -15,7 +15,9 @@ struct MotionFrame {
   /// (x + before_x, y + before_y) of this.
   int before_x = 0, before_y = 0;
 
+  // One of both, as the configuration's descriptor is.
   std::vector<float> motion;  ///< channels × U × U: normals and velocities in UV
+  std::vector<float> dense;   ///< channels × height × width: dense UV and keypoints of the last frames
   std::vector<float> uv;      ///< 2 × height × width, the body's atlas coordinates in [0, 1]
   std::vector<float> body;    ///< height × width: 1 where a pixel shows the body
 

@@ -61,7 +61,8 @@ Tensor MotionModelImpl::Encode(const Tensor& motion) {
 
 Tensor MotionModelImpl::Project(const Tensor& descriptor, const Tensor& uv, const Tensor& body) {
   std::vector<Tensor> parts;
-  if (config.motion) parts.push_back(SampleUv(descriptor, uv, body));
+  const bool in_uv = config.descriptor == MotionDescriptor::kSurface;
+  if (config.motion) parts.push_back(in_uv ? SampleUv(descriptor, uv, body) : descriptor);
   if (!config.motion || config.surface) parts.insert(parts.end(), {uv * body, body});
   if (config.texture) parts.push_back(texture(uv, body));
   return torch::cat(parts, 1);

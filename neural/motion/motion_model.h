@@ -9,6 +9,8 @@
 /// Source: Yoon et al., "Learning Motion-Dependent Appearance for High-Fidelity Rendering of Dynamic Humans from a
 /// Single Camera", CVPR 2022, Section 3; channels and levels: neural/motion/motion_config.h.
 ///
+/// With the descriptor dense2d E sees dense UV coordinates and keypoints of ten frames in the picture's plane, and f̂ is
+/// its output at every pixel, on the body and off it.
 /// With `surface` (not in the paper) f̂ has the rendered UV coordinates (u, v, 1) beside Π f_3D; with `texture`
 /// (neither) also Π of a learned texture. Without shape there is no ŝ: Â = sigmoid a must learn where the person ends.
 /// Without motion f̂ is the rendered UV itself, (u, v, 1) on the body and 0 elsewhere, and the learned texture. Without
@@ -25,7 +27,7 @@
 
 namespace bodyloom {
 
-/// Of B frames: B×channels×U×U, B×2×h×w, B×1×h×w.
+/// Of B frames: B×channels×U×U (dense2d: B×channels×h×w), B×2×h×w, B×1×h×w.
 struct MotionInput {
   torch::Tensor motion, uv, body;
 };
@@ -48,7 +50,7 @@ struct MotionStepResult {
 struct MotionModelImpl : torch::nn::Module {
   explicit MotionModelImpl(const MotionConfig& config);
 
-  /// f_3D of B×channels×U×U.
+  /// f_3D of B×channels×U×U; for dense2d the features at every pixel.
   torch::Tensor Encode(const torch::Tensor& motion);
   /// f̂ from f_3D (ignored, and may be undefined, without motion).
   torch::Tensor Project(const torch::Tensor& descriptor, const torch::Tensor& uv, const torch::Tensor& body);

@@ -68,7 +68,7 @@ std::vector<PixelBox> PersonBoxes(std::span<const MotionFrame> frames, int reach
 
 MotionFrame Within(MotionFrame frame, const PixelBox& box) {
   const auto cut = [&](auto* planes) { *planes = PlanesWithin(*planes, frame.width, frame.height, box); };
-  cut(&frame.uv), cut(&frame.body);
+  cut(&frame.dense), cut(&frame.uv), cut(&frame.body);
   cut(&frame.image), cut(&frame.labels), cut(&frame.normals);
   frame.width = box.width(), frame.height = box.height();
   return frame;

@@ -31,9 +31,17 @@ struct PhotoFrame {
 inline constexpr int kPhotoLabels = 7, kPhotoParts = 25;
 inline constexpr uint8_t kFaceLabel = 3, kHairLabel = 4, kSkinLabel = 5;
 
+/// What pictures of one person have in common: those of one pose show the same moment, those of one view were taken from
+/// the same side.
+struct PicturePlace {
+  int pose = 0, view = 0;
+};
+
 /// Pictures of several people. Fill may be called by any thread, one call at a time a thread.
 struct PhotoSource {
-  std::vector<int> num_frames;       ///< by person
+  std::vector<int> num_frames;  ///< by person
+  /// By person and frame; empty: nobody knows, and any two pictures are of different poses and views.
+  std::vector<std::vector<PicturePlace>> places;
   int size = 0, texture_size = 0;    ///< of all frames
   std::vector<uint8_t> texel_parts;  ///< U × U: DensePose's part of each texel, 0 where the atlas is empty
   /// Planar 3 × U × U: where each texel lies on the body at rest (x to its left, y up, z to its front, metres), 0 where

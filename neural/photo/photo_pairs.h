@@ -6,19 +6,21 @@
 #include <span>
 #include <vector>
 
+#include "bodyloom/neural/people/photo_frame.h"
+
 namespace bodyloom {
 
 struct PhotoPair {
   int person = 0, source = 0, target = 0;  ///< frames of the person
 };
 
-/// The pair at place `place` of step `step`'s batch: a person of `persons`, each as likely, two of its frames, each as
-/// likely, different unless there is but one. A function of these numbers alone. `num_frames` is by person; throws
+/// The pair at place `place` of step `step`'s batch: a person of `persons`, each as likely, one of its frames, each as
+/// likely, and another of another pose (neural/people/photo_partner.h). A function of these numbers alone. Throws
 /// std::invalid_argument when there is no person or one has no frames.
-PhotoPair DrawPhotoPair(std::span<const int> num_frames, std::span<const int> persons, uint64_t seed, int64_t step,
+PhotoPair DrawPhotoPair(const PhotoSource& people, std::span<const int> persons, uint64_t seed, int64_t step,
                         int place);
 
 /// `per_person` pairs of each person, the same for every seed: to compare runs on.
-std::vector<PhotoPair> ValidationPairs(std::span<const int> num_frames, std::span<const int> persons, int per_person);
+std::vector<PhotoPair> ValidationPairs(const PhotoSource& people, std::span<const int> persons, int per_person);
 
 }  // namespace bodyloom

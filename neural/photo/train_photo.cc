@@ -126,7 +126,7 @@ class PhotoTrainer : public TrainedSystem {
 
   void Validate(int done, bool) override {
     const std::vector<PhotoPair> pairs =
-        ValidationPairs(validation_source_.num_frames, options_.validation, options_.validation_pairs);
+        ValidationPairs(validation_source_, options_.validation, options_.validation_pairs);
     const size_t every = std::max<size_t>(1, pairs.size() / static_cast<size_t>(options_.preview_pairs));
     PhotoScorer scorer(lpips_, options_.ssim);
     std::vector<PhotoPreview> previews;
@@ -172,7 +172,7 @@ class PhotoTrainer : public TrainedSystem {
   [[nodiscard]] PhotoBatch BatchOf(int64_t step) const {
     std::vector<PhotoPair> pairs;
     for (int place = 0; place < options_.batch; ++place) {
-      pairs.push_back(DrawPhotoPair(source_.num_frames, options_.train, options_.seed, step, place));
+      pairs.push_back(DrawPhotoPair(source_, options_.train, options_.seed, step, place));
     }
     return MakePhotoBatch(source_, pairs, options_.reach, config_.SmallestSide(), guess_ ? &*guess_ : nullptr,
                           back_of_head_);

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/pipelines/neural/likeness_metrics.h"
 
-#include <cmath>
 #include <limits>
 #include <memory>
 
-#include "bodyloom/neural/metrics/lpips.h"
+#include "bodyloom/neural/metrics/temporal_lpips.h"
 #include "bodyloom/neural/runtime.h"
 #include "bodyloom/pipelines/neural/weights_folder.h"
 
@@ -26,8 +25,7 @@ std::vector<FrameMetric> LikenessMetrics(const std::string& weights_folder) {
     const LpipsFeatures truth = lpips->Features(frame.truth), result = lpips->Features(frame.result);
     double change = std::numeric_limits<double>::quiet_NaN();
     if (before != nullptr) {
-      change = std::abs(lpips->Distance(result, lpips->Features(before->result)).value -
-                        lpips->Distance(truth, lpips->Features(before->truth)).value);
+      change = TemporalLpipsOf(*lpips, result, lpips->Features(before->result), truth, lpips->Features(before->truth));
     }
     return std::vector<double>{lpips->Distance(result, truth).value, change};
   };

@@ -9,7 +9,7 @@
 
 namespace bodyloom {
 
-/// LPIPS v0.1 on AlexNet, and tLPIPS of frames that follow another. `weights_folder` may be empty, or lack the weights:
+/// LPIPS v0.1 on AlexNet, and tLPIPS of frames that follow another (FramePair::follows). `weights_folder` may be empty, or lack the weights:
 /// then a random-feature substitute measures, and its columns are called so. Throws std::runtime_error naming weights
 /// that do not fit.
 std::vector<FrameMetric> LikenessMetrics(const std::string& weights_folder);

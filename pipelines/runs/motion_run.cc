@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "bodyloom/data_tools/descriptors/dense_history.h"
 #include "bodyloom/data_tools/formats/json_reader.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/pipelines/runs/run_config.h"
@@ -67,7 +68,25 @@ SurfaceMotion ReadMotion(const JsonNode& json) {
   return motion;
 }
 
+/// What the notes say of the data; other programs' runs may say nothing.
+void ReadTrained(const JsonNode& root, MotionRun* run) {
+  if (!root.Has("run")) return;
+  const JsonNode notes = root.At("run");
+  if (notes.Has("data")) run->data = notes.At("data").Text();
+  if (notes.Has("track")) run->track = notes.At("track").Text();
+  if (!notes.Has("train")) return;
+  const JsonNode ranges = notes.At("train");
+  for (size_t i = 0; i < ranges.size(); ++i) {
+    const JsonNode range = ranges.At(i);
+    run->trained.emplace_back(range.At(0).Int(), range.At(1).Int());
+  }
+}
+
 }  // namespace
+
+int MotionChannels(MotionDescriptor descriptor, int past) {
+  return descriptor == MotionDescriptor::kDense2d ? DenseHistory::kChannelsOfFrame * past : 3 + 3 * past;
+}
 
 std::string MotionRunJson(const MotionRun& run) {
   const MotionConfig& c = run.config;
@@ -83,6 +102,7 @@ std::string MotionRunJson(const MotionRun& run) {
                                  {"decoder_widths", c.profile.decoder_widths},
                                  {"discriminator_width", c.profile.discriminator_width},
                                  {"perceptual_divisor", c.profile.perceptual_divisor},
+                                 {"descriptor", ToText(c.descriptor)},
                                  {"motion_channels", c.motion_channels},
                                  {"num_labels", c.num_labels},
                                  {"shape", c.shape},
@@ -130,6 +150,14 @@ MotionRun ReadMotionRun(const std::string& run_dir) {
         std::pair("surface", &c.surface), std::pair("texture", &c.texture)}) {
     *flag = root.At(key).Flag();
   }
+  // Runs from before there was a choice of descriptors have the surface's.
+  if (root.Has("descriptor")) {
+    try {
+      c.descriptor = MotionDescriptorNamed(root.At("descriptor").Text());
+    } catch (const std::invalid_argument& error) {
+      throw std::runtime_error(root.place() + ": " + error.what());
+    }
+  }
   // Runs from before there was a choice looked at whole windows.
   c.around_body = root.Has("around_body") && root.At("around_body").Flag();
   run.pixels_per_metre = root.At("pixels_per_metre").Number();
@@ -137,10 +165,11 @@ MotionRun ReadMotionRun(const std::string& run_dir) {
   if (root.Has("surface_motion")) run.motion = ReadMotion(root.At("surface_motion"));
   // Runs from before motion was carried over without its person's shape do not hold their own.
   if (root.Has("betas")) run.betas = ReadShape(root.At("betas"));
+  ReadTrained(root, &run);
   std::string why;
   if (!run.config.IsValid(&why)) throw std::runtime_error(path + ": " + why);
   if (run.reach < (c.around_body ? 1 : 0) || run.reach > run.config.profile.image_size || run.past < 0 ||
-      run.past > 10000 || 3 + 3 * run.past != run.config.motion_channels || !(run.pixels_per_metre > 0) ||
+      run.past > 10000 || MotionChannels(c.descriptor, run.past) != c.motion_channels || !(run.pixels_per_metre > 0) ||
       !(run.fps > 0)) {
     throw std::runtime_error(path + ": past, reach, pixels_per_metre or fps do not make sense");
   }

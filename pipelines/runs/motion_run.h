@@ -5,6 +5,8 @@
 #include <Eigen/Core>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "bodyloom/data_tools/descriptors/surface_motion.h"
 #include "bodyloom/neural/motion/motion_config.h"
@@ -19,8 +21,13 @@ struct MotionRun {
   int past = 10;         ///< velocities of so many frames
   SurfaceMotion motion;  ///< axes and velocities of the motion maps; older runs: those that were the only ones
   std::optional<Eigen::VectorXd> betas;  ///< the person's shape; absent in runs from before they held it
-  std::string notes;                     ///< JSON object of what else is known: data, frames, options
+  std::string data, track;               ///< what it was trained on, as `notes` say when a run is read; empty: unknown
+  std::vector<std::pair<int, int>> trained;  ///< frames of it, first and last; likewise
+  std::string notes;                         ///< JSON object of what else is known: data, frames, options
 };
+
+/// Channels of the descriptor of `past` frames: 3 + 3·past of the surface, 6·past of dense2d.
+int MotionChannels(MotionDescriptor descriptor, int past);
 
 std::string MotionRunJson(const MotionRun& run);
 

@@ -6,9 +6,11 @@
 #include <optional>
 #include <utility>
 
+#include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/geometry/base/stopwatch.h"
+#include "bodyloom/geometry/velocity_stencil.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/score/error_pictures.h"
 
@@ -23,6 +25,23 @@ std::optional<std::string> FolderOf(const std::string& path, const std::string& 
   if (fs::is_directory(below)) return below.string();
   if (kind == "images") return path;
   return std::nullopt;
+}
+
+/// The gap-free run of each frame by the clock of the single-person dataset that is compared, or whose pictures are;
+/// empty: there is none.
+std::vector<int> RunsOf(const std::string& truth) {
+  const fs::path path = fs::path(truth).lexically_normal();
+  for (const fs::path& place : {path, path.filename() == "images" ? path.parent_path() : path}) {
+    if (!IsSinglePersonDataset(place.string())) continue;
+    const Track track = SinglePersonDataset(place.string()).track();
+    const std::vector<char> usable(track.num_frames(), 1);
+    std::vector<int> runs;
+    for (const VelocityStencil& frame : VelocityStencils(track.motion.timestamps, usable)) {
+      runs.push_back(frame.segment);
+    }
+    return runs;
+  }
+  return {};
 }
 
 }  // namespace
@@ -58,12 +77,13 @@ CompareResultsReport CompareResults(const CompareResultsRequest& request, const 
                                            SinglePersonDataset(request.other_truth),
                                            SinglePersonDataset(request.other_result), request.reacting, num_threads);
   }
+  const std::vector<int> runs = RunsOf(request.truth);
   for (const auto& [kind, metrics] : kinds) {
     const auto truth = FolderOf(request.truth, kind), result = FolderOf(request.result, kind);
     if (truth.has_value() != result.has_value()) report.only_one_side.push_back(kind);
     if (!truth || !result) continue;
     const std::string mask = kind == "labels" ? "" : request.mask;  // labels are compared everywhere
-    const auto frames = FramePairs::Open(*truth, *result, mask, request.common_only);
+    const auto frames = FramePairs::Open(*truth, *result, mask, request.common_only, runs);
     report.tables.push_back(CompareFrames(kind, frames.get(), metrics, num_threads,
                                           [&, stage = kind](double fraction) { callbacks.Update(stage, fraction); }));
   }

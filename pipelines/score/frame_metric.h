@@ -17,7 +17,8 @@ struct MetricColumn {
 };
 
 /// Something computed of every frame: one value a column, NaN where there is nothing to measure. `before` is the frame
-/// before in the sequence, nullptr at the first. Called from several threads at once.
+/// before in the sequence, nullptr where there is none to follow: at the first, and after a cut (FramePair::follows).
+/// Called from several threads at once.
 struct FrameMetric {
   std::vector<MetricColumn> columns;
   std::function<std::vector<double>(const FramePair& frame, const FramePair* before)> compute;

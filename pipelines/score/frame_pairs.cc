@@ -5,9 +5,11 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
+#include "bodyloom/data_tools/observations/frame_numbers.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/data_tools/video/video_reader.h"
 #include "bodyloom/geometry/base/check.h"
@@ -46,9 +48,32 @@ std::pair<int, std::string> Missing(const FilesByName& of, const FilesByName& in
   return missing;
 }
 
+/// Whether frames `before` and `now` are in one run; those that the runs do not know are.
+bool InOneRun(const std::vector<int>& runs, int64_t before, int64_t now) {
+  const auto count = static_cast<int64_t>(runs.size());
+  return before < 0 || now < 0 || before >= count || now >= count || runs[before] == runs[now];
+}
+
+/// By name: whether it follows the one before it (FramePairs::Open).
+std::vector<char> FollowersAmong(const std::vector<std::string>& names, const std::vector<int>& runs) {
+  std::vector<int64_t> numbers;
+  for (const std::string& name : names) numbers.push_back(FrameNumberFromName(name));
+  const auto numbered = [&](size_t i) { return numbers[i] >= 0 && numbers[i - 1] >= 0; };
+  int64_t step = 0;
+  for (size_t i = 1; i < names.size(); ++i) {
+    if (numbered(i)) step = std::gcd(step, numbers[i] - numbers[i - 1]);
+  }
+  std::vector<char> follows(names.size());
+  for (size_t i = 1; i < names.size(); ++i) {
+    follows[i] = !numbered(i) || (numbers[i] - numbers[i - 1] == step && InOneRun(runs, numbers[i - 1], numbers[i]));
+  }
+  return follows;
+}
+
 class FolderPairs : public FramePairs {
  public:
-  FolderPairs(const std::string& truth, const std::string& result, const std::string& mask, bool common_only)
+  FolderPairs(const std::string& truth, const std::string& result, const std::string& mask, bool common_only,
+              const std::vector<int>& runs)
       : truth_(FilesOf(truth)), result_(FilesOf(result)) {
     const auto missing_result = Missing(truth_, result_), missing_truth = Missing(result_, truth_);
     left_out_ = missing_result.first + missing_truth.first;
@@ -60,6 +85,7 @@ class FolderPairs : public FramePairs {
       throw std::runtime_error(result + ": no picture has the name of one in " + truth + " ('" + truth_.begin()->first +
                                "', …)");
     }
+    follows_ = FollowersAmong(names_, runs);
     if (!common_only) {
       RequireNone(missing_result, result, truth);
       RequireNone(missing_truth, truth, result);
@@ -81,6 +107,7 @@ class FolderPairs : public FramePairs {
     ParallelFor(n, num_threads, [&](int i) {
       FramePair& pair = pairs[i];
       pair.name = names_[next_ + i];
+      pair.follows = follows_[next_ + i] != 0;
       pair.where = result_.at(pair.name);
       pair.truth = ReadImage(truth_.at(pair.name));
       pair.result = ReadImage(pair.where);
@@ -105,13 +132,19 @@ class FolderPairs : public FramePairs {
 
   FilesByName truth_, result_, mask_;
   std::vector<std::string> names_;
+  std::vector<char> follows_;  ///< by name
   int next_ = 0, left_out_ = 0;
 };
 
 class VideoPairs : public FramePairs {
  public:
-  VideoPairs(const std::string& truth, const std::string& result, const std::string& mask)
-      : truth_path_(truth), result_path_(result), mask_path_(mask), truth_(truth), result_(result) {
+  VideoPairs(const std::string& truth, const std::string& result, const std::string& mask, std::vector<int> runs)
+      : truth_path_(truth),
+        result_path_(result),
+        mask_path_(mask),
+        truth_(truth),
+        result_(result),
+        runs_(std::move(runs)) {
     if (!mask.empty()) mask_ = std::make_unique<VideoReader>(mask);
   }
 
@@ -122,6 +155,8 @@ class VideoPairs : public FramePairs {
       char name[16];
       std::snprintf(name, sizeof name, "%06d", truth_.next_frame());
       pair.name = name;
+      const int64_t number = truth_.next_frame();
+      pair.follows = number > 0 && InOneRun(runs_, number - 1, number);
       pair.where = result_path_ + ": frame " + std::to_string(result_.next_frame());
       const bool has_truth = truth_.Read(&pair.truth), has_result = result_.Read(&pair.result);
       if (!has_truth && !has_result) break;
@@ -148,15 +183,16 @@ class VideoPairs : public FramePairs {
   std::string truth_path_, result_path_, mask_path_;
   VideoReader truth_, result_;
   std::unique_ptr<VideoReader> mask_;
+  std::vector<int> runs_;
 };
 
 }  // namespace
 
 std::unique_ptr<FramePairs> FramePairs::Open(const std::string& truth, const std::string& result,
-                                             const std::string& mask, bool common_only) {
+                                             const std::string& mask, bool common_only, const std::vector<int>& runs) {
   const bool folders = fs::is_directory(truth) && fs::is_directory(result) && (mask.empty() || fs::is_directory(mask));
-  if (folders) return std::make_unique<FolderPairs>(truth, result, mask, common_only);
-  return std::make_unique<VideoPairs>(truth, result, mask);
+  if (folders) return std::make_unique<FolderPairs>(truth, result, mask, common_only, runs);
+  return std::make_unique<VideoPairs>(truth, result, mask, runs);
 }
 
 }  // namespace bodyloom

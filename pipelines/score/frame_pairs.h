@@ -16,6 +16,8 @@ namespace bodyloom {
 struct FramePair {
   std::string name;   ///< file name without extension; videos: six digits of the frame's index
   std::string where;  ///< the result's file (and frame), for messages
+  /// Whether the frame before shows the moment before: false for the first, after a cut and where a frame is left out.
+  bool follows = false;
   Image truth, result;
   std::optional<PixelMask> mask;
 };
@@ -24,9 +26,13 @@ struct FramePair {
 class FramePairs {
  public:
   /// `mask` may be empty. Names that only one side has are an error unless `common_only`; a missing mask always is.
+  /// `runs`: of a clip with cuts, by frame the number of the gap-free run that it lies in; empty: nobody knows of any.
+  /// Pictures of a folder follow each other where their names' numbers do (FrameNumberFromName; every fifth frame of a
+  /// clip is no gap of four) and where those numbers lie in one run; names without numbers as they are sorted. Of videos
+  /// without `runs` every frame follows: a cut in the pictures alone is not looked for.
   /// Throws std::runtime_error naming the path: nothing there, no pictures, two files of one name, no common name.
   static std::unique_ptr<FramePairs> Open(const std::string& truth, const std::string& result, const std::string& mask,
-                                          bool common_only);
+                                          bool common_only, const std::vector<int>& runs = {});
   virtual ~FramePairs() = default;
 
   /// Up to `count` further frames, decoded on up to num_threads threads; empty at the end. Throws std::runtime_error

@@ -47,7 +47,7 @@ MetricTable CompareFrames(const std::string& kind, FramePairs* frames, const std
     table.rows.resize(begin + batch.size());
     ParallelFor(static_cast<int>(batch.size()), num_threads, [&](int i) {
       const FramePair* before = i > 0 ? &batch[i - 1] : last ? &*last : nullptr;
-      table.rows[begin + i] = RowOf(batch[i], before, metrics);
+      table.rows[begin + i] = RowOf(batch[i], batch[i].follows ? before : nullptr, metrics);
     });
     last = std::move(batch.back());
     if (progress && frames->num_frames() > 0) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <stdexcept>
 
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
@@ -54,6 +55,7 @@ class GuidedAnimation {
     CheckRequest(request_);
     OpenRun();
     OpenPhotos(wanted);
+    if (!request_.data.empty()) shown_ = FramesAmong(wanted, request_.data);
     OpenMotion();
     EncodePhotos();
     RenderFrames();
@@ -154,7 +156,7 @@ class GuidedAnimation {
     networks_s_ += network_s;
     network_ms_.push_back(1e3 * network_s);
     Composite(picture.image, picture.alpha, window, t, composed);
-    if (truth_) {
+    if (truth_ && shown_.count(t) == 0) {
       const PersonFrame truth = truth_->Read(t, {true, false, false, false});
       FillPicture({CutWindow(truth.rgb, window, t), CutLabels(truth.labels, window, t)}, &frame);
       scorer_->Add(picture, frame);
@@ -210,6 +212,7 @@ class GuidedAnimation {
   std::unique_ptr<GuidedRenderer> renderer_;
   std::vector<Photo> photos_;
   std::vector<PhotoFrame> frames_of_photos_;
+  std::set<int> shown_;  ///< frames of the data that are photos, and not scored
   std::string notes_;
   Track track_;
   std::unique_ptr<PhotoMaps> maps_;

@@ -15,7 +15,8 @@ namespace bodyloom {
 
 /// One of `track` and `data` is given; with `data` neither view_yaw nor garment.
 struct AnimateGuidedRequest : PhotoAnimationRequest {
-  std::string data;  ///< a dataset of the same person: its motion is shown, its pictures are compared with
+  std::string data;  ///< a dataset of the same person: its motion is shown, its pictures are compared with, but
+                     ///< for those that are photos
   std::optional<MapCompletion> completion;  ///< of what the photos do not show; absent: as the run says
   bool anywhere = false;  ///< the person may be farther from the body than clothes ever were in training
   std::string weights;    ///< with `data`: folder with alexnet, lpips_alex and vgg19 (weights_folder.h); empty: none

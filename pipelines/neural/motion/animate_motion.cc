@@ -60,15 +60,35 @@ void CheckRequest(const AnimateMotionRequest& request) {
   RequireDistinct({request.data, request.like}, {request.set});
 }
 
+/// Of the T frames of `like`: 1 where the run was trained on the frame; empty: it was trained on other data, or does not
+/// say on which frames.
+std::vector<char> TrainedOn(const MotionRun& run, const std::string& like, int T) {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  const std::string own = run.track.empty() ? (fs::path(run.data) / "track.npz").string() : run.track;
+  if (run.trained.empty() || !(fs::equivalent(like, run.data, ignored) || fs::equivalent(like, own, ignored)))
+    return {};
+  std::vector<char> trained(T);
+  for (const auto& [first, last] : run.trained) {
+    for (int t = std::max(0, first); t <= std::min(last, T - 1); ++t) trained[t] = 1;
+  }
+  return trained;
+}
+
 /// Of each frame to the nearest of `like`; empty without it.
 std::vector<float> SimilarityTo(const AnimateMotionRequest& request, const Track& track, const MotionRun& run) {
   if (request.like.empty()) return {};
   Track others =
       std::filesystem::is_directory(request.like) ? SinglePersonDataset(request.like).track() : ReadTrack(request.like);
   try {
-    if (!IsAtRate(others, run.fps)) others = ResampleTrack(others, run.fps);
+    std::vector<char> trained;
+    if (IsAtRate(others, run.fps)) {
+      trained = TrainedOn(run, request.like, others.num_frames());
+    } else {
+      others = ResampleTrack(others, run.fps);
+    }
     return SimilarityToNearest(*BodyOrBuiltin(request.body), track, others, run.past, ThreadsFor(request.threads),
-                               run.motion);
+                               run.motion, trained);
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(request.like + ": " + error.what());
   }
@@ -148,7 +168,8 @@ class MotionAnimation {
     for (int t = 0; t < light_frames_; ++t) {
       Update("light", t + 1);
       if (!clip_->track().HasResult(t)) continue;
-      FillMotion(clip_->frames(), t, &frame);
+      clip_->FillMotion(t, &frame);
+      ForgetAcrossCuts(t, renderer.get());
       relighter_->Observe(renderer->Next(frame));
     }
     relighter_->Estimate();
@@ -192,13 +213,18 @@ class MotionAnimation {
     clock_.Book(kCompose);
   }
 
+  /// Before frame t: what does not follow another frame has no past.
+  void ForgetAcrossCuts(int t, MotionRenderer* renderer) const {
+    const PersonFrames& frames = clip_->frames();
+    if (t > 0 && frames.Segment(t) != frames.Segment(t - 1)) renderer->Restart();
+    if (request_.without_past) renderer->ForgetPast();
+  }
+
   /// The picture of frame t, laid into `composed`.
   MotionPicture RenderFrame(int t, Image* composed) {
     const PersonFrames& frames = clip_->frames();
     clip_->Fill(t, &frame_);
-    const bool is_cut = t > 0 && frames.Segment(t) != frames.Segment(t - 1);
-    if (is_cut) renderer_->Restart();
-    if (request_.without_past) renderer_->ForgetPast();
+    ForgetAcrossCuts(t, renderer_.get());
     clock_.Book(kMaps);
     MotionPicture picture = renderer_->Next(frame_);
     const double network_s = clock_.Book(kNetwork);

@@ -26,7 +26,8 @@ struct AnimateMotionRequest : AnimationRequest {
   int warmup = 50;              ///< passes of the first frame through the network before it counts
   bool without_past = false;    ///< every frame as if it were the first
   bool anywhere = false;        ///< the person may be farther from the body than clothes ever were in training
-  std::string like;             ///< with `data`: a dataset or track whose motion each frame's is compared with
+  std::string like;             ///< with `data`: a dataset or track whose motion each frame's is compared with; of the
+                                ///< data that the run was trained on, the frames that it was trained on
   std::string frames;           ///< with `data`: a CSV to write, a line a frame (MotionErrors)
   std::string weights;          ///< with `data`: folder with alexnet and lpips_alex (weights_folder.h); empty: none
   std::string set;              ///< a single-person dataset to write, of the result; empty: none

@@ -41,6 +41,7 @@ AnimatedClip::AnimatedClip(const AnimatedClipRequest& request, const MotionRun& 
     MotionDataRequest data;
     data.data = request.data, data.body = request.body;
     data.pixels_per_metre = run.pixels_per_metre;
+    data.descriptor = run.config.descriptor;
     data.motion = run.motion;
     data.num_threads = request.threads;
     data_ = std::make_unique<MotionData>(data, run.config.profile, run.config.Multiple());
@@ -69,6 +70,7 @@ AnimatedClip::AnimatedClip(const AnimatedClipRequest& request, const MotionRun& 
   }
   options.yaw_deg = ViewAngles(request.view_yaw, num_frames, first, last);
   own_frames_.emplace(*body_, *own_track_, options);
+  if (run.config.descriptor == MotionDescriptor::kDense2d) own_dense_.emplace(*own_frames_, run.past);
 }
 
 void AnimatedClip::TakeShapeOf(const MotionRun& run) {
@@ -92,7 +94,15 @@ void AnimatedClip::Fill(int t, MotionFrame* frame) const {
   if (data_) {
     data_->Fill(t, true, frame);
   } else {
-    FillMotion(*own_frames_, t, frame);
+    FillMotion(t, frame);
+  }
+}
+
+void AnimatedClip::FillMotion(int t, MotionFrame* frame) const {
+  if (data_) {
+    data_->Fill(t, false, frame);
+  } else {
+    bodyloom::FillMotion(*own_frames_, own_dense_ ? &*own_dense_ : nullptr, t, frame);
   }
 }
 

@@ -48,6 +48,8 @@ class AnimatedClip {
   [[nodiscard]] const std::string& notes() const { return notes_; }
   /// What the network takes of frame t; with its truth where the clip is scored.
   void Fill(int t, MotionFrame* frame) const;
+  /// The same without the truth.
+  void FillMotion(int t, MotionFrame* frame) const;
 
  private:
   void TakeShapeOf(const MotionRun& run);
@@ -56,6 +58,7 @@ class AnimatedClip {
   std::shared_ptr<const BodyModel> body_;
   std::optional<Track> own_track_;  ///< before anything is shown more than once
   std::optional<PersonFrames> own_frames_;
+  std::optional<DenseHistory> own_dense_;
   std::string notes_;
 };
 

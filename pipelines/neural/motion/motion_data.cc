@@ -45,7 +45,7 @@ void FillTruth(const MotionTruthFrame& cut, MotionFrame* frame) {
 
 }  // namespace
 
-void FillMotion(const PersonFrames& frames, int t, MotionFrame* frame) {
+void FillMotion(const PersonFrames& frames, const DenseHistory* dense, int t, MotionFrame* frame) {
   const PersonWindow& window = frames.window();
   *frame = {};
   frame->width = window.width;
@@ -56,10 +56,15 @@ void FillMotion(const PersonFrames& frames, int t, MotionFrame* frame) {
     frame->before_y = moved.y();
   }
   const size_t area = size_t(window.width) * window.height, side = frames.options().uv_size;
-  frame->motion.resize(frames.channels() * side * side);
+  if (dense != nullptr) {
+    frame->dense.resize(dense->channels() * area);
+    dense->Maps(t, frame->dense);
+  } else {
+    frame->motion.resize(frames.channels() * side * side);
+    frames.MotionMaps(t, frame->motion);
+  }
   frame->uv.resize(2 * area);
   frame->body.resize(area);
-  frames.MotionMaps(t, frame->motion);
   frames.BodyMaps(t, frame->uv, frame->body);
 }
 
@@ -92,12 +97,13 @@ class MotionData::Impl {
     } catch (const std::invalid_argument& error) {
       throw std::runtime_error((request.track.empty() ? request.data : request.track) + ": " + error.what());
     }
+    if (request.descriptor == MotionDescriptor::kDense2d) dense_.emplace(*frames_, options.past);
     cut_.resize(track_.num_frames());
     if (!set_) CutVideo(request);
   }
 
   void Fill(int t, bool with_truth, MotionFrame* frame) {
-    FillMotion(*frames_, t, frame);
+    FillMotion(*frames_, dense_ ? &*dense_ : nullptr, t, frame);
     if (with_truth) FillTruth(CutAt(t), frame);
   }
 
@@ -179,6 +185,7 @@ class MotionData::Impl {
   std::optional<SinglePersonDataset> set_;
   Track track_;
   std::optional<PersonFrames> frames_;
+  std::optional<DenseHistory> dense_;
   std::mutex mutex_;
   std::vector<std::optional<MotionTruthFrame>> cut_;
   bool has_part_labels_ = false;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "bodyloom/data_tools/descriptors/dense_history.h"
 #include "bodyloom/data_tools/descriptors/person_frames.h"
 #include "bodyloom/geometry/track.h"
 #include "bodyloom/neural/motion/motion_config.h"
@@ -13,10 +14,11 @@
 namespace bodyloom {
 
 struct MotionDataRequest {
-  std::string data;             ///< a single-person dataset, a video or a folder of images
-  std::string track;            ///< empty: the single-person dataset's own
-  std::string body;             ///< empty: the built-in body
-  std::string part_labels;      ///< for a video: DensePose's parts, which stand in for a parsing of the clothes
+  std::string data;         ///< a single-person dataset, a video or a folder of images
+  std::string track;        ///< empty: the single-person dataset's own
+  std::string body;         ///< empty: the built-in body
+  std::string part_labels;  ///< for a video: DensePose's parts, which stand in for a parsing of the clothes
+  MotionDescriptor descriptor = MotionDescriptor::kSurface;
   SurfaceMotion motion;         ///< axes and velocities of the motion maps
   double pixels_per_metre = 0;  ///< of the window; 0: as large as the profile's image_size allows
   int num_threads = 0;
@@ -50,7 +52,8 @@ class MotionData {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The part of a frame that does not need pictures: motion maps, surface coordinates, the window's place.
-void FillMotion(const PersonFrames& frames, int t, MotionFrame* frame);
+/// The part of a frame that does not need pictures: the descriptor's maps, surface coordinates, the window's place.
+/// `dense`: the descriptor in the picture's plane; nullptr: the surface's motion maps.
+void FillMotion(const PersonFrames& frames, const DenseHistory* dense, int t, MotionFrame* frame);
 
 }  // namespace bodyloom

@@ -97,8 +97,11 @@ MotionRun RunOf(const TrainMotionRendererRequest& request, const TrainMotionOpti
 void SayWhatIsTrained(const MotionRun& run, const PersonWindow& window, const PipelineCallbacks& callbacks) {
   callbacks.Say(Concatenate(
       "window ", window.width, "x", window.height, " px, ", run.pixels_per_metre, " px a metre; profile ",
-      run.config.profile.name, "; velocities ", VelocityName(run.motion), " in the ", ToString(run.motion.frame),
-      " frame", run.config.around_body ? Concatenate("; ", run.reach, " px around the body") : "; the whole window"));
+      run.config.profile.name, "; ",
+      run.config.descriptor == MotionDescriptor::kDense2d
+          ? Concatenate("dense UV coordinates and keypoints of ", run.past, " frames")
+          : Concatenate("velocities ", VelocityName(run.motion), " in the ", ToString(run.motion.frame), " frame"),
+      run.config.around_body ? Concatenate("; ", run.reach, " px around the body") : "; the whole window"));
 }
 
 }  // namespace
@@ -117,12 +120,13 @@ TrainMotionRendererSummary TrainMotionRenderer(const TrainMotionRendererRequest&
 
   MotionDataRequest data_request = request.data;
   data_request.num_threads = options.num_threads;
+  data_request.descriptor = config.descriptor;
   SetAxesPose(request.cameras, request.view, &data_request.motion);
   if (std::string why; !data_request.motion.IsValid(&why)) throw RequestError(why);
   MotionData data(data_request, config.profile, config.Multiple());
   SayLines(data.notes(), callbacks);
   LeaveOutUnknown(data, &config, callbacks);
-  config.motion_channels = data.frames().channels();
+  config.motion_channels = MotionChannels(config.descriptor, data.frames().options().past);
   const std::unique_ptr<MotionData> validation = ValidationData(request, data_request, data, config);
   if (validation) {
     options.validation_source = [&](int t, bool with_truth, MotionFrame* frame) {

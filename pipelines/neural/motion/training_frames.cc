@@ -83,7 +83,7 @@ int ReachOf(MotionData* data, const std::vector<FrameRange>& ranges) {
   for (const int i : EvenlySpreadFrames(static_cast<int>(all.size()), kReachFrames)) {
     MotionFrame frame;
     data->Fill(all[i], true, &frame);
-    frame.motion = frame.uv = frame.image = frame.normals = {};
+    frame.motion = frame.dense = frame.uv = frame.image = frame.normals = {};
     frames.push_back(std::move(frame));
   }
   return ClothesReach(frames);

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <mutex>
 #include <numeric>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "bodyloom/data_tools/body/body_or_builtin.h"
@@ -26,14 +28,12 @@ class PeopleData::Impl {
  public:
   explicit Impl(const PeopleDataRequest& request) : request_(request), body_(BodyOrBuiltin(request.body)) {
     if (IsSinglePersonDataset(request.data)) {
-      if (!request.test) AddPerson({request.data});
+      if (!request.test) AddPerson("", {request.data});
     } else {
       const MultiPersonDataset set = ReadMultiPersonDataset(request.data);
       for (const DatasetPerson& person : set.people) {
         if (person.test != request.test) continue;
-        std::vector<std::string> clips;
-        for (const std::string& clip : person.clips) clips.push_back((fs::path(set.path) / clip).string());
-        AddPerson(clips);
+        AddPerson(set.path, person.clips);
       }
     }
     if (people_.empty()) {
@@ -65,9 +65,16 @@ class PeopleData::Impl {
     int t = 0;
   };
 
-  void AddPerson(const std::vector<std::string>& clips) {
+  /// `clips`: below `folder`.
+  void AddPerson(const std::string& folder, const std::vector<std::string>& clips) {
     std::vector<FrameOfPerson> frames;
-    for (const std::string& path : clips) {
+    std::map<std::pair<std::string, int>, int> poses;  // numbers by action and frame
+    std::map<std::string, int> views;
+    std::vector<PicturePlace>& places = source_.places.emplace_back();
+    for (const std::string& name : clips) {
+      const std::string path = (fs::path(folder) / name).string();
+      const ClipPlace place = PlaceOfClip(name);
+      const int view = views.emplace(place.view, static_cast<int>(views.size())).first->second;
       clips_.push_back(std::make_unique<Clip>(path));
       Clip& clip = *clips_.back();
       if (!clip.set.info().has.labels) throw std::runtime_error(path + ": has no labels, which training needs");
@@ -79,7 +86,11 @@ class PeopleData::Impl {
         throw std::runtime_error(path + ": " + error.what());
       }
       texels_ = clip.maps->texels();
-      for (int t = 0; t < clip.set.info().num_frames; ++t) frames.push_back({&clip, t});
+      for (int t = 0; t < clip.set.info().num_frames; ++t) {
+        frames.push_back({&clip, t});
+        const int pose = poses.emplace(std::pair(place.action, t), static_cast<int>(poses.size())).first->second;
+        places.push_back({pose, view});
+      }
     }
     people_.push_back(std::move(frames));
   }

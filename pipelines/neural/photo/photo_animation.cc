@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/pipelines/neural/photo/photo_animation.h"
 
+#include <filesystem>
 #include <stdexcept>
 
+#include "bodyloom/data_tools/observations/frame_numbers.h"
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/pipelines/people/view_angles.h"
 
@@ -18,6 +20,21 @@ std::vector<PhotoRequest> PhotosWanted(const PhotoAnimationRequest& request) {
   for (const std::string& view : request.views) photos.push_back(ParsePhotoRequest(view, "--views", request.photo));
   if (!garment.from.empty()) photos.push_back(ParsePhotoRequest(garment.from, "--garment-from", request.photo));
   return photos;
+}
+
+std::set<int> FramesAmong(const std::vector<PhotoRequest>& photos, const std::string& data) {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  std::set<int> frames;
+  for (const PhotoRequest& photo : photos) {
+    const fs::path image(photo.image), set(data);
+    if (fs::equivalent(image, set, ignored) || fs::equivalent(image, set / "images", ignored)) {
+      frames.insert(photo.frame);
+    } else if (fs::equivalent(image.parent_path(), set / "images", ignored)) {
+      frames.insert(static_cast<int>(FrameNumberFromName(image.filename().string())));
+    }
+  }
+  return frames;
 }
 
 std::unique_ptr<PhotoMaps> MapsOfMotion(const PhotoAnimationRequest& request, const Photo& photo,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,10 @@ struct PhotoAnimationRequest : AnimationRequest {
 /// The photo, more views of the same person, the one who lends. Throws RequestError for texts that do not parse, for
 /// names of parts that are none, and for a lender without parts or parts without a lender.
 std::vector<PhotoRequest> PhotosWanted(const PhotoAnimationRequest& request);
+
+/// Frames of the single-person dataset `data` that are among the photos: the dataset itself with a frame, or one of its
+/// images. To compare a picture with the photo that it was made from says nothing of other poses.
+std::set<int> FramesAmong(const std::vector<PhotoRequest>& photos, const std::string& data);
 
 /// What the body of `photo` shows in the motion `track`, read from `path`, from the requested side, in windows of
 /// size × size pixels with texture_size × texture_size texels. The track takes the photo's shape, unless the motion's

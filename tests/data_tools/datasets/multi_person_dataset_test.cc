@@ -20,6 +20,15 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
+TEST(MultiPersonDataset, AClipsNameSaysItsActionAndItsView) {
+  EXPECT_EQ(PlaceOfClip("p000/a0_v12").action, "p000/a0");
+  EXPECT_EQ(PlaceOfClip("p000/a0_v12").view, "v12");
+  for (const char* other : {"p000/walk", "p000/a0_v", "p000/a_v1b", "_v1"}) {
+    EXPECT_EQ(PlaceOfClip(other).action, other);
+    EXPECT_EQ(PlaceOfClip(other).view, other);
+  }
+}
+
 MakeMultiPersonDatasetOptions Small() {
   MakeMultiPersonDatasetOptions options;
   options.people = 3, options.actions = 2, options.views = 2, options.frames = 2, options.every = 5;

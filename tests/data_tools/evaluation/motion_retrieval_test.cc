@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -95,6 +96,25 @@ TEST(MotionSimilarity, IsOneForWhatWasSeenAndLessForWhatWasNot) {
   }
   EXPECT_LT(mean, 0.999);
   EXPECT_GT(mean, 0.5);
+}
+
+TEST(MotionSimilarity, IsToTheFramesThatCount) {
+  const Track track = ShortClip(0).track;
+  std::vector<char> counts(track.num_frames());
+  for (int t = 0; t < 10; ++t) counts[t] = 1;
+  const std::vector<float> to_all = SimilarityToNearest(BuiltinBody(), track, track, 2, 1);
+  const std::vector<float> to_first = SimilarityToNearest(BuiltinBody(), track, track, 2, 1, {}, counts);
+  float least = 1;
+  for (int t = 0; t < track.num_frames(); ++t) {
+    EXPECT_NEAR(to_all[t], 1, 1e-3);
+    if (t < 10) EXPECT_NEAR(to_first[t], 1, 1e-3);
+    least = std::min(least, to_first[t]);
+  }
+  EXPECT_LT(least, 0.9) << "the ten frames of its beginning are not the whole motion";
+  counts.assign(track.num_frames(), 0);
+  EXPECT_TRUE(std::isnan(SimilarityToNearest(BuiltinBody(), track, track, 2, 1, {}, counts)[3]));
+  counts.pop_back();
+  EXPECT_THROW(SimilarityToNearest(BuiltinBody(), track, track, 2, 1, {}, counts), std::invalid_argument);
 }
 
 TEST(MotionSimilarity, FramesWithoutAResultHaveNone) {

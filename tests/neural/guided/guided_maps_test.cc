@@ -57,11 +57,13 @@ TEST(BodyPartMap, FourteenPartsThatAreFarApart) {
 }
 
 TEST(GuidedPlan, SamplesAreFunctionsOfTheStep) {
-  const std::vector<int> frames = {5, 1, 3};
+  PhotoSource source;
+  source.num_frames = {5, 1, 3};
+  const std::vector<int>& frames = source.num_frames;
   std::set<int> people;
   std::set<std::pair<int, int>> pairs;
   for (int64_t step = 0; step < 400; ++step) {
-    const GuidedSample a = GuidedSampleOf(7, step, 1, frames), b = GuidedSampleOf(7, step, 1, frames);
+    const GuidedSample a = GuidedSampleOf(7, step, 1, source), b = GuidedSampleOf(7, step, 1, source);
     EXPECT_EQ(a.person, b.person);
     EXPECT_EQ(a.source, b.source);
     EXPECT_EQ(a.target, b.target);
@@ -73,6 +75,20 @@ TEST(GuidedPlan, SamplesAreFunctionsOfTheStep) {
   EXPECT_EQ(people.size(), 3U);
   EXPECT_EQ(pairs.size(), 20U);
   EXPECT_THROW(GuidedSampleOf(1, 0, 0, {}), std::invalid_argument);
+}
+
+TEST(GuidedPlan, ATargetIsOfAnotherPoseAndAnotherView) {
+  PhotoSource source;
+  source.num_frames = {6};
+  source.places = {{{0, 0}, {1, 0}, {2, 0}, {0, 1}, {1, 1}, {2, 1}}};  // three poses in two views
+  std::set<std::pair<int, int>> pairs;
+  for (int64_t step = 0; step < 400; ++step) {
+    const GuidedSample sample = GuidedSampleOf(7, step, 0, source);
+    EXPECT_NE(sample.source % 3, sample.target % 3) << "the same pose";
+    EXPECT_NE(sample.source / 3, sample.target / 3) << "the same view";
+    pairs.insert({sample.source, sample.target});
+  }
+  EXPECT_EQ(pairs.size(), 12U) << "all that differ in both are drawn";
 }
 
 TEST(GuidedPlan, OnlyTheBareBodyIsKnownAndNotAllOfIt) {

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "bodyloom/neural/guided/guided_model.h"
+#include "bodyloom/neural/guided/guided_tensors.h"
 #include "bodyloom/neural/guided/loss_balance.h"
 #include "bodyloom/neural/networks/architecture_card.h"
 #include "bodyloom/neural/networks/spatial_modulation.h"
@@ -244,6 +245,62 @@ TEST(GuidedModel, AblationsLeaveOutWhatTheyName) {
   }
 }
 
+/// The paper removes S^s and M^s "from the entire pipeline" (Section 5.2): what is carried of them into the target's
+/// pose says nothing either.
+TEST(GuidedModel, WhatIsLeftOutOfTheSourceIsNotInTheTargetEither) {
+  torch::manual_seed(15);
+  const Tensor pose = torch::rand({1, 3, 32, 32}), silhouette = (torch::rand({1, 1, 32, 32}) > 0.5).to(torch::kFloat),
+               classes = torch::randint(0, 7, {1, 1, 32, 32}).to(torch::kFloat), image = torch::rand({1, 3, 32, 32});
+  const GuidedPseudo pseudo = {classes * silhouette, image * silhouette, silhouette, classes,
+                               torch::rand({1, 2, 32, 32})};
+  const CodeBox box = {0, 0, 8, 8};
+  const torch::NoGradGuard no_grad;
+  for (const bool guesses : {false, true}) {
+    for (const std::string part : {"", "source-silhouette", "source-labels"}) {
+      GuidedConfig config = guesses ? ToyGuidedWithGuesses() : ToyGuided();
+      if (!part.empty()) LeaveOut(part, &config);
+      GuidedModel model(config);
+      model->eval();
+      const GuidedSource source = model->EncodeSource({pose, silhouette, classes, image});
+      const auto differs = [&](const GuidedPseudo& other) {
+        const GuidedResult a = model->forward(source, pose, pseudo, box), b = model->forward(source, pose, other, box);
+        return !torch::equal(a.image, b.image) || !torch::equal(a.silhouette, b.silhouette) ||
+               !torch::equal(a.label_logits, b.label_logits);
+      };
+      const bool labels = part != "source-labels", contour = part != "source-silhouette";
+      GuidedPseudo other = pseudo;
+      other.classes = (6 - classes) * silhouette;
+      EXPECT_EQ(differs(other), labels) << part << " with guesses " << guesses;
+      other = pseudo;
+      other.contour_classes = 6 - classes;
+      EXPECT_EQ(differs(other), labels && guesses) << part;
+      other = pseudo;
+      other.silhouette = 1 - silhouette;
+      EXPECT_EQ(differs(other), contour) << part << " with guesses " << guesses;
+      other = pseudo;
+      other.extent = 1 - pseudo.extent;
+      EXPECT_EQ(differs(other), contour && guesses) << part;
+    }
+  }
+}
+
+TEST(GuidedPictures, WhereThePersonIsTheLikeliestGarmentCounts) {
+  // GarNet thinks of the background at every pixel, and of shoes or of a face next.
+  GuidedResult result;
+  result.silhouette = torch::ones({1, 1, 32, 32});
+  result.silhouette.slice(2, 0, 1).fill_(0.4);
+  result.image = torch::ones({1, 3, 32, 32});
+  result.label_logits = torch::zeros({1, 7, 32, 32});
+  result.label_logits.slice(1, 0, 1).fill_(9);
+  result.label_logits.slice(1, 6, 7).fill_(5);
+  result.label_logits.slice(1, 3, 4).slice(3, 16).fill_(7);
+  result.classes = torch::zeros({1, 1, 32, 32});
+  const GuidedPicture picture = PictureOf(result, {}, 0, {0, 0, 8, 8}, 4, 32);
+  EXPECT_EQ(picture.labels[0], 0) << "off the person";
+  EXPECT_EQ(picture.labels[5 * 32 + 3], 6);
+  EXPECT_EQ(picture.labels[5 * 32 + 20], 3);
+}
+
 /// Output of an untrained SilNet whose other convolutions are zero.
 Tensor UntrainedSilhouette(const GuidedConfig& config, const Tensor& pose, const Tensor& seen) {
   torch::manual_seed(14);
@@ -273,6 +330,12 @@ TEST(SilNet, AnUntrainedOnePredictsWhatIsLikely) {
   EXPECT_NEAR(skirt[16][15].item<double>(), 4, 0.7);
   EXPECT_NEAR(skirt[16][22].item<double>(), 4, 0.7);
   EXPECT_NEAR(skirt[16][24].item<double>(), -2, 0.7);
+  // Where the source's silhouette is left out nobody knows of a skirt: the bare body.
+  GuidedConfig without = ToyGuidedWithGuesses();
+  LeaveOut("source-silhouette", &without);
+  const Tensor none = UntrainedSilhouette(without, pose, torch::zeros_like(seen));
+  EXPECT_NEAR(none[16][15].item<double>(), 4, 0.7);
+  EXPECT_NEAR(none[16][24].item<double>(), -2, 0.7);
 }
 
 TEST(GuidedModel, ACroppedTargetSeesTheSameCellsOfTheSource) {

@@ -194,6 +194,23 @@ TEST(MapsOfSource, ThePhotoThatSeesATexelMostFromTheFrontFillsIt) {
   EXPECT_GT(of_second, 30);
 }
 
+TEST(MapsOfSource, WithoutGarmentsAPersonIsAPerson) {
+  const PhotoFrame photo = ToyPhotoFrame(1, {}, true);
+  const TexelNeighbours neighbours = ToyNeighbours();
+  const CoherentMaps whole =
+      MapsOfSource(std::span(&photo, 1), {texel_parts, {}, &neighbours}, MapCompletion::kNearest, true, {}).maps;
+  const CoherentMaps maps =
+      MapsOfSource(std::span(&photo, 1), {texel_parts, {}, &neighbours, {}, false}, MapCompletion::kNearest, true, {})
+          .maps;
+  for (int t = 0; t < kTexels; ++t) {
+    EXPECT_EQ(maps.labels[t], 1) << t;
+    if (whole.from[t] == 1) {
+      for (int k = 0; k < 3; ++k) EXPECT_EQ(maps.appearance[k * kTexels + t], whole.appearance[k * kTexels + t]);
+    }
+  }
+  EXPECT_EQ(maps.extent, whole.extent) << "how far clothes stand off is the silhouette's";
+}
+
 TEST(MapsOfSource, AnotherOneLendsWhatIsWornAndNothingElse) {
   const TexelNeighbours neighbours = ToyNeighbours();
   std::vector<uint8_t> lent(kTexels);

@@ -358,12 +358,15 @@ TEST(PhotoWindow, ReachIsThatOfTheClothes) {
 }
 
 TEST(PhotoPairs, AreDrawnFromTheirNumbersAlone) {
-  const std::vector<int> num_frames = {4, 1, 6, 5}, persons = {0, 2, 3};
+  PhotoSource people;
+  people.num_frames = {4, 1, 6, 5};
+  const std::vector<int>& num_frames = people.num_frames;
+  const std::vector<int> persons = {0, 2, 3};
   std::set<int> drawn;
   std::vector<int> frames(6, 0);
   for (int step = 0; step < 600; ++step) {
-    const PhotoPair pair = DrawPhotoPair(num_frames, persons, 7, step, 1);
-    const PhotoPair again = DrawPhotoPair(num_frames, persons, 7, step, 1);
+    const PhotoPair pair = DrawPhotoPair(people, persons, 7, step, 1);
+    const PhotoPair again = DrawPhotoPair(people, persons, 7, step, 1);
     ASSERT_EQ(pair.source, again.source);
     ASSERT_EQ(pair.target, again.target);
     ASSERT_NE(pair.source, pair.target);
@@ -375,16 +378,25 @@ TEST(PhotoPairs, AreDrawnFromTheirNumbersAlone) {
   for (const int count : frames) EXPECT_GT(count, 10);
   int differ = 0;
   for (int step = 0; step < 50; ++step) {
-    const PhotoPair a = DrawPhotoPair(num_frames, persons, 7, step, 0);
-    const PhotoPair b = DrawPhotoPair(num_frames, persons, 8, step, 0);
+    const PhotoPair a = DrawPhotoPair(people, persons, 7, step, 0);
+    const PhotoPair b = DrawPhotoPair(people, persons, 8, step, 0);
     differ += a.person != b.person || a.source != b.source || a.target != b.target;
   }
   EXPECT_GT(differ, 30);
   const std::vector<int> only = {1};
-  EXPECT_EQ(DrawPhotoPair(num_frames, only, 7, 0, 0).target, 0);
+  EXPECT_EQ(DrawPhotoPair(people, only, 7, 0, 0).target, 0);
   const std::vector<int> nobody;
-  EXPECT_THROW(DrawPhotoPair(num_frames, nobody, 7, 0, 0), std::invalid_argument);
-  EXPECT_EQ(ValidationPairs(num_frames, persons, 3).size(), 9U);
+  EXPECT_THROW(DrawPhotoPair(people, nobody, 7, 0, 0), std::invalid_argument);
+  EXPECT_EQ(ValidationPairs(people, persons, 3).size(), 9U);
+  // Two poses in two views: a target shows the other pose.
+  people.num_frames = {4};
+  people.places = {{{0, 0}, {1, 0}, {0, 1}, {1, 1}}};
+  const std::vector<int> first = {0};
+  for (int step = 0; step < 100; ++step) {
+    const PhotoPair pair = DrawPhotoPair(people, first, 7, step, 0);
+    EXPECT_NE(pair.source % 2, pair.target % 2);
+  }
+  for (const PhotoPair& pair : ValidationPairs(people, first, 20)) EXPECT_NE(pair.source % 2, pair.target % 2);
 }
 
 TEST(PhotoLosses, TextureLossCountsWhatEitherPictureShows) {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <map>
 #include <sstream>
 #include <string>
 
@@ -17,6 +18,7 @@
 #include "bodyloom/neural/photo/photo_window.h"
 #include "bodyloom/neural/runtime.h"
 #include "tests/neural/photo/toy_photo_training.h"
+#include "tests/neural/training/last_metrics.h"
 
 namespace bodyloom {
 namespace {
@@ -102,6 +104,25 @@ TEST(PhotoTraining, AResumedRunEndsWithTheSameBytes) {
     EXPECT_EQ(finished.steps, whole.TotalSteps());
     EXPECT_EQ(FileBytes(CheckpointPath(parts.run_dir)), FileBytes(CheckpointPath(whole.run_dir)));
   }
+}
+
+/// λ_VGG = 10, λ_face = 5, λ_tex = λ_GAN = 1 (Section 3.5), and alpha's loss, which is not in the paper; Adam at 2e-4.
+TEST(PhotoTraining, LossesAreWeightedAsPublished) {
+  const TrainPhotoOptions published;
+  EXPECT_EQ(published.perceptual_weight, 10);
+  EXPECT_EQ(published.face_weight, 5);
+  EXPECT_EQ(published.texture_weight, 1);
+  EXPECT_EQ(published.gan_weight, 1);
+  EXPECT_EQ(published.alpha_weight, 1);
+  EXPECT_EQ(published.learning_rate, 2e-4);
+  TrainPhotoOptions options = ToyOptions("photo_weights");
+  options.validation.clear();
+  options.gan_from = 0;
+  ASSERT_EQ(TrainPhoto(ToyPhotos(2, 3), options).status, TrainingStatus::kFinished);
+  std::map<std::string, double> last = LastMetrics(options.run_dir);
+  for (const char* term : {"perceptual", "texture", "generator", "alpha"}) EXPECT_GT(last[term], 0) << term;
+  const double loss = 10 * last["perceptual"] + last["texture"] + last["generator"] + last["alpha"];
+  EXPECT_NEAR(last["loss"], loss, 1e-4 * loss);
 }
 
 TEST(PhotoTraining, TheDiscriminatorJoinsWhenItIsTold) {

@@ -88,6 +88,31 @@ TEST_F(MotionRuns, OlderOnesDescribedMotionInTheOnlyWayThereWas) {
   EXPECT_EQ(motion.velocity.order, 3);
 }
 
+TEST_F(MotionRuns, TheDescriptorComesBack) {
+  MotionRun run = Tiny();
+  EXPECT_EQ(Read(MotionRunJson(run)).config.descriptor, MotionDescriptor::kSurface);
+  run.config.descriptor = MotionDescriptor::kDense2d;
+  run.config.motion_channels = MotionChannels(MotionDescriptor::kDense2d, run.past);
+  EXPECT_EQ(run.config.motion_channels, 60);
+  EXPECT_EQ(Read(MotionRunJson(run)).config.descriptor, MotionDescriptor::kDense2d);
+  nlohmann::json json = nlohmann::json::parse(MotionRunJson(run));
+  json["descriptor"] = "keypoints";
+  EXPECT_THAT(Refusal(json), HasSubstr("expected surface or dense2d"));
+  json.erase("descriptor");
+  EXPECT_THAT(Refusal(json), HasSubstr("do not make sense")) << "older runs have the surface's 33 channels";
+  json["motion_channels"] = 33;
+  EXPECT_EQ(Read(json.dump()).config.descriptor, MotionDescriptor::kSurface);
+}
+
+TEST_F(MotionRuns, TheFramesTrainedOnComeBack) {
+  MotionRun run = Tiny();
+  run.notes = R"({"data": "dancer", "track": "", "train": [[0, 9], [20, 31]]})";
+  const MotionRun read = Read(MotionRunJson(run));
+  EXPECT_EQ(read.data, "dancer");
+  EXPECT_EQ(read.trained, (std::vector<std::pair<int, int>>{{0, 9}, {20, 31}}));
+  EXPECT_TRUE(Read(MotionRunJson(Tiny())).trained.empty());
+}
+
 TEST_F(MotionRuns, RefusesMotionThatCannotBeDescribed) {
   MotionRun run = Tiny();
   run.motion.frame = SurfaceFrame::kWorld;

@@ -9,8 +9,10 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "tests/support/scratch_folder.h"
+#include "tests/support/short_track.h"
 #include "tests/support/test_files.h"
 
 namespace bodyloom {
@@ -72,6 +74,64 @@ TEST_F(CompareResultsTest, FurtherMetricsSeeFramesInOrder) {
   EXPECT_THAT(FileBytes(Path("m.csv")), HasSubstr("frame,psnr_db,ssim_wang2004,change,level\n"));
   request.more.front().compute = [](const FramePair&, const FramePair*) { return std::vector<double>{1}; };
   EXPECT_THROW(CompareResults(request), std::runtime_error);
+}
+
+/// 1 where a frame has one before it to follow.
+FrameMetric Follows() {
+  FrameMetric metric;
+  metric.columns = {{"follows", "another frame"}};
+  metric.compute = [](const FramePair&, const FramePair* before) {
+    return std::vector<double>{before != nullptr ? 1.0 : 0.0};
+  };
+  return metric;
+}
+
+std::vector<int> FollowersOf(const std::string& truth, const std::string& result, bool common_only = false) {
+  CompareResultsRequest request;
+  request.truth = truth, request.result = result, request.common_only = common_only;
+  request.num_threads = 2;
+  request.more = {Follows()};
+  std::vector<int> follows;
+  for (const MetricRow& row : CompareResults(request).tables.at(0).rows) {
+    follows.push_back(static_cast<int>(row.values.back()));
+  }
+  return follows;
+}
+
+TEST_F(CompareResultsTest, AFrameFollowsAnotherWhereItsNumberDoes) {
+  const std::string truth = Pictures("truth", {1, 2, 3, 4, 5, 6, 7}),
+                    result = Pictures("result", {1, 2, 3, 4, 5, 6, 7});
+  EXPECT_EQ(FollowersOf(truth, result), (std::vector<int>{0, 1, 1, 1, 1, 1, 1}));
+  fs::remove(Path("result") + "/000002.png");
+  fs::remove(Path("result") + "/000003.png");
+  EXPECT_EQ(FollowersOf(truth, result, true), (std::vector<int>{0, 1, 0, 1, 1})) << "frames 2 and 3 are not there";
+  // Every second frame of a clip is no clip of gaps.
+  for (const char* gone : {"/000001.png", "/000005.png"}) fs::remove(Path("result") + gone);
+  Pictures("result", {1});
+  WriteImage(Path("result") + "/000002.png", Grey(3));
+  EXPECT_EQ(FollowersOf(truth, result, true), (std::vector<int>{0, 1, 1, 1}));
+  for (const char* side : {"a", "b"}) {
+    fs::create_directories(Path(side));
+    for (const char* name : {"/first.png", "/second.png"}) WriteImage(Path(side) + name, Grey(3));
+  }
+  EXPECT_EQ(FollowersOf(Path("a"), Path("b")), (std::vector<int>{0, 1})) << "names without numbers, as sorted";
+}
+
+TEST_F(CompareResultsTest, AFrameFollowsNoneAcrossACutOfItsClip) {
+  Track track = ShortTrack();
+  for (int t = 5; t < track.num_frames(); ++t) track.motion.timestamps[t] += 3;
+  SinglePersonDatasetInfo info;
+  info.num_frames = track.num_frames(), info.width = track.camera.width, info.height = track.camera.height;
+  info.has = {false, false, false, false};
+  const SinglePersonDatasetWriter writer(Path("set"), info, track);
+  PersonFrame frame;
+  frame.rgb = Image(info.width, info.height);
+  for (int t = 0; t < info.num_frames; ++t) writer.Write(t, frame);
+  writer.Finish();
+  std::vector<int> expected(info.num_frames, 1);
+  expected[0] = expected[5] = 0;
+  EXPECT_EQ(FollowersOf(Path("set"), Path("set")), expected);
+  EXPECT_EQ(FollowersOf(Path("set/images"), Path("set/images")), expected) << "the pictures of a set are of its clip";
 }
 
 TEST_F(CompareResultsTest, ACancelledComparisonWritesNothing) {

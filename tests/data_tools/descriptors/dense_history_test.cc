@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/data_tools/descriptors/dense_history.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/geometry/observations.h"
+#include "bodyloom/geometry/posed_body.h"
+#include "tests/support/short_track.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr int kPast = 3;
+
+PersonFramesOptions Small() {
+  PersonFramesOptions options;
+  options.uv_size = 8;
+  options.past = 1;
+  options.window.max_side = 96;
+  return options;
+}
+
+class DenseHistoryTest : public ::testing::Test {
+ protected:
+  void Describe(const Track& track, const PersonFramesOptions& options = Small()) {
+    track_ = track;
+    frames_ = std::make_unique<PersonFrames>(BuiltinBody(), track_, options);
+    history_ = std::make_unique<DenseHistory>(*frames_, kPast);
+    width_ = frames_->window().width, height_ = frames_->window().height;
+  }
+  std::vector<float> Maps(int t) const {
+    std::vector<float> maps(size_t(history_->channels()) * width_ * height_);
+    history_->Maps(t, maps);
+    return maps;
+  }
+  /// Channel c of the frame k frames before.
+  float At(const std::vector<float>& maps, int k, int c, int x, int y) const {
+    return maps[((size_t(k) * DenseHistory::kChannelsOfFrame + c) * height_ + y) * width_ + x];
+  }
+  /// That of frame k of t's maps is what frame s showed, where it was in the picture.
+  void ExpectShows(int t, int k, int s) const {
+    const size_t area = size_t(width_) * height_;
+    std::vector<float> uv(2 * area), body(area);
+    frames_->BodyMaps(s, uv, body);
+    const std::vector<float> maps = Maps(t);
+    const Eigen::Vector2i moved = frames_->window().corner[s] - frames_->window().corner[t];
+    double inside = 0;
+    for (int y = 0; y < height_; ++y) {
+      for (int x = 0; x < width_; ++x) {
+        const int from_x = x - moved.x(), from_y = y - moved.y();
+        const bool seen = from_x >= 0 && from_x < width_ && from_y >= 0 && from_y < height_;
+        const size_t from = size_t(std::max(0, from_y)) * width_ + std::max(0, from_x);
+        ASSERT_NEAR(At(maps, k, 0, x, y), seen ? uv[from] : 0, 1.0 / 65535) << x << ", " << y;
+        ASSERT_NEAR(At(maps, k, 1, x, y), seen ? uv[area + from] : 0, 1.0 / 65535);
+        ASSERT_EQ(At(maps, k, 2, x, y), seen ? body[from] : 0);
+        inside += At(maps, k, 2, x, y);
+      }
+    }
+    EXPECT_GT(inside, 200) << "nobody to be seen";
+  }
+
+  Track track_;
+  std::unique_ptr<PersonFrames> frames_;
+  std::unique_ptr<DenseHistory> history_;
+  int width_ = 0, height_ = 0;
+};
+
+TEST_F(DenseHistoryTest, ShowsEachFrameWhereItWas) {
+  PersonFramesOptions options = Small();
+  options.window.max_side = 64;
+  options.window.margin = 0;  // so that the window has to follow
+  Describe(ShortTrack(), options);
+  ASSERT_EQ(history_->channels(), 18);
+  const std::vector<Eigen::Vector2i>& corner = frames_->window().corner;
+  int t = 2;
+  while (t + 1 < track_.num_frames() && corner[t] == corner[t - 2]) ++t;
+  ASSERT_NE(corner[t], corner[t - 2]) << "the window stays where it is";
+  for (int k = 0; k < kPast; ++k) ExpectShows(t, k, t - k);
+}
+
+TEST_F(DenseHistoryTest, KeypointsAreOnTheirSideWhereTheCameraSeesThem) {
+  Describe(ShortTrack());
+  const int t = 4;
+  const BodyPose pose =
+      PoseFromAxisAngle(BuiltinBody(), track_.motion.poses.row(t).transpose(), track_.motion.trans.row(t).transpose());
+  const MatrixX3d points = PoseLandmarks(BuiltinBody(), track_.motion.betas, pose, CocoNames());
+  const Camera camera = CameraInWindow(track_.CameraAt(t), frames_->window(), t);
+  const double sigma = DenseHistory::kKeypointSigma * std::max(width_, height_);
+  const std::vector<float> maps = Maps(t);
+  std::vector<std::vector<Eigen::Vector2d>> sides(3);
+  for (size_t k = 0; k < CocoNames().size(); ++k) {
+    Eigen::Vector2d pixel;
+    ASSERT_TRUE(camera.Project(points.row(Eigen::Index(k)).transpose(), &pixel));
+    const std::string& name = CocoNames()[k];
+    sides[name[0] == 'l' ? 0 : name[0] == 'r' ? 1 : 2].push_back(pixel);
+  }
+  EXPECT_EQ(sides[0].size(), 8U);
+  EXPECT_EQ(sides[2].size(), 1U) << "the nose";
+  for (int c = 0; c < 3; ++c) {
+    for (int y = 0; y < height_; ++y) {
+      for (int x = 0; x < width_; ++x) {
+        double largest = 0;
+        for (const Eigen::Vector2d& pixel : sides[c]) {
+          const double distance = (pixel - Eigen::Vector2d(x, y)).squaredNorm();
+          largest = std::max(largest, std::exp(-distance / (2 * sigma * sigma)));
+        }
+        ASSERT_NEAR(At(maps, 0, 3 + c, x, y), largest, 0.012) << "cut off at three deviations";
+      }
+    }
+  }
+}
+
+TEST_F(DenseHistoryTest, BeforeARunsFirstFrameThePersonStoodStill) {
+  Track track = ShortTrack();
+  for (int t = 5; t < track.num_frames(); ++t) track.motion.timestamps[t] += 3;  // a cut
+  track.motion.trans.row(9).setConstant(std::nan(""));
+  track.frame_status[9] = FrameStatus::kLost;
+  Describe(track);
+  for (int k = 0; k < kPast; ++k) ExpectShows(0, k, 0);
+  ExpectShows(6, 1, 5);
+  ExpectShows(6, 2, 5);
+  const std::vector<float> lost = Maps(9);
+  EXPECT_TRUE(std::all_of(lost.begin(), lost.end(), [](float v) { return v == 0; }));
+}
+
+TEST_F(DenseHistoryTest, ATurnedViewIsAnotherPicture) {
+  PersonFramesOptions options = Small();
+  options.yaw_deg.assign(ShortTrack().num_frames(), 180);
+  Describe(ShortTrack());
+  const Eigen::Matrix<double, Eigen::Dynamic, 2> front = frames_->Keypoints(3);
+  Describe(ShortTrack(), options);
+  for (int k = 0; k < kPast; ++k) ExpectShows(3, k, 3 - k);
+  // From behind the shoulders (5 left, 6 right) change sides.
+  const Eigen::Matrix<double, Eigen::Dynamic, 2> back = frames_->Keypoints(3);
+  EXPECT_LT((front(5, 0) - front(6, 0)) * (back(5, 0) - back(6, 0)), 0);
+}
+
+TEST_F(DenseHistoryTest, RefusesTheWrongSizes) {
+  Describe(ShortTrack());
+  std::vector<float> small(3);
+  EXPECT_THROW(history_->Maps(0, small), std::invalid_argument);
+  EXPECT_THROW(DenseHistory(*frames_, 0), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace bodyloom
