@@ -63,6 +63,24 @@ TEST(ClosedPart, ACubeHoldsWhatIsInIt) {
   for (const double x : {-0.5, 0.0, 0.5}) EXPECT_TRUE(cube.Contains({x, 0, 0})) << "lined up with edges and corners";
 }
 
+/// Rays exactly through an edge, in the frame of the rays itself, cross one of its two faces.
+TEST(ClosedPart, ARayThroughAnEdgeCrossesOneFace) {
+  TestMesh pyramid{MatrixX3d(9, 3), MatrixX3i(10, 3)};
+  pyramid.vertices << -1, -1, 0, 1, -1, 0, -1, 1, 0, 1, 1, 0, 0.3, -0.2, 1,  // and a tetrahedron far below, which makes
+      5, 5, -2, 6, 5, -2, 5, 6, -2, 5, 5, -1.5;                              // the box reach there
+  pyramid.faces << 0, 2, 3, 0, 3, 1, 0, 1, 4, 1, 3, 4, 3, 2, 4, 2, 0, 4,     // the base is split along x = y
+      5, 7, 6, 5, 6, 8, 6, 7, 8, 7, 5, 8;
+  for (const bool other_way : {false, true}) {
+    if (other_way) pyramid.faces.topRows<2>() << 3, 0, 2, 1, 0, 3;
+    ClosedPart part(pyramid.faces, AllFaces(pyramid));
+    part.Place(pyramid.vertices);
+    for (double t = -0.875; t < 0.9; t += 0.125) {
+      EXPECT_FALSE(part.Contains({t, t, -0.5})) << t;
+      EXPECT_TRUE(part.Contains({t, t, 0x1p-40})) << t;
+    }
+  }
+}
+
 /// An open part is closed by a fan: half a sphere holds half a ball.
 TEST(ClosedPart, HolesAreClosedByFans) {
   const TestMesh sphere = UnitSphere(4);
