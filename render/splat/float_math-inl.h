@@ -35,18 +35,18 @@ HWY_INLINE V Exp2(D d, V t) {
   return PowerOfTwo(d, hn::Sub(t, hn::Sub(shifted, magic)), shifted);
 }
 
-/// e^x, error 3e-7 relative; x is cut to [−80, 80] first, NaN counts as one of the two.
+/// e^x, error 3e-7 relative; x is cut to [−80, 80] first, NaN stays NaN.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V Exp(D d, V x) {
-  x = hn::IfThenElse(hn::Gt(x, hn::Set(d, -80.0F)), x, hn::Set(d, -80.0F));
-  x = hn::IfThenElse(hn::Lt(x, hn::Set(d, 80.0F)), x, hn::Set(d, 80.0F));
+  x = hn::IfThenElse(hn::Lt(x, hn::Set(d, -80.0F)), hn::Set(d, -80.0F), x);
+  x = hn::IfThenElse(hn::Gt(x, hn::Set(d, 80.0F)), hn::Set(d, 80.0F), x);
   const V magic = hn::Set(d, 12582912.0F);
   const V shifted = hn::Add(hn::Mul(x, hn::Set(d, 1.44269504F)), magic);
   const V n = hn::Sub(shifted, magic);
   // ln 2 in two parts: n times the first is exact.
   V rest = hn::Sub(x, hn::Mul(n, hn::Set(d, 0.693359375F)));
   rest = hn::Sub(rest, hn::Mul(n, hn::Set(d, -2.12194440e-4F)));
-  return PowerOfTwo(d, hn::Mul(rest, hn::Set(d, 1.44269504F)), shifted);
+  return hn::Add(PowerOfTwo(d, hn::Mul(rest, hn::Set(d, 1.44269504F)), shifted), hn::Sub(x, x));
 }
 
 /// log2 of a normal positive float, error 2e-7 absolute near 1 and relative elsewhere; anything else gives any bits.

@@ -14,6 +14,7 @@
 #include <hwy/highway.h>
 
 #include "bodyloom/render/splat/float_math-inl.h"
+#include "bodyloom/render/splat/vec3-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace bodyloom::splat_internal::HWY_NAMESPACE {
@@ -27,17 +28,7 @@ using MF = hn::Mask<DF>;
 using Camera = CameraGaussians;
 using Screen = ScreenGaussians;
 
-struct Vec3 {
-  VF x, y, z;
-};
-HWY_INLINE Vec3 operator+(Vec3 a, Vec3 b) { return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)}; }
-HWY_INLINE Vec3 operator-(Vec3 a, Vec3 b) { return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)}; }
-HWY_INLINE Vec3 operator*(VF s, Vec3 a) { return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)}; }
-HWY_INLINE VF Dot(Vec3 a, Vec3 b) { return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z)); }
-HWY_INLINE Vec3 Cross(Vec3 a, Vec3 b) {
-  return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
-          hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
-}
+using Vec3 = bodyloom::HWY_NAMESPACE::Vec3<VF>;
 
 /// The rows of the factor F and of B = J F. With w = 1/z, u = x w, v = y w (weak perspective: 1, 0, 0) the projection's
 /// Jacobian is J = [f_x w, 0, −f_x w u; 0, f_y w, −f_y w v].
