@@ -3,19 +3,10 @@
 
 #include <algorithm>
 
-#include "bodyloom/geometry/base/in_range.h"
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/render/avatar/pose_tables.h"
 
 namespace bodyloom {
-
-bool PoseGaussiansOptions::IsValid(std::string* why) const {
-  const InRange in_range(why);
-  for (const float entry : light_from_frame) {
-    if (!in_range("light_from_frame", entry, -1.001, 1.001)) return false;
-  }
-  return in_range("num_threads", num_threads, 1, 1024);
-}
 
 void PoseGaussians(const GaussianBody& body, const MatrixX3i& faces, const AvatarFrame& frame,
                    const GaussianOffsets& offsets, const PoseGaussiansOptions& options, CameraGaussians* posed) {

@@ -14,24 +14,14 @@
 /// Same bytes for any number of threads and any instruction set.
 #pragma once
 
-#include <array>
-#include <string>
-
 #include "bodyloom/geometry/arrays.h"
 #include "bodyloom/render/avatar/avatar_frame.h"
 #include "bodyloom/render/avatar/gaussian_body.h"
 #include "bodyloom/render/avatar/gaussian_offsets.h"
+#include "bodyloom/render/avatar/pose_options.h"
 #include "bodyloom/render/splat/camera_gaussians.h"
 
 namespace bodyloom {
-
-struct PoseGaussiansOptions {
-  /// Rotation, row-major, from the frame of the posed Gaussians to the light's, for instance that of the camera that the
-  /// light was learned in.
-  std::array<float, 9> light_from_frame = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-  int num_threads = 1;  ///< 1 to 1024
-  [[nodiscard]] bool IsValid(std::string* why) const;
-};
 
 /// Fills `posed`, one row a Gaussian; keeps its memory. `faces`: the body's. Throws std::invalid_argument when the
 /// options or the body (GaussianBody::IsValid) are not valid, tables differ in size, or a face names a vertex without a

@@ -2,7 +2,11 @@
 /// Checked arguments of posing, as plain arrays.
 #pragma once
 
-#include "bodyloom/render/avatar/pose_gaussians.h"
+#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/render/avatar/avatar_frame.h"
+#include "bodyloom/render/avatar/gaussian_body.h"
+#include "bodyloom/render/avatar/gaussian_offsets.h"
+#include "bodyloom/render/avatar/pose_options.h"
 #include "bodyloom/render/avatar/pose_simd.h"
 
 namespace bodyloom::avatar_internal {
