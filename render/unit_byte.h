@@ -3,11 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <cstdint>
 
 namespace bodyloom {
 
-/// A colour value in [0, 1] as a byte, rounded; values beyond are cut off.
-inline uint8_t UnitByte(double value) { return static_cast<uint8_t>(std::lround(255 * std::clamp(value, 0.0, 1.0))); }
+/// A colour value in [0, 1] as a byte, rounded from 255 times it at its own precision; values beyond are cut off.
+template <std::floating_point T>
+uint8_t UnitByte(T value) {
+  return static_cast<uint8_t>(std::lround(255 * std::clamp(value, T(0), T(1))));
+}
 
 }  // namespace bodyloom

@@ -155,6 +155,7 @@ void ClipFit::Observe() {
     summary_.num_observations += static_cast<int>(frame.landmarks.seen.size() + frame.dense.size());
   }
   AddOwnTerms(options_.own_terms, &problem_);
+  problem_.velocity_weight = options_.velocity_weight;
   // Detections of a frame and of its neighbours err together (COCO joints are not the body's, and detectors are off for
   // a third of a second at a time), so frames do not outvote the shape prior as independent measurements would.
   problem_.shape_prior.weight = std::max(1.0, options_.shape_prior_weight * static_cast<double>(T));

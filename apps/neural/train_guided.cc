@@ -63,7 +63,7 @@ void AddTrainGuided(CLI::App& train, Action* action) {
   CLI::App* verb = train.add_subcommand("animate", "Trains a renderer that animates anybody from one photo");
   auto parsed = std::make_shared<TrainGuidedArguments>();
   TrainGuidedRendererRequest& request = parsed->request;
-  TrainGuidedArguments& options = request.options;
+  TrainGuidedOptions& options = request.options;
   verb->add_option("--data", request.data, "A multi-person dataset (bodyloom synth-people)")->required();
   verb->add_option("--out", request.out, "Folder of the run: config.json, checkpoint.bin, metrics.csv, previews")
       ->required();

@@ -36,7 +36,7 @@ void AddTrainLifter(CLI::App& train, Action* action) {
   CLI::App* verb = train.add_subcommand("lifter", "Trains the network that lifts 2D joints to 3D from recorded motion");
   auto parsed = std::make_shared<TrainLifterArguments>();
   TrainLifterNetworkRequest& request = parsed->request;
-  TrainLifterArguments& options = request.options;
+  TrainLifterOptions& options = request.options;
   verb->add_option("--motions", request.motions, "Motion files, or folders of them (BVH, ASF/AMC, AMASS, …)")
       ->required();
   verb->add_option("--out", request.out, "Folder of the run: config.json, metrics.csv, checkpoint.bin, lifter.npz")

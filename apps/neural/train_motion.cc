@@ -54,7 +54,7 @@ void AddTrainMotion(CLI::App& train, Action* action) {
   CLI::App* verb = train.add_subcommand("motion", "Trains a renderer of one person's motion-dependent appearance");
   auto parsed = std::make_shared<TrainMotionArguments>();
   TrainMotionRendererRequest& request = parsed->request;
-  TrainMotionArguments& options = request.options;
+  TrainMotionOptions& options = request.options;
   verb->add_option("--data", request.data.data,
                    "A single-person dataset (bodyloom synth-person), or a video or folder of images")
       ->required();

@@ -21,7 +21,7 @@ struct TrainPhotoArguments {
 
 void RunTrainPhoto(const TrainPhotoArguments& parsed) {
   TrainPhotoRendererRequest request = parsed.request;
-  TrainPhotoArguments& options = request.options;
+  TrainPhotoOptions& options = request.options;
   options.config.profile = PhotoProfileNamed(parsed.profile);
   options.config.variant = PhotoVariantNamed(parsed.variant);
   const TrainPhotoRendererSummary summary =
@@ -47,7 +47,7 @@ void AddTrainPhoto(CLI::App& train, Action* action) {
   CLI::App* verb = train.add_subcommand("photo", "Trains a renderer that needs one photo of a person");
   auto parsed = std::make_shared<TrainPhotoArguments>();
   TrainPhotoRendererRequest& request = parsed->request;
-  TrainPhotoArguments& options = request.options;
+  TrainPhotoOptions& options = request.options;
   verb->add_option("--data", request.data, "A multi-person dataset (bodyloom synth-people), or a single-person dataset")
       ->required();
   verb->add_option("--out", request.out, "Folder of the run: config.json, checkpoint.bin, metrics.csv, previews")

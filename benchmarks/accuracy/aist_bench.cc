@@ -43,7 +43,8 @@ namespace {
 const std::vector<std::string> kEvaluated = {"pa_mpjpe_mm",           "mpjpe_scaled_mm",    "mpjpe_mm",
                                              "accel_err_ms2",         "heldout_median_px",  "heldout_p95_px",
                                              "fitview_own_median_px", "fitview_own_p95_px", "limb_angle_err_deg",
-                                             "root_rotation_err_deg", "root_depth_err_mm"};
+                                             "root_rotation_err_deg", "root_depth_err_mm",  "jitter_ms3",
+                                             "gt_jitter_ms3"};
 
 std::vector<double> Evaluated(const Evaluation& evaluation) {
   std::vector<double> values;

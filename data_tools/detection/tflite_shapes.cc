@@ -181,6 +181,14 @@ std::vector<int> TfliteOutputShape(const TfliteModel& model, const TfliteOperato
   return {};
 }
 
+bool IsTfliteImage(const std::vector<int>& shape) { return shape.size() == 4; }
+
+size_t NumTfliteValues(const std::vector<int>& shape) {
+  size_t product = 1;
+  for (const int n : shape) product *= size_t(n);
+  return product;
+}
+
 std::string TfliteShapeText(const std::vector<int>& shape) {
   std::string text;
   for (const int n : shape) text += (text.empty() ? "" : "x") + std::to_string(n);

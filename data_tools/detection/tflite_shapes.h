@@ -2,6 +2,7 @@
 /// The shapes that TensorFlow Lite's operators give their results.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,12 @@ TflitePads SamePads(int size, int kernel, int stride);
 /// Shape of the operator's result. Its inputs' shapes and the int32 constants must be there. Throws std::runtime_error
 /// "place: what was found, expected what" when the inputs do not fit each other.
 std::vector<int> TfliteOutputShape(const TfliteModel& model, const TfliteOperator& op, const std::string& place);
+
+/// N×height×width×channels.
+bool IsTfliteImage(const std::vector<int>& shape);
+
+/// Product of the sizes.
+size_t NumTfliteValues(const std::vector<int>& shape);
 
 /// "1x64x64x3".
 std::string TfliteShapeText(const std::vector<int>& shape);

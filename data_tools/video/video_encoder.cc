@@ -67,13 +67,6 @@ LibavPtr<SwsContext> NewScaler(int width, int height) {
   return scaler;
 }
 
-struct OutputDeleter {
-  void operator()(AVFormatContext* context) const {
-    avio_closep(&context->pb);
-    avformat_free_context(context);
-  }
-};
-
 }  // namespace
 
 class VideoEncoder::Output {
@@ -148,6 +141,13 @@ class VideoEncoder::Output {
     if (error_ >= 0 && result < 0) error_ = result;
   }
 
+  struct CloseFile {
+    void operator()(AVFormatContext* context) const {
+      avio_closep(&context->pb);
+      avformat_free_context(context);
+    }
+  };
+
   /// Encodes a frame, or with null what was kept back, and writes what comes of it.
   void Send(const AVFrame* frame) {
     if (error_ < 0) return;
@@ -164,7 +164,7 @@ class VideoEncoder::Output {
   int width_, height_;
   std::string name_;
   LibavPtr<AVCodecContext> codec_;
-  std::unique_ptr<AVFormatContext, OutputDeleter> output_;
+  std::unique_ptr<AVFormatContext, CloseFile> output_;
   AVStream* stream_ = nullptr;
   LibavPtr<AVFrame> frame_;
   LibavPtr<AVPacket> packet_;

@@ -28,9 +28,11 @@ FeatureNetworkOptions TrunkOptions(const LpipsOptions& options) {
   return trunk;
 }
 
+}  // namespace
+
 /// The channel weights, a tensor a tap: parameters named weight0 … weight4.
-struct HeadsImpl : torch::nn::Module {
-  explicit HeadsImpl(const std::vector<int64_t>& channels) {
+struct LpipsHeadsImpl : torch::nn::Module {
+  explicit LpipsHeadsImpl(const std::vector<int64_t>& channels) {
     for (size_t k = 0; k < channels.size(); ++k) {
       weights.push_back(register_parameter("weight" + std::to_string(k), torch::ones({1, channels[k], 1, 1}),
                                            /*requires_grad=*/false));
@@ -38,9 +40,7 @@ struct HeadsImpl : torch::nn::Module {
   }
   std::vector<Tensor> weights;
 };
-TORCH_MODULE(Heads);
-
-}  // namespace
+TORCH_MODULE(LpipsHeads);
 
 struct LpipsFeatures::Impl {
   std::vector<Tensor> unit;  ///< a tap: 1×C×h×w, unit length over channels
@@ -52,10 +52,10 @@ struct Lpips::Network {
     const torch::NoGradGuard no_grad;
     std::vector<int64_t> channels;
     for (const Tensor& tap : trunk(torch::zeros({1, 3, 32, 32}))) channels.push_back(tap.size(1));
-    heads = Heads(channels);
+    heads = LpipsHeads(channels);
   }
   FeatureNetwork trunk;
-  Heads heads{nullptr};
+  LpipsHeads heads{nullptr};
   int64_t generation = 0;
 };
 
@@ -70,7 +70,7 @@ void Lpips::Load(const NamedWeights& trunk, const std::string& trunk_source, con
   options.name_in_file = [](const std::string& own) { return "lin" + own.substr(6) + ".model.1.weight"; };
   std::vector<int64_t> channels;
   for (const Tensor& weight : network_->heads->weights) channels.push_back(weight.size(1));
-  Heads loaded(channels);  // taken over when the trunk fits too
+  LpipsHeads loaded(channels);  // taken over when the trunk fits too
   LoadWeights(heads, heads_source, loaded.get(), options);
   network_->trunk->Load(trunk, trunk_source);
   network_->heads = loaded;

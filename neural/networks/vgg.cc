@@ -11,50 +11,51 @@
 #include "bodyloom/neural/device.h"
 
 namespace bodyloom {
-namespace {
 
-enum class LayerKind { kConv, kRelu, kPool };
+enum class FeatureLayerKind { kConv, kRelu, kPool };
 
 /// A layer of torchvision's `features`; name is that of FeatureLayer, empty for pools.
-struct LayerPlan {
-  LayerKind kind;
+struct FeatureLayerPlan {
+  FeatureLayerKind kind;
   std::string name;
   int channels = 0, kernel = 3, stride = 1, padding = 1;
 };
 
-std::vector<LayerPlan> VggPlan(const std::vector<int>& convolutions_of_block) {
-  std::vector<LayerPlan> plan;
+namespace {
+
+std::vector<FeatureLayerPlan> VggPlan(const std::vector<int>& convolutions_of_block) {
+  std::vector<FeatureLayerPlan> plan;
   for (size_t b = 0; b < convolutions_of_block.size(); ++b) {
     for (int i = 0; i < convolutions_of_block[b]; ++i) {
       const std::string name = std::to_string(b + 1) + "_" + std::to_string(i + 1);
-      plan.push_back({LayerKind::kConv, "conv" + name, std::min(64 << b, 512)});
-      plan.push_back({LayerKind::kRelu, "relu" + name});
+      plan.push_back({FeatureLayerKind::kConv, "conv" + name, std::min(64 << b, 512)});
+      plan.push_back({FeatureLayerKind::kRelu, "relu" + name});
     }
-    plan.push_back({LayerKind::kPool, "", 0, 2, 2, 0});
+    plan.push_back({FeatureLayerKind::kPool, "", 0, 2, 2, 0});
   }
   return plan;
 }
 
-std::vector<LayerPlan> AlexNetPlan() {
-  const LayerPlan pool = {LayerKind::kPool, "", 0, 3, 2, 0};
-  return {{LayerKind::kConv, "conv1", 64, 11, 4, 2},
-          {LayerKind::kRelu, "relu1"},
+std::vector<FeatureLayerPlan> AlexNetPlan() {
+  const FeatureLayerPlan pool = {FeatureLayerKind::kPool, "", 0, 3, 2, 0};
+  return {{FeatureLayerKind::kConv, "conv1", 64, 11, 4, 2},
+          {FeatureLayerKind::kRelu, "relu1"},
           pool,
-          {LayerKind::kConv, "conv2", 192, 5, 1, 2},
-          {LayerKind::kRelu, "relu2"},
+          {FeatureLayerKind::kConv, "conv2", 192, 5, 1, 2},
+          {FeatureLayerKind::kRelu, "relu2"},
           pool,
-          {LayerKind::kConv, "conv3", 384},
-          {LayerKind::kRelu, "relu3"},
-          {LayerKind::kConv, "conv4", 256},
-          {LayerKind::kRelu, "relu4"},
-          {LayerKind::kConv, "conv5", 256},
-          {LayerKind::kRelu, "relu5"},
+          {FeatureLayerKind::kConv, "conv3", 384},
+          {FeatureLayerKind::kRelu, "relu3"},
+          {FeatureLayerKind::kConv, "conv4", 256},
+          {FeatureLayerKind::kRelu, "relu4"},
+          {FeatureLayerKind::kConv, "conv5", 256},
+          {FeatureLayerKind::kRelu, "relu5"},
           pool};
 }
 
-const std::vector<LayerPlan>& PlanOf(FeatureTrunk trunk) {
-  static const std::vector<LayerPlan> kVgg16 = VggPlan({2, 2, 3, 3, 3}), kVgg19 = VggPlan({2, 2, 4, 4, 4}),
-                                      kAlexNet = AlexNetPlan();
+const std::vector<FeatureLayerPlan>& PlanOf(FeatureTrunk trunk) {
+  static const std::vector<FeatureLayerPlan> kVgg16 = VggPlan({2, 2, 3, 3, 3}), kVgg19 = VggPlan({2, 2, 4, 4, 4}),
+                                             kAlexNet = AlexNetPlan();
   return trunk == FeatureTrunk::kVgg16 ? kVgg16 : trunk == FeatureTrunk::kVgg19 ? kVgg19 : kAlexNet;
 }
 
@@ -73,13 +74,13 @@ torch::Tensor OrthogonalWeight(torch::IntArrayRef shape, torch::Generator genera
 }  // namespace
 
 struct FeatureNetworkImpl::Layer {
-  LayerPlan plan;
+  FeatureLayerPlan plan;
   torch::nn::Conv2d conv{nullptr};
 };
 
 int FeatureLayer(FeatureTrunk trunk, const std::string& name) {
-  const std::vector<LayerPlan>& plan = PlanOf(trunk);
-  const auto found = std::find_if(plan.begin(), plan.end(), [&](const LayerPlan& l) { return l.name == name; });
+  const std::vector<FeatureLayerPlan>& plan = PlanOf(trunk);
+  const auto found = std::find_if(plan.begin(), plan.end(), [&](const FeatureLayerPlan& l) { return l.name == name; });
   BODYLOOM_CHECK(!name.empty() && found != plan.end(), "feature network: no layer \"", name, "\", expected one like \"",
                  plan.front().name, "\" or \"", plan[1].name, "\"");
   return static_cast<int>(found - plan.begin());
@@ -92,7 +93,7 @@ std::vector<int> FeatureLayers(FeatureTrunk trunk, const std::vector<std::string
 }
 
 FeatureNetworkImpl::FeatureNetworkImpl(const FeatureNetworkOptions& network_options) : options(network_options) {
-  const std::vector<LayerPlan>& plan = PlanOf(options.trunk);
+  const std::vector<FeatureLayerPlan>& plan = PlanOf(options.trunk);
   BODYLOOM_CHECK(!options.taps.empty() && std::is_sorted(options.taps.begin(), options.taps.end()) &&
                      options.taps.front() >= 0 && options.taps.back() < static_cast<int>(plan.size()),
                  "feature network: ", options.taps.size(), " taps, expected one or more, ascending, from 0 to ",
@@ -104,7 +105,7 @@ FeatureNetworkImpl::FeatureNetworkImpl(const FeatureNetworkOptions& network_opti
   int channels = 3;
   for (int i = 0; i <= options.taps.back(); ++i) {
     layers_.push_back({plan[i]});
-    if (plan[i].kind != LayerKind::kConv) continue;
+    if (plan[i].kind != FeatureLayerKind::kConv) continue;
     const int to = plan[i].channels / options.random_features_divisor;
     torch::nn::Conv2d conv(
         torch::nn::Conv2dOptions(channels, to, plan[i].kernel).stride(plan[i].stride).padding(plan[i].padding));
@@ -143,7 +144,7 @@ std::vector<torch::Tensor> FeatureNetworkImpl::forward(torch::Tensor image) {
                  ", expected B x 3 x H x W");
   int64_t side = std::min(image.size(2), image.size(3));
   for (const Layer& layer : layers_) {
-    if (layer.plan.kind == LayerKind::kRelu) continue;
+    if (layer.plan.kind == FeatureLayerKind::kRelu) continue;
     const int64_t reach = side + 2 * layer.plan.padding - layer.plan.kernel;
     side = reach < 0 ? 0 : reach / layer.plan.stride + 1;
     BODYLOOM_CHECK(side > 0, "feature network: an image of ", image.size(2), " x ", image.size(3),
@@ -155,9 +156,9 @@ std::vector<torch::Tensor> FeatureNetworkImpl::forward(torch::Tensor image) {
   size_t tap = 0;
   for (int i = 0; i < static_cast<int>(layers_.size()); ++i) {
     Layer& layer = layers_[i];
-    if (layer.plan.kind == LayerKind::kConv) {
+    if (layer.plan.kind == FeatureLayerKind::kConv) {
       x = layer.conv(x);
-    } else if (layer.plan.kind == LayerKind::kPool) {
+    } else if (layer.plan.kind == FeatureLayerKind::kPool) {
       x = torch::max_pool2d(x, layer.plan.kernel, layer.plan.stride);
     } else if (tap > 0 && options.taps[tap - 1] == i - 1) {
       x = torch::relu(x);  // the value before the ReLU was requested

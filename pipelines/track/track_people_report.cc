@@ -90,7 +90,7 @@ std::string ToText(const TrackPeopleReport& report) {
   text += SceneText(report.scene);
   text += "time     " + Fixed(report.total_seconds, 2) + " s (" + StagesText(report.seconds) + "), " +
           Fixed(report.num_frames / std::max(1e-9, report.total_seconds), 1) + " frames a second with " +
-          ToText(report.network) + "\n";
+          report.network + "\n";
   text += "memory   " + Fixed(double(report.peak_memory_bytes) / (1 << 20), 0) + " MiB at most\n";
   for (const std::string& path : report.outputs) text += "wrote    " + path + "\n";
   return text;
@@ -103,7 +103,7 @@ std::string ToJson(const TrackPeopleReport& report) {
                      {"image_size", {report.width, report.height}},
                      {"frames", report.num_frames},
                      {"fps", report.fps},
-                     {"network", ToText(report.network)},
+                     {"network", report.network},
                      {"people_found", report.num_found},
                      {"people", people},
                      {"scene", SceneJson(report.scene)},

@@ -46,7 +46,9 @@ constexpr Target kTargets[] = {{"npz", AcceptsNpz},
                                {"mat", AcceptsMat},
                                {"run_config", AcceptsRunConfig},
                                {"relight", AcceptsRelight},
-                               {"tflite", AcceptsTflite}};
+                               {"tflite", AcceptsTflite},
+                               {"onnx", AcceptsOnnx},
+                               {"keypoint_outputs", AcceptsKeypointOutputs}};
 
 const Target& Chosen() {
   static const Target& chosen = [&]() -> const Target& {

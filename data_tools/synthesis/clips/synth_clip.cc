@@ -297,6 +297,19 @@ class ClipMaker {
   std::vector<SynthFaultCounts> counts_;
 };
 
+void CheckSynthMotion(const BodyModel& body, const Motion& motion) {
+  const int T = motion.num_frames();
+  BODYLOOM_CHECK(T > 0, "synthetic clip: the motion has no frames");
+  BODYLOOM_CHECK(static_cast<int>(motion.timestamps.size()) == T && motion.trans.rows() == T, "synthetic clip: ", T,
+                 " poses, ", motion.timestamps.size(), " timestamps, ", motion.trans.rows(), " translations");
+  BODYLOOM_CHECK(
+      motion.poses.cols() <= 3 * body.num_joints() && motion.poses.cols() >= 3 && motion.poses.cols() % 3 == 0,
+      "synthetic clip: poses have ", motion.poses.cols(), " columns, the body '", body.name(), "' takes up to ",
+      3 * body.num_joints());
+  BODYLOOM_CHECK(motion.poses.allFinite() && motion.trans.allFinite(),
+                 "synthetic clip: the motion holds NaN or infinite values");
+}
+
 }  // namespace
 
 bool SynthClipOptions::IsValid(std::string* why) const {
@@ -323,18 +336,17 @@ bool SynthClipOptions::IsValid(std::string* why) const {
 SynthClip MakeSynthClip(const BodyModel& body, const Motion& motion, const SynthClipOptions& options) {
   std::string why;
   BODYLOOM_CHECK(options.IsValid(&why), why);
+  CheckSynthMotion(body, motion);
+  return MakeSynthClip(body, motion, PlaceSynthCamera(body, motion, options.camera), options);
+}
+
+SynthClip MakeSynthClip(const BodyModel& body, const Motion& motion, const SynthCamera& placed,
+                        const SynthClipOptions& options) {
+  std::string why;
+  BODYLOOM_CHECK(options.IsValid(&why), why);
+  CheckSynthMotion(body, motion);
   const int T = motion.num_frames();
-  BODYLOOM_CHECK(T > 0, "synthetic clip: the motion has no frames");
-  BODYLOOM_CHECK(static_cast<int>(motion.timestamps.size()) == T && motion.trans.rows() == T, "synthetic clip: ", T,
-                 " poses, ", motion.timestamps.size(), " timestamps, ", motion.trans.rows(), " translations");
-  BODYLOOM_CHECK(
-      motion.poses.cols() <= 3 * body.num_joints() && motion.poses.cols() >= 3 && motion.poses.cols() % 3 == 0,
-      "synthetic clip: poses have ", motion.poses.cols(), " columns, the body '", body.name(), "' takes up to ",
-      3 * body.num_joints());
-  BODYLOOM_CHECK(motion.poses.allFinite() && motion.trans.allFinite(),
-                 "synthetic clip: the motion holds NaN or infinite values");
   SynthClip clip;
-  const SynthCamera placed = PlaceSynthCamera(body, motion, options.camera);
   clip.camera_from_world = placed.pose;
   clip.up_in_camera = placed.up_in_camera;
   Track& truth = clip.truth;

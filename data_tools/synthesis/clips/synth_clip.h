@@ -76,4 +76,9 @@ struct SynthClip {
 /// columns than the body has joints, or UV faults or missing parts are requested for a body without charts.
 SynthClip MakeSynthClip(const BodyModel& body, const Motion& motion, const SynthClipOptions& options = {});
 
+/// The same seen by a given camera; options.camera is not looked at. For a motion that is in the camera frame already
+/// the camera's pose is the identity.
+SynthClip MakeSynthClip(const BodyModel& body, const Motion& motion, const SynthCamera& camera,
+                        const SynthClipOptions& options);
+
 }  // namespace bodyloom

@@ -34,6 +34,8 @@ TEST(FuzzCorpus, SinglePersonDataset) { RunMutations("single_person_dataset", Ac
 TEST(FuzzCorpus, Split) { RunMutations("split", AcceptsSplit, 4000); }
 TEST(FuzzCorpus, Mat) { RunMutations("mat", AcceptsMat, 300); }
 TEST(FuzzCorpus, Tflite) { RunMutations("tflite", AcceptsTflite, 4000); }
+TEST(FuzzCorpus, Onnx) { RunMutations("onnx", AcceptsOnnx, 4000); }
+TEST(FuzzCorpus, KeypointOutputs) { RunMutations("keypoint_outputs", AcceptsKeypointOutputs, 4000); }
 TEST(FuzzCorpus, Cage) { RunMutations("cage", AcceptsCage, 4000); }
 
 }  // namespace

@@ -79,6 +79,20 @@ void ExpectSame(const SynthClip& a, const SynthClip& b) {
   }
 }
 
+TEST(SynthClip, AGivenCameraSeesWhatThePlacedOneSees) {
+  const SynthClip placed = MakeSynthClip(ToyBody(), ShortMotion(), Small());
+  SynthCamera camera;
+  camera.camera = placed.truth.camera;
+  camera.pose = placed.camera_from_world;
+  camera.up_in_camera = placed.up_in_camera;
+  ExpectSame(MakeSynthClip(ToyBody(), ShortMotion(), camera, Small()), placed);
+  // A motion that is in the camera frame already stays as it is.
+  camera.pose = CameraPose();
+  const SynthClip still = MakeSynthClip(ToyBody(), placed.truth.motion, camera, Small());
+  EXPECT_LT((still.truth.motion.poses - placed.truth.motion.poses).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_LT((still.truth.motion.trans - placed.truth.motion.trans).cwiseAbs().maxCoeff(), 1e-12);
+}
+
 TEST(SynthClip, WithoutFaultsEveryLabelIsExact) {
   SynthClipOptions options = Small();
   options.detection.noise = 0;
