@@ -12,7 +12,9 @@ namespace bodyloom {
 namespace {
 
 constexpr float kLeastSigma = 0.03F, kSigmaADistance = 0.7F;  ///< metres; of the distance to the body
-constexpr float kSigmas = 3;                                  ///< beyond so many σ a vertex counts nothing
+constexpr int kVertexLanes = 16;
+constexpr float kFarOff = 1e15F;
+constexpr float kSigmas = 3;  ///< beyond so many σ a vertex counts nothing
 
 }  // namespace
 
@@ -20,7 +22,8 @@ SmoothSkinWeights::SmoothSkinWeights(const BodyModel& model, const Eigen::Vector
     : vertices_(ShapeVertices(model, betas).cast<float>()), reach_(reach), num_joints_(model.num_joints()) {
   BODYLOOM_CHECK(reach >= 0.01F && reach <= 2, "smooth skin weights: reach is ", reach, " m, expected 0.01 to 2");
   for (int c = 0; c < 3; ++c) {
-    columns_[c].resize(vertices_.rows());
+    // Whole lanes; those that stand in for a vertex are far off.
+    columns_[c].assign((vertices_.rows() + kVertexLanes - 1) / kVertexLanes * kVertexLanes, kFarOff);
     for (Eigen::Index v = 0; v < vertices_.rows(); ++v) columns_[c][v] = vertices_(v, c);
   }
   low_ = vertices_.colwise().minCoeff().transpose().array() - reach - kCell;
@@ -31,7 +34,17 @@ SmoothSkinWeights::SmoothSkinWeights(const BodyModel& model, const Eigen::Vector
   weights_.assign(nodes * num_joints_, 0.0F);
   const size_t slice = static_cast<size_t>(size_[0]) * size_[1];
   ParallelFor(size_[2], num_threads, [&](int z) {
-    for (size_t i = 0; i < slice; ++i) FillNode(model, z * slice + i);
+    float at_least = 0;  // a distance changes by no more than a step
+    for (size_t i = 0; i < slice; ++i) {
+      at_least = i % size_[0] == 0 ? 0 : at_least - kCell;
+      float& distance = distance_[z * slice + i];
+      if (at_least > reach_ + 2 * kCell) {
+        distance = at_least;
+      } else {
+        FillNode(model, z * slice + i);
+        at_least = distance;
+      }
+    }
   });
 }
 
@@ -56,13 +69,18 @@ void SmoothSkinWeights::FillNode(const BodyModel& model, size_t node) {
   const Eigen::Vector3f place = low_ + kCell * Eigen::Vector3i(x, y, z).cast<float>();
   const auto count = static_cast<int>(vertices_.rows());
   thread_local std::vector<float> squares;
-  squares.resize(count);
-  float least = 1e30F;
-  for (int v = 0; v < count; ++v) {
-    const float dx = columns_[0][v] - place[0], dy = columns_[1][v] - place[1], dz = columns_[2][v] - place[2];
-    squares[v] = dx * dx + dy * dy + dz * dz;
-    least = std::min(least, squares[v]);
+  squares.resize(columns_[0].size());
+  float lanes[kVertexLanes];
+  std::fill_n(lanes, kVertexLanes, kFarOff);
+  for (size_t v = 0; v < squares.size(); v += kVertexLanes) {
+    for (int k = 0; k < kVertexLanes; ++k) {
+      const float dx = columns_[0][v + k] - place[0], dy = columns_[1][v + k] - place[1];
+      const float dz = columns_[2][v + k] - place[2], square = dx * dx + dy * dy + dz * dz;
+      squares[v + k] = square;
+      lanes[k] = square < lanes[k] ? square : lanes[k];
+    }
   }
+  const float least = *std::min_element(lanes, lanes + kVertexLanes);
   const float distance = std::sqrt(least);
   distance_[node] = distance;
   if (distance > reach_ + 2 * kCell) return;

@@ -47,7 +47,7 @@ class SmoothSkinWeights {
   Eigen::Vector3i size_;
   float reach_;
   int num_joints_;
-  std::vector<float> distance_;  ///< by node
+  std::vector<float> distance_;  ///< by node; beyond the reach no more than a lower bound
   std::vector<float> weights_;   ///< nodes × J
 };
 
