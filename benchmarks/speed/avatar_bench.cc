@@ -158,7 +158,7 @@ double PictureError(const Scene& scene) {
   }
   double worst = 0;
   const int num_pixels = static_cast<int>(scene.window.area());
-  for (int i = 0; i < num_pixels; i += std::max(37, num_pixels / 400)) {
+  for (int i = 0; i < num_pixels; i += std::max(37, num_pixels / 100)) {
     const int x = scene.window.x_begin + i % scene.window.width(), y = scene.window.y_begin + i / scene.window.width();
     const auto twin = TwinDraw(splats, {x, y, x + 1, y + 1}, scene.picture.options().stop_transmittance, 1e-4);
     if (twin.marginal[0]) continue;

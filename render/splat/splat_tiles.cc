@@ -21,20 +21,22 @@ int FloorToInt(float x) {
   return towards_zero - static_cast<int>(x < static_cast<float>(towards_zero));
 }
 
-SplatShape ShapeOf(const FloatColumns& screen, int row) {
+Splat SplatOf(const FloatColumns& screen, int row) {
   constexpr float kLog2E = 1.44269504F;
-  SplatShape shape;
-  shape.x = screen(row, Screen::kMeanX), shape.y = screen(row, Screen::kMeanY);
-  shape.a = -0.5F * kLog2E * screen(row, Screen::kConicXx);
-  shape.b = -kLog2E * screen(row, Screen::kConicXy);
-  shape.c = -0.5F * kLog2E * screen(row, Screen::kConicYy);
-  shape.log2_opacity = screen(row, Screen::kLog2Opacity);
-  shape.peak = -0.5F / shape.a;
+  Splat s;
+  s.x = screen(row, Screen::kMeanX), s.y = screen(row, Screen::kMeanY);
+  s.a = -0.5F * kLog2E * screen(row, Screen::kConicXx);
+  s.b = -kLog2E * screen(row, Screen::kConicXy);
+  s.c = -0.5F * kLog2E * screen(row, Screen::kConicYy);
+  s.log2_opacity = screen(row, Screen::kLog2Opacity);
+  s.peak_x = -0.5F / s.a, s.peak_y = -0.5F / s.c;
   // Rounding grows with the parts of the exponent, which cancel in a needle that lies oblique.
   const float width = screen(row, Screen::kHalfWidth) + kTileSize,
               height = screen(row, Screen::kHalfHeight) + kTileSize;
-  shape.least = kLeastExponent - (0.01F - 2e-6F * (shape.a * (width * width) + shape.c * (height * height)));
-  return shape;
+  const float slack = 0.01F - 2e-6F * (s.a * (width * width) + s.c * (height * height));
+  s.least = kLeastExponent - s.log2_opacity - slack;
+  s.red = screen(row, Screen::kRed), s.green = screen(row, Screen::kGreen), s.blue = screen(row, Screen::kBlue);
+  return s;
 }
 
 }  // namespace
@@ -67,7 +69,7 @@ void SplatTiles::Begin(const ScreenGaussians& screen, const PixelBox& window) {
     }
   }
   order_ = depth_order_.Sort(screen.columns.values(Screen::kDepth), {met_.data(), static_cast<size_t>(count)});
-  shapes_.resize(count), paints_.resize(count);
+  splats_.resize(count);
   const int ranks_a_chunk = RanksAChunk();
   num_chunks_ = (count + ranks_a_chunk - 1) / ranks_a_chunk;
   if (chunks_.size() < num_chunks_) chunks_.resize(num_chunks_);
@@ -87,10 +89,9 @@ void SplatTiles::SortChunk(const ScreenGaussians& screen, int index) {
   const FloatColumns& columns = screen.columns;
   for (int rank = chunk.first; rank < chunk.last; ++rank) {
     const int row = order_[rank];
-    shapes_[rank] = ShapeOf(columns, row);
-    paints_[rank] = {columns(row, Screen::kRed), columns(row, Screen::kGreen), columns(row, Screen::kBlue), 0};
+    splats_[rank] = SplatOf(columns, row);
     chunk.slot_begin[rank - chunk.first] = static_cast<int32_t>(chunk.tile_of_slot.size());
-    const float x = shapes_[rank].x, y = shapes_[rank].y;
+    const float x = splats_[rank].x, y = splats_[rank].y;
     const float half_width = columns(row, Screen::kHalfWidth), half_height = columns(row, Screen::kHalfHeight);
     // The pixels whose centres lie within the extents.
     const auto first_tile = [](float low, int begin) { return std::max(0, (-FloorToInt(-low) >> kTileBits) - begin); };
@@ -137,7 +138,7 @@ PixelBox SplatTiles::BoxOf(int tile) const {
 SplatList SplatTiles::ListOf(int tile, int index) const {
   const Chunk& chunk = chunks_[index];
   const int begin = chunk.begin[tile], count = chunk.begin[tile + 1] - begin;
-  return {shapes_.data(), paints_.data(), chunk.ranks.data() + begin, chunk.slots.data() + begin, count};
+  return {splats_.data(), chunk.ranks.data() + begin, chunk.slots.data() + begin, count};
 }
 
 std::pair<int, int> SplatTiles::SlotsOf(int rank) const {

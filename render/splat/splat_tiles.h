@@ -40,6 +40,7 @@ class SplatTiles {
 
   /// Rows of the Gaussians by rank.
   [[nodiscard]] std::span<const int32_t> order() const { return order_; }
+  [[nodiscard]] const std::vector<Splat>& splats() const { return splats_; }
   [[nodiscard]] int num_slots() const { return num_slots_; }
   /// The slots of a rank are SlotsOf(rank).first to .second − 1.
   [[nodiscard]] std::pair<int, int> SlotsOf(int rank) const;
@@ -59,8 +60,7 @@ class SplatTiles {
   DepthOrder depth_order_;
   std::vector<int32_t> met_;
   std::span<const int32_t> order_;
-  std::vector<SplatShape> shapes_;
-  std::vector<SplatPaint> paints_;
+  std::vector<Splat> splats_;
   std::vector<Chunk> chunks_;
   size_t num_chunks_ = 0;
   int num_slots_ = 0;
