@@ -2,6 +2,8 @@
 #include "bodyloom/render/splat/splat_gradient.h"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/render/parallel_phases.h"
@@ -18,6 +20,7 @@ using splat_internal::SplatTileBack;
 using splat_internal::SplatTiles;
 
 constexpr int kRowsASum = 1024;
+constexpr int kRowsAhead = 8;  // fetched ahead: neighbours' slots lie far apart
 
 }  // namespace
 
@@ -61,14 +64,17 @@ void SplatGradient::SumRows(const SplatPicture& picture, const ScreenGaussians& 
   using Screen = ScreenGaussians;
   const FloatColumns& columns = screen.columns;
   FloatColumns& by = *by_screen;
+  std::array<std::pair<int, int>, kRowsASum> slots{};
   for (int row = first; row < last; ++row) {
+    if (rank_of_[row] >= 0) slots[row - first] = picture.tiles().SlotsOf(rank_of_[row]);
+  }
+  const auto sums_of = [&](int slot) { return sums_.get() + static_cast<size_t>(slot) * kSlotFloats; };
+  for (int row = first; row < last; ++row) {
+    __builtin_prefetch(sums_of(slots[std::min(row + kRowsAhead, last - 1) - first].first));
     float s[9] = {};
-    if (rank_of_[row] >= 0) {
-      const auto [begin, end] = picture.tiles().SlotsOf(rank_of_[row]);
-      for (int slot = begin; slot < end; ++slot) {
-        const float* from = sums_.get() + static_cast<size_t>(slot) * kSlotFloats;
-        for (int k = 0; k < 9; ++k) s[k] += from[k];
-      }
+    for (int slot = slots[row - first].first; slot < slots[row - first].second; ++slot) {
+      const float* from = sums_of(slot);
+      for (int k = 0; k < 9; ++k) s[k] += from[k];
     }
     const float kxx = columns(row, Screen::kConicXx), kxy = columns(row, Screen::kConicXy),
                 kyy = columns(row, Screen::kConicYy), opacity = columns(row, Screen::kOpacity);

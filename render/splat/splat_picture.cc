@@ -64,8 +64,16 @@ void SplatPicture::Draw(const ScreenGaussians& screen, const PixelBox& window, c
   num_gaussians_ = screen.size();
   planes_.Resize(kNumPlanes, static_cast<int>(window_.area()));
   const Stopwatch watch;
-  RunPhases(options.num_threads, {{[&] { return 1; }, [&](int) { tiles_.Begin(screen, window_); }},
-                                  {[&] { return tiles_.num_chunks(); }, [&](int i) { tiles_.SortChunk(screen, i); }},
+  RunPhases(options.num_threads, {{[&] {
+                                     tiles_.Begin(screen, window_);
+                                     return tiles_.num_batches();
+                                   },
+                                   [&](int i) { tiles_.PackRows(screen, i); }},
+                                  {[&] {
+                                     tiles_.Order(screen);
+                                     return tiles_.num_chunks();
+                                   },
+                                   [&](int i) { tiles_.SortChunk(i); }},
                                   {[&] {
                                      tiles_.End();
                                      summary_.sort_seconds = watch.seconds();
@@ -82,9 +90,8 @@ void SplatPicture::DrawValues(const FloatColumns& values, FloatColumns* planes) 
                  " by ", values.columns(), ", expected ", num_gaussians_, " by 3");
   const auto order = tiles_.order();
   with_values_ = tiles_.splats();
-  for (size_t rank = 0; rank < order.size(); ++rank) {
-    const int row = order[rank];
-    Splat& splat = with_values_[rank];
+  for (const int row : order) {
+    Splat& splat = with_values_[row];
     splat.red = values(row, 0), splat.green = values(row, 1), splat.blue = values(row, 2);
     const float most = std::max({std::abs(values(row, 0)), std::abs(values(row, 1)), std::abs(values(row, 2))});
     BODYLOOM_CHECK(

@@ -70,7 +70,7 @@ class SplatPicture {
   SplatPictureOptions options_;
   int num_gaussians_ = 0;
   splat_internal::SplatTiles tiles_;
-  std::vector<splat_internal::Splat> with_values_;  ///< by rank, of DrawValues
+  std::vector<splat_internal::Splat> with_values_;  ///< by row, of DrawValues
   FloatColumns planes_;
   SplatPictureSummary summary_;
 };

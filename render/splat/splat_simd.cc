@@ -117,7 +117,7 @@ HWY_INLINE uint32_t LivingBlocks(const float* transmittance, float stop, uint32_
 }
 
 HWY_INLINE void FetchAhead(const SplatList& list, int i) {
-  if (i + kEntriesAhead < list.count) hwy::Prefetch(list.splats + list.ranks[i + kEntriesAhead]);
+  if (i + kEntriesAhead < list.count) hwy::Prefetch(list.splats + list.entries[i + kEntriesAhead].row);
 }
 
 void DrawSplats(const SplatList& list, SplatTile* tile) {
@@ -132,7 +132,7 @@ void DrawSplats(const SplatList& list, SplatTile* tile) {
       tile->alive = LivingBlocks(tile->transmittance, tile->stop, tile->alive);
       if (tile->alive == 0) return;
     }
-    const Splat& g = list.splats[list.ranks[i]];
+    const Splat& g = list.splats[list.entries[i].row];
     FindReach(g, grid, tile->x, tile->alive, &reach);
     if (reach.blocks == 0) continue;
     const VF mean_y = hn::Set(d, g.y), c = hn::Set(d, g.c);
@@ -195,12 +195,12 @@ void DrawSplatsBackward(const SplatList& list, SplatTileBack* tile, float* sums)
   Reach reach;
   for (int i = 0; i < list.count; ++i) {
     FetchAhead(list, i);
-    float* const to = sums + static_cast<int64_t>(list.slots[i]) * kSlotFloats;
+    float* const to = sums + static_cast<int64_t>(list.entries[i].slot) * kSlotFloats;
     if (i % kEntriesBetweenLooks == 0 && tile->alive != 0) {
       tile->alive = LivingBlocks(tile->transmittance, tile->stop, tile->alive);
     }
     reach.blocks = 0;
-    const Splat& g = list.splats[list.ranks[i]];
+    const Splat& g = list.splats[list.entries[i].row];
     if (tile->alive != 0) FindReach(g, grid, tile->x, tile->alive, &reach);
     if (reach.blocks == 0) {
       std::fill_n(to, kSlotFloats, 0.0F);

@@ -35,13 +35,19 @@ struct alignas(64) Splat {
   float least;           ///< a block whose largest exponent less log2 o is below this holds no pixel, for all rounding
   float peak_x, peak_y;  ///< −1/(2a), −1/(2c): a row's largest exponent is at d_x = peak_x · b · d_y; …
   float red, green, blue;
+  float half_width, half_height;  ///< pixels
+};
+
+/// A meeting of a Gaussian and a tile.
+struct SplatEntry {
+  int32_t row;   ///< of the Gaussian
+  int32_t slot;  ///< backwards: where its sums go
 };
 
 /// What meets a tile, front to back.
 struct SplatList {
   const Splat* splats = nullptr;
-  const int32_t* ranks = nullptr;  ///< indices into them
-  const int32_t* slots = nullptr;  ///< backwards only: where each one's sums go
+  const SplatEntry* entries = nullptr;
   int count = 0;
 };
 
@@ -82,7 +88,7 @@ inline constexpr int kSlotFloats = 12;
 
 /// Draws a list over what is there.
 void DrawSplats(const SplatList& list, SplatTile* tile);
-/// Fills the slot of every entry, kSlotFloats floats from slots[i]·kSlotFloats, with zeros where nothing was taken.
+/// Fills the slot of every entry, kSlotFloats floats from slot·kSlotFloats, with zeros where nothing was taken.
 void DrawSplatsBackward(const SplatList& list, SplatTileBack* tile, float* sums);
 
 }  // namespace bodyloom::splat_internal
