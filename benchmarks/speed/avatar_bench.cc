@@ -186,10 +186,11 @@ void Measure(int gaussians, int width, int height, double person_px, int repetit
     (*to)[num_stages + 1].push_back(sum);
   };
   double differing = 0;
+  FloatColumns before;
   for (int r = -2; r < repetitions; ++r) {
     const Stages first = Step(&scene, 1, &processor);
     if (r >= 0) add(first, &one), add(processor, &spent);
-    const FloatColumns before = scene.gradient.parameters;
+    before = scene.gradient.parameters;
     const Stages second = Step(&scene, 2, &processor);
     if (r >= 0) add(second, &two);
     const FloatColumns& after = scene.gradient.parameters;

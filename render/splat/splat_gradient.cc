@@ -40,8 +40,8 @@ void SplatGradient::GoThroughTile(const SplatPicture& picture, const FloatColumn
     const size_t from = is_inside ? window.IndexOf(pixels.x_begin, y + box.y_begin) : 0;
     for (int p = 0; p < SplatPicture::kNumPlanes; ++p) {
       if (is_inside) {
-        std::copy_n(by_planes.column(p) + from, pixels.width(), by[p] + left);
-        std::copy_n(picture.planes().column(p) + from, pixels.width(), seen[p] + left);
+        splat_internal::CopyPixels(by_planes.column(p) + from, pixels.width(), by[p] + left);
+        splat_internal::CopyPixels(picture.planes().column(p) + from, pixels.width(), seen[p] + left);
       } else {
         std::fill_n(by[p], kTileSize, 0.0F);
       }

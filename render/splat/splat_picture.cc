@@ -42,12 +42,12 @@ void SplatPicture::DrawTile(int index, const Splat* other_splats, FloatColumns* 
     const size_t to = window_.IndexOf(pixels.x_begin, y);
     for (int c = 0; c < 3; ++c) {
       splat_internal::RowFromTile(tile.colour[c], y - box.y_begin, row);
-      std::copy_n(from, pixels.width(), planes->column(c) + to);
+      splat_internal::CopyPixels(from, pixels.width(), planes->column(c) + to);
     }
     if (other_splats != nullptr) continue;
     splat_internal::RowFromTile(tile.transmittance, y - box.y_begin, row);
     for (float& t : row) t = 1 - t;
-    std::copy_n(from, pixels.width(), planes->column(kAlpha) + to);
+    splat_internal::CopyPixels(from, pixels.width(), planes->column(kAlpha) + to);
   }
 }
 

@@ -64,6 +64,15 @@ inline void RowToTile(const float* row, int y, float* pixels) {
   for (int x = 0; x < kTileSize; x += kBlockSize) std::copy_n(row + x, kBlockSize, pixels + PlaceInTile(x, y));
 }
 
+/// Up to sixteen floats; sixteen, which most are, without a call.
+inline void CopyPixels(const float* from, int count, float* to) {
+  if (count == kTileSize) {
+    std::copy_n(from, kTileSize, to);
+  } else {
+    std::copy_n(from, count, to);
+  }
+}
+
 /// One tile while it is drawn.
 struct SplatTile {
   int x = 0, y = 0;  ///< the pixel of its corner
