@@ -29,13 +29,15 @@ bool GaussianBody::IsValid(int num_joints, int num_faces, std::string* why) cons
                   " joints, ", anchors.size(), " anchors, ", is_loose.size(), " marks, expected ",
                   static_cast<int>(kNumParameters), ", ", count * kInfluences, ", ", count, ", ", count);
   }
-  for (const int32_t joint : joints) {
-    if (joint < 0 || joint >= num_joints) return refuse("joint ", joint, ", expected 0 to ", num_joints - 1);
+  // Whole arrays first, which is what vectors are good at; this runs every frame.
+  uint32_t largest_joint = 0, largest_face = 0;
+  for (const int32_t joint : joints) largest_joint = std::max(largest_joint, static_cast<uint32_t>(joint));
+  for (const SkinAnchor& anchor : anchors) largest_face = std::max(largest_face, static_cast<uint32_t>(anchor.face));
+  if (count > 0 && largest_joint >= static_cast<uint32_t>(num_joints)) {
+    return refuse("joint ", static_cast<int32_t>(largest_joint), ", expected 0 to ", num_joints - 1);
   }
-  for (const SkinAnchor& anchor : anchors) {
-    if (anchor.face < 0 || anchor.face >= num_faces) {
-      return refuse("anchor on face ", anchor.face, ", expected 0 to ", num_faces - 1);
-    }
+  if (count > 0 && largest_face >= static_cast<uint32_t>(num_faces)) {
+    return refuse("anchor on face ", static_cast<int32_t>(largest_face), ", expected 0 to ", num_faces - 1);
   }
   return true;
 }

@@ -2,6 +2,8 @@
 #include "bodyloom/render/splat/splat_gradient.h"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/render/parallel_phases.h"
@@ -18,6 +20,7 @@ using splat_internal::SplatTileBack;
 using splat_internal::SplatTiles;
 
 constexpr int kRowsASum = 1024;
+constexpr int kRowsAhead = 8;  // fetched ahead: neighbours' slots lie far apart
 
 }  // namespace
 
@@ -29,23 +32,25 @@ void SplatGradient::GoThroughTile(const SplatPicture& picture, const FloatColumn
   tile.x = box.x_begin, tile.y = box.y_begin;
   tile.stop = picture.options().stop_transmittance;
   std::fill_n(tile.transmittance, kTilePixels, 1.0F);
-  if (pixels.width() < kTileSize || pixels.height() < kTileSize) {
-    std::fill_n(tile.rest, kTilePixels, 0.0F);
-    std::fill_n(tile.by_alpha, kTilePixels, 0.0F);
-    for (float* by : {tile.by_colour[0], tile.by_colour[1], tile.by_colour[2]}) std::fill_n(by, kTilePixels, 0.0F);
-  }
-  for (int y = pixels.y_begin; y < pixels.y_end; ++y) {
-    const int to = (y - box.y_begin) * kTileSize + pixels.x_begin - box.x_begin;
-    const size_t from = window.IndexOf(pixels.x_begin, y);
-    for (int c = 0; c < 3; ++c) std::copy_n(by_planes.column(c) + from, pixels.width(), tile.by_colour[c] + to);
-    std::copy_n(by_planes.column(SplatPicture::kAlpha) + from, pixels.width(), tile.by_alpha + to);
-    const FloatColumns& planes = picture.planes();
-    const float *red = planes.column(SplatPicture::kRed) + from, *green = planes.column(SplatPicture::kGreen) + from,
-                *blue = planes.column(SplatPicture::kBlue) + from, *alpha = planes.column(SplatPicture::kAlpha) + from;
-    for (int x = 0; x < pixels.width(); ++x) {
-      tile.rest[to + x] = (red[x] * tile.by_colour[0][to + x] + green[x] * tile.by_colour[1][to + x]) +
-                          (blue[x] * tile.by_colour[2][to + x] + alpha[x] * tile.by_alpha[to + x]);
+  // Pixels outside the window: derivatives of zero.
+  const int left = pixels.x_begin - box.x_begin;
+  float by[SplatPicture::kNumPlanes][kTileSize] = {}, seen[SplatPicture::kNumPlanes][kTileSize] = {}, rest[kTileSize];
+  for (int y = 0; y < kTileSize; ++y) {
+    const bool is_inside = y + box.y_begin >= pixels.y_begin && y + box.y_begin < pixels.y_end;
+    const size_t from = is_inside ? window.IndexOf(pixels.x_begin, y + box.y_begin) : 0;
+    for (int p = 0; p < SplatPicture::kNumPlanes; ++p) {
+      if (is_inside) {
+        splat_internal::CopyPixels(by_planes.column(p) + from, pixels.width(), by[p] + left);
+        splat_internal::CopyPixels(picture.planes().column(p) + from, pixels.width(), seen[p] + left);
+      } else {
+        std::fill_n(by[p], kTileSize, 0.0F);
+      }
+      splat_internal::RowToTile(by[p], y, p == SplatPicture::kAlpha ? tile.by_alpha : tile.by_colour[p]);
     }
+    for (int x = 0; x < kTileSize; ++x) {
+      rest[x] = (seen[0][x] * by[0][x] + seen[1][x] * by[1][x]) + (seen[2][x] * by[2][x] + seen[3][x] * by[3][x]);
+    }
+    splat_internal::RowToTile(rest, y, tile.rest);
   }
   for (int chunk = 0; chunk < tiles.num_chunks(); ++chunk) {
     const SplatList list = tiles.ListOf(index, chunk);
@@ -59,14 +64,17 @@ void SplatGradient::SumRows(const SplatPicture& picture, const ScreenGaussians& 
   using Screen = ScreenGaussians;
   const FloatColumns& columns = screen.columns;
   FloatColumns& by = *by_screen;
+  std::array<std::pair<int, int>, kRowsASum> slots{};
   for (int row = first; row < last; ++row) {
+    if (rank_of_[row] >= 0) slots[row - first] = picture.tiles().SlotsOf(rank_of_[row]);
+  }
+  const auto sums_of = [&](int slot) { return sums_.get() + static_cast<size_t>(slot) * kSlotFloats; };
+  for (int row = first; row < last; ++row) {
+    __builtin_prefetch(sums_of(slots[std::min(row + kRowsAhead, last - 1) - first].first));
     float s[9] = {};
-    if (rank_of_[row] >= 0) {
-      const auto [begin, end] = picture.tiles().SlotsOf(rank_of_[row]);
-      for (int slot = begin; slot < end; ++slot) {
-        const float* from = sums_.get() + static_cast<size_t>(slot) * kSlotFloats;
-        for (int k = 0; k < 9; ++k) s[k] += from[k];
-      }
+    for (int slot = slots[row - first].first; slot < slots[row - first].second; ++slot) {
+      const float* from = sums_of(slot);
+      for (int k = 0; k < 9; ++k) s[k] += from[k];
     }
     const float kxx = columns(row, Screen::kConicXx), kxy = columns(row, Screen::kConicXy),
                 kyy = columns(row, Screen::kConicYy), opacity = columns(row, Screen::kOpacity);

@@ -13,8 +13,8 @@
 namespace bodyloom {
 
 using splat_internal::kTileSize;
+using splat_internal::Splat;
 using splat_internal::SplatList;
-using splat_internal::SplatPaint;
 using splat_internal::SplatTile;
 
 bool SplatPictureOptions::IsValid(std::string* why) const {
@@ -22,7 +22,7 @@ bool SplatPictureOptions::IsValid(std::string* why) const {
   return in_range("stop_transmittance", stop_transmittance, 0, 1) && in_range("num_threads", num_threads, 1, 1024);
 }
 
-void SplatPicture::DrawTile(int index, const SplatPaint* other_paints, FloatColumns* planes) const {
+void SplatPicture::DrawTile(int index, const Splat* other_splats, FloatColumns* planes) const {
   const PixelBox box = tiles_.BoxOf(index), pixels = tiles_.PixelsOf(index);
   SplatTile tile;
   tile.x = box.x_begin, tile.y = box.y_begin;
@@ -33,16 +33,21 @@ void SplatPicture::DrawTile(int index, const SplatPaint* other_paints, FloatColu
   }
   for (int chunk = 0; chunk < tiles_.num_chunks() && tile.alive != 0; ++chunk) {
     SplatList list = tiles_.ListOf(index, chunk);
-    if (other_paints != nullptr) list.paints = other_paints;
+    if (other_splats != nullptr) list.splats = other_splats;
     if (list.count > 0) DrawSplats(list, &tile);
   }
+  float row[kTileSize];
+  const auto* const from = row + (pixels.x_begin - box.x_begin);
   for (int y = pixels.y_begin; y < pixels.y_end; ++y) {
-    const int from = (y - box.y_begin) * kTileSize + pixels.x_begin - box.x_begin;
     const size_t to = window_.IndexOf(pixels.x_begin, y);
-    for (int c = 0; c < 3; ++c) std::copy_n(tile.colour[c] + from, pixels.width(), planes->column(c) + to);
-    if (other_paints != nullptr) continue;
-    float* alpha = planes->column(kAlpha) + to;
-    for (int x = 0; x < pixels.width(); ++x) alpha[x] = 1 - tile.transmittance[from + x];
+    for (int c = 0; c < 3; ++c) {
+      splat_internal::RowFromTile(tile.colour[c], y - box.y_begin, row);
+      splat_internal::CopyPixels(from, pixels.width(), planes->column(c) + to);
+    }
+    if (other_splats != nullptr) continue;
+    splat_internal::RowFromTile(tile.transmittance, y - box.y_begin, row);
+    for (float& t : row) t = 1 - t;
+    splat_internal::CopyPixels(from, pixels.width(), planes->column(kAlpha) + to);
   }
 }
 
@@ -59,8 +64,16 @@ void SplatPicture::Draw(const ScreenGaussians& screen, const PixelBox& window, c
   num_gaussians_ = screen.size();
   planes_.Resize(kNumPlanes, static_cast<int>(window_.area()));
   const Stopwatch watch;
-  RunPhases(options.num_threads, {{[&] { return 1; }, [&](int) { tiles_.Begin(screen, window_); }},
-                                  {[&] { return tiles_.num_chunks(); }, [&](int i) { tiles_.SortChunk(screen, i); }},
+  RunPhases(options.num_threads, {{[&] {
+                                     tiles_.Begin(screen, window_);
+                                     return tiles_.num_batches();
+                                   },
+                                   [&](int i) { tiles_.PackRows(screen, i); }},
+                                  {[&] {
+                                     tiles_.Order(screen);
+                                     return tiles_.num_chunks();
+                                   },
+                                   [&](int i) { tiles_.SortChunk(i); }},
                                   {[&] {
                                      tiles_.End();
                                      summary_.sort_seconds = watch.seconds();
@@ -76,10 +89,10 @@ void SplatPicture::DrawValues(const FloatColumns& values, FloatColumns* planes) 
   BODYLOOM_CHECK(values.columns() == 3 && values.rows() == num_gaussians_, "splat picture: values are ", values.rows(),
                  " by ", values.columns(), ", expected ", num_gaussians_, " by 3");
   const auto order = tiles_.order();
-  values_.resize(order.size());
-  for (size_t rank = 0; rank < order.size(); ++rank) {
-    const int row = order[rank];
-    values_[rank] = {values(row, 0), values(row, 1), values(row, 2), 0};
+  with_values_ = tiles_.splats();
+  for (const int row : order) {
+    Splat& splat = with_values_[row];
+    splat.red = values(row, 0), splat.green = values(row, 1), splat.blue = values(row, 2);
     const float most = std::max({std::abs(values(row, 0)), std::abs(values(row, 1)), std::abs(values(row, 2))});
     BODYLOOM_CHECK(
         most <= ScreenGaussians::kLargestColour && std::isfinite(values(row, 0) + values(row, 1) + values(row, 2)),
@@ -87,7 +100,7 @@ void SplatPicture::DrawValues(const FloatColumns& values, FloatColumns* planes) 
         ", expected finite ones within ±", ScreenGaussians::kLargestColour);
   }
   planes->Resize(3, static_cast<int>(window_.area()));
-  ParallelFor(tiles_.num_tiles(), options_.num_threads, [&](int i) { DrawTile(i, values_.data(), planes); });
+  ParallelFor(tiles_.num_tiles(), options_.num_threads, [&](int i) { DrawTile(i, with_values_.data(), planes); });
 }
 
 }  // namespace bodyloom

@@ -64,13 +64,13 @@ class SplatPicture {
   [[nodiscard]] int num_gaussians() const { return num_gaussians_; }
 
  private:
-  void DrawTile(int tile, const splat_internal::SplatPaint* other_paints, FloatColumns* planes) const;
+  void DrawTile(int tile, const splat_internal::Splat* other_splats, FloatColumns* planes) const;
 
   PixelBox window_;
   SplatPictureOptions options_;
   int num_gaussians_ = 0;
   splat_internal::SplatTiles tiles_;
-  std::vector<splat_internal::SplatPaint> values_;  ///< by rank, of DrawValues
+  std::vector<splat_internal::Splat> with_values_;  ///< by row, of DrawValues
   FloatColumns planes_;
   SplatPictureSummary summary_;
 };

@@ -11,6 +11,7 @@
 #define HWY_TARGET_INCLUDE "bodyloom/render/splat/splat_simd.cc"
 #include <hwy/foreach_target.h>
 // Must come after foreach_target.h.
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include "bodyloom/geometry/quad-inl.h"
@@ -31,80 +32,120 @@ using VF = hn::Vec<DF>;
 using MF = hn::Mask<DF>;
 
 constexpr int kN = static_cast<int>(hn::MaxLanes(DF()));
-constexpr int kParts = kTileSize / kN;  ///< vectors a row of a tile
+constexpr int kParts = kBlockPixels / kN;  ///< vectors a block
 constexpr int kEntriesBetweenLooks = 8;
+constexpr int kEntriesAhead = 6;  ///< to be fetched: what a tile draws lies far apart
 
-/// The rows of the tile that a Gaussian may reach, and the exponent's constants there.
-struct Rows {
-  uint32_t mask;
-  alignas(64) float base[kTileSize];   ///< log2 o + c d_y²
-  alignas(64) float slope[kTileSize];  ///< b d_y
-};
-
-HWY_INLINE void FindRows(const SplatShape& g, float left, float top, uint32_t alive, Rows* rows) {
-  const DF d;
-  const VF a = hn::Set(d, g.a), first = hn::Set(d, left - g.x), last = hn::Set(d, left - g.x + (kTileSize - 1));
-  uint32_t mask = 0;
-  for (int part = 0; part < kParts; ++part) {
-    const VF dy = hn::Sub(hn::Iota(d, top + static_cast<float>(part * kN)), hn::Set(d, g.y));
-    const VF base = hn::Add(hn::Set(d, g.log2_opacity), hn::Mul(hn::Set(d, g.c), hn::Mul(dy, dy)));
-    const VF slope = hn::Mul(hn::Set(d, g.b), dy);
-    hn::Store(base, d, rows->base + part * kN);
-    hn::Store(slope, d, rows->slope + part * kN);
-    const VF at = hn::Min(hn::Max(hn::Mul(hn::Set(d, g.peak), slope), first), last);
-    const VF most = hn::Add(base, hn::Mul(at, hn::Add(slope, hn::Mul(a, at))));
-    uint8_t bits[8] = {};
-    hn::StoreMaskBits(d, hn::Ge(most, hn::Set(d, g.least)), bits);
-    mask |= (bits[0] | static_cast<uint32_t>(bits[1]) << 8) << (part * kN);
-  }
-  rows->mask = mask & alive;
+/// Four numbers by column for the lanes of a block's part: lane i gets the one of column i mod 4.
+HWY_INLINE VF ByColumn(const float* columns, int part) {
+  return hn::LoadDup128(DF(), columns + part * kN % kBlockSize);
 }
 
-/// The rows that still have a pixel of T ≥ stop.
-HWY_INLINE uint32_t LivingRows(const float* transmittance, float stop, uint32_t alive) {
+/// The blocks of the tile that a Gaussian may reach, and the exponent's constants in the tile's columns.
+struct Reach {
+  uint32_t blocks;
+  alignas(64) float dx[kTileSize];
+  alignas(64) float base[kTileSize];   ///< log2 o + a d_x²
+  alignas(64) float slope[kTileSize];  ///< b d_x
+};
+
+/// The pixel rows of the tile for each lane, by the block's place down; and the corners of its blocks.
+struct TileGrid {
+  alignas(64) float y[kBlocksAcross][kBlockPixels];
+  alignas(64) float left[kNumBlocks], top[kNumBlocks];
+  HWY_INLINE TileGrid(int tile_x, int tile_y) {
+    for (int i = 0; i < kBlocksAcross * kBlockPixels; ++i) {
+      y[i / kBlockPixels][i % kBlockPixels] = static_cast<float>(tile_y + i / kBlockSize);
+    }
+    for (int b = 0; b < kNumBlocks; ++b) {
+      left[b] = static_cast<float>(tile_x + b % kBlocksAcross * kBlockSize);
+      top[b] = static_cast<float>(tile_y + b / kBlocksAcross * kBlockSize);
+    }
+  }
+};
+
+/// The exponent is concave: over a block that does not hold the mean it is largest on an edge that faces the mean, the
+/// upright one at d_x = nearest column, the level one at d_y = nearest row.
+HWY_INLINE uint32_t BlocksReached(const Splat& g, const TileGrid& grid) {
+  const DF d;
+  const VF zero = hn::Zero(d), width = hn::Set(d, kBlockSize - 1.0F);
+  const VF a = hn::Set(d, g.a), b = hn::Set(d, g.b), c = hn::Set(d, g.c);
+  const auto within = [&](VF value, VF low, VF high) HWY_ATTR { return hn::Min(hn::Max(value, low), high); };
+  uint32_t mask = 0;
+  for (int first = 0; first < kNumBlocks; first += kN) {
+    const VF left = hn::Sub(hn::Load(d, grid.left + first), hn::Set(d, g.x)), right = hn::Add(left, width);
+    const VF top = hn::Sub(hn::Load(d, grid.top + first), hn::Set(d, g.y)), bottom = hn::Add(top, width);
+    const VF x = within(zero, left, right), y = within(zero, top, bottom);
+    const VF bx = hn::Mul(b, x), by = hn::Mul(b, y);
+    const VF best_y = within(hn::Mul(bx, hn::Set(d, g.peak_y)), top, bottom);
+    const VF best_x = within(hn::Mul(by, hn::Set(d, g.peak_x)), left, right);
+    const VF upright = hn::Add(hn::Mul(a, hn::Mul(x, x)), hn::Mul(best_y, hn::Add(bx, hn::Mul(c, best_y))));
+    const VF level = hn::Add(hn::Mul(c, hn::Mul(y, y)), hn::Mul(best_x, hn::Add(by, hn::Mul(a, best_x))));
+    uint8_t bits[8] = {};
+    hn::StoreMaskBits(d, hn::Ge(hn::Max(upright, level), hn::Set(d, g.least)), bits);
+    mask |= (bits[0] | static_cast<uint32_t>(bits[1]) << 8) << first;
+  }
+  return mask;
+}
+
+HWY_INLINE void FindReach(const Splat& g, const TileGrid& grid, int left, uint32_t alive, Reach* reach) {
+  const DF d;
+  reach->blocks = BlocksReached(g, grid) & alive;
+  if (reach->blocks == 0) return;
+  for (int column = 0; column < kTileSize; column += kN) {
+    const VF dx = hn::Sub(hn::Iota(d, static_cast<float>(left + column)), hn::Set(d, g.x));
+    hn::Store(dx, d, reach->dx + column);
+    const VF square = hn::Mul(dx, dx);
+    hn::Store(hn::Add(hn::Set(d, g.log2_opacity), hn::Mul(hn::Set(d, g.a), square)), d, reach->base + column);
+    hn::Store(hn::Mul(hn::Set(d, g.b), dx), d, reach->slope + column);
+  }
+}
+
+/// The blocks that still have a pixel of T ≥ stop.
+HWY_INLINE uint32_t LivingBlocks(const float* transmittance, float stop, uint32_t alive) {
   const DF d;
   const VF least = hn::Set(d, stop);
   for (uint32_t left = alive; left != 0; left &= left - 1) {
-    const int row = std::countr_zero(left);
+    const int block = std::countr_zero(left);
     bool dead = true;
     for (int part = 0; part < kParts; ++part) {
-      dead = dead && hn::AllTrue(d, hn::Lt(hn::Load(d, transmittance + row * kTileSize + part * kN), least));
+      dead = dead && hn::AllTrue(d, hn::Lt(hn::Load(d, transmittance + block * kBlockPixels + part * kN), least));
     }
-    alive &= ~(static_cast<uint32_t>(dead) << row);
+    alive &= ~(static_cast<uint32_t>(dead) << block);
   }
   return alive;
+}
+
+HWY_INLINE void FetchAhead(const SplatList& list, int i) {
+  if (i + kEntriesAhead < list.count) hwy::Prefetch(list.splats + list.entries[i + kEntriesAhead].row);
 }
 
 void DrawSplats(const SplatList& list, SplatTile* tile) {
   const DF d;
   const VF least = hn::Set(d, kLeastExponent), stop = hn::Set(d, tile->stop);
   const VF largest = hn::Set(d, ScreenGaussians::kLargestAlpha);
-  const float left = static_cast<float>(tile->x), top = static_cast<float>(tile->y);
-  Rows rows;
+  const TileGrid grid(tile->x, tile->y);
+  Reach reach;
   for (int i = 0; i < list.count; ++i) {
+    FetchAhead(list, i);
     if (i % kEntriesBetweenLooks == 0) {
-      tile->alive = LivingRows(tile->transmittance, tile->stop, tile->alive);
+      tile->alive = LivingBlocks(tile->transmittance, tile->stop, tile->alive);
       if (tile->alive == 0) return;
     }
-    const SplatShape& g = list.shapes[list.ranks[i]];
-    FindRows(g, left, top, tile->alive, &rows);
-    if (rows.mask == 0) continue;
-    const SplatPaint& paint = list.paints[list.ranks[i]];
-    VF dx[kParts], adx[kParts];
-    for (int part = 0; part < kParts; ++part) {
-      dx[part] = hn::Sub(hn::Iota(d, left + static_cast<float>(part * kN)), hn::Set(d, g.x));
-      adx[part] = hn::Mul(hn::Set(d, g.a), dx[part]);
-    }
-    const VF red = hn::Set(d, paint.red), green = hn::Set(d, paint.green), blue = hn::Set(d, paint.blue);
-    for (; rows.mask != 0; rows.mask &= rows.mask - 1) {
-      const int row = std::countr_zero(rows.mask);
-      const VF base = hn::Set(d, rows.base[row]), slope = hn::Set(d, rows.slope[row]);
+    const Splat& g = list.splats[list.entries[i].row];
+    FindReach(g, grid, tile->x, tile->alive, &reach);
+    if (reach.blocks == 0) continue;
+    const VF mean_y = hn::Set(d, g.y), c = hn::Set(d, g.c);
+    const VF red = hn::Set(d, g.red), green = hn::Set(d, g.green), blue = hn::Set(d, g.blue);
+    for (uint32_t left = reach.blocks; left != 0; left &= left - 1) {
+      const int block = std::countr_zero(left), column = block % kBlocksAcross * kBlockSize;
       for (int part = 0; part < kParts; ++part) {
-        const int at = row * kTileSize + part * kN;
-        const VF t = hn::Add(base, hn::Mul(dx[part], hn::Add(slope, adx[part])));
+        const int at = block * kBlockPixels + part * kN;
+        const VF dy = hn::Sub(hn::Load(d, grid.y[block / kBlocksAcross] + part * kN), mean_y);
+        const VF line = hn::Add(ByColumn(reach.slope + column, part), hn::Mul(c, dy));
+        const VF t = hn::Add(ByColumn(reach.base + column, part), hn::Mul(dy, line));
         const VF before = hn::Load(d, tile->transmittance + at);
         const MF takes = hn::And(hn::Ge(t, least), hn::Ge(before, stop));
-        if (hn::AllFalse(d, takes)) continue;
         const VF w = hn::IfThenElseZero(takes, hn::Mul(hn::Min(largest, Exp2(d, t)), before));
         const auto add = [&](float* to, VF colour)
                              HWY_ATTR { hn::Store(hn::Add(hn::Load(d, to + at), hn::Mul(w, colour)), d, to + at); };
@@ -118,11 +159,24 @@ void DrawSplats(const SplatList& list, SplatTile* tile) {
 }
 
 /// Lanes i, i+4, i+8 and i+12 of sixteen added: (i + (i+8)) + ((i+4) + (i+12)).
-HWY_INLINE Quad Fold(const VF* v) {
-  const DF d;
-  alignas(64) float lanes[kTileSize];
-  for (int part = 0; part < kParts; ++part) hn::Store(v[part], d, lanes + part * kN);
-  return (LoadQuad(lanes) + LoadQuad(lanes + 8)) + (LoadQuad(lanes + 4) + LoadQuad(lanes + 12));
+template <class D>
+HWY_INLINE Quad Fold(D d, const hn::Vec<D>* v) {
+#if HWY_TARGET == HWY_SCALAR
+  return bodyloom::HWY_NAMESPACE::ByLane(
+      [&](int i) { return hn::GetLane(hn::Add(hn::Add(v[i], v[i + 8]), hn::Add(v[i + 4], v[i + 12]))); });
+#else
+  const hn::Half<D> half;
+  if constexpr (hn::MaxLanes(D()) == 16) {
+    const hn::Half<hn::Half<D> > quarter;
+    const auto sum = hn::Add(hn::LowerHalf(half, v[0]), hn::UpperHalf(half, v[0]));
+    return {hn::Add(hn::LowerHalf(quarter, sum), hn::UpperHalf(quarter, sum))};
+  } else if constexpr (hn::MaxLanes(D()) == 8) {
+    const auto sum = hn::Add(v[0], v[1]);
+    return {hn::Add(hn::LowerHalf(half, sum), hn::UpperHalf(half, sum))};
+  } else {
+    return {hn::Add(hn::Add(v[0], v[2]), hn::Add(v[1], v[3]))};
+  }
+#endif
 }
 
 /// Sums of four vectors' lanes.
@@ -131,43 +185,42 @@ HWY_INLINE void StoreSums(Quad a, Quad b, Quad c, Quad e, float* to) {
   StoreQuad((a + c) + (b + e), to);
 }
 
+enum Sum : int { kD, kDx, kDy, kDxx, kDxy, kDyy, kWRed, kWGreen, kWBlue, kNumSums };
+
 void DrawSplatsBackward(const SplatList& list, SplatTileBack* tile, float* sums) {
   const DF d;
   const VF zero = hn::Zero(d), one = hn::Set(d, 1.0F), least = hn::Set(d, kLeastExponent),
            stop = hn::Set(d, tile->stop), largest = hn::Set(d, ScreenGaussians::kLargestAlpha);
-  const float left = static_cast<float>(tile->x), top = static_cast<float>(tile->y);
-  Rows rows;
+  const TileGrid grid(tile->x, tile->y);
+  Reach reach;
   for (int i = 0; i < list.count; ++i) {
-    float* const to = sums + static_cast<int64_t>(list.slots[i]) * kSlotFloats;
+    FetchAhead(list, i);
+    float* const to = sums + static_cast<int64_t>(list.entries[i].slot) * kSlotFloats;
     if (i % kEntriesBetweenLooks == 0 && tile->alive != 0) {
-      tile->alive = LivingRows(tile->transmittance, tile->stop, tile->alive);
+      tile->alive = LivingBlocks(tile->transmittance, tile->stop, tile->alive);
     }
-    rows.mask = 0;
-    const SplatShape& g = list.shapes[list.ranks[i]];
-    if (tile->alive != 0) FindRows(g, left, top, tile->alive, &rows);
-    if (rows.mask == 0) {
+    reach.blocks = 0;
+    const Splat& g = list.splats[list.entries[i].row];
+    if (tile->alive != 0) FindReach(g, grid, tile->x, tile->alive, &reach);
+    if (reach.blocks == 0) {
       std::fill_n(to, kSlotFloats, 0.0F);
       continue;
     }
-    const SplatPaint& paint = list.paints[list.ranks[i]];
-    VF dx[kParts], adx[kParts];
-    VF sum[kParts], sum_y[kParts], sum_yy[kParts], red_sum[kParts], green_sum[kParts], blue_sum[kParts];
-    for (int part = 0; part < kParts; ++part) {
-      dx[part] = hn::Sub(hn::Iota(d, left + static_cast<float>(part * kN)), hn::Set(d, g.x));
-      adx[part] = hn::Mul(hn::Set(d, g.a), dx[part]);
-      sum[part] = sum_y[part] = sum_yy[part] = red_sum[part] = green_sum[part] = blue_sum[part] = zero;
+    const VF mean_y = hn::Set(d, g.y), c = hn::Set(d, g.c);
+    const VF red = hn::Set(d, g.red), green = hn::Set(d, g.green), blue = hn::Set(d, g.blue);
+    VF sum[kNumSums][kParts];
+    for (int k = 0; k < kNumSums; ++k) {
+      for (int part = 0; part < kParts; ++part) sum[k][part] = zero;
     }
-    const VF red = hn::Set(d, paint.red), green = hn::Set(d, paint.green), blue = hn::Set(d, paint.blue);
-    for (; rows.mask != 0; rows.mask &= rows.mask - 1) {
-      const int row = std::countr_zero(rows.mask);
-      const VF base = hn::Set(d, rows.base[row]), slope = hn::Set(d, rows.slope[row]);
-      const VF dy = hn::Set(d, static_cast<float>(row) + top - g.y);
+    for (uint32_t left = reach.blocks; left != 0; left &= left - 1) {
+      const int block = std::countr_zero(left), column = block % kBlocksAcross * kBlockSize;
       for (int part = 0; part < kParts; ++part) {
-        const int at = row * kTileSize + part * kN;
-        const VF t = hn::Add(base, hn::Mul(dx[part], hn::Add(slope, adx[part])));
+        const int at = block * kBlockPixels + part * kN;
+        const VF dy = hn::Sub(hn::Load(d, grid.y[block / kBlocksAcross] + part * kN), mean_y);
+        const VF line = hn::Add(ByColumn(reach.slope + column, part), hn::Mul(c, dy));
+        const VF t = hn::Add(ByColumn(reach.base + column, part), hn::Mul(dy, line));
         const VF before = hn::Load(d, tile->transmittance + at);
         const MF takes = hn::And(hn::Ge(t, least), hn::Ge(before, stop));
-        if (hn::AllFalse(d, takes)) continue;
         const VF whole = Exp2(d, t), alpha = hn::IfThenElseZero(takes, hn::Min(largest, whole));
         const VF w = hn::Mul(alpha, before);
         hn::Store(hn::Sub(before, w), d, tile->transmittance + at);
@@ -179,25 +232,24 @@ void DrawSplatsBackward(const SplatList& list, SplatTileBack* tile, float* sums)
         hn::Store(rest, d, tile->rest + at);
         const VF behind = hn::Div(hn::Mul(rest, alpha), hn::Sub(one, alpha));
         const VF by_log = hn::IfThenElseZero(hn::And(takes, hn::Lt(whole, largest)), hn::Sub(wk, behind));
-        const VF by_log_y = hn::Mul(by_log, dy);
-        sum[part] = hn::Add(sum[part], by_log);
-        sum_y[part] = hn::Add(sum_y[part], by_log_y);
-        sum_yy[part] = hn::Add(sum_yy[part], hn::Mul(by_log_y, dy));
-        red_sum[part] = hn::Add(red_sum[part], hn::Mul(w, by_red));
-        green_sum[part] = hn::Add(green_sum[part], hn::Mul(w, by_green));
-        blue_sum[part] = hn::Add(blue_sum[part], hn::Mul(w, by_blue));
+        const VF dx = ByColumn(reach.dx + column, part);
+        const VF by_log_x = hn::Mul(by_log, dx), by_log_y = hn::Mul(by_log, dy);
+        const auto add = [&](Sum to_sum, VF more) HWY_ATTR { sum[to_sum][part] = hn::Add(sum[to_sum][part], more); };
+        add(kD, by_log);
+        add(kDx, by_log_x);
+        add(kDy, by_log_y);
+        add(kDxx, hn::Mul(by_log_x, dx));
+        add(kDxy, hn::Mul(by_log_x, dy));
+        add(kDyy, hn::Mul(by_log_y, dy));
+        add(kWRed, hn::Mul(w, by_red));
+        add(kWGreen, hn::Mul(w, by_green));
+        add(kWBlue, hn::Mul(w, by_blue));
       }
     }
-    VF sum_x[kParts], sum_xx[kParts], sum_xy[kParts];
-    for (int part = 0; part < kParts; ++part) {
-      sum_x[part] = hn::Mul(sum[part], dx[part]);
-      sum_xx[part] = hn::Mul(sum_x[part], dx[part]);
-      sum_xy[part] = hn::Mul(sum_y[part], dx[part]);
-    }
-    StoreSums(Fold(sum), Fold(sum_x), Fold(sum_y), Fold(sum_xx), to);
-    StoreSums(Fold(sum_xy), Fold(sum_yy), Fold(red_sum), Fold(green_sum), to + 4);
+    StoreSums(Fold(d, sum[kD]), Fold(d, sum[kDx]), Fold(d, sum[kDy]), Fold(d, sum[kDxx]), to);
+    StoreSums(Fold(d, sum[kDxy]), Fold(d, sum[kDyy]), Fold(d, sum[kWRed]), Fold(d, sum[kWGreen]), to + 4);
     const Quad nothing = bodyloom::HWY_NAMESPACE::Fill(0);
-    StoreSums(Fold(blue_sum), nothing, nothing, nothing, to + 8);
+    StoreSums(Fold(d, sum[kWBlue]), nothing, nothing, nothing, to + 8);
   }
 }
 

@@ -10,8 +10,10 @@ namespace {
 
 using Screen = ScreenGaussians;
 
-constexpr int kLeastRanksAChunk = 4096;
-constexpr int kMostChunks = 8;  // each keeps a table as long as the picture has tiles
+constexpr int kRowsABatch = 1024;
+constexpr int kRanksAhead = 8;       // fetched ahead: neighbours in depth lie far apart in memory
+constexpr int kLeastChunkBits = 12;  // 4,096 ranks
+constexpr int kMostChunks = 8;       // each keeps a table as long as the picture has tiles
 constexpr int kTileBits = 4;
 static_assert(1 << kTileBits == kTileSize);
 
@@ -21,28 +23,25 @@ int FloorToInt(float x) {
   return towards_zero - static_cast<int>(x < static_cast<float>(towards_zero));
 }
 
-SplatShape ShapeOf(const FloatColumns& screen, int row) {
+Splat SplatOf(const FloatColumns& screen, int row) {
   constexpr float kLog2E = 1.44269504F;
-  SplatShape shape;
-  shape.x = screen(row, Screen::kMeanX), shape.y = screen(row, Screen::kMeanY);
-  shape.a = -0.5F * kLog2E * screen(row, Screen::kConicXx);
-  shape.b = -kLog2E * screen(row, Screen::kConicXy);
-  shape.c = -0.5F * kLog2E * screen(row, Screen::kConicYy);
-  shape.log2_opacity = screen(row, Screen::kLog2Opacity);
-  shape.peak = -0.5F / shape.a;
+  Splat s;
+  s.x = screen(row, Screen::kMeanX), s.y = screen(row, Screen::kMeanY);
+  s.a = -0.5F * kLog2E * screen(row, Screen::kConicXx);
+  s.b = -kLog2E * screen(row, Screen::kConicXy);
+  s.c = -0.5F * kLog2E * screen(row, Screen::kConicYy);
+  s.log2_opacity = screen(row, Screen::kLog2Opacity);
+  s.peak_x = -0.5F / s.a, s.peak_y = -0.5F / s.c;
+  s.half_width = screen(row, Screen::kHalfWidth), s.half_height = screen(row, Screen::kHalfHeight);
   // Rounding grows with the parts of the exponent, which cancel in a needle that lies oblique.
-  const float width = screen(row, Screen::kHalfWidth) + kTileSize,
-              height = screen(row, Screen::kHalfHeight) + kTileSize;
-  shape.least = kLeastExponent - (0.01F - 2e-6F * (shape.a * (width * width) + shape.c * (height * height)));
-  return shape;
+  const float width = s.half_width + kTileSize, height = s.half_height + kTileSize;
+  const float slack = 0.01F - 2e-6F * (s.a * (width * width) + s.c * (height * height));
+  s.least = kLeastExponent - s.log2_opacity - slack;
+  s.red = screen(row, Screen::kRed), s.green = screen(row, Screen::kGreen), s.blue = screen(row, Screen::kBlue);
+  return s;
 }
 
 }  // namespace
-
-int SplatTiles::RanksAChunk() const {
-  const int count = static_cast<int>(order_.size());
-  return std::max(kLeastRanksAChunk, (count + kMostChunks - 1) / kMostChunks);
-}
 
 void SplatTiles::Begin(const ScreenGaussians& screen, const PixelBox& window) {
   window_ = window;
@@ -51,24 +50,42 @@ void SplatTiles::Begin(const ScreenGaussians& screen, const PixelBox& window) {
   tiles_across_ = window.empty() ? 0 : ((window.x_end - 1) >> kTileBits) - tile_left_ + 1;
   tiles_down_ = window.empty() ? 0 : ((window.y_end - 1) >> kTileBits) - tile_top_ + 1;
 
-  met_.resize(screen.size());
+  num_rows_ = screen.size();
+  splats_.resize(num_rows_), met_.resize(num_rows_), num_met_.resize(num_batches());
+}
+
+int SplatTiles::num_batches() const { return (num_rows_ + kRowsABatch - 1) / kRowsABatch; }
+
+void SplatTiles::PackRows(const ScreenGaussians& screen, int batch) {
+  const int first = batch * kRowsABatch, last = std::min(num_rows_, first + kRowsABatch);
   int count = 0;
-  if (!window.empty()) {
+  if (!window_.empty()) {
     const float *x = screen.columns.column(Screen::kMeanX), *y = screen.columns.column(Screen::kMeanY),
                 *half_width = screen.columns.column(Screen::kHalfWidth),
                 *half_height = screen.columns.column(Screen::kHalfHeight);
-    const auto left = static_cast<float>(window.x_begin), right = static_cast<float>(window.x_end - 1),
-               top = static_cast<float>(window.y_begin), bottom = static_cast<float>(window.y_end - 1);
-    for (int i = 0; i < screen.size(); ++i) {
-      met_[count] = i;
+    const auto left = static_cast<float>(window_.x_begin), right = static_cast<float>(window_.x_end - 1),
+               top = static_cast<float>(window_.y_begin), bottom = static_cast<float>(window_.y_end - 1);
+    for (int i = first; i < last; ++i) {
       const bool meets = (half_width[i] > 0) & (x[i] + half_width[i] >= left) & (x[i] - half_width[i] <= right) &
                          (y[i] + half_height[i] >= top) & (y[i] - half_height[i] <= bottom);
-      count += static_cast<int>(meets);
+      if (!meets) continue;
+      splats_[i] = SplatOf(screen.columns, i);
+      met_[first + count++] = i;
     }
   }
+  num_met_[batch] = count;
+}
+
+void SplatTiles::Order(const ScreenGaussians& screen) {
+  int count = 0;
+  for (int batch = 0; batch < num_batches(); ++batch) {
+    std::copy_n(met_.begin() + static_cast<int64_t>(batch) * kRowsABatch, num_met_[batch], met_.begin() + count);
+    count += num_met_[batch];
+  }
   order_ = depth_order_.Sort(screen.columns.values(Screen::kDepth), {met_.data(), static_cast<size_t>(count)});
-  shapes_.resize(count), paints_.resize(count);
-  const int ranks_a_chunk = RanksAChunk();
+  chunk_bits_ = kLeastChunkBits;
+  while ((count - 1) >> chunk_bits_ >= kMostChunks) ++chunk_bits_;
+  const int ranks_a_chunk = 1 << chunk_bits_;
   num_chunks_ = (count + ranks_a_chunk - 1) / ranks_a_chunk;
   if (chunks_.size() < num_chunks_) chunks_.resize(num_chunks_);
   for (size_t c = 0; c < num_chunks_; ++c) {
@@ -77,47 +94,62 @@ void SplatTiles::Begin(const ScreenGaussians& screen, const PixelBox& window) {
   }
 }
 
-void SplatTiles::SortChunk(const ScreenGaussians& screen, int index) {
+PixelBox SplatTiles::TilesOf(const Splat& s) const {
+  // From the pixels whose centres lie within the extents.
+  const auto first = [](float low, int begin) { return std::max(0, (-FloorToInt(-low) >> kTileBits) - begin); };
+  const auto last = [](float high, int begin, int count) {
+    return std::min(count - 1, (FloorToInt(high) >> kTileBits) - begin);
+  };
+  return {first(s.x - s.half_width, tile_left_), first(s.y - s.half_height, tile_top_),
+          last(s.x + s.half_width, tile_left_, tiles_across_) + 1,
+          last(s.y + s.half_height, tile_top_, tiles_down_) + 1};
+}
+
+void SplatTiles::SortChunk(int index) {
   Chunk& chunk = chunks_[index];
-  const int num_tiles = this->num_tiles();
-  chunk.begin.assign(static_cast<size_t>(num_tiles) + 2, 0);
-  int32_t* const end = chunk.begin.data() + 1;  // of each tile's entries, once they are all placed
-  chunk.tile_of_slot.clear();
   chunk.slot_begin.resize(chunk.last - chunk.first + 1);
-  const FloatColumns& columns = screen.columns;
+  size_t num_slots = 0;
   for (int rank = chunk.first; rank < chunk.last; ++rank) {
+    __builtin_prefetch(&splats_[order_[std::min(rank + kRanksAhead, chunk.last - 1)]]);
     const int row = order_[rank];
-    shapes_[rank] = ShapeOf(columns, row);
-    paints_[rank] = {columns(row, Screen::kRed), columns(row, Screen::kGreen), columns(row, Screen::kBlue), 0};
-    chunk.slot_begin[rank - chunk.first] = static_cast<int32_t>(chunk.tile_of_slot.size());
-    const float x = shapes_[rank].x, y = shapes_[rank].y;
-    const float half_width = columns(row, Screen::kHalfWidth), half_height = columns(row, Screen::kHalfHeight);
-    // The pixels whose centres lie within the extents.
-    const auto first_tile = [](float low, int begin) { return std::max(0, (-FloorToInt(-low) >> kTileBits) - begin); };
-    const auto last_tile = [](float high, int begin, int count) {
-      return std::min(count - 1, (FloorToInt(high) >> kTileBits) - begin);
-    };
-    const int left = first_tile(x - half_width, tile_left_), top = first_tile(y - half_height, tile_top_);
-    const int right = last_tile(x + half_width, tile_left_, tiles_across_),
-              bottom = last_tile(y + half_height, tile_top_, tiles_down_);
-    for (int down = top; down <= bottom; ++down) {
-      for (int across = left; across <= right; ++across) {
-        const int tile = down * tiles_across_ + across;
-        ++end[tile + 1];
-        chunk.tile_of_slot.push_back(tile);
+    const PixelBox tiles = TilesOf(splats_[row]);
+    chunk.slot_begin[rank - chunk.first] = static_cast<int32_t>(num_slots);
+    const size_t room = num_slots + std::max<size_t>(4, tiles.area());
+    if (chunk.tile_of_slot.size() < room) {
+      chunk.tile_of_slot.resize(2 * room), chunk.row_of_slot.resize(2 * room);
+    }
+    int32_t *tile_of_slot = chunk.tile_of_slot.data(), *row_of_slot = chunk.row_of_slot.data();
+    const int first = tiles.y_begin * tiles_across_ + tiles.x_begin;
+    if (tiles.width() <= 2 && tiles.height() <= 2 && !tiles.empty()) {
+      // What most are, without a branch that cannot be foreseen.
+      const size_t two_across = tiles.width() - 1, two_down = tiles.height() - 1;
+      for (int k = 0; k < 4; ++k) row_of_slot[num_slots + k] = row;
+      tile_of_slot[num_slots++] = first;
+      tile_of_slot[num_slots] = first + 1;
+      num_slots += two_across;
+      tile_of_slot[num_slots] = first + tiles_across_;
+      num_slots += two_down;
+      tile_of_slot[num_slots] = first + tiles_across_ + 1;
+      num_slots += two_across & two_down;
+      continue;
+    }
+    for (int y = 0; y < tiles.height(); ++y) {
+      for (int x = 0; x < tiles.width(); ++x, ++num_slots) {
+        tile_of_slot[num_slots] = first + y * tiles_across_ + x;
+        row_of_slot[num_slots] = row;
       }
     }
   }
-  const auto num_slots = static_cast<int32_t>(chunk.tile_of_slot.size());
-  chunk.slot_begin.back() = num_slots;
+  chunk.slot_begin.back() = static_cast<int32_t>(num_slots);
+
+  const int num_tiles = this->num_tiles();
+  chunk.begin.assign(static_cast<size_t>(num_tiles) + 2, 0);
+  int32_t* const end = chunk.begin.data() + 1;  // of each tile's entries, once they are all placed
+  for (size_t slot = 0; slot < num_slots; ++slot) ++end[chunk.tile_of_slot[slot] + 1];
   for (int t = 0; t < num_tiles; ++t) end[t + 1] += end[t];
-  chunk.ranks.resize(num_slots), chunk.slots.resize(num_slots);
-  for (int rank = chunk.first; rank < chunk.last; ++rank) {
-    for (int slot = chunk.slot_begin[rank - chunk.first]; slot < chunk.slot_begin[rank - chunk.first + 1]; ++slot) {
-      const int at = end[chunk.tile_of_slot[slot]]++;
-      chunk.ranks[at] = rank;
-      chunk.slots[at] = slot;
-    }
+  chunk.entries.resize(num_slots);
+  for (size_t slot = 0; slot < num_slots; ++slot) {
+    chunk.entries[end[chunk.tile_of_slot[slot]]++] = {chunk.row_of_slot[slot], static_cast<int32_t>(slot)};
   }
 }
 
@@ -125,7 +157,7 @@ void SplatTiles::End() {
   num_slots_ = 0;
   for (size_t c = 0; c < num_chunks_; ++c) {
     chunks_[c].first_slot = num_slots_;
-    num_slots_ += static_cast<int>(chunks_[c].tile_of_slot.size());
+    num_slots_ += chunks_[c].num_slots();
   }
 }
 
@@ -137,11 +169,11 @@ PixelBox SplatTiles::BoxOf(int tile) const {
 SplatList SplatTiles::ListOf(int tile, int index) const {
   const Chunk& chunk = chunks_[index];
   const int begin = chunk.begin[tile], count = chunk.begin[tile + 1] - begin;
-  return {shapes_.data(), paints_.data(), chunk.ranks.data() + begin, chunk.slots.data() + begin, count};
+  return {splats_.data(), chunk.entries.data() + begin, count};
 }
 
 std::pair<int, int> SplatTiles::SlotsOf(int rank) const {
-  const Chunk& chunk = chunks_[rank / RanksAChunk()];
+  const Chunk& chunk = chunks_[rank >> chunk_bits_];
   const int32_t* begin = chunk.slot_begin.data() + (rank - chunk.first);
   return {chunk.first_slot + begin[0], chunk.first_slot + begin[1]};
 }

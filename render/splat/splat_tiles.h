@@ -19,13 +19,18 @@
 
 namespace bodyloom::splat_internal {
 
-/// Keeps its memory between pictures. First Begin(), then SortChunk() for every chunk, by any thread, then the rest.
+/// Keeps its memory between pictures. First Begin(), then PackRows() for every batch of rows, by any thread, Order(),
+/// SortChunk() for every chunk, by any thread, End(), then the rest.
 class SplatTiles {
  public:
-  /// Ranks what is drawn and meets the window.
   void Begin(const ScreenGaussians& screen, const PixelBox& window);
+  [[nodiscard]] int num_batches() const;
+  /// Finds what is drawn and meets the window, and gathers its numbers.
+  void PackRows(const ScreenGaussians& screen, int batch);
+  /// Ranks it.
+  void Order(const ScreenGaussians& screen);
   [[nodiscard]] int num_chunks() const { return static_cast<int>(num_chunks_); }
-  void SortChunk(const ScreenGaussians& screen, int chunk);
+  void SortChunk(int chunk);
   /// Numbers the slots (render/splat/splat_simd.h) of all chunks.
   void End();
 
@@ -40,27 +45,34 @@ class SplatTiles {
 
   /// Rows of the Gaussians by rank.
   [[nodiscard]] std::span<const int32_t> order() const { return order_; }
+  /// By row; only those in order() hold anything.
+  [[nodiscard]] const std::vector<Splat>& splats() const { return splats_; }
   [[nodiscard]] int num_slots() const { return num_slots_; }
   /// The slots of a rank are SlotsOf(rank).first to .second − 1.
   [[nodiscard]] std::pair<int, int> SlotsOf(int rank) const;
 
  private:
   struct Chunk {
+    [[nodiscard]] int num_slots() const { return slot_begin.back(); }
+
     int first = 0, last = 0;  ///< ranks
     int first_slot = 0;
     std::vector<int32_t> begin;  ///< by tile
-    std::vector<int32_t> ranks, slots;
-    std::vector<int32_t> tile_of_slot, slot_begin;  ///< slots rise with the rank
+    std::vector<SplatEntry> entries;
+    /// By slot, with room to spare; slots rise with the rank.
+    std::vector<int32_t> tile_of_slot, row_of_slot;
+    std::vector<int32_t> slot_begin;  ///< by rank, and their number at the end
   };
-  int RanksAChunk() const;
 
   PixelBox window_;
   int tile_left_ = 0, tile_top_ = 0, tiles_across_ = 0, tiles_down_ = 0;  ///< in tiles
   DepthOrder depth_order_;
-  std::vector<int32_t> met_;
+  std::vector<int32_t> met_, num_met_;  ///< rows, batch by batch, and how many of each batch
   std::span<const int32_t> order_;
-  std::vector<SplatShape> shapes_;
-  std::vector<SplatPaint> paints_;
+  std::vector<Splat> splats_;  ///< by row; of those that are drawn
+  int num_rows_ = 0, chunk_bits_ = 0;
+  [[nodiscard]] PixelBox TilesOf(const Splat& splat) const;
+
   std::vector<Chunk> chunks_;
   size_t num_chunks_ = 0;
   int num_slots_ = 0;
