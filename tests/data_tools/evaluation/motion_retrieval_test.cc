@@ -107,7 +107,9 @@ TEST(MotionSimilarity, IsToTheFramesThatCount) {
   float least = 1;
   for (int t = 0; t < track.num_frames(); ++t) {
     EXPECT_NEAR(to_all[t], 1, 1e-3);
-    if (t < 10) EXPECT_NEAR(to_first[t], 1, 1e-3);
+    if (t < 10) {
+      EXPECT_NEAR(to_first[t], 1, 1e-3);
+    }
     least = std::min(least, to_first[t]);
   }
   EXPECT_LT(least, 0.9) << "the ten frames of its beginning are not the whole motion";

@@ -80,7 +80,9 @@ TEST(RegionRetrieval, ATurnHidesTheHandBehindTheBody) {
   EXPECT_GT(hidden, 10);
   EXPECT_GT(std::count(longer.begin(), longer.end(), false), hidden) << "a past that holds a hidden frame";
   for (size_t t = 0; t < at_times.size(); ++t) {
-    if (!at_times[t]) EXPECT_GT(std::abs(turning.yaw_deg[t]), 45) << t;
+    if (!at_times[t]) {
+      EXPECT_GT(std::abs(turning.yaw_deg[t]), 45) << t;
+    }
   }
 }
 
