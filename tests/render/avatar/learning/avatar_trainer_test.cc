@@ -165,9 +165,9 @@ TEST(AvatarTrainer, LightIsLearned) {
 
 TEST(AvatarTrainer, WhatIsHiddenLearnsNothing) {
   const Lesson& lesson = TheLesson();
-  const auto count = [&](double least_weight_px, int* skin_kept, int* loose_fading) {
+  const auto count = [&](double least_seen, int* skin_kept, int* loose_fading) {
     AvatarTrainerOptions options = Short(30);
-    options.relocate_every = 0, options.least_weight_px = least_weight_px;
+    options.relocate_every = 0, options.least_seen = least_seen;
     // One frame, and so one side.
     AvatarTrainer trainer(lesson.model.data().faces, std::span(lesson.views).first(1), options);
     AvatarTrainingState state = lesson.Start();
@@ -192,7 +192,7 @@ TEST(AvatarTrainer, WhatIsHiddenLearnsNothing) {
     return before.size();
   };
   int skin_kept = 0, loose_fading = 0;
-  const int rows = count(1, &skin_kept, &loose_fading);
+  const int rows = count(0.1, &skin_kept, &loose_fading);
   EXPECT_GT(skin_kept, rows / 20) << "the back and the rims of what lies in front";
   EXPECT_GT(loose_fading, rows / 20);
   count(0, &skin_kept, &loose_fading);
