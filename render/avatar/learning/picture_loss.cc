@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/render/avatar/learning/picture_loss.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
