@@ -43,7 +43,7 @@ void AddBodyVerb(CLI::App& app, Action* action, std::vector<std::string> command
   ConvertBodyRequest& to_convert = arguments->convert;
   BuildBuiltinBodyRequest& to_make = arguments->make;
 
-  AddBodyInfo(*verb, action, std::move(command), std::move(crossing));
+  AddBodyInfo(*verb, action, command, std::move(crossing));
   CLI::App* convert = verb->add_subcommand("convert", "Turns any readable body into one compact file");
   convert->add_option("--body", to_convert.body, "SMPL, SMPL-H or SMPL-X .pkl or .npz")->required()->type_name("FILE");
   convert->add_option("--out", to_convert.out, "the compact body, .npz")->required()->type_name("FILE");

@@ -50,7 +50,7 @@ void Info(const InfoArguments& arguments, const std::vector<std::string>& comman
 
 }  // namespace
 
-void AddBodyInfo(CLI::App& verb, Action* action, std::vector<std::string> command, FindCrossingFaces crossing) {
+void AddBodyInfo(CLI::App& verb, Action* action, const std::vector<std::string>& command, FindCrossingFaces crossing) {
   auto arguments = std::make_shared<InfoArguments>();
   CheckBodyRequest& to_check = arguments->request;
   to_check.crossing = std::move(crossing);

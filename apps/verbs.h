@@ -45,7 +45,7 @@ void AddTextureVerb(CLI::App& app, Action* action);
 /// has it, where there is one, which takes `arguments`, those of this one.
 void AddBodyVerb(CLI::App& app, Action* action, std::vector<std::string> arguments, FindCrossingFaces crossing = {});
 /// `body info`, of the verb `body`.
-void AddBodyInfo(CLI::App& verb, Action* action, std::vector<std::string> arguments, FindCrossingFaces crossing);
+void AddBodyInfo(CLI::App& verb, Action* action, const std::vector<std::string>& arguments, FindCrossingFaces crossing);
 void AddDemoVerb(CLI::App& app, Action* action);
 void AddPriorVerb(CLI::App& app, Action* action);
 void AddMotionsVerb(CLI::App& app, Action* action);
