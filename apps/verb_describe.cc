@@ -21,7 +21,7 @@ constexpr const char* kDescribeFooter =
     "the\n"
     "channels, units and frames. Frames without a fit are zero and listed there.\n"
     "--frame:  camera  as the camera sees the motion\n"
-    "          world   with the camera's pose from --cameras; without it, a level camera: y up, z towards the camera\n"
+    "          world   with the camera's pose from --cameras; without it the track's world, y up, z towards the camera\n"
     "          body    turned with the pelvis, its own motion taken out\n"
     "Examples:\n"
     "  bodyloom describe --track track.npz --out motion.npy --preview motion.png\n"
