@@ -58,6 +58,16 @@ TEST(ExportScene, PosesInTheWorldArePosesSeenFromIt) {
   EXPECT_LT((by_motion - own).cwiseAbs().maxCoeff(), 1e-9);
 }
 
+TEST(ExportScene, TheRootTurnsAboutThePelvisWhereverItRests) {
+  BodyPose pose;
+  pose.rotations = {RotationFromAxisAngle({0.3, -0.5, 0.2})};
+  pose.trans = {0.4, 0.1, 3};
+  const Vector3d pelvis(0.1, -0.35, 0.02), vertex(0.2, 0.6, 0.1);  // the built-in body's own is at the origin
+  const auto place = [&](const BodyPose& p) { return Vector3d(p.rotations[0] * (vertex - pelvis) + pelvis + p.trans); };
+  EXPECT_TRUE(
+      place(PoseInWorld(TiltedWorld(), pelvis, pose)).isApprox(TiltedWorld().PointFromCamera(place(pose)), 1e-12));
+}
+
 TEST(ExportScene, RefusesNobody) {
   Track track = TrackWithAGap();
   track.motion.poses.setConstant(std::numeric_limits<double>::quiet_NaN());
