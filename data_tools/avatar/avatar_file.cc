@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "bodyloom/data_tools/formats/printable.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/refuse.h"
 
@@ -175,7 +176,7 @@ void WriteAvatarCheckpoint(const std::string& path, const AvatarCheckpoint& chec
 AvatarFile AvatarFromArrays(const NpzArrays& npz, const std::string& where) {
   const AvatarArrays arrays(npz, where);
   if (const std::string format = arrays.Text("format"); format != kAvatarFormat) {
-    arrays.Fail("format", "\"" + format + "\", expected \"" + kAvatarFormat + "\"");
+    arrays.Fail("format", "\"" + PrintableText(format) + "\", expected \"" + kAvatarFormat + "\"");
   }
   if (const double version = arrays.Number("version"); version != kAvatarVersion) {
     arrays.Fail("version", Concatenate(version, ", expected ", kAvatarVersion));

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <deque>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -129,7 +130,9 @@ class AvatarTraining {
     const std::string path = AvatarCheckpointPath(request_.out);
     checkpoint_ = ReadAvatarCheckpoint(path);
     if (checkpoint_.options != OptionsText()) {
-      throw RequestError(path + ": was begun as " + checkpoint_.options + ", asked for is " + OptionsText());
+      throw RequestError(path +
+                         ": was begun with other data, frames, steps, minutes, seed, --skin or --loose; config.json "
+                         "beside it says with which");
     }
     std::string why;
     if (!checkpoint_.state.body.IsValid(clip_->body().num_joints(), clip_->body().num_faces(), &why)) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/render/avatar/learning/adam.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 

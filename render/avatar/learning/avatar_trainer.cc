@@ -23,6 +23,14 @@ void Normalise(int row, int first, int count, FloatColumns* table) {
   for (int c = first; c < first + count; ++c) (*table)(row, c) *= scale;
 }
 
+/// Pixels' worth of a drawn Gaussian with nothing in front: the integral of its α.
+float PixelsAlone(const FloatColumns& screen, int row) {
+  const float xy = screen(row, ScreenGaussians::kConicXy);
+  const float determinant = screen(row, ScreenGaussians::kConicXx) * screen(row, ScreenGaussians::kConicYy) - xy * xy;
+  return screen(row, ScreenGaussians::kOpacity) * 2 * static_cast<float>(M_PI) /
+         std::sqrt(std::max(1e-12F, determinant));
+}
+
 }  // namespace
 
 bool AvatarTrainerOptions::IsValid(std::string* why) const {
@@ -30,8 +38,8 @@ bool AvatarTrainerOptions::IsValid(std::string* why) const {
   return in_range("steps", static_cast<double>(steps), 1, 1e8) && in_range("seconds", seconds, 0, 1e8) &&
          rates.IsValid(why) && scales.IsValid(why) && in_range("cost by opacity", cost.by_opacity, 0, 1e3) &&
          in_range("cost by scale", cost.by_scale, 0, 1e3) && in_range("relocate_every", relocate_every, 0, 1e8) &&
-         in_range("relocate_until", relocate_until, 0, 1) && in_range("dead_opacity", dead_opacity, 0, 0.99) &&
-         in_range("num_threads", num_threads, 1, 1024);
+         in_range("least_seen", least_seen, 0, 1) && in_range("relocate_until", relocate_until, 0, 1) &&
+         in_range("dead_opacity", dead_opacity, 0, 0.99) && in_range("num_threads", num_threads, 1, 1024);
 }
 
 AvatarTrainingState AvatarTrainingState::Of(GaussianBody body) {
@@ -91,15 +99,8 @@ AvatarStep AvatarTrainer::Step(AvatarTrainingState* state) {
     clock_.Begin("derivatives");
     painter_.GoBack(state->body, faces_, view.frame, seen, by_planes_, &gradient_);
     clock_.Begin("moving");
+    done.drawn = ChooseMovers(state);
     done.cost = AddGaussianCost(state->body, options_.cost, &gradient_.parameters);
-    moves_.resize(state->body.size());
-    const FloatColumns& by_screen = painter_.by_screen();
-    for (int i = 0; i < state->body.size(); ++i) {
-      moves_[i] = painter_.screen().IsDrawn(i) ? 1 : 0;
-      done.drawn += moves_[i];
-      const float x = by_screen(i, ScreenGaussians::kMeanX), y = by_screen(i, ScreenGaussians::kMeanY);
-      state->pull[i] += std::sqrt(x * x + y * y);
-    }
     Move(state, progress);
     MoveLight(state);
   }
@@ -108,6 +109,26 @@ AvatarStep AvatarTrainer::Step(AvatarTrainingState* state) {
   clock_.End();
   state->seconds += watch.seconds();
   return done;
+}
+
+int AvatarTrainer::ChooseMovers(AvatarTrainingState* state) {
+  const FloatColumns& by_screen = painter_.by_screen();
+  const auto least = static_cast<float>(options_.least_seen * PictureLoss::ByPixel(truth_));
+  const FloatColumns& screen = painter_.screen().columns;
+  moves_.resize(state->body.size());
+  int drawn = 0;
+  for (int i = 0; i < state->body.size(); ++i) {
+    moves_[i] = painter_.screen().IsDrawn(i) ? 1 : 0;
+    drawn += moves_[i];
+    const float x = by_screen(i, ScreenGaussians::kMeanX), y = by_screen(i, ScreenGaussians::kMeanY);
+    state->pull[i] += std::sqrt(x * x + y * y);
+    float by_colour = 0;
+    for (int c = ScreenGaussians::kRed; c <= ScreenGaussians::kBlue; ++c) by_colour += std::abs(by_screen(i, c));
+    if (moves_[i] != 0 && by_colour >= least * PixelsAlone(screen, i)) continue;
+    if (state->body.is_loose[i] == 0) moves_[i] = 0;
+    for (int c = 0; c < GaussianBody::kNumParameters; ++c) gradient_.parameters(i, c) = 0;
+  }
+  return drawn;
 }
 
 void AvatarTrainer::Move(AvatarTrainingState* state, double progress) {

@@ -7,6 +7,12 @@
 /// their limits, quaternions and normals back to unit length. Every `relocate_every` steps, up to relocate_until of the
 /// training, dead Gaussians move to where derivatives on the screen are large (relocate_gaussians.h).
 ///
+/// What is hidden in a frame learns nothing from it: Adam would make steps of full length out of the thousandth part of a
+/// colour that comes through what lies in front, and the person's unseen sides would fill with noise. Hidden on the skin
+/// stays as it is; hidden off the skin feels its cost alone, and so goes where no frame shows it. A Gaussian counts as
+/// hidden when |d loss / d its colour|, summed over the channels, is below least_seen times what as many pixels as it
+/// covers alone would give by their absolute difference (PictureLoss::ByPixel).
+///
 /// Frames come in a new random order each time round. All that is random follows from the seed and the step's number, so
 /// a state that was kept goes on exactly as if training had never been left, as far as its length is given by steps: the
 /// same bytes for any number of threads and any instruction set.
@@ -39,6 +45,8 @@ struct AvatarTrainerOptions {
   int relocate_every = 200;     ///< steps; 0: never
   double relocate_until = 0.9;  ///< of the training
   float dead_opacity = 0.015F;
+  /// A Gaussian of which a frame shows a smaller share is hidden there (see above). 0: none is.
+  double least_seen = 0.1;
   int num_threads = 1;  ///< 1 to 1024
   [[nodiscard]] bool IsValid(std::string* why) const;
 };
@@ -82,6 +90,7 @@ class AvatarTrainer {
 
  private:
   int ViewAt(int64_t step);
+  int ChooseMovers(AvatarTrainingState* state);
   void Move(AvatarTrainingState* state, double progress);
   void MoveLight(AvatarTrainingState* state);
   int Relocate(AvatarTrainingState* state, double progress) const;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/render/avatar/learning/picture_loss.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -58,6 +59,10 @@ void LinesAround(const float* column, int y, int height, size_t pitch, const flo
 }
 
 }  // namespace
+
+double PictureLoss::ByPixel(const PictureTruth& truth) {
+  return kAbsoluteShare / (3 * kPersonPixels * truth.person_pixels);
+}
 
 double PictureLoss::Compute(const FloatColumns& picture, const PictureTruth& truth,
                             const std::array<float, 3>& background, int num_threads, FloatColumns* by_planes) {

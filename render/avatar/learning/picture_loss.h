@@ -33,6 +33,9 @@ class PictureLoss {
   double Compute(const FloatColumns& picture, const PictureTruth& truth, const std::array<float, 3>& background,
                  int num_threads, FloatColumns* by_planes);
 
+  /// |d loss / d p| of a channel of one pixel that the absolute difference has.
+  static double ByPixel(const PictureTruth& truth);
+
  private:
   int width_ = 0, height_ = 0;
   size_t pitch_ = 0;         ///< floats from one row of the below to the next

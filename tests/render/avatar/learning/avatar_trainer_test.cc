@@ -163,6 +163,42 @@ TEST(AvatarTrainer, LightIsLearned) {
   }
 }
 
+TEST(AvatarTrainer, WhatIsHiddenLearnsNothing) {
+  const Lesson& lesson = TheLesson();
+  const auto count = [&](double least_seen, int* skin_kept, int* loose_fading) {
+    AvatarTrainerOptions options = Short(30);
+    options.relocate_every = 0, options.least_seen = least_seen;
+    // One frame, and so one side.
+    AvatarTrainer trainer(lesson.model.data().faces, std::span(lesson.views).first(1), options);
+    AvatarTrainingState state = lesson.Start();
+    for (int i = 0; i < state.body.size(); ++i) {
+      state.body.is_loose[i] = i % 2;
+      state.body.parameters(i, GaussianBody::kOpacityLogit) = 5;
+    }
+    const GaussianBody before = state.body;
+    while (!trainer.IsDone(state)) trainer.Step(&state);
+    *skin_kept = *loose_fading = 0;
+    for (int i = 0; i < before.size(); ++i) {
+      const auto same = [&](int c) { return state.body.parameters(i, c) == before.parameters(i, c); };
+      const bool colour_same = same(GaussianBody::kAlbedo) && same(GaussianBody::kAlbedo + 1);
+      const bool opacity_same = same(GaussianBody::kOpacityLogit);
+      if (i % 2 == 0 && colour_same && opacity_same && same(GaussianBody::kPosition)) ++*skin_kept;
+      if (i % 2 == 1 && colour_same && !opacity_same) {
+        ++*loose_fading;
+        EXPECT_LT(state.body.parameters(i, GaussianBody::kOpacityLogit),
+                  before.parameters(i, GaussianBody::kOpacityLogit));
+      }
+    }
+    return before.size();
+  };
+  int skin_kept = 0, loose_fading = 0;
+  const int rows = count(0.1, &skin_kept, &loose_fading);
+  EXPECT_GT(skin_kept, rows / 20) << "the back and the rims of what lies in front";
+  EXPECT_GT(loose_fading, rows / 20);
+  count(0, &skin_kept, &loose_fading);
+  EXPECT_LT(skin_kept, rows / 40) << "what comes through by a thousandth moved it";
+}
+
 TEST(AvatarTrainer, TimeEndsItToo) {
   const Lesson& lesson = TheLesson();
   AvatarTrainerOptions options = Short(1000000);

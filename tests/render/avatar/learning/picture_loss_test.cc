@@ -105,6 +105,20 @@ TEST(PictureLoss, IsZeroWithoutDerivativesForTheTruth) {
   }
 }
 
+TEST(PictureLoss, ByPixelIsWhatAnAbsoluteDifferenceGives) {
+  // Of two evenly grey pictures SSIM knows the means alone: far from 0 its derivative is small beside the other.
+  PictureTruth truth;
+  truth.width = truth.height = 40, truth.person_pixels = 900;
+  truth.planes.Resize(4, 1600);
+  FloatColumns picture(4, 1600), by_planes;
+  for (int c = 0; c < 4; ++c) {
+    std::fill_n(truth.planes.column(c), 1600, c < 3 ? 0.6F : 1.0F);
+    std::fill_n(picture.column(c), 1600, c < 3 ? 0.62F : 1.0F);
+  }
+  PictureLoss().Compute(picture, truth, kBehind, 1, &by_planes);
+  EXPECT_NEAR(by_planes(20 * 40 + 20, 1) / PictureLoss::ByPixel(truth), 1, 0.1);
+}
+
 TEST(PictureLoss, SeesAHoleOverAColourAlone) {
   // A hole where a black person should be is no error over black.
   PictureTruth truth;
