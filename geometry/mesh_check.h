@@ -55,8 +55,8 @@ struct CheckMeshResult {
   [[nodiscard]] bool IsClean() const;
 };
 
-/// O(F log F). Metres. Throws std::invalid_argument on an index outside the vertices, a tolerance that is negative or not
-/// finite, or a vertex that is not finite.
+/// O(F log F). Metres. Throws std::invalid_argument on an index outside the vertices, a tolerance that is negative or
+/// not finite, or a vertex that is not finite.
 CheckMeshResult CheckMesh(const MatrixX3d& vertices, const MatrixX3i& faces, const CheckMeshOptions& options = {});
 
 /// Twice in one: faces that CheckMesh lists as repeated_corner_faces or duplicate_faces, ascending.

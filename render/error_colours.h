@@ -25,8 +25,8 @@ struct ErrorScale {
 /// The colour of share·maximum; shares beyond 0..1 take the ends', NaN (not known) is grey.
 Colour ErrorColour(double share);
 
-/// The legend: `scale.what`, a bar of all colours, and below it 0, half of the maximum and the maximum with the unit, on
-/// a translucent panel of about `width` pixels. `cap_px`: height of its letters.
+/// The legend: `scale.what`, a bar of all colours, and below it 0, half of the maximum and the maximum with the unit,
+/// on a translucent panel of about `width` pixels. `cap_px`: height of its letters.
 void DrawErrorLegend(const ErrorScale& scale, int x, int y, int width, double cap_px, Image* image);
 /// Height of that panel.
 int ErrorLegendHeight(double cap_px);

@@ -2,16 +2,16 @@
 /// Mends what can be mended of a body's mesh (geometry/mesh_check.h) without changing how the body looks or moves.
 ///
 ///   turned faces          get their corners the other way round, with their UV corners
-///   superfluous faces     (a corner twice, or the vertices of an earlier face) go; parts and UV of the others stay theirs
-///   vertices at one place become the first of them, where they also move as one: shape, correctives and skinning weights
-///                         equal to within the tolerance; their shares in joints and landmarks are added up
+///   superfluous faces     (a corner twice, or the vertices of an earlier face) go; the others keep their parts and UV
+///   vertices at one place become the first of them, where they also move as one: shape, correctives and skinning
+///                         weights equal to within the tolerance; their shares in joints and landmarks are added up
 ///   unreferenced vertices go, unless joints or landmarks are computed from them
 ///
 /// Not mended, because it takes a decision about the shape: holes, edges of more than two faces, pinched vertices, flat
 /// faces (without them there would be a hole), several components, surfaces that cross themselves.
 ///
-/// Vertices keep their numbers wherever other data go by them: on a body of SMPL's or SMPL-X's topology (6,890 or 10,475
-/// vertices; UV files, DensePose's table and detectors' keypoints name its vertices) none is merged or dropped.
+/// Vertices keep their numbers wherever other data go by them: on a body of SMPL's or SMPL-X's topology (6,890 or
+/// 10,475 vertices; UV files, DensePose's table and detectors' keypoints name its vertices) none is merged or dropped.
 #pragma once
 
 #include <string>

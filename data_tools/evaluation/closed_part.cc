@@ -134,8 +134,8 @@ void ClosedPart::SortIntoGrid() {
 }
 
 int ClosedPart::Crossing(const Face& face, const Eigen::Vector3d& p) const {
-  // Which side of a projected edge the point is on, computed from the lower number to the higher: both faces of the edge
-  // get the same value.
+  // Which side of a projected edge the point is on, computed from the lower number to the higher: both faces of the
+  // edge get the same value.
   int left = 0;
   for (int c = 0; c < 3; ++c) {
     const int from = face.corner[c], to = face.corner[c == 2 ? 0 : c + 1];

@@ -7,10 +7,11 @@
 /// (closed_part.h).
 ///
 /// A vertex penetrates when it lies inside another part's solid, and its depth is the distance to that part's skin: how
-/// far it would have to go to be outside. Flesh of neighbours, and what lies close at rest, is no fault. In the rest pose
-/// of the track's own shape, the vertex is compared with every vertex of the part; where the nearest is closer than
-///   9 % of the body's height, when the part is joined to the vertex's own (a joint of one is the parent of one of the
-///     other): an upper arm may bend into the armpit and a shank against the thigh, not through them;
+/// far it would have to go to be outside. Flesh of neighbours, and what lies close at rest, is no fault. In the rest
+/// pose of the track's own shape, the vertex is compared with every vertex of the part; where the nearest is
+/// closer than
+///   9 % of the body's height, when the part is joined to the vertex's own (a joint of one is the parent of one of
+///     the other): an upper arm may bend into the armpit and a shank against the thigh, not through them;
 ///   3 % of it otherwise: armpits, crotch, inner thighs, hands spread at rest
 /// the pair is never tested. Distances at rest are to vertices, not faces: coarse bodies exclude a little less.
 ///

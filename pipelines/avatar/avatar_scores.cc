@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/pipelines/avatar/avatar_scores.h"
+#include "bodyloom/pipelines/avatar/avatar_scores_json.h"
 
 #include <algorithm>
 #include <cmath>

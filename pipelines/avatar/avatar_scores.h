@@ -2,7 +2,6 @@
 /// How like the truth pictures of a person of Gaussians are.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "bodyloom/render/avatar/learning/training_view.h"
@@ -37,7 +36,6 @@ class AvatarScorer {
 Image TrueWindow(const TrainingView& view);
 Image DrawnWindow(const SplatPicture& picture);
 
-nlohmann::ordered_json ToJson(const AvatarScores& scores);
 /// "34 frames: PSNR 24.1 dB in the box, 20.4 dB in the person, …"
 std::string ScoresText(const AvatarScores& scores);
 

@@ -13,8 +13,8 @@
 
 namespace bodyloom {
 
-/// Pairs of faces that cross each other, faces that share a corner too where they cross elsewhere. No face names a vertex
-/// twice, no two have the same vertices.
+/// Pairs of faces that cross each other, faces that share a corner too where they cross elsewhere. No face names a
+/// vertex twice, no two have the same vertices.
 using FindCrossingFaces =
     std::function<std::vector<std::array<int, 2>>(const MatrixX3d& vertices, const MatrixX3i& faces)>;
 

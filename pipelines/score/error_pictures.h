@@ -19,8 +19,8 @@ std::vector<float> PixelErrors(const Image& truth, const Image& result);
 /// below the distance.
 Image ErrorPicture(const Image& truth, const Image& result, const ErrorScale& scale);
 
-/// A metric without columns that writes the ErrorPicture of every frame to FOLDER/NAME.png, the last colour at `maximum`
-/// grey levels.
+/// A metric without columns that writes the ErrorPicture of every frame to FOLDER/NAME.png, the last colour at
+/// `maximum` grey levels.
 FrameMetric ErrorPictures(const std::string& folder, double maximum);
 
 }  // namespace bodyloom

@@ -253,8 +253,8 @@ TEST(MeshCheck, AMeshWithoutFacesIsNotClean) {
   EXPECT_FALSE(result.IsClean());
 }
 
-/// OpenMesh's half-edges take exactly the meshes without non-manifold edges, pinched vertices and turned faces, and count
-/// the same boundary.
+/// OpenMesh's half-edges take exactly the meshes without non-manifold edges, pinched vertices and turned faces, and
+/// count the same boundary.
 TEST(MeshCheck, OpenMeshAgreesOnRandomDamage) {
   omerr().disable();  // says what it refuses
   std::mt19937 random(5);

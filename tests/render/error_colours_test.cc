@@ -59,18 +59,21 @@ TEST(ErrorColours, TheLegendShowsEveryColourInOrder) {
   const int row = kY + 26 + 7, from = kX + 9, width = kWidth - 18;
   for (int i = 0; i < width; i += 7) EXPECT_EQ(image.at(from + i, row), ErrorColour(i / (width - 1.0))) << i;
   const Colour white{255, 255, 255};
-  int letters_above = 0, letters_below = 0;
+  int letters_above = 0, letters_left = 0, letters_middle = 0, letters_right = 0;
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
       const bool inside = x >= kX && x < kX + kWidth && y >= kY && y < kY + ErrorLegendHeight(kCap);
       EXPECT_EQ(image.at(x, y) == white, !inside) << x << ", " << y;
       const bool bright = inside && image.at(x, y).red > 200 && image.at(x, y).blue > 200;
       letters_above += bright && y < kY + 25 ? 1 : 0;
-      letters_below += bright && y > kY + 42 ? 1 : 0;
+      if (!bright || y <= kY + 42) continue;
+      ++(x < from + width / 4 ? letters_left : x < from + 5 * width / 8 ? letters_middle : letters_right);
     }
   }
   EXPECT_GT(letters_above, 100);
-  EXPECT_GT(letters_below, 50);
+  EXPECT_GT(letters_left, 10);    // 0
+  EXPECT_GT(letters_middle, 20);  // half of the maximum
+  EXPECT_GT(letters_right, 50);   // the maximum with its unit
 }
 
 TEST(ErrorColours, NothingIsDrawnOutsideTheImage) {

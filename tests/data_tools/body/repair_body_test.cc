@@ -120,6 +120,21 @@ TEST(RepairBody, MendsADamagedBody) {
   EXPECT_LT((Posed(body) - Posed(whole)).cwiseAbs().maxCoeff(), 1e-12);  // sums are normalised once more
 }
 
+/// Merging the ends of a face's edge leaves it with a corner twice, and its third vertex with no face.
+TEST(RepairBody, MendsWhatMendingBrings) {
+  const BodyModelData& whole = BuiltinBody().data();
+  BodyModelData body = whole;
+  const int tip = AppendVertex(30, &body), copy = AppendVertex(40, &body);
+  body.v_template(tip, 2) += 0.1;
+  AppendFace(7, {40, copy, tip}, &body);
+  const RepairBodySummary summary = RepairBody({}, &body);
+  EXPECT_EQ(summary.merged_vertices, 1);
+  EXPECT_EQ(summary.dropped_vertices, 1);
+  EXPECT_EQ(summary.dropped_faces, 1);
+  EXPECT_TRUE(Check(body).IsClean());
+  EXPECT_EQ(body.faces, whole.faces);
+}
+
 /// What joints and landmarks take from a merged vertex goes to the one that stays, and a lower number goes first.
 TEST(RepairBody, JointsAndLandmarksKeepTheirPlace) {
   BodyModelData body = ToyBodyData();

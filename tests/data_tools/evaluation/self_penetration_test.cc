@@ -26,8 +26,8 @@ struct Piece {
   int joint;
 };
 
-/// Joints "root", "a", "b", "c"; a and b are children of the root, c of b. Joint b stands at (hinge_x, 0, 0), the others
-/// at the origin: turned by 180° about z, what hangs on b goes from x to 2·hinge_x − x.
+/// Joints "root", "a", "b", "c"; a and b are children of the root, c of b. Joint b stands at (hinge_x, 0, 0), the
+/// others at the origin: turned by 180° about z, what hangs on b goes from x to 2·hinge_x − x.
 BodyModel BodyOf(const std::vector<Piece>& pieces, double hinge_x) {
   BodyModelData d;
   d.name = "pieces";
@@ -148,10 +148,43 @@ TEST(SelfPenetration, BallsThatOverlapByAKnownDepth) {
   EXPECT_EQ(Measure(apart, OnePose(4, 2, kHalfTurn)).deepest_m, 0);
 }
 
-/// Balls of 50 mm, 20 mm apart at rest, one swung 50 mm towards the other on an arm of 10 m: 30 mm of overlap. The body is
-/// 1.15 m high, so what is closer than 34.5 mm at rest is left out. Of a point at the angle θ from the middle of the
-/// facing side, |p − a|² is 0.0169 − 0.012 cos θ at rest and 0.0074 − 0.007 cos θ then: with 84.5 mm at rest it is 8.7 mm
-/// deep.
+TEST(SelfPenetration, EveryFrameIsItsOwn) {
+  const Piece root{Box({0, 1, 0}, {0.1, 0.1, 0.1}, 2), 0}, a{Box({0.5, 0, 0}, {0.1, 0.1, 0.1}, 4), 1},
+      b{Box({-0.5, 0, 0}, {0.1, 0.08, 0.08}, 4), 2};
+  const BodyModel body = BodyOf({root, a, b}, -0.07);
+  Motion motion = OnePose(4);
+  motion.poses = RowMatrixXd::Zero(70, 12);
+  motion.trans = MatrixX3d::Zero(70, 3);
+  motion.poses.block<1, 3>(45, 6) = kHalfTurn.transpose();
+  std::vector<int> frames(70);
+  std::iota(frames.begin(), frames.end(), 0);
+  const SelfPenetration all = MeasureSelfPenetration(motion, frames, body);
+  ASSERT_EQ(all.frames.size(), 70U);
+  for (int t = 0; t < 70; ++t) EXPECT_NEAR(all.frames[t].deepest_m, t == 45 ? 0.06 : 0, 1e-6) << t;
+}
+
+/// Ball b comes to lie in the middle of a, and both in the root's large ball: the deeper counts. The vertices that
+/// joints are regressed from, at the origin and in no face, lie in that ball too and are no skin.
+TEST(SelfPenetration, OfTwoPartsTheDeeperCountsAndLoneVerticesDoNot) {
+  const Piece root{Ball({0.42, 0, 0}, 0.5), 0}, top{Box({0, 2, 0}, {0.1, 0.1, 0.1}, 1), 0},
+      a{Ball({0.42, 0, 0}, 0.05), 1}, b{Ball({-1.5, 0, 0}, 0.01), 2};
+  const BodyModel body = BodyOf({root, top, a, b}, -0.54);  // b goes from -1.5 to 0.42
+  const SelfPenetrationOptions all{.joined_share = 0, .other_share = 0};
+  const FramePenetration turned = Measure(body, OnePose(4, 2, kHalfTurn), all);
+  EXPECT_EQ(turned.vertices, 2 * UnitSphere(4).vertices.rows()) << "all of a and b";
+  EXPECT_NEAR(turned.deepest_of_pair_m[2 * 4 + 1], 0.05, 0.011) << "b in a";
+  EXPECT_NEAR(turned.deepest_m, 0.5, 0.012) << "b in the root's ball";
+  EXPECT_EQ(turned.part, 2);
+  EXPECT_EQ(turned.in, 0);
+
+  const Piece far_root{Ball({0, 1, 0}, 0.1), 0}, over_origin{Ball({0.02, 0, 0}, 0.1), 1};
+  EXPECT_EQ(Measure(BodyOf({far_root, over_origin}, 0), OnePose(4), all).vertices, 0);
+}
+
+/// Balls of 50 mm, 20 mm apart at rest, one swung 50 mm towards the other on an arm of 10 m: 30 mm of overlap. The body
+/// is 1.15 m high, so what is closer than 34.5 mm at rest is left out. Of a point at the angle θ from the middle of the
+/// facing side, |p − a|² is 0.0169 − 0.012 cos θ at rest and 0.0074 − 0.007 cos θ then: with 84.5 mm at rest it is 8.7
+/// mm deep.
 TEST(SelfPenetration, NeighboursAtRestAreLeftOut) {
   const Piece root{Ball({0, 1, 0}, 0.1), 0}, a{Ball({10, 0.12, 0}, 0.05), 1}, b{Ball({10, 0, 0}, 0.05), 2};
   const BodyModel body = BodyOf({root, a, b}, 0);

@@ -53,7 +53,9 @@ TEST(ErrorPictures, TruthResultAndErrorStandSideBySide) {
     for (int y = top + 90; y < picture.height; ++y) {
       for (int x = 0; x < picture.width; ++x) {
         has_yellow |= picture.at(x, y) == ErrorColour(1);
-        if (x < 12 + 2 * cell) ASSERT_EQ(picture.at(x, y), picture.at(0, 0));
+        if (x < 12 + 2 * cell) {
+          ASSERT_EQ(picture.at(x, y), picture.at(0, 0));
+        }
       }
     }
     EXPECT_TRUE(has_yellow);
