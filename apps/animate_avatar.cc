@@ -6,6 +6,7 @@
 
 #include "apps/avatar_verbs.h"
 #include "apps/command_callbacks.h"
+#include "apps/shown_motion_options.h"
 #include "bodyloom/pipelines/avatar/animate_avatar.h"
 
 namespace bodyloom {
@@ -38,16 +39,7 @@ void AddAnimateAvatar(CLI::App& animate, Action* action) {
   verb->add_option("--pictures", request->pictures, "A folder for PNGs of the person with transparency")
       ->type_name("DIR");
   verb->add_option("--body", request->body, "The track's body (default: the built-in body)");
-  verb->add_option("--view-yaw", request->view_yaw,
-                   "Turns the view about the person's vertical, degrees; FROM:TO turns it over the clip");
-  auto shape = std::make_shared<std::string>("run");
-  verb->add_option("--shape", *shape, "Whose body moves: run (the person who was trained on), or track")
-      ->check(CLI::IsMember({"run", "track"}))
-      ->capture_default_str();
-  verb->add_option(
-      "--freeze", request->freeze,
-      "FRAME:COUNT: time stands still at that frame for so many more, while --view-yaw FROM:TO turns the view");
-  verb->add_option("--background", request->background, "Image, video or folder of images behind the person");
+  AddShownMotion(verb, {&request->view_yaw, &request->freeze, &request->background, &request->shape_of_track});
   verb->add_option("--size", request->size, "Pixels of the picture's longer side (default: as the track's)")
       ->check(CLI::Range(2, 8192));
   verb->add_option("--ply", request->ply, "The Gaussians at rest, for viewers of 3D Gaussian Splatting, .ply");
@@ -59,10 +51,7 @@ void AddAnimateAvatar(CLI::App& animate, Action* action) {
       "Needs no LibTorch.\n"
       "Example:\n"
       "  bodyloom animate avatar --run run --track dance.npz --view-yaw 0:360 --background b.jpg --out dance.mp4");
-  verb->callback([request, shape, action] {
-    request->shape_of_track = *shape == "track";
-    *action = [request] { RunAnimateAvatar(*request); };
-  });
+  verb->callback([request, action] { *action = [request] { RunAnimateAvatar(*request); }; });
 }
 
 }  // namespace bodyloom

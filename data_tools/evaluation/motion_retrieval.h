@@ -15,6 +15,10 @@ namespace bodyloom {
 /// A row a frame.
 using DescriptorRows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+/// Rows of one frame each, to rows of each frame and the past − 1 before it (the first frame repeated). Throws
+/// std::invalid_argument for a past below 1.
+DescriptorRows WithPast(const DescriptorRows& rows, int past);
+
 /// (A): COCO-17 in pixels relative to their mean, of each frame and the past − 1 before it (the first frame repeated),
 /// each coordinate off by N(0, noise_px²).
 DescriptorRows KeypointTrajectories(const BodyModel& body, const Track& track, int past, double noise_px,

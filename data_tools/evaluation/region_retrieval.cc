@@ -81,24 +81,17 @@ DescriptorRows KeypointsOfRegion(const DescriptorRows& whole, const RegionOfBody
 }
 
 DescriptorRows DenseCoordinatesOfRegion(const PersonFrames& frames, const RegionOfBody& region, int past) {
-  BODYLOOM_CHECK(past >= 1, "descriptors of ", past, " frames");
   const size_t area = size_t(frames.window().width) * size_t(frames.window().height);
   std::vector<float> uv(2 * area), mask(area);
-  DescriptorRows rows = DescriptorRows::Zero(frames.num_frames(), static_cast<Eigen::Index>(2 * area) * past);
+  DescriptorRows rows(frames.num_frames(), static_cast<Eigen::Index>(2 * area));
   for (int t = 0; t < frames.num_frames(); ++t) {
     const std::vector<bool> sees = SeesRegion(frames, region, t, &uv, &mask);
     for (size_t p = 0; p < area; ++p) {
       if (!sees[p]) uv[p] = uv[area + p] = 0;
     }
-    // Frame t is a part of its own row and of the next past − 1; the first frame stands for those before it.
-    for (int k = 0; k < past; ++k) {
-      const int last = t == 0 ? k : t + k;
-      for (int to = t == 0 ? 0 : last; to <= last && to < frames.num_frames(); ++to) {
-        std::copy(uv.begin(), uv.end(), rows.row(to).data() + size_t(k) * 2 * area);
-      }
-    }
+    std::copy(uv.begin(), uv.end(), rows.row(t).data());
   }
-  return rows;
+  return WithPast(rows, past);
 }
 
 DescriptorRows MotionOfRegion(const DescriptorRows& whole, const RegionOfBody& region) {

@@ -2,10 +2,10 @@
 #include "bodyloom/pipelines/avatar/frame_spans.h"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/pipelines/clip_span.h"
 
 namespace bodyloom {
 namespace {
@@ -15,14 +15,8 @@ enum FrameUse : char { kUnused, kForTraining, kForValidation };
 void MarkSpans(const std::vector<std::string>& spans, const char* option, FrameUse use, std::vector<char>* frames) {
   const auto count = static_cast<int>(frames->size());
   for (const std::string& span : spans) {
-    int first = 0, last = 0;
-    char rest = 0;
-    if (std::sscanf(span.c_str(), "%d-%d%c", &first, &last, &rest) != 2 || first < 0 || last < first) {
-      throw RequestError(Concatenate(option, " ", span, ": expected FIRST-LAST, such as 0-149"));
-    }
-    if (last >= count) {
-      throw RequestError(Concatenate(option, " ", span, ": the clip has frames 0 to ", count - 1));
-    }
+    const auto [first, last] = ReadClipSpan(span, option);
+    RequireInClip({first, last}, option, count);
     for (int t = first; t <= last; ++t) {
       if ((*frames)[t] != kUnused && (*frames)[t] != use) {
         throw RequestError(Concatenate("frame ", t, " is in --train and in --validate"));

@@ -118,7 +118,7 @@ HWY_INLINE VF Normalise(Vec3* v) {
 }
 
 struct Turn {
-  VF w, x, y, z;  ///< of length 1
+  VF w, x, y, z;  ///< of length 1; zeros, which make the identity, where what was given is no rotation
   VF inverse;     ///< 1 over the length of what was given; 0 where that is no rotation
   Mat3 r;
 };
@@ -134,8 +134,8 @@ HWY_INLINE Turn TurnOf(const Reader& parameters) {
   const MF none = hn::Lt(square, hn::Set(d, 1e-12F));
   Turn t;
   t.inverse = hn::IfThenZeroElse(none, hn::Div(one, hn::Sqrt(square)));
-  t.w = hn::IfThenElse(none, one, hn::Mul(q[0], t.inverse));
-  t.x = hn::Mul(q[1], t.inverse), t.y = hn::Mul(q[2], t.inverse), t.z = hn::Mul(q[3], t.inverse);
+  t.w = hn::Mul(q[0], t.inverse), t.x = hn::Mul(q[1], t.inverse), t.y = hn::Mul(q[2], t.inverse),
+  t.z = hn::Mul(q[3], t.inverse);
   const VF xx = hn::Mul(t.x, t.x), yy = hn::Mul(t.y, t.y), zz = hn::Mul(t.z, t.z);
   const VF xy = hn::Mul(t.x, t.y), xz = hn::Mul(t.x, t.z), yz = hn::Mul(t.y, t.z);
   const VF wx = hn::Mul(t.w, t.x), wy = hn::Mul(t.w, t.y), wz = hn::Mul(t.w, t.z);

@@ -120,9 +120,21 @@ HWY_INLINE void FetchAhead(const SplatList& list, int i) {
   if (i + kEntriesAhead < list.count) hwy::Prefetch(list.splats + list.entries[i + kEntriesAhead].row);
 }
 
+/// Of the pixels of a part of a block from `column` on: the exponent of 2 that the Gaussian has there, and which of them take it. Forwards
+/// and backwards alike, so that derivatives are those of what was drawn.
+struct Taking {
+  VF t;
+  MF takes;
+};
+HWY_INLINE Taking TakenBy(const Reach& reach, int column, int part, VF c, VF dy, VF before, VF stop) {
+  const VF line = hn::Add(ByColumn(reach.slope + column, part), hn::Mul(c, dy));
+  const VF t = hn::Add(ByColumn(reach.base + column, part), hn::Mul(dy, line));
+  return {t, hn::And(hn::Ge(t, hn::Set(DF(), kLeastExponent)), hn::Ge(before, stop))};
+}
+
 void DrawSplats(const SplatList& list, SplatTile* tile) {
   const DF d;
-  const VF least = hn::Set(d, kLeastExponent), stop = hn::Set(d, tile->stop);
+  const VF stop = hn::Set(d, tile->stop);
   const VF largest = hn::Set(d, ScreenGaussians::kLargestAlpha);
   const TileGrid grid(tile->x, tile->y);
   Reach reach;
@@ -142,10 +154,8 @@ void DrawSplats(const SplatList& list, SplatTile* tile) {
       for (int part = 0; part < kParts; ++part) {
         const int at = block * kBlockPixels + part * kN;
         const VF dy = hn::Sub(hn::Load(d, grid.y[block / kBlocksAcross] + part * kN), mean_y);
-        const VF line = hn::Add(ByColumn(reach.slope + column, part), hn::Mul(c, dy));
-        const VF t = hn::Add(ByColumn(reach.base + column, part), hn::Mul(dy, line));
         const VF before = hn::Load(d, tile->transmittance + at);
-        const MF takes = hn::And(hn::Ge(t, least), hn::Ge(before, stop));
+        const auto [t, takes] = TakenBy(reach, column, part, c, dy, before, stop);
         const VF w = hn::IfThenElseZero(takes, hn::Mul(hn::Min(largest, Exp2(d, t)), before));
         const auto add = [&](float* to, VF colour)
                              HWY_ATTR { hn::Store(hn::Add(hn::Load(d, to + at), hn::Mul(w, colour)), d, to + at); };
@@ -189,8 +199,8 @@ enum Sum : int { kD, kDx, kDy, kDxx, kDxy, kDyy, kWRed, kWGreen, kWBlue, kNumSum
 
 void DrawSplatsBackward(const SplatList& list, SplatTileBack* tile, float* sums) {
   const DF d;
-  const VF zero = hn::Zero(d), one = hn::Set(d, 1.0F), least = hn::Set(d, kLeastExponent),
-           stop = hn::Set(d, tile->stop), largest = hn::Set(d, ScreenGaussians::kLargestAlpha);
+  const VF zero = hn::Zero(d), one = hn::Set(d, 1.0F), stop = hn::Set(d, tile->stop),
+           largest = hn::Set(d, ScreenGaussians::kLargestAlpha);
   const TileGrid grid(tile->x, tile->y);
   Reach reach;
   for (int i = 0; i < list.count; ++i) {
@@ -217,10 +227,8 @@ void DrawSplatsBackward(const SplatList& list, SplatTileBack* tile, float* sums)
       for (int part = 0; part < kParts; ++part) {
         const int at = block * kBlockPixels + part * kN;
         const VF dy = hn::Sub(hn::Load(d, grid.y[block / kBlocksAcross] + part * kN), mean_y);
-        const VF line = hn::Add(ByColumn(reach.slope + column, part), hn::Mul(c, dy));
-        const VF t = hn::Add(ByColumn(reach.base + column, part), hn::Mul(dy, line));
         const VF before = hn::Load(d, tile->transmittance + at);
-        const MF takes = hn::And(hn::Ge(t, least), hn::Ge(before, stop));
+        const auto [t, takes] = TakenBy(reach, column, part, c, dy, before, stop);
         const VF whole = Exp2(d, t), alpha = hn::IfThenElseZero(takes, hn::Min(largest, whole));
         const VF w = hn::Mul(alpha, before);
         hn::Store(hn::Sub(before, w), d, tile->transmittance + at);

@@ -8,27 +8,10 @@
 
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/geometry/observations.h"
+#include "tests/data_tools/evaluation/short_turning_clip.h"
 
 namespace bodyloom {
 namespace {
-
-TurningPerson ShortClip(double amplitude_deg) {
-  TurningPersonOptions options;
-  options.cycles = 3;
-  options.period_s = 1.6;
-  options.fps = 20;
-  options.image_size = 128;
-  options.variation = 0;
-  options.amplitude_deg = amplitude_deg;
-  return MakeTurningPerson(BuiltinBody(), options);
-}
-
-PersonFramesOptions Small() {
-  PersonFramesOptions options;
-  options.uv_size = 24;
-  options.window.max_side = 64;
-  return options;
-}
 
 TEST(RegionRetrieval, RegionsAreDisjointPartsOfTheAtlas) {
   std::vector<int> owners(24 * 24, 0);
@@ -43,8 +26,8 @@ TEST(RegionRetrieval, RegionsAreDisjointPartsOfTheAtlas) {
 }
 
 TEST(RegionRetrieval, RowsAreTheRegionsColumnsOfTheWhole) {
-  const TurningPerson person = ShortClip(60);
-  const PersonFrames frames(BuiltinBody(), person.track, Small());
+  const TurningPerson person = ShortTurningClip(0, 60);
+  const PersonFrames frames(BuiltinBody(), person.track, SmallFrames(64));
   const RegionOfBody hand = MakeRegion(BuiltinBody(), RetrievedRegion::kHand, 24);
   const DescriptorRows points = KeypointTrajectories(BuiltinBody(), person.track, 3, 0, 1);
   const DescriptorRows of_hand = KeypointsOfRegion(points, hand);
@@ -71,8 +54,9 @@ TEST(RegionRetrieval, RowsAreTheRegionsColumnsOfTheWhole) {
 
 TEST(RegionRetrieval, ATurnHidesTheHandBehindTheBody) {
   const RegionOfBody hand = MakeRegion(BuiltinBody(), RetrievedRegion::kHand, 24);
-  const TurningPerson facing = ShortClip(5), turning = ShortClip(90);
-  const PersonFrames little(BuiltinBody(), facing.track, Small()), far(BuiltinBody(), turning.track, Small());
+  const TurningPerson facing = ShortTurningClip(0, 5), turning = ShortTurningClip(0, 90);
+  const PersonFrames little(BuiltinBody(), facing.track, SmallFrames(64)),
+      far(BuiltinBody(), turning.track, SmallFrames(64));
   const std::vector<bool> always = RegionSeen(little, hand, 1), at_times = RegionSeen(far, hand, 1),
                           longer = RegionSeen(far, hand, 10);
   EXPECT_EQ(std::count(always.begin(), always.end(), false), 0);
@@ -87,8 +71,8 @@ TEST(RegionRetrieval, ATurnHidesTheHandBehindTheBody) {
 }
 
 TEST(RegionRetrieval, FramesThatSayNothingAreNeitherAskedNorFound) {
-  const TurningPerson person = ShortClip(60);
-  const PersonFrames frames(BuiltinBody(), person.track, Small());
+  const TurningPerson person = ShortTurningClip(0, 60);
+  const PersonFrames frames(BuiltinBody(), person.track, SmallFrames(64));
   const DescriptorRows motion = MotionDescriptors(frames, 10);
   std::vector<bool> defined(size_t(person.track.num_frames()), true);
   EXPECT_NEAR(ScoreRetrieval(person, motion, defined).answered_share, 1, 1e-12);
