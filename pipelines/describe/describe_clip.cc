@@ -27,7 +27,7 @@ constexpr int kPreviewFrames = 6;
 DescribeTrackOptions OptionsOf(const DescribeClipRequest& request) {
   DescribeTrackOptions options = request.options;
   options.preview_frames = request.preview.empty() ? 0 : kPreviewFrames;
-  SetAxesPose(request.cameras, request.view, &options);
+  SetAxesPose(request.cameras, request.view, request.track, &options);
   std::string why;
   if (!options.IsValid(&why)) throw RequestError(why);
   return options;
@@ -42,8 +42,8 @@ DescribeClipReport DescribeClip(const DescribeClipRequest& request, const Pipeli
   const std::string header = DescriptorHeaderPath(request.out);
   DescribeClipReport report;
   report.out = request.out;
-  report.options = OptionsOf(request);
   RequireReadable(request.track, "track");
+  report.options = OptionsOf(request);
   RequireReadable(request.body, "body model");
   RequireDistinct({request.track, request.body, request.cameras}, {request.out, header, request.preview, request.json});
   for (const std::string& path : {request.out, header, request.preview, request.json}) RequireWritable(path);

@@ -197,6 +197,7 @@ TrackPeopleReport TrackPeopleClip(const TrackPeopleClipRequest& request, const P
     person.fitted_again = result.summary.fitted_again[i] != 0;
     if (!person.solve.IsUsable()) continue;
     any_tracked = true;
+    report.world = result.people[i].track.world.value_or(WorldFrame());
     person.track = TrackFile(request, person.number);
     WriteTrack(person.track, result.people[i].track);
     report.outputs.push_back(person.track);

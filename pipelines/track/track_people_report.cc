@@ -88,6 +88,10 @@ std::string ToText(const TrackPeopleReport& report) {
     text += Concatenate("left out ", others, " more, seen too briefly or not asked for\n");
   }
   text += SceneText(report.scene);
+  if (std::any_of(report.people.begin(), report.people.end(),
+                  [](const auto& person) { return !person.track.empty(); })) {
+    text += "world    " + report.world.BriefReport() + "\n";
+  }
   text += "time     " + Fixed(report.total_seconds, 2) + " s (" + StagesText(report.seconds) + "), " +
           Fixed(report.num_frames / std::max(1e-9, report.total_seconds), 1) + " frames a second with " +
           report.network + "\n";
@@ -107,6 +111,7 @@ std::string ToJson(const TrackPeopleReport& report) {
                      {"people_found", report.num_found},
                      {"people", people},
                      {"scene", SceneJson(report.scene)},
+                     {"world", ToJson(report.world)},
                      {"seconds", ToJson(report.seconds)},
                      {"total_seconds", report.total_seconds},
                      {"peak_memory_bytes", report.peak_memory_bytes},

@@ -31,6 +31,7 @@ struct TrackPeopleReport {
   int num_found = 0;    ///< people in the detections, also those who were left out
   std::vector<TrackedPerson> people;
   SharedScene scene;
+  WorldFrame world;  ///< of all tracks
   StageSeconds seconds;
   double total_seconds = 0;
   size_t peak_memory_bytes = 0;
