@@ -35,7 +35,7 @@ void Make(const BuildBuiltinBodyRequest& request) {
 
 }  // namespace
 
-void AddBodyVerb(CLI::App& app, Action* action, std::vector<std::string> command, FindCrossingFaces crossing) {
+void AddBodyVerb(CLI::App& app, Action* action, const std::vector<std::string>& command, FindCrossingFaces crossing) {
   CLI::App* verb = app.add_subcommand("body", "Describes, converts and makes body models");
   verb->require_subcommand(1);
   verb->footer(kExitCodeHelp);

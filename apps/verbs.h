@@ -43,7 +43,8 @@ void AddDescribeVerb(CLI::App& app, Action* action);
 void AddTextureVerb(CLI::App& app, Action* action);
 /// `crossing` finds the faces of a body that cross each other; without it `info --check` goes on in the executable that
 /// has it, where there is one, which takes `arguments`, those of this one.
-void AddBodyVerb(CLI::App& app, Action* action, std::vector<std::string> arguments, FindCrossingFaces crossing = {});
+void AddBodyVerb(CLI::App& app, Action* action, const std::vector<std::string>& arguments,
+                 FindCrossingFaces crossing = {});
 /// `body info`, of the verb `body`.
 void AddBodyInfo(CLI::App& verb, Action* action, const std::vector<std::string>& arguments, FindCrossingFaces crossing);
 void AddDemoVerb(CLI::App& app, Action* action);
