@@ -201,6 +201,9 @@ void AddTrackOptions(CLI::App& app, TrackRequest* request, bool* quiet) {
       ->group(kWanted)
       ->type_name("FILE");
   app.add_option("--json", c.json, "the closing summary as JSON")->group(kWanted)->type_name("FILE");
+  app.add_option("--report", c.report, "one page: video, body in 3D and a timeline (.html)")
+      ->group(kWanted)
+      ->type_name("FILE");
   app.add_flag("--plan", c.plan, "print what would run, what is skipped and why; compute and write nothing")
       ->group(kWanted);
   app.add_flag("--quiet", *quiet, "no progress and no summary on the screen")->group(kWanted);

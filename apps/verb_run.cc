@@ -52,6 +52,7 @@ void AddRunVerb(CLI::App& app, Action* action) {
       ->capture_default_str();
   verb->add_option("--view", track.view, "camera of a calibration that holds several")->type_name("NAME");
   verb->add_flag("--masks", request->masks, "write each person's mask too: mask_0.npz, mask_1.npz ...");
+  verb->add_flag("--report", request->report, "write report.html too: video, bodies in 3D and a timeline in one page");
   verb->add_flag("--no-overlay", *no_overlay, "draw no video");
   verb->add_flag("--side-view", track.side_view, "the overlay also shows everybody from their side");
   verb->add_flag("--quiet", *quiet, "no progress and no summary on the screen");

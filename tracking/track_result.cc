@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
+#include "bodyloom/geometry/base/percentile.h"
 #include "bodyloom/geometry/posed_body.h"
 #include "bodyloom/tracking/frame_cost.h"
 #include "bodyloom/tracking/kinematics.h"
@@ -88,7 +90,9 @@ void FillTrack(const TrackSequenceInput& input, const SequenceProblem& problem, 
 
     const Camera camera = track.CameraAt(t);
     if (input.keypoints != nullptr) {
+      const size_t before = landmark_errors.size();
       AppendLandmarkErrors(landmarks, *input.keypoints, t, camera, kinematics, &landmark_errors);
+      summary.frame_px.push_back(Percentile(std::span(landmark_errors).subspan(before), 50));
     }
     if (frame.dense.points != nullptr) {
       vertices.NewFrame(kinematics);

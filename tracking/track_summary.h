@@ -71,6 +71,7 @@ struct TrackSequenceSummary {
   std::vector<PlanEntry> plan;                                 ///< what ran and what was skipped
   std::map<std::string, int> frames_by_status;                 ///< "tracked", "weak", "interpolated", "lost"
   double reprojection_median_px = 0, reprojection_p95_px = 0;  ///< of the used 2D joints (confidence > 0.3)
+  std::vector<double> frame_px;                                ///< T: median of the same in a frame; NaN: none used
   double dense_median_px = 0;                                  ///< of the dense keypoints, 0 without
   std::vector<TermSummary> terms;                              ///< of every image term that ran
   std::vector<OwnTermSummary> own_terms;                       ///< one a term of TrackSequenceOptions::own_terms

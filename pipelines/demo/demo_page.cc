@@ -5,7 +5,7 @@
 
 #include "bodyloom/data_tools/video/video_reader.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/pipelines/demo/report_page.h"
+#include "bodyloom/pipelines/page/report_page.h"
 #include "bodyloom/pipelines/fixed_text.h"
 #include "bodyloom/render/contact_sheet.h"
 

@@ -16,8 +16,8 @@
 #include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/render/render_sinks.h"
-#include "bodyloom/pipelines/track/track_video.h"
 #include "bodyloom/pipelines/track_fits_body.h"
+#include "bodyloom/pipelines/video/track_video.h"
 #include "bodyloom/render/overlay.h"
 
 namespace bodyloom {

@@ -14,7 +14,7 @@
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/pipelines/callbacks.h"
 #include "bodyloom/pipelines/track/move_observations.h"
-#include "bodyloom/pipelines/track/track_video.h"
+#include "bodyloom/pipelines/video/track_video.h"
 
 namespace bodyloom {
 namespace {

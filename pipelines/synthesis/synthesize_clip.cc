@@ -11,7 +11,7 @@
 #include "bodyloom/data_tools/observations/observations_npz.h"
 #include "bodyloom/data_tools/video/video_writer.h"
 #include "bodyloom/pipelines/files.h"
-#include "bodyloom/pipelines/track/track_video.h"
+#include "bodyloom/pipelines/video/track_video.h"
 #include "bodyloom/render/overlay.h"
 #include "bodyloom/render/palette.h"
 #include "bodyloom/render/shaded_mesh.h"

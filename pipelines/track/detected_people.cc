@@ -6,7 +6,7 @@
 #include "bodyloom/data_tools/observations/cut_frames.h"
 #include "bodyloom/data_tools/observations/load_detections.h"
 #include "bodyloom/pipelines/track/move_observations.h"
-#include "bodyloom/pipelines/track/track_video.h"
+#include "bodyloom/pipelines/video/track_video.h"
 
 namespace bodyloom {
 

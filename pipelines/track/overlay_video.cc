@@ -11,7 +11,7 @@
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/geometry/base/prefetcher.h"
-#include "bodyloom/pipelines/track/track_video.h"
+#include "bodyloom/pipelines/video/track_video.h"
 #include "bodyloom/render/overlay.h"
 
 namespace bodyloom {

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/pipelines/track/track_clip.h"
 
+#include <filesystem>
 #include <stdexcept>
 #include <utility>
 
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/pipelines/files.h"
+#include "bodyloom/pipelines/page/write_clip_page.h"
 #include "bodyloom/pipelines/peak_memory.h"
 #include "bodyloom/pipelines/track/overlay_video.h"
 #include "bodyloom/pipelines/track/track_inputs.h"
@@ -40,15 +42,35 @@ void WriteOverlay(const TrackRequest& request, const TrackInputs& inputs, const 
   report->outputs.push_back(request.overlay);
 }
 
+void WriteReportPage(const TrackRequest& request, const TrackInputs& inputs, const Track& track,
+                     const PipelineCallbacks& callbacks, TrackReport* report) {
+  ClipPageRequest page;
+  page.out = request.report;
+  page.people = {{.number = request.person,
+                  .body = inputs.body.get(),
+                  .track = &track,
+                  .summary = &report->solve,
+                  .track_file = request.out}};
+  page.video = request.video;
+  page.video_offset = request.video_offset;
+  page.video_px_from_camera_px = inputs.camera.video_px_from_camera_px;
+  page.title = std::filesystem::path(report->detections).filename().string();
+  page.summary = report->solve.BriefReport();
+  callbacks.Begin("writing the page");
+  WriteClipPage(page, callbacks);
+  report->outputs.push_back(request.report);
+}
+
 /// The job's own steps, beside the solver's.
 std::vector<PlanEntry> OwnPlan(const TrackRequest& request) {
   return {{"overlay video", !request.overlay.empty(), request.overlay.empty() ? "no --overlay" : request.overlay},
-          {"JSON summary", !request.json.empty(), request.json.empty() ? "no --json" : request.json}};
+          {"JSON summary", !request.json.empty(), request.json.empty() ? "no --json" : request.json},
+          {"page", !request.report.empty(), request.report.empty() ? "no --report" : request.report}};
 }
 
 /// Everything that can be known to fail is made to fail now, before the long work.
 void CheckFiles(const TrackRequest& request) {
-  const std::vector<std::string> outputs = {request.out, request.overlay, request.json};
+  const std::vector<std::string> outputs = {request.out, request.overlay, request.json, request.report};
   RequireDistinct(RequireTrackInputs(request), outputs);
   if (!request.plan) {
     for (const std::string& path : outputs) {
@@ -133,6 +155,10 @@ TrackReport TrackClip(const TrackRequest& request, const PipelineCallbacks& call
     if (!request.overlay.empty()) {
       clock.Begin("overlay");
       WriteOverlay(request, inputs, result.track, solve_share, callbacks, &report);
+    }
+    if (!request.report.empty()) {
+      clock.Begin("page");
+      WriteReportPage(request, inputs, result.track, callbacks, &report);
     }
   }
   clock.End();

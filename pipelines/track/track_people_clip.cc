@@ -13,12 +13,13 @@
 #include "bodyloom/data_tools/observations/people_npz.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/pipelines/files.h"
+#include "bodyloom/pipelines/page/write_clip_page.h"
 #include "bodyloom/pipelines/peak_memory.h"
 #include "bodyloom/pipelines/track/detected_people.h"
 #include "bodyloom/pipelines/track/overlay_video.h"
 #include "bodyloom/pipelines/track/scene_inputs.h"
 #include "bodyloom/pipelines/track/track_inputs.h"
-#include "bodyloom/pipelines/track/track_video.h"
+#include "bodyloom/pipelines/video/track_video.h"
 #include "bodyloom/tracking/people/track_people.h"
 
 namespace bodyloom {
@@ -60,9 +61,10 @@ void CheckRequest(const TrackPeopleClipRequest& request) {
   track.overlay = request.overlay ? FileIn(request, "overlay.mp4") : "";
   CheckTrackRequest(track);
   BODYLOOM_CHECK(DetectsPeople(track), "the request holds other observations than a video");
-  RequireDistinct(RequireTrackInputs(track),
-                  {FileIn(request, "detections.npz"), track.out, request.masks ? MaskFile(request, 0) : "",
-                   track.overlay, FileIn(request, "summary.json")});
+  RequireDistinct(
+      RequireTrackInputs(track),
+      {FileIn(request, "detections.npz"), track.out, request.masks ? MaskFile(request, 0) : "", track.overlay,
+       request.report ? FileIn(request, "report.html") : "", FileIn(request, "summary.json")});
   RequireWritableFolder(request.out);
 }
 
@@ -138,6 +140,28 @@ void WriteOverlay(const TrackPeopleClipRequest& request, const SceneInputs& scen
   report->outputs.push_back(path);
 }
 
+void WriteReportPage(const TrackPeopleClipRequest& request, const SceneInputs& scene, const TrackPeopleResult& result,
+                     const PipelineCallbacks& callbacks, TrackPeopleReport* report) {
+  ClipPageRequest page;
+  page.out = FileIn(request, "report.html");
+  for (size_t i = 0; i < report->people.size(); ++i) {
+    const TrackedPerson& person = report->people[i];
+    if (person.track.empty()) continue;
+    page.people.push_back({.number = person.number,
+                           .body = scene.body.get(),
+                           .track = &result.people[i].track,
+                           .summary = &person.solve,
+                           .track_file = person.track});
+  }
+  page.video = request.track.video;
+  page.video_px_from_camera_px = scene.camera.video_px_from_camera_px;
+  page.title = std::filesystem::path(request.track.video).filename().string();
+  page.summary = ToText(*report);
+  callbacks.Begin("writing the page");
+  WriteClipPage(page, callbacks);
+  report->outputs.push_back(page.out);
+}
+
 /// What the detections say of the clip and of those chosen.
 TrackPeopleReport StartReport(const TrackPeopleClipRequest& request, const DetectedClip& clip,
                               const std::vector<PersonTrack>& everybody, const std::vector<int>& chosen) {
@@ -205,6 +229,10 @@ TrackPeopleReport TrackPeopleClip(const TrackPeopleClipRequest& request, const P
   if (request.overlay && any_tracked) {
     clock.Begin("overlay");
     WriteOverlay(request, scene, result, seen, callbacks, &report);
+  }
+  if (request.report && any_tracked) {
+    clock.Begin("page");
+    WriteReportPage(request, scene, result, callbacks, &report);
   }
   clock.End();
   report.seconds = clock.seconds();

@@ -20,6 +20,7 @@ struct TrackPeopleClipRequest {
   std::optional<int> person;   ///< only this one, numbered as LinkPeople() does (0: the largest and longest in view)
   double least_seconds = 0.5;  ///< whoever is seen for less is left out; in short clips half of the clip
   bool overlay = true;
+  bool report = false;  ///< the clip's page
   bool masks = false;  ///< each person's mask is written too
 };
 
@@ -29,6 +30,7 @@ struct TrackPeopleClipRequest {
 ///                    video's times; all tracks are in one camera frame
 ///   mask_I.npz       with `masks`: the mask of person I in every frame of the clip (part_labels.h), in the video's pixels
 ///   overlay.mp4      all of them over the video (render/people_overlay.h)
+///   report.html      with `report`: the page of the clip (pipelines/page/write_clip_page.h)
 ///   summary.json     ToJson(TrackPeopleReport)
 /// Files of these names are replaced; tracks of people whom this run does not find stay. Throws RequestError for a
 /// request that contradicts itself, Cancelled, and std::runtime_error naming a file that cannot be used, or saying that

@@ -47,6 +47,7 @@ struct TrackRequest {
   std::string out;         ///< the track, .npz; may be empty when only the plan is wanted
   std::string overlay;     ///< video of the projected body, .mp4
   std::string json;        ///< ToJson(TrackReport)
+  std::string report;      ///< the clip's page, .html (pipelines/page/write_clip_page.h)
   std::string reference;   ///< a known true track, drawn beside the estimate in the side view
   bool side_view = false;  ///< the overlay also shows the body from its side, where depth errors show
   bool plan = false;       ///< only find out what would run, what is skipped and why

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/demo/report_page.h"
+#include "bodyloom/pipelines/page/report_page.h"
 
 #include <algorithm>
 #include <cmath>
@@ -143,6 +143,8 @@ void ReportPage::AddVideo(const std::string& file_name, const std::string& capti
   body_ +=
       Figure("<video controls loop muted autoplay playsinline src=\"" + EscapeHtml(file_name) + "\"></video>", caption);
 }
+
+void ReportPage::AddHtml(const std::string& html) { body_ += html; }
 
 void ReportPage::AddCurve(const std::vector<double>& x, const std::vector<double>& y, const std::string& x_label,
                           const std::string& y_label) {

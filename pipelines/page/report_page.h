@@ -25,6 +25,8 @@ class ReportPage {
   void AddPicture(const std::string& bytes, const std::string& mime_type, const std::string& caption);
   /// A video that lies beside the page, by its file name.
   void AddVideo(const std::string& file_name, const std::string& caption);
+  /// HTML as it is: whoever calls has escaped what needs it.
+  void AddHtml(const std::string& html);
   /// A curve of y over x (same length; points that are not finite leave a gap), from y = 0 up.
   void AddCurve(const std::vector<double>& x, const std::vector<double>& y, const std::string& x_label,
                 const std::string& y_label);

@@ -1,0 +1,361 @@
+// SPDX-License-Identifier: Apache-2.0
+// The live part of a clip's page (pipelines/page/clip_page.h): the video beside the bodies in their world, and a timeline.
+// `./dev page` bundles it with three and uPlot into viewer.bundle.js, which the program carries.
+//
+// The page holds, by id of its <script> elements:
+//   clip   JSON: seconds (one a frame, from the clip's start), people [{name, joints, status, residual_px, sigma_mm}],
+//          world_from_camera (4x4, rows), K (3x3), image_size, fps
+//   glb    the scene as base64 of a .glb
+//   video  base64 of an .mp4 with a picture for each frame, evenly fps a second, or empty
+// and elements with the ids used below. A fragment "#frame=30&view=side" opens it there; "#measure" counts pictures a second.
+import * as THREE from 'three';
+import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
+import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
+import uPlot from 'uplot';
+
+const STATUS = ['tracked', 'weak', 'interpolated', 'lost'];
+const STATUS_COLOURS = [null, '#e8c54788', '#e8883888', '#d6404088'];
+const SIGMA_LIMIT_MM = 150; // where the scale of the joints' colours ends
+
+const element = (id) => document.getElementById(id);
+const bytesOf = (id) => {
+  const text = atob(element(id).textContent.trim());
+  const bytes = new Uint8Array(text.length);
+  for (let i = 0; i < text.length; ++i) bytes[i] = text.charCodeAt(i);
+  return bytes;
+};
+const clip = JSON.parse(element('clip').textContent);
+const wishes = new URLSearchParams(location.hash.slice(1));
+const frames = clip.seconds.length;
+
+/// The last frame that has begun at `second`.
+function frameAt(second) {
+  let low = 0, high = frames - 1;
+  while (low < high) {
+    const middle = (low + high + 1) >> 1;
+    if (clip.seconds[middle] <= second + 1e-4) low = middle; else high = middle - 1;
+  }
+  return low;
+}
+
+/// Green for what is sure, through yellow to red at the limit; grey where nothing is known.
+function sigmaColour(millimetres) {
+  if (millimetres === null) return new THREE.Color(0x888888);
+  return new THREE.Color().setHSL(0.33 * (1 - Math.min(millimetres / SIGMA_LIMIT_MM, 1)), 0.9, 0.5);
+}
+
+class Stage {
+  constructor(holder) {
+    this.holder = holder;
+    this.renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    holder.appendChild(this.renderer.domElement);
+    this.scene = new THREE.Scene();
+    this.scene.background = new THREE.Color(0xf2f3f5);
+    this.scene.add(new THREE.HemisphereLight(0xffffff, 0x9a9a90, 1.6));
+    const sun = new THREE.DirectionalLight(0xffffff, 1.8);
+    sun.position.set(2, 5, 3);
+    this.scene.add(sun);
+    this.scene.add(new THREE.GridHelper(40, 40, 0xb0b4ba, 0xd9dce0));
+    this.camera = new THREE.PerspectiveCamera(40, 1, 0.05, 200);
+    this.controls = new OrbitControls(this.camera, this.renderer.domElement);
+    this.controls.addEventListener('change', () => this.draw());
+    new ResizeObserver(() => this.resize()).observe(holder);
+  }
+
+  async load() {
+    const gltf = await new GLTFLoader().parseAsync(bytesOf('glb').buffer, '');
+    this.scene.add(gltf.scene);
+    this.bodies = [];
+    this.extra = [];
+    gltf.scene.traverse((node) => {
+      node.frustumCulled = false; // a posed skin leaves the box of its rest pose
+      if (node.isSkinnedMesh) {
+        node.material = node.material.clone();
+        this.bodies.push(node);
+      }
+      if (node.name === 'ground') node.visible = false; // the grid is clearer
+    });
+    this.mixer = new THREE.AnimationMixer(gltf.scene);
+    this.duration = 0;
+    for (const animation of gltf.animations) {
+      this.mixer.clipAction(animation).play();
+      this.duration = Math.max(this.duration, animation.duration);
+    }
+    this.people = clip.people.map((person, index) => this.addJoints(gltf.scene, person, index));
+    this.addFrustum();
+    this.holdCentre(0);
+    this.view(wishes.get('view') || 'front');
+  }
+
+  addJoints(root, person, index) {
+    const holder = root.getObjectByName(person.name) || root;
+    const bones = [];
+    holder.traverse((node) => { if (node.isBone) bones.push(node); });
+    const ball = new THREE.SphereGeometry(0.022, 12, 8);
+    return bones.map((bone) => {
+      const material = new THREE.MeshBasicMaterial({ depthTest: false, transparent: true });
+      const sphere = new THREE.Mesh(ball, material);
+      sphere.renderOrder = 2;
+      sphere.frustumCulled = false;
+      this.scene.add(sphere);
+      return { bone, sphere, joint: person.joints.indexOf(bone.userData.name || bone.name), person: index };
+    });
+  }
+
+  addFrustum() {
+    if (!clip.K || !clip.image_size) return;
+    const [width, height] = clip.image_size;
+    const [[fx, , cx], [, fy, cy]] = clip.K;
+    const m = clip.world_from_camera;
+    const inWorld = (x, y, z) => new THREE.Vector3(
+      m[0][0] * x + m[0][1] * y + m[0][2] * z + m[0][3], m[1][0] * x + m[1][1] * y + m[1][2] * z + m[1][3],
+      m[2][0] * x + m[2][1] * y + m[2][2] * z + m[2][3]);
+    const depth = 0.6;
+    const corner = (u, v) => inWorld((u - cx) / fx * depth, (v - cy) / fy * depth, depth);
+    const eye = inWorld(0, 0, 0);
+    const corners = [corner(0, 0), corner(width, 0), corner(width, height), corner(0, height)];
+    const lines = [];
+    for (let i = 0; i < 4; ++i) lines.push(eye, corners[i], corners[i], corners[(i + 1) % 4]);
+    this.frustum = new THREE.LineSegments(new THREE.BufferGeometry().setFromPoints(lines),
+                                          new THREE.LineBasicMaterial({ color: 0x3366cc }));
+    this.scene.add(this.frustum);
+    this.eye = eye;
+    this.ahead = inWorld(0, 0, 1).sub(eye);
+    this.fieldOfView = 2 * Math.atan(height / (2 * fy)) * 180 / Math.PI;
+  }
+
+  centreAt(second) {
+    this.pose(second);
+    const centre = new THREE.Vector3(), place = new THREE.Vector3();
+    let count = 0;
+    for (const joints of this.people) {
+      if (joints.length === 0 || !this.isShown(joints[0].bone)) continue;
+      joints[0].bone.getWorldPosition(place);
+      centre.add(place);
+      count += 1;
+    }
+    return count > 0 ? centre.divideScalar(count) : new THREE.Vector3(0, 1, -3);
+  }
+
+  holdCentre(second) { this.centre = this.centreAt(second); }
+
+  isShown(bone) { return bone.getWorldScale(new THREE.Vector3()).x > 0.01; }
+
+  view(name) {
+    const spread = 1.2 * this.people.length;
+    const distance = 3.2 + spread;
+    const at = this.centre.clone();
+    const places = {
+      front: [0, 0.3, distance], side: [distance, 0.3, 0], back: [0, 0.3, -distance], top: [0, distance + 1, 0.01],
+    };
+    this.camera.fov = 40;
+    if (name === 'camera' && this.eye) {
+      this.camera.fov = this.fieldOfView;
+      this.camera.position.copy(this.eye);
+      at.copy(this.eye).addScaledVector(this.ahead, this.centre.distanceTo(this.eye));
+    } else {
+      this.camera.position.copy(at).add(new THREE.Vector3(...(places[name] || places.front)));
+    }
+    this.controls.target.copy(at);
+    this.camera.updateProjectionMatrix();
+    this.controls.update();
+    this.draw();
+  }
+
+  pose(second) {
+    this.mixer.setTime(Math.min(Math.max(second, 0), Math.max(this.duration - 1e-4, 0)));
+    this.scene.updateMatrixWorld(true);
+  }
+
+  show(frame) {
+    this.pose(clip.seconds[frame]);
+    const showJoints = element('show-joints').checked;
+    for (const body of this.bodies) {
+      body.visible = element('show-body').checked;
+      body.material.transparent = showJoints;
+      body.material.opacity = showJoints ? 0.75 : 1;
+    }
+    for (const joints of this.people) {
+      for (const { bone, sphere, joint, person } of joints) {
+        sphere.visible = showJoints && joint >= 0 && this.isShown(bone);
+        if (!sphere.visible) continue;
+        bone.getWorldPosition(sphere.position);
+        const row = clip.people[person].sigma_mm[frame];
+        sphere.material.color.copy(sigmaColour(row ? row[joint] : null));
+      }
+    }
+    if (this.frustum) this.frustum.visible = element('show-camera').checked;
+    this.draw();
+  }
+
+  resize() {
+    const { clientWidth: width, clientHeight: height } = this.holder;
+    if (width === 0 || height === 0) return;
+    this.renderer.setSize(width, height);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.draw();
+  }
+
+  draw() { this.renderer.render(this.scene, this.camera); }
+}
+
+class Timeline {
+  constructor(holder, jump) {
+    this.frame = 0;
+    const colours = ['#2b6cb0', '#b7472a', '#2f855a', '#805ad5', '#975a16'];
+    const series = [{ label: 'second', value: (u, v) => (v === null ? '' : v.toFixed(2)) }];
+    const data = [clip.seconds];
+    clip.people.forEach((person, index) => {
+      series.push({ label: `${person.name}: residual, px`, stroke: colours[index % colours.length], scale: 'px', width: 1.5 });
+      data.push(person.residual_px);
+      const mean = person.sigma_mm.map((row) => {
+        const known = row ? row.filter((v) => v !== null) : [];
+        return known.length ? known.reduce((a, b) => a + b, 0) / known.length : null;
+      });
+      series.push({ label: 'σ of joints, mm', stroke: colours[index % colours.length], scale: 'mm', dash: [4, 3], width: 1 });
+      data.push(mean);
+    });
+    this.plot = new uPlot({
+      width: holder.clientWidth || 800, height: 240, series, cursor: { drag: { x: false, y: false } },
+      scales: { x: { time: false }, px: { range: (u, low, high) => [0, Math.max(high || 1, 1)] }, mm: { range: (u, low, high) => [0, Math.max(high || 1, 1)] } },
+      axes: [{ label: 'seconds' }, { scale: 'px', label: 'px' }, { scale: 'mm', side: 1, label: 'mm', grid: { show: false } }],
+      hooks: { drawClear: [(plot) => this.drawStatuses(plot)], draw: [(plot) => this.drawPlace(plot)] },
+    }, data, holder);
+    this.plot.over.addEventListener('click', (event) => {
+      const left = event.clientX - this.plot.over.getBoundingClientRect().left;
+      jump(frameAt(this.plot.posToVal(left, 'x')));
+    });
+    new ResizeObserver(() => this.plot.setSize({ width: holder.clientWidth, height: 240 })).observe(holder);
+  }
+
+  drawStatuses(plot) {
+    const { ctx, bbox } = plot;
+    const band = bbox.height / clip.people.length;
+    ctx.save();
+    clip.people.forEach((person, index) => {
+      person.status.forEach((status, frame) => {
+        const colour = STATUS_COLOURS[status];
+        if (!colour) return;
+        const left = plot.valToPos(clip.seconds[frame], 'x', true);
+        const end = frame + 1 < frames ? clip.seconds[frame + 1] : clip.seconds[frame] + 1 / clip.fps;
+        ctx.fillStyle = colour;
+        ctx.fillRect(left, bbox.top + index * band, Math.max(plot.valToPos(end, 'x', true) - left, 1), band);
+      });
+    });
+    ctx.restore();
+  }
+
+  drawPlace(plot) {
+    const { ctx, bbox } = plot;
+    const x = plot.valToPos(clip.seconds[this.frame], 'x', true);
+    ctx.save();
+    ctx.strokeStyle = '#111';
+    ctx.beginPath();
+    ctx.moveTo(x, bbox.top);
+    ctx.lineTo(x, bbox.top + bbox.height);
+    ctx.stroke();
+    ctx.restore();
+  }
+
+  show(frame) {
+    this.frame = frame;
+    this.plot.redraw(false);
+  }
+}
+
+async function main() {
+  const stage = new Stage(element('stage'));
+  await stage.load();
+  stage.resize();
+  const video = element('picture');
+  const hasVideo = element('video').textContent.trim() !== '';
+  let current = -1, playing = false, startedAt = 0, startedFrom = 0;
+
+  function show(frame, moveVideo) {
+    frame = Math.min(Math.max(frame, 0), frames - 1);
+    if (frame === current) return;
+    current = frame;
+    stage.show(frame);
+    timeline.show(frame);
+    element('slider').value = frame;
+    const words = clip.people.map((person) => {
+      const px = person.residual_px[frame];
+      return `${person.name}: ${STATUS[person.status[frame]]}${px === null ? '' : `, ${px.toFixed(1)} px`}`;
+    });
+    element('place').textContent = `frame ${frame} of ${frames}, ${clip.seconds[frame].toFixed(2)} s; ${words.join('; ')}`;
+    // The middle of the frame's time: a player shows the frame before when asked for its first instant.
+    if (moveVideo && hasVideo) video.currentTime = (frame + 0.5) / clip.fps;
+  }
+  const timeline = new Timeline(element('timeline'), (frame) => show(frame, true));
+
+  if (hasVideo) {
+    video.src = URL.createObjectURL(new Blob([bytesOf('video')], { type: 'video/mp4' }));
+    video.addEventListener('ended', () => play(false));
+  } else {
+    element('seen').style.display = 'none';
+    element('stage').style.gridColumn = '1 / -1';
+  }
+  function play(on) {
+    playing = on;
+    element('play').textContent = on ? 'Pause' : 'Play';
+    if (on && current === frames - 1) show(0, true);
+    startedAt = performance.now();
+    startedFrom = clip.seconds[current];
+    if (hasVideo) on ? video.play() : video.pause();
+    if (on) requestAnimationFrame(step);
+  }
+  function step() {
+    if (!playing) return;
+    show(hasVideo ? Math.floor(video.currentTime * clip.fps) : frameAt(startedFrom + (performance.now() - startedAt) / 1000), false);
+    if (!hasVideo && current === frames - 1) return play(false);
+    requestAnimationFrame(step);
+  }
+  element('play').addEventListener('click', () => play(!playing));
+  element('slider').max = frames - 1;
+  element('slider').addEventListener('input', (event) => { play(false); show(Number(event.target.value), true); });
+  document.addEventListener('keydown', (event) => {
+    if (event.target.tagName === 'INPUT' && event.target.type !== 'checkbox') return;
+    if (event.key === ' ') { event.preventDefault(); play(!playing); }
+    if (event.key === 'ArrowRight') { play(false); show(current + 1, true); }
+    if (event.key === 'ArrowLeft') { play(false); show(current - 1, true); }
+  });
+  for (const name of ['front', 'side', 'back', 'top', 'camera']) {
+    element(`view-${name}`).addEventListener('click', () => {
+      stage.holdCentre(clip.seconds[current]);
+      stage.show(current);
+      stage.view(name);
+    });
+  }
+  for (const id of ['show-body', 'show-joints', 'show-camera']) {
+    element(id).addEventListener('change', () => stage.show(current));
+  }
+  for (const link of document.querySelectorAll('a[data-blob]')) {
+    link.addEventListener('click', () => {
+      link.href = URL.createObjectURL(new Blob([bytesOf(link.dataset.blob)], { type: link.type }));
+    });
+  }
+  element('scale').style.background =
+    `linear-gradient(to right, ${[0, 0.25, 0.5, 0.75, 1].map((x) => `#${sigmaColour(x * SIGMA_LIMIT_MM).getHexString()}`).join(', ')})`;
+  element('scale-end').textContent = `${SIGMA_LIMIT_MM} mm`;
+
+  const first = Number(wishes.get('frame') || 0);
+  show(first, true);
+  if (wishes.get('view')) { stage.holdCentre(clip.seconds[current]); stage.show(current); stage.view(wishes.get('view')); }
+  if (wishes.has('measure')) {
+    const begin = performance.now(), rounds = 60;
+    for (let i = 0; i < rounds; ++i) {
+      stage.show(i % frames);
+      const gl = stage.renderer.getContext();
+      gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4)); // waits until it is drawn
+    }
+    element('place').textContent = `${(1000 * rounds / (performance.now() - begin)).toFixed(1)} pictures a second`;
+  }
+  document.body.dataset.ready = 'yes';
+}
+
+main().catch((error) => {
+  console.error(error);
+  element('place').textContent = `This browser cannot show the scene: ${error.message}`;
+});

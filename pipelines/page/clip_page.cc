@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/page/clip_page.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/pipelines/page/report_page.h"
+
+extern "C" const unsigned char bodyloom_page_viewer_begin[], bodyloom_page_viewer_end[];
+
+namespace bodyloom {
+namespace {
+
+using PageJson = nlohmann::json;
+
+constexpr const char* kSceneStyle = R"(<style>
+main { max-width: 1280px; }
+.scene { display: grid; grid-template-columns: minmax(0, 2fr) minmax(0, 3fr); gap: 12px; }
+#seen video { width: 100%; max-height: 560px; background: #000; border-radius: 6px; }
+#stage { height: 560px; border: 1px solid #e2e8f0; border-radius: 6px; overflow: hidden; }
+.controls { display: flex; flex-wrap: wrap; gap: 10px; align-items: center; margin: 10px 0; }
+.controls input[type=range] { flex: 1; min-width: 200px; }
+button { font: inherit; padding: 3px 12px; border: 1px solid #cbd5e0; border-radius: 6px; background: #fff; cursor: pointer; }
+.scale { display: inline-block; width: 120px; height: 10px; border-radius: 5px; }
+#place { color: #4a5568; font-size: 14px; min-height: 1.5em; }
+.u-wrap { position: relative; user-select: none; } .u-over, .u-under { position: absolute; }
+.uplot, .uplot *, .uplot *::before, .uplot *::after { box-sizing: border-box; }
+.uplot { width: 100%; background: #fff; } .uplot canvas { display: block; position: relative; width: 100%; height: 100%; }
+.u-axis { position: absolute; } .u-legend { font-size: 13px; margin: 4px auto; text-align: center; }
+.u-legend th, .u-legend td, .u-legend { border: 0; background: none; padding: 2px 5px; }
+.u-inline { display: block; } .u-inline * { display: inline-block; } .u-inline tr { margin-right: 16px; }
+.u-legend .u-marker { width: 1em; height: 1em; margin-right: 4px; background-clip: padding-box !important; }
+.u-inline.u-live th::after { content: ":"; vertical-align: middle; }
+.u-select { background: rgba(0,0,0,0.07); position: absolute; pointer-events: none; }
+.u-cursor-x, .u-cursor-y { position: absolute; left: 0; top: 0; pointer-events: none; will-change: transform; }
+.u-hz .u-cursor-x { height: 100%; border-right: 1px dashed #607D8B; } .u-hz .u-cursor-y { width: 100%; border-bottom: 1px dashed #607D8B; }
+.u-cursor-pt { position: absolute; top: 0; left: 0; border-radius: 50%; border: 0 solid; pointer-events: none; will-change: transform; background-clip: padding-box !important; }
+.u-axis.u-off, .u-select.u-off, .u-cursor-x.u-off, .u-cursor-y.u-off, .u-cursor-pt.u-off { display: none; }
+@media (max-width: 800px) { .scene { grid-template-columns: 1fr; } }
+</style>
+)";
+
+constexpr const char* kSceneHtml = R"(<div class="scene">
+<div id="seen"><video id="picture" muted playsinline preload="auto"></video></div>
+<div id="stage"></div>
+</div>
+<div class="controls"><button id="play">Play</button><input id="slider" type="range" min="0" value="0" aria-label="frame"></div>
+<div id="place"></div>
+<div class="controls">
+<button id="view-front">Front</button><button id="view-side">Side</button><button id="view-back">Back</button>
+<button id="view-top">Above</button><button id="view-camera">Camera</button>
+<label><input id="show-body" type="checkbox" checked> body</label>
+<label><input id="show-joints" type="checkbox"> joints, σ from 0 <span id="scale" class="scale"></span> to <span id="scale-end"></span></label>
+<label><input id="show-camera" type="checkbox" checked> camera</label>
+</div>
+<div id="timeline"></div>
+<p>A click in the timeline goes there; so do the arrow keys, frame by frame. Shaded: weak (yellow), interpolated (orange) and lost (red)
+frames, a band a person.</p>
+)";
+
+PageJson OrNull(double value, double scale, double digits) {
+  return std::isfinite(value) ? PageJson(std::round(value * scale * digits) / digits) : PageJson();
+}
+
+PageJson PersonJson(const ClipPagePerson& person) {
+  PageJson json = {{"name", person.name}, {"joints", person.joint_names}};
+  for (const FrameStatus status : person.status) json["status"].push_back(int(status));
+  for (const double px : person.residual_px) json["residual_px"].push_back(OrNull(px, 1, 100));
+  for (Eigen::Index t = 0; t < person.joint_sigma_m.rows(); ++t) {
+    PageJson row = nullptr;
+    if (person.joint_sigma_m.row(t).array().isFinite().any()) {
+      for (Eigen::Index j = 0; j < person.joint_sigma_m.cols(); ++j) {
+        row.push_back(OrNull(person.joint_sigma_m(t, j), 1000, 1));
+      }
+    }
+    json["sigma_mm"].push_back(std::move(row));
+  }
+  return json;
+}
+
+PageJson ClipJson(const ClipPageContent& content) {
+  PageJson json = {{"fps", content.fps}};
+  for (const double second : content.seconds) json["seconds"].push_back(std::round(second * 1e4) / 1e4);
+  for (const ClipPagePerson& person : content.people) json["people"].push_back(PersonJson(person));
+  const Eigen::Matrix3d& R = content.world.rotation;
+  const Eigen::Vector3d& t = content.world.translation;
+  for (int row = 0; row < 3; ++row) json["world_from_camera"].push_back({R(row, 0), R(row, 1), R(row, 2), t[row]});
+  const Camera& camera = content.camera;
+  if (camera.width > 0 && camera.model == CameraModel::kPinhole) {
+    json["K"] = {{camera.fx, 0, camera.cx}, {0, camera.fy, camera.cy}, {0, 0, 1}};
+    json["image_size"] = {camera.width, camera.height};
+  }
+  return json;
+}
+
+/// Text for a <script> element: JSON may hold "</script>" in a name.
+std::string ScriptText(std::string text) {
+  for (size_t at = text.find("</"); at != std::string::npos; at = text.find("</", at + 1)) text.replace(at, 2, "<\\/");
+  return text;
+}
+
+std::string DataScript(const std::string& id, const std::string& type, const std::string& text) {
+  return "<script id=\"" + id + "\" type=\"" + type + "\">" + text + "</script>\n";
+}
+
+std::string SizeText(size_t bytes) {
+  const double megabytes = double(bytes) / 1e6;
+  char text[32];
+  std::snprintf(text, sizeof text, megabytes < 0.1 ? "%.3f MB" : "%.1f MB", megabytes);
+  return text;
+}
+
+/// Links to what the page holds.
+std::string LinksHtml(const ClipPageContent& content) {
+  const auto link = [](const std::string& blob, const std::string& name, const std::string& type, size_t bytes) {
+    return "<li><a data-blob=\"" + blob + "\" download=\"" + EscapeHtml(name) + "\" type=\"" + EscapeHtml(type) +
+           "\" href=\"#\">" + EscapeHtml(name) + "</a>, " + SizeText(bytes) + "</li>\n";
+  };
+  std::string html = "<ul>\n" + link("glb", "scene.glb", "model/gltf-binary", content.glb.size());
+  for (size_t i = 0; i < content.files.size(); ++i) {
+    const ClipPageFile& file = content.files[i];
+    html += link("file-" + std::to_string(i), file.name, file.mime_type, file.bytes.size());
+  }
+  return html + "</ul>\n";
+}
+
+void CheckContent(const ClipPageContent& content) {
+  BODYLOOM_CHECK(!content.seconds.empty() && !content.people.empty(), "a clip's page: no frames or nobody to show");
+  const size_t n = content.seconds.size();
+  for (const ClipPagePerson& person : content.people) {
+    BODYLOOM_CHECK(
+        person.status.size() == n && person.residual_px.size() == n && person.joint_sigma_m.rows() == Eigen::Index(n) &&
+            person.joint_sigma_m.cols() == Eigen::Index(person.joint_names.size()),
+        "a clip's page: ", person.name, " has ", person.status.size(), " statuses, ", person.residual_px.size(),
+        " residuals and ", person.joint_sigma_m.rows(), "x", person.joint_sigma_m.cols(), " sigmas, expected ", n,
+        " frames and ", person.joint_names.size(), " joints");
+  }
+}
+
+}  // namespace
+
+std::string ClipPageHtml(const ClipPageContent& content) {
+  CheckContent(content);
+  ReportPage page(content.title, content.subtitle);
+  page.AddHtml(kSceneStyle);
+  page.AddHtml(kSceneHtml);
+  page.AddHeading("Files");
+  page.AddHtml(LinksHtml(content));
+  if (!content.summary.empty()) {
+    page.AddHeading("Summary");
+    page.AddHtml("<pre>" + EscapeHtml(content.summary) + "</pre>\n");
+  }
+  for (const ClipPagePerson& person : content.people) {
+    if (person.plan.empty()) continue;
+    page.AddHeading("What ran and why: " + person.name);
+    std::vector<std::vector<std::string>> rows = {{"part", "ran", "why"}};
+    for (const PlanEntry& entry : person.plan) rows.push_back({entry.what, entry.runs ? "yes" : "no", entry.why});
+    page.AddTable(rows);
+  }
+  page.AddHtml(DataScript("clip", "application/json", ScriptText(ClipJson(content).dump())));
+  page.AddHtml(DataScript("glb", "application/octet-stream", Base64(content.glb)));
+  page.AddHtml(DataScript("video", "application/octet-stream", Base64(content.video_mp4)));
+  for (size_t i = 0; i < content.files.size(); ++i) {
+    page.AddHtml(DataScript("file-" + std::to_string(i), "application/octet-stream", Base64(content.files[i].bytes)));
+  }
+  page.AddHtml("<script>" +
+               std::string(reinterpret_cast<const char*>(bodyloom_page_viewer_begin),
+                           reinterpret_cast<const char*>(bodyloom_page_viewer_end)) +
+               "</script>\n");
+  return page.ToHtml();
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/page/write_clip_page.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "bodyloom/data_tools/export/glb_writer.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/motion/bvh_writer.h"
+#include "bodyloom/data_tools/video/video_encoder.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/pipelines/page/clip_page.h"
+#include "bodyloom/pipelines/video/track_video.h"
+#include "bodyloom/render/follow_view.h"
+#include "bodyloom/render/image.h"
+#include "bodyloom/render/overlay.h"
+#include "bodyloom/render/track_world.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+std::string PersonName(const PersonOnPage& person) { return Concatenate("person_", person.number); }
+
+/// All moments of all tracks, ascending.
+std::vector<double> MomentsOf(const std::vector<PersonOnPage>& people) {
+  std::vector<double> moments;
+  for (const PersonOnPage& person : people) {
+    const std::vector<double>& times = person.track->motion.timestamps;
+    moments.insert(moments.end(), times.begin(), times.end());
+  }
+  std::sort(moments.begin(), moments.end());
+  moments.erase(std::unique(moments.begin(), moments.end()), moments.end());
+  return moments;
+}
+
+WorldFrame WorldOf(const std::vector<PersonOnPage>& people) {
+  std::vector<const Track*> tracks;
+  std::vector<MatrixX3d> joints;
+  for (const PersonOnPage& person : people) {
+    tracks.push_back(person.track);
+    joints.insert(joints.end(), person.track->joints.begin(), person.track->joints.end());
+  }
+  return WorldOfTracks(tracks, joints);
+}
+
+ExportScene SceneOf(const std::vector<PersonOnPage>& people, const WorldFrame& world) {
+  std::vector<const BodyModel*> bodies;
+  std::vector<const Track*> tracks;
+  for (const PersonOnPage& person : people) {
+    bodies.push_back(person.body);
+    tracks.push_back(person.track);
+  }
+  ExportScene scene = MakeExportScene(bodies, tracks, world);
+  for (size_t i = 0; i < people.size(); ++i) scene.people[i].name = PersonName(people[i]);
+  return scene;
+}
+
+/// The person's frames laid on the page's clock.
+ClipPagePerson OnClock(const PersonOnPage& person, const std::vector<double>& moments) {
+  const Track& track = *person.track;
+  const size_t n = moments.size();
+  const std::vector<std::string>& names = person.body->data().joint_names;
+  ClipPagePerson on_page;
+  on_page.name = PersonName(person);
+  for (Eigen::Index j = 0; j < track.joint_sigma.cols(); ++j) {
+    const std::vector<std::string>& known = names.empty() ? SmplJointNames() : names;
+    on_page.joint_names.push_back(size_t(j) < known.size() ? known[size_t(j)] : Concatenate("joint_", j));
+  }
+  on_page.status.assign(n, FrameStatus::kLost);
+  on_page.residual_px.assign(n, kNaN);
+  on_page.joint_sigma_m.setConstant(Eigen::Index(n), track.joint_sigma.cols(), kNaN);
+  const bool has_px = person.summary != nullptr && person.summary->frame_px.size() == size_t(track.num_frames());
+  for (int t = 0; t < track.num_frames(); ++t) {
+    const auto at = std::lower_bound(moments.begin(), moments.end(), track.motion.timestamps[size_t(t)]);
+    const auto row = at - moments.begin();
+    on_page.status[size_t(row)] = track.frame_status[size_t(t)];
+    if (has_px) on_page.residual_px[size_t(row)] = person.summary->frame_px[size_t(t)];
+    if (t < track.joint_sigma.rows()) on_page.joint_sigma_m.row(row) = track.joint_sigma.row(t);
+  }
+  if (person.summary != nullptr) on_page.plan = person.summary->plan;
+  return on_page;
+}
+
+/// The video's picture of every moment, evenly spaced; where the video has none the last one stays.
+std::string VideoOf(const ClipPageRequest& request, const std::vector<double>& moments, double fps,
+                    const PipelineCallbacks& callbacks) {
+  TrackVideo video(request.video, *request.people[0].track, request.video_px_from_camera_px, request.video_offset);
+  const double longer = std::max(video.info().width, video.info().height), scale = std::min(1.0, kPageVideoPx / longer);
+  const int width = std::max(2, int(std::lround(scale * video.info().width))),
+            height = std::max(2, int(std::lround(scale * video.info().height)));
+  const AtomicPath file(request.out + ".mp4");  // never committed: only its bytes are wanted
+  VideoEncoder encoder(file.temporary(), request.out, width, height, fps);
+  Image picture(width, height);
+  for (size_t i = 0; i < moments.size(); ++i) {
+    callbacks.Update("report", double(i) / double(moments.size()));
+    if (const Image* shown = video.At(moments[i])) picture = Resized(*shown, width, height);
+    encoder.Write(picture);
+  }
+  const std::string fault = encoder.Finish();
+  if (!fault.empty()) throw std::runtime_error(request.out + ": " + fault);
+  return ReadFileBytes(file.temporary());
+}
+
+/// Empty where BVH cannot say what the track says.
+std::string BvhOf(const PersonOnPage& person, const WorldFrame& world) {
+  const Motion& motion = person.track->motion;
+  for (int t = 0; t < motion.num_frames(); ++t) {
+    if (!motion.HasPose(t)) return "";
+  }
+  try {
+    return BvhText(MotionInWorld(world, person.body->RestJoints(motion.betas).row(0).transpose(), motion),
+                   *person.body);
+  } catch (const std::invalid_argument&) {  // uneven time
+    return "";
+  }
+}
+
+std::vector<ClipPageFile> FilesOf(const std::vector<PersonOnPage>& people, const WorldFrame& world) {
+  std::vector<ClipPageFile> files;
+  for (const PersonOnPage& person : people) {
+    const std::string name = PersonName(person);
+    std::string bvh = BvhOf(person, world);
+    if (!bvh.empty()) files.push_back({name + ".bvh", "text/plain", std::move(bvh)});
+    if (!person.track_file.empty()) {
+      files.push_back({name + ".npz", "application/octet-stream", ReadFileBytes(person.track_file)});
+    }
+  }
+  return files;
+}
+
+}  // namespace
+
+void WriteClipPage(const ClipPageRequest& request, const PipelineCallbacks& callbacks) {
+  BODYLOOM_CHECK(!request.people.empty(), "a clip's page: nobody to show");
+  const std::vector<double> moments = MomentsOf(request.people);
+  ClipPageContent content;
+  content.title = request.title;
+  content.world = WorldOf(request.people);
+  content.subtitle = content.world.BriefReport();
+  content.fps = VideoFrameRate(moments);
+  content.camera = request.people[0].track->camera;
+  const ExportScene scene = SceneOf(request.people, content.world);
+  for (const double moment : moments) content.seconds.push_back(moment - scene.start_s);
+  for (const PersonOnPage& person : request.people) content.people.push_back(OnClock(person, moments));
+  GlbOptions options;
+  options.correctives = request.correctives;
+  GlbSummary exactness;
+  content.glb = GlbText(scene, options, &exactness);
+  if (!request.video.empty()) content.video_mp4 = VideoOf(request, moments, content.fps, callbacks);
+  content.summary = request.summary;
+  content.files = FilesOf(request.people, content.world);
+  WriteFileAtomically(request.out, ClipPageHtml(content));
+  callbacks.Update("report", 1);
+}
+
+}  // namespace bodyloom
