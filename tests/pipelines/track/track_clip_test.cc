@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "bodyloom/data_tools/formats/npz.h"
 #include "bodyloom/data_tools/observations/observations_npz.h"
+#include "bodyloom/pipelines/page/report_page.h"
 #include "bodyloom/pipelines/score/evaluate_track.h"
 #include "bodyloom/pipelines/synthesis/synthesize_clip.h"
 #include "tests/support/scratch_folder.h"
@@ -47,6 +49,33 @@ TEST(TrackClip, ReportsWhatItWroteAndHowFarItIs) {
   EXPECT_EQ(report.outputs, (std::vector<std::string>{request.out, request.json}));
   EXPECT_EQ(FileBytes(request.json), ToJson(report));
   EXPECT_TRUE(std::filesystem::exists(request.out));
+}
+
+TEST(TrackClip, ThePageShowsEveryFrameAndGivesTheFilesAway) {
+  const ScratchFolder folder;
+  const SynthClipFiles clip = SmallClip(folder);
+  TrackRequest request;
+  request.detections = clip.observations;
+  request.cameras = clip.camera;
+  request.out = folder / "track.npz";
+  request.report = folder / "page.html";
+  const TrackReport report = TrackClip(request);
+  EXPECT_EQ(report.outputs, (std::vector<std::string>{request.out, request.report}));
+  const std::string html = FileBytes(request.report);
+  const auto script = [&](const std::string& id) {
+    const size_t begin = html.find('>', html.find("<script id=\"" + id + "\"")) + 1;
+    return html.substr(begin, html.find("</script>", begin) - begin);
+  };
+  const nlohmann::json shown = nlohmann::json::parse(script("clip"));
+  ASSERT_EQ(shown["seconds"].size(), 8u);
+  EXPECT_NEAR(shown["seconds"][7].get<double>(), 7 / 15.0, 1e-4);
+  ASSERT_EQ(report.solve.frame_px.size(), 8u);
+  for (int t = 0; t < 8; ++t) {
+    EXPECT_NEAR(shown["people"][0]["residual_px"][t].get<double>(), report.solve.frame_px[size_t(t)], 0.0051) << t;
+  }
+  EXPECT_EQ(script("glb").substr(0, 5), Base64("glTF").substr(0, 5));
+  EXPECT_EQ(script("file-0").substr(0, 12), Base64("HIERARCHY").substr(0, 12));
+  EXPECT_EQ(script("file-1"), Base64(FileBytes(request.out)));
 }
 
 TEST(TrackClip, ACancelledOneLeavesNothingBehind) {
