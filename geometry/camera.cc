@@ -108,9 +108,9 @@ Vector2d Camera::Unproject(const Vector2d& pixel) const {
   if (model == CameraModel::kWeakPerspective) {
     return {(pixel.x() - cx) / scale - tx, (pixel.y() - cy) / scale - ty};
   }
-  const Vector2d target((pixel.x() - cx) / fx, (pixel.y() - cy) / fy);
+  Vector2d target((pixel.x() - cx) / fx, (pixel.y() - cy) / fy);
   if (!HasDistortion()) return target;
-  const Vector2d nan = Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
+  Vector2d nan = Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
   Vector2d ab = target, uv;
   Matrix2d D;
   for (int i = 0; i < 50; ++i) {

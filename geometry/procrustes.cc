@@ -73,7 +73,7 @@ AlignmentResult AlignPoints(const MatrixX3d& source, const MatrixX3d& target, co
 
   SimilarityTransform& transform = result.target_from_source;
   const Eigen::JacobiSVD<Matrix3d> svd(cross, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Vector3d sigma = svd.singularValues();
+  const Vector3d& sigma = svd.singularValues();
   if (spread_source == 0 || spread_target == 0 || sigma[1] <= options.collinear_ratio * sigma[0]) {
     result.status = AlignmentStatus::kAmbiguous;
     if (options.estimate_scale && spread_source > 0) transform.scale = std::sqrt(spread_target / spread_source);

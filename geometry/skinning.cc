@@ -155,6 +155,7 @@ SkinningSummary Skinner::Run(const ShapedBody& body, std::span<const BodyPose> p
   summary.simd_target = skinning_internal::ChosenSimdTarget();
   const int num_groups = static_cast<int>((T + kFrameLanes - 1) / kFrameLanes);
   std::vector<FrameGroup> groups;
+  groups.reserve(static_cast<size_t>(std::min(num_groups, kGroupsPerPass)));
   for (int g = 0; g < std::min(num_groups, kGroupsPerPass); ++g) groups.emplace_back(J);
   for (int pass = 0; pass < num_groups; pass += kGroupsPerPass) {
     const int pass_groups = std::min(kGroupsPerPass, num_groups - pass);

@@ -9,6 +9,7 @@
 
 #include "bodyloom/render/caption.h"
 #include "bodyloom/render/palette.h"
+#include "bodyloom/render/unit_byte.h"
 
 namespace bodyloom {
 namespace {
@@ -35,7 +36,7 @@ std::string ShortNumber(double value) {
 }
 
 void FillBox(int x, int y, int width, int height, Colour colour, double alpha, Image* image) {
-  const auto blend = [&](uint8_t* p, uint8_t to) { *p = static_cast<uint8_t>(*p + alpha * (to - *p) + 0.5); };
+  const auto blend = [&](uint8_t* p, uint8_t to) { *p = NearestByte(*p + alpha * (to - *p)); };
   for (int j = std::max(0, y); j < std::min(image->height, y + height); ++j) {
     for (int i = std::max(0, x); i < std::min(image->width, x + width); ++i) {
       uint8_t* p = image->pixel(i, j);
@@ -63,7 +64,7 @@ void DrawErrorLegend(const ErrorScale& scale, int x, int y, int width, double ca
   const int padding = static_cast<int>(std::lround(0.9 * cap_px)), bar_x = x + padding,
             bar_width = std::max(2, width - 2 * padding);
   const auto below = [&](double caps) { return y + static_cast<int>(std::lround(caps * cap_px)); };
-  const auto say = [&](std::string text, double share, int baseline) {
+  const auto say = [&](const std::string& text, double share, int baseline) {
     const double room = bar_width, wide = WidthOfWords(text, cap_px);
     const double letters = wide > room ? cap_px * room / wide : cap_px;
     const double left = share * (bar_width - WidthOfWords(text, letters));

@@ -9,6 +9,7 @@
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/render/image_mat.h"
+#include "bodyloom/render/unit_byte.h"
 #include "bodyloom/render/view_camera.h"
 #include "bodyloom/render/visibility_buffer.h"
 
@@ -85,9 +86,9 @@ void DrawFloorGrid(const Floor& floor_in, const Vector3d& centre, const FloorGri
       if (m == 0) continue;
       const double a = style.alpha * m / 255;
       uint8_t* p = image->pixel(x, y);
-      p[0] = static_cast<uint8_t>(p[0] * (1 - a) + style.colour.blue * a + 0.5);
-      p[1] = static_cast<uint8_t>(p[1] * (1 - a) + style.colour.green * a + 0.5);
-      p[2] = static_cast<uint8_t>(p[2] * (1 - a) + style.colour.red * a + 0.5);
+      p[0] = NearestByte(p[0] * (1 - a) + style.colour.blue * a);
+      p[1] = NearestByte(p[1] * (1 - a) + style.colour.green * a);
+      p[2] = NearestByte(p[2] * (1 - a) + style.colour.red * a);
     }
   }
 }
@@ -131,7 +132,7 @@ void DrawShadow(const MatrixX3d& vertices, const MatrixX3i& faces, const Floor& 
     for (int x = 0; x < std::min(mask.cols, image->width - x_0); ++x) {
       const double keep = 1 - strength * mask.at<float>(y, x);
       uint8_t* p = image->pixel(x_0 + x, y_0 + y);
-      for (int c = 0; c < 3; ++c) p[c] = static_cast<uint8_t>(p[c] * keep + 0.5);
+      for (int c = 0; c < 3; ++c) p[c] = NearestByte(p[c] * keep);
     }
   }
 }

@@ -53,6 +53,7 @@ std::vector<int> FramesAt(const std::vector<double>& moments, const std::vector<
 std::vector<MatrixX3d> JointsTogether(const std::vector<PersonInOverlay>& people,
                                       const std::vector<std::vector<int>>& frames, size_t num_moments) {
   std::vector<std::vector<MatrixX3d>> joints;
+  joints.reserve(people.size());
   for (const PersonInOverlay& person : people) joints.push_back(TrackJoints(*person.body, *person.track));
   std::vector<MatrixX3d> together(num_moments);
   for (size_t t = 0; t < num_moments; ++t) {

@@ -288,8 +288,8 @@ class MeshPainter {
       }
       for (int s = 0; s < n_ * n_; ++s) {
         if (samples.face[s] < 0) continue;
-        AddPoint(x - begin, samples.face[s], x * n_ + s % n_, y * n_ + s / n_, samples.on_contour[s], share, normals,
-                 &points);
+        const int sample_x = x * n_ + s % n_, sample_y = y * n_ + s / n_;
+        AddPoint(x - begin, samples.face[s], sample_x, sample_y, samples.on_contour[s], share, normals, &points);
       }
     }
     shade_internal::ShadePixels({points.nx.data(), points.ny.data(), points.nz.data(), points.blue.data(),

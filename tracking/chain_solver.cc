@@ -66,7 +66,6 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
   ChainProblem& chain = *chain_problem;
   ChainPoint& x = *point;
   ChainPoint candidate;
-  double other_seconds = 0;
   if (thinned) chain.LimitDense(options.chain.early_dense);
   bool reusing = options.chain.reuse_linearisation > 0;
   chain.ReuseLinearisation(options.chain.reuse_linearisation);
@@ -145,7 +144,7 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
     }
     fresh = false;
     ++report.iterations;
-    other_seconds += watch.Lap();
+    watch.Lap();  // what follows is timed by itself
     const VectorXd damping = Damping(chain.diagonal(), scale, radius.value());
     const VectorXd shared_damping = Damping(chain.shared().diagonal(), shared_scale, radius.value());
     Eigen::MatrixXd shared = chain.shared();
@@ -173,7 +172,7 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
     invalid_steps = 0;
     frozen.Tried(chain.gradient(), damping, step, chain.frame_size());
     chain.Plus(x, step, shared_step, &candidate);
-    other_seconds += watch.Lap();
+    watch.Lap();  // what follows is timed by itself
     // Most steps are accepted, and the derivatives at the new point cost little once its cost is known: both at once,
     // unless the last step was rejected or this one is predicted to be the last.
     const bool both = !rejected && predicted_decrease > options.function_tolerance * cost;
@@ -218,7 +217,7 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
     }
     std::swap(x, candidate);
     if (!both) {
-      other_seconds += watch.Lap();
+      watch.Lap();  // what follows is timed by itself
       chain.Linearise(x);
       count();
       report.seconds_evaluation += watch.Lap();

@@ -55,11 +55,13 @@ struct TileGrid {
   alignas(64) float left[kNumBlocks], top[kNumBlocks];
   HWY_INLINE TileGrid(int tile_x, int tile_y) {
     for (int i = 0; i < kBlocksAcross * kBlockPixels; ++i) {
-      y[i / kBlockPixels][i % kBlockPixels] = static_cast<float>(tile_y + i / kBlockSize);
+      const int row = tile_y + i / kBlockSize;
+      y[i / kBlockPixels][i % kBlockPixels] = static_cast<float>(row);
     }
     for (int b = 0; b < kNumBlocks; ++b) {
-      left[b] = static_cast<float>(tile_x + b % kBlocksAcross * kBlockSize);
-      top[b] = static_cast<float>(tile_y + b / kBlocksAcross * kBlockSize);
+      const int x = tile_x + b % kBlocksAcross * kBlockSize, row = tile_y + b / kBlocksAcross * kBlockSize;
+      left[b] = static_cast<float>(x);
+      top[b] = static_cast<float>(row);
     }
   }
 };

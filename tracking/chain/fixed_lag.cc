@@ -82,7 +82,7 @@ SolveReport FixedLag::Solve(int max_iterations, double reuse_share, double funct
   options.chain.reuse_linearisation = reuse_share;
   options.chain.reuse_to_the_end = true;
   ChainPoint x{std::move(problem_.states), problem_.betas, problem_.log_focal};
-  const SolveReport report = DescendChain(&chain_, &factor_, &x, options, false);
+  SolveReport report = DescendChain(&chain_, &factor_, &x, options, false);
   problem_.states = std::move(x.states);
   problem_.betas = x.betas;
   problem_.log_focal = x.log_focal;

@@ -41,6 +41,7 @@ std::vector<Phase> PhasesOf(const std::vector<double>& timestamps, int begin, in
   }
   const int stride = std::clamp(static_cast<int>(std::lround(fps / kLifterRate)), 1, count);
   std::vector<Phase> phases;
+  phases.reserve(static_cast<size_t>(stride));
   for (int p = 0; p < (all ? stride : 1); ++p)
     phases.push_back({begin + p, stride, (count - p + stride - 1) / stride, 1});
   return phases;

@@ -100,7 +100,8 @@ std::vector<TorsoState> TorsoStates(const Rays& rays, double depth, const Length
   std::vector<TorsoState> states;
   for (int y = 0; y < kNumYaw; ++y) {
     for (int p = 0; p < kNumTilt; ++p) {
-      const double yaw = 2 * kPi * y / kNumYaw, tilt = (p - kNumTilt / 2) * kTiltStep;
+      const int steps = p - kNumTilt / 2;
+      const double yaw = 2 * kPi * y / kNumYaw, tilt = steps * kTiltStep;
       TorsoState state;
       double roll;
       state.cost = Saturated(FitRoll(rays, TorsoRotation(yaw, tilt, 0), depth, lengths, &roll), 30);

@@ -56,7 +56,8 @@ class LiveTracker::Impl {
   /// The newest frame continues the shot.
   void Track(LiveRecord* newest);
   /// The records' frames, in order, which are not handed out yet.
-  std::vector<LiveFrame> HandOut(std::deque<LiveRecord>::iterator begin, std::deque<LiveRecord>::iterator end);
+  std::vector<LiveFrame> HandOut(const std::deque<LiveRecord>::iterator& begin,
+                                 const std::deque<LiveRecord>::iterator& end);
 
   const LiveSetup setup_;
   int64_t pushed_ = 0;
@@ -110,8 +111,8 @@ void LiveTracker::Impl::Track(LiveRecord* newest) {
   window.Solve(setup_.options.iterations);
 }
 
-std::vector<LiveFrame> LiveTracker::Impl::HandOut(std::deque<LiveRecord>::iterator begin,
-                                                  std::deque<LiveRecord>::iterator end) {
+std::vector<LiveFrame> LiveTracker::Impl::HandOut(const std::deque<LiveRecord>::iterator& begin,
+                                                  const std::deque<LiveRecord>::iterator& end) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   const int num_joints = setup_.input.body->num_joints();
   LiveWindow& window = clip_->window;

@@ -160,6 +160,7 @@ GaussianBody LooseGaussians(const BodyModel& model, const Eigen::VectorXd& betas
     drawn.resize(options.count);
     std::sort(drawn.begin(), drawn.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
     std::vector<LoosePlace> kept;
+    kept.reserve(drawn.size());
     for (const auto& [hash, i] : drawn) kept.push_back(places[i]);
     places = std::move(kept);
   }

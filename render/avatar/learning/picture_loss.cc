@@ -73,7 +73,7 @@ double PictureLoss::Compute(const FloatColumns& picture, const PictureTruth& tru
                  "picture loss: a picture of ", picture.rows(), " pixels and ", picture.columns(),
                  " planes, a truth of ", truth.width, "x", truth.height);
   width_ = truth.width, height_ = truth.height;
-  pitch_ = static_cast<size_t>((width_ + kSsimLanes - 1) / kSsimLanes * kSsimLanes);
+  pitch_ = (static_cast<size_t>(width_) + kSsimLanes - 1) / kSsimLanes * kSsimLanes;
   half_ = SsimWindow();
   moments_.Resize(12, static_cast<int>(pitch_) * height_);
   by_moments_.Resize(9, static_cast<int>(pitch_) * height_);
