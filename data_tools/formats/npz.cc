@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/data_tools/formats/npz.h"
 
+#include <array>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -62,11 +63,12 @@ NdArray ReadNpyBytes(const std::string& bytes, const std::string& where) {
 NdArray ReadNpy(const std::string& path) { return ReadNpyBytes(ReadFileBytes(path), path); }
 
 std::string NpzBytes(const NpzArrays& arrays) {
-  std::vector<ZipMember> members;
+  ZipBuilder zip;
   for (const auto& [name, array] : arrays) {
-    members.push_back({name + ".npy", NpyBytes(array)});
+    const std::string header = NpyHeaderText(array);
+    zip.Add(name + ".npy", std::array<std::string_view, 2>{header, array.bytes});
   }
-  return MakeZip(members);
+  return std::move(zip).Finish();
 }
 
 void WriteNpz(const std::string& path, const NpzArrays& arrays) { WriteFileAtomically(path, NpzBytes(arrays)); }

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <memory>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -192,19 +194,38 @@ std::string Unpack(const ArchiveBytes& in, const DirectoryEntry& entry, std::str
   return bytes;
 }
 
-std::string Deflate(const std::string& bytes, int level, ZipPacking packing) {
+size_t SizeOf(std::span<const std::string_view> pieces) {
+  size_t size = 0;
+  for (const std::string_view piece : pieces) size += piece.size();
+  return size;
+}
+
+/// The pieces, one after the other, packed; nothing when that is no smaller. Grows with what comes out: pieces may be most
+/// of the memory there is.
+std::optional<std::string> Deflate(std::span<const std::string_view> pieces, int level, ZipPacking packing) {
   const int strategy = packing == ZipPacking::kRuns ? Z_RLE : Z_DEFAULT_STRATEGY;
   z_stream stream{};
   if (deflateInit2(&stream, level, Z_DEFLATED, -MAX_WBITS, 9, strategy) != Z_OK) throw std::bad_alloc();
-  std::string packed(deflateBound(&stream, bytes.size()), '\0');
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
-  stream.avail_in = static_cast<uInt>(bytes.size());
-  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
-  stream.avail_out = static_cast<uInt>(packed.size());
-  const int result = deflate(&stream, Z_FINISH);
-  packed.resize(packed.size() - stream.avail_out);
-  deflateEnd(&stream);
-  return result == Z_STREAM_END ? packed : bytes;
+  const std::unique_ptr<z_stream, int (*)(z_stream*)> end(&stream, deflateEnd);
+  std::vector<char> room(size_t{1} << 18);
+  std::string packed;
+  const size_t size = SizeOf(pieces);
+  const auto deflate_piece = [&](std::string_view piece, int flush) {
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(piece.data()));
+    stream.avail_in = static_cast<uInt>(piece.size());
+    do {
+      stream.next_out = reinterpret_cast<Bytef*>(room.data());
+      stream.avail_out = static_cast<uInt>(room.size());
+      deflate(&stream, flush);
+      packed.append(room.data(), room.size() - stream.avail_out);
+    } while (stream.avail_out == 0 && packed.size() < size);
+    return packed.size() < size;
+  };
+  for (const std::string_view piece : pieces) {
+    if (!deflate_piece(piece, Z_NO_FLUSH)) return std::nullopt;
+  }
+  if (!deflate_piece({}, Z_FINISH)) return std::nullopt;
+  return packed;
 }
 
 void Put(uint64_t value, int length, std::string* out) {
@@ -259,44 +280,59 @@ std::vector<ZipMember> ReadZip(std::string_view archive, const std::string& wher
   return members;
 }
 
-std::string MakeZip(const std::vector<ZipMember>& members, int level, ZipPacking packing) {
-  std::string archive, directory;
-  for (const ZipMember& member : members) {
-    BODYLOOM_CHECK(member.bytes.size() < kIn64 && member.name.size() <= std::numeric_limits<uint16_t>::max(),
-                   "zip member '", member.name, "' of ", member.bytes.size(), " bytes, expected less than 4 GiB");
-    const std::string packed = Deflate(member.bytes, level, packing);
-    const bool deflated = packed.size() < member.bytes.size();
-    const std::string& body = deflated ? packed : member.bytes;
-    DirectoryEntry entry;
-    entry.name = member.name;
-    entry.method = deflated ? kDeflated : kStored;
-    entry.crc = crc32_z(0, reinterpret_cast<const Bytef*>(member.bytes.data()), member.bytes.size());
-    entry.packed_size = body.size();
-    entry.size = member.bytes.size();
-    entry.header = archive.size();
-    Put(kLocalHeader, 4, &archive);
-    PutCommon(entry, &archive);
-    archive += entry.name;
-    archive += body;
-    Put(kDirectoryEntry, 4, &directory);
-    Put(20, 2, &directory);
-    PutCommon(entry, &directory);
-    Put(0, 10, &directory);  // comment length, disk, attributes
-    Put(entry.header, 4, &directory);
-    directory += entry.name;
+void ZipBuilder::Add(const std::string& name, std::span<const std::string_view> pieces, int level, ZipPacking packing) {
+  const size_t size = SizeOf(pieces);
+  BODYLOOM_CHECK(size < kIn64 && name.size() <= std::numeric_limits<uint16_t>::max(), "zip member '", name, "' of ",
+                 size, " bytes, expected less than 4 GiB");
+  const std::optional<std::string> packed = Deflate(pieces, level, packing);
+  DirectoryEntry entry;
+  entry.name = name;
+  entry.method = packed ? kDeflated : kStored;
+  for (const std::string_view piece : pieces) {
+    entry.crc = static_cast<uint32_t>(crc32_z(entry.crc, reinterpret_cast<const Bytef*>(piece.data()), piece.size()));
   }
-  BODYLOOM_CHECK(archive.size() + directory.size() < kIn64 && members.size() < 0xFFFF, "zip archive of ",
-                 archive.size(), " bytes and ", members.size(), " members, expected less than 4 GiB and 65535");
-  const size_t directory_offset = archive.size();
-  archive += directory;
-  Put(kEndOfDirectory, 4, &archive);
-  Put(0, 4, &archive);
-  Put(members.size(), 2, &archive);
-  Put(members.size(), 2, &archive);
-  Put(directory.size(), 4, &archive);
-  Put(directory_offset, 4, &archive);
-  Put(0, 2, &archive);
-  return archive;
+  entry.packed_size = packed ? packed->size() : size;
+  entry.size = size;
+  entry.header = archive_.size();
+  Put(kLocalHeader, 4, &archive_);
+  PutCommon(entry, &archive_);
+  archive_ += entry.name;
+  if (packed) {
+    archive_ += *packed;
+  } else {
+    for (const std::string_view piece : pieces) archive_ += piece;
+  }
+  Put(kDirectoryEntry, 4, &directory_);
+  Put(20, 2, &directory_);
+  PutCommon(entry, &directory_);
+  Put(0, 10, &directory_);  // comment length, disk, attributes
+  Put(entry.header, 4, &directory_);
+  directory_ += entry.name;
+  ++num_members_;
+}
+
+std::string ZipBuilder::Finish() && {
+  BODYLOOM_CHECK(archive_.size() + directory_.size() < kIn64 && num_members_ < 0xFFFF, "zip archive of ",
+                 archive_.size(), " bytes and ", num_members_, " members, expected less than 4 GiB and 65535");
+  const size_t directory_offset = archive_.size();
+  archive_ += directory_;
+  Put(kEndOfDirectory, 4, &archive_);
+  Put(0, 4, &archive_);
+  Put(num_members_, 2, &archive_);
+  Put(num_members_, 2, &archive_);
+  Put(directory_.size(), 4, &archive_);
+  Put(directory_offset, 4, &archive_);
+  Put(0, 2, &archive_);
+  return std::move(archive_);
+}
+
+std::string MakeZip(const std::vector<ZipMember>& members, int level, ZipPacking packing) {
+  ZipBuilder zip;
+  for (const ZipMember& member : members) {
+    const std::string_view bytes = member.bytes;
+    zip.Add(member.name, {&bytes, 1}, level, packing);
+  }
+  return std::move(zip).Finish();
 }
 
 }  // namespace bodyloom

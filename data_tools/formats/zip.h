@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,9 +29,23 @@ std::vector<ZipMember> ReadZip(std::string_view archive, const std::string& wher
 /// How members are deflated: by whatever repeats, or by runs of one byte alone, which is fast.
 enum class ZipPacking { kGeneral, kRuns };
 
-/// The archive of the members in the given order: fixed dates, deflated where that is smaller, so that equal members
-/// give equal bytes. level 1..9 as in zlib; kRuns takes no notice of it. Throws std::invalid_argument for archives beyond
-/// 4 GiB.
+/// An archive member by member, with fixed dates, deflated where that is smaller, so that equal members give equal bytes.
+/// What is packed is not copied first: beside the pieces an archive takes its own size.
+class ZipBuilder {
+ public:
+  /// The member whose bytes are the pieces one after the other. level 1..9 as in zlib; kRuns takes no notice of it.
+  /// Throws std::invalid_argument from 4 GiB on.
+  void Add(const std::string& name, std::span<const std::string_view> pieces, int level = 6,
+           ZipPacking packing = ZipPacking::kGeneral);
+  /// Throws std::invalid_argument for archives of 4 GiB and more, or 65535 members.
+  [[nodiscard]] std::string Finish() &&;
+
+ private:
+  std::string archive_, directory_;
+  size_t num_members_ = 0;
+};
+
+/// The archive of the members in the given order, by ZipBuilder.
 std::string MakeZip(const std::vector<ZipMember>& members, int level = 6, ZipPacking packing = ZipPacking::kGeneral);
 
 }  // namespace bodyloom

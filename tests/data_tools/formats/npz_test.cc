@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -225,6 +226,27 @@ TEST(Npz, DetectsEveryFlippedDataByte) {
     std::string damaged = whole;
     damaged[i] = static_cast<char>(damaged[i] ^ 0x01);
     FileErrorOf("a.npz", [&] { ReadNpzBytes(damaged, "a.npz"); });
+  }
+}
+
+TEST(Zip, PiecesMakeTheMemberThatTheirSumMakes) {
+  std::string noise(700000, '\0'), text;
+  uint32_t state = 1;
+  for (char& c : noise) c = static_cast<char>((state = state * 1664525 + 1013904223) >> 24);
+  for (int64_t i = 0; i < 90000; ++i) text += std::to_string(i * i) + " ";
+  for (const std::string& whole : {noise, text, std::string()}) {
+    const std::string_view all = whole;
+    const size_t cut = all.size() / 3;
+    const std::array<std::string_view, 4> pieces = {all.substr(0, cut), "", all.substr(cut, 1),
+                                                    all.substr(std::min(cut + 1, all.size()))};
+    for (const ZipPacking packing : {ZipPacking::kGeneral, ZipPacking::kRuns}) {
+      ZipBuilder zip;
+      zip.Add("member", pieces, 6, packing);
+      const std::string archive = std::move(zip).Finish();
+      EXPECT_EQ(archive, MakeZip({{"member", whole}}, 6, packing));
+      EXPECT_EQ(ReadZip(archive, "here", 1 << 24).at(0).bytes, whole);
+      EXPECT_EQ(archive.size() > whole.size(), whole != text);
+    }
   }
 }
 
