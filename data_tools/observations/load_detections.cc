@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/formats/inflate.h"
 #include "bodyloom/data_tools/formats/json_reader.h"
 #include "bodyloom/data_tools/formats/npz.h"
 #include "bodyloom/data_tools/formats/pickle.h"
@@ -71,7 +72,8 @@ bool StartsLikeJson(const std::string& bytes) {
 }
 
 bool StartsLikePickle(const std::string& bytes) {
-  return bytes.size() > 2 && ((bytes[0] == '\x80' && bytes[1] >= 2 && bytes[1] <= 5) || bytes.compare(0, 2, "(d") == 0);
+  return LooksLikeZlib(bytes) || (bytes.size() > 2 && ((bytes[0] == '\x80' && bytes[1] >= 2 && bytes[1] <= 5) ||
+                                                       bytes.compare(0, 2, "(d") == 0));
 }
 
 struct Bounds {
