@@ -28,7 +28,7 @@ struct PersonEstimate {
   std::vector<int> frames;      ///< N, of the video, from 0, increasing; the others are missing
   RowMatrixXd poses;            ///< N×72 axis-angle of SMPL's 24 joints; the hands are 0 where the system has none
   MatrixX3d trans;              ///< N×3, metres, of the body model in its frame's camera; weak perspective: 0
-  std::vector<Camera> cameras;  ///< N: pinhole or weak perspective
+  std::vector<Camera> cameras;  ///< N: pinhole or weak perspective; of images of 0x0 where a file does not say
   /// N of 21×3, in place of poses (which then has no columns), where a system gives points of another body: COCO's 17,
   /// left and right big toe, left and right heel, metres from the middle of the hips, axes of the frame's camera. `trans`
   /// is the middle of the hips.

@@ -4,6 +4,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <regex>
@@ -51,6 +52,9 @@ Camera CameraOf(const RowMatrixXd& points, const RowMatrixXd& pixels, const std:
   camera.fx = camera.fy = solution[0];
   camera.cx = solution[1];
   camera.cy = solution[2];
+  // The principal point is the middle of the image.
+  camera.width = static_cast<int>(std::lround(std::clamp(2 * camera.cx, 0.0, 1e6)));
+  camera.height = static_cast<int>(std::lround(std::clamp(2 * camera.cy, 0.0, 1e6)));
   return camera;
 }
 

@@ -2,6 +2,7 @@
 #include "bodyloom/pipelines/track/initial_poses.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "bodyloom/data_tools/estimates/body_estimate.h"
@@ -30,6 +31,17 @@ const PersonEstimate& ChoosePerson(const BodyEstimate& estimate, const InitialPo
                                      " were found (0 is the largest)"));
   }
   return estimate.people[static_cast<size_t>(request.person)];
+}
+
+/// A pixel of another image is another line of sight; sizes that follow from principal points are not exact.
+void CheckImageSize(const PersonEstimate& person, const InitialPosesRequest& request) {
+  constexpr double kMostOff = 0.02;
+  const Camera &theirs = person.cameras.front(), &ours = request.camera;
+  const auto differ = [](int a, int b) { return a > 0 && b > 0 && std::abs(a - b) > kMostOff * b; };
+  if (differ(theirs.width, ours.width) || differ(theirs.height, ours.height)) {
+    Refuse(request.path, Concatenate("made on images of ", theirs.width, "x", theirs.height, ", expected ", ours.width,
+                                     "x", ours.height));
+  }
 }
 
 void CheckFrames(const BodyEstimate& estimate, const PersonEstimate& person, const InitialPosesRequest& request) {
@@ -66,6 +78,7 @@ void TakeMotion(const BodyEstimate& estimate, const PersonEstimate& person, cons
 InitialPoses ReadInitialPoses(const InitialPosesRequest& request) {
   const BodyEstimate estimate =
       LoadEstimate(request.path, {.image_width = request.camera.width, .image_height = request.camera.height});
+  CheckImageSize(estimate.people[0], request);
   const PersonEstimate& person = ChoosePerson(estimate, request);
   CheckFrames(estimate, person, request);
   InitialPoses poses;

@@ -34,7 +34,7 @@ struct InitialPosesRequest {
 };
 
 /// With several people in the file, the one whose pelvis is where `keypoints` have the hips. Throws std::runtime_error
-/// naming the file: nobody is there, frames beyond the clip's, another number of frames (of systems that do not number
+/// naming the file: nobody is there, images of another size, frames beyond the clip's, another number of frames (of systems that do not number
 /// them).
 InitialPoses ReadInitialPoses(const InitialPosesRequest& request);
 

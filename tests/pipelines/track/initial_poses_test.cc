@@ -154,6 +154,9 @@ TEST_F(InitialPosesTest, SaysWhatDoesNotFit) {
   EXPECT_THAT(ErrorOf(Write("short.pt", GvhmrFile(TruePerson("smplx", {0, 1, 2}, own_)))),
               HasSubstr("3 frames, expected the 8 of the detections"));
 
+  const Camera larger = CentredCamera(2 * own_.width, 2 * own_.height, 2 * own_.fx);
+  EXPECT_THAT(ErrorOf(Write("larger.pt", GvhmrFile(TruePerson("smplx", {0, 1, 2, 3, 4, 5, 6, 7}, larger)))),
+              HasSubstr("made on images of 1920x1440, expected 960x720"));
   EXPECT_THAT(ErrorOf(Write("text.npz", "text")), HasSubstr("unknown kind of file; expected a track .npz"));
 }
 
