@@ -134,10 +134,10 @@ void AddSolveOptions(CLI::App& app, TrackRequest* request) {
 
 void AddTrackOptions(CLI::App& app, TrackRequest* request, bool* quiet) {
   TrackRequest& c = *request;
-  app.add_option(
-         "--detections", c.detections,
-         "2D joints of a detector: a folder of OpenPose JSON files, a COCO, AlphaPose or MediaPipe JSON, an AIST++ "
-         "keypoints2d pickle, or this project's .npz")
+  app.add_option("--detections", c.detections,
+                 "2D joints of a detector: a folder of OpenPose or MMPose JSON files, a COCO, AlphaPose, MMPose or "
+                 "MediaPipe JSON, "
+                 "an AIST++ keypoints2d pickle, FreeMoCap's 2D .npy, or this project's .npz")
       ->group(kSeen)
       ->type_name("FILE");
   app.add_option("--dense", c.dense,
@@ -189,7 +189,10 @@ void AddTrackOptions(CLI::App& app, TrackRequest* request, bool* quiet) {
   app.add_option("--video-offset", c.video_offset, "video frame that belongs to the detections' frame number 0")
       ->group(kKnown)
       ->capture_default_str();
-  app.add_option("--init", c.init, "poses of another system to start from and stay near, same frames")
+  app.add_option(
+         "--init", c.init,
+         "poses of another system to start from and stay near: wham_output.pkl, GVHMR's hmr4d_results.pt, PHALP's "
+         "or 4D-Humans' .pkl, vibe_output.pkl, SAM 3D Body's .npz (or a folder of them), or a track .npz")
       ->group(kKnown)
       ->type_name("FILE");
   AddLearnedOptions(app, request);

@@ -119,10 +119,11 @@ bool ClipFit::FindStart() {
   problem_.betas = initial.betas;
   problem_.shape_prior.mean = initial.betas;
   clock_.Book("initialise");
-  // What the lifter predicted stays as a term.
   if (!lifted_.frames.empty()) {
     lifted_landmarks_ = CompileLiftedLandmarks(*input_.body, problem_.layout.num_betas);
   }
+  if (input_.initialiser != nullptr) return true;
+  // What the lifter predicted stays as a term.
   for (const LiftedFrame& frame : lifted_.frames) {
     lifted_poses_.push_back(MakeLiftedPose(frame, lifted_landmarks_, lifted_.metres, options_.lifter_min_sigma_m));
   }
@@ -151,8 +152,10 @@ void ClipFit::Observe() {
     }
     frame.upright.weight = options_.upright_weight;
     frame.straight_knees = {knees, options_.straight_knees_weight};
-    frame.initialiser.rotations = problem_.states[t].rotations;
-    frame.initialiser.translation = problem_.states[t].translation;
+    if (input_.initialiser == nullptr || input_.initialiser->HasPose(static_cast<int>(t))) {
+      frame.initialiser.rotations = problem_.states[t].rotations;
+      frame.initialiser.translation = problem_.states[t].translation;
+    }
     summary_.num_observations += static_cast<int>(frame.landmarks.seen.size() + frame.dense.size());
   }
   AddOwnTerms(options_.own_terms, &problem_);
@@ -172,9 +175,8 @@ void ClipFit::Observe() {
 
 void ClipFit::FitCoarseFrames() {
   const bool from_guess = input_.initialiser == nullptr;
-  if (!from_guess && coarse_frames_.size() == num_frames() && !dense_rounds_->any() && !part_label_rounds_->any()) {
-    return;
-  }
+  const bool learns = !lifted_.frames.empty() || dense_rounds_->any() || part_label_rounds_->any();
+  if (!from_guess && coarse_frames_.size() == num_frames() && !learns) return;
   SequenceProblem coarse = SelectFrames(problem_, coarse_frames_);
   if (from_guess) FitNearStart(&coarse);
   if (has_points()) runner_->Run(stages_.coarse, &coarse);

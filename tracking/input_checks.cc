@@ -66,11 +66,21 @@ void CheckStature(const TrackSequenceInput& input) {
 }
 
 void CheckInitialiser(const Motion& start) {
+  BODYLOOM_CHECK(start.trans.rows() == start.poses.rows(), "track: the initialiser has ", start.poses.rows(),
+                 " poses and ", start.trans.rows(), " places");
+  double distance = 0;
+  int known = 0;
   for (int t = 0; t < start.num_frames(); ++t) {
-    BODYLOOM_CHECK(start.HasPose(t), "track: frame ", t, " of the initialiser holds a number that is not finite");
+    const bool missing = start.poses.row(t).array().isNaN().all() && start.trans.row(t).array().isNaN().all();
+    BODYLOOM_CHECK(missing || start.HasPose(t), "track: frame ", t,
+                   " of the initialiser holds a number that is not finite");
+    if (missing) continue;
+    distance += start.trans.row(t).norm();
+    ++known;
   }
+  BODYLOOM_CHECK(known > 0 || start.num_frames() == 0, "track: the initialiser has no pose in any frame");
   BODYLOOM_CHECK(start.betas.allFinite(), "track: the initialiser's betas hold a number that is not finite");
-  const double distance = start.num_frames() > 0 ? start.trans.rowwise().norm().mean() : 0;
+  distance /= std::max(known, 1);
   BODYLOOM_CHECK(distance <= kMaxDistance_m, "track: the initialiser's person is ", distance,
                  " from the camera, expected metres, at most ", kMaxDistance_m);
 }

@@ -29,7 +29,8 @@ void CheckInput(const TrackSequenceInput& input, const TrackSequenceOptions& opt
 /// - a known camera: an intrinsic that is not finite, a focal length that is not positive;
 /// - the body: less than 0.3 m or more than 10 m from end to end (millimetres, centimetres, feet);
 /// - a stature that is given: less than 0.4 or more than 1.6 times the mean body's;
-/// - the initialiser: values that are not finite, or a person on average more than 1 km from the camera.
+/// - the initialiser: frames with some values that are not finite (a frame of NaN alone is one that it lacks), none with
+///   a pose, or a person on average more than 1 km from the camera.
 void CheckNumbers(const TrackSequenceInput& input, const TrackSequenceOptions& options);
 
 /// Makes missing (confidence 0) every 2D landmark whose confidence is not positive, whose coordinates are not finite,

@@ -24,7 +24,7 @@ struct TrackSequenceInput {
   /// Part labels or a mask of each frame. They refine a start and do not find one: without 2D joints and dense
   /// keypoints an initialiser is required, and weak perspective is not available.
   const PartLabelSequence* part_labels = nullptr;
-  const Motion* initialiser = nullptr;    ///< camera-frame poses of another system, same frames (L_d of paper A)
+  const Motion* initialiser = nullptr;    ///< camera-frame poses of another system; NaN: none (L_d of paper A)
   const PosePrior* prior = nullptr;       ///< learned pose prior; without it only joint limits apply
   const LifterWeights* lifter = nullptr;  ///< starts from 2D joints and stays as L_d; without it: joint hypotheses
   /// 3D landmarks of every frame that take the place of what `lifter` would predict from the 2D joints (initialise/

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/formats/inflate.h"
 #include "bodyloom/data_tools/formats/pickle_machine.h"
 #include "bodyloom/geometry/base/check.h"
 
@@ -126,6 +127,9 @@ PickleNodePtr PickleContext::New(PickleValue::Kind kind) {
 
 PicklePtr ReadPickle(const std::string& bytes, const std::string& where, const PickleLimits& limits) {
   size_t offset = 0;
+  if (LooksLikeGzip(bytes) || LooksLikeZlib(bytes)) {
+    return ReadPickleAt(PickleDialect::kPlain, Inflate(bytes, where, limits.max_bytes), &offset, where, limits);
+  }
   return ReadPickleAt(PickleDialect::kPlain, bytes, &offset, where, limits);
 }
 

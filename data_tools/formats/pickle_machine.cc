@@ -377,7 +377,7 @@ class PickleMachine {
   }
   [[nodiscard]] const char* Advice(std::string_view module) const {
     if (context_.dialect() == PickleDialect::kTorch) return " (save the model's state_dict() alone)";
-    return module.substr(0, 6) == "joblib" ? " (save joblib files again with pickle.dump)" : "";
+    return module.substr(0, 6) == "joblib" ? " (files of joblib before 0.10 are not read; save it again)" : "";
   }
   /// torch.save points to its storages so; the id is a tuple.
   void PushPersistentId() {
@@ -436,7 +436,9 @@ class PickleMachine {
         return PushPersistentId(), true;
       case 'b': {
         const PickleNodePtr state = Pop();
-        return SetPickleState(&context_, &Top(), state), true;
+        SetPickleState(&context_, &Top(), state);
+        if (Top().global == PickleGlobal::kJoblibArray) at_ += TakeJoblibArray(&context_, &Top(), in_.substr(at_));
+        return true;
       }
       default:
         return false;
@@ -444,13 +446,10 @@ class PickleMachine {
   }
 
   [[noreturn]] void Refuse(unsigned char opcode) const {
-    const char* meaning =
-        opcode == 'P' || opcode == 'Q'           ? " (a persistent id)"
-        : opcode >= 0x82 && opcode <= 0x84       ? " (an extension code)"
-        : opcode == 0x97 || opcode == 0x98       ? " (a buffer outside the file)"
-        : context_.offset == 0 && opcode == 0x78 ? " (the file looks zlib-compressed; unpack it first)"
-        : context_.offset == 0 && opcode == 0x1f ? " (the file looks gzip-compressed; unpack it first)"
-                                                 : "";
+    const char* meaning = opcode == 'P' || opcode == 'Q'     ? " (a persistent id)"
+                          : opcode >= 0x82 && opcode <= 0x84 ? " (an extension code)"
+                          : opcode == 0x97 || opcode == 0x98 ? " (a buffer outside the file)"
+                                                             : "";
     context_.Fail(Concatenate("opcode ", static_cast<int>(opcode), meaning, ", expected plain data of a pickle"));
   }
 

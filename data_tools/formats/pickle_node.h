@@ -24,6 +24,9 @@ enum class PickleGlobal {
   kChumpyArray,    ///< chumpy.ch.Ch: its array x
   kChumpySelect,   ///< chumpy.reordering.Select: a.ravel()[idxs].reshape(preferred_shape)
   kOrderedDict,
+  kDefaultDict,
+  kDict,
+  kJoblibArray,    ///< joblib's NumpyArrayWrapper: an array whose bytes follow its state
   kEncode,         ///< _codecs.encode: how protocols 0–2 of Python 3 write bytes
   kReconstructor,  ///< copy_reg._reconstructor
   kObject,
@@ -80,5 +83,9 @@ PickleNodePtr CallPickleGlobal(PickleContext* context, const PickleNode& callabl
 
 /// Gives `object` its state (opcode BUILD). Sparse matrices and chumpy objects become plain arrays here.
 void SetPickleState(PickleContext* context, PickleNode* object, const PicklePtr& state);
+
+/// joblib's NumpyArrayWrapper, with its state, becomes the array whose bytes lie behind it: `rest` begins there. Returns
+/// how many bytes are the array's: one for the length of the padding (joblib from 1.2), the padding, the elements.
+size_t TakeJoblibArray(PickleContext* context, PickleNode* wrapper, std::string_view rest);
 
 }  // namespace bodyloom

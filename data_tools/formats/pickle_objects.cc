@@ -39,6 +39,10 @@ constexpr NamedGlobal kGlobals[] = {
     {"chumpy.ch.Ch", PickleGlobal::kChumpyArray},
     {"chumpy.reordering.Select", PickleGlobal::kChumpySelect},
     {"collections.OrderedDict", PickleGlobal::kOrderedDict},
+    {"collections.defaultdict", PickleGlobal::kDefaultDict},
+    {"__builtin__.dict", PickleGlobal::kDict},
+    {"builtins.dict", PickleGlobal::kDict},
+    {"joblib.numpy_pickle.NumpyArrayWrapper", PickleGlobal::kJoblibArray},
     {"_codecs.encode", PickleGlobal::kEncode},
     {"copy_reg._reconstructor", PickleGlobal::kReconstructor},
     {"copyreg._reconstructor", PickleGlobal::kReconstructor},
@@ -361,6 +365,11 @@ PickleNodePtr CallPickleGlobal(PickleContext* context, const PickleNode& callabl
       return NewDtype(context, args);
     case PickleGlobal::kOrderedDict:
       return NewOrderedDict(context, args);
+    case PickleGlobal::kDefaultDict:  // its argument is what makes the defaults
+      return context->New(Kind::kDict);
+    case PickleGlobal::kDict:
+      if (!args.items.empty()) context->Fail("dict called with arguments, expected none");
+      return context->New(Kind::kDict);
     case PickleGlobal::kEncode:
       return EncodeLatin1(context, args);
     case PickleGlobal::kBytes:
@@ -384,6 +393,7 @@ PickleNodePtr CallPickleGlobal(PickleContext* context, const PickleNode& callabl
     case PickleGlobal::kSparseRows:
     case PickleGlobal::kChumpyArray:
     case PickleGlobal::kChumpySelect:
+    case PickleGlobal::kJoblibArray:
     case PickleGlobal::kObject:
       return NewInstance(context, callable);
     case PickleGlobal::kTorchStorage:
@@ -432,6 +442,37 @@ void SetPickleState(PickleContext* context, PickleNode* object, const PicklePtr&
   }
   object->kind = Kind::kArray;
   object->text.clear();
+}
+
+size_t TakeJoblibArray(PickleContext* context, PickleNode* wrapper, std::string_view rest) {
+  const auto attribute = [&](const char* key) -> const PickleNode& {
+    const PickleValue* value = wrapper->Find(key);
+    if (value == nullptr) context->Fail(Concatenate("joblib array: no '", key, "'"));
+    return static_cast<const PickleNode&>(*value);
+  };
+  if (attribute("subclass").global != PickleGlobal::kNdarray) context->Fail("joblib array: expected a numpy.ndarray");
+  const std::vector<int64_t> shape = ShapeOf(*context, attribute("shape"));
+  const std::string descr = DescrOf(*context, attribute("dtype"));
+  const bool fortran_order = attribute("order").Text() == "F";
+  size_t padding = 0;
+  const PickleValue* alignment = wrapper->Find("numpy_array_alignment_bytes");
+  if (alignment != nullptr && alignment->kind != Kind::kNone) {
+    padding = rest.empty() ? 1 : 1 + static_cast<unsigned char>(rest[0]);
+    if (padding > rest.size()) context->Fail("joblib array: the file is cut off in its padding");
+  }
+  const std::optional<ElementType> type = ParseElementType(descr);
+  const std::optional<size_t> bytes = type ? ArrayBytes(shape, type->item_size) : std::nullopt;
+  if (type && (!bytes || *bytes > rest.size() - padding)) {
+    context->Fail(Concatenate("joblib array: its shape needs ", bytes ? std::to_string(*bytes) : "too many",
+                              " bytes, the file holds ", rest.size() - padding));
+  }
+  const size_t taken = bytes.value_or(0);
+  wrapper->array = MakeArray(context, descr, shape, fortran_order, rest.substr(padding, taken));
+  wrapper->kind = Kind::kArray;
+  wrapper->global = PickleGlobal::kNone;
+  wrapper->text.clear();
+  wrapper->dict.clear();
+  return padding + taken;
 }
 
 }  // namespace bodyloom

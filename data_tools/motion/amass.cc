@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "bodyloom/data_tools/body/mean_pelvis.h"
 #include "bodyloom/data_tools/motion/motion_tools.h"
 #include "bodyloom/data_tools/motion/skeleton_motion.h"
 #include "bodyloom/geometry/base/check.h"
@@ -15,8 +16,6 @@ namespace {
 
 constexpr int kBodyColumns = 66, kSmplColumns = 72, kSmplhColumns = 156, kSmplxColumns = 165, kHandColumns = 90;
 constexpr int kSmplxBetas = 16;
-/// Pelvis joint of SMPL-X's mean neutral shape, metres.
-const Eigen::Vector3d kSmplxPelvis(0.0031, -0.3514, 0.0120);
 
 /// One frame, or a clip with a gap, has no frame rate of its own; AMASS readers insist on a number.
 double RateForReaders(const Motion& motion) {
@@ -157,7 +156,7 @@ void WriteAmassSmplx(const std::string& path, const Motion& motion, const Eigen:
     betas.head(std::min<Eigen::Index>(kSmplxBetas, motion.betas.size())) =
         motion.betas.head(std::min<Eigen::Index>(kSmplxBetas, motion.betas.size()));
   MatrixX3d trans = z_up.trans;
-  if (!own) trans.rowwise() += (rest_pelvis - kSmplxPelvis).transpose();
+  if (!own) trans.rowwise() += (rest_pelvis - MeanPelvis("smplx")).transpose();
   NpzArrays arrays;
   const auto add = [&](const char* key, Eigen::Index first, Eigen::Index count) {
     const RowMatrixXd part = poses.middleCols(first, count);

@@ -1,57 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/data_tools/motion/text_scanner.h"
 
-#include <zlib.h>
-
 #include <charconv>
 #include <cmath>
 #include <stdexcept>
 
 #include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/formats/inflate.h"
 #include "bodyloom/data_tools/formats/printable.h"
 
 namespace bodyloom {
 namespace {
 
-constexpr size_t kInflateStep = size_t{1} << 20;
-
 bool IsSpace(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f' || c == '\v'; }
-
-std::string Inflate(const std::string& bytes, const std::string& path, size_t max_bytes) {
-  z_stream stream{};
-  if (::inflateInit2(&stream, 15 + 16) != Z_OK) throw std::runtime_error(path + ": cannot start zlib");
-  struct Closer {
-    z_stream* stream;
-    ~Closer() { ::inflateEnd(stream); }
-  } closer{&stream};
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
-  stream.avail_in = static_cast<uInt>(bytes.size());
-  std::string text;
-  int status = Z_OK;
-  while (status != Z_STREAM_END) {
-    const size_t done = text.size();
-    if (done > max_bytes) {
-      throw std::runtime_error(path + ": inflates to more than " + std::to_string(max_bytes) + " bytes");
-    }
-    text.resize(done + kInflateStep);
-    stream.next_out = reinterpret_cast<Bytef*>(text.data() + done);
-    stream.avail_out = static_cast<uInt>(kInflateStep);
-    status = ::inflate(&stream, Z_NO_FLUSH);
-    text.resize(done + kInflateStep - stream.avail_out);
-    const bool is_stuck = status == Z_BUF_ERROR || (status == Z_OK && stream.avail_in == 0 && stream.avail_out > 0);
-    if ((status != Z_OK && status != Z_STREAM_END) || is_stuck) {
-      throw std::runtime_error(path + ": byte " + std::to_string(bytes.size() - stream.avail_in) +
-                               ": the gzip stream is " + (is_stuck ? "cut off" : "damaged"));
-    }
-  }
-  return text;
-}
 
 }  // namespace
 
 std::string ReadTextFile(const std::string& path, size_t max_bytes) {
   std::string bytes = ReadFileBytes(path, max_bytes);
-  if (bytes.size() >= 2 && bytes[0] == '\x1f' && bytes[1] == '\x8b') return Inflate(bytes, path, max_bytes);
+  if (LooksLikeGzip(bytes)) return Inflate(bytes, path, max_bytes);
   return bytes;
 }
 

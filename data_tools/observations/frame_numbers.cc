@@ -35,6 +35,15 @@ int64_t FrameNumberFromName(const std::string& file_name) {
   return std::stoll(stem.substr(begin, end - begin));
 }
 
+std::vector<int64_t> NumbersOrOrder(const std::vector<std::string>& names) {
+  std::vector<int64_t> numbers;
+  for (const std::string& name : names) numbers.push_back(FrameNumberFromName(name));
+  if (std::find(numbers.begin(), numbers.end(), -1) != numbers.end()) {
+    for (size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<int64_t>(i);
+  }
+  return numbers;
+}
+
 FrameGrid MakeFrameGrid(const std::vector<int64_t>& numbers, double fps, const std::string& where) {
   BODYLOOM_CHECK(fps > 0 && fps < 1e6, "frame rate ", fps, " must be positive");
   FrameGrid grid;

@@ -12,6 +12,9 @@ namespace bodyloom {
 /// ("walk_000000000012_keypoints.json" → 12, "cam01.0037.json" → 37); −1 when there is none or it exceeds 10¹⁵.
 int64_t FrameNumberFromName(const std::string& file_name);
 
+/// The numbers of names; when one has none, their order.
+std::vector<int64_t> NumbersOrOrder(const std::vector<std::string>& names);
+
 /// Frames on a regular grid.
 struct FrameGrid {
   std::vector<int> index;          ///< frame of each input number

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/formats/inflate.h"
 #include "bodyloom/data_tools/formats/json_reader.h"
 #include "bodyloom/data_tools/formats/npz.h"
 #include "bodyloom/data_tools/formats/pickle.h"
@@ -17,6 +18,8 @@
 #include "bodyloom/data_tools/observations/aist_reader.h"
 #include "bodyloom/data_tools/observations/blazepose_reader.h"
 #include "bodyloom/data_tools/observations/coco_reader.h"
+#include "bodyloom/data_tools/observations/freemocap_reader.h"
+#include "bodyloom/data_tools/observations/mmpose_reader.h"
 #include "bodyloom/data_tools/observations/observations_npz.h"
 #include "bodyloom/data_tools/observations/openpose_reader.h"
 #include "bodyloom/data_tools/observations/people.h"
@@ -35,8 +38,9 @@ constexpr double kMostNormalised = 3;
 constexpr double kMostOutside = 0.5;
 constexpr size_t kMostDetectionBytes = size_t{2} << 30;
 constexpr const char* kExpectedDetections =
-    "expected OpenPose JSON (a folder or a file), COCO or AlphaPose JSON, BlazePose/MediaPipe JSON, an AIST++ "
-    "keypoints2d .pkl, or this project's .npz with 'keypoints'";
+    "expected OpenPose or MMPose JSON (a folder or a file), COCO or AlphaPose JSON, BlazePose/MediaPipe JSON, an "
+    "AIST++ "
+    "keypoints2d .pkl, FreeMoCap's 2D .npy, or this project's .npz with 'keypoints'";
 
 std::vector<std::string> SortedEntries(const std::string& folder, bool folders) {
   std::vector<std::string> names;
@@ -65,13 +69,28 @@ std::string FolderOfView(const std::string& folder, const std::string& view) {
                            "; the folder has " + PrintableList(names));
 }
 
+/// Whether the folder's files are MMPose's, by the first that shows somebody.
+bool HoldsMmpose(const std::string& folder) {
+  constexpr size_t kMostFirstBytes = size_t{64} << 20;
+  for (const std::string& name : SortedEntries(folder, /*folders=*/false)) {
+    JsonLimits limits;
+    limits.max_bytes = kMostFirstBytes;
+    const std::string path = (fs::path(folder) / name).string();
+    const nlohmann::json json = ReadJsonFile(path, limits);
+    if (!json.is_array()) return false;
+    if (!json.empty()) return IsMmposeJson(JsonNode(json, path));
+  }
+  return false;
+}
+
 bool StartsLikeJson(const std::string& bytes) {
   const size_t start = bytes.find_first_not_of(" \t\r\n");
   return start != std::string::npos && (bytes[start] == '[' || bytes[start] == '{');
 }
 
 bool StartsLikePickle(const std::string& bytes) {
-  return bytes.size() > 2 && ((bytes[0] == '\x80' && bytes[1] >= 2 && bytes[1] <= 5) || bytes.compare(0, 2, "(d") == 0);
+  return LooksLikeZlib(bytes) || (bytes.size() > 2 && ((bytes[0] == '\x80' && bytes[1] >= 2 && bytes[1] <= 5) ||
+                                                       bytes.compare(0, 2, "(d") == 0));
 }
 
 struct Bounds {
@@ -140,6 +159,7 @@ KeypointSequence ReadBytes(const std::string& bytes, const std::string& path, co
     if (IsOpenPoseJson(document)) {
       return SelectPerson(OpenPoseFromJson(document, fps, options.convention), options.person, path);
     }
+    if (IsMmposeJson(document)) return SelectPerson(MmposeFromJson(document, fps), options.person, path);
     if (IsCocoJson(document)) return SelectPerson(CocoFromJson(document, fps), options.person, path);
     if (IsBlazePoseJson(document)) return SelectPerson(BlazePoseFromJson(document, fps), options.person, path);
     throw std::runtime_error(path + ": JSON that holds no known detections" +
@@ -151,6 +171,9 @@ KeypointSequence ReadBytes(const std::string& bytes, const std::string& path, co
     if (HasPeople(arrays)) return SelectPerson(PeopleFromNpz(arrays, path), options.person, path);
     throw std::runtime_error(path + ": an .npz without 'keypoints'" +
                              (HasDense(arrays) ? " (it holds dense keypoints)" : "") + "; " + kExpectedDetections);
+  }
+  if (bytes.compare(0, 6, "\x93NUMPY") == 0) {
+    return FreeMocapFromArray(ReadNpyBytes(bytes, path), path, options.view, fps);
   }
   if (StartsLikePickle(bytes)) {
     const PicklePtr file = ReadPickle(bytes, path);
@@ -214,8 +237,9 @@ KeypointSequence LoadDetections(const std::string& path, const LoadDetectionsOpt
   if (!fs::is_directory(path, ignored))
     return DetectionsFromBytes(ReadFileBytes(path, kMostDetectionBytes), path, options);
   const std::string folder = FolderOfView(path, options.view);
-  const PeopleSequence people =
-      ReadOpenPoseFolder(folder, options.fps > 0 ? options.fps : kUsualFps, options.convention);
+  const double fps = options.fps > 0 ? options.fps : kUsualFps;
+  const PeopleSequence people = HoldsMmpose(folder) ? ReadMmposeFolder(folder, SortedEntries(folder, false), fps)
+                                                    : ReadOpenPoseFolder(folder, fps, options.convention);
   return Finish(SelectPerson(people, options.person, folder), path, options);
 }
 

@@ -113,16 +113,6 @@ PeopleSequence Assemble(std::vector<RawFrame> raw, const std::vector<int64_t>& n
   return people;
 }
 
-/// Frame numbers of names; when one has none, their order.
-std::vector<int64_t> NumbersOrOrder(const std::vector<std::string>& names) {
-  std::vector<int64_t> numbers;
-  for (const std::string& name : names) numbers.push_back(FrameNumberFromName(name));
-  if (std::find(numbers.begin(), numbers.end(), -1) != numbers.end()) {
-    for (size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<int64_t>(i);
-  }
-  return numbers;
-}
-
 }  // namespace
 
 PeopleSequence ReadOpenPoseFolder(const std::string& folder, double fps, const std::string& convention) {

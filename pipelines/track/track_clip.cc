@@ -110,6 +110,21 @@ TrackSequenceResult Solve(const TrackRequest& request, const TrackInputs& inputs
   return result;
 }
 
+InitialiserReport ReportOn(const InitialPoses& start, const TrackInputs& inputs, const Track& track) {
+  InitialiserReport report;
+  report.system = start.system;
+  report.person = start.person;
+  report.people = start.people;
+  report.frames = start.frames;
+  report.has_shape = start.has_shape;
+  const KeypointSequence* keypoints = inputs.keypoints ? &*inputs.keypoints : nullptr;
+  report.gives_landmarks = !start.landmarks.empty();
+  report.gain = report.gives_landmarks
+                    ? GainOverLandmarks(*inputs.body, keypoints, start.landmarks, start.camera, track)
+                    : GainOverInitialiser(*inputs.body, keypoints, start.motion, start.camera, track);
+  return report;
+}
+
 std::vector<PlanEntry> WholePlan(const TrackRequest& request, const TrackInputs& inputs) {
   TrackSequenceOptions options = OptionsFor(request, inputs);
   options.camera_knowledge = CameraKnowledgeOf(request);
@@ -150,6 +165,7 @@ TrackReport TrackClip(const TrackRequest& request, const PipelineCallbacks& call
     clock.Begin("write");
     if (!result.track.world) result.track.world = AssumedWorld(result.track.joints);
     report.world = *result.track.world;
+    if (inputs.initialiser) report.initialiser = ReportOn(*inputs.initialiser, inputs, result.track);
     WriteTrack(request.out, result.track);
     report.outputs.push_back(request.out);
     if (!request.overlay.empty()) {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/data_tools/motion/load_motion.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/observations/iuv_to_dense.h"
 #include "bodyloom/data_tools/observations/load_detections.h"
@@ -16,7 +15,10 @@
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/track/detected_people.h"
+#include "bodyloom/tracking/initialise/given_landmarks.h"
+#include "bodyloom/tracking/initialise/lift_keypoints.h"
 #include "bodyloom/tracking/initialise/part_keypoints.h"
+#include "bodyloom/tracking/initialise/swap_repair.h"
 
 namespace bodyloom {
 namespace {
@@ -26,16 +28,34 @@ double FrameRate(const TrackRequest& request, const TrackInputs& inputs) {
   return request.fps > 0 ? request.fps : inputs.video_fps;
 }
 
-Motion ReadInitialiser(const std::string& path, int num_frames) {
-  Motion motion = LoadMotion(path);
-  if (motion.up != Motion::Up::kCamera) {
-    throw std::runtime_error(path + ": poses in a world frame, expected the camera's (a track .npz)");
-  }
-  if (motion.num_frames() != num_frames) {
+InitialPoses ReadInitialiser(const TrackRequest& request, const TrackInputs& inputs) {
+  InitialPosesRequest poses;
+  poses.path = request.init;
+  poses.body = inputs.body.get();
+  poses.keypoints = inputs.keypoints ? &*inputs.keypoints : nullptr;
+  poses.num_frames = inputs.num_frames();
+  poses.person = request.person;
+  const Camera& camera = inputs.camera.camera;
+  poses.camera = CameraKnowledgeOf(request) == CameraKnowledge::kKnown
+                     ? camera
+                     : MakePinhole(camera.width, camera.height, StartFocalPx(camera.width, camera.height));
+  return ReadInitialPoses(poses);
+}
+
+/// Landmarks of another system take the lifter's place, which fills the frames that they lack and says where up is.
+std::vector<LiftedFrame> LiftedWith(const TrackRequest& request, const TrackInputs& inputs) {
+  if (!inputs.keypoints || !inputs.lifter) {
     throw std::runtime_error(
-        Concatenate(path, ": ", motion.num_frames(), " frames, expected the ", num_frames, " of the detections"));
+        request.init + ": gives 3D landmarks, which take the lifter's place; give 2D joints and leave --lifter on");
   }
-  return motion;
+  if (request.live_lag) {
+    throw std::runtime_error(request.init + ": gives 3D landmarks, which --live does not use");
+  }
+  std::vector<LiftedFrame> frames = LiftKeypoints(*inputs.keypoints, inputs.initialiser->camera,
+                                                  CameraKnowledgeOf(request) == CameraKnowledge::kKnown,
+                                                  FindCuts(*inputs.keypoints), *inputs.lifter, {});
+  TakeGivenLandmarks(inputs.initialiser->landmarks, {}, &frames);
+  return frames;
 }
 
 /// Observations of this project's own form may hold either kind or both.
@@ -115,7 +135,8 @@ TrackSequenceInput TrackInputs::ForTracker() const {
   input.keypoints = keypoints ? &*keypoints : nullptr;
   input.dense = dense ? &*dense : nullptr;
   input.part_labels = part_labels ? &*part_labels : nullptr;
-  input.initialiser = initialiser ? &*initialiser : nullptr;
+  if (initialiser && initialiser->landmarks.empty()) input.initialiser = &initialiser->motion;
+  if (!lifted.empty()) input.lifted = &lifted;
   return input;
 }
 
@@ -161,9 +182,9 @@ TrackInputs LoadTrackInputs(const TrackRequest& request, const PipelineCallbacks
                                          ": does not say how large the images are; give --video, --cameras or "
                                          "--image-size"));
   }
-  if (!request.init.empty()) {
-    inputs.initialiser = ReadInitialiser(request.init, inputs.num_frames());
-  }
+  UseFocal(request, &camera);
+  if (!request.init.empty()) inputs.initialiser = ReadInitialiser(request, inputs);
+  if (inputs.initialiser && !inputs.initialiser->landmarks.empty()) inputs.lifted = LiftedWith(request, inputs);
   if (!request.reference.empty()) {
     inputs.reference = ReadTrack(request.reference);
     if (inputs.reference->num_frames() != inputs.num_frames()) {
@@ -171,7 +192,6 @@ TrackInputs LoadTrackInputs(const TrackRequest& request, const PipelineCallbacks
                                            " frames, expected the ", inputs.num_frames(), " of the detections"));
     }
   }
-  UseFocal(request, &camera);
   return inputs;
 }
 

@@ -9,8 +9,10 @@
 #include "bodyloom/geometry/observations.h"
 #include "bodyloom/geometry/track.h"
 #include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/pipelines/track/initial_poses.h"
 #include "bodyloom/pipelines/track/scene_inputs.h"
 #include "bodyloom/pipelines/track/track_request.h"
+#include "bodyloom/tracking/initialise/lifter_reading.h"
 
 namespace bodyloom {
 
@@ -19,7 +21,9 @@ struct TrackInputs : SceneInputs {
   std::optional<DenseSequence> dense;
   std::optional<PartLabelSequence> part_labels;
   bool joints_from_labels = false;  ///< `keypoints` were read off `part_labels`
-  std::optional<Motion> initialiser;
+  std::optional<InitialPoses> initialiser;
+  std::vector<LiftedFrame>
+      lifted;  ///< the lifter's landmarks with the initialiser's in their place, when it gives such
   std::optional<Track> reference;
 
   /// Keypoints are always there when only part labels were given: those read off the labels.

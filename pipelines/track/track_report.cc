@@ -13,6 +13,49 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+std::string MedianText(const MedianAndP95& of, int digits, const std::string& unit) {
+  return Fixed(of.median, digits) + unit + " (95 % below " + Fixed(of.p95, digits) + ")";
+}
+
+std::string ToText(const InitialiserReport& from, int num_frames) {
+  const InitialiserGain& gain = from.gain;
+  std::string text = "start    " + from.system + ", person " + from.person +
+                     (from.people > 1 ? " of " + std::to_string(from.people) : "") + ", " +
+                     std::to_string(from.frames) + " of " + std::to_string(num_frames) + " frames";
+  if (from.gives_landmarks) {
+    text += "; 3D landmarks alone\nmoved    landmarks by " + MedianText(gain.joint_mm, 0, " mm") + " about the hips\n";
+  } else {
+    text += std::string(from.has_shape ? "" : "; its shape is another body's and left out") + "\nmoved    joints by " +
+            MedianText(gain.joint_mm, 0, " mm") + " about the pelvis, turned by " +
+            MedianText(gain.rotation_deg, 1, " deg") + ", root by " + MedianText(gain.root_deg, 1, " deg") + "\n";
+  }
+  if (gain.landmarks > 0) {
+    text += "gain     2D joints: " + MedianText(gain.initialiser_px, 2, " px") + " of the start, " +
+            MedianText(gain.fit_px, 2, " px") + " of the fit\n";
+  }
+  return text;
+}
+
+Json ToJson(const InitialiserReport& from) {
+  const InitialiserGain& gain = from.gain;
+  Json json = {{"system", from.system},         {"person", from.person},
+               {"people", from.people},         {"frames", from.frames},
+               {"has_shape", from.has_shape},   {"gives_landmarks", from.gives_landmarks},
+               {"compared_frames", gain.frames}};
+  const auto add = [&](const std::string& name, const std::string& unit, const MedianAndP95& of) {
+    json[name + "_median_" + unit] = of.median;
+    json[name + "_p95_" + unit] = of.p95;
+  };
+  add("joint", "mm", gain.joint_mm);
+  add("root", "mm", gain.root_mm);
+  add("rotation", "deg", gain.rotation_deg);
+  add("root", "deg", gain.root_deg);
+  json["landmarks"] = gain.landmarks;
+  add("initialiser", "px", gain.initialiser_px);
+  add("fit", "px", gain.fit_px);
+  return json;
+}
+
 }  // namespace
 
 StageSeconds StagesOf(const TrackReport& report) {
@@ -61,6 +104,7 @@ std::string ToText(const TrackReport& report) {
     text += "; dense keypoints: median " + Fixed(solve.dense_median_px, 2) + " px";
   }
   text += "\n";
+  if (report.initialiser && solve.IsUsable()) text += ToText(*report.initialiser, report.num_frames);
   if (solve.focal_px > 0) {
     text += "camera   focal length " + Fixed(solve.focal_px, 1) + " px\n";
   }
@@ -111,7 +155,7 @@ std::string ToJson(const TrackReport& report) {
     ground_json["camera_height_m"] = ground.camera_height_m;
     ground_json["height_spread_m"] = ground.height_spread_m;
   }
-  const Json json = {
+  Json json = {
       {"status", ToString(solve.status)},
       {"message", solve.message},
       {"detections", report.detections},
@@ -136,6 +180,7 @@ std::string ToJson(const TrackReport& report) {
       {"skipped", skipped},
       {"outputs", report.outputs},
   };
+  if (report.initialiser) json["initialiser"] = ToJson(*report.initialiser);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

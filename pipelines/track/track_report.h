@@ -3,18 +3,30 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "bodyloom/geometry/base/stopwatch.h"
+#include "bodyloom/tracking/initialiser_gain.h"
 #include "bodyloom/tracking/track_sequence.h"
 
 namespace bodyloom {
 
+/// Poses of another system that the fit began with.
+struct InitialiserReport {
+  std::string system, person;    ///< as the file calls them
+  int people = 0, frames = 0;    ///< in the file; of the clip that have a pose
+  bool has_shape = false;        ///< its shape is one of the body that is fitted
+  bool gives_landmarks = false;  ///< points of another body, no rotations
+  InitialiserGain gain;
+};
+
 struct TrackReport {
   TrackSequenceSummary solve;
   int num_frames = 0;
-  WorldFrame world;      ///< the track's
+  WorldFrame world;  ///< the track's
+  std::optional<InitialiserReport> initialiser;
   StageSeconds seconds;  ///< TrackClip's own stages; the one named kSolveStage is split by solve.seconds
   double total_seconds = 0;
   size_t peak_memory_bytes = 0;

@@ -10,6 +10,8 @@
 
 #include "bodyloom/data_tools/avatar/avatar_file.h"
 #include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/data_tools/estimates/gvhmr_reader.h"
+#include "bodyloom/data_tools/estimates/load_estimate.h"
 #include "bodyloom/data_tools/formats/zip.h"
 #include "bodyloom/data_tools/learned/lifter_weights_io.h"
 #include "bodyloom/data_tools/learned/pose_prior_io.h"
@@ -129,6 +131,36 @@ inline bool AcceptsMotion(const std::string& bytes) {
       throw std::logic_error("frames disagree");
     }
   });
+}
+
+inline void CheckEstimate(const BodyEstimate& estimate) {
+  if (estimate.people.empty()) throw std::logic_error("an estimate of nobody");
+  for (const PersonEstimate& person : estimate.people) {
+    const auto n = static_cast<Eigen::Index>(person.frames.size());
+    if (n == 0 || person.poses.rows() != n || person.poses.cols() != 72 || person.trans.rows() != n ||
+        static_cast<Eigen::Index>(person.cameras.size()) != n) {
+      throw std::logic_error("frames disagree");
+    }
+    if (!person.poses.allFinite() || !person.trans.allFinite() || !person.betas.allFinite()) {
+      throw std::logic_error("a pose that is no number");
+    }
+    for (size_t i = 0; i < person.frames.size(); ++i) {
+      if (person.frames[i] < 0 || (i > 0 && person.frames[i] <= person.frames[i - 1])) {
+        throw std::logic_error("frames out of order");
+      }
+    }
+    if (person.frames.back() < 1000) {
+      EstimateInCamera(person, MakePinhole(640, 480, 500), 1000, estimate.rest_pelvis, Eigen::Vector3d::Zero());
+    }
+  }
+}
+
+/// Whatever another system's results claim to be; GVHMR's without the archive, whose checksums no mutation survives.
+inline bool AcceptsEstimate(const std::string& bytes) {
+  if (Accepts([&] { CheckEstimate(EstimateFromBytes(bytes, "fuzz.pkl", {640, 480})); })) return true;
+  WeightsFile file;
+  for (const auto& [name, array] : FramedArrays(bytes)) file.tensors[name] = array;
+  return Accepts([&] { CheckEstimate(GvhmrFromTensors(file, "fuzz.pt")); });
 }
 
 /// Whatever a file of detections claims to be, with the person chosen and the times filled in.

@@ -142,7 +142,12 @@ inline constexpr const char* kNames[] = {"v_template",
                                          "pull",
                                          "step",
                                          "seconds",
-                                         "options"};
+                                         "options",
+                                         "smpl_params_incam.body_pose",
+                                         "smpl_params_incam.global_orient",
+                                         "smpl_params_incam.transl",
+                                         "smpl_params_incam.betas",
+                                         "K_fullimg"};
 
 /// Named arrays without the archive around them, whose checksums no mutation survives:
 /// (index of a known name, 3 bytes of length, .npy bytes) over and over.

@@ -15,6 +15,7 @@
 #include "bodyloom/data_tools/observations/blazepose_reader.h"
 #include "bodyloom/data_tools/observations/coco_reader.h"
 #include "bodyloom/data_tools/observations/load_cameras.h"
+#include "bodyloom/data_tools/observations/mmpose_reader.h"
 #include "bodyloom/data_tools/observations/openpose_reader.h"
 #include "tests/fuzz/fuzz_accepts.h"
 
@@ -37,6 +38,7 @@ inline bool AcceptsDetections(const std::string& bytes) {
   const JsonNode document(json, "fuzz.json");
   bool taken = false;
   if (IsOpenPoseJson(document)) taken |= Accepts([&] { CheckPeople(OpenPoseFromJson(document, 30)); });
+  if (IsMmposeJson(document)) taken |= Accepts([&] { CheckPeople(MmposeFromJson(document, 30)); });
   if (IsCocoJson(document)) taken |= Accepts([&] { CheckPeople(CocoFromJson(document, 30)); });
   if (IsBlazePoseJson(document)) taken |= Accepts([&] { CheckPeople(BlazePoseFromJson(document, 30)); });
   return taken;

@@ -17,6 +17,7 @@
 #include "bodyloom/tracking/initialise/lifted_start.h"
 #include "bodyloom/tracking/initialise/stature.h"
 #include "bodyloom/tracking/initialise/swap_repair.h"
+#include "bodyloom/tracking/input_checks.h"
 #include "bodyloom/tracking/shots.h"
 
 namespace bodyloom {
@@ -121,6 +122,41 @@ void ToWeakPerspective(const KeypointSequence& keypoints, const FrameLayout& lay
   }
 }
 
+/// Hypotheses need rays. For weak perspective the camera keeps the focal length it would have had as a pinhole.
+Camera CameraOfRays(const FrameLayout& layout) {
+  Camera camera = layout.camera;
+  camera.model = CameraModel::kPinhole;
+  return camera;
+}
+
+std::vector<LiftedFrame> LiftedFrames(const TrackSequenceInput& input, const KeypointSequence& keypoints,
+                                      const FrameLayout& layout, const TrackSequenceOptions& options) {
+  if (input.lifted != nullptr) return *input.lifted;
+  LiftOptions lift;
+  lift.num_threads = ThreadsFor(options.num_threads);
+  return LiftKeypoints(keypoints, CameraOfRays(layout), layout.knowledge == CameraKnowledge::kKnown,
+                       FindCuts(keypoints), *input.lifter, lift);
+}
+
+/// The frames that the initialiser has, and the others between them.
+void StartFromInitialiser(const TrackSequenceInput& input, const KeypointSequence* keypoints, InitialStates* result) {
+  const Motion& initialiser = *input.initialiser;
+  const int T = initialiser.num_frames();
+  std::vector<int> frames;
+  std::vector<FrameState> known;
+  result->from_observation.assign(T, 0);
+  for (int t = 0; t < T; ++t) {
+    if (!initialiser.HasPose(t)) continue;
+    const BodyPose pose =
+        PoseFromAxisAngle(*input.body, initialiser.poses.row(t).transpose(), initialiser.trans.row(t).transpose());
+    frames.push_back(t);
+    known.push_back({pose.rotations, pose.trans});
+    result->from_observation[t] = 1;
+  }
+  result->states = FillFrames(frames, known, *ExtentOf(input).timestamps,
+                              keypoints != nullptr ? FindCuts(*keypoints) : std::vector<char>(T, 0));
+}
+
 }  // namespace
 
 bool FitWeakCamera(const std::vector<Vector3d>& points, const std::vector<Vector2d>& pixels, double cx, double cy,
@@ -191,8 +227,11 @@ const KeypointSequence* JointsToStartFrom(const TrackSequenceInput& input, Keypo
 }
 
 std::string WhyNoLifter(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
+  return input.initialiser != nullptr ? "an initialiser was given" : WhyNotLifted(input, options);
+}
+
+std::string WhyNotLifted(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
   if (input.lifter == nullptr) return "no lifter was given";
-  if (input.initialiser != nullptr) return "an initialiser was given";
   if (input.keypoints == nullptr && input.dense == nullptr) return "it reads 2D joints, and there are none";
   if (options.lifter_weight == 0) return "switched off";
   if (!CompileLiftedLandmarks(*input.body, 0).IsUsable()) return "the body lacks its landmarks";
@@ -208,29 +247,20 @@ InitialStates FindInitialStates(const TrackSequenceInput& input, const KeypointS
     const Eigen::Index given = std::min<Eigen::Index>(input.initialiser->betas.size(), layout.num_betas);
     result.betas.head(given) = input.initialiser->betas.head(given);
     if (input.stature_m > 0) result.betas = WithStature(model, result.betas, input.stature_m);
-    for (int t = 0; t < input.initialiser->num_frames(); ++t) {
-      const BodyPose pose = PoseFromAxisAngle(model, input.initialiser->poses.row(t).transpose(),
-                                              input.initialiser->trans.row(t).transpose());
-      result.states.push_back({pose.rotations, pose.trans});
-      result.from_observation.push_back(1);
+    StartFromInitialiser(input, keypoints, &result);
+    const bool wants_ground = options.ground.use_up || options.ground.contact_weight > 0;
+    if (lifted != nullptr && keypoints != nullptr && wants_ground && WhyNotLifted(input, options).empty()) {
+      lifted->frames = LiftedFrames(input, *keypoints, layout, options);
     }
   } else {
-    // Hypotheses need rays. For weak perspective the camera keeps the focal length it would have had as a pinhole.
-    Camera camera = layout.camera;
-    camera.model = CameraModel::kPinhole;
+    const Camera camera = CameraOfRays(layout);
     if (layout.num_betas > 0) {
       result.betas = EstimateShape(*keypoints, camera, model, layout.num_betas, options.hypotheses);
       if (input.stature_m > 0) result.betas = WithStature(model, result.betas, input.stature_m);
     }
     if (WhyNoLifter(input, options).empty()) {
-      const int threads = ThreadsFor(options.num_threads);
-      LiftOptions lift;
-      lift.num_threads = threads;
       LiftedStart start;
-      start.frames = input.lifted != nullptr
-                         ? *input.lifted
-                         : LiftKeypoints(*keypoints, camera, layout.knowledge == CameraKnowledge::kKnown,
-                                         FindCuts(*keypoints), *input.lifter, lift);
+      start.frames = LiftedFrames(input, *keypoints, layout, options);
       StartFromLifted(*keypoints, camera, model, result.betas, &start);
       if (!start.frames.empty()) {
         result = start.initial;

@@ -20,15 +20,18 @@ struct InitialStates {
 
 struct LiftedStart;
 
-/// The initialiser's poses when given; else the lifter's, when there is one that can read the observations; else joint
+/// The initialiser's poses when given, frames that it lacks between its others as below; else the lifter's, when there is one that can read the observations; else joint
 /// hypotheses turned into poses by inverse kinematics and interpolated on SO(3) to every frame. `keypoints`:
 /// JointsToStartFrom(); null only with an initialiser. `lifted`, when given, receives what the lifter predicted (its
-/// frames are empty when it was not run or saw nothing).
+/// frames are empty when it was not run or saw nothing); with an initialiser the lifter runs for the vertical and the
+/// ground alone, when they are wanted.
 InitialStates FindInitialStates(const TrackSequenceInput& input, const KeypointSequence* keypoints,
                                 const FrameLayout& layout, const TrackSequenceOptions& options,
                                 LiftedStart* lifted = nullptr);
 
 /// Why the lifter does not run, or empty when it does.
+std::string WhyNotLifted(const TrackSequenceInput& input, const TrackSequenceOptions& options);
+/// Why it does not give the start and stay as L_d, or empty when it does: it does not run, or there is an initialiser.
 std::string WhyNoLifter(const TrackSequenceInput& input, const TrackSequenceOptions& options);
 
 /// COCO-17 keypoints estimated from dense ones: each landmark is the mean pixel of the surface points near it in the

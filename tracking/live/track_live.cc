@@ -50,7 +50,7 @@ LiveObservations ObservationsAt(const TrackSequenceInput& input, int t) {
     frame.keypoints.assign(input.keypoints->points.begin() + t * K, input.keypoints->points.begin() + (t + 1) * K);
   }
   if (input.dense != nullptr) frame.dense = input.dense->frames[t];
-  if (input.initialiser != nullptr) {
+  if (input.initialiser != nullptr && input.initialiser->HasPose(t)) {
     frame.initialiser = PoseFromAxisAngle(*input.body, input.initialiser->poses.row(t).transpose(),
                                           input.initialiser->trans.row(t).transpose());
   }
@@ -78,6 +78,7 @@ LiveTrackerInput LiveInputFor(const TrackSequenceInput& input) {
 std::vector<PlanEntry> PlanTrackLive(const TrackSequenceInput& input, const LiveTrackerOptions& options) {
   TrackSequenceInput seen = input;
   seen.part_labels = nullptr;
+  if (input.initialiser != nullptr) seen.lifter = nullptr;  // nor is it lifted for the ground
   TrackSequenceOptions solve = options.solve;
   solve.rendered_uv.weight = 0;
   std::vector<PlanEntry> plan = PlanTrackSequence(seen, solve);

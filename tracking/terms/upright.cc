@@ -29,7 +29,7 @@ void UprightOfFrame::Add(FrameAccumulator* sums) const {
 }
 
 std::string WhyNoUp(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
-  const std::string no_lifter = WhyNoLifter(input, options);
+  const std::string no_lifter = WhyNotLifted(input, options);
   if (!no_lifter.empty()) return "the lifter says which way is up, and " + no_lifter;
   return options.ground.use_up ? "" : "switched off";
 }

@@ -229,7 +229,7 @@ TEST(Pickle, RefusesToNameFunctions) {
   EXPECT_THAT(ErrorOf("\x80\x04\x8c\x05posix\x8c\x06system\x93\x8c\x02id\x85R."),
               HasSubstr("byte 17: the pickle names 'posix.system'"));
   EXPECT_THAT(ErrorOf("(S'x'\nios\nsystem\n."), HasSubstr("os.system"));
-  EXPECT_THAT(ErrorOf("cjoblib.numpy_pickle\nNumpyArrayWrapper\n."), HasSubstr("pickle.dump"));
+  EXPECT_THAT(ErrorOf("cjoblib.numpy_pickle\nZNDArrayWrapper\n."), HasSubstr("joblib before 0.10"));
   for (const char* name :
        {"c__builtin__\neval\n.", "cbuiltins\nexec\n.", "cnumpy\nload\n.", "cnumpy.core.multiarray\nfromfile\n.",
         "cchumpy.ch\nMatVecMult\n.", "ccollections\nOrderedDict.fromkeys\n.", "c\n\n."}) {
@@ -244,8 +244,8 @@ TEST(Pickle, RefusesWhatPointsOutsideTheFile) {
     ErrorOf(bytes);
   }
   EXPECT_THAT(ErrorOf("\x80\x06N."), HasSubstr("protocol 6"));
-  EXPECT_THAT(ErrorOf("\x78\x9c\x01\x02"), HasSubstr("zlib"));
-  EXPECT_THAT(ErrorOf("\x1f\x8b\x08"), HasSubstr("gzip"));
+  EXPECT_THAT(ErrorOf("\x78\x9c\xff\xff\xff"), HasSubstr("zlib stream is damaged"));
+  EXPECT_THAT(ErrorOf("\x1f\x8b\x08"), HasSubstr("gzip stream is cut off"));
 }
 
 TEST(Pickle, RefusesMisuseOfTheStack) {

@@ -9,12 +9,15 @@
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/formats/inflate.h"
+#include "bodyloom/data_tools/formats/npz.h"
 #include "bodyloom/data_tools/formats/zip.h"
 #include "bodyloom/data_tools/learned/lifter_weights_io.h"
 #include "bodyloom/data_tools/learned/pose_prior_io.h"
 #include "bodyloom/data_tools/observations/observations_npz.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/data_tools/video/video_writer.h"
+#include "tests/data_tools/estimates/estimate_files.h"
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/fuzz/fuzz_targets.h"
 #include "tests/support/toy_body.h"
@@ -162,6 +165,24 @@ void WriteThreeFrames(const std::string& path) {
   writer.Finish();
 }
 
+/// WHAM's and VIBE's results (PHALP's are compressed, which no mutation survives; here they are not) and GVHMR's tensors.
+std::vector<std::string> EstimateSeeds() {
+  using namespace estimate_files;  // NOLINT(google-build-using-namespace)
+  Camera camera = MakePinhole(640, 480, 800);
+  const PersonEstimate person = MakePerson("1", {0, 2}, camera, {0.2, 0, 4});
+  NpzArrays gvhmr;
+  const std::vector<double> values(2 * 63, 0.25), k = {800, 0, 320, 0, 800, 240, 0, 0, 1};
+  gvhmr["smpl_params_incam.body_pose"] = NdArray::FromDoubles(values.data(), {1, 63});
+  gvhmr["smpl_params_incam.global_orient"] = NdArray::FromDoubles(values.data(), {1, 3});
+  gvhmr["smpl_params_incam.transl"] = NdArray::FromDoubles(values.data(), {1, 3});
+  gvhmr["smpl_params_incam.betas"] = NdArray::FromDoubles(values.data(), {1, 10});
+  gvhmr["K_fullimg"] = NdArray::FromDoubles(k.data(), {1, 3, 3});
+  camera.model = CameraModel::kWeakPerspective;
+  camera.scale = 200;
+  return {WhamFile({person}), VibeFile({MakePerson("1", {0, 2}, camera, {0, 0, 0})}),
+          Inflate(PhalpFile({person}, 3), "seed.pkl", size_t{1} << 20), FrameArrays(gvhmr)};
+}
+
 }  // namespace
 
 void AddArraySeeds(std::map<std::string, std::vector<std::string>>* seeds) {
@@ -177,6 +198,9 @@ void AddArraySeeds(std::map<std::string, std::vector<std::string>>* seeds) {
   (*seeds)["motion"] = {(*seeds)["deepmimic"][0], AmassBytes()};
   (*seeds)["detections_file"] = (*seeds)["detections"];
   (*seeds)["detections_file"].push_back(BytesOf("observations.npz", write));
+  const std::vector<double> landmarks(2 * 33 * 2, 100);
+  (*seeds)["detections_file"].push_back(NpyBytes(NdArray::FromDoubles(landmarks.data(), {2, 33, 2})));
+  (*seeds)["estimate"] = EstimateSeeds();
   Image image(6, 4, {12, 200, 3});
   (*seeds)["image"] = {BytesOf("image.png", [&](const std::string& path) { WriteImage(path, image); }),
                        BytesOf("image.jpg", [&](const std::string& path) { WriteImage(path, image); })};

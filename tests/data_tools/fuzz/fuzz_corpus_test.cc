@@ -29,6 +29,7 @@ TEST(FuzzCorpus, Lifter) { RunMutations("lifter", AcceptsLifter, 2000); }
 TEST(FuzzCorpus, LeftHalf) { RunMutations("left_half", AcceptsLeftHalf, 50); }
 TEST(FuzzCorpus, Motion) { RunMutations("motion", AcceptsMotion, 4000); }
 TEST(FuzzCorpus, DetectionsFile) { RunMutations("detections_file", AcceptsDetectionsFile, 4000); }
+TEST(FuzzCorpus, Estimate) { RunMutations("estimate", AcceptsEstimate, 4000); }
 TEST(FuzzCorpus, Image) { RunMutations("image", AcceptsImage, 500); }
 TEST(FuzzCorpus, Video) { RunMutations("video", AcceptsVideo, 300); }
 TEST(FuzzCorpus, SinglePersonDataset) { RunMutations("single_person_dataset", AcceptsSinglePersonDataset, 1000); }

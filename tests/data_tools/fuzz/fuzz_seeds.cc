@@ -8,6 +8,7 @@
 #include "tests/data_tools/body/small_body.h"
 #include "tests/data_tools/detection/small_networks.h"
 #include "tests/data_tools/detection/small_onnx.h"
+#include "tests/data_tools/formats/joblib_stream.h"
 #include "tests/data_tools/formats/pickle_writer.h"
 #include "tests/data_tools/formats/torch_stream.h"
 #include "tests/data_tools/fuzz/fuzz_array_seeds.h"
@@ -83,7 +84,14 @@ std::vector<std::string> PickleSeeds() {
                               Tuple({"](K\x01"
                                      "e"}) +
                               "R"}});
-  return {OfficialPickle(MakeBodyArrays(20, 3, 2, true)), Pickle(2, everything),
+  const std::string joblib = joblib_stream::JoblibStream()
+                                 .Add("}(" + Unicode("1"))
+                                 .AddFloats({1, 2}, {2, 1})
+                                 .Add(Unicode("b"))
+                                 .AddInts({7})
+                                 .Add("u")
+                                 .Finish();
+  return {OfficialPickle(MakeBodyArrays(20, 3, 2, true)), Pickle(2, everything), joblib,
           "(dp0\nS'a\\x41'\np1\n(lp2\nI1\naF2.5\naNaI01\naL100000000000000000000L\naV\\u20ac\na(I1\nI2\nt.",
           "\x80\x04}\x94(\x8c\x01"
           "a\x94K\x01"

@@ -16,6 +16,17 @@ std::string CocoResult(int image) {
          StickNumbers(Coco17().names, 100, 200, 300) + "]}";
 }
 
+std::string MmposeFrame(int number) {
+  std::string points, scores;
+  for (const std::string& name : Coco17().names) {
+    const auto [x, y] = StickLandmark(name, 100, 200, 300);
+    points += (points.empty() ? "[" : ",[") + std::to_string(x) + "," + std::to_string(y) + "]";
+    scores += scores.empty() ? "0.5" : ",0.5";
+  }
+  return R"({"frame_id":)" + std::to_string(number) + R"(,"instances":[{"keypoints":[)" + points +
+         R"(],"keypoint_scores":[)" + scores + R"(],"bbox":[[0,0,9,9]]}]})";
+}
+
 std::string DeepMimicFrame(const std::string& seconds) {
   std::string text = seconds + ",0.1,0.9,0.2,1,0,0,0";
   for (const int n : {4, 4, 4, 1, 4, 4, 1, 4, 1, 4, 4, 1}) text += n == 4 ? ",1,0,0,0" : ",0.5";
@@ -29,6 +40,8 @@ void AddTextSeeds(std::map<std::string, std::vector<std::string>>* seeds) {
       R"({"version":1.3,"people":[)" + OpenPosePerson(Body25()) + "]}",
       R"({"9.jpg":{"people":[)" + OpenPosePerson(Body25B()) + R"(]},"12.jpg":{"people":[]}})",
       "[" + CocoResult(3) + "," + CocoResult(5) + "," + CocoResult(5) + "]",
+      "[" + MmposeFrame(0) + "," + MmposeFrame(2) + "]",
+      R"({"meta_info":{"keypoint_id2name":{"0":"nose"}},"instance_info":[)" + MmposeFrame(1) + "]}",
   };
   (*seeds)["cameras"] = {
       R"([{"name":"c01","size":[1920,1080],"matrix":[[1310,0,960],[0,1312,540],[0,0,1]],"distortions":[-0.1,0,0,0,0],)"

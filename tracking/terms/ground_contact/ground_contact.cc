@@ -44,7 +44,7 @@ void GroundContactOfFrame::Add(FrameAccumulator* sums) const {
 }
 
 std::string WhyNoGround(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
-  const std::string no_lifter = WhyNoLifter(input, options);
+  const std::string no_lifter = WhyNotLifted(input, options);
   if (!no_lifter.empty()) return "the lifter says which feet stand, and " + no_lifter;
   return options.ground.contact_weight > 0 ? "" : "switched off";
 }

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/data_tools/estimates/body_estimate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/rotation.h"
+
+namespace bodyloom {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+double FocalOf(const Camera& camera) { return std::sqrt(camera.fx * camera.fy); }
+
+int FrameOf(const PersonEstimate& person, size_t i, int num_frames) {
+  const int t = person.frames[i];
+  BODYLOOM_CHECK(t >= 0 && t < num_frames, "frame ", t, " of an estimate, expected 0 to ", num_frames - 1);
+  return t;
+}
+
+/// A pelvis and what turns with it, in another camera than the one it was seen in.
+struct Placed {
+  Vector3d pelvis;
+  Eigen::Matrix3d turn;
+};
+
+std::optional<Placed> PlaceIn(const Camera& camera, const std::optional<PelvisInImage>& seen) {
+  BODYLOOM_CHECK(camera.model == CameraModel::kPinhole, "an estimate can be brought into a pinhole camera only");
+  if (!seen) return std::nullopt;
+  const Vector2d ray = camera.Unproject(seen->pixel);
+  if (!ray.allFinite()) return std::nullopt;
+  return Placed{FocalOf(camera) / seen->px_per_metre * Vector3d(ray.x(), ray.y(), 1),
+                RotationBetweenDirections(Vector3d(seen->ray.x(), seen->ray.y(), 1).normalized(),
+                                          Vector3d(ray.x(), ray.y(), 1).normalized())};
+}
+
+/// Where frame t's landmarks have the pelvis, and how far from there it may be.
+struct SeenPelvis {
+  Vector2d pixel = Vector2d::Zero();
+  double reach_m = 0;
+};
+
+std::optional<SeenPelvis> PelvisAmong(const KeypointSequence& keypoints, int t, int left, int right) {
+  constexpr double kHipsReach_m = 0.35, kMiddleReach_m = 0.8;
+  constexpr float kSeen = 0.3F;
+  const auto pixel = [&](int k) { return Vector2d(keypoints.at(t, k).x, keypoints.at(t, k).y); };
+  if (std::max(left, right) < keypoints.num_points() && keypoints.at(t, left).confidence >= kSeen &&
+      keypoints.at(t, right).confidence >= kSeen) {
+    return SeenPelvis{0.5 * (pixel(left) + pixel(right)), kHipsReach_m};
+  }
+  SeenPelvis middle{Vector2d::Zero(), kMiddleReach_m};
+  int seen = 0;
+  for (int k = 0; k < keypoints.num_points(); ++k) {
+    if (!(keypoints.at(t, k).confidence >= kSeen)) continue;
+    middle.pixel += pixel(k);
+    ++seen;
+  }
+  if (seen == 0) return std::nullopt;
+  middle.pixel /= seen;
+  return middle;
+}
+
+}  // namespace
+
+std::optional<PelvisInImage> PelvisOf(const PersonEstimate& person, size_t i, const Vector3d& rest_pelvis) {
+  const Camera& camera = person.cameras[i];
+  const Vector3d pelvis = rest_pelvis + person.trans.row(static_cast<Eigen::Index>(i)).transpose();
+  PelvisInImage seen;
+  if (!camera.Project(pelvis, &seen.pixel)) return std::nullopt;
+  if (camera.model == CameraModel::kWeakPerspective) {
+    seen.px_per_metre = camera.scale;
+  } else {
+    seen.px_per_metre = FocalOf(camera) / pelvis.z();
+    seen.ray = pelvis.head<2>() / pelvis.z();
+  }
+  if (!seen.pixel.allFinite() || !(seen.px_per_metre > 0) || !std::isfinite(seen.px_per_metre)) return std::nullopt;
+  return seen;
+}
+
+Motion EstimateInCamera(const PersonEstimate& person, const Camera& camera, int num_frames,
+                        const Vector3d& estimate_pelvis, const Vector3d& pelvis) {
+  Motion motion;
+  motion.body = "smpl";
+  motion.up = Motion::Up::kCamera;
+  motion.betas = person.betas;
+  motion.poses.setConstant(num_frames, 72, std::numeric_limits<double>::quiet_NaN());
+  motion.trans.setConstant(num_frames, 3, std::numeric_limits<double>::quiet_NaN());
+  for (size_t i = 0; i < person.frames.size(); ++i) {
+    const int t = FrameOf(person, i, num_frames);
+    const std::optional<Placed> placed = PlaceIn(camera, PelvisOf(person, i, estimate_pelvis));
+    if (!placed) continue;
+    const auto pose = person.poses.row(static_cast<Eigen::Index>(i));
+    motion.poses.row(t) = pose;
+    motion.poses.row(t).head<3>() =
+        AxisAngleFromRotation(placed->turn * RotationFromAxisAngle(pose.head<3>().transpose())).transpose();
+    motion.trans.row(t) = (placed->pelvis - pelvis).transpose();
+  }
+  return motion;
+}
+
+std::vector<MatrixX3d> LandmarksInCamera(const PersonEstimate& person, const Camera& camera, int num_frames) {
+  std::vector<MatrixX3d> frames(static_cast<size_t>(num_frames), MatrixX3d(0, 3));
+  for (size_t i = 0; i < person.landmarks.size(); ++i) {
+    const int t = FrameOf(person, i, num_frames);
+    const std::optional<Placed> placed = PlaceIn(camera, PelvisOf(person, i, Vector3d::Zero()));
+    if (!placed) continue;
+    frames[static_cast<size_t>(t)] =
+        (person.landmarks[i] * placed->turn.transpose()).rowwise() + placed->pelvis.transpose();
+  }
+  return frames;
+}
+
+int PersonSeenAs(const BodyEstimate& estimate, const KeypointSequence& keypoints) {
+  const auto column = [&](const char* name) {
+    return static_cast<int>(std::find(keypoints.names.begin(), keypoints.names.end(), name) - keypoints.names.begin());
+  };
+  const int left = column("left_hip"), right = column("right_hip");
+  int best = -1;
+  double most = 0;
+  for (size_t p = 0; p < estimate.people.size(); ++p) {
+    const PersonEstimate& person = estimate.people[p];
+    double score = 0;
+    for (size_t i = 0; i < person.frames.size(); ++i) {
+      if (person.frames[i] >= keypoints.num_frames()) continue;
+      const std::optional<SeenPelvis> where = PelvisAmong(keypoints, person.frames[i], left, right);
+      const std::optional<PelvisInImage> seen = PelvisOf(person, i, estimate.rest_pelvis);
+      if (!where || !seen) continue;
+      score += std::max(0.0, 1 - (seen->pixel - where->pixel).norm() / (where->reach_m * seen->px_per_metre));
+    }
+    if (score > most) {
+      most = score;
+      best = static_cast<int>(p);
+    }
+  }
+  return best;
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/data_tools/estimates/estimate_arrays.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "bodyloom/data_tools/formats/printable.h"
+#include "bodyloom/data_tools/formats/whole_numbers.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/refuse.h"
+#include "bodyloom/geometry/rotation.h"
+
+namespace bodyloom {
+namespace {
+
+/// Size times time: Σ over the frames of a person's pixels a metre.
+double WeightInView(const PersonEstimate& person, const Eigen::Vector3d& rest_pelvis) {
+  double sum = 0;
+  for (size_t i = 0; i < person.frames.size(); ++i) {
+    if (const auto seen = PelvisOf(person, i, rest_pelvis)) sum += seen->px_per_metre;
+  }
+  return sum;
+}
+
+void SortFrames(const std::string& where, PersonEstimate* person) {
+  const size_t n = person->frames.size();
+  std::vector<size_t> order(n);
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return person->frames[a] < person->frames[b]; });
+  PersonEstimate sorted = *person;
+  for (size_t i = 0; i < n; ++i) {
+    const auto from = static_cast<Eigen::Index>(order[i]), to = static_cast<Eigen::Index>(i);
+    sorted.frames[i] = person->frames[order[i]];
+    sorted.poses.row(to) = person->poses.row(from);
+    sorted.trans.row(to) = person->trans.row(from);
+    sorted.cameras[i] = person->cameras[order[i]];
+    if (!sorted.landmarks.empty()) sorted.landmarks[i] = person->landmarks[order[i]];
+    if (i > 0 && sorted.frames[i] == sorted.frames[i - 1]) {
+      Refuse(where, Concatenate("person ", PrintableText(person->name), ": frame ", sorted.frames[i], " occurs twice"));
+    }
+  }
+  *person = std::move(sorted);
+}
+
+}  // namespace
+
+RowMatrixXd RequireShape(const NdArray& array, const std::vector<int64_t>& shape, const std::string& where,
+                         const std::string& key) {
+  bool fits = array.is_number() && array.shape.size() == shape.size();
+  std::string expected;
+  for (size_t d = 0; d < shape.size(); ++d) {
+    fits = fits && (shape[d] < 0 || array.shape[d] == shape[d]);
+    expected += (d == 0 ? "" : "x") + (shape[d] < 0 ? std::string("n") : std::to_string(shape[d]));
+  }
+  if (!fits) {
+    Refuse(where, key, (array.is_number() ? array.ShapeText() : "not numbers") + std::string(", expected ") + expected);
+  }
+  RowMatrixXd matrix = array.ToMatrix();
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    if (!matrix.row(i).allFinite()) Refuse(where, key, Concatenate("row ", i, " is not finite"));
+  }
+  return matrix;
+}
+
+std::vector<int> RequireFrameNumbers(const NdArray& array, int64_t count, const std::string& where,
+                                     const std::string& key) {
+  RequireShape(array, {count}, where, key);
+  std::vector<int> frames;
+  for (const int64_t number : WholeNumbers(array, key, where)) {
+    if (number < 0 || number >= kMostEstimateFrames) {
+      Refuse(where, key, Concatenate(number, ", expected frame numbers from 0 to ", kMostEstimateFrames - 1));
+    }
+    frames.push_back(static_cast<int>(number));
+  }
+  return frames;
+}
+
+Eigen::VectorXd MeanBetas(const NdArray& array, int64_t n, const std::string& where) {
+  constexpr Eigen::Index kMostBetas = 300;
+  const RowMatrixXd betas = RequireShape(array, {n, -1}, where, "betas");
+  if (betas.cols() > kMostBetas) Refuse(where, "betas", Concatenate(betas.cols(), " a frame, expected ", kMostBetas));
+  return n > 0 ? Eigen::VectorXd(betas.colwise().mean().transpose()) : Eigen::VectorXd::Zero(betas.cols());
+}
+
+Eigen::Vector3d AxisAngleFromRows(const Eigen::Ref<const Eigen::RowVectorXd>& nine, const std::string& where,
+                                  const std::string& key) {
+  constexpr double kMostOff = 1e-2;  // float16 and averaged matrices are off by less
+  Eigen::Matrix3d matrix;
+  for (int r = 0; r < 3; ++r) matrix.row(r) = nine.segment<3>(3 * r);
+  if (!((matrix * matrix.transpose()).isIdentity(kMostOff)) || !(matrix.determinant() > 0)) {
+    Refuse(where, key, "expected rotation matrices, row by row");
+  }
+  return AxisAngleFromRotation(NearestRotation(matrix));
+}
+
+Camera CentredCamera(int width, int height, double focal_px) {
+  Camera camera = MakePinhole(width, height, focal_px);
+  camera.cx = 0.5 * width;
+  camera.cy = 0.5 * height;
+  return camera;
+}
+
+void SortEstimate(const std::string& where, BodyEstimate* estimate) {
+  std::erase_if(estimate->people, [](const PersonEstimate& person) { return person.frames.empty(); });
+  if (estimate->people.empty()) Refuse(where, estimate->system + ": nobody in any frame");
+  std::vector<std::pair<double, size_t>> order;
+  for (size_t p = 0; p < estimate->people.size(); ++p) {
+    SortFrames(where, &estimate->people[p]);
+    order.emplace_back(-WeightInView(estimate->people[p], estimate->rest_pelvis), p);
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<PersonEstimate> people;
+  for (const auto& [weight, p] : order) people.push_back(std::move(estimate->people[p]));
+  estimate->people = std::move(people);
+}
+
+}  // namespace bodyloom

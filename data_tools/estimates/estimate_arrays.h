@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What the readers of estimates share: arrays of checked shape, people from rows, and their order.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "bodyloom/data_tools/estimates/body_estimate.h"
+#include "bodyloom/data_tools/formats/ndarray.h"
+
+namespace bodyloom {
+
+/// Frames of estimates beyond this are refused: nine hours at 30 frames a second.
+inline constexpr int64_t kMostEstimateFrames = 1'000'000;
+
+/// The numbers of an array of this shape as a matrix (−1: any size). Throws std::runtime_error "where: key: …" for
+/// another shape, for what holds no numbers, and for numbers that are not finite.
+RowMatrixXd RequireShape(const NdArray& array, const std::vector<int64_t>& shape, const std::string& where,
+                         const std::string& key);
+
+/// Frame numbers: whole, not negative, at most kMostEstimateFrames. Throws std::runtime_error "where: key: …".
+std::vector<int> RequireFrameNumbers(const NdArray& array, int64_t count, const std::string& where,
+                                     const std::string& key);
+
+/// The mean shape of a person's n frames, of an array n×B of at most 300 betas. Throws as RequireShape().
+Eigen::VectorXd MeanBetas(const NdArray& array, int64_t n, const std::string& where);
+
+/// A row of nine numbers, a rotation matrix row by row, as axis-angle. Throws std::runtime_error "where: key: …" when
+/// it is far from a rotation.
+Eigen::Vector3d AxisAngleFromRows(const Eigen::Ref<const Eigen::RowVectorXd>& nine, const std::string& where,
+                                  const std::string& key);
+
+/// A pinhole camera of square pixels in the middle (w/2, h/2) of an image, as these systems place it.
+Camera CentredCamera(int width, int height, double focal_px);
+
+/// Puts every person's entries into the order of their frames, and people into that of size times time in view; people
+/// without a frame are dropped. Throws std::runtime_error "where: …" when a frame occurs twice or nobody is left.
+void SortEstimate(const std::string& where, BodyEstimate* estimate);
+
+}  // namespace bodyloom

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Loads what another system made of a video, of any form: recognises the file by content.
+///
+/// Read: WHAM's, VIBE's and PHALP's or 4D-Humans' joblib pickles, GVHMR's hmr4d_results.pt, SAM 3D Body's .npz or a
+/// folder of them, and tracks of this project's form (motion/track_io.h). Nothing in them is run.
+#pragma once
+
+#include <string>
+
+#include "bodyloom/data_tools/estimates/body_estimate.h"
+
+namespace bodyloom {
+
+struct LoadEstimateOptions {
+  int image_width = 0, image_height = 0;  ///< of the video, as far as known; WHAM and VIBE need it
+};
+
+/// Throws std::runtime_error in one line: what was found and what was expected; std::invalid_argument for an image size
+/// below 0.
+BodyEstimate LoadEstimate(const std::string& path, const LoadEstimateOptions& options = {});
+/// The same for the contents of a file; `where` names it in messages.
+BodyEstimate EstimateFromBytes(const std::string& bytes, const std::string& where,
+                               const LoadEstimateOptions& options = {});
+
+}  // namespace bodyloom

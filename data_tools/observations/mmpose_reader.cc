@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/data_tools/observations/mmpose_reader.h"
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "bodyloom/data_tools/formats/printable.h"
+#include "bodyloom/data_tools/observations/frame_numbers.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/refuse.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr size_t kMostBytesPerImage = size_t{64} << 20;
+
+bool IsMmposePerson(const JsonNode& node) { return node.Has("keypoints") && node.Has("keypoint_scores"); }
+bool IsMmposeFrame(const JsonNode& node) { return node.Has("frame_id") && node.Has("instances"); }
+
+/// A landmark order that counts as many as one of ours, but is another (Human3.6M has 17 too).
+void CheckNames(const JsonNode& document, size_t num_points) {
+  if (!document.Has("meta_info") || !document.At("meta_info").Has("keypoint_id2name")) return;
+  const JsonNode names = document.At("meta_info").At("keypoint_id2name");
+  if (!names.Has("0") || !names.At("0").is_string() || names.At("0").Text() == Coco17().names[0]) return;
+  Refuse(names.place(),
+         Concatenate(num_points, " landmarks of which the first is '", PrintableText(names.At("0").Text()),
+                     "', expected COCO's, Halpe's or COCO-WholeBody's, which begin with the nose"));
+}
+
+DetectedPerson PersonFromJson(const JsonNode& node, const KeypointConvention** convention) {
+  const JsonNode points = node.At("keypoints");
+  const size_t n = points.size();
+  const KeypointConvention* found = ConventionOfCount(n);
+  if (found == nullptr || (*convention != nullptr && found != *convention)) {
+    Refuse(points.place(), Concatenate(n, " landmarks, expected ",
+                                       *convention != nullptr ? std::string("as many as before")
+                                                              : std::string("17 (COCO), 23 or 133 (COCO-WholeBody), 26 "
+                                                                            "or 136 (Halpe)")));
+  }
+  *convention = found;
+  const std::vector<double> scores = node.At("keypoint_scores").Numbers(static_cast<int>(n));
+  DetectedPerson person;
+  person.points.resize(found->names.size());
+  for (size_t k = 0; k < person.points.size(); ++k) {
+    const JsonNode point = points.At(k);
+    if (point.size() == 3) {
+      Refuse(point.place(), "3 numbers: keypoints that were lifted to 3D, expected pixels (x, y)");
+    }
+    const std::vector<double> xy = point.Numbers(2);
+    person.points[k] = {static_cast<float>(xy[0]), static_cast<float>(xy[1]), static_cast<float>(scores[k])};
+  }
+  return person;
+}
+
+std::vector<DetectedPerson> PeopleOf(const JsonNode& list, const KeypointConvention** convention) {
+  if (!list.is_array()) list.Fail("a list of people");
+  std::vector<DetectedPerson> people;
+  for (size_t i = 0; i < list.size(); ++i) people.push_back(PersonFromJson(list.At(i), convention));
+  return people;
+}
+
+PeopleSequence Assemble(std::vector<std::vector<DetectedPerson>> frames, const std::vector<int64_t>& numbers,
+                        const KeypointConvention* convention, double fps, const std::string& where) {
+  PeopleSequence people;
+  people.convention = convention != nullptr ? *convention : Coco17();
+  const FrameGrid grid = MakeFrameGrid(numbers, fps, where);
+  people.timestamps = grid.timestamps;
+  people.frames.resize(grid.timestamps.size());
+  for (size_t i = 0; i < frames.size(); ++i) people.frames[static_cast<size_t>(grid.index[i])] = std::move(frames[i]);
+  return people;
+}
+
+}  // namespace
+
+bool IsMmposeJson(const JsonNode& document) {
+  if (document.Has("instance_info")) return true;
+  return document.is_array() && document.size() > 0 &&
+         (IsMmposePerson(document.At(0)) || IsMmposeFrame(document.At(0)));
+}
+
+PeopleSequence MmposeFromJson(const JsonNode& document, double fps) {
+  const KeypointConvention* convention = nullptr;
+  std::vector<std::vector<DetectedPerson>> frames;
+  std::vector<int64_t> numbers;
+  const bool counts_from_one = document.Has("instance_info");
+  const JsonNode list = counts_from_one ? document.At("instance_info") : document;
+  if (!list.is_array()) list.Fail("a list of frames");
+  if (!counts_from_one && list.size() > 0 && IsMmposePerson(list.At(0))) {
+    frames.push_back(PeopleOf(list, &convention));
+    numbers.push_back(0);
+  } else {
+    for (size_t i = 0; i < list.size(); ++i) {
+      frames.push_back(PeopleOf(list.At(i).At("instances"), &convention));
+      numbers.push_back(list.At(i).At("frame_id").Integer() - (counts_from_one ? 1 : 0));
+    }
+  }
+  if (convention != nullptr) CheckNames(document, convention->names.size());
+  return Assemble(std::move(frames), numbers, convention, fps, document.place());
+}
+
+PeopleSequence ReadMmposeFolder(const std::string& folder, const std::vector<std::string>& names, double fps) {
+  const KeypointConvention* convention = nullptr;
+  std::vector<std::vector<DetectedPerson>> frames;
+  JsonLimits limits;
+  limits.max_bytes = kMostBytesPerImage;
+  for (const std::string& name : names) {
+    const std::string path = (std::filesystem::path(folder) / name).string();
+    const nlohmann::json document = ReadJsonFile(path, limits);
+    frames.push_back(PeopleOf(JsonNode(document, path), &convention));
+  }
+  return Assemble(std::move(frames), NumbersOrOrder(names), convention, fps, folder);
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/track/initial_poses.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "bodyloom/data_tools/estimates/body_estimate.h"
+#include "bodyloom/data_tools/estimates/load_estimate.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/refuse.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr int kSmplJoints = 24, kSmplHandColumns = 6;
+
+const PersonEstimate& ChoosePerson(const BodyEstimate& estimate, const InitialPosesRequest& request) {
+  const int people = static_cast<int>(estimate.people.size());
+  // One person of the whole video, or of a picture, needs no search.
+  if (people == 1 && (estimate.num_frames > 0 || request.num_frames == 1)) return estimate.people[0];
+  if (request.keypoints != nullptr) {
+    const int seen = PersonSeenAs(estimate, *request.keypoints);
+    if (seen >= 0) return estimate.people[static_cast<size_t>(seen)];
+    Refuse(request.path, Concatenate(estimate.system, ": of ", people, people == 1 ? " person" : " people",
+                                     " in it nobody is where the detections have the person; are both of the same "
+                                     "video, frame for frame?"));
+  }
+  if (request.person >= people) {
+    Refuse(request.path, Concatenate(estimate.system, ": person ", request.person, " requested, but only ", people,
+                                     " were found (0 is the largest)"));
+  }
+  return estimate.people[static_cast<size_t>(request.person)];
+}
+
+/// A pixel of another image is another line of sight; sizes that follow from principal points are not exact.
+void CheckImageSize(const PersonEstimate& person, const InitialPosesRequest& request) {
+  constexpr double kMostOff = 0.02;
+  const Camera &theirs = person.cameras.front(), &ours = request.camera;
+  const auto differ = [](int a, int b) { return a > 0 && b > 0 && std::abs(a - b) > kMostOff * b; };
+  if (differ(theirs.width, ours.width) || differ(theirs.height, ours.height)) {
+    Refuse(request.path, Concatenate("made on images of ", theirs.width, "x", theirs.height, ", expected ", ours.width,
+                                     "x", ours.height));
+  }
+}
+
+void CheckFrames(const BodyEstimate& estimate, const PersonEstimate& person, const InitialPosesRequest& request) {
+  const std::string clip = Concatenate("the ", request.num_frames, " of the detections");
+  if (estimate.num_frames > 0 && estimate.num_frames != request.num_frames) {
+    Refuse(request.path, Concatenate(estimate.num_frames, " frames, expected ", clip));
+  }
+  if (person.frames.back() >= request.num_frames) {
+    Refuse(request.path, Concatenate(estimate.system, ", person ", person.name, ": frame ", person.frames.back(),
+                                     " (from 0), expected none beyond ", clip));
+  }
+}
+
+void TakeMotion(const BodyEstimate& estimate, const PersonEstimate& person, const InitialPosesRequest& request,
+                InitialPoses* poses) {
+  const BodyModel& body = *request.body;
+  poses->has_shape = estimate.body == body.name();
+  Eigen::VectorXd betas;
+  if (poses->has_shape) betas = person.betas.head(std::min<Eigen::Index>(person.betas.size(), body.num_betas()));
+  const Eigen::Vector3d pelvis = body.RestJoints(betas).row(0).transpose();
+  poses->motion = EstimateInCamera(person, request.camera, request.num_frames,
+                                   poses->has_shape ? pelvis : estimate.rest_pelvis, pelvis);
+  poses->motion.betas = betas;
+  for (int t = 0; t < request.num_frames; ++t) {
+    if (!poses->motion.HasPose(t)) continue;
+    ++poses->frames;
+    // What follows the body's joints there are no hands of SMPL's.
+    if (body.num_joints() > kSmplJoints) poses->motion.poses.row(t).tail<kSmplHandColumns>().setZero();
+  }
+}
+
+}  // namespace
+
+InitialPoses ReadInitialPoses(const InitialPosesRequest& request) {
+  const BodyEstimate estimate =
+      LoadEstimate(request.path, {.image_width = request.camera.width, .image_height = request.camera.height});
+  CheckImageSize(estimate.people[0], request);
+  const PersonEstimate& person = ChoosePerson(estimate, request);
+  CheckFrames(estimate, person, request);
+  InitialPoses poses;
+  if (estimate.has_landmarks) {
+    poses.landmarks = LandmarksInCamera(person, request.camera, request.num_frames);
+    for (const MatrixX3d& frame : poses.landmarks) poses.frames += frame.rows() > 0 ? 1 : 0;
+  } else {
+    TakeMotion(estimate, person, request, &poses);
+  }
+  if (poses.frames == 0) Refuse(request.path, estimate.system + ": no pose lies in front of the camera");
+  poses.camera = request.camera;
+  poses.system = estimate.system;
+  poses.person = person.name;
+  poses.people = static_cast<int>(estimate.people.size());
+  return poses;
+}
+
+}  // namespace bodyloom
