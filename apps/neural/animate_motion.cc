@@ -57,6 +57,9 @@ void AddAnimateMotion(CLI::App& animate, Action* action) {
   verb->add_option("--data", request->data,
                    "A dataset of the same person: the result is compared with its pictures (not with --view-yaw, "
                    "--freeze or --speed)");
+  verb->add_option("--iuv", request->iuv,
+                   "With --data: what its pixels show of the body, a folder of DensePose's IUV images, or \"own\", the "
+                   "dataset's (default: the tracked body)");
   verb->add_option("--out", request->out, "The video, .mp4")->required();
   verb->add_option("--body", request->body, "The track's body (default: the built-in body)");
   verb->add_option("--view-yaw", request->view_yaw,

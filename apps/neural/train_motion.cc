@@ -63,6 +63,10 @@ void AddTrainMotion(CLI::App& train, Action* action) {
   verb->add_option("--out", request.out, "Folder of the run: config.json, checkpoint.bin, metrics.csv, previews")
       ->required();
   verb->add_option("--body", request.data.body, "The track's body (default: the built-in body)");
+  verb->add_option(
+      "--iuv", request.data.iuv,
+      "What pixels show of the body by estimates from the pictures, as in the paper's comparisons: a folder "
+      "of DensePose's IUV images, or \"own\", the single-person dataset's (default: the tracked body)");
   verb->add_option("--part-labels", request.data.part_labels,
                    "For a video: DensePose's parts (.npz), for silhouette and classes");
   AddSurfaceMotionOptions(verb, &request.data.motion, &request.cameras, &request.view);

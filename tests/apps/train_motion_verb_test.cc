@@ -284,6 +284,29 @@ TEST_F(TrainMotionVerb, TheDescriptorOf2dSystemsTrainsAndAnimates) {
   EXPECT_EQ(Train("x", {"--descriptor", "keypoints"}).exit_code, 2);
 }
 
+TEST_F(TrainMotionVerb, EstimatesFromThePicturesStandInForTheBody) {
+  const CommandResult trained = Train("run", {"--steps", "2", "--train", "0-9", "--iuv", "own", "--validate-data",
+                                              scratch_ / "person", "--validate", "10-10"});
+  ASSERT_EQ(trained.exit_code, 0) << trained.err;
+  const auto score = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {
+        "animate", "motion",           "--run",  scratch_ / "run",    "--data",   scratch_ / "person",
+        "--out",   scratch_ / "a.mp4", "--json", scratch_ / "a.json", "--warmup", "1"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const CommandResult animated = RunCommand(arguments);
+    EXPECT_EQ(animated.exit_code, 0) << animated.err;
+    return nlohmann::json::parse(FileBytes(scratch_ / "a.json"))["scores"]["image_l1"].get<double>();
+  };
+  const double of_body = score({}), of_estimates = score({"--iuv", "own"});
+  EXPECT_NE(of_body, of_estimates);
+  EXPECT_EQ(of_estimates, score({"--iuv", scratch_ / "person/iuv"}));
+  EXPECT_THAT(Train("x", {"--iuv", scratch_ / "person/iuv", "--validate-data", scratch_ / "person"}).err,
+              HasSubstr("expected \"own\""));
+  EXPECT_THAT(Train("x", {"--iuv", scratch_ / "person/labels"}).err, HasSubstr("labels/000000.png"));
+  fs::remove(scratch_ / "person/iuv/000013.png");
+  EXPECT_THAT(Train("x", {"--iuv", scratch_ / "person/iuv"}).err, HasSubstr("13 IUV images, the track has 14"));
+}
+
 TEST_F(TrainMotionVerb, SaysWhatIsWrong) {
   const auto fails = [&](const std::vector<std::string>& arguments, int code, const std::string& says) {
     const CommandResult result = RunCommand(arguments);

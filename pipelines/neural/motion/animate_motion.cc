@@ -41,8 +41,9 @@ constexpr const char *kPrepare = "prepare", *kLight = "light", *kMaps = "maps", 
                      *kCompose = "compose and encode";
 
 AnimatedClipRequest ClipOf(const AnimateMotionRequest& request) {
-  return {request.track,  request.data,  request.body,           request.view_yaw,
-          request.freeze, request.speed, request.shape_of_track, ThreadsFor(request.threads)};
+  return {request.track, request.data,           request.body,
+          request.iuv,   request.view_yaw,       request.freeze,
+          request.speed, request.shape_of_track, ThreadsFor(request.threads)};
 }
 
 void CheckRequest(const AnimateMotionRequest& request) {
@@ -138,9 +139,11 @@ class MotionAnimation {
                                            window.picture_width, "x", window.picture_height, " px, at most ",
                                            kLargestSide, " a side; the track's person is too small in its picture"));
     }
-    if (!scored_ && !(request_.like.empty() && request_.frames.empty() && request_.weights.empty())) {
+    if (!scored_ &&
+        !(request_.like.empty() && request_.frames.empty() && request_.weights.empty() && request_.iuv.empty())) {
       throw RequestError(
-          "--like, --frames and --weights compare with the pictures of --data: not without it, nor with --view-yaw, "
+          "--like, --frames, --weights and --iuv compare with the pictures of --data: not without it, nor with "
+          "--view-yaw, "
           "--freeze or --speed");
     }
     renderer_ = OpenRenderer(scored_);

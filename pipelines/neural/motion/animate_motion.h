@@ -17,6 +17,7 @@ namespace bodyloom {
 struct AnimateMotionRequest : AnimationRequest {
   std::string data;      ///< a dataset of the same person: its motion is shown and, unless the view is turned, time
                          ///< stands still or the speed is another, the result compared with its pictures
+  std::string iuv;       ///< with `data`: what its pixels show of the body (MotionDataRequest::iuv)
   std::string view_yaw;  ///< degrees that the view is turned by: "30", or "0:360" over the clip
   double speed = 1;      ///< the motion is played so many times as fast
   bool shape_of_track = false;  ///< poses the track's shape, not that of the person who was trained on

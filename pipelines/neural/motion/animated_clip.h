@@ -20,6 +20,7 @@ struct AnimatedClipRequest {
   std::string track;     ///< the motion, .npz; empty: that of `data`
   std::string data;      ///< a single-person dataset of the same person; empty: `track` alone
   std::string body;      ///< the track's body; empty: the built-in body
+  std::string iuv;       ///< with `data`: as MotionDataRequest::iuv
   std::string view_yaw;  ///< how far the view is turned (pipelines/people/view_angles.h)
   std::string freeze;    ///< where time stands still (pipelines/people/freeze.h); empty: nowhere
   double speed = 1;      ///< the motion is played so many times as fast

@@ -45,7 +45,8 @@ void FillTruth(const CutFrame& cut, MotionFrame* frame) {
 
 }  // namespace
 
-void FillMotion(const PersonFrames& frames, const DenseHistory* dense, int t, MotionFrame* frame) {
+void FillMotion(const PersonFrames& frames, const DenseHistory* dense, const EstimatedPixels* estimated, int t,
+                MotionFrame* frame) {
   const PersonWindow& window = frames.window();
   *frame = {};
   frame->width = window.width;
@@ -65,7 +66,11 @@ void FillMotion(const PersonFrames& frames, const DenseHistory* dense, int t, Mo
   }
   frame->uv.resize(2 * area);
   frame->body.resize(area);
-  frames.BodyMaps(t, frame->uv, frame->body);
+  if (estimated != nullptr) {
+    estimated->BodyMaps(window, t, frame->uv, frame->body);
+  } else {
+    frames.BodyMaps(t, frame->uv, frame->body);
+  }
 }
 
 class MotionData::Impl {
@@ -97,13 +102,16 @@ class MotionData::Impl {
     } catch (const std::invalid_argument& error) {
       throw std::runtime_error((request.track.empty() ? request.data : request.track) + ": " + error.what());
     }
-    if (request.descriptor == MotionDescriptor::kDense2d) dense_.emplace(*frames_, options.past);
+    OpenIuv(request);
+    if (request.descriptor == MotionDescriptor::kDense2d) {
+      dense_.emplace(*frames_, options.past, estimated_ ? &*estimated_ : nullptr);
+    }
     cut_.resize(track_.num_frames());
     if (!set_) CutVideo(request);
   }
 
   void Fill(int t, bool with_truth, MotionFrame* frame) {
-    FillMotion(*frames_, dense_ ? &*dense_ : nullptr, t, frame);
+    FillMotion(*frames_, dense_ ? &*dense_ : nullptr, estimated_ ? &*estimated_ : nullptr, t, frame);
     if (with_truth) FillTruth(CutAt(t), frame);
   }
 
@@ -120,6 +128,19 @@ class MotionData::Impl {
   }
 
  private:
+  void OpenIuv(const MotionDataRequest& request) {
+    if (request.iuv.empty()) return;
+    if (request.iuv == kOwnIuv && !(set_ && set_->info().has.iuv)) {
+      throw std::runtime_error(request.data + ": has no IUV images of its own");
+    }
+    const std::string folder = request.iuv == kOwnIuv ? request.data + "/iuv" : request.iuv;
+    try {
+      estimated_.emplace(*body_, folder, track_.num_frames());
+    } catch (const std::invalid_argument& error) {
+      throw std::runtime_error(folder + ": " + error.what());
+    }
+  }
+
   void CheckSizes(const MotionDataRequest& request, int num_frames, int width, int height) {
     const std::string track = request.track.empty() ? request.data + "/track.npz" : request.track;
     if (num_frames < track_.num_frames()) {
@@ -185,6 +206,7 @@ class MotionData::Impl {
   std::optional<SinglePersonDataset> set_;
   Track track_;
   std::optional<PersonFrames> frames_;
+  std::optional<EstimatedPixels> estimated_;
   std::optional<DenseHistory> dense_;
   std::mutex mutex_;
   std::vector<std::optional<CutFrame>> cut_;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "bodyloom/data_tools/descriptors/dense_history.h"
+#include "bodyloom/data_tools/descriptors/estimated_pixels.h"
 #include "bodyloom/data_tools/descriptors/person_frames.h"
 #include "bodyloom/geometry/track.h"
 #include "bodyloom/neural/motion/motion_config.h"
@@ -17,12 +18,16 @@ struct MotionDataRequest {
   std::string data;         ///< a single-person dataset, a video or a folder of images
   std::string track;        ///< empty: the single-person dataset's own
   std::string body;         ///< empty: the built-in body
+  std::string iuv;          ///< what pixels show of the body: a folder of DensePose's IUV images, or kOwnIuv, the
+                            ///< single-person dataset's; empty: what the tracked body says
   std::string part_labels;  ///< for a video: DensePose's parts, which stand in for a parsing of the clothes
   MotionDescriptor descriptor = MotionDescriptor::kSurface;
   SurfaceMotion motion;         ///< axes and velocities of the motion maps
   double pixels_per_metre = 0;  ///< of the window; 0: as large as the profile's image_size allows
   int num_threads = 0;
 };
+
+inline constexpr const char* kOwnIuv = "own";
 
 /// Where MotionData's classes come from.
 enum class LabelSource { kNone, kDataset, kPartLabels };
@@ -53,7 +58,9 @@ class MotionData {
 };
 
 /// The part of a frame that does not need pictures: the descriptor's maps, surface coordinates, the window's place.
-/// `dense`: the descriptor in the picture's plane; nullptr: the surface's motion maps.
-void FillMotion(const PersonFrames& frames, const DenseHistory* dense, int t, MotionFrame* frame);
+/// `dense`: the descriptor in the picture's plane; nullptr: the surface's motion maps. `estimated`: where pixels lie on
+/// the body; nullptr: as the tracked body has it.
+void FillMotion(const PersonFrames& frames, const DenseHistory* dense, const EstimatedPixels* estimated, int t,
+                MotionFrame* frame);
 
 }  // namespace bodyloom

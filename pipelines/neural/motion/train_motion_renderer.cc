@@ -31,6 +31,7 @@ nlohmann::ordered_json RangesJson(const std::vector<FrameRange>& ranges) {
 std::string Notes(const TrainMotionRendererRequest& request, const TrainMotionOptions& o) {
   const nlohmann::ordered_json json = {{"data", request.data.data},
                                        {"track", request.data.track},
+                                       {"iuv", request.data.iuv},
                                        {"validate_data", request.validate_data},
                                        {"train", RangesJson(o.train)},
                                        {"validate", RangesJson(o.validation)},
@@ -69,6 +70,9 @@ void LeaveOutUnknown(const MotionData& data, MotionConfig* config, const Pipelin
 std::unique_ptr<MotionData> ValidationData(const TrainMotionRendererRequest& request, const MotionDataRequest& like,
                                            const MotionData& data, const MotionConfig& config) {
   if (request.validate_data.empty()) return nullptr;
+  if (!like.iuv.empty() && like.iuv != kOwnIuv) {
+    throw RequestError("--iuv DIR holds the pictures of --data alone: with --validate-data expected \"own\"");
+  }
   MotionDataRequest other = like;
   other.data = request.validate_data;
   other.track.clear();

@@ -9,8 +9,11 @@
 #include <map>
 #include <set>
 
+#include "bodyloom/neural/guided/guided_batches.h"
 #include "bodyloom/neural/guided/guided_model.h"
+#include "bodyloom/neural/guided/guided_plan.h"
 #include "bodyloom/neural/guided/guided_renderer.h"
+#include "bodyloom/neural/guided/guided_tensors.h"
 #include "bodyloom/neural/guided/train_guided.h"
 #include "bodyloom/neural/runtime.h"
 #include "tests/neural/guided/guided_toy.h"
@@ -38,6 +41,37 @@ TrainGuidedOptions ToyOptions(const std::string& name) {
   options.report_every = options.checkpoint_every = options.validate_every = 4;
   options.run_dir = EmptyFolder(name);
   return options;
+}
+
+/// Instance norms see at work the window of one frame: in training the same window, as large as the largest of a batch.
+TEST(GuidedBatches, EveryTargetIsInItsOwnWindow) {
+  // A head and a torso low on the left, and the same high on the right.
+  PhotoSource people = ToyPeople(1, 2);
+  people.fill = [](int, int frame, PhotoFrame* out) {
+    *out = ToyPhotoFrame(0, frame == 0 ? ToyPose{-9, 4, false} : ToyPose{9, -5, false}, true);
+  };
+  const GuidedConfig config = ToyGuided();
+  const int multiple = config.Multiple();
+  std::set<int64_t> lefts;
+  for (int64_t step = 0; step < 6; ++step) {
+    const GuidedBatch batch = MakeGuidedBatch(people, config, 3, step, 2, 0);
+    ASSERT_EQ(batch.boxes.size(), 2U);
+    for (int b = 0; b < 2; ++b) {
+      const GuidedSample sample = GuidedSampleOf(3, step, b, people);
+      PhotoFrame frame;
+      people.fill(0, sample.target, &frame);
+      const CodeBox own = PersonBox(frame, multiple, 0), &box = batch.boxes[b];
+      EXPECT_EQ(box.x, own.x);
+      EXPECT_EQ(box.y, own.y);
+      EXPECT_EQ(box.width, own.width) << "both are of one size here";
+      const GuidedTensors whole = TensorsOf(std::span(&frame, 1));
+      EXPECT_TRUE(torch::equal(batch.target.image[b], CroppedPixels(whole.image, box, multiple)[0]));
+      EXPECT_TRUE(torch::equal(batch.target.classes[b], CroppedPixels(whole.classes, box, multiple)[0]));
+      lefts.insert(box.x);
+    }
+    EXPECT_EQ(batch.target.pose.size(3), batch.Whole().width * multiple);
+  }
+  EXPECT_EQ(lefts.size(), 2U);
 }
 
 TEST(GuidedTraining, LearnsAPairByHeart) {
