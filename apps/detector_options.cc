@@ -17,10 +17,9 @@ std::map<std::string, PoseNetworkSize> NetworksByName() {
 
 }  // namespace
 
-void AddDetectorOptions(CLI::App& app, PoseNetworkSize* network, double* detect_rate, std::string* models,
-                        const std::string& group) {
-  app.add_option("--detector", *network,
-                 "size of the pose network: lite, full or heavy (default), each slower and surer")
+void AddDetectorOptions(CLI::App& app, FrameDetectorOptions* detector, double* detect_rate, const std::string& group) {
+  app.add_option("--detector", detector->blazepose.network,
+                 "size of BlazePose's network: lite, full or heavy (default), each slower and surer")
       ->transform(CLI::CheckedTransformer(NetworksByName(), CLI::ignore_case).description(""))
       ->group(group)
       ->type_name("SIZE");
@@ -31,9 +30,21 @@ void AddDetectorOptions(CLI::App& app, PoseNetworkSize* network, double* detect_
       ->check(CLI::PositiveNumber)
       ->group(group)
       ->type_name("HZ");
-  app.add_option("--models", *models, "folder of the networks (default: $BODYLOOM_MODELS, or where they are installed)")
+  app.add_option("--models", detector->models,
+                 "folder of BlazePose's networks (default: $BODYLOOM_MODELS, or where they are installed)")
       ->group(group)
       ->type_name("DIR");
+  CLI::Option* pose_model =
+      app.add_option(
+             "--pose-model", detector->pose_model,
+             "a network of your own in place of BlazePose, without masks: YOLOv8-pose, YOLO11-pose or RTMPose, .onnx")
+          ->group(group)
+          ->type_name("FILE");
+  app.add_option("--box-model", detector->box_model,
+                 "with RTMPose: the network that finds people for it, YOLOv8 or YOLO11, .onnx (default: BlazePose)")
+      ->group(group)
+      ->type_name("FILE")
+      ->needs(pose_model);
 }
 
 }  // namespace bodyloom

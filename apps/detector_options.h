@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "bodyloom/data_tools/detection/pose_detector.h"
+#include "bodyloom/data_tools/detection/frame_detector.h"
 
 namespace CLI {
 class App;
@@ -12,8 +12,7 @@ class App;
 
 namespace bodyloom {
 
-/// --detector, --detect-rate and --models, in this group of the help.
-void AddDetectorOptions(CLI::App& app, PoseNetworkSize* network, double* detect_rate, std::string* models,
-                        const std::string& group);
+/// --detector, --detect-rate, --models, --pose-model and --box-model, in this group of the help.
+void AddDetectorOptions(CLI::App& app, FrameDetectorOptions* detector, double* detect_rate, const std::string& group);
 
 }  // namespace bodyloom

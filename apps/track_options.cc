@@ -39,7 +39,7 @@ void AddImageSize(CLI::App& app, TrackRequest* request) {
 
 void AddDetectionOptions(CLI::App& app, TrackRequest* request, const std::string& detect) {
   TrackRequest& c = *request;
-  AddDetectorOptions(app, &c.detector, &c.detect_rate, &c.models, detect);
+  AddDetectorOptions(app, &c.detector, &c.detect_rate, detect);
   app.add_flag_callback(
          "--no-mask", [&c] { c.use_mask = false; }, "do not use the person's mask")
       ->group(detect);
@@ -101,6 +101,19 @@ void AddSolveOptions(CLI::App& app, TrackRequest* request) {
          "--no-ground", [&s] { s.ground = GroundOptions::Off(); },
          "look for neither the vertical nor the ground that feet stand on")
       ->group(kSolve);
+  app.add_option("--rendered-weight", s.rendered_uv.weight,
+                 "of dense keypoints whose noise lies in UV, compared in UV with the rendered body (lambda_r of the "
+                 "motion paper); 0: reprojection alone")
+      ->group(kSolve)
+      ->type_name("W")
+      ->check(Quiet(CLI::Range(0.0, 1e6)))
+      ->capture_default_str();
+  app.add_option("--velocity-weight", s.velocity_weight,
+                 "of velocities, (m/s)^-2, beside accelerations (lambda_t of the motion paper); it damps motion")
+      ->group(kSolve)
+      ->type_name("W")
+      ->check(Quiet(CLI::Range(0.0, 1e6)))
+      ->capture_default_str();
   app.add_option("--straight-knees", request->straight_knees,
                  Concatenate("how strongly knees are kept straight, 1/rad, 0: not at all (default: ",
                              kBlazePoseStraightKnees, " for BlazePose's joints, which every raw video has, else 0)"))

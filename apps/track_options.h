@@ -12,7 +12,7 @@ class App;
 
 namespace bodyloom {
 
-/// --detector, --models, --no-mask, --from and --to, in this group of the help.
+/// Those of AddDetectorOptions(), --no-mask, --from and --to, in this group of the help.
 void AddDetectionOptions(CLI::App& app, TrackRequest* request, const std::string& group);
 /// --cameras and --focal.
 void AddCalibrationOptions(CLI::App& app, TrackRequest* request);

@@ -3,29 +3,22 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "apps/command_callbacks.h"
 #include "apps/exit_code.h"
 #include "apps/verbs.h"
-#include "bodyloom/data_tools/body/body_io.h"
-#include "bodyloom/data_tools/body/body_or_builtin.h"
 #include "bodyloom/pipelines/body/build_builtin_body.h"
 #include "bodyloom/pipelines/body/convert_body.h"
-#include "bodyloom/pipelines/files.h"
 
 namespace bodyloom {
 namespace {
 
 struct BodyArguments {
-  std::string body;  // info
   ConvertBodyRequest convert;
   BuildBuiltinBodyRequest make;
 };
-
-void Info(const std::string& body) {
-  RequireReadable(body, "body model");
-  std::cout << DescribeBody(*BodyOrBuiltin(body));
-}
 
 void Convert(const ConvertBodyRequest& request) {
   const ConvertBodyReport report = ConvertBody(request, CommandCallbacks());
@@ -42,7 +35,7 @@ void Make(const BuildBuiltinBodyRequest& request) {
 
 }  // namespace
 
-void AddBodyVerb(CLI::App& app, Action* action) {
+void AddBodyVerb(CLI::App& app, Action* action, std::vector<std::string> command, FindCrossingFaces crossing) {
   CLI::App* verb = app.add_subcommand("body", "Describes, converts and makes body models");
   verb->require_subcommand(1);
   verb->footer(kExitCodeHelp);
@@ -50,11 +43,7 @@ void AddBodyVerb(CLI::App& app, Action* action) {
   ConvertBodyRequest& to_convert = arguments->convert;
   BuildBuiltinBodyRequest& to_make = arguments->make;
 
-  CLI::App* info = verb->add_subcommand("info", "Prints what a body file holds and what it lacks");
-  info->add_option("--body,body", arguments->body, "body model (default: the built-in body)")->type_name("FILE");
-  info->footer("Example:\n  bodyloom body info SMPL_NEUTRAL.pkl\n");
-  info->callback([arguments, action] { *action = [arguments] { Info(arguments->body); }; });
-
+  AddBodyInfo(*verb, action, std::move(command), std::move(crossing));
   CLI::App* convert = verb->add_subcommand("convert", "Turns any readable body into one compact file");
   convert->add_option("--body", to_convert.body, "SMPL, SMPL-H or SMPL-X .pkl or .npz")->required()->type_name("FILE");
   convert->add_option("--out", to_convert.out, "the compact body, .npz")->required()->type_name("FILE");

@@ -20,9 +20,11 @@ constexpr const char* kDetectFooter =
     "Everybody in the video is found and followed by BlazePose (33 landmarks), on the processor. The networks come "
     "with\n"
     "./dev models, from --models, or from the folder that $BODYLOOM_MODELS names.\n"
+    "--pose-model is YOLO-pose or RTMPose in its place, as an ONNX file of yours (docs/detection.md).\n"
     "--dense-model is DensePose as TorchScript (docs/detection.md), which needs the neural half of the program.\n"
     "Examples:\n"
     "  bodyloom detect --video clip.mp4 --dense-model densepose_r50_fpn_dl.torchscript --dense-out dense.npz\n"
+    "  bodyloom detect --video clip.mp4 --pose-model yolo11n-pose.onnx --out detections.npz\n"
     "  bodyloom detect --video clip.mp4 --out detections.npz --mask mask.npz\n"
     "then\n"
     "  bodyloom track --detections detections.npz --part-labels mask.npz --video clip.mp4 --out track.npz\n\n";
@@ -59,28 +61,28 @@ void AddDetectVerb(CLI::App& app, Action* action, std::vector<std::string> argum
   auto parsed = std::make_shared<Parsed>();
   DetectClipRequest* request = &parsed->request;
   DetectPeopleRequest& detect = request->detect;
-  PeopleDetectorOptions& detector = detect.detector;
+  PeopleDetectorOptions& blazepose = detect.detector.blazepose;
   verb->add_option("--video", detect.video, "the video, or a folder of images")->required()->type_name("PATH");
   verb->add_option("--out", request->out, "everybody's landmarks, .npz")->type_name("FILE");
   verb->add_option("--mask", request->mask, "the mask of one person, .npz")->type_name("FILE");
   verb->add_option("--person", request->person, "whose mask and dense keypoints: 0 is the largest and longest in view")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
-  verb->add_option("--people", detector.max_people, "follow at most so many people at a time (0: everybody)")
+  verb->add_option("--people", blazepose.max_people, "follow at most so many people at a time (0: everybody)")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
-  AddDetectorOptions(*verb, &detector.network, &detect.detect_rate, &detect.models, "Options");
+  AddDetectorOptions(*verb, &detect.detector, &detect.detect_rate, "Options");
   verb->add_option("--from", detect.span.from_s, "begin at this second")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
   verb->add_option("--to", detect.span.to_s, "end with this second (default: the end)")->check(CLI::NonNegativeNumber);
   verb->add_option("--fps", detect.span.fps, "frame rate of a folder of images (default 30)")
       ->check(CLI::PositiveNumber);
-  verb->add_option("--search-interval", detector.search_interval, "frames between searches for new people")
+  verb->add_option("--search-interval", blazepose.search_interval, "frames between BlazePose's searches for new people")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
-  verb->add_option("--tiles", detector.tile_levels,
-                   "search squares of down to 1/N of the longer side: finds people from about 0.28/N of it")
+  verb->add_option("--tiles", blazepose.tile_levels,
+                   "BlazePose searches squares of down to 1/N of the longer side: finds people from about 0.28/N of it")
       ->capture_default_str()
       ->check(CLI::Range(1, 8));
   verb->add_option("--json", request->json, "who was found, and times")->type_name("FILE");

@@ -15,14 +15,21 @@ namespace bodyloom {
 namespace {
 
 constexpr const char* kExportFooter =
-    "What is written (camera frame, metres, unless stated otherwise):\n"
-    "  vertices   .npy, frames x vertices x 3, float32; lost frames are NaN\n"
-    "  joints     .npy, frames x joints x 3, float64; lost frames are NaN\n"
-    "  obj        a folder with frame_000000.obj ..., lost frames left out; with --frame one .obj file\n"
+    "What is written (in the clip's world: metres, y up, ground at y = 0; unless stated otherwise):\n"
+    "  vertices   .npy, frames x vertices x 3, float32; lost frames are NaN; --axes\n"
+    "  joints     .npy, frames x joints x 3, float64; lost frames are NaN; --axes\n"
+    "  obj        a folder with frame_000000.obj ..., lost frames left out; with --frame one .obj file; --axes\n"
     "  amass      .npz as AMASS has it: SMPL-H's 156 pose columns, z up\n"
-    "  bvh        for animation programs: centimetres, y up\n"
+    "  smplx      .npz in AMASS' SMPL-X form, which GMR and other retargeters read: z up\n"
+    "  bvh        for animation programs: centimetres; --rig\n"
+    "  glb        glTF 2.0: skinned, textured, animated bodies, camera and ground; several --track, --texture\n"
+    "  usd        the same as .usda text; several --track\n"
+    "  trc, c3d   22 markers of HALPE_26 for OpenSim, Pose2Sim and others: metres, millimetres\n"
+    "  colmap     a folder with the camera as a COLMAP text model; several --track\n"
+    "  pose2sim   the camera as Calib.toml, z up\n"
     "Examples:\n"
-    "  bodyloom export --track track.npz --what bvh --out motion.bvh\n"
+    "  bodyloom export --track track.npz --what bvh --rig mixamo --out motion.bvh\n"
+    "  bodyloom export --track results/person_0.npz --track results/person_1.npz --what glb --out people.glb\n"
     "  bodyloom export --track track.npz --what obj --frame 120 --out frame.obj\n\n";
 
 std::vector<std::string> SortedNames() {
@@ -34,12 +41,16 @@ std::vector<std::string> SortedNames() {
 }  // namespace
 
 void AddExportVerb(CLI::App& app, Action* action) {
-  CLI::App* verb = app.add_subcommand("export", "Writes a track in another form: vertices, joints, OBJ, AMASS, BVH");
+  CLI::App* verb =
+      app.add_subcommand("export", "Writes tracks in another form: glTF, USD, BVH, AMASS, TRC, C3D, COLMAP, arrays");
   verb->footer(std::string(kExportFooter) + kExitCodeHelp);
   auto request = std::make_shared<ExportTrackRequest>();
   auto form = std::make_shared<std::string>();
+  auto axes = std::make_shared<std::string>("camera"), rig = std::make_shared<std::string>("smpl");
   ExportTrackRequest& c = *request;
-  verb->add_option("--track", c.track, "the track, .npz")->required()->type_name("FILE");
+  verb->add_option("--track", c.tracks, "the track, .npz; several times for people of one clip")
+      ->required()
+      ->type_name("FILE");
   verb->add_option("--what", *form, "what to write (below)")
       ->required()
       ->check(CLI::IsMember(SortedNames()))
@@ -47,11 +58,23 @@ void AddExportVerb(CLI::App& app, Action* action) {
   verb->add_option("--out", c.out, "where to write it")->required()->type_name("PATH");
   verb->add_option("--body", c.body, "the track's body (default: the built-in body)")->type_name("FILE");
   verb->add_option("--frame", c.frame, "obj: only this frame, counted from 0")->check(CLI::NonNegativeNumber);
-  verb->callback([request, form, action] {
-    *action = [request, form] {
+  verb->add_option("--axes", *axes, "vertices, joints, obj: camera or world")
+      ->check(CLI::IsMember({"camera", "world"}))
+      ->capture_default_str();
+  verb->add_option("--rig", *rig, "bvh: names and rest pose: smpl, mixamo (T-pose) or unreal (A-pose)")
+      ->check(CLI::IsMember(BvhRigNames()))
+      ->capture_default_str();
+  verb->add_option("--texture", c.textures, "glb: the person's texture, .png; by track")->type_name("FILE");
+  verb->add_option("--correctives", c.correctives, "glb, usd: shapes that hold the pose correctives")
+      ->check(CLI::Range(0, 64))
+      ->capture_default_str();
+  verb->callback([=] {
+    *action = [=] {
       request->form = TrackFormFromString(*form);
+      request->rig = BvhRigFromString(*rig);
+      request->world_axes = *axes == "world";
       const ExportTrackReport report = ExportTrack(*request, CommandCallbacks());
-      std::cout << "wrote " << report.out << "\n";
+      std::cout << ToText(report);
     };
   });
 }

@@ -57,6 +57,14 @@ void AddMetricsVerb(CLI::App& app, Action* action, std::vector<std::string> argu
   verb->add_flag("--common", c.common_only, "compare the frames that both folders have, instead of asking for all");
   verb->add_option("--json", c.json, "also write the means as JSON")->type_name("FILE");
   verb->add_option("--csv", c.csv, "also write a line a frame")->type_name("FILE");
+  CLI::Option* pictures = verb->add_option(
+      "--pictures", c.pictures, "folder: of every pair of images truth, result and error in colours, side by side");
+  pictures->type_name("DIR");
+  verb->add_option("--error-max", c.error_maximum, "of the pictures: error of the last colour, grey levels")
+      ->check(CLI::PositiveNumber)
+      ->type_name("NUMBER")
+      ->needs(pictures)
+      ->capture_default_str();
   verb->add_option("--threads", c.num_threads, "0: all cores; numbers are the same for any number")
       ->check(CLI::Range(0, 256))
       ->capture_default_str();

@@ -1,41 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 // `bodyloom neural ...` becomes `bodyloom-neural ...`: LibTorch adds 0.4 s to the start of any program linked with it,
-// so what needs it lives in an executable of its own, beside this one.
-#include <unistd.h>
-
+// so what needs it lives in an executable of its own, beside this one. `train` and `animate` have verbs of both kinds.
 #include <CLI/CLI.hpp>
-#include <cerrno>
 #include <cstdlib>
-#include <cstring>
-#include <filesystem>
+#include <initializer_list>
 #include <memory>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "apps/avatar_verbs.h"
+#include "apps/exec_beside.h"
 #include "apps/exec_neural.h"
 #include "apps/verbs.h"
 
 namespace bodyloom {
 
 void ExecNeural(const std::vector<std::string>& arguments) {
-  const std::filesystem::path program =
-      std::filesystem::read_symlink("/proc/self/exe").parent_path() / "bodyloom-neural";
-  std::vector<char*> argv = {const_cast<char*>(program.c_str())};
-  for (const std::string& argument : arguments) {
-    argv.push_back(const_cast<char*>(argument.c_str()));
-  }
-  argv.push_back(nullptr);
   // Threads that spin between operations take the processor from whatever else runs: beside other work a network took
   // 1.6 times as long. A user's own choice stays.
   setenv("OMP_WAIT_POLICY", "passive", 0);
-  execv(program.c_str(), argv.data());
-  if (errno == ENOENT) {
-    throw std::runtime_error(program.string() +
-                             ": not there: the neural verbs were not built; install libtorch-dev and build again");
-  }
-  throw std::runtime_error(program.string() + ": cannot be started: " + std::strerror(errno));
+  ExecBeside("bodyloom-neural", arguments);
+  throw std::runtime_error(ProgramBeside("bodyloom-neural").string() +
+                           ": not there: the neural verbs were not built; install libtorch-dev and build again");
 }
 
 namespace {
@@ -54,6 +42,21 @@ void AddPassedOnVerb(CLI::App& app, const char* name, const char* what, std::vec
   });
 }
 
+struct PassedOn {
+  const char *name, *what;
+};
+
+/// `train` or `animate`: a verb of verbs, most of which need LibTorch.
+CLI::App* AddVerbOfVerbs(CLI::App& app, const char* name, const char* what, std::initializer_list<PassedOn> passed_on,
+                         Action* action) {
+  CLI::App* verb = app.add_subcommand(name, what);
+  verb->require_subcommand(1);
+  for (const PassedOn& other : passed_on) {
+    AddPassedOnVerb(*verb, other.name, other.what, {name, other.name}, action);
+  }
+  return verb;
+}
+
 }  // namespace
 
 void AddNeuralVerb(CLI::App& app, Action* action) {
@@ -61,12 +64,24 @@ void AddNeuralVerb(CLI::App& app, Action* action) {
 }
 
 void AddTrainVerb(CLI::App& app, Action* action) {
-  AddPassedOnVerb(app, "train", "Trains a network: `bodyloom train motion --help`", {"train"}, action);
+  CLI::App* train = AddVerbOfVerbs(
+      app, "train", "Learns a person or trains a network: `bodyloom train avatar --help`",
+      {{"motion", "Trains a renderer of one person's motion-dependent appearance (needs LibTorch)"},
+       {"photo", "Trains a renderer that needs one photo of a person (needs LibTorch)"},
+       {"animate", "Trains a renderer that animates anybody from one photo (needs LibTorch)"},
+       {"lifter", "Trains the network that lifts 2D joints to 3D from recorded motion (needs LibTorch)"}},
+      action);
+  AddTrainAvatar(*train, action);
 }
 
 void AddAnimateVerb(CLI::App& app, Action* action) {
-  AddPassedOnVerb(app, "animate", "Renders a person with a trained network: `bodyloom animate motion --help`",
-                  {"animate"}, action);
+  CLI::App* animate = AddVerbOfVerbs(
+      app, "animate", "Renders a person that was learned: `bodyloom animate avatar --help`",
+      {{"motion", "Renders a person that `bodyloom train motion` learned (needs LibTorch)"},
+       {"photo", "Renders a person from one photo, in any motion (needs LibTorch)"},
+       {"animate", "Animates the person of a photo, as `bodyloom train animate` learned to (needs LibTorch)"}},
+      action);
+  AddAnimateAvatar(*animate, action);
 }
 
 }  // namespace bodyloom

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "bodyloom/pipelines/body/check_body.h"
 #include "bodyloom/pipelines/detect/detect_dense.h"
 
 namespace CLI {
@@ -40,7 +41,11 @@ void AddExportVerb(CLI::App& app, Action* action);
 void AddRenderVerb(CLI::App& app, Action* action);
 void AddDescribeVerb(CLI::App& app, Action* action);
 void AddTextureVerb(CLI::App& app, Action* action);
-void AddBodyVerb(CLI::App& app, Action* action);
+/// `crossing` finds the faces of a body that cross each other; without it `info --check` goes on in the executable that
+/// has it, where there is one, which takes `arguments`, those of this one.
+void AddBodyVerb(CLI::App& app, Action* action, std::vector<std::string> arguments, FindCrossingFaces crossing = {});
+/// `body info`, of the verb `body`.
+void AddBodyInfo(CLI::App& verb, Action* action, std::vector<std::string> arguments, FindCrossingFaces crossing);
 void AddDemoVerb(CLI::App& app, Action* action);
 void AddPriorVerb(CLI::App& app, Action* action);
 void AddMotionsVerb(CLI::App& app, Action* action);

@@ -4,11 +4,13 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "bodyloom/geometry/arrays.h"
 #include "bodyloom/geometry/camera.h"
+#include "bodyloom/geometry/world_frame.h"
 
 namespace bodyloom {
 
@@ -44,6 +46,8 @@ struct Track {
   std::vector<MatrixX3d> joints;          ///< T of J×3
   std::vector<MatrixX3d> coco17;          ///< T of 17×3
   RowMatrixXd joint_sigma;                ///< T×J standard deviation of each joint's position, metres (NaN: unknown)
+  /// Where up and the ground are; nothing: the track does not say (render/track_world.h then assumes a level camera).
+  std::optional<WorldFrame> world;
   [[nodiscard]] int num_frames() const { return motion.num_frames(); }
   /// The camera of frame t: `camera`, with (s, tx, ty) of that frame for weak perspective.
   [[nodiscard]] Camera CameraAt(int t) const;

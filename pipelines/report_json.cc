@@ -13,6 +13,19 @@ nlohmann::ordered_json ToJson(const StageSeconds& seconds) {
   return stages;
 }
 
+nlohmann::ordered_json ToJson(const WorldFrame& world) {
+  nlohmann::ordered_json matrix = nlohmann::ordered_json::array();
+  for (int r = 0; r < 3; ++r) {
+    matrix.push_back({world.rotation(r, 0), world.rotation(r, 1), world.rotation(r, 2), world.translation[r]});
+  }
+  matrix.push_back({0, 0, 0, 1});
+  return {{"source", ToString(world.source)},
+          {"vertical_sigma_deg", world.vertical_sigma_deg},
+          {"height_sigma_m", world.height_sigma_m},
+          {"camera_height_m", world.camera_height_m()},
+          {"world_from_camera", matrix}};
+}
+
 void WriteReport(const std::string& path, const nlohmann::ordered_json& report) {
   if (!path.empty()) WriteFileAtomically(path, report.dump(2) + "\n");
 }

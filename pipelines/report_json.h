@@ -6,11 +6,15 @@
 #include <string>
 
 #include "bodyloom/geometry/base/stopwatch.h"
+#include "bodyloom/geometry/world_frame.h"
 
 namespace bodyloom {
 
 /// {"stage": seconds, …}
 nlohmann::ordered_json ToJson(const StageSeconds& seconds);
+
+/// {"source", "vertical_sigma_deg", "height_sigma_m", "camera_height_m", "world_from_camera": 4×4}
+nlohmann::ordered_json ToJson(const WorldFrame& world);
 
 /// Writes a report, whole or not at all; an empty path: none.
 void WriteReport(const std::string& path, const nlohmann::ordered_json& report);

@@ -8,6 +8,7 @@
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/render/error_colours.h"
 #include "bodyloom/render/palette.h"
 #include "bodyloom/render/view_camera.h"
 
@@ -37,6 +38,7 @@ ResolveRequest RequestOf(const AttributePictureOptions& options) {
   request.normal = options.attribute == SurfaceAttribute::kNormal;
   request.depth = options.attribute == SurfaceAttribute::kDepth;
   if (options.attribute == SurfaceAttribute::kTexture) request.texel_attributes = {options.texture};
+  if (options.attribute == SurfaceAttribute::kError) request.vertex_attributes = {{options.vertex_errors, 1}};
   return request;
 }
 
@@ -62,6 +64,10 @@ class Colouring {
       case SurfaceAttribute::kDepth: {
         const double share = (pixels_.depth_m[i] - options_.near_m) / (options_.far_m - options_.near_m);
         return depth_colours_[static_cast<size_t>(std::lround(255 * std::clamp(share, 0.0, 1.0)))];
+      }
+      case SurfaceAttribute::kError: {
+        const Colour c = ErrorColour(pixels_.vertex_attributes[0][i] / options_.error_maximum);
+        return {float(c.blue), float(c.green), float(c.red)};
       }
       case SurfaceAttribute::kTexture:
         break;
@@ -90,6 +96,8 @@ void AttributePainter::Draw(const BodyModel& body, const MatrixX3d& vertices, co
                  "attribute picture: depth from ", options.near_m, " to ", options.far_m, " m");
   BODYLOOM_CHECK(options.attribute != SurfaceAttribute::kTexture || options.texture.channels == 3,
                  "attribute picture: a texture of ", options.texture.channels, " channels, expected 3");
+  BODYLOOM_CHECK(options.attribute != SurfaceAttribute::kError || options.error_maximum > 0,
+                 "attribute picture: errors up to ", options.error_maximum, ", expected more than 0");
   const int n = options.samples;
   const Camera fine = ScaledCamera(camera, n);
   buffer_.Render(vertices, body.data().faces, fine, {.num_threads = options.num_threads});

@@ -6,8 +6,10 @@
 ///   normal   camera frame: red = right, green = up, blue = towards the viewer, each (1 + component) / 2
 ///   depth    near is warm, far is cold (OpenCV's "turbo"), linear between two depths
 ///   texture  a UV map of colours over the body's atlas
+///   error    a number a vertex, in the colours of render/error_colours.h
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,14 +22,16 @@
 
 namespace bodyloom {
 
-enum class SurfaceAttribute { kParts, kIuv, kNormal, kDepth, kTexture };
+enum class SurfaceAttribute { kParts, kIuv, kNormal, kDepth, kTexture, kError };
 
 struct AttributePictureOptions {
   SurfaceAttribute attribute = SurfaceAttribute::kParts;
-  double near_m = 1, far_m = 5;  ///< depth: where the colours begin and end
-  TexelAttribute texture = {};   ///< texture: three channels blue, green, red, 0…255
-  int samples = 2;               ///< a pixel along x and y, 1..8: their colours are averaged, never their coordinates
-  int num_threads = 1;           ///< the picture is the same for any number
+  double near_m = 1, far_m = 5;               ///< depth: where the colours begin and end
+  TexelAttribute texture = {};                ///< texture: three channels blue, green, red, 0…255
+  std::span<const float> vertex_errors = {};  ///< error: one a vertex; NaN where it is not known
+  double error_maximum = 1;                   ///< error: the last colour
+  int samples = 2;      ///< a pixel along x and y, 1..8: their colours are averaged, never their coordinates
+  int num_threads = 1;  ///< the picture is the same for any number
 };
 
 /// UV map of an image's colours, for AttributePictureOptions::texture (which borrows it).

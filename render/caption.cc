@@ -55,13 +55,30 @@ cv::Mat PanelMask(int width, int height, int radius) {
 
 }  // namespace
 
+double WidthOfWords(const std::string& text, double cap_px) {
+  int baseline = 0;
+  const double width = cv::getTextSize(Printable(text), kFont, cap_px * kFine / kCapHeight, 1, &baseline).width;
+  return width / kFine;
+}
+
+void DrawWords(const std::string& text, int x, int baseline, double cap_px, Colour colour, Image* image) {
+  // A picture of the words with room for what hangs below the line, and the part of it that lies in the image.
+  const int above = static_cast<int>(std::ceil(1.4 * cap_px)), below = static_cast<int>(std::ceil(0.6 * cap_px));
+  const cv::Rect words(x - 2, baseline - above, static_cast<int>(std::ceil(WidthOfWords(text, cap_px))) + 6,
+                       above + below);
+  const cv::Rect seen = words & cv::Rect(0, 0, image->width, image->height);
+  if (seen.empty()) return;
+  cv::Mat letters(words.height * kFine, words.width * kFine, CV_8UC1, cv::Scalar(0));
+  cv::putText(letters, Printable(text), {2 * kFine, above * kFine}, kFont, cap_px * kFine / kCapHeight, 255,
+              std::max(1, int(std::lround(cap_px * kFine / 7.5))), cv::LINE_AA);
+  Tint(Shrunk(letters)(seen - words.tl()), colour, 1, MatOf(image)(seen));
+}
+
 void DrawCaption(const std::vector<CaptionLine>& lines, Corner corner, double height_px, Image* image) {
   if (lines.empty() || image->empty()) return;
   double cap = height_px > 0 ? height_px : std::max(9.0, std::min(image->width, image->height) / 45.0);
   const auto line_width = [&](const CaptionLine& line, double cap_px) {
-    int baseline = 0;
-    const double text = cv::getTextSize(Printable(line.text), kFont, cap_px * kFine / kCapHeight, 1, &baseline).width;
-    return text / kFine + (line.mark != CaptionLine::Mark::kNone ? 1.5 * cap_px : 0.0);
+    return WidthOfWords(line.text, cap_px) + (line.mark != CaptionLine::Mark::kNone ? 1.5 * cap_px : 0.0);
   };
   double widest = 0;
   for (const CaptionLine& line : lines) widest = std::max(widest, line_width(line, cap));
@@ -73,8 +90,7 @@ void DrawCaption(const std::vector<CaptionLine>& lines, Corner corner, double he
   }
 
   const int padding = static_cast<int>(std::lround(0.9 * cap)), margin = static_cast<int>(std::lround(1.1 * cap));
-  const int step = static_cast<int>(std::lround(1.85 * cap)),
-            thickness = std::max(1, int(std::lround(cap * kFine / 7.5)));
+  const int step = static_cast<int>(std::lround(1.85 * cap));
   const int width = static_cast<int>(std::ceil(widest)) + 2 * padding;
   const int height = static_cast<int>(lines.size() - 1) * step + static_cast<int>(std::lround(1.1 * cap)) + 2 * padding;
   if (width + margin > image->width || height + margin > image->height) return;
@@ -85,7 +101,6 @@ void DrawCaption(const std::vector<CaptionLine>& lines, Corner corner, double he
   cv::Mat target = MatOf(image)(panel);
   Tint(PanelMask(width, height, std::max(2, static_cast<int>(0.55 * cap))), kInkColour, 0.72, target);
 
-  cv::Mat letters(height * kFine, width * kFine, CV_8UC1, cv::Scalar(0));
   for (size_t i = 0; i < lines.size(); ++i) {
     const int baseline = padding + static_cast<int>(i) * step + static_cast<int>(std::lround(cap));
     int x = padding;
@@ -98,10 +113,8 @@ void DrawCaption(const std::vector<CaptionLine>& lines, Corner corner, double he
       Tint(Shrunk(dot), lines[i].colour, 1, target);
       x += static_cast<int>(std::lround(1.5 * cap));
     }
-    cv::putText(letters, Printable(lines[i].text), {x * kFine, baseline * kFine}, kFont, cap * kFine / kCapHeight, 255,
-                thickness, cv::LINE_AA);
+    DrawWords(lines[i].text, panel.x + x, panel.y + baseline, cap, kPaperColour, image);
   }
-  Tint(Shrunk(letters), kPaperColour, 1, target);
 }
 
 }  // namespace bodyloom

@@ -23,4 +23,10 @@ struct CaptionLine {
 /// line that is too long for the image is made smaller. Nothing is drawn for an empty list.
 void DrawCaption(const std::vector<CaptionLine>& lines, Corner corner, double height_px, Image* image);
 
+/// One line without a panel: letters cap_px high standing on `baseline`, the first at x. What falls outside is left
+/// out.
+void DrawWords(const std::string& text, int x, int baseline, double cap_px, Colour colour, Image* image);
+/// How wide that is, pixels.
+double WidthOfWords(const std::string& text, double cap_px);
+
 }  // namespace bodyloom

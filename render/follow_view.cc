@@ -78,6 +78,7 @@ std::vector<MatrixX3d> TrackJoints(const BodyModel& body, const Track& track) {
 
 Vector3d EstimatedUp(const Track& track) {
   constexpr double kSteadiness = 0.95, kFurthest_deg = 40;
+  if (track.world && track.world->source != WorldSource::kLevelCamera) return track.world->up_in_camera();
   const Vector3d camera_up = -Vector3d::UnitY();
   Vector3d sum = Vector3d::Zero();
   int known = 0;

@@ -13,7 +13,7 @@ namespace bodyloom {
 /// Joints (J×3, camera frame) of every frame of a track; no rows where a frame is lost.
 std::vector<MatrixX3d> TrackJoints(const BodyModel& body, const Track& track);
 
-/// The vertical of a clip, camera frame: the mean direction of the pelvis' upward axis, when it hardly changes (a
+/// The vertical of a clip, camera frame: that of the track's world, when it was found; else the mean direction of the pelvis' upward axis, when it hardly changes (a
 /// person on its feet) and lies within 40° of the camera's; the camera's own (−y) otherwise. A tilted camera needs no
 /// more than this for a floor that looks level; it is an estimate, a few degrees off.
 Eigen::Vector3d EstimatedUp(const Track& track);

@@ -22,6 +22,10 @@ void CheckMaps(size_t pixels, int num_channels, size_t values) {
                  num_channels, " x ", pixels);
 }
 
+}  // namespace
+
+namespace uv_fill_internal {
+
 /// Taps of each gutter texel at the surface point it shows; those of whole charts only.
 struct GutterTaps {
   std::vector<std::pair<int, UvTaps>> taps;
@@ -80,7 +84,9 @@ struct GutterTaps {
   }
 };
 
-}  // namespace
+}  // namespace uv_fill_internal
+
+using uv_fill_internal::GutterTaps;
 
 struct PyramidFill::Pyramid {
   struct Level {

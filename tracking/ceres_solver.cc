@@ -13,6 +13,7 @@
 #include "bodyloom/tracking/residuals/compressed_frame_cost.h"
 #include "bodyloom/tracking/residuals/linear_cost.h"
 #include "bodyloom/tracking/residuals/rotation_manifold.h"
+#include "bodyloom/tracking/residuals/velocity_cost.h"
 #include "bodyloom/tracking/serial_openmp.h"
 #include "bodyloom/tracking/terms/own/neighbours_cost.h"
 
@@ -94,6 +95,22 @@ void AddSmoothness(const SequenceProblem& problem, Parameters* x, ceres::Problem
   }
 }
 
+void AddVelocities(const SequenceProblem& problem, Parameters* x, ceres::Problem* ceres_problem) {
+  if (problem.velocity_weight <= 0) return;
+  const std::vector<double> joint_sigma = JointVelocitySigma(problem);
+  const std::array<double, 3> root_sigma = RootVelocitySigma(problem);
+  for (size_t t = 1; t < problem.states.size(); ++t) {
+    if (problem.cut_before[t]) continue;
+    const double dt = problem.timestamps[t] - problem.timestamps[t - 1];
+    for (int a = 0; a < x->num_active; ++a) {
+      ceres_problem->AddResidualBlock(new RotationVelocityCost(dt, joint_sigma[problem.layout.active_joints[a]]),
+                                      nullptr, x->Rotation(t - 1, a), x->Rotation(t, a));
+    }
+    ceres_problem->AddResidualBlock(new VectorVelocityCost(dt, root_sigma.data()), nullptr, x->Translation(t - 1),
+                                    x->Translation(t));
+  }
+}
+
 void AddSharedPriors(const SequenceProblem& problem, Parameters* x, ceres::Problem* ceres_problem) {
   if (problem.layout.num_betas > 0) {
     RowMatrixXd A;
@@ -167,6 +184,7 @@ SolveReport SolveWithCeres(SequenceProblem* problem, const SolveOptions& options
     ceres_problem.AddResidualBlock(batch.Add(std::move(cost), blocks), nullptr, blocks);
   }
   AddSmoothness(*problem, &x, &ceres_problem);
+  AddVelocities(*problem, &x, &ceres_problem);
   AddSharedPriors(*problem, &x, &ceres_problem);
   AddNeighbours(*problem, &x, &ceres_problem);
   if (options.shape_constant && problem->layout.num_betas > 0) ceres_problem.SetParameterBlockConstant(x.betas.data());

@@ -19,6 +19,7 @@
 #include "bodyloom/tracking/terms/own/own_terms.h"
 #include "bodyloom/tracking/track_plan.h"
 #include "bodyloom/tracking/track_result.h"
+#include "bodyloom/tracking/track_world.h"
 #include "bodyloom/tracking/uncertainty.h"
 
 namespace bodyloom {
@@ -155,6 +156,7 @@ void ClipFit::Observe() {
     summary_.num_observations += static_cast<int>(frame.landmarks.seen.size() + frame.dense.size());
   }
   AddOwnTerms(options_.own_terms, &problem_);
+  problem_.velocity_weight = options_.velocity_weight;
   // Detections of a frame and of its neighbours err together (COCO joints are not the body's, and detectors are off for
   // a third of a second at a time), so frames do not outvote the shape prior as independent measurements would.
   problem_.shape_prior.weight = std::max(1.0, options_.shape_prior_weight * static_cast<double>(T));
@@ -229,6 +231,7 @@ void ClipFit::Finish(TrackSequenceResult* result) {
   SummariseImageTerms(problem_, dense_rounds_->has_rendered_uv(), part_label_rounds_->any(), &summary_);
   summary_.own_terms = SummariseOwnTerms(options_.own_terms, problem_);
   ground_->Summarise(problem_, &summary_);
+  result->track.world = WorldOfGround(summary_.ground, result->track.joints);
   clock_.Book("finish");
   summary_.focal_log_sigma = problem_.layout.focal_column < 0 ? 0 : std::numeric_limits<double>::quiet_NaN();
   if (options_.estimate_uncertainty) {

@@ -59,6 +59,20 @@ std::array<double, 3> RootAccelerationSigma(const SequenceProblem& problem, int 
   return {weak ? smooth.weak_scale_acceleration : sigma, sigma, sigma};
 }
 
+std::vector<double> JointVelocitySigma(const SequenceProblem& problem) {
+  std::vector<double> sigma = JointLevers(*problem.layout.model);
+  for (double& s : sigma) s = 1 / (s * std::sqrt(problem.velocity_weight));
+  return sigma;
+}
+
+std::array<double, 3> RootVelocitySigma(const SequenceProblem& problem) {
+  // A change of log scale is to one of place as their accelerations are.
+  const Smoothness usual;
+  const double sigma = 1 / std::sqrt(problem.velocity_weight);
+  const bool weak = problem.layout.knowledge == CameraKnowledge::kWeak;
+  return {weak ? sigma * usual.weak_scale_acceleration / usual.root_acceleration : sigma, sigma, sigma};
+}
+
 bool HasCostsWithNext(const SequenceProblem& problem, size_t t) {
   return t + 1 < problem.frames.size() && !problem.frames[t].own.with_next.empty() && problem.cut_before[t + 1] == 0;
 }
@@ -71,6 +85,7 @@ SequenceProblem SelectFrames(const SequenceProblem& problem, const std::vector<i
   coarse.log_focal_prior = problem.log_focal_prior;
   coarse.log_focal_sigma = problem.log_focal_sigma;
   coarse.smoothness = problem.smoothness;
+  coarse.velocity_weight = problem.velocity_weight;
   coarse.shape_prior = problem.shape_prior;
   int previous = -1;
   for (int t : frames) {

@@ -40,6 +40,7 @@ struct SequenceProblem {
   double log_focal = 0;
   double log_focal_prior = 0, log_focal_sigma = FocalPrior().log_sigma;
   std::vector<Smoothness> smoothness = {Smoothness()};  ///< smoothness of each shot, or one for all of them
+  double velocity_weight = 0;  ///< λ_t of the velocities (residuals/velocity_cost.h); 0: none. Not for a moving window
   ShapePrior shape_prior;
 };
 
@@ -64,6 +65,11 @@ std::vector<double> JointAccelerationSigma(const SequenceProblem& problem, int s
 
 /// σ of the acceleration of the three translation parameters (metres, or log scale and offsets for weak perspective).
 std::array<double, 3> RootAccelerationSigma(const SequenceProblem& problem, int shot = 0);
+
+/// σ of each body joint's angular velocity, rad/s, and of the velocity of the three translation parameters: what moves
+/// the far end of what a joint moves, or the root, at 1/√velocity_weight m/s.
+std::vector<double> JointVelocitySigma(const SequenceProblem& problem);
+std::array<double, 3> RootVelocitySigma(const SequenceProblem& problem);
 
 /// Rest-pose distance from a joint to the farthest joint below it, metres (at least 0.1): the lever that turns a linear
 /// acceleration into an angular one.

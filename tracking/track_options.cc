@@ -22,6 +22,7 @@ bool TrackSequenceOptions::IsValid(std::string* why) const {
   if (!in_range("function_tolerance", function_tolerance, 0, 1) || !in_range("lifter_weight", lifter_weight, 0, 1e6) ||
       !in_range("lifter_min_sigma_m", lifter_min_sigma_m, 1e-6, 1e3) ||
       !in_range("straight_knees_weight", straight_knees_weight, 0, 1e6) ||
+      !in_range("velocity_weight", velocity_weight, 0, 1e6) ||
       !in_range("ground.contact_weight", ground.contact_weight, 0, 1e6) ||
       !in_range("ground.sigma_height_m", ground.sigma_height_m, 1e-4, 1e3) ||
       !in_range("ground.sigma_slide_m", ground.sigma_slide_m, 1e-4, 1e3) ||

@@ -40,6 +40,8 @@ struct TrackSequenceOptions {
   /// Of knees being straight, 1/rad (terms/straight_knees.h); 0: off. For detectors whose hips lie low on the body, as
   /// BlazePose's do.
   double straight_knees_weight = 0;
+  /// λ_t of paper A, of velocities beside accelerations, 1/(m/s)² (residuals/velocity_cost.h); 0: off. It damps motion.
+  double velocity_weight = 0;
   double coarse_rate = 15;          ///< frames a second of the coarse stages
   double shape_prior_weight = 0.3;  ///< of the shape prior, a frame
   bool fit_smoothness = true;       ///< σ of accelerations from the clip's own motion (motion_level.h)

@@ -39,6 +39,7 @@ std::vector<PlanEntry> PlanTrackSequence(const TrackSequenceInput& input, const 
     plan.push_back(plan_of(input, options));
   }
   if (options.straight_knees_weight > 0) plan.push_back(PlanStraightKnees(options.straight_knees_weight));
+  if (options.velocity_weight > 0) add("velocities", true, "cost something (paper A's L_t), beside accelerations");
   for (PlanEntry& entry : PlanOwnTerms(options.own_terms)) plan.push_back(std::move(entry));
   const bool surface = input.dense != nullptr || input.part_labels != nullptr;
   const ObservedLandmarks landmarks = FindObservedLandmarks(model, input.keypoints, 0);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <map>
 #include <string>
 #include <utility>
@@ -48,9 +49,13 @@ struct GroundSummary {
   Eigen::Vector3d up = Eigen::Vector3d(0, -1, 0);  ///< world up in the camera frame, mean over the clip
   double up_spread_deg = 0;                        ///< median angle of the frames' own up to it
   bool has_plane = false;
-  std::string why;                    ///< what was found, or why there is no ground
-  double camera_height_m = 0;         ///< of the camera above the ground
-  double height_spread_m = 0;         ///< robust σ of standing feet's heights before the ground held them
+  std::string why;             ///< what was found, or why there is no ground
+  double camera_height_m = 0;  ///< of the camera above the ground
+  double height_spread_m = 0;  ///< robust σ of standing feet's heights before the ground held them
+  bool given = false;          ///< TrackSequenceInput::ground said it
+  /// Standard deviations of the vertical and of the camera's height (geometry/world_frame.h); NaN where unknown.
+  double up_sigma_deg = std::numeric_limits<double>::quiet_NaN();
+  double height_sigma_m = std::numeric_limits<double>::quiet_NaN();
   int contact_frames = 0;             ///< frames in which at least one foot was held
   std::vector<StandingFoot> stances;  ///< all of the longest shot, on the plane or not, where the answer has them
 };

@@ -9,6 +9,7 @@
 #include "apps/neural/animate_options.h"
 #include "apps/neural/command_line.h"
 #include "apps/neural/neural_verbs.h"
+#include "apps/shown_motion_options.h"
 #include "bodyloom/pipelines/neural/motion/animate_motion.h"
 #include "bodyloom/pipelines/people/motion_scores_text.h"
 
@@ -62,20 +63,10 @@ void AddAnimateMotion(CLI::App& animate, Action* action) {
                    "dataset's (default: the tracked body)");
   verb->add_option("--out", request->out, "The video, .mp4")->required();
   verb->add_option("--body", request->body, "The track's body (default: the built-in body)");
-  verb->add_option("--view-yaw", request->view_yaw,
-                   "Turns the view about the person's vertical, degrees; FROM:TO turns it over the clip");
   verb->add_option("--speed", request->speed, "Plays the motion so many times as fast: clothes move differently")
       ->check(CLI::Range(0.05, 20.0))
       ->capture_default_str();
-  auto shape = std::make_shared<std::string>("run");
-  verb->add_option("--shape", *shape,
-                   "Whose body moves: run (the person who was trained on, as motion transfer means it), or track")
-      ->check(CLI::IsMember({"run", "track"}))
-      ->capture_default_str();
-  verb->add_option(
-      "--freeze", request->freeze,
-      "FRAME:COUNT: time stands still at that frame for so many more, while --view-yaw FROM:TO turns the view");
-  verb->add_option("--background", request->background, "Image, video or folder of images behind the person");
+  AddShownMotion(verb, {&request->view_yaw, &request->freeze, &request->background, &request->shape_of_track});
   CLI::Option* full_size = verb->add_flag("--full-size", request->full_size, kFullSizeHelp);
   verb->add_option("--set", request->set,
                    "Also a single-person dataset: pictures, labels and normals without loss, for `bodyloom metrics`")
@@ -100,10 +91,7 @@ void AddAnimateMotion(CLI::App& animate, Action* action) {
   verb->add_option("--json", request->json, "Report with times");
   AddDeviceOptions(verb, request.get());
   verb->footer("Example:\n  bodyloom animate motion --run run --track dance.npz --out dance.mp4 --view-yaw 0:360");
-  verb->callback([request, shape, action] {
-    request->shape_of_track = *shape == "track";
-    *action = [request] { Run(*request); };
-  });
+  verb->callback([request, action] { *action = [request] { Run(*request); }; });
 }
 
 }  // namespace bodyloom

@@ -4,6 +4,8 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
+#include "apps/shown_motion_options.h"
+
 namespace bodyloom {
 
 PhotoBackground ParsePhotoBackground(const std::string& option) {
@@ -24,8 +26,7 @@ void AddPhotoOptions(CLI::App* verb, PhotoAnimationRequest* request) {
           "Whose body shape moves: the photo's or the motion's")
       ->check(CLI::IsMember({"photo", "motion"}))
       ->default_str("photo");
-  verb->add_option("--view-yaw", request->view_yaw,
-                   "Turns the view about the person's vertical, degrees; FROM:TO turns it over the clip");
+  AddViewYaw(verb, &request->view_yaw);
 }
 
 void AddLikenessWeights(CLI::App* verb, std::string* weights, const char* what) {

@@ -2,7 +2,6 @@
 // The command `bodyloom-neural`: the verbs that need LibTorch. `bodyloom neural VERB`, `bodyloom train …` and
 // `bodyloom animate …` start it, `bodyloom metrics --lpips` and `bodyloom detect --dense-model` too.
 #include <CLI/CLI.hpp>
-#include <exception>
 #include <functional>
 #include <iostream>
 #include <string>
@@ -11,8 +10,8 @@
 #include "apps/exit_code.h"
 #include "apps/interrupt.h"
 #include "apps/neural/neural_verbs.h"
+#include "apps/run_parsed.h"
 #include "bodyloom/neural/runtime.h"
-#include "bodyloom/pipelines/callbacks.h"
 #include "bodyloom/pipelines/neural/densepose_detector.h"
 #include "bodyloom/pipelines/neural/likeness_metrics.h"
 
@@ -60,24 +59,5 @@ int main(int argc, char** argv) {
   bodyloom::AddCard(app, &action);
   bodyloom::AddMetricsVerb(app, &action, {}, bodyloom::LikenessMetrics);
   bodyloom::AddDetectVerb(app, &action, {}, DenseDetector);
-  try {
-    app.parse(argc, argv);
-    action();
-    return bodyloom::kExitOk;
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) {
-      return app.exit(error);
-    }
-    std::cerr << name << ": " << error.what() << "\nRun with --help for the options.\n";
-    return bodyloom::kExitUsage;
-  } catch (const bodyloom::RequestError& error) {
-    std::cerr << name << ": " << error.what() << "\nRun with --help for the options.\n";
-    return bodyloom::kExitUsage;
-  } catch (const bodyloom::Cancelled&) {
-    std::cerr << name << ": interrupted\n";
-    return bodyloom::kExitInterrupted;
-  } catch (const std::exception& error) {
-    std::cerr << name << ": " << error.what() << "\n";
-    return bodyloom::IsInterrupted() ? bodyloom::kExitInterrupted : bodyloom::kExitFailed;
-  }
+  return bodyloom::RunParsed(&app, name, argc, argv, action);
 }

@@ -2,10 +2,8 @@
 #include "apps/neural/training_options.h"
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/pipelines/clip_span.h"
 
 namespace bodyloom {
 
@@ -28,11 +26,7 @@ void AddTrainingOptions(CLI::App* verb, TrainingRun* run, const char* seed_help)
 std::vector<FrameRange> ParseFrameRanges(const std::vector<std::string>& texts, const char* option) {
   std::vector<FrameRange> ranges;
   for (const std::string& text : texts) {
-    int first = 0, last = 0;
-    char rest = 0;
-    if (std::sscanf(text.c_str(), "%d-%d%c", &first, &last, &rest) != 2 || first < 0 || last < first) {
-      throw RequestError(Concatenate(option, " ", text, ": expected FIRST-LAST, such as 0-149"));
-    }
+    const auto [first, last] = ReadClipSpan(text, option);
     ranges.push_back({first, last + 1});
   }
   return ranges;

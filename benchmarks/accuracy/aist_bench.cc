@@ -21,6 +21,7 @@
 
 #include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/accuracy/bench_report.h"
+#include "benchmarks/accuracy/dense_clips.h"
 #include "benchmarks/accuracy/lifter_oracle.h"
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/evaluation/aist_evaluation.h"
@@ -43,7 +44,8 @@ namespace {
 const std::vector<std::string> kEvaluated = {"pa_mpjpe_mm",           "mpjpe_scaled_mm",    "mpjpe_mm",
                                              "accel_err_ms2",         "heldout_median_px",  "heldout_p95_px",
                                              "fitview_own_median_px", "fitview_own_p95_px", "limb_angle_err_deg",
-                                             "root_rotation_err_deg", "root_depth_err_mm"};
+                                             "root_rotation_err_deg", "root_depth_err_mm",  "jitter_ms3",
+                                             "gt_jitter_ms3"};
 
 std::vector<double> Evaluated(const Evaluation& evaluation) {
   std::vector<double> values;
@@ -52,14 +54,6 @@ std::vector<double> Evaluated(const Evaluation& evaluation) {
     values.push_back(evaluation.values.empty() ? kNotMeasured : evaluation.Value(name));
   }
   return values;
-}
-
-KeypointSequence FirstFrames(KeypointSequence keypoints, int frames) {
-  if (frames > 0 && frames < keypoints.num_frames()) {
-    keypoints.timestamps.resize(frames);
-    keypoints.points.resize(static_cast<size_t>(frames) * keypoints.num_points());
-  }
-  return keypoints;
 }
 
 CameraKnowledge KnowledgeOf(const std::string& focal) {
@@ -94,8 +88,7 @@ std::vector<MatrixX3d> TruthInCamera(const MultiViewClip& clip, const std::strin
   for (const RigView& rig_view : clip.views) {
     if (rig_view.name != view) continue;
     for (const MatrixX3d& joints : clip.coco17_in_world) {
-      truth.emplace_back((joints * rig_view.pose.camera_from_world_rotation.transpose()).rowwise() +
-                         rig_view.pose.camera_from_world_translation.transpose());
+      truth.push_back(InCamera(joints, rig_view.pose));
     }
   }
   return truth;
@@ -185,7 +178,7 @@ BenchRow Limit(const MultiViewClip& clip, const std::string& view, bool body_wit
         points.rowwise() += (R * true_hip + t).transpose() - hip;
         track.coco17.push_back(points);
       } else {
-        track.coco17.emplace_back((clip.coco17_in_world[frame] * R.transpose()).rowwise() + t.transpose());
+        track.coco17.push_back(InCamera(clip.coco17_in_world[frame], rig_view.pose));
       }
     }
   }

@@ -29,6 +29,14 @@ Motion FirstFrames(Motion motion, int frames) {
   return motion;
 }
 
+KeypointSequence FirstFrames(KeypointSequence keypoints, int frames) {
+  if (frames > 0 && frames < keypoints.num_frames()) {
+    keypoints.timestamps.resize(frames);
+    keypoints.points.resize(static_cast<size_t>(frames) * keypoints.num_points());
+  }
+  return keypoints;
+}
+
 std::string MotionName(const std::string& path) { return std::filesystem::path(path).stem().string().substr(0, 16); }
 
 }  // namespace bodyloom

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The dense synthetic clips that several benchmarks share.
+/// Parts of clips, and the dense synthetic ones, that several benchmarks share.
 #pragma once
 
 #include <string>
@@ -15,6 +15,7 @@ DenseFaultOptions DenseFaults(const std::string& noise);
 
 /// All frames when `frames` is 0 or more than there are.
 Motion FirstFrames(Motion motion, int frames);
+KeypointSequence FirstFrames(KeypointSequence keypoints, int frames);
 
 /// First part of the file's name.
 std::string MotionName(const std::string& path);

@@ -71,12 +71,6 @@ View MakeView(const MultiViewClip& clip, const RigView& recorded, const BenchArg
   return view;
 }
 
-KeypointSequence FirstFrames(KeypointSequence keypoints, int frames) {
-  keypoints.timestamps.resize(size_t(frames));
-  keypoints.points.resize(size_t(frames) * size_t(keypoints.num_points()));
-  return keypoints;
-}
-
 BenchRow TrackAndScore(const std::string& kind, const std::string& clip, const View& view, int threads) {
   const Track& truth = view.truth.track;
   const int frames = truth.motion.num_frames();
@@ -114,9 +108,8 @@ BenchRow TrackAndScore(const std::string& kind, const std::string& clip, const V
   const Track track = TrackSequence(input, options).track;
   const double seconds = watch.seconds();
 
-  std::vector<bool> has_result(static_cast<size_t>(frames));
-  for (int t = 0; t < frames; ++t) has_result[size_t(t)] = track.HasResult(t);
-  const VertexErrors errors = CompareVertices(track, NearestFramesWithResult(has_result), truth, BuiltinBody());
+  const VertexErrors errors =
+      CompareVertices(track, NearestFramesWithResult(HasResults(track, frames)), truth, BuiltinBody());
   return {kind,
           {clip.substr(0, 3), view.recorded->name},
           {errors.projection.mean_px, errors.projection.std_frames_px, errors.projection.std_vertices_px,

@@ -7,7 +7,8 @@
 ///                            [--json F]
 ///
 /// Rows of the table (docs/lab/retrieval.md): COCO-17 trajectories, atlas coordinates as the camera sees
-/// them, the 3D motion descriptor; the first with noise in pixels, the others from a track with noise in degrees. The
+/// them, the 3D motion descriptor; the first with noise in pixels, the others from a track with noise in degrees; then
+/// the same of a hand, the torso and a leg alone, where a camera's descriptors count while it sees the region. The
 /// plot shows, for the moment at which the person of the first seed, without noise, passes the middle of the first
 /// cycle's first half, its correlation with all later frames.
 #include <algorithm>
@@ -22,6 +23,7 @@
 #include "benchmarks/accuracy/bench_report.h"
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/evaluation/motion_retrieval.h"
+#include "bodyloom/data_tools/evaluation/region_retrieval.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/geometry/base/check.h"
 
@@ -30,7 +32,12 @@ namespace {
 
 constexpr int kPast = 10;
 
-using NamedDescriptors = std::vector<std::pair<std::string, DescriptorRows>>;
+struct NamedDescriptor {
+  std::string name;
+  DescriptorRows rows;
+  std::vector<bool> defined;  ///< frames; empty: all
+};
+using NamedDescriptors = std::vector<NamedDescriptor>;
 
 NamedDescriptors DescriptorsOf(const TurningPerson& person, double noise_px, const BenchArguments& arguments) {
   PersonFramesOptions options;
@@ -39,11 +46,22 @@ NamedDescriptors DescriptorsOf(const TurningPerson& person, double noise_px, con
   options.window.max_side = arguments.Integer("window");
   options.num_threads = arguments.Integer("threads");
   const PersonFrames frames(BuiltinBody(), person.track, options);
-  return {{"2D keypoints, 10 frames", KeypointTrajectories(BuiltinBody(), person.track, kPast, noise_px, 1)},
-          {"2D dense UV, 1 frame", DenseCoordinates(frames, 1)},
-          {"2D dense UV, 10 frames", DenseCoordinates(frames, kPast)},
-          {"3D normals alone", MotionDescriptors(frames, 0)},
-          {"3D motion descriptor", MotionDescriptors(frames, kPast)}};
+  NamedDescriptors all = {
+      {"2D keypoints, 10 frames", KeypointTrajectories(BuiltinBody(), person.track, kPast, noise_px, 1), {}},
+      {"2D dense UV, 1 frame", DenseCoordinates(frames, 1), {}},
+      {"2D dense UV, 10 frames", DenseCoordinates(frames, kPast), {}},
+      {"3D normals alone", MotionDescriptors(frames, 0), {}},
+      {"3D motion descriptor", MotionDescriptors(frames, kPast), {}}};
+  const DescriptorRows keypoints = all.front().rows, motion = all.back().rows;
+  for (const RetrievedRegion where : {RetrievedRegion::kHand, RetrievedRegion::kTorso, RetrievedRegion::kLeg}) {
+    const RegionOfBody region = MakeRegion(BuiltinBody(), where, options.uv_size);
+    const std::string name = RegionName(where);
+    const std::vector<bool> seen = RegionSeen(frames, region, kPast);
+    all.push_back({name + ": 2D keypoints, 10 frames", KeypointsOfRegion(keypoints, region), seen});
+    all.push_back({name + ": 2D dense UV, 10 frames", DenseCoordinatesOfRegion(frames, region, kPast), seen});
+    all.push_back({name + ": 3D motion descriptor", MotionOfRegion(motion, region), {}});
+  }
+  return all;
 }
 
 /// A curve a descriptor, one below the other; lines where cycles meet, dots at the peaks.
@@ -62,7 +80,7 @@ std::string Plot(const TurningPerson& person, const NamedDescriptors& descriptor
   svg << "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"920\" height=\"" << kTop + kPitch * descriptors.size()
       << "\" font-family=\"sans-serif\" font-size=\"13\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n";
   for (size_t d = 0; d < descriptors.size(); ++d) {
-    const DescriptorRows& rows = descriptors[d].second;
+    const DescriptorRows& rows = descriptors[d].rows;
     const Eigen::MatrixXf correlation = NormalisedCrossCorrelation(rows.bottomRows(count), rows.row(query));
     const std::vector<float> curve(correlation.data(), correlation.data() + count);
     const double top = kTop + double(kPitch) * double(d);
@@ -73,7 +91,7 @@ std::string Plot(const TurningPerson& person, const NamedDescriptors& descriptor
     char text[160];
     const std::vector<int> peaks = Peaks(curve, 0.9, 4);
     std::snprintf(text, sizeof(text), "%.2f peaks a cycle at this moment", double(peaks.size()) / person.cycle.back());
-    svg << "<text x=\"" << kLeft << "\" y=\"" << top - 8 << "\"><tspan font-weight=\"bold\">" << descriptors[d].first
+    svg << "<text x=\"" << kLeft << "\" y=\"" << top - 8 << "\"><tspan font-weight=\"bold\">" << descriptors[d].name
         << "</tspan>: " << text << "</text>\n";
     for (const float value : {*low, *high}) {
       std::snprintf(text, sizeof(text), "%.2f", value);
@@ -101,7 +119,7 @@ void Run(const BenchArguments& arguments, const std::string& command) {
   report.command = command;
   report.title = "Retrieval by normalised cross-correlation, a person turning left and right";
   report.label_columns = {"descriptor", "seed"};
-  report.value_columns = {"peaks_a_cycle", "one_peak_%", "direction_right_%", "yaw_error_deg"};
+  report.value_columns = {"peaks_a_cycle", "one_peak_%", "direction_right_%", "yaw_error_deg", "answered_%"};
   const std::vector<std::string> noise_px = arguments.List("noise_px"), noise_deg = arguments.List("noise_deg");
   BODYLOOM_CHECK(noise_px.size() == noise_deg.size(), "--noise_px and --noise_deg: lists of one length");
   for (size_t n = 0; n < noise_px.size(); ++n) {
@@ -116,11 +134,12 @@ void Run(const BenchArguments& arguments, const std::string& command) {
       options.seed = static_cast<uint64_t>(seed);
       const TurningPerson person = MakeTurningPerson(BuiltinBody(), options);
       const NamedDescriptors descriptors = DescriptorsOf(person, std::stod(noise_px[n]), arguments);
-      for (const auto& [name, values] : descriptors) {
-        const RetrievalScores s = ScoreRetrieval(person, values);
+      for (const auto& [name, values, defined] : descriptors) {
+        const RetrievalScores s = ScoreRetrieval(person, values, defined);
         rows.push_back({Concatenate(name, " (noise ", noise_px[n], " px, ", noise_deg[n], " deg)"),
                         {name, std::to_string(seed)},
-                        {s.peaks_a_cycle, 100 * s.one_peak_share, 100 * s.direction_share, s.yaw_error_deg}});
+                        {s.peaks_a_cycle, 100 * s.one_peak_share, 100 * s.direction_share, s.yaw_error_deg,
+                         100 * s.answered_share}});
       }
       if (n == 0 && seed == 1 && !arguments.Text("plot").empty()) {
         WriteFileAtomically(arguments.Text("plot"), Plot(person, descriptors));

@@ -26,9 +26,8 @@ void AddPublishedMotion(const Track& track, const MultiViewClip& clip, const std
   const bool smpl = body.num_vertices() == kSmplVertices;
   const PseudoTruth truth =
       MakePseudoTruth(clip, *own, body, smpl ? PseudoTruthShape::kAsPublished : PseudoTruthShape::kFitted);
-  std::vector<bool> has_result(std::min(track.num_frames(), truth.track.num_frames()));
-  for (size_t t = 0; t < has_result.size(); ++t) has_result[t] = track.HasResult(static_cast<int>(t));
-  const std::vector<int> source = NearestFramesWithResult(has_result);
+  const std::vector<int> source =
+      NearestFramesWithResult(HasResults(track, std::min(track.num_frames(), truth.track.num_frames())));
   if (source.empty()) return;
   const VertexErrorOptions options;
   const VertexErrors errors = CompareVertices(track, source, truth.track, body, options);

@@ -109,6 +109,10 @@ void AddJointAngles(const Track& track, const std::vector<int>& source, const Mu
 
 }  // namespace
 
+MatrixX3d InCamera(const MatrixX3d& points_in_world, const CameraPose& pose) {
+  return Transformed(points_in_world, pose.camera_from_world_rotation, pose.camera_from_world_translation);
+}
+
 Evaluation EvaluateHeldOutViews(const Track& track, const MultiViewClip& clip, const std::string& view,
                                 const EvaluateHeldOutViewsOptions& options) {
   const RigView& own = clip.views[FindView(clip, view)];
@@ -129,8 +133,7 @@ Evaluation EvaluateHeldOutViews(const Track& track, const MultiViewClip& clip, c
   std::vector<double> timestamps(T);
   for (int t = 0; t < T; ++t) {
     P[t] = track.coco17[source[t]];
-    G[t] = Transformed(clip.coco17_in_world[t], own.pose.camera_from_world_rotation,
-                       own.pose.camera_from_world_translation);
+    G[t] = InCamera(clip.coco17_in_world[t], own.pose);
     timestamps[t] = t / clip.fps;
   }
   const MatrixX3d hip_P = RootPositions(P, kCocoHips), hip_G = RootPositions(G, kCocoHips);
@@ -165,8 +168,7 @@ Evaluation EvaluateHeldOutViews(const Track& track, const MultiViewClip& clip, c
     if (other.name == own.name) continue;
     std::vector<MatrixX3d> in_other(T);
     for (int t = 0; t < T; ++t) {
-      in_other[t] = Transformed(placed_in_world[t], other.pose.camera_from_world_rotation,
-                                other.pose.camera_from_world_translation);
+      in_other[t] = InCamera(placed_in_world[t], other.pose);
     }
     const std::vector<MatrixX2d> pixels = Projected(in_other, [&](int) { return other.camera; });
     held_out.Add(pixels, other.detections);

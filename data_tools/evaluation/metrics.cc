@@ -56,6 +56,12 @@ ErrorStatistics Summarize(std::span<const double> values) {
   return s;
 }
 
+std::vector<bool> HasResults(const Track& track, int frames) {
+  std::vector<bool> has_result(frames);
+  for (int t = 0; t < frames; ++t) has_result[t] = track.HasResult(t);
+  return has_result;
+}
+
 std::vector<int> NearestFramesWithResult(const std::vector<bool>& has_result) {
   const int T = static_cast<int>(has_result.size());
   std::vector<int> nearest(T, -1);

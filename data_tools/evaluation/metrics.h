@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/track.h"
 
 namespace bodyloom {
 
@@ -32,6 +33,9 @@ struct ErrorStatistics {
   int64_t missing = 0;  ///< non-finite values, left out
 };
 ErrorStatistics Summarize(std::span<const double> values);
+
+/// Which of the first `frames` frames have a result; the track has as many.
+std::vector<bool> HasResults(const Track& track, int frames);
 
 /// For every frame the nearest frame that has a result, the earlier one in a tie; empty when none has.
 /// Scoring frame t with frame result[t] makes leaving out frames cost what standing still would.

@@ -15,18 +15,6 @@ namespace {
 constexpr double kPeakShare = 0.9, kSlow = 1 / 3.0;
 constexpr int kReach = 4;
 
-/// Rows of one frame each, to rows of each frame and those before it.
-DescriptorRows WithPast(const DescriptorRows& rows, int past) {
-  BODYLOOM_CHECK(past >= 1, "descriptors of ", past, " frames");
-  DescriptorRows result(rows.rows(), rows.cols() * past);
-  for (Eigen::Index t = 0; t < rows.rows(); ++t) {
-    for (int k = 0; k < past; ++k) {
-      result.row(t).segment(rows.cols() * k, rows.cols()) = rows.row(std::max<Eigen::Index>(0, t - k));
-    }
-  }
-  return result;
-}
-
 DescriptorRows Standardised(const DescriptorRows& rows) {
   DescriptorRows result = rows.colwise() - rows.rowwise().mean();
   for (Eigen::Index t = 0; t < rows.rows(); ++t) {
@@ -43,6 +31,17 @@ DescriptorRows Chosen(const DescriptorRows& rows, const std::vector<int>& frames
 }
 
 }  // namespace
+
+DescriptorRows WithPast(const DescriptorRows& rows, int past) {
+  BODYLOOM_CHECK(past >= 1, "descriptors of ", past, " frames");
+  DescriptorRows result(rows.rows(), rows.cols() * past);
+  for (Eigen::Index t = 0; t < rows.rows(); ++t) {
+    for (int k = 0; k < past; ++k) {
+      result.row(t).segment(rows.cols() * k, rows.cols()) = rows.row(std::max<Eigen::Index>(0, t - k));
+    }
+  }
+  return result;
+}
 
 DescriptorRows KeypointTrajectories(const BodyModel& body, const Track& track, int past, double noise_px,
                                     uint64_t seed) {
@@ -117,37 +116,45 @@ std::vector<int> TurningFrames(const TurningPerson& person, bool first) {
   return frames;
 }
 
-RetrievalScores ScoreRetrieval(const TurningPerson& person, const DescriptorRows& descriptors) {
+RetrievalScores ScoreRetrieval(const TurningPerson& person, const DescriptorRows& descriptors,
+                               const std::vector<bool>& defined) {
   BODYLOOM_CHECK(descriptors.rows() == Eigen::Index(person.cycle.size()), "retrieval: ", descriptors.rows(),
                  " descriptors of ", person.cycle.size(), " frames");
+  BODYLOOM_CHECK(defined.empty() || defined.size() == person.cycle.size(), "retrieval: ", defined.size(), " marks of ",
+                 person.cycle.size(), " frames");
+  const auto is_defined = [&](int t) { return defined.empty() || defined[size_t(t)]; };
   RetrievalScores scores;
   std::vector<int> reference, later;
   for (int t = 0; t < static_cast<int>(person.cycle.size()); ++t) {
-    if (person.cycle[t] == 0) reference.push_back(t);
+    if (person.cycle[t] == 0 && is_defined(t)) reference.push_back(t);
     if (person.cycle[t] > 0) later.push_back(t);
   }
-  BODYLOOM_CHECK(!reference.empty() && !later.empty(), "retrieval: expected at least two cycles");
+  BODYLOOM_CHECK(!reference.empty() && !later.empty(), "retrieval: expected at least two cycles that are described");
   const int cycles = person.cycle.back();
   // (later × reference): a column is the curve of a frame of the first cycle, a row all that a later frame looks like.
-  const Eigen::MatrixXf correlation =
-      NormalisedCrossCorrelation(Chosen(descriptors, later), Chosen(descriptors, reference));
-  const std::vector<int> turning = TurningFrames(person, true);
+  Eigen::MatrixXf correlation = NormalisedCrossCorrelation(Chosen(descriptors, later), Chosen(descriptors, reference));
+  for (size_t q = 0; q < later.size(); ++q) {
+    if (!is_defined(later[q])) correlation.row(Eigen::Index(q)).setConstant(-1);
+  }
+  const std::vector<int> turning = TurningFrames(person, true), queries = TurningFrames(person, false);
+  const auto asked = std::count_if(turning.begin(), turning.end(), is_defined);
   for (size_t r = 0; r < reference.size(); ++r) {
     if (!std::binary_search(turning.begin(), turning.end(), reference[r])) continue;
     const auto peaks = Peaks({correlation.col(Eigen::Index(r)).data(), later.size()}, kPeakShare, kReach).size();
-    scores.peaks_a_cycle += double(peaks) / cycles / double(turning.size());
-    scores.one_peak_share += (peaks == size_t(cycles) ? 1.0 : 0.0) / double(turning.size());
+    scores.peaks_a_cycle += double(peaks) / cycles / double(asked);
+    scores.one_peak_share += (peaks == size_t(cycles) ? 1.0 : 0.0) / double(asked);
   }
-  const std::vector<int> queries = TurningFrames(person, false);
+  const auto answered = std::count_if(queries.begin(), queries.end(), is_defined);
   scores.queries = static_cast<int>(queries.size());
+  scores.answered_share = double(answered) / scores.queries;
   for (size_t q = 0; q < later.size(); ++q) {
-    if (!std::binary_search(queries.begin(), queries.end(), later[q])) continue;
+    if (!is_defined(later[q]) || !std::binary_search(queries.begin(), queries.end(), later[q])) continue;
     Eigen::Index best = 0;
     correlation.row(Eigen::Index(q)).maxCoeff(&best);
     const int found = reference[best], t = later[q];
     const bool right = (person.yaw_rate_deg_s[found] > 0) == (person.yaw_rate_deg_s[t] > 0);
-    scores.direction_share += (right ? 1.0 : 0.0) / scores.queries;
-    scores.yaw_error_deg += std::abs(person.yaw_deg[found] - person.yaw_deg[t]) / scores.queries;
+    scores.direction_share += (right ? 1.0 : 0.0) / double(answered);
+    scores.yaw_error_deg += std::abs(person.yaw_deg[found] - person.yaw_deg[t]) / double(answered);
   }
   return scores;
 }

@@ -15,6 +15,10 @@ namespace bodyloom {
 /// A row a frame.
 using DescriptorRows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+/// Rows of one frame each, to rows of each frame and the past − 1 before it (the first frame repeated). Throws
+/// std::invalid_argument for a past below 1.
+DescriptorRows WithPast(const DescriptorRows& rows, int past);
+
 /// (A): COCO-17 in pixels relative to their mean, of each frame and the past − 1 before it (the first frame repeated),
 /// each coordinate off by N(0, noise_px²).
 DescriptorRows KeypointTrajectories(const BodyModel& body, const Track& track, int past, double noise_px,
@@ -39,11 +43,14 @@ struct RetrievalScores {
   double direction_share = 0;  ///< frames of the later cycles whose nearest neighbour in the first turns the same way
   double yaw_error_deg = 0;    ///< mean difference to the nearest neighbour's yaw
   int queries = 0;             ///< frames of the later cycles in the last two
+  double answered_share = 1;   ///< of those frames: their descriptor was defined; direction and yaw are of these alone
 };
 
 /// Peaks above 0.9 of the largest value, 4 frames either side. Frames that turn slower than a third of the fastest have
-/// no direction and do not count; nor do they, for they lie where cycles meet, in the counts of peaks.
-RetrievalScores ScoreRetrieval(const TurningPerson& person, const DescriptorRows& descriptors);
+/// no direction and do not count; nor do they, for they lie where cycles meet, in the counts of peaks. `defined`: frames
+/// whose descriptor says something; others are neither looked for nor found (empty: all are).
+RetrievalScores ScoreRetrieval(const TurningPerson& person, const DescriptorRows& descriptors,
+                               const std::vector<bool>& defined = {});
 
 /// The frames that ScoreRetrieval counts, of cycle 0 (`first`) or of all later ones.
 std::vector<int> TurningFrames(const TurningPerson& person, bool first);

@@ -72,9 +72,7 @@ PseudoTruth MakePseudoTruth(const MultiViewClip& clip, const RigView& view, cons
   std::vector<MatrixX3d> landmarks(T);
   for (int t = 0; t < T; ++t) {
     poses[t] = InCamera(body, clip.motion, t, view.pose);
-    landmarks[t] = ((clip.coco17_in_world[t] * view.pose.camera_from_world_rotation.transpose()).rowwise() +
-                    view.pose.camera_from_world_translation.transpose()) /
-                   unit;
+    landmarks[t] = InCamera(clip.coco17_in_world[t], view.pose) / unit;
   }
   PseudoTruth result;
   Motion& motion = result.track.motion;

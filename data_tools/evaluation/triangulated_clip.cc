@@ -76,9 +76,7 @@ Evaluation EvaluateTriangulatedClip(const Track& track, const MultiViewClip& cli
   for (const RigView& rig_view : clip.views) {
     std::vector<MatrixX2d> pixels;
     for (const MatrixX3d& joints : clip.coco17_in_world) {
-      pixels.push_back(
-          ProjectPoints(rig_view.camera, (joints * rig_view.pose.camera_from_world_rotation.transpose()).rowwise() +
-                                             rig_view.pose.camera_from_world_translation.transpose()));
+      pixels.push_back(ProjectPoints(rig_view.camera, InCamera(joints, rig_view.pose)));
     }
     AddReprojectionErrors(pixels, rig_view.detections, options.min_confidence, &floor);
   }

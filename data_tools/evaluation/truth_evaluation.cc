@@ -57,8 +57,7 @@ Evaluation EvaluateAgainstTruth(const Track& track, const Track& truth, const Bo
       "nearest frame that has one.";
   result.frames = T;
 
-  std::vector<bool> has_result(T);
-  for (int t = 0; t < T; ++t) has_result[t] = track.HasResult(t);
+  const std::vector<bool> has_result = HasResults(track, T);
   result.frames_without_result = static_cast<int>(std::count(has_result.begin(), has_result.end(), false));
   const std::vector<int> source = NearestFramesWithResult(has_result);
   if (source.empty()) return result;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/units.h"
 #include "bodyloom/geometry/posed_body.h"
 #include "bodyloom/geometry/skinning.h"
 
@@ -64,6 +65,26 @@ VertexErrors CompareVertices(const Track& track, const std::vector<int>& source,
     }
   }
   return {projection.Result(), position.Result()};
+}
+
+Eigen::VectorXd VertexErrorsOfFrame(const Track& track, const Track& truth, int t, const BodyModel& body,
+                                    VertexErrorUnit unit, const VertexErrorOptions& options) {
+  BODYLOOM_CHECK(t >= 0 && t < track.num_frames() && t < truth.num_frames(), "VertexErrorsOfFrame: no frame ", t);
+  if (!track.HasResult(t) || !truth.HasResult(t)) return {};
+  const BodyPose own = PoseOf(body, track.motion, t), true_own = PoseOf(body, truth.motion, t);
+  const MatrixX3d vertices = PoseVertices(body, track.motion.betas, own);
+  const MatrixX3d true_vertices = PoseVertices(body, truth.motion.betas, true_own);
+  if (unit == VertexErrorUnit::kPixels) {
+    const double scale = SquareImageScale(truth.camera.width, truth.camera.height, options.image_side_px);
+    return scale * (ProjectPoints(track.CameraAt(t), vertices) - ProjectPoints(truth.CameraAt(t), true_vertices))
+                       .rowwise()
+                       .norm();
+  }
+  const auto pelvis = [&](const Eigen::VectorXd& betas, const BodyPose& pose) -> Eigen::RowVector3d {
+    return PoseSkeleton(body, body.RestJoints(betas), pose).joints.row(0);
+  };
+  const Eigen::RowVector3d offset = pelvis(track.motion.betas, own) - pelvis(truth.motion.betas, true_own);
+  return kMmPerMetre * ((vertices - true_vertices).rowwise() - offset).rowwise().norm();
 }
 
 void AddProjectionError(const ProjectionError& error, int image_side_px, Evaluation* evaluation) {

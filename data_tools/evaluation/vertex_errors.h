@@ -29,6 +29,16 @@ struct VertexErrors {
 VertexErrors CompareVertices(const Track& track, const std::vector<int>& source, const Track& truth,
                              const BodyModel& body, const VertexErrorOptions& options = {});
 
+enum class VertexErrorUnit {
+  kMillimetres,  ///< distance after moving pelvis onto pelvis: the mean over all is pve_mm
+  kPixels,       ///< distance of the projections, in pixels of options.image_side_px: the mean is projection_mean_px
+};
+
+/// Error of every vertex of frame t of `track` against frame t of `truth`; no values when either has no result there.
+/// Throws as CompareVertices.
+Eigen::VectorXd VertexErrorsOfFrame(const Track& track, const Track& truth, int t, const BodyModel& body,
+                                    VertexErrorUnit unit, const VertexErrorOptions& options = {});
+
 /// Adds projection_mean_px and its spreads, root mean square and 95th percentile.
 void AddProjectionError(const ProjectionError& error, int image_side_px, Evaluation* evaluation);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/data_tools/motion/amass.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -12,7 +13,17 @@
 namespace bodyloom {
 namespace {
 
-constexpr int kBodyColumns = 66, kSmplColumns = 72, kSmplhColumns = 156;
+constexpr int kBodyColumns = 66, kSmplColumns = 72, kSmplhColumns = 156, kSmplxColumns = 165, kHandColumns = 90;
+constexpr int kSmplxBetas = 16;
+/// Pelvis joint of SMPL-X's mean neutral shape, metres.
+const Eigen::Vector3d kSmplxPelvis(0.0031, -0.3514, 0.0120);
+
+/// One frame, or a clip with a gap, has no frame rate of its own; AMASS readers insist on a number.
+double RateForReaders(const Motion& motion) {
+  const double fps = FrameRate(motion), seconds = motion.timestamps.back() - motion.timestamps.front();
+  if (fps > 0) return fps;
+  return seconds > 0 ? (motion.num_frames() - 1) / seconds : 30.0;
+}
 
 RowMatrixXd RequireMatrix(const NpzArrays& arrays, const std::string& key, const std::string& where) {
   const NdArray& array = RequireArray(arrays, key, where);
@@ -115,17 +126,59 @@ void WriteAmass(const std::string& path, const Motion& motion, const Eigen::Vect
   RowMatrixXd poses = RowMatrixXd::Zero(T, kSmplhColumns);
   const Eigen::Index kept = motion.poses.cols() == kSmplColumns ? kBodyColumns : kSmplhColumns;
   poses.leftCols(kept) = z_up.poses.leftCols(kept);
-  const double fps = FrameRate(motion);
   NpzArrays arrays;
   arrays["poses"] = NdArray::FromDoubles(poses.data(), {T, kSmplhColumns});
   arrays["trans"] = NdArray::FromDoubles(z_up.trans.data(), {T, 3});
   arrays["betas"] = NdArray::FromDoubles(motion.betas.data(), {motion.betas.size()});
   arrays["gender"] = NdArray::FromString(gender);
-  // One frame, or a clip with a gap, has no frame rate of its own; AMASS readers insist on a number.
-  const double seconds = motion.timestamps.back() - motion.timestamps.front();
-  arrays["mocap_framerate"] = NdArray::FromDouble(fps > 0       ? fps
-                                                  : seconds > 0 ? static_cast<double>(T - 1) / seconds
-                                                                : 30.0);
+  arrays["mocap_framerate"] = NdArray::FromDouble(RateForReaders(motion));
+  arrays["timestamps"] = NdArray::FromDoubles(motion.timestamps.data(), {T});
+  WriteNpz(path, arrays);
+}
+
+void WriteAmassSmplx(const std::string& path, const Motion& motion, const Eigen::Vector3d& rest_pelvis,
+                     const std::string& gender) {
+  CheckMotion(motion, "WriteAmassSmplx");
+  const Eigen::Index columns = motion.poses.cols();
+  BODYLOOM_CHECK(columns == kSmplColumns || columns == kSmplhColumns || columns == kSmplxColumns,
+                 "WriteAmassSmplx: ", columns / 3, " joints, expected 24 (SMPL), 52 (SMPL-H) or 55 (SMPL-X)");
+  const Motion z_up = ChangeUp(motion, Motion::Up::kZ, rest_pelvis);
+  const int64_t T = motion.num_frames();
+  RowMatrixXd poses = RowMatrixXd::Zero(T, kSmplxColumns);
+  if (columns == kSmplxColumns) {
+    poses = z_up.poses;
+  } else {
+    poses.leftCols(kBodyColumns) = z_up.poses.leftCols(kBodyColumns);
+    if (columns == kSmplhColumns) poses.rightCols(kHandColumns) = z_up.poses.rightCols(kHandColumns);
+  }
+  const bool own = columns == kSmplxColumns;
+  Eigen::VectorXd betas = Eigen::VectorXd::Zero(kSmplxBetas);
+  if (own)
+    betas.head(std::min<Eigen::Index>(kSmplxBetas, motion.betas.size())) =
+        motion.betas.head(std::min<Eigen::Index>(kSmplxBetas, motion.betas.size()));
+  MatrixX3d trans = z_up.trans;
+  if (!own) trans.rowwise() += (rest_pelvis - kSmplxPelvis).transpose();
+  NpzArrays arrays;
+  const auto add = [&](const char* key, Eigen::Index first, Eigen::Index count) {
+    const RowMatrixXd part = poses.middleCols(first, count);
+    arrays[key] = NdArray::FromDoubles(part.data(), {T, count});
+  };
+  add("poses", 0, kSmplxColumns);
+  add("root_orient", 0, 3);
+  add("pose_body", 3, kBodyColumns - 3);
+  add("pose_jaw", kBodyColumns, 3);
+  add("pose_eye", kBodyColumns + 3, 6);
+  add("pose_hand", kSmplxColumns - kHandColumns, kHandColumns);
+  arrays["trans"] = NdArray::FromDoubles(trans.data(), {T, 3});
+  arrays["betas"] = NdArray::FromDoubles(betas.data(), {kSmplxBetas});
+  const int32_t num_betas[] = {kSmplxBetas};
+  arrays["num_betas"] = NdArray::FromInts32(num_betas, {});
+  arrays["gender"] = NdArray::FromString(gender);
+  arrays["surface_model_type"] = NdArray::FromString("smplx");
+  const double fps = RateForReaders(motion);
+  arrays["mocap_frame_rate"] = NdArray::FromDouble(fps);
+  arrays["mocap_framerate"] = NdArray::FromDouble(fps);
+  arrays["mocap_time_length"] = NdArray::FromDouble(static_cast<double>(T) / fps);
   arrays["timestamps"] = NdArray::FromDoubles(motion.timestamps.data(), {T});
   WriteNpz(path, arrays);
 }

@@ -37,9 +37,12 @@ Eigen::Vector3d EulerZxy(const Eigen::Matrix3d& R) {
 
 class Writer {
  public:
-  Writer(const Motion& motion, const BodyModel& model)
-      : model_(model), rest_(model.RestJoints(motion.betas)), children_(model.num_joints()) {
-    for (int j = 1; j < model.num_joints(); ++j) children_[model.parents()[j]].push_back(j);
+  Writer(const Motion& motion, const BodyModel& model, BvhRig rig)
+      : model_(model),
+        skeleton_(BvhSkeletonOf(rig, model)),
+        rest_(model.RestJoints(motion.betas)),
+        children_(model.num_joints()) {
+    for (int j = 1; j < static_cast<int>(skeleton_.names.size()); ++j) children_[model.parents()[j]].push_back(j);
     AppendJoint(0, 0);
   }
 
@@ -47,15 +50,22 @@ class Writer {
   /// Joints in the order of the file.
   [[nodiscard]] const std::vector<int>& order() const { return order_; }
   [[nodiscard]] const std::string& hierarchy() const { return text_; }
+  /// The pose's rotations relative to the rig's rest pose: with A the rest's world rotations, A_p · R · A_jᵀ.
+  [[nodiscard]] Eigen::Matrix3d FromRest(const BodyPose& pose, int j) const {
+    const int parent = model_.parents()[j];
+    const Eigen::Matrix3d turned = pose.rotations[j] * skeleton_.rest_rotations[j].transpose();
+    return parent < 0 ? turned : skeleton_.rest_rotations[parent] * turned;
+  }
 
  private:
   void AppendJoint(int j, int level) {
     const std::string indent(2 * level, ' ');
     const int parent = model_.parents()[j];
     const Eigen::RowVector3d offset =
-        parent < 0 ? Eigen::RowVector3d::Zero().eval() : (rest_.row(j) - rest_.row(parent)).eval();
-    text_ += indent + (parent < 0 ? "ROOT " : "JOINT ") + model_.data().joint_names[j] + "\n" + indent + "{\n" +
-             indent + "  OFFSET ";
+        parent < 0 ? Eigen::RowVector3d::Zero().eval()
+                   : ((rest_.row(j) - rest_.row(parent)) * skeleton_.rest_rotations[parent].transpose()).eval();
+    text_ +=
+        indent + (parent < 0 ? "ROOT " : "JOINT ") + skeleton_.names[j] + "\n" + indent + "{\n" + indent + "  OFFSET ";
     AppendNumbers(&text_, offset.transpose() * kCentimetresPerMetre);
     text_ += "\n" + indent + (parent < 0 ? "  CHANNELS 6 Xposition Yposition Zposition" : "  CHANNELS 3") +
              " Zrotation Xrotation Yrotation\n";
@@ -70,6 +80,7 @@ class Writer {
   }
 
   const BodyModel& model_;
+  const BvhSkeleton skeleton_;
   MatrixX3d rest_;
   std::vector<std::vector<int>> children_;
   std::vector<int> order_;
@@ -78,12 +89,12 @@ class Writer {
 
 }  // namespace
 
-std::string BvhText(const Motion& motion, const BodyModel& model) {
+std::string BvhText(const Motion& motion, const BodyModel& model, BvhRig rig) {
   CheckMotion(motion, "WriteBvh");
   const double rate = FrameRate(motion);
   BODYLOOM_CHECK(rate > 0 || motion.num_frames() == 1,
                  "WriteBvh: the frames are not evenly spaced in time, which BVH cannot say; resample the motion first");
-  const Writer writer(motion, model);
+  const Writer writer(motion, model, rig);
   const Motion y_up = ChangeUp(motion, Motion::Up::kY, writer.rest().row(0).transpose());
   std::string text = writer.hierarchy();
   char line[96];
@@ -96,15 +107,15 @@ std::string BvhText(const Motion& motion, const BodyModel& model) {
     AppendNumbers(&text, pelvis * kCentimetresPerMetre);
     for (const int j : writer.order()) {
       text += ' ';
-      AppendNumbers(&text, EulerZxy(pose.rotations[j]));
+      AppendNumbers(&text, EulerZxy(writer.FromRest(pose, j)));
     }
     text += '\n';
   }
   return text;
 }
 
-void WriteBvh(const std::string& path, const Motion& motion, const BodyModel& model) {
-  WriteFileAtomically(path, BvhText(motion, model));
+void WriteBvh(const std::string& path, const Motion& motion, const BodyModel& model, BvhRig rig) {
+  WriteFileAtomically(path, BvhText(motion, model, rig));
 }
 
 }  // namespace bodyloom

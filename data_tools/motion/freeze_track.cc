@@ -19,6 +19,7 @@ Track FramesInOrder(const Track& track, std::span<const int> frames) {
   const double frame_s = last > 0 ? (times.back() - times.front()) / last : 1.0 / 30;
   Track shown;
   shown.camera = track.camera;
+  shown.world = track.world;
   shown.motion.body = track.motion.body;
   shown.motion.betas = track.motion.betas;
   shown.motion.up = track.motion.up;

@@ -68,6 +68,7 @@ Track ResampleTrack(const Track& track, double fps) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   Track out;
   out.camera = track.camera;
+  out.world = track.world;
   out.motion.body = track.motion.body;
   out.motion.betas = track.motion.betas;
   out.motion.up = track.motion.up;

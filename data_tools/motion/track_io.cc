@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/data_tools/motion/track_io.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -77,6 +78,7 @@ class TrackReader {
     ReadPoints("coco17", kCocoPoints, &track_.coco17);
     const Eigen::Index J = track_.motion.poses.cols() / 3;
     track_.joint_sigma.setConstant(T_, J, std::numeric_limits<double>::quiet_NaN());
+    ReadWorld();
     if (Has("joint_sigma")) track_.joint_sigma = Array("joint_sigma", {T_, -1}).ToMatrix();
     return std::move(track_);
   }
@@ -241,6 +243,35 @@ class TrackReader {
     std::copy(distortion.begin(), distortion.end(), track_.camera.distortion.begin());
   }
 
+  void ReadWorld() {
+    if (!Has("world_from_camera")) return;
+    const std::vector<double> m = Finite("world_from_camera", {4, 4});
+    const Eigen::Matrix4d matrix = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(m.data());
+    WorldFrame& world = track_.world.emplace();
+    world.rotation = matrix.topLeftCorner<3, 3>();
+    world.translation = matrix.topRightCorner<3, 1>();
+    if (matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1) || !(world.rotation.determinant() > 0) ||
+        !(world.rotation * world.rotation.transpose()).isIdentity(1e-6)) {
+      Fail("world_from_camera: expected a rotation and a translation [R t; 0 0 0 1]");
+    }
+    if (Has("world_source")) {
+      try {
+        world.source = WorldSourceFromString(Text("world_source"));
+      } catch (const std::invalid_argument& error) {
+        Fail(std::string("world_source: ") + error.what());
+      }
+    } else {
+      world.source = WorldSource::kGiven;
+    }
+    if (!Has("world_sigma")) return;
+    const std::vector<double> sigma = Array("world_sigma", {2}).ToDoubles();
+    if (sigma[0] < 0 || sigma[1] < 0 || std::isinf(sigma[0]) || std::isinf(sigma[1])) {
+      Fail("world_sigma: expected standard deviations, degrees and metres");
+    }
+    world.vertical_sigma_deg = sigma[0];
+    world.height_sigma_m = sigma[1];
+  }
+
   void ReadPoints(const std::string& name, int64_t n, std::vector<MatrixX3d>* points) const {
     if (!Has(name)) return;
     const NdArray& array = Array(name, {T_, n, 3});
@@ -284,6 +315,15 @@ void WriteTrack(const std::string& path, const Track& track) {
   arrays["image_size"] = NdArray::FromInts32(size, {2});
   if (camera.model == CameraModel::kWeakPerspective) {
     arrays["camera"] = NdArray::FromDoubles(track.weak_camera.data(), {T, 3});
+  }
+  if (track.world) {
+    Eigen::Matrix<double, 4, 4, Eigen::RowMajor> matrix = Eigen::Matrix4d::Identity();
+    matrix.topLeftCorner<3, 3>() = track.world->rotation;
+    matrix.topRightCorner<3, 1>() = track.world->translation;
+    const double sigma[] = {track.world->vertical_sigma_deg, track.world->height_sigma_m};
+    arrays["world_from_camera"] = NdArray::FromDoubles(matrix.data(), {4, 4});
+    arrays["world_source"] = NdArray::FromString(ToString(track.world->source));
+    arrays["world_sigma"] = NdArray::FromDoubles(sigma, {2});
   }
   if (!track.joints.empty()) {
     CheckPoints("joints", track.joints, T, J);

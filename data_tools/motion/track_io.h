@@ -10,6 +10,11 @@
 ///   image_size [width, height], pixels      camera T×3     (s, tx, ty), only with 'weak':
 ///                                                          pixel = s·(X + tx, Y + ty) + (cx, cy), s in pixels a metre,
 ///                                                          cx and cy from K
+///   world_from_camera 4×4  [R t; 0 0 0 1]: a point of the clip's world (y up, the ground at y = 0, the camera above the
+///                          origin and heading for −z; geometry/world_frame.h) is R · point in the camera frame + t
+///   world_source           how it was found: 'ground', 'several people', 'vertical', 'given', 'level camera assumed'
+///   world_sigma [degrees of the vertical, metres of the ground's height]: standard deviations (NaN: unknown)
+/// Files without the world members are of a track that does not say. Theirs is 'given' when only world_from_camera is.
 /// There is no `camera` member for a pinhole camera: K and trans say everything.
 ///
 /// The reader also takes tracks that others wrote. Needed are poses, trans and a camera (K, or camera T×3); without

@@ -9,22 +9,6 @@
 namespace bodyloom {
 namespace {
 
-/// The convention of a person with that many landmarks; nullptr when none has.
-const KeypointConvention* ConventionFor(size_t num_points) {
-  switch (num_points) {
-    case 17:
-      return &Coco17();
-    case 23:
-    case 133:
-      return &CocoWholeBody23();
-    case 26:
-    case 136:
-      return &Halpe26();
-    default:
-      return nullptr;
-  }
-}
-
 int64_t FrameNumber(const JsonNode& id) {
   if (id.is_number()) return id.Integer();
   const int64_t number = FrameNumberFromName(id.Text());
@@ -88,7 +72,7 @@ PeopleSequence CocoFromJson(const JsonNode& document, double fps) {
     const JsonNode values = entry.At("keypoints");
     const std::vector<double> numbers = values.Numbers();
     if (num_points == 0) num_points = numbers.size() / 3;
-    if (numbers.size() != 3 * num_points || ConventionFor(num_points) == nullptr) {
+    if (numbers.size() != 3 * num_points || ConventionOfCount(num_points) == nullptr) {
       throw std::runtime_error(values.place() + ": " + std::to_string(numbers.size()) + " numbers, expected 3·" +
                                (i > 0 ? std::to_string(num_points) + " as in the entries before"
                                       : std::string("17 (COCO), 23 or 133 (COCO-WholeBody), 26 or 136 (Halpe)")));
@@ -97,7 +81,7 @@ PeopleSequence CocoFromJson(const JsonNode& document, double fps) {
     if (const auto found = frame_of_image.find(number); found != frame_of_image.end()) number = found->second;
     DetectedPerson person;
     person.identity = IdentityOf(entry);
-    person.points.resize(ConventionFor(num_points)->names.size());
+    person.points.resize(ConventionOfCount(num_points)->names.size());
     for (size_t k = 0; k < person.points.size(); ++k) {
       const double c = numbers[3 * k + 2];
       person.points[k] = {static_cast<float>(numbers[3 * k]), static_cast<float>(numbers[3 * k + 1]),
@@ -106,7 +90,7 @@ PeopleSequence CocoFromJson(const JsonNode& document, double fps) {
     by_number[number].push_back(std::move(person));
   }
 
-  people.convention = num_points == 0 ? Coco17() : *ConventionFor(num_points);
+  people.convention = num_points == 0 ? Coco17() : *ConventionOfCount(num_points);
   std::vector<int64_t> numbers;
   for (const auto& [number, unused] : by_number) numbers.push_back(number);
   FrameGrid grid = MakeFrameGrid(numbers, fps, document.place());

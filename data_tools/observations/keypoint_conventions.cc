@@ -71,4 +71,19 @@ const KeypointConvention& MediaPipe33() {
   return convention;
 }
 
+const KeypointConvention* ConventionOfCount(size_t num_points) {
+  switch (num_points) {
+    case 17:
+      return &Coco17();
+    case 23:
+    case 133:
+      return &CocoWholeBody23();
+    case 26:
+    case 136:
+      return &Halpe26();
+    default:
+      return nullptr;
+  }
+}
+
 }  // namespace bodyloom

@@ -13,6 +13,7 @@
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/formats/json_reader.h"
 #include "bodyloom/data_tools/formats/printable.h"
+#include "bodyloom/data_tools/observations/pose2sim_toml.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/units.h"
 #include "bodyloom/geometry/rotation.h"
@@ -243,7 +244,8 @@ std::vector<NamedCamera> LoadCameras(const std::string& path, const std::string&
                                "expected one of them, or the camera file itself");
     }
   }
-  const nlohmann::json json = ReadJsonFile(file);
+  const nlohmann::json json =
+      file.ends_with(".toml") ? CamerasOfPose2SimToml(ReadFileBytes(file), file) : ReadJsonFile(file);
   std::vector<NamedCamera> cameras = CamerasFromJson(JsonNode(json, file));
   const std::string affines = (fs::path(file).parent_path() / kAffineFile).string();
   if (json.is_object() && json.contains("cameras") && fs::exists(affines, ignored)) ReadAffines(affines, &cameras);

@@ -6,6 +6,7 @@
 /// 2. Pose2Sim `calib_refined.json`: {"cameras": [{name, size [w,h], K 3×3, dist_k1k2p1p2, rvec, tvec_m}]}; beside it
 ///    `video_to_calib_affine.json` (or the folder that holds both) tells how the video's pixels map to the
 ///    calibration's.
+///    A Calib.toml (pose2sim_toml.h) is read too.
 /// 3. This project's: one object, a list of them, or {"cameras": […]}, each with
 ///      "model"      "pinhole" (default) or "weak"
 ///      "width", "height"                    pixels

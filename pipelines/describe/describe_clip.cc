@@ -17,6 +17,7 @@
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/peak_memory.h"
 #include "bodyloom/pipelines/report_json.h"
+#include "bodyloom/pipelines/track_fits_body.h"
 
 namespace bodyloom {
 namespace {
@@ -26,7 +27,7 @@ constexpr int kPreviewFrames = 6;
 DescribeTrackOptions OptionsOf(const DescribeClipRequest& request) {
   DescribeTrackOptions options = request.options;
   options.preview_frames = request.preview.empty() ? 0 : kPreviewFrames;
-  SetAxesPose(request.cameras, request.view, &options);
+  SetAxesPose(request.cameras, request.view, request.track, &options);
   std::string why;
   if (!options.IsValid(&why)) throw RequestError(why);
   return options;
@@ -41,8 +42,8 @@ DescribeClipReport DescribeClip(const DescribeClipRequest& request, const Pipeli
   const std::string header = DescriptorHeaderPath(request.out);
   DescribeClipReport report;
   report.out = request.out;
-  report.options = OptionsOf(request);
   RequireReadable(request.track, "track");
+  report.options = OptionsOf(request);
   RequireReadable(request.body, "body model");
   RequireDistinct({request.track, request.body, request.cameras}, {request.out, header, request.preview, request.json});
   for (const std::string& path : {request.out, header, request.preview, request.json}) RequireWritable(path);
@@ -53,11 +54,7 @@ DescribeClipReport DescribeClip(const DescribeClipRequest& request, const Pipeli
         (request.body.empty() ? body->name() : request.body) +
         ": a body without UV coordinates, expected vt and ft (bodyloom body convert --uv adds them)");
   }
-  if (track.motion.poses.cols() > 3 * body->num_joints()) {
-    throw std::runtime_error(Concatenate(request.track, ": ", track.motion.poses.cols() / 3, " joints, the body '",
-                                         body->name(), "' has ", body->num_joints(),
-                                         "; give the track's own with --body"));
-  }
+  RequireTrackFitsBody(track, *body, request.track);
   callbacks.Begin("describe");
   try {
     report.summary = DescribeTrack(*body, track, request.out, report.options,

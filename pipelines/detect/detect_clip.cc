@@ -31,8 +31,13 @@ void CheckFiles(const DetectClipRequest& request) {
   if (!request.dense.empty() && !request.dense.ends_with(".npz")) {
     throw RequestError(request.dense + ": dense keypoints are written as .npz");
   }
+  const FrameDetectorOptions& detector = request.detect.detector;
   RequireReadable(request.detect.video, "video");
-  RequireDistinct({request.detect.video, request.body}, outputs);
+  RequirePoseModels(detector);
+  if (!request.mask.empty() && !detector.pose_model.empty()) {
+    throw RequestError("--mask is BlazePose's: leave it out with --pose-model");
+  }
+  RequireDistinct({request.detect.video, request.body, detector.pose_model, detector.box_model}, outputs);
   for (const std::string& path : outputs) RequireWritable(path);
 }
 
@@ -51,13 +56,13 @@ double VisibleShare(const DetectedPerson& person) {
 DetectedClip DetectLandmarks(const DetectClipRequest& request, const PipelineCallbacks& callbacks, StageClock* clock,
                              DetectClipReport* report) {
   DetectPeopleRequest detect = request.detect;
-  detect.detector.masks = !request.mask.empty();
+  detect.detector.blazepose.masks = !request.mask.empty();
   callbacks.Begin("detecting people");
   clock->Begin("detect");
   DetectedClip clip = DetectPeople(detect, callbacks);
   const auto has_people = [](const std::vector<DetectedPerson>& people) { return !people.empty(); };
   FoundLandmarks& found = report->landmarks.emplace();
-  found.network = detect.detector.network;
+  found.network = FrameDetectorName(detect.detector);
   found.frames_with_people = int(std::count_if(clip.people.frames.begin(), clip.people.frames.end(), has_people));
   found.people = FoundPeople(clip.people, LinkPeople(clip.people));
   found.detector = clip.detector;
@@ -169,7 +174,7 @@ std::string ToJson(const DetectClipReport& report) {
     const FoundLandmarks& found = *report.landmarks;
     json["frames_with_people"] = found.frames_with_people;
     json["frames_detected"] = found.detector.frames;
-    json["network"] = ToText(found.network);
+    json["network"] = found.network;
     json["people"] = ToJson(found.people);
     json["searches"] = found.detector.searches;
     json["regions"] = found.detector.regions;
@@ -199,7 +204,7 @@ std::string ToText(const DetectClipReport& report) {
   }
   text += Concatenate("time     ", Fixed(report.total_seconds, 2), " s, ",
                       Fixed(report.frames / std::max(1e-9, report.total_seconds), 1), " frames a second",
-                      report.landmarks ? std::string(" with ") + ToText(report.landmarks->network) : "", "\n");
+                      report.landmarks ? " with " + report.landmarks->network : "", "\n");
   for (const std::string& path : report.outputs) text += "wrote    " + path + "\n";
   return text;
 }

@@ -14,7 +14,7 @@
 namespace bodyloom {
 
 struct DetectClipRequest {
-  DetectPeopleRequest detect;    ///< detector.masks follows from `mask`
+  DetectPeopleRequest detect;    ///< detector.blazepose.masks follows from `mask`
   std::string out;               ///< everybody's landmarks, .npz (people_npz.h); empty: none
   std::string mask;              ///< one person's mask, .npz (part_labels.h); empty: none
   std::string dense;             ///< one person's dense keypoints, .npz (observations_npz.h); empty: none
@@ -35,7 +35,7 @@ struct FoundPerson {
 /// What the landmark networks found.
 struct FoundLandmarks {
   int frames_with_people = 0;
-  PoseNetworkSize network = PoseNetworkSize::kHeavy;
+  std::string network;  ///< FrameDetectorName()
   std::vector<FoundPerson> people;
   PeopleDetectorSummary detector;
 };

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "bodyloom/data_tools/observations/visible_rectangle.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/prefetcher.h"
 
@@ -14,8 +15,6 @@ namespace bodyloom {
 namespace {
 
 constexpr size_t kPicturesAhead = 2;
-/// Landmarks below it are where the detector would put them if they were seen, which may be far from the person.
-constexpr float kVisibleLandmark = 0.5F;
 
 /// A detection without its picture: its box, and the keypoints that were sampled from it.
 struct FoundCharts {
@@ -88,18 +87,9 @@ PeopleSequence BoxesAsPeople(const FoundClip& clip) {
   return people;
 }
 
-/// The rectangle of the landmarks that are visible, or of all when none is.
 ChartDetection RectangleOf(const DetectedPerson& person) {
-  const auto is_visible = [](const Keypoint& p) { return p.confidence >= kVisibleLandmark; };
-  const bool some = std::any_of(person.points.begin(), person.points.end(), is_visible);
-  constexpr double kMost = std::numeric_limits<double>::max();
-  ChartDetection box = {kMost, kMost, -kMost, -kMost, 1, {}};
-  for (const Keypoint& p : person.points) {
-    if (some ? !is_visible(p) : !(p.confidence > 0)) continue;
-    box.x0 = std::min(box.x0, double{p.x}), box.x1 = std::max(box.x1, double{p.x});
-    box.y0 = std::min(box.y0, double{p.y}), box.y1 = std::max(box.y1, double{p.y});
-  }
-  return box;
+  const ImageRectangle r = VisibleRectangle(person);
+  return {r.x0, r.y0, r.x1, r.y1, 1, {}};
 }
 
 /// Intersection over union; 0 when either is empty.

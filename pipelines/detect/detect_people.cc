@@ -3,13 +3,14 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <utility>
 
-#include "bodyloom/data_tools/detection/landmark_confidence.h"
 #include "bodyloom/data_tools/observations/people_between.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/prefetcher.h"
+#include "bodyloom/pipelines/files.h"
 
 namespace bodyloom {
 namespace {
@@ -37,24 +38,17 @@ TimedFrame NextFrame(FrameSource* source) {
   return frame;
 }
 
-DetectedPerson ToPerson(const DetectedPose& pose) {
-  DetectedPerson person;
-  for (const PoseLandmark& landmark : pose.landmarks) {
-    person.points.push_back(
-        {float(landmark.pixel.x()), float(landmark.pixel.y()), float(LandmarkConfidence(landmark))});
-  }
-  return person;
-}
-
 /// Detects the frames of a clip that are due, a few side by side.
 class ClipDetector {
  public:
   ClipDetector(const DetectPeopleRequest& request, double fps, DetectedClip* clip)
-      : detector_(request.models, request.detector),
+      : detector_(MakeFrameDetector(request.detector)),
         rate_(request.detect_rate),
-        most_((rate_ > 0 ? std::min(rate_, fps) : fps) < kSlowFps ? 1 : PeopleDetector::kFramesAtOnce),
-        with_masks_(request.detector.masks),
-        clip_(clip) {}
+        most_((rate_ > 0 ? std::min(rate_, fps) : fps) < kSlowFps ? 1 : FrameDetector::kFramesAtOnce),
+        with_masks_(request.detector.blazepose.masks),
+        clip_(clip) {
+    clip->people.convention = detector_->convention();
+  }
 
   void Add(TimedFrame frame) {
     clip_->people.frames.emplace_back();
@@ -81,7 +75,7 @@ class ClipDetector {
     if (!waiting_.empty()) Detect();
     if (rate_ > 0) FillBetween(detected_, &clip_->people);
     for (size_t t = 0; t < clip_->masks.size(); ++t) clip_->masks[t].resize(clip_->people.frames[t].size());
-    clip_->detector = detector_.summary();
+    clip_->detector = detector_->summary();
   }
 
  private:
@@ -91,12 +85,12 @@ class ClipDetector {
   }
 
   void Detect() {
-    std::vector<std::vector<DetectedPose>> poses = detector_.Detect(waiting_);
-    for (size_t i = 0; i < poses.size(); ++i) {
+    std::vector<std::vector<FramePerson>> found = detector_->Detect(waiting_);
+    for (size_t i = 0; i < found.size(); ++i) {
       const size_t place = places_[i];
-      for (DetectedPose& pose : poses[i]) {
-        clip_->people.frames[place].push_back(ToPerson(pose));
-        if (with_masks_) clip_->masks[place].push_back(std::move(pose.mask));
+      for (FramePerson& person : found[i]) {
+        clip_->people.frames[place].push_back(std::move(person.person));
+        if (with_masks_) clip_->masks[place].push_back(std::move(person.mask));
       }
       if (rate_ > 0) SeeHowFast(place);
     }
@@ -113,7 +107,7 @@ class ClipDetector {
     last_ = place;
   }
 
-  PeopleDetector detector_;
+  std::unique_ptr<FrameDetector> detector_;
   double rate_;
   int most_;
   bool with_masks_;
@@ -129,13 +123,20 @@ class ClipDetector {
 
 }  // namespace
 
+void RequirePoseModels(const FrameDetectorOptions& detector) {
+  if (!detector.box_model.empty() && detector.pose_model.empty()) {
+    throw RequestError("--box-model finds people for RTMPose: give --pose-model");
+  }
+  RequireReadable(detector.pose_model, "pose model");
+  RequireReadable(detector.box_model, "box model");
+}
+
 DetectedClip DetectPeople(const DetectPeopleRequest& request, const PipelineCallbacks& callbacks) {
   if (!(request.detect_rate >= 0)) {
     throw RequestError(Concatenate("frames to detect a second: ", request.detect_rate, ", expected a positive number"));
   }
   FrameSource source(request.video, request.span);
   DetectedClip clip;
-  clip.people.convention = MediaPipe33();
   clip.people.image_width = source.info().width;
   clip.people.image_height = source.info().height;
   const int num_frames = source.num_frames();

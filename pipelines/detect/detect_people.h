@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/detection/people_detector.h"
+#include "bodyloom/data_tools/detection/frame_detector.h"
 #include "bodyloom/data_tools/observations/people.h"
 #include "bodyloom/geometry/observations.h"
 #include "bodyloom/pipelines/callbacks.h"
@@ -14,20 +14,22 @@
 namespace bodyloom {
 
 struct DetectPeopleRequest {
-  std::string video;   ///< the video, or a folder of images
-  std::string models;  ///< folder of the networks; empty: where they are installed (model_files.h)
+  std::string video;  ///< the video, or a folder of images
   FrameSpan span;
-  PeopleDetectorOptions detector;
+  FrameDetectorOptions detector;
   /// Frames a second that are detected while everybody moves slowly; those between are filled in (FillBetween()), without
   /// masks. 0: all.
   double detect_rate = 0;
 };
 
 struct DetectedClip {
-  PeopleSequence people;                       ///< MediaPipe33(); identities −1
+  PeopleSequence people;                       ///< the detector's convention; identities −1
   std::vector<std::vector<LabelImage>> masks;  ///< [frame][person as in people.frames]; empty unless asked for
   PeopleDetectorSummary detector;
 };
+
+/// Throws RequestError when the ONNX files of a detector contradict each other or are not there.
+void RequirePoseModels(const FrameDetectorOptions& detector);
 
 /// Throws std::runtime_error naming a file that cannot be used, RequestError for a span that holds no frame, Cancelled.
 DetectedClip DetectPeople(const DetectPeopleRequest& request, const PipelineCallbacks& callbacks = {});

@@ -10,14 +10,25 @@
 #include <stdexcept>
 
 #include "bodyloom/data_tools/body/body_or_builtin.h"
+#include "bodyloom/data_tools/export/c3d_writer.h"
+#include "bodyloom/data_tools/export/colmap_writer.h"
+#include "bodyloom/data_tools/export/export_scene.h"
+#include "bodyloom/data_tools/export/markers.h"
+#include "bodyloom/data_tools/export/pose2sim_calibration.h"
+#include "bodyloom/data_tools/export/trc_writer.h"
+#include "bodyloom/data_tools/export/usda_writer.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/formats/npz.h"
 #include "bodyloom/data_tools/motion/amass.h"
 #include "bodyloom/data_tools/motion/bvh_writer.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/pipelines/files.h"
+#include "bodyloom/pipelines/track_fits_body.h"
+#include "bodyloom/render/follow_view.h"
 #include "bodyloom/render/overlay.h"
+#include "bodyloom/render/track_world.h"
 
 namespace bodyloom {
 namespace {
@@ -47,55 +58,212 @@ std::string ObjText(const MatrixX3d& vertices, const BodyModelData& body) {
   return text;
 }
 
-void ExportVertices(const Track& track, const BodyModel& body, const ExportTrackRequest& request,
-                    const PipelineCallbacks& callbacks) {
-  const size_t row = 3 * static_cast<size_t>(body.num_vertices());
-  std::vector<float> values(row * track.num_frames(), std::nanf(""));
-  for (int t = 0; t < track.num_frames(); ++t) {
-    callbacks.Update("export", static_cast<double>(t) / track.num_frames());
-    const MatrixX3d vertices = TrackVertices(body, track, t);
-    if (vertices.rows() > 0) {
-      Eigen::Map<MatrixX3f>(values.data() + row * t, body.num_vertices(), 3) = vertices.cast<float>();
-    }
+/// What the request names, read.
+struct ExportInputs {
+  std::shared_ptr<const BodyModel> body;
+  std::vector<Track> tracks;
+  WorldFrame world;
+  [[nodiscard]] const Track& track() const { return tracks.front(); }
+  [[nodiscard]] Motion MotionOfTrack() const {
+    return MotionInWorld(world, body->RestJoints(track().motion.betas).row(0).transpose(), track().motion);
   }
-  WriteNpy(request.out, NdArray::FromFloats(values.data(), {track.num_frames(), body.num_vertices(), 3}));
+  [[nodiscard]] ExportScene Scene() const {
+    std::vector<const Track*> each;
+    for (const Track& one : tracks) each.push_back(&one);
+    const std::vector<const BodyModel*> bodies(each.size(), body.get());
+    return MakeExportScene(bodies, each, world);
+  }
+};
+
+/// In the axes of the request; no rows where a frame is lost.
+MatrixX3d VerticesOf(const ExportInputs& inputs, const ExportTrackRequest& request, int t) {
+  MatrixX3d vertices = TrackVertices(*inputs.body, inputs.track(), t);
+  return request.world_axes && vertices.rows() > 0 ? inputs.world.PointsFromCamera(vertices) : vertices;
 }
 
-void ExportJoints(const Track& track, const ExportTrackRequest& request) {
+void ExportVertices(const ExportInputs& inputs, const ExportTrackRequest& request, const PipelineCallbacks& callbacks) {
+  const int T = inputs.track().num_frames(), V = inputs.body->num_vertices();
+  const size_t row = 3 * static_cast<size_t>(V);
+  std::vector<float> values(row * T, std::nanf(""));
+  for (int t = 0; t < T; ++t) {
+    callbacks.Update("export", static_cast<double>(t) / T);
+    const MatrixX3d vertices = VerticesOf(inputs, request, t);
+    if (vertices.rows() > 0) Eigen::Map<MatrixX3f>(values.data() + row * t, V, 3) = vertices.cast<float>();
+  }
+  WriteNpy(request.out, NdArray::FromFloats(values.data(), {T, V, 3}));
+}
+
+void ExportJoints(const ExportInputs& inputs, const ExportTrackRequest& request) {
+  const Track& track = inputs.track();
   const auto num_joints = track.joints.empty() ? 0 : track.joints[0].rows();
   RowMatrixXd values(track.num_frames(), 3 * num_joints);
   for (int t = 0; t < track.num_frames(); ++t) {
-    values.row(t) = Eigen::Map<const Eigen::RowVectorXd>(track.joints[t].data(), 3 * num_joints);
+    const MatrixX3d joints = request.world_axes ? inputs.world.PointsFromCamera(track.joints[t]) : track.joints[t];
+    values.row(t) = Eigen::Map<const Eigen::RowVectorXd>(joints.data(), 3 * num_joints);
   }
   WriteNpy(request.out, NdArray::FromDoubles(values.data(), {track.num_frames(), num_joints, 3}));
 }
 
-void ExportObj(const Track& track, const BodyModel& body, const ExportTrackRequest& request,
-               const PipelineCallbacks& callbacks) {
+void ExportObj(const ExportInputs& inputs, const ExportTrackRequest& request, const PipelineCallbacks& callbacks) {
+  const BodyModelData& body = inputs.body->data();
   if (request.frame >= 0) {
-    const MatrixX3d vertices = TrackVertices(body, track, request.frame);
+    const MatrixX3d vertices = VerticesOf(inputs, request, request.frame);
     if (vertices.rows() == 0) {
       throw std::runtime_error(
-          Concatenate(request.track, ": frame ", request.frame, " is lost, there is no body to write"));
+          Concatenate(request.tracks[0], ": frame ", request.frame, " is lost, there is no body to write"));
     }
-    WriteFileAtomically(request.out, ObjText(vertices, body.data()));
+    WriteFileAtomically(request.out, ObjText(vertices, body));
     return;
   }
-  for (int t = 0; t < track.num_frames(); ++t) {
-    callbacks.Update("export", static_cast<double>(t) / track.num_frames());
-    const MatrixX3d vertices = TrackVertices(body, track, t);
+  const int T = inputs.track().num_frames();
+  for (int t = 0; t < T; ++t) {
+    callbacks.Update("export", static_cast<double>(t) / T);
+    const MatrixX3d vertices = VerticesOf(inputs, request, t);
     if (vertices.rows() > 0) {
       char name[32];
       std::snprintf(name, sizeof name, "frame_%06d.obj", t);
-      WriteFileAtomically((std::filesystem::path(request.out) / name).string(), ObjText(vertices, body.data()));
+      WriteFileAtomically((std::filesystem::path(request.out) / name).string(), ObjText(vertices, body));
     }
   }
+}
+
+bool IsFolder(const ExportTrackRequest& request) {
+  return (request.form == TrackForm::kObj && request.frame < 0) || request.form == TrackForm::kColmap;
+}
+
+bool TakesPeople(TrackForm form) {
+  return form == TrackForm::kGlb || form == TrackForm::kUsd || form == TrackForm::kColmap;
+}
+
+bool HasAxes(TrackForm form) {
+  return form == TrackForm::kVertices || form == TrackForm::kJoints || form == TrackForm::kObj;
+}
+
+void CheckExport(const ExportTrackRequest& request) {
+  const std::string& form = TrackFormNames()[size_t(request.form)];
+  if (request.tracks.empty()) throw RequestError("--track is required: the track to write");
+  if (request.tracks.size() > 1 && !TakesPeople(request.form)) {
+    throw RequestError(
+        Concatenate(request.tracks.size(), " tracks: ", form, " holds one person, expected one --track"));
+  }
+  if (request.world_axes && !HasAxes(request.form)) {
+    throw RequestError("--axes is of vertices, joints and obj: " + form + " has axes of its own");
+  }
+  if (request.rig != BvhRig::kSmpl && request.form != TrackForm::kBvh)
+    throw RequestError("--rig is of bvh, not of " + form);
+  if (!request.textures.empty() && request.form != TrackForm::kGlb) {
+    throw RequestError("--texture is of glb, not of " + form);
+  }
+  if (request.textures.size() > request.tracks.size()) {
+    throw RequestError(Concatenate(request.textures.size(), " textures for ", request.tracks.size(), " tracks"));
+  }
+  std::vector<std::string> inputs = request.tracks;
+  for (const std::string& track : request.tracks) RequireReadable(track, "track");
+  for (const std::string& texture : request.textures) RequireReadable(texture, "texture");
+  RequireReadable(request.body, "body model");
+  inputs.push_back(request.body);
+  inputs.insert(inputs.end(), request.textures.begin(), request.textures.end());
+  RequireDistinct(inputs, {request.out});
+  if (IsFolder(request)) {
+    RequireWritableFolder(request.out);
+  } else {
+    RequireWritable(request.out);
+  }
+}
+
+ExportInputs ReadExportInputs(const ExportTrackRequest& request) {
+  ExportInputs inputs;
+  inputs.body = BodyOrBuiltin(request.body);
+  std::vector<MatrixX3d> joints;
+  for (const std::string& path : request.tracks) {
+    const Track& track = inputs.tracks.emplace_back(ReadTrack(path));
+    if (request.frame >= track.num_frames()) {
+      throw std::runtime_error(
+          Concatenate(path, ": ", track.num_frames(), " frames, expected one with number ", request.frame));
+    }
+    RequireTrackFitsBody(track, *inputs.body, path);
+    const std::vector<MatrixX3d> own = TrackJoints(*inputs.body, track);
+    joints.insert(joints.end(), own.begin(), own.end());
+  }
+  std::vector<const Track*> tracks;
+  for (const Track& track : inputs.tracks) tracks.push_back(&track);
+  inputs.world = WorldOfTracks(tracks, joints);
+  return inputs;
+}
+
+/// BVH and AMASS have a pose in every frame.
+void RequireEveryFrame(const ExportInputs& inputs, const ExportTrackRequest& request) {
+  const Track& track = inputs.track();
+  for (int t = 0; t < track.num_frames(); ++t) {
+    if (track.motion.HasPose(t)) continue;
+    throw std::runtime_error(Concatenate(request.tracks[0], ": frame ", t, " is lost, which ",
+                                         TrackFormNames()[size_t(request.form)],
+                                         " cannot say; glb, usd, trc and c3d leave it out"));
+  }
+}
+
+GlbSummary ExportGlb(const ExportInputs& inputs, const ExportTrackRequest& request) {
+  GlbOptions options;
+  options.correctives = request.correctives;
+  for (const std::string& path : request.textures) {
+    options.textures.push_back(ReadFileBytes(path));
+    if (!options.textures.back().starts_with("\x89PNG")) throw std::runtime_error(path + ": not a PNG file");
+  }
+  return WriteGlb(request.out, inputs.Scene(), options);
+}
+
+void Write(const ExportInputs& inputs, const ExportTrackRequest& request, const PipelineCallbacks& callbacks,
+           ExportTrackReport* report) {
+  const Track& track = inputs.track();
+  const Eigen::Vector3d pelvis = inputs.body->RestJoints(track.motion.betas).row(0).transpose();
+  switch (request.form) {
+    case TrackForm::kVertices:
+      return ExportVertices(inputs, request, callbacks);
+    case TrackForm::kJoints:
+      return ExportJoints(inputs, request);
+    case TrackForm::kObj:
+      return ExportObj(inputs, request, callbacks);
+    case TrackForm::kAmass:
+      RequireEveryFrame(inputs, request);
+      return WriteAmass(request.out, inputs.MotionOfTrack(), pelvis);
+    case TrackForm::kBvh:
+      RequireEveryFrame(inputs, request);
+      return WriteBvh(request.out, inputs.MotionOfTrack(), *inputs.body, request.rig);
+    case TrackForm::kGlb:
+      report->glb = ExportGlb(inputs, request);
+      return;
+    case TrackForm::kUsd:
+      return WriteUsda(request.out, inputs.Scene(), request.correctives);
+    case TrackForm::kSmplx:
+      RequireEveryFrame(inputs, request);
+      return WriteAmassSmplx(request.out, inputs.MotionOfTrack(), pelvis);
+    case TrackForm::kTrc:
+    case TrackForm::kC3d: {
+      const ExportScene scene = inputs.Scene();
+      const MarkerTrajectories markers = HalpeMarkers(scene, scene.people[0]);
+      return request.form == TrackForm::kTrc ? WriteTrc(request.out, markers) : WriteC3d(request.out, markers);
+    }
+    case TrackForm::kColmap:
+      return WriteColmap(request.out, inputs.Scene());
+    case TrackForm::kPose2Sim:
+      return WritePose2SimCalibration(request.out, "cam_01", track.camera, inputs.world);
+  }
+}
+
+size_t BytesUnder(const std::string& path) {
+  if (!std::filesystem::is_directory(path)) return std::filesystem::file_size(path);
+  size_t bytes = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(path)) {
+    if (entry.is_regular_file()) bytes += entry.file_size();
+  }
+  return bytes;
 }
 
 }  // namespace
 
 const std::vector<std::string>& TrackFormNames() {
-  static const std::vector<std::string> names = {"vertices", "joints", "obj", "amass", "bvh"};
+  static const std::vector<std::string> names = {"vertices", "joints", "obj", "amass", "bvh",    "glb",
+                                                 "usd",      "smplx",  "trc", "c3d",   "colmap", "pose2sim"};
   return names;
 }
 
@@ -106,44 +274,36 @@ TrackForm TrackFormFromString(const std::string& name) {
   return static_cast<TrackForm>(found - names.begin());
 }
 
+std::string ToText(const ExportTrackReport& report) {
+  std::string text;
+  if (report.uses_world) text += "world    " + report.world.BriefReport() + "\n";
+  if (report.glb.bytes > 0) {
+    char line[160];
+    std::snprintf(line, sizeof line,
+                  "skin     %d corrective shapes, four joints a vertex: %.2f mm off (rms), %.2f mm at most\n",
+                  report.glb.shapes, 1e3 * report.glb.rms_error_m, 1e3 * report.glb.max_error_m);
+    text += line;
+  }
+  return text + "wrote " + report.out + "\n";
+}
+
 ExportTrackReport ExportTrack(const ExportTrackRequest& request, const PipelineCallbacks& callbacks) {
-  RequireReadable(request.track, "track");
-  RequireReadable(request.body, "body model");
-  RequireDistinct({request.track, request.body}, {request.out});
-  if (request.form == TrackForm::kObj && request.frame < 0) {
-    RequireWritableFolder(request.out);
-  } else {
-    RequireWritable(request.out);
+  const Stopwatch watch;
+  CheckExport(request);
+  const ExportInputs inputs = ReadExportInputs(request);
+  ExportTrackReport report;
+  report.num_frames = inputs.track().num_frames();
+  report.out = request.out;
+  report.uses_world = request.world_axes || !HasAxes(request.form);
+  report.world = inputs.world;
+  try {
+    Write(inputs, request, callbacks, &report);
+  } catch (const std::invalid_argument& error) {  // what the track holds has no place in the form
+    throw std::runtime_error(request.tracks[0] + ": " + error.what());
   }
-  const Track track = ReadTrack(request.track);
-  if (request.frame >= track.num_frames()) {
-    throw std::runtime_error(
-        Concatenate(request.track, ": ", track.num_frames(), " frames, expected one with number ", request.frame));
-  }
-  const std::shared_ptr<const BodyModel> body = BodyOrBuiltin(request.body);
-  if (track.motion.poses.cols() > 3 * body->num_joints()) {
-    throw std::runtime_error(Concatenate(request.track, ": ", track.motion.poses.cols() / 3, " joints (body '",
-                                         track.motion.body, "'), the body '", body->name(), "' has ",
-                                         body->num_joints(), "; give the track's own with --body"));
-  }
-  switch (request.form) {
-    case TrackForm::kVertices:
-      ExportVertices(track, *body, request, callbacks);
-      break;
-    case TrackForm::kJoints:
-      ExportJoints(track, request);
-      break;
-    case TrackForm::kObj:
-      ExportObj(track, *body, request, callbacks);
-      break;
-    case TrackForm::kAmass:
-      WriteAmass(request.out, track.motion, body->RestJoints(track.motion.betas).row(0));
-      break;
-    case TrackForm::kBvh:
-      WriteBvh(request.out, track.motion, *body);
-      break;
-  }
-  return {track.num_frames(), request.out};
+  report.bytes = BytesUnder(request.out);
+  report.seconds = watch.seconds();
+  return report;
 }
 
 }  // namespace bodyloom

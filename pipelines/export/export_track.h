@@ -1,21 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A track in another form: vertices, joints, OBJ, AMASS, BVH.
+/// Tracks in another form: for animation programs, game engines, biomechanics, reconstruction, and plain arrays.
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include "bodyloom/data_tools/export/glb_writer.h"
+#include "bodyloom/data_tools/motion/bvh_rig.h"
+#include "bodyloom/geometry/world_frame.h"
 #include "bodyloom/pipelines/callbacks.h"
 
 namespace bodyloom {
 
-/// What is written; camera frame and metres, unless stated otherwise.
+/// What is written: in the clip's world (geometry/world_frame.h: metres, y up, ground at y = 0), unless stated otherwise.
 enum class TrackForm {
-  kVertices,  ///< .npy, frames x vertices x 3, float32; lost frames are NaN
-  kJoints,    ///< .npy, frames x joints x 3, float64; lost frames are NaN
-  kObj,       ///< a folder with frame_000000.obj ..., lost frames left out; or one frame's .obj
+  kVertices,  ///< .npy, frames x vertices x 3, float32; lost frames are NaN; the request's axes
+  kJoints,    ///< .npy, frames x joints x 3, float64; lost frames are NaN; the request's axes
+  kObj,       ///< a folder with frame_000000.obj ..., lost frames left out; or one frame's .obj; the request's axes
   kAmass,     ///< .npz as AMASS has it: SMPL-H's 156 pose columns, z up
-  kBvh,       ///< for animation programs: centimetres, y up
+  kBvh,       ///< for animation programs: centimetres
+  kGlb,       ///< glTF 2.0 binary: skinned bodies, animation, camera, ground (glb_writer.h); several people
+  kUsd,       ///< .usda: the same (usda_writer.h); several people
+  kSmplx,     ///< .npz in AMASS' SMPL-X form, which GMR reads: z up
+  kTrc,       ///< markers for OpenSim and Pose2Sim: metres
+  kC3d,       ///< markers for biomechanics programs: millimetres
+  kColmap,    ///< a folder: the camera as a COLMAP text model
+  kPose2Sim,  ///< Calib.toml: the camera, z up
 };
 /// "vertices", "joints", ... in the order of TrackForm.
 const std::vector<std::string>& TrackFormNames();
@@ -23,20 +33,33 @@ const std::vector<std::string>& TrackFormNames();
 TrackForm TrackFormFromString(const std::string& name);
 
 struct ExportTrackRequest {
-  std::string track;  ///< .npz
-  std::string body;   ///< the track's body; empty: the built-in one
+  std::vector<std::string> tracks;  ///< .npz; more than one: people of one clip, for kGlb, kUsd and kColmap
+  std::string body;                 ///< the tracks' body; empty: the built-in one
   TrackForm form = TrackForm::kVertices;
-  int frame = -1;   ///< kObj: only this frame, counted from 0; -1: all
-  std::string out;  ///< file, or folder (kObj of all frames)
+  bool world_axes = false;            ///< kVertices, kJoints, kObj: in the clip's world; false: in the camera frame
+  int frame = -1;                     ///< kObj: only this frame, counted from 0; -1: all
+  BvhRig rig = BvhRig::kSmpl;         ///< kBvh
+  std::vector<std::string> textures;  ///< kGlb: PNG files, by track
+  int correctives = 8;                ///< kGlb, kUsd: shapes for pose correctives, 0 to 64
+  std::string out;                    ///< file, or folder (kObj of all frames, kColmap)
 };
 
 struct ExportTrackReport {
-  int num_frames = 0;  ///< of the track
+  int num_frames = 0;  ///< of the first track
   std::string out;     ///< what was written
+  bool uses_world = false;
+  WorldFrame world;  ///< where uses_world
+  GlbSummary glb;    ///< kGlb
+  size_t bytes = 0;  ///< of the file, or of the folder's files
+  double seconds = 0;
 };
 
-/// Throws std::runtime_error naming a file that cannot be used, a frame that the track lacks or has lost, or a body
-/// that is not the track's; RequestError for a file both read and written; Cancelled.
+/// What was written, in which world, how exact: some lines, the last one with a newline.
+std::string ToText(const ExportTrackReport& report);
+
+/// Throws std::runtime_error naming a file that cannot be used, a frame that a track lacks or has lost, or a body that is
+/// not the track's; RequestError for a file both read and written, and for options or tracks that the form does not
+/// take; Cancelled.
 ExportTrackReport ExportTrack(const ExportTrackRequest& request, const PipelineCallbacks& callbacks = {});
 
 }  // namespace bodyloom

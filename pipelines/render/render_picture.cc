@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "bodyloom/geometry/base/check.h"
@@ -14,7 +15,7 @@
 namespace bodyloom {
 namespace {
 
-const char* const kNames[] = {"overlay", "iuv", "parts", "normal", "depth", "texture"};
+const char* const kNames[] = {"overlay", "iuv", "parts", "normal", "depth", "texture", "error"};
 
 SurfaceAttribute AttributeOf(RenderKind kind) {
   switch (kind) {
@@ -26,6 +27,8 @@ SurfaceAttribute AttributeOf(RenderKind kind) {
       return SurfaceAttribute::kDepth;
     case RenderKind::kTexture:
       return SurfaceAttribute::kTexture;
+    case RenderKind::kError:
+      return SurfaceAttribute::kError;
     default:
       return SurfaceAttribute::kParts;
   }
@@ -147,9 +150,29 @@ Image RenderPicture::Draw(int frame, double turn_deg, const Image* background) {
   attribute.attribute = AttributeOf(options_.kind);
   attribute.near_m = near_m_, attribute.far_m = far_m_;
   attribute.texture = options_.texture;
+  std::vector<float> errors;
+  if (options_.kind == RenderKind::kError) {
+    errors = VertexErrors(frame);
+    attribute.vertex_errors = errors;
+    attribute.error_maximum = options_.error_maximum;
+  }
   attribute.num_threads = options_.num_threads;
   attributes_.Draw(body_, placed.vertices, placed.camera, attribute, &image);
   return image;
+}
+
+std::vector<float> RenderPicture::VertexErrors(int frame) const {
+  const Eigen::VectorXd errors = VertexErrorsOfFrame(track_, *options_.truth, frame, body_, options_.error_unit);
+  if (errors.size() == 0) return std::vector<float>(body_.num_vertices(), std::numeric_limits<float>::quiet_NaN());
+  return {errors.begin(), errors.end()};
+}
+
+std::optional<ErrorScale> RenderPicture::Scale() const {
+  if (options_.kind != RenderKind::kError) return std::nullopt;
+  if (options_.error_unit == VertexErrorUnit::kPixels) {
+    return ErrorScale{options_.error_maximum, "px", "projection error, longer side 512 px"};
+  }
+  return ErrorScale{options_.error_maximum, "mm", "vertex error, pelvis on pelvis"};
 }
 
 std::string RenderPicture::Caption(int frame, double turn_deg) const {
@@ -171,6 +194,8 @@ std::string RenderPicture::Legend() const {
     case RenderKind::kOverlay:
     case RenderKind::kTexture:
       return "";
+    case RenderKind::kError:
+      return Scale()->ToText();
     case RenderKind::kIuv:
       return "chart coordinates: red u, green v, blue the part";
     case RenderKind::kParts:

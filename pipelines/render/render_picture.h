@@ -7,9 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "bodyloom/data_tools/evaluation/vertex_errors.h"
 #include "bodyloom/geometry/body_model.h"
 #include "bodyloom/geometry/track.h"
 #include "bodyloom/render/attribute_picture.h"
+#include "bodyloom/render/error_colours.h"
 #include "bodyloom/render/floor.h"
 #include "bodyloom/render/follow_view.h"
 #include "bodyloom/render/image.h"
@@ -18,7 +20,7 @@
 namespace bodyloom {
 
 /// What a picture shows.
-enum class RenderKind { kOverlay, kIuv, kParts, kNormal, kDepth, kTexture };
+enum class RenderKind { kOverlay, kIuv, kParts, kNormal, kDepth, kTexture, kError };
 /// "overlay", "iuv", …; throws std::invalid_argument for other names.
 RenderKind RenderKindFromString(const std::string& name);
 std::string ToString(RenderKind kind);
@@ -29,6 +31,9 @@ struct RenderPictureOptions {
   double view_yaw_deg = 0;  ///< 90: from the person's left when it faces the camera
   bool turntable = false;   ///< that camera will be turned
   TexelAttribute texture = {};
+  const Track* truth = nullptr;  ///< error: what the track is compared with, frame by frame
+  VertexErrorUnit error_unit = VertexErrorUnit::kMillimetres;
+  double error_maximum = 1;  ///< in that unit: the last colour
   int num_threads = 1;
 };
 
@@ -39,7 +44,7 @@ struct PlacedBody {
   CameraPose view_from_camera;  ///< identity for the track's own camera
 };
 
-/// Not for use by two threads at once. Borrows body, track and texture.
+/// Not for use by two threads at once. Borrows body, track, texture and truth.
 class RenderPicture {
  public:
   /// Throws std::runtime_error, beginning with `where`, when the body lacks what is to be shown, the camera has no
@@ -53,6 +58,10 @@ class RenderPicture {
 
   /// `background` of the camera's size, or null: a studio (overlay), or nothing but a plain colour.
   [[nodiscard]] Image Draw(int frame, double turn_deg, const Image* background);
+  /// Error of every vertex in a frame; NaN where the frame is lost on either side.
+  [[nodiscard]] std::vector<float> VertexErrors(int frame) const;
+  /// What error colours mean; empty for other kinds.
+  [[nodiscard]] std::optional<ErrorScale> Scale() const;
   /// "frame 12   0.40 s   tracked", and for a turned camera by how much.
   [[nodiscard]] std::string Caption(int frame, double turn_deg) const;
   /// What the colours mean; empty where they explain themselves.

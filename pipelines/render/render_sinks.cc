@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 
 #include "bodyloom/data_tools/video/image_file.h"
@@ -12,6 +14,7 @@
 #include "bodyloom/pipelines/callbacks.h"
 #include "bodyloom/render/caption.h"
 #include "bodyloom/render/contact_sheet.h"
+#include "bodyloom/render/error_colours.h"
 #include "bodyloom/render/palette.h"
 #include "bodyloom/render/resolve_pixels.h"
 
@@ -21,7 +24,11 @@ namespace {
 void DrawCaptions(const RenderStep& step, const RenderPicture& picture, Image* image) {
   const double height = std::max(9.0, image->height / 48.0);
   DrawCaption({{picture.Caption(step.frame, step.turn_deg)}}, Corner::kTopLeft, height, image);
-  if (!picture.Legend().empty()) {
+  if (const std::optional<ErrorScale> scale = picture.Scale()) {
+    const int margin = static_cast<int>(height);
+    const int width = std::min(image->width - 2 * margin, static_cast<int>(26 * height));
+    DrawErrorLegend(*scale, margin, image->height - margin - ErrorLegendHeight(height), width, height, image);
+  } else if (!picture.Legend().empty()) {
     DrawCaption({{picture.Legend()}}, Corner::kBottomLeft, height, image);
   }
 }
@@ -53,7 +60,8 @@ class SheetSink : public RenderSink {
     DrawCaption({{picture->Caption(step.frame, step.turn_deg)}}, Corner::kTopLeft, 10, &cell);
     Paste(Resized(image, width, kPictureHeight), 0, kWords, &cell);
     cells_.push_back(std::move(cell));
-    legend_ = picture->Legend();
+    scale_ = picture->Scale();
+    legend_ = scale_ ? "" : picture->Legend();
   }
   void Finish() override {
     const Image cells = ContactSheet(cells_, {.cell_height_px = kWords + kPictureHeight});
@@ -64,16 +72,19 @@ class SheetSink : public RenderSink {
     if (!legend_.empty()) {
       head.push_back({legend_});
     }
-    const int head_height = 30 + 25 * static_cast<int>(head.size());
+    const int words_height = 30 + 25 * static_cast<int>(head.size());
+    const int head_height = words_height + (scale_ ? ErrorLegendHeight(kLegendCap) + 10 : 0);
     Image sheet(std::max(cells.width, 560), cells.height + head_height, kInkColour);
     Paste(cells, 0, head_height, &sheet);
     DrawCaption(head, Corner::kTopLeft, 13, &sheet);
+    if (scale_) DrawErrorLegend(*scale_, 14, words_height, 420, kLegendCap, &sheet);
     WriteImage(path_, sheet);
   }
 
  private:
-  static constexpr int kPictureHeight = 360, kWords = 36;
+  static constexpr int kPictureHeight = 360, kWords = 36, kLegendCap = 11;
   std::string path_, legend_;
+  std::optional<ErrorScale> scale_;
   std::vector<std::string> title_;
   std::vector<Image> cells_;
 };
@@ -103,6 +114,9 @@ class ArraySink : public RenderSink {
         Add("mask", DType::kU8, 1, {T, H, W});
         Add("rgb", DType::kU8, 1, {T, H, W, 3});
         break;
+      case RenderKind::kError:
+        Add("error", DType::kF32, 4, {T, H, W});
+        break;
       case RenderKind::kOverlay:
         Add("rgb", DType::kU8, 1, {T, H, W, 3});
         break;
@@ -131,6 +145,7 @@ class ArraySink : public RenderSink {
         for (int c = 0; c < 3; ++c) rgb[3 * i + c] = image.bgr[3 * i + 2 - c];
       }
     }
+    if (kind_ == RenderKind::kError) errors_ = picture->VertexErrors(step.frame);
     if (kind_ != RenderKind::kOverlay) Resolve(placed, pixels * count_);
     ++count_;
   }
@@ -191,6 +206,10 @@ class ArraySink : public RenderSink {
       float* depth = reinterpret_cast<float*>(arrays_.at("depth").bytes.data()) + first_pixel;
       std::fill_n(depth, pixels, std::numeric_limits<float>::infinity());
     }
+    if (kind_ == RenderKind::kError) {
+      float* error = reinterpret_cast<float*>(arrays_.at("error").bytes.data()) + first_pixel;
+      std::fill_n(error, pixels, std::numeric_limits<float>::quiet_NaN());
+    }
     if (placed.vertices.rows() == 0) return;
     buffer_.Render(placed.vertices, body_.data().faces, placed.camera, {.num_threads = options_.num_threads});
     ResolveRequest request;
@@ -200,11 +219,19 @@ class ArraySink : public RenderSink {
     request.normal = arrays_.contains("normal");
     if (request.normal) request.vertex_normals = &normals_.Compute(placed.vertices, body_.data().faces);
     request.depth = has_depth;
+    if (kind_ == RenderKind::kError) request.vertex_attributes = {{errors_, 1}};
     ResolvePixels(buffer_, body_, placed.vertices, placed.camera, request, &resolved_);
     if (request.part) Copy(resolved_.part, 1, placed.camera, first_pixel, &arrays_.at("part"));
     if (request.chart_uv) Copy(resolved_.chart_uv, 2, placed.camera, first_pixel, &arrays_.at("uv"));
     if (request.normal) Copy(resolved_.normal, 3, placed.camera, first_pixel, &arrays_.at("normal"));
     if (has_depth) Copy(resolved_.depth_m, 1, placed.camera, first_pixel, &arrays_.at("depth"));
+    if (kind_ == RenderKind::kError) {
+      std::vector<float>& error = resolved_.vertex_attributes[0];
+      for (size_t i = 0; i < error.size(); ++i) {
+        if (buffer_.faces()[i] < 0) error[i] = std::numeric_limits<float>::quiet_NaN();
+      }
+      Copy(error, 1, placed.camera, first_pixel, &arrays_.at("error"));
+    }
     if (arrays_.contains("mask")) {
       std::vector<uint8_t> mask;
       for (const int face : buffer_.faces()) mask.push_back(face >= 0 ? 1 : 0);
@@ -232,6 +259,7 @@ class ArraySink : public RenderSink {
   VisibilityBuffer buffer_;
   ResolvedPixels resolved_;
   VertexNormalsOfMesh normals_;
+  std::vector<float> errors_;  // by vertex, of the picture at hand
 };
 
 }  // namespace

@@ -17,6 +17,7 @@
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/render/render_sinks.h"
 #include "bodyloom/pipelines/track/track_video.h"
+#include "bodyloom/pipelines/track_fits_body.h"
 #include "bodyloom/render/overlay.h"
 
 namespace bodyloom {
@@ -35,6 +36,12 @@ void CheckOptions(const RenderTrackRequest& request) {
   if (request.what != RenderKind::kTexture && !request.texture.empty()) {
     throw RequestError("--texture is only seen with --what texture, not with --what " + ToString(request.what));
   }
+  if (request.what == RenderKind::kError && request.truth.empty()) {
+    throw RequestError("--what error needs the track to compare with: give --truth FILE");
+  }
+  if (request.what != RenderKind::kError && !request.truth.empty()) {
+    throw RequestError("--truth is only seen with --what error, not with --what " + ToString(request.what));
+  }
   if (!request.video.empty() && (request.view_yaw_deg || request.turntable)) {
     throw RequestError(
         "a video shows the person from its own camera alone: give --video, or --view-yaw and --turntable");
@@ -51,17 +58,11 @@ void CheckFiles(const RenderTrackRequest& request) {
   RequireReadable(request.body, "body model");
   RequireReadable(request.video, "video");
   RequireReadable(request.texture, "texture");
-  RequireDistinct({request.track, request.body, request.video, request.texture}, {request.out, request.json});
+  RequireReadable(request.truth, "truth");
+  RequireDistinct({request.track, request.body, request.video, request.texture, request.truth},
+                  {request.out, request.json});
   RequireWritable(request.out);
   RequireWritable(request.json);
-}
-
-void CheckTrack(const RenderTrackRequest& request, const Track& track, const BodyModel& body) {
-  if (track.motion.poses.cols() > 3 * body.num_joints()) {
-    throw std::runtime_error(Concatenate(request.track, ": ", track.motion.poses.cols() / 3, " joints (body '",
-                                         track.motion.body, "'), the body '", body.name(), "' has ", body.num_joints(),
-                                         "; give the track's own with --body"));
-  }
 }
 
 std::vector<RenderStep> StepsOf(const RenderTrackRequest& request, int first, int end) {
@@ -142,9 +143,18 @@ RenderTrackReport RenderTrack(const RenderTrackRequest& request, const PipelineC
   CheckFiles(request);
   Track track = ReadTrack(request.track);
   const std::shared_ptr<const BodyModel> body = BodyOrBuiltin(request.body);
-  CheckTrack(request, track, *body);
+  RequireTrackFitsBody(track, *body, request.track);
   const auto [first, end] = FrameRange(request.frames, track.num_frames(), request.track);
 
+  Track truth;
+  if (!request.truth.empty()) {
+    truth = ReadTrack(request.truth);
+    RequireTrackFitsBody(truth, *body, request.truth);
+    if (truth.num_frames() != track.num_frames()) {
+      throw std::runtime_error(Concatenate(request.truth, ": ", truth.num_frames(), " frames, expected ",
+                                           track.num_frames(), " as ", request.track, " has"));
+    }
+  }
   std::unique_ptr<TrackVideo> video;
   if (!request.video.empty()) {
     if (track.camera.width <= 0) {  // a track that does not tell was made in the pixels of its video
@@ -153,6 +163,7 @@ RenderTrackReport RenderTrack(const RenderTrackRequest& request, const PipelineC
     }
     video = std::make_unique<TrackVideo>(request.video, track);
     track = video->Moved(std::move(track));
+    if (!request.truth.empty()) truth = video->Moved(std::move(truth));
   }
 
   RenderPictureOptions options;
@@ -161,6 +172,10 @@ RenderTrackReport RenderTrack(const RenderTrackRequest& request, const PipelineC
   options.view_yaw_deg = request.view_yaw_deg.value_or(0);
   options.turntable = request.turntable;
   options.num_threads = ThreadsFor(request.num_threads);
+  options.truth = &truth;
+  options.error_unit = request.error_unit;
+  const double usual_maximum = request.error_unit == VertexErrorUnit::kPixels ? 20 : 50;
+  options.error_maximum = request.error_maximum > 0 ? request.error_maximum : usual_maximum;
   Image texture;
   std::vector<float> texels;
   if (!request.texture.empty()) {

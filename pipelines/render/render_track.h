@@ -16,7 +16,10 @@ struct RenderTrackRequest {
   std::string track;  ///< .npz
   std::string body;   ///< the track's body; empty: the built-in one
   RenderKind what = RenderKind::kOverlay;
-  std::string texture;                 ///< for kTexture: the picture, laid out in the body's atlas
+  std::string texture;  ///< for kTexture: the picture, laid out in the body's atlas
+  std::string truth;    ///< for kError: the track to compare with, of as many frames, .npz
+  VertexErrorUnit error_unit = VertexErrorUnit::kMillimetres;
+  double error_maximum = 0;            ///< the last colour, in that unit; 0: 50 mm or 20 px
   std::string video;                   ///< what the person was filmed with, as background; empty: none
   std::string frames;                  ///< FrameRange; empty: all
   std::optional<double> view_yaw_deg;  ///< a camera that follows the person; 90: from its left when it faces the camera

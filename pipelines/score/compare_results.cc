@@ -12,6 +12,7 @@
 #include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/geometry/velocity_stencil.h"
 #include "bodyloom/pipelines/files.h"
+#include "bodyloom/pipelines/score/error_pictures.h"
 
 namespace bodyloom {
 namespace {
@@ -53,9 +54,10 @@ CompareResultsReport CompareResults(const CompareResultsRequest& request, const 
   RequireReadable(request.other_truth, "truth at another speed");
   RequireReadable(request.other_result, "result at another speed");
   RequireDistinct({request.truth, request.result, request.mask, request.other_truth, request.other_result},
-                  {request.json, request.csv});
+                  {request.json, request.csv, request.pictures});
   RequireWritable(request.json);
   RequireWritable(request.csv);
+  if (!request.pictures.empty()) RequireWritableFolder(request.pictures);
   const int num_threads = ThreadsFor(request.num_threads);
   CompareResultsReport report;
   report.truth = request.truth;
@@ -65,6 +67,7 @@ CompareResultsReport CompareResults(const CompareResultsRequest& request, const 
 
   std::vector<FrameMetric> of_images = {ImageMetric(request.preset, !request.mask.empty())};
   of_images.insert(of_images.end(), request.more.begin(), request.more.end());
+  if (!request.pictures.empty()) of_images.push_back(ErrorPictures(request.pictures, request.error_maximum));
   const std::vector<std::pair<std::string, std::vector<FrameMetric>>> kinds = {
       {"images", of_images}, {"labels", {LabelMetric()}}, {"normals", {NormalMetric()}}};
   callbacks.Begin("metrics");

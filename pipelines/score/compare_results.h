@@ -21,12 +21,14 @@ struct CompareResultsRequest {
   SsimPreset preset = SsimPreset::kWang2004;
   bool common_only = false;       ///< compares the frames that both sides have, instead of requiring all
   std::vector<FrameMetric> more;  ///< further metrics of images, after PSNR and SSIM
+  std::string pictures;           ///< folder for an ErrorPicture of every pair of images; empty: none
+  double error_maximum = 64;      ///< of those: the last colour, grey levels
   std::string json, csv;          ///< ToJson and ToCsv of the report; empty: not written
   int num_threads = 0;            ///< 0: all cores; numbers are the same for any number
 };
 
 /// Pictures in both folders, or in images/, labels/ and normals/ below both, or two videos; writes the files requested.
-/// Throws std::runtime_error naming a file that cannot be used, Cancelled; nothing is left behind then.
+/// Throws std::runtime_error naming a file that cannot be used, Cancelled; nothing but pictures is left behind then.
 CompareResultsReport CompareResults(const CompareResultsRequest& request, const PipelineCallbacks& callbacks = {});
 
 }  // namespace bodyloom

@@ -3,48 +3,56 @@
 
 #include <filesystem>
 #include <memory>
+#include <numeric>
+#include <optional>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "bodyloom/data_tools/body/body_or_builtin.h"
 #include "bodyloom/data_tools/evaluation/aist_evaluation.h"
 #include "bodyloom/data_tools/evaluation/knee_flexion.h"
 #include "bodyloom/data_tools/evaluation/part_label_evaluation.h"
 #include "bodyloom/data_tools/evaluation/pose2sim_evaluation.h"
+#include "bodyloom/data_tools/evaluation/self_penetration.h"
 #include "bodyloom/data_tools/evaluation/triangulated_clip.h"
 #include "bodyloom/data_tools/evaluation/truth_evaluation.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/formats/npz.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/observations/part_labels.h"
+#include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/pipelines/files.h"
 
 namespace bodyloom {
 namespace {
 
-/// Against a file: what kind of truth it is shows in what it holds.
-Evaluation EvaluateAgainstFile(const EvaluateTrackRequest& request, const Track& track) {
+/// Against a file: what kind of truth it is shows in what it holds. A true motion goes to `true_motion`.
+Evaluation EvaluateAgainstFile(const EvaluateTrackRequest& request, const Track& track, const BodyModel& body,
+                               std::optional<Motion>* true_motion) {
   const NpzArrays arrays = ReadNpz(request.truth);
-  const std::shared_ptr<const BodyModel> body = BodyOrBuiltin(request.body);
   if (!HasPartLabels(arrays)) {
-    return EvaluateAgainstTruth(track, TrackFromArrays(arrays, request.truth), *body);
+    Track truth = TrackFromArrays(arrays, request.truth);
+    Evaluation evaluation = EvaluateAgainstTruth(track, truth, body);
+    *true_motion = std::move(truth.motion);
+    return evaluation;
   }
   ReadPartLabelsOptions as_they_are;
   as_they_are.mend_strays = false;
-  return EvaluatePartLabels(track, PartLabelsFromNpz(arrays, request.truth, as_they_are), *body);
+  return EvaluatePartLabels(track, PartLabelsFromNpz(arrays, request.truth, as_they_are), body);
 }
 
-Evaluation Evaluate(const EvaluateTrackRequest& request, const PipelineCallbacks& callbacks) {
+Evaluation Evaluate(const EvaluateTrackRequest& request, const Track& track, const BodyModel& body,
+                    std::optional<Motion>* true_motion) {
   namespace fs = std::filesystem;
   const fs::path truth = request.truth;
-  const Track track = ReadTrack(request.track);
-  callbacks.Update("measure", 0);
   if (request.truth.empty() && request.seen.empty()) return EvaluateAlone(track);
   if (!request.seen.empty()) {
     return EvaluateTriangulatedClip(track, ReadRigClip(request.cameras, request.seen, request.view, track),
                                     request.view);
   }
   if (!fs::is_directory(truth)) {
-    return EvaluateAgainstFile(request, track);
+    return EvaluateAgainstFile(request, track, body, true_motion);
   }
   if (fs::exists(truth / "keypoints2d")) {
     if (request.sequence.empty()) {
@@ -52,7 +60,7 @@ Evaluation Evaluate(const EvaluateTrackRequest& request, const PipelineCallbacks
     }
     const std::string cameras = request.cameras.empty() ? (truth / "cameras").string() : request.cameras;
     return EvaluateAist(track, request.truth, cameras, request.sequence, request.view.empty() ? "c01" : request.view,
-                        BodyOrBuiltin(request.body).get());
+                        &body);
   }
   if (fs::exists(truth / "calib_refined.json")) {
     return EvaluatePose2Sim(track, request.truth, request.view.empty() ? "cam_01" : request.view);
@@ -60,6 +68,25 @@ Evaluation Evaluate(const EvaluateTrackRequest& request, const PipelineCallbacks
   throw std::runtime_error(request.truth +
                            ": neither keypoints2d/ (AIST++) nor calib_refined.json (Pose2Sim) in this folder, expected "
                            "one of them, or a track file");
+}
+
+/// How deep the parts of the tracked body, and of the true one, lie in each other.
+void AddSelfPenetrationOf(const Track& track, const std::optional<Motion>& true_motion, const BodyModel& body,
+                          const PipelineCallbacks& callbacks, Evaluation* evaluation) {
+  if (track.motion.poses.cols() > 3 * body.num_joints() || track.motion.betas.size() > body.num_betas()) {
+    callbacks.Say("self-penetration is left out: the track is not of the body '" + body.name() +
+                  "'; give the track's own with --body");
+    return;
+  }
+  SelfPenetrationOptions options;
+  options.num_threads = ThreadsFor(0);
+  const auto add = [&](const Motion& motion, const char* prefix) {
+    std::vector<int> frames(motion.num_frames());
+    std::iota(frames.begin(), frames.end(), 0);
+    AddSelfPenetration(MeasureSelfPenetration(motion, frames, body, options), prefix, evaluation);
+  };
+  add(track.motion, "");
+  if (true_motion) add(*true_motion, "gt_");
 }
 
 }  // namespace
@@ -78,7 +105,12 @@ Evaluation EvaluateTrack(const EvaluateTrackRequest& request, const PipelineCall
   RequireReadable(request.body, "body model");
   RequireDistinct({request.track, request.truth, request.body}, {request.json});
   RequireWritable(request.json);
-  Evaluation evaluation = Evaluate(request, callbacks);
+  const Track track = ReadTrack(request.track);
+  callbacks.Update("measure", 0);
+  const std::shared_ptr<const BodyModel> body = BodyOrBuiltin(request.body);
+  std::optional<Motion> true_motion;
+  Evaluation evaluation = Evaluate(request, track, *body, &true_motion);
+  AddSelfPenetrationOf(track, true_motion, *body, callbacks, &evaluation);
   if (!request.json.empty()) {
     WriteFileAtomically(request.json, EvaluationJson(evaluation));
   }

@@ -20,6 +20,7 @@
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/report_json.h"
 #include "bodyloom/pipelines/track/track_video.h"
+#include "bodyloom/pipelines/track_fits_body.h"
 #include "bodyloom/render/overlay.h"
 #include "bodyloom/render/unit_byte.h"
 #include "bodyloom/render/uv_fill.h"
@@ -122,11 +123,7 @@ ExtractTextureReport ExtractTexture(const ExtractTextureRequest& request, const 
                              ": a body without UV coordinates, expected vt and ft (bodyloom body convert "
                              "--uv adds them)");
   }
-  if (track.motion.poses.cols() > 3 * body->num_joints()) {
-    throw std::runtime_error(Concatenate(request.track, ": ", track.motion.poses.cols() / 3, " joints, the body '",
-                                         body->name(), "' has ", body->num_joints(),
-                                         "; give the track's own with --body"));
-  }
+  RequireTrackFitsBody(track, *body, request.track);
   TextureExtractOptions options;
   options.texels.width = options.texels.height = request.size;
   options.edge_margin_px = request.margin_px >= 0 ? request.margin_px : DefaultMargin(track);

@@ -19,11 +19,10 @@ ClipFrames SpanOf(const PersonTrack& person) {
 DetectedClip DetectForTracking(const TrackRequest& request, const PipelineCallbacks& callbacks, int max_people) {
   DetectPeopleRequest detect;
   detect.video = request.video;
-  detect.models = request.models;
   detect.span = {request.fps, request.from_s, request.to_s};
-  detect.detector.network = request.detector;
-  detect.detector.masks = request.use_mask;
-  detect.detector.max_people = max_people;
+  detect.detector = request.detector;
+  detect.detector.blazepose.masks = DetectsMasks(request);
+  detect.detector.blazepose.max_people = max_people;
   detect.detect_rate = request.detect_rate;
   callbacks.Begin("detecting people");
   return DetectPeople(detect, callbacks);
@@ -39,7 +38,7 @@ DetectedObservations ObservationsOf(const DetectedClip& clip, const PersonTrack&
   DetectedObservations seen;
   seen.keypoints = CutFrames(KeypointsOf(clip.people, person), frames.first, frames.second);
   DropUnsure(request.min_confidence, &seen.keypoints);
-  if (request.use_mask) seen.mask = CutFrames(MaskOfPerson(clip, person), frames.first, frames.second);
+  if (DetectsMasks(request)) seen.mask = CutFrames(MaskOfPerson(clip, person), frames.first, frames.second);
   if (same_pixels) return seen;
   seen.keypoints = MovedToCamera(std::move(seen.keypoints), map, camera.width, camera.height);
   if (seen.mask) seen.mask = MovedToCamera(*seen.mask, map, camera.width, camera.height);

@@ -89,6 +89,7 @@ OverlaySummary WriteOverlayVideo(const std::string& path, const OverlayVideo& wh
   }
   OverlayOptions options;
   options.side_view = what.side_view;
+  if (track.world) options.up_in_camera = track.world->up_in_camera();
   options.num_threads = 1;  // a picture each: WriteFrames()
   const OverlayRenderer renderer(*what.body, track, options, what.reference);
   VideoWriter writer(path, renderer.width(), renderer.height(), fps);

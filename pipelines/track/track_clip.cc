@@ -10,6 +10,7 @@
 #include "bodyloom/pipelines/peak_memory.h"
 #include "bodyloom/pipelines/track/overlay_video.h"
 #include "bodyloom/pipelines/track/track_inputs.h"
+#include "bodyloom/render/track_world.h"
 #include "bodyloom/tracking/live/track_live.h"
 
 namespace bodyloom {
@@ -125,6 +126,8 @@ TrackReport TrackClip(const TrackRequest& request, const PipelineCallbacks& call
   }
   if (report.solve.IsUsable()) {
     clock.Begin("write");
+    if (!result.track.world) result.track.world = AssumedWorld(result.track.joints);
+    report.world = *result.track.world;
     WriteTrack(request.out, result.track);
     report.outputs.push_back(request.out);
     if (!request.overlay.empty()) {

@@ -101,7 +101,8 @@ std::vector<std::string> RequireTrackInputs(const TrackRequest& request) {
       {request.prior == "none" ? "" : request.prior, "pose prior"},
       {request.lifter == "none" ? "" : request.lifter, "lifter"},
       {request.reference, "reference track"}};
-  std::vector<std::string> inputs;
+  RequirePoseModels(request.detector);
+  std::vector<std::string> inputs = {request.detector.pose_model, request.detector.box_model};
   for (const auto& [path, what] : named_inputs) {
     RequireReadable(path, what);
     inputs.push_back(path);

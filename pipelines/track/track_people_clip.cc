@@ -45,6 +45,9 @@ void CheckRequest(const TrackPeopleClipRequest& request) {
   if (request.masks && !request.track.use_mask) {
     throw RequestError("--masks writes what --no-mask leaves out, expected one of them");
   }
+  if (request.masks && !request.track.detector.pose_model.empty()) {
+    throw RequestError("--masks are BlazePose's: leave them out with --pose-model");
+  }
   if (request.track.stature_m > 0 && !request.person && request.max_people != 1) {
     throw RequestError("--stature is one person's: say whose with --person, or give --people 1");
   }
@@ -144,7 +147,7 @@ TrackPeopleReport StartReport(const TrackPeopleClipRequest& request, const Detec
   report.height = clip.people.image_height;
   report.num_frames = int(clip.people.frames.size());
   report.fps = VideoFrameRate(clip.people.timestamps);
-  report.network = request.track.detector;
+  report.network = FrameDetectorName(request.track.detector);
   const std::vector<FoundPerson> found = FoundPeople(clip.people, everybody);
   report.num_found = int(found.size());
   for (const int number : chosen) {
@@ -194,6 +197,7 @@ TrackPeopleReport TrackPeopleClip(const TrackPeopleClipRequest& request, const P
     person.fitted_again = result.summary.fitted_again[i] != 0;
     if (!person.solve.IsUsable()) continue;
     any_tracked = true;
+    report.world = result.people[i].track.world.value_or(WorldFrame());
     person.track = TrackFile(request, person.number);
     WriteTrack(person.track, result.people[i].track);
     report.outputs.push_back(person.track);

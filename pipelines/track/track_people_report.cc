@@ -88,9 +88,13 @@ std::string ToText(const TrackPeopleReport& report) {
     text += Concatenate("left out ", others, " more, seen too briefly or not asked for\n");
   }
   text += SceneText(report.scene);
+  if (std::any_of(report.people.begin(), report.people.end(),
+                  [](const auto& person) { return !person.track.empty(); })) {
+    text += "world    " + report.world.BriefReport() + "\n";
+  }
   text += "time     " + Fixed(report.total_seconds, 2) + " s (" + StagesText(report.seconds) + "), " +
           Fixed(report.num_frames / std::max(1e-9, report.total_seconds), 1) + " frames a second with " +
-          ToText(report.network) + "\n";
+          report.network + "\n";
   text += "memory   " + Fixed(double(report.peak_memory_bytes) / (1 << 20), 0) + " MiB at most\n";
   for (const std::string& path : report.outputs) text += "wrote    " + path + "\n";
   return text;
@@ -103,10 +107,11 @@ std::string ToJson(const TrackPeopleReport& report) {
                      {"image_size", {report.width, report.height}},
                      {"frames", report.num_frames},
                      {"fps", report.fps},
-                     {"network", ToText(report.network)},
+                     {"network", report.network},
                      {"people_found", report.num_found},
                      {"people", people},
                      {"scene", SceneJson(report.scene)},
+                     {"world", ToJson(report.world)},
                      {"seconds", ToJson(report.seconds)},
                      {"total_seconds", report.total_seconds},
                      {"peak_memory_bytes", report.peak_memory_bytes},

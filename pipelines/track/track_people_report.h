@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/detection/pose_detector.h"
 #include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/pipelines/detect/detect_clip.h"
 #include "bodyloom/tracking/people/occlusion.h"
@@ -28,10 +27,11 @@ struct TrackPeopleReport {
   std::string video;
   int width = 0, height = 0, num_frames = 0;
   double fps = 0;
-  PoseNetworkSize network = PoseNetworkSize::kHeavy;
-  int num_found = 0;  ///< people in the detections, also those who were left out
+  std::string network;  ///< FrameDetectorName()
+  int num_found = 0;    ///< people in the detections, also those who were left out
   std::vector<TrackedPerson> people;
   SharedScene scene;
+  WorldFrame world;  ///< of all tracks
   StageSeconds seconds;
   double total_seconds = 0;
   size_t peak_memory_bytes = 0;

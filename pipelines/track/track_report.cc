@@ -6,6 +6,7 @@
 
 #include "bodyloom/pipelines/fixed_text.h"
 #include "bodyloom/pipelines/list_text.h"
+#include "bodyloom/pipelines/report_json.h"
 
 namespace bodyloom {
 namespace {
@@ -72,6 +73,7 @@ std::string ToText(const TrackReport& report) {
   } else if (!solve.ground.why.empty()) {
     text += "ground   none: " + solve.ground.why + "\n";
   }
+  if (solve.IsUsable()) text += "world    " + report.world.BriefReport() + "\n";
   text += "time     " + Fixed(report.total_seconds, 2) + " s (" + StagesText(StagesOf(report)) + ")";
   if (report.num_frames > 0 && report.total_seconds > 0) {
     text += ", " + Fixed(1e3 * report.total_seconds / report.num_frames, 2) + " ms a frame";
@@ -127,6 +129,7 @@ std::string ToJson(const TrackReport& report) {
       {"focal_px", solve.focal_px},
       {"swaps_repaired", solve.num_swaps_repaired},
       {"ground", ground_json},
+      {"world", ToJson(report.world)},
       {"seconds", seconds},
       {"peak_memory_bytes", report.peak_memory_bytes},
       {"ran", ran},

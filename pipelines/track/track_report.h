@@ -14,6 +14,7 @@ namespace bodyloom {
 struct TrackReport {
   TrackSequenceSummary solve;
   int num_frames = 0;
+  WorldFrame world;      ///< the track's
   StageSeconds seconds;  ///< TrackClip's own stages; the one named kSolveStage is split by solve.seconds
   double total_seconds = 0;
   size_t peak_memory_bytes = 0;

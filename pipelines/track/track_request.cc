@@ -23,6 +23,8 @@ bool DetectsPeople(const TrackRequest& request) {
   return request.detections.empty() && request.dense.empty() && request.part_labels.empty() && !request.video.empty();
 }
 
+bool DetectsMasks(const TrackRequest& request) { return request.use_mask && request.detector.pose_model.empty(); }
+
 bool ReadsJointsOffLabels(const TrackRequest& request) {
   return request.detections.empty() && request.dense.empty() && !request.part_labels.empty();
 }
@@ -36,6 +38,9 @@ void CheckTrackRequest(const TrackRequest& request) {
   }
   if ((request.from_s > 0 || request.to_s >= 0) && !DetectsPeople(request)) {
     throw RequestError("--from and --to are for a video in which people are detected: leave out the detections");
+  }
+  if (!request.detector.pose_model.empty() && !DetectsPeople(request)) {
+    throw RequestError("--pose-model detects people in a video: leave out the detections");
   }
   if (request.dense_uv_sigma && request.dense.empty() && !request.detections.ends_with(".npz")) {
     throw RequestError("--dense-uv-sigma is the noise of dense keypoints: give --dense");
@@ -57,6 +62,9 @@ void CheckTrackRequest(const TrackRequest& request) {
   }
   if (!request.overlay.empty() && !request.overlay.ends_with(".mp4")) {
     throw RequestError("--overlay " + request.overlay + ": expected a name that ends in .mp4");
+  }
+  if (request.solve.velocity_weight > 0 && request.live_lag) {
+    throw RequestError("--live does not use --velocity-weight: leave it out");
   }
   if (request.live_lag && request.solve.solver != SequenceSolver::kChain) {
     throw RequestError("--live runs on the chain solver: leave out --solver " + ToString(request.solve.solver));

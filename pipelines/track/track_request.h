@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "bodyloom/data_tools/detection/pose_detector.h"
+#include "bodyloom/data_tools/detection/frame_detector.h"
 #include "bodyloom/tracking/track_sequence.h"
 
 namespace bodyloom {
@@ -23,11 +23,10 @@ struct TrackRequest {
   std::string convention;                ///< OpenPose model, when it should not be detected
 
   // Detection, when nothing of the above is given and a video is (pipelines/detect/detect_people.h).
-  PoseNetworkSize detector = PoseNetworkSize::kHeavy;
-  std::string models;            ///< folder of the networks; empty: where they are installed
-  double detect_rate = 0;        ///< frames a second that are detected on slow motion; 0: all
-  bool use_mask = true;          ///< the person's mask becomes the silhouette term
-  double from_s = 0, to_s = -1;  ///< the part of the video, seconds; to_s < 0: to the end
+  FrameDetectorOptions detector;  ///< its masks and max_people are not used
+  double detect_rate = 0;         ///< frames a second that are detected on slow motion; 0: all
+  bool use_mask = true;           ///< the person's mask becomes the silhouette term
+  double from_s = 0, to_s = -1;   ///< the part of the video, seconds; to_s < 0: to the end
 
   // The camera.
   std::string cameras;                    ///< calibration file or folder
@@ -62,6 +61,9 @@ void CheckTrackRequest(const TrackRequest& request);
 
 /// Whether people are to be detected in the video: it is all that was given.
 bool DetectsPeople(const TrackRequest& request);
+
+/// Whether the detector is to give the people's masks too: BlazePose alone has them.
+bool DetectsMasks(const TrackRequest& request);
 
 /// Whether 2D joints are to be read off the part labels: they are all that was seen.
 bool ReadsJointsOffLabels(const TrackRequest& request);

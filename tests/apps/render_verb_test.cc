@@ -16,6 +16,7 @@
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/data_tools/video/video_reader.h"
 #include "bodyloom/data_tools/video/video_writer.h"
+#include "bodyloom/render/error_colours.h"
 #include "bodyloom/render/overlay.h"
 #include "bodyloom/render/resolve_pixels.h"
 #include "tests/support/run_command.h"
@@ -99,10 +100,13 @@ ScratchFolder* RenderVerb::shared_ = nullptr;
 
 TEST_F(RenderVerb, EveryKindBecomesAVideoAndAContactSheet) {
   WriteImage(Out("colours.png"), Image(64, 64, {10, 240, 30}));
-  for (const std::string kind : {"overlay", "iuv", "parts", "normal", "depth", "texture"}) {
+  for (const std::string kind : {"overlay", "iuv", "parts", "normal", "depth", "texture", "error"}) {
     std::vector<std::string> more = {"--what", kind, "--out", Out(kind + ".mp4")};
     if (kind == "texture") {
       more.insert(more.end(), {"--texture", Out("colours.png")});
+    }
+    if (kind == "error") {
+      more.insert(more.end(), {"--truth", Clip("truth.npz")});
     }
     RunWell(more);
     VideoReader video(Out(kind + ".mp4"));
@@ -165,6 +169,50 @@ TEST_F(RenderVerb, ArraysHoldWhatTheLibraryResolves) {
     }
   }
   EXPECT_GT(covered, 7 * 400);
+}
+
+/// A track whose pelvis is lifted by 0.1 m is wrong by nothing in mm, pelvis on pelvis, and everywhere in pixels.
+TEST_F(RenderVerb, ErrorsAreThoseOfEvaluate) {
+  Track track = ReadTrack(Clip("truth.npz"));
+  track.motion.trans.col(1).array() -= 0.1;
+  track.motion.poses(3, 3 * 16 + 2) += 0.3;  // a left arm
+  WriteTrack(Out("moved.npz"), track);
+  const std::vector<std::string> error = {"--what", "error", "--truth", Clip("truth.npz"), "--frames", "2:4"};
+  const auto errors_of = [&](const std::string& unit) {
+    std::vector<std::string> more = error;
+    more.insert(more.end(), {"--error-unit", unit, "--out", Out("e.npz")});
+    RunWell(more, Out("moved.npz"));
+    return ReadNpz(Out("e.npz")).at("error");
+  };
+  const NdArray mm = errors_of("mm"), px = errors_of("px");
+  EXPECT_THAT(mm.shape, ElementsAre(2, kHeight, kWidth));
+  std::vector<float> known[2], known_px;
+  for (int i = 0; i < 2 * kHeight * kWidth; ++i) {
+    EXPECT_EQ(std::isnan(mm.ToFloats()[i]), std::isnan(px.ToFloats()[i]));
+    if (std::isnan(mm.ToFloats()[i])) continue;
+    known[i / (kHeight * kWidth)].push_back(mm.ToFloats()[i]);
+    known_px.push_back(px.ToFloats()[i]);
+  }
+  ASSERT_GT(known[0].size(), 500U);
+  EXPECT_LT(*std::max_element(known[0].begin(), known[0].end()), 1e-3);
+  // A hand half a metre from the shoulder: 0.15 m.
+  EXPECT_NEAR(*std::max_element(known[1].begin(), known[1].end()), 1000 * 2 * std::sin(0.15) * 0.6, 60);
+  EXPECT_GT(*std::min_element(known_px.begin(), known_px.end()), 2);
+
+  std::vector<std::string> more = error;
+  more.insert(more.end(), {"--error-max", "80", "--out", Out("e.png")});
+  const CommandResult result = RunWell(more, Out("moved.npz"));
+  EXPECT_THAT(result.out, HasSubstr("vertex error, pelvis on pelvis: violet 0, yellow 80 mm and more\n"));
+  const Image sheet = ReadImage(Out("e.png"));
+  int violet = 0, yellow = 0;
+  for (int y = 0; y < sheet.height; ++y) {
+    for (int x = 0; x < sheet.width; ++x) {
+      violet += sheet.at(x, y) == ErrorColour(0) ? 1 : 0;
+      yellow += sheet.at(x, y) == ErrorColour(1) ? 1 : 0;
+    }
+  }
+  EXPECT_GT(violet, 500) << "the first frame's body";
+  EXPECT_GT(yellow, 20) << "the second one's hand, and the end of the legend's bar";
 }
 
 TEST_F(RenderVerb, SameBytesForAnyNumberOfThreads) {
@@ -275,6 +323,8 @@ TEST_F(RenderVerb, OptionsThatContradictEachOther) {
   ExpectUsageError({"--what", "overlay", "--out", Out("o.avi")}, "expected a name that ends in .mp4, .png or .npz");
   ExpectUsageError({"--what", "texture", "--out", Out("o.png")}, "give --texture FILE");
   ExpectUsageError({"--what", "parts", "--texture", Clip("clip.mp4"), "--out", Out("o.png")}, "--what texture");
+  ExpectUsageError({"--what", "error", "--out", Out("o.png")}, "give --truth FILE");
+  ExpectUsageError({"--what", "parts", "--truth", Clip("truth.npz"), "--out", Out("o.png")}, "--what error");
   ExpectUsageError({"--what", "parts", "--video", Clip("clip.mp4"), "--view-yaw", "3", "--out", Out("o.png")},
                    "from its own camera alone");
   ExpectUsageError({"--what", "parts", "--video", Clip("clip.mp4"), "--turntable", "--out", Out("o.png")},
@@ -299,6 +349,15 @@ TEST_F(RenderVerb, FilesThatCannotBeUsedAreNamed) {
     EXPECT_FALSE(fs::exists(Out("o.png")));
   };
   const std::vector<std::string> parts = {"--what", "parts", "--out", Out("o.png")};
+  Track shorter = ReadTrack(Clip("truth.npz"));
+  shorter.motion.poses.conservativeResize(kFrames - 1, Eigen::NoChange);
+  shorter.motion.trans.conservativeResize(kFrames - 1, Eigen::NoChange);
+  shorter.motion.timestamps.pop_back(), shorter.frame_status.pop_back(), shorter.joints.pop_back(),
+      shorter.coco17.pop_back();
+  shorter.joint_sigma.conservativeResize(kFrames - 1, Eigen::NoChange);
+  WriteTrack(Out("shorter.npz"), shorter);
+  expect({"--what", "error", "--truth", Out("shorter.npz"), "--out", Out("o.png")},
+         "shorter.npz: 13 frames, expected 14 as " + Clip("truth.npz") + " has");
   expect(parts, Out("absent.npz"), Out("absent.npz"));
   std::ofstream(Out("broken.npz")) << Contents(Clip("truth.npz")).substr(0, 2000);
   expect(parts, Out("broken.npz"), Out("broken.npz"));

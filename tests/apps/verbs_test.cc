@@ -229,6 +229,19 @@ TEST_F(Verbs, ExportWritesEveryKind) {
   for (const auto& [what, name] : {std::pair("amass", "a.npz"), std::pair("bvh", "m.bvh")}) {
     EXPECT_EQ(LoadMotion(export_to(what, name)).num_frames(), kFrames) << what;
   }
+  EXPECT_EQ(LoadMotion(export_to("smplx", "x.npz")).num_frames(), kFrames);
+  for (const auto& [what, name, begin] :
+       {std::tuple("glb", "a.glb", "glTF"), std::tuple("usd", "a.usda", "#usda 1.0"),
+        std::tuple("trc", "a.trc", "Path"), std::tuple("c3d", "a.c3d", "\x02\x50"),
+        std::tuple("pose2sim", "Calib.toml", "[cam_01]"), std::tuple("colmap", "sparse/cameras.txt", "# CAMERA_ID")}) {
+    export_to(what, what == std::string("colmap") ? "sparse" : name);
+    EXPECT_THAT(Contents(folder_ / name), StartsWith(begin)) << what;
+  }
+  const CommandResult two = RunCommand({"export", "--track", Shared("track.npz"), "--track", Shared("track.npz"),
+                                        "--what", "glb", "--out", folder_ / "two.glb"});
+  EXPECT_EQ(two.exit_code, 0) << two.err;
+  EXPECT_THAT(two.out, HasSubstr("world    y up"));
+  EXPECT_THAT(two.out, HasSubstr("mm at most"));
   export_to("obj", "meshes");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "meshes"), fs::directory_iterator()), kFrames);
   RunWell({"export", "--track", Shared("track.npz"), "--what", "obj", "--frame", "0", "--out", folder_ / "one.obj"});

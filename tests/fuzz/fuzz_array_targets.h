@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "bodyloom/data_tools/avatar/avatar_file.h"
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/formats/zip.h"
 #include "bodyloom/data_tools/learned/lifter_weights_io.h"
@@ -65,6 +66,32 @@ inline bool AcceptsPartLabels(const std::string& bytes) {
       if (image.labels.size() != expected) throw std::logic_error("labels of another number than pixels");
     }
   });
+}
+
+/// A person of Gaussians, and the training that it may be.
+inline bool AcceptsAvatar(const std::string& bytes) {
+  const NpzArrays arrays = FramedArrays(bytes);
+  const auto check = [](const GaussianBody& body, const AvatarFile& avatar) {
+    if (std::string why; !body.IsValid(avatar.num_joints, avatar.num_faces, &why)) throw std::logic_error(why);
+    for (int c = 0; c < GaussianBody::kNumParameters; ++c) {
+      for (const float value : body.parameters.values(c)) {
+        if (!std::isfinite(value)) throw std::logic_error("a parameter that is no number");
+      }
+    }
+  };
+  const bool person = Accepts([&] {
+    const AvatarFile avatar = AvatarFromArrays(arrays, "fuzz.npz");
+    check(avatar.body, avatar);
+  });
+  const bool training = Accepts([&] {
+    const AvatarCheckpoint checkpoint = AvatarCheckpointFromArrays(arrays, "fuzz.npz");
+    check(checkpoint.state.body, checkpoint.avatar);
+    if (checkpoint.state.adam.first.rows() != checkpoint.state.body.size() ||
+        checkpoint.state.pull.size() != checkpoint.state.adam.steps.size()) {
+      throw std::logic_error("moments of another number than Gaussians");
+    }
+  });
+  return person || training;
 }
 
 inline bool AcceptsPosePrior(const std::string& bytes) {

@@ -34,6 +34,7 @@ constexpr Target kTargets[] = {{"npz", AcceptsNpz},
                                {"cage", AcceptsCage},
                                {"observations", AcceptsObservations},
                                {"part_labels", AcceptsPartLabels},
+                               {"avatar", AcceptsAvatar},
                                {"pose_prior", AcceptsPosePrior},
                                {"lifter", AcceptsLifter},
                                {"left_half", AcceptsLeftHalf},
@@ -46,7 +47,9 @@ constexpr Target kTargets[] = {{"npz", AcceptsNpz},
                                {"mat", AcceptsMat},
                                {"run_config", AcceptsRunConfig},
                                {"relight", AcceptsRelight},
-                               {"tflite", AcceptsTflite}};
+                               {"tflite", AcceptsTflite},
+                               {"onnx", AcceptsOnnx},
+                               {"keypoint_outputs", AcceptsKeypointOutputs}};
 
 const Target& Chosen() {
   static const Target& chosen = [&]() -> const Target& {

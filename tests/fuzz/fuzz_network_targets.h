@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The fuzzer's function for networks of TensorFlow Lite's files. It returns whether the input was accepted; what is
-/// accepted must hold together: small networks are built and run too, on which OpenCV must not stumble.
+/// The fuzzer's functions for networks of TensorFlow Lite's and ONNX files, and for what detectors' networks say. Each
+/// returns whether the input was accepted; what is accepted must hold together: small networks are built and run too.
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <cstring>
 #include <string>
 #include <vector>
 
+#include "bodyloom/data_tools/detection/onnx_network.h"
+#include "bodyloom/data_tools/detection/simcc_landmarks.h"
 #include "bodyloom/data_tools/detection/tflite_network.h"
+#include "bodyloom/data_tools/detection/yolo_people.h"
 #include "tests/fuzz/fuzz_accepts.h"
 
 namespace bodyloom::fuzz {
@@ -41,6 +46,57 @@ inline bool AcceptsTflite(const std::string& bytes) {
   } catch (const std::exception& error) {
     throw std::logic_error(std::string("a network that was accepted: ") + error.what());
   }
+  return true;
+}
+
+/// An ONNX file that was read is a network, or is refused in one line by what its operators make of each other; one that
+/// was tried out on zeros runs.
+inline bool AcceptsOnnx(const std::string& bytes) {
+  OnnxModel model;
+  if (!Accepts([&] { model = ParseOnnxModel(bytes, "fuzz.onnx"); })) return false;
+  std::vector<int64_t> shape = model.input_shape;
+  size_t size = 1;
+  for (int64_t& n : shape) {
+    n = n == -1 ? 1 : n;
+    size *= static_cast<size_t>(std::min<int64_t>(n, kSmallNetwork));
+    if (size > kSmallNetwork) return true;
+  }
+  Accepts([&] {
+    const OnnxNetwork network(std::move(model), shape);
+    const std::vector<OnnxTensor> outputs = network.Run(std::vector<float>(size, 0.5F));
+    for (size_t i = 0; i < outputs.size(); ++i) {
+      if (!outputs[i].has_floats() || outputs[i].floats->size() != outputs[i].size()) {
+        throw std::logic_error("an output of another size than its shape");
+      }
+    }
+  });
+  return true;
+}
+
+inline void CheckPoints(const std::vector<Keypoint>& points) {
+  for (const Keypoint& point : points) {
+    if (!(point.confidence >= 0 && point.confidence <= 1)) throw std::logic_error("a confidence out of range");
+    if (point.confidence > 0 && !(std::isfinite(point.x) && std::isfinite(point.y))) {
+      throw std::logic_error("a landmark that is nowhere");
+    }
+  }
+}
+
+/// Any numbers as the output of YOLO-pose with two landmarks, and as RTMPose's for three landmarks in 4 × 6 pixels.
+inline bool AcceptsKeypointOutputs(const std::string& bytes) {
+  std::vector<float> numbers(bytes.size() / sizeof(float));
+  std::memcpy(numbers.data(), bytes.data(), numbers.size() * sizeof(float));
+  const size_t rows = 5 + 3 * 2, simcc = 3 * 2 * (4 + 6);
+  const std::vector<float> yolo(numbers.begin(), numbers.end() - static_cast<std::ptrdiff_t>(numbers.size() % rows));
+  for (const YoloPerson& person : DecodeYolo(yolo, 1, 2, LetterboxCrop(1280, 720, 640, 640))) {
+    if (!(person.box.x1 > person.box.x0 && person.box.score >= 0.25 && person.box.score <= 1)) {
+      throw std::logic_error("a box that is none");
+    }
+    CheckPoints(person.points);
+  }
+  if (numbers.size() < simcc) return false;
+  const float* rows_of = numbers.data() + 3 * 2 * 4;
+  CheckPoints(DecodeSimcc({numbers.data(), 3 * 2 * 4}, {rows_of, 3 * 2 * 6}, 3, 2, TopDownCrop({1, 2, 5, 9, 1}, 4, 6)));
   return true;
 }
 

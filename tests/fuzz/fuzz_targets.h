@@ -124,7 +124,25 @@ inline constexpr const char* kNames[] = {"v_template",
                                          "chart_names",
                                          "chart_count",
                                          "chart_uv",
-                                         "atlas_from_chart"};
+                                         "atlas_from_chart",
+                                         "version",
+                                         "body_size",
+                                         "parameters",
+                                         "is_loose",
+                                         "anchor_face",
+                                         "anchor_barycentric",
+                                         "anchor_factor",
+                                         "light",
+                                         "adam_first",
+                                         "adam_second",
+                                         "adam_steps",
+                                         "light_first",
+                                         "light_second",
+                                         "light_steps",
+                                         "pull",
+                                         "step",
+                                         "seconds",
+                                         "options"};
 
 /// Named arrays without the archive around them, whose checksums no mutation survives:
 /// (index of a known name, 3 bytes of length, .npy bytes) over and over.

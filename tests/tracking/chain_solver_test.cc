@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "bodyloom/tracking/solve_sequence.h"
 #include "tests/support/sequence_scene.h"
 
@@ -74,6 +76,50 @@ TEST(ChainSolver, SameCostAsCeresWithCutsGapsAndUnevenTimes) {
   problem.frames[9].dense.points = nullptr;
   problem.frames[9].initialiser.weight = 1e-3;
   ExpectSameAsCeres(problem);
+}
+
+TEST(ChainSolver, SameCostAsCeresWithVelocities) {
+  for (CameraKnowledge knowledge : {CameraKnowledge::kUnknownFocal, CameraKnowledge::kWeak}) {
+    for (int frames : {2, 12}) {
+      SequenceSceneOptions options;
+      options.knowledge = knowledge;
+      options.frames = frames;
+      auto scene = MakeSequenceScene(options);
+      SequenceProblem& problem = scene->problem;
+      problem.velocity_weight = 30;
+      if (frames == 12) {
+        problem.cut_before[5] = problem.cut_before[6] = 1;
+        for (size_t t = 8; t < 12; ++t) problem.timestamps[t] += 0.1 * double(t - 7);
+      }
+      ExpectSameAsCeres(problem);
+    }
+  }
+}
+
+/// Σ over frames of the squared angles between neighbours.
+double Turned(const SequenceProblem& problem) {
+  double sum = 0;
+  for (size_t t = 1; t < problem.states.size(); ++t) {
+    for (const int j : problem.layout.active_joints) {
+      const Matrix3d turn = problem.states[t - 1].rotations[j].transpose() * problem.states[t].rotations[j];
+      sum += Eigen::AngleAxisd(turn).angle() * Eigen::AngleAxisd(turn).angle();
+    }
+  }
+  return sum;
+}
+
+TEST(ChainSolver, TheDearerVelocitiesTheStillerThePerson) {
+  const auto scene = MakeSequenceScene({});
+  double before = INFINITY;
+  for (const double weight : {0.0, 1.0, 100.0, 1e5}) {
+    SequenceProblem problem = scene->problem;
+    problem.velocity_weight = weight;
+    SolveSequence(&problem, Tight(SequenceSolver::kChain));
+    const double turned = Turned(problem);
+    EXPECT_LT(turned, before) << weight;
+    before = turned;
+  }
+  EXPECT_LT(before, 1e-2);
 }
 
 TEST(ChainSolver, SharedValuesMayBeConstant) {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the accelerations of ChainProblem's frames cost, and what they give to its matrix: each couples three frames.
+// What the accelerations and velocities of ChainProblem's frames cost, and what they give to its matrix: each couples
+// three frames or two.
 #include <algorithm>
 
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/geometry/rotation.h"
 #include "bodyloom/tracking/chain/chain_problem.h"
+#include "bodyloom/tracking/residuals/velocity_cost.h"
 
 namespace bodyloom {
 
@@ -16,12 +18,16 @@ bool ChainProblem::HasAcceleration(size_t t) const {
   return t >= 2 && t < systems_.size() && !problem_.cut_before[t] && !problem_.cut_before[t - 1];
 }
 
+bool ChainProblem::HasVelocity(size_t t) const {
+  return problem_.velocity_weight > 0 && t >= 1 && t < systems_.size() && !problem_.cut_before[t];
+}
+
 double ChainProblem::EvaluateChanges(const ChainPoint& point, bool derivatives) {
   const int T = static_cast<int>(point.states.size());
   const std::vector<int>& joints = problem_.layout.active_joints;
   ParallelFor(T, num_threads_, [&](int t) {
-    // The change that ends at t has a part in the accelerations that end at t and at t + 1.
-    if (t == 0 || !(HasAcceleration(t) || HasAcceleration(t + 1)) || AllFrozen(t - 1, t)) return;
+    // The change that ends at t has a part in the accelerations that end at t and at t + 1, and is t's velocity.
+    if (t == 0 || !(HasAcceleration(t) || HasAcceleration(t + 1) || HasVelocity(t)) || AllFrozen(t - 1, t)) return;
     Change& change = changes_[t];
     change.step.resize(blocks_);
     if (derivatives) change.right.resize(joints.size());
@@ -47,6 +53,18 @@ double ChainProblem::EvaluateChanges(const ChainPoint& point, bool derivatives) 
       cost += 0.5 * (inverse_sigma[a] * (f.later * changes_[t].step[a] - f.earlier * changes_[t - 1].step[a]).array())
                         .square()
                         .sum();
+    }
+    sum += cost;
+  }
+  for (int t = 1; t < T; ++t) {
+    if (!HasVelocity(t)) continue;
+    double& cost = velocity_costs_[t];
+    if (!AllFrozen(t - 1, t)) {
+      const double rate = 1 / (problem_.timestamps[t] - problem_.timestamps[t - 1]);
+      cost = 0;
+      for (int a = 0; a < blocks_; ++a) {
+        cost += 0.5 * (inverse_velocity_sigma_[a] * rate * changes_[t].step[a].array()).square().sum();
+      }
     }
     sum += cost;
   }
@@ -87,6 +105,26 @@ void ChainProblem::AssembleAcceleration(size_t t) {
       Eigen::Map<RowMatrix3d>(own + 9 * a) += weighted * J[role];
       if (role < 2) Eigen::Map<RowMatrix3d>(next + 9 * a) += weighted * J[role + 1];
       if (role == 0) Eigen::Map<RowMatrix3d>(second + 9 * a) += weighted * J[2];
+    }
+  }
+}
+
+void ChainProblem::AssembleVelocity(size_t t) {
+  double* own = &own_[t * 3 * n_];
+  double* next = &next_[t * 3 * n_];
+  for (size_t end = t; end <= t + 1; ++end) {  // frame t is the last or the first of these two
+    if (!HasVelocity(end)) continue;
+    const size_t role = t + 1 - end;
+    const double rate = 1 / (problem_.timestamps[end] - problem_.timestamps[end - 1]);
+    const Change& change = changes_[end];
+    for (int a = 0; a < blocks_; ++a) {
+      Matrix3d J[2] = {-Matrix3d::Identity(), Matrix3d::Identity()};
+      if (a + 1 < blocks_) RotationStepJacobians(change.right[a], J);
+      const Vector3d weight = (rate * inverse_velocity_sigma_[a]).square().matrix();
+      const Matrix3d weighted = J[role].transpose() * weight.asDiagonal();
+      gradient_.segment<3>(static_cast<Eigen::Index>(t * n_ + 3 * a)) += weighted * change.step[a];
+      Eigen::Map<RowMatrix3d>(own + 9 * a) += weighted * J[role];
+      if (role == 0) Eigen::Map<RowMatrix3d>(next + 9 * a) += weighted * J[1];
     }
   }
 }

@@ -67,6 +67,13 @@ ChainProblem::ChainProblem(const SequenceProblem& problem, bool shape_constant, 
     const std::array<double, 3> root_sigma = RootAccelerationSigma(problem, static_cast<int>(shot));
     inverse.emplace_back(1 / root_sigma[0], 1 / root_sigma[1], 1 / root_sigma[2]);
   }
+  if (problem.velocity_weight > 0) {
+    const std::vector<double> joint_sigma = JointVelocitySigma(problem);
+    for (int j : layout.active_joints)
+      inverse_velocity_sigma_.emplace_back(Eigen::Array3d::Constant(1 / joint_sigma[j]));
+    const std::array<double, 3> root_sigma = RootVelocitySigma(problem);
+    inverse_velocity_sigma_.emplace_back(1 / root_sigma[0], 1 / root_sigma[1], 1 / root_sigma[2]);
+  }
   Resize();
 }
 
@@ -89,6 +96,7 @@ void ChainProblem::Resize() {
   frozen_.clear();
   costs_.resize(T);
   acceleration_costs_.resize(T);
+  velocity_costs_.resize(T);
   has_pairs_ = false;
   for (size_t t = 0; t < T; ++t) has_pairs_ = has_pairs_ || HasCostsWithNext(problem_, t);
   pairs_.clear();
@@ -336,6 +344,7 @@ double ChainProblem::Linearise(const ChainPoint& point) {
     if (AllFrozen(t - 2, t + 2)) return;
     gradient_.segment(offset, n_) = frame_gradient_[t].head(n_);
     AssembleAcceleration(t);
+    if (problem_.velocity_weight > 0) AssembleVelocity(t);
     for (int i = 0; i < n_; ++i) {
       diagonal_[offset + i] = systems_[t].H(i, i) + own_[static_cast<size_t>(offset) * 3 + i / 3 * 9 + i % 3 * 4];
     }
@@ -354,6 +363,7 @@ bool ChainProblem::Marginalise(const ChainPoint& point, ChainPrior* prior) const
   const int T = static_cast<int>(point.states.size()), s = shared_size(), size = 2 * n_ + s;
   BODYLOOM_CHECK(T >= 3, "chain: ", T, " frames, expected three or more to take the first away");
   BODYLOOM_CHECK(!has_pairs_, "chain: a frame with cost functions on its neighbour cannot be taken away");
+  BODYLOOM_CHECK(problem_.velocity_weight <= 0, "chain: a frame whose velocity costs something cannot be taken away");
   // Frame 0's rows: [A | C D B | right-hand side].
   const int x_begin = RoundUp(n_), x_columns = RoundUp(size + 1);
   const int64_t stride = panel_internal::RowStride(x_begin + x_columns);

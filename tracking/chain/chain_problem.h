@@ -139,6 +139,7 @@ class ChainProblem : public ChainSource {
   double SharedCost(const ChainPoint& point) const;
   void AddSharedPriors(const ChainPoint& point);
   [[nodiscard]] bool HasAcceleration(size_t t) const;
+  [[nodiscard]] bool HasVelocity(size_t t) const;
   /// Of joint (or translation) a in frames end − 2, end − 1, end: Jacobians of σ r, 1/σ², and r/σ.
   [[nodiscard]] const std::vector<Eigen::Array3d>& InverseSigma(size_t t) const {
     return inverse_sigma_[inverse_sigma_.size() > 1 ? shot_[t] : 0];
@@ -146,6 +147,8 @@ class ChainProblem : public ChainSource {
   void AccelerationOf(size_t end, int a, Eigen::Matrix3d J[3], Eigen::Array3d* weight, Eigen::Vector3d* force) const;
   /// Blocks of the matrix and gradient that the accelerations of frames t, t + 1 and t + 2 give to frame t.
   void AssembleAcceleration(size_t t);
+  /// Adds those of the velocities that end at frames t and t + 1.
+  void AssembleVelocity(size_t t);
 
   const SequenceProblem& problem_;
   int n_, blocks_, num_threads_, max_dense_ = 0, num_skipped_ = 0;
@@ -164,9 +167,11 @@ class ChainProblem : public ChainSource {
   std::vector<Change> changes_;                             ///< T
   std::vector<AccelerationFactors> factors_;                ///< T, of the acceleration that ends at each frame
   std::vector<std::vector<Eigen::Array3d>> inverse_sigma_;  ///< n/3 of each entry of SequenceProblem::smoothness
+  std::vector<Eigen::Array3d> inverse_velocity_sigma_;      ///< n/3, or empty: no velocities
   std::vector<int> shot_;                                   ///< T, where the shots differ in smoothness
   std::vector<char> frozen_;                                ///< T, or empty: none
   std::vector<double> costs_, acceleration_costs_;          ///< T; of the acceleration that ends at each frame
+  std::vector<double> velocity_costs_;                      ///< T, of the velocity that ends at each frame
   std::vector<double> next_, second_, own_;                 ///< T × n/3 blocks of 9
   Eigen::VectorXd gradient_, shared_gradient_, diagonal_;
   Eigen::MatrixXd shared_;

@@ -3,6 +3,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -174,6 +175,9 @@ GroundPlane EstimateGroundPlane(const std::vector<std::array<FootPlace, 2>>& fee
     }
     if (!(H(2, 2) > 0)) break;
     x = H.ldlt().solve(rhs);
+    const Matrix3d covariance = H.inverse();
+    ground.up_sigma_rad = std::sqrt(covariance(0, 0) + covariance(1, 1));
+    ground.offset_sigma_m = std::sqrt(1 / H(2, 2));
   }
   const double length = (up + x[0] * e1 + x[1] * e2).norm();
   ground.normal = (up + x[0] * e1 + x[1] * e2) / length;

@@ -10,6 +10,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -64,7 +65,11 @@ struct GroundPlane {
   Eigen::Vector3d normal = Eigen::Vector3d(0, -1, 0);  ///< up, camera axes, unit
   double offset_m = 0;                                 ///< normal · ankle of standing feet
   double spread_m = 0;                                 ///< robust σ of the stances' heights, weighted by time
-  double share = 0;                                    ///< of the stances' time on the plane
+  /// Standard deviations by the fit's normal equations: of the normal's angle to the true one (root mean square), and of
+  /// the offset at the true normal. NaN of a plane that is given.
+  double up_sigma_rad = std::numeric_limits<double>::quiet_NaN();
+  double offset_sigma_m = std::numeric_limits<double>::quiet_NaN();
+  double share = 0;             ///< of the stances' time on the plane
   std::vector<Stance> stances;  ///< on the plane; their places are moved towards it as the σ above weigh them
 };
 

@@ -15,6 +15,10 @@ bool LiveTrackerOptions::IsValid(std::string* why) const {
     *why = "a window of frames is solved by the chain engine, not by " + ToString(solve.solver);
     return false;
   }
+  if (solve.velocity_weight > 0) {
+    *why = "velocities cost something in whole clips alone: expected velocity_weight 0";
+    return false;
+  }
   if (!solve.own_terms.empty()) {
     *why = "own terms are of whole clips; '" + solve.own_terms[0].name + "' cannot run live";
     return false;

@@ -4,6 +4,7 @@
 #include <ceres/ceres.h>
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -83,6 +84,36 @@ class Solver {
       if (std::abs(off) <= kKernel * SigmaOf(stance, up_)) sum += stance.seconds;
     }
     return sum;
+  }
+
+  /// Standard deviations by the normal equations: of the vertical with the sizes unknown where they are, of the height
+  /// at the sizes and the vertical found.
+  void SetSigmas(const std::vector<char>& stands, bool sizes, const Fit& fit, KnownGround* ground) const {
+    const auto n = static_cast<Eigen::Index>(people_.size());
+    const Vector3d along = fit.up.unitOrthogonal(), across = fit.up.cross(along);
+    Eigen::MatrixXd H = Eigen::MatrixXd::Zero(3 + n, 3 + n);
+    H(0, 0) = H(1, 1) = 1 / (GroundPlaneOptions().up_rad * GroundPlaneOptions().up_rad);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const StandingPerson& person = people_[static_cast<size_t>(i)];
+      const bool free = sizes && stands[i] && !person.size_known;
+      H(3 + i, 3 + i) = free ? 1 / (size_sigma_ * size_sigma_) : 1;  // 1: of a column that stays empty
+      if (!stands[i]) continue;
+      const double smaller = std::exp(-fit.log_size[i]);
+      for (const StandingFoot& stance : person.stances) {
+        const double sigma = SigmaOf(stance, up_);
+        const double r = (fit.up.dot(stance.place_m) + fit.height_m * smaller) / sigma;
+        VectorXd row = VectorXd::Zero(3 + n);
+        row[0] = along.dot(stance.place_m) / sigma;
+        row[1] = across.dot(stance.place_m) / sigma;
+        row[2] = smaller / sigma;
+        if (free) row[3 + i] = -fit.height_m * smaller / sigma;
+        H += std::min(1.0, stance.seconds) * GemanMcClure(r * r, kKernel).weight * row * row.transpose();
+      }
+    }
+    if (!(H(2, 2) > 0)) return;
+    const Eigen::MatrixXd covariance = H.inverse();
+    ground->up_sigma_deg = 180 / M_PI * std::sqrt(covariance(0, 0) + covariance(1, 1));
+    ground->height_sigma_m = std::sqrt(1 / H(2, 2));
   }
 
  private:
@@ -234,6 +265,7 @@ CommonGround FindCommonGround(const std::vector<StandingPerson>& people, const V
     result.found = 2 * on_plane_s > total_s;
     if (!result.found) break;
     result.ground = {.up = fit.up, .has_plane = true, .camera_height_m = fit.height_m};
+    solver.SetSigmas(result.stands, sizes, fit, &result.ground);
     result.why = Concatenate("feet of ", num_standing, " people stand on it");
     if (!sizes && options.size_sigma > 0) result.why += "; the camera is too near it to show their sizes";
     return result;

@@ -58,7 +58,16 @@ void JoinVerticals(const std::vector<const TrackSequenceSummary*>& people, Share
     if (ground.has_up) sum += TrackedFrames(*person) / std::pow(ground.up_spread_deg + kUpFloorDeg, 2) * ground.up;
   }
   scene->has_up = sum.norm() > 0;
-  if (scene->has_up) scene->ground.up = sum.normalized();
+  if (!scene->has_up) return;
+  scene->ground.up = sum.normalized();
+  // The lifter errs alike for everybody: the mean of several is taken for no surer than the surest.
+  bool given = true;
+  for (const TrackSequenceSummary* person : people) {
+    if (!person->ground.has_up) continue;
+    given = given && person->ground.given;
+    scene->ground.up_sigma_deg = std::fmin(scene->ground.up_sigma_deg, person->ground.up_sigma_deg);
+  }
+  scene->source = given ? WorldSource::kGiven : WorldSource::kVertical;
 }
 
 /// Stances of everybody; none of those who are left out. A person who is seen at depth z with one focal length is seen
@@ -81,6 +90,7 @@ void JoinGrounds(const std::vector<TrackSequenceSummary>& people, const CommonGr
   scene->why = common.why;
   if (common.found) {
     scene->ground = common.ground;
+    if (scene->source != WorldSource::kGiven) scene->source = WorldSource::kPeople;
     scene->size = common.size;
     return;
   }
@@ -100,6 +110,8 @@ void JoinGrounds(const std::vector<TrackSequenceSummary>& people, const CommonGr
   }
   scene->ground.has_plane = true;
   scene->ground.camera_height_m = alone->camera_height_m;
+  scene->ground.height_sigma_m = alone->height_sigma_m;
+  if (scene->source != WorldSource::kGiven) scene->source = WorldSource::kGround;
   scene->why = Concatenate("feet of ", alone->contact_frames, " frames stand on it");
 }
 

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "bodyloom/geometry/world_frame.h"
 #include "bodyloom/tracking/camera_knowledge.h"
 #include "bodyloom/tracking/people/common_ground.h"
 #include "bodyloom/tracking/terms/ground_contact/ground_options.h"
@@ -32,8 +33,9 @@ struct SharedScene {
   double focal_px = 0;
   double focal_log_sigma = 0;  ///< of log focal_px; 0 when the focal length was known
   bool has_up = false;
-  KnownGround ground;  ///< valid when has_up
-  std::string why;     ///< what was found of the ground, or why nothing
+  KnownGround ground;                              ///< valid when has_up
+  std::string why;                                 ///< what was found of the ground, or why nothing
+  WorldSource source = WorldSource::kLevelCamera;  ///< how the vertical and the ground were found
   /// Of each person, relative to what their fit assumed; 1 where nothing was seen of it, and where it was known.
   std::vector<double> size;
 };

@@ -9,6 +9,7 @@
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/tracking/initialise/stature.h"
 #include "bodyloom/tracking/track_sequence.h"
+#include "bodyloom/tracking/track_world.h"
 
 namespace bodyloom {
 namespace {
@@ -86,6 +87,18 @@ SharedScene Join(const std::vector<TrackSequenceResult>& people, const FocalPrio
   return JoinScenes(summaries, prior, ground);
 }
 
+/// All tracks in one world.
+void ShareWorld(TrackPeopleResult* result) {
+  std::vector<MatrixX3d> joints;
+  for (const TrackSequenceResult& person : result->people) {
+    joints.insert(joints.end(), person.track.joints.begin(), person.track.joints.end());
+  }
+  const WorldFrame world = WorldOfScene(result->summary.scene, joints);
+  for (TrackSequenceResult& person : result->people) {
+    if (person.summary.IsUsable()) person.track.world = world;
+  }
+}
+
 auto NumStanding(const std::vector<TrackSequenceResult>& people) {
   return std::count_if(people.begin(), people.end(), [](const TrackSequenceResult& person) {
     return person.summary.IsUsable() && !person.summary.ground.stances.empty();
@@ -153,6 +166,7 @@ TrackPeopleResult TrackPeople(std::vector<TrackSequenceInput> people, const Trac
       result.people[i].summary.focal_log_sigma = scene.focal_log_sigma;
     }
   }
+  ShareWorld(&result);
   return result;
 }
 

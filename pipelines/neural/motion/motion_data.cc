@@ -17,15 +17,15 @@
 #include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
-namespace {
-
 /// The window's part of a frame's pictures.
-struct CutFrame {
+struct MotionTruthFrame {
   Image image, normals;
   std::vector<uint8_t> labels;
 };
 
-void FillTruth(const CutFrame& cut, MotionFrame* frame) {
+namespace {
+
+void FillTruth(const MotionTruthFrame& cut, MotionFrame* frame) {
   const size_t area = size_t(frame->width) * frame->height;
   frame->labels = cut.labels;
   frame->image.assign(3 * area, 0);
@@ -180,7 +180,7 @@ class MotionData::Impl {
     for (; t < track_.num_frames() && video.Read(&picture); ++t) {
       const int promised = video.info().num_frames;  // 0 where the container does not say: counted below
       if (t == 0) CheckSizes(request, promised > 0 ? promised : track_.num_frames(), picture.width, picture.height);
-      CutFrame cut;
+      MotionTruthFrame cut;
       cut.image = CutWindow(picture, frames_->window(), t);
       if (parts)
         cut.labels = CutLabels(LabelPicture(parts->frames[t], picture.width, picture.height), frames_->window(), t);
@@ -189,11 +189,11 @@ class MotionData::Impl {
     if (t < track_.num_frames()) CheckSizes(request, t, track_.camera.width, track_.camera.height);
   }
 
-  const CutFrame& CutAt(int t) {
+  const MotionTruthFrame& CutAt(int t) {
     const std::lock_guard lock(mutex_);
     if (!cut_.at(t)) {
       const PersonFrame picture = set_->Read(t, {true, true, false, false});
-      CutFrame cut;
+      MotionTruthFrame cut;
       cut.image = CutWindow(picture.rgb, frames_->window(), t);
       if (!picture.labels.empty()) cut.labels = CutLabels(picture.labels, frames_->window(), t);
       if (!picture.normals.empty()) cut.normals = CutWindow(picture.normals, frames_->window(), t);
@@ -209,7 +209,7 @@ class MotionData::Impl {
   std::optional<EstimatedPixels> estimated_;
   std::optional<DenseHistory> dense_;
   std::mutex mutex_;
-  std::vector<std::optional<CutFrame>> cut_;
+  std::vector<std::optional<MotionTruthFrame>> cut_;
   bool has_part_labels_ = false;
   std::string notes_;
 };

@@ -125,7 +125,7 @@ TrainMotionRendererSummary TrainMotionRenderer(const TrainMotionRendererRequest&
   MotionDataRequest data_request = request.data;
   data_request.num_threads = options.num_threads;
   data_request.descriptor = config.descriptor;
-  SetAxesPose(request.cameras, request.view, &data_request.motion);
+  SetAxesPose(request.cameras, request.view, request.data.track, &data_request.motion);
   if (std::string why; !data_request.motion.IsValid(&why)) throw RequestError(why);
   MotionData data(data_request, config.profile, config.Multiple());
   SayLines(data.notes(), callbacks);

@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
 #include "bodyloom/neural/motion/clothes_reach.h"
-#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/pipelines/clip_span.h"
 #include "bodyloom/render/contact_sheet.h"
 
 namespace bodyloom {
@@ -15,12 +14,8 @@ namespace {
 constexpr int kShareStretch = 32;  ///< frames: with less of the data, whole stretches of so many are kept
 constexpr int kReachFrames = 64;   ///< that ReachOf looks at, at most
 
-void RequireInClip(const std::vector<FrameRange>& ranges, const char* option, int num_frames) {
-  for (const FrameRange& range : ranges) {
-    if (range.end <= num_frames) continue;
-    throw RequestError(
-        Concatenate(option, " ", range.begin, "-", range.end - 1, ": the clip has frames 0 to ", num_frames - 1));
-  }
+void RequireAllInClip(const std::vector<FrameRange>& ranges, const char* option, int num_frames) {
+  for (const FrameRange& range : ranges) RequireInClip({range.begin, range.end - 1}, option, num_frames);
 }
 
 std::vector<FrameRange> CutAtGaps(const std::vector<FrameRange>& ranges, const PersonFrames& frames) {
@@ -58,8 +53,8 @@ std::vector<FrameRange> TakeShare(const std::vector<FrameRange>& ranges, double 
 TrainingFrames ChooseFrames(const TrainingFramesRequest& request, const PersonFrames& frames,
                             const PersonFrames* validation) {
   const int T = frames.num_frames(), validation_frames = validation != nullptr ? validation->num_frames() : 0;
-  RequireInClip(request.train, "--train", T);
-  RequireInClip(request.validate, "--validate", validation_frames > 0 ? validation_frames : T);
+  RequireAllInClip(request.train, "--train", T);
+  RequireAllInClip(request.validate, "--validate", validation_frames > 0 ? validation_frames : T);
   TrainingFrames chosen = {request.train, request.validate};
   if (validation_frames > 0 && chosen.validation.empty()) chosen.validation = {{0, validation_frames}};
   if (chosen.train.empty()) {

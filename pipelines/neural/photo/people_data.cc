@@ -22,21 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A single-person dataset's clip and the maps of its frames.
-struct Clip {
-  SinglePersonDataset set;
-  Track track;
-  std::optional<PhotoMaps> maps;
-  std::vector<std::optional<CutPhoto>> cut;
-
-  explicit Clip(const std::string& path) : set(path), track(set.track()), cut(set.info().num_frames) {}
-};
-
-struct FrameOfPerson {
-  Clip* clip = nullptr;
-  int t = 0;
-};
-
 }  // namespace
 
 class PeopleData::Impl {
@@ -65,6 +50,21 @@ class PeopleData::Impl {
   [[nodiscard]] const PhotoSource& source() const { return source_; }
 
  private:
+  /// A single-person dataset's clip and the maps of its frames.
+  struct Clip {
+    SinglePersonDataset set;
+    Track track;
+    std::optional<PhotoMaps> maps;
+    std::vector<std::optional<CutPhoto>> cut;
+
+    explicit Clip(const std::string& path) : set(path), track(set.track()), cut(set.info().num_frames) {}
+  };
+
+  struct FrameOfPerson {
+    Clip* clip = nullptr;
+    int t = 0;
+  };
+
   /// `clips`: below `folder`.
   void AddPerson(const std::string& folder, const std::vector<std::string>& clips) {
     std::vector<FrameOfPerson> frames;

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <random>
 
@@ -53,6 +54,31 @@ TEST(EvaluationTruthTest, ThePerfectTrackHasNoError) {
   EXPECT_NEAR(e.Value("pa_mpjpe_mm"), 0, 1e-9);
   EXPECT_NEAR(e.Value("clip_scale"), 1, 1e-12);
   EXPECT_GT(e.Value("gt_accel_ms2"), 0);
+}
+
+/// Errors by vertex are those that the figures are means of.
+TEST(EvaluationTruthTest, ErrorsOfAFrameAverageToTheFigures) {
+  const Track truth = TrueTrack();
+  Track track = truth;
+  track.motion.poses.array() += 0.05;
+  track.motion.trans.col(0).array() += 0.1;
+  track.motion.betas = Eigen::VectorXd::Constant(2, 0.5);
+  track.camera.fx *= 1.05;
+  const Evaluation e = EvaluateAgainstTruth(track, truth, ToyBody());
+  double mm = 0, px = 0;
+  for (int t = 0; t < kFrames; ++t) {
+    const auto of = [&](VertexErrorUnit unit) { return VertexErrorsOfFrame(track, truth, t, ToyBody(), unit); };
+    ASSERT_EQ(of(VertexErrorUnit::kMillimetres).size(), ToyBody().num_vertices());
+    mm += of(VertexErrorUnit::kMillimetres).mean() / kFrames;
+    px += of(VertexErrorUnit::kPixels).mean() / kFrames;
+  }
+  EXPECT_GT(mm, 5);
+  EXPECT_NEAR(mm, e.Value("pve_mm"), 1e-3);  // the figures are skinned in float
+  EXPECT_NEAR(px, e.Value("projection_mean_px"), 1e-3);
+  track.motion.poses(3, 7) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(VertexErrorsOfFrame(track, truth, 3, ToyBody(), VertexErrorUnit::kPixels).size(), 0);
+  EXPECT_EQ(VertexErrorsOfFrame(truth, track, 3, ToyBody(), VertexErrorUnit::kMillimetres).size(), 0);
+  EXPECT_THROW(VertexErrorsOfFrame(track, truth, kFrames, ToyBody(), VertexErrorUnit::kPixels), std::invalid_argument);
 }
 
 TEST(EvaluationTruthTest, KneesAreMeasuredInDegrees) {

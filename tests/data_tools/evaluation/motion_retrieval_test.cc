@@ -10,6 +10,7 @@
 
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/evaluation/motion_similarity.h"
+#include "tests/data_tools/evaluation/short_turning_clip.h"
 
 namespace bodyloom {
 namespace {
@@ -17,25 +18,8 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-TurningPerson ShortClip(double variation) {
-  TurningPersonOptions options;
-  options.cycles = 3;
-  options.period_s = 1.6;
-  options.fps = 20;
-  options.image_size = 128;
-  options.variation = variation;
-  return MakeTurningPerson(BuiltinBody(), options);
-}
-
-PersonFramesOptions Small() {
-  PersonFramesOptions options;
-  options.uv_size = 24;
-  options.window.max_side = 32;
-  return options;
-}
-
 TEST(TurningPerson, TurnsThereAndBack) {
-  const TurningPerson person = ShortClip(0);
+  const TurningPerson person = ShortTurningClip(0);
   ASSERT_EQ(person.track.num_frames(), 4 * 32);
   for (int t = 0; t < person.track.num_frames(); ++t) {
     EXPECT_EQ(person.cycle[t], t / 32 - 1);
@@ -62,8 +46,8 @@ TEST(MotionRetrieval, PeaksAreTheLargestOfTheirSurroundings) {
 }
 
 TEST(MotionRetrieval, OnlyTheMotionDescriptorHasOnePeakACycle) {
-  const TurningPerson person = ShortClip(0);
-  const PersonFrames frames(BuiltinBody(), person.track, Small());
+  const TurningPerson person = ShortTurningClip(0);
+  const PersonFrames frames(BuiltinBody(), person.track, SmallFrames(32));
   const RetrievalScores motion = ScoreRetrieval(person, MotionDescriptors(frames, 10));
   EXPECT_NEAR(motion.one_peak_share, 1, 1e-12);
   EXPECT_NEAR(motion.peaks_a_cycle, 1, 1e-12);
@@ -77,14 +61,14 @@ TEST(MotionRetrieval, OnlyTheMotionDescriptorHasOnePeakACycle) {
 }
 
 TEST(MotionRetrieval, FindsTheDirectionInCyclesThatDiffer) {
-  const TurningPerson person = ShortClip(0.1);
-  const PersonFrames frames(BuiltinBody(), person.track, Small());
+  const TurningPerson person = ShortTurningClip(0.1);
+  const PersonFrames frames(BuiltinBody(), person.track, SmallFrames(32));
   EXPECT_GT(ScoreRetrieval(person, MotionDescriptors(frames, 10)).direction_share, 0.99);
   EXPECT_LT(ScoreRetrieval(person, DenseCoordinates(frames, 1)).direction_share, 0.85);
 }
 
 TEST(MotionSimilarity, IsOneForWhatWasSeenAndLessForWhatWasNot) {
-  const TurningPerson person = ShortClip(0), other = ShortClip(0.3);
+  const TurningPerson person = ShortTurningClip(0), other = ShortTurningClip(0.3);
   const std::vector<float> own = SimilarityToNearest(BuiltinBody(), person.track, person.track, 3, 1);
   const std::vector<float> others = SimilarityToNearest(BuiltinBody(), person.track, other.track, 3, 1);
   ASSERT_EQ(own.size(), size_t(person.track.num_frames()));
@@ -99,7 +83,7 @@ TEST(MotionSimilarity, IsOneForWhatWasSeenAndLessForWhatWasNot) {
 }
 
 TEST(MotionSimilarity, IsToTheFramesThatCount) {
-  const Track track = ShortClip(0).track;
+  const Track track = ShortTurningClip(0).track;
   std::vector<char> counts(track.num_frames());
   for (int t = 0; t < 10; ++t) counts[t] = 1;
   const std::vector<float> to_all = SimilarityToNearest(BuiltinBody(), track, track, 2, 1);
@@ -107,7 +91,9 @@ TEST(MotionSimilarity, IsToTheFramesThatCount) {
   float least = 1;
   for (int t = 0; t < track.num_frames(); ++t) {
     EXPECT_NEAR(to_all[t], 1, 1e-3);
-    if (t < 10) EXPECT_NEAR(to_first[t], 1, 1e-3);
+    if (t < 10) {
+      EXPECT_NEAR(to_first[t], 1, 1e-3);
+    }
     least = std::min(least, to_first[t]);
   }
   EXPECT_LT(least, 0.9) << "the ten frames of its beginning are not the whole motion";
@@ -118,7 +104,7 @@ TEST(MotionSimilarity, IsToTheFramesThatCount) {
 }
 
 TEST(MotionSimilarity, FramesWithoutAResultHaveNone) {
-  TurningPerson person = ShortClip(0);
+  TurningPerson person = ShortTurningClip(0);
   const Track whole = person.track;
   person.track.motion.trans.row(5).setConstant(std::numeric_limits<double>::quiet_NaN());
   const std::vector<float> similarity = SimilarityToNearest(BuiltinBody(), person.track, whole, 2, 1);

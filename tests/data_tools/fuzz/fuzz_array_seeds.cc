@@ -5,6 +5,7 @@
 
 #include <memory>
 
+#include "bodyloom/data_tools/avatar/avatar_file.h"
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
@@ -54,6 +55,22 @@ DenseSequence TwoDenseFrames() {
   dense.image_height = 480;
   dense.uv_sigma = 0.02;
   return dense;
+}
+
+AvatarCheckpoint SmallAvatar() {
+  GaussianBody body;
+  body.Resize(3);
+  for (int i = 0; i < body.size(); ++i) {
+    body.joints[GaussianBody::kInfluences * i + 1] = i;
+    body.anchors[i].face = 2 - i;
+    body.parameters(i, GaussianBody::kPosition + 1) = 0.5F * static_cast<float>(i);
+  }
+  AvatarCheckpoint checkpoint;
+  checkpoint.avatar.betas = Eigen::VectorXd::Constant(2, 0.5);
+  checkpoint.avatar.num_joints = checkpoint.avatar.num_vertices = checkpoint.avatar.num_faces = 4;
+  checkpoint.state = AvatarTrainingState::Of(std::move(body));
+  checkpoint.options = "{}";
+  return checkpoint;
 }
 
 PosePrior SmallPrior() {
@@ -153,6 +170,7 @@ void AddArraySeeds(std::map<std::string, std::vector<std::string>>* seeds) {
   const auto write = [&](const std::string& path) { WriteObservations(path, &keypoints, &dense); };
   (*seeds)["observations"] = {FramedBytesOf(write)};
   (*seeds)["part_labels"] = {PartLabels()};
+  (*seeds)["avatar"] = {FramedBytesOf([](const std::string& path) { WriteAvatarCheckpoint(path, SmallAvatar()); })};
   (*seeds)["pose_prior"] = {FramedBytesOf([](const std::string& path) { WritePosePrior(path, SmallPrior()); })};
   (*seeds)["lifter"] = {FramedBytesOf([](const std::string& path) { WriteLifterWeights(path, SmallLifter()); })};
   (*seeds)["left_half"] = {FrameArrays(ReadNpzBytes(EmbeddedBuiltinBodySources().parts_bytes, "parts.npz"))};

@@ -23,6 +23,7 @@ TEST(FuzzCorpus, AsfAmc) { RunMutations("asf_amc", AcceptsAsfAmc, 4000); }
 TEST(FuzzCorpus, DeepMimic) { RunMutations("deepmimic", AcceptsDeepMimic, 4000); }
 TEST(FuzzCorpus, Observations) { RunMutations("observations", AcceptsObservations, 4000); }
 TEST(FuzzCorpus, PartLabels) { RunMutations("part_labels", AcceptsPartLabels, 4000); }
+TEST(FuzzCorpus, Avatar) { RunMutations("avatar", AcceptsAvatar, 4000); }
 TEST(FuzzCorpus, PosePrior) { RunMutations("pose_prior", AcceptsPosePrior, 500); }
 TEST(FuzzCorpus, Lifter) { RunMutations("lifter", AcceptsLifter, 2000); }
 TEST(FuzzCorpus, LeftHalf) { RunMutations("left_half", AcceptsLeftHalf, 50); }
@@ -34,6 +35,8 @@ TEST(FuzzCorpus, SinglePersonDataset) { RunMutations("single_person_dataset", Ac
 TEST(FuzzCorpus, Split) { RunMutations("split", AcceptsSplit, 4000); }
 TEST(FuzzCorpus, Mat) { RunMutations("mat", AcceptsMat, 300); }
 TEST(FuzzCorpus, Tflite) { RunMutations("tflite", AcceptsTflite, 4000); }
+TEST(FuzzCorpus, Onnx) { RunMutations("onnx", AcceptsOnnx, 4000); }
+TEST(FuzzCorpus, KeypointOutputs) { RunMutations("keypoint_outputs", AcceptsKeypointOutputs, 4000); }
 TEST(FuzzCorpus, Cage) { RunMutations("cage", AcceptsCage, 4000); }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "bodyloom/data_tools/formats/zip.h"
 #include "tests/data_tools/body/small_body.h"
 #include "tests/data_tools/detection/small_networks.h"
+#include "tests/data_tools/detection/small_onnx.h"
 #include "tests/data_tools/formats/pickle_writer.h"
 #include "tests/data_tools/formats/torch_stream.h"
 #include "tests/data_tools/fuzz/fuzz_array_seeds.h"
@@ -120,6 +121,10 @@ std::map<std::string, std::vector<std::string>> Seeds() {
   seeds["obj"] = {"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 1 1\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\nf 1 2 3 4\nf -1 -2 -3\n",
                   "# x\nmtllib a\ng b\nv\t1e3 -2.5 +0\r\nv 1 2 3\nv 1 2 4 1 1 1\nf 1//1 2//1 3//1\n"};
   for (const TfliteWriter& network : SmallNetworks()) seeds["tflite"].push_back(network.Bytes());
+  for (const OnnxWriter& network : SmallOnnxNetworks()) seeds["onnx"].push_back(network.Bytes());
+  std::vector<float> outputs(88, 0.125F);
+  for (size_t row = 0; row < 11; ++row) outputs[row * 8 + 3] = row == 4 ? 0.75F : 40 + 20 * float(row);
+  seeds["keypoint_outputs"].push_back({reinterpret_cast<const char*>(outputs.data()), outputs.size() * sizeof(float)});
   AddTextSeeds(&seeds);
   AddRunSeeds(&seeds);
   AddArraySeeds(&seeds);

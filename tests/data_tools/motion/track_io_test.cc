@@ -50,6 +50,9 @@ Track SampleTrack(CameraModel model) {
   }
   track.joint_sigma = RowMatrixXd::Random(kFrames, kJoints).cwiseAbs();
   track.joint_sigma(0, 0) = kNan;
+  track.world = WorldOverGround({0.1, -0.9, -0.2}, 1.4);
+  track.world->source = WorldSource::kPeople;
+  track.world->vertical_sigma_deg = 1.25;
   return track;
 }
 
@@ -186,6 +189,31 @@ TEST(TrackIo, TracksOfOthers) {
   EXPECT_EQ(Read(With(weak, "camera", std::vector<double>(9, 1.0), {3, 3})).camera.model,
             CameraModel::kWeakPerspective);
   EXPECT_EQ(Read(With(ForeignArrays(), "poses", std::vector<double>(3 * 165, 0.0), {3, 165})).motion.body, "smplx");
+}
+
+TEST(TrackIo, WorldIsKeptAndMayBeMissing) {
+  const Track track = SampleTrack(CameraModel::kPinhole), read = Read(SampleArrays(CameraModel::kPinhole));
+  ASSERT_TRUE(read.world);
+  EXPECT_EQ(read.world->rotation, track.world->rotation);
+  EXPECT_EQ(read.world->translation, track.world->translation);
+  EXPECT_EQ(read.world->source, WorldSource::kPeople);
+  EXPECT_EQ(read.world->vertical_sigma_deg, 1.25);
+  EXPECT_TRUE(std::isnan(read.world->height_sigma_m));
+  EXPECT_FALSE(Read(ForeignArrays()).world) << "files of before say nothing";
+
+  const std::vector<double> level = {1, 0, 0, 0, 0, -1, 0, 1.5, 0, 0, -1, 0, 0, 0, 0, 1};
+  const NpzArrays given = With(ForeignArrays(), "world_from_camera", level, {4, 4});
+  EXPECT_EQ(Read(given).world->source, WorldSource::kGiven);
+  EXPECT_EQ(Read(given).world->camera_height_m(), 1.5);
+  std::vector<double> mirrored = level, scaled = level, shifted = level;
+  mirrored[0] = -1;
+  for (const int i : {0, 5, 10}) scaled[size_t(i)] *= 2;
+  shifted[12] = 1;
+  for (const std::vector<double>& wrong : {mirrored, scaled, shifted}) {
+    EXPECT_THAT(ErrorOf(With(given, "world_from_camera", wrong, {4, 4})), HasSubstr("expected a rotation"));
+  }
+  EXPECT_THAT(ErrorOf(WithText(given, "world_source", "guessed")), HasSubstr("world_source: 'guessed'"));
+  EXPECT_THAT(ErrorOf(With(given, "world_sigma", {-1, 0}, {2})), HasSubstr("world_sigma"));
 }
 
 TEST(TrackIo, BrokenMembersAreNamed) {

@@ -84,6 +84,40 @@ TEST_F(LoadCamerasTest, Pose2SimWithAffine) {
   }
 }
 
+TEST_F(LoadCamerasTest, Pose2SimToml) {
+  const std::string good =
+      "# two cameras\n[int_cam01_img]\nname = \"cam_01\"\nsize = [ 1088.0, 1920.0]\n"
+      "matrix = [ [ 1681.0, 0.0, 533.0],\n [ 0.0, 1682.0, 948.0], [ 0.0, 0.0, 1.0]]  # px\n"
+      "distortions = [ -0.05, 0.1, 0.001, 0.002]\nrotation = [ 0.1, 0.2, 0.3]\ntranslation = [ 0.3, 0.9, 2.9]\n"
+      "fisheye = false\n\n[cameras.second]\nsize = [ 640, 480]\nmatrix = [[500,0,320],[0,500,240],[0,0,1]]\n"
+      "[metadata]\nadjusted = false\nname = 5\n";
+  const std::vector<NamedCamera> cameras = LoadCameras(Write("Calib.toml", good));
+  ASSERT_EQ(cameras.size(), 2U);
+  EXPECT_EQ(cameras[0].name, "cam_01");
+  EXPECT_EQ(cameras[0].camera.width, 1088);
+  EXPECT_EQ(cameras[0].camera.fy, 1682);
+  EXPECT_EQ(cameras[0].camera.distortion[3], 0.002);
+  EXPECT_EQ(cameras[0].pose.camera_from_world_translation.z(), 2.9);
+  EXPECT_TRUE(cameras[0].pose.camera_from_world_rotation.isApprox(RotationFromAxisAngle({0.1, 0.2, 0.3}), 1e-12));
+  EXPECT_EQ(cameras[1].name, "second");
+  const auto error = [&](const std::string& text) {
+    const std::string path = Write("bad.toml", text);
+    return FileErrorOf(path, [&] { LoadCameras(path); });
+  };
+  EXPECT_THAT(error("[metadata]\nerror = 0.0\n"), HasSubstr("no camera"));
+  EXPECT_THAT(error("[a]\nsize = [ 640]\n"), HasSubstr("line 2: 'size = [ 640]', expected size = [width, height]"));
+  EXPECT_THAT(error("[a]\nmatrix = [ [ 1, 2\n"), HasSubstr("line 2"));
+  EXPECT_THAT(error("[a]\nmatrix\n"), HasSubstr("expected key = value"));
+  EXPECT_THAT(error("[a\n"), HasSubstr("expected a table"));
+  EXPECT_THAT(error("[a]\nsize = [ 640, 480]\n"), HasSubstr("no 'fx'"));
+  for (size_t n = 0; n < good.size(); n += 7) {
+    try {
+      LoadCameras(Write("cut.toml", good.substr(0, n)));
+    } catch (const std::runtime_error&) {
+    }
+  }
+}
+
 TEST_F(LoadCamerasTest, OwnFormRoundTrip) {
   NamedCamera a, b;
   a.name = "left";

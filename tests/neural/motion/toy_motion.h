@@ -53,6 +53,22 @@ inline void ToyFrameIn(int width, int height, int t, bool with_truth, MotionFram
 /// In the smallest window.
 inline void ToyFrame(int t, bool with_truth, MotionFrame* frame) { ToyFrameIn(32, 32, t, with_truth, frame); }
 
+/// The toy's frame described in the picture's plane: the shade is told beside the person, not on it.
+inline void DenseToyFrame(int t, bool with_truth, MotionFrame* frame) {
+  ToyFrame(t, with_truth, frame);
+  const float level = frame->motion[0];
+  frame->motion.clear();
+  frame->dense.assign(2 * 32 * 32, 0);
+  for (int i = 0; i < 32 * 32; ++i) frame->dense[32 * 32 + i] = frame->body[i] == 0 ? level : 0;
+}
+
+inline MotionConfig DenseToy() {
+  MotionConfig config = Toy();
+  config.descriptor = MotionDescriptor::kDense2d;
+  config.motion_channels = 2;
+  return config;
+}
+
 inline TrainMotionOptions ToyOptions(const std::string& name) {
   TrainMotionOptions options;
   options.config = Toy();

@@ -33,8 +33,8 @@ class DetectClipOnRealVideo : public ::testing::Test {
     DetectClipRequest request;
     request.detect.video = squats_;
     request.detect.span.to_s = 1.9;
-    request.detect.detector.network = PoseNetworkSize::kFull;
-    request.detect.detector.max_people = 1;
+    request.detect.detector.blazepose.network = PoseNetworkSize::kFull;
+    request.detect.detector.blazepose.max_people = 1;
     request.out = folder_ / "detections.npz";
     return request;
   }
@@ -72,7 +72,7 @@ TEST_F(DetectClipOnRealVideo, ResultsDoNotDependOnTheNumberOfThreads) {
   request.detect.span.to_s = 0.7;
   DetectClip(request);
   const std::string two = FileBytes(request.out);
-  request.detect.detector.num_threads = 1;
+  request.detect.detector.blazepose.num_threads = 1;
   DetectClip(request);
   EXPECT_EQ(FileBytes(request.out), two);
 }

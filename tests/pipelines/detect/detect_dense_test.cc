@@ -196,7 +196,7 @@ TEST_F(DetectDenseClip, DetectClipWritesDenseKeypointsWithoutLookingForLandmarks
   AddFrame({{2, 10, 10, 30, 60}});
   AddFrame({{2, 12, 10, 30, 60}});
   DetectClipRequest request = ClipRequest();
-  request.detect.models = folder_ / "no networks here";
+  request.detect.detector.models = folder_ / "no networks here";
   request.json = folder_ / "report.json";
   const DetectClipReport report = DetectClip(request);
   EXPECT_FALSE(report.landmarks.has_value());

@@ -38,7 +38,7 @@ class TrackPeopleClipOnRealVideo : public ::testing::Test {
     request.track.video = video_;
     request.track.from_s = 0.5;
     request.track.to_s = 0.7;
-    request.track.detector = PoseNetworkSize::kFull;
+    request.track.detector.blazepose.network = PoseNetworkSize::kFull;
     request.least_seconds = 0.1;
     request.out = folder_ / "out";
     return request;

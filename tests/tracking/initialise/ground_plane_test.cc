@@ -106,6 +106,36 @@ TEST(GroundPlane, FeetOverruleAnUpThatIsOff) {
   EXPECT_LT(AngleDeg(ground.normal, walk.up), 2);
 }
 
+TEST(GroundPlane, ItsStandardDeviationsAreThoseOfItsErrors) {
+  // Depth and vertical err as the options say that they do.
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  double up_sq = 0, up_var = 0, height_sq = 0, height_var = 0;
+  int count = 0;
+  for (uint64_t seed = 1; seed <= 60; ++seed) {
+    WalkOptions options;
+    options.seed = seed;
+    options.depth_error = 0.03;
+    options.elevation_deg = 20;
+    const Walk walk = MakeWalk(options);
+    const double s = GroundPlaneOptions().up_rad;
+    const Vector3d lifter_up = RotationFromAxisAngle(Vector3d(s * normal(random), 0, s * normal(random))) * walk.up;
+    const GroundPlane ground = EstimateGroundPlane(walk.feet, walk.timestamps, lifter_up, {});
+    if (!ground.found) continue;
+    ++count;
+    up_sq += std::pow(AngleDeg(ground.normal, walk.up) * kDegree, 2);
+    up_var += std::pow(ground.up_sigma_rad, 2);
+    height_sq += std::pow(kAnkle - ground.offset_m - walk.camera_height_m, 2);
+    height_var += std::pow(ground.offset_sigma_m, 2);
+  }
+  ASSERT_GT(count, 50);
+  EXPECT_LT(up_sq, 4 * up_var);
+  EXPECT_GT(up_sq, up_var / 4);
+  EXPECT_LT(up_var / count, 2 * std::pow(GroundPlaneOptions().up_rad, 2)) << "feet tell more than the lifter alone";
+  RecordProperty("height_rms_m", std::to_string(std::sqrt(height_sq / count)));
+  RecordProperty("height_sigma_m", std::to_string(std::sqrt(height_var / count)));
+}
+
 TEST(GroundPlane, TheGroundTellsTheDepthOfAStance) {
   WalkOptions options;
   options.elevation_deg = 25;

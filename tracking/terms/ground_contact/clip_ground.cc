@@ -17,6 +17,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr float kSeenConfidence = 0.3F;
+constexpr double kUpSigmaDegrees = 180 / M_PI;
 constexpr double kKnownUpRad = 0.005;  ///< σ of a vertical that is given
 
 }  // namespace
@@ -163,6 +164,9 @@ void ClipGround::Summarise(const SequenceProblem& problem, TrackSequenceSummary*
   result.has_up = longest->up.found;
   result.up = longest->ground.found ? longest->ground.normal : longest->up.up;
   result.up_spread_deg = longest->up.spread_deg;
+  result.given = known_ != nullptr;
+  result.up_sigma_deg =
+      known_ != nullptr ? known_->up_sigma_deg : kUpSigmaDegrees * std::sqrt(2) * GroundPlaneOptions().up_rad;
   result.contact_frames = contact_frames_;
   if (!why_not_.empty()) return;
   result.stances = longest->stances;
@@ -172,6 +176,9 @@ void ClipGround::Summarise(const SequenceProblem& problem, TrackSequenceSummary*
   result.why = ground.why;
   if (!ground.found) return;
   result.camera_height_m = kAnkleHeight - ground.offset_m;
+  if (known_ == nullptr) result.up_sigma_deg = kUpSigmaDegrees * ground.up_sigma_rad;
+  const bool on_known = std::isnan(ground.offset_sigma_m);
+  result.height_sigma_m = on_known && known_ != nullptr ? known_->height_sigma_m : ground.offset_sigma_m;
   result.height_spread_m = ground.spread_m;
 }
 

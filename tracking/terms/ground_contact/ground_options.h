@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 
 namespace bodyloom {
 
@@ -12,6 +13,9 @@ struct KnownGround {
   Eigen::Vector3d up = Eigen::Vector3d(0, -1, 0);  ///< camera axes, unit
   bool has_plane = false;
   double camera_height_m = 0;  ///< of the camera above the plane
+  /// Standard deviations of both (geometry/world_frame.h); NaN: whoever gives them does not say.
+  double up_sigma_deg = std::numeric_limits<double>::quiet_NaN();
+  double height_sigma_m = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Which way is up, and the ground that feet stand on, read off the clip (initialise/ground_plane.h). Needs the lifter.

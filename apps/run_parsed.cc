@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/run_parsed.h"
+
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <iostream>
+
+#include "apps/exit_code.h"
+#include "apps/interrupt.h"
+
+namespace bodyloom {
+
+int RunParsed(CLI::App* app, const std::string& name, int argc, char** argv, const Action& action) {
+  const auto wrong_usage = [&](const std::exception& error) {
+    std::cerr << name << ": " << error.what() << "\nRun with --help for the options.\n";
+    return kExitUsage;
+  };
+  try {
+    app->parse(argc, argv);
+    action();
+    return kExitOk;
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) {  // --help
+      return app->exit(error);
+    }
+    return wrong_usage(error);
+  } catch (const RequestError& error) {
+    return wrong_usage(error);
+  } catch (const Cancelled&) {
+    std::cerr << name << ": interrupted\n";
+    return kExitInterrupted;
+  } catch (const std::exception& error) {
+    std::cerr << name << ": " << error.what() << "\n";
+    return IsInterrupted() ? kExitInterrupted : kExitFailed;
+  }
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Options of `bodyloom animate …` that say how a motion is shown.
+#pragma once
+
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace bodyloom {
+
+/// --view-yaw.
+void AddViewYaw(CLI::App* verb, std::string* view_yaw);
+
+/// Where the options of a person who was trained on go.
+struct ShownMotion {
+  std::string *view_yaw, *freeze, *background;
+  bool* shape_of_track;
+};
+
+/// --view-yaw, --shape, --freeze, --background.
+void AddShownMotion(CLI::App* verb, const ShownMotion& shown);
+
+}  // namespace bodyloom

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/data_tools/avatar/avatar_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "bodyloom/data_tools/formats/printable.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/refuse.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr const char* kAvatarFormat = "bodyloom avatar";
+constexpr int kAvatarVersion = 1;
+constexpr int64_t kMostGaussians = 10000000, kMostShape = 1000;
+constexpr int kColumns = GaussianBody::kNumParameters, kInfluences = GaussianBody::kInfluences;
+
+NdArray FromTable(const FloatColumns& table) {
+  std::vector<float> rows(static_cast<size_t>(table.rows()) * table.columns());
+  for (int c = 0; c < table.columns(); ++c) {
+    for (int i = 0; i < table.rows(); ++i) rows[static_cast<size_t>(i) * table.columns() + c] = table(i, c);
+  }
+  return NdArray::FromFloats(rows.data(), {table.rows(), table.columns()});
+}
+
+/// The arrays of one file, each checked for type and shape when it is taken.
+class AvatarArrays {
+ public:
+  AvatarArrays(const NpzArrays& arrays, std::string where) : arrays_(arrays), where_(std::move(where)) {}
+
+  [[noreturn]] void Fail(const std::string& key, const std::string& message) const { Refuse(where_, key, message); }
+
+  const NdArray& Take(const std::string& key, DType type, const char* type_name,
+                      const std::vector<int64_t>& shape) const {
+    const NdArray& array = RequireArray(arrays_, key, where_);
+    if (array.dtype != type || array.shape != shape) {
+      NdArray expected;
+      expected.shape = shape;
+      Fail(key, Concatenate("an array of ", array.ShapeText(), " of ", array.item_size, " bytes each, expected ",
+                            expected.ShapeText(), " ", type_name));
+    }
+    return array;
+  }
+  std::vector<float> Floats(const std::string& key, const std::vector<int64_t>& shape) const {
+    std::vector<float> values = Take(key, DType::kF32, "float32", shape).ToFloats();
+    if (!std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); })) {
+      Fail(key, "numbers that are not finite");
+    }
+    return values;
+  }
+  /// Within low..high.
+  std::vector<int32_t> Ints(const std::string& key, const std::vector<int64_t>& shape, int64_t low,
+                            int64_t high) const {
+    const std::vector<int64_t> values = Take(key, DType::kI32, "int32", shape).ToInts();
+    for (const int64_t v : values) {
+      if (v < low || v > high) Fail(key, Concatenate(v, ", expected ", low, " to ", high));
+    }
+    return {values.begin(), values.end()};
+  }
+  FloatColumns Table(const std::string& key, int columns, int64_t rows) const {
+    const std::vector<float> values = Floats(key, {rows, columns});
+    FloatColumns table(columns, static_cast<int>(rows));
+    table.Fill(0);
+    for (int64_t i = 0; i < rows; ++i) {
+      for (int c = 0; c < columns; ++c) table(static_cast<int>(i), c) = values[i * columns + c];
+    }
+    return table;
+  }
+  std::string Text(const std::string& key) const {
+    const NdArray& array = RequireArray(arrays_, key, where_);
+    if (!array.is_text() || array.num_elements() != 1)
+      Fail(key, "an array of " + array.ShapeText() + ", expected a text");
+    return array.ToStrings()[0];
+  }
+  /// At least 0.
+  double Number(const std::string& key) const {
+    const double value = Take(key, DType::kF64, "float64", {}).ToDoubles()[0];
+    if (!(value >= 0 && value < 1e15)) Fail(key, Concatenate(value, ", expected 0 or more"));
+    return value;
+  }
+  /// Rows of `parameters`, which must be there before memory is taken for them.
+  int64_t NumRows() const {
+    const NdArray& array = RequireArray(arrays_, "parameters", where_);
+    if (array.shape.size() != 2 || array.shape[1] != kColumns || array.shape[0] < 1 ||
+        array.shape[0] > kMostGaussians) {
+      Fail("parameters",
+           Concatenate("an array of ", array.ShapeText(), ", expected Nx", kColumns, ", N from 1 to ", kMostGaussians));
+    }
+    return array.shape[0];
+  }
+  Eigen::VectorXd Betas() const {
+    const NdArray& array = RequireArray(arrays_, "betas", where_);
+    if (array.dtype != DType::kF64 || array.shape.size() != 1 || array.shape[0] > kMostShape) {
+      Fail("betas", Concatenate("an array of ", array.ShapeText(), ", expected at most ", kMostShape, " float64"));
+    }
+    const std::vector<double> values = array.ToDoubles();
+    if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); })) {
+      Fail("betas", "numbers that are not finite");
+    }
+    return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+  }
+
+ private:
+  const NpzArrays& arrays_;
+  std::string where_;
+};
+
+void PutAvatar(const AvatarFile& avatar, const GaussianBody& body, NpzArrays* to) {
+  std::string why;
+  BODYLOOM_CHECK(body.IsValid(avatar.num_joints, avatar.num_faces, &why), "writing an avatar: ", why);
+  const int64_t count = body.size();
+  std::vector<int32_t> faces;
+  std::vector<float> barycentric, factors;
+  for (const SkinAnchor& anchor : body.anchors) {
+    faces.push_back(anchor.face);
+    barycentric.insert(barycentric.end(), anchor.barycentric.begin(), anchor.barycentric.end());
+    factors.push_back(anchor.corrective_factor);
+  }
+  const int32_t size[3] = {avatar.num_joints, avatar.num_vertices, avatar.num_faces};
+  (*to)["format"] = NdArray::FromString(kAvatarFormat);
+  (*to)["version"] = NdArray::FromDouble(kAvatarVersion);
+  (*to)["body_size"] = NdArray::FromInts32(size, {3});
+  (*to)["betas"] = NdArray::FromDoubles(avatar.betas.data(), {avatar.betas.size()});
+  (*to)["parameters"] = FromTable(body.parameters);
+  (*to)["joints"] = NdArray::FromInts32(body.joints.data(), {count, kInfluences});
+  (*to)["is_loose"] = NdArray::FromUInt8(body.is_loose.data(), {count});
+  (*to)["anchor_face"] = NdArray::FromInts32(faces.data(), {count});
+  (*to)["anchor_barycentric"] = NdArray::FromFloats(barycentric.data(), {count, 3});
+  (*to)["anchor_factor"] = NdArray::FromFloats(factors.data(), {count});
+  (*to)["light"] = NdArray::FromFloats(body.light.data(), {GaussianBody::kLightValues});
+}
+
+void PutAdam(const AdamState& adam, const std::string& name, NpzArrays* to) {
+  (*to)[name + "_first"] = FromTable(adam.first);
+  (*to)[name + "_second"] = FromTable(adam.second);
+  (*to)[name + "_steps"] = NdArray::FromInts32(adam.steps.data(), {static_cast<int64_t>(adam.steps.size())});
+}
+
+AdamState TakeAdam(const AvatarArrays& arrays, const std::string& name, int columns, int64_t rows) {
+  AdamState adam;
+  adam.first = arrays.Table(name + "_first", columns, rows);
+  adam.second = arrays.Table(name + "_second", columns, rows);
+  for (int c = 0; c < columns; ++c) {
+    for (const float v : adam.second.values(c)) {
+      if (v < 0) arrays.Fail(name + "_second", Concatenate(v, ", expected 0 or more"));
+    }
+  }
+  adam.steps = arrays.Ints(name + "_steps", {rows}, 0, 1000000000);
+  return adam;
+}
+
+}  // namespace
+
+void WriteAvatar(const std::string& path, const AvatarFile& avatar) {
+  NpzArrays arrays;
+  PutAvatar(avatar, avatar.body, &arrays);
+  WriteNpz(path, arrays);
+}
+
+void WriteAvatarCheckpoint(const std::string& path, const AvatarCheckpoint& checkpoint) {
+  const AvatarTrainingState& state = checkpoint.state;
+  NpzArrays arrays;
+  PutAvatar(checkpoint.avatar, state.body, &arrays);
+  PutAdam(state.adam, "adam", &arrays);
+  PutAdam(state.light_adam, "light", &arrays);
+  arrays["pull"] = NdArray::FromFloats(state.pull.data(), {static_cast<int64_t>(state.pull.size())});
+  arrays["step"] = NdArray::FromDouble(static_cast<double>(state.step));
+  arrays["seconds"] = NdArray::FromDouble(state.seconds);
+  arrays["options"] = NdArray::FromString(checkpoint.options);
+  WriteNpz(path, arrays);
+}
+
+AvatarFile AvatarFromArrays(const NpzArrays& npz, const std::string& where) {
+  const AvatarArrays arrays(npz, where);
+  if (const std::string format = arrays.Text("format"); format != kAvatarFormat) {
+    arrays.Fail("format", "\"" + PrintableText(format) + "\", expected \"" + kAvatarFormat + "\"");
+  }
+  if (const double version = arrays.Number("version"); version != kAvatarVersion) {
+    arrays.Fail("version", Concatenate(version, ", expected ", kAvatarVersion));
+  }
+  AvatarFile avatar;
+  const std::vector<int32_t> size = arrays.Ints("body_size", {3}, 1, 100000000);
+  avatar.num_joints = size[0], avatar.num_vertices = size[1], avatar.num_faces = size[2];
+  avatar.betas = arrays.Betas();
+  const int64_t count = arrays.NumRows();
+  GaussianBody& body = avatar.body;
+  body.parameters = arrays.Table("parameters", kColumns, count);
+  body.joints = arrays.Ints("joints", {count, kInfluences}, 0, avatar.num_joints - 1);
+  const std::vector<int64_t> loose = arrays.Take("is_loose", DType::kU8, "uint8", {count}).ToInts();
+  if (std::any_of(loose.begin(), loose.end(), [](int64_t v) { return v > 1; }))
+    arrays.Fail("is_loose", "expected 0 and 1");
+  body.is_loose.assign(loose.begin(), loose.end());
+  const std::vector<int32_t> faces = arrays.Ints("anchor_face", {count}, 0, avatar.num_faces - 1);
+  const std::vector<float> barycentric = arrays.Floats("anchor_barycentric", {count, 3});
+  const std::vector<float> factors = arrays.Floats("anchor_factor", {count});
+  body.anchors.resize(count);
+  for (int64_t i = 0; i < count; ++i) {
+    body.anchors[i] = {faces[i], {barycentric[3 * i], barycentric[3 * i + 1], barycentric[3 * i + 2]}, factors[i]};
+  }
+  const std::vector<float> light = arrays.Floats("light", {GaussianBody::kLightValues});
+  std::copy(light.begin(), light.end(), body.light.begin());
+  return avatar;
+}
+
+AvatarCheckpoint AvatarCheckpointFromArrays(const NpzArrays& npz, const std::string& where) {
+  const AvatarArrays arrays(npz, where);
+  AvatarCheckpoint checkpoint;
+  checkpoint.avatar = AvatarFromArrays(npz, where);
+  AvatarTrainingState& state = checkpoint.state;
+  std::swap(state.body, checkpoint.avatar.body);
+  const int64_t count = state.body.size();
+  state.adam = TakeAdam(arrays, "adam", kColumns, count);
+  state.light_adam = TakeAdam(arrays, "light", 1, GaussianBody::kLightValues);
+  state.pull = arrays.Floats("pull", {count});
+  const double step = arrays.Number("step");
+  if (step != std::floor(step)) arrays.Fail("step", Concatenate(step, ", expected a whole number"));
+  state.step = static_cast<int64_t>(step);
+  state.seconds = arrays.Number("seconds");
+  checkpoint.options = arrays.Text("options");
+  return checkpoint;
+}
+
+AvatarFile ReadAvatar(const std::string& path) { return AvatarFromArrays(ReadNpz(path), path); }
+
+AvatarCheckpoint ReadAvatarCheckpoint(const std::string& path) {
+  return AvatarCheckpointFromArrays(ReadNpz(path), path);
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Files of a person of Gaussians: the person, and a training that can go on.
+///
+/// One .npz. N Gaussians (render/avatar/gaussian_body.h says what the numbers mean) on a body of J joints, V vertices
+/// and F faces:
+///   format 'bodyloom avatar'   version 1              body_size int32 [J, V, F]    betas B, float64
+///   parameters N×23 float32    joints N×6 int32       is_loose N uint8 (0, 1)      light 27 float32
+///   anchor_face N int32        anchor_barycentric N×3 float32                      anchor_factor N float32
+/// and, in a training's checkpoint (render/avatar/learning/avatar_trainer.h):
+///   adam_first, adam_second N×23 float32   adam_steps N int32    pull N float32    step, seconds float64
+///   light_first, light_second 27 float32   light_steps 27 int32  options text: what the training was begun with
+/// All numbers are finite.
+#pragma once
+
+#include <string>
+
+#include <Eigen/Core>
+
+#include "bodyloom/data_tools/formats/npz.h"
+#include "bodyloom/render/avatar/gaussian_body.h"
+#include "bodyloom/render/avatar/learning/avatar_trainer.h"
+
+namespace bodyloom {
+
+struct AvatarFile {
+  GaussianBody body;
+  Eigen::VectorXd betas;
+  int num_joints = 0, num_vertices = 0, num_faces = 0;  ///< of the parametric body
+};
+
+struct AvatarCheckpoint {
+  AvatarFile avatar;  ///< its body stays empty: the state's counts
+  AvatarTrainingState state;
+  std::string options;
+};
+
+/// Whole or not at all. Throw std::runtime_error naming the path when it cannot be written, std::invalid_argument when
+/// tables do not fit each other.
+void WriteAvatar(const std::string& path, const AvatarFile& avatar);
+void WriteAvatarCheckpoint(const std::string& path, const AvatarCheckpoint& checkpoint);
+
+/// Throw std::runtime_error naming file, key, what was found and what was expected.
+AvatarFile ReadAvatar(const std::string& path);
+AvatarFile AvatarFromArrays(const NpzArrays& arrays, const std::string& where);
+AvatarCheckpoint ReadAvatarCheckpoint(const std::string& path);
+AvatarCheckpoint AvatarCheckpointFromArrays(const NpzArrays& arrays, const std::string& where);
+
+}  // namespace bodyloom

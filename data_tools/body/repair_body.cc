@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/data_tools/body/repair_body.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "bodyloom/data_tools/body/body_landmarks.h"
+#include "bodyloom/geometry/mesh_check.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr double kLeastTolerance = 1e-5;  // what a compact file's grids may have moved apart
+
+/// Whether two vertices are displaced alike by every unit of shape and pose: no entry further apart than `tolerance`.
+bool MoveAsOne(const BodyModelData& body, int a, int b, double tolerance) {
+  for (int c = 0; c < 3 && body.shapedirs.cols() > 0; ++c) {
+    const auto difference = body.shapedirs.row(3 * a + c) - body.shapedirs.row(3 * b + c);
+    if (difference.cwiseAbs().maxCoeff() > tolerance) return false;
+  }
+  const auto differ = [&](const std::map<int, double>& entries) {
+    return std::any_of(entries.begin(), entries.end(), [&](const auto& e) { return std::abs(e.second) > tolerance; });
+  };
+  std::map<int, double> weights;
+  for (SparseRows::InnerIterator it(body.weights, a); it; ++it) weights[static_cast<int>(it.col())] += it.value();
+  for (SparseRows::InnerIterator it(body.weights, b); it; ++it) weights[static_cast<int>(it.col())] -= it.value();
+  if (differ(weights)) return false;
+  std::map<int, double> correctives;  // 27 joint + entry
+  const PoseCorrectives& p = body.posedirs;
+  for (int side = 0; side < 2 && !p.empty(); ++side) {
+    const int v = side == 0 ? a : b;
+    for (int k = p.begin[v]; k < p.begin[v + 1]; ++k) {
+      for (int i = 0; i < 27; ++i)
+        correctives[27 * p.joint[k] + i] += (side == 0 ? 1 : -1) * p.block[27 * size_t(k) + i];
+    }
+  }
+  return !differ(correctives);
+}
+
+/// Gives vertices their new numbers: `number[v]` of vertex v, −1 where it goes. Several vertices may get one number;
+/// the first one is what the new vertex is made of.
+void RenumberVertices(const std::vector<int>& number, int count, BodyModelData* body) {
+  std::vector<int> source(count, -1);
+  for (int v = static_cast<int>(number.size()) - 1; v >= 0; --v) {
+    if (number[v] >= 0) source[number[v]] = v;
+  }
+  MatrixX3d v_template(count, 3);
+  RowMatrixXf shapedirs(3 * count, body->shapedirs.cols());
+  std::vector<Eigen::Triplet<double>> weights, regressor;
+  PoseCorrectives posedirs;
+  if (!body->posedirs.begin.empty()) posedirs.begin.push_back(0);
+  for (int i = 0; i < count; ++i) {
+    const int v = source[i];
+    v_template.row(i) = body->v_template.row(v);
+    if (shapedirs.cols() > 0) shapedirs.middleRows<3>(3 * i) = body->shapedirs.middleRows<3>(3 * v);
+    for (SparseRows::InnerIterator it(body->weights, v); it; ++it) {
+      weights.emplace_back(i, static_cast<int>(it.col()), it.value());
+    }
+    if (posedirs.begin.empty()) continue;
+    for (int k = body->posedirs.begin[v]; k < body->posedirs.begin[v + 1]; ++k) {
+      posedirs.joint.push_back(body->posedirs.joint[k]);
+      const auto block = body->posedirs.block.begin() + 27 * static_cast<std::ptrdiff_t>(k);
+      posedirs.block.insert(posedirs.block.end(), block, block + 27);
+    }
+    posedirs.begin.push_back(static_cast<int>(posedirs.joint.size()));
+  }
+  for (int j = 0; j < body->J_regressor.rows(); ++j) {
+    for (SparseRows::InnerIterator it(body->J_regressor, j); it; ++it) {
+      if (it.value() != 0) regressor.emplace_back(j, number[it.col()], it.value());
+    }
+  }
+  body->v_template = std::move(v_template);
+  body->shapedirs = std::move(shapedirs);
+  body->posedirs = std::move(posedirs);
+  body->weights = SparseRows(count, body->weights.cols());
+  body->weights.setFromTriplets(weights.begin(), weights.end());
+  body->J_regressor = SparseRows(body->J_regressor.rows(), count);
+  body->J_regressor.setFromTriplets(regressor.begin(), regressor.end());  // adds up
+  for (Eigen::Index i = 0; i < body->faces.size(); ++i) body->faces.data()[i] = number[body->faces.data()[i]];
+  for (Landmark& landmark : body->landmarks) {
+    std::map<int, double> sums;
+    for (size_t i = 0; i < landmark.vertices.size(); ++i) sums[number[landmark.vertices[i]]] += landmark.weights[i];
+    landmark.vertices.clear(), landmark.weights.clear();
+    for (const auto& [vertex, weight] : sums) landmark.vertices.push_back(vertex), landmark.weights.push_back(weight);
+  }
+}
+
+template <typename Matrix>
+void KeepRows(const std::vector<int>& kept, Matrix* matrix) {
+  if (matrix->rows() == 0) return;
+  Matrix rows(static_cast<Eigen::Index>(kept.size()), matrix->cols());
+  for (size_t i = 0; i < kept.size(); ++i) rows.row(static_cast<Eigen::Index>(i)) = matrix->row(kept[i]);
+  *matrix = std::move(rows);
+}
+
+void DropFaces(const std::vector<int>& faces, BodyModelData* body) {
+  std::vector<int> kept;
+  for (int f = 0; f < body->faces.rows(); ++f) {
+    if (!std::binary_search(faces.begin(), faces.end(), f)) kept.push_back(f);
+  }
+  KeepRows(kept, &body->faces);
+  KeepRows(kept, &body->ft);
+  KeepRows(kept, &body->face_iuv);
+  if (body->face_part.empty()) return;
+  std::vector<uint8_t> parts;
+  for (const int f : kept) parts.push_back(body->face_part[f]);
+  body->face_part = std::move(parts);
+}
+
+void TurnFace(int f, BodyModelData* body) {
+  std::swap(body->faces(f, 1), body->faces(f, 2));
+  if (body->ft.rows() > 0) std::swap(body->ft(f, 1), body->ft(f, 2));
+  for (int c = 0; c < 2 && body->face_iuv.rows() > 0; ++c)
+    std::swap(body->face_iuv(f, 2 + c), body->face_iuv(f, 4 + c));
+}
+
+std::set<int> VerticesThatJointsNeed(const BodyModelData& body) {
+  std::set<int> needed;
+  for (int j = 0; j < body.J_regressor.rows(); ++j) {
+    for (SparseRows::InnerIterator it(body.J_regressor, j); it; ++it) {
+      if (it.value() != 0) needed.insert(static_cast<int>(it.col()));
+    }
+  }
+  for (const Landmark& landmark : body.landmarks) needed.insert(landmark.vertices.begin(), landmark.vertices.end());
+  return needed;
+}
+
+/// New numbers that close the gaps where `stays` is false.
+std::vector<int> CloseGaps(const std::vector<bool>& stays, int* count) {
+  std::vector<int> number(stays.size(), -1);
+  *count = 0;
+  for (size_t v = 0; v < stays.size(); ++v) {
+    if (stays[v]) number[v] = (*count)++;
+  }
+  return number;
+}
+
+void DropUnreferencedVertices(const std::vector<int>& unreferenced, BodyModelData* body, RepairBodySummary* summary) {
+  const std::set<int> needed = VerticesThatJointsNeed(*body);
+  std::vector<bool> stays(body->v_template.rows(), true);
+  for (const int v : unreferenced) {
+    stays[v] = needed.count(v) > 0;
+    ++(stays[v] ? summary->vertices_in_use : summary->dropped_vertices);
+  }
+  int count = 0;
+  const std::vector<int> number = CloseGaps(stays, &count);
+  if (count < static_cast<int>(stays.size())) RenumberVertices(number, count, body);
+}
+
+void MergeVertices(const std::vector<std::array<int, 2>>& duplicates, double tolerance, BodyModelData* body,
+                   RepairBodySummary* summary) {
+  std::vector<bool> stays(body->v_template.rows(), true);
+  for (const auto& [vertex, first] : duplicates) {
+    stays[vertex] = !MoveAsOne(*body, vertex, first, tolerance);
+    ++(stays[vertex] ? summary->vertices_that_part : summary->merged_vertices);
+    if (stays[vertex]) continue;
+    const double distance = (body->v_template.row(vertex) - body->v_template.row(first)).norm();
+    summary->largest_merge_m = std::max(summary->largest_merge_m, distance);
+  }
+  int count = 0;
+  std::vector<int> number = CloseGaps(stays, &count);
+  for (const auto& [vertex, first] : duplicates) {
+    if (!stays[vertex]) number[vertex] = number[first];
+  }
+  if (count < static_cast<int>(stays.size())) RenumberVertices(number, count, body);
+}
+
+}  // namespace
+
+RepairBodySummary RepairBody(const RepairBodyOptions& options, BodyModelData* body) {
+  *body = BodyModel(std::move(*body)).data();
+  RepairBodySummary summary;
+  CheckMeshOptions check;
+  check.same_place_m = options.same_place_m;
+  const auto found = [&] { return CheckMesh(body->v_template, body->faces, check); };
+  const bool numbered_elsewhere = !StandardLandmarks(*body).empty();
+  for (int round = 0; round < 2; ++round) {  // merging makes faces superfluous, whose vertices may be nobody else's
+    const std::vector<int> superfluous = SuperfluousFaces(found());
+    summary.dropped_faces += static_cast<int>(superfluous.size());
+    DropFaces(superfluous, body);
+    if (numbered_elsewhere) continue;
+    summary.vertices_in_use = summary.vertices_that_part = 0;
+    DropUnreferencedVertices(found().unreferenced_vertices, body, &summary);
+    MergeVertices(found().duplicate_vertices, std::max(kLeastTolerance, options.same_place_m), body, &summary);
+  }
+  if (numbered_elsewhere) {
+    const CheckMeshResult left = found();
+    summary.vertices_numbered_elsewhere =
+        static_cast<int>(left.duplicate_vertices.size() + left.unreferenced_vertices.size());
+  }
+  const std::vector<int> turned = found().turned_faces;
+  summary.turned_faces = static_cast<int>(turned.size());
+  for (const int f : turned) TurnFace(f, body);
+  return summary;
+}
+
+}  // namespace bodyloom

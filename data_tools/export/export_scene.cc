@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/data_tools/export/export_scene.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "bodyloom/data_tools/motion/motion_tools.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/rotation.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr double kOneFrameRate = 30;
+
+}  // namespace
+
+BodyPose PoseInWorld(const WorldFrame& world, const Eigen::Vector3d& rest_pelvis, BodyPose pose) {
+  pose.rotations[0] = world.rotation * pose.rotations[0];
+  pose.trans = world.PointFromCamera(rest_pelvis + pose.trans) - rest_pelvis;
+  return pose;
+}
+
+Motion MotionInWorld(const WorldFrame& world, const Eigen::Vector3d& rest_pelvis, const Motion& motion) {
+  Motion turned = motion;
+  turned.up = Motion::Up::kY;
+  for (int t = 0; t < motion.num_frames(); ++t) {
+    if (!motion.HasPose(t)) continue;
+    const Eigen::Matrix3d root = world.rotation * RotationFromAxisAngle(motion.poses.block<1, 3>(t, 0).transpose());
+    turned.poses.block<1, 3>(t, 0) = AxisAngleFromRotation(root).transpose();
+    const Eigen::Vector3d pelvis = rest_pelvis + motion.trans.row(t).transpose();
+    turned.trans.row(t) = (world.PointFromCamera(pelvis) - rest_pelvis).transpose();
+  }
+  return turned;
+}
+
+ExportScene MakeExportScene(std::span<const BodyModel* const> bodies, std::span<const Track* const> tracks,
+                            const WorldFrame& world) {
+  BODYLOOM_CHECK(!tracks.empty() && bodies.size() == tracks.size(), "export: ", bodies.size(), " bodies for ",
+                 tracks.size(), " tracks");
+  ExportScene scene;
+  scene.world = world;
+  scene.camera = tracks[0]->camera;
+  const double fps = FrameRateWithoutGaps(tracks[0]->motion);
+  scene.fps = fps > 0 ? fps : kOneFrameRate;
+  scene.start_s = std::numeric_limits<double>::infinity();
+  double end_s = -scene.start_s;
+  for (size_t i = 0; i < tracks.size(); ++i) {
+    const Track& track = *tracks[i];
+    const BodyModel& body = *bodies[i];
+    ExportPerson person{"person_" + std::to_string(i),       &body, track.motion.betas,
+                        body.RestJoints(track.motion.betas), {},    {}};
+    const Eigen::Vector3d pelvis = person.rest_joints.row(0).transpose();
+    for (int t = 0; t < track.num_frames(); ++t) {
+      if (!track.HasResult(t)) continue;
+      const BodyPose pose =
+          PoseFromAxisAngle(body, track.motion.poses.row(t).transpose(), track.motion.trans.row(t).transpose());
+      person.poses.push_back(PoseInWorld(world, pelvis, pose));
+      person.seconds.push_back(track.motion.timestamps.at(t));
+    }
+    BODYLOOM_CHECK(!person.poses.empty(), "export: every frame of track ", i, " is lost, there is nobody to write");
+    scene.start_s = std::min(scene.start_s, person.seconds.front());
+    end_s = std::max(end_s, person.seconds.back());
+    scene.people.push_back(std::move(person));
+  }
+  for (ExportPerson& person : scene.people) {
+    for (double& seconds : person.seconds) seconds -= scene.start_s;
+  }
+  scene.duration_s = end_s - scene.start_s;
+  return scene;
+}
+
+}  // namespace bodyloom

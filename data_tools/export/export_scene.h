@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+/// People in their world, as animation programs want them: what the writers of this folder share.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/world_frame.h"
+
+namespace bodyloom {
+
+struct ExportPerson {
+  std::string name;                 ///< "person_0", …: letters, digits and underscores
+  const BodyModel* body = nullptr;  ///< borrowed
+  Eigen::VectorXd betas;
+  MatrixX3d rest_joints;        ///< J×3, of the shape
+  std::vector<double> seconds;  ///< of the frames below, since the scene's start
+  std::vector<BodyPose> poses;  ///< world frame; lost frames are left out
+};
+
+struct ExportScene {
+  WorldFrame world;
+  Camera camera;       ///< of the clip; a width of 0: the image size is not known
+  double fps = 30;     ///< of the first person's clock
+  double start_s = 0;  ///< the earliest frame's time in the clip
+  double duration_s = 0;
+  std::vector<ExportPerson> people;
+};
+
+/// The pose of a body whose pelvis joint rests at `rest_pelvis`, in the world: with R, t of the world,
+/// R_root ← R·R_root and trans ← R(J0 + trans) + t − J0.
+BodyPose PoseInWorld(const WorldFrame& world, const Eigen::Vector3d& rest_pelvis, BodyPose pose_in_camera);
+
+/// The same for a motion in the camera frame; its lost frames stay NaN. The answer's y is up.
+Motion MotionInWorld(const WorldFrame& world, const Eigen::Vector3d& rest_pelvis, const Motion& motion);
+
+/// Tracks of one clip, each of the body beside it. Throws std::invalid_argument when there are none, bodies and tracks
+/// differ in number, a track has more joints than its body, or no frame with a result.
+ExportScene MakeExportScene(std::span<const BodyModel* const> bodies, std::span<const Track* const> tracks,
+                            const WorldFrame& world);
+
+}  // namespace bodyloom

@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/avatar/animate_avatar.h"
+#include "bodyloom/pipelines/avatar/avatar_scores_json.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "bodyloom/data_tools/avatar/alpha_png.h"
+#include "bodyloom/data_tools/avatar/avatar_file.h"
+#include "bodyloom/data_tools/avatar/gaussian_ply.h"
+#include "bodyloom/data_tools/body/body_or_builtin.h"
+#include "bodyloom/data_tools/motion/freeze_track.h"
+#include "bodyloom/data_tools/motion/motion_tools.h"
+#include "bodyloom/data_tools/motion/shape_track.h"
+#include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/data_tools/video/video_writer.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/geometry/base/percentile.h"
+#include "bodyloom/pipelines/avatar/avatar_clip.h"
+#include "bodyloom/pipelines/avatar/train_avatar.h"
+#include "bodyloom/pipelines/files.h"
+#include "bodyloom/pipelines/people/background.h"
+#include "bodyloom/pipelines/people/freeze.h"
+#include "bodyloom/pipelines/people/view_angles.h"
+#include "bodyloom/pipelines/report_json.h"
+
+namespace bodyloom {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kFpsWithoutTimes = 30;  ///< of a track without times
+constexpr int kLongestSide = 8192;
+
+/// Lays a picture into one of the whole size.
+void LayOver(const SplatPicture& picture, Image* whole) {
+  const PixelBox& window = picture.window();
+  const std::span<const float> alpha = picture.plane(SplatPicture::kAlpha);
+  for (int c = 0; c < 3; ++c) {
+    const std::span<const float> plane = picture.plane(static_cast<SplatPicture::Plane>(2 - c));
+    for (int y = window.y_begin; y < window.y_end; ++y) {
+      for (int x = window.x_begin; x < window.x_end; ++x) {
+        const size_t i = window.IndexOf(x, y);
+        uint8_t& to = whole->pixel(x, y)[c];
+        const float value = 255 * plane[i] + (1 - alpha[i]) * static_cast<float>(to);
+        to = static_cast<uint8_t>(std::lround(std::clamp(value, 0.0F, 255.0F)));
+      }
+    }
+  }
+}
+
+/// Straight colours and alpha in a picture of the whole size.
+std::vector<uint8_t> WithAlpha(const SplatPicture& picture, int width, int height) {
+  std::vector<uint8_t> bgra(4 * static_cast<size_t>(width) * height, 0);
+  const PixelBox& window = picture.window();
+  for (int y = window.y_begin; y < window.y_end; ++y) {
+    for (int x = window.x_begin; x < window.x_end; ++x) {
+      const size_t i = window.IndexOf(x, y);
+      const float alpha = picture.plane(SplatPicture::kAlpha)[i];
+      uint8_t* to = bgra.data() + 4 * (static_cast<size_t>(y) * width + x);
+      const auto byte = [](float v) { return static_cast<uint8_t>(std::lround(255 * std::clamp(v, 0.0F, 1.0F))); };
+      to[3] = byte(alpha);
+      if (to[3] == 0) continue;
+      for (int c = 0; c < 3; ++c) to[c] = byte(picture.plane(static_cast<SplatPicture::Plane>(2 - c))[i] / alpha);
+    }
+  }
+  return bgra;
+}
+
+class AvatarAnimation {
+ public:
+  AvatarAnimation(const AnimateAvatarRequest& request, const PipelineCallbacks& callbacks)
+      : request_(request), callbacks_(callbacks), threads_(ThreadsFor(request.threads)) {}
+
+  AnimateAvatarSummary Run() {
+    clock_.Begin("prepare");
+    CheckRequest();
+    OpenAvatar();
+    OpenTrack();
+    WriteRestPly();
+    clock_.Begin("draw");
+    DrawFrames();
+    if (clip_) ScoreFrames();
+    return Finish();
+  }
+
+ private:
+  void CheckRequest() const {
+    if (request_.track.empty() && request_.data.empty()) throw RequestError("expected --track or --data");
+    const bool turned = !request_.view_yaw.empty() || !request_.freeze.empty() || request_.size > 0;
+    if (!request_.data.empty() && turned) {
+      throw RequestError("--data compares with its pictures: not with --view-yaw, --freeze or --size");
+    }
+    if (!request_.mask.empty() && request_.data.empty()) throw RequestError("--mask goes with --data");
+    for (const std::string& path : {request_.out, request_.ply, request_.posed_ply, request_.json}) {
+      RequireWritable(path);
+    }
+    RequireDistinct({request_.track, request_.background, request_.mask, request_.data},
+                    {request_.out, request_.ply, request_.posed_ply, request_.json});
+    RequireReadable(request_.background, "background");
+    RequireReadable(request_.run, "run");
+    if (!request_.pictures.empty()) RequireWritableFolder(request_.pictures);
+  }
+
+  void OpenAvatar() {
+    const std::string path = fs::is_directory(request_.run) ? AvatarPath(request_.run) : request_.run;
+    avatar_ = ReadAvatar(path);
+    body_ = BodyOrBuiltin(request_.body);
+    if (avatar_.num_joints != body_->num_joints() || avatar_.num_vertices != body_->num_vertices() ||
+        avatar_.num_faces != body_->num_faces()) {
+      throw std::runtime_error(Concatenate(path, ": was learned on a body of ", avatar_.num_joints, " joints, ",
+                                           avatar_.num_vertices, " vertices and ", avatar_.num_faces,
+                                           " faces, the one given (--body) has ", body_->num_joints(), ", ",
+                                           body_->num_vertices(), " and ", body_->num_faces()));
+    }
+  }
+
+  void OpenTrack() {
+    const std::string& from = request_.track.empty() ? request_.data : request_.track;
+    if (!request_.data.empty()) {
+      clip_.emplace(AvatarClipRequest{request_.data, request_.track, request_.mask, request_.body, threads_});
+      track_ = clip_->track();
+    } else {
+      RequireReadable(request_.track, "track");
+      track_ = ReadTrack(request_.track);
+    }
+    try {
+      // The person's pictures come with their own shape.
+      if (!request_.shape_of_track && !clip_) track_ = WithShape(*body_, track_, avatar_.betas);
+      int first = 0, last = track_.num_frames() - 1;
+      if (!request_.freeze.empty()) {
+        const Freeze freeze = ReadFreeze(request_.freeze, track_.num_frames());
+        track_ = FramesInOrder(track_, FrozenAt(track_.num_frames(), freeze.frame, freeze.count));
+        first = freeze.frame, last = freeze.frame + freeze.count;
+      }
+      const int longer = std::max(track_.camera.width, track_.camera.height);
+      const double scale = request_.size > 0 && longer > 0 ? static_cast<double>(request_.size) / longer : 1;
+      posed_ = std::make_unique<PosedAvatar>(
+          *body_, track_, ViewAngles(request_.view_yaw, track_.num_frames(), first, last), scale, threads_, from);
+    } catch (const RequestError&) {
+      throw;
+    } catch (const std::invalid_argument& error) {
+      throw std::runtime_error(from + ": " + error.what());
+    }
+    if (posed_->width() < 2 || posed_->height() < 2 || std::max(posed_->width(), posed_->height()) > kLongestSide) {
+      throw std::runtime_error(Concatenate(from, ": pictures of ", posed_->width(), "x", posed_->height(),
+                                           ", expected sides of 2 to ", kLongestSide));
+    }
+  }
+
+  void WriteRestPly() const {
+    if (request_.ply.empty()) return;
+    AvatarFrame rest;
+    rest.rest_joints = MatrixX3f::Zero(body_->num_joints(), 3);
+    for (int j = 0; j < body_->num_joints(); ++j) {
+      rest.bones.insert(rest.bones.end(), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0});
+    }
+    CameraGaussians gaussians;
+    PoseGaussians(avatar_.body, body_->data().faces, rest, {}, {.num_threads = threads_}, &gaussians);
+    WriteGaussianPly(request_.ply, gaussians);
+  }
+
+  void Draw(int t) {
+    const Stopwatch watch;
+    posed_->MakeFrame(t, &frame_);
+    const AvatarView view = posed_->ViewAt(t);
+    painter_.Draw(avatar_.body, body_->data().faces, frame_, view);
+    draw_ms_.push_back(1e3 * watch.seconds());
+    pixels_.push_back(static_cast<double>(view.window.area()));
+  }
+
+  void DrawFrames() {
+    const int count = track_.num_frames();
+    if (!request_.posed_ply.empty() && (request_.posed_frame < 0 || request_.posed_frame >= count)) {
+      throw RequestError(Concatenate("--ply-frame ", request_.posed_frame, ": the clip has frames 0 to ", count - 1));
+    }
+    const int width = posed_->width(), height = posed_->height();
+    Background background(request_.background, width, height);
+    const double own_fps = FrameRateWithoutGaps(track_.motion);
+    std::unique_ptr<VideoWriter> video;
+    if (!request_.out.empty()) {
+      video = std::make_unique<VideoWriter>(request_.out, width, height, own_fps > 0 ? own_fps : kFpsWithoutTimes);
+    }
+    for (int t = 0; t < count; ++t) {
+      callbacks_.Update("drawing", static_cast<double>(t) / count);
+      const bool shows = posed_->HasResult(t);
+      if (shows) Draw(t);
+      if (!shows) ++summary_.frames_without_fit;
+      clock_.Begin("write");
+      if (!request_.pictures.empty()) WritePicture(t, shows);
+      if (video) {
+        Image whole = background.Next();
+        if (shows) LayOver(painter_.picture(), &whole);
+        video->Write(whole);
+      }
+      if (shows && !request_.posed_ply.empty() && t == request_.posed_frame) {
+        WriteGaussianPly(request_.posed_ply, painter_.posed());
+      }
+      clock_.Begin("draw");
+    }
+    if (video) video->Finish();
+    if (!request_.posed_ply.empty() && !posed_->HasResult(request_.posed_frame)) {
+      throw std::runtime_error(Concatenate(request_.track, ": frame ", request_.posed_frame, " has no fit to pose"));
+    }
+    summary_.frames = count;
+  }
+
+  void WritePicture(int t, bool shows) const {
+    const int width = posed_->width(), height = posed_->height();
+    char name[32];
+    std::snprintf(name, sizeof name, "%06d.png", t);
+    const std::vector<uint8_t> nobody(shows ? 0 : 4 * static_cast<size_t>(width) * height, 0);
+    WriteAlphaPng((fs::path(request_.pictures) / name).string(), width, height,
+                  shows ? WithAlpha(painter_.picture(), width, height) : nobody);
+  }
+
+  void ScoreFrames() {
+    clock_.Begin("score");
+    AvatarScorer scorer;
+    for (int t = 0; t < track_.num_frames(); ++t) {
+      const std::vector<TrainingView> views = clip_->ReadViews({t}, AvatarScores::kScoreMargin, false, callbacks_);
+      if (views[0].window.empty()) continue;
+      AvatarView view;
+      view.camera = views[0].camera, view.window = views[0].window, view.options.num_threads = threads_;
+      painter_.Draw(avatar_.body, body_->data().faces, views[0].frame, view);
+      scorer.Add(views[0], painter_.picture());
+    }
+    summary_.scores = scorer.Means();
+  }
+
+  AnimateAvatarSummary Finish() {
+    clock_.End();
+    summary_.width = posed_->width(), summary_.height = posed_->height();
+    summary_.gaussians = avatar_.body.size();
+    if (!draw_ms_.empty()) summary_.draw_ms = Percentile(draw_ms_, 50), summary_.pixels = Percentile(pixels_, 50);
+    summary_.seconds = clock_.seconds();
+    summary_.total_seconds = clock_.total();
+    for (const std::string& path : {request_.out, request_.pictures, request_.ply, request_.posed_ply, request_.json}) {
+      if (!path.empty()) summary_.written.push_back(path);
+    }
+    nlohmann::ordered_json json = {{"frames", summary_.frames},
+                                   {"frames_without_fit", summary_.frames_without_fit},
+                                   {"picture", {summary_.width, summary_.height}},
+                                   {"gaussians", summary_.gaussians},
+                                   {"draw_ms_median", summary_.draw_ms},
+                                   {"window_pixels_median", summary_.pixels},
+                                   {"seconds", ToJson(summary_.seconds)}};
+    if (summary_.scores) json["scores"] = ToJson(*summary_.scores);
+    WriteReport(request_.json, json);
+    return summary_;
+  }
+
+  const AnimateAvatarRequest& request_;
+  const PipelineCallbacks& callbacks_;
+  const int threads_;
+  StageClock clock_;
+  AvatarFile avatar_;
+  std::shared_ptr<const BodyModel> body_;
+  std::optional<AvatarClip> clip_;
+  Track track_;
+  std::unique_ptr<PosedAvatar> posed_;
+  AvatarFrame frame_;
+  AvatarPainter painter_;
+  std::vector<double> draw_ms_, pixels_;
+  AnimateAvatarSummary summary_;
+};
+
+}  // namespace
+
+AnimateAvatarSummary AnimateAvatar(const AnimateAvatarRequest& request, const PipelineCallbacks& callbacks) {
+  return AvatarAnimation(request, callbacks).Run();
+}
+
+}  // namespace bodyloom

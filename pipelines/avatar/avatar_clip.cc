@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/avatar/avatar_clip.h"
+
+#include <stdexcept>
+
+#include "bodyloom/data_tools/body/body_or_builtin.h"
+#include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/data_tools/observations/part_labels.h"
+#include "bodyloom/data_tools/video/video_reader.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/pipelines/files.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr double kSearchShare = 0.35;  ///< of the body's longer side: as far from it a mask still is this person's
+constexpr int kFramesAtOnce = 16;      ///< of a dataset, between two reports
+
+}  // namespace
+
+AvatarClip::AvatarClip(const AvatarClipRequest& request) : request_(request), body_(BodyOrBuiltin(request.body)) {
+  RequireReadable(request.data, "data");
+  RequireReadable(request.track, "track");
+  RequireReadable(request.mask, "mask");
+  if (IsSinglePersonDataset(request.data)) {
+    set_.emplace(request.data);
+    if (!set_->info().has.labels)
+      throw std::runtime_error(request.data + ": a dataset without labels, which say where the person is");
+    track_ = request.track.empty() ? set_->track() : ReadTrack(request.track);
+    CheckSize(request.data, set_->info().num_frames, set_->info().width, set_->info().height);
+  } else {
+    OpenVideo();
+  }
+  const std::string& tracked = request.track.empty() ? request.data : request.track;
+  try {
+    posed_ = std::make_unique<PosedAvatar>(*body_, track_, std::vector<double>(), 1, request.threads, tracked);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(tracked + ": " + error.what());
+  }
+}
+
+void AvatarClip::OpenVideo() {
+  if (request_.track.empty() || request_.mask.empty()) {
+    throw RequestError(request_.data +
+                       ": no person.json there, so it is taken for a video, which needs --track and --mask");
+  }
+  track_ = ReadTrack(request_.track);
+  mask_ = ReadPartLabels(request_.mask);
+  CheckSize(request_.mask, mask_->num_frames(), mask_->image_width, mask_->image_height);
+  const VideoReader video(request_.data);
+  const VideoInfo& info = video.info();
+  CheckSize(request_.data, info.num_frames > 0 ? info.num_frames : track_.num_frames(), info.width, info.height);
+}
+
+void AvatarClip::CheckSize(const std::string& file, int num_frames, int width, int height) const {
+  const std::string track = request_.track.empty() ? request_.data + "/track.npz" : request_.track;
+  if (num_frames < track_.num_frames()) {
+    throw std::runtime_error(Concatenate(track, ": ", track_.num_frames(), " frames, ", file, " has ", num_frames,
+                                         "; give the track of this very clip"));
+  }
+  if (width != track_.camera.width || height != track_.camera.height) {
+    throw std::runtime_error(Concatenate(track, ": made for pictures of ", track_.camera.width, "x",
+                                         track_.camera.height, ", ", file, " has ", width, "x", height));
+  }
+}
+
+TrainingView AvatarClip::CutView(int t, const Image& picture, const IsPerson& is_person, int margin,
+                                 bool with_body) const {
+  const PixelBox body = with_body ? posed_->BoxAt(t, 0) : PixelBox();
+  TrainingView view = CutTrainingView(picture, is_person, posed_->BoxAt(t, kSearchShare), body, margin);
+  if (view.window.empty()) return view;
+  view.camera = posed_->CameraAt(t);
+  posed_->MakeFrame(t, &view.frame);
+  return view;
+}
+
+std::vector<TrainingView> AvatarClip::ReadViews(const std::vector<int>& frames, int margin, bool with_body,
+                                                const PipelineCallbacks& callbacks) const {
+  std::vector<TrainingView> views(frames.size());
+  if (set_) {
+    for (size_t begin = 0; begin < frames.size(); begin += kFramesAtOnce) {
+      callbacks.Update("reading", 0);
+      const size_t count = std::min<size_t>(kFramesAtOnce, frames.size() - begin);
+      ParallelFor(static_cast<int>(count), request_.threads, [&](int k) {
+        const int t = frames[begin + k];
+        if (!posed_->HasResult(t)) return;
+        const PersonFrame frame = set_->Read(t, {true, false, false, false});
+        const auto is_person = [&](int x, int y) { return frame.labels.pixel(x, y)[0] != 0; };
+        views[begin + k] = CutView(t, frame.rgb, is_person, margin, with_body);
+      });
+    }
+    return views;
+  }
+  VideoReader video(request_.data);
+  Image picture;
+  for (size_t k = 0; k < frames.size(); ++k) {
+    const int t = frames[k];
+    callbacks.Update("reading", 0);
+    video.Skip(t - video.next_frame());
+    if (!video.Read(&picture)) {
+      throw std::runtime_error(
+          Concatenate(request_.data, ": ends before frame ", t, ", the track has ", track_.num_frames(), " frames"));
+    }
+    if (!posed_->HasResult(t)) continue;
+    const auto is_person = [&](int x, int y) { return mask_->PartAt(t, x, y) != PartLabelSequence::kBackground; };
+    views[k] = CutView(t, picture, is_person, margin, with_body);
+  }
+  return views;
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A track's frames as a person of Gaussians is posed and looked at in them.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bodyloom/data_tools/descriptors/posed_track.h"
+#include "bodyloom/render/avatar/avatar_painter.h"
+
+namespace bodyloom {
+
+/// Keeps references to body and track.
+class PosedAvatar {
+ public:
+  /// `yaw_deg` as PosedTrack's. `scale`: pictures so many times as large as the track's. Throws std::runtime_error
+  /// naming `where` when the camera's lens is distorted.
+  PosedAvatar(const BodyModel& body, const Track& track, std::vector<double> yaw_deg, double scale, int num_threads,
+              const std::string& where);
+
+  [[nodiscard]] int width() const { return width_; }
+  [[nodiscard]] int height() const { return height_; }
+  [[nodiscard]] bool HasResult(int t) const { return track_.HasResult(t) && !extents_[t].empty(); }
+
+  /// Of a frame with a result.
+  void MakeFrame(int t, AvatarFrame* frame) const;
+  [[nodiscard]] Camera CameraAt(int t) const;
+  /// What the bare body spans, grown by `share` of its longer side; clipped to the picture.
+  [[nodiscard]] PixelBox BoxAt(int t, double share) const;
+  /// Camera, window with room for clothes, and the light as it was in the track's own view.
+  [[nodiscard]] AvatarView ViewAt(int t) const;
+
+ private:
+  const BodyModel& body_;
+  const Track& track_;
+  PosedTrack posed_;
+  AvatarFrames frames_;
+  double scale_;
+  int num_threads_, width_, height_;
+  std::vector<PersonExtent> extents_;  ///< pixels of the track's picture
+};
+
+}  // namespace bodyloom

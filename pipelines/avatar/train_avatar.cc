@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/avatar/train_avatar.h"
+#include "bodyloom/pipelines/avatar/avatar_scores_json.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <deque>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <sstream>
+#include <stdexcept>
+
+#include "bodyloom/data_tools/avatar/avatar_file.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/geometry/uv_texels.h"
+#include "bodyloom/pipelines/avatar/frame_spans.h"
+#include "bodyloom/pipelines/files.h"
+#include "bodyloom/pipelines/fixed_text.h"
+#include "bodyloom/pipelines/report_json.h"
+#include "bodyloom/pipelines/runs/run_config.h"
+#include "bodyloom/render/avatar/learning/loose_gaussians.h"
+#include "bodyloom/render/avatar/skin_gaussians.h"
+#include "bodyloom/render/contact_sheet.h"
+
+namespace bodyloom {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kAvatarProgram = "bodyloom train avatar";
+constexpr int kTrainingMargin = 12;        ///< pixels around person and body that are learned from
+constexpr double kCheckpointSeconds = 60;  ///< between checkpoints
+constexpr int kMetricsEvery = 50;          ///< steps a line of metrics.csv
+constexpr size_t kLossSteps = 100;         ///< that the loss is the mean of
+constexpr int kScoredFrames = 64;          ///< of either kind, at most
+constexpr int kHeldOutShown = 4;
+constexpr int64_t kMostSteps = 100000000;
+
+std::string InRun(const std::string& run, const char* name) { return (fs::path(run) / name).string(); }
+
+std::vector<int> Spread(const std::vector<int>& frames, int most) {
+  std::vector<int> some;
+  for (const int i : EvenlySpreadFrames(static_cast<int>(frames.size()), most)) some.push_back(frames[i]);
+  return some;
+}
+
+/// One sitting of a training.
+class AvatarTraining {
+ public:
+  AvatarTraining(const TrainAvatarRequest& request, const PipelineCallbacks& callbacks)
+      : request_(request), callbacks_(callbacks) {
+    request_.clip.threads = ThreadsFor(request.clip.threads);
+  }
+
+  TrainAvatarSummary Run() {
+    OpenRun();
+    clock_.Begin("read");
+    clip_.emplace(request_.clip);
+    split_ = ReadTrainingSplit(request_.train, request_.validate, clip_->track().num_frames());
+    views_ = clip_->ReadViews(split_.train, kTrainingMargin, true, callbacks_);
+    clock_.Begin("begin");
+    options_ = Options();
+    if (request_.resume) {
+      TakeCheckpoint();
+    } else {
+      Begin();
+    }
+    clock_.Begin("train");
+    Train();
+    clock_.Begin("write");
+    WriteRun();
+    if (!summary_.stopped) Judge();
+    clock_.End();
+    return Finish();
+  }
+
+ private:
+  void OpenRun() {
+    if (!request_.clip.data.empty()) RequireReadable(request_.clip.data, "data");
+    RequireWritableFolder(request_.out);
+    const bool is_there = fs::exists(AvatarCheckpointPath(request_.out));
+    if (request_.resume && !is_there) throw RequestError(request_.out + " holds no run to go on with");
+    if (!request_.resume && is_there) {
+      throw RequestError(request_.out + " holds a run already; go on with it by --resume, or choose another --out");
+    }
+  }
+
+  [[nodiscard]] AvatarTrainerOptions Options() const {
+    AvatarTrainerOptions options;
+    options.steps = request_.minutes > 0 ? kMostSteps : request_.steps;
+    options.seconds = 60 * request_.minutes;
+    options.seed = request_.seed;
+    options.num_threads = request_.clip.threads;
+    if (std::string why; !options.IsValid(&why)) throw RequestError(why);
+    return options;
+  }
+
+  /// What a training that is gone on with must have in common with its beginning.
+  [[nodiscard]] std::string OptionsText() const {
+    const nlohmann::ordered_json json = {{"steps", request_.steps},   {"minutes", request_.minutes},
+                                         {"seed", request_.seed},     {"skin_side", request_.skin_side},
+                                         {"loose", request_.loose},   {"train", split_.train},
+                                         {"data", request_.clip.data}};
+    return json.dump();
+  }
+
+  void Begin() {
+    callbacks_.Update("placing Gaussians", 0);
+    const Eigen::VectorXd& betas = clip_->track().motion.betas;
+    const UvTexelTable texels =
+        BuildUvTexelTable(clip_->body(), {.width = request_.skin_side, .height = request_.skin_side, .gutter = 0});
+    GaussianBody body = SkinGaussians(clip_->body(), betas, texels);
+    LooseGaussiansOptions loose;
+    loose.count = request_.loose, loose.seed = request_.seed, loose.num_threads = request_.clip.threads;
+    AppendGaussians(LooseGaussians(clip_->body(), betas, views_, loose), &body);
+    checkpoint_.avatar.betas = betas;
+    checkpoint_.avatar.num_joints = clip_->body().num_joints();
+    checkpoint_.avatar.num_vertices = clip_->body().num_vertices();
+    checkpoint_.avatar.num_faces = clip_->body().num_faces();
+    checkpoint_.state = AvatarTrainingState::Of(std::move(body));
+    checkpoint_.options = OptionsText();
+    WriteConfig();
+  }
+
+  void TakeCheckpoint() {
+    const std::string path = AvatarCheckpointPath(request_.out);
+    checkpoint_ = ReadAvatarCheckpoint(path);
+    if (checkpoint_.options != OptionsText()) {
+      throw RequestError(path +
+                         ": was begun with other data, frames, steps, minutes, seed, --skin or --loose; config.json "
+                         "beside it says with which");
+    }
+    std::string why;
+    if (!checkpoint_.state.body.IsValid(clip_->body().num_joints(), clip_->body().num_faces(), &why)) {
+      throw std::runtime_error(path + ": of another body (--body): " + why);
+    }
+    // What was done after it is done again.
+    std::istringstream lines(fs::exists(MetricsPath()) ? ReadFileBytes(MetricsPath()) : "");
+    for (std::string line; std::getline(lines, line);) {
+      if (line.empty() || std::atoll(line.c_str()) > checkpoint_.state.step) continue;
+      metrics_ += line + "\n";
+    }
+  }
+
+  void Train() {
+    AvatarTrainer trainer(clip_->body().data().faces, views_, options_);
+    AvatarTrainingState& state = checkpoint_.state;
+    if (metrics_.empty()) metrics_ = "step,loss,cost,drawn,relocated,seconds\n";
+    std::deque<double> losses;
+    double kept_at = state.seconds;
+    int relocated = 0;
+    while (!trainer.IsDone(state)) {
+      const AvatarStep step = trainer.Step(&state);
+      if (!std::isfinite(step.loss))
+        throw std::runtime_error(Concatenate(request_.out, ": the loss of step ", state.step, " is no number"));
+      losses.push_back(step.loss);
+      if (losses.size() > kLossSteps) losses.pop_front();
+      relocated += step.relocated;
+      summary_.loss = std::accumulate(losses.begin(), losses.end(), 0.0) / static_cast<double>(losses.size());
+      if (state.step % kMetricsEvery == 0) {
+        metrics_ += Concatenate(state.step, ",", summary_.loss, ",", step.cost, ",", step.drawn, ",", relocated, ",",
+                                Fixed(state.seconds, 2), "\n");
+        relocated = 0;
+      }
+      if (!callbacks_.GoesOn("loss " + Fixed(summary_.loss, 4), trainer.Progress(state))) {
+        summary_.stopped = true;
+        break;
+      }
+      if (state.seconds - kept_at > kCheckpointSeconds) {
+        WriteAvatarCheckpoint(AvatarCheckpointPath(request_.out), checkpoint_);
+        kept_at = state.seconds;
+      }
+    }
+    summary_.seconds = trainer.stage_seconds();
+  }
+
+  void WriteRun() {
+    WriteAvatarCheckpoint(AvatarCheckpointPath(request_.out), checkpoint_);
+    AvatarFile avatar = checkpoint_.avatar;
+    avatar.body = checkpoint_.state.body;
+    WriteAvatar(AvatarPath(request_.out), avatar);
+    WriteFileAtomically(MetricsPath(), metrics_);
+  }
+
+  AvatarScores ScoreOf(const std::vector<int>& frames, bool preview) {
+    const std::vector<int> some = Spread(frames, kScoredFrames);
+    const std::vector<TrainingView> views = clip_->ReadViews(some, AvatarScores::kScoreMargin, false, callbacks_);
+    const std::vector<int> shown = EvenlySpreadFrames(static_cast<int>(some.size()), kHeldOutShown);
+    AvatarScorer scorer;
+    AvatarPainter painter;
+    std::vector<Image> sheet;
+    for (size_t i = 0; i < views.size(); ++i) {
+      if (views[i].window.empty()) continue;
+      AvatarView view;
+      view.camera = views[i].camera, view.window = views[i].window;
+      view.options.num_threads = request_.clip.threads;
+      painter.Draw(checkpoint_.state.body, clip_->body().data().faces, views[i].frame, view);
+      scorer.Add(views[i], painter.picture());
+      if (!preview || !std::binary_search(shown.begin(), shown.end(), static_cast<int>(i))) continue;
+      sheet.push_back(TrueWindow(views[i]));
+      sheet.push_back(DrawnWindow(painter.picture()));
+    }
+    if (!sheet.empty()) {
+      ContactSheetOptions layout;
+      layout.columns = 4, layout.cell_height_px = 640;
+      WriteImage(InRun(request_.out, "preview.png"), ContactSheet(sheet, layout));
+    }
+    return scorer.Means();
+  }
+
+  void Judge() {
+    clock_.Begin("score");
+    summary_.training = ScoreOf(split_.train, split_.validation.empty());
+    if (!split_.validation.empty()) summary_.validation = ScoreOf(split_.validation, true);
+  }
+
+  void WriteConfig() const {
+    const nlohmann::ordered_json json = {{"program", kAvatarProgram},
+                                         {"version", 1},
+                                         {"data", request_.clip.data},
+                                         {"track", request_.clip.track},
+                                         {"mask", request_.clip.mask},
+                                         {"body", request_.clip.body},
+                                         {"train", split_.train},
+                                         {"validate", split_.validation},
+                                         {"steps", request_.steps},
+                                         {"minutes", request_.minutes},
+                                         {"skin_side", request_.skin_side},
+                                         {"loose", request_.loose},
+                                         {"seed", request_.seed}};
+    WriteFileAtomically(RunConfigPath(request_.out), json.dump(1) + "\n");
+  }
+
+  TrainAvatarSummary Finish() {
+    const AvatarTrainingState& state = checkpoint_.state;
+    summary_.steps = state.step;
+    summary_.training_seconds = state.seconds;
+    summary_.gaussians = state.body.size();
+    summary_.loose = static_cast<int>(std::count(state.body.is_loose.begin(), state.body.is_loose.end(), 1));
+    for (const auto& stage : clock_.seconds()) summary_.seconds.push_back(stage);
+    summary_.written = {AvatarPath(request_.out), AvatarCheckpointPath(request_.out), MetricsPath()};
+    nlohmann::ordered_json json = {{"steps", summary_.steps},         {"training_seconds", summary_.training_seconds},
+                                   {"gaussians", summary_.gaussians}, {"loose", summary_.loose},
+                                   {"loss", summary_.loss},           {"seconds", ToJson(summary_.seconds)}};
+    if (summary_.training) json["training"] = ToJson(*summary_.training);
+    if (summary_.validation) json["validation"] = ToJson(*summary_.validation);
+    WriteReport(InRun(request_.out, "report.json"), json);
+    return summary_;
+  }
+
+  [[nodiscard]] std::string MetricsPath() const { return InRun(request_.out, "metrics.csv"); }
+
+  TrainAvatarRequest request_;
+  const PipelineCallbacks& callbacks_;
+  StageClock clock_;
+  std::optional<AvatarClip> clip_;
+  TrainingSplit split_;
+  std::vector<TrainingView> views_;
+  AvatarTrainerOptions options_;
+  AvatarCheckpoint checkpoint_;
+  std::string metrics_;
+  TrainAvatarSummary summary_;
+};
+
+}  // namespace
+
+std::string AvatarPath(const std::string& run) { return InRun(run, "avatar.npz"); }
+std::string AvatarCheckpointPath(const std::string& run) { return InRun(run, "checkpoint.npz"); }
+
+TrainAvatarSummary TrainAvatar(const TrainAvatarRequest& request, const PipelineCallbacks& callbacks) {
+  return AvatarTraining(request, callbacks).Run();
+}
+
+}  // namespace bodyloom

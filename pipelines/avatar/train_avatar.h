@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Learns a person of Gaussians from files: what `bodyloom train avatar` does.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bodyloom/geometry/base/stopwatch.h"
+#include "bodyloom/pipelines/avatar/avatar_clip.h"
+#include "bodyloom/pipelines/avatar/avatar_scores.h"
+#include "bodyloom/pipelines/callbacks.h"
+
+namespace bodyloom {
+
+struct TrainAvatarRequest {
+  AvatarClipRequest clip;                    ///< threads: 0: all cores
+  std::vector<std::string> train, validate;  ///< frames (pipelines/avatar/frame_spans.h)
+  std::string out;                           ///< folder of the run
+  int64_t steps = 6000;                      ///< that training takes
+  double minutes = 0;                        ///< above 0: it takes so long instead
+  int skin_side = 176;                       ///< texels of a side of the atlas that skin Gaussians lie on
+  int loose = 16000;                         ///< Gaussians off the skin, at most
+  uint64_t seed = 1;
+  bool resume = false;  ///< go on with the run in `out`
+};
+
+struct TrainAvatarSummary {
+  bool stopped = false;  ///< cancelled; the run can be gone on with
+  int64_t steps = 0;
+  double training_seconds = 0;  ///< in steps, over all sittings
+  int gaussians = 0, loose = 0;
+  double loss = 0;                                   ///< mean of the last steps, at most 100 of them
+  std::optional<AvatarScores> training, validation;  ///< of frames spread over them; absent: none, or stopped
+  StageSeconds seconds;                              ///< of this sitting
+  std::vector<std::string> written;
+};
+
+/// Writes into `out`: config.json, checkpoint.npz (now and then and at the end), avatar.npz, metrics.csv, report.json and
+/// preview.png (held-out frames, truth beside result). A cancelled training ends with its checkpoint and says so.
+/// Throws RequestError for a request that contradicts itself or the run that is there, std::runtime_error for files that
+/// cannot be used and when a loss is not finite.
+TrainAvatarSummary TrainAvatar(const TrainAvatarRequest& request, const PipelineCallbacks& callbacks = {});
+
+/// Of the run in a folder.
+std::string AvatarPath(const std::string& run);
+std::string AvatarCheckpointPath(const std::string& run);
+
+}  // namespace bodyloom

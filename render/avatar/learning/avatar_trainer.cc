@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/render/avatar/learning/avatar_trainer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/hash_random.h"
+#include "bodyloom/geometry/base/in_range.h"
+
+namespace bodyloom {
+namespace {
+
+enum TrainerStream : uint64_t { kOrderStream = 0x300, kBackgroundStream, kRelocateStream };
+
+/// Columns first to first + count − 1 of a row to unit length, where they have one.
+void Normalise(int row, int first, int count, FloatColumns* table) {
+  float square = 0;
+  for (int c = first; c < first + count; ++c) square += (*table)(row, c) * (*table)(row, c);
+  if (!(square > 1e-12F)) return;
+  const float scale = 1 / std::sqrt(square);
+  for (int c = first; c < first + count; ++c) (*table)(row, c) *= scale;
+}
+
+/// Pixels' worth of a drawn Gaussian with nothing in front: the integral of its α.
+float PixelsAlone(const FloatColumns& screen, int row) {
+  const float xy = screen(row, ScreenGaussians::kConicXy);
+  const float determinant = screen(row, ScreenGaussians::kConicXx) * screen(row, ScreenGaussians::kConicYy) - xy * xy;
+  return screen(row, ScreenGaussians::kOpacity) * 2 * static_cast<float>(M_PI) /
+         std::sqrt(std::max(1e-12F, determinant));
+}
+
+}  // namespace
+
+bool AvatarTrainerOptions::IsValid(std::string* why) const {
+  const InRange in_range(why);
+  return in_range("steps", static_cast<double>(steps), 1, 1e8) && in_range("seconds", seconds, 0, 1e8) &&
+         rates.IsValid(why) && scales.IsValid(why) && in_range("cost by opacity", cost.by_opacity, 0, 1e3) &&
+         in_range("cost by scale", cost.by_scale, 0, 1e3) && in_range("relocate_every", relocate_every, 0, 1e8) &&
+         in_range("least_seen", least_seen, 0, 1) && in_range("relocate_until", relocate_until, 0, 1) &&
+         in_range("dead_opacity", dead_opacity, 0, 0.99) && in_range("num_threads", num_threads, 1, 1024);
+}
+
+AvatarTrainingState AvatarTrainingState::Of(GaussianBody body) {
+  AvatarTrainingState state;
+  state.adam.Reset(body.parameters.columns(), body.size());
+  state.light_adam.Reset(1, GaussianBody::kLightValues);
+  state.pull.assign(body.size(), 0);
+  state.body = std::move(body);
+  return state;
+}
+
+AvatarTrainer::AvatarTrainer(const MatrixX3i& faces, std::span<const TrainingView> views,
+                             const AvatarTrainerOptions& options)
+    : faces_(faces), views_(views), options_(options) {
+  std::string why;
+  BODYLOOM_CHECK(options.IsValid(&why), "avatar training: ", why);
+  for (size_t i = 0; i < views.size(); ++i) {
+    if (!views[i].window.empty() && views[i].person_pixels > 0) usable_.push_back(static_cast<int>(i));
+  }
+  BODYLOOM_CHECK(!usable_.empty(), "avatar training: none of the ", views.size(), " frames shows the person");
+}
+
+double AvatarTrainer::Progress(const AvatarTrainingState& state) const {
+  const double by_steps = static_cast<double>(state.step) / static_cast<double>(options_.steps);
+  return std::min(1.0, options_.seconds > 0 ? std::max(by_steps, state.seconds / options_.seconds) : by_steps);
+}
+
+int AvatarTrainer::ViewAt(int64_t step) {
+  const auto count = static_cast<int64_t>(usable_.size()), round = step / count;
+  if (std::exchange(order_of_, round) != round) {
+    order_ = usable_;
+    HashRandom random(options_.seed, {kOrderStream, static_cast<uint64_t>(round)});
+    for (size_t i = order_.size(); i > 1; --i) std::swap(order_[i - 1], order_[random.Below(i)]);
+  }
+  return order_[step % count];
+}
+
+AvatarStep AvatarTrainer::Step(AvatarTrainingState* state) {
+  const Stopwatch watch;
+  BODYLOOM_CHECK(static_cast<int>(state->pull.size()) == state->body.size(), "avatar training: ", state->pull.size(),
+                 " pulls for ", state->body.size(), " Gaussians");
+  const double progress = Progress(*state);
+  AvatarStep done;
+  done.view = ViewAt(state->step);
+  const TrainingView& view = views_[done.view];
+  AvatarView seen;
+  seen.camera = view.camera, seen.window = view.window, seen.options.num_threads = options_.num_threads;
+  clock_.Begin("drawing");
+  painter_.Draw(state->body, faces_, view.frame, seen);
+  clock_.Begin("loss");
+  FillTruth(view, &truth_);
+  HashRandom random(options_.seed, {kBackgroundStream, static_cast<uint64_t>(state->step)});
+  std::array<float, 3> background{};
+  for (float& b : background) b = static_cast<float>(random.Uniform());
+  done.loss = loss_.Compute(painter_.picture().planes(), truth_, background, options_.num_threads, &by_planes_);
+  if (std::isfinite(done.loss)) {
+    clock_.Begin("derivatives");
+    painter_.GoBack(state->body, faces_, view.frame, seen, by_planes_, &gradient_);
+    clock_.Begin("moving");
+    done.drawn = ChooseMovers(state);
+    done.cost = AddGaussianCost(state->body, options_.cost, &gradient_.parameters);
+    Move(state, progress);
+    MoveLight(state);
+  }
+  ++state->step;
+  done.relocated = Relocate(state, progress);
+  clock_.End();
+  state->seconds += watch.seconds();
+  return done;
+}
+
+int AvatarTrainer::ChooseMovers(AvatarTrainingState* state) {
+  const FloatColumns& by_screen = painter_.by_screen();
+  const auto least = static_cast<float>(options_.least_seen * PictureLoss::ByPixel(truth_));
+  const FloatColumns& screen = painter_.screen().columns;
+  moves_.resize(state->body.size());
+  int drawn = 0;
+  for (int i = 0; i < state->body.size(); ++i) {
+    moves_[i] = painter_.screen().IsDrawn(i) ? 1 : 0;
+    drawn += moves_[i];
+    const float x = by_screen(i, ScreenGaussians::kMeanX), y = by_screen(i, ScreenGaussians::kMeanY);
+    state->pull[i] += std::sqrt(x * x + y * y);
+    float by_colour = 0;
+    for (int c = ScreenGaussians::kRed; c <= ScreenGaussians::kBlue; ++c) by_colour += std::abs(by_screen(i, c));
+    if (moves_[i] != 0 && by_colour >= least * PixelsAlone(screen, i)) continue;
+    if (state->body.is_loose[i] == 0) moves_[i] = 0;
+    for (int c = 0; c < GaussianBody::kNumParameters; ++c) gradient_.parameters(i, c) = 0;
+  }
+  return drawn;
+}
+
+void AvatarTrainer::Move(AvatarTrainingState* state, double progress) {
+  AdamStep(gradient_.parameters, options_.rates.At(progress), moves_, options_.num_threads, &state->adam,
+           &state->body.parameters);
+  LimitScales(options_.scales, &state->body);
+  for (int i = 0; i < state->body.size(); ++i) {
+    if (moves_[i] == 0) continue;
+    Normalise(i, GaussianBody::kQuaternion, 4, &state->body.parameters);
+    Normalise(i, GaussianBody::kNormal, 3, &state->body.parameters);
+  }
+}
+
+void AvatarTrainer::MoveLight(AvatarTrainingState* state) {
+  FloatColumns light(1, GaussianBody::kLightValues), by_light(1, GaussianBody::kLightValues);
+  std::copy(state->body.light.begin(), state->body.light.end(), light.column(0));
+  std::copy(gradient_.light.begin(), gradient_.light.end(), by_light.column(0));
+  const std::vector<uint8_t> all(GaussianBody::kLightValues, 1);
+  AdamStep(by_light, std::span(&options_.rates.light, 1), all, 1, &state->light_adam, &light);
+  std::copy_n(light.column(0), GaussianBody::kLightValues, state->body.light.begin());
+}
+
+int AvatarTrainer::Relocate(AvatarTrainingState* state, double progress) const {
+  if (options_.relocate_every == 0 || state->step % options_.relocate_every != 0) return 0;
+  std::vector<int> moved;
+  if (progress < options_.relocate_until) {
+    const uint64_t seed = HashRandom(options_.seed, {kRelocateStream, static_cast<uint64_t>(state->step)}).Next();
+    moved = RelocateGaussians(state->pull, {options_.dead_opacity, seed}, &state->body);
+    for (const int row : moved) state->adam.Forget(row);
+  }
+  std::fill(state->pull.begin(), state->pull.end(), 0.0F);
+  return static_cast<int>(moved.size());
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Learns a person of Gaussians from frames, one frame a step.
+///
+/// A step poses and draws the frame's Gaussians, compares them with the truth over a random colour
+/// (render/avatar/learning/picture_loss.h), goes back through all of it, adds what Gaussians cost
+/// (gaussian_cost.h), and lets Adam (adam.h) move those that are in the picture, and the light. Scales are brought within
+/// their limits, quaternions and normals back to unit length. Every `relocate_every` steps, up to relocate_until of the
+/// training, dead Gaussians move to where derivatives on the screen are large (relocate_gaussians.h).
+///
+/// What is hidden in a frame learns nothing from it: Adam would make steps of full length out of the thousandth part of a
+/// colour that comes through what lies in front, and the person's unseen sides would fill with noise. Hidden on the skin
+/// stays as it is; hidden off the skin feels its cost alone, and so goes where no frame shows it. A Gaussian counts as
+/// hidden when |d loss / d its colour|, summed over the channels, is below least_seen times what as many pixels as it
+/// covers alone would give by their absolute difference (PictureLoss::ByPixel).
+///
+/// Frames come in a new random order each time round. All that is random follows from the seed and the step's number, so
+/// a state that was kept goes on exactly as if training had never been left, as far as its length is given by steps: the
+/// same bytes for any number of threads and any instruction set.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bodyloom/geometry/base/stopwatch.h"
+#include "bodyloom/render/avatar/avatar_painter.h"
+#include "bodyloom/render/avatar/learning/adam.h"
+#include "bodyloom/render/avatar/learning/gaussian_cost.h"
+#include "bodyloom/render/avatar/learning/learning_rates.h"
+#include "bodyloom/render/avatar/learning/relocate_gaussians.h"
+#include "bodyloom/render/avatar/learning/training_view.h"
+
+namespace bodyloom {
+
+struct AvatarTrainerOptions {
+  int64_t steps = 6000;  ///< 1 to 1e8
+  /// Above 0: training also ends after so long, and rates follow the larger of both shares. What comes out then depends
+  /// on the machine.
+  double seconds = 0;
+  uint64_t seed = 1;
+  AvatarRates rates;
+  GaussianCost cost;
+  ScaleLimits scales;
+  int relocate_every = 200;     ///< steps; 0: never
+  double relocate_until = 0.9;  ///< of the training
+  float dead_opacity = 0.015F;
+  /// A Gaussian of which a frame shows a smaller share is hidden there (see above). 0: none is.
+  double least_seen = 0.1;
+  int num_threads = 1;  ///< 1 to 1024
+  [[nodiscard]] bool IsValid(std::string* why) const;
+};
+
+/// All that goes on.
+struct AvatarTrainingState {
+  GaussianBody body;
+  AdamState adam;           ///< of body.parameters
+  AdamState light_adam;     ///< of body.light, a row a coefficient
+  std::vector<float> pull;  ///< by row: sum since the last move of |d loss / d mean on the screen|
+  int64_t step = 0;         ///< steps done
+  double seconds = 0;       ///< spent in steps
+
+  /// Before the first step.
+  static AvatarTrainingState Of(GaussianBody body);
+};
+
+struct AvatarStep {
+  double loss = 0;  ///< of the picture; not finite: nothing was moved
+  double cost = 0;
+  int view = 0;
+  int drawn = 0;  ///< Gaussians in the picture
+  int relocated = 0;
+};
+
+class AvatarTrainer {
+ public:
+  /// Views without a person are left out. Throws std::invalid_argument when options are not valid or no view is left.
+  /// `faces` and `views` must outlive it.
+  AvatarTrainer(const MatrixX3i& faces, std::span<const TrainingView> views, const AvatarTrainerOptions& options);
+
+  /// Done so far, in [0, 1].
+  [[nodiscard]] double Progress(const AvatarTrainingState& state) const;
+  [[nodiscard]] bool IsDone(const AvatarTrainingState& state) const { return Progress(state) >= 1; }
+
+  /// One step. Throws std::invalid_argument when the state's tables do not fit each other or the faces.
+  AvatarStep Step(AvatarTrainingState* state);
+
+  /// Where the time of all steps went: drawing, loss, derivatives, moving.
+  [[nodiscard]] const StageSeconds& stage_seconds() const { return clock_.seconds(); }
+
+ private:
+  int ViewAt(int64_t step);
+  int ChooseMovers(AvatarTrainingState* state);
+  void Move(AvatarTrainingState* state, double progress);
+  void MoveLight(AvatarTrainingState* state);
+  int Relocate(AvatarTrainingState* state, double progress) const;
+
+  const MatrixX3i& faces_;
+  std::span<const TrainingView> views_;
+  std::vector<int> usable_, order_;
+  int64_t order_of_ = -1;  ///< which time round
+  AvatarTrainerOptions options_;
+  AvatarPainter painter_;
+  PictureLoss loss_;
+  PictureTruth truth_;
+  FloatColumns by_planes_;
+  AvatarGradient gradient_;
+  std::vector<uint8_t> moves_;
+  StageClock clock_;
+};
+
+}  // namespace bodyloom

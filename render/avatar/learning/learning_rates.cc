@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/render/avatar/learning/learning_rates.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bodyloom/geometry/base/in_range.h"
+
+namespace bodyloom {
+
+bool AvatarRates::IsValid(std::string* why) const {
+  const InRange in_range(why);
+  return in_range("rate of position", position, 0, 1) && in_range("position_at_end", position_at_end, 1e-6, 1) &&
+         in_range("rate of quaternion", quaternion, 0, 1) && in_range("rate of log_scale", log_scale, 0, 1) &&
+         in_range("rate of opacity_logit", opacity_logit, 0, 1) && in_range("rate of albedo", albedo, 0, 1) &&
+         in_range("rate of normal", normal, 0, 1) && in_range("rate of weight_logit", weight_logit, 0, 1) &&
+         in_range("rate of light", light, 0, 1);
+}
+
+std::array<float, GaussianBody::kNumParameters> AvatarRates::At(double progress) const {
+  std::array<float, GaussianBody::kNumParameters> rates{};
+  const auto set = [&](int first, int count, double rate) {
+    std::fill_n(rates.begin() + first, count, static_cast<float>(rate));
+  };
+  const double shrunk = std::pow(static_cast<double>(position_at_end), std::clamp(progress, 0.0, 1.0));
+  set(GaussianBody::kPosition, 3, position * shrunk);
+  set(GaussianBody::kQuaternion, 4, quaternion);
+  set(GaussianBody::kLogScale, 3, log_scale);
+  set(GaussianBody::kOpacityLogit, 1, opacity_logit);
+  set(GaussianBody::kAlbedo, 3, albedo);
+  set(GaussianBody::kNormal, 3, normal);
+  set(GaussianBody::kWeightLogit, GaussianBody::kInfluences, weight_logit);
+  return rates;
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/render/avatar/learning/loose_gaussians.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/hash_random.h"
+#include "bodyloom/geometry/base/in_range.h"
+#include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/render/avatar/learning/smooth_skin_weights.h"
+
+namespace bodyloom {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr float kCorrectiveReach = 0.06F;  ///< metres from the skin where the surface's corrective is followed no more
+
+struct LoosePlace {
+  Vector3f place;
+  int32_t joints[GaussianBody::kInfluences];
+  float weights[GaussianBody::kInfluences];
+};
+
+/// The six largest weights, the pelvis instead of the last where it is not among them.
+void KeepLargest(const std::vector<float>& weights, LoosePlace* place) {
+  constexpr int kKept = GaussianBody::kInfluences;
+  std::vector<int> order(weights.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return weights[a] > weights[b]; });
+  order.resize(kKept, 0);
+  if (std::find(order.begin(), order.end(), 0) == order.end()) order.back() = 0;
+  for (int k = 0; k < kKept; ++k) {
+    const bool again = std::find(order.begin(), order.begin() + k, order[k]) != order.begin() + k;
+    place->joints[k] = order[k];
+    place->weights[k] = std::max(1e-4F, again ? 0 : weights[order[k]]);
+  }
+  const float sum = std::accumulate(place->weights, place->weights + kKept, 0.0F);
+  for (float& w : place->weights) w /= sum;
+}
+
+/// Whether enough of the views, and not too many, show the person at a place.
+bool IsInShell(const LoosePlace& place, std::span<const TrainingView* const> views,
+               const LooseGaussiansOptions& options) {
+  const auto count = static_cast<float>(views.size());
+  int inside = 0, outside = 0;
+  for (const TrainingView* view : views) {
+    Vector3f posed = Vector3f::Zero();
+    for (int k = 0; k < GaussianBody::kInfluences; ++k) {
+      const float* bone = view->frame.bones.data() + 12 * static_cast<size_t>(place.joints[k]);
+      for (int r = 0; r < 3; ++r) {
+        posed[r] += place.weights[k] * (bone[4 * r] * place.place[0] + bone[4 * r + 1] * place.place[1] +
+                                        bone[4 * r + 2] * place.place[2] + bone[4 * r + 3]);
+      }
+    }
+    Eigen::Vector2d pixel;
+    if (!view->camera.Project(posed.cast<double>(), &pixel)) continue;
+    if (!(pixel.x() > -0.5 && pixel.y() > -0.5 && pixel.x() < view->camera.width - 0.5 &&
+          pixel.y() < view->camera.height - 0.5)) {
+      continue;
+    }
+    const int x = static_cast<int>(std::lround(pixel.x())), y = static_cast<int>(std::lround(pixel.y()));
+    if (view->ShowsPerson(x, y)) {
+      ++inside;
+    } else if (static_cast<float>(++outside) > (1 - options.least_share) * count) {
+      return false;
+    }
+  }
+  const auto seen = static_cast<float>(inside + outside);
+  return inside > 0 && static_cast<float>(inside) >= options.least_share * seen &&
+         static_cast<float>(inside) <= options.most_share * seen;
+}
+
+std::vector<const TrainingView*> SpreadViews(std::span<const TrainingView> views, int most) {
+  std::vector<const TrainingView*> all, spread;
+  for (const TrainingView& view : views) {
+    if (!view.window.empty()) all.push_back(&view);
+  }
+  const size_t count = std::min<size_t>(all.size(), most);
+  for (size_t i = 0; i < count; ++i) spread.push_back(all[i * all.size() / count]);
+  return spread;
+}
+
+void SetRow(const BodyModel& model, const SmoothSkinWeights& skin, const std::vector<int>& face_of,
+            const LoosePlace& place, const LooseGaussiansOptions& options, int row, GaussianBody* body) {
+  const int nearest = skin.NearestVertex(place.place);
+  const Vector3f away = place.place - skin.vertices().row(nearest).transpose();
+  const float distance = away.norm();
+  const Vector3f normal = distance > 1e-6F ? Vector3f(away / distance) : Vector3f::UnitZ();
+  FloatColumns& p = body->parameters;
+  p(row, GaussianBody::kQuaternion) = 1;
+  p(row, GaussianBody::kOpacityLogit) = options.opacity_logit;
+  for (int k = 0; k < 3; ++k) {
+    p(row, GaussianBody::kPosition + k) = place.place[k];
+    p(row, GaussianBody::kLogScale + k) = std::log(options.spacing_m / 2);
+    p(row, GaussianBody::kAlbedo + k) = options.albedo;
+    p(row, GaussianBody::kNormal + k) = normal[k];
+  }
+  for (int k = 0; k < GaussianBody::kInfluences; ++k) {
+    body->joints[static_cast<size_t>(row) * GaussianBody::kInfluences + k] = place.joints[k];
+    p(row, GaussianBody::kWeightLogit + k) = std::log(place.weights[k]);
+  }
+  SkinAnchor& anchor = body->anchors[row];
+  anchor.face = face_of[nearest];
+  anchor.barycentric = {0, 0, 0};
+  for (int c = 0; c < 3; ++c) {
+    if (model.data().faces(anchor.face, c) == nearest) anchor.barycentric[c] = 1;
+  }
+  anchor.corrective_factor = std::max(0.0F, 1 - distance / kCorrectiveReach);
+  body->is_loose[row] = 1;
+}
+
+}  // namespace
+
+bool LooseGaussiansOptions::IsValid(std::string* why) const {
+  const InRange in_range(why);
+  return in_range("spacing_m", spacing_m, 0.004, 0.1) && in_range("reach_m", reach_m, 0.02, 1) &&
+         in_range("least_share", least_share, 0, 1) && in_range("most_share", most_share, least_share, 1) &&
+         in_range("most_views", most_views, 1, 1e6) && in_range("count", count, 0, 1e7) &&
+         in_range("opacity_logit", opacity_logit, -20, 20) && in_range("albedo", albedo, 0, 1) &&
+         in_range("num_threads", num_threads, 1, 1024);
+}
+
+GaussianBody LooseGaussians(const BodyModel& model, const Eigen::VectorXd& betas, std::span<const TrainingView> views,
+                            const LooseGaussiansOptions& options) {
+  std::string why;
+  BODYLOOM_CHECK(options.IsValid(&why), "loose Gaussians: ", why);
+  GaussianBody body;
+  body.Resize(0);
+  const std::vector<const TrainingView*> shown = SpreadViews(views, options.most_views);
+  if (shown.empty() || options.count == 0) return body;
+  const SmoothSkinWeights skin(model, betas, options.reach_m, options.num_threads);
+  // Around the person at rest, layer by layer.
+  const Vector3f extent = skin.high() - skin.low();
+  const Eigen::Vector3i size = (extent / options.spacing_m).array().floor().cast<int>() + 1;
+  std::vector<std::vector<LoosePlace>> layers(size.z());
+  ParallelFor(size.z(), options.num_threads, [&](int z) {
+    std::vector<float> weights(skin.num_joints());
+    for (int y = 0; y < size.y(); ++y) {
+      for (int x = 0; x < size.x(); ++x) {
+        LoosePlace place;
+        place.place = skin.low() + options.spacing_m * Eigen::Vector3i(x, y, z).cast<float>();
+        if (skin.DistanceTo(place.place) > options.reach_m) continue;
+        skin.WeightsAt(place.place, weights.data());
+        KeepLargest(weights, &place);
+        if (IsInShell(place, shown, options)) layers[z].push_back(place);
+      }
+    }
+  });
+  std::vector<LoosePlace> places;
+  for (const auto& layer : layers) places.insert(places.end(), layer.begin(), layer.end());
+  // The first `count` of a random order, in the order of the grid.
+  if (places.size() > static_cast<size_t>(options.count)) {
+    std::vector<std::pair<uint64_t, size_t>> drawn(places.size());
+    for (size_t i = 0; i < places.size(); ++i) drawn[i] = {HashRandom(options.seed, {0x100, i}).Next(), i};
+    std::nth_element(drawn.begin(), drawn.begin() + options.count, drawn.end());
+    drawn.resize(options.count);
+    std::sort(drawn.begin(), drawn.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+    std::vector<LoosePlace> kept;
+    for (const auto& [hash, i] : drawn) kept.push_back(places[i]);
+    places = std::move(kept);
+  }
+  std::vector<int> face_of(model.num_vertices(), 0);
+  for (int f = model.num_faces() - 1; f >= 0; --f) {
+    for (int c = 0; c < 3; ++c) face_of[model.data().faces(f, c)] = f;
+  }
+  body.Resize(static_cast<int>(places.size()));
+  ParallelFor(body.size(), options.num_threads,
+              [&](int i) { SetRow(model, skin, face_of, places[i], options, i, &body); });
+  return body;
+}
+
+void AppendGaussians(const GaussianBody& more, GaussianBody* body) {
+  GaussianBody both;
+  both.Resize(body->size() + more.size());
+  for (int c = 0; c < GaussianBody::kNumParameters; ++c) {
+    std::copy_n(body->parameters.column(c), body->size(), both.parameters.column(c));
+    std::copy_n(more.parameters.column(c), more.size(), both.parameters.column(c) + body->size());
+  }
+  const auto join = [](const auto& a, const auto& b, auto* to) {
+    std::copy(b.begin(), b.end(), std::copy(a.begin(), a.end(), to->begin()));
+  };
+  join(body->joints, more.joints, &both.joints);
+  join(body->anchors, more.anchors, &both.anchors);
+  join(body->is_loose, more.is_loose, &both.is_loose);
+  both.light = body->light;
+  *body = std::move(both);
+}
+
+}  // namespace bodyloom

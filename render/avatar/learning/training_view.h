@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A frame that a person of Gaussians is learned from.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "bodyloom/geometry/camera.h"
+#include "bodyloom/render/avatar/avatar_frame.h"
+#include "bodyloom/render/avatar/learning/picture_loss.h"
+#include "bodyloom/render/image.h"
+#include "bodyloom/render/pixel_box.h"
+
+namespace bodyloom {
+
+struct TrainingView {
+  AvatarFrame frame;
+  Camera camera;                ///< without distortion
+  PixelBox window;              ///< around the person, inside the picture
+  std::vector<uint8_t> pixels;  ///< of the window, row-major: blue, green, red, and 1 where the person is, else 0
+  int person_pixels = 0;
+
+  [[nodiscard]] bool ShowsPerson(int x, int y) const {
+    return window.Contains(x, y) && pixels[4 * window.IndexOf(x, y) + 3] != 0;
+  }
+};
+
+/// Whether a pixel of the picture shows the person.
+using IsPerson = std::function<bool(int x, int y)>;
+
+/// The part of `picture` around the person: the smallest box that holds its pixels in `search` (clipped to the picture)
+/// and `body`, with `margin` pixels around it. Pixels outside of `search` count as not the person's. A frame without
+/// the person has an empty window. The caller sets frame and camera.
+TrainingView CutTrainingView(const Image& picture, const IsPerson& is_person, const PixelBox& search,
+                             const PixelBox& body, int margin);
+
+/// The view as what a picture is compared with. Keeps the memory of `truth`.
+void FillTruth(const TrainingView& view, PictureTruth* truth);
+
+}  // namespace bodyloom

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+// A synthetic person learned from a dataset and from a video, gone on with, and shown.
+#include "bodyloom/pipelines/avatar/train_avatar.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <opencv2/imgcodecs.hpp>
+
+#include "bodyloom/data_tools/avatar/avatar_file.h"
+#include "bodyloom/data_tools/datasets/single_person_dataset.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/data_tools/observations/part_labels.h"
+#include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/data_tools/video/video_reader.h"
+#include "bodyloom/pipelines/avatar/animate_avatar.h"
+#include "bodyloom/pipelines/avatar/frame_spans.h"
+#include "bodyloom/pipelines/synthesis/synthesize_person.h"
+#include "tests/data_tools/formats/temporary_file.h"
+
+namespace bodyloom {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kFrames = 10, kSize = 128;
+
+/// A small synthetic person, its frames as images and its mask, made once.
+const TemporaryFolder& Scene() {
+  static const TemporaryFolder folder;
+  static const bool made = [] {
+    SynthesizePersonRequest request;
+    request.motions = {"demo"};
+    request.out = folder.File("person");
+    request.motion.num_frames = kFrames;
+    request.set.size_px = kSize, request.set.num_threads = 2;
+    SynthesizePerson(request, {});
+    const SinglePersonDataset set(folder.File("person"));
+    PartLabelSequence mask;
+    mask.image_width = mask.image_height = kSize;
+    for (int t = 0; t < kFrames; ++t) {
+      const PersonFrame frame = set.Read(t);
+      LabelImage labels = {0, 0, kSize, kSize, std::vector<uint8_t>(kSize * kSize)};
+      for (int i = 0; i < kSize * kSize; ++i) labels.labels[i] = frame.labels.bgr[3 * i] != 0 ? 1 : 0;
+      mask.frames.push_back(labels);
+      mask.timestamps.push_back(t / 30.0);
+    }
+    WriteMask(folder.File("mask.npz"), mask);
+    return true;
+  }();
+  EXPECT_TRUE(made);
+  return folder;
+}
+
+TrainAvatarRequest SmallRequest(const std::string& out) {
+  TrainAvatarRequest request;
+  request.clip.data = Scene().File("person");
+  request.clip.threads = 2;
+  request.out = out;
+  request.steps = 60;
+  request.skin_side = 64, request.loose = 400;
+  request.train = {"0-7"}, request.validate = {"8-9"};
+  return request;
+}
+
+TEST(TrainAvatar, LearnsADatasetsPersonAndShowsIt) {
+  const TemporaryFolder folder;
+  const TrainAvatarSummary summary = TrainAvatar(SmallRequest(folder.File("run")));
+  EXPECT_EQ(summary.steps, 60);
+  EXPECT_GT(summary.loose, 20);
+  ASSERT_TRUE(summary.validation.has_value());
+  EXPECT_EQ(summary.validation->frames, 2);
+  EXPECT_EQ(summary.training->frames, 8);
+  EXPECT_GT(summary.validation->psnr_box_db, 16);
+  EXPECT_GT(summary.validation->outline_iou, 0.75);
+  for (const char* name :
+       {"config.json", "checkpoint.npz", "avatar.npz", "metrics.csv", "report.json", "preview.png"}) {
+    EXPECT_TRUE(fs::exists(folder.File("run") + "/" + name)) << name;
+  }
+
+  AnimateAvatarRequest show;
+  show.run = folder.File("run");
+  show.data = Scene().File("person");
+  show.threads = 1;
+  show.pictures = folder.File("pictures");
+  show.ply = folder.File("rest.ply"), show.posed_ply = folder.File("posed.ply"), show.posed_frame = 3;
+  const AnimateAvatarSummary shown = AnimateAvatar(show);
+  EXPECT_EQ(shown.frames, kFrames);
+  ASSERT_TRUE(shown.scores.has_value());
+  EXPECT_EQ(shown.scores->frames, kFrames);
+  EXPECT_GT(shown.scores->psnr_box_db, 16);
+  const cv::Mat picture = cv::imread(folder.File("pictures/000003.png"), cv::IMREAD_UNCHANGED);
+  ASSERT_EQ(picture.type(), CV_8UC4);
+  EXPECT_EQ(picture.cols, kSize);
+  int inside = 0;
+  for (int y = 0; y < picture.rows; ++y) {
+    for (int x = 0; x < picture.cols; ++x) inside += picture.at<cv::Vec4b>(y, x)[3] > 127 ? 1 : 0;
+  }
+  const SinglePersonDataset set(Scene().File("person"));
+  const PersonFrame frame = set.Read(3);
+  int truth = 0;
+  for (int i = 0; i < kSize * kSize; ++i) truth += frame.labels.bgr[3 * i] != 0 ? 1 : 0;
+  EXPECT_NEAR(inside, truth, 0.25 * truth);
+  const std::string rest = ReadFileBytes(show.ply), posed = ReadFileBytes(show.posed_ply);
+  EXPECT_EQ(rest.substr(0, 4), "ply\n");
+  EXPECT_EQ(rest.size(), posed.size());
+  EXPECT_NE(rest, posed);
+
+  AnimateAvatarRequest turned;
+  turned.run = folder.File("run/avatar.npz");
+  turned.track = Scene().File("person/track.npz");
+  turned.view_yaw = "0:180", turned.freeze = "2:3", turned.size = 96;
+  turned.out = folder.File("turned.mp4");
+  turned.threads = 1;
+  const AnimateAvatarSummary other = AnimateAvatar(turned);
+  EXPECT_EQ(other.frames, kFrames + 3);
+  EXPECT_EQ(other.width, 96);
+  EXPECT_FALSE(other.scores.has_value());
+  EXPECT_EQ(VideoReader(turned.out).info().num_frames, kFrames + 3);
+
+  turned.size = 0, turned.data = Scene().File("person");
+  EXPECT_THROW(AnimateAvatar(turned), RequestError);
+}
+
+TEST(TrainAvatar, AVideoWithAMaskIsTheSame) {
+  const TemporaryFolder folder;
+  TrainAvatarRequest request = SmallRequest(folder.File("set"));
+  request.steps = 6;
+  TrainAvatar(request);
+  request.clip.data = Scene().File("person/images");
+  request.clip.track = Scene().File("person/track.npz");
+  request.clip.mask = Scene().File("mask.npz");
+  request.out = folder.File("video");
+  TrainAvatar(request);
+  const AvatarFile a = ReadAvatar(AvatarPath(folder.File("set"))), b = ReadAvatar(AvatarPath(folder.File("video")));
+  ASSERT_EQ(a.body.size(), b.body.size());
+  for (int c = 0; c < GaussianBody::kNumParameters; ++c) {
+    for (int i = 0; i < a.body.size(); ++i) ASSERT_EQ(a.body.parameters(i, c), b.body.parameters(i, c));
+  }
+  request.out = folder.File("other");
+  request.clip.mask.clear();
+  EXPECT_THROW(TrainAvatar(request), RequestError);
+}
+
+TEST(TrainAvatar, GoesOnAsIfNeverLeft) {
+  const TemporaryFolder folder;
+  TrainAvatarRequest request = SmallRequest(folder.File("whole"));
+  request.steps = 20;
+  TrainAvatar(request);
+  request.out = folder.File("parts");
+  request.clip.threads = 1;
+  PipelineCallbacks callbacks;
+  int calls = 0;
+  callbacks.progress = [&](const std::string& stage, double) { return stage.rfind("loss", 0) != 0 || ++calls < 7; };
+  const TrainAvatarSummary stopped = TrainAvatar(request, callbacks);
+  EXPECT_TRUE(stopped.stopped);
+  EXPECT_EQ(stopped.steps, 7);
+  EXPECT_FALSE(stopped.validation.has_value());
+  EXPECT_THROW(TrainAvatar(request), RequestError) << "there is a run";
+  request.resume = true;
+  const TrainAvatarSummary end = TrainAvatar(request);
+  EXPECT_EQ(end.steps, 20);
+  const AvatarFile a = ReadAvatar(AvatarPath(folder.File("whole"))), b = ReadAvatar(AvatarPath(folder.File("parts")));
+  ASSERT_EQ(a.body.size(), b.body.size());
+  for (int c = 0; c < GaussianBody::kNumParameters; ++c) {
+    for (int i = 0; i < a.body.size(); ++i) ASSERT_EQ(a.body.parameters(i, c), b.body.parameters(i, c)) << c;
+  }
+  EXPECT_EQ(a.body.light, b.body.light);
+  request.seed = 2;
+  EXPECT_THROW(TrainAvatar(request), RequestError) << "another seed is another run";
+  request.out = folder.File("nothing");
+  EXPECT_THROW(TrainAvatar(request), RequestError);
+}
+
+TEST(FrameSpans, AreWhatIsAskedFor) {
+  const TrainingSplit usual = ReadTrainingSplit({}, {}, 10);
+  EXPECT_EQ(usual.train.size(), 8U);
+  EXPECT_EQ(usual.validation, (std::vector<int>{8, 9}));
+  const TrainingSplit rest = ReadTrainingSplit({}, {"2-3", "5-5"}, 7);
+  EXPECT_EQ(rest.train, (std::vector<int>{0, 1, 4, 6}));
+  EXPECT_EQ(rest.validation, (std::vector<int>{2, 3, 5}));
+  const TrainingSplit none = ReadTrainingSplit({"1-2"}, {}, 7);
+  EXPECT_EQ(none.train, (std::vector<int>{1, 2}));
+  EXPECT_TRUE(none.validation.empty());
+  for (const char* bad : {"5", "3-2", "0-10", "-1-3", "1-2x", ""}) {
+    EXPECT_THROW(ReadTrainingSplit({bad}, {}, 10), RequestError) << bad;
+  }
+  EXPECT_THROW(ReadTrainingSplit({"0-4"}, {"4-5"}, 10), RequestError);
+}
+
+}  // namespace
+}  // namespace bodyloom
