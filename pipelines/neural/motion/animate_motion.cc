@@ -143,8 +143,7 @@ class MotionAnimation {
         !(request_.like.empty() && request_.frames.empty() && request_.weights.empty() && request_.iuv.empty())) {
       throw RequestError(
           "--like, --frames, --weights and --iuv compare with the pictures of --data: not without it, nor with "
-          "--view-yaw, "
-          "--freeze or --speed");
+          "--view-yaw, --freeze or --speed");
     }
     renderer_ = OpenRenderer(scored_);
   }

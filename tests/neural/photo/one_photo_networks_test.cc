@@ -11,9 +11,9 @@
 #include <string>
 
 #include "bodyloom/neural/guided/guided_batches.h"
-#include "bodyloom/neural/guided/guided_tensors.h"
 #include "bodyloom/neural/guided/guided_card.h"
 #include "bodyloom/neural/guided/guided_model.h"
+#include "bodyloom/neural/guided/guided_tensors.h"
 #include "bodyloom/neural/losses/gan_losses.h"
 #include "bodyloom/neural/losses/image_losses.h"
 #include "bodyloom/neural/networks/architecture_card.h"
