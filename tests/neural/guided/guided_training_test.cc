@@ -43,14 +43,39 @@ TrainGuidedOptions ToyOptions(const std::string& name) {
   return options;
 }
 
+/// The toy's window within one of twice its side, its upper left corner at (left, top).
+PhotoFrame InLargerWindow(const PhotoFrame& toy, int left, int top) {
+  const int side = toy.size, size = 2 * side;
+  const size_t toy_area = size_t(side) * side, area = size_t(size) * size;
+  PhotoFrame frame = toy;
+  frame.size = size;
+  frame.uv.assign(2 * area, 0), frame.image.assign(3 * area, 0);
+  frame.parts.assign(area, 0), frame.labels.assign(area, 0);
+  for (size_t i = 0; i < toy_area; ++i) {
+    const size_t at = (i / side + top) * size + i % side + left;
+    frame.parts[at] = toy.parts[i], frame.labels[at] = toy.labels[i];
+    for (size_t c = 0; c < 2; ++c) frame.uv[c * area + at] = toy.uv[c * toy_area + i];
+    for (size_t c = 0; c < 3; ++c) frame.image[c * area + at] = toy.image[c * toy_area + i];
+  }
+  for (size_t i = 0; i < toy.texel_cosine.size(); ++i) {
+    if (toy.texel_cosine[i] == 0) continue;
+    frame.texel_pixels[i] += static_cast<float>(left);
+    frame.texel_pixels[toy.texel_cosine.size() + i] += static_cast<float>(top);
+  }
+  return frame;
+}
+
 /// Instance norms see at work the window of one frame: in training the same window, as large as the largest of a batch.
 TEST(GuidedBatches, EveryTargetIsInItsOwnWindow) {
-  // A head and a torso low on the left, and the same high on the right.
+  // A person below on the left, and the same above on the right.
   PhotoSource people = ToyPeople(1, 2);
   people.fill = [](int, int frame, PhotoFrame* out) {
-    *out = ToyPhotoFrame(0, frame == 0 ? ToyPose{-9, 4, false} : ToyPose{9, -5, false}, true);
+    const PhotoFrame toy = ToyPhotoFrame(0, {}, true);
+    *out = frame == 0 ? InLargerWindow(toy, 0, toy.size) : InLargerWindow(toy, toy.size, 0);
   };
-  const GuidedConfig config = ToyGuided();
+  people.size = 2 * kToySide;
+  GuidedConfig config = ToyGuided();
+  config.profile.image_size = people.size;
   const int multiple = config.Multiple();
   std::set<int64_t> lefts;
   for (int64_t step = 0; step < 6; ++step) {
