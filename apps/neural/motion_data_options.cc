@@ -15,8 +15,11 @@ void AddMotionDataOptions(CLI::App* verb, MotionDataRequest* request) {
       "--iuv", request->iuv,
       "What pixels show of the body by estimates from the pictures, as in the paper's comparisons: a folder "
       "of DensePose's IUV images, or \"own\", the single-person dataset's (default: the tracked body)");
+  verb->add_option("--mask", request->mask,
+                   "For a video: the person's mask (bodyloom detect --mask, bodyloom run --masks), for silhouette, "
+                   "classes and normals of the tracked body within it");
   verb->add_option("--part-labels", request->part_labels,
-                   "For a video: DensePose's parts (.npz), for silhouette and classes");
+                   "For a video: DensePose's parts (.npz), for classes and, without --mask, the silhouette");
 }
 
 }  // namespace bodyloom

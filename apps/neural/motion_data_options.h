@@ -10,7 +10,7 @@ class App;
 
 namespace bodyloom {
 
-/// --data, --track, --body, --iuv, --part-labels.
+/// --data, --track, --body, --iuv, --mask, --part-labels.
 void AddMotionDataOptions(CLI::App* verb, MotionDataRequest* request);
 
 }  // namespace bodyloom

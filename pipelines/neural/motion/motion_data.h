@@ -15,12 +15,15 @@
 namespace bodyloom {
 
 struct MotionDataRequest {
-  std::string data;         ///< a single-person dataset, a video or a folder of images
-  std::string track;        ///< empty: the single-person dataset's own
-  std::string body;         ///< empty: the built-in body
-  std::string iuv;          ///< what pixels show of the body: a folder of DensePose's IUV images, or kOwnIuv, the
-                            ///< single-person dataset's; empty: what the tracked body says
-  std::string part_labels;  ///< for a video: DensePose's parts, which stand in for a parsing of the clothes
+  std::string data;   ///< a single-person dataset, a video or a folder of images
+  std::string track;  ///< empty: the single-person dataset's own
+  std::string body;   ///< empty: the built-in body
+  std::string iuv;    ///< what pixels show of the body: a folder of DensePose's IUV images, or kOwnIuv, the
+                      ///< single-person dataset's; empty: what the tracked body says
+  /// For a video: where the person is (bodyloom detect --mask, bodyloom run --masks), and DensePose's parts, which stand
+  /// in for a parsing of the clothes; each may do without the other. With one of them labels and normals are those of
+  /// the tracked body within that outline (data_tools/datasets/body_truth.h).
+  std::string mask, part_labels;
   MotionDescriptor descriptor = MotionDescriptor::kSurface;
   SurfaceMotion motion;         ///< axes and velocities of the motion maps
   double pixels_per_metre = 0;  ///< of the window; 0: as large as the profile's image_size allows
@@ -28,9 +31,6 @@ struct MotionDataRequest {
 };
 
 inline constexpr const char* kOwnIuv = "own";
-
-/// Where MotionData's classes come from.
-enum class LabelSource { kNone, kDataset, kPartLabels };
 
 class MotionData {
  public:
@@ -45,7 +45,7 @@ class MotionData {
   [[nodiscard]] const Track& track() const;
   /// Pixels of the window a metre at the body's root.
   [[nodiscard]] double PixelsPerMetre() const;
-  [[nodiscard]] LabelSource labels() const;
+  [[nodiscard]] bool has_labels() const;
   [[nodiscard]] bool has_normals() const;
   [[nodiscard]] std::string notes() const;  ///< lines for the user: what is not used, what stands in for what
 
