@@ -74,6 +74,8 @@ void AddAnimateMotion(CLI::App& animate, Action* action) {
       ->needs(full_size);
   verb->add_option("--relight", request->relight,
                    "Other light: an environment image (equirectangular), or JSON with lights (docs/relighting.md)");
+  verb->add_flag("--true-normals", request->true_normals,
+                 "With --relight and --data: by the dataset's normals, to see what the predicted ones cost");
   verb->add_option("--warmup", request->warmup, "Passes of the first frame through the network before it counts")
       ->capture_default_str()
       ->check(CLI::Range(0, 1000));

@@ -24,6 +24,7 @@ struct AnimateMotionRequest : AnimationRequest {
   std::string freeze;           ///< "FRAME:COUNT": that frame is shown so many times more; empty: none is
   std::string background;       ///< an image, a video or a folder behind the person; empty: a plain backdrop
   std::string relight;          ///< the light that shall be (pipelines/people/relight_frames.h); empty: as it is
+  bool true_normals = false;    ///< with `relight` and `data`: by the normals of `data`, not the networks'
   int warmup = 50;              ///< passes of the first frame through the network before it counts
   bool without_past = false;    ///< every frame as if it were the first
   bool anywhere = false;        ///< the person may be farther from the body than clothes ever were in training

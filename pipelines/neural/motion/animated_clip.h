@@ -47,6 +47,8 @@ class AnimatedClip {
   [[nodiscard]] const PersonFrames& frames() const { return data_ ? data_->frames() : *own_frames_; }
   /// Lines for the user: the rate and the shape that are not the track's own.
   [[nodiscard]] const std::string& notes() const { return notes_; }
+  /// Whether Fill() gives normals.
+  [[nodiscard]] bool has_normals() const { return data_ && data_->has_normals(); }
   /// What the network takes of frame t; with its truth where the clip is scored.
   void Fill(int t, MotionFrame* frame) const;
   /// The same without the truth.
