@@ -26,24 +26,34 @@ std::vector<uint8_t> CutPlane(const IuvImage& iuv, const std::vector<uint8_t>& p
 
 }  // namespace
 
-EstimatedPixels::EstimatedPixels(const BodyModel& body, const std::string& folder, int num_frames)
-    : body_(body), charts_(body), files_(ImageFilesOf(folder)) {
+EstimatedPixels::EstimatedPixels(const BodyModel& body, const std::string& path, int num_frames, int first)
+    : body_(body), charts_(body) {
   BODYLOOM_CHECK(body.has_uv(), "estimated pixels: the body '", body.name(), "' has no atlas");
+  if (std::filesystem::is_regular_file(path)) {
+    files_ = {path};
+    first = 0;
+  } else {
+    files_ = ImageFilesOf(path);
+  }
   if (std::any_of(files_.begin(), files_.end(), IsNamedIuv)) {
     files_.erase(std::remove_if(files_.begin(), files_.end(), [](const auto& path) { return !IsNamedIuv(path); }),
                  files_.end());
   }
-  if (static_cast<int>(files_.size()) < num_frames) {
-    throw std::runtime_error(Concatenate(folder, ": ", files_.size(), " IUV images, the track has ", num_frames));
+  if (static_cast<int>(files_.size()) < first + num_frames) {
+    throw std::runtime_error(Concatenate(path, ": ", files_.size(), " IUV images, the track has ", first + num_frames));
   }
+  files_.erase(files_.begin(), files_.begin() + first);
 }
 
-void EstimatedPixels::BodyMaps(const PersonWindow& window, int t, std::span<float> uv, std::span<float> mask) const {
+void EstimatedPixels::BodyMaps(const PersonWindow& window, int t, std::span<float> uv, std::span<float> mask,
+                               std::span<uint8_t> parts) const {
   const size_t area = size_t(window.width) * window.height;
-  BODYLOOM_CHECK(uv.size() == 2 * area && mask.size() == area, "estimated pixels: room for ", uv.size(), " and ",
-                 mask.size(), " values, expected ", 2 * area, " and ", area);
+  BODYLOOM_CHECK(uv.size() == 2 * area && mask.size() == area && (parts.empty() || parts.size() == area),
+                 "estimated pixels: room for ", uv.size(), " and ", mask.size(), " values, expected ", 2 * area,
+                 " and ", area);
   std::fill(uv.begin(), uv.end(), 0.0F);
   std::fill(mask.begin(), mask.end(), 0.0F);
+  std::fill(parts.begin(), parts.end(), uint8_t{0});
   const std::string& path = files_.at(t);
   const IuvImage iuv = ReadIuvImage(path);
   std::array<std::vector<uint8_t>, 3> cut;
@@ -66,6 +76,7 @@ void EstimatedPixels::BodyMaps(const PersonWindow& window, int t, std::span<floa
     uv[i] = static_cast<float>(atlas.x());
     uv[area + i] = static_cast<float>(atlas.y());
     mask[i] = 1;
+    if (!parts.empty()) parts[i] = part[i];
   }
 }
 

@@ -71,6 +71,7 @@ TEST(SynthPersonVerb, TheSamePersonInAnotherLight) {
     return SinglePersonDataset(scratch / name).Read(0);
   };
   const PersonFrame own = make("own", {}), other = make("other", {"--light-seed", "9"});
+  EXPECT_FALSE(own.rgb == other.rgb);
   EXPECT_TRUE(own.labels == other.labels);
   EXPECT_TRUE(own.normals == other.normals);
   EXPECT_TRUE(own.background == other.background);

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -16,10 +14,9 @@
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/geometry/observations.h"
 #include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/render/resolve_pixels.h"
-#include "bodyloom/render/visibility_buffer.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/short_track.h"
+#include "tests/support/write_iuv.h"
 
 namespace bodyloom {
 namespace {
@@ -147,35 +144,6 @@ TEST_F(DenseHistoryTest, ATurnedViewIsAnotherPicture) {
   // From behind the shoulders (5 left, 6 right) change sides.
   const Eigen::Matrix<double, Eigen::Dynamic, 2> back = frames_->Keypoints(3);
   EXPECT_LT((front(5, 0) - front(6, 0)) * (back(5, 0) - back(6, 0)), 0);
-}
-
-/// IUV images of the track's body as DensePose writes them, whole pictures.
-std::string WriteIuv(const Track& track, const std::string& folder) {
-  std::filesystem::create_directories(folder);
-  for (int t = 0; t < track.num_frames(); ++t) {
-    const BodyPose pose =
-        PoseFromAxisAngle(BuiltinBody(), track.motion.poses.row(t).transpose(), track.motion.trans.row(t).transpose());
-    const MatrixX3d vertices = PoseVertices(BuiltinBody(), track.motion.betas, pose);
-    VisibilityBuffer buffer;
-    buffer.Render(vertices, BuiltinBody().data().faces, track.camera);
-    ResolveRequest request;
-    request.part = request.chart_uv = true;
-    ResolvedPixels pixels;
-    ResolvePixels(buffer, BuiltinBody(), vertices, track.camera, request, &pixels);
-    Image image(track.camera.width, track.camera.height);
-    for (int y = pixels.box.y_begin; y < pixels.box.y_end; ++y) {
-      for (int x = pixels.box.x_begin; x < pixels.box.x_end; ++x) {
-        const size_t i = pixels.box.IndexOf(x, y);
-        uint8_t* pixel = image.pixel(x, y);
-        pixel[0] = pixels.part[i];
-        for (int c = 0; c < 2; ++c) pixel[1 + c] = static_cast<uint8_t>(255 * pixels.chart_uv[2 * i + c]);
-      }
-    }
-    char name[32];
-    std::snprintf(name, sizeof name, "/%06d.png", t);
-    WriteImage(folder + name, image);
-  }
-  return folder;
 }
 
 TEST_F(DenseHistoryTest, EstimatesStandInForTheBody) {
