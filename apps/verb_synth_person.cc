@@ -52,6 +52,9 @@ void AddSynthPersonVerb(CLI::App& app, Action* action) {
       ->check(CLI::IsMember({"skirt", "coat", "suit"}))
       ->capture_default_str();
   verb->add_option("--seed", c.set.seed, "the person; same seed, same files")->capture_default_str();
+  verb->add_option("--light-seed", c.set.light_seed, "another light on the same person (default: the seed's)");
+  verb->add_option("--light", c.light, "also write the light, JSON as `bodyloom animate motion --relight` takes it")
+      ->type_name("FILE");
   verb->add_option("--size", c.set.size_px, "pixels, width and height")
       ->check(CLI::Range(32, 4096))
       ->capture_default_str();

@@ -2,52 +2,37 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "apps/command_callbacks.h"
 #include "apps/neural/animate_options.h"
 #include "apps/neural/guided_report.h"
 #include "apps/neural/neural_verbs.h"
+#include "apps/neural/score_options.h"
 
 namespace bodyloom {
 namespace {
 
 struct AnimateGuidedArguments {
   AnimateGuidedRequest request;
-  std::string background = "photo", score;
-  std::vector<int> score_photos = {1};
-  int score_frames = 8;
+  ScorePeopleRequest score;
+  std::string background = "photo";
   bool as_seen = false, virtual_views = false;
 };
 
-ScoreGuidedSummary Score(const AnimateGuidedArguments& options) {
-  const AnimateGuidedRequest& a = options.request;
-  ScoreGuidedRequest request;
-  request.run = a.run, request.data = options.score, request.body = a.photo.body;
-  request.photos = options.score_photos, request.frames = options.score_frames;
-  request.completion = a.completion, request.anywhere = a.anywhere;
-  request.sheet = a.sheet, request.json = a.json, request.weights = a.weights;
-  request.threads = a.threads, request.device = a.device;
-  return RunWithBar("scores", ScoreGuided, request);
-}
-
 void Run(AnimateGuidedArguments options) {
   AnimateGuidedRequest& request = options.request;
-  if (options.score.empty() && (request.photo.image.empty() || request.out.empty())) {
-    throw RequestError("--image and --out are needed (or --score, to measure on a multi-person dataset)");
-  }
-  if (!options.score.empty() &&
-      (request.shape_of_motion || !request.view_yaw.empty() || !request.garment.from.empty())) {
-    throw RequestError("--score measures people as they are: not with --shape, --view-yaw or --garment-from");
-  }
+  const bool scored = IsScored(options.score, request);
   request.background = ParsePhotoBackground(options.background);
   if (options.as_seen) request.completion = MapCompletion::kNone;
   if (options.virtual_views) request.completion = MapCompletion::kVirtualViews;
-  if (options.score.empty()) {
+  if (!scored) {
+    request.weights = options.score.weights;
     Print(RunWithBar("animate", AnimateGuided, request), request);
-  } else {
-    Print(Score(options));
+    return;
   }
+  TakeFrom(request, &options.score);
+  options.score.completion = request.completion, options.score.anywhere = request.anywhere;
+  Print(RunWithBar("scores", ScoreGuided, options.score));
 }
 
 }  // namespace
@@ -84,14 +69,7 @@ void AddAnimateGuided(CLI::App& animate, Action* action) {
   verb->add_option("--sheet", request.sheet, "Contact sheet: photo, what is known, labels, result");
   verb->add_option("--uv-maps", request.uv_maps, "Picture of the coherent maps and the virtual views");
   verb->add_option("--json", request.json, "Report with times");
-  verb->add_option("--score", options->score, "Instead: measure on the test people of this multi-person dataset");
-  verb->add_option("--score-photos", options->score_photos, "Numbers of photos to measure with, such as 1 2 4")
-      ->check(CLI::Range(1, 64))
-      ->capture_default_str();
-  verb->add_option("--score-frames", options->score_frames, "Pictures of each person to compare with")
-      ->check(CLI::Range(1, 100000))
-      ->capture_default_str();
-  AddLikenessWeights(verb, &request.weights, "alexnet and lpips_alex for LPIPS, vgg19 for contextual scores");
+  AddScoreOptions(verb, &options->score);
   AddDeviceOptions(verb, &request);
   verb->footer(
       "Example:\n"

@@ -58,6 +58,9 @@ void AddAnimateMotion(CLI::App& animate, Action* action) {
   verb->add_option("--data", request->data,
                    "A dataset of the same person: the result is compared with its pictures (not with --view-yaw, "
                    "--freeze or --speed)");
+  verb->add_option("--iuv", request->iuv,
+                   "With --data: what its pixels show of the body, a folder of DensePose's IUV images, or \"own\", the "
+                   "dataset's (default: the tracked body)");
   verb->add_option("--out", request->out, "The video, .mp4")->required();
   verb->add_option("--body", request->body, "The track's body (default: the built-in body)");
   verb->add_option("--speed", request->speed, "Plays the motion so many times as fast: clothes move differently")
@@ -71,6 +74,8 @@ void AddAnimateMotion(CLI::App& animate, Action* action) {
       ->needs(full_size);
   verb->add_option("--relight", request->relight,
                    "Other light: an environment image (equirectangular), or JSON with lights (docs/relighting.md)");
+  verb->add_flag("--true-normals", request->true_normals,
+                 "With --relight and --data: by the dataset's normals, to see what the predicted ones cost");
   verb->add_option("--warmup", request->warmup, "Passes of the first frame through the network before it counts")
       ->capture_default_str()
       ->check(CLI::Range(0, 1000));

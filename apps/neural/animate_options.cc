@@ -27,6 +27,12 @@ void AddPhotoOptions(CLI::App* verb, PhotoAnimationRequest* request) {
       ->check(CLI::IsMember({"photo", "motion"}))
       ->default_str("photo");
   AddViewYaw(verb, &request->view_yaw);
+  verb->add_option(
+      "--image-iuv", request->photo.iuv,
+      "What the photo's pixels show of the body, by an estimate from it: DensePose's IUV image, or a folder "
+      "of one a frame (default: the tracked body)");
+  verb->add_option("--iuv", request->iuv,
+                   "The same of the motion's pictures, a folder of IUV images: not with --view-yaw");
 }
 
 void AddLikenessWeights(CLI::App* verb, std::string* weights, const char* what) {

@@ -23,7 +23,7 @@ inline constexpr const char* kPhotoBackgroundHelp =
 /// What that option means.
 PhotoBackground ParsePhotoBackground(const std::string& option);
 
-/// --views, --garment-from, --parts, --shape, --view-yaw.
+/// --views, --garment-from, --parts, --shape, --view-yaw, --image-iuv, --iuv.
 void AddPhotoOptions(CLI::App* verb, PhotoAnimationRequest* request);
 
 /// --weights of the verbs that print LPIPS or contextual scores; `what`: the files' names and what they are for.

@@ -7,6 +7,7 @@
 #include "apps/command_callbacks.h"
 #include "apps/neural/animate_options.h"
 #include "apps/neural/neural_verbs.h"
+#include "apps/neural/score_options.h"
 #include "bodyloom/pipelines/neural/photo/animate_photo.h"
 
 namespace bodyloom {
@@ -14,12 +15,21 @@ namespace {
 
 struct AnimatePhotoArguments {
   AnimatePhotoRequest request;
+  ScorePeopleRequest score;
   std::string background = "photo";
 };
 
-void Run(const AnimatePhotoArguments& options) {
-  AnimatePhotoRequest request = options.request;
+void Run(AnimatePhotoArguments options) {
+  AnimatePhotoRequest& request = options.request;
   request.background = ParsePhotoBackground(options.background);
+  if (IsScored(options.score, request)) {
+    TakeFrom(request, &options.score);
+    options.score.anywhere = request.whole_window;
+    Print(RunWithBar("scores", ScorePhoto, options.score));
+    return;
+  }
+  if (request.track.empty()) throw RequestError("--track is needed: the motion");
+  if (!options.score.weights.empty()) throw RequestError("--weights measure the pictures of --score");
   const AnimatePhotoSummary summary = RunWithBar("animate", AnimatePhoto, request);
   std::printf("%d frames, %.0f %% of the texture seen, network %.0f ms a frame, %.1f frames/s rendered and written\n",
               summary.frames, 100 * summary.texels_seen, summary.network_ms, summary.frames_per_second);
@@ -35,16 +45,15 @@ void AddAnimatePhoto(CLI::App& animate, Action* action) {
   AnimatePhotoRequest& request = options->request;
   verb->add_option("--run", request.run, "Folder of a run of `bodyloom train photo`")->required();
   verb->add_option("--image", request.photo.image,
-                   "The photo: a picture, a video, a folder of pictures, or a single-person dataset")
-      ->required();
+                   "The photo: a picture, a video, a folder of pictures, or a single-person dataset");
   verb->add_option("--image-track", request.photo.track, "Its track, .npz (default: the single-person dataset's own)");
   verb->add_option("--image-frame", request.photo.frame, "Which frame of image and track")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   verb->add_option("--image-labels", request.photo.labels,
                    "DensePose's parts of the photo, which give the silhouette (default: GrabCut)");
-  verb->add_option("--track", request.track, "The motion: a track, .npz")->required();
-  verb->add_option("--out", request.out, "The video, .mp4")->required();
+  verb->add_option("--track", request.track, "The motion: a track, .npz");
+  verb->add_option("--out", request.out, "The video, .mp4");
   verb->add_option("--body", request.photo.body, "The tracks' body (default: the built-in body)");
   AddPhotoOptions(verb, &request);
   verb->add_option("--background", options->background, kPhotoBackgroundHelp)->capture_default_str();
@@ -53,6 +62,7 @@ void AddAnimatePhoto(CLI::App& animate, Action* action) {
   verb->add_option("--sheet", request.sheet, "Contact sheet: photo, its texture, the completed one, six frames");
   verb->add_option("--texture", request.texture, "The completed texture as an image");
   verb->add_option("--json", request.json, "Report with times");
+  AddScoreOptions(verb, &options->score);
   AddDeviceOptions(verb, &request);
   verb->footer(
       "Example:\n"

@@ -11,7 +11,9 @@ std::string CommandLine(const AnimateMotionRequest& request) {
     if (!value.empty()) line += std::string(" ") + option + " " + value;
   };
   add("--run", request.run), add("--track", request.track), add("--data", request.data), add("--body", request.body);
+  add("--iuv", request.iuv);
   add("--background", request.background), add("--relight", request.relight);
+  line += request.true_normals ? " --true-normals" : "";
   if (request.speed != 1) add("--speed", Concatenate(request.speed));
   if (request.shape_of_track) add("--shape", "track");
   add("--freeze", request.freeze);

@@ -3,13 +3,9 @@
 #pragma once
 
 #include "bodyloom/pipelines/neural/guided/animate_guided.h"
-#include "bodyloom/pipelines/neural/guided/score_guided.h"
 
 namespace bodyloom {
 
 void Print(const AnimateGuidedSummary& summary, const AnimateGuidedRequest& request);
-
-/// A line a number of photos.
-void Print(const ScoreGuidedSummary& summary);
 
 }  // namespace bodyloom

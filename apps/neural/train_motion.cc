@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/command_callbacks.h"
+#include "apps/neural/motion_data_options.h"
 #include "apps/neural/neural_verbs.h"
 #include "apps/neural/training_options.h"
 #include "apps/neural/training_report.h"
@@ -56,15 +57,9 @@ void AddTrainMotion(CLI::App& train, Action* action) {
   auto parsed = std::make_shared<TrainMotionArguments>();
   TrainMotionRendererRequest& request = parsed->request;
   TrainMotionOptions& options = request.options;
-  verb->add_option("--data", request.data.data,
-                   "A single-person dataset (bodyloom synth-person), or a video or folder of images")
-      ->required();
-  verb->add_option("--track", request.data.track, "The clip's track (default: the single-person dataset's own)");
+  AddMotionDataOptions(verb, &request.data);
   verb->add_option("--out", request.out, "Folder of the run: config.json, checkpoint.bin, metrics.csv, previews")
       ->required();
-  verb->add_option("--body", request.data.body, "The track's body (default: the built-in body)");
-  verb->add_option("--part-labels", request.data.part_labels,
-                   "For a video: DensePose's parts (.npz), for silhouette and classes");
   AddSurfaceMotionOptions(verb, &request.data.motion, &request.cameras, &request.view);
   AddProfileOption(verb, &parsed->profile);
   verb->add_option("--descriptor", parsed->descriptor,

@@ -16,10 +16,10 @@ run takes minutes. Needs nothing but Python; --motions is a folder with motion/c
 import argparse
 import csv
 import json
-import math
 import pathlib
-import subprocess
 import sys
+
+from runs import call, mean_and_deviation, text
 
 TRAIN = [f"motion/cmu_bvh/05_{n:02d}" for n in (1, 2, 3, 4, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 19)]
 TRAIN += ["aistpp/motions/gBR_sBM_cAll_d06_mBR2_ch06"]
@@ -35,15 +35,6 @@ def motion_file(folder, name):
         if path.exists():
             return str(path)
     sys.exit(f"{folder / name}: no .bvh.gz, .bvh or .pkl of this name")
-
-
-def call(arguments, log):
-    """Runs a command to its end; its lines go to `log`. A command that fails ends the program."""
-    with open(log, "a", encoding="utf-8") as lines:
-        lines.write(" ".join(arguments) + "\n")
-        lines.flush()
-        if subprocess.run(arguments, stdout=lines, stderr=lines, check=False).returncode != 0:
-            sys.exit(f"stopped in, or failed: {' '.join(arguments)}\nsee {log}")
 
 
 def make_dancer(o, name, motions, frames, speeds):
@@ -82,16 +73,6 @@ def train_and_score(o, dances, test, descriptor, share, seed):
     call([o.bodyloom, "animate", "motion", "--run", str(run), "--data", str(test), "--like", str(dances), "--out",
           str(run / "test.mp4"), "--frames", str(run / "frames.csv"), "--json", str(run / "scores.json"), "--threads", "1"],
          run / "log.txt")
-
-
-def mean_and_deviation(values):
-    mean = sum(values) / len(values)
-    return mean, math.sqrt(sum((v - mean) ** 2 for v in values) / (len(values) - 1)) if len(values) > 1 else 0.0
-
-
-def text(values, digits=4):
-    mean, deviation = mean_and_deviation(values)
-    return f"{mean:.{digits}f} ± {deviation:.{digits}f}"
 
 
 def slope(frames, column):

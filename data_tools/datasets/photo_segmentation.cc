@@ -7,6 +7,7 @@
 #include <opencv2/photo.hpp>
 
 #include "bodyloom/data_tools/datasets/label_of_part.h"
+#include "bodyloom/data_tools/datasets/nearest_pixel.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/render/image_mat.h"
 
@@ -65,21 +66,10 @@ std::vector<uint8_t> LabelsFromBody(const Image& picture, const std::vector<uint
   for (size_t i = 0; i < area; ++i) body.data[i] = parts[i] != 0 ? 255 : 0;
   BODYLOOM_CHECK(cv::countNonZero(body) > 0, "labels from the body: the body is not in the picture");
   const cv::Mat foreground = ForegroundMask(picture, body);
-  // For every pixel the nearest one of the body: OpenCV numbers the zeros of the picture it is given.
-  cv::Mat distance, nearest;
-  cv::distanceTransform(255 - body, distance, nearest, cv::DIST_L2, cv::DIST_MASK_5, cv::DIST_LABEL_PIXEL);
-  std::vector<uint8_t> part_of(area + 1, 0);
-  for (int y = 0; y < body.rows; ++y) {
-    for (int x = 0; x < body.cols; ++x) {
-      if (body.at<uchar>(y, x) != 0) part_of.at(nearest.at<int>(y, x)) = parts[size_t(y) * body.cols + x];
-    }
-  }
+  const std::vector<int> nearest = NearestMarked(parts, picture.width, picture.height);
   std::vector<uint8_t> labels(area, 0);
-  for (int y = 0; y < body.rows; ++y) {
-    for (int x = 0; x < body.cols; ++x) {
-      if (foreground.at<uchar>(y, x) == 0) continue;
-      labels[size_t(y) * body.cols + x] = static_cast<uint8_t>(LabelOfPart(part_of.at(nearest.at<int>(y, x))));
-    }
+  for (size_t i = 0; i < area; ++i) {
+    if (foreground.data[i] != 0) labels[i] = static_cast<uint8_t>(LabelOfPart(parts[nearest[i]]));
   }
   return labels;
 }

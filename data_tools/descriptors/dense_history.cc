@@ -38,7 +38,8 @@ void AddGaussian(double x, double y, double sigma, int width, int height, uint16
 
 }  // namespace
 
-DenseHistory::DenseHistory(const PersonFrames& frames, int past) : frames_(frames), past_(past) {
+DenseHistory::DenseHistory(const PersonFrames& frames, int past, const EstimatedPixels* estimated)
+    : frames_(frames), past_(past), estimated_(estimated) {
   BODYLOOM_CHECK(past >= 1, "dense history: ", past, " frames, expected at least one");
 }
 
@@ -47,7 +48,11 @@ DenseHistory::Planes DenseHistory::MakePlanes(int t) const {
   const size_t area = size_t(window.width) * window.height;
   Planes planes(kChannelsOfFrame * area);
   std::vector<float> uv(2 * area), body(area);
-  frames_.BodyMaps(t, uv, body);
+  if (estimated_ != nullptr) {
+    estimated_->BodyMaps(window, t, uv, body);
+  } else {
+    frames_.BodyMaps(t, uv, body);
+  }
   const auto code = [](float value) {
     return static_cast<uint16_t>(std::lround(std::clamp(value, 0.0F, 1.0F) * kUnit));
   };

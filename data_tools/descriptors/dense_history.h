@@ -3,8 +3,9 @@
 /// before it, in the picture's plane (Wang et al., "Dance In the Wild: Monocular Human Animation With Neural Dynamic
 /// Appearance Synthesis", 2021).
 ///
-/// Coordinates and keypoints are those of the tracked body, not a detector's: what the descriptor knows differs from
-/// the surface's normals and velocities (PersonFrames::MotionMaps), and not how well it is known.
+/// Keypoints are those of the tracked body, not a detector's, and so are the coordinates unless estimates are given: then
+/// what the descriptor knows differs from the surface's normals and velocities (PersonFrames::MotionMaps), and not how
+/// well it is known.
 #pragma once
 
 #include <cstdint>
@@ -15,6 +16,7 @@
 #include <span>
 #include <vector>
 
+#include "bodyloom/data_tools/descriptors/estimated_pixels.h"
 #include "bodyloom/data_tools/descriptors/person_frames.h"
 
 namespace bodyloom {
@@ -26,9 +28,9 @@ class DenseHistory {
   static constexpr int kChannelsOfFrame = 6;
   static constexpr double kKeypointSigma = 1.0 / 64;
 
-  /// `past`: frames, the newest the frame itself. Keeps a reference to `frames`. Throws std::invalid_argument for fewer
-  /// than one.
-  DenseHistory(const PersonFrames& frames, int past);
+  /// `past`: frames, the newest the frame itself. `estimated`: where pixels lie on the body; nullptr: as the tracked body
+  /// has it. Keeps references. Throws std::invalid_argument for fewer frames than one.
+  DenseHistory(const PersonFrames& frames, int past, const EstimatedPixels* estimated = nullptr);
 
   [[nodiscard]] int channels() const { return kChannelsOfFrame * past_; }
 
@@ -45,6 +47,7 @@ class DenseHistory {
 
   const PersonFrames& frames_;
   int past_;
+  const EstimatedPixels* estimated_;
   mutable std::mutex mutex_;
   mutable std::map<int, std::shared_ptr<const Planes>> kept_;
   mutable std::deque<int> order_;  ///< of those kept, the oldest first

@@ -113,14 +113,10 @@ class PersonFrames::Impl {
     std::fill(uv.begin(), uv.end(), 0.0F);
     std::fill(mask.begin(), mask.end(), 0.0F);
     if (!shown_.HasResult(t)) return;
-    const MatrixX3d vertices = posed_.Vertices(t);
-    const Camera camera = CameraInWindow(shown_.CameraAt(t), window_, t);
-    VisibilityBuffer buffer;
-    buffer.Render(vertices, body_.data().faces, camera);
     ResolveRequest request;
     request.atlas_uv = true;
-    ResolvedPixels pixels;
-    ResolvePixels(buffer, body_, vertices, camera, request, &pixels);
+    VisibilityBuffer buffer;
+    const ResolvedPixels pixels = Resolve(t, request, &buffer);
     const PixelBox& box = pixels.box;
     for (int y = box.y_begin; y < box.y_end; ++y) {
       for (int x = box.x_begin; x < box.x_end; ++x) {
@@ -131,6 +127,26 @@ class PersonFrames::Impl {
         mask[at] = 1;
       }
     }
+  }
+
+  [[nodiscard]] BodySurface Surface(int t) const {
+    const size_t area = size_t(window_.width) * window_.height;
+    BodySurface surface = {window_.width, window_.height, std::vector<uint8_t>(area), std::vector<float>(3 * area)};
+    if (!shown_.HasResult(t)) return surface;
+    ResolveRequest request;
+    request.part = request.normal = true;
+    VisibilityBuffer buffer;
+    const ResolvedPixels pixels = Resolve(t, request, &buffer);
+    const PixelBox& box = pixels.box;
+    for (int y = box.y_begin; y < box.y_end; ++y) {
+      for (int x = box.x_begin; x < box.x_end; ++x) {
+        if (buffer.FaceAt(x, y) < 0) continue;
+        const size_t at = size_t(y) * window_.width + x, from = box.IndexOf(x, y);
+        surface.parts[at] = pixels.part[from];
+        for (size_t c = 0; c < 3; ++c) surface.normals[area * c + at] = pixels.normal[3 * from + c];
+      }
+    }
+    return surface;
   }
 
   [[nodiscard]] Eigen::Matrix<double, Eigen::Dynamic, 2> Keypoints(int t) const {
@@ -153,6 +169,16 @@ class PersonFrames::Impl {
   [[nodiscard]] int Segment(int t) const { return segment_.at(InTrack(t)); }
 
  private:
+  /// What the pixels of frame t's window see of the body.
+  ResolvedPixels Resolve(int t, const ResolveRequest& request, VisibilityBuffer* buffer) const {
+    const MatrixX3d vertices = posed_.Vertices(t);
+    const Camera camera = CameraInWindow(shown_.CameraAt(t), window_, t);
+    buffer->Render(vertices, body_.data().faces, camera);
+    ResolvedPixels pixels;
+    ResolvePixels(*buffer, body_, vertices, camera, request, &pixels);
+    return pixels;
+  }
+
   [[nodiscard]] size_t Texels() const { return size_t(options_.uv_size) * options_.uv_size; }
 
   [[nodiscard]] int InTrack(int t) const { return options_.shown.empty() ? t : options_.shown.at(t); }
@@ -209,6 +235,7 @@ const PersonWindow& PersonFrames::window() const { return impl_->window(); }
 const PersonFramesOptions& PersonFrames::options() const { return impl_->options(); }
 void PersonFrames::MotionMaps(int t, std::span<float> maps) const { impl_->MotionMaps(t, maps); }
 Eigen::Matrix<double, Eigen::Dynamic, 2> PersonFrames::Keypoints(int t) const { return impl_->Keypoints(t); }
+BodySurface PersonFrames::Surface(int t) const { return impl_->Surface(t); }
 void PersonFrames::BodyMaps(int t, std::span<float> uv, std::span<float> mask) const { impl_->BodyMaps(t, uv, mask); }
 
 }  // namespace bodyloom

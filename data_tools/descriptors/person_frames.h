@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "bodyloom/data_tools/datasets/body_truth.h"
 #include "bodyloom/data_tools/descriptors/surface_motion.h"
 #include "bodyloom/geometry/body_model.h"
 #include "bodyloom/geometry/track.h"
@@ -64,6 +65,10 @@ class PersonFrames {
   /// What the pixels of frame t's window see of the body: atlas coordinates (2 × height × width, 0 elsewhere) and a
   /// mask (height × width). May be called by several threads.
   void BodyMaps(int t, std::span<float> uv, std::span<float> mask) const;
+
+  /// Which part of the body they see and its normal in the camera's axes. Of a frame without a result: nothing. May be
+  /// called by several threads. Throws std::invalid_argument when the body has no charts.
+  [[nodiscard]] BodySurface Surface(int t) const;
 
   /// The 17 keypoints of COCO (CocoNames, geometry/observations.h) of frame t's body, pixels of its window, 17×2; NaN
   /// for those behind the camera and for a frame without a result. May be called by several threads. Throws

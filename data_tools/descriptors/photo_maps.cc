@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/data_tools/descriptors/photo_maps.h"
 
+#include <utility>
+
 #include "bodyloom/data_tools/descriptors/posed_track.h"
+#include "bodyloom/data_tools/descriptors/texels_of_pixels.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/uv_bake.h"
 #include "bodyloom/render/resolve_pixels.h"
@@ -46,6 +49,8 @@ class PhotoMaps::Impl {
     BODYLOOM_CHECK(options.size > 0 && options.texture_size > 0, "photo maps: a window of ", options.size,
                    " pixels, a texture of ", options.texture_size, " texels");
     BODYLOOM_CHECK(body.has_parts(), "photo maps: the body model has no parts");
+    BODYLOOM_CHECK(options.yaw_deg.empty() || options.estimated == nullptr,
+                   "photo maps: estimates show the picture's own view");
     window_ = SquareWindow(posed_, track.camera, options);
     table_ = options.texels;
     if (table_ == nullptr) {
@@ -56,6 +61,7 @@ class PhotoMaps::Impl {
     BODYLOOM_CHECK(table_->width == options.texture_size && table_->height == options.texture_size,
                    "photo maps: texels of ", table_->width, "x", table_->height, " for a texture of ",
                    options.texture_size);
+    if (options.estimated != nullptr) texel_parts_ = PartsOfTexels(body, *table_);
   }
 
   [[nodiscard]] PhotoMap At(int t) const {
@@ -66,6 +72,10 @@ class PhotoMaps::Impl {
     map.texel_pixels.assign(2 * texels, 0);
     map.texel_cosine.assign(texels, 0);
     if (!track_.HasResult(t)) return map;
+    if (options_.estimated != nullptr) {
+      FillEstimated(t, &map);
+      return map;
+    }
     const MatrixX3d vertices = posed_.Vertices(t);
     const Camera camera = CameraInWindow(track_.CameraAt(t), window_, t);
     VisibilityBuffer buffer;
@@ -89,6 +99,14 @@ class PhotoMaps::Impl {
   [[nodiscard]] const std::shared_ptr<const UvTexelTable>& texels() const { return table_; }
 
  private:
+  void FillEstimated(int t, PhotoMap* map) const {
+    std::vector<float> mask(map->parts.size());
+    options_.estimated->BodyMaps(window_, t, map->uv, mask, map->parts);
+    TexelPlaces places =
+        TexelsOfPixels(map->uv, map->parts, options_.size, options_.size, texel_parts_, options_.texture_size);
+    map->texel_pixels = std::move(places.pixels), map->texel_cosine = std::move(places.seen);
+  }
+
   void FillPixels(const MatrixX3d& vertices, const Camera& camera, const VisibilityBuffer& buffer,
                   PhotoMap* map) const {
     ResolveRequest request;
@@ -114,6 +132,7 @@ class PhotoMaps::Impl {
   PosedTrack posed_;
   PersonWindow window_;
   std::shared_ptr<const UvTexelTable> table_;
+  std::vector<uint8_t> texel_parts_;  ///< where there are estimates
 };
 
 PhotoMaps::PhotoMaps(const BodyModel& body, const Track& track, const PhotoMapsOptions& options)

@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "bodyloom/data_tools/descriptors/estimated_pixels.h"
 #include "bodyloom/geometry/body_model.h"
 #include "bodyloom/geometry/track.h"
 #include "bodyloom/geometry/uv_texels.h"
@@ -19,6 +20,9 @@ struct PhotoMapsOptions {
   int texture_size = 256;       ///< U: texels of the atlas' sides
   double margin = 0.15;         ///< around the body (PersonWindowOptions::margin)
   std::vector<double> yaw_deg;  ///< by frame: turns the view (PersonFramesOptions::yaw_deg); empty: the track's own
+  /// What pixels show of the body by estimates from the pictures, of all frames; null: what the tracked body says, which
+  /// places the window in either case. With estimates a texel that is seen has the cosine 1. Not with yaw_deg.
+  std::shared_ptr<const EstimatedPixels> estimated;
   /// Texels of the body at that size, when a caller has them already (many clips of one body); null: made.
   std::shared_ptr<const UvTexelTable> texels;
   int num_threads = 1;

@@ -19,7 +19,7 @@ GuidedPicture DrawGuided(GuidedModel* model, const GuidedSource& source, const P
   pose.size = size;
   pose.parts = frame.parts;
   const std::span<const PhotoFrame> one(&pose, 1);
-  CodeBox box = PersonBox(one, multiple, reach);
+  CodeBox box = PersonBox(pose, multiple, reach);
   const bool somebody = box.width > 0;
   if (reach <= 0) box = {0, 0, size / multiple, size / multiple};
   if (share != nullptr) {

@@ -27,9 +27,8 @@ GuidedBatch MakeGuidedBatch(const PhotoSource& people, const GuidedConfig& confi
   const GuidedTensors target = TensorsOf(targets);
   BODYLOOM_CHECK(result.source.image.defined() && target.image.defined(),
                  "pose-guided training: a frame without image or labels");
-  result.box = PersonBox(targets, multiple, reach);
-  if (result.box.width == 0) result.box = {0, 0, targets[0].size / multiple, targets[0].size / multiple};
-  result.target = CroppedPixels(target, result.box, multiple);
+  result.boxes = PersonBoxes(targets, multiple, reach);
+  result.target = CroppedEach(target, result.boxes, multiple);
   GuidedPseudo pseudo = PseudoOf(target, known);
   if (config.profile.contour_hints) {
     const SourceBody body = {people.texel_parts, {}, neighbours, {}, config.source_labels};
@@ -42,7 +41,7 @@ GuidedBatch MakeGuidedBatch(const PhotoSource& people, const GuidedConfig& confi
     pseudo.contour_classes = of_source.classes;
     pseudo.extent = of_source.extent;
   }
-  result.pseudo = CroppedPixels(pseudo, result.box, multiple);
+  result.pseudo = CroppedEach(pseudo, result.boxes, multiple);
   return result;
 }
 

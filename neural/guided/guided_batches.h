@@ -5,6 +5,7 @@
 #include <torch/torch.h>
 
 #include <cstdint>
+#include <vector>
 
 #include "bodyloom/geometry/base/prefetcher.h"
 #include "bodyloom/neural/guided/guided_config.h"
@@ -16,12 +17,14 @@ namespace bodyloom {
 
 struct GuidedBatch {
   GuidedTensors source;  ///< whole windows
-  GuidedTensors target;  ///< cropped to the box, as the renderer will crop
+  GuidedTensors target;  ///< each cropped to its own box, as the renderer will crop, all of one size
   GuidedPseudo pseudo;   ///< of the target
-  CodeBox box;
+  std::vector<CodeBox> boxes;
+  /// Of what is cropped already, all: targets, and the source's codes by CroppedEach.
+  [[nodiscard]] CodeBox Whole() const { return {0, 0, boxes.at(0).width, boxes.at(0).height}; }
 };
 
-/// Of step `step` (neural/guided/guided_plan.h). The box is that of all targets, grown by `reach` pixels.
+/// Of step `step` (neural/guided/guided_plan.h). The boxes are grown by `reach` pixels.
 /// `neighbours`: of the people's atlas, for configurations with contour hints.
 GuidedBatch MakeGuidedBatch(const PhotoSource& people, const GuidedConfig& config, uint64_t seed, int64_t step,
                             int batch, int reach, const TexelNeighbours* neighbours = nullptr);

@@ -19,7 +19,7 @@ struct GuidedScores {
   double image_l1 = 0;        ///< mean |I − I_true| over foreground and channels
   double psnr_db = 0;         ///< over the foreground, range 1
   double silhouette_iou = 0;  ///< alpha at least ½
-  double label_iou = 0;       ///< mean over the classes other than the background that occur
+  double label_iou = 0;       ///< mean over the classes other than the background that occur; NaN: no labels are drawn
   double lpips = 0;           ///< mean over frames; NaN where not requested
   /// The paper's temporal stability: the standard deviation of LPIPS over a person's frames, pooled over people,
   /// sqrt(Σ_p Σ_f (d_pf − mean_p)² / frames).

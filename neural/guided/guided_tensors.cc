@@ -22,6 +22,39 @@ Tensor Filled(const std::vector<T>& values, const char* name, int64_t channels, 
   return OnDevice(tensor.to(torch::kFloat));
 }
 
+/// What the frame shows of the body, grown by `reach` pixels, and of its labels; empty where there is neither.
+PixelBox AroundPerson(const PhotoFrame& frame, int reach) {
+  PixelBox around = {1 << 30, 1 << 30, 0, 0};
+  for (int y = 0; y < frame.size; ++y) {
+    for (int x = 0; x < frame.size; ++x) {
+      const size_t i = size_t(y) * frame.size + x;
+      const bool body = frame.parts[i] != 0;
+      if (!body && (frame.labels.empty() || frame.labels[i] == 0)) continue;
+      const int grow = body ? reach : 0;
+      around = {std::min(around.x_begin, x - grow), std::min(around.y_begin, y - grow),
+                std::max(around.x_end, x + 1 + grow), std::max(around.y_end, y + 1 + grow)};
+    }
+  }
+  return around;
+}
+
+CodeBox CellsOf(const PixelBox& box, int multiple) {
+  return {box.x_begin / multiple, box.y_begin / multiple, box.width() / multiple, box.height() / multiple};
+}
+
+/// Of B maps each its own box of `scale` values a cell; undefined maps stay undefined.
+Tensor CropEach(const Tensor& map, std::span<const CodeBox> boxes, int scale) {
+  if (!map.defined()) return map;
+  std::vector<Tensor> cropped;
+  for (size_t b = 0; b < boxes.size(); ++b) {
+    const auto at = static_cast<int64_t>(b);
+    const CodeBox& box = boxes[b];
+    cropped.push_back(
+        Cropped(map.slice(0, at, at + 1), {box.x * scale, box.y * scale, box.width * scale, box.height * scale}));
+  }
+  return torch::cat(cropped, 0);
+}
+
 }  // namespace
 
 GuidedTensors TensorsOf(std::span<const PhotoFrame> frames) {
@@ -74,24 +107,21 @@ GuidedPseudo PseudoOf(const GuidedTensors& truth, std::span<const std::vector<ui
   return {truth.classes * silhouette, truth.image * silhouette, silhouette, {}, {}};
 }
 
-CodeBox PersonBox(std::span<const PhotoFrame> frames, int multiple, int reach) {
-  PixelBox around = {1 << 30, 1 << 30, 0, 0};
-  for (const PhotoFrame& frame : frames) {
-    for (int y = 0; y < frame.size; ++y) {
-      for (int x = 0; x < frame.size; ++x) {
-        const size_t i = size_t(y) * frame.size + x;
-        const bool body = frame.parts[i] != 0;
-        if (!body && (frame.labels.empty() || frame.labels[i] == 0)) continue;
-        const int grow = body ? reach : 0;
-        around = {std::min(around.x_begin, x - grow), std::min(around.y_begin, y - grow),
-                  std::max(around.x_end, x + 1 + grow), std::max(around.y_end, y + 1 + grow)};
-      }
-    }
-  }
+CodeBox PersonBox(const PhotoFrame& frame, int multiple, int reach) {
+  const PixelBox around = AroundPerson(frame, reach);
   if (around.empty()) return {};
-  const int size = frames[0].size, least = LeastBoxSide(multiple);
-  const PixelBox box = AlignedBox(around, {0, 0, size, size}, multiple, least, least);
-  return {box.x_begin / multiple, box.y_begin / multiple, box.width() / multiple, box.height() / multiple};
+  const int least = LeastBoxSide(multiple);
+  return CellsOf(AlignedBox(around, {0, 0, frame.size, frame.size}, multiple, least, least), multiple);
+}
+
+std::vector<CodeBox> PersonBoxes(std::span<const PhotoFrame> frames, int multiple, int reach) {
+  std::vector<PixelBox> around;
+  for (const PhotoFrame& frame : frames) around.push_back(AroundPerson(frame, reach));
+  std::vector<CodeBox> boxes;
+  for (const PixelBox& box : AlignedBoxes(around, {0, 0, frames[0].size, frames[0].size}, multiple)) {
+    boxes.push_back(CellsOf(box, multiple));
+  }
+  return boxes;
 }
 
 Tensor CroppedPixels(const Tensor& map, const CodeBox& box, int multiple) {
@@ -108,6 +138,23 @@ GuidedPseudo CroppedPixels(const GuidedPseudo& pseudo, const CodeBox& box, int m
   return {CroppedPixels(pseudo.classes, box, multiple), CroppedPixels(pseudo.image, box, multiple),
           CroppedPixels(pseudo.silhouette, box, multiple), CroppedPixels(pseudo.contour_classes, box, multiple),
           CroppedPixels(pseudo.extent, box, multiple)};
+}
+
+GuidedTensors CroppedEach(const GuidedTensors& tensors, std::span<const CodeBox> boxes, int multiple) {
+  return {CropEach(tensors.pose, boxes, multiple), CropEach(tensors.silhouette, boxes, multiple),
+          CropEach(tensors.classes, boxes, multiple), CropEach(tensors.image, boxes, multiple)};
+}
+
+GuidedPseudo CroppedEach(const GuidedPseudo& pseudo, std::span<const CodeBox> boxes, int multiple) {
+  return {CropEach(pseudo.classes, boxes, multiple), CropEach(pseudo.image, boxes, multiple),
+          CropEach(pseudo.silhouette, boxes, multiple), CropEach(pseudo.contour_classes, boxes, multiple),
+          CropEach(pseudo.extent, boxes, multiple)};
+}
+
+GuidedSource CroppedEach(const GuidedSource& source, std::span<const CodeBox> boxes) {
+  return {CropEach(source.sil_code, boxes, 1),
+          CropEach(source.gar_code, boxes, 1),
+          {CropEach(source.render_code.mean, boxes, 1), CropEach(source.render_code.log_variance, boxes, 1)}};
 }
 
 GuidedPicture PictureOf(const GuidedResult& result, const GuidedPseudo& pseudo, int64_t b, const CodeBox& box,

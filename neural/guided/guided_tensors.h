@@ -22,15 +22,24 @@ GuidedTensors TensorsOf(std::span<const PhotoFrame> frames);
 GuidedPseudo PseudoOf(std::span<const PseudoPicture> pictures);
 GuidedPseudo PseudoOf(const GuidedTensors& truth, std::span<const std::vector<uint8_t>> known);
 
-/// The cells (of `multiple` pixels) of the window where the person may be: around what the frames show of the body,
+/// The cells (of `multiple` pixels) of the window where the person may be: around what the frame shows of the body,
 /// grown by `reach` pixels, and of its labels; at least 32 pixels and two cells a side (or the whole window). Width 0
 /// where there is neither.
-CodeBox PersonBox(std::span<const PhotoFrame> frames, int multiple, int reach);
+CodeBox PersonBox(const PhotoFrame& frame, int multiple, int reach);
+/// The same of each frame, all of one size: instance norms see what they will see at work, one person and little else.
+/// Around nobody the window's middle.
+std::vector<CodeBox> PersonBoxes(std::span<const PhotoFrame> frames, int multiple, int reach);
 
 /// The box's pixels of a map of the window; undefined maps stay undefined.
 torch::Tensor CroppedPixels(const torch::Tensor& map, const CodeBox& box, int multiple);
 GuidedTensors CroppedPixels(const GuidedTensors& tensors, const CodeBox& box, int multiple);
 GuidedPseudo CroppedPixels(const GuidedPseudo& pseudo, const CodeBox& box, int multiple);
+
+/// Each of B pictures its own box, all of one size.
+GuidedTensors CroppedEach(const GuidedTensors& tensors, std::span<const CodeBox> boxes, int multiple);
+GuidedPseudo CroppedEach(const GuidedPseudo& pseudo, std::span<const CodeBox> boxes, int multiple);
+/// The source's codes where the boxes are.
+GuidedSource CroppedEach(const GuidedSource& source, std::span<const CodeBox> boxes);
 
 /// The picture of frame b, laid into a window of `size` pixels. Labels are those of `result` where alpha is at least ½
 /// (1 where GarNet predicts background or there is none), of `pseudo` where there is no GarNet and it knows them.

@@ -203,7 +203,7 @@ class GuidedTrainer : public TrainedSystem {
     Tensor predicted;
     if (config_.silhouettes) silhouette = predicted = torch::sigmoid(silhouette_logits);
     if (config_.garments) {
-      const Tensor logits = model_->Labels(source, batch.target.pose, predicted, batch.pseudo.classes, batch.box);
+      const Tensor logits = model_->Labels(source, batch.target.pose, predicted, batch.pseudo.classes, batch.Whole());
       classes = logits.argmax(1, true).to(torch::kFloat);
       if (!config_.silhouettes) silhouette = 1 - torch::softmax(logits, 1).slice(1, 0, 1);
     }
@@ -215,18 +215,19 @@ class GuidedTrainer : public TrainedSystem {
     SetRate(discriminator_optimizer_.get(), LinearDecayOverLastHalf(options_.discriminator_rate, step, options_.steps));
     const GuidedTensors& truth = batch.target;
     GuidedLosses losses;
-    const GuidedSource source = model_->EncodeSource(batch.source);
+    const GuidedSource source = CroppedEach(model_->EncodeSource(batch.source), batch.boxes);
+    const CodeBox whole = batch.Whole();
     Tensor total = torch::zeros({}, truth.image.options());
     Tensor silhouette_logits;
     if (config_.silhouettes) {
-      silhouette_logits = model_->Silhouette(source, truth.pose, batch.pseudo, batch.box);
+      silhouette_logits = model_->Silhouette(source, truth.pose, batch.pseudo, whole);
       const Tensor loss = L1Loss(torch::sigmoid(silhouette_logits), truth.silhouette);
       losses.silhouette = loss.item<double>();
       total = total + loss;
     }
     if (config_.garments) {
       const Tensor logits = model_->Labels(source, truth.pose, config_.silhouettes ? truth.silhouette : Tensor(),
-                                           batch.pseudo.classes, batch.box);
+                                           batch.pseudo.classes, whole);
       const Tensor one_hot = OneHot(truth.classes.squeeze(1).to(torch::kLong), kPhotoLabels);
       const Tensor loss =
           options_.labels_by_cross_entropy ? SoftLabelCrossEntropy(logits, one_hot) : SoftLabelL1Loss(logits, one_hot);
@@ -236,8 +237,7 @@ class GuidedTrainer : public TrainedSystem {
     const auto [silhouette, classes] = RenderInputs(batch, source, silhouette_logits, step);
     const RenderCode& code = source.render_code;
     const Tensor noise = code.log_variance.defined() ? RandnLike(code.mean) : Tensor();
-    const auto [image, mask] =
-        model_->Render(Draw(code, noise), truth.pose, silhouette, classes, batch.pseudo, batch.box);
+    const auto [image, mask] = model_->Render(Draw(code, noise), truth.pose, silhouette, classes, batch.pseudo, whole);
     Tensor render = L1Loss(image, truth.image);
     losses.image = render.item<double>();
     if (!config_.silhouettes && !config_.garments) {

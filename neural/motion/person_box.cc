@@ -2,6 +2,7 @@
 #include "bodyloom/neural/motion/person_box.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/neural/people/aligned_box.h"
@@ -48,7 +49,6 @@ std::vector<T> PlanesWithin(const std::vector<T>& planes, int width, int height,
 
 std::vector<PixelBox> PersonBoxes(std::span<const MotionFrame> frames, int reach, int multiple) {
   std::vector<PixelBox> needed;
-  int width = LeastBoxSide(multiple), height = width;
   const PixelBox window = {0, 0, frames[0].width, frames[0].height};
   for (const MotionFrame& frame : frames) {
     BODYLOOM_CHECK(frame.width == window.x_end && frame.height == window.y_end, "motion renderer: a frame of ",
@@ -58,12 +58,8 @@ std::vector<PixelBox> PersonBoxes(std::span<const MotionFrame> frames, int reach
   for (const MotionFrame& frame : frames) {
     const PixelBox body = BodyBox(frame);
     needed.push_back(body.empty() ? body : body.GrownBy(reach));
-    const PixelBox aligned = AlignedBox(needed.back(), window, multiple, width, height);
-    width = std::max(width, aligned.width());
-    height = std::max(height, aligned.height());
   }
-  for (PixelBox& box : needed) box = AlignedBox(box, window, multiple, width, height);
-  return needed;
+  return AlignedBoxes(std::move(needed), window, multiple);
 }
 
 MotionFrame Within(MotionFrame frame, const PixelBox& box) {

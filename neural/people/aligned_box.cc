@@ -35,4 +35,15 @@ PixelBox AlignedBox(const PixelBox& box, const PixelBox& window, int multiple, i
   return aligned;
 }
 
+std::vector<PixelBox> AlignedBoxes(std::vector<PixelBox> boxes, const PixelBox& window, int multiple) {
+  int width = LeastBoxSide(multiple), height = width;
+  for (const PixelBox& box : boxes) {
+    const PixelBox aligned = AlignedBox(box, window, multiple, width, height);
+    width = std::max(width, aligned.width());
+    height = std::max(height, aligned.height());
+  }
+  for (PixelBox& box : boxes) box = AlignedBox(box, window, multiple, width, height);
+  return boxes;
+}
+
 }  // namespace bodyloom

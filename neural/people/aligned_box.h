@@ -2,6 +2,8 @@
 /// Boxes that networks with strides can look at instead of a whole window.
 #pragma once
 
+#include <vector>
+
 #include "bodyloom/render/pixel_box.h"
 
 namespace bodyloom {
@@ -14,5 +16,8 @@ int LeastBoxSide(int multiple);
 /// strides, wherever the box lies. `window`: from (0, 0), its sides multiples of `multiple`. An empty box counts as the
 /// window's middle.
 PixelBox AlignedBox(const PixelBox& box, const PixelBox& window, int multiple, int least_width, int least_height);
+
+/// One for each of `boxes`, all of one size: the largest of theirs, at least LeastBoxSide a side.
+std::vector<PixelBox> AlignedBoxes(std::vector<PixelBox> boxes, const PixelBox& window, int multiple);
 
 }  // namespace bodyloom

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "bodyloom/data_tools/body/body_or_builtin.h"
@@ -14,6 +15,7 @@
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/pipelines/clock_text.h"
 #include "bodyloom/pipelines/files.h"
+#include "bodyloom/pipelines/report_json.h"
 
 namespace bodyloom {
 namespace {
@@ -23,7 +25,9 @@ std::string CommandLine(const SynthesizePersonRequest& c) {
   std::string line = "bodyloom synth-person";
   for (const std::string& motion : c.motions) line += " --motion " + motion;
   line += " --out " + c.out + " --garment " + ToString(c.set.garment);
-  line += " --seed " + std::to_string(c.set.seed) + " --size " + std::to_string(c.set.size_px);
+  line += " --seed " + std::to_string(c.set.seed);
+  if (c.set.light_seed) line += " --light-seed " + std::to_string(*c.set.light_seed);
+  line += " --size " + std::to_string(c.set.size_px);
   const auto add = [&](const char* option, double value) {
     std::array<char, 64> text{};
     std::snprintf(text.data(), text.size(), " %s %g", option, value);
@@ -35,6 +39,17 @@ std::string CommandLine(const SynthesizePersonRequest& c) {
   add("--fps", c.motion.fps), add("--yaw", c.set.yaw_deg), add("--elevation", c.set.elevation_deg);
   line += " --first " + std::to_string(c.motion.first_frame) + " --frames " + std::to_string(c.motion.num_frames);
   return c.body.empty() ? line : line + " --body " + c.body;
+}
+
+/// "linear": pictures are the surface's numbers times the light.
+nlohmann::ordered_json LightJson(const PersonLight& light) {
+  nlohmann::ordered_json lights = nlohmann::ordered_json::array();
+  for (size_t k = 0; k < light.towards.size(); ++k) {
+    const Eigen::Vector3f& towards = light.towards[k];
+    // In the viewer's axes.
+    lights.push_back({{"from", {towards.x(), -towards.y(), -towards.z()}}, {"intensity", light.strength[k]}});
+  }
+  return {{"directional", lights}, {"ambient", light.ambient}, {"encoding", "linear"}};
 }
 
 /// All of them in one world with y up.
@@ -66,6 +81,7 @@ SynthesizePersonReport SynthesizePerson(const SynthesizePersonRequest& request, 
   RequireReadable(request.body, "body model");
   RequireWritableFolder(request.out);
   RequireWritable(request.sheet);
+  RequireWritable(request.light);
   const std::shared_ptr<const BodyModel> body = BodyOrBuiltin(request.body);
   const Motion motion = LoadMotions(request, *body);
   callbacks.Update("person", 0);
@@ -91,6 +107,10 @@ SynthesizePersonReport SynthesizePerson(const SynthesizePersonRequest& request, 
   if (!request.sheet.empty()) {
     WriteImage(request.sheet, sheet.Picture());
     report.outputs.push_back(request.sheet);
+  }
+  if (!request.light.empty()) {
+    WriteReport(request.light, LightJson(report.set.light));
+    report.outputs.push_back(request.light);
   }
   return report;
 }

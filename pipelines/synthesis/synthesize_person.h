@@ -19,6 +19,7 @@ struct SynthesizePersonRequest {
   std::string body;                            ///< empty: the built-in body
   std::string out;                             ///< the folder
   std::string sheet;                           ///< also a contact sheet, .png or .jpg; empty: none
+  std::string light;                           ///< also the light, JSON as pipelines/people/relight_frames.h reads it
   /// progress, look, motion and command are set by SynthesizePerson.
   MakeSinglePersonDatasetOptions set;
 };
@@ -26,7 +27,7 @@ struct SynthesizePersonRequest {
 struct SynthesizePersonReport {
   MakeSinglePersonDatasetSummary set;
   int size_px = 0;                   ///< of the pictures
-  std::vector<std::string> outputs;  ///< the folder, and the sheet
+  std::vector<std::string> outputs;  ///< the folder, the sheet, the light
 };
 
 /// Makes the dataset and its sheet. Throws RequestError for speeds without a rate, std::runtime_error naming a file

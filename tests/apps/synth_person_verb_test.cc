@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "bodyloom/data_tools/datasets/multi_person_dataset.h"
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"
+#include "tests/support/test_files.h"
 
 namespace bodyloom {
 namespace {
@@ -48,6 +54,50 @@ TEST(SynthPersonVerb, SeveralMotionsFollowEachOtherWithAGap) {
   // The gap is a cut: the cloth of the second motion knows nothing of the first.
   EXPECT_THAT(result.out, HasSubstr(" 1 cuts"));
   for (int t = 0; t < 4; ++t) EXPECT_TRUE(set.Read(t).labels == set.Read(t + 4).labels) << t;
+}
+
+/// The light that is written is the light that is seen.
+TEST(SynthPersonVerb, TheSamePersonInAnotherLight) {
+  const ScratchFolder scratch;
+  const auto make = [&](const std::string& name, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {
+        "synth-person", "--motion",  "demo",  "--first",      "40",
+        "--frames",     "1",         "--out", scratch / name, "--size",
+        "192",          "--garment", "suit",  "--light",      scratch / (name + ".json")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const CommandResult result = RunCommand(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_THAT(result.out, HasSubstr(name + ".json"));
+    return SinglePersonDataset(scratch / name).Read(0);
+  };
+  const PersonFrame own = make("own", {}), other = make("other", {"--light-seed", "9"});
+  EXPECT_FALSE(own.rgb == other.rgb);
+  EXPECT_TRUE(own.labels == other.labels);
+  EXPECT_TRUE(own.normals == other.normals);
+  EXPECT_TRUE(own.background == other.background);
+  EXPECT_THAT(SinglePersonDataset(scratch / "other").info().command, HasSubstr("--light-seed 9"));
+  EXPECT_TRUE(make("again", {"--light-seed", "1"}).rgb == own.rgb) << "the seed's own";
+  const auto shading = [&](const std::string& name, const Eigen::Vector3d& n) {
+    const nlohmann::json light = nlohmann::json::parse(FileBytes(scratch / (name + ".json")));
+    EXPECT_EQ(light["encoding"], "linear");
+    double sum = light["ambient"];
+    for (const auto& one : light["directional"]) {
+      const std::vector<double> from = one["from"];  // the viewer's axes
+      sum += one["intensity"].get<double>() * std::max(0.0, n.x() * from[0] - n.y() * from[1] - n.z() * from[2]);
+    }
+    return sum;
+  };
+  std::vector<double> errors;
+  for (size_t i = 0; i < own.labels.bgr.size() / 3; i += 7) {
+    const uint8_t* const code = &own.normals.bgr[3 * i];
+    if (own.labels.bgr[3 * i] == 0 || own.rgb.bgr[3 * i] < 40) continue;
+    const Eigen::Vector3d n(NormalOfCode(code[2]), NormalOfCode(code[1]), NormalOfCode(code[0]));
+    const double seen = double(other.rgb.bgr[3 * i]) / own.rgb.bgr[3 * i];
+    errors.push_back(std::abs(seen / (shading("other", n) / shading("own", n)) - 1));
+  }
+  ASSERT_GT(errors.size(), 200U);
+  std::nth_element(errors.begin(), errors.begin() + errors.size() / 2, errors.end());
+  EXPECT_LT(errors[errors.size() / 2], 0.01);
 }
 
 TEST(SynthPersonVerb, TheSamePosesAtTwoSpeeds) {

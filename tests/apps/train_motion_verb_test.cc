@@ -9,8 +9,10 @@
 
 #include "bodyloom/data_tools/motion/freeze_track.h"
 #include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/data_tools/observations/part_labels.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/data_tools/video/video_reader.h"
+#include "bodyloom/geometry/base/check.h"
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/test_files.h"
@@ -282,6 +284,129 @@ TEST_F(TrainMotionVerb, TheDescriptorOf2dSystemsTrainsAndAnimates) {
     EXPECT_THAT(animated.out, HasSubstr("14 frames"));
   }
   EXPECT_EQ(Train("x", {"--descriptor", "keypoints"}).exit_code, 2);
+}
+
+TEST_F(TrainMotionVerb, EstimatesFromThePicturesStandInForTheBody) {
+  const CommandResult trained = Train("run", {"--steps", "2", "--train", "0-9", "--iuv", "own", "--validate-data",
+                                              scratch_ / "person", "--validate", "10-10"});
+  ASSERT_EQ(trained.exit_code, 0) << trained.err;
+  const auto score = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {
+        "animate", "motion",           "--run",  scratch_ / "run",    "--data",   scratch_ / "person",
+        "--out",   scratch_ / "a.mp4", "--json", scratch_ / "a.json", "--warmup", "1"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const CommandResult animated = RunCommand(arguments);
+    EXPECT_EQ(animated.exit_code, 0) << animated.err;
+    return nlohmann::json::parse(FileBytes(scratch_ / "a.json"))["scores"]["image_l1"].get<double>();
+  };
+  const double of_body = score({}), of_estimates = score({"--iuv", "own"});
+  EXPECT_NE(of_body, of_estimates);
+  EXPECT_EQ(of_estimates, score({"--iuv", scratch_ / "person/iuv"}));
+  EXPECT_THAT(
+      Train("x", {"--steps", "1", "--iuv", scratch_ / "person/iuv", "--validate-data", scratch_ / "person"}).err,
+      HasSubstr("expected \"own\""));
+  EXPECT_THAT(Train("x", {"--steps", "1", "--iuv", scratch_ / "person/labels"}).err, HasSubstr("labels/000000.png"));
+  fs::copy(scratch_ / "person/iuv", scratch_ / "fewer");
+  fs::remove(scratch_ / "fewer/000013.png");
+  EXPECT_THAT(Train("x", {"--steps", "1", "--iuv", scratch_ / "fewer"}).err,
+              HasSubstr("13 IUV images, the track has 14"));
+}
+
+TEST_F(TrainMotionVerb, ThePredictedNormalsAreWhatTheLightFallsOn) {
+  ASSERT_EQ(Train("run", {"--steps", "2", "--train", "0-9", "--validate", "10-10"}).exit_code, 0);
+  std::ofstream(scratch_ / "lights.json") << R"({"directional": [{"from": [1, 0.5, 1]}], "encoding": "linear"})";
+  const auto relight = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"animate",   "motion",
+                                          "--run",     scratch_ / "run",
+                                          "--out",     scratch_ / "a.mp4",
+                                          "--relight", scratch_ / "lights.json",
+                                          "--warmup",  "1",
+                                          "--threads", "1",
+                                          "--json",    scratch_ / "a.json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return RunCommand(arguments);
+  };
+  const auto light = [&](const std::vector<std::string>& more) {
+    const CommandResult result = relight(more);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return nlohmann::json::parse(FileBytes(scratch_ / "a.json"))["relight"]["coefficients"];
+  };
+  const std::string data = scratch_ / "person", track = scratch_ / "person/track.npz";
+  const nlohmann::json predicted = light({"--data", data, "--full-size", "--set", scratch_ / "set"});
+  EXPECT_EQ(predicted, light({"--track", track})) << "the dataset's normals are not looked at";
+  EXPECT_NE(predicted, light({"--data", data, "--true-normals", "--full-size", "--set", scratch_ / "true"}));
+  EXPECT_NE(FileBytes(scratch_ / "set/images/000005.png"), FileBytes(scratch_ / "true/images/000005.png"));
+  const auto degrees = [&](const std::string& set) {
+    const CommandResult compared =
+        RunCommand({"metrics", "--truth", data, "--result", scratch_ / set, "--json", scratch_ / "m.json", "--quiet"});
+    EXPECT_EQ(compared.exit_code, 0) << compared.err;
+    return nlohmann::json::parse(
+               FileBytes(scratch_ / "m.json"))["kinds"]["normals"]["metrics"]["normal_mean_deg"]["mean"]
+        .get<double>();
+  };
+  EXPECT_LT(degrees("true"), 8) << "resampled";
+  EXPECT_GT(degrees("set"), 15) << "after two steps";
+  for (const std::vector<std::string>& wrong : std::vector<std::vector<std::string>>{
+           {"--track", track, "--true-normals"}, {"--data", data, "--true-normals", "--view-yaw", "30"}}) {
+    const CommandResult refused = relight(wrong);
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_THAT(refused.err, HasSubstr("--true-normals"));
+  }
+}
+
+/// A clip of one's own: pictures, a track, and where the person is.
+TEST_F(TrainMotionVerb, AMaskGivesAClipLabelsAndNormalsOfItsOwn) {
+  PartLabelSequence mask;
+  mask.image_width = mask.image_height = 96;
+  for (int t = 0; t < 14; ++t) {
+    const Image labels = ReadImage(scratch_ / Concatenate("person/labels/", t < 10 ? "00000" : "0000", t, ".png"));
+    LabelImage frame = {0, 0, 96, 96, std::vector<uint8_t>(96 * 96)};
+    for (size_t i = 0; i < frame.labels.size(); ++i) frame.labels[i] = labels.bgr[3 * i] != 0 ? 1 : 0;
+    mask.frames.push_back(std::move(frame));
+    mask.timestamps.push_back(t / 30.0);
+  }
+  WriteMask(scratch_ / "mask.npz", mask);
+  const auto train = [&](const std::string& run, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"train",      "motion",
+                                          "--data",     scratch_ / "person/images",
+                                          "--track",    scratch_ / "person/track.npz",
+                                          "--out",      scratch_ / run,
+                                          "--profile",  "tiny",
+                                          "--batch",    "2",
+                                          "--threads",  "1",
+                                          "--steps",    "2",
+                                          "--validate", "10-13",
+                                          "--train",    "0-9"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return RunCommand(arguments);
+  };
+  const CommandResult with_mask = train("with", {"--mask", scratch_ / "mask.npz"});
+  ASSERT_EQ(with_mask.exit_code, 0) << with_mask.err;
+  EXPECT_THAT(with_mask.out, HasSubstr("within the mask, stand in for a parsing of the clothes"));
+  EXPECT_THAT(with_mask.out, HasSubstr("the tracked body's normals stand in for those of the clothes"));
+  EXPECT_THAT(with_mask.out, HasSubstr("silhouette IoU"));
+  EXPECT_THAT(with_mask.out, HasSubstr("px around the body"));
+  const nlohmann::json config = nlohmann::json::parse(FileBytes(scratch_ / "with/config.json"));
+  EXPECT_EQ(config["shape"], true);
+  EXPECT_EQ(config["normals"], true);
+  const CommandResult without = train("without", {});
+  ASSERT_EQ(without.exit_code, 0) << without.err;
+  EXPECT_THAT(without.out, HasSubstr("no labels: trained without shape"));
+  EXPECT_THAT(without.out, HasSubstr("no normals: trained without them"));
+  EXPECT_EQ(nlohmann::json::parse(FileBytes(scratch_ / "without/config.json"))["normals"], false);
+  // Normals were learned, so the light may be another.
+  std::ofstream(scratch_ / "lights.json") << R"({"ambient": 1})";
+  const auto relit = [&](const std::string& run) {
+    return RunCommand({"animate", "motion", "--run", scratch_ / run, "--track", scratch_ / "person/track.npz", "--out",
+                       scratch_ / "a.mp4", "--relight", scratch_ / "lights.json", "--warmup", "0", "--threads", "1"});
+  };
+  EXPECT_EQ(relit("with").exit_code, 0) << relit("with").err;
+  EXPECT_THAT(relit("without").err, HasSubstr("was trained without surface normals"));
+
+  mask.frames.pop_back(), mask.timestamps.pop_back();
+  WriteMask(scratch_ / "short.npz", mask);
+  EXPECT_THAT(train("x", {"--mask", scratch_ / "short.npz"}).err, HasSubstr("short.npz: 13 frames, the track 14"));
+  EXPECT_THAT(Train("x", {"--steps", "1", "--mask", scratch_ / "mask.npz"}).out, HasSubstr("are not used"));
 }
 
 TEST_F(TrainMotionVerb, SaysWhatIsWrong) {

@@ -2,11 +2,16 @@
 // `bodyloom train photo` and `bodyloom animate photo`, from synthetic people to a video.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "bodyloom/data_tools/formats/ndarray.h"
 #include "bodyloom/data_tools/formats/safetensors.h"
+#include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/data_tools/video/video_reader.h"
 #include "tests/support/run_command.h"
@@ -85,6 +90,109 @@ TEST_F(TrainPhotoVerb, TrainsGoesOnAndAnimates) {
   ASSERT_EQ(large.exit_code, 0) << large.err;
   VideoReader large_video(scratch_ / "a.mp4");
   EXPECT_EQ(large_video.info().width, ReadImage(scratch_ / "people/p000/a0_v0/images/000000.png").width);
+}
+
+/// Both renderers of one photo draw the same pictures from the same photos, whatever they are given.
+TEST_F(TrainPhotoVerb, PeopleAreScoredUnderOneProtocol) {
+  ASSERT_EQ(Train("photo", {"--steps", "1"}).exit_code, 0);
+  const CommandResult guided =
+      RunCommand({"train", "animate", "--data", scratch_ / "people", "--out", scratch_ / "animate", "--profile", "tiny",
+                  "--batch", "1", "--threads", "1", "--steps", "1"});
+  ASSERT_EQ(guided.exit_code, 0) << guided.err;
+  const auto score = [&](const std::string& verb, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"animate",   verb,
+                                          "--run",     scratch_ / verb,
+                                          "--score",   scratch_ / "people",
+                                          "--json",    scratch_ / (verb + ".json"),
+                                          "--sheet",   scratch_ / (verb + ".png"),
+                                          "--threads", "1"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const CommandResult result = RunCommand(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    nlohmann::json json = nlohmann::json::parse(std::ifstream(scratch_ / (verb + ".json")));
+    EXPECT_THAT(result.out, HasSubstr(json["given"].get<std::string>() + " given"));
+    return json;
+  };
+  const nlohmann::json photo = score("photo", {}), animate = score("animate", {});
+  EXPECT_EQ(photo["given"], "true labels and bodies");
+  EXPECT_EQ(photo["scores"][0]["frames"], 3);
+  EXPECT_FALSE(photo["scores"][0].contains("label_iou")) << "it draws none";
+  EXPECT_TRUE(animate["scores"][0].contains("label_iou"));
+  for (const char* value : {"frames", "photos", "texels_seen"}) {
+    EXPECT_NEAR(photo["scores"][0][value].get<double>(), animate["scores"][0][value].get<double>(), 0.01) << value;
+  }
+  const Image of_photo = ReadImage(scratch_ / "photo.png"), of_animate = ReadImage(scratch_ / "animate.png");
+  ASSERT_EQ(of_photo.width, of_animate.width);
+  int same = 0, other = 0;
+  for (int x = 0; x < of_photo.width; ++x) {  // photo, what it shows, result, truth
+    const bool given = x < of_photo.width / 4 - 8 || x > 3 * of_photo.width / 4 + 8;
+    for (int y = 0; y < of_photo.height; ++y) {
+      const bool alike = std::equal(of_photo.pixel(x, y), of_photo.pixel(x, y) + 3, of_animate.pixel(x, y));
+      ASSERT_TRUE(alike || !given) << x << ", " << y;
+      same += given ? 1 : 0;
+      other += given || alike ? 0 : 1;
+    }
+  }
+  EXPECT_GT(same, 1000);
+  EXPECT_GT(other, 100);
+
+  // What is given is estimated, all of it or some.
+  const nlohmann::json labels = score("photo", {"--score-labels", "estimated"});
+  EXPECT_EQ(labels["given"], "estimated labels, true bodies");
+  EXPECT_NE(labels["scores"][0]["texels_seen"], photo["scores"][0]["texels_seen"]);
+  const nlohmann::json own = score("photo", {"--score-tracks", "track.npz"});
+  EXPECT_EQ(own["scores"], photo["scores"]);
+  for (const char* clip : {"a0_v0", "a0_v1"}) {
+    const std::string folder = scratch_ / ("people/p002/" + std::string(clip) + "/");
+    Track track = ReadTrack(folder + "track.npz");
+    track.motion.poses.col(16 * 3 + 2).array() += 0.3;  // an upper arm
+    WriteTrack(folder + "tracked.npz", track);
+  }
+  const nlohmann::json bodies = score("animate", {"--score-tracks", "tracked.npz"});
+  EXPECT_EQ(bodies["given"], "true labels, bodies of tracked.npz");
+  EXPECT_NE(bodies["scores"], animate["scores"]);
+  for (const std::string verb : {"photo", "animate"}) {
+    const nlohmann::json& truth = verb == "photo" ? photo : animate;
+    const nlohmann::json iuv = score(verb, {"--score-iuv"});
+    EXPECT_EQ(iuv["given"], "true labels, true bodies, IUV images");
+    EXPECT_NE(iuv["scores"], truth["scores"]);
+    EXPECT_NEAR(iuv["scores"][0]["texels_seen"].get<double>(), truth["scores"][0]["texels_seen"].get<double>(), 0.08);
+  }
+  const auto fails = [&](const std::vector<std::string>& more, int code, const std::string& says) {
+    std::vector<std::string> arguments = {"animate", "photo", "--run", scratch_ / "photo"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const CommandResult result = RunCommand(arguments);
+    EXPECT_EQ(result.exit_code, code) << result.err;
+    EXPECT_THAT(result.err, HasSubstr(says));
+  };
+  fails({"--score", scratch_ / "people", "--score-tracks", "no.npz"}, 1, "no.npz");
+  fails({"--score", scratch_ / "people", "--view-yaw", "30"}, 2, "--score measures people as they are");
+  fails({"--image", scratch_ / "people/p002/a0_v0", "--out", scratch_ / "a.mp4", "--score-iuv"}, 2,
+        "belong to --score");
+  fails({"--image", scratch_ / "people/p002/a0_v0", "--out", scratch_ / "a.mp4"}, 2, "--track is needed");
+  fails({}, 2, "--image and --out");
+}
+
+TEST_F(TrainPhotoVerb, IuvImagesStandInForTheBody) {
+  ASSERT_EQ(Train("run", {"--steps", "1"}).exit_code, 0);
+  const auto sheet = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"--sheet", scratch_ / "a.png"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const CommandResult result = Animate(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return ReadImage(scratch_ / "a.png").bgr;
+  };
+  const std::string photo = scratch_ / "people/p000/a0_v0/iuv", motion = scratch_ / "people/p001/a0_v0/iuv";
+  const std::vector<uint8_t> plain = sheet({}), of_photo = sheet({"--image-iuv", photo});
+  EXPECT_NE(of_photo, plain);
+  EXPECT_EQ(sheet({"--image-iuv", photo + "/000000.png"}), of_photo);
+  EXPECT_NE(sheet({"--image-iuv", photo, "--image-frame", "1"}), of_photo);
+  EXPECT_NE(sheet({"--iuv", motion}), plain);
+  EXPECT_EQ(Animate({"--iuv", motion, "--view-yaw", "30"}).exit_code, 2);
+  const CommandResult none = Animate({"--iuv", scratch_ / "people/p001/a0_v0/labels"});
+  EXPECT_EQ(none.exit_code, 1);
+  EXPECT_THAT(none.err, HasSubstr("labels/"));
+  EXPECT_EQ(none.NumErrorLines(), 1);
 }
 
 TEST_F(TrainPhotoVerb, SaysWhatIsWrong) {

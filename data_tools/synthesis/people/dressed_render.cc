@@ -56,7 +56,7 @@ PersonLight LightOf(const Vector3d& up_in_camera, uint64_t seed) {
 }  // namespace
 
 DressedScene::DressedScene(const DressedPerson& person, const Camera& camera, const Vector3d& up_in_camera,
-                           uint64_t seed, int samples)
+                           uint64_t seed, int samples, std::optional<uint64_t> light_seed)
     : person_(person),
       camera_(camera),
       samples_(samples),
@@ -64,7 +64,7 @@ DressedScene::DressedScene(const DressedPerson& person, const Camera& camera, co
       places_(mesh_.num_vertices(), 3),
       wardrobe_(person.outfit(), person.garment().around_m, seed),
       background_(camera.width, camera.height, seed),
-      light_(LightOf(up_in_camera, seed)) {
+      light_(LightOf(up_in_camera, light_seed.value_or(seed))) {
   BODYLOOM_CHECK(camera.model == CameraModel::kPinhole, "dressed scene: expected a pinhole camera");
   BODYLOOM_CHECK(samples >= 1 && samples <= 8, "dressed scene: ", samples, " samples, expected 1..8");
   places_ << person.body().data().v_template.cast<float>(), person.garment().pattern;

@@ -12,11 +12,13 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/data_tools/synthesis/people/dressed_person.h"
 #include "bodyloom/data_tools/synthesis/people/moving_background.h"
+#include "bodyloom/data_tools/synthesis/people/person_light.h"
 #include "bodyloom/data_tools/synthesis/people/wardrobe.h"
 #include "bodyloom/geometry/camera.h"
 #include "bodyloom/geometry/vertex_normals.h"
@@ -25,19 +27,13 @@
 
 namespace bodyloom {
 
-struct PersonLight {
-  float ambient = 0.45F;
-  std::array<Eigen::Vector3f, 2> towards = {Eigen::Vector3f::UnitY(),
-                                            Eigen::Vector3f::UnitY()};  ///< unit, camera frame
-  std::array<float, 2> strength = {0.6F, 0.2F};
-};
-
 /// What does not change from frame to frame. Immutable, may be shared by threads; the person must outlive it.
 class DressedScene {
  public:
-  /// Pinhole cameras only (std::invalid_argument otherwise). `up_in_camera`: lights come from above.
+  /// Pinhole cameras only (std::invalid_argument otherwise). `up_in_camera`: lights come from above. `light_seed`: of the
+  /// light alone; absent: `seed`.
   DressedScene(const DressedPerson& person, const Camera& camera, const Eigen::Vector3d& up_in_camera, uint64_t seed,
-               int samples = 2);
+               int samples = 2, std::optional<uint64_t> light_seed = {});
 
   [[nodiscard]] const DressedPerson& person() const { return person_; }
   [[nodiscard]] const Camera& camera() const { return camera_; }

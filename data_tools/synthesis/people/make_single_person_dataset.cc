@@ -129,7 +129,8 @@ MakeSinglePersonDatasetSummary MakeSinglePersonDataset(const std::string& folder
   const DressedPerson person(body, track.motion.betas, options.garment, options.seed);
   info.has.iuv = body.has_parts() && body.data().face_iuv.rows() > 0;
   const SinglePersonDatasetWriter writer(folder, info, track);
-  const DressedScene scene(person, track.camera, camera.up_in_camera, options.seed, options.samples);
+  const DressedScene scene(person, track.camera, camera.up_in_camera, options.seed, options.samples,
+                           options.light_seed);
   ClothRunOptions run_options;
   run_options.up = camera.up_in_camera;
   ClothRun run(person, track.motion, run_options);
@@ -137,6 +138,7 @@ MakeSinglePersonDatasetSummary MakeSinglePersonDataset(const std::string& folder
   MakeSinglePersonDatasetSummary summary;
   summary.cloth_vertices = person.garment().cloth.num_vertices();
   summary.largest_stretch = 0;
+  summary.light = scene.light();
   const int threads = ThreadsFor(options.num_threads);
   using Chunk = std::vector<std::vector<Vector3d>>;  // cloth, by frame
   const auto simulate = [&](int first) {

@@ -8,12 +8,14 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/data_tools/synthesis/clips/synth_camera.h"
 #include "bodyloom/data_tools/synthesis/people/dressed_person.h"
+#include "bodyloom/data_tools/synthesis/people/person_light.h"
 #include "bodyloom/geometry/body_model.h"
 #include "bodyloom/geometry/track.h"
 
@@ -22,8 +24,9 @@ namespace bodyloom {
 struct MakeSinglePersonDatasetOptions {
   GarmentKind garment = GarmentKind::kSkirt;
   uint64_t seed = 1;
-  int size_px = 256;   ///< images are square
-  double yaw_deg = 0;  ///< of the camera, about the vertical
+  std::optional<uint64_t> light_seed;  ///< of the light alone: the same person in another light; absent: `seed`
+  int size_px = 256;                   ///< images are square
+  double yaw_deg = 0;                  ///< of the camera, about the vertical
   double elevation_deg = 8;
   double shape_sigma = 0.5;     ///< standard deviation of the body's shape components, cut at 2; 0: the mean shape
   int samples = 2;              ///< a pixel along x and y
@@ -40,6 +43,7 @@ struct MakeSinglePersonDatasetSummary {
   int frames_through = 0;                 ///< in which a leg has come through the cloth
   double seconds = 0, cloth_seconds = 0;  ///< wall time; of it in the cloth (beside drawing)
   double largest_stretch = 0;             ///< of the cloth's threads, over all frames
+  PersonLight light;
   [[nodiscard]] double frames_per_second() const { return seconds > 0 ? frames / seconds : 0; }
 };
 

@@ -19,6 +19,7 @@ class GuidedPeople {
 
   /// Refers to this, which must outlive it.
   [[nodiscard]] const PhotoSource& source() const { return data_.source(); }
+  [[nodiscard]] PhotoFrame PhotoOf(int person, int frame) const { return data_.PhotoOf(person, frame); }
   /// The six views of pipelines/neural/guided/virtual_views.h.
   [[nodiscard]] std::vector<PhotoFrame> VirtualViewsOf(int person) const;
 

@@ -41,8 +41,9 @@ constexpr const char *kPrepare = "prepare", *kLight = "light", *kMaps = "maps", 
                      *kCompose = "compose and encode";
 
 AnimatedClipRequest ClipOf(const AnimateMotionRequest& request) {
-  return {request.track,  request.data,  request.body,           request.view_yaw,
-          request.freeze, request.speed, request.shape_of_track, ThreadsFor(request.threads)};
+  return {request.track, request.data,           request.body,
+          request.iuv,   request.view_yaw,       request.freeze,
+          request.speed, request.shape_of_track, ThreadsFor(request.threads)};
 }
 
 void CheckRequest(const AnimateMotionRequest& request) {
@@ -138,11 +139,18 @@ class MotionAnimation {
                                            window.picture_width, "x", window.picture_height, " px, at most ",
                                            kLargestSide, " a side; the track's person is too small in its picture"));
     }
-    if (!scored_ && !(request_.like.empty() && request_.frames.empty() && request_.weights.empty())) {
+    if (!scored_ &&
+        !(request_.like.empty() && request_.frames.empty() && request_.weights.empty() && request_.iuv.empty())) {
       throw RequestError(
-          "--like, --frames and --weights compare with the pictures of --data: not without it, nor with --view-yaw, "
+          "--like, --frames, --weights and --iuv compare with the pictures of --data: not without it, nor with "
+          "--view-yaw, --freeze or --speed");
+    }
+    if (request_.true_normals && !(relighter_ && scored_)) {
+      throw RequestError(
+          "--true-normals are those of --data, for --relight: not without both, nor with --view-yaw, "
           "--freeze or --speed");
     }
+    if (request_.true_normals && !clip_->has_normals()) throw std::runtime_error(request_.data + ": has no normals");
     renderer_ = OpenRenderer(scored_);
   }
 
@@ -160,6 +168,15 @@ class MotionAnimation {
     return std::make_unique<MotionRenderer>(CheckpointPath(request_.run), run_.config, options);
   }
 
+  /// What the networks need of frame t, and its true normals where those are wanted.
+  void FillWithNormals(int t, MotionFrame* frame) const {
+    if (request_.true_normals) {
+      clip_->Fill(t, frame);
+    } else {
+      clip_->FillMotion(t, frame);
+    }
+  }
+
   /// The light of the clip from its first frames, rendered for it.
   void EstimateLight() {
     const std::unique_ptr<MotionRenderer> renderer = OpenRenderer(false);
@@ -168,9 +185,11 @@ class MotionAnimation {
     for (int t = 0; t < light_frames_; ++t) {
       Update("light", t + 1);
       if (!clip_->track().HasResult(t)) continue;
-      clip_->FillMotion(t, &frame);
+      FillWithNormals(t, &frame);
       ForgetAcrossCuts(t, renderer.get());
-      relighter_->Observe(renderer->Next(frame));
+      MotionPicture picture = renderer->Next(frame);
+      if (request_.true_normals) picture.normals = frame.normals;
+      relighter_->Observe(picture);
     }
     relighter_->Estimate();
   }
@@ -230,6 +249,7 @@ class MotionAnimation {
     const double network_s = clock_.Book(kNetwork);
     if (t > 0) network_ms_.push_back(1e3 * network_s);  // the first frame warms up
     if (scorer_) scorer_->AddWindow(t, renderer_->last_scores());
+    if (request_.true_normals) picture.normals = frame_.normals;
     if (relighter_) relighter_->Apply(&picture);
     Composite(picture.image, picture.alpha, frames.window(), t, composed);
     if (scorer_) scorer_->AddComposed(t, *composed);

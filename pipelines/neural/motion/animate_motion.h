@@ -17,12 +17,14 @@ namespace bodyloom {
 struct AnimateMotionRequest : AnimationRequest {
   std::string data;      ///< a dataset of the same person: its motion is shown and, unless the view is turned, time
                          ///< stands still or the speed is another, the result compared with its pictures
+  std::string iuv;       ///< with `data`: what its pixels show of the body (MotionDataRequest::iuv)
   std::string view_yaw;  ///< degrees that the view is turned by: "30", or "0:360" over the clip
   double speed = 1;      ///< the motion is played so many times as fast
   bool shape_of_track = false;  ///< poses the track's shape, not that of the person who was trained on
   std::string freeze;           ///< "FRAME:COUNT": that frame is shown so many times more; empty: none is
   std::string background;       ///< an image, a video or a folder behind the person; empty: a plain backdrop
   std::string relight;          ///< the light that shall be (pipelines/people/relight_frames.h); empty: as it is
+  bool true_normals = false;    ///< with `relight` and `data`: by the normals of `data`, not the networks'
   int warmup = 50;              ///< passes of the first frame through the network before it counts
   bool without_past = false;    ///< every frame as if it were the first
   bool anywhere = false;        ///< the person may be farther from the body than clothes ever were in training

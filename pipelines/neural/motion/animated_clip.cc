@@ -41,6 +41,7 @@ AnimatedClip::AnimatedClip(const AnimatedClipRequest& request, const MotionRun& 
     MotionDataRequest data;
     data.data = request.data, data.body = request.body;
     data.pixels_per_metre = run.pixels_per_metre;
+    data.iuv = request.iuv;
     data.descriptor = run.config.descriptor;
     data.motion = run.motion;
     data.num_threads = request.threads;
@@ -102,7 +103,7 @@ void AnimatedClip::FillMotion(int t, MotionFrame* frame) const {
   if (data_) {
     data_->Fill(t, false, frame);
   } else {
-    bodyloom::FillMotion(*own_frames_, own_dense_ ? &*own_dense_ : nullptr, t, frame);
+    bodyloom::FillMotion(*own_frames_, own_dense_ ? &*own_dense_ : nullptr, nullptr, t, frame);
   }
 }
 

@@ -20,6 +20,7 @@ struct AnimatedClipRequest {
   std::string track;     ///< the motion, .npz; empty: that of `data`
   std::string data;      ///< a single-person dataset of the same person; empty: `track` alone
   std::string body;      ///< the track's body; empty: the built-in body
+  std::string iuv;       ///< with `data`: as MotionDataRequest::iuv
   std::string view_yaw;  ///< how far the view is turned (pipelines/people/view_angles.h)
   std::string freeze;    ///< where time stands still (pipelines/people/freeze.h); empty: nowhere
   double speed = 1;      ///< the motion is played so many times as fast
@@ -46,6 +47,8 @@ class AnimatedClip {
   [[nodiscard]] const PersonFrames& frames() const { return data_ ? data_->frames() : *own_frames_; }
   /// Lines for the user: the rate and the shape that are not the track's own.
   [[nodiscard]] const std::string& notes() const { return notes_; }
+  /// Whether Fill() gives normals.
+  [[nodiscard]] bool has_normals() const { return data_ && data_->has_normals(); }
   /// What the network takes of frame t; with its truth where the clip is scored.
   void Fill(int t, MotionFrame* frame) const;
   /// The same without the truth.

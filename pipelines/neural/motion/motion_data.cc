@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bodyloom/data_tools/body/body_or_builtin.h"
-#include "bodyloom/data_tools/datasets/label_of_part.h"
+#include "bodyloom/data_tools/datasets/body_truth.h"
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/data_tools/descriptors/posed_track.h"
 #include "bodyloom/data_tools/motion/track_io.h"
@@ -45,7 +45,8 @@ void FillTruth(const MotionTruthFrame& cut, MotionFrame* frame) {
 
 }  // namespace
 
-void FillMotion(const PersonFrames& frames, const DenseHistory* dense, int t, MotionFrame* frame) {
+void FillMotion(const PersonFrames& frames, const DenseHistory* dense, const EstimatedPixels* estimated, int t,
+                MotionFrame* frame) {
   const PersonWindow& window = frames.window();
   *frame = {};
   frame->width = window.width;
@@ -65,7 +66,11 @@ void FillMotion(const PersonFrames& frames, const DenseHistory* dense, int t, Mo
   }
   frame->uv.resize(2 * area);
   frame->body.resize(area);
-  frames.BodyMaps(t, frame->uv, frame->body);
+  if (estimated != nullptr) {
+    estimated->BodyMaps(window, t, frame->uv, frame->body);
+  } else {
+    frames.BodyMaps(t, frame->uv, frame->body);
+  }
 }
 
 class MotionData::Impl {
@@ -76,7 +81,9 @@ class MotionData::Impl {
       set_.emplace(request.data);
       track_ = request.track.empty() ? set_->track() : ReadTrack(request.track);
       CheckSizes(request, set_->info().num_frames, set_->info().width, set_->info().height);
-      if (!request.part_labels.empty()) notes_ += "--part-labels are not used: the dataset has labels of its own\n";
+      if (!request.part_labels.empty() || !request.mask.empty()) {
+        notes_ += "--mask and --part-labels are not used: the dataset has labels of its own\n";
+      }
     } else {
       if (request.track.empty()) {
         throw std::runtime_error(request.data +
@@ -97,13 +104,16 @@ class MotionData::Impl {
     } catch (const std::invalid_argument& error) {
       throw std::runtime_error((request.track.empty() ? request.data : request.track) + ": " + error.what());
     }
-    if (request.descriptor == MotionDescriptor::kDense2d) dense_.emplace(*frames_, options.past);
+    OpenIuv(request);
+    if (request.descriptor == MotionDescriptor::kDense2d) {
+      dense_.emplace(*frames_, options.past, estimated_ ? &*estimated_ : nullptr);
+    }
     cut_.resize(track_.num_frames());
     if (!set_) CutVideo(request);
   }
 
   void Fill(int t, bool with_truth, MotionFrame* frame) {
-    FillMotion(*frames_, dense_ ? &*dense_ : nullptr, t, frame);
+    FillMotion(*frames_, dense_ ? &*dense_ : nullptr, estimated_ ? &*estimated_ : nullptr, t, frame);
     if (with_truth) FillTruth(CutAt(t), frame);
   }
 
@@ -112,14 +122,24 @@ class MotionData::Impl {
   [[nodiscard]] double PixelsPerMetre() const {
     return frames_->window().scale_y * bodyloom::PixelsPerMetre(*body_, track_);
   }
-  [[nodiscard]] bool has_normals() const { return set_ && set_->info().has.normals; }
+  [[nodiscard]] bool has_normals() const { return set_ ? set_->info().has.normals : has_outline_; }
   [[nodiscard]] const std::string& notes() const { return notes_; }
-  [[nodiscard]] LabelSource labels() const {
-    if (set_ && set_->info().has.labels) return LabelSource::kDataset;
-    return has_part_labels_ ? LabelSource::kPartLabels : LabelSource::kNone;
-  }
+  [[nodiscard]] bool has_labels() const { return set_ ? set_->info().has.labels : has_outline_; }
 
  private:
+  void OpenIuv(const MotionDataRequest& request) {
+    if (request.iuv.empty()) return;
+    if (request.iuv == kOwnIuv && !(set_ && set_->info().has.iuv)) {
+      throw std::runtime_error(request.data + ": has no IUV images of its own");
+    }
+    const std::string folder = request.iuv == kOwnIuv ? request.data + "/iuv" : request.iuv;
+    try {
+      estimated_.emplace(*body_, folder, track_.num_frames());
+    } catch (const std::invalid_argument& error) {
+      throw std::runtime_error(folder + ": " + error.what());
+    }
+  }
+
   void CheckSizes(const MotionDataRequest& request, int num_frames, int width, int height) {
     const std::string track = request.track.empty() ? request.data + "/track.npz" : request.track;
     if (num_frames < track_.num_frames()) {
@@ -136,23 +156,38 @@ class MotionData::Impl {
     }
   }
 
+  /// A mask or DensePose's parts of the clip; nothing where there is no such file.
+  [[nodiscard]] std::optional<PartLabelSequence> ReadOutlines(const std::string& path) const {
+    if (path.empty()) return std::nullopt;
+    PartLabelSequence outlines = ReadPartLabels(path);
+    if (outlines.num_frames() < track_.num_frames()) {
+      throw std::runtime_error(
+          Concatenate(path, ": ", outlines.num_frames(), " frames, the track ", track_.num_frames()));
+    }
+    if (outlines.image_width != track_.camera.width || outlines.image_height != track_.camera.height) {
+      throw std::runtime_error(Concatenate(path, ": labels of ", outlines.image_width, "x", outlines.image_height,
+                                           ", the track was made for ", track_.camera.width, "x",
+                                           track_.camera.height));
+    }
+    return outlines;
+  }
+
+  /// The parts that frame t's window shows.
+  [[nodiscard]] std::vector<uint8_t> PartsIn(const PartLabelSequence& parts, int t) const {
+    Image picture(parts.image_width, parts.image_height);
+    for (int y = 0; y < picture.height; ++y) {
+      for (int x = 0; x < picture.width; ++x) picture.pixel(x, y)[0] = parts.PartAt(t, x, y);
+    }
+    return CutLabels(picture, frames_->window(), t);
+  }
+
   /// Videos are read from the beginning: all windows are cut at once.
   void CutVideo(const MotionDataRequest& request) {
-    std::optional<PartLabelSequence> parts;
-    if (!request.part_labels.empty()) {
-      parts = ReadPartLabels(request.part_labels);
-      has_part_labels_ = true;
-      notes_ += "body parts stand in for a parsing of the clothes\n";
-      if (static_cast<int>(parts->frames.size()) < track_.num_frames()) {
-        throw std::runtime_error(
-            Concatenate(request.part_labels, ": ", parts->frames.size(), " frames, the track ", track_.num_frames()));
-      }
-      if (parts->image_width != track_.camera.width || parts->image_height != track_.camera.height) {
-        throw std::runtime_error(Concatenate(request.part_labels, ": labels of ", parts->image_width, "x",
-                                             parts->image_height, ", the track was made for ", track_.camera.width, "x",
-                                             track_.camera.height));
-      }
-    }
+    const std::optional<PartLabelSequence> mask = ReadOutlines(request.mask), parts = ReadOutlines(request.part_labels);
+    has_outline_ = mask || parts;
+    if (parts) notes_ += "body parts stand in for a parsing of the clothes\n";
+    if (mask && !parts) notes_ += "the tracked body's parts, within the mask, stand in for a parsing of the clothes\n";
+    if (has_outline_) notes_ += "the tracked body's normals stand in for those of the clothes\n";
     VideoReader video(request.data);
     Image picture;
     int t = 0;
@@ -161,8 +196,11 @@ class MotionData::Impl {
       if (t == 0) CheckSizes(request, promised > 0 ? promised : track_.num_frames(), picture.width, picture.height);
       MotionTruthFrame cut;
       cut.image = CutWindow(picture, frames_->window(), t);
-      if (parts)
-        cut.labels = CutLabels(LabelPicture(parts->frames[t], picture.width, picture.height), frames_->window(), t);
+      if (has_outline_) {
+        const std::vector<uint8_t> shown = parts ? PartsIn(*parts, t) : std::vector<uint8_t>();
+        BodyTruth truth = BodyTruthOf(frames_->Surface(t), mask ? PartsIn(*mask, t) : shown, shown);
+        cut.labels = std::move(truth.labels), cut.normals = std::move(truth.normals);
+      }
       cut_[t] = std::move(cut);
     }
     if (t < track_.num_frames()) CheckSizes(request, t, track_.camera.width, track_.camera.height);
@@ -185,10 +223,11 @@ class MotionData::Impl {
   std::optional<SinglePersonDataset> set_;
   Track track_;
   std::optional<PersonFrames> frames_;
+  std::optional<EstimatedPixels> estimated_;
   std::optional<DenseHistory> dense_;
   std::mutex mutex_;
   std::vector<std::optional<MotionTruthFrame>> cut_;
-  bool has_part_labels_ = false;
+  bool has_outline_ = false;
   std::string notes_;
 };
 
@@ -198,7 +237,7 @@ MotionData::~MotionData() = default;
 const PersonFrames& MotionData::frames() const { return impl_->frames(); }
 const Track& MotionData::track() const { return impl_->track(); }
 double MotionData::PixelsPerMetre() const { return impl_->PixelsPerMetre(); }
-LabelSource MotionData::labels() const { return impl_->labels(); }
+bool MotionData::has_labels() const { return impl_->has_labels(); }
 bool MotionData::has_normals() const { return impl_->has_normals(); }
 std::string MotionData::notes() const { return impl_->notes(); }
 void MotionData::Fill(int t, bool with_truth, MotionFrame* frame) { impl_->Fill(t, with_truth, frame); }

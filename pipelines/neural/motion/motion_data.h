@@ -6,6 +6,7 @@
 #include <string>
 
 #include "bodyloom/data_tools/descriptors/dense_history.h"
+#include "bodyloom/data_tools/descriptors/estimated_pixels.h"
 #include "bodyloom/data_tools/descriptors/person_frames.h"
 #include "bodyloom/geometry/track.h"
 #include "bodyloom/neural/motion/motion_config.h"
@@ -14,18 +15,22 @@
 namespace bodyloom {
 
 struct MotionDataRequest {
-  std::string data;         ///< a single-person dataset, a video or a folder of images
-  std::string track;        ///< empty: the single-person dataset's own
-  std::string body;         ///< empty: the built-in body
-  std::string part_labels;  ///< for a video: DensePose's parts, which stand in for a parsing of the clothes
+  std::string data;   ///< a single-person dataset, a video or a folder of images
+  std::string track;  ///< empty: the single-person dataset's own
+  std::string body;   ///< empty: the built-in body
+  std::string iuv;    ///< what pixels show of the body: a folder of DensePose's IUV images, or kOwnIuv, the
+                      ///< single-person dataset's; empty: what the tracked body says
+  /// For a video: where the person is (bodyloom detect --mask, bodyloom run --masks), and DensePose's parts, which stand
+  /// in for a parsing of the clothes; each may do without the other. With one of them labels and normals are those of
+  /// the tracked body within that outline (data_tools/datasets/body_truth.h).
+  std::string mask, part_labels;
   MotionDescriptor descriptor = MotionDescriptor::kSurface;
   SurfaceMotion motion;         ///< axes and velocities of the motion maps
   double pixels_per_metre = 0;  ///< of the window; 0: as large as the profile's image_size allows
   int num_threads = 0;
 };
 
-/// Where MotionData's classes come from.
-enum class LabelSource { kNone, kDataset, kPartLabels };
+inline constexpr const char* kOwnIuv = "own";
 
 class MotionData {
  public:
@@ -40,7 +45,7 @@ class MotionData {
   [[nodiscard]] const Track& track() const;
   /// Pixels of the window a metre at the body's root.
   [[nodiscard]] double PixelsPerMetre() const;
-  [[nodiscard]] LabelSource labels() const;
+  [[nodiscard]] bool has_labels() const;
   [[nodiscard]] bool has_normals() const;
   [[nodiscard]] std::string notes() const;  ///< lines for the user: what is not used, what stands in for what
 
@@ -53,7 +58,9 @@ class MotionData {
 };
 
 /// The part of a frame that does not need pictures: the descriptor's maps, surface coordinates, the window's place.
-/// `dense`: the descriptor in the picture's plane; nullptr: the surface's motion maps.
-void FillMotion(const PersonFrames& frames, const DenseHistory* dense, int t, MotionFrame* frame);
+/// `dense`: the descriptor in the picture's plane; nullptr: the surface's motion maps. `estimated`: where pixels lie on
+/// the body; nullptr: as the tracked body has it.
+void FillMotion(const PersonFrames& frames, const DenseHistory* dense, const EstimatedPixels* estimated, int t,
+                MotionFrame* frame);
 
 }  // namespace bodyloom

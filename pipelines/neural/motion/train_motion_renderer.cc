@@ -31,6 +31,9 @@ nlohmann::ordered_json RangesJson(const std::vector<FrameRange>& ranges) {
 std::string Notes(const TrainMotionRendererRequest& request, const TrainMotionOptions& o) {
   const nlohmann::ordered_json json = {{"data", request.data.data},
                                        {"track", request.data.track},
+                                       {"iuv", request.data.iuv},
+                                       {"mask", request.data.mask},
+                                       {"part_labels", request.data.part_labels},
                                        {"validate_data", request.validate_data},
                                        {"train", RangesJson(o.train)},
                                        {"validate", RangesJson(o.validation)},
@@ -55,7 +58,7 @@ std::string Notes(const TrainMotionRendererRequest& request, const TrainMotionOp
 
 /// The parts that the data has no truth for are left out.
 void LeaveOutUnknown(const MotionData& data, MotionConfig* config, const PipelineCallbacks& callbacks) {
-  if (data.labels() == LabelSource::kNone && config->shape) {
+  if (!data.has_labels() && config->shape) {
     config->shape = false;
     callbacks.Say("no labels: trained without shape, on the whole window with its background");
   }
@@ -69,6 +72,9 @@ void LeaveOutUnknown(const MotionData& data, MotionConfig* config, const Pipelin
 std::unique_ptr<MotionData> ValidationData(const TrainMotionRendererRequest& request, const MotionDataRequest& like,
                                            const MotionData& data, const MotionConfig& config) {
   if (request.validate_data.empty()) return nullptr;
+  if (!like.iuv.empty() && like.iuv != kOwnIuv) {
+    throw RequestError("--iuv DIR holds the pictures of --data alone: with --validate-data expected \"own\"");
+  }
   MotionDataRequest other = like;
   other.data = request.validate_data;
   other.track.clear();
@@ -112,6 +118,8 @@ TrainMotionRendererSummary TrainMotionRenderer(const TrainMotionRendererRequest&
   MotionConfig& config = options.config;
   RequireReadable(request.data.data, "data");
   RequireReadable(request.data.track, "track");
+  RequireReadable(request.data.mask, "mask");
+  RequireReadable(request.data.part_labels, "part labels");
   OpenTrainingRun(request.out, &options);
   WeightsFolder weights = ReadWeightsFolder(request.weights);
   options.vgg16 = std::move(weights.vgg16);

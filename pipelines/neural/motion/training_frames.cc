@@ -69,7 +69,7 @@ TrainingFrames ChooseFrames(const TrainingFramesRequest& request, const PersonFr
 }
 
 int ReachOf(MotionData* data, const std::vector<FrameRange>& ranges) {
-  if (data->labels() == LabelSource::kNone) return 0;
+  if (!data->has_labels()) return 0;
   std::vector<int> all;
   for (const FrameRange& range : ranges) {
     for (int t = range.begin; t < range.end; ++t) all.push_back(t);

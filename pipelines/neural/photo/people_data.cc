@@ -14,15 +14,38 @@
 #include "bodyloom/data_tools/body/body_or_builtin.h"
 #include "bodyloom/data_tools/datasets/multi_person_dataset.h"
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
+#include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/pipelines/neural/photo/photo_input.h"
+#include "bodyloom/pipelines/people/person_segmentation.h"
 
 namespace bodyloom {
 namespace {
 
 namespace fs = std::filesystem;
 
+/// A clip's track: the true one, or another of the same frames.
+Track TrackOfClip(const SinglePersonDataset& set, const std::string& name) {
+  Track own = set.track();
+  if (name.empty()) return own;
+  const std::string path = (fs::path(set.path()) / name).string();
+  Track track = ReadTrack(path);
+  if (track.num_frames() != own.num_frames() || track.camera.width != own.camera.width ||
+      track.camera.height != own.camera.height) {
+    throw std::runtime_error(Concatenate(path, ": ", track.num_frames(), " frames of ", track.camera.width, "x",
+                                         track.camera.height, ", its clip has ", own.num_frames(), " of ",
+                                         own.camera.width, "x", own.camera.height));
+  }
+  return track;
+}
+
 }  // namespace
+
+std::string ToText(const GivenOfPeople& given) {
+  if (given.IsTrue()) return kGivenOfPeople;
+  return std::string(given.estimated_labels ? "estimated" : "true") + " labels, " +
+         (given.track.empty() ? "true bodies" : "bodies of " + given.track) + (given.iuv ? ", IUV images" : "");
+}
 
 class PeopleData::Impl {
  public:
@@ -49,6 +72,24 @@ class PeopleData::Impl {
 
   [[nodiscard]] const PhotoSource& source() const { return source_; }
 
+  PhotoFrame PhotoOf(int person, int frame) {
+    const FrameOfPerson& from = people_.at(person).at(frame);
+    PhotoFrame photo;
+    Fill(from, &photo);
+    if (!request_.given.estimated_labels) return photo;
+    const CutPhoto& truth = CutAt(from);
+    const Track& track = from.clip->track;
+    Image everywhere(track.camera.width, track.camera.height);
+    std::fill(everywhere.bgr.begin(), everywhere.bgr.end(), uint8_t{1});
+    try {
+      const std::vector<uint8_t> inside = CutLabels(everywhere, from.clip->maps->window(), from.t);
+      FillPicture({truth.image, SegmentPerson(truth.image, inside, {}, photo.parts).labels}, &photo);
+    } catch (const std::invalid_argument& error) {
+      throw std::runtime_error(Concatenate(from.clip->set.path(), ", frame ", from.t, ": ", error.what()));
+    }
+    return photo;
+  }
+
  private:
   /// A single-person dataset's clip and the maps of its frames.
   struct Clip {
@@ -57,7 +98,8 @@ class PeopleData::Impl {
     std::optional<PhotoMaps> maps;
     std::vector<std::optional<CutPhoto>> cut;
 
-    explicit Clip(const std::string& path) : set(path), track(set.track()), cut(set.info().num_frames) {}
+    Clip(const std::string& path, const std::string& track_name)
+        : set(path), track(TrackOfClip(set, track_name)), cut(set.info().num_frames) {}
   };
 
   struct FrameOfPerson {
@@ -75,11 +117,14 @@ class PeopleData::Impl {
       const std::string path = (fs::path(folder) / name).string();
       const ClipPlace place = PlaceOfClip(name);
       const int view = views.emplace(place.view, static_cast<int>(views.size())).first->second;
-      clips_.push_back(std::make_unique<Clip>(path));
+      clips_.push_back(std::make_unique<Clip>(path, request_.given.track));
       Clip& clip = *clips_.back();
       if (!clip.set.info().has.labels) throw std::runtime_error(path + ": has no labels, which training needs");
       PhotoMapsOptions options;
       options.size = request_.size, options.texture_size = request_.texture_size, options.texels = texels_;
+      if (request_.given.iuv) {
+        options.estimated = std::make_shared<const EstimatedPixels>(*body_, path + "/iuv", clip.set.info().num_frames);
+      }
       try {
         clip.maps.emplace(*body_, clip.track, options);
       } catch (const std::invalid_argument& error) {
@@ -98,15 +143,18 @@ class PeopleData::Impl {
   void Fill(const FrameOfPerson& from, PhotoFrame* photo) {
     Clip& clip = *from.clip;
     FillMaps(clip.maps->At(from.t), request_.size, request_.texture_size, photo);
-    {
-      const std::lock_guard lock(mutex_);
-      if (!clip.cut[from.t]) {
-        const PersonFrame picture = clip.set.Read(from.t, {true, false, false, false});
-        clip.cut[from.t] = {CutWindow(picture.rgb, clip.maps->window(), from.t),
-                            CutLabels(picture.labels, clip.maps->window(), from.t)};
-      }
+    FillPicture(CutAt(from), photo);
+  }
+
+  const CutPhoto& CutAt(const FrameOfPerson& from) {
+    Clip& clip = *from.clip;
+    const std::lock_guard lock(mutex_);
+    if (!clip.cut[from.t]) {
+      const PersonFrame picture = clip.set.Read(from.t, {true, false, false, false});
+      clip.cut[from.t] = {CutWindow(picture.rgb, clip.maps->window(), from.t),
+                          CutLabels(picture.labels, clip.maps->window(), from.t)};
     }
-    FillPicture(*clip.cut[from.t], photo);
+    return *clip.cut[from.t];
   }
 
   PeopleDataRequest request_;
@@ -121,6 +169,7 @@ class PeopleData::Impl {
 PeopleData::PeopleData(const PeopleDataRequest& request) : impl_(std::make_unique<Impl>(request)) {}
 PeopleData::~PeopleData() = default;
 const PhotoSource& PeopleData::source() const { return impl_->source(); }
+PhotoFrame PeopleData::PhotoOf(int person, int frame) const { return impl_->PhotoOf(person, frame); }
 
 bool HasTestPeople(const std::string& data) {
   if (IsSinglePersonDataset(data)) return false;

@@ -10,9 +10,22 @@
 
 namespace bodyloom {
 
-/// What a renderer is given of a dataset's people when it is scored on them; of a photo of anybody else they are
-/// estimates.
+/// What a renderer is given of a dataset's people when it is trained or scored on them; of a photo of anybody else they
+/// are estimates.
 inline constexpr const char* kGivenOfPeople = "true labels and bodies";
+
+/// The same, where some of it is estimated as it is of anybody else.
+struct GivenOfPeople {
+  bool estimated_labels =
+      false;          ///< of photos: found by GrabCut around the given body (SegmentPerson), not the true ones
+  std::string track;  ///< name of a track in each clip's folder, of its frames: the bodies; empty: the true
+  bool iuv = false;   ///< what pixels show of the body is what the clips' IUV images say
+
+  [[nodiscard]] bool IsTrue() const { return !estimated_labels && track.empty() && !iuv; }
+};
+
+/// "true labels and bodies", or what is in place of it.
+std::string ToText(const GivenOfPeople& given);
 
 struct PeopleDataRequest {
   std::string data;  ///< a multi-person dataset, or a single-person dataset (one person, all for training)
@@ -20,12 +33,13 @@ struct PeopleDataRequest {
   int size = 256;    ///< of the windows
   int texture_size = 256;
   bool test = false;  ///< the people kept for testing, instead of those to train on
+  GivenOfPeople given;
 };
 
 /// Pictures are read when they are first requested and kept (4 bytes a pixel); maps are made each time.
 class PeopleData {
  public:
-  /// Throws std::runtime_error naming the file that cannot be used, or a dataset without such people.
+  /// Throws std::runtime_error naming the file that cannot be used or is missing, or a dataset without such people.
   explicit PeopleData(const PeopleDataRequest& request);
   ~PeopleData();
   PeopleData(const PeopleData&) = delete;
@@ -33,6 +47,9 @@ class PeopleData {
 
   /// Refers to this, which must outlive it.
   [[nodiscard]] const PhotoSource& source() const;
+  /// The frame as a photo: as source().fill gives it, with estimated labels where those are requested. Throws
+  /// std::runtime_error naming the clip where the body is not in the picture.
+  [[nodiscard]] PhotoFrame PhotoOf(int person, int frame) const;
 
  private:
   class Impl;

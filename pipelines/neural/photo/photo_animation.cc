@@ -41,12 +41,19 @@ std::unique_ptr<PhotoMaps> MapsOfMotion(const PhotoAnimationRequest& request, co
                                         const std::string& path, int size, int texture_size, Track* track) {
   RequireBodyOf(photo, *track, path);
   if (!request.shape_of_motion) track->motion.betas = photo.track.motion.betas;
+  if (!request.iuv.empty() && !request.view_yaw.empty()) {
+    throw RequestError("--iuv shows the motion as its pictures do: not with --view-yaw");
+  }
   PhotoMapsOptions options;
   options.size = size;
   options.texture_size = texture_size;
   options.num_threads = ThreadsFor(request.threads);
   options.yaw_deg = ViewAngles(request.view_yaw, track->num_frames(), 0, track->num_frames() - 1);
   try {
+    if (!request.iuv.empty()) {
+      options.estimated = std::make_shared<const EstimatedPixels>(*photo.body, request.iuv, track->num_frames());
+      options.yaw_deg.clear();
+    }
     return std::make_unique<PhotoMaps>(*photo.body, *track, options);
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(path + ": " + error.what());

@@ -22,6 +22,8 @@ struct PhotoAnimationRequest : AnimationRequest {
   std::vector<std::string> views;  ///< more pictures of the person, IMAGE:TRACK[:FRAME] (ParsePhotoRequest)
   LentGarment garment;             ///< both of its parts are given, or none
   PhotoBackground background;
+  std::string iuv;  ///< what the motion's pixels show of the body: a folder of IUV images, one a frame; empty: what the
+                    ///< tracked body says. Not with `view_yaw`
   std::string view_yaw;          ///< degrees that the view is turned by: "30", or "0:360" over the clip
   bool shape_of_motion = false;  ///< the body has the shape of the motion's track; false: the photo's
 };

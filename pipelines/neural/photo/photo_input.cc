@@ -191,6 +191,9 @@ Photo MakePhoto(const PhotoRequest& request, Shown shown, int size, int texture_
     if (inside == 0) throw nobody("its body lies outside");
     PhotoMapsOptions options;
     options.size = size, options.texture_size = texture_size;
+    if (!request.iuv.empty()) {
+      options.estimated = std::make_shared<const EstimatedPixels>(*photo.body, request.iuv, 1, request.frame);
+    }
     const PhotoMaps maps(*photo.body, photo.track, options);
     photo.window = maps.window();
     FillMaps(maps.At(0), size, texture_size, &photo.frame);
@@ -291,7 +294,7 @@ PhotoRequest ParsePhotoRequest(const std::string& text, const std::string& optio
                       ? ""
                       : text.substr(first + 1, second == std::string::npos ? second : second - first - 1);
   request.frame = 0;
-  request.labels.clear();
+  request.labels.clear(), request.iuv.clear();
   if (second != std::string::npos) {
     const std::string number = text.substr(second + 1);
     const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), request.frame);

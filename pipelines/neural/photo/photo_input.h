@@ -33,6 +33,8 @@ struct PhotoRequest {
   std::string track;   ///< empty: the single-person dataset's own
   std::string labels;  ///< DensePose's parts of the clip, which stand in for a parsing of the clothes; or empty
   std::string body;    ///< empty: the built-in body
+  std::string iuv;  ///< what its pixels show of the body: an IUV image, or a folder with one a frame; empty: what the
+                    ///< tracked body says
 };
 
 struct Photo {

@@ -5,14 +5,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/geometry/observations.h"
 #include "bodyloom/geometry/posed_body.h"
+#include "tests/support/scratch_folder.h"
 #include "tests/support/short_track.h"
+#include "tests/support/write_iuv.h"
 
 namespace bodyloom {
 namespace {
@@ -140,6 +144,55 @@ TEST_F(DenseHistoryTest, ATurnedViewIsAnotherPicture) {
   // From behind the shoulders (5 left, 6 right) change sides.
   const Eigen::Matrix<double, Eigen::Dynamic, 2> back = frames_->Keypoints(3);
   EXPECT_LT((front(5, 0) - front(6, 0)) * (back(5, 0) - back(6, 0)), 0);
+}
+
+TEST_F(DenseHistoryTest, EstimatesStandInForTheBody) {
+  const ScratchFolder scratch;
+  PersonFramesOptions options = Small();
+  options.window.scale = 1;  // the picture's own pixels
+  Describe(ShortTrack(), options);
+  const EstimatedPixels estimated(BuiltinBody(), WriteIuv(track_, scratch / "iuv"), track_.num_frames());
+  const size_t area = size_t(width_) * height_;
+  std::vector<float> uv(2 * area), body(area), found(2 * area), mask(area);
+  frames_->BodyMaps(4, uv, body);
+  estimated.BodyMaps(frames_->window(), 4, found, mask);
+  int shown = 0, near = 0;
+  for (size_t i = 0; i < area; ++i) {
+    ASSERT_LE(mask[i], body[i]) << "on the body alone";
+    if (mask[i] == 0) {
+      ASSERT_EQ(found[i], 0);
+      continue;
+    }
+    ++shown;
+    // Charts are rounded to 1/255, and are smaller in the atlas than they are.
+    near += std::hypot(found[i] - uv[i], found[area + i] - uv[area + i]) < 0.005 ? 1 : 0;
+  }
+  EXPECT_GT(shown, 1000);
+  EXPECT_GT(near, 0.99 * shown);
+  // The history of estimates: the same pictures, and the keypoints of the body.
+  const DenseHistory history(*frames_, kPast, &estimated);
+  std::vector<float> maps(size_t(history.channels()) * area);
+  history.Maps(4, maps);
+  const std::vector<float> of_body = Maps(4);
+  for (size_t i = 0; i < area; ++i) {
+    ASSERT_NEAR(maps[i], found[i], 1.0 / 65535);
+    ASSERT_EQ(maps[2 * area + i], mask[i]);
+    ASSERT_EQ(maps[3 * area + i], of_body[3 * area + i]);
+  }
+}
+
+TEST_F(DenseHistoryTest, EstimatesAreOfThisClip) {
+  const ScratchFolder scratch;
+  Describe(ShortTrack());
+  const std::string folder = WriteIuv(track_, scratch / "iuv");
+  EXPECT_THROW(EstimatedPixels(BuiltinBody(), folder, track_.num_frames() + 1), std::runtime_error);
+  WriteImage(folder + "/000001.png", Image(30, 20));
+  const EstimatedPixels estimated(BuiltinBody(), folder, track_.num_frames());
+  std::vector<float> uv(size_t(2) * width_ * height_), mask(size_t(width_) * height_);
+  EXPECT_THROW(estimated.BodyMaps(frames_->window(), 1, uv, mask), std::runtime_error) << "of another size";
+  // Beside other pictures those named _IUV count.
+  WriteImage(folder + "/a_IUV.png", Image(30, 20));
+  EXPECT_THROW(EstimatedPixels(BuiltinBody(), folder, 2), std::runtime_error);
 }
 
 TEST_F(DenseHistoryTest, RefusesTheWrongSizes) {

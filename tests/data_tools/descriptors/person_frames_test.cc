@@ -199,6 +199,39 @@ TEST(PersonFrames, PixelsShowTheBodyWhereItIs) {
   EXPECT_GT(window.scale_y * PixelsPerMetre(BuiltinBody(), track), 20);
 }
 
+TEST(PersonFrames, TheSurfaceOfAPixelIsThatOfTheBodyThere) {
+  const Track track = ShortTrack();
+  const PersonFrames frames(BuiltinBody(), track, Small());
+  const BodySurface surface = frames.Surface(3);
+  const size_t area = size_t(frames.window().width) * frames.window().height;
+  ASSERT_EQ(surface.parts.size(), area);
+  std::vector<float> uv(2 * area), mask(area);
+  frames.BodyMaps(3, uv, mask);
+  const Camera camera = CameraInWindow(track.CameraAt(3), frames.window(), 3);
+  VisibilityBuffer buffer;
+  const MatrixX3d vertices = PosedTrack(BuiltinBody(), track).Vertices(3);
+  const MatrixX3i& faces = BuiltinBody().data().faces;
+  buffer.Render(vertices, faces, camera);
+  int alike = 0, shown = 0;
+  for (size_t i = 0; i < area; ++i) {
+    ASSERT_EQ(surface.parts[i] != 0, mask[i] == 1);
+    const Eigen::Vector3d n(surface.normals[i], surface.normals[area + i], surface.normals[2 * area + i]);
+    if (mask[i] == 0) {
+      ASSERT_EQ(n.norm(), 0);
+      continue;
+    }
+    ASSERT_NEAR(n.norm(), 1, 1e-5);
+    const int face = buffer.FaceAt(static_cast<int>(i % surface.width), static_cast<int>(i / surface.width));
+    ASSERT_EQ(surface.parts[i], BuiltinBody().data().face_part[face]);
+    const Eigen::Vector3d a = vertices.row(faces(face, 0)), b = vertices.row(faces(face, 1)),
+                          c = vertices.row(faces(face, 2));
+    ++shown;
+    alike += n.dot((b - a).cross(c - a).normalized()) > 0.9 ? 1 : 0;
+  }
+  EXPECT_GT(shown, 500);
+  EXPECT_GT(alike, 0.95 * shown) << "of the face, but for what is smoothed over creases";
+}
+
 TEST(PersonFrames, LostFramesAreEmptyAndNothingReachesAcrossThem) {
   Track track = ShortTrack();
   track.motion.poses.row(5).setConstant(std::nan(""));
@@ -206,6 +239,8 @@ TEST(PersonFrames, LostFramesAreEmptyAndNothingReachesAcrossThem) {
   track.frame_status[5] = FrameStatus::kLost;
   const PersonFrames frames(BuiltinBody(), track, Small());
   const std::vector<float> lost = Maps(frames, 5), next = Maps(frames, 7);
+  const std::vector<uint8_t> parts = frames.Surface(5).parts;
+  EXPECT_TRUE(std::all_of(parts.begin(), parts.end(), [](uint8_t part) { return part == 0; }));
   EXPECT_TRUE(std::all_of(lost.begin(), lost.end(), [](float v) { return v == 0; }));
   const size_t map = 3 * 32 * 32;
   // Frame 7 may look back to frame 6, not beyond the gap.

@@ -3,14 +3,20 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <vector>
 
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/datasets/label_of_part.h"
 #include "bodyloom/data_tools/datasets/photo_segmentation.h"
 #include "bodyloom/data_tools/descriptors/posed_track.h"
+#include "bodyloom/data_tools/descriptors/texels_of_pixels.h"
+#include "tests/support/scratch_folder.h"
 #include "tests/support/short_track.h"
+#include "tests/support/write_iuv.h"
 
 namespace bodyloom {
 namespace {
@@ -125,6 +131,85 @@ TEST(PhotoMaps, CosinesAreThoseOfTheFaces) {
   }
   EXPECT_GT(compared, 300);
   EXPECT_GT(slant, 30);
+}
+
+TEST(PhotoMaps, EstimatesOfTheBodysOwnPixelsShowWhatTheBodyShows) {
+  const Track track = ShortTrack();
+  const ScratchFolder scratch;
+  PhotoMapsOptions options = Small();
+  const PhotoMap body = PhotoMaps(BuiltinBody(), track, options).At(4);
+  options.estimated =
+      std::make_shared<const EstimatedPixels>(BuiltinBody(), WriteIuv(track, scratch / "iuv"), track.num_frames());
+  const PhotoMap estimated = PhotoMaps(BuiltinBody(), track, options).At(4);
+  const size_t area = size_t(kSize) * kSize, texels = size_t(kTexture) * kTexture;
+  int pixels = 0, alike = 0;
+  for (size_t i = 0; i < area; ++i) {
+    if (body.parts[i] == 0 && estimated.parts[i] == 0) continue;
+    ++pixels;
+    alike += body.parts[i] == estimated.parts[i] &&
+             std::hypot(body.uv[i] - estimated.uv[i], body.uv[area + i] - estimated.uv[area + i]) < 0.03;
+  }
+  EXPECT_GT(pixels, 500);
+  EXPECT_GT(alike, 0.85 * pixels) << "but for which pixel is the nearest";
+  int of_body = 0, of_both = 0, of_estimates = 0;
+  std::vector<double> errors;
+  for (size_t i = 0; i < texels; ++i) {
+    const bool seen = body.texel_cosine[i] > 0, found = estimated.texel_cosine[i] > 0;
+    of_body += seen ? 1 : 0;
+    of_estimates += found ? 1 : 0;
+    if (!seen || !found) continue;
+    ++of_both;
+    errors.push_back(std::hypot(body.texel_pixels[i] - estimated.texel_pixels[i],
+                                body.texel_pixels[texels + i] - estimated.texel_pixels[texels + i]));
+  }
+  EXPECT_GT(of_both, 0.75 * of_body);
+  EXPECT_LT(of_estimates, 1.6 * of_body);
+  std::nth_element(errors.begin(), errors.begin() + errors.size() / 2, errors.end());
+  EXPECT_LT(errors[errors.size() / 2], 0.7);
+  // A photo is one picture of a folder, or a picture.
+  const EstimatedPixels fifth(BuiltinBody(), scratch / "iuv", 1, 4),
+      alone(BuiltinBody(), scratch / "iuv/000004.png", 1, 4);
+  const PersonWindow window = PhotoMaps(BuiltinBody(), track, options).window();
+  PersonWindow of_photo = window;
+  of_photo.corner = {window.corner[4]};
+  for (const EstimatedPixels* one : {&fifth, &alone}) {
+    std::vector<float> uv(2 * area), mask(area);
+    std::vector<uint8_t> parts(area, 1);
+    one->BodyMaps(of_photo, 0, uv, mask, parts);
+    EXPECT_EQ(uv, estimated.uv);
+    EXPECT_EQ(parts, estimated.parts);
+  }
+  options.yaw_deg.assign(track.num_frames(), 30);
+  EXPECT_THROW(PhotoMaps(BuiltinBody(), track, options), std::invalid_argument);
+}
+
+/// A chart of 8 × 8 texels, each as large as two pixels, whose middle hides behind another part.
+TEST(TexelsOfPixels, AreWhereThePixelsAroundThemShowThem) {
+  constexpr int kPixels = 16, kTexels = 8;
+  std::vector<float> uv(2 * kPixels * kPixels);
+  std::vector<uint8_t> parts(kPixels * kPixels, 5), texel_parts(kTexels * kTexels, 5);
+  for (int y = 0; y < kPixels; ++y) {
+    for (int x = 0; x < kPixels; ++x) {
+      uv[y * kPixels + x] = static_cast<float>((x + 0.5) / kPixels);
+      uv[kPixels * kPixels + y * kPixels + x] = static_cast<float>(1 - (y + 0.5) / kPixels);
+    }
+  }
+  for (const int at : {6 * kPixels + 6, 6 * kPixels + 7, 7 * kPixels + 6, 7 * kPixels + 7}) parts[at] = 0;
+  texel_parts[0] = 4;
+  const TexelPlaces places = TexelsOfPixels(uv, parts, kPixels, kPixels, texel_parts, kTexels);
+  for (int r = 0; r < kTexels; ++r) {
+    for (int c = 0; c < kTexels; ++c) {
+      const int at = r * kTexels + c;
+      if (at == 0 || (r == 3 && c == 3)) {
+        EXPECT_EQ(places.seen[at], 0) << "another part's, or around nothing";
+        continue;
+      }
+      ASSERT_EQ(places.seen[at], 1) << r << ", " << c;
+      EXPECT_NEAR(places.pixels[at], 2 * c + 0.5, 1e-4);
+      EXPECT_NEAR(places.pixels[kTexels * kTexels + at], 2 * r + 0.5, 1e-4);
+    }
+  }
+  EXPECT_THROW(TexelsOfPixels(uv, parts, kPixels, kPixels, parts, kTexels), std::invalid_argument);
 }
 
 TEST(PhotoMaps, AFrameWithoutAResultShowsNothing) {

@@ -9,8 +9,11 @@
 #include <map>
 #include <set>
 
+#include "bodyloom/neural/guided/guided_batches.h"
 #include "bodyloom/neural/guided/guided_model.h"
+#include "bodyloom/neural/guided/guided_plan.h"
 #include "bodyloom/neural/guided/guided_renderer.h"
+#include "bodyloom/neural/guided/guided_tensors.h"
 #include "bodyloom/neural/guided/train_guided.h"
 #include "bodyloom/neural/runtime.h"
 #include "tests/neural/guided/guided_toy.h"
@@ -38,6 +41,62 @@ TrainGuidedOptions ToyOptions(const std::string& name) {
   options.report_every = options.checkpoint_every = options.validate_every = 4;
   options.run_dir = EmptyFolder(name);
   return options;
+}
+
+/// The toy's window within one of twice its side, its upper left corner at (left, top).
+PhotoFrame InLargerWindow(const PhotoFrame& toy, int left, int top) {
+  const int side = toy.size, size = 2 * side;
+  const size_t toy_area = size_t(side) * side, area = size_t(size) * size;
+  PhotoFrame frame = toy;
+  frame.size = size;
+  frame.uv.assign(2 * area, 0), frame.image.assign(3 * area, 0);
+  frame.parts.assign(area, 0), frame.labels.assign(area, 0);
+  for (size_t i = 0; i < toy_area; ++i) {
+    const size_t at = (i / side + top) * size + i % side + left;
+    frame.parts[at] = toy.parts[i], frame.labels[at] = toy.labels[i];
+    for (size_t c = 0; c < 2; ++c) frame.uv[c * area + at] = toy.uv[c * toy_area + i];
+    for (size_t c = 0; c < 3; ++c) frame.image[c * area + at] = toy.image[c * toy_area + i];
+  }
+  for (size_t i = 0; i < toy.texel_cosine.size(); ++i) {
+    if (toy.texel_cosine[i] == 0) continue;
+    frame.texel_pixels[i] += static_cast<float>(left);
+    frame.texel_pixels[toy.texel_cosine.size() + i] += static_cast<float>(top);
+  }
+  return frame;
+}
+
+/// Instance norms see at work the window of one frame: in training the same window, as large as the largest of a batch.
+TEST(GuidedBatches, EveryTargetIsInItsOwnWindow) {
+  // A person below on the left, and the same above on the right.
+  PhotoSource people = ToyPeople(1, 2);
+  people.fill = [](int, int frame, PhotoFrame* out) {
+    const PhotoFrame toy = ToyPhotoFrame(0, {}, true);
+    *out = frame == 0 ? InLargerWindow(toy, 0, toy.size) : InLargerWindow(toy, toy.size, 0);
+  };
+  people.size = 2 * kToySide;
+  GuidedConfig config = ToyGuided();
+  config.profile.image_size = people.size;
+  const int multiple = config.Multiple();
+  std::set<int64_t> lefts;
+  for (int64_t step = 0; step < 6; ++step) {
+    const GuidedBatch batch = MakeGuidedBatch(people, config, 3, step, 2, 0);
+    ASSERT_EQ(batch.boxes.size(), 2U);
+    for (int b = 0; b < 2; ++b) {
+      const GuidedSample sample = GuidedSampleOf(3, step, b, people);
+      PhotoFrame frame;
+      people.fill(0, sample.target, &frame);
+      const CodeBox own = PersonBox(frame, multiple, 0), &box = batch.boxes[b];
+      EXPECT_EQ(box.x, own.x);
+      EXPECT_EQ(box.y, own.y);
+      EXPECT_EQ(box.width, own.width) << "both are of one size here";
+      const GuidedTensors whole = TensorsOf(std::span(&frame, 1));
+      EXPECT_TRUE(torch::equal(batch.target.image[b], CroppedPixels(whole.image, box, multiple)[0]));
+      EXPECT_TRUE(torch::equal(batch.target.classes[b], CroppedPixels(whole.classes, box, multiple)[0]));
+      lefts.insert(box.x);
+    }
+    EXPECT_EQ(batch.target.pose.size(3), batch.Whole().width * multiple);
+  }
+  EXPECT_EQ(lefts.size(), 2U);
 }
 
 TEST(GuidedTraining, LearnsAPairByHeart) {

@@ -13,6 +13,7 @@
 #include "bodyloom/neural/guided/guided_batches.h"
 #include "bodyloom/neural/guided/guided_card.h"
 #include "bodyloom/neural/guided/guided_model.h"
+#include "bodyloom/neural/guided/guided_tensors.h"
 #include "bodyloom/neural/losses/gan_losses.h"
 #include "bodyloom/neural/losses/image_losses.h"
 #include "bodyloom/neural/networks/architecture_card.h"
@@ -245,6 +246,8 @@ class GuidedByHeart : public ::testing::Test {
     model_ = GuidedModel(config_);
     batch_ = MakeGuidedBatch(people_, config_, 1, 0, 2, 2);
   }
+  GuidedSource Source() { return CroppedEach(model_->EncodeSource(batch_.source), batch_.boxes); }
+
   GuidedConfig config_ = ToyGuided();
   PhotoSource people_ = ToyPeople(2, 4);
   GuidedModel model_{nullptr};
@@ -256,8 +259,7 @@ TEST_F(GuidedByHeart, SilNet) {
   const auto [first, last] = LearnByHeart(
       *model_->sil,
       [&] {
-        predicted = torch::sigmoid(
-            model_->Silhouette(model_->EncodeSource(batch_.source), batch_.target.pose, batch_.pseudo, batch_.box));
+        predicted = torch::sigmoid(model_->Silhouette(Source(), batch_.target.pose, batch_.pseudo, batch_.Whole()));
         return L1Loss(predicted, batch_.target.silhouette);
       },
       100, 5e-3);
@@ -272,8 +274,8 @@ TEST_F(GuidedByHeart, GarNet) {
   const auto [first, last] = LearnByHeart(
       *model_->gar,
       [&] {
-        predicted = model_->Labels(model_->EncodeSource(batch_.source), batch_.target.pose, batch_.target.silhouette,
-                                   batch_.pseudo.classes, batch_.box);
+        predicted = model_->Labels(Source(), batch_.target.pose, batch_.target.silhouette, batch_.pseudo.classes,
+                                   batch_.Whole());
         return SoftLabelCrossEntropy(predicted, OneHot(classes, kPhotoLabels));
       },
       100, 5e-3);
@@ -286,9 +288,9 @@ TEST_F(GuidedByHeart, RenderNet) {
   const auto [first, last] = LearnByHeart(
       *model_->render,
       [&] {
-        const GuidedSource source = model_->EncodeSource(batch_.source);
+        const GuidedSource source = Source();
         const auto [image, mask] = model_->Render(source.render_code.mean, batch_.target.pose, batch_.target.silhouette,
-                                                  batch_.target.classes, batch_.pseudo, batch_.box);
+                                                  batch_.target.classes, batch_.pseudo, batch_.Whole());
         return L1Loss(image, batch_.target.image);
       },
       150, 5e-3);

@@ -1,0 +1,163 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The two renderers that need one photo under one protocol: the same people, photos and pictures, the same scores, with
+true labels and bodies and with estimated ones; and the ablations of the pose-guided renderer (Table 2 of Yoon et al.,
+"Pose-Guided Human Animation from a Single Image in the Wild", CVPR 2021) on synthetic people.
+
+usage: one_photo.py --bodyloom build/release/apps/bodyloom --motions ../shared/data/motion --out FOLDER
+       [--systems photo animate] [--without latent kl ...] [--given true labels iuv bodies all] [--seeds 1 2 3]
+       [--people 60] [--size 256] [--steps 4000] [--batch 4] [--profile cpu] [--report]
+
+FOLDER gets the people, a folder a run, report.md and report.json. What is there is not made again: a program that was
+stopped (Ctrl-C, SIGTERM) goes on where it was, within a run from its last checkpoint. --report only prints what there
+is. Bodies are those of `bodyloom run` on the test people's pictures: it needs the pose detector's networks, and a clip
+that it does not follow through all frames ends the program; leave "bodies" and "all" out of --given without them.
+"""
+import argparse
+import json
+import pathlib
+import shutil
+import sys
+
+from runs import call, text
+
+ABLATIONS = ["sil", "gar", "source-silhouette", "source-labels", "latent", "kl", "pseudo-image"]
+TRACK = "tracked.npz"
+GIVEN = {"true": [], "labels": ["--score-labels", "estimated"], "iuv": ["--score-iuv"], "bodies": ["--score-tracks", TRACK],
+         "all": ["--score-labels", "estimated", "--score-tracks", TRACK]}
+SCORES = [("image_l1", "L1", 4), ("psnr_db", "PSNR dB", 2), ("silhouette_iou", "silhouette IoU", 3),
+          ("label_iou", "labels IoU", 3), ("lpips", "LPIPS", 4), ("lpips_deviation", "deviation", 4),
+          ("contextual", "CS", 3)]
+
+
+def make_people(o):
+    people = o.out / "people"
+    if not (people / "people.json").exists():
+        print("people …", flush=True)
+        call([o.bodyloom, "synth-people", "--motions", o.motions, "--out", str(people), "--people", str(o.people),
+              "--actions", str(o.actions), "--views", "3", "--frames", str(o.frames), "--size", str(o.size), "--threads",
+              str(o.threads), "--quiet"], o.out / "people.log")
+    return people
+
+
+def track_test_people(o, people):
+    """Bodies as they are estimated of anybody: in every clip of a test person, TRACK beside the true track."""
+    for person in json.loads((people / "people.json").read_text(encoding="utf-8"))["people"]:
+        for clip in person["clips"] if person["split"] == "test" else []:
+            folder = people / clip
+            if (folder / TRACK).exists():
+                continue
+            print(f"bodies of {clip} …", flush=True)
+            out = folder / "tracking"
+            call([o.bodyloom, "run", str(folder / "images"), "--out", str(out), "--people", "1"], o.out / "people.log")
+            tracks = sorted(out.glob("person_*.npz"))
+            if not tracks:
+                sys.exit(f"{out}: nobody was tracked; leave bodies and all out of --given")
+            shutil.copy(tracks[0], folder / (TRACK + ".part"))
+            (folder / (TRACK + ".part")).rename(folder / TRACK)
+
+
+def settings(o):
+    """Name, verb and options of each kind of run."""
+    for system in o.systems:
+        yield system, system, []
+    if "animate" in o.systems:
+        for part in o.without:
+            yield f"animate without {part}", "animate", ["--without", part]
+
+
+def run_folder(o, name, seed):
+    return o.out / f"{name.replace(' ', '_')}_{seed}"
+
+
+def train(o, people, name, verb, options, seed):
+    run = run_folder(o, name, seed)
+    if (run / "trained").exists():
+        return
+    run.mkdir(exist_ok=True)
+    print(f"{run.name} …", flush=True)
+    arguments = [o.bodyloom, "train", verb, "--data", str(people), "--out", str(run), "--profile", o.profile, "--batch",
+                 str(o.batch), "--steps", str(o.steps), "--validate-every", str(o.steps), "--seed", str(seed), "--threads",
+                 str(o.threads)] + options
+    if verb == "animate" and o.balance_steps:
+        arguments += ["--balance-steps", str(o.balance_steps)]
+    if (run / "checkpoint.bin").exists():
+        arguments.append("--resume")
+    call(arguments, run / "log.txt")
+    (run / "trained").touch()
+
+
+def score(o, people, name, verb, seed):
+    run = run_folder(o, name, seed)
+    # Ablations are compared on what is true.
+    for given in o.given if name == verb else [g for g in o.given if g == "true"]:
+        scores = run / f"scores_{given}.json"
+        if not scores.exists():  # written whole or not at all
+            call([o.bodyloom, "animate", verb, "--run", str(run), "--score", str(people), "--score-photos", "1",
+                  "--score-frames", str(o.score_frames), "--sheet", str(run / f"{given}.png"), "--json", str(scores),
+                  "--threads", str(o.threads)] + GIVEN[given], run / "log.txt")
+
+
+def score_of(scores, key):
+    """By the name that says what measures: trained weights or random features."""
+    named = [k for k in scores if k == key or k.startswith(key + "_") and not k.startswith("lpips_deviation") or
+             (key == "lpips_deviation" and k.startswith(key))]
+    return scores[named[0]] if named else None
+
+
+def report(o):
+    lines = [f"Profile {o.profile}, {o.steps} steps of batch {o.batch}, {o.people} people, one photo; mean ± standard "
+             "deviation over seeds", "", "| system | given | seeds | pictures | " +
+             " | ".join(name for _, name, _ in SCORES) + " |", "|---|---|---|---|" + "---|" * len(SCORES)]
+    rows = []
+    for name, _, _ in settings(o):
+        for given in o.given:
+            found = [json.loads(path.read_text(encoding="utf-8"))["scores"][0] for seed in o.seeds
+                     if (path := run_folder(o, name, seed) / f"scores_{given}.json").exists()]
+            if not found:
+                continue
+            values = {key: [v for s in found if (v := score_of(s, key)) is not None] for key, _, _ in SCORES}
+            cells = [text(values[key], digits) if values[key] else "" for key, _, digits in SCORES]
+            lines.append(f"| {name} | {given} | {len(found)} | {found[0]['frames']} | " + " | ".join(cells) + " |")
+            rows.append({"system": name, "given": given, **values})
+    (o.out / "report.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    (o.out / "report.json").write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
+    return "\n".join(lines)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("--bodyloom", default="build/release/apps/bodyloom")
+    parser.add_argument("--motions", default="../shared/data/motion")
+    parser.add_argument("--out", type=pathlib.Path, required=True)
+    parser.add_argument("--systems", nargs="+", default=["photo", "animate"], choices=["photo", "animate"])
+    parser.add_argument("--without", nargs="*", default=ABLATIONS, choices=ABLATIONS)
+    parser.add_argument("--given", nargs="+", default=list(GIVEN), choices=list(GIVEN))
+    parser.add_argument("--seeds", type=int, nargs="+", default=[1, 2, 3])
+    parser.add_argument("--people", type=int, default=60)
+    parser.add_argument("--actions", type=int, default=4)
+    parser.add_argument("--frames", type=int, default=3)
+    parser.add_argument("--size", type=int, default=256)
+    parser.add_argument("--steps", type=int, default=4000)
+    parser.add_argument("--batch", type=int, default=4)
+    parser.add_argument("--balance-steps", type=int, default=0, help="of train animate (0: its default)")
+    parser.add_argument("--score-frames", type=int, default=8)
+    parser.add_argument("--profile", default="cpu")
+    parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--report", action="store_true", help="only print what there is")
+    o = parser.parse_args()
+    o.out.mkdir(parents=True, exist_ok=True)
+    if not o.report:
+        people = make_people(o)
+        if {"bodies", "all"} & set(o.given):
+            track_test_people(o, people)
+        for seed in o.seeds:
+            for name, verb, options in settings(o):
+                train(o, people, name, verb, options, seed)
+                score(o, people, name, verb, seed)
+                report(o)
+    print(report(o))
+
+
+if __name__ == "__main__":
+    main()

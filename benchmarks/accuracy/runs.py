@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the benchmarks that train and score many runs share: commands whose lines go to a log, means over seeds."""
+import math
+import subprocess
+import sys
+
+
+def call(arguments, log):
+    """Runs a command to its end; its lines go to `log`. A command that fails ends the program."""
+    with open(log, "a", encoding="utf-8") as lines:
+        lines.write(" ".join(arguments) + "\n")
+        lines.flush()
+        if subprocess.run(arguments, stdout=lines, stderr=lines, check=False).returncode != 0:
+            sys.exit(f"stopped in, or failed: {' '.join(arguments)}\nsee {log}")
+
+
+def mean_and_deviation(values):
+    mean = sum(values) / len(values)
+    return mean, math.sqrt(sum((v - mean) ** 2 for v in values) / (len(values) - 1)) if len(values) > 1 else 0.0
+
+
+def text(values, digits=4):
+    mean, deviation = mean_and_deviation(values)
+    return f"{mean:.{digits}f} ± {deviation:.{digits}f}"

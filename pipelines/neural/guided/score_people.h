@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The two renderers that need one photo, on people they have not been trained on, under one protocol: what `bodyloom
+/// animate photo --score` and `bodyloom animate animate --score` do.
+///
+/// Of each test person the photos are those of ChoosePhotos (neural/guided/choose_photos.h) on true labels and bodies,
+/// whatever is given to the renderer; the pictures to compare with are spread over the others. So both renderers, and
+/// every setting of one, draw the same pictures from the same photos, and one class measures them (GuidedScorer).
+/// Windows have the size of the run's profile: runs to be compared are of one image size. Where bodies are estimated
+/// the windows follow them.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bodyloom/neural/guided/guided_config.h"
+#include "bodyloom/neural/guided/guided_scores.h"
+#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/pipelines/neural/photo/people_data.h"
+
+namespace bodyloom {
+
+struct ScorePeopleRequest {
+  std::string run;                ///< folder of the trained run
+  std::string data;               ///< a multi-person dataset: its test people
+  std::string body;               ///< empty: the built-in body
+  GivenOfPeople given;            ///< of photos and poses
+  std::vector<int> photos = {1};  ///< numbers of photos to animate from, each scored: 1, 2, 4
+  int frames = 8;                 ///< of each person, spread over those that none of the numbers takes for photos
+  bool anywhere = false;          ///< people may be farther from the body than clothes ever were in training
+  /// Of what the photos do not show; absent: as the run says. Of the pose-guided renderer alone.
+  std::optional<MapCompletion> completion;
+  /// A contact sheet to write, a row a person: the photo, then what it shows of the pose, result, truth for the first
+  /// number of photos; empty: none.
+  std::string sheet;
+  std::string weights;         ///< folder with alexnet, lpips_alex and vgg19 (weights_folder.h); empty: none
+  std::string json;            ///< a report to write; empty: none
+  int threads = 0;             ///< 0: all cores
+  std::string device = "cpu";  ///< where the networks run: "cpu" or "cuda"
+};
+
+struct ScoredPhotos {
+  int photos = 0;
+  GuidedScores scores;     ///< label_iou is NaN of the one-photo renderer, which draws no labels
+  double texels_seen = 0;  ///< share of the atlas that the photos fill, mean over people
+};
+
+struct ScorePeopleSummary {
+  std::string given;                 ///< in words
+  std::vector<ScoredPhotos> scored;  ///< in the order of the request's numbers of photos
+  std::vector<std::string> written;  ///< the files, as the request names them
+};
+
+/// Throw std::runtime_error for files that cannot be used and datasets without a picture to compare with, Cancelled. The
+/// stage of `callbacks` is "people".
+ScorePeopleSummary ScoreGuided(const ScorePeopleRequest& request, const PipelineCallbacks& callbacks);
+ScorePeopleSummary ScorePhoto(const ScorePeopleRequest& request, const PipelineCallbacks& callbacks);
+
+}  // namespace bodyloom
