@@ -14,11 +14,13 @@
 
 #include "bodyloom/data_tools/avatar/avatar_file.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/geometry/uv_texels.h"
 #include "bodyloom/pipelines/avatar/frame_spans.h"
+#include "bodyloom/pipelines/avatar/refined_track.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/fixed_text.h"
 #include "bodyloom/pipelines/report_json.h"
@@ -65,6 +67,8 @@ class AvatarTraining {
     views_ = clip_->ReadViews(split_.train, kTrainingMargin, true, callbacks_);
     clock_.Begin("begin");
     options_ = Options();
+    refiner_.emplace(clip_->body(), clip_->track().motion.betas, TrackedPoses(clip_->body(), clip_->track()),
+                     request_.poses);
     if (request_.resume) {
       TakeCheckpoint();
     } else {
@@ -75,6 +79,7 @@ class AvatarTraining {
     clock_.Begin("write");
     WriteRun();
     if (!summary_.stopped) Judge();
+    if (!summary_.stopped && !request_.refined_track.empty()) RefineAll();
     clock_.End();
     return Finish();
   }
@@ -102,10 +107,10 @@ class AvatarTraining {
 
   /// What a training that is gone on with must have in common with its beginning.
   [[nodiscard]] std::string OptionsText() const {
-    const nlohmann::ordered_json json = {{"steps", request_.steps},   {"minutes", request_.minutes},
-                                         {"seed", request_.seed},     {"skin_side", request_.skin_side},
-                                         {"loose", request_.loose},   {"train", split_.train},
-                                         {"data", request_.clip.data}};
+    const nlohmann::ordered_json json = {{"steps", request_.steps},    {"minutes", request_.minutes},
+                                         {"seed", request_.seed},      {"skin_side", request_.skin_side},
+                                         {"loose", request_.loose},    {"train", split_.train},
+                                         {"data", request_.clip.data}, {"refine", request_.refine}};
     return json.dump();
   }
 
@@ -123,6 +128,7 @@ class AvatarTraining {
     checkpoint_.avatar.num_vertices = clip_->body().num_vertices();
     checkpoint_.avatar.num_faces = clip_->body().num_faces();
     checkpoint_.state = AvatarTrainingState::Of(std::move(body));
+    if (request_.refine) checkpoint_.state.poses.Reset(refiner_->num_frames(), refiner_->num_joints());
     checkpoint_.options = OptionsText();
     WriteConfig();
   }
@@ -148,7 +154,7 @@ class AvatarTraining {
   }
 
   void Train() {
-    AvatarTrainer trainer(clip_->body().data().faces, views_, options_);
+    AvatarTrainer trainer(clip_->body().data().faces, views_, options_, request_.refine ? &*refiner_ : nullptr);
     AvatarTrainingState& state = checkpoint_.state;
     if (metrics_.empty()) metrics_ = "step,loss,cost,drawn,relocated,seconds\n";
     std::deque<double> losses;
@@ -187,7 +193,31 @@ class AvatarTraining {
     WriteFileAtomically(MetricsPath(), metrics_);
   }
 
-  AvatarScores ScoreOf(const std::vector<int>& frames, bool preview) {
+  /// Moves every frame's pose with the person as it is, scores the held-out ones and writes the track.
+  void RefineAll() {
+    clock_.Begin("refine");
+    std::vector<int> all(clip_->track().num_frames());
+    std::iota(all.begin(), all.end(), 0);
+    views_ = clip_->ReadViews(all, kTrainingMargin, true, callbacks_);
+    AvatarTrainerOptions options = options_;
+    options.learn_person = false, options.refine_from = 0, options.seconds = 0;
+    options.steps =
+        static_cast<int64_t>(request_.refine_rounds) *
+        std::count_if(views_.begin(), views_.end(), [](const TrainingView& view) { return !view.window.empty(); });
+    AvatarTrainer trainer(clip_->body().data().faces, views_, options, &*refiner_);
+    AvatarTrainingState state = checkpoint_.state;
+    state.step = 0, state.seconds = 0;
+    if (state.poses.values.rows() == 0) state.poses.Reset(refiner_->num_frames(), refiner_->num_joints());
+    while (!trainer.IsDone(state)) {
+      callbacks_.Update("refining the track", trainer.Progress(state));
+      trainer.Step(&state);
+    }
+    if (!split_.validation.empty())
+      summary_.validation_refined = ScoreOf(split_.validation, state.poses, "preview_refined.png");
+    WriteTrack(request_.refined_track, RefinedTrack(clip_->body(), clip_->track(), *refiner_, state.poses));
+  }
+
+  AvatarScores ScoreOf(const std::vector<int>& frames, const PoseCorrections& poses, const char* preview) {
     const std::vector<int> some = Spread(frames, kScoredFrames);
     const std::vector<TrainingView> views = clip_->ReadViews(some, AvatarScores::kScoreMargin, false, callbacks_);
     const std::vector<int> shown = EvenlySpreadFrames(static_cast<int>(some.size()), kHeldOutShown);
@@ -199,40 +229,39 @@ class AvatarTraining {
       AvatarView view;
       view.camera = views[i].camera, view.window = views[i].window;
       view.options.num_threads = request_.clip.threads;
-      painter.Draw(checkpoint_.state.body, clip_->body().data().faces, views[i].frame, view);
+      AvatarFrame frame = views[i].frame;
+      if (poses.values.rows() > 0) refiner_->MakeFrame(views[i].time, poses, request_.clip.threads, &frame);
+      painter.Draw(checkpoint_.state.body, clip_->body().data().faces, frame, view);
       scorer.Add(views[i], painter.picture());
-      if (!preview || !std::binary_search(shown.begin(), shown.end(), static_cast<int>(i))) continue;
+      if (preview == nullptr || !std::binary_search(shown.begin(), shown.end(), static_cast<int>(i))) continue;
       sheet.push_back(TrueWindow(views[i]));
       sheet.push_back(DrawnWindow(painter.picture()));
     }
     if (!sheet.empty()) {
       ContactSheetOptions layout;
       layout.columns = 4, layout.cell_height_px = 640;
-      WriteImage(InRun(request_.out, "preview.png"), ContactSheet(sheet, layout));
+      WriteImage(InRun(request_.out, preview), ContactSheet(sheet, layout));
     }
     return scorer.Means();
   }
 
   void Judge() {
     clock_.Begin("score");
-    summary_.training = ScoreOf(split_.train, split_.validation.empty());
-    if (!split_.validation.empty()) summary_.validation = ScoreOf(split_.validation, true);
+    constexpr const char* kPreview = "preview.png";
+    const bool has_validation = !split_.validation.empty();
+    summary_.training = ScoreOf(split_.train, checkpoint_.state.poses, has_validation ? nullptr : kPreview);
+    // Held-out frames have no correction: they are judged by the track that they came with.
+    if (has_validation) summary_.validation = ScoreOf(split_.validation, checkpoint_.state.poses, kPreview);
   }
 
   void WriteConfig() const {
-    const nlohmann::ordered_json json = {{"program", kAvatarProgram},
-                                         {"version", 1},
-                                         {"data", request_.clip.data},
-                                         {"track", request_.clip.track},
-                                         {"mask", request_.clip.mask},
-                                         {"body", request_.clip.body},
-                                         {"train", split_.train},
-                                         {"validate", split_.validation},
-                                         {"steps", request_.steps},
-                                         {"minutes", request_.minutes},
-                                         {"skin_side", request_.skin_side},
-                                         {"loose", request_.loose},
-                                         {"seed", request_.seed}};
+    const nlohmann::ordered_json json = {{"program", kAvatarProgram},       {"version", 1},
+                                         {"data", request_.clip.data},      {"track", request_.clip.track},
+                                         {"mask", request_.clip.mask},      {"body", request_.clip.body},
+                                         {"train", split_.train},           {"validate", split_.validation},
+                                         {"steps", request_.steps},         {"minutes", request_.minutes},
+                                         {"skin_side", request_.skin_side}, {"loose", request_.loose},
+                                         {"seed", request_.seed},           {"refine", request_.refine}};
     WriteFileAtomically(RunConfigPath(request_.out), json.dump(1) + "\n");
   }
 
@@ -249,6 +278,7 @@ class AvatarTraining {
                                    {"loss", summary_.loss},           {"seconds", ToJson(summary_.seconds)}};
     if (summary_.training) json["training"] = ToJson(*summary_.training);
     if (summary_.validation) json["validation"] = ToJson(*summary_.validation);
+    if (summary_.validation_refined) json["validation_poses_refined_on_them"] = ToJson(*summary_.validation_refined);
     WriteReport(InRun(request_.out, "report.json"), json);
     return summary_;
   }
@@ -262,6 +292,7 @@ class AvatarTraining {
   TrainingSplit split_;
   std::vector<TrainingView> views_;
   AvatarTrainerOptions options_;
+  std::optional<PoseRefiner> refiner_;
   AvatarCheckpoint checkpoint_;
   std::string metrics_;
   TrainAvatarSummary summary_;

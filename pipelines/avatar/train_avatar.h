@@ -11,6 +11,7 @@
 #include "bodyloom/pipelines/avatar/avatar_clip.h"
 #include "bodyloom/pipelines/avatar/avatar_scores.h"
 #include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/render/avatar/learning/pose_refiner.h"
 
 namespace bodyloom {
 
@@ -23,7 +24,12 @@ struct TrainAvatarRequest {
   int skin_side = 176;                       ///< texels of a side of the atlas that skin Gaussians lie on
   int loose = 16000;                         ///< Gaussians off the skin, at most
   uint64_t seed = 1;
-  bool resume = false;  ///< go on with the run in `out`
+  bool refine = false;  ///< the poses of the frames learned from are corrected with the person (pose_refiner.h)
+  std::string
+      refined_track;  ///< above that, in the end, those of all frames with the person as it is; .npz; empty: not
+  PoseRefinerOptions poses;
+  int refine_rounds = 30;  ///< how often a frame comes then
+  bool resume = false;     ///< go on with the run in `out`
 };
 
 struct TrainAvatarSummary {
@@ -33,7 +39,10 @@ struct TrainAvatarSummary {
   int gaussians = 0, loose = 0;
   double loss = 0;                                   ///< mean of the last steps, at most 100 of them
   std::optional<AvatarScores> training, validation;  ///< of frames spread over them; absent: none, or stopped
-  StageSeconds seconds;                              ///< of this sitting
+  /// Of the same held-out frames, but in poses that were refined on their own pictures: how well the person fits them,
+  /// not how well a track predicts them.
+  std::optional<AvatarScores> validation_refined;
+  StageSeconds seconds;  ///< of this sitting
   std::vector<std::string> written;
 };
 
