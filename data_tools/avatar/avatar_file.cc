@@ -26,8 +26,6 @@ NdArray FromTable(const FloatColumns& table) {
   return NdArray::FromFloats(rows.data(), {table.rows(), table.columns()});
 }
 
-int64_t RowsOf(const NdArray& array) { return array.shape.empty() ? 0 : array.shape[0]; }
-
 /// The arrays of one file, each checked for type and shape when it is taken.
 class AvatarArrays {
  public:
@@ -165,9 +163,11 @@ void PutPoses(const PoseCorrections& poses, NpzArrays* to) {
 
 PoseCorrections TakePoses(const AvatarArrays& arrays, const NpzArrays& npz, int num_joints) {
   PoseCorrections poses;
-  const auto found = npz.find("pose_values");
-  if (found == npz.end()) return poses;
-  const int64_t frames = std::min(RowsOf(found->second), kMostFrames);
+  const auto is_pose = [](const auto& entry) { return entry.first.starts_with("pose_"); };
+  const auto first = std::find_if(npz.begin(), npz.end(), is_pose);
+  if (first == npz.end()) return poses;
+  const NdArray& any = first->second;
+  const int64_t frames = any.shape.empty() ? 0 : std::min(any.shape[0], kMostFrames);
   poses.values = arrays.Table("pose_values", 3 * num_joints + 3, frames);
   poses.mean = arrays.Table("pose_mean", 3 * num_joints + 3, frames);
   poses.square = arrays.Floats("pose_square", {frames});

@@ -87,6 +87,8 @@ class AvatarTraining {
  private:
   void OpenRun() {
     if (!request_.clip.data.empty()) RequireReadable(request_.clip.data, "data");
+    RequireWritable(request_.refined_track);
+    RequireDistinct({request_.clip.data, request_.clip.track, request_.clip.mask}, {request_.refined_track});
     RequireWritableFolder(request_.out);
     const bool is_there = fs::exists(AvatarCheckpointPath(request_.out));
     if (request_.resume && !is_there) throw RequestError(request_.out + " holds no run to go on with");
@@ -145,6 +147,10 @@ class AvatarTraining {
     if (!checkpoint_.state.body.IsValid(clip_->body().num_joints(), clip_->body().num_faces(), &why)) {
       throw std::runtime_error(path + ": of another body (--body): " + why);
     }
+    if (request_.refine && checkpoint_.state.poses.values.rows() != refiner_->num_frames()) {
+      throw std::runtime_error(Concatenate(path, ": pose_values of ", checkpoint_.state.poses.values.rows(),
+                                           " frames, the track has ", refiner_->num_frames()));
+    }
     // What was done after it is done again.
     std::istringstream lines(fs::exists(MetricsPath()) ? ReadFileBytes(MetricsPath()) : "");
     for (std::string line; std::getline(lines, line);) {
@@ -193,27 +199,31 @@ class AvatarTraining {
     WriteFileAtomically(MetricsPath(), metrics_);
   }
 
-  /// Moves every frame's pose with the person as it is, scores the held-out ones and writes the track.
+  /// Moves the poses of all frames with the person as it is, scores the held-out ones and writes the track.
   void RefineAll() {
     clock_.Begin("refine");
     std::vector<int> all(clip_->track().num_frames());
     std::iota(all.begin(), all.end(), 0);
     views_ = clip_->ReadViews(all, kTrainingMargin, true, callbacks_);
+    const auto shown =
+        std::count_if(views_.begin(), views_.end(), [](const auto& view) { return !view.window.empty(); });
     AvatarTrainerOptions options = options_;
-    options.learn_person = false, options.refine_from = 0, options.seconds = 0;
-    options.steps =
-        static_cast<int64_t>(request_.refine_rounds) *
-        std::count_if(views_.begin(), views_.end(), [](const TrainingView& view) { return !view.window.empty(); });
+    options.learn_person = false, options.refine_from = 0;
+    options.steps = request_.refine_rounds * shown, options.seconds = 0;
     AvatarTrainer trainer(clip_->body().data().faces, views_, options, &*refiner_);
     AvatarTrainingState state = checkpoint_.state;
-    state.step = 0, state.seconds = 0;
+    state.step = 0;
     if (state.poses.values.rows() == 0) state.poses.Reset(refiner_->num_frames(), refiner_->num_joints());
     while (!trainer.IsDone(state)) {
-      callbacks_.Update("refining the track", trainer.Progress(state));
       trainer.Step(&state);
+      if (!callbacks_.GoesOn("refining the track", trainer.Progress(state))) {
+        summary_.stopped = true;
+        return;
+      }
     }
-    if (!split_.validation.empty())
+    if (!split_.validation.empty()) {
       summary_.validation_refined = ScoreOf(split_.validation, state.poses, "preview_refined.png");
+    }
     WriteTrack(request_.refined_track, RefinedTrack(clip_->body(), clip_->track(), *refiner_, state.poses));
   }
 
@@ -273,6 +283,7 @@ class AvatarTraining {
     summary_.loose = static_cast<int>(std::count(state.body.is_loose.begin(), state.body.is_loose.end(), 1));
     for (const auto& stage : clock_.seconds()) summary_.seconds.push_back(stage);
     summary_.written = {AvatarPath(request_.out), AvatarCheckpointPath(request_.out), MetricsPath()};
+    if (!request_.refined_track.empty() && !summary_.stopped) summary_.written.push_back(request_.refined_track);
     nlohmann::ordered_json json = {{"steps", summary_.steps},         {"training_seconds", summary_.training_seconds},
                                    {"gaussians", summary_.gaussians}, {"loose", summary_.loose},
                                    {"loss", summary_.loss},           {"seconds", ToJson(summary_.seconds)}};
