@@ -15,7 +15,7 @@ namespace {
 
 constexpr const char* kAvatarFormat = "bodyloom avatar";
 constexpr int kAvatarVersion = 1;
-constexpr int64_t kMostGaussians = 10000000, kMostShape = 1000, kMostFrames = 10000000;
+constexpr int64_t kMostGaussians = 10000000, kMostShape = 1000, kMostPoses = 10000000;
 constexpr int kColumns = GaussianBody::kNumParameters, kInfluences = GaussianBody::kInfluences;
 
 NdArray FromTable(const FloatColumns& table) {
@@ -167,7 +167,7 @@ PoseCorrections TakePoses(const AvatarArrays& arrays, const NpzArrays& npz, int 
   const auto first = std::find_if(npz.begin(), npz.end(), is_pose);
   if (first == npz.end()) return poses;
   const NdArray& any = first->second;
-  const int64_t frames = any.shape.empty() ? 0 : std::min(any.shape[0], kMostFrames);
+  const int64_t frames = any.shape.empty() ? 0 : std::min(any.shape[0], kMostPoses);
   poses.values = arrays.Table("pose_values", 3 * num_joints + 3, frames);
   poses.mean = arrays.Table("pose_mean", 3 * num_joints + 3, frames);
   poses.square = arrays.Floats("pose_square", {frames});

@@ -159,6 +159,9 @@ class AvatarTraining {
     }
   }
 
+  /// Of the whole job, to report by.
+  [[nodiscard]] double LearningShare() const { return request_.refined_track.empty() ? 1 : 0.5; }
+
   void Train() {
     AvatarTrainer trainer(clip_->body().data().faces, views_, options_, request_.refine ? &*refiner_ : nullptr);
     AvatarTrainingState& state = checkpoint_.state;
@@ -179,7 +182,7 @@ class AvatarTraining {
                                 Fixed(state.seconds, 2), "\n");
         relocated = 0;
       }
-      if (!callbacks_.GoesOn("loss " + Fixed(summary_.loss, 4), trainer.Progress(state))) {
+      if (!callbacks_.GoesOn("loss " + Fixed(summary_.loss, 4), LearningShare() * trainer.Progress(state))) {
         summary_.stopped = true;
         break;
       }
@@ -216,7 +219,7 @@ class AvatarTraining {
     if (state.poses.values.rows() == 0) state.poses.Reset(refiner_->num_frames(), refiner_->num_joints());
     while (!trainer.IsDone(state)) {
       trainer.Step(&state);
-      if (!callbacks_.GoesOn("refining the track", trainer.Progress(state))) {
+      if (!callbacks_.GoesOn("refining the track", LearningShare() + (1 - LearningShare()) * trainer.Progress(state))) {
         summary_.stopped = true;
         return;
       }

@@ -43,7 +43,7 @@ struct PoseRefinerOptions {
   double joints_together = 8;       ///< 1 to 1000
   double turn_sigma_deg = 8;        ///< 0.01 to 180
   double drift = 0.5;               ///< 1e-3 to 1e6
-  double rate = 1, rate_end = 0.1;  ///< 0 to 100: standard deviations a step, at the begin and at the end
+  double rate = 2, rate_end = 0.1;  ///< 0 to 100: standard deviations a step, at the begin and at the end
   [[nodiscard]] bool IsValid(std::string* why) const;
 };
 

@@ -271,6 +271,9 @@ TEST(PoseRefiner, RefusesWhatDoesNotFit) {
   by_bones[7] = std::numeric_limits<float>::quiet_NaN();
   refiner.Step(0, by_bones, 5000, 0, &corrections);
   EXPECT_TRUE(corrections.IsZero(0)) << "no number, no step";
+  by_bones[7] = 1;
+  refiner.Step(0, by_bones, 5000, 0, &corrections);
+  EXPECT_FALSE(corrections.IsZero(0)) << "and the next one goes on";
   by_bones.pop_back();
   EXPECT_THROW(refiner.Step(0, by_bones, 5000, 0, &corrections), std::invalid_argument);
   const PoseRefiner fewer(lesson.model, lesson.betas, {off.poses[0]}, {});
