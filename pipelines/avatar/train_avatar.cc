@@ -109,10 +109,11 @@ class AvatarTraining {
 
   /// What a training that is gone on with must have in common with its beginning.
   [[nodiscard]] std::string OptionsText() const {
-    const nlohmann::ordered_json json = {{"steps", request_.steps},    {"minutes", request_.minutes},
-                                         {"seed", request_.seed},      {"skin_side", request_.skin_side},
-                                         {"loose", request_.loose},    {"train", split_.train},
-                                         {"data", request_.clip.data}, {"refine", request_.refine}};
+    nlohmann::ordered_json json = {{"steps", request_.steps},   {"minutes", request_.minutes},
+                                   {"seed", request_.seed},     {"skin_side", request_.skin_side},
+                                   {"loose", request_.loose},   {"train", split_.train},
+                                   {"data", request_.clip.data}};
+    if (request_.refine) json["refine"] = true;  // runs of earlier versions do not name it
     return json.dump();
   }
 
