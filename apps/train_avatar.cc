@@ -69,7 +69,7 @@ void AddTrainAvatar(CLI::App& train, Action* action) {
   verb->footer(
       "Needs no LibTorch. The camera stands still; the light is learned with the person.\n"
       "Writes avatar.npz, checkpoint.npz, config.json, metrics.csv, report.json and preview.png (truth and result of\n"
-      "held-out frames) into the folder.\n"
+      "held-out frames) into the folder, with --refined-track also preview_refined.png.\n"
       "Example:\n"
       "  bodyloom run clip.mp4 --out people --people 1 --masks\n"
       "  bodyloom train avatar --data clip.mp4 --track people/person_0.npz --mask people/mask_0.npz --out run\n"

@@ -68,7 +68,7 @@ class AvatarTraining {
     clock_.Begin("begin");
     options_ = Options();
     refiner_.emplace(clip_->body(), clip_->track().motion.betas, TrackedPoses(clip_->body(), clip_->track()),
-                     request_.poses);
+                     PoseRefinerOptions());
     if (request_.resume) {
       TakeCheckpoint();
     } else {

@@ -11,7 +11,6 @@
 #include "bodyloom/pipelines/avatar/avatar_clip.h"
 #include "bodyloom/pipelines/avatar/avatar_scores.h"
 #include "bodyloom/pipelines/callbacks.h"
-#include "bodyloom/render/avatar/learning/pose_refiner.h"
 
 namespace bodyloom {
 
@@ -24,10 +23,10 @@ struct TrainAvatarRequest {
   int skin_side = 176;                       ///< texels of a side of the atlas that skin Gaussians lie on
   int loose = 16000;                         ///< Gaussians off the skin, at most
   uint64_t seed = 1;
-  bool refine = false;  ///< the poses of the frames learned from are corrected with the person (pose_refiner.h)
-  std::string
-      refined_track;  ///< above that, in the end, those of all frames with the person as it is; .npz; empty: not
-  PoseRefinerOptions poses;
+  /// Correct the poses of the frames learned from while the person is learned (render/avatar/learning/pose_refiner.h).
+  bool refine = false;
+  /// In the end correct those of all frames, with the person as it is, and write the track here, .npz; empty: do not.
+  std::string refined_track;
   int refine_rounds = 30;  ///< how often a frame comes then
   bool resume = false;     ///< go on with the run in `out`
 };
@@ -47,7 +46,8 @@ struct TrainAvatarSummary {
 };
 
 /// Writes into `out`: config.json, checkpoint.npz (now and then and at the end), avatar.npz, metrics.csv, report.json and
-/// preview.png (held-out frames, truth beside result). A cancelled training ends with its checkpoint and says so.
+/// preview.png (held-out frames, truth beside result); with refined_track also that and preview_refined.png, the same
+/// frames in poses refined on them. A cancelled training ends with its checkpoint and says so.
 /// Throws RequestError for a request that contradicts itself or the run that is there, std::runtime_error for files that
 /// cannot be used and when a loss is not finite.
 TrainAvatarSummary TrainAvatar(const TrainAvatarRequest& request, const PipelineCallbacks& callbacks = {});
