@@ -19,6 +19,10 @@ void RunTrainAvatar(const TrainAvatarRequest& request) {
               summary.gaussians, summary.loose, summary.loss);
   if (summary.training) std::cout << "frames learned from, " << ScoresText(*summary.training) << "\n";
   if (summary.validation) std::cout << "frames held out, " << ScoresText(*summary.validation) << "\n";
+  if (summary.validation_refined) {
+    std::cout << "the same after their poses were refined on these very pictures, "
+              << ScoresText(*summary.validation_refined) << "\n";
+  }
   if (summary.stopped) std::cout << "stopped; go on by --resume\n";
   for (const std::string& path : summary.written) std::cout << "wrote " << path << "\n";
 }
@@ -56,11 +60,16 @@ void AddTrainAvatar(CLI::App& train, Action* action) {
   verb->add_option("--seed", request->seed, "Of places, order of frames and backgrounds")->capture_default_str();
   verb->add_option("--threads", request->clip.threads, "0: all cores; the result is the same for any number")
       ->check(CLI::Range(0, 1024));
+  verb->add_flag("--refine", request->refine,
+                 "Correct the poses of the frames learned from while the person is learned");
+  verb->add_option(
+      "--refined-track", request->refined_track,
+      "In the end correct the poses of all frames, held-out ones too, by their pictures and write the track");
   verb->add_flag("--resume", request->resume, "Go on with the run in --out, exactly as if it had not been left");
   verb->footer(
       "Needs no LibTorch. The camera stands still; the light is learned with the person.\n"
       "Writes avatar.npz, checkpoint.npz, config.json, metrics.csv, report.json and preview.png (truth and result of\n"
-      "held-out frames) into the folder.\n"
+      "held-out frames) into the folder, with --refined-track also preview_refined.png.\n"
       "Example:\n"
       "  bodyloom run clip.mp4 --out people --people 1 --masks\n"
       "  bodyloom train avatar --data clip.mp4 --track people/person_0.npz --mask people/mask_0.npz --out run\n"

@@ -15,7 +15,7 @@ namespace {
 
 constexpr const char* kAvatarFormat = "bodyloom avatar";
 constexpr int kAvatarVersion = 1;
-constexpr int64_t kMostGaussians = 10000000, kMostShape = 1000;
+constexpr int64_t kMostGaussians = 10000000, kMostShape = 1000, kMostPoses = 10000000;
 constexpr int kColumns = GaussianBody::kNumParameters, kInfluences = GaussianBody::kInfluences;
 
 NdArray FromTable(const FloatColumns& table) {
@@ -152,6 +152,32 @@ AdamState TakeAdam(const AvatarArrays& arrays, const std::string& name, int colu
   return adam;
 }
 
+void PutPoses(const PoseCorrections& poses, NpzArrays* to) {
+  if (poses.values.rows() == 0) return;
+  const auto frames = static_cast<int64_t>(poses.square.size());
+  (*to)["pose_values"] = FromTable(poses.values);
+  (*to)["pose_mean"] = FromTable(poses.mean);
+  (*to)["pose_square"] = NdArray::FromFloats(poses.square.data(), {frames});
+  (*to)["pose_steps"] = NdArray::FromInts32(poses.steps.data(), {frames});
+}
+
+PoseCorrections TakePoses(const AvatarArrays& arrays, const NpzArrays& npz, int num_joints) {
+  PoseCorrections poses;
+  const auto is_pose = [](const auto& entry) { return entry.first.starts_with("pose_"); };
+  const auto first = std::find_if(npz.begin(), npz.end(), is_pose);
+  if (first == npz.end()) return poses;
+  const NdArray& any = first->second;
+  const int64_t frames = any.shape.empty() ? 0 : std::min(any.shape[0], kMostPoses);
+  poses.values = arrays.Table("pose_values", 3 * num_joints + 3, frames);
+  poses.mean = arrays.Table("pose_mean", 3 * num_joints + 3, frames);
+  poses.square = arrays.Floats("pose_square", {frames});
+  if (std::any_of(poses.square.begin(), poses.square.end(), [](float v) { return v < 0; })) {
+    arrays.Fail("pose_square", "numbers below 0");
+  }
+  poses.steps = arrays.Ints("pose_steps", {frames}, 0, 1000000000);
+  return poses;
+}
+
 }  // namespace
 
 void WriteAvatar(const std::string& path, const AvatarFile& avatar) {
@@ -166,6 +192,7 @@ void WriteAvatarCheckpoint(const std::string& path, const AvatarCheckpoint& chec
   PutAvatar(checkpoint.avatar, state.body, &arrays);
   PutAdam(state.adam, "adam", &arrays);
   PutAdam(state.light_adam, "light", &arrays);
+  PutPoses(state.poses, &arrays);
   arrays["pull"] = NdArray::FromFloats(state.pull.data(), {static_cast<int64_t>(state.pull.size())});
   arrays["step"] = NdArray::FromDouble(static_cast<double>(state.step));
   arrays["seconds"] = NdArray::FromDouble(state.seconds);
@@ -214,6 +241,7 @@ AvatarCheckpoint AvatarCheckpointFromArrays(const NpzArrays& npz, const std::str
   const int64_t count = state.body.size();
   state.adam = TakeAdam(arrays, "adam", kColumns, count);
   state.light_adam = TakeAdam(arrays, "light", 1, GaussianBody::kLightValues);
+  state.poses = TakePoses(arrays, npz, checkpoint.avatar.num_joints);
   state.pull = arrays.Floats("pull", {count});
   const double step = arrays.Number("step");
   if (step != std::floor(step)) arrays.Fail("step", Concatenate(step, ", expected a whole number"));

@@ -9,6 +9,8 @@
 /// and, in a training's checkpoint (render/avatar/learning/avatar_trainer.h):
 ///   adam_first, adam_second N×23 float32   adam_steps N int32    pull N float32    step, seconds float64
 ///   light_first, light_second 27 float32   light_steps 27 int32  options text: what the training was begun with
+/// where it refines the poses of a clip of T frames (render/avatar/learning/pose_refiner.h) also
+///   pose_values, pose_mean T×(3J + 3) float32     pose_square T float32     pose_steps T int32
 /// All numbers are finite.
 #pragma once
 

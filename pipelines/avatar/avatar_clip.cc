@@ -70,6 +70,7 @@ TrainingView AvatarClip::CutView(int t, const Image& picture, const IsPerson& is
   const PixelBox body = with_body ? posed_->BoxAt(t, 0) : PixelBox();
   TrainingView view = CutTrainingView(picture, is_person, posed_->BoxAt(t, kSearchShare), body, margin);
   if (view.window.empty()) return view;
+  view.time = t;
   view.camera = posed_->CameraAt(t);
   posed_->MakeFrame(t, &view.frame);
   return view;

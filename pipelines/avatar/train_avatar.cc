@@ -14,11 +14,13 @@
 
 #include "bodyloom/data_tools/avatar/avatar_file.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/geometry/uv_texels.h"
 #include "bodyloom/pipelines/avatar/frame_spans.h"
+#include "bodyloom/pipelines/avatar/refined_track.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/fixed_text.h"
 #include "bodyloom/pipelines/report_json.h"
@@ -65,6 +67,8 @@ class AvatarTraining {
     views_ = clip_->ReadViews(split_.train, kTrainingMargin, true, callbacks_);
     clock_.Begin("begin");
     options_ = Options();
+    refiner_.emplace(clip_->body(), clip_->track().motion.betas, TrackedPoses(clip_->body(), clip_->track()),
+                     PoseRefinerOptions());
     if (request_.resume) {
       TakeCheckpoint();
     } else {
@@ -75,6 +79,7 @@ class AvatarTraining {
     clock_.Begin("write");
     WriteRun();
     if (!summary_.stopped) Judge();
+    if (!summary_.stopped && !request_.refined_track.empty()) RefineAll();
     clock_.End();
     return Finish();
   }
@@ -82,6 +87,8 @@ class AvatarTraining {
  private:
   void OpenRun() {
     if (!request_.clip.data.empty()) RequireReadable(request_.clip.data, "data");
+    RequireWritable(request_.refined_track);
+    RequireDistinct({request_.clip.data, request_.clip.track, request_.clip.mask}, {request_.refined_track});
     RequireWritableFolder(request_.out);
     const bool is_there = fs::exists(AvatarCheckpointPath(request_.out));
     if (request_.resume && !is_there) throw RequestError(request_.out + " holds no run to go on with");
@@ -102,10 +109,11 @@ class AvatarTraining {
 
   /// What a training that is gone on with must have in common with its beginning.
   [[nodiscard]] std::string OptionsText() const {
-    const nlohmann::ordered_json json = {{"steps", request_.steps},   {"minutes", request_.minutes},
-                                         {"seed", request_.seed},     {"skin_side", request_.skin_side},
-                                         {"loose", request_.loose},   {"train", split_.train},
-                                         {"data", request_.clip.data}};
+    nlohmann::ordered_json json = {{"steps", request_.steps},   {"minutes", request_.minutes},
+                                   {"seed", request_.seed},     {"skin_side", request_.skin_side},
+                                   {"loose", request_.loose},   {"train", split_.train},
+                                   {"data", request_.clip.data}};
+    if (request_.refine) json["refine"] = true;  // runs of earlier versions do not name it
     return json.dump();
   }
 
@@ -123,6 +131,7 @@ class AvatarTraining {
     checkpoint_.avatar.num_vertices = clip_->body().num_vertices();
     checkpoint_.avatar.num_faces = clip_->body().num_faces();
     checkpoint_.state = AvatarTrainingState::Of(std::move(body));
+    if (request_.refine) checkpoint_.state.poses.Reset(refiner_->num_frames(), refiner_->num_joints());
     checkpoint_.options = OptionsText();
     WriteConfig();
   }
@@ -139,6 +148,10 @@ class AvatarTraining {
     if (!checkpoint_.state.body.IsValid(clip_->body().num_joints(), clip_->body().num_faces(), &why)) {
       throw std::runtime_error(path + ": of another body (--body): " + why);
     }
+    if (request_.refine && checkpoint_.state.poses.values.rows() != refiner_->num_frames()) {
+      throw std::runtime_error(Concatenate(path, ": pose_values of ", checkpoint_.state.poses.values.rows(),
+                                           " frames, the track has ", refiner_->num_frames()));
+    }
     // What was done after it is done again.
     std::istringstream lines(fs::exists(MetricsPath()) ? ReadFileBytes(MetricsPath()) : "");
     for (std::string line; std::getline(lines, line);) {
@@ -147,8 +160,11 @@ class AvatarTraining {
     }
   }
 
+  /// Of the whole job, to report by.
+  [[nodiscard]] double LearningShare() const { return request_.refined_track.empty() ? 1 : 0.5; }
+
   void Train() {
-    AvatarTrainer trainer(clip_->body().data().faces, views_, options_);
+    AvatarTrainer trainer(clip_->body().data().faces, views_, options_, request_.refine ? &*refiner_ : nullptr);
     AvatarTrainingState& state = checkpoint_.state;
     if (metrics_.empty()) metrics_ = "step,loss,cost,drawn,relocated,seconds\n";
     std::deque<double> losses;
@@ -167,7 +183,7 @@ class AvatarTraining {
                                 Fixed(state.seconds, 2), "\n");
         relocated = 0;
       }
-      if (!callbacks_.GoesOn("loss " + Fixed(summary_.loss, 4), trainer.Progress(state))) {
+      if (!callbacks_.GoesOn("loss " + Fixed(summary_.loss, 4), LearningShare() * trainer.Progress(state))) {
         summary_.stopped = true;
         break;
       }
@@ -187,7 +203,35 @@ class AvatarTraining {
     WriteFileAtomically(MetricsPath(), metrics_);
   }
 
-  AvatarScores ScoreOf(const std::vector<int>& frames, bool preview) {
+  /// Moves the poses of all frames with the person as it is, scores the held-out ones and writes the track.
+  void RefineAll() {
+    clock_.Begin("refine");
+    std::vector<int> all(clip_->track().num_frames());
+    std::iota(all.begin(), all.end(), 0);
+    views_ = clip_->ReadViews(all, kTrainingMargin, true, callbacks_);
+    const auto shown =
+        std::count_if(views_.begin(), views_.end(), [](const auto& view) { return !view.window.empty(); });
+    AvatarTrainerOptions options = options_;
+    options.learn_person = false, options.refine_from = 0;
+    options.steps = request_.refine_rounds * shown, options.seconds = 0;
+    AvatarTrainer trainer(clip_->body().data().faces, views_, options, &*refiner_);
+    AvatarTrainingState state = checkpoint_.state;
+    state.step = 0;
+    if (state.poses.values.rows() == 0) state.poses.Reset(refiner_->num_frames(), refiner_->num_joints());
+    while (!trainer.IsDone(state)) {
+      trainer.Step(&state);
+      if (!callbacks_.GoesOn("refining the track", LearningShare() + (1 - LearningShare()) * trainer.Progress(state))) {
+        summary_.stopped = true;
+        return;
+      }
+    }
+    if (!split_.validation.empty()) {
+      summary_.validation_refined = ScoreOf(split_.validation, state.poses, "preview_refined.png");
+    }
+    WriteTrack(request_.refined_track, RefinedTrack(clip_->body(), clip_->track(), *refiner_, state.poses));
+  }
+
+  AvatarScores ScoreOf(const std::vector<int>& frames, const PoseCorrections& poses, const char* preview) {
     const std::vector<int> some = Spread(frames, kScoredFrames);
     const std::vector<TrainingView> views = clip_->ReadViews(some, AvatarScores::kScoreMargin, false, callbacks_);
     const std::vector<int> shown = EvenlySpreadFrames(static_cast<int>(some.size()), kHeldOutShown);
@@ -199,40 +243,39 @@ class AvatarTraining {
       AvatarView view;
       view.camera = views[i].camera, view.window = views[i].window;
       view.options.num_threads = request_.clip.threads;
-      painter.Draw(checkpoint_.state.body, clip_->body().data().faces, views[i].frame, view);
+      AvatarFrame frame = views[i].frame;
+      if (poses.values.rows() > 0) refiner_->MakeFrame(views[i].time, poses, request_.clip.threads, &frame);
+      painter.Draw(checkpoint_.state.body, clip_->body().data().faces, frame, view);
       scorer.Add(views[i], painter.picture());
-      if (!preview || !std::binary_search(shown.begin(), shown.end(), static_cast<int>(i))) continue;
+      if (preview == nullptr || !std::binary_search(shown.begin(), shown.end(), static_cast<int>(i))) continue;
       sheet.push_back(TrueWindow(views[i]));
       sheet.push_back(DrawnWindow(painter.picture()));
     }
     if (!sheet.empty()) {
       ContactSheetOptions layout;
       layout.columns = 4, layout.cell_height_px = 640;
-      WriteImage(InRun(request_.out, "preview.png"), ContactSheet(sheet, layout));
+      WriteImage(InRun(request_.out, preview), ContactSheet(sheet, layout));
     }
     return scorer.Means();
   }
 
   void Judge() {
     clock_.Begin("score");
-    summary_.training = ScoreOf(split_.train, split_.validation.empty());
-    if (!split_.validation.empty()) summary_.validation = ScoreOf(split_.validation, true);
+    constexpr const char* kPreview = "preview.png";
+    const bool has_validation = !split_.validation.empty();
+    summary_.training = ScoreOf(split_.train, checkpoint_.state.poses, has_validation ? nullptr : kPreview);
+    // Held-out frames have no correction: they are judged by the track that they came with.
+    if (has_validation) summary_.validation = ScoreOf(split_.validation, checkpoint_.state.poses, kPreview);
   }
 
   void WriteConfig() const {
-    const nlohmann::ordered_json json = {{"program", kAvatarProgram},
-                                         {"version", 1},
-                                         {"data", request_.clip.data},
-                                         {"track", request_.clip.track},
-                                         {"mask", request_.clip.mask},
-                                         {"body", request_.clip.body},
-                                         {"train", split_.train},
-                                         {"validate", split_.validation},
-                                         {"steps", request_.steps},
-                                         {"minutes", request_.minutes},
-                                         {"skin_side", request_.skin_side},
-                                         {"loose", request_.loose},
-                                         {"seed", request_.seed}};
+    const nlohmann::ordered_json json = {{"program", kAvatarProgram},       {"version", 1},
+                                         {"data", request_.clip.data},      {"track", request_.clip.track},
+                                         {"mask", request_.clip.mask},      {"body", request_.clip.body},
+                                         {"train", split_.train},           {"validate", split_.validation},
+                                         {"steps", request_.steps},         {"minutes", request_.minutes},
+                                         {"skin_side", request_.skin_side}, {"loose", request_.loose},
+                                         {"seed", request_.seed},           {"refine", request_.refine}};
     WriteFileAtomically(RunConfigPath(request_.out), json.dump(1) + "\n");
   }
 
@@ -244,11 +287,13 @@ class AvatarTraining {
     summary_.loose = static_cast<int>(std::count(state.body.is_loose.begin(), state.body.is_loose.end(), 1));
     for (const auto& stage : clock_.seconds()) summary_.seconds.push_back(stage);
     summary_.written = {AvatarPath(request_.out), AvatarCheckpointPath(request_.out), MetricsPath()};
+    if (!request_.refined_track.empty() && !summary_.stopped) summary_.written.push_back(request_.refined_track);
     nlohmann::ordered_json json = {{"steps", summary_.steps},         {"training_seconds", summary_.training_seconds},
                                    {"gaussians", summary_.gaussians}, {"loose", summary_.loose},
                                    {"loss", summary_.loss},           {"seconds", ToJson(summary_.seconds)}};
     if (summary_.training) json["training"] = ToJson(*summary_.training);
     if (summary_.validation) json["validation"] = ToJson(*summary_.validation);
+    if (summary_.validation_refined) json["validation_poses_refined_on_them"] = ToJson(*summary_.validation_refined);
     WriteReport(InRun(request_.out, "report.json"), json);
     return summary_;
   }
@@ -262,6 +307,7 @@ class AvatarTraining {
   TrainingSplit split_;
   std::vector<TrainingView> views_;
   AvatarTrainerOptions options_;
+  std::optional<PoseRefiner> refiner_;
   AvatarCheckpoint checkpoint_;
   std::string metrics_;
   TrainAvatarSummary summary_;

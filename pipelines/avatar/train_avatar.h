@@ -23,7 +23,12 @@ struct TrainAvatarRequest {
   int skin_side = 176;                       ///< texels of a side of the atlas that skin Gaussians lie on
   int loose = 16000;                         ///< Gaussians off the skin, at most
   uint64_t seed = 1;
-  bool resume = false;  ///< go on with the run in `out`
+  /// Correct the poses of the frames learned from while the person is learned (render/avatar/learning/pose_refiner.h).
+  bool refine = false;
+  /// In the end correct those of all frames, with the person as it is, and write the track here, .npz; empty: do not.
+  std::string refined_track;
+  int refine_rounds = 30;  ///< how often a frame comes then
+  bool resume = false;     ///< go on with the run in `out`
 };
 
 struct TrainAvatarSummary {
@@ -33,12 +38,16 @@ struct TrainAvatarSummary {
   int gaussians = 0, loose = 0;
   double loss = 0;                                   ///< mean of the last steps, at most 100 of them
   std::optional<AvatarScores> training, validation;  ///< of frames spread over them; absent: none, or stopped
-  StageSeconds seconds;                              ///< of this sitting
+  /// Of the same held-out frames, but in poses that were refined on their own pictures: how well the person fits them,
+  /// not how well a track predicts them.
+  std::optional<AvatarScores> validation_refined;
+  StageSeconds seconds;  ///< of this sitting
   std::vector<std::string> written;
 };
 
 /// Writes into `out`: config.json, checkpoint.npz (now and then and at the end), avatar.npz, metrics.csv, report.json and
-/// preview.png (held-out frames, truth beside result). A cancelled training ends with its checkpoint and says so.
+/// preview.png (held-out frames, truth beside result); with refined_track also that and preview_refined.png, the same
+/// frames in poses refined on them. A cancelled training ends with its checkpoint and says so.
 /// Throws RequestError for a request that contradicts itself or the run that is there, std::runtime_error for files that
 /// cannot be used and when a loss is not finite.
 TrainAvatarSummary TrainAvatar(const TrainAvatarRequest& request, const PipelineCallbacks& callbacks = {});

@@ -38,8 +38,9 @@ bool AvatarTrainerOptions::IsValid(std::string* why) const {
   return in_range("steps", static_cast<double>(steps), 1, 1e8) && in_range("seconds", seconds, 0, 1e8) &&
          rates.IsValid(why) && scales.IsValid(why) && in_range("cost by opacity", cost.by_opacity, 0, 1e3) &&
          in_range("cost by scale", cost.by_scale, 0, 1e3) && in_range("relocate_every", relocate_every, 0, 1e8) &&
-         in_range("least_seen", least_seen, 0, 1) && in_range("relocate_until", relocate_until, 0, 1) &&
-         in_range("dead_opacity", dead_opacity, 0, 0.99) && in_range("num_threads", num_threads, 1, 1024);
+         in_range("least_seen", least_seen, 0, 1) && in_range("refine_from", refine_from, 0, 1) &&
+         in_range("relocate_until", relocate_until, 0, 1) && in_range("dead_opacity", dead_opacity, 0, 0.99) &&
+         in_range("num_threads", num_threads, 1, 1024);
 }
 
 AvatarTrainingState AvatarTrainingState::Of(GaussianBody body) {
@@ -52,12 +53,15 @@ AvatarTrainingState AvatarTrainingState::Of(GaussianBody body) {
 }
 
 AvatarTrainer::AvatarTrainer(const MatrixX3i& faces, std::span<const TrainingView> views,
-                             const AvatarTrainerOptions& options)
-    : faces_(faces), views_(views), options_(options) {
+                             const AvatarTrainerOptions& options, const PoseRefiner* refiner)
+    : faces_(faces), views_(views), options_(options), refiner_(refiner) {
   std::string why;
   BODYLOOM_CHECK(options.IsValid(&why), "avatar training: ", why);
   for (size_t i = 0; i < views.size(); ++i) {
     if (!views[i].window.empty() && views[i].person_pixels > 0) usable_.push_back(static_cast<int>(i));
+    BODYLOOM_CHECK(refiner == nullptr || (views[i].time >= 0 && views[i].time < refiner->num_frames()),
+                   "avatar training: a view of frame ", views[i].time, ", poses to refine are of ",
+                   refiner == nullptr ? 0 : refiner->num_frames(), " frames");
   }
   BODYLOOM_CHECK(!usable_.empty(), "avatar training: none of the ", views.size(), " frames shows the person");
 }
@@ -77,6 +81,18 @@ int AvatarTrainer::ViewAt(int64_t step) {
   return order_[step % count];
 }
 
+const AvatarFrame& AvatarTrainer::FrameOf(const TrainingView& view, const AvatarTrainingState& state) {
+  if (refiner_ == nullptr || state.poses.IsZero(view.time)) return view.frame;
+  refiner_->MakeFrame(view.time, state.poses, options_.num_threads, &corrected_);
+  return corrected_;
+}
+
+void AvatarTrainer::MovePose(const TrainingView& view, double progress, AvatarTrainingState* state) const {
+  if (refiner_ == nullptr || progress < options_.refine_from) return;
+  const double since = (progress - options_.refine_from) / std::max(1e-9, 1 - options_.refine_from);
+  refiner_->Step(view.time, gradient_.bones, view.person_pixels, since, &state->poses);
+}
+
 AvatarStep AvatarTrainer::Step(AvatarTrainingState* state) {
   const Stopwatch watch;
   BODYLOOM_CHECK(static_cast<int>(state->pull.size()) == state->body.size(), "avatar training: ", state->pull.size(),
@@ -88,7 +104,8 @@ AvatarStep AvatarTrainer::Step(AvatarTrainingState* state) {
   AvatarView seen;
   seen.camera = view.camera, seen.window = view.window, seen.options.num_threads = options_.num_threads;
   clock_.Begin("drawing");
-  painter_.Draw(state->body, faces_, view.frame, seen);
+  const AvatarFrame& frame = FrameOf(view, *state);
+  painter_.Draw(state->body, faces_, frame, seen);
   clock_.Begin("loss");
   FillTruth(view, &truth_);
   HashRandom random(options_.seed, {kBackgroundStream, static_cast<uint64_t>(state->step)});
@@ -97,18 +114,23 @@ AvatarStep AvatarTrainer::Step(AvatarTrainingState* state) {
   done.loss = loss_.Compute(painter_.picture().planes(), truth_, background, options_.num_threads, &by_planes_);
   if (std::isfinite(done.loss)) {
     clock_.Begin("derivatives");
-    painter_.GoBack(state->body, faces_, view.frame, seen, by_planes_, &gradient_);
+    painter_.GoBack(state->body, faces_, frame, seen, by_planes_, &gradient_);
     clock_.Begin("moving");
-    done.drawn = ChooseMovers(state);
-    done.cost = AddGaussianCost(state->body, options_.cost, &gradient_.parameters);
-    Move(state, progress);
-    MoveLight(state);
+    MovePose(view, progress, state);
+    if (options_.learn_person) LearnPerson(progress, state, &done);
   }
   ++state->step;
-  done.relocated = Relocate(state, progress);
+  if (options_.learn_person) done.relocated = Relocate(state, progress);
   clock_.End();
   state->seconds += watch.seconds();
   return done;
+}
+
+void AvatarTrainer::LearnPerson(double progress, AvatarTrainingState* state, AvatarStep* done) {
+  done->drawn = ChooseMovers(state);
+  done->cost = AddGaussianCost(state->body, options_.cost, &gradient_.parameters);
+  Move(state, progress);
+  MoveLight(state);
 }
 
 int AvatarTrainer::ChooseMovers(AvatarTrainingState* state) {

@@ -13,6 +13,9 @@
 /// hidden when |d loss / d its colour|, summed over the channels, is below least_seen times what as many pixels as it
 /// covers alone would give by their absolute difference (PictureLoss::ByPixel).
 ///
+/// With a PoseRefiner the frame's pose is corrected too (pose_refiner.h), from refine_from of the training on, by the
+/// derivatives of the same picture. Without learn_person the Gaussians and the light stay and the poses alone move.
+///
 /// Frames come in a new random order each time round. All that is random follows from the seed and the step's number, so
 /// a state that was kept goes on exactly as if training had never been left, as far as its length is given by steps: the
 /// same bytes for any number of threads and any instruction set.
@@ -28,6 +31,7 @@
 #include "bodyloom/render/avatar/learning/adam.h"
 #include "bodyloom/render/avatar/learning/gaussian_cost.h"
 #include "bodyloom/render/avatar/learning/learning_rates.h"
+#include "bodyloom/render/avatar/learning/pose_refiner.h"
 #include "bodyloom/render/avatar/learning/relocate_gaussians.h"
 #include "bodyloom/render/avatar/learning/training_view.h"
 
@@ -47,6 +51,8 @@ struct AvatarTrainerOptions {
   float dead_opacity = 0.015F;
   /// A Gaussian of which a frame shows a smaller share is hidden there (see above). 0: none is.
   double least_seen = 0.1;
+  double refine_from = 0.15;  ///< of the training: before, poses stay as the corrections are
+  bool learn_person = true;
   int num_threads = 1;  ///< 1 to 1024
   [[nodiscard]] bool IsValid(std::string* why) const;
 };
@@ -57,6 +63,7 @@ struct AvatarTrainingState {
   AdamState adam;           ///< of body.parameters
   AdamState light_adam;     ///< of body.light, a row a coefficient
   std::vector<float> pull;  ///< by row: sum since the last move of |d loss / d mean on the screen|
+  PoseCorrections poses;    ///< of every frame of the clip; without rows: none are refined
   int64_t step = 0;         ///< steps done
   double seconds = 0;       ///< spent in steps
 
@@ -75,8 +82,9 @@ struct AvatarStep {
 class AvatarTrainer {
  public:
   /// Views without a person are left out. Throws std::invalid_argument when options are not valid or no view is left.
-  /// `faces` and `views` must outlive it.
-  AvatarTrainer(const MatrixX3i& faces, std::span<const TrainingView> views, const AvatarTrainerOptions& options);
+  /// `faces`, `views` and `refiner` (null: poses stay) must outlive it.
+  AvatarTrainer(const MatrixX3i& faces, std::span<const TrainingView> views, const AvatarTrainerOptions& options,
+                const PoseRefiner* refiner = nullptr);
 
   /// Done so far, in [0, 1].
   [[nodiscard]] double Progress(const AvatarTrainingState& state) const;
@@ -90,6 +98,9 @@ class AvatarTrainer {
 
  private:
   int ViewAt(int64_t step);
+  [[nodiscard]] const AvatarFrame& FrameOf(const TrainingView& view, const AvatarTrainingState& state);
+  void MovePose(const TrainingView& view, double progress, AvatarTrainingState* state) const;
+  void LearnPerson(double progress, AvatarTrainingState* state, AvatarStep* done);
   int ChooseMovers(AvatarTrainingState* state);
   void Move(AvatarTrainingState* state, double progress);
   void MoveLight(AvatarTrainingState* state);
@@ -100,6 +111,8 @@ class AvatarTrainer {
   std::vector<int> usable_, order_;
   int64_t order_of_ = -1;  ///< which time round
   AvatarTrainerOptions options_;
+  const PoseRefiner* refiner_;
+  AvatarFrame corrected_;
   AvatarPainter painter_;
   PictureLoss loss_;
   PictureTruth truth_;

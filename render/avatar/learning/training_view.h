@@ -15,6 +15,7 @@
 namespace bodyloom {
 
 struct TrainingView {
+  int time = 0;  ///< which frame of the clip
   AvatarFrame frame;
   Camera camera;                ///< without distortion
   PixelBox window;              ///< around the person, inside the picture
@@ -31,7 +32,7 @@ using IsPerson = std::function<bool(int x, int y)>;
 
 /// The part of `picture` around the person: the smallest box that holds its pixels in `search` (clipped to the picture)
 /// and `body`, with `margin` pixels around it. Pixels outside of `search` count as not the person's. A frame without
-/// the person has an empty window. The caller sets frame and camera.
+/// the person has an empty window. The caller sets time, frame and camera.
 TrainingView CutTrainingView(const Image& picture, const IsPerson& is_person, const PixelBox& search,
                              const PixelBox& body, int margin);
 

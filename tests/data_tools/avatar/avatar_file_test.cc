@@ -50,6 +50,12 @@ AvatarCheckpoint RandomCheckpoint() {
   }
   state.light_adam.second(26, 0) = 0.25F;
   state.light_adam.steps[3] = 9;
+  state.poses.Reset(3, avatar.num_joints);
+  for (int t = 0; t < 3; ++t) {
+    for (int c = 0; c < 75; ++c) state.poses.values(t, c) = uniform(), state.poses.mean(t, c) = uniform();
+    state.poses.square[t] = std::abs(uniform());
+    state.poses.steps[t] = 5 + t;
+  }
   state.step = 123456, state.seconds = 7.25;
   checkpoint.options = "{\"steps\":6000}";
   return checkpoint;
@@ -88,6 +94,10 @@ TEST(AvatarFile, ComesBackAsItWas) {
   EXPECT_TRUE(SameTables(back.state.light_adam.second, checkpoint.state.light_adam.second));
   EXPECT_EQ(back.state.light_adam.steps, checkpoint.state.light_adam.steps);
   EXPECT_EQ(back.state.pull, checkpoint.state.pull);
+  EXPECT_TRUE(SameTables(back.state.poses.values, checkpoint.state.poses.values));
+  EXPECT_TRUE(SameTables(back.state.poses.mean, checkpoint.state.poses.mean));
+  EXPECT_EQ(back.state.poses.square, checkpoint.state.poses.square);
+  EXPECT_EQ(back.state.poses.steps, checkpoint.state.poses.steps);
   EXPECT_EQ(back.state.step, 123456);
   EXPECT_EQ(back.state.seconds, 7.25);
   EXPECT_EQ(back.options, checkpoint.options);
@@ -135,6 +145,10 @@ TEST(AvatarFile, RefusesWhatIsWrongNamingIt) {
   expect("anchor_face", "120, expected 0 to 119", set_int(120));
   expect("anchor_barycentric", "finite", set_float(std::numeric_limits<float>::infinity()));
   expect("is_loose", "0 and 1", [](NdArray* a) { a->bytes[0] = 2; });
+  expect("pose_values", "expected 3x75", [](NdArray* a) { a->shape = {3, 25, 3}; });
+  expect("pose_values", "expected 3x75", [](NdArray* a) { a->shape = {75, 3}; });
+  expect("pose_square", "below 0", set_float(-1));
+  expect("pose_steps", "-1, expected 0", set_int(-1));
   expect("light", "expected 27", [](NdArray* a) { a->shape = {3, 9}; });
   expect("betas", "finite", [](NdArray* a) {
     const double nan = std::numeric_limits<double>::quiet_NaN();

@@ -8,6 +8,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "bodyloom/data_tools/avatar/avatar_file.h"
+#include "bodyloom/data_tools/body/body_or_builtin.h"
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/motion/track_io.h"
@@ -16,6 +17,7 @@
 #include "bodyloom/data_tools/video/video_reader.h"
 #include "bodyloom/pipelines/avatar/animate_avatar.h"
 #include "bodyloom/pipelines/avatar/frame_spans.h"
+#include "bodyloom/pipelines/avatar/refined_track.h"
 #include "bodyloom/pipelines/synthesis/synthesize_person.h"
 #include "tests/data_tools/formats/temporary_file.h"
 
@@ -171,6 +173,111 @@ TEST(TrainAvatar, GoesOnAsIfNeverLeft) {
   EXPECT_THROW(TrainAvatar(request), RequestError) << "another seed is another run";
   request.out = folder.File("nothing");
   EXPECT_THROW(TrainAvatar(request), RequestError);
+}
+
+/// The scene's track with every frame's body somewhat beside the truth.
+std::string TrackBeside(const TemporaryFolder& folder) {
+  Track track = ReadTrack(Scene().File("person/track.npz"));
+  for (int t = 0; t < track.num_frames(); ++t) track.motion.trans.row(t) += Eigen::RowVector3d(0.02, -0.015, 0);
+  track.world = WorldFrame{};
+  WriteTrack(folder.File("beside.npz"), track);
+  return folder.File("beside.npz");
+}
+
+TEST(TrainAvatar, RefinesTheTrack) {
+  const TemporaryFolder folder;
+  TrainAvatarRequest request = SmallRequest(folder.File("run"));
+  // The person is learned where the truth is; then all frames are beside it.
+  request.steps = 100;
+  TrainAvatar(request);
+  request.clip.track = TrackBeside(folder);
+  request.resume = true, request.refined_track = folder.File("refined.npz");
+  const TrainAvatarSummary summary = TrainAvatar(request);
+  ASSERT_TRUE(summary.validation_refined.has_value());
+  EXPECT_GT(summary.validation_refined->psnr_box_db, summary.validation->psnr_box_db + 0.5);
+  EXPECT_EQ(summary.written.back(), request.refined_track);
+  EXPECT_TRUE(fs::exists(folder.File("run/preview_refined.png")));
+  const Track truth = ReadTrack(Scene().File("person/track.npz")), before = ReadTrack(request.clip.track);
+  const Track after = ReadTrack(request.refined_track);
+  ASSERT_EQ(after.num_frames(), kFrames);
+  double was = 0, is = 0;
+  for (int t = 0; t < kFrames; ++t) {
+    was += (before.motion.trans.row(t) - truth.motion.trans.row(t)).head<2>().norm();
+    is += (after.joints[t] - truth.joints[t]).leftCols<2>().rowwise().norm().mean();
+    EXPECT_NE(after.motion.poses.row(t), before.motion.poses.row(t));
+    EXPECT_TRUE(after.joints[t].row(0).isApprox((after.motion.trans.row(t) - before.motion.trans.row(t)) +
+                                                    truth.joints[t].row(0) +
+                                                    (before.motion.trans.row(t) - truth.motion.trans.row(t)),
+                                                1e-9))
+        << "joints are those of the refined pose";
+  }
+  EXPECT_LT(is, 0.6 * was);
+  EXPECT_EQ(after.motion.betas, before.motion.betas);
+  EXPECT_EQ(after.motion.timestamps, before.motion.timestamps);
+  EXPECT_EQ(after.camera.K(), before.camera.K());
+  EXPECT_EQ(after.frame_status, before.frame_status);
+  EXPECT_TRUE(after.world.has_value());
+  request.refined_track = request.clip.track;
+  EXPECT_THROW(TrainAvatar(request), RequestError) << "an input";
+}
+
+TEST(TrainAvatar, RefiningGoesOnAsIfNeverLeft) {
+  const TemporaryFolder folder;
+  TrainAvatarRequest request = SmallRequest(folder.File("whole"));
+  request.clip.track = TrackBeside(folder);
+  request.steps = 20, request.refine = true;
+  request.refine_rounds = 2, request.refined_track = folder.File("whole.npz");
+  TrainAvatar(request);
+  request.out = folder.File("parts"), request.refined_track = folder.File("parts.npz");
+  request.clip.threads = 1;
+  PipelineCallbacks callbacks;
+  int calls = 0, stop_at = 9;
+  callbacks.progress = [&](const std::string& stage, double) {
+    return (stage.rfind("loss", 0) != 0 && stage != "refining the track") || ++calls < stop_at;
+  };
+  EXPECT_TRUE(TrainAvatar(request, callbacks).stopped);
+  EXPECT_FALSE(fs::exists(request.refined_track));
+  request.resume = true;
+  calls = 0, stop_at = 15;  // eleven steps are left of learning
+  const TrainAvatarSummary stopped = TrainAvatar(request, callbacks);
+  EXPECT_EQ(stopped.steps, 20);
+  EXPECT_TRUE(stopped.stopped);
+  EXPECT_FALSE(fs::exists(request.refined_track));
+  TrainAvatar(request);
+  const AvatarCheckpoint a = ReadAvatarCheckpoint(AvatarCheckpointPath(folder.File("whole")));
+  const AvatarCheckpoint b = ReadAvatarCheckpoint(AvatarCheckpointPath(folder.File("parts")));
+  ASSERT_EQ(a.state.poses.values.rows(), kFrames);
+  int moved = 0;
+  for (int t = 0; t < kFrames; ++t) {
+    moved += a.state.poses.IsZero(t) ? 0 : 1;
+    for (int c = 0; c < a.state.poses.values.columns(); ++c) {
+      ASSERT_EQ(a.state.poses.values(t, c), b.state.poses.values(t, c)) << t;
+    }
+  }
+  EXPECT_EQ(moved, 8) << "the frames learned from, not those held out";
+  EXPECT_EQ(ReadFileBytes(folder.File("whole.npz")), ReadFileBytes(folder.File("parts.npz")));
+  request.refine = false;
+  EXPECT_THROW(TrainAvatar(request), RequestError) << "begun with --refine";
+}
+
+TEST(RefinedTrack, WithoutCorrectionsIsTheTrackByteForByte) {
+  const TemporaryFolder folder;
+  const std::shared_ptr<const BodyModel> body = BodyOrBuiltin("");
+  const Track track = ReadTrack(TrackBeside(folder));
+  const PoseRefiner refiner(*body, track.motion.betas, TrackedPoses(*body, track), {});
+  PoseCorrections corrections;
+  corrections.Reset(kFrames, body->num_joints());
+  WriteTrack(folder.File("track.npz"), track);
+  WriteTrack(folder.File("same.npz"), RefinedTrack(*body, track, refiner, corrections));
+  EXPECT_EQ(ReadFileBytes(folder.File("track.npz")), ReadFileBytes(folder.File("same.npz")));
+  corrections.values(2, 7) = 0.1F;
+  const Track other = RefinedTrack(*body, track, refiner, corrections);
+  for (int t = 0; t < kFrames; ++t) {
+    for (int j = 0; j < body->num_joints(); ++j) {
+      const bool same = other.motion.poses.row(t).segment<3>(3 * j) == track.motion.poses.row(t).segment<3>(3 * j);
+      EXPECT_EQ(same, t != 2 || j != 2) << t << " " << j;
+    }
+  }
 }
 
 TEST(FrameSpans, AreWhatIsAskedFor) {
