@@ -5,8 +5,8 @@
 
 #include "bodyloom/data_tools/video/video_reader.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/pipelines/page/report_page.h"
 #include "bodyloom/pipelines/fixed_text.h"
+#include "bodyloom/pipelines/page/report_page.h"
 #include "bodyloom/render/contact_sheet.h"
 
 namespace bodyloom {
