@@ -21,7 +21,7 @@ struct TrackPeopleClipRequest {
   double least_seconds = 0.5;  ///< whoever is seen for less is left out; in short clips half of the clip
   bool overlay = true;
   bool report = false;  ///< the clip's page
-  bool masks = false;  ///< each person's mask is written too
+  bool masks = false;   ///< each person's mask is written too
 };
 
 /// Writes into the folder:
