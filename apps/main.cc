@@ -6,6 +6,7 @@
 
 #include "apps/exit_code.h"
 #include "apps/interrupt.h"
+#include "apps/usage_error.h"
 #include "apps/verbs.h"
 
 namespace bodyloom {
@@ -56,10 +57,7 @@ int Run(int argc, char** argv) {
     if (error.get_exit_code() == 0) {  // --help
       return app.exit(error);
     }
-    // The parser reports an unknown verb as a missing one.
-    const bool unknown_verb = app.get_subcommands().empty() && !app.remaining().empty();
-    std::cerr << "bodyloom: " << (unknown_verb ? "no verb or option \"" + app.remaining().front() + "\"" : error.what())
-              << "\nRun with --help for the options.\n";
+    std::cerr << "bodyloom: " << UsageError(app, error) << "\nRun with --help for the options.\n";
     return kExitUsage;
   } catch (const RequestError& error) {
     std::cerr << "bodyloom: " << error.what() << "\nRun with --help for the options.\n";

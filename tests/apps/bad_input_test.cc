@@ -132,7 +132,7 @@ TEST_F(BadInput, OptionsThatContradictEachOtherAreUsageErrors) {
   ExpectUsageError({"export", "--track", d, "--what", "glb", "--axes", "world", "--out", o}, "axes of its own");
   ExpectUsageError({"export", "--track", d, "--what", "glb", "--rig", "mixamo", "--out", o}, "--rig");
   ExpectUsageError({"export", "--track", d, "--what", "usd", "--texture", d, "--out", o}, "--texture");
-  ExpectUsageError({"body"}, "subcommand");
+  ExpectUsageError({"body"}, "body: no verb");
 }
 
 TEST_F(BadInput, UnwritableOutputIsSaidBeforeAnythingIsRead) {

@@ -77,9 +77,20 @@ TEST(CommandLine, UnknownOptionsOfEveryVerbAreUsageErrors) {
 
 TEST(CommandLine, NoVerbAndUnknownVerbAreUsageErrors) {
   EXPECT_EQ(RunCommand({}).exit_code, kExitUsage);
+  EXPECT_EQ(RunCommand({}).err, "bodyloom: no verb\nRun with --help for the options.\n");
   const CommandResult result = RunCommand({"frobnicate"});
   EXPECT_EQ(result.exit_code, kExitUsage);
   EXPECT_EQ(result.err, "bodyloom: no verb or option \"frobnicate\"\nRun with --help for the options.\n");
+}
+
+TEST(CommandLine, AVerbOfAVerbThatIsUnknownOrMissingIsNamedWithThoseThereAre) {
+  const CommandResult unknown = RunCommand({"body", "frobnicate"}), missing = RunCommand({"body"});
+  EXPECT_EQ(unknown.exit_code, kExitUsage);
+  EXPECT_THAT(unknown.err,
+              StartsWith("bodyloom: body: no verb or option \"frobnicate\", expected info, convert or make\n"));
+  EXPECT_EQ(missing.exit_code, kExitUsage);
+  EXPECT_THAT(missing.err, StartsWith("bodyloom: body: no verb, expected info, convert or make\n"));
+  EXPECT_THAT(RunCommand({"body", "convert"}).err, StartsWith("bodyloom: --body is required\n"));
 }
 
 TEST(CommandLine, VersionIsOneLine) {
