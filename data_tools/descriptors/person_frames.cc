@@ -117,16 +117,11 @@ class PersonFrames::Impl {
     request.atlas_uv = true;
     VisibilityBuffer buffer;
     const ResolvedPixels pixels = Resolve(t, request, &buffer);
-    const PixelBox& box = pixels.box;
-    for (int y = box.y_begin; y < box.y_end; ++y) {
-      for (int x = box.x_begin; x < box.x_end; ++x) {
-        if (buffer.FaceAt(x, y) < 0) continue;
-        const size_t at = size_t(y) * window_.width + x, from = box.IndexOf(x, y);
-        uv[at] = pixels.atlas_uv[2 * from];
-        uv[area + at] = pixels.atlas_uv[2 * from + 1];
-        mask[at] = 1;
-      }
-    }
+    ForSeenPixels(pixels, buffer, [&](size_t at, size_t from) {
+      uv[at] = pixels.atlas_uv[2 * from];
+      uv[area + at] = pixels.atlas_uv[2 * from + 1];
+      mask[at] = 1;
+    });
   }
 
   [[nodiscard]] BodySurface Surface(int t) const {
@@ -137,15 +132,10 @@ class PersonFrames::Impl {
     request.part = request.normal = true;
     VisibilityBuffer buffer;
     const ResolvedPixels pixels = Resolve(t, request, &buffer);
-    const PixelBox& box = pixels.box;
-    for (int y = box.y_begin; y < box.y_end; ++y) {
-      for (int x = box.x_begin; x < box.x_end; ++x) {
-        if (buffer.FaceAt(x, y) < 0) continue;
-        const size_t at = size_t(y) * window_.width + x, from = box.IndexOf(x, y);
-        surface.parts[at] = pixels.part[from];
-        for (size_t c = 0; c < 3; ++c) surface.normals[area * c + at] = pixels.normal[3 * from + c];
-      }
-    }
+    ForSeenPixels(pixels, buffer, [&](size_t at, size_t from) {
+      surface.parts[at] = pixels.part[from];
+      for (size_t c = 0; c < 3; ++c) surface.normals[area * c + at] = pixels.normal[3 * from + c];
+    });
     return surface;
   }
 
@@ -177,6 +167,17 @@ class PersonFrames::Impl {
     ResolvedPixels pixels;
     ResolvePixels(*buffer, body_, vertices, camera, request, &pixels);
     return pixels;
+  }
+
+  /// take(place in the window, place in the resolved box) for every pixel that shows the body.
+  template <typename Take>
+  void ForSeenPixels(const ResolvedPixels& pixels, const VisibilityBuffer& buffer, const Take& take) const {
+    const PixelBox& box = pixels.box;
+    for (int y = box.y_begin; y < box.y_end; ++y) {
+      for (int x = box.x_begin; x < box.x_end; ++x) {
+        if (buffer.FaceAt(x, y) >= 0) take(size_t(y) * window_.width + x, box.IndexOf(x, y));
+      }
+    }
   }
 
   [[nodiscard]] size_t Texels() const { return size_t(options_.uv_size) * options_.uv_size; }

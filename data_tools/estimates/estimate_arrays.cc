@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "bodyloom/data_tools/body/mean_pelvis.h"
 #include "bodyloom/data_tools/formats/printable.h"
 #include "bodyloom/data_tools/formats/whole_numbers.h"
 #include "bodyloom/geometry/base/check.h"
@@ -100,6 +101,28 @@ Camera CentredCamera(int width, int height, double focal_px) {
   camera.cx = 0.5 * width;
   camera.cy = 0.5 * height;
   return camera;
+}
+
+BodyEstimate SmplPeople(
+    const PickleValue& file, const std::string& where, const std::string& system,
+    const std::function<void(const PickleValue& values, const std::string& place, PersonEstimate* person)>& rest) {
+  BodyEstimate estimate;
+  estimate.system = system;
+  estimate.body = "smpl";
+  estimate.rest_pelvis = MeanPelvis(estimate.body);
+  for (const auto& [name, value] : file.dict) {
+    const std::string place = where + ": person " + PrintableText(name);
+    PersonEstimate& person = estimate.people.emplace_back();
+    person.name = name;
+    person.poses = RequireShape(RequireNumbers(*value, "pose", place), {-1, 72}, place, "pose");
+    const int64_t n = person.poses.rows();
+    person.trans.setZero(n, 3);
+    person.betas = MeanBetas(RequireNumbers(*value, "betas", place), n, place);
+    person.frames = RequireFrameNumbers(RequireNumbers(*value, "frame_ids", place), n, place, "frame_ids");
+    rest(*value, place, &person);
+  }
+  SortEstimate(where, &estimate);
+  return estimate;
 }
 
 void SortEstimate(const std::string& where, BodyEstimate* estimate) {

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "bodyloom/data_tools/estimates/body_estimate.h"
 #include "bodyloom/data_tools/formats/ndarray.h"
+#include "bodyloom/data_tools/formats/pickle.h"
 
 namespace bodyloom {
 
@@ -33,6 +35,13 @@ Eigen::Vector3d AxisAngleFromRows(const Eigen::Ref<const Eigen::RowVectorXd>& ni
 
 /// A pinhole camera of square pixels in the middle (w/2, h/2) of an image, as these systems place it.
 Camera CentredCamera(int width, int height, double focal_px);
+
+/// People of SMPL's body by name in one dictionary, each with `pose` (n×72 axis-angle), `betas` and `frame_ids`, as VIBE and
+/// WHAM write them. `rest` sets what else a system knows of a person (its values; "where: person NAME"; trans is 0 and there
+/// are no cameras yet). Throws as RequireShape(), RequireFrameNumbers() and SortEstimate().
+BodyEstimate SmplPeople(
+    const PickleValue& file, const std::string& where, const std::string& system,
+    const std::function<void(const PickleValue& values, const std::string& place, PersonEstimate* person)>& rest);
 
 /// Puts every person's entries into the order of their frames, and people into that of size times time in view; people
 /// without a frame are dropped. Throws std::runtime_error "where: …" when a frame occurs twice or nobody is left.

@@ -2,11 +2,8 @@
 #include "bodyloom/data_tools/estimates/vibe_reader.h"
 
 #include <cmath>
-#include <utility>
 
-#include "bodyloom/data_tools/body/mean_pelvis.h"
 #include "bodyloom/data_tools/estimates/estimate_arrays.h"
-#include "bodyloom/data_tools/formats/printable.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/refuse.h"
 
@@ -52,26 +49,14 @@ BodyEstimate VibeFromPickle(const PickleValue& file, const std::string& where, i
   if (image_width <= 0 || image_height <= 0) {
     Refuse(where, "VIBE: its camera is in units of the image size, which is not known; give --video or --image-size");
   }
-  BodyEstimate estimate;
-  estimate.system = "VIBE";
-  estimate.body = "smpl";
-  estimate.rest_pelvis = MeanPelvis(estimate.body);
-  for (const auto& [name, value] : file.dict) {
-    const std::string place = where + ": person " + PrintableText(name);
-    PersonEstimate& person = estimate.people.emplace_back();
-    person.name = name;
-    person.poses = RequireShape(RequireNumbers(*value, "pose", place), {-1, 72}, place, "pose");
-    const int64_t n = person.poses.rows();
-    person.trans.setZero(n, 3);
-    person.betas = MeanBetas(RequireNumbers(*value, "betas", place), n, place);
-    person.frames = RequireFrameNumbers(RequireNumbers(*value, "frame_ids", place), n, place, "frame_ids");
-    const RowMatrixXd cameras = RequireShape(RequireNumbers(*value, "orig_cam", place), {n, 4}, place, "orig_cam");
-    for (Eigen::Index i = 0; i < cameras.rows(); ++i) {
-      person.cameras.push_back(WeakCamera(cameras.row(i), image_width, image_height, place, i));
-    }
-  }
-  SortEstimate(where, &estimate);
-  return estimate;
+  return SmplPeople(
+      file, where, "VIBE", [&](const PickleValue& values, const std::string& place, PersonEstimate* person) {
+        const RowMatrixXd cameras =
+            RequireShape(RequireNumbers(values, "orig_cam", place), {person->poses.rows(), 4}, place, "orig_cam");
+        for (Eigen::Index i = 0; i < cameras.rows(); ++i) {
+          person->cameras.push_back(WeakCamera(cameras.row(i), image_width, image_height, place, i));
+        }
+      });
 }
 
 }  // namespace bodyloom
