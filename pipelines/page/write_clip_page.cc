@@ -13,9 +13,7 @@
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/pipelines/page/clip_page.h"
 #include "bodyloom/pipelines/video/track_video.h"
-#include "bodyloom/render/follow_view.h"
 #include "bodyloom/render/image.h"
-#include "bodyloom/render/overlay.h"
 #include "bodyloom/render/track_world.h"
 
 namespace bodyloom {

@@ -26,13 +26,18 @@ SynthClipFiles SmallClip(const ScratchFolder& folder) {
   return SynthesizeClip(request).files;
 }
 
-TEST(TrackClip, ReportsWhatItWroteAndHowFarItIs) {
-  const ScratchFolder folder;
-  const SynthClipFiles clip = SmallClip(folder);
+/// Its joints and its camera, into track.npz of the folder.
+TrackRequest RequestFor(const SynthClipFiles& clip, const ScratchFolder& folder) {
   TrackRequest request;
   request.detections = clip.observations;
   request.cameras = clip.camera;
   request.out = folder / "track.npz";
+  return request;
+}
+
+TEST(TrackClip, ReportsWhatItWroteAndHowFarItIs) {
+  const ScratchFolder folder;
+  TrackRequest request = RequestFor(SmallClip(folder), folder);
   request.json = folder / "track.json";
   PipelineCallbacks callbacks;
   std::string work;
@@ -53,11 +58,7 @@ TEST(TrackClip, ReportsWhatItWroteAndHowFarItIs) {
 
 TEST(TrackClip, ThePageShowsEveryFrameAndGivesTheFilesAway) {
   const ScratchFolder folder;
-  const SynthClipFiles clip = SmallClip(folder);
-  TrackRequest request;
-  request.detections = clip.observations;
-  request.cameras = clip.camera;
-  request.out = folder / "track.npz";
+  TrackRequest request = RequestFor(SmallClip(folder), folder);
   request.report = folder / "page.html";
   const TrackReport report = TrackClip(request);
   EXPECT_EQ(report.outputs, (std::vector<std::string>{request.out, request.report}));
@@ -80,11 +81,7 @@ TEST(TrackClip, ThePageShowsEveryFrameAndGivesTheFilesAway) {
 
 TEST(TrackClip, ACancelledOneLeavesNothingBehind) {
   const ScratchFolder folder;
-  const SynthClipFiles clip = SmallClip(folder);
-  TrackRequest request;
-  request.detections = clip.observations;
-  request.cameras = clip.camera;
-  request.out = folder / "track.npz";
+  TrackRequest request = RequestFor(SmallClip(folder), folder);
   PipelineCallbacks callbacks;
   callbacks.progress = [&](const std::string&, double done) { return done < 0.2; };
   EXPECT_THROW(TrackClip(request, callbacks), Cancelled);
