@@ -31,8 +31,9 @@ struct TextureArguments {
 
 ExtractTextureRequest RequestOf(const TextureArguments& arguments) {
   ExtractTextureRequest request = arguments.request;
-  if (arguments.merge == "mean") request.merge = TextureExtractOptions::Merge::kMean;
-  if (arguments.fill) request.fill = arguments.fill_with == "laplace" ? TextureFill::kLaplace : TextureFill::kPyramid;
+  if (arguments.merge == "mean") request.texture.merge = TextureExtractOptions::Merge::kMean;
+  if (arguments.fill)
+    request.texture.fill = arguments.fill_with == "laplace" ? TextureFill::kLaplace : TextureFill::kPyramid;
   return request;
 }
 
@@ -47,7 +48,7 @@ void AddTextureVerb(CLI::App& app, Action* action) {
   verb->add_option("--video", c.video, "the video, or a folder of images")->required()->type_name("PATH");
   verb->add_option("--out", c.out, "the texture, .png or .jpg")->required()->type_name("FILE");
   verb->add_option("--body", c.body, "the track's body (default: the built-in body)")->type_name("FILE");
-  verb->add_option("--size", c.size, "texels a side")->capture_default_str()->check(CLI::Range(1, 8192));
+  verb->add_option("--size", c.texture.size, "texels a side")->capture_default_str()->check(CLI::Range(1, 8192));
   verb->add_option("--every", c.every, "look at every n-th frame")->capture_default_str()->check(CLI::PositiveNumber);
   verb->add_option("--merge", arguments->merge, "median or mean of the best views")
       ->capture_default_str()
@@ -58,10 +59,10 @@ void AddTextureVerb(CLI::App& app, Action* action) {
       ->capture_default_str()
       ->check(CLI::IsMember(std::vector<std::string>{"pyramid", "laplace"}))
       ->type_name("KIND");
-  verb->add_option("--trust", c.trust, "with --fill: texels seen worse than this (0 to 1) are filled, too")
+  verb->add_option("--trust", c.texture.trust, "with --fill: texels seen worse than this (0 to 1) are filled, too")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1.0));
-  verb->add_option("--margin", c.margin_px,
+  verb->add_option("--margin", c.texture.margin_px,
                    "pixels around the body's contours that are not used (default: 1 % of the person's height)")
       ->check(CLI::Range(0, 64));
   verb->add_option("--confidence", c.confidence, "how well each texel was seen, as a grey image")->type_name("FILE");

@@ -7,7 +7,7 @@
 //          world_from_camera (4x4, rows), K (3x3), image_size, fps
 //   glb    the scene as base64 of a .glb
 //   video  base64 of an .mp4 with a picture for each frame, evenly fps a second, or empty
-// and elements with the ids used below. A fragment "#frame=30&view=side" opens it there; "#measure" counts pictures a second.
+// and elements with the ids used below. A fragment "#frame=30&view=side&texture=off" opens it there; "#measure" counts pictures a second.
 import * as THREE from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
@@ -15,6 +15,8 @@ import uPlot from 'uplot';
 
 const STATUS = ['tracked', 'weak', 'interpolated', 'lost'];
 const STATUS_COLOURS = [null, '#e8c54788', '#e8883888', '#d6404088'];
+// Of bodies whose texture is taken off, linear: those that data_tools/export/glb_writer.cc gives bodies without one.
+const BODY_COLOURS = [[0.62, 0.42, 0.33], [0.26, 0.42, 0.62], [0.30, 0.52, 0.36], [0.55, 0.45, 0.60]];
 const SIGMA_LIMIT_MM = 150; // where the scale of the joints' colours ends
 
 const element = (id) => document.getElementById(id);
@@ -64,7 +66,13 @@ class Stage {
   }
 
   async load() {
-    const gltf = await new GLTFLoader().parseAsync(bytesOf('glb').buffer, '');
+    const loader = new GLTFLoader();
+    // Textures by image elements: a browser that is driven without a screen waits for those, for image bitmaps it does not.
+    loader.register((parser) => {
+      parser.textureLoader = new THREE.TextureLoader(parser.options.manager);
+      return { name: 'image_elements' };
+    });
+    const gltf = await loader.parseAsync(bytesOf('glb').buffer, '');
     this.scene.add(gltf.scene);
     this.bodies = [];
     this.extra = [];
@@ -72,7 +80,7 @@ class Stage {
       node.frustumCulled = false; // a posed skin leaves the box of its rest pose
       if (node.isSkinnedMesh) {
         node.material = node.material.clone();
-        this.bodies.push(node);
+        this.bodies.push({ mesh: node, texture: node.material.map });
       }
       if (node.name === 'ground') node.visible = false; // the grid is clearer
     });
@@ -82,6 +90,7 @@ class Stage {
       this.mixer.clipAction(animation).play();
       this.duration = Math.max(this.duration, animation.duration);
     }
+    if (this.bodies.every(({ texture }) => !texture)) element('show-texture').parentElement.style.display = 'none';
     this.people = clip.people.map((person, index) => this.addJoints(gltf.scene, person, index));
     this.addFrustum();
     this.holdCentre(0);
@@ -171,11 +180,12 @@ class Stage {
   show(frame) {
     this.pose(clip.seconds[frame]);
     const showJoints = element('show-joints').checked;
-    for (const body of this.bodies) {
-      body.visible = element('show-body').checked;
-      body.material.transparent = showJoints;
-      body.material.opacity = showJoints ? 0.75 : 1;
-    }
+    this.bodies.forEach(({ mesh, texture }, index) => {
+      mesh.visible = element('show-body').checked;
+      mesh.material.transparent = showJoints;
+      mesh.material.opacity = showJoints ? 0.75 : 1;
+      if (texture) this.wear(mesh.material, element('show-texture').checked ? texture : null, index);
+    });
     for (const joints of this.people) {
       for (const { bone, sphere, joint, person } of joints) {
         sphere.visible = showJoints && joint >= 0 && this.isShown(bone);
@@ -187,6 +197,13 @@ class Stage {
     }
     if (this.frustum) this.frustum.visible = element('show-camera').checked;
     this.draw();
+  }
+
+  wear(material, texture, index) {
+    if (material.map === texture) return;
+    material.map = texture;
+    material.color.setRGB(...(texture ? [1, 1, 1] : BODY_COLOURS[index % BODY_COLOURS.length]));
+    material.needsUpdate = true;
   }
 
   resize() {
@@ -328,7 +345,7 @@ async function main() {
       stage.view(name);
     });
   }
-  for (const id of ['show-body', 'show-joints', 'show-camera']) {
+  for (const id of ['show-body', 'show-texture', 'show-joints', 'show-camera']) {
     element(id).addEventListener('change', () => stage.show(current));
   }
   for (const link of document.querySelectorAll('a[data-blob]')) {
@@ -340,6 +357,7 @@ async function main() {
     `linear-gradient(to right, ${[0, 0.25, 0.5, 0.75, 1].map((x) => `#${sigmaColour(x * SIGMA_LIMIT_MM).getHexString()}`).join(', ')})`;
   element('scale-end').textContent = `${SIGMA_LIMIT_MM} mm`;
 
+  if (wishes.get('texture') === 'off') element('show-texture').checked = false;
   const first = Number(wishes.get('frame') || 0);
   show(first, true);
   if (wishes.get('view')) { stage.holdCentre(clip.seconds[current]); stage.show(current); stage.view(wishes.get('view')); }

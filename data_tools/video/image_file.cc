@@ -96,7 +96,7 @@ Image DecodeImage(const std::string& bytes, const std::string& path) {
   return image;
 }
 
-void WriteImage(const std::string& path, const Image& image) {
+std::string EncodeImage(const Image& image, const std::string& path) {
   BODYLOOM_CHECK(!image.empty(), path, ": the image to write is empty");
   const std::string extension = LowerExtension(path);
   if (extension != ".png" && extension != ".jpg" && extension != ".jpeg") {
@@ -109,8 +109,10 @@ void WriteImage(const std::string& path, const Image& image) {
     throw std::runtime_error(path + ": cannot encode " + std::to_string(image.width) + "x" +
                              std::to_string(image.height) + " pixels as " + extension);
   }
-  WriteFileAtomically(path, std::string(bytes.begin(), bytes.end()));
+  return {bytes.begin(), bytes.end()};
 }
+
+void WriteImage(const std::string& path, const Image& image) { WriteFileAtomically(path, EncodeImage(image, path)); }
 
 std::vector<std::string> ImageFilesOf(const std::string& folder) {
   std::error_code error;

@@ -22,6 +22,8 @@ Image DecodeImage(const std::string& bytes, const std::string& path);
 /// By the extension: .png, or .jpg/.jpeg (quality 95). Whole or not at all. Throws std::runtime_error naming the file,
 /// std::invalid_argument for an empty image.
 void WriteImage(const std::string& path, const Image& image);
+/// The bytes that WriteImage writes; `path` is for the extension and messages.
+std::string EncodeImage(const Image& image, const std::string& path);
 
 /// The image files of a folder (.png .jpg .jpeg .bmp .webp .tif .tiff), numbers in names compared as numbers, so that
 /// frame_2 comes before frame_10; hidden files are passed over. Throws std::runtime_error when there are none.

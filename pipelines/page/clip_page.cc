@@ -51,6 +51,7 @@ constexpr const char* kSceneHtml = R"(<div class="scene">
 <button id="view-front">Front</button><button id="view-side">Side</button><button id="view-back">Back</button>
 <button id="view-top">Above</button><button id="view-camera">Camera</button>
 <label><input id="show-body" type="checkbox" checked> body</label>
+<label><input id="show-texture" type="checkbox" checked> colours of the video</label>
 <label><input id="show-joints" type="checkbox"> joints, σ from 0 <span id="scale" class="scale"></span> to <span id="scale-end"></span></label>
 <label><input id="show-camera" type="checkbox" checked> camera</label>
 </div>

@@ -4,14 +4,18 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <optional>
 #include <stdexcept>
 
 #include "bodyloom/data_tools/export/glb_writer.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/motion/bvh_writer.h"
+#include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/data_tools/video/video_encoder.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/pipelines/page/clip_page.h"
+#include "bodyloom/pipelines/texture/person_texture.h"
 #include "bodyloom/pipelines/video/track_video.h"
 #include "bodyloom/render/image.h"
 #include "bodyloom/render/track_world.h"
@@ -83,24 +87,74 @@ ClipPagePerson OnClock(const PersonOnPage& person, const std::vector<double>& mo
   return on_page;
 }
 
-/// The video's picture of every moment, evenly spaced; where the video has none the last one stays.
-std::string VideoOf(const ClipPageRequest& request, const std::vector<double>& moments, double fps,
-                    const PipelineCallbacks& callbacks) {
+/// The textures of the people, from pictures that come in the clock's order.
+class PageTextures {
+ public:
+  PageTextures(const std::vector<PersonOnPage>& people, const TrackVideo& video) {
+    PersonTextureOptions options;
+    options.size = kPageTextureTexels;
+    options.fill = TextureFill::kPyramid;
+    for (const PersonOnPage& person : people) {
+      tracks_.push_back(std::make_unique<const Track>(video.Moved(*person.track)));
+      people_.push_back(person.body->has_uv() ? std::make_unique<PersonTexture>(*person.body, *tracks_.back(), options)
+                                              : nullptr);
+    }
+  }
+
+  void Add(double moment, const Image& picture) {
+    for (size_t i = 0; i < people_.size(); ++i) {
+      const std::vector<double>& times = tracks_[i]->motion.timestamps;
+      const auto at = std::lower_bound(times.begin(), times.end(), moment);
+      if (people_[i] != nullptr && at != times.end() && *at == moment) {
+        people_[i]->Add(static_cast<int>(at - times.begin()), picture);
+      }
+    }
+  }
+
+  /// A PNG's bytes by person; empty for those of whom nothing was seen.
+  [[nodiscard]] std::vector<std::string> Pngs() const {
+    std::vector<std::string> pngs(people_.size());
+    for (size_t i = 0; i < people_.size(); ++i) {
+      const auto images = people_[i] != nullptr ? people_[i]->Merge() : std::nullopt;
+      if (images) pngs[i] = EncodeImage(images->colours, Concatenate("texture of person_", i, ".png"));
+    }
+    return pngs;
+  }
+
+ private:
+  std::vector<std::unique_ptr<const Track>> tracks_;
+  std::vector<std::unique_ptr<PersonTexture>> people_;
+};
+
+struct Seen {
+  std::string video_mp4;
+  std::vector<std::string> textures;
+};
+
+/// The video's picture of every moment, evenly spaced (where the video has none the last one stays), and what it shows of
+/// the people.
+Seen SeenIn(const ClipPageRequest& request, const std::vector<double>& moments, double fps,
+            const PipelineCallbacks& callbacks) {
   TrackVideo video(request.video, *request.people[0].track, request.video_px_from_camera_px, request.video_offset);
   const double longer = std::max(video.info().width, video.info().height), scale = std::min(1.0, kPageVideoPx / longer);
   const int width = std::max(2, int(std::lround(scale * video.info().width))),
             height = std::max(2, int(std::lround(scale * video.info().height)));
   const AtomicPath file(request.out + ".mp4");  // never committed: only its bytes are wanted
   VideoEncoder encoder(file.temporary(), request.out, width, height, fps);
+  PageTextures textures(request.people, video);
+  const size_t every = (moments.size() + kPageTexturePictures - 1) / kPageTexturePictures;
   Image picture(width, height);
   for (size_t i = 0; i < moments.size(); ++i) {
     callbacks.Update("report", double(i) / double(moments.size()));
-    if (const Image* shown = video.At(moments[i])) picture = Resized(*shown, width, height);
+    if (const Image* shown = video.At(moments[i])) {
+      if (i % every == 0) textures.Add(moments[i], *shown);
+      picture = Resized(*shown, width, height);
+    }
     encoder.Write(picture);
   }
   const std::string fault = encoder.Finish();
   if (!fault.empty()) throw std::runtime_error(request.out + ": " + fault);
-  return ReadFileBytes(file.temporary());
+  return {ReadFileBytes(file.temporary()), textures.Pngs()};
 }
 
 /// Empty where BVH cannot say what the track says.
@@ -147,8 +201,12 @@ void WriteClipPage(const ClipPageRequest& request, const PipelineCallbacks& call
   GlbOptions options;
   options.correctives = request.correctives;
   GlbSummary exactness;
+  if (!request.video.empty()) {
+    Seen seen = SeenIn(request, moments, content.fps, callbacks);
+    content.video_mp4 = std::move(seen.video_mp4);
+    options.textures = std::move(seen.textures);
+  }
   content.glb = GlbText(scene, options, &exactness);
-  if (!request.video.empty()) content.video_mp4 = VideoOf(request, moments, content.fps, callbacks);
   content.summary = request.summary;
   content.files = FilesOf(request.people, content.world);
   WriteFileAtomically(request.out, ClipPageHtml(content));

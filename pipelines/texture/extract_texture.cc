@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/pipelines/texture/extract_texture.h"
 
-#include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
-#include <vector>
 
 #include "bodyloom/data_tools/body/body_or_builtin.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
@@ -21,50 +19,13 @@
 #include "bodyloom/pipelines/report_json.h"
 #include "bodyloom/pipelines/track_fits_body.h"
 #include "bodyloom/pipelines/video/track_video.h"
-#include "bodyloom/render/overlay.h"
-#include "bodyloom/render/unit_byte.h"
-#include "bodyloom/render/uv_fill.h"
 
 namespace bodyloom {
 namespace {
 
-Image ColourImage(const Texture& texture, const std::vector<float>& planes) {
-  Image image(texture.width, texture.height);
-  const size_t pixels = size_t(texture.width) * texture.height;
-  for (size_t p = 0; p < pixels; ++p) {
-    for (size_t c = 0; c < 3; ++c) image.bgr[3 * p + c] = UnitByte(planes[c * pixels + p]);
-  }
-  return image;
-}
-
-Image GreyImage(const Texture& texture, const std::vector<float>& plane) {
-  std::vector<float> planes;
-  for (int c = 0; c < 3; ++c) planes.insert(planes.end(), plane.begin(), plane.end());
-  return ColourImage(texture, planes);
-}
-
 struct Gathered {
   int used = 0, passed_over = 0, beyond_video = 0;  ///< frames of the track
 };
-
-/// Pixels around contours that are not used, when the user gave none: tracks are off by about a hundredth of the
-/// person's height (of the joints, in the median frame).
-int DefaultMargin(const Track& track) {
-  std::vector<double> heights_px;
-  for (int t = 0; t < static_cast<int>(track.joints.size()); ++t) {
-    double low = 1e9, high = -1e9;
-    Eigen::Vector2d pixel;
-    for (Eigen::Index j = 0; j < track.joints[t].rows(); ++j) {
-      if (!track.CameraAt(t).Project(track.joints[t].row(j).transpose(), &pixel)) continue;
-      low = std::min(low, pixel.y());
-      high = std::max(high, pixel.y());
-    }
-    if (high > low) heights_px.push_back(high - low);
-  }
-  if (heights_px.empty()) return 2;
-  std::nth_element(heights_px.begin(), heights_px.begin() + heights_px.size() / 2, heights_px.end());
-  return static_cast<int>(std::clamp(std::lround(0.01 * heights_px[heights_px.size() / 2]), 1L, 64L));
-}
 
 /// The video frame of the track's time zero. A video of just the track's frames, or one that is over before the track
 /// begins, was cut to it: its first frame is the track's first, whatever the clock says.
@@ -78,25 +39,18 @@ int VideoOffset(const std::string& path, const Track& track) {
   return is_cut ? -first : 0;
 }
 
-Gathered Gather(const ExtractTextureRequest& request, const BodyModel& body, const Track& track, TrackVideo* video,
-                TextureExtractor* extractor, const PipelineCallbacks& callbacks) {
+Gathered Gather(const ExtractTextureRequest& request, const Track& track, TrackVideo* video, PersonTexture* texture,
+                const PipelineCallbacks& callbacks) {
   Gathered gathered;
   callbacks.Begin("texture");
   for (int t = 0; t < track.num_frames(); t += request.every) {
     callbacks.Update("gathering", double(t) / track.num_frames());
-    const FrameStatus status = track.frame_status[t];
-    const MatrixX3d vertices = TrackVertices(body, track, t);
-    if (vertices.rows() == 0 || (status != FrameStatus::kTracked && status != FrameStatus::kWeak)) {
-      ++gathered.passed_over;
-      continue;
-    }
-    const Image* frame = video->At(track.motion.timestamps[t]);
-    if (frame == nullptr) {
-      ++gathered.beyond_video;
-      continue;
-    }
-    extractor->Add(*frame, vertices, track.CameraAt(t), t);
-    ++gathered.used;
+    const bool is_fitted = HasFitOfItsOwn(track, t);
+    const Image* frame = is_fitted ? video->At(track.motion.timestamps[t]) : nullptr;
+    if (frame != nullptr) texture->Add(t, *frame);
+    gathered.used += frame != nullptr;
+    gathered.beyond_video += is_fitted && frame == nullptr;
+    gathered.passed_over += !is_fitted;
   }
   return gathered;
 }
@@ -124,48 +78,32 @@ ExtractTextureReport ExtractTexture(const ExtractTextureRequest& request, const 
                              "--uv adds them)");
   }
   RequireTrackFitsBody(track, *body, request.track);
-  TextureExtractOptions options;
-  options.texels.width = options.texels.height = request.size;
-  options.edge_margin_px = request.margin_px >= 0 ? request.margin_px : DefaultMargin(track);
-  options.merge = request.merge;
   clock.Begin("prepare");
-  TextureExtractor extractor(*body, options);
+  PersonTexture texture(*body, track, request.texture);
   clock.Begin("gather");
-  const Gathered gathered = Gather(request, *body, track, &video, &extractor, callbacks);
+  const Gathered gathered = Gather(request, track, &video, &texture, callbacks);
   if (!video.warning().empty()) callbacks.Say(video.warning());
   clock.Begin("merge");
-  Texture texture = extractor.Merge();
-  if (texture.num_seen == 0) {
+  const std::optional<PersonTextureImages> images = texture.Merge();
+  if (!images) {
     throw std::runtime_error(Concatenate(request.video, ": the body of ", request.track, " is seen in none of ",
                                          gathered.used, " frames, there is no texture"));
   }
-  const UvTexelTable& table = extractor.table();
-  clock.Begin("fill");
-  std::vector<uint8_t> known(texture.confidence.size());
-  for (size_t p = 0; p < known.size(); ++p)
-    known[p] = texture.confidence[p] > (request.fill != TextureFill::kNone ? request.trust : 0);
-  if (request.fill == TextureFill::kNone) {
-    FillGutter(*body, table, known, 3, texture.bgr);
-  } else if (request.fill == TextureFill::kLaplace) {
-    LaplaceFill(*body, table, known).Fill(3, texture.bgr);
-  } else {
-    PyramidFill(*body, table).Fill(known, 3, texture.bgr);
-  }
   clock.Begin("write");
-  WriteImage(request.out, ColourImage(texture, texture.bgr));
-  if (!request.confidence.empty()) WriteImage(request.confidence, GreyImage(texture, texture.confidence));
+  WriteImage(request.out, images->colours);
+  if (!request.confidence.empty()) WriteImage(request.confidence, images->confidence);
   clock.End();
   ExtractTextureReport report;
   report.out = request.out;
-  report.width = texture.width, report.height = texture.height;
+  report.width = images->colours.width, report.height = images->colours.height;
   report.track_frames = track.num_frames();
   report.frames_used = gathered.used;
   report.frames_without_fit = gathered.passed_over;
   report.frames_beyond_video = gathered.beyond_video;
-  report.edge_margin_px = options.edge_margin_px;
-  report.texels = table.num_inside;
-  report.texels_seen = texture.num_seen;
-  report.filled = request.fill != TextureFill::kNone;
+  report.edge_margin_px = texture.edge_margin_px();
+  report.texels = texture.texels();
+  report.texels_seen = images->texels_seen;
+  report.filled = request.texture.fill != TextureFill::kNone;
   report.seconds = clock.seconds();
   report.total_seconds = clock.total();
   if (!request.json.empty()) WriteFileAtomically(request.json, ToJson(report));

@@ -6,12 +6,9 @@
 
 #include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/pipelines/callbacks.h"
-#include "bodyloom/render/texture_extract.h"
+#include "bodyloom/pipelines/texture/person_texture.h"
 
 namespace bodyloom {
-
-/// What texels get that no frame shows: nothing, or the surface around them, carried on smoothly and across seams.
-enum class TextureFill { kNone, kPyramid, kLaplace };
 
 struct ExtractTextureRequest {
   std::string track;       ///< .npz
@@ -20,12 +17,8 @@ struct ExtractTextureRequest {
   std::string out;         ///< the texture, .png or .jpg
   std::string confidence;  ///< how well each texel was seen, as a grey image; empty: none
   std::string json;        ///< ToJson(ExtractTextureReport); empty: none
-  int size = 512;          ///< texels a side
   int every = 1;           ///< looks at every n-th frame
-  TextureExtractOptions::Merge merge = TextureExtractOptions::Merge::kMedian;
-  TextureFill fill = TextureFill::kNone;
-  double trust = 0.1;  ///< with a fill, texels seen worse than this (0 to 1) are filled, too
-  int margin_px = -1;  ///< pixels around the body's contours that are not used; -1: 1 % of the person's height
+  PersonTextureOptions texture;
 };
 
 struct ExtractTextureReport {

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Tracks a small clip with its page, and has Chromium open it from disk: it must load without a word on the console, show
-another picture at another frame and from another side, and the same one again.
+another picture at another frame, from another side and without the texture, and the same one again.
 
 usage: chromium_test.py COMMAND     COMMAND: the program `bodyloom`
 exit 0: so it is; 1: not; 77: no Chromium here.
@@ -52,6 +52,7 @@ def main():
         for what, good in (("the script ran to its end", 'data-ready="yes"' in text),
                            ("the place is told", place and re.fullmatch(r"frame 7 of 40, 0\.23 s; person_0: tracked, \d+\.\d px", place.group(1))),
                            ("another frame is another picture", picture("#frame=5") != picture("#frame=30")),
+                           ("bodies wear the video's colours", picture("#frame=5") != picture("#frame=5&texture=off")),
                            ("another side is another picture", picture("#frame=5&view=side") != picture("#frame=5&view=back")),
                            ("the same is the same", picture("#frame=5&view=side") == picture("#frame=5&view=side"))):
             print(("yes  " if good else "NO   ") + what)
