@@ -8,7 +8,7 @@ usage: run_clang_tidy.py BUILD JOBS FILE...
   JOBS   how many at once
 
 Files with the same flags are included into one source, unless they declare the same name at namespace level (tests do).
-Where anything is found in it, or where it does not compile, its files are read one by one, and that is what is told.
+Where that does not compile, they are read one by one.
 A file is clean as long as its compile command, its own text, that of every header outside the system folders that it includes,
 .clang-tidy and the version of clang-tidy are the same. What is remembered lies in BUILD/clang_tidy, an empty file each, and is
 written as files are done: a run that is stopped goes on where it was.
@@ -29,6 +29,7 @@ import sys
 from check_names import blanked, declared, namespaces
 
 GROUP = 16
+COMPILE_ERROR = "[clang-diagnostic-error]"
 INCLUDE = re.compile(r'^\s*#\s*include\s*["<]([^">]+)[">]', re.M)
 
 
@@ -111,7 +112,7 @@ def tidy(source, unit, headers):
 
 
 def check(group, stamps, headers):
-    """The findings in a group of units, a text a file; those that are clean get their stamp."""
+    """The findings in a group of units, a text a reading; files that none of them names get their stamp."""
     def clean(units):
         for unit in units:
             (stamps / unit.key).touch()
@@ -123,9 +124,11 @@ def check(group, stamps, headers):
         exact = "|".join("^" + re.escape(unit.file) + "$" for unit in group)
         found = tidy(source, group[0], f"{headers}|{exact}")
         source.unlink()
-        if not found:
-            clean(group)
-            return []
+        if COMPILE_ERROR not in found:
+            named = [unit for unit in group if unit.file + ":" in found]
+            if named or not found:
+                clean([unit for unit in group if unit not in named])
+            return [found] if found else []
     findings = []
     for unit in group:
         found = tidy(unit.file, unit, headers)
@@ -158,7 +161,7 @@ def main():
             faults += len(findings)
             for found in findings:
                 print(found, flush=True)
-    print(f"{len(units)} files, {len(units) - len(unread)} of them unchanged since they were clean, {faults} with findings, "
+    print(f"{len(units)} files, {len(units) - len(unread)} of them unchanged since they were clean, {faults} readings with findings, "
           f"{len(files) - len(units)} not compiled by this build")
     return 1 if faults else 0
 
