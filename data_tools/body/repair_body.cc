@@ -107,6 +107,7 @@ void DropFaces(const std::vector<int>& faces, BodyModelData* body) {
   KeepRows(kept, &body->face_iuv);
   if (body->face_part.empty()) return;
   std::vector<uint8_t> parts;
+  parts.reserve(kept.size());
   for (const int f : kept) parts.push_back(body->face_part[f]);
   body->face_part = std::move(parts);
 }

@@ -73,7 +73,8 @@ std::vector<Edge> EdgesOf(const std::vector<Quad>& quads) {
 /// there is one within about 60°.
 bool Surround(const std::vector<Eigen::RowVector3d>& points) {
   for (int code = 0; code < 27; ++code) {
-    const Eigen::RowVector3d direction(code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1);
+    const int x = code % 3 - 1, y = code / 3 % 3 - 1, z = code / 9 - 1;
+    const Eigen::RowVector3d direction(x, y, z);
     if (code == 13) continue;  // no direction
     const bool seen = std::any_of(points.begin(), points.end(), [&](const Eigen::RowVector3d& point) {
       return point.dot(direction) > 0.5 * point.norm() * direction.norm();

@@ -234,6 +234,7 @@ OnnxTensor OnnxTranspose(const OnnxArguments& arguments) {
   std::vector<size_t> stride(rank, 1);
   for (size_t i = rank; i-- > 1;) stride[i - 1] = stride[i] * size_t(input.shape[i]);
   std::vector<int64_t> shape;
+  shape.reserve(rank);
   for (const int64_t axis : order) shape.push_back(input.shape[size_t(axis)]);
   std::vector<size_t> places(input.size());
   std::vector<int64_t> at(rank, 0);

@@ -74,7 +74,8 @@ std::vector<PersonDetection> DecodePersonDetections(std::span<const float> boxes
   size_t i = 0;
   for (const AnchorGrid& grid : kGrids) {
     for (int cell = 0; cell < grid.cells * grid.cells; ++cell) {
-      const Eigen::Vector2d anchor((cell % grid.cells + 0.5) / grid.cells, (cell / grid.cells + 0.5) / grid.cells);
+      const int row = cell / grid.cells, column = cell % grid.cells;
+      const Eigen::Vector2d anchor((column + 0.5) / grid.cells, (row + 0.5) / grid.cells);
       for (int k = 0; k < grid.anchors_per_cell; ++k, ++i) {
         const double score = 1 / (1 + std::exp(-std::clamp<double>(logits[i], -kMaxLogit, kMaxLogit)));
         const std::span<const float> numbers = boxes.subspan(i * kNumbers, kNumbers);

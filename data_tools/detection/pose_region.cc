@@ -54,6 +54,7 @@ std::vector<PoseRegion> TileRegions(int width, int height, int level) {
     if (length <= side) return std::vector<double>{(length - side) / 2};
     std::vector<double> result;
     const int count = int(std::ceil((length - side) / (side / 2) - 1e-9)) + 1;
+    result.reserve(size_t(count));
     for (int i = 0; i < count; ++i) result.push_back((length - side) * i / (count - 1));
     return result;
   };

@@ -135,6 +135,7 @@ void SortEstimate(const std::string& where, BodyEstimate* estimate) {
   }
   std::sort(order.begin(), order.end());
   std::vector<PersonEstimate> people;
+  people.reserve(order.size());
   for (const auto& [weight, p] : order) people.push_back(std::move(estimate->people[p]));
   estimate->people = std::move(people);
 }
