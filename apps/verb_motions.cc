@@ -16,7 +16,7 @@ constexpr const char* kMotionsFooter =
     "The table, a line a clip:\n"
     "  limits   share of frames with a joint of the body more than 5 degrees beyond its limits, and the worst excess\n"
     "  ends     the same share for ankles, toes and wrists\n"
-    "  skate    foot sliding: mean horizontal speed of the slower toe that is within 5 cm of the floor, m/s\n"
+    "  slide    foot sliding: mean horizontal speed of the slower toe that is within 5 cm of the floor, m/s\n"
     "  floor    height of the floor in the recording's own world, m; - where the ground is not flat\n"
     "  flips    joint rotations of more than 20 rad/s that turn back in the next frame\n"
     "  speed    fastest joint relative to the pelvis, m/s; acc: hardest acceleration, m/s2\n"

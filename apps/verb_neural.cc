@@ -68,7 +68,7 @@ void AddTrainVerb(CLI::App& app, Action* action) {
       app, "train", "Learns a person or trains a network: `bodyloom train avatar --help`",
       {{"motion", "Trains a renderer of one person's motion-dependent appearance (needs LibTorch)"},
        {"photo", "Trains a renderer that needs one photo of a person (needs LibTorch)"},
-       {"animate", "Trains a renderer that animates anybody from one photo (needs LibTorch)"},
+       {"guided", "Trains a renderer that animates anybody from one photo (needs LibTorch)"},
        {"lifter", "Trains the network that lifts 2D joints to 3D from recorded motion (needs LibTorch)"}},
       action);
   AddTrainAvatar(*train, action);
@@ -79,7 +79,7 @@ void AddAnimateVerb(CLI::App& app, Action* action) {
       app, "animate", "Renders a person that was learned: `bodyloom animate avatar --help`",
       {{"motion", "Renders a person that `bodyloom train motion` learned (needs LibTorch)"},
        {"photo", "Renders a person from one photo, in any motion (needs LibTorch)"},
-       {"animate", "Animates the person of a photo, as `bodyloom train animate` learned to (needs LibTorch)"}},
+       {"guided", "Animates the person of a photo, as `bodyloom train guided` learned to (needs LibTorch)"}},
       action);
   AddAnimateAvatar(*animate, action);
 }

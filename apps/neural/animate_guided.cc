@@ -39,7 +39,7 @@ void Run(AnimateGuidedArguments options) {
 
 void AddAnimateGuided(CLI::App& animate, Action* action) {
   CLI::App* verb =
-      animate.add_subcommand("animate", "Animates the person of a photo, as `bodyloom train animate` learned to");
+      animate.add_subcommand("guided", "Animates the person of a photo, as `bodyloom train guided` learned to");
   auto options = std::make_shared<AnimateGuidedArguments>();
   AnimateGuidedRequest& request = options->request;
   verb->add_option("--run", request.run, "Folder of the trained run")->required();
@@ -73,7 +73,7 @@ void AddAnimateGuided(CLI::App& animate, Action* action) {
   AddDeviceOptions(verb, &request);
   verb->footer(
       "Example:\n"
-      "  bodyloom animate animate --run run --image photo.jpg --image-track photo.npz --track dance.npz --out "
+      "  bodyloom animate guided --run run --image photo.jpg --image-track photo.npz --track dance.npz --out "
       "dance.mp4");
   verb->callback([options, action] { *action = [options] { Run(*options); }; });
 }

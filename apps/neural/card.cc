@@ -13,7 +13,7 @@ namespace {
 
 NeuralRenderer RendererNamed(const std::string& system) {
   if (system == "photo") return NeuralRenderer::kPhoto;
-  return system == "animate" ? NeuralRenderer::kGuided : NeuralRenderer::kMotion;
+  return system == "guided" ? NeuralRenderer::kGuided : NeuralRenderer::kMotion;
 }
 
 }  // namespace
@@ -25,7 +25,7 @@ void AddCard(CLI::App& app, Action* action) {
   };
   auto parsed = std::make_shared<Parsed>();
   verb->add_option("system", parsed->system, "Which renderer")
-      ->check(CLI::IsMember({"motion", "photo", "animate"}))
+      ->check(CLI::IsMember({"motion", "photo", "guided"}))
       ->capture_default_str();
   AddProfileOption(verb, &parsed->profile);
   verb->callback([parsed, action] {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The lines of `bodyloom animate animate`.
+/// The lines of `bodyloom animate guided`.
 #pragma once
 
 #include "bodyloom/pipelines/neural/guided/animate_guided.h"

@@ -14,7 +14,7 @@ namespace bodyloom {
 void AddScoreOptions(CLI::App* verb, ScorePeopleRequest* request) {
   verb->add_option("--score", request->data,
                    "Instead: measure on the test people of this multi-person dataset; photos and pictures are the same "
-                   "for `animate photo` and `animate animate`");
+                   "for `animate photo` and `animate guided`");
   verb->add_option("--score-photos", request->photos, "Numbers of photos to measure with, such as 1 2 4")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Options and lines of `--score`, which `bodyloom animate photo` and `bodyloom animate animate` have in common.
+/// Options and lines of `--score`, which `bodyloom animate photo` and `bodyloom animate guided` have in common.
 #pragma once
 
 #include <string>

@@ -60,7 +60,7 @@ void RunTrainGuided(const TrainGuidedArguments& parsed) {
 }  // namespace
 
 void AddTrainGuided(CLI::App& train, Action* action) {
-  CLI::App* verb = train.add_subcommand("animate", "Trains a renderer that animates anybody from one photo");
+  CLI::App* verb = train.add_subcommand("guided", "Trains a renderer that animates anybody from one photo");
   auto parsed = std::make_shared<TrainGuidedArguments>();
   TrainGuidedRendererRequest& request = parsed->request;
   TrainGuidedOptions& options = request.options;
@@ -94,8 +94,8 @@ void AddTrainGuided(CLI::App& train, Action* action) {
   verb->footer(
       "Example:\n"
       "  bodyloom synth-people --motions motions --out people\n"
-      "  bodyloom train animate --data people --out run\n"
-      "  bodyloom animate animate --run run --image photo.jpg --image-track photo.npz --track dance.npz --out "
+      "  bodyloom train guided --data people --out run\n"
+      "  bodyloom animate guided --run run --image photo.jpg --image-track photo.npz --track dance.npz --out "
       "dance.mp4");
   verb->callback([parsed, action] { *action = [parsed] { RunTrainGuided(*parsed); }; });
 }

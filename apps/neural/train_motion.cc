@@ -81,10 +81,10 @@ void AddTrainMotion(CLI::App& train, Action* action) {
       ->capture_default_str();
   verb->add_option("--steps", options.steps, "Batches to train on")->capture_default_str();
   verb->add_option("--batch", options.batch, "Frames in a batch")->capture_default_str();
-  verb->add_option("--chain", options.rollout_length,
+  verb->add_option("--rollout-length", options.rollout_length,
                    "Frames of a truncated roll-out of the recurrence, before it restarts")
       ->capture_default_str();
-  verb->add_option("--walks", options.rollouts,
+  verb->add_option("--rollouts", options.rollouts,
                    "Truncated roll-outs that every place of the batch steps through in turn, a frame each")
       ->capture_default_str();
   verb->add_flag("--whole-window", request.whole_window,

@@ -5,7 +5,7 @@ true labels and bodies and with estimated ones; and the ablations of the pose-gu
 "Pose-Guided Human Animation from a Single Image in the Wild", CVPR 2021) on synthetic people.
 
 usage: one_photo.py --bodyloom build/release/apps/bodyloom --motions ../shared/data/motion --out FOLDER
-       [--systems photo animate] [--without latent kl ...] [--given true labels iuv bodies all] [--seeds 1 2 3]
+       [--systems photo guided] [--without latent kl ...] [--given true labels iuv bodies all] [--seeds 1 2 3]
        [--people 60] [--size 256] [--steps 4000] [--batch 4] [--profile cpu] [--report]
 
 FOLDER gets the people, a folder a run, report.md and report.json. What is there is not made again: a program that was
@@ -61,9 +61,9 @@ def settings(o):
     """Name, verb and options of each kind of run."""
     for system in o.systems:
         yield system, system, []
-    if "animate" in o.systems:
+    if "guided" in o.systems:
         for part in o.without:
-            yield f"animate without {part}", "animate", ["--without", part]
+            yield f"guided without {part}", "guided", ["--without", part]
 
 
 def run_folder(o, name, seed):
@@ -79,7 +79,7 @@ def train(o, people, name, verb, options, seed):
     arguments = [o.bodyloom, "train", verb, "--data", str(people), "--out", str(run), "--profile", o.profile, "--batch",
                  str(o.batch), "--steps", str(o.steps), "--validate-every", str(o.steps), "--seed", str(seed), "--threads",
                  str(o.threads)] + options
-    if verb == "animate" and o.balance_steps:
+    if verb == "guided" and o.balance_steps:
         arguments += ["--balance-steps", str(o.balance_steps)]
     if (run / "checkpoint.bin").exists():
         arguments.append("--resume")
@@ -130,7 +130,7 @@ def main():
     parser.add_argument("--bodyloom", default="build/release/apps/bodyloom")
     parser.add_argument("--motions", default="../shared/data/motion")
     parser.add_argument("--out", type=pathlib.Path, required=True)
-    parser.add_argument("--systems", nargs="+", default=["photo", "animate"], choices=["photo", "animate"])
+    parser.add_argument("--systems", nargs="+", default=["photo", "guided"], choices=["photo", "guided"])
     parser.add_argument("--without", nargs="*", default=ABLATIONS, choices=ABLATIONS)
     parser.add_argument("--given", nargs="+", default=list(GIVEN), choices=list(GIVEN))
     parser.add_argument("--seeds", type=int, nargs="+", default=[1, 2, 3])
@@ -140,7 +140,7 @@ def main():
     parser.add_argument("--size", type=int, default=256)
     parser.add_argument("--steps", type=int, default=4000)
     parser.add_argument("--batch", type=int, default=4)
-    parser.add_argument("--balance-steps", type=int, default=0, help="of train animate (0: its default)")
+    parser.add_argument("--balance-steps", type=int, default=0, help="of train guided (0: its default)")
     parser.add_argument("--score-frames", type=int, default=8)
     parser.add_argument("--profile", default="cpu")
     parser.add_argument("--threads", type=int, default=1)

@@ -142,7 +142,7 @@ MotionQuality MeasureMotionQuality(const Motion& motion, bool has_floor) {
   flag(quality.beyond_limits_share > 0.2 || quality.worst_excess_deg > 40, "limits");
   flag(quality.ends_beyond_limits_share > 0.2 || quality.ends_worst_excess_deg > 40, "ends");
   flag(quality.flips > 0, "flips");
-  flag(quality.foot_sliding_m_s > 0.3, "skate");
+  flag(quality.foot_sliding_m_s > 0.3, "foot_sliding");
   flag(quality.sunk_share > 0.1, "sunk");
   flag(quality.worst_speed_m_s > 20, "speed");
   flag(quality.worst_acceleration_m_s2 > 1000, "acceleration");

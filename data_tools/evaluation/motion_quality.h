@@ -39,7 +39,7 @@ struct MotionQuality {
   double worst_turn_rad_s = 0;  ///< of a joint relative to its parent
   std::string worst_turn_joint;
   /// What is suspicious, one word each: "limits" (the body beyond in more than 20 % of the frames, or by more than
-  /// 40°), "ends" (the same of the ends), "flips" (of the body), "skate" (foot sliding above 0.3 m/s in the mean),
+  /// 40°), "ends" (the same of the ends), "flips" (of the body), "foot_sliding" (above 0.3 m/s in the mean),
   /// "sunk" (more than 10 % of the frames), "speed" (above 20 m/s), "acceleration" (above 1000 m/s², jerked by hand or
   /// machine), "upside_down" (the head below the pelvis in more than half of the frames).
   std::vector<std::string> flags;

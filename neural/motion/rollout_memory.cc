@@ -27,7 +27,7 @@ void RolloutMemory::AddTo(Checkpoint* checkpoint) {
 void RolloutMemory::Begin() {
   BODYLOOM_CHECK(last_.image.size(0) == rollouts_ * places_, "motion training: the checkpoint holds ",
                  last_.image.size(0), " roll-outs, expected ", rollouts_ * places_,
-                 ": go on with the batch and the roll-outs (--walks) that the run began with");
+                 ": go on with the batch and the roll-outs (--rollouts) that the run began with");
   for (Tensor* part : last_.Parts()) *part = OnDevice(*part);
 }
 

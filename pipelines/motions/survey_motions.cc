@@ -88,16 +88,16 @@ nlohmann::ordered_json ClipJson(const SurveyedClip& report) {
           {"beyond_limits_share", q.beyond_limits_share},
           {"worst_excess_deg", q.worst_excess_deg},
           {"worst_excess_joint", q.worst_excess_joint},
-          {"skate_m_s", q.foot_sliding_m_s},
-          {"skate_p95_m_s", q.foot_sliding_p95_m_s},
+          {"foot_sliding_m_s", q.foot_sliding_m_s},
+          {"foot_sliding_p95_m_s", q.foot_sliding_p95_m_s},
           {"contact_share", q.contact_share},
           {"sunk_share", q.sunk_share},
           {"deepest_m", q.deepest_m},
           {"ends_beyond_limits_share", q.ends_beyond_limits_share},
           {"ends_worst_excess_deg", q.ends_worst_excess_deg},
           {"ends_worst_excess_joint", q.ends_worst_excess_joint},
-          {"flips", q.flips},
-          {"ends_flips", q.ends_flips},
+          {"rotation_flips", q.flips},
+          {"ends_rotation_flips", q.ends_flips},
           {"worst_speed_m_s", q.worst_speed_m_s},
           {"worst_speed_joint", q.worst_speed_joint},
           {"worst_acceleration_m_s2", q.worst_acceleration_m_s2},
@@ -141,7 +141,7 @@ std::string ToText(const SurveyMotionsReport& report) {
   const std::vector<SurveyedClip>& clips = report.clips;
   const MotionLibrarySummary& summary = report.library;
   std::string text = Line("%-40s %-9s %-5s %5s %3s %6s %3s %5s %5s %6s %5s %5s %5s  %s\n", "clip", "class", "split",
-                          "s", "fps", "limits", "deg", "ends", "skate", "floor", "flips", "speed", "acc", "flags");
+                          "s", "fps", "limits", "deg", "ends", "slide", "floor", "flips", "speed", "acc", "flags");
   for (const SurveyedClip& surveyed : clips) text += ClipLine(surveyed);
   text += "\n" + MinutesTable("class", summary.train_seconds_by_class, summary.test_seconds_by_class);
   text += "\n" + MinutesTable("source", summary.train_seconds_by_source, summary.test_seconds_by_source) + "\n";

@@ -12,7 +12,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr const char* kGuidedProgram = "bodyloom train animate";
+constexpr const char* kGuidedProgram = "bodyloom train guided";
 
 std::vector<std::pair<const char*, int*>> Numbers(GuidedRun* run) {
   GuidedProfile& p = run->config.profile;

@@ -21,8 +21,8 @@ const Verbs kOwnVerbs = {{"track"},   {"synth"},        {"synth-person"}, {"synt
                          {"prior"},   {"motions"},      {"version"}};
 /// Those that it passes on to the program that LibTorch is linked with.
 const Verbs kNeuralVerbs = {{"neural"},          {"neural", "doctor"},  {"neural", "card"},   {"train"},
-                            {"train", "lifter"}, {"train", "motion"},   {"train", "photo"},   {"train", "animate"},
-                            {"animate"},         {"animate", "motion"}, {"animate", "photo"}, {"animate", "animate"}};
+                            {"train", "lifter"}, {"train", "motion"},   {"train", "photo"},   {"train", "guided"},
+                            {"animate"},         {"animate", "motion"}, {"animate", "photo"}, {"animate", "guided"}};
 
 /// All that were built.
 Verbs AllVerbs() {

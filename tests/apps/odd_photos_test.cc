@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `bodyloom animate photo` and `bodyloom animate animate` with the photos that people have: either a line that says
+// `bodyloom animate photo` and `bodyloom animate guided` with the photos that people have: either a line that says
 // what is wrong, or a picture, and the report says what stands in for what.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ class OddPhotos : public ::testing::Test {
     std::vector<std::string> arguments = {
         "train", system,    "--data", scratch_ / "people", "--out", File("run"), "--profile",
         "tiny",  "--steps", "1",      "--batch",           "1",     "--threads", "1"};
-    if (system == "animate") arguments.insert(arguments.end(), {"--image-size", "64", "--balance-steps", "1"});
+    if (system == "guided") arguments.insert(arguments.end(), {"--image-size", "64", "--balance-steps", "1"});
     const CommandResult trained = RunCommand(arguments);
     ASSERT_EQ(trained.exit_code, 0) << trained.err;
   }
@@ -171,7 +171,7 @@ TEST_F(OddPhotos, AreRefusedByThePhotoRendererWhereNothingCanBeDone) {
 }
 
 TEST_F(OddPhotos, AreTakenOrRefusedByThePoseGuidedRenderer) {
-  Train("animate");
+  Train("guided");
   WriteGreyPng(File("grey.png"), picture_);
   Takes("photo.png", "no labels: the outline is found by GrabCut",
         {"--views", File("grey.png") + ":" + File("me.npz")});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `bodyloom train animate` and `bodyloom animate animate`, from synthetic people to a video.
+// `bodyloom train guided` and `bodyloom animate guided`, from synthetic people to a video.
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -28,13 +28,13 @@ class TrainGuidedVerb : public ::testing::Test {
   }
   CommandResult Train(const std::string& run, const std::vector<std::string>& more = {}) {
     std::vector<std::string> arguments = {
-        "train", "animate",      "--data", scratch_ / "people", "--out", scratch_ / run, "--profile",
+        "train", "guided",       "--data", scratch_ / "people", "--out", scratch_ / run, "--profile",
         "tiny",  "--image-size", "64",     "--batch",           "2",     "--threads",    "1"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return RunCommand(arguments);
   }
   CommandResult Animate(const std::vector<std::string>& more) {
-    std::vector<std::string> arguments = {"animate", "animate", "--run", scratch_ / "run", "--threads", "1"};
+    std::vector<std::string> arguments = {"animate", "guided", "--run", scratch_ / "run", "--threads", "1"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return RunCommand(arguments);
   }
@@ -129,7 +129,7 @@ TEST_F(TrainGuidedVerb, TrainsGoesOnAndAnimates) {
 TEST_F(TrainGuidedVerb, SaysWhatIsWrong) {
   EXPECT_THAT(Train("x", {"--resume"}).err, HasSubstr("holds no run"));
   EXPECT_EQ(Train("x", {"--without", "hat"}).exit_code, 2);
-  const CommandResult odd = RunCommand({"train", "animate", "--data", scratch_ / "people", "--out", scratch_ / "x",
+  const CommandResult odd = RunCommand({"train", "guided", "--data", scratch_ / "people", "--out", scratch_ / "x",
                                         "--profile", "tiny", "--image-size", "70"});
   EXPECT_EQ(odd.exit_code, 2);
   EXPECT_THAT(odd.err, HasSubstr("multiple of 16"));

@@ -96,7 +96,7 @@ TEST_F(TrainPhotoVerb, TrainsGoesOnAndAnimates) {
 TEST_F(TrainPhotoVerb, PeopleAreScoredUnderOneProtocol) {
   ASSERT_EQ(Train("photo", {"--steps", "1"}).exit_code, 0);
   const CommandResult guided =
-      RunCommand({"train", "animate", "--data", scratch_ / "people", "--out", scratch_ / "animate", "--profile", "tiny",
+      RunCommand({"train", "guided", "--data", scratch_ / "people", "--out", scratch_ / "animate", "--profile", "tiny",
                   "--batch", "1", "--threads", "1", "--steps", "1"});
   ASSERT_EQ(guided.exit_code, 0) << guided.err;
   const auto score = [&](const std::string& verb, const std::vector<std::string>& more) {
@@ -113,7 +113,7 @@ TEST_F(TrainPhotoVerb, PeopleAreScoredUnderOneProtocol) {
     EXPECT_THAT(result.out, HasSubstr(json["given"].get<std::string>() + " given"));
     return json;
   };
-  const nlohmann::json photo = score("photo", {}), animate = score("animate", {});
+  const nlohmann::json photo = score("photo", {}), animate = score("guided", {});
   EXPECT_EQ(photo["given"], "true labels and bodies");
   EXPECT_EQ(photo["scores"][0]["frames"], 3);
   EXPECT_FALSE(photo["scores"][0].contains("label_iou")) << "it draws none";
@@ -148,10 +148,10 @@ TEST_F(TrainPhotoVerb, PeopleAreScoredUnderOneProtocol) {
     track.motion.poses.col(16 * 3 + 2).array() += 0.3;  // an upper arm
     WriteTrack(folder + "tracked.npz", track);
   }
-  const nlohmann::json bodies = score("animate", {"--score-tracks", "tracked.npz"});
+  const nlohmann::json bodies = score("guided", {"--score-tracks", "tracked.npz"});
   EXPECT_EQ(bodies["given"], "true labels, bodies of tracked.npz");
   EXPECT_NE(bodies["scores"], animate["scores"]);
-  for (const std::string verb : {"photo", "animate"}) {
+  for (const std::string verb : {"photo", "guided"}) {
     const nlohmann::json& truth = verb == "photo" ? photo : animate;
     const nlohmann::json iuv = score(verb, {"--score-iuv"});
     EXPECT_EQ(iuv["given"], "true labels, true bodies, IUV images");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Animates the person of a photo with the pose-guided renderer: what `bodyloom animate animate` does.
+/// Animates the person of a photo with the pose-guided renderer: what `bodyloom animate guided` does.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// The two renderers that need one photo, on people they have not been trained on, under one protocol: what `bodyloom
-/// animate photo --score` and `bodyloom animate animate --score` do.
+/// animate photo --score` and `bodyloom animate guided --score` do.
 ///
 /// Of each test person the photos are those of ChoosePhotos (neural/guided/choose_photos.h) on true labels and bodies,
 /// whatever is given to the renderer; the pictures to compare with are spread over the others. So both renderers, and

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Trains the pose-guided renderer from files: what `bodyloom train animate` does.
+/// Trains the pose-guided renderer from files: what `bodyloom train guided` does.
 #pragma once
 
 #include <string>

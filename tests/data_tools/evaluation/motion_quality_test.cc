@@ -36,7 +36,7 @@ TEST(MotionQuality, SlidingSinkingAndHangingUpsideDownAreSeen) {
   MotionQuality quality = MeasureMotionQuality(motion, true);
   EXPECT_NEAR(quality.foot_sliding_m_s, 0.5, 1e-9);
   EXPECT_NEAR(quality.foot_sliding_p95_m_s, 0.5, 1e-9);
-  EXPECT_THAT(quality.flags, ElementsAre("skate"));
+  EXPECT_THAT(quality.flags, ElementsAre("foot_sliding"));
   EXPECT_TRUE(std::isnan(MeasureMotionQuality(motion, false).foot_sliding_m_s));
 
   motion = StandingMotion(50, 2);

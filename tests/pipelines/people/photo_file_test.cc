@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Photographs of every kind as `animate photo` and `animate animate` read them, and the segmentation of the tracked
+// Photographs of every kind as `animate photo` and `animate guided` read them, and the segmentation of the tracked
 // person in them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
