@@ -60,6 +60,10 @@ void AddTrainAvatar(CLI::App& train, Action* action) {
   verb->add_option("--seed", request->seed, "Of places, order of frames and backgrounds")->capture_default_str();
   verb->add_option("--threads", request->clip.threads, "0: all cores; the result is the same for any number")
       ->check(CLI::Range(0, 1024));
+  verb->add_option_function<std::string>(
+          "--without", [request](const std::string&) { request->motion = false; },
+          "motion: do not learn what the body's motion does to the person; cloth then follows the pose alone")
+      ->check(CLI::IsMember({"motion"}));
   verb->add_flag("--refine", request->refine,
                  "Correct the poses of the frames learned from while the person is learned");
   verb->add_option(

@@ -9,6 +9,7 @@
 #include "bodyloom/data_tools/formats/printable.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/refuse.h"
+#include "bodyloom/render/avatar/motion/motion_offsets.h"
 
 namespace bodyloom {
 namespace {
@@ -60,6 +61,13 @@ class AvatarArrays {
     }
     return {values.begin(), values.end()};
   }
+  FloatColumns Column(const std::string& key, int64_t rows) const {
+    const std::vector<float> values = Floats(key, {rows});
+    FloatColumns column(1, static_cast<int>(rows));
+    column.Fill(0);
+    std::copy(values.begin(), values.end(), column.column(0));
+    return column;
+  }
   FloatColumns Table(const std::string& key, int columns, int64_t rows) const {
     const std::vector<float> values = Floats(key, {rows, columns});
     FloatColumns table(columns, static_cast<int>(rows));
@@ -107,6 +115,16 @@ class AvatarArrays {
   const NpzArrays& arrays_;
   std::string where_;
 };
+
+NdArray ColumnOf(const FloatColumns& table) { return NdArray::FromFloats(table.column(0), {table.rows()}); }
+
+void PutMotion(const AvatarMotionFile& motion, const FloatColumns& parameters, NpzArrays* to) {
+  const MotionNetworkOptions& o = motion.options;
+  const int32_t sizes[4] = {o.side, o.maps, o.embedding, o.width};
+  (*to)["motion_network"] = NdArray::FromInts32(sizes, {4});
+  (*to)["motion_parameters"] = ColumnOf(parameters);
+  (*to)["motion_fps"] = NdArray::FromDouble(motion.fps);
+}
 
 void PutAvatar(const AvatarFile& avatar, const GaussianBody& body, NpzArrays* to) {
   std::string why;
@@ -178,11 +196,29 @@ PoseCorrections TakePoses(const AvatarArrays& arrays, const NpzArrays& npz, int 
   return poses;
 }
 
+std::optional<AvatarMotionFile> TakeMotion(const AvatarArrays& arrays, const NpzArrays& npz) {
+  const auto is_motion = [](const auto& entry) { return entry.first.starts_with("motion_"); };
+  if (std::none_of(npz.begin(), npz.end(), is_motion)) return std::nullopt;
+  AvatarMotionFile motion;
+  const std::vector<int32_t> sizes = arrays.Ints("motion_network", {4}, 1, 1024);
+  motion.options = {.side = sizes[0], .maps = sizes[1], .embedding = sizes[2], .width = sizes[3]};
+  motion.options.outputs = kMotionChannels;
+  if (std::string why; !motion.options.IsValid(&why)) arrays.Fail("motion_network", why);
+  const MotionNetwork network(motion.options, std::vector<uint8_t>(static_cast<size_t>(sizes[0]) * sizes[0]));
+  motion.parameters = arrays.Column("motion_parameters", network.num_parameters());
+  motion.fps = arrays.Number("motion_fps");
+  if (!(motion.fps >= 1 && motion.fps <= 1000)) {
+    arrays.Fail("motion_fps", Concatenate(motion.fps, ", expected 1 to 1000"));
+  }
+  return motion;
+}
+
 }  // namespace
 
 void WriteAvatar(const std::string& path, const AvatarFile& avatar) {
   NpzArrays arrays;
   PutAvatar(avatar, avatar.body, &arrays);
+  if (avatar.motion) PutMotion(*avatar.motion, avatar.motion->parameters, &arrays);
   WriteNpz(path, arrays);
 }
 
@@ -193,6 +229,10 @@ void WriteAvatarCheckpoint(const std::string& path, const AvatarCheckpoint& chec
   PutAdam(state.adam, "adam", &arrays);
   PutAdam(state.light_adam, "light", &arrays);
   PutPoses(state.poses, &arrays);
+  if (checkpoint.avatar.motion) {
+    PutMotion(*checkpoint.avatar.motion, state.motion, &arrays);
+    PutAdam(state.motion_adam, "motion", &arrays);
+  }
   arrays["pull"] = NdArray::FromFloats(state.pull.data(), {static_cast<int64_t>(state.pull.size())});
   arrays["step"] = NdArray::FromDouble(static_cast<double>(state.step));
   arrays["seconds"] = NdArray::FromDouble(state.seconds);
@@ -229,6 +269,7 @@ AvatarFile AvatarFromArrays(const NpzArrays& npz, const std::string& where) {
   }
   const std::vector<float> light = arrays.Floats("light", {GaussianBody::kLightValues});
   std::copy(light.begin(), light.end(), body.light.begin());
+  avatar.motion = TakeMotion(arrays, npz);
   return avatar;
 }
 
@@ -241,6 +282,10 @@ AvatarCheckpoint AvatarCheckpointFromArrays(const NpzArrays& npz, const std::str
   const int64_t count = state.body.size();
   state.adam = TakeAdam(arrays, "adam", kColumns, count);
   state.light_adam = TakeAdam(arrays, "light", 1, GaussianBody::kLightValues);
+  if (checkpoint.avatar.motion) {
+    std::swap(state.motion, checkpoint.avatar.motion->parameters);
+    state.motion_adam = TakeAdam(arrays, "motion", 1, state.motion.rows());
+  }
   state.poses = TakePoses(arrays, npz, checkpoint.avatar.num_joints);
   state.pull = arrays.Floats("pull", {count});
   const double step = arrays.Number("step");

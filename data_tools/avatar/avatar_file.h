@@ -6,14 +6,18 @@
 ///   format 'bodyloom avatar'   version 1              body_size int32 [J, V, F]    betas B, float64
 ///   parameters N×23 float32    joints N×6 int32       is_loose N uint8 (0, 1)      light 27 float32
 ///   anchor_face N int32        anchor_barycentric N×3 float32                      anchor_factor N float32
+/// with a network of the motion (render/avatar/motion/motion_network.h), whose maps are pipelines/avatar/motion_maps.h's,
+///   motion_network int32 [side, maps, embedding, width]    motion_parameters P float32    motion_fps float64
 /// and, in a training's checkpoint (render/avatar/learning/avatar_trainer.h):
 ///   adam_first, adam_second N×23 float32   adam_steps N int32    pull N float32    step, seconds float64
 ///   light_first, light_second 27 float32   light_steps 27 int32  options text: what the training was begun with
+/// with a network of the motion also motion_first, motion_second P×1 float32 and motion_steps P int32,
 /// where it refines the poses of a clip of T frames (render/avatar/learning/pose_refiner.h) also
 ///   pose_values, pose_mean T×(3J + 3) float32     pose_square T float32     pose_steps T int32
 /// All numbers are finite.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include <Eigen/Core>
@@ -21,17 +25,26 @@
 #include "bodyloom/data_tools/formats/npz.h"
 #include "bodyloom/render/avatar/gaussian_body.h"
 #include "bodyloom/render/avatar/learning/avatar_trainer.h"
+#include "bodyloom/render/avatar/motion/motion_network.h"
 
 namespace bodyloom {
 
+/// The network of the motion that a person learned.
+struct AvatarMotionFile {
+  MotionNetworkOptions options;
+  FloatColumns parameters;
+  double fps = 30;  ///< frames a second of the maps that it learned from
+};
+
 struct AvatarFile {
   GaussianBody body;
+  std::optional<AvatarMotionFile> motion;
   Eigen::VectorXd betas;
   int num_joints = 0, num_vertices = 0, num_faces = 0;  ///< of the parametric body
 };
 
 struct AvatarCheckpoint {
-  AvatarFile avatar;  ///< its body stays empty: the state's counts
+  AvatarFile avatar;  ///< its body stays empty, and so do the motion's parameters: the state's count
   AvatarTrainingState state;
   std::string options;
 };

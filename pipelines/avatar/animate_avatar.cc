@@ -23,6 +23,7 @@
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/geometry/base/percentile.h"
 #include "bodyloom/pipelines/avatar/avatar_clip.h"
+#include "bodyloom/pipelines/avatar/motion_maps.h"
 #include "bodyloom/pipelines/avatar/train_avatar.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/people/background.h"
@@ -134,15 +135,19 @@ class AvatarAnimation {
       // The person's pictures come with their own shape.
       if (!request_.shape_of_track && !clip_) track_ = WithShape(*body_, track_, avatar_.betas);
       int first = 0, last = track_.num_frames() - 1;
+      std::vector<int> shown;
+      moving_ = track_;
       if (!request_.freeze.empty()) {
         const Freeze freeze = ReadFreeze(request_.freeze, track_.num_frames());
-        track_ = FramesInOrder(track_, FrozenAt(track_.num_frames(), freeze.frame, freeze.count));
+        shown = FrozenAt(track_.num_frames(), freeze.frame, freeze.count);
+        track_ = FramesInOrder(track_, shown);
         first = freeze.frame, last = freeze.frame + freeze.count;
       }
       const int longer = std::max(track_.camera.width, track_.camera.height);
       const double scale = request_.size > 0 && longer > 0 ? static_cast<double>(request_.size) / longer : 1;
       posed_ = std::make_unique<PosedAvatar>(
           *body_, track_, ViewAngles(request_.view_yaw, track_.num_frames(), first, last), scale, threads_, from);
+      if (avatar_.motion) OpenMotion(std::move(shown));
     } catch (const RequestError&) {
       throw;
     } catch (const std::invalid_argument& error) {
@@ -152,6 +157,25 @@ class AvatarAnimation {
       throw std::runtime_error(Concatenate(from, ": pictures of ", posed_->width(), "x", posed_->height(),
                                            ", expected sides of 2 to ", kLongestSide));
     }
+  }
+
+  void OpenMotion(std::vector<int> shown) {
+    const AvatarMotionFile& file = *avatar_.motion;
+    if (file.options.maps != AvatarMotionMaps::kChannels) {
+      throw std::runtime_error(Concatenate(request_.run, ": its network of the motion wants ", file.options.maps,
+                                           " maps, expected ", int{AvatarMotionMaps::kChannels},
+                                           "; it is of another version of this program"));
+    }
+    motion_.emplace(*body_, file.options);
+    motion_->Anchor(avatar_.body);
+    maps_.emplace(*body_, moving_, file.options.side, file.fps, std::move(shown), threads_);
+    of_frame_.resize(motion_->num_values());
+  }
+
+  void AddMotion(int t) {
+    if (!motion_) return;
+    maps_->Maps(t, of_frame_);
+    motion_->Compute(avatar_.motion->parameters, of_frame_, threads_, &offsets_);
   }
 
   void WriteRestPly() const {
@@ -169,8 +193,9 @@ class AvatarAnimation {
   void Draw(int t) {
     const Stopwatch watch;
     posed_->MakeFrame(t, &frame_);
+    AddMotion(t);
     const AvatarView view = posed_->ViewAt(t);
-    painter_.Draw(avatar_.body, body_->data().faces, frame_, view);
+    painter_.Draw(avatar_.body, body_->data().faces, frame_, offsets_, view);
     draw_ms_.push_back(1e3 * watch.seconds());
     pixels_.push_back(static_cast<double>(view.window.area()));
   }
@@ -228,7 +253,8 @@ class AvatarAnimation {
       if (views[0].window.empty()) continue;
       AvatarView view;
       view.camera = views[0].camera, view.window = views[0].window, view.options.num_threads = threads_;
-      painter_.Draw(avatar_.body, body_->data().faces, views[0].frame, view);
+      AddMotion(t);
+      painter_.Draw(avatar_.body, body_->data().faces, views[0].frame, offsets_, view);
       scorer.Add(views[0], painter_.picture());
     }
     summary_.scores = scorer.Means();
@@ -264,7 +290,12 @@ class AvatarAnimation {
   std::shared_ptr<const BodyModel> body_;
   std::optional<AvatarClip> clip_;
   Track track_;
+  Track moving_;  ///< in which no time stands still
   std::unique_ptr<PosedAvatar> posed_;
+  std::optional<AvatarMotion> motion_;
+  std::optional<AvatarMotionMaps> maps_;
+  std::vector<float> of_frame_;
+  GaussianOffsets offsets_;
   AvatarFrame frame_;
   AvatarPainter painter_;
   std::vector<double> draw_ms_, pixels_;

@@ -20,6 +20,7 @@
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/geometry/uv_texels.h"
 #include "bodyloom/pipelines/avatar/frame_spans.h"
+#include "bodyloom/pipelines/avatar/motion_maps.h"
 #include "bodyloom/pipelines/avatar/refined_track.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/fixed_text.h"
@@ -67,6 +68,13 @@ class AvatarTraining {
     views_ = clip_->ReadViews(split_.train, kTrainingMargin, true, callbacks_);
     clock_.Begin("begin");
     options_ = Options();
+    if (request_.motion) {
+      MotionNetworkOptions network;
+      network.maps = AvatarMotionMaps::kChannels;
+      motion_.emplace(clip_->body(), network);
+      maps_.emplace(clip_->body(), clip_->track(), network.side, MotionRate(clip_->track()), std::vector<int>(),
+                    request_.clip.threads);
+    }
     refiner_.emplace(clip_->body(), clip_->track().motion.betas, TrackedPoses(clip_->body(), clip_->track()),
                      PoseRefinerOptions());
     if (request_.resume) {
@@ -113,7 +121,8 @@ class AvatarTraining {
                                    {"seed", request_.seed},     {"skin_side", request_.skin_side},
                                    {"loose", request_.loose},   {"train", split_.train},
                                    {"data", request_.clip.data}};
-    if (request_.refine) json["refine"] = true;  // runs of earlier versions do not name it
+    if (request_.refine) json["refine"] = true;  // runs of earlier versions name neither
+    if (request_.motion) json["motion"] = true;
     return json.dump();
   }
 
@@ -132,6 +141,10 @@ class AvatarTraining {
     checkpoint_.avatar.num_faces = clip_->body().num_faces();
     checkpoint_.state = AvatarTrainingState::Of(std::move(body));
     if (request_.refine) checkpoint_.state.poses.Reset(refiner_->num_frames(), refiner_->num_joints());
+    if (motion_) {
+      checkpoint_.avatar.motion = {motion_->options(), {}, MotionRate(clip_->track())};
+      checkpoint_.state.BeginMotion(motion_->Initial(request_.seed));
+    }
     checkpoint_.options = OptionsText();
     WriteConfig();
   }
@@ -141,8 +154,8 @@ class AvatarTraining {
     checkpoint_ = ReadAvatarCheckpoint(path);
     if (checkpoint_.options != OptionsText()) {
       throw RequestError(path +
-                         ": was begun with other data, frames, steps, minutes, seed, --skin or --loose; config.json "
-                         "beside it says with which");
+                         ": was begun with other data, frames, steps, minutes, seed, --skin, --loose, --refine or "
+                         "--without; config.json beside it says with which");
     }
     std::string why;
     if (!checkpoint_.state.body.IsValid(clip_->body().num_joints(), clip_->body().num_faces(), &why)) {
@@ -163,8 +176,14 @@ class AvatarTraining {
   /// Of the whole job, to report by.
   [[nodiscard]] double LearningShare() const { return request_.refined_track.empty() ? 1 : 0.5; }
 
+  [[nodiscard]] MotionLesson MotionToLearn() {
+    if (!motion_) return {};
+    return {&*motion_, [this](int time, std::span<float> maps) { maps_->Maps(time, maps); }};
+  }
+
   void Train() {
-    AvatarTrainer trainer(clip_->body().data().faces, views_, options_, request_.refine ? &*refiner_ : nullptr);
+    AvatarTrainer trainer(clip_->body().data().faces, views_, options_, request_.refine ? &*refiner_ : nullptr,
+                          MotionToLearn());
     AvatarTrainingState& state = checkpoint_.state;
     if (metrics_.empty()) metrics_ = "step,loss,cost,drawn,relocated,seconds\n";
     std::deque<double> losses;
@@ -199,6 +218,7 @@ class AvatarTraining {
     WriteAvatarCheckpoint(AvatarCheckpointPath(request_.out), checkpoint_);
     AvatarFile avatar = checkpoint_.avatar;
     avatar.body = checkpoint_.state.body;
+    if (avatar.motion) avatar.motion->parameters = checkpoint_.state.motion;
     WriteAvatar(AvatarPath(request_.out), avatar);
     WriteFileAtomically(MetricsPath(), metrics_);
   }
@@ -214,7 +234,7 @@ class AvatarTraining {
     AvatarTrainerOptions options = options_;
     options.learn_person = false, options.refine_from = 0;
     options.steps = request_.refine_rounds * shown, options.seconds = 0;
-    AvatarTrainer trainer(clip_->body().data().faces, views_, options, &*refiner_);
+    AvatarTrainer trainer(clip_->body().data().faces, views_, options, &*refiner_, MotionToLearn());
     AvatarTrainingState state = checkpoint_.state;
     state.step = 0;
     if (state.poses.values.rows() == 0) state.poses.Reset(refiner_->num_frames(), refiner_->num_joints());
@@ -238,14 +258,21 @@ class AvatarTraining {
     AvatarScorer scorer;
     AvatarPainter painter;
     std::vector<Image> sheet;
+    GaussianOffsets offsets;
+    std::vector<float> maps(motion_ ? motion_->num_values() : 0);
+    if (motion_) motion_->Anchor(checkpoint_.state.body);
     for (size_t i = 0; i < views.size(); ++i) {
       if (views[i].window.empty()) continue;
+      if (motion_) {
+        maps_->Maps(views[i].time, maps);
+        motion_->Compute(checkpoint_.state.motion, maps, request_.clip.threads, &offsets);
+      }
       AvatarView view;
       view.camera = views[i].camera, view.window = views[i].window;
       view.options.num_threads = request_.clip.threads;
       AvatarFrame frame = views[i].frame;
       if (poses.values.rows() > 0) refiner_->MakeFrame(views[i].time, poses, request_.clip.threads, &frame);
-      painter.Draw(checkpoint_.state.body, clip_->body().data().faces, frame, view);
+      painter.Draw(checkpoint_.state.body, clip_->body().data().faces, frame, offsets, view);
       scorer.Add(views[i], painter.picture());
       if (preview == nullptr || !std::binary_search(shown.begin(), shown.end(), static_cast<int>(i))) continue;
       sheet.push_back(TrueWindow(views[i]));
@@ -275,7 +302,8 @@ class AvatarTraining {
                                          {"train", split_.train},           {"validate", split_.validation},
                                          {"steps", request_.steps},         {"minutes", request_.minutes},
                                          {"skin_side", request_.skin_side}, {"loose", request_.loose},
-                                         {"seed", request_.seed},           {"refine", request_.refine}};
+                                         {"seed", request_.seed},           {"refine", request_.refine},
+                                         {"motion", request_.motion}};
     WriteFileAtomically(RunConfigPath(request_.out), json.dump(1) + "\n");
   }
 
@@ -308,6 +336,8 @@ class AvatarTraining {
   std::vector<TrainingView> views_;
   AvatarTrainerOptions options_;
   std::optional<PoseRefiner> refiner_;
+  std::optional<AvatarMotion> motion_;
+  std::optional<AvatarMotionMaps> maps_;
   AvatarCheckpoint checkpoint_;
   std::string metrics_;
   TrainAvatarSummary summary_;

@@ -23,6 +23,8 @@ struct TrainAvatarRequest {
   int skin_side = 176;                       ///< texels of a side of the atlas that skin Gaussians lie on
   int loose = 16000;                         ///< Gaussians off the skin, at most
   uint64_t seed = 1;
+  /// Learn what the motion of the body's surface does to the person (render/avatar/motion/motion_network.h).
+  bool motion = true;
   /// Correct the poses of the frames learned from while the person is learned (render/avatar/learning/pose_refiner.h).
   bool refine = false;
   /// In the end correct those of all frames, with the person as it is, and write the track here, .npz; empty: do not.

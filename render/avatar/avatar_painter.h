@@ -21,16 +21,19 @@ struct AvatarView {
 /// Keeps its memory between pictures. Not for use by two threads at once.
 class AvatarPainter {
  public:
-  /// Throws as PoseGaussians, ProjectGaussians and SplatPicture::Draw.
-  void Draw(const GaussianBody& body, const MatrixX3i& faces, const AvatarFrame& frame, const AvatarView& view);
+  /// `offsets` (without columns: none) are what the frame's motion adds. Throws as PoseGaussians, ProjectGaussians and
+  /// SplatPicture::Draw.
+  void Draw(const GaussianBody& body, const MatrixX3i& faces, const AvatarFrame& frame, const GaussianOffsets& offsets,
+            const AvatarView& view);
 
   [[nodiscard]] const SplatPicture& picture() const { return picture_; }
   [[nodiscard]] const ScreenGaussians& screen() const { return screen_; }
   [[nodiscard]] const CameraGaussians& posed() const { return posed_; }
 
   /// From d loss / d planes of what was last drawn, with the same arguments.
-  void GoBack(const GaussianBody& body, const MatrixX3i& faces, const AvatarFrame& frame, const AvatarView& view,
-              const FloatColumns& by_planes, AvatarGradient* gradient);
+  void GoBack(const GaussianBody& body, const MatrixX3i& faces, const AvatarFrame& frame,
+              const GaussianOffsets& offsets, const AvatarView& view, const FloatColumns& by_planes,
+              AvatarGradient* gradient);
   /// By the Gaussians on the screen, of the last GoBack().
   [[nodiscard]] const FloatColumns& by_screen() const { return by_screen_; }
 

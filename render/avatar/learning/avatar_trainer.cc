@@ -52,9 +52,14 @@ AvatarTrainingState AvatarTrainingState::Of(GaussianBody body) {
   return state;
 }
 
+void AvatarTrainingState::BeginMotion(FloatColumns parameters) {
+  motion = std::move(parameters);
+  motion_adam.Reset(motion.columns(), motion.rows());
+}
+
 AvatarTrainer::AvatarTrainer(const MatrixX3i& faces, std::span<const TrainingView> views,
-                             const AvatarTrainerOptions& options, const PoseRefiner* refiner)
-    : faces_(faces), views_(views), options_(options), refiner_(refiner) {
+                             const AvatarTrainerOptions& options, const PoseRefiner* refiner, MotionLesson motion)
+    : faces_(faces), views_(views), options_(options), refiner_(refiner), motion_(std::move(motion)) {
   std::string why;
   BODYLOOM_CHECK(options.IsValid(&why), "avatar training: ", why);
   for (size_t i = 0; i < views.size(); ++i) {
@@ -97,6 +102,9 @@ AvatarStep AvatarTrainer::Step(AvatarTrainingState* state) {
   const Stopwatch watch;
   BODYLOOM_CHECK(static_cast<int>(state->pull.size()) == state->body.size(), "avatar training: ", state->pull.size(),
                  " pulls for ", state->body.size(), " Gaussians");
+  BODYLOOM_CHECK(state->motion.rows() == (motion_.model != nullptr ? motion_.model->num_parameters() : 0),
+                 "avatar training: ", state->motion.rows(), " parameters of a motion network, expected ",
+                 motion_.model != nullptr ? motion_.model->num_parameters() : 0);
   const double progress = Progress(*state);
   AvatarStep done;
   done.view = ViewAt(state->step);
@@ -105,7 +113,8 @@ AvatarStep AvatarTrainer::Step(AvatarTrainingState* state) {
   seen.camera = view.camera, seen.window = view.window, seen.options.num_threads = options_.num_threads;
   clock_.Begin("drawing");
   const AvatarFrame& frame = FrameOf(view, *state);
-  painter_.Draw(state->body, faces_, frame, seen);
+  AddMotion(view, *state);
+  painter_.Draw(state->body, faces_, frame, offsets_, seen);
   clock_.Begin("loss");
   FillTruth(view, &truth_);
   HashRandom random(options_.seed, {kBackgroundStream, static_cast<uint64_t>(state->step)});
@@ -114,7 +123,7 @@ AvatarStep AvatarTrainer::Step(AvatarTrainingState* state) {
   done.loss = loss_.Compute(painter_.picture().planes(), truth_, background, options_.num_threads, &by_planes_);
   if (std::isfinite(done.loss)) {
     clock_.Begin("derivatives");
-    painter_.GoBack(state->body, faces_, frame, seen, by_planes_, &gradient_);
+    painter_.GoBack(state->body, faces_, frame, offsets_, seen, by_planes_, &gradient_);
     clock_.Begin("moving");
     MovePose(view, progress, state);
     if (options_.learn_person) LearnPerson(progress, state, &done);
@@ -128,6 +137,7 @@ AvatarStep AvatarTrainer::Step(AvatarTrainingState* state) {
 
 void AvatarTrainer::LearnPerson(double progress, AvatarTrainingState* state, AvatarStep* done) {
   done->drawn = ChooseMovers(state);
+  MoveMotion(state, progress);
   done->cost = AddGaussianCost(state->body, options_.cost, &gradient_.parameters);
   Move(state, progress);
   MoveLight(state);
@@ -173,13 +183,31 @@ void AvatarTrainer::MoveLight(AvatarTrainingState* state) {
   std::copy_n(light.column(0), GaussianBody::kLightValues, state->body.light.begin());
 }
 
-int AvatarTrainer::Relocate(AvatarTrainingState* state, double progress) const {
+void AvatarTrainer::AddMotion(const TrainingView& view, const AvatarTrainingState& state) {
+  if (motion_.model == nullptr) return;
+  if (!std::exchange(anchored_, true)) motion_.model->Anchor(state.body);
+  motion_maps_.resize(motion_.model->num_values());
+  motion_.maps(view.time, motion_maps_);
+  motion_.model->Compute(state.motion, motion_maps_, options_.num_threads, &offsets_);
+}
+
+void AvatarTrainer::MoveMotion(AvatarTrainingState* state, double progress) {
+  if (motion_.model == nullptr) return;
+  motion_.model->Back(state->motion, gradient_.parameters, options_.num_threads, &by_motion_);
+  const float rate = options_.rates.MotionAt(progress);
+  moves_of_motion_.assign(state->motion.rows(), 1);
+  AdamStep(by_motion_, std::span(&rate, 1), moves_of_motion_, options_.num_threads, &state->motion_adam,
+           &state->motion);
+}
+
+int AvatarTrainer::Relocate(AvatarTrainingState* state, double progress) {
   if (options_.relocate_every == 0 || state->step % options_.relocate_every != 0) return 0;
   std::vector<int> moved;
   if (progress < options_.relocate_until) {
     const uint64_t seed = HashRandom(options_.seed, {kRelocateStream, static_cast<uint64_t>(state->step)}).Next();
     moved = RelocateGaussians(state->pull, {options_.dead_opacity, seed}, &state->body);
     for (const int row : moved) state->adam.Forget(row);
+    anchored_ = anchored_ && moved.empty();
   }
   std::fill(state->pull.begin(), state->pull.end(), 0.0F);
   return static_cast<int>(moved.size());

@@ -16,6 +16,9 @@
 /// With a PoseRefiner the frame's pose is corrected too (pose_refiner.h), from refine_from of the training on, by the
 /// derivatives of the same picture. Without learn_person the Gaussians and the light stay and the poses alone move.
 ///
+/// With a MotionLesson the network of the motion (render/avatar/motion/avatar_motion.h) learns with the person, by the same
+/// derivatives; hidden Gaussians teach it nothing either.
+///
 /// Frames come in a new random order each time round. All that is random follows from the seed and the step's number, so
 /// a state that was kept goes on exactly as if training had never been left, as far as its length is given by steps: the
 /// same bytes for any number of threads and any instruction set.
@@ -34,6 +37,7 @@
 #include "bodyloom/render/avatar/learning/pose_refiner.h"
 #include "bodyloom/render/avatar/learning/relocate_gaussians.h"
 #include "bodyloom/render/avatar/learning/training_view.h"
+#include "bodyloom/render/avatar/motion/avatar_motion.h"
 
 namespace bodyloom {
 
@@ -64,11 +68,21 @@ struct AvatarTrainingState {
   AdamState light_adam;     ///< of body.light, a row a coefficient
   std::vector<float> pull;  ///< by row: sum since the last move of |d loss / d mean on the screen|
   PoseCorrections poses;    ///< of every frame of the clip; without rows: none are refined
-  int64_t step = 0;         ///< steps done
-  double seconds = 0;       ///< spent in steps
+  FloatColumns motion;      ///< parameters of the network of the motion; without rows: there is none
+  AdamState motion_adam;
+  int64_t step = 0;    ///< steps done
+  double seconds = 0;  ///< spent in steps
 
   /// Before the first step.
   static AvatarTrainingState Of(GaussianBody body);
+  /// Gives it a network's parameters.
+  void BeginMotion(FloatColumns parameters);
+};
+
+/// What the network of the motion learns by; pointers are borrowed.
+struct MotionLesson {
+  AvatarMotion* model = nullptr;
+  MotionMapsOf maps;  ///< by TrainingView::time
 };
 
 struct AvatarStep {
@@ -82,9 +96,9 @@ struct AvatarStep {
 class AvatarTrainer {
  public:
   /// Views without a person are left out. Throws std::invalid_argument when options are not valid or no view is left.
-  /// `faces`, `views` and `refiner` (null: poses stay) must outlive it.
+  /// `faces`, `views`, `refiner` (null: poses stay) and the lesson's model (null: none) must outlive it.
   AvatarTrainer(const MatrixX3i& faces, std::span<const TrainingView> views, const AvatarTrainerOptions& options,
-                const PoseRefiner* refiner = nullptr);
+                const PoseRefiner* refiner = nullptr, MotionLesson motion = {});
 
   /// Done so far, in [0, 1].
   [[nodiscard]] double Progress(const AvatarTrainingState& state) const;
@@ -104,7 +118,10 @@ class AvatarTrainer {
   int ChooseMovers(AvatarTrainingState* state);
   void Move(AvatarTrainingState* state, double progress);
   void MoveLight(AvatarTrainingState* state);
-  int Relocate(AvatarTrainingState* state, double progress) const;
+  /// Of the view's motion, into offsets_.
+  void AddMotion(const TrainingView& view, const AvatarTrainingState& state);
+  void MoveMotion(AvatarTrainingState* state, double progress);
+  int Relocate(AvatarTrainingState* state, double progress);
 
   const MatrixX3i& faces_;
   std::span<const TrainingView> views_;
@@ -112,13 +129,18 @@ class AvatarTrainer {
   int64_t order_of_ = -1;  ///< which time round
   AvatarTrainerOptions options_;
   const PoseRefiner* refiner_;
+  MotionLesson motion_;
+  std::vector<float> motion_maps_;
+  bool anchored_ = false;  ///< the model knows where the Gaussians stand
+  GaussianOffsets offsets_;
+  FloatColumns by_motion_;
   AvatarFrame corrected_;
   AvatarPainter painter_;
   PictureLoss loss_;
   PictureTruth truth_;
   FloatColumns by_planes_;
   AvatarGradient gradient_;
-  std::vector<uint8_t> moves_;
+  std::vector<uint8_t> moves_, moves_of_motion_;
   StageClock clock_;
 };
 

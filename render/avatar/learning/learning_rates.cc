@@ -7,6 +7,14 @@
 #include "bodyloom/geometry/base/in_range.h"
 
 namespace bodyloom {
+namespace {
+
+/// From `rate` to rate · at_end, exponentially.
+float Shrunk(double rate, double at_end, double progress) {
+  return static_cast<float>(rate * std::pow(at_end, std::clamp(progress, 0.0, 1.0)));
+}
+
+}  // namespace
 
 bool AvatarRates::IsValid(std::string* why) const {
   const InRange in_range(why);
@@ -14,16 +22,18 @@ bool AvatarRates::IsValid(std::string* why) const {
          in_range("rate of quaternion", quaternion, 0, 1) && in_range("rate of log_scale", log_scale, 0, 1) &&
          in_range("rate of opacity_logit", opacity_logit, 0, 1) && in_range("rate of albedo", albedo, 0, 1) &&
          in_range("rate of normal", normal, 0, 1) && in_range("rate of weight_logit", weight_logit, 0, 1) &&
-         in_range("rate of light", light, 0, 1);
+         in_range("rate of light", light, 0, 1) && in_range("rate of motion", motion, 0, 1) &&
+         in_range("motion_at_end", motion_at_end, 1e-6, 1);
 }
+
+float AvatarRates::MotionAt(double progress) const { return Shrunk(motion, motion_at_end, progress); }
 
 std::array<float, GaussianBody::kNumParameters> AvatarRates::At(double progress) const {
   std::array<float, GaussianBody::kNumParameters> rates{};
   const auto set = [&](int first, int count, double rate) {
     std::fill_n(rates.begin() + first, count, static_cast<float>(rate));
   };
-  const double shrunk = std::pow(static_cast<double>(position_at_end), std::clamp(progress, 0.0, 1.0));
-  set(GaussianBody::kPosition, 3, position * shrunk);
+  set(GaussianBody::kPosition, 3, Shrunk(position, position_at_end, progress));
   set(GaussianBody::kQuaternion, 4, quaternion);
   set(GaussianBody::kLogScale, 3, log_scale);
   set(GaussianBody::kOpacityLogit, 1, opacity_logit);

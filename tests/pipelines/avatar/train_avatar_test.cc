@@ -125,6 +125,34 @@ TEST(TrainAvatar, LearnsADatasetsPersonAndShowsIt) {
   EXPECT_THROW(AnimateAvatar(turned), RequestError);
 }
 
+TEST(TrainAvatar, MotionIsLearnedAndShownAsItWasLearned) {
+  const TemporaryFolder folder;
+  TrainAvatarRequest request = SmallRequest(folder.File("moving"));
+  request.train = {"0-9"}, request.validate = {};
+  const TrainAvatarSummary moving = TrainAvatar(request);
+  ASSERT_TRUE(ReadAvatar(AvatarPath(request.out)).motion.has_value());
+  AnimateAvatarRequest show;
+  show.run = request.out;
+  show.data = Scene().File("person");
+  show.threads = 1;
+  const AnimateAvatarSummary shown = AnimateAvatar(show);
+  EXPECT_EQ(shown.scores->frames, moving.training->frames);
+  EXPECT_NEAR(shown.scores->psnr_box_db, moving.training->psnr_box_db, 1e-9);
+  EXPECT_NEAR(shown.scores->ssim, moving.training->ssim, 1e-9);
+
+  // Without the network's share the pictures are others.
+  AvatarFile still = ReadAvatar(AvatarPath(request.out));
+  still.motion.reset();
+  WriteAvatar(folder.File("still.npz"), still);
+  show.run = folder.File("still.npz");
+  EXPECT_NE(AnimateAvatar(show).scores->psnr_box_db, shown.scores->psnr_box_db);
+
+  request.out = folder.File("without");
+  request.motion = false;
+  EXPECT_EQ(TrainAvatar(request).steps, 60);
+  EXPECT_FALSE(ReadAvatar(AvatarPath(request.out)).motion.has_value());
+}
+
 TEST(TrainAvatar, AVideoWithAMaskIsTheSame) {
   const TemporaryFolder folder;
   TrainAvatarRequest request = SmallRequest(folder.File("set"));
