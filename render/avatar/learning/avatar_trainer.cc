@@ -37,10 +37,10 @@ bool AvatarTrainerOptions::IsValid(std::string* why) const {
   const InRange in_range(why);
   return in_range("steps", static_cast<double>(steps), 1, 1e8) && in_range("seconds", seconds, 0, 1e8) &&
          rates.IsValid(why) && scales.IsValid(why) && in_range("cost by opacity", cost.by_opacity, 0, 1e3) &&
-         in_range("cost by scale", cost.by_scale, 0, 1e3) && in_range("relocate_every", relocate_every, 0, 1e8) &&
-         in_range("least_seen", least_seen, 0, 1) && in_range("refine_from", refine_from, 0, 1) &&
-         in_range("relocate_until", relocate_until, 0, 1) && in_range("dead_opacity", dead_opacity, 0, 0.99) &&
-         in_range("num_threads", num_threads, 1, 1024);
+         in_range("cost by scale", cost.by_scale, 0, 1e3) && in_range("cost by distance", cost.by_distance, 0, 1e3) &&
+         in_range("relocate_every", relocate_every, 0, 1e8) && in_range("least_seen", least_seen, 0, 1) &&
+         in_range("refine_from", refine_from, 0, 1) && in_range("relocate_until", relocate_until, 0, 1) &&
+         in_range("dead_opacity", dead_opacity, 0, 0.99) && in_range("num_threads", num_threads, 1, 1024);
 }
 
 AvatarTrainingState AvatarTrainingState::Of(GaussianBody body) {

@@ -13,12 +13,13 @@ double AddGaussianCost(const GaussianBody& body, const GaussianCost& cost, Float
                  gradient->rows(), " rows, expected ", p.rows());
   const int count = body.size();
   if (count == 0) return 0;
-  const float by_opacity = cost.by_opacity / static_cast<float>(count),
-              by_scale = cost.by_scale / static_cast<float>(count);
+  const float by_scale = cost.by_scale / static_cast<float>(count);
   double opacities = 0, scales = 0;
   for (int i = 0; i < count; ++i) {
     const float opacity = 1 / (1 + std::exp(-p(i, GaussianBody::kOpacityLogit)));
-    opacities += opacity;
+    const float by_opacity =
+        (cost.by_opacity + cost.by_distance * (1 - body.anchors[i].corrective_factor)) / static_cast<float>(count);
+    opacities += by_opacity * opacity;
     (*gradient)(i, GaussianBody::kOpacityLogit) += by_opacity * opacity * (1 - opacity);
   }
   for (int c = GaussianBody::kLogScale; c < GaussianBody::kLogScale + 3; ++c) {
@@ -28,7 +29,7 @@ double AddGaussianCost(const GaussianBody& body, const GaussianCost& cost, Float
       (*gradient)(i, c) += by_scale * scale;
     }
   }
-  return by_opacity * opacities + by_scale * scales;
+  return opacities + by_scale * scales;
 }
 
 }  // namespace bodyloom

@@ -173,30 +173,9 @@ TEST(LearningRates, PlacesBecomeFiner) {
   EXPECT_FLOAT_EQ(rates.At(0)[GaussianBody::kPosition + 2], 3e-4F);
   EXPECT_FLOAT_EQ(rates.At(1)[GaussianBody::kPosition], 9e-6F);
   EXPECT_NEAR(rates.At(0.5)[GaussianBody::kPosition], 3e-4 * std::sqrt(0.03), 1e-9);
+  EXPECT_FLOAT_EQ(rates.MotionAt(0), 1.5e-3F);
+  EXPECT_FLOAT_EQ(rates.MotionAt(1), 7.5e-5F);
   EXPECT_EQ(rates.At(0.2)[GaussianBody::kAlbedo + 2], rates.At(0.9)[GaussianBody::kAlbedo]);
-}
-
-TEST(GaussianCost, DerivativesAreDifferences) {
-  GaussianBody body = TheLesson().Start().body;
-  const GaussianCost cost;
-  FloatColumns gradient(GaussianBody::kNumParameters, body.size()), unused = gradient;
-  gradient.Fill(0);
-  AddGaussianCost(body, cost, &gradient);
-  for (const int c : {int{GaussianBody::kOpacityLogit}, int{GaussianBody::kLogScale} + 1}) {
-    for (const int i : {0, 7, body.size() - 1}) {
-      // One row alone: the sum over all would drown the difference.
-      GaussianBody one;
-      one.Resize(1);
-      const auto at = [&](double step) {
-        for (int k = 0; k < GaussianBody::kNumParameters; ++k) one.parameters(0, k) = body.parameters(i, k);
-        one.parameters(0, c) += static_cast<float>(step);
-        FloatColumns own(GaussianBody::kNumParameters, 1);
-        return AddGaussianCost(one, cost, &own) / body.size();
-      };
-      EXPECT_NEAR(gradient(i, c), (at(0.01) - at(-0.01)) / 0.02, 1e-3 * std::abs(gradient(i, c)) + 1e-13);
-      EXPECT_GT(gradient(i, c), 0);
-    }
-  }
 }
 
 TEST(RelocateGaussians, DeadOnesBecomeCopiesOfWhatPulls) {
