@@ -131,7 +131,7 @@ class SceneWriter {
                        {"rotation", Numbers(QuaternionAfter(person.poses[0].rotations[j], nullptr))},
                        {"translation", Numbers(offset)}};
       AddNode(std::move(node));
-      if (parent >= 0) nodes_[size_t(first + parent)]["children"].push_back(first + j);
+      if (parent >= 0) nodes_[size_t(first) + size_t(parent)]["children"].push_back(first + j);
     }
     return first;
   }

@@ -23,6 +23,7 @@ constexpr int kBasisFrames = 256, kJudgedFrames = 64;
 std::vector<int> SpreadFrames(int n, int most) {
   std::vector<int> frames;
   const int count = std::min(n, most);
+  frames.reserve(size_t(std::max(count, 0)));
   for (int i = 0; i < count; ++i)
     frames.push_back(count < 2 ? 0 : static_cast<int>(int64_t{i} * (n - 1) / (count - 1)));
   return frames;

@@ -132,7 +132,7 @@ std::vector<int64_t> NdArray::ToInts() const {
       BODYLOOM_CHECK(x <= static_cast<uint64_t>(std::numeric_limits<int64_t>::max()), "element ", i, " is ", x,
                      ", expected a number below 2^63");
     }
-    result[i] = static_cast<int64_t>(x);
+    result[i] = static_cast<int64_t>(x);  // NOLINT(bugprone-signed-char-misuse): int8 is a number here
   });
   return result;
 }

@@ -180,6 +180,7 @@ WeightsFile ReadSafetensors(const std::string& path, size_t max_bytes) {
 std::string SafetensorsBytes(const std::map<std::string, NdArray>& tensors,
                              const std::map<std::string, std::string>& metadata) {
   std::vector<std::pair<const std::string*, const NdArray*>> order;
+  order.reserve(tensors.size());
   for (const auto& [name, tensor] : tensors) order.emplace_back(&name, &tensor);
   std::stable_sort(order.begin(), order.end(),
                    [](const auto& a, const auto& b) { return a.second->item_size > b.second->item_size; });
