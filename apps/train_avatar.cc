@@ -69,6 +69,9 @@ void AddTrainAvatar(CLI::App& train, Action* action) {
   verb->add_option(
       "--refined-track", request->refined_track,
       "In the end correct the poses of all frames, held-out ones too, by their pictures and write the track");
+  verb->add_option("--refine-rounds", request->refine_rounds, "How often each frame comes for --refined-track")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
   verb->add_flag("--resume", request->resume, "Go on with the run in --out, exactly as if it had not been left");
   verb->footer(
       "Needs no LibTorch. The camera stands still; the light is learned with the person.\n"
