@@ -4,11 +4,14 @@
 over its ground, and how far they slide.
 
 usage: world_frame.py TRACK.npz CAMERAS.json VIEW UP [KEYPOINTS3D.pkl]
+       world_frame.py TRACK.npz VERTICES.npy
 
 CAMERAS.json   an AIST++ setting, or Pose2Sim's calib_refined.json; VIEW: the camera that the track was fitted to
 UP             axis of the calibration's world that points up: +y, -y, +z, ...
 KEYPOINTS3D    AIST++'s: a foot stands while its true ankle moves less than 0.2 m/s and is within 5 cm of the ankles'
                lowest place. Without it the track's own ankles say so.
+VERTICES       of `bodyloom export --what vertices --axes world`: how high the body's lowest point is over the ground,
+               frame by frame, which needs no calibration
 Lengths are in the track's own scale. An ankle stands 0.08 m above the floor.
 """
 import json
@@ -48,7 +51,16 @@ def standing(ankles, times, up_axis):
     return (speed < 0.2) & (height < np.nanpercentile(height, 5) + 0.05)
 
 
+def lowest_points():
+    track = np.load(sys.argv[1])
+    lowest = 1000 * np.nanpercentile(np.load(sys.argv[2], mmap_mode="r")[:, :, 1].min(axis=1), [5, 25, 50, 75, 95])
+    print(f"{sys.argv[1]}: {track['world_source']}; the body's lowest point over the ground, mm: median {lowest[2]:.0f}, half of the "
+          f"frames {lowest[1]:.0f} to {lowest[3]:.0f}, 90 % {lowest[0]:.0f} to {lowest[4]:.0f}")
+
+
 def main():
+    if len(sys.argv) == 3:
+        return lowest_points()
     if len(sys.argv) not in (5, 6):
         sys.exit(__doc__)
     track = np.load(sys.argv[1])
