@@ -2,15 +2,30 @@
 /// Exit codes of the command: those that scripts may rely on, and the exceptions that lead to them.
 #pragma once
 
+#include <stdexcept>
+#include <string>
+
 #include "bodyloom/pipelines/callbacks.h"
 
 namespace bodyloom {
 
 enum ExitCode : int {
   kExitOk = 0,
-  kExitFailed = 1,         ///< any std::exception: a file, the data, or the solve
-  kExitUsage = 2,          ///< unknown verb or option, or options that do not go together
-  kExitInterrupted = 130,  ///< Ctrl-C or SIGTERM; what was being written is removed
+  kExitFailed = 1,          ///< any std::exception: a file, the data, or the solve
+  kExitUsage = 2,           ///< unknown verb or option, or options that do not go together
+  kExitNothingToTrack = 3,  ///< of `batch`: some clips show nobody, and none failed
+  kExitRetry = 75,          ///< of `batch`: not finished, and another try may (EX_TEMPFAIL of sysexits.h)
+  kExitInterrupted = 130,   ///< Ctrl-C or SIGTERM; what was being written is removed
+};
+
+/// Ends the command with one line on stderr and that code, where an action does not simply succeed or fail.
+class CommandEnded : public std::runtime_error {
+ public:
+  CommandEnded(ExitCode code, const std::string& line) : std::runtime_error(line), code_(code) {}
+  [[nodiscard]] ExitCode code() const { return code_; }
+
+ private:
+  ExitCode code_;
 };
 
 /// The words for --help.

@@ -26,6 +26,7 @@ int Run(int argc, char** argv) {
   app.footer(std::string(kExamples) + kExitCodeHelp);
   Action action;
   AddRunVerb(app, &action);
+  AddBatchVerb(app, &action);
   AddDetectVerb(app, &action, {argv + 1, argv + argc});
   AddTrackVerb(app, &action);
   AddSynthVerb(app, &action);
@@ -59,6 +60,9 @@ int Run(int argc, char** argv) {
     }
     std::cerr << "bodyloom: " << UsageError(app, error) << "\nRun with --help for the options.\n";
     return kExitUsage;
+  } catch (const CommandEnded& ended) {
+    std::cerr << "bodyloom: " << ended.what() << "\n";
+    return ended.code();
   } catch (const RequestError& error) {
     std::cerr << "bodyloom: " << error.what() << "\nRun with --help for the options.\n";
     return kExitUsage;

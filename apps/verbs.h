@@ -22,6 +22,7 @@ struct FrameMetric;
 using Action = std::function<void()>;
 
 void AddRunVerb(CLI::App& app, Action* action);
+void AddBatchVerb(CLI::App& app, Action* action);
 /// Dense keypoints need LibTorch: their detector comes from `dense`, given --dense-model, --device and --dense-colours
 /// ("" when not said); without it the command goes on in the executable that has it, which takes `arguments`, those of
 /// this one.

@@ -15,7 +15,10 @@ namespace bodyloom {
 namespace {
 
 [[noreturn]] void FailWithErrno(const std::string& path, const std::string& action) {
-  throw std::runtime_error(path + ": cannot " + action + ": " + std::strerror(errno));
+  const int reason = errno;
+  const std::string message = path + ": cannot " + action + ": " + std::strerror(reason);
+  if (reason == ENOSPC || reason == EDQUOT || reason == EFBIG) throw OutOfRoom(message);
+  throw std::runtime_error(message);
 }
 
 std::string TemporaryBeside(const std::string& target) {

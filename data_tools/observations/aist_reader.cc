@@ -8,6 +8,7 @@
 
 #include "bodyloom/data_tools/formats/printable.h"
 #include "bodyloom/data_tools/observations/keypoint_conventions.h"
+#include "bodyloom/data_tools/observations/nothing_to_track.h"
 #include "bodyloom/geometry/base/units.h"
 
 namespace bodyloom {
@@ -83,7 +84,7 @@ KeypointSequence AistKeypoints2dFromPickle(const PickleValue& file, const std::s
     sequence.points[i] = {x, y, std::min(score, 1.0F)};
     any = true;
   }
-  if (!any) throw std::runtime_error(where + ": nobody was detected in view " + ViewName(v));
+  if (!any) throw NothingToTrack(where + ": nobody was detected in view " + ViewName(v));
   return sequence;
 }
 

@@ -20,6 +20,7 @@
 #include "bodyloom/data_tools/observations/coco_reader.h"
 #include "bodyloom/data_tools/observations/freemocap_reader.h"
 #include "bodyloom/data_tools/observations/mmpose_reader.h"
+#include "bodyloom/data_tools/observations/nothing_to_track.h"
 #include "bodyloom/data_tools/observations/observations_npz.h"
 #include "bodyloom/data_tools/observations/openpose_reader.h"
 #include "bodyloom/data_tools/observations/people.h"
@@ -199,8 +200,7 @@ KeypointSequence Finish(KeypointSequence sequence, const std::string& path, cons
   }
   DropUnsure(options.min_confidence, &sequence);
   if (CoordinateBounds(sequence).seen == 0) {
-    throw std::runtime_error(path + ": nobody was detected in any of " + std::to_string(sequence.num_frames()) +
-                             " frames");
+    throw NothingToTrack(path + ": nobody was detected in any of " + std::to_string(sequence.num_frames()) + " frames");
   }
   const bool is_openpose =
       sequence.convention == "body25" || sequence.convention == "body25b" || sequence.convention == "openpose_coco18";

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "bodyloom/data_tools/observations/nothing_to_track.h"
 #include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
@@ -144,7 +145,7 @@ PersonTrack PersonOf(const PeopleSequence& people, int person, const std::string
   BODYLOOM_CHECK(person >= 0, "person ", person, " must not be negative");
   const std::vector<PersonTrack> tracks = LinkPeople(people);
   if (tracks.empty()) {
-    throw std::runtime_error(where + ": no person in any of " + std::to_string(people.frames.size()) + " frames");
+    throw NothingToTrack(where + ": no person in any of " + std::to_string(people.frames.size()) + " frames");
   }
   if (person >= static_cast<int>(tracks.size())) {
     throw std::runtime_error(where + ": person " + std::to_string(person) + " requested, but only " +

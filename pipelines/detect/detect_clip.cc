@@ -9,6 +9,7 @@
 
 #include "bodyloom/data_tools/body/body_or_builtin.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/observations/nothing_to_track.h"
 #include "bodyloom/data_tools/observations/observations_npz.h"
 #include "bodyloom/data_tools/observations/part_labels.h"
 #include "bodyloom/data_tools/observations/people_npz.h"
@@ -70,7 +71,7 @@ DetectedClip DetectLandmarks(const DetectClipRequest& request, const PipelineCal
   report->height = clip.people.image_height;
   report->frames = int(clip.people.frames.size());
   if (found.people.empty()) {
-    throw std::runtime_error(Concatenate(detect.video, ": nobody was found in ", report->frames, " frames"));
+    throw NothingToTrack(Concatenate(detect.video, ": nobody was found in ", report->frames, " frames"));
   }
   return clip;
 }

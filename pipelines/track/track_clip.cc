@@ -7,6 +7,7 @@
 
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/data_tools/observations/nothing_to_track.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/page/write_clip_page.h"
 #include "bodyloom/pipelines/peak_memory.h"
@@ -186,7 +187,7 @@ TrackReport TrackClip(const TrackRequest& request, const PipelineCallbacks& call
     WriteFileAtomically(request.json, ToJson(report));
   }
   if (!report.solve.IsUsable()) {
-    throw std::runtime_error(report.detections + ": nothing could be tracked: " + report.solve.message);
+    throw NothingToTrack(report.detections + ": nothing could be tracked: " + report.solve.message);
   }
   return report;
 }

@@ -9,6 +9,7 @@
 
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/data_tools/observations/nothing_to_track.h"
 #include "bodyloom/data_tools/observations/part_labels.h"
 #include "bodyloom/data_tools/observations/people_npz.h"
 #include "bodyloom/geometry/base/check.h"
@@ -85,9 +86,9 @@ std::vector<int> ChoosePeople(const TrackPeopleClipRequest& request, const Detec
     if (double(everybody[i].detections.size()) >= least_frames) chosen.push_back(int(i));
   }
   if (chosen.empty()) {
-    throw std::runtime_error(everybody.empty() ? Concatenate(video, ": nobody was found in ", times.size(), " frames")
-                                               : Concatenate(video, ": nobody was seen for ", request.least_seconds,
-                                                             " s; --person 0 takes whoever was seen most"));
+    throw NothingToTrack(everybody.empty() ? Concatenate(video, ": nobody was found in ", times.size(), " frames")
+                                           : Concatenate(video, ": nobody was seen for ", request.least_seconds,
+                                                         " s; --person 0 takes whoever was seen most"));
   }
   return chosen;
 }
@@ -153,10 +154,12 @@ void WriteReportPage(const TrackPeopleClipRequest& request, const SceneInputs& s
                            .summary = &person.solve,
                            .track_file = person.track});
   }
+  TrackPeopleReport told = *report;
+  told.outputs.clear();  // files are where the page is
   page.video = request.track.video;
   page.video_px_from_camera_px = scene.camera.video_px_from_camera_px;
   page.title = std::filesystem::path(request.track.video).filename().string();
-  page.summary = ToText(*report);
+  page.summary = ToText(told);
   callbacks.Begin("writing the page");
   WriteClipPage(page, callbacks);
   report->outputs.push_back(page.out);
@@ -241,7 +244,7 @@ TrackPeopleReport TrackPeopleClip(const TrackPeopleClipRequest& request, const P
   report.outputs.push_back(FileIn(request, "summary.json"));
   WriteFileAtomically(report.outputs.back(), ToJson(report));
   if (!any_tracked) {
-    throw std::runtime_error(request.track.video + ": nobody could be tracked: " + report.people[0].solve.message);
+    throw NothingToTrack(request.track.video + ": nobody could be tracked: " + report.people[0].solve.message);
   }
   return report;
 }

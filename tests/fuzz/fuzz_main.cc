@@ -48,6 +48,8 @@ constexpr Target kTargets[] = {{"npz", AcceptsNpz},
                                {"mat", AcceptsMat},
                                {"run_config", AcceptsRunConfig},
                                {"relight", AcceptsRelight},
+                               {"manifest", AcceptsManifest},
+                               {"clip_record", AcceptsClipRecord},
                                {"tflite", AcceptsTflite},
                                {"onnx", AcceptsOnnx},
                                {"keypoint_outputs", AcceptsKeypointOutputs}};

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The fuzzers' functions for what the neural verbs read beside weights and pictures: a run's config.json and the light
-/// that shall be.
+/// The fuzzers' functions for what jobs read beside weights, pictures and observations: a run's config.json, the light that
+/// shall be, a batch's manifest and the records of its clips.
 #pragma once
 
 #include <cmath>
 #include <string>
+#include <vector>
 
+#include "bodyloom/pipelines/batch/clip_record.h"
+#include "bodyloom/pipelines/batch/manifest.h"
 #include "bodyloom/pipelines/people/relight_frames.h"
 #include "bodyloom/pipelines/runs/guided_run.h"
 #include "bodyloom/pipelines/runs/motion_run.h"
@@ -37,6 +40,34 @@ inline bool AcceptsRelight(const std::string& bytes) {
   const std::string path = Folder().Write("light.json", bytes);
   return Accepts([&] {
     if (!ReadRelight(path).light.allFinite()) throw std::logic_error("light that is not finite");
+  });
+}
+
+inline bool AcceptsManifest(const std::string& bytes) {
+  return Accepts([&] {
+    const std::vector<ManifestClip> clips = ManifestFromText(bytes, "fuzz.jsonl");
+    if (clips.empty()) throw std::logic_error("no clips");
+    for (const ManifestClip& clip : clips) {
+      if (clip.id.empty() || clip.id[0] == '.' || clip.id.find('/') != std::string::npos || !IsOneLine(clip.id)) {
+        throw std::logic_error("an id that is no name of a folder: " + clip.id);
+      }
+      if (clip.verb != "track" && clip.verb != "run") throw std::logic_error("another verb");
+      for (const auto& [name, value] : clip.settings) {
+        if (value.empty() || !IsOneLine(value) || name.empty()) throw std::logic_error("a setting in several lines");
+      }
+    }
+  });
+}
+
+inline bool AcceptsClipRecord(const std::string& bytes) {
+  return Accepts([&] {
+    const ClipRecord record = ClipRecordFromText(bytes, "fuzz.json");
+    if (ToJson(ClipRecordFromText(ToJson(record), "fuzz.json")) != ToJson(record)) {
+      throw std::logic_error("a record that is another one when it is written and read");
+    }
+    for (const auto& [name, file] : record.files) {
+      if (name.find('/') != std::string::npos) throw std::logic_error("a file outside the folder");
+    }
   });
 }
 

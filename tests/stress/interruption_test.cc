@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The command killed at a random moment: its output is whole or not there, and running it again gives the same bytes.
+// The command killed at a random moment: its output is whole or not there, and running it again gives the same bytes; so
+// does a batch of clips.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -7,7 +8,10 @@
 
 #include <chrono>
 #include <csignal>
+#include <filesystem>
+#include <fstream>
 #include <iterator>
+#include <map>
 #include <random>
 #include <thread>
 
@@ -80,6 +84,59 @@ TEST(Interruption, ATrackKilledAtARandomMomentIsWholeOrNotThereAndRunsAgain) {
   }
   EXPECT_GT(killed, 2);
   EXPECT_GT(absent, 1);
+}
+
+/// Every track below the folder, by its name in it.
+std::map<std::string, std::string> TracksBelow(const std::string& folder) {
+  std::map<std::string, std::string> tracks;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    if (entry.path().extension() == ".npz") {
+      tracks[entry.path().lexically_relative(folder).string()] = FileBytes(entry.path().string());
+    }
+  }
+  return tracks;
+}
+
+TEST(Interruption, ABatchKilledAgainAndAgainEndsAsOneThatWasNot) {
+  if (CommandPath().empty()) GTEST_SKIP() << "built without apps/: there is no command to kill";
+  const ScratchFolder folder;
+  const CommandResult synth = RunCommand(
+      {"synth", "--motion", "demo", "--frames", "10", "--fps", "15", "--dense", "0", "--out", folder / "clip"});
+  ASSERT_EQ(synth.exit_code, 0) << synth.err;
+  constexpr int kClips = 6, kMostKills = 40;
+  std::string manifest;
+  for (int i = 0; i < kClips; ++i) {
+    manifest += "{\"id\":\"c" + std::to_string(i) + "\",\"detections\":\"clip/observations.npz\"}\n";
+  }
+  std::ofstream(folder / "clips.jsonl") << manifest;
+  const auto batch = [&](const std::string& out) -> std::vector<std::string> {
+    return {"batch", "--manifest", folder / "clips.jsonl", "--cameras", folder / "clip/camera.json",
+            "--out", folder / out};
+  };
+  const auto start = std::chrono::steady_clock::now();
+  ASSERT_EQ(RunCommand(batch("whole")).exit_code, 0);
+  const int run_ms = static_cast<int>(
+      std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now() - start).count());
+  const std::map<std::string, std::string> expected = TracksBelow(folder / "whole");
+  ASSERT_EQ(expected.size(), size_t{kClips});
+  std::mt19937 random(5);
+  int killed = 0, left_at_work = 0;
+  std::map<std::string, std::string> before;
+  for (int i = 0; i < kMostKills && before.size() < expected.size(); ++i) {
+    killed += KillAfter(batch("killed"), 1 + static_cast<int>(random() % unsigned(run_ms / 2 + 1))) ? 1 : 0;
+    left_at_work += std::filesystem::exists(folder / "killed/.work") ? 1 : 0;
+    before.clear();
+    if (std::filesystem::exists(folder / "killed/clips")) before = TracksBelow(folder / "killed");
+    // What lies among the results is whole; what was at work lies elsewhere.
+    std::erase_if(before, [](const auto& track) { return !track.first.starts_with("clips/"); });
+    for (const auto& [name, bytes] : before) EXPECT_EQ(bytes, expected.at(name)) << name;
+  }
+  EXPECT_GT(killed, 2);
+  EXPECT_GT(left_at_work, 0) << "no kill hit a clip at work";
+  const CommandResult last = RunCommand(batch("killed"));
+  EXPECT_EQ(last.exit_code, 0) << last.err;
+  EXPECT_EQ(TracksBelow(folder / "killed"), expected);
+  EXPECT_FALSE(std::filesystem::exists(folder / "killed/.work")) << "what killed processes left piles up";
 }
 
 }  // namespace

@@ -85,7 +85,7 @@ CommandResult RunCommand(const std::vector<std::string>& arguments, const Comman
       (i == 0 ? result.out : result.err).append(buffer.data(), static_cast<size_t>(n));
       if (!interrupted && result.err.find(options.interrupt_on) != std::string::npos) {
         interrupted = true;
-        kill(child, SIGINT);
+        kill(child, options.signal);
       }
     }
   }

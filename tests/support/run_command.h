@@ -2,6 +2,7 @@
 /// Runs the real executable as a user would, and keeps its output.
 #pragma once
 
+#include <csignal>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,8 +18,9 @@ struct CommandResult {
 
 struct CommandOptions {
   std::optional<size_t> file_size_limit;  ///< bytes a file may grow to (stands in for a full disk)
-  std::string interrupt_on;               ///< sends SIGINT once this text has appeared on stderr
-  std::string work_folder;                ///< "": the caller's
+  std::string interrupt_on;               ///< sends the signal once this text has appeared on stderr
+  int signal = SIGINT;
+  std::string work_folder;  ///< "": the caller's
 };
 
 /// Runs `bodyloom arguments...` with an empty stdin. Throws std::runtime_error when it cannot be started.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/data_tools/fuzz/fuzz_run_seeds.h"
 
+#include "bodyloom/pipelines/batch/clip_record.h"
 #include "bodyloom/pipelines/runs/guided_run.h"
 #include "bodyloom/pipelines/runs/motion_run.h"
 #include "bodyloom/pipelines/runs/photo_run.h"
@@ -37,6 +38,27 @@ void AddRunSeeds(std::map<std::string, std::vector<std::string>>* seeds) {
   guided.config.profile = GuidedProfileNamed("tiny");
   guided.notes = kNotes;
   (*seeds)["run_config"] = {MotionRunJson(motion), PhotoRunJson(photo), GuidedRunJson(guided)};
+  ClipRecord record;
+  record.id = "dance_01";
+  record.verb = "track";
+  record.status = ClipStatus::kDone;
+  record.hash = std::string(64, 'a');
+  record.version = "0.1.0";
+  record.seconds = 1.5;
+  record.frames = 240;
+  record.people = 1;
+  record.frames_by_status = {{"tracked", 239}, {"lost", 1}};
+  record.reprojection_median_px = 1.25;
+  record.files["track.npz"] = {12345, std::string(64, 'b')};
+  (*seeds)["clip_record"] = {ToJson(record)};
+  (*seeds)["manifest"] = {
+      R"({"id": "dance_01", "detections": "dance_01.json", "image-size": "1920x1080", "fps": 59.94})"
+      "\n"
+      R"({"id": "street", "video": "/data/street.mp4", "people": 2, "no-ground": true})"
+      "\n",
+      R"({"id":"a","verb":"track","video":"a.mp4","prior":"none"})"
+      "\r\n\r\n"
+      R"({"id":"b","part-labels":"b.npz"})"};
   (*seeds)["relight"] = {
       R"({"directional":[{"from":[0,1,1],"intensity":1,"colour":[1,0.9,0.8]}],"ambient":0.2,"estimate":true,)"
       R"("encoding":"srgb"})"};

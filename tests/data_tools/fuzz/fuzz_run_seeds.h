@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Seeds for what the neural verbs read beside weights and pictures, small and valid: where the fuzzers of
+/// Seeds for what jobs read beside weights, pictures and observations, small and valid: where the fuzzers of
 /// fuzz_run_targets.h start.
 #pragma once
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the neural verbs read beside weights and pictures, without LibTorch: a run's config.json, and the light.
+/// What jobs read beside weights, pictures and observations, without LibTorch: a run's config.json, the light, a batch's
+/// manifest and records.
 #include "tests/fuzz/fuzz_run_targets.h"
 
 #include "tests/fuzz/run_mutations.h"
@@ -8,6 +9,8 @@ namespace bodyloom::fuzz {
 namespace {
 
 TEST(FuzzCorpus, RunConfig) { RunMutations("run_config", AcceptsRunConfig, 2000); }
+TEST(FuzzCorpus, Manifest) { RunMutations("manifest", AcceptsManifest, 4000); }
+TEST(FuzzCorpus, ClipRecord) { RunMutations("clip_record", AcceptsClipRecord, 4000); }
 TEST(FuzzCorpus, Relight) { RunMutations("relight", AcceptsRelight, 2000); }
 
 /// The seed with one number exchanged.

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/run_options.h"
+
+#include <CLI/CLI.hpp>
+
+#include "apps/track_options.h"
+
+namespace bodyloom {
+
+void AddRunOptions(CLI::App& app, TrackPeopleClipRequest* request) {
+  TrackRequest& track = request->track;
+  app.add_option("VIDEO,--video", track.video, "the video, or a folder of images")->required()->type_name("PATH");
+  app.add_option("--people", request->max_people, "at most so many: the largest and longest in view (0: everybody)")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--person", request->person, "only this one: 0 is the largest and longest in view")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--least-seconds", request->least_seconds, "whoever is seen for less is left out")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--fps", track.fps, "frame rate of a folder of images (default 30)")->check(CLI::PositiveNumber);
+  app.add_option("--min-confidence", track.min_confidence, "landmarks below (0 to 1) count as missing")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  app.add_option("--view", track.view, "camera of a calibration that holds several")->type_name("NAME");
+  app.add_flag("--masks", request->masks, "write each person's mask too: mask_0.npz, mask_1.npz ...");
+  app.add_flag("--side-view", track.side_view, "the overlay also shows everybody from their side");
+  AddDetectionOptions(app, &track, "Detection");
+  AddCalibrationOptions(app, &track);
+  AddLearnedOptions(app, &track);
+  AddSolveOptions(app, &track);
+}
+
+}  // namespace bodyloom

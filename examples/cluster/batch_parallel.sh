@@ -1,0 +1,13 @@
+#!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
+# Many clips on one or several machines by GNU parallel, a shard a job (docs/batch.md):
+#
+#   batch_parallel.sh clips.jsonl results SHARDS [options for all clips]
+#
+# Several machines that share the folders: add --sshloginfile hosts --workdir . to the line of parallel. Send it again as
+# often as you like: what is done is left as it is. Shards that end with 75 (not finished, another try may) are tried thrice.
+manifest=$1 out=$2 shards=$3
+mkdir -p "$out"
+parallel --jobs 100% --retries 3 --joblog "$out/parallel.log" \
+  bodyloom batch --manifest "$manifest" --out "$out" --shard {}/"$shards" --jobs 1 --threads 1 --progress none "${@:4}" \
+  ::: $(seq 0 $((shards - 1)))

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: Apache-2.0
+// `bodyloom batch` as scripts and schedulers use it: lines, exit codes, signals, limits, two processes at once.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <thread>
+
+#include "apps/exit_code.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/pipelines/batch/manifest.h"
+#include "tests/support/run_command.h"
+#include "tests/support/scratch_folder.h"
+#include "tests/support/test_files.h"
+
+namespace bodyloom {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+std::vector<nlohmann::json> Lines(const std::string& text) {
+  std::vector<nlohmann::json> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(nlohmann::json::parse(line));
+  return lines;
+}
+
+/// The status told of each clip; each is told of once.
+std::map<std::string, std::string> Statuses(const CommandResult& result) {
+  std::map<std::string, std::string> statuses;
+  for (const nlohmann::json& line : Lines(result.out)) {
+    EXPECT_TRUE(statuses.emplace(line["id"], line["status"]).second) << line;
+  }
+  return statuses;
+}
+
+/// A clip of `synth`, cut into several by name: the same joints, so that a clip costs little to make.
+class BatchVerb : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    world_ = std::make_unique<ScratchFolder>();
+    const CommandResult made = RunCommand(
+        {"synth", "--motion", "demo", "--frames", "8", "--fps", "15", "--dense", "0", "--out", *world_ / "clip"});
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+  }
+  static void TearDownTestSuite() { world_.reset(); }
+
+  BatchVerb() {
+    fs::copy(*world_ / "clip/observations.npz", folder_ / "o.npz");
+    fs::copy(*world_ / "clip/camera.json", folder_ / "camera.json");
+  }
+  [[nodiscard]] static std::string Clip(const std::string& id, const std::string& more = "") {
+    return "{\"id\":\"" + id + "\",\"detections\":\"o.npz\"" + (more.empty() ? "" : "," + more) + "}\n";
+  }
+  void WriteManifest(const std::string& text) const { WriteFileAtomically(folder_ / "clips.jsonl", text); }
+  [[nodiscard]] CommandResult Batch(std::vector<std::string> more = {}, const CommandOptions& options = {}) const {
+    std::vector<std::string> arguments = {"batch",         "--manifest", folder_ / "clips.jsonl", "--out",
+                                          folder_ / "out", "--cameras",  folder_ / "camera.json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return RunCommand(arguments, options);
+  }
+  static std::unique_ptr<ScratchFolder> world_;
+  ScratchFolder folder_;
+};
+
+std::unique_ptr<ScratchFolder> BatchVerb::world_;
+
+TEST_F(BatchVerb, TracksAsTrackDoesAndThenSkips) {
+  WriteManifest(Clip("a") + Clip("b", "\"no-ground\":true") + Clip("c", "\"no-ground\":false"));
+  const CommandResult first = Batch({"--jobs", "2"});
+  EXPECT_EQ(first.exit_code, kExitOk) << first.err;
+  EXPECT_EQ(Statuses(first), (std::map<std::string, std::string>{{"a", "done"}, {"b", "done"}, {"c", "done"}}));
+  EXPECT_THAT(first.err, HasSubstr("3 clips: 3 done"));
+  const std::vector<std::string> input = {"--detections", folder_ / "o.npz", "--cameras", folder_ / "camera.json"};
+  for (const auto& [id, option] : {std::pair("a", ""), {"b", "--no-ground"}, {"c", ""}}) {
+    std::vector<std::string> track = {"track", "--out", folder_ / "alone.npz"};
+    track.insert(track.end(), input.begin(), input.end());
+    if (*option != '\0') track.push_back(option);
+    ASSERT_EQ(RunCommand(track).exit_code, 0);
+    EXPECT_EQ(FileBytes(folder_ / ("out/clips/" + std::string(id) + "/track.npz")), FileBytes(folder_ / "alone.npz"));
+  }
+  const CommandResult second = Batch({"--threads", "1"});
+  EXPECT_EQ(second.exit_code, kExitOk);
+  EXPECT_EQ(Statuses(second),
+            (std::map<std::string, std::string>{{"a", "skipped"}, {"b", "skipped"}, {"c", "skipped"}}));
+  EXPECT_EQ(Statuses(Batch({"--stature", "1.9"}))["a"], "done") << "an option for all clips";
+}
+
+TEST_F(BatchVerb, ShardsShareTheClipsAndMergeMakesOneTable) {
+  WriteManifest(Clip("a") + Clip("b") + Clip("c") + Clip("d") + Clip("e"));
+  std::set<std::string> told;
+  for (const char* shard : {"0/2", "1/2"}) {
+    const CommandResult result = Batch({"--shard", shard});
+    EXPECT_EQ(result.exit_code, kExitOk) << result.err;
+    for (const auto& [id, status] : Statuses(result)) EXPECT_TRUE(told.insert(id).second) << id;
+    if (told.size() == 3) {
+      const CommandResult half = RunCommand({"batch", "--merge", "--out", folder_ / "out"});
+      EXPECT_EQ(half.exit_code, kExitOk) << half.err;
+      EXPECT_THAT(half.out, HasSubstr("missing  b, d\n"));
+    }
+  }
+  EXPECT_EQ(told.size(), 5u);
+  const CommandResult merged = RunCommand({"batch", "--merge", "--out", folder_ / "out"});
+  EXPECT_THAT(merged.out, HasSubstr("5 clips: 5 done, 0 with nothing to track, 0 failed, 0 missing\n"));
+  EXPECT_EQ(Lines(FileBytes(folder_ / "out/clips.jsonl")).size(), 5u);
+}
+
+TEST_F(BatchVerb, ExitCodesTellOutcomesApart) {
+  std::string joints;
+  for (int k = 0; k < 17; ++k) joints += std::string(k > 0 ? "," : "") + "0,0,0";
+  WriteFileAtomically(folder_ / "empty.json",
+                      R"([{"image_id":0,"category_id":1,"keypoints":[)" + joints + R"(],"score":0.9}])");
+  const std::string empty = "{\"id\":\"empty\",\"detections\":\"empty.json\"}\n";
+  const std::string bad = "{\"id\":\"bad\",\"detections\":\"absent.json\"}\n";
+  WriteManifest(Clip("a") + empty);
+  CommandResult result = Batch();
+  EXPECT_EQ(result.exit_code, kExitNothingToTrack) << result.err;
+  EXPECT_EQ(Statuses(result), (std::map<std::string, std::string>{{"a", "done"}, {"empty", "nothing_to_track"}}));
+  EXPECT_EQ(Batch().exit_code, kExitNothingToTrack) << "the same once it is stored";
+  WriteManifest(bad + empty + Clip("a"));
+  result = Batch();
+  EXPECT_EQ(result.exit_code, kExitFailed) << result.err;
+  EXPECT_EQ(Statuses(result)["a"], "skipped");
+  EXPECT_EQ(Statuses(result)["bad"], "failed");
+  for (const nlohmann::json& line : Lines(result.out)) {
+    if (line["id"] == "bad") EXPECT_THAT(line["reason"].get<std::string>(), HasSubstr("absent.json: "));
+  }
+}
+
+TEST_F(BatchVerb, AManifestThatCannotBeUsedIsRefusedBeforeAnythingIsDone) {
+  for (const auto& [line, expected] :
+       {std::pair<std::string, std::string>{"garbage", "line 2: byte 1: "},
+        {Clip("a"), "line 2: id 'a' is that of line 1"},
+        {Clip("b", "\"fpz\":30"), "line 2: 'fpz' is no option of track"},
+        {Clip("b", "\"people\":2"), "line 2: 'people' is no option of track"},
+        {Clip("b", "\"fps\":-3"), "line 2: --fps"},
+        {Clip("b", "\"no-ground\":7"), "line 2: no-ground: found 7, expected true or false"},
+        {Clip("b", "\"report\":\"x.html\""), "line 2: report: found x.html, expected true or false"},
+        {Clip("b", "\"out\":\"x.npz\""), "line 2: 'out' is no option of a clip"},
+        {Clip("b", "\"camera\":\"pinhole\",\"focal\":500"), "line 2: --cameras and --focal both"}}) {
+    WriteManifest(Clip("a") + line);
+    const CommandResult result = Batch();
+    EXPECT_EQ(result.exit_code, kExitFailed) << line;
+    EXPECT_EQ(result.out, "");
+    EXPECT_EQ(result.NumErrorLines(), 1) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("clips.jsonl: " + expected));
+    EXPECT_FALSE(fs::exists(folder_ / "out"));
+  }
+}
+
+TEST(BatchSettings, EveryOptionThatNamesAFileToReadIsTakenForAPath) {
+  const std::set<std::string> written = {"out", "overlay", "json", "report"};
+  const std::regex option("--([a-z-]+) (FILE|PATH|DIR|[A-Z]+)?");
+  int paths = 0;
+  for (const char* verb : {"track", "run"}) {
+    const std::string help = RunCommand({verb, "--help"}).out;
+    for (std::sregex_iterator at(help.begin(), help.end(), option), end; at != end; ++at) {
+      const std::string name = (*at)[1], type = (*at)[2];
+      // In the list of options, where a line begins with them, and not in examples.
+      if (written.contains(name) || at->prefix().str().find_last_not_of(" ") == std::string::npos) continue;
+      if (at->prefix().str()[at->prefix().str().find_last_not_of(" ")] != '\n') continue;
+      const bool is_path = type == "FILE" || type == "PATH" || type == "DIR";
+      EXPECT_EQ(IsPathSetting(name, "x"), is_path) << verb << " --" << name << " " << type;
+      paths += is_path ? 1 : 0;
+    }
+  }
+  EXPECT_GT(paths, 15);
+}
+
+TEST_F(BatchVerb, WrongUsageIsToldApart) {
+  WriteManifest(Clip("a"));
+  EXPECT_EQ(Batch({"--shard", "2/2"}).exit_code, kExitUsage);
+  EXPECT_EQ(Batch({"--progress", "loud"}).exit_code, kExitUsage);
+  EXPECT_EQ(Batch({"--no-such-option"}).exit_code, kExitUsage);
+  EXPECT_EQ(RunCommand({"batch", "--out", folder_ / "out"}).exit_code, kExitUsage);
+  EXPECT_EQ(RunCommand({"batch", "--merge", "--out", folder_ / "absent"}).exit_code, kExitFailed);
+}
+
+TEST_F(BatchVerb, ProgressForProgramsIsLinesOfJson) {
+  WriteManifest(Clip("a") + Clip("b"));
+  const CommandResult result = Batch({"--progress", "json", "--jobs", "1"});
+  EXPECT_EQ(result.exit_code, kExitOk);
+  std::vector<std::string> begun;
+  for (const nlohmann::json& line : Lines(result.err)) {
+    EXPECT_EQ(line["all"], 2);
+    if (line["stage"] == "begin") begun.push_back(line["clip"]);
+  }
+  EXPECT_THAT(begun, ElementsAre("a", "b"));
+  EXPECT_EQ(Batch({"--progress", "none"}).err, "");
+}
+
+TEST_F(BatchVerb, SignalsEndItForAnotherTryAndWhatIsDoneStays) {
+  std::string manifest;
+  for (int i = 0; i < 12; ++i) manifest += Clip("c" + std::to_string(i));
+  WriteManifest(manifest);
+  for (const int signal : {SIGTERM, SIGINT}) {
+    fs::remove_all(folder_ / "out");
+    CommandOptions options;
+    options.interrupt_on = "\"clip\":\"c3\"";
+    options.signal = signal;
+    const CommandResult cut = Batch({"--progress", "json", "--jobs", "1"}, options);
+    EXPECT_EQ(cut.exit_code, kExitRetry) << cut.err;
+    const std::map<std::string, std::string> statuses = Statuses(cut);
+    EXPECT_EQ(statuses.size(), 12u);
+    EXPECT_EQ(statuses.at("c0"), "done");
+    EXPECT_EQ(statuses.at("c11"), "retry");
+    EXPECT_THAT(cut.err, HasSubstr("to be tried again"));
+    EXPECT_FALSE(fs::exists(folder_ / "out/.work"));
+    const CommandResult again = Batch();
+    EXPECT_EQ(again.exit_code, kExitOk) << again.err;
+    for (const auto& [id, status] : Statuses(again)) {
+      EXPECT_EQ(status, statuses.at(id) == "done" ? "skipped" : "done") << id;
+    }
+  }
+}
+
+TEST_F(BatchVerb, OutOfRoomIsAnotherTryAndLeavesNothingHalf) {
+  WriteManifest(Clip("a") + Clip("b"));
+  CommandOptions options;
+  options.file_size_limit = 3000;  // a track is larger
+  const CommandResult full = Batch({"--jobs", "1"}, options);
+  EXPECT_EQ(full.exit_code, kExitRetry) << full.err;
+  EXPECT_EQ(Statuses(full), (std::map<std::string, std::string>{{"a", "retry"}, {"b", "retry"}}));
+  EXPECT_THAT(full.out, HasSubstr("File too large"));
+  EXPECT_THAT(full.out, HasSubstr("not begun: out of room"));
+  EXPECT_FALSE(fs::exists(folder_ / "out/clips"));
+  EXPECT_FALSE(fs::exists(folder_ / "out/.work"));
+  EXPECT_EQ(Batch().exit_code, kExitOk);
+}
+
+TEST_F(BatchVerb, TwoAtOnceDoEveryClipOnce) {
+  constexpr int kClips = 10;
+  std::string manifest;
+  for (int i = 0; i < kClips; ++i) manifest += Clip("c" + std::to_string(i));
+  WriteManifest(manifest);
+  CommandResult results[2];
+  {
+    std::vector<std::jthread> both;
+    for (CommandResult& result : results) both.emplace_back([&] { result = Batch({"--jobs", "1"}); });
+  }
+  std::map<std::string, int> done;
+  for (const CommandResult& result : results) {
+    for (const auto& [id, status] : Statuses(result)) done[id] += status == "done" ? 1 : 0;
+    EXPECT_THAT(result.exit_code, ::testing::AnyOf(kExitOk, kExitRetry)) << result.err;
+  }
+  EXPECT_EQ(done.size(), size_t{kClips});
+  for (const auto& [id, times] : done) EXPECT_EQ(times, 1) << id;
+  EXPECT_FALSE(fs::exists(folder_ / "out/.work"));
+  EXPECT_EQ(Batch().exit_code, kExitOk);
+}
+
+}  // namespace
+}  // namespace bodyloom

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/batch/manifest.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "tests/support/scratch_folder.h"
+
+namespace bodyloom {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+TEST(Manifest, HoldsClipsInTheOrderOfTheLines) {
+  const std::vector<ManifestClip> clips = ManifestFromText(
+      "{\"id\": \"dance_01\", \"detections\": \"a/b.json\", \"fps\": 59.94, \"no-ground\": true, \"image-size\": "
+      "\"1920x1080\"}\r\n"
+      "\n"
+      "{\"id\": \"2\", \"video\": \"/data/street.mp4\", \"people\": 2, \"prior\": \"none\"}\n"
+      "{\"id\": \"x.Y-z\", \"video\": \"v.mp4\", \"verb\": \"track\", \"prior\": \"p.npz\"}",
+      "lists/clips.jsonl");
+  ASSERT_EQ(clips.size(), 3u);
+  EXPECT_EQ(clips[0].id, "dance_01");
+  EXPECT_EQ(clips[0].verb, "track");
+  EXPECT_EQ(
+      clips[0].settings,
+      (ClipSettings{
+          {"detections", "lists/a/b.json"}, {"fps", "59.94"}, {"image-size", "1920x1080"}, {"no-ground", "true"}}));
+  EXPECT_EQ(clips[0].place, "lists/clips.jsonl: line 1");
+  EXPECT_EQ(clips[1].verb, "run");
+  EXPECT_EQ(clips[1].settings, (ClipSettings{{"people", "2"}, {"prior", "none"}, {"video", "/data/street.mp4"}}));
+  EXPECT_EQ(clips[1].place, "lists/clips.jsonl: line 3");
+  EXPECT_EQ(clips[2].verb, "track");
+  EXPECT_EQ(clips[2].settings.at("prior"), "lists/p.npz");
+}
+
+TEST(Manifest, PathsAreTakenFromTheManifestsFolder) {
+  const ScratchFolder folder;
+  WriteFileAtomically(folder / "clips.jsonl", "{\"id\":\"a\",\"video\":\"v.mp4\"}");
+  EXPECT_EQ(ReadManifest(folder / "clips.jsonl")[0].settings.at("video"), folder / "v.mp4");
+  EXPECT_EQ(ManifestFromText("{\"id\":\"a\",\"video\":\"v.mp4\"}", "clips.jsonl")[0].settings.at("video"), "v.mp4");
+}
+
+void ExpectRefused(const std::string& text, const std::string& place, const std::string& reason) {
+  try {
+    ManifestFromText(text, "c.jsonl");
+    ADD_FAILURE() << "accepted: " << text;
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), AllOf(StartsWith("c.jsonl: " + place), HasSubstr(reason), HasSubstr("expected")));
+  }
+}
+
+TEST(Manifest, RefusesLinesByNumberAndSaysWhatWasExpected) {
+  const std::string good = "{\"id\":\"good\",\"video\":\"v.mp4\"}\n";
+  ExpectRefused("", "no clips", "one JSON object a line");
+  ExpectRefused("\n \r\n", "no clips", "one JSON object a line");
+  ExpectRefused(good + "[1]", "line 2", "array");
+  ExpectRefused(good + good, "line 2", "'good' is that of line 1");
+  ExpectRefused(good + "{\"id\":\"GOOD\",\"video\":\"v.mp4\"}", "line 2", "is that of line 1");
+  ExpectRefused(good + "{\"video\":\"v.mp4\"}", "line 2", "no 'id'");
+  ExpectRefused(good + "{\"id\":7,\"video\":\"v.mp4\"}", "line 2: id", "a text");
+  ExpectRefused(good + "{\"id\":\"a\"}", "line 2", "no input");
+  ExpectRefused(good + "{\"id\":\"a\",\"fps\":30}", "line 2", "no input");
+  ExpectRefused(good + "{\"id\":\"a\",\"video\":\"v.mp4\",\"verb\":\"render\"}", "line 2", "verb 'render'");
+  ExpectRefused(good + "{\"id\":\"a\",\"video\":\"\"}", "line 2: video", "not empty");
+  ExpectRefused(good + "{\"id\":\"a\",\"video\":\"v\\nw\"}", "line 2: video", "one line");
+  ExpectRefused(good + "{\"id\":\"a\",\"video\":null}", "line 2: video", "null");
+  ExpectRefused(good + "{\"id\":\"a\",\"video\":[\"v.mp4\"]}", "line 2: video", "array");
+  ExpectRefused(good + "{\"id\":\"a\",\"video\":\"v.mp4\",\"Video\":1}", "line 2", "key 'Video'");
+  ExpectRefused(good + "{\"id\":\"a\",\"video\":\"v.mp4\",\"--fps\":1}", "line 2", "key '--fps'");
+  for (const char* key : {"out", "json", "quiet", "plan", "no-overlay", "help"}) {
+    try {
+      ManifestFromText(good + "{\"id\":\"a\",\"video\":\"v.mp4\",\"" + key + "\":\"x\"}", "c.jsonl");
+      ADD_FAILURE() << key;
+    } catch (const std::runtime_error& error) {
+      EXPECT_THAT(error.what(), HasSubstr(std::string("'") + key + "' is no option of a clip"));
+    }
+  }
+  for (const char* garbage : {"{", "nonsense", "{\"id\":\"a\",}", "\xff\xfe", "{\"id\":\"a\",\"fps\":NaN}"}) {
+    try {
+      ManifestFromText(good + garbage, "c.jsonl");
+      ADD_FAILURE() << garbage;
+    } catch (const std::runtime_error& error) {
+      EXPECT_THAT(error.what(), StartsWith("c.jsonl: line 2: byte "));
+    }
+  }
+}
+
+TEST(Manifest, IdsAreSafeNamesOfFolders) {
+  const auto line = [](const std::string& id) { return "{\"id\":\"" + id + "\",\"video\":\"v.mp4\"}"; };
+  for (const std::string id : {"a", "7", "A_b-c.d", std::string(100, 'x').c_str()}) {
+    EXPECT_EQ(ManifestFromText(line(id), "c.jsonl")[0].id, id);
+  }
+  for (const std::string id : {"..", ".", ".hidden", "-x", "_x", "a/b", "../a", "a b", "a\\\\b", "a:b", "\xc3\xa4",
+                               "a*", std::string(101, 'x').c_str()}) {
+    ExpectRefused(line(id), "line 1", "first a letter or digit");
+  }
+}
+
+}  // namespace
+}  // namespace bodyloom
