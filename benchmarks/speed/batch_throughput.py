@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A hundred clips by `bodyloom batch` beside `bodyloom track` one after the other in a loop of the shell.
 
-usage: batch_throughput.py COMMAND AISTPP [--clips N] [--frames T] [--block B] [--out FOLDER]
+usage: batch_throughput.py COMMAND AISTPP [--clips N] [--frames T] [--block B] [--ways loop batch …] [--out FOLDER]
   COMMAND: the program `bodyloom`; AISTPP: a folder with keypoints2d/ and cameras/ (needs NumPy)
 
 Clips are views of the recordings, cut to T frames. They are taken B at a time, and every way to track them runs once on each
@@ -96,6 +96,7 @@ def main():
     parser.add_argument("--clips", type=int, default=100)
     parser.add_argument("--frames", type=int, default=120)
     parser.add_argument("--block", type=int, default=10)
+    parser.add_argument("--ways", nargs="+", default=["loop", "loop_1", "batch", "batch_1"])
     parser.add_argument("--out", type=pathlib.Path)
     given = parser.parse_args()
     folder = given.out or pathlib.Path(tempfile.mkdtemp(prefix="bodyloom_batch_"))
@@ -103,10 +104,11 @@ def main():
     clips = cut_clips(given.data.resolve(), folder, given.clips, given.frames)
     ways = Ways(str(pathlib.Path(given.command).resolve()), folder)
     cores = os.cpu_count()
-    named = {"loop, all threads": lambda block: ways.loop("loop", block, []),
-             "loop, one thread": lambda block: ways.loop("loop_1", block, ["--threads", "1"]),
-             f"batch, {cores} jobs of one thread": lambda block: ways.batch("batch", block, ["--jobs", str(cores)]),
-             "batch, one job of all threads": lambda block: ways.batch("batch_1", block, ["--jobs", "1"])}
+    known = {"loop": ("loop, all threads", ways.loop, []),
+             "loop_1": ("loop, one thread", ways.loop, ["--threads", "1"]),
+             "batch": (f"batch, {cores} jobs of one thread", ways.batch, ["--jobs", str(cores)]),
+             "batch_1": ("batch, one job of all threads", ways.batch, ["--jobs", "1"])}
+    named = {known[way][0]: lambda block, way=way: known[way][1](way, block, known[way][2]) for way in given.ways}
     wall, processor = collections.defaultdict(list), collections.defaultdict(list)
     blocks = [clips[i:i + given.block] for i in range(0, len(clips), given.block)]
     for i, block in enumerate(blocks):
@@ -128,12 +130,13 @@ def main():
               f"   {statistics.median(ratios):.2f} ({min(ratios):.2f} to {max(ratios):.2f}); "
               f"{statistics.median(of_processor):.2f}")
     differing = [clip["id"] for clip in clips
-                 if len({ways.track_of(name, clip) for name in ("loop", "loop_1", "batch", "batch_1")}) != 1]
-    done = collections.Counter(line["id"] for line in ways.lines["batch"] if line["status"] == "done")
-    whole = len(done) == len(clips) and set(done.values()) == {1}
+                 if len({ways.track_of(name, clip) for name in given.ways}) != 1]
+    done = {way: collections.Counter(line["id"] for line in ways.lines[way] if line["status"] == "done")
+            for way in given.ways if way.startswith("batch")}
+    whole = all(len(times) == len(clips) and set(times.values()) == {1} for times in done.values())
     print(f"largest process {resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024:.0f} MiB; "
           f"{len(clips) - len(differing)} of {len(clips)} tracks the same bytes in all ways; "
-          f"batch: {len(done)} clips done, {'each once' if whole else 'NOT each once'}")
+          f"batch: {'every clip done once' if whole else 'NOT every clip done once'}")
     if given.out is None:
         shutil.rmtree(folder)
     return 0 if whole and not differing else 1

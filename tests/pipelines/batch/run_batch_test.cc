@@ -153,7 +153,7 @@ TEST_F(RunBatchTest, OneThatFailsStopsNoOther) {
                                                  {"clip2", ClipStatus::kNothingToTrack},
                                                  {"clip3", run == 0 ? ClipStatus::kDone : ClipStatus::kSkipped}}));
     EXPECT_THAT(Told("clip1").reason, HasSubstr("absent.npz: "));
-    EXPECT_THAT(Told("clip2").reason, HasSubstr("nobody was detected"));
+    EXPECT_THAT(Told("clip2").reason, HasSubstr("no person in any of 1 frames"));
     EXPECT_THAT(ToText(report), HasSubstr("1 with nothing to track, 1 failed"));
   }
   EXPECT_TRUE(fs::exists(FailureFile(request_.out, "clip1")));
