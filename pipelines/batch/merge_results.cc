@@ -219,7 +219,7 @@ std::string ToHtml(const MergeResultsReport& report) {
 MergeResultsReport MergeResults(const MergeResultsRequest& request) {
   const std::string kept = BatchManifestFile(request.out);
   if (!fs::is_directory(request.out))
-    throw std::runtime_error(request.out + ": no such folder, expected a batch's results");
+    throw std::runtime_error(request.out + ": no such folder, expected that of a batch's results");
   if (request.manifest.empty() && !fs::exists(kept)) {
     throw std::runtime_error(kept + ": not there, expected the folder of a batch's results (or --manifest FILE)");
   }

@@ -279,7 +279,9 @@ RunBatchReport RunBatch(const RunBatchRequest& request, const BatchCallbacks& ca
   Stopwatch watch;
   std::error_code error;
   fs::create_directories(request.out, error);
-  if (!fs::is_directory(request.out)) throw std::runtime_error(request.out + ": cannot be made a folder");
+  if (!fs::is_directory(request.out)) {
+    throw std::runtime_error(request.out + ": cannot be made a folder" + (error ? " (" + error.message() + ")" : ""));
+  }
   KeepManifest(request);
   Batch batch(request, callbacks);
   std::vector<std::jthread> others;
