@@ -2,6 +2,7 @@
 #   component     what
 #   command       bin/bodyloom, and share/bodyloom/models where ./dev models fetched them
 #   neural        bin/bodyloom-neural
+#   python        lib/python3/dist-packages/bodyloom (python/CMakeLists.txt)
 #   development   the libraries, include/bodyloom, lib/cmake/bodyloom
 include(CMakePackageConfigHelpers)
 set(bodyloom_config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/bodyloom)

@@ -1,6 +1,7 @@
 # `cpack` (./dev package): Debian packages.
 #   bodyloom         the command without the verbs that need LibTorch
 #   bodyloom-neural  those verbs
+#   python3-bodyloom the Python module
 #   libbodyloom-dev  the libraries and their headers
 # What the programs need of Debian is read off their shared libraries (dpkg-shlibdeps, from dpkg-dev).
 set(CPACK_GENERATOR DEB)
@@ -20,9 +21,10 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_VERBATIM_VARIABLES ON)
 
 set(CPACK_COMPONENTS_ALL development)
-foreach(component command neural)
+foreach(component command neural python)
   if((component STREQUAL command AND TARGET bodyloom_command) OR
-     (component STREQUAL neural AND TARGET bodyloom_neural_command))
+     (component STREQUAL neural AND TARGET bodyloom_neural_command) OR
+     (component STREQUAL python AND TARGET bodyloom_python))
     list(APPEND CPACK_COMPONENTS_ALL ${component})
   endif()
 endforeach()
@@ -36,6 +38,17 @@ set(CPACK_DEBIAN_NEURAL_PACKAGE_NAME bodyloom-neural)
 set(CPACK_DEBIAN_NEURAL_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_NEURAL_PACKAGE_DEPENDS "bodyloom (= ${PROJECT_VERSION})")
 set(CPACK_COMPONENT_NEURAL_DESCRIPTION "Verbs of the bodyloom command that train and run neural renderers (LibTorch).")
+
+# The module is of one version of Python, whose name its file bears.
+if(TARGET bodyloom_python)
+  get_directory_property(minor DIRECTORY ${PROJECT_SOURCE_DIR}/python DEFINITION Python_VERSION_MINOR)
+  math(EXPR next_minor "${minor} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.${minor}), python3 (<< 3.${next_minor}), python3-numpy")
+endif()
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-bodyloom)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "bodyloom, python3-matplotlib")
+set(CPACK_COMPONENT_PYTHON_DESCRIPTION "Bodyloom for Python: tracks, live tracking, descriptors and pictures as NumPy arrays.")
 
 # The libraries are static: whoever links them needs what they need.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libbodyloom-dev)

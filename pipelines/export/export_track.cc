@@ -58,20 +58,18 @@ std::string ObjText(const MatrixX3d& vertices, const BodyModelData& body) {
   return text;
 }
 
-/// What the request names, read.
+/// What is written; borrowed.
 struct ExportInputs {
-  std::shared_ptr<const BodyModel> body;
-  std::vector<Track> tracks;
+  const BodyModel* body = nullptr;
+  std::vector<const Track*> tracks;
   WorldFrame world;
-  [[nodiscard]] const Track& track() const { return tracks.front(); }
+  [[nodiscard]] const Track& track() const { return *tracks.front(); }
   [[nodiscard]] Motion MotionOfTrack() const {
     return MotionInWorld(world, body->RestJoints(track().motion.betas).row(0).transpose(), track().motion);
   }
   [[nodiscard]] ExportScene Scene() const {
-    std::vector<const Track*> each;
-    for (const Track& one : tracks) each.push_back(&one);
-    const std::vector<const BodyModel*> bodies(each.size(), body.get());
-    return MakeExportScene(bodies, each, world);
+    const std::vector<const BodyModel*> bodies(tracks.size(), body);
+    return MakeExportScene(bodies, tracks, world);
   }
 };
 
@@ -139,7 +137,7 @@ bool HasAxes(TrackForm form) {
   return form == TrackForm::kVertices || form == TrackForm::kJoints || form == TrackForm::kObj;
 }
 
-void CheckExport(const ExportTrackRequest& request) {
+void CheckExportOptions(const ExportTrackRequest& request) {
   const std::string& form = TrackFormNames()[size_t(request.form)];
   if (request.tracks.empty()) throw RequestError("--track is required: the track to write");
   if (request.tracks.size() > 1 && !TakesPeople(request.form)) {
@@ -157,13 +155,12 @@ void CheckExport(const ExportTrackRequest& request) {
   if (request.textures.size() > request.tracks.size()) {
     throw RequestError(Concatenate(request.textures.size(), " textures for ", request.tracks.size(), " tracks"));
   }
-  std::vector<std::string> inputs = request.tracks;
-  for (const std::string& track : request.tracks) RequireReadable(track, "track");
+}
+
+/// Files beside the tracks and the body.
+void CheckOtherFilesOf(const ExportTrackRequest& request) {
   for (const std::string& texture : request.textures) RequireReadable(texture, "texture");
-  RequireReadable(request.body, "body model");
-  inputs.push_back(request.body);
-  inputs.insert(inputs.end(), request.textures.begin(), request.textures.end());
-  RequireDistinct(inputs, {request.out});
+  RequireDistinct(request.textures, {request.out});
   if (IsFolder(request)) {
     RequireWritableFolder(request.out);
   } else {
@@ -171,22 +168,22 @@ void CheckExport(const ExportTrackRequest& request) {
   }
 }
 
-ExportInputs ReadExportInputs(const ExportTrackRequest& request) {
+ExportInputs CheckedInputs(const ExportTrackRequest& request, const BodyModel& body,
+                           const std::vector<const Track*>& tracks) {
   ExportInputs inputs;
-  inputs.body = BodyOrBuiltin(request.body);
+  inputs.body = &body;
+  inputs.tracks = tracks;
   std::vector<MatrixX3d> joints;
-  for (const std::string& path : request.tracks) {
-    const Track& track = inputs.tracks.emplace_back(ReadTrack(path));
-    if (request.frame >= track.num_frames()) {
+  for (size_t i = 0; i < tracks.size(); ++i) {
+    const std::string& name = request.tracks[i];
+    if (request.frame >= tracks[i]->num_frames()) {
       throw std::runtime_error(
-          Concatenate(path, ": ", track.num_frames(), " frames, expected one with number ", request.frame));
+          Concatenate(name, ": ", tracks[i]->num_frames(), " frames, expected one with number ", request.frame));
     }
-    RequireTrackFitsBody(track, *inputs.body, path);
-    const std::vector<MatrixX3d> own = TrackJoints(*inputs.body, track);
+    RequireTrackFitsBody(*tracks[i], body, name);
+    const std::vector<MatrixX3d> own = TrackJoints(body, *tracks[i]);
     joints.insert(joints.end(), own.begin(), own.end());
   }
-  std::vector<const Track*> tracks;
-  for (const Track& track : inputs.tracks) tracks.push_back(&track);
   inputs.world = WorldOfTracks(tracks, joints);
   return inputs;
 }
@@ -288,9 +285,27 @@ std::string ToText(const ExportTrackReport& report) {
 }
 
 ExportTrackReport ExportTrack(const ExportTrackRequest& request, const PipelineCallbacks& callbacks) {
+  CheckExportOptions(request);
+  for (const std::string& track : request.tracks) RequireReadable(track, "track");
+  RequireReadable(request.body, "body model");
+  RequireDistinct(request.tracks, {request.out});
+  RequireDistinct({request.body}, {request.out});
+  const std::shared_ptr<const BodyModel> body = BodyOrBuiltin(request.body);
+  std::vector<Track> tracks;
+  for (const std::string& path : request.tracks) tracks.push_back(ReadTrack(path));
+  std::vector<const Track*> each;
+  for (const Track& track : tracks) each.push_back(&track);
+  return ExportTrack(request, *body, each, callbacks);
+}
+
+ExportTrackReport ExportTrack(const ExportTrackRequest& request, const BodyModel& body,
+                              const std::vector<const Track*>& tracks, const PipelineCallbacks& callbacks) {
   const Stopwatch watch;
-  CheckExport(request);
-  const ExportInputs inputs = ReadExportInputs(request);
+  CheckExportOptions(request);
+  CheckOtherFilesOf(request);
+  BODYLOOM_CHECK(tracks.size() == request.tracks.size(), tracks.size(), " tracks to write with ", request.tracks.size(),
+                 " names");
+  const ExportInputs inputs = CheckedInputs(request, body, tracks);
   ExportTrackReport report;
   report.num_frames = inputs.track().num_frames();
   report.out = request.out;

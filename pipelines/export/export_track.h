@@ -7,6 +7,8 @@
 
 #include "bodyloom/data_tools/export/glb_writer.h"
 #include "bodyloom/data_tools/motion/bvh_rig.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/track.h"
 #include "bodyloom/geometry/world_frame.h"
 #include "bodyloom/pipelines/callbacks.h"
 
@@ -61,5 +63,9 @@ std::string ToText(const ExportTrackReport& report);
 /// not the track's; RequestError for a file both read and written, and for options or tracks that the form does not
 /// take; Cancelled.
 ExportTrackReport ExportTrack(const ExportTrackRequest& request, const PipelineCallbacks& callbacks = {});
+
+/// The same for tracks in memory and their body; request.tracks has a name for each of them in messages.
+ExportTrackReport ExportTrack(const ExportTrackRequest& request, const BodyModel& body,
+                              const std::vector<const Track*>& tracks, const PipelineCallbacks& callbacks = {});
 
 }  // namespace bodyloom

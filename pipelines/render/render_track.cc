@@ -53,14 +53,11 @@ void CheckOptions(const RenderTrackRequest& request) {
   }
 }
 
-void CheckFiles(const RenderTrackRequest& request) {
-  RequireReadable(request.track, "track");
-  RequireReadable(request.body, "body model");
+/// Files that are read beside the track, the body and the truth, and those that are written.
+void CheckOtherFiles(const RenderTrackRequest& request) {
   RequireReadable(request.video, "video");
   RequireReadable(request.texture, "texture");
-  RequireReadable(request.truth, "truth");
-  RequireDistinct({request.track, request.body, request.video, request.texture, request.truth},
-                  {request.out, request.json});
+  RequireDistinct({request.video, request.texture}, {request.out, request.json});
   RequireWritable(request.out);
   RequireWritable(request.json);
 }
@@ -138,18 +135,29 @@ std::pair<int, int> FrameRange(const std::string& text, int num_frames, const st
 }
 
 RenderTrackReport RenderTrack(const RenderTrackRequest& request, const PipelineCallbacks& callbacks) {
+  CheckOptions(request);
+  RequireReadable(request.track, "track");
+  RequireReadable(request.body, "body model");
+  RequireReadable(request.truth, "truth");
+  RequireDistinct({request.track, request.body, request.truth}, {request.out, request.json});
+  CheckOtherFiles(request);
+  const Track track = ReadTrack(request.track);
+  Track truth;
+  if (!request.truth.empty()) truth = ReadTrack(request.truth);
+  return RenderTrack(request, *BodyOrBuiltin(request.body), track, request.truth.empty() ? nullptr : &truth, callbacks);
+}
+
+RenderTrackReport RenderTrack(const RenderTrackRequest& request, const BodyModel& body, const Track& given,
+                              const Track* given_truth, const PipelineCallbacks& callbacks) {
   const Stopwatch watch;
   CheckOptions(request);
-  CheckFiles(request);
-  Track track = ReadTrack(request.track);
-  const std::shared_ptr<const BodyModel> body = BodyOrBuiltin(request.body);
-  RequireTrackFitsBody(track, *body, request.track);
+  CheckOtherFiles(request);
+  Track track = given, truth;
+  RequireTrackFitsBody(track, body, request.track);
   const auto [first, end] = FrameRange(request.frames, track.num_frames(), request.track);
-
-  Track truth;
-  if (!request.truth.empty()) {
-    truth = ReadTrack(request.truth);
-    RequireTrackFitsBody(truth, *body, request.truth);
+  if (given_truth != nullptr) {
+    truth = *given_truth;
+    RequireTrackFitsBody(truth, body, request.truth);
     if (truth.num_frames() != track.num_frames()) {
       throw std::runtime_error(Concatenate(request.truth, ": ", truth.num_frames(), " frames, expected ",
                                            track.num_frames(), " as ", request.track, " has"));
@@ -163,7 +171,7 @@ RenderTrackReport RenderTrack(const RenderTrackRequest& request, const PipelineC
     }
     video = std::make_unique<TrackVideo>(request.video, track);
     track = video->Moved(std::move(track));
-    if (!request.truth.empty()) truth = video->Moved(std::move(truth));
+    if (given_truth != nullptr) truth = video->Moved(std::move(truth));
   }
 
   RenderPictureOptions options;
@@ -184,7 +192,7 @@ RenderTrackReport RenderTrack(const RenderTrackRequest& request, const PipelineC
     options.texture = {texels, texture.width, texture.height, 3};
   }
   const std::vector<RenderStep> steps = StepsOf(request, first, end);
-  RenderPicture picture(*body, track, options, request.track);
+  RenderPicture picture(body, track, options, request.track);
   if (options.kind == RenderKind::kDepth) {
     std::vector<int> frames;
     for (const RenderStep& step : steps) {
@@ -193,7 +201,7 @@ RenderTrackReport RenderTrack(const RenderTrackRequest& request, const PipelineC
     picture.SetDepthRange(frames);
   }
   const std::unique_ptr<RenderSink> sink =
-      MakeRenderSink(request.out, options.kind, TitleOf(request, track, first, end), *body, track, steps, options,
+      MakeRenderSink(request.out, options.kind, TitleOf(request, track, first, end), body, track, steps, options,
                      FrameRateOf(steps, track));
 
   RenderTrackReport report;

@@ -42,8 +42,8 @@ Evaluation EvaluateAgainstFile(const EvaluateTrackRequest& request, const Track&
   return EvaluatePartLabels(track, PartLabelsFromNpz(arrays, request.truth, as_they_are), body);
 }
 
-Evaluation Evaluate(const EvaluateTrackRequest& request, const Track& track, const BodyModel& body,
-                    std::optional<Motion>* true_motion) {
+Evaluation EvaluateAgainstFiles(const EvaluateTrackRequest& request, const Track& track, const BodyModel& body,
+                                std::optional<Motion>* true_motion) {
   namespace fs = std::filesystem;
   const fs::path truth = request.truth;
   if (request.truth.empty() && request.seen.empty()) return EvaluateAlone(track);
@@ -89,10 +89,9 @@ void AddSelfPenetrationOf(const Track& track, const std::optional<Motion>& true_
   if (true_motion) add(*true_motion, "gt_");
 }
 
-}  // namespace
-
-Evaluation EvaluateTrack(const EvaluateTrackRequest& request, const PipelineCallbacks& callbacks) {
-  if (!request.truth.empty() && !request.seen.empty()) {
+/// What must hold before anything is measured, but for the track's and the body's files. `truth`: given in memory.
+void CheckEvaluation(const EvaluateTrackRequest& request, const Track* truth) {
+  if ((!request.truth.empty() || truth != nullptr) && !request.seen.empty()) {
     throw RequestError(
         "what is the track compared with? expected --truth, or --seen of two cameras and more, not both");
   }
@@ -100,17 +99,30 @@ Evaluation EvaluateTrack(const EvaluateTrackRequest& request, const PipelineCall
     throw RequestError("--seen needs the calibration, --cameras, and the camera that was fitted, --view");
   }
   for (const RigDetections& one : request.seen) RequireReadable(one.detections, "detections");
-  RequireReadable(request.track, "track");
   RequireReadable(request.truth, "truth");
-  RequireReadable(request.body, "body model");
-  RequireDistinct({request.track, request.truth, request.body}, {request.json});
+  RequireDistinct({request.truth}, {request.json});
   RequireWritable(request.json);
-  const Track track = ReadTrack(request.track);
+}
+
+}  // namespace
+
+Evaluation EvaluateTrack(const EvaluateTrackRequest& request, const PipelineCallbacks& callbacks) {
+  CheckEvaluation(request, nullptr);
+  RequireReadable(request.track, "track");
+  RequireReadable(request.body, "body model");
+  RequireDistinct({request.track, request.body}, {request.json});
+  return EvaluateTrack(request, *BodyOrBuiltin(request.body), ReadTrack(request.track), nullptr, callbacks);
+}
+
+Evaluation EvaluateTrack(const EvaluateTrackRequest& request, const BodyModel& body, const Track& track,
+                         const Track* truth, const PipelineCallbacks& callbacks) {
+  CheckEvaluation(request, truth);
   callbacks.Update("measure", 0);
-  const std::shared_ptr<const BodyModel> body = BodyOrBuiltin(request.body);
   std::optional<Motion> true_motion;
-  Evaluation evaluation = Evaluate(request, track, *body, &true_motion);
-  AddSelfPenetrationOf(track, true_motion, *body, callbacks, &evaluation);
+  if (truth != nullptr) true_motion = truth->motion;
+  Evaluation evaluation = truth != nullptr ? EvaluateAgainstTruth(track, *truth, body)
+                                           : EvaluateAgainstFiles(request, track, body, &true_motion);
+  AddSelfPenetrationOf(track, true_motion, body, callbacks, &evaluation);
   if (!request.json.empty()) {
     WriteFileAtomically(request.json, EvaluationJson(evaluation));
   }

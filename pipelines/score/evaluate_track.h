@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "bodyloom/data_tools/evaluation/evaluation.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/track.h"
 #include "bodyloom/pipelines/callbacks.h"
 #include "bodyloom/pipelines/score/rig_clip.h"
 
@@ -30,5 +32,10 @@ struct EvaluateTrackRequest {
 /// both `truth` and `seen` are given, std::runtime_error naming a file that cannot be used, Cancelled before the
 /// measuring begins.
 Evaluation EvaluateTrack(const EvaluateTrackRequest& request, const PipelineCallbacks& callbacks = {});
+
+/// The same for a track in memory, its body, and, when it is given, a true track of that body; the request's files of
+/// them are not read.
+Evaluation EvaluateTrack(const EvaluateTrackRequest& request, const BodyModel& body, const Track& track,
+                         const Track* truth, const PipelineCallbacks& callbacks = {});
 
 }  // namespace bodyloom

@@ -57,11 +57,15 @@ void UseFocal(const TrackRequest& request, Camera* camera) {
   if (request.focal_px > 0) *camera = MakePinhole(camera->width, camera->height, request.focal_px);
 }
 
-SceneInputs LoadSceneInputs(const TrackRequest& request) {
+SceneInputs LoadSceneInputs(const TrackRequest& request, const GivenInMemory& given) {
   SceneInputs inputs;
-  inputs.body = BodyOrBuiltin(request.body);
+  inputs.body = given.body != nullptr ? given.body : BodyOrBuiltin(request.body);
   inputs.stature_m = request.stature_m;
-  inputs.camera = CameraFromRequest(request);
+  if (given.camera) {
+    inputs.camera.camera = *given.camera;
+  } else {
+    inputs.camera = CameraFromRequest(request);
+  }
   if (!request.video.empty()) UseVideo(request.video, &inputs);
   // The lifter knows how detectors err. Joints read off labels err otherwise, and it makes worse of them than the joint
   // hypotheses do (docs/benchmarks.md).

@@ -7,12 +7,21 @@
 
 #include "bodyloom/data_tools/observations/load_cameras.h"
 #include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/camera.h"
 #include "bodyloom/geometry/lifter_weights.h"
+#include "bodyloom/geometry/observations.h"
 #include "bodyloom/geometry/pose_prior.h"
 #include "bodyloom/pipelines/track/track_request.h"
 #include "bodyloom/tracking/track_input.h"
 
 namespace bodyloom {
+
+/// What a program holds in memory: it takes the place of the file that a request would name.
+struct GivenInMemory {
+  const KeypointSequence* keypoints = nullptr;  ///< of one person; borrowed
+  std::shared_ptr<const BodyModel> body;        ///< null: the request's
+  std::optional<Camera> camera;                 ///< all of it is known
+};
 
 struct SceneInputs {
   std::shared_ptr<const BodyModel> body;
@@ -26,9 +35,9 @@ struct SceneInputs {
   [[nodiscard]] TrackSequenceInput ForTracker() const;
 };
 
-/// Reads what the request names; the camera has the video's size where nothing else says. Throws std::runtime_error
-/// naming file and place.
-SceneInputs LoadSceneInputs(const TrackRequest& request);
+/// Reads what the request names and is not given; the camera has the video's size where nothing else says. Throws
+/// std::runtime_error naming file and place.
+SceneInputs LoadSceneInputs(const TrackRequest& request, const GivenInMemory& given = {});
 
 /// A focal length of the request's, if any, makes the camera a pinhole of its image size, which must be known by now.
 void UseFocal(const TrackRequest& request, Camera* camera);

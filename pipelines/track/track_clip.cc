@@ -12,9 +12,8 @@
 #include "bodyloom/pipelines/page/write_clip_page.h"
 #include "bodyloom/pipelines/peak_memory.h"
 #include "bodyloom/pipelines/track/overlay_video.h"
+#include "bodyloom/pipelines/track/solve_track.h"
 #include "bodyloom/pipelines/track/track_inputs.h"
-#include "bodyloom/render/track_world.h"
-#include "bodyloom/tracking/live/track_live.h"
 
 namespace bodyloom {
 namespace {
@@ -80,37 +79,6 @@ void CheckFiles(const TrackRequest& request) {
   }
 }
 
-TrackSequenceOptions OptionsFor(const TrackRequest& request, const TrackInputs& inputs) {
-  TrackSequenceOptions options = request.solve;
-  options.straight_knees_weight = StraightKneesWeight(request, inputs.keypoints ? inputs.keypoints->convention : "");
-  if (inputs.joints_from_labels) options.part_labels = PartLabelOptions::LabelsAlone();
-  return options;
-}
-
-LiveTrackerOptions LiveOptions(const TrackRequest& request, const TrackSequenceOptions& solve) {
-  LiveTrackerOptions live;
-  live.lag = *request.live_lag;
-  live.solve = solve;
-  return live;
-}
-
-TrackSequenceResult Solve(const TrackRequest& request, const TrackInputs& inputs, double share,
-                          const PipelineCallbacks& callbacks) {
-  TrackSequenceOptions options = OptionsFor(request, inputs);
-  options.camera_knowledge = CameraKnowledgeOf(request);
-  bool cancelled = false;
-  std::string stage;
-  options.progress = [&](const TrackProgress& at) {
-    stage = at.stage;
-    cancelled = !callbacks.GoesOn(stage, share * at.fraction);
-    return !cancelled;
-  };
-  TrackSequenceResult result = request.live_lag ? TrackLive(inputs.ForTracker(), LiveOptions(request, options))
-                                                : TrackSequence(inputs.ForTracker(), options);
-  if (cancelled || (!stage.empty() && !callbacks.GoesOn(stage, share))) throw Cancelled();
-  return result;
-}
-
 InitialiserReport ReportOn(const InitialPoses& start, const TrackInputs& inputs, const Track& track) {
   InitialiserReport report;
   report.system = start.system;
@@ -124,16 +92,6 @@ InitialiserReport ReportOn(const InitialPoses& start, const TrackInputs& inputs,
                     ? GainOverLandmarks(*inputs.body, keypoints, start.landmarks, start.camera, track)
                     : GainOverInitialiser(*inputs.body, keypoints, start.motion, start.camera, track);
   return report;
-}
-
-std::vector<PlanEntry> WholePlan(const TrackRequest& request, const TrackInputs& inputs) {
-  TrackSequenceOptions options = OptionsFor(request, inputs);
-  options.camera_knowledge = CameraKnowledgeOf(request);
-  std::vector<PlanEntry> plan = request.live_lag ? PlanTrackLive(inputs.ForTracker(), LiveOptions(request, options))
-                                                 : PlanTrackSequence(inputs.ForTracker(), options);
-  const std::vector<PlanEntry> own = OwnPlan(request);
-  plan.insert(plan.end(), own.begin(), own.end());
-  return plan;
 }
 
 }  // namespace
@@ -151,20 +109,20 @@ TrackReport TrackClip(const TrackRequest& request, const PipelineCallbacks& call
                                                      : request.video;
   report.num_frames = inputs.num_frames();
   if (request.plan) {
-    report.solve.plan = WholePlan(request, inputs);
+    report.solve.plan = PlanSolve(request, inputs);
+    for (const PlanEntry& entry : OwnPlan(request)) report.solve.plan.push_back(entry);
     return report;
   }
   callbacks.Begin("tracking " + std::to_string(inputs.num_frames()) + " frames");
   const double solve_share = request.overlay.empty() ? 1 : kSolveShareWithOverlay;
   clock.Begin(kSolveStage);
-  TrackSequenceResult result = Solve(request, inputs, solve_share, callbacks);
+  TrackSequenceResult result = SolveTrack(request, inputs, callbacks, solve_share);
   report.solve = std::move(result.summary);
   for (const PlanEntry& entry : OwnPlan(request)) {
     report.solve.plan.push_back(entry);
   }
   if (report.solve.IsUsable()) {
     clock.Begin("write");
-    if (!result.track.world) result.track.world = AssumedWorld(result.track.joints);
     report.world = *result.track.world;
     if (inputs.initialiser) report.initialiser = ReportOn(*inputs.initialiser, inputs, result.track);
     WriteTrack(request.out, result.track);

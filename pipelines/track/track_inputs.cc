@@ -98,6 +98,32 @@ void UseDense(const std::string& path, const TrackRequest& request, TrackInputs*
   AgreeOnImageSize(path, inputs->dense->image_width, inputs->dense->image_height, &inputs->camera.camera);
 }
 
+/// 2D joints, and the dense keypoints that lie in the same file.
+void UseDetections(const TrackRequest& request, TrackInputs* inputs) {
+  Camera& camera = inputs->camera.camera;
+  const Holds holds = WhatItHolds(request.detections);
+  if (holds.keypoints) {
+    LoadDetectionsOptions options;
+    options.view = request.view;
+    options.person = request.person;
+    options.fps = FrameRate(request, *inputs);
+    options.image_width = camera.width;
+    options.image_height = camera.height;
+    options.min_confidence = request.min_confidence;
+    options.convention = request.convention;
+    inputs->keypoints = LoadDetections(request.detections, options);
+    AgreeOnImageSize(request.detections, inputs->keypoints->image_width, inputs->keypoints->image_height, &camera);
+  }
+  if (holds.dense && request.dense.empty()) UseDense(request.detections, request, inputs);
+}
+
+void UseGivenKeypoints(const TrackRequest& request, const KeypointSequence& keypoints, TrackInputs* inputs) {
+  Camera& camera = inputs->camera.camera;
+  inputs->keypoints = keypoints;
+  DropUnsure(request.min_confidence, &*inputs->keypoints);
+  AgreeOnImageSize(request.detections, keypoints.image_width, keypoints.image_height, &camera);
+}
+
 /// Detects people in the video: the chosen one's landmarks, and the mask.
 void UseDetectedPeople(const TrackRequest& request, const PipelineCallbacks& callbacks, TrackInputs* inputs) {
   const DetectedClip clip = DetectForTracking(request, callbacks);
@@ -140,27 +166,15 @@ TrackSequenceInput TrackInputs::ForTracker() const {
   return input;
 }
 
-TrackInputs LoadTrackInputs(const TrackRequest& request, const PipelineCallbacks& callbacks) {
+TrackInputs LoadTrackInputs(const TrackRequest& request, const PipelineCallbacks& callbacks,
+                            const GivenInMemory& given) {
   TrackInputs inputs;
-  static_cast<SceneInputs&>(inputs) = LoadSceneInputs(request);
+  static_cast<SceneInputs&>(inputs) = LoadSceneInputs(request, given);
   Camera& camera = inputs.camera.camera;
-  if (!request.detections.empty()) {
-    const Holds holds = WhatItHolds(request.detections);
-    if (holds.keypoints) {
-      LoadDetectionsOptions options;
-      options.view = request.view;
-      options.person = request.person;
-      options.fps = FrameRate(request, inputs);
-      options.image_width = camera.width;
-      options.image_height = camera.height;
-      options.min_confidence = request.min_confidence;
-      options.convention = request.convention;
-      inputs.keypoints = LoadDetections(request.detections, options);
-      AgreeOnImageSize(request.detections, inputs.keypoints->image_width, inputs.keypoints->image_height, &camera);
-    }
-    if (holds.dense && request.dense.empty()) {
-      UseDense(request.detections, request, &inputs);
-    }
+  if (given.keypoints != nullptr) {
+    UseGivenKeypoints(request, *given.keypoints, &inputs);
+  } else if (!request.detections.empty()) {
+    UseDetections(request, &inputs);
   }
   if (!request.dense.empty()) {
     UseDense(request.dense, request, &inputs);

@@ -38,8 +38,10 @@ struct TrackInputs : SceneInputs {
 /// Every file that the request names. Throws std::runtime_error naming one that is not there or cannot be read.
 std::vector<std::string> RequireTrackInputs(const TrackRequest& request);
 
-/// Reads what the request names, and detects people when there is nothing but a video. Throws Cancelled, and
-/// std::runtime_error naming file and place, also when two files contradict each other (image sizes, number of frames).
-TrackInputs LoadTrackInputs(const TrackRequest& request, const PipelineCallbacks& callbacks = {});
+/// Reads what the request names and is not given (request.detections then names the keypoints in messages), and detects
+/// people when there is nothing but a video. Throws Cancelled, and std::runtime_error naming file and place, also when two
+/// files contradict each other (image sizes, number of frames).
+TrackInputs LoadTrackInputs(const TrackRequest& request, const PipelineCallbacks& callbacks = {},
+                            const GivenInMemory& given = {});
 
 }  // namespace bodyloom

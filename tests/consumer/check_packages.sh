@@ -26,10 +26,10 @@ check_depends() {  # FILE
 
 rm -rf "$root"
 mkdir -p "$root"
-for package in bodyloom bodyloom-neural libbodyloom-dev; do
+for package in bodyloom bodyloom-neural python3-bodyloom libbodyloom-dev; do
   file=$packages/${package}_${version}_$architecture.deb
   if [ ! -f "$file" ]; then
-    [ "$package" = bodyloom-neural ] || fail "$file was not made"
+    [[ $package =~ ^(bodyloom-neural|python3-bodyloom)$ ]] || fail "$file was not made"
     continue
   fi
   check_depends "$file"
@@ -53,3 +53,17 @@ fi
 for result in track.npz overlay.mp4 summary.html; do
   [ -s "$root/demo/$result" ] || fail "the demo wrote no $result"
 done
+python=$packages/python3-bodyloom_${version}_$architecture.deb
+if [ -f "$python" ]; then
+  dpkg-deb --field "$python" Depends | grep -q 'python3-numpy' || fail "python3-bodyloom does not depend on NumPy"
+  module=$(find "$root/usr/lib/python3/dist-packages/bodyloom" -name '_bodyloom.*.so')
+  if objdump -p "$module" | grep -E 'R(UN)?PATH'; then
+    fail "the Python module looks for libraries in a folder of the machine it was built on"
+  fi
+  # The track of the demo, read where nothing but the package is of ours.
+  frames=$(cd / && PYTHONPATH=$root/usr/lib/python3/dist-packages PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 -c '
+import sys, bodyloom
+assert bodyloom.__file__.startswith(sys.argv[1]), bodyloom.__file__
+print(len(bodyloom.Track.load(sys.argv[2])))' "$root" "$root/demo/track.npz")
+  [ "$frames" = 20 ] || fail "Python read $frames frames of the demo, expected 20"
+fi

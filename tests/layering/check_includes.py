@@ -35,6 +35,7 @@ ROOMS = {
     "apps/neural": WHOLE | {"pipelines", "pipelines/neural", "neural", "apps"},
     "apps/cgal": WHOLE | {"pipelines", "apps"},
     "examples": WHOLE | {"pipelines"},
+    "python": WHOLE | {"pipelines"},
     "benchmarks": WHOLE | {"pipelines", "pipelines/neural", "neural", "tests"},
     "tests": WHOLE | {"pipelines", "pipelines/neural", "neural", "apps", "benchmarks"},
 }
@@ -44,7 +45,7 @@ for room in ROOMS:
 # Headers of a room above that hold plain data and need no LibTorch: room -> pattern of their paths.
 EXCEPTIONS = {"pipelines": r"neural/\w+/\w+_(config|picture|scores)\.h$"}
 
-PROGRAMS = ("apps", "tests", "benchmarks", "examples")
+PROGRAMS = ("apps", "tests", "benchmarks", "examples", "python")
 FOLDERS = sorted({room.split("/")[0] for room in ROOMS})
 TEST_CODE = {"tests", "benchmarks"}
 LIBRARIES = {room for room in ROOMS if not room.startswith(PROGRAMS)}
@@ -65,6 +66,7 @@ THIRD_PARTY = [
     (r"lib(av\w+|swscale|swresample)/(?!(sha|mem)\.h)", {"data_tools/video"} | TEST_CODE, False),
     (r"libavutil/(sha|mem)\.h", {"data_tools"} | TEST_CODE, False),
     (r"CLI/", {"apps", "apps/neural", "apps/cgal"}, False),
+    (r"pybind11/", {"python"}, True),
     (r"hwy/", LIBRARIES | TEST_CODE, False),
     (r"(gtest|gmock)/", TEST_CODE, True),
     (r"benchmark/", {"benchmarks"}, True),

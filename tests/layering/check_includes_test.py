@@ -43,6 +43,13 @@ class CheckIncludes(unittest.TestCase):
             "apps/verb.cc": "#include <CLI/CLI.hpp>\n" + include("tracking/a.h", "pipelines/c.h"),
             "tests/d_test.cc": '#include "tests/d.h"\n'})
 
+    def test_python_binds_what_the_pipelines_reach(self):
+        self.expect_allowed({"pipelines/c.h": "", "python/a.h": "#include <pybind11/pybind11.h>\n",
+                             "python/a.cc": '#include "python/a.h"\n' + include("pipelines/c.h")})
+        self.expect_fault({"neural/b.h": "", "python/a.cc": include("neural/b.h")}, "python/a.cc:1")
+        self.expect_fault({"apps/b.h": "", "python/a.cc": '#include "apps/b.h"\n'}, "python/a.cc:1")
+        self.expect_fault({"pipelines/a.cc": "#include <pybind11/numpy.h>\n"}, "expected only in python")
+
     def test_upward_include(self):
         self.expect_fault({"tracking/b.h": "", "geometry/a.cc": "#include <vector>\n" + include("tracking/b.h")},
                           'geometry/a.cc:2: geometry/ includes "tracking/b.h"')

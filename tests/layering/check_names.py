@@ -11,7 +11,7 @@ import pathlib
 import re
 import sys
 
-LIBRARIES = ["geometry", "render", "tracking", "data_tools", "neural", "pipelines", "apps"]
+LIBRARIES = ["geometry", "render", "tracking", "data_tools", "neural", "pipelines", "apps", "python"]
 # Folders with libraries or programs of their own, besides those of LIBRARIES.
 OWN = ["render/lighting", "data_tools/detection", "data_tools/synthesis", "data_tools/evaluation", "pipelines/neural", "apps/neural", "apps/cgal"]
 

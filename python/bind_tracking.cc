@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
+#include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/pipelines/track/track_to_memory.h"
+#include "python/arrays.h"
+#include "python/bindings.h"
+#include "python/python_callbacks.h"
+#include "python/track_object.h"
+
+namespace bodyloom::python {
+namespace {
+
+constexpr const char* kTrackFunctionDoc = R"(Fits one body to a clip: a pose in every frame, one shape, the camera.
+
+What was seen
+  keypoints       Keypoints, or the file or folder of a detector; of a file, `view`, `person`, `fps` and `convention`
+                  say what Keypoints.load() is told
+  dense           file or folder of dense surface keypoints; dense_uv_sigma: their noise in chart units
+  part_labels     .npz with the DensePose part of every pixel
+  video           for image size and frame rate; alone, people are detected in it (pose_model, box_model, models,
+                  detect_rate, mask, begin_s, end_s)
+The camera
+  camera          Camera, or a calibration file of which `view` names the camera
+  focal_px        of a centred camera without distortion, pixels
+  camera_model    "pinhole", "unknown-focal" (the focal length is estimated) or "weak"; None: pinhole where the camera
+                  or focal_px is given, else unknown-focal
+  image_size      (width, height), when nothing else gives it
+What else is known
+  body            Body, or a file; None: the built-in one
+  stature_m       of the person; from it distances follow
+  init            poses of another system to start from and to stay near by init_weight
+  prior, lifter   files of weights, or "none"; None: built in
+The solve
+  live_lag        frames: track as if the clip came from a camera (LiveTracker)
+  solver          "chain" or "ceres"; threads 0: one a core; the track is the same for any number
+  max_iterations, estimate_shape, uncertainty, ground, skip_unneeded, rendered_weight, velocity_weight, straight_knees
+                  as the options of `bodyloom track`
+  progress        called as progress(stage, fraction) now and then; False ends the work with Cancelled
+
+Returns a Track in the camera frame, metres; its summary says how it went. With the same options it is what `bodyloom
+track` writes, to the byte. Raises ValueError for arguments that contradict each other, RuntimeError for a file that
+cannot be used and for a clip in which nothing could be tracked, KeyboardInterrupt on Ctrl-C.)";
+
+constexpr const char* kSyntheticClipDoc = R"(A clip with known truth, made on the spot: (keypoints, truth).
+
+The built-in body walks, turns, waves and kicks for `frames` frames at `fps`, seen by a camera of `image_size` pixels;
+its 2D joints carry a detector's noise and gaps. The same arguments give the same bytes.)";
+
+using KeypointsArgument = std::variant<std::shared_ptr<KeypointSequence>, Path>;
+using CameraArgument = std::variant<Camera, Path>;
+
+/// The number given, checked; 0 when there is none.
+double PositiveOr0(const std::optional<double>& value, const char* name) {
+  BODYLOOM_CHECK(!value || (*value > 0 && std::isfinite(*value)), name, ": expected a number above 0, found ", *value);
+  return value.value_or(0);
+}
+
+/// What the arguments amount to. The lists of options are long, but each has one line and one meaning.
+struct TrackArguments {
+  TrackRequest request;
+  GivenInMemory given;
+  std::optional<KeypointSequence> keypoints;
+  std::string name;
+};
+
+void TakeKeypoints(const std::optional<KeypointsArgument>& argument, TrackArguments* arguments) {
+  if (!argument) return;
+  TrackRequest& request = arguments->request;
+  if (const auto* path = std::get_if<Path>(&*argument)) {
+    request.detections = path->string();
+    return;
+  }
+  BODYLOOM_CHECK(request.view.empty() || !request.cameras.empty(),
+                 "view: names a camera of files, found keypoints in memory");
+  BODYLOOM_CHECK(request.person == 0 && request.fps == 0 && request.convention.empty(),
+                 "person, fps and convention are of a file of detections, found keypoints in memory");
+  arguments->keypoints = *std::get<std::shared_ptr<KeypointSequence>>(*argument);
+}
+
+void TakeCamera(const std::optional<CameraArgument>& argument, TrackArguments* arguments) {
+  if (!argument) return;
+  if (const auto* path = std::get_if<Path>(&*argument)) {
+    arguments->request.cameras = path->string();
+  } else {
+    arguments->given.camera = std::get<Camera>(*argument);
+  }
+}
+
+void TakeBody(const std::optional<BodyArgument>& argument, TrackArguments* arguments) {
+  if (!argument) return;
+  if (const auto* path = std::get_if<Path>(&*argument)) {
+    arguments->request.body = path->string();
+  } else {
+    arguments->given.body = std::get<std::shared_ptr<BodyModel>>(*argument);
+  }
+}
+
+/// The body in memory that a track is of, so that what is asked of it later finds it.
+std::shared_ptr<const BodyModel> BodyToKeep(const TrackArguments& arguments) {
+  if (arguments.given.body != nullptr || arguments.request.body.empty()) return arguments.given.body;
+  return BodyFrom(BodyArgument(Path(arguments.request.body)));
+}
+
+std::shared_ptr<TrackObject> RunTrack(TrackArguments arguments, const py::object& progress) {
+  if (arguments.keypoints) arguments.given.keypoints = &*arguments.keypoints;
+  const TrackRequest& request = arguments.request;
+  BODYLOOM_CHECK(request.solve.num_threads >= 0 && request.solve.num_threads <= 256,
+                 "threads: expected 0 to 256, found ", request.solve.num_threads);
+  const std::shared_ptr<const BodyModel> body = BodyToKeep(arguments);
+  if (body != nullptr) arguments.given.body = body;
+  TrackSequenceResult result = PythonCallbacks(progress).Run(
+      [&](const PipelineCallbacks& callbacks) { return TrackToMemory(arguments.request, arguments.given, callbacks); });
+  if (!result.summary.IsUsable()) {
+    throw std::runtime_error(arguments.name + ": nothing could be tracked: " + result.summary.message);
+  }
+  auto track = std::make_shared<TrackObject>(std::move(result.track), arguments.name, body);
+  track->summary = std::move(result.summary);
+  return track;
+}
+
+std::string NameOf(const TrackRequest& request) {
+  for (const std::string* path : {&request.detections, &request.dense, &request.part_labels, &request.video}) {
+    if (!path->empty()) return *path;
+  }
+  return "keypoints";
+}
+
+std::pair<std::shared_ptr<KeypointSequence>, std::shared_ptr<TrackObject>> SyntheticClip(int frames, double fps,
+                                                                                         std::pair<int, int> image_size,
+                                                                                         uint64_t seed,
+                                                                                         double elevation_deg) {
+  SynthClipOptions options;
+  options.seed = seed;
+  options.dense_per_frame = 0;
+  options.camera.width = image_size.first, options.camera.height = image_size.second;
+  options.camera.elevation_deg = elevation_deg;
+  const BodyModel& body = BuiltinBody();
+  SynthClip clip = MakeSynthClip(body, DemoMotion(body, frames, fps), options);
+  return {std::make_shared<KeypointSequence>(std::move(clip.keypoints)),
+          std::make_shared<TrackObject>(std::move(clip.truth), "truth")};
+}
+
+}  // namespace
+
+void BindTracking(py::module_& module) {
+  const TrackRequest defaults;
+  module.def(
+      "track",
+      [](const std::optional<KeypointsArgument>& keypoints, const std::optional<Path>& dense,
+         std::optional<double> dense_uv_sigma, const std::optional<Path>& part_labels, const std::optional<Path>& video,
+         const std::string& view, int person, std::optional<double> fps, double min_confidence,
+         const std::string& convention, const std::optional<CameraArgument>& camera, std::optional<double> focal_px,
+         const std::optional<std::string>& camera_model, std::optional<std::pair<int, int>> image_size,
+         const std::optional<BodyArgument>& body, std::optional<double> stature_m, const std::optional<Path>& init,
+         double init_weight, const std::optional<Path>& prior, const std::optional<Path>& lifter,
+         std::optional<int> live_lag, const std::string& solver, int threads, int max_iterations, bool estimate_shape,
+         bool uncertainty, bool ground, bool skip_unneeded, double rendered_weight, double velocity_weight,
+         std::optional<double> straight_knees, const std::optional<Path>& pose_model,
+         const std::optional<Path>& box_model, const std::optional<Path>& models, std::optional<double> detect_rate,
+         bool mask, double begin_s, std::optional<double> end_s, const py::object& progress) {
+        TrackArguments arguments;
+        TrackRequest& request = arguments.request;
+        request.dense = TextOf(dense);
+        request.dense_uv_sigma = dense_uv_sigma;
+        request.part_labels = TextOf(part_labels);
+        request.video = TextOf(video);
+        request.view = view;
+        request.person = person;
+        request.fps = PositiveOr0(fps, "fps");
+        request.min_confidence = min_confidence;
+        request.convention = convention;
+        request.focal_px = PositiveOr0(focal_px, "focal_px");
+        request.camera = camera_model.value_or("");
+        BODYLOOM_CHECK(!camera_model || request.camera == "pinhole" || request.camera == "unknown-focal" ||
+                           request.camera == "weak",
+                       "camera_model: \"", request.camera, "\", expected pinhole, unknown-focal or weak");
+        std::tie(request.image_width, request.image_height) = image_size.value_or(std::pair(0, 0));
+        BODYLOOM_CHECK(!image_size || (request.image_width > 0 && request.image_height > 0),
+                       "image_size: expected pixels above 0, found (", request.image_width, ", ", request.image_height,
+                       ")");
+        request.stature_m = PositiveOr0(stature_m, "stature_m");
+        request.init = TextOf(init);
+        request.prior = TextOf(prior);
+        request.lifter = TextOf(lifter);
+        request.live_lag = live_lag;
+        request.detector.pose_model = TextOf(pose_model);
+        request.detector.box_model = TextOf(box_model);
+        request.detector.models = TextOf(models);
+        request.detect_rate = PositiveOr0(detect_rate, "detect_rate");
+        request.use_mask = mask;
+        request.from_s = begin_s;
+        request.to_s = end_s.value_or(-1);
+        request.straight_knees = straight_knees;
+        TrackSequenceOptions& solve = request.solve;
+        solve.initialiser_weight = init_weight;
+        solve.solver = SequenceSolverFromString(solver);
+        solve.num_threads = threads;
+        solve.max_iterations = max_iterations;
+        solve.estimate_shape = estimate_shape;
+        solve.estimate_uncertainty = uncertainty;
+        solve.skip_unneeded = skip_unneeded;
+        solve.rendered_uv.weight = rendered_weight;
+        solve.velocity_weight = velocity_weight;
+        if (!ground) solve.ground = GroundOptions::Off();
+        TakeCamera(camera, &arguments);
+        TakeKeypoints(keypoints, &arguments);
+        TakeBody(body, &arguments);
+        arguments.name = NameOf(request);
+        return RunTrack(std::move(arguments), progress);
+      },
+      py::arg("keypoints") = py::none(), py::kw_only(), py::arg("dense") = py::none(),
+      py::arg("dense_uv_sigma") = py::none(), py::arg("part_labels") = py::none(), py::arg("video") = py::none(),
+      py::arg("view") = "", py::arg("person") = 0, py::arg("fps") = py::none(), py::arg("min_confidence") = 0.0,
+      py::arg("convention") = "", py::arg("camera") = py::none(), py::arg("focal_px") = py::none(),
+      py::arg("camera_model") = py::none(), py::arg("image_size") = py::none(), py::arg("body") = py::none(),
+      py::arg("stature_m") = py::none(), py::arg("init") = py::none(),
+      py::arg("init_weight") = defaults.solve.initialiser_weight, py::arg("prior") = py::none(),
+      py::arg("lifter") = py::none(), py::arg("live_lag") = py::none(),
+      py::arg("solver") = ToString(defaults.solve.solver), py::arg("threads") = defaults.solve.num_threads,
+      py::arg("max_iterations") = defaults.solve.max_iterations, py::arg("estimate_shape") = true,
+      py::arg("uncertainty") = true, py::arg("ground") = true, py::arg("skip_unneeded") = true,
+      py::arg("rendered_weight") = defaults.solve.rendered_uv.weight,
+      py::arg("velocity_weight") = defaults.solve.velocity_weight, py::arg("straight_knees") = py::none(),
+      py::arg("pose_model") = py::none(), py::arg("box_model") = py::none(), py::arg("models") = py::none(),
+      py::arg("detect_rate") = py::none(), py::arg("mask") = true, py::arg("begin_s") = 0.0,
+      py::arg("end_s") = py::none(), py::arg("progress") = py::none(), kTrackFunctionDoc);
+  module.def("synthetic_clip", &SyntheticClip, py::arg("frames") = 180, py::kw_only(), py::arg("fps") = 30.0,
+             py::arg("image_size") = std::pair(960, 720), py::arg("seed") = 1, py::arg("elevation_deg") = 8.0,
+             py::call_guard<py::gil_scoped_release>(), kSyntheticClipDoc);
+}
+
+}  // namespace bodyloom::python

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bodyloom: people followed through a single-camera video with a parametric body. docs/python.md is the manual.
+
+    import bodyloom
+    track = bodyloom.track("openpose_json/", image_size=(1920, 1080))
+    print(track.summary, track.joints.shape)
+    track.save("track.npz")
+
+Everything is in metres, seconds and radians, in the camera frame (x right, y down, z forward), unless a name says
+otherwise.
+"""
+from ._bodyloom import (
+    FRAME_STATUS,
+    Body,
+    Camera,
+    Cancelled,
+    DescriptorFrames,
+    Evaluation,
+    Keypoints,
+    LiveDescriptors,
+    LiveFrame,
+    LiveTracker,
+    Renderer,
+    Track,
+    TrackSummary,
+    __version__,
+    describe,
+    evaluate,
+    export,
+    render,
+    synthetic_clip,
+    track,
+)
+
+__all__ = [
+    "FRAME_STATUS",
+    "Body",
+    "Camera",
+    "Cancelled",
+    "DescriptorFrames",
+    "Evaluation",
+    "Keypoints",
+    "LiveDescriptors",
+    "LiveFrame",
+    "LiveTracker",
+    "Renderer",
+    "Track",
+    "TrackSummary",
+    "__version__",
+    "describe",
+    "evaluate",
+    "export",
+    "render",
+    "synthetic_clip",
+    "track",
+]
+
+for _name in __all__:
+    if isinstance(globals()[_name], type):
+        globals()[_name].__module__ = __name__  # where users import it from, also in pickles
+del _name

@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Builds the wheel of the Python package with CMake: a build backend after PEP 517 that needs nothing but Python.
+
+A backend of our own because Debian 12 has no scikit-build-core, and because setuptools would have to be bent around
+CMake in more lines than these.
+
+Settings (`pip install . --config-settings KEY=VALUE`):
+  build-dir    a CMake build folder to build in and to keep; else a temporary one
+  cmake-args   further arguments of cmake, separated by blanks
+"""
+import base64
+import hashlib
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import sysconfig
+import tempfile
+import zipfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+NAME = "bodyloom"
+
+
+def version():
+    return re.search(r"^project\(bodyloom VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text(encoding="utf-8"), re.M)[1]
+
+
+def project():
+    """The keys of [project] that this wheel's metadata repeats; read plainly, as Python has tomllib only from 3.11 on."""
+    table = (ROOT / "pyproject.toml").read_text(encoding="utf-8").split("[project]")[1].split("\n[")[0]
+    return dict(re.findall(r'^([\w-]+) = "(.*)"$', table, re.M)), re.findall(r'"([^"]+ :: [^"]+)"', table)
+
+
+def metadata():
+    keys, classifiers = project()
+    lines = ["Metadata-Version: 2.1", f"Name: {NAME}", f"Version: {version()}", f"Summary: {keys['description']}",
+             "License: Apache-2.0", f"Requires-Python: {keys['requires-python']}", "Requires-Dist: numpy"]
+    lines += [f"Classifier: {classifier}" for classifier in classifiers]
+    readme = (ROOT / keys["readme"]).read_text(encoding="utf-8")
+    return "\n".join(lines) + "\nDescription-Content-Type: text/markdown\n\n" + readme
+
+
+def tag():
+    interpreter = f"cp{sys.version_info.major}{sys.version_info.minor}"
+    return f"{interpreter}-{interpreter}-{re.sub('[-.]', '_', sysconfig.get_platform())}"
+
+
+def run(*words):
+    # What CMake and the compiler say goes to stderr, where pip looks for it when something fails.
+    subprocess.run(list(map(str, words)), check=True, stdout=sys.stderr)
+
+
+def build(build_dir, stage, arguments):
+    """The package's files below `stage`."""
+    cache = build_dir / "CMakeCache.txt"
+    if not cache.exists():
+        generator = ["-G", "Ninja"] if sysconfig.os.name == "posix" and has_program("ninja") else []
+        run("cmake", "-S", ROOT, "-B", build_dir, *generator, "-D", "CMAKE_BUILD_TYPE=Release", "-D", "CMAKE_UNITY_BUILD=ON",
+            "-D", "BODYLOOM_WITH_TORCH=OFF", "-D", "BODYLOOM_BUILD_APPS=OFF", "-D", "BODYLOOM_BUILD_TESTS=OFF",
+            "-D", "BODYLOOM_BUILD_BENCHMARKS=OFF", "-D", "BODYLOOM_BUILD_EXAMPLES=OFF",
+            "-D", f"Python_EXECUTABLE={sys.executable}", *arguments)
+    jobs = os.environ.get("BODYLOOM_JOBS") or str(os.cpu_count())
+    run("cmake", "--build", build_dir, "--target", "bodyloom_python", "-j", jobs)
+    run("cmake", "--install", build_dir, "--component", "python", "--strip", "--prefix", stage)
+
+
+def has_program(name):
+    return any(os.access(pathlib.Path(folder, name), os.X_OK) for folder in os.get_exec_path())
+
+
+def record_line(name, data):
+    digest = base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
+    return f"{name},sha256={digest},{len(data)}\n"
+
+
+# --- the functions that PEP 517 names ----------------------------------------------------------------------------------
+def get_requires_for_build_wheel(config_settings=None):
+    return []
+
+
+def get_requires_for_build_sdist(config_settings=None):
+    return []
+
+
+def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
+    settings = config_settings or {}
+    info = f"{NAME}-{version()}.dist-info"
+    name = f"{NAME}-{version()}-{tag()}.whl"
+    with tempfile.TemporaryDirectory() as scratch:
+        stage = pathlib.Path(scratch, "stage")
+        build_dir = pathlib.Path(settings.get("build-dir") or pathlib.Path(scratch, "build")).resolve()
+        build(build_dir, stage, settings.get("cmake-args", "").split())
+        package = next(stage.rglob(NAME))
+        files = {f"{NAME}/{path.name}": path.read_bytes() for path in sorted(package.iterdir())}
+    files[f"{info}/METADATA"] = metadata().encode()
+    files[f"{info}/WHEEL"] = f"Wheel-Version: 1.0\nGenerator: {NAME}\nRoot-Is-Purelib: false\nTag: {tag()}\n".encode()
+    files[f"{info}/LICENSE"] = (ROOT / "LICENSE").read_bytes()
+    files[f"{info}/RECORD"] = ("".join(record_line(file, data) for file, data in files.items()) + f"{info}/RECORD,,\n").encode()
+    unfinished = pathlib.Path(wheel_directory, name + ".part")
+    with zipfile.ZipFile(unfinished, "w", zipfile.ZIP_DEFLATED) as wheel:
+        for file, data in files.items():
+            wheel.writestr(zipfile.ZipInfo(file, (2020, 1, 1, 0, 0, 0)), data, zipfile.ZIP_DEFLATED)
+    unfinished.rename(pathlib.Path(wheel_directory, name))
+    return name
+
+
+def build_sdist(sdist_directory, config_settings=None):
+    """The tree as git knows it."""
+    name = f"{NAME}-{version()}"
+    subprocess.run(["git", "-C", str(ROOT), "archive", "--format=tar.gz", f"--prefix={name}/", "-o",
+                    str(pathlib.Path(sdist_directory, name + ".tar.gz").resolve()), "HEAD"], check=True)
+    return name + ".tar.gz"

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What Python's objects of this module hold, and how arguments become it.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/track.h"
+#include "bodyloom/tracking/track_summary.h"
+
+namespace bodyloom::python {
+
+/// A track that does not change, with what it came from.
+struct TrackObject {
+  TrackObject(Track track, std::string name, std::shared_ptr<const BodyModel> body = nullptr);
+
+  Track track;
+  std::string name;                             ///< in messages: its file, or what it is
+  std::shared_ptr<const BodyModel> body;        ///< that it was fitted with; null: a file does not say which
+  std::optional<TrackSequenceSummary> summary;  ///< of the solve; none for a track from a file
+  std::vector<double> joints, coco17;           ///< T×J×3 and T×17×3 in one piece; empty when the track has none
+};
+
+using Path = std::filesystem::path;
+using BodyArgument = std::variant<std::shared_ptr<BodyModel>, Path>;
+using TrackArgument = std::variant<std::shared_ptr<TrackObject>, Path>;
+
+/// The argument's body, else the built-in one.
+std::shared_ptr<const BodyModel> BodyFrom(const std::optional<BodyArgument>& argument);
+/// The argument's body, else the track's own, else the built-in one.
+std::shared_ptr<const BodyModel> BodyOf(const TrackObject& track, const std::optional<BodyArgument>& argument);
+/// The argument's track, read when it is a path.
+std::shared_ptr<TrackObject> TrackFrom(const TrackArgument& argument);
+
+/// "" when there is none.
+std::string TextOf(const std::optional<Path>& path);
+
+}  // namespace bodyloom::python
