@@ -7,7 +7,11 @@
 
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/motion/track_io.h"
+<<<<<<< HEAD
 #include "bodyloom/data_tools/observations/nothing_to_track.h"
+=======
+#include "bodyloom/geometry/camera_path.h"
+>>>>>>> 4d9059d (track and run --camera-path: COLMAP's poses or a JSON of our own, with what became of them in the report; synth --camera-motion)
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/page/write_clip_page.h"
 #include "bodyloom/pipelines/peak_memory.h"
@@ -79,6 +83,40 @@ void CheckFiles(const TrackRequest& request) {
   }
 }
 
+<<<<<<< HEAD
+=======
+TrackSequenceOptions OptionsFor(const TrackRequest& request, const TrackInputs& inputs) {
+  TrackSequenceOptions options = request.solve;
+  options.camera_knowledge = inputs.camera_knowledge;
+  options.straight_knees_weight = StraightKneesWeight(request, inputs.keypoints ? inputs.keypoints->convention : "");
+  if (inputs.joints_from_labels) options.part_labels = PartLabelOptions::LabelsAlone();
+  return options;
+}
+
+LiveTrackerOptions LiveOptions(const TrackRequest& request, const TrackSequenceOptions& solve) {
+  LiveTrackerOptions live;
+  live.lag = *request.live_lag;
+  live.solve = solve;
+  return live;
+}
+
+TrackSequenceResult Solve(const TrackRequest& request, const TrackInputs& inputs, double share,
+                          const PipelineCallbacks& callbacks) {
+  TrackSequenceOptions options = OptionsFor(request, inputs);
+  bool cancelled = false;
+  std::string stage;
+  options.progress = [&](const TrackProgress& at) {
+    stage = at.stage;
+    cancelled = !callbacks.GoesOn(stage, share * at.fraction);
+    return !cancelled;
+  };
+  TrackSequenceResult result = request.live_lag ? TrackLive(inputs.ForTracker(), LiveOptions(request, options))
+                                                : TrackSequence(inputs.ForTracker(), options);
+  if (cancelled || (!stage.empty() && !callbacks.GoesOn(stage, share))) throw Cancelled();
+  return result;
+}
+
+>>>>>>> 4d9059d (track and run --camera-path: COLMAP's poses or a JSON of our own, with what became of them in the report; synth --camera-motion)
 InitialiserReport ReportOn(const InitialPoses& start, const TrackInputs& inputs, const Track& track) {
   InitialiserReport report;
   report.system = start.system;
@@ -88,12 +126,24 @@ InitialiserReport ReportOn(const InitialPoses& start, const TrackInputs& inputs,
   report.has_shape = start.has_shape;
   const KeypointSequence* keypoints = inputs.keypoints ? &*inputs.keypoints : nullptr;
   report.gives_landmarks = !start.landmarks.empty();
-  report.gain = report.gives_landmarks
-                    ? GainOverLandmarks(*inputs.body, keypoints, start.landmarks, start.camera, track)
-                    : GainOverInitialiser(*inputs.body, keypoints, start.motion, start.camera, track);
+  const Track seen = TrackInCameras(*inputs.body, track);
+  report.gain = report.gives_landmarks ? GainOverLandmarks(*inputs.body, keypoints, start.landmarks, start.camera, seen)
+                                       : GainOverInitialiser(*inputs.body, keypoints, start.motion, start.camera, seen);
   return report;
 }
 
+<<<<<<< HEAD
+=======
+std::vector<PlanEntry> WholePlan(const TrackRequest& request, const TrackInputs& inputs) {
+  const TrackSequenceOptions options = OptionsFor(request, inputs);
+  std::vector<PlanEntry> plan = request.live_lag ? PlanTrackLive(inputs.ForTracker(), LiveOptions(request, options))
+                                                 : PlanTrackSequence(inputs.ForTracker(), options);
+  const std::vector<PlanEntry> own = OwnPlan(request);
+  plan.insert(plan.end(), own.begin(), own.end());
+  return plan;
+}
+
+>>>>>>> 4d9059d (track and run --camera-path: COLMAP's poses or a JSON of our own, with what became of them in the report; synth --camera-motion)
 }  // namespace
 
 TrackReport TrackClip(const TrackRequest& request, const PipelineCallbacks& callbacks) {
@@ -118,10 +168,13 @@ TrackReport TrackClip(const TrackRequest& request, const PipelineCallbacks& call
   clock.Begin(kSolveStage);
   TrackSequenceResult result = SolveTrack(request, inputs, callbacks, solve_share);
   report.solve = std::move(result.summary);
+  report.camera_path = inputs.camera_path_report;
   for (const PlanEntry& entry : OwnPlan(request)) {
     report.solve.plan.push_back(entry);
   }
   if (report.solve.IsUsable()) {
+    const std::string warning = MovingCameraWarning(report.solve.camera_path, report.solve.ground);
+    if (!warning.empty()) callbacks.Say(warning);
     clock.Begin("write");
     report.world = *result.track.world;
     if (inputs.initialiser) report.initialiser = ReportOn(*inputs.initialiser, inputs, result.track);
