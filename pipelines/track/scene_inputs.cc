@@ -76,16 +76,12 @@ SceneInputs LoadSceneInputs(const TrackRequest& request, const GivenInMemory& gi
   SceneInputs inputs;
   inputs.body = given.body != nullptr ? given.body : BodyOrBuiltin(request.body);
   inputs.stature_m = request.stature_m;
-<<<<<<< HEAD
   if (given.camera) {
     inputs.camera.camera = *given.camera;
   } else {
     inputs.camera = CameraFromRequest(request);
   }
-=======
-  inputs.camera = CameraFromRequest(request);
   UseCameraPath(request, &inputs);
->>>>>>> 4d9059d (track and run --camera-path: COLMAP's poses or a JSON of our own, with what became of them in the report; synth --camera-motion)
   if (!request.video.empty()) UseVideo(request.video, &inputs);
   // The lifter knows how detectors err. Joints read off labels err otherwise, and it makes worse of them than the joint
   // hypotheses do (docs/benchmarks.md).

@@ -7,11 +7,8 @@
 
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/motion/track_io.h"
-<<<<<<< HEAD
 #include "bodyloom/data_tools/observations/nothing_to_track.h"
-=======
 #include "bodyloom/geometry/camera_path.h"
->>>>>>> 4d9059d (track and run --camera-path: COLMAP's poses or a JSON of our own, with what became of them in the report; synth --camera-motion)
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/page/write_clip_page.h"
 #include "bodyloom/pipelines/peak_memory.h"
@@ -83,40 +80,6 @@ void CheckFiles(const TrackRequest& request) {
   }
 }
 
-<<<<<<< HEAD
-=======
-TrackSequenceOptions OptionsFor(const TrackRequest& request, const TrackInputs& inputs) {
-  TrackSequenceOptions options = request.solve;
-  options.camera_knowledge = inputs.camera_knowledge;
-  options.straight_knees_weight = StraightKneesWeight(request, inputs.keypoints ? inputs.keypoints->convention : "");
-  if (inputs.joints_from_labels) options.part_labels = PartLabelOptions::LabelsAlone();
-  return options;
-}
-
-LiveTrackerOptions LiveOptions(const TrackRequest& request, const TrackSequenceOptions& solve) {
-  LiveTrackerOptions live;
-  live.lag = *request.live_lag;
-  live.solve = solve;
-  return live;
-}
-
-TrackSequenceResult Solve(const TrackRequest& request, const TrackInputs& inputs, double share,
-                          const PipelineCallbacks& callbacks) {
-  TrackSequenceOptions options = OptionsFor(request, inputs);
-  bool cancelled = false;
-  std::string stage;
-  options.progress = [&](const TrackProgress& at) {
-    stage = at.stage;
-    cancelled = !callbacks.GoesOn(stage, share * at.fraction);
-    return !cancelled;
-  };
-  TrackSequenceResult result = request.live_lag ? TrackLive(inputs.ForTracker(), LiveOptions(request, options))
-                                                : TrackSequence(inputs.ForTracker(), options);
-  if (cancelled || (!stage.empty() && !callbacks.GoesOn(stage, share))) throw Cancelled();
-  return result;
-}
-
->>>>>>> 4d9059d (track and run --camera-path: COLMAP's poses or a JSON of our own, with what became of them in the report; synth --camera-motion)
 InitialiserReport ReportOn(const InitialPoses& start, const TrackInputs& inputs, const Track& track) {
   InitialiserReport report;
   report.system = start.system;
@@ -132,18 +95,6 @@ InitialiserReport ReportOn(const InitialPoses& start, const TrackInputs& inputs,
   return report;
 }
 
-<<<<<<< HEAD
-=======
-std::vector<PlanEntry> WholePlan(const TrackRequest& request, const TrackInputs& inputs) {
-  const TrackSequenceOptions options = OptionsFor(request, inputs);
-  std::vector<PlanEntry> plan = request.live_lag ? PlanTrackLive(inputs.ForTracker(), LiveOptions(request, options))
-                                                 : PlanTrackSequence(inputs.ForTracker(), options);
-  const std::vector<PlanEntry> own = OwnPlan(request);
-  plan.insert(plan.end(), own.begin(), own.end());
-  return plan;
-}
-
->>>>>>> 4d9059d (track and run --camera-path: COLMAP's poses or a JSON of our own, with what became of them in the report; synth --camera-motion)
 }  // namespace
 
 TrackReport TrackClip(const TrackRequest& request, const PipelineCallbacks& callbacks) {
