@@ -16,7 +16,7 @@ using ::testing::HasSubstr;
 
 const std::vector<double> kClip = {0, 0.1, 0.2, 0.3};
 
-std::string Image(const std::string& name, double x) {
+std::string ImageLines(const std::string& name, double x) {
   return "1 1 0 0 0 " + std::to_string(x) + " 0 0 1 " + name + "\n\n";
 }
 
@@ -64,7 +64,7 @@ TEST_F(CameraPathFile, FramesQuaternionsAndIntrinsics) {
 
 TEST_F(CameraPathFile, ColmapsPicturesAreFramesByTheirNumbers) {
   const RecordedCameraPath read =
-      Colmap(Image("v2/f_0010.png", 10) + Image("v2/f_0002.png", 2) + Image("v2/f_0001.png", 1),
+      Colmap(ImageLines("v2/f_0010.png", 10) + ImageLines("v2/f_0002.png", 2) + ImageLines("v2/f_0001.png", 1),
              "1 SIMPLE_PINHOLE 640 480 500 320 240\n");
   EXPECT_FALSE(read.is_metric);
   EXPECT_THAT(read.frames, ElementsAre(1, 2, 10));
@@ -76,11 +76,11 @@ TEST_F(CameraPathFile, ColmapsPicturesAreFramesByTheirNumbers) {
   EXPECT_THAT(CameraPathOnClock(read, kClip, {.first = 1, .fps = 10}, "x").timestamps, ElementsAre(0, 0.1, 0.9));
   EXPECT_THAT(FileErrorOf("x", [&] { CameraPathOnClock(read, kClip, {.first = 50}, "x"); }),
               HasSubstr("none is in the clip of 4 frames"));
-  EXPECT_THAT(Colmap(Image("f0.png", 0) + Image("f1.png", 1)).frames, ElementsAre(0, 1));
+  EXPECT_THAT(Colmap(ImageLines("f0.png", 0) + ImageLines("f1.png", 1)).frames, ElementsAre(0, 1));
 }
 
 TEST_F(CameraPathFile, PicturesWithoutNumbersAreCountedByName) {
-  const RecordedCameraPath read = Colmap(Image("b.png", 2) + Image("a.png", 1));
+  const RecordedCameraPath read = Colmap(ImageLines("b.png", 2) + ImageLines("a.png", 1));
   EXPECT_TRUE(read.by_sorted_name);
   EXPECT_EQ(read.poses[0].camera_from_world_translation.x(), 1);
   EXPECT_THAT(CameraPathOnClock(read, kClip, {}, "x").timestamps, ElementsAre(0, 0.1));
