@@ -41,6 +41,21 @@ void AddSynthOptions(CLI::App& app, SynthesizeClipRequest* request, bool* quiet)
       ->capture_default_str();
   app.add_option("--elevation", clip.camera.elevation_deg, "degrees from above")->group(camera)->capture_default_str();
 
+  app.add_option_function<std::string>(
+         "--camera-motion",
+         [&clip](const std::string& name) { clip.camera_path.motion = SynthCameraMotionFromString(name); },
+         "still, hand-held, walking (along with the person) or orbit; also writes camera_path.json")
+      ->group(camera)
+      ->check(CLI::IsMember({"still", "hand-held", "walking", "orbit"}))
+      ->default_str("still");
+  app.add_option("--shake", clip.camera_path.shake_deg, "of a camera that moves, degrees")
+      ->group(camera)
+      ->capture_default_str();
+  app.add_option("--shake-m", clip.camera_path.shake_m, "of its place, metres")->group(camera)->capture_default_str();
+  app.add_option("--orbit", clip.camera_path.orbit_deg, "degrees that --camera-motion orbit goes round")
+      ->group(camera)
+      ->capture_default_str();
+
   app.add_option("--dense", clip.dense_per_frame, "dense keypoints a frame (0: none)")
       ->group(dense)
       ->capture_default_str();

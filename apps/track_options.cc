@@ -61,6 +61,26 @@ void AddCalibrationOptions(CLI::App& app, TrackRequest* request) {
   app.add_option("--focal", c.focal_px, "focal length in pixels, for a centred camera without distortion")
       ->group(kCamera)
       ->check(Quiet(CLI::PositiveNumber));
+  app.add_option(
+         "--camera-path", c.camera_path,
+         "where a camera that moves was: COLMAP's folder or images.txt/.bin (its intrinsics are used where none "
+         "are given), or this project's JSON (default: it stands still)")
+      ->group(kCamera)
+      ->type_name("PATH");
+  app.add_option("--camera-scale", c.camera_scale_m,
+                 "metres a unit of the path (default: 1 for JSON; COLMAP's is found from standing feet)")
+      ->group(kCamera)
+      ->type_name("M")
+      ->check(Quiet(CLI::PositiveNumber));
+  app.add_option("--camera-path-first", c.camera_path_first,
+                 "number that the clip's first frame has in the path (default: 0, or 1 when COLMAP's begin later)")
+      ->group(kCamera)
+      ->type_name("N")
+      ->check(Quiet(CLI::NonNegativeNumber));
+  app.add_option("--camera-path-fps", c.camera_path_fps,
+                 "pictures a second that the path's frames number (default: they are the clip's frames)")
+      ->group(kCamera)
+      ->check(Quiet(CLI::PositiveNumber));
 }
 
 void AddLearnedOptions(CLI::App& app, TrackRequest* request) {

@@ -37,10 +37,13 @@ enum class FrameStatus : uint8_t {
 
 std::string ToString(FrameStatus status);
 
-/// A Motion in the camera frame together with its camera. All positions in metres, camera frame.
+/// A Motion in the camera frame together with its camera. All positions in metres, camera frame. Where the camera moves,
+/// they are in the scene (geometry/camera_path.h): a frame that stands still, of which every frame's camera is known.
 struct Track {
-  Motion motion;                          ///< up = kCamera
-  Camera camera;                          ///< intrinsics shared by all frames
+  Motion motion;  ///< up = kCamera
+  Camera camera;  ///< intrinsics shared by all frames
+  /// T rigid motions of a camera that moves, scene to camera; empty: it stands still, and its frame is the scene.
+  std::vector<CameraPose> camera_from_scene;
   MatrixX3d weak_camera;                  ///< T×3 (s, tx, ty) per frame for weak perspective; T×0 rows otherwise
   std::vector<FrameStatus> frame_status;  ///< T
   std::vector<MatrixX3d> joints;          ///< T of J×3
@@ -49,6 +52,7 @@ struct Track {
   /// Where up and the ground are; nothing: the track does not say (render/track_world.h then assumes a level camera).
   std::optional<WorldFrame> world;
   [[nodiscard]] int num_frames() const { return motion.num_frames(); }
+  [[nodiscard]] bool HasMovingCamera() const { return !camera_from_scene.empty(); }
   /// The camera of frame t: `camera`, with (s, tx, ty) of that frame for weak perspective.
   [[nodiscard]] Camera CameraAt(int t) const;
   /// Whether frame t has a pose and a camera (finite numbers).

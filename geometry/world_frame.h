@@ -2,6 +2,7 @@
 /// The world of a clip: right-handed, metres, y up (gravity is −y), the ground that people stand on at y = 0.
 ///
 ///   point_in_world = rotation · point_in_camera + translation
+/// For a camera that moves, "camera" is the one that the clip's scene is the frame of (geometry/camera_path.h).
 /// Its horizontal axes follow the camera's heading: −z is where the camera looks along the ground, x is its right, and
 /// the camera is above the origin. A person who faces the camera faces +z. All people of a clip share one.
 #pragma once

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/camera_path.h"
 #include "bodyloom/geometry/posed_body.h"
 #include "bodyloom/render/overlay_landmarks.h"
 
@@ -48,6 +49,19 @@ FollowViewOptions OverlayOptions::SideView(int height) const {
 double OverlayCaptionHeight(int image_height) { return std::max(9.0, image_height / 48.0); }
 
 int OverlaySamples(int image_height) { return image_height >= 600 ? 2 : 3; }
+
+std::optional<BodyPose> PoseInCamera(const BodyModel& body, const Track& track, int frame) {
+  std::optional<BodyPose> pose = PoseOf(body, track, frame);
+  if (!pose || !track.HasMovingCamera()) return pose;
+  const Vector3d pelvis = body.RestJoints(track.motion.betas).row(0).transpose();
+  return MovedPose(track.camera_from_scene[size_t(frame)], pelvis, *std::move(pose));
+}
+
+Floor FloorInCamera(const Floor& floor, const Track& track, int frame) {
+  if (!track.HasMovingCamera()) return floor;
+  const CameraPose& camera = track.camera_from_scene[size_t(frame)];
+  return {MovedPoint(camera, floor.point), camera.camera_from_world_rotation * floor.up};
+}
 
 MatrixX3d TrackVertices(const BodyModel& body, const Track& track, int frame) {
   BODYLOOM_CHECK(frame >= 0 && frame < track.num_frames(), "frame ", frame, " is outside the track's ",
@@ -106,13 +120,14 @@ Image OverlayRenderer::Side(int frame) const {
   return std::move(panel.image);
 }
 
-Image OverlayRenderer::Backdrop(const MatrixX3d& vertices, const Camera& camera) const {
+Image OverlayRenderer::Backdrop(int frame, const MatrixX3d& vertices, const Camera& camera) const {
   Image image = backdrop_;
   if (!options_.floor || !floor_ || camera.model != CameraModel::kPinhole) return image;
   if (vertices.rows() == 0) return image;
   const Vector3d centre = vertices.colwise().mean().transpose();
-  DrawFloorGrid(*floor_, centre, {}, camera, &image);
-  if (options_.body) DrawShadow(vertices, body_.data().faces, *floor_, camera, 0.35, &image);
+  const Floor floor = FloorInCamera(*floor_, track_, frame);
+  DrawFloorGrid(floor, centre, {}, camera, &image);
+  if (options_.body) DrawShadow(vertices, body_.data().faces, floor, camera, 0.35, &image);
   return image;
 }
 
@@ -120,7 +135,7 @@ Image OverlayRenderer::Render(int frame, const OverlayFrame& what) const {
   BODYLOOM_CHECK(frame >= 0 && frame < track_.num_frames(), "frame ", frame, " is outside the track's ",
                  track_.num_frames(), " frames");
   const Camera camera = track_.CameraAt(frame);
-  const auto pose = PoseOf(body_, track_, frame);
+  const auto pose = PoseInCamera(body_, track_, frame);
   const MatrixX3d vertices = pose ? PoseVertices(body_, track_.motion.betas, *pose) : MatrixX3d(0, 3);
   Image view;
   if (what.background != nullptr) {
@@ -129,7 +144,7 @@ Image OverlayRenderer::Render(int frame, const OverlayFrame& what) const {
                    camera.width, "x", camera.height);
     view = *what.background;
   } else {
-    view = Backdrop(vertices, camera);
+    view = Backdrop(frame, vertices, camera);
   }
   if (pose && options_.body) {
     const double alpha = what.background != nullptr ? options_.alpha : 1;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// The picture by which a track is judged: the projected body over the video (or a plain backdrop), detected and
-/// projected landmarks, a caption, and on request the same body seen from the side, where errors in depth show.
+/// projected landmarks, a caption, and on request the same body seen from the side, where errors in depth show. A camera
+/// that moves shows each frame as it saw it; the side view is of the scene.
 #pragma once
 
 #include <optional>
@@ -77,7 +78,7 @@ class OverlayRenderer {
   [[nodiscard]] Image Render(int frame, const OverlayFrame& what) const;
 
  private:
-  [[nodiscard]] Image Backdrop(const MatrixX3d& vertices, const Camera& camera) const;
+  [[nodiscard]] Image Backdrop(int frame, const MatrixX3d& vertices, const Camera& camera) const;
   [[nodiscard]] MeshStyle Style(double alpha) const;
   [[nodiscard]] Image Side(int frame) const;
 
@@ -88,11 +89,18 @@ class OverlayRenderer {
   std::vector<Colour> face_colours_;
   std::optional<SidePanel> side_;
   Image backdrop_;
-  std::optional<Floor> floor_;  ///< camera frame
+  std::optional<Floor> floor_;  ///< the track's frame
   mutable MeshDrawer drawer_;   ///< memory used again
 };
 
-/// The body of frame t of a track, V×3 in the camera frame; empty when the frame is lost.
+/// The pose of frame t as its camera has it; nothing when the frame is lost.
+std::optional<BodyPose> PoseInCamera(const BodyModel& body, const Track& track, int frame);
+
+/// A floor of the track's frame as the camera of frame t has it.
+Floor FloorInCamera(const Floor& floor, const Track& track, int frame);
+
+/// The body of frame t of a track, V×3 in the track's frame (the camera's, or the scene of one that moves); empty when
+/// the frame is lost.
 MatrixX3d TrackVertices(const BodyModel& body, const Track& track, int frame);
 
 }  // namespace bodyloom

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/camera_path.h"
 #include "bodyloom/geometry/posed_body.h"
 #include "bodyloom/render/caption.h"
 #include "bodyloom/render/overlay_landmarks.h"
@@ -154,10 +155,22 @@ void PeopleOverlay::DrawCaptions(int moment, Image* image) const {
   if (any_detected) DrawCaption(LandmarkLegend(false), Corner::kBottomLeft, height, image);
 }
 
+std::optional<PeopleOverlay::Seen> PeopleOverlay::SeenFrom(int moment) const {
+  for (size_t i = 0; i < people_.size(); ++i) {
+    const int frame = frames_[i][size_t(moment)];
+    if (frame >= 0 && people_[i].track->HasMovingCamera()) return Seen{people_[i].track, frame};
+  }
+  return std::nullopt;
+}
+
 Image PeopleOverlay::Render(int moment, const Image* background) const {
   BODYLOOM_CHECK(moment >= 0 && size_t(moment) < timestamps_.size(), "overlay: moment ", moment, " is outside the ",
                  timestamps_.size(), " of the clip");
   const Scene scene = SceneAt(moment);
+  const std::optional<Seen> seen = SeenFrom(moment);
+  const Floor floor = seen ? FloorInCamera(*floor_, *seen->track, seen->frame) : *floor_;
+  const MatrixX3d vertices =
+      seen ? MovedPoints(seen->track->camera_from_scene[size_t(seen->frame)], scene.vertices) : scene.vertices;
   const bool has_bodies = scene.vertices.rows() > 0;
   Image view = backdrop_;
   if (background != nullptr) {
@@ -166,24 +179,22 @@ Image PeopleOverlay::Render(int moment, const Image* background) const {
                    camera().width, "x", camera().height);
     view = *background;
   } else if (options_.floor && has_bodies) {
-    DrawFloorGrid(*floor_, scene.vertices.colwise().mean().transpose(), {}, camera(), &view);
-    DrawShadow(scene.vertices, scene.faces, *floor_, camera(), 0.35, &view);
+    DrawFloorGrid(floor, vertices.colwise().mean().transpose(), {}, camera(), &view);
+    DrawShadow(vertices, scene.faces, floor, camera(), 0.35, &view);
   }
   if (has_bodies) {
-    drawer_.Draw(scene.vertices, scene.faces, camera(), Style(scene, background != nullptr ? options_.alpha : 1),
-                 &view);
+    drawer_.Draw(vertices, scene.faces, camera(), Style(scene, background != nullptr ? options_.alpha : 1), &view);
   }
   for (size_t i = 0; i < people_.size(); ++i) {
     const auto& [body, track, detected, number] = people_[i];
     const int frame = frames_[i][size_t(moment)];
     if (frame < 0 || detected == nullptr || !track->HasResult(frame)) continue;
     const Motion& motion = track->motion;
-    DrawOverlayLandmarks(
-        {.body = body,
-         .betas = motion.betas,
-         .pose = PoseFromAxisAngle(*body, motion.poses.row(frame).transpose(), motion.trans.row(frame).transpose()),
-         .camera = track->CameraAt(frame)},
-        detected, frame, {.min_confidence = options_.min_confidence}, &view);
+    DrawOverlayLandmarks({.body = body,
+                          .betas = motion.betas,
+                          .pose = *PoseInCamera(*body, *track, frame),
+                          .camera = track->CameraAt(frame)},
+                         detected, frame, {.min_confidence = options_.min_confidence}, &view);
   }
   DrawCaptions(moment, &view);
   if (!side_) return view;

@@ -54,7 +54,15 @@ class PeopleOverlay {
     std::vector<Colour> colours;  ///< of faces
   };
 
+  /// A frame of a track whose camera moves.
+  struct Seen {
+    const Track* track = nullptr;
+    int frame = 0;
+  };
+
   [[nodiscard]] const Camera& camera() const { return people_[0].track->camera; }
+  /// From where a moment was seen by a camera that moves; nothing: it stands still.
+  [[nodiscard]] std::optional<Seen> SeenFrom(int moment) const;
   [[nodiscard]] Scene SceneAt(int moment) const;
   [[nodiscard]] MeshStyle Style(const Scene& scene, double alpha) const;
   [[nodiscard]] Image Side(int moment, const Scene& scene) const;

@@ -7,14 +7,19 @@
 #include <limits>
 #include <numeric>
 #include <string>
+#include <utility>
 
 #include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/geometry/camera_path.h"
+#include "bodyloom/tracking/camera_scale.h"
 #include "bodyloom/tracking/initialise/impossible_frames.h"
 #include "bodyloom/tracking/initialise/initial_states.h"
+#include "bodyloom/tracking/initialise/seen_feet.h"
 #include "bodyloom/tracking/initialise/stature.h"
 #include "bodyloom/tracking/initialise/swap_repair.h"
 #include "bodyloom/tracking/input_checks.h"
 #include "bodyloom/tracking/motion_level.h"
+#include "bodyloom/tracking/moving_camera.h"
 #include "bodyloom/tracking/observability.h"
 #include "bodyloom/tracking/terms/own/own_terms.h"
 #include "bodyloom/tracking/track_plan.h"
@@ -51,7 +56,7 @@ void WidenDenseKernels(double stature, SequenceProblem* problem) {
     double sigma_px = 0;
     for (const DenseKeypoint& point : *frame.dense.points) sigma_px += point.sigma_px;
     sigma_px /= static_cast<double>(frame.dense.size());
-    const double share_px = kShareOfHeight * UprightHeightPx(problem->layout, problem->states[t], stature);
+    const double share_px = kShareOfHeight * UprightHeightPx(problem->layout, StateInCamera(*problem, t), stature);
     frame.dense.kernel = std::max(frame.dense.kernel, share_px / sigma_px);
   }
 }
@@ -130,6 +135,19 @@ bool ClipFit::FindStart() {
   return true;
 }
 
+void ClipFit::FollowCamera() {
+  if (input_.camera_from_scene == nullptr) return;
+  camera_path_ = ScaledPath(*input_.camera_from_scene, input_.camera_scale_m);
+  summary_.camera_path.moves = true;
+  summary_.camera_path.scale_m = input_.camera_scale_m;
+  summary_.camera_path.estimated = seeks_camera_scale();
+  for (size_t t = 0; t < num_frames(); ++t) {
+    problem_.frames[t].camera_from_scene = &camera_path_[t];
+    problem_.states[t] =
+        StateInCamera(problem_.layout, Inverse(camera_path_[t]), problem_.betas, std::move(problem_.states[t]));
+  }
+}
+
 void ClipFit::Observe() {
   const size_t T = num_frames();
   const std::array<int, 2> knees = FindKnees(*input_.body);
@@ -158,6 +176,7 @@ void ClipFit::Observe() {
     }
     summary_.num_observations += static_cast<int>(frame.landmarks.seen.size() + frame.dense.size());
   }
+  FollowCamera();
   AddOwnTerms(options_.own_terms, &problem_);
   problem_.velocity_weight = options_.velocity_weight;
   // Detections of a frame and of its neighbours err together (COCO joints are not the body's, and detectors are off for
@@ -175,11 +194,14 @@ void ClipFit::Observe() {
 
 void ClipFit::FitCoarseFrames() {
   const bool from_guess = input_.initialiser == nullptr;
-  const bool learns = !lifted_.frames.empty() || dense_rounds_->any() || part_label_rounds_->any();
+  const bool learns =
+      !lifted_.frames.empty() || dense_rounds_->any() || part_label_rounds_->any() || seeks_camera_scale();
   if (!from_guess && coarse_frames_.size() == num_frames() && !learns) return;
   SequenceProblem coarse = SelectFrames(problem_, coarse_frames_);
   if (from_guess) FitNearStart(&coarse);
+  FitCameraScale(&coarse);
   if (has_points()) runner_->Run(stages_.coarse, &coarse);
+  FitCameraScale(&coarse);
   LearnFromFirstAnswer(&coarse);
   FitPartLabels(&coarse);
   FitDense(&coarse);
@@ -199,6 +221,37 @@ void ClipFit::LearnFromFirstAnswer(SequenceProblem* coarse) {
   }
   const bool has_ground = ground_->FindGround(coarse_frames_, coarse, &problem_);
   if (has_points() && (options_.fit_smoothness || has_ground)) runner_->Run(stages_.again, coarse);
+}
+
+void ClipFit::FitCameraScale(SequenceProblem* coarse) {
+  if (!seeks_camera_scale() || !runner_->going()) return;
+  CameraPathSummary& summary = summary_.camera_path;
+  if (lifted_.frames.empty() || joints_ == nullptr) {
+    summary.why = "the lifter says which feet stand, and it does not run";
+    return;
+  }
+  std::vector<std::array<FootPlace, 2>> feet =
+      SeenFeet(*coarse, coarse_frames_, lifted_.frames, lifted_landmarks_, *joints_);
+  std::vector<CameraPose> unit_path;
+  for (size_t i = 0; i < feet.size(); ++i) {
+    unit_path.push_back((*input_.camera_from_scene)[coarse_frames_[i]]);
+    for (FootPlace& foot : feet[i]) foot.ankle_m = MovedPoint(camera_path_[coarse_frames_[i]], foot.ankle_m);
+  }
+  const CameraScale scale = EstimateCameraScale(feet, coarse->timestamps, coarse->cut_before, unit_path);
+  summary.why = scale.why;
+  summary.scale_m = scale.found ? scale.scale_m : 0;
+  summary.sigma_m = scale.found ? scale.sigma_m : 0;
+  ScaleCameraPath(summary.scale_m, coarse);
+}
+
+void ClipFit::ScaleCameraPath(double scale_m, SequenceProblem* coarse) {
+  const std::vector<CameraPose> before = camera_path_, after = ScaledPath(*input_.camera_from_scene, scale_m);
+  const auto move = [&](int t, const Eigen::VectorXd& betas, FrameState* state) {
+    *state = StateInCamera(problem_.layout, Compose(Inverse(after[t]), before[t]), betas, std::move(*state));
+  };
+  for (size_t i = 0; i < coarse_frames_.size(); ++i) move(coarse_frames_[i], coarse->betas, &coarse->states[i]);
+  for (size_t t = 0; t < num_frames(); ++t) move(static_cast<int>(t), problem_.betas, &problem_.states[t]);
+  std::copy(after.begin(), after.end(), camera_path_.begin());  // frames point into it
 }
 
 void ClipFit::FitPartLabels(SequenceProblem* coarse) {

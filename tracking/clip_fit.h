@@ -45,14 +45,23 @@ class ClipFit {
  private:
   void CleanObservations();
   void SetUpProblem();
+  /// States and frames from the camera frames into the scene of a camera that moves.
+  void FollowCamera();
   void FitNearStart(SequenceProblem* coarse);
   /// How lively the clip is and where its ground is, after a first answer; fits again when that changes something.
   void LearnFromFirstAnswer(SequenceProblem* coarse);
+  /// Finds the length of the camera's path, where it is not known, with the coarse answer so far, and gives it to all
+  /// frames; what each camera sees of the person stays as it is.
+  void FitCameraScale(SequenceProblem* coarse);
+  void ScaleCameraPath(double scale_m, SequenceProblem* coarse);
   void FitPartLabels(SequenceProblem* coarse);
   void FitDense(SequenceProblem* coarse);
   /// Uncertainty of every frame's joints: that of the coarse frame nearest in time.
   void FillJointSigma(Track* track);
   [[nodiscard]] bool has_points() const { return input_.keypoints != nullptr || input_.dense != nullptr; }
+  [[nodiscard]] bool seeks_camera_scale() const {
+    return input_.camera_from_scene != nullptr && input_.camera_scale_m == 0;
+  }
   [[nodiscard]] size_t num_frames() const { return problem_.timestamps.size(); }
 
   const TrackSequenceOptions& options_;
@@ -67,7 +76,8 @@ class ClipFit {
   ObservedLandmarks landmarks_;
   std::optional<MixturePrior> prior_;
   JointLimits limits_;
-  double stature_m_ = 0;  ///< AssumedStature()
+  double stature_m_ = 0;                 ///< AssumedStature()
+  std::vector<CameraPose> camera_path_;  ///< T, scaled, of a camera that moves; or empty
   SequenceProblem problem_;
   LiftedStart lifted_;
   LiftedLandmarks lifted_landmarks_;

@@ -18,6 +18,9 @@
 /// + ½ Σ ρ(‖W (x − a)‖²)              feet that stand (terms/ground_contact/ground_contact.h)
 /// + ½ Σ ρ(‖r‖²)                      a user's own cost functions (terms/own/own_term.h)
 ///
+/// Where the camera moves, the state is in the scene and every term takes it in the camera frame of its frame; the sums
+/// are taken back to the scene at the end (moving_camera.h).
+///
 /// Rotations are differentiated by right increments. Points that cannot be projected cost the kernel's saturation c²
 /// with a zero derivative, and are counted.
 #pragma once
@@ -42,6 +45,7 @@ class FrameEvaluator {
 
  private:
   FrameAccumulator sums_;
+  FrameState in_camera_;  ///< of a camera that moves
 };
 
 }  // namespace bodyloom

@@ -2,6 +2,7 @@
 /// Data of one frame, term by term. Borrowed pointers outlive the cost.
 #pragma once
 
+#include "bodyloom/geometry/camera.h"
 #include "bodyloom/tracking/terms/dense/dense.h"
 #include "bodyloom/tracking/terms/ground_contact/ground_contact.h"
 #include "bodyloom/tracking/terms/initialiser.h"
@@ -19,6 +20,9 @@ namespace bodyloom {
 
 /// A term's part has num_rows(), how many rows of the Jacobian it may fill, and Add(FrameAccumulator*).
 struct FrameData {
+  /// Of a camera that moves: a frame's state is in the scene, and its terms speak of this camera's frame
+  /// (moving_camera.h). Null: the camera stands still.
+  const CameraPose* camera_from_scene = nullptr;
   LandmarksOfFrame landmarks;
   DenseOfFrame dense;
   RenderedUvOfFrame rendered_uv;

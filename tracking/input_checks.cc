@@ -92,6 +92,24 @@ void CheckGround(const KnownGround& ground) {
                  ground.camera_height_m, ", expected metres");
 }
 
+void CheckCameraPath(const TrackSequenceInput& input, const TrackSequenceOptions& options, int num_frames) {
+  const std::vector<CameraPose>& path = *input.camera_from_scene;
+  BODYLOOM_CHECK(static_cast<int>(path.size()) == num_frames, "track: the camera's path has ", path.size(),
+                 " poses, the detections ", num_frames, " frames");
+  for (size_t t = 0; t < path.size(); ++t) {
+    const Eigen::Matrix3d& R = path[t].camera_from_world_rotation;
+    BODYLOOM_CHECK(path[t].camera_from_world_translation.allFinite() && R.determinant() > 0 &&
+                       (R * R.transpose()).isIdentity(1e-6),
+                   "track: pose ", t, " of the camera's path is no rotation and translation");
+  }
+  BODYLOOM_CHECK(input.camera_scale_m >= 0 && std::isfinite(input.camera_scale_m),
+                 "track: the scale of the camera's path is ", input.camera_scale_m, ", expected metres a unit, or 0");
+  BODYLOOM_CHECK(options.camera_knowledge != CameraKnowledge::kWeak,
+                 "track: weak perspective has no place in a scene; give a camera that moves a focal length");
+  BODYLOOM_CHECK(options.own_terms.empty(),
+                 "track: own terms are for a camera that stands still; leave out the camera's path or the terms");
+}
+
 bool IsUsable(const DenseKeypoint& point, float reach) {
   return IsWithin(point.pixel.x(), reach) && IsWithin(point.pixel.y(), reach) && point.sigma_px > 0 &&
          std::isfinite(point.sigma_px) && (point.barycentric.array() >= -1).all() &&
@@ -183,6 +201,7 @@ void CheckInput(const TrackSequenceInput& input, const TrackSequenceOptions& opt
   }
   if (input.dense != nullptr) CheckDense(input);
   if (input.part_labels != nullptr) CheckPartLabels(input, options);
+  if (input.camera_from_scene != nullptr) CheckCameraPath(input, options, extent.frames);
   if (options.camera_knowledge == CameraKnowledge::kKnown) {
     BODYLOOM_CHECK(extent.width == 0 || input.camera.width == 0 ||
                        (extent.width == input.camera.width && extent.height == input.camera.height),

@@ -36,6 +36,12 @@ struct TrackSequenceInput {
   /// The person's stature, metres, which one camera does not see: distances follow it. 0: the mean body's, else 0.4 to
   /// 1.6 times that. The live tracker does not use it.
   double stature_m = 0;
+  /// Where the camera is in every frame when it moves (geometry/camera_path.h), T of them; null: it stands still. The
+  /// track is then in the scene. Not with weak perspective, own terms, nor for the live tracker. An initialiser, 3D
+  /// landmarks and observations are in the camera frame of their frame as ever; `ground` is in the scene.
+  const std::vector<CameraPose>* camera_from_scene = nullptr;
+  /// How many metres a unit of these translations is; 0: not known, found from the person (camera_scale.h).
+  double camera_scale_m = 1;
   Camera camera;  ///< kKnown: all of it; otherwise only width and height (0: taken from the observations)
 };
 

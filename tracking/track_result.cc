@@ -10,6 +10,7 @@
 #include "bodyloom/geometry/posed_body.h"
 #include "bodyloom/tracking/frame_cost.h"
 #include "bodyloom/tracking/kinematics.h"
+#include "bodyloom/tracking/moving_camera.h"
 
 namespace bodyloom {
 
@@ -88,6 +89,11 @@ void FillTrack(const TrackSequenceInput& input, const SequenceProblem& problem, 
     track.frame_status.push_back(status);
     ++summary.frames_by_status[ToString(status)];
 
+    if (frame.camera_from_scene != nullptr) {
+      track.camera_from_scene.push_back(*frame.camera_from_scene);
+      const FrameState seen = StateInCamera(problem, t);
+      kinematics.Set(model, problem.betas, seen.rotations, seen.translation, false);
+    }
     const Camera camera = track.CameraAt(t);
     if (input.keypoints != nullptr) {
       const size_t before = landmark_errors.size();

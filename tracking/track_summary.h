@@ -56,8 +56,20 @@ struct GroundSummary {
   /// Standard deviations of the vertical and of the camera's height (geometry/world_frame.h); NaN where unknown.
   double up_sigma_deg = std::numeric_limits<double>::quiet_NaN();
   double height_sigma_m = std::numeric_limits<double>::quiet_NaN();
-  int contact_frames = 0;             ///< frames in which at least one foot was held
+  int contact_frames = 0;  ///< frames in which at least one foot was held
+  /// How fast ankles move across the view that the lifter calls standing, median over the clip before the ground held
+  /// them, m/s: a camera that moves although none was said to takes standing feet with it. NaN: none was seen.
+  double standing_speed_mps = std::numeric_limits<double>::quiet_NaN();
   std::vector<StandingFoot> stances;  ///< all of the longest shot, on the plane or not, where the answer has them
+};
+
+/// How the path of a camera that moves came to its length.
+struct CameraPathSummary {
+  bool moves = false;      ///< a path was given
+  double scale_m = 1;      ///< metres a unit of the path's translations; 0: not known, its rotations alone were used
+  bool estimated = false;  ///< from the person (camera_scale.h)
+  double sigma_m = 0;      ///< standard deviation of an estimated scale
+  std::string why;         ///< what an estimate was made from, or why none could be
 };
 
 struct TrackSequenceSummary {
@@ -82,6 +94,7 @@ struct TrackSequenceSummary {
   double stature_m = 0;  ///< at which the body was held because it was given; 0: the mean body's
   int num_observations = 0, num_parameters = 0;
   GroundSummary ground;
+  CameraPathSummary camera_path;
   int num_swaps_repaired = 0;  ///< left–right pairs found exchanged in the detections
   [[nodiscard]] bool IsUsable() const { return status != SolveStatus::kFailure; }
   /// A few lines for a terminal.

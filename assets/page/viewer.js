@@ -4,7 +4,7 @@
 //
 // The page holds, by id of its <script> elements:
 //   clip   JSON: seconds (one a frame, from the clip's start), people [{name, joints, status, residual_px, sigma_mm}],
-//          world_from_camera (4x4, rows), K (3x3), image_size, fps
+//          world_from_camera (3x4, rows), K (3x3), image_size, fps, and of a camera that moves cameras: such rows a frame
 //   glb    the scene as base64 of a .glb
 //   video  base64 of an .mp4 with a picture for each frame, evenly fps a second, or empty
 // and elements with the ids used below. A fragment "#frame=30&view=side&texture=off" opens it there; "#measure" counts pictures a second.
@@ -116,22 +116,28 @@ class Stage {
     if (!clip.K || !clip.image_size) return;
     const [width, height] = clip.image_size;
     const [[fx, , cx], [, fy, cy]] = clip.K;
-    const m = clip.world_from_camera;
-    const inWorld = (x, y, z) => new THREE.Vector3(
-      m[0][0] * x + m[0][1] * y + m[0][2] * z + m[0][3], m[1][0] * x + m[1][1] * y + m[1][2] * z + m[1][3],
-      m[2][0] * x + m[2][1] * y + m[2][2] * z + m[2][3]);
     const depth = 0.6;
-    const corner = (u, v) => inWorld((u - cx) / fx * depth, (v - cy) / fy * depth, depth);
-    const eye = inWorld(0, 0, 0);
+    const corner = (u, v) => new THREE.Vector3((u - cx) / fx * depth, (v - cy) / fy * depth, depth);
+    const eye = new THREE.Vector3();
     const corners = [corner(0, 0), corner(width, 0), corner(width, height), corner(0, height)];
     const lines = [];
     for (let i = 0; i < 4; ++i) lines.push(eye, corners[i], corners[i], corners[(i + 1) % 4]);
     this.frustum = new THREE.LineSegments(new THREE.BufferGeometry().setFromPoints(lines),
                                           new THREE.LineBasicMaterial({ color: 0x3366cc }));
+    this.frustum.matrixAutoUpdate = false;
     this.scene.add(this.frustum);
-    this.eye = eye;
-    this.ahead = inWorld(0, 0, 1).sub(eye);
     this.fieldOfView = 2 * Math.atan(height / (2 * fy)) * 180 / Math.PI;
+    this.moveCamera(0);
+  }
+
+  // To where the frame was seen from.
+  moveCamera(frame) {
+    if (!this.frustum) return;
+    const m = clip.cameras ? clip.cameras[frame] : clip.world_from_camera;
+    this.frustum.matrix.set(...m[0], ...m[1], ...m[2], 0, 0, 0, 1);
+    this.frustum.matrixWorldNeedsUpdate = true;
+    this.eye = new THREE.Vector3(m[0][3], m[1][3], m[2][3]);
+    this.ahead = new THREE.Vector3(m[0][2], m[1][2], m[2][2]);
   }
 
   centreAt(second) {
@@ -178,6 +184,7 @@ class Stage {
   }
 
   show(frame) {
+    this.moveCamera(frame);
     this.pose(clip.seconds[frame]);
     const showJoints = element('show-joints').checked;
     this.bodies.forEach(({ mesh, texture }, index) => {

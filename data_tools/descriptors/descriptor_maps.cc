@@ -9,6 +9,7 @@
 #include "bodyloom/data_tools/descriptors/seen_texels.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/geometry/camera_path.h"
 #include "bodyloom/geometry/uv_bake_simd.h"
 
 namespace bodyloom::describe_internal {
@@ -112,6 +113,7 @@ Map DescriptorMaps::NormalMap(int t, Scratch* scratch, NormalSummary* summary, i
   const PosedSkeleton skeleton = PoseSkeleton(body_, shape_.rest_joints, *poses_[t]);
   return Baked(scratch, [&](std::span<float> planes) {
     *cancelled = surface_.Normals(posed_.Vertices(t), skeleton, scratch, summary, planes);
+    TurnToCamera(t, planes);
   });
 }
 
@@ -126,7 +128,10 @@ Map DescriptorMaps::VelocityMap(int s, std::span<const float> velocities, Scratc
     DifferenceVertices(stencil, frames, posed_.roots().subspan(stencil.first_frame, frames.size()), scratch->vertices);
     velocities = scratch->vertices;
   }
-  return Baked(scratch, [&](std::span<float> planes) { surface_.Velocities(velocities, scratch, planes); });
+  return Baked(scratch, [&](std::span<float> planes) {
+    surface_.Velocities(velocities, scratch, planes);
+    TurnToCamera(s, planes);
+  });
 }
 
 std::vector<float> DescriptorMaps::AnalyticVelocities(std::span<const int> frames) const {
@@ -145,10 +150,21 @@ std::vector<float> DescriptorMaps::AnalyticVelocities(std::span<const int> frame
   return velocities;
 }
 
+void DescriptorMaps::TurnToCamera(int t, std::span<float> planes) const {
+  if (!track_.HasMovingCamera() || options_.frame != SurfaceFrame::kCamera) return;
+  const Eigen::Matrix3f R = track_.camera_from_scene[size_t(t)].camera_from_world_rotation.cast<float>();
+  Eigen::Map<Eigen::Matrix<float, 3, Eigen::Dynamic, Eigen::RowMajor>> vectors(planes.data(), 3,
+                                                                               Eigen::Index(planes.size() / 3));
+  vectors = (R * vectors).eval();
+}
+
 /// The frame's vertices as its camera sees them.
 MatrixX3d DescriptorMaps::VerticesInCamera(int t) const {
-  const Vector3d root = shape_.rest_joints.row(0).transpose() + track_.motion.trans.row(t).transpose();
-  const BodyPose in_camera = PoseFromAxisAngle(body_, track_.motion.poses.row(t).transpose(), Vector3d::Zero());
+  const Vector3d rest_root = shape_.rest_joints.row(0).transpose();
+  BodyPose in_camera =
+      PoseFromAxisAngle(body_, track_.motion.poses.row(t).transpose(), track_.motion.trans.row(t).transpose());
+  if (track_.HasMovingCamera()) in_camera = MovedPose(track_.camera_from_scene[size_t(t)], rest_root, in_camera);
+  const Vector3d root = rest_root + in_camera.trans;
   const Matrix3d camera_from_frame = in_camera.rotations[0] * poses_[t]->rotations[0].transpose();
   const Eigen::Map<const MatrixX3f> from_root(posed_.Vertices(t).data(), body_.num_vertices(), 3);
   return (from_root.cast<double>() * camera_from_frame.transpose()).rowwise() + root.transpose();

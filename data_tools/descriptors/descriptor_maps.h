@@ -70,6 +70,8 @@ class DescriptorMaps {
   Map VelocityMap(int s, std::span<const float> velocities, Scratch* scratch);
   [[nodiscard]] std::vector<float> AnalyticVelocities(std::span<const int> frames) const;
   [[nodiscard]] MatrixX3d VerticesInCamera(int t) const;
+  /// Vectors of frame t from the scene's axes into those of a camera that moves, where these are asked for.
+  void TurnToCamera(int t, std::span<float> planes) const;
   Map OnlySeen(int t, Maps maps, Scratch* scratch, double* share) const;
 
   const BodyModel& body_;

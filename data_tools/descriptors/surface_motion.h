@@ -15,8 +15,9 @@ namespace bodyloom {
 struct SurfaceMotion {
   VelocityStencilOptions velocity;
   bool analytic = false;  ///< velocities by the body model's derivative instead of differences of vertices
-  /// Of normals and velocities. A camera that moves adds its own motion to kCamera; kWorld has one pose for the clip;
-  /// kBody knows nothing of the camera.
+  /// Of normals and velocities. kCamera: where the track has the path of a camera that moves, the velocities are the
+  /// body's own, in each frame's axes of the camera; a camera that moves without a path adds its own motion. kWorld has
+  /// one pose for the clip; kBody knows nothing of the camera.
   SurfaceFrame frame = SurfaceFrame::kCamera;
   CameraPose camera_pose;  ///< for SurfaceFrame::kWorld
   /// False with the reason when a field is out of range.

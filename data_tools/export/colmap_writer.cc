@@ -34,13 +34,13 @@ std::string ColmapCamerasText(const Camera& camera) {
 }
 
 std::string ColmapImagesText(const ExportScene& scene) {
-  const CameraPose pose = scene.world.camera_pose();
-  const Eigen::Quaterniond q(pose.camera_from_world_rotation);
-  const Eigen::Vector3d& t = pose.camera_from_world_translation;
   std::string out = "# IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME, and a line of POINTS2D\n";
   char text[512];
   const ExportPerson& person = scene.people.front();
   for (size_t i = 0; i < person.seconds.size(); ++i) {
+    const CameraPose pose = scene.CameraAt(person.seconds[i]);
+    const Eigen::Quaterniond q(pose.camera_from_world_rotation);
+    const Eigen::Vector3d& t = pose.camera_from_world_translation;
     std::snprintf(text, sizeof text, "%zu %.17g %.17g %.17g %.17g %.17g %.17g %.17g 1 frame_%06ld.png\n\n", i + 1,
                   q.w(), q.x(), q.y(), q.z(), t.x(), t.y(), t.z(), std::lround(person.seconds[i] * scene.fps));
     out += text;

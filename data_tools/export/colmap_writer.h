@@ -4,8 +4,8 @@
 ///
 /// One camera: PINHOLE, or FULL_OPENCV where the lens distorts; principal point + 0.5, because COLMAP's picture begins at
 /// the corner of its first pixel. One image a frame of the first person's track, "frame_000000.png" by the track's
-/// frames that are known, all from the same place, because the camera stands still: pose world → camera, quaternion
-/// w x y z. Points: the vertices of everybody's first known frame, as a start. World: metres, y up (unlike COLMAP's own
+/// frames that are known, all from the same place where the camera stands still: pose world → camera, quaternion w x y
+/// z. Points: the vertices of everybody's first known frame, as a start. World: metres, y up (unlike COLMAP's own
 /// reconstructions, whose up is anywhere).
 /// Source: colmap doc/format.rst.
 #pragma once

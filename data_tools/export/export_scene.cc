@@ -2,11 +2,14 @@
 #include "bodyloom/data_tools/export/export_scene.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include "bodyloom/data_tools/motion/motion_tools.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/camera_path.h"
 #include "bodyloom/geometry/rotation.h"
 
 namespace bodyloom {
@@ -14,12 +17,26 @@ namespace {
 
 constexpr double kOneFrameRate = 30;
 
+/// Where a camera that moves is, at the moments of all tracks.
+void AddCameraKeys(std::span<const Track* const> tracks, ExportScene* scene) {
+  std::map<double, CameraPose> at;
+  for (const Track* track : tracks) {
+    BODYLOOM_CHECK(track->HasMovingCamera() == tracks[0]->HasMovingCamera(),
+                   "export: the camera of one track moves and that of another stands still, expected one clip's");
+    for (size_t t = 0; t < track->camera_from_scene.size(); ++t) {
+      at.emplace(track->motion.timestamps[t] - scene->start_s,
+                 Compose(track->camera_from_scene[t], scene->world.camera_pose()));
+    }
+  }
+  for (const auto& [seconds, pose] : at) {
+    if (seconds >= 0) scene->camera_keys.push_back({seconds, pose});
+  }
+}
+
 }  // namespace
 
 BodyPose PoseInWorld(const WorldFrame& world, const Eigen::Vector3d& rest_pelvis, BodyPose pose) {
-  pose.rotations[0] = world.rotation * pose.rotations[0];
-  pose.trans = world.PointFromCamera(rest_pelvis + pose.trans) - rest_pelvis;
-  return pose;
+  return MovedPose({world.rotation, world.translation}, rest_pelvis, std::move(pose));
 }
 
 Motion MotionInWorld(const WorldFrame& world, const Eigen::Vector3d& rest_pelvis, const Motion& motion) {
@@ -33,6 +50,15 @@ Motion MotionInWorld(const WorldFrame& world, const Eigen::Vector3d& rest_pelvis
     turned.trans.row(t) = (world.PointFromCamera(pelvis) - rest_pelvis).transpose();
   }
   return turned;
+}
+
+CameraPose ExportScene::CameraAt(double seconds) const {
+  if (camera_keys.empty()) return world.camera_pose();
+  return std::min_element(camera_keys.begin(), camera_keys.end(),
+                          [&](const ExportCameraKey& a, const ExportCameraKey& b) {
+                            return std::abs(a.seconds - seconds) < std::abs(b.seconds - seconds);
+                          })
+      ->camera_from_world;
 }
 
 ExportScene MakeExportScene(std::span<const BodyModel* const> bodies, std::span<const Track* const> tracks,
@@ -67,6 +93,7 @@ ExportScene MakeExportScene(std::span<const BodyModel* const> bodies, std::span<
   for (ExportPerson& person : scene.people) {
     for (double& seconds : person.seconds) seconds -= scene.start_s;
   }
+  AddCameraKeys(tracks, &scene);
   scene.duration_s = end_s - scene.start_s;
   return scene;
 }

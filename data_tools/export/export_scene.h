@@ -23,13 +23,24 @@ struct ExportPerson {
   std::vector<BodyPose> poses;  ///< world frame; lost frames are left out
 };
 
+/// Where a camera that moves is at a moment.
+struct ExportCameraKey {
+  double seconds = 0;  ///< since the scene's start
+  CameraPose camera_from_world;
+};
+
 struct ExportScene {
   WorldFrame world;
-  Camera camera;       ///< of the clip; a width of 0: the image size is not known
+  Camera camera;  ///< of the clip; a width of 0: the image size is not known
+  std::vector<ExportCameraKey>
+      camera_keys;     ///< of a camera that moves, rising; empty: it stands at world.camera_pose()
   double fps = 30;     ///< of the first person's clock
   double start_s = 0;  ///< the earliest frame's time in the clip
   double duration_s = 0;
   std::vector<ExportPerson> people;
+
+  /// At a moment of the scene: the key nearest in time.
+  [[nodiscard]] CameraPose CameraAt(double seconds) const;
 };
 
 /// The pose of a body whose pelvis joint rests at `rest_pelvis`, in the world: with R, t of the world,
@@ -40,7 +51,8 @@ BodyPose PoseInWorld(const WorldFrame& world, const Eigen::Vector3d& rest_pelvis
 Motion MotionInWorld(const WorldFrame& world, const Eigen::Vector3d& rest_pelvis, const Motion& motion);
 
 /// Tracks of one clip, each of the body beside it. Throws std::invalid_argument when there are none, bodies and tracks
-/// differ in number, a track has more joints than its body, or no frame with a result.
+/// differ in number, a track has more joints than its body, or no frame with a result, and for a camera that moves in one
+/// track and stands still in another.
 ExportScene MakeExportScene(std::span<const BodyModel* const> bodies, std::span<const Track* const> tracks,
                             const WorldFrame& world);
 

@@ -12,6 +12,7 @@
 #include "bodyloom/data_tools/export/skinned_mesh.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/camera_path.h"
 
 namespace bodyloom {
 namespace {
@@ -283,11 +284,29 @@ class SceneWriter {
                           {"K", {{camera.fx, 0, camera.cx}, {0, camera.fy, camera.cy}, {0, 0, 1}}},
                           {"distortion", camera.distortion}}}});
     const Matrix3d rotation = scene_.world.rotation * Vector3d(1, -1, -1).asDiagonal();
-    AddNode({{"name", "camera"},
-             {"camera", cameras_.size() - 1},
-             {"rotation", Numbers(QuaternionAfter(rotation, nullptr))},
-             {"translation", Numbers(scene_.world.translation)}},
-            true);
+    const int node = AddNode({{"name", "camera"},
+                              {"camera", cameras_.size() - 1},
+                              {"rotation", Numbers(QuaternionAfter(rotation, nullptr))},
+                              {"translation", Numbers(scene_.world.translation)}},
+                             true);
+    if (!scene_.camera_keys.empty()) AddCameraMotion(node);
+  }
+
+  void AddCameraMotion(int node) {
+    std::vector<float> times, places, rotations;
+    Quaternionf before = Quaternionf::Identity();
+    for (const ExportCameraKey& key : scene_.camera_keys) {
+      const CameraPose world_from_camera = Inverse(key.camera_from_world);
+      const Matrix3d rotation = world_from_camera.camera_from_world_rotation * Vector3d(1, -1, -1).asDiagonal();
+      before = QuaternionAfter(rotation, times.empty() ? nullptr : &before);
+      times.push_back(static_cast<float>(key.seconds));
+      rotations.insert(rotations.end(), before.coeffs().data(), before.coeffs().data() + 4);
+      const Eigen::Vector3f place = world_from_camera.camera_from_world_translation.cast<float>();
+      places.insert(places.end(), place.data(), place.data() + 3);
+    }
+    const int input = buffer_.AddFloats(times, "SCALAR", GlbBuffer::kNone, true);
+    AddChannel(input, buffer_.AddFloats(places, "VEC3"), node, "translation");
+    AddChannel(input, buffer_.AddFloats(rotations, "VEC4"), node, "rotation");
   }
 
   void AddGround() {

@@ -10,6 +10,7 @@
 #include "bodyloom/data_tools/export/skinned_mesh.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/camera_path.h"
 
 namespace bodyloom {
 namespace {
@@ -220,6 +221,18 @@ class PersonText {
   std::string joints_, shapes_;
 };
 
+/// A time sample for every key of a camera that moves.
+std::string UsdCameraMotion(const ExportScene& scene) {
+  std::string text = "        matrix4d xformOp:transform.timeSamples = {\n";
+  for (const ExportCameraKey& key : scene.camera_keys) {
+    const CameraPose world_from_camera = Inverse(key.camera_from_world);
+    const Eigen::Matrix3d rotation = world_from_camera.camera_from_world_rotation * Vector3d(1, -1, -1).asDiagonal();
+    text += "            " + Number(key.seconds * scene.fps) + ": " +
+            MatrixText(At(world_from_camera.camera_from_world_translation, rotation)) + ",\n";
+  }
+  return text + "        }\n";
+}
+
 /// Focal length and aperture are tenths of the scene's unit in name, and only their ratio counts: here millimetres of a
 /// picture that is 36 mm wide.
 std::string UsdCamera(const ExportScene& scene) {
@@ -236,6 +249,7 @@ std::string UsdCamera(const ExportScene& scene) {
           Number((camera.cy - (camera.height - 1) / 2.0) * mm * camera.fx / camera.fy) + "\n";
   text += "        float2 clippingRange = (0.01, 1000)\n";
   text += "        matrix4d xformOp:transform = " + MatrixText(At(scene.world.translation, rotation)) + "\n";
+  if (!scene.camera_keys.empty()) text += UsdCameraMotion(scene);
   return text + "        uniform token[] xformOpOrder = [\"xformOp:transform\"]\n    }\n";
 }
 

@@ -34,6 +34,7 @@ Track FramesInOrder(const Track& track, std::span<const int> frames) {
     shown.motion.trans.row(t) = track.motion.trans.row(s);
     shown.motion.timestamps.push_back(times.front() + t * frame_s);
     shown.frame_status.push_back(track.frame_status.at(s));
+    if (track.HasMovingCamera()) shown.camera_from_scene.push_back(track.camera_from_scene.at(s));
     if (shown.weak_camera.rows() > 0) shown.weak_camera.row(t) = track.weak_camera.row(s);
     if (shown.joint_sigma.rows() > 0) shown.joint_sigma.row(t) = track.joint_sigma.row(s);
     if (!track.joints.empty()) shown.joints.push_back(track.joints.at(s));

@@ -8,6 +8,7 @@
 
 #include "bodyloom/data_tools/motion/motion_tools.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/camera_path.h"
 
 namespace bodyloom {
 namespace {
@@ -79,6 +80,13 @@ Track ResampleTrack(const Track& track, double fps) {
     const auto& [time, before, after, share] = instants[t];
     out.motion.timestamps.push_back(time);
     out.frame_status.push_back(before < 0 ? FrameStatus::kLost : track.frame_status.at(share < 0.5 ? before : after));
+    if (track.HasMovingCamera()) {
+      // Where nothing is known of the person the camera stays where it was.
+      out.camera_from_scene.push_back(
+          before >= 0 ? InterpolatePoses(track.camera_from_scene.at(before), track.camera_from_scene.at(after), share)
+          : t > 0     ? out.camera_from_scene.back()
+                      : track.camera_from_scene.front());
+    }
     if (before < 0) continue;
     if (before == after) {
       out.motion.poses.row(t) = track.motion.poses.row(before);

@@ -59,6 +59,7 @@ Track WithShape(const BodyModel& body, const Track& track, const VectorXd& betas
   const double r = before.height > 0 ? after.height / before.height : 1;
   Track other;
   other.camera = track.camera;
+  other.camera_from_scene = track.camera_from_scene;
   other.world = track.world;
   other.motion = track.motion;
   other.motion.betas = betas;

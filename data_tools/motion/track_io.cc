@@ -50,8 +50,20 @@ void CheckTrack(const Track& track) {
                  track.frame_status.size(), " frames, poses ", T);
   BODYLOOM_CHECK(motion.betas.allFinite(), "track: betas holds NaN or infinite values");
   const bool weak = track.camera.model == CameraModel::kWeakPerspective;
+  BODYLOOM_CHECK(track.camera_from_scene.empty() || (static_cast<int>(track.camera_from_scene.size()) == T && !weak),
+                 "track: a path of ", track.camera_from_scene.size(), " poses of a ", ToString(track.camera.model),
+                 " camera for ", T, " frames, expected as many of a pinhole camera");
   BODYLOOM_CHECK(track.weak_camera.rows() == (weak ? T : 0), "track: weak_camera has ", track.weak_camera.rows(),
                  " frames, expected ", weak ? T : 0);
+}
+
+using RowMatrix4d = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+
+RowMatrix4d MatrixOf(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& translation) {
+  RowMatrix4d matrix = RowMatrix4d::Identity();
+  matrix.topLeftCorner<3, 3>() = rotation;
+  matrix.topRightCorner<3, 1>() = translation;
+  return matrix;
 }
 
 /// Frames a second by the median time step; the default for a single frame.
@@ -74,6 +86,7 @@ class TrackReader {
     ReadTimestamps();
     ReadStatus();
     ReadCamera();
+    ReadCameraPath();
     ReadPoints("joints", -1, &track_.joints);
     ReadPoints("coco17", kCocoPoints, &track_.coco17);
     const Eigen::Index J = track_.motion.poses.cols() / 3;
@@ -243,17 +256,36 @@ class TrackReader {
     std::copy(distortion.begin(), distortion.end(), track_.camera.distortion.begin());
   }
 
+  /// 16 numbers by rows.
+  [[nodiscard]] CameraPose RigidMotion(const double* numbers, const std::string& name) const {
+    const Eigen::Matrix4d matrix = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(numbers);
+    const CameraPose pose{matrix.topLeftCorner<3, 3>(), matrix.topRightCorner<3, 1>()};
+    const Eigen::Matrix3d& R = pose.camera_from_world_rotation;
+    if (matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1) || !(R.determinant() > 0) ||
+        !(R * R.transpose()).isIdentity(1e-6)) {
+      Fail(name + ": expected a rotation and a translation [R t; 0 0 0 1]");
+    }
+    return pose;
+  }
+
+  void ReadCameraPath() {
+    if (!Has("camera_from_scene")) return;
+    if (track_.camera.model != CameraModel::kPinhole) {
+      Fail("camera_from_scene: of a weak-perspective camera, which has no place in a scene");
+    }
+    const std::vector<double> m = Finite("camera_from_scene", {T_, 4, 4});
+    for (int t = 0; t < T_; ++t) {
+      track_.camera_from_scene.push_back(
+          RigidMotion(m.data() + size_t{16} * t, Concatenate("camera_from_scene: frame ", t)));
+    }
+  }
+
   void ReadWorld() {
     if (!Has("world_from_camera")) return;
-    const std::vector<double> m = Finite("world_from_camera", {4, 4});
-    const Eigen::Matrix4d matrix = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(m.data());
+    const CameraPose pose = RigidMotion(Finite("world_from_camera", {4, 4}).data(), "world_from_camera");
     WorldFrame& world = track_.world.emplace();
-    world.rotation = matrix.topLeftCorner<3, 3>();
-    world.translation = matrix.topRightCorner<3, 1>();
-    if (matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1) || !(world.rotation.determinant() > 0) ||
-        !(world.rotation * world.rotation.transpose()).isIdentity(1e-6)) {
-      Fail("world_from_camera: expected a rotation and a translation [R t; 0 0 0 1]");
-    }
+    world.rotation = pose.camera_from_world_rotation;
+    world.translation = pose.camera_from_world_translation;
     if (Has("world_source")) {
       try {
         world.source = WorldSourceFromString(Text("world_source"));
@@ -316,10 +348,16 @@ void WriteTrack(const std::string& path, const Track& track) {
   if (camera.model == CameraModel::kWeakPerspective) {
     arrays["camera"] = NdArray::FromDoubles(track.weak_camera.data(), {T, 3});
   }
+  if (track.HasMovingCamera()) {
+    std::vector<double> path;
+    for (const CameraPose& pose : track.camera_from_scene) {
+      const RowMatrix4d matrix = MatrixOf(pose.camera_from_world_rotation, pose.camera_from_world_translation);
+      path.insert(path.end(), matrix.data(), matrix.data() + 16);
+    }
+    arrays["camera_from_scene"] = NdArray::FromDoubles(path.data(), {T, 4, 4});
+  }
   if (track.world) {
-    Eigen::Matrix<double, 4, 4, Eigen::RowMajor> matrix = Eigen::Matrix4d::Identity();
-    matrix.topLeftCorner<3, 3>() = track.world->rotation;
-    matrix.topRightCorner<3, 1>() = track.world->translation;
+    const RowMatrix4d matrix = MatrixOf(track.world->rotation, track.world->translation);
     const double sigma[] = {track.world->vertical_sigma_deg, track.world->height_sigma_m};
     arrays["world_from_camera"] = NdArray::FromDoubles(matrix.data(), {4, 4});
     arrays["world_source"] = NdArray::FromString(ToString(track.world->source));
@@ -341,12 +379,20 @@ void WriteTrack(const std::string& path, const Track& track) {
   WriteNpz(path, arrays);
 }
 
-Track TrackFromArrays(const NpzArrays& arrays, const std::string& where) { return TrackReader(arrays, where).Read(); }
-
-Track ReadTrackBytes(const std::string& bytes, const std::string& where) {
-  return TrackFromArrays(ReadNpzBytes(bytes, where), where);
+Track TrackFromArrays(const NpzArrays& arrays, const std::string& where, MovingCamera moving) {
+  Track track = TrackReader(arrays, where).Read();
+  if (moving == MovingCamera::kRefuse && track.HasMovingCamera()) {
+    throw std::runtime_error(where + ": a track whose camera moves, which cannot be used here yet");
+  }
+  return track;
 }
 
-Track ReadTrack(const std::string& path) { return ReadTrackBytes(ReadFileBytes(path), path); }
+Track ReadTrackBytes(const std::string& bytes, const std::string& where, MovingCamera moving) {
+  return TrackFromArrays(ReadNpzBytes(bytes, where), where, moving);
+}
+
+Track ReadTrack(const std::string& path, MovingCamera moving) {
+  return ReadTrackBytes(ReadFileBytes(path), path, moving);
+}
 
 }  // namespace bodyloom

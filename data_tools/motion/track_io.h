@@ -10,6 +10,9 @@
 ///   image_size [width, height], pixels      camera T×3     (s, tx, ty), only with 'weak':
 ///                                                          pixel = s·(X + tx, Y + ty) + (cx, cy), s in pixels a metre,
 ///                                                          cx and cy from K
+///   camera_from_scene T×4×4  [R t; 0 0 0 1] of each frame, only where the camera moves: poses, trans, joints and coco17
+///                          are then in a scene that stands still (geometry/camera_path.h), and what is projected is
+///                          R · point in the scene + t; world_from_camera is then of the scene
 ///   world_from_camera 4×4  [R t; 0 0 0 1]: a point of the clip's world (y up, the ground at y = 0, the camera above the
 ///                          origin and heading for −z; geometry/world_frame.h) is R · point in the camera frame + t
 ///   world_source           how it was found: 'ground', 'several people', 'vertical', 'given', 'level camera assumed'
@@ -35,11 +38,18 @@ namespace bodyloom {
 /// std::runtime_error when the file cannot be written.
 void WriteTrack(const std::string& path, const Track& track);
 
+/// Whether a reader's caller takes a track whose camera moves for what it is. Who does not would draw it at wrong places
+/// or take the camera's motion for the person's.
+enum class MovingCamera {
+  kRefuse,
+  kTake,
+};
+
 /// Throws std::runtime_error naming file, member, what it holds and what was expected.
-Track ReadTrack(const std::string& path);
+Track ReadTrack(const std::string& path, MovingCamera moving = MovingCamera::kRefuse);
 
 /// The same from a file's bytes or arrays; `where` names it in messages.
-Track TrackFromArrays(const NpzArrays& arrays, const std::string& where);
-Track ReadTrackBytes(const std::string& bytes, const std::string& where);
+Track TrackFromArrays(const NpzArrays& arrays, const std::string& where, MovingCamera moving = MovingCamera::kRefuse);
+Track ReadTrackBytes(const std::string& bytes, const std::string& where, MovingCamera moving = MovingCamera::kRefuse);
 
 }  // namespace bodyloom

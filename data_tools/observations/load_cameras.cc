@@ -226,6 +226,18 @@ std::vector<NamedCamera> AistFolder(const std::string& folder, const std::string
 
 }  // namespace
 
+Camera CameraFromJson(const JsonNode& node) {
+  const NamedCamera named = OwnCamera(node);
+  CheckCamera(node, named.camera);
+  return named.camera;
+}
+
+CameraPose PoseFromJson(const JsonNode& rotation, const JsonNode& translation) {
+  CameraPose pose;
+  SetPose(rotation, translation, 1, &pose);
+  return pose;
+}
+
 std::vector<NamedCamera> CamerasFromText(const std::string& text, const std::string& where) {
   const nlohmann::json json = ParseJson(text, where);
   return CamerasFromJson(JsonNode(json, where));

@@ -22,6 +22,7 @@
 #include <string>
 #include <vector>
 
+#include "bodyloom/data_tools/formats/json_reader.h"
 #include "bodyloom/geometry/camera.h"
 
 namespace bodyloom {
@@ -40,6 +41,11 @@ std::vector<NamedCamera> LoadCameras(const std::string& path, const std::string&
 
 /// The cameras of one file's text; `where` names it in messages.
 std::vector<NamedCamera> CamerasFromText(const std::string& text, const std::string& where);
+
+/// One camera of form 3, without its pose, and a pose ("rotation" 3×3 or Rodrigues 3, "translation" 3 metres) of other
+/// JSON.
+Camera CameraFromJson(const JsonNode& node);
+CameraPose PoseFromJson(const JsonNode& rotation, const JsonNode& translation);
 
 /// The camera called `view` ("c01"; "cam01" also finds "cam_01"); an empty view means the only one. Throws
 /// std::runtime_error beginning with `where` that lists the cameras present.

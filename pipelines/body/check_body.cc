@@ -139,7 +139,7 @@ std::vector<BodyFinding> CrossingsOf(const BodyModel& body, const CheckBodyReque
                         PairsText("faces", at_rest, "x") + "; most " + MostCrossed(body, at_rest)});
   }
   if (request.track.empty()) return findings;
-  const Track track = ReadTrack(request.track);
+  const Track track = ReadTrack(request.track, MovingCamera::kTake);
   RequireTrackFitsBody(track, body, request.track);
   const auto [first, end] = FrameRange(request.frames, track.num_frames(), request.track);
   int crossed = 0, worst_frame = -1;

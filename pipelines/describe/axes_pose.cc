@@ -12,7 +12,7 @@ namespace {
 
 CameraPose WorldPoseOf(const std::string& track) {
   if (track.empty()) return LevelCamera();
-  const std::optional<WorldFrame> world = ReadTrack(track).world;
+  const std::optional<WorldFrame> world = ReadTrack(track, MovingCamera::kTake).world;
   return world ? world->camera_pose() : LevelCamera();
 }
 

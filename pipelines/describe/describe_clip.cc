@@ -47,7 +47,7 @@ DescribeClipReport DescribeClip(const DescribeClipRequest& request, const Pipeli
   RequireReadable(request.body, "body model");
   RequireDistinct({request.track, request.body, request.cameras}, {request.out, header, request.preview, request.json});
   for (const std::string& path : {request.out, header, request.preview, request.json}) RequireWritable(path);
-  const Track track = ReadTrack(request.track);
+  const Track track = ReadTrack(request.track, MovingCamera::kTake);
   const std::shared_ptr<const BodyModel> body = BodyOrBuiltin(request.body);
   if (!body->has_uv()) {
     throw std::runtime_error(

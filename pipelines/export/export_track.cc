@@ -243,6 +243,11 @@ void Write(const ExportInputs& inputs, const ExportTrackRequest& request, const 
     case TrackForm::kColmap:
       return WriteColmap(request.out, inputs.Scene());
     case TrackForm::kPose2Sim:
+      if (track.HasMovingCamera()) {
+        throw std::runtime_error(request.tracks[0] +
+                                 ": the camera moves, and a Pose2Sim calibration is of cameras that stand still; "
+                                 "expected --what colmap");
+      }
       return WritePose2SimCalibration(request.out, "cam_01", track.camera, inputs.world);
   }
 }
@@ -292,7 +297,7 @@ ExportTrackReport ExportTrack(const ExportTrackRequest& request, const PipelineC
   RequireDistinct({request.body}, {request.out});
   const std::shared_ptr<const BodyModel> body = BodyOrBuiltin(request.body);
   std::vector<Track> tracks;
-  for (const std::string& path : request.tracks) tracks.push_back(ReadTrack(path));
+  for (const std::string& path : request.tracks) tracks.push_back(ReadTrack(path, MovingCamera::kTake));
   std::vector<const Track*> each;
   for (const Track& track : tracks) each.push_back(&track);
   return ExportTrack(request, *body, each, callbacks);

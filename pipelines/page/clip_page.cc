@@ -80,13 +80,21 @@ PageJson PersonJson(const ClipPagePerson& person) {
   return json;
 }
 
+/// A rigid motion as three rows of four.
+PageJson RowsOf(const Eigen::Matrix3d& R, const Eigen::Vector3d& t) {
+  PageJson rows;
+  for (int row = 0; row < 3; ++row) rows.push_back({R(row, 0), R(row, 1), R(row, 2), t[row]});
+  return rows;
+}
+
 PageJson ClipJson(const ClipPageContent& content) {
   PageJson json = {{"fps", content.fps}};
   for (const double second : content.seconds) json["seconds"].push_back(std::round(second * 1e4) / 1e4);
   for (const ClipPagePerson& person : content.people) json["people"].push_back(PersonJson(person));
-  const Eigen::Matrix3d& R = content.world.rotation;
-  const Eigen::Vector3d& t = content.world.translation;
-  for (int row = 0; row < 3; ++row) json["world_from_camera"].push_back({R(row, 0), R(row, 1), R(row, 2), t[row]});
+  json["world_from_camera"] = RowsOf(content.world.rotation, content.world.translation);
+  for (const CameraPose& pose : content.world_from_cameras) {
+    json["cameras"].push_back(RowsOf(pose.camera_from_world_rotation, pose.camera_from_world_translation));
+  }
   const Camera& camera = content.camera;
   if (camera.width > 0 && camera.model == CameraModel::kPinhole) {
     json["K"] = {{camera.fx, 0, camera.cx}, {0, camera.fy, camera.cy}, {0, 0, 1}};

@@ -34,6 +34,7 @@ struct ClipPageContent {
   double fps = 30;
   Camera camera;  ///< a width of 0: not known, no frustum is drawn
   WorldFrame world;
+  std::vector<CameraPose> world_from_cameras;  ///< N of a camera that moves, or empty
   std::vector<ClipPagePerson> people;
   std::string glb;                  ///< the scene (data_tools/export/glb_writer.h)
   std::string video_mp4;            ///< a picture for each of the N frames, evenly `fps` a second; empty: no video

@@ -14,6 +14,7 @@
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/data_tools/video/video_encoder.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/camera_path.h"
 #include "bodyloom/pipelines/page/clip_page.h"
 #include "bodyloom/pipelines/texture/person_texture.h"
 #include "bodyloom/pipelines/video/track_video.h"
@@ -95,7 +96,7 @@ class PageTextures {
     options.size = kPageTextureTexels;
     options.fill = TextureFill::kPyramid;
     for (const PersonOnPage& person : people) {
-      tracks_.push_back(std::make_unique<const Track>(video.Moved(*person.track)));
+      tracks_.push_back(std::make_unique<const Track>(video.Moved(TrackInCameras(*person.body, *person.track))));
       people_.push_back(person.body->has_uv() ? std::make_unique<PersonTexture>(*person.body, *tracks_.back(), options)
                                               : nullptr);
     }
@@ -197,6 +198,9 @@ void WriteClipPage(const ClipPageRequest& request, const PipelineCallbacks& call
   content.camera = request.people[0].track->camera;
   const ExportScene scene = SceneOf(request.people, content.world);
   for (const double moment : moments) content.seconds.push_back(moment - scene.start_s);
+  for (const double second : content.seconds) {
+    if (!scene.camera_keys.empty()) content.world_from_cameras.push_back(Inverse(scene.CameraAt(second)));
+  }
   for (const PersonOnPage& person : request.people) content.people.push_back(OnClock(person, moments));
   GlbOptions options;
   options.correctives = request.correctives;

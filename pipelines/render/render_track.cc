@@ -14,6 +14,7 @@
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/geometry/base/stopwatch.h"
+#include "bodyloom/geometry/camera_path.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/render/render_sinks.h"
 #include "bodyloom/pipelines/track_fits_body.h"
@@ -141,9 +142,9 @@ RenderTrackReport RenderTrack(const RenderTrackRequest& request, const PipelineC
   RequireReadable(request.truth, "truth");
   RequireDistinct({request.track, request.body, request.truth}, {request.out, request.json});
   CheckOtherFiles(request);
-  const Track track = ReadTrack(request.track);
+  const Track track = ReadTrack(request.track, MovingCamera::kTake);
   Track truth;
-  if (!request.truth.empty()) truth = ReadTrack(request.truth);
+  if (!request.truth.empty()) truth = ReadTrack(request.truth, MovingCamera::kTake);
   return RenderTrack(request, *BodyOrBuiltin(request.body), track, request.truth.empty() ? nullptr : &truth, callbacks);
 }
 
@@ -154,10 +155,12 @@ RenderTrackReport RenderTrack(const RenderTrackRequest& request, const BodyModel
   CheckOtherFiles(request);
   Track track = given, truth;
   RequireTrackFitsBody(track, body, request.track);
+  track = TrackInCameras(body, track);  // pictures of it, each from where the camera was
   const auto [first, end] = FrameRange(request.frames, track.num_frames(), request.track);
   if (given_truth != nullptr) {
     truth = *given_truth;
     RequireTrackFitsBody(truth, body, request.truth);
+    truth = TrackInCameras(body, truth);
     if (truth.num_frames() != track.num_frames()) {
       throw std::runtime_error(Concatenate(request.truth, ": ", truth.num_frames(), " frames, expected ",
                                            track.num_frames(), " as ", request.track, " has"));

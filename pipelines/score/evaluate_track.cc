@@ -17,42 +17,54 @@
 #include "bodyloom/data_tools/evaluation/self_penetration.h"
 #include "bodyloom/data_tools/evaluation/triangulated_clip.h"
 #include "bodyloom/data_tools/evaluation/truth_evaluation.h"
+#include "bodyloom/data_tools/evaluation/world_drift.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/formats/npz.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/observations/part_labels.h"
 #include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/geometry/camera_path.h"
 #include "bodyloom/pipelines/files.h"
 
 namespace bodyloom {
 namespace {
+
+/// Against another track, each frame as its camera saw it, and where the scenes drift apart.
+Evaluation EvaluateAgainstTrack(const Track& track, const Track& truth, const BodyModel& body) {
+  Evaluation evaluation = EvaluateAgainstTruth(TrackInCameras(body, track), TrackInCameras(body, truth), body);
+  if (track.HasMovingCamera() || truth.HasMovingCamera()) {
+    AddWorldDrift(MeasureWorldDrift(track, truth, body), &evaluation);
+  }
+  return evaluation;
+}
 
 /// Against a file: what kind of truth it is shows in what it holds. A true motion goes to `true_motion`.
 Evaluation EvaluateAgainstFile(const EvaluateTrackRequest& request, const Track& track, const BodyModel& body,
                                std::optional<Motion>* true_motion) {
   const NpzArrays arrays = ReadNpz(request.truth);
   if (!HasPartLabels(arrays)) {
-    Track truth = TrackFromArrays(arrays, request.truth);
-    Evaluation evaluation = EvaluateAgainstTruth(track, truth, body);
+    Track truth = TrackFromArrays(arrays, request.truth, MovingCamera::kTake);
+    Evaluation evaluation = EvaluateAgainstTrack(track, truth, body);
     *true_motion = std::move(truth.motion);
     return evaluation;
   }
   ReadPartLabelsOptions as_they_are;
   as_they_are.mend_strays = false;
-  return EvaluatePartLabels(track, PartLabelsFromNpz(arrays, request.truth, as_they_are), body);
+  return EvaluatePartLabels(TrackInCameras(body, track), PartLabelsFromNpz(arrays, request.truth, as_they_are), body);
 }
 
-Evaluation EvaluateAgainstFiles(const EvaluateTrackRequest& request, const Track& track, const BodyModel& body,
+Evaluation EvaluateAgainstFiles(const EvaluateTrackRequest& request, const Track& in_scene, const BodyModel& body,
                                 std::optional<Motion>* true_motion) {
   namespace fs = std::filesystem;
   const fs::path truth = request.truth;
-  if (request.truth.empty() && request.seen.empty()) return EvaluateAlone(track);
+  if (request.truth.empty() && request.seen.empty()) return EvaluateAlone(in_scene);
+  const Track track = TrackInCameras(body, in_scene);  // what the other protocols compare
   if (!request.seen.empty()) {
     return EvaluateTriangulatedClip(track, ReadRigClip(request.cameras, request.seen, request.view, track),
                                     request.view);
   }
   if (!fs::is_directory(truth)) {
-    return EvaluateAgainstFile(request, track, body, true_motion);
+    return EvaluateAgainstFile(request, in_scene, body, true_motion);
   }
   if (fs::exists(truth / "keypoints2d")) {
     if (request.sequence.empty()) {
@@ -111,7 +123,8 @@ Evaluation EvaluateTrack(const EvaluateTrackRequest& request, const PipelineCall
   RequireReadable(request.track, "track");
   RequireReadable(request.body, "body model");
   RequireDistinct({request.track, request.body}, {request.json});
-  return EvaluateTrack(request, *BodyOrBuiltin(request.body), ReadTrack(request.track), nullptr, callbacks);
+  return EvaluateTrack(request, *BodyOrBuiltin(request.body), ReadTrack(request.track, MovingCamera::kTake), nullptr,
+                       callbacks);
 }
 
 Evaluation EvaluateTrack(const EvaluateTrackRequest& request, const BodyModel& body, const Track& track,
@@ -120,7 +133,7 @@ Evaluation EvaluateTrack(const EvaluateTrackRequest& request, const BodyModel& b
   callbacks.Update("measure", 0);
   std::optional<Motion> true_motion;
   if (truth != nullptr) true_motion = truth->motion;
-  Evaluation evaluation = truth != nullptr ? EvaluateAgainstTruth(track, *truth, body)
+  Evaluation evaluation = truth != nullptr ? EvaluateAgainstTrack(track, *truth, body)
                                            : EvaluateAgainstFiles(request, track, body, &true_motion);
   AddSelfPenetrationOf(track, true_motion, body, callbacks, &evaluation);
   if (!request.json.empty()) {

@@ -7,9 +7,11 @@
 
 #include "bodyloom/data_tools/body/body_or_builtin.h"
 #include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/data_tools/observations/load_camera_path.h"
 #include "bodyloom/data_tools/observations/load_cameras.h"
 #include "bodyloom/data_tools/observations/observations_npz.h"
 #include "bodyloom/data_tools/video/video_writer.h"
+#include "bodyloom/geometry/camera_path.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/video/track_video.h"
 #include "bodyloom/render/overlay.h"
@@ -40,7 +42,9 @@ void RenderClip(const std::string& path, const BodyModel& body, const Track& tru
   for (int t = 0; t < truth.num_frames(); ++t) {
     callbacks.Update("clip", static_cast<double>(t) / truth.num_frames());
     Image picture = backdrop;
-    DrawMesh(TrackVertices(body, truth, t), body.data().faces, truth.CameraAt(t), style, &picture);
+    MatrixX3d vertices = TrackVertices(body, truth, t);
+    if (truth.HasMovingCamera()) vertices = MovedPoints(truth.camera_from_scene[size_t(t)], vertices);
+    DrawMesh(vertices, body.data().faces, truth.CameraAt(t), style, &picture);
     writer.Write(picture);
   }
   writer.Finish();
@@ -52,6 +56,9 @@ SynthClipFiles FilesOf(const SynthesizeClipRequest& request) {
   files.observations = (folder / "observations.npz").string();
   files.truth = (folder / "truth.npz").string();
   files.camera = (folder / "camera.json").string();
+  if (request.clip.camera_path.motion != SynthCameraMotion::kStill) {
+    files.camera_path = (folder / "camera_path.json").string();
+  }
   if (request.clip.initialiser_error_px > 0) {
     files.initialiser = (folder / "initialiser.npz").string();
   }
@@ -97,6 +104,9 @@ SynthesizeClipReport SynthesizeClip(const SynthesizeClipRequest& request, const 
   camera.camera = clip.truth.camera;
   camera.pose = clip.camera_from_world;
   WriteCameras(files.camera, {camera});
+  if (!files.camera_path.empty()) {
+    WriteCameraPath(files.camera_path, {clip.truth.motion.timestamps, clip.truth.camera_from_scene});
+  }
   if (!files.initialiser.empty()) {
     WriteTrack(files.initialiser, InitialiserTrack(clip));
   }
@@ -119,7 +129,8 @@ std::string ToText(const SynthesizeClipReport& report) {
     text << "initialiser      wrong by " << clip.initialiser_error_px << " px at 512\n";
   }
   const SynthClipFiles& files = report.files;
-  for (const std::string& path : {files.observations, files.truth, files.camera, files.initialiser, files.video}) {
+  for (const std::string& path :
+       {files.observations, files.truth, files.camera, files.camera_path, files.initialiser, files.video}) {
     if (!path.empty()) {
       text << "wrote            " << path << "\n";
     }

@@ -23,7 +23,8 @@ struct SynthesizeClipRequest {
 struct SynthClipFiles {
   std::string observations;  ///< observations.npz: 2D joints and dense keypoints
   std::string truth;         ///< truth.npz: the true track
-  std::string camera;        ///< camera.json
+  std::string camera;        ///< camera.json: of the first frame, where it moves
+  std::string camera_path;   ///< camera_path.json of a camera that moves, or empty
   std::string initialiser;   ///< initialiser.npz, or empty when none was requested
   std::string video;         ///< clip.mp4, or empty
 };

@@ -15,6 +15,7 @@
 #include "bodyloom/data_tools/video/video_frame_times.h"
 #include "bodyloom/data_tools/video/video_reader.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/camera_path.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/report_json.h"
 #include "bodyloom/pipelines/track_fits_body.h"
@@ -64,13 +65,13 @@ ExtractTextureReport ExtractTexture(const ExtractTextureRequest& request, const 
   RequireReadable(request.body, "body model");
   RequireDistinct({request.track, request.video, request.body}, {request.out, request.confidence, request.json});
   for (const std::string& path : {request.out, request.confidence, request.json}) RequireWritable(path);
-  const Track track_of_file = ReadTrack(request.track);
+  const Track track_of_file = ReadTrack(request.track, MovingCamera::kTake);
   if (track_of_file.camera.width == 0) {
     throw std::runtime_error(request.track + ": no image size, expected image_size so that the video can be matched");
   }
   TrackVideo video(request.video, track_of_file, NamedCamera().video_px_from_camera_px,
                    VideoOffset(request.video, track_of_file));
-  const Track track = video.Moved(track_of_file);
+  Track track = video.Moved(track_of_file);
   const std::shared_ptr<const BodyModel> body = BodyOrBuiltin(request.body);
   if (!body->has_uv()) {
     throw std::runtime_error(request.body +
@@ -78,6 +79,7 @@ ExtractTextureReport ExtractTexture(const ExtractTextureRequest& request, const 
                              "--uv adds them)");
   }
   RequireTrackFitsBody(track, *body, request.track);
+  track = TrackInCameras(*body, track);
   clock.Begin("prepare");
   PersonTexture texture(*body, track, request.texture);
   clock.Begin("gather");

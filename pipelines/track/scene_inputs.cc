@@ -30,6 +30,21 @@ NamedCamera CameraFromRequest(const TrackRequest& request) {
   return camera;
 }
 
+/// The path of a camera that moves, and its intrinsics where nothing else gives any.
+void UseCameraPath(const TrackRequest& request, SceneInputs* inputs) {
+  if (!request.camera_path.empty()) inputs->camera_path = LoadCameraPath(request.camera_path);
+  const bool given = !request.cameras.empty() || request.focal_px > 0 || request.camera == "unknown-focal";
+  const bool uses = inputs->camera_path && inputs->camera_path->camera && !given;
+  inputs->camera_knowledge = CameraKnowledgeOf(request, uses);
+  if (uses) {
+    inputs->camera.camera = *inputs->camera_path->camera;
+    inputs->camera.name = request.camera_path;
+  } else if (request.camera == "pinhole" && !given) {
+    throw std::runtime_error(request.camera_path + ": " + inputs->camera_path->why_no_camera +
+                             ", which --camera pinhole needs; give --cameras or --focal");
+  }
+}
+
 /// Takes image size and frame rate from the video, or checks the size against what is known.
 void UseVideo(const std::string& path, SceneInputs* inputs) {
   const VideoInfo info = VideoReader(path).info();
@@ -66,6 +81,7 @@ SceneInputs LoadSceneInputs(const TrackRequest& request, const GivenInMemory& gi
   } else {
     inputs.camera = CameraFromRequest(request);
   }
+  UseCameraPath(request, &inputs);
   if (!request.video.empty()) UseVideo(request.video, &inputs);
   // The lifter knows how detectors err. Joints read off labels err otherwise, and it makes worse of them than the joint
   // hypotheses do (docs/benchmarks.md).

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "bodyloom/data_tools/observations/load_camera_path.h"
 #include "bodyloom/data_tools/observations/load_cameras.h"
 #include "bodyloom/geometry/body_model.h"
 #include "bodyloom/geometry/camera.h"
@@ -28,10 +29,13 @@ struct SceneInputs {
   std::optional<PosePrior> prior;
   std::optional<LifterWeights> lifter;
   NamedCamera camera;  ///< intrinsics, pose and the way to the video's pixels, as far as known (UseFocal)
+  std::optional<RecordedCameraPath> camera_path;  ///< of a camera that moves
+  CameraKnowledge camera_knowledge = CameraKnowledge::kKnown;
   double video_fps = 0;
   double stature_m = 0;  ///< of whoever is tracked; 0: the mean body's
 
-  /// What the tracker is told of the scene; pointers into this object.
+  /// What the tracker is told of the scene, without the camera's path, which each person has their frames of; pointers
+  /// into this object.
   [[nodiscard]] TrackSequenceInput ForTracker() const;
 };
 

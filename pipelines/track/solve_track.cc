@@ -11,7 +11,7 @@ namespace {
 
 TrackSequenceOptions SolveOptionsOf(const TrackRequest& request, const TrackInputs& inputs) {
   TrackSequenceOptions options = request.solve;
-  options.camera_knowledge = CameraKnowledgeOf(request);
+  options.camera_knowledge = inputs.camera_knowledge;
   options.straight_knees_weight = StraightKneesWeight(request, inputs.keypoints ? inputs.keypoints->convention : "");
   if (inputs.joints_from_labels) options.part_labels = PartLabelOptions::LabelsAlone();
   return options;

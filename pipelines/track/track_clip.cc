@@ -8,6 +8,7 @@
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/observations/nothing_to_track.h"
+#include "bodyloom/geometry/camera_path.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/page/write_clip_page.h"
 #include "bodyloom/pipelines/peak_memory.h"
@@ -88,9 +89,9 @@ InitialiserReport ReportOn(const InitialPoses& start, const TrackInputs& inputs,
   report.has_shape = start.has_shape;
   const KeypointSequence* keypoints = inputs.keypoints ? &*inputs.keypoints : nullptr;
   report.gives_landmarks = !start.landmarks.empty();
-  report.gain = report.gives_landmarks
-                    ? GainOverLandmarks(*inputs.body, keypoints, start.landmarks, start.camera, track)
-                    : GainOverInitialiser(*inputs.body, keypoints, start.motion, start.camera, track);
+  const Track seen = TrackInCameras(*inputs.body, track);
+  report.gain = report.gives_landmarks ? GainOverLandmarks(*inputs.body, keypoints, start.landmarks, start.camera, seen)
+                                       : GainOverInitialiser(*inputs.body, keypoints, start.motion, start.camera, seen);
   return report;
 }
 
@@ -118,10 +119,13 @@ TrackReport TrackClip(const TrackRequest& request, const PipelineCallbacks& call
   clock.Begin(kSolveStage);
   TrackSequenceResult result = SolveTrack(request, inputs, callbacks, solve_share);
   report.solve = std::move(result.summary);
+  report.camera_path = inputs.camera_path_report;
   for (const PlanEntry& entry : OwnPlan(request)) {
     report.solve.plan.push_back(entry);
   }
   if (report.solve.IsUsable()) {
+    const std::string warning = MovingCameraWarning(report.solve.camera_path, report.solve.ground);
+    if (!warning.empty()) callbacks.Say(warning);
     clock.Begin("write");
     report.world = *result.track.world;
     if (inputs.initialiser) report.initialiser = ReportOn(*inputs.initialiser, inputs, result.track);

@@ -36,7 +36,7 @@ InitialPoses ReadInitialiser(const TrackRequest& request, const TrackInputs& inp
   poses.num_frames = inputs.num_frames();
   poses.person = request.person;
   const Camera& camera = inputs.camera.camera;
-  poses.camera = CameraKnowledgeOf(request) == CameraKnowledge::kKnown
+  poses.camera = inputs.camera_knowledge == CameraKnowledge::kKnown
                      ? camera
                      : MakePinhole(camera.width, camera.height, StartFocalPx(camera.width, camera.height));
   return ReadInitialPoses(poses);
@@ -51,9 +51,9 @@ std::vector<LiftedFrame> LiftedWith(const TrackRequest& request, const TrackInpu
   if (request.live_lag) {
     throw std::runtime_error(request.init + ": gives 3D landmarks, which --live does not use");
   }
-  std::vector<LiftedFrame> frames = LiftKeypoints(*inputs.keypoints, inputs.initialiser->camera,
-                                                  CameraKnowledgeOf(request) == CameraKnowledge::kKnown,
-                                                  FindCuts(*inputs.keypoints), *inputs.lifter, {});
+  std::vector<LiftedFrame> frames =
+      LiftKeypoints(*inputs.keypoints, inputs.initialiser->camera, inputs.camera_knowledge == CameraKnowledge::kKnown,
+                    FindCuts(*inputs.keypoints), *inputs.lifter, {});
   TakeGivenLandmarks(inputs.initialiser->landmarks, {}, &frames);
   return frames;
 }
@@ -141,6 +141,7 @@ std::vector<std::string> RequireTrackInputs(const TrackRequest& request) {
       {request.dense, "dense keypoints"},
       {request.part_labels, "part labels"},
       {request.cameras, "cameras"},
+      {request.camera_path, "camera path"},
       {request.video, "video"},
       {request.body, "body model"},
       {request.init, "initialiser"},
@@ -163,6 +164,8 @@ TrackSequenceInput TrackInputs::ForTracker() const {
   input.part_labels = part_labels ? &*part_labels : nullptr;
   if (initialiser && initialiser->landmarks.empty()) input.initialiser = &initialiser->motion;
   if (!lifted.empty()) input.lifted = &lifted;
+  if (!camera_from_scene.empty()) input.camera_from_scene = &camera_from_scene;
+  input.camera_scale_m = camera_scale_m;
   return input;
 }
 
@@ -197,10 +200,15 @@ TrackInputs LoadTrackInputs(const TrackRequest& request, const PipelineCallbacks
                                          "--image-size"));
   }
   UseFocal(request, &camera);
+  if (inputs.camera_path) {
+    inputs.camera_from_scene =
+        CamerasAt(request, *inputs.camera_path, inputs.timestamps(), inputs.timestamps(), &inputs.camera_path_report);
+    inputs.camera_scale_m = CameraScaleOf(request, *inputs.camera_path);
+  }
   if (!request.init.empty()) inputs.initialiser = ReadInitialiser(request, inputs);
   if (inputs.initialiser && !inputs.initialiser->landmarks.empty()) inputs.lifted = LiftedWith(request, inputs);
   if (!request.reference.empty()) {
-    inputs.reference = ReadTrack(request.reference);
+    inputs.reference = ReadTrack(request.reference, MovingCamera::kTake);
     if (inputs.reference->num_frames() != inputs.num_frames()) {
       throw std::runtime_error(Concatenate(request.reference, ": ", inputs.reference->num_frames(),
                                            " frames, expected the ", inputs.num_frames(), " of the detections"));

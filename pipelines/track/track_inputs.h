@@ -9,6 +9,7 @@
 #include "bodyloom/geometry/observations.h"
 #include "bodyloom/geometry/track.h"
 #include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/pipelines/track/clip_camera_path.h"
 #include "bodyloom/pipelines/track/initial_poses.h"
 #include "bodyloom/pipelines/track/scene_inputs.h"
 #include "bodyloom/pipelines/track/track_request.h"
@@ -20,7 +21,10 @@ struct TrackInputs : SceneInputs {
   std::optional<KeypointSequence> keypoints;
   std::optional<DenseSequence> dense;
   std::optional<PartLabelSequence> part_labels;
-  bool joints_from_labels = false;  ///< `keypoints` were read off `part_labels`
+  bool joints_from_labels = false;            ///< `keypoints` were read off `part_labels`
+  std::vector<CameraPose> camera_from_scene;  ///< of every frame, or empty: the camera stands still
+  CameraPathReport camera_path_report;
+  double camera_scale_m = 1;
   std::optional<InitialPoses> initialiser;
   std::vector<LiftedFrame>
       lifted;  ///< the lifter's landmarks with the initialiser's in their place, when it gives such

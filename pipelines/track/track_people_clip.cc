@@ -95,15 +95,19 @@ std::vector<int> ChoosePeople(const TrackPeopleClipRequest& request, const Detec
 
 /// Tracks them; progress is that of all fits.
 TrackPeopleResult Solve(const TrackPeopleClipRequest& request, const SceneInputs& scene,
-                        const std::vector<DetectedObservations>& seen, const PipelineCallbacks& callbacks) {
+                        const std::vector<DetectedObservations>& seen,
+                        const std::vector<std::vector<CameraPose>>& cameras, const PipelineCallbacks& callbacks) {
   std::vector<TrackSequenceInput> inputs;
   for (const DetectedObservations& person : seen) {
     TrackSequenceInput& input = inputs.emplace_back(scene.ForTracker());
     input.keypoints = &person.keypoints;
     input.part_labels = person.mask ? &*person.mask : nullptr;
+    if (cameras.empty()) continue;
+    input.camera_from_scene = &cameras[inputs.size() - 1];
+    input.camera_scale_m = CameraScaleOf(request.track, *scene.camera_path);
   }
   TrackSequenceOptions options = request.track.solve;
-  options.camera_knowledge = CameraKnowledgeOf(request.track);
+  options.camera_knowledge = scene.camera_knowledge;
   options.straight_knees_weight = StraightKneesWeight(request.track, seen.front().keypoints.convention);
   bool cancelled = false;
   options.progress = [&](const TrackProgress& at) {
@@ -211,9 +215,14 @@ TrackPeopleReport TrackPeopleClip(const TrackPeopleClipRequest& request, const P
     const PersonTrack& person = everybody[size_t(number)];
     seen.push_back(ObservationsOf(clip, person, SpanOf(person), request.track, scene));
   }
+  std::vector<std::vector<CameraPose>> cameras;  // of each person's frames
+  for (size_t i = 0; scene.camera_path && i < seen.size(); ++i) {
+    cameras.push_back(CamerasAt(request.track, *scene.camera_path, clip.people.timestamps, seen[i].keypoints.timestamps,
+                                &report.camera_path));
+  }
   callbacks.Begin(Concatenate("tracking ", seen.size(), seen.size() == 1 ? " person" : " people"));
   clock.Begin("track");
-  const TrackPeopleResult result = Solve(request, scene, seen, callbacks);
+  const TrackPeopleResult result = Solve(request, scene, seen, cameras, callbacks);
   report.scene = result.summary.scene;
   clock.Begin("write");
   bool any_tracked = false;
@@ -223,6 +232,11 @@ TrackPeopleReport TrackPeopleClip(const TrackPeopleClipRequest& request, const P
     person.hidden = result.summary.hidden[i];
     person.fitted_again = result.summary.fitted_again[i] != 0;
     if (!person.solve.IsUsable()) continue;
+    if (!any_tracked) {
+      report.camera_scale = person.solve.camera_path;
+      const std::string warning = MovingCameraWarning(person.solve.camera_path, person.solve.ground);
+      if (!warning.empty()) callbacks.Say(warning);
+    }
     any_tracked = true;
     report.world = result.people[i].track.world.value_or(WorldFrame());
     person.track = TrackFile(request, person.number);

@@ -87,6 +87,7 @@ std::string ToText(const TrackPeopleReport& report) {
   if (const int others = report.num_found - int(report.people.size()); others > 0) {
     text += Concatenate("left out ", others, " more, seen too briefly or not asked for\n");
   }
+  text += ToText(report.camera_path, report.camera_scale);
   text += SceneText(report.scene);
   if (std::any_of(report.people.begin(), report.people.end(),
                   [](const auto& person) { return !person.track.empty(); })) {
@@ -103,19 +104,20 @@ std::string ToText(const TrackPeopleReport& report) {
 std::string ToJson(const TrackPeopleReport& report) {
   Json people = Json::array();
   for (const TrackedPerson& person : report.people) people.push_back(PersonJson(person));
-  const Json json = {{"video", report.video},
-                     {"image_size", {report.width, report.height}},
-                     {"frames", report.num_frames},
-                     {"fps", report.fps},
-                     {"network", report.network},
-                     {"people_found", report.num_found},
-                     {"people", people},
-                     {"scene", SceneJson(report.scene)},
-                     {"world", ToJson(report.world)},
-                     {"seconds", ToJson(report.seconds)},
-                     {"total_seconds", report.total_seconds},
-                     {"peak_memory_bytes", report.peak_memory_bytes},
-                     {"outputs", report.outputs}};
+  Json json = {{"video", report.video},
+               {"image_size", {report.width, report.height}},
+               {"frames", report.num_frames},
+               {"fps", report.fps},
+               {"network", report.network},
+               {"people_found", report.num_found},
+               {"people", people},
+               {"scene", SceneJson(report.scene)},
+               {"world", ToJson(report.world)},
+               {"seconds", ToJson(report.seconds)},
+               {"total_seconds", report.total_seconds},
+               {"peak_memory_bytes", report.peak_memory_bytes},
+               {"outputs", report.outputs}};
+  if (!report.camera_path.file.empty()) json["camera_path"] = ToJson(report.camera_path, report.camera_scale);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

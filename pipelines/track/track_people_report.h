@@ -8,6 +8,7 @@
 
 #include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/pipelines/detect/detect_clip.h"
+#include "bodyloom/pipelines/track/clip_camera_path.h"
 #include "bodyloom/tracking/people/occlusion.h"
 #include "bodyloom/tracking/people/shared_scene.h"
 #include "bodyloom/tracking/track_summary.h"
@@ -32,6 +33,8 @@ struct TrackPeopleReport {
   std::vector<TrackedPerson> people;
   SharedScene scene;
   WorldFrame world;  ///< of all tracks
+  CameraPathReport camera_path;
+  CameraPathSummary camera_scale;  ///< of the path, one for all tracks
   StageSeconds seconds;
   double total_seconds = 0;
   size_t peak_memory_bytes = 0;

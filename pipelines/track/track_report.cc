@@ -108,6 +108,7 @@ std::string ToText(const TrackReport& report) {
   if (solve.focal_px > 0) {
     text += "camera   focal length " + Fixed(solve.focal_px, 1) + " px\n";
   }
+  text += ToText(report.camera_path, solve.camera_path);
   if (solve.num_swaps_repaired > 0) {
     text += "repaired " + std::to_string(solve.num_swaps_repaired) + " left-right swaps in the detections\n";
   }
@@ -151,6 +152,7 @@ std::string ToJson(const TrackReport& report) {
     ground_json["up_in_camera"] = {ground.up.x(), ground.up.y(), ground.up.z()};
     ground_json["up_spread_deg"] = ground.up_spread_deg;
   }
+  ground_json["standing_speed_mps"] = ground.standing_speed_mps;
   if (ground.has_plane) {
     ground_json["camera_height_m"] = ground.camera_height_m;
     ground_json["height_spread_m"] = ground.height_spread_m;
@@ -180,6 +182,7 @@ std::string ToJson(const TrackReport& report) {
       {"skipped", skipped},
       {"outputs", report.outputs},
   };
+  if (!report.camera_path.file.empty()) json["camera_path"] = ToJson(report.camera_path, solve.camera_path);
   if (report.initialiser) json["initialiser"] = ToJson(*report.initialiser);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bodyloom/geometry/base/stopwatch.h"
+#include "bodyloom/pipelines/track/clip_camera_path.h"
 #include "bodyloom/tracking/initialiser_gain.h"
 #include "bodyloom/tracking/track_sequence.h"
 
@@ -26,6 +27,7 @@ struct TrackReport {
   TrackSequenceSummary solve;
   int num_frames = 0;
   WorldFrame world;  ///< the track's
+  CameraPathReport camera_path;
   std::optional<InitialiserReport> initialiser;
   StageSeconds seconds;  ///< TrackClip's own stages; the one named kSolveStage is split by solve.seconds
   double total_seconds = 0;

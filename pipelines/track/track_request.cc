@@ -6,11 +6,11 @@
 
 namespace bodyloom {
 
-CameraKnowledge CameraKnowledgeOf(const TrackRequest& request) {
+CameraKnowledge CameraKnowledgeOf(const TrackRequest& request, bool has_intrinsics) {
   if (request.camera == "weak") {
     return CameraKnowledge::kWeak;
   }
-  const bool has_intrinsics = !request.cameras.empty() || request.focal_px > 0;
+  has_intrinsics = has_intrinsics || !request.cameras.empty() || request.focal_px > 0;
   return request.camera == "pinhole" || (request.camera.empty() && has_intrinsics) ? CameraKnowledge::kKnown
                                                                                    : CameraKnowledge::kUnknownFocal;
 }
@@ -48,8 +48,18 @@ void CheckTrackRequest(const TrackRequest& request) {
   if (request.out.empty() && !request.plan) {
     throw RequestError("--out is required (or --plan, to see what would be done)");
   }
-  if (request.camera == "pinhole" && request.cameras.empty() && request.focal_px == 0) {
+  if (request.camera == "pinhole" && request.cameras.empty() && request.focal_px == 0 && request.camera_path.empty()) {
     throw RequestError("--camera pinhole needs the intrinsics: give --cameras FILE or --focal PIXELS");
+  }
+  if (request.camera_path.empty() &&
+      (request.camera_scale_m > 0 || request.camera_path_first >= 0 || request.camera_path_fps > 0)) {
+    throw RequestError("--camera-scale, --camera-path-first and --camera-path-fps are of a path: give --camera-path");
+  }
+  if (!request.camera_path.empty() && request.camera == "weak") {
+    throw RequestError("weak perspective has no place in a scene: leave out --camera weak or --camera-path");
+  }
+  if (!request.camera_path.empty() && request.live_lag) {
+    throw RequestError("--live is for a camera that stands still: leave out --camera-path or --live");
   }
   if (!request.cameras.empty() && request.focal_px > 0) {
     throw RequestError("--cameras and --focal both give the focal length, expected one of them");

@@ -29,9 +29,13 @@ struct TrackRequest {
   double from_s = 0, to_s = -1;   ///< the part of the video, seconds; to_s < 0: to the end
 
   // The camera.
-  std::string cameras;                    ///< calibration file or folder
-  std::string camera;                     ///< pinhole, unknown-focal or weak; empty: pinhole when intrinsics are given
-  double focal_px = 0;                    ///< intrinsics without a file: centred, undistorted
+  std::string cameras;         ///< calibration file or folder
+  std::string camera;          ///< pinhole, unknown-focal or weak; empty: pinhole when intrinsics are given
+  double focal_px = 0;         ///< intrinsics without a file: centred, undistorted
+  std::string camera_path;     ///< where a camera that moves was (load_camera_path.h); empty: it stands still
+  double camera_scale_m = 0;   ///< metres a unit of the path; 0: the file's, else found from the person
+  int camera_path_first = -1;  ///< number of the clip's first frame in the path's (PlaceInTime)
+  double camera_path_fps = 0;  ///< frames a second of the path's numbered frames; 0: they are the clip's
   int image_width = 0, image_height = 0;  ///< when neither camera, video nor detections give it
 
   // What else is known.
@@ -76,7 +80,7 @@ inline constexpr double kBlazePoseStraightKnees = 3;
 /// TrackSequenceOptions::straight_knees_weight for joints of that convention (KeypointSequence::convention).
 double StraightKneesWeight(const TrackRequest& request, const std::string& convention);
 
-/// What `camera`, `cameras` and `focal_px` amount to.
-CameraKnowledge CameraKnowledgeOf(const TrackRequest& request);
+/// What `camera`, `cameras` and `focal_px` amount to; `has_intrinsics`: another file has them too.
+CameraKnowledge CameraKnowledgeOf(const TrackRequest& request, bool has_intrinsics = false);
 
 }  // namespace bodyloom

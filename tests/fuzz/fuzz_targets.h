@@ -77,6 +77,7 @@ inline constexpr const char* kNames[] = {"v_template",
                                          "coco17",
                                          "joint_sigma",
                                          "camera_model",
+                                         "camera_from_scene",
                                          "K",
                                          "distortion",
                                          "image_size",
@@ -228,7 +229,7 @@ inline bool AcceptsBody(const std::string& bytes) {
 }
 
 inline bool AcceptsTrack(const std::string& bytes) {
-  if (Accepts([&] { ReadTrackBytes(bytes, "fuzz.npz"); })) return true;
+  if (Accepts([&] { ReadTrackBytes(bytes, "fuzz.npz", MovingCamera::kTake); })) return true;
   return Accepts([&] {
     const Track track = TrackFromArrays(FramedArrays(bytes), "fuzz.npz");
     if (static_cast<int>(track.frame_status.size()) != track.num_frames()) throw std::logic_error("frames disagree");

@@ -14,6 +14,8 @@
 #include "bodyloom/data_tools/motion/deepmimic_reader.h"
 #include "bodyloom/data_tools/observations/blazepose_reader.h"
 #include "bodyloom/data_tools/observations/coco_reader.h"
+#include "bodyloom/data_tools/observations/colmap_reader.h"
+#include "bodyloom/data_tools/observations/load_camera_path.h"
 #include "bodyloom/data_tools/observations/load_cameras.h"
 #include "bodyloom/data_tools/observations/mmpose_reader.h"
 #include "bodyloom/data_tools/observations/openpose_reader.h"
@@ -50,6 +52,31 @@ inline bool AcceptsCameras(const std::string& bytes) {
       if (!(camera.camera.fx > 0) || !(camera.camera.fy > 0)) throw std::logic_error("a camera without a focal length");
     }
   });
+}
+
+/// As this project's JSON and as each of COLMAP's files, whatever it is.
+inline bool AcceptsCameraPath(const std::string& bytes) {
+  bool taken = Accepts([&] {
+    const RecordedCameraPath path = CameraPathFromText(bytes, "fuzz.json");
+    if (path.poses.empty() || path.frames.size() + path.seconds.size() != path.poses.size()) {
+      throw std::logic_error("poses without a frame or a time");
+    }
+  });
+  const auto check_images = [](const std::vector<ColmapImage>& images) {
+    for (const ColmapImage& image : images) {
+      if (!image.pose.camera_from_world_rotation.allFinite()) throw std::logic_error("a camera without a rotation");
+    }
+  };
+  const auto check_cameras = [](const std::map<uint32_t, ColmapCamera>& cameras) {
+    for (const auto& [id, camera] : cameras) {
+      if (camera.is_pinhole && !(camera.camera.fx > 0)) throw std::logic_error("a camera without a focal length");
+    }
+  };
+  taken |= Accepts([&] { check_images(ColmapImagesFromText(bytes, "fuzz.txt")); });
+  taken |= Accepts([&] { check_images(ColmapImagesFromBytes(bytes, "fuzz.bin")); });
+  taken |= Accepts([&] { check_cameras(ColmapCamerasFromText(bytes, "fuzz.txt")); });
+  taken |= Accepts([&] { check_cameras(ColmapCamerasFromBytes(bytes, "fuzz.bin")); });
+  return taken;
 }
 
 inline void CheckSkeleton(const SkeletonMotion& motion) {

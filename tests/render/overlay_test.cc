@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "bodyloom/geometry/camera_path.h"
 #include "bodyloom/geometry/rotation.h"
 #include "bodyloom/geometry/vertex_normals.h"
 #include "bodyloom/render/shaded_mesh.h"
@@ -45,6 +46,15 @@ KeypointSequence Detections(const Track& track) {
     }
   }
   return detected;
+}
+
+/// Pixels of which a channel differs by more than rounding.
+int DifferentPixels(const Image& a, const Image& b) {
+  EXPECT_EQ(a.width, b.width);
+  EXPECT_EQ(a.height, b.height);
+  int count = 0;
+  for (size_t i = 0; i < a.bgr.size() && i < b.bgr.size(); ++i) count += std::abs(int{a.bgr[i]} - int{b.bgr[i]}) > 2;
+  return count;
 }
 
 TEST(ShadedMesh, CoversWhatTheVisibilityBufferCovers) {
@@ -157,6 +167,20 @@ TEST(Overlay, DrawsTheBodyWhereTheCameraSeesIt) {
   EXPECT_NE(picture.at(int(pelvis.x()), int(pelvis.y())), video.at(0, 0));
   EXPECT_EQ(picture.at(5, 5), video.at(0, 0));
   EXPECT_EQ(renderer.Render(2, {.background = &video}), picture) << "same input, same bytes";
+}
+
+TEST(Overlay, ACameraThatMovesShowsEachFrameAsItSawIt) {
+  Track seen = StandingTrack(2, MakePinhole(160, 160, 170));
+  seen.motion.betas = Eigen::VectorXd::Zero(2);
+  const std::vector<CameraPose> cameras = {{RotationFromAxisAngle({0.1, 0.2, 0.3}), {0.5, 0, 1}},
+                                           {RotationFromAxisAngle({-0.2, 0.1, 0}), {0, 1, 0.2}}};
+  Track track = seen;
+  track.camera_from_scene = cameras;
+  track.motion = MovedMotion(ToyBody(), seen.motion, std::vector<CameraPose>{Inverse(cameras[0]), Inverse(cameras[1])});
+  OverlayOptions options;
+  options.floor = false;
+  const OverlayRenderer moving(ToyBody(), track, options), still(ToyBody(), seen, options);
+  for (const int t : {0, 1}) EXPECT_EQ(DifferentPixels(moving.Render(t, {}), still.Render(t, {})), 0) << t;
 }
 
 TEST(Overlay, LostFramesShowTheVideoAlone) {

@@ -8,9 +8,11 @@
 
 namespace bodyloom {
 
-/// Two seconds of the demo's walk, at 6 frames a second unless told otherwise, in pictures of 320×240.
-inline Track ShortTrack(int fps = 6) {
+/// Two seconds of the demo's walk, at 6 frames a second unless told otherwise, in pictures of 320×240; the camera stands
+/// still unless told otherwise.
+inline Track ShortTrack(int fps = 6, SynthCameraMotion camera = SynthCameraMotion::kStill) {
   SynthClipOptions options;
+  options.camera_path.motion = camera;
   options.camera.width = 320;
   options.camera.height = 240;
   options.dense_per_frame = 0;

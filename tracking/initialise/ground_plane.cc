@@ -20,6 +20,8 @@ using Eigen::Vector3d;
 constexpr double kUpKernelRad = 0.17, kMaxUpSpreadDeg = 20;
 constexpr double kAcrossM = 0.02;  ///< σ of a stance's place across the view
 constexpr double kRadToDeg = 180 / M_PI;
+constexpr double kMaxStandingStepS = 0.25;
+constexpr size_t kMinStandingPairs = 10;
 
 double WeightedMedian(std::vector<std::pair<double, double>> value_weight) {
   std::sort(value_weight.begin(), value_weight.end());
@@ -32,9 +34,9 @@ double WeightedMedian(std::vector<std::pair<double, double>> value_weight) {
   return 0;
 }
 
-/// The part of d that the camera sees from afar: without what goes along the ray to x.
-Vector3d AcrossView(const Vector3d& d, const Vector3d& x) {
-  const Vector3d ray = x.normalized();
+/// The part of d that the camera sees from afar: without what goes along the ray to where the foot is.
+Vector3d AcrossView(const Vector3d& d, const FootPlace& place) {
+  const Vector3d ray = (place.ankle_m - place.camera_m).normalized();
   return d - ray.dot(d) * ray;
 }
 
@@ -54,7 +56,7 @@ double Stand(std::vector<Stance> stances, const GroundPlaneOptions& options, Gro
     off.emplace_back(std::abs(height), stance.seconds);
     if (!(std::abs(height) <= options.off_ground_m)) continue;
     on_ground += stance.seconds;
-    const Vector3d ray = stance.place_m.normalized();
+    const Vector3d ray = stance.Ray();
     const Vector3d step =
         kAcrossM * kAcrossM * ground->normal + options.depth_m * options.depth_m * ray * ray.dot(ground->normal);
     stance.place_m -= step * height / (ground->normal.dot(step) + options.height_m * options.height_m);
@@ -119,7 +121,7 @@ std::vector<Stance> FindStances(const std::vector<std::array<FootPlace, 2>>& fee
       const int before = std::max(0, t - 1), after = std::min(T - 1, t + 1);
       const double seconds = timestamps[after] - timestamps[before];
       const Vector3d moved = feet[after][foot].ankle_m - feet[before][foot].ankle_m;
-      return !(seconds > 0) || AcrossView(moved, place.ankle_m).norm() <= options.max_speed * seconds;
+      return !(seconds > 0) || AcrossView(moved, place).norm() <= options.max_speed * seconds;
     };
     for (int t = 0; t < T;) {
       if (!stands(t)) {
@@ -129,19 +131,40 @@ std::vector<Stance> FindStances(const std::vector<std::array<FootPlace, 2>>& fee
       Stance stance;
       stance.foot = foot;
       stance.begin = t;
-      Vector3d sum = Vector3d::Zero();
+      Vector3d sum = Vector3d::Zero(), cameras = Vector3d::Zero();
       for (; t < T && stands(t); ++t) {
         const Vector3d& at = feet[t][foot].ankle_m;
-        if (t > stance.begin && AcrossView(at - sum / (t - stance.begin), at).norm() > options.max_drift_m) break;
+        if (t > stance.begin && AcrossView(at - sum / (t - stance.begin), feet[t][foot]).norm() > options.max_drift_m)
+          break;
         sum += at;
+        cameras += feet[t][foot].camera_m;
       }
       stance.end = t;
       stance.place_m = sum / (stance.end - stance.begin);
+      stance.camera_m = cameras / (stance.end - stance.begin);
       stance.seconds = timestamps[stance.end - 1] - timestamps[stance.begin];
       if (stance.seconds >= options.min_stance_s) stances.push_back(stance);
     }
   }
   return stances;
+}
+
+double StandingSpeed(const std::vector<std::array<FootPlace, 2>>& feet, std::span<const double> timestamps,
+                     const GroundPlaneOptions& options) {
+  CheckFeet(feet, timestamps);
+  std::vector<std::pair<double, double>> speeds;
+  for (size_t t = 1; t < feet.size(); ++t) {
+    const double seconds = timestamps[t] - timestamps[t - 1];
+    for (int foot = 0; foot < 2; ++foot) {
+      const FootPlace &before = feet[t - 1][foot], &after = feet[t][foot];
+      if (!(before.seen && after.seen && seconds <= kMaxStandingStepS)) continue;
+      if (!(std::min(before.contact, after.contact) >= options.min_contact)) continue;
+      const double speed = AcrossView(after.ankle_m - before.ankle_m, after).norm() / seconds;
+      if (std::isfinite(speed)) speeds.emplace_back(speed, 1);
+    }
+  }
+  if (speeds.size() < kMinStandingPairs) return std::numeric_limits<double>::quiet_NaN();
+  return WeightedMedian(std::move(speeds));
 }
 
 GroundPlane EstimateGroundPlane(const std::vector<std::array<FootPlace, 2>>& feet, std::span<const double> timestamps,
@@ -163,7 +186,7 @@ GroundPlane EstimateGroundPlane(const std::vector<std::array<FootPlace, 2>>& fee
     Vector3d rhs = Vector3d::Zero();
     for (const Stance& stance : stances) {
       const Vector3d& p = stance.place_m;
-      const double along = up.dot(p.normalized()) * options.depth_m;
+      const double along = up.dot(stance.Ray()) * options.depth_m;
       const double information = 1 / (options.height_m * options.height_m + along * along);
       const Vector3d row(e1.dot(p), e2.dot(p), -1);
       const double residual = up.dot(p) + row.dot(x);

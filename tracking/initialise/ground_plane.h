@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The ground plane, and which way is up, from one shot of one camera that does not move.
+/// The ground plane, and which way is up, from one shot of one camera. Where it moves, everything is in the scene
+/// (geometry/camera_path.h), and each foot says from where it was seen.
 ///
 /// The lifter predicts where up is in every frame; over a shot these directions are one measurement. A foot stands
 /// while the lifter calls it so and its ankle keeps its place across the view. Ankles of stances lie in one plane
@@ -33,9 +34,10 @@ inline constexpr double kAnkleHeight = 0.08;  ///< metres above the floor, of th
 
 /// One foot in one frame.
 struct FootPlace {
-  Eigen::Vector3d ankle_m = Eigen::Vector3d::Zero();  ///< camera frame
-  double contact = 0;                                 ///< probability that the foot stands
-  bool seen = false;                                  ///< its ankle was detected
+  Eigen::Vector3d ankle_m = Eigen::Vector3d::Zero();   ///< camera frame, or the scene of a camera that moves
+  double contact = 0;                                  ///< probability that the foot stands
+  bool seen = false;                                   ///< its ankle was detected
+  Eigen::Vector3d camera_m = Eigen::Vector3d::Zero();  ///< where the camera was
 };
 
 /// A foot that stays where it is over the frames [begin, end).
@@ -43,6 +45,9 @@ struct Stance {
   int foot = 0, begin = 0, end = 0;  ///< foot 0: left
   double seconds = 0;
   Eigen::Vector3d place_m = Eigen::Vector3d::Zero();  ///< of the ankle: mean over its frames; on the ground: held there
+  Eigen::Vector3d camera_m = Eigen::Vector3d::Zero();  ///< of the camera: mean over its frames
+  /// The direction in which it was seen, unit.
+  [[nodiscard]] Eigen::Vector3d Ray() const { return (place_m - camera_m).normalized(); }
 };
 
 struct GroundPlaneOptions {
@@ -76,6 +81,11 @@ struct GroundPlane {
 /// Where feet stand, on whatever. `feet` and `timestamps` as below.
 std::vector<Stance> FindStances(const std::vector<std::array<FootPlace, 2>>& feet, std::span<const double> timestamps,
                                 const GroundPlaneOptions& options);
+
+/// Median speed across the view of ankles that are seen and called standing in two frames that follow each other, m/s;
+/// NaN when there are fewer than ten such pairs.
+double StandingSpeed(const std::vector<std::array<FootPlace, 2>>& feet, std::span<const double> timestamps,
+                     const GroundPlaneOptions& options);
 
 /// `feet` and `timestamps` (seconds, increasing) have the same number of frames. Throws std::invalid_argument
 /// otherwise.

@@ -101,6 +101,8 @@ TrackSequenceResult TrackLive(const TrackSequenceInput& input, const LiveTracker
                  " of dense keypoints");
   BODYLOOM_CHECK(input.initialiser == nullptr || input.initialiser->num_frames() == T, "live: the initialiser has ",
                  input.initialiser != nullptr ? input.initialiser->num_frames() : 0, " frames, the detections ", T);
+  BODYLOOM_CHECK(input.camera_from_scene == nullptr,
+                 "live: the camera must stand still; track the whole clip to give its path");
   const Stopwatch watch;
   LiveTracker tracker(LiveInputFor(input), options);
   TrackSequenceResult result;

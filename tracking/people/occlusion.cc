@@ -9,6 +9,7 @@
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/geometry/camera_path.h"
 #include "bodyloom/geometry/posed_body.h"
 #include "bodyloom/geometry/skinning.h"
 #include "bodyloom/tracking/visible_surface.h"
@@ -38,9 +39,16 @@ struct SeenBody {
 bool Pose(const PersonInScene& person, const std::shared_ptr<const Skinner>& skinner, SeenBody* body) {
   const Track& track = *person.track;
   const int t = body->of.frame;
-  const BodyPose pose =
+  BodyPose pose =
       PoseFromAxisAngle(*person.body, track.motion.poses.row(t).transpose(), track.motion.trans.row(t).transpose());
   body->depth_m = track.joints[size_t(t)](0, 2);
+  if (track.HasMovingCamera()) {
+    const Eigen::Vector3d pelvis = track.joints[size_t(t)].row(0).transpose();
+    const CameraPose& camera = track.camera_from_scene[size_t(t)];
+    body->depth_m = MovedPoint(camera, pelvis).z();
+    const Eigen::Vector3d rest_pelvis = pelvis - pose.trans;
+    pose = MovedPose(camera, rest_pelvis, std::move(pose));
+  }
   return body->surface->Render(skinner, *person.body, track.motion.betas, pose.rotations, pose.trans, track.camera);
 }
 

@@ -70,10 +70,26 @@ class Fits {
 void CheckOneCamera(const std::vector<TrackSequenceInput>& people) {
   BODYLOOM_CHECK(!people.empty(), "track: nobody to track");
   for (const TrackSequenceInput& person : people) {
+    BODYLOOM_CHECK((person.camera_from_scene == nullptr) == (people[0].camera_from_scene == nullptr) &&
+                       person.camera_scale_m == people[0].camera_scale_m,
+                   "track: the camera moves for some people and stands still for others, expected one camera");
     BODYLOOM_CHECK(person.camera.width == people[0].camera.width && person.camera.height == people[0].camera.height,
                    "track: people of images of ", people[0].camera.width, "x", people[0].camera.height, " and ",
                    person.camera.width, "x", person.camera.height, ", expected one camera");
   }
+}
+
+/// One scale of the path for everybody, where each fit looked for its own: their mean, weighted by 1/σ². 0: nobody
+/// found one, and all of them are told with the path's rotations alone.
+double SharedCameraScale(const std::vector<TrackSequenceResult>& people) {
+  double sum = 0, weights = 0;
+  for (const TrackSequenceResult& person : people) {
+    const CameraPathSummary& path = person.summary.camera_path;
+    if (!person.summary.IsUsable() || !(path.scale_m > 0 && path.sigma_m > 0)) continue;
+    sum += path.scale_m / (path.sigma_m * path.sigma_m);
+    weights += 1 / (path.sigma_m * path.sigma_m);
+  }
+  return weights > 0 ? sum / weights : 0;
 }
 
 SharedScene Join(const std::vector<TrackSequenceResult>& people, const FocalPrior& prior,
@@ -84,6 +100,11 @@ SharedScene Join(const std::vector<TrackSequenceResult>& people, const FocalPrio
   CommonGroundOptions ground;
   // Weak perspective has no distances, and a shape that is kept has one size.
   if (options.camera_knowledge == CameraKnowledge::kWeak || !options.estimate_shape) ground.size_sigma = 0;
+  // A larger person farther away looks the same from one place alone.
+  if (std::any_of(summaries.begin(), summaries.end(),
+                  [](const TrackSequenceSummary& summary) { return summary.camera_path.moves; })) {
+    ground.size_sigma = 0;
+  }
   return JoinScenes(summaries, prior, ground);
 }
 
@@ -96,6 +117,20 @@ void ShareWorld(TrackPeopleResult* result) {
   const WorldFrame world = WorldOfScene(result->summary.scene, joints);
   for (TrackSequenceResult& person : result->people) {
     if (person.summary.IsUsable()) person.track.world = world;
+  }
+}
+
+/// Fits everybody again with the one scale of the camera's path, if there is one.
+void TakeOneCameraScale(std::vector<TrackSequenceInput>* people, Fits* fits, CameraKnowledge knowledge,
+                        TrackPeopleResult* result) {
+  const double scale_m = SharedCameraScale(result->people);
+  for (size_t i = 0; scale_m > 0 && i < people->size() && !fits->stopped(); ++i) {
+    (*people)[i].camera_scale_m = scale_m;
+    if (!result->people[i].summary.IsUsable()) continue;
+    TrackSequenceResult again = fits->Run((*people)[i], knowledge);
+    if (!again.summary.IsUsable() || fits->stopped()) continue;
+    result->people[i] = std::move(again);
+    result->summary.fitted_again[i] = 1;
   }
 }
 
@@ -112,7 +147,8 @@ TrackPeopleResult TrackPeople(std::vector<TrackSequenceInput> people, const Trac
   const size_t n = people.size();
   const bool alone = n == 1 || options.camera_knowledge == CameraKnowledge::kWeak;
   const bool unknown_focal = options.camera_knowledge == CameraKnowledge::kUnknownFocal;
-  Fits fits(options, alone ? n : unknown_focal ? 3 * n : 2 * n);
+  const bool shares_path_scale = n > 1 && people[0].camera_from_scene != nullptr && people[0].camera_scale_m == 0;
+  Fits fits(options, (alone ? n : unknown_focal ? 3 * n : 2 * n) + (shares_path_scale ? n : 0));
   TrackPeopleResult result;
   result.summary.hidden.resize(n);
   result.summary.fitted_again.resize(n, 0);
@@ -122,6 +158,7 @@ TrackPeopleResult TrackPeople(std::vector<TrackSequenceInput> people, const Trac
     const auto& [track, summary] = result.people.back();
     if (summary.IsUsable()) width = track.camera.width, height = track.camera.height;
   }
+  if (shares_path_scale) TakeOneCameraScale(&people, &fits, options.camera_knowledge, &result);
   SharedScene& scene = result.summary.scene;
   scene = Join(result.people, FocalPrior::ForImage(width, height), options);
   if (alone || fits.stopped()) return result;

@@ -5,7 +5,8 @@
 /// Everybody is fitted alone first. What these fits say of the scene is joined (shared_scene.h), what a nearer body
 /// hides of another is found (occlusion.h), and those for whom that changes something are fitted again with it. Where the
 /// focal length was not known and feet of two people stand, twice: with the joined focal length, which moves everybody's
-/// feet, and with the ground and the sizes that these show.
+/// feet, and with the ground and the sizes that these show. Of a camera that moves the scale of the path is one for all,
+/// and sizes are not compared.
 #pragma once
 
 #include <string>

@@ -9,6 +9,7 @@
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/units.h"
+#include "bodyloom/geometry/camera_path.h"
 #include "bodyloom/geometry/posed_body.h"
 #include "bodyloom/geometry/rotation.h"
 
@@ -113,17 +114,8 @@ SynthCamera PlaceSynthCamera(const BodyModel& body, const Motion& motion, const 
 }
 
 Motion MotionInCamera(const BodyModel& body, const Motion& motion, const CameraPose& pose) {
-  Motion result = motion;
+  Motion result = MovedMotion(body, motion, {&pose, 1});
   result.up = Motion::Up::kCamera;
-  const Vector3d pelvis = body.RestJoints(motion.betas).row(0).transpose();
-  const Matrix3d& R = pose.camera_from_world_rotation;
-  const Vector3d mean = body.data().pose_mean.size() > 0 ? Vector3d(body.data().pose_mean.head<3>()) : Vector3d::Zero();
-  for (int t = 0; t < motion.num_frames(); ++t) {
-    const Vector3d root = motion.poses.row(t).head<3>().transpose();
-    result.poses.row(t).head<3>() = (AxisAngleFromRotation(R * RotationFromAxisAngle(root + mean)) - mean).transpose();
-    const Vector3d trans = motion.trans.row(t).transpose();
-    result.trans.row(t) = (R * (pelvis + trans) + pose.camera_from_world_translation - pelvis).transpose();
-  }
   return result;
 }
 

@@ -9,6 +9,7 @@
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/hash_random.h"
 #include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/geometry/camera_path.h"
 #include "bodyloom/geometry/posed_body.h"
 #include "bodyloom/render/chart_lookup.h"
 #include "bodyloom/render/visibility_buffer.h"
@@ -148,12 +149,19 @@ class ClipMaker {
   void MakeFrame(int t) {
     const Motion& motion = clip_.truth.motion;
     const BodyPose pose = PoseFromAxisAngle(body_, motion.poses.row(t).transpose(), motion.trans.row(t).transpose());
-    const MatrixX3d vertices = PoseVertices(body_, motion.betas, pose);
-    clip_.truth.joints[t] = PoseSkeleton(body_, body_.RestJoints(motion.betas), pose).joints;
+    const MatrixX3d rest_joints = body_.RestJoints(motion.betas);
+    clip_.truth.joints[t] = PoseSkeleton(body_, rest_joints, pose).joints;
+    const bool moves = clip_.truth.HasMovingCamera();
+    const BodyPose seen =
+        moves ? MovedPose(clip_.truth.camera_from_scene[t], rest_joints.row(0).transpose(), pose) : pose;
+    const MatrixX3d vertices = PoseVertices(body_, motion.betas, seen);
     VisibilityBuffer buffer;
     buffer.Render(vertices, body_.data().faces, camera());
     if (options_.dense_per_frame > 0 && !dropped_[t]) AddDense(t, vertices, buffer);
-    AddLandmarks(t, pose, vertices, buffer);
+    AddLandmarks(t, seen, vertices, buffer);
+    if (moves && clip_.truth.coco17[t].rows() > 0) {
+      clip_.truth.coco17[t] = MovedPoints(Inverse(clip_.truth.camera_from_scene[t]), clip_.truth.coco17[t]);
+    }
   }
 
   /// After all frames: what needs the whole clip.
@@ -318,7 +326,10 @@ bool SynthClipOptions::IsValid(std::string* why) const {
     return false;
   };
   const auto is_share = [](double x) { return x >= 0 && x <= 1; };
-  if (!camera.IsValid(why) || !detection.IsValid(why)) return false;
+  if (!camera.IsValid(why) || !camera_path.IsValid(why) || !detection.IsValid(why)) return false;
+  const bool moves = camera_path.motion != SynthCameraMotion::kStill;
+  if (moves && initialiser_error_px > 0) return no("an initialiser is of a camera that stands still");
+  if (moves && camera.model != CameraModel::kPinhole) return no("a camera that moves is a pinhole's");
   if (dense_per_frame < 0) return no("dense_per_frame must not be negative");
   if (!(dense.pixel_sigma_px >= 0) || !(dense.uv_sigma >= 0)) return no("noise must not be negative");
   if (!is_share(dense.outlier_probability)) return no("outlier_probability must be in [0, 1]");
@@ -337,11 +348,18 @@ SynthClip MakeSynthClip(const BodyModel& body, const Motion& motion, const Synth
   std::string why;
   BODYLOOM_CHECK(options.IsValid(&why), why);
   CheckSynthMotion(body, motion);
-  return MakeSynthClip(body, motion, PlaceSynthCamera(body, motion, options.camera), options);
+  return MakeSynthClip(body, motion,
+                       MakeSynthCameraPath(body, motion, options.camera, options.camera_path, options.seed), options);
 }
 
 SynthClip MakeSynthClip(const BodyModel& body, const Motion& motion, const SynthCamera& placed,
                         const SynthClipOptions& options) {
+  return MakeSynthClip(body, motion, SynthCameraPath{placed, {}}, options);
+}
+
+SynthClip MakeSynthClip(const BodyModel& body, const Motion& motion, const SynthCameraPath& path,
+                        const SynthClipOptions& options) {
+  const SynthCamera& placed = path.first;
   std::string why;
   BODYLOOM_CHECK(options.IsValid(&why), why);
   CheckSynthMotion(body, motion);
@@ -352,6 +370,7 @@ SynthClip MakeSynthClip(const BodyModel& body, const Motion& motion, const Synth
   Track& truth = clip.truth;
   truth.motion = MotionInCamera(body, motion, placed.pose);
   truth.camera = placed.camera;
+  truth.camera_from_scene = path.camera_from_scene;
   if (placed.camera.model == CameraModel::kWeakPerspective) {
     truth.weak_camera = Eigen::RowVector3d(placed.camera.scale, placed.camera.tx, placed.camera.ty).replicate(T, 1);
   }

@@ -23,6 +23,7 @@
 #include "bodyloom/data_tools/synthesis/clips/detection_noise.h"
 #include "bodyloom/data_tools/synthesis/clips/perturbed_motion.h"
 #include "bodyloom/data_tools/synthesis/clips/synth_camera.h"
+#include "bodyloom/data_tools/synthesis/clips/synth_camera_path.h"
 #include "bodyloom/geometry/body_model.h"
 #include "bodyloom/geometry/observations.h"
 #include "bodyloom/geometry/track.h"
@@ -42,7 +43,8 @@ struct DenseFaultOptions {
 struct SynthClipOptions {
   uint64_t seed = 1;
   SynthCameraOptions camera;
-  int dense_per_frame = 300;  ///< fewer when fewer pixels show the body; 0: no dense keypoints
+  SynthCameraPathOptions camera_path;  ///< how it moves, by the clip's seed
+  int dense_per_frame = 300;           ///< fewer when fewer pixels show the body; 0: no dense keypoints
   DenseFaultOptions dense;
   bool keypoints = true;  ///< COCO-17 and toes and heels, as far as the body has them
   DetectionNoiseOptions detection;
@@ -60,9 +62,9 @@ struct SynthFaultCounts {
 };
 
 struct SynthClip {
-  Track truth;  ///< camera frame
-  CameraPose camera_from_world;
-  Eigen::Vector3d up_in_camera;  ///< unit vector
+  Track truth;                   ///< camera frame, or the scene with the path of a camera that moves
+  CameraPose camera_from_world;  ///< of the first frame
+  Eigen::Vector3d up_in_camera;  ///< unit vector, of the first frame
   DenseSequence dense;
   DenseSequence dense_truth;  ///< the same pixels before faults 2–5 (same frames, same order)
   KeypointSequence keypoints;
@@ -79,6 +81,10 @@ SynthClip MakeSynthClip(const BodyModel& body, const Motion& motion, const Synth
 /// The same seen by a given camera; options.camera is not looked at. For a motion that is in the camera frame already
 /// the camera's pose is the identity.
 SynthClip MakeSynthClip(const BodyModel& body, const Motion& motion, const SynthCamera& camera,
+                        const SynthClipOptions& options);
+
+/// The same seen by a given camera that moves, or stands still.
+SynthClip MakeSynthClip(const BodyModel& body, const Motion& motion, const SynthCameraPath& path,
                         const SynthClipOptions& options);
 
 }  // namespace bodyloom

@@ -11,6 +11,7 @@
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/observations/keypoint_conventions.h"
+#include "bodyloom/data_tools/observations/load_camera_path.h"
 #include "bodyloom/data_tools/observations/load_cameras.h"
 #include "bodyloom/data_tools/observations/observations_npz.h"
 #include "bodyloom/data_tools/video/video_writer.h"
@@ -128,6 +129,9 @@ void WriteSynthClip(const std::string& folder, const BodyModel& body, const Synt
   if (has_keypoints || has_dense) {
     WriteObservations(file("observations.npz"), has_keypoints ? &clip.keypoints : nullptr,
                       has_dense ? &clip.dense : nullptr);
+  }
+  if (clip.truth.HasMovingCamera()) {
+    WriteCameraPath(file("camera_path.json"), {clip.truth.motion.timestamps, clip.truth.camera_from_scene});
   }
   if (has_keypoints) WriteFileAtomically(file("keypoints.json"), OpenPoseFrames(clip.keypoints).dump() + "\n");
   if (clip.initialiser.num_frames() > 0) WriteTrack(file("initialiser.npz"), InitialiserTrack(body, clip));

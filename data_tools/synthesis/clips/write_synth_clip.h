@@ -7,6 +7,7 @@
 /// | observations.npz | 2D landmarks and dense keypoints with their faults (observations/observations_npz.h)   |
 /// | keypoints.json   | the 2D landmarks as OpenPose BODY_25: a list with one {"version", "people"} a frame    |
 /// | cameras.json     | intrinsics and pose of the camera (observations/load_cameras.h, form 3)                |
+/// | camera_path.json | where a camera that moves was, in metres (observations/load_camera_path.h)              |
 /// | initialiser.npz  | the perturbed motion as a track, when the clip has one                                 |
 /// | video.mp4        | the person in clothes on a plain floor, when requested                                 |
 /// | clip.json        | seed, fault options, and what they did                                                 |

@@ -10,6 +10,7 @@
 
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/formats/npz.h"
+#include "bodyloom/geometry/camera_path.h"
 #include "bodyloom/geometry/rotation.h"
 #include "tests/data_tools/descriptors/swinging_track.h"
 #include "tests/data_tools/formats/expect_file_error.h"
@@ -100,6 +101,44 @@ TEST(DescribeTrack, HoldsNormalsAndVelocitiesOfThePosedSurface) {
     }
     EXPECT_EQ(d.header["frame"], ToString(frame));
   }
+}
+
+TEST(DescribeTrack, ACameraThatMovesTurnsTheAxesAndAddsNoVelocity) {
+  Track track = Swinging(12);
+  const Described scene = Describe(track, Small());
+  for (int t = 0; t < 12; ++t) {
+    track.camera_from_scene.push_back(
+        {RotationFromAxisAngle(Vector3d(0.05 * t, -0.1 * t, 0.02 * t)), Vector3d(0.3 * t, 0, 0.1)});
+  }
+  const Described seen = Describe(track, Small());
+  int moving = 0;
+  for (const int t : {0, 5, 11}) {
+    const Eigen::Matrix3d& R = track.camera_from_scene[size_t(t)].camera_from_world_rotation;
+    for (int p = 0; p < 48 * 48; p += 7) {
+      for (const int map : {0, 1}) {  // N, V
+        Vector3d in_scene, in_camera;
+        for (int c = 0; c < 3; ++c) {
+          in_scene[c] = scene.at(t, 3 * map + c, p);
+          in_camera[c] = seen.at(t, 3 * map + c, p);
+        }
+        ASSERT_LT((in_camera - R * in_scene).norm(), 1e-5 * (1 + in_scene.norm()));
+        moving += map == 1 && in_scene.norm() > 0.1;
+      }
+    }
+  }
+  EXPECT_GT(moving, 100);
+  // Normals are those of the body as the camera has it; what shows and what does not is the camera's too.
+  DescribeTrackOptions options = Small();
+  options.seen_only = true;
+  options.past = 0;
+  const Described of_scene = Describe(track, options), of_cameras = Describe(TrackInCameras(ToyBody(), track), options);
+  ASSERT_EQ(of_scene.values.size(), of_cameras.values.size());
+  int different = 0;
+  for (size_t i = 0; i < of_scene.values.size(); ++i) {
+    different += std::abs(of_scene.values[i] - of_cameras.values[i]) > 1e-3F;
+  }
+  EXPECT_LT(different, static_cast<int>(of_scene.values.size()) / 500)
+      << "texels at the silhouette may round otherwise";
 }
 
 TEST(DescribeTrack, PastMapsAreThoseOfThePastFrames) {

@@ -18,6 +18,9 @@
 #include "bodyloom/data_tools/motion/amass.h"
 #include "bodyloom/data_tools/motion/bvh_writer.h"
 #include "bodyloom/data_tools/motion/motion_tools.h"
+#include "bodyloom/data_tools/observations/colmap_reader.h"
+#include "bodyloom/data_tools/observations/load_camera_path.h"
+#include "bodyloom/geometry/camera_path.h"
 #include "bodyloom/geometry/rotation.h"
 #include "tests/data_tools/export/exported_scene.h"
 #include "tests/data_tools/formats/temporary_file.h"
@@ -219,6 +222,50 @@ TEST(ColmapWriter, SeesTheBodyWhereTheClipDid) {
   EXPECT_THROW(ColmapCamerasText(lens), std::invalid_argument);
 }
 
+/// Where a camera that moves saw vertex v of frame t, in OpenCV's pixels.
+Eigen::Vector2d SeenPixel(const Track& track, int t, int v) {
+  const BodyPose pose =
+      PoseFromAxisAngle(BuiltinBody(), track.motion.poses.row(t).transpose(), track.motion.trans.row(t).transpose());
+  const Vector3d x = PoseVertices(BuiltinBody(), track.motion.betas, pose).row(v).transpose();
+  Eigen::Vector2d px = Eigen::Vector2d::Zero();
+  EXPECT_TRUE(track.camera.Project(MovedPoint(track.camera_from_scene[size_t(t)], x), &px));
+  return px;
+}
+
+TEST(ColmapWriter, ACameraThatMovesComesBackFromOurReader) {
+  const Track track = ShortTrack(6, SynthCameraMotion::kWalking);
+  const ExportScene scene = SceneOf(track);
+  const TemporaryFolder folder;
+  WriteColmap(folder.File(""), scene);
+  const ColmapModel model = ReadColmapModel(folder.File(""));
+  ASSERT_EQ(model.images.size(), size_t(track.num_frames()));
+  for (const int t : {0, 5, 11}) {
+    const MatrixX3d in_world = PoseVertices(BuiltinBody(), track.motion.betas, scene.people[0].poses[size_t(t)]);
+    Eigen::Vector2d px;
+    const Camera& camera = model.cameras.at(1).camera;
+    ASSERT_TRUE(camera.Project(MovedPoint(model.images[size_t(t)].pose, in_world.row(700).transpose()), &px));
+    EXPECT_LT((px - SeenPixel(track, t, 700)).norm(), 1e-6);
+  }
+  // The whole way back: a path from the files that the tracker would take, up to the scene's place in the world.
+  const CameraPath path =
+      CameraPathOnClock(LoadCameraPath(folder.File("")), track.motion.timestamps, {.first = 0}, "colmap");
+  const SampledCameraPath sampled = SampleCameraPath(path, track.motion.timestamps);
+  const CameraPose first = Inverse(track.camera_from_scene[0]);
+  for (size_t t = 0; t < track.camera_from_scene.size(); ++t) {
+    const CameraPose expected = Compose(track.camera_from_scene[t], first);
+    EXPECT_LT(
+        (sampled.camera_from_scene[t].camera_from_world_translation - expected.camera_from_world_translation).norm(),
+        1e-9);
+  }
+}
+
+TEST(ExportScene, TracksOfAMovingAndOfAStillCameraAreNotOneScene) {
+  const Track still = ShortTrack(), moving = ShortTrack(6, SynthCameraMotion::kHandHeld);
+  const std::array<const BodyModel*, 2> bodies = {&BuiltinBody(), &BuiltinBody()};
+  const std::array<const Track*, 2> tracks = {&still, &moving};
+  EXPECT_THROW(MakeExportScene(bodies, tracks, TiltedWorld()), std::invalid_argument);
+}
+
 /// Numbers in brackets after "key = ".
 std::vector<double> TomlNumbers(const std::string& text, const std::string& key) {
   const size_t begin = text.find("\n" + key + " = ") + key.size() + 4, end = text.find('\n', begin);
@@ -268,6 +315,20 @@ std::vector<double> UsdNumbers(const std::string& text, const std::string& key, 
   std::vector<double> numbers;
   for (double x = 0; stream >> x;) numbers.push_back(x);
   return numbers;
+}
+
+TEST(UsdaWriter, ACameraThatMovesHasASampleOfEveryFrame) {
+  const Track track = ShortTrack(6, SynthCameraMotion::kHandHeld);
+  const ExportScene scene = SceneOf(track);
+  const std::string text = UsdaText(scene, 0);
+  const std::vector<double> m = UsdNumbers(text, "matrix4d xformOp:transform.timeSamples", 11);
+  ASSERT_EQ(m.size(), 16U) << "of frame 11";
+  EXPECT_EQ(UsdaText(SceneOf(ShortTrack()), 0).find("xformOp:transform.timeSamples"), std::string::npos);
+  const Vector3d place(m[12], m[13], m[14]);
+  EXPECT_LT((place - CentreOf(scene.camera_keys[11].camera_from_world)).norm(), 1e-5);
+  // Rows of the transposed matrix are the camera's axes in the world: −z is where it looks.
+  const Vector3d ahead = scene.camera_keys[11].camera_from_world.camera_from_world_rotation.row(2).transpose();
+  EXPECT_LT((Vector3d(m[8], m[9], m[10]) + ahead).norm(), 1e-5);
 }
 
 TEST(UsdaWriter, PosesTheBodyWhereItIs) {

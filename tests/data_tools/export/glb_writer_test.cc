@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "bodyloom/data_tools/export/skinned_mesh.h"
+#include "bodyloom/geometry/camera_path.h"
 #include "tests/data_tools/export/exported_scene.h"
 #include "tests/data_tools/export/gltf_twin.h"
 
@@ -89,6 +90,31 @@ TEST(GlbWriter, CameraSeesWhatTheClipsDid) {
     ASSERT_TRUE(track.camera.Project(truth.row(v).transpose(), &px));
     EXPECT_NEAR(track.camera.cx + f * p.x() / -p.z(), px.x(), 0.3);
     EXPECT_NEAR(track.camera.cy - f * p.y() / -p.z(), px.y(), 0.3);
+  }
+}
+
+TEST(GlbWriter, ACameraThatMovesSeesEveryFrame) {
+  const Track track = ShortTrack(6, SynthCameraMotion::kWalking);
+  const ExportScene scene = SceneOf(track);
+  GlbSummary summary;
+  const GltfTwin file(GlbText(scene, {}, &summary));
+  const double f =
+      0.5 * track.camera.height / std::tan(file.json["cameras"][0]["perspective"]["yfov"].get<double>() / 2);
+  for (const int t : {0, 4, 11}) {
+    EXPECT_NEAR(file.Keys(file.Node("camera"), "translation", false)(t, 0), scene.people[0].seconds[size_t(t)], 1e-6);
+    const Eigen::Matrix4d view = file.Global(file.Node("camera"), t).inverse();
+    const Eigen::MatrixXd posed = file.Pose(file.Node("person_0_body"), t);
+    const BodyPose pose =
+        PoseFromAxisAngle(BuiltinBody(), track.motion.poses.row(t).transpose(), track.motion.trans.row(t).transpose());
+    const MatrixX3d seen =
+        MovedPoints(track.camera_from_scene[size_t(t)], PoseVertices(BuiltinBody(), track.motion.betas, pose));
+    for (const int v : {0, 1000, 5000}) {
+      const Eigen::Vector4d p = view * Eigen::Vector4d(posed(v, 0), posed(v, 1), posed(v, 2), 1);
+      Eigen::Vector2d px;
+      ASSERT_TRUE(track.camera.Project(seen.row(v).transpose(), &px));
+      EXPECT_NEAR(track.camera.cx + f * p.x() / -p.z(), px.x(), 0.3);
+      EXPECT_NEAR(track.camera.cy - f * p.y() / -p.z(), px.y(), 0.3);
+    }
   }
 }
 

@@ -33,6 +33,33 @@ std::string DeepMimicFrame(const std::string& seconds) {
   return "[" + text + "]";
 }
 
+template <typename T>
+void Append(const T& value, std::string* bytes) {
+  bytes->append(reinterpret_cast<const char*>(&value), sizeof(T));
+}
+
+std::string ColmapImagesBytes() {
+  std::string bytes;
+  Append<uint64_t>(1, &bytes);
+  Append<uint32_t>(1, &bytes);
+  for (const double x : {1.0, 0.0, 0.0, 0.0, 0.1, 0.2, 0.3}) Append(x, &bytes);
+  Append<uint32_t>(1, &bytes);
+  bytes += std::string("f_01.png") + '\0';
+  Append<uint64_t>(1, &bytes);
+  return bytes + std::string(24, '\2');
+}
+
+std::string ColmapCamerasBytes() {
+  std::string bytes;
+  Append<uint64_t>(1, &bytes);
+  Append<uint32_t>(1, &bytes);
+  Append<int32_t>(0, &bytes);
+  Append<uint64_t>(640, &bytes);
+  Append<uint64_t>(480, &bytes);
+  for (const double x : {600.0, 320.0, 240.0}) Append(x, &bytes);
+  return bytes;
+}
+
 }  // namespace
 
 void AddTextSeeds(std::map<std::string, std::vector<std::string>>* seeds) {
@@ -49,6 +76,15 @@ void AddTextSeeds(std::map<std::string, std::vector<std::string>>* seeds) {
       R"({"cameras":[{"name":"cam_01","size":[1088,1920],"K":[[1681,0,533],[0,1682,948],[0,0,1]],)"
       R"("dist_k1k2p1p2":[-0.05,0.1,0.001,0.002],"rvec":[0,0,0],"tvec_m":[0.3,0.9,2.9]}]})",
       R"({"width":640,"height":480,"fx":600})"};
+  (*seeds)["camera_path"] = {
+      R"({"camera_path":1,"fps":30,"camera":{"width":640,"height":480,"fx":600},"frames":[)"
+      R"({"frame":0,"quaternion":[1,0,0,0],"translation":[0,0,0]},)"
+      R"({"frame":2,"rotation":[[1,0,0],[0,1,0],[0,0,1]],"translation":[0.1,0,0]}]})",
+      R"({"camera_path":1,"frames":[{"time":0,"rotation":[0,0.1,0],"translation":[0,0,1]}]})",
+      "# an image\n1 1 0 0 0 0.5 0 0 1 f_01.png\n10 20 -1 30 40 7\n2 0.8 0.6 0 0 0.5 0 0 1 f_02.png\n\n",
+      "# a camera\n1 PINHOLE 640 480 600 600 320 240\n2 OPENCV 640 480 600 600 320 240 0.1 0 0 0\n",
+      ColmapImagesBytes(),
+      ColmapCamerasBytes()};
   (*seeds)["bvh"] = {
       "HIERARCHY\nROOT Hips\n{\n  OFFSET 1 2 3\n"
       "  CHANNELS 6 Zposition Xposition Yposition Yrotation Xrotation Zrotation\n"

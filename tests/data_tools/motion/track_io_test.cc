@@ -9,6 +9,7 @@
 
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/formats/npz.h"
+#include "bodyloom/geometry/rotation.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 
@@ -214,6 +215,33 @@ TEST(TrackIo, WorldIsKeptAndMayBeMissing) {
   }
   EXPECT_THAT(ErrorOf(WithText(given, "world_source", "guessed")), HasSubstr("world_source: 'guessed'"));
   EXPECT_THAT(ErrorOf(With(given, "world_sigma", {-1, 0}, {2})), HasSubstr("world_sigma"));
+}
+
+TEST(TrackIo, ThePathOfACameraThatMovesIsKeptForThoseWhoTakeIt) {
+  const TemporaryFolder folder;
+  Track track = SampleTrack(CameraModel::kPinhole);
+  for (int t = 0; t < kFrames; ++t) {
+    track.camera_from_scene.push_back({RotationFromAxisAngle({0.1 * t, 0.2, -0.3}), {1.0 * t, 2, 3}});
+  }
+  WriteTrack(folder.File("t.npz"), track);
+  const Track read = ReadTrack(folder.File("t.npz"), MovingCamera::kTake);
+  ASSERT_EQ(read.camera_from_scene.size(), size_t{kFrames});
+  for (size_t t = 0; t < kFrames; ++t) {
+    EXPECT_EQ(read.camera_from_scene[t].camera_from_world_rotation,
+              track.camera_from_scene[t].camera_from_world_rotation);
+    EXPECT_EQ(read.camera_from_scene[t].camera_from_world_translation,
+              track.camera_from_scene[t].camera_from_world_translation);
+  }
+  EXPECT_THAT(FileErrorOf("t.npz", [&] { ReadTrack(folder.File("t.npz")); }), HasSubstr("whose camera moves"));
+  EXPECT_FALSE(ReadNpz(folder.File("t.npz")).at("camera_from_scene").shape.empty());
+
+  track.camera_from_scene.pop_back();
+  EXPECT_THROW(WriteTrack(folder.File("t.npz"), track), std::invalid_argument);
+  std::vector<double> path;
+  for (int t = 0; t < 3; ++t) path.insert(path.end(), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
+  EXPECT_THAT(ErrorOf(With(ForeignArrays(), "camera_from_scene", {1, 2}, {2})), HasSubstr("expected 3x4x4"));
+  path[16] = -1;
+  EXPECT_THAT(ErrorOf(With(ForeignArrays(), "camera_from_scene", path, {3, 4, 4})), HasSubstr("frame 1: expected a"));
 }
 
 TEST(TrackIo, BrokenMembersAreNamed) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/pipelines/track/track_clip.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,7 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "bodyloom/data_tools/formats/npz.h"
+#include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/observations/observations_npz.h"
+#include "bodyloom/pipelines/export/export_track.h"
 #include "bodyloom/pipelines/page/report_page.h"
 #include "bodyloom/pipelines/score/evaluate_track.h"
 #include "bodyloom/pipelines/synthesis/synthesize_clip.h"
@@ -54,6 +57,55 @@ TEST(TrackClip, ReportsWhatItWroteAndHowFarItIs) {
   EXPECT_EQ(report.outputs, (std::vector<std::string>{request.out, request.json}));
   EXPECT_EQ(FileBytes(request.json), ToJson(report));
   EXPECT_TRUE(std::filesystem::exists(request.out));
+}
+
+TEST(TrackClip, FollowsACameraThatMovesFromTheFilesToTheFiles) {
+  const ScratchFolder folder;
+  SynthesizeClipRequest synth;
+  synth.motion = {.name = "demo", .fps = 15, .num_frames = 20};
+  synth.out = folder / "clip";
+  synth.clip.dense_per_frame = 0;
+  synth.clip.camera_path.motion = SynthCameraMotion::kWalking;
+  const SynthClipFiles clip = SynthesizeClip(synth).files;
+  TrackRequest request = RequestFor(clip, folder);
+  request.camera_path = clip.camera_path;
+  request.report = folder / "page.html";
+  const TrackReport report = TrackClip(request);
+  EXPECT_EQ(report.camera_path.poses, 20);
+  EXPECT_NE(ToText(report).find("\nscale    1.0000 m a unit of the path, as given"), std::string::npos);
+  EXPECT_EQ(nlohmann::json::parse(ToJson(report))["camera_path"]["scale_m"], 1);
+  const std::string html = FileBytes(request.report);
+  EXPECT_NE(html.find("\"cameras\":[[["), std::string::npos);
+  const Track track = ReadTrack(request.out, MovingCamera::kTake), truth = ReadTrack(clip.truth, MovingCamera::kTake);
+  ASSERT_EQ(track.camera_from_scene.size(), 20u);
+  EXPECT_LT((track.camera_from_scene[19].camera_from_world_translation -
+             truth.camera_from_scene[19].camera_from_world_translation)
+                .norm(),
+            1e-9);
+  EvaluateTrackRequest evaluate;
+  evaluate.track = request.out;
+  evaluate.truth = clip.truth;
+  EXPECT_LT(EvaluateTrack(evaluate).Value("w_mpjpe_mm"), 300);
+
+  // To COLMAP and back, which forgets the length.
+  ExportTrackRequest colmap;
+  colmap.tracks = {clip.truth};
+  colmap.form = TrackForm::kColmap;
+  colmap.out = folder / "sparse";
+  ExportTrack(colmap);
+  request.cameras = "";
+  request.camera_path = colmap.out;
+  request.report = "";
+  const TrackReport again = TrackClip(request);
+  EXPECT_TRUE(again.solve.camera_path.estimated);
+  EXPECT_NEAR(again.solve.focal_px, truth.camera.fx, 1e-6) << "COLMAP's intrinsics are used";
+  request.camera_scale_m = 1;
+  EXPECT_FALSE(TrackClip(request).solve.camera_path.estimated);
+
+  // A path of another clip.
+  request.camera_path_first = 15;
+  EXPECT_THAT([&] { TrackClip(request); },
+              testing::ThrowsMessage<std::runtime_error>(testing::HasSubstr("nothing is known of the camera")));
 }
 
 TEST(TrackClip, ThePageShowsEveryFrameAndGivesTheFilesAway) {

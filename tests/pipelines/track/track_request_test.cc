@@ -34,6 +34,21 @@ TEST(TrackRequest, WhatIsMissingOrContradictsIsNamed) {
   EXPECT_THAT([&] { CheckTrackRequest(request); }, ThrowsMessage<RequestError>(HasSubstr("--live")));
 }
 
+TEST(TrackRequest, APathIsOfACameraWithAPlaceAndOfAWholeClip) {
+  TrackRequest request = Complete();
+  request.camera_path = "sparse/0";
+  request.camera_scale_m = 2;
+  EXPECT_NO_THROW(CheckTrackRequest(request));
+  TrackRequest weak = request;
+  weak.camera = "weak";
+  EXPECT_THROW(CheckTrackRequest(weak), RequestError);
+  TrackRequest live = request;
+  live.live_lag = 4;
+  EXPECT_THROW(CheckTrackRequest(live), RequestError);
+  request.camera_path = "";
+  EXPECT_THROW(CheckTrackRequest(request), RequestError);
+}
+
 TEST(TrackRequest, AStatureNeedsAShapeAndAWholeClip) {
   TrackRequest request = Complete();
   request.stature_m = 1.6;

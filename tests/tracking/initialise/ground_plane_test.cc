@@ -249,5 +249,38 @@ TEST(EstimateUp, OneDirectionOfManyFrames) {
   EXPECT_LT(AngleDeg(EstimateUp(broken).up, truth), 2);
 }
 
+TEST(GroundPlane, IsTheSameFromACameraThatIsElsewhereInTheScene) {
+  const Walk walk = MakeWalk({});
+  const GroundPlane from_origin = EstimateGroundPlane(walk.feet, walk.timestamps, walk.up, {});
+  ASSERT_TRUE(from_origin.found) << from_origin.why;
+  const Vector3d elsewhere(3, -1, 2);
+  Walk moved = walk;
+  for (auto& both : moved.feet) {
+    for (FootPlace& foot : both) {
+      foot.ankle_m += elsewhere;
+      foot.camera_m = elsewhere;
+    }
+  }
+  const GroundPlane found = EstimateGroundPlane(moved.feet, moved.timestamps, moved.up, {});
+  ASSERT_TRUE(found.found) << found.why;
+  EXPECT_EQ(found.stances.size(), from_origin.stances.size());
+  // The plane's tilt and offset are one estimate about the origin, so its prior on the tilt pulls from another place.
+  EXPECT_LT(AngleDeg(found.normal, from_origin.normal), 0.5);
+  EXPECT_NEAR(found.offset_m - found.normal.dot(elsewhere), from_origin.offset_m, 0.02);
+}
+
+TEST(GroundPlane, StandingFeetGoWithACameraThatIsSaidToStandStill) {
+  Walk walk = MakeWalk({.jitter_m = 0});
+  EXPECT_LT(StandingSpeed(walk.feet, walk.timestamps, {}), 1e-9);
+  for (size_t t = 0; t < walk.feet.size(); ++t) {
+    for (FootPlace& foot : walk.feet[t]) foot.ankle_m += walk.timestamps[t] * Vector3d(0.8, 0, 0);
+  }
+  const double speed = StandingSpeed(walk.feet, walk.timestamps, {});
+  EXPECT_GT(speed, 0.6);
+  EXPECT_LT(speed, 0.8) << "the part along the view does not show";
+  for (auto& both : walk.feet) both[0].seen = both[1].seen = false;
+  EXPECT_TRUE(std::isnan(StandingSpeed(walk.feet, walk.timestamps, {})));
+}
+
 }  // namespace
 }  // namespace bodyloom

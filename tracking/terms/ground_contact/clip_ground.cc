@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
+#include "bodyloom/geometry/camera_path.h"
 #include "bodyloom/tracking/initialise/lifter_input.h"
+#include "bodyloom/tracking/initialise/seen_feet.h"
 #include "bodyloom/tracking/kinematics.h"
 #include "bodyloom/tracking/terms/ground_contact/ground_contact.h"
 
@@ -16,9 +19,24 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr float kSeenConfidence = 0.3F;
 constexpr double kUpSigmaDegrees = 180 / M_PI;
 constexpr double kKnownUpRad = 0.005;  ///< σ of a vertical that is given
+
+/// A direction of the scene in a frame's camera.
+Vector3d InCamera(const FrameData& frame, const Vector3d& direction) {
+  return frame.camera_from_scene == nullptr ? direction
+                                            : frame.camera_from_scene->camera_from_world_rotation * direction;
+}
+
+/// What the lifter says of up, in the scene.
+UpEstimate UpInScene(std::span<const LiftedFrame> lifted, std::span<const FrameData> frames) {
+  if (frames.front().camera_from_scene == nullptr) return EstimateUp(lifted);
+  std::vector<LiftedFrame> turned(lifted.begin(), lifted.end());
+  for (size_t t = 0; t < turned.size(); ++t) {
+    turned[t].up = frames[t].camera_from_scene->camera_from_world_rotation.transpose() * lifted[t].up;
+  }
+  return EstimateUp(turned);
+}
 
 }  // namespace
 
@@ -38,7 +56,8 @@ ClipGround::ClipGround(const TrackSequenceInput& input, const TrackSequenceOptio
     Shot& shot = shots_.emplace_back();
     shot.begin = begin;
     shot.end = end;
-    shot.up = EstimateUp({lifted.data() + begin, lifted.data() + end});
+    shot.up = UpInScene({lifted.data() + begin, lifted.data() + end},
+                        {problem->frames.data() + begin, problem->frames.data() + end});
     if (known_ != nullptr) {
       shot.up.found = true;
       shot.up.up = known_->up;
@@ -48,10 +67,14 @@ ClipGround::ClipGround(const TrackSequenceInput& input, const TrackSequenceOptio
 }
 
 void ClipGround::SetUpright(const Shot& shot, const Vector3d& up, SequenceProblem* problem) const {
-  const Vector3d level = Vector3d::UnitZ() - up.z() * up;
-  // Seen from straight above or below, no direction of lean is hidden more than another.
-  if (!options_.use_up || level.norm() < 0.1) return;
-  for (int t = shot.begin; t < shot.end; ++t) problem->frames[t].upright.normal = level.normalized();
+  if (!options_.use_up) return;
+  for (int t = shot.begin; t < shot.end; ++t) {
+    FrameData& frame = problem->frames[t];
+    const Vector3d up_in_camera = InCamera(frame, up);
+    const Vector3d level = Vector3d::UnitZ() - up_in_camera.z() * up_in_camera;
+    // Seen from straight above or below, no direction of lean is hidden more than another.
+    if (level.norm() >= 0.1) frame.upright.normal = level.normalized();
+  }
 }
 
 void ClipGround::Hold(const Stance& stance, const GroundPlane& ground, FrameData* frame) const {
@@ -63,6 +86,10 @@ void ClipGround::Hold(const Stance& stance, const GroundPlane& ground, FrameData
   contact.whitening.row(1) = ground.normal.cross(along).transpose() / options_.sigma_slide_m;
   contact.whitening.row(2) = ground.normal.transpose() / options_.sigma_height_m;
   contact.whitening *= std::sqrt(options_.contact_weight);
+  if (const CameraPose* camera = frame->camera_from_scene; camera != nullptr) {
+    contact.target_m = MovedPoint(*camera, stance.place_m);
+    contact.whitening *= camera->camera_from_world_rotation.transpose();
+  }
   frame->ground_contact.feet.push_back(contact);
 }
 
@@ -81,15 +108,8 @@ GroundPlane ClipGround::PlaneUnder(const std::vector<std::array<FootPlace, 2>>& 
 
 bool ClipGround::FindGround(const std::vector<int>& frames, SequenceProblem* coarse, SequenceProblem* problem) {
   if (lifted_.empty() || !why_not_.empty()) return false;
-  const FrameLayout& layout = problem->layout;
-  std::array<int, 2> column{-1, -1};
-  for (int foot = 0; foot < 2; ++foot) {
-    const std::string& name = LifterPointNames()[kLifterLeftAnkle + foot];
-    const auto it = std::find(keypoints_->names.begin(), keypoints_->names.end(), name);
-    if (it != keypoints_->names.end()) column[foot] = static_cast<int>(it - keypoints_->names.begin());
-  }
-  Kinematics kinematics;
-  PointEvaluator points;
+  const std::vector<std::array<FootPlace, 2>> all_feet = SeenFeet(*coarse, frames, lifted_, landmarks_, *keypoints_);
+  standing_speed_mps_ = StandingSpeed(all_feet, coarse->timestamps, {});
   std::vector<char> held(lifted_.size(), 0);
   bool any = false;
   for (Shot& shot : shots_) {
@@ -103,15 +123,7 @@ bool ClipGround::FindGround(const std::vector<int>& frames, SequenceProblem* coa
     for (size_t i = 0; i < frames.size(); ++i) {
       const int t = frames[i];
       if (t < shot.begin || t >= shot.end) continue;
-      const FrameState& state = coarse->states[i];
-      kinematics.Set(*layout.model, coarse->betas, state.rotations, Vector3d::Zero(), false);
-      std::array<FootPlace, 2>& both = feet.emplace_back();
-      for (int foot = 0; foot < 2; ++foot) {
-        both[foot].ankle_m =
-            points.Evaluate(kinematics, landmarks_.points[kLifterLeftAnkle + foot], false) + layout.BodyPlace(state);
-        both[foot].contact = lifted_[t].contact[foot];
-        both[foot].seen = column[foot] >= 0 && keypoints_->at(t, column[foot]).confidence >= kSeenConfidence;
-      }
+      feet.push_back(all_feet[i]);
       timestamps.push_back(coarse->timestamps[i]);
       index.push_back(static_cast<int>(i));
     }
@@ -168,6 +180,7 @@ void ClipGround::Summarise(const SequenceProblem& problem, TrackSequenceSummary*
   result.up_sigma_deg =
       known_ != nullptr ? known_->up_sigma_deg : kUpSigmaDegrees * std::sqrt(2) * GroundPlaneOptions().up_rad;
   result.contact_frames = contact_frames_;
+  result.standing_speed_mps = standing_speed_mps_;
   if (!why_not_.empty()) return;
   result.stances = longest->stances;
   PlaceOnFloor(problem, result.up, &result.stances);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "bodyloom/tracking/initialise/ground_plane.h"
@@ -54,6 +55,7 @@ class ClipGround {
   std::vector<Shot> shots_;
   std::string why_not_;
   int contact_frames_ = 0;
+  double standing_speed_mps_ = std::numeric_limits<double>::quiet_NaN();
 };
 
 }  // namespace bodyloom

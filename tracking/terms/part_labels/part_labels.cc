@@ -3,6 +3,7 @@
 
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/tracking/initialise/stature.h"
+#include "bodyloom/tracking/moving_camera.h"
 #include "bodyloom/tracking/track_input.h"
 #include "bodyloom/tracking/track_options.h"
 #include "bodyloom/tracking/track_summary.h"
@@ -46,9 +47,9 @@ void PartLabelRounds::Start(const std::vector<int>& frames, double kernel, Seque
   ParallelFor(static_cast<int>(frames.size()), num_threads_, [&](int i) {
     thread_local VisibleSurface surface;
     PartLabelTerm& term = *part_labels_[frames[i]];
-    const double height_px = UprightHeightPx(problem->layout, problem->states[i], stature_m_);
-    term.Correspond(problem->layout, problem->states[i], problem->betas, problem->log_focal, height_px, kernel,
-                    &surface);
+    const FrameState state = StateInCamera(*problem, i);
+    const double height_px = UprightHeightPx(problem->layout, state, stature_m_);
+    term.Correspond(problem->layout, state, problem->betas, problem->log_focal, height_px, kernel, &surface);
     problem->frames[i].part_labels.term = &term;
   });
 }

@@ -2,6 +2,7 @@
 #include "bodyloom/tracking/terms/rendered_uv/rendered_uv.h"
 
 #include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/tracking/moving_camera.h"
 #include "bodyloom/tracking/terms/dense/dense_whitening.h"
 #include "bodyloom/tracking/track_input.h"
 #include "bodyloom/tracking/track_options.h"
@@ -44,7 +45,7 @@ void DenseRounds::Start(const std::vector<int>& frames, SequenceProblem* problem
   if (!any()) return;
   ParallelFor(static_cast<int>(frames.size()), num_threads_, [&](int i) {
     FrameData& frame = problem->frames[i];
-    const FrameState& state = problem->states[i];
+    const FrameState state = StateInCamera(*problem, i);
     thread_local VisibleSurface surface;
     const bool seen =
         surface.Render(skinner_, *problem->layout.model, problem->betas, state.rotations,

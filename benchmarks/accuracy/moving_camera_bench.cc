@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+/// bodyloom_bench_moving_camera: synthetic clips of a camera that moves, tracked with its path and without.
+///
+///   bodyloom_bench_moving_camera [--motions demo,FILE,…] [--frames 180] [--seeds 3] [--cameras still,hand-held,walking,orbit]
+///                                [--json F]
+///
+/// The first frames of each motion at 30 a second before a synthetic camera of known focal length
+/// (data_tools/synthesis/clips/synth_camera_path.h), with a detector's noise, toes and heels included. What the tracker
+/// is told of the camera:
+///   path        where it was
+///   scale       the same without a length: translations divided by 3.7
+///   noisy       where it was, off by smooth drifts of 0.5 degrees and 3 cm about each axis (time constant 1 s)
+///   rotations   how it was turned, from where the first frame was seen
+///   none        nothing: it is taken to stand still
+/// pa: PA-MPJPE of all joints, mm. w, wa, drift, slide: data_tools/evaluation/world_drift.h. ratio: scale found / true.
+/// standing: GroundSummary::standing_speed_mps, of what the tracker itself sees of standing feet.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "benchmarks/accuracy/bench_arguments.h"
+#include "benchmarks/accuracy/bench_report.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/data_tools/evaluation/metrics.h"
+#include "bodyloom/data_tools/evaluation/world_drift.h"
+#include "bodyloom/data_tools/learned/lifter_weights_io.h"
+#include "bodyloom/data_tools/learned/pose_prior_io.h"
+#include "bodyloom/data_tools/motion/load_motion.h"
+#include "bodyloom/data_tools/motion/motion_tools.h"
+#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
+#include "bodyloom/data_tools/synthesis/clips/drift.h"
+#include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
+#include "bodyloom/geometry/base/units.h"
+#include "bodyloom/geometry/camera_path.h"
+#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/tracking/track_sequence.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr double kFps = 30, kUnit = 3.7;
+constexpr double kNoiseDegrees = 0.5, kNoiseMetres = 0.03, kNoiseTimeConstant = 1;
+
+std::vector<CameraPose> Noisy(const std::vector<CameraPose>& path, const std::vector<double>& times, uint64_t seed) {
+  std::array<std::vector<double>, 6> drift;
+  for (size_t k = 0; k < 6; ++k)
+    drift[k] = SmoothDrift(times, kNoiseTimeConstant, HashRandom(seed, {900, uint64_t{k}}));
+  std::vector<CameraPose> noisy;
+  for (size_t t = 0; t < path.size(); ++t) {
+    const CameraPose off{
+        RotationFromAxisAngle(kNoiseDegrees * kDegree * Eigen::Vector3d(drift[0][t], drift[1][t], drift[2][t])),
+        kNoiseMetres * Eigen::Vector3d(drift[3][t], drift[4][t], drift[5][t])};
+    noisy.push_back(Compose(off, path[t]));
+  }
+  return noisy;
+}
+
+Motion MotionNamed(const std::string& name, int frames) {
+  if (name == "demo") return DemoMotion(BuiltinBody(), frames, kFps);
+  const Motion motion = ResampleMotion(LoadMotion(name), kFps);
+  return TakeFrames(motion, 0, std::min(frames, motion.num_frames()));
+}
+
+/// One row: the clip tracked with this path (or none).
+std::vector<double> TrackAndMeasure(const SynthClip& clip, const std::vector<CameraPose>* path, double scale_m) {
+  TrackSequenceInput input;
+  input.body = &BuiltinBody();
+  input.prior = &BuiltinPosePrior();
+  input.lifter = &BuiltinLifter();
+  input.keypoints = &clip.keypoints;
+  input.camera = clip.truth.camera;
+  input.camera_from_scene = path;
+  input.camera_scale_m = scale_m;
+  TrackSequenceOptions options;
+  options.estimate_uncertainty = false;
+  const TrackSequenceResult result = TrackSequence(input, options);
+  if (!result.summary.IsUsable()) return std::vector<double>(9, kNotMeasured);
+  const WorldDrift drift = MeasureWorldDrift(result.track, clip.truth, BuiltinBody());
+  double seconds = 0;
+  for (const auto& [stage, stage_seconds] : result.summary.seconds) seconds += stage_seconds;
+  return {1e3 * ProcrustesPositionError(result.track.joints, clip.truth.joints).mean,
+          1e3 * drift.w_mpjpe_m,
+          1e3 * drift.wa_mpjpe_m,
+          100 * drift.root_drift,
+          drift.foot_slide_mps,
+          scale_m == 0 ? result.summary.camera_path.scale_m / kUnit : kNotMeasured,
+          result.summary.ground.standing_speed_mps,
+          result.summary.ground.up_spread_deg,
+          seconds};
+}
+
+void Run(const BenchArguments& arguments, const std::string& command) {
+  BenchReport report;
+  report.title = "A camera that moves, synthetic detections";
+  report.command = command;
+  report.label_columns = {"motion", "seed"};
+  report.value_columns = {"pa_mpjpe_mm",   "w_mpjpe_mm",    "wa_mpjpe_mm",
+                          "drift_percent", "slide_mps",     "ratio",
+                          "standing",      "up_spread_deg", "s"};
+  for (const std::string& camera : arguments.List("cameras")) {
+    for (const std::string& name : arguments.List("motions")) {
+      const Motion motion = MotionNamed(name, arguments.Integer("frames"));
+      for (int seed = 1; seed <= arguments.Integer("seeds"); ++seed) {
+        SynthClipOptions options;
+        options.seed = static_cast<uint64_t>(seed);
+        options.dense_per_frame = 0;
+        options.camera_path.motion = SynthCameraMotionFromString(camera);
+        const SynthClip clip = MakeSynthClip(BuiltinBody(), motion, options);
+        const std::vector<CameraPose>& path = clip.truth.camera_from_scene;
+        const auto add = [&](const std::string& told, const std::vector<CameraPose>* given, double scale_m) {
+          report.rows.push_back(
+              {camera + ", " + told, {name, std::to_string(seed)}, TrackAndMeasure(clip, given, scale_m)});
+          std::fprintf(stderr, "%s %s %d %s\n", camera.c_str(), name.c_str(), seed, told.c_str());
+        };
+        add("none", nullptr, 1);
+        if (path.empty()) continue;
+        add("path", &path, 1);
+        const std::vector<CameraPose> unit = ScaledPath(path, 1 / kUnit), turned = ScaledPath(path, 0),
+                                      noisy = Noisy(path, motion.timestamps, options.seed);
+        add("scale", &unit, 0);
+        add("noisy", &noisy, 1);
+        add("rotations", &turned, 1);
+      }
+    }
+  }
+  HandOver(report, arguments.Text("json"));
+}
+
+}  // namespace
+}  // namespace bodyloom
+
+int main(int argc, char** argv) {
+  return bodyloom::BenchMain("bodyloom_bench_moving_camera", argc, argv,
+                             {{"motions", "demo"},
+                              {"frames", "180"},
+                              {"seeds", "3"},
+                              {"cameras", "still,hand-held,walking,orbit"},
+                              {"json", ""}},
+                             bodyloom::Run);
+}

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/data_tools/evaluation/world_drift.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "bodyloom/data_tools/evaluation/metrics.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/units.h"
+#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/procrustes.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr double kAlignedSeconds = 1, kStandingMps = 0.1, kLongestStandingStepS = 0.1;
+
+/// Joints of the frames that both have, below each other, and of which frame each block is.
+struct JointsOfBoth {
+  MatrixX3d track, truth;
+  std::vector<int> frames;
+};
+
+JointsOfBoth StackJoints(const Track& track, const Track& truth, const BodyModel& body) {
+  const MatrixX3d rest = body.RestJoints(track.motion.betas), true_rest = body.RestJoints(truth.motion.betas);
+  const auto joints_of = [&](const Motion& motion, const MatrixX3d& rest_joints, int t) {
+    return PoseSkeleton(body, rest_joints,
+                        PoseFromAxisAngle(body, motion.poses.row(t).transpose(), motion.trans.row(t).transpose()))
+        .joints;
+  };
+  const Eigen::Index J = body.num_joints();
+  JointsOfBoth both;
+  for (int t = 0; t < truth.num_frames(); ++t) {
+    if (track.HasResult(t) && truth.HasResult(t)) both.frames.push_back(t);
+  }
+  both.track.resize(J * static_cast<Eigen::Index>(both.frames.size()), 3);
+  both.truth.resizeLike(both.track);
+  for (size_t i = 0; i < both.frames.size(); ++i) {
+    both.track.middleRows(J * static_cast<Eigen::Index>(i), J) = joints_of(track.motion, rest, both.frames[i]);
+    both.truth.middleRows(J * static_cast<Eigen::Index>(i), J) = joints_of(truth.motion, true_rest, both.frames[i]);
+  }
+  return both;
+}
+
+MatrixX3d AlignedOn(const JointsOfBoth& both, Eigen::Index rows) {
+  AlignmentOptions rigid;
+  rigid.estimate_scale = false;
+  return AlignPoints(both.track.topRows(rows), both.truth.topRows(rows), rigid).target_from_source.Apply(both.track);
+}
+
+}  // namespace
+
+WorldDrift MeasureWorldDrift(const Track& track, const Track& truth, const BodyModel& body) {
+  BODYLOOM_CHECK(track.num_frames() == truth.num_frames(), "world drift: the track has ", track.num_frames(),
+                 " frames, the truth has ", truth.num_frames());
+  WorldDrift drift{kNotMeasured, kNotMeasured, kNotMeasured, kNotMeasured};
+  const JointsOfBoth both = StackJoints(track, truth, body);
+  if (both.frames.empty()) return drift;
+  const Eigen::Index J = body.num_joints();
+  const std::vector<double>& times = truth.motion.timestamps;
+  Eigen::Index first = 0;
+  while (first < static_cast<Eigen::Index>(both.frames.size()) &&
+         times[both.frames[size_t(first)]] <= times[both.frames[0]] + kAlignedSeconds) {
+    ++first;
+  }
+  drift.w_mpjpe_m = (AlignedOn(both, J * first) - both.truth).rowwise().norm().mean();
+  const MatrixX3d aligned = AlignedOn(both, both.track.rows());
+  drift.wa_mpjpe_m = (aligned - both.truth).rowwise().norm().mean();
+
+  const int left = body.FindJoint("left_ankle"), right = body.FindJoint("right_ankle");
+  double way = 0, off = 0, slide = 0;
+  int standing = 0;
+  for (size_t i = 0; i < both.frames.size(); ++i) {
+    const Eigen::Index row = J * static_cast<Eigen::Index>(i);
+    off += (aligned.row(row) - both.truth.row(row)).norm() / static_cast<double>(both.frames.size());
+    if (i == 0) continue;
+    way += (both.truth.row(row) - both.truth.row(row - J)).norm();
+    const double seconds = times[both.frames[i]] - times[both.frames[i - 1]];
+    if (seconds > kLongestStandingStepS) continue;
+    for (const int ankle : {left, right}) {
+      if (ankle < 0) continue;
+      const auto speed = [&](const MatrixX3d& joints) {
+        return (joints.row(row + ankle) - joints.row(row - J + ankle)).norm() / seconds;
+      };
+      if (speed(both.truth) >= kStandingMps) continue;
+      slide += speed(both.track);
+      ++standing;
+    }
+  }
+  if (way > 0) drift.root_drift = off / way;
+  if (standing > 0) drift.foot_slide_mps = slide / standing;
+  return drift;
+}
+
+void AddWorldDrift(const WorldDrift& drift, Evaluation* evaluation) {
+  evaluation->Add("w_mpjpe_mm", drift.w_mpjpe_m * kMmPerMetre, "joint error in the world, aligned on the first second");
+  evaluation->Add("wa_mpjpe_mm", drift.wa_mpjpe_m * kMmPerMetre, "joint error in the world, aligned on the whole clip");
+  evaluation->Add("root_drift_percent", 100 * drift.root_drift, "pelvis error in the world / the way it went");
+  evaluation->Add("foot_slide_mps", drift.foot_slide_mps, "speed of ankles that truly stand, m/s");
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The path of a camera that moves, from files.
+///
+/// 1. COLMAP (colmap_reader.h): a folder with images.bin or images.txt, or such a file. Its pictures are the clip's frames
+///    by the last number in their names ("frame_000012.png": 12), or by their sorted names where names have no number or
+///    two the same. Its scale is unknown.
+/// 2. This project's JSON, metres:
+///      "camera_path"  1, the form's version
+///      "fps"          optional: the frame numbers below count so many a second; without it they are the clip's frames
+///      "frames"       a list, in rising order, of
+///        "frame"        a whole number from 0, or "time": seconds on the clip's clock (one kind in a file)
+///        "rotation"     camera from world: 3×3, or Rodrigues 3, radians;  or  "quaternion" [w, x, y, z]
+///        "translation"  camera from world, 3 metres
+///      "camera"       optional intrinsics, as in load_cameras.h's form 3 (without a pose)
+///    camera from world: x_camera = R x_world + t, camera axes x right, y down, z forward; the world is anybody's that
+///    stands still.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bodyloom/geometry/camera.h"
+#include "bodyloom/geometry/camera_path.h"
+
+namespace bodyloom {
+
+struct RecordedCameraPath {
+  std::vector<CameraPose> poses;  ///< N ≥ 1, camera from world
+  std::vector<int> frames;        ///< N, rising: their frames; empty: `seconds` says when
+  std::vector<double> seconds;    ///< N, rising; or empty
+  double fps = 0;                 ///< of `frames`; 0: they are the clip's own
+  bool is_metric = true;          ///< translations are metres
+  std::optional<Camera> camera;   ///< intrinsics, when the file has them and they are a pinhole's
+  std::string why_no_camera;      ///< otherwise
+  bool by_sorted_name = false;    ///< frames are counted, the pictures' names have no number for them
+};
+
+/// Throws std::runtime_error naming file and place: what was found, what was expected.
+RecordedCameraPath LoadCameraPath(const std::string& path);
+
+/// Form 2 from a text; `where` names it in messages.
+RecordedCameraPath CameraPathFromText(const std::string& text, const std::string& where);
+
+/// Writes form 2 with times.
+void WriteCameraPath(const std::string& path, const CameraPath& camera_path);
+
+struct PlaceInTime {
+  int first =
+      -1;  ///< number of the clip's first frame; −1: 0 when the path begins with 0, else 1 for COLMAP, 0 for JSON
+  double fps = 0;  ///< pictures a second of numbered frames; 0: the file's, else they are the clip's frames
+};
+/// The path on the clock of a clip whose frames are at these seconds: numbered frames at the times of the clip's frames,
+/// those beyond its end left out. Throws std::runtime_error beginning with `where` when none is in the clip.
+CameraPath CameraPathOnClock(const RecordedCameraPath& recorded, std::span<const double> clip_seconds,
+                             const PlaceInTime& place, const std::string& where);
+
+}  // namespace bodyloom

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Paths of a camera that moves, for synthetic clips.
+///
+/// kHandHeld  stands where PlaceSynthCamera() puts it and shakes: rotations about its three axes and places along them
+///            are smooth drifts (drift.h) of shake_deg and shake_m, with a time constant of 0.6 s
+/// kWalking   goes along with the person: as kHandHeld about a place that follows the person's pelvis over the ground,
+///            averaged over a second
+/// kOrbit     goes round the person by orbit_deg over the clip, about the vertical through the pelvis, which it follows
+///            likewise; a smooth start and end, and the same shake
+/// The camera is placed for the person in place (kWalking, kOrbit), so it may be near however far they go.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "bodyloom/data_tools/synthesis/clips/synth_camera.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/camera.h"
+#include "bodyloom/geometry/track.h"
+
+namespace bodyloom {
+
+enum class SynthCameraMotion {
+  kStill,
+  kHandHeld,
+  kWalking,
+  kOrbit,
+};
+/// "still", "hand-held", "walking", "orbit".
+std::string ToString(SynthCameraMotion motion);
+/// Throws std::invalid_argument for other texts.
+SynthCameraMotion SynthCameraMotionFromString(const std::string& text);
+
+struct SynthCameraPathOptions {
+  SynthCameraMotion motion = SynthCameraMotion::kStill;
+  double shake_deg = 1.5, shake_m = 0.08;  ///< standard deviations, of each axis
+  double orbit_deg = 90;
+  [[nodiscard]] bool IsValid(std::string* why) const;
+};
+
+struct SynthCameraPath {
+  SynthCamera first;                          ///< the camera of frame 0, whose frame is the scene
+  std::vector<CameraPose> camera_from_scene;  ///< of every frame; empty for kStill
+};
+
+/// Throws std::invalid_argument when options are out of range, no frame is finite, or a camera that moves is one of weak
+/// perspective. The same for the same seed.
+SynthCameraPath MakeSynthCameraPath(const BodyModel& body, const Motion& motion, const SynthCameraOptions& camera,
+                                    const SynthCameraPathOptions& path, uint64_t seed);
+
+}  // namespace bodyloom
