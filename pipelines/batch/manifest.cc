@@ -21,9 +21,9 @@ using nlohmann::json;
 constexpr size_t kMostManifestBytes = size_t{256} << 20, kMostIdLength = 100;
 constexpr JsonLimits kLineLimits = {.max_bytes = size_t{1} << 20, .max_depth = 2};
 
-constexpr std::array kPathSettings = {"box-model",   "cameras", "dense",    "detections", "init",
-                                      "body",        "lifter",  "models",   "prior",      "pose-model",
-                                      "part-labels", "video",   "reference"};
+constexpr std::array kPathSettings = {"box-model",  "cameras",     "camera-path", "dense",    "detections",
+                                      "init",       "body",        "lifter",      "models",   "prior",
+                                      "pose-model", "part-labels", "video",       "reference"};
 constexpr std::array kNotOfAClip = {"out", "json", "quiet", "plan", "no-overlay", "help"};
 
 bool IsIn(const auto& names, const std::string& name) {
