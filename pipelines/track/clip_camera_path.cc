@@ -10,7 +10,7 @@
 namespace bodyloom {
 namespace {
 
-/// m/s; measured in docs/lab/moving_camera.md.
+/// m/s: above what docs/lab/moving_camera.md measures with a path.
 constexpr double kStandingStill = 0.5;
 
 }  // namespace
