@@ -10,8 +10,8 @@
 namespace bodyloom {
 namespace {
 
-/// m/s: above what docs/lab/moving_camera.md measures with a path.
-constexpr double kStandingStill = 0.5;
+/// m/s: above all clips of cameras on a tripod, below those of cameras that move (docs/lab/moving_camera.md).
+constexpr double kStandingStill = 0.3;
 
 }  // namespace
 
