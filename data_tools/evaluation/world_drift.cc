@@ -69,7 +69,7 @@ WorldDrift MeasureWorldDrift(const Track& track, const Track& truth, const BodyM
   const MatrixX3d aligned = AlignedOn(both, both.track.rows());
   drift.wa_mpjpe_m = (aligned - both.truth).rowwise().norm().mean();
 
-  const int left = body.FindJoint("left_ankle"), right = body.FindJoint("right_ankle");
+  const int left = body.FindJoint("l_ankle"), right = body.FindJoint("r_ankle");
   double way = 0, off = 0, slide = 0;
   int standing = 0;
   for (size_t i = 0; i < both.frames.size(); ++i) {

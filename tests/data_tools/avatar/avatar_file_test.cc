@@ -171,7 +171,7 @@ TEST(AvatarFile, RefusesWhatIsWrongNamingIt) {
     const int32_t sizes[4] = {80, 2, 1, 16};
     *a = NdArray::FromInts32(sizes, {4});
   });
-  expect("motion_network", "maps 300", [](NdArray* a) {
+  expect("motion_network", "maps is 300", [](NdArray* a) {
     const int32_t sizes[4] = {64, 300, 1, 16};
     *a = NdArray::FromInts32(sizes, {4});
   });

@@ -317,11 +317,27 @@ std::vector<double> UsdNumbers(const std::string& text, const std::string& key, 
   return numbers;
 }
 
+/// The matrix of one time sample: "11: ( (…), (…), (…), (…) )".
+std::vector<double> UsdMatrixSample(const std::string& text, const std::string& key, int sample) {
+  size_t at = text.find(key);
+  EXPECT_NE(at, std::string::npos) << key;
+  at = text.find('{', at);
+  for (int i = 0; i <= sample; ++i) at = text.find(": (", at + 1);
+  std::string list = text.substr(at + 2, text.find('\n', at) - at - 2);
+  for (char& c : list) {
+    if (c == '(' || c == ')' || c == ',') c = ' ';
+  }
+  std::istringstream stream(list);
+  std::vector<double> numbers;
+  for (double x = 0; stream >> x;) numbers.push_back(x);
+  return numbers;
+}
+
 TEST(UsdaWriter, ACameraThatMovesHasASampleOfEveryFrame) {
   const Track track = ShortTrack(6, SynthCameraMotion::kHandHeld);
   const ExportScene scene = SceneOf(track);
   const std::string text = UsdaText(scene, 0);
-  const std::vector<double> m = UsdNumbers(text, "matrix4d xformOp:transform.timeSamples", 11);
+  const std::vector<double> m = UsdMatrixSample(text, "matrix4d xformOp:transform.timeSamples", 11);
   ASSERT_EQ(m.size(), 16U) << "of frame 11";
   EXPECT_EQ(UsdaText(SceneOf(ShortTrack()), 0).find("xformOp:transform.timeSamples"), std::string::npos);
   const Vector3d place(m[12], m[13], m[14]);
