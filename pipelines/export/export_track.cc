@@ -295,6 +295,7 @@ ExportTrackReport ExportTrack(const ExportTrackRequest& request, const PipelineC
   RequireReadable(request.body, "body model");
   RequireDistinct(request.tracks, {request.out});
   RequireDistinct({request.body}, {request.out});
+  CheckOtherFilesOf(request);
   const std::shared_ptr<const BodyModel> body = BodyOrBuiltin(request.body);
   std::vector<Track> tracks;
   for (const std::string& path : request.tracks) tracks.push_back(ReadTrack(path, MovingCamera::kTake));

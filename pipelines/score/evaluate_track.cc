@@ -119,9 +119,9 @@ void CheckEvaluation(const EvaluateTrackRequest& request, const Track* truth) {
 }  // namespace
 
 Evaluation EvaluateTrack(const EvaluateTrackRequest& request, const PipelineCallbacks& callbacks) {
-  CheckEvaluation(request, nullptr);
   RequireReadable(request.track, "track");
   RequireReadable(request.body, "body model");
+  CheckEvaluation(request, nullptr);
   RequireDistinct({request.track, request.body}, {request.json});
   return EvaluateTrack(request, *BodyOrBuiltin(request.body), ReadTrack(request.track, MovingCamera::kTake), nullptr,
                        callbacks);
