@@ -22,10 +22,11 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/formats/json_reader.h"
 #include "bodyloom/geometry/camera.h"
 
 namespace bodyloom {
+
+class JsonNode;
 
 struct NamedCamera {
   std::string name;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/pipelines/track/clip_camera_path.h"
 
+#include "bodyloom/pipelines/track/clip_camera_path_json.h"
+
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 

@@ -2,7 +2,6 @@
 /// The path of a clip's camera as a request names it, at the clip's frames.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 #include <vector>
@@ -34,8 +33,6 @@ double CameraScaleOf(const TrackRequest& request, const RecordedCameraPath& path
 
 /// Two lines: how many poses, and the scale and how it was found; nothing for a camera that stands still.
 std::string ToText(const CameraPathReport& report, const CameraPathSummary& solved);
-/// The same for a program.
-nlohmann::ordered_json ToJson(const CameraPathReport& report, const CameraPathSummary& solved);
 /// Of a camera that is said to stand still: empty, or one line when feet that the lifter calls standing move faster than
 /// they do under such a camera (docs/lab/moving_camera.md).
 std::string MovingCameraWarning(const CameraPathSummary& solved, const GroundSummary& ground);

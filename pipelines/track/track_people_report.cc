@@ -8,6 +8,7 @@
 #include "bodyloom/pipelines/fixed_text.h"
 #include "bodyloom/pipelines/list_text.h"
 #include "bodyloom/pipelines/report_json.h"
+#include "bodyloom/pipelines/track/clip_camera_path_json.h"
 
 namespace bodyloom {
 namespace {

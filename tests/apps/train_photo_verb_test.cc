@@ -96,7 +96,7 @@ TEST_F(TrainPhotoVerb, TrainsGoesOnAndAnimates) {
 TEST_F(TrainPhotoVerb, PeopleAreScoredUnderOneProtocol) {
   ASSERT_EQ(Train("photo", {"--steps", "1"}).exit_code, 0);
   const CommandResult guided =
-      RunCommand({"train", "guided", "--data", scratch_ / "people", "--out", scratch_ / "animate", "--profile", "tiny",
+      RunCommand({"train", "guided", "--data", scratch_ / "people", "--out", scratch_ / "guided", "--profile", "tiny",
                   "--batch", "1", "--threads", "1", "--steps", "1"});
   ASSERT_EQ(guided.exit_code, 0) << guided.err;
   const auto score = [&](const std::string& verb, const std::vector<std::string>& more) {
@@ -121,7 +121,7 @@ TEST_F(TrainPhotoVerb, PeopleAreScoredUnderOneProtocol) {
   for (const char* value : {"frames", "photos", "texels_seen"}) {
     EXPECT_NEAR(photo["scores"][0][value].get<double>(), animate["scores"][0][value].get<double>(), 0.01) << value;
   }
-  const Image of_photo = ReadImage(scratch_ / "photo.png"), of_animate = ReadImage(scratch_ / "animate.png");
+  const Image of_photo = ReadImage(scratch_ / "photo.png"), of_animate = ReadImage(scratch_ / "guided.png");
   ASSERT_EQ(of_photo.width, of_animate.width);
   int same = 0, other = 0;
   for (int x = 0; x < of_photo.width; ++x) {  // photo, what it shows, result, truth
