@@ -10,7 +10,6 @@
 namespace bodyloom {
 namespace {
 
-using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double kSameMomentS = 1e-3;
@@ -72,11 +71,12 @@ Motion MovedMotion(const BodyModel& body, const Motion& motion, std::span<const 
   for (int t = 0; t < motion.num_frames(); ++t) {
     if (!motion.HasPose(t)) continue;
     const CameraPose& move = target_from_source[target_from_source.size() == 1 ? 0 : size_t(t)];
-    const Matrix3d& R = move.camera_from_world_rotation;
     const Vector3d root = motion.poses.row(t).head<3>().transpose();
-    moved.poses.row(t).head<3>() = (AxisAngleFromRotation(R * RotationFromAxisAngle(root + mean)) - mean).transpose();
+    moved.poses.row(t).head<3>() =
+        (AxisAngleFromRotation(move.camera_from_world_rotation * RotationFromAxisAngle(root + mean)) - mean)
+            .transpose();
     const Vector3d trans = motion.trans.row(t).transpose();
-    moved.trans.row(t) = (R * (pelvis + trans) + move.camera_from_world_translation - pelvis).transpose();
+    moved.trans.row(t) = (MovedPoint(move, pelvis + trans) - pelvis).transpose();
   }
   return moved;
 }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/tracking/input_checks.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
 
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/rotation_check.h"
 #include "bodyloom/tracking/initialise/stature.h"
 
 namespace bodyloom {
@@ -98,10 +98,9 @@ void CheckCameraPath(const TrackSequenceInput& input, const TrackSequenceOptions
   BODYLOOM_CHECK(static_cast<int>(path.size()) == num_frames, "track: the camera's path has ", path.size(),
                  " poses, the detections ", num_frames, " frames");
   for (size_t t = 0; t < path.size(); ++t) {
-    const Eigen::Matrix3d& R = path[t].camera_from_world_rotation;
-    BODYLOOM_CHECK(path[t].camera_from_world_translation.allFinite() && R.determinant() > 0 &&
-                       (R * R.transpose()).isIdentity(1e-6),
-                   "track: pose ", t, " of the camera's path is no rotation and translation");
+    BODYLOOM_CHECK(
+        path[t].camera_from_world_translation.allFinite() && IsRotation(path[t].camera_from_world_rotation, 1e-6),
+        "track: pose ", t, " of the camera's path is no rotation and translation");
   }
   BODYLOOM_CHECK(input.camera_scale_m >= 0 && std::isfinite(input.camera_scale_m),
                  "track: the scale of the camera's path is ", input.camera_scale_m, ", expected metres a unit, or 0");

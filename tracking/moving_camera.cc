@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/tracking/moving_camera.h"
 
-#include <utility>
+#include "bodyloom/geometry/camera_path.h"
 
 namespace bodyloom {
 
@@ -13,11 +13,10 @@ using Eigen::VectorXd;
 FrameState StateInCamera(const FrameLayout& layout, const CameraPose& camera_from_scene, const VectorXd& betas,
                          FrameState state) {
   const BodyModel& model = *layout.model;
-  const Matrix3d& R = camera_from_scene.camera_from_world_rotation;
   Vector3d pelvis = model.joint_template().row(0).transpose();
   if (betas.size() > 0) pelvis += model.joint_shapedirs().block(0, 0, 3, betas.size()) * betas;
-  state.rotations[0] = R * state.rotations[0];
-  state.translation = R * (pelvis + state.translation) + camera_from_scene.camera_from_world_translation - pelvis;
+  state.rotations[0] = camera_from_scene.camera_from_world_rotation * state.rotations[0];
+  state.translation = MovedPoint(camera_from_scene, pelvis + state.translation) - pelvis;
   return state;
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/data_tools/estimates/estimate_arrays.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <numeric>
 #include <utility>
@@ -12,6 +11,7 @@
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/refuse.h"
 #include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/rotation_check.h"
 
 namespace bodyloom {
 namespace {
@@ -90,9 +90,7 @@ Eigen::Vector3d AxisAngleFromRows(const Eigen::Ref<const Eigen::RowVectorXd>& ni
   constexpr double kMostOff = 1e-2;  // float16 and averaged matrices are off by less
   Eigen::Matrix3d matrix;
   for (int r = 0; r < 3; ++r) matrix.row(r) = nine.segment<3>(3 * r);
-  if (!((matrix * matrix.transpose()).isIdentity(kMostOff)) || !(matrix.determinant() > 0)) {
-    Refuse(where, key, "expected rotation matrices, row by row");
-  }
+  if (!IsRotation(matrix, kMostOff)) Refuse(where, key, "expected rotation matrices, row by row");
   return AxisAngleFromRotation(NearestRotation(matrix));
 }
 

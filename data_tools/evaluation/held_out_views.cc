@@ -9,6 +9,7 @@
 #include "bodyloom/data_tools/evaluation/metrics_image.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/camera_path.h"
 #include "bodyloom/geometry/rotation.h"
 
 namespace bodyloom {
@@ -36,10 +37,6 @@ void CheckClip(const MultiViewClip& clip, int num_frames) {
     BODYLOOM_CHECK(view.detections.num_frames() >= num_frames, "view '", view.name, "' has ",
                    view.detections.num_frames(), " frames, expected ", num_frames);
   }
-}
-
-MatrixX3d Transformed(const MatrixX3d& points, const Eigen::Matrix3d& rotation, const Eigen::Vector3d& translation) {
-  return (points * rotation.transpose()).rowwise() + translation.transpose();
 }
 
 /// One view's landmarks in every frame, in pixels.
@@ -109,10 +106,6 @@ void AddJointAngles(const Track& track, const std::vector<int>& source, const Mu
 
 }  // namespace
 
-MatrixX3d InCamera(const MatrixX3d& points_in_world, const CameraPose& pose) {
-  return Transformed(points_in_world, pose.camera_from_world_rotation, pose.camera_from_world_translation);
-}
-
 Evaluation EvaluateHeldOutViews(const Track& track, const MultiViewClip& clip, const std::string& view,
                                 const EvaluateHeldOutViewsOptions& options) {
   const RigView& own = clip.views[FindView(clip, view)];
@@ -133,7 +126,7 @@ Evaluation EvaluateHeldOutViews(const Track& track, const MultiViewClip& clip, c
   std::vector<double> timestamps(T);
   for (int t = 0; t < T; ++t) {
     P[t] = track.coco17[source[t]];
-    G[t] = InCamera(clip.coco17_in_world[t], own.pose);
+    G[t] = MovedPoints(own.pose, clip.coco17_in_world[t]);
     timestamps[t] = t / clip.fps;
   }
   const MatrixX3d hip_P = RootPositions(P, kCocoHips), hip_G = RootPositions(G, kCocoHips);
@@ -157,10 +150,10 @@ Evaluation EvaluateHeldOutViews(const Track& track, const MultiViewClip& clip, c
 
   // The track in the world: root where it really was, one scale for the clip.
   std::vector<MatrixX3d> placed_in_world(T);
-  const Eigen::Matrix3d world_from_own = own.pose.camera_from_world_rotation.transpose();
+  const CameraPose world_from_own = Inverse(own.pose);
   for (int t = 0; t < T; ++t) {
     const MatrixX3d placed = (scale * p[t]).rowwise() + Eigen::RowVector3d(hip_G.row(t));
-    placed_in_world[t] = Transformed(placed, world_from_own, -world_from_own * own.pose.camera_from_world_translation);
+    placed_in_world[t] = MovedPoints(world_from_own, placed);
   }
   ImageErrors held_out{options.min_confidence, {}, {}, {}, {}}, fitted = held_out, fitted_own = held_out;
   EvaluationBreakdown by_view{"heldout_median_px", {}, {}};
@@ -168,7 +161,7 @@ Evaluation EvaluateHeldOutViews(const Track& track, const MultiViewClip& clip, c
     if (other.name == own.name) continue;
     std::vector<MatrixX3d> in_other(T);
     for (int t = 0; t < T; ++t) {
-      in_other[t] = InCamera(placed_in_world[t], other.pose);
+      in_other[t] = MovedPoints(other.pose, placed_in_world[t]);
     }
     const std::vector<MatrixX2d> pixels = Projected(in_other, [&](int) { return other.camera; });
     held_out.Add(pixels, other.detections);

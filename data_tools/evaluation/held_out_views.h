@@ -31,9 +31,6 @@ struct MultiViewClip {
   double fps = 0;           ///< nominal: positions are differenced with it, not with rounded timestamps
 };
 
-/// Points of the world (P×3) in the axes of a camera.
-MatrixX3d InCamera(const MatrixX3d& points_in_world, const CameraPose& pose);
-
 struct EvaluateHeldOutViewsOptions {
   double min_confidence = 0.3;  ///< detections above this count
 };

@@ -8,6 +8,7 @@
 
 #include "bodyloom/data_tools/evaluation/metrics.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/camera_path.h"
 #include "bodyloom/geometry/posed_body.h"
 #include "bodyloom/geometry/rotation.h"
 
@@ -72,7 +73,7 @@ PseudoTruth MakePseudoTruth(const MultiViewClip& clip, const RigView& view, cons
   std::vector<MatrixX3d> landmarks(T);
   for (int t = 0; t < T; ++t) {
     poses[t] = InCamera(body, clip.motion, t, view.pose);
-    landmarks[t] = InCamera(clip.coco17_in_world[t], view.pose) / unit;
+    landmarks[t] = MovedPoints(view.pose, clip.coco17_in_world[t]) / unit;
   }
   PseudoTruth result;
   Motion& motion = result.track.motion;

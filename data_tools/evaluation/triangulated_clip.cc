@@ -7,6 +7,7 @@
 #include "bodyloom/data_tools/evaluation/metrics.h"
 #include "bodyloom/data_tools/evaluation/metrics_image.h"
 #include "bodyloom/data_tools/evaluation/triangulation.h"
+#include "bodyloom/geometry/camera_path.h"
 
 namespace bodyloom {
 namespace {
@@ -76,7 +77,7 @@ Evaluation EvaluateTriangulatedClip(const Track& track, const MultiViewClip& cli
   for (const RigView& rig_view : clip.views) {
     std::vector<MatrixX2d> pixels;
     for (const MatrixX3d& joints : clip.coco17_in_world) {
-      pixels.push_back(ProjectPoints(rig_view.camera, InCamera(joints, rig_view.pose)));
+      pixels.push_back(ProjectPoints(rig_view.camera, MovedPoints(rig_view.pose, joints)));
     }
     AddReprojectionErrors(pixels, rig_view.detections, options.min_confidence, &floor);
   }

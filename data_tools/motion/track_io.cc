@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/data_tools/motion/track_io.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,6 +11,7 @@
 #include "bodyloom/data_tools/formats/printable.h"
 #include "bodyloom/data_tools/formats/whole_numbers.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/rotation_check.h"
 
 namespace bodyloom {
 namespace {
@@ -260,9 +260,7 @@ class TrackReader {
   [[nodiscard]] CameraPose RigidMotion(const double* numbers, const std::string& name) const {
     const Eigen::Matrix4d matrix = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(numbers);
     const CameraPose pose{matrix.topLeftCorner<3, 3>(), matrix.topRightCorner<3, 1>()};
-    const Eigen::Matrix3d& R = pose.camera_from_world_rotation;
-    if (matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1) || !(R.determinant() > 0) ||
-        !(R * R.transpose()).isIdentity(1e-6)) {
+    if (matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1) || !IsRotation(pose.camera_from_world_rotation, 1e-6)) {
       Fail(name + ": expected a rotation and a translation [R t; 0 0 0 1]");
     }
     return pose;

@@ -136,7 +136,7 @@ class AvatarAnimation {
       if (!request_.shape_of_track && !clip_) track_ = WithShape(*body_, track_, avatar_.betas);
       int first = 0, last = track_.num_frames() - 1;
       std::vector<int> shown;
-      moving_ = track_;
+      if (avatar_.motion) moving_ = track_;
       if (!request_.freeze.empty()) {
         const Freeze freeze = ReadFreeze(request_.freeze, track_.num_frames());
         shown = FrozenAt(track_.num_frames(), freeze.frame, freeze.count);
@@ -290,7 +290,7 @@ class AvatarAnimation {
   std::shared_ptr<const BodyModel> body_;
   std::optional<AvatarClip> clip_;
   Track track_;
-  Track moving_;  ///< in which no time stands still
+  Track moving_;  ///< in which no time stands still; for the network of the motion
   std::unique_ptr<PosedAvatar> posed_;
   std::optional<AvatarMotion> motion_;
   std::optional<AvatarMotionMaps> maps_;

@@ -16,8 +16,10 @@ constexpr int kStride = 10;  ///< frames whose velocities are averaged
 constexpr int kLookedBack = AvatarMotionMaps::kSingle + kStride * AvatarMotionMaps::kStrides;
 
 std::vector<int> FramesBack(const Track& track, double fps) {
+  const double rate = MotionRate(track);
   std::vector<int> back;
-  for (int k = 0; k < kLookedBack; ++k) back.push_back(static_cast<int>(std::lround(k * MotionRate(track) / fps)));
+  back.reserve(kLookedBack);
+  for (int k = 0; k < kLookedBack; ++k) back.push_back(static_cast<int>(std::lround(k * rate / fps)));
   return back;
 }
 

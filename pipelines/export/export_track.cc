@@ -261,6 +261,26 @@ size_t BytesUnder(const std::string& path) {
   return bytes;
 }
 
+/// Of a request whose options and files are as they must be.
+ExportTrackReport ExportChecked(const ExportTrackRequest& request, const BodyModel& body,
+                                const std::vector<const Track*>& tracks, const PipelineCallbacks& callbacks) {
+  const Stopwatch watch;
+  const ExportInputs inputs = CheckedInputs(request, body, tracks);
+  ExportTrackReport report;
+  report.num_frames = inputs.track().num_frames();
+  report.out = request.out;
+  report.uses_world = request.world_axes || !HasAxes(request.form);
+  report.world = inputs.world;
+  try {
+    Write(inputs, request, callbacks, &report);
+  } catch (const std::invalid_argument& error) {  // what the track holds has no place in the form
+    throw std::runtime_error(request.tracks[0] + ": " + error.what());
+  }
+  report.bytes = BytesUnder(request.out);
+  report.seconds = watch.seconds();
+  return report;
+}
+
 }  // namespace
 
 const std::vector<std::string>& TrackFormNames() {
@@ -301,30 +321,16 @@ ExportTrackReport ExportTrack(const ExportTrackRequest& request, const PipelineC
   for (const std::string& path : request.tracks) tracks.push_back(ReadTrack(path, MovingCamera::kTake));
   std::vector<const Track*> each;
   for (const Track& track : tracks) each.push_back(&track);
-  return ExportTrack(request, *body, each, callbacks);
+  return ExportChecked(request, *body, each, callbacks);
 }
 
 ExportTrackReport ExportTrack(const ExportTrackRequest& request, const BodyModel& body,
                               const std::vector<const Track*>& tracks, const PipelineCallbacks& callbacks) {
-  const Stopwatch watch;
   CheckExportOptions(request);
   CheckOtherFilesOf(request);
   BODYLOOM_CHECK(tracks.size() == request.tracks.size(), tracks.size(), " tracks to write with ", request.tracks.size(),
                  " names");
-  const ExportInputs inputs = CheckedInputs(request, body, tracks);
-  ExportTrackReport report;
-  report.num_frames = inputs.track().num_frames();
-  report.out = request.out;
-  report.uses_world = request.world_axes || !HasAxes(request.form);
-  report.world = inputs.world;
-  try {
-    Write(inputs, request, callbacks, &report);
-  } catch (const std::invalid_argument& error) {  // what the track holds has no place in the form
-    throw std::runtime_error(request.tracks[0] + ": " + error.what());
-  }
-  report.bytes = BytesUnder(request.out);
-  report.seconds = watch.seconds();
-  return report;
+  return ExportChecked(request, body, tracks, callbacks);
 }
 
 }  // namespace bodyloom

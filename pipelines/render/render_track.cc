@@ -104,55 +104,10 @@ std::vector<std::string> TitleOf(const RenderTrackRequest& request, const Track&
   return {what, frames};
 }
 
-}  // namespace
-
-std::pair<int, int> FrameRange(const std::string& text, int num_frames, const std::string& where) {
-  const auto number = [&](const std::string& digits, int missing) {
-    if (digits.empty()) {
-      return missing;
-    }
-    if (digits.size() > 9 || !std::all_of(digits.begin(), digits.end(), [](char c) { return c >= '0' && c <= '9'; })) {
-      throw RequestError("--frames " + text + ": expected a:b (frame b is left out), a:, :b, or one number");
-    }
-    return std::stoi(digits);
-  };
-  const size_t colon = text.find(':');
-  int first = 0, end = num_frames;
-  if (colon != std::string::npos) {
-    first = number(text.substr(0, colon), 0);
-    end = number(text.substr(colon + 1), num_frames);
-  } else if (!text.empty()) {
-    first = number(text, 0);
-    end = first + 1;
-  }
-  if (first >= end) {
-    throw RequestError("--frames " + text + ": holds no frame; a:b is frame a to frame b-1");
-  }
-  if (end > num_frames) {
-    throw std::runtime_error(
-        Concatenate(where, ": ", num_frames, " frames, expected --frames within 0:", num_frames, ", not ", text));
-  }
-  return {first, end};
-}
-
-RenderTrackReport RenderTrack(const RenderTrackRequest& request, const PipelineCallbacks& callbacks) {
-  CheckOptions(request);
-  RequireReadable(request.track, "track");
-  RequireReadable(request.body, "body model");
-  RequireReadable(request.truth, "truth");
-  RequireDistinct({request.track, request.body, request.truth}, {request.out, request.json});
-  CheckOtherFiles(request);
-  const Track track = ReadTrack(request.track, MovingCamera::kTake);
-  Track truth;
-  if (!request.truth.empty()) truth = ReadTrack(request.truth, MovingCamera::kTake);
-  return RenderTrack(request, *BodyOrBuiltin(request.body), track, request.truth.empty() ? nullptr : &truth, callbacks);
-}
-
-RenderTrackReport RenderTrack(const RenderTrackRequest& request, const BodyModel& body, const Track& given,
-                              const Track* given_truth, const PipelineCallbacks& callbacks) {
+/// Of a request whose options and files are as they must be.
+RenderTrackReport RenderChecked(const RenderTrackRequest& request, const BodyModel& body, const Track& given,
+                                const Track* given_truth, const PipelineCallbacks& callbacks) {
   const Stopwatch watch;
-  CheckOptions(request);
-  CheckOtherFiles(request);
   Track track = given, truth;
   RequireTrackFitsBody(track, body, request.track);
   track = TrackInCameras(body, track);  // pictures of it, each from where the camera was
@@ -241,6 +196,58 @@ RenderTrackReport RenderTrack(const RenderTrackRequest& request, const BodyModel
     WriteFileAtomically(request.json, ToJson(report));
   }
   return report;
+}
+
+}  // namespace
+
+std::pair<int, int> FrameRange(const std::string& text, int num_frames, const std::string& where) {
+  const auto number = [&](const std::string& digits, int missing) {
+    if (digits.empty()) {
+      return missing;
+    }
+    if (digits.size() > 9 || !std::all_of(digits.begin(), digits.end(), [](char c) { return c >= '0' && c <= '9'; })) {
+      throw RequestError("--frames " + text + ": expected a:b (frame b is left out), a:, :b, or one number");
+    }
+    return std::stoi(digits);
+  };
+  const size_t colon = text.find(':');
+  int first = 0, end = num_frames;
+  if (colon != std::string::npos) {
+    first = number(text.substr(0, colon), 0);
+    end = number(text.substr(colon + 1), num_frames);
+  } else if (!text.empty()) {
+    first = number(text, 0);
+    end = first + 1;
+  }
+  if (first >= end) {
+    throw RequestError("--frames " + text + ": holds no frame; a:b is frame a to frame b-1");
+  }
+  if (end > num_frames) {
+    throw std::runtime_error(
+        Concatenate(where, ": ", num_frames, " frames, expected --frames within 0:", num_frames, ", not ", text));
+  }
+  return {first, end};
+}
+
+RenderTrackReport RenderTrack(const RenderTrackRequest& request, const PipelineCallbacks& callbacks) {
+  CheckOptions(request);
+  RequireReadable(request.track, "track");
+  RequireReadable(request.body, "body model");
+  RequireReadable(request.truth, "truth");
+  RequireDistinct({request.track, request.body, request.truth}, {request.out, request.json});
+  CheckOtherFiles(request);
+  const Track track = ReadTrack(request.track, MovingCamera::kTake);
+  Track truth;
+  if (!request.truth.empty()) truth = ReadTrack(request.truth, MovingCamera::kTake);
+  return RenderChecked(request, *BodyOrBuiltin(request.body), track, request.truth.empty() ? nullptr : &truth,
+                       callbacks);
+}
+
+RenderTrackReport RenderTrack(const RenderTrackRequest& request, const BodyModel& body, const Track& given,
+                              const Track* given_truth, const PipelineCallbacks& callbacks) {
+  CheckOptions(request);
+  CheckOtherFiles(request);
+  return RenderChecked(request, body, given, given_truth, callbacks);
 }
 
 std::string ToText(const RenderTrackReport& report) {

@@ -10,6 +10,7 @@
 #include "bodyloom/data_tools/descriptors/dense_history.h"
 #include "bodyloom/data_tools/formats/json_reader.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/rotation_check.h"
 #include "bodyloom/pipelines/runs/run_config.h"
 
 namespace bodyloom {
@@ -58,9 +59,7 @@ SurfaceMotion ReadMotion(const JsonNode& json) {
   if (motion.frame == SurfaceFrame::kWorld) {
     const std::vector<double> rows = json.At("camera_from_world_rotation").Numbers(9);
     const Eigen::Matrix3d rotation = Eigen::Map<const Eigen::Matrix3d>(rows.data()).transpose();
-    if (!(rotation * rotation.transpose()).isIdentity(1e-6) || rotation.determinant() < 0) {
-      json.At("camera_from_world_rotation").Fail("a rotation");
-    }
+    if (!IsRotation(rotation, 1e-6)) json.At("camera_from_world_rotation").Fail("a rotation");
     motion.camera_pose.camera_from_world_rotation = rotation;
     const std::vector<double> translation = json.At("camera_from_world_translation").Numbers(3);
     motion.camera_pose.camera_from_world_translation = Eigen::Map<const Eigen::Vector3d>(translation.data());

@@ -116,20 +116,9 @@ void CheckEvaluation(const EvaluateTrackRequest& request, const Track* truth) {
   RequireWritable(request.json);
 }
 
-}  // namespace
-
-Evaluation EvaluateTrack(const EvaluateTrackRequest& request, const PipelineCallbacks& callbacks) {
-  RequireReadable(request.track, "track");
-  RequireReadable(request.body, "body model");
-  CheckEvaluation(request, nullptr);
-  RequireDistinct({request.track, request.body}, {request.json});
-  return EvaluateTrack(request, *BodyOrBuiltin(request.body), ReadTrack(request.track, MovingCamera::kTake), nullptr,
-                       callbacks);
-}
-
-Evaluation EvaluateTrack(const EvaluateTrackRequest& request, const BodyModel& body, const Track& track,
-                         const Track* truth, const PipelineCallbacks& callbacks) {
-  CheckEvaluation(request, truth);
+/// Of a request that CheckEvaluation() has passed.
+Evaluation EvaluateChecked(const EvaluateTrackRequest& request, const BodyModel& body, const Track& track,
+                           const Track* truth, const PipelineCallbacks& callbacks) {
   callbacks.Update("measure", 0);
   std::optional<Motion> true_motion;
   if (truth != nullptr) true_motion = truth->motion;
@@ -140,6 +129,23 @@ Evaluation EvaluateTrack(const EvaluateTrackRequest& request, const BodyModel& b
     WriteFileAtomically(request.json, EvaluationJson(evaluation));
   }
   return evaluation;
+}
+
+}  // namespace
+
+Evaluation EvaluateTrack(const EvaluateTrackRequest& request, const PipelineCallbacks& callbacks) {
+  RequireReadable(request.track, "track");
+  RequireReadable(request.body, "body model");
+  CheckEvaluation(request, nullptr);
+  RequireDistinct({request.track, request.body}, {request.json});
+  return EvaluateChecked(request, *BodyOrBuiltin(request.body), ReadTrack(request.track, MovingCamera::kTake), nullptr,
+                         callbacks);
+}
+
+Evaluation EvaluateTrack(const EvaluateTrackRequest& request, const BodyModel& body, const Track& track,
+                         const Track* truth, const PipelineCallbacks& callbacks) {
+  CheckEvaluation(request, truth);
+  return EvaluateChecked(request, body, track, truth, callbacks);
 }
 
 }  // namespace bodyloom

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/pipelines/track/clip_camera_path.h"
 
-#include "bodyloom/pipelines/track/clip_camera_path_json.h"
-
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/pipelines/fixed_text.h"
+#include "bodyloom/pipelines/track/clip_camera_path_json.h"
 
 namespace bodyloom {
 namespace {

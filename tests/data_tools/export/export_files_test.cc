@@ -298,16 +298,8 @@ TEST(Pose2SimCalibration, IsTheCameraInAWorldWithZUp) {
   EXPECT_THROW(Pose2SimCalibrationText("cam 01", track.camera, TiltedWorld()), std::invalid_argument);
 }
 
-/// Numbers of "key = [...]" or of one time sample of it.
-std::vector<double> UsdNumbers(const std::string& text, const std::string& key, int sample = -1) {
-  size_t at = text.find(key);
-  EXPECT_NE(at, std::string::npos) << key;
-  if (sample >= 0) {
-    at = text.find('{', at);
-    for (int i = 0; i <= sample; ++i) at = text.find(": [", at + 1);
-  }
-  const size_t begin = text.find('[', text.find(sample >= 0 ? ": " : "= ", at)), end = text.find("]", begin);
-  std::string list = text.substr(begin + 1, end - begin - 1);
+/// The numbers of a list whose brackets may be nested.
+std::vector<double> UsdList(std::string list) {
   for (char& c : list) {
     if (c == '(' || c == ')' || c == ',') c = ' ';
   }
@@ -317,20 +309,25 @@ std::vector<double> UsdNumbers(const std::string& text, const std::string& key, 
   return numbers;
 }
 
+/// Numbers of "key = [...]" or of one time sample of it.
+std::vector<double> UsdNumbers(const std::string& text, const std::string& key, int sample = -1) {
+  size_t at = text.find(key);
+  EXPECT_NE(at, std::string::npos) << key;
+  if (sample >= 0) {
+    at = text.find('{', at);
+    for (int i = 0; i <= sample; ++i) at = text.find(": [", at + 1);
+  }
+  const size_t begin = text.find('[', text.find(sample >= 0 ? ": " : "= ", at)), end = text.find("]", begin);
+  return UsdList(text.substr(begin + 1, end - begin - 1));
+}
+
 /// The matrix of one time sample: "11: ( (…), (…), (…), (…) )".
 std::vector<double> UsdMatrixSample(const std::string& text, const std::string& key, int sample) {
   size_t at = text.find(key);
   EXPECT_NE(at, std::string::npos) << key;
   at = text.find('{', at);
   for (int i = 0; i <= sample; ++i) at = text.find(": (", at + 1);
-  std::string list = text.substr(at + 2, text.find('\n', at) - at - 2);
-  for (char& c : list) {
-    if (c == '(' || c == ')' || c == ',') c = ' ';
-  }
-  std::istringstream stream(list);
-  std::vector<double> numbers;
-  for (double x = 0; stream >> x;) numbers.push_back(x);
-  return numbers;
+  return UsdList(text.substr(at + 2, text.find('\n', at) - at - 2));
 }
 
 TEST(UsdaWriter, ACameraThatMovesHasASampleOfEveryFrame) {
