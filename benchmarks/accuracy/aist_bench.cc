@@ -33,6 +33,7 @@
 #include "bodyloom/data_tools/observations/load_detections.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/stopwatch.h"
+#include "bodyloom/geometry/camera_path.h"
 #include "bodyloom/geometry/posed_body.h"
 #include "bodyloom/geometry/rotation.h"
 #include "bodyloom/tracking/track_sequence.h"
@@ -88,7 +89,7 @@ std::vector<MatrixX3d> TruthInCamera(const MultiViewClip& clip, const std::strin
   for (const RigView& rig_view : clip.views) {
     if (rig_view.name != view) continue;
     for (const MatrixX3d& joints : clip.coco17_in_world) {
-      truth.push_back(InCamera(joints, rig_view.pose));
+      truth.push_back(MovedPoints(joints, rig_view.pose));
     }
   }
   return truth;
@@ -178,7 +179,7 @@ BenchRow Limit(const MultiViewClip& clip, const std::string& view, bool body_wit
         points.rowwise() += (R * true_hip + t).transpose() - hip;
         track.coco17.push_back(points);
       } else {
-        track.coco17.push_back(InCamera(clip.coco17_in_world[frame], rig_view.pose));
+        track.coco17.push_back(MovedPoints(clip.coco17_in_world[frame], rig_view.pose));
       }
     }
   }
