@@ -89,7 +89,7 @@ std::vector<MatrixX3d> TruthInCamera(const MultiViewClip& clip, const std::strin
   for (const RigView& rig_view : clip.views) {
     if (rig_view.name != view) continue;
     for (const MatrixX3d& joints : clip.coco17_in_world) {
-      truth.push_back(MovedPoints(joints, rig_view.pose));
+      truth.push_back(MovedPoints(rig_view.pose, joints));
     }
   }
   return truth;
@@ -179,7 +179,7 @@ BenchRow Limit(const MultiViewClip& clip, const std::string& view, bool body_wit
         points.rowwise() += (R * true_hip + t).transpose() - hip;
         track.coco17.push_back(points);
       } else {
-        track.coco17.push_back(MovedPoints(clip.coco17_in_world[frame], rig_view.pose));
+        track.coco17.push_back(MovedPoints(rig_view.pose, clip.coco17_in_world[frame]));
       }
     }
   }
