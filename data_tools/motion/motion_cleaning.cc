@@ -13,8 +13,9 @@
 namespace bodyloom {
 namespace {
 
-constexpr double kRounding = 1e-6;  // of times that are sums of frame steps
-constexpr double kMaxThighRoll = 110 * kDegree, kMaxSpineTurn = 80 * kDegree, kMaxAnkleTurn = 110 * kDegree;
+constexpr double kRounding = 1e-6;            // of times that are sums of frame steps
+constexpr double kMidFlexion = 70 * kDegree;  // of a hip, between standing and crouching
+constexpr double kMaxThighRoll = 110 * kDegree, kMaxTrunkTurn = 110 * kDegree, kMaxAnkleTurn = 110 * kDegree;
 
 Eigen::Matrix3d RotationOf(const Motion& motion, int t, int j) {
   return RotationFromAxisAngle(motion.poses.block<1, 3>(t, 3 * j).transpose());
@@ -29,14 +30,19 @@ double RollAboutY(const Eigen::Matrix3d& R) {
   return std::min(roll, 2 * M_PI - roll);
 }
 
+/// Of the thigh about its own axis, [0, π], by the rotation of its hip.
+double ThighRoll(const Eigen::Matrix3d& hip) {
+  const Eigen::Matrix3d half_raised = RotationFromAxisAngle(Eigen::Vector3d::UnitX() * -kMidFlexion);
+  const Eigen::Matrix3d swing = RotationBetweenDirections(-half_raised.col(1), -hip.col(1));
+  return RollAboutY(half_raised.transpose() * swing.transpose() * hip);
+}
+
 bool IsBroken(const Motion& motion, int t) {
   for (const int hip : {1, 2}) {
-    if (RollAboutY(RotationOf(motion, t, hip)) > kMaxThighRoll) return true;
+    if (ThighRoll(RotationOf(motion, t, hip)) > kMaxThighRoll) return true;
   }
-  for (const int spine : {3, 6, 9}) {
-    if (TurnOf(motion, t, spine) > kMaxSpineTurn) return true;
-  }
-  return false;
+  const Eigen::Matrix3d trunk = RotationOf(motion, t, 3) * RotationOf(motion, t, 6) * RotationOf(motion, t, 9);
+  return AxisAngleFromRotation(trunk).norm() > kMaxTrunkTurn;
 }
 
 Motion WithMendedFeet(const Motion& motion, int* frames_mended) {

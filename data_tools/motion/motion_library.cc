@@ -31,9 +31,11 @@ struct Origin {
   std::string source, subject;
 };
 
-/// By the name: CMU numbers its trials SUBJECT_TRIAL, AIST++ genre_situation_camera_DANCER_music_choreography.
+/// By the name: CMU numbers its trials SUBJECT_TRIAL, AIST++ has genre_situation_camera_DANCER_music_choreography, HDM05
+/// HDM_ACTOR_motion_number.
 Origin OriginOf(const std::string& name) {
-  static const std::regex cmu(R"((\d{1,3})_\d{1,3}(\D.*)?)"), aist(R"(g[A-Z]{2}_s\w\w_c\w+?_(d\d+)_m.*)");
+  static const std::regex cmu(R"((\d{1,3})_(\d{1,3}(\D.*)?|[a-z].*))"), aist(R"(g[A-Z]{2}_s\w\w_c\w+?_(d\d+)_m.*)"),
+      hdm05(R"((HDM_[a-z]{2})_.*)");
   const std::string path = WithoutMotionExtension(name);
   const std::string stem = path.substr(path.rfind('/') + 1);
   const std::string file = name.ends_with(".gz") ? name.substr(0, name.size() - 3) : name;
@@ -53,6 +55,8 @@ Origin OriginOf(const std::string& name) {
     if (origin.source == "bvh" || origin.source == "asfamc") origin.source = "cmu_" + origin.source;
   } else if (std::regex_match(stem, match, aist)) {
     origin.subject = match[1];
+  } else if (std::regex_match(stem, match, hdm05)) {
+    origin = {"hdm05", match[1]};
   }
   return origin;
 }
@@ -71,6 +75,11 @@ Motion OnRegularClock(const Motion& piece, double max_fps) {
   return motion;
 }
 
+/// The motion as it was captured: files may say nothing of their rate, or the wrong thing.
+void SetRate(double fps, Motion* motion) {
+  for (int t = 0; t < motion->num_frames(); ++t) motion->timestamps[t] = t / fps;
+}
+
 /// The clips of one file. Throws std::runtime_error when it holds none.
 std::vector<LibraryClip> ClipsOf(const std::string& file, const std::string& name, const MotionSplit& split,
                                  const MotionLibraryOptions& options) {
@@ -81,6 +90,8 @@ std::vector<LibraryClip> ClipsOf(const std::string& file, const std::string& nam
   if (motion.poses.cols() != 72) {
     throw std::runtime_error(file + ": " + std::to_string(motion.poses.cols() / 3) + " joints, expected 24");
   }
+  const MotionSplitEntry* entry = split.Find(name);
+  if (entry != nullptr && entry->fps > 0) SetRate(entry->fps, &motion);
   // The pelvis is at a constant offset from `trans`, which turning the world about the origin keeps constant.
   motion = ChangeUp(motion, Motion::Up::kY, Eigen::Vector3d::Zero());
   const CleanedMotion cleaned = CleanMotion(motion, options.cleaning);
@@ -90,14 +101,13 @@ std::vector<LibraryClip> ClipsOf(const std::string& file, const std::string& nam
                                          cleaned.jumps, " impossible steps, ", cleaned.gaps, " gaps)"));
   }
   const FloorEstimate floor = EstimateFloor(cleaned.pieces);
-  const MotionSplitEntry* entry = split.Find(name);
   const Origin origin = OriginOf(name);
   std::vector<LibraryClip> clips;
   for (const Motion& piece : cleaned.pieces) {
     LibraryClip clip;
     clip.name = clips.empty() ? name : name + "#" + std::to_string(clips.size() + 1);
     clip.source = origin.source;
-    clip.subject = origin.subject;
+    clip.subject = entry != nullptr && !entry->performer.empty() ? entry->performer : origin.subject;
     clip.motion_class = entry != nullptr ? entry->motion_class : "other";
     clip.test = entry != nullptr && entry->test;
     clip.is_named = entry != nullptr;

@@ -18,9 +18,11 @@
 namespace bodyloom {
 
 struct LibraryClip {
-  std::string name;     ///< path below the given folder, '/' separators; pieces after the first: "…#2"
-  std::string source;   ///< format: bvh asfamc amp deepmimic aistpp amass; CMU's with their numbering: cmu_bvh, …
-  std::string subject;  ///< performer as the source numbers it ("05" of 05_02, "d06" of gBR_…_d06_…), else the clip
+  std::string name;    ///< path below the given folder, '/' separators; pieces after the first: "…#2"
+  std::string source;  ///< format: bvh asfamc amp deepmimic aistpp amass; CMU's with their numbering: cmu_bvh, …; hdm05
+  /// Performer: as the split says, else as the source numbers it ("05" of 05_02, "d06" of gBR_…_d06_…, "HDM_bd" of
+  /// HDM_bd_…), else the clip.
+  std::string subject;
   std::string motion_class;  ///< one of MotionClasses()
   bool test = false;         ///< kept for testing
   bool is_named = false;     ///< the split names it

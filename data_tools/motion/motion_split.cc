@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/data_tools/motion/motion_split.h"
 
+#include <fnmatch.h>
+
 #include <algorithm>
+#include <charconv>
 #include <sstream>
 #include <stdexcept>
+#include <system_error>
 
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/formats/printable.h"
@@ -17,12 +21,25 @@ namespace bodyloom {
 namespace {
 
 constexpr size_t kMaxSplitBytes = size_t{1} << 26;
+constexpr double kMaxFps = 1000;
+
+/// What is written after train or test; false for anything else.
+bool ReadDetail(const std::string& word, MotionSplitEntry* entry) {
+  if (word.starts_with("performer=")) {
+    entry->performer = word.substr(10);
+    return !entry->performer.empty();
+  }
+  if (!word.starts_with("fps=")) return false;
+  const char* end = word.data() + word.size();
+  const auto [stop, error] = std::from_chars(word.data() + 4, end, entry->fps);
+  return error == std::errc() && stop == end && entry->fps >= 1 && entry->fps <= kMaxFps;
+}
 
 }  // namespace
 
 const std::vector<std::string>& MotionClasses() {
-  static const std::vector<std::string> classes = {"walk",  "run",   "jump", "dance", "kick",      "punch",
-                                                   "sport", "climb", "sit",  "floor", "acrobatic", "other"};
+  static const std::vector<std::string> classes = {"walk",  "run", "jump",  "dance",    "kick",  "punch",     "sport",
+                                                   "climb", "sit", "reach", "exercise", "floor", "acrobatic", "other"};
   return classes;
 }
 
@@ -40,12 +57,25 @@ std::string WithoutMotionExtension(const std::string& path) {
   return name;
 }
 
+const MotionSplitEntry* MotionSplit::FindPart(const std::string& part) const {
+  if (const auto found = entries_.find(part); found != entries_.end()) return &found->second;
+  const MotionSplitEntry* best = nullptr;
+  size_t longest = 0;
+  for (const auto& [name, entry] : entries_) {
+    if (name.size() <= longest || name.find('*') == std::string::npos) continue;
+    if (fnmatch(name.c_str(), part.c_str(), FNM_PATHNAME | FNM_NOESCAPE) != 0) continue;
+    best = &entry;
+    longest = name.size();
+  }
+  return best;
+}
+
 const MotionSplitEntry* MotionSplit::Find(const std::string& path, std::string* name) const {
   // From the whole path to its last part, so that the longest name is found first.
   for (std::string rest = WithoutMotionExtension(path);;) {
-    if (const auto found = entries_.find(rest); found != entries_.end()) {
+    if (const MotionSplitEntry* found = FindPart(rest)) {
       if (name != nullptr) *name = rest;
-      return &found->second;
+      return found;
     }
     const size_t slash = rest.find('/');
     if (slash == std::string::npos) return nullptr;
@@ -63,11 +93,10 @@ MotionSplit MotionSplitFromText(const std::string& text, const std::string& wher
     };
     std::istringstream words(line.substr(0, line.find('#')));
     std::vector<std::string> found;
-    for (std::string word; found.size() < 4 && words >> word;) found.push_back(word);
+    for (std::string word; words >> word;) found.push_back(word);
     if (found.empty()) continue;
-    if (found.size() != 3) {
-      fail("found " + std::string(found.size() > 3 ? "more than 3" : std::to_string(found.size())) +
-           " words, expected 3: name, class, train or test");
+    if (found.size() < 3) {
+      fail("found " + std::to_string(found.size()) + " words, expected at least 3: name, class, train or test");
     }
     const std::vector<std::string>& classes = MotionClasses();
     if (std::find(classes.begin(), classes.end(), found[1]) == classes.end()) {
@@ -77,7 +106,13 @@ MotionSplit MotionSplitFromText(const std::string& text, const std::string& wher
     }
     if (found[2] != "train" && found[2] != "test")
       fail("found '" + PrintableText(found[2]) + "', expected train or test");
-    if (!split.entries_.try_emplace(found[0], MotionSplitEntry{found[1], found[2] == "test"}).second) {
+    MotionSplitEntry entry{found[1], found[2] == "test"};
+    for (size_t i = 3; i < found.size(); ++i) {
+      if (!ReadDetail(found[i], &entry)) {
+        fail("found '" + PrintableText(found[i]) + "', expected performer=NAME or fps=RATE of 1 to 1000");
+      }
+    }
+    if (!split.entries_.try_emplace(found[0], entry).second) {
       fail("'" + PrintableText(found[0]) + "' a second time, expected one line a clip");
     }
   }
@@ -89,9 +124,14 @@ MotionSplit ReadMotionSplit(const std::string& path) {
 }
 
 const MotionSplit& BuiltinMotionSplit() {
-  static const MotionSplit split = MotionSplitFromText(
-      std::string(bodyloom_motion_split_begin, bodyloom_motion_split_end), "assets/lifter/motion_split.txt (built in)");
+  static const MotionSplit split =
+      MotionSplitFromText(BuiltinMotionSplitText(), "assets/lifter/motion_split.txt (built in)");
   return split;
+}
+
+const std::string& BuiltinMotionSplitText() {
+  static const std::string text(bodyloom_motion_split_begin, bodyloom_motion_split_end);
+  return text;
 }
 
 }  // namespace bodyloom

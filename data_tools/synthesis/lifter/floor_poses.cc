@@ -428,7 +428,7 @@ void AddFloorPoses(const LifterBody& body, const LifterPerson& person, const Lif
     return values;
   };
   const std::vector<float> second = ramp(0.4, 2.0);
-  std::vector<float> down = ramp(0.5, 2.0);
+  std::vector<float> down = ramp(0.3, 2.0);  // a fall takes a third of a second
   const double manner = random.Uniform();
   for (float& d : down) d = manner < 0.2 ? d : manner < 0.35 ? 1 - d : 1;
 

@@ -15,7 +15,8 @@ using Eigen::Vector3f;
 namespace {
 
 constexpr float kContactHeight = 0.04F, kContactSpeed = 0.35F, kContactSpeedWithoutFloor = 0.25F;
-constexpr float kMinDepth = 0.9F;  // of the nearest landmark, metres for the mean body
+constexpr double kLowestElevation = -35, kHighestElevation = 75;  // degrees, of LifterWindowOptions::any_elevation
+constexpr float kMinDepth = 0.9F;                                 // of the nearest landmark, metres for the mean body
 
 Vector3f MidHip(const Vector3f* points) { return 0.5F * (points[kLifterLeftHip] + points[kLifterLeftHip + 1]); }
 
@@ -63,7 +64,9 @@ LifterScene FilmPerson(const WorldMotion& motion, const LifterPerson& person, co
   const int T = static_cast<int>(motion.points.size()) / kLifterPoints;
   const auto radian = [](double degrees) { return static_cast<float>(degrees * M_PI / 180); };
   const float yaw = static_cast<float>(random.Uniform(0, 2 * M_PI));
-  const float elevation = radian(random.Uniform(options.min_elevation_deg, options.max_elevation_deg));
+  const bool anywhere = options.any_elevation > 0 && random.Uniform() < options.any_elevation;
+  const float elevation = radian(anywhere ? random.Uniform(kLowestElevation, kHighestElevation)
+                                          : random.Uniform(options.min_elevation_deg, options.max_elevation_deg));
   const float roll = radian(options.roll_sd_deg * random.Normal());
   const float distance =
       person.size *

@@ -28,7 +28,8 @@ enum WindowStream : uint64_t {
   kCamera,
   kDetections,
   kFocal,
-  kAsRecorded
+  kAsRecorded,
+  kTurns
 };
 
 std::vector<LifterClip> CompactClips(const std::vector<Motion>& motions, const std::vector<char>& has_floor,
@@ -81,6 +82,7 @@ bool LifterWindowOptions::IsValid(std::string* why) const {
   if (!between(noise_spread, 0, 2)) return no("noise_spread must be in [0, 2]");
   if (!between(confidence_spread, 0, 2)) return no("confidence_spread must be in [0, 2]");
   for (const auto& [name, value] : {std::pair("moving_camera", moving_camera),
+                                    {"any_elevation", any_elevation},
                                     {"focal_known", focal_known},
                                     {"mirror", mirror},
                                     {"as_recorded", as_recorded},
@@ -94,6 +96,8 @@ bool LifterWindowOptions::IsValid(std::string* why) const {
                                     {"arm_raise", arm_raise},
                                     {"bend", bend},
                                     {"lean", lean},
+                                    {"spin", spin},
+                                    {"tumble", tumble},
                                     {"floor_poses", floor_poses},
                                     {"biased_detector", biased_detector},
                                     {"dropout", dropout},
@@ -147,6 +151,7 @@ PoseSequence LifterWindowGenerator::MakePoses(uint64_t seed, const LifterPerson&
     AddFloorPoses(body_, person, options_, HashRandom(seed, {kFloor}), &poses);
   } else {
     AddExercises(options_, HashRandom(seed, {kExercises}), &poses);
+    AddTurns(options_, HashRandom(seed, {kTurns}), &poses);
   }
   // What lies on the floor shall not be turned off it, nor pushed up by its limbs.
   PerturbPoses(options_, floor ? 0.6F : 1.0F, floor ? 0.2F : 1.0F, HashRandom(seed, {kPerturb}), &poses);

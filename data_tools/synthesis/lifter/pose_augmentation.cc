@@ -188,6 +188,27 @@ void AddExercises(const LifterWindowOptions& options, HashRandom random, PoseSeq
   }
 }
 
+void AddTurns(const LifterWindowOptions& options, HashRandom random, PoseSequence* poses) {
+  const auto turn = [&](const Vector3f& axis, float angle, double longest_s) {
+    const double rise = options.rate * random.Uniform(0.4, longest_s),
+                 start = random.Uniform(-0.2, 0.9) * poses->num_frames;
+    for (int t = 0; t < poses->num_frames; ++t) {
+      const double x = std::clamp((t - start) / rise, 0.0, 1.0);
+      const auto part = static_cast<float>(x * x * (3 - 2 * x));
+      if (part > 0) poses->at(t, kPelvis) = TurnBy(angle * part * axis) * poses->at(t, kPelvis);
+    }
+  };
+  constexpr auto kRound = static_cast<float>(2 * M_PI);
+  if (random.Uniform() < options.spin) {
+    turn(Vector3f::UnitY(), Draw(&random, 0.15, 2) * (random.Uniform() < 0.5 ? -kRound : kRound), 2.5);
+  }
+  if (random.Uniform() < options.tumble) {
+    const float heading = Draw(&random, 0, kRound);
+    const bool around = random.Uniform() < 0.5;
+    turn({std::cos(heading), 0, std::sin(heading)}, around ? kRound : Draw(&random, 0.2, 0.5) * kRound, 1.5);
+  }
+}
+
 void PerturbPoses(const LifterWindowOptions& options, float share, float root_share, HashRandom random,
                   PoseSequence* poses) {
   struct Row {

@@ -44,6 +44,10 @@ void ExchangeLimbs(const std::vector<LifterClip>& clips, const ClipChoice& choic
 /// Squats and lunges, raised legs, kicks, raised arms, bending and leaning: each swells and fades within the window.
 void AddExercises(const LifterWindowOptions& options, HashRandom random, PoseSequence* poses);
 
+/// The whole body turns about the vertical (a spin), or over, about a horizontal axis, within 0.4 to 2.5 s; it ends
+/// there or, turned over, comes up again. What it stands on then is what is lowest: `clearance` stays.
+void AddTurns(const LifterWindowOptions& options, HashRandom random, PoseSequence* poses);
+
 /// Every joint turns a little more, smoothly in time: shoulders by 0.5 rad, elbows and knees 0.4, hips 0.3, root and
 /// head 0.2, spine, collars and ankles 0.1 to 0.2, times a level that is uniform up to options.perturbation; the root
 /// by `root` of that.

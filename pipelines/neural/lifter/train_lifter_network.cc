@@ -11,6 +11,7 @@
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/learned/lifter_weights_io.h"
 #include "bodyloom/data_tools/motion/motion_library.h"
+#include "bodyloom/data_tools/motion/motion_split.h"
 #include "bodyloom/data_tools/synthesis/lifter/lifter_windows.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/pipelines/neural/training_session.h"
@@ -118,6 +119,8 @@ TrainLifterNetworkSummary TrainLifterNetwork(const TrainLifterNetworkRequest& re
   if (!options.resume) RequireNoRun(request.out);
   const nlohmann::ordered_json config = Describe(options, request.share, train, test);
   WriteFileAtomically((fs::path(request.out) / "config.json").string(), config.dump(2) + "\n");
+  WriteFileAtomically((fs::path(request.out) / "motion_split.txt").string(),
+                      request.split.empty() ? BuiltinMotionSplitText() : ReadFileBytes(request.split));
   callbacks.Say(Concatenate("training on ", train.motions.size(), " clips, ", train.seconds / 60,
                             " minutes; validating on ", test.motions.size(), " clips, ", test.seconds / 60,
                             " minutes"));

@@ -15,7 +15,7 @@ struct TrainLifterNetworkRequest {
   std::vector<std::string> motions;  ///< motion files, or folders of them (data_tools/motion/motion_library.h)
   std::string split;                 ///< which clips are for training; empty: the project's own list
   double share = 1;                  ///< of the training motion that is used, whole clips
-  std::string out;                   ///< folder of the run: config.json, metrics.csv, checkpoint.bin, lifter.npz
+  std::string out;  ///< folder of the run: config.json, motion_split.txt, metrics.csv, checkpoint.bin, lifter.npz
   /// Numbers; what follows from the windows (num_inputs, num_frames, run_dir) is filled in by the job.
   TrainLifterOptions options;
 };

@@ -50,6 +50,7 @@ TEST(LifterRecord, TheWeightsMakeTheErrorsThatTheRunWroteDown) {
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not there: no motion to validate on";
   MotionLibraryOptions library;
   library.visit_train = false;
+  library.split_path = kRun + "/motion_split.txt";
   std::vector<Motion> motions;
   std::vector<char> has_floor;
   VisitMotionLibrary({folder}, library, [&](LibraryClip&& clip) {

@@ -72,7 +72,7 @@ TEST(MotionCleaning, AThighRolledAroundAndASpineFoldedAreBroken) {
   };
   for (int t = 0; t < motion.num_frames(); ++t) {
     motion.poses.block<1, 3>(t, 3 * kLeftHip) = rolled_by(t >= 150 && t < 160 ? 150 : 80).transpose();
-    motion.poses(t, 3 * kSpine1) = t >= 300 && t < 305 ? 1.5 : 1.3;
+    motion.poses(t, 3 * kSpine1) = t >= 300 && t < 305 ? 2.0 : 1.8;
   }
   MotionCleaningOptions options;
   options.max_joint_speed_m_s = 1e9;  // only what is broken shall show
@@ -81,6 +81,21 @@ TEST(MotionCleaning, AThighRolledAroundAndASpineFoldedAreBroken) {
   EXPECT_EQ(cleaned.jumps, 0);
   ASSERT_EQ(cleaned.pieces.size(), 3);
   EXPECT_EQ(cleaned.pieces[0].num_frames(), 150 - 4);
+}
+
+TEST(MotionCleaning, ACrouchWithTheKneesApartIsSound) {
+  Motion motion = StandingMotion(100, 2);
+  for (int t = 0; t < motion.num_frames(); ++t) {  // thighs up to 140° forward and 60° out, shins folded
+    const double part = t / 200.0;
+    for (const double side : {1.0, -1.0}) {
+      const Eigen::Matrix3d thigh = RotationFromAxisAngle(Eigen::Vector3d::UnitZ() * (side * M_PI / 3 * part)) *
+                                    RotationFromAxisAngle(Eigen::Vector3d::UnitX() * (-140 * M_PI / 180 * part));
+      motion.poses.block<1, 3>(t, 3 * (side > 0 ? kLeftHip : kLeftHip + 1)) = AxisAngleFromRotation(thigh).transpose();
+    }
+  }
+  const CleanedMotion cleaned = CleanMotion(motion);
+  EXPECT_EQ(cleaned.frames_broken, 0);
+  ASSERT_EQ(cleaned.pieces.size(), 1);
 }
 
 TEST(MotionCleaning, AFootTurnedOverIsTurnedBackAndItsToesStay) {

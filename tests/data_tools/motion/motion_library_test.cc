@@ -213,7 +213,9 @@ TEST(MotionSplit, MalformedLinesNameFileAndLine) {
   };
   EXPECT_THAT(error("b walk"), HasSubstr("found 2 words"));
   EXPECT_THAT(error("b"), HasSubstr("found 1 words"));
-  EXPECT_THAT(error("b walk train now"), HasSubstr("more than 3"));
+  for (const char* detail : {"now", "fps=", "fps=0", "fps=60x", "fps=nan", "fps=1e9", "performer="}) {
+    EXPECT_THAT(error(std::string("b walk train ") + detail), HasSubstr(std::string("found '") + detail + "'"));
+  }
   EXPECT_THAT(error("b fly train"), HasSubstr("'fly', expected one of walk, run"));
   EXPECT_THAT(error("b walk maybe"), HasSubstr("'maybe', expected train or test"));
   EXPECT_THAT(error("a walk test"), HasSubstr("a second time"));
@@ -221,7 +223,26 @@ TEST(MotionSplit, MalformedLinesNameFileAndLine) {
   EXPECT_THAT(error(std::string(100000, 'x')), HasSubstr("1 words"));
 }
 
-/// The split that ships, on the folders of recordings it was made for; those beside them are not divided yet.
+TEST(MotionSplit, PatternsGiveWayToNamesAndShorterPatternsToLonger) {
+  const MotionSplit split =
+      MotionSplitFromText("49_* dance train\n49_02 jump test\n49_1* walk train\na/49_* run train\n", "");
+  EXPECT_EQ(split.Find("x/49_03.bvh.gz")->motion_class, "dance");
+  EXPECT_EQ(split.Find("x/49_02.bvh.gz")->motion_class, "jump");
+  EXPECT_EQ(split.Find("x/49_12.bvh")->motion_class, "walk");
+  EXPECT_EQ(split.Find("a/49_12.bvh")->motion_class, "run") << "the longest part of the path that is named";
+  EXPECT_EQ(split.Find("149_03.bvh"), nullptr);
+}
+
+TEST(MotionSplit, TellsPerformersAndRates) {
+  const MotionSplit split =
+      MotionSplitFromText("salsa_01 dance train performer=60\n143_04 run test fps=60 performer=a\n", "");
+  EXPECT_EQ(split.Find("salsa_01.bvh")->performer, "60");
+  EXPECT_EQ(split.Find("salsa_01.bvh")->fps, 0);
+  EXPECT_EQ(split.Find("143_04.bvh")->fps, 60);
+  EXPECT_EQ(split.Find("143_04.bvh")->performer, "a");
+}
+
+/// The split that ships, on the recordings it was made for.
 class RealLibrary : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -234,22 +255,23 @@ class RealLibrary : public ::testing::Test {
 TEST_F(RealLibrary, EveryClipIsNamedAndNoPerformerIsInBoth) {
   MotionLibrarySummary summary;
   std::map<std::string, std::set<bool>> by_performer;
-  std::set<std::string> found;
+  std::set<const MotionSplitEntry*> found;
   double test_s = 0;
   std::set<std::string> test_classes;
   int clips = 0;
-  const std::vector<std::string> divided = {motion_ + "/amp_cmu", motion_ + "/cmu_asfamc", motion_ + "/cmu_bvh",
-                                            motion_ + "/deepmimic", aist_};
-  summary = VisitMotionLibrary(divided, {}, [&](LibraryClip&& clip) {
+  summary = VisitMotionLibrary({motion_, aist_}, {}, [&](LibraryClip&& clip) {
     ++clips;
-    by_performer[clip.source.substr(0, 3) + " " + clip.subject].insert(clip.test);
+    by_performer[clip.source == "hdm05" ? clip.subject : clip.source.substr(0, 3) + " " + clip.subject].insert(
+        clip.test);
     std::string name;
-    ASSERT_NE(BuiltinMotionSplit().Find(clip.name.substr(0, clip.name.find('#')), &name), nullptr) << clip.name;
-    found.insert(name);
+    const MotionSplitEntry* entry = BuiltinMotionSplit().Find(clip.name.substr(0, clip.name.find('#')), &name);
+    ASSERT_NE(entry, nullptr) << clip.name;
+    found.insert(entry);
     if (clip.test) {
       test_s += clip.motion.timestamps.back();
       test_classes.insert(clip.motion_class);
     }
+    EXPECT_TRUE(clip.source != "hdm05" || clip.test) << clip.name << ": share-alike, nothing that ships learns from it";
     EXPECT_TRUE(!clip.name.starts_with("gBR") || clip.test);
     EXPECT_TRUE(!clip.name.starts_with("gJS") || clip.test);
     EXPECT_TRUE(clip.motion.poses.allFinite() && clip.motion.trans.allFinite()) << clip.name;
@@ -257,7 +279,7 @@ TEST_F(RealLibrary, EveryClipIsNamedAndNoPerformerIsInBoth) {
     const bool is_climb = clip.motion_class == "climb" || clip.motion_class == "sit" || clip.subject == "03";
     if (is_climb) {
       EXPECT_FALSE(clip.has_floor) << clip.name << ": a climbing frame, or uneven ground";
-    } else if (clip.motion_class != "floor") {
+    } else if (clip.motion_class != "floor" && clip.source != "hdm05" && clip.name != "cmu_bvh_gym49/49_21.bvh.gz") {
       EXPECT_TRUE(clip.has_floor) << clip.name;
     }
     EXPECT_TRUE(!clip.source.starts_with("cmu") || std::abs(clip.floor_shift_m) < 0.15)
@@ -271,8 +293,8 @@ TEST_F(RealLibrary, EveryClipIsNamedAndNoPerformerIsInBoth) {
     EXPECT_EQ(halves.size(), 1) << performer << " is in training and in testing";
   }
   for (const char* name : {"floor", "kick", "dance", "sit"}) EXPECT_EQ(test_classes.count(name), 1) << name;
-  EXPECT_GT(test_s / summary.seconds, 0.15);
-  EXPECT_LT(test_s / summary.seconds, 0.20);
+  EXPECT_GT(test_s / summary.seconds, 0.20);
+  EXPECT_LT(test_s / summary.seconds, 0.25);
 }
 
 }  // namespace

@@ -287,6 +287,45 @@ TEST(FloorPoses, LyingIsLyingAndTheFaceLooksTheRightWay) {
   EXPECT_EQ(checked, 250);
 }
 
+/// Angle between the pelvis' axis and its own at the start, largest over the window.
+float LargestTurn(const PoseSequence& poses, const Vector3f& axis) {
+  float largest = 0;
+  for (int t = 0; t < poses.num_frames; ++t) {
+    const float cosine = (poses.at(t, kPelvis) * axis).dot(poses.at(0, kPelvis) * axis);
+    largest = std::max(largest, std::acos(std::clamp(cosine, -1.0F, 1.0F)));
+  }
+  return largest;
+}
+
+TEST(AddTurns, SpinsKeepThePersonUprightAndTumblesTurnItOver) {
+  LifterWindowOptions options = PlainOptions();
+  PoseSequence standing;
+  standing.num_frames = 81;
+  standing.rotations.assign(size_t{81} * kPoseJoints, Quaternionf::Identity());
+  int spun = 0, turned_over = 0;
+  for (uint64_t seed = 0; seed < 200; ++seed) {
+    PoseSequence spin = standing, tumble = standing;
+    options.spin = 1;
+    options.tumble = 0;
+    AddTurns(options, HashRandom(seed, {1}), &spin);
+    EXPECT_LT(LargestTurn(spin, Vector3f::UnitY()), 1e-3F);
+    spun += LargestTurn(spin, Vector3f::UnitZ()) > 2;
+    options.spin = 0;
+    options.tumble = 1;
+    AddTurns(options, HashRandom(seed, {1}), &tumble);
+    turned_over += LargestTurn(tumble, Vector3f::UnitY()) > 1.2;
+    for (int t = 0; t < 81; ++t) {
+      for (int j = 1; j < kPoseJoints; ++j) ASSERT_EQ(tumble.at(t, j).w(), 1) << "all of the body turns, no joint";
+    }
+  }
+  EXPECT_GT(spun, 100);
+  EXPECT_GT(turned_over, 120);
+  options.spin = options.tumble = 0;
+  PoseSequence still = standing;
+  AddTurns(options, HashRandom(1, {1}), &still);
+  EXPECT_EQ(LargestTurn(still, Vector3f::UnitZ()), 0);
+}
+
 TEST(WorldMotion, StandsOnTheFloorWhateverThePoses) {
   const LifterBody body(ToyBody());
   LifterWindowOptions options;

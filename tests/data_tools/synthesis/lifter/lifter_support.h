@@ -18,6 +18,7 @@ inline LifterWindowOptions PlainOptions() {
   LifterWindowOptions o;
   o.moving_camera = o.mirror = o.arm_exchange = o.leg_exchange = o.spine_exchange = 0;
   o.perturbation = o.squat = o.leg_raise = o.kick = o.arm_raise = o.bend = o.lean = o.floor_poses = 0;
+  o.spin = o.tumble = o.any_elevation = 0;
   o.shape_sd = o.bone_noise = o.landmark_sd_m = o.biased_detector = 0;
   o.noise = o.dropout = o.pair_swap = o.body_swap = o.no_feet = o.no_face = 0;
   o.missing_limb = o.missing_lower_half = o.nothing = o.image_border = o.cut_off = 0;

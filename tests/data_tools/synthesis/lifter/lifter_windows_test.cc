@@ -196,6 +196,25 @@ TEST(LifterWindows, CamerasCoverTheirRanges) {
   for (const int n : yaws) EXPECT_NEAR(n, 125, 45);
 }
 
+TEST(LifterWindows, SomeCamerasLookFromAnyHeight) {
+  LifterWindowOptions options = PlainOptions();
+  options.num_frames = 1;
+  options.roll_sd_deg = options.off_axis = 0;
+  options.any_elevation = 0.3;
+  const LifterWindowGenerator generator = Generator(options, ShortDemoMotion());
+  const LifterPerson person = generator.body().Person({});
+  int below = 0, above = 0;
+  for (uint64_t seed = 0; seed < 1000; ++seed) {
+    const LifterScene scene = generator.MakeScene(seed, person, generator.MakePoses(seed, person));
+    const double elevation = std::asin(std::clamp(-scene.up[0].z(), -1.0F, 1.0F)) * 180 / M_PI;
+    EXPECT_TRUE(elevation > -36 && elevation < 76) << elevation;
+    below += elevation < -10.01;
+    above += elevation > 40.01;
+  }
+  EXPECT_NEAR(below, 1000 * 0.3 * 25 / 110, 30);
+  EXPECT_NEAR(above, 1000 * 0.3 * 35 / 110, 35);
+}
+
 TEST(LifterWindows, ThePersonStaysBeforeTheCamera) {
   LifterWindowOptions options;
   options.dropout = 0;
