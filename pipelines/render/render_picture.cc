@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/camera_path.h"
 #include "bodyloom/pipelines/fixed_text.h"
 #include "bodyloom/render/contact_sheet.h"
 #include "bodyloom/render/overlay.h"
@@ -59,6 +60,7 @@ RenderPicture::RenderPicture(const BodyModel& body, const Track& track, const Re
                              const std::string& where)
     : body_(body), track_(track), options_(options) {
   CheckBody(body, options.kind, where);
+  if (track.HasMovingCamera()) in_cameras_ = TrackInCameras(body, track);
   const Camera& camera = track.camera;
   if (camera.width <= 0 || camera.height <= 0) {
     throw std::runtime_error(where + ": image_size is " + std::to_string(camera.width) + "x" +
@@ -87,14 +89,9 @@ RenderPicture::RenderPicture(const BodyModel& body, const Track& track, const Re
 }
 
 PlacedBody RenderPicture::Place(int frame, double turn_deg) const {
-  PlacedBody placed{TrackVertices(body_, track_, frame), track_.CameraAt(frame), {}};
-  if (view_) {
-    const View view = view_->At(frame, turn_deg);
-    placed.camera = view.camera;
-    placed.view_from_camera = view.from_camera;
-    placed.vertices = view.Apply(placed.vertices);
-  }
-  return placed;
+  if (!view_) return {TrackVertices(body_, SeenTrack(), frame), track_.CameraAt(frame), {}};
+  const View view = view_->At(frame, turn_deg);
+  return {view.Apply(TrackVertices(body_, track_, frame)), view.camera, view.from_camera};
 }
 
 void RenderPicture::SetDepthRange(const std::vector<int>& frames) {
@@ -116,8 +113,9 @@ void RenderPicture::DrawStudio(int frame, const PlacedBody& placed, Image* image
   if (placed.camera.model != CameraModel::kPinhole || !floor_ || placed.vertices.rows() == 0) {
     return;
   }
-  const Eigen::Matrix3d& R = placed.view_from_camera.camera_from_world_rotation;
-  const Floor floor{R * floor_->point + placed.view_from_camera.camera_from_world_translation, R * floor_->up};
+  const CameraPose& view = placed.view_from_camera;
+  const Floor floor = view_ ? Floor{MovedPoint(view, floor_->point), view.camera_from_world_rotation * floor_->up}
+                            : FloorInCamera(*floor_, track_, frame);
   const Eigen::Vector3d centre = placed.vertices.colwise().mean().transpose();
   DrawFloorGrid(floor, centre, {}, placed.camera, image);
   DrawShadow(placed.vertices, body_.data().faces, floor, placed.camera, 0.35, image);
@@ -162,7 +160,7 @@ Image RenderPicture::Draw(int frame, double turn_deg, const Image* background) {
 }
 
 std::vector<float> RenderPicture::VertexErrors(int frame) const {
-  const Eigen::VectorXd errors = VertexErrorsOfFrame(track_, *options_.truth, frame, body_, options_.error_unit);
+  const Eigen::VectorXd errors = VertexErrorsOfFrame(SeenTrack(), *options_.truth, frame, body_, options_.error_unit);
   if (errors.size() == 0) return std::vector<float>(body_.num_vertices(), std::numeric_limits<float>::quiet_NaN());
   return {errors.begin(), errors.end()};
 }

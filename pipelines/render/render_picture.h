@@ -31,7 +31,7 @@ struct RenderPictureOptions {
   double view_yaw_deg = 0;  ///< 90: from the person's left when it faces the camera
   bool turntable = false;   ///< that camera will be turned
   TexelAttribute texture = {};
-  const Track* truth = nullptr;  ///< error: what the track is compared with, frame by frame
+  const Track* truth = nullptr;  ///< error: what the track is compared with, frame by frame, in its cameras
   VertexErrorUnit error_unit = VertexErrorUnit::kMillimetres;
   double error_maximum = 1;  ///< in that unit: the last colour
   int num_threads = 1;
@@ -41,7 +41,7 @@ struct RenderPictureOptions {
 struct PlacedBody {
   MatrixX3d vertices;  ///< camera frame of the view; no rows: the frame is lost
   Camera camera;
-  CameraPose view_from_camera;  ///< identity for the track's own camera
+  CameraPose view_from_camera;  ///< of a new view, from the track's frame; else identity
 };
 
 /// Not for use by two threads at once. Borrows body, track, texture and truth.
@@ -69,12 +69,14 @@ class RenderPicture {
 
  private:
   void DrawStudio(int frame, const PlacedBody& placed, Image* image) const;
+  [[nodiscard]] const Track& SeenTrack() const { return track_.HasMovingCamera() ? in_cameras_ : track_; }
 
   const BodyModel& body_;
   const Track& track_;
+  Track in_cameras_;  ///< of a camera that moves: the track as each frame's camera saw it
   RenderPictureOptions options_;
   std::optional<FollowView> view_;
-  std::optional<Floor> floor_;  ///< the track's camera frame
+  std::optional<Floor> floor_;  ///< the track's frame: the camera's, or the scene of one that moves
   Image studio_;
   double near_m_ = 1, far_m_ = 5;
   MeshDrawer mesh_;

@@ -110,7 +110,6 @@ RenderTrackReport RenderChecked(const RenderTrackRequest& request, const BodyMod
   const Stopwatch watch;
   Track track = given, truth;
   RequireTrackFitsBody(track, body, request.track);
-  track = TrackInCameras(body, track);  // pictures of it, each from where the camera was
   const auto [first, end] = FrameRange(request.frames, track.num_frames(), request.track);
   if (given_truth != nullptr) {
     truth = *given_truth;
