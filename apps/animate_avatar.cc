@@ -45,6 +45,7 @@ void AddAnimateAvatar(CLI::App& animate, Action* action) {
   verb->add_option("--ply", request->ply, "The Gaussians at rest, for viewers of 3D Gaussian Splatting, .ply");
   CLI::Option* posed = verb->add_option("--posed-ply", request->posed_ply, "The Gaussians of --ply-frame, posed, .ply");
   verb->add_option("--ply-frame", request->posed_frame, "Frame of --posed-ply")->capture_default_str()->needs(posed);
+  verb->add_option("--report", request->report, "One HTML file in which the person moves and is turned by hand");
   verb->add_option("--json", request->json, "Report with times and scores");
   verb->add_option("--threads", request->threads, "0: all cores")->check(CLI::Range(0, 1024));
   verb->footer(

@@ -14,6 +14,7 @@
 #include "bodyloom/data_tools/avatar/avatar_file.h"
 #include "bodyloom/data_tools/avatar/gaussian_ply.h"
 #include "bodyloom/data_tools/body/body_or_builtin.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/motion/freeze_track.h"
 #include "bodyloom/data_tools/motion/motion_tools.h"
 #include "bodyloom/data_tools/motion/shape_track.h"
@@ -23,6 +24,7 @@
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/geometry/base/percentile.h"
 #include "bodyloom/pipelines/avatar/avatar_clip.h"
+#include "bodyloom/pipelines/avatar/avatar_page.h"
 #include "bodyloom/pipelines/avatar/motion_maps.h"
 #include "bodyloom/pipelines/avatar/train_avatar.h"
 #include "bodyloom/pipelines/files.h"
@@ -30,6 +32,7 @@
 #include "bodyloom/pipelines/people/freeze.h"
 #include "bodyloom/pipelines/people/view_angles.h"
 #include "bodyloom/pipelines/report_json.h"
+#include "bodyloom/render/follow_view.h"
 
 namespace bodyloom {
 namespace {
@@ -92,18 +95,22 @@ class AvatarAnimation {
   }
 
  private:
+  [[nodiscard]] std::vector<std::string> OutputFiles() const {
+    return {request_.out, request_.ply, request_.posed_ply, request_.report, request_.json};
+  }
+
   void CheckRequest() const {
     if (request_.track.empty() && request_.data.empty()) throw RequestError("expected --track or --data");
     const bool turned = !request_.view_yaw.empty() || !request_.freeze.empty() || request_.size > 0;
     if (!request_.data.empty() && turned) {
       throw RequestError("--data compares with its pictures: not with --view-yaw, --freeze or --size");
     }
-    if (!request_.mask.empty() && request_.data.empty()) throw RequestError("--mask goes with --data");
-    for (const std::string& path : {request_.out, request_.ply, request_.posed_ply, request_.json}) {
-      RequireWritable(path);
+    if (!request_.report.empty() && !request_.view_yaw.empty()) {
+      throw RequestError("--report turns by hand: not with --view-yaw");
     }
-    RequireDistinct({request_.track, request_.background, request_.mask, request_.data},
-                    {request_.out, request_.ply, request_.posed_ply, request_.json});
+    if (!request_.mask.empty() && request_.data.empty()) throw RequestError("--mask goes with --data");
+    for (const std::string& path : OutputFiles()) RequireWritable(path);
+    RequireDistinct({request_.track, request_.background, request_.mask, request_.data}, OutputFiles());
     RequireReadable(request_.background, "background");
     RequireReadable(request_.run, "run");
     if (!request_.pictures.empty()) RequireWritableFolder(request_.pictures);
@@ -157,6 +164,34 @@ class AvatarAnimation {
       throw std::runtime_error(Concatenate(from, ": pictures of ", posed_->width(), "x", posed_->height(),
                                            ", expected sides of 2 to ", kLongestSide));
     }
+    if (request_.report.empty()) return;
+    if (track_.camera.model != CameraModel::kPinhole) {
+      throw std::runtime_error(from + ": a track of a weakly perspective camera, expected a pinhole's for --report");
+    }
+    page_.emplace(avatar_.body, posed_->CameraAt(0), EstimatedUp(track_), track_.num_frames(), motion_.has_value());
+  }
+
+  /// Frames of a track without times come at kFpsWithoutTimes.
+  void AddToPage(int t, bool shows) {
+    const std::vector<double>& times = track_.motion.timestamps;
+    const double seconds = fps_ > 0 ? times[t] - times.front() : t / kFpsWithoutTimes;
+    if (shows) {
+      page_->AddFrame(seconds, frame_, painter_.posed(), offsets_);
+    } else {
+      page_->AddEmptyFrame(seconds);
+    }
+  }
+
+  void WritePage() {
+    if (!page_) return;
+    if (summary_.frames_without_fit == track_.num_frames()) {
+      throw std::runtime_error(request_.track + ": no frame has a fit, there is nothing to show in --report");
+    }
+    WriteFileAtomically(
+        request_.report,
+        page_->ToHtml("A person of Gaussians",
+                      Concatenate(avatar_.body.size(), " Gaussians of ", request_.run, " in the motion of ",
+                                  request_.track.empty() ? request_.data : request_.track)));
   }
 
   void OpenMotion(std::vector<int> shown) {
@@ -207,10 +242,10 @@ class AvatarAnimation {
     }
     const int width = posed_->width(), height = posed_->height();
     Background background(request_.background, width, height);
-    const double own_fps = FrameRateWithoutGaps(track_.motion);
+    fps_ = FrameRateWithoutGaps(track_.motion);
     std::unique_ptr<VideoWriter> video;
     if (!request_.out.empty()) {
-      video = std::make_unique<VideoWriter>(request_.out, width, height, own_fps > 0 ? own_fps : kFpsWithoutTimes);
+      video = std::make_unique<VideoWriter>(request_.out, width, height, fps_ > 0 ? fps_ : kFpsWithoutTimes);
     }
     for (int t = 0; t < count; ++t) {
       callbacks_.Update("drawing", static_cast<double>(t) / count);
@@ -219,6 +254,7 @@ class AvatarAnimation {
       if (!shows) ++summary_.frames_without_fit;
       clock_.Begin("write");
       if (!request_.pictures.empty()) WritePicture(t, shows);
+      if (page_) AddToPage(t, shows);
       if (video) {
         Image whole = background.Next();
         if (shows) LayOver(painter_.picture(), &whole);
@@ -230,6 +266,7 @@ class AvatarAnimation {
       clock_.Begin("draw");
     }
     if (video) video->Finish();
+    WritePage();
     if (!request_.posed_ply.empty() && !posed_->HasResult(request_.posed_frame)) {
       throw std::runtime_error(Concatenate(request_.track, ": frame ", request_.posed_frame, " has no fit to pose"));
     }
@@ -267,7 +304,8 @@ class AvatarAnimation {
     if (!draw_ms_.empty()) summary_.draw_ms = Percentile(draw_ms_, 50), summary_.pixels = Percentile(pixels_, 50);
     summary_.seconds = clock_.seconds();
     summary_.total_seconds = clock_.total();
-    for (const std::string& path : {request_.out, request_.pictures, request_.ply, request_.posed_ply, request_.json}) {
+    for (const std::string& path :
+         {request_.out, request_.pictures, request_.ply, request_.posed_ply, request_.report, request_.json}) {
       if (!path.empty()) summary_.written.push_back(path);
     }
     nlohmann::ordered_json json = {{"frames", summary_.frames},
@@ -298,6 +336,8 @@ class AvatarAnimation {
   GaussianOffsets offsets_;
   AvatarFrame frame_;
   AvatarPainter painter_;
+  std::optional<AvatarPage> page_;
+  double fps_ = 0;  ///< of the track; 0: it does not say
   std::vector<double> draw_ms_, pixels_;
   AnimateAvatarSummary summary_;
 };

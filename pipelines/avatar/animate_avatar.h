@@ -29,8 +29,9 @@ struct AnimateAvatarRequest {
   std::string ply;              ///< the Gaussians at rest, .ply; empty: none
   std::string posed_ply;        ///< the Gaussians of frame posed_frame, in the camera's frame, .ply; empty: none
   int posed_frame = 0;
-  std::string json;  ///< a report; empty: none
-  int threads = 0;   ///< 0: all cores
+  std::string report;  ///< one HTML file in which the person turns (pipelines/avatar/avatar_page.h); empty: none
+  std::string json;    ///< a report; empty: none
+  int threads = 0;     ///< 0: all cores
 };
 
 struct AnimateAvatarSummary {

@@ -109,10 +109,6 @@ std::string ScriptText(std::string text) {
   return text;
 }
 
-std::string DataScript(const std::string& id, const std::string& type, const std::string& text) {
-  return "<script id=\"" + id + "\" type=\"" + type + "\">" + text + "</script>\n";
-}
-
 std::string SizeText(size_t bytes) {
   const double megabytes = double(bytes) / 1e6;
   char text[32];

@@ -93,6 +93,10 @@ std::string EscapeHtml(const std::string& text) {
   return escaped;
 }
 
+std::string DataScript(const std::string& id, const std::string& type, const std::string& text) {
+  return "<script id=\"" + id + "\" type=\"" + type + "\">" + text + "</script>\n";
+}
+
 ReportPage::ReportPage(const std::string& title, const std::string& subtitle) : title_(title) {
   body_ = "<h1>" + EscapeHtml(title) + "</h1>\n";
   if (!subtitle.empty()) {

@@ -40,6 +40,9 @@ class ReportPage {
 /// RFC 4648, with padding.
 std::string Base64(const std::string& bytes);
 
+/// Text that a script of the page reads by its id; it must not hold "</script".
+std::string DataScript(const std::string& id, const std::string& type, const std::string& text);
+
 /// & < > " ' replaced.
 std::string EscapeHtml(const std::string& text);
 

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/video/video_reader.h"
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"
@@ -45,6 +46,10 @@ TEST(AvatarVerbs, LearnShowAndGoOn) {
   ASSERT_EQ(shown.exit_code, 0) << shown.err;
   EXPECT_EQ(VideoReader(scratch / "turned.mp4").info().num_frames, 6);
   EXPECT_GT(std::filesystem::file_size(scratch / "rest.ply"), 1000U);
+  const CommandResult page = RunCommand({"animate", "avatar", "--run", scratch / "run", "--track",
+                                         scratch / "person/track.npz", "--report", scratch / "page.html"});
+  ASSERT_EQ(page.exit_code, 0) << page.err;
+  EXPECT_THAT(ReadFileBytes(scratch / "page.html"), HasSubstr("id=\"changes\""));
 }
 
 TEST(AvatarVerbs, WrongUseIsSaidInALine) {
@@ -54,6 +59,10 @@ TEST(AvatarVerbs, WrongUseIsSaidInALine) {
   EXPECT_EQ(RunCommand({"train", "avatar", "--data", "x", "--out", "y", "--steps", "5", "--minutes", "1"}).exit_code,
             2);
   EXPECT_EQ(RunCommand({"animate", "avatar", "--run", "x"}).exit_code, 2);
+  const CommandResult turned = RunCommand(
+      {"animate", "avatar", "--run", "x", "--track", "y.npz", "--report", scratch / "p.html", "--view-yaw", "90"});
+  EXPECT_EQ(turned.exit_code, 2);
+  EXPECT_THAT(turned.err, HasSubstr("--report turns by hand"));
   const CommandResult missing = RunCommand(
       {"animate", "avatar", "--run", scratch / "no", "--track", scratch / "no.npz", "--out", scratch / "o.mp4"});
   EXPECT_EQ(missing.exit_code, 1);

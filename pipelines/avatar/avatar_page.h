@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A person of Gaussians in a motion as one HTML file that opens from disk: turned, brought nearer and scrubbed by hand,
+/// posed, lit, sorted and drawn in the page (assets/page/avatar.js, WebGL 2). Nothing is fetched from elsewhere.
+///
+/// The page poses as render/avatar/pose_gaussians.h does. What changes a Gaussian beyond its bones (pose correctives, and
+/// what a motion network adds to place, size, opacity and albedo) is stored in bytes for key frames, as many as 16 MB
+/// hold, and interpolated between them.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "bodyloom/geometry/camera.h"
+#include "bodyloom/render/avatar/avatar_frame.h"
+#include "bodyloom/render/avatar/gaussian_body.h"
+#include "bodyloom/render/avatar/gaussian_offsets.h"
+#include "bodyloom/render/splat/camera_gaussians.h"
+
+namespace bodyloom {
+
+class AvatarPage {
+ public:
+  /// Of a person shown in `num_frames` frames by a pinhole camera without distortion. `up_in_camera`: the axis about
+  /// which the page turns. `has_offsets`: frames come with offsets.
+  AvatarPage(const GaussianBody& body, const Camera& camera, const Eigen::Vector3d& up_in_camera, int num_frames,
+             bool has_offsets);
+
+  /// The next frame, `seconds` after the first one: bones, all Gaussians in the camera's frame, and what was added to them
+  /// (read only when there are offsets).
+  void AddFrame(double seconds, const AvatarFrame& frame, const CameraGaussians& posed, const GaussianOffsets& offsets);
+  /// The next frame, in which nobody is shown.
+  void AddEmptyFrame(double seconds);
+
+  /// Throws std::invalid_argument when no frame shows the person.
+  [[nodiscard]] std::string ToHtml(const std::string& title, const std::string& subtitle) const;
+
+ private:
+  /// Where the bones alone take a Gaussian.
+  [[nodiscard]] std::array<float, 3> OnBones(const AvatarFrame& frame, int i) const;
+  /// Whether what changes Gaussians beyond their bones is stored for this frame.
+  [[nodiscard]] bool IsKey(int frame) const { return frame % key_interval_ == 0 || frame + 1 == num_frames_; }
+
+  Camera camera_;
+  Eigen::Vector3d up_in_camera_;
+  int num_frames_, num_gaussians_, num_channels_, key_interval_;
+  std::vector<float> gaussians_;  ///< columns of assets/page/avatar.js
+  std::array<float, GaussianBody::kLightValues> light_;
+  std::vector<double> seconds_;
+  std::vector<float> bones_;     ///< frames × J × 12; NaN where nobody is shown
+  std::vector<int8_t> changes_;  ///< key frames × channels × Gaussians
+  size_t num_joints_ = 0;
+};
+
+}  // namespace bodyloom
