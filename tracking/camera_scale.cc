@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/camera_path.h"
@@ -15,6 +16,8 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double kScaleKernel = 3;
+constexpr double kLastKernel =
+    1;  // of unnamed feet: while they change, neither stands, and all such steps err to one side
 constexpr double kMaxRunStepS = 0.25;
 constexpr int kReweightings = 30;
 
@@ -78,31 +81,110 @@ struct Normal {
   double H = 0, g = 0;
 };
 
-/// Of the run's reweighted least squares at s; with `robust` false, of plain least squares.
-Normal NormalOf(const StandingRun& run, double s, bool robust) {
+/// Of the run's reweighted least squares at s; with a kernel of 0, of plain least squares.
+Normal NormalOf(const StandingRun& run, double s, double kernel) {
   Normal normal;
   for (const Offset& e : run) {
-    const double weight = robust ? GemanMcClure((e.a + s * e.b).squaredNorm(), kScaleKernel).weight : 1;
+    const double weight = kernel > 0 ? GemanMcClure((e.a + s * e.b).squaredNorm(), kernel).weight : 1;
     normal.H += weight * e.b.squaredNorm();
     normal.g += weight * e.a.dot(e.b);
   }
   return normal;
 }
 
-}  // namespace
+/// Both feet over one step of time; a foot that is not seen at both ends has no offset.
+struct Step {
+  std::array<std::optional<Offset>, 2> feet;
+};
 
-CameraScale EstimateCameraScale(const std::vector<std::array<FootPlace, 2>>& feet, std::span<const double> timestamps,
-                                const std::vector<char>& cut_before, std::span<const CameraPose> unit_path,
-                                const CameraScaleOptions& options) {
-  BODYLOOM_CHECK(
-      feet.size() == timestamps.size() && feet.size() == cut_before.size() && feet.size() == unit_path.size(),
-      "camera scale: ", feet.size(), " frames of feet, ", timestamps.size(), " timestamps, ", cut_before.size(),
-      " cuts and ", unit_path.size(), " cameras, expected as many of each");
+std::vector<Step> StepsOf(const std::vector<std::array<FootPlace, 2>>& feet, std::span<const double> timestamps,
+                          const std::vector<char>& cut_before, std::span<const CameraPose> unit_path,
+                          const CameraScaleOptions& options) {
+  std::vector<Step> steps;
+  const size_t T = feet.size();
+  for (size_t begin = 0, end = 0; begin < T; ++begin) {
+    bool is_cut = false;
+    for (end = begin + 1; end < T && timestamps[end] - timestamps[begin] < options.step_s; ++end) {
+      is_cut = is_cut || cut_before[end] != 0;
+    }
+    if (end >= T || is_cut || cut_before[end] != 0) continue;
+    if (timestamps[end] - timestamps[begin] > options.step_s + kMaxRunStepS) continue;
+    Step step;
+    for (int foot = 0; foot < 2; ++foot) {
+      const FootPlace &from = feet[begin][foot], &to = feet[end][foot];
+      if (!from.seen || !to.seen || !from.ankle_m.allFinite() || !to.ankle_m.allFinite()) continue;
+      // Each deviates from their mean by half of what separates them, once before and once after.
+      const StandingRun run =
+          MakeRun({feet[begin], feet[end]}, std::array{unit_path[begin], unit_path[end]}, foot, 0, 2, options);
+      step.feet[foot] = Offset{std::sqrt(2.0) * run[0].a, std::sqrt(2.0) * run[0].b};
+    }
+    if (step.feet[0] || step.feet[1]) steps.push_back(step);
+  }
+  return steps;
+}
+
+/// The foot that moves less at scale s.
+const Offset& SlowerFoot(const Step& step, double s) {
+  if (!step.feet[1]) return *step.feet[0];
+  if (!step.feet[0]) return *step.feet[1];
+  const auto moves = [&](int foot) { return (step.feet[foot]->a + s * step.feet[foot]->b).squaredNorm(); };
+  return moves(0) <= moves(1) ? *step.feet[0] : *step.feet[1];
+}
+
+double CostAt(const std::vector<Step>& steps, double s) {
+  double cost = 0;
+  for (const Step& step : steps) {
+    const Offset& e = SlowerFoot(step, s);
+    cost += 0.5 * GemanMcClure((e.a + s * e.b).squaredNorm(), kScaleKernel).rho;
+  }
+  return cost;
+}
+
+/// The second way of the header.
+CameraScale ScaleOfUnnamedFeet(const std::vector<Step>& steps, double seconds_a_frame,
+                               const CameraScaleOptions& options) {
   CameraScale result;
-  const std::vector<StandingRun> runs = StandingRuns(feet, timestamps, cut_before, unit_path, options);
+  result.why = steps.empty() ? "no foot is seen" : "the feet do not tell it";
+  const double without = CostAt(steps, 0);
+  double best = 0, best_cost = without;
+  for (const Step& step : steps) {
+    for (const std::optional<Offset>& foot : step.feet) {
+      if (!foot || !(foot->b.squaredNorm() > 0)) continue;
+      const double s = -foot->a.dot(foot->b) / foot->b.squaredNorm();
+      const double cost = s > 0 ? CostAt(steps, s) : best_cost;
+      if (cost < best_cost) best = s, best_cost = cost;
+    }
+  }
+  if (!(best > 0)) return result;
+  const auto at = [&](double s, double kernel) {
+    Normal sum;
+    for (const Step& step : steps) {
+      const Normal normal = NormalOf({SlowerFoot(step, s)}, s, kernel);
+      sum.H += normal.H;
+      sum.g += normal.g;
+    }
+    return sum;
+  };
+  for (int pass = 0; pass < kReweightings; ++pass) {
+    const Normal sum = at(best, pass < kReweightings / 2 ? kScaleKernel : kLastKernel);
+    if (!(sum.H > 0)) return result;
+    best = -sum.g / sum.H;
+  }
+  const double information = at(best, kScaleKernel).H * std::min(1.0, seconds_a_frame / options.correlation_s);
+  result.scale_m = best;
+  result.sigma_m = information > 0 ? 1 / std::sqrt(information) : best;
+  result.found = best > 0 && result.sigma_m <= options.max_relative_sigma * best &&
+                 CostAt(steps, best) <= (1 - options.least_gain) * without;
+  if (result.found) result.why = "one of both feet stands at any time";
+  return result;
+}
+
+/// The first way of the header.
+CameraScale ScaleOfStandingFeet(const std::vector<StandingRun>& runs, const CameraScaleOptions& options) {
+  CameraScale result;
   double best = 0, best_cost = CostAt(runs, 0);
   for (const StandingRun& run : runs) {
-    const Normal normal = NormalOf(run, 0, false);
+    const Normal normal = NormalOf(run, 0, 0);
     const double s = normal.H > 0 ? -normal.g / normal.H : 0;
     const double cost = s > 0 ? CostAt(runs, s) : best_cost;
     if (cost < best_cost) best = s, best_cost = cost;
@@ -116,7 +198,7 @@ CameraScale EstimateCameraScale(const std::vector<std::array<FootPlace, 2>>& fee
     Normal sum;
     information = 0;
     for (const StandingRun& run : runs) {
-      const Normal normal = NormalOf(run, best, true);
+      const Normal normal = NormalOf(run, best, kScaleKernel);
       sum.H += normal.H;
       sum.g += normal.g;
       information += normal.H / static_cast<double>(run.size());
@@ -130,6 +212,23 @@ CameraScale EstimateCameraScale(const std::vector<std::array<FootPlace, 2>>& fee
   result.why = result.found ? std::to_string(runs.size()) + " times that a foot stands"
                             : "the camera hardly moves while a foot stands";
   return result;
+}
+
+}  // namespace
+
+CameraScale EstimateCameraScale(const std::vector<std::array<FootPlace, 2>>& feet, std::span<const double> timestamps,
+                                const std::vector<char>& cut_before, std::span<const CameraPose> unit_path,
+                                const CameraScaleOptions& options) {
+  BODYLOOM_CHECK(
+      feet.size() == timestamps.size() && feet.size() == cut_before.size() && feet.size() == unit_path.size(),
+      "camera scale: ", feet.size(), " frames of feet, ", timestamps.size(), " timestamps, ", cut_before.size(),
+      " cuts and ", unit_path.size(), " cameras, expected as many of each");
+  CameraScale named = ScaleOfStandingFeet(StandingRuns(feet, timestamps, cut_before, unit_path, options), options);
+  if (named.found || feet.size() < 2) return named;
+  const double seconds_a_frame = (timestamps.back() - timestamps.front()) / static_cast<double>(feet.size() - 1);
+  CameraScale unnamed =
+      ScaleOfUnnamedFeet(StepsOf(feet, timestamps, cut_before, unit_path, options), seconds_a_frame, options);
+  return unnamed.found ? unnamed : named;
 }
 
 }  // namespace bodyloom

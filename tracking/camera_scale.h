@@ -34,6 +34,9 @@ struct CameraScaleOptions {
   double across_m = 0.03, along_m = 0.12;  ///< σ of an ankle's place across the view and along it
   double min_run_s = 0.1;                  ///< shorter runs do not count
   double max_relative_sigma = 0.35;        ///< a scale that is known less well is not
+  double step_s = 0.2;                     ///< between the frames over which one of the feet stands
+  double correlation_s = 0.3;              ///< frames that are nearer than that err together
+  double least_gain = 0.2;                 ///< of the cost without a length, which a scale from unnamed feet must save
 };
 
 /// `feet`: ankles in the camera frame of their frame; `unit_path`: camera_from_scene at scale 1; `cut_before`: frames

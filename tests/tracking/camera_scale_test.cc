@@ -67,13 +67,41 @@ TEST(CameraScale, FeetThatSlideForAThirdOfTheClipAreOutvoted) {
   EXPECT_NEAR(found.scale_m, 2, 0.1);
 }
 
+TEST(CameraScale, OneOfTwoFeetStandsWhicheverItIs) {
+  for (const double scale : {0.3, 1.0, 7.5}) {
+    WalkBeside walk(scale);
+    for (auto& both : walk.feet) both[0].contact = both[1].contact = 0;  // the lifter takes both for swinging
+    const CameraScale found = walk.Estimate();
+    ASSERT_TRUE(found.found) << found.why;
+    EXPECT_NEAR(found.scale_m, scale, 0.02 * scale);  // while the feet change, neither stands
+    EXPECT_LT(found.sigma_m, 0.2 * scale);
+    EXPECT_THAT(found.why, testing::HasSubstr("one of both feet"));
+  }
+}
+
+TEST(CameraScale, FeetThatNeverStandTellNothing) {
+  WalkBeside skating(1);
+  for (size_t t = 0; t < skating.feet.size(); ++t) {
+    for (FootPlace& foot : skating.feet[t]) {
+      foot.contact = 0;
+      const double seconds = skating.timestamps[t];
+      foot.ankle_m = Vector3d(std::sin(7 * seconds + 3 * double(&foot - skating.feet[t].data())), 1.4,
+                              4 + std::cos(5 * seconds));  // in the camera frame, whatever the camera does
+    }
+  }
+  EXPECT_FALSE(skating.Estimate().found);
+  WalkBeside broken(1);
+  for (auto& both : broken.feet) both[0].ankle_m.setConstant(std::nan("")), both[1].seen = false;
+  EXPECT_FALSE(broken.Estimate().found);
+}
+
 TEST(CameraScale, SaysWhyThereIsNone) {
   WalkBeside still(1);
   for (CameraPose& camera : still.unit_path) camera.camera_from_world_translation.setZero();
   EXPECT_FALSE(still.Estimate().found);
-  WalkBeside jumping(1);
-  for (auto& both : jumping.feet) both[0].contact = both[1].contact = 0;
-  const CameraScale none = jumping.Estimate();
+  WalkBeside hidden(1);
+  for (auto& both : hidden.feet) both[0].seen = both[1].seen = false;
+  const CameraScale none = hidden.Estimate();
   EXPECT_FALSE(none.found);
   EXPECT_THAT(none.why, testing::HasSubstr("no foot"));
   WalkBeside barely(1);
