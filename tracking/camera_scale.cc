@@ -20,6 +20,7 @@ constexpr double kLastKernel =
     1;  // of unnamed feet: while they change, neither stands, and all such steps err to one side
 constexpr double kMaxRunStepS = 0.25;
 constexpr int kReweightings = 30;
+constexpr size_t kMostStarts = 256;  // from unnamed feet: each costs a pass over the clip
 
 /// One frame of a run: its whitened offset from the run's mean, a + s b.
 struct Offset {
@@ -147,8 +148,8 @@ CameraScale ScaleOfUnnamedFeet(const std::vector<Step>& steps, double seconds_a_
   result.why = steps.empty() ? "no foot is seen" : "the feet do not tell it";
   const double without = CostAt(steps, 0);
   double best = 0, best_cost = without;
-  for (const Step& step : steps) {
-    for (const std::optional<Offset>& foot : step.feet) {
+  for (size_t i = 0; i < steps.size(); i += 1 + steps.size() / kMostStarts) {
+    for (const std::optional<Offset>& foot : steps[i].feet) {
       if (!foot || !(foot->b.squaredNorm() > 0)) continue;
       const double s = -foot->a.dot(foot->b) / foot->b.squaredNorm();
       const double cost = s > 0 ? CostAt(steps, s) : best_cost;
