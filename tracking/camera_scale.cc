@@ -141,21 +141,29 @@ double CostAt(const std::vector<Step>& steps, double s) {
   return cost;
 }
 
+/// The positive start of least cost; 0 when none costs less than a path without length.
+template <typename Feet>
+double BestStart(const Feet& feet, const std::vector<double>& starts) {
+  double best = 0, best_cost = CostAt(feet, 0);
+  for (const double s : starts) {
+    const double cost = s > 0 ? CostAt(feet, s) : best_cost;
+    if (cost < best_cost) best = s, best_cost = cost;
+  }
+  return best;
+}
+
 /// The second way of the header.
 CameraScale ScaleOfUnnamedFeet(const std::vector<Step>& steps, double seconds_a_frame,
                                const CameraScaleOptions& options) {
   CameraScale result;
   result.why = steps.empty() ? "no foot is seen" : "the feet do not tell it";
-  const double without = CostAt(steps, 0);
-  double best = 0, best_cost = without;
+  std::vector<double> starts;
   for (size_t i = 0; i < steps.size(); i += 1 + steps.size() / kMostStarts) {
     for (const std::optional<Offset>& foot : steps[i].feet) {
-      if (!foot || !(foot->b.squaredNorm() > 0)) continue;
-      const double s = -foot->a.dot(foot->b) / foot->b.squaredNorm();
-      const double cost = s > 0 ? CostAt(steps, s) : best_cost;
-      if (cost < best_cost) best = s, best_cost = cost;
+      if (foot && foot->b.squaredNorm() > 0) starts.push_back(-foot->a.dot(foot->b) / foot->b.squaredNorm());
     }
   }
+  double best = BestStart(steps, starts);
   if (!(best > 0)) return result;
   const auto at = [&](double s, double kernel) {
     Normal sum;
@@ -175,7 +183,7 @@ CameraScale ScaleOfUnnamedFeet(const std::vector<Step>& steps, double seconds_a_
   result.scale_m = best;
   result.sigma_m = information > 0 ? 1 / std::sqrt(information) : best;
   result.found = best > 0 && result.sigma_m <= options.max_relative_sigma * best &&
-                 CostAt(steps, best) <= (1 - options.least_gain) * without;
+                 CostAt(steps, best) <= (1 - options.least_gain) * CostAt(steps, 0);
   if (result.found) result.why = "one of both feet stands at any time";
   return result;
 }
@@ -183,13 +191,12 @@ CameraScale ScaleOfUnnamedFeet(const std::vector<Step>& steps, double seconds_a_
 /// The first way of the header.
 CameraScale ScaleOfStandingFeet(const std::vector<StandingRun>& runs, const CameraScaleOptions& options) {
   CameraScale result;
-  double best = 0, best_cost = CostAt(runs, 0);
+  std::vector<double> starts;
   for (const StandingRun& run : runs) {
     const Normal normal = NormalOf(run, 0, 0);
-    const double s = normal.H > 0 ? -normal.g / normal.H : 0;
-    const double cost = s > 0 ? CostAt(runs, s) : best_cost;
-    if (cost < best_cost) best = s, best_cost = cost;
+    if (normal.H > 0) starts.push_back(-normal.g / normal.H);
   }
+  double best = BestStart(runs, starts);
   if (!(best > 0)) {
     result.why = runs.empty() ? "no foot is seen to stand" : "standing feet do not tell it";
     return result;

@@ -40,7 +40,7 @@
   for (let t = 0; t < frames; ++t) if (t % person.key_interval === 0 || t === frames - 1) keys.push(t);
 
   /// What a frame looks like from anywhere: places, covariance factors and colours in the frame of the camera that filmed.
-  const posed = { frame: -1, place: new Float32Array(3 * n), factor: new Float32Array(9 * n), colour: new Float32Array(3 * n),
+  const posed = { frame: -1, middle: [0, 0, 0], place: new Float32Array(3 * n), factor: new Float32Array(9 * n), colour: new Float32Array(3 * n),
     opacity: Float32Array.from(OPACITY) };
 
   function pose(frame) {
@@ -49,10 +49,12 @@
     let key = 0;
     while (key + 1 < keys.length && keys[key + 1] <= frame) ++key;
     const next = Math.min(key + 1, keys.length - 1);
-    const part = next > key ? (frame - keys[key]) / (keys[next] - keys[key]) : 0;
+    let part = next > key ? (frame - keys[key]) / (keys[next] - keys[key]) : 0;
+    if (!isShown(keys[key])) part = 1; else if (!isShown(keys[next])) part = 0; // a key without a person says nothing
     const before = key * n * units.length, after = next * n * units.length, first = frame * person.joints * 12;
     const change = (channel, i) => units[channel] * ((1 - part) * changes[before + channel * n + i] + part * changes[after + channel * n + i]);
     const m = new Float64Array(12), r = new Float64Array(9), light = person.light;
+    posed.middle.fill(0);
     for (let i = 0; i < n; ++i) {
       m.fill(0);
       for (let k = 0; k < influences; ++k) {
@@ -62,6 +64,7 @@
       const x = PLACE[0][i], y = PLACE[1][i], z = PLACE[2][i];
       for (let c = 0; c < 3; ++c) {
         posed.place[3 * i + c] = m[4 * c] * x + m[4 * c + 1] * y + m[4 * c + 2] * z + m[4 * c + 3] + change(c, i);
+        posed.middle[c] += posed.place[3 * i + c] / n;
       }
       const w = TURN[0][i], a = TURN[1][i], b = TURN[2][i], d = TURN[3][i];
       r[0] = 1 - 2 * (b * b + d * d); r[1] = 2 * (a * b - w * d); r[2] = 2 * (a * d + w * b);
@@ -92,7 +95,7 @@
     }
   }
 
-  // ---- The view: turned about the person's root, about the vertical and up and down; nearer or farther along the ray to it.
+  // ---- The view: turned about the mean of the person's Gaussians, about the vertical and up and down; nearer or farther along the ray to it.
   const up = (() => { const l = Math.hypot(...person.up); return person.up.map((v) => v / l); })();
   const view = { yaw: Number(wishes.get('yaw') || 0), pitch: 0, distance: 1 };
 
@@ -107,13 +110,6 @@
     return A[row] * B[column] + A[row + 1] * B[3 + column] + A[row + 2] * B[6 + column];
   });
   const at = (A, v) => [0, 3, 6].map((row) => A[row] * v[0] + A[row + 1] * v[1] + A[row + 2] * v[2]);
-
-  /// The middle of the person in a frame: the mean of its Gaussians.
-  function middleOf() {
-    const sum = [0, 0, 0];
-    for (let i = 0; i < n; ++i) for (let c = 0; c < 3; ++c) sum[c] += posed.place[3 * i + c];
-    return sum.map((v) => v / n);
-  }
 
   // ---- Drawing: a square a Gaussian, from the farthest to the nearest, premultiplied.
   const canvas = element('picture'), stage = element('stage');
@@ -142,7 +138,7 @@
     uniform vec2 size;
     out vec2 at; out vec4 shown;
     void main() {
-      // In standard deviations; farther out alpha is below ${LEAST_ALPHA.toFixed(4)}.
+      // In standard deviations; farther out alpha is too small to show.
       at = corner * sqrt(max(0.0, 2.0 * log(colour.a / ${LEAST_ALPHA})));
       shown = colour;
       vec2 pixel = centre + at.x * axes.xy + at.y * axes.zw;
@@ -184,6 +180,7 @@
     gl.useProgram(program);
   }
   gl.useProgram(program);
+  const size = gl.getUniformLocation(program, 'size');
   const FLOATS = 10; // of a Gaussian on the screen: centre 2, axes 4, colour 4
   const screen = new Float32Array(FLOATS * n), ordered = new Float32Array(FLOATS * n);
   const buffers = [gl.createBuffer(), gl.createBuffer()];
@@ -210,7 +207,7 @@
   /// Brings the posed Gaussians to the screen; returns how many are seen.
   function project() {
     const scale = canvas.height / person.image_size[1], [fx, fy, cx, cy] = person.K;
-    const middle = middleOf();
+    const middle = posed.middle;
     const right = (() => { // across the ray to the person and the vertical
       const ray = middle, r = [up[1] * ray[2] - up[2] * ray[1], up[2] * ray[0] - up[0] * ray[2], up[0] * ray[1] - up[1] * ray[0]];
       const l = Math.hypot(...r);
@@ -276,7 +273,7 @@
     if (there) {
       pose(frame);
       const seen = project();
-      gl.uniform2f(gl.getUniformLocation(program, 'size'), canvas.width, canvas.height);
+      gl.uniform2f(size, canvas.width, canvas.height);
       gl.bufferSubData(gl.ARRAY_BUFFER, 0, ordered, 0, FLOATS * seen);
       gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, seen);
     }

@@ -168,7 +168,8 @@ class AvatarAnimation {
     if (track_.camera.model != CameraModel::kPinhole) {
       throw std::runtime_error(from + ": a track of a weakly perspective camera, expected a pinhole's for --report");
     }
-    page_.emplace(avatar_.body, posed_->CameraAt(0), EstimatedUp(track_), track_.num_frames(), motion_.has_value());
+    page_.emplace(avatar_.body, body_->data().faces, posed_->CameraAt(0), EstimatedUp(track_), track_.num_frames(),
+                  motion_.has_value());
   }
 
   /// Frames of a track without times come at kFpsWithoutTimes.

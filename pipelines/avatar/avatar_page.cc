@@ -2,6 +2,7 @@
 #include "bodyloom/pipelines/avatar/avatar_page.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -9,6 +10,7 @@
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/pipelines/page/report_page.h"
+#include "bodyloom/render/avatar/pose_gaussians.h"
 
 extern "C" const unsigned char bodyloom_page_avatar_begin[], bodyloom_page_avatar_end[];
 
@@ -93,15 +95,16 @@ std::vector<float> PageColumns(const Body& body) {
 
 }  // namespace
 
-AvatarPage::AvatarPage(const GaussianBody& body, const Camera& camera, const Eigen::Vector3d& up_in_camera,
-                       int num_frames, bool has_offsets)
-    : camera_(camera),
+AvatarPage::AvatarPage(const GaussianBody& body, const MatrixX3i& faces, const Camera& camera,
+                       const Eigen::Vector3d& up_in_camera, int num_frames, bool has_offsets)
+    : body_(body),
+      faces_(faces),
+      camera_(camera),
       up_in_camera_(up_in_camera),
       num_frames_(num_frames),
       num_gaussians_(body.size()),
       num_channels_(has_offsets ? kAllChannels : kPlaceChannels),
-      gaussians_(PageColumns(body)),
-      light_(body.light) {
+      gaussians_(PageColumns(body)) {
   BODYLOOM_CHECK(camera.model == CameraModel::kPinhole && !camera.HasDistortion() && camera.width > 0,
                  "an avatar's page: expected a pinhole camera without distortion, of a known size");
   const double keys = std::max(2.0, kMaxKeyBytes / (double{num_channels_} * std::max(1, num_gaussians_)));
@@ -120,6 +123,8 @@ void AvatarPage::AddFrame(double seconds, const AvatarFrame& frame, const Camera
   bones_.insert(bones_.end(), frame.bones.begin(), frame.bones.end());
   seconds_.push_back(seconds);
   if (!IsKey(t)) return;
+  bones_alone_.bones = frame.bones, bones_alone_.rest_joints = frame.rest_joints;
+  PoseGaussians(body_, faces_, bones_alone_, {}, {}, &on_bones_);
   const size_t first = changes_.size();
   changes_.resize(first + static_cast<size_t>(num_channels_) * num_gaussians_);
   const auto set = [&](int channel, int i, float change) {
@@ -128,27 +133,14 @@ void AvatarPage::AddFrame(double seconds, const AvatarFrame& frame, const Camera
         std::isfinite(steps) ? static_cast<int8_t>(std::lround(steps)) : int8_t{0};
   };
   for (int i = 0; i < num_gaussians_; ++i) {
-    const std::array<float, 3> on_bones = OnBones(frame, i);
-    for (int r = 0; r < 3; ++r) set(r, i, posed.columns(i, CameraGaussians::kX + r) - on_bones[r]);
+    for (int r = CameraGaussians::kX; r <= CameraGaussians::kZ; ++r) {
+      set(r, i, posed.columns(i, r) - on_bones_.columns(i, r));
+    }
     if (!has_offsets) continue;
     for (int c = 0; c < 3; ++c) set(kPlaceChannels + c, i, offsets.columns(i, GaussianOffsets::kLogScale + c));
     set(kPlaceChannels + 3, i, offsets.columns(i, GaussianOffsets::kOpacityLogit));
     for (int c = 0; c < 3; ++c) set(kPlaceChannels + 4 + c, i, offsets.columns(i, GaussianOffsets::kAlbedo + c));
   }
-}
-
-std::array<float, 3> AvatarPage::OnBones(const AvatarFrame& frame, int i) const {
-  const auto value = [&](int column) { return gaussians_[static_cast<size_t>(column) * num_gaussians_ + i]; };
-  std::array<float, 3> place{};
-  for (int k = 0; k < Body::kInfluences; ++k) {
-    const float* bone = &frame.bones[12 * static_cast<size_t>(value(kJoint + k))];
-    for (int r = 0; r < 3; ++r) {
-      const float* row = bone + 4 * r;
-      place[r] += value(kWeight + k) *
-                  (row[0] * value(kPlace) + row[1] * value(kPlace + 1) + row[2] * value(kPlace + 2) + row[3]);
-    }
-  }
-  return place;
 }
 
 void AvatarPage::AddEmptyFrame(double seconds) {
@@ -169,7 +161,7 @@ std::string AvatarPage::ToHtml(const std::string& title, const std::string& subt
                          {"image_size", {camera_.width, camera_.height}},
                          {"K", {camera_.fx, camera_.fy, camera_.cx, camera_.cy}},
                          {"up", {up_in_camera_.x(), up_in_camera_.y(), up_in_camera_.z()}},
-                         {"light", light_}};
+                         {"light", body_.light}};
   for (const double second : seconds_) json["seconds"].push_back(std::round(second * 1e4) / 1e4);
   ReportPage page(title, subtitle);
   page.AddHtml(kAvatarHtml);
@@ -177,10 +169,7 @@ std::string AvatarPage::ToHtml(const std::string& title, const std::string& subt
   page.AddHtml(DataScript("gaussians", "application/octet-stream", Base64(BytesOf(gaussians_))));
   page.AddHtml(DataScript("bones", "application/octet-stream", Base64(BytesOf(bones))));
   page.AddHtml(DataScript("changes", "application/octet-stream", Base64(BytesOf(changes_))));
-  page.AddHtml("<script>" +
-               std::string(reinterpret_cast<const char*>(bodyloom_page_avatar_begin),
-                           reinterpret_cast<const char*>(bodyloom_page_avatar_end)) +
-               "</script>\n");
+  page.AddHtml(CodeScript(bodyloom_page_avatar_begin, bodyloom_page_avatar_end));
   return page.ToHtml();
 }
 

@@ -7,7 +7,6 @@
 /// hold, and interpolated between them.
 #pragma once
 
-#include <array>
 #include <string>
 #include <vector>
 
@@ -21,10 +20,10 @@ namespace bodyloom {
 
 class AvatarPage {
  public:
-  /// Of a person shown in `num_frames` frames by a pinhole camera without distortion. `up_in_camera`: the axis about
-  /// which the page turns. `has_offsets`: frames come with offsets.
-  AvatarPage(const GaussianBody& body, const Camera& camera, const Eigen::Vector3d& up_in_camera, int num_frames,
-             bool has_offsets);
+  /// Of a person shown in `num_frames` frames by a pinhole camera without distortion. Keeps references to body and
+  /// faces. `up_in_camera`: the axis about which the page turns. `has_offsets`: frames come with offsets.
+  AvatarPage(const GaussianBody& body, const MatrixX3i& faces, const Camera& camera,
+             const Eigen::Vector3d& up_in_camera, int num_frames, bool has_offsets);
 
   /// The next frame, `seconds` after the first one: bones, all Gaussians in the camera's frame, and what was added to them
   /// (read only when there are offsets).
@@ -36,16 +35,17 @@ class AvatarPage {
   [[nodiscard]] std::string ToHtml(const std::string& title, const std::string& subtitle) const;
 
  private:
-  /// Where the bones alone take a Gaussian.
-  [[nodiscard]] std::array<float, 3> OnBones(const AvatarFrame& frame, int i) const;
   /// Whether what changes Gaussians beyond their bones is stored for this frame.
   [[nodiscard]] bool IsKey(int frame) const { return frame % key_interval_ == 0 || frame + 1 == num_frames_; }
 
+  const GaussianBody& body_;
+  const MatrixX3i& faces_;
+  AvatarFrame bones_alone_;   ///< of the frame: no correctives
+  CameraGaussians on_bones_;  ///< where these take the Gaussians
   Camera camera_;
   Eigen::Vector3d up_in_camera_;
   int num_frames_, num_gaussians_, num_channels_, key_interval_;
   std::vector<float> gaussians_;  ///< columns of assets/page/avatar.js
-  std::array<float, GaussianBody::kLightValues> light_;
   std::vector<double> seconds_;
   std::vector<float> bones_;     ///< frames × J × 12; NaN where nobody is shown
   std::vector<int8_t> changes_;  ///< key frames × channels × Gaussians

@@ -169,10 +169,7 @@ std::string ClipPageHtml(const ClipPageContent& content) {
   for (size_t i = 0; i < content.files.size(); ++i) {
     page.AddHtml(DataScript("file-" + std::to_string(i), "application/octet-stream", Base64(content.files[i].bytes)));
   }
-  page.AddHtml("<script>" +
-               std::string(reinterpret_cast<const char*>(bodyloom_page_viewer_begin),
-                           reinterpret_cast<const char*>(bodyloom_page_viewer_end)) +
-               "</script>\n");
+  page.AddHtml(CodeScript(bodyloom_page_viewer_begin, bodyloom_page_viewer_end));
   return page.ToHtml();
 }
 

@@ -97,6 +97,10 @@ std::string DataScript(const std::string& id, const std::string& type, const std
   return "<script id=\"" + id + "\" type=\"" + type + "\">" + text + "</script>\n";
 }
 
+std::string CodeScript(const unsigned char* begin, const unsigned char* end) {
+  return "<script>" + std::string(begin, end) + "</script>\n";
+}
+
 ReportPage::ReportPage(const std::string& title, const std::string& subtitle) : title_(title) {
   body_ = "<h1>" + EscapeHtml(title) + "</h1>\n";
   if (!subtitle.empty()) {

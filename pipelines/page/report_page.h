@@ -43,6 +43,9 @@ std::string Base64(const std::string& bytes);
 /// Text that a script of the page reads by its id; it must not hold "</script".
 std::string DataScript(const std::string& id, const std::string& type, const std::string& text);
 
+/// A script that the program carries (cmake/BodyloomEmbed.cmake).
+std::string CodeScript(const unsigned char* begin, const unsigned char* end);
+
 /// & < > " ' replaced.
 std::string EscapeHtml(const std::string& text);
 

@@ -71,6 +71,21 @@ inline void SmoothNoise(int count, float knot_frames, FastNormal* normal, std::v
   }
 }
 
+/// 3x² − 2x³ between 0 and 1.
+inline double SmoothStep(double x) {
+  x = std::clamp(x, 0.0, 1.0);
+  return x * x * (3 - 2 * x);
+}
+
+/// From 0 to 1 within min_rise_s to max_rise_s, beginning at a random place of [earliest, latest] of the window.
+inline std::vector<float> RandomRamp(int count, double rate, double min_rise_s, double max_rise_s, double earliest,
+                                     double latest, HashRandom* random) {
+  const double rise = rate * random->Uniform(min_rise_s, max_rise_s), start = random->Uniform(earliest, latest) * count;
+  std::vector<float> values(count);
+  for (int t = 0; t < count; ++t) values[t] = static_cast<float>(SmoothStep((t - start) / rise));
+  return values;
+}
+
 /// A hump or a step over the window: rises around a random time within `rise_s` and, two times out of three, falls
 /// again; between 0 and 1.
 inline std::vector<float> RandomHump(int count, double rate, double min_rise_s, double max_rise_s, HashRandom* random) {
@@ -79,14 +94,10 @@ inline std::vector<float> RandomHump(int count, double rate, double min_rise_s, 
   const double start = random->Uniform(-0.5 * length - rise, length);
   const double hold = random->Uniform(0, 0.6 * length);
   const bool falls = random->Uniform() < 2.0 / 3;
-  const auto step = [](double x) {
-    x = std::clamp(x, 0.0, 1.0);
-    return x * x * (3 - 2 * x);
-  };
   std::vector<float> values(count);
   for (int t = 0; t < count; ++t) {
     const double at = t / rate - start;
-    values[t] = static_cast<float>(step(at / rise) * (falls ? 1 - step((at - rise - hold) / fall) : 1));
+    values[t] = static_cast<float>(SmoothStep(at / rise) * (falls ? 1 - SmoothStep((at - rise - hold) / fall) : 1));
   }
   return values;
 }

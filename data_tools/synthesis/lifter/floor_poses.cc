@@ -419,13 +419,7 @@ void AddFloorPoses(const LifterBody& body, const LifterPerson& person, const Lif
 
   // From one pose to the other in 0.4 to 2 s, and, in some windows, from or to the recorded motion.
   const auto ramp = [&](double min_s, double max_s) {
-    const double rise = options.rate * random.Uniform(min_s, max_s), start = random.Uniform(-0.3, 1.0) * T;
-    std::vector<float> values(T);
-    for (int t = 0; t < T; ++t) {
-      const double x = std::clamp((t - start) / rise, 0.0, 1.0);
-      values[t] = static_cast<float>(x * x * (3 - 2 * x));
-    }
-    return values;
+    return RandomRamp(T, options.rate, min_s, max_s, -0.3, 1.0, &random);
   };
   const std::vector<float> second = ramp(0.4, 2.0);
   std::vector<float> down = ramp(0.3, 2.0);  // a fall takes a third of a second

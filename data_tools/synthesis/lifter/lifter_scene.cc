@@ -64,6 +64,7 @@ LifterScene FilmPerson(const WorldMotion& motion, const LifterPerson& person, co
   const int T = static_cast<int>(motion.points.size()) / kLifterPoints;
   const auto radian = [](double degrees) { return static_cast<float>(degrees * M_PI / 180); };
   const float yaw = static_cast<float>(random.Uniform(0, 2 * M_PI));
+  // Nothing is drawn where it is off, so that windows as recorded stay what they were.
   const bool anywhere = options.any_elevation > 0 && random.Uniform() < options.any_elevation;
   const float elevation = radian(anywhere ? random.Uniform(kLowestElevation, kHighestElevation)
                                           : random.Uniform(options.min_elevation_deg, options.max_elevation_deg));

@@ -190,12 +190,9 @@ void AddExercises(const LifterWindowOptions& options, HashRandom random, PoseSeq
 
 void AddTurns(const LifterWindowOptions& options, HashRandom random, PoseSequence* poses) {
   const auto turn = [&](const Vector3f& axis, float angle, double longest_s) {
-    const double rise = options.rate * random.Uniform(0.4, longest_s),
-                 start = random.Uniform(-0.2, 0.9) * poses->num_frames;
+    const std::vector<float> part = RandomRamp(poses->num_frames, options.rate, 0.4, longest_s, -0.2, 0.9, &random);
     for (int t = 0; t < poses->num_frames; ++t) {
-      const double x = std::clamp((t - start) / rise, 0.0, 1.0);
-      const auto part = static_cast<float>(x * x * (3 - 2 * x));
-      if (part > 0) poses->at(t, kPelvis) = TurnBy(angle * part * axis) * poses->at(t, kPelvis);
+      if (part[t] > 0) poses->at(t, kPelvis) = TurnBy(angle * part[t] * axis) * poses->at(t, kPelvis);
     }
   };
   constexpr auto kRound = static_cast<float>(2 * M_PI);
