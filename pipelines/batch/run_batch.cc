@@ -289,6 +289,7 @@ RunBatchReport RunBatch(const RunBatchRequest& request, const BatchCallbacks& ca
   for (int i = 1; i < jobs; ++i) others.emplace_back([&batch] { batch.Work(); });
   batch.Work();
   others.clear();  // joins
+  RemoveStalePlaces(BatchWorkFolder(request.out));
   return {batch.counts(), watch.seconds()};
 }
 

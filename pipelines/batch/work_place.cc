@@ -19,6 +19,7 @@
 #include <random>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/formats/printable.h"
@@ -246,6 +247,27 @@ void WorkPlace::MoveFileTo(const std::string& name, const std::string& target) {
     FailPlace(target, "move the finished file into place", errno);
   }
   SyncFolder(fs::path(target).parent_path());
+}
+
+void RemoveStalePlaces(const std::string& root) {
+  std::error_code error;
+  std::vector<fs::path> places;
+  for (fs::directory_iterator at(root, error), end; !error && at != end; at.increment(error)) {
+    places.push_back(at->path());
+  }
+  for (const fs::path& place : places) {
+    const std::string lock = (place / "lock").string();
+    if (fs::exists(lock, error)) {
+      if (!IsStale(lock, ReadLock(lock))) continue;
+      try {
+        const WorkPlace taken(root, place.filename().string());
+      } catch (const std::runtime_error&) {  // somebody has it by now, or the root cannot be written
+      }
+    } else {
+      ::rmdir(place.c_str());  // its holder was killed between its lock and its folder
+    }
+  }
+  ::rmdir(root.c_str());
 }
 
 }  // namespace bodyloom

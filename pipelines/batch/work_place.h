@@ -55,4 +55,9 @@ class WorkPlace {
   std::jthread heart_;
 };
 
+/// Removes the places below `root` whose holders are gone, and `root` when nothing is left in it. A place is otherwise
+/// cleared by the next one who takes it: one whose holder was killed after its work had moved into place is taken by
+/// nobody again. What cannot be removed stays; nothing is thrown.
+void RemoveStalePlaces(const std::string& root);
+
 }  // namespace bodyloom

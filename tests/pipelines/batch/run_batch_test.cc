@@ -3,8 +3,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <filesystem>
 #include <memory>
 #include <set>
@@ -188,6 +191,21 @@ TEST_F(RunBatchTest, AClipThatAnotherHasComesLastAndIsLeftToIt) {
     EXPECT_THAT(told_.back().reason, HasSubstr("is at it"));
   }
   EXPECT_EQ(Run().Count(ClipStatus::kDone), 1);
+  ExpectWhole();
+}
+
+TEST_F(RunBatchTest, WhatOneKilledAfterItsLastStepLeftIsClearedThoughItsClipIsDone) {
+  Run();
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    const WorkPlace place(BatchWorkFolder(request_.out), "clip0");
+    raise(SIGKILL);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  ASSERT_TRUE(fs::exists(BatchWorkFolder(request_.out)));
+  EXPECT_EQ(Run().Count(ClipStatus::kSkipped), kClips);
   ExpectWhole();
 }
 

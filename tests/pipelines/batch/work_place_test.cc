@@ -116,6 +116,26 @@ TEST_F(WorkPlaceTest, AKilledHoldersPlaceIsTakenOverAtOnceAndCleared) {
   EXPECT_THAT(folder_.Entries(), IsEmpty());
 }
 
+TEST_F(WorkPlaceTest, PlacesOfTheDeadAreClearedAndTheRootWithThem) {
+  WriteLock("process", 0x7ffffff0);
+  fs::create_directory(folder_ / ".work/c");  // killed before its lock, or after it
+  RemoveStalePlaces(Root());
+  EXPECT_THAT(folder_.Entries(), IsEmpty());
+  RemoveStalePlaces(Root());  // nothing there
+}
+
+TEST_F(WorkPlaceTest, PlacesOfTheLivingAreNotCleared) {
+  {
+    const WorkPlace place(Root(), "a");
+    WriteFileAtomically(place.folder() + "/half.npz", "half");
+    RemoveStalePlaces(Root());
+    EXPECT_EQ(FileBytes(place.folder() + "/half.npz"), "half");
+  }
+  WriteLock("machine", "another");
+  RemoveStalePlaces(Root());
+  EXPECT_EQ(FileBytes(folder_ / ".work/a/other/half.npz"), "half");
+}
+
 TEST_F(WorkPlaceTest, AProcessNumberUsedAnewHoldsNothing) {
   WriteLock("start", "1");
   EXPECT_TRUE(CanBeTaken());
