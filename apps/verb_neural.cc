@@ -82,6 +82,7 @@ void AddAnimateVerb(CLI::App& app, Action* action) {
        {"guided", "Animates the person of a photo, as `bodyloom train guided` learned to (needs LibTorch)"}},
       action);
   AddAnimateAvatar(*animate, action);
+  AddAnimatePerson(*animate, action);
 }
 
 }  // namespace bodyloom

@@ -87,7 +87,7 @@ class Colouring {
 std::vector<float> TexelsOf(const Image& image) { return {image.bgr.begin(), image.bgr.end()}; }
 
 void AttributePainter::Draw(const BodyModel& body, const MatrixX3d& vertices, const Camera& camera,
-                            const AttributePictureOptions& options, Image* image) {
+                            const AttributePictureOptions& options, Image* image, std::vector<uint8_t>* coverage) {
   BODYLOOM_CHECK(image->width == camera.width && image->height == camera.height, "attribute picture: the image is ",
                  image->width, "x", image->height, ", the camera ", camera.width, "x", camera.height);
   BODYLOOM_CHECK(options.samples >= 1 && options.samples <= 8, "attribute picture: ", options.samples,
@@ -98,6 +98,8 @@ void AttributePainter::Draw(const BodyModel& body, const MatrixX3d& vertices, co
                  "attribute picture: a texture of ", options.texture.channels, " channels, expected 3");
   BODYLOOM_CHECK(options.attribute != SurfaceAttribute::kError || options.error_maximum > 0,
                  "attribute picture: errors up to ", options.error_maximum, ", expected more than 0");
+  BODYLOOM_CHECK(coverage == nullptr || coverage->size() == size_t(image->width) * image->height,
+                 "attribute picture: the coverage is of another size than the image");
   const int n = options.samples;
   const Camera fine = ScaledCamera(camera, n);
   buffer_.Render(vertices, body.data().faces, fine, {.num_threads = options.num_threads});
@@ -124,6 +126,10 @@ void AttributePainter::Draw(const BodyModel& body, const MatrixX3d& vertices, co
       }
       if (covered == 0) continue;
       const float share = 1.0F / static_cast<float>(n * n), rest = static_cast<float>(n * n - covered) * share;
+      if (coverage != nullptr) {
+        (*coverage)[size_t(y) * image->width + x] =
+            static_cast<uint8_t>(255.0F * static_cast<float>(covered) * share + 0.5F);
+      }
       uint8_t* p = image->pixel(x, y);
       for (int c = 0; c < 3; ++c) {
         p[c] = static_cast<uint8_t>(std::clamp(rest * p[c] + share * sum[c] + 0.5F, 0.0F, 255.0F));

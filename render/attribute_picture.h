@@ -40,10 +40,11 @@ std::vector<float> TexelsOf(const Image& image);
 /// Keeps its memory between pictures. Not for use by two threads at once.
 class AttributePainter {
  public:
-  /// Draws the attribute over an image of the camera's size. Throws std::invalid_argument when sizes differ or the body
-  /// lacks what is to be drawn.
+  /// Draws the attribute over an image of the camera's size. `coverage`, one a pixel of it, becomes the share of samples
+  /// that show the body, 0 to 255, where there are any. Throws std::invalid_argument when sizes differ or the body lacks
+  /// what is to be drawn.
   void Draw(const BodyModel& body, const MatrixX3d& vertices_in_camera, const Camera& camera,
-            const AttributePictureOptions& options, Image* image);
+            const AttributePictureOptions& options, Image* image, std::vector<uint8_t>* coverage = nullptr);
 
  private:
   VisibilityBuffer buffer_;

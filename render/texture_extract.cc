@@ -13,9 +13,9 @@ bool TextureExtractOptions::IsValid(std::string* why) const {
     *why = Concatenate("keep is ", keep, ", expected 1..64 samples");
     return false;
   }
-  if (edge_margin_px < 0 || edge_margin_px > 64 || !(edge_step_m > 0)) {
-    *why = Concatenate("edge_margin_px is ", edge_margin_px, ", edge_step_m ", edge_step_m,
-                       "; expected 0..64 and more than 0");
+  if (edge_margin_px < 0 || edge_margin_px > 64 || step_margin_px < -1 || step_margin_px > 64 || !(edge_step_m > 0)) {
+    *why = Concatenate("edge_margin_px is ", edge_margin_px, ", step_margin_px ", step_margin_px, ", edge_step_m ",
+                       edge_step_m, "; expected 0..64, -1..64 and more than 0");
     return false;
   }
   return texels.IsValid(why) && sight.IsValid(why);
@@ -41,33 +41,38 @@ TextureExtractor::TextureExtractor(const BodyModel& body, const TextureExtractOp
   samples_.resize(table_.size() * options.keep);
 }
 
-void TextureExtractor::FindEdges() {
+void TextureExtractor::FindEdges(std::span<const uint8_t> person, int image_width) {
   const PixelBox& box = buffer_.box();
-  const int width = box.width(), height = box.height(), margin = options_.edge_margin_px;
+  const int width = box.width(), height = box.height();
+  const int margin = person.empty() ? options_.edge_margin_px : std::max(1, options_.edge_margin_px);
+  const int step_margin = options_.step_margin_px;
   near_edge_.assign(box.area(), 0);
-  if (margin == 0) return;
-  std::vector<uint8_t> edge(box.area(), 0);
+  if (margin == 0 && step_margin <= 0) return;
+  std::vector<uint8_t> edge(box.area(), 0), limb(step_margin > 0 ? box.area() : 0, 0);
   std::vector<double> depth(box.area());
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) depth[size_t(y) * width + x] = buffer_.DepthAt(box.x_begin + x, box.y_begin + y);
   }
   const auto is_step = [&](double a, double b) { return !(std::abs(a - b) <= options_.edge_step_m); };
+  const auto is_limb = [&](size_t p, size_t q) { return std::isfinite(depth[p]) && std::isfinite(depth[q]); };
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       const size_t p = size_t(y) * width + x;
       const bool right = x + 1 < width && is_step(depth[p], depth[p + 1]);
       const bool below = y + 1 < height && is_step(depth[p], depth[p + width]);
       const bool border = x == 0 || y == 0 || x + 1 == width || y + 1 == height;  // beyond the box is background
-      edge[p] |= border || right || below || !std::isfinite(depth[p]);
+      const bool other = !person.empty() && person[size_t(box.y_begin + y) * image_width + box.x_begin + x] == 0;
+      edge[p] |= border || right || below || other || !std::isfinite(depth[p]);
       if (right) edge[p + 1] = 1;
       if (below) edge[p + width] = 1;
+      if (limb.empty()) continue;
+      if (right && is_limb(p, p + 1)) limb[p] = limb[p + 1] = 1;
+      if (below && is_limb(p, p + width)) limb[p] = limb[p + width] = 1;
     }
   }
   // Spread by margin − 1 along rows, then along columns: the pixel at a step counts as one already.
-  const int reach = margin - 1;
-  std::vector<uint8_t> rows(box.area(), 0);
-  const auto spread = [reach](const std::vector<uint8_t>& from, std::vector<uint8_t>* to, int count, size_t start,
-                              size_t step) {
+  const auto spread = [](const std::vector<uint8_t>& from, int reach, std::vector<uint8_t>* to, int count, size_t start,
+                         size_t step) {
     int last = -(1 << 20);
     for (int i = 0; i < count; ++i) {  // as seen from the left, then from the right
       if (from[start + i * step]) last = i;
@@ -79,8 +84,13 @@ void TextureExtractor::FindEdges() {
       if (last - i <= reach) (*to)[start + i * step] = 1;
     }
   };
-  for (int y = 0; y < height; ++y) spread(edge, &rows, width, size_t(y) * width, 1);
-  for (int x = 0; x < width; ++x) spread(rows, &near_edge_, height, x, width);
+  const auto spread_both = [&](const std::vector<uint8_t>& from, int by) {
+    std::vector<uint8_t> rows(box.area(), 0);
+    for (int y = 0; y < height; ++y) spread(from, by - 1, &rows, width, size_t(y) * width, 1);
+    for (int x = 0; x < width; ++x) spread(rows, by - 1, &near_edge_, height, x, width);
+  };
+  if (margin > 0) spread_both(edge, margin);
+  if (step_margin > 0) spread_both(limb, step_margin);
 }
 
 bool TextureExtractor::IsNearEdge(float x_px, float y_px) const {
@@ -88,12 +98,15 @@ bool TextureExtractor::IsNearEdge(float x_px, float y_px) const {
   return !buffer_.box().Contains(x, y) || near_edge_[buffer_.box().IndexOf(x, y)] != 0;
 }
 
-int TextureExtractor::Add(const Image& image, const MatrixX3d& vertices_in_camera, const Camera& camera, int frame) {
+int TextureExtractor::Add(const Image& image, const MatrixX3d& vertices_in_camera, const Camera& camera, int frame,
+                          std::span<const uint8_t> person) {
   BODYLOOM_CHECK(image.width == camera.width && image.height == camera.height, "texture: frame ", frame, " is ",
                  image.width, "x", image.height, ", the camera is for ", camera.width, "x", camera.height);
+  BODYLOOM_CHECK(person.empty() || person.size() == size_t(image.width) * image.height, "texture: frame ", frame,
+                 ": a mask of ", person.size(), " pixels for ", image.width, "x", image.height);
   buffer_.Render(vertices_in_camera, body_.data().faces, camera);
   const std::vector<TexelSight> sights = SeeTexels(table_, body_, vertices_in_camera, camera, buffer_, options_.sight);
-  FindEdges();
+  FindEdges(person, image.width);
   int num_seen = 0;
   for (size_t i = 0; i < sights.size(); ++i) {
     const TexelSight& sight = sights[i];

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,8 @@ struct TextureExtractOptions {
   /// Pixels this near to the body's contour, or to where a limb hides another (a step of edge_step_m in depth), are not
   /// used: there the picture is blurred and the track a little off. 0 to 64.
   int edge_margin_px = 2;
+  /// The same for steps alone, which move with the error of a limb's pose; −1: edge_margin_px. −1 to 64.
+  int step_margin_px = -1;
   double edge_step_m = 0.05;
   enum class Merge { kMedian, kMean } merge = Merge::kMedian;
   int keep = 9;  ///< samples a texel, 1 to 64
@@ -48,9 +51,11 @@ class TextureExtractor {
 
   [[nodiscard]] const UvTexelTable& table() const { return table_; }
 
-  /// Adds what `image` shows. `frame` names the image in Texture::source_frame. Returns the number of texels seen.
-  /// Throws std::invalid_argument when image and camera differ in size.
-  int Add(const Image& image, const MatrixX3d& vertices_in_camera, const Camera& camera, int frame);
+  /// Adds what `image` shows. `frame` names the image in Texture::source_frame. `person`: one a pixel of the image, 0
+  /// where it shows something else, of which edge_margin_px (at least 1) keeps away as from a contour; empty: not known.
+  /// Returns the number of texels seen. Throws std::invalid_argument when image, `person` and camera differ in size.
+  int Add(const Image& image, const MatrixX3d& vertices_in_camera, const Camera& camera, int frame,
+          std::span<const uint8_t> person = {});
 
   [[nodiscard]] Texture Merge() const;
 
@@ -61,7 +66,7 @@ class TextureExtractor {
     int frame = -1;
     float x_px = 0, y_px = 0;
   };
-  void FindEdges();
+  void FindEdges(std::span<const uint8_t> person, int image_width);
   [[nodiscard]] bool IsNearEdge(float x_px, float y_px) const;
 
   const BodyModel& body_;
@@ -69,7 +74,7 @@ class TextureExtractor {
   UvTexelTable table_;
   VisibilityBuffer buffer_;
   std::vector<Sample> samples_;     ///< keep a texel of the table
-  std::vector<uint8_t> near_edge_;  ///< of the buffer's box
+  std::vector<uint8_t> near_edge_;  ///< of the buffer's box, contours and steps in depth
 };
 
 /// Colour of the image at a place between pixels, bilinear, 0 to 1; the border's colour outside.

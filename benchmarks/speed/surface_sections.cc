@@ -89,6 +89,7 @@ void BenchVelocities(const BodyModel& body) {
     MatrixX3d root_rows;
     skinner.SkinFromRoot(shape, poses, vertices, &root_rows);
     std::vector<Vector3d> roots;
+    roots.reserve(T);
     for (int t = 0; t < T; ++t) roots.push_back(root_rows.row(t).transpose());
     std::vector<float> velocities(stride);
     double error = 0, square = 0;
@@ -99,7 +100,7 @@ void BenchVelocities(const BodyModel& body) {
     };
     const auto rmse = [&] {
       const double n = static_cast<double>(truth.size()) * body.num_vertices();
-      const std::string text = Format("rmse %.4f m/s of %.3f m/s rms", std::sqrt(error / n), std::sqrt(square / n));
+      std::string text = Format("rmse %.4f m/s of %.3f m/s rms", std::sqrt(error / n), std::sqrt(square / n));
       error = square = 0;
       return text;
     };

@@ -164,7 +164,8 @@ void BenchTexture(const BodyModel& body, const std::string& folder) {
   const Image holed = ImageOf(with_holes(), 512, 512);
   cv::Mat source(512, 512, CV_8UC3, const_cast<uint8_t*>(holed.bgr.data())), mask(512, 512, CV_8UC1), result;
   for (size_t p = 0; p < pixels; ++p) mask.data[p] = known[p] ? 0 : 255;
-  for (const auto& [method, name] : {std::pair{cv::INPAINT_TELEA, "Telea"}, {cv::INPAINT_NS, "Navier-Stokes"}}) {
+  for (const auto& [number, name] : {std::pair{cv::INPAINT_TELEA, "Telea"}, {cv::INPAINT_NS, "Navier-Stokes"}}) {
+    const int method = number;
     const Milliseconds ms_cv = Time(1, [&] { cv::inpaint(source, mask, result, 3, method); });
     std::vector<float> planes(3 * pixels);
     for (size_t p = 0; p < pixels; ++p) {

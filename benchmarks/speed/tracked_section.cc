@@ -41,6 +41,7 @@ std::vector<std::vector<float>> VertexVelocities(const BodyModel& body, const Tr
   MatrixX3d root_rows;
   skinner.SkinFromRoot(shape, all, vertices, &root_rows);
   std::vector<Vector3d> roots;
+  roots.reserve(T);
   for (int t = 0; t < T; ++t) roots.push_back(root_rows.row(t).transpose());
   std::vector<std::vector<float>> velocities(T);
   for (int t = 0; t < T; ++t) {

@@ -50,7 +50,8 @@ BvhSkeleton BvhSkeletonOf(BvhRig rig, const BodyModel& model) {
   const Eigen::Matrix3d left = Eigen::AngleAxisd(-kArmsDown_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   for (int side = 0; side < 2; ++side) {
     for (const int joint : {16, 18, 20})
-      skeleton.rest_rotations[size_t(joint + side)] = side == 0 ? left : left.transpose();
+      skeleton.rest_rotations[static_cast<size_t>(joint) + static_cast<size_t>(side)] =
+          side == 0 ? left : left.transpose();
   }
   return skeleton;
 }

@@ -259,7 +259,7 @@ class TrackReader {
   /// 16 numbers by rows.
   [[nodiscard]] CameraPose RigidMotion(const double* numbers, const std::string& name) const {
     const Eigen::Matrix4d matrix = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(numbers);
-    const CameraPose pose{matrix.topLeftCorner<3, 3>(), matrix.topRightCorner<3, 1>()};
+    CameraPose pose{matrix.topLeftCorner<3, 3>(), matrix.topRightCorner<3, 1>()};
     if (matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1) || !IsRotation(pose.camera_from_world_rotation, 1e-6)) {
       Fail(name + ": expected a rotation and a translation [R t; 0 0 0 1]");
     }

@@ -92,6 +92,7 @@ PeopleSequence CocoFromJson(const JsonNode& document, double fps) {
 
   people.convention = num_points == 0 ? Coco17() : *ConventionOfCount(num_points);
   std::vector<int64_t> numbers;
+  numbers.reserve(by_number.size());
   for (const auto& [number, unused] : by_number) numbers.push_back(number);
   FrameGrid grid = MakeFrameGrid(numbers, fps, document.place());
   people.timestamps = std::move(grid.timestamps);

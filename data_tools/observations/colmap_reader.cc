@@ -205,6 +205,7 @@ std::map<uint32_t, ColmapCamera> ColmapCamerasFromBytes(const std::string& bytes
     }
     const ColmapModelKind& kind = kColmapModels[size_t(model)];
     std::vector<double> params;
+    params.reserve(static_cast<size_t>(kind.num_params));
     for (int p = 0; p < kind.num_params; ++p) params.push_back(reader.Take<double>());
     AddColmapCamera(place, id, MakeColmapCamera(place, kind.name, width, height, params), &cameras);
   }

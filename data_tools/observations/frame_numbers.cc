@@ -37,6 +37,7 @@ int64_t FrameNumberFromName(const std::string& file_name) {
 
 std::vector<int64_t> NumbersOrOrder(const std::vector<std::string>& names) {
   std::vector<int64_t> numbers;
+  numbers.reserve(names.size());
   for (const std::string& name : names) numbers.push_back(FrameNumberFromName(name));
   if (std::find(numbers.begin(), numbers.end(), -1) != numbers.end()) {
     for (size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<int64_t>(i);

@@ -167,6 +167,7 @@ bool IsNpz(const std::string& path) { return path.ends_with(".npz"); }
 DenseSequence DenseFromImages(const std::string& folder, const std::vector<std::string>& names, const BodyModel& body,
                               const LoadDenseOptions& options) {
   std::vector<int64_t> numbers;
+  numbers.reserve(names.size());
   for (const std::string& name : names) {
     numbers.push_back(FrameNumberFromName(name.substr(0, name.size() - std::string(kIuvEnding).size())));
   }

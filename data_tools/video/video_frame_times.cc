@@ -13,6 +13,7 @@ extern "C" {
 
 #include "bodyloom/data_tools/video/frame_clock.h"
 #include "bodyloom/data_tools/video/frame_decoder.h"
+#include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/data_tools/video/video_packets.h"
 
 namespace bodyloom {
@@ -51,7 +52,7 @@ std::optional<std::vector<int64_t>> PacketTimestamps(VideoPackets* packets) {
 
 std::vector<double> VideoFrameTimes(const std::string& path) {
   std::error_code error;
-  if (std::filesystem::is_directory(path, error)) return {};
+  if (std::filesystem::is_directory(path, error) || IsImageName(path)) return {};
   std::vector<double> times;
   VideoPackets packets(path);
   if (const auto timestamps = PacketTimestamps(&packets)) {

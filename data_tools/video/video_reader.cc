@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "bodyloom/data_tools/video/frame_decoder.h"
@@ -36,9 +37,9 @@ class VideoReader::Source {
   int next_ = 0;
 };
 
-class VideoReader::FolderSource : public Source {
+class VideoReader::ImagesSource : public Source {
  public:
-  explicit FolderSource(const std::string& path) : path_(path), files_(ImageFilesOf(path)) {
+  ImagesSource(const std::string& path, std::vector<std::string> files) : path_(path), files_(std::move(files)) {
     first_ = ReadImage(files_[0]);
     info_.width = first_.width;
     info_.height = first_.height;
@@ -65,8 +66,8 @@ class VideoReader::FolderSource : public Source {
   }
 
   int SkipTo(double seconds) override {
-    throw std::runtime_error(Concatenate(path_, ": a folder of images has no clock to find ", seconds,
-                                         " s on, expected the number of a frame"));
+    throw std::runtime_error(
+        Concatenate(path_, ": images have no clock to find ", seconds, " s on, expected the number of a frame"));
   }
 
   [[nodiscard]] double frame_time() const override { return std::numeric_limits<double>::quiet_NaN(); }
@@ -156,7 +157,10 @@ class VideoReader::FileSource : public Source {
 VideoReader::VideoReader(const std::string& path) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) {
-    source_ = std::make_unique<FolderSource>(path);
+    source_ = std::make_unique<ImagesSource>(path, ImageFilesOf(path));
+  } else if (IsImageName(path) && std::filesystem::is_regular_file(path, error)) {
+    // By its own reader, which turns photos upright as their EXIF says.
+    source_ = std::make_unique<ImagesSource>(path, std::vector<std::string>{path});
   } else {
     source_ = std::make_unique<FileSource>(path);
   }

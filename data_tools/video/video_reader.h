@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Frames of a video file, or of a folder of images, one after the other.
+/// Frames of a video file, or of a folder of images, one after the other; a still image is a folder of one.
 #pragma once
 
 #include <memory>
@@ -19,7 +19,7 @@ struct VideoInfo {
 
 class VideoReader {
  public:
-  /// Opens a video file that ffmpeg decodes, or a folder of images (in the order of ImageFilesOf). Throws
+  /// Opens a video file that ffmpeg decodes, a folder of images (in the order of ImageFilesOf), or a still image. Throws
   /// std::runtime_error naming the path when it is missing, empty, no video, its frames have more than 2^26 pixels, or
   /// its first frame cannot be decoded.
   explicit VideoReader(const std::string& path);
@@ -57,7 +57,7 @@ class VideoReader {
  private:
   class Source;
   class FileSource;
-  class FolderSource;
+  class ImagesSource;
   std::unique_ptr<Source> source_;
 };
 

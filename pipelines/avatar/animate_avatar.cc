@@ -28,6 +28,7 @@
 #include "bodyloom/pipelines/avatar/motion_maps.h"
 #include "bodyloom/pipelines/avatar/train_avatar.h"
 #include "bodyloom/pipelines/files.h"
+#include "bodyloom/pipelines/people/animation_limits.h"
 #include "bodyloom/pipelines/people/background.h"
 #include "bodyloom/pipelines/people/freeze.h"
 #include "bodyloom/pipelines/people/view_angles.h"
@@ -38,9 +39,6 @@ namespace bodyloom {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double kFpsWithoutTimes = 30;  ///< of a track without times
-constexpr int kLongestSide = 8192;
 
 /// Lays a picture into one of the whole size.
 void LayOver(const SplatPicture& picture, Image* whole) {
@@ -160,9 +158,10 @@ class AvatarAnimation {
     } catch (const std::invalid_argument& error) {
       throw std::runtime_error(from + ": " + error.what());
     }
-    if (posed_->width() < 2 || posed_->height() < 2 || std::max(posed_->width(), posed_->height()) > kLongestSide) {
+    if (posed_->width() < 2 || posed_->height() < 2 ||
+        std::max(posed_->width(), posed_->height()) > kLongestPictureSide) {
       throw std::runtime_error(Concatenate(from, ": pictures of ", posed_->width(), "x", posed_->height(),
-                                           ", expected sides of 2 to ", kLongestSide));
+                                           ", expected sides of 2 to ", kLongestPictureSide));
     }
     if (request_.report.empty()) return;
     if (track_.camera.model != CameraModel::kPinhole) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <vector>
 
 #include "bodyloom/render/uv_splat.h"
 #include "tests/render/painted_body.h"
@@ -264,6 +265,45 @@ TEST(UvSplat, PaintsTheAtlasFromLabelsAlone) {
   EXPECT_GT(found.compared, 0.7 * splatter.table().num_inside);
   EXPECT_GT(found.psnr, 26);
   EXPECT_THROW(splatter.Add(Image(10, 10), {}, {}, {}), std::invalid_argument);
+}
+
+TEST(TextureExtract, TakesNothingWhereTheMaskShowsSomethingElse) {
+  const Camera camera = MakePinhole(200, 300, 260);
+  const MatrixX3d vertices = Posed(3, 0.4);
+  TextureExtractOptions options;
+  options.texels.width = options.texels.height = 128;
+  options.edge_margin_px = 2;
+  TextureExtractor extractor(ToyBody(), options);
+  std::vector<uint8_t> person(size_t(200) * 300, 1);
+  EXPECT_EQ(TextureExtractor(ToyBody(), options).Add(Image(200, 300), vertices, camera, 0, person),
+            TextureExtractor(ToyBody(), options).Add(Image(200, 300), vertices, camera, 0));
+  for (int y = 0; y < 300; ++y) std::fill_n(person.begin() + size_t(y) * 200, 100, uint8_t{0});
+  EXPECT_GT(extractor.Add(Image(200, 300), vertices, camera, 0, person), 50);
+  const Texture texture = extractor.Merge();
+  for (size_t p = 0; p < texture.confidence.size(); ++p) {
+    if (texture.confidence[p] > 0) EXPECT_GT(texture.source_x_px[p], 100);
+  }
+  person.pop_back();
+  EXPECT_THROW(extractor.Add(Image(200, 300), vertices, camera, 0, person), std::invalid_argument);
+}
+
+TEST(TextureExtract, KeepsFurtherAwayFromLimbsInFront) {
+  const Camera camera = MakePinhole(400, 600, 520);
+  // The right arm before the trunk.
+  BodyPose pose = PoseFromAxisAngle(ToyBody(), Eigen::VectorXd::Zero(72), {0, 0, 2.5});
+  pose.rotations[0] = RotationFromAxisAngle(Vector3d(EIGEN_PI, 0, 0));
+  pose.rotations[ToyBody().FindJoint("r_shoulder")] = RotationFromAxisAngle(Vector3d(0, 2.2, 0));
+  const MatrixX3d vertices = PoseVertices(ToyBody(), Eigen::VectorXd(), pose);
+  std::vector<int> seen;
+  for (const int margin : {-1, 2, 12}) {
+    TextureExtractOptions options;
+    options.texels.width = options.texels.height = 128;
+    options.step_margin_px = margin;
+    seen.push_back(TextureExtractor(ToyBody(), options).Add(Image(400, 600), vertices, camera, 0));
+  }
+  EXPECT_EQ(seen[0], seen[1]) << "both are 2 px";
+  EXPECT_LT(seen[2], 0.99 * seen[1]);
+  EXPECT_GT(seen[2], 0.5 * seen[1]) << "the outer contour keeps its own margin";
 }
 
 TEST(TextureExtract, RefusesWhatDoesNotFit) {

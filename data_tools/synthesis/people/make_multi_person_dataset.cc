@@ -73,7 +73,8 @@ class Maker {
     HashRandom random(options_.seed, {kClipKey, static_cast<uint64_t>(job.person), static_cast<uint64_t>(job.action)});
     const Motion& whole = motions_[random.Below(motions_.size())];
     const int length = (options_.frames - 1) * options_.every + 1;
-    const int first = static_cast<int>(random.Below(static_cast<uint64_t>(whole.num_frames() - length + 1)));
+    const int first =
+        static_cast<int>(random.Below(static_cast<uint64_t>(whole.num_frames()) - static_cast<uint64_t>(length) + 1));
     Motion motion = TakeFrames(whole, first, length);
     motion.body = body_.name();
     motion.betas = PersonBetas(body_, options_.shape_sigma, seeds_[job.person]);

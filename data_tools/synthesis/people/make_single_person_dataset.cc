@@ -174,7 +174,7 @@ MakeSinglePersonDatasetSummary MakeSinglePersonDataset(const std::string& folder
       if (options.look) seen[i - 1] = std::move(frame);
     });
     for (int i = 0; i < static_cast<int>(seen.size()); ++i) options.look(first + i, seen[i]);
-    chunk = std::move(next);
+    chunk = std::exchange(next, {});
     summary.frames = first + count, summary.cuts = run.num_cuts(), summary.seconds = watch.seconds();
     if (options.progress && !options.progress(double(summary.frames) / T) && summary.frames < T) return summary;
   }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -168,6 +169,34 @@ TEST(Video, RefusesPlacesThatCannotBeWritten) {
   EXPECT_THROW(VideoWriter(folder.File("a.mp4"), 16384, 16384, 25), std::invalid_argument) << "it could not be read";
   VideoWriter writer(folder.File("a.mp4"), 96, 64, 25);
   EXPECT_THROW(writer.Write(NumberedPicture(0, 64, 64)), std::invalid_argument);
+}
+
+/// The JPEG with an EXIF segment that asks for a quarter turn to the right (orientation 6).
+std::string TurnedByExif(const std::string& jpeg) {
+  static constexpr unsigned char kExif[] = {0xff, 0xe1, 0, 34, 'E', 'x', 'i', 'f', 0,    0, 'I', 'I',
+                                            '*',  0,    8, 0,  0,   0,   1,   0,   0x12, 1, 3,   0,
+                                            1,    0,    0, 0,  6,   0,   0,   0,   0,    0, 0,   0};
+  return jpeg.substr(0, 2) + std::string(reinterpret_cast<const char*>(kExif), sizeof kExif) + jpeg.substr(2);
+}
+
+TEST(Video, AStillImageIsAFolderOfOneAndUpright) {
+  const TemporaryFolder folder;
+  Image image(64, 32, Colour{255, 255, 255});
+  for (int y = 0; y < 32; ++y) {
+    for (int x = 0; x < 16; ++x) std::fill_n(image.pixel(x, y), 3, uint8_t{0});  // black on the left
+  }
+  WriteFileAtomically(folder.File("photo.jpg"), TurnedByExif(EncodeImage(image, "photo.jpg")));
+  VideoReader reader(folder.File("photo.jpg"));
+  EXPECT_EQ(reader.info().width, 32);
+  EXPECT_EQ(reader.info().height, 64);
+  EXPECT_EQ(reader.info().num_frames, 1);
+  EXPECT_TRUE(std::isnan(reader.frame_time()));
+  Image upright;
+  ASSERT_TRUE(reader.Read(&upright));
+  EXPECT_LT(upright.pixel(16, 5)[0], 40) << "left became up";
+  EXPECT_GT(upright.pixel(16, 50)[0], 215);
+  EXPECT_FALSE(reader.Read(&upright));
+  EXPECT_TRUE(VideoFrameTimes(folder.File("photo.jpg")).empty());
 }
 
 TEST(Video, ReadsAFolderOfImagesInTheOrderOfTheirNumbers) {

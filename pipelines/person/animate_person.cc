@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/person/animate_person.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "bodyloom/data_tools/avatar/alpha_png.h"
+#include "bodyloom/data_tools/descriptors/posed_track.h"
+#include "bodyloom/data_tools/motion/freeze_track.h"
+#include "bodyloom/data_tools/motion/motion_tools.h"
+#include "bodyloom/data_tools/motion/shape_track.h"
+#include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/data_tools/video/video_writer.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/geometry/base/percentile.h"
+#include "bodyloom/pipelines/files.h"
+#include "bodyloom/pipelines/people/animation_limits.h"
+#include "bodyloom/pipelines/people/background.h"
+#include "bodyloom/pipelines/people/freeze.h"
+#include "bodyloom/pipelines/people/view_angles.h"
+#include "bodyloom/pipelines/person/person_folder.h"
+#include "bodyloom/pipelines/report_json.h"
+#include "bodyloom/render/attribute_picture.h"
+#include "bodyloom/render/view_camera.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr int kSamples = 3;  ///< a pixel along x and y
+
+class PersonAnimation {
+ public:
+  PersonAnimation(const AnimatePersonRequest& request, const PipelineCallbacks& callbacks)
+      : request_(request), callbacks_(callbacks), threads_(ThreadsFor(request.threads)) {}
+
+  AnimatePersonSummary Run() {
+    CheckRequest();
+    clock_.Begin("person");
+    person_ = request_.person.empty() ? MakePhotoPerson(request_.photos, callbacks_)
+                                      : ReadPhotoPerson(request_.person, request_.photos.fit.body);
+    if (!request_.keep.empty()) WritePhotoPerson(request_.keep, person_);
+    if (!request_.track.empty()) {
+      clock_.Begin("prepare");
+      OpenTrack();
+      if (!request_.out.empty() || !request_.pictures.empty()) {
+        clock_.Begin("draw");
+        DrawFrames();
+      }
+    }
+    return Finish();
+  }
+
+ private:
+  void CheckRequest() const {
+    if (request_.person.empty() == request_.photos.images.empty()) {
+      throw RequestError("expected photos (--image) or a person who was kept (--person), one of them");
+    }
+    const bool shows = !request_.out.empty() || !request_.pictures.empty() || !request_.moved_track.empty();
+    if (request_.track.empty() && shows) throw RequestError("--track is required: the motion");
+    if (request_.track.empty() && request_.keep.empty()) {
+      throw RequestError("expected --track, the motion, or --keep, a folder to keep the person in");
+    }
+    if (!request_.track.empty() && !shows) throw RequestError("expected --out, --pictures or --moved-track");
+    std::vector<std::string> inputs = request_.photos.images;
+    for (const std::string& image : inputs) RequireReadable(image, "image");
+    inputs.insert(inputs.end(), {request_.track, request_.background, request_.photos.fit.body});
+    RequireReadable(request_.track, "track");
+    RequireReadable(request_.background, "background");
+    std::vector<std::string> outputs = {request_.out, request_.moved_track, request_.json};
+    for (const std::string& path : outputs) RequireWritable(path);
+    if (!request_.keep.empty()) {
+      const std::vector<std::string> kept =
+          PhotoPersonFiles(request_.keep, static_cast<int>(request_.photos.images.size()));
+      outputs.insert(outputs.end(), kept.begin(), kept.end());
+    }
+    RequireDistinct(inputs, outputs);
+    if (!request_.keep.empty()) RequireWritableFolder(request_.keep);
+    if (!request_.pictures.empty()) RequireWritableFolder(request_.pictures);
+  }
+
+  void OpenTrack() {
+    const Track read = ReadTrack(request_.track);
+    try {
+      if (read.HasMovingCamera())
+        throw std::runtime_error(request_.track + ": its camera moves; expected one that stands still");
+      track_ = WithShape(*person_.bare, read, person_.betas);
+      track_.motion.betas = Eigen::VectorXd::Zero(track_.motion.betas.size());
+      // What was measured of the bare body is not the clothed one's.
+      track_.joints.clear();
+      if (!request_.moved_track.empty()) WriteTrack(request_.moved_track, track_);
+      int first = 0, last = track_.num_frames() - 1;
+      if (!request_.freeze.empty()) {
+        const Freeze freeze = ReadFreeze(request_.freeze, track_.num_frames());
+        track_ = FramesInOrder(track_, FrozenAt(track_.num_frames(), freeze.frame, freeze.count));
+        first = freeze.frame, last = freeze.frame + freeze.count;
+      }
+      if (track_.camera.HasDistortion()) {
+        throw std::runtime_error(request_.track + ": its camera's lens is distorted, expected an undistorted one");
+      }
+      const int longer = std::max(track_.camera.width, track_.camera.height);
+      scale_ = request_.size > 0 && longer > 0 ? static_cast<double>(request_.size) / longer : 1;
+      posed_.emplace(*person_.body, track_, ViewAngles(request_.view_yaw, track_.num_frames(), first, last));
+    } catch (const RequestError&) {
+      throw;
+    } catch (const std::invalid_argument& error) {
+      throw std::runtime_error(request_.track + ": " + error.what());
+    }
+    const Camera camera = CameraAt(0);
+    width_ = camera.width, height_ = camera.height;
+    if (width_ < 2 || height_ < 2 || std::max(width_, height_) > kLongestPictureSide) {
+      throw std::runtime_error(Concatenate(request_.track, ": pictures of ", width_, "x", height_,
+                                           ", expected sides of 2 to ", kLongestPictureSide));
+    }
+    texels_ = TexelsOf(person_.texture);
+    options_.attribute = SurfaceAttribute::kTexture;
+    options_.texture = {texels_, person_.texture.width, person_.texture.height, 3};
+    options_.samples = kSamples;
+    options_.num_threads = threads_;
+  }
+
+  [[nodiscard]] Camera CameraAt(int t) const {
+    return scale_ == 1 ? track_.CameraAt(t) : ScaledCamera(track_.CameraAt(t), scale_);
+  }
+
+  void DrawFrames() {
+    const int count = track_.num_frames();
+    Background background(request_.background, width_, height_);
+    const double fps = FrameRateWithoutGaps(track_.motion);
+    std::unique_ptr<VideoWriter> video;
+    if (!request_.out.empty()) {
+      video = std::make_unique<VideoWriter>(request_.out, width_, height_, fps > 0 ? fps : kFpsWithoutTimes);
+    }
+    std::vector<double> draw_ms;
+    for (int t = 0; t < count; ++t) {
+      callbacks_.Update("drawing", static_cast<double>(t) / count);
+      const bool shows = track_.HasResult(t);
+      if (!shows) ++summary_.frames_without_fit;
+      const MatrixX3d vertices = shows ? posed_->Vertices(t) : MatrixX3d();
+      const Stopwatch watch;
+      if (video) {
+        Image whole = background.Next();
+        if (shows) painter_.Draw(*person_.body, vertices, CameraAt(t), options_, &whole);
+        if (t == 0) summary_.first_frame_s = total_.seconds();
+        if (shows) draw_ms.push_back(1e3 * watch.seconds());
+        clock_.Begin("write");
+        video->Write(whole);
+        clock_.Begin("draw");
+      }
+      if (!request_.pictures.empty()) WritePicture(t, vertices);
+    }
+    if (video) video->Finish();
+    if (!draw_ms.empty()) summary_.draw_ms = Percentile(draw_ms, 50);
+    summary_.frames = count;
+  }
+
+  void WritePicture(int t, const MatrixX3d& vertices) {
+    Image black(width_, height_);
+    std::vector<uint8_t> coverage(static_cast<size_t>(width_) * height_, 0);
+    if (vertices.rows() > 0) painter_.Draw(*person_.body, vertices, CameraAt(t), options_, &black, &coverage);
+    std::vector<uint8_t> bgra(4 * coverage.size(), 0);
+    for (size_t p = 0; p < coverage.size(); ++p) {
+      if (coverage[p] == 0) continue;
+      for (size_t c = 0; c < 3; ++c) {
+        bgra[4 * p + c] = static_cast<uint8_t>(std::min(255.0, std::round(255.0 * black.bgr[3 * p + c] / coverage[p])));
+      }
+      bgra[4 * p + 3] = coverage[p];
+    }
+    char name[32];
+    std::snprintf(name, sizeof name, "%06d.png", t);
+    WriteAlphaPng((std::filesystem::path(request_.pictures) / name).string(), width_, height_, bgra);
+  }
+
+  AnimatePersonSummary Finish() {
+    clock_.End();
+    summary_.person = person_.report;
+    summary_.width = width_, summary_.height = height_;
+    summary_.seconds = clock_.seconds();
+    summary_.total_seconds = total_.seconds();
+    for (const std::string& path :
+         {request_.keep, request_.out, request_.pictures, request_.moved_track, request_.json}) {
+      if (!path.empty()) summary_.written.push_back(path);
+    }
+    nlohmann::ordered_json json = {{"frames", summary_.frames},
+                                   {"frames_without_fit", summary_.frames_without_fit},
+                                   {"picture", {summary_.width, summary_.height}},
+                                   {"draw_ms_median", summary_.draw_ms},
+                                   {"first_frame_s", summary_.first_frame_s},
+                                   {"seconds", ToJson(summary_.seconds)}};
+    if (!person_.report.photos.empty()) json["person"] = nlohmann::ordered_json::parse(ToJson(person_.report));
+    WriteReport(request_.json, json);
+    return summary_;
+  }
+
+  const AnimatePersonRequest& request_;
+  const PipelineCallbacks& callbacks_;
+  const int threads_;
+  Stopwatch total_;
+  StageClock clock_;
+  PhotoPerson person_;
+  Track track_;
+  double scale_ = 1;
+  int width_ = 0, height_ = 0;
+  std::optional<PosedTrack> posed_;
+  std::vector<float> texels_;
+  AttributePictureOptions options_;
+  AttributePainter painter_;
+  AnimatePersonSummary summary_;
+};
+
+}  // namespace
+
+AnimatePersonSummary AnimatePerson(const AnimatePersonRequest& request, const PipelineCallbacks& callbacks) {
+  return PersonAnimation(request, callbacks).Run();
+}
+
+}  // namespace bodyloom

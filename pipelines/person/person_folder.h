@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A person made from photos, kept in a folder:
+///   body.npz      the clothed body (data_tools/body/body_io.h); zero betas are the person
+///   texture.png   for its atlas
+///   photo_0.npz   a track of one frame for each photo: the bare body in it, whose betas are the person's
+///   person.json   what was seen and what was guessed (PhotoPersonReport)
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bodyloom/pipelines/person/photo_person.h"
+
+namespace bodyloom {
+
+/// The files that WritePhotoPerson() writes for so many photos.
+std::vector<std::string> PhotoPersonFiles(const std::string& folder, int num_photos);
+
+/// Replaces files of these names. Throws std::runtime_error naming a file that cannot be written.
+void WritePhotoPerson(const std::string& folder, const PhotoPerson& person);
+
+/// `bare_body`: what the photos were fitted with; empty: the built-in body. The report stays empty. Throws
+/// std::runtime_error naming a file that cannot be used, or saying that the bare body is another one.
+PhotoPerson ReadPhotoPerson(const std::string& folder, const std::string& bare_body);
+
+/// One JSON object.
+std::string ToJson(const PhotoPersonReport& report);
+
+}  // namespace bodyloom

@@ -1,0 +1,363 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/render/person/whole_texture.h"
+
+#include <Eigen/IterativeLinearSolvers>
+#include <Eigen/SparseCore>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/geometry/base/percentile.h"
+#include "bodyloom/geometry/uv_charts.h"
+#include "bodyloom/render/person/nearest_around_limb.h"
+#include "bodyloom/render/person/rest_views.h"
+#include "bodyloom/render/person/texel_counterparts.h"
+#include "bodyloom/render/uv_fill.h"
+#include "bodyloom/render/uv_graph.h"
+#include "bodyloom/render/uv_sample.h"
+
+namespace bodyloom {
+namespace {
+
+using Bgr = std::array<float, 3>;
+
+constexpr std::array<float, kNumCounterparts> kPreference = {1.0F, 0.7F, 0.5F};
+constexpr std::array<TexelSource, kNumCounterparts> kSourceOf = {TexelSource::kMirror, TexelSource::kBehind,
+                                                                 TexelSource::kAcross};
+constexpr double kLeastSkinShare = 0.1;  ///< of the hands' seen texels
+constexpr double kLeastTapWeight = 1e-3;
+constexpr double kHairIsKept = 16;      ///< times the screening: skin around the hair is not to run into it
+constexpr double kAroundIsKept = 0.25;  ///< likewise: lines that were carried around a limb are to run into each other
+constexpr double kTolerance = 1e-3;
+constexpr int kMostIterations = 100;
+constexpr double kLeastWeight = 0.5;     ///< of a lookup's taps that were seen
+constexpr double kLeastHairShare = 0.1;  ///< of the scalp's seen texels
+
+/// The largest difference of a channel.
+double Contrast(const Bgr& a, const Bgr& b) {
+  double contrast = 0;
+  for (size_t c = 0; c < 3; ++c) contrast = std::max<double>(contrast, std::abs(a[c] - b[c]));
+  return contrast;
+}
+
+bool IsOfHead(BodyRegion region) { return region == BodyRegion::kFace || region == BodyRegion::kScalp; }
+
+class Completion {
+ public:
+  Completion(const BodyModel& body, const UvTexelTable& table, std::span<const BodyRegion> regions, const Texture& seen,
+             const WholeTextureOptions& options)
+      : body_(body),
+        table_(table),
+        regions_(regions),
+        seen_(seen),
+        options_(options),
+        charts_(FindUvCharts(body)),
+        fill_(body, table),
+        pixels_(seen.confidence.size()) {
+    result_.bgr.assign(3 * pixels_, 0.0F);
+    result_.sources.assign(pixels_, TexelSource::kNowhere);
+  }
+
+  WholeTexture Run(const MatrixX3d& rest_vertices) {
+    if (!TakeSeen()) throw std::runtime_error("no texel of the body was seen");
+    DistrustHands();
+    const RestViews views(rest_vertices, body_.data().faces);
+    const MatrixX3d points = TexelPoints(rest_vertices, body_.data().faces, table_);
+    const TexelCounterparts counterparts = FindTexelCounterparts(views, points);
+    ChooseGuesses(counterparts);
+    GuessHair();
+    LookAroundLimbs(views, points);
+    Spread();
+    Join();
+    FillGutter(body_, table_, std::vector<uint8_t>(pixels_, 1), 3, result_.bgr);
+    return std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] BodyRegion RegionOf(const SurfacePoint& point) const {
+    int corner = 0;
+    point.barycentric.maxCoeff(&corner);
+    return regions_[body_.data().faces(point.face, corner)];
+  }
+  [[nodiscard]] BodyRegion RegionOf(size_t i) const {
+    return RegionOf({table_.face[i], table_.barycentric[i].cast<double>()});
+  }
+  [[nodiscard]] bool IsSeen(size_t pixel) const { return result_.sources[pixel] == TexelSource::kSeen; }
+  [[nodiscard]] Bgr ColourAt(size_t pixel) const {
+    return {result_.bgr[pixel], result_.bgr[pixels_ + pixel], result_.bgr[2 * pixels_ + pixel]};
+  }
+  void Set(size_t pixel, const Bgr& colour, TexelSource source) {
+    for (int c = 0; c < 3; ++c) result_.bgr[c * pixels_ + pixel] = colour[c];
+    result_.sources[pixel] = source;
+  }
+  template <typename Visit>
+  void ForEachTexel(const Visit& visit) const {
+    for (size_t i = 0; i < table_.size(); ++i) {
+      if (!table_.in_gutter[i]) visit(i, static_cast<size_t>(table_.pixel[i]));
+    }
+  }
+
+  bool TakeSeen() {
+    std::vector<double> confidence;
+    ForEachTexel([&](size_t, size_t pixel) {
+      if (seen_.confidence[pixel] > 0) confidence.push_back(seen_.confidence[pixel]);
+    });
+    if (confidence.empty()) return false;
+    const double least = options_.trust * Percentile(confidence, 90);
+    ForEachTexel([&](size_t, size_t pixel) {
+      if (!(seen_.confidence[pixel] > 0) || seen_.confidence[pixel] < least) return;
+      Set(pixel, {seen_.bgr[pixel], seen_.bgr[pixels_ + pixel], seen_.bgr[2 * pixels_ + pixel]}, TexelSource::kSeen);
+    });
+    return true;
+  }
+
+  /// The face's colour where enough of the hands is like it (no gloves), else the hands' own.
+  [[nodiscard]] Bgr HandColour(const std::vector<Bgr>& hands) const {
+    std::vector<Bgr> face;
+    ForEachTexel([&](size_t i, size_t pixel) {
+      if (IsSeen(pixel) && RegionOf(i) == BodyRegion::kFace) face.push_back(ColourAt(pixel));
+    });
+    if (!face.empty()) {
+      const Bgr skin = MedianColour(face);
+      const auto like_skin = std::count_if(hands.begin(), hands.end(), [&](const Bgr& colour) {
+        return Contrast(colour, skin) <= options_.hand_contrast;
+      });
+      if (static_cast<double>(like_skin) >= kLeastSkinShare * static_cast<double>(hands.size())) return skin;
+    }
+    return MedianColour(hands);
+  }
+
+  /// A hand's seen texels of other colours are not the hand.
+  void DistrustHands() {
+    std::vector<Bgr> colours;
+    std::vector<size_t> texels;
+    ForEachTexel([&](size_t i, size_t pixel) {
+      if (!IsSeen(pixel) || RegionOf(i) != BodyRegion::kHand) return;
+      colours.push_back(ColourAt(pixel));
+      texels.push_back(pixel);
+    });
+    if (colours.empty()) return;
+    const Bgr hand = HandColour(colours);
+    for (size_t k = 0; k < texels.size(); ++k) {
+      if (Contrast(colours[k], hand) > options_.hand_contrast) {
+        result_.sources[texels[k]] = TexelSource::kNowhere;
+      }
+    }
+  }
+
+  struct Lookup {
+    Bgr colour{};
+    float confidence = 0;  ///< 0: not seen there
+  };
+  /// What was seen at a counterpart of texel i.
+  [[nodiscard]] Lookup LookUp(size_t i, const SurfacePoint& counterpart, TexelCounterpart kind) const {
+    Lookup found;
+    if (counterpart.face < 0) return found;
+    if (kind != kMirror && (IsOfHead(RegionOf(counterpart)) || IsOfHead(RegionOf(i)))) {
+      return found;
+    }
+    const UvTaps taps = TapsAt(table_, UvPointAt(body_, charts_, counterpart.face, counterpart.barycentric));
+    double weight = 0;
+    std::array<double, 3> colour{};
+    double confidence = 0;
+    for (int k = 0; k < taps.count; ++k) {
+      const auto pixel = static_cast<size_t>(taps.pixel[k]);
+      if (!IsSeen(pixel)) continue;
+      weight += taps.weight[k];
+      confidence += taps.weight[k] * seen_.confidence[pixel];
+      for (int c = 0; c < 3; ++c) colour[c] += taps.weight[k] * result_.bgr[c * pixels_ + pixel];
+    }
+    if (!(weight >= kLeastWeight)) return found;
+    for (int c = 0; c < 3; ++c) found.colour[c] = static_cast<float>(colour[c] / weight);
+    found.confidence = static_cast<float>(confidence / weight);
+    return found;
+  }
+
+  void ChooseGuesses(const TexelCounterparts& counterparts) {
+    ForEachTexel([&](size_t i, size_t pixel) {
+      if (IsSeen(pixel)) return;
+      float best = 0;
+      for (int kind = 0; kind < kNumCounterparts; ++kind) {
+        const Lookup found = LookUp(i, counterparts[kind][i], static_cast<TexelCounterpart>(kind));
+        if (!(kPreference[kind] * found.confidence > best)) continue;
+        best = kPreference[kind] * found.confidence;
+        Set(pixel, found.colour, kSourceOf[kind]);
+      }
+    });
+  }
+
+  [[nodiscard]] static Bgr MedianColour(const std::vector<Bgr>& colours) {
+    Bgr median{};
+    for (int c = 0; c < 3; ++c) {
+      std::vector<double> channel;
+      for (const Bgr& colour : colours) channel.push_back(colour[c]);
+      median[c] = static_cast<float>(Percentile(channel, 50));
+    }
+    return median;
+  }
+
+  void GuessHair() {
+    std::vector<Bgr> face, scalp;
+    ForEachTexel([&](size_t i, size_t pixel) {
+      if (!IsSeen(pixel)) return;
+      const BodyRegion region = RegionOf(i);
+      const Bgr colour = ColourAt(pixel);
+      if (region == BodyRegion::kFace) face.push_back(colour);
+      if (region == BodyRegion::kScalp) scalp.push_back(colour);
+    });
+    if (scalp.empty()) return;
+    std::vector<Bgr> hair;
+    if (!face.empty()) {
+      const Bgr skin = MedianColour(face);
+      std::copy_if(scalp.begin(), scalp.end(), std::back_inserter(hair),
+                   [&](const Bgr& colour) { return Contrast(colour, skin) > options_.hair_contrast; });
+    }
+    if (static_cast<double>(hair.size()) < kLeastHairShare * static_cast<double>(scalp.size())) hair = scalp;
+    const Bgr colour = MedianColour(hair);
+    ForEachTexel([&](size_t i, size_t pixel) {
+      if (result_.sources[pixel] != TexelSource::kNowhere || RegionOf(i) != BodyRegion::kScalp) return;
+      Set(pixel, colour, TexelSource::kHair);
+    });
+  }
+
+  /// Whether the texels around a point hold a colour of their own, seen or guessed.
+  [[nodiscard]] bool IsColoured(const SurfacePoint& point) const {
+    if (IsOfHead(RegionOf(point))) return false;
+    const UvTaps taps = TapsAt(table_, UvPointAt(body_, charts_, point.face, point.barycentric));
+    for (int k = 0; k < taps.count; ++k) {
+      if (result_.sources[taps.pixel[k]] != TexelSource::kNowhere) return true;
+    }
+    return false;
+  }
+
+  void LookAroundLimbs(const RestViews& views, const MatrixX3d& points) {
+    const NearestAroundLimb nearest(body_, views, [this](const SurfacePoint& point) { return IsColoured(point); });
+    std::vector<std::pair<size_t, Bgr>> guesses;
+    ForEachTexel([&](size_t i, size_t pixel) {
+      if (result_.sources[pixel] != TexelSource::kNowhere || IsOfHead(RegionOf(i))) return;
+      const SurfacePoint found = nearest.At(points.row(static_cast<Eigen::Index>(i)).transpose());
+      if (found.face < 0) return;
+      const UvTaps taps = TapsAt(table_, UvPointAt(body_, charts_, found.face, found.barycentric));
+      double weight = 0;
+      Bgr colour{};
+      for (int k = 0; k < taps.count; ++k) {
+        if (result_.sources[taps.pixel[k]] == TexelSource::kNowhere) continue;
+        weight += taps.weight[k];
+        for (size_t c = 0; c < 3; ++c) {
+          colour[c] += static_cast<float>(taps.weight[k]) * result_.bgr[c * pixels_ + taps.pixel[k]];
+        }
+      }
+      if (!(weight > kLeastTapWeight)) return;
+      for (float& value : colour) value /= static_cast<float>(weight);
+      guesses.emplace_back(pixel, colour);
+    });
+    for (const auto& [pixel, colour] : guesses) Set(pixel, colour, TexelSource::kAround);
+  }
+
+  void Spread() {
+    std::vector<uint8_t> known(pixels_, 0);
+    ForEachTexel([&](size_t, size_t pixel) { known[pixel] = result_.sources[pixel] != TexelSource::kNowhere ? 1 : 0; });
+    fill_.Fill(known, 3, result_.bgr);
+    ForEachTexel([&](size_t, size_t pixel) {
+      if (known[pixel] == 0) result_.sources[pixel] = TexelSource::kSpread;
+    });
+  }
+
+  /// An edge of the graph from a node that was not seen.
+  struct Link {
+    bool joins = true;      ///< false: one thing ends here
+    bool is_alike = false;  ///< both guessed in the same way
+  };
+
+  [[nodiscard]] Link LinkOf(size_t pixel, size_t other) const {
+    const TexelSource a = result_.sources[pixel], b = result_.sources[other];
+    if (a == TexelSource::kSpread || b == TexelSource::kSpread) return {};
+    if (a == b && a != TexelSource::kAround) return {true, true};
+    return {Contrast(ColourAt(pixel), ColourAt(other)) <= options_.largest_step, false};
+  }
+
+  void Join() {
+    const UvGraph graph = BuildUvGraph(body_, table_);
+    const double screening = 1 / std::pow(options_.reach * table_.width, 2);
+    std::vector<int> unknown_of(graph.num_nodes(), -1), node_of;
+    for (int n = 0; n < graph.num_nodes(); ++n) {
+      if (IsSeen(graph.pixel[n])) continue;
+      unknown_of[n] = static_cast<int>(node_of.size());
+      node_of.push_back(n);
+    }
+    if (node_of.empty()) return;
+    const auto count = static_cast<int>(node_of.size());
+    std::vector<Eigen::Triplet<double>> entries;
+    Eigen::MatrixXd right = Eigen::MatrixXd::Zero(count, 3), start(count, 3);
+    for (int u = 0; u < count; ++u) {
+      const int n = node_of[u];
+      const auto pixel = static_cast<size_t>(graph.pixel[n]);
+      const bool guessed = result_.sources[pixel] != TexelSource::kSpread;
+      double diagonal = guessed ? screening : 0;
+      if (result_.sources[pixel] == TexelSource::kHair) diagonal *= kHairIsKept;
+      if (result_.sources[pixel] == TexelSource::kAround) diagonal *= kAroundIsKept;
+      for (int c = 0; c < 3; ++c) {
+        start(u, c) = result_.bgr[c * pixels_ + pixel];
+        right(u, c) += diagonal * start(u, c);
+      }
+      for (int k = graph.begin[n]; k < graph.begin[n + 1]; ++k) {
+        const auto other_pixel = static_cast<size_t>(graph.pixel[graph.neighbour[k]]);
+        const Link link = LinkOf(pixel, other_pixel);
+        if (!link.joins) continue;
+        diagonal += 1;
+        const int v = unknown_of[graph.neighbour[k]];
+        if (v >= 0) entries.emplace_back(u, v, -1.0);
+        for (int c = 0; c < 3; ++c) {
+          const double other = result_.bgr[c * pixels_ + other_pixel];
+          if (v < 0) right(u, c) += other;
+          if (link.is_alike) right(u, c) += start(u, c) - other;
+        }
+      }
+      // A texel that is joined to nothing keeps its colour.
+      if (!(diagonal > 0)) diagonal = 1, right.row(u) = start.row(u);
+      entries.emplace_back(u, u, diagonal);
+    }
+    Eigen::SparseMatrix<double, Eigen::RowMajor> matrix(count, count);
+    matrix.setFromTriplets(entries.begin(), entries.end());
+    Eigen::ConjugateGradient<Eigen::SparseMatrix<double, Eigen::RowMajor>, Eigen::Lower | Eigen::Upper> solver(matrix);
+    solver.setTolerance(kTolerance);
+    solver.setMaxIterations(kMostIterations);
+    Eigen::MatrixXd solution(count, 3);
+    ParallelFor(3, 3, [&](int c) { solution.col(c) = solver.solveWithGuess(right.col(c), start.col(c)); });
+    for (int u = 0; u < count; ++u) {
+      for (size_t c = 0; c < 3; ++c) {
+        const double value = std::clamp(solution(u, static_cast<Eigen::Index>(c)), 0.0, 1.0);
+        result_.bgr[c * pixels_ + graph.pixel[node_of[u]]] = static_cast<float>(value);
+      }
+    }
+  }
+
+  const BodyModel& body_;
+  const UvTexelTable& table_;
+  std::span<const BodyRegion> regions_;
+  const Texture& seen_;
+  const WholeTextureOptions& options_;
+  const UvCharts charts_;
+  const PyramidFill fill_;
+  const size_t pixels_;
+  WholeTexture result_;
+};
+
+}  // namespace
+
+WholeTexture MakeWholeTexture(const BodyModel& body, const UvTexelTable& table, const MatrixX3d& rest_vertices,
+                              std::span<const BodyRegion> regions, const Texture& seen,
+                              const WholeTextureOptions& options) {
+  BODYLOOM_CHECK(seen.width == table.width && seen.height == table.height &&
+                     seen.confidence.size() == size_t(table.width) * table.height,
+                 "a texture of ", seen.width, "x", seen.height, ", the table is for ", table.width, "x", table.height);
+  BODYLOOM_CHECK(static_cast<int>(regions.size()) == body.num_vertices() && rest_vertices.rows() == body.num_vertices(),
+                 regions.size(), " regions and ", rest_vertices.rows(), " vertices at rest, expected ",
+                 body.num_vertices());
+  return Completion(body, table, regions, seen, options).Run(rest_vertices);
+}
+
+}  // namespace bodyloom
