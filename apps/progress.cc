@@ -16,11 +16,12 @@ constexpr double kBarInterval = 0.1, kLineInterval = 10;  // seconds
 constexpr int kBarCells = 24;
 constexpr double kMinFractionForEta = 0.02;  // earlier guesses are noise
 
-std::string EtaText(double fraction, double elapsed_seconds) {
-  if (fraction < kMinFractionForEta) {
+/// `done`: by this run, of the whole; less than `fraction` where a run goes on with what an earlier one did.
+std::string EtaText(double fraction, double done, double elapsed_seconds) {
+  if (done < kMinFractionForEta) {
     return "";
   }
-  return ", " + ClockText(elapsed_seconds * (1 - fraction) / fraction) + " left";
+  return ", " + ClockText(elapsed_seconds * (1 - fraction) / done) + " left";
 }
 
 }  // namespace
@@ -45,6 +46,10 @@ void Progress::Update(const std::string& stage, double fraction) {
   const Clock::time_point now = Clock::now();
   const bool new_stage = stage != stage_;
   const double interval = style_ == Style::kBar ? kBarInterval : kLineInterval;
+  if (first_fraction_ < 0) {
+    first_fraction_ = std::clamp(fraction, 0.0, 1.0);
+    start_ = now;
+  }
   fraction_ = std::max(fraction_, std::clamp(fraction, 0.0, 1.0));
   if (style_ == Style::kSilent || (!new_stage && now - last_drawn_ < std::chrono::duration<double>(interval))) {
     return;
@@ -61,7 +66,7 @@ void Progress::Draw(const std::string& stage, double fraction, double elapsed_se
     const int filled = static_cast<int>(std::floor(kBarCells * fraction));
     line += "[" + std::string(filled, '#') + std::string(kBarCells - filled, '.') + "] ";
   }
-  line += std::to_string(percent) + " % " + stage + EtaText(fraction, elapsed_seconds);
+  line += std::to_string(percent) + " % " + stage + EtaText(fraction, fraction - first_fraction_, elapsed_seconds);
   if (style_ == Style::kBar) {
     out_ << "\r" << line << std::string(std::max(drawn_width_, line.size()) - line.size(), ' ') << std::flush;
     drawn_width_ = line.size();

@@ -37,9 +37,9 @@ class Progress {
   std::string title_;
   Style style_;
   std::ostream& out_;
-  Clock::time_point start_ = Clock::now(), last_drawn_ = Clock::time_point::min();
+  Clock::time_point start_, last_drawn_ = Clock::time_point::min();  ///< start_: of the first Update()
   std::string stage_;
-  double fraction_ = 0;
+  double first_fraction_ = -1, fraction_ = 0;  ///< -1: no Update() yet
   size_t drawn_width_ = 0;
 };
 

@@ -14,6 +14,7 @@ void BindTracking(pybind11::module_& module);
 void BindLive(pybind11::module_& module);
 void BindDescriptors(pybind11::module_& module);
 void BindRendering(pybind11::module_& module);
+void BindPerson(pybind11::module_& module);
 void BindResults(pybind11::module_& module);
 
 }  // namespace bodyloom::python

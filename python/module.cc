@@ -19,5 +19,6 @@ PYBIND11_MODULE(_bodyloom, module) {
   BindLive(module);
   BindDescriptors(module);
   BindRendering(module);
+  BindPerson(module);
   BindResults(module);
 }

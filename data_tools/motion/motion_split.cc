@@ -106,7 +106,7 @@ MotionSplit MotionSplitFromText(const std::string& text, const std::string& wher
     }
     if (found[2] != "train" && found[2] != "test")
       fail("found '" + PrintableText(found[2]) + "', expected train or test");
-    MotionSplitEntry entry{found[1], found[2] == "test"};
+    MotionSplitEntry entry{found[1], found[2] == "test", "", 0};
     for (size_t i = 3; i < found.size(); ++i) {
       if (!ReadDetail(found[i], &entry)) {
         fail("found '" + PrintableText(found[i]) + "', expected performer=NAME or fps=RATE of 1 to 1000");

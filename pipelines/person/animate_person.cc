@@ -15,7 +15,6 @@
 #include "bodyloom/data_tools/descriptors/posed_track.h"
 #include "bodyloom/data_tools/motion/freeze_track.h"
 #include "bodyloom/data_tools/motion/motion_tools.h"
-#include "bodyloom/data_tools/motion/shape_track.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/video/video_writer.h"
 #include "bodyloom/geometry/base/check.h"
@@ -89,12 +88,7 @@ class PersonAnimation {
   void OpenTrack() {
     const Track read = ReadTrack(request_.track);
     try {
-      if (read.HasMovingCamera())
-        throw std::runtime_error(request_.track + ": its camera moves; expected one that stands still");
-      track_ = WithShape(*person_.bare, read, person_.betas);
-      track_.motion.betas = Eigen::VectorXd::Zero(track_.motion.betas.size());
-      // What was measured of the bare body is not the clothed one's.
-      track_.joints.clear();
+      track_ = MovedByPerson(person_, read);
       if (!request_.moved_track.empty()) WriteTrack(request_.moved_track, track_);
       int first = 0, last = track_.num_frames() - 1;
       if (!request_.freeze.empty()) {

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "bodyloom/data_tools/motion/shape_track.h"
 #include "bodyloom/data_tools/observations/nothing_to_track.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/geometry/bake_shape.h"
@@ -189,6 +190,14 @@ class PhotoPersonMaker {
 };
 
 }  // namespace
+
+Track MovedByPerson(const PhotoPerson& person, const Track& track) {
+  BODYLOOM_CHECK(!track.HasMovingCamera(), "its camera moves; expected one that stands still");
+  Track moved = WithShape(*person.bare, track, person.betas);
+  moved.motion.betas.setZero();
+  moved.joints.clear();  // the bare body's
+  return moved;
+}
 
 PhotoPerson MakePhotoPerson(const PhotoPersonRequest& request, const PipelineCallbacks& callbacks) {
   return PhotoPersonMaker(request, callbacks).Run();

@@ -57,4 +57,8 @@ struct PhotoPerson {
 /// could be fitted, std::runtime_error naming a file that cannot be used, Cancelled.
 PhotoPerson MakePhotoPerson(const PhotoPersonRequest& request, const PipelineCallbacks& callbacks = {});
 
+/// The motion of a track of `bare` by this person: for person.body, with zero betas. Throws std::invalid_argument for a
+/// track whose camera moves, and as WithShape().
+Track MovedByPerson(const PhotoPerson& person, const Track& track);
+
 }  // namespace bodyloom

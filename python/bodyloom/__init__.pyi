@@ -19,6 +19,7 @@ __all__ = [
     "LiveDescriptors",
     "LiveFrame",
     "LiveTracker",
+    "Person",
     "Renderer",
     "Track",
     "TrackSummary",
@@ -333,6 +334,32 @@ class Renderer:
     @property
     def legend(self) -> str: ...
     def __len__(self) -> int: ...
+
+class Person:
+    @staticmethod
+    def from_photos(
+        images: Sequence[_Path],
+        *,
+        who: int = 0,
+        texture_size: int = 1024,
+        body: _Path | None = None,
+        focal_px: float | None = None,
+        stature_m: float | None = None,
+        models: _Path | None = None,
+        progress: _Progress | None = None,
+    ) -> Person: ...
+    @staticmethod
+    def load(folder: _Path, *, body: _Path | None = None) -> Person: ...
+    def save(self, folder: _Path) -> None: ...
+    def moved(self, track: Track | _Path) -> Track: ...
+    @property
+    def body(self) -> Body: ...
+    @property
+    def texture(self) -> _Pictures: ...
+    @property
+    def betas(self) -> _Doubles: ...
+    @property
+    def shares(self) -> dict[str, float]: ...
 
 class Evaluation:
     @property

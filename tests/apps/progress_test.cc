@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <sstream>
+#include <thread>
 
 namespace bodyloom {
 namespace {
@@ -22,6 +24,16 @@ TEST(Progress, WritesOneLineAStageWhenNotATerminal) {
     }
   }
   EXPECT_EQ(out.str(), "tracking 0 % initialise\ntracking 50 % fit, 0:00 left\n");
+}
+
+TEST(Progress, TheTimeLeftOfARunThatGoesOnIsItsOwn) {
+  std::ostringstream out;
+  Progress progress("training", Progress::Style::kLines, out);
+  progress.Update("begin", 0.5);  // what an earlier run did
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  progress.Update("train", 0.55);  // 45 % are left at 5 % in 0.3 s: 2.7 s or more
+  EXPECT_THAT(out.str(), HasSubstr("55 % train, 0:0"));
+  EXPECT_THAT(out.str(), Not(HasSubstr("0:00 left")));
 }
 
 TEST(Progress, DrawsABarThatIsWipedAtTheEnd) {

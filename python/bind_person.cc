@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+// A person from photos. docs/python.md.
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/pipelines/files.h"
+#include "bodyloom/pipelines/person/person_folder.h"
+#include "bodyloom/pipelines/person/photo_person.h"
+#include "python/arrays.h"
+#include "python/bindings.h"
+#include "python/python_callbacks.h"
+#include "python/track_object.h"
+
+namespace bodyloom::python {
+namespace {
+
+constexpr const char* kPersonDoc =
+    "A person from photos: a body that wears clothes, and a texture for it (`bodyloom animate person`).\n\n"
+    "    me = bodyloom.Person.from_photos([\"me.jpg\"])\n"
+    "    bodyloom.render(me.moved(\"dance.npz\"), what=\"texture\", body=me.body, texture=me.texture, out=\"me.mp4\")";
+constexpr const char* kFromPhotosDoc =
+    "The person of these photos; the first gives shape and clothes. Nothing is trained; the pose detector's networks "
+    "have to\n"
+    "be there (`./dev models`).\n\n"
+    "who: of several people in a photo, 0 is the largest. texture_size: texels a side. body: a file; the built-in one "
+    "by\n"
+    "default. focal_px, stature_m: where they are known. models: folder of the networks. Raises RuntimeError naming a "
+    "photo\n"
+    "that shows nobody or cannot be read, ValueError, Cancelled.";
+
+class PersonObject {
+ public:
+  explicit PersonObject(PhotoPerson person) : person_(std::move(person)) {}
+
+  [[nodiscard]] const PhotoPerson& person() const { return person_; }
+  [[nodiscard]] std::shared_ptr<BodyModel> body() const { return std::const_pointer_cast<BodyModel>(person_.body); }
+  [[nodiscard]] py::array texture() const { return PictureFrom(person_.texture); }
+  [[nodiscard]] std::shared_ptr<TrackObject> Moved(const TrackArgument& argument) const {
+    const std::shared_ptr<TrackObject> track = TrackFrom(argument);
+    return std::make_shared<TrackObject>(MovedByPerson(person_, track->track), track->name, person_.body);
+  }
+  [[nodiscard]] std::map<std::string, double> shares() const {
+    const PhotoPersonReport& report = person_.report;
+    return {{"seen", report.seen}, {"mirrored", report.mirrored}, {"behind", report.behind},
+            {"hair", report.hair}, {"around", report.around},     {"spread", report.spread}};
+  }
+
+ private:
+  PhotoPerson person_;
+};
+
+}  // namespace
+
+void BindPerson(py::module_& module) {
+  py::class_<PersonObject>(module, "Person", kPersonDoc)
+      .def_static(
+          "from_photos",
+          [](const std::vector<Path>& images, int who, int texture_size, const std::optional<Path>& body,
+             std::optional<double> focal_px, std::optional<double> stature_m, const std::optional<Path>& models,
+             const py::object& progress) {
+            BODYLOOM_CHECK(!images.empty(), "images: expected at least one photo, found none");
+            BODYLOOM_CHECK(focal_px.value_or(1) > 0 && stature_m.value_or(1) > 0,
+                           "focal_px, stature_m: expected numbers above 0");
+            PhotoPersonRequest request;
+            for (const Path& image : images) {
+              RequireReadable(image.string(), "image");
+              request.images.push_back(image.string());
+            }
+            request.fit.person = who;
+            request.fit.body = TextOf(body);
+            request.fit.focal_px = focal_px.value_or(0);
+            request.fit.stature_m = stature_m.value_or(0);
+            request.fit.detector.models = TextOf(models);
+            request.texture_size = texture_size;
+            return std::make_unique<PersonObject>(PythonCallbacks(progress).Run(
+                [&](const PipelineCallbacks& callbacks) { return MakePhotoPerson(request, callbacks); }));
+          },
+          py::arg("images"), py::kw_only(), py::arg("who") = 0, py::arg("texture_size") = 1024,
+          py::arg("body") = py::none(), py::arg("focal_px") = py::none(), py::arg("stature_m") = py::none(),
+          py::arg("models") = py::none(), py::arg("progress") = py::none(), kFromPhotosDoc)
+      .def_static(
+          "load",
+          [](const Path& folder, const std::optional<Path>& body) {
+            return std::make_unique<PersonObject>(ReadPhotoPerson(folder.string(), TextOf(body)));
+          },
+          py::arg("folder"), py::kw_only(), py::arg("body") = py::none(),
+          "A person who was kept: Person.save(), or `bodyloom animate person --keep`.")
+      .def(
+          "save",
+          [](const PersonObject& self, const Path& folder) {
+            RequireWritableFolder(folder.string());
+            WritePhotoPerson(folder.string(), self.person());
+          },
+          py::arg("folder"), "Writes body.npz, texture.png, photo_0.npz ... and person.json into the folder.")
+      .def("moved", &PersonObject::Moved, py::arg("track"),
+           "The motion by this person: a track of `body`, whose betas are zero.")
+      .def_property_readonly("body", &PersonObject::body, "Clothed; zero betas are the person.")
+      .def_property_readonly("texture", &PersonObject::texture, "(S, S, 3) uint8, red green blue, a copy.")
+      .def_property_readonly(
+          "betas",
+          [](const py::object& self) { return MatrixView(self.cast<const PersonObject&>().person().betas, self); },
+          "(B,) view: the shape on the body that the photos were fitted with.")
+      .def_property_readonly(
+          "shares", &PersonObject::shares,
+          "Shares of the texture by where its colours are from: seen, mirrored, behind, hair, around,\n"
+          "spread. Zeros for a person who was loaded.")
+      .def("__repr__", [](const PersonObject& self) {
+        return Concatenate("Person(", self.person().tracks.size(), " photos, texture ", self.person().texture.width,
+                           "x", self.person().texture.height, ")");
+      });
+}
+
+}  // namespace bodyloom::python
