@@ -40,7 +40,8 @@ void AddAnimatePerson(CLI::App& animate, Action* action) {
   TrackRequest& fit = request->photos.fit;
   verb->add_option("--image", request->photos.images, "Photos of the person; the first gives shape and clothes");
   verb->add_option("--person", request->person, "A person who was kept (--keep), in place of photos")->type_name("DIR");
-  verb->add_option("--keep", request->keep, "Folder for the person: body.npz, texture.png, photo_0.npz, person.json")
+  verb->add_option("--keep", request->keep,
+                   "Folder for the person: body.npz, texture.png, sources.png, photo_0.npz, person.json")
       ->type_name("DIR");
   verb->add_option("--track", request->track, "The motion: a track, .npz");
   verb->add_option("--out", request->out, "The video, .mp4");

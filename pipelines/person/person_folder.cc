@@ -27,7 +27,8 @@ std::string PhotoFile(const std::string& folder, size_t photo) {
 }  // namespace
 
 std::vector<std::string> PhotoPersonFiles(const std::string& folder, int num_photos) {
-  std::vector<std::string> files = {FileIn(folder, "body.npz"), FileIn(folder, "texture.png")};
+  std::vector<std::string> files = {FileIn(folder, "body.npz"), FileIn(folder, "texture.png"),
+                                    FileIn(folder, "sources.png")};
   for (int i = 0; i < num_photos; ++i) files.push_back(PhotoFile(folder, static_cast<size_t>(i)));
   files.push_back(FileIn(folder, "person.json"));
   return files;
@@ -36,6 +37,7 @@ std::vector<std::string> PhotoPersonFiles(const std::string& folder, int num_pho
 void WritePhotoPerson(const std::string& folder, const PhotoPerson& person) {
   SaveBodyCompact(FileIn(folder, "body.npz"), person.body->data());
   WriteImage(FileIn(folder, "texture.png"), person.texture);
+  if (!person.sources.empty()) WriteImage(FileIn(folder, "sources.png"), person.sources);
   for (size_t i = 0; i < person.tracks.size(); ++i) WriteTrack(PhotoFile(folder, i), person.tracks[i]);
   WriteFileAtomically(FileIn(folder, "person.json"), ToJson(person.report));
 }

@@ -2,6 +2,7 @@
 /// A person made from photos, kept in a folder:
 ///   body.npz      the clothed body (data_tools/body/body_io.h); zero betas are the person
 ///   texture.png   for its atlas
+///   sources.png   where each texel's colour is from, in colours (PhotoPerson::sources)
 ///   photo_0.npz   a track of one frame for each photo: the bare body in it, whose betas are the person's
 ///   person.json   what was seen and what was guessed (PhotoPersonReport)
 #pragma once

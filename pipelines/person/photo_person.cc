@@ -2,6 +2,7 @@
 #include "bodyloom/pipelines/person/photo_person.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
@@ -31,6 +32,16 @@ constexpr double kMarginOfHeight = 0.004;  ///< of the person's pixels: the mask
 
 constexpr double kStepMarginOfHeight = 0.012;  ///< where a limb hides another: a fit's median error
 constexpr double kLeastSeen = 0.01;            ///< of the body's texels, in every photo
+
+/// In the order of TexelSource.
+constexpr std::array<Colour, 8> kSourceColours = {{{0, 0, 0},
+                                                   {255, 255, 255},
+                                                   {70, 110, 230},
+                                                   {60, 180, 90},
+                                                   {230, 210, 60},
+                                                   {130, 80, 40},
+                                                   {240, 140, 40},
+                                                   {220, 40, 60}}};
 
 /// One photo, understood.
 struct FittedPhoto {
@@ -170,6 +181,13 @@ class PhotoPersonMaker {
     const size_t pixels = whole.sources.size();
     for (size_t p = 0; p < pixels; ++p) {
       for (size_t c = 0; c < 3; ++c) person_.texture.bgr[3 * p + c] = UnitByte(whole.bgr[c * pixels + p]);
+    }
+    person_.sources = Image(table.width, table.height);
+    for (size_t p = 0; p < pixels; ++p) {
+      const Colour colour = kSourceColours[static_cast<size_t>(whole.sources[p])];
+      person_.sources.bgr[3 * p] = colour.blue;
+      person_.sources.bgr[3 * p + 1] = colour.green;
+      person_.sources.bgr[3 * p + 2] = colour.red;
     }
     const auto share = [&](TexelSource source) {
       return static_cast<double>(std::count(whole.sources.begin(), whole.sources.end(), source)) / table.num_inside;

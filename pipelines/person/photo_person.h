@@ -49,6 +49,9 @@ struct PhotoPerson {
   std::shared_ptr<const BodyModel> bare;  ///< what the photos were fitted with, whose betas follow
   Eigen::VectorXd betas;
   Image texture;
+  /// Where each texel's colour is from: white seen, blue mirrored, green from behind, yellow across, brown hair, orange
+  /// around, red spread, black where the atlas is empty.
+  Image sources;
   std::vector<Track> tracks;  ///< a frame each, of `bare`: the person in each photo
   PhotoPersonReport report;
 };

@@ -29,6 +29,7 @@ constexpr std::array<TexelSource, kNumCounterparts> kSourceOf = {TexelSource::kM
                                                                  TexelSource::kAcross};
 constexpr double kLeastSkinShare = 0.1;  ///< of the hands' seen texels
 constexpr double kLeastTapWeight = 1e-3;
+constexpr double kNoiseOfLines = 0.08;  ///< of colours, largest channel
 constexpr double kHairIsKept = 16;      ///< times the screening: skin around the hair is not to run into it
 constexpr double kAroundIsKept = 0.25;  ///< likewise: lines that were carried around a limb are to run into each other
 constexpr double kTolerance = 1e-3;
@@ -276,6 +277,8 @@ class Completion {
     const TexelSource a = result_.sources[pixel], b = result_.sources[other];
     if (a == TexelSource::kSpread || b == TexelSource::kSpread) return {};
     if (a == b && a != TexelSource::kAround) return {true, true};
+    // Lines that were carried around a limb are joined where they differ by the noise of a picture, not across a hem.
+    if (a == b) return {Contrast(ColourAt(pixel), ColourAt(other)) <= kNoiseOfLines, false};
     return {Contrast(ColourAt(pixel), ColourAt(other)) <= options_.largest_step, false};
   }
 
