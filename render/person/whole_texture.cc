@@ -325,11 +325,15 @@ class Completion {
     }
     Eigen::SparseMatrix<double, Eigen::RowMajor> matrix(count, count);
     matrix.setFromTriplets(entries.begin(), entries.end());
-    Eigen::ConjugateGradient<Eigen::SparseMatrix<double, Eigen::RowMajor>, Eigen::Lower | Eigen::Upper> solver(matrix);
-    solver.setTolerance(kTolerance);
-    solver.setMaxIterations(kMostIterations);
     Eigen::MatrixXd solution(count, 3);
-    ParallelFor(3, 3, [&](int c) { solution.col(c) = solver.solveWithGuess(right.col(c), start.col(c)); });
+    ParallelFor(3, 3, [&](int c) {
+      // One solver each: it keeps the count of its iterations.
+      Eigen::ConjugateGradient<Eigen::SparseMatrix<double, Eigen::RowMajor>, Eigen::Lower | Eigen::Upper> solver;
+      solver.setTolerance(kTolerance);
+      solver.setMaxIterations(kMostIterations);
+      solver.compute(matrix);
+      solution.col(c) = solver.solveWithGuess(right.col(c), start.col(c));
+    });
     for (int u = 0; u < count; ++u) {
       for (size_t c = 0; c < 3; ++c) {
         const double value = std::clamp(solution(u, static_cast<Eigen::Index>(c)), 0.0, 1.0);
