@@ -121,10 +121,10 @@ class PhotoPersonMaker {
     const ClothesOffsets offsets = FitClothesOffsets(
         bare, ShapeVertices(bare, betas), TrackVertices(bare, photo.track, 0), photo.track.CameraAt(0), photo.mask);
     report.rim_measured = offsets.measured;
-    const BodyModel clothed(BakeShape(bare, betas, offsets.metres));
+    const auto clothed = std::make_shared<const BodyModel>(BakeShape(bare, betas, offsets.metres));
     if (index == 0) {
       person_.betas = betas;
-      person_.body = std::make_shared<const BodyModel>(clothed.data());
+      person_.body = clothed;
       person_.report.clothes_median_m = Percentile(offsets.metres, 50);
       person_.report.clothes_max_m = *std::max_element(offsets.metres.begin(), offsets.metres.end());
     }
@@ -146,7 +146,7 @@ class PhotoPersonMaker {
         person[static_cast<size_t>(y) * photo.image.width + x] = photo.mask.At(x, y);
       }
     }
-    const int seen = extractor_->Add(photo.image, TrackVertices(clothed, track, 0), track.CameraAt(0), index, person);
+    const int seen = extractor_->Add(photo.image, TrackVertices(*clothed, track, 0), track.CameraAt(0), index, person);
     report.texels_seen = static_cast<double>(seen) / extractor_->table().num_inside;
     if (report.texels_seen < kLeastSeen) {
       throw NothingToTrack(Concatenate(path, ": shows too little of the person, expected one who is larger (",

@@ -3,41 +3,21 @@
 
 #include <array>
 
+#include "bodyloom/geometry/joint_influence.h"
+
 namespace bodyloom {
 namespace {
 
 constexpr double kFaceBegins = 0.15, kFaceEnds = 1.4, kScalpBegins = -0.5;
 
-int LargestInfluence(const BodyModel& body, int vertex) {
-  int joint = -1;
-  double largest = 0;
-  for (int k = body.influence_begin()[vertex]; k < body.influence_begin()[vertex + 1]; ++k) {
-    if (body.influence_weight()[k] > largest) largest = body.influence_weight()[k], joint = body.influence_joint()[k];
-  }
-  return joint;
-}
-
-void MarkHands(const BodyModel& body, std::vector<BodyRegion>* regions) {
-  std::vector<bool> of_hand(body.num_joints(), false);
-  for (const char* name : {"l_wrist", "r_wrist"}) {
-    const int wrist = body.FindJoint(name);
-    if (wrist >= 0) of_hand[wrist] = true;
-  }
-  for (int j = 1; j < body.num_joints(); ++j) of_hand[j] = of_hand[j] || of_hand[body.parents()[j]];
-  for (int v = 0; v < body.num_vertices(); ++v) {
-    double weight = 0;
-    for (int k = body.influence_begin()[v]; k < body.influence_begin()[v + 1]; ++k) {
-      if (of_hand[body.influence_joint()[k]]) weight += body.influence_weight()[k];
-    }
-    if (weight > 0.5) (*regions)[v] = BodyRegion::kHand;
-  }
-}
-
 }  // namespace
 
 std::vector<BodyRegion> BodyRegions(const BodyModel& body, const MatrixX3d& rest_vertices) {
   std::vector<BodyRegion> regions(body.num_vertices(), BodyRegion::kElsewhere);
-  MarkHands(body, &regions);
+  const std::vector<double> of_hands = WeightsBelow(body, {"l_wrist", "r_wrist"});
+  for (int v = 0; v < body.num_vertices(); ++v) {
+    if (of_hands[v] > 0.5) regions[v] = BodyRegion::kHand;
+  }
   const int head = body.FindJoint("head");
   constexpr std::array kNames = {"nose", "left_eye", "right_eye", "left_ear", "right_ear"};
   std::array<Eigen::Vector3d, kNames.size()> points;
@@ -52,8 +32,9 @@ std::vector<BodyRegion> BodyRegions(const BodyModel& body, const MatrixX3d& rest
   }
   const Eigen::Vector3d &nose = points[0], eyes = (points[1] + points[2]) / 2, ears = (points[3] + points[4]) / 2;
   const double unit = eyes.y() - nose.y();
+  const std::vector<int> strongest = StrongestJoints(body);
   for (int v = 0; v < body.num_vertices(); ++v) {
-    if (LargestInfluence(body, v) != head) continue;
+    if (strongest[v] != head) continue;
     const double y = rest_vertices(v, 1), z = rest_vertices(v, 2);
     if (z > ears.z() + kFaceBegins * (nose.z() - ears.z()) && y < eyes.y() + kFaceEnds * unit) {
       regions[v] = BodyRegion::kFace;

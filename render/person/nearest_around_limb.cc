@@ -2,7 +2,8 @@
 #include "bodyloom/render/person/nearest_around_limb.h"
 
 #include <array>
-#include <cstdlib>
+
+#include "bodyloom/geometry/joint_influence.h"
 
 namespace bodyloom {
 namespace {
@@ -10,31 +11,12 @@ namespace {
 constexpr int kEdge = 4;  ///< pixels
 constexpr int kSide = RestViews::kPixels;
 
-/// Faces of which a corner moves most with an arm.
-std::vector<bool> FacesOfArms(const BodyModel& body) {
-  std::vector<bool> arm(body.num_joints(), false);
-  for (const char* name : {"l_shoulder", "r_shoulder"}) {
-    const int joint = body.FindJoint(name);
-    if (joint >= 0) arm[joint] = true;
-  }
-  for (int j = 1; j < body.num_joints(); ++j) arm[j] = arm[j] || arm[body.parents()[j]];
-  std::vector<double> weight(body.num_vertices(), 0.0);
-  for (int v = 0; v < body.num_vertices(); ++v) {
-    for (int k = body.influence_begin()[v]; k < body.influence_begin()[v + 1]; ++k) {
-      if (arm[body.influence_joint()[k]]) weight[v] += body.influence_weight()[k];
-    }
-  }
-  std::vector<bool> of_arm(body.num_faces());
-  for (int f = 0; f < body.num_faces(); ++f) of_arm[f] = weight[body.data().faces(f, 0)] > 0.5;
-  return of_arm;
-}
-
 }  // namespace
 
 NearestAroundLimb::NearestAroundLimb(const BodyModel& body, const RestViews& views,
                                      const std::function<bool(const SurfacePoint&)>& is_known)
     : views_(views), found_(static_cast<size_t>(kSide) * kSide) {
-  const std::vector<bool> of_arm = FacesOfArms(body);
+  const std::vector<double> of_arms = WeightsBelow(body, {"l_shoulder", "r_shoulder"});
   enum : uint8_t { kNothing, kInFront, kBehind };
   std::vector<uint8_t> known(found_.size(), kNothing), is_arm(found_.size(), 0), covered(found_.size(), 0);
   const auto at = [](int x, int y) { return static_cast<size_t>(y) * kSide + x; };
@@ -44,7 +26,8 @@ NearestAroundLimb::NearestAroundLimb(const BodyModel& body, const RestViews& vie
       const SurfacePoint front = views.At(RestSide::kFront, place), back = views.At(RestSide::kBack, place);
       if (front.face < 0 && back.face < 0) continue;
       covered[at(x, y)] = 1;
-      is_arm[at(x, y)] = of_arm[front.face >= 0 ? front.face : back.face] ? 1 : 0;
+      const int face = front.face >= 0 ? front.face : back.face;
+      is_arm[at(x, y)] = of_arms[body.data().faces(face, 0)] > 0.5 ? 1 : 0;
       if (front.face >= 0 && is_known(front)) {
         known[at(x, y)] = kInFront;
       } else if (back.face >= 0 && is_known(back)) {

@@ -149,6 +149,13 @@ class Completion {
     }
   }
 
+  /// visit(pixel, weight) for the texels of a bilinear lookup.
+  template <typename Visit>
+  void ForEachTap(const SurfacePoint& point, const Visit& visit) const {
+    const UvTaps taps = TapsAt(table_, UvPointAt(body_, charts_, point.face, point.barycentric));
+    for (int k = 0; k < taps.count; ++k) visit(static_cast<size_t>(taps.pixel[k]), taps.weight[k]);
+  }
+
   struct Lookup {
     Bgr colour{};
     float confidence = 0;  ///< 0: not seen there
@@ -160,19 +167,16 @@ class Completion {
     if (kind != kMirror && (IsOfHead(RegionOf(counterpart)) || IsOfHead(RegionOf(i)))) {
       return found;
     }
-    const UvTaps taps = TapsAt(table_, UvPointAt(body_, charts_, counterpart.face, counterpart.barycentric));
-    double weight = 0;
+    double weight = 0, confidence = 0;
     std::array<double, 3> colour{};
-    double confidence = 0;
-    for (int k = 0; k < taps.count; ++k) {
-      const auto pixel = static_cast<size_t>(taps.pixel[k]);
-      if (!IsSeen(pixel)) continue;
-      weight += taps.weight[k];
-      confidence += taps.weight[k] * seen_.confidence[pixel];
-      for (int c = 0; c < 3; ++c) colour[c] += taps.weight[k] * result_.bgr[c * pixels_ + pixel];
-    }
+    ForEachTap(counterpart, [&](size_t pixel, double share) {
+      if (!IsSeen(pixel)) return;
+      weight += share;
+      confidence += share * seen_.confidence[pixel];
+      for (size_t c = 0; c < 3; ++c) colour[c] += share * result_.bgr[c * pixels_ + pixel];
+    });
     if (!(weight >= kLeastWeight)) return found;
-    for (int c = 0; c < 3; ++c) found.colour[c] = static_cast<float>(colour[c] / weight);
+    for (size_t c = 0; c < 3; ++c) found.colour[c] = static_cast<float>(colour[c] / weight);
     found.confidence = static_cast<float>(confidence / weight);
     return found;
   }
@@ -227,11 +231,9 @@ class Completion {
   /// Whether the texels around a point hold a colour of their own, seen or guessed.
   [[nodiscard]] bool IsColoured(const SurfacePoint& point) const {
     if (IsOfHead(RegionOf(point))) return false;
-    const UvTaps taps = TapsAt(table_, UvPointAt(body_, charts_, point.face, point.barycentric));
-    for (int k = 0; k < taps.count; ++k) {
-      if (result_.sources[taps.pixel[k]] != TexelSource::kNowhere) return true;
-    }
-    return false;
+    bool any = false;
+    ForEachTap(point, [&](size_t pixel, double) { any = any || result_.sources[pixel] != TexelSource::kNowhere; });
+    return any;
   }
 
   void LookAroundLimbs(const RestViews& views, const MatrixX3d& points) {
@@ -241,16 +243,13 @@ class Completion {
       if (result_.sources[pixel] != TexelSource::kNowhere || IsOfHead(RegionOf(i))) return;
       const SurfacePoint found = nearest.At(points.row(static_cast<Eigen::Index>(i)).transpose());
       if (found.face < 0) return;
-      const UvTaps taps = TapsAt(table_, UvPointAt(body_, charts_, found.face, found.barycentric));
       double weight = 0;
       Bgr colour{};
-      for (int k = 0; k < taps.count; ++k) {
-        if (result_.sources[taps.pixel[k]] == TexelSource::kNowhere) continue;
-        weight += taps.weight[k];
-        for (size_t c = 0; c < 3; ++c) {
-          colour[c] += static_cast<float>(taps.weight[k]) * result_.bgr[c * pixels_ + taps.pixel[k]];
-        }
-      }
+      ForEachTap(found, [&](size_t tap, double share) {
+        if (result_.sources[tap] == TexelSource::kNowhere) return;
+        weight += share;
+        for (size_t c = 0; c < 3; ++c) colour[c] += static_cast<float>(share) * result_.bgr[c * pixels_ + tap];
+      });
       if (!(weight > kLeastTapWeight)) return;
       for (float& value : colour) value /= static_cast<float>(weight);
       guesses.emplace_back(pixel, colour);

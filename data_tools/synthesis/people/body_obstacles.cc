@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "bodyloom/geometry/joint_influence.h"
+
 namespace bodyloom {
 namespace {
 
@@ -53,18 +55,6 @@ double RadiusOf(std::vector<double> distances, Limb limb) {
 }
 
 }  // namespace
-
-std::vector<int> StrongestJoints(const BodyModel& body) {
-  std::vector<int> strongest(body.num_vertices(), 0);
-  for (int v = 0; v < body.num_vertices(); ++v) {
-    double most = -1;
-    for (int k = body.influence_begin()[v]; k < body.influence_begin()[v + 1]; ++k) {
-      if (body.influence_weight()[k] > most)
-        most = body.influence_weight()[k], strongest[v] = body.influence_joint()[k];
-    }
-  }
-  return strongest;
-}
 
 BodyObstacles::BodyObstacles(const BodyModel& body, const MatrixX3d& vertices, const MatrixX3d& joints) {
   const std::vector<int> strongest = StrongestJoints(body);

@@ -40,7 +40,4 @@ class BodyObstacles {
   std::vector<Bone> bones_;
 };
 
-/// The joint with the largest skinning weight of every vertex.
-std::vector<int> StrongestJoints(const BodyModel& body);
-
 }  // namespace bodyloom
