@@ -58,6 +58,12 @@ void AddCalibrationOptions(CLI::App& app, TrackRequest* request) {
          "calibration: an AIST++ camera folder or setting, a Pose2Sim calib_refined.json, or this project's JSON")
       ->group(kCamera)
       ->type_name("FILE");
+  app.add_option(
+         "--focal-35mm", c.focal_35mm_mm,
+         "focal length of the lens for film of 36 mm x 24 mm, near which the camera's is looked for (default: what "
+         "the video or photo notes)")
+      ->group(kCamera)
+      ->check(Quiet(CLI::PositiveNumber));
   app.add_option("--focal", c.focal_px, "focal length in pixels, for a centred camera without distortion")
       ->group(kCamera)
       ->check(Quiet(CLI::PositiveNumber));

@@ -48,7 +48,9 @@ struct Track {
   std::vector<FrameStatus> frame_status;  ///< T
   std::vector<MatrixX3d> joints;          ///< T of J×3
   std::vector<MatrixX3d> coco17;          ///< T of 17×3
-  RowMatrixXd joint_sigma;                ///< T×J standard deviation of each joint's position, metres (NaN: unknown)
+  /// T×J standard deviation of each joint's position about the middle of the hips, metres, one axis (NaN: unknown).
+  RowMatrixXd joint_sigma;
+  Eigen::VectorXd root_sigma;  ///< T: that of this middle's own position; or empty
   /// Where up and the ground are; nothing: the track does not say (render/track_world.h then assumes a level camera).
   std::optional<WorldFrame> world;
   [[nodiscard]] int num_frames() const { return motion.num_frames(); }

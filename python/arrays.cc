@@ -83,7 +83,7 @@ Image ImageFrom(const py::handle& value, const char* name) {
 template <typename T>
 py::array View(const T* data, std::vector<py::ssize_t> shape, std::vector<py::ssize_t> strides,
                const py::handle& owner) {
-  const py::array view(py::dtype::of<T>(), std::move(shape), std::move(strides), data, owner);
+  py::array view(py::dtype::of<T>(), std::move(shape), std::move(strides), data, owner);
   ForbidWriting(view);
   return view;
 }
@@ -99,7 +99,7 @@ py::array ArrayOwning(std::vector<T> values, std::vector<py::ssize_t> shape) {
   auto kept = std::make_unique<std::vector<T>>(std::move(values));
   T* data = kept->data();
   const py::capsule owner(kept.get(), [](void* memory) { delete static_cast<std::vector<T>*>(memory); });
-  kept.release();
+  static_cast<void>(kept.release());  // the capsule owns it
   return py::array_t<T>(std::move(shape), data, owner);
 }
 

@@ -187,7 +187,10 @@ void BindLive(py::module_& module) {
           "(B,) float64 view: the shape as known then.")
       .def_property_readonly(
           "joint_sigma", [](const py::object& self) { return MatrixView(FrameOf(self).frame.joint_sigma, self); },
-          "(J,) float64 view: standard deviations of the joints' positions as known then, metres.")
+          "(J,) float64 view: standard deviations of the joints' positions about the mid-hip as known then, metres.")
+      .def_property_readonly(
+          "root_sigma", [](const LiveFrameObject& self) { return self.frame.root_sigma; },
+          "Standard deviation of the mid-hip's own position as known then, metres.")
       .def_property_readonly(
           "camera", [](const LiveFrameObject& self) { return self.frame.camera; },
           "Of this frame, with the focal length as known then.")

@@ -32,7 +32,7 @@ constexpr const char* kFromArraysDoc =
     R"(A track of arrays under the names of the track file (data_tools/motion/track_io.h).
 
 Needed are poses (T, 3J), trans (T, 3) and a camera: K (3, 3), or camera (T, 3) of weak perspective; also taken are
-betas, timestamps (or mocap_framerate), body, frame_status, joints, coco17, joint_sigma, distortion, image_size,
+betas, timestamps (or mocap_framerate), body, frame_status, joints, coco17, joint_sigma, root_sigma, distortion, image_size,
 world_from_camera. Track.to_arrays() gives them all, so that Track.from_arrays(**{**track.to_arrays(), "trans": moved})
 is the track with one array changed; joints and coco17 stay as they are given.
 Raises ValueError naming the array, what it holds and what was expected.)";
@@ -71,6 +71,7 @@ py::dict ArraysOf(const py::object& self) {
   for (const char* name : {"poses", "trans", "betas", "timestamps", "frame_status", "joint_sigma"}) {
     arrays[name] = self.attr(name);
   }
+  if (track.root_sigma.size() > 0) arrays["root_sigma"] = self.attr("root_sigma");
   if (!object.joints.empty()) arrays["joints"] = self.attr("joints");
   if (!object.coco17.empty()) arrays["coco17"] = self.attr("coco17");
   arrays["body"] = track.motion.body;
@@ -189,7 +190,10 @@ void BindTrack(py::module_& module) {
           "(T, 17, 3) float64 view of COCO's landmarks, metres; (T, 0, 3) for bodies without them.")
       .def_property_readonly(
           "joint_sigma", [](const py::object& self) { return MatrixView(TrackOf(self).joint_sigma, self); },
-          "(T, J) float64 view: standard deviation of each joint's position, metres; NaN: unknown.")
+          "(T, J) float64 view: standard deviation of each joint's position about the mid-hip, metres; NaN: unknown.")
+      .def_property_readonly(
+          "root_sigma", [](const py::object& self) { return MatrixView(TrackOf(self).root_sigma, self); },
+          "(T,) float64 view: standard deviation of the mid-hip's own position, metres; (0,) when the file has none.")
       .def_property_readonly(
           "camera", [](const TrackObject& self) { return self.track.camera; }, "The intrinsics of all frames.")
       .def(

@@ -35,6 +35,8 @@ What was seen
 The camera
   camera          Camera, or a calibration file of which `view` names the camera
   focal_px        of a centred camera without distortion, pixels
+  focal_35mm      of the lens for film of 36 mm x 24 mm, near which a focal length is estimated; None: what the video
+                  or photo notes
   camera_model    "pinhole", "unknown-focal" (the focal length is estimated) or "weak"; None: pinhole where the camera
                   or focal_px is given, else unknown-focal
   image_size      (width, height), when nothing else gives it
@@ -163,14 +165,15 @@ void BindTracking(py::module_& module) {
          std::optional<double> dense_uv_sigma, const std::optional<Path>& part_labels, const std::optional<Path>& video,
          const std::string& view, int person, std::optional<double> fps, double min_confidence,
          const std::string& convention, const std::optional<CameraArgument>& camera, std::optional<double> focal_px,
-         const std::optional<std::string>& camera_model, std::optional<std::pair<int, int>> image_size,
-         const std::optional<BodyArgument>& body, std::optional<double> stature_m, const std::optional<Path>& init,
-         double init_weight, const std::optional<Path>& prior, const std::optional<Path>& lifter,
-         std::optional<int> live_lag, const std::string& solver, int threads, int max_iterations, bool estimate_shape,
-         bool uncertainty, bool ground, bool skip_unneeded, double rendered_weight, double velocity_weight,
-         std::optional<double> straight_knees, const std::optional<Path>& pose_model,
-         const std::optional<Path>& box_model, const std::optional<Path>& models, std::optional<double> detect_rate,
-         bool mask, double begin_s, std::optional<double> end_s, const py::object& progress) {
+         std::optional<double> focal_35mm, const std::optional<std::string>& camera_model,
+         std::optional<std::pair<int, int>> image_size, const std::optional<BodyArgument>& body,
+         std::optional<double> stature_m, const std::optional<Path>& init, double init_weight,
+         const std::optional<Path>& prior, const std::optional<Path>& lifter, std::optional<int> live_lag,
+         const std::string& solver, int threads, int max_iterations, bool estimate_shape, bool uncertainty, bool ground,
+         bool skip_unneeded, double rendered_weight, double velocity_weight, std::optional<double> straight_knees,
+         const std::optional<Path>& pose_model, const std::optional<Path>& box_model, const std::optional<Path>& models,
+         std::optional<double> detect_rate, bool mask, double begin_s, std::optional<double> end_s,
+         const py::object& progress) {
         TrackArguments arguments;
         TrackRequest& request = arguments.request;
         request.dense = TextOf(dense);
@@ -183,6 +186,7 @@ void BindTracking(py::module_& module) {
         request.min_confidence = min_confidence;
         request.convention = convention;
         request.focal_px = PositiveOr0(focal_px, "focal_px");
+        request.focal_35mm_mm = PositiveOr0(focal_35mm, "focal_35mm");
         request.camera = camera_model.value_or("");
         BODYLOOM_CHECK(!camera_model || request.camera == "pinhole" || request.camera == "unknown-focal" ||
                            request.camera == "weak",
@@ -225,8 +229,8 @@ void BindTracking(py::module_& module) {
       py::arg("dense_uv_sigma") = py::none(), py::arg("part_labels") = py::none(), py::arg("video") = py::none(),
       py::arg("view") = "", py::arg("person") = 0, py::arg("fps") = py::none(), py::arg("min_confidence") = 0.0,
       py::arg("convention") = "", py::arg("camera") = py::none(), py::arg("focal_px") = py::none(),
-      py::arg("camera_model") = py::none(), py::arg("image_size") = py::none(), py::arg("body") = py::none(),
-      py::arg("stature_m") = py::none(), py::arg("init") = py::none(),
+      py::arg("focal_35mm") = py::none(), py::arg("camera_model") = py::none(), py::arg("image_size") = py::none(),
+      py::arg("body") = py::none(), py::arg("stature_m") = py::none(), py::arg("init") = py::none(),
       py::arg("init_weight") = defaults.solve.initialiser_weight, py::arg("prior") = py::none(),
       py::arg("lifter") = py::none(), py::arg("live_lag") = py::none(),
       py::arg("solver") = ToString(defaults.solve.solver), py::arg("threads") = defaults.solve.num_threads,

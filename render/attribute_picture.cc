@@ -128,7 +128,7 @@ void AttributePainter::Draw(const BodyModel& body, const MatrixX3d& vertices, co
       const float share = 1.0F / static_cast<float>(n * n), rest = static_cast<float>(n * n - covered) * share;
       if (coverage != nullptr) {
         (*coverage)[size_t(y) * image->width + x] =
-            static_cast<uint8_t>(255.0F * static_cast<float>(covered) * share + 0.5F);
+            static_cast<uint8_t>(std::lround(255.0F * static_cast<float>(covered) * share));
       }
       uint8_t* p = image->pixel(x, y);
       for (int c = 0; c < 3; ++c) {

@@ -21,6 +21,12 @@ inline double StartFocalPx(int width, int height) { return 0.9 * std::max(width,
 struct FocalPrior {
   double log_mean = 0, log_sigma = 0.25;
   static FocalPrior ForImage(int width, int height) { return {.log_mean = std::log(StartFocalPx(width, height))}; }
+  /// Of a lens with the diagonal angle of view of `focal_35mm_mm` on film of 36 mm × 24 mm, whose picture is
+  /// 43.27 mm long from corner to corner.
+  static FocalPrior ForLens(int width, int height, double focal_35mm_mm, double log_sigma) {
+    return {.log_mean = std::log(focal_35mm_mm / std::hypot(36.0, 24.0) * std::hypot(width, height)),
+            .log_sigma = log_sigma};
+  }
 };
 
 }  // namespace bodyloom

@@ -38,7 +38,8 @@ Camera StartCamera(const TrackSequenceInput& input, const TrackSequenceOptions& 
   const int width = input.camera.width > 0 ? input.camera.width : extent.width;
   const int height = input.camera.height > 0 ? input.camera.height : extent.height;
   if (options.camera_knowledge != CameraKnowledge::kKnown) {
-    return MakePinhole(width, height, StartFocalPx(width, height));
+    const FocalPrior prior = input.focal_prior.value_or(FocalPrior::ForImage(width, height));
+    return MakePinhole(width, height, std::exp(prior.log_mean));
   }
   Camera camera = input.camera;
   camera.width = width;
@@ -106,6 +107,7 @@ void ClipFit::SetUpProblem() {
   problem_.cut_before = joints_ != nullptr ? FindCuts(*joints_) : std::vector<char>(num_frames(), 0);
   problem_.betas = VectorXd::Zero(num_betas);
   problem_.log_focal = problem_.log_focal_prior = std::log(camera.fx);
+  problem_.log_focal_sigma = input_.focal_prior.value_or(FocalPrior()).log_sigma;
   if (input_.prior != nullptr && input_.prior->num_components() > 0) prior_.emplace(*input_.prior, model, active);
   limits_ = JointLimits::ForBody(model);
   stature_m_ = AssumedStature(input_);
@@ -201,6 +203,7 @@ void ClipFit::FitCoarseFrames() {
   if (from_guess) FitNearStart(&coarse);
   FitCameraScale(&coarse);
   if (has_points()) runner_->Run(stages_.coarse, &coarse);
+  SettleFocalLength(&coarse);
   FitCameraScale(&coarse);
   LearnFromFirstAnswer(&coarse);
   FitPartLabels(&coarse);
@@ -220,7 +223,7 @@ void ClipFit::LearnFromFirstAnswer(SequenceProblem* coarse) {
     problem_.smoothness = coarse->smoothness = FitSmoothness(*coarse, coarse->smoothness[0]);
   }
   const bool has_ground = ground_->FindGround(coarse_frames_, coarse, &problem_);
-  if (has_points() && (options_.fit_smoothness || has_ground)) runner_->Run(stages_.again, coarse);
+  if (has_points() && (options_.fit_smoothness || has_ground || settled_focal_)) runner_->Run(stages_.again, coarse);
 }
 
 void ClipFit::FitCameraScale(SequenceProblem* coarse) {
@@ -252,6 +255,31 @@ void ClipFit::ScaleCameraPath(double scale_m, SequenceProblem* coarse) {
   for (size_t i = 0; i < coarse_frames_.size(); ++i) move(coarse_frames_[i], coarse->betas, &coarse->states[i]);
   for (size_t t = 0; t < num_frames(); ++t) move(static_cast<int>(t), problem_.betas, &problem_.states[t]);
   std::copy(after.begin(), after.end(), camera_path_.begin());  // frames point into it
+}
+
+void ClipFit::SettleFocalLength(SequenceProblem* coarse) {
+  constexpr double kHeldLogSigma = 1e-4;
+  const bool joints_alone = !lifted_.frames.empty() && input_.dense == nullptr;
+  if (problem_.layout.focal_column < 0 || !joints_alone || !runner_->going()) return;
+  const FocalFit fit{coarse->log_focal, FocalLogSigmaOf(*coarse, threads_)};
+  const FocalFit joined =
+      JoinFocalFits({&fit, 1}, {.log_mean = problem_.log_focal_prior, .log_sigma = problem_.log_focal_sigma});
+  const double farther = std::exp(joined.log_px - fit.log_px);
+  const double pelvis_z = input_.body->RestJoints(coarse->betas)(0, 2);
+  for (size_t i = 0; i < coarse->states.size(); ++i) {
+    FrameState seen = StateInCamera(*coarse, i);
+    seen.translation.z() = farther * (pelvis_z + seen.translation.z()) - pelvis_z;
+    const CameraPose* camera = coarse->frames[i].camera_from_scene;
+    coarse->states[i] = camera == nullptr
+                            ? std::move(seen)
+                            : StateInCamera(problem_.layout, Inverse(*camera), coarse->betas, std::move(seen));
+  }
+  for (SequenceProblem* problem : {coarse, &problem_}) {
+    problem->log_focal = problem->log_focal_prior = joined.log_px;
+    problem->log_focal_sigma = kHeldLogSigma;
+  }
+  summary_.focal_fit = fit;
+  settled_focal_ = joined;
 }
 
 void ClipFit::FitPartLabels(SequenceProblem* coarse) {
@@ -298,15 +326,19 @@ void ClipFit::Finish(TrackSequenceResult* result) {
 
 void ClipFit::FillJointSigma(Track* track) {
   // On the coarse frames: neighbours' detection errors are not independent, and their joints' spread changes slowly.
-  const RowMatrixXd sigma =
-      JointPositionSigma(SelectFrames(problem_, coarse_frames_), threads_, &summary_.focal_log_sigma);
+  const PositionSigma sigma =
+      PositionSigmaOf(SelectFrames(problem_, coarse_frames_), threads_, &summary_.focal_log_sigma);
   const auto distance = [&](size_t i, size_t t) {
     return std::abs(problem_.timestamps[coarse_frames_[i]] - problem_.timestamps[t]);
   };
   for (size_t i = 0, t = 0; t < num_frames(); ++t) {
     while (i + 1 < coarse_frames_.size() && distance(i + 1, t) <= distance(i, t)) ++i;
-    track->joint_sigma.row(t) = sigma.row(i);
+    track->joint_sigma.row(t) = sigma.joints.row(i);
+    track->root_sigma[t] = sigma.hips[i];
   }
+  if (!settled_focal_) return;
+  summary_.focal_log_sigma = settled_focal_->log_sigma;  // in the equations it is held
+  AddFocalSpread(settled_focal_->log_sigma, track);
 }
 
 }  // namespace bodyloom

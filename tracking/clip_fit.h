@@ -54,6 +54,9 @@ class ClipFit {
   /// frames; what each camera sees of the person stays as it is.
   void FitCameraScale(SequenceProblem* coarse);
   void ScaleCameraPath(double scale_m, SequenceProblem* coarse);
+  /// A focal length that is not known becomes what the coarse answer and the prior say of it together, and stays; people
+  /// move along their rays with it. Only of 2D joints that the lifter has seen: nothing else is known to err as much.
+  void SettleFocalLength(SequenceProblem* coarse);
   void FitPartLabels(SequenceProblem* coarse);
   void FitDense(SequenceProblem* coarse);
   /// Uncertainty of every frame's joints: that of the coarse frame nearest in time.
@@ -82,6 +85,7 @@ class ClipFit {
   LiftedStart lifted_;
   LiftedLandmarks lifted_landmarks_;
   std::vector<LiftedPose> lifted_poses_;  ///< T, or empty
+  std::optional<FocalFit> settled_focal_;
   std::optional<ClipGround> ground_;
   std::optional<DenseRounds> dense_rounds_;
   std::optional<PartLabelRounds> part_label_rounds_;

@@ -51,6 +51,12 @@ void CheckCamera(const Camera& camera) {
   }
 }
 
+void CheckFocalPrior(const FocalPrior& prior) {
+  BODYLOOM_CHECK(std::isfinite(prior.log_mean) && prior.log_sigma > 0 && std::isfinite(prior.log_sigma),
+                 "track: the focal length's prior is ", std::exp(prior.log_mean), " px within ", prior.log_sigma,
+                 " (standard deviation of its logarithm), expected positive numbers");
+}
+
 void CheckBody(const BodyModel& body) {
   const MatrixX3d& v = body.data().v_template;
   const double extent = (v.colwise().maxCoeff() - v.colwise().minCoeff()).maxCoeff();
@@ -227,6 +233,7 @@ void CheckNumbers(const TrackSequenceInput& input, const TrackSequenceOptions& o
   CheckTimes(input.dense, "dense keypoints");
   CheckTimes(input.part_labels, "part labels");
   if (options.camera_knowledge == CameraKnowledge::kKnown) CheckCamera(input.camera);
+  if (input.focal_prior) CheckFocalPrior(*input.focal_prior);
   if (input.ground != nullptr) CheckGround(*input.ground);
   CheckBody(*input.body);
   if (input.stature_m != 0) CheckStature(input);

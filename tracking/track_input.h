@@ -2,6 +2,7 @@
 /// Input of TrackSequence().
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "bodyloom/geometry/body_model.h"
@@ -10,6 +11,7 @@
 #include "bodyloom/geometry/observations.h"
 #include "bodyloom/geometry/pose_prior.h"
 #include "bodyloom/geometry/track.h"
+#include "bodyloom/tracking/camera_knowledge.h"
 #include "bodyloom/tracking/terms/ground_contact/ground_options.h"
 
 namespace bodyloom {
@@ -43,6 +45,8 @@ struct TrackSequenceInput {
   /// How many metres a unit of these translations is; 0: not known, found from the person (camera_scale.h).
   double camera_scale_m = 1;
   Camera camera;  ///< kKnown: all of it; otherwise only width and height (0: taken from the observations)
+  /// What is known of a focal length that is estimated; nothing: FocalPrior::ForImage().
+  std::optional<FocalPrior> focal_prior;
 };
 
 }  // namespace bodyloom

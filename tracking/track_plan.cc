@@ -56,6 +56,7 @@ std::vector<PlanEntry> PlanTrackSequence(const TrackSequenceInput& input, const 
   add("focal length", options.camera_knowledge == CameraKnowledge::kUnknownFocal,
       options.camera_knowledge == CameraKnowledge::kKnown  ? "known"
       : options.camera_knowledge == CameraKnowledge::kWeak ? "weak perspective has none"
+      : input.focal_prior                                  ? "estimated with the clip, near that of its lens"
                                                            : "estimated with the clip");
   add("uncertainty", options.estimate_uncertainty, options.estimate_uncertainty ? "per joint" : "switched off");
   return plan;

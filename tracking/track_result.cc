@@ -51,6 +51,7 @@ void FillTrack(const TrackSequenceInput& input, const SequenceProblem& problem, 
   const bool weak = problem.layout.knowledge == CameraKnowledge::kWeak;
   track.weak_camera.resize(weak ? T : 0, 3);
   track.joint_sigma.setConstant(T, J, std::numeric_limits<double>::quiet_NaN());
+  track.root_sigma.setConstant(T, std::numeric_limits<double>::quiet_NaN());
   summary.focal_px = track.camera.fx;
   for (FrameStatus status :
        {FrameStatus::kTracked, FrameStatus::kWeak, FrameStatus::kInterpolated, FrameStatus::kLost}) {

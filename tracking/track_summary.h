@@ -5,11 +5,13 @@
 #include <Eigen/Core>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "bodyloom/geometry/track.h"
+#include "bodyloom/tracking/focal_length.h"
 #include "bodyloom/tracking/solve_options.h"
 
 namespace bodyloom {
@@ -88,6 +90,8 @@ struct TrackSequenceSummary {
   std::vector<TermSummary> terms;                              ///< of every image term that ran
   std::vector<OwnTermSummary> own_terms;                       ///< one a term of TrackSequenceOptions::own_terms
   double focal_px = 0;                                         ///< used or estimated
+  /// What the detections by themselves say of it where it was joined with the prior (focal_length.h); else nothing.
+  std::optional<FocalFit> focal_fit;
   /// Standard deviation of log focal_px when it was estimated with uncertainty; 0 when it was known, NaN when its
   /// spread is not known.
   double focal_log_sigma = 0;

@@ -37,6 +37,14 @@ KeypointSequence FirstFrames(KeypointSequence keypoints, int frames) {
   return keypoints;
 }
 
+void LeaveOutFeet(KeypointSequence* keypoints) {
+  for (int k = 0; k < keypoints->num_points(); ++k) {
+    const std::string& name = keypoints->names[k];
+    if (name.find("toe") == std::string::npos && name.find("heel") == std::string::npos) continue;
+    for (int t = 0; t < keypoints->num_frames(); ++t) keypoints->at(t, k).confidence = 0;
+  }
+}
+
 std::string MotionName(const std::string& path) { return std::filesystem::path(path).stem().string().substr(0, 16); }
 
 }  // namespace bodyloom

@@ -17,6 +17,9 @@ DenseFaultOptions DenseFaults(const std::string& noise);
 Motion FirstFrames(Motion motion, int frames);
 KeypointSequence FirstFrames(KeypointSequence keypoints, int frames);
 
+/// Toes and heels get confidence 0: what most detectors show.
+void LeaveOutFeet(KeypointSequence* keypoints);
+
 /// First part of the file's name.
 std::string MotionName(const std::string& path);
 

@@ -15,6 +15,7 @@
 
 #include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/accuracy/bench_report.h"
+#include "benchmarks/accuracy/dense_clips.h"
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/evaluation/metrics.h"
 #include "bodyloom/data_tools/learned/lifter_weights_io.h"
@@ -79,15 +80,6 @@ void TrackAndAdd(const SynthClip& clip, bool ground, Sums* sums) {
   }
   sums->grounds += result.summary.ground.has_plane ? 1 : 0;
   for (const auto& [stage, seconds] : result.summary.seconds) sums->seconds += seconds;
-}
-
-/// What most detectors show.
-void LeaveOutFeet(KeypointSequence* keypoints) {
-  for (int k = 0; k < keypoints->num_points(); ++k) {
-    const std::string& name = keypoints->names[k];
-    if (name.find("toe") == std::string::npos && name.find("heel") == std::string::npos) continue;
-    for (int t = 0; t < keypoints->num_frames(); ++t) keypoints->at(t, k).confidence = 0;
-  }
 }
 
 void Run(const BenchArguments& arguments, const std::string& command) {

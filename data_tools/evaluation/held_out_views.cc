@@ -7,6 +7,7 @@
 #include "bodyloom/data_tools/evaluation/knee_flexion.h"
 #include "bodyloom/data_tools/evaluation/metrics.h"
 #include "bodyloom/data_tools/evaluation/metrics_image.h"
+#include "bodyloom/data_tools/evaluation/sigma_reliability.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/body_model.h"
 #include "bodyloom/geometry/camera_path.h"
@@ -147,6 +148,7 @@ Evaluation EvaluateHeldOutViews(const Track& track, const MultiViewClip& clip, c
   result.Add("root_err_mm", root.distance.mean * kMm, "mid-hip error");
   result.Add("root_lateral_err_mm", root.lateral * kMm, "its part across the viewing direction");
   result.Add("root_depth_err_mm", root.depth * kMm, "its part in depth");
+  AddSigmaReliability(JudgedLandmarks(track, source, p, g), &result);
 
   // The track in the world: root where it really was, one scale for the clip.
   std::vector<MatrixX3d> placed_in_world(T);

@@ -6,6 +6,7 @@
 
 #include "bodyloom/data_tools/evaluation/knee_flexion.h"
 #include "bodyloom/data_tools/evaluation/metrics.h"
+#include "bodyloom/data_tools/evaluation/sigma_reliability.h"
 #include "bodyloom/data_tools/evaluation/vertex_errors.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/units.h"
@@ -92,6 +93,8 @@ Evaluation EvaluateAgainstTruth(const Track& track, const Track& truth, const Bo
   result.Add("gt_accel_ms2", acceleration.mean_truth, "true acceleration, m/s2");
   result.Add("jitter_ms3", Jitter(joints, truth.motion.timestamps), "mean jerk, m/s3");
   result.Add("gt_jitter_ms3", Jitter(true_joints, truth.motion.timestamps), "true mean jerk, m/s3");
+
+  AddSigmaReliability(JudgedJoints(track, source, body, joints, true_joints), &result);
 
   const Eigen::Index columns = std::max(poses.cols(), truth.motion.poses.cols());
   const JointAngleError angles =

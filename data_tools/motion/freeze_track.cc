@@ -27,6 +27,7 @@ Track FramesInOrder(const Track& track, std::span<const int> frames) {
   shown.motion.trans.resize(T, 3);
   shown.weak_camera.resize(track.weak_camera.rows() > 0 ? T : 0, 3);
   shown.joint_sigma.resize(track.joint_sigma.rows() > 0 ? T : 0, track.joint_sigma.cols());
+  shown.root_sigma.resize(track.root_sigma.size() > 0 ? T : 0);
   for (int t = 0; t < T; ++t) {
     const int s = frames[t];
     BODYLOOM_CHECK(s >= 0 && s <= last, "frame ", s, " of a track of ", last + 1);
@@ -37,6 +38,7 @@ Track FramesInOrder(const Track& track, std::span<const int> frames) {
     if (track.HasMovingCamera()) shown.camera_from_scene.push_back(track.camera_from_scene.at(s));
     if (shown.weak_camera.rows() > 0) shown.weak_camera.row(t) = track.weak_camera.row(s);
     if (shown.joint_sigma.rows() > 0) shown.joint_sigma.row(t) = track.joint_sigma.row(s);
+    if (shown.root_sigma.size() > 0) shown.root_sigma[t] = track.root_sigma[s];
     if (!track.joints.empty()) shown.joints.push_back(track.joints.at(s));
     if (!track.coco17.empty()) shown.coco17.push_back(track.coco17.at(s));
   }

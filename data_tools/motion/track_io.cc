@@ -93,6 +93,7 @@ class TrackReader {
     track_.joint_sigma.setConstant(T_, J, std::numeric_limits<double>::quiet_NaN());
     ReadWorld();
     if (Has("joint_sigma")) track_.joint_sigma = Array("joint_sigma", {T_, -1}).ToMatrix();
+    if (Has("root_sigma")) track_.root_sigma = Array("root_sigma", {T_}).ToMatrix();
     return std::move(track_);
   }
 
@@ -373,6 +374,11 @@ void WriteTrack(const std::string& path, const Track& track) {
     BODYLOOM_CHECK(track.joint_sigma.rows() == T && track.joint_sigma.cols() == J, "track: joint_sigma is ",
                    track.joint_sigma.rows(), "x", track.joint_sigma.cols(), ", expected ", T, "x", J);
     arrays["joint_sigma"] = NdArray::FromDoubles(track.joint_sigma.data(), {T, J});
+  }
+  if (track.root_sigma.size() > 0) {
+    BODYLOOM_CHECK(track.root_sigma.size() == T, "track: root_sigma has ", track.root_sigma.size(),
+                   " frames, expected ", T);
+    arrays["root_sigma"] = NdArray::FromDoubles(track.root_sigma.data(), {T});
   }
   WriteNpz(path, arrays);
 }

@@ -4,32 +4,11 @@
 #include <cstddef>
 #include <cstdlib>
 
+#include "bodyloom/data_tools/video/header_bytes.h"
 #include "bodyloom/data_tools/video/jpeg_header.h"
 
 namespace bodyloom {
 namespace {
-
-/// Whole numbers of a file's bytes; beyond the end there are zeros.
-class HeaderBytes {
- public:
-  explicit HeaderBytes(std::string_view bytes) : bytes_(bytes) {}
-
-  [[nodiscard]] bool Has(size_t at, std::string_view text) const {
-    return bytes_.size() >= at + text.size() && bytes_.substr(at, text.size()) == text;
-  }
-  [[nodiscard]] uint64_t Number(size_t at, int count, bool big_endian) const {
-    uint64_t value = 0;
-    for (int i = 0; i < count; ++i) value = value << 8 | Byte(at + (big_endian ? i : count - 1 - i));
-    return value;
-  }
-  [[nodiscard]] uint64_t Big(size_t at, int count) const { return Number(at, count, true); }
-  [[nodiscard]] uint64_t Little(size_t at, int count) const { return Number(at, count, false); }
-  [[nodiscard]] size_t size() const { return bytes_.size(); }
-
- private:
-  [[nodiscard]] uint8_t Byte(size_t at) const { return at < bytes_.size() ? static_cast<uint8_t>(bytes_[at]) : 0; }
-  std::string_view bytes_;
-};
 
 /// At most 2^31, so that it does not overflow to ask how many pixels there are.
 int64_t Side(uint64_t value) {

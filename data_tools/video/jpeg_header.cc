@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "bodyloom/data_tools/video/exif.h"
+
 namespace bodyloom {
 
 std::optional<JpegHeader> ReadJpegHeader(std::string_view bytes) {
@@ -24,7 +26,12 @@ std::optional<JpegHeader> ReadJpegHeader(std::string_view bytes) {
       header.width = word(at + 7);
       header.components = byte(at + 9);
     }
-    at += 2 + static_cast<size_t>(word(at + 2));
+    constexpr std::string_view kExif("Exif\0\0", 6);
+    const auto length = static_cast<size_t>(word(at + 2));
+    if (marker == 0xE1 && length >= 8 && bytes.substr(at + 4).starts_with(kExif)) {
+      header.focal_35mm_mm = ReadExifFocal35mm(bytes.substr(at + 10, length - 8));
+    }
+    at += 2 + length;
     if (marker != 0xDA) continue;
     // Coded data never hold this pair but as the marker; a thumbnail's own lies before the scan.
     header.ends = bytes.find("\xFF\xD9", at) != std::string_view::npos;

@@ -10,6 +10,7 @@ namespace bodyloom {
 struct JpegHeader {
   int width = 0, height = 0;  ///< 0: no frame header was found
   int components = 3;         ///< 1 grey, 3 colours, 4 inks
+  double focal_35mm_mm = 0;   ///< of its Exif (exif.h); 0: it has none
   bool ends = false;          ///< an end-of-image marker comes after the first scan began
 };
 

@@ -8,6 +8,7 @@ extern "C" {
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
@@ -147,6 +148,17 @@ void VideoPackets::NoteEnd(const AVPacket& packet) {
 }
 
 const AVStream& VideoPackets::stream() const { return *stream_; }
+
+double VideoPackets::focal_35mm_mm() const {
+  constexpr const char* kKey = "com.apple.quicktime.camera.focal_length.35mm_equivalent";
+  for (const AVDictionary* notes : {stream_->metadata, context_->metadata}) {
+    const AVDictionaryEntry* entry = av_dict_get(notes, kKey, nullptr, 0);
+    if (entry == nullptr) continue;
+    const double value = std::strtod(entry->value, nullptr);
+    if (value > 0 && std::isfinite(value)) return value;  // cameras that do not know it write -1 and the like
+  }
+  return 0;
+}
 
 double VideoPackets::fps() const {
   const auto rate = [](AVRational value) {

@@ -24,6 +24,8 @@ class VideoPackets {
   [[nodiscard]] const AVStream& stream() const;
   /// Frames a second: the nominal rate where the frames keep it, else the mean rate; 0 when the file does not say.
   [[nodiscard]] double fps() const;
+  /// VideoInfo::focal_35mm_mm, of the file or of its picture stream.
+  [[nodiscard]] double focal_35mm_mm() const;
   /// Frames to be shown, as the container says; 0 when it does not.
   [[nodiscard]] int num_frames() const;
   /// After the end: what shows that the file should have gone on ("its index promises 24 frames"); "" when nothing

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "bodyloom/data_tools/video/frame_decoder.h"
 #include "bodyloom/data_tools/video/frame_image.h"
 #include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/data_tools/video/jpeg_header.h"
 #include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
@@ -40,7 +42,9 @@ class VideoReader::Source {
 class VideoReader::ImagesSource : public Source {
  public:
   ImagesSource(const std::string& path, std::vector<std::string> files) : path_(path), files_(std::move(files)) {
-    first_ = ReadImage(files_[0]);
+    const std::string bytes = ReadImageBytes(files_[0]);
+    first_ = DecodeImage(bytes, files_[0]);
+    if (const std::optional<JpegHeader> jpeg = ReadJpegHeader(bytes)) info_.focal_35mm_mm = jpeg->focal_35mm_mm;
     info_.width = first_.width;
     info_.height = first_.height;
     info_.num_frames = static_cast<int>(files_.size());
@@ -88,6 +92,7 @@ class VideoReader::FileSource : public Source {
     info_.width = first_.width;
     info_.height = first_.height;
     info_.fps = decoder_.packets().fps();
+    info_.focal_35mm_mm = decoder_.packets().focal_35mm_mm();
     info_.num_frames = decoder_.packets().num_frames();
   }
 

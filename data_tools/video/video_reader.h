@@ -14,6 +14,9 @@ struct VideoInfo {
   /// Frames a second: the nominal rate, or the mean where the rate varies; 0: the file does not say (always so for a
   /// folder of images).
   double fps = 0;
+  /// Focal length of the same diagonal angle of view on film of 36 mm × 24 mm, as the camera noted it in the (first)
+  /// picture's Exif or in a QuickTime file; 0: it did not. A video that was steadied shows less than that.
+  double focal_35mm_mm = 0;
   int num_frames = 0;  ///< as the container says, 0 when it does not (.mkv, .webm, .ts); exact for a folder
 };
 

@@ -48,7 +48,7 @@ torch::jit::Module Load(const std::string& path) {
 
 /// Half floats become floats, and everything goes to the networks' device.
 void Prepare(torch::jit::Module* module) {
-  const auto convert = [](torch::Tensor tensor) {
+  const auto convert = [](const torch::Tensor& tensor) {
     const bool is_half = tensor.scalar_type() == torch::kHalf || tensor.scalar_type() == torch::kBFloat16;
     tensor.set_data(OnDevice(is_half ? tensor.to(torch::kFloat) : tensor));
   };

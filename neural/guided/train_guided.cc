@@ -304,7 +304,7 @@ class GuidedTrainer : public TrainedSystem {
       add(kGan, GeneratorLoss({discriminator_(Judged(batch.target, image))}));
     }
     if (code.log_variance.defined() && Share(kKl) > 0) {
-      const double numbers = static_cast<double>(code.mean.numel() / code.mean.size(0));
+      const double numbers = static_cast<double>(code.mean.numel()) / static_cast<double>(code.mean.size(0));
       add(kKl, KlLoss(code.mean, code.log_variance) / numbers);
     }
     return sum;

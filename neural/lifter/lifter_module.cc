@@ -89,7 +89,7 @@ LifterModuleImpl::LifterModuleImpl(int num_inputs, int width, const std::vector<
   SpreadHypotheses(&output);
 }
 
-torch::Tensor LifterModuleImpl::forward(torch::Tensor x) {
+torch::Tensor LifterModuleImpl::forward(const torch::Tensor& x) {
   torch::Tensor h = input(x);
   for (size_t b = 0; b < dilations.size(); ++b) {
     h = h + mix[b](torch::silu(dilated[b](PerFrame(norms[b], h))));

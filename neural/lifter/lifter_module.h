@@ -14,7 +14,7 @@ namespace bodyloom {
 struct LifterModuleImpl : torch::nn::Module {
   LifterModuleImpl(int num_inputs, int width, const std::vector<int>& dilations);
   /// B×num_inputs×T → B×LifterOutput::kSize×T.
-  torch::Tensor forward(torch::Tensor x);
+  torch::Tensor forward(const torch::Tensor& x);
 
   torch::nn::Conv1d input{nullptr}, output{nullptr};
   torch::nn::LayerNorm norm{nullptr};

@@ -17,7 +17,7 @@ constexpr int64_t kRowsAtOnce = 1024;  // bounds the memory when no gradient is 
 
 /// B×C×h×w → B×C×N, a draw of N = max_points positions when there are more.
 Tensor Points(const Tensor& features, const ContextualOptions& options) {
-  const Tensor points = features.flatten(2);
+  Tensor points = features.flatten(2);
   if (options.max_points == 0 || points.size(2) <= options.max_points) return points;
   const torch::Generator generator = at::make_generator<at::CPUGeneratorImpl>(options.seed);
   const Tensor order = torch::randperm(points.size(2), generator, torch::kLong);

@@ -24,7 +24,7 @@ torch::Tensor InstanceNorm(const torch::Tensor& x) {
                               /*cudnn_enabled=*/true);
 }
 
-torch::Tensor NormAndActivation(torch::Tensor x, NormOrder order) {
+torch::Tensor NormAndActivation(const torch::Tensor& x, NormOrder order) {
   return order == NormOrder::kNormFirst ? LeakyRelu(InstanceNorm(x)) : InstanceNorm(LeakyRelu(x));
 }
 

@@ -29,7 +29,7 @@ torch::Tensor LeakyRelu(torch::Tensor x);
 torch::Tensor InstanceNorm(const torch::Tensor& x);
 
 /// IN then LReLU, or LReLU then IN. May write over x, as above.
-torch::Tensor NormAndActivation(torch::Tensor x, NormOrder order);
+torch::Tensor NormAndActivation(const torch::Tensor& x, NormOrder order);
 
 /// IN then ReLU.
 torch::Tensor NormAndRelu(const torch::Tensor& x);

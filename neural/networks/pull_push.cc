@@ -11,7 +11,7 @@ Tensor PullPush(const Tensor& x, const Tensor& mask, int levels) {
   BODYLOOM_CHECK(x.dim() == 4 && mask.dim() == 4 && mask.size(0) == x.size(0) && mask.size(1) == 1 &&
                      mask.size(2) == x.size(2) && mask.size(3) == x.size(3),
                  "pull-push: an image of shape ", x.sizes(), " with a mask of shape ", mask.sizes());
-  const Tensor known = x * mask;
+  Tensor known = x * mask;
   const int64_t height = x.size(2), width = x.size(3);
   if (levels <= 0 || height % 2 != 0 || width % 2 != 0) return known;
   const Tensor share = torch::avg_pool2d(mask, 2);

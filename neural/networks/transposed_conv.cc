@@ -49,7 +49,7 @@ Tensor TransposedConv(const Tensor& x, const Tensor& weight, const Tensor& bias,
     return torch::stack(rows, dimension);
   };
   const auto reach = [](int64_t size, const Taps& of) {
-    const auto begin = static_cast<int64_t>(1 + of.first);
+    const auto begin = int64_t{1} + of.first;
     return Slice(begin, begin + size + static_cast<int64_t>(of.kernel.size()) - 1);
   };
   std::vector<Tensor> parities;

@@ -88,6 +88,7 @@ int FeatureLayer(FeatureTrunk trunk, const std::string& name) {
 
 std::vector<int> FeatureLayers(FeatureTrunk trunk, const std::vector<std::string>& names) {
   std::vector<int> layers;
+  layers.reserve(names.size());
   for (const std::string& name : names) layers.push_back(FeatureLayer(trunk, name));
   return layers;
 }
@@ -139,7 +140,7 @@ LoadWeightsReport FeatureNetworkImpl::Load(const NamedWeights& weights, const st
   return report;
 }
 
-std::vector<torch::Tensor> FeatureNetworkImpl::forward(torch::Tensor image) {
+std::vector<torch::Tensor> FeatureNetworkImpl::forward(const torch::Tensor& image) {
   BODYLOOM_CHECK(image.dim() == 4 && image.size(1) == 3, "feature network: an image of shape ", image.sizes(),
                  ", expected B x 3 x H x W");
   int64_t side = std::min(image.size(2), image.size(3));

@@ -49,7 +49,7 @@ struct FeatureNetworkImpl : torch::nn::Module {
   LoadWeightsReport Load(const NamedWeights& weights, const std::string& source);
 
   /// B×3×H×W → a tensor a tap. Throws std::invalid_argument when the image is too small for the last tap.
-  std::vector<torch::Tensor> forward(torch::Tensor image);
+  std::vector<torch::Tensor> forward(const torch::Tensor& image);
 
   FeatureNetworkOptions options;
   bool has_random_features = true;

@@ -59,7 +59,7 @@ Tensor PhotoModelImpl::Complete(const TextureTensors& texture) {
 }
 
 Tensor PhotoModelImpl::Project(const Tensor& features, const PoseTensors& pose) const {
-  const Tensor projected = SampleUv(features, pose.uv, pose.body);
+  Tensor projected = SampleUv(features, pose.uv, pose.body);
   if (config.variant != PhotoVariant::kWarpCond) return projected;
   return torch::cat({projected, pose.uv * pose.body, pose.parts}, 1);
 }

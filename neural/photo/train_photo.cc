@@ -171,6 +171,7 @@ class PhotoTrainer : public TrainedSystem {
  private:
   [[nodiscard]] PhotoBatch BatchOf(int64_t step) const {
     std::vector<PhotoPair> pairs;
+    pairs.reserve(static_cast<size_t>(options_.batch));
     for (int place = 0; place < options_.batch; ++place) {
       pairs.push_back(DrawPhotoPair(source_, options_.train, options_.seed, step, place));
     }

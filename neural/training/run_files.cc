@@ -87,7 +87,7 @@ std::vector<std::string> Cells(const std::string& line) {
 
 }  // namespace
 
-MetricsLog::MetricsLog(std::string path, std::vector<std::string> columns)
+MetricsLog::MetricsLog(std::string path, const std::vector<std::string>& columns)
     : path_(std::move(path)), header_("step"), num_columns_(columns.size()) {
   for (const std::string& column : columns) header_ += "," + column;
   text_ = header_ + "\n";

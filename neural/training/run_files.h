@@ -32,7 +32,7 @@ void WriteRunText(const std::string& path, const std::string& text);
 class MetricsLog {
  public:
   /// A new log with these columns behind "step"; an existing file is replaced at the first Add.
-  MetricsLog(std::string path, std::vector<std::string> columns);
+  MetricsLog(std::string path, const std::vector<std::string>& columns);
 
   /// Keeps the lines of an existing file up to `step` (a run that goes on from a checkpoint writes later ones again);
   /// no file is an empty log. Columns that the file lacks, as one of an earlier version may, are left empty in its

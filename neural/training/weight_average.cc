@@ -24,8 +24,8 @@ void AverageWeights(const torch::nn::Module& learner, int64_t n, double share, t
     BODYLOOM_CHECK(same, "weight average: two networks that differ");
   };
   each(learner.named_parameters(), average->named_parameters(),
-       [&](const Tensor& w, Tensor mean) { n == 1 ? mean.copy_(w) : mean.lerp_(w, weight); });
-  each(learner.named_buffers(), average->named_buffers(), [](const Tensor& w, Tensor mean) { mean.copy_(w); });
+       [&](const Tensor& w, const Tensor& mean) { n == 1 ? mean.copy_(w) : mean.lerp_(w, weight); });
+  each(learner.named_buffers(), average->named_buffers(), [](const Tensor& w, const Tensor& mean) { mean.copy_(w); });
 }
 
 }  // namespace bodyloom

@@ -107,7 +107,7 @@ AvatarPage::AvatarPage(const GaussianBody& body, const MatrixX3i& faces, const C
       gaussians_(PageColumns(body)) {
   BODYLOOM_CHECK(camera.model == CameraModel::kPinhole && !camera.HasDistortion() && camera.width > 0,
                  "an avatar's page: expected a pinhole camera without distortion, of a known size");
-  const double keys = std::max(2.0, kMaxKeyBytes / (double{num_channels_} * std::max(1, num_gaussians_)));
+  const double keys = std::max(2.0, kMaxKeyBytes / (static_cast<double>(num_channels_) * std::max(1, num_gaussians_)));
   key_interval_ = std::max(1, static_cast<int>(std::ceil(num_frames / keys)));
 }
 

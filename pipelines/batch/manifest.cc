@@ -55,7 +55,7 @@ std::string SettingText(const json& value, const std::string& name, const std::s
   if (!value.is_string()) {
     Refuse(place, name, std::string("found ") + value.type_name() + ", expected a text, a number, true or false");
   }
-  const std::string text = value.get<std::string>();
+  auto text = value.get<std::string>();
   if (text.empty() || !IsOneLine(text)) Refuse(place, name, "expected a text that is not empty, in one line");
   return text;
 }

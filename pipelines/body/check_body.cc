@@ -41,6 +41,7 @@ std::string PairsText(const std::string& what, const std::vector<std::array<int,
 
 std::string ComponentsText(const std::vector<MeshComponent>& components) {
   std::vector<int> faces;
+  faces.reserve(components.size());
   for (const MeshComponent& component : components) faces.push_back(component.num_faces);
   return ExamplesText("of", faces) + " faces";
 }

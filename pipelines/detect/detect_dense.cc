@@ -107,6 +107,7 @@ int DetectionOf(size_t chosen, const std::vector<DetectedPerson>& people, const 
   double most = 0;
   for (size_t d = 0; d < found.size(); ++d) {
     std::vector<double> overlaps;
+    overlaps.reserve(people.size());
     for (const DetectedPerson& person : people) overlaps.push_back(Overlap(RectangleOf(person), found[d].box));
     const bool is_theirs = overlaps[chosen] == *std::max_element(overlaps.begin(), overlaps.end());
     if (is_theirs && overlaps[chosen] > most) most = overlaps[chosen], best = int(d);

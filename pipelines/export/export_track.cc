@@ -320,6 +320,7 @@ ExportTrackReport ExportTrack(const ExportTrackRequest& request, const PipelineC
   std::vector<Track> tracks;
   for (const std::string& path : request.tracks) tracks.push_back(ReadTrack(path, MovingCamera::kTake));
   std::vector<const Track*> each;
+  each.reserve(tracks.size());
   for (const Track& track : tracks) each.push_back(&track);
   return ExportChecked(request, *body, each, callbacks);
 }

@@ -19,6 +19,7 @@ std::vector<double> ViewAngles(const std::string& text, int num_frames, int firs
     to = from;
   }
   std::vector<double> angles;
+  angles.reserve(static_cast<size_t>(std::max(0, num_frames)));
   for (int t = 0; t < num_frames; ++t) {
     angles.push_back(from + (to - from) * std::clamp(t - first, 0, last - first) / std::max(1, last - first));
   }

@@ -68,6 +68,7 @@ std::vector<RenderStep> StepsOf(const RenderTrackRequest& request, int first, in
   const int held = request.out.ends_with(".png") ? kCellsOfAHeldPose : kPicturesOfAHeldPose;
   const int count = request.turntable && frames == 1 ? held : frames;
   std::vector<RenderStep> steps;
+  steps.reserve(static_cast<size_t>(std::max(0, count)));
   for (int i = 0; i < count; ++i) {
     steps.push_back({frames == 1 ? first : first + i, request.turntable ? 360.0 * i / count : 0});
   }
@@ -152,9 +153,8 @@ RenderTrackReport RenderChecked(const RenderTrackRequest& request, const BodyMod
   RenderPicture picture(body, track, options, request.track);
   if (options.kind == RenderKind::kDepth) {
     std::vector<int> frames;
-    for (const RenderStep& step : steps) {
-      frames.push_back(step.frame);
-    }
+    frames.reserve(steps.size());
+    for (const RenderStep& step : steps) frames.push_back(step.frame);
     picture.SetDepthRange(frames);
   }
   const std::unique_ptr<RenderSink> sink =

@@ -57,6 +57,7 @@ bool InOneRun(const std::vector<int>& runs, int64_t before, int64_t now) {
 /// By name: whether it follows the one before it (FramePairs::Open).
 std::vector<char> FollowersAmong(const std::vector<std::string>& names, const std::vector<int>& runs) {
   std::vector<int64_t> numbers;
+  numbers.reserve(names.size());
   for (const std::string& name : names) numbers.push_back(FrameNumberFromName(name));
   const auto numbered = [&](size_t i) { return numbers[i] >= 0 && numbers[i - 1] >= 0; };
   int64_t step = 0;

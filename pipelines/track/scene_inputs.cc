@@ -13,6 +13,10 @@
 namespace bodyloom {
 namespace {
 
+/// How far a focal length is from that of its lens: rounded to millimetres and focused; and of videos, of which what is
+/// left by steadying them is shown.
+constexpr double kLensLogSigma = 0.05, kSteadiedLogSigma = 0.1;
+
 /// Camera file, focal length and image size as far as the request gives them.
 NamedCamera CameraFromRequest(const TrackRequest& request) {
   NamedCamera camera;
@@ -49,6 +53,10 @@ void UseCameraPath(const TrackRequest& request, SceneInputs* inputs) {
 void UseVideo(const std::string& path, SceneInputs* inputs) {
   const VideoInfo info = VideoReader(path).info();
   inputs->video_fps = info.fps;
+  if (inputs->focal_35mm_mm == 0 && info.focal_35mm_mm > 0) {
+    inputs->focal_35mm_mm = info.focal_35mm_mm;
+    inputs->focal_35mm_log_sigma = info.fps > 0 ? kSteadiedLogSigma : kLensLogSigma;
+  }
   Camera& camera = inputs->camera.camera;
   if (camera.width == 0) {
     camera.width = info.width;
@@ -65,6 +73,10 @@ TrackSequenceInput SceneInputs::ForTracker() const {
   input.lifter = lifter ? &*lifter : nullptr;
   input.camera = camera.camera;
   input.stature_m = stature_m;
+  if (focal_35mm_mm > 0 && camera.camera.width > 0) {
+    input.focal_prior =
+        FocalPrior::ForLens(camera.camera.width, camera.camera.height, focal_35mm_mm, focal_35mm_log_sigma);
+  }
   return input;
 }
 
@@ -80,6 +92,10 @@ SceneInputs LoadSceneInputs(const TrackRequest& request, const GivenInMemory& gi
     inputs.camera.camera = *given.camera;
   } else {
     inputs.camera = CameraFromRequest(request);
+  }
+  if (request.focal_35mm_mm > 0) {
+    inputs.focal_35mm_mm = request.focal_35mm_mm;
+    inputs.focal_35mm_log_sigma = kLensLogSigma;
   }
   UseCameraPath(request, &inputs);
   if (!request.video.empty()) UseVideo(request.video, &inputs);

@@ -31,6 +31,8 @@ struct SceneInputs {
   NamedCamera camera;  ///< intrinsics, pose and the way to the video's pixels, as far as known (UseFocal)
   std::optional<RecordedCameraPath> camera_path;  ///< of a camera that moves
   CameraKnowledge camera_knowledge = CameraKnowledge::kKnown;
+  double focal_35mm_mm = 0;         ///< of the lens, as requested or as the video notes it; 0: not known
+  double focal_35mm_log_sigma = 0;  ///< how well that tells the focal length
   double video_fps = 0;
   double stature_m = 0;  ///< of whoever is tracked; 0: the mean body's
 

@@ -9,6 +9,7 @@
 #include "bodyloom/pipelines/list_text.h"
 #include "bodyloom/pipelines/report_json.h"
 #include "bodyloom/pipelines/track/clip_camera_path_json.h"
+#include "bodyloom/pipelines/track/track_report.h"
 
 namespace bodyloom {
 namespace {
@@ -34,11 +35,8 @@ std::string PersonText(const TrackedPerson& person) {
 std::string SceneText(const SharedScene& scene) {
   std::string text;
   if (scene.focal_px > 0) {
-    text += "camera   focal length " + Fixed(scene.focal_px, 1) + " px, " +
-            (scene.focal_log_sigma == 0
-                 ? std::string("known")
-                 : "estimated within " + Fixed(100 * scene.focal_log_sigma, 1) + " % (standard deviation)") +
-            "\n";
+    text += "camera   focal length " + Fixed(scene.focal_px, 1) + " px" +
+            (scene.focal_log_sigma == 0 ? ", known" : FocalSigmaText(scene.focal_log_sigma)) + "\n";
   }
   if (scene.has_up && scene.ground.has_plane) {
     text += "ground   " + Fixed(scene.ground.camera_height_m, 2) + " m below the camera (" + scene.why + ")\n";

@@ -89,6 +89,11 @@ std::string ToText(const std::vector<PlanEntry>& plan) {
   return text;
 }
 
+std::string FocalSigmaText(double focal_log_sigma) {
+  if (!(focal_log_sigma > 0)) return "";
+  return ", estimated within " + Fixed(100 * focal_log_sigma, 1) + " % (standard deviation)";
+}
+
 std::string ToText(const TrackReport& report) {
   const TrackSequenceSummary& solve = report.solve;
   std::string text = std::to_string(report.num_frames) + " frames: ";
@@ -107,7 +112,7 @@ std::string ToText(const TrackReport& report) {
   text += "\n";
   if (report.initialiser && solve.IsUsable()) text += ToText(*report.initialiser, report.num_frames);
   if (solve.focal_px > 0) {
-    text += "camera   focal length " + Fixed(solve.focal_px, 1) + " px\n";
+    text += "camera   focal length " + Fixed(solve.focal_px, 1) + " px" + FocalSigmaText(solve.focal_log_sigma) + "\n";
   }
   text += ToText(report.camera_path, solve.camera_path);
   if (solve.num_swaps_repaired > 0) {
@@ -174,6 +179,7 @@ std::string ToJson(const TrackReport& report) {
       {"reprojection_p95_px", solve.reprojection_p95_px},
       {"dense_median_px", solve.dense_median_px},
       {"focal_px", solve.focal_px},
+      {"focal_log_sigma", solve.focal_log_sigma},
       {"swaps_repaired", solve.num_swaps_repaired},
       {"ground", ground_json},
       {"world", ToJson(report.world)},

@@ -50,4 +50,8 @@ std::string ToJson(const TrackReport& report);
 /// A plan as lines "run   what: why" / "skip  what: why".
 std::string ToText(const std::vector<PlanEntry>& plan);
 
+/// What follows a focal length: ", estimated within 20.0 % (standard deviation)"; empty when it was known or its spread is
+/// not.
+std::string FocalSigmaText(double focal_log_sigma);
+
 }  // namespace bodyloom

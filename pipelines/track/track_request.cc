@@ -61,6 +61,11 @@ void CheckTrackRequest(const TrackRequest& request) {
   if (!request.camera_path.empty() && request.live_lag) {
     throw RequestError("--live is for a camera that stands still: leave out --camera-path or --live");
   }
+  if (request.focal_35mm_mm > 0 && (!request.cameras.empty() || request.focal_px > 0 || request.camera == "weak")) {
+    throw RequestError(
+        "--focal-35mm is where to look for a focal length that is estimated: leave it out beside --cameras, "
+        "--focal and --camera weak");
+  }
   if (!request.cameras.empty() && request.focal_px > 0) {
     throw RequestError("--cameras and --focal both give the focal length, expected one of them");
   }

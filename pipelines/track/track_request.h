@@ -29,9 +29,11 @@ struct TrackRequest {
   double from_s = 0, to_s = -1;   ///< the part of the video, seconds; to_s < 0: to the end
 
   // The camera.
-  std::string cameras;         ///< calibration file or folder
-  std::string camera;          ///< pinhole, unknown-focal or weak; empty: pinhole when intrinsics are given
-  double focal_px = 0;         ///< intrinsics without a file: centred, undistorted
+  std::string cameras;  ///< calibration file or folder
+  std::string camera;   ///< pinhole, unknown-focal or weak; empty: pinhole when intrinsics are given
+  double focal_px = 0;  ///< intrinsics without a file: centred, undistorted
+  /// The lens' focal length for film of 36 mm × 24 mm, where it is estimated; 0: what the video or photo says of it.
+  double focal_35mm_mm = 0;
   std::string camera_path;     ///< where a camera that moves was (load_camera_path.h); empty: it stands still
   double camera_scale_m = 0;   ///< metres a unit of the path; 0: the file's, else found from the person
   int camera_path_first = -1;  ///< number of the clip's first frame in the path's (PlaceInTime)

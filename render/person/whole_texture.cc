@@ -198,6 +198,7 @@ class Completion {
     Bgr median{};
     for (int c = 0; c < 3; ++c) {
       std::vector<double> channel;
+      channel.reserve(colours.size());
       for (const Bgr& colour : colours) channel.push_back(colour[c]);
       median[c] = static_cast<float>(Percentile(channel, 50));
     }

@@ -167,8 +167,8 @@ TEST(BatchSettings, EveryOptionThatNamesAFileToReadIsTakenForAPath) {
     for (std::sregex_iterator at(help.begin(), help.end(), option), end; at != end; ++at) {
       const std::string name = (*at)[1], type = (*at)[2];
       // In the list of options, where a line begins with them, and not in examples.
-      if (written.contains(name) || at->prefix().str().find_last_not_of(" ") == std::string::npos) continue;
-      if (at->prefix().str()[at->prefix().str().find_last_not_of(" ")] != '\n') continue;
+      if (written.contains(name) || at->prefix().str().find_last_not_of(' ') == std::string::npos) continue;
+      if (at->prefix().str()[at->prefix().str().find_last_not_of(' ')] != '\n') continue;
       const bool is_path = type == "FILE" || type == "PATH" || type == "DIR";
       EXPECT_EQ(IsPathSetting(name, "x"), is_path) << verb << " --" << name << " " << type;
       paths += is_path ? 1 : 0;

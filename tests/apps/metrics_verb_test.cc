@@ -100,6 +100,7 @@ TEST_F(MetricsVerb, PicturesByName) {
 
 TEST_F(MetricsVerb, AnyNumberOfThreadsGivesTheSameBytes) {
   std::vector<int> values;
+  values.reserve(13);
   for (int i = 0; i < 13; ++i) values.push_back(90 + 3 * i);
   const std::string truth = Pictures("truth", std::vector<int>(13, 100)), result = Pictures("result", values);
   for (const char* threads : {"1", "2", "5"}) {

@@ -306,7 +306,8 @@ TEST_F(RenderVerb, TurntablesAndNewViews) {
     return rows;
   };
   EXPECT_GT(rows_with_body("front.npz"), kHeight / 3);
-  EXPECT_NEAR(rows_with_body("front.npz"), rows_with_body("back.npz"), kHeight / 8);
+  constexpr int kTolerance = kHeight / 8;
+  EXPECT_NEAR(rows_with_body("front.npz"), rows_with_body("back.npz"), kTolerance);
   const NpzArrays back = ReadNpz(Out("back.npz"));
   EXPECT_THAT(back.at("view_rotation").shape, ElementsAre(1, 3, 3));
   // The view's own camera explains where the body is seen: its pelvis lies on a body pixel.

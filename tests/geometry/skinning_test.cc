@@ -27,6 +27,7 @@ constexpr double kLargestErrorMetres = 1e-6;
 
 std::vector<BodyPose> Poses(const BodyModel& model, int num_frames, double max_angle = 2.5) {
   std::vector<BodyPose> poses;
+  poses.reserve(static_cast<size_t>(num_frames));
   for (int t = 0; t < num_frames; ++t) poses.push_back(RandomPose(model, 50 + t, max_angle));
   return poses;
 }

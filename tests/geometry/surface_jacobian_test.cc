@@ -59,6 +59,7 @@ SlowBody<Jet> PoseWithJets(const BodyModel& model, const VectorXd& betas, const 
     }
   }
   std::vector<Jet> beta_jets;
+  beta_jets.reserve(static_cast<size_t>(betas.size()));
   for (int b = 0; b < betas.size(); ++b) beta_jets.emplace_back(betas[b], 3 * J + b);
   Slow3<Jet> trans;
   for (int c = 0; c < 3; ++c) trans[c] = Jet(pose.trans[c], 3 * J + kMaxBetas + c);

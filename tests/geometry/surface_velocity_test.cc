@@ -27,6 +27,7 @@ using ::testing::HasSubstr;
 std::vector<double> Times(int n, double fps, double jitter, uint32_t seed) {
   std::mt19937 random(seed);
   std::vector<double> times;
+  times.reserve(static_cast<size_t>(n));
   for (int t = 0; t < n; ++t) times.push_back((t + jitter * (random() / 4294967296.0 - 0.5)) / fps);
   return times;
 }
@@ -47,6 +48,7 @@ TEST(VelocityStencil, IsExactForPolynomialsOfItsDegreeAtAnySpacing) {
     const auto stencils = VelocityStencils(times, usable, Scheme(scheme));
     for (int power = 0; power <= degree; ++power) {
       std::vector<double> values;
+      values.reserve(times.size());
       for (const double t : times) values.push_back(std::pow(t, power));
       for (size_t t = 0; t < times.size(); ++t) {  // ends included
         const double expected = power == 0 ? 0 : power * std::pow(times[t], power - 1);
@@ -55,6 +57,7 @@ TEST(VelocityStencil, IsExactForPolynomialsOfItsDegreeAtAnySpacing) {
     }
     // One degree more is beyond it.
     std::vector<double> values;
+    values.reserve(times.size());
     for (const double t : times) values.push_back(std::pow(t, degree + 1));
     EXPECT_GT(std::abs(Apply(stencils[20], values) - (degree + 1) * std::pow(times[20], degree)), 1e-6);
   }
@@ -413,6 +416,7 @@ TEST(SurfaceVelocity, SameBytesForAnyNumberOfThreads) {
   const Clip clip = MakeClip(body, Swinging(body, times), times);
   const auto stencils = VelocityStencils(times, std::vector<char>(41, 1));
   std::vector<PoseRates> rates;
+  rates.reserve(41);
   for (int t = 0; t < 41; ++t) rates.push_back(Rates(clip, stencils[t], t));
   std::vector<float> one(clip.vertices.size()), many(clip.vertices.size());
   const VelocitySkinner skinner(body);

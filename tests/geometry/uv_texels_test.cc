@@ -39,7 +39,8 @@ Vector2d UvOf(const BodyModel& body, int face, const Eigen::Vector3d& barycentri
 }
 
 Vector2d CentreUv(const UvTexelTable& table, int pixel) {
-  return {(pixel % table.width + 0.5) / table.width, 1 - (pixel / table.width + 0.5) / table.height};
+  const int row = pixel / table.width;
+  return {(pixel % table.width + 0.5) / table.width, 1 - (row + 0.5) / table.height};
 }
 
 TEST(UvCharts, OfTheSphereAreItsOctants) {

@@ -51,6 +51,7 @@ class SameBytesAsTheCommand(unittest.TestCase):
         for arguments, words in (
             (dict(live_lag=4), ("--live", "4")),
             (dict(focal_px=352.0, ground=False), ("--focal", "352", "--no-ground")),
+            (dict(focal_35mm=26.0), ("--focal-35mm", "26")),
             (dict(camera_model="weak"), ("--camera", "weak")),
             (dict(estimate_shape=False, uncertainty=False, max_iterations=7),
              ("--no-shape", "--no-uncertainty", "--max-iterations", "7")),

@@ -1,10 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/tracking/uncertainty.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <random>
 
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/geometry/hip_joints.h"
+#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/tracking/initialise/lifter_input.h"
 #include "bodyloom/tracking/solve_sequence.h"
 #include "tests/support/dense_chain.h"
 #include "tests/support/sequence_scene.h"
@@ -49,7 +57,7 @@ TEST_P(UncertaintyOf, EqualsTheDenseInverseOfTheNormalMatrix) {
     const int n = chain.frame_size(), s = chain.shared_size(), J = scene->body.num_joints();
     H.diagonal().head(7 * n).array() += 1e-6;
     const MatrixXd covariance = H.llt().solve(MatrixXd::Identity(H.rows(), H.rows()));
-    const RowMatrixXd sigma = JointPositionSigma(problem, 2);
+    const PositionSigma sigma = PositionSigmaOf(problem, 2);
     // Derivatives of the joints by differences.
     constexpr double kStep = 1e-5;
     MatrixXd D = MatrixXd::Zero(7 * 3 * J, H.rows());
@@ -65,11 +73,16 @@ TEST_P(UncertaintyOf, EqualsTheDenseInverseOfTheNormalMatrix) {
                                           (2 * kStep);
       }
     }
-    const VectorXd variance = (D * covariance).cwiseProduct(D).rowwise().sum();
+    const std::array<int, 2> hip = HipJoints(scene->body);
+    const auto spread = [&](const MatrixXd& rows) {
+      return std::sqrt((rows * covariance).cwiseProduct(rows).sum() / 3);
+    };
     for (int t = 0; t < 7; ++t) {
+      const MatrixXd hips = 0.5 * (D.middleRows<3>(3 * (t * J + hip[0])) + D.middleRows<3>(3 * (t * J + hip[1])));
+      EXPECT_NEAR(sigma.hips[t], spread(hips), 1e-7 * sigma.hips[t]) << t;
       for (int j = 0; j < J; ++j) {
-        const double expected = std::sqrt(variance.segment<3>(3 * (t * J + j)).sum() / 3);
-        EXPECT_NEAR(sigma(t, j), expected, 1e-7 * expected) << t << " " << j;
+        const double expected = spread(D.middleRows<3>(3 * (t * J + j)) - hips);
+        EXPECT_NEAR(sigma.joints(t, j), expected, 1e-7 * expected + 1e-10) << t << " " << j;
       }
     }
   }
@@ -108,7 +121,7 @@ TEST(Uncertainty, SpreadOfTheErrorsOfALinearProblem) {
   options.solver = SequenceSolver::kChain;
   options.function_tolerance = 1e-12;
   VectorXd ratio2 = VectorXd::Zero(T);
-  RowMatrixXd sigma;
+  VectorXd sigma;
   for (int trial = 0; trial < kTrials; ++trial) {
     std::vector<Vector3d> truth(T, Vector3d(0, 0, 4));
     Vector3d velocity = noise(1);
@@ -126,18 +139,18 @@ TEST(Uncertainty, SpreadOfTheErrorsOfALinearProblem) {
       frame.initialiser.translation = truth[t] + noise(frame.initialiser.translation_sigma / std::sqrt(weight));
     }
     SolveSequence(&problem, options);
-    if (trial == 0) sigma = JointPositionSigma(problem, 1);  // the same for all
+    if (trial == 0) sigma = PositionSigmaOf(problem, 1).hips;  // the same for all; its joints do not turn
     for (int t = 0; t < T; ++t) {
-      ratio2[t] += (problem.states[t].translation - truth[t]).squaredNorm() / (3 * sigma(t, 0) * sigma(t, 0)) / kTrials;
+      ratio2[t] += (problem.states[t].translation - truth[t]).squaredNorm() / (3 * sigma[t] * sigma[t]) / kTrials;
     }
   }
   for (int t = 0; t < T; ++t) EXPECT_NEAR(std::sqrt(ratio2[t]), 1, 0.09) << t;
-  EXPECT_GT(sigma.col(0).maxCoeff(), 1.5 * sigma.col(0).minCoeff());
+  EXPECT_GT(sigma.maxCoeff(), 1.5 * sigma.minCoeff());
 }
 
 // The whole problem, with noise that keeps it near where it was linearised, and priors that are true.
 TEST(Uncertainty, SpreadOfTheErrorsOfTheWholeProblem) {
-  double ratio2 = 0;
+  double ratio2 = 0, hips_ratio2 = 0;
   int count = 0;
   for (int trial = 0; trial < 25; ++trial) {
     SequenceSceneOptions options;
@@ -175,27 +188,114 @@ TEST(Uncertainty, SpreadOfTheErrorsOfTheWholeProblem) {
     SolveOptions solve;
     solve.solver = SequenceSolver::kChain;
     SolveSequence(&problem, solve);
-    const RowMatrixXd sigma = JointPositionSigma(problem, 1);
+    const PositionSigma sigma = PositionSigmaOf(problem, 1);
+    const std::array<int, 2> hip = HipJoints(scene->body);
     for (int t = 0; t < 4; ++t) {
       const VectorXd error = JointPositions(problem.layout, problem.states[t], problem.betas) -
                              JointPositions(problem.layout, scene->truth[t], scene->betas);
+      const Vector3d hips = 0.5 * (error.segment<3>(3 * hip[0]) + error.segment<3>(3 * hip[1]));
+      hips_ratio2 += hips.squaredNorm() / (3 * sigma.hips[t] * sigma.hips[t]) / 100;
       for (int j = 0; j < 24; ++j, ++count) {
-        ratio2 += error.segment<3>(3 * j).squaredNorm() / (3 * sigma(t, j) * sigma(t, j));
+        ratio2 += (error.segment<3>(3 * j) - hips).squaredNorm() / (3 * sigma.joints(t, j) * sigma.joints(t, j));
       }
     }
   }
   EXPECT_NEAR(std::sqrt(ratio2 / count), 1, 0.1);
+  EXPECT_NEAR(std::sqrt(hips_ratio2), 1, 0.15);
 }
 
 TEST(Uncertainty, UnknownWhereTheStateIsNotFiniteAndTheSameBytesForAnyNumberOfThreads) {
   SequenceSceneOptions options;
   options.frames = 9;
   const auto scene = MakeSequenceScene(options);
-  const RowMatrixXd one = JointPositionSigma(scene->problem, 1);
-  EXPECT_TRUE(one.allFinite());
-  for (int threads : {2, 5}) EXPECT_EQ(JointPositionSigma(scene->problem, threads), one);
+  const PositionSigma one = PositionSigmaOf(scene->problem, 1);
+  EXPECT_TRUE(one.joints.allFinite() && one.hips.allFinite());
+  for (int threads : {2, 5}) {
+    const PositionSigma many = PositionSigmaOf(scene->problem, threads);
+    EXPECT_EQ(many.joints, one.joints);
+    EXPECT_EQ(many.hips, one.hips);
+  }
   scene->problem.states[3].translation.x() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_TRUE(JointPositionSigma(scene->problem, 1).array().isNaN().all());
+  const PositionSigma broken = PositionSigmaOf(scene->problem, 1);
+  EXPECT_TRUE(broken.joints.array().isNaN().all() && broken.hips.array().isNaN().all());
+}
+
+/// A lifter's frame that errs by `across` and `along` the view (scales of its density), the camera's axes turned by `R`.
+LiftedFrame FrameThatErrs(double across, double along, const Eigen::Matrix3d& R) {
+  LiftedFrame frame;
+  frame.camera_from_virtual = R;
+  frame.points.setZero(kLifterPoints, 3);
+  frame.sigma.resize(kLifterPoints, 2);
+  frame.sigma.col(0).setConstant(across);
+  frame.sigma.col(1).setConstant(along);
+  return frame;
+}
+
+// Of the density of lifter_loss.h, r² ~ Gamma(3) in units of the scales, one coordinate has the variance E r²/3 = 4: drawn.
+TEST(Uncertainty, CovarianceOfTheLiftersDensity) {
+  const LiftedLandmarks landmarks = CompileLiftedLandmarks(BuiltinBody(), 0);
+  const Eigen::Matrix3d R = RotationFromAxisAngle(Vector3d(0.3, -0.5, 0.2));
+  const LiftedPose pose = MakeLiftedPose(FrameThatErrs(0.02, 0.05, R), landmarks, 0.9, 0.08);
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  std::gamma_distribution<double> gamma(3);
+  Eigen::Matrix3d drawn = Eigen::Matrix3d::Zero();
+  constexpr int kDraws = 200000;
+  for (int i = 0; i < kDraws; ++i) {
+    const Vector3d u = Vector3d::NullaryExpr([&]() { return normal(random); }).normalized();
+    const Vector3d error = 0.9 * R * (gamma(random) * u.cwiseProduct(Vector3d(0.02, 0.02, 0.05)));
+    drawn += error * error.transpose() / kDraws;
+  }
+  const int wrist = BuiltinBody().FindJoint("l_wrist");
+  EXPECT_LT((pose.JointCovariance(wrist) - drawn).norm(), 0.02 * drawn.norm());
+}
+
+TEST(Uncertainty, AJointHasTheLandmarkNearestToIt) {
+  const BodyModel& body = BuiltinBody();
+  const LiftedLandmarks landmarks = CompileLiftedLandmarks(body, 0);
+  const auto nearest = [&](const char* joint) { return landmarks.of_joint.at(body.FindJoint(joint)); };
+  EXPECT_EQ(LifterPointNames()[nearest("l_wrist").landmark], "left_wrist");
+  EXPECT_EQ(LifterPointNames()[nearest("r_knee").landmark], "right_knee");
+  EXPECT_EQ(LifterPointNames()[nearest("r_shoulder").landmark], "right_shoulder");
+  EXPECT_NEAR(nearest("r_knee").share, 1, 0.1);
+  // Of the pelvis, as far above the middle of the hips as it is.
+  BodyPose rest;
+  rest.rotations.assign(body.num_joints(), Eigen::Matrix3d::Identity());
+  const MatrixX3d hips = PoseLandmarks(body, VectorXd(), rest, {"left_hip", "right_hip"});
+  const Eigen::RowVector3d middle = hips.colwise().mean();
+  EXPECT_THAT(LifterPointNames()[nearest("pelvis").landmark], testing::EndsWith("_hip"));
+  EXPECT_NEAR(nearest("pelvis").share,
+              std::min(1.0, (body.joint_template().row(0) - middle).norm() / (hips.row(0) - middle).norm()), 0.02);
+  EXPECT_GT(nearest("l_hand").share, 0.95);
+}
+
+// Two measurements of one place: variances a and b make ab/(a + b).
+TEST(Uncertainty, WhatWasMeasuredAndWhatTheLifterSaysTogether) {
+  const LiftedLandmarks landmarks = CompileLiftedLandmarks(BuiltinBody(), 0);
+  const LiftedPose pose = MakeLiftedPose(FrameThatErrs(0.03, 0.03, Eigen::Matrix3d::Identity()), landmarks, 1, 0.08);
+  const int wrist = BuiltinBody().FindJoint("l_wrist");
+  const double lifted = 4 * 0.03 * 0.03;
+  const auto sigma_with = [&](const Eigen::Matrix3d& E, const Eigen::Matrix3d& turn) {
+    JointSpread spread;
+    spread.about_hips.assign(24, E);
+    return JointSigmaOf(spread, pose, turn)[wrist];
+  };
+  const Eigen::Matrix3d I = Eigen::Matrix3d::Identity();
+  const double share = std::pow(landmarks.of_joint[wrist].share, 2);
+  for (const double measured : {1e-6, 1e-4, 1e-2, 1.0}) {
+    const double a = 4 * measured, b = share * lifted;
+    EXPECT_NEAR(sigma_with(measured * I, I), std::sqrt(a * b / (a + b) + 1e-4), 1e-12) << measured;
+  }
+  EXPECT_NEAR(sigma_with(Eigen::Matrix3d::Zero(), I), 0.01, 1e-12);
+  EXPECT_NEAR(sigma_with(1e6 * I, I), JointSigmaOf(pose, 24)[wrist], 1e-6);
+  // Not alike along all axes: by the inverses, with the camera turned.
+  const LiftedPose flat = MakeLiftedPose(FrameThatErrs(0.01, 0.06, Eigen::Matrix3d::Identity()), landmarks, 1, 0.08);
+  const Eigen::Matrix3d turn = RotationFromAxisAngle(Vector3d(0.7, 0.2, -0.4));
+  JointSpread spread;
+  spread.about_hips.assign(24, Vector3d(0.002, 0.0003, 0.01).asDiagonal());
+  const Eigen::Matrix3d E = 4 * spread.about_hips[wrist], L = turn.transpose() * flat.JointCovariance(wrist) * turn;
+  const double expected = std::sqrt((E.inverse() + L.inverse()).inverse().trace() / 3 + 1e-4);
+  EXPECT_NEAR(JointSigmaOf(spread, flat, turn)[wrist], expected, 1e-12);
 }
 
 }  // namespace

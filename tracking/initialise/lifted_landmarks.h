@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "bodyloom/geometry/body_model.h"
 #include "bodyloom/geometry/lifter_weights.h"
@@ -13,8 +14,15 @@ namespace bodyloom {
 
 /// The lifter's landmarks, compiled for a body.
 struct LiftedLandmarks {
+  /// The landmark whose uncertainty is a joint's: the one that is nearest in the rest pose. `share`: the joint's distance
+  /// from the middle of the hips over the landmark's, at most 1.
+  struct Nearest {
+    int landmark = -1;  ///< −1: the body has none
+    double share = 0;
+  };
   std::array<CompiledPoint, LifterOutput::kPoints> points;
   std::array<bool, LifterOutput::kPoints> known{};  ///< the body has it
+  std::vector<Nearest> of_joint;                    ///< J
   /// Both hips, both shoulders and a way to measure the body's length: without them nothing can be lifted.
   [[nodiscard]] bool IsUsable() const;
 };

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "bodyloom/geometry/pose_prior.h"
 #include "bodyloom/geometry/posed_body.h"
 #include "bodyloom/geometry/track.h"
+#include "bodyloom/tracking/camera_knowledge.h"
 #include "bodyloom/tracking/frame_layout.h"
 #include "bodyloom/tracking/track_options.h"
 
@@ -44,6 +46,7 @@ struct LiveTrackerInput {
   const PosePrior* prior = nullptr;       ///< or null
   const LifterWeights* lifter = nullptr;  ///< or null: starts by joint hypotheses
   Camera camera;                          ///< known: all of it; otherwise only width and height
+  std::optional<FocalPrior> focal_prior;  ///< as TrackSequenceInput::focal_prior
   std::vector<std::string> landmarks;     ///< names of the 2D joints of each frame; may be empty when dense
   bool dense = false;                     ///< dense keypoints may come
 };
@@ -64,9 +67,10 @@ struct LiveFrame {
   FrameState state;         ///< NaN when lost
   Eigen::VectorXd betas;    ///< as known when the frame is handed out
   Camera camera;            ///< of the frame, with the focal length as known then
-  /// J standard deviations of the joints' positions, metres (uncertainty.h), as known then; NaN when lost, or without
-  /// TrackSequenceOptions::estimate_uncertainty.
+  /// J standard deviations of the joints' positions about the middle of the hips, metres (uncertainty.h), as known
+  /// then; NaN when lost, or without TrackSequenceOptions::estimate_uncertainty.
   Eigen::VectorXd joint_sigma;
+  double root_sigma = std::numeric_limits<double>::quiet_NaN();  ///< that of this middle's own position
 };
 
 }  // namespace bodyloom

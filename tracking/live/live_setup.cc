@@ -22,6 +22,7 @@ LiveSetup::LiveSetup(const LiveTrackerInput& given, const LiveTrackerOptions& ch
   TrackSequenceInput numbers;
   numbers.body = input.body;
   numbers.camera = input.camera;
+  numbers.focal_prior = input.focal_prior;
   CheckNumbers(numbers, options.solve);
   threads = ThreadsFor(options.solve.num_threads);
   const int num_betas = options.solve.estimate_shape ? std::min(model.num_betas(), 10) : 0;
@@ -31,7 +32,8 @@ LiveSetup::LiveSetup(const LiveTrackerInput& given, const LiveTrackerOptions& ch
   const std::vector<int> active = FindActiveJoints(model, landmarks, input.dense, options.solve.skip_unneeded);
   Camera camera = input.camera;
   if (options.solve.camera_knowledge != CameraKnowledge::kKnown) {
-    camera = MakePinhole(camera.width, camera.height, 0.9 * std::max(camera.width, camera.height));
+    const FocalPrior focal = input.focal_prior.value_or(FocalPrior::ForImage(camera.width, camera.height));
+    camera = MakePinhole(camera.width, camera.height, std::exp(focal.log_mean));
   }
   layout = FrameLayout::Make(model, options.solve.camera_knowledge, camera, active, num_betas);
   if (input.prior != nullptr && input.prior->num_components() > 0) prior.emplace(*input.prior, model, active);
@@ -47,6 +49,7 @@ SequenceProblem LiveSetup::EmptyProblem() const {
   problem.layout = layout;
   problem.betas = problem.shape_prior.mean = VectorXd::Zero(layout.num_betas);
   problem.log_focal = problem.log_focal_prior = std::log(layout.camera.fx);
+  problem.log_focal_sigma = input.focal_prior.value_or(FocalPrior()).log_sigma;
   return problem;
 }
 

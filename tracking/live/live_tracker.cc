@@ -117,13 +117,13 @@ std::vector<LiveFrame> LiveTracker::Impl::HandOut(const std::deque<LiveRecord>::
   const int num_joints = setup_.input.body->num_joints();
   LiveWindow& window = clip_->window;
   const SequenceProblem& problem = window.problem();
-  std::vector<Eigen::VectorXd> sigma;
+  PositionSigma sigma;
   int first_slot = 0;
   if (setup_.options.solve.estimate_uncertainty) {
     const auto in_window = [](const LiveRecord& record) { return record.in_window; };
     const auto first = std::find_if(begin, end, in_window);
     if (first != end) first_slot = window.SlotOf(*first);
-    sigma = window.JointSigma(first_slot, first_slot + static_cast<int>(std::count_if(begin, end, in_window)));
+    sigma = window.Uncertainty(first_slot, first_slot + static_cast<int>(std::count_if(begin, end, in_window)));
   }
   std::vector<LiveFrame> frames;
   for (auto record = begin; record != end; ++record) {
@@ -139,8 +139,9 @@ std::vector<LiveFrame> LiveTracker::Impl::HandOut(const std::deque<LiveRecord>::
       out.status = FrameStatus::kLost;
       out.state.rotations.assign(num_joints, Matrix3d::Constant(kNaN));
       out.state.translation.setConstant(kNaN);
-    } else if (!sigma.empty()) {
-      out.joint_sigma = sigma[slot - first_slot];
+    } else if (sigma.joints.rows() > 0) {
+      out.joint_sigma = sigma.joints.row(slot - first_slot).transpose();
+      out.root_sigma = sigma.hips[slot - first_slot];
     }
     out.betas = problem.betas;
     out.camera = setup_.layout.CameraAt(out.state, problem.log_focal);

@@ -176,13 +176,23 @@ bool LiveWindow::Solve(int iterations) {
   return false;
 }
 
-std::vector<Eigen::VectorXd> LiveWindow::JointSigma(int begin, int end) {
-  const Eigen::VectorXd unknown =
-      Eigen::VectorXd::Constant(setup_.input.body->num_joints(), std::numeric_limits<double>::quiet_NaN());
-  std::vector<Eigen::VectorXd> sigma(std::max(0, end - begin), unknown);
-  if (begin >= end) return sigma;
+PositionSigma LiveWindow::Uncertainty(int begin, int end) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  PositionSigma sigma;
+  const int count = std::max(0, end - begin);
+  sigma.joints.setConstant(count, setup_.input.body->num_joints(), kNaN);
+  sigma.hips.setConstant(count, kNaN);
+  if (count == 0) return sigma;
   lag_->VisitCovariance(begin, end, [&](int slot, const Eigen::MatrixXd& P) {
-    sigma[slot - begin] = JointSigmaOf(setup_.layout, problem().states[slot], problem().betas, P);
+    const FrameData& frame = problem().frames[slot];
+    const JointSpread spread = JointSpreadOf(setup_.layout, problem().states[slot], problem().betas, P);
+    const int J = setup_.input.body->num_joints();
+    // What has left the window holds the lifter's predictions too, so P cannot be had without them. Of 2D joints alone the
+    // lifter's own spread is nearly all of both; dense keypoints know better than it.
+    const bool lifter_decides = frame.lifted.pose != nullptr && frame.dense.size() == 0;
+    sigma.joints.row(slot - begin) =
+        (lifter_decides ? JointSigmaOf(*frame.lifted.pose, J) : JointSigmaOf(spread)).transpose();
+    sigma.hips[slot - begin] = std::sqrt(spread.hips.trace() / 3);
   });
   return sigma;
 }

@@ -12,6 +12,7 @@
 #include "bodyloom/tracking/chain/fixed_lag.h"
 #include "bodyloom/tracking/live/live_history.h"
 #include "bodyloom/tracking/live/live_setup.h"
+#include "bodyloom/tracking/uncertainty.h"
 
 namespace bodyloom {
 
@@ -54,9 +55,8 @@ class LiveWindow {
   /// False when the window had to be given up; the shot has ended then.
   bool Solve(int iterations);
   void EndShot();
-  /// J standard deviations of the joints' positions (JointSigmaOf()) in frames begin ≤ slot < end of the solver's
-  /// window; NaN where they cannot be determined.
-  std::vector<Eigen::VectorXd> JointSigma(int begin, int end);
+  /// JointSigmaOf() in frames begin ≤ slot < end of the solver's window; NaN where they cannot be determined.
+  PositionSigma Uncertainty(int begin, int end);
   /// Forgets records that nobody needs any more.
   void DropDone();
 

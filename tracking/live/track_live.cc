@@ -25,12 +25,14 @@ const std::vector<double>& TimesOf(const TrackSequenceInput& input) {
 struct Taken {
   SequenceProblem problem;
   RowMatrixXd joint_sigma;
+  Eigen::VectorXd root_sigma;
   std::vector<FrameStatus> status;
 };
 
 void Take(LiveFrame&& frame, bool weak, Taken* taken) {
   SequenceProblem* problem = &taken->problem;
   taken->joint_sigma.row(frame.index) = frame.joint_sigma.transpose();
+  taken->root_sigma[frame.index] = frame.root_sigma;
   taken->status[frame.index] = frame.status;
   FrameState& state = problem->states[frame.index];
   state = std::move(frame.state);
@@ -63,6 +65,7 @@ LiveTrackerInput LiveInputFor(const TrackSequenceInput& input) {
   live.prior = input.prior;
   live.lifter = input.lifter;
   live.camera = input.camera;
+  live.focal_prior = input.focal_prior;
   const auto take_size = [&](const auto* observations) {
     if (observations == nullptr || live.camera.width > 0) return;
     live.camera.width = observations->image_width;
@@ -118,6 +121,7 @@ TrackSequenceResult TrackLive(const TrackSequenceInput& input, const LiveTracker
   problem.timestamps = TimesOf(input);
   const bool weak = problem.layout.knowledge == CameraKnowledge::kWeak;
   taken.joint_sigma.resize(T, input.body->num_joints());
+  taken.root_sigma.resize(T);
   taken.status.assign(T, FrameStatus::kLost);
   summary.status = SolveStatus::kConverged;
   int pushed = 0;
@@ -167,6 +171,7 @@ TrackSequenceResult TrackLive(const TrackSequenceInput& input, const LiveTracker
   summary.seconds.emplace_back("live", watch.seconds());
   FillTrack(input, problem, landmarks, &result);
   result.track.joint_sigma = std::move(taken.joint_sigma);
+  result.track.root_sigma = std::move(taken.root_sigma);
   return result;
 }
 

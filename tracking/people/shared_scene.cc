@@ -20,35 +20,21 @@ int TrackedFrames(const TrackSequenceSummary& person) {
 
 void JoinFocalLengths(const std::vector<const TrackSequenceSummary*>& people, bool alone, const FocalPrior& prior,
                       SharedScene* scene) {
-  constexpr double kShared = kFocalFitLogSigma * kFocalFitLogSigma;
-  const double prior_information = 1 / (prior.log_sigma * prior.log_sigma);
-  double weights = 0, sum = 0, variance = 0;
-  bool any = false;
+  std::vector<FocalFit> fits;
   for (const TrackSequenceSummary* person : people) {
-    if (person->focal_log_sigma == 0 || (alone && person->focal_log_sigma > 0)) {
+    const double sigma = person->focal_log_sigma;
+    if (sigma == 0 || (alone && sigma > 0)) {
       scene->focal_px = person->focal_px;
-      scene->focal_log_sigma =
-          person->focal_log_sigma == 0 ? 0 : std::hypot(person->focal_log_sigma, kFocalFitLogSigma);
+      scene->focal_log_sigma = sigma == 0 || person->focal_fit ? sigma : std::hypot(sigma, kFocalFitLogSigma);
       return;
     }
-    if (!(person->focal_log_sigma > 0) || !(person->focal_px > 0)) continue;
-    any = true;
-    const double posterior = 1 / (person->focal_log_sigma * person->focal_log_sigma);
-    const double measured = posterior - prior_information;
-    // A posterior is never wider than its prior but by rounding.
-    if (!(measured > 1e-9 * prior_information)) continue;
-    const double answer = (posterior * std::log(person->focal_px) - prior_information * prior.log_mean) / measured;
-    const double weight = 1 / (1 / measured + kShared);
-    weights += weight;
-    sum += weight * answer;
-    variance += weight * weight / measured;
+    if (!(sigma > 0) || !(person->focal_px > 0)) continue;
+    fits.push_back(person->focal_fit.value_or(FocalFit{std::log(person->focal_px), sigma}));
   }
-  if (!any) return;
-  const double measured = weights > 0 ? 1 / (kShared + variance / (weights * weights)) : 0;
-  const double information = prior_information + measured;
-  const double mean = weights > 0 ? sum / weights : prior.log_mean;
-  scene->focal_px = std::exp((prior_information * prior.log_mean + measured * mean) / information);
-  scene->focal_log_sigma = 1 / std::sqrt(information);
+  if (fits.empty()) return;
+  const FocalFit joined = JoinFocalFits(fits, prior);
+  scene->focal_px = std::exp(joined.log_px);
+  scene->focal_log_sigma = joined.log_sigma;
 }
 
 void JoinVerticals(const std::vector<const TrackSequenceSummary*>& people, SharedScene* scene) {

@@ -10,6 +10,7 @@
 #include "bodyloom/tracking/initialise/stature.h"
 #include "bodyloom/tracking/track_sequence.h"
 #include "bodyloom/tracking/track_world.h"
+#include "bodyloom/tracking/uncertainty.h"
 
 namespace bodyloom {
 namespace {
@@ -160,7 +161,8 @@ TrackPeopleResult TrackPeople(std::vector<TrackSequenceInput> people, const Trac
   }
   if (shares_path_scale) TakeOneCameraScale(&people, &fits, options.camera_knowledge, &result);
   SharedScene& scene = result.summary.scene;
-  scene = Join(result.people, FocalPrior::ForImage(width, height), options);
+  const FocalPrior focal_prior = people[0].focal_prior.value_or(FocalPrior::ForImage(width, height));
+  scene = Join(result.people, focal_prior, options);
   if (alone || fits.stopped()) return result;
 
   std::vector<OwnObservations> own(people.begin(), people.end());
@@ -184,7 +186,7 @@ TrackPeopleResult TrackPeople(std::vector<TrackSequenceInput> people, const Trac
       if (result.people[i].summary.IsUsable()) fit_again(i);
     }
     const double log_sigma = scene.focal_log_sigma;
-    scene = Join(result.people, FocalPrior::ForImage(width, height), options);
+    scene = Join(result.people, focal_prior, options);
     scene.focal_log_sigma = log_sigma;
   }
   for (size_t i = 0; i < n && !fits.stopped(); ++i) {
@@ -201,6 +203,7 @@ TrackPeopleResult TrackPeople(std::vector<TrackSequenceInput> people, const Trac
   for (size_t i = 0; i < n; ++i) {
     if (shares_focal && result.summary.fitted_again[i] != 0) {
       result.people[i].summary.focal_log_sigma = scene.focal_log_sigma;
+      AddFocalSpread(scene.focal_log_sigma, &result.people[i].track);
     }
   }
   ShareWorld(&result);

@@ -2,6 +2,7 @@
 #include "bodyloom/pipelines/neural/motion/training_frames.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "bodyloom/neural/motion/clothes_reach.h"
@@ -41,8 +42,10 @@ std::vector<FrameRange> TakeShare(const std::vector<FrameRange>& ranges, double 
     }
   }
   const double count = std::max(1.0, share * static_cast<double>(stretches.size()));
+  const auto num_kept = static_cast<int>(std::lround(count));
   std::vector<FrameRange> kept;
-  for (int i = 0; i < static_cast<int>(count + 0.5); ++i) {
+  kept.reserve(static_cast<size_t>(num_kept));
+  for (int i = 0; i < num_kept; ++i) {
     kept.push_back(stretches[static_cast<size_t>(i * static_cast<double>(stretches.size()) / count)]);
   }
   return kept;

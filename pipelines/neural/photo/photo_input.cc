@@ -47,6 +47,7 @@ Track TrackOfFrame(const Track& track, const std::string& path, int frame) {
   };
   keep(&one.joints), keep(&one.coco17);
   if (one.joint_sigma.rows() > 0) one.joint_sigma = RowMatrixXd(track.joint_sigma.row(t));
+  if (one.root_sigma.size() > 0) one.root_sigma = Eigen::VectorXd(track.root_sigma.segment(t, 1));
   if (one.weak_camera.rows() > 0) one.weak_camera = MatrixX3d(track.weak_camera.row(t));
   return one;
 }

@@ -86,7 +86,7 @@ TEST(UvFromObj, RefusesOtherMeshes) {
   const auto error_of = [&](const std::string& text) {
     WriteFileAtomically(path, text);
     BodyModelData copy = body;
-    const std::string message = FileErrorOf(path, [&] { UvFromObj(path, &copy); });
+    std::string message = FileErrorOf(path, [&] { UvFromObj(path, &copy); });
     EXPECT_EQ(copy.ft.rows(), 0) << "a failure leaves the body as it was";
     return message;
   };
@@ -203,7 +203,7 @@ TEST(PartsFromUvProcessedMat, RefusesBrokenFiles) {
   const std::string path = folder.File("UV_Processed.mat");
   const auto error_of_file = [&] {
     BodyModelData copy = body;
-    const std::string message = FileErrorOf(path, [&] { PartsFromUvProcessedMat(path, &copy); });
+    std::string message = FileErrorOf(path, [&] { PartsFromUvProcessedMat(path, &copy); });
     EXPECT_TRUE(copy.face_part.empty());
     std::filesystem::remove(path);
     return message;

@@ -31,7 +31,8 @@ BodyArrays MakeBodyArrays(int V, int J, int B, bool with_posedirs) {
   body.B = B;
   const int rows = V / kAround;
   for (int v = 0; v < V; ++v) {
-    const double angle = 2 * M_PI * (v % kAround) / kAround, height = 1.7 * (v / kAround) / std::max(rows, 1) - 0.9;
+    const int row = v / kAround;
+    const double angle = 2 * M_PI * (v % kAround) / kAround, height = 1.7 * row / std::max(rows, 1) - 0.9;
     for (const double x : {0.2 * std::cos(angle), height, 0.15 * std::sin(angle)}) {
       body.v_template.push_back(x + noise(0.003));
     }

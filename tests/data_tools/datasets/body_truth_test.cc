@@ -21,7 +21,8 @@ constexpr size_t kArea = size_t(kWidth) * kHeight;
 constexpr int kLeg = 9, kSleeve = 15, kHand = 3;
 
 double Distance(size_t a, size_t b) {
-  return std::hypot(double(a % kWidth) - double(b % kWidth), double(a / kWidth) - double(b / kWidth));
+  const size_t row_a = a / kWidth, row_b = b / kWidth;
+  return std::hypot(double(a % kWidth) - double(b % kWidth), double(row_a) - double(row_b));
 }
 
 TEST(NearestMarked, IsAsNearAsTheNearest) {

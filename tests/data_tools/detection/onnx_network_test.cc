@@ -90,6 +90,7 @@ TEST(OnnxNetwork, ThreadsAndCopiesGiveEqualBits) {
   const std::vector<float> alone = *network.Run(picture)[0].floats;
   std::vector<std::vector<float>> results(4);
   std::vector<std::thread> threads;
+  threads.reserve(results.size());
   for (auto& result : results) {
     threads.emplace_back([&result, copy = network, &picture] {
       for (int i = 0; i < 20; ++i) result = *copy.Run(picture)[0].floats;

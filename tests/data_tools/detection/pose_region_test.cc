@@ -32,7 +32,7 @@ TEST(PoseRegion, TheBodysAxisIsUpInTheCropWhateverItsDirection) {
 
 TEST(PoseRegion, FractionsAndPixelsAreInverse) {
   const PoseRegion region{.centre = {12.5, -7}, .side = 91.5, .rotation = 2.1};
-  for (const Eigen::Vector2d f : {Eigen::Vector2d(0, 0), Eigen::Vector2d(0.3, 0.9), Eigen::Vector2d(1.5, -2)}) {
+  for (const Eigen::Vector2d& f : {Eigen::Vector2d(0, 0), Eigen::Vector2d(0.3, 0.9), Eigen::Vector2d(1.5, -2)}) {
     EXPECT_TRUE(region.FractionFromImage(region.ImageFromFraction(f)).isApprox(f, 1e-12) ||
                 region.FractionFromImage(region.ImageFromFraction(f)).norm() < 1e-12);
   }

@@ -31,6 +31,7 @@ std::vector<MatrixX3d> Shifted(std::vector<MatrixX3d> clip, const Eigen::RowVect
 
 std::vector<double> Times(int frames, double fps) {
   std::vector<double> times;
+  times.reserve(static_cast<size_t>(frames));
   for (int t = 0; t < frames; ++t) times.push_back(t / fps);
   return times;
 }
@@ -206,6 +207,7 @@ TEST(MetricsTest, ConstantAccelerationAndFrameRate) {
 // A square wave of amplitude a: x_t = ±a gives |x″| = 4a fps² and |x‴| = 8a fps³ in every frame.
 TEST(MetricsTest, AlternatingNoise) {
   std::vector<MatrixX3d> clip;
+  clip.reserve(10);
   for (int t = 0; t < 10; ++t) clip.push_back(MatrixX3d::Constant(1, 3, t % 2 ? 0.01 : -0.01));
   const double a = 0.01 * std::sqrt(3.0);
   EXPECT_NEAR(Jitter(clip, Times(10, 60)), 8 * a * 216000, 1e-6);

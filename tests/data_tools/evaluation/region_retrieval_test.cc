@@ -79,7 +79,8 @@ TEST(RegionRetrieval, FramesThatSayNothingAreNeitherAskedNorFound) {
   const std::vector<int> queries = TurningFrames(person, false);
   for (size_t i = 0; i < queries.size() / 2; ++i) defined[size_t(queries[i])] = false;
   const RetrievalScores half = ScoreRetrieval(person, motion, defined);
-  EXPECT_NEAR(half.answered_share, double(queries.size() - queries.size() / 2) / double(queries.size()), 1e-12);
+  const size_t answered = queries.size() - queries.size() / 2;
+  EXPECT_NEAR(half.answered_share, double(answered) / double(queries.size()), 1e-12);
   EXPECT_NEAR(half.direction_share, 1, 1e-12);
   EXPECT_THROW(ScoreRetrieval(person, motion, std::vector<bool>(3)), std::invalid_argument);
 }

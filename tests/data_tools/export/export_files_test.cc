@@ -132,7 +132,8 @@ std::map<std::string, size_t> C3dParameters(const std::string& bytes) {
   std::map<std::string, size_t> parameters;
   for (size_t at = 512 + 4; bytes[at] != 0;) {
     const size_t length = size_t(std::abs(int(bytes[at])));
-    const int group = int8_t(bytes[at + 1]);
+    // A signed byte: below zero in the group's own record.
+    const int byte = uint8_t(bytes[at + 1]), group = byte < 128 ? byte : byte - 256;
     const std::string name = bytes.substr(at + 2, length);
     const size_t offset = at + 2 + length;
     if (group < 0) {
@@ -317,7 +318,7 @@ std::vector<double> UsdNumbers(const std::string& text, const std::string& key, 
     at = text.find('{', at);
     for (int i = 0; i <= sample; ++i) at = text.find(": [", at + 1);
   }
-  const size_t begin = text.find('[', text.find(sample >= 0 ? ": " : "= ", at)), end = text.find("]", begin);
+  const size_t begin = text.find('[', text.find(sample >= 0 ? ": " : "= ", at)), end = text.find(']', begin);
   return UsdList(text.substr(begin + 1, end - begin - 1));
 }
 

@@ -37,6 +37,7 @@ TEST(NpyStream, HoldsWhatWasWrittenInAnyOrderFromAnyThread) {
     NpyStream stream(path, DType::kF32, {n, 3, 5});
     EXPECT_EQ(stream.record_bytes(), size * sizeof(float));
     std::vector<std::jthread> threads;
+    threads.reserve(4);
     for (int k = 0; k < 4; ++k) {
       threads.emplace_back([&stream, k] {
         for (int i = n - 1 - k; i >= 0; i -= 4) {

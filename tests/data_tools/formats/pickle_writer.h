@@ -48,6 +48,7 @@ inline std::string Dtype2(const std::string& name, char order) {
 }
 inline std::string Shape(const std::vector<int>& shape) {
   std::vector<std::string> sizes;
+  sizes.reserve(shape.size());
   for (const int n : shape) sizes.push_back(Int(n));
   return Tuple(sizes);
 }

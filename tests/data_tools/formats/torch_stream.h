@@ -84,6 +84,7 @@ inline SmallModel MakeSmallModel(bool legacy) {
     return StorageId(type, key, count, legacy);
   };
   std::vector<float> matrix;
+  matrix.reserve(12);
   for (int i = 0; i < 12; ++i) matrix.push_back(static_cast<float>(i));
   const std::string twelve = add("FloatStorage", RawOf(matrix), 12);
   Items items = {{Unicode("a.weight"), Tensor(twelve, 0, {3, 4}, {4, 1})},

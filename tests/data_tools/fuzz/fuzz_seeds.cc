@@ -91,12 +91,13 @@ std::vector<std::string> PickleSeeds() {
                                  .AddInts({7})
                                  .Add("u")
                                  .Finish();
+  const std::string protocol4 =
+      "\x80\x04}\x94(\x8c\x01"
+      "a\x94K\x01"
+      "C\x01x\x94\x8c\x02\xc3\xa9\x94\x87\x94\x8c\x01"
+      "b\x94}\x94K\x01(K\x02\x91\x94su.";
   return {OfficialPickle(MakeBodyArrays(20, 3, 2, true)), Pickle(2, everything), joblib,
-          "(dp0\nS'a\\x41'\np1\n(lp2\nI1\naF2.5\naNaI01\naL100000000000000000000L\naV\\u20ac\na(I1\nI2\nt.",
-          "\x80\x04}\x94(\x8c\x01"
-          "a\x94K\x01"
-          "C\x01x\x94\x8c\x02\xc3\xa9\x94\x87\x94\x8c\x01"
-          "b\x94}\x94K\x01(K\x02\x91\x94su."};
+          "(dp0\nS'a\\x41'\np1\n(lp2\nI1\naF2.5\naNaI01\naL100000000000000000000L\naV\\u20ac\na(I1\nI2\nt.", protocol4};
 }
 
 std::vector<std::string> WeightsSeeds() {

@@ -76,10 +76,12 @@ void AddTextSeeds(std::map<std::string, std::vector<std::string>>* seeds) {
       R"({"cameras":[{"name":"cam_01","size":[1088,1920],"K":[[1681,0,533],[0,1682,948],[0,0,1]],)"
       R"("dist_k1k2p1p2":[-0.05,0.1,0.001,0.002],"rvec":[0,0,0],"tvec_m":[0.3,0.9,2.9]}]})",
       R"({"width":640,"height":480,"fx":600})"};
-  (*seeds)["camera_path"] = {
+  const std::string path_of_frames =
       R"({"camera_path":1,"fps":30,"camera":{"width":640,"height":480,"fx":600},"frames":[)"
       R"({"frame":0,"quaternion":[1,0,0,0],"translation":[0,0,0]},)"
-      R"({"frame":2,"rotation":[[1,0,0],[0,1,0],[0,0,1]],"translation":[0.1,0,0]}]})",
+      R"({"frame":2,"rotation":[[1,0,0],[0,1,0],[0,0,1]],"translation":[0.1,0,0]}]})";
+  (*seeds)["camera_path"] = {
+      path_of_frames,
       R"({"camera_path":1,"frames":[{"time":0,"rotation":[0,0.1,0],"translation":[0,0,1]}]})",
       "# an image\n1 1 0 0 0 0.5 0 0 1 f_01.png\n10 20 -1 30 40 7\n2 0.8 0.6 0 0 0.5 0 0 1 f_02.png\n\n",
       "# a camera\n1 PINHOLE 640 480 600 600 320 240\n2 OPENCV 640 480 600 600 320 240 0.1 0 0 0\n",

@@ -16,6 +16,7 @@ constexpr double kFrame = 0.04;
 std::vector<double> TimesOf(const std::vector<std::optional<int64_t>>& timestamps) {
   FrameClock clock(1, 1000, kFrame);
   std::vector<double> times;
+  times.reserve(timestamps.size());
   for (const auto& timestamp : timestamps) times.push_back(clock.Next(timestamp));
   return times;
 }

@@ -92,7 +92,7 @@ TEST(ImageHeader, NothingIsSaidOfWhatIsCutOrNoImage) {
     EXPECT_FALSE(ReadImageHeader(std::string_view(bytes).substr(0, 12)).has_value()) << extension;
   }
   std::mt19937 random(7);
-  for (const std::string beginning : {"\x89PNG\r\n\x1a\n"s, "\xFF\xD8"s, "BM"s, "RIFF"s, "II*\0"s, "MM\0+"s, ""s}) {
+  for (const std::string& beginning : {"\x89PNG\r\n\x1a\n"s, "\xFF\xD8"s, "BM"s, "RIFF"s, "II*\0"s, "MM\0+"s, ""s}) {
     for (int k = 0; k < 2000; ++k) {
       std::string bytes = beginning;
       for (int i = static_cast<int>(random() % 80); i > 0; --i) bytes += static_cast<char>(random());

@@ -29,7 +29,8 @@ struct Clip {
 
 /// A clip of one frame.
 std::string Written(const TemporaryFolder& folder, const Clip& clip) {
-  const std::string raw = folder.File("raw"), path = folder.File("clip.mkv");
+  const std::string raw = folder.File("raw");
+  std::string path = folder.File("clip.mkv");
   std::ofstream file(raw, std::ios::binary);
   for (int plane = 0; plane < 3; ++plane) {
     const int w = plane == 0 ? clip.width : (clip.width + clip.chroma_w - 1) / clip.chroma_w;

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 using namespace std::string_literals;
 
 std::string OpeningError(const std::string& path) {
-  const std::string message = FileErrorOf(path, [&] { VideoReader reader(path); });
+  std::string message = FileErrorOf(path, [&] { VideoReader reader(path); });
   EXPECT_EQ(message, FileErrorOf(path, [&] { VideoFrameTimes(path); }));
   return message;
 }

@@ -46,7 +46,8 @@ void ExpectClip(const std::string& path, const std::vector<int>& numbers, const 
 double PhoneTime(int i) { return (1001.0 * i + 250 * (7 * i % 4)) / 60000; }
 
 std::string PhoneClip(const TemporaryFolder& folder) {
-  const std::string encoded = folder.File("encoded.mp4"), phone = folder.File("phone.mov");
+  const std::string encoded = folder.File("encoded.mp4");
+  std::string phone = folder.File("phone.mov");
   Ffmpeg(NumberedInput(folder, kFrames, "60000/1001") +
          "-vf 'settb=1/60000,setpts=N*1001+250*mod(7*N\\,4)' -vsync passthrough -enc_time_base 1/60000 " + kBFrames +
          "-video_track_timescale 60000 " + encoded);

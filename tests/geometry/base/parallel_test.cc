@@ -72,6 +72,7 @@ TEST(ParallelFor, CallsMayComeFromSeveralThreadsAtOnce) {
   std::vector<int> calls(kCallers * kCount, 0);
   {
     std::vector<std::jthread> callers;
+    callers.reserve(kCallers);
     for (int c = 0; c < kCallers; ++c) {
       callers.emplace_back([&, c] {
         for (int k = 0; k < kLoops; ++k) ParallelFor(kCount, 3, [&](int i) { ++calls[c * kCount + i]; });

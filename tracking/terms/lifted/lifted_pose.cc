@@ -25,8 +25,17 @@ LiftedPose MakeLiftedPose(const LiftedFrame& frame, const LiftedLandmarks& landm
     point.landmark = k;
     point.offset = metres * frame.points.row(k).transpose();
     point.whitening = R * Eigen::Vector3d(across, across, along).asDiagonal() * R.transpose();
+    const Eigen::Vector2d variance = 4 * metres * metres * frame.sigma.row(k).transpose().cwiseAbs2();
+    point.covariance = R * Eigen::Vector3d(variance[0], variance[0], variance[1]).asDiagonal() * R.transpose();
   }
   return pose;
+}
+
+Eigen::Matrix3d LiftedPose::JointCovariance(int joint) const {
+  const LiftedLandmarks::Nearest& nearest = landmarks->of_joint[joint];
+  const auto point = std::lower_bound(points.begin(), points.end(), nearest.landmark,
+                                      [](const Point& p, int landmark) { return p.landmark < landmark; });
+  return nearest.share * nearest.share * point->covariance;
 }
 
 void LiftedOfFrame::Add(FrameAccumulator* sums) const {

@@ -21,9 +21,15 @@ struct LiftedPose {
     int landmark = 0;
     Eigen::Vector3d offset;     ///< from the mid-hip, camera axes, metres
     Eigen::Matrix3d whitening;  ///< 1/m
+    /// m²: of the lifter's density, R diag(4 σ_xy², 4 σ_xy², 4 σ_z²) Rᵀ (lifter_reading.h says of which)
+    Eigen::Matrix3d covariance;
   };
   const LiftedLandmarks* landmarks = nullptr;
-  std::vector<Point> points;
+  std::vector<Point> points;  ///< in the order of the landmarks, those that the body lacks left out
+
+  /// m²: of a body joint's position about the middle of the hips, by the landmark nearest to it
+  /// (LiftedLandmarks::Nearest): share² times that landmark's covariance.
+  [[nodiscard]] Eigen::Matrix3d JointCovariance(int joint) const;
 };
 
 /// `metres` is the body's torso + leg length, `min_sigma_m` a floor of both scales: the body's landmarks are not the

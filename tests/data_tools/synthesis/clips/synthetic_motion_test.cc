@@ -80,6 +80,7 @@ TEST_P(DemoMotionOfBody, IsSmoothAndKeepsWithinHumanLimits) {
   const double fps = 240;
   const Motion motion = DemoMotion(body, static_cast<int>(kDemoMotionSeconds * fps), fps);
   std::vector<BodyPose> poses;
+  poses.reserve(static_cast<size_t>(motion.num_frames()));
   for (int t = 0; t < motion.num_frames(); ++t) poses.push_back(PoseAt(body, motion, t));
   double fastest = 0, hardest = 0;
   for (int t = 1; t + 1 < motion.num_frames(); ++t) {
@@ -104,6 +105,7 @@ TEST_P(DemoMotionOfBody, WalksTurnsWavesAndKicks) {
   const Motion motion = DemoMotion(body, 180, 30);
   const MatrixX3d rest = body.RestJoints(Eigen::VectorXd());
   std::vector<MatrixX3d> joints;
+  joints.reserve(180);
   for (int t = 0; t < 180; ++t) joints.push_back(PoseSkeleton(body, rest, PoseAt(body, motion, t)).joints);
   const double leg = (rest.row(1) - rest.row(7)).norm();
   EXPECT_GT((joints[0].row(0) - joints[100].row(0)).norm(), 1.8 * leg) << "walks";

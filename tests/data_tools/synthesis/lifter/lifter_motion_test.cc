@@ -22,6 +22,7 @@ using Eigen::Vector3f;
 
 std::vector<Quaternionf> RotationsAt(const Motion& motion, int t) {
   std::vector<Quaternionf> q;
+  q.reserve(kPoseJoints);
   for (int j = 0; j < kPoseJoints; ++j)
     q.push_back(TurnBy(motion.poses.block<1, 3>(t, 3 * j).transpose().cast<float>()));
   return q;

@@ -253,7 +253,7 @@ TEST(LifterWindows, RejectsMotionsThatCannotBeUsed) {
     Motion motion = ShortDemoMotion();
     change(&motion);
     try {
-      LifterWindowGenerator({ShortDemoMotion(), motion}, {1, 1}, ToyBody(), {});
+      const LifterWindowGenerator generator({ShortDemoMotion(), motion}, {1, 1}, ToyBody(), {});
       ADD_FAILURE() << "accepted";
     } catch (const std::invalid_argument& error) {
       EXPECT_NE(std::string(error.what()).find("motion 1"), std::string::npos) << error.what();
