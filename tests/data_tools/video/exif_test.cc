@@ -9,30 +9,10 @@
 
 #include "bodyloom/data_tools/video/image_file.h"
 #include "tests/data_tools/video/clip_maker.h"
+#include "tests/data_tools/video/exif_maker.h"
 
 namespace bodyloom {
 namespace {
-
-/// A TIFF structure as cameras write it: a folder with an orientation and a pointer to a folder with one entry.
-std::string TiffWith(bool little, int tag, int type, int value) {
-  std::string bytes = little ? "II" : "MM";
-  const auto put = [&](uint32_t number, int size) {
-    for (int i = 0; i < size; ++i) bytes += static_cast<char>(number >> (8 * (little ? i : size - 1 - i)));
-  };
-  const auto entry = [&](int of_tag, int of_type, uint32_t of_value) {
-    put(static_cast<uint32_t>(of_tag), 2), put(static_cast<uint32_t>(of_type), 2), put(1, 4);
-    if (of_type == 3) {
-      put(of_value, 2), put(0, 2);
-    } else {
-      put(of_value, 4);
-    }
-  };
-  put(42, 2), put(8, 4);
-  put(2, 2), entry(0x0112, 3, 1), entry(0x8769, 4, 38), put(0, 4);
-  EXPECT_EQ(bytes.size(), 38U);
-  put(1, 2), entry(tag, type, static_cast<uint32_t>(value)), put(0, 4);
-  return bytes;
-}
 
 TEST(Exif, FocalLengthForFilm) {
   for (const bool little : {true, false}) {
@@ -63,10 +43,7 @@ TEST(Exif, DamagedOnesHaveNoneAndAreNotReadBeyond) {
 TEST(Exif, OfAPhotographAndOfAQuickTimeVideo) {
   const TemporaryFolder folder;
   const std::string jpeg = EncodeImage(Image(64, 48, Colour{90, 120, 30}), "a.jpg");
-  const std::string exif = std::string("Exif\0\0", 6) + TiffWith(false, 0xA405, 3, 28);
-  const auto length = static_cast<unsigned>(exif.size() + 2);
-  const std::string segment = {'\xFF', '\xE1', static_cast<char>(length >> 8), static_cast<char>(length)};
-  WriteFileAtomically(folder.File("lens.jpg"), jpeg.substr(0, 2) + segment + exif + jpeg.substr(2));
+  WriteFileAtomically(folder.File("lens.jpg"), WithExif(jpeg, TiffWith(false, 0xA405, 3, 28)));
   WriteFileAtomically(folder.File("bare.jpg"), jpeg);
   EXPECT_EQ(VideoReader(folder.File("lens.jpg")).info().focal_35mm_mm, 28);
   EXPECT_EQ(VideoReader(folder.File("bare.jpg")).info().focal_35mm_mm, 0);
