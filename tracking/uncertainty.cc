@@ -88,12 +88,16 @@ VectorXd JointSigmaOf(const LiftedPose& lifted, int num_joints) {
   });
 }
 
+double JointSpread::HipsSigma() const { return std::sqrt(hips.trace() / 3); }
+
+PositionSigma PositionSigma::Unknown(Eigen::Index num_frames, int num_joints) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  return {RowMatrixXd::Constant(num_frames, num_joints, kNaN), VectorXd::Constant(num_frames, kNaN)};
+}
+
 PositionSigma PositionSigmaOf(SequenceProblem problem, int num_threads, double* focal_log_sigma) {
   const auto T = static_cast<Eigen::Index>(problem.states.size());
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  PositionSigma sigma;
-  sigma.joints.setConstant(T, problem.layout.model->num_joints(), kNaN);
-  sigma.hips.setConstant(T, kNaN);
+  PositionSigma sigma = PositionSigma::Unknown(T, problem.layout.model->num_joints());
   for (FrameData& frame : problem.frames) frame.lifted.weight = 0;
   ChainProblem chain(problem, false, false, num_threads);
   if (!std::isfinite(chain.Linearise({problem.states, problem.betas, problem.log_focal}))) return sigma;
@@ -106,7 +110,7 @@ PositionSigma PositionSigmaOf(SequenceProblem problem, int num_threads, double* 
     sigma.joints.row(t) =
         (frame.lifted.pose == nullptr ? JointSigmaOf(spread) : JointSigmaOf(spread, *frame.lifted.pose, turn))
             .transpose();
-    sigma.hips[t] = std::sqrt(spread.hips.trace() / 3);
+    sigma.hips[t] = spread.HipsSigma();
     // The last of the shared values, the same in every frame's covariance.
     if (t == 0 && focal_log_sigma != nullptr && problem.layout.focal_column >= 0) {
       *focal_log_sigma = std::sqrt(P(P.rows() - 1, P.cols() - 1));

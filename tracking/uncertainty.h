@@ -28,6 +28,8 @@ struct JointSpread {
   std::vector<Eigen::Matrix3d> about_hips;  ///< J: of a joint's position relative to the middle of the hip joints
   /// Of that middle. For weak perspective the depth of the whole body is not part of it.
   Eigen::Matrix3d hips = Eigen::Matrix3d::Zero();
+  /// √(trace(E_h) / 3), metres.
+  [[nodiscard]] double HipsSigma() const;
 };
 
 /// By the covariance P of the frame's columns and the shared values. A body without joints named l_hip and r_hip has
@@ -46,7 +48,10 @@ Eigen::VectorXd JointSigmaOf(const LiftedPose& lifted, int num_joints);
 /// Standard deviations of positions, metres, one axis.
 struct PositionSigma {
   RowMatrixXd joints;    ///< T×J: σ_j, about the middle of the hips
-  Eigen::VectorXd hips;  ///< T: √(trace(E_h) / 3), for a person whose stature is as assumed
+  Eigen::VectorXd hips;  ///< T: JointSpread::HipsSigma(), for a person whose stature is as assumed
+
+  /// NaN everywhere.
+  static PositionSigma Unknown(Eigen::Index num_frames, int num_joints);
 };
 
 /// Of the problem at its current state, with shape and focal length unknown. Observations, priors and smoothness count

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "bodyloom/geometry/base/check.h"
+#include "tests/support/paths.h"
 
 namespace bodyloom {
 namespace {
@@ -56,6 +57,8 @@ std::vector<std::string> BenchArguments::List(const std::string& name) const {
   }
   return items;
 }
+
+std::string SharedMotions() { return SharedDir() + "/data/motion," + SharedDir() + "/data/aistpp/motions"; }
 
 int BenchMain(const std::string& program, int argc, char** argv, std::map<std::string, std::string> known,
               const std::function<void(const BenchArguments& arguments, const std::string& command)>& run) {

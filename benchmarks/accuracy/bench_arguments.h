@@ -22,6 +22,9 @@ class BenchArguments {
   std::map<std::string, std::string> values_;
 };
 
+/// The default of a "motions" option: the folders of recorded motion below SharedDir().
+std::string SharedMotions();
+
 /// main() of a benchmark: runs it with its arguments and the command as it was called. --help lists the options. Exit
 /// code 1, with one line on stderr, for anything thrown.
 int BenchMain(const std::string& program, int argc, char** argv, std::map<std::string, std::string> known,

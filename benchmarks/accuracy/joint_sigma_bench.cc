@@ -148,15 +148,14 @@ void Run(const BenchArguments& arguments, const std::string& command) {
 }  // namespace bodyloom
 
 int main(int argc, char** argv) {
-  return bodyloom::BenchMain(
-      "bodyloom_bench_joint_sigma", argc, argv,
-      {{"motions", bodyloom::SharedDir() + "/data/motion," + bodyloom::SharedDir() + "/data/aistpp/motions"},
-       {"split", "test"},
-       {"every", "1"},
-       {"frames", "240"},
-       {"data", bodyloom::SharedDir() + "/data/aistpp"},
-       {"sequences", "gBR_sBM_cAll_d06_mBR2_ch06,gJS_sBM_cAll_d03_mJS2_ch07"},
-       {"views", "c01,c03,c05,c07,c08"},
-       {"json", ""}},
-      bodyloom::Run);
+  return bodyloom::BenchMain("bodyloom_bench_joint_sigma", argc, argv,
+                             {{"motions", bodyloom::SharedMotions()},
+                              {"split", "test"},
+                              {"every", "1"},
+                              {"frames", "240"},
+                              {"data", bodyloom::SharedDir() + "/data/aistpp"},
+                              {"sequences", "gBR_sBM_cAll_d06_mBR2_ch06,gJS_sBM_cAll_d03_mJS2_ch07"},
+                              {"views", "c01,c03,c05,c07,c08"},
+                              {"json", ""}},
+                             bodyloom::Run);
 }

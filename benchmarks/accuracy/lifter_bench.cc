@@ -35,7 +35,6 @@
 #include "bodyloom/tracking/initialise/lifter_input.h"
 #include "bodyloom/tracking/initialise/lifter_network.h"
 #include "bodyloom/tracking/initialise/lifter_reading.h"
-#include "tests/support/paths.h"
 
 namespace bodyloom {
 namespace {
@@ -223,13 +222,12 @@ void Run(const BenchArguments& arguments, const std::string& command) {
 }  // namespace bodyloom
 
 int main(int argc, char** argv) {
-  return bodyloom::BenchMain(
-      "bodyloom_bench_lifter", argc, argv,
-      {{"motions", bodyloom::SharedDir() + "/data/motion," + bodyloom::SharedDir() + "/data/aistpp/motions"},
-       {"lifter", "built-in"},
-       {"windows", "200"},
-       {"detections", "users"},
-       {"split", "test"},
-       {"json", ""}},
-      bodyloom::Run);
+  return bodyloom::BenchMain("bodyloom_bench_lifter", argc, argv,
+                             {{"motions", bodyloom::SharedMotions()},
+                              {"lifter", "built-in"},
+                              {"windows", "200"},
+                              {"detections", "users"},
+                              {"split", "test"},
+                              {"json", ""}},
+                             bodyloom::Run);
 }

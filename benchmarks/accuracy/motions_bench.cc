@@ -25,7 +25,6 @@
 #include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/tracking/track_sequence.h"
-#include "tests/support/paths.h"
 
 namespace bodyloom {
 namespace {
@@ -129,9 +128,5 @@ void Run(const BenchArguments& arguments, const std::string& command) {
 int main(int argc, char** argv) {
   return bodyloom::BenchMain(
       "bodyloom_bench_motions", argc, argv,
-      {{"motions", bodyloom::SharedDir() + "/data/motion," + bodyloom::SharedDir() + "/data/aistpp/motions"},
-       {"frames", "240"},
-       {"elevation", "8,30"},
-       {"json", ""}},
-      bodyloom::Run);
+      {{"motions", bodyloom::SharedMotions()}, {"frames", "240"}, {"elevation", "8,30"}, {"json", ""}}, bodyloom::Run);
 }

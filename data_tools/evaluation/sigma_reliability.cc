@@ -22,6 +22,12 @@ std::string JointOfLandmark(const std::string& landmark) {
   return landmark.substr(0, 1) + landmark.substr(landmark.find('_'));
 }
 
+/// Nothing where the track states nothing of the joint.
+void AddPair(double error_m, const Track& track, int frame, Eigen::Index joint, std::vector<JudgedSigma>* pairs) {
+  if (frame >= track.joint_sigma.rows() || joint >= track.joint_sigma.cols()) return;
+  pairs->push_back({error_m, track.joint_sigma(frame, joint)});
+}
+
 double MeanOfFirst(const std::vector<JudgedSigma>& sorted, double share) {
   const auto count = static_cast<size_t>(std::llround(share * static_cast<double>(sorted.size())));
   double sum = 0;
@@ -76,9 +82,7 @@ std::vector<JudgedSigma> JudgedLandmarks(const Track& track, const std::vector<i
     const auto& names = SmplJointNames();
     const auto joint = std::find(names.begin(), names.end(), JointOfLandmark(CocoNames()[k])) - names.begin();
     for (size_t t = 0; t < source.size(); ++t) {
-      if (source[t] >= track.joint_sigma.rows() || joint >= track.joint_sigma.cols()) continue;
-      pairs.push_back(
-          {double{(from_hips[t].row(k) - true_from_hips[t].row(k)).norm()}, track.joint_sigma(source[t], joint)});
+      AddPair((from_hips[t].row(k) - true_from_hips[t].row(k)).norm(), track, source[t], joint, &pairs);
     }
   }
   return pairs;
@@ -93,8 +97,7 @@ std::vector<JudgedSigma> JudgedJoints(const Track& track, const std::vector<int>
   std::vector<JudgedSigma> pairs;
   for (size_t t = 0; t < source.size(); ++t) {
     for (Eigen::Index j = 1; j < a[t].rows(); ++j) {
-      if (source[t] >= track.joint_sigma.rows() || j >= track.joint_sigma.cols()) continue;
-      pairs.push_back({(a[t].row(j) - b[t].row(j)).norm(), track.joint_sigma(source[t], j)});
+      AddPair((a[t].row(j) - b[t].row(j)).norm(), track, source[t], j, &pairs);
     }
   }
   return pairs;

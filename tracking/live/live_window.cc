@@ -177,22 +177,18 @@ bool LiveWindow::Solve(int iterations) {
 }
 
 PositionSigma LiveWindow::Uncertainty(int begin, int end) {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  PositionSigma sigma;
-  const int count = std::max(0, end - begin);
-  sigma.joints.setConstant(count, setup_.input.body->num_joints(), kNaN);
-  sigma.hips.setConstant(count, kNaN);
-  if (count == 0) return sigma;
+  const int J = setup_.input.body->num_joints();
+  PositionSigma sigma = PositionSigma::Unknown(std::max(0, end - begin), J);
+  if (begin >= end) return sigma;
   lag_->VisitCovariance(begin, end, [&](int slot, const Eigen::MatrixXd& P) {
     const FrameData& frame = problem().frames[slot];
     const JointSpread spread = JointSpreadOf(setup_.layout, problem().states[slot], problem().betas, P);
-    const int J = setup_.input.body->num_joints();
     // What has left the window holds the lifter's predictions too, so P cannot be had without them. Of 2D joints alone the
     // lifter's own spread is nearly all of both; dense keypoints know better than it.
     const bool lifter_decides = frame.lifted.pose != nullptr && frame.dense.size() == 0;
     sigma.joints.row(slot - begin) =
         (lifter_decides ? JointSigmaOf(*frame.lifted.pose, J) : JointSigmaOf(spread)).transpose();
-    sigma.hips[slot - begin] = std::sqrt(spread.hips.trace() / 3);
+    sigma.hips[slot - begin] = spread.HipsSigma();
   });
   return sigma;
 }

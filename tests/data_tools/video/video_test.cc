@@ -18,6 +18,7 @@
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/data_tools/video/clip_maker.h"
+#include "tests/data_tools/video/exif_maker.h"
 #include "tests/support/paths.h"
 
 namespace bodyloom {
@@ -173,10 +174,9 @@ TEST(Video, RefusesPlacesThatCannotBeWritten) {
 
 /// The JPEG with an EXIF segment that asks for a quarter turn to the right (orientation 6).
 std::string TurnedByExif(const std::string& jpeg) {
-  static constexpr unsigned char kExif[] = {0xff, 0xe1, 0, 34, 'E', 'x', 'i', 'f', 0,    0, 'I', 'I',
-                                            '*',  0,    8, 0,  0,   0,   1,   0,   0x12, 1, 3,   0,
-                                            1,    0,    0, 0,  6,   0,   0,   0,   0,    0, 0,   0};
-  return jpeg.substr(0, 2) + std::string(reinterpret_cast<const char*>(kExif), sizeof kExif) + jpeg.substr(2);
+  static constexpr unsigned char kTiff[] = {'I', 'I', '*', 0, 8, 0, 0, 0, 1, 0, 0x12, 1, 3,
+                                            0,   1,   0,   0, 0, 6, 0, 0, 0, 0, 0,    0, 0};
+  return WithExif(jpeg, std::string(reinterpret_cast<const char*>(kTiff), sizeof kTiff));
 }
 
 TEST(Video, AStillImageIsAFolderOfOneAndUpright) {
