@@ -3,10 +3,14 @@
 #include <cstdio>
 #include <iostream>
 #include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "apps/avatar_verbs.h"
 #include "apps/command_callbacks.h"
 #include "apps/detector_options.h"
+#include "apps/exec_neural.h"
 #include "bodyloom/pipelines/person/animate_person.h"
 
 namespace bodyloom {
@@ -34,7 +38,7 @@ void RunAnimatePerson(const AnimatePersonRequest& request) {
 
 }  // namespace
 
-void AddAnimatePerson(CLI::App& animate, Action* action) {
+void AddAnimatePerson(CLI::App& animate, Action* action, std::vector<std::string> arguments) {
   CLI::App* verb = animate.add_subcommand("person", "Moves a person from a photo or a few; nothing is trained");
   auto request = std::make_shared<AnimatePersonRequest>();
   TrackRequest& fit = request->photos.fit;
@@ -63,15 +67,30 @@ void AddAnimatePerson(CLI::App& animate, Action* action) {
   verb->add_option("--focal", fit.focal_px, "The photos' focal length in pixels (default: estimated)");
   verb->add_option("--stature", fit.stature_m, "The person's height in metres (default: average)");
   AddDetectorOptions(*verb, &fit.detector, &fit.detect_rate, "Detection");
+  auto scored = std::make_shared<bool>(false);
+  verb->add_option_function<std::string>(
+          "--score",
+          [verb, scored](const std::string&) {
+            *scored = true;
+            verb->allow_extras();  // options of its own
+          },
+          "Instead: measure on the test people of a multi-person dataset; needs LibTorch. Its options: bodyloom neural "
+          "animate person --help")
+      ->type_name("DIR");
   verb->add_option("--json", request->json, "Report with times");
   verb->add_option("--threads", request->threads, "0: all cores")->check(CLI::Range(0, 1024));
   verb->footer(
-      "Needs no LibTorch and no training. The pose detector's networks: ./dev models.\n"
+      "Needs no LibTorch (but for --score) and no training. The pose detector's networks: ./dev models.\n"
       "Examples:\n"
       "  bodyloom animate person --image me.jpg --track dance.npz --out me.mp4\n"
       "  bodyloom animate person --image front.jpg back.jpg --keep me\n"
       "  bodyloom animate person --person me --track dance.npz --view-yaw 0:360 --background b.jpg --out me.mp4");
-  verb->callback([request, action] { *action = [request] { RunAnimatePerson(*request); }; });
+  verb->callback([request, scored, action, arguments = std::move(arguments)] {
+    *action = [=] {
+      if (*scored) ExecNeural(arguments);
+      RunAnimatePerson(*request);
+    };
+  });
 }
 
 }  // namespace bodyloom

@@ -9,6 +9,8 @@ namespace bodyloom {
 
 void AddTrainAvatar(CLI::App& train, Action* action);
 void AddAnimateAvatar(CLI::App& animate, Action* action);
-void AddAnimatePerson(CLI::App& animate, Action* action);
+/// Scores need LibTorch: with --score the command goes on in the executable that has them, which takes `arguments`, those
+/// of this one.
+void AddAnimatePerson(CLI::App& animate, Action* action, std::vector<std::string> arguments);
 
 }  // namespace bodyloom

@@ -43,7 +43,7 @@ int Run(int argc, char** argv) {
   AddPriorVerb(app, &action);
   AddMotionsVerb(app, &action);
   AddTrainVerb(app, &action);
-  AddAnimateVerb(app, &action);
+  AddAnimateVerb(app, &action, {argv + 1, argv + argc});
   AddNeuralVerb(app, &action);
   AddVersionVerb(app, &action);
   try {

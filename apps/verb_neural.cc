@@ -74,7 +74,7 @@ void AddTrainVerb(CLI::App& app, Action* action) {
   AddTrainAvatar(*train, action);
 }
 
-void AddAnimateVerb(CLI::App& app, Action* action) {
+void AddAnimateVerb(CLI::App& app, Action* action, std::vector<std::string> arguments) {
   CLI::App* animate = AddVerbOfVerbs(
       app, "animate", "Renders a person that was learned: `bodyloom animate avatar --help`",
       {{"motion", "Renders a person that `bodyloom train motion` learned (needs LibTorch)"},
@@ -82,7 +82,7 @@ void AddAnimateVerb(CLI::App& app, Action* action) {
        {"guided", "Animates the person of a photo, as `bodyloom train guided` learned to (needs LibTorch)"}},
       action);
   AddAnimateAvatar(*animate, action);
-  AddAnimatePerson(*animate, action);
+  AddAnimatePerson(*animate, action, std::move(arguments));
 }
 
 }  // namespace bodyloom

@@ -52,7 +52,8 @@ void AddDemoVerb(CLI::App& app, Action* action);
 void AddPriorVerb(CLI::App& app, Action* action);
 void AddMotionsVerb(CLI::App& app, Action* action);
 void AddTrainVerb(CLI::App& app, Action* action);
-void AddAnimateVerb(CLI::App& app, Action* action);
+/// `arguments`: those of this command, for what goes on in another executable.
+void AddAnimateVerb(CLI::App& app, Action* action, std::vector<std::string> arguments);
 void AddNeuralVerb(CLI::App& app, Action* action);
 void AddVersionVerb(CLI::App& app, Action* action);
 

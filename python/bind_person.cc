@@ -13,8 +13,8 @@
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/pipelines/files.h"
+#include "bodyloom/pipelines/person/make_photo_person.h"
 #include "bodyloom/pipelines/person/person_folder.h"
-#include "bodyloom/pipelines/person/photo_person.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/python_callbacks.h"

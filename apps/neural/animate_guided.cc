@@ -31,8 +31,9 @@ void Run(AnimateGuidedArguments options) {
     return;
   }
   TakeFrom(request, &options.score);
+  options.score.renderer = PeopleRenderer::kGuided;
   options.score.completion = request.completion, options.score.anywhere = request.anywhere;
-  Print(RunWithBar("scores", ScoreGuided, options.score));
+  Print(RunWithBar("scores", ScorePeople, options.score));
 }
 
 }  // namespace

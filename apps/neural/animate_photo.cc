@@ -24,8 +24,9 @@ void Run(AnimatePhotoArguments options) {
   request.background = ParsePhotoBackground(options.background);
   if (IsScored(options.score, request)) {
     TakeFrom(request, &options.score);
+    options.score.renderer = PeopleRenderer::kPhoto;
     options.score.anywhere = request.whole_window;
-    Print(RunWithBar("scores", ScorePhoto, options.score));
+    Print(RunWithBar("scores", ScorePeople, options.score));
     return;
   }
   if (request.track.empty()) throw RequestError("--track is needed: the motion");

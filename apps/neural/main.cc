@@ -56,6 +56,7 @@ int main(int argc, char** argv) {
   bodyloom::AddAnimateMotion(*animate, &action);
   bodyloom::AddAnimatePhoto(*animate, &action);
   bodyloom::AddAnimateGuided(*animate, &action);
+  bodyloom::AddScorePerson(*animate, &action);
   bodyloom::AddCard(app, &action);
   bodyloom::AddMetricsVerb(app, &action, {}, bodyloom::LikenessMetrics);
   bodyloom::AddDetectVerb(app, &action, {}, DenseDetector);

@@ -19,5 +19,7 @@ void AddTrainGuided(CLI::App& train, Action* action);
 void AddAnimateMotion(CLI::App& animate, Action* action);
 void AddAnimatePhoto(CLI::App& animate, Action* action);
 void AddAnimateGuided(CLI::App& animate, Action* action);
+/// `animate person` with --score alone.
+void AddScorePerson(CLI::App& animate, Action* action);
 
 }  // namespace bodyloom

@@ -14,7 +14,7 @@ namespace bodyloom {
 void AddScoreOptions(CLI::App* verb, ScorePeopleRequest* request) {
   verb->add_option("--score", request->data,
                    "Instead: measure on the test people of this multi-person dataset; photos and pictures are the same "
-                   "for `animate photo` and `animate guided`");
+                   "for `animate photo`, `guided` and `person`");
   verb->add_option("--score-photos", request->photos, "Numbers of photos to measure with, such as 1 2 4")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
@@ -56,21 +56,26 @@ void TakeFrom(const PhotoAnimationRequest& animation, ScorePeopleRequest* score)
 }
 
 std::string ScoresText(const GuidedScores& s) {
-  char labels[32] = "";
-  if (!std::isnan(s.label_iou)) std::snprintf(labels, sizeof labels, " labels IoU %.3f,", s.label_iou);
-  char line[320];
-  std::snprintf(line, sizeof line,
-                "L1 %.4f, PSNR %.2f dB, silhouette IoU %.3f,%s LPIPS%s %.4f (deviation %.4f), CS%s %.3f", s.image_l1,
-                s.psnr_db, s.silhouette_iou, labels, s.lpips_random_features ? " (random features)" : "", s.lpips,
-                s.lpips_deviation, s.contextual_random_features ? " (random features, a quarter of the channels)" : "",
-                s.contextual);
+  const auto text = [](const char* format, auto... values) {
+    char words[320];
+    std::snprintf(words, sizeof words, format, values...);
+    return std::string(words);
+  };
+  std::string line = text("L1 %.4f, PSNR %.2f dB, silhouette IoU %.3f", s.image_l1, s.psnr_db, s.silhouette_iou);
+  if (!std::isnan(s.label_iou)) line += text(", labels IoU %.3f", s.label_iou);
+  line += text(", LPIPS%s %.4f (deviation %.4f)", s.lpips_random_features ? " (random features)" : "", s.lpips,
+               s.lpips_deviation);
+  if (!std::isnan(s.contextual)) {
+    line += text(", CS%s %.3f", s.contextual_random_features ? " (random features, a quarter of the channels)" : "",
+                 s.contextual);
+  }
   return line;
 }
 
 void Print(const ScorePeopleSummary& summary) {
   for (const ScoredPhotos& s : summary.scored) {
-    std::printf("%d photo%s (%.0f %% of the texels; %s given): %s\n", s.photos, s.photos == 1 ? "" : "s",
-                100 * s.texels_seen, summary.given.c_str(), ScoresText(s.scores).c_str());
+    std::printf("%d photo%s (%.0f %% of the texels; %s given): SSIM %.4f, %s\n", s.photos, s.photos == 1 ? "" : "s",
+                100 * s.texels_seen, summary.given.c_str(), s.ssim, ScoresText(s.scores).c_str());
   }
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Options and lines of `--score`, which `bodyloom animate photo` and `bodyloom animate guided` have in common.
+/// Options and lines of `--score`, which `bodyloom animate photo`, `guided` and `person` have in common.
 #pragma once
 
 #include <string>
 
-#include "bodyloom/pipelines/neural/guided/score_people.h"
+#include "bodyloom/pipelines/neural/people/score_people.h"
 #include "bodyloom/pipelines/neural/photo/photo_animation.h"
 
 namespace CLI {

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The two renderers that need one photo under one protocol: the same people, photos and pictures, the same scores, with
-true labels and bodies and with estimated ones; and the ablations of the pose-guided renderer (Table 2 of Yoon et al.,
+"""The renderers that need one photo under one protocol: the same people, photos and pictures, the same scores, with true
+labels and bodies and with estimated ones; beside them what needs no training, a textured body with clothes (person) and
+the photo warped by the bare body (floor); and the ablations of the pose-guided renderer (Table 2 of Yoon et al.,
 "Pose-Guided Human Animation from a Single Image in the Wild", CVPR 2021) on synthetic people.
 
 usage: one_photo.py --bodyloom build/release/apps/bodyloom --motions ../shared/data/motion --out FOLDER
-       [--systems photo guided] [--without latent kl ...] [--given true labels iuv bodies all] [--seeds 1 2 3]
+       [--systems floor person photo guided] [--photos 1 2 4] [--without latent kl ...] [--given true labels iuv bodies all] [--seeds 1 2 3]
        [--people 60] [--size 256] [--steps 4000] [--batch 4] [--profile cpu] [--report]
 
 FOLDER gets the people, a folder a run, report.md and report.json. What is there is not made again: a program that was
@@ -25,7 +26,9 @@ ABLATIONS = ["sil", "gar", "source-silhouette", "source-labels", "latent", "kl",
 TRACK = "tracked.npz"
 GIVEN = {"true": [], "labels": ["--score-labels", "estimated"], "iuv": ["--score-iuv"], "bodies": ["--score-tracks", TRACK],
          "all": ["--score-labels", "estimated", "--score-tracks", TRACK]}
-SCORES = [("image_l1", "L1", 4), ("psnr_db", "PSNR dB", 2), ("silhouette_iou", "silhouette IoU", 3),
+UNTRAINED = {"floor": ["--score-floor"], "person": []}
+NO_IUV = {"person"}  # it takes bodies
+SCORES = [("image_l1", "L1", 4), ("psnr_db", "PSNR dB", 2), ("ssim", "SSIM", 4), ("silhouette_iou", "silhouette IoU", 3),
           ("label_iou", "labels IoU", 3), ("lpips", "LPIPS", 4), ("lpips_deviation", "deviation", 4),
           ("contextual", "CS", 3)]
 
@@ -60,7 +63,7 @@ def track_test_people(o, people):
 def settings(o):
     """Name, verb and options of each kind of run."""
     for system in o.systems:
-        yield system, system, []
+        yield system, "person" if system in UNTRAINED else system, []
     if "guided" in o.systems:
         for part in o.without:
             yield f"guided without {part}", "guided", ["--without", part]
@@ -68,6 +71,10 @@ def settings(o):
 
 def run_folder(o, name, seed):
     return o.out / f"{name.replace(' ', '_')}_{seed}"
+
+
+def seeds_of(o, name):
+    return o.seeds[:1] if name in UNTRAINED else o.seeds
 
 
 def train(o, people, name, verb, options, seed):
@@ -90,12 +97,17 @@ def train(o, people, name, verb, options, seed):
 def score(o, people, name, verb, seed):
     run = run_folder(o, name, seed)
     # Ablations are compared on what is true.
-    for given in o.given if name == verb else [g for g in o.given if g == "true"]:
+    for given in o.given if name in o.systems else [g for g in o.given if g == "true"]:
+        if given == "iuv" and name in NO_IUV:
+            continue
         scores = run / f"scores_{given}.json"
-        if not scores.exists():  # written whole or not at all
-            call([o.bodyloom, "animate", verb, "--run", str(run), "--score", str(people), "--score-photos", "1",
-                  "--score-frames", str(o.score_frames), "--sheet", str(run / f"{given}.png"), "--json", str(scores),
-                  "--threads", str(o.threads)] + GIVEN[given], run / "log.txt")
+        if scores.exists():  # written whole or not at all
+            continue
+        run.mkdir(exist_ok=True)
+        what = ["--size", str(o.size)] + UNTRAINED[name] if name in UNTRAINED else ["--run", str(run)]
+        call([o.bodyloom, "animate", verb, "--score", str(people), "--score-photos"] + [str(n) for n in o.photos] +
+             ["--score-frames", str(o.score_frames), "--sheet", str(run / f"{given}.png"), "--json", str(scores),
+              "--threads", str(o.threads)] + what + GIVEN[given], run / "log.txt")
 
 
 def score_of(scores, key):
@@ -106,20 +118,23 @@ def score_of(scores, key):
 
 
 def report(o):
-    lines = [f"Profile {o.profile}, {o.steps} steps of batch {o.batch}, {o.people} people, one photo; mean ± standard "
-             "deviation over seeds", "", "| system | given | seeds | pictures | " +
-             " | ".join(name for _, name, _ in SCORES) + " |", "|---|---|---|---|" + "---|" * len(SCORES)]
+    lines = [f"Profile {o.profile}, {o.steps} steps of batch {o.batch}, {o.people} people; mean ± standard deviation over "
+             "seeds", "", "| photos | system | given | seeds | pictures | " +
+             " | ".join(name for _, name, _ in SCORES) + " |", "|---|---|---|---|---|" + "---|" * len(SCORES)]
     rows = []
-    for name, _, _ in settings(o):
-        for given in o.given:
-            found = [json.loads(path.read_text(encoding="utf-8"))["scores"][0] for seed in o.seeds
-                     if (path := run_folder(o, name, seed) / f"scores_{given}.json").exists()]
-            if not found:
-                continue
-            values = {key: [v for s in found if (v := score_of(s, key)) is not None] for key, _, _ in SCORES}
-            cells = [text(values[key], digits) if values[key] else "" for key, _, digits in SCORES]
-            lines.append(f"| {name} | {given} | {len(found)} | {found[0]['frames']} | " + " | ".join(cells) + " |")
-            rows.append({"system": name, "given": given, **values})
+    for photos in o.photos:
+        for name, _, _ in settings(o):
+            for given in o.given:
+                found = [scores for seed in seeds_of(o, name)
+                         if (path := run_folder(o, name, seed) / f"scores_{given}.json").exists()
+                         for scores in json.loads(path.read_text(encoding="utf-8"))["scores"] if scores["photos"] == photos]
+                if not found:
+                    continue
+                values = {key: [v for s in found if (v := score_of(s, key)) is not None] for key, _, _ in SCORES}
+                cells = [text(values[key], digits) if values[key] else "" for key, _, digits in SCORES]
+                lines.append(f"| {photos} | {name} | {given} | {len(found)} | {found[0]['frames']} | " +
+                             " | ".join(cells) + " |")
+                rows.append({"photos": photos, "system": name, "given": given, **values})
     (o.out / "report.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
     (o.out / "report.json").write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
     return "\n".join(lines)
@@ -130,7 +145,9 @@ def main():
     parser.add_argument("--bodyloom", default="build/release/apps/bodyloom")
     parser.add_argument("--motions", default="../shared/data/motion")
     parser.add_argument("--out", type=pathlib.Path, required=True)
-    parser.add_argument("--systems", nargs="+", default=["photo", "guided"], choices=["photo", "guided"])
+    parser.add_argument("--systems", nargs="+", default=[*UNTRAINED, "photo", "guided"],
+                        choices=[*UNTRAINED, "photo", "guided"])
+    parser.add_argument("--photos", type=int, nargs="+", default=[1], help="numbers of photos, each a row")
     parser.add_argument("--without", nargs="*", default=ABLATIONS, choices=ABLATIONS)
     parser.add_argument("--given", nargs="+", default=list(GIVEN), choices=list(GIVEN))
     parser.add_argument("--seeds", type=int, nargs="+", default=[1, 2, 3])
@@ -153,7 +170,10 @@ def main():
             track_test_people(o, people)
         for seed in o.seeds:
             for name, verb, options in settings(o):
-                train(o, people, name, verb, options, seed)
+                if seed not in seeds_of(o, name):
+                    continue
+                if name not in UNTRAINED:
+                    train(o, people, name, verb, options, seed)
                 score(o, people, name, verb, seed)
                 report(o)
     print(report(o))

@@ -75,6 +75,10 @@ void GuidedScorer::Add(const GuidedPicture& picture, const PhotoFrame& truth) {
   const double from_mean = distance - s.person_mean;
   s.person_mean += from_mean / ++s.of_person;
   s.around_mean += from_mean * (distance - s.person_mean);
+  if (picture.size > GuidedScores::kLargestContextualPicture) {
+    s.contextual_sum = std::numeric_limits<double>::quiet_NaN();
+    return;
+  }
   const ContextualValue contextual = (*s.contextual)(image, true_image);
   s.contextual_sum += contextual.distance;
   s.contextual_random_features = contextual.random_features;

@@ -15,6 +15,7 @@ namespace bodyloom {
 /// figures. LPIPS' are those of all renderers (neural/metrics/lpips.h); CS' are of a quarter of VGG-19's channels, for
 /// speed.
 struct GuidedScores {
+  static constexpr int kLargestContextualPicture = 256;
   int frames = 0;
   double image_l1 = 0;        ///< mean |I − I_true| over foreground and channels
   double psnr_db = 0;         ///< over the foreground, range 1
@@ -24,7 +25,9 @@ struct GuidedScores {
   /// The paper's temporal stability: the standard deviation of LPIPS over a person's frames, pooled over people,
   /// sqrt(Σ_p Σ_f (d_pf − mean_p)² / frames).
   double lpips_deviation = 0;
-  double contextual = 0;  ///< Σ −log CX, mean over frames; NaN where not requested
+  /// Σ −log CX, mean over frames; NaN where not requested, and of pictures larger than kLargestContextualPicture: its
+  /// time rises with the fourth power of their side.
+  double contextual = 0;
   bool lpips_random_features = true, contextual_random_features = true;
 };
 

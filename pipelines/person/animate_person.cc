@@ -25,15 +25,13 @@
 #include "bodyloom/pipelines/people/background.h"
 #include "bodyloom/pipelines/people/freeze.h"
 #include "bodyloom/pipelines/people/view_angles.h"
+#include "bodyloom/pipelines/person/draw_person.h"
 #include "bodyloom/pipelines/person/person_folder.h"
 #include "bodyloom/pipelines/report_json.h"
-#include "bodyloom/render/attribute_picture.h"
 #include "bodyloom/render/view_camera.h"
 
 namespace bodyloom {
 namespace {
-
-constexpr int kSamples = 3;  ///< a pixel along x and y
 
 class PersonAnimation {
  public:
@@ -113,11 +111,7 @@ class PersonAnimation {
       throw std::runtime_error(Concatenate(request_.track, ": pictures of ", width_, "x", height_,
                                            ", expected sides of 2 to ", kLongestPictureSide));
     }
-    texels_ = TexelsOf(person_.texture);
-    options_.attribute = SurfaceAttribute::kTexture;
-    options_.texture = {texels_, person_.texture.width, person_.texture.height, 3};
-    options_.samples = kSamples;
-    options_.num_threads = threads_;
+    painter_.emplace(person_, threads_);
   }
 
   [[nodiscard]] Camera CameraAt(int t) const {
@@ -141,7 +135,7 @@ class PersonAnimation {
       const Stopwatch watch;
       if (video) {
         Image whole = background.Next();
-        if (shows) painter_.Draw(*person_.body, vertices, CameraAt(t), options_, &whole);
+        if (shows) painter_->Draw(vertices, CameraAt(t), &whole);
         if (t == 0) summary_.first_frame_s = total_.seconds();
         if (shows) draw_ms.push_back(1e3 * watch.seconds());
         clock_.Begin("write");
@@ -158,7 +152,7 @@ class PersonAnimation {
   void WritePicture(int t, const MatrixX3d& vertices) {
     Image black(width_, height_);
     std::vector<uint8_t> coverage(static_cast<size_t>(width_) * height_, 0);
-    if (vertices.rows() > 0) painter_.Draw(*person_.body, vertices, CameraAt(t), options_, &black, &coverage);
+    if (vertices.rows() > 0) painter_->Draw(vertices, CameraAt(t), &black, &coverage);
     std::vector<uint8_t> bgra(4 * coverage.size(), 0);
     for (size_t p = 0; p < coverage.size(); ++p) {
       if (coverage[p] == 0) continue;
@@ -203,9 +197,7 @@ class PersonAnimation {
   double scale_ = 1;
   int width_ = 0, height_ = 0;
   std::optional<PosedTrack> posed_;
-  std::vector<float> texels_;
-  AttributePictureOptions options_;
-  AttributePainter painter_;
+  std::optional<PersonPainter> painter_;
   AnimatePersonSummary summary_;
 };
 

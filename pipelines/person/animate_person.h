@@ -7,7 +7,7 @@
 
 #include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/pipelines/callbacks.h"
-#include "bodyloom/pipelines/person/photo_person.h"
+#include "bodyloom/pipelines/person/make_photo_person.h"
 
 namespace bodyloom {
 

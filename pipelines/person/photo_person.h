@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// A person from one photo or several: a body of the person's own shape, clothes included, and a whole texture for it.
-/// Nothing is trained and no video is needed.
-///
-/// Each photo by itself: people are detected, the body is fitted to the person's landmarks and mask, clothes and hair
-/// stand off as the mask says (render/person/clothes_offsets.h), and the texels of the clothed body look their colours up
-/// in the picture. Photos are merged texel by texel, the one that sees it best; the first gives shape and clothes. What no
-/// photo shows is guessed (render/person/whole_texture.h).
 #pragma once
 
+#include <Eigen/Core>
 #include <memory>
 #include <string>
 #include <vector>
@@ -15,19 +10,9 @@
 #include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/geometry/body_model.h"
 #include "bodyloom/geometry/track.h"
-#include "bodyloom/pipelines/callbacks.h"
-#include "bodyloom/pipelines/track/track_request.h"
 #include "bodyloom/render/image.h"
 
 namespace bodyloom {
-
-struct PhotoPersonRequest {
-  std::vector<std::string> images;  ///< photos of the person, at least one
-  /// The body, the detector, the focal length, the person's height and how to solve; `person` is who of a photo, 0: the
-  /// largest. Its video, observations and outputs are not used.
-  TrackRequest fit;
-  int texture_size = 1024;  ///< texels a side, 64 to 8192
-};
 
 struct PhotoPersonReport {
   struct Photo {
@@ -55,10 +40,6 @@ struct PhotoPerson {
   std::vector<Track> tracks;  ///< a frame each, of `bare`: the person in each photo
   PhotoPersonReport report;
 };
-
-/// Throws RequestError for a request that contradicts itself, NothingToTrack naming a photo in which nobody is found or
-/// could be fitted, std::runtime_error naming a file that cannot be used, Cancelled.
-PhotoPerson MakePhotoPerson(const PhotoPersonRequest& request, const PipelineCallbacks& callbacks = {});
 
 /// The motion of a track of `bare` by this person: for person.body, with zero betas. Throws std::invalid_argument for a
 /// track whose camera moves, and as WithShape().

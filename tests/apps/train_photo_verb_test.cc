@@ -136,6 +136,38 @@ TEST_F(TrainPhotoVerb, PeopleAreScoredUnderOneProtocol) {
   EXPECT_GT(same, 1000);
   EXPECT_GT(other, 100);
 
+  // What needs no training draws the same pictures from the same photos; a body with a texture is better than the photo
+  // warped by the body, which is better than nothing.
+  const auto untrained = [&](const std::string& name, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"animate",        "person", "--score", scratch_ / "people",
+                                          "--size",         "128",    "--json",  scratch_ / (name + ".json"),
+                                          "--texture-size", "128",    "--sheet", scratch_ / (name + ".png"),
+                                          "--threads",      "1"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const CommandResult result = RunCommand(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_THAT(result.out, HasSubstr("given): SSIM"));
+    return nlohmann::json::parse(std::ifstream(scratch_ / (name + ".json")));
+  };
+  const nlohmann::json person = untrained("person", {}), floor = untrained("floor", {"--score-floor"});
+  const Image of_person = ReadImage(scratch_ / "person.png");
+  ASSERT_EQ(of_person.width, of_photo.width);
+  for (int y = 0; y < of_photo.height; ++y) {
+    ASSERT_TRUE(std::equal(of_photo.pixel(0, y), of_photo.pixel(of_photo.width / 4 - 8, y), of_person.pixel(0, y)))
+        << y;
+  }
+  EXPECT_EQ(person["scores"][0]["frames"], 3);
+  EXPECT_FALSE(person["scores"][0].contains("label_iou"));
+  EXPECT_GT(person["scores"][0]["psnr_db"], floor["scores"][0]["psnr_db"].get<double>() + 1);
+  EXPECT_GT(person["scores"][0]["silhouette_iou"], floor["scores"][0]["silhouette_iou"].get<double>());
+  EXPECT_GT(person["scores"][0]["ssim"], photo["scores"][0]["ssim"].get<double>()) << "of one step of training";
+  const nlohmann::json guessed = untrained("labels", {"--score-labels", "estimated"});
+  EXPECT_EQ(guessed["given"], "estimated labels, true bodies");
+  EXPECT_NE(guessed["scores"], person["scores"]);
+  const CommandResult no_iuv = RunCommand({"animate", "person", "--score", scratch_ / "people", "--score-iuv"});
+  EXPECT_EQ(no_iuv.exit_code, 2);
+  EXPECT_THAT(no_iuv.err, HasSubstr("--score-iuv: a body with a texture takes bodies"));
+
   // What is given is estimated, all of it or some.
   const nlohmann::json labels = score("photo", {"--score-labels", "estimated"});
   EXPECT_EQ(labels["given"], "estimated labels, true bodies");

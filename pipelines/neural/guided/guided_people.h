@@ -17,9 +17,9 @@ class GuidedPeople {
   /// Throws as PeopleData.
   explicit GuidedPeople(const PeopleDataRequest& request);
 
+  [[nodiscard]] const PeopleData& data() const { return data_; }
   /// Refers to this, which must outlive it.
   [[nodiscard]] const PhotoSource& source() const { return data_.source(); }
-  [[nodiscard]] PhotoFrame PhotoOf(int person, int frame) const { return data_.PhotoOf(person, frame); }
   /// The six views of pipelines/neural/guided/virtual_views.h.
   [[nodiscard]] std::vector<PhotoFrame> VirtualViewsOf(int person) const;
 

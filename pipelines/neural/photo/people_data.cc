@@ -2,6 +2,7 @@
 #include "bodyloom/pipelines/neural/photo/people_data.h"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <map>
 #include <mutex>
@@ -14,6 +15,7 @@
 #include "bodyloom/data_tools/body/body_or_builtin.h"
 #include "bodyloom/data_tools/datasets/multi_person_dataset.h"
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
+#include "bodyloom/data_tools/motion/freeze_track.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/pipelines/neural/photo/photo_input.h"
@@ -89,6 +91,14 @@ class PeopleData::Impl {
     }
     return photo;
   }
+
+  [[nodiscard]] Track BodyOf(int person, int frame) const {
+    const FrameOfPerson& from = people_.at(person).at(frame);
+    Track body = FramesInOrder(from.clip->track, std::array{from.t});
+    body.camera = CameraInWindow(body.CameraAt(0), from.clip->maps->window(), from.t);
+    return body;
+  }
+  [[nodiscard]] const std::shared_ptr<const BodyModel>& body() const { return body_; }
 
  private:
   /// A single-person dataset's clip and the maps of its frames.
@@ -170,6 +180,8 @@ PeopleData::PeopleData(const PeopleDataRequest& request) : impl_(std::make_uniqu
 PeopleData::~PeopleData() = default;
 const PhotoSource& PeopleData::source() const { return impl_->source(); }
 PhotoFrame PeopleData::PhotoOf(int person, int frame) const { return impl_->PhotoOf(person, frame); }
+Track PeopleData::BodyOf(int person, int frame) const { return impl_->BodyOf(person, frame); }
+const std::shared_ptr<const BodyModel>& PeopleData::body() const { return impl_->body(); }
 
 bool HasTestPeople(const std::string& data) {
   if (IsSinglePersonDataset(data)) return false;

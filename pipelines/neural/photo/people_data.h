@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/track.h"
 #include "bodyloom/neural/people/photo_frame.h"
 
 namespace bodyloom {
@@ -50,6 +52,9 @@ class PeopleData {
   /// The frame as a photo: as source().fill gives it, with estimated labels where those are requested. Throws
   /// std::runtime_error naming the clip where the body is not in the picture.
   [[nodiscard]] PhotoFrame PhotoOf(int person, int frame) const;
+  /// The body in the frame's window: a track of one frame, whose camera's image is the window.
+  [[nodiscard]] Track BodyOf(int person, int frame) const;
+  [[nodiscard]] const std::shared_ptr<const BodyModel>& body() const;
 
  private:
   class Impl;

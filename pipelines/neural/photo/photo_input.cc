@@ -2,6 +2,7 @@
 #include "bodyloom/pipelines/neural/photo/photo_input.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -13,7 +14,7 @@
 #include "bodyloom/data_tools/datasets/label_of_part.h"
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/data_tools/descriptors/posed_track.h"
-#include "bodyloom/data_tools/motion/motion_tools.h"
+#include "bodyloom/data_tools/motion/freeze_track.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/observations/part_labels.h"
 #include "bodyloom/geometry/base/check.h"
@@ -39,17 +40,7 @@ Track TrackOfFrame(const Track& track, const std::string& path, int frame) {
   if (!track.HasResult(t)) {
     throw std::runtime_error(Concatenate(path, ": frame ", t, " has no result; choose another by the frame's number"));
   }
-  Track one = track;
-  one.motion = TakeFrames(track.motion, t, 1);
-  one.frame_status = {track.frame_status[t]};
-  const auto keep = [t](auto* values) {
-    if (!values->empty()) *values = {(*values)[t]};
-  };
-  keep(&one.joints), keep(&one.coco17);
-  if (one.joint_sigma.rows() > 0) one.joint_sigma = RowMatrixXd(track.joint_sigma.row(t));
-  if (one.root_sigma.size() > 0) one.root_sigma = Eigen::VectorXd(track.root_sigma.segment(t, 1));
-  if (one.weak_camera.rows() > 0) one.weak_camera = MatrixX3d(track.weak_camera.row(t));
-  return one;
+  return FramesInOrder(track, std::array{t});
 }
 
 /// Files that several photos share.

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The two renderers that need one photo, on people they have not been trained on, under one protocol: what `bodyloom
-/// animate photo --score` and `bodyloom animate guided --score` do.
+/// Renderers that need one photo, on people they have not seen, under one protocol: what `bodyloom animate photo
+/// --score`, `bodyloom animate guided --score` and `bodyloom animate person --score` do.
 ///
 /// Of each test person the photos are those of ChoosePhotos (neural/guided/choose_photos.h) on true labels and bodies,
-/// whatever is given to the renderer; the pictures to compare with are spread over the others. So both renderers, and
+/// whatever is given to the renderer; the pictures to compare with are spread over the others. So all renderers, and
 /// every setting of one, draw the same pictures from the same photos, and one class measures them (GuidedScorer).
-/// Windows have the size of the run's profile: runs to be compared are of one image size. Where bodies are estimated
-/// the windows follow them.
+/// Windows of the networks have the size of the run's profile: runs to be compared are of one image size. Where bodies
+/// are estimated the windows follow them.
 #pragma once
 
 #include <optional>
@@ -20,8 +20,18 @@
 
 namespace bodyloom {
 
+enum class PeopleRenderer {
+  kPhoto,   ///< the one-photo renderer of a run (pipelines/neural/photo)
+  kGuided,  ///< the pose-guided renderer of a run (pipelines/neural/guided)
+  kPerson,  ///< a textured body with clothes, nothing trained (pipelines/person)
+  kWarp     ///< the floor: the bare body as far as the photos show it, black elsewhere
+};
+
 struct ScorePeopleRequest {
-  std::string run;                ///< folder of the trained run
+  PeopleRenderer renderer = PeopleRenderer::kPhoto;
+  std::string run;                ///< folder of the trained run; of the others: empty
+  int size = 256;                 ///< of the windows, of what has no run
+  int texture_size = 512;         ///< texels a side, of kPerson
   std::string data;               ///< a multi-person dataset: its test people
   std::string body;               ///< empty: the built-in body
   GivenOfPeople given;            ///< of photos and poses
@@ -41,7 +51,8 @@ struct ScorePeopleRequest {
 
 struct ScoredPhotos {
   int photos = 0;
-  GuidedScores scores;     ///< label_iou is NaN of the one-photo renderer, which draws no labels
+  GuidedScores scores;     ///< label_iou is NaN of a renderer that draws no labels
+  double ssim = 0;         ///< of the windows (pipelines/neural/window_ssim.h), mean over pictures
   double texels_seen = 0;  ///< share of the atlas that the photos fill, mean over people
 };
 
@@ -51,9 +62,8 @@ struct ScorePeopleSummary {
   std::vector<std::string> written;  ///< the files, as the request names them
 };
 
-/// Throw std::runtime_error for files that cannot be used and datasets without a picture to compare with, Cancelled. The
-/// stage of `callbacks` is "people".
-ScorePeopleSummary ScoreGuided(const ScorePeopleRequest& request, const PipelineCallbacks& callbacks);
-ScorePeopleSummary ScorePhoto(const ScorePeopleRequest& request, const PipelineCallbacks& callbacks);
+/// Throws std::runtime_error for files that cannot be used and datasets without a picture to compare with, RequestError
+/// for what the renderer has not, Cancelled. The stage of `callbacks` is "people".
+ScorePeopleSummary ScorePeople(const ScorePeopleRequest& request, const PipelineCallbacks& callbacks);
 
 }  // namespace bodyloom

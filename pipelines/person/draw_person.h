@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Pictures of a person made from photos.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/camera.h"
+#include "bodyloom/pipelines/person/photo_person.h"
+#include "bodyloom/render/attribute_picture.h"
+
+namespace bodyloom {
+
+/// Keeps its memory between pictures. Not for use by two threads at once.
+class PersonPainter {
+ public:
+  /// `person` must outlive this. Pictures are the same for any number of threads.
+  PersonPainter(const PhotoPerson& person, int num_threads);
+
+  /// Draws the person over an image of the camera's size, nine samples a pixel. `vertices_in_camera`: of person.body.
+  /// `coverage`, one a pixel, becomes the share of samples that show the person, 0 to 255. Throws std::invalid_argument
+  /// when sizes differ.
+  void Draw(const MatrixX3d& vertices_in_camera, const Camera& camera, Image* image,
+            std::vector<uint8_t>* coverage = nullptr);
+
+ private:
+  const PhotoPerson* person_;
+  std::vector<float> texels_;
+  AttributePictureOptions options_;
+  AttributePainter painter_;
+};
+
+}  // namespace bodyloom

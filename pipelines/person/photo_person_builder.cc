@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/person/photo_person_builder.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "bodyloom/data_tools/observations/nothing_to_track.h"
+#include "bodyloom/geometry/bake_shape.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/percentile.h"
+#include "bodyloom/render/overlay.h"
+#include "bodyloom/render/person/body_regions.h"
+#include "bodyloom/render/person/clothes_offsets.h"
+#include "bodyloom/render/person/whole_texture.h"
+#include "bodyloom/render/unit_byte.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr double kMarginOfHeight = 0.004;  ///< of the person's pixels: the mask's contour is blurred by so much
+
+constexpr double kStepMarginOfHeight = 0.012;  ///< where a limb hides another: a fit's median error
+constexpr double kLeastSeen = 0.01;            ///< of the body's texels, in every photo
+
+/// In the order of TexelSource.
+constexpr std::array<Colour, 8> kSourceColours = {{{0, 0, 0},
+                                                   {255, 255, 255},
+                                                   {70, 110, 230},
+                                                   {60, 180, 90},
+                                                   {230, 210, 60},
+                                                   {130, 80, 40},
+                                                   {240, 140, 40},
+                                                   {220, 40, 60}}};
+
+/// Pixels from the mask's first row to its last.
+int MaskHeight(const LabelImage& mask) {
+  int first = mask.height, last = -1;
+  for (int y = 0; y < mask.height; ++y) {
+    for (int x = 0; x < mask.width; ++x) {
+      if (mask.labels[static_cast<size_t>(y) * mask.width + x] == 0) continue;
+      first = std::min(first, y), last = std::max(last, y);
+    }
+  }
+  return std::max(0, last - first + 1);
+}
+int MarginPx(const LabelImage& mask, double of_height) {
+  return static_cast<int>(std::clamp(std::lround(of_height * MaskHeight(mask)), 1L, 64L));
+}
+
+}  // namespace
+
+PhotoPersonBuilder::PhotoPersonBuilder(std::shared_ptr<const BodyModel> bare, int texture_size, StageClock* clock)
+    : texture_size_(texture_size), clock_(clock) {
+  BODYLOOM_CHECK(bare->has_uv(), "a person's texture: the body has no UV coordinates");
+  person_.bare = std::move(bare);
+}
+
+void PhotoPersonBuilder::Begin(const char* stage) {
+  if (clock_ != nullptr) clock_->Begin(stage);
+}
+
+void PhotoPersonBuilder::Add(const FittedPhoto& photo) {
+  PhotoPersonReport::Photo report;
+  report.image = photo.name, report.people = photo.people;
+  report.width = photo.picture.width, report.height = photo.picture.height;
+  Begin("clothes");
+  const BodyModel& bare = *person_.bare;
+  const Eigen::VectorXd betas = photo.track.motion.betas;
+  const ClothesOffsets offsets = FitClothesOffsets(
+      bare, ShapeVertices(bare, betas), TrackVertices(bare, photo.track, 0), photo.track.CameraAt(0), photo.mask);
+  report.rim_measured = offsets.measured;
+  const auto clothed = std::make_shared<const BodyModel>(BakeShape(bare, betas, offsets.metres));
+  const int index = static_cast<int>(person_.tracks.size());
+  if (index == 0) {
+    person_.betas = betas;
+    person_.body = clothed;
+    person_.report.clothes_median_m = Percentile(offsets.metres, 50);
+    person_.report.clothes_max_m = *std::max_element(offsets.metres.begin(), offsets.metres.end());
+  }
+  Begin("texture");
+  if (!extractor_) {
+    TextureExtractOptions options;
+    options.texels.width = options.texels.height = texture_size_;
+    options.edge_margin_px = MarginPx(photo.mask, kMarginOfHeight);
+    options.step_margin_px = MarginPx(photo.mask, kStepMarginOfHeight);
+    options.merge = TextureExtractOptions::Merge::kMean;
+    options.keep = 1;
+    extractor_.emplace(*person_.body, options);
+  }
+  Track track = photo.track;
+  track.motion.betas.setZero();
+  std::vector<uint8_t> person(static_cast<size_t>(photo.picture.width) * photo.picture.height);
+  for (int y = 0; y < photo.picture.height; ++y) {
+    for (int x = 0; x < photo.picture.width; ++x) {
+      person[static_cast<size_t>(y) * photo.picture.width + x] = photo.mask.At(x, y);
+    }
+  }
+  const int seen = extractor_->Add(photo.picture, TrackVertices(*clothed, track, 0), track.CameraAt(0), index, person);
+  report.texels_seen = static_cast<double>(seen) / extractor_->table().num_inside;
+  if (report.texels_seen < kLeastSeen) {
+    throw NothingToTrack(Concatenate(photo.name, ": shows too little of the person, expected one who is larger (",
+                                     MaskHeight(photo.mask), " px tall here) and turned to the camera"));
+  }
+  person_.report.photos.push_back(report);
+  person_.tracks.push_back(photo.track);
+}
+
+PhotoPerson PhotoPersonBuilder::Finish() {
+  BODYLOOM_CHECK(extractor_, "a person of no photo");
+  Begin("complete");
+  const MatrixX3d rest = ShapeVertices(*person_.bare, person_.betas);
+  const UvTexelTable& table = extractor_->table();
+  const WholeTexture whole = MakeWholeTexture(*person_.body, table, person_.body->data().v_template,
+                                              BodyRegions(*person_.bare, rest), extractor_->Merge());
+  person_.texture = Image(table.width, table.height);
+  const size_t pixels = whole.sources.size();
+  for (size_t p = 0; p < pixels; ++p) {
+    for (size_t c = 0; c < 3; ++c) person_.texture.bgr[3 * p + c] = UnitByte(whole.bgr[c * pixels + p]);
+  }
+  person_.sources = Image(table.width, table.height);
+  for (size_t p = 0; p < pixels; ++p) {
+    const Colour colour = kSourceColours[static_cast<size_t>(whole.sources[p])];
+    person_.sources.bgr[3 * p] = colour.blue;
+    person_.sources.bgr[3 * p + 1] = colour.green;
+    person_.sources.bgr[3 * p + 2] = colour.red;
+  }
+  const auto share = [&](TexelSource source) {
+    return static_cast<double>(std::count(whole.sources.begin(), whole.sources.end(), source)) / table.num_inside;
+  };
+  person_.report.seen = share(TexelSource::kSeen);
+  person_.report.mirrored = share(TexelSource::kMirror);
+  person_.report.behind = share(TexelSource::kBehind) + share(TexelSource::kAcross);
+  person_.report.hair = share(TexelSource::kHair);
+  person_.report.around = share(TexelSource::kAround);
+  person_.report.spread = share(TexelSource::kSpread);
+  extractor_.reset();
+  return std::move(person_);
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What fitted photos show of a person, as a clothed body and its whole texture.
+///
+/// Clothes and hair stand off as the mask says (render/person/clothes_offsets.h); the texels of the clothed body look
+/// their colours up in the picture. Photos are merged texel by texel, the one that sees it best; the first gives shape
+/// and clothes. What no photo shows is guessed (render/person/whole_texture.h).
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "bodyloom/geometry/observations.h"
+#include "bodyloom/pipelines/person/photo_person.h"
+#include "bodyloom/render/texture_extract.h"
+
+namespace bodyloom {
+
+/// A photo, and where the person is in it.
+struct FittedPhoto {
+  std::string name;  ///< of messages and the report
+  Image picture;
+  Track track;      ///< of one frame with a result, of the bare body
+  LabelImage mask;  ///< of the picture's size; 0 where the person is not
+  int people = 1;   ///< found in it
+};
+
+class PhotoPersonBuilder {
+ public:
+  /// `bare` has UV coordinates. `clock`, where there is one, times the stages "clothes", "texture" and "complete"; it must
+  /// outlive this.
+  PhotoPersonBuilder(std::shared_ptr<const BodyModel> bare, int texture_size, StageClock* clock = nullptr);
+
+  /// Throws NothingToTrack naming a photo that shows too little of the person, std::invalid_argument when sizes do not
+  /// fit.
+  void Add(const FittedPhoto& photo);
+  /// The person, of at least one photo; this is spent.
+  PhotoPerson Finish();
+
+ private:
+  void Begin(const char* stage);
+
+  int texture_size_;
+  StageClock* clock_;
+  PhotoPerson person_;
+  std::optional<TextureExtractor> extractor_;
+};
+
+}  // namespace bodyloom
