@@ -89,7 +89,7 @@ void JudgeMotions(const BenchArguments& arguments, Judged* judged) {
     motion.betas.setZero(std::min(10, BuiltinBody().num_betas()));
     for (double& beta : motion.betas) beta = std::normal_distribution<double>()(random);
     SynthClipOptions options;
-    options.seed = static_cast<uint64_t>(1000 + visited);
+    options.seed = 1000 + static_cast<uint64_t>(visited);
     options.dense_per_frame = 0;
     options.camera.elevation_deg = std::uniform_real_distribution<double>(-5, 30)(random);
     options.camera.yaw_deg = std::uniform_real_distribution<double>(0, 360)(random);
