@@ -4,7 +4,6 @@
 #include <memory>
 
 #include "apps/command_callbacks.h"
-#include "apps/neural/animate_options.h"
 #include "apps/neural/neural_verbs.h"
 #include "apps/neural/score_options.h"
 

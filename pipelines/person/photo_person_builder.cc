@@ -20,8 +20,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr double kMarginOfHeight = 0.004;  ///< of the person's pixels: the mask's contour is blurred by so much
-
+constexpr double kMarginOfHeight = 0.004;      ///< of the person's pixels: the mask's contour is blurred by so much
 constexpr double kStepMarginOfHeight = 0.012;  ///< where a limb hides another: a fit's median error
 constexpr double kLeastSeen = 0.01;            ///< of the body's texels, in every photo
 
@@ -46,6 +45,7 @@ int MaskHeight(const LabelImage& mask) {
   }
   return std::max(0, last - first + 1);
 }
+
 int MarginPx(const LabelImage& mask, double of_height) {
   return static_cast<int>(std::clamp(std::lround(of_height * MaskHeight(mask)), 1L, 64L));
 }

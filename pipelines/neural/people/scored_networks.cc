@@ -70,8 +70,7 @@ class ScoredPhoto : public ScoredRenderer {
   GuidedPicture Render(int /*frame*/, const PhotoFrame& pose) override {
     PhotoPicture drawn = renderer_.Render(pose);
     GuidedPicture picture = {drawn.size, std::move(drawn.image), std::move(drawn.alpha), {}};
-    // It draws no labels: somebody, whatever is worn, or nobody.
-    for (const float alpha : picture.alpha) picture.labels.push_back(alpha >= 0.5F ? 1 : 0);
+    picture.labels = SomebodyOf(picture.alpha);
     return picture;
   }
   [[nodiscard]] std::vector<float> ShownOf(const PhotoFrame& pose) const override { return LookUp(shown_, pose).image; }

@@ -22,4 +22,10 @@ double ShareSeen(const CoherentMaps& maps, size_t used) {
   return filled / std::max(1.0, atlas);
 }
 
+std::vector<uint8_t> SomebodyOf(std::span<const float> alpha) {
+  std::vector<uint8_t> labels;
+  for (const float a : alpha) labels.push_back(a >= 0.5F ? 1 : 0);
+  return labels;
+}
+
 }  // namespace bodyloom

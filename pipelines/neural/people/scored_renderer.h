@@ -2,6 +2,7 @@
 /// A renderer of people from photos, as pipelines/neural/people/score_people.h measures it.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -36,6 +37,9 @@ class ScoredRenderer {
 CoherentMaps MapsOf(std::span<const PhotoFrame> photos, const PhotoSource& people);
 /// Share of the atlas that the first `used` photos of the maps filled.
 double ShareSeen(const CoherentMaps& maps, size_t used);
+
+/// Labels of a renderer that draws none: 1 where alpha is at least ½, whatever is worn, and 0.
+std::vector<uint8_t> SomebodyOf(std::span<const float> alpha);
 
 /// Throw as ScorePeople().
 std::unique_ptr<ScoredRenderer> MakeScoredPhoto(const ScorePeopleRequest& request);

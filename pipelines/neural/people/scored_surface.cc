@@ -26,13 +26,6 @@ PeopleDataRequest PeopleOf(const ScorePeopleRequest& request) {
   return {request.data, request.body, request.size, kMapSize, true, request.given};
 }
 
-/// Labels of a renderer that draws none: somebody, whatever is worn, or nobody.
-std::vector<uint8_t> SomebodyOf(std::span<const float> alpha) {
-  std::vector<uint8_t> labels;
-  for (const float a : alpha) labels.push_back(a >= 0.5F ? 1 : 0);
-  return labels;
-}
-
 class ScoredWarp : public ScoredRenderer {
  public:
   explicit ScoredWarp(const ScorePeopleRequest& request) : people_(PeopleOf(request)) {}
