@@ -12,6 +12,7 @@
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/neural/guided/choose_photos.h"
 #include "bodyloom/pipelines/files.h"
+#include "bodyloom/pipelines/neural/animation.h"
 #include "bodyloom/pipelines/neural/guided/guided_score_weights.h"
 #include "bodyloom/pipelines/neural/guided/guided_scores_json.h"
 #include "bodyloom/pipelines/neural/people/scored_renderer.h"
