@@ -25,6 +25,9 @@ void RunAnimatePerson(const AnimatePersonRequest& request) {
         "%.0f %% hair, %.0f %% from around, %.0f %% spread\n",
         100 * person.seen, 100 * person.mirrored, 100 * person.behind, 100 * person.hair, 100 * person.around,
         100 * person.spread);
+    if (person.garment_length_m > 0) {
+      std::printf("wears a loose garment, %.0f cm long: a skirt, a dress or a coat\n", 100 * person.garment_length_m);
+    }
   }
   if (summary.frames > 0) {
     std::printf("%d frames of %dx%d px, %.1f ms a frame to draw, the first after %.1f s\n", summary.frames,
@@ -63,6 +66,8 @@ void AddAnimatePerson(CLI::App& animate, Action* action, std::vector<std::string
       ->check(CLI::Range(2, 8192));
   verb->add_option("--who", fit.person, "Of several people in a photo: 0 is the largest")->capture_default_str();
   verb->add_option("--texture-size", request->photos.texture_size, "Texels a side")->capture_default_str();
+  verb->add_flag("--no-loose-garment{false}", request->photos.loose_garment,
+                 "Look for no skirt, dress or coat: all clothes are close to the skin");
   verb->add_option("--body", fit.body, "Body of photos and track (default: the built-in body)");
   verb->add_option("--focal", fit.focal_px, "The photos' focal length in pixels (default: estimated)");
   verb->add_option("--stature", fit.stature_m, "The person's height in metres (default: average)");

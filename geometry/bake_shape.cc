@@ -12,16 +12,23 @@
 namespace bodyloom {
 namespace {
 
-/// The change of `weights` of these vertices (rows of `positions`) after which they give `point`.
+constexpr double kLargestWeight = 1.5;
+
+/// The change of `weights` of these vertices (rows of `positions`) after which they give `point`, as nearly as no large
+/// weights can.
 Eigen::VectorXd ChangeOfWeights(const MatrixX3d& positions, const Eigen::VectorXd& weights,
                                 const Eigen::Vector3d& point) {
   // Combinations of centred positions sum to zero.
   const Eigen::MatrixXd conditions = (positions.rowwise() - positions.colwise().mean()).transpose();
   const Eigen::Vector3d wanted = point - positions.transpose() * weights;
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-  solver.setThreshold(1e-6);
-  solver.compute(conditions);
-  return solver.solve(wanted);
+  for (const double flat : {1e-6, 1e-3, 1e-2, 0.1, 0.5}) {
+    solver.setThreshold(flat);
+    solver.compute(conditions);
+    const Eigen::VectorXd change = solver.solve(wanted);
+    if ((weights + change).cwiseAbs().maxCoeff() <= kLargestWeight) return change;
+  }
+  return Eigen::VectorXd::Zero(weights.size());
 }
 
 }  // namespace

@@ -7,7 +7,8 @@
 /// (in squares, on the vertices that it names, its sum kept) that gives the bare body's point back,
 ///   w' = w + Aᵀ (A Aᵀ)⁺ (point − Σ w_i position'_i),    A = (positions' − their mean)ᵀ,
 /// which is exact where the row names four vertices that are not in one plane, and as near as its vertices allow
-/// elsewhere: a landmark on a single vertex moves with it. Zero betas are the person; other betas still change it.
+/// elsewhere: a landmark on a single vertex moves with it. Directions in which the vertices are too flat to reach the
+/// point with weights of at most 1.5 count as none. Zero betas are the person; other betas still change it.
 #pragma once
 
 #include <Eigen/Core>

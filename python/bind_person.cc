@@ -33,7 +33,8 @@ constexpr const char* kFromPhotosDoc =
     "be there (`./dev models`).\n\n"
     "who: of several people in a photo, 0 is the largest. texture_size: texels a side. body: a file; the built-in one "
     "by\n"
-    "default. focal_px, stature_m: where they are known. models: folder of the networks. Raises RuntimeError naming a "
+    "default. focal_px, stature_m: where they are known. models: folder of the networks. loose_garment: look for a "
+    "skirt, dress or coat. Raises RuntimeError naming a "
     "photo\n"
     "that shows nobody or cannot be read, ValueError, Cancelled.";
 
@@ -66,7 +67,7 @@ void BindPerson(py::module_& module) {
           "from_photos",
           [](const std::vector<Path>& images, int who, int texture_size, const std::optional<Path>& body,
              std::optional<double> focal_px, std::optional<double> stature_m, const std::optional<Path>& models,
-             const py::object& progress) {
+             bool loose_garment, const py::object& progress) {
             BODYLOOM_CHECK(!images.empty(), "images: expected at least one photo, found none");
             BODYLOOM_CHECK(focal_px.value_or(1) > 0 && stature_m.value_or(1) > 0,
                            "focal_px, stature_m: expected numbers above 0");
@@ -81,12 +82,14 @@ void BindPerson(py::module_& module) {
             request.fit.stature_m = stature_m.value_or(0);
             request.fit.detector.models = TextOf(models);
             request.texture_size = texture_size;
+            request.loose_garment = loose_garment;
             return std::make_unique<PersonObject>(PythonCallbacks(progress).Run(
                 [&](const PipelineCallbacks& callbacks) { return MakePhotoPerson(request, callbacks); }));
           },
           py::arg("images"), py::kw_only(), py::arg("who") = 0, py::arg("texture_size") = 1024,
           py::arg("body") = py::none(), py::arg("focal_px") = py::none(), py::arg("stature_m") = py::none(),
-          py::arg("models") = py::none(), py::arg("progress") = py::none(), kFromPhotosDoc)
+          py::arg("models") = py::none(), py::arg("loose_garment") = true, py::arg("progress") = py::none(),
+          kFromPhotosDoc)
       .def_static(
           "load",
           [](const Path& folder, const std::optional<Path>& body) {

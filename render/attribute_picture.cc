@@ -102,7 +102,8 @@ void AttributePainter::Draw(const BodyModel& body, const MatrixX3d& vertices, co
                  "attribute picture: the coverage is of another size than the image");
   const int n = options.samples;
   const Camera fine = ScaledCamera(camera, n);
-  buffer_.Render(vertices, body.data().faces, fine, {.num_threads = options.num_threads});
+  buffer_.Render(vertices, body.data().faces, fine,
+                 {.cull_back_faces = !options.both_sides, .num_threads = options.num_threads});
   ResolveRequest request = RequestOf(options);
   if (request.normal) request.vertex_normals = &normals_.Compute(vertices, body.data().faces);
   ResolvePixels(buffer_, body, vertices, fine, request, &pixels_);

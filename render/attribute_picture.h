@@ -30,8 +30,9 @@ struct AttributePictureOptions {
   TexelAttribute texture = {};                ///< texture: three channels blue, green, red, 0…255
   std::span<const float> vertex_errors = {};  ///< error: one a vertex; NaN where it is not known
   double error_maximum = 1;                   ///< error: the last colour
-  int samples = 2;      ///< a pixel along x and y, 1..8: their colours are averaged, never their coordinates
-  int num_threads = 1;  ///< the picture is the same for any number
+  int samples = 2;          ///< a pixel along x and y, 1..8: their colours are averaged, never their coordinates
+  bool both_sides = false;  ///< faces that turn away are seen too: of a surface that is not closed
+  int num_threads = 1;      ///< the picture is the same for any number
 };
 
 /// UV map of an image's colours, for AttributePictureOptions::texture (which borrows it).

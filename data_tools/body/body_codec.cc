@@ -172,7 +172,9 @@ PackedUnitRows PackUnitRows(const UnitRows& rows, int bits) {
       if (q[k] == 0) continue;
       columns.push_back(rows.column[begin + k] - previous);
       previous = rows.column[begin + k];
-      weights.push_back(CheckedInteger(q[k], "weights"));
+      BODYLOOM_CHECK(std::abs(q[k]) < kLimit, "a row of weights holds ", rows.weight[begin + k],
+                     ", too large to be stored");
+      weights.push_back(static_cast<int32_t>(q[k]));
       ++kept;
     }
     weights.pop_back();  // the last follows from the sum

@@ -29,13 +29,12 @@ class PosedTrack {
   [[nodiscard]] MatrixX3d Vertices(int t) const;
   /// The landmarks of these names, n×3, likewise. Throws std::invalid_argument when the body lacks one.
   [[nodiscard]] MatrixX3d Landmarks(int t, const std::vector<std::string>& names) const;
+  /// Points of frame t (n×3, the track's camera frame) as the turned camera sees them.
+  [[nodiscard]] MatrixX3d Turned(int t, MatrixX3d points) const;
   /// What the body spans in the picture of every frame; empty where it has no result or does not show.
   [[nodiscard]] std::vector<PersonExtent> Extents(int num_threads) const;
 
  private:
-  /// Points of frame t as the turned camera sees them.
-  [[nodiscard]] MatrixX3d Turned(int t, MatrixX3d points) const;
-
   const BodyModel& body_;
   const Track& track_;
   Skinner skinner_;

@@ -11,6 +11,7 @@
 #include "bodyloom/data_tools/motion/smpl_rest.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/motion_check.h"
 #include "bodyloom/geometry/rotation.h"
 #include "bodyloom/tracking/terms/joint_limits.h"
 

@@ -10,6 +10,7 @@
 #include "bodyloom/data_tools/motion/skeleton_motion.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/refuse.h"
+#include "bodyloom/geometry/motion_check.h"
 
 namespace bodyloom {
 namespace {

@@ -9,6 +9,7 @@
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/motion/motion_tools.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/motion_check.h"
 #include "bodyloom/geometry/posed_body.h"
 #include "bodyloom/geometry/rotation.h"
 

@@ -40,8 +40,4 @@ double FrameRate(const Motion& motion);
 /// their sum. 0 with fewer than two frames.
 double FrameRateWithoutGaps(const Motion& motion);
 
-/// Throws std::invalid_argument unless poses, trans and timestamps have T rows each, poses 3J columns, and all is
-/// finite.
-void CheckMotion(const Motion& motion, const char* caller);
-
 }  // namespace bodyloom

@@ -20,12 +20,14 @@
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/geometry/base/percentile.h"
+#include "bodyloom/geometry/cloth/body_with_garment.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/people/animation_limits.h"
 #include "bodyloom/pipelines/people/background.h"
 #include "bodyloom/pipelines/people/freeze.h"
 #include "bodyloom/pipelines/people/view_angles.h"
 #include "bodyloom/pipelines/person/draw_person.h"
+#include "bodyloom/pipelines/person/person_cloth.h"
 #include "bodyloom/pipelines/person/person_folder.h"
 #include "bodyloom/pipelines/report_json.h"
 #include "bodyloom/render/view_camera.h"
@@ -87,11 +89,13 @@ class PersonAnimation {
     const Track read = ReadTrack(request_.track);
     try {
       track_ = MovedByPerson(person_, read);
+      if (!person_.garment.empty()) cloth_.emplace(person_, track_);
       if (!request_.moved_track.empty()) WriteTrack(request_.moved_track, track_);
       int first = 0, last = track_.num_frames() - 1;
       if (!request_.freeze.empty()) {
         const Freeze freeze = ReadFreeze(request_.freeze, track_.num_frames());
-        track_ = FramesInOrder(track_, FrozenAt(track_.num_frames(), freeze.frame, freeze.count));
+        order_ = FrozenAt(track_.num_frames(), freeze.frame, freeze.count);
+        track_ = FramesInOrder(track_, order_);
         first = freeze.frame, last = freeze.frame + freeze.count;
       }
       if (track_.camera.HasDistortion()) {
@@ -118,6 +122,19 @@ class PersonAnimation {
     return scale_ == 1 ? track_.CameraAt(t) : ScaledCamera(track_.CameraAt(t), scale_);
   }
 
+  /// None in a frame without a result.
+  MatrixX3d VerticesAt(int t) {
+    MatrixX3d vertices;
+    if (track_.HasResult(t)) vertices = posed_->Vertices(t);
+    if (!cloth_) return vertices;
+    const std::vector<Eigen::Vector3d>& places = cloth_->At(order_.empty() ? t : order_[t]);
+    if (vertices.rows() == 0) return vertices;
+    PlaceGarment(person_.garment, places, &vertices);
+    const auto drawn = static_cast<Eigen::Index>(person_.garment.drawn_from.size());
+    vertices.bottomRows(drawn) = posed_->Turned(t, vertices.bottomRows(drawn));
+    return vertices;
+  }
+
   void DrawFrames() {
     const int count = track_.num_frames();
     Background background(request_.background, width_, height_);
@@ -131,8 +148,8 @@ class PersonAnimation {
       callbacks_.Update("drawing", static_cast<double>(t) / count);
       const bool shows = track_.HasResult(t);
       if (!shows) ++summary_.frames_without_fit;
-      const MatrixX3d vertices = shows ? posed_->Vertices(t) : MatrixX3d();
       const Stopwatch watch;
+      const MatrixX3d vertices = VerticesAt(t);
       if (video) {
         Image whole = background.Next();
         if (shows) painter_->Draw(vertices, CameraAt(t), &whole);
@@ -182,7 +199,7 @@ class PersonAnimation {
                                    {"draw_ms_median", summary_.draw_ms},
                                    {"first_frame_s", summary_.first_frame_s},
                                    {"seconds", ToJson(summary_.seconds)}};
-    if (!person_.report.photos.empty()) json["person"] = nlohmann::ordered_json::parse(ToJson(person_.report));
+    if (!person_.report.photos.empty()) json["person"] = nlohmann::ordered_json::parse(ToJson(person_));
     WriteReport(request_.json, json);
     return summary_;
   }
@@ -197,6 +214,8 @@ class PersonAnimation {
   double scale_ = 1;
   int width_ = 0, height_ = 0;
   std::optional<PosedTrack> posed_;
+  std::optional<PersonCloth> cloth_;
+  std::vector<int> order_;  ///< the track's frames as they are shown; empty: in turn
   std::optional<PersonPainter> painter_;
   AnimatePersonSummary summary_;
 };

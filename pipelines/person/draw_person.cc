@@ -13,6 +13,7 @@ PersonPainter::PersonPainter(const PhotoPerson& person, int num_threads)
   options_.attribute = SurfaceAttribute::kTexture;
   options_.texture = {texels_, person.texture.width, person.texture.height, 3};
   options_.samples = kSamples;
+  options_.both_sides = !person.garment.empty();
   options_.num_threads = num_threads;
 }
 

@@ -8,6 +8,7 @@
 #include "bodyloom/data_tools/observations/nothing_to_track.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/pipelines/person/photo_person_builder.h"
 #include "bodyloom/pipelines/track/detected_people.h"
 #include "bodyloom/pipelines/track/scene_inputs.h"
@@ -77,7 +78,12 @@ PhotoPerson MakePhotoPerson(const PhotoPersonRequest& request, const PipelineCal
     std::shared_ptr<const BodyModel> body;
     const FittedPhoto photo = Fit(request.fit, request.images[i], callbacks, &clock, &body);
     if (!body->has_uv()) throw std::runtime_error(request.fit.body + ": has no UV coordinates, a texture needs them");
-    if (!builder) builder.emplace(body, request.texture_size, &clock);
+    if (!builder) {
+      FitClothesOptions clothes;
+      clothes.loose = request.loose_garment;
+      clothes.num_threads = ThreadsFor(request.fit.solve.num_threads);
+      builder.emplace(body, request.texture_size, &clock, clothes);
+    }
     builder->Add(photo);
   }
   PhotoPerson person = builder->Finish();

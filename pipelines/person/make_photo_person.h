@@ -19,7 +19,8 @@ struct PhotoPersonRequest {
   /// The body, the detector, the focal length, the person's height and how to solve; `person` is who of a photo, 0: the
   /// largest. Its video, observations and outputs are not used.
   TrackRequest fit;
-  int texture_size = 1024;  ///< texels a side, 64 to 8192
+  int texture_size = 1024;    ///< texels a side, 64 to 8192
+  bool loose_garment = true;  ///< look for a skirt, dress or coat
 };
 
 /// Throws RequestError for a request that contradicts itself, NothingToTrack naming a photo in which nobody is found or

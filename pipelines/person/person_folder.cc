@@ -8,9 +8,11 @@
 #include "bodyloom/data_tools/body/body_io.h"
 #include "bodyloom/data_tools/body/body_or_builtin.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/formats/json_reader.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/cloth/body_with_garment.h"
 #include "bodyloom/pipelines/report_json.h"
 
 namespace bodyloom {
@@ -22,6 +24,23 @@ std::string FileIn(const std::string& folder, const std::string& name) {
 
 std::string PhotoFile(const std::string& folder, size_t photo) {
   return FileIn(folder, Concatenate("photo_", photo, ".npz"));
+}
+
+/// How the garment is cut; length 0 where there is none.
+LooseGarmentOptions GarmentIn(const std::string& path) {
+  LooseGarmentOptions cut;
+  cut.length_m = 0;
+  if (!std::filesystem::exists(path)) return cut;
+  const nlohmann::json json = ReadJsonFile(path);
+  const JsonNode root(json, path);
+  if (!root.Has("garment")) return cut;
+  const JsonNode garment = root.At("garment");
+  cut.waist_y_m = garment.At("waist_y_m").Number();
+  cut.length_m = garment.At("length_m").Number();
+  cut.fullness = garment.At("fullness").Number();
+  cut.spacing_m = garment.At("spacing_m").Number();
+  cut.columns = garment.At("columns").Int();
+  return cut;
 }
 
 }  // namespace
@@ -39,7 +58,7 @@ void WritePhotoPerson(const std::string& folder, const PhotoPerson& person) {
   WriteImage(FileIn(folder, "texture.png"), person.texture);
   if (!person.sources.empty()) WriteImage(FileIn(folder, "sources.png"), person.sources);
   for (size_t i = 0; i < person.tracks.size(); ++i) WriteTrack(PhotoFile(folder, i), person.tracks[i]);
-  WriteFileAtomically(FileIn(folder, "person.json"), ToJson(person.report));
+  WriteFileAtomically(FileIn(folder, "person.json"), ToJson(person));
 }
 
 PhotoPerson ReadPhotoPerson(const std::string& folder, const std::string& bare_body) {
@@ -47,11 +66,26 @@ PhotoPerson ReadPhotoPerson(const std::string& folder, const std::string& bare_b
   person.bare = BodyOrBuiltin(bare_body);
   const std::string file = FileIn(folder, "body.npz");
   person.body = std::make_shared<const BodyModel>(LoadBody(file));
-  if (person.body->num_vertices() != person.bare->num_vertices() ||
+  if (person.body->num_vertices() < person.bare->num_vertices() ||
       person.body->num_joints() != person.bare->num_joints() || !person.body->has_uv()) {
     throw std::runtime_error(Concatenate(file, ": has ", person.body->num_vertices(), " vertices and ",
                                          person.body->num_joints(), " joints, the body it was made with (--body) ",
                                          person.bare->num_vertices(), " and ", person.bare->num_joints()));
+  }
+  person.cut = GarmentIn(FileIn(folder, "person.json"));
+  person.clothed = person.body;
+  if (person.cut.length_m > 0) {
+    person.clothed = std::make_shared<const BodyModel>(BodyWithoutGarment(*person.body, person.bare->num_vertices()));
+    try {
+      person.garment = CutGarment(*person.clothed, &person.cut);
+    } catch (const std::invalid_argument& error) {
+      throw std::runtime_error(Concatenate(FileIn(folder, "person.json"), ": garment: ", error.what()));
+    }
+  }
+  const int expected = person.bare->num_vertices() + static_cast<int>(person.garment.drawn_from.size());
+  if (person.body->num_vertices() != expected) {
+    throw std::runtime_error(Concatenate(file, ": has ", person.body->num_vertices(),
+                                         " vertices, with the garment of person.json expected ", expected));
   }
   person.texture = ReadImage(FileIn(folder, "texture.png"));
   person.tracks.push_back(ReadTrack(PhotoFile(folder, 0)));
@@ -59,7 +93,8 @@ PhotoPerson ReadPhotoPerson(const std::string& folder, const std::string& bare_b
   return person;
 }
 
-std::string ToJson(const PhotoPersonReport& report) {
+std::string ToJson(const PhotoPerson& person) {
+  const PhotoPersonReport& report = person.report;
   nlohmann::ordered_json photos = nlohmann::ordered_json::array();
   for (const PhotoPersonReport::Photo& photo : report.photos) {
     photos.push_back({{"image", photo.image},
@@ -68,17 +103,26 @@ std::string ToJson(const PhotoPersonReport& report) {
                       {"contour_vertices_measured", photo.rim_measured},
                       {"texels_seen_share", photo.texels_seen}});
   }
-  const nlohmann::ordered_json json = {{"photos", photos},
-                                       {"texture_shares",
-                                        {{"seen", report.seen},
-                                         {"mirrored", report.mirrored},
-                                         {"behind", report.behind},
-                                         {"hair", report.hair},
-                                         {"around", report.around},
-                                         {"spread", report.spread}}},
-                                       {"clothes_median_m", report.clothes_median_m},
-                                       {"clothes_max_m", report.clothes_max_m},
-                                       {"seconds", ToJson(report.seconds)}};
+  nlohmann::ordered_json json = {{"photos", photos},
+                                 {"texture_shares",
+                                  {{"seen", report.seen},
+                                   {"mirrored", report.mirrored},
+                                   {"behind", report.behind},
+                                   {"hair", report.hair},
+                                   {"around", report.around},
+                                   {"spread", report.spread}}},
+                                 {"clothes_median_m", report.clothes_median_m},
+                                 {"clothes_max_m", report.clothes_max_m},
+                                 {"silhouette_unlike_close", report.unlike_close},
+                                 {"silhouette_unlike_loose", report.unlike_loose},
+                                 {"seconds", ToJson(report.seconds)}};
+  if (person.cut.length_m > 0) {
+    json["garment"] = {{"waist_y_m", person.cut.waist_y_m},
+                       {"length_m", person.cut.length_m},
+                       {"fullness", person.cut.fullness},
+                       {"spacing_m", person.cut.spacing_m},
+                       {"columns", person.cut.columns}};
+  }
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 

@@ -4,7 +4,7 @@
 ///   texture.png   for its atlas
 ///   sources.png   where each texel's colour is from, in colours (PhotoPerson::sources)
 ///   photo_0.npz   a track of one frame for each photo: the bare body in it, whose betas are the person's
-///   person.json   what was seen and what was guessed (PhotoPersonReport)
+///   person.json   what was seen and what was guessed (PhotoPersonReport), and how the garment is cut, where there is one
 #pragma once
 
 #include <string>
@@ -25,6 +25,6 @@ void WritePhotoPerson(const std::string& folder, const PhotoPerson& person);
 PhotoPerson ReadPhotoPerson(const std::string& folder, const std::string& bare_body);
 
 /// One JSON object.
-std::string ToJson(const PhotoPersonReport& report);
+std::string ToJson(const PhotoPerson& person);
 
 }  // namespace bodyloom

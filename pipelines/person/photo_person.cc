@@ -3,8 +3,16 @@
 
 #include "bodyloom/data_tools/motion/shape_track.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/cloth/cloth_wearer.h"
 
 namespace bodyloom {
+
+LooseGarment CutGarment(const BodyModel& clothed, LooseGarmentOptions* cut) {
+  constexpr uint64_t kSeed = 1;  // of how it is crumpled
+  LooseGarment garment = ClothWearer(clothed, Eigen::VectorXd(), {}).Cut(*cut, kSeed);
+  cut->columns = garment.columns;
+  return garment;
+}
 
 Track MovedByPerson(const PhotoPerson& person, const Track& track) {
   BODYLOOM_CHECK(!track.HasMovingCamera(), "its camera moves; expected one that stands still");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A person from one photo or several: a body of the person's own shape, clothes included, and a whole texture for it.
+/// A person from one photo or several: a body of the person's own shape, clothes included, and a whole texture for it. A
+/// skirt, dress or coat is cloth that hangs from the body (geometry/cloth).
 #pragma once
 
 #include <Eigen/Core>
@@ -9,6 +10,7 @@
 
 #include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/cloth/loose_garment.h"
 #include "bodyloom/geometry/track.h"
 #include "bodyloom/render/image.h"
 
@@ -26,12 +28,20 @@ struct PhotoPersonReport {
   double seen = 0, mirrored = 0, behind = 0, hair = 0, around = 0,
          spread = 0;                               ///< shares of the whole texture, by TexelSource
   double clothes_median_m = 0, clothes_max_m = 0;  ///< offsets of the body's vertices
+  /// Pixels in which the first photo's mask and the dressed body differ, as a share of the mask: with clothes close to the
+  /// skin alone, and with the best loose garment (render/person/fit_clothes.h).
+  double unlike_close = 0, unlike_loose = 0;
+  double garment_length_m = 0;  ///< of the loose garment along the cloth; 0: none
   StageSeconds seconds;
 };
 
 struct PhotoPerson {
-  std::shared_ptr<const BodyModel> body;  ///< clothed; zero betas are the person
-  std::shared_ptr<const BodyModel> bare;  ///< what the photos were fitted with, whose betas follow
+  std::shared_ptr<const BodyModel> body;  ///< clothed, the garment behind it; zero betas are the person
+  /// `body` without its garment; the same where it has none.
+  std::shared_ptr<const BodyModel> clothed;
+  LooseGarmentOptions cut = {.length_m = 0};  ///< of the garment; length_m 0: none
+  LooseGarment garment;                       ///< cut for `clothed`
+  std::shared_ptr<const BodyModel> bare;      ///< what the photos were fitted with, whose betas follow
   Eigen::VectorXd betas;
   Image texture;
   /// Where each texel's colour is from: white seen, blue mirrored, green from behind, yellow across, brown hair, orange
@@ -40,6 +50,9 @@ struct PhotoPerson {
   std::vector<Track> tracks;  ///< a frame each, of `bare`: the person in each photo
   PhotoPersonReport report;
 };
+
+/// The garment of a clothed body whose zero betas are the person; the same each time. `cut` gets the number of columns.
+LooseGarment CutGarment(const BodyModel& clothed, LooseGarmentOptions* cut);
 
 /// The motion of a track of `bare` by this person: for person.body, with zero betas. Throws std::invalid_argument for a
 /// track whose camera moves, and as WithShape().

@@ -11,6 +11,10 @@
 #include "bodyloom/geometry/bake_shape.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/percentile.h"
+#include "bodyloom/geometry/cloth/body_with_garment.h"
+#include "bodyloom/geometry/joint_influence.h"
+#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/pipelines/person/person_cloth.h"
 #include "bodyloom/render/overlay.h"
 #include "bodyloom/render/person/body_regions.h"
 #include "bodyloom/render/person/clothes_offsets.h"
@@ -22,7 +26,10 @@ namespace {
 
 constexpr double kMarginOfHeight = 0.004;      ///< of the person's pixels: the mask's contour is blurred by so much
 constexpr double kStepMarginOfHeight = 0.012;  ///< where a limb hides another: a fit's median error
+constexpr double kHemMargin_m = 0.12;          ///< below a hem, what is seen of the legs may be the hem
 constexpr double kLeastSeen = 0.01;            ///< of the body's texels, in every photo
+
+constexpr int kLeftKnee = 4, kRightKnee = 5;  ///< SMPL's joints, which a body in a garment has
 
 /// In the order of TexelSource.
 constexpr std::array<Colour, 8> kSourceColours = {{{0, 0, 0},
@@ -52,14 +59,34 @@ int MarginPx(const LabelImage& mask, double of_height) {
 
 }  // namespace
 
-PhotoPersonBuilder::PhotoPersonBuilder(std::shared_ptr<const BodyModel> bare, int texture_size, StageClock* clock)
-    : texture_size_(texture_size), clock_(clock) {
+PhotoPersonBuilder::PhotoPersonBuilder(std::shared_ptr<const BodyModel> bare, int texture_size, StageClock* clock,
+                                       const FitClothesOptions& clothes)
+    : texture_size_(texture_size), clock_(clock), clothes_(clothes) {
   BODYLOOM_CHECK(bare->has_uv(), "a person's texture: the body has no UV coordinates");
   person_.bare = std::move(bare);
 }
 
 void PhotoPersonBuilder::Begin(const char* stage) {
   if (clock_ != nullptr) clock_->Begin(stage);
+}
+
+/// The first photo decides what is worn.
+ClothesOffsets PhotoPersonBuilder::Dress(const FittedPhoto& photo) {
+  const BodyModel& bare = *person_.bare;
+  if (person_.tracks.empty()) {
+    FittedClothes fitted = FitClothes(bare, photo.track, photo.mask, clothes_);
+    person_.cut = fitted.garment;
+    person_.report.garment_length_m = fitted.garment.length_m;
+    swing_rad_ = fitted.swing_rad;
+    person_.report.unlike_close = fitted.unlike_close;
+    person_.report.unlike_loose = fitted.unlike_loose;
+    return std::move(fitted.offsets);
+  }
+  const MatrixX3d rest = ShapeVertices(bare, photo.track.motion.betas);
+  std::vector<uint8_t> covered;
+  if (!person_.garment.empty()) covered = CoveredByGarment(bare, rest, person_.cut);
+  return FitClothesOffsets(bare, rest, TrackVertices(bare, photo.track, 0), photo.track.CameraAt(0), photo.mask,
+                           clothes_.offsets, covered);
 }
 
 void PhotoPersonBuilder::Add(const FittedPhoto& photo) {
@@ -69,14 +96,17 @@ void PhotoPersonBuilder::Add(const FittedPhoto& photo) {
   Begin("clothes");
   const BodyModel& bare = *person_.bare;
   const Eigen::VectorXd betas = photo.track.motion.betas;
-  const ClothesOffsets offsets = FitClothesOffsets(
-      bare, ShapeVertices(bare, betas), TrackVertices(bare, photo.track, 0), photo.track.CameraAt(0), photo.mask);
+  const ClothesOffsets offsets = Dress(photo);
   report.rim_measured = offsets.measured;
   const auto clothed = std::make_shared<const BodyModel>(BakeShape(bare, betas, offsets.metres));
   const int index = static_cast<int>(person_.tracks.size());
   if (index == 0) {
     person_.betas = betas;
-    person_.body = clothed;
+    person_.body = person_.clothed = clothed;
+    if (person_.cut.length_m > 0) {
+      person_.garment = CutGarment(*clothed, &person_.cut);
+      person_.body = std::make_shared<const BodyModel>(BodyWithGarment(*clothed, person_.garment));
+    }
     person_.report.clothes_median_m = Percentile(offsets.metres, 50);
     person_.report.clothes_max_m = *std::max_element(offsets.metres.begin(), offsets.metres.end());
   }
@@ -98,7 +128,13 @@ void PhotoPersonBuilder::Add(const FittedPhoto& photo) {
       person[static_cast<size_t>(y) * photo.picture.width + x] = photo.mask.At(x, y);
     }
   }
-  const int seen = extractor_->Add(photo.picture, TrackVertices(*clothed, track, 0), track.CameraAt(0), index, person);
+  MatrixX3d vertices(person_.body->num_vertices(), 3);
+  vertices.topRows(clothed->num_vertices()) = TrackVertices(*clothed, track, 0);
+  if (!person_.garment.empty()) {
+    PlaceGarment(person_.garment, PersonCloth(*clothed, person_.garment, track, index == 0 ? swing_rad_ : 0).At(0),
+                 &vertices);
+  }
+  const int seen = extractor_->Add(photo.picture, vertices, track.CameraAt(0), index, person);
   report.texels_seen = static_cast<double>(seen) / extractor_->table().num_inside;
   if (report.texels_seen < kLeastSeen) {
     throw NothingToTrack(Concatenate(photo.name, ": shows too little of the person, expected one who is larger (",
@@ -113,8 +149,21 @@ PhotoPerson PhotoPersonBuilder::Finish() {
   Begin("complete");
   const MatrixX3d rest = ShapeVertices(*person_.bare, person_.betas);
   const UvTexelTable& table = extractor_->table();
-  const WholeTexture whole = MakeWholeTexture(*person_.body, table, person_.body->data().v_template,
-                                              BodyRegions(*person_.bare, rest), extractor_->Merge());
+  std::vector<BodyRegion> regions = BodyRegions(*person_.bare, rest);
+  if (!person_.garment.empty()) {
+    LooseGarmentOptions longer = person_.cut;
+    longer.length_m += kHemMargin_m;
+    const std::vector<uint8_t> covered = CoveredByGarment(*person_.bare, rest, longer);
+    const std::vector<int> strongest = StrongestJoints(*person_.bare);
+    for (size_t v = 0; v < covered.size(); ++v) {
+      const bool shin = strongest[v] == kLeftKnee || strongest[v] == kRightKnee;
+      if (covered[v] != 0) regions[v] = BodyRegion::kUnderGarment;
+      if (covered[v] == 0 && shin) regions[v] = BodyRegion::kBelowGarment;
+    }
+  }
+  regions.resize(person_.body->num_vertices(), BodyRegion::kGarment);
+  const WholeTexture whole =
+      MakeWholeTexture(*person_.body, table, person_.body->data().v_template, regions, extractor_->Merge());
   person_.texture = Image(table.width, table.height);
   const size_t pixels = whole.sources.size();
   for (size_t p = 0; p < pixels; ++p) {

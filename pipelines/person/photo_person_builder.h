@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// What fitted photos show of a person, as a clothed body and its whole texture.
 ///
-/// Clothes and hair stand off as the mask says (render/person/clothes_offsets.h); the texels of the clothed body look
+/// Clothes and hair stand off as the mask says, and a skirt, dress or coat hangs as it says
+/// (render/person/fit_clothes.h); the texels of the clothed body look
 /// their colours up in the picture. Photos are merged texel by texel, the one that sees it best; the first gives shape
 /// and clothes. What no photo shows is guessed (render/person/whole_texture.h).
 #pragma once
@@ -12,6 +13,7 @@
 
 #include "bodyloom/geometry/observations.h"
 #include "bodyloom/pipelines/person/photo_person.h"
+#include "bodyloom/render/person/fit_clothes.h"
 #include "bodyloom/render/texture_extract.h"
 
 namespace bodyloom {
@@ -29,7 +31,8 @@ class PhotoPersonBuilder {
  public:
   /// `bare` has UV coordinates. `clock`, where there is one, times the stages "clothes", "texture" and "complete"; it must
   /// outlive this.
-  PhotoPersonBuilder(std::shared_ptr<const BodyModel> bare, int texture_size, StageClock* clock = nullptr);
+  PhotoPersonBuilder(std::shared_ptr<const BodyModel> bare, int texture_size, StageClock* clock = nullptr,
+                     const FitClothesOptions& clothes = {});
 
   /// Throws NothingToTrack naming a photo that shows too little of the person, std::invalid_argument when sizes do not
   /// fit.
@@ -39,10 +42,13 @@ class PhotoPersonBuilder {
 
  private:
   void Begin(const char* stage);
+  ClothesOffsets Dress(const FittedPhoto& photo);
 
   int texture_size_;
   StageClock* clock_;
+  FitClothesOptions clothes_;
   PhotoPerson person_;
+  double swing_rad_ = 0;  ///< of the garment in the first photo
   std::optional<TextureExtractor> extractor_;
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Regions of a body that clothes, hair and colours treat in their own way: face, scalp, hands.
+/// Regions of a body that clothes, hair and colours treat in their own way: face, scalp, hands; and, which whoever dresses it
+/// tells (BodyRegions() does not know), a loose garment's vertices, what they hide, and the shins below.
 ///
 /// hand: vertices that move with a wrist, or what hangs on it, for more than half. The others from the landmarks nose, eyes
 /// and ears of COCO-17 at rest (x to the person's left, y up, z to the front); with e and a the middles of the eyes and of
@@ -17,7 +18,7 @@
 
 namespace bodyloom {
 
-enum class BodyRegion : uint8_t { kElsewhere, kFace, kScalp, kHand };
+enum class BodyRegion : uint8_t { kElsewhere, kFace, kScalp, kHand, kGarment, kUnderGarment, kBelowGarment };
 
 /// One a vertex, for a body of this rest shape (V×3, metres). A body without the joints has no hands; one without the
 /// joint "head" or one of the landmarks has neither face nor scalp.

@@ -80,10 +80,12 @@ class RimWalk {
 
 ClothesOffsets FitClothesOffsets(const BodyModel& body, const MatrixX3d& rest_vertices,
                                  const MatrixX3d& vertices_in_camera, const Camera& camera, const LabelImage& mask,
-                                 const ClothesOffsetOptions& options) {
+                                 const ClothesOffsetOptions& options, std::span<const uint8_t> covered) {
   const int count = body.num_vertices();
   BODYLOOM_CHECK(rest_vertices.rows() == count && vertices_in_camera.rows() == count, rest_vertices.rows(), " and ",
                  vertices_in_camera.rows(), " vertices, expected ", count);
+  BODYLOOM_CHECK(covered.empty() || static_cast<int>(covered.size()) == count, covered.size(),
+                 " vertices covered or not, expected ", count);
   const MatrixX3i& faces = body.data().faces;
   VisibilityBuffer buffer;
   buffer.Render(vertices_in_camera, faces, camera);
@@ -94,7 +96,8 @@ ClothesOffsets FitClothesOffsets(const BodyModel& body, const MatrixX3d& rest_ve
   ClothesOffsets offsets;
   Eigen::VectorXd right = Eigen::VectorXd::Zero(count), diagonal(count);
   for (int v = 0; v < count; ++v) {
-    const bool anchored = regions[v] == BodyRegion::kFace || regions[v] == BodyRegion::kHand;
+    const bool anchored =
+        regions[v] == BodyRegion::kFace || regions[v] == BodyRegion::kHand || (!covered.empty() && covered[v] != 0);
     diagonal[v] = anchored ? options.anchor : options.decay;
     if (anchored) continue;
     const std::optional<double> measured =

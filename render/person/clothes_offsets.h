@@ -8,10 +8,12 @@
 ///
 /// Spread over the surface as the offsets o that minimise
 ///   Σ_measured (o_i − m_i)² + s Σ_edges (o_i − o_j)² + Σ_i d_i o_i²
-/// with d = `anchor` on the face and hands, whose shape is their own, and `decay` elsewhere, so that what nothing was
-/// measured near stays bare.
+/// with d = `anchor` on the face and hands, whose shape is their own, and on what a loose garment covers, and `decay`
+/// elsewhere, so that what nothing was measured near stays bare.
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "bodyloom/geometry/arrays.h"
@@ -34,10 +36,11 @@ struct ClothesOffsets {
   int measured = 0;            ///< vertices of the rim with a measurement
 };
 
-/// `vertices_in_camera`: the bare body in the picture's pose. `rest_vertices`: at rest, to know the face. Throws
-/// std::invalid_argument when the camera has no image size or sizes do not fit.
+/// `vertices_in_camera`: the bare body in the picture's pose. `rest_vertices`: at rest, to know the face. `covered`, one a
+/// vertex: 1 where a loose garment hides the body, which stays bare there; empty: nowhere. Throws std::invalid_argument
+/// when the camera has no image size or sizes do not fit.
 ClothesOffsets FitClothesOffsets(const BodyModel& body, const MatrixX3d& rest_vertices,
                                  const MatrixX3d& vertices_in_camera, const Camera& camera, const LabelImage& mask,
-                                 const ClothesOffsetOptions& options = {});
+                                 const ClothesOffsetOptions& options = {}, std::span<const uint8_t> covered = {});
 
 }  // namespace bodyloom

@@ -65,11 +65,13 @@ class Completion {
   WholeTexture Run(const MatrixX3d& rest_vertices) {
     if (!TakeSeen()) throw std::runtime_error("no texel of the body was seen");
     DistrustHands();
+    DistrustUnderGarment();
     const RestViews views(rest_vertices, body_.data().faces);
     const MatrixX3d points = TexelPoints(rest_vertices, body_.data().faces, table_);
     const TexelCounterparts counterparts = FindTexelCounterparts(views, points);
     ChooseGuesses(counterparts);
     GuessHair();
+    GuessUnderGarment();
     LookAroundLimbs(views, points);
     Spread();
     Join();
@@ -149,6 +151,18 @@ class Completion {
     }
   }
 
+  /// What a garment hides shows itself beside a hem that is not where the simulation has it: more often the hem.
+  void DistrustUnderGarment() {
+    ForEachTexel([&](size_t i, size_t pixel) {
+      if (IsSeen(pixel) && RegionOf(i) == BodyRegion::kUnderGarment) result_.sources[pixel] = TexelSource::kNowhere;
+    });
+  }
+
+  /// Whether both are of the loose garment, or both of the body.
+  [[nodiscard]] bool MayLend(const SurfacePoint& from, size_t to) const {
+    return (RegionOf(from) == BodyRegion::kGarment) == (RegionOf(to) == BodyRegion::kGarment);
+  }
+
   /// visit(pixel, weight) for the texels of a bilinear lookup.
   template <typename Visit>
   void ForEachTap(const SurfacePoint& point, const Visit& visit) const {
@@ -163,7 +177,7 @@ class Completion {
   /// What was seen at a counterpart of texel i.
   [[nodiscard]] Lookup LookUp(size_t i, const SurfacePoint& counterpart, TexelCounterpart kind) const {
     Lookup found;
-    if (counterpart.face < 0) return found;
+    if (counterpart.face < 0 || !MayLend(counterpart, i)) return found;
     if (kind != kMirror && (IsOfHead(RegionOf(counterpart)) || IsOfHead(RegionOf(i)))) {
       return found;
     }
@@ -229,6 +243,19 @@ class Completion {
     });
   }
 
+  /// As the shins are: skin, tights or trousers.
+  void GuessUnderGarment() {
+    std::vector<Bgr> below;
+    ForEachTexel([&](size_t i, size_t pixel) {
+      if (IsSeen(pixel) && RegionOf(i) == BodyRegion::kBelowGarment) below.push_back(ColourAt(pixel));
+    });
+    if (below.empty()) return;
+    const Bgr colour = MedianColour(below);
+    ForEachTexel([&](size_t i, size_t pixel) {
+      if (RegionOf(i) == BodyRegion::kUnderGarment) Set(pixel, colour, TexelSource::kAround);
+    });
+  }
+
   /// Whether the texels around a point hold a colour of their own, seen or guessed.
   [[nodiscard]] bool IsColoured(const SurfacePoint& point) const {
     if (IsOfHead(RegionOf(point))) return false;
@@ -243,7 +270,7 @@ class Completion {
     ForEachTexel([&](size_t i, size_t pixel) {
       if (result_.sources[pixel] != TexelSource::kNowhere || IsOfHead(RegionOf(i))) return;
       const SurfacePoint found = nearest.At(points.row(static_cast<Eigen::Index>(i)).transpose());
-      if (found.face < 0) return;
+      if (found.face < 0 || !MayLend(found, i)) return;
       double weight = 0;
       Bgr colour{};
       ForEachTap(found, [&](size_t tap, double share) {

@@ -2,11 +2,14 @@
 /// A whole texture from what photos show of a person: every texel that was not seen is guessed, and says from what.
 ///
 ///   seen     confidence at least `trust` times the 90th percentile of all (a small person's is low everywhere): kept. Of hands, whose fingers are seldom where a fit has them, only
-///            what is near the face's median colour, or, where less than a fifth is, the hands' own
+///            what is near the face's median colour, or, where less than a fifth is, the hands' own. Nothing
+///            of what a loose garment hides: beside its hem the hem is seen more often
 ///   mirror, behind, across    the colour at its counterpart (texel_counterparts.h), the counterpart that was seen best
-///            after the preferences 1, 0.7 and 0.5; a face is nobody's counterpart from behind
+///            after the preferences 1, 0.7 and 0.5; a face is nobody's counterpart from behind, and a loose garment lends nothing to the
+///            body nor the body to it
 ///   hair     of the scalp, not seen: the hair's colour, the median of the seen texels of the scalp that are further from
 ///            the face's median colour than `hair_contrast`; of all seen texels of the scalp where fewer than a tenth are
+///   around, too: of what a loose garment hides, the median colour of the shins that are seen below it
 ///   around   the nearest colour around the limb (nearest_around_limb.h), on the trunk and the limbs
 ///   spread   what is left: smoothly from its surroundings (render/uv_fill.h)
 ///

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <vector>
@@ -62,6 +64,29 @@ TEST(BakeShape, JointsAndLandmarksStayWhereTheBareBodyHasThem) {
     ++held;
   }
   EXPECT_GT(held, 4);
+}
+
+TEST(BakeShape, ALandmarkOnAFlatPatchIsNotHeldByHugeWeights) {
+  BodyModelData data = ToyBody().data();
+  // The corners of two neighbouring faces: nearly in one plane, which clothes carry away as a whole.
+  std::vector<int> patch = {data.faces(0, 0), data.faces(0, 1), data.faces(0, 2)};
+  for (int f = 1; patch.size() < 4; ++f) {
+    std::vector<int> own, other;
+    for (int c = 0; c < 3; ++c) {
+      (std::find(patch.begin(), patch.end(), data.faces(f, c)) != patch.end() ? own : other)
+          .push_back(data.faces(f, c));
+    }
+    if (own.size() == 2) patch.push_back(other[0]);
+  }
+  data.landmarks.push_back({"patch", patch, {0.25, 0.25, 0.25, 0.25}});
+  const BodyModel body(data);
+  const BodyModelData baked = BakeShape(body, Eigen::VectorXd(), std::vector<double>(body.num_vertices(), 0.15));
+  double sum = 0;
+  for (const double weight : baked.landmarks.back().weights) {
+    EXPECT_LE(std::abs(weight), 1.5);
+    sum += weight;
+  }
+  EXPECT_NEAR(sum, 1, 1e-9);
 }
 
 TEST(BakeShape, RefusesWhatDoesNotFit) {

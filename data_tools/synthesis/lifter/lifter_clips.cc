@@ -6,6 +6,7 @@
 
 #include "bodyloom/data_tools/motion/motion_tools.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/motion_check.h"
 #include "bodyloom/geometry/rotation.h"
 
 namespace bodyloom {

@@ -13,8 +13,8 @@
 #include "bodyloom/pipelines/neural/people/scored_renderer.h"
 #include "bodyloom/pipelines/people/planar_picture.h"
 #include "bodyloom/pipelines/person/draw_person.h"
+#include "bodyloom/pipelines/person/person_cloth.h"
 #include "bodyloom/pipelines/person/photo_person_builder.h"
-#include "bodyloom/render/overlay.h"
 
 namespace bodyloom {
 namespace {
@@ -70,7 +70,9 @@ class ScoredPerson : public ScoredRenderer {
   double SetPhotos(int person, std::span<const int> frames, std::span<const PhotoFrame> photos) override {
     number_ = person;
     shown_ = MapsOf(photos, people_.source());
-    PhotoPersonBuilder builder(people_.body(), texture_size_);
+    FitClothesOptions clothes;
+    clothes.num_threads = threads_;
+    PhotoPersonBuilder builder(people_.body(), texture_size_, nullptr, clothes);
     for (size_t k = 0; k < photos.size(); ++k) {
       const std::string name = Concatenate("person ", person, ", picture ", frames[k]);
       builder.Add(FittedPhotoOf(photos[k], name, people_.BodyOf(person, frames[k])));
@@ -85,7 +87,7 @@ class ScoredPerson : public ScoredRenderer {
     std::vector<uint8_t> coverage(static_cast<size_t>(pose.size) * pose.size, 0);
     if (body.HasResult(0)) {
       const Track moved = MovedByPerson(person_, body);
-      painter_->Draw(TrackVertices(*person_.body, moved, 0), moved.CameraAt(0), &picture, &coverage);
+      painter_->Draw(StillVertices(person_, moved), moved.CameraAt(0), &picture, &coverage);
     }
     return GuidedPictureOf(picture, coverage);
   }

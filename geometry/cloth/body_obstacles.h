@@ -6,8 +6,8 @@
 
 #include <vector>
 
-#include "bodyloom/data_tools/synthesis/people/cloth_simulation.h"
 #include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/cloth/cloth_simulation.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/synthesis/people/loose_garment.h"
+#include "bodyloom/geometry/cloth/loose_garment.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -61,9 +61,10 @@ class RingIndex {
 LooseGarment CutLooseGarment(const MatrixX3d& vertices, const MatrixX3i& faces, double arm_x_m,
                              const LooseGarmentOptions& o) {
   BODYLOOM_CHECK(o.length_m > 0 && o.length_m < 3 && o.fullness >= 0 && o.fullness <= 0.95 && o.spacing_m > 0.002 &&
-                     o.spacing_m <= o.length_m && o.mass_kg_m2 > 0 && o.shear_compliance >= 0 && o.bend_compliance >= 0,
+                     o.spacing_m <= o.length_m && o.mass_kg_m2 > 0 && o.shear_compliance >= 0 &&
+                     o.bend_compliance >= 0 && (o.columns == 0 || (o.columns >= 16 && o.columns <= 4096)),
                  "loose garment: length ", o.length_m, " m, fullness ", o.fullness, ", spacing ", o.spacing_m,
-                 " m, mass ", o.mass_kg_m2, " kg/m²");
+                 " m, mass ", o.mass_kg_m2, " kg/m², ", o.columns, " columns");
   std::vector<int> candidates;
   Eigen::AlignedBox3d section;
   for (int f = 0; f < faces.rows(); ++f) {
@@ -82,7 +83,8 @@ LooseGarment CutLooseGarment(const MatrixX3d& vertices, const MatrixX3i& faces, 
   const double mean_radius = 0.25 * (section.sizes().x() + section.sizes().z());
   const double hem = 2 * M_PI * (mean_radius + o.fullness * o.length_m);
   LooseGarment garment;
-  const int columns = garment.columns = std::max(16, static_cast<int>(std::lround(hem / o.spacing_m)));
+  const int columns = garment.columns =
+      o.columns > 0 ? o.columns : std::max(16, static_cast<int>(std::lround(hem / o.spacing_m)));
   const int rings = garment.rings = static_cast<int>(std::lround(o.length_m / o.spacing_m)) + 1;
   const double path = o.length_m / (rings - 1);
   const int closed = o.slit_from_m < 0 ? rings : std::clamp(static_cast<int>(o.slit_from_m / path), 1, rings);
@@ -152,29 +154,12 @@ LooseGarment CutLooseGarment(const MatrixX3d& vertices, const MatrixX3i& faces, 
   return garment;
 }
 
-LooseGarmentOptions LooseGarmentOf(const Outfit& outfit, const MatrixX3d& rest_joints, uint64_t seed) {
-  HashRandom random(seed, {0x6c6f6f73});
-  LooseGarmentOptions o;
-  const double pelvis = rest_joints(0, 1), knee = rest_joints(4, 1), ankle = rest_joints(7, 1),
-               spine1 = rest_joints(3, 1), spine2 = rest_joints(6, 1), shoulder = rest_joints(16, 1);
-  switch (outfit.kind()) {
-    case GarmentKind::kSuit:
-      o.length_m = 0;
-      break;
-    case GarmentKind::kSkirt:
-      o.waist_y_m = pelvis + random.Uniform(0.7, 0.9) * (spine1 - pelvis);
-      o.fullness = random.Uniform(0.4, 0.62);
-      o.length_m =
-          (o.waist_y_m - knee + random.Uniform(-0.12, 0.08) * (knee - ankle)) / std::sqrt(1 - 0.25 * o.fullness);
-      break;
-    case GarmentKind::kCoat:
-      o.waist_y_m = std::min(0.35 * spine1 + 0.65 * spine2, shoulder - 0.12);
-      o.fullness = random.Uniform(0.22, 0.32);
-      o.length_m = o.waist_y_m - (0.5 * rest_joints(1, 1) + 0.5 * knee) + random.Uniform(-0.05, 0.1);
-      o.slit_from_m = o.waist_y_m - pelvis + random.Uniform(-0.05, 0.05);
-      break;
+void Crumple(LooseGarment* garment, uint64_t seed) {
+  HashRandom random(seed, {0x666f6c64});
+  for (int v = 0; v < garment->cloth.num_vertices(); ++v) {
+    if (garment->cloth.mass_kg[v] == 0) continue;
+    for (int c = 0; c < 3; ++c) garment->sewn[v][c] += 0.002 * random.Normal();
   }
-  return o;
 }
 
 std::vector<Vector3d> PinnedPlaces(const std::vector<SurfacePin>& pins, const MatrixX3d& vertices,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The loose garment of an outfit as cloth: rings of vertices around the body, the first one pinned to it.
+/// A loose garment (skirt, dress, coat) as cloth: rings of vertices around the body, the first one pinned to it.
 ///
 /// A ring of columns at angle φ about the body's vertical (0 in front, towards the body's left). At a path s down from
 /// the pinned ring a column lies, as sewn,
@@ -13,9 +13,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "bodyloom/data_tools/synthesis/people/cloth_simulation.h"
-#include "bodyloom/data_tools/synthesis/people/outfit.h"
 #include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/cloth/cloth_simulation.h"
 
 namespace bodyloom {
 
@@ -31,6 +30,7 @@ struct LooseGarmentOptions {
   double length_m = 0.6;     ///< along the cloth
   double fullness = 0.5;     ///< in [0, 0.95]
   double spacing_m = 0.025;  ///< of the rings and, at the hem, of the columns: about
+  int columns = 0;           ///< 16 or more; 0: by the spacing
   double slit_from_m = -1;   ///< open in front from this path on; negative: closed
   double lift_m = 0.012;
   double mass_kg_m2 = 0.25;
@@ -57,9 +57,8 @@ struct LooseGarment {
 LooseGarment CutLooseGarment(const MatrixX3d& vertices, const MatrixX3i& faces, double arm_x_m,
                              const LooseGarmentOptions& options);
 
-/// The garment of an outfit's kind and seed on a body with these joints (J×3, T-pose, SMPL's tree) and pinned ring
-/// height scaled along; for a suit, which has none, length_m is 0.
-LooseGarmentOptions LooseGarmentOf(const Outfit& outfit, const MatrixX3d& rest_joints, uint64_t seed);
+/// Moves all but the pinned vertices by noise of 2 mm: a perfectly regular cone would balance instead of falling into folds.
+void Crumple(LooseGarment* garment, uint64_t seed);
 
 /// Where the pinned vertices are on a body's posed, clothed surface.
 std::vector<Eigen::Vector3d> PinnedPlaces(const std::vector<SurfacePin>& pins, const MatrixX3d& vertices,

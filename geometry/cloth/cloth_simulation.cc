@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/synthesis/people/cloth_simulation.h"
+#include "bodyloom/geometry/cloth/cloth_simulation.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

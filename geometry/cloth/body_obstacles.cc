@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/synthesis/people/body_obstacles.h"
+#include "bodyloom/geometry/cloth/body_obstacles.h"
 
 #include <algorithm>
 #include <array>

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/geometry/cloth/cloth_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/cloth/cloth_faults.h"
+#include "bodyloom/geometry/motion_check.h"
+#include "bodyloom/geometry/rotation.h"
+
+namespace bodyloom {
+namespace {
+
+using Eigen::Vector3d;
+
+BodyPose Between(const BodyPose& a, const BodyPose& b, double share) {
+  BodyPose pose;
+  pose.trans = a.trans + share * (b.trans - a.trans);
+  pose.rotations.reserve(a.rotations.size());
+  for (size_t j = 0; j < a.rotations.size(); ++j) {
+    pose.rotations.push_back(InterpolateRotation(a.rotations[j], b.rotations[j], share));
+  }
+  return pose;
+}
+
+}  // namespace
+
+ClothRun::ClothRun(const ClothWearer& wearer, Motion motion, const ClothRunOptions& options)
+    : wearer_(wearer), motion_(std::move(motion)), options_(options) {
+  CheckMotion(motion_, "ClothRun");
+  BODYLOOM_CHECK(motion_.num_frames() > 0, "ClothRun: a motion without frames");
+  for (int t = 1; t < motion_.num_frames(); ++t) {
+    BODYLOOM_CHECK(motion_.timestamps[t] > motion_.timestamps[t - 1], "ClothRun: timestamp ", t, " is ",
+                   motion_.timestamps[t], " s after ", motion_.timestamps[t - 1], " s, expected later");
+  }
+  BODYLOOM_CHECK(std::abs(options.up.norm() - 1) < 1e-6 && options.tick_s > 0 && options.move_in_s > 0 &&
+                     options.settle_s >= 0 && options.cut_speed > 0 && options.cut_pause_s > 0,
+                 "ClothRun: up, times and speeds must be positive, up a unit vector");
+  if (wearer.garment().empty()) return;
+  options_.cloth.gravity = -9.81 * options.up;
+  if (options.has_floor) {
+    double low = std::numeric_limits<double>::infinity();
+    for (int t = 0; t < motion_.num_frames(); ++t) {
+      const PosedSkeleton skeleton = PoseSkeleton(wearer.body(), wearer.rest_joints(), PoseAt(t));
+      low = std::min(low, (skeleton.joints * options.up).minCoeff());
+    }
+    constexpr double kSole_m = 0.03;  // feet reach about this far below their joints
+    options_.cloth.floor = FloorPlane{(low - kSole_m) * options.up, options.up};
+  }
+}
+
+BodyPose ClothRun::PoseAt(int t) const {
+  return PoseFromAxisAngle(wearer_.body(), motion_.poses.row(t).transpose(), motion_.trans.row(t).transpose());
+}
+
+ClothRun::Place ClothRun::PlaceAt(const BodyPose& pose) {
+  const MatrixX3i& faces = wearer_.body().data().faces;
+  const MatrixX3d bare = wearer_.BareVertices(pose);
+  const MatrixX3d clothed = wearer_.Clothed(bare, bare_normals_.Compute(bare, faces));
+  const PosedSkeleton skeleton = PoseSkeleton(wearer_.body(), wearer_.rest_joints(), pose);
+  return {wearer_.obstacles().At(clothed, clothed_normals_.Compute(clothed, faces), skeleton.joints),
+          PinnedPlaces(wearer_.garment().pins, clothed, faces)};
+}
+
+void ClothRun::MoveTo(const BodyPose& from, const BodyPose& to, double seconds) {
+  const int ticks = std::max(1, static_cast<int>(std::ceil(seconds / options_.tick_s - 1e-9)));
+  for (int i = 1; i <= ticks; ++i) {
+    Place place = PlaceAt(i == ticks ? to : Between(from, to, double(i) / ticks));
+    simulation_->Step(seconds / ticks, std::move(place.obstacles), place.pinned);
+  }
+}
+
+/// The garment as sewn around the body, which then goes from its T-pose to the pose and rests. After a cut too: what a
+/// motion has done to the cloth (a fold that caught somewhere) is not carried into another one.
+void ClothRun::StartIn(const BodyPose& pose) {
+  const LooseGarment& garment = wearer_.garment();
+  BodyPose start = RestPose(wearer_.body());
+  start.rotations[0] = pose.rotations[0], start.trans = pose.trans;
+  const Vector3d pelvis = wearer_.rest_joints().row(0).transpose();
+  std::vector<Vector3d> sewn;
+  sewn.reserve(garment.sewn.size());
+  for (const Vector3d& p : garment.sewn) sewn.push_back(pose.rotations[0] * (p - pelvis) + pelvis + pose.trans);
+  Place place = PlaceAt(start);
+  if (simulation_) {
+    simulation_->Restart(std::move(sewn), std::move(place.obstacles));
+  } else {
+    simulation_.emplace(garment.cloth, std::move(sewn), std::move(place.obstacles), wearer_.obstacles().surface_faces(),
+                        options_.cloth);
+  }
+  MoveTo(start, pose, options_.move_in_s);
+  if (options_.settle_s > 0) MoveTo(pose, pose, options_.settle_s);
+}
+
+bool ClothRun::IsCut(int t) const {
+  const MatrixX3d& rest = wearer_.rest_joints();
+  const MatrixX3d before = PoseSkeleton(wearer_.body(), rest, PoseAt(t - 1)).joints,
+                  after = PoseSkeleton(wearer_.body(), rest, PoseAt(t)).joints;
+  const double dt = motion_.timestamps[t] - motion_.timestamps[t - 1];
+  return dt >= options_.cut_pause_s * (1 - 1e-9) || (after - before).rowwise().norm().mean() > options_.cut_speed * dt;
+}
+
+const std::vector<Vector3d>& ClothRun::Next() {
+  BODYLOOM_CHECK(next_ < motion_.num_frames(), "ClothRun: ", motion_.num_frames(), " frames, one more was requested");
+  const int t = next_++;
+  if (wearer_.garment().empty()) return none_;
+  const BodyPose pose = PoseAt(t);
+  if (t > 0 && !IsCut(t)) {
+    MoveTo(PoseAt(t - 1), pose, motion_.timestamps[t] - motion_.timestamps[t - 1]);
+  } else {
+    cuts_ += t > 0;
+    StartIn(pose);
+  }
+  return simulation_->positions();
+}
+
+int ClothRun::legs_through() const {
+  if (!simulation_ || next_ == 0) return 0;
+  return LegsThroughCloth(simulation_->mesh().faces, simulation_->positions(),
+                          PoseSkeleton(wearer_.body(), wearer_.rest_joints(), PoseAt(next_ - 1)).joints);
+}
+
+}  // namespace bodyloom

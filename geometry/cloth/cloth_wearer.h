@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A body as a garment meets it: shaped, thickened by what it wears close to the skin, with the garment pinned to it.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/cloth/body_obstacles.h"
+#include "bodyloom/geometry/cloth/loose_garment.h"
+#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/skinning.h"
+
+namespace bodyloom {
+
+/// The body must outlive it. May be shared by threads once it wears its garment.
+class ClothWearer {
+ public:
+  /// `offsets_m`: how far the clothes close to the skin stand off, one a vertex; negative ones count as 0; empty: bare. Throws
+  /// std::invalid_argument when the body does not begin with SMPL's 24 joints, has more betas given than components or
+  /// another number of vertices than offsets.
+  ClothWearer(const BodyModel& body, const Eigen::VectorXd& betas, std::vector<double> offsets_m);
+  ClothWearer(BodyModel&&, const Eigen::VectorXd&, std::vector<double>) = delete;
+
+  /// Cuts a garment for this body (CutLooseGarment), crumpled by the seed.
+  [[nodiscard]] LooseGarment Cut(const LooseGarmentOptions& options, uint64_t seed) const;
+  /// A garment cut for a body with these faces.
+  void Wear(LooseGarment garment) { garment_ = std::move(garment); }
+
+  [[nodiscard]] const BodyModel& body() const { return body_; }
+  [[nodiscard]] const LooseGarment& garment() const { return garment_; }  ///< empty: none
+  [[nodiscard]] const BodyObstacles& obstacles() const { return *obstacles_; }
+  [[nodiscard]] const MatrixX3d& rest_joints() const { return shape_.rest_joints; }
+
+  /// V×3 vertices of the bare body.
+  [[nodiscard]] MatrixX3d BareVertices(const BodyPose& pose) const;
+  /// Moves the bare surface outwards by the clothes' thickness; `normals` are its own.
+  [[nodiscard]] MatrixX3d Clothed(const MatrixX3d& bare, const MatrixX3f& normals) const;
+
+ private:
+  const BodyModel& body_;
+  Skinner skinner_;
+  ShapedBody shape_;
+  std::vector<double> offsets_m_;
+  MatrixX3d clothed_at_rest_;
+  LooseGarment garment_;
+  std::unique_ptr<const BodyObstacles> obstacles_;
+};
+
+/// The T-pose, where the body is.
+BodyPose RestPose(const BodyModel& body);
+
+}  // namespace bodyloom

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/person/person_cloth.h"
+
+#include <utility>
+
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/cloth/body_with_garment.h"
+#include "bodyloom/render/overlay.h"
+#include "bodyloom/render/person/fit_clothes.h"
+#include "bodyloom/render/track_world.h"
+
+namespace bodyloom {
+namespace {
+
+/// A frame without a pose gets that of the one before it, the first ones that of the first which has one.
+Motion WithoutGaps(Motion motion) {
+  int first = 0;
+  while (first < motion.num_frames() && !motion.HasPose(first)) ++first;
+  BODYLOOM_CHECK(first < motion.num_frames(), "a garment's motion: no frame has a pose");
+  for (int t = 0; t < motion.num_frames(); ++t) {
+    if (motion.HasPose(t)) continue;
+    const int from = t < first ? first : t - 1;
+    motion.poses.row(t) = motion.poses.row(from).eval();
+    motion.trans.row(t) = motion.trans.row(from).eval();
+  }
+  return motion;
+}
+
+/// At rest sooner than a simulation that begins a dataset: a person is shown, and someone waits.
+ClothRunOptions OptionsFor(const Track& track, double swing_rad) {
+  ClothRunOptions options;
+  options.up = SwungUp(WorldOfTracks({&track}, track.joints).up_in_camera(), swing_rad);
+  options.tick_s = 1.0 / 30;
+  options.move_in_s = 0.8;
+  options.settle_s = 0.8;
+  return options;
+}
+
+}  // namespace
+
+PersonCloth::PersonCloth(const PhotoPerson& person, const Track& moved)
+    : PersonCloth(*person.clothed, person.garment, moved) {}
+
+PersonCloth::PersonCloth(const BodyModel& clothed, const LooseGarment& garment, const Track& moved, double swing_rad) {
+  if (garment.empty()) return;
+  wearer_.emplace(clothed, moved.motion.betas, std::vector<double>());
+  wearer_->Wear(garment);
+  run_.emplace(*wearer_, WithoutGaps(moved.motion), OptionsFor(moved, swing_rad));
+}
+
+const std::vector<Eigen::Vector3d>& PersonCloth::At(int t) {
+  BODYLOOM_CHECK(t >= last_, "a garment's frame ", t, " was requested after frame ", last_);
+  for (; run_ && last_ < t; ++last_) cloth_ = run_->Next();
+  return cloth_;
+}
+
+MatrixX3d StillVertices(const PhotoPerson& person, const Track& moved) {
+  MatrixX3d vertices = TrackVertices(*person.body, moved, 0);
+  if (!person.garment.empty()) PlaceGarment(person.garment, PersonCloth(person, moved).At(0), &vertices);
+  return vertices;
+}
+
+}  // namespace bodyloom

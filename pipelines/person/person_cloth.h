@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The garment of a person made from photos, along a track.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/cloth/cloth_run.h"
+#include "bodyloom/geometry/cloth/cloth_wearer.h"
+#include "bodyloom/geometry/track.h"
+#include "bodyloom/pipelines/person/photo_person.h"
+
+namespace bodyloom {
+
+/// Borrows the clothed body.
+class PersonCloth {
+ public:
+  /// `moved`: a track of person.body (MovedByPerson). Frames without a result go on as the frame before them. Throws
+  /// std::invalid_argument as ClothRun does.
+  PersonCloth(const PhotoPerson& person, const Track& moved);
+  /// A garment as a photo shows it, on the clothed body of that photo, which has the faces of the one it was cut for.
+  /// `swing_rad`: how far the cloth is swung (render/person/fit_clothes.h).
+  PersonCloth(const BodyModel& clothed, const LooseGarment& garment, const Track& moved, double swing_rad = 0);
+
+  /// Places of the cloth's vertices in frame t, metres, the track's camera frame; none without a garment. A frame may be
+  /// requested again, not one before it (std::invalid_argument).
+  const std::vector<Eigen::Vector3d>& At(int t);
+
+ private:
+  std::optional<ClothWearer> wearer_;
+  std::optional<ClothRun> run_;
+  std::vector<Eigen::Vector3d> cloth_;
+  int last_ = -1;
+};
+
+/// Vertices of person.body in the only frame of `moved`, metres, camera frame: the garment at rest.
+MatrixX3d StillVertices(const PhotoPerson& person, const Track& moved);
+
+}  // namespace bodyloom
