@@ -76,6 +76,7 @@ void Print(const ScorePeopleSummary& summary) {
   for (const ScoredPhotos& s : summary.scored) {
     std::printf("%d photo%s (%.0f %% of the texels; %s given): SSIM %.4f, %s\n", s.photos, s.photos == 1 ? "" : "s",
                 100 * s.texels_seen, summary.given.c_str(), s.ssim, ScoresText(s.scores).c_str());
+    if (s.missing > 0) std::printf("  of %d people the photos show too little: drawn as nobody\n", s.missing);
   }
 }
 

@@ -6,8 +6,7 @@
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/cloth/body_with_garment.h"
 #include "bodyloom/render/overlay.h"
-#include "bodyloom/render/person/fit_clothes.h"
-#include "bodyloom/render/track_world.h"
+#include "bodyloom/render/person/garment_swing.h"
 
 namespace bodyloom {
 namespace {
@@ -29,7 +28,7 @@ Motion WithoutGaps(Motion motion) {
 /// At rest sooner than a simulation that begins a dataset: a person is shown, and someone waits.
 ClothRunOptions OptionsFor(const Track& track, double swing_rad) {
   ClothRunOptions options;
-  options.up = SwungUp(WorldOfTracks({&track}, track.joints).up_in_camera(), swing_rad);
+  options.up = SwungUp(track, swing_rad);
   options.tick_s = 1.0 / 30;
   options.move_in_s = 0.8;
   options.settle_s = 0.8;

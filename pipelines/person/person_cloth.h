@@ -22,7 +22,7 @@ class PersonCloth {
   /// std::invalid_argument as ClothRun does.
   PersonCloth(const PhotoPerson& person, const Track& moved);
   /// A garment as a photo shows it, on the clothed body of that photo, which has the faces of the one it was cut for.
-  /// `swing_rad`: how far the cloth is swung (render/person/fit_clothes.h).
+  /// `swing_rad`: how far the cloth is swung (render/person/garment_swing.h).
   PersonCloth(const BodyModel& clothed, const LooseGarment& garment, const Track& moved, double swing_rad = 0);
 
   /// Places of the cloth's vertices in frame t, metres, the track's camera frame; none without a garment. A frame may be

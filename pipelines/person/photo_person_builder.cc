@@ -103,6 +103,7 @@ void PhotoPersonBuilder::Add(const FittedPhoto& photo) {
   if (index == 0) {
     person_.betas = betas;
     person_.body = person_.clothed = clothed;
+    person_.garment = {};
     if (person_.cut.length_m > 0) {
       person_.garment = CutGarment(*clothed, &person_.cut);
       person_.body = std::make_shared<const BodyModel>(BodyWithGarment(*clothed, person_.garment));
@@ -137,6 +138,7 @@ void PhotoPersonBuilder::Add(const FittedPhoto& photo) {
   const int seen = extractor_->Add(photo.picture, vertices, track.CameraAt(0), index, person);
   report.texels_seen = static_cast<double>(seen) / extractor_->table().num_inside;
   if (report.texels_seen < kLeastSeen) {
+    if (index == 0) extractor_.reset();  // the next photo is the first
     throw NothingToTrack(Concatenate(photo.name, ": shows too little of the person, expected one who is larger (",
                                      MaskHeight(photo.mask), " px tall here) and turned to the camera"));
   }

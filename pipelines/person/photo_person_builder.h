@@ -35,7 +35,7 @@ class PhotoPersonBuilder {
                      const FitClothesOptions& clothes = {});
 
   /// Throws NothingToTrack naming a photo that shows too little of the person, std::invalid_argument when sizes do not
-  /// fit.
+  /// fit; others may be added after it.
   void Add(const FittedPhoto& photo);
   /// The person, of at least one photo; this is spent.
   PhotoPerson Finish();

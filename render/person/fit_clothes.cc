@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/render/person/fit_clothes.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "bodyloom/geometry/bake_shape.h"
@@ -16,65 +13,20 @@
 #include "bodyloom/geometry/joint_influence.h"
 #include "bodyloom/geometry/posed_body.h"
 #include "bodyloom/render/overlay.h"
-#include "bodyloom/render/track_world.h"
-#include "bodyloom/render/view_camera.h"
+#include "bodyloom/render/person/garment_swing.h"
+#include "bodyloom/render/person/person_silhouette.h"
 #include "bodyloom/render/visibility_buffer.h"
 
 namespace bodyloom {
 namespace {
 
-using Eigen::Vector3d;
-
 constexpr std::array<double, 3> kPinnedHeights = {0.4, 1, 2};  ///< from the pelvis to spine1, and on to spine2
 constexpr std::array<double, 5> kFullness = {0.06, 0.22, 0.38, 0.54, 0.72};
-constexpr size_t kTriedAgain = 5, kSwung = 3;
 constexpr std::array<double, 4> kSwings_rad = {-0.5, -0.25, 0.25, 0.5};
+constexpr size_t kTriedAgain = 5, kSwung = 3;
 constexpr double kCoarseSpacing_m = 0.05, kFinerFullness = 0.08;
 constexpr uint64_t kSeed = 1;
 constexpr int kSmplJoints = 24, kLastJointOfLegs = 11;
-
-/// Cloth that only has to hang: bodies are posed seldom, and rest soon.
-ClothRunOptions Hanging(const Vector3d& up) {
-  ClothRunOptions options;
-  options.up = up;
-  options.tick_s = 0.1;
-  options.move_in_s = 0.5;
-  options.settle_s = 0.5;
-  options.cloth.substep_s = 1.0 / 160;
-  return options;
-}
-
-/// The person's pixels in a small picture.
-class Silhouette {
- public:
-  Silhouette(const Camera& camera, const LabelImage& mask, int height_px) {
-    int first = camera.height, last = -1;
-    for (int y = 0; y < camera.height; ++y) {
-      for (int x = 0; x < camera.width && last < y; ++x) {
-        if (mask.At(x, y) != 0) first = std::min(first, y), last = y;
-      }
-    }
-    const double scale = last >= first ? std::min(1.0, double(height_px) / (last - first + 1)) : 1;
-    camera_ = scale < 1 ? ScaledCamera(camera, scale) : camera;
-    person_.resize(size_t(camera_.width) * camera_.height);
-    for (int y = 0; y < camera_.height; ++y) {
-      for (int x = 0; x < camera_.width; ++x) {
-        const bool person = mask.At(static_cast<int>(std::lround((x + 0.5) / scale - 0.5)),
-                                    static_cast<int>(std::lround((y + 0.5) / scale - 0.5))) != 0;
-        person_[size_t(y) * camera_.width + x] = person ? 1 : 0;
-        area_ += person ? 1 : 0;
-      }
-    }
-  }
-  [[nodiscard]] const Camera& camera() const { return camera_; }
-  [[nodiscard]] bool IsPerson(int x, int y) const { return person_[size_t(y) * camera_.width + x] != 0; }
-  [[nodiscard]] int area() const { return area_; }
-
- private:
-  Camera camera_;
-  std::vector<uint8_t> person_;
-  int area_ = 0;
-};
 
 class ClothesFit {
  public:
@@ -110,22 +62,16 @@ class ClothesFit {
     return FitClothesOffsets(body_, rest_, vertices_, photo_.CameraAt(0), mask_, options_.offsets, covered);
   }
 
-  [[nodiscard]] ClothRunOptions HangingWith(double swing_rad) const {
-    return Hanging(SwungUp(WorldOfTracks({&photo_}, photo_.joints).up_in_camera(), swing_rad));
-  }
-
-  /// A garment and how many pixels of the person beside the bare body it covers
-  /// more than of nobody.
+  /// A garment, and how many pixels of the person beside the bare body it covers more than of nobody.
   struct Candidate {
     LooseGarmentOptions cut;
     double swing_rad = 0;
     int pixels = 0;
   };
 
-  /// The garment that covers most of the person beside the bare body; length 0:
-  /// none covers any. What hangs down to the ankles falls closer than what ends
-  /// at the knee, so the best of those that were tried at full length are cut
-  /// and let down again.
+  /// The garment that covers most of the person beside the bare body; length 0: none covers any. What hangs down to the
+  /// ankles falls closer than what ends at the knee, so the best of those that were tried at full length are cut and let
+  /// down again.
   Candidate BestGarment() const {
     const MatrixX3d joints = body_.RestJoints(betas_);
     const double pelvis = joints(0, 1), spine1 = joints(3, 1), spine2 = joints(6, 1);
@@ -147,8 +93,7 @@ class ClothesFit {
     TryOn(bare, &candidates);
     std::stable_sort(candidates.begin(), candidates.end(),
                      [](const Candidate& a, const Candidate& b) { return a.pixels > b.pixels; });
-    // Nothing beside the bare body looks like cloth: no garment can be worth
-    // it.
+    // Where nothing beside the bare body looks like cloth, no garment can be worth it.
     const double least = options_.least_gain * silhouette_.area();
     std::erase_if(candidates, [&](const Candidate& candidate) { return candidate.pixels < least; });
     if (candidates.size() > kTriedAgain) candidates.resize(kTriedAgain);
@@ -188,38 +133,20 @@ class ClothesFit {
     ClothWearer wearer(body_, betas_, {});
     wearer.Wear(wearer.Cut(tried.cut, kSeed));
     const LooseGarment& garment = wearer.garment();
-    const VisibilityBuffer seen =
-        SeeCloth(garment, ClothRun(wearer, photo_.motion, HangingWith(tried.swing_rad)).Next());
-    std::vector<int> gain(garment.rings - 1, 0);
-    const PixelBox& box = seen.box();
-    for (int y = box.y_begin; y < box.y_end; ++y) {
-      for (int x = box.x_begin; x < box.x_end; ++x) {
-        const int face = seen.FaceAt(x, y);
-        if (face < 0 || bare.FaceAt(x, y) >= 0) continue;
-        gain[face / (2 * garment.columns)] += silhouette_.IsPerson(x, y) ? 1 : -1;
-      }
-    }
+    const VisibilityBuffer seen = SeeGarment(
+        garment, ClothRun(wearer, photo_.motion, HangingCloth(photo_, tried.swing_rad)).Next(), silhouette_.camera());
+    const std::vector<int> covered = CoveredBeside(silhouette_, bare, seen, garment);
     const double path = tried.cut.length_m / (garment.rings - 1);
     Candidate best = tried;
     best.pixels = 0;
     int sum = 0;
-    for (int r = 0; r < static_cast<int>(gain.size()); ++r) {
-      sum += gain[r];
+    for (int r = 0; r < static_cast<int>(covered.size()); ++r) {
+      sum += covered[r];
       if ((r + 1) * path < options_.shortest_m || sum <= best.pixels) continue;
       best.pixels = sum;
       best.cut.length_m = (r + 1) * path;
     }
     return best;
-  }
-
-  VisibilityBuffer SeeCloth(const LooseGarment& garment, const std::vector<Vector3d>& cloth) const {
-    MatrixX3d places(static_cast<Eigen::Index>(cloth.size()), 3);
-    for (Eigen::Index v = 0; v < places.rows(); ++v) places.row(v) = cloth[v].transpose();
-    VisibilityOptions both_sides;
-    both_sides.cull_back_faces = false;
-    VisibilityBuffer seen;
-    seen.Render(places, garment.cloth.faces, silhouette_.camera(), both_sides);
-    return seen;
   }
 
   /// E of the dressed body.
@@ -234,7 +161,9 @@ class ClothesFit {
       LooseGarmentOptions coarse = clothes.garment;
       coarse.spacing_m = std::min(kCoarseSpacing_m, coarse.length_m);
       wearer.Wear(wearer.Cut(coarse, kSeed));
-      cloth = SeeCloth(wearer.garment(), ClothRun(wearer, track.motion, HangingWith(clothes.swing_rad)).Next());
+      cloth =
+          SeeGarment(wearer.garment(), ClothRun(wearer, track.motion, HangingCloth(photo_, clothes.swing_rad)).Next(),
+                     silhouette_.camera());
     }
     int unlike = 0;
     for (int y = 0; y < silhouette_.camera().height; ++y) {
@@ -252,7 +181,7 @@ class ClothesFit {
   const FitClothesOptions& options_;
   const Eigen::VectorXd betas_;
   const MatrixX3d rest_, vertices_;
-  const Silhouette silhouette_;
+  const PersonSilhouette silhouette_;
 };
 
 }  // namespace
@@ -260,10 +189,6 @@ class ClothesFit {
 FittedClothes FitClothes(const BodyModel& body, const Track& photo, const LabelImage& mask,
                          const FitClothesOptions& options) {
   return ClothesFit(body, photo, mask, options).Run();
-}
-
-Vector3d SwungUp(const Vector3d& up_in_camera, double swing_rad) {
-  return Eigen::AngleAxisd(swing_rad, Vector3d::UnitZ()) * up_in_camera;
 }
 
 std::vector<uint8_t> CoveredByGarment(const BodyModel& body, const MatrixX3d& rest_vertices,

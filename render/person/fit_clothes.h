@@ -13,7 +13,6 @@
 /// silhouette does not show slits, nor a garment that hides between the legs.
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <vector>
 
@@ -40,7 +39,7 @@ struct FitClothesOptions {
 struct FittedClothes {
   ClothesOffsets offsets;
   LooseGarmentOptions garment = {.length_m = 0};  ///< length_m 0: none. Its heights are of the shaped body in T-pose
-  double swing_rad = 0;                           ///< how far the cloth is swung in this picture (SwungUp)
+  double swing_rad = 0;                           ///< how far the cloth is swung in this picture (garment_swing.h)
   double unlike_close = 0;                        ///< E of clothes close to the skin
   double unlike_loose = 0;                        ///< E with the best garment; that of the above where none was tried
 };
@@ -48,9 +47,6 @@ struct FittedClothes {
 /// `photo`: a track of one frame with a result, of the bare body. Throws std::invalid_argument as FitClothesOffsets().
 FittedClothes FitClothes(const BodyModel& body, const Track& photo, const LabelImage& mask,
                          const FitClothesOptions& options = {});
-
-/// Up, where cloth is swung by that angle about the line of sight: gravity pulls the other way.
-Eigen::Vector3d SwungUp(const Eigen::Vector3d& up_in_camera, double swing_rad);
 
 /// Which of the shaped body's vertices (V×3, T-pose) the garment hides: of trunk and legs, between the pinned ring and
 /// the hem. One a vertex.

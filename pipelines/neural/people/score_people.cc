@@ -48,7 +48,8 @@ PersonPhotos PhotosOf(const ScorePeopleRequest& request, const PhotoSource& trut
 nlohmann::ordered_json Report(const ScorePeopleSummary& summary) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (const ScoredPhotos& s : summary.scored) {
-    nlohmann::ordered_json row = {{"photos", s.photos}, {"texels_seen", s.texels_seen}, {"ssim", s.ssim}};
+    nlohmann::ordered_json row = {
+        {"photos", s.photos}, {"texels_seen", s.texels_seen}, {"people_missing", s.missing}, {"ssim", s.ssim}};
     row.update(ToJson(s.scores));
     rows.push_back(row);
   }
@@ -72,7 +73,7 @@ ScorePeopleSummary Score(const ScorePeopleRequest& request, ScoredRenderer* rend
   const GuidedScoreWeights weights = GuidedScoreWeightsOf(ReadWeightsFolder(request.weights));
   for (const int photos : request.photos) {
     scorers.push_back(std::make_unique<GuidedScorer>(true, weights));
-    scored.push_back({photos, {}, 0, 0});
+    scored.push_back({.photos = photos});
   }
   std::vector<Image> sheet;
   for (int person = 0; person < count; ++person) {
@@ -83,6 +84,7 @@ ScorePeopleSummary Score(const ScorePeopleRequest& request, ScoredRenderer* rend
       const size_t used = std::min(photos.size(), static_cast<size_t>(scored[n].photos));
       scored[n].texels_seen +=
           renderer->SetPhotos(person, std::span(chosen.photos).first(used), std::span(photos).first(used)) / count;
+      scored[n].missing += renderer->HasPerson() ? 0 : 1;
       for (const int k : EvenlySpreadFrames(static_cast<int>(chosen.others.size()), request.frames)) {
         PhotoFrame other;
         source.fill(person, chosen.others[k], &other);

@@ -54,6 +54,7 @@ struct ScoredPhotos {
   GuidedScores scores;     ///< label_iou is NaN of a renderer that draws no labels
   double ssim = 0;         ///< of the windows (pipelines/neural/window_ssim.h), mean over pictures
   double texels_seen = 0;  ///< share of the atlas that the photos fill, mean over people
+  int missing = 0;         ///< people of whom the photos show too little: drawn as nobody, and counted
 };
 
 struct ScorePeopleSummary {

@@ -27,6 +27,8 @@ class ScoredRenderer {
   [[nodiscard]] virtual bool DrawsLabels() const { return false; }
   /// From now on this is the person: `photos` are its pictures `frames`. Returns the share of the atlas that they fill.
   virtual double SetPhotos(int person, std::span<const int> frames, std::span<const PhotoFrame> photos) = 0;
+  /// Whether the photos showed enough for a person; without one, nobody is drawn.
+  [[nodiscard]] virtual bool HasPerson() const { return true; }
   /// `pose` is frame `frame` of that person.
   virtual GuidedPicture Render(int frame, const PhotoFrame& pose) = 0;
   /// What the photos show of a pose, 3 planes.

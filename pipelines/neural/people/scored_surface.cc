@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "bodyloom/data_tools/observations/nothing_to_track.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/pipelines/callbacks.h"
@@ -73,19 +74,30 @@ class ScoredPerson : public ScoredRenderer {
     FitClothesOptions clothes;
     clothes.num_threads = threads_;
     PhotoPersonBuilder builder(people_.body(), texture_size_, nullptr, clothes);
+    int used = 0;
     for (size_t k = 0; k < photos.size(); ++k) {
+      Track body = people_.BodyOf(person, frames[k]);
+      if (!body.HasResult(0)) continue;
       const std::string name = Concatenate("person ", person, ", picture ", frames[k]);
-      builder.Add(FittedPhotoOf(photos[k], name, people_.BodyOf(person, frames[k])));
+      try {
+        builder.Add(FittedPhotoOf(photos[k], name, std::move(body)));
+        ++used;
+      } catch (const NothingToTrack&) {  // shows too little: the others may do
+      }
     }
-    person_ = builder.Finish();
-    painter_.emplace(person_, threads_);
+    painter_.reset();
+    if (used > 0) {
+      person_ = builder.Finish();
+      painter_.emplace(person_, threads_);
+    }
     return ShareSeen(shown_, photos.size());
   }
+  [[nodiscard]] bool HasPerson() const override { return painter_.has_value(); }
   GuidedPicture Render(int frame, const PhotoFrame& pose) override {
     const Track body = people_.BodyOf(number_, frame);
     Image picture(pose.size, pose.size);
     std::vector<uint8_t> coverage(static_cast<size_t>(pose.size) * pose.size, 0);
-    if (body.HasResult(0)) {
+    if (painter_ && body.HasResult(0)) {
       const Track moved = MovedByPerson(person_, body);
       painter_->Draw(StillVertices(person_, moved), moved.CameraAt(0), &picture, &coverage);
     }

@@ -129,6 +129,10 @@ TEST(PhotoPersonBuilder, RefusesWhatShowsTooLittle) {
   } catch (const NothingToTrack& error) {
     EXPECT_THAT(error.what(), HasSubstr("photo.png: shows too little of the person"));
   }
+  builder.Add(Photo(0));
+  const PhotoPerson person = builder.Finish();
+  EXPECT_EQ(person.tracks.size(), 1U) << "the photo after it is the first";
+  EXPECT_GT(person.report.seen, 0.1);
   EXPECT_THROW(PhotoPersonBuilder(BodyOrBuiltin(""), 64).Finish(), std::invalid_argument);
 }
 

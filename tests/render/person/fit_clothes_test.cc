@@ -5,64 +5,30 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <tuple>
 #include <vector>
 
-#include "bodyloom/geometry/cloth/body_with_garment.h"
-#include "bodyloom/geometry/cloth/cloth_run.h"
-#include "bodyloom/geometry/cloth/cloth_wearer.h"
 #include "bodyloom/geometry/vertex_normals.h"
 #include "bodyloom/render/overlay.h"
-#include "tests/render/person/person_scene.h"
+#include "tests/render/person/skirt_scene.h"
 
 namespace bodyloom {
 namespace {
 
 class FitClothesTest : public ::testing::Test {
  protected:
-  /// Facing the camera, arms down, legs apart.
-  static Track Photo(double turn_rad) {
-    Track photo;
-    photo.camera = PersonCamera();
-    photo.frame_status = {FrameStatus::kTracked};
-    Motion& motion = photo.motion;
-    motion.body = "bodyloom", motion.up = Motion::Up::kCamera;
-    motion.timestamps = {0};
-    motion.betas = Eigen::VectorXd::Zero(2);
-    motion.trans = Eigen::RowVector3d(0, 0, 3);
-    motion.poses = RowMatrixXd::Zero(1, 72);
-    const Eigen::AngleAxisd root(RotationFromAxisAngle({0, turn_rad, 0}) * RotationFromAxisAngle({EIGEN_PI, 0, 0}));
-    motion.poses.row(0).head<3>() = root.angle() * root.axis().transpose();
-    motion.poses(0, 3 * 16 + 2) = -1, motion.poses(0, 3 * 17 + 2) = 1;
-    motion.poses(0, 3 * 1 + 2) = 0.15, motion.poses(0, 3 * 2 + 2) = -0.15;
-    return photo;
-  }
-  LabelImage MaskOfSkirt(const Track& photo, double length_m, double fullness) const {
-    LooseGarmentOptions cut;
-    cut.waist_y_m = body_.joint_template()(3, 1), cut.length_m = length_m, cut.fullness = fullness;
-    cut.spacing_m = 0.025, cut.mass_kg_m2 = 0.4, cut.bend_compliance = 3;
-    ClothWearer wearer(body_, photo.motion.betas, {});
-    wearer.Wear(wearer.Cut(cut, 9));
-    ClothRunOptions options;
-    options.up = -Eigen::Vector3d::UnitY();
-    ClothRun run(wearer, photo.motion, options);
-    const BodyModel both(BodyWithGarment(body_, wearer.garment()));
-    MatrixX3d vertices = TrackVertices(both, photo, 0);
-    PlaceGarment(wearer.garment(), run.Next(), &vertices);
-    return MaskOf(vertices, both.data().faces, photo.camera);
-  }
-
   const BodyModel& body_ = BuiltinBody();
 };
 
 TEST_F(FitClothesTest, FindsASkirtsLengthAndWidth) {
-  for (const auto& [length_m, fullness, turn] : {std::tuple{0.55, 0.5, 0.0}, {0.72, 0.38, 0.6}, {0.45, 0.66, 2.5}}) {
-    const Track photo = Photo(turn);
-    const FittedClothes fitted = FitClothes(body_, photo, MaskOfSkirt(photo, length_m, fullness));
+  for (const auto& [length_m, fullness, turn, swing] :
+       {std::tuple{0.55, 0.5, 0.0, 0.0}, {0.72, 0.38, 0.6, 0.4}, {0.45, 0.66, 2.5, 0.0}}) {
+    const Track photo = StandingPhoto(turn);
+    const FittedClothes fitted = FitClothes(body_, photo, MaskOfSkirt(body_, photo, length_m, fullness, swing));
     ASSERT_GT(fitted.garment.length_m, 0) << length_m << ": " << fitted.unlike_close << " " << fitted.unlike_loose;
+    EXPECT_NEAR(fitted.swing_rad, swing, 0.26) << length_m;
     // What is seen is where the hem is and the silhouette; the pinned ring may be higher or lower, and other cloth that
     // is cut wider hangs alike.
     EXPECT_NEAR(fitted.garment.waist_y_m - fitted.garment.length_m, body_.joint_template()(3, 1) - length_m, 0.06)
@@ -74,8 +40,8 @@ TEST_F(FitClothesTest, FindsASkirtsLengthAndWidth) {
 }
 
 TEST_F(FitClothesTest, FindsNoneOnABareBodyOrInWideTrousers) {
-  for (const double turn : {0.0, 0.8, 1.5}) {
-    const Track photo = Photo(turn);
+  for (const double turn : {0.0, 1.5}) {
+    const Track photo = StandingPhoto(turn);
     const MatrixX3d vertices = TrackVertices(body_, photo, 0);
     const MatrixX3i& faces = body_.data().faces;
     const FittedClothes bare = FitClothes(body_, photo, MaskOf(vertices, faces, photo.camera));
@@ -94,8 +60,8 @@ TEST_F(FitClothesTest, FindsNoneOnABareBodyOrInWideTrousers) {
 }
 
 TEST_F(FitClothesTest, LooksForNoneWhenToldSoAndNeverForNobody) {
-  const Track photo = Photo(0);
-  const LabelImage mask = MaskOfSkirt(photo, 0.55, 0.5);
+  const Track photo = StandingPhoto(0);
+  const LabelImage mask = MaskOfSkirt(body_, photo, 0.55, 0.5, 0);
   FitClothesOptions options;
   options.loose = false;
   EXPECT_EQ(FitClothes(body_, photo, mask, options).garment.length_m, 0);
@@ -105,8 +71,8 @@ TEST_F(FitClothesTest, LooksForNoneWhenToldSoAndNeverForNobody) {
 }
 
 TEST_F(FitClothesTest, ASkirtDoesNotMakeThighsWide) {
-  const Track photo = Photo(0);
-  const FittedClothes fitted = FitClothes(body_, photo, MaskOfSkirt(photo, 0.55, 0.5));
+  const Track photo = StandingPhoto(0);
+  const FittedClothes fitted = FitClothes(body_, photo, MaskOfSkirt(body_, photo, 0.55, 0.5, 0));
   const std::vector<uint8_t> covered =
       CoveredByGarment(body_, ShapeVertices(body_, photo.motion.betas), fitted.garment);
   int count = 0;
