@@ -28,15 +28,12 @@ constexpr const char* kPersonDoc =
     "    me = bodyloom.Person.from_photos([\"me.jpg\"])\n"
     "    bodyloom.render(me.moved(\"dance.npz\"), what=\"texture\", body=me.body, texture=me.texture, out=\"me.mp4\")";
 constexpr const char* kFromPhotosDoc =
-    "The person of these photos; the first gives shape and clothes. Nothing is trained; the pose detector's networks "
-    "have to\n"
-    "be there (`./dev models`).\n\n"
-    "who: of several people in a photo, 0 is the largest. texture_size: texels a side. body: a file; the built-in one "
-    "by\n"
-    "default. focal_px, stature_m: where they are known. models: folder of the networks. loose_garment: look for a "
-    "skirt, dress or coat. Raises RuntimeError naming a "
-    "photo\n"
-    "that shows nobody or cannot be read, ValueError, Cancelled.";
+    "The person of these photos; the first gives shape and clothes. Nothing is trained; the pose detector's\n"
+    "networks have to be there (`./dev models`).\n\n"
+    "who: of several people in a photo, 0 is the largest. texture_size: texels a side. body: a file; the built-in\n"
+    "one by default. focal_px, stature_m: where they are known. models: folder of the networks. loose_garment:\n"
+    "look for a skirt, dress or coat. Raises RuntimeError naming a photo that shows nobody or cannot be read,\n"
+    "ValueError, Cancelled.";
 
 class PersonObject {
  public:

@@ -259,12 +259,13 @@ void RemoveStalePlaces(const std::string& root) {
     const std::string lock = (place / "lock").string();
     if (fs::exists(lock, error)) {
       if (!IsStale(lock, ReadLock(lock))) continue;
-      try {
-        const WorkPlace taken(root, place.filename().string());
-      } catch (const std::runtime_error&) {  // somebody has it by now, or the root cannot be written
-      }
-    } else {
-      ::rmdir(place.c_str());  // its holder was killed between its lock and its folder
+    } else if (::rmdir(place.c_str()) == 0 || errno != ENOTEMPTY) {
+      continue;  // its holder was killed between its lock and its folder
+    }
+    // Without a lock, and not empty: whoever took it over was killed between the lock of before and its own.
+    try {
+      const WorkPlace taken(root, place.filename().string());
+    } catch (const std::runtime_error&) {  // somebody has it by now, or the root cannot be written
     }
   }
   ::rmdir(root.c_str());

@@ -24,6 +24,8 @@ class PersonCloth {
   /// A garment as a photo shows it, on the clothed body of that photo, which has the faces of the one it was cut for.
   /// `swing_rad`: how far the cloth is swung (render/person/garment_swing.h).
   PersonCloth(const BodyModel& clothed, const LooseGarment& garment, const Track& moved, double swing_rad = 0);
+  PersonCloth(const PersonCloth&) = delete;
+  PersonCloth& operator=(const PersonCloth&) = delete;
 
   /// Places of the cloth's vertices in frame t, metres, the track's camera frame; none without a garment. A frame may be
   /// requested again, not one before it (std::invalid_argument).

@@ -350,6 +350,7 @@ class Person:
         focal_px: float | None = None,
         stature_m: float | None = None,
         models: _Path | None = None,
+        loose_garment: bool = True,
         progress: _Progress | None = None,
     ) -> Person: ...
     @staticmethod

@@ -118,7 +118,9 @@ TEST_F(WorkPlaceTest, AKilledHoldersPlaceIsTakenOverAtOnceAndCleared) {
 
 TEST_F(WorkPlaceTest, PlacesOfTheDeadAreClearedAndTheRootWithThem) {
   WriteLock("process", 0x7ffffff0);
-  fs::create_directory(folder_ / ".work/c");  // killed before its lock, or after it
+  fs::create_directory(folder_ / ".work/c");         // killed before its lock, or after it
+  fs::create_directories(folder_ / ".work/d/dead");  // killed between the lock that it took away and its own
+  WriteFileAtomically(folder_ / ".work/d/dead/half.npz", "half");
   RemoveStalePlaces(Root());
   EXPECT_THAT(folder_.Entries(), IsEmpty());
   RemoveStalePlaces(Root());  // nothing there
