@@ -36,8 +36,7 @@ constexpr std::array<BoneOfLimb, 16> kBones = {{{0, 3, Limb::kTrunk},
                                                 {20, 22, Limb::kArm},
                                                 {21, 23, Limb::kArm}}};
 
-bool IsTrunkOrLeg(int joint) { return joint <= 11; }
-bool IsBelowWaist(int joint) { return joint == 0 || (IsTrunkOrLeg(joint) && joint % 3 != 0); }
+bool IsBelowWaist(int joint) { return joint == 0 || (IsOfTrunkOrLegs(joint) && joint % 3 != 0); }
 
 ClothSide SideOf(Limb limb) {
   if (limb == Limb::kTrunk) return ClothSide::kAnywhere;
@@ -60,7 +59,7 @@ BodyObstacles::BodyObstacles(const BodyModel& body, const MatrixX3d& vertices, c
   const std::vector<int> strongest = StrongestJoints(body);
   std::vector<int> place(body.num_vertices(), -1);
   for (int v = 0; v < body.num_vertices(); ++v) {
-    if (!IsTrunkOrLeg(strongest[v])) continue;
+    if (!IsOfTrunkOrLegs(strongest[v])) continue;
     place[v] = static_cast<int>(vertices_.size());
     vertices_.push_back(v);
     belongs_.push_back(IsBelowWaist(strongest[v]) ? ClothSide::kInside : ClothSide::kAnywhere);

@@ -11,6 +11,9 @@
 
 namespace bodyloom {
 
+/// Whether one of SMPL's joints moves trunk or legs, which a loose garment hangs on and hides.
+inline bool IsOfTrunkOrLegs(int joint) { return joint <= 11; }
+
 /// Immutable, may be shared by threads.
 class BodyObstacles {
  public:

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/cloth/body_obstacles.h"
 #include "bodyloom/geometry/joint_influence.h"
 
 namespace bodyloom {
@@ -14,7 +15,6 @@ namespace {
 constexpr double kReach_m = 0.1;      ///< σ of the weights
 constexpr float kMarginOfUv = 0.02F;  ///< around the garment's rectangle
 constexpr double kLeastWeight = 1e-3;
-constexpr int kLastJointOfLegs = 11;
 
 /// J weights for a vertex of the garment, of which vertices of the body.
 Eigen::VectorXd WeightsNear(const BodyModel& body, const std::vector<int>& vertices, const Eigen::RowVector3d& place) {
@@ -26,7 +26,7 @@ Eigen::VectorXd WeightsNear(const BodyModel& body, const std::vector<int>& verti
     const double share = std::exp((nearest2 - distance2) / (2 * kReach_m * kReach_m));
     for (int i = body.influence_begin()[v]; i < body.influence_begin()[v + 1]; ++i) {
       const int joint = body.influence_joint()[i];
-      if (joint <= kLastJointOfLegs) weights[joint] += share * body.influence_weight()[i];
+      if (IsOfTrunkOrLegs(joint)) weights[joint] += share * body.influence_weight()[i];
     }
   }
   weights /= weights.sum();
@@ -74,7 +74,7 @@ BodyModelData BodyWithGarment(const BodyModel& body, const LooseGarment& garment
   const std::vector<int> strongest = StrongestJoints(body);
   std::vector<int> near;
   for (int v = 0; v < V; ++v) {
-    if (strongest[v] <= kLastJointOfLegs) near.push_back(v);
+    if (IsOfTrunkOrLegs(strongest[v])) near.push_back(v);
   }
   std::vector<Eigen::Triplet<double>> weights = TripletsOf(data.weights);
   for (int d = 0; d < D; ++d) {

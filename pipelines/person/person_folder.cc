@@ -75,8 +75,8 @@ PhotoPerson ReadPhotoPerson(const std::string& folder, const std::string& bare_b
   person.cut = GarmentIn(FileIn(folder, "person.json"));
   person.clothed = person.body;
   if (person.cut.length_m > 0) {
-    person.clothed = std::make_shared<const BodyModel>(BodyWithoutGarment(*person.body, person.bare->num_vertices()));
     try {
+      person.clothed = std::make_shared<const BodyModel>(BodyWithoutGarment(*person.body, person.bare->num_vertices()));
       person.garment = CutGarment(*person.clothed, &person.cut);
     } catch (const std::invalid_argument& error) {
       throw std::runtime_error(Concatenate(FileIn(folder, "person.json"), ": garment: ", error.what()));

@@ -8,6 +8,7 @@
 
 #include "bodyloom/geometry/bake_shape.h"
 #include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/geometry/cloth/body_obstacles.h"
 #include "bodyloom/geometry/cloth/cloth_run.h"
 #include "bodyloom/geometry/cloth/cloth_wearer.h"
 #include "bodyloom/geometry/joint_influence.h"
@@ -26,7 +27,7 @@ constexpr std::array<double, 4> kSwings_rad = {-0.5, -0.25, 0.25, 0.5};
 constexpr size_t kTriedAgain = 5, kSwung = 3;
 constexpr double kCoarseSpacing_m = 0.05, kFinerFullness = 0.08;
 constexpr uint64_t kSeed = 1;
-constexpr int kSmplJoints = 24, kLastJointOfLegs = 11;
+constexpr int kSmplJoints = 24;
 
 class ClothesFit {
  public:
@@ -198,7 +199,7 @@ std::vector<uint8_t> CoveredByGarment(const BodyModel& body, const MatrixX3d& re
   for (size_t v = 0; v < covered.size(); ++v) {
     const double y = rest_vertices(static_cast<Eigen::Index>(v), 1);
     const bool between = y < garment.waist_y_m && y > garment.waist_y_m - garment.length_m;
-    covered[v] = between && strongest[v] <= kLastJointOfLegs ? 1 : 0;
+    covered[v] = between && IsOfTrunkOrLegs(strongest[v]) ? 1 : 0;
   }
   return covered;
 }
