@@ -25,7 +25,7 @@ Eigen::VectorXd ChangeOfWeights(const MatrixX3d& positions, const Eigen::VectorX
   for (const double flat : {1e-6, 1e-3, 1e-2, 0.1, 0.5}) {
     solver.setThreshold(flat);
     solver.compute(conditions);
-    const Eigen::VectorXd change = solver.solve(wanted);
+    Eigen::VectorXd change = solver.solve(wanted);
     if ((weights + change).cwiseAbs().maxCoeff() <= kLargestWeight) return change;
   }
   return Eigen::VectorXd::Zero(weights.size());

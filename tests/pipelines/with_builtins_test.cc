@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
+
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/learned/lifter_weights_io.h"
 #include "bodyloom/data_tools/learned/pose_prior_io.h"
@@ -29,17 +31,18 @@ TEST(WithBuiltins, FillsInWhatTheInputDoesNotName) {
 }
 
 TEST(WithBuiltins, LeavesWhatItNames) {
-  const BodyModel body = BuiltinBody();
-  const PosePrior prior = BuiltinPosePrior();
-  const LifterWeights lifter = BuiltinLifter();
+  // Copies: objects other than the built-in ones.
+  const auto body = std::make_unique<const BodyModel>(BuiltinBody());
+  const auto prior = std::make_unique<const PosePrior>(BuiltinPosePrior());
+  const auto lifter = std::make_unique<const LifterWeights>(BuiltinLifter());
   TrackSequenceInput input;
-  input.body = &body;
-  input.prior = &prior;
-  input.lifter = &lifter;
+  input.body = body.get();
+  input.prior = prior.get();
+  input.lifter = lifter.get();
   const TrackSequenceInput same = WithBuiltins(input);
-  EXPECT_EQ(same.body, &body);
-  EXPECT_EQ(same.prior, &prior);
-  EXPECT_EQ(same.lifter, &lifter);
+  EXPECT_EQ(same.body, body.get());
+  EXPECT_EQ(same.prior, prior.get());
+  EXPECT_EQ(same.lifter, lifter.get());
 }
 
 TEST(WithBuiltins, AnothersLandmarksTakeTheLiftersPlace) {

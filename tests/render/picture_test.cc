@@ -111,6 +111,7 @@ TEST(Caption, ShrinksLongLinesAndLeavesTinyImagesAlone) {
 
 TEST(ContactSheet, PutsPicturesInRows) {
   std::vector<Image> pictures;
+  pictures.reserve(5);
   for (int i = 0; i < 5; ++i) pictures.emplace_back(40, 20, Colour{static_cast<uint8_t>(50 * i), 100, 0});
   const Image sheet = ContactSheet(pictures, {.columns = 2, .cell_height_px = 20, .gap_px = 4});
   EXPECT_EQ(sheet.width, 2 * 44 + 4);
@@ -150,7 +151,8 @@ TEST(DrawKeypoints, DrawsWhatIsThereAndNothingElse) {
   EXPECT_NE(image.at(26, 20), kWhite);
   image = before;
   DrawKeypoints(points, {.size_px = 4, .alpha = 0.5}, &image);
-  EXPECT_NEAR(image.at(20, 20).blue, (255 + kLeftColour.blue) / 2, 2);
+  const int halfway = (255 + kLeftColour.blue) / 2;
+  EXPECT_NEAR(image.at(20, 20).blue, halfway, 2);
   points.pixels.row(0) << 1e30, -1e30;  // far outside: left out instead of overflowing
   EXPECT_NO_THROW(DrawKeypoints(points, {}, &image));
   points.names.pop_back();

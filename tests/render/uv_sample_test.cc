@@ -32,7 +32,8 @@ TEST(UvSample, IsExactForLinearMapsAndKeepsChartsApart) {
   const auto plane = [](int chart, double u, double v) { return 100 * chart + 3 * u - 2 * v; };
   for (int p = 0; p < 128 * 128; ++p) {
     if (table.chart_at[p] < 0) continue;
-    map[p] = static_cast<float>(plane(table.chart_at[p], (p % 128 + 0.5) / 128, 1 - (p / 128 + 0.5) / 128));
+    const int column = p % 128, row = p / 128;
+    map[p] = static_cast<float>(plane(table.chart_at[p], (column + 0.5) / 128, 1 - (row + 0.5) / 128));
   }
   int whole = 0;
   for (int f = 0; f < body.num_faces(); ++f) {
@@ -54,8 +55,10 @@ TEST(UvSample, DerivativesAreThoseOfTheValue) {
       BuildUvTexelTable(body, {.gutter = 0});  // so that taps are missing at the charts' boundaries
   const UvCharts charts = FindUvCharts(body);
   std::vector<float> map(128 * 128);
-  for (size_t p = 0; p < map.size(); ++p)
-    map[p] = static_cast<float>(std::sin(0.3 * double(p % 128)) + 0.02 * double(p / 128));
+  for (size_t p = 0; p < map.size(); ++p) {
+    const size_t column = p % 128, row = p / 128;
+    map[p] = static_cast<float>(std::sin(0.3 * double(column)) + 0.02 * double(row));
+  }
   int partial = 0, checked = 0;
   for (int i = 0; i < 2 * body.num_faces(); ++i) {
     const UvPoint point =

@@ -83,6 +83,7 @@ BodyModel BodyOfManyVertices(int num_vertices) {
   const BodyModelData& toy = ToyBody().data();
   const int V = ToyBody().num_vertices(), copies = num_vertices / V;
   std::vector<int> sources;
+  sources.reserve(static_cast<size_t>(num_vertices));
   for (int v = 0; v < num_vertices; ++v) sources.push_back(v % V);
   BodyModelData d = Picked(sources);
   d.J_regressor = toy.J_regressor;

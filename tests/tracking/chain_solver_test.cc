@@ -23,7 +23,7 @@ SolveOptions Tight(SequenceSolver solver) {
 }
 
 /// Both engines from the same start; costs agree to 1e-6 and states closely.
-void ExpectSameAsCeres(const SequenceProblem& start, SolveOptions base = {}) {
+void ExpectSameAsCeres(const SequenceProblem& start, const SolveOptions& base = {}) {
   SequenceProblem by_ceres = start, by_chain = start;
   SolveOptions options = Tight(SequenceSolver::kCeres);
   options.shape_constant = base.shape_constant;

@@ -362,6 +362,7 @@ TEST(CompressedFrameCost, EqualsTheFullSystem) {
       jacobians.emplace_back(p + 1, block.size());
     }
     std::vector<double*> jacobian_pointers;
+    jacobian_pointers.reserve(jacobians.size());
     for (RowMatrixXd& J : jacobians) jacobian_pointers.push_back(J.data());
     VectorXd r(p + 1), r_only(p + 1);
     ASSERT_TRUE(cost.Evaluate(parameters.data(), r.data(), jacobian_pointers.data()));

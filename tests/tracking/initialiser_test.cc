@@ -63,7 +63,7 @@ bool Ran(const TrackSequenceSummary& summary, const std::string& what) {
   return false;
 }
 
-double JointError_mm(const Track& track) {
+double JointErrorMm(const Track& track) {
   return 1000 * ProcrustesPositionError(track.joints, Clip().truth.joints).frames.mean;
 }
 
@@ -83,7 +83,7 @@ TEST(Initialiser, FramesThatItLacksAreFilledAndFitted) {
   ASSERT_TRUE(some.summary.IsUsable()) << some.summary.message;
   EXPECT_TRUE(some.track.motion.poses.allFinite());
   EXPECT_EQ(some.summary.frames_by_status.at("tracked"), kFrames);
-  EXPECT_LT(JointError_mm(some.track), 1.3 * JointError_mm(all.track));
+  EXPECT_LT(JointErrorMm(some.track), 1.3 * JointErrorMm(all.track));
   LiveTrackerOptions live;
   live.solve = Known();
   const TrackSequenceResult one_by_one = TrackLive(InputFrom(gaps), live);
@@ -186,7 +186,7 @@ TEST(GivenLandmarks, TakeTheLiftersPlace) {
   input.lifted = &frames;
   const TrackSequenceResult result = TrackSequence(input, Known());
   ASSERT_TRUE(result.summary.IsUsable()) << result.summary.message;
-  EXPECT_LT(JointError_mm(result.track), 0.8 * JointError_mm(lifted.track));
+  EXPECT_LT(JointErrorMm(result.track), 0.8 * JointErrorMm(lifted.track));
   const InitialiserGain gain =
       GainOverLandmarks(BuiltinBody(), &Clip().keypoints_truth, TrueLandmarks(), Clip().truth.camera, Clip().truth);
   EXPECT_EQ(gain.frames, kFrames);

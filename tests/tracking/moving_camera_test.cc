@@ -119,6 +119,7 @@ TEST(MovingCamera, BothEnginesFindTheSameAnswer) {
   const auto scene = MakeSequenceScene({.frames = 8, .seed = 3});
   std::mt19937_64 random(11);
   std::vector<CameraPose> cameras;
+  cameras.reserve(8);
   for (int t = 0; t < 8; ++t) cameras.push_back(RandomCamera(&random));
   std::array<double, 2> cost{};
   for (const SequenceSolver solver : {SequenceSolver::kChain, SequenceSolver::kCeres}) {

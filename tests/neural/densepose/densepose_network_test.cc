@@ -43,13 +43,13 @@ struct Striped {
 class DensePoseFile : public ::testing::Test {
  protected:
   std::string Save(const torch::jit::Module& module) const {
-    const std::string path = folder_ / "densepose.torchscript";
+    std::string path = folder_ / "densepose.torchscript";
     module.save(path);
     return path;
   }
   std::string Save(const char* forward) const { return Save(ScriptedDensePose(Striped().planes(), forward)); }
   std::string SaveBytes(const std::string& bytes) const {
-    const std::string path = folder_ / "densepose.torchscript";
+    std::string path = folder_ / "densepose.torchscript";
     std::ofstream(path, std::ios::binary) << bytes;
     return path;
   }
@@ -59,7 +59,7 @@ class DensePoseFile : public ::testing::Test {
     try {
       call();
     } catch (const std::runtime_error& error) {
-      const std::string text = error.what();
+      std::string text = error.what();
       EXPECT_THAT(text, AllOf(StartsWith(folder_.path()), Not(HasSubstr("\n"))));
       return text;
     }

@@ -150,6 +150,7 @@ inline PhotoSource ToyPeople(int people, int frames) {
 /// Front and back; from the sides nothing is seen of a toy but its front, moved.
 inline std::vector<PhotoFrame> ToyViews() {
   std::vector<PhotoFrame> views;
+  views.reserve(6);
   for (int v = 0; v < 6; ++v) views.push_back(ToyPhotoFrame(0, {v > 1 ? v - 3 : 0, 0, v == 1}, false));
   return views;
 }

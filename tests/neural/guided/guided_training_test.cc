@@ -25,8 +25,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<uint8_t> texel_parts = ToyTexelParts();
-const std::vector<PhotoFrame> views = ToyViews();
+const std::vector<uint8_t> kTexelParts = ToyTexelParts();
+const std::vector<PhotoFrame> kViews = ToyViews();
 
 TrainGuidedOptions ToyOptions(const std::string& name) {
   TrainGuidedOptions options;
@@ -126,7 +126,7 @@ TEST(GuidedTraining, LearnsAPairByHeart) {
   GuidedRenderer renderer(CheckpointPath(options.run_dir), options.config, {2, {}, 1});
   const std::vector<PhotoFrame> photos = {ToyPhotoFrame(0, ToyPoseOf(0), true), ToyPhotoFrame(0, {0, 0, true}, true)};
   EXPECT_THROW(renderer.Render(photos[0]), std::invalid_argument);
-  renderer.SetSource(std::span(photos).first(1), {texel_parts, views});
+  renderer.SetSource(std::span(photos).first(1), {kTexelParts, kViews});
   EXPECT_EQ(renderer.virtual_pictures().size(), 6U);
   const GuidedPicture picture = renderer.Render(ToyPhotoFrame(0, ToyPoseOf(1), false));
   GuidedScorer scorer(false);
@@ -143,7 +143,7 @@ TEST(GuidedTraining, LearnsAPairByHeart) {
     }
   };
   count(&back_of_one);  // number 2 is the first virtual view: the front
-  renderer.SetSource(photos, {texel_parts, views});
+  renderer.SetSource(photos, {kTexelParts, kViews});
   count(&back_of_two);  // number 2 is the second photo
   EXPECT_EQ(back_of_one, 0);
   EXPECT_EQ(back_of_two, 128);
@@ -192,7 +192,7 @@ TEST(GuidedTraining, EveryAblationTrainsAndDraws) {
     EXPECT_EQ(summary.scores.frames, 6) << parts[0];
     GuidedRenderer renderer(CheckpointPath(options.run_dir), options.config, {0, {}, 1});
     const PhotoFrame photo = ToyPhotoFrame(0, {}, true);
-    renderer.SetSource(std::span(&photo, 1), {texel_parts, views});
+    renderer.SetSource(std::span(&photo, 1), {kTexelParts, kViews});
     EXPECT_EQ(renderer.virtual_pictures().empty(), !options.config.uv_appearance);
     for (const float value : renderer.Render(ToyPhotoFrame(0, {1, 1, false}, false)).image) {
       ASSERT_TRUE(value >= 0 && value <= 1);
@@ -279,16 +279,16 @@ TEST(GuidedTraining, CompletesTheMapsByTheirNeighbours) {
   const TexelNeighbours neighbours(kToyTexels, people.texel_parts, people.texel_places);
   GuidedRenderer renderer(CheckpointPath(options.run_dir), options.config, {2, {}, 1});
   const PhotoFrame photo = ToyPhotoFrame(0, {}, true), pose = ToyPhotoFrame(0, {2, 1, true}, false);
-  EXPECT_THROW(renderer.SetSource(std::span(&photo, 1), {texel_parts, views}), std::invalid_argument)
+  EXPECT_THROW(renderer.SetSource(std::span(&photo, 1), {kTexelParts, kViews}), std::invalid_argument)
       << "no neighbours";
-  renderer.SetSource(std::span(&photo, 1), {texel_parts, {}, &neighbours});
+  renderer.SetSource(std::span(&photo, 1), {kTexelParts, {}, &neighbours});
   EXPECT_TRUE(renderer.virtual_pictures().empty());
   for (const uint8_t from : renderer.maps().from) EXPECT_NE(from, 0);
   const GuidedPicture guessed = renderer.Render(pose);
   // The same networks and the paper's completion, and none.
   for (const MapCompletion completion : {MapCompletion::kVirtualViews, MapCompletion::kNone}) {
     GuidedRenderer other(CheckpointPath(options.run_dir), options.config, {2, completion, 1});
-    other.SetSource(std::span(&photo, 1), {texel_parts, views, &neighbours});
+    other.SetSource(std::span(&photo, 1), {kTexelParts, kViews, &neighbours});
     EXPECT_EQ(other.virtual_pictures().empty(), completion == MapCompletion::kNone);
     EXPECT_NE(other.Render(pose).image, guessed.image);
   }
@@ -314,7 +314,7 @@ TEST(GuidedTraining, ALossThatIsNotANumberKeepsTheLastCheckpoint) {
   if (summary.steps == 0) return;
   GuidedRenderer renderer(CheckpointPath(options.run_dir), options.config, {0, MapCompletion::kNone, 1});
   const PhotoFrame photo = ToyPhotoFrame(0, {}, true);
-  renderer.SetSource(std::span(&photo, 1), {texel_parts, {}});
+  renderer.SetSource(std::span(&photo, 1), {kTexelParts, {}});
   for (const float value : renderer.Render(photo).image) ASSERT_TRUE(std::isfinite(value));
 }
 
@@ -337,10 +337,10 @@ TEST(GuidedTraining, RefusesWhatDoesNotFit) {
   GuidedRenderer renderer(path, ToyGuided(), {0, {}, 1});
   const PhotoFrame photo = ToyPhotoFrame(0, {}, true), pose = ToyPhotoFrame(0, {}, false);
   const std::vector<uint8_t> few(4);
-  EXPECT_THROW(renderer.SetSource({}, {texel_parts, views}), std::invalid_argument);
-  EXPECT_THROW(renderer.SetSource(std::span(&pose, 1), {texel_parts, views}), std::invalid_argument);
-  EXPECT_THROW(renderer.SetSource(std::span(&photo, 1), {texel_parts, {}}), std::invalid_argument);
-  EXPECT_THROW(renderer.SetSource(std::span(&photo, 1), {few, views}), std::invalid_argument);
+  EXPECT_THROW(renderer.SetSource({}, {kTexelParts, kViews}), std::invalid_argument);
+  EXPECT_THROW(renderer.SetSource(std::span(&pose, 1), {kTexelParts, kViews}), std::invalid_argument);
+  EXPECT_THROW(renderer.SetSource(std::span(&photo, 1), {kTexelParts, {}}), std::invalid_argument);
+  EXPECT_THROW(renderer.SetSource(std::span(&photo, 1), {few, kViews}), std::invalid_argument);
   fs::resize_file(path, fs::file_size(path) / 2);
   try {
     GuidedRenderer broken(path, ToyGuided(), {0, {}, 1});

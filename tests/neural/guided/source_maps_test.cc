@@ -16,16 +16,16 @@ namespace bodyloom {
 namespace {
 
 constexpr int kTexels = kToyTexels * kToyTexels;
-const std::vector<uint8_t> texel_parts = ToyTexelParts();
-const std::vector<PhotoFrame> views = ToyViews();
+const std::vector<uint8_t> kTexelParts = ToyTexelParts();
+const std::vector<PhotoFrame> kViews = ToyViews();
 
-TexelNeighbours ToyNeighbours() { return {kToyTexels, texel_parts, ToyTexelPlaces()}; }
+TexelNeighbours ToyNeighbours() { return {kToyTexels, kTexelParts, ToyTexelPlaces()}; }
 
 TEST(GuessRest, TheBackIsTheFrontAndItsHeadHasHair) {
   const PhotoFrame photo = ToyPhotoFrame(1, {}, true);
   const TexelNeighbours neighbours = ToyNeighbours();
   const SourceMaps source =
-      MapsOfSource(std::span(&photo, 1), {texel_parts, {}, &neighbours}, MapCompletion::kNearest, false, {});
+      MapsOfSource(std::span(&photo, 1), {kTexelParts, {}, &neighbours}, MapCompletion::kNearest, false, {});
   EXPECT_EQ(source.texels_seen, 128);
   EXPECT_TRUE(source.virtual_pictures.empty());
   for (int t = 0; t < kTexels; ++t) {
@@ -54,7 +54,7 @@ TEST(GuessRest, WithoutHairTheBackOfTheHeadIsSkinOfTheFacesColour) {
   }
   const TexelNeighbours neighbours = ToyNeighbours();
   const CoherentMaps maps =
-      MapsOfSource(std::span(&photo, 1), {texel_parts, {}, &neighbours}, MapCompletion::kNearest, false, {}).maps;
+      MapsOfSource(std::span(&photo, 1), {kTexelParts, {}, &neighbours}, MapCompletion::kNearest, false, {}).maps;
   for (int t = 0; t < kTexels / 2; ++t) {
     if (t % kToyTexels < 8) continue;
     EXPECT_EQ(maps.labels[t], 5) << t;
@@ -83,7 +83,7 @@ TEST(MapsOfSource, ABackOfTheHeadThatIsSeenStaysWhateverItIsCalled) {
     return picture;
   };
   for (const MapCompletion completion : {MapCompletion::kNone, MapCompletion::kNearest, MapCompletion::kVirtualViews}) {
-    const SourceMaps source = MapsOfSource(photos, {texel_parts, views, &neighbours}, completion, false, repeat);
+    const SourceMaps source = MapsOfSource(photos, {kTexelParts, kViews, &neighbours}, completion, false, repeat);
     EXPECT_EQ(source.texels_seen, 256) << ToText(completion);
     for (int t = 0; t < kTexels / 2; ++t) {
       if (t % kToyTexels < 8) continue;
@@ -100,7 +100,7 @@ TEST(MapsOfSource, ABackOfTheHeadThatIsSeenStaysWhateverItIsCalled) {
     for (int x = 12; x < 20; ++x) behind.labels[y * kToySide + x] = 3;
   }
   const CoherentMaps maps =
-      MapsOfSource(std::span(&behind, 1), {texel_parts, {}, &neighbours}, MapCompletion::kNone, false, {}).maps;
+      MapsOfSource(std::span(&behind, 1), {kTexelParts, {}, &neighbours}, MapCompletion::kNone, false, {}).maps;
   for (int r = 0; r < 8; ++r) {
     EXPECT_EQ(maps.from[r * kToyTexels + 10], 1);
     EXPECT_EQ(maps.labels[r * kToyTexels + 10], r < 4 ? 4 : 3) << r;
@@ -116,7 +116,7 @@ TEST(GuessRest, WhatIsUnseenOfTheBackOfTheHeadIsHairThatIsSeen) {
   }
   const PhotoFrame photos[] = {LabelledByParts({}), behind};
   const CoherentMaps maps =
-      MapsOfSource(photos, {texel_parts, {}, &neighbours}, MapCompletion::kNearest, false, {}).maps;
+      MapsOfSource(photos, {kTexelParts, {}, &neighbours}, MapCompletion::kNearest, false, {}).maps;
   int guessed = 0;
   for (int t = 0; t < kTexels / 2; ++t) {
     if (t % kToyTexels < 8) continue;
@@ -133,7 +133,7 @@ TEST(GuessRest, WithoutHairTheBackOfTheHeadNeverHasTheHandsColour) {
   const TexelNeighbours neighbours = ToyNeighbours();
   const PhotoFrame photo = LabelledByParts({});
   const CoherentMaps maps =
-      MapsOfSource(std::span(&photo, 1), {texel_parts, {}, &neighbours}, MapCompletion::kNearest, false, {}).maps;
+      MapsOfSource(std::span(&photo, 1), {kTexelParts, {}, &neighbours}, MapCompletion::kNearest, false, {}).maps;
   for (int t = 0; t < kTexels / 2; ++t) {
     const int r = t / kToyTexels, c = t % kToyTexels;
     if (c < 8) continue;
@@ -146,7 +146,7 @@ TEST(GuessRest, WithoutHairTheBackOfTheHeadNeverHasTheHandsColour) {
 }
 
 TEST(GuessRest, AMapThatHoldsNothingStaysEmpty) {
-  CoherentMaps maps = EmptyMaps(kToyTexels, texel_parts);
+  CoherentMaps maps = EmptyMaps(kToyTexels, kTexelParts);
   EXPECT_EQ(GuessRest(ToyNeighbours(), 1, &maps), 0);
   EXPECT_TRUE(std::all_of(maps.from.begin(), maps.from.end(), [](uint8_t from) { return from == 0; }));
   EXPECT_THROW(GuessRest(ToyNeighbours(), 0, &maps), std::invalid_argument);
@@ -157,11 +157,11 @@ TEST(GuessRest, AMapThatHoldsNothingStaysEmpty) {
 TEST(MapsOfSource, SaysWhatIsMissing) {
   const PhotoFrame photo = ToyPhotoFrame(1, {}, true);
   const std::span<const PhotoFrame> one(&photo, 1);
-  EXPECT_THROW(MapsOfSource({}, {texel_parts}, MapCompletion::kNone, false, {}), std::invalid_argument);
-  EXPECT_THROW(MapsOfSource(one, {texel_parts, views}, MapCompletion::kNearest, false, {}), std::invalid_argument);
-  EXPECT_THROW(MapsOfSource(one, {texel_parts}, MapCompletion::kVirtualViews, false, {}), std::invalid_argument);
-  EXPECT_THROW(MapsOfSource(one, {texel_parts}, MapCompletion::kNone, true, {}), std::invalid_argument);
-  const SourceMaps none = MapsOfSource(one, {texel_parts}, MapCompletion::kNone, false, {});
+  EXPECT_THROW(MapsOfSource({}, {kTexelParts}, MapCompletion::kNone, false, {}), std::invalid_argument);
+  EXPECT_THROW(MapsOfSource(one, {kTexelParts, kViews}, MapCompletion::kNearest, false, {}), std::invalid_argument);
+  EXPECT_THROW(MapsOfSource(one, {kTexelParts}, MapCompletion::kVirtualViews, false, {}), std::invalid_argument);
+  EXPECT_THROW(MapsOfSource(one, {kTexelParts}, MapCompletion::kNone, true, {}), std::invalid_argument);
+  const SourceMaps none = MapsOfSource(one, {kTexelParts}, MapCompletion::kNone, false, {});
   EXPECT_EQ(none.texels_seen, 128);
   EXPECT_TRUE(none.maps.extent.empty());
 }
@@ -177,7 +177,7 @@ TEST(MapsOfSource, ThePhotoThatSeesATexelMostFromTheFrontFillsIt) {
   for (int y = 0; y < 8; ++y) {
     for (int x = 0; x < kToySide; ++x) photos[1].labels[y * kToySide + x] = 0;
   }
-  const SourceMaps source = MapsOfSource(photos, {texel_parts}, MapCompletion::kNone, false, {});
+  const SourceMaps source = MapsOfSource(photos, {kTexelParts}, MapCompletion::kNone, false, {});
   EXPECT_EQ(source.texels_seen, 128);
   int of_second = 0;
   for (int t = 0; t < kTexels; ++t) {
@@ -198,9 +198,9 @@ TEST(MapsOfSource, WithoutGarmentsAPersonIsAPerson) {
   const PhotoFrame photo = ToyPhotoFrame(1, {}, true);
   const TexelNeighbours neighbours = ToyNeighbours();
   const CoherentMaps whole =
-      MapsOfSource(std::span(&photo, 1), {texel_parts, {}, &neighbours}, MapCompletion::kNearest, true, {}).maps;
+      MapsOfSource(std::span(&photo, 1), {kTexelParts, {}, &neighbours}, MapCompletion::kNearest, true, {}).maps;
   const CoherentMaps maps =
-      MapsOfSource(std::span(&photo, 1), {texel_parts, {}, &neighbours, {}, false}, MapCompletion::kNearest, true, {})
+      MapsOfSource(std::span(&photo, 1), {kTexelParts, {}, &neighbours, {}, false}, MapCompletion::kNearest, true, {})
           .maps;
   for (int t = 0; t < kTexels; ++t) {
     EXPECT_EQ(maps.labels[t], 1) << t;
@@ -219,7 +219,7 @@ TEST(MapsOfSource, AnotherOneLendsWhatIsWornAndNothingElse) {
   const PhotoFrame photos[] = {ToyPhotoFrame(1, {}, true), ToyPhotoFrame(1, {0, 0, true}, true),
                                ToyPhotoFrame(2, {1, 1, false}, true)};
   const CoherentMaps maps =
-      MapsOfSource(photos, {texel_parts, {}, &neighbours, lent}, MapCompletion::kNone, false, {}).maps;
+      MapsOfSource(photos, {kTexelParts, {}, &neighbours, lent}, MapCompletion::kNone, false, {}).maps;
   for (int t = 0; t < kTexels; ++t) {
     const int r = t / kToyTexels, c = t % kToyTexels;
     const int from = r < 8 ? (c < 8 ? 1 : 2) : (c < 8 ? 3 : 0);
@@ -230,10 +230,10 @@ TEST(MapsOfSource, AnotherOneLendsWhatIsWornAndNothingElse) {
     }
   }
   const std::span<const PhotoFrame> all(photos);
-  EXPECT_THROW(MapsOfSource(all.first(1), {texel_parts, {}, &neighbours, lent}, MapCompletion::kNone, false, {}),
+  EXPECT_THROW(MapsOfSource(all.first(1), {kTexelParts, {}, &neighbours, lent}, MapCompletion::kNone, false, {}),
                std::invalid_argument);
   EXPECT_THROW(
-      MapsOfSource(all, {texel_parts, {}, &neighbours, std::span(lent).first(4)}, MapCompletion::kNone, false, {}),
+      MapsOfSource(all, {kTexelParts, {}, &neighbours, std::span(lent).first(4)}, MapCompletion::kNone, false, {}),
       std::invalid_argument);
 }
 
@@ -267,7 +267,7 @@ TEST(ClothesExtent, IsLookedUpInAnotherPose) {
   const TexelNeighbours neighbours = ToyNeighbours();
   const PhotoFrame photo = InASkirt(3);
   CoherentMaps maps =
-      MapsOfSource(std::span(&photo, 1), {texel_parts, {}, &neighbours}, MapCompletion::kNone, true, {}).maps;
+      MapsOfSource(std::span(&photo, 1), {kTexelParts, {}, &neighbours}, MapCompletion::kNone, true, {}).maps;
   const PhotoFrame behind = ToyPhotoFrame(1, {2, 1, true}, false);
   const PseudoPicture seen = LookUp(maps, behind);
   ASSERT_EQ(seen.extent.size(), 1024U);
@@ -305,7 +305,7 @@ TEST(ClothedBody, ASkirtCanBeSeenFromBehindAndAtAnotherSize) {
   const TexelNeighbours neighbours = ToyNeighbours();
   const PhotoFrame photo = InASkirt(3);
   const CoherentMaps maps =
-      MapsOfSource(std::span(&photo, 1), {texel_parts, {}, &neighbours}, MapCompletion::kNone, true, {}).maps;
+      MapsOfSource(std::span(&photo, 1), {kTexelParts, {}, &neighbours}, MapCompletion::kNone, true, {}).maps;
   const PseudoPicture seen = LookUp(maps, ToyPhotoFrame(1, {0, 0, true}, false));
   const auto at = [&](int x, int y) { return seen.clothed[y * kToySide + x]; };
   EXPECT_EQ(at(10, 20), 1) << "the torso's last column";
@@ -319,7 +319,7 @@ TEST(ClothesExtent, OfWhatIsLentIsTheLenders) {
   std::vector<uint8_t> lent(kTexels);
   for (int t = kTexels / 2; t < kTexels; ++t) lent[t] = t % kToyTexels < 8 ? 1 : 0;  // the torso's front
   const std::vector<float> extent =
-      MapsOfSource(photos, {texel_parts, {}, &neighbours, lent}, MapCompletion::kNone, true, {}).maps.extent;
+      MapsOfSource(photos, {kTexelParts, {}, &neighbours, lent}, MapCompletion::kNone, true, {}).maps.extent;
   const double diagonal = std::hypot(12, 12);
   EXPECT_NEAR(extent[12 * kToyTexels], 4 / diagonal, 1e-6);
   EXPECT_NEAR(extent[12 * kToyTexels + 15], 1 / diagonal, 1e-6);

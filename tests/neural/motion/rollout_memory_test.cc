@@ -13,7 +13,7 @@ using torch::Tensor;
 
 constexpr int kPlaces = 2, kRollouts = 3, kSide = 4;
 
-MotionState Filled(std::vector<float> values) {
+MotionState Filled(const std::vector<float>& values) {
   const Tensor column = torch::tensor(values).view({-1, 1, 1, 1});
   MotionState state;
   state.labels = column.repeat({1, 7, kSide, kSide});

@@ -40,7 +40,7 @@ struct Texel {
 /// A square atlas of them; the rest of it is empty.
 struct Atlas {
   explicit Atlas(const std::vector<Texel>& texels) {
-    while (static_cast<size_t>(size * size) < texels.size()) ++size;
+    while (static_cast<size_t>(size) * size < texels.size()) ++size;
     const size_t area = static_cast<size_t>(size) * size;
     parts.assign(area, 0);
     places.assign(3 * area, 0);

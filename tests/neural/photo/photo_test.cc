@@ -4,8 +4,9 @@
 #include <gtest/gtest.h>
 #include <torch/torch.h>
 
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 #include <limits>
 #include <set>
 
@@ -279,7 +280,7 @@ TEST(PartialTexture, GarmentsComeFromTheOtherAndAllElseStaysBitForBit) {
     ASSERT_EQ(dressed.labels[k], from.labels[k]);
     ASSERT_EQ(dressed.cosine[k], from.cosine[k]);
     for (size_t c = 0; c < 3; ++c) {
-      ASSERT_EQ(std::memcmp(&dressed.colour[c * T + k], &from.colour[c * T + k], sizeof(float)), 0);
+      ASSERT_EQ(std::bit_cast<uint32_t>(dressed.colour[c * T + k]), std::bit_cast<uint32_t>(from.colour[c * T + k]));
     }
   }
   EXPECT_GT(taken, 20);

@@ -235,7 +235,7 @@ std::string LoadError(const std::string& path, int width = 4, const std::string&
                        at::detail::getDefaultCPUGenerator().get_state().to(torch::kDouble)});
   };
   const Tensor before = state().clone();
-  const std::string error = ErrorOf([&] { checkpoint.Load(path); });
+  std::string error = ErrorOf([&] { checkpoint.Load(path); });
   EXPECT_NE(error, "");
   EXPECT_TRUE(torch::equal(before, state()));
   EXPECT_EQ(checkpoint.step, 7);
@@ -262,10 +262,10 @@ TEST_F(Checkpoints, DamagedFilesAreRefused) {
   small.Add("none", &none);
   small.Save(Path("good.bin"));
   const std::string good = FileBytes(Path("good.bin")), path = Path("bad.bin");
+  const Tensor before = values;
   const auto error_of = [&](const std::string& bytes) {
     WriteBytes(path, bytes);
-    const Tensor before = values;
-    const std::string error = ErrorOf([&] { small.Load(path); });
+    std::string error = ErrorOf([&] { small.Load(path); });
     EXPECT_TRUE(values.is_same(before));
     EXPECT_EQ(error.find('\n'), std::string::npos);
     return error;

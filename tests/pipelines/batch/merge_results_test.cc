@@ -22,6 +22,7 @@ using ::testing::Not;
 
 std::vector<std::string> Ids(const std::vector<MergedClip>& clips) {
   std::vector<std::string> ids;
+  ids.reserve(clips.size());
   for (const MergedClip& clip : clips) ids.push_back(clip.id);
   return ids;
 }

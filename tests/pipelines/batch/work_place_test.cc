@@ -193,6 +193,7 @@ TEST_F(WorkPlaceTest, OfManyThatRushForAStaleLockOneAtATimeHasIt) {
   for (int round = 0; round < kRounds; ++round) {
     WriteLock("start", "1");
     std::vector<std::jthread> threads;
+    threads.reserve(kThreads);
     for (int i = 0; i < kThreads; ++i) {
       threads.emplace_back([&] {
         try {

@@ -13,7 +13,7 @@
 namespace bodyloom {
 namespace {
 
-PersonWindow WindowAt(int width, int height, Eigen::Vector2i corner, int picture_width, int picture_height) {
+PersonWindow WindowAt(int width, int height, const Eigen::Vector2i& corner, int picture_width, int picture_height) {
   PersonWindow window;
   window.width = width, window.height = height;
   window.picture_width = picture_width, window.picture_height = picture_height;

@@ -63,7 +63,7 @@ class RealPersonTest : public ::testing::Test {
   }
   /// The photo's own pose as a motion.
   static std::string OwnPose() {
-    const std::string path = *folder_ / "own.npz";
+    std::string path = *folder_ / "own.npz";
     WriteTrack(path, person_->tracks[0]);
     return path;
   }

@@ -29,7 +29,7 @@ MatrixX3d Skinned(const BodyModel& model, const Eigen::VectorXd& betas, const Av
 }
 
 TEST(AvatarFrame, BonesAndCorrectivesMakeThePosedBody) {
-  const BodyModel model = ToyBody();
+  const BodyModel& model = ToyBody();
   const Eigen::VectorXd betas = Eigen::VectorXd::LinSpaced(6, -1, 1.5);
   const BodyPose pose = RandomPose(model, 4, 1.5, 3);
   const AvatarFrames frames(model, betas);
@@ -51,7 +51,7 @@ TEST(AvatarFrame, BonesAndCorrectivesMakeThePosedBody) {
 }
 
 TEST(AvatarFrame, SameBytesForAnyThreadsAndNoMemoryOfTheLastFrame) {
-  const BodyModel model = ToyBody();
+  const BodyModel& model = ToyBody();
   const AvatarFrames frames(model, Eigen::VectorXd());
   AvatarFrame one, five;
   frames.Make(RandomPose(model, 9, 1, 2), {}, 5, &five);
@@ -73,7 +73,7 @@ TEST(AvatarFrame, OfABodyWithoutCorrectives) {
 }
 
 TEST(AvatarFrame, RefusesAPoseOfOtherJoints) {
-  const BodyModel model = ToyBody();
+  const BodyModel& model = ToyBody();
   BodyPose pose = RandomPose(model, 2, 1, 3);
   pose.rotations.pop_back();
   AvatarFrame frame;

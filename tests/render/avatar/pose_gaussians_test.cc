@@ -38,7 +38,7 @@ TEST(PoseGaussians, IsItsTwin) {
 
 TEST(PoseGaussians, OnTheSkinTheyFollowThePosedBody) {
   // A Gaussian at a vertex, with its weights and the whole corrective, is where the posed vertex is.
-  const BodyModel model = ToyBody();
+  const BodyModel& model = ToyBody();
   const Eigen::VectorXd betas = Eigen::VectorXd::Constant(3, 0.7);
   const BodyPose pose = RandomPose(model, 6, 1.3, 3);
   AvatarFrame frame;

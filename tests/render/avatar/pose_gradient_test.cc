@@ -175,6 +175,7 @@ TEST(PoseGradient, TheWholeWayFromThePictureToTheBones) {
   const auto draw = [&](const auto& person) {
     using T = std::decay_t<decltype(person.light[0])>;
     std::vector<TwinSplat<T>> splats;
+    splats.reserve(static_cast<size_t>(scene.body.size()));
     for (int i = 0; i < scene.body.size(); ++i) {
       splats.push_back(TwinProject(scene.TwinRow(person, i), camera, double(0.2F)));
     }

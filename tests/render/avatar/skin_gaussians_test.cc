@@ -16,7 +16,7 @@ namespace bodyloom {
 namespace {
 
 TEST(SkinGaussians, CoverThePosedBodyAndNothingElse) {
-  const BodyModel model = ToyBody();
+  const BodyModel& model = ToyBody();
   const Eigen::VectorXd betas = Eigen::VectorXd::Constant(2, 0.4);
   const UvTexelTable texels = BuildUvTexelTable(model, {.width = 160, .height = 160});
   const GaussianBody body = SkinGaussians(model, betas, texels);
@@ -64,7 +64,7 @@ TEST(SkinGaussians, CoverThePosedBodyAndNothingElse) {
 }
 
 TEST(SkinGaussians, AreFlatAlongTheNormal) {
-  const BodyModel model = ToyBody();
+  const BodyModel& model = ToyBody();
   const GaussianBody body = SkinGaussians(model, {}, BuildUvTexelTable(model, {.width = 64, .height = 64}));
   for (int i = 0; i < body.size(); ++i) {
     const auto at = [&](int c) { return double(body.parameters(i, c)); };
@@ -78,7 +78,7 @@ TEST(SkinGaussians, AreFlatAlongTheNormal) {
 }
 
 TEST(SkinGaussians, RefusesWhatDoesNotFit) {
-  const BodyModel model = ToyBody();
+  const BodyModel& model = ToyBody();
   const UvTexelTable texels = BuildUvTexelTable(model, {.width = 64, .height = 64});
   EXPECT_THROW(SkinGaussians(model, {}, texels, {.flatness = 0}), std::invalid_argument);
   UvTexelTable other = texels;

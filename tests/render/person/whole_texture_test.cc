@@ -59,7 +59,7 @@ class WholeTextureTest : public ::testing::Test {
 };
 
 TEST_F(WholeTextureTest, OneColourStaysOneColour) {
-  const Eigen::Vector3f colour(0.2F, 0.5F, 0.7F);
+  Eigen::Vector3f colour(0.2F, 0.5F, 0.7F);
   const WholeTexture whole =
       Make(Seen([&](const auto&) { return colour; }, [](const Eigen::Vector3d& p) { return p.z() > 0; }));
   Visit(whole, [&](const auto&, BodyRegion, TexelSource source, const Eigen::Vector3f& found) {
@@ -103,8 +103,8 @@ TEST_F(WholeTextureTest, TheOtherHalfOfASymmetricPersonIsMirrored) {
 }
 
 TEST_F(WholeTextureTest, TheBackIsTheFrontButForTheFace) {
-  const Eigen::Vector3f skin(0.5F, 0.6F, 0.8F), hair(0.1F, 0.1F, 0.15F), shirt(0.2F, 0.7F, 0.2F),
-      trousers(0.6F, 0.3F, 0.1F);
+  const Eigen::Vector3f skin(0.5F, 0.6F, 0.8F), hair(0.1F, 0.1F, 0.15F);
+  Eigen::Vector3f shirt(0.2F, 0.7F, 0.2F), trousers(0.6F, 0.3F, 0.1F);
   const double waist = body_.joint_template()(0, 1), neck = body_.joint_template()(body_.FindJoint("neck"), 1);
   const int nose = body_.data().landmarks[body_.FindLandmark("nose")].vertices[0];
   const double hairline = rest_(nose, 1) + 0.07;

@@ -33,7 +33,8 @@ TEST(DepthOrder, IsThatOfAStableSort) {
   for (const float scale : {1e-6F, 1.0F, 1e30F}) {
     for (const int steps : {3, 50, 1 << 20}) {  // few steps: many equal depths
       std::vector<float> depth(5000);
-      for (float& d : depth) d = scale * static_cast<float>(static_cast<int>(generator() % steps) - steps / 3);
+      const int below_zero = steps / 3;
+      for (float& d : depth) d = scale * static_cast<float>(static_cast<int>(generator() % steps) - below_zero);
       for (float& d : depth) d = d == 0 ? 0.0F : d;
       ExpectSorted(depth, AllRows(depth.size()));
     }

@@ -67,7 +67,7 @@ std::vector<LiveFrame> RunAll(LiveTracker* tracker, const std::vector<LiveObserv
   return out;
 }
 
-double MeanJointError_m(const LiveScene& live, const LiveFrame& frame) {
+double MeanJointErrorM(const LiveScene& live, const LiveFrame& frame) {
   const FrameState& truth = live.scene->truth[frame.index];
   double sum = 0;
   for (int j = 0; j < 24; ++j) {
@@ -88,7 +88,7 @@ TEST(LiveTracker, EveryFrameComesOutAtTheStatedLagAndNearTheTruth) {
       EXPECT_EQ(out[t].timestamp, live.frames[t].timestamp);
       EXPECT_EQ(out[t].status, FrameStatus::kTracked);
       EXPECT_FALSE(out[t].cut_before);
-      error += MeanJointError_m(live, out[t]) / static_cast<double>(out.size());
+      error += MeanJointErrorM(live, out[t]) / static_cast<double>(out.size());
     }
     EXPECT_LT(error, 0.25) << lag;
   }
@@ -322,8 +322,10 @@ TEST(LiveHistory, MemoryIsBoundedAndTheSampleSpansTheShot) {
   LiveHistory history({"left_hip", "right_hip", "left_knee", "right_knee"}, 640, 480, 2.0, 64);
   for (int t = 0; t < 5000; ++t) {
     std::vector<Keypoint> points;
+    points.reserve(4);
     for (int k = 0; k < 4; ++k) {
-      points.push_back({300.0F + 40.0F * float(k % 2), 200.0F + 60.0F * float(k / 2) + float(t % 3), 0.9F});
+      const int side = k % 2, row = k / 2;
+      points.push_back({300.0F + 40.0F * float(side), 200.0F + 60.0F * float(row) + float(t % 3), 0.9F});
     }
     EXPECT_EQ(history.Add(t / 30.0, points, 0.15), Continuity::kContinues) << t;
     EXPECT_LE(history.num_frames(), 64 + 64 / 4 + 1);
@@ -340,7 +342,11 @@ TEST(LiveHistory, MemoryIsBoundedAndTheSampleSpansTheShot) {
 
 std::vector<Keypoint> BodyAt(float x) {
   std::vector<Keypoint> points;
-  for (int k = 0; k < 6; ++k) points.push_back({x + 40.0F * float(k % 2), 200.0F + 50.0F * float(k / 2), 0.9F});
+  points.reserve(6);
+  for (int k = 0; k < 6; ++k) {
+    const int side = k % 2, row = k / 2;
+    points.push_back({x + 40.0F * float(side), 200.0F + 50.0F * float(row), 0.9F});
+  }
   return points;
 }
 
@@ -380,8 +386,7 @@ TEST(LiveHistory, ExchangedSidesAreExchangedBack) {
   LiveHistory history({"left_shoulder", "right_shoulder", "left_hip", "right_hip", "left_knee", "right_knee"}, 640, 480,
                       2.0, 64);
   for (int t = 0; t < 20; ++t) {
-    std::vector<Keypoint> points;
-    for (int k = 0; k < 6; ++k) points.push_back({300.0F + 40.0F * float(k % 2), 200.0F + 50.0F * float(k / 2), 0.9F});
+    std::vector<Keypoint> points = BodyAt(300);
     if (t == 10) std::swap(points[4], points[5]);
     EXPECT_EQ(history.Add(t / 30.0, points, 0.15), Continuity::kContinues);
     EXPECT_EQ(history.Recent(1, 1).at(0, 4).x, 300) << t;

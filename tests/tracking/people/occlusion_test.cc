@@ -123,6 +123,7 @@ TEST(Occlusion, LabelsBehindABodyAreUnknownAndThoseBesideItStay) {
 
 TEST(Occlusion, IsTheSameForAnyNumberOfThreads) {
   std::vector<double> times;
+  times.reserve(9);
   for (int t = 0; t < 9; ++t) times.push_back(0.1 * t);
   const Track front = Standing(0, 3, times), behind = Standing(0.05, 5, times);
   std::vector<float> expected;

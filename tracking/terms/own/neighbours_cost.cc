@@ -46,6 +46,7 @@ void EvaluateNeighbours(const OwnCost& cost, const FrameLayout& layout, const Fr
     parameters.push_back(values.data() + 3 * b);
     if (derivatives) by_block.emplace_back(num_residuals, 3);
   }
+  jacobians.reserve(by_block.size());
   for (RowMatrixXd& block : by_block) jacobians.push_back(block.data());
   result->r.resize(num_residuals);
   result->valid =

@@ -70,7 +70,7 @@ OwnLoss EvaluateOwnLoss(const OwnCost& cost, double s) {
 Vector3d OwnOrigin(const FrameLayout& layout, const FrameState& state, Matrix3d* d_origin) {
   d_origin->setIdentity();
   if (layout.knowledge != CameraKnowledge::kWeak) return Vector3d::Zero();
-  const Vector3d origin = layout.BodyPlace(state);
+  Vector3d origin = layout.BodyPlace(state);
   d_origin->col(0) = -origin.z() * Vector3d::UnitZ();
   d_origin->col(1) = Vector3d::UnitX();
   d_origin->col(2) = Vector3d::UnitY();

@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 #include <limits>
 #include <random>
+#include <vector>
 
 #include "tests/render/avatar/learning/lesson.h"
 #include "tests/render/avatar/person_scene.h"
@@ -168,6 +170,14 @@ TEST(PoseRefiner, TheTrueTrackStaysWhereItIs) {
   EXPECT_LT(none.AcrossMm(refiner, state.poses), 3);
 }
 
+/// For comparisons to the bit, in which -0 is not 0.
+template <class Matrix>
+std::vector<uint64_t> BitsOf(const Matrix& matrix) {
+  std::vector<uint64_t> bits(static_cast<size_t>(matrix.size()));
+  for (size_t i = 0; i < bits.size(); ++i) bits[i] = std::bit_cast<uint64_t>(matrix.data()[i]);
+  return bits;
+}
+
 TEST(PoseRefiner, ThePriorAloneLeavesTheTrack) {
   const Lesson& lesson = TheLesson();
   const OffPoses off(5);
@@ -180,9 +190,9 @@ TEST(PoseRefiner, ThePriorAloneLeavesTheTrack) {
     EXPECT_TRUE(corrections.IsZero(t));
     const BodyPose pose = refiner.PoseAt(t, corrections);
     const BodyPose& track = off.poses[t].pose;
-    EXPECT_EQ(std::memcmp(pose.trans.data(), track.trans.data(), sizeof pose.trans), 0);
+    EXPECT_EQ(BitsOf(pose.trans), BitsOf(track.trans));
     for (size_t j = 0; j < pose.rotations.size(); ++j) {
-      EXPECT_EQ(std::memcmp(pose.rotations[j].data(), track.rotations[j].data(), sizeof(Eigen::Matrix3d)), 0);
+      EXPECT_EQ(BitsOf(pose.rotations[j]), BitsOf(track.rotations[j]));
     }
   }
 }

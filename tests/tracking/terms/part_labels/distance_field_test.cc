@@ -118,6 +118,7 @@ TEST(DistanceField, StaysFiniteWithoutABoundary) {
 TEST(DistanceField, BoundaryRunsThroughTheMiddleOfWhatIsUnknown) {
   // Columns 0–2 inside, 3–6 unknown, 7–11 outside: the boundary is at 4.5.
   std::vector<Pixel> image;
+  image.reserve(12 * 5);
   for (int i = 0; i < 12 * 5; ++i) {
     image.push_back(i % 12 < 3 ? Pixel::kInside : i % 12 < 7 ? Pixel::kUnknown : Pixel::kOutside);
   }
