@@ -14,6 +14,7 @@ void AddTrainLifter(CLI::App& train, Action* action);
 void AddTrainMotion(CLI::App& train, Action* action);
 void AddTrainPhoto(CLI::App& train, Action* action);
 void AddTrainGuided(CLI::App& train, Action* action);
+void AddTrainRefiner(CLI::App& train, Action* action);
 
 // Below `animate`.
 void AddAnimateMotion(CLI::App& animate, Action* action);

@@ -4,6 +4,7 @@
 that the video itself shows.
 
 usage: photo_person.py --bodyloom build/release/apps/bodyloom --video CLIP --out FOLDER [--frames 0 60 120] [--photos 1]
+       [--refiner none run/refiner.npz …]
 
 For each of --frames a person is made from that frame (with --photos N, from N frames evenly spread from there on) and
 drawn in every frame of the clip, as `bodyloom run` tracked it. PSNR of the person's box with the true background behind
@@ -32,6 +33,20 @@ def pictures_of(folder, count, width, height):
     return np.frombuffer(raw, np.uint8).reshape(count, height, width, 4)
 
 
+def scores(drawn, truth, mask, used):
+    """PSNR, median and 5th percentile, and the median IoU of the outlines."""
+    psnr, iou = [], []
+    for t in range(min(len(truth), len(drawn))):
+        if t in used or not mask[t].any():
+            continue
+        alpha = drawn[t][..., 3:].astype(float) / 255
+        person = (mask[t] > 0) | (alpha[..., 0] > 0.5)
+        result = alpha * drawn[t][..., :3] + (1 - alpha) * truth[t]
+        psnr.append(-10 * np.log10(np.mean(((result - truth[t])[person] / 255) ** 2)))
+        iou.append(((mask[t] > 0) & (alpha[..., 0] > 0.5)).sum() / person.sum())
+    return np.median(psnr), np.percentile(psnr, 5), np.median(iou)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--bodyloom", required=True)
@@ -39,6 +54,7 @@ def main():
     parser.add_argument("--out", required=True, type=pathlib.Path)
     parser.add_argument("--frames", nargs="+", type=int, default=[0, 60, 120])
     parser.add_argument("--photos", type=int, default=1)
+    parser.add_argument("--refiner", nargs="+", default=["none"], help="what refines the pictures, a row each")
     o = parser.parse_args()
     o.out.mkdir(parents=True, exist_ok=True)
     people = o.out / "people"
@@ -59,26 +75,23 @@ def main():
             photos.append(str(photo))
         run = o.out / f"from_{first}_{o.photos}"
         run.mkdir(exist_ok=True)
-        subprocess.run([o.bodyloom, "animate", "person", "--image", *photos, "--track", str(people / "person_0.npz"),
-                        "--keep", str(run), "--pictures", str(run / "pictures"), "--out", str(run / "out.mp4"), "--json",
-                        str(run / "report.json")], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        report = json.loads((run / "report.json").read_text(encoding="utf-8"))
-        drawn = pictures_of(run / "pictures", report["frames"], width, height)
-        psnr, iou = [], []
-        for t in range(min(count, len(drawn))):
-            if t in used or not mask[t].any():
-                continue
-            alpha = drawn[t][..., 3:].astype(float) / 255
-            person = (mask[t] > 0) | (alpha[..., 0] > 0.5)
-            result = alpha * drawn[t][..., :3] + (1 - alpha) * truth[t]
-            psnr.append(-10 * np.log10(np.mean(((result - truth[t])[person] / 255) ** 2)))
-            iou.append(((mask[t] > 0) & (alpha[..., 0] > 0.5)).sum() / person.sum())
-        rows.append((first, report["person"]["texture_shares"]["seen"], np.median(psnr), np.percentile(psnr, 5), np.median(iou),
-                     report["first_frame_s"], report["draw_ms_median"]))
+        made = None
+        for refiner in o.refiner:
+            result = run / pathlib.Path(refiner).stem
+            result.mkdir(exist_ok=True)
+            person = ["--image", *photos, "--keep", str(run)] if made is None else ["--person", str(run)]
+            subprocess.run([o.bodyloom, "animate", "person", *person, "--track", str(people / "person_0.npz"), "--refiner", refiner,
+                            "--pictures", str(result / "pictures"), "--out", str(result / "out.mp4"), "--json",
+                            str(result / "report.json")], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            report = json.loads((result / "report.json").read_text(encoding="utf-8"))
+            made = made or report["person"]
+            rows.append((first, refiner, made["texture_shares"]["seen"],
+                         *scores(pictures_of(result / "pictures", report["frames"], width, height), truth, mask, used),
+                         report["first_frame_s"], report["draw_ms_median"]))
     print(f"{o.video.name}, {count} frames of {width}x{height}, from {o.photos} of them")
-    print("from frame   seen   PSNR dB   5 %    outline IoU   first frame s   draw ms")
+    print("from frame  refiner   seen   PSNR dB   5 %    outline IoU   first frame s   draw ms")
     for row in rows:
-        print("%10d   %4.0f %% %8.2f %6.2f %11.3f %13.1f %11.1f" % (row[0], 100 * row[1], *row[2:]))
+        print("%10d %8s   %4.0f %% %8.2f %6.2f %11.3f %13.1f %11.1f" % (row[0], pathlib.Path(row[1]).stem, 100 * row[2], *row[3:]))
     return 0
 
 

@@ -26,9 +26,9 @@
 #include "bodyloom/pipelines/people/background.h"
 #include "bodyloom/pipelines/people/freeze.h"
 #include "bodyloom/pipelines/people/view_angles.h"
-#include "bodyloom/pipelines/person/draw_person.h"
 #include "bodyloom/pipelines/person/person_cloth.h"
 #include "bodyloom/pipelines/person/person_folder.h"
+#include "bodyloom/pipelines/person/refined_painter.h"
 #include "bodyloom/pipelines/report_json.h"
 #include "bodyloom/render/view_camera.h"
 
@@ -42,6 +42,7 @@ class PersonAnimation {
 
   AnimatePersonSummary Run() {
     CheckRequest();
+    refiner_ = OpenRefiner(request_.refiner);
     clock_.Begin("person");
     person_ = request_.person.empty() ? MakePhotoPerson(request_.photos, callbacks_)
                                       : ReadPhotoPerson(request_.person, request_.photos.fit.body);
@@ -115,7 +116,7 @@ class PersonAnimation {
       throw std::runtime_error(Concatenate(request_.track, ": pictures of ", width_, "x", height_,
                                            ", expected sides of 2 to ", kLongestPictureSide));
     }
-    painter_.emplace(person_, threads_);
+    painter_.emplace(person_, threads_, refiner_.get());
   }
 
   [[nodiscard]] Camera CameraAt(int t) const {
@@ -215,8 +216,9 @@ class PersonAnimation {
   int width_ = 0, height_ = 0;
   std::optional<PosedTrack> posed_;
   std::optional<PersonCloth> cloth_;
-  std::vector<int> order_;  ///< the track's frames as they are shown; empty: in turn
-  std::optional<PersonPainter> painter_;
+  std::vector<int> order_;                   ///< the track's frames as they are shown; empty: in turn
+  std::unique_ptr<PictureRefiner> refiner_;  ///< null: pictures stay as they are drawn
+  std::optional<RefinedPainter> painter_;
   AnimatePersonSummary summary_;
 };
 

@@ -88,6 +88,8 @@ PhotoPerson ReadPhotoPerson(const std::string& folder, const std::string& bare_b
                                          " vertices, with the garment of person.json expected ", expected));
   }
   person.texture = ReadImage(FileIn(folder, "texture.png"));
+  const std::string sources = FileIn(folder, "sources.png");
+  if (std::filesystem::exists(sources)) person.sources = ReadImage(sources);
   person.tracks.push_back(ReadTrack(PhotoFile(folder, 0)));
   person.betas = person.tracks[0].motion.betas;
   return person;

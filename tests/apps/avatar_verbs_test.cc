@@ -18,7 +18,8 @@ TEST(AvatarVerbs, HelpNamesAllVerbsWithoutLibTorch) {
   const CommandResult train = RunCommand({"train", "--help"}), animate = RunCommand({"animate", "--help"});
   EXPECT_EQ(train.exit_code, 0);
   EXPECT_EQ(animate.exit_code, 0);
-  for (const char* verb : {"avatar", "motion", "photo", "guided", "lifter"}) EXPECT_THAT(train.out, HasSubstr(verb));
+  for (const char* verb : {"avatar", "motion", "photo", "guided", "lifter", "refiner"})
+    EXPECT_THAT(train.out, HasSubstr(verb));
   for (const char* verb : {"avatar", "motion", "photo", "guided"}) EXPECT_THAT(animate.out, HasSubstr(verb));
   EXPECT_THAT(RunCommand({"train", "avatar", "--help"}).out, HasSubstr("--minutes"));
   EXPECT_THAT(RunCommand({"animate", "avatar", "--help"}).out, HasSubstr("--view-yaw"));

@@ -3,19 +3,14 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
-#include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/observations/nothing_to_track.h"
-#include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/pipelines/neural/people/person_of_frames.h"
 #include "bodyloom/pipelines/neural/people/scored_renderer.h"
-#include "bodyloom/pipelines/people/planar_picture.h"
-#include "bodyloom/pipelines/person/draw_person.h"
-#include "bodyloom/pipelines/person/person_cloth.h"
-#include "bodyloom/pipelines/person/photo_person_builder.h"
+#include "bodyloom/pipelines/person/open_refiner.h"
+#include "bodyloom/pipelines/person/refined_painter.h"
 
 namespace bodyloom {
 namespace {
@@ -49,21 +44,11 @@ class ScoredWarp : public ScoredRenderer {
   CoherentMaps shown_;
 };
 
-/// The frame as a photo that was fitted.
-FittedPhoto FittedPhotoOf(const PhotoFrame& frame, const std::string& name, Track body) {
-  FittedPhoto photo;
-  photo.name = name;
-  photo.picture = PictureOf(frame.image, frame.size, frame.size);
-  photo.track = std::move(body);
-  photo.mask.width = photo.mask.height = frame.size;
-  photo.mask.labels = frame.labels;
-  return photo;
-}
-
 class ScoredPerson : public ScoredRenderer {
  public:
   explicit ScoredPerson(const ScorePeopleRequest& request)
       : people_(PeopleOf(request)), texture_size_(request.texture_size), threads_(ThreadsFor(request.threads)) {
+    refiner_ = OpenRefiner(request.refiner);
     if (request.given.iuv) throw RequestError("--score-iuv: a body with a texture takes bodies, not IUV images");
   }
 
@@ -73,33 +58,19 @@ class ScoredPerson : public ScoredRenderer {
     shown_ = MapsOf(photos, people_.source());
     FitClothesOptions clothes;
     clothes.num_threads = threads_;
-    PhotoPersonBuilder builder(people_.body(), texture_size_, nullptr, clothes);
-    int used = 0;
-    for (size_t k = 0; k < photos.size(); ++k) {
-      Track body = people_.BodyOf(person, frames[k]);
-      if (!body.HasResult(0)) continue;
-      const std::string name = Concatenate("person ", person, ", picture ", frames[k]);
-      try {
-        builder.Add(FittedPhotoOf(photos[k], name, std::move(body)));
-        ++used;
-      } catch (const NothingToTrack&) {  // shows too little: the others may do
-      }
-    }
     painter_.reset();
-    if (used > 0) {
-      person_ = builder.Finish();
-      painter_.emplace(person_, threads_);
-    }
+    person_ = PersonOfFrames(people_, person, frames, photos, texture_size_, clothes);
+    if (person_) painter_.emplace(*person_, threads_, refiner_.get());
     return ShareSeen(shown_, photos.size());
   }
   [[nodiscard]] bool HasPerson() const override { return painter_.has_value(); }
   GuidedPicture Render(int frame, const PhotoFrame& pose) override {
-    const Track body = people_.BodyOf(number_, frame);
     Image picture(pose.size, pose.size);
     std::vector<uint8_t> coverage(static_cast<size_t>(pose.size) * pose.size, 0);
-    if (painter_ && body.HasResult(0)) {
-      const Track moved = MovedByPerson(person_, body);
-      painter_->Draw(StillVertices(person_, moved), moved.CameraAt(0), &picture, &coverage);
+    if (person_) {
+      if (const std::optional<PersonPose> body = PoseOfFrame(*person_, people_, number_, frame)) {
+        painter_->Draw(body->vertices_in_camera, body->camera, &picture, &coverage);
+      }
     }
     return GuidedPictureOf(picture, coverage);
   }
@@ -120,8 +91,9 @@ class ScoredPerson : public ScoredRenderer {
   PeopleData people_;
   int texture_size_, threads_, number_ = 0;
   CoherentMaps shown_;
-  PhotoPerson person_;
-  std::optional<PersonPainter> painter_;
+  std::optional<PhotoPerson> person_;
+  std::unique_ptr<PictureRefiner> refiner_;  ///< null: what is drawn stays as it is
+  std::optional<RefinedPainter> painter_;
 };
 
 }  // namespace

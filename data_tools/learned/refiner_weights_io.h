@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The picture refiner's weights as a file: one .npz with arrays NAME (out × 9·in, half-precision floats, so the file
+/// rounds them to 11 bits) and NAME_bias (out) of each of kRefinerShapes (render/person/refiner_weights.h), and `recipe`
+/// (text).
+#pragma once
+
+#include <string>
+
+#include "bodyloom/render/person/refiner_weights.h"
+
+namespace bodyloom {
+
+/// Throws std::invalid_argument for weights that are not valid.
+void WriteRefinerWeights(const std::string& path, const RefinerWeights& weights);
+/// Throws std::runtime_error naming the file, the array and what was expected.
+RefinerWeights ReadRefinerWeights(const std::string& path);
+RefinerWeights ReadRefinerWeightsBytes(const std::string& bytes, const std::string& where);
+
+}  // namespace bodyloom

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Matrices and vectors of a network's weights as the arrays of a .npz file.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+
+#include "bodyloom/data_tools/formats/npz.h"
+#include "bodyloom/geometry/arrays.h"
+
+namespace bodyloom {
+
+/// Rounded to half precision, 11 bits.
+NdArray HalfMatrix(const RowMatrixXf& matrix);
+NdArray FloatVector(const Eigen::VectorXf& vector);
+
+/// Throw std::runtime_error naming the file, the array and what was expected.
+RowMatrixXf MatrixFrom(const NpzArrays& arrays, const std::string& name, const std::string& where);
+Eigen::VectorXf VectorFrom(const NpzArrays& arrays, const std::string& name, const std::string& where);
+/// The text of `recipe`, which may be empty but not missing.
+std::string RecipeFrom(const NpzArrays& arrays, const std::string& where);
+
+}  // namespace bodyloom

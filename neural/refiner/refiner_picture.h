@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A picture that the refiner learns from, a byte a number: what was drawn of a person, and the truth.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "bodyloom/render/person/person_layers.h"
+
+namespace bodyloom {
+
+struct RefinerPicture {
+  int width = 0, height = 0;    ///< as PersonLayers
+  std::vector<uint8_t> planes;  ///< PersonPlane::kCount × height × width, PackPlane()
+  std::vector<uint8_t> truth;   ///< 4 × height × width: RGB multiplied by alpha, alpha; times 255
+
+  [[nodiscard]] size_t pixels() const { return static_cast<size_t>(width) * height; }
+};
+
+/// Normals are kept in steps of 1/127, places of 1/64 m (up to ±2 m), all else of 1/255.
+struct PlanePacking {
+  float offset = 0, scale = 255;
+};
+
+constexpr PlanePacking PackingOf(int plane) {
+  if (plane >= PersonPlane::kNormal && plane < PersonPlane::kPlace) return {128, 127};
+  if (plane >= PersonPlane::kPlace && plane < PersonPlane::kSeen) return {128, 64};
+  return {};
+}
+
+inline uint8_t PackPlane(int plane, float value) {
+  const PlanePacking packing = PackingOf(plane);
+  return static_cast<uint8_t>(std::clamp(std::round(packing.offset + packing.scale * value), 0.0F, 255.0F));
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A person made of a dataset's pictures as if they were photos that are fitted already (pipelines/person).
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/camera.h"
+#include "bodyloom/neural/people/photo_frame.h"
+#include "bodyloom/pipelines/neural/photo/people_data.h"
+#include "bodyloom/pipelines/person/photo_person.h"
+#include "bodyloom/render/person/fit_clothes.h"
+
+namespace bodyloom {
+
+/// Person `person` of `people`; `photos` are its pictures `frames`. None when no photo shows enough of the person.
+std::optional<PhotoPerson> PersonOfFrames(const PeopleData& people, int person, std::span<const int> frames,
+                                          std::span<const PhotoFrame> photos, int texture_size,
+                                          const FitClothesOptions& clothes);
+
+/// A body that a person is drawn in.
+struct PersonPose {
+  MatrixX3d vertices_in_camera;
+  Camera camera;
+};
+
+/// Of frame `frame`, its clothes hanging still; none where the frame's body is not known.
+std::optional<PersonPose> PoseOfFrame(const PhotoPerson& person, const PeopleData& people, int number, int frame);
+
+}  // namespace bodyloom

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/neural/refiner/refiner_pictures.h"
+
+#include <algorithm>
+#include <array>
+#include <mutex>
+#include <optional>
+
+#include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/geometry/base/split_mix.h"
+#include "bodyloom/neural/guided/choose_photos.h"
+#include "bodyloom/pipelines/neural/people/person_of_frames.h"
+#include "bodyloom/pipelines/person/person_layer_painter.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr std::array<int, 4> kPhotos = {1, 1, 2, 4};
+
+RefinerPicture PictureFrom(const PersonLayers& layers, const PhotoFrame& truth) {
+  RefinerPicture picture = {layers.width, layers.height, {}, {}};
+  const size_t pixels = layers.pixels(), window = static_cast<size_t>(truth.size) * truth.size;
+  picture.planes.resize(layers.planes.size());
+  for (int p = 0; p < PersonPlane::kCount; ++p) {
+    for (size_t i = p * pixels; i < (p + 1) * pixels; ++i) picture.planes[i] = PackPlane(p, layers.planes[i]);
+  }
+  picture.truth.assign(4 * pixels, 0);
+  for (int v = std::max(0, -layers.y); v < std::min(layers.height, truth.size - layers.y); ++v) {
+    for (int u = std::max(0, -layers.x); u < std::min(layers.width, truth.size - layers.x); ++u) {
+      const size_t from = static_cast<size_t>(layers.y + v) * truth.size + layers.x + u;
+      const size_t to = static_cast<size_t>(v) * layers.width + u;
+      for (size_t c = 0; c < 3; ++c) {
+        picture.truth[c * pixels + to] = PackPlane(PersonPlane::kColour, truth.image[c * window + from]);
+      }
+      picture.truth[3 * pixels + to] = truth.labels[from] != 0 ? 255 : 0;
+    }
+  }
+  return picture;
+}
+
+std::vector<RefinerPicture> PicturesOfPerson(const RefinerPicturesRequest& request, const PeopleData& people,
+                                             int person) {
+  const PhotoSource& source = people.source();
+  const uint64_t hash = Mix(Mix(request.seed) ^ static_cast<uint64_t>(person));
+  const std::vector<int> frames = ChoosePhotos(source, person, kPhotos[hash % kPhotos.size()]);
+  std::vector<PhotoFrame> photos(frames.size());
+  for (size_t k = 0; k < frames.size(); ++k) {
+    if (person % 2 == 0) {
+      source.fill(person, frames[k], &photos[k]);
+    } else {
+      photos[k] = people.PhotoOf(person, frames[k]);
+    }
+  }
+  std::vector<RefinerPicture> pictures;
+  const std::optional<PhotoPerson> made =
+      PersonOfFrames(people, person, frames, photos, request.texture_size, FitClothesOptions());
+  if (!made) return pictures;
+  PersonLayerPainter painter(*made, 1);
+  for (int f = 0; f < source.num_frames[person]; ++f) {
+    if (std::find(frames.begin(), frames.end(), f) != frames.end()) continue;
+    const std::optional<PersonPose> pose = PoseOfFrame(*made, people, person, f);
+    if (!pose) continue;
+    const PersonLayers layers = painter.Draw(pose->vertices_in_camera, pose->camera);
+    if (layers.width == 0) continue;
+    PhotoFrame truth;
+    source.fill(person, f, &truth);
+    pictures.push_back(PictureFrom(layers, truth));
+  }
+  return pictures;
+}
+
+}  // namespace
+
+std::vector<RefinerPicture> RefinerPicturesOf(const RefinerPicturesRequest& request, const char* stage,
+                                              const PipelineCallbacks& callbacks) {
+  constexpr int kMapSize = 64;  // of maps that nobody reads here
+  PeopleDataRequest of_data = {request.data, request.body, request.size, kMapSize, request.test, {}};
+  of_data.given.estimated_labels = true;
+  const PeopleData people(of_data);
+  const int count = static_cast<int>(people.source().num_frames.size());
+  std::vector<std::vector<RefinerPicture>> of_person(count);
+  std::mutex mutex;
+  int done = 0;
+  ParallelFor(count, request.threads, [&](int person) {
+    of_person[person] = PicturesOfPerson(request, people, person);
+    const std::lock_guard lock(mutex);
+    callbacks.Update(stage, static_cast<double>(++done) / count);
+  });
+  std::vector<RefinerPicture> pictures;
+  for (std::vector<RefinerPicture>& of_one : of_person) {
+    std::move(of_one.begin(), of_one.end(), std::back_inserter(pictures));
+  }
+  return pictures;
+}
+
+}  // namespace bodyloom

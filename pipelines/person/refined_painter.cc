@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/person/refined_painter.h"
+
+#include <span>
+
+#include "bodyloom/geometry/base/check.h"
+
+namespace bodyloom {
+
+RefinedPainter::RefinedPainter(const PhotoPerson& person, int num_threads, PictureRefiner* refiner)
+    : refiner_(refiner) {
+  if (refiner == nullptr) {
+    painter_.emplace(person, num_threads);
+  } else {
+    layers_.emplace(person, num_threads);
+  }
+}
+
+void RefinedPainter::Draw(const MatrixX3d& vertices, const Camera& camera, Image* image,
+                          std::vector<uint8_t>* coverage) {
+  if (painter_) {
+    painter_->Draw(vertices, camera, image, coverage);
+    return;
+  }
+  BODYLOOM_CHECK(image->width == camera.width && image->height == camera.height, "refined person: the image is ",
+                 image->width, "x", image->height, ", the camera ", camera.width, "x", camera.height);
+  const PersonLayers layers = layers_->Draw(vertices, camera);
+  if (layers.width == 0) return;
+  const std::vector<float> person = ChangedPerson(layers, refiner_->Change(layers));
+  LayOver(layers, person, image, coverage == nullptr ? std::span<uint8_t>() : std::span<uint8_t>(*coverage));
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/render/person/person_layers.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bodyloom/geometry/base/check.h"
+
+namespace bodyloom {
+namespace {
+
+/// Colours, each times its weight, and the weights.
+struct WeightedLevel {
+  int width = 0, height = 0;
+  std::vector<float> sums;  ///< 4 a cell: red, green, blue times weight; weight
+};
+
+WeightedLevel Half(const WeightedLevel& fine) {
+  WeightedLevel coarse = {(fine.width + 1) / 2, (fine.height + 1) / 2, {}};
+  coarse.sums.assign(static_cast<size_t>(4) * coarse.width * coarse.height, 0);
+  for (int y = 0; y < fine.height; ++y) {
+    for (int x = 0; x < fine.width; ++x) {
+      const float* from = &fine.sums[4 * (static_cast<size_t>(y) * fine.width + x)];
+      float* to = &coarse.sums[4 * (static_cast<size_t>(y / 2) * coarse.width + x / 2)];
+      for (int c = 0; c < 4; ++c) to[c] += from[c];
+    }
+  }
+  return coarse;
+}
+
+/// Cells without weight take the colour of the cell above, as if it had been seen.
+void FillFrom(const WeightedLevel& coarse, WeightedLevel* fine) {
+  for (int y = 0; y < fine->height; ++y) {
+    for (int x = 0; x < fine->width; ++x) {
+      float* cell = &fine->sums[4 * (static_cast<size_t>(y) * fine->width + x)];
+      const float* above = &coarse.sums[4 * (static_cast<size_t>(y / 2) * coarse.width + x / 2)];
+      if (cell[3] > 0 || !(above[3] > 0)) continue;
+      for (int c = 0; c < 3; ++c) cell[c] = above[c] / above[3];
+      cell[3] = 1;
+    }
+  }
+}
+
+}  // namespace
+
+void FillAround(int width, int height, std::span<const float> alpha, std::span<float> colour) {
+  const size_t pixels = alpha.size();
+  BODYLOOM_CHECK(pixels == static_cast<size_t>(width) * height && colour.size() == 3 * pixels, "fill around: ", pixels,
+                 " of alpha and ", colour.size(), " of colour for ", width, "x", height, " pixels");
+  if (pixels == 0) return;
+  std::vector<WeightedLevel> levels(1);
+  levels[0] = {width, height, std::vector<float>(4 * pixels)};
+  for (size_t i = 0; i < pixels; ++i) {
+    for (size_t c = 0; c < 3; ++c) levels[0].sums[4 * i + c] = alpha[i] > 0 ? alpha[i] * colour[c * pixels + i] : 0;
+    levels[0].sums[4 * i + 3] = alpha[i] > 0 ? alpha[i] : 0;
+  }
+  while (levels.back().width > 1 || levels.back().height > 1) levels.push_back(Half(levels.back()));
+  for (size_t l = levels.size() - 1; l-- > 0;) FillFrom(levels[l + 1], &levels[l]);
+  for (size_t i = 0; i < pixels; ++i) {
+    if (alpha[i] > 0 || !(levels[0].sums[4 * i + 3] > 0)) continue;
+    for (size_t c = 0; c < 3; ++c) colour[c * pixels + i] = levels[0].sums[4 * i + c];
+  }
+}
+
+std::vector<float> ChangedPerson(const PersonLayers& layers, std::span<const float> change) {
+  const size_t pixels = layers.pixels();
+  BODYLOOM_CHECK(layers.planes.size() == PersonPlane::kCount * pixels && change.size() == 4 * pixels,
+                 "refiner: ", layers.planes.size(), " numbers of layers and ", change.size(), " of change for ", pixels,
+                 " pixels");
+  std::vector<float> person(4 * pixels);
+  // Colour and alpha are the first four planes, as those of the change.
+  for (size_t i = 0; i < person.size(); ++i)
+    person[i] = std::clamp(layers.planes[i] + std::tanh(change[i]), 0.0F, 1.0F);
+  return person;
+}
+
+void LayOver(const PersonLayers& layers, std::span<const float> person, Image* picture, std::span<uint8_t> coverage) {
+  const size_t pixels = layers.pixels();
+  BODYLOOM_CHECK(person.size() == 4 * pixels, "refiner: ", person.size(), " numbers for ", pixels, " pixels");
+  BODYLOOM_CHECK(coverage.empty() || coverage.size() == static_cast<size_t>(picture->width) * picture->height,
+                 "refiner: the coverage is of another size than the picture");
+  for (int v = std::max(0, -layers.y); v < std::min(layers.height, picture->height - layers.y); ++v) {
+    for (int u = std::max(0, -layers.x); u < std::min(layers.width, picture->width - layers.x); ++u) {
+      const size_t i = static_cast<size_t>(v) * layers.width + u;
+      const float alpha = person[3 * pixels + i];
+      uint8_t* bgr = picture->pixel(layers.x + u, layers.y + v);
+      for (size_t c = 0; c < 3; ++c) {
+        const float under = (1 - alpha) * bgr[2 - c];
+        bgr[2 - c] =
+            static_cast<uint8_t>(std::clamp(under + 255 * alpha * person[c * pixels + i] + 0.5F, 0.0F, 255.0F));
+      }
+      if (coverage.empty()) continue;
+      coverage[static_cast<size_t>(layers.y + v) * picture->width + layers.x + u] =
+          static_cast<uint8_t>(std::lround(255 * alpha));
+    }
+  }
+}
+
+}  // namespace bodyloom

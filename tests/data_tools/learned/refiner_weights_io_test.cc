@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/data_tools/learned/refiner_weights_io.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <stdexcept>
+
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/formats/npz.h"
+#include "tests/data_tools/formats/temporary_file.h"
+#include "tests/support/random_refiner.h"
+
+namespace bodyloom {
+namespace {
+
+std::string BytesOfRefiner(const RefinerWeights& weights) {
+  const TemporaryFolder folder;
+  WriteRefinerWeights(folder.File("refiner.npz"), weights);
+  return ReadFileBytes(folder.File("refiner.npz"));
+}
+
+/// "" when it reads.
+std::string RefinerErrorOf(const std::function<void(NpzArrays*)>& change) {
+  NpzArrays arrays = ReadNpzBytes(BytesOfRefiner(RandomRefiner(1)), "x");
+  change(&arrays);
+  const TemporaryFolder folder;
+  WriteNpz(folder.File("changed.npz"), arrays);
+  try {
+    ReadRefinerWeightsBytes(ReadFileBytes(folder.File("changed.npz")), "some/refiner.npz");
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(RefinerWeightsIo, KernelsComeBackToElevenBitsBiasesExactly) {
+  const RefinerWeights written = RandomRefiner(1), read = ReadRefinerWeightsBytes(BytesOfRefiner(written), "x");
+  ASSERT_TRUE(read.IsValid(nullptr));
+  EXPECT_EQ(read.recipe, written.recipe);
+  EXPECT_EQ(read.num_parameters(), written.num_parameters());
+  for (size_t i = 0; i < written.convolutions.size(); ++i) {
+    EXPECT_TRUE(read.convolutions[i].bias == written.convolutions[i].bias);
+    const auto difference = (read.convolutions[i].kernel - written.convolutions[i].kernel).cwiseAbs().array();
+    EXPECT_TRUE((difference <= written.convolutions[i].kernel.cwiseAbs().array() / 2048 + 1e-7F).all()) << i;
+  }
+  EXPECT_EQ(BytesOfRefiner(read), BytesOfRefiner(ReadRefinerWeightsBytes(BytesOfRefiner(read), "x")));
+}
+
+TEST(RefinerWeightsIo, NamesWhatIsWrong) {
+  EXPECT_EQ(RefinerErrorOf([](NpzArrays*) {}), "");
+  const std::string missing = RefinerErrorOf([](NpzArrays* arrays) { arrays->erase("merge1"); });
+  EXPECT_NE(missing.find("some/refiner.npz"), std::string::npos) << missing;
+  EXPECT_NE(missing.find("merge1"), std::string::npos) << missing;
+  const std::string small = RefinerErrorOf([](NpzArrays* arrays) { (*arrays)["down2"] = (*arrays)["down1"]; });
+  EXPECT_NE(small.find("down2 is 48x288"), std::string::npos) << small;
+  EXPECT_NE(small.find("expected 64x432"), std::string::npos) << small;
+  const std::string flat = RefinerErrorOf([](NpzArrays* arrays) { (*arrays)["enter"] = (*arrays)["enter_bias"]; });
+  EXPECT_NE(flat.find("enter"), std::string::npos) << flat;
+  const std::string infinite = RefinerErrorOf([](NpzArrays* arrays) {
+    const std::vector<float> bias(32, std::numeric_limits<float>::infinity());
+    (*arrays)["first_bias"] = NdArray::FromFloats(bias.data(), {32});
+  });
+  EXPECT_NE(infinite.find("first has numbers that are not finite"), std::string::npos) << infinite;
+  EXPECT_THROW(ReadRefinerWeightsBytes("no archive", "x"), std::runtime_error);
+  EXPECT_THROW(ReadRefinerWeights("/nowhere/refiner.npz"), std::runtime_error);
+}
+
+TEST(RefinerWeightsIo, WritesNoInvalidWeights) {
+  RefinerWeights weights = RandomRefiner(1);
+  weights.convolutions.pop_back();
+  const TemporaryFolder folder;
+  EXPECT_THROW(WriteRefinerWeights(folder.File("refiner.npz"), weights), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace bodyloom

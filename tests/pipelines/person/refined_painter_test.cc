@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/person/refined_painter.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "bodyloom/data_tools/body/body_or_builtin.h"
+#include "bodyloom/pipelines/person/open_refiner.h"
+#include "bodyloom/render/overlay.h"
+#include "tests/support/random_refiner.h"
+#include "tests/support/short_track.h"
+
+namespace bodyloom {
+namespace {
+
+/// The built-in body, its colours running over the atlas; its left half was seen, the other mirrored.
+PhotoPerson Coloured() {
+  PhotoPerson person;
+  person.bare = person.clothed = person.body = BodyOrBuiltin("");
+  person.betas = Eigen::VectorXd::Zero(2);
+  person.texture = Image(64, 64);
+  person.sources = Image(64, 64);
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      uint8_t *colour = person.texture.pixel(x, y), *source = person.sources.pixel(x, y);
+      colour[0] = static_cast<uint8_t>(2 * x), colour[1] = static_cast<uint8_t>(2 * y), colour[2] = 200;
+      source[0] = 255, source[1] = source[2] = x < 32 ? 255 : 0;
+    }
+  }
+  return person;
+}
+
+TEST(RefinedPainter, ARefinerThatChangesNothingDrawsThePerson) {
+  const PhotoPerson person = Coloured();
+  const Track moved = MovedByPerson(person, ShortTrack(2));
+  const MatrixX3d vertices = TrackVertices(*person.body, moved, 0);
+  const Camera camera = moved.CameraAt(0);
+  PictureRefiner refiner(RandomRefiner(0));
+  const Image background(camera.width, camera.height, Colour{10, 250, 90});
+  Image drawn = background, refined = background;
+  std::vector<uint8_t> covered(static_cast<size_t>(camera.width) * camera.height, 0), covered_refined = covered;
+  RefinedPainter(person, 1, nullptr).Draw(vertices, camera, &drawn, &covered);
+  RefinedPainter(person, 1, &refiner).Draw(vertices, camera, &refined, &covered_refined);
+  EXPECT_EQ(covered, covered_refined);
+  int person_pixels = 0;
+  for (size_t i = 0; i < drawn.bgr.size(); ++i) {
+    ASSERT_NEAR(drawn.bgr[i], refined.bgr[i], 2) << i;
+    person_pixels += covered[i / 3] == 255 ? 1 : 0;
+  }
+  EXPECT_GT(person_pixels, 1000);
+}
+
+TEST(RefinedPainter, LayersAreThoseOfTheSurfaceForAnyThreads) {
+  const PhotoPerson person = Coloured();
+  const Track moved = MovedByPerson(person, ShortTrack(2));
+  const MatrixX3d vertices = TrackVertices(*person.body, moved, 0);
+  const PersonLayers layers = PersonLayerPainter(person, 1).Draw(vertices, moved.CameraAt(0));
+  EXPECT_EQ(layers.planes, PersonLayerPainter(person, 3).Draw(vertices, moved.CameraAt(0)).planes);
+  EXPECT_EQ(layers.width % kLayersMultiple, 0);
+  EXPECT_EQ(layers.height % kLayersMultiple, 0);
+  double highest = -10, lowest = 10, seen = 0, mirrored = 0;
+  for (size_t i = 0; i < layers.pixels(); ++i) {
+    const auto at = [&](int plane) { return layers.Plane(plane)[i]; };
+    const float square = at(PersonPlane::kNormal) * at(PersonPlane::kNormal) +
+                         at(PersonPlane::kNormal + 1) * at(PersonPlane::kNormal + 1) +
+                         at(PersonPlane::kNormal + 2) * at(PersonPlane::kNormal + 2);
+    if (square == 0) continue;
+    ASSERT_NEAR(square, 1, 1e-3);
+    EXPECT_LT(at(PersonPlane::kNormal + 2), 0.6F) << "towards the viewer, at the rim interpolated";
+    highest = std::max<double>(highest, at(PersonPlane::kPlace + 1));
+    lowest = std::min<double>(lowest, at(PersonPlane::kPlace + 1));
+    seen += at(PersonPlane::kSeen);
+    mirrored += at(PersonPlane::kMirrored);
+  }
+  const auto& rest = person.body->data().v_template;
+  EXPECT_NEAR(highest, rest.col(1).maxCoeff(), 0.05);
+  EXPECT_NEAR(lowest, rest.col(1).minCoeff(), 0.1);
+  EXPECT_GT(seen, 500);
+  EXPECT_GT(mirrored, 500);
+}
+
+TEST(RefinedPainter, DrawsNothingWhereNobodyIs) {
+  const PhotoPerson person = Coloured();
+  const Track moved = MovedByPerson(person, ShortTrack(2));
+  MatrixX3d vertices = TrackVertices(*person.body, moved, 0);
+  vertices.col(0).array() += 100;
+  PictureRefiner refiner(RandomRefiner(1));
+  const Camera camera = moved.CameraAt(0);
+  Image picture(camera.width, camera.height, Colour{1, 2, 3});
+  RefinedPainter(person, 1, &refiner).Draw(vertices, camera, &picture);
+  for (size_t i = 3; i < picture.bgr.size(); ++i) ASSERT_EQ(picture.bgr[i], picture.bgr[i % 3]);
+  Image other(3, 3);
+  EXPECT_THROW(RefinedPainter(person, 1, &refiner).Draw(vertices, camera, &other), std::invalid_argument);
+}
+
+TEST(OpenRefiner, NoneIsNone) {
+  EXPECT_EQ(OpenRefiner(kNoRefiner), nullptr);
+  EXPECT_THROW(OpenRefiner("/nowhere/refiner.npz"), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace bodyloom
