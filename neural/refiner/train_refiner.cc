@@ -231,7 +231,8 @@ class RefinerTrainer : public TrainedSystem {
       const Tensor bytes = torch::empty({1, kPlanes + kTruth, picture.height, picture.width}, torch::kUInt8);
       std::memcpy(bytes.data_ptr<uint8_t>(), picture.planes.data(), picture.planes.size());
       std::memcpy(bytes.data_ptr<uint8_t>() + picture.planes.size(), picture.truth.data(), picture.truth.size());
-      const auto [planes, truth] = Unpacked(bytes);
+      const PlanesAndTruth numbers = Unpacked(bytes);
+      const Tensor &planes = numbers.planes, &truth = numbers.truth;
       const Tensor person = ChangedPerson(planes, average_(planes));
       const Tensor counted = torch::maximum(planes.narrow(1, 3, 1), truth.narrow(1, 3, 1)) > 0;
       const auto error = [&](const Tensor& planes_of) {

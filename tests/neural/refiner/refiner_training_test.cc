@@ -39,6 +39,7 @@ RefinerPicture DarkAndNarrow(uint64_t seed) {
 
 std::vector<RefinerPicture> Pictures(int first, int count) {
   std::vector<RefinerPicture> pictures;
+  pictures.reserve(count);
   for (int i = 0; i < count; ++i) pictures.push_back(DarkAndNarrow(first + i));
   return pictures;
 }
