@@ -12,6 +12,7 @@
 #include "bodyloom/neural/lifter/lifter_module.h"
 #include "bodyloom/neural/muon.h"
 #include "bodyloom/neural/runtime.h"
+#include "bodyloom/neural/training/adam.h"
 #include "bodyloom/neural/training/schedules.h"
 #include "bodyloom/neural/training/training_loop.h"
 
@@ -165,9 +166,7 @@ class LifterTrainer : public TrainedSystem {
  private:
   LifterLoss Learn(const Batch& batch, int step) {
     const double rate = LearningRate(options_, step);
-    for (auto& group : optimizer_->param_groups()) {
-      static_cast<torch::optim::AdamWOptions&>(group.options()).lr(rate);
-    }
+    SetRate(optimizer_.get(), rate);
     module_->zero_grad();  // of all weights: two optimizers share them
     LifterLoss loss =
         ComputeLifterLoss(module_(batch.features), batch.targets, {options_.nll_weight, options_.velocity_weight});

@@ -17,6 +17,7 @@
 #include "bodyloom/neural/networks/vgg.h"
 #include "bodyloom/neural/refiner/refiner_module.h"
 #include "bodyloom/neural/runtime.h"
+#include "bodyloom/neural/training/adam.h"
 #include "bodyloom/neural/training/schedules.h"
 #include "bodyloom/neural/training/training_loop.h"
 #include "bodyloom/neural/training/weight_average.h"
@@ -134,18 +135,27 @@ struct PlanesAndTruth {
   Tensor planes, truth;
 };
 
-/// Numbers of bytes, on the networks' device.
-PlanesAndTruth Unpacked(const Tensor& bytes) {
-  std::vector<float> offsets, scales;
-  for (int p = 0; p < kPlanes; ++p) {
-    offsets.push_back(PackingOf(p).offset);
-    scales.push_back(PackingOf(p).scale);
+/// Bytes to numbers, on the networks' device.
+class Unpacker {
+ public:
+  Unpacker() {
+    std::vector<float> offsets, scales;
+    for (int p = 0; p < kPlanes; ++p) {
+      offsets.push_back(PackingOf(p).offset);
+      scales.push_back(PackingOf(p).scale);
+    }
+    offsets_ = OnDevice(torch::tensor(offsets)).view({1, kPlanes, 1, 1});
+    scales_ = OnDevice(torch::tensor(scales)).view({1, kPlanes, 1, 1});
   }
-  const Tensor numbers = OnDevice(bytes).to(torch::kFloat);
-  const Tensor planes = (numbers.narrow(1, 0, kPlanes) - OnDevice(torch::tensor(offsets)).view({1, kPlanes, 1, 1})) /
-                        OnDevice(torch::tensor(scales)).view({1, kPlanes, 1, 1});
-  return {planes, numbers.narrow(1, kPlanes, kTruth) / 255};
-}
+
+  [[nodiscard]] PlanesAndTruth operator()(const Tensor& bytes) const {
+    const Tensor numbers = OnDevice(bytes).to(torch::kFloat);
+    return {(numbers.narrow(1, 0, kPlanes) - offsets_) / scales_, numbers.narrow(1, kPlanes, kTruth) / 255};
+  }
+
+ private:
+  Tensor offsets_, scales_;
+};
 
 void CheckPicture(const RefinerPicture& picture) {
   BODYLOOM_CHECK(picture.width > 0 && picture.height > 0 && picture.width % kRefinerMultiple == 0 &&
@@ -193,7 +203,7 @@ class RefinerTrainer : public TrainedSystem {
 
   bool Step(int step) override {
     const CropBatch batch = batches_->Take();
-    auto [planes, truth] = Unpacked(batch.bytes);
+    auto [planes, truth] = unpacked_(batch.bytes);
     const Tensor background = OnDevice(batch.backgrounds), lights = OnDevice(batch.lights);
     planes = torch::cat({Lit(planes.narrow(1, 0, 3), lights), planes.narrow(1, 3, kPlanes - 3)}, 1);
     truth = torch::cat({Lit(truth.narrow(1, 0, 3), lights), truth.narrow(1, 3, 1)}, 1);
@@ -211,9 +221,7 @@ class RefinerTrainer : public TrainedSystem {
       outline_ = outline.item<double>(), perceptual_ = perceptual.item<double>();
       if (!std::isfinite(loss_)) return false;
     }
-    for (auto& group : optimizer_->param_groups()) {
-      static_cast<torch::optim::AdamWOptions&>(group.options()).lr(LearningRate(step));
-    }
+    SetRate(optimizer_.get(), LearningRate(step));
     optimizer_->zero_grad();
     loss.backward();
     torch::nn::utils::clip_grad_norm_(module_->parameters(), kClipNorm);
@@ -231,7 +239,7 @@ class RefinerTrainer : public TrainedSystem {
       const Tensor bytes = torch::empty({1, kPlanes + kTruth, picture.height, picture.width}, torch::kUInt8);
       std::memcpy(bytes.data_ptr<uint8_t>(), picture.planes.data(), picture.planes.size());
       std::memcpy(bytes.data_ptr<uint8_t>() + picture.planes.size(), picture.truth.data(), picture.truth.size());
-      const PlanesAndTruth numbers = Unpacked(bytes);
+      const PlanesAndTruth numbers = unpacked_(bytes);
       const Tensor &planes = numbers.planes, &truth = numbers.truth;
       const Tensor person = ChangedPerson(planes, average_(planes));
       const Tensor counted = torch::maximum(planes.narrow(1, 3, 1), truth.narrow(1, 3, 1)) > 0;
@@ -276,6 +284,7 @@ class RefinerTrainer : public TrainedSystem {
 
   const std::vector<RefinerPicture>&train_, &validation_;
   const TrainRefinerOptions& options_;
+  const Unpacker unpacked_;
   RefinerModule module_{nullptr}, average_{nullptr};
   FeatureNetwork vgg_{nullptr};
   std::unique_ptr<torch::optim::AdamW> optimizer_;

@@ -19,6 +19,10 @@ inline void SetRate(torch::optim::Adam* optimizer, double rate) {
   for (auto& group : optimizer->param_groups()) static_cast<torch::optim::AdamOptions&>(group.options()).lr(rate);
 }
 
+inline void SetRate(torch::optim::AdamW* optimizer, double rate) {
+  for (auto& group : optimizer->param_groups()) static_cast<torch::optim::AdamWOptions&>(group.options()).lr(rate);
+}
+
 /// Off while a discriminator only judges: its own gradients are not computed then.
 inline void RequireGradients(torch::nn::Module* module, bool on) {
   for (torch::Tensor& parameter : module->parameters()) parameter.set_requires_grad(on);

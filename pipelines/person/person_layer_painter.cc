@@ -105,8 +105,8 @@ PersonLayers PersonLayerPainter::Draw(const MatrixX3d& vertices, const Camera& c
       plane(PersonPlane::kMirrored)[i] = pixels_.texel_attributes[0][2 * at + 1];
     }
   }
-  const std::vector<float> alpha(plane(PersonPlane::kAlpha), plane(PersonPlane::kAlpha + 1));
-  FillAround(layers.width, layers.height, alpha, std::span(layers.planes).first(3 * pixels));
+  FillAround(layers.width, layers.height, layers.Plane(PersonPlane::kAlpha),
+             std::span(layers.planes).first(3 * pixels));
   return layers;
 }
 

@@ -63,7 +63,7 @@ class ScoredPerson : public ScoredRenderer {
     if (person_) painter_.emplace(*person_, threads_, refiner_.get());
     return ShareSeen(shown_, photos.size());
   }
-  [[nodiscard]] bool HasPerson() const override { return painter_.has_value(); }
+  [[nodiscard]] bool HasPerson() const override { return person_.has_value(); }
   GuidedPicture Render(int frame, const PhotoFrame& pose) override {
     Image picture(pose.size, pose.size);
     std::vector<uint8_t> coverage(static_cast<size_t>(pose.size) * pose.size, 0);

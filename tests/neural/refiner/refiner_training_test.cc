@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <torch/cuda.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <stdexcept>
 
@@ -63,6 +64,23 @@ TEST(RefinerTraining, LearnsWhatIsAlwaysWrong) {
   ASSERT_EQ(result.summary.status, TrainingStatus::kFinished) << result.summary.message;
   EXPECT_GT(result.summary.refined_psnr_db, result.summary.drawn_psnr_db + 2);
   EXPECT_TRUE(result.weights.IsValid(nullptr));
+}
+
+TEST(RefinerTraining, TheLightOfACropIsOnDrawingAndTruthAlike) {
+  std::vector<RefinerPicture> pictures = Pictures(0, 2);
+  for (RefinerPicture& picture : pictures) {  // drawn as it is: nothing to learn in any light
+    std::copy(picture.truth.begin(), picture.truth.end(), picture.planes.begin());
+  }
+  TrainRefinerOptions options = SmallOptions("light");
+  options.steps = options.report_every = 1, options.perceptual_weight = 0, options.light_strength = 1;
+  double loss = -1;
+  options.progress = [&loss](const TrainRefinerProgress& progress) {
+    loss = progress.loss;
+    return true;
+  };
+  TrainRefiner(pictures, {}, options);
+  EXPECT_GE(loss, 0);
+  EXPECT_LT(loss, 1e-6);
 }
 
 TEST(RefinerTraining, GoesOnAsIfItHadNeverStopped) {
