@@ -68,7 +68,7 @@ endforeach()
 # Warnings and sanitizers shared by every target of the project.
 function(bodyloom_flags target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wno-unused-parameter
-    -Wno-restrict)  # g++ 12 reports std::string concatenation (GCC bug 105651)
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)  # g++ 12 reports std::string concatenation (GCC bug 105651)
   if(BODYLOOM_WERROR)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
