@@ -25,6 +25,11 @@ Camera ScaledCamera(const Camera& camera, double factor) {
   return scaled;
 }
 
+double PixelsPerMetre(const Camera& camera, double depth_m) {
+  if (camera.model == CameraModel::kWeakPerspective) return camera.scale;
+  return depth_m > Camera::kMinDepth ? camera.fy / depth_m : 0;
+}
+
 MatrixX3d View::Apply(const MatrixX3d& points) const {
   MatrixX3d result = points * from_camera.camera_from_world_rotation.transpose();
   result.rowwise() += from_camera.camera_from_world_translation.transpose();

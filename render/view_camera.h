@@ -12,6 +12,10 @@ namespace bodyloom {
 /// The camera whose images are `factor` times as large: pixel' = factor · (pixel + ½) − ½, image size rounded.
 Camera ScaledCamera(const Camera& camera, double factor);
 
+/// Pixels that a metre across the view takes at a depth: fy / depth of a pinhole camera (0 up to Camera::kMinDepth), the
+/// scale of a weak-perspective one.
+double PixelsPerMetre(const Camera& camera, double depth_m);
+
 /// A virtual camera and where it stands in the frame of the camera that took the video.
 struct View {
   Camera camera;

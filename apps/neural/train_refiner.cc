@@ -56,6 +56,11 @@ void AddTrainRefiner(CLI::App& train, Action* action) {
   verb->add_option("--light-strength", options.light_strength,
                    "Of the change of colours, drawn and true alike, that each crop gets; 0: none")
       ->capture_default_str();
+  verb->add_option("--body-error", request->body_error_px,
+                   "Bodies of every other person are off by up to this, as fitted ones are: mean distance of projected "
+                   "vertices, pixels in a picture whose longer side has 512")
+      ->check(CLI::Range(0.0, 50.0))
+      ->capture_default_str();
   AddTrainingOptions(verb, &options, "Of weights, crops and photos");
   verb->footer(
       "Example:\n  bodyloom synth-people --motions motions --size 512 --out people\n"

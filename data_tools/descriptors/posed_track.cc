@@ -9,6 +9,7 @@
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/render/view_camera.h"
 
 namespace bodyloom {
 
@@ -80,10 +81,8 @@ double PixelsPerMetre(const BodyModel& body, const Track& track) {
   std::vector<double> sizes;
   for (int t = 0; t < track.num_frames(); ++t) {
     if (!track.HasResult(t)) continue;
-    const Camera camera = track.CameraAt(t);
-    const double z = posed.Root(t).z();
-    if (camera.model == CameraModel::kWeakPerspective) sizes.push_back(camera.scale);
-    if (camera.model == CameraModel::kPinhole && z > Camera::kMinDepth) sizes.push_back(camera.fy / z);
+    const double size = PixelsPerMetre(track.CameraAt(t), posed.Root(t).z());
+    if (size > 0) sizes.push_back(size);
   }
   if (sizes.empty()) return 0;
   std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2), sizes.end());

@@ -12,6 +12,7 @@ namespace bodyloom {
 namespace {
 
 constexpr size_t kMostWeightBytes = size_t{1} << 26;
+constexpr const char* kSize = "pixels_per_metre";
 
 }  // namespace
 
@@ -24,6 +25,7 @@ void WriteRefinerWeights(const std::string& path, const RefinerWeights& weights)
     arrays[name] = HalfMatrix(weights.convolutions[i].kernel);
     arrays[name + "_bias"] = FloatVector(weights.convolutions[i].bias);
   }
+  arrays[kSize] = FloatVector(Eigen::VectorXf::Constant(1, static_cast<float>(weights.pixels_per_metre)));
   arrays["recipe"] = NdArray::FromString(weights.recipe);
   WriteNpz(path, arrays);
 }
@@ -35,6 +37,11 @@ RefinerWeights ReadRefinerWeightsBytes(const std::string& bytes, const std::stri
     const std::string name = shape.name;
     weights.convolutions.push_back({MatrixFrom(arrays, name, where), VectorFrom(arrays, name + "_bias", where)});
   }
+  const Eigen::VectorXf size = VectorFrom(arrays, kSize, where);
+  if (size.size() != 1) {
+    throw std::runtime_error(Concatenate(where, ": ", kSize, " has ", size.size(), " numbers, expected one"));
+  }
+  weights.pixels_per_metre = size[0];
   weights.recipe = RecipeFrom(arrays, where);
   std::string why;
   if (!weights.IsValid(&why)) throw std::runtime_error(where + ": " + why);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// The picture refiner's weights as a file: one .npz with arrays NAME (out × 9·in, half-precision floats, so the file
-/// rounds them to 11 bits) and NAME_bias (out) of each of kRefinerShapes (render/person/refiner_weights.h), and `recipe`
-/// (text).
+/// rounds them to 11 bits) and NAME_bias (out) of each of kRefinerShapes (render/person/refiner_weights.h),
+/// `pixels_per_metre` (one number) and `recipe` (text).
 #pragma once
 
 #include <string>

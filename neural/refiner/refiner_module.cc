@@ -31,6 +31,12 @@ Tensor Enlarged(const Tensor& x) {
                                             .align_corners(false));
 }
 
+/// Whether there is one of `inside` up to `reach` pixels away along x and y, as numbers.
+Tensor Near(const Tensor& inside, int64_t reach) {
+  const int64_t window = 2 * reach + 1;
+  return torch::max_pool2d(inside.to(torch::kFloat), {window, window}, {1, 1}, {reach, reach});
+}
+
 }  // namespace
 
 RefinerModuleImpl::RefinerModuleImpl() {
@@ -63,7 +69,12 @@ Tensor RefinerModuleImpl::forward(const Tensor& planes) {
   const Tensor quarter = convolve(convolve(half));
   Tensor x = convolve(convolve(quarter));
   for (const Tensor& skip : {quarter, half, full}) x = convolve(convolve(torch::cat({Enlarged(x), skip}, 1)));
-  return Apart(convolve(x));
+  const Tensor change = Apart(convolve(x));
+  const Tensor alpha = planes.narrow(1, PersonPlane::kAlpha, 1), of_alpha = change.narrow(1, PersonPlane::kAlpha, 1);
+  // At 0, where training begins, both sides must let gradients through.
+  const Tensor kept = of_alpha * torch::where(of_alpha > 0, Near(alpha > 0, OutlineReach::kOutwards),
+                                              Near(alpha < 0.5, OutlineReach::kInwards));
+  return torch::cat({change.narrow(1, 0, PersonPlane::kAlpha), kept}, 1);
 }
 
 Tensor ChangedPerson(const Tensor& planes, const Tensor& change) {

@@ -14,6 +14,7 @@ namespace bodyloom {
 
 struct RefinerPicture {
   int width = 0, height = 0;    ///< as PersonLayers
+  double pixels_per_metre = 0;  ///< how large the person is
   std::vector<uint8_t> planes;  ///< PersonPlane::kCount × height × width, PackPlane()
   std::vector<uint8_t> truth;   ///< 4 × height × width: RGB multiplied by alpha, alpha; times 255
 

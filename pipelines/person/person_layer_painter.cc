@@ -35,7 +35,7 @@ std::vector<float> RestPlaces(const BodyModel& body) {
 int RoundUp(int size) { return (size + kLayersMultiple - 1) / kLayersMultiple * kLayersMultiple; }
 
 /// A box of the layers' sizes around the covered pixels, the same distance on both sides.
-PersonLayers BoxAround(const std::vector<uint8_t>& coverage, const Image& picture) {
+PersonLayers BoxAround(const std::vector<uint8_t>& coverage, const Image& picture, int reach) {
   int x0 = picture.width, x1 = -1, y0 = picture.height, y1 = -1;
   for (int y = 0; y < picture.height; ++y) {
     for (int x = 0; x < picture.width; ++x) {
@@ -46,11 +46,20 @@ PersonLayers BoxAround(const std::vector<uint8_t>& coverage, const Image& pictur
   PersonLayers layers;
   if (x1 < 0) return layers;
   const int across = x1 - x0 + 1, down = y1 - y0 + 1;
-  layers.width = RoundUp(across + 2 * PersonLayerPainter::kReach);
-  layers.height = RoundUp(down + 2 * PersonLayerPainter::kReach);
+  layers.width = RoundUp(across + 2 * reach);
+  layers.height = RoundUp(down + 2 * reach);
   layers.x = x0 - (layers.width - across) / 2, layers.y = y0 - (layers.height - down) / 2;
-  layers.planes.assign(PersonPlane::kCount * layers.pixels(), 0);
   return layers;
+}
+
+/// visit(x, y, i): pixels of the picture and where they lie in the layers' planes.
+template <typename Visit>
+void ForEachPixel(const PersonLayers& layers, int width, int height, const Visit& visit) {
+  for (int v = std::max(0, -layers.y); v < std::min(layers.height, height - layers.y); ++v) {
+    for (int u = std::max(0, -layers.x); u < std::min(layers.width, width - layers.x); ++u) {
+      visit(layers.x + u, layers.y + v, static_cast<size_t>(v) * layers.width + u);
+    }
+  }
 }
 
 }  // namespace
@@ -62,13 +71,30 @@ PersonLayerPainter::PersonLayerPainter(const PhotoPerson& person, int num_thread
       sources_(SeenAndMirrored(person.sources)),
       places_(RestPlaces(*person.body)) {}
 
-PersonLayers PersonLayerPainter::Draw(const MatrixX3d& vertices, const Camera& camera) {
+PersonLayers PersonLayerPainter::DrawColours(const MatrixX3d& vertices, const Camera& camera, int reach) {
   Image picture(camera.width, camera.height);
   std::vector<uint8_t> coverage(static_cast<size_t>(camera.width) * camera.height, 0);
   painter_.Draw(vertices, camera, &picture, &coverage);
-  PersonLayers layers = BoxAround(coverage, picture);
-  if (layers.width == 0) return layers;
+  PersonLayers layers = BoxAround(coverage, picture, reach);
+  const size_t pixels = layers.pixels();
+  layers.planes.assign(4 * pixels, 0);
+  ForEachPixel(layers, picture.width, picture.height, [&](int x, int y, size_t i) {
+    const uint8_t covered = coverage[static_cast<size_t>(y) * picture.width + x];
+    if (covered == 0) return;
+    layers.planes[PersonPlane::kAlpha * pixels + i] = covered / 255.0F;
+    for (size_t c = 0; c < 3; ++c) {  // the picture is black beneath: colours are multiplied by alpha
+      layers.planes[(PersonPlane::kColour + c) * pixels + i] =
+          std::min(1.0F, static_cast<float>(picture.pixel(x, y)[2 - c]) / covered);
+    }
+  });
+  FillAround(layers.width, layers.height, layers.Plane(PersonPlane::kAlpha),
+             std::span(layers.planes).first(3 * pixels));
+  return layers;
+}
 
+PersonLayers PersonLayerPainter::Draw(const MatrixX3d& vertices, const Camera& camera) {
+  PersonLayers layers = DrawColours(vertices, camera, kReach);
+  if (layers.width == 0) return layers;
   const BodyModel& body = *person_->body;
   VisibilityOptions visibility;
   visibility.cull_back_faces = person_->garment.empty();
@@ -84,29 +110,18 @@ PersonLayers PersonLayerPainter::Draw(const MatrixX3d& vertices, const Camera& c
   ResolvePixels(buffer_, body, vertices, camera, request, &pixels_);
 
   const size_t pixels = layers.pixels();
+  layers.planes.resize(PersonPlane::kCount * pixels, 0);
   const auto plane = [&](int p) { return layers.planes.begin() + static_cast<std::ptrdiff_t>(p * pixels); };
-  for (int v = std::max(0, -layers.y); v < std::min(layers.height, picture.height - layers.y); ++v) {
-    for (int u = std::max(0, -layers.x); u < std::min(layers.width, picture.width - layers.x); ++u) {
-      const int x = layers.x + u, y = layers.y + v;
-      const size_t i = static_cast<size_t>(v) * layers.width + u;
-      const uint8_t covered = coverage[static_cast<size_t>(y) * picture.width + x];
-      if (covered == 0) continue;
-      plane(PersonPlane::kAlpha)[i] = covered / 255.0F;
-      for (int c = 0; c < 3; ++c) {  // the picture is black beneath: colours are multiplied by alpha
-        plane(PersonPlane::kColour + c)[i] = std::min(1.0F, static_cast<float>(picture.pixel(x, y)[2 - c]) / covered);
-      }
-      if (buffer_.FaceAt(x, y) < 0) continue;
-      const size_t at = buffer_.box().IndexOf(x, y);
-      for (int c = 0; c < 3; ++c) {
-        plane(PersonPlane::kNormal + c)[i] = pixels_.normal[3 * at + c];
-        plane(PersonPlane::kPlace + c)[i] = pixels_.vertex_attributes[0][3 * at + c];
-      }
-      plane(PersonPlane::kSeen)[i] = pixels_.texel_attributes[0][2 * at];
-      plane(PersonPlane::kMirrored)[i] = pixels_.texel_attributes[0][2 * at + 1];
+  ForEachPixel(layers, camera.width, camera.height, [&](int x, int y, size_t i) {
+    if (plane(PersonPlane::kAlpha)[i] == 0 || buffer_.FaceAt(x, y) < 0) return;
+    const size_t at = buffer_.box().IndexOf(x, y);
+    for (int c = 0; c < 3; ++c) {
+      plane(PersonPlane::kNormal + c)[i] = pixels_.normal[3 * at + c];
+      plane(PersonPlane::kPlace + c)[i] = pixels_.vertex_attributes[0][3 * at + c];
     }
-  }
-  FillAround(layers.width, layers.height, layers.Plane(PersonPlane::kAlpha),
-             std::span(layers.planes).first(3 * pixels));
+    plane(PersonPlane::kSeen)[i] = pixels_.texel_attributes[0][2 * at];
+    plane(PersonPlane::kMirrored)[i] = pixels_.texel_attributes[0][2 * at + 1];
+  });
   return layers;
 }
 

@@ -20,6 +20,8 @@ class PersonLayerPainter {
 
   /// The layers of the part of the camera's picture that shows the person, with `kReach` pixels around it.
   PersonLayers Draw(const MatrixX3d& vertices_in_camera, const Camera& camera);
+  /// Colour and alpha alone, the first four planes, with `reach` pixels around the person.
+  PersonLayers DrawColours(const MatrixX3d& vertices_in_camera, const Camera& camera, int reach);
 
   static constexpr int kReach = 16;  ///< at least; clothes and hair that the body lacks
 

@@ -139,6 +139,7 @@ std::vector<float> PictureRefiner::Change(const PersonLayers& layers) {
   for (size_t i = 0; i < layers.pixels(); ++i) {
     for (size_t c = 0; c < 4; ++c) change[c * layers.pixels() + i] = out[0].values[4 * i + c];
   }
+  KeepNearOutline(layers, change);
   return change;
 }
 

@@ -21,7 +21,11 @@ class PictureRefiner {
   /// Throws std::invalid_argument for weights that are not valid.
   explicit PictureRefiner(RefinerWeights weights);
 
-  /// What ChangedPerson() takes: 4 × height × width. Throws std::invalid_argument for layers without a pixel.
+  /// How large people were that it learned from, the median picture.
+  [[nodiscard]] double pixels_per_metre() const { return weights_.pixels_per_metre; }
+
+  /// What ChangedPerson() takes, alpha near the outline (KeepNearOutline()): 4 × height × width. Throws
+  /// std::invalid_argument for layers without a pixel.
   std::vector<float> Change(const PersonLayers& layers);
 
  private:

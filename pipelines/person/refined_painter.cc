@@ -4,8 +4,14 @@
 #include <span>
 
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/render/view_camera.h"
 
 namespace bodyloom {
+namespace {
+
+constexpr double kLarger = 1.25;  ///< than what the refiner knows; up to there pictures are refined as they are
+
+}  // namespace
 
 RefinedPainter::RefinedPainter(const PhotoPerson& person, int num_threads, PictureRefiner* refiner)
     : refiner_(refiner) {
@@ -24,9 +30,19 @@ void RefinedPainter::Draw(const MatrixX3d& vertices, const Camera& camera, Image
   }
   BODYLOOM_CHECK(image->width == camera.width && image->height == camera.height, "refined person: the image is ",
                  image->width, "x", image->height, ", the camera ", camera.width, "x", camera.height);
-  const PersonLayers layers = layers_->Draw(vertices, camera);
+  const double size = PixelsPerMetre(camera, vertices.col(2).mean()), known = refiner_->pixels_per_metre();
+  const double factor = size > kLarger * known ? known / size : 1;
+  const PersonLayers layers =
+      factor < 1 ? layers_->DrawColours(vertices, camera, static_cast<int>(OutlineReach::kOutwards / factor) + 2)
+                 : layers_->Draw(vertices, camera);
   if (layers.width == 0) return;
-  const std::vector<float> person = ChangedPerson(layers, refiner_->Change(layers));
+  const auto change = [&] {
+    if (factor == 1) return refiner_->Change(layers);
+    const PersonLayers small = layers_->Draw(vertices, ScaledCamera(camera, factor));
+    if (small.width == 0) return std::vector<float>(4 * layers.pixels(), 0);
+    return EnlargedChange(small, refiner_->Change(small), factor, layers);
+  };
+  const std::vector<float> person = ChangedPerson(layers, change());
   LayOver(layers, person, image, coverage == nullptr ? std::span<uint8_t>() : std::span<uint8_t>(*coverage));
 }
 

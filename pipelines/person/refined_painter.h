@@ -18,7 +18,9 @@ class RefinedPainter {
   /// `person` and `refiner` must outlive this; null: the person as PersonPainter draws it.
   RefinedPainter(const PhotoPerson& person, int num_threads, PictureRefiner* refiner);
 
-  /// As PersonPainter::Draw.
+  /// As PersonPainter::Draw. Where the person is more than a quarter larger than those that the refiner learned from, the
+  /// change is found in a smaller picture, as large as they were, and enlarged: the network knows no other size, and a
+  /// picture of nine times the pixels costs little more.
   void Draw(const MatrixX3d& vertices_in_camera, const Camera& camera, Image* image,
             std::vector<uint8_t>* coverage = nullptr);
 

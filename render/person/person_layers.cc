@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "bodyloom/geometry/base/check.h"
 
@@ -41,6 +42,31 @@ void FillFrom(const WeightedLevel& coarse, WeightedLevel* fine) {
   }
 }
 
+/// Whether there is one of `inside` up to `reach` entries away, along a line of `count` entries `stride` apart.
+void ReachAlong(std::span<const uint8_t> inside, size_t first, size_t stride, int count, int reach,
+                std::span<uint8_t> near) {
+  int last = -reach - 1;
+  const auto at = [&](int i) { return first + static_cast<size_t>(i) * stride; };
+  for (int i = 0; i < count; ++i) {
+    if (inside[at(i)] != 0) last = i;
+    near[at(i)] = i - last <= reach ? 1 : 0;
+  }
+  last = count + reach;
+  for (int i = count; i-- > 0;) {
+    if (inside[at(i)] != 0) last = i;
+    if (last - i <= reach) near[at(i)] = 1;
+  }
+}
+
+/// Whether there is one of `inside` up to `reach` pixels away along x and y.
+std::vector<uint8_t> Near(std::span<const uint8_t> inside, int width, int height, int reach) {
+  std::vector<uint8_t> across(inside.size()), near(inside.size());
+  const auto stride = static_cast<size_t>(width);
+  for (int y = 0; y < height; ++y) ReachAlong(inside, y * stride, 1, width, reach, across);
+  for (size_t x = 0; x < stride; ++x) ReachAlong(across, x, stride, height, reach, near);
+  return near;
+}
+
 }  // namespace
 
 void FillAround(int width, int height, std::span<const float> alpha, std::span<float> colour) {
@@ -62,16 +88,67 @@ void FillAround(int width, int height, std::span<const float> alpha, std::span<f
   }
 }
 
+void KeepNearOutline(const PersonLayers& layers, std::span<float> change) {
+  const size_t pixels = layers.pixels();
+  BODYLOOM_CHECK(layers.planes.size() >= 4 * pixels && change.size() == 4 * pixels, "refiner: ", layers.planes.size(),
+                 " numbers of layers and ", change.size(), " of change for ", pixels, " pixels");
+  const std::span<const float> alpha = layers.Plane(PersonPlane::kAlpha);
+  std::vector<uint8_t> drawn(pixels), bare(pixels);
+  for (size_t i = 0; i < pixels; ++i) drawn[i] = alpha[i] > 0 ? 1 : 0, bare[i] = alpha[i] < 0.5F ? 1 : 0;
+  const std::vector<uint8_t> near_drawn = Near(drawn, layers.width, layers.height, OutlineReach::kOutwards);
+  const std::vector<uint8_t> near_bare = Near(bare, layers.width, layers.height, OutlineReach::kInwards);
+  const std::span<float> of_alpha = change.subspan(PersonPlane::kAlpha * pixels);
+  for (size_t i = 0; i < pixels; ++i) {
+    if ((of_alpha[i] > 0 ? near_drawn : near_bare)[i] == 0) of_alpha[i] = 0;
+  }
+}
+
 std::vector<float> ChangedPerson(const PersonLayers& layers, std::span<const float> change) {
   const size_t pixels = layers.pixels();
-  BODYLOOM_CHECK(layers.planes.size() == PersonPlane::kCount * pixels && change.size() == 4 * pixels,
-                 "refiner: ", layers.planes.size(), " numbers of layers and ", change.size(), " of change for ", pixels,
-                 " pixels");
+  BODYLOOM_CHECK(layers.planes.size() >= 4 * pixels && change.size() == 4 * pixels, "refiner: ", layers.planes.size(),
+                 " numbers of layers and ", change.size(), " of change for ", pixels, " pixels");
   std::vector<float> person(4 * pixels);
   // Colour and alpha are the first four planes, as those of the change.
   for (size_t i = 0; i < person.size(); ++i)
     person[i] = std::clamp(layers.planes[i] + std::tanh(change[i]), 0.0F, 1.0F);
   return person;
+}
+
+std::vector<float> EnlargedChange(const PersonLayers& small, std::span<const float> change, double factor,
+                                  const PersonLayers& layers) {
+  BODYLOOM_CHECK(change.size() == 4 * small.pixels() && factor > 0, "refiner: ", change.size(),
+                 " numbers of change for ", small.pixels(), " pixels, to be enlarged by 1 / ", factor);
+  struct Between {
+    int low;      ///< row or column of the small box, which may lie outside
+    float share;  ///< of the next one
+  };
+  const auto places = [factor](int first, int count, int small_first) {
+    std::vector<Between> result(count);
+    for (int i = 0; i < count; ++i) {
+      const double at = factor * (first + i + 0.5) - 0.5 - small_first;
+      result[i] = {static_cast<int>(std::floor(at)), static_cast<float>(at - std::floor(at))};
+    }
+    return result;
+  };
+  const std::vector<Between> columns = places(layers.x, layers.width, small.x);
+  const std::vector<Between> rows = places(layers.y, layers.height, small.y);
+  std::vector<float> enlarged(4 * layers.pixels(), 0);
+  for (size_t c = 0; c < 4; ++c) {
+    const float* from = change.data() + c * small.pixels();
+    float* to = enlarged.data() + c * layers.pixels();
+    const auto at = [&](int x, int y) {
+      const bool inside = x >= 0 && y >= 0 && x < small.width && y < small.height;
+      return inside ? from[static_cast<size_t>(y) * small.width + x] : 0.0F;
+    };
+    for (const Between& row : rows) {
+      for (const Between& column : columns) {
+        const float above = std::lerp(at(column.low, row.low), at(column.low + 1, row.low), column.share);
+        const float below = std::lerp(at(column.low, row.low + 1), at(column.low + 1, row.low + 1), column.share);
+        *to++ = std::lerp(above, below, row.share);
+      }
+    }
+  }
+  return enlarged;
 }
 
 void LayOver(const PersonLayers& layers, std::span<const float> person, Image* picture, std::span<uint8_t> coverage) {

@@ -31,7 +31,8 @@ inline constexpr int kLayersMultiple = 64;
 struct PersonLayers {
   int x = 0, y = 0;           ///< pixel of the picture that is the box's first; may lie outside, where nobody is
   int width = 0, height = 0;  ///< of the box; 0: nobody is in the picture
-  std::vector<float> planes;  ///< PersonPlane::kCount × height × width
+  std::vector<float>
+      planes;  ///< PersonPlane::kCount × height × width; of a PersonLayerPainter's DrawColours() the first 4
 
   [[nodiscard]] size_t pixels() const { return static_cast<size_t>(width) * height; }
   [[nodiscard]] std::span<const float> Plane(int plane) const {
@@ -43,10 +44,28 @@ struct PersonLayers {
 /// back into what has none. `colour`: 3 × height × width, in place. Nothing changes where alpha is 0 everywhere.
 void FillAround(int width, int height, std::span<const float> alpha, std::span<float> colour);
 
+/// How far the refiner may move the outline, pixels along x and y. Outwards as far as hair, hems and fingers stand off;
+/// inwards no further than an outline that was measured in a photo is wrong: what clothes people like these wear says
+/// nothing about the width of this one's trousers.
+struct OutlineReach {
+  static constexpr int kOutwards = 8, kInwards = 4;
+};
+
+/// Zeroes the change of alpha where it would go further: growth where nothing is drawn (alpha 0) up to kOutwards away, loss
+/// where alpha is at least ½ up to kInwards away. `change`: 4 × height × width, in place. Throws std::invalid_argument for
+/// another size.
+void KeepNearOutline(const PersonLayers& layers, std::span<float> change);
+
 /// The person as the refiner changes it. `change`, 4 × height × width, any numbers x:
 ///   colour' = clamp(colour + tanh x, 0, 1) of the first three planes,   alpha' = clamp(alpha + tanh x, 0, 1) of the last
 /// so zeros change nothing. Returns 4 × height × width: colour', alpha'. Throws std::invalid_argument for another size.
 std::vector<float> ChangedPerson(const PersonLayers& layers, std::span<const float> change);
+
+/// The change of a small picture's layers as one of `layers`, whose picture is 1 / factor times as large: bilinear between
+/// pixel centres, 0 outside the small box. Returns 4 × height × width of `layers`. Throws std::invalid_argument for a
+/// change of another size than `small`, or a factor that is not positive.
+std::vector<float> EnlargedChange(const PersonLayers& small, std::span<const float> change, double factor,
+                                  const PersonLayers& layers);
 
 /// Lays `person`, the four planes of ChangedPerson(), over a picture: colour'·alpha' + picture·(1 − alpha').
 /// `coverage`, one a pixel of the picture or none, becomes 255·alpha' inside the box.

@@ -10,6 +10,9 @@ bool RefinerWeights::IsValid(std::string* why) const {
     if (why != nullptr) *why = text;
     return false;
   };
+  if (!(pixels_per_metre >= 1 && pixels_per_metre <= 1e5)) {
+    return fault(Concatenate("pixels_per_metre is ", pixels_per_metre, ", expected 1 to 1e5"));
+  }
   if (convolutions.size() != kRefinerShapes.size()) {
     return fault(Concatenate(convolutions.size(), " convolutions, expected ", kRefinerShapes.size()));
   }

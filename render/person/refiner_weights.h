@@ -14,7 +14,7 @@
 ///   leave 32→16, without relu6
 /// "up" reads the coarser level, enlarged bilinearly (pixel centres aligned), then the level's own features. A stride of 2
 /// reads rows and columns 2y … 2y + 2. No normalisation: a picture's colours are not other pixels' business.
-/// Source: Ronneberger et al., "U-Net", MICCAI 2015. What it brings: docs/lab/photo_person.md.
+/// Source: Ronneberger et al., "U-Net", MICCAI 2015. What it brings: docs/lab/picture_refiner.md.
 #pragma once
 
 #include <Eigen/Core>
@@ -59,9 +59,10 @@ struct RefinerWeights {
     Eigen::VectorXf bias;  ///< out
   };
   std::vector<Convolution> convolutions;  ///< in the order of kRefinerShapes
+  double pixels_per_metre = 250;          ///< how large people were that it learned from, the median picture
   std::string recipe;                     ///< how they were learned, JSON
 
-  /// Whether sizes are those of kRefinerShapes and all numbers finite; `why` may be nullptr.
+  /// Whether sizes are those of kRefinerShapes, all numbers finite and people of a size; `why` may be nullptr.
   bool IsValid(std::string* why) const;
   [[nodiscard]] size_t num_parameters() const;
 };

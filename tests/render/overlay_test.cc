@@ -134,6 +134,20 @@ TEST(ViewCamera, ScaledCameraMovesPixelsWithTheImage) {
   EXPECT_EQ(twice.width, 128);
 }
 
+TEST(ViewCamera, PixelsPerMetreAreThoseOfTheProjection) {
+  Camera camera = MakePinhole(64, 48, 70);
+  Eigen::Vector2d p, q;
+  for (const CameraModel model : {CameraModel::kPinhole, CameraModel::kWeakPerspective}) {
+    camera.model = model;
+    camera.scale = 33;
+    ASSERT_TRUE(camera.Project(Vector3d(0.2, -0.1, 2.5), &p) && camera.Project(Vector3d(0.2, 0.9, 2.5), &q));
+    EXPECT_NEAR(PixelsPerMetre(camera, 2.5), q.y() - p.y(), 1e-9);
+  }
+  camera.model = CameraModel::kPinhole;
+  EXPECT_EQ(PixelsPerMetre(camera, -1), 0) << "behind the camera";
+  EXPECT_EQ(PixelsPerMetre(camera, std::nan("")), 0);
+}
+
 TEST(ViewCamera, OrbitSeesAllPointsFromTheSide) {
   MatrixX3d points(4, 3);
   points << 0, 0, 3, 0.4, 0, 3, 0, 0, 5, std::nan(""), 0, 0;

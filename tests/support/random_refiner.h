@@ -22,6 +22,7 @@ inline RefinerWeights RandomRefiner(float strength) {
     for (Eigen::Index i = 0; i < convolution.kernel.size(); ++i) convolution.kernel.data()[i] = scale * normal(random);
     for (Eigen::Index i = 0; i < convolution.bias.size(); ++i) convolution.bias[i] = 0.1F * scale * normal(random);
   }
+  weights.pixels_per_metre = 123;
   weights.recipe = "made up for a test";
   return weights;
 }

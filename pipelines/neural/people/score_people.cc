@@ -73,7 +73,7 @@ ScorePeopleSummary Score(const ScorePeopleRequest& request, ScoredRenderer* rend
   const GuidedScoreWeights weights = GuidedScoreWeightsOf(ReadWeightsFolder(request.weights));
   for (const int photos : request.photos) {
     scorers.push_back(std::make_unique<GuidedScorer>(true, weights));
-    scored.push_back({.photos = photos});
+    scored.emplace_back().photos = photos;
   }
   std::vector<Image> sheet;
   for (int person = 0; person < count; ++person) {

@@ -17,7 +17,9 @@
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/data_tools/motion/freeze_track.h"
 #include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/data_tools/synthesis/clips/perturbed_motion.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/split_mix.h"
 #include "bodyloom/pipelines/neural/photo/photo_input.h"
 #include "bodyloom/pipelines/people/person_segmentation.h"
 
@@ -38,6 +40,14 @@ Track TrackOfClip(const SinglePersonDataset& set, const std::string& name) {
                                          track.camera.height, ", its clip has ", own.num_frames(), " of ",
                                          own.camera.width, "x", own.camera.height));
   }
+  return track;
+}
+
+constexpr double kLeastError_px = 0.1;  ///< below: none
+
+Track WithBodyError(const BodyModel& body, Track track, double error_px, uint64_t seed) {
+  if (error_px < kLeastError_px) return track;
+  track.motion = PerturbMotion(body, track.CameraAt(0), track.motion, error_px, PerturbationOptions(), seed, 1).motion;
   return track;
 }
 
@@ -108,8 +118,7 @@ class PeopleData::Impl {
     std::optional<PhotoMaps> maps;
     std::vector<std::optional<CutPhoto>> cut;
 
-    Clip(const std::string& path, const std::string& track_name)
-        : set(path), track(TrackOfClip(set, track_name)), cut(set.info().num_frames) {}
+    explicit Clip(const std::string& path) : set(path), cut(set.info().num_frames) {}
   };
 
   struct FrameOfPerson {
@@ -127,8 +136,11 @@ class PeopleData::Impl {
       const std::string path = (fs::path(folder) / name).string();
       const ClipPlace place = PlaceOfClip(name);
       const int view = views.emplace(place.view, static_cast<int>(views.size())).first->second;
-      clips_.push_back(std::make_unique<Clip>(path, request_.given.track));
+      const uint64_t hash = Mix(Mix(request_.seed) ^ clips_.size());
+      clips_.push_back(std::make_unique<Clip>(path));
       Clip& clip = *clips_.back();
+      clip.track = WithBodyError(*body_, TrackOfClip(clip.set, request_.given.track),
+                                 request_.body_error_px * UniformOf(hash), Mix(hash));
       if (!clip.set.info().has.labels) throw std::runtime_error(path + ": has no labels, which training needs");
       PhotoMapsOptions options;
       options.size = request_.size, options.texture_size = request_.texture_size, options.texels = texels_;

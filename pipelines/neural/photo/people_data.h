@@ -2,6 +2,7 @@
 /// Training data of the one-photo renderers from a multi-person dataset.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -36,6 +37,10 @@ struct PeopleDataRequest {
   int texture_size = 256;
   bool test = false;  ///< the people kept for testing, instead of those to train on
   GivenOfPeople given;
+  /// Bodies are off by a mean projection error (data_tools/synthesis/clips/perturbed_motion.h) of 0 to this, each clip by
+  /// its own, as fitted bodies are; pixels, in a picture whose longer side has 512.
+  double body_error_px = 0;
+  uint64_t seed = 1;  ///< of those errors
 };
 
 /// Pictures are read when they are first requested and kept (4 bytes a pixel); maps are made each time.

@@ -11,14 +11,15 @@
 #include "bodyloom/neural/guided/choose_photos.h"
 #include "bodyloom/pipelines/neural/people/person_of_frames.h"
 #include "bodyloom/pipelines/person/person_layer_painter.h"
+#include "bodyloom/render/view_camera.h"
 
 namespace bodyloom {
 namespace {
 
 constexpr std::array<int, 4> kPhotos = {1, 1, 2, 4};
 
-RefinerPicture PictureFrom(const PersonLayers& layers, const PhotoFrame& truth) {
-  RefinerPicture picture = {layers.width, layers.height, {}, {}};
+RefinerPicture PictureFrom(const PersonLayers& layers, const PhotoFrame& truth, double pixels_per_metre) {
+  RefinerPicture picture = {layers.width, layers.height, pixels_per_metre, {}, {}};
   const size_t pixels = layers.pixels(), window = static_cast<size_t>(truth.size) * truth.size;
   picture.planes.resize(layers.planes.size());
   for (int p = 0; p < PersonPlane::kCount; ++p) {
@@ -44,13 +45,7 @@ std::vector<RefinerPicture> PicturesOfPerson(const RefinerPicturesRequest& reque
   const uint64_t hash = Mix(Mix(request.seed) ^ static_cast<uint64_t>(person));
   const std::vector<int> frames = ChoosePhotos(source, person, kPhotos[hash % kPhotos.size()]);
   std::vector<PhotoFrame> photos(frames.size());
-  for (size_t k = 0; k < frames.size(); ++k) {
-    if (person % 2 == 0) {
-      source.fill(person, frames[k], &photos[k]);
-    } else {
-      photos[k] = people.PhotoOf(person, frames[k]);
-    }
-  }
+  for (size_t k = 0; k < frames.size(); ++k) photos[k] = people.PhotoOf(person, frames[k]);
   std::vector<RefinerPicture> pictures;
   const std::optional<PhotoPerson> made =
       PersonOfFrames(people, person, frames, photos, request.texture_size, FitClothesOptions());
@@ -64,7 +59,8 @@ std::vector<RefinerPicture> PicturesOfPerson(const RefinerPicturesRequest& reque
     if (layers.width == 0) continue;
     PhotoFrame truth;
     source.fill(person, f, &truth);
-    pictures.push_back(PictureFrom(layers, truth));
+    pictures.push_back(
+        PictureFrom(layers, truth, PixelsPerMetre(pose->camera, pose->vertices_in_camera.col(2).mean())));
   }
   return pictures;
 }
@@ -74,15 +70,20 @@ std::vector<RefinerPicture> PicturesOfPerson(const RefinerPicturesRequest& reque
 std::vector<RefinerPicture> RefinerPicturesOf(const RefinerPicturesRequest& request, const char* stage,
                                               const PipelineCallbacks& callbacks) {
   constexpr int kMapSize = 64;  // of maps that nobody reads here
-  PeopleDataRequest of_data = {request.data, request.body, request.size, kMapSize, request.test, {}};
+  PeopleDataRequest of_data;
+  of_data.data = request.data, of_data.body = request.body, of_data.size = request.size;
+  of_data.texture_size = kMapSize, of_data.test = request.test;
+  const PeopleData exact(of_data);
   of_data.given.estimated_labels = true;
-  const PeopleData people(of_data);
-  const int count = static_cast<int>(people.source().num_frames.size());
+  of_data.body_error_px = request.body_error_px;
+  of_data.seed = request.seed;
+  const PeopleData estimated(of_data);
+  const int count = static_cast<int>(exact.source().num_frames.size());
   std::vector<std::vector<RefinerPicture>> of_person(count);
   std::mutex mutex;
   int done = 0;
   ParallelFor(count, request.threads, [&](int person) {
-    of_person[person] = PicturesOfPerson(request, people, person);
+    of_person[person] = PicturesOfPerson(request, person % 2 == 0 ? exact : estimated, person);
     const std::lock_guard lock(mutex);
     callbacks.Update(stage, static_cast<double>(++done) / count);
   });

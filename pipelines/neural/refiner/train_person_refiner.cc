@@ -10,6 +10,7 @@
 #include "bodyloom/data_tools/learned/refiner_weights_io.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/geometry/base/percentile.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/neural/photo/people_data.h"
 #include "bodyloom/pipelines/neural/refiner/refiner_pictures.h"
@@ -28,6 +29,7 @@ nlohmann::ordered_json Describe(const TrainPersonRefinerRequest& request, const 
           {"test_pictures", test_pictures},
           {"size", request.size},
           {"texture_size", request.texture_size},
+          {"body_error_px", request.body_error_px},
           {"seed", o.seed},
           {"steps", o.steps},
           {"batch", o.batch},
@@ -40,6 +42,13 @@ nlohmann::ordered_json Describe(const TrainPersonRefinerRequest& request, const 
           {"light_strength", o.light_strength},
           {"vgg16", o.vgg16.source},
           {"device", o.device}};
+}
+
+double MedianSize(const std::vector<RefinerPicture>& pictures) {
+  std::vector<double> sizes;
+  sizes.reserve(pictures.size());
+  for (const RefinerPicture& picture : pictures) sizes.push_back(picture.pixels_per_metre);
+  return Percentile(sizes, 50);
 }
 
 }  // namespace
@@ -59,6 +68,7 @@ TrainPersonRefinerSummary TrainPersonRefiner(const TrainPersonRefinerRequest& re
                                    request.size,
                                    request.texture_size,
                                    options.seed,
+                                   request.body_error_px,
                                    ThreadsFor(options.num_threads)};
   const std::vector<RefinerPicture> train = RefinerPicturesOf(people, "drawing people", callbacks);
   std::vector<RefinerPicture> test;
@@ -79,6 +89,7 @@ TrainPersonRefinerSummary TrainPersonRefiner(const TrainPersonRefinerRequest& re
   };
   TrainRefinerResult result = TrainRefiner(train, test, options);
   RequireFinite(result.summary, request.out);
+  result.weights.pixels_per_metre = MedianSize(train);
   result.weights.recipe = config.dump();
   const std::string weights = (std::filesystem::path(request.out) / "refiner.npz").string();
   WriteRefinerWeights(weights, result.weights);

@@ -17,6 +17,7 @@ struct TrainPersonRefinerRequest {
   std::string weights;          ///< folder with vgg16 (pipelines/neural/weights_folder.h); empty: none
   int size = 512;               ///< of the windows that people are drawn in
   int texture_size = 512;       ///< texels a side
+  double body_error_px = 4;     ///< as RefinerPicturesRequest has it
   TrainRefinerOptions options;  ///< numbers; run_dir and vgg16 are filled in by the job
 };
 

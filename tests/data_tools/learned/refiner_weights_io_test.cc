@@ -40,6 +40,7 @@ TEST(RefinerWeightsIo, KernelsComeBackToElevenBitsBiasesExactly) {
   const RefinerWeights written = RandomRefiner(1), read = ReadRefinerWeightsBytes(BytesOfRefiner(written), "x");
   ASSERT_TRUE(read.IsValid(nullptr));
   EXPECT_EQ(read.recipe, written.recipe);
+  EXPECT_EQ(read.pixels_per_metre, written.pixels_per_metre);
   EXPECT_EQ(read.num_parameters(), written.num_parameters());
   for (size_t i = 0; i < written.convolutions.size(); ++i) {
     EXPECT_TRUE(read.convolutions[i].bias == written.convolutions[i].bias);
@@ -64,6 +65,16 @@ TEST(RefinerWeightsIo, NamesWhatIsWrong) {
     (*arrays)["first_bias"] = NdArray::FromFloats(bias.data(), {32});
   });
   EXPECT_NE(infinite.find("first has numbers that are not finite"), std::string::npos) << infinite;
+  const std::string nobody = RefinerErrorOf([](NpzArrays* arrays) {
+    const float none = 0;
+    (*arrays)["pixels_per_metre"] = NdArray::FromFloats(&none, {1});
+  });
+  EXPECT_NE(nobody.find("pixels_per_metre is 0, expected 1 to 1e5"), std::string::npos) << nobody;
+  const std::string several = RefinerErrorOf([](NpzArrays* arrays) {
+    const std::vector<float> two(2, 250);
+    (*arrays)["pixels_per_metre"] = NdArray::FromFloats(two.data(), {2});
+  });
+  EXPECT_NE(several.find("pixels_per_metre has 2 numbers, expected one"), std::string::npos) << several;
   EXPECT_THROW(ReadRefinerWeightsBytes("no archive", "x"), std::runtime_error);
   EXPECT_THROW(ReadRefinerWeights("/nowhere/refiner.npz"), std::runtime_error);
 }

@@ -15,11 +15,15 @@
 namespace bodyloom {
 namespace {
 
+/// Anything, but nobody in one corner and somebody all through another.
 PersonLayers RandomLayers(int width, int height) {
   torch::manual_seed(3);
   PersonLayers layers;
   layers.width = width, layers.height = height;
-  layers.planes = HostValues<float>(torch::rand({PersonPlane::kCount, height, width}));
+  torch::Tensor planes = torch::rand({PersonPlane::kCount, height, width});
+  planes[PersonPlane::kAlpha].slice(0, 0, 30).slice(1, 0, 30).zero_();
+  planes[PersonPlane::kAlpha].slice(0, height - 30, height).slice(1, width - 30, width).fill_(1);
+  layers.planes = HostValues<float>(planes);
   return layers;
 }
 
@@ -47,6 +51,8 @@ TEST(RefinerModule, RunsWithoutLibTorchTheSame) {
     const std::vector<float> here = HostValues<float>(module(PlanesOf(&layers))), there = native.Change(layers);
     ASSERT_EQ(here.size(), there.size());
     float largest = 0;
+    const size_t alpha = PersonPlane::kAlpha * layers.pixels();
+    EXPECT_EQ(there[alpha], 0) << "nobody near";
     for (size_t i = 0; i < here.size(); ++i) {
       ASSERT_NEAR(here[i], there[i], 2e-4F) << i;
       largest = std::max(largest, std::abs(here[i]));

@@ -3,12 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "bodyloom/data_tools/body/body_or_builtin.h"
 #include "bodyloom/pipelines/person/open_refiner.h"
 #include "bodyloom/render/overlay.h"
+#include "bodyloom/render/view_camera.h"
 #include "tests/support/random_refiner.h"
 #include "tests/support/short_track.h"
 
@@ -79,6 +81,67 @@ TEST(RefinedPainter, LayersAreThoseOfTheSurfaceForAnyThreads) {
   EXPECT_NEAR(lowest, rest.col(1).minCoeff(), 0.1);
   EXPECT_GT(seen, 500);
   EXPECT_GT(mirrored, 500);
+}
+
+/// How far the covered pixels reach.
+struct Reach {
+  int left, right;
+};
+
+Reach ReachOf(const std::vector<uint8_t>& coverage, int width) {
+  Reach reach = {width, -1};
+  for (size_t i = 0; i < coverage.size(); ++i) {
+    if (coverage[i] < 128) continue;
+    reach.left = std::min(reach.left, static_cast<int>(i) % width);
+    reach.right = std::max(reach.right, static_cast<int>(i) % width);
+  }
+  return reach;
+}
+
+TEST(RefinedPainter, ALargePersonIsRefinedAtTheSizeThatTheRefinerKnows) {
+  const PhotoPerson person = Coloured();
+  const Track moved = MovedByPerson(person, ShortTrack(2));
+  const MatrixX3d vertices = TrackVertices(*person.body, moved, 0);
+  const Camera camera = moved.CameraAt(0);
+  const double size = PixelsPerMetre(camera, vertices.col(2).mean());
+  RefinerWeights weights = RandomRefiner(0);
+  for (Eigen::Index i = PersonPlane::kAlpha; i < 16; i += 4)
+    weights.convolutions.back().bias[i] = 5;  // all it may grow
+  const auto reach_at = [&](double known) {
+    weights.pixels_per_metre = known;
+    PictureRefiner refiner(weights);
+    Image picture(camera.width, camera.height);
+    std::vector<uint8_t> covered(static_cast<size_t>(camera.width) * camera.height, 0);
+    RefinedPainter(person, 1, &refiner).Draw(vertices, camera, &picture, &covered);
+    return ReachOf(covered, camera.width);
+  };
+  Image picture(camera.width, camera.height);
+  std::vector<uint8_t> covered(static_cast<size_t>(camera.width) * camera.height, 0);
+  RefinedPainter(person, 1, nullptr).Draw(vertices, camera, &picture, &covered);
+  const Reach drawn = ReachOf(covered, camera.width), as_known = reach_at(size), half = reach_at(size / 2);
+  ASSERT_GT(drawn.left, 3 * OutlineReach::kOutwards);
+  EXPECT_NEAR(drawn.left - as_known.left, OutlineReach::kOutwards, 1);
+  EXPECT_NEAR(as_known.right - drawn.right, OutlineReach::kOutwards, 1);
+  // Pixels of the small picture are twice as large, and one of them may be covered in part.
+  for (const int growth : {drawn.left - half.left, half.right - drawn.right}) {
+    EXPECT_GE(growth, 2 * OutlineReach::kOutwards);
+    EXPECT_LE(growth, 2 * OutlineReach::kOutwards + 3);
+  }
+  EXPECT_EQ(reach_at(2 * size).left, as_known.left) << "a small person is refined as it is";
+}
+
+TEST(RefinedPainter, ALargePersonWhoIsNotChangedIsThePerson) {
+  const PhotoPerson person = Coloured();
+  const Track moved = MovedByPerson(person, ShortTrack(2));
+  const MatrixX3d vertices = TrackVertices(*person.body, moved, 0);
+  const Camera camera = moved.CameraAt(0);
+  RefinerWeights weights = RandomRefiner(0);
+  weights.pixels_per_metre = 0.4 * PixelsPerMetre(camera, vertices.col(2).mean());
+  PictureRefiner refiner(weights);
+  Image drawn(camera.width, camera.height, Colour{10, 250, 90}), refined = drawn;
+  RefinedPainter(person, 1, nullptr).Draw(vertices, camera, &drawn);
+  RefinedPainter(person, 1, &refiner).Draw(vertices, camera, &refined);
+  for (size_t i = 0; i < drawn.bgr.size(); ++i) ASSERT_NEAR(drawn.bgr[i], refined.bgr[i], 2) << i;
 }
 
 TEST(RefinedPainter, DrawsNothingWhereNobodyIs) {

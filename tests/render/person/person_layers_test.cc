@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -62,6 +63,74 @@ TEST(PersonLayers, ChangesAreBoundedAndClamped) {
   EXPECT_EQ(person[3 * layers.pixels() + i], 1);
   change.pop_back();
   EXPECT_THROW(ChangedPerson(layers, change), std::invalid_argument);
+}
+
+/// A block of 24×20 pixels from (x0, y0) on in a box of 64×64.
+PersonLayers Block(int x0, int y0) {
+  PersonLayers layers;
+  layers.width = layers.height = kLayersMultiple;
+  layers.planes.assign(4 * layers.pixels(), 0);
+  for (int y = y0; y < y0 + 20; ++y) {
+    for (int x = x0; x < x0 + 24; ++x) layers.planes[3 * layers.pixels() + static_cast<size_t>(y) * 64 + x] = 1;
+  }
+  return layers;
+}
+
+TEST(PersonLayers, OutlinesMoveNoFurtherThanAllowed) {
+  const PersonLayers layers = Block(20, 30);
+  for (const float sign : {1.0F, -1.0F}) {
+    std::vector<float> change(4 * layers.pixels(), sign);
+    KeepNearOutline(layers, change);
+    for (int y = 0; y < 64; ++y) {
+      for (int x = 0; x < 64; ++x) {
+        const size_t i = static_cast<size_t>(y) * 64 + x;
+        ASSERT_EQ(change[i], sign) << "colours change everywhere";
+        const int outside = std::max({20 - x, x - 43, 30 - y, y - 49}), inside = 1 - outside;  // pixels from the block
+        const bool allowed = sign > 0 ? outside <= OutlineReach::kOutwards : inside <= OutlineReach::kInwards;
+        ASSERT_EQ(change[3 * layers.pixels() + i], allowed ? sign : 0) << x << " " << y;
+      }
+    }
+  }
+  std::vector<float> change(7);
+  EXPECT_THROW(KeepNearOutline(layers, change), std::invalid_argument);
+}
+
+TEST(PersonLayers, AnEnlargedChangeIsLinearBetweenPixelCentres) {
+  PersonLayers small, large;
+  small.x = 3, small.y = -2, small.width = small.height = 64;
+  large.x = 40, large.y = 10, large.width = 64, large.height = 128;
+  const auto ramp = [](double x, double y) { return 0.02 * x - 0.01 * y + 0.3; };
+  std::vector<float> change(4 * small.pixels());
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      for (size_t c = 0; c < 4; ++c) {
+        change[c * small.pixels() + static_cast<size_t>(y) * 64 + x] =
+            static_cast<float>(ramp(small.x + x, small.y + y) * static_cast<double>(c + 1));
+      }
+    }
+  }
+  const double factor = 0.4;
+  const std::vector<float> enlarged = EnlargedChange(small, change, factor, large);
+  int inside = 0;
+  for (int y = 0; y < large.height; ++y) {
+    for (int x = 0; x < large.width; ++x) {
+      const double u = factor * (large.x + x + 0.5) - 0.5, v = factor * (large.y + y + 0.5) - 0.5;
+      if (u < small.x || v < small.y || u > small.x + 63 || v > small.y + 63) continue;
+      ++inside;
+      for (size_t c = 0; c < 4; ++c) {
+        const size_t i = c * large.pixels() + static_cast<size_t>(y) * large.width + x;
+        ASSERT_NEAR(enlarged[i], ramp(u, v) * static_cast<double>(c + 1), 1e-5) << x << " " << y;
+      }
+    }
+  }
+  EXPECT_GT(inside, 4000);
+  large.x = 400;
+  for (const float value : EnlargedChange(small, change, factor, large)) ASSERT_EQ(value, 0) << "outside the small box";
+  small.x = large.x = 5, small.y = large.y = 7, large.height = 64;
+  EXPECT_EQ(EnlargedChange(small, change, 1, large), change);
+  EXPECT_THROW(EnlargedChange(small, change, 0, large), std::invalid_argument);
+  change.pop_back();
+  EXPECT_THROW(EnlargedChange(small, change, 1, large), std::invalid_argument);
 }
 
 }  // namespace
