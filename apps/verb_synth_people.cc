@@ -15,15 +15,24 @@ namespace {
 constexpr const char* kSynthPeopleFooter =
     "Writes a multi-person dataset: a folder of single-person datasets, one a person, action and view, and\n"
     "people.json, which says who is kept for testing. Everything of a person comes from the seed: body, clothes\n"
-    "(suit, skirt or coat), colours and light. Each action is a stretch of a motion chosen at random; the camera\n"
+    "(suit, skirt or coat; --clothes), colours and light. Each action is a stretch of a motion chosen at random; the "
+    "camera\n"
     "follows the person.\n"
     "Examples:\n"
     "  bodyloom synth-people --motions demo --out people --people 4 --sheet people.png\n"
     "  bodyloom synth-people --motions motion/ --out people --people 60 --actions 5 --views 4 --size 256\n\n";
 
-void SynthPeople(const SynthesizePeopleRequest& request, bool quiet) {
-  const SynthesizePeopleReport report = SynthesizePeople(request, CommandCallbacks(quiet));
-  if (!quiet) std::cout << ToText(report);
+struct SynthPeopleArguments {
+  SynthesizePeopleRequest request;
+  std::string clothes = "patterned";
+  bool quiet = false;
+};
+
+void SynthPeople(const SynthPeopleArguments& arguments) {
+  SynthesizePeopleRequest request = arguments.request;
+  request.set.style = ClothesStyleFromString(arguments.clothes);
+  const SynthesizePeopleReport report = SynthesizePeople(request, CommandCallbacks(arguments.quiet));
+  if (!arguments.quiet) std::cout << ToText(report);
 }
 
 }  // namespace
@@ -31,9 +40,8 @@ void SynthPeople(const SynthesizePeopleRequest& request, bool quiet) {
 void AddSynthPeopleVerb(CLI::App& app, Action* action) {
   CLI::App* verb = app.add_subcommand("synth-people", "Makes pictures of many dressed people with known truth");
   verb->footer(std::string(kSynthPeopleFooter) + kExitCodeHelp);
-  auto request = std::make_shared<SynthesizePeopleRequest>();
-  auto quiet = std::make_shared<bool>(false);
-  SynthesizePeopleRequest& c = *request;
+  auto arguments = std::make_shared<SynthPeopleArguments>();
+  SynthesizePeopleRequest& c = arguments->request;
   const CLI::Range many(1, 999);
   verb->add_option("--motions", c.motions, "a folder of motion files, one such file, or the word demo; may be repeated")
       ->required();
@@ -58,12 +66,17 @@ void AddSynthPeopleVerb(CLI::App& app, Action* action) {
   verb->add_option("--shape", c.set.shape_sigma, "how far bodies differ, standard deviations")
       ->check(CLI::Range(0.0, 2.0))
       ->capture_default_str();
+  verb->add_option("--clothes", arguments->clothes,
+                   "patterned (what shows best how a surface moves) or everyday (what people wear: mostly plain, wide "
+                   "trousers and loose shirts among them)")
+      ->check(CLI::IsMember({"patterned", "everyday"}))
+      ->capture_default_str();
   verb->add_option("--seed", c.set.seed, "same seed, same files")->capture_default_str();
   verb->add_option("--body", c.body, "body model (default: the built-in body)")->type_name("FILE");
   verb->add_option("--sheet", c.sheet, "also write a contact sheet, .png or .jpg")->type_name("FILE");
   verb->add_option("--threads", c.set.num_threads, "0: all cores")->check(CLI::Range(0, 1024))->capture_default_str();
-  verb->add_flag("--quiet", *quiet, "no words on the screen");
-  verb->callback([request, quiet, action] { *action = [request, quiet] { SynthPeople(*request, *quiet); }; });
+  verb->add_flag("--quiet", arguments->quiet, "no words on the screen");
+  verb->callback([arguments, action] { *action = [arguments] { SynthPeople(*arguments); }; });
 }
 
 }  // namespace bodyloom

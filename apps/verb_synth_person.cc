@@ -27,13 +27,14 @@ constexpr const char* kSynthPersonFooter =
 
 struct SynthPersonArguments {
   SynthesizePersonRequest request;
-  std::string garment = "skirt";
+  std::string garment = "skirt", clothes = "patterned";
   bool quiet = false;
 };
 
 void SynthPerson(const SynthPersonArguments& arguments) {
   SynthesizePersonRequest request = arguments.request;
   request.set.garment = GarmentKindFromString(arguments.garment);
+  request.set.style = ClothesStyleFromString(arguments.clothes);
   const SynthesizePersonReport report = SynthesizePerson(request, CommandCallbacks(arguments.quiet));
   if (!arguments.quiet) std::cout << ToText(report);
 }
@@ -50,6 +51,9 @@ void AddSynthPersonVerb(CLI::App& app, Action* action) {
   verb->add_option("--out", c.out, "the folder to write")->required()->type_name("DIR");
   verb->add_option("--garment", arguments->garment, "skirt, coat (both loose) or suit (tight)")
       ->check(CLI::IsMember({"skirt", "coat", "suit"}))
+      ->capture_default_str();
+  verb->add_option("--clothes", arguments->clothes, "patterned, or everyday: mostly plain, wide and loose among them")
+      ->check(CLI::IsMember({"patterned", "everyday"}))
       ->capture_default_str();
   verb->add_option("--seed", c.set.seed, "the person; same seed, same files")->capture_default_str();
   verb->add_option("--light-seed", c.set.light_seed, "another light on the same person (default: the seed's)");

@@ -13,8 +13,8 @@ namespace bodyloom {
 struct RefinerModuleImpl : torch::nn::Module {
   /// Kernels are Kaiming's for relu, biases 0; the last convolution is all zeros: an untrained refiner changes nothing.
   RefinerModuleImpl();
-  /// B×PersonPlane::kCount×H×W → B×4×H×W, what ChangedPerson() takes, alpha near the outline (KeepNearOutline()). Throws std::invalid_argument for sides that are not
-  /// multiples of kRefinerMultiple.
+  /// B×PersonPlane::kCount×H×W → B×4×H×W, what ChangedPerson() takes, alpha near the outline (KeepNearOutline()). Throws
+  /// std::invalid_argument for sides that are not multiples of kRefinerMultiple.
   torch::Tensor forward(const torch::Tensor& planes);
 
   std::vector<torch::nn::Conv2d> convolutions;

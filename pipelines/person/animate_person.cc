@@ -2,7 +2,6 @@
 #include "bodyloom/pipelines/person/animate_person.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -28,7 +27,7 @@
 #include "bodyloom/pipelines/people/view_angles.h"
 #include "bodyloom/pipelines/person/person_cloth.h"
 #include "bodyloom/pipelines/person/person_folder.h"
-#include "bodyloom/pipelines/person/refined_painter.h"
+#include "bodyloom/pipelines/person/person_frames.h"
 #include "bodyloom/pipelines/report_json.h"
 #include "bodyloom/render/view_camera.h"
 
@@ -42,7 +41,7 @@ class PersonAnimation {
 
   AnimatePersonSummary Run() {
     CheckRequest();
-    refiner_ = OpenRefiner(request_.refiner);
+    OpenRefiner(request_.refiner);  // what cannot be used is said before a person is made
     clock_.Begin("person");
     person_ = request_.person.empty() ? MakePhotoPerson(request_.photos, callbacks_)
                                       : ReadPhotoPerson(request_.person, request_.photos.fit.body);
@@ -116,7 +115,7 @@ class PersonAnimation {
       throw std::runtime_error(Concatenate(request_.track, ": pictures of ", width_, "x", height_,
                                            ", expected sides of 2 to ", kLongestPictureSide));
     }
-    painter_.emplace(person_, threads_, refiner_.get());
+    frames_.emplace(person_, request_.refiner, std::min(threads_, std::max(1, track_.num_frames())));
   }
 
   [[nodiscard]] Camera CameraAt(int t) const {
@@ -145,43 +144,38 @@ class PersonAnimation {
       video = std::make_unique<VideoWriter>(request_.out, width_, height_, fps > 0 ? fps : kFpsWithoutTimes);
     }
     std::vector<double> draw_ms;
-    for (int t = 0; t < count; ++t) {
-      callbacks_.Update("drawing", static_cast<double>(t) / count);
-      const bool shows = track_.HasResult(t);
-      if (!shows) ++summary_.frames_without_fit;
+    // The first frame alone: somebody waits for it.
+    for (int first = 0, next = 1; first < count; first = next, next = std::min(count, next + frames_->at_once())) {
+      callbacks_.Update("drawing", static_cast<double>(first) / count);
       const Stopwatch watch;
-      const MatrixX3d vertices = VerticesAt(t);
-      if (video) {
-        Image whole = background.Next();
-        if (shows) painter_->Draw(vertices, CameraAt(t), &whole);
-        if (t == 0) summary_.first_frame_s = total_.seconds();
-        if (shows) draw_ms.push_back(1e3 * watch.seconds());
-        clock_.Begin("write");
-        video->Write(whole);
-        clock_.Begin("draw");
+      std::vector<PersonPose> poses;
+      for (int t = first; t < next; ++t) poses.push_back({VerticesAt(t), CameraAt(t)});
+      const std::vector<DrawnPerson> drawn = frames_->Draw(poses);
+      draw_ms.push_back(1e3 * watch.seconds() / (next - first));
+      if (first == 0) summary_.first_frame_s = total_.seconds();
+      clock_.Begin("write");
+      for (int t = first; t < next; ++t) {
+        if (!track_.HasResult(t)) ++summary_.frames_without_fit;
+        if (video) {
+          Image whole = background.Next();
+          LayOver(drawn[t - first], &whole);
+          video->Write(whole);
+        }
       }
-      if (!request_.pictures.empty()) WritePicture(t, vertices);
+      if (!request_.pictures.empty()) {
+        ParallelFor(next - first, threads_, [&](int i) { WritePicture(first + i, drawn[i]); });
+      }
+      clock_.Begin("draw");
     }
     if (video) video->Finish();
     if (!draw_ms.empty()) summary_.draw_ms = Percentile(draw_ms, 50);
     summary_.frames = count;
   }
 
-  void WritePicture(int t, const MatrixX3d& vertices) {
-    Image black(width_, height_);
-    std::vector<uint8_t> coverage(static_cast<size_t>(width_) * height_, 0);
-    if (vertices.rows() > 0) painter_->Draw(vertices, CameraAt(t), &black, &coverage);
-    std::vector<uint8_t> bgra(4 * coverage.size(), 0);
-    for (size_t p = 0; p < coverage.size(); ++p) {
-      if (coverage[p] == 0) continue;
-      for (size_t c = 0; c < 3; ++c) {
-        bgra[4 * p + c] = static_cast<uint8_t>(std::min(255.0, std::round(255.0 * black.bgr[3 * p + c] / coverage[p])));
-      }
-      bgra[4 * p + 3] = coverage[p];
-    }
+  void WritePicture(int t, const DrawnPerson& person) const {
     char name[32];
     std::snprintf(name, sizeof name, "%06d.png", t);
-    WriteAlphaPng((std::filesystem::path(request_.pictures) / name).string(), width_, height_, bgra);
+    WriteAlphaPng((std::filesystem::path(request_.pictures) / name).string(), width_, height_, BgraOf(person));
   }
 
   AnimatePersonSummary Finish() {
@@ -216,9 +210,8 @@ class PersonAnimation {
   int width_ = 0, height_ = 0;
   std::optional<PosedTrack> posed_;
   std::optional<PersonCloth> cloth_;
-  std::vector<int> order_;                   ///< the track's frames as they are shown; empty: in turn
-  std::unique_ptr<PictureRefiner> refiner_;  ///< null: pictures stay as they are drawn
-  std::optional<RefinedPainter> painter_;
+  std::vector<int> order_;  ///< the track's frames as they are shown; empty: in turn
+  std::optional<PersonFrames> frames_;
   AnimatePersonSummary summary_;
 };
 

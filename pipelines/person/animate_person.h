@@ -34,8 +34,8 @@ struct AnimatePersonSummary {
   PhotoPersonReport person;  ///< empty for a person who was kept
   int frames = 0, frames_without_fit = 0;
   int width = 0, height = 0;  ///< of the pictures
-  double draw_ms = 0;         ///< median of posing and drawing a frame
-  double first_frame_s = 0;   ///< from the beginning until the first frame was drawn
+  double draw_ms = 0;        ///< of posing and drawing a frame: of those drawn at once the mean, of them all the median
+  double first_frame_s = 0;  ///< from the beginning until the first frame was drawn
   StageSeconds seconds;
   double total_seconds = 0;
   std::vector<std::string> written;

@@ -12,6 +12,12 @@
 
 namespace bodyloom {
 
+/// A body that a person is drawn in.
+struct PersonPose {
+  MatrixX3d vertices_in_camera;  ///< of person.body
+  Camera camera;
+};
+
 /// Keeps its memory between pictures. Not for use by two threads at once.
 class PersonPainter {
  public:

@@ -34,6 +34,7 @@ std::string CommandLine(const SynthesizePeopleRequest& c) {
   add("--people", c.set.people), add("--actions", c.set.actions), add("--views", c.set.views);
   add("--frames", c.set.frames), add("--every", c.set.every), add("--test-share", c.set.test_share);
   add("--size", c.set.size_px), add("--shape", c.set.shape_sigma);
+  if (c.set.style != ClothesStyle::kPatterned) line += " --clothes " + ToString(c.set.style);
   line += " --seed " + std::to_string(c.set.seed);
   return c.body.empty() ? line : line + " --body " + c.body;
 }

@@ -168,6 +168,21 @@ TEST(SynthPeopleVerb, WritesASetAndASheet) {
   EXPECT_GT(ReadImage(scratch / "sheet.png").width, 500);
 }
 
+TEST(SynthPeopleVerb, DressesPeopleAsTheyDressEveryDay) {
+  const ScratchFolder scratch;
+  const auto make = [&](const std::string& name, const std::string& clothes) {
+    return RunCommand({"synth-people", "--motions", "demo", "--out", scratch / name, "--people", "1", "--actions", "1",
+                       "--views", "1", "--frames", "1", "--size", "64", "--clothes", clothes});
+  };
+  for (const char* clothes : {"patterned", "everyday"}) ASSERT_EQ(make(clothes, clothes).exit_code, 0) << clothes;
+  const std::string picture = "p000/a0_v0/images/000000.png";
+  EXPECT_FALSE(ReadImage(scratch / ("patterned/" + picture)).bgr == ReadImage(scratch / ("everyday/" + picture)).bgr);
+  EXPECT_THAT(ReadMultiPersonDataset(scratch / "everyday").command, HasSubstr("--clothes everyday"));
+  const CommandResult other = make("other", "fancy");
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_THAT(other.err, HasSubstr("fancy not in {patterned,everyday}"));
+}
+
 TEST(SynthPeopleVerb, SaysWhatIsWrong) {
   const ScratchFolder scratch;
   const CommandResult longer =

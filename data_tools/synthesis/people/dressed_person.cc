@@ -7,8 +7,9 @@
 
 namespace bodyloom {
 
-DressedPerson::DressedPerson(const BodyModel& body, const Eigen::VectorXd& betas, GarmentKind kind, uint64_t seed)
-    : DressedPerson(body, betas, Outfit(body, kind, seed), seed) {}
+DressedPerson::DressedPerson(const BodyModel& body, const Eigen::VectorXd& betas, GarmentKind kind, uint64_t seed,
+                             ClothesStyle style)
+    : DressedPerson(body, betas, Outfit(body, kind, seed, style), seed) {}
 
 DressedPerson::DressedPerson(const BodyModel& body, const Eigen::VectorXd& betas, Outfit outfit, uint64_t seed)
     : ClothWearer(body, betas, outfit.offsets_m()), outfit_(std::move(outfit)) {

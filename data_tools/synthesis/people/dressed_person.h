@@ -19,8 +19,10 @@ namespace bodyloom {
 class DressedPerson : public ClothWearer {
  public:
   /// Throws std::invalid_argument when the body is not on SMPL's joints or has more betas given than components.
-  DressedPerson(const BodyModel& body, const Eigen::VectorXd& betas, GarmentKind kind, uint64_t seed);
-  DressedPerson(BodyModel&&, const Eigen::VectorXd&, GarmentKind, uint64_t) = delete;
+  DressedPerson(const BodyModel& body, const Eigen::VectorXd& betas, GarmentKind kind, uint64_t seed,
+                ClothesStyle style = ClothesStyle::kPatterned);
+  DressedPerson(BodyModel&&, const Eigen::VectorXd&, GarmentKind, uint64_t,
+                ClothesStyle = ClothesStyle::kPatterned) = delete;
 
   [[nodiscard]] const Outfit& outfit() const { return outfit_; }
 

@@ -65,7 +65,7 @@ class Maker {
       seeds_.push_back(random.Next() >> 32);  // 32 bits: JSON readers keep them whole
       const auto kind = static_cast<GarmentKind>(random.Below(3));
       people_.push_back(std::make_unique<DressedPerson>(body, PersonBetas(body, options.shape_sigma, seeds_.back()),
-                                                        kind, seeds_.back()));
+                                                        kind, seeds_.back(), options.style));
     }
   }
 

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "bodyloom/data_tools/synthesis/people/outfit.h"
 #include "bodyloom/geometry/body_model.h"
 #include "bodyloom/geometry/track.h"
 
@@ -26,6 +27,7 @@ struct MakeMultiPersonDatasetOptions {
   int size_px = 256;
   double elevation_low_deg = 0, elevation_high_deg = 20;
   double shape_sigma = 1;
+  ClothesStyle style = ClothesStyle::kPatterned;
   int samples = 2;  ///< a pixel along x and y
   uint64_t seed = 1;
   int num_threads = 0;                        ///< 0: all cores

@@ -128,7 +128,7 @@ MakeSinglePersonDatasetSummary MakeSinglePersonDataset(const std::string& folder
       T > 1 && motion.timestamps[1] > motion.timestamps[0] ? 1 / (motion.timestamps[1] - motion.timestamps[0]) : 30;
   info.seed = options.seed, info.garment = ToString(options.garment);
   info.motion = options.motion, info.command = options.command;
-  const DressedPerson person(body, track.motion.betas, options.garment, options.seed);
+  const DressedPerson person(body, track.motion.betas, options.garment, options.seed, options.style);
   info.has.iuv = body.has_parts() && body.data().face_iuv.rows() > 0;
   const SinglePersonDatasetWriter writer(folder, info, track);
   const DressedScene scene(person, track.camera, camera.up_in_camera, options.seed, options.samples,

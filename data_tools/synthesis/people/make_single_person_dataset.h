@@ -23,6 +23,7 @@ namespace bodyloom {
 
 struct MakeSinglePersonDatasetOptions {
   GarmentKind garment = GarmentKind::kSkirt;
+  ClothesStyle style = ClothesStyle::kPatterned;
   uint64_t seed = 1;
   std::optional<uint64_t> light_seed;  ///< of the light alone: the same person in another light; absent: `seed`
   int size_px = 256;                   ///< images are square

@@ -41,7 +41,17 @@ GarmentKind GarmentKindFromString(const std::string& name) {
   throw std::invalid_argument("garment \"" + name + "\", expected skirt, coat or suit");
 }
 
-Outfit::Outfit(const BodyModel& body, GarmentKind kind, uint64_t seed) : kind_(kind) {
+std::string ToString(ClothesStyle style) { return style == ClothesStyle::kEveryday ? "everyday" : "patterned"; }
+
+ClothesStyle ClothesStyleFromString(const std::string& name) {
+  for (const ClothesStyle style : {ClothesStyle::kPatterned, ClothesStyle::kEveryday}) {
+    if (ToString(style) == name) return style;
+  }
+  throw std::invalid_argument("clothes \"" + name + "\", expected patterned or everyday");
+}
+
+Outfit::Outfit(const BodyModel& body, GarmentKind kind, uint64_t seed, ClothesStyle style)
+    : kind_(kind), style_(style) {
   const std::vector<int>& smpl = SmplParents();
   BODYLOOM_CHECK(body.num_joints() >= 24 && std::equal(smpl.begin(), smpl.end(), body.parents().begin()),
                  "outfit: ", body.name(), " with ", body.num_joints(), " joints, expected a body on SMPL's 24");
@@ -90,8 +100,33 @@ Outfit::Outfit(const BodyModel& body, GarmentKind kind, uint64_t seed) : kind_(k
   top_m_ = between(0.005, 0.009) * c.unit, trousers_m_ = between(0.006, 0.012) * c.unit;
   flare_m_ = between(0, 0.015) * c.unit, shoes_m_ = between(0.006, 0.01) * c.unit;
   hair_m_ = between(0.012, 0.028) * c.unit;
+  if (style == ClothesStyle::kEveryday) CutEveryday(seed, joints);
   offsets_m_.reserve(vertices.rows());
   for (int v = 0; v < vertices.rows(); ++v) offsets_m_.push_back(OffsetAt(vertices.row(v).transpose()));
+}
+
+/// Widths of trousers and shirts, drawn apart from the rest.
+void Outfit::CutEveryday(uint64_t seed, const MatrixX3d& joints) {
+  OutfitCut& c = cut_;
+  HashRandom random(seed, {0x65766572});
+  const auto between = [&](double low, double high) { return random.Uniform(low, high) * c.unit; };
+  const double width = random.Uniform();
+  if (width < 0.35) {  // slim
+    trousers_m_ = between(0.004, 0.01), flare_m_ = between(0, 0.01);
+  } else if (width < 0.7) {  // straight
+    trousers_m_ = between(0.01, 0.018), flare_m_ = between(0.01, 0.03), even_flare_ = true;
+  } else {  // wide
+    trousers_m_ = between(0.015, 0.028), flare_m_ = between(0.03, 0.065), even_flare_ = true;
+  }
+  const bool loose = random.Uniform() < 0.65;
+  top_m_ = loose ? between(0.01, 0.028) : between(0.004, 0.008);
+  const double hang = between(-0.04, 0.07);
+  if (kind_ == GarmentKind::kSuit && random.Uniform() < 0.75) {
+    tucked_in_ = false;
+    c.waist_y = joints(kPelvis, 1) + hang;
+    top_m_ = std::max(top_m_, trousers_m_ + 0.15 * flare_m_ + 0.003 * c.unit);  // over the flare's beginning
+  }
+  hair_m_ = between(0.012, 0.042);
 }
 
 /// Distance from the hair's edge, positive where hair grows.
@@ -120,15 +155,15 @@ double Outfit::OffsetAt(const Vector3d& p) const {
   const OutfitCut& c = cut_;
   const double edge = 0.012 * c.unit;  // from the skin to a garment's full thickness
   if (p.y() > c.head_y) return hair_m_ * SmoothStep(HairDepth(p) / (3 * edge));
-  // The shirt is tucked in at the waist, so that trousers or a skirt go over it.
+  // A shirt that is tucked in is thin at the waist, so that trousers or a skirt go over it.
   const double tucked = c.waist_y + 2 * edge;
+  const double at_waist = tucked_in_ ? 0.5 + 0.5 * SmoothStep((p.y() - tucked) / (4 * edge)) : 1;
   const double top = top_m_ * SmoothStep((c.sleeve_x - std::abs(p.x())) / edge) * SmoothStep(-NeckHole(p) / edge) *
-                     (0.5 + 0.5 * SmoothStep((p.y() - tucked) / (4 * edge))) *
-                     SmoothStep((p.y() - (c.waist_y - 2 * edge)) / edge);
+                     at_waist * SmoothStep((p.y() - (c.waist_y - 2 * edge)) / edge);
   const double share = std::clamp((c.waist_y - p.y()) / (c.waist_y - c.hem_y), 0.0, 1.0);
-  const double bottom = kind_ == GarmentKind::kSkirt
-                            ? 0.3 * trousers_m_ * SmoothStep((p.y() - c.hem_y) / edge)
-                            : (trousers_m_ + flare_m_ * share * share) * SmoothStep((p.y() - c.hem_y) / edge);
+  const double bottom = kind_ == GarmentKind::kSkirt ? 0.3 * trousers_m_ * SmoothStep((p.y() - c.hem_y) / edge)
+                                                     : (trousers_m_ + flare_m_ * share * (even_flare_ ? 1 : share)) *
+                                                           SmoothStep((p.y() - c.hem_y) / edge);
   const double shoes = shoes_m_ * SmoothStep((c.shoe_y - p.y()) / edge);
   const double below_waist = bottom * SmoothStep((c.waist_y + edge - p.y()) / edge);
   return std::max({top, below_waist, shoes});

@@ -25,6 +25,14 @@ std::string ToString(GarmentKind kind);
 /// "suit", "skirt" or "coat"; throws std::invalid_argument otherwise.
 GarmentKind GarmentKindFromString(const std::string& name);
 
+/// Patterned: clothes near the skin in the patterns that show best how a surface moves. Everyday: what people wear, wide
+/// trousers and shirts that hang loose among it, most of it plain (wardrobe.h).
+enum class ClothesStyle { kPatterned, kEveryday };
+
+std::string ToString(ClothesStyle style);
+/// "patterned" or "everyday"; throws std::invalid_argument otherwise.
+ClothesStyle ClothesStyleFromString(const std::string& name);
+
 /// Where things end, metres on the template. The seed chooses within what people wear.
 struct OutfitCut {
   double unit = 1;  ///< height of the body / 1.71 m: scales every length below
@@ -42,9 +50,10 @@ struct OutfitCut {
 class Outfit {
  public:
   /// Throws std::invalid_argument when the body does not begin with SMPL's 24 joints.
-  Outfit(const BodyModel& body, GarmentKind kind, uint64_t seed);
+  Outfit(const BodyModel& body, GarmentKind kind, uint64_t seed, ClothesStyle style = ClothesStyle::kPatterned);
 
   [[nodiscard]] GarmentKind kind() const { return kind_; }
+  [[nodiscard]] ClothesStyle style() const { return style_; }
   [[nodiscard]] const OutfitCut& cut() const { return cut_; }
   /// Label of the place `on_template`; never background.
   [[nodiscard]] PersonLabel LabelAt(const Eigen::Vector3d& on_template) const;
@@ -57,9 +66,14 @@ class Outfit {
   [[nodiscard]] double HairDepth(const Eigen::Vector3d& p) const;
   [[nodiscard]] double NeckHole(const Eigen::Vector3d& p) const;
 
+  void CutEveryday(uint64_t seed, const MatrixX3d& joints);
+
   GarmentKind kind_;
+  ClothesStyle style_;
   OutfitCut cut_;
   double top_m_ = 0, trousers_m_ = 0, flare_m_ = 0, shoes_m_ = 0, hair_m_ = 0;
+  bool even_flare_ = false;  ///< trousers widen evenly down to the hem, else with the square of the way
+  bool tucked_in_ = true;    ///< the shirt, else it hangs over the trousers
   std::vector<double> offsets_m_;
 };
 

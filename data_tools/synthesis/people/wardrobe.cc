@@ -69,6 +69,8 @@ Vector3f SurfacePattern::At(const Vector3f& place_m) const {
       const float n = 0.65F * ValueNoise(p, seed) + 0.35F * ValueNoise(2.3F * p, seed + 1);
       return colour + std::clamp(1.6F * n - 0.3F, 0.0F, 1.0F) * (other - colour);
     }
+    case PatternKind::kPrint:
+      return print.contains(place_m) && ValueNoise(p, seed) > 0.5F ? other : colour;
   }
   return colour;
 }
@@ -108,11 +110,74 @@ Wardrobe::Wardrobe(const Outfit& outfit, double around_m, uint64_t seed) : cut_(
   hair.colour = FromHsv(random.Uniform(0.04, 0.12), random.Uniform(0.3, 0.8), random.Uniform(0.1, 0.6));
   hair.other = 0.7F * hair.colour;
 
+  if (outfit.style() == ClothesStyle::kEveryday) DressEveryday(outfit.kind(), seed);
+
   garment_ = of_label(outfit.kind() == GarmentKind::kCoat ? PersonLabel::kTop : PersonLabel::kBottom);
   if (around_m > 0) {
     const double periods = std::max(1.0, std::round(around_m / (2 * garment_.cell_m)));
     garment_.cell_m = float(around_m / (2 * periods));
   }
+}
+
+void Wardrobe::DressEveryday(GarmentKind garment, uint64_t seed) {
+  HashRandom random(seed, {0x65766477});
+  const auto unit = static_cast<float>(cut_.unit);
+  const auto grey = [&] {
+    const double which = random.Uniform();
+    const double value = which < 0.4   ? random.Uniform(0.04, 0.16)
+                         : which < 0.7 ? random.Uniform(0.25, 0.6)
+                                       : random.Uniform(0.78, 0.95);
+    return FromHsv(random.Uniform(), random.Uniform(0, 0.08), value);
+  };
+  const auto any = [&] { return FromHsv(random.Uniform(), random.Uniform(0.25, 0.85), random.Uniform(0.25, 0.95)); };
+  const auto colour = [&](bool denim) {
+    const double which = random.Uniform();
+    if (which < 0.5) return grey();
+    if (denim && which < 0.83) {
+      return FromHsv(random.Uniform(0.58, 0.64), random.Uniform(0.3, 0.7), random.Uniform(0.15, 0.6));
+    }
+    return any();
+  };
+  // Shares up to which a cloth is faded, printed, striped, checked, dotted; the rest is noise.
+  const auto dress = [&](PersonLabel label, const std::array<double, 5>& up_to) {
+    SurfacePattern& p = patterns_[size_t(label)];
+    p = SurfacePattern();
+    p.seed = random.Next();
+    p.colour = colour(label == PersonLabel::kBottom);
+    const double which = random.Uniform();
+    p.axis = random.Uniform() < 0.6 ? 1 : 0;
+    if (which < up_to[0]) {
+      p.kind = PatternKind::kNoise, p.other = float(random.Uniform(0.75, 0.95)) * p.colour;
+      p.cell_m = float(random.Uniform(0.02, 0.08)) * unit;
+      return;
+    }
+    p.other = random.Uniform() < 0.5 ? grey() : any();
+    p.kind = which < up_to[1]   ? PatternKind::kPrint
+             : which < up_to[2] ? PatternKind::kStripes
+             : which < up_to[3] ? PatternKind::kChecks
+             : which < up_to[4] ? PatternKind::kDots
+                                : PatternKind::kNoise;
+    p.cell_m = float(random.Uniform(0.006, 0.04)) * unit;
+    const auto half_width = static_cast<float>(random.Uniform(0.06, 0.13)),
+               height = static_cast<float>(random.Uniform(0.06, 0.25)),
+               from_neck = static_cast<float>(random.Uniform(0.02, 0.1));
+    const Vector3f neck(float(cut_.neck_x), float(cut_.neck_y), float(cut_.neck_z));
+    p.print = {neck - unit * Vector3f(half_width, from_neck + height, 0),
+               neck + unit * Vector3f(half_width, -from_neck, 1)};
+  };
+  // Cloth that is sewn apart has other coordinates than the body, where a print would land anywhere.
+  const double prints = garment == GarmentKind::kCoat ? 0.6 : 0.7;
+  dress(PersonLabel::kTop, {0.6, prints, 0.82, 0.9, 0.94});
+  dress(PersonLabel::kBottom, {0.75, 0.75, 0.82, 0.9, 0.93});
+  SurfacePattern& shoes = patterns_[size_t(PersonLabel::kShoes)];
+  shoes.colour = shoes.other = random.Uniform() < 0.7 ? grey() : any();
+  SurfacePattern& hair = patterns_[size_t(PersonLabel::kHair)];
+  const double which = random.Uniform();
+  hair.colour = which < 0.6   ? FromHsv(random.Uniform(0.05, 0.1), random.Uniform(0.2, 0.6), random.Uniform(0.05, 0.3))
+                : which < 0.8 ? FromHsv(random.Uniform(0.09, 0.13), random.Uniform(0.3, 0.55), random.Uniform(0.5, 0.8))
+                : which < 0.93 ? FromHsv(0.1, random.Uniform(0, 0.1), random.Uniform(0.35, 0.8))
+                               : FromHsv(random.Uniform(0.02, 0.05), 0.65, random.Uniform(0.3, 0.55));
+  hair.other = 0.7F * hair.colour;
 }
 
 Vector3f Wardrobe::OfFace(const Vector3f& p) const {

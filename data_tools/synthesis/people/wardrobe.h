@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Colours and patterns of a synthetic person, fixed to the surface: stripes, checks, dots and noise as functions of
-/// the place on the template (or on the cloth as sewn), distinct for every label and chosen by a seed. Top and bottom
-/// are plain for one person in five each, else of two different patterns.
+/// the place on the template (or on the cloth as sewn), distinct for every label and chosen by a seed.
+///
+/// Patterned clothes (ClothesStyle): top and bottom are plain for one person in five each, else of two different patterns.
+/// Everyday clothes: three tops in five and three bottoms in four are plain but for how cloth fades; a tenth of the tops
+/// has a print on the chest; half of all are black, grey or white, a third of the bottoms blue as denim.
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 
@@ -12,14 +16,15 @@
 
 namespace bodyloom {
 
-enum class PatternKind : uint8_t { kPlain, kStripes, kChecks, kDots, kNoise };
+enum class PatternKind : uint8_t { kPlain, kStripes, kChecks, kDots, kNoise, kPrint };
 
 struct SurfacePattern {
   PatternKind kind = PatternKind::kPlain;
   Eigen::Vector3f colour = Eigen::Vector3f::Constant(128), other = colour;  ///< red, green, blue, 0…255
   float cell_m = 0.05F;                                                     ///< period / 2
   int axis = 1;                                                             ///< stripes: coordinate that they count
-  uint64_t seed = 0;                                                        ///< noise
+  uint64_t seed = 0;                                                        ///< noise, print
+  Eigen::AlignedBox3f print;  ///< print: noise of both colours in here, plain elsewhere
   [[nodiscard]] Eigen::Vector3f At(const Eigen::Vector3f& place_m) const;
 };
 
@@ -38,6 +43,7 @@ class Wardrobe {
   [[nodiscard]] const SurfacePattern& of_label(PersonLabel label) const { return patterns_[size_t(label)]; }
 
  private:
+  void DressEveryday(GarmentKind garment, uint64_t seed);
   [[nodiscard]] Eigen::Vector3f OfFace(const Eigen::Vector3f& p) const;
 
   OutfitCut cut_;

@@ -5,10 +5,9 @@
 #include <optional>
 #include <span>
 
-#include "bodyloom/geometry/arrays.h"
-#include "bodyloom/geometry/camera.h"
 #include "bodyloom/neural/people/photo_frame.h"
 #include "bodyloom/pipelines/neural/photo/people_data.h"
+#include "bodyloom/pipelines/person/draw_person.h"
 #include "bodyloom/pipelines/person/photo_person.h"
 #include "bodyloom/render/person/fit_clothes.h"
 
@@ -18,12 +17,6 @@ namespace bodyloom {
 std::optional<PhotoPerson> PersonOfFrames(const PeopleData& people, int person, std::span<const int> frames,
                                           std::span<const PhotoFrame> photos, int texture_size,
                                           const FitClothesOptions& clothes);
-
-/// A body that a person is drawn in.
-struct PersonPose {
-  MatrixX3d vertices_in_camera;
-  Camera camera;
-};
 
 /// Of frame `frame`, its clothes hanging still; none where the frame's body is not known.
 std::optional<PersonPose> PoseOfFrame(const PhotoPerson& person, const PeopleData& people, int number, int frame);

@@ -24,8 +24,9 @@ struct RefinerPicturesRequest {
 };
 
 /// Every other person is as anybody's photos show them: labels are found by GrabCut and bodies, in photos and pictures
-/// alike, are not quite right. The rest have true labels and bodies. Pictures person by person; the same for any number of threads. People of
-/// whom the photos show too little have none. Throws as PeopleData, Cancelled; the stage of `callbacks` is `stage`.
+/// alike, are not quite right. The rest have true labels and bodies. Pictures person by person; the same for any number
+/// of threads. People of whom the photos show too little have none. Throws as PeopleData, Cancelled; the stage of
+/// `callbacks` is `stage`.
 std::vector<RefinerPicture> RefinerPicturesOf(const RefinerPicturesRequest& request, const char* stage,
                                               const PipelineCallbacks& callbacks);
 

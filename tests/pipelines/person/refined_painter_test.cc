@@ -7,35 +7,18 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/body/body_or_builtin.h"
 #include "bodyloom/pipelines/person/open_refiner.h"
 #include "bodyloom/render/overlay.h"
 #include "bodyloom/render/view_camera.h"
+#include "tests/support/coloured_person.h"
 #include "tests/support/random_refiner.h"
 #include "tests/support/short_track.h"
 
 namespace bodyloom {
 namespace {
 
-/// The built-in body, its colours running over the atlas; its left half was seen, the other mirrored.
-PhotoPerson Coloured() {
-  PhotoPerson person;
-  person.bare = person.clothed = person.body = BodyOrBuiltin("");
-  person.betas = Eigen::VectorXd::Zero(2);
-  person.texture = Image(64, 64);
-  person.sources = Image(64, 64);
-  for (int y = 0; y < 64; ++y) {
-    for (int x = 0; x < 64; ++x) {
-      uint8_t *colour = person.texture.pixel(x, y), *source = person.sources.pixel(x, y);
-      colour[0] = static_cast<uint8_t>(2 * x), colour[1] = static_cast<uint8_t>(2 * y), colour[2] = 200;
-      source[0] = 255, source[1] = source[2] = x < 32 ? 255 : 0;
-    }
-  }
-  return person;
-}
-
 TEST(RefinedPainter, ARefinerThatChangesNothingDrawsThePerson) {
-  const PhotoPerson person = Coloured();
+  const PhotoPerson person = ColouredPerson();
   const Track moved = MovedByPerson(person, ShortTrack(2));
   const MatrixX3d vertices = TrackVertices(*person.body, moved, 0);
   const Camera camera = moved.CameraAt(0);
@@ -55,7 +38,7 @@ TEST(RefinedPainter, ARefinerThatChangesNothingDrawsThePerson) {
 }
 
 TEST(RefinedPainter, LayersAreThoseOfTheSurfaceForAnyThreads) {
-  const PhotoPerson person = Coloured();
+  const PhotoPerson person = ColouredPerson();
   const Track moved = MovedByPerson(person, ShortTrack(2));
   const MatrixX3d vertices = TrackVertices(*person.body, moved, 0);
   const PersonLayers layers = PersonLayerPainter(person, 1).Draw(vertices, moved.CameraAt(0));
@@ -99,7 +82,7 @@ Reach ReachOf(const std::vector<uint8_t>& coverage, int width) {
 }
 
 TEST(RefinedPainter, ALargePersonIsRefinedAtTheSizeThatTheRefinerKnows) {
-  const PhotoPerson person = Coloured();
+  const PhotoPerson person = ColouredPerson();
   const Track moved = MovedByPerson(person, ShortTrack(2));
   const MatrixX3d vertices = TrackVertices(*person.body, moved, 0);
   const Camera camera = moved.CameraAt(0);
@@ -131,7 +114,7 @@ TEST(RefinedPainter, ALargePersonIsRefinedAtTheSizeThatTheRefinerKnows) {
 }
 
 TEST(RefinedPainter, ALargePersonWhoIsNotChangedIsThePerson) {
-  const PhotoPerson person = Coloured();
+  const PhotoPerson person = ColouredPerson();
   const Track moved = MovedByPerson(person, ShortTrack(2));
   const MatrixX3d vertices = TrackVertices(*person.body, moved, 0);
   const Camera camera = moved.CameraAt(0);
@@ -145,7 +128,7 @@ TEST(RefinedPainter, ALargePersonWhoIsNotChangedIsThePerson) {
 }
 
 TEST(RefinedPainter, DrawsNothingWhereNobodyIs) {
-  const PhotoPerson person = Coloured();
+  const PhotoPerson person = ColouredPerson();
   const Track moved = MovedByPerson(person, ShortTrack(2));
   MatrixX3d vertices = TrackVertices(*person.body, moved, 0);
   vertices.col(0).array() += 100;

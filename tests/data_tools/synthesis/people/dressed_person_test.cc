@@ -76,6 +76,49 @@ TEST(Outfit, ClothesLieOutsideAndThicknessIsContinuous) {
   EXPECT_EQ(int(Outfit(ToyBody(), GarmentKind::kCoat, 1).offsets_m().size()), ToyBody().num_vertices());
 }
 
+TEST(Outfit, EverydayTrousersAreSlimStraightOrWideAndMostShirtsHangLoose) {
+  const BodyModel& body = BuiltinBody();
+  const MatrixX3d& joints = body.joint_template();
+  const Vector3d outer_ankle = joints.row(7).transpose() + Vector3d(0.05, 0, 0);
+  constexpr int kPeople = 400;
+  int wide = 0, hanging = 0;
+  for (uint64_t seed = 1; seed <= kPeople; ++seed) {
+    const Outfit outfit(body, GarmentKind::kSuit, seed, ClothesStyle::kEveryday);
+    const OutfitCut& cut = outfit.cut();
+    const Vector3d above_hem = {outer_ankle.x(), cut.hem_y + 0.02 * cut.unit, outer_ankle.z()};
+    if (cut.hem_y < joints(4, 1) - 0.1) wide += outfit.OffsetAt(above_hem) > 0.04 * cut.unit ? 1 : 0;
+    const Outfit patterned(body, GarmentKind::kSuit, seed);
+    EXPECT_EQ(cut.sleeve_x, patterned.cut().sleeve_x) << "what everyday clothes do not choose stays";
+    if (cut.waist_y == patterned.cut().waist_y) continue;
+    ++hanging;
+    // Over the trousers: further outside just above its hem than they are just below.
+    const Vector3d hip(joints(1, 0) + 0.08, cut.waist_y, joints(1, 2));
+    EXPECT_GT(outfit.OffsetAt(hip + Vector3d(0, 0.01, 0)), outfit.OffsetAt(hip - Vector3d(0, 0.025, 0))) << seed;
+    EXPECT_EQ(outfit.LabelAt(hip + Vector3d(0, 0.01, 0)), PersonLabel::kTop);
+    EXPECT_EQ(outfit.LabelAt(hip - Vector3d(0, 0.01, 0)), PersonLabel::kBottom);
+  }
+  EXPECT_NEAR(hanging, 0.75 * kPeople, 45);  // five standard deviations
+  // Three in ten have wide trousers, seven in ten of those long ones; nearly all of them are wider than 4 cm at the hem.
+  EXPECT_NEAR(wide, 0.21 * kPeople, 41);
+  EXPECT_EQ(ClothesStyleFromString(ToString(ClothesStyle::kEveryday)), ClothesStyle::kEveryday);
+  EXPECT_THROW(ClothesStyleFromString("fancy"), std::invalid_argument);
+}
+
+TEST(Outfit, EverydayClothesLieOutsideAndThicknessIsContinuous) {
+  const BodyModel& body = BuiltinBody();
+  for (const uint64_t seed : {1U, 2U, 3U, 4U, 5U}) {
+    const Outfit outfit(body, GarmentKind::kSuit, seed, ClothesStyle::kEveryday);
+    for (int v = 0; v < body.num_vertices(); ++v) {
+      const Vector3d p = body.data().v_template.row(v).transpose();
+      const double here = outfit.OffsetAt(p);
+      EXPECT_GE(here, 0);
+      EXPECT_LT(here, 0.1);
+      if (std::abs(p.y() - outfit.cut().head_y) <= 1e-4) continue;
+      EXPECT_LT(std::abs(outfit.OffsetAt(p + Vector3d(0, 1e-5, 0)) - here), 2e-4) << v;
+    }
+  }
+}
+
 /// Standing with the arms down, turned about the vertical by angle(t).
 template <typename Angle>
 Motion Turning(int frames, double fps, const Angle& angle) {

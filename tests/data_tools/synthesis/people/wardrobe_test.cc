@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <string>
 
@@ -16,8 +17,8 @@ using Eigen::Vector3f;
 constexpr double kAround_m = 2.1;
 constexpr PersonLabel kTop = PersonLabel::kTop, kBottom = PersonLabel::kBottom;
 
-Wardrobe WardrobeOf(GarmentKind kind, uint64_t seed) {
-  return {Outfit(BuiltinBody(), kind, seed), kind == GarmentKind::kSuit ? 0 : kAround_m, seed};
+Wardrobe WardrobeOf(GarmentKind kind, uint64_t seed, ClothesStyle style = ClothesStyle::kPatterned) {
+  return {Outfit(BuiltinBody(), kind, seed, style), kind == GarmentKind::kSuit ? 0 : kAround_m, seed};
 }
 
 TEST(Wardrobe, EveryPatternButThePlainOneShowsBothColoursOnLooseCloth) {
@@ -81,6 +82,53 @@ TEST(Wardrobe, AFifthIsPlainAndTwoPatternsDiffer) {
     for (const int count : kinds) EXPECT_NEAR(count, kPeople / 5.0, 90);
   }
   EXPECT_NEAR(both_plain, kPeople / 25.0, 45);
+}
+
+/// The largest channel less the smallest, as a share of the largest.
+float Saturation(const Vector3f& colour) { return 1 - colour.minCoeff() / std::max(1.0F, colour.maxCoeff()); }
+
+TEST(Wardrobe, EverydayClothesAreMostlyPlainAndHalfOfThemGrey) {
+  constexpr int kPeople = 2000;
+  std::array<int, 6> tops{}, bottoms{};
+  int grey_tops = 0;
+  for (uint64_t seed = 1; seed <= kPeople; ++seed) {
+    const Wardrobe wardrobe = WardrobeOf(GarmentKind::kSuit, seed, ClothesStyle::kEveryday);
+    const SurfacePattern &top = wardrobe.of_label(kTop), &bottom = wardrobe.of_label(kBottom);
+    ++tops[size_t(top.kind)], ++bottoms[size_t(bottom.kind)];
+    grey_tops += Saturation(top.colour) <= 0.081F ? 1 : 0;
+  }
+  // Five standard deviations of 2000 draws. Plain cloth fades, so it counts as noise, as 6 % of tops and 7 % of bottoms.
+  EXPECT_NEAR(tops[size_t(PatternKind::kNoise)], 0.66 * kPeople, 106);
+  EXPECT_NEAR(tops[size_t(PatternKind::kPrint)], 0.1 * kPeople, 67);
+  EXPECT_NEAR(tops[size_t(PatternKind::kStripes)], 0.12 * kPeople, 73);
+  EXPECT_NEAR(bottoms[size_t(PatternKind::kNoise)], 0.82 * kPeople, 86);
+  EXPECT_EQ(bottoms[size_t(PatternKind::kPrint)], 0);
+  EXPECT_NEAR(grey_tops, 0.5 * kPeople, 112);
+}
+
+TEST(Wardrobe, APrintIsOnTheChestAlone) {
+  int prints = 0;
+  for (uint64_t seed = 1; seed <= 100; ++seed) {
+    for (const GarmentKind kind : {GarmentKind::kSuit, GarmentKind::kCoat}) {
+      const Wardrobe wardrobe = WardrobeOf(kind, seed, ClothesStyle::kEveryday);
+      const SurfacePattern& top = wardrobe.of_label(kTop);
+      if (top.kind != PatternKind::kPrint) continue;
+      ASSERT_EQ(kind, GarmentKind::kSuit) << "a coat's cloth has other coordinates";
+      ++prints;
+      const Vector3f middle = top.print.center();
+      int printed = 0;
+      for (float y = middle.y() - 0.4F; y < middle.y() + 0.4F; y += 0.004F) {
+        for (float x = -0.3F; x < 0.3F; x += 0.004F) {
+          EXPECT_EQ(wardrobe.OfBody(kTop, {x, y, middle.z() - 0.6F}), top.colour) << "the back";
+          const bool is_printed = wardrobe.OfBody(kTop, {x, y, middle.z()}) != top.colour;
+          EXPECT_TRUE(!is_printed || top.print.contains(Vector3f(x, y, middle.z())));
+          printed += is_printed ? 1 : 0;
+        }
+      }
+      EXPECT_GT(printed, 10) << seed;
+    }
+  }
+  EXPECT_GT(prints, 2);
 }
 
 }  // namespace

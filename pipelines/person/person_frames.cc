@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/person/person_frames.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/pipelines/person/open_refiner.h"
+
+namespace bodyloom {
+
+void LayOver(const DrawnPerson& person, Image* image) {
+  BODYLOOM_CHECK(image->width == person.picture.width && image->height == person.picture.height,
+                 "drawn person: ", person.picture.width, "x", person.picture.height, " over ", image->width, "x",
+                 image->height);
+  for (size_t p = 0; p < person.coverage.size(); ++p) {
+    const int under = 255 - person.coverage[p];
+    if (under == 255) continue;
+    for (size_t i = 3 * p; i < 3 * p + 3; ++i) {
+      image->bgr[i] = static_cast<uint8_t>(std::min(255, person.picture.bgr[i] + (image->bgr[i] * under + 127) / 255));
+    }
+  }
+}
+
+std::vector<uint8_t> BgraOf(const DrawnPerson& person) {
+  std::vector<uint8_t> bgra(4 * person.coverage.size(), 0);
+  for (size_t p = 0; p < person.coverage.size(); ++p) {
+    if (person.coverage[p] == 0) continue;
+    for (size_t c = 0; c < 3; ++c) {
+      bgra[4 * p + c] =
+          static_cast<uint8_t>(std::min(255.0, std::round(255.0 * person.picture.bgr[3 * p + c] / person.coverage[p])));
+    }
+    bgra[4 * p + 3] = person.coverage[p];
+  }
+  return bgra;
+}
+
+PersonFrames::PersonFrames(const PhotoPerson& person, const std::string& refiner, int threads) {
+  for (int i = 0; i < std::max(1, threads); ++i) {
+    refiners_.push_back(OpenRefiner(refiner));
+    painters_.push_back(std::make_unique<RefinedPainter>(person, 1, refiners_.back().get()));
+  }
+}
+
+std::vector<DrawnPerson> PersonFrames::Draw(std::span<const PersonPose> poses) {
+  BODYLOOM_CHECK(poses.size() <= painters_.size(), "drawing people: ", poses.size(), " frames at once, expected up to ",
+                 painters_.size());
+  std::vector<DrawnPerson> drawn(poses.size());
+  ParallelFor(static_cast<int>(poses.size()), at_once(), [&](int i) {
+    const Camera& camera = poses[i].camera;
+    drawn[i] = {Image(camera.width, camera.height),
+                std::vector<uint8_t>(static_cast<size_t>(camera.width) * camera.height, 0)};
+    if (poses[i].vertices_in_camera.rows() == 0) return;
+    painters_[i]->Draw(poses[i].vertices_in_camera, camera, &drawn[i].picture, &drawn[i].coverage);
+  });
+  return drawn;
+}
+
+}  // namespace bodyloom

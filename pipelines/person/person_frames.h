@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Frames of a person made from photos, several drawn at once: refining one is work for one thread.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bodyloom/pipelines/person/draw_person.h"
+#include "bodyloom/pipelines/person/picture_refiner.h"
+#include "bodyloom/pipelines/person/refined_painter.h"
+
+namespace bodyloom {
+
+/// A person alone in a picture.
+struct DrawnPerson {
+  Image picture;                  ///< over black: colours multiplied by the coverage
+  std::vector<uint8_t> coverage;  ///< one a pixel: share that shows the person, 0 to 255
+};
+
+/// The person over an image of the same size: picture + image·(255 − coverage)/255.
+void LayOver(const DrawnPerson& person, Image* image);
+/// Blue, green, red, not multiplied, and alpha; zeros where nobody is.
+std::vector<uint8_t> BgraOf(const DrawnPerson& person);
+
+/// Not for use by two threads at once.
+class PersonFrames {
+ public:
+  /// `person` must outlive this; `refiner` as OpenRefiner() takes it, whose errors this throws; `threads` frames are
+  /// drawn at once. Pictures are the same for any number.
+  PersonFrames(const PhotoPerson& person, const std::string& refiner, int threads);
+
+  [[nodiscard]] int at_once() const { return static_cast<int>(painters_.size()); }
+
+  /// At most at_once() poses; nobody is in the picture of one without vertices. Throws std::invalid_argument for more.
+  std::vector<DrawnPerson> Draw(std::span<const PersonPose> poses);
+
+ private:
+  std::vector<std::unique_ptr<PictureRefiner>> refiners_;  ///< null: pictures stay as they are drawn
+  std::vector<std::unique_ptr<RefinedPainter>> painters_;
+};
+
+}  // namespace bodyloom
