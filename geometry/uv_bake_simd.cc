@@ -95,7 +95,7 @@ int BakeUnitVectors(const Block* HWY_RESTRICT blocks, int num_blocks, int num_pi
   return num_zero;
 }
 
-#if HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_SSE4
+#if HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_EMU128 || HWY_TARGET == HWY_SSE4
 // No instruction for it, and Highway 1.0.3 cuts off where it should round.
 void HalfFromFloat(const float* HWY_RESTRICT values, int64_t count, uint16_t* HWY_RESTRICT halves) {
   for (int64_t i = 0; i < count; ++i) {

@@ -46,7 +46,7 @@ void FindContour(const ContourRow& row, float step_m, bool linear, int8_t* mask)
     neighbours[k] = padded[k];
   }
   find(padded[8], neighbours, bytes);
-  std::copy(bytes, bytes + row.count - i, mask + i);
+  std::copy(bytes, bytes + (row.count - i), mask + i);
 }
 
 void ShadePixels(const ShadedRow& row) {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -13,6 +12,7 @@
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/formats/json_reader.h"
 #include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/data_tools/video/frame_file.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/render/image_mat.h"
@@ -48,10 +48,8 @@ bool IsIn(const FolderKind& kind, const PersonPictures& pictures) {
 
 std::string FileOf(const std::string& path, const char* name) { return (fs::path(path) / name).string(); }
 
-std::string FrameFile(const std::string& path, const FolderKind& kind, int t) {
-  std::array<char, 32> name{};
-  std::snprintf(name.data(), name.size(), "%06d.png", t);
-  return (fs::path(path) / kind.folder / name.data()).string();
+std::string FileOfFrame(const std::string& path, const FolderKind& kind, int t) {
+  return FrameFile(fs::path(path) / kind.folder, t);
 }
 
 int IntegerIn(const JsonNode& node, int64_t low, int64_t high) {
@@ -161,7 +159,7 @@ SinglePersonDataset::SinglePersonDataset(const std::string& path) : path_(path),
   for (const FolderKind& kind : kKinds) {
     if (!IsIn(kind, info_.has)) continue;
     for (int t = 0; t < info_.num_frames; ++t) {
-      if (const std::string file = FrameFile(path_, kind, t); !fs::exists(file, error)) {
+      if (const std::string file = FileOfFrame(path_, kind, t); !fs::exists(file, error)) {
         throw std::runtime_error(
             Concatenate(file, ": not there, expected as person.json promises ", info_.num_frames, " frames"));
       }
@@ -188,7 +186,7 @@ PersonFrame SinglePersonDataset::Read(int t, const PersonPictures& wanted) const
   PersonFrame frame;
   for (const FolderKind& kind : kKinds) {
     if (!IsIn(kind, info_.has) || !IsIn(kind, wanted)) continue;
-    const std::string file = FrameFile(path_, kind, t);
+    const std::string file = FileOfFrame(path_, kind, t);
     Image image = ReadImage(file);
     if (image.width != info_.width || image.height != info_.height) {
       throw std::runtime_error(Concatenate(file, ": found ", image.width, "x", image.height, " pixels, expected ",
@@ -222,9 +220,9 @@ void SinglePersonDatasetWriter::Write(int t, const PersonFrame& frame) const {
   for (const FolderKind& kind : kKinds) {
     if (!IsIn(kind, info_.has)) continue;
     const Image& image = frame.*kind.picture;
-    BODYLOOM_CHECK(image.width == info_.width && image.height == info_.height, FrameFile(path_, kind, t), ": ",
+    BODYLOOM_CHECK(image.width == info_.width && image.height == info_.height, FileOfFrame(path_, kind, t), ": ",
                    image.width, "x", image.height, " pixels to write, expected ", info_.width, "x", info_.height);
-    WriteFileAtomically(FrameFile(path_, kind, t), PngOf(image, kind.picture == &PersonFrame::labels));
+    WriteFileAtomically(FileOfFrame(path_, kind, t), PngOf(image, kind.picture == &PersonFrame::labels));
   }
 }
 
@@ -236,7 +234,7 @@ void SinglePersonDatasetWriter::Finish() const {
   for (const FolderKind& kind : kKinds) {
     if (kind.flag != nullptr) json["has"][kind.name] = info_.has.*kind.flag;
     for (int t = 0; t < info_.num_frames && IsIn(kind, info_.has); ++t) {
-      if (const std::string file = FrameFile(path_, kind, t); !fs::exists(file)) {
+      if (const std::string file = FileOfFrame(path_, kind, t); !fs::exists(file)) {
         throw std::runtime_error(file + ": never written, expected before person.json");
       }
     }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -19,6 +18,7 @@
 #include "bodyloom/data_tools/motion/motion_tools.h"
 #include "bodyloom/data_tools/motion/shape_track.h"
 #include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/data_tools/video/frame_file.h"
 #include "bodyloom/data_tools/video/video_writer.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
@@ -275,10 +275,8 @@ class AvatarAnimation {
 
   void WritePicture(int t, bool shows) const {
     const int width = posed_->width(), height = posed_->height();
-    char name[32];
-    std::snprintf(name, sizeof name, "%06d.png", t);
     const std::vector<uint8_t> nobody(shows ? 0 : 4 * static_cast<size_t>(width) * height, 0);
-    WriteAlphaPng((fs::path(request_.pictures) / name).string(), width, height,
+    WriteAlphaPng(FrameFile(request_.pictures, t), width, height,
                   shows ? WithAlpha(painter_.picture(), width, height) : nobody);
   }
 

@@ -2,8 +2,6 @@
 #include "bodyloom/pipelines/person/animate_person.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -15,6 +13,7 @@
 #include "bodyloom/data_tools/motion/freeze_track.h"
 #include "bodyloom/data_tools/motion/motion_tools.h"
 #include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/data_tools/video/frame_file.h"
 #include "bodyloom/data_tools/video/video_writer.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
@@ -49,7 +48,7 @@ class PersonAnimation {
     if (!request_.track.empty()) {
       clock_.Begin("prepare");
       OpenTrack();
-      if (!request_.out.empty() || !request_.pictures.empty()) {
+      if (Draws()) {
         clock_.Begin("draw");
         DrawFrames();
       }
@@ -58,11 +57,13 @@ class PersonAnimation {
   }
 
  private:
+  [[nodiscard]] bool Draws() const { return !request_.out.empty() || !request_.pictures.empty(); }
+
   void CheckRequest() const {
     if (request_.person.empty() == request_.photos.images.empty()) {
       throw RequestError("expected photos (--image) or a person who was kept (--person), one of them");
     }
-    const bool shows = !request_.out.empty() || !request_.pictures.empty() || !request_.moved_track.empty();
+    const bool shows = Draws() || !request_.moved_track.empty();
     if (request_.track.empty() && shows) throw RequestError("--track is required: the motion");
     if (request_.track.empty() && request_.keep.empty()) {
       throw RequestError("expected --track, the motion, or --keep, a folder to keep the person in");
@@ -89,7 +90,7 @@ class PersonAnimation {
     const Track read = ReadTrack(request_.track);
     try {
       track_ = MovedByPerson(person_, read);
-      if (!person_.garment.empty()) cloth_.emplace(person_, track_);
+      if (!person_.garment.empty() && Draws()) cloth_.emplace(person_, track_);
       if (!request_.moved_track.empty()) WriteTrack(request_.moved_track, track_);
       int first = 0, last = track_.num_frames() - 1;
       if (!request_.freeze.empty()) {
@@ -163,19 +164,15 @@ class PersonAnimation {
         }
       }
       if (!request_.pictures.empty()) {
-        ParallelFor(next - first, threads_, [&](int i) { WritePicture(first + i, drawn[i]); });
+        ParallelFor(next - first, threads_, [&](int i) {
+          WriteAlphaPng(FrameFile(request_.pictures, first + i), width_, height_, BgraOf(drawn[i]));
+        });
       }
       clock_.Begin("draw");
     }
     if (video) video->Finish();
     if (!draw_ms.empty()) summary_.draw_ms = Percentile(draw_ms, 50);
     summary_.frames = count;
-  }
-
-  void WritePicture(int t, const DrawnPerson& person) const {
-    char name[32];
-    std::snprintf(name, sizeof name, "%06d.png", t);
-    WriteAlphaPng((std::filesystem::path(request_.pictures) / name).string(), width_, height_, BgraOf(person));
   }
 
   AnimatePersonSummary Finish() {
