@@ -26,7 +26,7 @@
 #include "bodyloom/pipelines/people/view_angles.h"
 #include "bodyloom/pipelines/person/person_cloth.h"
 #include "bodyloom/pipelines/person/person_folder.h"
-#include "bodyloom/pipelines/person/person_frames.h"
+#include "bodyloom/pipelines/person/person_frame_painter.h"
 #include "bodyloom/pipelines/report_json.h"
 #include "bodyloom/render/view_camera.h"
 
@@ -208,7 +208,7 @@ class PersonAnimation {
   std::optional<PosedTrack> posed_;
   std::optional<PersonCloth> cloth_;
   std::vector<int> order_;  ///< the track's frames as they are shown; empty: in turn
-  std::optional<PersonFrames> frames_;
+  std::optional<PersonFramePainter> frames_;
   AnimatePersonSummary summary_;
 };
 

@@ -178,7 +178,8 @@ inline constexpr const char* kNames[] = {"v_template",
                                          "merge0",
                                          "merge0_bias",
                                          "leave",
-                                         "leave_bias"};
+                                         "leave_bias",
+                                         "pixels_per_metre"};
 
 /// Named arrays without the archive around them, whose checksums no mutation survives:
 /// (index of a known name, 3 bytes of length, .npy bytes) over and over.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/person/person_frames.h"
+#include "bodyloom/pipelines/person/person_frame_painter.h"
 
 #include <gtest/gtest.h>
 
@@ -38,7 +38,7 @@ TEST(DrawnPerson, HasColoursOfItsOwnAndAlpha) {
   EXPECT_EQ(BgraOf(TwoPixels()), (std::vector<uint8_t>{0, 0, 0, 0, 50, 255, 0, 51}));
 }
 
-TEST(PersonFrames, AreTheSameForAnyNumberDrawnAtOnce) {
+TEST(PersonFramePainter, AreTheSameForAnyNumberDrawnAtOnce) {
   const PhotoPerson person = ColouredPerson();
   const Track moved = MovedByPerson(person, ShortTrack(2));
   std::vector<PersonPose> poses;
@@ -47,7 +47,7 @@ TEST(PersonFrames, AreTheSameForAnyNumberDrawnAtOnce) {
   const ScratchFolder scratch;
   WriteRefinerWeights(scratch / "refiner.npz", RandomRefiner(0.5F));
   for (const std::string& refiner : {std::string(kNoRefiner), scratch / "refiner.npz"}) {
-    PersonFrames one(person, refiner, 1), three(person, refiner, 3);
+    PersonFramePainter one(person, refiner, 1), three(person, refiner, 3);
     ASSERT_EQ(three.at_once(), 3);
     const std::vector<DrawnPerson> together = three.Draw(poses);
     for (int t = 0; t < 3; ++t) {
@@ -60,7 +60,7 @@ TEST(PersonFrames, AreTheSameForAnyNumberDrawnAtOnce) {
     }
     EXPECT_THROW(one.Draw(poses), std::invalid_argument);
   }
-  EXPECT_THROW(PersonFrames(person, "/nowhere/refiner.npz", 1), std::runtime_error);
+  EXPECT_THROW(PersonFramePainter(person, "/nowhere/refiner.npz", 1), std::runtime_error);
 }
 
 }  // namespace

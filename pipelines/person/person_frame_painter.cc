@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/person/person_frames.h"
+#include "bodyloom/pipelines/person/person_frame_painter.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,14 +36,14 @@ std::vector<uint8_t> BgraOf(const DrawnPerson& person) {
   return bgra;
 }
 
-PersonFrames::PersonFrames(const PhotoPerson& person, const std::string& refiner, int threads) {
+PersonFramePainter::PersonFramePainter(const PhotoPerson& person, const std::string& refiner, int threads) {
   for (int i = 0; i < std::max(1, threads); ++i) {
     refiners_.push_back(OpenRefiner(refiner));
     painters_.push_back(std::make_unique<RefinedPainter>(person, 1, refiners_.back().get()));
   }
 }
 
-std::vector<DrawnPerson> PersonFrames::Draw(std::span<const PersonPose> poses) {
+std::vector<DrawnPerson> PersonFramePainter::Draw(std::span<const PersonPose> poses) {
   BODYLOOM_CHECK(poses.size() <= painters_.size(), "drawing people: ", poses.size(), " frames at once, expected up to ",
                  painters_.size());
   std::vector<DrawnPerson> drawn(poses.size());

@@ -26,11 +26,11 @@ void LayOver(const DrawnPerson& person, Image* image);
 std::vector<uint8_t> BgraOf(const DrawnPerson& person);
 
 /// Not for use by two threads at once.
-class PersonFrames {
+class PersonFramePainter {
  public:
   /// `person` must outlive this; `refiner` as OpenRefiner() takes it, whose errors this throws; `threads` frames are
   /// drawn at once. Pictures are the same for any number.
-  PersonFrames(const PhotoPerson& person, const std::string& refiner, int threads);
+  PersonFramePainter(const PhotoPerson& person, const std::string& refiner, int threads);
 
   [[nodiscard]] int at_once() const { return static_cast<int>(painters_.size()); }
 
