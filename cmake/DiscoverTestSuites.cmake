@@ -6,6 +6,10 @@
 #
 # GoogleTest.cmake of CMake 3.25 only knows one entry a case.
 function(bodyloom_discover_suites target folder)
+  set(seconds 600)
+  if(BODYLOOM_SANITIZE)  # a tenth of the speed
+    set(seconds 3600)
+  endif()
   set(list_file ${CMAKE_CURRENT_BINARY_DIR}/${target}_suites.cmake)
   # Until the program has been built there is nothing to list: an entry that fails says so.
   file(GENERATE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/${target}_include.cmake CONTENT
@@ -14,5 +18,6 @@ function(bodyloom_discover_suites target folder)
   add_custom_command(TARGET ${target} POST_BUILD BYPRODUCTS ${list_file} VERBATIM
     COMMAND ${CMAKE_COMMAND} -D PROGRAM=$<TARGET_FILE:${target}> -D FOLDER=${folder} -D LIST_FILE=${list_file}
             -D REPORTS=${PROJECT_BINARY_DIR}/test_cases -D WORK=${CMAKE_CURRENT_BINARY_DIR}
+            -D SECONDS=${seconds}
             -P ${PROJECT_SOURCE_DIR}/cmake/list_test_suites.cmake)
 endfunction()

@@ -1,4 +1,5 @@
-# Writes LIST_FILE, the ctest entries of the GoogleTest program PROGRAM (DiscoverTestSuites.cmake).
+# Writes LIST_FILE, the ctest entries of the GoogleTest program PROGRAM, each of which may take SECONDS
+# (DiscoverTestSuites.cmake).
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE listing RESULT_VARIABLE code TIMEOUT 120
                 WORKING_DIRECTORY ${WORK})
 if(NOT code EQUAL 0)
@@ -15,7 +16,7 @@ function(add_entries)  # of the suite that has been read
     if(kind STREQUAL quick)
       set(name ${FOLDER}/${suite})
       set(filter ${suite}.*-*.Slow*)
-      set(properties TIMEOUT 600 LABELS ${FOLDER})
+      set(properties TIMEOUT ${SECONDS} LABELS ${FOLDER})
     else()
       set(name ${FOLDER}/${suite}.Slow)
       set(filter ${suite}.Slow*)
