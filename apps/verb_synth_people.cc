@@ -15,9 +15,8 @@ namespace {
 constexpr const char* kSynthPeopleFooter =
     "Writes a multi-person dataset: a folder of single-person datasets, one a person, action and view, and\n"
     "people.json, which says who is kept for testing. Everything of a person comes from the seed: body, clothes\n"
-    "(suit, skirt or coat; --clothes), colours and light. Each action is a stretch of a motion chosen at random; the "
-    "camera\n"
-    "follows the person.\n"
+    "(suit, skirt or coat; --clothes), colours and light. Each action is a stretch of a motion chosen at\n"
+    "random; the camera follows the person.\n"
     "Examples:\n"
     "  bodyloom synth-people --motions demo --out people --people 4 --sheet people.png\n"
     "  bodyloom synth-people --motions motion/ --out people --people 60 --actions 5 --views 4 --size 256\n\n";

@@ -40,7 +40,7 @@ class PersonAnimation {
 
   AnimatePersonSummary Run() {
     CheckRequest();
-    OpenRefiner(request_.refiner);  // what cannot be used is said before a person is made
+    refiner_ = OpenRefiner(request_.refiner);
     clock_.Begin("person");
     person_ = request_.person.empty() ? MakePhotoPerson(request_.photos, callbacks_)
                                       : ReadPhotoPerson(request_.person, request_.photos.fit.body);
@@ -116,7 +116,7 @@ class PersonAnimation {
       throw std::runtime_error(Concatenate(request_.track, ": pictures of ", width_, "x", height_,
                                            ", expected sides of 2 to ", kLongestPictureSide));
     }
-    frames_.emplace(person_, request_.refiner, std::min(threads_, std::max(1, track_.num_frames())));
+    frames_.emplace(person_, refiner_.get(), std::min(threads_, std::max(1, track_.num_frames())));
   }
 
   [[nodiscard]] Camera CameraAt(int t) const {
@@ -207,7 +207,8 @@ class PersonAnimation {
   int width_ = 0, height_ = 0;
   std::optional<PosedTrack> posed_;
   std::optional<PersonCloth> cloth_;
-  std::vector<int> order_;  ///< the track's frames as they are shown; empty: in turn
+  std::vector<int> order_;                   ///< the track's frames as they are shown; empty: in turn
+  std::unique_ptr<PictureRefiner> refiner_;  ///< null: pictures stay as they are drawn
   std::optional<PersonFramePainter> frames_;
   AnimatePersonSummary summary_;
 };

@@ -6,7 +6,6 @@
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/pipelines/person/open_refiner.h"
 
 namespace bodyloom {
 
@@ -36,9 +35,9 @@ std::vector<uint8_t> BgraOf(const DrawnPerson& person) {
   return bgra;
 }
 
-PersonFramePainter::PersonFramePainter(const PhotoPerson& person, const std::string& refiner, int threads) {
+PersonFramePainter::PersonFramePainter(const PhotoPerson& person, const PictureRefiner* refiner, int threads) {
   for (int i = 0; i < std::max(1, threads); ++i) {
-    refiners_.push_back(OpenRefiner(refiner));
+    refiners_.push_back(refiner == nullptr ? nullptr : std::make_unique<PictureRefiner>(refiner->weights()));
     painters_.push_back(std::make_unique<RefinedPainter>(person, 1, refiners_.back().get()));
   }
 }

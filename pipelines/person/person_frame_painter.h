@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "bodyloom/pipelines/person/draw_person.h"
@@ -28,9 +27,9 @@ std::vector<uint8_t> BgraOf(const DrawnPerson& person);
 /// Not for use by two threads at once.
 class PersonFramePainter {
  public:
-  /// `person` must outlive this; `refiner` as OpenRefiner() takes it, whose errors this throws; `threads` frames are
-  /// drawn at once. Pictures are the same for any number.
-  PersonFramePainter(const PhotoPerson& person, const std::string& refiner, int threads);
+  /// `person` must outlive this; null `refiner`: pictures stay as they are drawn. `threads` frames are drawn at once, each
+  /// by a refiner of the same weights. Pictures are the same for any number.
+  PersonFramePainter(const PhotoPerson& person, const PictureRefiner* refiner, int threads);
 
   [[nodiscard]] int at_once() const { return static_cast<int>(painters_.size()); }
 
@@ -38,7 +37,7 @@ class PersonFramePainter {
   std::vector<DrawnPerson> Draw(std::span<const PersonPose> poses);
 
  private:
-  std::vector<std::unique_ptr<PictureRefiner>> refiners_;  ///< null: pictures stay as they are drawn
+  std::vector<std::unique_ptr<PictureRefiner>> refiners_;
   std::vector<std::unique_ptr<RefinedPainter>> painters_;
 };
 

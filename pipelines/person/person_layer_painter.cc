@@ -52,16 +52,6 @@ PersonLayers BoxAround(const std::vector<uint8_t>& coverage, const Image& pictur
   return layers;
 }
 
-/// visit(x, y, i): pixels of the picture and where they lie in the layers' planes.
-template <typename Visit>
-void ForEachPixel(const PersonLayers& layers, int width, int height, const Visit& visit) {
-  for (int v = std::max(0, -layers.y); v < std::min(layers.height, height - layers.y); ++v) {
-    for (int u = std::max(0, -layers.x); u < std::min(layers.width, width - layers.x); ++u) {
-      visit(layers.x + u, layers.y + v, static_cast<size_t>(v) * layers.width + u);
-    }
-  }
-}
-
 }  // namespace
 
 PersonLayerPainter::PersonLayerPainter(const PhotoPerson& person, int num_threads)

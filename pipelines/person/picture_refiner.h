@@ -21,8 +21,7 @@ class PictureRefiner {
   /// Throws std::invalid_argument for weights that are not valid.
   explicit PictureRefiner(RefinerWeights weights);
 
-  /// How large people were that it learned from, the median picture.
-  [[nodiscard]] double pixels_per_metre() const { return weights_.pixels_per_metre; }
+  [[nodiscard]] const RefinerWeights& weights() const { return weights_; }
 
   /// What ChangedPerson() takes, alpha near the outline (KeepNearOutline()): 4 × height × width. Throws
   /// std::invalid_argument for layers without a pixel.

@@ -30,7 +30,7 @@ void RefinedPainter::Draw(const MatrixX3d& vertices, const Camera& camera, Image
   }
   BODYLOOM_CHECK(image->width == camera.width && image->height == camera.height, "refined person: the image is ",
                  image->width, "x", image->height, ", the camera ", camera.width, "x", camera.height);
-  const double size = PixelsPerMetre(camera, vertices.col(2).mean()), known = refiner_->pixels_per_metre();
+  const double size = PixelsPerMetre(camera, vertices.col(2).mean()), known = refiner_->weights().pixels_per_metre;
   const double factor = size > kLarger * known ? known / size : 1;
   const PersonLayers layers =
       factor < 1 ? layers_->DrawColours(vertices, camera, static_cast<int>(OutlineReach::kOutwards / factor) + 2)

@@ -156,21 +156,16 @@ void LayOver(const PersonLayers& layers, std::span<const float> person, Image* p
   BODYLOOM_CHECK(person.size() == 4 * pixels, "refiner: ", person.size(), " numbers for ", pixels, " pixels");
   BODYLOOM_CHECK(coverage.empty() || coverage.size() == static_cast<size_t>(picture->width) * picture->height,
                  "refiner: the coverage is of another size than the picture");
-  for (int v = std::max(0, -layers.y); v < std::min(layers.height, picture->height - layers.y); ++v) {
-    for (int u = std::max(0, -layers.x); u < std::min(layers.width, picture->width - layers.x); ++u) {
-      const size_t i = static_cast<size_t>(v) * layers.width + u;
-      const float alpha = person[3 * pixels + i];
-      uint8_t* bgr = picture->pixel(layers.x + u, layers.y + v);
-      for (size_t c = 0; c < 3; ++c) {
-        const float under = (1 - alpha) * bgr[2 - c];
-        bgr[2 - c] =
-            static_cast<uint8_t>(std::clamp(under + 255 * alpha * person[c * pixels + i] + 0.5F, 0.0F, 255.0F));
-      }
-      if (coverage.empty()) continue;
-      coverage[static_cast<size_t>(layers.y + v) * picture->width + layers.x + u] =
-          static_cast<uint8_t>(std::lround(255 * alpha));
+  ForEachPixel(layers, picture->width, picture->height, [&](int x, int y, size_t i) {
+    const float alpha = person[3 * pixels + i];
+    uint8_t* bgr = picture->pixel(x, y);
+    for (size_t c = 0; c < 3; ++c) {
+      const float under = (1 - alpha) * bgr[2 - c];
+      bgr[2 - c] = static_cast<uint8_t>(std::clamp(under + 255 * alpha * person[c * pixels + i] + 0.5F, 0.0F, 255.0F));
     }
-  }
+    if (coverage.empty()) return;
+    coverage[static_cast<size_t>(y) * picture->width + x] = static_cast<uint8_t>(std::lround(255 * alpha));
+  });
 }
 
 }  // namespace bodyloom

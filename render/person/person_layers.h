@@ -6,6 +6,8 @@
 /// that a silhouette which grows has something to be made of.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -39,6 +41,16 @@ struct PersonLayers {
     return std::span(planes).subspan(plane * pixels(), pixels());
   }
 };
+
+/// visit(x, y, i): the pixels of a picture of width × height that lie in the box, and where they are in a plane.
+template <typename Visit>
+void ForEachPixel(const PersonLayers& layers, int width, int height, const Visit& visit) {
+  for (int v = std::max(0, -layers.y); v < std::min(layers.height, height - layers.y); ++v) {
+    for (int u = std::max(0, -layers.x); u < std::min(layers.width, width - layers.x); ++u) {
+      visit(layers.x + u, layers.y + v, static_cast<size_t>(v) * layers.width + u);
+    }
+  }
+}
 
 /// Colours where alpha is above 0 as they are, elsewhere by pull–push: each 2×2 pixels' mean, weighted by alpha, flows
 /// back into what has none. `colour`: 3 × height × width, in place. Nothing changes where alpha is 0 everywhere.

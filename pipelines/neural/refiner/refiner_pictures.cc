@@ -26,16 +26,13 @@ RefinerPicture PictureFrom(const PersonLayers& layers, const PhotoFrame& truth, 
     for (size_t i = p * pixels; i < (p + 1) * pixels; ++i) picture.planes[i] = PackPlane(p, layers.planes[i]);
   }
   picture.truth.assign(4 * pixels, 0);
-  for (int v = std::max(0, -layers.y); v < std::min(layers.height, truth.size - layers.y); ++v) {
-    for (int u = std::max(0, -layers.x); u < std::min(layers.width, truth.size - layers.x); ++u) {
-      const size_t from = static_cast<size_t>(layers.y + v) * truth.size + layers.x + u;
-      const size_t to = static_cast<size_t>(v) * layers.width + u;
-      for (size_t c = 0; c < 3; ++c) {
-        picture.truth[c * pixels + to] = PackPlane(PersonPlane::kColour, truth.image[c * window + from]);
-      }
-      picture.truth[3 * pixels + to] = truth.labels[from] != 0 ? 255 : 0;
+  ForEachPixel(layers, truth.size, truth.size, [&](int x, int y, size_t to) {
+    const size_t from = static_cast<size_t>(y) * truth.size + x;
+    for (size_t c = 0; c < 3; ++c) {
+      picture.truth[c * pixels + to] = PackPlane(PersonPlane::kColour, truth.image[c * window + from]);
     }
-  }
+    picture.truth[3 * pixels + to] = truth.labels[from] != 0 ? 255 : 0;
+  });
   return picture;
 }
 

@@ -5,12 +5,9 @@
 
 #include <stdexcept>
 
-#include "bodyloom/data_tools/learned/refiner_weights_io.h"
-#include "bodyloom/pipelines/person/open_refiner.h"
 #include "bodyloom/render/overlay.h"
 #include "tests/support/coloured_person.h"
 #include "tests/support/random_refiner.h"
-#include "tests/support/scratch_folder.h"
 #include "tests/support/short_track.h"
 
 namespace bodyloom {
@@ -44,9 +41,8 @@ TEST(PersonFramePainter, AreTheSameForAnyNumberDrawnAtOnce) {
   std::vector<PersonPose> poses;
   for (int t = 0; t < 3; ++t) poses.push_back({TrackVertices(*person.body, moved, t), moved.CameraAt(t)});
   poses[1].vertices_in_camera.resize(0, 3);  // nobody
-  const ScratchFolder scratch;
-  WriteRefinerWeights(scratch / "refiner.npz", RandomRefiner(0.5F));
-  for (const std::string& refiner : {std::string(kNoRefiner), scratch / "refiner.npz"}) {
+  const PictureRefiner changes(RandomRefiner(0.5F));
+  for (const PictureRefiner* refiner : {static_cast<const PictureRefiner*>(nullptr), &changes}) {
     PersonFramePainter one(person, refiner, 1), three(person, refiner, 3);
     ASSERT_EQ(three.at_once(), 3);
     const std::vector<DrawnPerson> together = three.Draw(poses);
@@ -60,7 +56,6 @@ TEST(PersonFramePainter, AreTheSameForAnyNumberDrawnAtOnce) {
     }
     EXPECT_THROW(one.Draw(poses), std::invalid_argument);
   }
-  EXPECT_THROW(PersonFramePainter(person, "/nowhere/refiner.npz", 1), std::runtime_error);
 }
 
 }  // namespace
