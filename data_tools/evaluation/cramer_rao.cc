@@ -200,10 +200,13 @@ ClipCovariance MarginalCovariances(const ClipInformation& information) {
     if (i + 1 < n) own.noalias() += W[i] * C * W[i].transpose();
     C = std::move(own);
     for (int f = 0; f < groups[i].count; ++f) {
-      const auto y = Y[i].middleRows(p * f, p);
       const int t = groups[i].begin + f;
-      result.cross[t] = -y * result.shared;
-      result.frame[t] = C.block(p * f, p * f, p, p) - result.cross[t] * y.transpose();
+      result.frame[t] = C.block(p * f, p * f, p, p);
+      result.cross[t].resize(p, result.shared.cols());
+      if (result.shared.cols() == 0) continue;  // a matrix without columns has no rows to point into
+      const auto y = Y[i].middleRows(p * f, p);
+      result.cross[t].noalias() = -y * result.shared;
+      result.frame[t].noalias() -= result.cross[t] * y.transpose();
     }
   }
   result.is_finite = true;

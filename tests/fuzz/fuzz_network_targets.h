@@ -85,7 +85,7 @@ inline void CheckPoints(const std::vector<Keypoint>& points) {
 /// Any numbers as the output of YOLO-pose with two landmarks, and as RTMPose's for three landmarks in 4 × 6 pixels.
 inline bool AcceptsKeypointOutputs(const std::string& bytes) {
   std::vector<float> numbers(bytes.size() / sizeof(float));
-  std::memcpy(numbers.data(), bytes.data(), numbers.size() * sizeof(float));
+  if (!numbers.empty()) std::memcpy(numbers.data(), bytes.data(), numbers.size() * sizeof(float));
   const size_t rows = 5 + 3 * 2, simcc = 3 * 2 * (4 + 6);
   const std::vector<float> yolo(numbers.begin(), numbers.end() - static_cast<std::ptrdiff_t>(numbers.size() % rows));
   for (const YoloPerson& person : DecodeYolo(yolo, 1, 2, LetterboxCrop(1280, 720, 640, 640))) {
