@@ -38,6 +38,7 @@ int Run(int argc, char** argv) {
   AddRenderVerb(app, &action);
   AddDescribeVerb(app, &action);
   AddTextureVerb(app, &action);
+  AddParseVerb(app, &action);
   AddBodyVerb(app, &action, {argv + 1, argv + argc});
   AddDemoVerb(app, &action);
   AddPriorVerb(app, &action);

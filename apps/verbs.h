@@ -42,6 +42,7 @@ void AddExportVerb(CLI::App& app, Action* action);
 void AddRenderVerb(CLI::App& app, Action* action);
 void AddDescribeVerb(CLI::App& app, Action* action);
 void AddTextureVerb(CLI::App& app, Action* action);
+void AddParseVerb(CLI::App& app, Action* action);
 /// `crossing` finds the faces of a body that cross each other; without it `info --check` goes on in the executable that
 /// has it, where there is one, which takes `arguments`, those of this one.
 void AddBodyVerb(CLI::App& app, Action* action, const std::vector<std::string>& arguments,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A person from photos. docs/python.md.
+#include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
@@ -14,6 +15,7 @@
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/person/make_photo_person.h"
+#include "bodyloom/pipelines/person/parse_photo.h"
 #include "bodyloom/pipelines/person/person_folder.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
@@ -34,6 +36,26 @@ constexpr const char* kFromPhotosDoc =
     "one by default. focal_px, stature_m: where they are known. models: folder of the networks. loose_garment:\n"
     "look for a skirt, dress or coat. Raises RuntimeError naming a photo that shows nobody or cannot be read,\n"
     "ValueError, Cancelled.";
+
+constexpr const char* kParseDoc =
+    "What each pixel of the person in a photo shows: (H, W) uint8, 0 background, 1 top, 2 bottom, 3 face, 4 hair,\n"
+    "5 skin, 6 shoes (`bodyloom parse`). The pose detector's networks have to be there (`./dev models`).\n\n"
+    "weights: \"builtin\", \"body\" (what the fitted body shows nearest), or a file of `bodyloom train parser`. The\n"
+    "rest and what is raised: as Person.from_photos().";
+
+/// What Person.from_photos() and parse_photo() take of how a photo is fitted.
+TrackRequest FitOf(int who, const std::optional<Path>& body, std::optional<double> focal_px,
+                   std::optional<double> stature_m, const std::optional<Path>& models) {
+  BODYLOOM_CHECK(focal_px.value_or(1) > 0 && stature_m.value_or(1) > 0,
+                 "focal_px, stature_m: expected numbers above 0");
+  TrackRequest fit;
+  fit.person = who;
+  fit.body = TextOf(body);
+  fit.focal_px = focal_px.value_or(0);
+  fit.stature_m = stature_m.value_or(0);
+  fit.detector.models = TextOf(models);
+  return fit;
+}
 
 class PersonObject {
  public:
@@ -66,18 +88,12 @@ void BindPerson(py::module_& module) {
              std::optional<double> focal_px, std::optional<double> stature_m, const std::optional<Path>& models,
              bool loose_garment, const py::object& progress) {
             BODYLOOM_CHECK(!images.empty(), "images: expected at least one photo, found none");
-            BODYLOOM_CHECK(focal_px.value_or(1) > 0 && stature_m.value_or(1) > 0,
-                           "focal_px, stature_m: expected numbers above 0");
             PhotoPersonRequest request;
+            request.fit = FitOf(who, body, focal_px, stature_m, models);
             for (const Path& image : images) {
               RequireReadable(image.string(), "image");
               request.images.push_back(image.string());
             }
-            request.fit.person = who;
-            request.fit.body = TextOf(body);
-            request.fit.focal_px = focal_px.value_or(0);
-            request.fit.stature_m = stature_m.value_or(0);
-            request.fit.detector.models = TextOf(models);
             request.texture_size = texture_size;
             request.loose_garment = loose_garment;
             return std::make_unique<PersonObject>(PythonCallbacks(progress).Run(
@@ -117,6 +133,22 @@ void BindPerson(py::module_& module) {
         return Concatenate("Person(", self.person().tracks.size(), " photos, texture ", self.person().texture.width,
                            "x", self.person().texture.height, ")");
       });
+  module.def(
+      "parse_photo",
+      [](const Path& image, const std::string& weights, int who, const std::optional<Path>& body,
+         std::optional<double> focal_px, std::optional<double> stature_m, const std::optional<Path>& models,
+         const py::object& progress) {
+        ParsePhotoRequest request;
+        request.fit = FitOf(who, body, focal_px, stature_m, models);
+        RequireReadable(image.string(), "image");
+        request.image = image.string(), request.weights = weights;
+        const ParsePhotoSummary parsed = PythonCallbacks(progress).Run(
+            [&](const PipelineCallbacks& callbacks) { return ParsePhoto(request, callbacks); });
+        return py::array_t<uint8_t>({parsed.height, parsed.width}, parsed.labels.data());
+      },
+      py::arg("image"), py::kw_only(), py::arg("weights") = kBuiltinParser, py::arg("who") = 0,
+      py::arg("body") = py::none(), py::arg("focal_px") = py::none(), py::arg("stature_m") = py::none(),
+      py::arg("models") = py::none(), py::arg("progress") = py::none(), kParseDoc);
 }
 
 }  // namespace bodyloom::python

@@ -52,6 +52,7 @@ int main(int argc, char** argv) {
   bodyloom::AddTrainPhoto(*train, &action);
   bodyloom::AddTrainGuided(*train, &action);
   bodyloom::AddTrainRefiner(*train, &action);
+  bodyloom::AddTrainParser(*train, &action);
   CLI::App* animate = app.add_subcommand("animate", "Renders a person with a trained network");
   animate->require_subcommand(1);
   bodyloom::AddAnimateMotion(*animate, &action);

@@ -15,6 +15,7 @@ void AddTrainMotion(CLI::App& train, Action* action);
 void AddTrainPhoto(CLI::App& train, Action* action);
 void AddTrainGuided(CLI::App& train, Action* action);
 void AddTrainRefiner(CLI::App& train, Action* action);
+void AddTrainParser(CLI::App& train, Action* action);
 
 // Below `animate`.
 void AddAnimateMotion(CLI::App& animate, Action* action);

@@ -24,7 +24,7 @@ void AddScoreOptions(CLI::App* verb, ScorePeopleRequest* request) {
   verb->add_option_function<std::string>(
           "--score-labels",
           [request](const std::string& labels) { request->given.estimated_labels = labels == "estimated"; },
-          "Of the photos: true, or estimated (GrabCut around the body, as of a photo without labels)")
+          "Of the photos: true, or estimated (GrabCut and the clothes parser, as of a photo without labels)")
       ->check(CLI::IsMember({"true", "estimated"}))
       ->default_str("true");
   verb->add_option("--score-tracks", request->given.track,

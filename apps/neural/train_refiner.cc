@@ -7,7 +7,7 @@
 
 #include "apps/command_callbacks.h"
 #include "apps/neural/neural_verbs.h"
-#include "apps/neural/training_options.h"
+#include "apps/neural/picture_training_options.h"
 #include "apps/neural/training_report.h"
 #include "bodyloom/pipelines/neural/refiner/train_person_refiner.h"
 
@@ -46,22 +46,13 @@ void AddTrainRefiner(CLI::App& train, Action* action) {
       ->check(CLI::Range(64, 8192))
       ->capture_default_str();
   verb->add_option("--weights", request->weights, "Folder with trained weights: vgg16 (.safetensors, .pth)");
-  verb->add_option("--steps", options.steps, "Batches to train on")->capture_default_str();
-  verb->add_option("--batch", options.batch, "Crops in a batch")->capture_default_str();
-  verb->add_option("--crop", options.crop, "Pixels of a crop's side, a multiple of 16")->capture_default_str();
-  verb->add_option("--learning-rate", options.learning_rate, "At its highest")->capture_default_str();
-  verb->add_option("--alpha-weight", options.alpha_weight, "Of the outline beside the picture")->capture_default_str();
+  verb->add_flag("--outline", options.moves_outline,
+                 "Refines the outline too, not colours alone: hair and hems stand off, wide clothes may become narrow");
+  verb->add_option("--alpha-weight", options.alpha_weight, "With --outline: of the outline beside the picture")->capture_default_str();
   verb->add_option("--perceptual-weight", options.perceptual_weight, "Of VGG's features beside the picture")
       ->capture_default_str();
-  verb->add_option("--light-strength", options.light_strength,
-                   "Of the change of colours, drawn and true alike, that each crop gets; 0: none")
-      ->capture_default_str();
-  verb->add_option("--body-error", request->body_error_px,
-                   "Bodies of every other person are off by up to this, as fitted ones are: mean distance of projected "
-                   "vertices, pixels in a picture whose longer side has 512")
-      ->check(CLI::Range(0.0, 50.0))
-      ->capture_default_str();
-  AddTrainingOptions(verb, &options, "Of weights, crops and photos");
+  AddPictureTrainingOptions(verb, &options, &request->body_error_px, "Bodies of every other person",
+                            "Of weights, crops and photos");
   verb->footer(
       "Example:\n  bodyloom synth-people --motions motions --size 512 --out people\n"
       "  bodyloom train refiner --data people --out run\n"

@@ -5,14 +5,15 @@
 
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/formats/npz.h"
+#include "bodyloom/data_tools/learned/picture_unet_arrays.h"
 #include "bodyloom/data_tools/learned/weight_arrays.h"
 #include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {
 
-constexpr size_t kMostWeightBytes = size_t{1} << 26;
 constexpr const char* kSize = "pixels_per_metre";
+constexpr const char* kOutline = "moves_outline";
 
 }  // namespace
 
@@ -20,28 +21,23 @@ void WriteRefinerWeights(const std::string& path, const RefinerWeights& weights)
   std::string why;
   BODYLOOM_CHECK(weights.IsValid(&why), "refiner weights: ", why);
   NpzArrays arrays;
-  for (size_t i = 0; i < kRefinerShapes.size(); ++i) {
-    const std::string name = kRefinerShapes[i].name;
-    arrays[name] = HalfMatrix(weights.convolutions[i].kernel);
-    arrays[name + "_bias"] = FloatVector(weights.convolutions[i].bias);
-  }
-  arrays[kSize] = FloatVector(Eigen::VectorXf::Constant(1, static_cast<float>(weights.pixels_per_metre)));
+  PutPictureUnet(weights.network, kRefinerPlanes, &arrays);
+  arrays[kSize] = FloatNumber(static_cast<float>(weights.pixels_per_metre));
+  arrays[kOutline] = FloatNumber(weights.moves_outline ? 1 : 0);
   arrays["recipe"] = NdArray::FromString(weights.recipe);
   WriteNpz(path, arrays);
 }
 
 RefinerWeights ReadRefinerWeightsBytes(const std::string& bytes, const std::string& where) {
-  const NpzArrays arrays = ReadNpzBytes(bytes, where, kMostWeightBytes);
+  const NpzArrays arrays = ReadNpzBytes(bytes, where, kMostPictureUnetBytes);
   RefinerWeights weights;
-  for (const RefinerShape& shape : kRefinerShapes) {
-    const std::string name = shape.name;
-    weights.convolutions.push_back({MatrixFrom(arrays, name, where), VectorFrom(arrays, name + "_bias", where)});
+  weights.network = PictureUnetFrom(arrays, kRefinerPlanes, where);
+  weights.pixels_per_metre = NumberFrom(arrays, kSize, where);
+  const float outline = NumberFrom(arrays, kOutline, where);
+  if (outline != 0 && outline != 1) {
+    throw std::runtime_error(Concatenate(where, ": ", kOutline, " is ", outline, ", expected 0 or 1"));
   }
-  const Eigen::VectorXf size = VectorFrom(arrays, kSize, where);
-  if (size.size() != 1) {
-    throw std::runtime_error(Concatenate(where, ": ", kSize, " has ", size.size(), " numbers, expected one"));
-  }
-  weights.pixels_per_metre = size[0];
+  weights.moves_outline = outline == 1;
   weights.recipe = RecipeFrom(arrays, where);
   std::string why;
   if (!weights.IsValid(&why)) throw std::runtime_error(where + ": " + why);
@@ -49,7 +45,7 @@ RefinerWeights ReadRefinerWeightsBytes(const std::string& bytes, const std::stri
 }
 
 RefinerWeights ReadRefinerWeights(const std::string& path) {
-  return ReadRefinerWeightsBytes(ReadFileBytes(path, kMostWeightBytes), path);
+  return ReadRefinerWeightsBytes(ReadFileBytes(path, kMostPictureUnetBytes), path);
 }
 
 }  // namespace bodyloom

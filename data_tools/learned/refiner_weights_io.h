@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The picture refiner's weights as a file: one .npz with arrays NAME (out × 9·in, half-precision floats, so the file
-/// rounds them to 11 bits) and NAME_bias (out) of each of kRefinerShapes (render/person/refiner_weights.h),
-/// `pixels_per_metre` (one number) and `recipe` (text).
+/// The picture refiner's weights as a file: one .npz with the arrays of its network (picture_unet_arrays.h),
+/// `pixels_per_metre` (one number), `moves_outline` (one number, 1 where it does, else 0) and `recipe` (text).
 #pragma once
 
 #include <string>

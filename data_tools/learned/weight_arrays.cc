@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "bodyloom/geometry/base/check.h"
+
 namespace bodyloom {
 namespace {
 
@@ -35,6 +37,8 @@ NdArray HalfMatrix(const RowMatrixXf& matrix) {
 
 NdArray FloatVector(const Eigen::VectorXf& vector) { return NdArray::FromFloats(vector.data(), {vector.size()}); }
 
+NdArray FloatNumber(float number) { return NdArray::FromFloats(&number, {1}); }
+
 RowMatrixXf MatrixFrom(const NpzArrays& arrays, const std::string& name, const std::string& where) {
   const NdArray& array = RequireArray(arrays, name, where);
   const std::vector<float> values = FloatsFrom(array, name, 2, where);
@@ -44,6 +48,14 @@ RowMatrixXf MatrixFrom(const NpzArrays& arrays, const std::string& name, const s
 Eigen::VectorXf VectorFrom(const NpzArrays& arrays, const std::string& name, const std::string& where) {
   const std::vector<float> values = FloatsFrom(RequireArray(arrays, name, where), name, 1, where);
   return Eigen::Map<const Eigen::VectorXf>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+float NumberFrom(const NpzArrays& arrays, const std::string& name, const std::string& where) {
+  const Eigen::VectorXf numbers = VectorFrom(arrays, name, where);
+  if (numbers.size() != 1) {
+    throw std::runtime_error(Concatenate(where, ": ", name, " has ", numbers.size(), " numbers, expected one"));
+  }
+  return numbers[0];
 }
 
 std::string RecipeFrom(const NpzArrays& arrays, const std::string& where) {

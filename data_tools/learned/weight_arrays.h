@@ -13,10 +13,13 @@ namespace bodyloom {
 /// Rounded to half precision, 11 bits.
 NdArray HalfMatrix(const RowMatrixXf& matrix);
 NdArray FloatVector(const Eigen::VectorXf& vector);
+NdArray FloatNumber(float number);
 
 /// Throw std::runtime_error naming the file, the array and what was expected.
 RowMatrixXf MatrixFrom(const NpzArrays& arrays, const std::string& name, const std::string& where);
 Eigen::VectorXf VectorFrom(const NpzArrays& arrays, const std::string& name, const std::string& where);
+/// The one number of an array.
+float NumberFrom(const NpzArrays& arrays, const std::string& name, const std::string& where);
 /// The text of `recipe`, which may be empty but not missing.
 std::string RecipeFrom(const NpzArrays& arrays, const std::string& where);
 

@@ -4,10 +4,11 @@
 ///   loss = mean |P − T| + λ_A mean |alpha' − alpha_T| + λ_V Σ mean |vgg(P) − vgg(T)|
 /// P and T: the refined and the true person over the same background, one random colour an example, so that alpha is
 /// learned and not only its product with colour; vgg: VGG-16's relu 1-2, 2-2 and 3-3, or a random-feature substitute.
-/// Half of the crops lie around a pixel that the drawing has wrongly inside or outside the person (hems, hair, hands);
-/// the others anywhere. Drawn and true colours of a crop are multiplied by one random matrix (brightness, each channel's gain,
-/// saturation, hue), so that no colour is learned by heart. AdamW with a cosine schedule; what is exported is an average of the weights
-/// (neural/training/weight_average.h).
+/// A refiner that leaves the outline alone learns colours under the drawn alpha: T is the true colour where the person
+/// truly is, elsewhere the drawn one, which is to stay. Half of the crops lie around a pixel that the drawing has wrongly
+/// inside or outside the person (hems, hair, hands); the others anywhere. Drawn and true colours of a crop are in one
+/// random light (neural/pictures/picture_crops.h), so that no colour is learned by heart. Steps as
+/// neural/pictures/picture_trainer.h has them.
 ///
 /// Writes into run_dir: checkpoint.bin and metrics.csv. A run that goes on from a checkpoint ends with the same bytes
 /// as one that was never interrupted (same binary, machine and threads).
@@ -18,7 +19,8 @@
 #include <vector>
 
 #include "bodyloom/neural/networks/named_weights.h"
-#include "bodyloom/neural/refiner/refiner_picture.h"
+#include "bodyloom/neural/pictures/packed_picture.h"
+#include "bodyloom/neural/pictures/picture_training.h"
 #include "bodyloom/neural/training/training_run.h"
 #include "bodyloom/render/person/refiner_weights.h"
 
@@ -31,17 +33,11 @@ struct TrainRefinerProgress {
   double seconds = 0;
 };
 
-struct TrainRefinerOptions : TrainingRun {
-  TrainRefinerOptions() { steps = 8000; }
-  int crop = 192;  ///< pixels a side, a multiple of kRefinerMultiple
-  int batch = 8;
-  double learning_rate = 1e-3;
-  int warmup_steps = 100;
-  double weight_decay = 1e-4;
-  double alpha_weight = 1, perceptual_weight = 0.1;
-  double average_share = 0.1;  ///< of the steps: the mean age of the averaged weights
-  double light_strength = 1;   ///< of the change of colours, drawn and true alike, that each crop gets: 0 none
-  WeightsFrom vgg16;           ///< empty: a seeded random-feature substitute
+struct TrainRefinerOptions : PictureTraining {
+  bool moves_outline = false;  ///< RefinerWeights
+  double alpha_weight = 1;     ///< where the outline moves
+  double perceptual_weight = 0.1;
+  WeightsFrom vgg16;                                          ///< empty: a seeded random-feature substitute
   std::function<bool(const TrainRefinerProgress&)> progress;  ///< return false to stop after a checkpoint
   [[nodiscard]] bool IsValid(std::string* why) const;
 };
@@ -53,12 +49,12 @@ struct TrainRefinerSummary : TrainingOutcome {
 
 struct TrainRefinerResult {
   TrainRefinerSummary summary;
-  RefinerWeights weights;  ///< without a recipe
+  RefinerWeights weights;  ///< without a recipe and people's size
 };
 
 /// Throws std::invalid_argument for options that are not valid, no picture to train on, or one whose sizes do not fit,
 /// std::runtime_error for files that cannot be used.
-TrainRefinerResult TrainRefiner(const std::vector<RefinerPicture>& train, const std::vector<RefinerPicture>& validation,
+TrainRefinerResult TrainRefiner(const std::vector<PackedPicture>& train, const std::vector<PackedPicture>& validation,
                                 const TrainRefinerOptions& options);
 
 }  // namespace bodyloom

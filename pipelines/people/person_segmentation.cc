@@ -96,10 +96,9 @@ PersonSegmentation SegmentPerson(const Image& window, std::span<const uint8_t> i
       is_body = is_body && (found[i] != 0) == (cut_parts[i] != 0);
     }
   }
-  segmentation.note = is_body ? "no labels: the outline is the bare body's, classes are its parts'"
-                      : alpha.empty()
-                          ? "no labels: the outline is found by GrabCut from the tracked body, classes are its parts'"
-                          : "no labels: the outline is its transparency's, classes are the tracked body's parts'";
+  segmentation.note = is_body         ? "no labels: the outline is the bare body's"
+                      : alpha.empty() ? "no labels: the outline is found by GrabCut from the tracked body"
+                                      : "no labels: the outline is its transparency's";
   return segmentation;
 }
 

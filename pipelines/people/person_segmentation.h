@@ -17,8 +17,8 @@ namespace bodyloom {
 double KeepPerson(std::span<const uint8_t> parts, int size, std::vector<uint8_t>* labels);
 
 struct PersonSegmentation {
-  std::vector<uint8_t> labels;  ///< size × size
-  std::string note;             ///< how it was found, half a sentence for the user
+  std::vector<uint8_t> labels;  ///< size × size, of the nearest part of the body
+  std::string note;             ///< how the outline was found, half a sentence for the user
 };
 
 /// By GrabCut from the tracked body (data_tools/datasets/photo_segmentation.h), in the part of the window that lies

@@ -6,9 +6,8 @@
 
 #include "bodyloom/geometry/camera.h"
 #include "bodyloom/pipelines/person/draw_person.h"
+#include "bodyloom/pipelines/person/surface_planes.h"
 #include "bodyloom/render/person/person_layers.h"
-#include "bodyloom/render/resolve_pixels.h"
-#include "bodyloom/render/visibility_buffer.h"
 
 namespace bodyloom {
 
@@ -27,13 +26,9 @@ class PersonLayerPainter {
 
  private:
   const PhotoPerson* person_;
-  int threads_;
   PersonPainter painter_;
   std::vector<float> sources_;  ///< 2 a texel: seen, mirrored
-  std::vector<float> places_;   ///< 3 a vertex
-  VisibilityBuffer buffer_;
-  ResolvedPixels pixels_;
-  VertexNormalsOfMesh normals_;
+  SurfacePlanes surface_;
 };
 
 }  // namespace bodyloom

@@ -7,12 +7,6 @@
 #include "bodyloom/render/view_camera.h"
 
 namespace bodyloom {
-namespace {
-
-constexpr double kLarger = 1.25;  ///< than what the refiner knows; up to there pictures are refined as they are
-
-}  // namespace
-
 RefinedPainter::RefinedPainter(const PhotoPerson& person, int num_threads, PictureRefiner* refiner)
     : refiner_(refiner) {
   if (refiner == nullptr) {
@@ -30,8 +24,7 @@ void RefinedPainter::Draw(const MatrixX3d& vertices, const Camera& camera, Image
   }
   BODYLOOM_CHECK(image->width == camera.width && image->height == camera.height, "refined person: the image is ",
                  image->width, "x", image->height, ", the camera ", camera.width, "x", camera.height);
-  const double size = PixelsPerMetre(camera, vertices.col(2).mean()), known = refiner_->weights().pixels_per_metre;
-  const double factor = size > kLarger * known ? known / size : 1;
+  const double factor = PictureUnetScale(PixelsPerMetre(camera, vertices.col(2).mean()), refiner_->pixels_per_metre());
   const PersonLayers layers =
       factor < 1 ? layers_->DrawColours(vertices, camera, static_cast<int>(OutlineReach::kOutwards / factor) + 2)
                  : layers_->Draw(vertices, camera);

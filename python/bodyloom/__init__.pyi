@@ -426,6 +426,18 @@ def track(
     end_s: float | None = None,
     progress: _Progress | None = None,
 ) -> Track: ...
+def parse_photo(
+    image: _Path,
+    *,
+    weights: str = "builtin",
+    who: int = 0,
+    body: _Path | None = None,
+    focal_px: float | None = None,
+    stature_m: float | None = None,
+    models: _Path | None = None,
+    progress: _Progress | None = None,
+) -> _Pictures: ...
+
 def synthetic_clip(
     frames: int = 180,
     *,

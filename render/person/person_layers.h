@@ -52,6 +52,10 @@ void ForEachPixel(const PersonLayers& layers, int width, int height, const Visit
   }
 }
 
+/// A box without planes around the pixels of a picture that are covered (not 0), as far from them on both sides, `reach` at
+/// least. Nobody where none is.
+PersonLayers BoxAround(int width, int height, std::span<const uint8_t> coverage, int reach);
+
 /// Colours where alpha is above 0 as they are, elsewhere by pull–push: each 2×2 pixels' mean, weighted by alpha, flows
 /// back into what has none. `colour`: 3 × height × width, in place. Nothing changes where alpha is 0 everywhere.
 void FillAround(int width, int height, std::span<const float> alpha, std::span<float> colour);

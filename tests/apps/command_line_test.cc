@@ -15,15 +15,15 @@ using ::testing::StartsWith;
 using Verbs = std::vector<std::vector<std::string>>;
 
 /// Those of this program, sub-verbs included.
-const Verbs kOwnVerbs = {{"track"},   {"synth"},        {"synth-person"}, {"synth-people"},    {"evaluate"},
-                         {"metrics"}, {"export"},       {"render"},       {"describe"},        {"texture"},
-                         {"body"},    {"body", "info"}, {"body", "make"}, {"body", "convert"}, {"demo"},
-                         {"prior"},   {"motions"},      {"version"}};
+const Verbs kOwnVerbs = {{"track"},   {"synth"},  {"synth-person"}, {"synth-people"}, {"evaluate"},
+                         {"metrics"}, {"export"}, {"render"},       {"describe"},     {"texture"},
+                         {"parse"},   {"body"},   {"body", "info"}, {"body", "make"}, {"body", "convert"},
+                         {"demo"},    {"prior"},  {"motions"},      {"version"}};
 /// Those that it passes on to the program that LibTorch is linked with.
-const Verbs kNeuralVerbs = {{"neural"},           {"neural", "doctor"}, {"neural", "card"},    {"train"},
-                            {"train", "lifter"},  {"train", "motion"},  {"train", "photo"},    {"train", "guided"},
-                            {"train", "refiner"}, {"animate"},          {"animate", "motion"}, {"animate", "photo"},
-                            {"animate", "guided"}};
+const Verbs kNeuralVerbs = {{"neural"},           {"neural", "doctor"}, {"neural", "card"}, {"train"},
+                            {"train", "lifter"},  {"train", "motion"},  {"train", "photo"}, {"train", "guided"},
+                            {"train", "refiner"}, {"train", "parser"},  {"animate"},        {"animate", "motion"},
+                            {"animate", "photo"}, {"animate", "guided"}};
 
 /// All that were built.
 Verbs AllVerbs() {

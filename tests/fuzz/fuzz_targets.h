@@ -179,7 +179,8 @@ inline constexpr const char* kNames[] = {"v_template",
                                          "merge0_bias",
                                          "leave",
                                          "leave_bias",
-                                         "pixels_per_metre"};
+                                         "pixels_per_metre",
+                                         "moves_outline"};
 
 /// Named arrays without the archive around them, whose checksums no mutation survives:
 /// (index of a known name, 3 bytes of length, .npy bytes) over and over.

@@ -48,6 +48,15 @@ class FromAPhoto(unittest.TestCase):
         self.assertGreater(picture.std(), 10)
 
 
+    def test_parsing_is_the_command_s(self):
+        labels = bodyloom.parse_photo(self.photo, models=MODELS)
+        self.assertEqual(set(np.unique(labels)), set(range(7)))
+        run_command("parse", self.photo, "--out", self.folder / "labels.png", "--models", MODELS)
+        raw = subprocess.run(["ffmpeg", "-v", "error", "-i", self.folder / "labels.png", "-f", "rawvideo", "-pix_fmt", "gray", "-"],
+                             check=True, capture_output=True).stdout
+        np.testing.assert_array_equal(labels, np.frombuffer(raw, np.uint8).reshape(labels.shape))
+
+
 class Refusals(unittest.TestCase):
     def test_say_what_is_wrong(self):
         with self.assertRaisesRegex(ValueError, "images: expected at least one photo"):
@@ -56,6 +65,8 @@ class Refusals(unittest.TestCase):
             bodyloom.Person.from_photos(["nothere.jpg"])
         with self.assertRaisesRegex(RuntimeError, "body.npz"):
             bodyloom.Person.load("nowhere")
+        with self.assertRaisesRegex(RuntimeError, "nothere.jpg"):
+            bodyloom.parse_photo("nothere.jpg")
 
 
 if __name__ == "__main__":

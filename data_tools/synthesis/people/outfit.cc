@@ -100,6 +100,7 @@ Outfit::Outfit(const BodyModel& body, GarmentKind kind, uint64_t seed, ClothesSt
   top_m_ = between(0.005, 0.009) * c.unit, trousers_m_ = between(0.006, 0.012) * c.unit;
   flare_m_ = between(0, 0.015) * c.unit, shoes_m_ = between(0.006, 0.01) * c.unit;
   hair_m_ = between(0.012, 0.028) * c.unit;
+  hip_z_ = joints(kLeftHip, 2), sole_y_ = bottom_y;
   if (style == ClothesStyle::kEveryday) CutEveryday(seed, joints);
   offsets_m_.reserve(vertices.rows());
   for (int v = 0; v < vertices.rows(); ++v) offsets_m_.push_back(OffsetAt(vertices.row(v).transpose()));
@@ -127,6 +128,14 @@ void Outfit::CutEveryday(uint64_t seed, const MatrixX3d& joints) {
     top_m_ = std::max(top_m_, trousers_m_ + 0.15 * flare_m_ + 0.003 * c.unit);  // over the flare's beginning
   }
   hair_m_ = between(0.012, 0.042);
+  has_top_ = kind_ != GarmentKind::kSuit || random.Uniform() >= 0.04;
+  has_shoes_ = random.Uniform() >= 0.08;
+  if (!has_top_) top_m_ = 0;
+  if (!has_shoes_) shoes_m_ = 0;
+  if (has_top_ && kind_ == GarmentKind::kSuit && random.Uniform() < 0.08) {  // no sleeves
+    c.sleeve_x = joints(kLeftShoulder, 0) - between(0.0, 0.02);
+    c.armpit_y = joints(kLeftShoulder, 1) - 0.13 * c.unit;  // hips may be as wide as shoulders
+  }
 }
 
 /// Distance from the hair's edge, positive where hair grows.
@@ -134,10 +143,13 @@ double Outfit::HairDepth(const Vector3d& p) const {
   return std::min(kHairNormal.dot(p - Vector3d(0, cut_.ear_y, cut_.ear_z)), p.y() - cut_.nape_y);
 }
 
-/// Distance (about) from the neckline, positive where the top is cut away.
 double Outfit::NeckHole(const Vector3d& p) const {
   const double x = (p.x() - cut_.neck_x) / cut_.neck_radius_x, z = (p.z() - cut_.neck_z) / cut_.neck_radius_z;
   return std::min((1 - std::sqrt(x * x + z * z)) * cut_.neck_radius_x, p.y() - cut_.neck_y);
+}
+
+double Outfit::InsideSleeve(const Vector3d& p) const {
+  return std::max(cut_.sleeve_x - std::abs(p.x()), cut_.armpit_y - p.y());
 }
 
 PersonLabel Outfit::LabelAt(const Vector3d& p) const {
@@ -146,9 +158,9 @@ PersonLabel Outfit::LabelAt(const Vector3d& p) const {
     if (HairDepth(p) > 0) return PersonLabel::kHair;
     return p.y() > c.jaw_y + 0.5 * (c.jaw_z - p.z()) ? PersonLabel::kFace : PersonLabel::kSkin;
   }
-  if (p.y() < c.shoe_y) return PersonLabel::kShoes;
+  if (has_shoes_ && p.y() < c.shoe_y) return PersonLabel::kShoes;
   if (p.y() < c.waist_y) return p.y() < c.hem_y ? PersonLabel::kSkin : PersonLabel::kBottom;
-  return std::abs(p.x()) > c.sleeve_x || NeckHole(p) > 0 ? PersonLabel::kSkin : PersonLabel::kTop;
+  return !has_top_ || InsideSleeve(p) < 0 || NeckHole(p) > 0 ? PersonLabel::kSkin : PersonLabel::kTop;
 }
 
 double Outfit::OffsetAt(const Vector3d& p) const {
@@ -158,8 +170,8 @@ double Outfit::OffsetAt(const Vector3d& p) const {
   // A shirt that is tucked in is thin at the waist, so that trousers or a skirt go over it.
   const double tucked = c.waist_y + 2 * edge;
   const double at_waist = tucked_in_ ? 0.5 + 0.5 * SmoothStep((p.y() - tucked) / (4 * edge)) : 1;
-  const double top = top_m_ * SmoothStep((c.sleeve_x - std::abs(p.x())) / edge) * SmoothStep(-NeckHole(p) / edge) *
-                     at_waist * SmoothStep((p.y() - (c.waist_y - 2 * edge)) / edge);
+  const double top = top_m_ * SmoothStep(InsideSleeve(p) / edge) * SmoothStep(-NeckHole(p) / edge) * at_waist *
+                     SmoothStep((p.y() - (c.waist_y - 2 * edge)) / edge);
   const double share = std::clamp((c.waist_y - p.y()) / (c.waist_y - c.hem_y), 0.0, 1.0);
   const double bottom = kind_ == GarmentKind::kSkirt ? 0.3 * trousers_m_ * SmoothStep((p.y() - c.hem_y) / edge)
                                                      : (trousers_m_ + flare_m_ * share * (even_flare_ ? 1 : share)) *

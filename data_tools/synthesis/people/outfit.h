@@ -37,7 +37,8 @@ ClothesStyle ClothesStyleFromString(const std::string& name);
 struct OutfitCut {
   double unit = 1;  ///< height of the body / 1.71 m: scales every length below
   double waist_y = 0, neck_x = 0, neck_z = 0, neck_y = 0, neck_radius_x = 0, neck_radius_z = 0;
-  double sleeve_x = 0;                       ///< the top ends where |x| is larger
+  double sleeve_x = 0;                       ///< the top ends where |x| is larger, and
+  double armpit_y = -1e9;                    ///< y is above this (a top without sleeves; others end wherever)
   double hem_y = 0;                          ///< trousers (shorts under a skirt) end below
   double shoe_y = 0;                         ///< shoes begin below
   double head_y = 0;                         ///< neck and head begin above
@@ -61,10 +62,18 @@ class Outfit {
   [[nodiscard]] double OffsetAt(const Eigen::Vector3d& on_template) const;
   /// The same for every vertex.
   [[nodiscard]] const std::vector<double>& offsets_m() const { return offsets_m_; }
+  /// Distance (about) from the neckline, positive where the top is cut away.
+  [[nodiscard]] double NeckHole(const Eigen::Vector3d& on_template) const;
+  /// Distance (about) from where a sleeve ends, positive where the top is.
+  [[nodiscard]] double InsideSleeve(const Eigen::Vector3d& on_template) const;
+  /// Whether there is a top, and shoes: everyday people go without now and then.
+  [[nodiscard]] bool has_top() const { return has_top_; }
+  [[nodiscard]] bool has_shoes() const { return has_shoes_; }
+  [[nodiscard]] double hip_z() const { return hip_z_; }    ///< metres on the template, of the hip's joint
+  [[nodiscard]] double sole_y() const { return sole_y_; }  ///< of the lowest vertex
 
  private:
   [[nodiscard]] double HairDepth(const Eigen::Vector3d& p) const;
-  [[nodiscard]] double NeckHole(const Eigen::Vector3d& p) const;
 
   void CutEveryday(uint64_t seed, const MatrixX3d& joints);
 
@@ -74,6 +83,8 @@ class Outfit {
   double top_m_ = 0, trousers_m_ = 0, flare_m_ = 0, shoes_m_ = 0, hair_m_ = 0;
   bool even_flare_ = false;  ///< trousers widen evenly down to the hem, else with the square of the way
   bool tucked_in_ = true;    ///< the shirt, else it hangs over the trousers
+  bool has_top_ = true, has_shoes_ = true;
+  double hip_z_ = 0, sole_y_ = 0;
   std::vector<double> offsets_m_;
 };
 

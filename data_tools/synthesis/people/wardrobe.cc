@@ -110,7 +110,10 @@ Wardrobe::Wardrobe(const Outfit& outfit, double around_m, uint64_t seed) : cut_(
   hair.colour = FromHsv(random.Uniform(0.04, 0.12), random.Uniform(0.3, 0.8), random.Uniform(0.1, 0.6));
   hair.other = 0.7F * hair.colour;
 
-  if (outfit.style() == ClothesStyle::kEveryday) DressEveryday(outfit.kind(), seed);
+  if (outfit.style() == ClothesStyle::kEveryday) {
+    DressEveryday(outfit.kind(), seed);
+    details_.emplace(outfit, seed);
+  }
 
   garment_ = of_label(outfit.kind() == GarmentKind::kCoat ? PersonLabel::kTop : PersonLabel::kBottom);
   if (around_m > 0) {
@@ -202,7 +205,9 @@ Vector3f Wardrobe::OfGarment(const Vector3f& p) const {
 }
 
 Vector3f Wardrobe::OfBody(PersonLabel label, const Vector3f& p) const {
-  return label == PersonLabel::kFace ? OfFace(p) : of_label(label).At(p);
+  if (label == PersonLabel::kFace) return OfFace(p);
+  const Vector3f colour = of_label(label).At(p);
+  return details_ ? details_->On(label, p, colour) : colour;
 }
 
 }  // namespace bodyloom

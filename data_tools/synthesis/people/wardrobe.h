@@ -4,14 +4,17 @@
 ///
 /// Patterned clothes (ClothesStyle): top and bottom are plain for one person in five each, else of two different patterns.
 /// Everyday clothes: three tops in five and three bottoms in four are plain but for how cloth fades; a tenth of the tops
-/// has a print on the chest; half of all are black, grey or white, a third of the bottoms blue as denim.
+/// has a print on the chest; half of all are black, grey or white, a third of the bottoms blue as denim. Seams, collars,
+/// knit and the like: clothes_details.h.
 #pragma once
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
+#include <optional>
 
+#include "bodyloom/data_tools/synthesis/people/clothes_details.h"
 #include "bodyloom/data_tools/synthesis/people/outfit.h"
 
 namespace bodyloom {
@@ -49,6 +52,7 @@ class Wardrobe {
   OutfitCut cut_;
   std::array<SurfacePattern, kNumPersonLabels> patterns_;
   SurfacePattern garment_;
+  std::optional<ClothesDetails> details_;  ///< of everyday clothes
 };
 
 }  // namespace bodyloom

@@ -15,6 +15,7 @@
 #include "bodyloom/data_tools/body/body_or_builtin.h"
 #include "bodyloom/data_tools/datasets/multi_person_dataset.h"
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
+#include "bodyloom/data_tools/learned/parser_weights_io.h"
 #include "bodyloom/data_tools/motion/freeze_track.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/synthesis/clips/perturbed_motion.h"
@@ -22,6 +23,7 @@
 #include "bodyloom/geometry/base/split_mix.h"
 #include "bodyloom/pipelines/neural/photo/photo_input.h"
 #include "bodyloom/pipelines/people/person_segmentation.h"
+#include "bodyloom/pipelines/person/clothes_parser.h"
 
 namespace bodyloom {
 namespace {
@@ -88,14 +90,19 @@ class PeopleData::Impl {
     const FrameOfPerson& from = people_.at(person).at(frame);
     PhotoFrame photo;
     Fill(from, &photo);
-    if (!request_.given.estimated_labels) return photo;
+    if (!request_.given.estimated_labels || IsTrue(static_cast<size_t>(person))) return photo;
     const CutPhoto& truth = CutAt(from);
     const Track& track = from.clip->track;
     Image everywhere(track.camera.width, track.camera.height);
     std::fill(everywhere.bgr.begin(), everywhere.bgr.end(), uint8_t{1});
     try {
       const std::vector<uint8_t> inside = CutLabels(everywhere, from.clip->maps->window(), from.t);
-      FillPicture({truth.image, SegmentPerson(truth.image, inside, {}, photo.parts).labels}, &photo);
+      std::vector<uint8_t> labels = SegmentPerson(truth.image, inside, {}, photo.parts).labels;
+      if (!request_.labels_of_body) {
+        const Track body = BodyOf(person, frame);
+        labels = ClothesParser(BuiltinParser()).Labels(truth.image, labels, *body_, body, body.camera, 1);
+      }
+      FillPicture({truth.image, std::move(labels)}, &photo);
     } catch (const std::invalid_argument& error) {
       throw std::runtime_error(Concatenate(from.clip->set.path(), ", frame ", from.t, ": ", error.what()));
     }
@@ -126,6 +133,9 @@ class PeopleData::Impl {
     int t = 0;
   };
 
+  /// Whether nothing of this person is to be estimated.
+  [[nodiscard]] bool IsTrue(size_t person) const { return request_.every_other_estimated && person % 2 == 0; }
+
   /// `clips`: below `folder`.
   void AddPerson(const std::string& folder, const std::vector<std::string>& clips) {
     std::vector<FrameOfPerson> frames;
@@ -139,8 +149,10 @@ class PeopleData::Impl {
       const uint64_t hash = Mix(Mix(request_.seed) ^ clips_.size());
       clips_.push_back(std::make_unique<Clip>(path));
       Clip& clip = *clips_.back();
-      clip.track = WithBodyError(*body_, TrackOfClip(clip.set, request_.given.track),
-                                 request_.body_error_px * UniformOf(hash), Mix(hash));
+      clip.track = TrackOfClip(clip.set, request_.given.track);
+      if (!IsTrue(people_.size())) {
+        clip.track = WithBodyError(*body_, std::move(clip.track), request_.body_error_px * UniformOf(hash), Mix(hash));
+      }
       if (!clip.set.info().has.labels) throw std::runtime_error(path + ": has no labels, which training needs");
       PhotoMapsOptions options;
       options.size = request_.size, options.texture_size = request_.texture_size, options.texels = texels_;

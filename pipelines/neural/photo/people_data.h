@@ -20,7 +20,7 @@ inline constexpr const char* kGivenOfPeople = "true labels and bodies";
 /// The same, where some of it is estimated as it is of anybody else.
 struct GivenOfPeople {
   bool estimated_labels =
-      false;          ///< of photos: found by GrabCut around the given body (SegmentPerson), not the true ones
+      false;  ///< of photos: found around the given body (SegmentPerson), clothes by the parser, not the true ones
   std::string track;  ///< name of a track in each clip's folder, of its frames: the bodies; empty: the true
   bool iuv = false;   ///< what pixels show of the body is what the clips' IUV images say
 
@@ -41,6 +41,9 @@ struct PeopleDataRequest {
   /// its own, as fitted bodies are; pixels, in a picture whose longer side has 512.
   double body_error_px = 0;
   uint64_t seed = 1;  ///< of those errors
+  /// Of the second, fourth, … person alone labels are estimated and bodies off; the others' are true.
+  bool every_other_estimated = false;
+  bool labels_of_body = false;  ///< estimated labels are those of SegmentPerson alone: the parser's beginning
 };
 
 /// Pictures are read when they are first requested and kept (4 bytes a pixel); maps are made each time.

@@ -14,6 +14,7 @@
 #include "bodyloom/data_tools/datasets/label_of_part.h"
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/data_tools/descriptors/posed_track.h"
+#include "bodyloom/data_tools/learned/parser_weights_io.h"
 #include "bodyloom/data_tools/motion/freeze_track.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/observations/part_labels.h"
@@ -22,6 +23,7 @@
 #include "bodyloom/pipelines/callbacks.h"
 #include "bodyloom/pipelines/people/person_segmentation.h"
 #include "bodyloom/pipelines/people/photo_pictures.h"
+#include "bodyloom/pipelines/person/clothes_parser.h"
 
 namespace bodyloom {
 namespace {
@@ -211,11 +213,13 @@ Photo MakePhoto(const PhotoRequest& request, Shown shown, int size, int texture_
     const std::vector<uint8_t>& alpha = shown.picture.alpha;
     const std::vector<uint8_t> everywhere(photo.picture.bgr.size() / 3, 1);
     try {
-      PersonSegmentation segmentation =
+      const PersonSegmentation segmentation =
           SegmentPerson(cut.image, cut_values(everywhere), alpha.empty() ? std::vector<uint8_t>() : cut_values(alpha),
                         photo.frame.parts);
-      cut.labels = std::move(segmentation.labels);
-      note(segmentation.note);
+      cut.labels = ClothesParser(BuiltinParser())
+                       .Labels(cut.image, segmentation.labels, *photo.body, photo.track,
+                               CameraInWindow(photo.track.CameraAt(0), photo.window, 0), 1);
+      note(segmentation.note + ", clothes are told apart by the parser");
     } catch (const std::invalid_argument&) {
       throw nobody("its body is not to be seen in");
     }

@@ -3,13 +3,12 @@
 
 #include <algorithm>
 #include <array>
-#include <mutex>
 #include <optional>
 
-#include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/geometry/base/split_mix.h"
 #include "bodyloom/neural/guided/choose_photos.h"
 #include "bodyloom/pipelines/neural/people/person_of_frames.h"
+#include "bodyloom/pipelines/neural/people/pictures_by_person.h"
 #include "bodyloom/pipelines/person/person_layer_painter.h"
 #include "bodyloom/render/view_camera.h"
 
@@ -18,13 +17,9 @@ namespace {
 
 constexpr std::array<int, 4> kPhotos = {1, 1, 2, 4};
 
-RefinerPicture PictureFrom(const PersonLayers& layers, const PhotoFrame& truth, double pixels_per_metre) {
-  RefinerPicture picture = {layers.width, layers.height, pixels_per_metre, {}, {}};
+PackedPicture PictureFrom(const PersonLayers& layers, const PhotoFrame& truth, double pixels_per_metre) {
+  PackedPicture picture = {layers.width, layers.height, pixels_per_metre, PackPlanes(layers, PersonPlane::kCount), {}};
   const size_t pixels = layers.pixels(), window = static_cast<size_t>(truth.size) * truth.size;
-  picture.planes.resize(layers.planes.size());
-  for (int p = 0; p < PersonPlane::kCount; ++p) {
-    for (size_t i = p * pixels; i < (p + 1) * pixels; ++i) picture.planes[i] = PackPlane(p, layers.planes[i]);
-  }
   picture.truth.assign(4 * pixels, 0);
   ForEachPixel(layers, truth.size, truth.size, [&](int x, int y, size_t to) {
     const size_t from = static_cast<size_t>(y) * truth.size + x;
@@ -36,14 +31,14 @@ RefinerPicture PictureFrom(const PersonLayers& layers, const PhotoFrame& truth, 
   return picture;
 }
 
-std::vector<RefinerPicture> PicturesOfPerson(const RefinerPicturesRequest& request, const PeopleData& people,
-                                             int person) {
+std::vector<PackedPicture> PicturesOfPerson(const RefinerPicturesRequest& request, const PeopleData& people,
+                                            int person) {
   const PhotoSource& source = people.source();
   const uint64_t hash = Mix(Mix(request.seed) ^ static_cast<uint64_t>(person));
   const std::vector<int> frames = ChoosePhotos(source, person, kPhotos[hash % kPhotos.size()]);
   std::vector<PhotoFrame> photos(frames.size());
   for (size_t k = 0; k < frames.size(); ++k) photos[k] = people.PhotoOf(person, frames[k]);
-  std::vector<RefinerPicture> pictures;
+  std::vector<PackedPicture> pictures;
   const std::optional<PhotoPerson> made =
       PersonOfFrames(people, person, frames, photos, request.texture_size, FitClothesOptions());
   if (!made) return pictures;
@@ -64,31 +59,17 @@ std::vector<RefinerPicture> PicturesOfPerson(const RefinerPicturesRequest& reque
 
 }  // namespace
 
-std::vector<RefinerPicture> RefinerPicturesOf(const RefinerPicturesRequest& request, const char* stage,
-                                              const PipelineCallbacks& callbacks) {
-  constexpr int kMapSize = 64;  // of maps that nobody reads here
+std::vector<PackedPicture> RefinerPicturesOf(const RefinerPicturesRequest& request, const char* stage,
+                                             const PipelineCallbacks& callbacks) {
   PeopleDataRequest of_data;
   of_data.data = request.data, of_data.body = request.body, of_data.size = request.size;
-  of_data.texture_size = kMapSize, of_data.test = request.test;
-  const PeopleData exact(of_data);
-  of_data.given.estimated_labels = true;
+  of_data.texture_size = kMapSizeNobodyReads, of_data.test = request.test;
+  of_data.given.estimated_labels = of_data.every_other_estimated = of_data.labels_of_body = true;
   of_data.body_error_px = request.body_error_px;
   of_data.seed = request.seed;
-  const PeopleData estimated(of_data);
-  const int count = static_cast<int>(exact.source().num_frames.size());
-  std::vector<std::vector<RefinerPicture>> of_person(count);
-  std::mutex mutex;
-  int done = 0;
-  ParallelFor(count, request.threads, [&](int person) {
-    of_person[person] = PicturesOfPerson(request, person % 2 == 0 ? exact : estimated, person);
-    const std::lock_guard lock(mutex);
-    callbacks.Update(stage, static_cast<double>(++done) / count);
-  });
-  std::vector<RefinerPicture> pictures;
-  for (std::vector<RefinerPicture>& of_one : of_person) {
-    std::move(of_one.begin(), of_one.end(), std::back_inserter(pictures));
-  }
-  return pictures;
+  const PeopleData people(of_data);
+  return PicturesByPerson(static_cast<int>(people.source().num_frames.size()), request.threads, stage, callbacks,
+                          [&](int person) { return PicturesOfPerson(request, people, person); });
 }
 
 }  // namespace bodyloom

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/neural/refiner/refiner_picture.h"
+#include "bodyloom/neural/pictures/packed_picture.h"
 #include "bodyloom/pipelines/callbacks.h"
 
 namespace bodyloom {
@@ -27,7 +27,7 @@ struct RefinerPicturesRequest {
 /// alike, are not quite right. The rest have true labels and bodies. Pictures person by person; the same for any number
 /// of threads. People of whom the photos show too little have none. Throws as PeopleData, Cancelled; the stage of
 /// `callbacks` is `stage`.
-std::vector<RefinerPicture> RefinerPicturesOf(const RefinerPicturesRequest& request, const char* stage,
+std::vector<PackedPicture> RefinerPicturesOf(const RefinerPicturesRequest& request, const char* stage,
                                               const PipelineCallbacks& callbacks);
 
 }  // namespace bodyloom

@@ -10,8 +10,8 @@
 #include "bodyloom/data_tools/learned/refiner_weights_io.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/base/percentile.h"
 #include "bodyloom/pipelines/files.h"
+#include "bodyloom/pipelines/neural/people/pictures_by_person.h"
 #include "bodyloom/pipelines/neural/photo/people_data.h"
 #include "bodyloom/pipelines/neural/refiner/refiner_pictures.h"
 #include "bodyloom/pipelines/neural/training_session.h"
@@ -36,19 +36,13 @@ nlohmann::ordered_json Describe(const TrainPersonRefinerRequest& request, const 
           {"crop", o.crop},
           {"learning_rate", o.learning_rate},
           {"weight_decay", o.weight_decay},
+          {"moves_outline", o.moves_outline},
           {"alpha_weight", o.alpha_weight},
           {"perceptual_weight", o.perceptual_weight},
           {"average_share", o.average_share},
           {"light_strength", o.light_strength},
           {"vgg16", o.vgg16.source},
           {"device", o.device}};
-}
-
-double MedianSize(const std::vector<RefinerPicture>& pictures) {
-  std::vector<double> sizes;
-  sizes.reserve(pictures.size());
-  for (const RefinerPicture& picture : pictures) sizes.push_back(picture.pixels_per_metre);
-  return Percentile(sizes, 50);
 }
 
 }  // namespace
@@ -70,8 +64,8 @@ TrainPersonRefinerSummary TrainPersonRefiner(const TrainPersonRefinerRequest& re
                                    options.seed,
                                    request.body_error_px,
                                    ThreadsFor(options.num_threads)};
-  const std::vector<RefinerPicture> train = RefinerPicturesOf(people, "drawing people", callbacks);
-  std::vector<RefinerPicture> test;
+  const std::vector<PackedPicture> train = RefinerPicturesOf(people, "drawing people", callbacks);
+  std::vector<PackedPicture> test;
   if (HasTestPeople(request.data)) {
     people.test = true;
     test = RefinerPicturesOf(people, "drawing people for validation", callbacks);
@@ -89,14 +83,14 @@ TrainPersonRefinerSummary TrainPersonRefiner(const TrainPersonRefinerRequest& re
   };
   TrainRefinerResult result = TrainRefiner(train, test, options);
   RequireFinite(result.summary, request.out);
-  result.weights.pixels_per_metre = MedianSize(train);
+  result.weights.pixels_per_metre = MedianPersonSize(train);
   result.weights.recipe = config.dump();
   const std::string weights = (std::filesystem::path(request.out) / "refiner.npz").string();
   WriteRefinerWeights(weights, result.weights);
   TrainPersonRefinerSummary summary;
   static_cast<TrainRefinerSummary&>(summary) = result.summary;
   summary.weights = weights;
-  summary.num_parameters = result.weights.num_parameters();
+  summary.num_parameters = result.weights.network.num_parameters();
   summary.pictures = train.size(), summary.test_pictures = test.size();
   return summary;
 }

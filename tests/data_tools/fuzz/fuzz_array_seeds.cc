@@ -13,6 +13,7 @@
 #include "bodyloom/data_tools/formats/npz.h"
 #include "bodyloom/data_tools/formats/zip.h"
 #include "bodyloom/data_tools/learned/lifter_weights_io.h"
+#include "bodyloom/data_tools/learned/parser_weights_io.h"
 #include "bodyloom/data_tools/learned/pose_prior_io.h"
 #include "bodyloom/data_tools/learned/refiner_weights_io.h"
 #include "bodyloom/data_tools/observations/observations_npz.h"
@@ -21,7 +22,7 @@
 #include "tests/data_tools/estimates/estimate_files.h"
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/fuzz/fuzz_targets.h"
-#include "tests/support/random_refiner.h"
+#include "tests/support/random_picture_unet.h"
 #include "tests/support/toy_body.h"
 
 namespace bodyloom::fuzz {
@@ -197,6 +198,7 @@ void AddArraySeeds(std::map<std::string, std::vector<std::string>>* seeds) {
   (*seeds)["pose_prior"] = {FramedBytesOf([](const std::string& path) { WritePosePrior(path, SmallPrior()); })};
   (*seeds)["lifter"] = {FramedBytesOf([](const std::string& path) { WriteLifterWeights(path, SmallLifter()); })};
   (*seeds)["refiner"] = {FramedBytesOf([](const std::string& path) { WriteRefinerWeights(path, RandomRefiner(1)); })};
+  (*seeds)["parser"] = {FramedBytesOf([](const std::string& path) { WriteParserWeights(path, RandomParser(1)); })};
   (*seeds)["left_half"] = {FrameArrays(ReadNpzBytes(EmbeddedBuiltinBodySources().parts_bytes, "parts.npz"))};
   (*seeds)["motion"] = {(*seeds)["deepmimic"][0], AmassBytes()};
   (*seeds)["detections_file"] = (*seeds)["detections"];

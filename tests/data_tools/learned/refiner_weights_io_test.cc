@@ -11,7 +11,7 @@
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/formats/npz.h"
 #include "tests/data_tools/formats/temporary_file.h"
-#include "tests/support/random_refiner.h"
+#include "tests/support/random_picture_unet.h"
 
 namespace bodyloom {
 namespace {
@@ -41,11 +41,13 @@ TEST(RefinerWeightsIo, KernelsComeBackToElevenBitsBiasesExactly) {
   ASSERT_TRUE(read.IsValid(nullptr));
   EXPECT_EQ(read.recipe, written.recipe);
   EXPECT_EQ(read.pixels_per_metre, written.pixels_per_metre);
-  EXPECT_EQ(read.num_parameters(), written.num_parameters());
-  for (size_t i = 0; i < written.convolutions.size(); ++i) {
-    EXPECT_TRUE(read.convolutions[i].bias == written.convolutions[i].bias);
-    const auto difference = (read.convolutions[i].kernel - written.convolutions[i].kernel).cwiseAbs().array();
-    EXPECT_TRUE((difference <= written.convolutions[i].kernel.cwiseAbs().array() / 2048 + 1e-7F).all()) << i;
+  EXPECT_TRUE(read.moves_outline);
+  EXPECT_EQ(read.network.num_parameters(), written.network.num_parameters());
+  for (size_t i = 0; i < written.network.convolutions.size(); ++i) {
+    EXPECT_TRUE(read.network.convolutions[i].bias == written.network.convolutions[i].bias);
+    const auto difference =
+        (read.network.convolutions[i].kernel - written.network.convolutions[i].kernel).cwiseAbs().array();
+    EXPECT_TRUE((difference <= written.network.convolutions[i].kernel.cwiseAbs().array() / 2048 + 1e-7F).all()) << i;
   }
   EXPECT_EQ(BytesOfRefiner(read), BytesOfRefiner(ReadRefinerWeightsBytes(BytesOfRefiner(read), "x")));
 }
@@ -69,19 +71,24 @@ TEST(RefinerWeightsIo, NamesWhatIsWrong) {
     const float none = 0;
     (*arrays)["pixels_per_metre"] = NdArray::FromFloats(&none, {1});
   });
-  EXPECT_NE(nobody.find("pixels_per_metre is 0, expected 1 to 1e5"), std::string::npos) << nobody;
+  EXPECT_NE(nobody.find("pixels_per_metre is 0, expected 1 to 100000"), std::string::npos) << nobody;
   const std::string several = RefinerErrorOf([](NpzArrays* arrays) {
     const std::vector<float> two(2, 250);
     (*arrays)["pixels_per_metre"] = NdArray::FromFloats(two.data(), {2});
   });
   EXPECT_NE(several.find("pixels_per_metre has 2 numbers, expected one"), std::string::npos) << several;
+  const std::string half = RefinerErrorOf([](NpzArrays* arrays) {
+    const float number = 0.5F;
+    (*arrays)["moves_outline"] = NdArray::FromFloats(&number, {1});
+  });
+  EXPECT_NE(half.find("moves_outline is 0.5, expected 0 or 1"), std::string::npos) << half;
   EXPECT_THROW(ReadRefinerWeightsBytes("no archive", "x"), std::runtime_error);
   EXPECT_THROW(ReadRefinerWeights("/nowhere/refiner.npz"), std::runtime_error);
 }
 
 TEST(RefinerWeightsIo, WritesNoInvalidWeights) {
   RefinerWeights weights = RandomRefiner(1);
-  weights.convolutions.pop_back();
+  weights.network.convolutions.pop_back();
   const TemporaryFolder folder;
   EXPECT_THROW(WriteRefinerWeights(folder.File("refiner.npz"), weights), std::invalid_argument);
 }

@@ -7,7 +7,7 @@
 
 #include "bodyloom/render/overlay.h"
 #include "tests/support/coloured_person.h"
-#include "tests/support/random_refiner.h"
+#include "tests/support/random_picture_unet.h"
 #include "tests/support/short_track.h"
 
 namespace bodyloom {

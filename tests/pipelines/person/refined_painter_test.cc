@@ -11,7 +11,7 @@
 #include "bodyloom/render/overlay.h"
 #include "bodyloom/render/view_camera.h"
 #include "tests/support/coloured_person.h"
-#include "tests/support/random_refiner.h"
+#include "tests/support/random_picture_unet.h"
 #include "tests/support/short_track.h"
 
 namespace bodyloom {
@@ -89,7 +89,7 @@ TEST(RefinedPainter, ALargePersonIsRefinedAtTheSizeThatTheRefinerKnows) {
   const double size = PixelsPerMetre(camera, vertices.col(2).mean());
   RefinerWeights weights = RandomRefiner(0);
   for (Eigen::Index i = PersonPlane::kAlpha; i < 16; i += 4)
-    weights.convolutions.back().bias[i] = 5;  // all it may grow
+    weights.network.convolutions.back().bias[i] = 5;  // all it may grow
   const auto reach_at = [&](double known) {
     weights.pixels_per_metre = known;
     PictureRefiner refiner(weights);

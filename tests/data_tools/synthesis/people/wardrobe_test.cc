@@ -119,8 +119,8 @@ TEST(Wardrobe, APrintIsOnTheChestAlone) {
       int printed = 0;
       for (float y = middle.y() - 0.4F; y < middle.y() + 0.4F; y += 0.004F) {
         for (float x = -0.3F; x < 0.3F; x += 0.004F) {
-          EXPECT_EQ(wardrobe.OfBody(kTop, {x, y, middle.z() - 0.6F}), top.colour) << "the back";
-          const bool is_printed = wardrobe.OfBody(kTop, {x, y, middle.z()}) != top.colour;
+          EXPECT_EQ(top.At({x, y, middle.z() - 0.6F}), top.colour) << "the back";
+          const bool is_printed = top.At({x, y, middle.z()}) != top.colour;
           EXPECT_TRUE(!is_printed || top.print.contains(Vector3f(x, y, middle.z())));
           printed += is_printed ? 1 : 0;
         }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A picture that the refiner learns from, a byte a number: what was drawn of a person, and the truth.
+/// A picture of a person that a picture U-Net (render/person/picture_unet.h) learns from, a byte a number.
 #pragma once
 
 #include <algorithm>
@@ -12,11 +12,11 @@
 
 namespace bodyloom {
 
-struct RefinerPicture {
+struct PackedPicture {
   int width = 0, height = 0;    ///< as PersonLayers
   double pixels_per_metre = 0;  ///< how large the person is
-  std::vector<uint8_t> planes;  ///< PersonPlane::kCount × height × width, PackPlane()
-  std::vector<uint8_t> truth;   ///< 4 × height × width: RGB multiplied by alpha, alpha; times 255
+  std::vector<uint8_t> planes;  ///< the first of PersonPlane's × height × width, PackPlane()
+  std::vector<uint8_t> truth;   ///< what is to be learned, planes × height × width
 
   [[nodiscard]] size_t pixels() const { return static_cast<size_t>(width) * height; }
 };
@@ -35,6 +35,16 @@ constexpr PlanePacking PackingOf(int plane) {
 inline uint8_t PackPlane(int plane, float value) {
   const PlanePacking packing = PackingOf(plane);
   return static_cast<uint8_t>(std::clamp(std::round(packing.offset + packing.scale * value), 0.0F, 255.0F));
+}
+
+/// The first `count` planes of layers, packed.
+inline std::vector<uint8_t> PackPlanes(const PersonLayers& layers, int count) {
+  std::vector<uint8_t> packed;
+  packed.reserve(count * layers.pixels());
+  for (int p = 0; p < count; ++p) {
+    for (const float value : layers.Plane(p)) packed.push_back(PackPlane(p, value));
+  }
+  return packed;
 }
 
 }  // namespace bodyloom

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/neural/parser/train_parser.h"
+
+#include <cstdint>
+#include <utility>
+
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/neural/device.h"
+#include "bodyloom/neural/metrics/class_overlap.h"
+#include "bodyloom/neural/networks/picture_unet_module.h"
+#include "bodyloom/neural/pictures/picture_crops.h"
+#include "bodyloom/neural/pictures/picture_trainer.h"
+#include "bodyloom/neural/runtime.h"
+
+namespace bodyloom {
+namespace {
+
+using torch::Tensor;
+
+constexpr int kParserIn = kParserPlanes.in;
+constexpr const char* kParserTraining = "parser training";
+constexpr int kMeeting = 3;  ///< pixels between two that show different classes
+const std::vector<std::string> kParserColumns = {"learning_rate", "loss", "mean_iou", "body_mean_iou"};
+
+/// Another class is near, to the right or below.
+bool ClassesMeet(const PackedPicture& picture, size_t pixel) {
+  const auto width = static_cast<size_t>(picture.width);
+  const uint8_t own = picture.truth[pixel];
+  const auto other = [&](size_t at) { return picture.truth[at] != 0 && picture.truth[at] != own; };
+  return own != 0 && ((pixel % width + kMeeting < width && other(pixel + kMeeting)) ||
+                      (pixel + kMeeting * width < picture.pixels() && other(pixel + kMeeting * width)));
+}
+
+PictureUnetModule SeededParser(const TrainParserOptions& options) {
+  torch::manual_seed(options.seed);
+  PictureUnetModule module(kParserPlanes);
+  module->to(NeuralDevice());
+  return module;
+}
+
+/// Labels of B×H×W bytes as classes from 0; −1 where there is none, or the mask ends.
+Tensor ClassesOf(const Tensor& labels, const Tensor& planes) {
+  const Tensor masked = planes.select(1, PersonPlane::kAlpha) > 0.5;
+  return torch::where(masked, labels.to(torch::kLong) - 1, -torch::ones_like(labels, torch::kLong));
+}
+
+class ParserTrainer : public PictureTrainer {
+ public:
+  ParserTrainer(const std::vector<PackedPicture>& train, const std::vector<PackedPicture>& validation,
+                const TrainParserOptions& options, PictureUnetModule module, PictureUnetModule average)
+      : PictureTrainer("clothes parser", options, train, {kParserIn, ParserTruth::kCount, 0, 0, 1, 1, ClassesMeet},
+                       module.ptr(), average.ptr()),
+        validation_(validation),
+        options_(options),
+        unpacked_(kParserIn),
+        module_(std::move(module)),
+        average_(std::move(average)) {}
+
+  TrainParserResult Run() {
+    TrainParserResult result;
+    const TrainingOutcome outcome = Train(kParserColumns);
+    result.summary = summary_;
+    static_cast<TrainingOutcome&>(result.summary) = outcome;
+    result.weights.network = ExportPictureUnet(average_);
+    return result;
+  }
+
+  [[nodiscard]] bool HasValidation() const override { return !validation_.empty(); }
+
+  void Validate(int, bool) override {
+    const torch::NoGradGuard no_grad;
+    ClassOverlap parsed(1 + kParserClasses), of_body(1 + kParserClasses);
+    for (const PackedPicture& picture : validation_) {
+      const auto [planes, truth] = unpacked_(BytesOf(picture, kParserIn, ParserTruth::kCount));
+      const std::vector<uint8_t> predicted = HostValues<uint8_t>(average_(planes).argmax(1));
+      const std::vector<float> classes = HostValues<float>(ClassesOf(truth.select(1, ParserTruth::kLabel), planes));
+      for (size_t i = 0; i < classes.size(); ++i) {
+        if (classes[i] < 0) continue;
+        const size_t true_label = 1 + static_cast<size_t>(classes[i]);
+        parsed.Add(size_t{1} + predicted[i], true_label);
+        of_body.Add(size_t{picture.truth[ParserTruth::kBodyLabel * picture.pixels() + i]}, true_label);
+      }
+    }
+    summary_.mean_iou = parsed.MeanIou(true), summary_.body_mean_iou = of_body.MeanIou(true);
+    summary_.iou.clear(), summary_.body_iou.clear();
+    for (int k = 1; k <= kParserClasses; ++k) {
+      summary_.iou.push_back(parsed.Iou(k)), summary_.body_iou.push_back(of_body.Iou(k));
+    }
+  }
+
+  [[nodiscard]] std::vector<double> ScoreRow() const override { return {summary_.mean_iou, summary_.body_mean_iou}; }
+
+  bool Report(int done, double seconds) override {
+    return !options_.progress ||
+           options_.progress({done, options_.steps, loss(), summary_.mean_iou, summary_.body_mean_iou, seconds});
+  }
+
+ private:
+  Losses LossesOf(const CropBatch& batch) override {
+    auto [planes, truth] = unpacked_(batch.bytes);
+    planes = torch::cat({Lit(planes.narrow(1, 0, 3), OnDevice(batch.lights)), planes.narrow(1, 3, kParserIn - 3)}, 1);
+    const Tensor classes = ClassesOf(truth.select(1, ParserTruth::kLabel), planes);
+    const Tensor counted = (classes >= 0).to(torch::kFloat);
+    const Tensor logs = torch::log_softmax(module_(planes), 1).gather(1, classes.clamp_min(0).unsqueeze(1)).squeeze(1);
+    return {-(logs * counted).sum() / counted.sum().clamp_min(1), {}};
+  }
+
+  const std::vector<PackedPicture>& validation_;
+  const TrainParserOptions& options_;
+  const PlaneUnpacker unpacked_;
+  PictureUnetModule module_, average_;
+  TrainParserSummary summary_;
+};
+
+}  // namespace
+
+TrainParserResult TrainParser(const std::vector<PackedPicture>& train, const std::vector<PackedPicture>& validation,
+                              const TrainParserOptions& options) {
+  std::string why;
+  BODYLOOM_CHECK(IsValidPictureTraining(options, &why), kParserTraining, ": ", why);
+  BODYLOOM_CHECK(!train.empty(), kParserTraining, ": no picture to train on");
+  for (const PackedPicture& picture : train) CheckPicture(picture, kParserIn, ParserTruth::kCount, kParserTraining);
+  for (const PackedPicture& picture : validation) {
+    CheckPicture(picture, kParserIn, ParserTruth::kCount, kParserTraining);
+  }
+  StartNeuralRuntime(options.num_threads);
+  UseNeuralDevice(options.device);
+  return ParserTrainer(train, validation, options, SeededParser(options), SeededParser(options)).Run();
+}
+
+}  // namespace bodyloom

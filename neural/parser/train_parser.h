@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Trains the clothes parser (render/person/parser_weights.h) on people whose labels are known.
+///
+///   loss = − mean log softmax(answers)_c,   c: the true class, over the pixels of the mask that truly show the person
+/// Half of the crops lie around a pixel where classes meet, the others anywhere; each is in a random light
+/// (neural/pictures/picture_crops.h). Steps as neural/pictures/picture_trainer.h has them.
+///
+/// Writes into run_dir: checkpoint.bin and metrics.csv. A run that goes on from a checkpoint ends with the same bytes
+/// as one that was never interrupted (same binary, machine and threads).
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "bodyloom/neural/pictures/packed_picture.h"
+#include "bodyloom/neural/pictures/picture_training.h"
+#include "bodyloom/neural/training/training_run.h"
+#include "bodyloom/render/person/parser_weights.h"
+
+namespace bodyloom {
+
+/// Planes of a picture's truth, bytes: the true label, 0 where the person is not; the label of the nearest pixel of the
+/// fitted body, which the parser is measured beside. Labels are those of data_tools/datasets/single_person_dataset.h.
+struct ParserTruth {
+  static constexpr int kLabel = 0, kBodyLabel = 1, kCount = 2;
+};
+
+struct TrainParserProgress {
+  int step = 0, steps = 0;
+  double loss = 0;                       ///< of the last step
+  double mean_iou = 0, body_mean_iou = 0;  ///< of the last validation, 0 before the first
+  double seconds = 0;
+};
+
+struct TrainParserOptions : PictureTraining {
+  std::function<bool(const TrainParserProgress&)> progress;  ///< return false to stop after a checkpoint
+};
+
+struct TrainParserSummary : TrainingOutcome {
+  /// Intersection over union, mean over the classes that occur, of the mask's pixels that truly show the person, all
+  /// validation pictures together; 0 without any. `body`: labels of the nearest pixel of the body.
+  double mean_iou = 0, body_mean_iou = 0;
+  std::vector<double> iou, body_iou;  ///< by class, kParserClasses; NaN: does not occur
+};
+
+struct TrainParserResult {
+  TrainParserSummary summary;
+  ParserWeights weights;  ///< without a recipe and people's size
+};
+
+/// Pictures have the planes of kParserPlanes and the truth of ParserTruth. Throws std::invalid_argument for options that
+/// are not valid, no picture to train on, or one whose sizes do not fit, std::runtime_error for files that cannot be used.
+TrainParserResult TrainParser(const std::vector<PackedPicture>& train, const std::vector<PackedPicture>& validation,
+                              const TrainParserOptions& options);
+
+}  // namespace bodyloom

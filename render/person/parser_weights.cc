@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/render/person/parser_weights.h"
+
+#include "bodyloom/geometry/base/in_range.h"
+
+namespace bodyloom {
+
+bool ParserWeights::IsValid(std::string* why) const {
+  return InRange(why)("pixels_per_metre", pixels_per_metre, 1, 1e5) && network.IsValid(kParserPlanes, why);
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// `bodyloom parse`, on a real photo.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "bodyloom/data_tools/learned/parser_weights_io.h"
+#include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/data_tools/video/video_reader.h"
+#include "tests/support/paths.h"
+#include "tests/support/random_picture_unet.h"
+#include "tests/support/real_video.h"
+#include "tests/support/run_command.h"
+#include "tests/support/scratch_folder.h"
+
+namespace bodyloom {
+namespace {
+
+using ::testing::HasSubstr;
+
+class ParseVerb : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (CommandPath().empty()) GTEST_SKIP() << "built without apps/";
+    const std::string video = SharedDir() + "/data/tfjs_pose/pose_squats.mp4";
+    const std::string why_not = WhyNoDetection(video);
+    if (!why_not.empty()) GTEST_SKIP() << why_not;
+    Image photo;
+    VideoReader(video).Read(&photo);
+    WriteImage(scratch_ / "photo.png", photo);
+    width_ = photo.width, height_ = photo.height;
+  }
+  CommandResult Parse(const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"parse", scratch_ / "photo.png", "--out", scratch_ / "labels.png"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return RunCommand(arguments);
+  }
+  ScratchFolder scratch_;
+  int width_ = 0, height_ = 0;
+};
+
+TEST_F(ParseVerb, WritesLabelsAndWhatTheyLookLike) {
+  const CommandResult parsed = Parse({"--picture", scratch_ / "shown.png"});
+  ASSERT_EQ(parsed.exit_code, 0) << parsed.err;
+  EXPECT_THAT(parsed.out, HasSubstr("pixels of the person: top "));
+  const Image labels = ReadImage(scratch_ / "labels.png"), shown = ReadImage(scratch_ / "shown.png");
+  ASSERT_EQ(labels.width, width_);
+  ASSERT_EQ(labels.height, height_);
+  ASSERT_EQ(shown.width, width_);
+  std::vector<size_t> count(256);
+  for (size_t i = 0; i < labels.bgr.size(); i += 3) ++count[labels.bgr[i]];
+  EXPECT_GT(count[0], labels.bgr.size() / 6) << "most of it is background";
+  EXPECT_GT(count[1], count[0] / 50) << "top";
+  EXPECT_GT(count[2], count[0] / 50) << "bottom";
+  EXPECT_GT(count[4], count[0] / 500) << "hair";
+  EXPECT_EQ(count[7], 0U);
+}
+
+TEST_F(ParseVerb, AsksWhereTheLabelsGo) {
+  const CommandResult nowhere = RunCommand({"parse", scratch_ / "photo.png"});
+  EXPECT_EQ(nowhere.exit_code, 2);
+  EXPECT_THAT(nowhere.err, HasSubstr("--out or --picture"));
+}
+
+TEST_F(ParseVerb, TakesWeights) {
+  WriteParserWeights(scratch_ / "parser.npz", RandomParser(1));
+  const CommandResult parsed = Parse({"--weights", scratch_ / "parser.npz"});
+  ASSERT_EQ(parsed.exit_code, 0) << parsed.err;
+  const Image by_weights = ReadImage(scratch_ / "labels.png");
+  ASSERT_EQ(Parse({"--weights", "body"}).exit_code, 0);
+  const Image by_body = ReadImage(scratch_ / "labels.png");
+  EXPECT_NE(by_weights.bgr, by_body.bgr);
+  for (size_t i = 0; i < by_body.bgr.size(); i += 3) ASSERT_EQ(by_weights.bgr[i] == 0, by_body.bgr[i] == 0) << i;
+  const CommandResult wrong = Parse({"--weights", scratch_ / "photo.png"});
+  EXPECT_EQ(wrong.exit_code, 1);
+  EXPECT_THAT(wrong.err, HasSubstr("photo.png"));
+}
+
+}  // namespace
+}  // namespace bodyloom

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/data_tools/learned/parser_weights_io.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <stdexcept>
+#include <string>
+
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/formats/npz.h"
+#include "tests/data_tools/formats/temporary_file.h"
+#include "tests/support/random_picture_unet.h"
+
+namespace bodyloom {
+namespace {
+
+std::string BytesOfParser(const ParserWeights& weights) {
+  const TemporaryFolder folder;
+  WriteParserWeights(folder.File("parser.npz"), weights);
+  return ReadFileBytes(folder.File("parser.npz"));
+}
+
+std::string ParserErrorOf(const std::function<void(NpzArrays*)>& change) {
+  NpzArrays arrays = ReadNpzBytes(BytesOfParser(RandomParser(1)), "x");
+  change(&arrays);
+  const TemporaryFolder folder;
+  WriteNpz(folder.File("changed.npz"), arrays);
+  try {
+    ReadParserWeightsBytes(ReadFileBytes(folder.File("changed.npz")), "some/parser.npz");
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(ParserWeightsIo, ComeBack) {
+  const ParserWeights written = RandomParser(1), read = ReadParserWeightsBytes(BytesOfParser(written), "x");
+  ASSERT_TRUE(read.IsValid(nullptr));
+  EXPECT_EQ(read.recipe, written.recipe);
+  EXPECT_EQ(read.pixels_per_metre, written.pixels_per_metre);
+  EXPECT_EQ(read.network.num_parameters(), written.network.num_parameters());
+  EXPECT_LT(read.network.num_parameters(), 2'000'000U);
+  EXPECT_TRUE(read.network.convolutions[0].bias == written.network.convolutions[0].bias);
+  EXPECT_TRUE(read.network.convolutions[0].kernel.isApprox(written.network.convolutions[0].kernel, 1e-3F));
+  EXPECT_EQ(BytesOfParser(read), BytesOfParser(ReadParserWeightsBytes(BytesOfParser(read), "x")));
+}
+
+TEST(ParserWeightsIo, TheBuiltInParserSaysHowItWasMade) {
+  const ParserWeights& weights = BuiltinParser();
+  EXPECT_TRUE(weights.IsValid(nullptr));
+  EXPECT_NE(weights.recipe.find("bodyloom train parser"), std::string::npos);
+  EXPECT_GT(weights.network.convolutions.back().kernel.norm(), 0);
+}
+
+TEST(ParserWeightsIo, NamesWhatIsWrong) {
+  EXPECT_EQ(ParserErrorOf([](NpzArrays*) {}), "");
+  const std::string missing = ParserErrorOf([](NpzArrays* arrays) { arrays->erase("merge1"); });
+  EXPECT_NE(missing.find("some/parser.npz"), std::string::npos) << missing;
+  EXPECT_NE(missing.find("merge1"), std::string::npos) << missing;
+  const std::string other = ParserErrorOf([](NpzArrays* arrays) { (*arrays)["leave"] = (*arrays)["merge0"]; });
+  EXPECT_NE(other.find("leave is 32x288"), std::string::npos) << other;
+  const std::string nobody = ParserErrorOf([](NpzArrays* arrays) {
+    const float none = 0;
+    (*arrays)["pixels_per_metre"] = NdArray::FromFloats(&none, {1});
+  });
+  EXPECT_NE(nobody.find("pixels_per_metre is 0, expected 1 to 100000"), std::string::npos) << nobody;
+  EXPECT_THROW(ReadParserWeightsBytes("no archive", "x"), std::runtime_error);
+  EXPECT_THROW(ReadParserWeights("/nowhere/parser.npz"), std::runtime_error);
+  ParserWeights weights = RandomParser(1);
+  weights.network.convolutions.pop_back();
+  const TemporaryFolder folder;
+  EXPECT_THROW(WriteParserWeights(folder.File("parser.npz"), weights), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace bodyloom

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/neural/networks/picture_unet_module.h"
+
+#include <gtest/gtest.h>
+#include <torch/torch.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "bodyloom/neural/device.h"
+#include "bodyloom/pipelines/person/picture_unet_runner.h"
+#include "tests/support/random_picture_unet.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr PictureUnetPlanes kFiveToThree = {5, 3};
+
+TEST(PictureUnetModule, AnswersNothingBeforeItHasLearned) {
+  torch::manual_seed(3);
+  PictureUnetModule module(kFiveToThree);
+  const torch::NoGradGuard no_grad;
+  const torch::Tensor answer = module(torch::rand({2, 5, 48, 32}));
+  EXPECT_EQ(answer.sizes(), (std::vector<int64_t>{2, 3, 48, 32}));
+  EXPECT_EQ(answer.abs().max().item<float>(), 0);
+}
+
+TEST(PictureUnetModule, RunsWithoutLibTorchTheSame) {
+  torch::manual_seed(3);
+  PictureUnetModule module(kFiveToThree);
+  const PictureUnetWeights weights = RandomPictureUnet(kFiveToThree, 0.5F);
+  ImportPictureUnet(weights, &module);
+  PictureUnetRunner native(weights, kFiveToThree);
+  const torch::NoGradGuard no_grad;
+  for (const auto& [width, height] : {std::pair(16, 48), std::pair(64, 32), std::pair(16, 48)}) {
+    const torch::Tensor planes = torch::rand({1, 5, height, width});
+    const std::vector<float> here = HostValues<float>(module(planes));
+    const std::vector<float> there = native.Run(width, height, HostValues<float>(planes));
+    ASSERT_EQ(here.size(), there.size());
+    float largest = 0;
+    for (size_t i = 0; i < here.size(); ++i) {
+      ASSERT_NEAR(here[i], there[i], 2e-4F) << i;
+      largest = std::max(largest, std::abs(here[i]));
+    }
+    EXPECT_GT(largest, 0.1F);
+  }
+}
+
+TEST(PictureUnetModule, NumbersGoOutAndIn) {
+  PictureUnetModule module(kFiveToThree);
+  const PictureUnetWeights weights = RandomPictureUnet(kFiveToThree, 1);
+  ImportPictureUnet(weights, &module);
+  const PictureUnetWeights back = ExportPictureUnet(module);
+  EXPECT_EQ(back.num_parameters(), weights.num_parameters());
+  for (size_t i = 0; i < weights.convolutions.size(); ++i) {
+    EXPECT_TRUE(back.convolutions[i].kernel == weights.convolutions[i].kernel) << i;
+    EXPECT_TRUE(back.convolutions[i].bias == weights.convolutions[i].bias) << i;
+  }
+  EXPECT_THROW(ImportPictureUnet({}, &module), std::invalid_argument);
+}
+
+TEST(PictureUnetModule, RefusesOtherSizes) {
+  PictureUnetModule module(kFiveToThree);
+  EXPECT_THROW(module(torch::zeros({1, 5, 60, 64})), std::invalid_argument);
+  EXPECT_THROW(module(torch::zeros({1, 4, 64, 64})), std::invalid_argument);
+  PictureUnetRunner native(RandomPictureUnet(kFiveToThree, 0), kFiveToThree);
+  EXPECT_THROW(native.Run(0, 0, {}), std::invalid_argument);
+  EXPECT_THROW(native.Run(16, 24, std::vector<float>(size_t{5} * 16 * 24)), std::invalid_argument);
+  EXPECT_THROW(native.Run(16, 16, std::vector<float>(size_t{4} * 16 * 16)), std::invalid_argument);
+  EXPECT_THROW(PictureUnetRunner(RandomPictureUnet(kFiveToThree, 0), {5, 4}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace bodyloom

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Picture U-Nets that learned nothing: weights as training begins with, and a last layer that is not zero.
+#pragma once
+
+#include <cmath>
+#include <random>
+
+#include "bodyloom/render/person/parser_weights.h"
+#include "bodyloom/render/person/refiner_weights.h"
+
+namespace bodyloom {
+
+inline PictureUnetWeights RandomPictureUnet(PictureUnetPlanes planes, float strength) {
+  std::mt19937 random(5);
+  std::normal_distribution<float> normal;
+  PictureUnetWeights weights;
+  for (const PictureUnetLayer& layer : PictureUnetLayers(planes)) {
+    PictureUnetWeights::Convolution& convolution = weights.convolutions.emplace_back();
+    convolution.kernel.resize(layer.out, 9 * layer.in);
+    convolution.bias.resize(layer.out);
+    const float scale = std::sqrt(2.0F / static_cast<float>(9 * layer.in)) * (layer.relu6 ? 1 : strength);
+    for (Eigen::Index i = 0; i < convolution.kernel.size(); ++i) convolution.kernel.data()[i] = scale * normal(random);
+    for (Eigen::Index i = 0; i < convolution.bias.size(); ++i) convolution.bias[i] = 0.1F * scale * normal(random);
+  }
+  return weights;
+}
+
+/// `strength` 0: it changes nothing. It moves the outline.
+inline RefinerWeights RandomRefiner(float strength) {
+  return {RandomPictureUnet(kRefinerPlanes, strength), 123, true, "made up for a test"};
+}
+
+inline ParserWeights RandomParser(float strength) {
+  return {RandomPictureUnet(kParserPlanes, strength), 123, "made up for a test"};
+}
+
+}  // namespace bodyloom
