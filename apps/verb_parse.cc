@@ -15,9 +15,9 @@
 namespace bodyloom {
 namespace {
 
-void RunParse(const ParsePhotoRequest& request) {
+void RunParse(const PhotoParseRequest& request) {
   if (request.out.empty() && request.picture.empty()) throw RequestError("--out or --picture: where the labels go");
-  const ParsePhotoSummary summary = RunWithBar("parse", ParsePhoto, request);
+  const PhotoParseSummary summary = RunWithBar("parse", ParsePhoto, request);
   int person = 0;
   for (size_t k = 1; k < summary.pixels.size(); ++k) person += summary.pixels[k];
   std::printf("%d pixels of the person:", person);
@@ -34,7 +34,7 @@ void RunParse(const ParsePhotoRequest& request) {
 
 void AddParseVerb(CLI::App& app, Action* action) {
   CLI::App* verb = app.add_subcommand("parse", "Tells clothes, hair and skin of the person in a photo apart");
-  auto request = std::make_shared<ParsePhotoRequest>();
+  auto request = std::make_shared<PhotoParseRequest>();
   verb->add_option("image", request->image, "The photo")->required()->type_name("FILE");
   verb->add_option("--out", request->out,
                    "The labels, .png: 0 background, 1 top, 2 bottom, 3 face, 4 hair, 5 skin, 6 shoes")

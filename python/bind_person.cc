@@ -138,11 +138,11 @@ void BindPerson(py::module_& module) {
       [](const Path& image, const std::string& weights, int who, const std::optional<Path>& body,
          std::optional<double> focal_px, std::optional<double> stature_m, const std::optional<Path>& models,
          const py::object& progress) {
-        ParsePhotoRequest request;
+        PhotoParseRequest request;
         request.fit = FitOf(who, body, focal_px, stature_m, models);
         RequireReadable(image.string(), "image");
         request.image = image.string(), request.weights = weights;
-        const ParsePhotoSummary parsed = PythonCallbacks(progress).Run(
+        const PhotoParseSummary parsed = PythonCallbacks(progress).Run(
             [&](const PipelineCallbacks& callbacks) { return ParsePhoto(request, callbacks); });
         return py::array_t<uint8_t>({parsed.height, parsed.width}, parsed.labels.data());
       },

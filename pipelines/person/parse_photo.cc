@@ -75,7 +75,7 @@ std::vector<uint8_t> LabelsOfPhoto(const FittedPhoto& photo, const BodyModel& bo
   return labels;
 }
 
-ParsePhotoSummary ParsePhoto(const ParsePhotoRequest& request, const PipelineCallbacks& callbacks) {
+PhotoParseSummary ParsePhoto(const PhotoParseRequest& request, const PipelineCallbacks& callbacks) {
   RequireWritable(request.out);
   RequireWritable(request.picture);
   RequireDistinct({request.image, request.weights}, {request.out, request.picture});
@@ -89,7 +89,7 @@ ParsePhotoSummary ParsePhoto(const ParsePhotoRequest& request, const PipelineCal
   std::shared_ptr<const BodyModel> body;
   const FittedPhoto photo = FitPhoto(request.fit, request.image, callbacks, &clock, &body);
   clock.Begin("parse");
-  ParsePhotoSummary summary;
+  PhotoParseSummary summary;
   summary.width = photo.picture.width, summary.height = photo.picture.height;
   summary.labels = LabelsOfPhoto(photo, *body, parser ? &*parser : nullptr, ThreadsFor(request.fit.solve.num_threads));
   clock.Begin("write");

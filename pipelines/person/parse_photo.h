@@ -26,7 +26,7 @@ inline constexpr const char* kNearestOfBody = "body";
 std::vector<uint8_t> LabelsOfPhoto(const FittedPhoto& photo, const BodyModel& body, ClothesParser* parser,
                                    int num_threads);
 
-struct ParsePhotoRequest {
+struct PhotoParseRequest {
   std::string image;
   /// Or kNearestOfBody, or a file (data_tools/learned/parser_weights_io.h).
   std::string weights = kBuiltinParser;
@@ -35,7 +35,7 @@ struct ParsePhotoRequest {
   TrackRequest fit;     ///< as FitPhoto() takes it
 };
 
-struct ParsePhotoSummary {
+struct PhotoParseSummary {
   int width = 0, height = 0;
   std::vector<uint8_t> labels;                 ///< PersonLabel, one a pixel
   std::array<int, kNumPersonLabels> pixels{};  ///< by label
@@ -44,6 +44,6 @@ struct ParsePhotoSummary {
 };
 
 /// Throws RequestError for a request that contradicts itself, and as FitPhoto().
-ParsePhotoSummary ParsePhoto(const ParsePhotoRequest& request, const PipelineCallbacks& callbacks = {});
+PhotoParseSummary ParsePhoto(const PhotoParseRequest& request, const PipelineCallbacks& callbacks = {});
 
 }  // namespace bodyloom

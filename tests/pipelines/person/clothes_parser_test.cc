@@ -144,7 +144,7 @@ TEST(ParsePhoto, TheNearestPixelOfTheBodyWithoutAParser) {
 }
 
 TEST(ParsePhoto, RefusesBeforeItWorks) {
-  ParsePhotoRequest request;
+  PhotoParseRequest request;
   request.image = "me.jpg";
   request.out = "me.jpg";
   EXPECT_THROW(ParsePhoto(request), RequestError);
