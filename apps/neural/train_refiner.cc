@@ -48,7 +48,8 @@ void AddTrainRefiner(CLI::App& train, Action* action) {
   verb->add_option("--weights", request->weights, "Folder with trained weights: vgg16 (.safetensors, .pth)");
   verb->add_flag("--outline", options.moves_outline,
                  "Refines the outline too, not colours alone: hair and hems stand off, wide clothes may become narrow");
-  verb->add_option("--alpha-weight", options.alpha_weight, "With --outline: of the outline beside the picture")->capture_default_str();
+  verb->add_option("--alpha-weight", options.alpha_weight, "With --outline: of the outline beside the picture")
+      ->capture_default_str();
   verb->add_option("--perceptual-weight", options.perceptual_weight, "Of VGG's features beside the picture")
       ->capture_default_str();
   AddPictureTrainingOptions(verb, &options, &request->body_error_px, "Bodies of every other person",
