@@ -9,9 +9,8 @@ extern const char bodyloom_clothes_parser_begin[], bodyloom_clothes_parser_end[]
 namespace bodyloom {
 
 const ParserWeights& BuiltinParser() {
-  static const ParserWeights weights =
-      ReadParserWeightsBytes(std::string(bodyloom_clothes_parser_begin, bodyloom_clothes_parser_end),
-                             "assets/parser/parser.npz (built in)");
+  static const ParserWeights weights = ReadParserWeightsBytes(
+      std::string(bodyloom_clothes_parser_begin, bodyloom_clothes_parser_end), "assets/parser/parser.npz (built in)");
   return weights;
 }
 

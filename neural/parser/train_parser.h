@@ -28,7 +28,7 @@ struct ParserTruth {
 
 struct TrainParserProgress {
   int step = 0, steps = 0;
-  double loss = 0;                       ///< of the last step
+  double loss = 0;                         ///< of the last step
   double mean_iou = 0, body_mean_iou = 0;  ///< of the last validation, 0 before the first
   double seconds = 0;
 };

@@ -106,10 +106,10 @@ class RefinerTrainer : public PictureTrainer {
     const Tensor person = ChangedPerson(planes, module_(planes));
     const Tensor alpha = person.narrow(1, 3, 1), true_alpha = truth.narrow(1, 3, 1);
     const Tensor drawn = person.narrow(1, 0, 3) * alpha + background * (1 - alpha);
-    const Tensor wanted = options_.moves_outline
-                              ? truth.narrow(1, 0, 3) + background * (1 - true_alpha)
-                              : (truth.narrow(1, 0, 3) + planes.narrow(1, 0, 3) * (1 - true_alpha)) * alpha +
-                                    background * (1 - alpha);
+    const Tensor wanted =
+        options_.moves_outline
+            ? truth.narrow(1, 0, 3) + background * (1 - true_alpha)
+            : (truth.narrow(1, 0, 3) + planes.narrow(1, 0, 3) * (1 - true_alpha)) * alpha + background * (1 - alpha);
     const Tensor image = L1Loss(drawn, wanted), outline = L1Loss(alpha, true_alpha);
     const Tensor perceptual = options_.perceptual_weight > 0 ? Perceptual(drawn, wanted) : torch::zeros_like(image);
     return {image + options_.alpha_weight * outline + options_.perceptual_weight * perceptual,

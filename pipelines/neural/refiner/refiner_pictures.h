@@ -28,6 +28,6 @@ struct RefinerPicturesRequest {
 /// of threads. People of whom the photos show too little have none. Throws as PeopleData, Cancelled; the stage of
 /// `callbacks` is `stage`.
 std::vector<PackedPicture> RefinerPicturesOf(const RefinerPicturesRequest& request, const char* stage,
-                                              const PipelineCallbacks& callbacks);
+                                             const PipelineCallbacks& callbacks);
 
 }  // namespace bodyloom
