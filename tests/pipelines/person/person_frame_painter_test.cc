@@ -39,6 +39,7 @@ TEST(PersonFramePainter, AreTheSameForAnyNumberDrawnAtOnce) {
   const PhotoPerson person = ColouredPerson();
   const Track moved = MovedByPerson(person, ShortTrack(2));
   std::vector<PersonPose> poses;
+  poses.reserve(3);
   for (int t = 0; t < 3; ++t) poses.push_back({TrackVertices(*person.body, moved, t), moved.CameraAt(t)});
   poses[1].vertices_in_camera.resize(0, 3);  // nobody
   const PictureRefiner changes(RandomRefiner(0.5F));
