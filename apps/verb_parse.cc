@@ -42,8 +42,7 @@ void AddParseVerb(CLI::App& app, Action* action) {
   verb->add_option("--picture", request->picture, "The photo tinted by label, .png or .jpg")->type_name("FILE");
   verb->add_option("--weights", request->weights,
                    "What tells them apart: builtin (the network that ships), body (what the fitted body shows "
-                   "nearest), or weights of "
-                   "your own (bodyloom train parser)")
+                   "nearest), or weights of your own (bodyloom train parser)")
       ->capture_default_str();
   verb->add_option("--who", request->fit.person, "Of several people in the photo: 0 is the largest")
       ->capture_default_str();

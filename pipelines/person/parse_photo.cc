@@ -41,15 +41,6 @@ std::vector<uint8_t> PartsInPicture(const BodyModel& body, const MatrixX3d& vert
   return parts;
 }
 
-std::vector<uint8_t> MaskInPicture(const FittedPhoto& photo) {
-  std::vector<uint8_t> mask;
-  mask.reserve(photo.picture.bgr.size() / 3);
-  for (int y = 0; y < photo.picture.height; ++y) {
-    for (int x = 0; x < photo.picture.width; ++x) mask.push_back(photo.mask.At(x, y) != 0 ? 1 : 0);
-  }
-  return mask;
-}
-
 /// Half the photo, half the labels' colours.
 Image Tinted(const Image& picture, const std::vector<uint8_t>& labels) {
   Image tinted = LabelsPicture(labels, picture.width, picture.height);

@@ -59,6 +59,15 @@ int MarginPx(const LabelImage& mask, double of_height) {
 
 }  // namespace
 
+std::vector<uint8_t> MaskInPicture(const FittedPhoto& photo) {
+  std::vector<uint8_t> mask;
+  mask.reserve(photo.picture.bgr.size() / 3);
+  for (int y = 0; y < photo.picture.height; ++y) {
+    for (int x = 0; x < photo.picture.width; ++x) mask.push_back(photo.mask.At(x, y));
+  }
+  return mask;
+}
+
 PhotoPersonBuilder::PhotoPersonBuilder(std::shared_ptr<const BodyModel> bare, int texture_size, StageClock* clock,
                                        const FitClothesOptions& clothes)
     : texture_size_(texture_size), clock_(clock), clothes_(clothes) {
@@ -123,19 +132,13 @@ void PhotoPersonBuilder::Add(const FittedPhoto& photo) {
   }
   Track track = photo.track;
   track.motion.betas.setZero();
-  std::vector<uint8_t> person(static_cast<size_t>(photo.picture.width) * photo.picture.height);
-  for (int y = 0; y < photo.picture.height; ++y) {
-    for (int x = 0; x < photo.picture.width; ++x) {
-      person[static_cast<size_t>(y) * photo.picture.width + x] = photo.mask.At(x, y);
-    }
-  }
   MatrixX3d vertices(person_.body->num_vertices(), 3);
   vertices.topRows(clothed->num_vertices()) = TrackVertices(*clothed, track, 0);
   if (!person_.garment.empty()) {
     PlaceGarment(person_.garment, PersonCloth(*clothed, person_.garment, track, index == 0 ? swing_rad_ : 0).At(0),
                  &vertices);
   }
-  const int seen = extractor_->Add(photo.picture, vertices, track.CameraAt(0), index, person);
+  const int seen = extractor_->Add(photo.picture, vertices, track.CameraAt(0), index, MaskInPicture(photo));
   report.texels_seen = static_cast<double>(seen) / extractor_->table().num_inside;
   if (report.texels_seen < kLeastSeen) {
     if (index == 0) extractor_.reset();  // the next photo is the first

@@ -7,9 +7,11 @@
 /// and clothes. What no photo shows is guessed (render/person/whole_texture.h).
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "bodyloom/geometry/observations.h"
 #include "bodyloom/pipelines/person/photo_person.h"
@@ -26,6 +28,9 @@ struct FittedPhoto {
   LabelImage mask;  ///< of the picture's size; 0 where the person is not
   int people = 1;   ///< found in it
 };
+
+/// The photo's mask, one a pixel of the picture.
+std::vector<uint8_t> MaskInPicture(const FittedPhoto& photo);
 
 class PhotoPersonBuilder {
  public:
