@@ -5,8 +5,6 @@
 
 #include "bodyloom/geometry/posed_body.h"
 #include "bodyloom/neural/parser/train_parser.h"
-#include "bodyloom/pipelines/neural/people/pictures_by_person.h"
-#include "bodyloom/pipelines/neural/photo/people_data.h"
 #include "bodyloom/pipelines/people/planar_picture.h"
 #include "bodyloom/pipelines/person/clothes_parser.h"
 #include "bodyloom/render/overlay.h"
@@ -50,15 +48,9 @@ std::vector<PackedPicture> PicturesOfPerson(const PeopleData& people, int person
 
 }  // namespace
 
-std::vector<PackedPicture> ParserPicturesOf(const ParserPicturesRequest& request, const char* stage,
+std::vector<PackedPicture> ParserPicturesOf(const PicturesOfPeopleRequest& request, const char* stage,
                                             const PipelineCallbacks& callbacks) {
-  PeopleDataRequest of_data;
-  of_data.data = request.data, of_data.body = request.body, of_data.size = request.size;
-  of_data.texture_size = kMapSizeNobodyReads, of_data.test = request.test;
-  of_data.given.estimated_labels = of_data.labels_of_body = true;
-  of_data.body_error_px = request.body_error_px;
-  of_data.seed = request.seed;
-  const PeopleData people(of_data);
+  const PeopleData people(AsPhotosShowThem(request));
   return PicturesByPerson(static_cast<int>(people.source().num_frames.size()), request.threads, stage, callbacks,
                           [&](int person) { return PicturesOfPerson(people, person); });
 }

@@ -49,13 +49,13 @@ TrainClothesParserSummary TrainClothesParser(const TrainClothesParserRequest& re
   RequireReadable(request.data, "data");
   OpenTrainingRun(request.out, &options);
 
-  ParserPicturesRequest people = {request.data,
-                                  request.body,
-                                  false,
-                                  request.size,
-                                  request.body_error_px,
-                                  options.seed,
-                                  ThreadsFor(options.num_threads)};
+  PicturesOfPeopleRequest people = {request.data,
+                                    request.body,
+                                    false,
+                                    request.size,
+                                    request.body_error_px,
+                                    options.seed,
+                                    ThreadsFor(options.num_threads)};
   const std::vector<PackedPicture> train = ParserPicturesOf(people, "reading people", callbacks);
   std::vector<PackedPicture> test;
   if (HasTestPeople(request.data)) {

@@ -15,7 +15,7 @@ struct TrainClothesParserRequest {
   std::string body;            ///< the people's body; empty: the built-in body
   std::string out;             ///< folder of the run: config.json, metrics.csv, checkpoint.bin, parser.npz
   int size = 512;              ///< of the windows that people are shown in
-  double body_error_px = 4;    ///< as ParserPicturesRequest has it
+  double body_error_px = 4;    ///< as PicturesOfPeopleRequest has it
   TrainParserOptions options;  ///< numbers; run_dir is filled in by the job
 };
 

@@ -10,6 +10,17 @@
 
 namespace bodyloom {
 
+PeopleDataRequest AsPhotosShowThem(const PicturesOfPeopleRequest& request) {
+  constexpr int kMapSize = 64;  // of maps that nobody reads
+  PeopleDataRequest people;
+  people.data = request.data, people.body = request.body, people.size = request.size;
+  people.texture_size = kMapSize, people.test = request.test;
+  people.given.estimated_labels = people.labels_of_body = true;
+  people.body_error_px = request.body_error_px;
+  people.seed = request.seed;
+  return people;
+}
+
 std::vector<PackedPicture> PicturesByPerson(int num_people, int threads, const char* stage,
                                             const PipelineCallbacks& callbacks,
                                             const std::function<std::vector<PackedPicture>(int)>& pictures_of) {

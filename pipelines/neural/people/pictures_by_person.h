@@ -2,16 +2,29 @@
 /// Pictures to learn from, made person by person on several threads.
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "bodyloom/neural/pictures/packed_picture.h"
 #include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/pipelines/neural/photo/people_data.h"
 
 namespace bodyloom {
 
-/// Texels a side of a dataset's maps where nobody reads them.
-inline constexpr int kMapSizeNobodyReads = 64;
+struct PicturesOfPeopleRequest {
+  std::string data;          ///< a multi-person dataset
+  std::string body;          ///< empty: the built-in body
+  bool test = false;         ///< the people kept for testing, instead of those to train on
+  int size = 512;            ///< of the windows
+  double body_error_px = 4;  ///< bodies are off by up to this, each clip by its own: PeopleDataRequest
+  uint64_t seed = 1;         ///< of those errors, and of what else is drawn
+  int threads = 1;
+};
+
+/// The people, with labels of the nearest part of the body and bodies that are off.
+PeopleDataRequest AsPhotosShowThem(const PicturesOfPeopleRequest& request);
 
 /// pictures_of(person) of all people, in their order, for any number of threads. Throws what it throws, Cancelled; the
 /// stage of `callbacks` is `stage`.

@@ -8,7 +8,6 @@
 #include "bodyloom/geometry/base/split_mix.h"
 #include "bodyloom/neural/guided/choose_photos.h"
 #include "bodyloom/pipelines/neural/people/person_of_frames.h"
-#include "bodyloom/pipelines/neural/people/pictures_by_person.h"
 #include "bodyloom/pipelines/person/person_layer_painter.h"
 #include "bodyloom/render/view_camera.h"
 
@@ -61,12 +60,8 @@ std::vector<PackedPicture> PicturesOfPerson(const RefinerPicturesRequest& reques
 
 std::vector<PackedPicture> RefinerPicturesOf(const RefinerPicturesRequest& request, const char* stage,
                                              const PipelineCallbacks& callbacks) {
-  PeopleDataRequest of_data;
-  of_data.data = request.data, of_data.body = request.body, of_data.size = request.size;
-  of_data.texture_size = kMapSizeNobodyReads, of_data.test = request.test;
-  of_data.given.estimated_labels = of_data.every_other_estimated = of_data.labels_of_body = true;
-  of_data.body_error_px = request.body_error_px;
-  of_data.seed = request.seed;
+  PeopleDataRequest of_data = AsPhotosShowThem(request);
+  of_data.every_other_estimated = true;
   const PeopleData people(of_data);
   return PicturesByPerson(static_cast<int>(people.source().num_frames.size()), request.threads, stage, callbacks,
                           [&](int person) { return PicturesOfPerson(request, people, person); });

@@ -3,24 +3,18 @@
 /// poses of the others.
 #pragma once
 
-#include <cstdint>
-#include <string>
 #include <vector>
 
 #include "bodyloom/neural/pictures/packed_picture.h"
 #include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/pipelines/neural/people/pictures_by_person.h"
 
 namespace bodyloom {
 
-struct RefinerPicturesRequest {
-  std::string data;   ///< a multi-person dataset
-  std::string body;   ///< empty: the built-in body
-  bool test = false;  ///< the people kept for testing, instead of those to train on
-  int size = 512;     ///< of the windows
+/// `body_error_px` is of every other person, whose labels are found by GrabCut; `seed` also of how many photos a person is
+/// made of (1, 2 or 4; of half of them 1).
+struct RefinerPicturesRequest : PicturesOfPeopleRequest {
   int texture_size = 512;
-  uint64_t seed = 1;         ///< of how many photos a person is made of (1, 2 or 4; of half of them 1)
-  double body_error_px = 4;  ///< of every other person, whose labels are found by GrabCut: PeopleDataRequest
-  int threads = 1;
 };
 
 /// Every other person is as anybody's photos show them: labels are found by GrabCut and bodies, in photos and pictures

@@ -56,14 +56,9 @@ TrainPersonRefinerSummary TrainPersonRefiner(const TrainPersonRefinerRequest& re
   OpenTrainingRun(request.out, &options);
   options.vgg16 = ReadWeightsFolder(request.weights).vgg16;
 
-  RefinerPicturesRequest people = {request.data,
-                                   request.body,
-                                   false,
-                                   request.size,
-                                   request.texture_size,
-                                   options.seed,
-                                   request.body_error_px,
-                                   ThreadsFor(options.num_threads)};
+  RefinerPicturesRequest people = {{request.data, request.body, false, request.size, request.body_error_px,
+                                    options.seed, ThreadsFor(options.num_threads)},
+                                   request.texture_size};
   const std::vector<PackedPicture> train = RefinerPicturesOf(people, "drawing people", callbacks);
   std::vector<PackedPicture> test;
   if (HasTestPeople(request.data)) {
