@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <iostream>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "apps/avatar_verbs.h"
 #include "apps/command_callbacks.h"
@@ -17,6 +19,10 @@ void RunTrainAvatar(const TrainAvatarRequest& request) {
               static_cast<long long>(summary.steps), summary.training_seconds,
               1e3 * summary.training_seconds / static_cast<double>(summary.steps > 0 ? summary.steps : 1),
               summary.gaussians, summary.loose, summary.loss);
+  if (summary.cloth > 0) {
+    std::printf("a garment %.0f cm long was found and is simulated; %d Gaussians lie on it\n",
+                100 * summary.garment_length_m, summary.cloth);
+  }
   if (summary.training) std::cout << "frames learned from, " << ScoresText(*summary.training) << "\n";
   if (summary.validation) std::cout << "frames held out, " << ScoresText(*summary.validation) << "\n";
   if (summary.validation_refined) {
@@ -60,10 +66,14 @@ void AddTrainAvatar(CLI::App& train, Action* action) {
   verb->add_option("--seed", request->seed, "Of places, order of frames and backgrounds")->capture_default_str();
   verb->add_option("--threads", request->clip.threads, "0: all cores; the result is the same for any number")
       ->check(CLI::Range(0, 1024));
-  verb->add_option_function<std::string>(
-          "--without", [request](const std::string&) { request->motion = false; },
-          "motion: do not learn what the body's motion does to the person; cloth then follows the pose alone")
-      ->check(CLI::IsMember({"motion"}));
+  verb->add_option_function<std::vector<std::string>>(
+          "--without",
+          [request](const std::vector<std::string>& parts) {
+            for (const std::string& part : parts) (part == "motion" ? request->motion : request->garment) = false;
+          },
+          "motion: do not learn what the body's motion does to the person. garment: do not look for a skirt, dress or "
+          "coat to simulate; cloth then follows the pose alone")
+      ->check(CLI::IsMember({"motion", "garment"}));
   verb->add_flag("--refine", request->refine,
                  "Correct the poses of the frames learned from while the person is learned");
   verb->add_option(

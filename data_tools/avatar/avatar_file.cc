@@ -15,8 +15,8 @@ namespace bodyloom {
 namespace {
 
 constexpr const char* kAvatarFormat = "bodyloom avatar";
-constexpr int kAvatarVersion = 1;
-constexpr int64_t kMostGaussians = 10000000, kMostShape = 1000, kMostPoses = 10000000;
+constexpr int kAvatarVersion = 2, kVersionWithoutKinds = 1;
+constexpr int64_t kMostGaussians = 10000000, kMostShape = 1000, kMostPoses = 10000000, kMostNodes = 100000;
 constexpr int kColumns = GaussianBody::kNumParameters, kInfluences = GaussianBody::kInfluences;
 
 NdArray FromTable(const FloatColumns& table) {
@@ -32,6 +32,7 @@ class AvatarArrays {
  public:
   AvatarArrays(const NpzArrays& arrays, std::string where) : arrays_(arrays), where_(std::move(where)) {}
 
+  [[nodiscard]] const std::string& where() const { return where_; }
   [[noreturn]] void Fail(const std::string& key, const std::string& message) const { Refuse(where_, key, message); }
 
   const NdArray& Take(const std::string& key, DType type, const char* type_name,
@@ -126,12 +127,23 @@ void PutMotion(const AvatarMotionFile& motion, const FloatColumns& parameters, N
   (*to)["motion_fps"] = NdArray::FromDouble(motion.fps);
 }
 
+void PutGarment(const AvatarGarment& garment, NpzArrays* to) {
+  const LooseGarmentOptions& cut = garment.cut;
+  const double cut_numbers[5] = {cut.waist_y_m, cut.length_m, cut.fullness, cut.spacing_m, garment.node_spacing_m};
+  (*to)["garment_cut"] = NdArray::FromDoubles(cut_numbers, {5});
+  (*to)["garment_offsets"] =
+      NdArray::FromFloats(garment.offsets_m.data(), {static_cast<int64_t>(garment.offsets_m.size())});
+  (*to)["garment_nodes"] = NdArray::FromFloats(garment.nodes.data(), {garment.num_nodes(), 3});
+}
+
 void PutAvatar(const AvatarFile& avatar, const GaussianBody& body, NpzArrays* to) {
   std::string why;
-  BODYLOOM_CHECK(body.IsValid(avatar.num_joints, avatar.num_faces, &why), "writing an avatar: ", why);
+  BODYLOOM_CHECK(body.IsValid(avatar.num_bones(), avatar.num_faces, &why), "writing an avatar: ", why);
   const int64_t count = body.size();
   std::vector<int32_t> faces;
   std::vector<float> barycentric, factors;
+  std::vector<uint8_t> kinds;
+  for (const GaussianKind kind : body.kinds) kinds.push_back(static_cast<uint8_t>(kind));
   for (const SkinAnchor& anchor : body.anchors) {
     faces.push_back(anchor.face);
     barycentric.insert(barycentric.end(), anchor.barycentric.begin(), anchor.barycentric.end());
@@ -144,11 +156,12 @@ void PutAvatar(const AvatarFile& avatar, const GaussianBody& body, NpzArrays* to
   (*to)["betas"] = NdArray::FromDoubles(avatar.betas.data(), {avatar.betas.size()});
   (*to)["parameters"] = FromTable(body.parameters);
   (*to)["joints"] = NdArray::FromInts32(body.joints.data(), {count, kInfluences});
-  (*to)["is_loose"] = NdArray::FromUInt8(body.is_loose.data(), {count});
+  (*to)["kinds"] = NdArray::FromUInt8(kinds.data(), {count});
   (*to)["anchor_face"] = NdArray::FromInts32(faces.data(), {count});
   (*to)["anchor_barycentric"] = NdArray::FromFloats(barycentric.data(), {count, 3});
   (*to)["anchor_factor"] = NdArray::FromFloats(factors.data(), {count});
   (*to)["light"] = NdArray::FromFloats(body.light.data(), {GaussianBody::kLightValues});
+  if (avatar.garment) PutGarment(*avatar.garment, to);
 }
 
 void PutAdam(const AdamState& adam, const std::string& name, NpzArrays* to) {
@@ -213,6 +226,44 @@ std::optional<AvatarMotionFile> TakeMotion(const AvatarArrays& arrays, const Npz
   return motion;
 }
 
+std::optional<AvatarGarment> TakeGarment(const AvatarArrays& arrays, const NpzArrays& npz, int num_vertices) {
+  const auto is_garment = [](const auto& entry) { return entry.first.starts_with("garment_"); };
+  if (std::none_of(npz.begin(), npz.end(), is_garment)) return std::nullopt;
+  AvatarGarment garment;
+  const std::vector<double> cut = arrays.Take("garment_cut", DType::kF64, "float64", {5}).ToDoubles();
+  // As far as cloth of a person may go; what the body it is cut for says is asked when it is cut.
+  const auto within = [&](int k, const char* name, double low, double high) {
+    if (!(cut[k] >= low && cut[k] <= high)) {
+      arrays.Fail("garment_cut", Concatenate(name, " ", cut[k], ", expected ", low, " to ", high));
+    }
+    return cut[k];
+  };
+  garment.cut.waist_y_m = within(0, "waist", -10, 10), garment.cut.length_m = within(1, "length", 0.01, 10);
+  garment.cut.fullness = within(2, "fullness", 0, 0.95), garment.cut.spacing_m = within(3, "spacing", 0.005, 1);
+  garment.node_spacing_m = within(4, "nodes' spacing", 0.005, 1);
+  garment.offsets_m = arrays.Floats("garment_offsets", {num_vertices});
+  const NdArray& nodes = RequireArray(npz, "garment_nodes", arrays.where());
+  if (nodes.shape.size() != 2 || nodes.shape[0] < 1 || nodes.shape[0] > kMostNodes) {
+    arrays.Fail("garment_nodes",
+                Concatenate("an array of ", nodes.ShapeText(), ", expected Kx3, K from 1 to ", kMostNodes));
+  }
+  const std::vector<float> places = arrays.Floats("garment_nodes", {nodes.shape[0], 3});
+  garment.nodes = Eigen::Map<const MatrixX3f>(places.data(), nodes.shape[0], 3);
+  return garment;
+}
+
+std::vector<GaussianKind> TakeKinds(const AvatarArrays& arrays, const std::string& key, GaussianKind last,
+                                    int64_t count) {
+  std::vector<GaussianKind> kinds;
+  for (const int64_t kind : arrays.Take(key, DType::kU8, "uint8", {count}).ToInts()) {
+    if (kind > static_cast<int64_t>(last)) {
+      arrays.Fail(key, Concatenate(kind, ", expected 0 to ", static_cast<int>(last)));
+    }
+    kinds.push_back(static_cast<GaussianKind>(kind));
+  }
+  return kinds;
+}
+
 }  // namespace
 
 void WriteAvatar(const std::string& path, const AvatarFile& avatar) {
@@ -245,8 +296,9 @@ AvatarFile AvatarFromArrays(const NpzArrays& npz, const std::string& where) {
   if (const std::string format = arrays.Text("format"); format != kAvatarFormat) {
     arrays.Fail("format", "\"" + PrintableText(format) + "\", expected \"" + kAvatarFormat + "\"");
   }
-  if (const double version = arrays.Number("version"); version != kAvatarVersion) {
-    arrays.Fail("version", Concatenate(version, ", expected ", kAvatarVersion));
+  const double version = arrays.Number("version");
+  if (version != kAvatarVersion && version != kVersionWithoutKinds) {
+    arrays.Fail("version", Concatenate(version, ", expected ", kVersionWithoutKinds, " or ", kAvatarVersion));
   }
   AvatarFile avatar;
   const std::vector<int32_t> size = arrays.Ints("body_size", {3}, 1, 100000000);
@@ -255,11 +307,10 @@ AvatarFile AvatarFromArrays(const NpzArrays& npz, const std::string& where) {
   const int64_t count = arrays.NumRows();
   GaussianBody& body = avatar.body;
   body.parameters = arrays.Table("parameters", kColumns, count);
-  body.joints = arrays.Ints("joints", {count, kInfluences}, 0, avatar.num_joints - 1);
-  const std::vector<int64_t> loose = arrays.Take("is_loose", DType::kU8, "uint8", {count}).ToInts();
-  if (std::any_of(loose.begin(), loose.end(), [](int64_t v) { return v > 1; }))
-    arrays.Fail("is_loose", "expected 0 and 1");
-  body.is_loose.assign(loose.begin(), loose.end());
+  avatar.garment = TakeGarment(arrays, npz, avatar.num_vertices);
+  body.joints = arrays.Ints("joints", {count, kInfluences}, 0, avatar.num_bones() - 1);
+  body.kinds = version == kVersionWithoutKinds ? TakeKinds(arrays, "is_loose", GaussianKind::kLoose, count)
+                                               : TakeKinds(arrays, "kinds", GaussianKind::kCloth, count);
   const std::vector<int32_t> faces = arrays.Ints("anchor_face", {count}, 0, avatar.num_faces - 1);
   const std::vector<float> barycentric = arrays.Floats("anchor_barycentric", {count, 3});
   const std::vector<float> factors = arrays.Floats("anchor_factor", {count});

@@ -27,6 +27,7 @@
 #include "bodyloom/pipelines/avatar/avatar_page.h"
 #include "bodyloom/pipelines/avatar/motion_maps.h"
 #include "bodyloom/pipelines/avatar/train_avatar.h"
+#include "bodyloom/pipelines/avatar/worn_garment.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/people/animation_limits.h"
 #include "bodyloom/pipelines/people/background.h"
@@ -141,7 +142,7 @@ class AvatarAnimation {
       if (!request_.shape_of_track && !clip_) track_ = WithShape(*body_, track_, avatar_.betas);
       int first = 0, last = track_.num_frames() - 1;
       std::vector<int> shown;
-      if (avatar_.motion) moving_ = track_;
+      moving_ = track_;
       if (!request_.freeze.empty()) {
         const Freeze freeze = ReadFreeze(request_.freeze, track_.num_frames());
         shown = FrozenAt(track_.num_frames(), freeze.frame, freeze.count);
@@ -152,6 +153,7 @@ class AvatarAnimation {
       const double scale = request_.size > 0 && longer > 0 ? static_cast<double>(request_.size) / longer : 1;
       posed_ = std::make_unique<PosedAvatar>(
           *body_, track_, ViewAngles(request_.view_yaw, track_.num_frames(), first, last), scale, threads_, from);
+      Dress(shown);
       if (avatar_.motion) OpenMotion(std::move(shown));
     } catch (const RequestError&) {
       throw;
@@ -169,6 +171,14 @@ class AvatarAnimation {
     }
     page_.emplace(avatar_.body, body_->data().faces, posed_->CameraAt(0), EstimatedUp(track_), track_.num_frames(),
                   motion_.has_value());
+  }
+
+  void Dress(const std::vector<int>& shown) {
+    if (!avatar_.garment) return;
+    const WornGarment worn = CutAnew(*body_, avatar_.betas, *avatar_.garment, request_.run);
+    GarmentBones bones = worn.Along(moving_, callbacks_);
+    if (clip_) clip_->Wear(bones);
+    posed_->Wear(std::move(bones), shown);
   }
 
   /// Frames of a track without times come at kFpsWithoutTimes.
@@ -216,8 +226,8 @@ class AvatarAnimation {
   void WriteRestPly() const {
     if (request_.ply.empty()) return;
     AvatarFrame rest;
-    rest.rest_joints = MatrixX3f::Zero(body_->num_joints(), 3);
-    for (int j = 0; j < body_->num_joints(); ++j) {
+    rest.rest_joints = MatrixX3f::Zero(avatar_.num_bones(), 3);
+    for (int j = 0; j < avatar_.num_bones(); ++j) {
       rest.bones.insert(rest.bones.end(), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0});
     }
     CameraGaussians gaussians;
@@ -290,7 +300,9 @@ class AvatarAnimation {
       view.camera = views[0].camera, view.window = views[0].window, view.options.num_threads = threads_;
       AddMotion(t);
       painter_.Draw(avatar_.body, body_->data().faces, views[0].frame, offsets_, view);
-      scorer.Add(views[0], painter_.picture());
+      std::vector<float> garment;
+      if (avatar_.garment) garment = painter_.ShareOf(GaussianKind::kCloth, avatar_.body);
+      scorer.Add(views[0], painter_.picture(), garment);
     }
     summary_.scores = scorer.Means();
   }
@@ -326,7 +338,7 @@ class AvatarAnimation {
   std::shared_ptr<const BodyModel> body_;
   std::optional<AvatarClip> clip_;
   Track track_;
-  Track moving_;  ///< in which no time stands still; for the network of the motion
+  Track moving_;  ///< in which no time stands still; for the garment and the network of the motion
   std::unique_ptr<PosedAvatar> posed_;
   std::optional<AvatarMotion> motion_;
   std::optional<AvatarMotionMaps> maps_;

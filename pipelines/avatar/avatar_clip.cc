@@ -65,15 +65,33 @@ void AvatarClip::CheckSize(const std::string& file, int num_frames, int width, i
   }
 }
 
-TrainingView AvatarClip::CutView(int t, const Image& picture, const IsPerson& is_person, int margin,
+TrainingView AvatarClip::CutView(int t, const Image& picture, const PersonAt& person_at, int margin,
                                  bool with_body) const {
   const PixelBox body = with_body ? posed_->BoxAt(t, 0) : PixelBox();
-  TrainingView view = CutTrainingView(picture, is_person, posed_->BoxAt(t, kSearchShare), body, margin);
+  TrainingView view = CutTrainingView(picture, person_at, posed_->BoxAt(t, kSearchShare), body, margin);
   if (view.window.empty()) return view;
   view.time = t;
   view.camera = posed_->CameraAt(t);
   posed_->MakeFrame(t, &view.frame);
   return view;
+}
+
+LabelImage AvatarClip::MaskAt(int t) const {
+  const PixelBox box = posed_->BoxAt(t, kSearchShare);
+  LabelImage mask;
+  mask.x_begin = box.x_begin, mask.y_begin = box.y_begin;
+  mask.width = box.width(), mask.height = box.height();
+  mask.labels.reserve(box.area());
+  PersonFrame frame;
+  if (set_) frame = set_->Read(t, {true, false, false, false});
+  for (int y = box.y_begin; y < box.y_end; ++y) {
+    for (int x = box.x_begin; x < box.x_end; ++x) {
+      const bool is_person =
+          set_ ? frame.labels.pixel(x, y)[0] != 0 : mask_->PartAt(t, x, y) != PartLabelSequence::kBackground;
+      mask.labels.push_back(is_person ? 1 : 0);
+    }
+  }
+  return mask;
 }
 
 std::vector<TrainingView> AvatarClip::ReadViews(const std::vector<int>& frames, int margin, bool with_body,
@@ -87,8 +105,8 @@ std::vector<TrainingView> AvatarClip::ReadViews(const std::vector<int>& frames, 
         const int t = frames[begin + k];
         if (!posed_->HasResult(t)) return;
         const PersonFrame frame = set_->Read(t, {true, false, false, false});
-        const auto is_person = [&](int x, int y) { return frame.labels.pixel(x, y)[0] != 0; };
-        views[begin + k] = CutView(t, frame.rgb, is_person, margin, with_body);
+        const auto label_at = [&](int x, int y) { return frame.labels.pixel(x, y)[0]; };
+        views[begin + k] = CutView(t, frame.rgb, label_at, margin, with_body);
       });
     }
     return views;
@@ -104,8 +122,8 @@ std::vector<TrainingView> AvatarClip::ReadViews(const std::vector<int>& frames, 
           Concatenate(request_.data, ": ends before frame ", t, ", the track has ", track_.num_frames(), " frames"));
     }
     if (!posed_->HasResult(t)) continue;
-    const auto is_person = [&](int x, int y) { return mask_->PartAt(t, x, y) != PartLabelSequence::kBackground; };
-    views[k] = CutView(t, picture, is_person, margin, with_body);
+    const auto in_mask = [&](int x, int y) { return mask_->PartAt(t, x, y) != PartLabelSequence::kBackground ? 1 : 0; };
+    views[k] = CutView(t, picture, in_mask, margin, with_body);
   }
   return views;
 }

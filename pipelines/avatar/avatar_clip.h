@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
@@ -35,6 +36,12 @@ class AvatarClip {
   [[nodiscard]] const Track& track() const { return track_; }
   [[nodiscard]] const PosedAvatar& posed() const { return *posed_; }
 
+  /// Where the person is in a frame with a result, near the tracked body. Throws std::runtime_error when it cannot be read.
+  [[nodiscard]] LabelImage MaskAt(int t) const;
+
+  /// From now on views have the bones of a garment, of every frame of the track.
+  void Wear(GarmentBones bones) { posed_->Wear(std::move(bones)); }
+
   /// The views of these frames (rising), windows `margin` pixels around the person and, where `with_body`, around the
   /// tracked body. A frame without a result or without the person has an empty window. Throws std::runtime_error when
   /// a picture cannot be read; Cancelled. The stage is "reading".
@@ -44,7 +51,7 @@ class AvatarClip {
  private:
   void OpenVideo();
   void CheckSize(const std::string& file, int num_frames, int width, int height) const;
-  [[nodiscard]] TrainingView CutView(int t, const Image& picture, const IsPerson& is_person, int margin,
+  [[nodiscard]] TrainingView CutView(int t, const Image& picture, const PersonAt& person_at, int margin,
                                      bool with_body) const;
 
   AvatarClipRequest request_;

@@ -32,14 +32,35 @@ Image DrawnWindow(const SplatPicture& picture) {
   return image;
 }
 
-void AvatarScorer::Add(const TrainingView& view, const SplatPicture& picture) {
+void AvatarScorer::AddGarment(const TrainingView& view, std::span<const float> garment) {
+  BODYLOOM_CHECK(garment.size() == view.window.area(), "avatar scores: a garment of ", garment.size(),
+                 " pixels for a window of ", view.window.area());
+  std::array<size_t, 256> shown{}, covered{};
+  size_t of_garment = 0;
+  for (size_t i = 0; i < garment.size(); ++i) {
+    const uint8_t label = view.pixels[4 * i + 3];
+    const bool is_garment = garment[i] >= 0.5F;
+    ++shown[label];
+    covered[label] += is_garment ? 1 : 0;
+    of_garment += is_garment ? 1 : 0;
+  }
+  for (size_t label = 1; label < shown.size(); ++label) {
+    const size_t either = shown[label] + of_garment - covered[label];
+    if (either == 0) continue;
+    by_label_[label].covered += covered[label];
+    by_label_[label].iou += static_cast<double>(covered[label]) / static_cast<double>(either);
+    ++by_label_[label].frames;
+  }
+}
+
+void AvatarScorer::Add(const TrainingView& view, const SplatPicture& picture, std::span<const float> garment) {
   const Image truth = TrueWindow(view), drawn = DrawnWindow(picture);
   BODYLOOM_CHECK(truth.width == drawn.width && truth.height == drawn.height, "avatar scores: a picture of ",
                  drawn.width, "x", drawn.height, " for a window of ", truth.width, "x", truth.height);
   PixelMask person = {truth.width, truth.height, {}}, outline = person;
   const std::span<const float> alpha = picture.plane(SplatPicture::kAlpha);
   for (size_t i = 0; i < view.window.area(); ++i) {
-    person.inside.push_back(view.pixels[4 * i + 3]);
+    person.inside.push_back(view.pixels[4 * i + 3] != 0 ? 1 : 0);
     outline.inside.push_back(alpha[i] >= 0.5F ? 1 : 0);
   }
   double l1 = 0;
@@ -52,6 +73,7 @@ void AvatarScorer::Add(const TrainingView& view, const SplatPicture& picture) {
   sums_.ssim += Ssim(truth, drawn, SsimPreset::k3dgs);
   sums_.l1 += l1 / 255 / static_cast<double>(truth.bgr.size());
   sums_.outline_iou += MaskIoU(person, outline);
+  if (!garment.empty()) AddGarment(view, garment);
 }
 
 AvatarScores AvatarScorer::Means() const {
@@ -60,23 +82,32 @@ AvatarScores AvatarScorer::Means() const {
   for (double* value : {&means.psnr_box_db, &means.psnr_person_db, &means.ssim, &means.l1, &means.outline_iou}) {
     *value /= count;
   }
+  // A mask says 1 wherever the person is: nothing by which a garment could be told.
+  const bool has_labels =
+      std::any_of(by_label_.begin() + 2, by_label_.end(), [](const Overlap& overlap) { return overlap.covered > 0; });
+  const Overlap& most = *std::max_element(by_label_.begin(), by_label_.end(),
+                                          [](const Overlap& a, const Overlap& b) { return a.covered < b.covered; });
+  if (has_labels) means.garment_iou = most.iou / most.frames;
   return means;
 }
 
 nlohmann::ordered_json ToJson(const AvatarScores& scores) {
-  return {{"frames", scores.frames},
-          {"psnr_box_db", scores.psnr_box_db},
-          {"psnr_person_db", scores.psnr_person_db},
-          {"ssim", scores.ssim},
-          {"ssim_preset", ToText(SsimPreset::k3dgs)},
-          {"l1", scores.l1},
-          {"outline_iou", scores.outline_iou}};
+  nlohmann::ordered_json json = {{"frames", scores.frames},
+                                 {"psnr_box_db", scores.psnr_box_db},
+                                 {"psnr_person_db", scores.psnr_person_db},
+                                 {"ssim", scores.ssim},
+                                 {"ssim_preset", ToText(SsimPreset::k3dgs)},
+                                 {"l1", scores.l1},
+                                 {"outline_iou", scores.outline_iou}};
+  if (scores.garment_iou) json["garment_iou"] = *scores.garment_iou;
+  return json;
 }
 
 std::string ScoresText(const AvatarScores& scores) {
   return Concatenate(scores.frames, " frames: PSNR ", Fixed(scores.psnr_box_db, 2), " dB in the box, ",
                      Fixed(scores.psnr_person_db, 2), " dB in the person, SSIM ", Fixed(scores.ssim, 3), ", L1 ",
-                     Fixed(scores.l1, 4), ", outline IoU ", Fixed(scores.outline_iou, 3));
+                     Fixed(scores.l1, 4), ", outline IoU ", Fixed(scores.outline_iou, 3),
+                     scores.garment_iou ? ", garment IoU " + Fixed(*scores.garment_iou, 3) : "");
 }
 
 }  // namespace bodyloom

@@ -2,6 +2,11 @@
 /// How like the truth pictures of a person of Gaussians are.
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
 #include <string>
 
 #include "bodyloom/render/avatar/learning/training_view.h"
@@ -19,17 +24,29 @@ struct AvatarScores {
   double ssim = 0;            ///< of the box, preset 3dgs (data_tools/evaluation/ssim.h)
   double l1 = 0;              ///< of the box, in [0, 1]
   double outline_iou = 0;     ///< of the true person and where alpha is at least ½
+  /// Of where the garment is at least half of the picture, and the label that it mostly covers; absent without a garment,
+  /// and where the truth has no labels.
+  std::optional<double> garment_iou;
 };
 
 /// Collects them.
 class AvatarScorer {
  public:
-  /// `picture`: drawn in the view's window.
-  void Add(const TrainingView& view, const SplatPicture& picture);
+  /// `picture`: drawn in the view's window. `garment`: share of the garment in its pixels; empty: there is none.
+  void Add(const TrainingView& view, const SplatPicture& picture, std::span<const float> garment = {});
   [[nodiscard]] AvatarScores Means() const;
 
  private:
+  /// A label of the truth beside the garment.
+  struct Overlap {
+    size_t covered = 0;  ///< its pixels that the garment covers
+    double iou = 0;      ///< sum over the frames that show either
+    int frames = 0;
+  };
+  void AddGarment(const TrainingView& view, std::span<const float> garment);
+
   AvatarScores sums_;
+  std::array<Overlap, 256> by_label_{};
 };
 
 /// The person over black; of the truth, and of a picture drawn in the view's window.

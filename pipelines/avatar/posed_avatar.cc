@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "bodyloom/render/avatar/cloth_bones.h"
 #include "bodyloom/render/view_camera.h"
 
 namespace bodyloom {
@@ -31,12 +32,20 @@ PosedAvatar::PosedAvatar(const BodyModel& body, const Track& track, std::vector<
   extents_ = posed_.Extents(num_threads);
 }
 
+void PosedAvatar::Wear(GarmentBones bones, std::vector<int> shown) {
+  garment_ = std::move(bones);
+  shown_ = std::move(shown);
+}
+
 void PosedAvatar::MakeFrame(int t, AvatarFrame* frame) const {
   const Motion& motion = track_.motion;
   const BodyPose pose = PoseFromAxisAngle(body_, motion.poses.row(t).transpose(), motion.trans.row(t).transpose());
   const Eigen::Matrix3d turn = posed_.Turn(t);
   const Eigen::Vector3d root = posed_.Root(t);
-  frames_.Make(pose, {turn, root - turn * root}, num_threads_, frame);
+  const CameraPose camera = {turn, root - turn * root};
+  frames_.Make(pose, camera, num_threads_, frame);
+  if (garment_.of_frame.empty()) return;
+  AppendBones(garment_.of_frame.at(shown_.empty() ? t : shown_[t]), garment_.as_sewn, camera, frame);
 }
 
 Camera PosedAvatar::CameraAt(int t) const {

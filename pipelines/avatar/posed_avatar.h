@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bodyloom/data_tools/descriptors/posed_track.h"
+#include "bodyloom/pipelines/avatar/worn_garment.h"
 #include "bodyloom/render/avatar/avatar_painter.h"
 
 namespace bodyloom {
@@ -22,6 +23,9 @@ class PosedAvatar {
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
   [[nodiscard]] bool HasResult(int t) const { return track_.HasResult(t) && !extents_[t].empty(); }
+
+  /// From now on frames have the bones of a garment: frame t those of shown[t], or of t where `shown` is empty.
+  void Wear(GarmentBones bones, std::vector<int> shown = {});
 
   /// Of a frame with a result.
   void MakeFrame(int t, AvatarFrame* frame) const;
@@ -39,6 +43,8 @@ class PosedAvatar {
   double scale_;
   int num_threads_, width_, height_;
   std::vector<PersonExtent> extents_;  ///< pixels of the track's picture
+  GarmentBones garment_;               ///< without frames: none
+  std::vector<int> shown_;
 };
 
 }  // namespace bodyloom

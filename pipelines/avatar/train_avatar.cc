@@ -19,13 +19,17 @@
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/geometry/uv_texels.h"
+#include "bodyloom/pipelines/avatar/clip_clothes.h"
 #include "bodyloom/pipelines/avatar/frame_spans.h"
 #include "bodyloom/pipelines/avatar/motion_maps.h"
 #include "bodyloom/pipelines/avatar/refined_track.h"
+#include "bodyloom/pipelines/avatar/worn_garment.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/fixed_text.h"
 #include "bodyloom/pipelines/report_json.h"
 #include "bodyloom/pipelines/runs/run_config.h"
+#include "bodyloom/render/avatar/cloth_bones.h"
+#include "bodyloom/render/avatar/cloth_gaussians.h"
 #include "bodyloom/render/avatar/learning/loose_gaussians.h"
 #include "bodyloom/render/avatar/skin_gaussians.h"
 #include "bodyloom/render/contact_sheet.h"
@@ -65,6 +69,10 @@ class AvatarTraining {
     clock_.Begin("read");
     clip_.emplace(request_.clip);
     split_ = ReadTrainingSplit(request_.train, request_.validate, clip_->track().num_frames());
+    if (request_.resume) TakeCheckpoint();
+    clock_.Begin("garment");
+    Dress();
+    clock_.Begin("read");
     views_ = clip_->ReadViews(split_.train, kTrainingMargin, true, callbacks_);
     clock_.Begin("begin");
     options_ = Options();
@@ -78,7 +86,7 @@ class AvatarTraining {
     refiner_.emplace(clip_->body(), clip_->track().motion.betas, TrackedPoses(clip_->body(), clip_->track()),
                      PoseRefinerOptions());
     if (request_.resume) {
-      TakeCheckpoint();
+      CheckPoses();
     } else {
       Begin();
     }
@@ -123,7 +131,27 @@ class AvatarTraining {
                                    {"data", request_.clip.data}};
     if (request_.refine) json["refine"] = true;  // runs of earlier versions name neither
     if (request_.motion) json["motion"] = true;
+    if (request_.garment) json["garment"] = true;
     return json.dump();
+  }
+
+  /// In the garment of the clip, or that of the run that is gone on with.
+  void Dress() {
+    const Eigen::VectorXd& betas = clip_->track().motion.betas;
+    std::optional<AvatarGarment>& garment = checkpoint_.avatar.garment;
+    if (!request_.resume && request_.garment) {
+      const ClipClothes clothes = FitClipClothes(
+          clip_->body(), clip_->track(), split_.train, [this](int t) { return clip_->MaskAt(t); },
+          request_.clip.threads, callbacks_);
+      if (clothes.garment.length_m > 0) garment = GarmentOf(clip_->body(), betas, clothes);
+      garment_report_ = {{"frames", clothes.frames},
+                         {"found_in", clothes.found_in},
+                         {"unlike_close", clothes.unlike_close},
+                         {"unlike_loose", clothes.unlike_loose}};
+    }
+    if (!garment) return;
+    worn_.emplace(CutAnew(clip_->body(), betas, *garment, AvatarCheckpointPath(request_.out)));
+    clip_->Wear(worn_->Along(clip_->track(), callbacks_));
   }
 
   void Begin() {
@@ -134,6 +162,12 @@ class AvatarTraining {
     GaussianBody body = SkinGaussians(clip_->body(), betas, texels);
     LooseGaussiansOptions loose;
     loose.count = request_.loose, loose.seed = request_.seed, loose.num_threads = request_.clip.threads;
+    if (worn_) {
+      AppendGaussians(ClothGaussians(clip_->body(), betas, worn_->mesh(), worn_->nodes()), &body);
+      const auto heights = worn_->nodes().places().col(1);
+      loose.covered_from_m = static_cast<float>(heights.minCoeff());
+      loose.covered_to_m = static_cast<float>(heights.maxCoeff());
+    }
     AppendGaussians(LooseGaussians(clip_->body(), betas, views_, loose), &body);
     checkpoint_.avatar.betas = betas;
     checkpoint_.avatar.num_joints = clip_->body().num_joints();
@@ -158,18 +192,23 @@ class AvatarTraining {
                          "--without; config.json beside it says with which");
     }
     std::string why;
-    if (!checkpoint_.state.body.IsValid(clip_->body().num_joints(), clip_->body().num_faces(), &why)) {
+    const int nodes = checkpoint_.avatar.num_bones() - checkpoint_.avatar.num_joints;
+    if (!checkpoint_.state.body.IsValid(clip_->body().num_joints() + nodes, clip_->body().num_faces(), &why)) {
       throw std::runtime_error(path + ": of another body (--body): " + why);
-    }
-    if (request_.refine && checkpoint_.state.poses.values.rows() != refiner_->num_frames()) {
-      throw std::runtime_error(Concatenate(path, ": pose_values of ", checkpoint_.state.poses.values.rows(),
-                                           " frames, the track has ", refiner_->num_frames()));
     }
     // What was done after it is done again.
     std::istringstream lines(fs::exists(MetricsPath()) ? ReadFileBytes(MetricsPath()) : "");
     for (std::string line; std::getline(lines, line);) {
       if (line.empty() || std::atoll(line.c_str()) > checkpoint_.state.step) continue;
       metrics_ += line + "\n";
+    }
+  }
+
+  void CheckPoses() const {
+    if (request_.refine && checkpoint_.state.poses.values.rows() != refiner_->num_frames()) {
+      throw std::runtime_error(Concatenate(AvatarCheckpointPath(request_.out), ": pose_values of ",
+                                           checkpoint_.state.poses.values.rows(), " frames, the track has ",
+                                           refiner_->num_frames()));
     }
   }
 
@@ -271,9 +310,12 @@ class AvatarTraining {
       view.camera = views[i].camera, view.window = views[i].window;
       view.options.num_threads = request_.clip.threads;
       AvatarFrame frame = views[i].frame;
-      if (poses.values.rows() > 0) refiner_->MakeFrame(views[i].time, poses, request_.clip.threads, &frame);
+      if (poses.values.rows() > 0) {
+        refiner_->MakeFrame(views[i].time, poses, request_.clip.threads, &frame);
+        CarryBones(views[i].frame, &frame);
+      }
       painter.Draw(checkpoint_.state.body, clip_->body().data().faces, frame, offsets, view);
-      scorer.Add(views[i], painter.picture());
+      scorer.Add(views[i], painter.picture(), GarmentIn(&painter));
       if (preview == nullptr || !std::binary_search(shown.begin(), shown.end(), static_cast<int>(i))) continue;
       sheet.push_back(TrueWindow(views[i]));
       sheet.push_back(DrawnWindow(painter.picture()));
@@ -284,6 +326,11 @@ class AvatarTraining {
       WriteImage(InRun(request_.out, preview), ContactSheet(sheet, layout));
     }
     return scorer.Means();
+  }
+
+  std::vector<float> GarmentIn(AvatarPainter* painter) const {
+    if (!worn_) return {};
+    return painter->ShareOf(GaussianKind::kCloth, checkpoint_.state.body);
   }
 
   void Judge() {
@@ -303,7 +350,7 @@ class AvatarTraining {
                                          {"steps", request_.steps},         {"minutes", request_.minutes},
                                          {"skin_side", request_.skin_side}, {"loose", request_.loose},
                                          {"seed", request_.seed},           {"refine", request_.refine},
-                                         {"motion", request_.motion}};
+                                         {"motion", request_.motion},       {"garment", request_.garment}};
     WriteFileAtomically(RunConfigPath(request_.out), json.dump(1) + "\n");
   }
 
@@ -312,13 +359,18 @@ class AvatarTraining {
     summary_.steps = state.step;
     summary_.training_seconds = state.seconds;
     summary_.gaussians = state.body.size();
-    summary_.loose = static_cast<int>(std::count(state.body.is_loose.begin(), state.body.is_loose.end(), 1));
+    const std::vector<GaussianKind>& kinds = state.body.kinds;
+    summary_.loose = static_cast<int>(std::count(kinds.begin(), kinds.end(), GaussianKind::kLoose));
+    summary_.cloth = static_cast<int>(std::count(kinds.begin(), kinds.end(), GaussianKind::kCloth));
+    if (checkpoint_.avatar.garment) summary_.garment_length_m = checkpoint_.avatar.garment->cut.length_m;
     for (const auto& stage : clock_.seconds()) summary_.seconds.push_back(stage);
     summary_.written = {AvatarPath(request_.out), AvatarCheckpointPath(request_.out), MetricsPath()};
     if (!request_.refined_track.empty() && !summary_.stopped) summary_.written.push_back(request_.refined_track);
     nlohmann::ordered_json json = {{"steps", summary_.steps},         {"training_seconds", summary_.training_seconds},
                                    {"gaussians", summary_.gaussians}, {"loose", summary_.loose},
                                    {"loss", summary_.loss},           {"seconds", ToJson(summary_.seconds)}};
+    if (summary_.cloth > 0) json["cloth"] = summary_.cloth;
+    if (!garment_report_.is_null()) json["garment"] = garment_report_;
     if (summary_.training) json["training"] = ToJson(*summary_.training);
     if (summary_.validation) json["validation"] = ToJson(*summary_.validation);
     if (summary_.validation_refined) json["validation_poses_refined_on_them"] = ToJson(*summary_.validation_refined);
@@ -338,6 +390,8 @@ class AvatarTraining {
   std::optional<PoseRefiner> refiner_;
   std::optional<AvatarMotion> motion_;
   std::optional<AvatarMotionMaps> maps_;
+  std::optional<WornGarment> worn_;
+  nlohmann::ordered_json garment_report_;
   AvatarCheckpoint checkpoint_;
   std::string metrics_;
   TrainAvatarSummary summary_;

@@ -25,6 +25,9 @@ struct TrainAvatarRequest {
   uint64_t seed = 1;
   /// Learn what the motion of the body's surface does to the person (render/avatar/motion/motion_network.h).
   bool motion = true;
+  /// Look for a skirt, dress or coat (pipelines/avatar/clip_clothes.h); one that is found is simulated, in training and
+  /// whenever the person is shown.
+  bool garment = true;
   /// Correct the poses of the frames learned from while the person is learned (render/avatar/learning/pose_refiner.h).
   bool refine = false;
   /// In the end correct those of all frames, with the person as it is, and write the track here, .npz; empty: do not.
@@ -37,7 +40,8 @@ struct TrainAvatarSummary {
   bool stopped = false;  ///< cancelled; the run can be gone on with
   int64_t steps = 0;
   double training_seconds = 0;  ///< in steps, over all sittings
-  int gaussians = 0, loose = 0;
+  int gaussians = 0, loose = 0, cloth = 0;
+  double garment_length_m = 0;                       ///< of what was found; 0: none
   double loss = 0;                                   ///< mean of the last steps, at most 100 of them
   std::optional<AvatarScores> training, validation;  ///< of frames spread over them; absent: none, or stopped
   /// Of the same held-out frames, but in poses that were refined on their own pictures: how well the person fits them,

@@ -14,11 +14,12 @@ namespace bodyloom {
 
 /// In the frame that the Gaussians are wanted in, usually the camera's.
 struct AvatarFrame {
-  /// J × 12: rows of [R_k | t_k], t_k = p_k − R_k j_k: a point x_c of rest space that is fixed to bone k goes to
+  /// J × 12, and as many for each node of a garment (render/avatar/cloth_bones.h): rows of [R_k | t_k], t_k = p_k − R_k j_k: a point x_c of rest space that is fixed to bone k goes to
   /// R_k (x_c − j_k) + p_k = R_k x_c + t_k.
   std::vector<float> bones;
-  MatrixX3f rest_joints;           ///< J×3: j_k
+  MatrixX3f rest_joints;           ///< J×3 and the nodes as sewn: j_k
   std::vector<float> correctives;  ///< V × 4 (the fourth 0): posed vertex minus plain skinning; or empty
+  /// With the nodes of a garment.
   [[nodiscard]] int num_joints() const { return static_cast<int>(rest_joints.rows()); }
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/render/avatar/avatar_painter.h"
 
+#include <span>
+
 namespace bodyloom {
 
 void AvatarPainter::Draw(const GaussianBody& body, const MatrixX3i& faces, const AvatarFrame& frame,
@@ -8,6 +10,15 @@ void AvatarPainter::Draw(const GaussianBody& body, const MatrixX3i& faces, const
   PoseGaussians(body, faces, frame, offsets, view.options, &posed_);
   ProjectGaussians(posed_, view.camera, {.num_threads = view.options.num_threads}, &screen_);
   picture_.Draw(screen_, view.window, {.num_threads = view.options.num_threads});
+}
+
+std::vector<float> AvatarPainter::ShareOf(GaussianKind kind, const GaussianBody& body) {
+  FloatColumns of_kind(3, body.size()), planes;
+  of_kind.Fill(0);
+  for (int i = 0; i < body.size(); ++i) of_kind(i, 0) = body.kinds[i] == kind ? 1.0F : 0.0F;
+  picture_.DrawValues(of_kind, &planes);
+  const std::span<const float> share = planes.values(0);
+  return {share.begin(), share.end()};
 }
 
 void AvatarPainter::GoBack(const GaussianBody& body, const MatrixX3i& faces, const AvatarFrame& frame,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "bodyloom/geometry/camera.h"
 #include "bodyloom/render/avatar/pose_gradient.h"
@@ -27,6 +28,9 @@ class AvatarPainter {
             const AvatarView& view);
 
   [[nodiscard]] const SplatPicture& picture() const { return picture_; }
+  /// Of the picture last drawn, a number a pixel of the window: how much of it is Gaussians of a kind of `body`, which
+  /// was drawn, in [0, 1].
+  [[nodiscard]] std::vector<float> ShareOf(GaussianKind kind, const GaussianBody& body);
   [[nodiscard]] const ScreenGaussians& screen() const { return screen_; }
   [[nodiscard]] const CameraGaussians& posed() const { return posed_; }
 

@@ -14,7 +14,7 @@ void GaussianBody::Resize(int count) {
   parameters.Fill(0);
   joints.assign(static_cast<size_t>(count) * kInfluences, 0);
   anchors.assign(count, {});
-  is_loose.assign(count, 0);
+  kinds.assign(count, GaussianKind::kSkin);
 }
 
 bool GaussianBody::IsValid(int num_joints, int num_faces, std::string* why) const {
@@ -24,9 +24,9 @@ bool GaussianBody::IsValid(int num_joints, int num_faces, std::string* why) cons
   };
   const size_t count = parameters.rows();
   if (parameters.columns() != kNumParameters || joints.size() != count * kInfluences || anchors.size() != count ||
-      is_loose.size() != count) {
+      kinds.size() != count) {
     return refuse("the body of ", count, " Gaussians has ", parameters.columns(), " columns, ", joints.size(),
-                  " joints, ", anchors.size(), " anchors, ", is_loose.size(), " marks, expected ",
+                  " joints, ", anchors.size(), " anchors, ", kinds.size(), " kinds, expected ",
                   static_cast<int>(kNumParameters), ", ", count * kInfluences, ", ", count, ", ", count);
   }
   // Whole arrays first, which is what vectors are good at; this runs every frame.

@@ -19,6 +19,13 @@ struct SkinAnchor {
   float corrective_factor = 0;  ///< φ: how much of the surface's pose corrective is followed; 1 on the skin, 0 far off
 };
 
+/// What a Gaussian is of.
+enum class GaussianKind : uint8_t {
+  kSkin,   ///< the body's surface
+  kLoose,  ///< hair and whatever else stands off: a network may move it far
+  kCloth,  ///< a garment that is simulated (geometry/cloth/cloth_nodes.h)
+};
+
 /// Rest space is that of the body's shape in T-pose, metres, y up.
 struct GaussianBody {
   static constexpr int kInfluences = 6;
@@ -36,9 +43,10 @@ struct GaussianBody {
     kNumParameters = kWeightLogit + kInfluences,  ///< 23
   };
   FloatColumns parameters;
-  std::vector<int32_t> joints;  ///< count × kInfluences, row-major; a joint may be named twice
+  /// count × kInfluences, row-major: bones of AvatarFrame, the joints first; one may be named twice.
+  std::vector<int32_t> joints;
   std::vector<SkinAnchor> anchors;
-  std::vector<uint8_t> is_loose;  ///< 1: cloth or hair that a network may move far, 0: skin
+  std::vector<GaussianKind> kinds;
   /// Lobes included (render/lighting/sh_lighting.h): rows red, green, blue; shading = Σ_h light[9 c + h] Y_h(n).
   std::array<float, kLightValues> light{};
 

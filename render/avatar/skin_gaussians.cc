@@ -10,6 +10,7 @@
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/in_range.h"
 #include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/render/avatar/flat_gaussian.h"
 
 namespace bodyloom {
 namespace {
@@ -84,18 +85,9 @@ GaussianBody SkinGaussians(const BodyModel& model, const Eigen::VectorXd& betas,
     const Vector3d normal = cross.normalized();
     const Eigen::Vector3f& barycentric = texels.barycentric[i];
     const Vector3d place = barycentric[0] * corner[0] + barycentric[1] * corner[1] + barycentric[2] * corner[2];
-    const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), normal);
-    const float quaternion[4] = {float(turn.w()), float(turn.x()), float(turn.y()), float(turn.z())};
-    FloatColumns& p = body.parameters;
-    for (int k = 0; k < 4; ++k) p(row, Body::kQuaternion + k) = quaternion[k];
-    for (int k = 0; k < 3; ++k) {
-      p(row, Body::kPosition + k) = static_cast<float>(place[k]);
-      p(row, Body::kNormal + k) = static_cast<float>(normal[k]);
-      p(row, Body::kLogScale + k) =
-          static_cast<float>(std::log(std::max(1e-5, options.texels_sigma * width * (k == 2 ? options.flatness : 1))));
-      p(row, Body::kAlbedo + k) = options.albedo;
-    }
-    p(row, Body::kOpacityLogit) = options.opacity_logit;
+    SetFlatGaussian(
+        {place, normal, options.texels_sigma * width, options.flatness, options.opacity_logit, options.albedo}, row,
+        &body);
     SetWeights(model, face, barycentric, row, &body);
     body.anchors[row] = {face, {barycentric[0], barycentric[1], barycentric[2]}, 1};
     ++row;

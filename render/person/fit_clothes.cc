@@ -166,14 +166,7 @@ class ClothesFit {
           SeeGarment(wearer.garment(), ClothRun(wearer, track.motion, HangingCloth(photo_, clothes.swing_rad)).Next(),
                      silhouette_.camera());
     }
-    int unlike = 0;
-    for (int y = 0; y < silhouette_.camera().height; ++y) {
-      for (int x = 0; x < silhouette_.camera().width; ++x) {
-        const bool drawn = body.FaceAt(x, y) >= 0 || cloth.FaceAt(x, y) >= 0;
-        unlike += drawn != silhouette_.IsPerson(x, y) ? 1 : 0;
-      }
-    }
-    return double(unlike) / silhouette_.area();
+    return double(UnlikePixels(silhouette_, body, cloth)) / silhouette_.area();
   }
 
   const BodyModel& body_;

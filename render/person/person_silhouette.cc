@@ -38,6 +38,17 @@ VisibilityBuffer SeeGarment(const LooseGarment& garment, std::span<const Eigen::
   return seen;
 }
 
+int UnlikePixels(const PersonSilhouette& silhouette, const VisibilityBuffer& body, const VisibilityBuffer& cloth) {
+  int unlike = 0;
+  for (int y = 0; y < silhouette.camera().height; ++y) {
+    for (int x = 0; x < silhouette.camera().width; ++x) {
+      const bool drawn = body.FaceAt(x, y) >= 0 || cloth.FaceAt(x, y) >= 0;
+      unlike += drawn != silhouette.IsPerson(x, y) ? 1 : 0;
+    }
+  }
+  return unlike;
+}
+
 std::vector<int> CoveredBeside(const PersonSilhouette& silhouette, const VisibilityBuffer& bare,
                                const VisibilityBuffer& garment_seen, const LooseGarment& garment) {
   std::vector<int> covered(garment.rings - 1, 0);

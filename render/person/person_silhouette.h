@@ -35,6 +35,9 @@ class PersonSilhouette {
 /// LooseGarment::cloth: row by row from the pinned ring down, two a column.
 VisibilityBuffer SeeGarment(const LooseGarment& garment, std::span<const Eigen::Vector3d> cloth, const Camera& camera);
 
+/// Pixels that show the person or else a body or cloth, but not both.
+int UnlikePixels(const PersonSilhouette& silhouette, const VisibilityBuffer& body, const VisibilityBuffer& cloth);
+
 /// By row of faces: how many pixels beside the bare body show cloth where the person is, less those where nobody is.
 std::vector<int> CoveredBeside(const PersonSilhouette& silhouette, const VisibilityBuffer& bare,
                                const VisibilityBuffer& garment_seen, const LooseGarment& garment);

@@ -77,7 +77,7 @@ inline bool AcceptsPartLabels(const std::string& bytes) {
 inline bool AcceptsAvatar(const std::string& bytes) {
   const NpzArrays arrays = FramedArrays(bytes);
   const auto check = [](const GaussianBody& body, const AvatarFile& avatar) {
-    if (std::string why; !body.IsValid(avatar.num_joints, avatar.num_faces, &why)) throw std::logic_error(why);
+    if (std::string why; !body.IsValid(avatar.num_bones(), avatar.num_faces, &why)) throw std::logic_error(why);
     for (int c = 0; c < GaussianBody::kNumParameters; ++c) {
       for (const float value : body.parameters.values(c)) {
         if (!std::isfinite(value)) throw std::logic_error("a parameter that is no number");

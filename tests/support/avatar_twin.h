@@ -171,7 +171,7 @@ inline GaussianBody RandomPerson(int count, const AvatarFrame& frame, int num_fa
     body.anchors[i] = {static_cast<int32_t>(generator() % num_faces),
                        {first, 0.7F * (1 - first), 0.3F * (1 - first)},
                        i % 3 == 0 ? 0.0F : 0.5F + 0.5F * uniform()};
-    body.is_loose[i] = i % 2;
+    body.kinds[i] = i % 2 == 0 ? GaussianKind::kSkin : GaussianKind::kLoose;
   }
   for (float& value : body.light) value = 0.3F * uniform();
   for (int c = 0; c < 3; ++c) body.light[9 * c] = 2.5F;

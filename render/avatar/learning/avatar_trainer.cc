@@ -8,6 +8,7 @@
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/hash_random.h"
 #include "bodyloom/geometry/base/in_range.h"
+#include "bodyloom/render/avatar/cloth_bones.h"
 
 namespace bodyloom {
 namespace {
@@ -89,6 +90,7 @@ int AvatarTrainer::ViewAt(int64_t step) {
 const AvatarFrame& AvatarTrainer::FrameOf(const TrainingView& view, const AvatarTrainingState& state) {
   if (refiner_ == nullptr || state.poses.IsZero(view.time)) return view.frame;
   refiner_->MakeFrame(view.time, state.poses, options_.num_threads, &corrected_);
+  CarryBones(view.frame, &corrected_);
   return corrected_;
 }
 
@@ -157,7 +159,7 @@ int AvatarTrainer::ChooseMovers(AvatarTrainingState* state) {
     float by_colour = 0;
     for (int c = ScreenGaussians::kRed; c <= ScreenGaussians::kBlue; ++c) by_colour += std::abs(by_screen(i, c));
     if (moves_[i] != 0 && by_colour >= least * PixelsAlone(screen, i)) continue;
-    if (state->body.is_loose[i] == 0) moves_[i] = 0;
+    if (state->body.kinds[i] != GaussianKind::kLoose) moves_[i] = 0;
     for (int c = 0; c < GaussianBody::kNumParameters; ++c) gradient_.parameters(i, c) = 0;
   }
   return drawn;

@@ -9,7 +9,7 @@
 ///
 /// What is hidden in a frame learns nothing from it: Adam would make steps of full length out of the thousandth part of a
 /// colour that comes through what lies in front, and the person's unseen sides would fill with noise. Hidden on the skin
-/// stays as it is; hidden off the skin feels its cost alone, and so goes where no frame shows it. A Gaussian counts as
+/// or of cloth stays as it is; hidden and loose feels its cost alone, and so goes where no frame shows it. A Gaussian counts as
 /// hidden when |d loss / d its colour|, summed over the channels, is below least_seen times what as many pixels as it
 /// covers alone would give by their absolute difference (PictureLoss::ByPixel).
 ///

@@ -17,6 +17,7 @@ double AddGaussianCost(const GaussianBody& body, const GaussianCost& cost, Float
   double opacities = 0, scales = 0;
   for (int i = 0; i < count; ++i) {
     const float opacity = 1 / (1 + std::exp(-p(i, GaussianBody::kOpacityLogit)));
+    if (body.kinds[i] == GaussianKind::kCloth) continue;
     const float by_opacity =
         (cost.by_opacity + cost.by_distance * (1 - body.anchors[i].corrective_factor)) / static_cast<float>(count);
     opacities += by_opacity * opacity;

@@ -11,6 +11,7 @@
 #include "bodyloom/geometry/base/in_range.h"
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/render/avatar/learning/smooth_skin_weights.h"
+#include "bodyloom/render/avatar/vertex_anchors.h"
 
 namespace bodyloom {
 namespace {
@@ -84,8 +85,8 @@ std::vector<const TrainingView*> SpreadViews(std::span<const TrainingView> views
   return spread;
 }
 
-void SetRow(const BodyModel& model, const SmoothSkinWeights& skin, const std::vector<int>& face_of,
-            const LoosePlace& place, const LooseGaussiansOptions& options, int row, GaussianBody* body) {
+void SetRow(const SmoothSkinWeights& skin, const VertexAnchors& anchors, const LoosePlace& place,
+            const LooseGaussiansOptions& options, int row, GaussianBody* body) {
   const int nearest = skin.NearestVertex(place.place);
   const Vector3f away = place.place - skin.vertices().row(nearest).transpose();
   const float distance = away.norm();
@@ -103,14 +104,8 @@ void SetRow(const BodyModel& model, const SmoothSkinWeights& skin, const std::ve
     body->joints[static_cast<size_t>(row) * GaussianBody::kInfluences + k] = place.joints[k];
     p(row, GaussianBody::kWeightLogit + k) = std::log(place.weights[k]);
   }
-  SkinAnchor& anchor = body->anchors[row];
-  anchor.face = face_of[nearest];
-  anchor.barycentric = {0, 0, 0};
-  for (int c = 0; c < 3; ++c) {
-    if (model.data().faces(anchor.face, c) == nearest) anchor.barycentric[c] = 1;
-  }
-  anchor.corrective_factor = std::max(0.0F, 1 - distance / kCorrectiveReach);
-  body->is_loose[row] = 1;
+  body->anchors[row] = anchors.At(nearest, std::max(0.0F, 1 - distance / kCorrectiveReach));
+  body->kinds[row] = GaussianKind::kLoose;
 }
 
 }  // namespace
@@ -143,6 +138,7 @@ GaussianBody LooseGaussians(const BodyModel& model, const Eigen::VectorXd& betas
       for (int x = 0; x < size.x(); ++x) {
         LoosePlace place;
         place.place = skin.low() + options.spacing_m * Eigen::Vector3i(x, y, z).cast<float>();
+        if (place.place.y() > options.covered_from_m && place.place.y() < options.covered_to_m) continue;
         if (skin.DistanceTo(place.place) > options.reach_m) continue;
         skin.WeightsAt(place.place, weights.data());
         KeepLargest(weights, &place);
@@ -164,13 +160,9 @@ GaussianBody LooseGaussians(const BodyModel& model, const Eigen::VectorXd& betas
     for (const auto& [hash, i] : drawn) kept.push_back(places[i]);
     places = std::move(kept);
   }
-  std::vector<int> face_of(model.num_vertices(), 0);
-  for (int f = model.num_faces() - 1; f >= 0; --f) {
-    for (int c = 0; c < 3; ++c) face_of[model.data().faces(f, c)] = f;
-  }
+  const VertexAnchors anchors(model);
   body.Resize(static_cast<int>(places.size()));
-  ParallelFor(body.size(), options.num_threads,
-              [&](int i) { SetRow(model, skin, face_of, places[i], options, i, &body); });
+  ParallelFor(body.size(), options.num_threads, [&](int i) { SetRow(skin, anchors, places[i], options, i, &body); });
   return body;
 }
 
@@ -186,7 +178,7 @@ void AppendGaussians(const GaussianBody& more, GaussianBody* body) {
   };
   join(body->joints, more.joints, &both.joints);
   join(body->anchors, more.anchors, &both.anchors);
-  join(body->is_loose, more.is_loose, &both.is_loose);
+  join(body->kinds, more.kinds, &both.kinds);
   both.light = body->light;
   *body = std::move(both);
 }

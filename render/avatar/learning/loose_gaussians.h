@@ -22,6 +22,8 @@ struct LooseGaussiansOptions {
   int count = 16000;         ///< 0 or more: at most so many, drawn at random
   float opacity_logit = -1;  ///< −20 to 20
   float albedo = 0.4F;       ///< 0 to 1
+  float covered_from_m = 0,
+        covered_to_m = 0;  ///< heights in rest space between which none are put: a garment has its own
   uint64_t seed = 1;
   int num_threads = 1;
   [[nodiscard]] bool IsValid(std::string* why) const;

@@ -89,7 +89,7 @@ void PoseRefiner::MakeFrame(int frame, const PoseCorrections& corrections, int n
 VectorXd PoseRefiner::ByCorrection(int frame, const std::vector<float>& by_bones,
                                    const PoseCorrections& corrections) const {
   const int J = num_joints();
-  BODYLOOM_CHECK(by_bones.size() == 12 * static_cast<size_t>(J) && corrections.values.rows() == num_frames() &&
+  BODYLOOM_CHECK(by_bones.size() >= 12 * static_cast<size_t>(J) && corrections.values.rows() == num_frames() &&
                      corrections.values.columns() == 3 * J + 3,
                  "refining poses: ", by_bones.size(), " derivatives by bones and corrections of ",
                  corrections.values.rows(), "x", corrections.values.columns(), " for ", num_frames(), " frames and ", J,

@@ -70,7 +70,8 @@ class PoseRefiner {
   [[nodiscard]] BodyPose PoseAt(int frame, const PoseCorrections& corrections) const;
   void MakeFrame(int frame, const PoseCorrections& corrections, int num_threads, AvatarFrame* to) const;
 
-  /// d loss / d correction of a frame, 3J + 3, from the bones of AvatarGradient in the frame that MakeFrame() made.
+  /// d loss / d correction of a frame, 3J + 3, from the bones of AvatarGradient in the frame that MakeFrame() made. Bones of
+  /// cloth, after the joints', are left out.
   [[nodiscard]] Eigen::VectorXd ByCorrection(int frame, const std::vector<float>& by_bones,
                                              const PoseCorrections& corrections) const;
 

@@ -35,7 +35,7 @@ void CopyRow(int from, int to, GaussianBody* body) {
   std::copy_n(body->joints.begin() + static_cast<int64_t>(from) * GaussianBody::kInfluences, GaussianBody::kInfluences,
               body->joints.begin() + static_cast<int64_t>(to) * GaussianBody::kInfluences);
   body->anchors[to] = body->anchors[from];
-  body->is_loose[to] = body->is_loose[from];
+  body->kinds[to] = body->kinds[from];
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 
 namespace bodyloom {
 
-TrainingView CutTrainingView(const Image& picture, const IsPerson& is_person, const PixelBox& search,
+TrainingView CutTrainingView(const Image& picture, const PersonAt& person_at, const PixelBox& search,
                              const PixelBox& body, int margin) {
   const PixelBox whole = {0, 0, picture.width, picture.height}, seen = search.ClippedTo(whole);
   TrainingView view;
@@ -13,7 +13,7 @@ TrainingView CutTrainingView(const Image& picture, const IsPerson& is_person, co
   if (box.empty()) box = {picture.width, picture.height, 0, 0};
   for (int y = seen.y_begin; y < seen.y_end; ++y) {
     for (int x = seen.x_begin; x < seen.x_end; ++x) {
-      if (!is_person(x, y)) continue;
+      if (person_at(x, y) == 0) continue;
       ++view.person_pixels;
       box = {std::min(box.x_begin, x), std::min(box.y_begin, y), std::max(box.x_end, x + 1),
              std::max(box.y_end, y + 1)};
@@ -26,7 +26,7 @@ TrainingView CutTrainingView(const Image& picture, const IsPerson& is_person, co
     for (int x = view.window.x_begin; x < view.window.x_end; ++x) {
       uint8_t* to = view.pixels.data() + 4 * view.window.IndexOf(x, y);
       std::copy_n(picture.pixel(x, y), 3, to);
-      to[3] = seen.Contains(x, y) && is_person(x, y) ? 1 : 0;
+      to[3] = seen.Contains(x, y) ? person_at(x, y) : 0;
     }
   }
   return view;
@@ -41,11 +41,11 @@ void FillTruth(const TrainingView& view, PictureTruth* truth) {
     float* plane = truth->planes.column(c);
     for (int i = 0; i < area; ++i) {
       const uint8_t* pixel = view.pixels.data() + 4 * static_cast<size_t>(i);
-      plane[i] = static_cast<float>(pixel[2 - c]) * static_cast<float>(pixel[3]) * (1.0F / 255);
+      plane[i] = pixel[3] != 0 ? static_cast<float>(pixel[2 - c]) * (1.0F / 255) : 0;
     }
   }
   float* alpha = truth->planes.column(3);
-  for (int i = 0; i < area; ++i) alpha[i] = view.pixels[4 * static_cast<size_t>(i) + 3];
+  for (int i = 0; i < area; ++i) alpha[i] = view.pixels[4 * static_cast<size_t>(i) + 3] != 0 ? 1.0F : 0.0F;
 }
 
 }  // namespace bodyloom

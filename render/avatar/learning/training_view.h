@@ -19,7 +19,7 @@ struct TrainingView {
   AvatarFrame frame;
   Camera camera;                ///< without distortion
   PixelBox window;              ///< around the person, inside the picture
-  std::vector<uint8_t> pixels;  ///< of the window, row-major: blue, green, red, and 1 where the person is, else 0
+  std::vector<uint8_t> pixels;  ///< of the window, row-major: blue, green, red, PersonAt
   int person_pixels = 0;
 
   [[nodiscard]] bool ShowsPerson(int x, int y) const {
@@ -27,13 +27,13 @@ struct TrainingView {
   }
 };
 
-/// Whether a pixel of the picture shows the person.
-using IsPerson = std::function<bool(int x, int y)>;
+/// What of the person a pixel of the picture shows: 0 nothing, else a label of clothes and skin, 1 where there are none.
+using PersonAt = std::function<uint8_t(int x, int y)>;
 
 /// The part of `picture` around the person: the smallest box that holds its pixels in `search` (clipped to the picture)
 /// and `body`, with `margin` pixels around it. Pixels outside of `search` count as not the person's. A frame without
 /// the person has an empty window. The caller sets time, frame and camera.
-TrainingView CutTrainingView(const Image& picture, const IsPerson& is_person, const PixelBox& search,
+TrainingView CutTrainingView(const Image& picture, const PersonAt& person_at, const PixelBox& search,
                              const PixelBox& body, int margin);
 
 /// The view as what a picture is compared with. Keeps the memory of `truth`.

@@ -55,7 +55,7 @@ void MotionOffsets::Anchor(const GaussianBody& gaussians) {
       taps_[i].texel[k] = taps.pixel[k];
       taps_[i].weight[k] = static_cast<float>(taps.weight[k]);
     }
-    taps_[i].is_loose = gaussians.is_loose[i] != 0;
+    taps_[i].is_loose = gaussians.kinds[i] != GaussianKind::kSkin;
   }
 }
 

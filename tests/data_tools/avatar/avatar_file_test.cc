@@ -30,15 +30,21 @@ AvatarCheckpoint RandomCheckpoint() {
   AvatarFile& avatar = checkpoint.avatar;
   avatar.num_joints = 24, avatar.num_vertices = 99, avatar.num_faces = 120;
   avatar.betas = Eigen::VectorXd::LinSpaced(4, -1, 1);
+  AvatarGarment& garment = avatar.garment.emplace();
+  garment.cut.waist_y_m = 0.1, garment.cut.length_m = 0.55, garment.cut.fullness = 0.4, garment.cut.spacing_m = 0.03;
+  garment.offsets_m.resize(99);
+  for (float& v : garment.offsets_m) v = 0.01F * uniform();
+  garment.node_spacing_m = 0.06;
+  garment.nodes = MatrixX3f::Constant(3, 3, 0.25F);
   GaussianBody body;
   body.Resize(kCount);
   for (int i = 0; i < kCount; ++i) {
     for (int c = 0; c < GaussianBody::kNumParameters; ++c) body.parameters(i, c) = uniform();
     for (int k = 0; k < GaussianBody::kInfluences; ++k) {
-      body.joints[GaussianBody::kInfluences * i + k] = static_cast<int32_t>(generator() % 24);
+      body.joints[GaussianBody::kInfluences * i + k] = static_cast<int32_t>(generator() % 27);
     }
     body.anchors[i] = {static_cast<int32_t>(generator() % 120), {0.2F, 0.3F, 0.5F}, uniform()};
-    body.is_loose[i] = i % 2;
+    body.kinds[i] = static_cast<GaussianKind>(i % 3);
   }
   for (float& v : body.light) v = uniform();
   checkpoint.state = AvatarTrainingState::Of(body);
@@ -78,7 +84,7 @@ bool SameTables(const FloatColumns& a, const FloatColumns& b) {
 void ExpectSameBody(const GaussianBody& a, const GaussianBody& b) {
   EXPECT_TRUE(SameTables(a.parameters, b.parameters));
   EXPECT_EQ(a.joints, b.joints);
-  EXPECT_EQ(a.is_loose, b.is_loose);
+  EXPECT_EQ(a.kinds, b.kinds);
   EXPECT_EQ(a.light, b.light);
   ASSERT_EQ(a.anchors.size(), b.anchors.size());
   for (size_t i = 0; i < a.anchors.size(); ++i) {
@@ -121,6 +127,15 @@ TEST(AvatarFile, ComesBackAsItWas) {
   ExpectSameBody(person.body, avatar.body);
   EXPECT_EQ(person.betas, avatar.betas);
   EXPECT_EQ(person.num_vertices, 99);
+  ASSERT_TRUE(person.garment.has_value());
+  EXPECT_EQ(person.garment->cut.waist_y_m, 0.1);
+  EXPECT_EQ(person.garment->cut.length_m, 0.55);
+  EXPECT_EQ(person.garment->cut.fullness, 0.4);
+  EXPECT_EQ(person.garment->cut.spacing_m, 0.03);
+  EXPECT_EQ(person.garment->node_spacing_m, 0.06);
+  EXPECT_EQ(person.garment->offsets_m, avatar.garment->offsets_m);
+  EXPECT_EQ(person.garment->nodes, avatar.garment->nodes);
+  EXPECT_EQ(person.num_bones(), 27);
   EXPECT_TRUE(SameTables(person.motion->parameters, checkpoint.state.motion));
   // A person need not have learned by motion.
   avatar.motion.reset();
@@ -129,6 +144,23 @@ TEST(AvatarFile, ComesBackAsItWas) {
   // A checkpoint is a person too; a person is no checkpoint.
   ExpectSameBody(ReadAvatar(folder.File("checkpoint.npz")).body, avatar.body);
   FileErrorOf("avatar.npz", [&] { ReadAvatarCheckpoint(folder.File("avatar.npz")); });
+}
+
+TEST(AvatarFile, ReadsVersionOne) {
+  const TemporaryFolder folder;
+  AvatarFile avatar = RandomCheckpoint().avatar;
+  avatar.garment.reset(), avatar.motion.reset();
+  avatar.body.Resize(2);
+  avatar.body.kinds[1] = GaussianKind::kLoose;
+  WriteAvatar(folder.File("new.npz"), avatar);
+  NpzArrays arrays = ReadNpz(folder.File("new.npz"));
+  arrays["version"] = NdArray::FromDouble(1);
+  arrays["is_loose"] = arrays.at("kinds");
+  arrays.erase("kinds");
+  ExpectSameBody(AvatarFromArrays(arrays, "old.npz").body, avatar.body);
+  arrays["is_loose"].bytes[1] = 2;
+  const std::string said = FileErrorOf("old.npz", [&] { AvatarFromArrays(arrays, "old.npz"); });
+  EXPECT_NE(said.find("is_loose"), std::string::npos) << said;
 }
 
 TEST(AvatarFile, RefusesWhatIsWrongNamingIt) {
@@ -151,18 +183,32 @@ TEST(AvatarFile, RefusesWhatIsWrongNamingIt) {
     return [value](NdArray* array) { std::memcpy(array->bytes.data() + 8, &value, sizeof value); };
   };
   expect("format", "expected", [](NdArray* a) { *a = NdArray::FromString("something else"); });
-  expect("version", "2, expected 1", [](NdArray* a) { *a = NdArray::FromDouble(2); });
+  expect("version", "3, expected 1 or 2", [](NdArray* a) { *a = NdArray::FromDouble(3); });
   expect("parameters", "Nx23", [](NdArray* a) { a->shape = {23, kCount}; });
   expect("parameters", "finite", set_float(std::numeric_limits<float>::quiet_NaN()));
   expect("parameters", "float32", [](NdArray* a) {
     const std::vector<double> values(23 * kCount, 0.0);
     *a = NdArray::FromDoubles(values.data(), {kCount, 23});
   });
-  expect("joints", "24, expected 0 to 23", set_int(24));
-  expect("joints", "-1, expected 0 to 23", set_int(-1));
+  expect("joints", "27, expected 0 to 26", set_int(27));
+  expect("joints", "-1, expected 0 to 26", set_int(-1));
   expect("anchor_face", "120, expected 0 to 119", set_int(120));
   expect("anchor_barycentric", "finite", set_float(std::numeric_limits<float>::infinity()));
-  expect("is_loose", "0 and 1", [](NdArray* a) { a->bytes[0] = 2; });
+  expect("kinds", "3, expected 0 to 2", [](NdArray* a) { a->bytes[0] = 3; });
+  const auto set_double = [](int at, double value) {
+    return [at, value](NdArray* array) { std::memcpy(array->bytes.data() + 8 * at, &value, sizeof value); };
+  };
+  expect("garment_cut", "expected 5", [](NdArray* a) { a->shape = {1, 5}; });
+  expect("garment_cut", "waist", set_double(0, std::numeric_limits<double>::quiet_NaN()));
+  expect("garment_cut", "length 0, expected 0.01 to 10", set_double(1, 0));
+  expect("garment_cut", "fullness 1, expected 0 to 0.95", set_double(2, 1));
+  expect("garment_cut", "spacing 1e-09, expected 0.005 to 1", set_double(3, 1e-9));
+  expect("garment_cut", "nodes' spacing 2, expected 0.005 to 1", set_double(4, 2));
+  expect("garment_offsets", "expected 99", [](NdArray* a) { a->shape = {33, 3}; });
+  expect("garment_offsets", "finite", set_float(std::numeric_limits<float>::infinity()));
+  expect("garment_nodes", "expected Kx3", [](NdArray* a) { a->shape = {9}; });
+  expect("garment_nodes", "expected 1x3", [](NdArray* a) { a->shape = {1, 9}; });
+  expect("garment_nodes", "finite", set_float(std::numeric_limits<float>::quiet_NaN()));
   expect("pose_values", "expected 3x75", [](NdArray* a) { a->shape = {3, 25, 3}; });
   expect("pose_values", "expected 3x75", [](NdArray* a) { a->shape = {75, 3}; });
   expect("pose_square", "below 0", set_float(-1));
@@ -199,7 +245,7 @@ TEST(AvatarFile, RefusesWhatIsWrongNamingIt) {
     EXPECT_NE(said.find(key), std::string::npos) << said;
     ++refused;
   }
-  EXPECT_GE(refused, 51);
+  EXPECT_GE(refused, 65);
   const std::string bytes = ReadFileBytes(folder.File("good.npz"));
   WriteFileAtomically(folder.File("cut.npz"), bytes.substr(0, bytes.size() / 2));
   FileErrorOf("cut.npz", [&] { ReadAvatarCheckpoint(folder.File("cut.npz")); });

@@ -67,6 +67,26 @@ TEST(AvatarScorer, NothingDrawnIsThePersonsOwnBrightness) {
   EXPECT_THROW(scorer.Add(HalfPerson(51), other), std::invalid_argument);
 }
 
+TEST(AvatarScorer, TheGarmentIsComparedWithTheLabelItCovers) {
+  TrainingView view = HalfPerson(51);
+  std::vector<float> garment(200, 0.4F);
+  for (int y = 0; y < 10; ++y) {
+    // Of the person's ten columns the first two are a top, the other eight a skirt, of which columns 4 to 11 are found.
+    for (int x = 2; x < 10; ++x) view.pixels[4 * (20 * y + x) + 3] = 2;
+    for (int x = 4; x < 12; ++x) garment[20 * y + x] = 0.6F;
+  }
+  SplatPicture picture;
+  picture.Draw(ScreenGaussians(), view.window);
+  AvatarScorer scorer;
+  scorer.Add(view, picture, garment);
+  ASSERT_TRUE(scorer.Means().garment_iou.has_value());
+  EXPECT_NEAR(*scorer.Means().garment_iou, 6.0 / 10, 1e-12);
+  EXPECT_THROW(scorer.Add(view, picture, std::span(garment).first(9)), std::invalid_argument);
+  AvatarScorer with_mask;
+  with_mask.Add(HalfPerson(51), picture, garment);
+  EXPECT_FALSE(with_mask.Means().garment_iou.has_value()) << "a mask has no labels";
+}
+
 TEST(AvatarScorer, WindowsShowThePersonOverBlack) {
   const Image window = TrueWindow(HalfPerson(77));
   EXPECT_EQ(window.at(9, 0), (Colour{77, 77, 77}));

@@ -63,6 +63,7 @@ TrainAvatarRequest SmallRequest(const std::string& out) {
   request.steps = 60;
   request.skin_side = 64, request.loose = 400;
   request.train = {"0-7"}, request.validate = {"8-9"};
+  request.garment = false;
   return request;
 }
 
@@ -151,6 +152,63 @@ TEST(TrainAvatar, MotionIsLearnedAndShownAsItWasLearned) {
   request.motion = false;
   EXPECT_EQ(TrainAvatar(request).steps, 60);
   EXPECT_FALSE(ReadAvatar(AvatarPath(request.out)).motion.has_value());
+}
+
+TEST(TrainAvatar, FindsTheSkirtAndLetsItSwing) {
+  const TemporaryFolder folder;
+  TrainAvatarRequest request = SmallRequest(folder.File("bare"));
+  const TrainAvatarSummary bare = TrainAvatar(request);
+  EXPECT_EQ(bare.cloth, 0);
+  request.out = folder.File("whole"), request.garment = true;
+  const TrainAvatarSummary summary = TrainAvatar(request);
+  EXPECT_GT(summary.cloth, 1000);
+  EXPECT_GT(summary.garment_length_m, 0.25);
+  EXPECT_GT(summary.validation->outline_iou, bare.validation->outline_iou);
+  const AvatarFile avatar = ReadAvatar(AvatarPath(request.out));
+  ASSERT_TRUE(avatar.garment.has_value());
+  EXPECT_EQ(avatar.num_bones(), avatar.num_joints + avatar.garment->num_nodes());
+
+  // Gone on with it is not looked for again, and comes out the same.
+  request.out = folder.File("parts"), request.clip.threads = 1;
+  PipelineCallbacks callbacks;
+  int calls = 0;
+  callbacks.progress = [&](const std::string& stage, double) { return stage.rfind("loss", 0) != 0 || ++calls < 9; };
+  EXPECT_TRUE(TrainAvatar(request, callbacks).stopped);
+  request.resume = true;
+  bool looked = false;
+  callbacks.progress = [&](const std::string& stage, double) {
+    looked = looked || stage == "looking for a garment";
+    return true;
+  };
+  TrainAvatar(request, callbacks);
+  EXPECT_FALSE(looked);
+  const AvatarFile parts = ReadAvatar(AvatarPath(request.out));
+  ASSERT_EQ(avatar.body.size(), parts.body.size());
+  for (int c = 0; c < GaussianBody::kNumParameters; ++c) {
+    for (int i = 0; i < avatar.body.size(); ++i) {
+      ASSERT_EQ(avatar.body.parameters(i, c), parts.body.parameters(i, c)) << c;
+    }
+  }
+  request.garment = false;
+  EXPECT_THROW(TrainAvatar(request), RequestError) << "begun with a garment";
+
+  // Time that stands still is the same picture, cloth included.
+  AnimateAvatarRequest show;
+  show.run = folder.File("whole"), show.track = Scene().File("person/track.npz");
+  show.freeze = "4:3", show.pictures = folder.File("pictures"), show.report = folder.File("page.html");
+  show.ply = folder.File("rest.ply");
+  show.threads = 1;
+  EXPECT_EQ(AnimateAvatar(show).frames, kFrames + 3);
+  const std::string fourth = ReadFileBytes(folder.File("pictures/000004.png"));
+  EXPECT_EQ(fourth, ReadFileBytes(folder.File("pictures/000007.png")));
+  EXPECT_NE(fourth, ReadFileBytes(folder.File("pictures/000008.png")));
+
+  // A garment that is not the stored one is refused.
+  AvatarFile other = avatar;
+  other.garment->cut.length_m += 0.05;
+  WriteAvatar(folder.File("other.npz"), other);
+  show.run = folder.File("other.npz");
+  EXPECT_THROW(AnimateAvatar(show), std::runtime_error);
 }
 
 TEST(TrainAvatar, AVideoWithAMaskIsTheSame) {

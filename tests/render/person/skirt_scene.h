@@ -32,14 +32,19 @@ inline Track StandingPhoto(double turn_rad) {
   return photo;
 }
 
-/// The person's pixels in the photo, in a skirt of this cut from the waist.
+/// Dresses the wearer in a skirt of this cut from the waist.
+inline void WearSkirt(double length_m, double fullness, ClothWearer* wearer) {
+  LooseGarmentOptions cut;
+  cut.waist_y_m = wearer->rest_joints()(3, 1), cut.length_m = length_m, cut.fullness = fullness;
+  cut.spacing_m = 0.025, cut.mass_kg_m2 = 0.4, cut.bend_compliance = 3;
+  wearer->Wear(wearer->Cut(cut, 9));
+}
+
+/// The person's pixels in the photo, in such a skirt.
 inline LabelImage MaskOfSkirt(const BodyModel& body, const Track& photo, double length_m, double fullness,
                               double swing_rad) {
   ClothWearer wearer(body, photo.motion.betas, {});
-  LooseGarmentOptions cut;
-  cut.waist_y_m = wearer.rest_joints()(3, 1), cut.length_m = length_m, cut.fullness = fullness;
-  cut.spacing_m = 0.025, cut.mass_kg_m2 = 0.4, cut.bend_compliance = 3;
-  wearer.Wear(wearer.Cut(cut, 9));
+  WearSkirt(length_m, fullness, &wearer);
   ClothRunOptions options;
   options.up = SwungUp(photo, swing_rad);
   const BodyModel both(BodyWithGarment(body, wearer.garment()));

@@ -118,7 +118,7 @@ TEST(AvatarTrainer, WhatIsHiddenLearnsNothing) {
     AvatarTrainer trainer(lesson.model.data().faces, std::span(lesson.views).first(1), options);
     AvatarTrainingState state = lesson.Start();
     for (int i = 0; i < state.body.size(); ++i) {
-      state.body.is_loose[i] = i % 2;
+      state.body.kinds[i] = i % 2 == 0 ? GaussianKind::kSkin : GaussianKind::kLoose;
       state.body.parameters(i, GaussianBody::kOpacityLogit) = 5;
     }
     const GaussianBody before = state.body;
@@ -244,7 +244,7 @@ TEST(LooseGaussians, LieInTheShellOfTheHull) {
   for (int i = 0; i < loose.size(); ++i) {
     const Eigen::Vector3f place(loose.parameters(i, 0), loose.parameters(i, 1), loose.parameters(i, 2));
     EXPECT_LE(skin.DistanceTo(place), 0.2F);
-    EXPECT_EQ(loose.is_loose[i], 1);
+    EXPECT_EQ(loose.kinds[i], GaussianKind::kLoose);
     const int32_t* joints = loose.joints.data() + static_cast<size_t>(i) * GaussianBody::kInfluences;
     EXPECT_EQ(std::count(joints, joints + GaussianBody::kInfluences, 0) > 0, true) << "the pelvis is missing";
     EXPECT_GE(loose.anchors[i].corrective_factor, 0);

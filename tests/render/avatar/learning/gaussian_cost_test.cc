@@ -18,6 +18,7 @@ GaussianBody RandomBody() {
   for (int i = 0; i < body.size(); ++i) {
     for (int c = 0; c < GaussianBody::kNumParameters; ++c) body.parameters(i, c) = 2 * uniform();
     body.anchors[i].corrective_factor = std::abs(uniform());
+    body.kinds[i] = static_cast<GaussianKind>(i % 3);
   }
   return body;
 }
@@ -26,7 +27,9 @@ double Cost(const GaussianBody& body, const GaussianCost& cost) {
   double sum = 0;
   for (int i = 0; i < body.size(); ++i) {
     const double opacity = 1 / (1 + std::exp(-double(body.parameters(i, GaussianBody::kOpacityLogit))));
-    sum += (cost.by_opacity + cost.by_distance * (1 - body.anchors[i].corrective_factor)) * opacity;
+    if (body.kinds[i] != GaussianKind::kCloth) {
+      sum += (cost.by_opacity + cost.by_distance * (1 - body.anchors[i].corrective_factor)) * opacity;
+    }
     for (int c = 0; c < 3; ++c) sum += cost.by_scale * std::exp(body.parameters(i, GaussianBody::kLogScale + c));
   }
   return sum / body.size();
@@ -55,6 +58,8 @@ TEST(GaussianCost, OffTheSkinCostsMore) {
   FloatColumns gradient(GaussianBody::kNumParameters, body.size());
   const double on_the_skin = AddGaussianCost(body, {}, &gradient);
   body.anchors[2].corrective_factor = 0;
+  EXPECT_EQ(AddGaussianCost(body, {}, &gradient), on_the_skin) << "of cloth";
+  body.anchors[1].corrective_factor = 0;
   EXPECT_GT(AddGaussianCost(body, {}, &gradient), on_the_skin);
   EXPECT_EQ(AddGaussianCost(body, {.by_distance = 0}, &gradient), on_the_skin);
 }

@@ -21,7 +21,7 @@ const GaussianBody& Person() {
     const Eigen::VectorXd betas = Eigen::VectorXd::Zero(2);
     GaussianBody body =
         SkinGaussians(ToyBody(), betas, BuildUvTexelTable(ToyBody(), {.width = 40, .height = 40, .gutter = 0}));
-    for (int i = 0; i < body.size(); i += 3) body.is_loose[i] = 1;
+    for (int i = 0; i < body.size(); i += 3) body.kinds[i] = GaussianKind::kLoose;
     return body;
   }();
   return person;
@@ -50,7 +50,7 @@ TEST(MotionOffsets, AConstantMapGivesEverybodyTheSame) {
   const MotionLimits limits;
   ASSERT_EQ(found.columns.rows(), Person().size());
   for (int i = 0; i < Person().size(); ++i) {
-    const bool loose = Person().is_loose[i] != 0;
+    const bool loose = Person().kinds[i] != GaussianKind::kSkin;
     const float share = loose ? -0.75F : 0.5F;
     EXPECT_NEAR(found.columns(i, GaussianOffsets::kPosition + 1),
                 share * (loose ? limits.loose_position : limits.skin_position), 1e-6);
@@ -70,7 +70,7 @@ TEST(MotionOffsets, NothingIsEverBeyondTheLimits) {
   GaussianOffsets found;
   offsets.Compute(map, 1, &found);
   for (int i = 0; i < Person().size(); ++i) {
-    EXPECT_LE(std::abs(found.columns(i, 0)), Person().is_loose[i] != 0 ? 0.15F : 0.03F);
+    EXPECT_LE(std::abs(found.columns(i, 0)), Person().kinds[i] != GaussianKind::kSkin ? 0.15F : 0.03F);
     EXPECT_LE(std::abs(found.columns(i, GaussianOffsets::kAlbedo)), 0.3F);
   }
 }
