@@ -19,8 +19,8 @@ constexpr int kOffsetRows = 1024;  ///< of a thread at a time
 bool MotionLimits::IsValid(std::string* why) const {
   const InRange in_range(why);
   return in_range("skin_position", skin_position, 0, 1) && in_range("loose_position", loose_position, 0, 1) &&
-         in_range("log_scale", log_scale, 0, 10) && in_range("opacity_logit", opacity_logit, 0, 100) &&
-         in_range("albedo", albedo, 0, 10);
+         in_range("cloth_position", cloth_position, 0, 1) && in_range("log_scale", log_scale, 0, 10) &&
+         in_range("opacity_logit", opacity_logit, 0, 100) && in_range("albedo", albedo, 0, 10);
 }
 
 MotionOffsets::MotionOffsets(const BodyModel& body, int side, const MotionLimits& limits)
@@ -30,13 +30,16 @@ MotionOffsets::MotionOffsets(const BodyModel& body, int side, const MotionLimits
       table_(BuildUvTexelTable(body, charts_, {.width = side, .height = side, .gutter = 1})) {
   std::string why;
   BODYLOOM_CHECK(limits.IsValid(&why), "motion offsets: ", why);
-  for (int loose = 0; loose < 2; ++loose) {
-    float* limit = limits_.data() + loose * GaussianOffsets::kNumColumns;
-    std::fill_n(limit + GaussianOffsets::kPosition, 3, loose != 0 ? limits.loose_position : limits.skin_position);
-    std::fill_n(limit + GaussianOffsets::kLogScale, 3, limits.log_scale);
-    limit[GaussianOffsets::kOpacityLogit] = limits.opacity_logit;
-    std::fill_n(limit + GaussianOffsets::kAlbedo, 3, limits.albedo);
-  }
+  const auto set = [&](GaussianKind kind, float position, float opacity_logit) {
+    Limits& limit = limits_[static_cast<size_t>(kind)];
+    std::fill_n(limit.begin() + GaussianOffsets::kPosition, 3, position);
+    std::fill_n(limit.begin() + GaussianOffsets::kLogScale, 3, limits.log_scale);
+    limit[GaussianOffsets::kOpacityLogit] = opacity_logit;
+    std::fill_n(limit.begin() + GaussianOffsets::kAlbedo, 3, limits.albedo);
+  };
+  set(GaussianKind::kSkin, limits.skin_position, limits.opacity_logit);
+  set(GaussianKind::kLoose, limits.loose_position, limits.opacity_logit);
+  set(GaussianKind::kCloth, limits.cloth_position, 0);
 }
 
 std::vector<uint8_t> MotionOffsets::ShowsBody() const {
@@ -55,7 +58,7 @@ void MotionOffsets::Anchor(const GaussianBody& gaussians) {
       taps_[i].texel[k] = taps.pixel[k];
       taps_[i].weight[k] = static_cast<float>(taps.weight[k]);
     }
-    taps_[i].is_loose = gaussians.kinds[i] != GaussianKind::kSkin;
+    taps_[i].kind = gaussians.kinds[i];
   }
 }
 
@@ -74,10 +77,10 @@ void MotionOffsets::Compute(const TexelFeatures& map, int num_threads, GaussianO
   offsets->columns.Resize(GaussianOffsets::kNumColumns, count);
   ParallelFor((count + kOffsetRows - 1) / kOffsetRows, num_threads, [&](int chunk) {
     for (int i = chunk * kOffsetRows; i < std::min(count, (chunk + 1) * kOffsetRows); ++i) {
-      const int first = taps_[i].is_loose ? GaussianOffsets::kNumColumns : 0;
+      const Limits& limits = LimitsOf(taps_[i]);
       for (int c = 0; c < GaussianOffsets::kNumColumns; ++c) {
-        const float y = LookUp(map, taps_[i], first + c);
-        offsets->columns(i, c) = limits_[first + c] * (y / (1 + std::abs(y)));
+        const float y = LookUp(map, taps_[i], taps_[i].first_channel() + c);
+        offsets->columns(i, c) = limits[c] * (y / (1 + std::abs(y)));
       }
     }
   });
@@ -99,9 +102,9 @@ void MotionOffsets::Back(const TexelFeatures& map, const FloatColumns& by_offset
       const float by = by_offsets(i, c);
       if (by == 0) continue;
       const Taps& taps = taps_[i];
-      const int channel = c + (taps.is_loose ? GaussianOffsets::kNumColumns : 0);
+      const int channel = taps.first_channel() + c;
       const float below = 1 + std::abs(LookUp(map, taps, channel));
-      const float by_y = by * limits_[channel] / (below * below);
+      const float by_y = by * LimitsOf(taps)[c] / (below * below);
       for (int k = 0; k < 4; ++k) {
         by_map->at(taps.texel[k] / side_, taps.texel[k] % side_)[channel] += taps.weight[k] * by_y;
       }

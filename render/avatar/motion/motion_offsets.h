@@ -2,9 +2,11 @@
 /// From the motion network's map (motion_network.h) to what is added to each Gaussian, and back.
 ///
 /// A Gaussian looks the map up at its anchor's place in the atlas, bilinear between texels of its own chart. Channels
-/// 0 to 9 are for those on the skin, 10 to 19 for loose ones, in the order of GaussianOffsets. With y what was looked up,
+/// 0 to 9 are for those on the skin, 10 to 19 for loose ones and cloth, in the order of GaussianOffsets. With y what was
+/// looked up,
 ///   offset = limit · y / (1 + |y|)
-/// so that a motion that was never learned cannot tear the person apart.
+/// so that a motion that was never learned cannot tear the person apart. Cloth, whose motion is simulated, is moved little
+/// and stays opaque.
 #pragma once
 
 #include <array>
@@ -25,8 +27,8 @@ inline constexpr int kMotionChannels = 2 * GaussianOffsets::kNumColumns;
 
 /// What motion may change at most.
 struct MotionLimits {
-  float skin_position = 0.03F, loose_position = 0.15F;  ///< metres
-  float log_scale = 0.3F, opacity_logit = 1, albedo = 0.3F;
+  float skin_position = 0.03F, loose_position = 0.15F, cloth_position = 0.02F;  ///< metres
+  float log_scale = 0.3F, opacity_logit = 1, albedo = 0.3F;                     ///< opacity: not of cloth
   [[nodiscard]] bool IsValid(std::string* why) const;
 };
 
@@ -53,13 +55,18 @@ class MotionOffsets {
   struct Taps {
     std::array<int32_t, 4> texel{};
     std::array<float, 4> weight{};
-    bool is_loose = false;
+    GaussianKind kind = GaussianKind::kSkin;
+    /// Of the map, for column 0.
+    [[nodiscard]] int first_channel() const { return kind == GaussianKind::kSkin ? 0 : GaussianOffsets::kNumColumns; }
   };
   [[nodiscard]] float LookUp(const TexelFeatures& map, const Taps& taps, int channel) const;
 
   const BodyModel& body_;
   int side_;
-  std::array<float, kMotionChannels> limits_{};
+  using Limits = std::array<float, GaussianOffsets::kNumColumns>;
+  [[nodiscard]] const Limits& LimitsOf(const Taps& taps) const { return limits_[static_cast<size_t>(taps.kind)]; }
+
+  std::array<Limits, 3> limits_{};  ///< by kind
   UvCharts charts_;
   UvTexelTable table_;
   std::vector<Taps> taps_;

@@ -21,10 +21,15 @@ const GaussianBody& Person() {
     const Eigen::VectorXd betas = Eigen::VectorXd::Zero(2);
     GaussianBody body =
         SkinGaussians(ToyBody(), betas, BuildUvTexelTable(ToyBody(), {.width = 40, .height = 40, .gutter = 0}));
-    for (int i = 0; i < body.size(); i += 3) body.kinds[i] = GaussianKind::kLoose;
+    for (int i = 0; i < body.size(); ++i) body.kinds[i] = static_cast<GaussianKind>(i % 3);
     return body;
   }();
   return person;
+}
+
+float PositionLimit(const MotionLimits& limits, GaussianKind kind) {
+  if (kind == GaussianKind::kCloth) return limits.cloth_position;
+  return kind == GaussianKind::kLoose ? limits.loose_position : limits.skin_position;
 }
 
 TexelFeatures RandomMap(uint32_t seed) {
@@ -50,12 +55,12 @@ TEST(MotionOffsets, AConstantMapGivesEverybodyTheSame) {
   const MotionLimits limits;
   ASSERT_EQ(found.columns.rows(), Person().size());
   for (int i = 0; i < Person().size(); ++i) {
-    const bool loose = Person().kinds[i] != GaussianKind::kSkin;
-    const float share = loose ? -0.75F : 0.5F;
-    EXPECT_NEAR(found.columns(i, GaussianOffsets::kPosition + 1),
-                share * (loose ? limits.loose_position : limits.skin_position), 1e-6);
+    const GaussianKind kind = Person().kinds[i];
+    const float share = kind == GaussianKind::kSkin ? 0.5F : -0.75F;
+    const float opacity = kind == GaussianKind::kCloth ? 0 : limits.opacity_logit;
+    EXPECT_NEAR(found.columns(i, GaussianOffsets::kPosition + 1), share * PositionLimit(limits, kind), 1e-6);
     EXPECT_NEAR(found.columns(i, GaussianOffsets::kLogScale + 2), share * limits.log_scale, 1e-6);
-    EXPECT_NEAR(found.columns(i, GaussianOffsets::kOpacityLogit), share * limits.opacity_logit, 1e-6);
+    EXPECT_NEAR(found.columns(i, GaussianOffsets::kOpacityLogit), share * opacity, 1e-6);
     EXPECT_NEAR(found.columns(i, GaussianOffsets::kAlbedo), share * limits.albedo, 1e-6);
   }
 }
@@ -70,7 +75,7 @@ TEST(MotionOffsets, NothingIsEverBeyondTheLimits) {
   GaussianOffsets found;
   offsets.Compute(map, 1, &found);
   for (int i = 0; i < Person().size(); ++i) {
-    EXPECT_LE(std::abs(found.columns(i, 0)), Person().kinds[i] != GaussianKind::kSkin ? 0.15F : 0.03F);
+    EXPECT_LE(std::abs(found.columns(i, 0)), PositionLimit({}, Person().kinds[i]));
     EXPECT_LE(std::abs(found.columns(i, GaussianOffsets::kAlbedo)), 0.3F);
   }
 }
