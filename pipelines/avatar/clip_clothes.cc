@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include "bodyloom/data_tools/motion/freeze_track.h"
@@ -63,6 +66,7 @@ class ClipClothesFit {
     Search();
     clothes.garment = Cut(best_);
     clothes.unlike_loose = Unlike(best_);
+    if (!std::isfinite(clothes.unlike_loose)) clothes.unlike_loose = clothes.unlike_close;
     if (clothes.unlike_close - clothes.unlike_loose < options_.least_gain) return WithoutGarment(clothes);
     clothes.offsets_m = offsets_;
     return clothes;
@@ -188,7 +192,12 @@ class ClipClothesFit {
     std::vector<double> sums(pieces_.size(), 0);
     LooseGarmentOptions cut = Cut(steps);
     cut.spacing_m = std::max(cut.spacing_m, kSearchSpacing_m);
-    const LooseGarment garment = CutGarment(*clothed_, &cut);
+    LooseGarment garment;
+    try {
+      garment = CutGarment(*clothed_, &cut);
+    } catch (const std::invalid_argument&) {  // no body at that height
+      return unlike_[steps] = std::numeric_limits<double>::infinity();
+    }
     ParallelFor(static_cast<int>(pieces_.size()), num_threads_,
                 [&](int p) { sums[p] = UnlikeIn(pieces_[p], garment); });
     size_t looked_at = 0;
