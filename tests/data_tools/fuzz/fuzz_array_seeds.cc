@@ -63,7 +63,7 @@ DenseSequence TwoDenseFrames() {
   return dense;
 }
 
-AvatarCheckpoint SmallAvatar() {
+AvatarCheckpoint SmallAvatar(bool has_garment) {
   GaussianBody body;
   body.Resize(3);
   for (int i = 0; i < body.size(); ++i) {
@@ -74,6 +74,12 @@ AvatarCheckpoint SmallAvatar() {
   AvatarCheckpoint checkpoint;
   checkpoint.avatar.betas = Eigen::VectorXd::Constant(2, 0.5);
   checkpoint.avatar.num_joints = checkpoint.avatar.num_vertices = checkpoint.avatar.num_faces = 4;
+  if (has_garment) {
+    AvatarGarment& garment = checkpoint.avatar.garment.emplace();
+    garment.offsets_m.assign(4, 0.01F);
+    garment.nodes = MatrixX3f::Constant(2, 3, 0.25F);
+    body.joints[0] = 5, body.kinds[0] = GaussianKind::kCloth;
+  }
   checkpoint.state = AvatarTrainingState::Of(std::move(body));
   checkpoint.options = "{}";
   return checkpoint;
@@ -194,7 +200,10 @@ void AddArraySeeds(std::map<std::string, std::vector<std::string>>* seeds) {
   const auto write = [&](const std::string& path) { WriteObservations(path, &keypoints, &dense); };
   (*seeds)["observations"] = {FramedBytesOf(write)};
   (*seeds)["part_labels"] = {PartLabels()};
-  (*seeds)["avatar"] = {FramedBytesOf([](const std::string& path) { WriteAvatarCheckpoint(path, SmallAvatar()); })};
+  for (const bool has_garment : {false, true}) {
+    (*seeds)["avatar"].push_back(
+        FramedBytesOf([&](const std::string& path) { WriteAvatarCheckpoint(path, SmallAvatar(has_garment)); }));
+  }
   (*seeds)["pose_prior"] = {FramedBytesOf([](const std::string& path) { WritePosePrior(path, SmallPrior()); })};
   (*seeds)["lifter"] = {FramedBytesOf([](const std::string& path) { WriteLifterWeights(path, SmallLifter()); })};
   (*seeds)["refiner"] = {FramedBytesOf([](const std::string& path) { WriteRefinerWeights(path, RandomRefiner(1)); })};
