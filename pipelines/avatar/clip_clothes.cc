@@ -64,20 +64,15 @@ class ClipClothesFit {
     clothes.frames = static_cast<int>(asked.size());
     if (!Begin(asked, &clothes)) return clothes;
     Search();
-    clothes.garment = Cut(best_);
-    clothes.unlike_loose = Unlike(best_);
-    if (!std::isfinite(clothes.unlike_loose)) clothes.unlike_loose = clothes.unlike_close;
-    if (clothes.unlike_close - clothes.unlike_loose < options_.least_gain) return WithoutGarment(clothes);
-    clothes.offsets_m = offsets_;
+    if (std::isfinite(Unlike(best_))) clothes.unlike_loose = Unlike(best_);
+    if (clothes.unlike_close - clothes.unlike_loose >= options_.least_gain) {
+      clothes.garment = Cut(best_);
+      clothes.offsets_m = offsets_;
+    }
     return clothes;
   }
 
  private:
-  static ClipClothes WithoutGarment(ClipClothes clothes) {
-    clothes.garment = {.length_m = 0};
-    return clothes;
-  }
-
   static int FoundIn(const std::vector<FittedClothes>& asked) {
     return static_cast<int>(std::count_if(asked.begin(), asked.end(),
                                           [](const FittedClothes& fitted) { return fitted.garment.length_m > 0; }));

@@ -85,11 +85,7 @@ class AvatarTraining {
     }
     refiner_.emplace(clip_->body(), clip_->track().motion.betas, TrackedPoses(clip_->body(), clip_->track()),
                      PoseRefinerOptions());
-    if (request_.resume) {
-      CheckPoses();
-    } else {
-      Begin();
-    }
+    if (!request_.resume) Begin();
     clock_.Begin("train");
     Train();
     clock_.Begin("write");
@@ -196,19 +192,16 @@ class AvatarTraining {
     if (!checkpoint_.state.body.IsValid(clip_->body().num_joints() + nodes, clip_->body().num_faces(), &why)) {
       throw std::runtime_error(path + ": of another body (--body): " + why);
     }
+    const int num_frames = clip_->track().num_frames();
+    if (request_.refine && checkpoint_.state.poses.values.rows() != num_frames) {
+      throw std::runtime_error(Concatenate(path, ": pose_values of ", checkpoint_.state.poses.values.rows(),
+                                           " frames, the track has ", num_frames));
+    }
     // What was done after it is done again.
     std::istringstream lines(fs::exists(MetricsPath()) ? ReadFileBytes(MetricsPath()) : "");
     for (std::string line; std::getline(lines, line);) {
       if (line.empty() || std::atoll(line.c_str()) > checkpoint_.state.step) continue;
       metrics_ += line + "\n";
-    }
-  }
-
-  void CheckPoses() const {
-    if (request_.refine && checkpoint_.state.poses.values.rows() != refiner_->num_frames()) {
-      throw std::runtime_error(Concatenate(AvatarCheckpointPath(request_.out), ": pose_values of ",
-                                           checkpoint_.state.poses.values.rows(), " frames, the track has ",
-                                           refiner_->num_frames()));
     }
   }
 
