@@ -34,9 +34,9 @@ Track TrackOf(const BodyModel& body, int T, double fps, double hz, double noise)
   for (int t = 0; t < T; ++t) {
     BodyPose pose = PoseAt(body, t / fps, hz);
     for (auto& R : pose.rotations) {
-      R *= RotationFromAxisAngle(noise * Vector3d(normal(random), normal(random), normal(random)));
+      R *= RotationFromAxisAngle(noise * Vector3d{normal(random), normal(random), normal(random)});
     }
-    pose.trans += 0.3 * noise * Vector3d(normal(random), normal(random), normal(random));
+    pose.trans += 0.3 * noise * Vector3d{normal(random), normal(random), normal(random)};
     track.motion.poses.row(t) = AxisAngleFromPose(body, pose).transpose();
     track.motion.trans.row(t) = pose.trans.transpose();
     track.motion.timestamps.push_back(t / fps);

@@ -57,7 +57,8 @@ DescriptorRows KeypointTrajectories(const BodyModel& body, const Track& track, i
       Eigen::Vector2d pixel;
       BODYLOOM_CHECK(track.CameraAt(t).Project(points.row(k).transpose(), &pixel), "frame ", t,
                      ": a landmark is behind the camera");
-      pixels.col(k) = pixel + noise_px * Eigen::Vector2d(noise.Normal(), noise.Normal());
+      const double y = noise.Normal(), x = noise.Normal();
+      pixels.col(k) = pixel + noise_px * Eigen::Vector2d(x, y);
     }
     pixels.colwise() -= pixels.rowwise().mean().eval();
     rows.row(t) = pixels.reshaped().transpose().cast<float>();

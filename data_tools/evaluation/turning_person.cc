@@ -65,8 +65,8 @@ TurningPerson MakeTurningPerson(const BodyModel& body, const TurningPersonOption
           PoseAt(body, person.yaw_deg.back(), arms_deg(half) + carry * (arms_deg(half + 1) - arms_deg(half)));
       HashRandom noise(o.seed, {4, uint64_t(t)});
       for (Matrix3d& rotation : pose.rotations) {
-        const Vector3d error(noise.Normal(), noise.Normal(), noise.Normal());
-        rotation = rotation * RotationFromAxisAngle(o.pose_noise_deg * kDegree * error);
+        const double z = noise.Normal(), y = noise.Normal(), x = noise.Normal();
+        rotation = rotation * RotationFromAxisAngle(o.pose_noise_deg * kDegree * Vector3d(x, y, z));
       }
       poses.push_back(AxisAngleFromPose(body, pose));
     }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Random numbers that depend on nothing but a seed and a name: the same on every machine, and independent between
-/// frames, so that frames may be made in any order and on any number of threads.
+/// frames, so that frames may be made in any order and on any number of threads. Arguments of one call are evaluated in
+/// an order that is the compiler's choice: draw them into variables, or within braces, which go from left to right
+/// (tests/layering/check_draws.py).
 #pragma once
 
 #include <cmath>

@@ -208,7 +208,7 @@ TEST_P(NormalsTarget, KnowAFaceThatIsAllRounding) {
   MatrixX3i faces(n, 3);
   for (int i = 0; i < n; ++i) {
     const auto uniform = [&] { return random() / 4294967296.0 * 2 - 1; };
-    const Vector3d direction(uniform(), uniform(), uniform());
+    const Vector3d direction{uniform(), uniform(), uniform()};
     for (int k = 0; k < 3; ++k) vertices.row(3 * i + k) = (0.4 * k - 0.5 + 0.1 * uniform()) * direction.transpose();
     faces.row(i) << 3 * i, 3 * i + 1, 3 * i + 2;
   }

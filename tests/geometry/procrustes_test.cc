@@ -80,7 +80,7 @@ TEST(ProcrustesTest, MirrorImageGivesARotationAndTheBestOne) {
     SimilarityTransform other = result.target_from_source;
     other.rotation *= RotationFromAxisAngle({normal(rng), normal(rng), normal(rng)});
     other.scale += normal(rng);
-    other.translation += Eigen::Vector3d(normal(rng), normal(rng), normal(rng));
+    other.translation += Eigen::Vector3d{normal(rng), normal(rng), normal(rng)};
     EXPECT_GE(Cost(other, source, target, ones), best);
   }
 }

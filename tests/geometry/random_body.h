@@ -34,14 +34,14 @@ inline BodyModelData RandomBodyData(const RandomBodyOptions& o) {
   MatrixX3d anchors(J, 3);
   for (int j = 0; j < J; ++j) {
     d.parents.push_back(j < 24 ? SmplParents()[j] : 12 + below(j - 12));
-    anchors.row(j) = 0.1 * Eigen::RowVector3d(normal(random), normal(random), normal(random));
+    anchors.row(j) = 0.1 * Eigen::RowVector3d{normal(random), normal(random), normal(random)};
     if (j > 0) anchors.row(j) += anchors.row(d.parents[j]);
   }
   d.v_template.resize(V, 3);
   std::vector<Eigen::Triplet<double>> weights, regressor;
   for (int v = 0; v < V; ++v) {
     const int main = v % J;
-    d.v_template.row(v) = anchors.row(main) + 0.06 * Eigen::RowVector3d(normal(random), normal(random), normal(random));
+    d.v_template.row(v) = anchors.row(main) + 0.06 * Eigen::RowVector3d{normal(random), normal(random), normal(random)};
     std::vector<int> joints = {main};
     for (int j : {std::max(0, d.parents[main]), below(J), below(J)}) {
       if (below(4) > 0 && std::find(joints.begin(), joints.end(), j) == joints.end()) joints.push_back(j);
@@ -95,10 +95,10 @@ inline BodyPose RandomPose(const BodyModel& model, unsigned seed, double max_ang
   std::uniform_real_distribution<double> uniform(0, max_angle);
   BodyPose pose;
   for (int j = 0; j < model.num_joints(); ++j) {
-    const Eigen::Vector3d axis = Eigen::Vector3d(normal(random), normal(random), normal(random)).normalized();
+    const Eigen::Vector3d axis = Eigen::Vector3d{normal(random), normal(random), normal(random)}.normalized();
     pose.rotations.push_back(RotationFromAxisAngle(uniform(random) * axis));
   }
-  pose.trans = 2 * Eigen::Vector3d(normal(random), normal(random), normal(random));
+  pose.trans = 2 * Eigen::Vector3d{normal(random), normal(random), normal(random)};
   return pose;
 }
 

@@ -22,7 +22,7 @@ std::vector<Vector3d> Axes() {
                                 Vector3d(1, 1, 0).normalized(), Vector3d(-1, 1e-9, 1e-5).normalized()};
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
-  for (int i = 0; i < 20; ++i) axes.push_back(Vector3d(normal(random), normal(random), normal(random)).normalized());
+  for (int i = 0; i < 20; ++i) axes.push_back(Vector3d{normal(random), normal(random), normal(random)}.normalized());
   return axes;
 }
 
@@ -236,7 +236,7 @@ TEST(Rotation, NearestRotationIsNearerThanItsNeighbours) {
     EXPECT_LT((R * R.transpose() - Matrix3d::Identity()).norm(), 1e-14);
     EXPECT_NEAR(R.determinant(), 1, 1e-14);
     for (int i = 0; i < 20; ++i) {
-      const Vector3d d(normal(random), normal(random), normal(random));
+      const Vector3d d{normal(random), normal(random), normal(random)};
       const double scale = i % 2 == 0 ? 1e-3 : 1.0;
       EXPECT_LE((R - M).norm(), (R * RotationFromAxisAngle(scale * d) - M).norm() + 1e-12);
     }
@@ -279,7 +279,7 @@ TEST(Rotation, BetweenDirections) {
       EXPECT_NEAR(RotationAngleBetween(Matrix3d::Identity(), R), kPi - from_opposite, 4e-15);
     }
     // Lengths do not matter, however small or large; only zero has no direction.
-    const Vector3d b(normal(random), normal(random), normal(random));
+    const Vector3d b{normal(random), normal(random), normal(random)};
     const Matrix3d R = RotationBetweenDirections(a, b);
     EXPECT_LT((RotationBetweenDirections(1e-200 * a, 1e-200 * b) - R).norm(), 1e-14);
     EXPECT_LT((RotationBetweenDirections(1e200 * a, 1e200 * b) - R).norm(), 1e-14);

@@ -144,7 +144,7 @@ TEST_P(SurfaceJacobianOf, SurfacePointsAgreeWithJets) {
     for (int i = 0; i < 12; ++i) {
       SurfacePoint point;
       point.face = static_cast<int>(random() % model.num_faces());
-      point.barycentric = Vector3d(uniform(random), uniform(random), uniform(random));
+      point.barycentric = Vector3d{uniform(random), uniform(random), uniform(random)};
       if (i == 0) point.barycentric = Vector3d(0, 1, 0);
       if (i == 1) point.barycentric = Vector3d(1.5, -0.75, 0.25);  // outside the face, still linear
       point.barycentric /= point.barycentric.sum();

@@ -262,8 +262,8 @@ std::vector<BodyPose> Swinging(const BodyModel& body, const std::vector<double>&
   std::vector<Vector3d> amplitude, phase;
   for (int j = 0; j < body.num_joints(); ++j) {
     const auto uniform = [&] { return random() / 4294967296.0 * 2 - 1; };
-    amplitude.emplace_back(0.5 * uniform(), 0.5 * uniform(), 0.5 * uniform());
-    phase.emplace_back(3 * uniform(), 3 * uniform(), 3 * uniform());
+    amplitude.push_back({0.5 * uniform(), 0.5 * uniform(), 0.5 * uniform()});
+    phase.push_back({3 * uniform(), 3 * uniform(), 3 * uniform()});
   }
   std::vector<BodyPose> poses;
   for (const double t : times) {

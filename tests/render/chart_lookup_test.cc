@@ -20,7 +20,7 @@ TEST(ChartLookup, InvertsTheCharts) {
   std::mt19937 generator(1);
   const auto uniform = [&] { return generator() / 4294967296.0; };
   for (int f = 0; f < ToyBody().num_faces(); ++f) {
-    Vector3d b(uniform(), uniform(), uniform());
+    Vector3d b{uniform(), uniform(), uniform()};
     b = (b / b.sum() * 0.9).array() + 0.1 / 3;  // inside
     const Vector2d uv = ChartUvAt(ToyBody(), f, b).cast<double>();
     double gap = -1;
@@ -37,7 +37,7 @@ TEST(ChartLookup, FindsTheNearestPointOutsideAChart) {
   const auto uniform = [&] { return generator() / 4294967296.0; };
   for (int i = 0; i < 500; ++i) {
     const int part = 1 + i % 24;
-    const Vector2d uv(3 * uniform() - 1, 3 * uniform() - 1);
+    const Vector2d uv{3 * uniform() - 1, 3 * uniform() - 1};
     double gap = -1;
     const SurfacePoint point = lookup.Find(part, uv, &gap);
     ASSERT_GE(point.face, 0);

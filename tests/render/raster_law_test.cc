@@ -32,9 +32,9 @@ Scene Soup(const Camera& camera, uint32_t seed, bool cull, int count = 400) {
   const auto uniform = [&] { return generator() / 4294967296.0 * 2 - 1; };
   for (int f = 0; f < count; ++f) {
     const double size = std::pow(10.0, -2.5 + 2.5 * std::abs(uniform()));
-    const Eigen::RowVector3d middle(1.2 * uniform(), 1.2 * uniform(), 3 + uniform());
+    const Eigen::RowVector3d middle{1.2 * uniform(), 1.2 * uniform(), 3 + uniform()};
     for (int c = 0; c < 3; ++c) {
-      scene.vertices.row(3 * f + c) = middle + size * Eigen::RowVector3d(uniform(), uniform(), uniform());
+      scene.vertices.row(3 * f + c) = middle + size * Eigen::RowVector3d{uniform(), uniform(), uniform()};
       scene.vertices(3 * f + c, 2) = std::max(scene.vertices(3 * f + c, 2), 0.6);
       scene.faces(f, c) = 3 * f + c;
     }

@@ -77,8 +77,8 @@ inline std::unique_ptr<SequenceScene> MakeSequenceScene(const SequenceSceneOptio
     const Camera camera = problem.layout.CameraAt(state, log_focal);
     const auto see = [&](const Eigen::Vector3d& x, Eigen::Vector2d* pixel) {
       if (!camera.Project(x, pixel, nullptr)) return false;
-      *pixel += 2 * Eigen::Vector2d(normal(random), normal(random));
-      if (unit(random) < options.outliers) *pixel += 60 * Eigen::Vector2d(normal(random), normal(random));
+      *pixel += 2 * Eigen::Vector2d{normal(random), normal(random)};
+      if (unit(random) < options.outliers) *pixel += 60 * Eigen::Vector2d{normal(random), normal(random)};
       return true;
     };
     FrameData frame;
@@ -92,7 +92,7 @@ inline std::unique_ptr<SequenceScene> MakeSequenceScene(const SequenceSceneOptio
     for (int i = 0; i < options.dense; ++i) {
       DenseKeypoint keypoint;
       keypoint.face = face(random);
-      keypoint.barycentric = Eigen::Vector3f(unit(random), unit(random), unit(random) + 0.1F);
+      keypoint.barycentric = Eigen::Vector3f{unit(random), unit(random), unit(random) + 0.1F};
       keypoint.barycentric /= keypoint.barycentric.sum();
       keypoint.sigma_px = 2;
       const Eigen::Vector3d barycentric = keypoint.barycentric.cast<double>();

@@ -247,7 +247,8 @@ TEST(ChainSolver, FrozenFramesEndAtTheSameMinimum) {
     SequenceSceneOptions scene;
     scene.frames = 40;
     scene.seed = seed;
-    scene.outliers = 0;  // one minimum, whatever the path
+    scene.outliers = 0;  // one minimum, whatever the path …
+    scene.dense = 100;   // … and no valley: with fewer keypoints some joint is hardly held
     const auto owner = MakeSequenceScene(scene);
     SequenceProblem moving = owner->problem, frozen = owner->problem;
     // Two frames far from where they belong, so that the others have to wait for them.

@@ -58,7 +58,7 @@ std::unique_ptr<Scene> MakeScene(CameraKnowledge knowledge, double pose_size, ui
   for (int i = 0; i < 40; ++i) {
     DenseKeypoint point;
     point.face = face(random);
-    point.barycentric = Eigen::Vector3f(unit(random), unit(random), unit(random) + 0.1F);
+    point.barycentric = Eigen::Vector3f{unit(random), unit(random), unit(random) + 0.1F};
     point.barycentric /= point.barycentric.sum();
     point.pixel = {640 + 100 * static_cast<float>(normal(random)), 360 + 100 * static_cast<float>(normal(random))};
     point.sigma_px = 5 + unit(random);

@@ -57,6 +57,11 @@ std::vector<bool> InRuns(int count, double share, double mean_run, HashRandom ra
   return on;
 }
 
+Vector2d TwoNormals(HashRandom* random) {
+  const double y = random->Normal(), x = random->Normal();
+  return {x, y};
+}
+
 /// A random point of the surface, uniform by the area of the template.
 class SurfaceSampler {
  public:
@@ -223,7 +228,7 @@ class ClipMaker {
     if (uv_faults_) {
       const int part = body_.data().face_part[truth.face];
       Vector2d uv = ChartUvAt(body_, truth.face, truth.barycentric).cast<double>();
-      uv += faults.uv_sigma * Vector2d(random.Normal(), random.Normal());
+      uv += faults.uv_sigma * TwoNormals(&random);
       chart_variance = faults.uv_sigma * faults.uv_sigma;
       if (faults.quantise_uv) {
         uv = (uv.cwiseMax(0).cwiseMin(1) * 255).array().floor() / 255;
@@ -240,7 +245,7 @@ class ClipMaker {
       label = surface_.Draw(&random);
       ++counts_[t].dense_outliers;
     }
-    const Vector2d seen = pixel + faults.pixel_sigma_px * Vector2d(random.Normal(), random.Normal());
+    const Vector2d seen = pixel + faults.pixel_sigma_px * TwoNormals(&random);
     clip_.dense.frames[t].push_back(MakeDense(label, seen, sigma_px));
     clip_.dense_truth.frames[t].push_back(MakeDense(truth, pixel, faults.min_sigma_px));
     ++counts_[t].dense;

@@ -163,6 +163,10 @@ LifterPerson LifterBody::Person(const Eigen::VectorXd& betas) const {
 
 LifterPerson LifterBody::RandomPerson(const LifterPersonSpread& spread, HashRandom random) const {
   const auto normal = [&](double sd) { return static_cast<float>(sd * std::clamp(random.Normal(), -3.0, 3.0)); };
+  const auto normals = [&](double sd) {
+    const float z = normal(sd), y = normal(sd), x = normal(sd);
+    return Vector3f(x, y, z);
+  };
   Eigen::VectorXf betas(num_betas_);
   for (float& b : betas) b = normal(spread.shape_sd);
   std::array<Vector3f, kPoseJoints> stretch;
@@ -180,13 +184,13 @@ LifterPerson LifterBody::RandomPerson(const LifterPersonSpread& spread, HashRand
     }
   }
   std::array<Vector3f, kLifterPoints> offsets;
-  for (Vector3f& o : offsets) o = Vector3f(normal(1), normal(1), normal(1)) * static_cast<float>(spread.landmark_sd_m);
+  for (Vector3f& o : offsets) o = normals(1) * static_cast<float>(spread.landmark_sd_m);
   LifterPerson person = Build(betas, stretch, offsets);
   const bool biased = random.Uniform() < spread.biased_detector;
   for (int k = 0; k < kLifterPoints; k += k == 0 ? 1 : 2) {
     // Hips are where conventions differ most.
     const double sd = (k == kLifterLeftHip ? 2 : 1) * spread.detector_bias_sd_m;
-    const Vector3f bias(normal(sd), normal(sd), normal(sd));
+    const Vector3f bias = normals(sd);
     if (!biased) continue;
     person.detector[k] = k == 0 ? Vector3f(0, bias.y(), bias.z()) : bias;
     if (k > 0) person.detector[k + 1] = Vector3f(-bias.x(), bias.y(), bias.z());

@@ -180,10 +180,10 @@ void AddExercises(const LifterWindowOptions& options, HashRandom random, PoseSeq
     if (random.Uniform() < options.arm_raise) RaiseArm(options, side, &random, poses);
   }
   if (random.Uniform() < options.lean) {
-    const Vector3f tilt(Draw(&random, -0.5, 0.5), 0, Draw(&random, -0.5, 0.5));
+    const float tilt_z = Draw(&random, -0.5, 0.5), tilt_x = Draw(&random, -0.5, 0.5);
     const std::vector<float> hump = RandomHump(poses->num_frames, options.rate, 0.4, 2, &random);
     for (int t = 0; t < poses->num_frames; ++t) {
-      if (hump[t] > 0) poses->at(t, kPelvis) = TurnBy(hump[t] * tilt) * poses->at(t, kPelvis);
+      if (hump[t] > 0) poses->at(t, kPelvis) = TurnBy({hump[t] * tilt_x, 0, hump[t] * tilt_z}) * poses->at(t, kPelvis);
     }
   }
 }

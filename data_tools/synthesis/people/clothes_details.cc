@@ -33,7 +33,9 @@ ClothesDetails::ClothesDetails(const Outfit& outfit, uint64_t seed) : outfit_(ou
     return has ? length : 0;
   };
   const auto any_colour = [&] {
-    return Vector3f(float(random.Uniform(15, 240)), float(random.Uniform(15, 240)), float(random.Uniform(15, 240)));
+    const auto third = float(random.Uniform(15, 240)), second = float(random.Uniform(15, 240)),
+               first = float(random.Uniform(15, 240));
+    return Vector3f(first, second, third);
   };
   const auto any_grey = [&](double low, double high) { return Vector3f::Constant(float(random.Uniform(low, high))); };
   collar_m_ = some(0.45, 0.008, 0.03);

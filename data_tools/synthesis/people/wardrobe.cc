@@ -20,6 +20,17 @@ Vector3f FromHsv(double hue, double saturation, double value) {
   return {channel(5), channel(3), channel(1)};
 }
 
+/// Uniform in it; a single value costs no number.
+struct Shades {
+  double low, high = low;
+  double Draw(HashRandom* random) const { return low < high ? random->Uniform(low, high) : low; }
+};
+
+Vector3f DrawHsv(const Shades& hue, const Shades& saturation, const Shades& value, HashRandom* random) {
+  const double v = value.Draw(random), s = saturation.Draw(random), h = hue.Draw(random);
+  return FromHsv(h, s, v);
+}
+
 /// From the darkest (0) to the lightest (1) skin, in sRGB.
 Vector3f SkinColour(double lightness) {
   const Vector3f dark(96, 62, 44), middle(202, 146, 110), light(250, 220, 198);
@@ -84,8 +95,8 @@ Wardrobe::Wardrobe(const Outfit& outfit, double around_m, uint64_t seed) : cut_(
     const double value = random.Uniform(0.55, 0.95);
     p.kind = kind;
     p.colour = FromHsv(label_hue, random.Uniform(0.45, 0.85), value);
-    p.other = FromHsv(label_hue + random.Uniform(-0.12, 0.12), random.Uniform(0.15, 0.6),
-                      value > 0.75 ? value - 0.45 : value + 0.35);
+    const double other_saturation = random.Uniform(0.15, 0.6), other_hue = label_hue + random.Uniform(-0.12, 0.12);
+    p.other = FromHsv(other_hue, other_saturation, value > 0.75 ? value - 0.45 : value + 0.35);
     p.cell_m = float(cell_m) * unit;
     p.axis = random.Uniform() < 0.7 ? 1 : 0;
     p.seed = random.Next();
@@ -99,7 +110,8 @@ Wardrobe::Wardrobe(const Outfit& outfit, double around_m, uint64_t seed) : cut_(
   };
   const PatternKind of_top = unless_plain(first), of_bottom = unless_plain(second);
   dress(PersonLabel::kTop, hue, of_top, random.Uniform(0.032, 0.055));
-  dress(PersonLabel::kBottom, hue + random.Uniform(0.3, 0.7), of_bottom, random.Uniform(0.032, 0.055));
+  const double bottom_cell_m = random.Uniform(0.032, 0.055), bottom_hue = hue + random.Uniform(0.3, 0.7);
+  dress(PersonLabel::kBottom, bottom_hue, of_bottom, bottom_cell_m);
   dress(PersonLabel::kShoes, random.Uniform(), PatternKind::kPlain, 0.03);
   dress(PersonLabel::kHair, 0.07, PatternKind::kNoise, 0.012);
   dress(PersonLabel::kSkin, 0.06, PatternKind::kNoise, 0.08);
@@ -107,7 +119,7 @@ Wardrobe::Wardrobe(const Outfit& outfit, double around_m, uint64_t seed) : cut_(
   skin.colour = SkinColour(random.Uniform()), skin.other = 0.94F * skin.colour;
   patterns_[size_t(PersonLabel::kFace)] = skin;
   SurfacePattern& hair = patterns_[size_t(PersonLabel::kHair)];
-  hair.colour = FromHsv(random.Uniform(0.04, 0.12), random.Uniform(0.3, 0.8), random.Uniform(0.1, 0.6));
+  hair.colour = DrawHsv({0.04, 0.12}, {0.3, 0.8}, {0.1, 0.6}, &random);
   hair.other = 0.7F * hair.colour;
 
   if (outfit.style() == ClothesStyle::kEveryday) {
@@ -130,16 +142,13 @@ void Wardrobe::DressEveryday(GarmentKind garment, uint64_t seed) {
     const double value = which < 0.4   ? random.Uniform(0.04, 0.16)
                          : which < 0.7 ? random.Uniform(0.25, 0.6)
                                        : random.Uniform(0.78, 0.95);
-    return FromHsv(random.Uniform(), random.Uniform(0, 0.08), value);
+    return DrawHsv({0, 1}, {0, 0.08}, {value}, &random);
   };
-  const auto any = [&] { return FromHsv(random.Uniform(), random.Uniform(0.25, 0.85), random.Uniform(0.25, 0.95)); };
+  const auto any = [&] { return DrawHsv({0, 1}, {0.25, 0.85}, {0.25, 0.95}, &random); };
   const auto colour = [&](bool denim) {
     const double which = random.Uniform();
     if (which < 0.5) return grey();
-    if (denim && which < 0.83) {
-      return FromHsv(random.Uniform(0.58, 0.64), random.Uniform(0.3, 0.7), random.Uniform(0.15, 0.6));
-    }
-    return any();
+    return denim && which < 0.83 ? DrawHsv({0.58, 0.64}, {0.3, 0.7}, {0.15, 0.6}, &random) : any();
   };
   // Shares up to which a cloth is faded, printed, striped, checked, dotted; the rest is noise.
   const auto dress = [&](PersonLabel label, const std::array<double, 5>& up_to) {
@@ -176,10 +185,10 @@ void Wardrobe::DressEveryday(GarmentKind garment, uint64_t seed) {
   shoes.colour = shoes.other = random.Uniform() < 0.7 ? grey() : any();
   SurfacePattern& hair = patterns_[size_t(PersonLabel::kHair)];
   const double which = random.Uniform();
-  hair.colour = which < 0.6   ? FromHsv(random.Uniform(0.05, 0.1), random.Uniform(0.2, 0.6), random.Uniform(0.05, 0.3))
-                : which < 0.8 ? FromHsv(random.Uniform(0.09, 0.13), random.Uniform(0.3, 0.55), random.Uniform(0.5, 0.8))
-                : which < 0.93 ? FromHsv(0.1, random.Uniform(0, 0.1), random.Uniform(0.35, 0.8))
-                               : FromHsv(random.Uniform(0.02, 0.05), 0.65, random.Uniform(0.3, 0.55));
+  hair.colour = which < 0.6    ? DrawHsv({0.05, 0.1}, {0.2, 0.6}, {0.05, 0.3}, &random)
+                : which < 0.8  ? DrawHsv({0.09, 0.13}, {0.3, 0.55}, {0.5, 0.8}, &random)
+                : which < 0.93 ? DrawHsv({0.1}, {0, 0.1}, {0.35, 0.8}, &random)
+                               : DrawHsv({0.02, 0.05}, {0.65}, {0.3, 0.55}, &random);
   hair.other = 0.7F * hair.colour;
 }
 

@@ -52,7 +52,7 @@ TEST(ClosedPart, ACubeHoldsWhatIsInIt) {
   std::uniform_real_distribution<double> any(-1.5, 1.5);
   int inside = 0;
   for (int i = 0; i < 2000; ++i) {
-    const Vector3d p(any(random), any(random), any(random));
+    const Vector3d p{any(random), any(random), any(random)};
     const double largest = p.cwiseAbs().maxCoeff();
     EXPECT_EQ(cube.Contains(p), largest < 1) << p.transpose();
     inside += largest < 1 ? 1 : 0;
@@ -97,7 +97,7 @@ TEST(ClosedPart, HolesAreClosedByFans) {
   std::uniform_real_distribution<double> any(-1.1, 1.1);
   int tested = 0;
   for (int i = 0; i < 2000; ++i) {
-    const Vector3d p(any(random), any(random), any(random));
+    const Vector3d p{any(random), any(random), any(random)};
     if (std::abs(p.norm() - 1) < 0.01 || std::abs(p.y()) < 0.07 || std::abs(std::abs(p.y()) - 0.5) < 0.07) continue;
     ++tested;
     EXPECT_EQ(half.Contains(p), p.norm() < 1 && p.y() > 0) << p.transpose();
@@ -132,7 +132,7 @@ TEST(ClosedPart, AgreesWithSolidAnglesAlsoWhereTheSurfaceCrossesItself) {
     for (Eigen::Index i = 0; i < mesh.vertices.size(); ++i) mesh.vertices.data()[i] += noise(random);
     Asked part{Placed(mesh, AllFaces(mesh))};
     for (int i = 0; i < 200; ++i) {
-      const Vector3d p(any(random), any(random), any(random));
+      const Vector3d p{any(random), any(random), any(random)};
       const double winding = SolidAngles(mesh, p);
       ASSERT_NEAR(winding, std::round(winding), 1e-9);
       EXPECT_EQ(part.Contains(p), std::lround(winding) != 0) << "round " << round << ", winding " << winding;
@@ -151,7 +151,7 @@ TEST(ClosedPart, DistanceIsThatOfEveryFaceInTurn) {
   mesh.vertices.col(1) *= 3;  // long faces and short ones
   Asked part{Placed(mesh, AllFaces(mesh))};
   for (int i = 0; i < 300; ++i) {
-    const Vector3d p(any(random), any(random), any(random));
+    const Vector3d p{any(random), any(random), any(random)};
     double best = std::numeric_limits<double>::infinity();
     for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) {
       const auto corner = [&](int c) -> Vector3d { return mesh.vertices.row(mesh.faces(f, c)).transpose(); };
@@ -166,7 +166,7 @@ TEST(ClosedPart, DistanceToATriangleIsTheSmallestOverIt) {
   std::uniform_real_distribution<double> any(-1, 1);
   for (int i = 0; i < 50; ++i) {
     Vector3d point[4];
-    for (Vector3d& x : point) x = Vector3d(any(random), any(random), any(random));
+    for (Vector3d& x : point) x = Vector3d{any(random), any(random), any(random)};
     if (i % 10 == 0) point[3] = point[2] + 0.3 * (point[2] - point[1]);  // no area
     double best = std::numeric_limits<double>::infinity();
     constexpr int kSteps = 200;

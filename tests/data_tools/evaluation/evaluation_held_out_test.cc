@@ -210,7 +210,7 @@ TEST(EvaluationTriangulationTest, NoisyPixelsGiveTheLeastSquaresPoint) {
   EXPECT_GT(best.rms_px, 0.5);
   std::normal_distribution<double> step(0, 1e-3);
   for (int trial = 0; trial < 100; ++trial) {
-    const Eigen::Vector3d X = best.point_in_world + Eigen::Vector3d(step(rng), step(rng), step(rng));
+    const Eigen::Vector3d X = best.point_in_world + Eigen::Vector3d{step(rng), step(rng), step(rng)};
     double squares = 0;
     for (const Sighting& s : sightings) {
       Eigen::Vector2d pixel;

@@ -110,7 +110,7 @@ TEST(CramerRaoTest, ExpectedNormAgainstSampling) {
   std::normal_distribution<double> normal;
   double sum = 0;
   constexpr int kSamples = 400000;
-  for (int i = 0; i < kSamples; ++i) sum += (L * Eigen::Vector2d(normal(rng), normal(rng))).norm();
+  for (int i = 0; i < kSamples; ++i) sum += (L * Eigen::Vector2d{normal(rng), normal(rng)}).norm();
   EXPECT_NEAR(ExpectedNorm(covariance), sum / kSamples, 5e-3 * sum / kSamples);
 }
 

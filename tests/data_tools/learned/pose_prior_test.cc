@@ -136,7 +136,7 @@ TEST(DirectionBins, NearestIsWithinABinsWidth) {
   std::normal_distribution<double> normal;
   double worst = 0;
   for (int i = 0; i < 5000; ++i) {
-    const Vector3d d = Vector3d(normal(random), normal(random), normal(random)).normalized();
+    const Vector3d d = Vector3d{normal(random), normal(random), normal(random)}.normalized();
     worst = std::max(worst, std::acos(std::min(1.0, d.dot(bins.direction(bins.Nearest(d))))));
   }
   // A bin reaches 0.17 rad at its corners (2.4/√200), a cell of the cube map adds up to 0.06.

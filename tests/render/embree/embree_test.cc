@@ -95,9 +95,9 @@ TEST(Embree, SeesTheSameFacesOfRandomTriangles) {
   MatrixX3i faces(count, 3);
   for (int f = 0; f < count; ++f) {
     const double size = std::pow(10.0, -1.8 + 1.5 * std::abs(uniform()));
-    const Eigen::RowVector3d middle(uniform(), uniform(), 3 + uniform());
+    const Eigen::RowVector3d middle{uniform(), uniform(), 3 + uniform()};
     for (int c = 0; c < 3; ++c) {
-      vertices.row(3 * f + c) = middle + size * Eigen::RowVector3d(uniform(), uniform(), uniform());
+      vertices.row(3 * f + c) = middle + size * Eigen::RowVector3d{uniform(), uniform(), uniform()};
       faces(f, c) = 3 * f + c;
     }
   }

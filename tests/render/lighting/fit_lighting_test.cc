@@ -32,7 +32,7 @@ Pixels SeenPixels(int count, double noise, double outliers, double albedo0, doub
     const uint8_t label = i % 3 == 0 ? 1 : 0;
     Vector3d n;
     do {
-      n = Vector3d(normal(random), normal(random), normal(random)).normalized();
+      n = Vector3d{normal(random), normal(random), normal(random)}.normalized();
     } while (n.z() > -0.05 || (label == 1 && n.y() < -0.2));
     const double shade = Truth().dot(ShBasis(n)), albedo = label == 1 ? albedo1 : albedo0;
     double light = albedo * shade + noise * normal(random);

@@ -56,7 +56,7 @@ Walk MakeWalk(const WalkOptions& options) {
   for (int step = 0; step < options.steps; ++step) {
     const int moving = step % 2;
     place[moving] =
-        Vector3d(0.8 * uniform(random) + 0.2 * moving, kAnkle + step * options.step_up_m, 1.2 * uniform(random));
+        Vector3d{0.8 * uniform(random) + 0.2 * moving, kAnkle + step * options.step_up_m, 1.2 * uniform(random)};
     scale[moving] = 1 + options.depth_error * normal(random);
     for (int i = 0; i < 8; ++i) {
       auto& both = walk.feet.emplace_back();
@@ -66,8 +66,8 @@ Walk MakeWalk(const WalkOptions& options) {
         truth[foot] = camera_from_world * (place[foot] - camera);
         both[foot].contact = swings ? 0.05 : 0.8;
         both[foot].seen = true;
-        both[foot].ankle_m = scale[foot] * truth[foot] + options.jitter_m * Vector3d(normal(random), normal(random), 0);
-        if (swings) both[foot].ankle_m += 0.2 * Vector3d(normal(random), normal(random), 0);
+        both[foot].ankle_m = scale[foot] * truth[foot] + options.jitter_m * Vector3d{normal(random), normal(random), 0};
+        if (swings) both[foot].ankle_m += 0.2 * Vector3d{normal(random), normal(random), 0};
       }
       walk.timestamps.push_back(static_cast<double>(walk.timestamps.size()) / 15);
     }
@@ -119,7 +119,7 @@ TEST(GroundPlane, ItsStandardDeviationsAreThoseOfItsErrors) {
     options.elevation_deg = 20;
     const Walk walk = MakeWalk(options);
     const double s = GroundPlaneOptions().up_rad;
-    const Vector3d lifter_up = RotationFromAxisAngle(Vector3d(s * normal(random), 0, s * normal(random))) * walk.up;
+    const Vector3d lifter_up = RotationFromAxisAngle(Vector3d{s * normal(random), 0, s * normal(random)}) * walk.up;
     const GroundPlane ground = EstimateGroundPlane(walk.feet, walk.timestamps, lifter_up, {});
     if (!ground.found) continue;
     ++count;
@@ -227,7 +227,7 @@ std::vector<LiftedFrame> Ups(int count, double noise_rad, double wrong_share, ui
     frame.seen = true;
     frame.up_sigma = 0.1;
     const double size = uniform(random) < wrong_share ? 1.5 : noise_rad;
-    frame.up = RotationFromAxisAngle(Vector3d(size * normal(random), size * normal(random), size * normal(random))) *
+    frame.up = RotationFromAxisAngle(Vector3d{size * normal(random), size * normal(random), size * normal(random)}) *
                Vector3d(0.1, -0.9, -0.3).normalized();
   }
   return frames;

@@ -50,7 +50,7 @@ StandingPerson Stand(const PersonOnPlane& person, const Vector3d& up, double cam
   for (int i = 0; i < person.steps; ++i) {
     const Vector3d place = (person.above_m - camera_height_m) * up + (person.ahead_m + uniform(random)) * ahead +
                            (person.beside_m + uniform(random)) * beside;
-    const Vector3d noise(normal(random), normal(random), normal(random));
+    const Vector3d noise{normal(random), normal(random), normal(random)};
     standing.stances.push_back({.begin = 10 * i,
                                 .end = 10 * i + 8,
                                 .seconds = person.seconds,
@@ -283,7 +283,7 @@ TEST(StanceCost, DerivativesAreDifferences) {
   std::uniform_real_distribution<double> uniform(-1, 1);
   int compared = 0;
   for (int trial = 0; trial < 20; ++trial) {
-    const Vector3d place(2 * uniform(random), 1 + uniform(random), 5 + uniform(random));
+    const Vector3d place{2 * uniform(random), 1 + uniform(random), 5 + uniform(random)};
     const StanceCost cost(place, 0.05 + 0.02 * uniform(random));
     std::array<double, 5> x = {0.2 * uniform(random), -1, 0.2 * uniform(random), 1.5 * uniform(random),
                                uniform(random)};

@@ -41,9 +41,9 @@ TEST(RotationAcceleration, MatchesAutomaticDerivatives) {
   int checked = 0;
   for (double size : {0.0, 1e-5, 0.1, 1.0, 3.0}) {
     Vector3d w[3];
-    w[0] = Vector3d(normal(random), normal(random), normal(random));
+    w[0] = Vector3d{normal(random), normal(random), normal(random)};
     for (int i = 1; i < 3; ++i) {
-      Vector3d step(normal(random), normal(random), normal(random));
+      Vector3d step{normal(random), normal(random), normal(random)};
       step = size * step.normalized();
       w[i] = AxisAngleFromRotation(RotationFromAxisAngle(w[i - 1]) * RotationFromAxisAngle(step));
     }
@@ -104,7 +104,7 @@ TEST(RotationManifold, PlusAndMinusAreInverse) {
   std::mt19937_64 random(9);
   std::normal_distribution<double> normal;
   for (int i = 0; i < 50; ++i) {
-    Vector3d x(normal(random), normal(random), normal(random)), delta(normal(random), normal(random), normal(random));
+    Vector3d x{normal(random), normal(random), normal(random)}, delta{normal(random), normal(random), normal(random)};
     x *= i % 5 == 0 ? 3.1415926 / x.norm() : 1;  // at π as well
     delta *= 0.5;
     Vector3d y, back;

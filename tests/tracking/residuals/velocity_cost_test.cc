@@ -35,8 +35,8 @@ TEST(RotationVelocity, MatchesAutomaticDerivatives) {
   std::normal_distribution<double> normal;
   const RotationVelocityCost cost(kDt, kSigma);
   for (double size : {0.0, 1e-5, 0.1, 1.0, 3.0}) {
-    const Vector3d first(normal(random), normal(random), normal(random));
-    const Vector3d step = size * Vector3d(normal(random), normal(random), normal(random)).normalized();
+    const Vector3d first{normal(random), normal(random), normal(random)};
+    const Vector3d step = size * Vector3d{normal(random), normal(random), normal(random)}.normalized();
     const Vector3d w[2] = {first, AxisAngleFromRotation(RotationFromAxisAngle(first) * RotationFromAxisAngle(step))};
     const double* parameters[2] = {w[0].data(), w[1].data()};
     Vector3d r, r_only;

@@ -106,9 +106,9 @@ struct OffPoses {
       TrackedPose tracked;
       tracked.pose = truth;
       for (Eigen::Matrix3d& rotation : tracked.pose.rotations) {
-        rotation = rotation * RotationFromAxisAngle(degrees * M_PI / 180 * Vector3d(uniform(), uniform(), uniform()));
+        rotation = rotation * RotationFromAxisAngle(degrees * M_PI / 180 * Vector3d{uniform(), uniform(), uniform()});
       }
-      tracked.pose.trans += 0.004 * degrees * Vector3d(uniform(), uniform(), uniform());
+      tracked.pose.trans += 0.004 * degrees * Vector3d{uniform(), uniform(), uniform()};
       poses.push_back(tracked);
     }
   }

@@ -91,7 +91,7 @@ TEST(DistanceField, GradientIsTheDerivativeOfWhatIsReturned) {
   const DistanceField field = MakeField(120, 100, 3, Disc(120, 100, {60.3, 50.8}, 25.2));
   int beyond = 0;
   for (int i = 0; i < 500; ++i) {
-    const Vector2d p(u(random), u(random));
+    const Vector2d p{u(random), u(random)};
     beyond += p.x() < 0 || p.y() < 0 || p.x() > 119 || p.y() > 99;
     Eigen::RowVector2d gradient;
     field.Evaluate(p, &gradient);
