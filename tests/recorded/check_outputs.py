@@ -5,13 +5,13 @@ structure alone leaves every file as it was.
 
 usage: check_outputs.py COMMAND RECORD [--write --made-with COMMIT] [--only JOB]
   COMMAND  the program `bodyloom` of a build; neural jobs are left out when no `bodyloom-neural` lies beside it
-  RECORD   a JSON file of checksums, with the processor's instruction sets and the versions of what computes
-  --write  make the record from this build instead of comparing
+  RECORD   a JSON file of checksums, one set for each kind of processor: its instruction sets and the versions of what computes
+  --write  make this kind's set from this build instead of comparing
 
 Jobs of networks are compared on the model of processor they were recorded on, as their matrix products choose code by it.
 
-exit 0: all equal; 1: a file differs or a command failed; 77: the record is of another kind of processor or of other
-library versions, where sums are taken in another order, so that bytes say nothing.
+exit 0: all equal; 1: a file differs or a command failed; 77: no set is of this kind of processor and library
+versions; others take sums in another order, so that bytes say nothing.
 
 Times and sizes in JSON and tables are left out of the comparison; so are videos (their bytes are the encoder's).
 """
@@ -160,14 +160,16 @@ def main():
     arguments = parser.parse_args()
     command = arguments.command.resolve()
     here = fingerprint()
-    if not arguments.write:
-        record = json.loads(arguments.record.read_text(encoding="utf-8"))
-        if record["made_on"] != here:
-            print(f"left out: {arguments.record.name} was made on {record['made_on']}, this is {here}")
-            return 77
+    records = json.loads(arguments.record.read_text(encoding="utf-8"))["records"] if arguments.record.exists() else []
+    record = next((r for r in records if r["made_on"] == here), None)
+    if not arguments.write and record is None:
+        print(f"left out: {arguments.record.name} was made on {[r['made_on'] for r in records]}, this is {here}")
+        return 77
     sums = run_jobs(command, pathlib.Path(__file__).resolve().parents[3] / "shared/data", arguments.only)
     if arguments.write:
-        arguments.record.write_text(json.dumps({"made_with": arguments.made_with, "made_on": here, "networks_made_on": processor()[0], "sha256": sums}, indent=1) + "\n", encoding="utf-8")
+        made = {"made_with": arguments.made_with, "made_on": here, "networks_made_on": processor()[0], "sha256": sums}
+        records = [r for r in records if r is not record] + [made]
+        arguments.record.write_text(json.dumps({"records": records}, indent=1) + "\n", encoding="utf-8")
         return 0
     faults = 0
     for job, files in sums.items():
