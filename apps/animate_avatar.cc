@@ -38,6 +38,9 @@ void AddAnimateAvatar(CLI::App& animate, Action* action) {
   verb->add_option("--out", request->out, "The video, .mp4");
   verb->add_option("--pictures", request->pictures, "A folder for PNGs of the person with transparency")
       ->type_name("DIR");
+  verb->add_option("--set", request->set,
+                   "A single-person dataset of the pictures, with the garment's pixels, for `bodyloom metrics`")
+      ->type_name("DIR");
   verb->add_option("--body", request->body, "The track's body (default: the built-in body)");
   AddShownMotion(verb, {&request->view_yaw, &request->freeze, &request->background, &request->shape_of_track});
   verb->add_option("--size", request->size, "Pixels of the picture's longer side (default: as the track's)")

@@ -24,8 +24,8 @@ constexpr const char* kMetricsFooter =
     "the mask, bounds the normals, and gives --preset neuralbody its box; other presets look at the whole picture.\n"
     "Means and standard deviations are over frames; frames of equal pictures (PSNR inf) are counted apart.\n"
     "Do clothes react to motion? --other-truth and --other-result are single-person datasets of the same poses at\n"
-    "another speed (synth-person --speed, animate motion --set); how the garment changes from speed to speed is\n"
-    "compared with how it should.\n"
+    "another speed (synth-person --speed; --set of animate motion, animate avatar); how the garment changes from\n"
+    "speed to speed is compared with how it should.\n"
     "Examples:\n"
     "  bodyloom metrics --truth clip/images --result run/frames --json errors.json --csv frames.csv\n"
     "  bodyloom metrics --truth clip.mp4 --result rendered.mp4 --preset 3dgs\n\n";

@@ -24,6 +24,7 @@
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/geometry/base/percentile.h"
 #include "bodyloom/pipelines/avatar/avatar_clip.h"
+#include "bodyloom/pipelines/avatar/avatar_dataset.h"
 #include "bodyloom/pipelines/avatar/avatar_page.h"
 #include "bodyloom/pipelines/avatar/motion_maps.h"
 #include "bodyloom/pipelines/avatar/train_avatar.h"
@@ -107,12 +108,18 @@ class AvatarAnimation {
     if (!request_.report.empty() && !request_.view_yaw.empty()) {
       throw RequestError("--report turns by hand: not with --view-yaw");
     }
+    if (!request_.set.empty() && turned) {
+      throw RequestError("--set writes the track beside the pictures: not with --view-yaw, --freeze or --size");
+    }
     if (!request_.mask.empty() && request_.data.empty()) throw RequestError("--mask goes with --data");
     for (const std::string& path : OutputFiles()) RequireWritable(path);
     RequireDistinct({request_.track, request_.background, request_.mask, request_.data}, OutputFiles());
     RequireReadable(request_.background, "background");
     RequireReadable(request_.run, "run");
     if (!request_.pictures.empty()) RequireWritableFolder(request_.pictures);
+    if (request_.set.empty()) return;
+    RequireWritableFolder(request_.set);
+    RequireDistinct({request_.data, request_.run}, {request_.set});
   }
 
   void OpenAvatar() {
@@ -257,6 +264,8 @@ class AvatarAnimation {
     if (!request_.out.empty()) {
       video = std::make_unique<VideoWriter>(request_.out, width, height, fps_ > 0 ? fps_ : kFpsWithoutTimes);
     }
+    std::unique_ptr<AvatarDataset> set;
+    if (!request_.set.empty()) set = std::make_unique<AvatarDataset>(request_.set, track_, fps_, SetCommand());
     for (int t = 0; t < count; ++t) {
       callbacks_.Update("drawing", static_cast<double>(t) / count);
       const bool shows = posed_->HasResult(t);
@@ -265,10 +274,11 @@ class AvatarAnimation {
       clock_.Begin("write");
       if (!request_.pictures.empty()) WritePicture(t, shows);
       if (page_) AddToPage(t, shows);
-      if (video) {
+      if (video || set) {
         Image whole = background.Next();
         if (shows) LayOver(painter_.picture(), &whole);
-        video->Write(whole);
+        if (video) video->Write(whole);
+        if (set) AddToSet(t, shows, whole, set.get());
       }
       if (shows && !request_.posed_ply.empty() && t == request_.posed_frame) {
         WriteGaussianPly(request_.posed_ply, painter_.posed());
@@ -276,6 +286,7 @@ class AvatarAnimation {
       clock_.Begin("draw");
     }
     if (video) video->Finish();
+    if (set) set->Finish();
     WritePage();
     if (!request_.posed_ply.empty() && !posed_->HasResult(request_.posed_frame)) {
       throw std::runtime_error(Concatenate(request_.track, ": frame ", request_.posed_frame, " has no fit to pose"));
@@ -283,11 +294,28 @@ class AvatarAnimation {
     summary_.frames = count;
   }
 
+  [[nodiscard]] std::string SetCommand() const {
+    std::string command = "bodyloom animate avatar --run " + request_.run;
+    if (!request_.track.empty()) command += " --track " + request_.track;
+    if (!request_.data.empty()) command += " --data " + request_.data;
+    return command + " --set " + request_.set;
+  }
+
+  void AddToSet(int t, bool shows, const Image& whole, AvatarDataset* set) {
+    if (!shows) return set->AddEmpty(t, whole);
+    set->Add(t, whole, painter_.picture(), GarmentShare());
+  }
+
   void WritePicture(int t, bool shows) const {
     const int width = posed_->width(), height = posed_->height();
     const std::vector<uint8_t> nobody(shows ? 0 : 4 * static_cast<size_t>(width) * height, 0);
     WriteAlphaPng(FrameFile(request_.pictures, t), width, height,
                   shows ? WithAlpha(painter_.picture(), width, height) : nobody);
+  }
+
+  /// Of the picture last drawn; empty: no garment is worn.
+  [[nodiscard]] std::vector<float> GarmentShare() {
+    return avatar_.garment ? painter_.ShareOf(GaussianKind::kCloth, avatar_.body) : std::vector<float>();
   }
 
   void ScoreFrames() {
@@ -300,9 +328,7 @@ class AvatarAnimation {
       view.camera = views[0].camera, view.window = views[0].window, view.options.num_threads = threads_;
       AddMotion(t);
       painter_.Draw(avatar_.body, body_->data().faces, views[0].frame, offsets_, view);
-      std::vector<float> garment;
-      if (avatar_.garment) garment = painter_.ShareOf(GaussianKind::kCloth, avatar_.body);
-      scorer.Add(views[0], painter_.picture(), garment);
+      scorer.Add(views[0], painter_.picture(), GarmentShare());
     }
     summary_.scores = scorer.Means();
   }
@@ -314,8 +340,8 @@ class AvatarAnimation {
     if (!draw_ms_.empty()) summary_.draw_ms = Percentile(draw_ms_, 50), summary_.pixels = Percentile(pixels_, 50);
     summary_.seconds = clock_.seconds();
     summary_.total_seconds = clock_.total();
-    for (const std::string& path :
-         {request_.out, request_.pictures, request_.ply, request_.posed_ply, request_.report, request_.json}) {
+    for (const std::string& path : {request_.out, request_.pictures, request_.set, request_.ply, request_.posed_ply,
+                                    request_.report, request_.json}) {
       if (!path.empty()) summary_.written.push_back(path);
     }
     nlohmann::ordered_json json = {{"frames", summary_.frames},

@@ -86,7 +86,7 @@ TEST(TrainAvatar, LearnsADatasetsPersonAndShowsIt) {
   show.run = folder.File("run");
   show.data = Scene().File("person");
   show.threads = 1;
-  show.pictures = folder.File("pictures");
+  show.pictures = folder.File("pictures"), show.set = folder.File("set");
   show.ply = folder.File("rest.ply"), show.posed_ply = folder.File("posed.ply"), show.posed_frame = 3;
   const AnimateAvatarSummary shown = AnimateAvatar(show);
   EXPECT_EQ(shown.frames, kFrames);
@@ -105,6 +105,18 @@ TEST(TrainAvatar, LearnsADatasetsPersonAndShowsIt) {
   int truth = 0;
   for (int i = 0; i < kSize * kSize; ++i) truth += frame.labels.bgr[3 * i] != 0 ? 1 : 0;
   EXPECT_NEAR(inside, truth, 0.25 * truth);
+  // The same person in the dataset, where nobody told clothes apart.
+  const SinglePersonDataset shown_set(show.set);
+  ASSERT_EQ(shown_set.info().num_frames, kFrames);
+  EXPECT_EQ(shown_set.track().motion.poses, set.track().motion.poses);
+  const Image labels = shown_set.Read(3).labels;
+  int labelled = 0;
+  for (int i = 0; i < kSize * kSize; ++i) {
+    const auto label = static_cast<PersonLabel>(labels.bgr[3 * i]);
+    EXPECT_TRUE(label == PersonLabel::kBackground || label == PersonLabel::kSkin);
+    labelled += label == PersonLabel::kSkin ? 1 : 0;
+  }
+  EXPECT_EQ(labelled, inside);
   const std::string rest = ReadFileBytes(show.ply), posed = ReadFileBytes(show.posed_ply);
   EXPECT_EQ(rest.substr(0, 4), "ply\n");
   EXPECT_EQ(rest.size(), posed.size());
@@ -122,6 +134,10 @@ TEST(TrainAvatar, LearnsADatasetsPersonAndShowsIt) {
   EXPECT_FALSE(other.scores.has_value());
   EXPECT_EQ(VideoReader(turned.out).info().num_frames, kFrames + 3);
 
+  turned.set = folder.File("turned_set");
+  EXPECT_THROW(AnimateAvatar(turned), RequestError) << "the track beside the pictures would be another";
+  EXPECT_FALSE(fs::exists(turned.set));
+  turned.set.clear();
   turned.size = 0, turned.data = Scene().File("person");
   EXPECT_THROW(AnimateAvatar(turned), RequestError);
 }
@@ -191,6 +207,23 @@ TEST(TrainAvatar, FindsTheSkirtAndLetsItSwing) {
   }
   request.garment = false;
   EXPECT_THROW(TrainAvatar(request), RequestError) << "begun with a garment";
+
+  // The garment's pixels are those of the truth's skirt, as a dataset says them.
+  AnimateAvatarRequest compare;
+  compare.run = folder.File("whole"), compare.data = Scene().File("person"), compare.set = folder.File("set");
+  compare.threads = 2;
+  const AnimateAvatarSummary compared = AnimateAvatar(compare);
+  const SinglePersonDataset truth(compare.data), result(compare.set);
+  size_t both = 0, either = 0;
+  for (int t = 0; t < kFrames; ++t) {
+    const Image a = truth.Read(t).labels, b = result.Read(t).labels;
+    for (int i = 0; i < kSize * kSize; ++i) {
+      const bool in_a = a.bgr[3 * i] == uint8_t(PersonLabel::kBottom),
+                 in_b = b.bgr[3 * i] == uint8_t(PersonLabel::kBottom);
+      both += in_a && in_b ? 1 : 0, either += in_a || in_b ? 1 : 0;
+    }
+  }
+  EXPECT_NEAR(static_cast<double>(both) / static_cast<double>(either), *compared.scores->garment_iou, 0.02);
 
   // Time that stands still is the same picture, cloth included.
   AnimateAvatarRequest show;

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/avatar/avatar_dataset.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/pipelines/people/animation_limits.h"
+
+namespace bodyloom {
+namespace {
+
+SinglePersonDatasetInfo InfoOfAvatar(const Track& track, double fps, const std::string& command) {
+  SinglePersonDatasetInfo info;
+  info.num_frames = track.num_frames();
+  info.width = track.camera.width, info.height = track.camera.height;
+  info.fps = fps > 0 ? fps : kFpsWithoutTimes;
+  info.has = {.labels = true, .normals = false, .iuv = false, .background = false};
+  info.command = command;
+  return info;
+}
+
+}  // namespace
+
+Image LabelsOf(const SplatPicture& picture, std::span<const float> garment, int width, int height) {
+  const PixelBox& window = picture.window();
+  BODYLOOM_CHECK(garment.empty() || garment.size() == window.area(), "labels of an avatar: a garment of ",
+                 garment.size(), " pixels for a window of ", window.area());
+  const std::span<const float> alpha = picture.plane(SplatPicture::kAlpha);
+  Image labels(width, height);
+  for (int y = window.y_begin; y < window.y_end; ++y) {
+    for (int x = window.x_begin; x < window.x_end; ++x) {
+      const size_t i = window.IndexOf(x, y);
+      const bool is_garment = !garment.empty() && garment[i] >= 0.5F;
+      if (!is_garment && !(alpha[i] >= 0.5F)) continue;
+      std::fill_n(labels.pixel(x, y), 3, static_cast<uint8_t>(is_garment ? PersonLabel::kBottom : PersonLabel::kSkin));
+    }
+  }
+  return labels;
+}
+
+AvatarDataset::AvatarDataset(const std::string& path, const Track& track, double fps, const std::string& command)
+    : writer_(path, InfoOfAvatar(track, fps, command), track) {}
+
+void AvatarDataset::Add(int t, const Image& image, const SplatPicture& picture, std::span<const float> garment) {
+  PersonFrame frame;
+  frame.rgb = image;
+  frame.labels = LabelsOf(picture, garment, image.width, image.height);
+  writer_.Write(t, frame);
+}
+
+void AvatarDataset::AddEmpty(int t, const Image& image) {
+  PersonFrame frame;
+  frame.rgb = image;
+  frame.labels = Image(image.width, image.height);
+  writer_.Write(t, frame);
+}
+
+}  // namespace bodyloom
