@@ -69,4 +69,10 @@ BodyModelData BakeShape(const BodyModel& body, const Eigen::VectorXd& betas, std
   return data;
 }
 
+Track OfBakedBody(Track track) {
+  track.motion.betas.setZero();
+  track.joints.clear();
+  return track;
+}
+
 }  // namespace bodyloom

@@ -15,11 +15,15 @@
 #include <span>
 
 #include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/track.h"
 
 namespace bodyloom {
 
 /// `offsets_m`: one a vertex, or empty for a bare body. Throws std::invalid_argument for another number, values that are
 /// not finite, or more betas than the body has.
 BodyModelData BakeShape(const BodyModel& body, const Eigen::VectorXd& betas, std::span<const double> offsets_m);
+
+/// A track of the person as the baked body follows it: β = 0, and without joints, which were the bare body's.
+Track OfBakedBody(Track track);
 
 }  // namespace bodyloom

@@ -144,7 +144,7 @@ class ClipClothesFit {
       offsets_[v] = Percentile(metres, 50);
     }
     clothed_.emplace(BakeShape(body_, track_.motion.betas, offsets_));
-    for (Piece& piece : pieces_) piece.track.motion.betas.setZero(), piece.track.joints.clear();
+    for (Piece& piece : pieces_) piece.track = OfBakedBody(std::move(piece.track));
     return true;
   }
 

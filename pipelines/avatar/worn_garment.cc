@@ -28,9 +28,7 @@ WornGarment::WornGarment(const BodyModel& body, const Eigen::VectorXd& betas, co
       nodes_(mesh_, garment.node_spacing_m) {}
 
 GarmentBones WornGarment::Along(const Track& track, const PipelineCallbacks& callbacks) const {
-  Track moved = track;
-  moved.motion.betas.setZero(0);
-  moved.joints.clear();  // the bare body's
+  const Track moved = OfBakedBody(track);
   PersonCloth cloth(clothed_, mesh_, moved);
   GarmentBones bones;
   bones.as_sewn = nodes_.places();

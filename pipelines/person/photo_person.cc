@@ -2,6 +2,7 @@
 #include "bodyloom/pipelines/person/photo_person.h"
 
 #include "bodyloom/data_tools/motion/shape_track.h"
+#include "bodyloom/geometry/bake_shape.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/cloth/cloth_wearer.h"
 
@@ -16,10 +17,7 @@ LooseGarment CutGarment(const BodyModel& clothed, LooseGarmentOptions* cut) {
 
 Track MovedByPerson(const PhotoPerson& person, const Track& track) {
   BODYLOOM_CHECK(!track.HasMovingCamera(), "its camera moves; expected one that stands still");
-  Track moved = WithShape(*person.bare, track, person.betas);
-  moved.motion.betas.setZero();
-  moved.joints.clear();  // the bare body's
-  return moved;
+  return OfBakedBody(WithShape(*person.bare, track, person.betas));
 }
 
 }  // namespace bodyloom

@@ -130,8 +130,7 @@ void PhotoPersonBuilder::Add(const FittedPhoto& photo) {
     options.keep = 1;
     extractor_.emplace(*person_.body, options);
   }
-  Track track = photo.track;
-  track.motion.betas.setZero();
+  const Track track = OfBakedBody(photo.track);
   MatrixX3d vertices(person_.body->num_vertices(), 3);
   vertices.topRows(clothed->num_vertices()) = TrackVertices(*clothed, track, 0);
   if (!person_.garment.empty()) {

@@ -153,8 +153,7 @@ class ClothesFit {
   /// E of the dressed body.
   double Unlike(const FittedClothes& clothes) const {
     const BodyModel clothed(BakeShape(body_, betas_, clothes.offsets.metres));
-    Track track = photo_;
-    track.motion.betas.setZero();
+    const Track track = OfBakedBody(photo_);
     VisibilityBuffer body, cloth;
     body.Render(TrackVertices(clothed, track, 0), clothed.data().faces, silhouette_.camera());
     if (clothes.garment.length_m > 0) {

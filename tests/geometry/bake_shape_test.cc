@@ -29,6 +29,21 @@ TEST(BakeShape, WithoutOffsetsEveryPoseIsThePersons) {
   }
 }
 
+TEST(BakeShape, ATrackOfThePersonIsFollowedByTheBakedBody) {
+  const BodyModel& body = ToyBody();
+  const BodyModel baked(BakeShape(body, kShape, {}));
+  Track track;
+  track.motion.betas = kShape;
+  track.motion.poses = Eigen::MatrixXd::Constant(2, 3 * body.num_joints(), 0.1);
+  track.joints.resize(2);
+  const Track moved = OfBakedBody(track);
+  EXPECT_EQ(moved.motion.poses, track.motion.poses);
+  EXPECT_TRUE(moved.joints.empty());
+  const BodyPose pose = RandomPose(body, 4, 0.8, 2.0);
+  const MatrixX3d expected = PoseVertices(body, track.motion.betas, pose);
+  EXPECT_LT((expected - PoseVertices(baked, moved.motion.betas, pose)).cwiseAbs().maxCoeff(), 1e-12);
+}
+
 TEST(BakeShape, VerticesStandOffAlongTheirNormals) {
   const BodyModel& body = ToyBody();
   std::vector<double> offsets(body.num_vertices());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Poses in the world, markers, cameras and USD text, each read back by a reader of the test's own.
+/// Poses in the world, markers and cameras, each read back by a reader of the test's own.
 #include <gmock/gmock.h>
 
 #include <Eigen/Geometry>
@@ -13,10 +13,8 @@
 #include "bodyloom/data_tools/export/colmap_writer.h"
 #include "bodyloom/data_tools/export/pose2sim_calibration.h"
 #include "bodyloom/data_tools/export/trc_writer.h"
-#include "bodyloom/data_tools/export/usda_writer.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/motion/amass.h"
-#include "bodyloom/data_tools/motion/bvh_writer.h"
 #include "bodyloom/data_tools/motion/motion_tools.h"
 #include "bodyloom/data_tools/observations/colmap_reader.h"
 #include "bodyloom/data_tools/observations/load_camera_path.h"
@@ -297,175 +295,6 @@ TEST(Pose2SimCalibration, IsTheCameraInAWorldWithZUp) {
   const Vector3d p(0.4, -0.3, 4), theirs = R.transpose() * (p - Vector3d(t[0], t[1], t[2]));
   EXPECT_TRUE(Vector3d(theirs.y(), theirs.z(), theirs.x()).isApprox(TiltedWorld().PointFromCamera(p), 1e-9));
   EXPECT_THROW(Pose2SimCalibrationText("cam 01", track.camera, TiltedWorld()), std::invalid_argument);
-}
-
-/// The numbers of a list whose brackets may be nested.
-std::vector<double> UsdList(std::string list) {
-  for (char& c : list) {
-    if (c == '(' || c == ')' || c == ',') c = ' ';
-  }
-  std::istringstream stream(list);
-  std::vector<double> numbers;
-  for (double x = 0; stream >> x;) numbers.push_back(x);
-  return numbers;
-}
-
-/// Numbers of "key = [...]" or of one time sample of it.
-std::vector<double> UsdNumbers(const std::string& text, const std::string& key, int sample = -1) {
-  size_t at = text.find(key);
-  EXPECT_NE(at, std::string::npos) << key;
-  if (sample >= 0) {
-    at = text.find('{', at);
-    for (int i = 0; i <= sample; ++i) at = text.find(": [", at + 1);
-  }
-  const size_t begin = text.find('[', text.find(sample >= 0 ? ": " : "= ", at)), end = text.find(']', begin);
-  return UsdList(text.substr(begin + 1, end - begin - 1));
-}
-
-/// The matrix of one time sample: "11: ( (…), (…), (…), (…) )".
-std::vector<double> UsdMatrixSample(const std::string& text, const std::string& key, int sample) {
-  size_t at = text.find(key);
-  EXPECT_NE(at, std::string::npos) << key;
-  at = text.find('{', at);
-  for (int i = 0; i <= sample; ++i) at = text.find(": (", at + 1);
-  return UsdList(text.substr(at + 2, text.find('\n', at) - at - 2));
-}
-
-TEST(UsdaWriter, ACameraThatMovesHasASampleOfEveryFrame) {
-  const Track track = ShortTrack(6, SynthCameraMotion::kHandHeld);
-  const ExportScene scene = SceneOf(track);
-  const std::string text = UsdaText(scene, 0);
-  const std::vector<double> m = UsdMatrixSample(text, "matrix4d xformOp:transform.timeSamples", 11);
-  ASSERT_EQ(m.size(), 16U) << "of frame 11";
-  EXPECT_EQ(UsdaText(SceneOf(ShortTrack()), 0).find("xformOp:transform.timeSamples"), std::string::npos);
-  const Vector3d place(m[12], m[13], m[14]);
-  EXPECT_LT((place - CentreOf(scene.camera_keys[11].camera_from_world)).norm(), 1e-5);
-  // Rows of the transposed matrix are the camera's axes in the world: −z is where it looks.
-  const Vector3d ahead = scene.camera_keys[11].camera_from_world.camera_from_world_rotation.row(2).transpose();
-  EXPECT_LT((Vector3d(m[8], m[9], m[10]) + ahead).norm(), 1e-5);
-}
-
-TEST(UsdaWriter, PosesTheBodyWhereItIs) {
-  const Track track = TrackWithAGap();
-  const std::string text = UsdaText(SceneOf(track), 8);
-  EXPECT_THAT(text, ::testing::StartsWith("#usda 1.0\n"));
-  EXPECT_THAT(text, ::testing::HasSubstr("metersPerUnit = 1\n"));
-  EXPECT_EQ(std::count(text.begin(), text.end(), '{'), std::count(text.begin(), text.end(), '}'));
-  EXPECT_THAT(text, ::testing::HasSubstr("2.5: \"invisible\""));
-  std::vector<double> points = UsdNumbers(text, "point3f[] points");
-  const std::vector<double> weights = UsdNumbers(text, "blendShapeWeights.timeSamples", 3);
-  for (size_t k = 0; k < weights.size(); ++k) {
-    const std::string shape = text.substr(text.find("def BlendShape \"corrective_" + std::to_string(k)));
-    const std::vector<double> offsets = UsdNumbers(shape, "offsets");
-    for (size_t i = 0; i < points.size(); ++i) points[i] += weights[k] * offsets[i];
-  }
-  const std::vector<double> q = UsdNumbers(text, "rotations.timeSamples", 3);
-  const std::vector<double> translations = UsdNumbers(text, "translations.timeSamples", 3);
-  const std::vector<double> bind = UsdNumbers(text, "bindTransforms"), rest = UsdNumbers(text, "restTransforms");
-  const std::vector<double> joints = UsdNumbers(text, "jointIndices"), skin = UsdNumbers(text, "jointWeights");
-  std::vector<Eigen::Affine3d> skinning, posed;
-  for (size_t j = 0; j < 24; ++j) {
-    Eigen::Affine3d local = Eigen::Affine3d::Identity();
-    local.translation() = Vector3d(translations[3 * j], translations[3 * j + 1], translations[3 * j + 2]);
-    local.linear() = Eigen::Quaterniond(q[4 * j], q[4 * j + 1], q[4 * j + 2], q[4 * j + 3]).toRotationMatrix();
-    const int parent = SmplParents()[j];
-    posed.push_back(parent < 0 ? local : posed[size_t(parent)] * local);
-    EXPECT_EQ(bind[16 * j], 1);
-    const Vector3d place(bind[16 * j + 12], bind[16 * j + 13], bind[16 * j + 14]);
-    skinning.push_back(posed.back() * Eigen::Translation3d(-place));
-    if (j > 0) {
-      EXPECT_NEAR(rest[16 * j + 12], translations[3 * j], 1e-6);
-    }
-  }
-  const MatrixX3d truth = VerticesInWorld(track, 5);
-  double farthest = 0;
-  for (size_t v = 0; v < size_t(truth.rows()); ++v) {
-    const Vector3d p(points[3 * v], points[3 * v + 1], points[3 * v + 2]);
-    Vector3d at = Vector3d::Zero();
-    for (size_t k = 0; k < 4; ++k) at += skin[4 * v + k] * (skinning[size_t(joints[4 * v + k])] * p);
-    farthest = std::max(farthest, (at - truth.row(Eigen::Index(v)).transpose()).norm());
-  }
-  EXPECT_LT(farthest, 1e-3);
-}
-
-/// The world positions of a BVH file's joints at a frame, by name: a reader of the test's own.
-std::map<std::string, Vector3d> BvhPositions(const std::string& text, int frame, bool at_rest = false) {
-  std::istringstream stream(text);
-  std::string word, name;
-  struct Joint {
-    std::string name;
-    int parent;
-    Vector3d offset;
-  };
-  std::vector<Joint> joints;
-  std::vector<int> open;
-  bool end_site = false;
-  while (stream >> word && word != "MOTION") {
-    if (word == "ROOT" || word == "JOINT") {
-      stream >> name;
-      joints.push_back({name, open.empty() ? -1 : open.back(), Vector3d::Zero()});
-      end_site = false;
-    } else if (word == "End") {
-      end_site = true;
-    } else if (word == "{") {
-      open.push_back(end_site ? -2 : int(joints.size()) - 1);
-    } else if (word == "}") {
-      open.pop_back();
-    } else if (word == "OFFSET") {
-      Vector3d offset;
-      stream >> offset[0] >> offset[1] >> offset[2];
-      if (!end_site) joints.back().offset = offset;
-    }
-  }
-  std::string line;
-  while (std::getline(stream, line) && line.find("Frame Time") == std::string::npos) {
-  }
-  for (int t = 0; t <= frame; ++t) std::getline(stream, line);
-  std::istringstream numbers(line);
-  Vector3d root;
-  numbers >> root[0] >> root[1] >> root[2];
-  std::map<std::string, Vector3d> positions;
-  std::vector<Eigen::Affine3d> world;
-  for (const Joint& joint : joints) {
-    Vector3d zxy;
-    numbers >> zxy[0] >> zxy[1] >> zxy[2];
-    if (at_rest) zxy.setZero();
-    const double deg = M_PI / 180;
-    Eigen::Affine3d local = Eigen::Translation3d(joint.parent < 0 ? root : joint.offset) *
-                            Eigen::AngleAxisd(zxy[0] * deg, Vector3d::UnitZ()) *
-                            Eigen::AngleAxisd(zxy[1] * deg, Vector3d::UnitX()) *
-                            Eigen::AngleAxisd(zxy[2] * deg, Vector3d::UnitY());
-    world.push_back(joint.parent < 0 ? local : world[size_t(joint.parent)] * local);
-    positions[joint.name] = world.back().translation() / 100;
-  }
-  return positions;
-}
-
-TEST(BvhRig, JointsAreWhereTheyAreUnderEveryRigsNames) {
-  const Track track = ShortTrack();
-  const ExportScene scene = SceneOf(track);
-  const ExportPerson& person = scene.people[0];
-  const Motion motion = MotionInWorld(TiltedWorld(), person.rest_joints.row(0).transpose(), track.motion);
-  const MatrixX3d truth = PoseSkeleton(BuiltinBody(), person.rest_joints, person.poses[7]).joints;
-  const std::map<BvhRig, std::vector<std::string>> wrist_ankle = {{BvhRig::kSmpl, {"l_wrist", "r_ankle", "head"}},
-                                                                  {BvhRig::kMixamo, {"LeftHand", "RightFoot", "Head"}},
-                                                                  {BvhRig::kUnreal, {"hand_l", "foot_r", "head"}}};
-  for (const auto& [rig, names] : wrist_ankle) {
-    const std::string text = BvhText(motion, BuiltinBody(), rig);
-    const std::map<std::string, Vector3d> at = BvhPositions(text, 7);
-    EXPECT_EQ(at.size(), rig == BvhRig::kSmpl ? 24U : 22U);
-    EXPECT_LT((at.at(names[0]) - truth.row(20).transpose()).norm(), 1e-6);
-    EXPECT_LT((at.at(names[1]) - truth.row(8).transpose()).norm(), 1e-6);
-    EXPECT_LT((at.at(names[2]) - truth.row(15).transpose()).norm(), 1e-6);
-    const std::map<std::string, Vector3d> rest = BvhPositions(text, 7, true);
-    const std::string shoulder = rig == BvhRig::kMixamo   ? "LeftArm"
-                                 : rig == BvhRig::kUnreal ? "upperarm_l"
-                                                          : "l_shoulder";
-    const Vector3d arm = rest.at(names[0]) - rest.at(shoulder);
-    EXPECT_NEAR(std::atan2(-arm.y(), arm.x()) * 180 / M_PI, rig == BvhRig::kUnreal ? 45 : 0, 3)
-        << "below the horizontal";
-  }
-  EXPECT_THROW(BvhRigFromString("rigify"), std::invalid_argument);
 }
 
 TEST(Amass, SmplxFormHasWhatRetargetersRead) {
