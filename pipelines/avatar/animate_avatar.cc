@@ -176,8 +176,9 @@ class AvatarAnimation {
     if (track_.camera.model != CameraModel::kPinhole) {
       throw std::runtime_error(from + ": a track of a weakly perspective camera, expected a pinhole's for --report");
     }
-    page_.emplace(avatar_.body, body_->data().faces, posed_->CameraAt(0), EstimatedUp(track_), track_.num_frames(),
-                  motion_.has_value());
+    page_step_ = AvatarPage::FrameStep(track_.num_frames(), avatar_.num_bones());
+    page_.emplace(avatar_.body, body_->data().faces, posed_->CameraAt(0), EstimatedUp(track_),
+                  (track_.num_frames() + page_step_ - 1) / page_step_, motion_.has_value());
   }
 
   void Dress(const std::vector<int>& shown) {
@@ -273,7 +274,7 @@ class AvatarAnimation {
       if (!shows) ++summary_.frames_without_fit;
       clock_.Begin("write");
       if (!request_.pictures.empty()) WritePicture(t, shows);
-      if (page_) AddToPage(t, shows);
+      if (page_ && t % page_step_ == 0) AddToPage(t, shows);
       if (video || set) {
         Image whole = background.Next();
         if (shows) LayOver(painter_.picture(), &whole);
@@ -373,7 +374,8 @@ class AvatarAnimation {
   AvatarFrame frame_;
   AvatarPainter painter_;
   std::optional<AvatarPage> page_;
-  double fps_ = 0;  ///< of the track; 0: it does not say
+  int page_step_ = 1;  ///< every so many-th frame is on it
+  double fps_ = 0;     ///< of the track; 0: it does not say
   std::vector<double> draw_ms_, pixels_;
   AnimateAvatarSummary summary_;
 };

@@ -19,7 +19,7 @@ namespace {
 
 using Body = GaussianBody;
 
-constexpr double kMaxKeyBytes = 16e6;
+constexpr double kMaxKeyBytes = 16e6, kMaxBoneBytes = 16e6;
 
 /// What one step of a key's byte is worth, channel by channel: place as it is seen (metres), log scales, opacity's logit,
 /// albedo. The first three are there without a motion network, too.
@@ -94,6 +94,11 @@ std::vector<float> PageColumns(const Body& body) {
 }
 
 }  // namespace
+
+int AvatarPage::FrameStep(int num_frames, int num_bones) {
+  const double bytes = 12.0 * sizeof(float) * num_bones * num_frames;
+  return std::max(1, static_cast<int>(std::ceil(bytes / kMaxBoneBytes)));
+}
 
 AvatarPage::AvatarPage(const GaussianBody& body, const MatrixX3i& faces, const Camera& camera,
                        const Eigen::Vector3d& up_in_camera, int num_frames, bool has_offsets)

@@ -4,7 +4,8 @@
 ///
 /// The page poses as render/avatar/pose_gaussians.h does. What changes a Gaussian beyond its bones (pose correctives, and
 /// what a motion network adds to place, size, opacity and albedo) is stored in bytes for key frames, as many as 16 MB
-/// hold, and interpolated between them.
+/// hold, and interpolated between them. Bones are 48 bytes each in every frame: of a clip whose bones take more than 16
+/// MB, every second, third, … frame is shown.
 #pragma once
 
 #include <string>
@@ -20,6 +21,9 @@ namespace bodyloom {
 
 class AvatarPage {
  public:
+  /// Every so many-th frame of a clip is shown.
+  [[nodiscard]] static int FrameStep(int num_frames, int num_bones);
+
   /// Of a person shown in `num_frames` frames by a pinhole camera without distortion. Keeps references to body and
   /// faces. `up_in_camera`: the axis about which the page turns. `has_offsets`: frames come with offsets.
   AvatarPage(const GaussianBody& body, const MatrixX3i& faces, const Camera& camera,
