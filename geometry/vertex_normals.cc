@@ -9,7 +9,7 @@ const MatrixX3f& VertexNormalsOfMesh::Compute(const MatrixX3d& vertices, const M
   BODYLOOM_CHECK(vertices.rows() > 0, "vertex normals: the mesh has no vertices");
   const auto is_same = [&](const MatrixX3i& known) { return known.rows() == faces.rows() && known == faces; };
   if (!mesh_ || mesh_->num_vertices() != vertices.rows() || !is_same(mesh_->faces())) {
-    mesh_.emplace(faces, static_cast<int>(vertices.rows()));
+    mesh_ = std::make_shared<const MeshNormals>(faces, static_cast<int>(vertices.rows()));
   }
   relative_ = (vertices.rowwise() - vertices.row(0)).cast<float>();
   normals_.resize(vertices.rows(), 3);

@@ -3,7 +3,8 @@
 /// taken relative to the first one, then geometry/normals.h.
 #pragma once
 
-#include <optional>
+#include <memory>
+#include <utility>
 
 #include "bodyloom/geometry/arrays.h"
 #include "bodyloom/geometry/normals.h"
@@ -14,11 +15,15 @@ namespace bodyloom {
 /// once. Not for use by two threads at once.
 class VertexNormalsOfMesh {
  public:
+  VertexNormalsOfMesh() = default;
+  /// Of meshes with these faces for the first; so several of these work it out once.
+  explicit VertexNormalsOfMesh(std::shared_ptr<const MeshNormals> mesh) : mesh_(std::move(mesh)) {}
+
   /// V×3 unit normals, valid until the next call. Throws std::invalid_argument as MeshNormals does.
   const MatrixX3f& Compute(const MatrixX3d& vertices, const MatrixX3i& faces);
 
  private:
-  std::optional<MeshNormals> mesh_;
+  std::shared_ptr<const MeshNormals> mesh_;
   NormalScratch scratch_;
   MatrixX3f relative_, normals_;
 };

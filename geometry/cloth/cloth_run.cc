@@ -29,7 +29,11 @@ BodyPose Between(const BodyPose& a, const BodyPose& b, double share) {
 }  // namespace
 
 ClothRun::ClothRun(const ClothWearer& wearer, Motion motion, const ClothRunOptions& options)
-    : wearer_(wearer), motion_(std::move(motion)), options_(options) {
+    : wearer_(wearer),
+      motion_(std::move(motion)),
+      options_(options),
+      bare_normals_(wearer.mesh_normals()),
+      clothed_normals_(wearer.mesh_normals()) {
   CheckMotion(motion_, "ClothRun");
   BODYLOOM_CHECK(motion_.num_frames() > 0, "ClothRun: a motion without frames");
   for (int t = 1; t < motion_.num_frames(); ++t) {
@@ -58,19 +62,29 @@ BodyPose ClothRun::PoseAt(int t) const {
 
 ClothRun::Place ClothRun::PlaceAt(const BodyPose& pose) {
   const MatrixX3i& faces = wearer_.body().data().faces;
-  const MatrixX3d bare = wearer_.BareVertices(pose);
-  const MatrixX3d clothed = wearer_.Clothed(bare, bare_normals_.Compute(bare, faces));
+  MatrixX3d clothed = wearer_.BareVertices(pose);
+  if (wearer_.has_offsets()) clothed = wearer_.Clothed(clothed, bare_normals_.Compute(clothed, faces));
   const PosedSkeleton skeleton = PoseSkeleton(wearer_.body(), wearer_.rest_joints(), pose);
   return {wearer_.obstacles().At(clothed, clothed_normals_.Compute(clothed, faces), skeleton.joints),
           PinnedPlaces(wearer_.garment().pins, clothed, faces)};
 }
 
+int ClothRun::NumTicks(double seconds) const {
+  return std::max(1, static_cast<int>(std::ceil(seconds / options_.tick_s - 1e-9)));
+}
+
 void ClothRun::MoveTo(const BodyPose& from, const BodyPose& to, double seconds) {
-  const int ticks = std::max(1, static_cast<int>(std::ceil(seconds / options_.tick_s - 1e-9)));
+  const int ticks = NumTicks(seconds);
   for (int i = 1; i <= ticks; ++i) {
     Place place = PlaceAt(i == ticks ? to : Between(from, to, double(i) / ticks));
     simulation_->Step(seconds / ticks, std::move(place.obstacles), place.pinned);
   }
+}
+
+void ClothRun::Rest(const BodyPose& pose, double seconds) {
+  const int ticks = NumTicks(seconds);
+  const Place place = PlaceAt(pose);
+  for (int i = 0; i < ticks; ++i) simulation_->Step(seconds / ticks, place.obstacles, place.pinned);
 }
 
 /// The garment as sewn around the body, which then goes from its T-pose to the pose and rests. After a cut too: what a
@@ -91,7 +105,7 @@ void ClothRun::StartIn(const BodyPose& pose) {
                         options_.cloth);
   }
   MoveTo(start, pose, options_.move_in_s);
-  if (options_.settle_s > 0) MoveTo(pose, pose, options_.settle_s);
+  if (options_.settle_s > 0) Rest(pose, options_.settle_s);
 }
 
 bool ClothRun::IsCut(int t) const {

@@ -48,6 +48,8 @@ class ClothRun {
     std::vector<Eigen::Vector3d> pinned;
   };
   Place PlaceAt(const BodyPose& pose);
+  [[nodiscard]] int NumTicks(double seconds) const;
+  void Rest(const BodyPose& pose, double seconds);
   BodyPose PoseAt(int t) const;
   void MoveTo(const BodyPose& from, const BodyPose& to, double seconds);
   void StartIn(const BodyPose& pose);

@@ -11,12 +11,13 @@
 #include "bodyloom/geometry/body_model.h"
 #include "bodyloom/geometry/cloth/body_obstacles.h"
 #include "bodyloom/geometry/cloth/loose_garment.h"
+#include "bodyloom/geometry/normals.h"
 #include "bodyloom/geometry/posed_body.h"
 #include "bodyloom/geometry/skinning.h"
 
 namespace bodyloom {
 
-/// The body must outlive it. May be shared by threads once it wears its garment.
+/// The body must outlive it. May be shared by threads once it wears its garment. A copy shares all but the garment.
 class ClothWearer {
  public:
   /// `offsets_m`: how far the clothes close to the skin stand off, one a vertex; negative ones count as 0; empty: bare. Throws
@@ -32,22 +33,37 @@ class ClothWearer {
 
   [[nodiscard]] const BodyModel& body() const { return body_; }
   [[nodiscard]] const LooseGarment& garment() const { return garment_; }  ///< empty: none
-  [[nodiscard]] const BodyObstacles& obstacles() const { return *obstacles_; }
-  [[nodiscard]] const MatrixX3d& rest_joints() const { return shape_.rest_joints; }
+  [[nodiscard]] const BodyObstacles& obstacles() const { return dressed_->obstacles; }
+  [[nodiscard]] const MatrixX3d& rest_joints() const { return dressed_->shape.rest_joints; }
+  [[nodiscard]] const std::shared_ptr<const MeshNormals>& mesh_normals() const { return dressed_->normals; }
+  /// Whether clothes close to the skin stand off anywhere; Clothed() changes nothing otherwise.
+  [[nodiscard]] bool has_offsets() const { return !dressed_->offsets_m.empty(); }
 
   /// V×3 vertices of the bare body.
-  [[nodiscard]] MatrixX3d BareVertices(const BodyPose& pose) const;
+  [[nodiscard]] MatrixX3d BareVertices(const BodyPose& pose) const { return dressed_->Bare(pose); }
   /// Moves the bare surface outwards by the clothes' thickness; `normals` are its own.
-  [[nodiscard]] MatrixX3d Clothed(const MatrixX3d& bare, const MatrixX3f& normals) const;
+  [[nodiscard]] MatrixX3d Clothed(const MatrixX3d& bare, const MatrixX3f& normals) const {
+    return dressed_->Clothed(bare, normals);
+  }
 
  private:
+  /// The body with what it wears close to the skin.
+  struct Dressed {
+    Dressed(const BodyModel& body, const Eigen::VectorXd& betas, std::vector<double> offsets);
+    [[nodiscard]] MatrixX3d AtRest(const BodyModel& body) const;
+    [[nodiscard]] MatrixX3d Bare(const BodyPose& pose) const;
+    [[nodiscard]] MatrixX3d Clothed(const MatrixX3d& bare, const MatrixX3f& bare_normals) const;
+
+    Skinner skinner;
+    ShapedBody shape;
+    std::vector<double> offsets_m;
+    std::shared_ptr<const MeshNormals> normals;
+    MatrixX3d at_rest;  ///< clothed, in T-pose
+    BodyObstacles obstacles;
+  };
   const BodyModel& body_;
-  Skinner skinner_;
-  ShapedBody shape_;
-  std::vector<double> offsets_m_;
-  MatrixX3d clothed_at_rest_;
+  std::shared_ptr<const Dressed> dressed_;
   LooseGarment garment_;
-  std::unique_ptr<const BodyObstacles> obstacles_;
 };
 
 /// The T-pose, where the body is.

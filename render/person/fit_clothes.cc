@@ -77,6 +77,7 @@ class ClothesFit {
     const MatrixX3d joints = body_.RestJoints(betas_);
     const double pelvis = joints(0, 1), spine1 = joints(3, 1), spine2 = joints(6, 1);
     const double ankle = 0.5 * (joints(7, 1) + joints(8, 1));
+    const ClothWearer wearer(body_, betas_, {});
     VisibilityBuffer bare;
     bare.Render(vertices_, body_.data().faces, silhouette_.camera());
     std::vector<Candidate> candidates;
@@ -91,7 +92,7 @@ class ClothesFit {
         candidates.push_back({cut});
       }
     }
-    TryOn(bare, &candidates);
+    TryOn(wearer, bare, &candidates);
     std::stable_sort(candidates.begin(), candidates.end(),
                      [](const Candidate& a, const Candidate& b) { return a.pixels > b.pixels; });
     // Where nothing beside the bare body looks like cloth, no garment can be worth it.
@@ -101,13 +102,13 @@ class ClothesFit {
     for (size_t i = 0; i < std::min(kSwung, candidates.size()); ++i) {
       for (const double swing : kSwings_rad) candidates.push_back({candidates[i].cut, swing});
     }
-    TryOn(bare, &candidates);
+    TryOn(wearer, bare, &candidates);
     Candidate best = BestOf(candidates);
     if (best.pixels <= 0) return best;
     candidates = {best, best};
     candidates[0].cut.fullness = std::max(0.0, best.cut.fullness - kFinerFullness);
     candidates[1].cut.fullness = best.cut.fullness + kFinerFullness;
-    TryOn(bare, &candidates);
+    TryOn(wearer, bare, &candidates);
     candidates.push_back(best);
     best = BestOf(candidates);
     best.cut.spacing_m = options_.spacing_m;
@@ -124,14 +125,13 @@ class ClothesFit {
   }
 
   /// Each, let down: as long as it covers most.
-  void TryOn(const VisibilityBuffer& bare, std::vector<Candidate>* candidates) const {
+  void TryOn(const ClothWearer& wearer, const VisibilityBuffer& bare, std::vector<Candidate>* candidates) const {
     ParallelFor(static_cast<int>(candidates->size()), options_.num_threads,
-                [&](int i) { (*candidates)[i] = AsLongAsItCoversMost(bare, (*candidates)[i]); });
+                [&](int i) { (*candidates)[i] = AsLongAsItCoversMost(wearer, bare, (*candidates)[i]); });
   }
 
   /// The garment, let down and cut off at the row down to which it covers most.
-  Candidate AsLongAsItCoversMost(const VisibilityBuffer& bare, const Candidate& tried) const {
-    ClothWearer wearer(body_, betas_, {});
+  Candidate AsLongAsItCoversMost(ClothWearer wearer, const VisibilityBuffer& bare, const Candidate& tried) const {
     wearer.Wear(wearer.Cut(tried.cut, kSeed));
     const LooseGarment& garment = wearer.garment();
     const VisibilityBuffer seen = SeeGarment(
