@@ -234,7 +234,8 @@ TEST(DensePose, FolderWithInstancesAndGaps) {
     for (const DenseKeypoint& point : dense.frames[t]) EXPECT_GT(point.pixel.norm(), 29) << "not the other person";
   }
   options.person = 1;
-  for (const DenseKeypoint& point : LoadDense(folder.File(""), ToyBody(), options).frames[2]) {
+  const DenseSequence other = LoadDense(folder.File(""), ToyBody(), options);
+  for (const DenseKeypoint& point : other.frames[2]) {
     EXPECT_LT(point.pixel.maxCoeff(), 20);
   }
   options.person = 2;

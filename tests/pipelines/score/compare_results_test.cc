@@ -92,7 +92,8 @@ std::vector<int> FollowersOf(const std::string& truth, const std::string& result
   request.num_threads = 2;
   request.more = {Follows()};
   std::vector<int> follows;
-  for (const MetricRow& row : CompareResults(request).tables.at(0).rows) {
+  const auto summary = CompareResults(request);
+  for (const MetricRow& row : summary.tables.at(0).rows) {
     follows.push_back(static_cast<int>(row.values.back()));
   }
   return follows;
