@@ -2,9 +2,9 @@
 /// Reaction of rendered clothes to the speed of the body: the same poses at two speeds, in truth and in the result.
 ///
 /// Two single-person datasets show the same poses at another speed (`synth-person --speed`), two results show what a
-/// renderer made of them (`animate motion --set`, `animate avatar --set`). Frames are paired by pose. Of each pair, how one garment's picture
-/// changes from one speed to the other is compared with how it should: a renderer that knows the pose alone changes
-/// nothing (slope 0), one that knows the motion changes as the truth does (correlation and slope 1).
+/// renderer made of them (`animate motion --set`, `animate avatar --set`). Frames are paired by pose. Of each pair, how
+/// one garment's picture changes from one speed to the other is compared with how it should: a renderer that knows the
+/// pose alone changes nothing (slope 0), one that knows the motion changes as the truth does (correlation and slope 1).
 #pragma once
 
 #include <array>

@@ -8,6 +8,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <utility>
 
 #include "bodyloom/data_tools/avatar/alpha_png.h"
 #include "bodyloom/data_tools/avatar/avatar_file.h"
@@ -24,7 +25,7 @@
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/geometry/base/percentile.h"
 #include "bodyloom/pipelines/avatar/avatar_clip.h"
-#include "bodyloom/pipelines/avatar/avatar_dataset.h"
+#include "bodyloom/pipelines/avatar/avatar_labels.h"
 #include "bodyloom/pipelines/avatar/avatar_page.h"
 #include "bodyloom/pipelines/avatar/motion_maps.h"
 #include "bodyloom/pipelines/avatar/train_avatar.h"
@@ -33,6 +34,7 @@
 #include "bodyloom/pipelines/people/animation_limits.h"
 #include "bodyloom/pipelines/people/background.h"
 #include "bodyloom/pipelines/people/freeze.h"
+#include "bodyloom/pipelines/people/rendered_dataset.h"
 #include "bodyloom/pipelines/people/view_angles.h"
 #include "bodyloom/pipelines/report_json.h"
 #include "bodyloom/render/follow_view.h"
@@ -261,12 +263,15 @@ class AvatarAnimation {
     const int width = posed_->width(), height = posed_->height();
     Background background(request_.background, width, height);
     fps_ = FrameRateWithoutGaps(track_.motion);
+    const double fps = fps_ > 0 ? fps_ : kFpsWithoutTimes;
     std::unique_ptr<VideoWriter> video;
     if (!request_.out.empty()) {
-      video = std::make_unique<VideoWriter>(request_.out, width, height, fps_ > 0 ? fps_ : kFpsWithoutTimes);
+      video = std::make_unique<VideoWriter>(request_.out, width, height, fps);
     }
-    std::unique_ptr<AvatarDataset> set;
-    if (!request_.set.empty()) set = std::make_unique<AvatarDataset>(request_.set, track_, fps_, SetCommand());
+    std::unique_ptr<RenderedDataset> set;
+    if (!request_.set.empty()) {
+      set = std::make_unique<RenderedDataset>(request_.set, track_, fps, true, false, SetCommand());
+    }
     for (int t = 0; t < count; ++t) {
       callbacks_.Update("drawing", static_cast<double>(t) / count);
       const bool shows = posed_->HasResult(t);
@@ -279,7 +284,7 @@ class AvatarAnimation {
         Image whole = background.Next();
         if (shows) LayOver(painter_.picture(), &whole);
         if (video) video->Write(whole);
-        if (set) AddToSet(t, shows, whole, set.get());
+        if (set) set->Add(t, FrameOfSet(shows, std::move(whole)));
       }
       if (shows && !request_.posed_ply.empty() && t == request_.posed_frame) {
         WriteGaussianPly(request_.posed_ply, painter_.posed());
@@ -302,9 +307,11 @@ class AvatarAnimation {
     return command + " --set " + request_.set;
   }
 
-  void AddToSet(int t, bool shows, const Image& whole, AvatarDataset* set) {
-    if (!shows) return set->AddEmpty(t, whole);
-    set->Add(t, whole, painter_.picture(), GarmentShare());
+  PersonFrame FrameOfSet(bool shows, Image whole) {
+    PersonFrame frame;
+    if (shows) frame.labels = LabelsOf(painter_.picture(), GarmentShare(), whole.width, whole.height);
+    frame.rgb = std::move(whole);
+    return frame;
   }
 
   void WritePicture(int t, bool shows) const {

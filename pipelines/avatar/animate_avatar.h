@@ -26,7 +26,7 @@ struct AnimateAvatarRequest {
   bool shape_of_track = false;  ///< poses the track's shape, not that of the person who was trained on
   std::string out;              ///< the video to write, .mp4; empty: none
   std::string pictures;         ///< a folder for PNGs with transparency, 000000.png …; empty: none
-  std::string set;              ///< a single-person dataset of what is shown (avatar_dataset.h); empty: none
+  std::string set;              ///< a single-person dataset of what is shown (avatar_labels.h); empty: none
   std::string ply;              ///< the Gaussians at rest, .ply; empty: none
   std::string posed_ply;        ///< the Gaussians of frame posed_frame, in the camera's frame, .ply; empty: none
   int posed_frame = 0;

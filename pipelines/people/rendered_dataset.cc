@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "bodyloom/pipelines/people/window_sampler.h"
 
@@ -50,11 +51,15 @@ RenderedDataset::RenderedDataset(const std::string& path, const Track& track, do
                                  const std::string& command)
     : info_(InfoOf(track, fps, labels, normals, command)), writer_(path, info_, track) {}
 
-void RenderedDataset::Add(int t, const MotionPicture& picture, const PersonWindow& window, const Image& composed) {
-  PersonFrame frame = SetFrameOf(picture, window, t, composed);
-  if (info_.has.labels && frame.labels.width == 0) frame.labels = Image(composed.width, composed.height);
-  if (info_.has.normals && frame.normals.width == 0) frame.normals = Image(composed.width, composed.height);
+void RenderedDataset::Add(int t, PersonFrame frame) {
+  for (const auto& [has, plane] : {std::pair{info_.has.labels, &frame.labels}, {info_.has.normals, &frame.normals}}) {
+    if (has && plane->empty()) *plane = Image(frame.rgb.width, frame.rgb.height);
+  }
   writer_.Write(t, frame);
+}
+
+void RenderedDataset::Add(int t, const MotionPicture& picture, const PersonWindow& window, const Image& composed) {
+  Add(t, SetFrameOf(picture, window, t, composed));
 }
 
 void RenderedDataset::Finish() const { writer_.Finish(); }

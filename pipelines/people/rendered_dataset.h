@@ -16,13 +16,15 @@ namespace bodyloom {
 /// is not background. `picture` without labels or normals: those are left empty.
 PersonFrame SetFrameOf(const MotionPicture& picture, const PersonWindow& window, int t, const Image& composed);
 
-/// Writes images, labels and normals (as far as the networks make them) and the track as a single-person dataset.
+/// Writes images, labels and normals (as far as the renderer makes them) and the track as a single-person dataset.
 class RenderedDataset {
  public:
   /// Throws std::runtime_error when the folder cannot be written.
   RenderedDataset(const std::string& path, const Track& track, double fps, bool labels, bool normals,
                   const std::string& command);
-  /// `picture` of no pixels: a frame without a fit, all background.
+  /// Labels and normals that `frame` lacks and the dataset has: all background.
+  void Add(int t, PersonFrame frame);
+  /// `picture` of no pixels: a frame without a fit.
   void Add(int t, const MotionPicture& picture, const PersonWindow& window, const Image& composed);
   /// Until then the folder is no set.
   void Finish() const;

@@ -24,9 +24,9 @@ TEST_P(Endurance, MemoryDoesNotGrowOver1000Solves) {
     for (int i = 0; i < times; ++i) ASSERT_TRUE(TrackSequence(input, options).summary.IsUsable());
   };
   solve(200);  // pools and caches are filled
-  const size_t before = ResidentBytes();
+  const size_t before = BytesHeld();
   solve(1000);
-  const size_t after = ResidentBytes();
+  const size_t after = BytesHeld();
   // A leak of one frame's pose a solve (0.6 kB) would show.
   EXPECT_LT(static_cast<double>(after), static_cast<double>(before) + 0.5e6) << before << " -> " << after;
 }
@@ -75,12 +75,12 @@ TEST_P(Endurance, SlowClipOf20000Frames) {
   TrackSequenceOptions engine = OptionsOf(GetParam());
   engine.num_threads = 2;
   engine.estimate_uncertainty = true;
-  const size_t before = ResidentBytes();
+  const size_t before = BytesHeld();
   const std::clock_t start = std::clock();
   const TrackSequenceResult result = Fit(input, engine);
   ASSERT_TRUE(result.summary.IsUsable()) << result.summary.message;
   std::cout << "20,000 frames: " << static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC << " s, "
-            << static_cast<double>(ResidentBytes() - before) / 1e6 << " MB kept, error " << ErrorMm(result, clip)
+            << static_cast<double>(BytesHeld() - before) / 1e6 << " MB kept, error " << ErrorMm(result, clip)
             << " mm\n";
   EXPECT_EQ(result.summary.frames_by_status.at("tracked"), 20000);
   EXPECT_LT(ErrorMm(result, clip), 90);

@@ -15,6 +15,13 @@
 #include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
 #include "bodyloom/geometry/rotation.h"
 
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define BODYLOOM_ADDRESS_SANITIZER 1
+#include <sanitizer/allocator_interface.h>
+#endif
+#endif
+
 namespace bodyloom::stress {
 namespace {
 
@@ -127,12 +134,16 @@ double RootErrorRad(const TrackSequenceResult& result, const SynthClip& clip, in
   return AxisAngleFromRotation(Root(result.track, t).transpose() * Root(clip.truth, t)).norm();
 }
 
-size_t ResidentBytes() {
+size_t BytesHeld() {
+#ifdef BODYLOOM_ADDRESS_SANITIZER
+  return __sanitizer_get_current_allocated_bytes();
+#else
   malloc_trim(0);
   std::ifstream file("/proc/self/statm");
   size_t pages = 0, resident = 0;
   file >> pages >> resident;
   return resident * static_cast<size_t>(sysconf(_SC_PAGESIZE));
+#endif
 }
 
 }  // namespace bodyloom::stress

@@ -64,7 +64,8 @@ double LargestStep(const Track& track);
 /// Angle between the root's rotation and the true one, radians.
 double RootErrorRad(const TrackSequenceResult& result, const SynthClip& clip, int t);
 
-/// Resident memory of this process now, bytes.
-size_t ResidentBytes();
+/// Memory that this process holds now, bytes: resident; with the address sanitizer, which keeps what was freed for a
+/// while, what is allocated.
+size_t BytesHeld();
 
 }  // namespace bodyloom::stress

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What the pixels of a person of Gaussians show, as a single-person dataset says it.
+#pragma once
+
+#include <span>
+
+#include "bodyloom/data_tools/datasets/single_person_dataset.h"
+#include "bodyloom/render/splat/splat_picture.h"
+
+namespace bodyloom {
+
+/// A pixel's label: kBottom where the garment (skirt, dress or coat) makes at least half of it, kSkin on the rest of
+/// the person, whose clothes nobody told apart, kBackground where alpha is below ½. Index in all channels, width ×
+/// height. `garment`: its share of the window's pixels; empty: none is worn.
+Image LabelsOf(const SplatPicture& picture, std::span<const float> garment, int width, int height);
+
+}  // namespace bodyloom
