@@ -123,5 +123,6 @@ template py::array View(const uint8_t*, std::vector<py::ssize_t>, const py::hand
 template py::array View(const double*, std::vector<py::ssize_t>, std::vector<py::ssize_t>, const py::handle&);
 template py::array View(const float*, std::vector<py::ssize_t>, std::vector<py::ssize_t>, const py::handle&);
 template py::array ArrayOwning(std::vector<double>, std::vector<py::ssize_t>);
+template py::array ArrayOwning(std::vector<uint8_t>, std::vector<py::ssize_t>);
 
 }  // namespace bodyloom::python

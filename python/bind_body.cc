@@ -17,6 +17,7 @@
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/python_callbacks.h"
+#include "python/request_arguments.h"
 #include "python/track_object.h"
 
 namespace bodyloom::python {
@@ -87,7 +88,7 @@ PosesGiven PosesFrom(const BodyModel& body, const py::object& poses, const py::o
 }
 
 SkinnerOptions SkinnerOptionsFrom(const BodyModel& body, const py::object& vertices, int threads) {
-  BODYLOOM_CHECK(threads >= 0 && threads <= 256, "threads: expected 0 to 256, found ", threads);
+  CheckThreads(threads);
   SkinnerOptions options;
   options.num_threads = ThreadsFor(threads);
   if (vertices.is_none()) return options;

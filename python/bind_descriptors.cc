@@ -21,6 +21,7 @@
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/python_callbacks.h"
+#include "python/request_arguments.h"
 #include "python/track_object.h"
 
 namespace bodyloom::python {
@@ -96,8 +97,7 @@ void SetOptions(const DescriptorArguments& arguments, const Track& track, Descri
     options->camera_pose = track.world ? track.world->camera_pose() : LevelCamera();
   options->weighting = WeightingFrom(arguments.weighting);
   options->seen_only = arguments.seen_only;
-  BODYLOOM_CHECK(arguments.threads >= 0 && arguments.threads <= 256, "threads: expected 0 to 256, found ",
-                 arguments.threads);
+  CheckThreads(arguments.threads);
   options->num_threads = ThreadsFor(arguments.threads);
 }
 

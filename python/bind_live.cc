@@ -16,6 +16,7 @@
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/landmark_names.h"
+#include "python/request_arguments.h"
 #include "python/track_object.h"
 
 namespace bodyloom::python {
@@ -72,7 +73,7 @@ class LiveTrackerObject {
     TakeCamera(camera, image_size, weak, &input, &options);
     options.lag = lag;
     options.iterations = iterations;
-    BODYLOOM_CHECK(threads >= 0 && threads <= 256, "threads: expected 0 to 256, found ", threads);
+    CheckThreads(threads);
     options.solve.num_threads = threads;
     options.solve.estimate_shape = estimate_shape;
     options.solve.estimate_uncertainty = uncertainty;

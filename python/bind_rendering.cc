@@ -19,6 +19,7 @@
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/python_callbacks.h"
+#include "python/request_arguments.h"
 #include "python/track_object.h"
 
 namespace bodyloom::python {
@@ -96,8 +97,7 @@ class RendererObject {
     options.new_view = arguments.view_yaw_deg.has_value();
     options.view_yaw_deg = arguments.view_yaw_deg.value_or(0);
     options.turntable = options.new_view;
-    BODYLOOM_CHECK(arguments.threads >= 0 && arguments.threads <= 256, "threads: expected 0 to 256, found ",
-                   arguments.threads);
+    CheckThreads(arguments.threads);
     options.num_threads = ThreadsFor(arguments.threads);
     has_new_view_ = options.new_view;
     picture_ = std::make_unique<RenderPicture>(*body_, track_->track, options, track_->name);

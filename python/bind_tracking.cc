@@ -2,7 +2,6 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include <cmath>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -18,6 +17,7 @@
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/python_callbacks.h"
+#include "python/request_arguments.h"
 #include "python/track_object.h"
 
 namespace bodyloom::python {
@@ -30,8 +30,8 @@ What was seen
                   say what Keypoints.load() is told
   dense           file or folder of dense surface keypoints; dense_uv_sigma: their noise in chart units
   part_labels     .npz with the DensePose part of every pixel
-  video           for image size and frame rate; alone, people are detected in it (pose_model, box_model, models,
-                  detect_rate, mask, begin_s, end_s)
+  video           for image size and frame rate; alone, people are detected in it (detector, pose_model, box_model,
+                  models, detect_rate, mask, begin_s, end_s); everybody at once: run()
 The camera
   camera          Camera, or a calibration file of which `view` names the camera
   focal_px        of a centred camera without distortion, pixels
@@ -62,13 +62,6 @@ The built-in body walks, turns, waves and kicks for `frames` frames at `fps`, se
 its 2D joints carry a detector's noise and gaps. The same arguments give the same bytes.)";
 
 using KeypointsArgument = std::variant<std::shared_ptr<KeypointSequence>, Path>;
-using CameraArgument = std::variant<Camera, Path>;
-
-/// The number given, checked; 0 when there is none.
-double PositiveOr0(const std::optional<double>& value, const char* name) {
-  BODYLOOM_CHECK(!value || (*value > 0 && std::isfinite(*value)), name, ": expected a number above 0, found ", *value);
-  return value.value_or(0);
-}
 
 /// What the arguments amount to. The lists of options are long, but each has one line and one meaning.
 struct TrackArguments {
@@ -92,37 +85,11 @@ void TakeKeypoints(const std::optional<KeypointsArgument>& argument, TrackArgume
   arguments->keypoints = *std::get<std::shared_ptr<KeypointSequence>>(*argument);
 }
 
-void TakeCamera(const std::optional<CameraArgument>& argument, TrackArguments* arguments) {
-  if (!argument) return;
-  if (const auto* path = std::get_if<Path>(&*argument)) {
-    arguments->request.cameras = path->string();
-  } else {
-    arguments->given.camera = std::get<Camera>(*argument);
-  }
-}
-
-void TakeBody(const std::optional<BodyArgument>& argument, TrackArguments* arguments) {
-  if (!argument) return;
-  if (const auto* path = std::get_if<Path>(&*argument)) {
-    arguments->request.body = path->string();
-  } else {
-    arguments->given.body = std::get<std::shared_ptr<BodyModel>>(*argument);
-  }
-}
-
-/// The body in memory that a track is of, so that what is asked of it later finds it.
-std::shared_ptr<const BodyModel> BodyToKeep(const TrackArguments& arguments) {
-  if (arguments.given.body != nullptr || arguments.request.body.empty()) return arguments.given.body;
-  return BodyFrom(BodyArgument(Path(arguments.request.body)));
-}
-
 std::shared_ptr<TrackObject> RunTrack(TrackArguments arguments, const py::object& progress) {
   if (arguments.keypoints) arguments.given.keypoints = &*arguments.keypoints;
   const TrackRequest& request = arguments.request;
-  BODYLOOM_CHECK(request.solve.num_threads >= 0 && request.solve.num_threads <= 256,
-                 "threads: expected 0 to 256, found ", request.solve.num_threads);
-  const std::shared_ptr<const BodyModel> body = BodyToKeep(arguments);
-  if (body != nullptr) arguments.given.body = body;
+  CheckThreads(request.solve.num_threads);
+  const std::shared_ptr<const BodyModel> body = BodyToKeep(request, &arguments.given);
   TrackSequenceResult result = PythonCallbacks(progress).Run(
       [&](const PipelineCallbacks& callbacks) { return TrackToMemory(arguments.request, arguments.given, callbacks); });
   if (!result.summary.IsUsable()) {
@@ -171,9 +138,9 @@ void BindTracking(py::module_& module) {
          const std::optional<Path>& prior, const std::optional<Path>& lifter, std::optional<int> live_lag,
          const std::string& solver, int threads, int max_iterations, bool estimate_shape, bool uncertainty, bool ground,
          bool skip_unneeded, double rendered_weight, double velocity_weight, std::optional<double> straight_knees,
-         const std::optional<Path>& pose_model, const std::optional<Path>& box_model, const std::optional<Path>& models,
-         std::optional<double> detect_rate, bool mask, double begin_s, std::optional<double> end_s,
-         const py::object& progress) {
+         const std::string& detector, const std::optional<Path>& pose_model, const std::optional<Path>& box_model,
+         const std::optional<Path>& models, std::optional<double> detect_rate, bool mask, double begin_s,
+         std::optional<double> end_s, const py::object& progress) {
         TrackArguments arguments;
         TrackRequest& request = arguments.request;
         request.dense = TextOf(dense);
@@ -200,9 +167,7 @@ void BindTracking(py::module_& module) {
         request.prior = TextOf(prior);
         request.lifter = TextOf(lifter);
         request.live_lag = live_lag;
-        request.detector.pose_model = TextOf(pose_model);
-        request.detector.box_model = TextOf(box_model);
-        request.detector.models = TextOf(models);
+        request.detector = DetectorFrom(detector, pose_model, box_model, models);
         request.detect_rate = PositiveOr0(detect_rate, "detect_rate");
         request.use_mask = mask;
         request.from_s = begin_s;
@@ -219,9 +184,9 @@ void BindTracking(py::module_& module) {
         solve.rendered_uv.weight = rendered_weight;
         solve.velocity_weight = velocity_weight;
         if (!ground) solve.ground = GroundOptions::Off();
-        TakeCamera(camera, &arguments);
+        TakeCamera(camera, &request, &arguments.given);
         TakeKeypoints(keypoints, &arguments);
-        TakeBody(body, &arguments);
+        TakeBody(body, &request, &arguments.given);
         arguments.name = NameOf(request);
         return RunTrack(std::move(arguments), progress);
       },
@@ -238,9 +203,9 @@ void BindTracking(py::module_& module) {
       py::arg("uncertainty") = true, py::arg("ground") = true, py::arg("skip_unneeded") = true,
       py::arg("rendered_weight") = defaults.solve.rendered_uv.weight,
       py::arg("velocity_weight") = defaults.solve.velocity_weight, py::arg("straight_knees") = py::none(),
-      py::arg("pose_model") = py::none(), py::arg("box_model") = py::none(), py::arg("models") = py::none(),
-      py::arg("detect_rate") = py::none(), py::arg("mask") = true, py::arg("begin_s") = 0.0,
-      py::arg("end_s") = py::none(), py::arg("progress") = py::none(), kTrackFunctionDoc);
+      py::arg("detector") = "heavy", py::arg("pose_model") = py::none(), py::arg("box_model") = py::none(),
+      py::arg("models") = py::none(), py::arg("detect_rate") = py::none(), py::arg("mask") = true,
+      py::arg("begin_s") = 0.0, py::arg("end_s") = py::none(), py::arg("progress") = py::none(), kTrackFunctionDoc);
   module.def("synthetic_clip", &SyntheticClip, py::arg("frames") = 180, py::kw_only(), py::arg("fps") = 30.0,
              py::arg("image_size") = std::pair(960, 720), py::arg("seed") = 1, py::arg("elevation_deg") = 8.0,
              py::call_guard<py::gil_scoped_release>(), kSyntheticClipDoc);

@@ -11,10 +11,12 @@ void BindCamera(pybind11::module_& module);
 void BindBody(pybind11::module_& module);
 void BindTrack(pybind11::module_& module);
 void BindTracking(pybind11::module_& module);
+void BindPeople(pybind11::module_& module);
 void BindLive(pybind11::module_& module);
 void BindDescriptors(pybind11::module_& module);
 void BindRendering(pybind11::module_& module);
 void BindPerson(pybind11::module_& module);
+void BindAvatar(pybind11::module_& module);
 void BindResults(pybind11::module_& module);
 
 }  // namespace bodyloom::python

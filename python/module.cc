@@ -16,9 +16,11 @@ PYBIND11_MODULE(_bodyloom, module) {
   BindBody(module);
   BindTrack(module);
   BindTracking(module);
+  BindPeople(module);
   BindLive(module);
   BindDescriptors(module);
   BindRendering(module);
   BindPerson(module);
+  BindAvatar(module);
   BindResults(module);
 }

@@ -8,19 +8,22 @@ the photo warped by the bare body (floor); and the ablations of the pose-guided 
 usage: one_photo.py --bodyloom build/release/apps/bodyloom --motions ../shared/data/motion --out FOLDER
        [--systems floor person photo guided] [--photos 1 2 4] [--without latent kl ...] [--given true labels iuv bodies all] [--seeds 1 2 3]
        [--people 60] [--size 256] [--steps 4000] [--batch 4] [--profile cpu] [--report]
+       [--photo-options="--gan-weight 0 --learning-rate 0.001"] [--guided-options="--learning-rate 0.002"]
 
 FOLDER gets the people, a folder a run, report.md and report.json. What is there is not made again: a program that was
 stopped (Ctrl-C, SIGTERM) goes on where it was, within a run from its last checkpoint. --report only prints what there
-is. Bodies are those of `bodyloom run` on the test people's pictures: it needs the pose detector's networks, and a clip
-that it does not follow through all frames ends the program; leave "bodies" and "all" out of --given without them.
+is. Bodies are those of `bodyloom run` on the test people's pictures: it needs the pose detector's networks; leave
+"bodies" and "all" out of --given without them. Clips that it does not follow through all frames are in no row
+(left_out.txt).
 """
 import argparse
 import json
 import pathlib
+import shlex
 import shutil
 import sys
 
-from runs import call, text
+from runs import call, exit_code, text
 
 ABLATIONS = ["sil", "gar", "source-silhouette", "source-labels", "latent", "kl", "pseudo-image"]
 TRACK = "tracked.npz"
@@ -43,20 +46,37 @@ def make_people(o):
     return people
 
 
+def leave_out(o, listing, dataset, person, clip):
+    person["clips"].remove(clip)
+    with open(o.out / "left_out.txt", "a", encoding="utf-8") as lines:
+        lines.write(clip + "\n")
+    rewritten = listing.with_suffix(".part")
+    rewritten.write_text(json.dumps(dataset, indent=1) + "\n", encoding="utf-8")
+    rewritten.rename(listing)
+
+
 def track_test_people(o, people):
-    """Bodies as they are estimated of anybody: in every clip of a test person, TRACK beside the true track."""
-    for person in json.loads((people / "people.json").read_text(encoding="utf-8"))["people"]:
-        for clip in person["clips"] if person["split"] == "test" else []:
+    """Bodies as they are estimated of anybody: in every clip of a test person, TRACK beside the true track. A clip in which
+    the detector does not follow the person through all frames (bent double, from behind) leaves the dataset, whatever is given."""
+    listing = people / "people.json"
+    dataset = json.loads(listing.read_text(encoding="utf-8"))
+    for person in dataset["people"]:
+        for clip in list(person["clips"]) if person["split"] == "test" else []:
             folder = people / clip
             if (folder / TRACK).exists():
                 continue
             print(f"bodies of {clip} …", flush=True)
             out = folder / "tracking"
-            call([o.bodyloom, "run", str(folder / "images"), "--out", str(out), "--people", "1"], o.out / "people.log")
-            tracks = sorted(out.glob("person_*.npz"))
-            if not tracks:
-                sys.exit(f"{out}: nobody was tracked; leave bodies and all out of --given")
-            shutil.copy(tracks[0], folder / (TRACK + ".part"))
+            code = exit_code([o.bodyloom, "run", str(folder / "images"), "--out", str(out), "--people", "1", "--no-overlay",
+                              "--least-seconds", "0"], o.out / "people.log")
+            if code not in (0, 1):  # stopped
+                sys.exit(f"stopped in {clip}; see {o.out / 'people.log'}")
+            summary = json.loads((out / "summary.json").read_text(encoding="utf-8")) if code == 0 else None
+            if summary is None or summary["people"][0]["frames"] < summary["frames"]:
+                print(f"{clip} is left out: nobody is followed through all of it", flush=True)
+                leave_out(o, listing, dataset, person, clip)
+                continue
+            shutil.copy(summary["people"][0]["track"], folder / (TRACK + ".part"))
             (folder / (TRACK + ".part")).rename(folder / TRACK)
 
 
@@ -86,8 +106,7 @@ def train(o, people, name, verb, options, seed):
     arguments = [o.bodyloom, "train", verb, "--data", str(people), "--out", str(run), "--profile", o.profile, "--batch",
                  str(o.batch), "--steps", str(o.steps), "--validate-every", str(o.steps), "--seed", str(seed), "--threads",
                  str(o.threads)] + options
-    if verb == "guided" and o.balance_steps:
-        arguments += ["--balance-steps", str(o.balance_steps)]
+    arguments += shlex.split(o.photo_options if verb == "photo" else o.guided_options)
     if (run / "checkpoint.bin").exists():
         arguments.append("--resume")
     call(arguments, run / "log.txt")
@@ -118,8 +137,10 @@ def score_of(scores, key):
 
 
 def report(o):
-    lines = [f"Profile {o.profile}, {o.steps} steps of batch {o.batch}, {o.people} people; mean ± standard deviation over "
-             "seeds", "", "| photos | system | given | seeds | pictures | " +
+    left_out = o.out / "left_out.txt"
+    count = len(left_out.read_text(encoding="utf-8").splitlines()) if left_out.exists() else 0
+    lines = [f"Profile {o.profile}, {o.steps} steps of batch {o.batch}, {o.people} people, {count} clips left out; mean ± "
+             "standard deviation over seeds", "", "| photos | system | given | seeds | pictures | " +
              " | ".join(name for _, name, _ in SCORES) + " |", "|---|---|---|---|---|" + "---|" * len(SCORES)]
     rows = []
     for photos in o.photos:
@@ -157,7 +178,8 @@ def main():
     parser.add_argument("--size", type=int, default=256)
     parser.add_argument("--steps", type=int, default=4000)
     parser.add_argument("--batch", type=int, default=4)
-    parser.add_argument("--balance-steps", type=int, default=0, help="of train guided (0: its default)")
+    parser.add_argument("--photo-options", default="", help="of train photo, one text: those of runs of other lengths")
+    parser.add_argument("--guided-options", default="", help="of train guided, the same")
     parser.add_argument("--score-frames", type=int, default=8)
     parser.add_argument("--profile", default="cpu")
     parser.add_argument("--threads", type=int, default=1)

@@ -5,13 +5,18 @@ import subprocess
 import sys
 
 
-def call(arguments, log):
-    """Runs a command to its end; its lines go to `log`. A command that fails ends the program."""
+def exit_code(arguments, log):
+    """Runs a command to its end; its lines go to `log`."""
     with open(log, "a", encoding="utf-8") as lines:
         lines.write(" ".join(arguments) + "\n")
         lines.flush()
-        if subprocess.run(arguments, stdout=lines, stderr=lines, check=False).returncode != 0:
-            sys.exit(f"stopped in, or failed: {' '.join(arguments)}\nsee {log}")
+        return subprocess.run(arguments, stdout=lines, stderr=lines, check=False).returncode
+
+
+def call(arguments, log):
+    """The same; a command that fails ends the program."""
+    if exit_code(arguments, log) != 0:
+        sys.exit(f"stopped in, or failed: {' '.join(arguments)}\nsee {log}")
 
 
 def mean_and_deviation(values):

@@ -7,15 +7,18 @@
 #include <vector>
 
 #include "bodyloom/geometry/base/stopwatch.h"
+#include "bodyloom/geometry/track.h"
 #include "bodyloom/pipelines/avatar/avatar_scores.h"
+#include "bodyloom/pipelines/avatar/learned_avatar.h"
 #include "bodyloom/pipelines/callbacks.h"
 
 namespace bodyloom {
 
 /// One of `track` and `data` is given, or both with a video.
 struct AnimateAvatarRequest {
-  std::string run;         ///< folder of the trained run, or its avatar.npz
-  std::string track;       ///< the motion, .npz; empty: that of `data`
+  std::string run;                ///< folder of the trained run, or its avatar.npz
+  std::string track;              ///< the motion, .npz; empty: that of `data`
+  const Track* motion = nullptr;  ///< the motion in memory, borrowed; `track` is then its name in messages
   std::string data;        ///< pictures to compare with: a single-person dataset, or a video with `track` and `mask`
   std::string mask;        ///< of the video
   std::string body;        ///< the track's body; empty: the built-in body
@@ -50,5 +53,8 @@ struct AnimateAvatarSummary {
 /// Throws RequestError for a request that contradicts itself, std::runtime_error for files that cannot be used,
 /// Cancelled.
 AnimateAvatarSummary AnimateAvatar(const AnimateAvatarRequest& request, const PipelineCallbacks& callbacks = {});
+/// The same of a person who has been read; the request's run and body are not looked at.
+AnimateAvatarSummary AnimateLearnedAvatar(const LearnedAvatar& avatar, const AnimateAvatarRequest& request,
+                                          const PipelineCallbacks& callbacks = {});
 
 }  // namespace bodyloom

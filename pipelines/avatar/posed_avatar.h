@@ -26,6 +26,7 @@ class PosedAvatar {
 
   /// From now on frames have the bones of a garment: frame t those of shown[t], or of t where `shown` is empty.
   void Wear(GarmentBones bones, std::vector<int> shown = {});
+  [[nodiscard]] const GarmentBones& garment() const { return garment_; }  ///< without frames: none
 
   /// Of a frame with a result.
   void MakeFrame(int t, AvatarFrame* frame) const;
@@ -43,7 +44,7 @@ class PosedAvatar {
   double scale_;
   int num_threads_, width_, height_;
   std::vector<PersonExtent> extents_;  ///< pixels of the track's picture
-  GarmentBones garment_;               ///< without frames: none
+  GarmentBones garment_;
   std::vector<int> shown_;
 };
 

@@ -1,24 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A raw video to everybody in it: people are detected, linked over the clip, and tracked as one scene.
+/// A raw video to everybody in it: people are detected, linked over the clip, and tracked as one scene; in files or in
+/// memory.
 #pragma once
 
-#include <optional>
 #include <string>
+#include <vector>
 
 #include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/pipelines/track/people_in_clip.h"
+#include "bodyloom/pipelines/track/scene_inputs.h"
 #include "bodyloom/pipelines/track/track_people_report.h"
-#include "bodyloom/pipelines/track/track_request.h"
+#include "bodyloom/tracking/track_summary.h"
 
 namespace bodyloom {
 
-struct TrackPeopleClipRequest {
-  /// The video, its span, the detector, the camera, what else is known and how to solve; `side_view` is of the overlay.
-  /// Its `person`, its other observations and its outputs are not used.
-  TrackRequest track;
-  std::string out;             ///< folder, made when it is not there
-  int max_people = 0;          ///< at most so many: the largest and longest in view; 0: everybody
-  std::optional<int> person;   ///< only this one, numbered as LinkPeople() does (0: the largest and longest in view)
-  double least_seconds = 0.5;  ///< whoever is seen for less is left out; in short clips half of the clip
+struct TrackPeopleClipRequest : TrackPeopleRequest {
+  std::string out;  ///< folder, made when it is not there
   bool overlay = true;
   bool report = false;  ///< the clip's page
   bool masks = false;   ///< each person's mask is written too
@@ -34,7 +31,17 @@ struct TrackPeopleClipRequest {
 ///   summary.json     ToJson(TrackPeopleReport)
 /// Files of these names are replaced; tracks of people whom this run does not find stay. Throws RequestError for a
 /// request that contradicts itself, Cancelled, and std::runtime_error naming a file that cannot be used, or saying that
-/// nobody was found or could be tracked.
-TrackPeopleReport TrackPeopleClip(const TrackPeopleClipRequest& request, const PipelineCallbacks& callbacks = {});
+/// nobody was found or could be tracked. `given` takes the place of the request's body and camera.
+TrackPeopleReport TrackPeopleClip(const TrackPeopleClipRequest& request, const PipelineCallbacks& callbacks = {},
+                                  const GivenInMemory& given = {});
+
+struct TrackedPeople {
+  std::vector<TrackSequenceResult> people;  ///< in the order of report.people; some may have status kFailure
+  TrackPeopleReport report;                 ///< names no files
+};
+
+/// The tracks that TrackPeopleClip() would write, to the byte, without any file. Throws as it does.
+TrackedPeople TrackPeopleToMemory(const TrackPeopleRequest& request, const PipelineCallbacks& callbacks = {},
+                                  const GivenInMemory& given = {});
 
 }  // namespace bodyloom

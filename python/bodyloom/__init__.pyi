@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 __all__ = [
     "FRAME_STATUS",
+    "Avatar",
     "Body",
     "Camera",
     "Cancelled",
@@ -21,13 +22,17 @@ __all__ = [
     "LiveTracker",
     "Person",
     "Renderer",
+    "ShownAvatar",
     "Track",
     "TrackSummary",
     "__version__",
     "describe",
+    "detect",
     "evaluate",
     "export",
+    "parse_photo",
     "render",
+    "run",
     "synthetic_clip",
     "track",
 ]
@@ -41,6 +46,7 @@ _Status = Literal["tracked", "weak", "interpolated", "lost"]
 _Velocity = Literal["savgol", "central", "backward", "analytic"]
 _Axes = Literal["camera", "world", "body"]
 _Weighting = Literal["area", "angle"]
+_Network = Literal["lite", "full", "heavy"]
 _What = Literal["overlay", "iuv", "parts", "normal", "depth", "texture", "error"]
 
 __version__: Final[str]
@@ -366,6 +372,72 @@ class Person:
     @property
     def shares(self) -> dict[str, float]: ...
 
+class ShownAvatar:
+    def picture(self, frame: int) -> _Pictures: ...
+    @property
+    def width(self) -> int: ...
+    @property
+    def height(self) -> int: ...
+    def __len__(self) -> int: ...
+
+class Avatar:
+    @staticmethod
+    def train(
+        data: _Path,
+        *,
+        out: _Path,
+        track: _Path | None = None,
+        mask: _Path | None = None,
+        body: _Path | None = None,
+        steps: int = 6000,
+        minutes: float | None = None,
+        seed: int = 1,
+        motion: bool = True,
+        garment: bool = True,
+        refine: bool = False,
+        refined_track: _Path | None = None,
+        resume: bool = False,
+        threads: int = 0,
+        progress: _Progress | None = None,
+    ) -> Avatar: ...
+    @staticmethod
+    def load(run: _Path, *, body: _Path | None = None) -> Avatar: ...
+    def show(
+        self,
+        track: Track | _Path,
+        *,
+        view_yaw: str = "",
+        freeze: str = "",
+        size: int | None = None,
+        keep_shape: bool = False,
+        threads: int = 0,
+        progress: _Progress | None = None,
+    ) -> ShownAvatar: ...
+    def animate(
+        self,
+        track: Track | _Path,
+        *,
+        out: _Path | None = None,
+        pictures: _Path | None = None,
+        report: _Path | None = None,
+        ply: _Path | None = None,
+        background: _Path | None = None,
+        view_yaw: str = "",
+        freeze: str = "",
+        size: int | None = None,
+        keep_shape: bool = False,
+        threads: int = 0,
+        progress: _Progress | None = None,
+    ) -> None: ...
+    @property
+    def gaussians(self) -> int: ...
+    @property
+    def has_garment(self) -> bool: ...
+    @property
+    def has_motion(self) -> bool: ...
+    @property
+    def betas(self) -> _Doubles: ...
+
 class Evaluation:
     @property
     def protocol(self) -> str: ...
@@ -417,6 +489,7 @@ def track(
     rendered_weight: float = 1.0,
     velocity_weight: float = 0.0,
     straight_knees: float | None = None,
+    detector: _Network = "heavy",
     pose_model: _Path | None = None,
     box_model: _Path | None = None,
     models: _Path | None = None,
@@ -426,6 +499,56 @@ def track(
     end_s: float | None = None,
     progress: _Progress | None = None,
 ) -> Track: ...
+def run(
+    video: _Path,
+    *,
+    out: _Path | None = None,
+    people: int = 0,
+    person: int | None = None,
+    least_seconds: float = 0.5,
+    fps: float | None = None,
+    min_confidence: float = 0.0,
+    view: str = "",
+    camera: Camera | _Path | None = None,
+    focal_px: float | None = None,
+    focal_35mm: float | None = None,
+    body: Body | _Path | None = None,
+    stature_m: float | None = None,
+    prior: _Path | None = None,
+    lifter: _Path | None = None,
+    detector: _Network = "heavy",
+    pose_model: _Path | None = None,
+    box_model: _Path | None = None,
+    models: _Path | None = None,
+    detect_rate: float | None = None,
+    mask: bool = True,
+    begin_s: float = 0.0,
+    end_s: float | None = None,
+    solver: Literal["chain", "ceres"] = "chain",
+    threads: int = 0,
+    uncertainty: bool = True,
+    ground: bool = True,
+    overlay: bool = True,
+    side_view: bool = False,
+    masks: bool = False,
+    report: bool = False,
+    progress: _Progress | None = None,
+) -> list[Track]: ...
+def detect(
+    video: _Path,
+    *,
+    fps: float | None = None,
+    detector: _Network = "heavy",
+    pose_model: _Path | None = None,
+    box_model: _Path | None = None,
+    models: _Path | None = None,
+    people: int = 0,
+    detect_rate: float | None = None,
+    begin_s: float = 0.0,
+    end_s: float | None = None,
+    threads: int = 0,
+    progress: _Progress | None = None,
+) -> list[Keypoints]: ...
 def parse_photo(
     image: _Path,
     *,

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 
@@ -15,9 +16,13 @@
 #include "bodyloom/data_tools/observations/part_labels.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/data_tools/video/video_reader.h"
+#include "bodyloom/geometry/base/check.h"
 #include "bodyloom/pipelines/avatar/animate_avatar.h"
+#include "bodyloom/pipelines/avatar/avatar_picture.h"
 #include "bodyloom/pipelines/avatar/frame_spans.h"
+#include "bodyloom/pipelines/avatar/learned_avatar.h"
 #include "bodyloom/pipelines/avatar/refined_track.h"
+#include "bodyloom/pipelines/avatar/shown_avatar.h"
 #include "bodyloom/pipelines/synthesis/synthesize_person.h"
 #include "tests/data_tools/formats/temporary_file.h"
 
@@ -140,6 +145,44 @@ TEST(TrainAvatar, LearnsADatasetsPersonAndShowsIt) {
   turned.set.clear();
   turned.size = 0, turned.data = Scene().File("person");
   EXPECT_THROW(AnimateAvatar(turned), RequestError);
+}
+
+TEST(ShownAvatar, DrawsInMemoryWhatTheFilesShow) {
+  const TemporaryFolder folder;
+  TrainAvatarRequest train = SmallRequest(folder.File("run"));
+  train.steps = 5;
+  TrainAvatar(train);
+  AnimateAvatarRequest files;
+  files.run = train.out;
+  files.track = Scene().File("person/track.npz");
+  files.view_yaw = "40", files.size = 96;
+  files.pictures = folder.File("files");
+  AnimateAvatar(files);
+
+  const LearnedAvatar avatar = ReadLearnedAvatar(train.out, "");
+  const Track track = ReadTrack(files.track);
+  ShownMotion motion;
+  motion.track = track, motion.where = "dance", motion.view_yaw = "40", motion.size = 96;
+  ShownAvatar shown(avatar, motion, 1, {});
+  ASSERT_EQ(shown.num_frames(), kFrames);
+  for (const int t : {7, 2}) {  // in any order
+    const cv::Mat picture = cv::imread(Concatenate(files.pictures, "/00000", t, ".png"), cv::IMREAD_UNCHANGED);
+    const std::vector<uint8_t> drawn = WithAlpha(shown.Draw(t), shown.width(), shown.height());
+    ASSERT_EQ(drawn.size(), picture.total() * picture.elemSize());
+    EXPECT_TRUE(std::equal(drawn.begin(), drawn.end(), picture.data)) << "frame " << t;
+  }
+
+  // A person and a motion in memory, files all the same.
+  AnimateAvatarRequest memory = files;
+  memory.motion = &track;
+  memory.run = memory.track = "nothere";
+  memory.pictures = folder.File("memory");
+  AnimateLearnedAvatar(avatar, memory);
+  EXPECT_EQ(ReadFileBytes(memory.pictures + "/000007.png"), ReadFileBytes(files.pictures + "/000007.png"));
+
+  motion.view_yaw = "aside";
+  EXPECT_THROW(ShownAvatar(avatar, motion, 1, {}), RequestError);
+  EXPECT_THROW(ReadLearnedAvatar(folder.File("nothere"), ""), std::runtime_error);
 }
 
 TEST(TrainAvatar, MotionIsLearnedAndShownAsItWasLearned) {

@@ -15,6 +15,7 @@
 #include "bodyloom/data_tools/observations/load_detections.h"
 #include "bodyloom/data_tools/observations/part_labels.h"
 #include "bodyloom/data_tools/video/video_reader.h"
+#include "bodyloom/geometry/base/check.h"
 #include "tests/support/paths.h"
 #include "tests/support/real_video.h"
 #include "tests/support/scratch_folder.h"
@@ -125,6 +126,28 @@ TEST_F(TrackPeopleClipOnRealVideo, CancelledItKeepsWhatWasDetected) {
   std::vector<std::string> left;
   for (const auto& entry : std::filesystem::directory_iterator(request.out)) left.push_back(entry.path().filename());
   EXPECT_EQ(left, std::vector<std::string>{"detections.npz"});
+}
+
+TEST_F(TrackPeopleClipOnRealVideo, InMemoryItIsTheSame) {
+  TrackPeopleClipRequest request = TwoPeople();
+  request.track.to_s = 0.6;
+  request.overlay = false;
+  TrackPeopleClip(request);
+  const TrackedPeople found = TrackPeopleToMemory(request);
+  ASSERT_EQ(found.people.size(), 2U);
+  EXPECT_EQ(found.report.num_found, 2);
+  EXPECT_TRUE(found.report.outputs.empty());
+  for (int i = 0; i < 2; ++i) {
+    const Track written = ReadTrack(Concatenate(request.out, "/person_", i, ".npz"));
+    EXPECT_EQ(found.people[size_t(i)].track.motion.poses, written.motion.poses) << "person " << i;
+    EXPECT_EQ(found.people[size_t(i)].track.motion.trans, written.motion.trans) << "person " << i;
+  }
+  // A camera in memory in the place of one that is estimated.
+  GivenInMemory given;
+  given.camera = MakePinhole(found.report.width, found.report.height, 1500);
+  for (const TrackSequenceResult& person : TrackPeopleToMemory(request, {}, given).people) {
+    EXPECT_EQ(person.track.camera.fx, 1500);
+  }
 }
 
 TEST(TrackPeopleClip, WhatContradictsItselfIsNamed) {

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/avatar/shown_avatar.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "bodyloom/data_tools/motion/freeze_track.h"
+#include "bodyloom/data_tools/motion/motion_tools.h"
+#include "bodyloom/data_tools/motion/shape_track.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/pipelines/avatar/worn_garment.h"
+#include "bodyloom/pipelines/people/animation_limits.h"
+#include "bodyloom/pipelines/people/freeze.h"
+#include "bodyloom/pipelines/people/view_angles.h"
+
+namespace bodyloom {
+
+ShownAvatar::ShownAvatar(const LearnedAvatar& avatar, ShownMotion motion, int num_threads,
+                         const PipelineCallbacks& callbacks)
+    : avatar_(avatar), threads_(num_threads) {
+  track_ = std::move(motion.track);
+  try {
+    Pose(motion, callbacks);
+  } catch (const RequestError&) {
+    throw;
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(motion.where + ": " + error.what());
+  }
+  if (width() < 2 || height() < 2 || std::max(width(), height()) > kLongestPictureSide) {
+    throw std::runtime_error(Concatenate(motion.where, ": pictures of ", width(), "x", height(),
+                                         ", expected sides of 2 to ", kLongestPictureSide));
+  }
+}
+
+void ShownAvatar::Pose(const ShownMotion& motion, const PipelineCallbacks& callbacks) {
+  const BodyModel& body = *avatar_.body;
+  if (!motion.keeps_shape) track_ = WithShape(body, track_, avatar_.file.betas);
+  int first = 0, last = track_.num_frames() - 1;
+  std::vector<int> shown;
+  moving_ = track_;
+  if (!motion.freeze.empty()) {
+    const Freeze freeze = ReadFreeze(motion.freeze, track_.num_frames());
+    shown = FrozenAt(track_.num_frames(), freeze.frame, freeze.count);
+    track_ = FramesInOrder(track_, shown);
+    first = freeze.frame, last = freeze.frame + freeze.count;
+  }
+  const int longer = std::max(track_.camera.width, track_.camera.height);
+  const double scale = motion.size > 0 && longer > 0 ? static_cast<double>(motion.size) / longer : 1;
+  posed_.emplace(body, track_, ViewAngles(motion.view_yaw, track_.num_frames(), first, last), scale, threads_,
+                 motion.where);
+  if (avatar_.file.garment) {
+    posed_->Wear(CutAnew(body, avatar_.file.betas, *avatar_.file.garment, avatar_.run).Along(moving_, callbacks),
+                 shown);
+  }
+  if (avatar_.file.motion) OpenNetwork(std::move(shown));
+}
+
+void ShownAvatar::OpenNetwork(std::vector<int> shown) {
+  const AvatarMotionFile& file = *avatar_.file.motion;
+  if (file.options.maps != AvatarMotionMaps::kChannels) {
+    throw std::runtime_error(Concatenate(avatar_.run, ": its network of the motion wants ", file.options.maps,
+                                         " maps, expected ", int{AvatarMotionMaps::kChannels},
+                                         "; it is of another version of this program"));
+  }
+  network_.emplace(*avatar_.body, file.options);
+  network_->Anchor(avatar_.file.body);
+  maps_.emplace(*avatar_.body, moving_, file.options.side, file.fps, std::move(shown), threads_);
+  of_frame_.resize(network_->num_values());
+}
+
+void ShownAvatar::AddMotion(int t) {
+  if (!network_) return;
+  maps_->Maps(t, of_frame_);
+  network_->Compute(avatar_.file.motion->parameters, of_frame_, threads_, &offsets_);
+}
+
+const SplatPicture& ShownAvatar::Draw(int t) {
+  posed_->MakeFrame(t, &frame_);
+  return Draw(t, frame_, posed_->ViewAt(t));
+}
+
+const SplatPicture& ShownAvatar::Draw(int t, const AvatarFrame& frame, const AvatarView& view) {
+  AddMotion(t);
+  painter_.Draw(avatar_.file.body, avatar_.body->data().faces, frame, offsets_, view);
+  return painter_.picture();
+}
+
+std::vector<float> ShownAvatar::GarmentShare() {
+  return avatar_.file.garment ? painter_.ShareOf(GaussianKind::kCloth, avatar_.file.body) : std::vector<float>();
+}
+
+}  // namespace bodyloom

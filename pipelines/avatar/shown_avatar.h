@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A person of Gaussians in a motion, drawn frame by frame: posed, its garment simulated, its network told of the motion.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bodyloom/geometry/track.h"
+#include "bodyloom/pipelines/avatar/learned_avatar.h"
+#include "bodyloom/pipelines/avatar/motion_maps.h"
+#include "bodyloom/pipelines/avatar/posed_avatar.h"
+#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/render/avatar/avatar_painter.h"
+#include "bodyloom/render/avatar/motion/motion_network.h"
+
+namespace bodyloom {
+
+struct ShownMotion {
+  Track track;        ///< of the person's body
+  std::string where;  ///< the track's file, for messages
+  /// The track's shape is kept; otherwise it is the person's.
+  bool keeps_shape = false;
+  std::string view_yaw;  ///< how far the view is turned (pipelines/people/view_angles.h)
+  std::string freeze;    ///< where time stands still (pipelines/people/freeze.h); empty: nowhere
+  int size = 0;          ///< pixels of the picture's longer side; 0: as the track's
+};
+
+class ShownAvatar {
+ public:
+  /// The garment is simulated along the whole motion, which is most of what this takes. Keeps a reference to `avatar`.
+  /// Throws std::runtime_error naming what cannot be used, RequestError for a view or freeze that is none, Cancelled.
+  ShownAvatar(const LearnedAvatar& avatar, ShownMotion motion, int num_threads, const PipelineCallbacks& callbacks);
+  ShownAvatar(const ShownAvatar&) = delete;
+  ShownAvatar& operator=(const ShownAvatar&) = delete;
+
+  /// As it is shown: of the person's shape, its frames repeated where time stands still.
+  [[nodiscard]] const Track& track() const { return track_; }
+  [[nodiscard]] int num_frames() const { return track_.num_frames(); }
+  [[nodiscard]] int width() const { return posed_->width(); }
+  [[nodiscard]] int height() const { return posed_->height(); }
+  /// Whether a frame shows the person; others cannot be drawn.
+  [[nodiscard]] bool HasResult(int t) const { return posed_->HasResult(t); }
+  [[nodiscard]] Camera CameraAt(int t) const { return posed_->CameraAt(t); }
+  /// Where the garment's nodes are in the motion's own frames; without frames: none is worn.
+  [[nodiscard]] const GarmentBones& garment() const { return posed_->garment(); }
+  [[nodiscard]] bool has_network() const { return network_.has_value(); }
+
+  /// Frame t, which has a result. The references that this class gives are valid until the next Draw.
+  const SplatPicture& Draw(int t);
+  /// The motion of frame t on a body that is posed and looked at as given.
+  const SplatPicture& Draw(int t, const AvatarFrame& frame, const AvatarView& view);
+
+  // Of the picture last drawn.
+  [[nodiscard]] const SplatPicture& picture() const { return painter_.picture(); }
+  [[nodiscard]] const CameraGaussians& posed() const { return painter_.posed(); }
+  [[nodiscard]] const AvatarFrame& frame() const { return frame_; }  ///< of Draw(t)
+  [[nodiscard]] const GaussianOffsets& offsets() const { return offsets_; }
+  /// How much of each pixel is the garment, in [0, 1]; empty: none is worn.
+  [[nodiscard]] std::vector<float> GarmentShare();
+
+ private:
+  void Pose(const ShownMotion& motion, const PipelineCallbacks& callbacks);
+  void OpenNetwork(std::vector<int> shown);
+  void AddMotion(int t);
+
+  const LearnedAvatar& avatar_;
+  const int threads_;
+  Track track_;
+  Track moving_;  ///< in which no time stands still; for the garment and the network
+  std::optional<PosedAvatar> posed_;
+  std::optional<AvatarMotion> network_;
+  std::optional<AvatarMotionMaps> maps_;
+  std::vector<float> of_frame_;
+  GaussianOffsets offsets_;
+  AvatarFrame frame_;
+  AvatarPainter painter_;
+};
+
+}  // namespace bodyloom
