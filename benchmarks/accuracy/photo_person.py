@@ -47,6 +47,18 @@ def scores(drawn, truth, mask, used):
     return np.median(psnr), np.percentile(psnr, 5), np.median(iou)
 
 
+def masks(path):
+    """(T, H, W), 1 where the person is: data_tools/observations/mask_runs.h."""
+    with np.load(path) as file:
+        width, height = file["image_size"]
+        pictures = np.zeros((len(file["mask_box"]), height, width), np.uint8)
+        ends, all_runs = np.cumsum(file["mask_count"]), file["mask_runs"]
+        for picture, (x, y, w, h), end, count in zip(pictures, file["mask_box"], ends, file["mask_count"]):
+            runs = all_runs[end - count:end]
+            picture[y:y + h, x:x + w] = np.repeat(np.arange(count) % 2, runs).reshape(h, w)
+    return pictures
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--bodyloom", required=True)
@@ -61,7 +73,7 @@ def main():
     if not (people / "person_0.npz").exists():
         subprocess.run([o.bodyloom, "run", str(o.video), "--out", str(people), "--people", "1", "--masks", "--no-overlay",
                         "--quiet"], check=True)
-    mask = np.load(people / "mask_0.npz")["labels"]
+    mask = masks(people / "mask_0.npz")
     count, height, width = mask.shape
     truth = frames_of(o.video, width, height)[:count]
     rows = []

@@ -202,10 +202,9 @@ size_t SizeOf(std::span<const std::string_view> pieces) {
 
 /// The pieces, one after the other, packed; nothing when that is no smaller. Grows with what comes out: pieces may be most
 /// of the memory there is.
-std::optional<std::string> Deflate(std::span<const std::string_view> pieces, int level, ZipPacking packing) {
-  const int strategy = packing == ZipPacking::kRuns ? Z_RLE : Z_DEFAULT_STRATEGY;
+std::optional<std::string> Deflate(std::span<const std::string_view> pieces, int level) {
   z_stream stream{};
-  if (deflateInit2(&stream, level, Z_DEFLATED, -MAX_WBITS, 9, strategy) != Z_OK) throw std::bad_alloc();
+  if (deflateInit2(&stream, level, Z_DEFLATED, -MAX_WBITS, 9, Z_DEFAULT_STRATEGY) != Z_OK) throw std::bad_alloc();
   const std::unique_ptr<z_stream, int (*)(z_stream*)> end(&stream, deflateEnd);
   std::vector<char> room(size_t{1} << 18);
   std::string packed;
@@ -280,11 +279,11 @@ std::vector<ZipMember> ReadZip(std::string_view archive, const std::string& wher
   return members;
 }
 
-void ZipBuilder::Add(const std::string& name, std::span<const std::string_view> pieces, int level, ZipPacking packing) {
+void ZipBuilder::Add(const std::string& name, std::span<const std::string_view> pieces, int level) {
   const size_t size = SizeOf(pieces);
   BODYLOOM_CHECK(size < kIn64 && name.size() <= std::numeric_limits<uint16_t>::max(), "zip member '", name, "' of ",
                  size, " bytes, expected less than 4 GiB");
-  const std::optional<std::string> packed = Deflate(pieces, level, packing);
+  const std::optional<std::string> packed = Deflate(pieces, level);
   DirectoryEntry entry;
   entry.name = name;
   entry.method = packed ? kDeflated : kStored;
@@ -326,11 +325,11 @@ std::string ZipBuilder::Finish() && {
   return std::move(archive_);
 }
 
-std::string MakeZip(const std::vector<ZipMember>& members, int level, ZipPacking packing) {
+std::string MakeZip(const std::vector<ZipMember>& members, int level) {
   ZipBuilder zip;
   for (const ZipMember& member : members) {
     const std::string_view bytes = member.bytes;
-    zip.Add(member.name, {&bytes, 1}, level, packing);
+    zip.Add(member.name, {&bytes, 1}, level);
   }
   return std::move(zip).Finish();
 }

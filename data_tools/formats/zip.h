@@ -26,17 +26,13 @@ bool LooksLikeZip(std::string_view bytes);
 /// was expected; together the members take at most max_bytes, which is checked before memory is taken.
 std::vector<ZipMember> ReadZip(std::string_view archive, const std::string& where, size_t max_bytes);
 
-/// How members are deflated: by whatever repeats, or by runs of one byte alone, which is fast.
-enum class ZipPacking { kGeneral, kRuns };
-
 /// An archive member by member, with fixed dates, deflated where that is smaller, so that equal members give equal bytes.
 /// What is packed is not copied first: beside the pieces an archive takes its own size.
 class ZipBuilder {
  public:
-  /// The member whose bytes are the pieces one after the other. level 1..9 as in zlib; kRuns takes no notice of it.
-  /// Throws std::invalid_argument from 4 GiB on.
-  void Add(const std::string& name, std::span<const std::string_view> pieces, int level = 6,
-           ZipPacking packing = ZipPacking::kGeneral);
+  /// The member whose bytes are the pieces one after the other. level 1..9 as in zlib. Throws
+  /// std::invalid_argument from 4 GiB on.
+  void Add(const std::string& name, std::span<const std::string_view> pieces, int level = 6);
   /// Throws std::invalid_argument for archives of 4 GiB and more, or 65535 members.
   [[nodiscard]] std::string Finish() &&;
 
@@ -46,6 +42,6 @@ class ZipBuilder {
 };
 
 /// The archive of the members in the given order, by ZipBuilder.
-std::string MakeZip(const std::vector<ZipMember>& members, int level = 6, ZipPacking packing = ZipPacking::kGeneral);
+std::string MakeZip(const std::vector<ZipMember>& members, int level = 6);
 
 }  // namespace bodyloom

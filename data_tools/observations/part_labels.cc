@@ -5,11 +5,11 @@
 #include <array>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
+#include <utility>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/formats/npz.h"
 #include "bodyloom/data_tools/formats/printable.h"
-#include "bodyloom/data_tools/formats/zip.h"
+#include "bodyloom/data_tools/observations/mask_runs.h"
 #include "bodyloom/data_tools/observations/observations_npz.h"
 #include "bodyloom/geometry/base/check.h"
 
@@ -118,44 +118,9 @@ LabelImage CutPerson(const cv::Mat& labels, const ReadPartLabelsOptions& options
   return result;
 }
 
-}  // namespace
-
-void WriteMask(const std::string& path, const PartLabelSequence& mask) {
-  BODYLOOM_CHECK(mask.frames.size() == mask.timestamps.size() && !mask.frames.empty(),
-                 "WriteMask: ", mask.frames.size(), " frames and ", mask.timestamps.size(), " timestamps");
-  const size_t width = size_t(mask.image_width), height = size_t(mask.image_height);
-  constexpr size_t kMostBytes = (size_t{1} << 32) - (size_t{1} << 20);
-  if (mask.frames.size() > kMostBytes / std::max<size_t>(1, width * height)) {
-    throw std::runtime_error(Concatenate(path, ": ", mask.frames.size(), " masks of ", width, "x", height,
-                                         " pixels are more than the 4 GiB that one file holds; take fewer frames"));
-  }
-  std::vector<uint8_t> labels(mask.frames.size() * width * height, 0);
-  for (size_t t = 0; t < mask.frames.size(); ++t) {
-    const LabelImage& frame = mask.frames[t];
-    if (frame.labels.empty()) continue;
-    BODYLOOM_CHECK(frame.x_begin >= 0 && frame.y_begin >= 0 && frame.x_begin + frame.width <= mask.image_width &&
-                       frame.y_begin + frame.height <= mask.image_height,
-                   "WriteMask: the rectangle of frame ", t, " leaves the image");
-    for (int y = 0; y < frame.height; ++y) {
-      const uint8_t* from = &frame.labels[size_t(y) * frame.width];
-      uint8_t* to = &labels[(t * height + frame.y_begin + y) * width + frame.x_begin];
-      std::transform(from, from + frame.width, to, [](uint8_t label) { return uint8_t(label != 0); });
-    }
-  }
-  NpzArrays arrays;
-  arrays["labels"] = NdArray::FromUInt8(labels.data(), {int64_t(mask.frames.size()), int64_t(height), int64_t(width)});
-  arrays["label_kind"] = NdArray::FromString(kMaskKind);
-  arrays["timestamps"] = NdArray::FromDoubles(mask.timestamps.data(), {int64_t(mask.timestamps.size())});
-  std::vector<ZipMember> members;
-  for (const auto& [name, array] : arrays) members.push_back({name + ".npy", NpyBytes(array)});
-  // A mask is runs of one byte: 217 MB of them (367 pictures of 576×1024) take a seventeenth of the time this way.
-  WriteFileAtomically(path, MakeZip(members, 6, ZipPacking::kRuns));
-}
-
-bool HasPartLabels(const NpzArrays& arrays) { return arrays.find("labels") != arrays.end(); }
-
-PartLabelSequence PartLabelsFromNpz(const NpzArrays& arrays, const std::string& where,
-                                    const ReadPartLabelsOptions& options, int64_t* dropped_pixels) {
+/// Of `labels`, a picture a frame.
+PartLabelSequence FromPictures(const NpzArrays& arrays, const std::string& where, const ReadPartLabelsOptions& options,
+                               int64_t* dropped_pixels) {
   const NdArray& array = RequireArray(arrays, "labels", where);
   const auto fail = [&](const std::string& message) { throw std::runtime_error(where + ": labels: " + message); };
   if (array.shape.size() != 3 || array.dtype != DType::kU8) {
@@ -169,15 +134,6 @@ PartLabelSequence PartLabelsFromNpz(const NpzArrays& arrays, const std::string& 
   PartLabelSequence sequence;
   sequence.image_width = static_cast<int>(W);
   sequence.image_height = static_cast<int>(H);
-  if (arrays.find("timestamps") != arrays.end()) {
-    sequence.timestamps = TimestampsFromNpz(arrays, where);
-    if (sequence.timestamps.size() != static_cast<size_t>(T)) {
-      fail(Concatenate(T, " frames but ", sequence.timestamps.size(), " timestamps"));
-    }
-  } else {
-    for (int64_t t = 0; t < T; ++t) sequence.timestamps.push_back(static_cast<double>(t) / options.fps);
-  }
-  if (dropped_pixels != nullptr) *dropped_pixels = 0;
   const auto* bytes = reinterpret_cast<const uint8_t*>(array.bytes.data());
   for (int64_t t = 0; t < T; ++t) {
     const uint8_t* first = bytes + t * H * W;
@@ -189,6 +145,51 @@ PartLabelSequence PartLabelsFromNpz(const NpzArrays& arrays, const std::string& 
     }
     const cv::Mat labels(static_cast<int>(H), static_cast<int>(W), CV_8U, const_cast<uint8_t*>(first));
     sequence.frames.push_back(CutPerson(labels, options, dropped_pixels));
+  }
+  return sequence;
+}
+
+/// Of masks as runs, cut as pictures are.
+PartLabelSequence FromRuns(const NpzArrays& arrays, const std::string& where, const ReadPartLabelsOptions& options,
+                           int64_t* dropped_pixels) {
+  PartLabelSequence sequence = MaskFromRuns(arrays, where);
+  for (LabelImage& frame : sequence.frames) {
+    if (frame.labels.empty()) continue;
+    const cv::Mat labels(frame.height, frame.width, CV_8U, frame.labels.data());
+    LabelImage person = CutPerson(labels, options, dropped_pixels);
+    if (!person.labels.empty()) person.x_begin += frame.x_begin, person.y_begin += frame.y_begin;
+    frame = std::move(person);
+  }
+  return sequence;
+}
+
+}  // namespace
+
+void WriteMask(const std::string& path, const PartLabelSequence& mask) {
+  BODYLOOM_CHECK(mask.frames.size() == mask.timestamps.size() && !mask.frames.empty(),
+                 "WriteMask: ", mask.frames.size(), " frames and ", mask.timestamps.size(), " timestamps");
+  NpzArrays arrays = MaskRuns(mask);
+  arrays["label_kind"] = NdArray::FromString(kMaskKind);
+  arrays["timestamps"] = NdArray::FromDoubles(mask.timestamps.data(), {int64_t(mask.timestamps.size())});
+  WriteNpz(path, arrays);
+}
+
+bool HasPartLabels(const NpzArrays& arrays) { return arrays.contains("labels") || HasMaskRuns(arrays); }
+
+PartLabelSequence PartLabelsFromNpz(const NpzArrays& arrays, const std::string& where,
+                                    const ReadPartLabelsOptions& options, int64_t* dropped_pixels) {
+  if (dropped_pixels != nullptr) *dropped_pixels = 0;
+  PartLabelSequence sequence = HasMaskRuns(arrays) ? FromRuns(arrays, where, options, dropped_pixels)
+                                                   : FromPictures(arrays, where, options, dropped_pixels);
+  const size_t T = sequence.frames.size();
+  if (arrays.contains("timestamps")) {
+    sequence.timestamps = TimestampsFromNpz(arrays, where);
+    if (sequence.timestamps.size() != T) {
+      throw std::runtime_error(
+          Concatenate(where, ": labels: ", T, " frames but ", sequence.timestamps.size(), " timestamps"));
+    }
+  } else {
+    for (size_t t = 0; t < T; ++t) sequence.timestamps.push_back(static_cast<double>(t) / options.fps);
   }
   if (IsMask(arrays, where)) sequence.AsMask();
   return sequence;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// DensePose part labels, or a mask of the person, of a whole clip in one .npz: key `labels`, uint8, T×H×W, 0 = background,
 /// 1..24 = parts; optional `timestamps` (T, seconds) and `label_kind`, the text "densepose" (without the key: the same)
-/// or "person": then 1 is the person, and PartLabelSequence::AsMask() has been called on what is read.
+/// or "person": then 1 is the person, and PartLabelSequence::AsMask() has been called on what is read. A mask may be given
+/// as runs (mask_runs.h) in the place of `labels`, as this project writes it.
 #pragma once
 
 #include <string>
@@ -21,9 +22,8 @@ struct ReadPartLabelsOptions {
   bool mend_strays = true;
 };
 
-/// Writes a mask: label 1 where `frames[t]` is not 0, the rest of the image 0. Throws std::invalid_argument when frames and
-/// timestamps differ in number or a rectangle leaves the image, std::runtime_error naming the path when the images of the
-/// clip would hold more bytes than the reader takes (4 GiB), or when it cannot be written.
+/// Writes a mask as runs: the person is where `frames[t]` is not 0. Throws std::invalid_argument when frames and timestamps
+/// differ in number or a rectangle leaves the image, std::runtime_error naming the path when it cannot be written.
 void WriteMask(const std::string& path, const PartLabelSequence& mask);
 
 /// Whether an archive is one of part labels.

@@ -184,7 +184,11 @@ inline constexpr const char* kNames[] = {"v_template",
                                          "leave",
                                          "leave_bias",
                                          "pixels_per_metre",
-                                         "moves_outline"};
+                                         "moves_outline",
+                                         "label_kind",
+                                         "mask_runs",
+                                         "mask_count",
+                                         "mask_box"};
 
 /// Named arrays without the archive around them, whose checksums no mutation survives:
 /// (index of a known name, 3 bytes of length, .npy bytes) over and over.

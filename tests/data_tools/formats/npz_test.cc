@@ -239,29 +239,13 @@ TEST(Zip, PiecesMakeTheMemberThatTheirSumMakes) {
     const size_t cut = all.size() / 3;
     const std::array<std::string_view, 4> pieces = {all.substr(0, cut), "", all.substr(cut, 1),
                                                     all.substr(std::min(cut + 1, all.size()))};
-    for (const ZipPacking packing : {ZipPacking::kGeneral, ZipPacking::kRuns}) {
-      ZipBuilder zip;
-      zip.Add("member", pieces, 6, packing);
-      const std::string archive = std::move(zip).Finish();
-      EXPECT_EQ(archive, MakeZip({{"member", whole}}, 6, packing));
-      EXPECT_EQ(ReadZip(archive, "here", 1 << 24).at(0).bytes, whole);
-      EXPECT_EQ(archive.size() > whole.size(), whole != text);
-    }
+    ZipBuilder zip;
+    zip.Add("member", pieces);
+    const std::string archive = std::move(zip).Finish();
+    EXPECT_EQ(archive, MakeZip({{"member", whole}}));
+    EXPECT_EQ(ReadZip(archive, "here", 1 << 24).at(0).bytes, whole);
+    EXPECT_EQ(archive.size() > whole.size(), whole != text);
   }
-}
-
-TEST(Zip, RunsOfOneByteArePackedFastAndReadBack) {
-  // Rows of a mask, and noise that has no runs.
-  std::string mask(size_t{200} * 300, '\0'), noise(60'000, '\0');
-  for (size_t y = 50; y < 150; ++y) std::fill_n(&mask[y * 300 + y], 80, '\1');
-  uint32_t state = 1;
-  for (char& value : noise) value = static_cast<char>((state = state * 1664525 + 1013904223) >> 24);
-  const std::string archive = MakeZip({{"mask", mask}, {"noise", noise}}, 6, ZipPacking::kRuns);
-  const std::vector<ZipMember> read = ReadZip(archive, "runs.zip", size_t{1} << 20);
-  ASSERT_EQ(read.size(), 2U);
-  EXPECT_EQ(read[0].bytes, mask);
-  EXPECT_EQ(read[1].bytes, noise);
-  EXPECT_LT(archive.size(), noise.size() + mask.size() / 20);
 }
 
 TEST(Npz, RefusesZipBombs) {

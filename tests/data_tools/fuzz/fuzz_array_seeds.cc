@@ -16,6 +16,7 @@
 #include "bodyloom/data_tools/learned/parser_weights_io.h"
 #include "bodyloom/data_tools/learned/pose_prior_io.h"
 #include "bodyloom/data_tools/learned/refiner_weights_io.h"
+#include "bodyloom/data_tools/observations/mask_runs.h"
 #include "bodyloom/data_tools/observations/observations_npz.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/data_tools/video/video_writer.h"
@@ -118,6 +119,15 @@ std::string PartLabels() {
   return FrameArrays(arrays);
 }
 
+std::string Masks() {
+  PartLabelSequence mask;
+  mask.image_width = 7, mask.image_height = 6;
+  mask.frames = {{1, 2, 3, 2, {0, 1, 1, 1, 0, 0}}, {}};
+  NpzArrays arrays = MaskRuns(mask);
+  arrays["label_kind"] = NdArray::FromString("person");
+  return FrameArrays(arrays);
+}
+
 /// DensePose's file for the toy body's first faces, each corner a point of its own.
 std::string MatBytes() {
   constexpr size_t kFaces = 4;
@@ -199,7 +209,7 @@ void AddArraySeeds(std::map<std::string, std::vector<std::string>>* seeds) {
   const DenseSequence dense = TwoDenseFrames();
   const auto write = [&](const std::string& path) { WriteObservations(path, &keypoints, &dense); };
   (*seeds)["observations"] = {FramedBytesOf(write)};
-  (*seeds)["part_labels"] = {PartLabels()};
+  (*seeds)["part_labels"] = {PartLabels(), Masks()};
   for (const bool has_garment : {false, true}) {
     (*seeds)["avatar"].push_back(
         FramedBytesOf([&](const std::string& path) { WriteAvatarCheckpoint(path, SmallAvatar(has_garment)); }));

@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/evaluation/part_label_evaluation.h"
+#include "bodyloom/data_tools/observations/mask_runs.h"
 #include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
 #include "bodyloom/data_tools/synthesis/clips/rendered_labels.h"
 #include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
@@ -54,9 +56,8 @@ TEST(PartLabels, AMaskComesBackAsOne) {
   mask.image_width = 40;
   mask.image_height = 30;
   mask.timestamps = {0, 0.5, 0.75};
-  mask.frames = {{.x_begin = 10, .y_begin = 5, .width = 12, .height = 20, .labels = std::vector<uint8_t>(240, 7)},
-                 {},
-                 {.x_begin = 30, .y_begin = 20, .width = 10, .height = 10, .labels = std::vector<uint8_t>(100, 1)}};
+  LabelImage last{30, 20, 10, 10, std::vector<uint8_t>(100, 1)};
+  mask.frames = {LabelImage{10, 5, 12, 20, std::vector<uint8_t>(240, 7)}, {}, last};
   const TemporaryFolder folder;
   WriteMask(folder.File("mask.npz"), mask);
   const PartLabelSequence read = ReadPartLabels(folder.File("mask.npz"));
@@ -69,10 +70,76 @@ TEST(PartLabels, AMaskComesBackAsOne) {
       }
     }
   }
-  mask.frames[2].x_begin = 31;
+  last.x_begin = 31;
+  mask.frames[2] = last;
   EXPECT_THROW(WriteMask(folder.File("other.npz"), mask), std::invalid_argument);
   mask.timestamps.pop_back();
   EXPECT_THROW(WriteMask(folder.File("other.npz"), mask), std::invalid_argument);
+}
+
+TEST(PartLabels, AMaskAsPicturesIsRead) {
+  NpzArrays archive = Archive(SmallPerson(), {1, 30, 40});
+  archive["label_kind"] = NdArray::FromString("person");
+  const PartLabelSequence read = PartLabelsFromNpz(archive, "l.npz");
+  EXPECT_EQ(read.PartAt(0, 10, 5), 1);
+  EXPECT_EQ(read.PartAt(0, 9, 5), 0);
+}
+
+// Two minutes of a 1080p video, as pictures 7 GB.
+TEST(PartLabels, AMaskOfALongClipIsSmall) {
+  PartLabelSequence mask;
+  mask.image_width = 1920, mask.image_height = 1080;
+  LabelImage person{700, 100, 400, 900, std::vector<uint8_t>(400 * 900, 0)};
+  for (int y = 0; y < 900; ++y) {
+    for (int x = 150 - y / 8; x < 250 + y / 8; ++x) person.labels[y * 400 + x] = 1;
+  }
+  constexpr int kWritten = 3600;
+  for (int t = 0; t < kWritten; ++t) {
+    person.x_begin = 700 + t / 40;
+    mask.frames.push_back(t % 40 == 0 ? person : LabelImage());  // memory is not what is tested
+    mask.timestamps.push_back(t / 30.0);
+  }
+  const TemporaryFolder folder;
+  WriteMask(folder.File("mask.npz"), mask);
+  EXPECT_LT(std::filesystem::file_size(folder.File("mask.npz")), 1U << 20);
+  const PartLabelSequence read = ReadPartLabels(folder.File("mask.npz"));
+  ASSERT_EQ(read.num_frames(), kWritten);
+  EXPECT_EQ(read.frames[80].x_begin, 702 + 150 - 899 / 8);
+  EXPECT_EQ(read.PartAt(80, 702 + 150, 100), 1);
+  EXPECT_EQ(read.PartAt(80, 702 + 149, 100), 0);
+  EXPECT_TRUE(read.frames[81].labels.empty());
+}
+
+TEST(PartLabels, MasksThatCannotBeAreErrors) {
+  PartLabelSequence mask;
+  mask.image_width = 40, mask.image_height = 30;
+  mask.frames = {{10, 5, 3, 2, {0, 1, 1, 1, 0, 0}}, {}};
+  const NpzArrays good = MaskRuns(mask);
+  EXPECT_EQ(good.at("mask_runs").ToInts(), (std::vector<int64_t>{1, 3, 2}));
+  const auto error = [&](const std::string& name, std::vector<int32_t> values, std::vector<int64_t> shape) {
+    NpzArrays arrays = good;
+    arrays[name] = NdArray::FromInts32(values.data(), std::move(shape));
+    return FileErrorOf("m.npz", [&] { PartLabelsFromNpz(arrays, "m.npz"); });
+  };
+  EXPECT_THAT(error("mask_runs", {1, 3, 1}, {3}), HasSubstr("frame 0: runs of 5 pixels for a box of 6"));
+  EXPECT_THAT(error("mask_runs", {1, 3, 3}, {3}), HasSubstr("frame 0: runs that are not the box's 6 pixels"));
+  EXPECT_THAT(error("mask_runs", {1, -3, 8}, {3}), HasSubstr("frame 0"));
+  EXPECT_THAT(error("mask_runs", {1, 3, 2, 7}, {4}), HasSubstr("mask_runs has 4 runs, mask_count says 3"));
+  EXPECT_THAT(error("mask_count", {4, 0}, {2}), HasSubstr("frame 0: more runs"));
+  EXPECT_THAT(error("mask_count", {2, 1}, {2}), HasSubstr("frame 0"));
+  EXPECT_THAT(error("mask_count", {-1, 0}, {2}), HasSubstr("frame 0"));
+  EXPECT_THAT(error("mask_box", {38, 5, 3, 2, 0, 0, 0, 0}, {2, 4}), HasSubstr("frame 0: mask_box leaves the image"));
+  EXPECT_THAT(error("mask_box", {2147483647, 5, 3, 2, 0, 0, 0, 0}, {2, 4}), HasSubstr("leaves the image"));
+  EXPECT_THAT(error("mask_box", {0, 0, 0, 0, 0, 0, 0, 0}, {2, 4}), HasSubstr("frame 0: runs without a box"));
+  EXPECT_THAT(error("mask_box", {0, 0, 3, 2}, {1, 4}), HasSubstr("mask_box: shape 1x4, expected 2 x 4"));
+  EXPECT_THAT(error("image_size", {40, 0}, {2}), HasSubstr("image_size 40 x 0"));
+  // A few bytes that ask for a gigabyte.
+  NpzArrays bomb = good;
+  const std::vector<int32_t> size = {30000, 30000}, boxes = {0, 0, 30000, 30000, 0, 0, 0, 0}, runs = {900000000, 0, 0};
+  bomb["image_size"] = NdArray::FromInts32(size.data(), {2});
+  bomb["mask_box"] = NdArray::FromInts32(boxes.data(), {2, 4});
+  bomb["mask_runs"] = NdArray::FromInts32(runs.data(), {3});
+  EXPECT_THAT(FileErrorOf("m.npz", [&] { PartLabelsFromNpz(bomb, "m.npz"); }), HasSubstr("too many for 3 runs"));
 }
 
 TEST(PartLabels, TheKindOfLabelsIsOneOfTwo) {

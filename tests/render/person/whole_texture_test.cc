@@ -67,7 +67,8 @@ TEST_F(WholeTextureTest, OneColourStaysOneColour) {
     EXPECT_LT((found - colour).cwiseAbs().maxCoeff(), 2e-3F);
   });
   for (size_t i = 0; i < table_.size(); ++i) {
-    if (table_.in_gutter[i]) EXPECT_NEAR(whole.bgr[table_.pixel[i]], colour[0], 2e-3F) << "the gutter";
+    if (!table_.in_gutter[i]) continue;
+    EXPECT_NEAR(whole.bgr[table_.pixel[i]], colour[0], 2e-3F) << "the gutter";
   }
 }
 
@@ -164,7 +165,8 @@ TEST_F(WholeTextureTest, TrousersBesideAHandDoNotBecomeFingers) {
   const auto paint = [&](const Eigen::Vector3d& p) { return std::abs(p.x()) > reach - 0.05 ? trousers : skin; };
   Visit(Make(Seen(paint, [](const Eigen::Vector3d& p) { return p.z() > 0; })),
         [&](const Eigen::Vector3d&, BodyRegion region, TexelSource, const Eigen::Vector3f& found) {
-          if (region == BodyRegion::kHand) EXPECT_LT((found - skin).cwiseAbs().maxCoeff(), 0.1F);
+          if (region != BodyRegion::kHand) return;
+          EXPECT_LT((found - skin).cwiseAbs().maxCoeff(), 0.1F);
         });
 }
 
