@@ -222,7 +222,8 @@ class AvatarAnimation {
       if (views[0].window.empty()) continue;
       AvatarView view;
       view.camera = views[0].camera, view.window = views[0].window, view.options.num_threads = threads_;
-      scorer.Add(views[0], shown_->Draw(t, views[0].frame, view), shown_->GarmentShare());
+      const SplatPicture& picture = shown_->Draw(t, views[0].frame, view);
+      scorer.Add(views[0], picture, shown_->GarmentShare());  // of the picture drawn: not in one call with Draw()
     }
     summary_.scores = scorer.Means();
   }
