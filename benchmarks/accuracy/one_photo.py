@@ -69,8 +69,9 @@ def track_test_people(o, people):
             out = folder / "tracking"
             code = exit_code([o.bodyloom, "run", str(folder / "images"), "--out", str(out), "--people", "1", "--no-overlay",
                               "--least-seconds", "0"], o.out / "people.log")
-            if code not in (0, 1):  # stopped
-                sys.exit(f"stopped in {clip}; see {o.out / 'people.log'}")
+            lines = (o.out / "people.log").read_text(encoding="utf-8").splitlines()
+            if code != 0 and ": nobody " not in lines[-1]:  # stopped, or something else is wrong
+                sys.exit(f"stopped in, or failed: {clip}; see {o.out / 'people.log'}")
             summary = json.loads((out / "summary.json").read_text(encoding="utf-8")) if code == 0 else None
             if summary is None or summary["people"][0]["frames"] < summary["frames"]:
                 print(f"{clip} is left out: nobody is followed through all of it", flush=True)
