@@ -9,6 +9,12 @@ std::array<uint8_t, 256> PartLabelSequence::Identity() {
   return result;
 }
 
+LabelImage PartLabelSequence::PartsOf(int frame) const {
+  LabelImage parts = frames[static_cast<size_t>(frame)].Unpacked();
+  for (uint8_t& label : parts.labels) label = part_of_label[label];
+  return parts;
+}
+
 void PartLabelSequence::Merge(uint8_t part, uint8_t into) {
   for (uint8_t& p : part_of_label) p = p == part ? into : p;
   for (uint8_t& p : part_of_chart) p = p == part ? into : p;

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "bodyloom/geometry/label_image.h"
+
 namespace bodyloom {
 
 /// A detected 2D landmark. Missing when confidence <= 0 or a coordinate is not finite.
@@ -48,16 +50,6 @@ struct DenseSequence {
   [[nodiscard]] int num_frames() const { return static_cast<int>(frames.size()); }
 };
 
-/// A detector's label of every pixel of a rectangle of the image. Pixels outside the rectangle are background.
-struct LabelImage {
-  int x_begin = 0, y_begin = 0, width = 0, height = 0;  ///< pixels; negative or empty sizes hold nothing
-  std::vector<uint8_t> labels;                          ///< width·height, row-major
-  [[nodiscard]] uint8_t At(int x, int y) const {
-    if (x < x_begin || y < y_begin || x >= x_begin + width || y >= y_begin + height) return 0;
-    return labels[size_t(y - y_begin) * size_t(width) + size_t(x - x_begin)];
-  }
-};
-
 /// Which part of the person each pixel shows, frame by frame: DensePose's part index, or just a mask.
 ///
 /// Labels and the body's charts meet in *parts*, numbers that the caller gives: a pixel with label l shows part
@@ -69,12 +61,14 @@ struct LabelImage {
 /// A mask has one label for the whole person: AsMask().
 struct PartLabelSequence {
   static constexpr uint8_t kBackground = 0, kUnknown = 255;
-  std::vector<LabelImage> frames;         ///< T; an empty one is a frame in which nobody was seen
+  std::vector<PackedLabels> frames;       ///< T; an empty one is a frame in which nobody was seen
   std::vector<double> timestamps;         ///< T seconds, strictly increasing
   int image_width = 0, image_height = 0;  ///< pixels, required; rectangles lie inside the image
   std::array<uint8_t, 256> part_of_label = Identity(), part_of_chart = Identity();
   [[nodiscard]] int num_frames() const { return static_cast<int>(frames.size()); }
   [[nodiscard]] uint8_t PartAt(int frame, int x, int y) const { return part_of_label[frames[frame].At(x, y)]; }
+  /// The part of every pixel of a frame's rectangle.
+  [[nodiscard]] LabelImage PartsOf(int frame) const;
   /// Labels and charts of `part` belong to `into` from now on.
   void Merge(uint8_t part, uint8_t into);
   /// Every label from 1 to 254 and every chart becomes part 1.

@@ -147,7 +147,7 @@ void CheckPartLabels(const TrackSequenceInput& input, const TrackSequenceOptions
   for (const uint8_t chart : input.body->data().face_part) has_chart[labels.part_of_chart[chart]] = true;
   has_chart[PartLabelSequence::kBackground] = has_chart[PartLabelSequence::kUnknown] = true;
   for (int t = 0; t < labels.num_frames(); ++t) {
-    const LabelImage& image = labels.frames[t];
+    const LabelImage image = labels.frames[t].Unpacked();
     const size_t expected = size_t(std::max(image.width, 0)) * size_t(std::max(image.height, 0));
     BODYLOOM_CHECK(image.labels.size() == expected, "track: frame ", t, " holds ", image.labels.size(),
                    " part labels for ", image.width, "x", image.height, " pixels");

@@ -57,7 +57,8 @@ PartLabelSequence MaskOf(const MatrixX3d& vertices, const Camera& camera) {
   labels.timestamps = {0};
   labels.image_width = camera.width;
   labels.image_height = camera.height;
-  labels.frames.push_back({0, 0, camera.width, camera.height, {mask.begin<uint8_t>(), mask.end<uint8_t>()}});
+  labels.frames.emplace_back(
+      LabelImage{0, 0, camera.width, camera.height, {mask.begin<uint8_t>(), mask.end<uint8_t>()}});
   labels.AsMask();
   return labels;
 }

@@ -57,7 +57,7 @@ std::array<Overlap, kCharts> Overlaps(const Confusion& confusion, const std::arr
 }
 
 Confusion Compare(const PartLabelSequence& labels, int t, const VisibilityBuffer& buffer, const BodyModel& body) {
-  const LabelImage& image = labels.frames[t];
+  const LabelImage image = labels.PartsOf(t);
   PixelBox box = buffer.box();
   if (box.empty()) box = {image.x_begin, image.y_begin, image.x_begin, image.y_begin};
   box.x_begin = std::min(box.x_begin, image.x_begin);
@@ -67,7 +67,7 @@ Confusion Compare(const PartLabelSequence& labels, int t, const VisibilityBuffer
   Confusion confusion{};
   for (int y = box.y_begin; y < box.y_end; ++y) {
     for (int x = box.x_begin; x < box.x_end; ++x) {
-      const uint8_t label = labels.PartAt(t, x, y);
+      const uint8_t label = image.At(x, y);
       if (label == PartLabelSequence::kUnknown || label >= kCharts) continue;
       const int face = buffer.FaceAt(x, y);
       ++confusion[label][face < 0 ? 0 : body.data().face_part[face]];
@@ -101,7 +101,7 @@ Evaluation EvaluatePartLabels(const Track& track, const PartLabelSequence& label
   int64_t right = 0, person = 0;
   VisibilityBuffer buffer;
   for (int t = 0; t < T; ++t) {
-    if (labels.frames[t].labels.empty()) continue;
+    if (labels.frames[t].empty()) continue;
     ++evaluation.frames;
     const bool has_result = track.HasResult(t);
     if (has_result) {

@@ -56,7 +56,7 @@ NpzArrays MaskRuns(const PartLabelSequence& mask) {
   const auto T = static_cast<int64_t>(mask.frames.size());
   std::vector<int32_t> runs, counts, boxes;
   for (int64_t t = 0; t < T; ++t) {
-    const LabelImage& frame = mask.frames[static_cast<size_t>(t)];
+    const LabelImage frame = mask.frames[static_cast<size_t>(t)].Unpacked();
     const size_t before = runs.size();
     if (frame.labels.empty()) {
       boxes.insert(boxes.end(), 4, 0);
@@ -110,9 +110,10 @@ PartLabelSequence MaskFromRuns(const NpzArrays& arrays, const std::string& where
     const int64_t count = counts[static_cast<size_t>(t)];
     if (count < 0 || count > static_cast<int64_t>(runs.size() - at)) fail("more runs than mask_runs has");
     const int64_t* box = &boxes[static_cast<size_t>(4 * t)];
-    LabelImage& frame = mask.frames.emplace_back();
+    LabelImage frame;
     if (box[2] == 0) {
       if (count != 0) fail("runs without a box");
+      mask.frames.emplace_back();
       continue;
     }
     // Sides are within the image's before they are added.
@@ -129,6 +130,7 @@ PartLabelSequence MaskFromRuns(const NpzArrays& arrays, const std::string& where
     frame.width = static_cast<int>(box[2]), frame.height = static_cast<int>(box[3]);
     const std::string wrong = Unpack(std::span(runs).subspan(at, static_cast<size_t>(count)), &frame);
     if (!wrong.empty()) fail(wrong);
+    mask.frames.emplace_back(frame);
     at += static_cast<size_t>(count);
   }
   if (at != runs.size()) {

@@ -153,12 +153,13 @@ PartLabelSequence FromPictures(const NpzArrays& arrays, const std::string& where
 PartLabelSequence FromRuns(const NpzArrays& arrays, const std::string& where, const ReadPartLabelsOptions& options,
                            int64_t* dropped_pixels) {
   PartLabelSequence sequence = MaskFromRuns(arrays, where);
-  for (LabelImage& frame : sequence.frames) {
-    if (frame.labels.empty()) continue;
+  for (PackedLabels& packed : sequence.frames) {
+    if (packed.empty()) continue;
+    LabelImage frame = packed.Unpacked();
     const cv::Mat labels(frame.height, frame.width, CV_8U, frame.labels.data());
     LabelImage person = CutPerson(labels, options, dropped_pixels);
     if (!person.labels.empty()) person.x_begin += frame.x_begin, person.y_begin += frame.y_begin;
-    frame = std::move(person);
+    packed = person;
   }
   return sequence;
 }

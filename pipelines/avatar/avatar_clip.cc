@@ -84,10 +84,10 @@ LabelImage AvatarClip::MaskAt(int t) const {
   mask.labels.reserve(box.area());
   PersonFrame frame;
   if (set_) frame = set_->Read(t, {true, false, false, false});
+  const LabelImage parts = set_ ? LabelImage() : mask_->PartsOf(t);
   for (int y = box.y_begin; y < box.y_end; ++y) {
     for (int x = box.x_begin; x < box.x_end; ++x) {
-      const bool is_person =
-          set_ ? frame.labels.pixel(x, y)[0] != 0 : mask_->PartAt(t, x, y) != PartLabelSequence::kBackground;
+      const bool is_person = set_ ? frame.labels.pixel(x, y)[0] != 0 : parts.At(x, y) != PartLabelSequence::kBackground;
       mask.labels.push_back(is_person ? 1 : 0);
     }
   }
@@ -122,7 +122,8 @@ std::vector<TrainingView> AvatarClip::ReadViews(const std::vector<int>& frames, 
           Concatenate(request_.data, ": ends before frame ", t, ", the track has ", track_.num_frames(), " frames"));
     }
     if (!posed_->HasResult(t)) continue;
-    const auto in_mask = [&](int x, int y) { return mask_->PartAt(t, x, y) != PartLabelSequence::kBackground ? 1 : 0; };
+    const LabelImage parts = mask_->PartsOf(t);
+    const auto in_mask = [&](int x, int y) { return parts.At(x, y) != PartLabelSequence::kBackground ? 1 : 0; };
     views[k] = CutView(t, picture, in_mask, margin, with_body);
   }
   return views;

@@ -90,7 +90,7 @@ class ClipDetector {
       const size_t place = places_[i];
       for (FramePerson& person : found[i]) {
         clip_->people.frames[place].push_back(std::move(person.person));
-        if (with_masks_) clip_->masks[place].push_back(std::move(person.mask));
+        if (with_masks_) clip_->masks[place].emplace_back(person.mask);
       }
       if (rate_ > 0) SeeHowFast(place);
     }

@@ -23,8 +23,8 @@ struct DetectPeopleRequest {
 };
 
 struct DetectedClip {
-  PeopleSequence people;                       ///< the detector's convention; identities −1
-  std::vector<std::vector<LabelImage>> masks;  ///< [frame][person as in people.frames]; empty unless asked for
+  PeopleSequence people;                         ///< the detector's convention; identities −1
+  std::vector<std::vector<PackedLabels>> masks;  ///< [frame][person as in people.frames]; empty unless asked for
   PeopleDetectorSummary detector;
 };
 

@@ -46,7 +46,7 @@ FittedPhoto FitPhoto(const TrackRequest& fit, const std::string& path, const Pip
     throw NothingToTrack(path + ": the person could not be fitted: " + result.summary.message);
   }
   photo.track = std::move(result.track);
-  photo.mask = MaskOfPerson(clip, who).frames.at(0);
+  photo.mask = MaskOfPerson(clip, who).frames.at(0).Unpacked();
   *body = scene.body;
   return photo;
 }

@@ -64,8 +64,8 @@ PartLabelSequence MovedToCamera(const PartLabelSequence& labels, const Matrix2x3
                                 int camera_height) {
   const Matrix2x3d camera_from_video = Inverse(video_from_camera);
   PartLabelSequence moved = labels;
-  for (LabelImage& frame : moved.frames) {
-    frame = Moved(frame, video_from_camera, camera_from_video, camera_width, camera_height);
+  for (PackedLabels& frame : moved.frames) {
+    frame = Moved(frame.Unpacked(), video_from_camera, camera_from_video, camera_width, camera_height);
   }
   moved.image_width = camera_width;
   moved.image_height = camera_height;

@@ -362,7 +362,7 @@ TEST_F(TrainMotionVerb, AMaskGivesAClipLabelsAndNormalsOfItsOwn) {
     const Image labels = ReadImage(scratch_ / Concatenate("person/labels/", t < 10 ? "00000" : "0000", t, ".png"));
     LabelImage frame = {0, 0, 96, 96, std::vector<uint8_t>(96 * 96)};
     for (size_t i = 0; i < frame.labels.size(); ++i) frame.labels[i] = labels.bgr[3 * i] != 0 ? 1 : 0;
-    mask.frames.push_back(std::move(frame));
+    mask.frames.emplace_back(frame);
     mask.timestamps.push_back(t / 30.0);
   }
   WriteMask(scratch_ / "mask.npz", mask);

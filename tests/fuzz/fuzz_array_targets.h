@@ -65,7 +65,8 @@ inline bool AcceptsPartLabels(const std::string& bytes) {
   return Accepts([&] {
     const PartLabelSequence labels = PartLabelsFromNpz(FramedArrays(bytes), "fuzz.npz");
     CheckTimes(labels.timestamps);
-    for (const LabelImage& image : labels.frames) {
+    for (const PackedLabels& packed : labels.frames) {
+      const LabelImage image = packed.Unpacked();
       const bool empty = image.width <= 0 || image.height <= 0;
       const size_t expected = empty ? 0 : static_cast<size_t>(image.width) * static_cast<size_t>(image.height);
       if (image.labels.size() != expected) throw std::logic_error("labels of another number than pixels");

@@ -91,7 +91,7 @@ Vector2d Median(const std::vector<Vector2d>& points) {
 class RegionImage {
  public:
   RegionImage(const PartLabelSequence& labels, int frame) {
-    const LabelImage& image = labels.frames[frame];
+    const LabelImage image = labels.PartsOf(frame);
     x_ = image.x_begin;
     y_ = image.y_begin;
     width_ = std::max(0, image.width);
@@ -100,7 +100,7 @@ class RegionImage {
     int top = height_, bottom = -1;
     for (int y = 0; y < height_; ++y) {
       for (int x = 0; x < width_; ++x) {
-        const uint8_t chart = labels.part_of_label[image.labels[size_t(y) * width_ + x]];
+        const uint8_t chart = image.labels[size_t(y) * width_ + x];
         const uint8_t region = chart <= 24 ? kRegionOfChart[chart] : uint8_t{kNoPart};
         regions_[size_t(y) * width_ + x] = region;
         if (region == kNoPart) continue;

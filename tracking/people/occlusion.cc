@@ -129,9 +129,11 @@ HiddenCounts Hide(const SeenBody& self, const std::vector<const SeenBody*>& othe
   }
   if (person.part_labels != nullptr) {
     PartLabelSequence& labels = *person.part_labels;
+    LabelImage image = labels.frames[size_t(t)].Unpacked();
     for (const SeenBody* other : others) {
-      counts.pixels += HideLabels(self, *other, labels.image_width, labels.image_height, &labels.frames[size_t(t)]);
+      counts.pixels += HideLabels(self, *other, labels.image_width, labels.image_height, &image);
     }
+    labels.frames[size_t(t)] = image;
   }
   counts.frames = counts.keypoints + counts.dense + counts.pixels > 0;
   return counts;

@@ -34,7 +34,7 @@ PartLabelSequence RenderPartLabels(const BodyModel& body, const Track& track, in
         }
       }
     }
-    labels.frames.push_back(std::move(image));
+    labels.frames.emplace_back(image);
   }
   return labels;
 }

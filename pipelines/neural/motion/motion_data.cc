@@ -174,9 +174,10 @@ class MotionData::Impl {
 
   /// The parts that frame t's window shows.
   [[nodiscard]] std::vector<uint8_t> PartsIn(const PartLabelSequence& parts, int t) const {
+    const LabelImage shown = parts.PartsOf(t);
     Image picture(parts.image_width, parts.image_height);
     for (int y = 0; y < picture.height; ++y) {
-      for (int x = 0; x < picture.width; ++x) picture.pixel(x, y)[0] = parts.PartAt(t, x, y);
+      for (int x = 0; x < picture.width; ++x) picture.pixel(x, y)[0] = shown.At(x, y);
     }
     return CutLabels(picture, frames_->window(), t);
   }

@@ -130,7 +130,7 @@ Image LabelsOfParts(const PhotoRequest& request, const Image& picture) {
                                          "x", parts.image_height, ", requested frame ", request.frame, " of ",
                                          picture.width, "x", picture.height));
   }
-  return LabelPicture(parts.frames[request.frame], picture.width, picture.height);
+  return LabelPicture(parts.frames[request.frame].Unpacked(), picture.width, picture.height);
 }
 
 }  // namespace

@@ -122,7 +122,7 @@ std::string PartLabels() {
 std::string Masks() {
   PartLabelSequence mask;
   mask.image_width = 7, mask.image_height = 6;
-  mask.frames = {{1, 2, 3, 2, {0, 1, 1, 1, 0, 0}}, {}};
+  mask.frames = {LabelImage{1, 2, 3, 2, {0, 1, 1, 1, 0, 0}}, {}};
   NpzArrays arrays = MaskRuns(mask);
   arrays["label_kind"] = NdArray::FromString("person");
   return FrameArrays(arrays);

@@ -39,7 +39,7 @@ class MotionDataOfAClip : public ::testing::Test {
       const Image labels = set.Read(t, {true, false, false, false}).labels;
       LabelImage frame = {0, 0, kSide, kSide, std::vector<uint8_t>(size_t(kSide) * kSide)};
       for (size_t i = 0; i < frame.labels.size(); ++i) frame.labels[i] = labels.bgr[3 * i] != 0 ? 1 : 0;
-      mask.frames.push_back(std::move(frame));
+      mask.frames.emplace_back(frame);
       mask.timestamps.push_back(t / 30.0);
     }
     WriteMask(*scratch_ / "mask.npz", mask);

@@ -50,7 +50,7 @@ const TemporaryFolder& Scene() {
       const PersonFrame frame = set.Read(t);
       LabelImage labels = {0, 0, kSize, kSize, std::vector<uint8_t>(kSize * kSize)};
       for (int i = 0; i < kSize * kSize; ++i) labels.labels[i] = frame.labels.bgr[3 * i] != 0 ? 1 : 0;
-      mask.frames.push_back(labels);
+      mask.frames.emplace_back(labels);
       mask.timestamps.push_back(t / 30.0);
     }
     WriteMask(folder.File("mask.npz"), mask);

@@ -93,7 +93,8 @@ TEST_F(DetectClipOnRealVideo, TheMaskIsWhereTheLandmarksAre) {
       inside += mask.PartAt(t, int(std::lround(p.x)), int(std::lround(p.y))) == 1 ? 1 : 0;
     }
     EXPECT_EQ(inside, 7);
-    const int area = int(std::count(mask.frames[t].labels.begin(), mask.frames[t].labels.end(), 1));
+    const LabelImage seen = mask.frames[t].Unpacked();
+    const int area = int(std::count(seen.labels.begin(), seen.labels.end(), 1));
     EXPECT_GT(area, 30000);
     EXPECT_LT(area, 250000);
   }
@@ -126,7 +127,7 @@ TEST_F(DetectClipOnRealVideo, FewerFramesAreDetectedOfSlowMotion) {
   std::sort(differences.begin(), differences.end());
   EXPECT_LT(differences[differences.size() / 2], 4);  // of a man 760 px tall, where the detector errs by 11
   int masks = 0;
-  for (const LabelImage& frame : ReadPartLabels(request.mask).frames) masks += frame.labels.empty() ? 0 : 1;
+  for (const PackedLabels& frame : ReadPartLabels(request.mask).frames) masks += frame.empty() ? 0 : 1;
   EXPECT_EQ(masks, few.landmarks->detector.frames);
 
   request.detect.detect_rate = -1;

@@ -29,10 +29,10 @@ TEST(MoveObservations, EachPixelOfTheCameraTakesTheLabelAtItsPlace) {
   labels.image_width = 100;
   labels.image_height = 80;
   labels.timestamps = {0, 1};
-  labels.frames = {{.x_begin = 20, .y_begin = 30, .width = 2, .height = 1, .labels = {5, 9}}, {}};
+  labels.frames = {LabelImage{.x_begin = 20, .y_begin = 30, .width = 2, .height = 1, .labels = {5, 9}}, {}};
   const PartLabelSequence moved = MovedToCamera(labels, HalfSize(), 200, 160);
   EXPECT_EQ(moved.image_width, 200);
-  EXPECT_TRUE(moved.frames[1].labels.empty());
+  EXPECT_TRUE(moved.frames[1].empty());
   int labelled = 0;
   for (int y = 0; y < 160; ++y) {
     for (int x = 0; x < 200; ++x) {
@@ -49,8 +49,8 @@ TEST(MoveObservations, WhatLeavesTheCamerasImageIsCutOff) {
   PartLabelSequence labels;
   labels.image_width = labels.image_height = 100;
   labels.timestamps = {0};
-  labels.frames = {{.x_begin = 0, .y_begin = 0, .width = 100, .height = 100, .labels = std::vector<uint8_t>(10000, 1)}};
-  const LabelImage moved = MovedToCamera(labels, HalfSize(), 50, 40).frames[0];
+  labels.frames = {LabelImage{0, 0, 100, 100, std::vector<uint8_t>(10000, 1)}};
+  const LabelImage moved = MovedToCamera(labels, HalfSize(), 50, 40).frames[0].Unpacked();
   EXPECT_EQ(moved.x_begin, 0);
   EXPECT_EQ(moved.y_begin, 3) << "the video begins 1.5 of its pixels below the camera's first row";
   EXPECT_LE(moved.width, 50);

@@ -87,7 +87,7 @@ void RemoveSpecks(bool by_part, double speck_share, PartMap* map) {
 }  // namespace
 
 PartMap MakePartMap(const PartLabelSequence& labels, int t, double speck_share) {
-  const LabelImage& image = labels.frames[t];
+  LabelImage image = labels.PartsOf(t);
   PartMap map;
   map.image = {0, 0, labels.image_width, labels.image_height};
   map.box = {image.x_begin, image.y_begin, image.x_begin + image.width, image.y_begin + image.height};
@@ -95,9 +95,7 @@ PartMap MakePartMap(const PartLabelSequence& labels, int t, double speck_share) 
     map.box = {};
     return map;
   }
-  map.parts.resize(map.box.area());
-  std::transform(image.labels.begin(), image.labels.end(), map.parts.begin(),
-                 [&](uint8_t label) { return labels.part_of_label[label]; });
+  map.parts = std::move(image.labels);
   RemoveSpecks(false, speck_share, &map);
   RemoveSpecks(true, speck_share, &map);
   return map;

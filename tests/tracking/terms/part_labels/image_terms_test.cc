@@ -48,7 +48,7 @@ PartLabelSequence LabelsOf(const SynthClip& clip) {
     for (const int32_t face : buffer.faces()) {
       image.labels.push_back(face < 0 ? 0 : BuiltinBody().data().face_part[face]);
     }
-    labels.frames.push_back(std::move(image));
+    labels.frames.emplace_back(image);
   }
   return labels;
 }
@@ -168,7 +168,9 @@ TEST(ImageTerms, FramesWithoutLabelsAreCarried) {
   const SynthClip clip = Clip(6, 0);
   PartLabelSequence labels = LabelsOf(clip);
   labels.frames[2] = LabelImage();
-  std::fill(labels.frames[3].labels.begin(), labels.frames[3].labels.end(), PartLabelSequence::kUnknown);
+  LabelImage unknown = labels.frames[3].Unpacked();
+  std::fill(unknown.labels.begin(), unknown.labels.end(), PartLabelSequence::kUnknown);
+  labels.frames[3] = unknown;
   TrackSequenceInput input = InputOf(clip);
   input.part_labels = &labels;
   TrackSequenceOptions options;
@@ -201,12 +203,19 @@ TEST(ImageTerms, ContradictionsAreNamed) {
     return "no error";
   };
   const auto contains = [](const std::string& part) { return ::testing::HasSubstr(part); };
+  const auto frame = [](int t, const auto& spoil_image) {
+    return [=](PartLabelSequence* labels, auto*, auto*) {
+      LabelImage image = labels->frames[t].Unpacked();
+      spoil_image(&image);
+      labels->frames[t] = image;
+    };
+  };
   EXPECT_THAT(message([](auto* labels, auto*, auto*) { labels->image_width = 99; }), contains("99x360"));
   EXPECT_THAT(message([](auto* labels, auto*, auto*) { labels->image_width = 0; }), contains("how large"));
   EXPECT_THAT(message([](auto* labels, auto*, auto*) { labels->timestamps.pop_back(); }), contains("2 timestamps"));
-  EXPECT_THAT(message([](auto* labels, auto*, auto*) { labels->frames[1].labels.pop_back(); }), contains("frame 1"));
-  EXPECT_THAT(message([](auto* labels, auto*, auto*) { labels->frames[1].x_begin = 470; }), contains("outside"));
-  EXPECT_THAT(message([](auto* labels, auto*, auto*) { labels->frames[2].labels[0] = 77; }), contains("label 77"));
+  EXPECT_THAT(message(frame(1, [](LabelImage* image) { image->labels.pop_back(); })), contains("frame 1"));
+  EXPECT_THAT(message(frame(1, [](LabelImage* image) { image->x_begin = 470; })), contains("outside"));
+  EXPECT_THAT(message(frame(2, [](LabelImage* image) { image->labels[0] = 77; })), contains("label 77"));
   EXPECT_THAT(message([](auto*, auto* input, auto*) { input->initialiser = nullptr; }), contains("refine a start"));
   EXPECT_THAT(message([](auto*, auto*, auto* options) { options->camera_knowledge = CameraKnowledge::kWeak; }),
               contains("weak perspective"));

@@ -243,7 +243,7 @@ TEST(PartLabelTerm, AMaskMatchesAutomaticDerivativesOnBothSides) {
 /// A mask that reaches `grown_px` pixels beyond the body on all sides; negative: that stays so far inside.
 std::unique_ptr<Scene> MakeMaskScene(int grown_px) {
   auto scene = MakeScene();
-  LabelImage& image = scene->labels.frames[0];
+  LabelImage image = scene->labels.frames[0].Unpacked();
   const std::vector<uint8_t> body = image.labels;
   const int reach = std::abs(grown_px);
   for (int y = reach; y < kHeight - reach; ++y) {
@@ -256,6 +256,7 @@ std::unique_ptr<Scene> MakeMaskScene(int grown_px) {
       image.labels[y * kWidth + x] = seen >= needed;
     }
   }
+  scene->labels.frames[0] = image;
   scene->labels.AsMask();
   return scene;
 }
@@ -374,7 +375,6 @@ TEST(PartLabelTerm, AMaskIsASilhouetteWithoutParts) {
 
 TEST(PartLabelTerm, MergedPartsHaveNoBoundaryBetweenThem) {
   const auto scene = MakeScene();
-  scene->labels.frames[0].labels[0] = 0;
   scene->labels.Merge(1, 2);
   EXPECT_EQ(scene->labels.part_of_label[1], 2);
   EXPECT_EQ(scene->labels.part_of_chart[1], 2);
@@ -384,10 +384,10 @@ TEST(PartLabelTerm, MergedPartsHaveNoBoundaryBetweenThem) {
 
 TEST(PartLabelTerm, NothingSeenAsksForNothing) {
   const auto scene = MakeScene();
-  LabelImage& image = scene->labels.frames[0];
-  const std::vector<uint8_t> seen = image.labels;
+  LabelImage image = scene->labels.frames[0].Unpacked();
   for (const uint8_t label : {PartLabelSequence::kBackground, PartLabelSequence::kUnknown}) {
-    image.labels.assign(seen.size(), label);
+    std::fill(image.labels.begin(), image.labels.end(), label);
+    scene->labels.frames[0] = image;
     const auto term = MakeTerm(*scene, scene->truth);
     EXPECT_EQ(term->num_person_pixels(), 0);
     EXPECT_EQ(term->num_rows(), 0);
@@ -400,10 +400,11 @@ TEST(PartLabelTerm, NothingSeenAsksForNothing) {
 TEST(PartLabelTerm, UnknownPixelsHaveNoBoundary) {
   // The right half of the person is unknown: no boundary there, and the silhouette's points there have no residual.
   const auto scene = MakeScene();
-  LabelImage& image = scene->labels.frames[0];
+  LabelImage image = scene->labels.frames[0].Unpacked();
   for (int y = 0; y < kHeight; ++y) {
     for (int x = kWidth / 2; x < kWidth; ++x) image.labels[y * kWidth + x] = PartLabelSequence::kUnknown;
   }
+  scene->labels.frames[0] = image;
   const auto term = MakeTerm(*scene, scene->truth);
   ASSERT_GT(term->num_rows(), 100);
   for (const PartLabelTerm::Target& target : term->targets()) EXPECT_LT(target.pixel.x(), kWidth / 2 + 1);
@@ -416,10 +417,11 @@ TEST(PartLabelTerm, UnknownPixelsHaveNoBoundary) {
 TEST(PartLabelTerm, SpecksAreLeftOut) {
   const auto scene = MakeScene();
   const auto clean = MakeTerm(*scene, scene->truth);
-  LabelImage& image = scene->labels.frames[0];
+  LabelImage image = scene->labels.frames[0].Unpacked();
   for (int y = 5; y < 15; ++y) {
     for (int x = 5; x < 15; ++x) image.labels[y * kWidth + x] = 3;  // far from the person
   }
+  scene->labels.frames[0] = image;
   const PartMap map = MakePartMap(scene->labels, 0, PartLabelTerm::kSpeckShare);
   EXPECT_EQ(map.At(10, 10), PartLabelSequence::kUnknown);
   EXPECT_EQ(map.At(20, 10), PartLabelSequence::kBackground);
@@ -431,6 +433,7 @@ TEST(PartLabelTerm, SpecksAreLeftOut) {
   const int centre = kHeight / 2 * kWidth + kWidth / 2;
   const uint8_t around = image.labels[centre];
   image.labels[centre] = around == 3 ? 4 : 3;
+  scene->labels.frames[0] = image;
   const PartMap with_hole = MakePartMap(scene->labels, 0, PartLabelTerm::kSpeckShare);
   EXPECT_EQ(with_hole.At(kWidth / 2, kHeight / 2), PartLabelSequence::kUnknown);
   EXPECT_EQ(with_hole.At(kWidth / 2 + 1, kHeight / 2), map.At(kWidth / 2 + 1, kHeight / 2));

@@ -20,7 +20,7 @@ PartLabelSequence OneFrame(int width, int height, std::vector<uint8_t> labels) {
   sequence.image_width = width;
   sequence.image_height = height;
   sequence.timestamps = {0};
-  sequence.frames = {{0, 0, width, height, std::move(labels)}};
+  sequence.frames = {LabelImage{0, 0, width, height, std::move(labels)}};
   return sequence;
 }
 
