@@ -51,7 +51,8 @@ MakeHumanPerson RandomAdult(std::mt19937* random) {
   MakeHumanPerson person;
   person.male = uniform(*random) < 0.5 ? near(0.08, 0.08, 0, 1) : near(0.92, 0.08, 0, 1);
   person.age = 0.5 + 0.45 * uniform(*random);
-  person.weight = std::clamp(0.48 + 0.27 * normal(*random) + 0.16 * exponential(*random), -0.1, 1.8);
+  const double spread = normal(*random), heavy = exponential(*random);
+  person.weight = std::clamp(0.48 + 0.27 * spread + 0.16 * heavy, -0.1, 1.8);
   person.muscle = near(0.48, 0.2, 0, 1);
   person.height = near(0.489, 0.06, 0, 1);
   person.proportions = near(0.55, 0.2, 0, 1);

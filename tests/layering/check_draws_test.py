@@ -28,10 +28,20 @@ class CheckDraws(unittest.TestCase):
             self.assertEqual(code, 1, text)
             self.assertIn("geometry/a.cc:2: two arguments", out)
 
+    def test_draws_on_both_sides_of_an_operator(self):
+        for text in ("q = TurnBy(Draw(random, 0, 1)) * TurnBy(Draw(random, 0, 2));", "const double x = 1 + random->Normal() - 2 * random->Normal();",
+                     "f(random->Uniform() * (random->Uniform() < 0.5 ? -1 : 1));", "return a[i] + normal(rng) * b +\n    normal(rng) * c;"):
+            code, out = check(text)
+            self.assertEqual(code, 1, text)
+            self.assertIn("geometry/a.cc:2: two operands", out)
+
     def test_draws_in_order(self):
         for text in ("Vector3d v{random->Normal(), 0, random->Normal()};", "const double x = random->Normal(), y = random->Normal();",
                      "f(random->Normal(), 1);", "// Vector2d(normal(rng), normal(rng))", "Log(\"normal(rng), normal(rng)\");",
                      "for (double a = random->Uniform(), b = random->Uniform(); a < b; ++a) {\n}", "f({random->Normal(), random->Normal()}, 1);",
+                     "if (random->Uniform() < 0.5 && random->Uniform() < a * b) c = random->Normal() * d;",
+                     "x = random->Uniform() < 0.5 ? -random->Normal() : random->Normal();", "{\n  a = random->Normal();\n}\n*b = random->Normal();",
+                     "std::vector<int>& c = F(random);\nint* d = G(random) + 1;", "const auto e = random->Below(3), f = 4 * random->Below(5);",
                      "void G(HashRandom* random, double normal(double x));"):
             code, out = check(text)
             self.assertEqual(code, 0, text + "\n" + out)

@@ -372,7 +372,8 @@ std::vector<Quaternionf> RandomFloorPose(int kind, const LifterBody& body, const
   const FloorPose& row = kPoses[kind];
   std::vector<Quaternionf> pose(kPoseJoints, Quaternionf::Identity());
   const float pitch = row.pitch.Draw(random);
-  const float roll = row.roll.Draw(random) * (random->Uniform() < 0.5 ? -1.0F : 1.0F);
+  const float to_right = row.roll.Draw(random);
+  const float roll = random->Uniform() < 0.5 ? -to_right : to_right;
   pose[kPelvis] = TurnBy(X(pitch)) * TurnBy(Y(roll));
   const int first = random->Uniform() < 0.5 ? 0 : 1;
   Angles angles[2] = {Draw(row.legs[0], random), Draw(row.legs[1], random)};

@@ -85,7 +85,8 @@ void RaiseArm(const LifterWindowOptions& options, int side, HashRandom* random, 
   const Vector3f direction(std::cos(up) * std::cos(turn), std::sin(up), std::cos(up) * std::sin(turn));
   Quaternionf shoulder =
       Quaternionf::FromTwoVectors(Vector3f::UnitX(), direction) * TurnBy(AboutX(Draw(random, -1, 1)));
-  Quaternionf elbow = TurnBy({0, -Draw(random, 0, 2.3), 0}) * TurnBy(AboutX(Draw(random, -0.7, 0.7)));
+  const Quaternionf twist = TurnBy(AboutX(Draw(random, -0.7, 0.7)));
+  Quaternionf elbow = TurnBy({0, -Draw(random, 0, 2.3), 0}) * twist;
   if (side == 1) {
     shoulder = MirrorRotation(shoulder);
     elbow = MirrorRotation(elbow);
@@ -197,7 +198,8 @@ void AddTurns(const LifterWindowOptions& options, HashRandom random, PoseSequenc
   };
   constexpr auto kRound = static_cast<float>(2 * M_PI);
   if (random.Uniform() < options.spin) {
-    turn(Vector3f::UnitY(), Draw(&random, 0.15, 2) * (random.Uniform() < 0.5 ? -kRound : kRound), 2.5);
+    const float angle = Draw(&random, 0.15, 2) * kRound;
+    turn(Vector3f::UnitY(), random.Uniform() < 0.5 ? -angle : angle, 2.5);
   }
   if (random.Uniform() < options.tumble) {
     const float heading = Draw(&random, 0, kRound);

@@ -46,7 +46,8 @@ PersonLight LightOf(const Vector3d& up_in_camera, uint64_t seed) {
     return Vector3f((std::cos(height) * level + std::sin(height) * up_in_camera).cast<float>().normalized());
   };
   PersonLight light;
-  const double key = random.Uniform(0.3, 1.1) * (random.Uniform() < 0.5 ? -1 : 1);
+  const double beside = random.Uniform(0.3, 1.1);
+  const double key = random.Uniform() < 0.5 ? -beside : beside;
   light.towards = {direction(key, random.Uniform(0.4, 0.9)), direction(-1.5 * key, random.Uniform(0.0, 0.5))};
   light.ambient = float(random.Uniform(0.5, 0.62));
   light.strength = {float(random.Uniform(0.5, 0.65)), float(random.Uniform(0.1, 0.25))};

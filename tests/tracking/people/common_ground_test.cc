@@ -48,8 +48,10 @@ StandingPerson Stand(const PersonOnPlane& person, const Vector3d& up, double cam
   const Vector3d ahead = (Vector3d::UnitZ() - up.z() * up).normalized(), beside = up.cross(ahead);
   StandingPerson standing;
   for (int i = 0; i < person.steps; ++i) {
-    const Vector3d place = (person.above_m - camera_height_m) * up + (person.ahead_m + uniform(random)) * ahead +
-                           (person.beside_m + uniform(random)) * beside;
+    const double stepped_ahead_m = person.ahead_m + uniform(random),
+                 stepped_beside_m = person.beside_m + uniform(random);
+    const Vector3d place =
+        (person.above_m - camera_height_m) * up + stepped_ahead_m * ahead + stepped_beside_m * beside;
     const Vector3d noise{normal(random), normal(random), normal(random)};
     standing.stances.push_back({.begin = 10 * i,
                                 .end = 10 * i + 8,
