@@ -31,6 +31,7 @@ GIVEN = {"true": [], "labels": ["--score-labels", "estimated"], "iuv": ["--score
          "all": ["--score-labels", "estimated", "--score-tracks", TRACK]}
 UNTRAINED = {"floor": ["--score-floor"], "person": []}
 NO_IUV = {"person"}  # it takes bodies
+WINDOW = {"tiny": 128, "cpu": 256, "paper": 256}  # pixels a side, of the networks' pictures: of all that are compared
 SCORES = [("image_l1", "L1", 4), ("psnr_db", "PSNR dB", 2), ("ssim", "SSIM", 4), ("silhouette_iou", "silhouette IoU", 3),
           ("label_iou", "labels IoU", 3), ("lpips", "LPIPS", 4), ("lpips_deviation", "deviation", 4),
           ("contextual", "CS", 3)]
@@ -124,7 +125,7 @@ def score(o, people, name, verb, seed):
         if scores.exists():  # written whole or not at all
             continue
         run.mkdir(exist_ok=True)
-        what = ["--size", str(o.size)] + UNTRAINED[name] if name in UNTRAINED else ["--run", str(run)]
+        what = ["--size", str(WINDOW[o.profile])] + UNTRAINED[name] if name in UNTRAINED else ["--run", str(run)]
         call([o.bodyloom, "animate", verb, "--score", str(people), "--score-photos"] + [str(n) for n in o.photos] +
              ["--score-frames", str(o.score_frames), "--sheet", str(run / f"{given}.png"), "--json", str(scores),
               "--threads", str(o.threads)] + what + GIVEN[given], run / "log.txt")
@@ -140,7 +141,7 @@ def score_of(scores, key):
 def report(o):
     left_out = o.out / "left_out.txt"
     count = len(left_out.read_text(encoding="utf-8").splitlines()) if left_out.exists() else 0
-    lines = [f"Profile {o.profile}, {o.steps} steps of batch {o.batch}, {o.people} people, {count} clips left out; mean ± "
+    lines = [f"Profile {o.profile}, windows of {WINDOW[o.profile]}², {o.steps} steps of batch {o.batch}, {o.people} people, {count} clips left out; mean ± "
              "standard deviation over seeds", "", "| photos | system | given | seeds | pictures | " +
              " | ".join(name for _, name, _ in SCORES) + " |", "|---|---|---|---|---|" + "---|" * len(SCORES)]
     rows = []
@@ -176,13 +177,13 @@ def main():
     parser.add_argument("--people", type=int, default=60)
     parser.add_argument("--actions", type=int, default=4)
     parser.add_argument("--frames", type=int, default=3)
-    parser.add_argument("--size", type=int, default=256)
+    parser.add_argument("--size", type=int, default=256, help="of the people's pictures; the windows are the profile's")
     parser.add_argument("--steps", type=int, default=4000)
     parser.add_argument("--batch", type=int, default=4)
     parser.add_argument("--photo-options", default="", help="of train photo, one text: those of runs of other lengths")
     parser.add_argument("--guided-options", default="", help="of train guided, the same")
     parser.add_argument("--score-frames", type=int, default=8)
-    parser.add_argument("--profile", default="cpu")
+    parser.add_argument("--profile", default="cpu", choices=list(WINDOW))
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--report", action="store_true", help="only print what there is")
     o = parser.parse_args()

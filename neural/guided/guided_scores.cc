@@ -3,7 +3,9 @@
 
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
+#include <utility>
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/neural/metrics/class_overlap.h"
@@ -34,11 +36,10 @@ struct GuidedScorer::Impl {
   std::optional<ContextualMetric> contextual;
   int frames = 0;
   double l1 = 0, squared = 0, foreground = 0;
-  double lpips_sum = 0, contextual_sum = 0;
-  double around_means = 0;  ///< of LPIPS, of the people before: Σ (d − their mean)²
+  double contextual_sum = 0;
+  std::vector<std::vector<double>> lpips_of_people;
+  bool next_person = true;
   bool contextual_random_features = true;
-  int of_person = 0;                        ///< frames so far of this person
-  double person_mean = 0, around_mean = 0;  ///< of these
   ClassOverlap overlap{kPhotoLabels};
 };
 
@@ -70,11 +71,8 @@ void GuidedScorer::Add(const GuidedPicture& picture, const PhotoFrame& truth) {
   if (!s.lpips) return;
   const Image image = Bytes(picture.image, picture.size), true_image = Bytes(truth.image, truth.size);
   const double distance = s.lpips->Distance(image, true_image).value;
-  s.lpips_sum += distance;
-  // Welford: no difference of large sums.
-  const double from_mean = distance - s.person_mean;
-  s.person_mean += from_mean / ++s.of_person;
-  s.around_mean += from_mean * (distance - s.person_mean);
+  if (std::exchange(s.next_person, false)) s.lpips_of_people.emplace_back();
+  s.lpips_of_people.back().push_back(distance);
   if (picture.size > GuidedScores::kLargestContextualPicture) {
     s.contextual_sum = std::numeric_limits<double>::quiet_NaN();
     return;
@@ -84,11 +82,7 @@ void GuidedScorer::Add(const GuidedPicture& picture, const PhotoFrame& truth) {
   s.contextual_random_features = contextual.random_features;
 }
 
-void GuidedScorer::NextPerson() {
-  impl_->around_means += impl_->around_mean;
-  impl_->of_person = 0;
-  impl_->person_mean = impl_->around_mean = 0;
-}
+void GuidedScorer::NextPerson() { impl_->next_person = true; }
 
 GuidedScores GuidedScorer::Scores() const {
   const Impl& s = *impl_;
@@ -101,8 +95,16 @@ GuidedScores GuidedScorer::Scores() const {
   scores.silhouette_iou = or_zero(s.overlap.ForegroundIou());
   scores.label_iou = or_zero(s.overlap.MeanIou(/*in_truth=*/true));
   const double n = s.frames, none = std::numeric_limits<double>::quiet_NaN();
-  scores.lpips = s.lpips ? s.lpips_sum / n : none;
-  scores.lpips_deviation = s.lpips ? std::sqrt((s.around_means + s.around_mean) / n) : none;
+  double sum = 0, around_means = 0;
+  for (const std::vector<double>& person : s.lpips_of_people) {
+    const double of_person = std::accumulate(person.begin(), person.end(), 0.0);
+    const double mean = of_person / static_cast<double>(person.size());
+    sum += of_person;
+    for (const double distance : person) around_means += (distance - mean) * (distance - mean);
+  }
+  scores.lpips = s.lpips ? sum / n : none;
+  scores.lpips_deviation = s.lpips ? std::sqrt(around_means / n) : none;
+  scores.lpips_of_people = s.lpips_of_people;
   scores.lpips_random_features = !s.lpips || s.lpips->has_random_features();
   scores.contextual_random_features = s.contextual_random_features;
   scores.contextual = s.contextual ? s.contextual_sum / n : none;

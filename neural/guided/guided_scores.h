@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "bodyloom/neural/guided/guided_picture.h"
 #include "bodyloom/neural/networks/named_weights.h"
@@ -25,6 +26,7 @@ struct GuidedScores {
   /// The paper's temporal stability: the standard deviation of LPIPS over a person's frames, pooled over people,
   /// sqrt(Σ_p Σ_f (d_pf − mean_p)² / frames).
   double lpips_deviation = 0;
+  std::vector<std::vector<double>> lpips_of_people;  ///< of each person's frames, as they were added: the paper's curve
   /// Σ −log CX, mean over frames; NaN where not requested, and of pictures larger than kLargestContextualPicture: its
   /// time rises with the fourth power of their side.
   double contextual = 0;

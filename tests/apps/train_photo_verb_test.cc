@@ -117,6 +117,8 @@ TEST_F(TrainPhotoVerb, PeopleAreScoredUnderOneProtocol) {
   EXPECT_EQ(photo["given"], "true labels and bodies");
   EXPECT_EQ(photo["scores"][0]["frames"], 3);
   EXPECT_FALSE(photo["scores"][0].contains("label_iou")) << "it draws none";
+  ASSERT_EQ(photo["scores"][0]["lpips_of_people_random_features"].size(), 1) << "the person kept for testing";
+  EXPECT_EQ(photo["scores"][0]["lpips_of_people_random_features"][0].size(), 3) << "a figure a picture";
   EXPECT_TRUE(animate["scores"][0].contains("label_iou"));
   for (const char* value : {"frames", "photos", "texels_seen"}) {
     EXPECT_NEAR(photo["scores"][0][value].get<double>(), animate["scores"][0][value].get<double>(), 0.01) << value;

@@ -14,8 +14,10 @@ nlohmann::ordered_json ToJson(const GuidedScores& s) {
   if (!std::isnan(s.label_iou)) json["label_iou"] = s.label_iou;
   json[LpipsName("lpips", s.lpips_random_features)] = s.lpips;
   json[LpipsName("lpips_deviation", s.lpips_random_features)] = s.lpips_deviation;
-  if (std::isnan(s.contextual)) return json;
-  json[s.contextual_random_features ? "contextual_quarter_random_features" : "contextual_vgg19"] = s.contextual;
+  if (!std::isnan(s.contextual)) {
+    json[s.contextual_random_features ? "contextual_quarter_random_features" : "contextual_vgg19"] = s.contextual;
+  }
+  json[LpipsName("lpips_of_people", s.lpips_random_features)] = s.lpips_of_people;
   return json;
 }
 

@@ -378,6 +378,7 @@ TEST(GuidedScores, StabilityIsWithinAPerson) {
   unsteady.Add(darker, truth);
   unsteady.Add(darkest, truth);
   EXPECT_NEAR(unsteady.Scores().lpips_deviation, std::sqrt(2 * 0.25 * (a - b) * (a - b) / 4), 1e-9);
+  EXPECT_EQ(unsteady.Scores().lpips_of_people, (std::vector<std::vector<double>>{{a, a}, {a, b}}));
 }
 
 }  // namespace
