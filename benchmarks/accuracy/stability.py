@@ -19,6 +19,7 @@ import statistics
 from runs import call, text
 
 WIDTH, HEIGHT, MARGIN = 640, 300, 48
+STEPS = [0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2]  # between the lines of the axis
 COLOURS = ["#1f77b4", "#d62728", "#2ca02c", "#7f7f7f"]
 
 
@@ -44,10 +45,11 @@ def drawn(curves, title):
     lines = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" font-family="sans-serif" font-size="12">',
              f'<rect width="{WIDTH}" height="{HEIGHT}" fill="white"/>', f'<text x="{MARGIN}" y="24">{title}</text>',
              f'<text x="{MARGIN}" y="{HEIGHT - 12}">picture, in the order of the clip</text>']
-    for k in range(5):
-        x, y = at(0, highest * k / 4).split(",")
+    step = next(step for step in STEPS if highest <= 5 * step)
+    for k in range(int(highest / step) + 1):
+        x, y = at(0, k * step).split(",")
         lines += [f'<line x1="{x}" y1="{y}" x2="{WIDTH - 110}" y2="{y}" stroke="#dddddd"/>',
-                  f'<text x="{MARGIN - 6}" y="{float(y) + 4:.1f}" text-anchor="end">{highest * k / 4:.2f}</text>']
+                  f'<text x="{MARGIN - 6}" y="{float(y) + 4:.1f}" text-anchor="end">{k * step:g}</text>']
     for i, (name, curve) in enumerate(curves.items()):
         points = " ".join(at(frame, value) for frame, value in enumerate(curve))
         lines += [f'<polyline points="{points}" fill="none" stroke="{COLOURS[i % len(COLOURS)]}" stroke-width="1.5"/>',
