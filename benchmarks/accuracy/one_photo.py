@@ -2,29 +2,34 @@
 # SPDX-License-Identifier: Apache-2.0
 """The renderers that need one photo under one protocol: the same people, photos and pictures, the same scores, with true
 labels and bodies and with estimated ones; beside them what needs no training, a textured body with clothes (person) and
-the photo warped by the bare body (floor); and the ablations of the pose-guided renderer (Table 2 of Yoon et al.,
-"Pose-Guided Human Animation from a Single Image in the Wild", CVPR 2021) on synthetic people.
+the photo warped by the bare body (floor); the one-photo renderer's simpler variants (Sec. 4.4 of Sarkar et al., "Neural
+Re-Rendering of Humans from a Single Image", ECCV 2020) and the ablations of the pose-guided renderer (Table 2 of Yoon et
+al., "Pose-Guided Human Animation from a Single Image in the Wild", CVPR 2021) on synthetic people.
 
 usage: one_photo.py --bodyloom build/release/apps/bodyloom --motions ../shared/data/motion --out FOLDER
-       [--systems floor person photo guided] [--photos 1 2 4] [--without latent kl ...] [--given true labels iuv bodies all] [--seeds 1 2 3]
-       [--people 60] [--size 256] [--steps 4000] [--batch 4] [--profile cpu] [--report]
+       [--systems floor person photo guided] [--photos 1 2 4] [--baselines ip warp ...] [--without latent kl ...]
+       [--given true labels iuv bodies all] [--seeds 1 2 3]
+       [--people 60] [--size 256] [--steps 4000] [--batch 4] [--profile cpu] [--report] [--picture P.jpg [--rows 0 1]]
        [--photo-options="--gan-weight 0 --learning-rate 0.001"] [--guided-options="--learning-rate 0.002"]
 
 FOLDER gets the people, a folder a run, report.md and report.json. What is there is not made again: a program that was
 stopped (Ctrl-C, SIGTERM) goes on where it was, within a run from its last checkpoint. --report only prints what there
-is. Bodies are those of `bodyloom run` on the test people's pictures: it needs the pose detector's networks; leave
-"bodies" and "all" out of --given without them. Clips that it does not follow through all frames are in no row
-(left_out.txt).
+is, and draws --picture: photo, truth, and what each system makes of it, a row each of the test people that --rows lists
+(NumPy, ffmpeg). Bodies are those of `bodyloom run` on the test people's pictures: it needs the pose detector's
+networks; leave "bodies" and "all" out of --given without them. Clips that it does not follow through all frames are in
+no row (left_out.txt).
 """
 import argparse
 import json
 import pathlib
 import shlex
 import shutil
+import subprocess
 import sys
 
 from runs import call, exit_code, text
 
+BASELINES = ["ip", "warp", "warpcond", "no-int"]
 ABLATIONS = ["sil", "gar", "source-silhouette", "source-labels", "latent", "kl", "pseudo-image"]
 TRACK = "tracked.npz"
 GIVEN = {"true": [], "labels": ["--score-labels", "estimated"], "iuv": ["--score-iuv"], "bodies": ["--score-tracks", TRACK],
@@ -86,6 +91,9 @@ def settings(o):
     """Name, verb and options of each kind of run."""
     for system in o.systems:
         yield system, "person" if system in UNTRAINED else system, []
+    if "photo" in o.systems:
+        for variant in o.baselines:
+            yield f"photo {variant}", "photo", ["--baseline", variant]
     if "guided" in o.systems:
         for part in o.without:
             yield f"guided without {part}", "guided", ["--without", part]
@@ -163,6 +171,32 @@ def report(o):
     return "\n".join(lines)
 
 
+def draw(o):
+    """The results beside each other, out of the sheets of the first seed."""
+    import numpy as np  # the rest does without
+
+    size = WINDOW[o.profile]
+
+    def cells(name):
+        """Rows of the four cells of a sheet: photo, what it shows, result, truth."""
+        sheet = run_folder(o, name, o.seeds[0]) / "true.png"
+        probe = ["ffprobe", "-v", "error", "-show_entries", "stream=width,height", "-of", "csv=p=0", str(sheet)]
+        width, height = map(int, subprocess.run(probe, check=True, capture_output=True, text=True).stdout.split(","))
+        raw = subprocess.run(["ffmpeg", "-v", "error", "-i", str(sheet), "-f", "rawvideo", "-pix_fmt", "rgb24", "-"],
+                             check=True, capture_output=True).stdout
+        pixels, gap = np.frombuffer(raw, np.uint8).reshape(height, width, 3), (width - 4 * size) // 5
+        at = [gap + i * (size + gap) for i in range(max(4, max(o.rows) + 1))]
+        return [[pixels[at[row]:at[row] + size, at[i]:at[i] + size] for i in range(4)] for row in o.rows]
+
+    found = [cells(name) for name, _, _ in settings(o)]
+    rows = [np.concatenate([found[0][r][0], found[0][r][3]] + [sheet[r][2] for sheet in found], axis=1)
+            for r in range(len(o.rows))]
+    picture = np.concatenate(rows)
+    subprocess.run(["ffmpeg", "-v", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s",
+                    f"{picture.shape[1]}x{picture.shape[0]}", "-i", "-", "-q:v", "3", str(o.picture)],
+                   input=picture.tobytes(), check=True)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--bodyloom", default="build/release/apps/bodyloom")
@@ -171,6 +205,7 @@ def main():
     parser.add_argument("--systems", nargs="+", default=[*UNTRAINED, "photo", "guided"],
                         choices=[*UNTRAINED, "photo", "guided"])
     parser.add_argument("--photos", type=int, nargs="+", default=[1], help="numbers of photos, each a row")
+    parser.add_argument("--baselines", nargs="*", default=BASELINES, choices=BASELINES)
     parser.add_argument("--without", nargs="*", default=ABLATIONS, choices=ABLATIONS)
     parser.add_argument("--given", nargs="+", default=list(GIVEN), choices=list(GIVEN))
     parser.add_argument("--seeds", type=int, nargs="+", default=[1, 2, 3])
@@ -186,6 +221,8 @@ def main():
     parser.add_argument("--profile", default="cpu", choices=list(WINDOW))
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--report", action="store_true", help="only print what there is")
+    parser.add_argument("--picture", type=pathlib.Path, help="also draw the results of the first seed")
+    parser.add_argument("--rows", type=int, nargs="+", default=[0, 1], help="of the sheets, a test person each")
     o = parser.parse_args()
     o.out.mkdir(parents=True, exist_ok=True)
     if not o.report:
@@ -201,6 +238,8 @@ def main():
                 score(o, people, name, verb, seed)
                 report(o)
     print(report(o))
+    if o.picture:
+        draw(o)
 
 
 if __name__ == "__main__":

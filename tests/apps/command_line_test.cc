@@ -95,9 +95,11 @@ TEST(CommandLine, AVerbOfAVerbThatIsUnknownOrMissingIsNamedWithThoseThereAre) {
 }
 
 TEST(CommandLine, VersionIsOneLine) {
-  const CommandResult result = RunCommand({"version"});
-  EXPECT_EQ(result.exit_code, kExitOk);
-  EXPECT_THAT(result.out, ::testing::MatchesRegex("bodyloom [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+  for (const char* way : {"version", "--version"}) {
+    const CommandResult result = RunCommand({way});
+    EXPECT_EQ(result.exit_code, kExitOk) << way;
+    EXPECT_THAT(result.out, ::testing::MatchesRegex("bodyloom [0-9]+\\.[0-9]+\\.[0-9]+\n")) << way;
+  }
 }
 
 TEST(CommandLine, NeuralVerbsRunOrSayThatTheyWereNotBuilt) {
