@@ -27,7 +27,7 @@ import shutil
 import subprocess
 import sys
 
-from runs import call, exit_code, text
+from runs import call, exit_code, score_of, text
 
 BASELINES = ["ip", "warp", "warpcond", "no-int"]
 ABLATIONS = ["sil", "gar", "source-silhouette", "source-labels", "latent", "kl", "pseudo-image"]
@@ -139,13 +139,6 @@ def score(o, people, name, verb, seed):
               "--threads", str(o.threads)] + what + GIVEN[given], run / "log.txt")
 
 
-def score_of(scores, key):
-    """By the name that says what measures: trained weights or random features."""
-    named = [k for k in scores if k == key or k.startswith(key + "_") and not k.startswith("lpips_deviation") or
-             (key == "lpips_deviation" and k.startswith(key))]
-    return scores[named[0]] if named else None
-
-
 def report(o):
     left_out = o.out / "left_out.txt"
     count = len(left_out.read_text(encoding="utf-8").splitlines()) if left_out.exists() else 0
@@ -175,6 +168,8 @@ def draw(o):
     """The results beside each other, out of the sheets of the first seed."""
     import numpy as np  # the rest does without
 
+    from pixels import decoded, write
+
     size = WINDOW[o.profile]
 
     def cells(name):
@@ -182,19 +177,14 @@ def draw(o):
         sheet = run_folder(o, name, o.seeds[0]) / "true.png"
         probe = ["ffprobe", "-v", "error", "-show_entries", "stream=width,height", "-of", "csv=p=0", str(sheet)]
         width, height = map(int, subprocess.run(probe, check=True, capture_output=True, text=True).stdout.split(","))
-        raw = subprocess.run(["ffmpeg", "-v", "error", "-i", str(sheet), "-f", "rawvideo", "-pix_fmt", "rgb24", "-"],
-                             check=True, capture_output=True).stdout
-        pixels, gap = np.frombuffer(raw, np.uint8).reshape(height, width, 3), (width - 4 * size) // 5
+        pixels, gap = decoded(sheet, width, height)[0], (width - 4 * size) // 5
         at = [gap + i * (size + gap) for i in range(max(4, max(o.rows) + 1))]
         return [[pixels[at[row]:at[row] + size, at[i]:at[i] + size] for i in range(4)] for row in o.rows]
 
     found = [cells(name) for name, _, _ in settings(o)]
     rows = [np.concatenate([found[0][r][0], found[0][r][3]] + [sheet[r][2] for sheet in found], axis=1)
             for r in range(len(o.rows))]
-    picture = np.concatenate(rows)
-    subprocess.run(["ffmpeg", "-v", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s",
-                    f"{picture.shape[1]}x{picture.shape[0]}", "-i", "-", "-q:v", "3", str(o.picture)],
-                   input=picture.tobytes(), check=True)
+    write(o.picture, np.concatenate(rows), ["-q:v", "3"])
 
 
 def main():

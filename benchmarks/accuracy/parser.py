@@ -17,14 +17,10 @@ import sys
 
 import numpy as np
 
+from pixels import decoded, write
+
 NAMES = ["background", "top", "bottom", "face", "hair", "skin", "shoes"]
 COLOURS = np.array([[0, 0, 0], [230, 60, 60], [60, 90, 230], [250, 200, 160], [120, 80, 40], [255, 160, 90], [60, 200, 90]])
-
-
-def read(path, width, height):
-    raw = subprocess.run(["ffmpeg", "-v", "error", "-i", str(path), "-frames:v", "1", "-f", "rawvideo", "-pix_fmt", "rgb24", "-"],
-                         check=True, capture_output=True).stdout
-    return np.frombuffer(raw, np.uint8).reshape(height, width, 3)
 
 
 def filled(polygon, width, height):
@@ -68,10 +64,8 @@ def main():
         subprocess.run(["ffmpeg", "-v", "error", "-y", "-i", str(o.data / frame["video"]), "-vf", f"select=eq(n\\,{frame['frame']})",
                         "-frames:v", "1", str(picture)], check=True)
         if o.show:
-            tinted = (read(picture, frame["width"], frame["height"]).astype(int) + COLOURS[truth_of(frame)]) // 2
-            subprocess.run(["ffmpeg", "-v", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s",
-                            f"{frame['width']}x{frame['height']}", "-i", "-", str(o.out / (frame["name"] + "_labels.png"))],
-                           input=tinted.astype(np.uint8).tobytes(), check=True)
+            tinted = (decoded(picture, frame["width"], frame["height"])[0].astype(int) + COLOURS[truth_of(frame)]) // 2
+            write(o.out / (frame["name"] + "_labels.png"), tinted.astype(np.uint8))
     if o.show:
         return 0
     for weights in o.weights:
@@ -82,7 +76,7 @@ def main():
             subprocess.run([o.bodyloom, "parse", str(o.out / (frame["name"] + ".png")), "--weights", weights, "--out",
                             str(o.out / (stem + ".png")), "--picture", str(o.out / (stem + "_tinted.png"))], check=True,
                            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-            result = read(o.out / (stem + ".png"), frame["width"], frame["height"])[..., 0]
+            result = decoded(o.out / (stem + ".png"), frame["width"], frame["height"])[0][..., 0]
             truth = truth_of(frame)
             of_class = overlap(result, truth)
             both = (result > 0) & (truth > 0)

@@ -19,18 +19,7 @@ import sys
 
 import numpy as np
 
-
-def frames_of(video, width, height):
-    raw = subprocess.run(["ffmpeg", "-v", "error", "-i", str(video), "-f", "rawvideo", "-pix_fmt", "rgb24", "-"],
-                         check=True, capture_output=True).stdout
-    return np.frombuffer(raw, np.uint8).reshape(-1, height, width, 3)
-
-
-def pictures_of(folder, count, width, height):
-    """RGBA of 000000.png …"""
-    raw = subprocess.run(["ffmpeg", "-v", "error", "-i", str(folder / "%06d.png"), "-f", "rawvideo", "-pix_fmt", "rgba", "-"],
-                         check=True, capture_output=True).stdout
-    return np.frombuffer(raw, np.uint8).reshape(count, height, width, 4)
+from pixels import decoded, write
 
 
 def scores(drawn, truth, mask, used):
@@ -75,15 +64,14 @@ def main():
                         "--quiet"], check=True)
     mask = masks(people / "mask_0.npz")
     count, height, width = mask.shape
-    truth = frames_of(o.video, width, height)[:count]
+    truth = decoded(o.video, width, height)[:count]
     rows = []
     for first in o.frames:
         used = [(first + i * count // o.photos) % count for i in range(o.photos)]
         photos = []
         for frame in used:
             photo = o.out / f"frame_{frame}.png"
-            subprocess.run(["ffmpeg", "-v", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{width}x{height}",
-                            "-i", "-", "-frames:v", "1", str(photo)], input=truth[frame].tobytes(), check=True)
+            write(photo, truth[frame])
             photos.append(str(photo))
         run = o.out / f"from_{first}_{o.photos}"
         run.mkdir(exist_ok=True)
@@ -98,7 +86,7 @@ def main():
             report = json.loads((result / "report.json").read_text(encoding="utf-8"))
             made = made or report["person"]
             rows.append((first, refiner, made["texture_shares"]["seen"],
-                         *scores(pictures_of(result / "pictures", report["frames"], width, height), truth, mask, used),
+                         *scores(decoded(result / "pictures" / "%06d.png", width, height, 4), truth, mask, used),
                          report["first_frame_s"], report["draw_ms_median"]))
     print(f"{o.video.name}, {count} frames of {width}x{height}, from {o.photos} of them")
     print("from frame  refiner   seen   PSNR dB   5 %    outline IoU   first frame s   draw ms")

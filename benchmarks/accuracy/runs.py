@@ -27,3 +27,9 @@ def mean_and_deviation(values):
 def text(values, digits=4):
     mean, deviation = mean_and_deviation(values)
     return f"{mean:.{digits}f} ± {deviation:.{digits}f}"
+
+
+def score_of(scores, key):
+    """By the name that says what measures, trained weights or random features; None where it was not measured."""
+    measured = ("", "_random_features", "_quarter_random_features", "_alex", "_vgg19")
+    return next((scores[key + by] for by in measured if key + by in scores), None)

@@ -16,7 +16,7 @@ import json
 import pathlib
 import statistics
 
-from runs import call, text
+from runs import call, score_of, text
 
 WIDTH, HEIGHT, MARGIN = 640, 300, 48
 STEPS = [0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2]  # between the lines of the axis
@@ -30,7 +30,7 @@ def scores_of(o, people, name, arguments):
         call([o.bodyloom, "animate", *arguments, "--score", str(people), "--score-frames", str(o.frames - 1), "--sheet",
               str(o.out / f"{name}.png"), "--json", str(report), "--threads", str(o.threads)], o.out / "log.txt")
     scores = json.loads(report.read_text(encoding="utf-8"))["scores"][0]
-    return next(value for key, value in scores.items() if key.startswith("lpips_of_people"))
+    return score_of(scores, "lpips_of_people")
 
 
 def drawn(curves, title):
