@@ -24,8 +24,8 @@
 
 #include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/accuracy/bench_report.h"
+#include "benchmarks/accuracy/lifter_choice.h"
 #include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/learned/lifter_weights_io.h"
 #include "bodyloom/data_tools/motion/motion_library.h"
 #include "bodyloom/data_tools/synthesis/lifter/lifter_windows.h"
 #include "bodyloom/geometry/base/check.h"
@@ -170,9 +170,9 @@ void Run(const BenchArguments& arguments, const std::string& command) {
     set.has_floor.push_back(clip.has_floor);
     set.motions.push_back(std::move(clip.motion));
   });
-  const LifterWeights weights =
-      arguments.Text("lifter") == "built-in" ? BuiltinLifter() : ReadLifterWeights(arguments.Text("lifter"));
-  Scorer scorer(weights, MeanBodyLength());
+  const LifterWeights* weights = LifterOf(arguments.Text("lifter"));
+  BODYLOOM_CHECK(weights != nullptr, "--lifter is none, expected built-in or a file");
+  Scorer scorer(*weights, MeanBodyLength());
   BenchReport report;
   report.title = "The lifter alone, on motion kept for testing, synthetic detections";
   report.command = command;
@@ -214,7 +214,7 @@ void Run(const BenchArguments& arguments, const std::string& command) {
     report.rows.push_back(row);
   }
   report.notes = {Concatenate("lifter and reading, one thread: ", scorer.MillisecondsAFrame(), " ms a frame"),
-                  Concatenate("weights: ", weights.num_parameters(), " numbers; ", weights.recipe)};
+                  Concatenate("weights: ", weights->num_parameters(), " numbers; ", weights->recipe)};
   HandOver(report, arguments.Text("json"));
 }
 

@@ -141,6 +141,7 @@ Evaluation EvaluateHeldOutViews(const Track& track, const MultiViewClip& clip, c
   result.Add("mpjpe_scaled_mm", scaled.mean * kMm, "the same with the clip's scale");
   result.Add("pa_mpjpe_mm", pa.mean * kMm, "landmark error after one similarity a frame");
   result.Add("pa_p95_mm", pa.frames.p95 * kMm, "95th percentile of frames");
+  result.Add("pa_over_120_percent", PercentAbove(pa.of_frame, kAnotherPose_m), "frames in which it is above 120 mm");
   result.Add("accel_err_ms2", acceleration.mean, "acceleration error, m/s2");
   result.Add("gt_accel_ms2", acceleration.mean_truth, "acceleration of the reference, m/s2");
   result.Add("jitter_ms3", Jitter(P, timestamps), "mean jerk, m/s3");

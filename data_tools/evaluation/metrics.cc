@@ -56,6 +56,15 @@ ErrorStatistics Summarize(std::span<const double> values) {
   return s;
 }
 
+double PercentAbove(std::span<const double> values, double limit) {
+  int64_t finite = 0, above = 0;
+  for (const double value : values) {
+    finite += std::isfinite(value) ? 1 : 0;
+    above += std::isfinite(value) && value > limit ? 1 : 0;
+  }
+  return finite > 0 ? 100.0 * static_cast<double>(above) / static_cast<double>(finite) : kNotMeasured;
+}
+
 std::vector<bool> HasResults(const Track& track, int frames) {
   std::vector<bool> has_result(frames);
   for (int t = 0; t < frames; ++t) has_result[t] = track.HasResult(t);
@@ -137,6 +146,7 @@ void PositionErrorAccumulator::AddFrame(const Eigen::VectorXd& distances) {
 PositionError PositionErrorAccumulator::Result() const {
   PositionError result;
   result.frames = Summarize(frame_means_);
+  result.of_frame = frame_means_;
   result.missing = missing_;
   result.per_point = Eigen::VectorXd::Constant(point_sum_.size(), kNotMeasured);
   for (Eigen::Index p = 0; p < point_sum_.size(); ++p) {

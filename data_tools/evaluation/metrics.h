@@ -34,6 +34,13 @@ struct ErrorStatistics {
 };
 ErrorStatistics Summarize(std::span<const double> values);
 
+/// Percent of the finite values that are above `limit`; NaN when none is finite.
+double PercentAbove(std::span<const double> values, double limit);
+
+/// A frame whose landmarks are off by more than this after one similarity shows another pose: a limb that is turned the
+/// other way, front and back exchanged.
+inline constexpr double kAnotherPose_m = 0.12;
+
 /// Which of the first `frames` frames have a result; the track has as many.
 std::vector<bool> HasResults(const Track& track, int frames);
 
@@ -58,9 +65,10 @@ double ClipScale(Clip prediction_from_root, Clip truth_from_root);
 
 /// Distances between corresponding points, metres.
 struct PositionError {
-  double mean = kNotMeasured;  ///< over all frames and points
-  ErrorStatistics frames;      ///< distribution of the frames' means (its p95 is a bad frame)
-  Eigen::VectorXd per_point;   ///< P: mean over frames of each point
+  double mean = kNotMeasured;    ///< over all frames and points
+  ErrorStatistics frames;        ///< distribution of the frames' means (its p95 is a bad frame)
+  std::vector<double> of_frame;  ///< T: those means; NaN where nothing was known
+  Eigen::VectorXd per_point;     ///< P: mean over frames of each point
   int64_t count = 0, missing = 0;
 };
 

@@ -88,6 +88,7 @@ Evaluation EvaluateAgainstTruth(const Track& track, const Track& truth, const Bo
   result.Add("clip_scale", scale, "that scale: true size / estimated size");
   result.Add("pa_mpjpe_mm", pa.mean * kMmPerMetre, "joint error after one similarity a frame");
   result.Add("pa_p95_mm", pa.frames.p95 * kMmPerMetre, "95th percentile of frames");
+  result.Add("pa_over_120_percent", PercentAbove(pa.of_frame, kAnotherPose_m), "frames in which it is above 120 mm");
   const MotionError acceleration = AccelerationError(joints, true_joints, truth.motion.timestamps);
   result.Add("accel_err_ms2", acceleration.mean, "acceleration error, m/s2");
   result.Add("gt_accel_ms2", acceleration.mean_truth, "true acceleration, m/s2");

@@ -12,7 +12,6 @@
 namespace bodyloom {
 namespace {
 
-constexpr int64_t kMostPixelsASide = 32768;
 /// Runs say more pixels than bytes, so what they may say is bounded before memory is taken: boxes of at most 67 megapixels
 /// (8K video has 33), and beyond 1 GiB together no more than 16384 pixels a run, where a person's outline has some hundreds.
 constexpr int64_t kMostPixelsOfBox = int64_t{1} << 26, kMostPixelsAnyway = int64_t{1} << 30, kMostPixelsOfRun = 16384;
@@ -93,9 +92,9 @@ PartLabelSequence MaskFromRuns(const NpzArrays& arrays, const std::string& where
   const auto T = static_cast<int64_t>(counts.size());
   const std::vector<int64_t> boxes = WholeNumbers(arrays, "mask_box", {T, 4}, where);
   const std::vector<int64_t> runs = WholeNumbers(arrays, "mask_runs", {-1}, where);
-  if (T < 1 || std::min(size[0], size[1]) < 1 || std::max(size[0], size[1]) > kMostPixelsASide) {
+  if (T < 1 || std::min(size[0], size[1]) < 1 || std::max(size[0], size[1]) > kMostLabelPixelsASide) {
     throw std::runtime_error(Concatenate(where, ": image_size ", size[0], " x ", size[1], " of ", T,
-                                         " frames, expected at least one frame and 1 to ", kMostPixelsASide,
+                                         " frames, expected at least one frame and 1 to ", kMostLabelPixelsASide,
                                          " pixels a side"));
   }
   PartLabelSequence mask;

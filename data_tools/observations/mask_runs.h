@@ -9,12 +9,16 @@
 ///   image_size  int32 (2): width, height
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "bodyloom/data_tools/formats/npz.h"
 #include "bodyloom/geometry/observations.h"
 
 namespace bodyloom {
+
+/// Of an image whose labels or masks are read.
+constexpr int64_t kMostLabelPixelsASide = 32768;
 
 /// The four arrays of masks: a pixel shows the person where its label is not 0. Throws std::invalid_argument when a
 /// rectangle leaves the image, or has more than 67 megapixels.

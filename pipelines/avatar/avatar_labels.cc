@@ -8,6 +8,7 @@
 #include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
+
 Image LabelsOf(const SplatPicture& picture, std::span<const float> garment, int width, int height) {
   const PixelBox& window = picture.window();
   BODYLOOM_CHECK(garment.empty() || garment.size() == window.area(), "labels of an avatar: a garment of ",
@@ -17,8 +18,8 @@ Image LabelsOf(const SplatPicture& picture, std::span<const float> garment, int 
   for (int y = window.y_begin; y < window.y_end; ++y) {
     for (int x = window.x_begin; x < window.x_end; ++x) {
       const size_t i = window.IndexOf(x, y);
-      const bool is_garment = !garment.empty() && garment[i] >= 0.5F;
-      if (!is_garment && !(alpha[i] >= 0.5F)) continue;
+      const bool is_garment = !garment.empty() && garment[i] >= kLeastGarmentShare;
+      if (!is_garment && !(alpha[i] >= kLeastAlpha)) continue;
       std::fill_n(labels.pixel(x, y), 3, static_cast<uint8_t>(is_garment ? PersonLabel::kBottom : PersonLabel::kSkin));
     }
   }

@@ -39,7 +39,7 @@ void AvatarScorer::AddGarment(const TrainingView& view, std::span<const float> g
   size_t of_garment = 0;
   for (size_t i = 0; i < garment.size(); ++i) {
     const uint8_t label = view.pixels[4 * i + 3];
-    const bool is_garment = garment[i] >= 0.5F;
+    const bool is_garment = garment[i] >= kLeastGarmentShare;
     ++shown[label];
     covered[label] += is_garment ? 1 : 0;
     of_garment += is_garment ? 1 : 0;
@@ -61,7 +61,7 @@ void AvatarScorer::Add(const TrainingView& view, const SplatPicture& picture, st
   const std::span<const float> alpha = picture.plane(SplatPicture::kAlpha);
   for (size_t i = 0; i < view.window.area(); ++i) {
     person.inside.push_back(view.pixels[4 * i + 3] != 0 ? 1 : 0);
-    outline.inside.push_back(alpha[i] >= 0.5F ? 1 : 0);
+    outline.inside.push_back(alpha[i] >= kLeastAlpha ? 1 : 0);
   }
   double l1 = 0;
   for (size_t i = 0; i < truth.bgr.size(); ++i) l1 += std::abs(int{truth.bgr[i]} - int{drawn.bgr[i]});

@@ -127,13 +127,13 @@ HiddenCounts Hide(const SeenBody& self, const std::vector<const SeenBody*>& othe
       return hidden_at(point.pixel.x(), point.pixel.y());
     }));
   }
-  if (person.part_labels != nullptr) {
+  if (person.part_labels != nullptr && !others.empty()) {
     PartLabelSequence& labels = *person.part_labels;
     LabelImage image = labels.frames[size_t(t)].Unpacked();
     for (const SeenBody* other : others) {
       counts.pixels += HideLabels(self, *other, labels.image_width, labels.image_height, &image);
     }
-    labels.frames[size_t(t)] = image;
+    if (counts.pixels > 0) labels.frames[size_t(t)] = image;
   }
   counts.frames = counts.keypoints + counts.dense + counts.pixels > 0;
   return counts;

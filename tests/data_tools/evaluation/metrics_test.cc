@@ -90,6 +90,12 @@ TEST(MetricsTest, ErrorsByPointAndFrame) {
   EXPECT_DOUBLE_EQ(e.per_point[1], 2);
   EXPECT_DOUBLE_EQ(e.frames.mean, 1.5);
   EXPECT_DOUBLE_EQ(e.frames.std_dev, 1);
+  EXPECT_EQ(e.of_frame, (std::vector<double>{0.5, 2.5}));
+}
+
+TEST(MetricsTest, PercentAboveLeavesOutWhatIsNotKnown) {
+  EXPECT_DOUBLE_EQ(PercentAbove(std::vector<double>{0.1, 0.12, kNotMeasured, 0.13, 0.5}, 0.12), 50);
+  EXPECT_TRUE(std::isnan(PercentAbove(std::vector<double>{kNotMeasured}, 0.12)));
 }
 
 TEST(MetricsTest, ClipScaleUndoesAKnownScale) {
