@@ -23,13 +23,14 @@ constexpr const char* kSynthPeopleFooter =
 
 struct SynthPeopleArguments {
   SynthesizePeopleRequest request;
-  std::string clothes = "patterned";
+  std::string clothes = "patterned", light_style = "studio";
   bool quiet = false;
 };
 
 void SynthPeople(const SynthPeopleArguments& arguments) {
   SynthesizePeopleRequest request = arguments.request;
   request.set.style = ClothesStyleFromString(arguments.clothes);
+  request.set.light_style = LightStyleFromString(arguments.light_style);
   const SynthesizePeopleReport report = SynthesizePeople(request, CommandCallbacks(arguments.quiet));
   if (!arguments.quiet) std::cout << ToText(report);
 }
@@ -69,6 +70,11 @@ void AddSynthPeopleVerb(CLI::App& app, Action* action) {
                    "patterned (what shows best how a surface moves) or everyday (what people wear: mostly plain, wide "
                    "trousers and loose shirts among them)")
       ->check(CLI::IsMember({"patterned", "everyday"}))
+      ->capture_default_str();
+  verb->add_option(
+          "--light-style", arguments->light_style,
+          "studio (even, with bright rims, no shadows) or natural (from anywhere around, even or hard, with shadows)")
+      ->check(CLI::IsMember({"studio", "natural"}))
       ->capture_default_str();
   verb->add_option("--seed", c.set.seed, "same seed, same files")->capture_default_str();
   verb->add_option("--body", c.body, "body model (default: the built-in body)")->type_name("FILE");

@@ -27,7 +27,7 @@ constexpr const char* kSynthPersonFooter =
 
 struct SynthPersonArguments {
   SynthesizePersonRequest request;
-  std::string garment = "skirt", clothes = "patterned";
+  std::string garment = "skirt", clothes = "patterned", light_style = "studio";
   bool quiet = false;
 };
 
@@ -35,6 +35,7 @@ void SynthPerson(const SynthPersonArguments& arguments) {
   SynthesizePersonRequest request = arguments.request;
   request.set.garment = GarmentKindFromString(arguments.garment);
   request.set.style = ClothesStyleFromString(arguments.clothes);
+  request.set.light_style = LightStyleFromString(arguments.light_style);
   const SynthesizePersonReport report = SynthesizePerson(request, CommandCallbacks(arguments.quiet));
   if (!arguments.quiet) std::cout << ToText(report);
 }
@@ -56,6 +57,11 @@ void AddSynthPersonVerb(CLI::App& app, Action* action) {
       ->check(CLI::IsMember({"patterned", "everyday"}))
       ->capture_default_str();
   verb->add_option("--seed", c.set.seed, "the person; same seed, same files")->capture_default_str();
+  verb->add_option(
+          "--light-style", arguments->light_style,
+          "studio (even, with bright rims, no shadows) or natural (from anywhere around, even or hard, with shadows)")
+      ->check(CLI::IsMember({"studio", "natural"}))
+      ->capture_default_str();
   verb->add_option("--light-seed", c.set.light_seed, "another light on the same person (default: the seed's)");
   verb->add_option("--light", c.light, "also write the light, JSON as `bodyloom animate motion --relight` takes it")
       ->type_name("FILE");

@@ -35,6 +35,7 @@ std::string CommandLine(const SynthesizePeopleRequest& c) {
   add("--frames", c.set.frames), add("--every", c.set.every), add("--test-share", c.set.test_share);
   add("--size", c.set.size_px), add("--shape", c.set.shape_sigma);
   if (c.set.style != ClothesStyle::kPatterned) line += " --clothes " + ToString(c.set.style);
+  if (c.set.light_style != LightStyle::kStudio) line += " --light-style " + ToString(c.set.light_style);
   line += " --seed " + std::to_string(c.set.seed);
   return c.body.empty() ? line : line + " --body " + c.body;
 }

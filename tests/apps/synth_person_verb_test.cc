@@ -183,6 +183,22 @@ TEST(SynthPeopleVerb, DressesPeopleAsTheyDressEveryDay) {
   EXPECT_THAT(other.err, HasSubstr("fancy not in {patterned,everyday}"));
 }
 
+TEST(SynthPeopleVerb, PutsPeopleIntoNaturalLight) {
+  const ScratchFolder scratch;
+  const auto make = [&](const std::string& name, const std::string& style) {
+    return RunCommand({"synth-people", "--motions", "demo", "--out", scratch / name, "--people", "1", "--actions", "1",
+                       "--views", "1", "--frames", "1", "--size", "64", "--light-style", style});
+  };
+  for (const char* style : {"studio", "natural"}) ASSERT_EQ(make(style, style).exit_code, 0) << style;
+  const std::string clip = "p000/a0_v0/", frame = "/000000.png";
+  EXPECT_FALSE(ReadImage(scratch / ("studio/" + clip + "images" + frame)).bgr ==
+               ReadImage(scratch / ("natural/" + clip + "images" + frame)).bgr);
+  EXPECT_TRUE(ReadImage(scratch / ("studio/" + clip + "labels" + frame)).bgr ==
+              ReadImage(scratch / ("natural/" + clip + "labels" + frame)).bgr);
+  EXPECT_THAT(ReadMultiPersonDataset(scratch / "natural").command, HasSubstr("--light-style natural"));
+  EXPECT_EQ(make("other", "sun").exit_code, 2);
+}
+
 TEST(SynthPeopleVerb, SaysWhatIsWrong) {
   const ScratchFolder scratch;
   const CommandResult longer =

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/hash_random.h"
 #include "bodyloom/render/view_camera.h"
 
 namespace bodyloom {
@@ -17,6 +16,9 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 constexpr float kInnerShade = 0.7F;
+constexpr int kShadowMapPx = 640;
+constexpr double kShadowLift_m = 0.008;  ///< off the surface, so that it does not shade itself
+constexpr float kThrownBack = 0.2F;      ///< of the ambient light where a place is not open
 
 /// The faces of clothed body and cloth as a body that does not move, which is what pixels are resolved against.
 BodyModel MeshOf(const DressedPerson& person) {
@@ -38,26 +40,10 @@ BodyModel MeshOf(const DressedPerson& person) {
   return BodyModel(std::move(data));
 }
 
-PersonLight LightOf(const Vector3d& up_in_camera, uint64_t seed) {
-  HashRandom random(seed, {0x6c696768});
-  const Vector3d side = up_in_camera.cross(Vector3d::UnitZ()).normalized(), to_viewer = side.cross(up_in_camera);
-  const auto direction = [&](double azimuth, double height) {  // azimuth 0: from behind the camera
-    const Vector3d level = std::cos(azimuth) * to_viewer + std::sin(azimuth) * side;
-    return Vector3f((std::cos(height) * level + std::sin(height) * up_in_camera).cast<float>().normalized());
-  };
-  PersonLight light;
-  const double beside = random.Uniform(0.3, 1.1);
-  const double key = random.Uniform() < 0.5 ? -beside : beside;
-  light.towards = {direction(key, random.Uniform(0.4, 0.9)), direction(-1.5 * key, random.Uniform(0.0, 0.5))};
-  light.ambient = float(random.Uniform(0.5, 0.62));
-  light.strength = {float(random.Uniform(0.5, 0.65)), float(random.Uniform(0.1, 0.25))};
-  return light;
-}
-
 }  // namespace
 
-DressedScene::DressedScene(const DressedPerson& person, const Camera& camera, const Vector3d& up_in_camera,
-                           uint64_t seed, int samples, std::optional<uint64_t> light_seed)
+DressedScene::DressedScene(const DressedPerson& person, const Camera& camera, uint64_t seed, int samples,
+                           const PersonLight& light)
     : person_(person),
       camera_(camera),
       samples_(samples),
@@ -65,7 +51,7 @@ DressedScene::DressedScene(const DressedPerson& person, const Camera& camera, co
       places_(mesh_.num_vertices(), 3),
       wardrobe_(person.outfit(), person.garment().around_m, seed),
       background_(camera.width, camera.height, seed),
-      light_(LightOf(up_in_camera, light_seed.value_or(seed))) {
+      light_(light) {
   BODYLOOM_CHECK(camera.model == CameraModel::kPinhole, "dressed scene: expected a pinhole camera");
   BODYLOOM_CHECK(samples >= 1 && samples <= 8, "dressed scene: ", samples, " samples, expected 1..8");
   places_ << person.body().data().v_template.cast<float>(), person.garment().pattern;
@@ -105,6 +91,8 @@ void DressedRenderer::Resolve(const Camera& camera) {
   request.normal = true;
   request.vertex_normals = &normals_;
   request.vertex_attributes = {{{scene_.places().data(), size_t(scene_.places().size())}, 3}};
+  if (!openness_.empty()) request.vertex_attributes.push_back({openness_, 1});
+  request.barycentric = !openness_.empty();
   ResolvePixels(buffer_, scene_.mesh(), vertices_, camera, request, &pixels_);
 }
 
@@ -119,12 +107,43 @@ Vector3f DressedRenderer::NormalOf(int face, size_t at) const {
   return IsCloth(face) && is_inside_out_[face - scene_.num_body_faces()] ? Vector3f(-normal) : normal;
 }
 
+/// What keeps light off the assembled mesh.
+void DressedRenderer::CastShadows() {
+  if (!scene_.light().shadow_softness_m) return;
+  const MatrixX3i& faces = scene_.mesh().data().faces;
+  for (size_t k = 0; k < shadows_.size(); ++k) {
+    shadows_[k].Render(vertices_, faces, scene_.light().towards[k].cast<double>(), kShadowMapPx);
+  }
+  openness_ = open_.Compute(vertices_, normals_, faces);
+}
+
+/// How much light there is at a pixel of the resolved ones, of all that there would be in the open and facing it.
+float DressedRenderer::LightAt(int face, size_t at, const Vector3f& normal) const {
+  const PersonLight& light = scene_.light();
+  float lit = light.ambient;
+  Vector3d place = Vector3d::Zero();
+  if (light.shadow_softness_m) {
+    lit *= kThrownBack + (1 - kThrownBack) * pixels_.vertex_attributes[1][at];
+    for (int c = 0; c < 3; ++c) {
+      place += double(pixels_.barycentric[3 * at + c]) * vertices_.row(scene_.mesh().data().faces(face, c)).transpose();
+    }
+    place += kShadowLift_m * normal.cast<double>();
+  }
+  for (size_t k = 0; k < light.towards.size(); ++k) {
+    const float facing = normal.dot(light.towards[k]);
+    if (!(facing > 0)) continue;
+    const float reaching =
+        light.shadow_softness_m ? float(shadows_[k].ShareReaching(place, *light.shadow_softness_m)) : 1;
+    lit += light.strength[k] * reaching * facing;
+  }
+  return lit;
+}
+
 void DressedRenderer::DrawImage(const Image& background, Image* image) {
   const int n = scene_.samples();
   Resolve(ScaledCamera(scene_.camera(), n));
   *image = background;
   const PixelBox& box = buffer_.box();
-  const PersonLight& light = scene_.light();
   const float share = 1.0F / float(n * n);
   for (int y = box.y_begin / n; y * n < box.y_end; ++y) {
     for (int x = box.x_begin / n; x * n < box.x_end; ++x) {
@@ -138,10 +157,7 @@ void DressedRenderer::DrawImage(const Image& background, Image* image) {
         if (face < 0) continue;
         const Vector3f place = Eigen::Map<const Vector3f>(&pixels_.vertex_attributes[0][3 * at]);
         const Vector3f normal = NormalOf(face, at);
-        float lit = light.ambient;
-        for (size_t k = 0; k < light.towards.size(); ++k) {
-          lit += light.strength[k] * std::max(0.0F, normal.dot(light.towards[k]));
-        }
+        const float lit = LightAt(face, at, normal);
         if (IsCloth(face)) {
           const bool inner = is_inside_out_[face - scene_.num_body_faces()] != 0;
           sum += (inner ? kInnerShade : 1.0F) * lit * scene_.wardrobe().OfGarment(place);
@@ -202,6 +218,7 @@ PersonFrame DressedRenderer::Render(const BodyPose& pose, const std::vector<Vect
   const Camera& camera = scene_.camera();
   PersonFrame frame;
   frame.background = scene_.background().At(time_s);
+  CastShadows();
   DrawImage(frame.background, &frame.rgb);
   frame.labels = frame.normals = frame.iuv = Image(camera.width, camera.height);
   DrawTruth(&frame.labels, &frame.normals);

@@ -2,8 +2,8 @@
 /// Pictures of a dressed person and the truth about every pixel.
 ///
 /// The clothed body and the cloth (seen from both sides) go through one visibility buffer a resolution:
-/// - image: samples × samples samples a pixel. Colour = pattern (wardrobe.h) · (ambient + Σ light · max(0, n·l)),
-///   cloth's inner side at 0.7 of it, averaged with the background;
+/// - image: samples × samples samples a pixel. Colour = pattern (wardrobe.h) · light (person_light.h), cloth's inner side
+///   at 0.7 of it, averaged with the background;
 /// - labels and normals: what the pixel's centre sees; normals are interpolated, and turned towards the viewer on cloth
 ///   seen from inside;
 /// - iuv: the bare body without clothes, at the pixel's centre.
@@ -12,7 +12,6 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
@@ -23,6 +22,8 @@
 #include "bodyloom/geometry/camera.h"
 #include "bodyloom/geometry/vertex_normals.h"
 #include "bodyloom/render/resolve_pixels.h"
+#include "bodyloom/render/shadows/openness.h"
+#include "bodyloom/render/shadows/shadow_map.h"
 #include "bodyloom/render/visibility_buffer.h"
 
 namespace bodyloom {
@@ -30,10 +31,8 @@ namespace bodyloom {
 /// What does not change from frame to frame. Immutable, may be shared by threads; the person must outlive it.
 class DressedScene {
  public:
-  /// Pinhole cameras only (std::invalid_argument otherwise). `up_in_camera`: lights come from above. `light_seed`: of the
-  /// light alone; absent: `seed`.
-  DressedScene(const DressedPerson& person, const Camera& camera, const Eigen::Vector3d& up_in_camera, uint64_t seed,
-               int samples = 2, std::optional<uint64_t> light_seed = {});
+  /// Pinhole cameras only (std::invalid_argument otherwise). `seed`: of patterns and background.
+  DressedScene(const DressedPerson& person, const Camera& camera, uint64_t seed, int samples, const PersonLight& light);
 
   [[nodiscard]] const DressedPerson& person() const { return person_; }
   [[nodiscard]] const Camera& camera() const { return camera_; }
@@ -72,6 +71,8 @@ class DressedRenderer {
   [[nodiscard]] bool IsCloth(int face) const { return face >= scene_.num_body_faces(); }
   [[nodiscard]] PersonLabel LabelOf(int face, const Eigen::Vector3f& place) const;
   [[nodiscard]] Eigen::Vector3f NormalOf(int face, size_t at) const;
+  void CastShadows();
+  [[nodiscard]] float LightAt(int face, size_t at, const Eigen::Vector3f& normal) const;
   void DrawImage(const Image& background, Image* image);
   void DrawTruth(Image* labels, Image* normals);
   void DrawIuv(Image* iuv);
@@ -80,6 +81,9 @@ class DressedRenderer {
   VertexNormalsOfMesh bare_normals_, body_normals_, cloth_normals_;
   MatrixX3d bare_, vertices_;
   MatrixX3f normals_;
+  std::array<ShadowMap, 2> shadows_;  ///< of the two lights
+  OpennessOfMesh open_;
+  std::vector<float> openness_;        ///< by vertex; empty: there are no shadows
   std::vector<int8_t> is_inside_out_;  ///< by face of the cloth: seen from inside
   VisibilityBuffer buffer_;
   ResolvedPixels pixels_;

@@ -133,7 +133,8 @@ class Maker {
     info.seed = seed, info.garment = ToString(person.outfit().kind());
     info.has.background = false;
     const SinglePersonDatasetWriter writer((folder_ / clip).string(), info, track);
-    const DressedScene scene(person, camera.camera, camera.up_in_camera, seed, options_.samples);
+    const DressedScene scene(person, camera.camera, seed, options_.samples,
+                             LightOfSeed(camera.up_in_camera, options_.light_style, seed));
     DressedRenderer renderer(scene);
     std::vector<Vector3d> seen;
     for (int t = 0; t < track.num_frames(); ++t) {

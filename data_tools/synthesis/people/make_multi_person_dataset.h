@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "bodyloom/data_tools/synthesis/people/outfit.h"
+#include "bodyloom/data_tools/synthesis/people/person_light.h"
 #include "bodyloom/geometry/body_model.h"
 #include "bodyloom/geometry/track.h"
 
@@ -28,6 +29,7 @@ struct MakeMultiPersonDatasetOptions {
   double elevation_low_deg = 0, elevation_high_deg = 20;
   double shape_sigma = 1;
   ClothesStyle style = ClothesStyle::kPatterned;
+  LightStyle light_style = LightStyle::kStudio;
   int samples = 2;  ///< a pixel along x and y
   uint64_t seed = 1;
   int num_threads = 0;                        ///< 0: all cores

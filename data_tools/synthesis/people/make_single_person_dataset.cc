@@ -131,8 +131,9 @@ MakeSinglePersonDatasetSummary MakeSinglePersonDataset(const std::string& folder
   const DressedPerson person(body, track.motion.betas, options.garment, options.seed, options.style);
   info.has.iuv = body.has_parts() && body.data().face_iuv.rows() > 0;
   const SinglePersonDatasetWriter writer(folder, info, track);
-  const DressedScene scene(person, track.camera, camera.up_in_camera, options.seed, options.samples,
-                           options.light_seed);
+  const DressedScene scene(
+      person, track.camera, options.seed, options.samples,
+      LightOfSeed(camera.up_in_camera, options.light_style, options.light_seed.value_or(options.seed)));
   ClothRunOptions run_options;
   run_options.up = camera.up_in_camera;
   ClothRun run(person, track.motion, run_options);

@@ -25,6 +25,7 @@ struct MakeSinglePersonDatasetOptions {
   GarmentKind garment = GarmentKind::kSkirt;
   ClothesStyle style = ClothesStyle::kPatterned;
   uint64_t seed = 1;
+  LightStyle light_style = LightStyle::kStudio;
   std::optional<uint64_t> light_seed;  ///< of the light alone: the same person in another light; absent: `seed`
   int size_px = 256;                   ///< images are square
   double yaw_deg = 0;                  ///< of the camera, about the vertical

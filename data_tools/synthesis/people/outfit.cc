@@ -121,15 +121,15 @@ void Outfit::CutEveryday(uint64_t seed, const MatrixX3d& joints) {
   }
   const bool loose = random.Uniform() < 0.65;
   top_m_ = loose ? between(0.01, 0.028) : between(0.004, 0.008);
-  const double hang = between(-0.04, 0.07);
+  const double hang = between(-0.14, 0.07);  // down to the crotch
   if (kind_ == GarmentKind::kSuit && random.Uniform() < 0.75) {
     tucked_in_ = false;
     c.waist_y = joints(kPelvis, 1) + hang;
     top_m_ = std::max(top_m_, trousers_m_ + 0.15 * flare_m_ + 0.003 * c.unit);  // over the flare's beginning
   }
   hair_m_ = between(0.012, 0.042);
-  has_top_ = kind_ != GarmentKind::kSuit || random.Uniform() >= 0.04;
-  has_shoes_ = random.Uniform() >= 0.08;
+  has_top_ = kind_ != GarmentKind::kSuit || random.Uniform() >= 0.12;
+  has_shoes_ = random.Uniform() >= 0.2;
   if (!has_top_) top_m_ = 0;
   if (!has_shoes_) shoes_m_ = 0;
   if (has_top_ && kind_ == GarmentKind::kSuit && random.Uniform() < 0.08) {  // no sleeves

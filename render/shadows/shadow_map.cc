@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/render/shadows/shadow_map.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bodyloom/geometry/base/check.h"
+
+namespace bodyloom {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kUnitTolerance = 1e-5;  ///< of lights in float
+constexpr int kBorderPx = 2;
+constexpr double kHiddenByPixels = 2;  ///< a face that the light grazes is this much deeper at the next pixel but one
+constexpr int kSoftnessPoints = 4;     ///< a side
+
+}  // namespace
+
+void ShadowMap::Render(const MatrixX3d& vertices, const MatrixX3i& faces, const Vector3d& towards, int size_px) {
+  BODYLOOM_CHECK(std::abs(towards.norm() - 1) < kUnitTolerance, "shadow map: the light's direction has length ",
+                 towards.norm(), ", expected 1");
+  BODYLOOM_CHECK(vertices.rows() > 0 && size_px > 2 * kBorderPx, "shadow map: ", vertices.rows(), " vertices, ",
+                 size_px, " px");
+  const Vector3d across = towards.unitOrthogonal();
+  light_from_mesh_ << across.transpose(), across.cross(towards).transpose(), -towards.transpose();
+  const MatrixX3d in_light = vertices * light_from_mesh_.transpose();
+  const Eigen::RowVector3d low = in_light.colwise().minCoeff(), high = in_light.colwise().maxCoeff();
+  const Eigen::RowVector3d middle = 0.5 * (low + high);
+  camera_.model = CameraModel::kWeakPerspective;
+  camera_.width = camera_.height = size_px;
+  camera_.scale = (size_px - 1 - 2 * kBorderPx) / std::max(1e-6, (high - low).head<2>().maxCoeff());
+  camera_.tx = -middle.x(), camera_.ty = -middle.y();
+  camera_.cx = camera_.cy = 0.5 * (size_px - 1);
+  seen_.Render(in_light, faces, camera_, {.cull_back_faces = false});
+}
+
+bool ShadowMap::ReachesInLight(const Vector3d& p) const {
+  Eigen::Vector2d pixel;
+  if (!camera_.Project(p, &pixel)) return true;
+  const double depth =
+      seen_.DepthAt(static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y())));
+  return p.z() <= depth + kHiddenByPixels * metres_a_pixel();
+}
+
+bool ShadowMap::Reaches(const Vector3d& point) const { return ReachesInLight(light_from_mesh_ * point); }
+
+double ShadowMap::ShareReaching(const Vector3d& point, double softness_m) const {
+  const Vector3d p = light_from_mesh_ * point;
+  int reaching = 0;
+  for (int j = 0; j < kSoftnessPoints; ++j) {
+    for (int i = 0; i < kSoftnessPoints; ++i) {
+      const auto offset = [&](int k) { return softness_m * ((2 * k + 1.0) / kSoftnessPoints - 1); };
+      reaching += ReachesInLight(p + Vector3d(offset(i), offset(j), 0)) ? 1 : 0;
+    }
+  }
+  return reaching / static_cast<double>(kSoftnessPoints * kSoftnessPoints);
+}
+
+}  // namespace bodyloom
