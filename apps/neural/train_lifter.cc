@@ -52,6 +52,8 @@ void AddTrainLifter(CLI::App& train, Action* action) {
   verb->add_option("--optimizer", parsed->optimizer, "For the blocks' matrices")
       ->check(CLI::IsMember({"muon", "adamw"}))
       ->capture_default_str();
+  verb->add_option("--init-from", request.init_from, "Weights to begin with (lifter.npz), of as many channels")
+      ->check(CLI::ExistingFile);
   verb->add_option("--seed", options.seed, "Of the weights and the windows")->capture_default_str();
   verb->add_option("--threads", options.num_threads, "0: all cores")->capture_default_str();
   verb->add_flag("--resume", options.resume, "Go on with the run in --out");

@@ -83,6 +83,7 @@ class LifterTrainer : public TrainedSystem {
     torch::manual_seed(options.seed);
     module_ = LifterModule(options.num_inputs, options.width, options.dilations);
     average_ = LifterModule(options.num_inputs, options.width, options.dilations);
+    if (options.begin_with != nullptr) ImportLifter(*options.begin_with, &module_);
     ImportLifter(ExportLifter(module_), &average_);
     std::vector<Tensor> matrices, others;
     for (const auto& item : module_->named_parameters()) {

@@ -36,6 +36,7 @@ struct TrainLifterProgress {
 };
 
 struct TrainLifterOptions : TrainingRun {
+  const LifterWeights* begin_with = nullptr;  ///< of the same sizes; null: seeded random numbers
   TrainLifterOptions() {
     steps = 10000;
     report_every = 100, validate_every = 1000, checkpoint_every = 500;

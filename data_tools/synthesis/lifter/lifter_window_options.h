@@ -31,6 +31,7 @@ struct LifterWindowOptions {
   double perturbation = 1.2;                ///< smooth random turns of the joints: the level is uniform up to this
   double squat = 0.35, lunge_share = 0.35;  ///< of the squats, this share has legs of their own
   double leg_raise = 0.18, kick = 0.08, arm_raise = 0.25, bend = 0.1, lean = 0.2;
+  double reach = 0.2;         ///< an arm, or both, stretched out to the front
   double spin = 0.08;         ///< all of the body turns about the vertical, up to twice around
   double tumble = 0.05;       ///< it turns over, about a horizontal axis: flips, handstands, turns on the hands
   double floor_poses = 0.22;  ///< lying, sitting, kneeling, crawling, rolling, upside down
@@ -62,7 +63,8 @@ struct LifterWindowOptions {
     LifterWindowOptions options;
     options.min_speed = options.max_speed = 1;
     options.arm_exchange = options.leg_exchange = options.spine_exchange = options.perturbation = 0;
-    options.squat = options.leg_raise = options.kick = options.arm_raise = options.bend = options.lean = 0;
+    options.squat = options.leg_raise = options.kick = options.arm_raise = options.reach = options.bend = options.lean =
+        0;
     options.floor_poses = options.spin = options.tumble = options.any_elevation = 0;
     return options;
   }

@@ -94,6 +94,7 @@ bool LifterWindowOptions::IsValid(std::string* why) const {
                                     {"leg_raise", leg_raise},
                                     {"kick", kick},
                                     {"arm_raise", arm_raise},
+                                    {"reach", reach},
                                     {"bend", bend},
                                     {"lean", lean},
                                     {"spin", spin},

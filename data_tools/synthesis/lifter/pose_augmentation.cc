@@ -2,6 +2,7 @@
 #include "bodyloom/data_tools/synthesis/lifter/pose_augmentation.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "bodyloom/data_tools/synthesis/lifter/fast_random.h"
@@ -78,24 +79,61 @@ void RaiseLeg(const LifterWindowOptions& options, bool kick, HashRandom* random,
   }
 }
 
+/// The arm of a side along a direction of the trunk's frame, given for the left (x to the left, y up, z to the front),
+/// turned about itself, its elbow bent.
+struct StretchedArm {
+  Quaternionf shoulder, elbow;
+};
+StretchedArm ArmAlong(int side, const Vector3f& direction, float about_itself, float bent, float twist) {
+  StretchedArm arm{Quaternionf::FromTwoVectors(Vector3f::UnitX(), direction) * TurnBy(AboutX(about_itself)),
+                   TurnBy({0, -bent, 0}) * TurnBy(AboutX(twist))};
+  if (side == 1) arm = {MirrorRotation(arm.shoulder), MirrorRotation(arm.elbow)};
+  return arm;
+}
+
+void MoveArm(int side, const StretchedArm& arm, float share, int t, PoseSequence* poses) {
+  poses->at(t, kLeftShoulder + side) = Between(poses->at(t, kLeftShoulder + side), arm.shoulder, share);
+  poses->at(t, kLeftElbow + side) = Between(poses->at(t, kLeftElbow + side), arm.elbow, share);
+}
+
 /// An arm goes to a direction of its own, with its elbow bent.
 void RaiseArm(const LifterWindowOptions& options, int side, HashRandom* random, PoseSequence* poses) {
   // On the sphere, in the trunk's frame, not across the trunk's far side and not far behind it.
   const float turn = Draw(random, -0.6, 1.9), up = Draw(random, -1.0, 1.5);
   const Vector3f direction(std::cos(up) * std::cos(turn), std::sin(up), std::cos(up) * std::sin(turn));
-  Quaternionf shoulder =
-      Quaternionf::FromTwoVectors(Vector3f::UnitX(), direction) * TurnBy(AboutX(Draw(random, -1, 1)));
-  const Quaternionf twist = TurnBy(AboutX(Draw(random, -0.7, 0.7)));
-  Quaternionf elbow = TurnBy({0, -Draw(random, 0, 2.3), 0}) * twist;
-  if (side == 1) {
-    shoulder = MirrorRotation(shoulder);
-    elbow = MirrorRotation(elbow);
+  const float about_itself = Draw(random, -1, 1), twist = Draw(random, -0.7, 0.7), bent = Draw(random, 0, 2.3);
+  const StretchedArm arm = ArmAlong(side, direction, about_itself, bent, twist);
+  const std::vector<float> hump = RandomHump(poses->num_frames, options.rate, 0.25, 1.2, random);
+  for (int t = 0; t < poses->num_frames; ++t) {
+    if (hump[t] > 0) MoveArm(side, arm, hump[t], t, poses);
   }
+}
+
+/// An arm is stretched out to the front, high or low, its shoulder and the trunk going after it; or both are.
+void Reach(const LifterWindowOptions& options, HashRandom* random, PoseSequence* poses) {
+  const int first = random->Uniform() < 0.5 ? 0 : 1;
+  const bool both = random->Uniform() < 0.35;
+  const float up = Draw(random, -0.8, 1.3), inwards = Draw(random, -0.9, 0.35);
+  const float bent = Draw(random, 0, 0.6), about_itself = Draw(random, -1, 1), twist = Draw(random, -0.7, 0.7);
+  const float collar = Draw(random, 0, 0.4), spine = both ? 0 : Draw(random, 0, 0.2), bow = Draw(random, -0.05, 0.15);
+  const float other_up = up + Draw(random, -0.2, 0.2), other_inwards = inwards + Draw(random, -0.2, 0.2);
+  const auto arm = [&](int side) {
+    const float height = side == first ? up : other_up, turn = side == first ? inwards : other_inwards;
+    return ArmAlong(side, {-std::cos(height) * std::sin(turn), std::sin(height), std::cos(height) * std::cos(turn)},
+                    about_itself, bent, twist);
+  };
+  const std::array<StretchedArm, 2> arms = {arm(0), arm(1)};
   const std::vector<float> hump = RandomHump(poses->num_frames, options.rate, 0.25, 1.2, random);
   for (int t = 0; t < poses->num_frames; ++t) {
     if (hump[t] == 0) continue;
-    poses->at(t, kLeftShoulder + side) = Between(poses->at(t, kLeftShoulder + side), shoulder, hump[t]);
-    poses->at(t, kLeftElbow + side) = Between(poses->at(t, kLeftElbow + side), elbow, hump[t]);
+    for (int side = 0; side < 2; ++side) {
+      if (side != first && !both) continue;
+      MoveArm(side, arms[side], hump[t], t, poses);
+      const float forwards = side == 0 ? -collar : collar;  // about the vertical
+      poses->at(t, kLeftCollar + side) = TurnBy({0, hump[t] * forwards, 0}) * poses->at(t, kLeftCollar + side);
+    }
+    const Quaternionf trunk = TurnBy({hump[t] * bow, hump[t] * (first == 0 ? -spine : spine), 0});
+    for (const int j : {kSpine1, kSpine2, kSpine3}) poses->at(t, j) = poses->at(t, j) * trunk;
   }
 }
 
@@ -187,6 +225,7 @@ void AddExercises(const LifterWindowOptions& options, HashRandom random, PoseSeq
       if (hump[t] > 0) poses->at(t, kPelvis) = TurnBy({hump[t] * tilt_x, 0, hump[t] * tilt_z}) * poses->at(t, kPelvis);
     }
   }
+  if (random.Uniform() < options.reach) Reach(options, &random, poses);
 }
 
 void AddTurns(const LifterWindowOptions& options, HashRandom random, PoseSequence* poses) {

@@ -41,7 +41,8 @@ class ClipChoice {
 void ExchangeLimbs(const std::vector<LifterClip>& clips, const ClipChoice& choice, const LifterWindowOptions& options,
                    double step_s, HashRandom random, PoseSequence* poses);
 
-/// Squats and lunges, raised legs, kicks, raised arms, bending and leaning: each swells and fades within the window.
+/// Squats and lunges, raised legs, kicks, raised arms, reaching, bending and leaning: each swells and fades within the
+/// window.
 void AddExercises(const LifterWindowOptions& options, HashRandom random, PoseSequence* poses);
 
 /// The whole body turns about the vertical (a spin), or over, about a horizontal axis, within 0.4 to 2.5 s; it ends

@@ -75,8 +75,21 @@ std::pair<MotionSet, MotionSet> LoadMotions(const TrainLifterNetworkRequest& req
   return {TakeShare(std::move(train), request.share), TakeShare(std::move(test), 1)};
 }
 
-nlohmann::ordered_json Describe(const TrainLifterOptions& o, double share, const MotionSet& train,
-                                const MotionSet& test) {
+void RequireSameSizes(const LifterWeights& weights, const TrainLifterOptions& options, const std::string& path) {
+  std::vector<int> dilations;
+  for (const LifterWeights::Block& block : weights.blocks) dilations.push_back(block.dilation);
+  if (weights.num_inputs() == options.num_inputs && weights.width() == options.width &&
+      dilations == options.dilations) {
+    return;
+  }
+  throw std::runtime_error(Concatenate(path, ": weights of ", weights.width(), " channels, ", weights.num_inputs(),
+                                       " inputs and ", weights.blocks.size(), " blocks, expected ", options.width, ", ",
+                                       options.num_inputs, " and ", options.dilations.size(),
+                                       " of the same dilations: set --channels to that of the weights"));
+}
+
+nlohmann::ordered_json Describe(const TrainLifterOptions& o, const std::string& init_from, double share,
+                                const MotionSet& train, const MotionSet& test) {
   return {{"program", "bodyloom train lifter"},
           {"version", BODYLOOM_VERSION},
           {"seed", o.seed},
@@ -92,6 +105,7 @@ nlohmann::ordered_json Describe(const TrainLifterOptions& o, double share, const
           {"nll_weight", o.nll_weight},
           {"velocity_weight", o.velocity_weight},
           {"threads", o.num_threads},
+          {"init_from", init_from},
           {"motion_share", share},
           {"train_clips", train.motions.size()},
           {"train_minutes", train.seconds / 60},
@@ -108,6 +122,12 @@ TrainLifterNetworkSummary TrainLifterNetwork(const TrainLifterNetworkRequest& re
   std::string why;
   if (!options.IsValid(&why)) throw RequestError(why);
   const auto [train, test] = LoadMotions(request);
+  LifterWeights begin_with;
+  if (!request.init_from.empty() && !options.resume) {
+    begin_with = ReadLifterWeights(request.init_from);
+    RequireSameSizes(begin_with, options, request.init_from);
+    options.begin_with = &begin_with;
+  }
   const LifterWindowOptions windows;
   const LifterWindowGenerator train_windows(train.motions, train.has_floor, BuiltinBody(), windows);
   const LifterWindowGenerator test_windows(test.motions, test.has_floor, BuiltinBody(),
@@ -117,7 +137,7 @@ TrainLifterNetworkSummary TrainLifterNetwork(const TrainLifterNetworkRequest& re
   options.run_dir = request.out;
   fs::create_directories(request.out);
   if (!options.resume) RequireNoRun(request.out);
-  const nlohmann::ordered_json config = Describe(options, request.share, train, test);
+  const nlohmann::ordered_json config = Describe(options, request.init_from, request.share, train, test);
   WriteFileAtomically((fs::path(request.out) / "config.json").string(), config.dump(2) + "\n");
   WriteFileAtomically((fs::path(request.out) / "motion_split.txt").string(),
                       request.split.empty() ? BuiltinMotionSplitText() : ReadFileBytes(request.split));

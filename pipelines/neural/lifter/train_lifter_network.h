@@ -15,6 +15,7 @@ struct TrainLifterNetworkRequest {
   std::vector<std::string> motions;  ///< motion files, or folders of them (data_tools/motion/motion_library.h)
   std::string split;                 ///< which clips are for training; empty: the project's own list
   double share = 1;                  ///< of the training motion that is used, whole clips
+  std::string init_from;             ///< weights to begin with, of the same sizes; empty: random ones
   std::string out;  ///< folder of the run: config.json, motion_split.txt, metrics.csv, checkpoint.bin, lifter.npz
   /// Numbers; what follows from the windows (num_inputs, num_frames, run_dir) is filled in by the job.
   TrainLifterOptions options;
@@ -27,7 +28,7 @@ struct TrainLifterNetworkSummary : TrainLifterSummary {
 
 /// A run that was stopped ends with its checkpoint and weights and says so (TrainingStatus::kStopped). Throws
 /// RequestError for options that are not valid and for a run that is there, std::runtime_error for files that cannot be
-/// used and when a loss is not finite.
+/// used, weights of other sizes among them, and when a loss is not finite.
 TrainLifterNetworkSummary TrainLifterNetwork(const TrainLifterNetworkRequest& request,
                                              const PipelineCallbacks& callbacks);
 

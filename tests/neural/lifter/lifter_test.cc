@@ -287,6 +287,24 @@ TEST_F(LifterTraining, AnInterruptedRunEndsWithTheSameBytes) {
   EXPECT_EQ(NumLines(folder_ / "metrics.csv"), 1 + 8);
 }
 
+TEST_F(LifterTraining, BeginsWithGivenWeights) {
+  options_.steps = 200;
+  options_.learning_rate = 5e-3;
+  options_.average = 0.9;
+  const TrainLifterResult learned = TrainLifter(Source(), Source(), options_);
+  fs::remove_all(folder_);
+  fs::create_directories(folder_);
+  options_.steps = 20;
+  options_.learning_rate = 1e-4;
+  options_.begin_with = &learned.weights;
+  const TrainLifterResult more = TrainLifter(Source(), Source(), options_);
+  EXPECT_NEAR(more.summary.validation_distance, learned.summary.validation_distance, 0.02);
+  LifterWeights other = learned.weights;
+  other.blocks.pop_back();
+  options_.begin_with = &other;
+  EXPECT_THROW(TrainLifter(Source(), Source(), options_), std::invalid_argument);
+}
+
 TEST_F(LifterTraining, ALossThatIsNotFiniteKeepsTheCheckpoint) {
   const LifterSource poisoned = [](uint64_t seed, LifterExample* example) {
     ToyExample(seed, 12, 7, example);

@@ -327,6 +327,45 @@ TEST(AddTurns, SpinsKeepThePersonUprightAndTumblesTurnItOver) {
   EXPECT_EQ(LargestTurn(still, Vector3f::UnitZ()), 0);
 }
 
+TEST(AddExercises, WhoReachesStretchesAnArmToTheFront) {
+  LifterWindowOptions options = PlainOptions();
+  options.reach = 1;
+  PoseSequence standing;  // arms out to the sides
+  standing.num_frames = 81;
+  standing.rotations.assign(size_t{81} * kPoseJoints, Quaternionf::Identity());
+  int both = 0, far = 0;
+  constexpr int kWindows = 300;
+  for (uint64_t seed = 0; seed < kWindows; ++seed) {
+    PoseSequence poses = standing;
+    AddExercises(options, HashRandom(seed, {2}), &poses);
+    int stretched = 0;
+    for (int side = 0; side < 2; ++side) {
+      const Vector3f out = side == 0 ? Vector3f::UnitX() : Vector3f(-Vector3f::UnitX());
+      float front = 0;
+      for (int t = 0; t < 81; ++t) {
+        Quaternionf trunk = Quaternionf::Identity();
+        for (const int j : std::array<int, 4>{kSpine1, kSpine2, kSpine3, kLeftCollar + side})
+          trunk = trunk * poses.at(t, j);
+        const Vector3f upper = trunk * poses.at(t, kLeftShoulder + side) * out;
+        front = std::max(front, upper.z());
+        EXPECT_GT(upper.z(), -0.57F) << "the other shoulder goes back with the trunk, by 0.6 rad at most";
+        EXPECT_LT(AxisAngleOf(poses.at(t, kLeftElbow + side)).norm(), 1) << "nearly straight";
+      }
+      far += front > 0.7F ? 1 : 0;
+      stretched += AxisAngleOf(poses.at(40, kLeftShoulder + side)).norm() > 0 ? 1 : 0;
+      for (const int leg : {kLeftHip, kLeftKnee, kLeftAnkle}) EXPECT_EQ(poses.at(40, leg + side).w(), 1);
+    }
+    both += stretched == 2 ? 1 : 0;
+  }
+  EXPECT_GT(far, kWindows / 2);
+  EXPECT_GT(both, 0.1 * kWindows);
+  EXPECT_LT(both, 0.45 * kWindows);
+  options.reach = 0;
+  PoseSequence still = standing;
+  AddExercises(options, HashRandom(1, {2}), &still);
+  for (const Quaternionf& q : still.rotations) EXPECT_EQ(q.w(), 1);
+}
+
 TEST(WorldMotion, StandsOnTheFloorWhateverThePoses) {
   const LifterBody body(ToyBody());
   LifterWindowOptions options;

@@ -17,7 +17,7 @@ inline Motion ShortDemoMotion() { return DemoMotion(ToyBody(), 360, 60); }
 inline LifterWindowOptions PlainOptions() {
   LifterWindowOptions o;
   o.moving_camera = o.mirror = o.arm_exchange = o.leg_exchange = o.spine_exchange = 0;
-  o.perturbation = o.squat = o.leg_raise = o.kick = o.arm_raise = o.bend = o.lean = o.floor_poses = 0;
+  o.perturbation = o.squat = o.leg_raise = o.kick = o.arm_raise = o.reach = o.bend = o.lean = o.floor_poses = 0;
   o.spin = o.tumble = o.any_elevation = 0;
   o.shape_sd = o.bone_noise = o.landmark_sd_m = o.biased_detector = 0;
   o.noise = o.dropout = o.pair_swap = o.body_swap = o.no_feet = o.no_face = 0;
