@@ -38,8 +38,7 @@ void RunTrainGuided(const TrainGuidedArguments& parsed) {
   TrainGuidedRendererRequest request = parsed.request;
   request.options.config = ConfigOf(parsed);
   request.options.labels_by_cross_entropy = parsed.label_loss == "ce";
-  const TrainGuidedRendererSummary summary =
-      RunWithBar(TrainingTitle(request.options.steps), TrainGuidedRenderer, request);
+  const TrainGuidedRendererSummary summary = TrainGuidedRenderer(request, CommandCallbacks());
   if (summary.perceptual_random_features) PrintRandomFeatures("perceptual and contextual loss", "VGG-16");
   if (!summary.loss_weights.empty()) {
     std::printf("weights of the losses: VGG %.3g, contextual %.3g, adversarial %.3g, KL %.3g\n",

@@ -21,8 +21,7 @@ struct TrainLifterArguments {
 void RunTrainLifter(const TrainLifterArguments& parsed) {
   TrainLifterNetworkRequest request = parsed.request;
   request.options.muon = parsed.optimizer == "muon";
-  const TrainLifterNetworkSummary summary =
-      RunWithBar(TrainingTitle(request.options.steps), TrainLifterNetwork, request);
+  const TrainLifterNetworkSummary summary = TrainLifterNetwork(request, CommandCallbacks());
   std::cout << "step " << summary.steps << " of " << request.options.steps << " in " << ClockText(summary.seconds)
             << "; validation: mean distance " << summary.validation_distance
             << " of torso + leg, with the best of each limb's hypotheses " << summary.validation_best_distance

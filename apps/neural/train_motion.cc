@@ -40,8 +40,7 @@ void RunTrainMotion(const TrainMotionArguments& parsed) {
   request.options.shape_by_cross_entropy = parsed.shape_loss == "ce";
   request.frames.train = ParseFrameRanges(parsed.train, "--train");
   request.frames.validate = ParseFrameRanges(parsed.validate, "--validate");
-  const TrainMotionRendererSummary summary =
-      RunWithBar(TrainingTitle(request.options.steps), TrainMotionRenderer, request);
+  const TrainMotionRendererSummary summary = TrainMotionRenderer(request, CommandCallbacks());
   PrintLossesOff(summary.losses_off);
   if (request.options.perceptual_weight > 0 && summary.perceptual_random_features)
     PrintRandomFeatures("perceptual loss", "VGG-16");

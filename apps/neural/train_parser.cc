@@ -28,8 +28,7 @@ void PrintOverlap(const TrainClothesParserSummary& summary) {
 }
 
 void RunTrainParser(const TrainClothesParserRequest& request) {
-  const TrainClothesParserSummary summary =
-      RunWithBar(TrainingTitle(request.options.steps), TrainClothesParser, request);
+  const TrainClothesParserSummary summary = TrainClothesParser(request, CommandCallbacks());
   PrintStep(summary, request.options.steps);
   if (summary.test_pictures > 0) PrintOverlap(summary);
   std::cout << "wrote " << summary.weights << " (" << summary.num_parameters << " numbers)\n";

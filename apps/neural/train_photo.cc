@@ -24,8 +24,7 @@ void RunTrainPhoto(const TrainPhotoArguments& parsed) {
   TrainPhotoOptions& options = request.options;
   options.config.profile = PhotoProfileNamed(parsed.profile);
   options.config.variant = PhotoVariantNamed(parsed.variant);
-  const TrainPhotoRendererSummary summary =
-      RunWithBar(TrainingTitle(options.TotalSteps()), TrainPhotoRenderer, request);
+  const TrainPhotoRendererSummary summary = TrainPhotoRenderer(request, CommandCallbacks());
   PrintLossesOff(summary.losses_off);
   if (options.perceptual_weight > 0 && summary.perceptual_random_features)
     PrintRandomFeatures("perceptual loss", "VGG-19");

@@ -15,8 +15,7 @@ namespace bodyloom {
 namespace {
 
 void RunTrainRefiner(const TrainPersonRefinerRequest& request) {
-  const TrainPersonRefinerSummary summary =
-      RunWithBar(TrainingTitle(request.options.steps), TrainPersonRefiner, request);
+  const TrainPersonRefinerSummary summary = TrainPersonRefiner(request, CommandCallbacks());
   if (request.weights.empty()) PrintRandomFeatures("perceptual loss", "VGG-16");
   PrintStep(summary, request.options.steps);
   if (summary.test_pictures > 0) {

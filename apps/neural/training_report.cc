@@ -8,8 +8,6 @@
 
 namespace bodyloom {
 
-std::string TrainingTitle(int steps) { return "training " + std::to_string(steps) + " steps"; }
-
 void PrintLossesOff(const std::vector<std::string>& losses_off) {
   for (const std::string& loss : losses_off) std::cout << "loss switched off: " << loss << "\n";
 }

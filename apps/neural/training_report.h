@@ -9,9 +9,6 @@
 
 namespace bodyloom {
 
-/// The bar of a run of so many steps.
-std::string TrainingTitle(int steps);
-
 /// "loss switched off: shape: the frames have no labels", a line each.
 void PrintLossesOff(const std::vector<std::string>& losses_off);
 

@@ -40,6 +40,11 @@ std::string PreviewPath(const TrainingRun& run, int step) {
   return (fs::path(run.run_dir) / name).string();
 }
 
+TrainingProgress::TrainingProgress(int steps, const PipelineCallbacks& callbacks)
+    : steps_(steps), callbacks_(callbacks) {
+  callbacks.Begin("training " + std::to_string(steps) + " steps");
+}
+
 bool TrainingProgress::Update(int step, std::initializer_list<std::pair<const char*, double>> losses,
                               const double* psnr_db) const {
   if (!callbacks_.progress) return true;

@@ -24,11 +24,12 @@ void WriteRunConfig(const TrainingRun& run);
 /// RUN/preview_000250.png.
 std::string PreviewPath(const TrainingRun& run, int step);
 
-/// Tells the caller of a job how its training goes. Unlike other jobs' a cancelled training ends with a checkpoint and
+/// Tells the caller of a job how its training goes, as a work of its own ("training 400 steps"). Unlike other jobs' a cancelled training ends with a checkpoint and
 /// a summary (TrainingStatus::kStopped), not with Cancelled.
 class TrainingProgress {
  public:
-  TrainingProgress(int steps, const PipelineCallbacks& callbacks) : steps_(steps), callbacks_(callbacks) {}
+  /// Begins the work.
+  TrainingProgress(int steps, const PipelineCallbacks& callbacks);
   /// The stage is "loss 0.12, image 0.034, validation 21.3 dB"; `psnr_db` nullptr: no validation yet. False once the
   /// caller wants it to stop.
   bool Update(int step, std::initializer_list<std::pair<const char*, double>> losses, const double* psnr_db) const;

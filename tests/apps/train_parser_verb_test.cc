@@ -37,6 +37,8 @@ TEST_F(TrainParserVerb, TrainsGoesOnAndWritesWeights) {
   ASSERT_EQ(trained.exit_code, 0) << trained.err;
   EXPECT_THAT(trained.out, HasSubstr("step 2 of 2"));
   EXPECT_THAT(trained.out, HasSubstr("intersection over union"));
+  // A bar each: training does not begin where reading has ended.
+  EXPECT_THAT(trained.err, HasSubstr("people 100 % read\npeople for validation 100 % read\ntraining 2 steps"));
   for (const char* file : {"config.json", "checkpoint.bin", "metrics.csv", "parser.npz"}) {
     EXPECT_TRUE(fs::exists(scratch_ / ("run/" + std::string(file)))) << file;
   }

@@ -56,11 +56,13 @@ TrainClothesParserSummary TrainClothesParser(const TrainClothesParserRequest& re
                                     request.body_error_px,
                                     options.seed,
                                     ThreadsFor(options.num_threads)};
-  const std::vector<PackedPicture> train = ParserPicturesOf(people, "reading people", callbacks);
+  callbacks.Begin("people");
+  const std::vector<PackedPicture> train = ParserPicturesOf(people, "read", callbacks);
   std::vector<PackedPicture> test;
   if (HasTestPeople(request.data)) {
     people.test = true;
-    test = ParserPicturesOf(people, "reading people for validation", callbacks);
+    callbacks.Begin("people for validation");
+    test = ParserPicturesOf(people, "read", callbacks);
   }
   if (train.empty()) throw std::runtime_error(request.data + ": no picture to train on");
   const nlohmann::ordered_json config = Describe(request, train.size(), test.size());

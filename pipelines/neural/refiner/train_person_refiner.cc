@@ -59,11 +59,13 @@ TrainPersonRefinerSummary TrainPersonRefiner(const TrainPersonRefinerRequest& re
   RefinerPicturesRequest people = {{request.data, request.body, false, request.size, request.body_error_px,
                                     options.seed, ThreadsFor(options.num_threads)},
                                    request.texture_size};
-  const std::vector<PackedPicture> train = RefinerPicturesOf(people, "drawing people", callbacks);
+  callbacks.Begin("people");
+  const std::vector<PackedPicture> train = RefinerPicturesOf(people, "drawn", callbacks);
   std::vector<PackedPicture> test;
   if (HasTestPeople(request.data)) {
     people.test = true;
-    test = RefinerPicturesOf(people, "drawing people for validation", callbacks);
+    callbacks.Begin("people for validation");
+    test = RefinerPicturesOf(people, "drawn", callbacks);
   }
   if (train.empty()) throw std::runtime_error(request.data + ": no person to train on could be drawn");
   const nlohmann::ordered_json config = Describe(request, options, train.size(), test.size());
