@@ -76,6 +76,28 @@ TEST(TrainLifterVerb, TrainsAndLeavesAWholeRun) {
   EXPECT_EQ(RunCommand(Training(folder, {"--resume"})).exit_code, 0);
 }
 
+TEST(TrainLifterVerb, BeginsWithTheWeightsOfAnotherRun) {
+  const ScratchFolder folder;
+  WriteMotions(folder);
+  ASSERT_EQ(RunCommand(Training(folder)).exit_code, 0);
+  std::filesystem::rename(folder / "run", folder / "first");
+  const std::vector<std::string> from = {"--init-from", folder / "first/lifter.npz"};
+  ASSERT_EQ(RunCommand(Training(folder, from)).exit_code, 0);
+  ASSERT_EQ(RunCommand(Training(folder, {"--resume"})).exit_code, 0);
+  std::ifstream file(folder / "run/config.json");
+  EXPECT_EQ(nlohmann::json::parse(file)["init_from"], folder / "first/lifter.npz") << "a run that went on forgot it";
+  const CommandResult both = RunCommand(Training(folder, {"--resume", "--init-from", folder / "first/lifter.npz"}));
+  EXPECT_EQ(both.exit_code, 2);
+  EXPECT_NE(both.err.find("leave --init-from out"), std::string::npos) << both.err;
+  std::filesystem::remove_all(folder / "run");
+  const CommandResult wider =
+      RunCommand({"train", "lifter", "--motions", folder / "motions", "--split", folder / "split.txt", "--out",
+                  folder / "run", "--channels", "16", from[0], from[1]});
+  EXPECT_EQ(wider.exit_code, 1);
+  EXPECT_EQ(wider.NumErrorLines(), 1) << wider.err;
+  EXPECT_NE(wider.err.find("weights of 8 channels"), std::string::npos) << wider.err;
+}
+
 TEST(TrainLifterVerb, WrongUseIsSaid) {
   const ScratchFolder folder;
   WriteMotions(folder);

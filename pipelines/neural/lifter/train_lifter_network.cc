@@ -88,6 +88,15 @@ void RequireSameSizes(const LifterWeights& weights, const TrainLifterOptions& op
                                        " of the same dilations: set --channels to that of the weights"));
 }
 
+/// What a run that is there began with, as its config.json has it; empty: nothing, or no such run.
+std::string InitFromOfRun(const std::string& run) {
+  const fs::path path = fs::path(run) / "config.json";
+  if (!fs::exists(path)) return "";
+  const nlohmann::json config = nlohmann::json::parse(ReadFileBytes(path.string()), nullptr, false);
+  const auto found = config.find("init_from");
+  return found != config.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
 nlohmann::ordered_json Describe(const TrainLifterOptions& o, const std::string& init_from, double share,
                                 const MotionSet& train, const MotionSet& test) {
   return {{"program", "bodyloom train lifter"},
@@ -121,13 +130,17 @@ TrainLifterNetworkSummary TrainLifterNetwork(const TrainLifterNetworkRequest& re
   options.num_inputs = kLifterInputs;
   std::string why;
   if (!options.IsValid(&why)) throw RequestError(why);
-  const auto [train, test] = LoadMotions(request);
+  if (options.resume && !request.init_from.empty()) {
+    throw RequestError("a run that goes on has weights of its own: leave --init-from out");
+  }
+  const std::string init_from = options.resume ? InitFromOfRun(request.out) : request.init_from;
   LifterWeights begin_with;
-  if (!request.init_from.empty() && !options.resume) {
+  if (!request.init_from.empty()) {
     begin_with = ReadLifterWeights(request.init_from);
     RequireSameSizes(begin_with, options, request.init_from);
     options.begin_with = &begin_with;
   }
+  const auto [train, test] = LoadMotions(request);
   const LifterWindowOptions windows;
   const LifterWindowGenerator train_windows(train.motions, train.has_floor, BuiltinBody(), windows);
   const LifterWindowGenerator test_windows(test.motions, test.has_floor, BuiltinBody(),
@@ -137,7 +150,7 @@ TrainLifterNetworkSummary TrainLifterNetwork(const TrainLifterNetworkRequest& re
   options.run_dir = request.out;
   fs::create_directories(request.out);
   if (!options.resume) RequireNoRun(request.out);
-  const nlohmann::ordered_json config = Describe(options, request.init_from, request.share, train, test);
+  const nlohmann::ordered_json config = Describe(options, init_from, request.share, train, test);
   WriteFileAtomically((fs::path(request.out) / "config.json").string(), config.dump(2) + "\n");
   WriteFileAtomically((fs::path(request.out) / "motion_split.txt").string(),
                       request.split.empty() ? BuiltinMotionSplitText() : ReadFileBytes(request.split));
