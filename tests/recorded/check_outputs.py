@@ -5,7 +5,8 @@ structure alone leaves every file as it was.
 
 usage: check_outputs.py COMMAND RECORD [--write --made-with COMMIT] [--only JOB]
   COMMAND  the program `bodyloom` of a build; neural jobs are left out when no `bodyloom-neural` lies beside it
-  RECORD   a JSON file of checksums, one set for each kind of processor: its instruction sets and the versions of what computes
+  RECORD   a JSON file of checksums, one set for each kind of processor: its instruction sets and the versions of what
+           computes; null: a file that was changed on purpose and has not been made on this kind since
   --write  make this kind's set from this build instead of comparing
 
 Jobs of networks are compared on the model of processor they were recorded on, as their matrix products choose code by it.
@@ -180,7 +181,9 @@ def main():
             print(f"{job}: left out")
             continue
         for name in sorted(set(files) | set(expected)):
-            if files.get(name) != expected.get(name):
+            if name in expected and expected[name] is None:
+                print(f"{job}: {name} left out: what it holds was changed, and not recorded anew on this kind of processor")
+            elif files.get(name) != expected.get(name):
                 faults += 1
                 print(f"{job}: {name} differs" if name in files and name in expected else
                       f"{job}: {name} is {'new' if name in files else 'missing'}")

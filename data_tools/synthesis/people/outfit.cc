@@ -136,11 +136,22 @@ void Outfit::CutEveryday(uint64_t seed, const MatrixX3d& joints) {
     c.sleeve_x = joints(kLeftShoulder, 0) - between(0.0, 0.02);
     c.armpit_y = joints(kLeftShoulder, 1) - 0.13 * c.unit;  // hips may be as wide as shoulders
   }
+  if (random.Uniform() < 0.3) {
+    c.long_hair_y = joints(kNeck, 1) - between(0.02, 0.3);
+    c.long_hair_x = between(0.06, 0.11);
+  }
 }
 
-/// Distance from the hair's edge, positive where hair grows.
+/// Distance (about) from the edge of the hair that hangs down the back, positive inside; nobody's is where it is not long.
+double Outfit::LongHairDepth(const Vector3d& p) const {
+  const double above_round_end = std::min(0.0, p.y() - cut_.long_hair_y - cut_.long_hair_x);
+  return std::min(cut_.neck_z - p.z(), cut_.long_hair_x - std::hypot(p.x(), above_round_end));
+}
+
+/// Distance from the hair's edge, positive where hair grows or hangs.
 double Outfit::HairDepth(const Vector3d& p) const {
-  return std::min(kHairNormal.dot(p - Vector3d(0, cut_.ear_y, cut_.ear_z)), p.y() - cut_.nape_y);
+  const double grown = std::min(kHairNormal.dot(p - Vector3d(0, cut_.ear_y, cut_.ear_z)), p.y() - cut_.nape_y);
+  return std::max(grown, LongHairDepth(p));
 }
 
 double Outfit::NeckHole(const Vector3d& p) const {
@@ -158,6 +169,7 @@ PersonLabel Outfit::LabelAt(const Vector3d& p) const {
     if (HairDepth(p) > 0) return PersonLabel::kHair;
     return p.y() > c.jaw_y + 0.5 * (c.jaw_z - p.z()) ? PersonLabel::kFace : PersonLabel::kSkin;
   }
+  if (LongHairDepth(p) > 0) return PersonLabel::kHair;
   if (has_shoes_ && p.y() < c.shoe_y) return PersonLabel::kShoes;
   if (p.y() < c.waist_y) return p.y() < c.hem_y ? PersonLabel::kSkin : PersonLabel::kBottom;
   return !has_top_ || InsideSleeve(p) < 0 || NeckHole(p) > 0 ? PersonLabel::kSkin : PersonLabel::kTop;
@@ -178,7 +190,8 @@ double Outfit::OffsetAt(const Vector3d& p) const {
                                                            SmoothStep((p.y() - c.hem_y) / edge);
   const double shoes = shoes_m_ * SmoothStep((c.shoe_y - p.y()) / edge);
   const double below_waist = bottom * SmoothStep((c.waist_y + edge - p.y()) / edge);
-  return std::max({top, below_waist, shoes});
+  const double hair = hair_m_ * SmoothStep(LongHairDepth(p) / (3 * edge));
+  return std::max({top, below_waist, shoes, hair});
 }
 
 }  // namespace bodyloom

@@ -44,7 +44,9 @@ struct OutfitCut {
   double head_y = 0;                         ///< neck and head begin above
   double jaw_y = 0, jaw_z = 0;               ///< the jaw's line: y = jaw_y + ½(jaw_z − z)
   double ear_y = 0, ear_z = 0;               ///< the hair's plane goes through here
-  double nape_y = 0;                         ///< hair ends below
+  double nape_y = 0;                         ///< hair ends below, or, where it is long,
+  double long_hair_y = 1e9;                  ///< it hangs down the back to here, and
+  double long_hair_x = 0;                    ///< as far to either side, with a round end
   double head_joint_y = 0, head_height = 0;  ///< of the head's joint, and of the crown above it
 };
 
@@ -74,6 +76,7 @@ class Outfit {
 
  private:
   [[nodiscard]] double HairDepth(const Eigen::Vector3d& p) const;
+  [[nodiscard]] double LongHairDepth(const Eigen::Vector3d& p) const;
 
   void CutEveryday(uint64_t seed, const MatrixX3d& joints);
 

@@ -109,7 +109,8 @@ TEST(Outfit, EverydayPeopleGoBarefootOrWithoutAShirtNowAndThen) {
   const BodyModel& body = BuiltinBody();
   const MatrixX3d& joints = body.joint_template();
   const Vector3d foot(joints(10, 0), body.data().v_template.col(1).minCoeff() + 0.01, joints(10, 2));
-  const Vector3d chest = joints.row(9).transpose(), sleeve(joints(16, 0) + 0.03, joints(16, 1), joints(16, 2));
+  const Vector3d chest = joints.row(9).transpose() + Vector3d(0, 0, 0.1),
+                 sleeve(joints(16, 0) + 0.03, joints(16, 1), joints(16, 2));
   constexpr int kPeople = 1000;
   int bare_chest = 0, bare_foot = 0, no_sleeves = 0;
   for (uint64_t seed = 1; seed <= kPeople; ++seed) {
@@ -126,6 +127,26 @@ TEST(Outfit, EverydayPeopleGoBarefootOrWithoutAShirtNowAndThen) {
   EXPECT_NEAR(bare_chest, 0.12 * kPeople, 51);  // five standard deviations
   EXPECT_NEAR(bare_foot, 0.2 * kPeople, 63);
   EXPECT_NEAR(no_sleeves, 0.07 * kPeople, 40);
+}
+
+TEST(Outfit, HairOfThreeInTenHangsDownTheBack) {
+  const BodyModel& body = BuiltinBody();
+  const MatrixX3d& joints = body.joint_template();
+  // Behind the neck, between the shoulder blades, and the chest in front of them.
+  const Vector3d nape = joints.row(12).transpose() + Vector3d(0, -0.015, -0.06),
+                 back = joints.row(12).transpose() + Vector3d(0, -0.35, -0.09),
+                 chest = joints.row(12).transpose() + Vector3d(0, -0.1, 0.1);
+  constexpr int kPeople = 1000;
+  int hanging = 0;
+  for (uint64_t seed = 1; seed <= kPeople; ++seed) {
+    const Outfit outfit(body, GarmentKind::kSuit, seed, ClothesStyle::kEveryday);
+    const bool is_long = outfit.LabelAt(nape) == PersonLabel::kHair;
+    hanging += is_long ? 1 : 0;
+    EXPECT_NE(outfit.LabelAt(back), PersonLabel::kHair);
+    EXPECT_NE(outfit.LabelAt(chest), PersonLabel::kHair);
+    EXPECT_NE(Outfit(body, GarmentKind::kSuit, seed).LabelAt(nape), PersonLabel::kHair);
+  }
+  EXPECT_NEAR(hanging, 0.3 * kPeople, 73);  // five standard deviations
 }
 
 TEST(Outfit, EverydayClothesLieOutsideAndThicknessIsContinuous) {
