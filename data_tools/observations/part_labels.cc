@@ -72,6 +72,7 @@ void MendStrays(cv::Mat* labels) {
   constexpr int kRings = 4;
   for (int ring = 0; ring < kRings && !open.empty(); ++ring) {
     std::vector<uint8_t> found;  // by open point; written after all were asked, so that a ring does not feed itself
+    found.reserve(open.size());
     for (const cv::Point& pixel : open) found.push_back(Majority(*labels, pixel.x, pixel.y));
     std::vector<cv::Point> left;
     for (size_t i = 0; i < open.size(); ++i) {
