@@ -8,8 +8,8 @@
 /// Every test clip (its first frames at 30 a second) in front of a synthetic camera of known focal length, with a
 /// detector's noise (data_tools/synthesis/clips/detection_noise.h), its toes and heels left out. pa: PA-MPJPE, mpjpe:
 /// mid-hip aligned, both of COCO-17 in mm. pa_over_120: frames in which pa is above 120 mm, of all the class' frames.
-/// --worst N names the N clips whose worst frame is the worst. slide: mean speed of the ankles, m/s, in frames in which the true ones stand
-/// (below 0.1 m/s). ground: clips in which one was found. Means over clips; the body's stature is the true one.
+/// --worst N names the N clips whose worst frame is the worst. slide: mean speed of the ankles, m/s, in frames in which
+/// the true ones stand (below 0.1 m/s). ground: clips in which one was found. Means over clips; the body's stature is the true one.
 #include <algorithm>
 #include <cstdio>
 #include <map>

@@ -85,14 +85,14 @@ void DressedRenderer::Assemble(const BodyPose& pose, const std::vector<Vector3d>
   }
 }
 
-void DressedRenderer::Resolve(const Camera& camera) {
+void DressedRenderer::Resolve(const Camera& camera, bool with_shadows) {
   buffer_.Render(vertices_, scene_.mesh().data().faces, camera, {.cull_back_faces = false});
   ResolveRequest request;
   request.normal = true;
   request.vertex_normals = &normals_;
   request.vertex_attributes = {{{scene_.places().data(), size_t(scene_.places().size())}, 3}};
-  if (!openness_.empty()) request.vertex_attributes.push_back({openness_, 1});
-  request.barycentric = !openness_.empty();
+  if (with_shadows) request.vertex_attributes.push_back({openness_, 1});
+  request.barycentric = with_shadows;
   ResolvePixels(buffer_, scene_.mesh(), vertices_, camera, request, &pixels_);
 }
 
@@ -141,7 +141,7 @@ float DressedRenderer::LightAt(int face, size_t at, const Vector3f& normal) cons
 
 void DressedRenderer::DrawImage(const Image& background, Image* image) {
   const int n = scene_.samples();
-  Resolve(ScaledCamera(scene_.camera(), n));
+  Resolve(ScaledCamera(scene_.camera(), n), !openness_.empty());
   *image = background;
   const PixelBox& box = buffer_.box();
   const float share = 1.0F / float(n * n);
@@ -178,7 +178,7 @@ void DressedRenderer::DrawImage(const Image& background, Image* image) {
 }
 
 void DressedRenderer::DrawTruth(Image* labels, Image* normals) {
-  Resolve(scene_.camera());
+  Resolve(scene_.camera(), false);
   const PixelBox& box = buffer_.box();
   for (int y = box.y_begin; y < box.y_end; ++y) {
     for (int x = box.x_begin; x < box.x_end; ++x) {

@@ -12,6 +12,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
@@ -67,7 +68,7 @@ class DressedRenderer {
 
  private:
   void Assemble(const BodyPose& pose, const std::vector<Eigen::Vector3d>& cloth);
-  void Resolve(const Camera& camera);
+  void Resolve(const Camera& camera, bool with_shadows);
   [[nodiscard]] bool IsCloth(int face) const { return face >= scene_.num_body_faces(); }
   [[nodiscard]] PersonLabel LabelOf(int face, const Eigen::Vector3f& place) const;
   [[nodiscard]] Eigen::Vector3f NormalOf(int face, size_t at) const;
@@ -83,7 +84,7 @@ class DressedRenderer {
   MatrixX3f normals_;
   std::array<ShadowMap, 2> shadows_;  ///< of the two lights
   OpennessOfMesh open_;
-  std::vector<float> openness_;        ///< by vertex; empty: there are no shadows
+  std::span<const float> openness_;    ///< by vertex, of open_; empty: there are no shadows
   std::vector<int8_t> is_inside_out_;  ///< by face of the cloth: seen from inside
   VisibilityBuffer buffer_;
   ResolvedPixels pixels_;
