@@ -62,6 +62,8 @@ void AddAnimatePerson(CLI::App& animate, Action* action, std::vector<std::string
       "--freeze", request->freeze,
       "FRAME:COUNT: time stands still at that frame for so many more, while --view-yaw FROM:TO turns the view");
   verb->add_option("--background", request->background, "Image, video or folder of images behind the person");
+  verb->add_option("--relight", request->relight,
+                   "Other light: an environment (.png, .jpg) or JSON, as of animate motion (default: the photo's)");
   verb->add_option("--size", request->size, "Pixels of the picture's longer side (default: as the track's)")
       ->check(CLI::Range(2, 8192));
   verb->add_option("--who", fit.person, "Of several people in a photo: 0 is the largest")->capture_default_str();

@@ -16,7 +16,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-const Vector3d kLuminance(0.2126, 0.7152, 0.0722);  // ITU-R BT.709
 constexpr float kOpaque = 0.9F;
 constexpr int kPixelsAFrame = 2000;
 
@@ -73,7 +72,7 @@ RelightRequest ReadJson(const std::string& path) {
 RelightRequest ReadEnvironment(const std::string& path) {
   RelightRequest request;
   request.light = EnvironmentLight(ReadImage(path), PixelEncoding::kSrgb);
-  const double mean = kLuminance.dot(Vector3d(request.light.col(0))) / AmbientLight(Vector3d::Ones())(0, 0);
+  const double mean = LuminanceOf(request.light.col(0)) / EvenLight()[0];
   if (!(mean > 0)) throw std::runtime_error(path + ": the environment is black, expected light");
   request.light /= mean;
   return request;
@@ -96,12 +95,12 @@ void FrameRelighter::Observe(const MotionPicture& picture) {
     const size_t i = usable[k * usable.size() / count];
     const Vector3d normal(picture.normals[i], picture.normals[area + i], picture.normals[2 * area + i]);
     if (!(normal.norm() > 0.5)) continue;
-    double light = 0;
+    Vector3d light;
     for (int c = 0; c < 3; ++c) {
-      light += kLuminance[c] * DecodePixel(picture.image[area * c + i] / picture.alpha[i], request_.encoding);
+      light[c] = DecodePixel(picture.image[area * c + i] / picture.alpha[i], request_.encoding);
     }
     normals_.push_back(normal);
-    light_.push_back(light);
+    light_.push_back(LuminanceOf(light));
     labels_.push_back(picture.labels.empty() ? 0 : picture.labels[i]);
   }
 }
@@ -112,7 +111,7 @@ void FrameRelighter::Estimate() {
   fit_ = FitLighting(normals, light_, labels_);
   if (!fit_.summary.IsUsable() || !(fit_.summary.mean_shading > 0)) return;
   // In units of the mean shading, so that brightness is relative to that of the clip.
-  old_light_ = Vector3d::Ones() * fit_.coefficients.transpose() / fit_.summary.mean_shading;
+  old_light_ = GreyLight(fit_.coefficients / fit_.summary.mean_shading);
 }
 
 void FrameRelighter::Apply(MotionPicture* picture) const {

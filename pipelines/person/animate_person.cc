@@ -23,6 +23,7 @@
 #include "bodyloom/pipelines/people/animation_limits.h"
 #include "bodyloom/pipelines/people/background.h"
 #include "bodyloom/pipelines/people/freeze.h"
+#include "bodyloom/pipelines/people/relight_frames.h"
 #include "bodyloom/pipelines/people/view_angles.h"
 #include "bodyloom/pipelines/person/person_cloth.h"
 #include "bodyloom/pipelines/person/person_folder.h"
@@ -33,6 +34,17 @@
 namespace bodyloom {
 namespace {
 
+/// Throws std::runtime_error naming the file, also for what only the frames of a run can be asked.
+PersonLight OtherLight(const std::string& path) {
+  const RelightRequest request = ReadRelight(path);
+  if (!request.estimate || request.encoding != PixelEncoding::kSrgb) {
+    throw std::runtime_error(path +
+                             ": has \"estimate\": false or \"encoding\": \"linear\", which a person from photos "
+                             "cannot be given: photos are sRGB, and their light is taken away by itself");
+  }
+  return {request.light, ShadingLimits{}};
+}
+
 class PersonAnimation {
  public:
   PersonAnimation(const AnimatePersonRequest& request, const PipelineCallbacks& callbacks)
@@ -41,10 +53,13 @@ class PersonAnimation {
   AnimatePersonSummary Run() {
     CheckRequest();
     refiner_ = OpenRefiner(request_.refiner);
+    std::optional<PersonLight> light;
+    if (!request_.relight.empty()) light = OtherLight(request_.relight);
     clock_.Begin("person");
     person_ = request_.person.empty() ? MakePhotoPerson(request_.photos, callbacks_)
                                       : ReadPhotoPerson(request_.person, request_.photos.fit.body);
     if (!request_.keep.empty()) WritePhotoPerson(request_.keep, person_);
+    if (light) person_.light = *light;
     if (!request_.track.empty()) {
       clock_.Begin("prepare");
       OpenTrack();
@@ -71,9 +86,10 @@ class PersonAnimation {
     if (!request_.track.empty() && !shows) throw RequestError("expected --out, --pictures or --moved-track");
     std::vector<std::string> inputs = request_.photos.images;
     for (const std::string& image : inputs) RequireReadable(image, "image");
-    inputs.insert(inputs.end(), {request_.track, request_.background, request_.photos.fit.body});
+    inputs.insert(inputs.end(), {request_.track, request_.background, request_.relight, request_.photos.fit.body});
     RequireReadable(request_.track, "track");
     RequireReadable(request_.background, "background");
+    RequireReadable(request_.relight, "light");
     std::vector<std::string> outputs = {request_.out, request_.moved_track, request_.json};
     for (const std::string& path : outputs) RequireWritable(path);
     if (!request_.keep.empty()) {

@@ -14,13 +14,14 @@ namespace bodyloom {
 
 /// Photos, or a folder in which a person was kept.
 struct AnimatePersonRequest {
-  PhotoPersonRequest photos;         ///< its fit.body is the body of photos and track alike
-  std::string person;                ///< a folder (person_folder.h) in place of photos; empty: photos
-  std::string keep;                  ///< the folder to keep the person in; empty: none
-  std::string track;                 ///< the motion, .npz; empty: none, the person is only made and kept
-  std::string view_yaw;              ///< how far the view is turned (pipelines/people/view_angles.h)
-  std::string freeze;                ///< where time stands still (pipelines/people/freeze.h); empty: nowhere
-  std::string background;            ///< an image, a video or a folder behind the person; empty: a plain backdrop
+  PhotoPersonRequest photos;  ///< its fit.body is the body of photos and track alike
+  std::string person;         ///< a folder (person_folder.h) in place of photos; empty: photos
+  std::string keep;           ///< the folder to keep the person in; empty: none
+  std::string track;          ///< the motion, .npz; empty: none, the person is only made and kept
+  std::string view_yaw;       ///< how far the view is turned (pipelines/people/view_angles.h)
+  std::string freeze;         ///< where time stands still (pipelines/people/freeze.h); empty: nowhere
+  std::string background;     ///< an image, a video or a folder behind the person; empty: a plain backdrop
+  std::string relight;        ///< other light, a file (pipelines/people/relight_frames.h); empty: the first photo's
   std::string refiner = kNoRefiner;  ///< what pictures are refined with (open_refiner.h)
   int size = 0;                      ///< pixels of the picture's longer side; 0: as the track's
   std::string out;                   ///< the video to write, .mp4; empty: none

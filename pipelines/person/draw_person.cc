@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/pipelines/person/draw_person.h"
 
+#include <algorithm>
+
+#include "bodyloom/geometry/base/check.h"
+
 namespace bodyloom {
 namespace {
 
@@ -8,8 +12,23 @@ constexpr int kSamples = 3;  ///< a pixel along x and y
 
 }  // namespace
 
+void LayOver(const DrawnPerson& person, Image* image) {
+  BODYLOOM_CHECK(image->width == person.picture.width && image->height == person.picture.height,
+                 "drawn person: ", person.picture.width, "x", person.picture.height, " over ", image->width, "x",
+                 image->height);
+  for (size_t p = 0; p < person.coverage.size(); ++p) {
+    const int under = 255 - person.coverage[p];
+    if (under == 255) continue;
+    for (size_t i = 3 * p; i < 3 * p + 3; ++i) {
+      image->bgr[i] = static_cast<uint8_t>(std::min(255, person.picture.bgr[i] + (image->bgr[i] * under + 127) / 255));
+    }
+  }
+}
+
 PersonPainter::PersonPainter(const PhotoPerson& person, int num_threads)
-    : person_(&person), texels_(TexelsOf(person.texture)) {
+    : person_(&person),
+      texels_(TexelsOf(person.texture)),
+      surface_(*person.body, !person.garment.empty(), num_threads) {
   options_.attribute = SurfaceAttribute::kTexture;
   options_.texture = {texels_, person.texture.width, person.texture.height, 3};
   options_.samples = kSamples;
@@ -19,7 +38,16 @@ PersonPainter::PersonPainter(const PhotoPerson& person, int num_threads)
 
 void PersonPainter::Draw(const MatrixX3d& vertices_in_camera, const Camera& camera, Image* image,
                          std::vector<uint8_t>* coverage) {
-  painter_.Draw(*person_->body, vertices_in_camera, camera, options_, image, coverage);
+  const size_t pixels = static_cast<size_t>(camera.width) * camera.height;
+  BODYLOOM_CHECK(coverage == nullptr || coverage->size() == pixels,
+                 "drawing a person: the coverage is of another size than the picture");
+  drawn_.picture = Image(camera.width, camera.height);
+  drawn_.coverage.assign(pixels, 0);
+  painter_.Draw(*person_->body, vertices_in_camera, camera, options_, &drawn_.picture, &drawn_.coverage);
+  surface_.Look(vertices_in_camera, camera);
+  surface_.Light(person_->light.coefficients, person_->light.limits, drawn_.coverage, &drawn_.picture);
+  LayOver(drawn_, image);
+  if (coverage != nullptr) *coverage = drawn_.coverage;
 }
 
 }  // namespace bodyloom

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Pictures of a person made from photos.
+/// Pictures of a person made from photos, in the person's light (PhotoPerson::light).
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,18 @@
 #include "bodyloom/geometry/camera.h"
 #include "bodyloom/pipelines/person/photo_person.h"
 #include "bodyloom/render/attribute_picture.h"
+#include "bodyloom/render/lighting/lit_surface.h"
 
 namespace bodyloom {
+
+/// A person alone in a picture.
+struct DrawnPerson {
+  Image picture;                  ///< over black: colours multiplied by the coverage
+  std::vector<uint8_t> coverage;  ///< one a pixel: share that shows the person, 0 to 255
+};
+
+/// The person over an image of the same size: picture + image·(255 − coverage)/255.
+void LayOver(const DrawnPerson& person, Image* image);
 
 /// A body that a person is drawn in.
 struct PersonPose {
@@ -35,6 +45,8 @@ class PersonPainter {
   std::vector<float> texels_;
   AttributePictureOptions options_;
   AttributePainter painter_;
+  LitSurface surface_;
+  DrawnPerson drawn_;
 };
 
 }  // namespace bodyloom

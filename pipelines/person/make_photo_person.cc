@@ -5,9 +5,12 @@
 #include <optional>
 #include <utility>
 
+#include "bodyloom/data_tools/learned/parser_weights_io.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/pipelines/person/clothes_parser.h"
 #include "bodyloom/pipelines/person/fit_photo.h"
+#include "bodyloom/pipelines/person/parse_photo.h"
 #include "bodyloom/pipelines/person/photo_person_builder.h"
 
 namespace bodyloom {
@@ -29,10 +32,11 @@ PhotoPerson MakePhotoPerson(const PhotoPersonRequest& request, const PipelineCal
   CheckRequest(request);
   StageClock clock;
   std::optional<PhotoPersonBuilder> builder;
+  std::optional<ClothesParser> parser;
   for (size_t i = 0; i < request.images.size(); ++i) {
     callbacks.Update("photos", static_cast<double>(i) / static_cast<double>(request.images.size()));
     std::shared_ptr<const BodyModel> body;
-    const FittedPhoto photo = FitPhoto(request.fit, request.images[i], callbacks, &clock, &body);
+    FittedPhoto photo = FitPhoto(request.fit, request.images[i], callbacks, &clock, &body);
     if (!body->has_uv()) throw std::runtime_error(request.fit.body + ": has no UV coordinates, a texture needs them");
     if (!builder) {
       FitClothesOptions clothes;
@@ -40,6 +44,9 @@ PhotoPerson MakePhotoPerson(const PhotoPersonRequest& request, const PipelineCal
       clothes.num_threads = ThreadsFor(request.fit.solve.num_threads);
       builder.emplace(body, request.texture_size, &clock, clothes);
     }
+    clock.Begin("parse");
+    if (!parser) parser.emplace(BuiltinParser());
+    photo.labels = LabelsOfPhoto(photo, *body, &*parser, ThreadsFor(request.fit.solve.num_threads));
     builder->Add(photo);
   }
   PhotoPerson person = builder->Finish();

@@ -12,34 +12,11 @@
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/people/planar_picture.h"
 #include "bodyloom/pipelines/person/fit_photo.h"
+#include "bodyloom/pipelines/person/parts_in_picture.h"
 #include "bodyloom/render/overlay.h"
-#include "bodyloom/render/resolve_pixels.h"
-#include "bodyloom/render/visibility_buffer.h"
 
 namespace bodyloom {
 namespace {
-
-/// DensePose's parts of the body in the photo, 0 off it.
-std::vector<uint8_t> PartsInPicture(const BodyModel& body, const MatrixX3d& vertices, const Camera& camera,
-                                    int num_threads) {
-  VisibilityBuffer buffer;
-  VisibilityOptions visibility;
-  visibility.num_threads = num_threads;
-  buffer.Render(vertices, body.data().faces, camera, visibility);
-  ResolveRequest request;
-  request.part = true;
-  request.num_threads = num_threads;
-  ResolvedPixels pixels;
-  ResolvePixels(buffer, body, vertices, camera, request, &pixels);
-  std::vector<uint8_t> parts(static_cast<size_t>(camera.width) * camera.height, 0);
-  for (int y = 0; y < camera.height; ++y) {
-    for (int x = 0; x < camera.width; ++x) {
-      if (buffer.FaceAt(x, y) < 0) continue;
-      parts[static_cast<size_t>(y) * camera.width + x] = pixels.part[buffer.box().IndexOf(x, y)];
-    }
-  }
-  return parts;
-}
 
 /// Half the photo, half the labels' colours.
 Image Tinted(const Image& picture, const std::vector<uint8_t>& labels) {

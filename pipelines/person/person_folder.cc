@@ -43,6 +43,18 @@ LooseGarmentOptions GarmentIn(const std::string& path) {
   return cut;
 }
 
+/// Even light where the file says nothing of it.
+PersonLight LightIn(const std::string& path) {
+  PersonLight light;
+  if (!std::filesystem::exists(path)) return light;
+  const nlohmann::json json = ReadJsonFile(path);
+  const JsonNode root(json, path);
+  if (!root.Has("light")) return light;
+  const std::vector<double> values = root.At("light").Numbers(27);
+  for (int k = 0; k < 27; ++k) light.coefficients(k / 9, k % 9) = values[k];
+  return light;
+}
+
 }  // namespace
 
 std::vector<std::string> PhotoPersonFiles(const std::string& folder, int num_photos) {
@@ -73,6 +85,7 @@ PhotoPerson ReadPhotoPerson(const std::string& folder, const std::string& bare_b
                                          person.bare->num_vertices(), " and ", person.bare->num_joints()));
   }
   person.cut = GarmentIn(FileIn(folder, "person.json"));
+  person.light = LightIn(FileIn(folder, "person.json"));
   person.clothed = person.body;
   if (person.cut.length_m > 0) {
     try {
@@ -118,6 +131,9 @@ std::string ToJson(const PhotoPerson& person) {
                                  {"silhouette_unlike_close", report.unlike_close},
                                  {"silhouette_unlike_loose", report.unlike_loose},
                                  {"seconds", ToJson(report.seconds)}};
+  for (Eigen::Index c = 0; c < 3; ++c) {
+    for (Eigen::Index k = 0; k < 9; ++k) json["light"].push_back(person.light.coefficients(c, k));
+  }
   if (person.cut.length_m > 0) {
     json["garment"] = {{"waist_y_m", person.cut.waist_y_m},
                        {"length_m", person.cut.length_m},

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 /// A person made from photos, kept in a folder:
 ///   body.npz      the clothed body (data_tools/body/body_io.h); zero betas are the person
-///   texture.png   for its atlas
+///   texture.png   for its atlas, as in even light
 ///   sources.png   where each texel's colour is from, in colours (PhotoPerson::sources)
 ///   photo_0.npz   a track of one frame for each photo: the bare body in it, whose betas are the person's
-///   person.json   what was seen and what was guessed (PhotoPersonReport), and how the garment is cut, where there is one
+///   person.json   what was seen and what was guessed (PhotoPersonReport), how the garment is cut, where there is one,
+///                 and the light of the first photo (27 coefficients: red, green, blue; absent: even light)
 #pragma once
 
 #include <string>

@@ -9,19 +9,6 @@
 
 namespace bodyloom {
 
-void LayOver(const DrawnPerson& person, Image* image) {
-  BODYLOOM_CHECK(image->width == person.picture.width && image->height == person.picture.height,
-                 "drawn person: ", person.picture.width, "x", person.picture.height, " over ", image->width, "x",
-                 image->height);
-  for (size_t p = 0; p < person.coverage.size(); ++p) {
-    const int under = 255 - person.coverage[p];
-    if (under == 255) continue;
-    for (size_t i = 3 * p; i < 3 * p + 3; ++i) {
-      image->bgr[i] = static_cast<uint8_t>(std::min(255, person.picture.bgr[i] + (image->bgr[i] * under + 127) / 255));
-    }
-  }
-}
-
 std::vector<uint8_t> BgraOf(const DrawnPerson& person) {
   std::vector<uint8_t> bgra(4 * person.coverage.size(), 0);
   for (size_t p = 0; p < person.coverage.size(); ++p) {

@@ -13,14 +13,6 @@
 
 namespace bodyloom {
 
-/// A person alone in a picture.
-struct DrawnPerson {
-  Image picture;                  ///< over black: colours multiplied by the coverage
-  std::vector<uint8_t> coverage;  ///< one a pixel: share that shows the person, 0 to 255
-};
-
-/// The person over an image of the same size: picture + image·(255 − coverage)/255.
-void LayOver(const DrawnPerson& person, Image* image);
 /// Blue, green, red, not multiplied, and alpha; zeros where nobody is.
 std::vector<uint8_t> BgraOf(const DrawnPerson& person);
 

@@ -13,6 +13,8 @@
 #include "bodyloom/geometry/cloth/loose_garment.h"
 #include "bodyloom/geometry/track.h"
 #include "bodyloom/render/image.h"
+#include "bodyloom/render/lighting/lit_surface.h"
+#include "bodyloom/render/lighting/sh_lighting.h"
 
 namespace bodyloom {
 
@@ -35,6 +37,16 @@ struct PhotoPersonReport {
   StageSeconds seconds;
 };
 
+/// Of a photo's own light, taken away and given alike.
+inline constexpr ShadingLimits kPhotoShading = {.least = 0.35, .most = 2};
+
+/// What a person is drawn in, camera frame: the light of the first photo, whose shading has the mean 1 over the person in
+/// it, unless another is set.
+struct PersonLight {
+  ShLighting coefficients = GreyLight(EvenLight());
+  ShadingLimits limits = kPhotoShading;
+};
+
 struct PhotoPerson {
   std::shared_ptr<const BodyModel> body;  ///< clothed, the garment behind it; zero betas are the person
   /// `body` without its garment; the same where it has none.
@@ -43,7 +55,8 @@ struct PhotoPerson {
   LooseGarment garment;                       ///< cut for `clothed`
   std::shared_ptr<const BodyModel> bare;      ///< what the photos were fitted with, whose betas follow
   Eigen::VectorXd betas;
-  Image texture;
+  Image texture;  ///< as in even light
+  PersonLight light;
   /// Where each texel's colour is from: white seen, blue mirrored, green from behind, yellow across, brown hair, orange
   /// around, red spread, black where the atlas is empty.
   Image sources;

@@ -14,7 +14,10 @@
 #include "bodyloom/geometry/cloth/body_with_garment.h"
 #include "bodyloom/geometry/joint_influence.h"
 #include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/pipelines/person/limb_leaks.h"
+#include "bodyloom/pipelines/person/parts_in_picture.h"
 #include "bodyloom/pipelines/person/person_cloth.h"
+#include "bodyloom/pipelines/person/photo_light.h"
 #include "bodyloom/render/overlay.h"
 #include "bodyloom/render/person/body_regions.h"
 #include "bodyloom/render/person/clothes_offsets.h"
@@ -26,6 +29,7 @@ namespace {
 
 constexpr double kMarginOfHeight = 0.004;      ///< of the person's pixels: the mask's contour is blurred by so much
 constexpr double kStepMarginOfHeight = 0.012;  ///< where a limb hides another: a fit's median error
+constexpr double kLeakOfHeight = 0.06;         ///< so far beside the fitted arm skin before the trunk may be the arm's
 constexpr double kHemMargin_m = 0.12;          ///< below a hem, what is seen of the legs may be the hem
 constexpr double kLeastSeen = 0.01;            ///< of the body's texels, in every photo
 
@@ -98,6 +102,26 @@ ClothesOffsets PhotoPersonBuilder::Dress(const FittedPhoto& photo) {
                            clothes_.offsets, covered);
 }
 
+/// The first photo's light becomes the person's.
+Image PhotoPersonBuilder::InEvenLight(const FittedPhoto& photo, const MatrixX3d& vertices) {
+  Image picture = photo.picture;
+  if (photo.labels.empty()) return picture;
+  LitSurface surface(*person_.body, !person_.garment.empty(), clothes_.num_threads);
+  surface.Look(vertices, photo.track.CameraAt(0));
+  const PhotoLight light = LightOfPhoto(picture, photo.labels, surface);
+  if (person_.tracks.empty()) person_.light.coefficients = GreyLight(light.coefficients);
+  surface.Unlight(GreyLight(light.coefficients), kPhotoShading, &picture);
+  return picture;
+}
+
+std::vector<uint8_t> PhotoPersonBuilder::UsablePixels(const FittedPhoto& photo, const MatrixX3d& vertices) const {
+  std::vector<uint8_t> mask = MaskInPicture(photo);
+  if (photo.labels.empty()) return mask;
+  const std::vector<uint8_t> parts =
+      PartsInPicture(*person_.body, vertices, photo.track.CameraAt(0), clothes_.num_threads);
+  return WithoutLimbLeaks(photo.picture, mask, photo.labels, parts, MarginPx(photo.mask, kLeakOfHeight));
+}
+
 void PhotoPersonBuilder::Add(const FittedPhoto& photo) {
   PhotoPersonReport::Photo report;
   report.image = photo.name, report.people = photo.people;
@@ -137,7 +161,8 @@ void PhotoPersonBuilder::Add(const FittedPhoto& photo) {
     PlaceGarment(person_.garment, PersonCloth(*clothed, person_.garment, track, index == 0 ? swing_rad_ : 0).At(0),
                  &vertices);
   }
-  const int seen = extractor_->Add(photo.picture, vertices, track.CameraAt(0), index, MaskInPicture(photo));
+  const int seen =
+      extractor_->Add(InEvenLight(photo, vertices), vertices, track.CameraAt(0), index, UsablePixels(photo, vertices));
   report.texels_seen = static_cast<double>(seen) / extractor_->table().num_inside;
   if (report.texels_seen < kLeastSeen) {
     if (index == 0) extractor_.reset();  // the next photo is the first

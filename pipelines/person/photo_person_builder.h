@@ -3,7 +3,7 @@
 ///
 /// Clothes and hair stand off as the mask says, and a skirt, dress or coat hangs as it says
 /// (render/person/fit_clothes.h); the texels of the clothed body look
-/// their colours up in the picture. Photos are merged texel by texel, the one that sees it best; the first gives shape
+/// their colours up in the picture, from which the light was taken (pipelines/person/photo_light.h). Photos are merged texel by texel, the one that sees it best; the first gives shape
 /// and clothes. What no photo shows is guessed (render/person/whole_texture.h).
 #pragma once
 
@@ -26,7 +26,9 @@ struct FittedPhoto {
   Image picture;
   Track track;      ///< of one frame with a result, of the bare body
   LabelImage mask;  ///< of the picture's size; 0 where the person is not
-  int people = 1;   ///< found in it
+  /// PersonLabel, one a pixel of the picture: dark clothes are not shade. Empty: nobody knows, and the light is taken as even.
+  std::vector<uint8_t> labels;
+  int people = 1;  ///< found in it
 };
 
 /// The photo's mask, one a pixel of the picture.
@@ -48,6 +50,8 @@ class PhotoPersonBuilder {
  private:
   void Begin(const char* stage);
   ClothesOffsets Dress(const FittedPhoto& photo);
+  [[nodiscard]] std::vector<uint8_t> UsablePixels(const FittedPhoto& photo, const MatrixX3d& vertices_in_camera) const;
+  Image InEvenLight(const FittedPhoto& photo, const MatrixX3d& vertices_in_camera);
 
   int texture_size_;
   StageClock* clock_;

@@ -21,7 +21,6 @@ constexpr size_t kFewest = 50;
 constexpr double kTukey = 4.685;  // 95 % efficient on Gaussian residuals
 constexpr double kHuber = 1.345;  // the same
 constexpr double kAlbedoGauge = 1e3;
-constexpr double kRidge = 1e-3;
 
 struct Sample {
   ShVector basis;
@@ -89,16 +88,18 @@ class Fit {
     }
     std::vector<double> all;
     for (const Sample& s : samples_) all.push_back(s.light);
-    const double median = Median(all);
-    if (!(median > 0)) return false;
+    median_ = Median(all);
+    if (!(median_ > 0)) return false;
     for (const auto& lights : by_label) {
       // A label as good as black would have no weight in the light; it starts a little brighter.
-      result_.albedo.push_back(lights.empty() ? 0 : std::max(0.05, Median(lights) / median));
+      result_.albedo.push_back(lights.empty() ? 0 : std::max(0.05, Median(lights) / median_));
       share_.push_back(double(lights.size()) / double(samples_.size()));
     }
     ShVector right = ShVector::Zero();
     for (const Sample& s : samples_) right += s.basis * (s.light / result_.albedo[s.label]);
-    result_.coefficients = information.ldlt().solve(right);
+    Eigen::Matrix<double, 9, 9> held = information;
+    held.diagonal().tail<8>().array() += options_.ridge * options_.ridge * double(samples_.size());
+    result_.coefficients = held.ldlt().solve(right);
     Normalise();
     return true;
   }
@@ -123,8 +124,9 @@ class Fit {
       sizes.push_back(std::abs(Residual(s)));
       brightest = std::max(brightest, std::abs(s.light));
     }
-    // A fit without any error still needs a scale.
-    result_.summary.sigma = std::max(1.4826 * Median(sizes), 1e-6 * brightest);
+    // A fit without any error still needs a scale, below which the kernels would take what the ridge costs for outliers.
+    const double least = std::max(1e-6 * brightest, options_.ridge * median_);
+    result_.summary.sigma = std::max(1.4826 * Median(sizes), least);
   }
 
   bool Solve(std::unique_ptr<ceres::LossFunction> loss) {
@@ -169,7 +171,8 @@ class Fit {
   }
 
   void AddRidge(ceres::Problem* problem) {
-    RowMatrixXd A = RowMatrixXd::Identity(9, 9) * (kRidge * std::sqrt(double(samples_.size())) / result_.summary.sigma);
+    const double weight = options_.ridge * std::sqrt(double(samples_.size())) / result_.summary.sigma;
+    RowMatrixXd A = RowMatrixXd::Identity(9, 9) * weight;
     A(0, 0) = 0;
     problem->AddResidualBlock(new ceres::NormalPrior(A, Eigen::VectorXd::Zero(9)), nullptr,
                               result_.coefficients.data());
@@ -214,6 +217,7 @@ class Fit {
   std::vector<Sample> samples_;
   const FitLightingOptions& options_;
   FitLightingResult& result_;
+  double median_ = 0;          ///< of the light
   std::vector<double> share_;  ///< of the samples, by label
 };
 

@@ -3,13 +3,13 @@
 /// (render/lighting/sh_lighting.h), with an albedo for each label as unknowns of the same problem, so that dark
 /// trousers are not taken for shadow.
 ///
-///   minimises ½ Σ_i ρ( (a_l(i) · c·Y(n_i) − y_i)² / σ² ) + ½ (w Σ_i (a_l(i) − 1)/N)² + ½ N (10⁻³/σ)² Σ_k>0 c_k²
+///   minimises ½ Σ_i ρ( (a_l(i) · c·Y(n_i) − y_i)² / σ² ) + ½ (w Σ_i (a_l(i) − 1)/N)² + ½ N (r/σ)² Σ_k>0 c_k²
 /// over c in R⁹ and the albedos a_l. The last term only decides what the normals leave open (seen from one side, 1, z
 /// and z² are much alike).
 ///
 /// y_i: light of a pixel (luminance, or one colour), n_i its normal, l(i) its label. Albedo and light have one common
 /// factor that no picture determines: the mean albedo over the samples is 1, so the shading is in units of it. ρ is
-/// Tukey's biweight at 4.685 σ, σ from the residuals' median; it forgets cast shadows, prints and highlights. Started
+/// Tukey's biweight at 4.685 σ, σ from the residuals' median, at least r times the light's median; it forgets cast shadows, prints and highlights. Started
 /// from least squares of y/median_l(y), then Huber. The shading is not kept from being negative; the result tells how
 /// often it is. Solver: Ceres, analytic derivatives. The same result for any machine load: one thread.
 #pragma once
@@ -30,6 +30,7 @@ namespace bodyloom {
 struct FitLightingOptions {
   int max_samples = 20000;  ///< evenly spread over those given
   int max_iterations = 50;
+  double ridge = 1e-3;       ///< r above: how firmly what the normals hardly tell is held at even light
   double min_spread = 1e-9;  ///< of the normals: smallest over largest eigenvalue of Σ Y Yᵀ
 };
 

@@ -37,6 +37,10 @@ ShLighting AmbientLight(const Vector3d& colour) {
   return lighting;
 }
 
+ShVector EvenLight() { return AmbientLight(Vector3d::Ones()).row(0).transpose(); }
+
+double LuminanceOf(const Vector3d& light) { return Vector3d(0.2126, 0.7152, 0.0722).dot(light); }
+
 ShLighting DirectionalLight(const Vector3d& towards_light, const Vector3d& colour) {
   const double length = towards_light.norm();
   BODYLOOM_CHECK(std::isfinite(length) && length > 0, "a light needs a direction");

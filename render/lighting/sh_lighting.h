@@ -35,6 +35,13 @@ inline Eigen::Vector3d Shading(const ShLighting& lighting, const Eigen::Vector3d
 
 /// Light of one radiance from everywhere: shading(n) = colour.
 ShLighting AmbientLight(const Eigen::Vector3d& colour);
+/// One colour of AmbientLight({1, 1, 1}).
+ShVector EvenLight();
+/// Of the same shading in all colours.
+inline ShLighting GreyLight(const ShVector& coefficients) { return Eigen::Vector3d::Ones() * coefficients.transpose(); }
+
+/// How bright light is: 0.2126 red + 0.7152 green + 0.0722 blue (ITU-R BT.709).
+double LuminanceOf(const Eigen::Vector3d& light);
 
 /// A light infinitely far away in the direction `towards_light` (any length but 0, std::invalid_argument otherwise):
 /// shading(n) ≈ colour · max(0, n · towards_light).

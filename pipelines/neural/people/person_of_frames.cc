@@ -20,7 +20,7 @@ FittedPhoto FittedPhotoOf(const PhotoFrame& frame, const std::string& name, Trac
   photo.picture = PictureOf(frame.image, frame.size, frame.size);
   photo.track = std::move(body);
   photo.mask.width = photo.mask.height = frame.size;
-  photo.mask.labels = frame.labels;
+  photo.mask.labels = photo.labels = frame.labels;
   return photo;
 }
 

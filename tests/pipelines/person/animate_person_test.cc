@@ -148,6 +148,14 @@ TEST_F(RealPersonTest, KeptAndTakenUpAgainIsTheSame) {
   EXPECT_LT((moved.motion.trans - person_->tracks[0].motion.trans).cwiseAbs().maxCoeff(), 1e-6);
 }
 
+TEST_F(RealPersonTest, HasTheLightOfThePhoto) {
+  const ShLighting& light = person_->light.coefficients;
+  EXPECT_NE(light, GreyLight(EvenLight()));
+  EXPECT_EQ(light.row(0), light.row(2)) << "one for all colours";
+  const PhotoPerson kept = ReadPhotoPerson(*folder_ / "kept", "");
+  EXPECT_LT((kept.light.coefficients - light).cwiseAbs().maxCoeff(), 1e-6);
+}
+
 TEST_F(RealPersonTest, SeveralPhotosShowMore) {
   PhotoPersonRequest request;
   request.texture_size = 128;
@@ -218,6 +226,11 @@ TEST(PersonFolder, WhatIsMissingOrBrokenIsNamed) {
   person.body = person.bare;
   WritePhotoPerson(folder / "me", person);
   EXPECT_EQ(error(), "");
+  WriteFileAtomically(folder / "me/person.json", R"({"light": [1, 2]})");
+  EXPECT_THAT(error(), HasSubstr("person.json: light"));
+  WriteFileAtomically(folder / "me/person.json", "{}");  // of before the light was taken away
+  EXPECT_EQ(error(), "");
+  EXPECT_EQ(ReadPhotoPerson(folder / "me", "").light.coefficients, GreyLight(EvenLight()));
   WriteFileAtomically(folder / "me/texture.png", "garbage");
   EXPECT_THAT(error(), HasSubstr("texture.png"));
 }

@@ -53,6 +53,12 @@ double ShadingError(const ShVector& a, const ShVector& b, const MatrixX3d& norma
   return error;
 }
 
+double MeanShading(const ShVector& light, const MatrixX3d& normals) {
+  double sum = 0;
+  for (Eigen::Index i = 0; i < normals.rows(); ++i) sum += light.dot(ShBasis(normals.row(i).transpose()));
+  return sum / double(normals.rows());
+}
+
 TEST(FitLighting, RecoversTheLightExactlyWithoutNoise) {
   const Pixels pixels = SeenPixels(3000, 0, 0, 1, 1);
   const FitLightingResult result = FitLighting(pixels.normals, pixels.light);
@@ -124,6 +130,30 @@ TEST(FitLighting, NegativeShadingIsReported) {
   EXPECT_TRUE(result.summary.IsUsable());
   EXPECT_GT(result.summary.negative_share, 0);
   EXPECT_LT(result.summary.min_shading, 0);
+}
+
+/// Without noise the residuals say nothing of how far the ridge may be from them: it once won, and the light was even.
+TEST(FitLighting, WhatIsExactIsFoundWhateverHoldsIt) {
+  Pixels pixels = SeenPixels(3000, 0, 0, 1, 1);
+  const ShVector light =
+      (AmbientLight({0.5, 0, 0}) + DirectionalLight({-0.8, -0.3, -0.5}, {0.6, 0, 0})).row(0).transpose();
+  std::vector<uint8_t> labels(3000);
+  for (Eigen::Index i = 0; i < pixels.normals.rows(); ++i) {
+    labels[i] = pixels.normals(i, 1) > 0 ? 2 : 1;
+    pixels.light[i] = (labels[i] == 1 ? 0.3 : 0.045) * light.dot(ShBasis(pixels.normals.row(i).transpose()));
+  }
+  const double mean = MeanShading(light, pixels.normals);
+  const double of_even_light = ShadingError(mean * EvenLight(), light, pixels.normals);
+  double before = 0;
+  for (const double ridge : {1e-3, 0.01, 0.03, 0.1}) {
+    const FitLightingResult result = FitLighting(pixels.normals, pixels.light, labels, {.ridge = ridge});
+    ASSERT_TRUE(result.summary.IsUsable()) << ridge;
+    const ShVector found = result.coefficients * mean / result.summary.mean_shading;  // brightness is as free as albedo
+    const double error = ShadingError(found, light, pixels.normals);
+    EXPECT_LT(error, (ridge < 0.05 ? 0.25 : 0.6) * of_even_light) << ridge;
+    EXPECT_GE(error, before) << "the more it is held, the less is found";
+    before = error;
+  }
 }
 
 TEST(FitLighting, WhatCannotBeFittedIsAStatus) {
