@@ -47,8 +47,10 @@ void AddAnimatePerson(CLI::App& animate, Action* action, std::vector<std::string
   TrackRequest& fit = request->photos.fit;
   verb->add_option("--image", request->photos.images, "Photos of the person; the first gives shape and clothes");
   verb->add_option("--person", request->person, "A person who was kept (--keep), in place of photos")->type_name("DIR");
+  verb->add_option("--garment-from", request->garment_from,
+                   "Photo of somebody, or the folder of a person who was kept: their clothes are worn");
   verb->add_option("--keep", request->keep,
-                   "Folder for the person: body.npz, texture.png, sources.png, photo_0.npz, person.json")
+                   "Folder for the person: body.npz, texture.png, sources.png, labels.png, photo_0.npz, person.json")
       ->type_name("DIR");
   verb->add_option("--track", request->track, "The motion: a track, .npz");
   verb->add_option("--out", request->out, "The video, .mp4");
@@ -94,6 +96,7 @@ void AddAnimatePerson(CLI::App& animate, Action* action, std::vector<std::string
       "Examples:\n"
       "  bodyloom animate person --image me.jpg --track dance.npz --out me.mp4\n"
       "  bodyloom animate person --image front.jpg back.jpg --keep me\n"
+      "  bodyloom animate person --person me --garment-from friend.jpg --track dance.npz --out me.mp4\n"
       "  bodyloom animate person --person me --track dance.npz --view-yaw 0:360 --background b.jpg --out me.mp4");
   verb->callback([request, scored, action, arguments = std::move(arguments)] {
     *action = [=] {

@@ -17,6 +17,7 @@
 #include "bodyloom/pipelines/person/make_photo_person.h"
 #include "bodyloom/pipelines/person/parse_photo.h"
 #include "bodyloom/pipelines/person/person_folder.h"
+#include "bodyloom/pipelines/person/wear_clothes.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/python_callbacks.h"
@@ -64,6 +65,15 @@ class PersonObject {
   [[nodiscard]] const PhotoPerson& person() const { return person_; }
   [[nodiscard]] std::shared_ptr<BodyModel> body() const { return std::const_pointer_cast<BodyModel>(person_.body); }
   [[nodiscard]] py::array texture() const { return PictureFrom(person_.texture); }
+  [[nodiscard]] py::array labels() const {
+    const bool known = !person_.labels.empty();
+    return py::array_t<uint8_t>({known ? person_.texture.height : 0, known ? person_.texture.width : 0},
+                                person_.labels.data());
+  }
+  [[nodiscard]] py::array light() const {
+    const RowMatrixXd rows = person_.light.coefficients;
+    return py::array_t<double>({rows.rows(), rows.cols()}, rows.data());
+  }
   [[nodiscard]] std::shared_ptr<TrackObject> Moved(const TrackArgument& argument) const {
     const std::shared_ptr<TrackObject> track = TrackFrom(argument);
     return std::make_shared<TrackObject>(MovedByPerson(person_, track->track), track->name, person_.body);
@@ -119,8 +129,26 @@ void BindPerson(py::module_& module) {
           py::arg("folder"), "Writes body.npz, texture.png, photo_0.npz ... and person.json into the folder.")
       .def("moved", &PersonObject::Moved, py::arg("track"),
            "The motion by this person: a track of `body`, whose betas are zero.")
+      .def(
+          "wearing",
+          [](const PersonObject& self, const PersonObject& other) {
+            return std::make_unique<PersonObject>(InClothesOf(self.person(), other.person()));
+          },
+          py::arg("other"),
+          "This person in the other one's clothes, a loose garment among them. Raises ValueError for people of\n"
+          "different bodies, or who were kept before it was noted what their texels show.")
       .def_property_readonly("body", &PersonObject::body, "Clothed; zero betas are the person.")
-      .def_property_readonly("texture", &PersonObject::texture, "(S, S, 3) uint8, red green blue, a copy.")
+      .def_property_readonly("texture", &PersonObject::texture,
+                             "(S, S, 3) uint8, red green blue, as in even light; a copy.")
+      .def_property_readonly(
+          "labels", &PersonObject::labels,
+          "(S, S) uint8, what each texel shows: 0 nothing, 1 top, 2 bottom, 3 face, 4 hair, 5 skin,\n"
+          "6 shoes, a copy; (0, 0) where nobody knows.")
+      .def_property_readonly(
+          "light", &PersonObject::light,
+          "(3, 9) copy: what the person is drawn in, camera frame; spherical harmonics up to order 2 of\n"
+          "red, green and blue, shading = light @ basis(normal). Of the first photo, its mean 1 over the\n"
+          "person.")
       .def_property_readonly(
           "betas",
           [](const py::object& self) { return MatrixView(self.cast<const PersonObject&>().person().betas, self); },

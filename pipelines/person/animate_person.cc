@@ -2,6 +2,7 @@
 #include "bodyloom/pipelines/person/animate_person.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -28,6 +29,7 @@
 #include "bodyloom/pipelines/person/person_cloth.h"
 #include "bodyloom/pipelines/person/person_folder.h"
 #include "bodyloom/pipelines/person/person_frame_painter.h"
+#include "bodyloom/pipelines/person/wear_clothes.h"
 #include "bodyloom/pipelines/report_json.h"
 #include "bodyloom/render/view_camera.h"
 
@@ -58,6 +60,10 @@ class PersonAnimation {
     clock_.Begin("person");
     person_ = request_.person.empty() ? MakePhotoPerson(request_.photos, callbacks_)
                                       : ReadPhotoPerson(request_.person, request_.photos.fit.body);
+    if (!request_.garment_from.empty()) {
+      clock_.Begin("clothes");
+      WearClothes();
+    }
     if (!request_.keep.empty()) WritePhotoPerson(request_.keep, person_);
     if (light) person_.light = *light;
     if (!request_.track.empty()) {
@@ -86,10 +92,12 @@ class PersonAnimation {
     if (!request_.track.empty() && !shows) throw RequestError("expected --out, --pictures or --moved-track");
     std::vector<std::string> inputs = request_.photos.images;
     for (const std::string& image : inputs) RequireReadable(image, "image");
-    inputs.insert(inputs.end(), {request_.track, request_.background, request_.relight, request_.photos.fit.body});
+    inputs.insert(inputs.end(), {request_.track, request_.background, request_.relight, request_.photos.fit.body,
+                                 request_.garment_from});
     RequireReadable(request_.track, "track");
     RequireReadable(request_.background, "background");
     RequireReadable(request_.relight, "light");
+    RequireReadable(request_.garment_from, "clothes");
     std::vector<std::string> outputs = {request_.out, request_.moved_track, request_.json};
     for (const std::string& path : outputs) RequireWritable(path);
     if (!request_.keep.empty()) {
@@ -100,6 +108,22 @@ class PersonAnimation {
     RequireDistinct(inputs, outputs);
     if (!request_.keep.empty()) RequireWritableFolder(request_.keep);
     if (!request_.pictures.empty()) RequireWritableFolder(request_.pictures);
+  }
+
+  void WearClothes() {
+    const std::string& from = request_.garment_from;
+    PhotoPersonRequest photo = request_.photos;
+    photo.images = {from};
+    photo.fit.person = 0;
+    const PhotoPerson other = std::filesystem::is_directory(from) ? ReadPhotoPerson(from, photo.fit.body)
+                                                                  : MakePhotoPerson(photo, callbacks_);
+    const PhotoPersonReport report = person_.report;
+    try {
+      person_ = InClothesOf(person_, other);
+    } catch (const std::invalid_argument& error) {
+      throw std::runtime_error(from + ": " + error.what());
+    }
+    person_.report.photos = report.photos, person_.report.seconds = report.seconds;
   }
 
   void OpenTrack() {

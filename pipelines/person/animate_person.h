@@ -16,6 +16,7 @@ namespace bodyloom {
 struct AnimatePersonRequest {
   PhotoPersonRequest photos;  ///< its fit.body is the body of photos and track alike
   std::string person;         ///< a folder (person_folder.h) in place of photos; empty: photos
+  std::string garment_from;   ///< a photo, or a folder in which somebody was kept: whose clothes are worn; empty: own
   std::string keep;           ///< the folder to keep the person in; empty: none
   std::string track;          ///< the motion, .npz; empty: none, the person is only made and kept
   std::string view_yaw;       ///< how far the view is turned (pipelines/people/view_angles.h)

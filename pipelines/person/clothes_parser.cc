@@ -10,6 +10,7 @@
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/pipelines/person/label_colours.h"
 #include "bodyloom/pipelines/person/surface_planes.h"
 #include "bodyloom/render/overlay.h"
 #include "bodyloom/render/view_camera.h"
@@ -116,6 +117,7 @@ std::vector<uint8_t> ClothesParser::Labels(const PersonPhoto& photo, int num_thr
       labels[i] = static_cast<uint8_t>(kFirstClass + of_class);
     }
   }
+  RelabelByColour(*photo.picture, labels);
   return labels;
 }
 

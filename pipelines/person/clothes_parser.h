@@ -38,7 +38,8 @@ class ClothesParser {
   /// Throws std::invalid_argument for weights that are not valid.
   explicit ClothesParser(ParserWeights weights);
 
-  /// One a pixel of the picture: 0 off the mask, elsewhere kTop to kShoes. A person more than a quarter larger than those
+  /// One a pixel of the picture: 0 off the mask, elsewhere kTop to kShoes, skin and clothes told apart by their colours too
+  /// (pipelines/person/label_colours.h). A person more than a quarter larger than those
   /// that the parser learned from is parsed in a smaller picture, whose answers are enlarged bilinearly. Throws as
   /// ParserLayers().
   std::vector<uint8_t> Labels(const PersonPhoto& photo, int num_threads);

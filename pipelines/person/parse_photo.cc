@@ -43,6 +43,12 @@ std::vector<uint8_t> LabelsOfPhoto(const FittedPhoto& photo, const BodyModel& bo
   return labels;
 }
 
+Image NumbersPicture(std::span<const uint8_t> labels, int width, int height) {
+  Image numbers(width, height);
+  for (size_t i = 0; i < numbers.bgr.size(); ++i) numbers.bgr[i] = labels[i / 3];
+  return numbers;
+}
+
 PhotoParseSummary ParsePhoto(const PhotoParseRequest& request, const PipelineCallbacks& callbacks) {
   RequireWritable(request.out);
   RequireWritable(request.picture);
@@ -64,9 +70,7 @@ PhotoParseSummary ParsePhoto(const PhotoParseRequest& request, const PipelineCal
   const std::vector<uint8_t>& labels = summary.labels;
   for (const uint8_t label : labels) ++summary.pixels[label];
   if (!request.out.empty()) {
-    Image numbers(photo.picture.width, photo.picture.height);
-    for (size_t i = 0; i < numbers.bgr.size(); ++i) numbers.bgr[i] = labels[i / 3];
-    WriteImage(request.out, numbers);
+    WriteImage(request.out, NumbersPicture(labels, photo.picture.width, photo.picture.height));
     summary.written.push_back(request.out);
   }
   if (!request.picture.empty()) {

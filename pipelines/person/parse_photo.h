@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,9 @@ inline constexpr const char* kNearestOfBody = "body";
 /// fitted.
 std::vector<uint8_t> LabelsOfPhoto(const FittedPhoto& photo, const BodyModel& body, ClothesParser* parser,
                                    int num_threads);
+
+/// A picture of labels: a label's number in all channels.
+Image NumbersPicture(std::span<const uint8_t> labels, int width, int height);
 
 struct PhotoParseRequest {
   std::string image;

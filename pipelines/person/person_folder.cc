@@ -7,12 +7,14 @@
 
 #include "bodyloom/data_tools/body/body_io.h"
 #include "bodyloom/data_tools/body/body_or_builtin.h"
+#include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/formats/json_reader.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/cloth/body_with_garment.h"
+#include "bodyloom/pipelines/person/parse_photo.h"
 #include "bodyloom/pipelines/report_json.h"
 
 namespace bodyloom {
@@ -55,11 +57,31 @@ PersonLight LightIn(const std::string& path) {
   return light;
 }
 
+/// One a texel; none where there is no such file.
+std::vector<uint8_t> LabelsIn(const std::string& path, const Image& texture) {
+  std::vector<uint8_t> labels;
+  if (!std::filesystem::exists(path)) return labels;
+  const Image numbers = ReadImage(path);
+  if (numbers.width != texture.width || numbers.height != texture.height) {
+    throw std::runtime_error(Concatenate(path, ": is ", numbers.width, "x", numbers.height, ", the texture ",
+                                         texture.width, "x", texture.height));
+  }
+  labels.reserve(numbers.bgr.size() / 3);
+  for (size_t i = 0; i < numbers.bgr.size(); i += 3) {
+    if (numbers.bgr[i] >= kNumPersonLabels) {
+      throw std::runtime_error(Concatenate(path, ": label ", int{numbers.bgr[i]}, ", expected 0 to ",
+                                           kNumPersonLabels - 1, " as `bodyloom parse` numbers them"));
+    }
+    labels.push_back(numbers.bgr[i]);
+  }
+  return labels;
+}
+
 }  // namespace
 
 std::vector<std::string> PhotoPersonFiles(const std::string& folder, int num_photos) {
   std::vector<std::string> files = {FileIn(folder, "body.npz"), FileIn(folder, "texture.png"),
-                                    FileIn(folder, "sources.png")};
+                                    FileIn(folder, "sources.png"), FileIn(folder, "labels.png")};
   for (int i = 0; i < num_photos; ++i) files.push_back(PhotoFile(folder, static_cast<size_t>(i)));
   files.push_back(FileIn(folder, "person.json"));
   return files;
@@ -69,6 +91,10 @@ void WritePhotoPerson(const std::string& folder, const PhotoPerson& person) {
   SaveBodyCompact(FileIn(folder, "body.npz"), person.body->data());
   WriteImage(FileIn(folder, "texture.png"), person.texture);
   if (!person.sources.empty()) WriteImage(FileIn(folder, "sources.png"), person.sources);
+  if (!person.labels.empty()) {
+    WriteImage(FileIn(folder, "labels.png"),
+               NumbersPicture(person.labels, person.texture.width, person.texture.height));
+  }
   for (size_t i = 0; i < person.tracks.size(); ++i) WriteTrack(PhotoFile(folder, i), person.tracks[i]);
   WriteFileAtomically(FileIn(folder, "person.json"), ToJson(person));
 }
@@ -103,6 +129,7 @@ PhotoPerson ReadPhotoPerson(const std::string& folder, const std::string& bare_b
   person.texture = ReadImage(FileIn(folder, "texture.png"));
   const std::string sources = FileIn(folder, "sources.png");
   if (std::filesystem::exists(sources)) person.sources = ReadImage(sources);
+  person.labels = LabelsIn(FileIn(folder, "labels.png"), person.texture);
   person.tracks.push_back(ReadTrack(PhotoFile(folder, 0)));
   person.betas = person.tracks[0].motion.betas;
   return person;

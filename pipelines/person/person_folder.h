@@ -3,6 +3,7 @@
 ///   body.npz      the clothed body (data_tools/body/body_io.h); zero betas are the person
 ///   texture.png   for its atlas, as in even light
 ///   sources.png   where each texel's colour is from, in colours (PhotoPerson::sources)
+///   labels.png    what each texel shows, a label's number in all channels (PersonLabel); absent: nobody knows
 ///   photo_0.npz   a track of one frame for each photo: the bare body in it, whose betas are the person's
 ///   person.json   what was seen and what was guessed (PhotoPersonReport), how the garment is cut, where there is one,
 ///                 and the light of the first photo (27 coefficients: red, green, blue; absent: even light)

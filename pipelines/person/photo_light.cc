@@ -9,7 +9,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr size_t kSamples = 5000;
+constexpr size_t kLightSamples = 5000;
 
 }  // namespace
 
@@ -23,7 +23,7 @@ PhotoLight LightOfPhoto(const Image& picture, std::span<const uint8_t> labels, c
       if (labels[at] != 0 && surface.NormalAt(x, y) != nullptr) person.push_back(at);
     }
   }
-  const size_t count = std::min(person.size(), kSamples);
+  const size_t count = std::min(person.size(), kLightSamples);
   MatrixX3d normals(static_cast<Eigen::Index>(count), 3);
   std::vector<double> light;
   std::vector<uint8_t> kinds;
@@ -38,7 +38,7 @@ PhotoLight LightOfPhoto(const Image& picture, std::span<const uint8_t> labels, c
     kinds.push_back(labels[at]);
   }
   const FitLightingResult fit =
-      FitLighting(normals, light, kinds, {.max_samples = static_cast<int>(kSamples), .ridge = kPhotoRidge});
+      FitLighting(normals, light, kinds, {.max_samples = static_cast<int>(kLightSamples), .ridge = kPhotoRidge});
   PhotoLight result;
   result.fit = fit.summary;
   if (fit.summary.IsUsable() && fit.summary.mean_shading > 0) {

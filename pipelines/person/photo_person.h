@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -60,6 +61,8 @@ struct PhotoPerson {
   /// Where each texel's colour is from: white seen, blue mirrored, green from behind, yellow across, brown hair, orange
   /// around, red spread, black where the atlas is empty.
   Image sources;
+  /// What each texel shows (PersonLabel, pipelines/person/texel_labels.h); empty: nobody knows.
+  std::vector<uint8_t> labels;
   std::vector<Track> tracks;  ///< a frame each, of `bare`: the person in each photo
   PhotoPersonReport report;
 };

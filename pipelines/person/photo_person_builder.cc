@@ -171,6 +171,7 @@ void PhotoPersonBuilder::Add(const FittedPhoto& photo) {
   }
   person_.report.photos.push_back(report);
   person_.tracks.push_back(photo.track);
+  if (!photo.labels.empty()) labels_.push_back({photo.picture.width, photo.picture.height, photo.labels});
 }
 
 PhotoPerson PhotoPersonBuilder::Finish() {
@@ -191,8 +192,12 @@ PhotoPerson PhotoPersonBuilder::Finish() {
     }
   }
   regions.resize(person_.body->num_vertices(), BodyRegion::kGarment);
-  const WholeTexture whole =
-      MakeWholeTexture(*person_.body, table, person_.body->data().v_template, regions, extractor_->Merge());
+  const Texture seen = extractor_->Merge();
+  const MatrixX3d& dressed = person_.body->data().v_template;
+  const WholeTexture whole = MakeWholeTexture(*person_.body, table, dressed, regions, seen);
+  if (labels_.size() == person_.tracks.size()) {
+    person_.labels = TexelLabels(*person_.body, table, dressed, regions, seen, labels_);
+  }
   person_.texture = Image(table.width, table.height);
   const size_t pixels = whole.sources.size();
   for (size_t p = 0; p < pixels; ++p) {

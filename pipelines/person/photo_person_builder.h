@@ -15,6 +15,7 @@
 
 #include "bodyloom/geometry/observations.h"
 #include "bodyloom/pipelines/person/photo_person.h"
+#include "bodyloom/pipelines/person/texel_labels.h"
 #include "bodyloom/render/person/fit_clothes.h"
 #include "bodyloom/render/texture_extract.h"
 
@@ -59,6 +60,7 @@ class PhotoPersonBuilder {
   PhotoPerson person_;
   double swing_rad_ = 0;  ///< of the garment in the first photo
   std::optional<TextureExtractor> extractor_;
+  std::vector<PhotoLabels> labels_;  ///< of each photo; without those of all of them nothing is said of texels
 };
 
 }  // namespace bodyloom

@@ -40,6 +40,20 @@ class FromAPhoto(unittest.TestCase):
         self.assertAlmostEqual(sum(self.person.shares.values()), 1, places=9)
         self.assertGreater(self.person.shares["seen"], 0.2)
 
+    def test_says_what_it_shows_and_in_what_light(self):
+        self.assertEqual(self.person.labels.shape, (128, 128))
+        self.assertEqual(set(np.unique(self.person.labels)), set(range(7)))
+        self.assertEqual(self.person.light.shape, (3, 9))
+        np.testing.assert_array_equal(self.person.light[0], self.person.light[2])
+        self.assertGreater(self.person.light[0, 0], 0)
+
+    def test_in_its_own_clothes_it_is_itself(self):
+        same = self.person.wearing(self.person)
+        np.testing.assert_allclose(same.body.v_template, self.person.body.v_template, atol=1e-6)
+        worn = np.isin(self.person.labels, (1, 2, 6))
+        difference = np.abs(same.texture.astype(int) - self.person.texture)[worn]
+        self.assertLess((difference.max(axis=1) > 3).mean(), 0.05)
+
     def test_moves_and_is_drawn(self):
         moved = self.person.moved(tracked())
         self.assertEqual(np.abs(moved.betas).max(), 0)
