@@ -57,6 +57,15 @@ PersonLight LightIn(const std::string& path) {
   return light;
 }
 
+/// A file of a person who was kept there before would be taken for this one's.
+void WriteOrRemove(const std::string& path, const Image& image) {
+  if (image.empty()) {
+    std::filesystem::remove(path);
+  } else {
+    WriteImage(path, image);
+  }
+}
+
 /// One a texel; none where there is no such file.
 std::vector<uint8_t> LabelsIn(const std::string& path, const Image& texture) {
   std::vector<uint8_t> labels;
@@ -90,11 +99,10 @@ std::vector<std::string> PhotoPersonFiles(const std::string& folder, int num_pho
 void WritePhotoPerson(const std::string& folder, const PhotoPerson& person) {
   SaveBodyCompact(FileIn(folder, "body.npz"), person.body->data());
   WriteImage(FileIn(folder, "texture.png"), person.texture);
-  if (!person.sources.empty()) WriteImage(FileIn(folder, "sources.png"), person.sources);
-  if (!person.labels.empty()) {
-    WriteImage(FileIn(folder, "labels.png"),
-               NumbersPicture(person.labels, person.texture.width, person.texture.height));
-  }
+  WriteOrRemove(FileIn(folder, "sources.png"), person.sources);
+  const int width = person.texture.width, height = person.texture.height;
+  WriteOrRemove(FileIn(folder, "labels.png"),
+                person.labels.empty() ? Image() : NumbersPicture(person.labels, width, height));
   for (size_t i = 0; i < person.tracks.size(); ++i) WriteTrack(PhotoFile(folder, i), person.tracks[i]);
   WriteFileAtomically(FileIn(folder, "person.json"), ToJson(person));
 }

@@ -241,6 +241,10 @@ TEST(InClothesOf, KeptPeopleExchangeClothes) {
   EXPECT_THAT(error(), HasSubstr("labels.png: label 9, expected 0 to 6"));
   std::filesystem::remove(folder / "other/labels.png");
   EXPECT_THAT(error(), HasSubstr("other: clothes: it is not known what the texels show"));
+  PhotoPerson unlabelled = PersonOf(NoSleeves, kMine, 0);
+  unlabelled.labels.clear();
+  WritePhotoPerson(folder / "me", unlabelled);
+  EXPECT_TRUE(ReadPhotoPerson(folder / "me", "").labels.empty()) << "those of who was kept there before are gone";
   request.garment_from = folder / "nobody.jpg";
   EXPECT_THAT(error(), HasSubstr("nobody.jpg"));
 }
