@@ -7,6 +7,7 @@
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/render/unit_byte.h"
 
 namespace bodyloom {
 namespace {
@@ -159,7 +160,7 @@ void LitSurface::Light(const ShLighting& light, const ShadingLimits& limits, std
       const float share = static_cast<float>(covered) / 255;
       for (size_t c = 0; c < 3; ++c) {
         const float even = std::min(255.0F, static_cast<float>(pixel[c]) / share);
-        pixel[c] = static_cast<uint8_t>(share * encoding.Encode(s[c] * encoding.Decode(even)) + 0.5F);
+        pixel[c] = NearestByte(share * encoding.Encode(s[c] * encoding.Decode(even)));
       }
     }
   });
@@ -178,7 +179,7 @@ void LitSurface::Unlight(const ShLighting& light, const ShadingLimits& limits, I
       const std::array<float, 3> s = shading.At(normal);
       uint8_t* pixel = image->pixel(x, y);
       for (size_t c = 0; c < 3; ++c) {
-        pixel[c] = static_cast<uint8_t>(encoding.Encode(encoding.Decode(pixel[c]) / s[c]) + 0.5F);
+        pixel[c] = NearestByte(encoding.Encode(encoding.Decode(pixel[c]) / s[c]));
       }
     }
   });
