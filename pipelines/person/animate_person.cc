@@ -37,7 +37,7 @@ namespace bodyloom {
 namespace {
 
 /// Throws std::runtime_error naming the file, also for what only the frames of a run can be asked.
-PersonLight OtherLight(const std::string& path) {
+ShownLight OtherLight(const std::string& path) {
   const RelightRequest request = ReadRelight(path);
   if (!request.estimate || request.encoding != PixelEncoding::kSrgb) {
     throw std::runtime_error(path +
@@ -55,7 +55,7 @@ class PersonAnimation {
   AnimatePersonSummary Run() {
     CheckRequest();
     refiner_ = OpenRefiner(request_.refiner);
-    std::optional<PersonLight> light;
+    std::optional<ShownLight> light;
     if (!request_.relight.empty()) light = OtherLight(request_.relight);
     clock_.Begin("person");
     person_ = request_.person.empty() ? MakePhotoPerson(request_.photos, callbacks_)

@@ -46,8 +46,8 @@ LooseGarmentOptions GarmentIn(const std::string& path) {
 }
 
 /// Even light where the file says nothing of it.
-PersonLight LightIn(const std::string& path) {
-  PersonLight light;
+ShownLight LightIn(const std::string& path) {
+  ShownLight light;
   if (!std::filesystem::exists(path)) return light;
   const nlohmann::json json = ReadJsonFile(path);
   const JsonNode root(json, path);

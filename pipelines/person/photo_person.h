@@ -43,7 +43,7 @@ inline constexpr ShadingLimits kPhotoShading = {.least = 0.35, .most = 2};
 
 /// What a person is drawn in, camera frame: the light of the first photo, whose shading has the mean 1 over the person in
 /// it, unless another is set.
-struct PersonLight {
+struct ShownLight {
   ShLighting coefficients = GreyLight(EvenLight());
   ShadingLimits limits = kPhotoShading;
 };
@@ -57,7 +57,7 @@ struct PhotoPerson {
   std::shared_ptr<const BodyModel> bare;      ///< what the photos were fitted with, whose betas follow
   Eigen::VectorXd betas;
   Image texture;  ///< as in even light
-  PersonLight light;
+  ShownLight light;
   /// Where each texel's colour is from: white seen, blue mirrored, green from behind, yellow across, brown hair, orange
   /// around, red spread, black where the atlas is empty.
   Image sources;
