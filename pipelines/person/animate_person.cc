@@ -117,13 +117,11 @@ class PersonAnimation {
     photo.fit.person = 0;
     const PhotoPerson other = std::filesystem::is_directory(from) ? ReadPhotoPerson(from, photo.fit.body)
                                                                   : MakePhotoPerson(photo, callbacks_);
-    const PhotoPersonReport report = person_.report;
     try {
       person_ = InClothesOf(person_, other);
     } catch (const std::invalid_argument& error) {
       throw std::runtime_error(from + ": " + error.what());
     }
-    person_.report.photos = report.photos, person_.report.seconds = report.seconds;
   }
 
   void OpenTrack() {

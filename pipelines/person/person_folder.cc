@@ -28,33 +28,30 @@ std::string PhotoFile(const std::string& folder, size_t photo) {
   return FileIn(folder, Concatenate("photo_", photo, ".npz"));
 }
 
-/// How the garment is cut; length 0 where there is none.
-LooseGarmentOptions GarmentIn(const std::string& path) {
-  LooseGarmentOptions cut;
-  cut.length_m = 0;
-  if (!std::filesystem::exists(path)) return cut;
-  const nlohmann::json json = ReadJsonFile(path);
-  const JsonNode root(json, path);
-  if (!root.Has("garment")) return cut;
-  const JsonNode garment = root.At("garment");
-  cut.waist_y_m = garment.At("waist_y_m").Number();
-  cut.length_m = garment.At("length_m").Number();
-  cut.fullness = garment.At("fullness").Number();
-  cut.spacing_m = garment.At("spacing_m").Number();
-  cut.columns = garment.At("columns").Int();
-  return cut;
-}
+/// What of person.json is needed again.
+struct KeptFacts {
+  LooseGarmentOptions cut = {.length_m = 0};  ///< of the garment; length 0 where there is none
+  ShownLight light;                           ///< even where the file says nothing of it
+};
 
-/// Even light where the file says nothing of it.
-ShownLight LightIn(const std::string& path) {
-  ShownLight light;
-  if (!std::filesystem::exists(path)) return light;
+KeptFacts ReadKeptFacts(const std::string& path) {
+  KeptFacts facts;
+  if (!std::filesystem::exists(path)) return facts;
   const nlohmann::json json = ReadJsonFile(path);
   const JsonNode root(json, path);
-  if (!root.Has("light")) return light;
-  const std::vector<double> values = root.At("light").Numbers(27);
-  for (int k = 0; k < 27; ++k) light.coefficients(k / 9, k % 9) = values[k];
-  return light;
+  if (root.Has("light")) {
+    const std::vector<double> values = root.At("light").Numbers(27);
+    for (int k = 0; k < 27; ++k) facts.light.coefficients(k / 9, k % 9) = values[k];
+  }
+  if (root.Has("garment")) {
+    const JsonNode garment = root.At("garment");
+    facts.cut.waist_y_m = garment.At("waist_y_m").Number();
+    facts.cut.length_m = garment.At("length_m").Number();
+    facts.cut.fullness = garment.At("fullness").Number();
+    facts.cut.spacing_m = garment.At("spacing_m").Number();
+    facts.cut.columns = garment.At("columns").Int();
+  }
+  return facts;
 }
 
 /// A file of a person who was kept there before would be taken for this one's.
@@ -118,8 +115,8 @@ PhotoPerson ReadPhotoPerson(const std::string& folder, const std::string& bare_b
                                          person.body->num_joints(), " joints, the body it was made with (--body) ",
                                          person.bare->num_vertices(), " and ", person.bare->num_joints()));
   }
-  person.cut = GarmentIn(FileIn(folder, "person.json"));
-  person.light = LightIn(FileIn(folder, "person.json"));
+  const KeptFacts facts = ReadKeptFacts(FileIn(folder, "person.json"));
+  person.cut = facts.cut, person.light = facts.light;
   person.clothed = person.body;
   if (person.cut.length_m > 0) {
     try {

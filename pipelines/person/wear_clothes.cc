@@ -118,7 +118,6 @@ class Dressing {
 
   PhotoPerson Run() {
     PhotoPerson dressed = person_;
-    dressed.report = {};
     dressed.clothed = std::make_shared<const BodyModel>(BakeShape(*person_.bare, person_.betas, Offsets()));
     dressed.body = dressed.clothed;
     dressed.garment = {}, dressed.cut = other_.cut;
@@ -126,8 +125,8 @@ class Dressing {
       dressed.cut.waist_y_m = WaistHere();
       dressed.garment = CutGarment(*dressed.clothed, &dressed.cut);
       dressed.body = std::make_shared<const BodyModel>(BodyWithGarment(*dressed.clothed, dressed.garment));
-      dressed.report.garment_length_m = dressed.cut.length_m;
     }
+    dressed.report.garment_length_m = dressed.cut.length_m;
     Paint(&dressed);
     return dressed;
   }

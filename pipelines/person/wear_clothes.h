@@ -15,7 +15,8 @@
 
 namespace bodyloom {
 
-/// Both made with the same bare body. The person's light, tracks and size of texture stay. Throws std::invalid_argument for
+/// Both made with the same bare body. The person's light, tracks and size of texture stay, and the report of
+/// the person's own photos, but for the garment's length. Throws std::invalid_argument for
 /// people of different bodies, a person whose texels have no labels (kept before there were any), and a garment that
 /// cannot be cut for this person.
 PhotoPerson InClothesOf(const PhotoPerson& person, const PhotoPerson& other);

@@ -199,7 +199,19 @@ TEST(InClothesOf, ASkirtComesAlong) {
   // And off again.
   const PhotoPerson again = InClothesOf(dressed, me);
   EXPECT_TRUE(again.garment.empty());
+  EXPECT_EQ(dressed.report.garment_length_m, 0.5);
+  EXPECT_EQ(again.report.garment_length_m, 0);
   EXPECT_EQ(again.body->num_vertices(), me.body->num_vertices());
+}
+
+TEST(InClothesOf, TheReportOfThePhotosStays) {
+  PhotoPerson me = PersonOf(LongSleeves, kMine, 0);
+  me.report.seen = 0.3, me.report.spread = 0.7;
+  me.report.photos.resize(1);
+  const PhotoPerson dressed = InClothesOf(me, PersonOf(NoSleeves, kTheirs, 0));
+  EXPECT_EQ(dressed.report.seen, 0.3);
+  EXPECT_EQ(dressed.report.spread, 0.7);
+  EXPECT_EQ(dressed.report.photos.size(), 1U);
 }
 
 TEST(InClothesOf, RefusesWhatItCannotPutOn) {
