@@ -2,15 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """The renderers that need one photo under one protocol: the same people, photos and pictures, the same scores, with true
 labels and bodies and with estimated ones; beside them what needs no training, a textured body with clothes (person) and
-the photo warped by the bare body (floor); the one-photo renderer's simpler variants (Sec. 4.4 of Sarkar et al., "Neural
+the photo warped by the bare body (floor), and that textured body's pictures refined by a small network (refined); the one-photo renderer's simpler variants (Sec. 4.4 of Sarkar et al., "Neural
 Re-Rendering of Humans from a Single Image", ECCV 2020) and the ablations of the pose-guided renderer (Table 2 of Yoon et
 al., "Pose-Guided Human Animation from a Single Image in the Wild", CVPR 2021) on synthetic people.
 
 usage: one_photo.py --bodyloom build/release/apps/bodyloom --motions ../shared/data/motion --out FOLDER
-       [--systems floor person photo guided] [--photos 1 2 4] [--baselines ip warp ...] [--without latent kl ...]
+       [--systems floor person refined photo guided] [--photos 1 2 4] [--baselines ip warp ...] [--without latent kl ...]
        [--given true labels iuv bodies all] [--seeds 1 2 3]
-       [--people 60] [--size 256] [--steps 4000] [--batch 4] [--profile cpu] [--report] [--picture P.jpg [--rows 0 1]]
+       [--people 60] [--size 256] [--people-options="--clothes everyday --light-style natural"] [--window 512]
+       [--steps 4000] [--batch 4] [--profile cpu] [--report] [--picture P.jpg [--rows 0 1]]
        [--photo-options="--gan-weight 0 --learning-rate 0.001"] [--guided-options="--learning-rate 0.002"]
+       [--refiner-options="--crop 128"]
 
 FOLDER gets the people, a folder a run, report.md and report.json. What is there is not made again: a program that was
 stopped (Ctrl-C, SIGTERM) goes on where it was, within a run from its last checkpoint. --report only prints what there
@@ -35,7 +37,8 @@ TRACK = "tracked.npz"
 GIVEN = {"true": [], "labels": ["--score-labels", "estimated"], "iuv": ["--score-iuv"], "bodies": ["--score-tracks", TRACK],
          "all": ["--score-labels", "estimated", "--score-tracks", TRACK]}
 UNTRAINED = {"floor": ["--score-floor"], "person": []}
-NO_IUV = {"person"}  # it takes bodies
+REFINED = "refined"
+NO_IUV = {"person", REFINED}  # they take bodies
 WINDOW = {"tiny": 128, "cpu": 256, "paper": 256}  # pixels a side, of the networks' pictures: of all that are compared
 SCORES = [("image_l1", "L1", 4), ("psnr_db", "PSNR dB", 2), ("ssim", "SSIM", 4), ("silhouette_iou", "silhouette IoU", 3),
           ("label_iou", "labels IoU", 3), ("lpips", "LPIPS", 4), ("lpips_deviation", "deviation", 4),
@@ -48,7 +51,7 @@ def make_people(o):
         print("people …", flush=True)
         call([o.bodyloom, "synth-people", "--motions", o.motions, "--out", str(people), "--people", str(o.people),
               "--actions", str(o.actions), "--views", "3", "--frames", str(o.frames), "--size", str(o.size), "--threads",
-              str(o.threads), "--quiet"], o.out / "people.log")
+              str(o.threads), "--quiet"] + shlex.split(o.people_options), o.out / "people.log")
     return people
 
 
@@ -90,7 +93,7 @@ def track_test_people(o, people):
 def settings(o):
     """Name, verb and options of each kind of run."""
     for system in o.systems:
-        yield system, "person" if system in UNTRAINED else system, []
+        yield system, "person" if system in UNTRAINED or system == REFINED else system, []
     if "photo" in o.systems:
         for variant in o.baselines:
             yield f"photo {variant}", "photo", ["--baseline", variant]
@@ -113,10 +116,13 @@ def train(o, people, name, verb, options, seed):
         return
     run.mkdir(exist_ok=True)
     print(f"{run.name} …", flush=True)
-    arguments = [o.bodyloom, "train", verb, "--data", str(people), "--out", str(run), "--profile", o.profile, "--batch",
-                 str(o.batch), "--steps", str(o.steps), "--validate-every", str(o.steps), "--seed", str(seed), "--threads",
-                 str(o.threads)] + options
-    arguments += shlex.split(o.photo_options if verb == "photo" else o.guided_options)
+    arguments = [o.bodyloom, "train", "refiner" if name == REFINED else verb, "--data", str(people), "--out", str(run),
+                 "--batch", str(o.batch), "--steps", str(o.steps), "--validate-every", str(o.steps), "--seed", str(seed),
+                 "--threads", str(o.threads)] + options
+    if name == REFINED:
+        arguments += ["--size", str(o.window)] + shlex.split(o.refiner_options)
+    else:
+        arguments += ["--profile", o.profile] + shlex.split(o.photo_options if verb == "photo" else o.guided_options)
     if (run / "checkpoint.bin").exists():
         arguments.append("--resume")
     call(arguments, run / "log.txt")
@@ -133,7 +139,8 @@ def score(o, people, name, verb, seed):
         if scores.exists():  # written whole or not at all
             continue
         run.mkdir(exist_ok=True)
-        what = ["--size", str(WINDOW[o.profile])] + UNTRAINED[name] if name in UNTRAINED else ["--run", str(run)]
+        what = ["--size", str(o.window)] if verb == "person" else ["--run", str(run)]
+        what += UNTRAINED.get(name, ["--refiner", str(run / "refiner.npz")] if name == REFINED else [])
         call([o.bodyloom, "animate", verb, "--score", str(people), "--score-photos"] + [str(n) for n in o.photos] +
              ["--score-frames", str(o.score_frames), "--sheet", str(run / f"{given}.png"), "--json", str(scores),
               "--threads", str(o.threads)] + what + GIVEN[given], run / "log.txt")
@@ -142,7 +149,7 @@ def score(o, people, name, verb, seed):
 def report(o):
     left_out = o.out / "left_out.txt"
     count = len(left_out.read_text(encoding="utf-8").splitlines()) if left_out.exists() else 0
-    lines = [f"Profile {o.profile}, windows of {WINDOW[o.profile]}², {o.steps} steps of batch {o.batch}, {o.people} people, {count} clips left out; mean ± "
+    lines = [f"Profile {o.profile}, windows of {o.window}², {o.steps} steps of batch {o.batch}, {o.people} people, {count} clips left out; mean ± "
              "standard deviation over seeds", "", "| photos | system | given | seeds | pictures | " +
              " | ".join(name for _, name, _ in SCORES) + " |", "|---|---|---|---|---|" + "---|" * len(SCORES)]
     rows = []
@@ -170,7 +177,7 @@ def draw(o):
 
     from pixels import decoded, write
 
-    size = WINDOW[o.profile]
+    size = o.window
 
     def cells(name):
         """Rows of the four cells of a sheet: photo, what it shows, result, truth."""
@@ -192,8 +199,8 @@ def main():
     parser.add_argument("--bodyloom", default="build/release/apps/bodyloom")
     parser.add_argument("--motions", default="../shared/data/motion")
     parser.add_argument("--out", type=pathlib.Path, required=True)
-    parser.add_argument("--systems", nargs="+", default=[*UNTRAINED, "photo", "guided"],
-                        choices=[*UNTRAINED, "photo", "guided"])
+    systems = [*UNTRAINED, REFINED, "photo", "guided"]
+    parser.add_argument("--systems", nargs="+", default=systems, choices=systems)
     parser.add_argument("--photos", type=int, nargs="+", default=[1], help="numbers of photos, each a row")
     parser.add_argument("--baselines", nargs="*", default=BASELINES, choices=BASELINES)
     parser.add_argument("--without", nargs="*", default=ABLATIONS, choices=ABLATIONS)
@@ -202,11 +209,14 @@ def main():
     parser.add_argument("--people", type=int, default=60)
     parser.add_argument("--actions", type=int, default=4)
     parser.add_argument("--frames", type=int, default=3)
-    parser.add_argument("--size", type=int, default=256, help="of the people's pictures; the windows are the profile's")
+    parser.add_argument("--size", type=int, default=256, help="of the people's pictures")
+    parser.add_argument("--window", type=int, help="pixels a side of what is compared; default: of the profile's networks, which can do no other")
+    parser.add_argument("--people-options", default="", help="of synth-people, one text")
     parser.add_argument("--steps", type=int, default=4000)
     parser.add_argument("--batch", type=int, default=4)
     parser.add_argument("--photo-options", default="", help="of train photo, one text: those of runs of other lengths")
     parser.add_argument("--guided-options", default="", help="of train guided, the same")
+    parser.add_argument("--refiner-options", default="", help="of train refiner, the same")
     parser.add_argument("--score-frames", type=int, default=8)
     parser.add_argument("--profile", default="cpu", choices=list(WINDOW))
     parser.add_argument("--threads", type=int, default=1)
@@ -214,6 +224,9 @@ def main():
     parser.add_argument("--picture", type=pathlib.Path, help="also draw the results of the first seed")
     parser.add_argument("--rows", type=int, nargs="+", default=[0, 1], help="of the sheets, a test person each")
     o = parser.parse_args()
+    o.window = o.window or WINDOW[o.profile]
+    if o.window != WINDOW[o.profile] and {"photo", "guided"} & set(o.systems):
+        parser.error(f"photo and guided of the profile {o.profile} make pictures of {WINDOW[o.profile]}²: leave --window or these out")
     o.out.mkdir(parents=True, exist_ok=True)
     if not o.report:
         people = make_people(o)

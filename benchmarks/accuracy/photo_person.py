@@ -76,8 +76,8 @@ def main():
         run = o.out / f"from_{first}_{o.photos}"
         run.mkdir(exist_ok=True)
         made = None
-        for refiner in o.refiner:
-            result = run / pathlib.Path(refiner).stem
+        for number, refiner in enumerate(o.refiner):
+            result = run / f"{number}_{pathlib.Path(refiner).stem}"
             result.mkdir(exist_ok=True)
             person = ["--image", *photos, "--keep", str(run)] if made is None else ["--person", str(run)]
             subprocess.run([o.bodyloom, "animate", "person", *person, "--track", str(people / "person_0.npz"), "--refiner", refiner,
@@ -89,9 +89,9 @@ def main():
                          *scores(decoded(result / "pictures" / "%06d.png", width, height, 4), truth, mask, used),
                          report["first_frame_s"], report["draw_ms_median"]))
     print(f"{o.video.name}, {count} frames of {width}x{height}, from {o.photos} of them")
-    print("from frame  refiner   seen   PSNR dB   5 %    outline IoU   first frame s   draw ms")
+    print("from frame   seen   PSNR dB   5 %    outline IoU   first frame s   draw ms  refiner")
     for row in rows:
-        print("%10d %8s   %4.0f %% %8.2f %6.2f %11.3f %13.1f %11.1f" % (row[0], pathlib.Path(row[1]).stem, 100 * row[2], *row[3:]))
+        print("%10d   %4.0f %% %8.2f %6.2f %11.3f %13.1f %11.1f   %s" % (row[0], 100 * row[2], *row[3:], row[1]))
     return 0
 
 

@@ -2,18 +2,17 @@
 #include "bodyloom/pipelines/person/wear_clothes.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/geometry/bake_shape.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/percentile.h"
 #include "bodyloom/geometry/cloth/body_with_garment.h"
 #include "bodyloom/geometry/posed_body.h"
 #include "bodyloom/geometry/uv_texels.h"
 #include "bodyloom/geometry/vertex_normals.h"
+#include "bodyloom/render/median_colour.h"
 #include "bodyloom/render/person/body_regions.h"
 #include "bodyloom/render/resolve_pixels.h"
 #include "bodyloom/render/unit_byte.h"
@@ -47,8 +46,8 @@ class Atlas {
     return uv;
   }
   /// Blue, green, red, 0 to 255.
-  [[nodiscard]] std::array<float, 3> ColourAt(const Eigen::Vector2f& uv) const {
-    std::array<float, 3> bgr{};
+  [[nodiscard]] ChannelTriple ColourAt(const Eigen::Vector2f& uv) const {
+    ChannelTriple bgr{};
     SampleTexels({colours_, person_.texture.width, person_.texture.height, 3}, uv.x(), uv.y(), bgr.data());
     return bgr;
   }
@@ -64,19 +63,17 @@ class Atlas {
   [[nodiscard]] PersonLabel LabelOfVertex(int vertex) const {
     return of_vertex_[vertex] < 0 ? PersonLabel::kSkin : LabelAt(data_.vt.row(of_vertex_[vertex]).transpose());
   }
-  /// Median of the texels with this label, channel by channel; grey where there is none.
-  [[nodiscard]] std::array<float, 3> MedianOf(PersonLabel label) const {
-    std::array<std::vector<double>, 3> values;
+  /// Of the texels with this label; grey where there is none.
+  [[nodiscard]] ChannelTriple MedianOf(PersonLabel label) const {
+    std::vector<ChannelTriple> colours;
     for (size_t i = 0; i < person_.labels.size(); ++i) {
       if (person_.labels[i] != static_cast<uint8_t>(label)) continue;
-      for (size_t c = 0; c < 3; ++c) values[c].push_back(person_.texture.bgr[3 * i + c]);
+      colours.push_back({colours_[3 * i], colours_[3 * i + 1], colours_[3 * i + 2]});
     }
-    std::array<float, 3> median = {128, 128, 128};
-    for (size_t c = 0; c < 3 && !values[c].empty(); ++c) median[c] = static_cast<float>(Percentile(values[c], 50));
-    return median;
+    return colours.empty() ? ChannelTriple{128, 128, 128} : MedianColour(colours);
   }
   /// Of the skin; of the face where no skin is seen.
-  [[nodiscard]] std::array<float, 3> Skin() const {
+  [[nodiscard]] ChannelTriple Skin() const {
     const auto skin = static_cast<uint8_t>(PersonLabel::kSkin);
     const bool any = std::find(person_.labels.begin(), person_.labels.end(), skin) != person_.labels.end();
     return MedianOf(any ? PersonLabel::kSkin : PersonLabel::kFace);
@@ -157,7 +154,7 @@ class Dressing {
   }
 
   struct Texel {
-    std::array<float, 3> bgr;
+    ChannelTriple bgr;
     PersonLabel label;
     const PhotoPerson* from;
     size_t at;  ///< in the atlas that it is from
@@ -210,7 +207,7 @@ class Dressing {
   const PhotoPerson& person_;
   const PhotoPerson& other_;
   Atlas mine_, theirs_;
-  std::array<float, 3> my_skin_, their_skin_;
+  ChannelTriple my_skin_, their_skin_;
   std::vector<BodyRegion> regions_;
 };
 

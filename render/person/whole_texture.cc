@@ -12,6 +12,7 @@
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/geometry/base/percentile.h"
 #include "bodyloom/geometry/uv_charts.h"
+#include "bodyloom/render/median_colour.h"
 #include "bodyloom/render/person/nearest_around_limb.h"
 #include "bodyloom/render/person/rest_views.h"
 #include "bodyloom/render/person/texel_counterparts.h"
@@ -21,8 +22,6 @@
 
 namespace bodyloom {
 namespace {
-
-using Bgr = std::array<float, 3>;
 
 constexpr std::array<float, kNumCounterparts> kPreference = {1.0F, 0.7F, 0.5F};
 constexpr std::array<TexelSource, kNumCounterparts> kSourceOf = {TexelSource::kMirror, TexelSource::kBehind,
@@ -38,7 +37,7 @@ constexpr double kLeastWeight = 0.5;     ///< of a lookup's taps that were seen
 constexpr double kLeastHairShare = 0.1;  ///< of the scalp's seen texels
 
 /// The largest difference of a channel.
-double Contrast(const Bgr& a, const Bgr& b) {
+double Contrast(const ChannelTriple& a, const ChannelTriple& b) {
   double contrast = 0;
   for (size_t c = 0; c < 3; ++c) contrast = std::max<double>(contrast, std::abs(a[c] - b[c]));
   return contrast;
@@ -89,10 +88,10 @@ class Completion {
     return RegionOf({table_.face[i], table_.barycentric[i].cast<double>()});
   }
   [[nodiscard]] bool IsSeen(size_t pixel) const { return result_.sources[pixel] == TexelSource::kSeen; }
-  [[nodiscard]] Bgr ColourAt(size_t pixel) const {
+  [[nodiscard]] ChannelTriple ColourAt(size_t pixel) const {
     return {result_.bgr[pixel], result_.bgr[pixels_ + pixel], result_.bgr[2 * pixels_ + pixel]};
   }
-  void Set(size_t pixel, const Bgr& colour, TexelSource source) {
+  void Set(size_t pixel, const ChannelTriple& colour, TexelSource source) {
     for (int c = 0; c < 3; ++c) result_.bgr[c * pixels_ + pixel] = colour[c];
     result_.sources[pixel] = source;
   }
@@ -118,14 +117,14 @@ class Completion {
   }
 
   /// The face's colour where enough of the hands is like it (no gloves), else the hands' own.
-  [[nodiscard]] Bgr HandColour(const std::vector<Bgr>& hands) const {
-    std::vector<Bgr> face;
+  [[nodiscard]] ChannelTriple HandColour(const std::vector<ChannelTriple>& hands) const {
+    std::vector<ChannelTriple> face;
     ForEachTexel([&](size_t i, size_t pixel) {
       if (IsSeen(pixel) && RegionOf(i) == BodyRegion::kFace) face.push_back(ColourAt(pixel));
     });
     if (!face.empty()) {
-      const Bgr skin = MedianColour(face);
-      const auto like_skin = std::count_if(hands.begin(), hands.end(), [&](const Bgr& colour) {
+      const ChannelTriple skin = MedianColour(face);
+      const auto like_skin = std::count_if(hands.begin(), hands.end(), [&](const ChannelTriple& colour) {
         return Contrast(colour, skin) <= options_.hand_contrast;
       });
       if (static_cast<double>(like_skin) >= kLeastSkinShare * static_cast<double>(hands.size())) return skin;
@@ -135,7 +134,7 @@ class Completion {
 
   /// A hand's seen texels of other colours are not the hand.
   void DistrustHands() {
-    std::vector<Bgr> colours;
+    std::vector<ChannelTriple> colours;
     std::vector<size_t> texels;
     ForEachTexel([&](size_t i, size_t pixel) {
       if (!IsSeen(pixel) || RegionOf(i) != BodyRegion::kHand) return;
@@ -143,7 +142,7 @@ class Completion {
       texels.push_back(pixel);
     });
     if (colours.empty()) return;
-    const Bgr hand = HandColour(colours);
+    const ChannelTriple hand = HandColour(colours);
     for (size_t k = 0; k < texels.size(); ++k) {
       if (Contrast(colours[k], hand) > options_.hand_contrast) {
         result_.sources[texels[k]] = TexelSource::kNowhere;
@@ -171,7 +170,7 @@ class Completion {
   }
 
   struct Lookup {
-    Bgr colour{};
+    ChannelTriple colour{};
     float confidence = 0;  ///< 0: not seen there
   };
   /// What was seen at a counterpart of texel i.
@@ -208,35 +207,24 @@ class Completion {
     });
   }
 
-  [[nodiscard]] static Bgr MedianColour(const std::vector<Bgr>& colours) {
-    Bgr median{};
-    for (int c = 0; c < 3; ++c) {
-      std::vector<double> channel;
-      channel.reserve(colours.size());
-      for (const Bgr& colour : colours) channel.push_back(colour[c]);
-      median[c] = static_cast<float>(Percentile(channel, 50));
-    }
-    return median;
-  }
-
   void GuessHair() {
-    std::vector<Bgr> face, scalp;
+    std::vector<ChannelTriple> face, scalp;
     ForEachTexel([&](size_t i, size_t pixel) {
       if (!IsSeen(pixel)) return;
       const BodyRegion region = RegionOf(i);
-      const Bgr colour = ColourAt(pixel);
+      const ChannelTriple colour = ColourAt(pixel);
       if (region == BodyRegion::kFace) face.push_back(colour);
       if (region == BodyRegion::kScalp) scalp.push_back(colour);
     });
     if (scalp.empty()) return;
-    std::vector<Bgr> hair;
+    std::vector<ChannelTriple> hair;
     if (!face.empty()) {
-      const Bgr skin = MedianColour(face);
+      const ChannelTriple skin = MedianColour(face);
       std::copy_if(scalp.begin(), scalp.end(), std::back_inserter(hair),
-                   [&](const Bgr& colour) { return Contrast(colour, skin) > options_.hair_contrast; });
+                   [&](const ChannelTriple& colour) { return Contrast(colour, skin) > options_.hair_contrast; });
     }
     if (static_cast<double>(hair.size()) < kLeastHairShare * static_cast<double>(scalp.size())) hair = scalp;
-    const Bgr colour = MedianColour(hair);
+    const ChannelTriple colour = MedianColour(hair);
     ForEachTexel([&](size_t i, size_t pixel) {
       if (result_.sources[pixel] != TexelSource::kNowhere || RegionOf(i) != BodyRegion::kScalp) return;
       Set(pixel, colour, TexelSource::kHair);
@@ -245,12 +233,12 @@ class Completion {
 
   /// As the shins are: skin, tights or trousers.
   void GuessUnderGarment() {
-    std::vector<Bgr> below;
+    std::vector<ChannelTriple> below;
     ForEachTexel([&](size_t i, size_t pixel) {
       if (IsSeen(pixel) && RegionOf(i) == BodyRegion::kBelowGarment) below.push_back(ColourAt(pixel));
     });
     if (below.empty()) return;
-    const Bgr colour = MedianColour(below);
+    const ChannelTriple colour = MedianColour(below);
     ForEachTexel([&](size_t i, size_t pixel) {
       if (RegionOf(i) == BodyRegion::kUnderGarment) Set(pixel, colour, TexelSource::kAround);
     });
@@ -266,13 +254,13 @@ class Completion {
 
   void LookAroundLimbs(const RestViews& views, const MatrixX3d& points) {
     const NearestAroundLimb nearest(body_, views, [this](const SurfacePoint& point) { return IsColoured(point); });
-    std::vector<std::pair<size_t, Bgr>> guesses;
+    std::vector<std::pair<size_t, ChannelTriple>> guesses;
     ForEachTexel([&](size_t i, size_t pixel) {
       if (result_.sources[pixel] != TexelSource::kNowhere || IsOfHead(RegionOf(i))) return;
       const SurfacePoint found = nearest.At(points.row(static_cast<Eigen::Index>(i)).transpose());
       if (found.face < 0 || !MayLend(found, i)) return;
       double weight = 0;
-      Bgr colour{};
+      ChannelTriple colour{};
       ForEachTap(found, [&](size_t tap, double share) {
         if (result_.sources[tap] == TexelSource::kNowhere) return;
         weight += share;

@@ -62,6 +62,7 @@ std::vector<PackedPicture> RefinerPicturesOf(const RefinerPicturesRequest& reque
                                              const PipelineCallbacks& callbacks) {
   PeopleDataRequest of_data = AsPhotosShowThem(request);
   of_data.every_other_estimated = true;
+  of_data.labels_of_body = false;  // light is taken away by what a photo's parser says, and so it is to be learned
   const PeopleData people(of_data);
   return PicturesByPerson(static_cast<int>(people.source().num_frames.size()), request.threads, stage, callbacks,
                           [&](int person) { return PicturesOfPerson(request, people, person); });
