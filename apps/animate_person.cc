@@ -58,6 +58,9 @@ void AddAnimatePerson(CLI::App& animate, Action* action, std::vector<std::string
       ->type_name("DIR");
   verb->add_option("--moved-track", request->moved_track,
                    "The motion by this person, .npz: with --body DIR/body.npz for render, export, describe");
+  verb->add_flag("--own-stature", request->own_stature,
+                 "As tall in the track's scene as the photos (or --stature) say, not as tall in the picture as whoever "
+                 "moved there");
   verb->add_option("--view-yaw", request->view_yaw,
                    "Turns the view about the person's vertical, degrees; FROM:TO turns it over the clip");
   verb->add_option(

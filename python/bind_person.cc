@@ -74,9 +74,10 @@ class PersonObject {
     const RowMatrixXd rows = person_.light.coefficients;
     return py::array_t<double>({rows.rows(), rows.cols()}, rows.data());
   }
-  [[nodiscard]] std::shared_ptr<TrackObject> Moved(const TrackArgument& argument) const {
+  [[nodiscard]] std::shared_ptr<TrackObject> Moved(const TrackArgument& argument, bool own_stature) const {
     const std::shared_ptr<TrackObject> track = TrackFrom(argument);
-    return std::make_shared<TrackObject>(MovedByPerson(person_, track->track), track->name, person_.body);
+    const PersonPlacing placed = own_stature ? PersonPlacing::kInScene : PersonPlacing::kInPicture;
+    return std::make_shared<TrackObject>(MovedByPerson(person_, track->track, placed), track->name, person_.body);
   }
   [[nodiscard]] std::map<std::string, double> shares() const {
     const PhotoPersonReport& report = person_.report;
@@ -127,8 +128,10 @@ void BindPerson(py::module_& module) {
             WritePhotoPerson(folder.string(), self.person());
           },
           py::arg("folder"), "Writes body.npz, texture.png, photo_0.npz ... and person.json into the folder.")
-      .def("moved", &PersonObject::Moved, py::arg("track"),
-           "The motion by this person: a track of `body`, whose betas are zero.")
+      .def("moved", &PersonObject::Moved, py::arg("track"), py::kw_only(), py::arg("own_stature") = false,
+           "The motion by this person: a track of `body`, whose betas are zero. As tall in the picture as whoever "
+           "moved\n"
+           "there; with own_stature as tall in the scene as the photos say.")
       .def(
           "wearing",
           [](const PersonObject& self, const PersonObject& other) {

@@ -25,15 +25,20 @@ VectorXd Padded(const BodyModel& body, const VectorXd& betas) {
   return padded;
 }
 
-/// The pelvis at rest and its height above the lowest vertex (y up, as all bodies at rest).
+/// The pelvis at rest, its height above the lowest vertex, and the highest vertex' (y up, as all bodies at rest).
 struct RestPelvis {
   RestPelvis(const Skinner& skinner, const VectorXd& betas) {
     const ShapedBody shape = skinner.Shape(betas);
     place = shape.rest_joints.row(0);
-    for (size_t i = 1; i < shape.vertices.size(); i += 3) height = std::max(height, -double{shape.vertices[i]});
+    double top = 0;
+    for (size_t i = 1; i < shape.vertices.size(); i += 3) {
+      height = std::max(height, -double{shape.vertices[i]});
+      top = std::max(top, double{shape.vertices[i]});
+    }
+    stature = height + top;
   }
   RowVector3d place;
-  double height = 0;
+  double height = 0, stature = 0;
 };
 
 /// By column, over the rows that have a result.
@@ -51,27 +56,34 @@ RowVector3d MedianRow(const Track& track, const MatrixX3d& rows) {
 
 }  // namespace
 
-Track WithShape(const BodyModel& body, const Track& track, const VectorXd& betas) {
+Track WithShape(const BodyModel& body, const Track& track, const VectorXd& betas, PersonPlacing placed) {
   const VectorXd own = Padded(body, track.motion.betas), wanted = Padded(body, betas);
   if (own == wanted) return track;
   const Skinner skinner(body);
   const RestPelvis before(skinner, own), after(skinner, wanted);
   const double r = before.height > 0 ? after.height / before.height : 1;
+  const double s = placed == PersonPlacing::kInPicture && before.stature > 0 ? after.stature / before.stature : 1;
   Track other;
   other.camera = track.camera;
   other.camera_from_scene = track.camera_from_scene;
+  for (CameraPose& camera : other.camera_from_scene) camera.camera_from_world_translation *= s;
   other.world = track.world;
+  if (other.world) {
+    other.world->translation *= s;
+    other.world->height_sigma_m *= s;
+  }
   other.motion = track.motion;
   other.motion.betas = betas;
   other.frame_status = track.frame_status;
   const MatrixX3d pelvis = track.motion.trans.rowwise() + before.place;
   const RowVector3d floor = MedianRow(track, pelvis) + before.height * RowVector3d::UnitY();
-  other.motion.trans = ((r * (pelvis.rowwise() - floor)).rowwise() + floor).rowwise() - after.place;
+  other.motion.trans = ((r * (pelvis.rowwise() - floor)).rowwise() + s * floor).rowwise() - after.place;
   other.weak_camera = track.weak_camera;
   if (track.weak_camera.rows() > 0) {
     const RowVector3d middle = MedianRow(track, track.weak_camera);
+    other.weak_camera.col(0) /= s;
     for (const int c : {1, 2}) {
-      other.weak_camera.col(c) = middle[c] + r * (track.weak_camera.col(c).array() - middle[c]);
+      other.weak_camera.col(c) = s * middle[c] + r * (track.weak_camera.col(c).array() - middle[c]);
     }
   }
   return other;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/pipelines/person/photo_person.h"
 
-#include "bodyloom/data_tools/motion/shape_track.h"
 #include "bodyloom/geometry/bake_shape.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/cloth/cloth_wearer.h"
@@ -15,9 +14,9 @@ LooseGarment CutGarment(const BodyModel& clothed, LooseGarmentOptions* cut) {
   return garment;
 }
 
-Track MovedByPerson(const PhotoPerson& person, const Track& track) {
+Track MovedByPerson(const PhotoPerson& person, const Track& track, PersonPlacing placed) {
   BODYLOOM_CHECK(!track.HasMovingCamera(), "its camera moves; expected one that stands still");
-  return OfBakedBody(WithShape(*person.bare, track, person.betas));
+  return OfBakedBody(WithShape(*person.bare, track, person.betas, placed));
 }
 
 }  // namespace bodyloom

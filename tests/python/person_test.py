@@ -58,6 +58,10 @@ class FromAPhoto(unittest.TestCase):
         moved = self.person.moved(tracked())
         self.assertEqual(np.abs(moved.betas).max(), 0)
         np.testing.assert_array_equal(moved.poses, tracked().poses)
+        own = self.person.moved(tracked(), own_stature=True)
+        step = moved.trans - own.trans
+        np.testing.assert_allclose(step, np.broadcast_to(step[0], step.shape), atol=1e-9)
+        self.assertGreater(np.abs(step).max(), 1e-4)
         picture = bodyloom.render(moved, 0, what="texture", body=self.person.body, texture=self.person.texture)
         self.assertGreater(picture.std(), 10)
 
