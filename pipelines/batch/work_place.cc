@@ -127,25 +127,37 @@ bool IsStale(const std::string& path, const std::optional<LockHolder>& holder) {
   throw std::runtime_error(message);
 }
 
-/// Creates the file with that text; false when it, or its folder, is there or gone. A text that finds no room leaves no
-/// file.
-bool CreateAlone(const std::string& path, const std::string& text) {
+/// A new file with that text; what goes wrong is said of `named`. A text that finds no room leaves no file. False when the
+/// file is there, or its folder gone.
+bool WriteNew(const std::string& path, const std::string& text, const std::string& named) {
   const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
   if (fd < 0 && (errno == EEXIST || errno == ENOENT)) return false;
-  if (fd < 0) FailPlace(path, "create", errno);
+  if (fd < 0) FailPlace(named, "create", errno);
   const ssize_t written = ::write(fd, text.data(), text.size());
   const int reason = written < 0 ? errno : ENOSPC;
   const bool closed = ::close(fd) == 0;
   if (written == static_cast<ssize_t>(text.size()) && closed) return true;
   ::unlink(path.c_str());
-  FailPlace(path, "write", reason);
+  FailPlace(named, "write", reason);
+}
+
+/// The same, whole from its first moment: a process that is killed on the way leaves no file without its name in it, of
+/// which nobody knows whose it is. File systems without hard links go without.
+bool CreateAlone(const std::string& path, const std::string& text) {
+  const std::string whole = path + "." + NewToken();
+  if (!WriteNew(whole, text, path)) return false;
+  const bool linked = ::link(whole.c_str(), path.c_str()) == 0;
+  const int reason = errno;
+  ::unlink(whole.c_str());
+  if (linked) return true;
+  return reason != EEXIST && reason != ENOENT && WriteNew(path, text, path);
 }
 
 /// Takes a stale lock away, unless somebody else is about to, or has: of several that find it stale, one goes on.
 void RemoveStale(const std::string& lock, const std::string& token) {
   const std::string breaking = lock + ".stale";
-  if (!CreateAlone(breaking, "")) {
-    if (IsOld(breaking)) ::unlink(breaking.c_str());
+  if (!CreateAlone(breaking, LockText(NewToken()))) {
+    if (IsStale(breaking, ReadLock(breaking))) ::unlink(breaking.c_str());
     return;
   }
   const std::optional<LockHolder> now = ReadLock(lock);

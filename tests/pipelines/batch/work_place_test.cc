@@ -144,6 +144,26 @@ TEST_F(WorkPlaceTest, AProcessNumberUsedAnewHoldsNothing) {
   EXPECT_THAT(folder_.Entries(), IsEmpty());
 }
 
+TEST_F(WorkPlaceTest, WhoWasKilledWhileTakingAStaleLockAwayIsNoObstacle) {
+  WriteLock("process", 0x7ffffff0);
+  WriteFileAtomically(Lock() + ".stale", FileBytes(Lock()));
+  EXPECT_TRUE(CanBeTaken());
+  EXPECT_THAT(folder_.Entries(), IsEmpty());
+  WriteLock("process", 0x7ffffff0);
+  WriteFileAtomically(Lock() + ".stale", "");  // of whom nobody knows
+  EXPECT_FALSE(CanBeTaken());
+  Age(Lock() + ".stale", WorkPlace::kStaleSeconds + 30);
+  EXPECT_TRUE(CanBeTaken());
+  EXPECT_THAT(folder_.Entries(), IsEmpty());
+}
+
+TEST_F(WorkPlaceTest, WhoWasKilledBeforeTheLockHadItsNameIsNoObstacle) {
+  fs::create_directories(folder_ / ".work/a");
+  WriteFileAtomically(Lock() + ".1234-half", "{\"pro");
+  EXPECT_TRUE(CanBeTaken());
+  EXPECT_THAT(folder_.Entries(), IsEmpty());
+}
+
 TEST_F(WorkPlaceTest, AnotherMachinesHolderLivesAsLongAsItTouchesItsLock) {
   WriteLock("machine", "elsewhere");
   EXPECT_FALSE(CanBeTaken());
