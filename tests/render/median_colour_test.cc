@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 #include <stdexcept>
 #include <vector>
@@ -33,8 +34,8 @@ TEST(MedianColour, IsThePercentileOfSortedChannels) {
     }
     const ChannelTriple median = MedianColour(colours);
     for (size_t c = 0; c < 3; ++c) {
-      std::vector<double> channel;
-      for (const ChannelTriple& colour : colours) channel.push_back(colour[c]);
+      std::vector<double> channel(count);
+      std::transform(colours.begin(), colours.end(), channel.begin(), [c](const ChannelTriple& v) { return v[c]; });
       EXPECT_NEAR(median[c], Percentile(channel, 50), 1e-6) << count << " colours, channel " << c;
     }
   }
