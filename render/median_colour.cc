@@ -23,4 +23,9 @@ ChannelTriple MedianColour(std::span<const ChannelTriple> colours) {
   return median;
 }
 
+std::optional<ChannelTriple> MedianColourOfMany(std::span<const ChannelTriple> colours, size_t fewest) {
+  if (colours.size() < fewest) return std::nullopt;
+  return MedianColour(colours);
+}
+
 }  // namespace bodyloom

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <optional>
 #include <span>
 
 namespace bodyloom {
@@ -14,5 +16,8 @@ using ChannelTriple = std::array<float, 3>;
 /// the colours may be anything without moving it beyond the others. Values are finite. Throws std::invalid_argument of
 /// no colour.
 ChannelTriple MedianColour(std::span<const ChannelTriple> colours);
+
+/// The same; none of fewer than `fewest`, which are not worth asking. Throws as MedianColour() for fewest 0.
+std::optional<ChannelTriple> MedianColourOfMany(std::span<const ChannelTriple> colours, size_t fewest);
 
 }  // namespace bodyloom

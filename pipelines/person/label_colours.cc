@@ -52,10 +52,8 @@ void RelabelByColour(const Image& picture, std::span<uint8_t> labels) {
   const std::vector<ChannelTriple> colours = LabOf(picture, pixels);
   std::array<std::vector<ChannelTriple>, kNumPersonLabels> of_label;
   for (size_t k = 0; k < pixels.size(); ++k) of_label[labels[pixels[k]]].push_back(colours[k]);
-  const auto median_of = [&](PersonLabel label) -> std::optional<ChannelTriple> {
-    const std::vector<ChannelTriple>& own = of_label[static_cast<size_t>(label)];
-    if (own.size() < kFewestPixels) return std::nullopt;
-    return MedianColour(own);
+  const auto median_of = [&](PersonLabel label) {
+    return MedianColourOfMany(of_label[static_cast<size_t>(label)], kFewestPixels);
   };
   const std::optional<ChannelTriple> face = median_of(PersonLabel::kFace);
   if (!face) return;

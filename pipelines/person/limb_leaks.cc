@@ -23,11 +23,6 @@ ChannelTriple ColourOf(const uint8_t* bgr) {
   return {static_cast<float>(bgr[0]), static_cast<float>(bgr[1]), static_cast<float>(bgr[2])};
 }
 
-/// None of fewer than kFewest.
-std::optional<ChannelTriple> MedianOf(const std::vector<ChannelTriple>& colours) {
-  return colours.size() < kFewest ? std::nullopt : std::optional(MedianColour(colours));
-}
-
 float SquaredDistance(const ChannelTriple& a, const ChannelTriple& b) {
   float sum = 0;
   for (size_t c = 0; c < 3; ++c) sum += (a[c] - b[c]) * (a[c] - b[c]);
@@ -55,8 +50,9 @@ std::vector<uint8_t> WithoutLimbLeaks(const Image& picture, std::span<const uint
     if (IsTrunk(parts[i]) && !near_arm(i)) trunk_pixels.push_back(bgr);
     if (IsThigh(parts[i]) && !near_arm(i)) thigh_pixels.push_back(bgr);
   }
-  const std::optional<ChannelTriple> face = MedianOf(face_pixels), trunk = MedianOf(trunk_pixels),
-                                     thigh = MedianOf(thigh_pixels);
+  const std::optional<ChannelTriple> face = MedianColourOfMany(face_pixels, kFewest),
+                                     trunk = MedianColourOfMany(trunk_pixels, kFewest),
+                                     thigh = MedianColourOfMany(thigh_pixels, kFewest);
   std::vector<uint8_t> kept(mask.begin(), mask.end());
   for (size_t i = 0; i < area; ++i) {
     if (!(IsTrunk(parts[i]) || IsThigh(parts[i])) || !near_arm(i)) continue;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
 #include <random>
 #include <stdexcept>
 #include <vector>
@@ -39,6 +40,12 @@ TEST(MedianColour, IsThePercentileOfSortedChannels) {
       EXPECT_NEAR(median[c], Percentile(channel, 50), 1e-6) << count << " colours, channel " << c;
     }
   }
+}
+
+TEST(MedianColour, OfFewIsNone) {
+  const std::vector<ChannelTriple> colours = {{1, 30, 7}, {3, 10, 7}, {2, 20, 900}};
+  EXPECT_EQ(MedianColourOfMany(colours, 3), MedianColour(colours));
+  EXPECT_EQ(MedianColourOfMany(colours, 4), std::nullopt);
 }
 
 TEST(MedianColour, OfNoColourIsRefused) { EXPECT_THROW(MedianColour({}), std::invalid_argument); }
