@@ -129,9 +129,8 @@ void BindPerson(py::module_& module) {
           },
           py::arg("folder"), "Writes body.npz, texture.png, photo_0.npz ... and person.json into the folder.")
       .def("moved", &PersonObject::Moved, py::arg("track"), py::kw_only(), py::arg("own_stature") = false,
-           "The motion by this person: a track of `body`, whose betas are zero. As tall in the picture as whoever "
-           "moved\n"
-           "there; with own_stature as tall in the scene as the photos say.")
+           "The motion by this person: a track of `body`, whose betas are zero. As tall in the picture as\n"
+           "whoever moved there; with own_stature as tall in the scene as the photos say.")
       .def(
           "wearing",
           [](const PersonObject& self, const PersonObject& other) {

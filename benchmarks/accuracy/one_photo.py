@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The renderers that need one photo under one protocol: the same people, photos and pictures, the same scores, with true
 labels and bodies and with estimated ones; beside them what needs no training, a textured body with clothes (person) and
-the photo warped by the bare body (floor), and that textured body's pictures refined by a small network (refined); the one-photo renderer's simpler variants (Sec. 4.4 of Sarkar et al., "Neural
-Re-Rendering of Humans from a Single Image", ECCV 2020) and the ablations of the pose-guided renderer (Table 2 of Yoon et
-al., "Pose-Guided Human Animation from a Single Image in the Wild", CVPR 2021) on synthetic people.
+the photo warped by the bare body (floor), and that textured body's pictures refined by a small network (refined); the
+one-photo renderer's simpler variants (Sec. 4.4 of Sarkar et al., "Neural Re-Rendering of Humans from a Single Image",
+ECCV 2020) and the ablations of the pose-guided renderer (Table 2 of Yoon et al., "Pose-Guided Human Animation from a
+Single Image in the Wild", CVPR 2021) on synthetic people.
 
 usage: one_photo.py --bodyloom build/release/apps/bodyloom --motions ../shared/data/motion --out FOLDER
        [--systems floor person refined photo guided] [--photos 1 2 4] [--baselines ip warp ...] [--without latent kl ...]

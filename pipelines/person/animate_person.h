@@ -19,10 +19,10 @@ struct AnimatePersonRequest {
   std::string garment_from;   ///< a photo, or a folder in which somebody was kept: whose clothes are worn; empty: own
   std::string keep;           ///< the folder to keep the person in; empty: none
   std::string track;          ///< the motion, .npz; empty: none, the person is only made and kept
-  bool own_stature =
-      false;             ///< as tall in the driver's scene as the photos say, not as tall in the picture as the driver
-  std::string view_yaw;  ///< how far the view is turned (pipelines/people/view_angles.h)
-  std::string freeze;    ///< where time stands still (pipelines/people/freeze.h); empty: nowhere
+  /// As tall in the driver's scene as the photos say, not as tall in the picture as the driver.
+  bool own_stature = false;
+  std::string view_yaw;    ///< how far the view is turned (pipelines/people/view_angles.h)
+  std::string freeze;      ///< where time stands still (pipelines/people/freeze.h); empty: nowhere
   std::string background;  ///< an image, a video or a folder behind the person; empty: a plain backdrop
   std::string relight;     ///< other light, a file (pipelines/people/relight_frames.h); empty: the first photo's
   std::string refiner = kNoRefiner;  ///< what pictures are refined with (open_refiner.h)
