@@ -19,9 +19,7 @@ std::vector<TrackedPose> TrackedPoses(const BodyModel& body, const Track& track)
     if (!track.HasResult(t)) continue;
     poses[t].pose = PoseOfFrame(body, track.motion, t);
     if (track.joint_sigma.rows() != track.num_frames()) continue;
-    // Where a joint is: about the mid-hip, and where that is.
-    const double root = track.root_sigma.size() == track.num_frames() ? track.root_sigma[t] : 0;
-    const Eigen::VectorXd sigma = (track.joint_sigma.row(t).array().square() + root * root).sqrt();
+    const auto sigma = track.joint_sigma.row(t);
     poses[t].joint_sigma.assign(sigma.begin(), sigma.end());
   }
   return poses;

@@ -33,7 +33,7 @@ VectorXd CorrectionOf(int frame, const FloatColumns& table) {
 bool PoseRefinerOptions::IsValid(std::string* why) const {
   const InRange in_range(why);
   return in_range("photo_sigma", photo_sigma, 1e-4, 1e4) && in_range("place_sigma_m", place_sigma_m, 1e-4, 10) &&
-         in_range("joints_together", joints_together, 1, 1000) &&
+         in_range("across_share", across_share, 1e-3, 10) && in_range("joints_together", joints_together, 1, 1000) &&
          in_range("turn_sigma_deg", turn_sigma_deg, 0.01, 180) && in_range("drift", drift, 1e-3, 1e6) &&
          in_range("rate of poses", rate, 0, 100) && in_range("rate_end of poses", rate_end, 0, 100);
 }
@@ -121,7 +121,7 @@ MatrixXd PoseRefiner::Metric(int frame) const {
   MatrixXd jacobian = JointJacobian(model_.parents(), PoseSkeleton(model_, rest_joints_, tracked.pose));
   for (int j = 0; j < J; ++j) {
     const double known = tracked.joint_sigma.empty() ? 0 : tracked.joint_sigma[j];
-    const double sigma = known > 0 ? known : options_.place_sigma_m;
+    const double sigma = known > 0 ? options_.across_share * known : options_.place_sigma_m;
     jacobian.middleRows<3>(3 * j) /= sigma * std::sqrt(options_.joints_together);
   }
   MatrixXd metric = jacobian.transpose() * jacobian;

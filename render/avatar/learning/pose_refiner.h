@@ -4,12 +4,14 @@
 /// A correction d of a frame turns every joint and moves the body in the camera's frame, relative to the track:
 ///   R_j = R_j(track) exp([d_j]×),   trans = trans(track) + d_J
 /// What it costs, in standard deviations squared: with the joints' Jacobian P at the track's pose, σ_j how well the track
-/// knows a joint's place, n joints that err together, and σ_a how far a turn may go by itself,
+/// knows a joint's place across the view, n joints that err together, and σ_a how far a turn may go by itself,
 ///   M = Pᵀ diag(1/(n σ_j²)) P + diag(1/σ_a²) over the turns,
 ///   cost = ½ dᵀ M d + ½ Σ over the frames s beside it (d − d_s)ᵀ M (d − d_s) / drift²
 /// and the picture counts as its own error tells: blocks of 8×8 of the person's pixels that each err by photo_sigma,
 ///   energy = person pixels/64 · loss/photo_sigma + cost
-/// So the track's priors stay: it was found with them, and here it is left only for what the picture shows.
+/// So the track's priors stay: it was found with them, and here it is left only for what the picture shows. A track's
+/// joint_sigma is about the mid-hip and of all three axes alike; across the view it is across_share of that. How far the
+/// person is from the camera (root_sigma) is not asked: one camera does not see it, and it is the same in all frames.
 ///
 /// A step goes along M⁻¹ d energy/d d, in Adam's manner: the mean of the last ones, divided by the root of the mean of
 /// their squared lengths in M, times `rate`; so nothing depends on how a joint's turns are counted. Where the pictures
@@ -34,12 +36,13 @@ namespace bodyloom {
 /// A frame of the clip as the track has it, in the camera's frame.
 struct TrackedPose {
   BodyPose pose;                    ///< without rotations: none
-  std::vector<double> joint_sigma;  ///< J, metres; empty or NaN: not known
+  std::vector<double> joint_sigma;  ///< J, metres, about the mid-hip, one axis; empty or NaN: not known
 };
 
 struct PoseRefinerOptions {
   double photo_sigma = 0.1;         ///< 1e-4 to 1e4: by how much a block of pixels is off, white is 1
-  double place_sigma_m = 0.02;      ///< 1e-4 to 10: of a joint whose own is not known
+  double place_sigma_m = 0.02;      ///< 1e-4 to 10: σ_j of a joint whose joint_sigma is not known
+  double across_share = 0.6;        ///< 1e-3 to 10: of joint_sigma, of a track of one camera
   double joints_together = 8;       ///< 1 to 1000
   double turn_sigma_deg = 8;        ///< 0.01 to 180
   double drift = 0.5;               ///< 1e-3 to 1e6

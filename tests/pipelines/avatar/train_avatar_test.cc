@@ -337,11 +337,14 @@ TEST(TrainAvatar, GoesOnAsIfNeverLeft) {
   EXPECT_THROW(TrainAvatar(request), RequestError);
 }
 
-/// The scene's track with every frame's body somewhat beside the truth.
+/// The scene's track with every frame's body somewhat beside the truth. As in every track of one camera nobody knows how
+/// far away it is.
 std::string TrackBeside(const TemporaryFolder& folder) {
   Track track = ReadTrack(Scene().File("person/track.npz"));
   for (int t = 0; t < track.num_frames(); ++t) track.motion.trans.row(t) += Eigen::RowVector3d(0.02, -0.015, 0);
   track.world = WorldFrame{};
+  track.joint_sigma.setConstant(track.num_frames(), static_cast<int>(track.joints[0].rows()), 0.03);
+  track.root_sigma.setConstant(track.num_frames(), 0.28);
   WriteTrack(folder.File("beside.npz"), track);
   return folder.File("beside.npz");
 }
