@@ -24,6 +24,9 @@ void AddRunOptions(CLI::App& app, TrackPeopleClipRequest* request) {
       ->capture_default_str();
   app.add_option("--view", track.view, "camera of a calibration that holds several")->type_name("NAME");
   app.add_flag("--masks", request->masks, "write each person's mask too: mask_0.npz, mask_1.npz ...");
+  app.add_flag(
+      "--coarse-masks", request->coarse_masks,
+      "masks as the network gives them: do not cut them from what stands behind people when the camera is still");
   app.add_flag("--side-view", track.side_view, "the overlay also shows everybody from their side");
   AddDetectionOptions(app, &track, "Detection");
   AddCalibrationOptions(app, &track);

@@ -65,6 +65,9 @@ void AddDetectVerb(CLI::App& app, Action* action, std::vector<std::string> argum
   verb->add_option("--video", detect.video, "the video, or a folder of images")->required()->type_name("PATH");
   verb->add_option("--out", request->out, "everybody's landmarks, .npz")->type_name("FILE");
   verb->add_option("--mask", request->mask, "the mask of one person, .npz")->type_name("FILE");
+  verb->add_flag(
+      "--coarse-masks", request->coarse_mask,
+      "masks as the network gives them: do not cut them from what stands behind people when the camera is still");
   verb->add_option("--person", request->person, "whose mask and dense keypoints: 0 is the largest and longest in view")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);

@@ -32,7 +32,8 @@ is left out.
 
 video           a video, or a folder of images, of which fps tells the rate
 out             folder that gets what the command writes: detections.npz, person_0.npz, ..., summary.json and, as
-                asked for, overlay (a video, with side_view from the side too), masks, report (a page); None: no file
+                asked for, overlay (a video, with side_view from the side too), masks (coarse_masks: as the network
+                gives them), report (a page); None: no file
 people, person  at most so many (0: everybody); only this one; least_seconds: whoever is seen for less is left out
 detector        size of BlazePose's network: "lite", "full" or "heavy"; pose_model, box_model: networks of your own;
                 models: folder of BlazePose's (`./dev models`); detect_rate: detect so many frames a second only while
@@ -103,7 +104,7 @@ void BindPeople(py::module_& module) {
          const std::optional<Path>& lifter, const std::string& detector, const std::optional<Path>& pose_model,
          const std::optional<Path>& box_model, const std::optional<Path>& models, std::optional<double> detect_rate,
          bool mask, double begin_s, std::optional<double> end_s, const std::string& solver, int threads,
-         bool uncertainty, bool ground, bool overlay, bool side_view, bool masks, bool report,
+         bool uncertainty, bool ground, bool overlay, bool side_view, bool masks, bool coarse_masks, bool report,
          const py::object& progress) {
         BODYLOOM_CHECK(people >= 0 && person.value_or(0) >= 0 && least_seconds >= 0,
                        "people, person, least_seconds: expected 0 or more");
@@ -114,7 +115,8 @@ void BindPeople(py::module_& module) {
         GivenInMemory given;
         request.out = TextOf(out);
         request.max_people = people, request.person = person, request.least_seconds = least_seconds;
-        request.overlay = overlay, request.masks = masks, request.report = report;
+        request.overlay = overlay, request.report = report;
+        request.masks = masks, request.coarse_masks = coarse_masks;
         TrackRequest& track = request.track;
         track.video = video.string();
         track.fps = PositiveOr0(fps, "fps");
@@ -146,7 +148,8 @@ void BindPeople(py::module_& module) {
       py::arg("models") = py::none(), py::arg("detect_rate") = py::none(), py::arg("mask") = true,
       py::arg("begin_s") = 0.0, py::arg("end_s") = py::none(), py::arg("solver") = "chain", py::arg("threads") = 0,
       py::arg("uncertainty") = true, py::arg("ground") = true, py::arg("overlay") = true, py::arg("side_view") = false,
-      py::arg("masks") = false, py::arg("report") = false, py::arg("progress") = py::none(), kRunDoc);
+      py::arg("masks") = false, py::arg("coarse_masks") = false, py::arg("report") = false,
+      py::arg("progress") = py::none(), kRunDoc);
   module.def(
       "detect",
       [](const Path& video, std::optional<double> fps, const std::string& detector,

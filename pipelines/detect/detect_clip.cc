@@ -15,6 +15,7 @@
 #include "bodyloom/data_tools/observations/people_npz.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/percentile.h"
+#include "bodyloom/pipelines/detect/cut_masks.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/fixed_text.h"
 #include "bodyloom/pipelines/report_json.h"
@@ -72,6 +73,10 @@ DetectedClip DetectLandmarks(const DetectClipRequest& request, const PipelineCal
   report->frames = int(clip.people.frames.size());
   if (found.people.empty()) {
     throw NothingToTrack(Concatenate(detect.video, ": nobody was found in ", report->frames, " frames"));
+  }
+  if (!request.mask.empty()) {
+    clock->Begin("masks");
+    found.mask_cut = !request.coarse_mask && CutMasks(detect, 0, &clip, callbacks);
   }
   return clip;
 }
@@ -181,6 +186,7 @@ std::string ToJson(const DetectClipReport& report) {
     json["regions"] = found.detector.regions;
     json["search_seconds"] = found.detector.search_seconds;
     json["landmark_seconds"] = found.detector.landmark_seconds;
+    if (found.mask_cut) json["masks_cut"] = *found.mask_cut;
   }
   if (report.dense) {
     json["dense"] = {{"people", report.dense->people},
@@ -196,6 +202,7 @@ std::string ToText(const DetectClipReport& report) {
   std::string text = Concatenate("frames   ", report.frames, " of ", report.width, "x", report.height, " pixels");
   if (report.landmarks) {
     text += Concatenate(", ", report.landmarks->frames_with_people, " with people\n", ToText(report.landmarks->people));
+    if (const auto cut = report.landmarks->mask_cut) text += Concatenate("masks    ", MasksText(*cut), "\n");
   } else {
     text += "\n";
   }

@@ -17,6 +17,7 @@ struct DetectClipRequest {
   DetectPeopleRequest detect;    ///< detector.blazepose.masks follows from `mask`
   std::string out;               ///< everybody's landmarks, .npz (people_npz.h); empty: none
   std::string mask;              ///< one person's mask, .npz (part_labels.h); empty: none
+  bool coarse_mask = false;      ///< as the network gives it, not cut anew from what stands behind (CutMasks())
   std::string dense;             ///< one person's dense keypoints, .npz (observations_npz.h); empty: none
   ChartDetector dense_detector;  ///< what finds them; needed for `dense`
   std::string body;              ///< on whose faces they lie; empty: the built-in body
@@ -38,6 +39,7 @@ struct FoundLandmarks {
   std::string network;  ///< FrameDetectorName()
   std::vector<FoundPerson> people;
   PeopleDetectorSummary detector;
+  std::optional<bool> mask_cut;  ///< of a mask that is written: CutMasks()
 };
 
 /// What the dense detector found.

@@ -16,7 +16,7 @@ ClipFrames SpanOf(const PersonTrack& person) {
   return {person.detections.front().first, person.detections.back().first};
 }
 
-DetectedClip DetectForTracking(const TrackRequest& request, const PipelineCallbacks& callbacks, int max_people) {
+DetectPeopleRequest DetectionOf(const TrackRequest& request, int max_people) {
   DetectPeopleRequest detect;
   detect.video = request.video;
   detect.span = {request.fps, request.from_s, request.to_s};
@@ -24,8 +24,12 @@ DetectedClip DetectForTracking(const TrackRequest& request, const PipelineCallba
   detect.detector.blazepose.masks = DetectsMasks(request);
   detect.detector.blazepose.max_people = max_people;
   detect.detect_rate = request.detect_rate;
+  return detect;
+}
+
+DetectedClip DetectForTracking(const TrackRequest& request, const PipelineCallbacks& callbacks, int max_people) {
   callbacks.Begin("detecting people");
-  return DetectPeople(detect, callbacks);
+  return DetectPeople(DetectionOf(request, max_people), callbacks);
 }
 
 DetectedObservations ObservationsOf(const DetectedClip& clip, const PersonTrack& person, ClipFrames frames,

@@ -26,7 +26,10 @@ ClipFrames WholeClip(const DetectedClip& clip);
 /// From the person's first detection to the last.
 ClipFrames SpanOf(const PersonTrack& person);
 
-/// DetectPeople() as the request's fields on detection say; at most `max_people` at a time (0: everybody).
+/// What the request's fields say of detection; at most `max_people` at a time (0: everybody).
+DetectPeopleRequest DetectionOf(const TrackRequest& request, int max_people = 0);
+
+/// DetectPeople() by DetectionOf().
 DetectedClip DetectForTracking(const TrackRequest& request, const PipelineCallbacks& callbacks, int max_people = 0);
 
 /// The person's landmarks and mask in those frames; where it was not seen they are missing. Landmarks whose confidence

@@ -10,6 +10,7 @@
 #include "bodyloom/data_tools/observations/part_labels.h"
 #include "bodyloom/data_tools/observations/people_npz.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/pipelines/detect/cut_masks.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/page/write_clip_page.h"
 #include "bodyloom/pipelines/peak_memory.h"
@@ -68,6 +69,17 @@ void CheckClipRequest(const TrackPeopleClipRequest& request, const GivenInMemory
   if (request.overlay) track.overlay = FileIn(request, "overlay.mp4");
   CheckRequest(request, track);
   CheckFiles(request);
+}
+
+void WriteMasks(const TrackPeopleClipRequest& request, const PeopleInClip& people, const PipelineCallbacks& callbacks,
+                TrackPeopleReport* report) {
+  DetectedClip clip = people.clip;
+  report->masks_cut =
+      !request.coarse_masks && CutMasks(DetectionOf(request.track), request.track.solve.num_threads, &clip, callbacks);
+  for (const int number : people.chosen) {
+    report->outputs.push_back(MaskFile(request, number));
+    WriteMask(report->outputs.back(), MaskOfPerson(clip, people.everybody[size_t(number)]));
+  }
 }
 
 SceneInputs SceneOf(const TrackPeopleRequest& request, const GivenInMemory& given) {
@@ -147,9 +159,9 @@ TrackPeopleReport TrackPeopleClip(const TrackPeopleClipRequest& request, const P
   clock.Begin("write");
   report.outputs.push_back(FileIn(request, "detections.npz"));
   WritePeople(report.outputs.back(), people.clip.people);
-  for (const int number : request.masks ? people.chosen : std::vector<int>()) {
-    report.outputs.push_back(MaskFile(request, number));
-    WriteMask(report.outputs.back(), MaskOfPerson(people.clip, people.everybody[size_t(number)]));
+  if (request.masks) {
+    clock.Begin("masks");
+    WriteMasks(request, people, callbacks, &report);
   }
   clock.Begin("track");
   const TrackedInClip tracked = TrackPeopleInClip(request, scene, people, callbacks, &report);

@@ -19,6 +19,9 @@ struct TrackPeopleClipRequest : TrackPeopleRequest {
   bool overlay = true;
   bool report = false;  ///< the clip's page
   bool masks = false;   ///< each person's mask is written too
+  /// Masks are written as the network gives them, not cut anew from what stands behind the people (CutMasks()). Tracks are
+  /// the same in any case: for them the network's masks do as well.
+  bool coarse_masks = false;
 };
 
 /// Writes into the folder:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/pipelines/track/track_people_report.h"
+#include "bodyloom/pipelines/detect/cut_masks.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -86,6 +87,7 @@ std::string ToText(const TrackPeopleReport& report) {
   if (const int others = report.num_found - int(report.people.size()); others > 0) {
     text += Concatenate("left out ", others, " more, seen too briefly or not asked for\n");
   }
+  if (report.masks_cut) text += Concatenate("masks    ", MasksText(*report.masks_cut), "\n");
   text += ToText(report.camera_path, report.camera_scale);
   text += SceneText(report.scene);
   if (std::any_of(report.people.begin(), report.people.end(),
@@ -116,6 +118,7 @@ std::string ToJson(const TrackPeopleReport& report) {
                {"total_seconds", report.total_seconds},
                {"peak_memory_bytes", report.peak_memory_bytes},
                {"outputs", report.outputs}};
+  if (report.masks_cut) json["masks_cut"] = *report.masks_cut;
   if (!report.camera_path.file.empty()) json["camera_path"] = ToJson(report.camera_path, report.camera_scale);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

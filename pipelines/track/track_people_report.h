@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,8 +29,9 @@ struct TrackPeopleReport {
   std::string video;
   int width = 0, height = 0, num_frames = 0;
   double fps = 0;
-  std::string network;  ///< FrameDetectorName()
-  int num_found = 0;    ///< people in the detections, also those who were left out
+  std::string network;            ///< FrameDetectorName()
+  std::optional<bool> masks_cut;  ///< of masks that were written: CutMasks()
+  int num_found = 0;              ///< people in the detections, also those who were left out
   std::vector<TrackedPerson> people;
   SharedScene scene;
   WorldFrame world;  ///< of all tracks

@@ -536,6 +536,7 @@ def run(
     overlay: bool = True,
     side_view: bool = False,
     masks: bool = False,
+    coarse_masks: bool = False,
     report: bool = False,
     progress: _Progress | None = None,
 ) -> list[Track]: ...

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A person's mask cut anew where the background is known: a network's mask is coarse (a cell of BlazePose's is some 3 % of
+/// a person high), takes objects beside the person along, and leaves hair and shoes out.
+///
+/// The cut is the minimum over masks of Σ_pixels unary + Σ_neighbours λ e^(−c²/2β) [one in, one out], β the mean of c²
+/// over the window:
+///   out   −log(0.99 N(I; gB, σ) + 1/256³/100), or darker by a shadow: the nearest sB with s in [0.55, 1], 2.5 more
+///   in    −log(density of the person's colours)                    (colour_density.h)
+///   prior ±(4 at full reach): by the distance from the coarse mask's edge, inside up to 2 % of the mask's longer side, outside
+///         3 %; farther out than 6 % nothing is the person
+///   c     the smaller of the picture's step between the neighbours and the step of its difference from the background:
+///         an edge that the background has as well is none of the person
+/// g is a gain a channel, the median of I/B outside: cameras follow the light. Where the background is not known the prior
+/// decides alone. Pieces smaller than a tenth of the largest are left out. Shadows as in Horprasert et al., "A
+/// Statistical Approach for Real-time Robust Background Subtraction and Shadow Detection", 1999; the background's own edges
+/// as in Sun et al., "Background Cut", ECCV 2006.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "bodyloom/data_tools/masks/colour_density.h"
+#include "bodyloom/data_tools/masks/still_background.h"
+#include "bodyloom/geometry/label_image.h"
+#include "bodyloom/render/image.h"
+
+namespace bodyloom {
+
+/// None where more than a tenth of what lies around the person, 6 to 12 % of the mask's longer side away, is farther than
+/// 4 σ from the background: the camera has moved, or the light is another. `coarse` and `others` (other people's, or empty; what is theirs alone is not this person's): width·height, not 0 where the
+/// person is. Returns 1 in the new mask's box; of an empty coarse mask nothing. Throws std::invalid_argument when sizes
+/// differ.
+std::optional<LabelImage> CutFromBackground(const Image& picture, std::span<const uint8_t> coarse,
+                                            std::span<const uint8_t> others, const StillBackground& background,
+                                            const ColourDensity& person);
+
+/// Adds what lies clearly inside of a coarse mask: deeper than 3 % of its longer side.
+void AddClearInside(const Image& picture, std::span<const uint8_t> coarse, ColourDensity* person);
+
+}  // namespace bodyloom
