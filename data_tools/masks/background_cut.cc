@@ -15,7 +15,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr double kPrior = 4, kSmooth = 8;
+constexpr double kPrior = 4, kSmooth = 8, kByColours = 0.5;
 constexpr double kInsideReach = 0.02, kOutsideReach = 0.03, kFarthestOutside = 0.06, kRing = 0.12, kClearInside = 0.03;
 constexpr double kOutliers = 0.01, kColours = 256.0 * 256 * 256;
 constexpr double kDarkestShadow = 0.55, kShadowCost = 2.5;
@@ -53,6 +53,11 @@ class MaskCut {
     distance_ = SignedDistance(coarse_);
     if (!others.empty()) distance_.setTo(-2 * kRing * extent_, others(window_) & ~coarse_);
     FindGain(coarse);
+    for (int y = 0; y < window_.height; ++y) {
+      for (int x = 0; x < window_.width; ++x) {
+        if (IsAround(x, y)) around_.Add(ColourAt(x, y));
+      }
+    }
   }
 
   /// Whether what lies around the person is what the background says: else the camera has moved, or the light is another.
@@ -60,8 +65,7 @@ class MaskCut {
     int known = 0, unlike = 0;
     for (int y = 0; y < window_.height; ++y) {
       for (int x = 0; x < window_.width; ++x) {
-        const double distance = distance_.at<float>(y, x);
-        if (distance > -kFarthestOutside * extent_ || distance < -kRing * extent_ || SigmaAt(x, y) <= 0) continue;
+        if (!IsAround(x, y) || SigmaAt(x, y) <= 0) continue;
         ++known;
         unlike += Differences(x, y).shaded > Square(kUnlikeSigmas * SigmaAt(x, y)) ? 1 : 0;
       }
@@ -98,6 +102,10 @@ class MaskCut {
 
  private:
   [[nodiscard]] bool IsFar(int x, int y) const { return distance_.at<float>(y, x) < -kFarthestOutside * extent_; }
+  /// Surely beside the person, and not somebody else.
+  [[nodiscard]] bool IsAround(int x, int y) const {
+    return IsFar(x, y) && distance_.at<float>(y, x) > -kRing * extent_;
+  }
   [[nodiscard]] const uint8_t* ColourAt(int x, int y) const { return picture_.pixel(window_.x + x, window_.y + y); }
   [[nodiscard]] float SigmaAt(int x, int y) const {
     return background_.sigma[size_t(window_.y + y) * picture_.width + window_.x + x];
@@ -161,12 +169,11 @@ class MaskCut {
     const double distance = distance_.at<float>(y, x) / extent_;
     const double prior = distance > 0 ? kPrior * std::min(1.0, distance / kInsideReach)
                                       : -kPrior * std::min(1.0, -distance / kOutsideReach);
-    double in = std::max(0.0, -prior), out = std::max(0.0, prior);
-    if (SigmaAt(x, y) > 0) {
-      in -= std::log(person_.At(ColourAt(x, y)));
-      out += BackgroundCost(x, y);
-    }
-    return {in, out};
+    const uint8_t* colour = ColourAt(x, y);
+    const double as_person = -std::log(person_.At(colour));
+    if (SigmaAt(x, y) > 0) return {std::max(0.0, -prior) + as_person, std::max(0.0, prior) + BackgroundCost(x, y)};
+    return {std::max(0.0, -prior) + kByColours * as_person,
+            std::max(0.0, prior) - kByColours * std::log(around_.At(colour))};
   }
 
   [[nodiscard]] double StepBetween(int x, int y, int to_x, int to_y) const {
@@ -229,6 +236,7 @@ class MaskCut {
   double extent_ = 1;
   cv::Rect window_;
   cv::Mat coarse_, distance_, nodes_;
+  ColourDensity around_;
   std::array<double, 3> gain_ = {1, 1, 1};
 };
 

@@ -10,10 +10,11 @@
 ///         3 %; farther out than 6 % nothing is the person
 ///   c     the smaller of the picture's step between the neighbours and the step of its difference from the background:
 ///         an edge that the background has as well is none of the person
-/// g is a gain a channel, the median of I/B outside: cameras follow the light. Where the background is not known the prior
-/// decides alone. Pieces smaller than a tenth of the largest are left out. Shadows as in Horprasert et al., "A
-/// Statistical Approach for Real-time Robust Background Subtraction and Shadow Detection", 1999; the background's own edges
-/// as in Sun et al., "Background Cut", ECCV 2006.
+/// g is a gain a channel, the median of I/B outside: cameras follow the light. Where the background is not known, out is
+/// half of −log(density of the colours around the person, 6 to 12 % of the mask's longer side away) and in is halved. Pieces
+/// smaller than a tenth of the largest are left out. Shadows as in Horprasert et al., "A Statistical Approach for Real-time
+/// Robust Background Subtraction and Shadow Detection", 1999; the background's own edges as in Sun et al., "Background
+/// Cut", ECCV 2006.
 #pragma once
 
 #include <cstdint>
@@ -28,10 +29,10 @@
 
 namespace bodyloom {
 
-/// None where more than a tenth of what lies around the person, 6 to 12 % of the mask's longer side away, is farther than
-/// 4 σ from the background: the camera has moved, or the light is another. `coarse` and `others` (other people's, or empty; what is theirs alone is not this person's): width·height, not 0 where the
-/// person is. Returns 1 in the new mask's box; of an empty coarse mask nothing. Throws std::invalid_argument when sizes
-/// differ.
+/// None where more than a tenth of what lies around the person is farther than 4 σ from the background: the camera has
+/// moved, or the light is another. `coarse` and `others` (other people's, or empty; what is theirs alone is not this
+/// person's): width·height, not 0 where the person is. Returns 1 in the new mask's box; of an empty coarse mask nothing.
+/// Throws std::invalid_argument when sizes differ.
 std::optional<LabelImage> CutFromBackground(const Image& picture, std::span<const uint8_t> coarse,
                                             std::span<const uint8_t> others, const StillBackground& background,
                                             const ColourDensity& person);
