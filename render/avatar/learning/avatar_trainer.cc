@@ -166,7 +166,7 @@ int AvatarTrainer::ChooseMovers(AvatarTrainingState* state) {
 }
 
 void AvatarTrainer::Move(AvatarTrainingState* state, double progress) {
-  AdamStep(gradient_.parameters, options_.rates.At(progress), moves_, options_.num_threads, &state->adam,
+  AdamStep(gradient_.parameters, options_.rates.At(progress, state->step), moves_, options_.num_threads, &state->adam,
            &state->body.parameters);
   LimitScales(options_.scales, &state->body);
   for (int i = 0; i < state->body.size(); ++i) {

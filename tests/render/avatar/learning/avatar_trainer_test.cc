@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "bodyloom/render/avatar/learning/loose_gaussians.h"
 #include "bodyloom/render/avatar/learning/smooth_skin_weights.h"
@@ -25,6 +26,23 @@ double MeanLoss(const std::vector<double>& losses, size_t first, size_t count) {
   double sum = 0;
   for (size_t i = first; i < first + count; ++i) sum += losses[i];
   return sum / static_cast<double>(count);
+}
+
+TEST(LearningRates, SettleAsTheirLawSays) {
+  const AvatarRates rates;
+  const auto at = [&](double progress, int64_t step, int column) { return rates.At(progress, step)[column]; };
+  EXPECT_FLOAT_EQ(at(0, 0, GaussianBody::kAlbedo), rates.albedo);
+  EXPECT_FLOAT_EQ(at(0.5, 0, GaussianBody::kAlbedo), rates.albedo) << "until the middle by the steps alone";
+  EXPECT_FLOAT_EQ(at(0.3, 9000, GaussianBody::kNormal), rates.normal / 2);
+  EXPECT_FLOAT_EQ(at(1, 9000, GaussianBody::kWeightLogit), 0.03F * rates.weight_logit / 2);
+  EXPECT_FLOAT_EQ(at(0.75, 0, GaussianBody::kOpacityLogit), std::sqrt(0.03F) * rates.opacity_logit);
+  EXPECT_FLOAT_EQ(at(0.5, 9000, GaussianBody::kPosition), std::sqrt(0.03F) * rates.position) << "places by progress";
+  std::string why;
+  AvatarRates bad;
+  bad.settle_steps = 0;
+  EXPECT_FALSE(bad.IsValid(&why));
+  bad = {}, bad.others_at_end = 0;
+  EXPECT_FALSE(bad.IsValid(&why));
 }
 
 TEST(AvatarTrainer, LearnsAPersonsColours) {
@@ -170,12 +188,12 @@ TEST(AvatarTrainer, RefusesClipsWithoutAPersonAndOptionsOutOfRange) {
 
 TEST(LearningRates, PlacesBecomeFiner) {
   const AvatarRates rates;
-  EXPECT_FLOAT_EQ(rates.At(0)[GaussianBody::kPosition + 2], 3e-4F);
-  EXPECT_FLOAT_EQ(rates.At(1)[GaussianBody::kPosition], 9e-6F);
-  EXPECT_NEAR(rates.At(0.5)[GaussianBody::kPosition], 3e-4 * std::sqrt(0.03), 1e-9);
+  EXPECT_FLOAT_EQ(rates.At(0, 0)[GaussianBody::kPosition + 2], 3e-4F);
+  EXPECT_FLOAT_EQ(rates.At(1, 500)[GaussianBody::kPosition], 9e-6F);
+  EXPECT_NEAR(rates.At(0.5, 500)[GaussianBody::kPosition], 3e-4 * std::sqrt(0.03), 1e-9);
   EXPECT_FLOAT_EQ(rates.MotionAt(0), 1.5e-3F);
   EXPECT_FLOAT_EQ(rates.MotionAt(1), 7.5e-5F);
-  EXPECT_EQ(rates.At(0.2)[GaussianBody::kAlbedo + 2], rates.At(0.9)[GaussianBody::kAlbedo]);
+  EXPECT_EQ(rates.At(0.2, 70)[GaussianBody::kAlbedo + 2], rates.At(0.4, 70)[GaussianBody::kAlbedo]);
 }
 
 TEST(RelocateGaussians, DeadOnesBecomeCopiesOfWhatPulls) {
