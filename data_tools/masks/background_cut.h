@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A person's mask cut anew where the background is known: a network's mask is coarse (a cell of BlazePose's is some 3 % of
-/// a person high), takes objects beside the person along, and leaves hair and shoes out.
+/// A person's mask cut anew where the background is known: a network's mask takes objects and light beside the person
+/// along, and its outline is off by some pixels.
 ///
 /// The cut is the minimum over masks of Σ_pixels unary + Σ_neighbours λ e^(−c²/2β) [one in, one out], β the mean of c²
 /// over the window:
