@@ -8,6 +8,15 @@
 
 namespace bodyloom {
 
+std::vector<uint8_t> LabelImage::Over(int image_width, int image_height) const {
+  std::vector<uint8_t> over;
+  over.reserve(size_t(image_width) * size_t(image_height));
+  for (int y = 0; y < image_height; ++y) {
+    for (int x = 0; x < image_width; ++x) over.push_back(At(x, y));
+  }
+  return over;
+}
+
 PackedLabels::PackedLabels(const LabelImage& image)
     : x_begin_(image.x_begin), y_begin_(image.y_begin), width_(image.width), height_(image.height) {
   BODYLOOM_CHECK(image.labels.size() <= std::numeric_limits<uint32_t>::max(), "labels: ", image.labels.size(),

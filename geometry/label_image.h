@@ -16,6 +16,8 @@ struct LabelImage {
     if (x < x_begin || y < y_begin || x >= x_begin + width || y >= y_begin + height) return 0;
     return labels[size_t(y - y_begin) * size_t(width) + size_t(x - x_begin)];
   }
+  /// The labels of a whole image, row-major.
+  [[nodiscard]] std::vector<uint8_t> Over(int image_width, int image_height) const;
 };
 
 /// The same as runs of equal labels, row after row: what a clip holds thousands of. A mask of a person who is 900 pixels

@@ -19,25 +19,13 @@ import pathlib
 import numpy as np
 
 from motion_descriptors import motion_file
-from pixels import decoded, write_numbered
+from pixels import decoded, masks, write_numbered
 from runs import call
 
 CLIPS = [("suit", 7, "aistpp/motions/gJS_sBM_cAll_d03_mJS2_ch07"), ("suit", 5, "aistpp/motions/gBR_sBM_cAll_d06_mBR2_ch06"),
          ("suit", 9, "motion/cmu_bvh/05_02"), ("skirt", 3, "motion/cmu_bvh/05_17"), ("coat", 11, "motion/cmu_bvh/05_06"),
          ("skirt", 12, "aistpp/motions/gJS_sBM_cAll_d03_mJS2_ch07"), ("suit", 15, "motion/cmu_bvh/05_02")]
 KINDS = {"network": ["--coarse-masks"], "cut": []}
-
-
-def masks(path):
-    """(T, height, width), true where the person is."""
-    with np.load(path) as mask:
-        width, height = mask["image_size"]
-        ends = np.cumsum(mask["mask_count"])
-        pictures = np.zeros((len(ends), height, width), bool)
-        for picture, box, count, end in zip(pictures, mask["mask_box"], mask["mask_count"], ends):
-            x, y, w, h = box
-            picture[y:y + h, x:x + w] = np.repeat(np.arange(count) % 2, mask["mask_runs"][end - count:end]).reshape(h, w)
-        return pictures
 
 
 def still_video(o, clip):
@@ -86,7 +74,7 @@ def main():
             mask, report = o.out / f"{clip.name}_{kind}.npz", o.out / f"{clip.name}_{kind}.json"
             call([o.bodyloom, "detect", "--video", str(video), "--mask", str(mask), "--json", str(report), *more], o.out / "log.txt")
             told = json.loads(report.read_text(encoding="utf-8"))
-            iou, least, missing, beside = score(masks(mask), truth)
+            iou, least, missing, beside = score(masks(mask) > 0, truth)
             name = kind if kind == "network" or told["masks_cut"] else "left as they are"
             lines.append(f"| {garment}, {motion.split('/')[-1]} | {name} | {iou:.4f} | {least:.3f} | {100 * missing:.2f} % | {100 * beside:.2f} % | "
                          f"{told['total_seconds']:.1f} |")

@@ -19,7 +19,7 @@ import sys
 
 import numpy as np
 
-from pixels import decoded, write
+from pixels import decoded, masks, write
 
 
 def scores(drawn, truth, mask, used):
@@ -34,18 +34,6 @@ def scores(drawn, truth, mask, used):
         psnr.append(-10 * np.log10(np.mean(((result - truth[t])[person] / 255) ** 2)))
         iou.append(((mask[t] > 0) & (alpha[..., 0] > 0.5)).sum() / person.sum())
     return np.median(psnr), np.percentile(psnr, 5), np.median(iou)
-
-
-def masks(path):
-    """(T, H, W), 1 where the person is: data_tools/observations/mask_runs.h."""
-    with np.load(path) as file:
-        width, height = file["image_size"]
-        pictures = np.zeros((len(file["mask_box"]), height, width), np.uint8)
-        ends, all_runs = np.cumsum(file["mask_count"]), file["mask_runs"]
-        for picture, (x, y, w, h), end, count in zip(pictures, file["mask_box"], ends, file["mask_count"]):
-            runs = all_runs[end - count:end]
-            picture[y:y + h, x:x + w] = np.repeat(np.arange(count) % 2, runs).reshape(h, w)
-    return pictures
 
 
 def main():

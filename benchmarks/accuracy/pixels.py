@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures and videos as NumPy arrays, by ffmpeg."""
+"""Pictures and videos as NumPy arrays, by ffmpeg; masks."""
 import subprocess
 
 import numpy as np
@@ -24,3 +24,15 @@ def write_numbered(folder, frames):
     height, width = frames[0].shape[:2]
     subprocess.run(["ffmpeg", "-v", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{width}x{height}", "-i", "-",
                     "-start_number", "0", str(folder / "%06d.png")], input=b"".join(f.tobytes() for f in frames), check=True)
+
+
+def masks(path):
+    """(T, H, W), 1 where the person is: data_tools/observations/mask_runs.h."""
+    with np.load(path) as file:
+        width, height = file["image_size"]
+        pictures = np.zeros((len(file["mask_box"]), height, width), np.uint8)
+        ends, all_runs = np.cumsum(file["mask_count"]), file["mask_runs"]
+        for picture, (x, y, w, h), end, count in zip(pictures, file["mask_box"], ends, file["mask_count"]):
+            runs = all_runs[end - count:end]
+            picture[y:y + h, x:x + w] = np.repeat(np.arange(count) % 2, runs).reshape(h, w)
+    return pictures

@@ -10,6 +10,7 @@
 #include <opencv2/imgproc/detail/gcgraph.hpp>
 
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/percentile.h"
 #include "bodyloom/render/image_mat.h"
 
 namespace bodyloom {
@@ -49,9 +50,8 @@ class MaskCut {
     const int margin = static_cast<int>(std::ceil(kRing * extent_)) + 1;
     window_ = cv::Rect(box.x - margin, box.y - margin, box.width + 2 * margin, box.height + 2 * margin) &
               cv::Rect(0, 0, picture.width, picture.height);
-    coarse_ = coarse(window_);
-    distance_ = SignedDistance(coarse_);
-    if (!others.empty()) distance_.setTo(-2 * kRing * extent_, others(window_) & ~coarse_);
+    distance_ = SignedDistance(coarse(window_));
+    if (!others.empty()) distance_.setTo(-2 * kRing * extent_, others(window_) & ~coarse(window_));
     FindGain(coarse);
     for (int y = 0; y < window_.height; ++y) {
       for (int x = 0; x < window_.width; ++x) {
@@ -129,9 +129,7 @@ class MaskCut {
     }
     for (int c = 0; c < 3; ++c) {
       if (ratios[c].size() < kFewestForGain) continue;
-      const auto middle = ratios[c].begin() + std::ptrdiff_t(ratios[c].size() / 2);
-      std::nth_element(ratios[c].begin(), middle, ratios[c].end());
-      gain_[c] = std::clamp(*middle, kLeastGain, kMostGain);
+      gain_[c] = std::clamp(Percentile(ratios[c], 50), kLeastGain, kMostGain);
     }
   }
 
@@ -157,7 +155,8 @@ class MaskCut {
   [[nodiscard]] double BackgroundCost(int x, int y) const {
     const double sigma = SigmaAt(x, y);
     const auto [square, shaded] = Differences(x, y);
-    const double peak = 1 / (std::pow(2 * std::numbers::pi, 1.5) * sigma * sigma * sigma);
+    static const double kPeak = 1 / std::pow(2 * std::numbers::pi, 1.5);
+    const double peak = kPeak / (sigma * sigma * sigma);
     const auto cost = [&](double of) {
       return -std::log((1 - kOutliers) * peak * std::exp(-of / (2 * sigma * sigma)) + kOutliers / kColours);
     };
@@ -235,7 +234,7 @@ class MaskCut {
   const ColourDensity& person_;
   double extent_ = 1;
   cv::Rect window_;
-  cv::Mat coarse_, distance_, nodes_;
+  cv::Mat distance_, nodes_;
   ColourDensity around_;
   std::array<double, 3> gain_ = {1, 1, 1};
 };

@@ -30,8 +30,8 @@
 namespace bodyloom {
 
 /// None where more than a tenth of what lies around the person is farther than 4 σ from the background: the camera has
-/// moved, or the light is another. `coarse` and `others` (other people's, or empty; what is theirs alone is not this
-/// person's): width·height, not 0 where the person is. Returns 1 in the new mask's box; of an empty coarse mask nothing.
+/// moved, or the light is another. `coarse` and `others` (other people's or everybody's, or empty; what `coarse` has
+/// not is not this person's): width·height, not 0 where the person is. Returns 1 in the new mask's box; of an empty coarse mask nothing.
 /// Throws std::invalid_argument when sizes differ.
 std::optional<LabelImage> CutFromBackground(const Image& picture, std::span<const uint8_t> coarse,
                                             std::span<const uint8_t> others, const StillBackground& background,

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <opencv2/imgproc.hpp>
 #include <optional>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -19,39 +19,14 @@ namespace {
 constexpr int kFewestFrames = 12, kMostSamples = 32;
 constexpr int64_t kSampleBytes = 256 << 20;
 constexpr double kMostLeft = 0.2;
-constexpr double kAround = 0.04;  ///< of a person's longer side: what a coarse mask may have left out
+constexpr double kAround = 0.04;  ///< of the longer side of a mask's rectangle: what it may have left out
 
-/// A mask over the whole picture.
-std::vector<uint8_t> Spread(const PackedLabels& packed, int width, int height) {
-  const LabelImage mask = packed.Unpacked();
-  std::vector<uint8_t> whole(size_t(width) * height, 0);
-  for (int y = std::max(0, -mask.y_begin); y < std::min(mask.height, height - mask.y_begin); ++y) {
-    for (int x = std::max(0, -mask.x_begin); x < std::min(mask.width, width - mask.x_begin); ++x) {
-      whole[size_t(y + mask.y_begin) * width + x + mask.x_begin] = mask.labels[size_t(y) * mask.width + x];
-    }
-  }
-  return whole;
-}
-
-/// Adds what lies within a square of `margin` pixels around the mask, by columns and then by rows.
-void Cover(const PackedLabels& packed, int width, int height, std::vector<uint8_t>* covered) {
-  const LabelImage mask = packed.Unpacked();
-  const int margin = 1 + static_cast<int>(kAround * std::max(mask.width, mask.height));
-  const std::vector<uint8_t> whole = Spread(packed, width, height);
-  std::vector<uint8_t> wide(whole.size(), 0);
-  const auto widen = [margin](const uint8_t* from, int count, int stride, uint8_t* to) {
-    int reach = -1;  // covered up to here
-    for (int i = 0; i < count; ++i) {
-      if (from[size_t(i) * stride] == 0) continue;
-      for (int k = std::max(reach + 1, i - margin); k <= std::min(count - 1, i + margin); ++k)
-        to[size_t(k) * stride] = 1;
-      reach = std::max(reach, std::min(count - 1, i + margin));
-    }
-  };
-  for (int x = 0; x < width; ++x) widen(whole.data() + x, height, width, wide.data() + x);
-  for (int y = 0; y < height; ++y) {
-    widen(wide.data() + size_t(y) * width, width, 1, covered->data() + size_t(y) * width);
-  }
+/// Adds what lies within a square of `margin` pixels around a pixel of the mask.
+void Cover(std::vector<uint8_t>* mask, int width, int height, int margin, std::vector<uint8_t>* covered) {
+  const cv::Mat around = cv::getStructuringElement(cv::MORPH_RECT, {2 * margin + 1, 2 * margin + 1});
+  cv::Mat wide, all(height, width, CV_8UC1, covered->data());
+  cv::dilate(cv::Mat(height, width, CV_8UC1, mask->data()), wide, around);
+  all |= wide;
 }
 
 class MaskCutter {
@@ -69,12 +44,12 @@ class MaskCutter {
     if (num_frames_ < kFewestFrames) return false;
     LearnBackground();
     if (!background_) return false;
-    const std::vector<std::vector<PackedLabels>> coarse = clip_->masks;
+    cut_ = clip_->masks;
     CutAll();
-    const auto left = std::count(left_.begin(), left_.end(), 1);
     // Now this way, now that: worse than coarse ones throughout.
-    if (double(left) > kMostLeft * num_frames_) clip_->masks = coarse;
-    return double(left) <= kMostLeft * num_frames_;
+    if (double(std::count(left_.begin(), left_.end(), 1)) > kMostLeft * num_frames_) return false;
+    clip_->masks = std::move(cut_);
+    return true;
   }
 
  private:
@@ -96,9 +71,12 @@ class MaskCutter {
       CoveredPicture& seen = pictures.emplace_back();
       seen.picture = std::exchange(frame, {});
       seen.covered.assign(size_t(width_) * height_, 0);
-      for (const PackedLabels& mask : masks) {
-        Cover(mask, width_, height_, &seen.covered);
-        AddClearInside(seen.picture, Spread(mask, width_, height_), &person_);
+      for (const PackedLabels& packed : masks) {
+        const LabelImage mask = packed.Unpacked();
+        std::vector<uint8_t> whole = mask.Over(width_, height_);
+        AddClearInside(seen.picture, whole, &person_);
+        const int margin = 1 + static_cast<int>(kAround * std::max(mask.width, mask.height));
+        Cover(&whole, width_, height_, margin, &seen.covered);
       }
     }
     background_ = FindStillBackground(pictures, {.num_threads = threads_});
@@ -117,7 +95,7 @@ class MaskCutter {
       }
       if (batch.empty()) return;
       ParallelFor(int(batch.size()), threads_,
-                  [&](int i) { left_[first + i] = CutFrame(batch[i], &clip_->masks[first + i]) ? 0 : 1; });
+                  [&](int i) { left_[first + i] = CutFrame(batch[i], &cut_[first + i]) ? 0 : 1; });
     }
   }
 
@@ -125,15 +103,13 @@ class MaskCutter {
   bool CutFrame(const Image& picture, std::vector<PackedLabels>* masks) const {
     bool all = true;
     std::vector<std::vector<uint8_t>> coarse;
-    for (const PackedLabels& mask : *masks) coarse.push_back(Spread(mask, width_, height_));
+    std::vector<uint8_t> everybody(size_t(width_) * height_, 0);
+    for (const PackedLabels& mask : *masks) {
+      coarse.push_back(mask.Unpacked().Over(width_, height_));
+      for (size_t p = 0; p < everybody.size(); ++p) everybody[p] |= coarse.back()[p];
+    }
     for (size_t i = 0; i < masks->size(); ++i) {
-      std::vector<uint8_t> others;
-      for (size_t k = 0; k < coarse.size(); ++k) {
-        if (k == i) continue;
-        others.resize(coarse[k].size(), 0);
-        for (size_t p = 0; p < others.size(); ++p) others[p] |= coarse[k][p];
-      }
-      const auto cut = CutFromBackground(picture, coarse[i], others, *background_, person_);
+      const auto cut = CutFromBackground(picture, coarse[i], everybody, *background_, person_);
       all = all && cut.has_value();
       if (cut) (*masks)[i] = *cut;
     }
@@ -146,6 +122,7 @@ class MaskCutter {
   const PipelineCallbacks& callbacks_;
   std::optional<StillBackground> background_;
   std::vector<char> left_ = std::vector<char>(size_t(num_frames_), 0);  ///< frames that were not cut
+  std::vector<std::vector<PackedLabels>> cut_;
   ColourDensity person_;  ///< of everybody: who is who the coarse masks say
 };
 

@@ -64,12 +64,7 @@ int MarginPx(const LabelImage& mask, double of_height) {
 }  // namespace
 
 std::vector<uint8_t> MaskInPicture(const FittedPhoto& photo) {
-  std::vector<uint8_t> mask;
-  mask.reserve(photo.picture.bgr.size() / 3);
-  for (int y = 0; y < photo.picture.height; ++y) {
-    for (int x = 0; x < photo.picture.width; ++x) mask.push_back(photo.mask.At(x, y));
-  }
-  return mask;
+  return photo.mask.Over(photo.picture.width, photo.picture.height);
 }
 
 PhotoPersonBuilder::PhotoPersonBuilder(std::shared_ptr<const BodyModel> bare, int texture_size, StageClock* clock,

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <vector>
 
 #include "bodyloom/geometry/observations.h"
 
@@ -16,6 +17,13 @@ void ExpectEqual(const LabelImage& a, const LabelImage& b) {
   EXPECT_EQ(a.width, b.width);
   EXPECT_EQ(a.height, b.height);
   EXPECT_EQ(a.labels, b.labels);
+}
+
+TEST(LabelImage, LiesOverAnImageOfAnySize) {
+  const LabelImage image{-1, 1, 3, 2, {1, 2, 3, 4, 5, 6}};
+  EXPECT_EQ(image.Over(3, 4), (std::vector<uint8_t>{0, 0, 0, 2, 3, 0, 5, 6, 0, 0, 0, 0}));
+  EXPECT_EQ(image.Over(1, 2), (std::vector<uint8_t>{0, 2}));
+  EXPECT_TRUE(image.Over(0, 0).empty());
 }
 
 TEST(PackedLabels, GivesBackWhatItWasGiven) {
