@@ -19,9 +19,16 @@ void RunTrainAvatar(const TrainAvatarRequest& request) {
               static_cast<long long>(summary.steps), summary.training_seconds,
               1e3 * summary.training_seconds / static_cast<double>(summary.steps > 0 ? summary.steps : 1),
               summary.gaussians, summary.loose, summary.loss);
+  if (summary.best_step > 0 && summary.best_step < summary.steps) {
+    std::printf("the person is that of step %lld, the best on the frames held out\n",
+                static_cast<long long>(summary.best_step));
+  }
   if (summary.cloth > 0) {
     std::printf("a garment %.0f cm long was found and is simulated; %d Gaussians lie on it\n",
                 100 * summary.garment_length_m, summary.cloth);
+  }
+  if (summary.landing_step > 0) {
+    std::cout << "ended early: more steps no longer helped the frames held out; --all-steps goes on\n";
   }
   if (summary.training) std::cout << "frames learned from, " << ScoresText(*summary.training) << "\n";
   if (summary.validation) std::cout << "frames held out, " << ScoresText(*summary.validation) << "\n";
@@ -74,6 +81,8 @@ void AddTrainAvatar(CLI::App& train, Action* action) {
           "motion: do not learn what the body's motion does to the person. garment: do not look for a skirt, dress or "
           "coat to simulate; cloth then follows the pose alone")
       ->check(CLI::IsMember({"motion", "garment"}));
+  verb->add_flag("--all-steps", request->all_steps,
+                 "Do not end earlier where more steps no longer help the frames held out");
   verb->add_flag("--refine", request->refine,
                  "Correct the poses of the frames learned from while the person is learned");
   verb->add_option(

@@ -17,6 +17,7 @@ namespace {
 constexpr const char* kAvatarFormat = "bodyloom avatar";
 constexpr int kAvatarVersion = 2, kVersionWithoutKinds = 1;
 constexpr int64_t kMostGaussians = 10000000, kMostShape = 1000, kMostPoses = 10000000, kMostNodes = 100000;
+constexpr double kMostLoss = 1e9, kMostSteps = 1e15;
 constexpr int kColumns = GaussianBody::kNumParameters, kInfluences = GaussianBody::kInfluences;
 
 NdArray FromTable(const FloatColumns& table) {
@@ -50,6 +51,15 @@ class AvatarArrays {
     std::vector<float> values = Take(key, DType::kF32, "float32", shape).ToFloats();
     if (!std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); })) {
       Fail(key, "numbers that are not finite");
+    }
+    return values;
+  }
+  /// Within low..high.
+  std::vector<double> Doubles(const std::string& key, const std::vector<int64_t>& shape, double low,
+                              double high) const {
+    const std::vector<double> values = Take(key, DType::kF64, "float64", shape).ToDoubles();
+    for (const double v : values) {
+      if (!(v >= low && v <= high)) Fail(key, Concatenate(v, ", expected ", low, " to ", high));
     }
     return values;
   }
@@ -89,6 +99,11 @@ class AvatarArrays {
     const double value = Take(key, DType::kF64, "float64", {}).ToDoubles()[0];
     if (!(value >= 0 && value < 1e15)) Fail(key, Concatenate(value, ", expected 0 or more"));
     return value;
+  }
+  int64_t Step(const std::string& key) const {
+    const double step = Number(key);
+    if (step != std::floor(step)) Fail(key, Concatenate(step, ", expected a whole number"));
+    return static_cast<int64_t>(step);
   }
   /// Rows of `parameters`, which must be there before memory is taken for them.
   int64_t NumRows() const {
@@ -209,6 +224,59 @@ PoseCorrections TakePoses(const AvatarArrays& arrays, const NpzArrays& npz, int 
   return poses;
 }
 
+void PutHeldOut(const HeldOutCurve& curve, NpzArrays* to) {
+  if (curve.losses.empty()) return;
+  const double landing[2] = {static_cast<double>(curve.landing_step), curve.landing_progress};
+  (*to)["held_out"] = NdArray::FromDoubles(curve.losses.data(), {static_cast<int64_t>(curve.losses.size())});
+  (*to)["held_out_landing"] = NdArray::FromDoubles(landing, {2});
+}
+
+HeldOutCurve TakeHeldOut(const AvatarArrays& arrays, const NpzArrays& npz) {
+  HeldOutCurve curve;
+  if (!npz.contains("held_out") && !npz.contains("held_out_landing")) return curve;
+  const NdArray& losses = RequireArray(npz, "held_out", arrays.where());
+  curve.losses = arrays.Doubles("held_out", {losses.shape.empty() ? 0 : losses.shape[0]}, 0, kMostLoss);
+  const std::vector<double> landing = arrays.Doubles("held_out_landing", {2}, 0, kMostSteps);
+  if (landing[0] != std::floor(landing[0]) || landing[1] > 1) {
+    arrays.Fail("held_out_landing",
+                Concatenate(landing[0], ", ", landing[1], ", expected a whole step and a progress up to 1"));
+  }
+  curve.landing_step = static_cast<int64_t>(landing[0]), curve.landing_progress = landing[1];
+  return curve;
+}
+
+constexpr const char* kBest = "best_";
+
+void PutKept(const AvatarFile& avatar, const KeptAvatar& kept, NpzArrays* to) {
+  NpzArrays best;
+  PutAvatar(avatar, kept.body, &best);
+  if (avatar.motion) PutMotion(*avatar.motion, kept.motion, &best);
+  for (auto& [key, array] : best) (*to)[kBest + key] = std::move(array);
+  (*to)["best_step"] = NdArray::FromDouble(static_cast<double>(kept.step));
+  (*to)["best_loss"] = NdArray::FromDouble(kept.loss);
+}
+
+/// What is kept must be of the same person, network and garment as what goes on.
+void TakeKept(const NpzArrays& npz, const std::string& where, AvatarCheckpoint* to) {
+  NpzArrays best;
+  for (const auto& [key, array] : npz) {
+    if (key.starts_with(kBest)) best[key.substr(std::string(kBest).size())] = array;
+  }
+  if (best.empty()) return;
+  const AvatarArrays arrays(npz, where);
+  AvatarFile avatar = AvatarFromArrays(best, where + ": " + kBest);
+  const AvatarFile& own = to->avatar;
+  if (avatar.num_bones() != own.num_bones() || avatar.num_vertices != own.num_vertices ||
+      avatar.num_faces != own.num_faces || avatar.motion.has_value() != own.motion.has_value() ||
+      (own.motion && avatar.motion->options != own.motion->options)) {
+    arrays.Fail("best_body_size", "another body, garment or network than the person's beside it");
+  }
+  KeptAvatar& kept = to->state.kept.emplace();
+  kept.body = std::move(avatar.body);
+  if (avatar.motion) kept.motion = std::move(avatar.motion->parameters);
+  kept.step = arrays.Step("best_step"), kept.loss = arrays.Number("best_loss");
+}
+
 std::optional<AvatarMotionFile> TakeMotion(const AvatarArrays& arrays, const NpzArrays& npz) {
   const auto is_motion = [](const auto& entry) { return entry.first.starts_with("motion_"); };
   if (std::none_of(npz.begin(), npz.end(), is_motion)) return std::nullopt;
@@ -280,6 +348,8 @@ void WriteAvatarCheckpoint(const std::string& path, const AvatarCheckpoint& chec
   PutAdam(state.adam, "adam", &arrays);
   PutAdam(state.light_adam, "light", &arrays);
   PutPoses(state.poses, &arrays);
+  PutHeldOut(state.held_out, &arrays);
+  if (state.kept) PutKept(checkpoint.avatar, *state.kept, &arrays);
   if (checkpoint.avatar.motion) {
     PutMotion(*checkpoint.avatar.motion, state.motion, &arrays);
     PutAdam(state.motion_adam, "motion", &arrays);
@@ -338,10 +408,10 @@ AvatarCheckpoint AvatarCheckpointFromArrays(const NpzArrays& npz, const std::str
     state.motion_adam = TakeAdam(arrays, "motion", 1, state.motion.rows());
   }
   state.poses = TakePoses(arrays, npz, checkpoint.avatar.num_joints);
+  state.held_out = TakeHeldOut(arrays, npz);
+  TakeKept(npz, where, &checkpoint);
   state.pull = arrays.Floats("pull", {count});
-  const double step = arrays.Number("step");
-  if (step != std::floor(step)) arrays.Fail("step", Concatenate(step, ", expected a whole number"));
-  state.step = static_cast<int64_t>(step);
+  state.step = arrays.Step("step");
   state.seconds = arrays.Number("seconds");
   checkpoint.options = arrays.Text("options");
   return checkpoint;

@@ -14,6 +14,9 @@
 ///   adam_first, adam_second N×23 float32   adam_steps N int32    pull N float32    step, seconds float64
 ///   light_first, light_second 27 float32   light_steps 27 int32  options text: what the training was begun with
 /// with a network of the motion also motion_first, motion_second P×1 float32 and motion_steps P int32,
+/// where frames held out were judged (render/avatar/learning/held_out_curve.h) also
+///   held_out K float64 (losses)            held_out_landing float64 [step, progress]; 0, 0: it does not land
+///   best_…: the person that is kept, keys as above with best_ before them      best_step, best_loss float64
 /// where it refines the poses of a clip of T frames (render/avatar/learning/pose_refiner.h) also
 ///   pose_values, pose_mean T×(3J + 3) float32     pose_square T float32     pose_steps T int32
 /// All numbers are finite. Files of version 1, which have is_loose (0, 1) in place of kinds and no garment, are read too.

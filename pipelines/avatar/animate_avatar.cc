@@ -95,7 +95,7 @@ class AvatarAnimation {
       motion.track = request_.motion != nullptr ? *request_.motion : ReadTrack(request_.track);
     }
     shown_.emplace(*avatar_, std::move(motion), threads_, callbacks_);
-    if (clip_ && avatar_->file.garment) clip_->Wear(shown_->garment());
+    if (clip_ && avatar_->file.garment) clip_->Wear({shown_->garment()});
     if (request_.report.empty()) return;
     const Track& track = shown_->track();
     if (track.camera.model != CameraModel::kPinhole) {

@@ -53,6 +53,13 @@ void AvatarClip::OpenVideo() {
   CheckSize(request_.data, info.num_frames > 0 ? info.num_frames : track_.num_frames(), info.width, info.height);
 }
 
+void AvatarClip::Wear(std::vector<GarmentBones> runs) {
+  BODYLOOM_CHECK(!runs.empty(), "a garment to wear: no run of its simulation");
+  posed_->Wear(std::move(runs[0]));
+  runs.erase(runs.begin());
+  other_runs_ = std::move(runs);
+}
+
 void AvatarClip::CheckSize(const std::string& file, int num_frames, int width, int height) const {
   const std::string track = request_.track.empty() ? request_.data + "/track.npz" : request_.track;
   if (num_frames < track_.num_frames()) {
@@ -73,6 +80,7 @@ TrainingView AvatarClip::CutView(int t, const Image& picture, const PersonAt& pe
   view.time = t;
   view.camera = posed_->CameraAt(t);
   posed_->MakeFrame(t, &view.frame);
+  for (const GarmentBones& run : other_runs_) view.other_cloth.push_back(posed_->SeenCloth(t, run));
   return view;
 }
 

@@ -39,8 +39,9 @@ class AvatarClip {
   /// Where the person is in a frame with a result, near the tracked body. Throws std::runtime_error when it cannot be read.
   [[nodiscard]] LabelImage MaskAt(int t) const;
 
-  /// From now on views have the bones of a garment, of every frame of the track.
-  void Wear(GarmentBones bones) { posed_->Wear(std::move(bones)); }
+  /// From now on views have the bones of a garment, of every frame of the track: those of the first run, and those of all
+  /// others as TrainingView::other_cloth. At least one run.
+  void Wear(std::vector<GarmentBones> runs);
 
   /// The views of these frames (rising), windows `margin` pixels around the person and, where `with_body`, around the
   /// tracked body. A frame without a result or without the person has an empty window. Throws std::runtime_error when
@@ -60,6 +61,7 @@ class AvatarClip {
   std::optional<PartLabelSequence> mask_;
   Track track_;
   std::unique_ptr<PosedAvatar> posed_;
+  std::vector<GarmentBones> other_runs_;
 };
 
 }  // namespace bodyloom

@@ -37,12 +37,20 @@ void PosedAvatar::Wear(GarmentBones bones, std::vector<int> shown) {
   shown_ = std::move(shown);
 }
 
+CameraPose PosedAvatar::CameraPoseAt(int t) const {
+  const Eigen::Matrix3d turn = posed_.Turn(t);
+  const Eigen::Vector3d root = posed_.Root(t);
+  return {turn, root - turn * root};
+}
+
+std::vector<float> PosedAvatar::SeenCloth(int t, const GarmentBones& run) const {
+  return SeenBones(run.of_frame.at(t), CameraPoseAt(t));
+}
+
 void PosedAvatar::MakeFrame(int t, AvatarFrame* frame) const {
   const Motion& motion = track_.motion;
   const BodyPose pose = PoseFromAxisAngle(body_, motion.poses.row(t).transpose(), motion.trans.row(t).transpose());
-  const Eigen::Matrix3d turn = posed_.Turn(t);
-  const Eigen::Vector3d root = posed_.Root(t);
-  const CameraPose camera = {turn, root - turn * root};
+  const CameraPose camera = CameraPoseAt(t);
   frames_.Make(pose, camera, num_threads_, frame);
   if (garment_.of_frame.empty()) return;
   AppendBones(garment_.of_frame.at(shown_.empty() ? t : shown_[t]), garment_.as_sewn, camera, frame);

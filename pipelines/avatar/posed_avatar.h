@@ -30,6 +30,8 @@ class PosedAvatar {
 
   /// Of a frame with a result.
   void MakeFrame(int t, AvatarFrame* frame) const;
+  /// Bones of another run of the garment in frame t, as MakeFrame() appends those of the one that is worn.
+  [[nodiscard]] std::vector<float> SeenCloth(int t, const GarmentBones& run) const;
   [[nodiscard]] Camera CameraAt(int t) const;
   /// What the bare body spans, grown by `share` of its longer side; clipped to the picture.
   [[nodiscard]] PixelBox BoxAt(int t, double share) const;
@@ -37,6 +39,7 @@ class PosedAvatar {
   [[nodiscard]] AvatarView ViewAt(int t) const;
 
  private:
+  [[nodiscard]] CameraPose CameraPoseAt(int t) const;
   const BodyModel& body_;
   const Track& track_;
   PosedTrack posed_;

@@ -46,6 +46,7 @@ constexpr int kMetricsEvery = 50;          ///< steps a line of metrics.csv
 constexpr size_t kLossSteps = 100;         ///< that the loss is the mean of
 constexpr int kScoredFrames = 64;          ///< of either kind, at most
 constexpr int kHeldOutShown = 4;
+constexpr int kClothRuns = 3;  ///< of the garment's simulation, that are learned from in turn
 constexpr int64_t kMostSteps = 100000000;
 
 std::string InRun(const std::string& run, const char* name) { return (fs::path(run) / name).string(); }
@@ -73,9 +74,13 @@ class AvatarTraining {
     clock_.Begin("garment");
     Dress();
     clock_.Begin("read");
-    views_ = clip_->ReadViews(split_.train, kTrainingMargin, true, callbacks_);
-    clock_.Begin("begin");
     options_ = Options();
+    views_ = clip_->ReadViews(split_.train, kTrainingMargin, true, callbacks_);
+    if (IsWatched()) {
+      held_out_ =
+          clip_->ReadViews(Spread(split_.validation, options_.held_out.frames), kTrainingMargin, true, callbacks_);
+    }
+    clock_.Begin("begin");
     if (request_.motion) {
       MotionNetworkOptions network;
       network.maps = AvatarMotionMaps::kChannels;
@@ -126,6 +131,7 @@ class AvatarTraining {
                                    {"loose", request_.loose},   {"train", split_.train},
                                    {"data", request_.clip.data}};
     if (request_.refine) json["refine"] = true;  // runs of earlier versions name neither
+    if (request_.all_steps) json["all_steps"] = true;
     if (request_.motion) json["motion"] = true;
     if (request_.garment) json["garment"] = true;
     return json.dump();
@@ -147,7 +153,7 @@ class AvatarTraining {
     }
     if (!garment) return;
     worn_.emplace(CutAnew(clip_->body(), betas, *garment, AvatarCheckpointPath(request_.out)));
-    clip_->Wear(worn_->Along(clip_->track(), callbacks_));
+    clip_->Wear(worn_->RunsAlong(clip_->track(), kClothRuns, request_.clip.threads, callbacks_));
   }
 
   void Begin() {
@@ -184,8 +190,8 @@ class AvatarTraining {
     checkpoint_ = ReadAvatarCheckpoint(path);
     if (checkpoint_.options != OptionsText()) {
       throw RequestError(path +
-                         ": was begun with other data, frames, steps, minutes, seed, --skin, --loose, --refine or "
-                         "--without; config.json beside it says with which");
+                         ": was begun with other data, frames, steps, minutes, seed, --skin, --loose, --refine, "
+                         "--all-steps or --without; config.json beside it says with which");
     }
     std::string why;
     const int nodes = checkpoint_.avatar.num_bones() - checkpoint_.avatar.num_joints;
@@ -208,6 +214,9 @@ class AvatarTraining {
   /// Of the whole job, to report by.
   [[nodiscard]] double LearningShare() const { return request_.refined_track.empty() ? 1 : 0.5; }
 
+  /// With corrected poses the person gets better in those alone, and frames held out have none.
+  [[nodiscard]] bool IsWatched() const { return !request_.all_steps && !request_.refine; }
+
   [[nodiscard]] MotionLesson MotionToLearn() {
     if (!motion_) return {};
     return {&*motion_, [this](int time, std::span<float> maps) { maps_->Maps(time, maps); }};
@@ -216,8 +225,9 @@ class AvatarTraining {
   void Train() {
     AvatarTrainer trainer(clip_->body().data().faces, views_, options_, request_.refine ? &*refiner_ : nullptr,
                           MotionToLearn());
+    trainer.Watch(held_out_);
     AvatarTrainingState& state = checkpoint_.state;
-    if (metrics_.empty()) metrics_ = "step,loss,cost,drawn,relocated,seconds\n";
+    if (metrics_.empty()) metrics_ = "step,loss,cost,drawn,relocated,held_out,seconds\n";
     std::deque<double> losses;
     double kept_at = state.seconds;
     int relocated = 0;
@@ -230,8 +240,9 @@ class AvatarTraining {
       relocated += step.relocated;
       summary_.loss = std::accumulate(losses.begin(), losses.end(), 0.0) / static_cast<double>(losses.size());
       if (state.step % kMetricsEvery == 0) {
+        const std::vector<double>& held_out = state.held_out.losses;
         metrics_ += Concatenate(state.step, ",", summary_.loss, ",", step.cost, ",", step.drawn, ",", relocated, ",",
-                                Fixed(state.seconds, 2), "\n");
+                                held_out.empty() ? "" : Fixed(held_out.back(), 6), ",", Fixed(state.seconds, 2), "\n");
         relocated = 0;
       }
       if (!callbacks_.GoesOn("loss " + Fixed(summary_.loss, 4), LearningShare() * trainer.Progress(state))) {
@@ -249,8 +260,8 @@ class AvatarTraining {
   void WriteRun() {
     WriteAvatarCheckpoint(AvatarCheckpointPath(request_.out), checkpoint_);
     AvatarFile avatar = checkpoint_.avatar;
-    avatar.body = checkpoint_.state.body;
-    if (avatar.motion) avatar.motion->parameters = checkpoint_.state.motion;
+    avatar.body = checkpoint_.state.ResultBody();
+    if (avatar.motion) avatar.motion->parameters = checkpoint_.state.ResultMotion();
     WriteAvatar(AvatarPath(request_.out), avatar);
     WriteFileAtomically(MetricsPath(), metrics_);
   }
@@ -267,8 +278,9 @@ class AvatarTraining {
     options.learn_person = false, options.refine_from = 0;
     options.steps = request_.refine_rounds * shown, options.seconds = 0;
     AvatarTrainer trainer(clip_->body().data().faces, views_, options, &*refiner_, MotionToLearn());
-    AvatarTrainingState state = checkpoint_.state;
-    state.step = 0;
+    AvatarTrainingState state = AvatarTrainingState::Of(checkpoint_.state.ResultBody());
+    if (motion_) state.BeginMotion(checkpoint_.state.ResultMotion());
+    state.poses = checkpoint_.state.poses;
     if (state.poses.values.rows() == 0) state.poses.Reset(refiner_->num_frames(), refiner_->num_joints());
     while (!trainer.IsDone(state)) {
       trainer.Step(&state);
@@ -292,12 +304,13 @@ class AvatarTraining {
     std::vector<Image> sheet;
     GaussianOffsets offsets;
     std::vector<float> maps(motion_ ? motion_->num_values() : 0);
-    if (motion_) motion_->Anchor(checkpoint_.state.body);
+    const GaussianBody& body = checkpoint_.state.ResultBody();
+    if (motion_) motion_->Anchor(body);
     for (size_t i = 0; i < views.size(); ++i) {
       if (views[i].window.empty()) continue;
       if (motion_) {
         maps_->Maps(views[i].time, maps);
-        motion_->Compute(checkpoint_.state.motion, maps, request_.clip.threads, &offsets);
+        motion_->Compute(checkpoint_.state.ResultMotion(), maps, request_.clip.threads, &offsets);
       }
       AvatarView view;
       view.camera = views[i].camera, view.window = views[i].window;
@@ -307,7 +320,7 @@ class AvatarTraining {
         refiner_->MakeFrame(views[i].time, poses, request_.clip.threads, &frame);
         CarryBones(views[i].frame, &frame);
       }
-      painter.Draw(checkpoint_.state.body, clip_->body().data().faces, frame, offsets, view);
+      painter.Draw(body, clip_->body().data().faces, frame, offsets, view);
       scorer.Add(views[i], painter.picture(), GarmentIn(&painter));
       if (preview == nullptr || !std::binary_search(shown.begin(), shown.end(), static_cast<int>(i))) continue;
       sheet.push_back(TrueWindow(views[i]));
@@ -323,7 +336,7 @@ class AvatarTraining {
 
   std::vector<float> GarmentIn(AvatarPainter* painter) const {
     if (!worn_) return {};
-    return painter->ShareOf(GaussianKind::kCloth, checkpoint_.state.body);
+    return painter->ShareOf(GaussianKind::kCloth, checkpoint_.state.ResultBody());
   }
 
   void Judge() {
@@ -343,16 +356,19 @@ class AvatarTraining {
                                          {"steps", request_.steps},         {"minutes", request_.minutes},
                                          {"skin_side", request_.skin_side}, {"loose", request_.loose},
                                          {"seed", request_.seed},           {"refine", request_.refine},
-                                         {"motion", request_.motion},       {"garment", request_.garment}};
+                                         {"motion", request_.motion},       {"garment", request_.garment},
+                                         {"all_steps", request_.all_steps}};
     WriteFileAtomically(RunConfigPath(request_.out), json.dump(1) + "\n");
   }
 
   TrainAvatarSummary Finish() {
     const AvatarTrainingState& state = checkpoint_.state;
     summary_.steps = state.step;
+    summary_.landing_step = state.held_out.landing_step;
+    summary_.best_step = state.kept ? state.kept->step : 0;
     summary_.training_seconds = state.seconds;
-    summary_.gaussians = state.body.size();
-    const std::vector<GaussianKind>& kinds = state.body.kinds;
+    summary_.gaussians = state.ResultBody().size();
+    const std::vector<GaussianKind>& kinds = state.ResultBody().kinds;
     summary_.loose = static_cast<int>(std::count(kinds.begin(), kinds.end(), GaussianKind::kLoose));
     summary_.cloth = static_cast<int>(std::count(kinds.begin(), kinds.end(), GaussianKind::kCloth));
     if (checkpoint_.avatar.garment) summary_.garment_length_m = checkpoint_.avatar.garment->cut.length_m;
@@ -362,6 +378,8 @@ class AvatarTraining {
     nlohmann::ordered_json json = {{"steps", summary_.steps},         {"training_seconds", summary_.training_seconds},
                                    {"gaussians", summary_.gaussians}, {"loose", summary_.loose},
                                    {"loss", summary_.loss},           {"seconds", ToJson(summary_.seconds)}};
+    if (summary_.best_step > 0) json["best_step"] = summary_.best_step;
+    if (summary_.landing_step > 0) json["landing_step"] = summary_.landing_step;
     if (summary_.cloth > 0) json["cloth"] = summary_.cloth;
     if (!garment_report_.is_null()) json["garment"] = garment_report_;
     if (summary_.training) json["training"] = ToJson(*summary_.training);
@@ -378,7 +396,7 @@ class AvatarTraining {
   StageClock clock_;
   std::optional<AvatarClip> clip_;
   TrainingSplit split_;
-  std::vector<TrainingView> views_;
+  std::vector<TrainingView> views_, held_out_;
   AvatarTrainerOptions options_;
   std::optional<PoseRefiner> refiner_;
   std::optional<AvatarMotion> motion_;

@@ -22,6 +22,9 @@ struct TrainAvatarRequest {
   double minutes = 0;                        ///< above 0: it takes so long instead
   int skin_side = 176;                       ///< texels of a side of the atlas that skin Gaussians lie on
   int loose = 16000;                         ///< Gaussians off the skin, at most
+  /// Do not end earlier where more steps no longer help the frames for validation (render/avatar/learning/held_out_curve.h).
+  /// Without such frames, and with `refine`, no training does.
+  bool all_steps = false;
   uint64_t seed = 1;
   /// Learn what the motion of the body's surface does to the person (render/avatar/motion/motion_network.h).
   bool motion = true;
@@ -39,6 +42,8 @@ struct TrainAvatarRequest {
 struct TrainAvatarSummary {
   bool stopped = false;  ///< cancelled; the run can be gone on with
   int64_t steps = 0;
+  int64_t landing_step = 0;  ///< since when it was brought to an early end; 0: it was not
+  int64_t best_step = 0;  ///< after which the person was best on frames held out, as it is left; 0: nobody asked them
   double training_seconds = 0;  ///< in steps, over all sittings
   int gaussians = 0, loose = 0, cloth = 0;
   double garment_length_m = 0;                       ///< of what was found; 0: none

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/pipelines/avatar/worn_garment.h"
 
+#include <memory>
 #include <stdexcept>
 
 #include "bodyloom/geometry/bake_shape.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/pipelines/person/person_cloth.h"
 #include "bodyloom/pipelines/person/photo_person.h"
 #include "bodyloom/render/avatar/cloth_bones.h"
@@ -28,13 +30,22 @@ WornGarment::WornGarment(const BodyModel& body, const Eigen::VectorXd& betas, co
       nodes_(mesh_, garment.node_spacing_m) {}
 
 GarmentBones WornGarment::Along(const Track& track, const PipelineCallbacks& callbacks) const {
+  return std::move(RunsAlong(track, 1, 1, callbacks)[0]);
+}
+
+std::vector<GarmentBones> WornGarment::RunsAlong(const Track& track, int runs, int num_threads,
+                                                 const PipelineCallbacks& callbacks) const {
   const Track moved = OfBakedBody(track);
-  PersonCloth cloth(clothed_, mesh_, moved);
-  GarmentBones bones;
-  bones.as_sewn = nodes_.places();
+  std::vector<std::unique_ptr<PersonCloth>> cloth;
+  std::vector<GarmentBones> bones(runs);
+  for (int r = 0; r < runs; ++r) {
+    cloth.push_back(std::make_unique<PersonCloth>(clothed_, mesh_, moved, PersonClothOptions{.run = r}));
+    bones[r].as_sewn = nodes_.places();
+  }
   for (int t = 0; t < track.num_frames(); ++t) {
     callbacks.Update("simulating the garment", 0);
-    bones.of_frame.push_back(BonesOfCloth(nodes_, nodes_.Move(cloth.At(t))));
+    ParallelFor(runs, num_threads,
+                [&](int r) { bones[r].of_frame.push_back(BonesOfCloth(nodes_, nodes_.Move(cloth[r]->At(t)))); });
   }
   return bones;
 }

@@ -31,6 +31,9 @@ class WornGarment {
   /// The garment on the person in the track's motion, whatever shape the track's body has. Frames without a result go on
   /// as the frame before them. Throws std::invalid_argument as ClothRun, Cancelled.
   [[nodiscard]] GarmentBones Along(const Track& track, const PipelineCallbacks& callbacks) const;
+  /// So many runs of it (geometry/cloth/cloth_runs.h), the first as above; 1 to kMostClothRuns.
+  [[nodiscard]] std::vector<GarmentBones> RunsAlong(const Track& track, int runs, int num_threads,
+                                                    const PipelineCallbacks& callbacks) const;
 
  private:
   BodyModel clothed_;

@@ -5,6 +5,7 @@
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/cloth/body_with_garment.h"
+#include "bodyloom/geometry/cloth/cloth_runs.h"
 #include "bodyloom/render/overlay.h"
 #include "bodyloom/render/person/garment_swing.h"
 
@@ -26,12 +27,13 @@ Motion WithoutGaps(Motion motion) {
 }
 
 /// At rest sooner than a simulation that begins a dataset: a person is shown, and someone waits.
-ClothRunOptions OptionsFor(const Track& track, double swing_rad) {
+ClothRunOptions OptionsFor(const Track& track, const PersonClothOptions& shown) {
   ClothRunOptions options;
-  options.up = SwungUp(track, swing_rad);
+  options.up = SwungUp(track, shown.swing_rad);
   options.tick_s = 1.0 / 30;
   options.move_in_s = 0.8;
   options.settle_s = 0.8;
+  options.cloth = OfRun(options.cloth, shown.run);
   return options;
 }
 
@@ -40,11 +42,12 @@ ClothRunOptions OptionsFor(const Track& track, double swing_rad) {
 PersonCloth::PersonCloth(const PhotoPerson& person, const Track& moved)
     : PersonCloth(*person.clothed, person.garment, moved) {}
 
-PersonCloth::PersonCloth(const BodyModel& clothed, const LooseGarment& garment, const Track& moved, double swing_rad) {
+PersonCloth::PersonCloth(const BodyModel& clothed, const LooseGarment& garment, const Track& moved,
+                         const PersonClothOptions& options) {
   if (garment.empty()) return;
   wearer_.emplace(clothed, moved.motion.betas, std::vector<double>());
   wearer_->Wear(garment);
-  run_.emplace(*wearer_, WithoutGaps(moved.motion), OptionsFor(moved, swing_rad));
+  run_.emplace(*wearer_, WithoutGaps(moved.motion), OptionsFor(moved, options));
 }
 
 const std::vector<Eigen::Vector3d>& PersonCloth::At(int t) {

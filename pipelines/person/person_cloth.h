@@ -15,6 +15,11 @@
 
 namespace bodyloom {
 
+struct PersonClothOptions {
+  double swing_rad = 0;  ///< how far the cloth is swung (render/person/garment_swing.h)
+  int run = 0;           ///< which of several runs of the simulation (geometry/cloth/cloth_runs.h)
+};
+
 /// Borrows the clothed body.
 class PersonCloth {
  public:
@@ -22,8 +27,8 @@ class PersonCloth {
   /// std::invalid_argument as ClothRun does.
   PersonCloth(const PhotoPerson& person, const Track& moved);
   /// A garment as a photo shows it, on the clothed body of that photo, which has the faces of the one it was cut for.
-  /// `swing_rad`: how far the cloth is swung (render/person/garment_swing.h).
-  PersonCloth(const BodyModel& clothed, const LooseGarment& garment, const Track& moved, double swing_rad = 0);
+  PersonCloth(const BodyModel& clothed, const LooseGarment& garment, const Track& moved,
+              const PersonClothOptions& options = {});
   PersonCloth(const PersonCloth&) = delete;
   PersonCloth& operator=(const PersonCloth&) = delete;
 

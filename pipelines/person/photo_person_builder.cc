@@ -153,8 +153,8 @@ void PhotoPersonBuilder::Add(const FittedPhoto& photo) {
   MatrixX3d vertices(person_.body->num_vertices(), 3);
   vertices.topRows(clothed->num_vertices()) = TrackVertices(*clothed, track, 0);
   if (!person_.garment.empty()) {
-    PlaceGarment(person_.garment, PersonCloth(*clothed, person_.garment, track, index == 0 ? swing_rad_ : 0).At(0),
-                 &vertices);
+    const PersonClothOptions hanging = {.swing_rad = index == 0 ? swing_rad_ : 0};
+    PlaceGarment(person_.garment, PersonCloth(*clothed, person_.garment, track, hanging).At(0), &vertices);
   }
   const int seen =
       extractor_->Add(InEvenLight(photo, vertices), vertices, track.CameraAt(0), index, UsablePixels(photo, vertices));

@@ -399,6 +399,7 @@ class Avatar:
         seed: int = 1,
         motion: bool = True,
         garment: bool = True,
+        all_steps: bool = False,
         refine: bool = False,
         refined_track: _Path | None = None,
         resume: bool = False,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/render/avatar/cloth_bones.h"
 
+#include <algorithm>
+
 #include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
@@ -36,13 +38,28 @@ std::vector<float> BonesOfCloth(const ClothNodes& nodes, const MovedNodes& moved
   return bones;
 }
 
+std::vector<float> SeenBones(std::span<const float> bones, const CameraPose& camera) {
+  BODYLOOM_CHECK(bones.size() % 12 == 0, "bones of cloth: ", bones.size(), " numbers, expected a multiple of 12");
+  const Eigen::Matrix3f R = camera.camera_from_world_rotation.cast<float>();
+  const Eigen::Vector3f t = camera.camera_from_world_translation.cast<float>();
+  std::vector<float> seen;
+  seen.reserve(bones.size());
+  for (size_t k = 0; k < bones.size() / 12; ++k) Append(TakenOn(R, t, BoneAt(bones.data(), k)), &seen);
+  return seen;
+}
+
+void ReplaceLastBones(std::span<const float> seen, AvatarFrame* frame) {
+  BODYLOOM_CHECK(seen.size() <= frame->bones.size(), "bones of cloth: ", seen.size(), " numbers for the place of ",
+                 frame->bones.size());
+  std::copy(seen.begin(), seen.end(), frame->bones.end() - static_cast<std::ptrdiff_t>(seen.size()));
+}
+
 void AppendBones(std::span<const float> bones, const MatrixX3d& as_sewn, const CameraPose& camera, AvatarFrame* frame) {
   const Eigen::Index count = as_sewn.rows(), joints = frame->rest_joints.rows();
   BODYLOOM_CHECK(bones.size() == 12 * static_cast<size_t>(count), "bones of cloth: ", bones.size(),
                  " numbers, expected ", 12 * count);
-  const Eigen::Matrix3f R = camera.camera_from_world_rotation.cast<float>();
-  const Eigen::Vector3f t = camera.camera_from_world_translation.cast<float>();
-  for (Eigen::Index k = 0; k < count; ++k) Append(TakenOn(R, t, BoneAt(bones.data(), k)), &frame->bones);
+  const std::vector<float> seen = SeenBones(bones, camera);
+  frame->bones.insert(frame->bones.end(), seen.begin(), seen.end());
   frame->rest_joints.conservativeResize(joints + count, 3);
   frame->rest_joints.bottomRows(count) = as_sewn.cast<float>();
 }

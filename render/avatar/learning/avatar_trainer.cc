@@ -9,6 +9,7 @@
 #include "bodyloom/geometry/base/hash_random.h"
 #include "bodyloom/geometry/base/in_range.h"
 #include "bodyloom/render/avatar/cloth_bones.h"
+#include "bodyloom/render/contact_sheet.h"
 
 namespace bodyloom {
 namespace {
@@ -37,11 +38,12 @@ float PixelsAlone(const FloatColumns& screen, int row) {
 bool AvatarTrainerOptions::IsValid(std::string* why) const {
   const InRange in_range(why);
   return in_range("steps", static_cast<double>(steps), 1, 1e8) && in_range("seconds", seconds, 0, 1e8) &&
-         rates.IsValid(why) && scales.IsValid(why) && in_range("cost by opacity", cost.by_opacity, 0, 1e3) &&
-         in_range("cost by scale", cost.by_scale, 0, 1e3) && in_range("cost by distance", cost.by_distance, 0, 1e3) &&
-         in_range("relocate_every", relocate_every, 0, 1e8) && in_range("least_seen", least_seen, 0, 1) &&
-         in_range("refine_from", refine_from, 0, 1) && in_range("relocate_until", relocate_until, 0, 1) &&
-         in_range("dead_opacity", dead_opacity, 0, 0.99) && in_range("num_threads", num_threads, 1, 1024);
+         rates.IsValid(why) && scales.IsValid(why) && held_out.IsValid(why) &&
+         in_range("cost by opacity", cost.by_opacity, 0, 1e3) && in_range("cost by scale", cost.by_scale, 0, 1e3) &&
+         in_range("cost by distance", cost.by_distance, 0, 1e3) && in_range("relocate_every", relocate_every, 0, 1e8) &&
+         in_range("least_seen", least_seen, 0, 1) && in_range("refine_from", refine_from, 0, 1) &&
+         in_range("relocate_until", relocate_until, 0, 1) && in_range("dead_opacity", dead_opacity, 0, 0.99) &&
+         in_range("num_threads", num_threads, 1, 1024);
 }
 
 AvatarTrainingState AvatarTrainingState::Of(GaussianBody body) {
@@ -74,7 +76,19 @@ AvatarTrainer::AvatarTrainer(const MatrixX3i& faces, std::span<const TrainingVie
 
 double AvatarTrainer::Progress(const AvatarTrainingState& state) const {
   const double by_steps = static_cast<double>(state.step) / static_cast<double>(options_.steps);
-  return std::min(1.0, options_.seconds > 0 ? std::max(by_steps, state.seconds / options_.seconds) : by_steps);
+  const double by_time = options_.seconds > 0 ? state.seconds / options_.seconds : 0;
+  return std::min(1.0, std::max({by_steps, by_time, state.held_out.Progress(state.step, options_.held_out)}));
+}
+
+void AvatarTrainer::Watch(std::span<const TrainingView> held_out) {
+  std::vector<const TrainingView*> shown;
+  for (const TrainingView& view : held_out) {
+    if (!view.window.empty() && view.person_pixels > 0) shown.push_back(&view);
+  }
+  held_out_.clear();
+  for (const int i : EvenlySpreadFrames(static_cast<int>(shown.size()), options_.held_out.frames)) {
+    held_out_.push_back(shown[i]);
+  }
 }
 
 int AvatarTrainer::ViewAt(int64_t step) {
@@ -88,9 +102,16 @@ int AvatarTrainer::ViewAt(int64_t step) {
 }
 
 const AvatarFrame& AvatarTrainer::FrameOf(const TrainingView& view, const AvatarTrainingState& state) {
-  if (refiner_ == nullptr || state.poses.IsZero(view.time)) return view.frame;
+  const AvatarFrame* frame = &view.frame;
+  const int64_t round = state.step / static_cast<int64_t>(usable_.size());
+  if (const auto run = (round + view.time) % static_cast<int64_t>(1 + view.other_cloth.size()); run > 0) {
+    in_other_cloth_ = view.frame;
+    ReplaceLastBones(view.other_cloth[run - 1], &in_other_cloth_);
+    frame = &in_other_cloth_;
+  }
+  if (refiner_ == nullptr || state.poses.IsZero(view.time)) return *frame;
   refiner_->MakeFrame(view.time, state.poses, options_.num_threads, &corrected_);
-  CarryBones(view.frame, &corrected_);
+  CarryBones(*frame, &corrected_);
   return corrected_;
 }
 
@@ -111,12 +132,9 @@ AvatarStep AvatarTrainer::Step(AvatarTrainingState* state) {
   AvatarStep done;
   done.view = ViewAt(state->step);
   const TrainingView& view = views_[done.view];
-  AvatarView seen;
-  seen.camera = view.camera, seen.window = view.window, seen.options.num_threads = options_.num_threads;
   clock_.Begin("drawing");
   const AvatarFrame& frame = FrameOf(view, *state);
-  AddMotion(view, *state);
-  painter_.Draw(state->body, faces_, frame, offsets_, seen);
+  const AvatarView seen = Draw(view, frame, *state);
   clock_.Begin("loss");
   FillTruth(view, &truth_);
   HashRandom random(options_.seed, {kBackgroundStream, static_cast<uint64_t>(state->step)});
@@ -132,9 +150,34 @@ AvatarStep AvatarTrainer::Step(AvatarTrainingState* state) {
   }
   ++state->step;
   if (options_.learn_person) done.relocated = Relocate(state, progress);
+  JudgeHeldOut(state);
   clock_.End();
   state->seconds += watch.seconds();
   return done;
+}
+
+AvatarView AvatarTrainer::Draw(const TrainingView& view, const AvatarFrame& frame, const AvatarTrainingState& state) {
+  AvatarView seen;
+  seen.camera = view.camera, seen.window = view.window, seen.options.num_threads = options_.num_threads;
+  AddMotion(view, state);
+  painter_.Draw(state.body, faces_, frame, offsets_, seen);
+  return seen;
+}
+
+void AvatarTrainer::JudgeHeldOut(AvatarTrainingState* state) {
+  const int every = options_.held_out.every;
+  if (held_out_.empty() || every == 0 || (state->step % every != 0 && !IsDone(*state))) return;
+  clock_.Begin("held-out frames");
+  constexpr std::array<float, 3> kGrey = {0.5F, 0.5F, 0.5F};
+  double sum = 0;
+  for (const TrainingView* view : held_out_) {
+    Draw(*view, view->frame, *state);
+    FillTruth(*view, &truth_);
+    sum += loss_.Compute(painter_.picture().planes(), truth_, kGrey, options_.num_threads, &by_planes_);
+  }
+  const double loss = sum / static_cast<double>(held_out_.size());
+  if (!state->kept || loss < state->kept->loss) state->kept = {state->body, state->motion, state->step, loss};
+  if (state->step % every == 0) state->held_out.Add(loss, state->step, Progress(*state), options_.held_out);
 }
 
 void AvatarTrainer::LearnPerson(double progress, AvatarTrainingState* state, AvatarStep* done) {

@@ -19,12 +19,16 @@
 /// With a MotionLesson the network of the motion (render/avatar/motion/avatar_motion.h) learns with the person, by the same
 /// derivatives; hidden Gaussians teach it nothing either.
 ///
+/// With Watch() the loss of frames that are not learned from is taken now and then, and where more steps no longer help
+/// them the training comes to its end (held_out_curve.h).
+///
 /// Frames come in a new random order each time round. All that is random follows from the seed and the step's number, so
 /// a state that was kept goes on exactly as if training had never been left, as far as its length is given by steps: the
 /// same bytes for any number of threads and any instruction set.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -33,6 +37,7 @@
 #include "bodyloom/render/avatar/avatar_painter.h"
 #include "bodyloom/render/avatar/learning/adam.h"
 #include "bodyloom/render/avatar/learning/gaussian_cost.h"
+#include "bodyloom/render/avatar/learning/held_out_curve.h"
 #include "bodyloom/render/avatar/learning/learning_rates.h"
 #include "bodyloom/render/avatar/learning/pose_refiner.h"
 #include "bodyloom/render/avatar/learning/relocate_gaussians.h"
@@ -57,8 +62,17 @@ struct AvatarTrainerOptions {
   double least_seen = 0.1;
   double refine_from = 0.15;  ///< of the training: before, poses stay as the corrections are
   bool learn_person = true;
+  HeldOutOptions held_out;
   int num_threads = 1;  ///< 1 to 1024
   [[nodiscard]] bool IsValid(std::string* why) const;
+};
+
+/// The person at one moment of a training.
+struct KeptAvatar {
+  GaussianBody body;
+  FloatColumns motion;  ///< as AvatarTrainingState::motion
+  int64_t step = 0;     ///< steps done
+  double loss = 0;      ///< of the frames held out
 };
 
 /// All that goes on.
@@ -70,11 +84,16 @@ struct AvatarTrainingState {
   PoseCorrections poses;    ///< of every frame of the clip; without rows: none are refined
   FloatColumns motion;      ///< parameters of the network of the motion; without rows: there is none
   AdamState motion_adam;
-  int64_t step = 0;    ///< steps done
-  double seconds = 0;  ///< spent in steps
+  HeldOutCurve held_out;
+  std::optional<KeptAvatar> kept;  ///< whose loss of the frames held out was least, where they were judged
+  int64_t step = 0;                ///< steps done
+  double seconds = 0;              ///< spent in steps and in judging frames held out
 
   /// Before the first step.
   static AvatarTrainingState Of(GaussianBody body);
+  /// What the training leaves: what was kept, else the person as it is.
+  [[nodiscard]] const GaussianBody& ResultBody() const { return kept ? kept->body : body; }
+  [[nodiscard]] const FloatColumns& ResultMotion() const { return kept ? kept->motion : motion; }
   /// Gives it a network's parameters.
   void BeginMotion(FloatColumns parameters);
 };
@@ -100,6 +119,10 @@ class AvatarTrainer {
   AvatarTrainer(const MatrixX3i& faces, std::span<const TrainingView> views, const AvatarTrainerOptions& options,
                 const PoseRefiner* refiner = nullptr, MotionLesson motion = {});
 
+  /// From now on the training is judged by these frames as well, which must outlive it; those without a person and all beyond
+  /// HeldOutOptions::frames, evenly spread, are left out.
+  void Watch(std::span<const TrainingView> held_out);
+
   /// Done so far, in [0, 1].
   [[nodiscard]] double Progress(const AvatarTrainingState& state) const;
   [[nodiscard]] bool IsDone(const AvatarTrainingState& state) const { return Progress(state) >= 1; }
@@ -112,7 +135,8 @@ class AvatarTrainer {
 
  private:
   int ViewAt(int64_t step);
-  [[nodiscard]] const AvatarFrame& FrameOf(const TrainingView& view, const AvatarTrainingState& state);
+  /// The view's frame in the corrected pose, in the cloth of the run whose turn it is.
+  const AvatarFrame& FrameOf(const TrainingView& view, const AvatarTrainingState& state);
   void MovePose(const TrainingView& view, double progress, AvatarTrainingState* state) const;
   void LearnPerson(double progress, AvatarTrainingState* state, AvatarStep* done);
   int ChooseMovers(AvatarTrainingState* state);
@@ -122,10 +146,14 @@ class AvatarTrainer {
   void AddMotion(const TrainingView& view, const AvatarTrainingState& state);
   void MoveMotion(AvatarTrainingState* state, double progress);
   int Relocate(AvatarTrainingState* state, double progress);
+  /// Poses and draws the view with all that the state has learned.
+  AvatarView Draw(const TrainingView& view, const AvatarFrame& frame, const AvatarTrainingState& state);
+  void JudgeHeldOut(AvatarTrainingState* state);
 
   const MatrixX3i& faces_;
   std::span<const TrainingView> views_;
   std::vector<int> usable_, order_;
+  std::vector<const TrainingView*> held_out_;
   int64_t order_of_ = -1;  ///< which time round
   AvatarTrainerOptions options_;
   const PoseRefiner* refiner_;
@@ -134,7 +162,7 @@ class AvatarTrainer {
   bool anchored_ = false;  ///< the model knows where the Gaussians stand
   GaussianOffsets offsets_;
   FloatColumns by_motion_;
-  AvatarFrame corrected_;
+  AvatarFrame in_other_cloth_, corrected_;
   AvatarPainter painter_;
   PictureLoss loss_;
   PictureTruth truth_;

@@ -17,6 +17,9 @@ namespace bodyloom {
 struct TrainingView {
   int time = 0;  ///< which frame of the clip
   AvatarFrame frame;
+  /// The last bones of the frame, K×12 each, as other runs of the garment's simulation have them; the run to learn from
+  /// changes from one time that the view comes to the next.
+  std::vector<std::vector<float>> other_cloth;
   Camera camera;                ///< without distortion
   PixelBox window;              ///< around the person, inside the picture
   std::vector<uint8_t> pixels;  ///< of the window, row-major: blue, green, red, PersonAt

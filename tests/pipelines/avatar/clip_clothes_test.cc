@@ -87,6 +87,11 @@ TEST_F(ClipClothesTest, FindsTheSkirtOfSomeoneWhoMoves) {
   ASSERT_EQ(bones.of_frame.size(), static_cast<size_t>(kFrames));
   EXPECT_EQ(bones.of_frame[3].size(), 12 * static_cast<size_t>(garment.num_nodes()));
   EXPECT_NE(bones.of_frame[3], bones.of_frame[4]);
+  const std::vector<GarmentBones> runs = worn.RunsAlong(track_, 3, 2, {}), alone = worn.RunsAlong(track_, 3, 1, {});
+  EXPECT_EQ(runs[0].of_frame, bones.of_frame);
+  for (int r = 0; r < 3; ++r) EXPECT_EQ(runs[r].of_frame, alone[r].of_frame) << r;
+  EXPECT_NE(runs[1].of_frame[5], bones.of_frame[5]);
+  EXPECT_NE(runs[2].of_frame[5], runs[1].of_frame[5]);
 }
 
 TEST_F(ClipClothesTest, FindsNoneOnABareBodyAndInNoFrames) {

@@ -25,6 +25,7 @@
 #include "bodyloom/pipelines/avatar/shown_avatar.h"
 #include "bodyloom/pipelines/synthesis/synthesize_person.h"
 #include "tests/data_tools/formats/temporary_file.h"
+#include "tests/render/splat/same_bytes.h"
 
 namespace bodyloom {
 namespace {
@@ -70,6 +71,33 @@ TrainAvatarRequest SmallRequest(const std::string& out) {
   request.train = {"0-7"}, request.validate = {"8-9"};
   request.garment = false;
   return request;
+}
+
+TEST(TrainAvatar, EndsWhereFramesHeldOutGainNothing) {
+  const TemporaryFolder folder;
+  TrainAvatarRequest request = SmallRequest(folder.File("run"));
+  request.train = {"0-1"}, request.steps = 20000, request.motion = false;
+  const TrainAvatarSummary summary = TrainAvatar(request);
+  EXPECT_LT(summary.steps, 10000);
+  EXPECT_GT(summary.landing_step, summary.best_step);
+  EXPECT_GT(summary.steps, summary.landing_step);
+  EXPECT_EQ(summary.best_step % 250, 0);
+  // The file has the person who was best, not the last.
+  const AvatarTrainingState state = ReadAvatarCheckpoint(AvatarCheckpointPath(request.out)).state;
+  const GaussianBody written = ReadAvatar(AvatarPath(request.out)).body;
+  EXPECT_TRUE(SameBytes(written.parameters, state.ResultBody().parameters));
+  EXPECT_FALSE(SameBytes(written.parameters, state.body.parameters));
+  const std::string report = ReadFileBytes(folder.File("run/report.json"));
+  EXPECT_NE(report.find("\"landing_step\": " + std::to_string(summary.landing_step)), std::string::npos) << report;
+  EXPECT_NE(ReadFileBytes(folder.File("run/metrics.csv")).find(",held_out,"), std::string::npos);
+  // What has ended has ended.
+  request.resume = true;
+  EXPECT_EQ(TrainAvatar(request).steps, summary.steps);
+
+  request.out = folder.File("all"), request.resume = false, request.all_steps = true, request.steps = 300;
+  const TrainAvatarSummary all = TrainAvatar(request);
+  EXPECT_EQ(all.steps, 300);
+  EXPECT_EQ(all.best_step, 0);
 }
 
 TEST(TrainAvatar, LearnsADatasetsPersonAndShowsIt) {

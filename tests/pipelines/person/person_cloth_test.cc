@@ -13,6 +13,7 @@
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/geometry/cloth/body_with_garment.h"
+#include "bodyloom/geometry/cloth/cloth_runs.h"
 #include "bodyloom/pipelines/person/animate_person.h"
 #include "bodyloom/pipelines/person/person_folder.h"
 #include "bodyloom/render/overlay.h"
@@ -75,6 +76,25 @@ TEST(PersonCloth, WaitsWhereTheTrackIsLost) {
   }
   moved.motion.poses.setConstant(std::numeric_limits<double>::quiet_NaN());
   EXPECT_THROW(PersonCloth(person, moved), std::invalid_argument);
+}
+
+TEST(PersonCloth, OtherRunsFallElsewhere) {
+  const PhotoPerson person = InASkirt();
+  const Track moved = MovedByPerson(person, ShortTrack(12));
+  const auto last = [&](int run) {
+    PersonCloth cloth(*person.clothed, person.garment, moved, {.run = run});
+    return cloth.At(11);
+  };
+  const std::vector<Eigen::Vector3d> first = PersonCloth(person, moved).At(11);
+  EXPECT_EQ(Furthest(last(0), first), 0);
+  for (int run = 1; run < kMostClothRuns; ++run) {
+    const std::vector<Eigen::Vector3d> other = last(run);
+    EXPECT_GT(Furthest(other, first), 1e-3) << run;
+    EXPECT_LT(Furthest(other, first), 0.15) << run;
+    EXPECT_EQ(Furthest(other, last(run)), 0) << run;
+  }
+  EXPECT_THROW(last(kMostClothRuns), std::invalid_argument);
+  EXPECT_THROW(last(-1), std::invalid_argument);
 }
 
 TEST(PersonCloth, NoGarmentNoCloth) {

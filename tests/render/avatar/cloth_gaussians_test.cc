@@ -111,6 +111,18 @@ TEST_F(ClothGaussiansTest, GoWithTheCloth) {
     for (int r = 0; r < 3; ++r) ASSERT_NEAR(posed.columns(i, CameraGaussians::kX + r), expected[r], 2e-6) << i;
   }
   EXPECT_THROW(AppendBones(std::span(bones).first(5), nodes_.places(), camera, &frame), std::invalid_argument);
+
+  // Another run's cloth in the place of this one.
+  for (Vector3d& v : cloth) v.y() += 0.25;
+  const std::vector<float> moved = BonesOfCloth(nodes_, nodes_.Move(cloth));
+  AvatarFrame other = frame, appended;
+  ReplaceLastBones(SeenBones(moved, camera), &other);
+  frames.Make(pose, camera, 1, &appended);
+  AppendBones(moved, nodes_.places(), camera, &appended);
+  EXPECT_EQ(other.bones, appended.bones);
+  EXPECT_NE(other.bones, frame.bones);
+  EXPECT_THROW(SeenBones(std::span(bones).first(5), camera), std::invalid_argument);
+  EXPECT_THROW(ReplaceLastBones(std::vector<float>(other.bones.size() + 12), &other), std::invalid_argument);
 }
 
 TEST_F(ClothGaussiansTest, GoWithTheRootWhereAPoseIsCorrected) {
