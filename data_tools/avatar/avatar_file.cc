@@ -57,7 +57,7 @@ class AvatarArrays {
   /// Within low..high.
   std::vector<double> Doubles(const std::string& key, const std::vector<int64_t>& shape, double low,
                               double high) const {
-    const std::vector<double> values = Take(key, DType::kF64, "float64", shape).ToDoubles();
+    std::vector<double> values = Take(key, DType::kF64, "float64", shape).ToDoubles();
     for (const double v : values) {
       if (!(v >= low && v <= high)) Fail(key, Concatenate(v, ", expected ", low, " to ", high));
     }

@@ -160,6 +160,7 @@ TEST(OtherCloth, IsLearnedFromInTurn) {
     AvatarTrainer trainer(lesson.model.data().faces, of, options);
     AvatarTrainingState state = lesson.Start();
     std::vector<double> found;
+    found.reserve(4);
     for (int k = 0; k < 4; ++k) found.push_back(trainer.Step(&state).loss);
     return found;
   };
