@@ -9,9 +9,9 @@ usage: avatar_minutes.py --bodyloom build/release/apps/bodyloom --motions ../sha
 
 A synthetic dancer in a skirt; motions that nobody learned from, at the speed of training, at half of it, and from 90 degrees
 aside. One minute of learning is one minute of steps; reading, placing Gaussians and fitting a garment (some 25 s) come on
-top. The published network takes as many steps as a short run of it says that the time has, its reading included. --seeds
-beyond the first are for --minutes 10 alone. FOLDER gets datasets, a folder a run, report.md and report.json; what is there
-is not made again.
+top. A person of Gaussians whose frames held out gain nothing more ends earlier. The published network takes as many steps as
+a short run of it says that the time has, its reading included. --seeds beyond the first are for --minutes 10 alone. FOLDER
+gets datasets, a folder a run, report.md and report.json; what is there is not made again.
 
 A minute of two cores that nothing else runs on is worth steps, and a person of Gaussians that took as many is the same to
 the byte however many threads took them: --paced-by 2 takes, for every longer time, as many steps as the run of two minutes
