@@ -45,6 +45,7 @@ constexpr double kCheckpointSeconds = 60;  ///< between checkpoints
 constexpr int kMetricsEvery = 50;          ///< steps a line of metrics.csv
 constexpr size_t kLossSteps = 100;         ///< that the loss is the mean of
 constexpr int kScoredFrames = 64;          ///< of either kind, at most
+constexpr int kJudgedFrames = 16;          ///< held out, in the course of training, at most
 constexpr int kHeldOutShown = 4;
 constexpr int kClothRuns = 3;  ///< of the garment's simulation, that are learned from in turn
 constexpr int64_t kMostSteps = 100000000;
@@ -77,8 +78,7 @@ class AvatarTraining {
     options_ = Options();
     views_ = clip_->ReadViews(split_.train, kTrainingMargin, true, callbacks_);
     if (IsWatched()) {
-      held_out_ =
-          clip_->ReadViews(Spread(split_.validation, options_.held_out.frames), kTrainingMargin, true, callbacks_);
+      held_out_ = clip_->ReadViews(Spread(split_.validation, kJudgedFrames), kTrainingMargin, true, callbacks_);
     }
     clock_.Begin("begin");
     if (request_.motion) {

@@ -9,7 +9,6 @@
 #include "bodyloom/geometry/base/hash_random.h"
 #include "bodyloom/geometry/base/in_range.h"
 #include "bodyloom/render/avatar/cloth_bones.h"
-#include "bodyloom/render/contact_sheet.h"
 
 namespace bodyloom {
 namespace {
@@ -24,6 +23,8 @@ void Normalise(int row, int first, int count, FloatColumns* table) {
   const float scale = 1 / std::sqrt(square);
   for (int c = first; c < first + count; ++c) (*table)(row, c) *= scale;
 }
+
+bool IsUsable(const TrainingView& view) { return !view.window.empty() && view.person_pixels > 0; }
 
 /// Pixels' worth of a drawn Gaussian with nothing in front: the integral of its α.
 float PixelsAlone(const FloatColumns& screen, int row) {
@@ -66,7 +67,7 @@ AvatarTrainer::AvatarTrainer(const MatrixX3i& faces, std::span<const TrainingVie
   std::string why;
   BODYLOOM_CHECK(options.IsValid(&why), "avatar training: ", why);
   for (size_t i = 0; i < views.size(); ++i) {
-    if (!views[i].window.empty() && views[i].person_pixels > 0) usable_.push_back(static_cast<int>(i));
+    if (IsUsable(views[i])) usable_.push_back(static_cast<int>(i));
     BODYLOOM_CHECK(refiner == nullptr || (views[i].time >= 0 && views[i].time < refiner->num_frames()),
                    "avatar training: a view of frame ", views[i].time, ", poses to refine are of ",
                    refiner == nullptr ? 0 : refiner->num_frames(), " frames");
@@ -81,13 +82,9 @@ double AvatarTrainer::Progress(const AvatarTrainingState& state) const {
 }
 
 void AvatarTrainer::Watch(std::span<const TrainingView> held_out) {
-  std::vector<const TrainingView*> shown;
-  for (const TrainingView& view : held_out) {
-    if (!view.window.empty() && view.person_pixels > 0) shown.push_back(&view);
-  }
   held_out_.clear();
-  for (const int i : EvenlySpreadFrames(static_cast<int>(shown.size()), options_.held_out.frames)) {
-    held_out_.push_back(shown[i]);
+  for (const TrainingView& view : held_out) {
+    if (IsUsable(view)) held_out_.push_back(&view);
   }
 }
 

@@ -119,8 +119,8 @@ class AvatarTrainer {
   AvatarTrainer(const MatrixX3i& faces, std::span<const TrainingView> views, const AvatarTrainerOptions& options,
                 const PoseRefiner* refiner = nullptr, MotionLesson motion = {});
 
-  /// From now on the training is judged by these frames as well, which must outlive it; those without a person and all beyond
-  /// HeldOutOptions::frames, evenly spread, are left out.
+  /// From now on the training is judged by these frames as well, which must outlive it; those without a person are
+  /// left out.
   void Watch(std::span<const TrainingView> held_out);
 
   /// Done so far, in [0, 1].

@@ -18,7 +18,7 @@ int64_t ShareOrLeast(double share, int64_t steps, int64_t least) {
 bool HeldOutOptions::IsValid(std::string* why) const {
   const InRange in_range(why);
   return in_range("held-out every", every, 0, 1e8) && in_range("held-out smoothed", smoothed, 1, 1000) &&
-         in_range("held-out frames", frames, 1, 1e6) && in_range("least_wait", double(least_wait), 1, 1e8) &&
+         in_range("least_wait", double(least_wait), 1, 1e8) &&
          in_range("least_landing", double(least_landing), 1, 1e8) && in_range("wait_share", wait_share, 0, 1e3) &&
          in_range("landing_share", landing_share, 0, 1e3);
 }

@@ -19,7 +19,6 @@ namespace bodyloom {
 struct HeldOutOptions {
   int every = 250;                                 ///< steps between judgements; 0: there are none
   int smoothed = 3;                                ///< judgements that are averaged
-  int frames = 16;                                 ///< at most
   int64_t least_wait = 1000, least_landing = 500;  ///< steps
   double wait_share = 0.5, landing_share = 0.5;
   [[nodiscard]] bool IsValid(std::string* why) const;

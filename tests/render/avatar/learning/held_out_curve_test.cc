@@ -71,7 +71,7 @@ TEST(HeldOutCurve, RefusesOptionsOutOfRange) {
 AvatarTrainerOptions Watched() {
   AvatarTrainerOptions options;
   options.steps = 4000;
-  options.held_out = {.every = 5, .smoothed = 2, .frames = 2, .least_wait = 20, .least_landing = 15};
+  options.held_out = {.every = 5, .smoothed = 2, .least_wait = 20, .least_landing = 15};
   return options;
 }
 
