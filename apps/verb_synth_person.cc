@@ -27,7 +27,7 @@ constexpr const char* kSynthPersonFooter =
 
 struct SynthPersonArguments {
   SynthesizePersonRequest request;
-  std::string garment = "skirt", clothes = "patterned", light_style = "studio";
+  std::string garment = "skirt", clothes = "patterned", stuff = "cotton", light_style = "studio";
   bool quiet = false;
 };
 
@@ -35,6 +35,7 @@ void SynthPerson(const SynthPersonArguments& arguments) {
   SynthesizePersonRequest request = arguments.request;
   request.set.garment = GarmentKindFromString(arguments.garment);
   request.set.style = ClothesStyleFromString(arguments.clothes);
+  request.set.stuff = ClothStuffFromString(arguments.stuff);
   request.set.light_style = LightStyleFromString(arguments.light_style);
   const SynthesizePersonReport report = SynthesizePerson(request, CommandCallbacks(arguments.quiet));
   if (!arguments.quiet) std::cout << ToText(report);
@@ -55,6 +56,10 @@ void AddSynthPersonVerb(CLI::App& app, Action* action) {
       ->capture_default_str();
   verb->add_option("--clothes", arguments->clothes, "patterned, or everyday: mostly plain, wide and loose among them")
       ->check(CLI::IsMember({"patterned", "everyday"}))
+      ->capture_default_str();
+  verb->add_option("--stuff", arguments->stuff,
+                   "of a loose garment: cotton, silk (light, many folds) or denim (heavy, stiff)")
+      ->check(CLI::IsMember({"cotton", "silk", "denim"}))
       ->capture_default_str();
   verb->add_option("--seed", c.set.seed, "the person; same seed, same files")->capture_default_str();
   verb->add_option(

@@ -215,7 +215,7 @@ def main():
     parser.add_argument("--paced-by", type=float, default=0, metavar="MINUTES", help="the shorter runs that say how many steps a time has")
     parser.add_argument("--report", action="store_true", help="only print what there is")
     o = parser.parse_args()
-    o.garment, o.clothes = "skirt", "patterned"
+    o.garment, o.clothes, o.stuff = "skirt", "patterned", "cotton"
     o.out.mkdir(parents=True, exist_ok=True)
     if not o.report:
         dances = make_dancer(o, "dances", TRAIN, 120, ["--speed", "1", "--speed", "0.5"])

@@ -43,6 +43,8 @@ ClothRun::ClothRun(const ClothWearer& wearer, Motion motion, const ClothRunOptio
   BODYLOOM_CHECK(std::abs(options.up.norm() - 1) < 1e-6 && options.tick_s > 0 && options.move_in_s > 0 &&
                      options.settle_s >= 0 && options.cut_speed > 0 && options.cut_pause_s > 0,
                  "ClothRun: up, times and speeds must be positive, up a unit vector");
+  BODYLOOM_CHECK(options.rest_damping.value_or(0) >= 0 && std::isfinite(options.rest_damping.value_or(0)),
+                 "ClothRun: rest_damping ", *options.rest_damping, ", expected 0 or more");
   if (wearer.garment().empty()) return;
   options_.cloth.gravity = -9.81 * options.up;
   if (options.has_floor) {
@@ -104,8 +106,10 @@ void ClothRun::StartIn(const BodyPose& pose) {
     simulation_.emplace(garment.cloth, std::move(sewn), std::move(place.obstacles), wearer_.obstacles().surface_faces(),
                         options_.cloth);
   }
+  simulation_->set_damping(options_.rest_damping.value_or(options_.cloth.damping));
   MoveTo(start, pose, options_.move_in_s);
   if (options_.settle_s > 0) Rest(pose, options_.settle_s);
+  simulation_->set_damping(options_.cloth.damping);
 }
 
 bool ClothRun::IsCut(int t) const {

@@ -19,10 +19,12 @@ struct ClothRunOptions {
   double tick_s = 1.0 / 60;  ///< the body is posed at least this often, in between along shortest arcs
   double move_in_s = 1.2;    ///< before frame 0 and after a cut: as sewn, from the T-pose to the pose
   double settle_s = 1.3;     ///< and then at rest in it
-  double cut_speed = 8;      ///< m/s: frames between which joints move faster than this on average are a cut
-  double cut_pause_s = 1;    ///< and frames this far apart or further
-  bool has_floor = true;     ///< under the lowest point that the motion reaches
-  ClothOptions cloth;        ///< gravity and floor are set from the above
+  std::optional<double>
+      rest_damping;        ///< 1/s, in both: what swings from being put on comes to rest; absent: that of `cloth`
+  double cut_speed = 8;    ///< m/s: frames between which joints move faster than this on average are a cut
+  double cut_pause_s = 1;  ///< and frames this far apart or further
+  bool has_floor = true;   ///< under the lowest point that the motion reaches
+  ClothOptions cloth;      ///< gravity and floor are set from the above
 };
 
 /// Runs the garment of a body through a motion, frame by frame, in the motion's frame. The same positions each time.

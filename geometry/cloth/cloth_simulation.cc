@@ -157,6 +157,11 @@ void ClothSimulation::CheckObstacles(const ClothObstacles& o) const {
   }
 }
 
+void ClothSimulation::set_damping(double damping) {
+  BODYLOOM_CHECK(damping >= 0 && std::isfinite(damping), "cloth: a damping of ", damping, " a second");
+  options_.damping = damping;
+}
+
 void ClothSimulation::Restart(std::vector<Vector3d> positions, ClothObstacles obstacles) {
   BODYLOOM_CHECK(positions.size() == mesh_.mass_kg.size() && AllFinite(positions), "cloth: ", positions.size(),
                  " positions, expected ", mesh_.mass_kg.size(), ", finite");

@@ -114,6 +114,9 @@ class ClothSimulation {
   /// Puts everything elsewhere, at rest: what follows is not connected with what was.
   void Restart(std::vector<Eigen::Vector3d> positions, ClothObstacles obstacles);
 
+  /// From now on, 1/s. Throws std::invalid_argument below 0 or not finite.
+  void set_damping(double damping);
+
   [[nodiscard]] const ClothMesh& mesh() const { return mesh_; }
   [[nodiscard]] const std::vector<Eigen::Vector3d>& positions() const { return x_; }
   [[nodiscard]] const std::vector<Eigen::Vector3d>& velocities() const { return v_; }

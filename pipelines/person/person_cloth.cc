@@ -12,6 +12,8 @@
 namespace bodyloom {
 namespace {
 
+constexpr double kRestDamping = 4;  ///< 1/s
+
 /// A frame without a pose gets that of the one before it, the first ones that of the first which has one.
 Motion WithoutGaps(Motion motion) {
   int first = 0;
@@ -26,13 +28,15 @@ Motion WithoutGaps(Motion motion) {
   return motion;
 }
 
-/// At rest sooner than a simulation that begins a dataset: a person is shown, and someone waits.
+/// At rest sooner than a simulation that begins a dataset: a person is shown, and someone waits. By itself cloth swings
+/// for seconds, and what it does then tells nothing of the motion.
 ClothRunOptions OptionsFor(const Track& track, const PersonClothOptions& shown) {
   ClothRunOptions options;
   options.up = SwungUp(track, shown.swing_rad);
   options.tick_s = 1.0 / 30;
   options.move_in_s = 0.8;
   options.settle_s = 0.8;
+  options.rest_damping = kRestDamping;
   options.cloth = OfRun(options.cloth, shown.run);
   return options;
 }

@@ -26,6 +26,7 @@ std::string CommandLine(const SynthesizePersonRequest& c) {
   for (const std::string& motion : c.motions) line += " --motion " + motion;
   line += " --out " + c.out + " --garment " + ToString(c.set.garment);
   if (c.set.style != ClothesStyle::kPatterned) line += " --clothes " + ToString(c.set.style);
+  if (c.set.stuff != ClothStuff::kCotton) line += " --stuff " + ToString(c.set.stuff);
   if (c.set.light_style != LightStyle::kStudio) line += " --light-style " + ToString(c.set.light_style);
   line += " --seed " + std::to_string(c.set.seed);
   if (c.set.light_seed) line += " --light-seed " + std::to_string(*c.set.light_seed);

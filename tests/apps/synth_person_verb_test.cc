@@ -19,6 +19,7 @@ namespace bodyloom {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 TEST(SynthPersonVerb, WritesASetAndASheet) {
   const ScratchFolder scratch;
@@ -98,6 +99,25 @@ TEST(SynthPersonVerb, TheSamePersonInAnotherLight) {
   ASSERT_GT(errors.size(), 200U);
   std::nth_element(errors.begin(), errors.begin() + errors.size() / 2, errors.end());
   EXPECT_LT(errors[errors.size() / 2], 0.01);
+}
+
+TEST(SynthPersonVerb, TheSameCutOfAnotherStuff) {
+  const ScratchFolder scratch;
+  const auto make = [&](const std::string& stuff) {
+    const CommandResult result = RunCommand({"synth-person", "--motion", "demo", "--first", "40", "--frames", "1",
+                                             "--out", scratch / stuff, "--size", "64", "--stuff", stuff});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return SinglePersonDataset(scratch / stuff);
+  };
+  const SinglePersonDataset cotton = make("cotton"), silk = make("silk");
+  EXPECT_FALSE(cotton.Read(0).labels == silk.Read(0).labels);
+  EXPECT_TRUE(cotton.Read(0).iuv == silk.Read(0).iuv) << "the body is the same";
+  EXPECT_THAT(silk.info().command, HasSubstr("--stuff silk"));
+  EXPECT_THAT(cotton.info().command, Not(HasSubstr("--stuff")));
+  const CommandResult other =
+      RunCommand({"synth-person", "--motion", "demo", "--out", scratch / "p", "--stuff", "tin"});
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_THAT(other.err, HasSubstr("tin not in {cotton,silk,denim}"));
 }
 
 TEST(SynthPersonVerb, TheSamePosesAtTwoSpeeds) {

@@ -11,6 +11,7 @@
 
 #include "bodyloom/data_tools/synthesis/people/outfit.h"
 #include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/cloth/cloth_stuff.h"
 #include "bodyloom/geometry/cloth/cloth_wearer.h"
 
 namespace bodyloom {
@@ -20,14 +21,14 @@ class DressedPerson : public ClothWearer {
  public:
   /// Throws std::invalid_argument when the body is not on SMPL's joints or has more betas given than components.
   DressedPerson(const BodyModel& body, const Eigen::VectorXd& betas, GarmentKind kind, uint64_t seed,
-                ClothesStyle style = ClothesStyle::kPatterned);
-  DressedPerson(BodyModel&&, const Eigen::VectorXd&, GarmentKind, uint64_t,
-                ClothesStyle = ClothesStyle::kPatterned) = delete;
+                ClothesStyle style = ClothesStyle::kPatterned, ClothStuff stuff = ClothStuff::kCotton);
+  DressedPerson(BodyModel&&, const Eigen::VectorXd&, GarmentKind, uint64_t, ClothesStyle = ClothesStyle::kPatterned,
+                ClothStuff = ClothStuff::kCotton) = delete;
 
   [[nodiscard]] const Outfit& outfit() const { return outfit_; }
 
  private:
-  DressedPerson(const BodyModel& body, const Eigen::VectorXd& betas, Outfit outfit, uint64_t seed);
+  DressedPerson(const BodyModel& body, const Eigen::VectorXd& betas, Outfit outfit, uint64_t seed, ClothStuff stuff);
   Outfit outfit_;
 };
 

@@ -128,7 +128,7 @@ MakeSinglePersonDatasetSummary MakeSinglePersonDataset(const std::string& folder
       T > 1 && motion.timestamps[1] > motion.timestamps[0] ? 1 / (motion.timestamps[1] - motion.timestamps[0]) : 30;
   info.seed = options.seed, info.garment = ToString(options.garment);
   info.motion = options.motion, info.command = options.command;
-  const DressedPerson person(body, track.motion.betas, options.garment, options.seed, options.style);
+  const DressedPerson person(body, track.motion.betas, options.garment, options.seed, options.style, options.stuff);
   info.has.iuv = body.has_parts() && body.data().face_iuv.rows() > 0;
   const SinglePersonDatasetWriter writer(folder, info, track);
   const DressedScene scene(
@@ -136,6 +136,7 @@ MakeSinglePersonDatasetSummary MakeSinglePersonDataset(const std::string& folder
       LightOfSeed(camera.up_in_camera, options.light_style, options.light_seed.value_or(options.seed)));
   ClothRunOptions run_options;
   run_options.up = camera.up_in_camera;
+  run_options.cloth = MovedAs(options.stuff, run_options.cloth);
   ClothRun run(person, track.motion, run_options);
 
   MakeSinglePersonDatasetSummary summary;

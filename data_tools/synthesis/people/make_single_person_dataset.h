@@ -17,6 +17,7 @@
 #include "bodyloom/data_tools/synthesis/people/dressed_person.h"
 #include "bodyloom/data_tools/synthesis/people/person_light.h"
 #include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/cloth/cloth_stuff.h"
 #include "bodyloom/geometry/track.h"
 
 namespace bodyloom {
@@ -24,6 +25,7 @@ namespace bodyloom {
 struct MakeSinglePersonDatasetOptions {
   GarmentKind garment = GarmentKind::kSkirt;
   ClothesStyle style = ClothesStyle::kPatterned;
+  ClothStuff stuff = ClothStuff::kCotton;  ///< of a loose garment
   uint64_t seed = 1;
   LightStyle light_style = LightStyle::kStudio;
   std::optional<uint64_t> light_seed;  ///< of the light alone: the same person in another light; absent: `seed`

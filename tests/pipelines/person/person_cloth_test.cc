@@ -11,6 +11,7 @@
 
 #include "bodyloom/data_tools/body/body_or_builtin.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/motion/freeze_track.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/geometry/cloth/body_with_garment.h"
 #include "bodyloom/geometry/cloth/cloth_runs.h"
@@ -76,6 +77,17 @@ TEST(PersonCloth, WaitsWhereTheTrackIsLost) {
   }
   moved.motion.poses.setConstant(std::numeric_limits<double>::quiet_NaN());
   EXPECT_THROW(PersonCloth(person, moved), std::invalid_argument);
+}
+
+TEST(PersonCloth, BeginsAtRest) {
+  const PhotoPerson person = InASkirt();
+  const Track still = FramesInOrder(MovedByPerson(person, ShortTrack(30)), std::vector<int>{5, 5});
+  PersonCloth cloth(person, still);
+  const std::vector<Eigen::Vector3d> first = cloth.At(0), next = cloth.At(1);
+  double way = 0;
+  for (size_t i = 0; i < first.size(); ++i) way += (next[i] - first[i]).norm() / double(first.size());
+  const double speed = way / (still.motion.timestamps[1] - still.motion.timestamps[0]);
+  EXPECT_LT(speed, 0.04) << "metres a second";
 }
 
 TEST(PersonCloth, OtherRunsFallElsewhere) {

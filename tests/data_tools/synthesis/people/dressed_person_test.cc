@@ -6,6 +6,8 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <filesystem>
+#include <optional>
+#include <utility>
 
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
@@ -197,18 +199,70 @@ TEST(ClothRun, ASpinFlaresTheSkirt) {
   EXPECT_EQ(run.num_cuts(), 0);
 }
 
+double MeanDistance(const std::vector<Vector3d>& a, const std::vector<Vector3d>& b) {
+  double sum = 0;
+  for (size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]).norm();
+  return sum / double(a.size());
+}
+
+/// Extrema of the hem's distance from the vertical through the pelvis, going around it: two a fold.
+int HemTurns(const DressedPerson& person, const std::vector<Vector3d>& cloth) {
+  const int n = person.garment().columns;
+  std::vector<double> radius;
+  for (int j = 0; j < n; ++j) {
+    const Vector3d& p = cloth[cloth.size() - n + j];
+    radius.push_back(std::hypot(p.x(), p.z()));
+  }
+  int turns = 0;
+  for (int j = 0; j < n; ++j) {
+    const double here = radius[j], before = radius[(j + n - 1) % n], after = radius[(j + 1) % n];
+    turns += (here - before) * (after - here) < 0;
+  }
+  return turns;
+}
+
+TEST(ClothRun, LightStuffFallsIntoMoreFoldsThanHeavyStuff) {
+  int turns[2];
+  for (const ClothStuff stuff : {ClothStuff::kSilk, ClothStuff::kDenim}) {
+    const DressedPerson person(BuiltinBody(), Eigen::VectorXd::Zero(10), GarmentKind::kSkirt, 1,
+                               ClothesStyle::kPatterned, stuff);
+    ClothRunOptions options;
+    options.cloth = MovedAs(stuff, options.cloth);
+    ClothRun run(person, Turning(30, 30, [](double t) { return 2.0 * std::sin(4 * t); }), options);
+    std::vector<Vector3d> cloth;
+    for (int t = 0; t < 30; ++t) cloth = run.Next();
+    for (const Vector3d& p : cloth) ASSERT_TRUE(p.allFinite());
+    turns[stuff == ClothStuff::kDenim] = HemTurns(person, cloth);
+  }
+  EXPECT_GE(turns[0], turns[1] + 4) << turns[1];
+}
+
+TEST(ClothRun, RestDampingBringsItToRest) {
+  const DressedPerson person(BuiltinBody(), Eigen::VectorXd::Zero(10), GarmentKind::kSkirt, 1);
+  const auto run_with = [&](std::optional<double> rest_damping, bool moves) {
+    ClothRunOptions options;
+    options.move_in_s = options.settle_s = 0.8, options.rest_damping = rest_damping;
+    ClothRun run(person, Turning(10, 30, [&](double t) { return moves ? 3 * t : 0; }), options);
+    double speed = 0;
+    (void)run.Next();
+    for (const Vector3d& v : run.simulation()->velocities()) speed += v.norm();
+    std::vector<Vector3d> cloth;
+    for (int t = 1; t < 10; ++t) cloth = run.Next();
+    return std::pair(speed / double(cloth.size()), cloth);
+  };
+  const double by_itself = run_with({}, false).first;
+  EXPECT_GT(by_itself, 0.04) << "otherwise this shows nothing";
+  EXPECT_LT(run_with(4, false).first, 0.4 * by_itself);
+  EXPECT_EQ(run_with(ClothOptions().damping, true), run_with({}, true));
+  EXPECT_GT(MeanDistance(run_with(4, true).second, run_with(4, false).second), 0.02) << "then it moves as ever";
+}
+
 /// The cloth of the last frame, in the body's frame of that pose.
 std::vector<Vector3d> LastCloth(const DressedPerson& person, const Motion& motion) {
   ClothRun run(person, motion, {});
   std::vector<Vector3d> cloth;
   for (int t = 0; t < motion.num_frames(); ++t) cloth = run.Next();
   return cloth;
-}
-
-double MeanDistance(const std::vector<Vector3d>& a, const std::vector<Vector3d>& b) {
-  double sum = 0;
-  for (size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]).norm();
-  return sum / double(a.size());
 }
 
 TEST(ClothRun, TheSamePoseAtAnotherSpeedGivesOtherCloth) {
@@ -336,7 +390,13 @@ TEST(ClothRun, ChecksItsContract) {
   EXPECT_THROW((void)run.Next(), std::invalid_argument);
   motion.timestamps[1] = 0;
   EXPECT_THROW(ClothRun(person, motion, {}), std::invalid_argument);
-  motion.timestamps[1] = 1, motion.poses(1, 5) = NAN;
+  motion.timestamps[1] = 1;
+  for (const double damping : {-1.0, static_cast<double>(NAN), static_cast<double>(INFINITY)}) {
+    ClothRunOptions options;
+    options.rest_damping = damping;
+    EXPECT_THROW(ClothRun(person, motion, options), std::invalid_argument) << damping;
+  }
+  motion.poses(1, 5) = NAN;
   EXPECT_THROW(ClothRun(person, motion, {}), std::invalid_argument);
 }
 
