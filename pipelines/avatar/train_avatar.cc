@@ -14,6 +14,7 @@
 
 #include "bodyloom/data_tools/avatar/avatar_file.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/formats/json_reader.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/geometry/base/check.h"
@@ -47,7 +48,8 @@ constexpr size_t kLossSteps = 100;         ///< that the loss is the mean of
 constexpr int kScoredFrames = 64;          ///< of either kind, at most
 constexpr int kJudgedFrames = 16;          ///< held out, in the course of training, at most
 constexpr int kHeldOutShown = 4;
-constexpr int kClothRuns = 3;  ///< of the garment's simulation, that are learned from in turn
+constexpr const char* kGarmentFit = "garment_fit";  ///< in config.json
+constexpr int kClothRuns = 3;                       ///< of the garment's simulation, that are learned from in turn
 constexpr int64_t kMostSteps = 100000000;
 
 std::string InRun(const std::string& run, const char* name) { return (fs::path(run) / name).string(); }
@@ -150,6 +152,10 @@ class AvatarTraining {
                          {"found_in", clothes.found_in},
                          {"unlike_close", clothes.unlike_close},
                          {"unlike_loose", clothes.unlike_loose}};
+    }
+    if (request_.resume && fs::exists(RunConfigPath(request_.out))) {  // what was found when it was begun
+      const nlohmann::json config = ReadJsonFile(RunConfigPath(request_.out));
+      if (config.contains(kGarmentFit)) garment_report_ = config[kGarmentFit];
     }
     if (!garment) return;
     worn_.emplace(CutAnew(clip_->body(), betas, *garment, AvatarCheckpointPath(request_.out)));
@@ -349,15 +355,16 @@ class AvatarTraining {
   }
 
   void WriteConfig() const {
-    const nlohmann::ordered_json json = {{"program", kAvatarProgram},       {"version", 1},
-                                         {"data", request_.clip.data},      {"track", request_.clip.track},
-                                         {"mask", request_.clip.mask},      {"body", request_.clip.body},
-                                         {"train", split_.train},           {"validate", split_.validation},
-                                         {"steps", request_.steps},         {"minutes", request_.minutes},
-                                         {"skin_side", request_.skin_side}, {"loose", request_.loose},
-                                         {"seed", request_.seed},           {"refine", request_.refine},
-                                         {"motion", request_.motion},       {"garment", request_.garment},
-                                         {"all_steps", request_.all_steps}};
+    nlohmann::ordered_json json = {{"program", kAvatarProgram},       {"version", 1},
+                                   {"data", request_.clip.data},      {"track", request_.clip.track},
+                                   {"mask", request_.clip.mask},      {"body", request_.clip.body},
+                                   {"train", split_.train},           {"validate", split_.validation},
+                                   {"steps", request_.steps},         {"minutes", request_.minutes},
+                                   {"skin_side", request_.skin_side}, {"loose", request_.loose},
+                                   {"seed", request_.seed},           {"refine", request_.refine},
+                                   {"motion", request_.motion},       {"garment", request_.garment},
+                                   {"all_steps", request_.all_steps}};
+    if (!garment_report_.is_null()) json[kGarmentFit] = garment_report_;
     WriteFileAtomically(RunConfigPath(request_.out), json.dump(1) + "\n");
   }
 

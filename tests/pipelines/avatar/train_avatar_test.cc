@@ -6,12 +6,14 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
 #include "bodyloom/data_tools/avatar/avatar_file.h"
 #include "bodyloom/data_tools/body/body_or_builtin.h"
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/formats/json_reader.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/observations/part_labels.h"
 #include "bodyloom/data_tools/video/image_file.h"
@@ -269,6 +271,11 @@ TEST(TrainAvatar, FindsTheSkirtAndLetsItSwing) {
   };
   TrainAvatar(request, callbacks);
   EXPECT_FALSE(looked);
+  const auto fit = [&](const std::string& run) {
+    return ReadJsonFile(folder.File(run + "/report.json")).at("garment");
+  };
+  EXPECT_GT(fit("whole").at("found_in"), 0);
+  EXPECT_EQ(fit("parts"), fit("whole"));
   const AvatarFile parts = ReadAvatar(AvatarPath(request.out));
   ASSERT_EQ(avatar.body.size(), parts.body.size());
   for (int c = 0; c < GaussianBody::kNumParameters; ++c) {
