@@ -5,17 +5,19 @@ speed of training, at half of it, and from 90 degrees aside; and how far the gar
 both speeds, in the truth and in what is shown (`bodyloom metrics --other-truth`).
 
 usage: avatar_garment.py --bodyloom build/release/apps/bodyloom --motions ../shared/data --out FOLDER
-       [--garment skirt] [--clothes patterned] [--stuff cotton] [--person 3] [--size 512] [--seeds 1 2 3] [--steps 1500] [--threads 2] [--report]
+       [--garment skirt] [--clothes patterned] [--stuff cotton] [--person 3] [--size 512] [--seeds 1 2 3] [--steps 1500]
+       [--seventeen] [--frames 120] [--threads 2] [--report]
 
 FOLDER gets the dancer's datasets, a folder a run, report.md and report.json. What is there is not made again: a program
 that was stopped goes on where it was. --report only prints what there is. The truth's cloth is simulated by the same
-program, but cut by another rule and on another mesh; the fit takes it for cotton, and --stuff says whether it is. Needs nothing but Python; --motions is a folder
-with motion/cmu_bvh and aistpp/motions.
+program, but cut by another rule and on another mesh; the fit takes it for cotton, and --stuff says whether it is. Needs nothing but
+Python; --motions is a folder with motion/cmu_bvh and aistpp/motions.
 """
 import argparse
 import json
 import pathlib
 
+from motion_descriptors import TRAIN as SEVENTEEN
 from motion_descriptors import motion_file
 from runs import call, text
 
@@ -135,12 +137,14 @@ def main():
     parser.add_argument("--size", type=int, default=512)
     parser.add_argument("--seeds", type=int, nargs="+", default=[1, 2, 3])
     parser.add_argument("--steps", type=int, default=1500)
+    parser.add_argument("--seventeen", action="store_true", help="learn from seventeen motions in place of three")
+    parser.add_argument("--frames", type=int, default=120, help="of each motion learned from, at full speed")
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--report", action="store_true", help="only print what there is")
     o = parser.parse_args()
     o.out.mkdir(parents=True, exist_ok=True)
     if not o.report:
-        dances = make_dancer(o, "dances", TRAIN, 120, ["--speed", "1", "--speed", "0.5"])
+        dances = make_dancer(o, "dances", SEVENTEEN if o.seventeen else TRAIN, o.frames, ["--speed", "1", "--speed", "0.5"])
         sets = {name: make_dancer(o, name, TEST, 40, more) for name, more in SETS.items()}
         for seed in o.seeds:
             for kind in KINDS:
