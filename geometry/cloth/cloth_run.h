@@ -19,8 +19,8 @@ struct ClothRunOptions {
   double tick_s = 1.0 / 60;  ///< the body is posed at least this often, in between along shortest arcs
   double move_in_s = 1.2;    ///< before frame 0 and after a cut: as sewn, from the T-pose to the pose
   double settle_s = 1.3;     ///< and then at rest in it
-  std::optional<double>
-      rest_damping;        ///< 1/s, in both: what swings from being put on comes to rest; absent: that of `cloth`
+  /// 1/s, in both: what swings from being put on comes to rest sooner; absent: that of `cloth`.
+  std::optional<double> rest_damping;
   double cut_speed = 8;    ///< m/s: frames between which joints move faster than this on average are a cut
   double cut_pause_s = 1;  ///< and frames this far apart or further
   bool has_floor = true;   ///< under the lowest point that the motion reaches
