@@ -10,8 +10,8 @@ usage: avatar_garment.py --bodyloom build/release/apps/bodyloom --motions ../sha
 
 FOLDER gets the dancer's datasets, a folder a run, report.md and report.json. What is there is not made again: a program
 that was stopped goes on where it was. --report only prints what there is. The truth's cloth is simulated by the same
-program, but cut by another rule and on another mesh; the fit takes it for cotton, and --stuff says whether it is. Needs nothing but
-Python; --motions is a folder with motion/cmu_bvh and aistpp/motions.
+program, but cut by another rule and on another mesh; the fit takes it for cotton, and --stuff says whether it is. Needs
+nothing but Python; --motions is a folder with motion/cmu_bvh and aistpp/motions.
 """
 import argparse
 import json
@@ -35,7 +35,8 @@ def make_dancer(o, name, motions, frames, more):
         return folder
     print(f"{name} …", flush=True)
     arguments = [o.bodyloom, "synth-person", "--out", str(folder), "--frames", str(frames), "--size", str(o.size), "--seed",
-                 str(o.person), "--garment", o.garment, "--clothes", o.clothes, "--stuff", o.stuff, "--threads", str(o.threads), "--quiet", *more]
+                 str(o.person), "--garment", o.garment, "--clothes", o.clothes, "--stuff", o.stuff, "--threads", str(o.threads),
+                 "--quiet", *more]
     for motion in motions:
         arguments += ["--motion", motion_file(o.motions, motion)]
     call(arguments, o.out / "datasets.log")

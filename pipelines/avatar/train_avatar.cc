@@ -14,7 +14,6 @@
 
 #include "bodyloom/data_tools/avatar/avatar_file.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/json_reader.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/geometry/base/check.h"
@@ -154,7 +153,7 @@ class AvatarTraining {
                          {"unlike_loose", clothes.unlike_loose}};
     }
     if (request_.resume && fs::exists(RunConfigPath(request_.out))) {  // what was found when it was begun
-      const nlohmann::json config = ReadJsonFile(RunConfigPath(request_.out));
+      const nlohmann::json config = ReadRunConfig(request_.out, kAvatarProgram);
       if (config.contains(kGarmentFit)) garment_report_ = config[kGarmentFit];
     }
     if (!garment) return;
