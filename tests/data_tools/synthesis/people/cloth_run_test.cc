@@ -2,9 +2,8 @@
 // A synthetic person's skirt along motions.
 #include "bodyloom/geometry/cloth/cloth_run.h"
 
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
 #include <cmath>
 #include <filesystem>
 #include <optional>
