@@ -111,10 +111,11 @@ void AddSolveOptions(CLI::App& app, TrackRequest* request) {
   TrackSequenceOptions& s = request->solve;
   app.add_option_function<std::string>(
          "--solver", [&s](const std::string& word) { s.solver = SequenceSolverFromString(word); },
-         "the engine: chain, or ceres (the reference: the same problem, several times slower)")
+         "the engine: chain+ceres (chain to near the minimum, Ceres from there), chain alone, or ceres in all stages "
+         "(several times slower)")
       ->group(kSolve)
       ->default_str(ToString(s.solver))
-      ->check(CLI::IsMember({"ceres", "chain"}));
+      ->check(CLI::IsMember({"chain+ceres", "ceres", "chain"}));
   app.add_option("--threads", s.num_threads, "at most 256; 0: all cores; results agree to rounding")
       ->group(kSolve)
       ->check(Quiet(CLI::Range(0, 256)))

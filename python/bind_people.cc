@@ -146,7 +146,8 @@ void BindPeople(py::module_& module) {
       py::arg("stature_m") = py::none(), py::arg("prior") = py::none(), py::arg("lifter") = py::none(),
       py::arg("detector") = "heavy", py::arg("pose_model") = py::none(), py::arg("box_model") = py::none(),
       py::arg("models") = py::none(), py::arg("detect_rate") = py::none(), py::arg("mask") = true,
-      py::arg("begin_s") = 0.0, py::arg("end_s") = py::none(), py::arg("solver") = "chain", py::arg("threads") = 0,
+      py::arg("begin_s") = 0.0, py::arg("end_s") = py::none(),
+      py::arg("solver") = ToString(TrackSequenceOptions().solver), py::arg("threads") = 0,
       py::arg("uncertainty") = true, py::arg("ground") = true, py::arg("overlay") = true, py::arg("side_view") = false,
       py::arg("masks") = false, py::arg("coarse_masks") = false, py::arg("report") = false,
       py::arg("progress") = py::none(), kRunDoc);

@@ -113,6 +113,12 @@ py::dict SecondsOf(const TrackSequenceSummary& summary) {
   return seconds;
 }
 
+py::dict CostsOf(const TrackSequenceSummary& summary) {
+  py::dict costs;
+  for (const TermCost& cost : summary.costs) costs[py::str(cost.term)] = cost.cost;
+  return costs;
+}
+
 py::list PlanOf(const TrackSequenceSummary& summary) {
   py::list plan;
   for (const PlanEntry& entry : summary.plan) plan.append(py::make_tuple(entry.what, entry.runs, entry.why));
@@ -125,7 +131,7 @@ void BindTrackSummary(py::module_& module) {
       .def_property_readonly(
           "status", [](const Summary& self) { return ToString(self.status); }, "How the solve ended.")
       .def_readonly("message", &Summary::message)
-      .def_readonly("solver", &Summary::solver, "\"chain\" or \"ceres\".")
+      .def_readonly("solver", &Summary::solver, "\"chain+ceres\", \"chain\" or \"ceres\".")
       .def_readonly("iterations", &Summary::iterations)
       .def_readonly("initial_cost", &Summary::initial_cost)
       .def_readonly("final_cost", &Summary::final_cost)
@@ -151,6 +157,7 @@ void BindTrackSummary(py::module_& module) {
       .def_readonly("num_swaps_repaired", &Summary::num_swaps_repaired,
                     "Left and right joints that were exchanged in the detections.")
       .def_property_readonly("seconds", &SecondsOf, "By stage, in the order of running.")
+      .def_property_readonly("cost_by_term", &CostsOf, "What each term costs at the answer; the sum is final_cost.")
       .def_property_readonly("plan", &PlanOf, "What ran and what was skipped: (what, runs, why).")
       .def("__str__", &Summary::BriefReport);
 }

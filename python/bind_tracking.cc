@@ -47,7 +47,8 @@ What else is known
   prior, lifter   files of weights, or "none"; None: built in
 The solve
   live_lag        frames: track as if the clip came from a camera (LiveTracker)
-  solver          "chain" or "ceres"; threads 0: one a core; the track is the same for any number
+  solver          "chain+ceres" (Ceres from where chain ends), "chain" or "ceres"; threads 0: one a core; the track is
+                  the same for any number
   max_iterations, estimate_shape, uncertainty, ground, skip_unneeded, rendered_weight, velocity_weight, straight_knees
                   as the options of `bodyloom track`
   progress        called as progress(stage, fraction) now and then; False ends the work with Cancelled

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A SequenceProblem by Ceres: Levenberg–Marquardt with sparse Cholesky, for any structure. The reference that the
-/// chain engine is checked against.
+/// A SequenceProblem by Ceres: Levenberg–Marquardt with sparse Cholesky on the blocks of ceres_problem.h, for any
+/// structure.
 #pragma once
 
 #include "bodyloom/tracking/sequence_problem.h"

@@ -9,6 +9,7 @@
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/tracking/chain/frozen_frames.h"
+#include "bodyloom/tracking/terms/dense/dense.h"
 
 namespace bodyloom {
 namespace {
@@ -49,12 +50,12 @@ VectorXd Damping(const VectorXd& diagonal, const VectorXd& scale, double radius)
 
 double LargestOf(const VectorXd& x) { return x.size() > 0 ? x.cwiseAbs().maxCoeff() : 0.0; }
 
-size_t MostDense(const SequenceProblem& problem) {
-  size_t most = 0;
+size_t MaxDenseOfFrame(const SequenceProblem& problem) {
+  size_t count = 0;
   for (const FrameData& frame : problem.frames) {
-    most = std::max(most, frame.dense.size());
+    count = std::max(count, frame.Get<DenseTerm>().size());
   }
-  return most;
+  return count;
 }
 
 }  // namespace
@@ -66,7 +67,7 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
   ChainProblem& chain = *chain_problem;
   ChainPoint& x = *point;
   ChainPoint candidate;
-  if (thinned) chain.LimitDense(options.chain.early_dense);
+  if (thinned) chain.LimitPoints(options.chain.early_dense);
   bool reusing = options.chain.reuse_linearisation > 0;
   chain.ReuseLinearisation(options.chain.reuse_linearisation);
   const auto count = [&]() {
@@ -77,7 +78,8 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
   count();
   report.seconds_evaluation += watch.Lap();
   report.initial_cost = report.final_cost = cost;
-  FrozenFrames frozen(options.chain.frozen_share);
+  // Multipliers are held with the shared values: with any of them no part of the frames moves alone.
+  FrozenFrames frozen(chain.num_far_rows() > 0 ? 0 : options.chain.frozen_share);
   double spent = 0;  // iterations, those of a part of the frames by its size
   const auto freeze = [&](const std::vector<char>& frames) {
     factor->SetFrozen(frames);
@@ -102,7 +104,7 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
   // All frames with all their keypoints, evaluated here: what may end the descent. False when that changed nothing.
   const auto make_whole = [&]() {
     if (!thinned && !(reusing && chain.num_skipped() > 0)) return false;
-    chain.LimitDense(0);
+    chain.LimitPoints(0);
     if (!thinned) chain.ReuseLinearisation(0);
     reusing = reusing && thinned;
     thinned = false;
@@ -113,7 +115,7 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
   };
   report.iterations = 1;
   if (!std::isfinite(cost)) return finish(SolveStatus::kFailure, "the cost is not finite at the start");
-  const VectorXd scale = ColumnScale(chain.diagonal()), shared_scale = ColumnScale(chain.shared().diagonal());
+  const VectorXd scale = ColumnScale(chain.diagonal()), shared_scale = ColumnScale(chain.shared_diagonal());
   double x_norm = std::sqrt(chain.SquaredNorm(x));
   Radius radius;
   int invalid_steps = 0;
@@ -132,7 +134,7 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
     if (iteration >= options.max_iterations) {
       release_all();
       if (thinned || (reusing && !options.chain.reuse_to_the_end)) {
-        chain.LimitDense(0);
+        chain.LimitPoints(0);
         chain.ReuseLinearisation(0);
         cost = chain.Cost(x);
       }
@@ -146,13 +148,13 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
     ++report.iterations;
     watch.Lap();  // what follows is timed by itself
     const VectorXd damping = Damping(chain.diagonal(), scale, radius.value());
-    const VectorXd shared_damping = Damping(chain.shared().diagonal(), shared_scale, radius.value());
-    Eigen::MatrixXd shared = chain.shared();
-    shared.diagonal() += shared_damping;
+    const VectorXd shared_damping = Damping(chain.shared_diagonal(), shared_scale, radius.value());
     chain.SetDamping(&damping);
-    VectorXd step, shared_step;
+    VectorXd step, shared_step, arrow_rhs = VectorXd::Zero(chain.arrow_size());
+    arrow_rhs.head(chain.shared_size()) = -chain.shared_gradient();
     const bool solved =
-        factor->Solve(chain, shared, -chain.shared_gradient(), options.num_threads, &step, &shared_step);
+        factor->Solve(chain, chain.Arrow(shared_damping), arrow_rhs, options.num_threads, &step, &shared_step);
+    shared_step.conservativeResize(chain.shared_size());  // without multipliers
     report.seconds_linear_solver += watch.Lap();
     // −gᵀδ − ½ δᵀHδ with Hδ = −g − Λδ.
     const double predicted_decrease =
@@ -235,10 +237,10 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
 SolveReport SolveChain(SequenceProblem* problem, const SolveOptions& options) {
   Stopwatch watch;
   ChainProblem chain(*problem, options.shape_constant, options.focal_constant, options.num_threads);
-  ChainFactor factor(chain.frame_size(), chain.shared_size(), chain.cut_before());
+  ChainFactor factor(chain.frame_size(), chain.arrow_size(), chain.cut_before(), chain.num_far_rows());
   ChainPoint x{problem->states, problem->betas, problem->log_focal};
   const bool thin =
-      options.chain.early_dense > 0 && MostDense(*problem) > 2 * static_cast<size_t>(options.chain.early_dense);
+      options.chain.early_dense > 0 && MaxDenseOfFrame(*problem) > 2 * static_cast<size_t>(options.chain.early_dense);
   SolveReport report = DescendChain(&chain, &factor, &x, options, thin);
   if (report.status != SolveStatus::kFailure) {
     problem->states = std::move(x.states);

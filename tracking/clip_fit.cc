@@ -21,7 +21,9 @@
 #include "bodyloom/tracking/motion_level.h"
 #include "bodyloom/tracking/moving_camera.h"
 #include "bodyloom/tracking/observability.h"
-#include "bodyloom/tracking/terms/own/own_terms.h"
+#include "bodyloom/tracking/term_costs.h"
+#include "bodyloom/tracking/terms/dense/dense.h"
+#include "bodyloom/tracking/terms/term_kinds.h"
 #include "bodyloom/tracking/track_plan.h"
 #include "bodyloom/tracking/track_result.h"
 #include "bodyloom/tracking/track_world.h"
@@ -52,13 +54,13 @@ Camera StartCamera(const TrackSequenceInput& input, const TrackSequenceOptions& 
 void WidenDenseKernels(double stature, SequenceProblem* problem) {
   constexpr double kShareOfHeight = 0.008;  // the usual 4 σ of 1 px for a person 500 pixels high
   for (size_t t = 0; t < problem->frames.size(); ++t) {
-    FrameData& frame = problem->frames[t];
-    if (frame.dense.size() == 0) continue;
+    auto* dense = problem->frames[t].terms.Find<DenseTerm>();
+    if (dense == nullptr || dense->size() == 0) continue;
     double sigma_px = 0;
-    for (const DenseKeypoint& point : *frame.dense.points) sigma_px += point.sigma_px;
-    sigma_px /= static_cast<double>(frame.dense.size());
+    for (const DenseKeypoint& point : *dense->points) sigma_px += point.sigma_px;
+    sigma_px /= static_cast<double>(dense->size());
     const double share_px = kShareOfHeight * UprightHeightPx(problem->layout, StateInCamera(*problem, t), stature);
-    frame.dense.kernel = std::max(frame.dense.kernel, share_px / sigma_px);
+    dense->kernel = std::max(dense->kernel, share_px / sigma_px);
   }
 }
 
@@ -100,7 +102,7 @@ void ClipFit::SetUpProblem() {
   landmarks_ = FindObservedLandmarks(model, input_.keypoints, num_betas);
   const std::vector<int> active =
       FindActiveJoints(model, landmarks_, input_.dense != nullptr || input_.part_labels != nullptr,
-                       options_.skip_unneeded, options_.own_terms);
+                       options_.skip_unneeded, options_.user_terms);
   const Camera camera = StartCamera(input_, options_);
   problem_.layout = FrameLayout::Make(model, options_.camera_knowledge, camera, active, num_betas);
   problem_.timestamps = *ExtentOf(input_).timestamps;
@@ -108,8 +110,6 @@ void ClipFit::SetUpProblem() {
   problem_.betas = VectorXd::Zero(num_betas);
   problem_.log_focal = problem_.log_focal_prior = std::log(camera.fx);
   problem_.log_focal_sigma = input_.focal_prior.value_or(FocalPrior()).log_sigma;
-  if (input_.prior != nullptr && input_.prior->num_components() > 0) prior_.emplace(*input_.prior, model, active);
-  limits_ = JointLimits::ForBody(model);
   stature_m_ = AssumedStature(input_);
   problem_.shape_prior.height_m = summary_.stature_m = input_.stature_m;
 }
@@ -129,11 +129,6 @@ bool ClipFit::FindStart() {
   if (!lifted_.frames.empty()) {
     lifted_landmarks_ = CompileLiftedLandmarks(*input_.body, problem_.layout.num_betas);
   }
-  if (input_.initialiser != nullptr) return true;
-  // What the lifter predicted stays as a term.
-  for (const LiftedFrame& frame : lifted_.frames) {
-    lifted_poses_.push_back(MakeLiftedPose(frame, lifted_landmarks_, lifted_.metres, options_.lifter_min_sigma_m));
-  }
   return true;
 }
 
@@ -152,43 +147,34 @@ void ClipFit::FollowCamera() {
 
 void ClipFit::Observe() {
   const size_t T = num_frames();
-  const std::array<int, 2> knees = FindKnees(*input_.body);
   problem_.frames.resize(T);
-  for (size_t t = 0; t < T; ++t) {
-    FrameData& frame = problem_.frames[t];
-    if (input_.keypoints != nullptr) {
-      const double height_px = UprightHeightPx(problem_.layout, problem_.states[t], stature_m_);
-      frame.landmarks.seen = ObserveLandmarks(landmarks_, *input_.keypoints, static_cast<int>(t), height_px);
-    }
-    if (input_.dense != nullptr) frame.dense.points = &input_.dense->frames[t];
-    if (prior_) {
-      frame.prior.mixture = &*prior_;
-      frame.prior.weight = options_.prior_weight;
-    }
-    frame.limits.limits = &limits_;
-    if (!lifted_poses_.empty()) {
-      frame.lifted.pose = &lifted_poses_[t];
-      frame.lifted.weight = options_.lifter_weight;
-    }
-    frame.upright.weight = options_.upright_weight;
-    frame.straight_knees = {knees, options_.straight_knees_weight};
-    if (input_.initialiser == nullptr || input_.initialiser->HasPose(static_cast<int>(t))) {
-      frame.initialiser.rotations = problem_.states[t].rotations;
-      frame.initialiser.translation = problem_.states[t].translation;
-    }
-    summary_.num_observations += static_cast<int>(frame.landmarks.seen.size() + frame.dense.size());
+  const ClipTermInput clip{.input = input_,
+                           .options = options_,
+                           .layout = problem_.layout,
+                           .landmarks = landmarks_,
+                           .joints = joints_,
+                           .lifted = lifted_,
+                           .lifted_landmarks = lifted_landmarks_,
+                           .stature_m = stature_m_,
+                           .num_threads = threads_};
+  for (const TermKind& kind : TermKinds()) {
+    std::unique_ptr<ClipTerm> term = kind.make(clip);
+    if (term == nullptr) continue;
+    term->Observe(&problem_);
+    terms_.push_back(std::move(term));
+  }
+  for (const FrameData& frame : problem_.frames) {
+    summary_.num_observations +=
+        static_cast<int>(frame.Get<LandmarkTerm>().seen.size() + frame.Get<DenseTerm>().size());
   }
   FollowCamera();
-  AddOwnTerms(options_.own_terms, &problem_);
   problem_.velocity_weight = options_.velocity_weight;
   // Detections of a frame and of its neighbours err together (COCO joints are not the body's, and detectors are off for
   // a third of a second at a time), so frames do not outvote the shape prior as independent measurements would.
   problem_.shape_prior.weight = std::max(1.0, options_.shape_prior_weight * static_cast<double>(T));
-  ground_.emplace(input_, options_, joints_, lifted_.frames, lifted_landmarks_, &problem_);
+  for (const auto& term : terms_) term->BeginFit(&problem_);
   summary_.num_parameters = static_cast<int>(T) * problem_.layout.num_frame_columns() + problem_.layout.num_columns -
                             problem_.layout.beta_column;
-  dense_rounds_.emplace(input_, options_, problem_.layout, threads_);
-  part_label_rounds_.emplace(input_, options_, problem_.layout, threads_);
   coarse_frames_ = FramesAtRate(problem_, options_.coarse_rate);
   stages_ = StagesFor(input_, options_, coarse_frames_.size() < T);
   runner_.emplace(input_, options_, threads_, &clock_, &summary_);
@@ -196,8 +182,9 @@ void ClipFit::Observe() {
 
 void ClipFit::FitCoarseFrames() {
   const bool from_guess = input_.initialiser == nullptr;
-  const bool learns =
-      !lifted_.frames.empty() || dense_rounds_->any() || part_label_rounds_->any() || seeks_camera_scale();
+  const bool has_rounds =
+      std::any_of(terms_.begin(), terms_.end(), [](const auto& term) { return term->rounds().count > 0; });
+  const bool learns = !lifted_.frames.empty() || has_rounds || seeks_camera_scale();
   if (!from_guess && coarse_frames_.size() == num_frames() && !learns) return;
   SequenceProblem coarse = SelectFrames(problem_, coarse_frames_);
   if (from_guess) FitNearStart(&coarse);
@@ -206,28 +193,30 @@ void ClipFit::FitCoarseFrames() {
   SettleFocalLength(&coarse);
   FitCameraScale(&coarse);
   LearnFromFirstAnswer(&coarse);
-  FitPartLabels(&coarse);
-  FitDense(&coarse);
+  FitRounds(&coarse);
   SpreadFrames(coarse, coarse_frames_, &problem_);
 }
 
 void ClipFit::FitNearStart(SequenceProblem* coarse) {
   if (lifted_.frames.empty()) WidenDenseKernels(stature_m_, coarse);
   runner_->Run(stages_.near_start, coarse);
-  for (FrameData& frame : coarse->frames) frame.dense.kernel = DenseOfFrame{}.kernel;
+  for (FrameData& frame : coarse->frames) {
+    if (auto* dense = frame.terms.Find<DenseTerm>(); dense != nullptr) dense->kernel = DenseTerm().kernel;
+  }
 }
 
 void ClipFit::LearnFromFirstAnswer(SequenceProblem* coarse) {
-  if (!runner_->going()) return;
+  if (!runner_->ok()) return;
   if (options_.fit_smoothness) {
     problem_.smoothness = coarse->smoothness = FitSmoothness(*coarse, coarse->smoothness[0]);
   }
-  const bool has_ground = ground_->FindGround(coarse_frames_, coarse, &problem_);
-  if (has_points() && (options_.fit_smoothness || has_ground || settled_focal_)) runner_->Run(stages_.again, coarse);
+  bool learned = false;
+  for (const auto& term : terms_) learned = term->LearnFrom(coarse_frames_, coarse, &problem_) || learned;
+  if (has_points() && (options_.fit_smoothness || learned || settled_focal_)) runner_->Run(stages_.again, coarse);
 }
 
 void ClipFit::FitCameraScale(SequenceProblem* coarse) {
-  if (!seeks_camera_scale() || !runner_->going()) return;
+  if (!seeks_camera_scale() || !runner_->ok()) return;
   CameraPathSummary& summary = summary_.camera_path;
   if (lifted_.frames.empty() || joints_ == nullptr) {
     summary.why = "the lifter says which feet stand, and it does not run";
@@ -260,7 +249,7 @@ void ClipFit::ScaleCameraPath(double scale_m, SequenceProblem* coarse) {
 void ClipFit::SettleFocalLength(SequenceProblem* coarse) {
   constexpr double kHeldLogSigma = 1e-4;
   const bool joints_alone = !lifted_.frames.empty() && input_.dense == nullptr;
-  if (problem_.layout.focal_column < 0 || !joints_alone || !runner_->going()) return;
+  if (problem_.layout.focal_column < 0 || !joints_alone || !runner_->ok()) return;
   const FocalFit fit{coarse->log_focal, FocalLogSigmaOf(*coarse, threads_)};
   const FocalFit joined =
       JoinFocalFits({&fit, 1}, {.log_mean = problem_.log_focal_prior, .log_sigma = problem_.log_focal_sigma});
@@ -282,38 +271,40 @@ void ClipFit::SettleFocalLength(SequenceProblem* coarse) {
   settled_focal_ = joined;
 }
 
-void ClipFit::FitPartLabels(SequenceProblem* coarse) {
-  if (!part_label_rounds_->any()) return;
-  const PartLabelOptions& labels = options_.part_labels;
-  for (int round = 0; runner_->going() && round < labels.rounds; ++round) {
-    const double s = labels.rounds > 1 ? double(round) / (labels.rounds - 1) : 1.0;
-    const double kernel = labels.start_kernel * std::pow(labels.kernel / labels.start_kernel, s);
-    part_label_rounds_->Start(coarse_frames_, kernel, coarse);
-    runner_->Run(stages_.part_labels, coarse);
-  }
-}
-
-void ClipFit::FitDense(SequenceProblem* coarse) {
-  if (!dense_rounds_->any()) return;
-  for (int round = 0; runner_->going() && round < options_.rendered_uv.rounds; ++round) {
-    dense_rounds_->Start(coarse_frames_, coarse);
-    runner_->Run(stages_.dense, coarse);
+void ClipFit::FitRounds(SequenceProblem* coarse) {
+  // Labels bring the body into its outline before dense keypoints look at what it shows.
+  for (auto term = terms_.rbegin(); term != terms_.rend(); ++term) {
+    const ClipTerm::Rounds rounds = (*term)->rounds();
+    Stage stage = stages_.round;
+    stage.name = rounds.stage;
+    stage.max_iterations = rounds.max_iterations;
+    for (int round = 0; runner_->ok() && round < rounds.count; ++round) {
+      (*term)->StartRound(round, coarse_frames_, coarse);
+      runner_->Run(stage, coarse);
+    }
   }
 }
 
 void ClipFit::FitAllFrames() {
   std::vector<int> all(num_frames());
   std::iota(all.begin(), all.end(), 0);
-  part_label_rounds_->Start(all, options_.part_labels.kernel, &problem_);
-  dense_rounds_->Start(all, &problem_);
+  for (auto term = terms_.rbegin(); term != terms_.rend(); ++term) {
+    const int count = (*term)->rounds().count;
+    if ((*term)->rounds().stage[0] != '\0') (*term)->StartRound(std::max(0, count - 1), all, &problem_);
+  }
   runner_->Run(stages_.all, &problem_);
+}
+
+void ClipFit::FinishWithCeres() {
+  if (options_.solver != SequenceSolver::kChainThenCeres) return;
+  runner_->Run(stages_.finish, SequenceSolver::kCeres, &problem_);
 }
 
 void ClipFit::Finish(TrackSequenceResult* result) {
   FillTrack(input_, problem_, landmarks_, result);
-  SummariseImageTerms(problem_, dense_rounds_->has_rendered_uv(), part_label_rounds_->any(), &summary_);
-  summary_.own_terms = SummariseOwnTerms(options_.own_terms, problem_);
-  ground_->Summarise(problem_, &summary_);
+  SummariseImageTerms(problem_, &summary_);
+  SummariseCosts(problem_, threads_, &summary_);
+  for (const auto& term : terms_) term->Summarise(problem_, &summary_);
   result->track.world = WorldOfGround(summary_.ground, result->track.joints);
   clock_.Book("finish");
   summary_.focal_log_sigma = problem_.layout.focal_column < 0 ? 0 : std::numeric_limits<double>::quiet_NaN();

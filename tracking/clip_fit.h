@@ -3,6 +3,7 @@
 /// that solve it.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -10,13 +11,8 @@
 #include "bodyloom/tracking/initialise/lifted_landmarks.h"
 #include "bodyloom/tracking/initialise/lifted_start.h"
 #include "bodyloom/tracking/sequence_problem.h"
-#include "bodyloom/tracking/terms/ground_contact/clip_ground.h"
-#include "bodyloom/tracking/terms/joint_limits.h"
+#include "bodyloom/tracking/terms/clip_term.h"
 #include "bodyloom/tracking/terms/landmarks.h"
-#include "bodyloom/tracking/terms/lifted/lifted_pose.h"
-#include "bodyloom/tracking/terms/part_labels/part_labels.h"
-#include "bodyloom/tracking/terms/pose_prior/mixture_prior.h"
-#include "bodyloom/tracking/terms/rendered_uv/rendered_uv.h"
 #include "bodyloom/tracking/track_input.h"
 #include "bodyloom/tracking/track_options.h"
 #include "bodyloom/tracking/track_stages.h"
@@ -34,13 +30,17 @@ class ClipFit {
 
   /// A starting pose for every frame. False, with the reason in the summary, when no frame shows enough to start from.
   bool FindStart();
-  /// What each term has of each frame.
+  /// The terms of every frame.
   void Observe();
   /// The stages on the coarse frames, and what each of them gives of the clip.
   void FitCoarseFrames();
   void FitAllFrames();
+  /// Ceres on the whole, where options ask for it after chain's stages.
+  void FinishWithCeres();
   /// Track, summary and uncertainty.
   void Finish(TrackSequenceResult* result);
+
+  [[nodiscard]] SequenceProblem* problem() { return &problem_; }
 
  private:
   void CleanObservations();
@@ -57,8 +57,7 @@ class ClipFit {
   /// A focal length that is not known becomes what the coarse answer and the prior say of it together, and stays; people
   /// move along their rays with it. Only of 2D joints that the lifter has seen: nothing else is known to err as much.
   void SettleFocalLength(SequenceProblem* coarse);
-  void FitPartLabels(SequenceProblem* coarse);
-  void FitDense(SequenceProblem* coarse);
+  void FitRounds(SequenceProblem* coarse);
   /// Uncertainty of every frame's joints: that of the coarse frame nearest in time.
   void FillJointSigma(Track* track);
   [[nodiscard]] bool has_points() const { return input_.keypoints != nullptr || input_.dense != nullptr; }
@@ -77,18 +76,13 @@ class ClipFit {
   int num_impossible_ = 0;
   StageClock clock_;
   ObservedLandmarks landmarks_;
-  std::optional<MixturePrior> prior_;
-  JointLimits limits_;
   double stature_m_ = 0;                 ///< AssumedStature()
   std::vector<CameraPose> camera_path_;  ///< T, scaled, of a camera that moves; or empty
   SequenceProblem problem_;
   LiftedStart lifted_;
   LiftedLandmarks lifted_landmarks_;
-  std::vector<LiftedPose> lifted_poses_;  ///< T, or empty
   std::optional<FocalFit> settled_focal_;
-  std::optional<ClipGround> ground_;
-  std::optional<DenseRounds> dense_rounds_;
-  std::optional<PartLabelRounds> part_label_rounds_;
+  std::vector<std::unique_ptr<ClipTerm>> terms_;
   std::vector<int> coarse_frames_;
   Stages stages_{};
   std::optional<StageRunner> runner_;

@@ -9,19 +9,28 @@ namespace bodyloom {
 
 using Eigen::VectorXd;
 
+namespace {
+
+/// A squared residual so far beyond every kernel that ρ is its saturation to rounding.
+constexpr double kBeyondKernels = 1e15;
+
+}  // namespace
+
 void FrameAccumulator::Begin(const FrameLayout& layout, const FrameState& state, const VectorXd& betas,
-                             double log_focal, bool derivatives, FrameResiduals* residuals) {
+                             double log_focal, Mode mode, FrameResiduals* residuals) {
   layout_ = &layout;
   state_ = &state;
   betas_ = &betas;
+  log_focal_ = log_focal;
   residuals_ = residuals;
-  derivatives_ = derivatives;
+  mode_ = mode;
   camera_ = layout.CameraAt(state, log_focal);
-  kinematics_.Set(*layout.model, betas, state.rotations, layout.BodyTranslation(state), derivatives);
+  kinematics_.Set(*layout.model, betas, state.rotations, layout.BodyTranslation(state), derivatives());
   vertices_.NewFrame(kinematics_);
   cost_ = 0;
   row_ = 0;
   num_invalid_ = 0;
+  groups_.clear();
 }
 
 void FrameAccumulator::ReserveRows(int rows) {
@@ -31,6 +40,63 @@ void FrameAccumulator::ReserveRows(int rows) {
   if (r_.size() < rows) r_.resize(rows);
   H_.setZero(columns, stride);
   gradient_.setZero(columns);
+  cost_ = 0;
+  row_ = 0;
+  num_invalid_ = 0;
+  groups_.clear();
+}
+
+void FrameAccumulator::BeginGroup(int num_rows, double squared_norm, double kernel, double weight) {
+  ResidualGroup& group = groups_.emplace_back();
+  group.first_row = row_;
+  group.num_rows = num_rows;
+  group.kernel = kernel;
+  group.weight = weight;
+  if (mode_ != Mode::kNorms) return;
+  NextResiduals(num_rows).setZero();
+  NextResiduals(num_rows)[0] = std::sqrt(squared_norm);
+  TakeRows(num_rows);
+}
+
+double FrameAccumulator::AddGroup(int num_rows, double squared_norm, double rho, double d_rho,
+                                  ceres::LossFunction* loss) {
+  cost_ += 0.5 * rho;
+  if (!one_by_one()) return std::sqrt(d_rho);
+  BeginGroup(num_rows, squared_norm, 0, 1);
+  groups_.back().loss = loss;
+  return 1;
+}
+
+void FrameAccumulator::AddSaturated(double kernel, double weight, int num_rows) {
+  cost_ += 0.5 * weight * kernel * kernel;
+  ++num_invalid_;
+  if (!one_by_one()) return;
+  const double beyond = kBeyondKernels * kernel;
+  BeginGroup(num_rows, beyond * beyond, kernel, weight);
+  if (!derivatives()) return;
+  NextRows(num_rows).setZero();
+  NextResiduals(num_rows).setZero();
+  NextResiduals(num_rows)[0] = beyond;
+  TakeRows(num_rows);
+  if (mode_ != Mode::kStructure) return;
+  DependsOnPoint();
+  DependsOn(layout_->TranslationBlock());
+  DependsOn(layout_->FocalBlock());
+}
+
+void FrameAccumulator::DependsOn(int block) {
+  if (mode_ != Mode::kStructure || block < 0) return;
+  std::vector<int>& blocks = groups_.back().blocks;
+  const auto at = std::lower_bound(blocks.begin(), blocks.end(), block);
+  if (at == blocks.end() || *at != block) blocks.insert(at, block);
+}
+
+void FrameAccumulator::DependsOnPoint() {
+  if (mode_ != Mode::kStructure) return;
+  for (const int j : points_.joints()) {
+    if (layout_->column_of_joint[j] >= 0) DependsOn(layout_->BlockOfColumn(layout_->column_of_joint[j]));
+  }
+  DependsOn(layout_->BetaBlock());
 }
 
 void FrameAccumulator::FillPointRows(Eigen::Ref<RowMatrixXd> rows) {
@@ -46,7 +112,7 @@ void FrameAccumulator::FillPointRows(Eigen::Ref<RowMatrixXd> rows) {
 void FrameAccumulator::Finish(FrameSystem* system) {
   system->cost = cost_;
   system->num_invalid = num_invalid_;
-  if (!derivatives_) return;
+  if (!derivatives()) return;
   const int p = layout_->num_columns;
   if (row_ > 0) {
     panel_internal::Products products;

@@ -33,6 +33,21 @@ struct FrameLayout {
   static FrameLayout Make(const BodyModel& model, CameraKnowledge knowledge, const Camera& camera,
                           std::vector<int> active_joints, int num_betas);
   [[nodiscard]] int num_frame_columns() const { return translation_column + 3; }
+
+  /// The unknowns as blocks, in column order: one of three columns a joint and for the translation, then one for the
+  /// shape and one for the logarithm of the focal length, where they are estimated.
+  [[nodiscard]] int num_blocks() const { return translation_column / 3 + 1 + (num_betas > 0) + (focal_column >= 0); }
+  [[nodiscard]] int TranslationBlock() const { return translation_column / 3; }
+  [[nodiscard]] int BetaBlock() const { return num_betas > 0 ? TranslationBlock() + 1 : -1; }  ///< −1: not estimated
+  [[nodiscard]] int FocalBlock() const { return focal_column >= 0 ? num_blocks() - 1 : -1; }   ///< −1: not estimated
+  /// Of a column of a joint or of the translation.
+  [[nodiscard]] static int BlockOfColumn(int column) { return column / 3; }
+  [[nodiscard]] int FirstColumn(int block) const {
+    return block <= TranslationBlock() ? 3 * block : block == BetaBlock() ? beta_column : focal_column;
+  }
+  [[nodiscard]] int NumColumns(int block) const {
+    return block <= TranslationBlock() ? 3 : block == BetaBlock() ? num_betas : 1;
+  }
   /// Intrinsics at a frame's state; for weak perspective with its scale and offset.
   [[nodiscard]] Camera CameraAt(const FrameState& state, double log_focal) const;
   /// Translation of the body: zero for weak perspective, where the camera has it.

@@ -112,8 +112,6 @@ void CheckCameraPath(const TrackSequenceInput& input, const TrackSequenceOptions
                  "track: the scale of the camera's path is ", input.camera_scale_m, ", expected metres a unit, or 0");
   BODYLOOM_CHECK(options.camera_knowledge != CameraKnowledge::kWeak,
                  "track: weak perspective has no place in a scene; give a camera that moves a focal length");
-  BODYLOOM_CHECK(options.own_terms.empty(),
-                 "track: own terms are for a camera that stands still; leave out the camera's path or the terms");
 }
 
 bool IsUsable(const DenseKeypoint& point, float reach) {
@@ -198,7 +196,7 @@ void CheckInput(const TrackSequenceInput& input, const TrackSequenceOptions& opt
   BODYLOOM_CHECK(input.body != nullptr, "track: no body");
   BODYLOOM_CHECK(input.keypoints != nullptr || input.dense != nullptr || input.part_labels != nullptr,
                  "track: neither 2D joints nor dense keypoints nor part labels; give at least one");
-  for (const OwnTerm& term : options.own_terms) CheckOwnTerm(term, *input.body);
+  for (const UserTerm& term : options.user_terms) CheckUserTerm(term, *input.body);
   const ClipExtent extent = ExtentOf(input);
   BODYLOOM_CHECK(extent.frames > 0, "track: the detections hold no frames");
   if (input.initialiser != nullptr) {

@@ -44,4 +44,12 @@ void TakeToScene(const FrameLayout& layout, const CameraPose& camera_from_scene,
   system->H.topLeftCorner(p, p) = HT;
 }
 
+void TakeRowsToScene(const FrameLayout& layout, const CameraPose& camera_from_scene, Eigen::Ref<RowMatrixXd> J) {
+  const int t = layout.translation_column, b = layout.beta_column, B = layout.num_betas;
+  const Matrix3d& R = camera_from_scene.camera_from_world_rotation;
+  const MatrixXd K = (R - Matrix3d::Identity()) * layout.model->joint_shapedirs().block(0, 0, 3, B);
+  J.middleCols(b, B) += J.middleCols<3>(t) * K;
+  J.middleCols<3>(t) = (J.middleCols<3>(t) * R).eval();
+}
+
 }  // namespace bodyloom

@@ -30,4 +30,7 @@ FrameState StateInCamera(const SequenceProblem& problem, size_t t);
 /// The sums of a frame's terms, which are by the camera frame's columns, by the scene's.
 void TakeToScene(const FrameLayout& layout, const CameraPose& camera_from_scene, FrameSystem* system);
 
+/// Rows of derivatives by the camera frame's columns, likewise: J T.
+void TakeRowsToScene(const FrameLayout& layout, const CameraPose& camera_from_scene, Eigen::Ref<RowMatrixXd> J);
+
 }  // namespace bodyloom

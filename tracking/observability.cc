@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "bodyloom/tracking/kinematics.h"
-#include "bodyloom/tracking/terms/own/own_costs.h"
+#include "bodyloom/tracking/terms/user/user_cost.h"
 
 namespace bodyloom {
 namespace {
@@ -16,7 +16,7 @@ constexpr double kMinLever = 0.04;  ///< metres a radian
 }  // namespace
 
 std::vector<int> FindActiveJoints(const BodyModel& model, const ObservedLandmarks& landmarks, bool dense, bool skip,
-                                  std::span<const OwnTerm> own_terms) {
+                                  std::span<const UserTerm> user_terms) {
   std::vector<int> all(model.num_joints());
   std::iota(all.begin(), all.end(), 0);
   if (dense || !skip) return all;
@@ -32,9 +32,12 @@ std::vector<int> FindActiveJoints(const BodyModel& model, const ObservedLandmark
       lever[j] = std::max(lever[j], points.JointJacobian(kinematics, j).norm() / std::sqrt(2.0));
   };
   for (const CompiledPoint& point : landmarks.points) add(point);
-  for (const OwnTerm& term : own_terms) {
-    for (const CompiledPoint& point : CompileOwnLandmarks(term, model, 0)) add(point);
-    for (const int j : term.joints) lever.at(j) = std::max(lever[j], kMinLever);
+  for (const UserTerm& term : user_terms) {
+    const auto compiled = CompileInputs(term, model, 1);
+    for (const CompiledInputs::Input& input : compiled->inputs) {
+      if (!input.vertices.empty()) add(CompilePoint(model, input.vertices, input.weights, 0));
+      if (input.kind == TermInput::Kind::kRotation) lever.at(input.joint) = std::max(lever[input.joint], kMinLever);
+    }
   }
   std::vector<int> active;
   for (int j : all) {

@@ -7,15 +7,15 @@
 
 #include "bodyloom/geometry/body_model.h"
 #include "bodyloom/tracking/terms/landmarks.h"
-#include "bodyloom/tracking/terms/own/own_term.h"
+#include "bodyloom/tracking/terms/user/user_term.h"
 
 namespace bodyloom {
 
 /// Joints worth estimating. With dense keypoints: all. With 2D joints only: those that move some observed landmark by
 /// at least 4 cm a radian in the rest pose; the others (wrists, hands, feet without toe detections) only carry the
 /// prior, and holding them at rest changes nothing that was observed by more than that lever. `skip` false: all joints.
-/// A landmark that a user's own term reads counts as observed, and a joint that it reads is estimated.
+/// A landmark or surface point that a user's term reads counts as observed, and a joint that it reads is estimated.
 std::vector<int> FindActiveJoints(const BodyModel& model, const ObservedLandmarks& landmarks, bool dense, bool skip,
-                                  std::span<const OwnTerm> own_terms = {});
+                                  std::span<const UserTerm> user_terms = {});
 
 }  // namespace bodyloom

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace bodyloom {
 
@@ -73,10 +74,6 @@ std::array<double, 3> RootVelocitySigma(const SequenceProblem& problem) {
   return {weak ? sigma * usual.weak_scale_acceleration / usual.root_acceleration : sigma, sigma, sigma};
 }
 
-bool HasCostsWithNext(const SequenceProblem& problem, size_t t) {
-  return t + 1 < problem.frames.size() && !problem.frames[t].own.with_next.empty() && problem.cut_before[t + 1] == 0;
-}
-
 SequenceProblem SelectFrames(const SequenceProblem& problem, const std::vector<int>& frames) {
   SequenceProblem coarse;
   coarse.layout = problem.layout;
@@ -89,7 +86,6 @@ SequenceProblem SelectFrames(const SequenceProblem& problem, const std::vector<i
   coarse.shape_prior = problem.shape_prior;
   int previous = -1;
   for (int t : frames) {
-    if (previous >= 0 && previous + 1 != t) coarse.frames.back().own.with_next.clear();
     coarse.frames.push_back(problem.frames[t]);
     coarse.states.push_back(problem.states[t]);
     coarse.timestamps.push_back(problem.timestamps[t]);
@@ -98,8 +94,15 @@ SequenceProblem SelectFrames(const SequenceProblem& problem, const std::vector<i
     coarse.cut_before.push_back(cut);
     previous = t;
   }
-  if (previous + 1 < static_cast<int>(problem.frames.size()) && !coarse.frames.empty()) {
-    coarse.frames.back().own.with_next.clear();
+  for (const FrameCoupling& coupling : problem.couplings) {
+    FrameCoupling selected = coupling;
+    bool all = true;
+    for (int& t : selected.frames) {
+      const auto at = std::lower_bound(frames.begin(), frames.end(), t);
+      all = all && at != frames.end() && *at == t;
+      t = static_cast<int>(at - frames.begin());
+    }
+    if (all) coarse.couplings.push_back(std::move(selected));
   }
   return coarse;
 }

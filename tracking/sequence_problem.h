@@ -11,6 +11,7 @@
 #include "bodyloom/tracking/frame_data.h"
 #include "bodyloom/tracking/frame_layout.h"
 #include "bodyloom/tracking/shots.h"
+#include "bodyloom/tracking/terms/user/user_cost.h"
 
 namespace bodyloom {
 
@@ -33,6 +34,7 @@ struct ShapePrior {
 struct SequenceProblem {
   FrameLayout layout;
   std::vector<FrameData> frames;
+  std::vector<FrameCoupling> couplings;  ///< users' cost functions on several frames
   std::vector<FrameState> states;
   std::vector<double> timestamps;  ///< seconds
   std::vector<char> cut_before;    ///< true where frame t does not continue frame t−1
@@ -44,12 +46,8 @@ struct SequenceProblem {
   ShapePrior shape_prior;
 };
 
-/// Whether frame t has cost functions with the next one (terms/own/own_costs.h) that take part: the next one is there
-/// and continues it.
-bool HasCostsWithNext(const SequenceProblem& problem, size_t t);
-
 /// The same problem on a subset of the frames (ascending indices): a coarse solve in time. Frame data is copied; cost
-/// functions with a next frame that is not selected are left out.
+/// functions on several frames of which one is not selected are left out.
 SequenceProblem SelectFrames(const SequenceProblem& problem, const std::vector<int>& frames);
 
 /// Takes the coarse answer back: shape and focal length, the selected frames' states, and for frames between them the

@@ -5,11 +5,24 @@
 
 namespace bodyloom {
 
-std::string ToString(SequenceSolver solver) { return solver == SequenceSolver::kChain ? "chain" : "ceres"; }
+std::string ToString(SequenceSolver solver) {
+  switch (solver) {
+    case SequenceSolver::kCeres:
+      return "ceres";
+    case SequenceSolver::kChain:
+      return "chain";
+    case SequenceSolver::kChainThenCeres:
+      return "chain+ceres";
+  }
+  return "";
+}
 
 SequenceSolver SequenceSolverFromString(const std::string& word) {
-  BODYLOOM_CHECK(word == "ceres" || word == "chain", "solver '", word, "' is unknown; expected 'ceres' or 'chain'");
-  return word == "chain" ? SequenceSolver::kChain : SequenceSolver::kCeres;
+  for (const auto solver : {SequenceSolver::kCeres, SequenceSolver::kChain, SequenceSolver::kChainThenCeres}) {
+    if (word == ToString(solver)) return solver;
+  }
+  BODYLOOM_CHECK(false, "solver '", word, "' is unknown; expected 'chain+ceres', 'ceres' or 'chain'");
+  return SequenceSolver::kChainThenCeres;
 }
 
 std::string ToString(SolveStatus status) {

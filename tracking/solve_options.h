@@ -10,10 +10,11 @@ namespace bodyloom {
 
 /// The engines: the same problem, the same rules of acceptance and of stopping.
 enum class SequenceSolver {
-  kCeres,  ///< Ceres with sparse Cholesky: the reference (ceres_solver.h)
-  kChain   ///< several times faster on a chain of frames (chain_solver.h)
+  kCeres,          ///< Ceres with sparse Cholesky (ceres_solver.h)
+  kChain,          ///< several times faster on a chain of frames (chain_solver.h)
+  kChainThenCeres  ///< chain to near the minimum, and Ceres from there to its own convergence
 };
-/// "ceres" or "chain".
+/// "ceres", "chain" or "chain+ceres".
 std::string ToString(SequenceSolver solver);
 /// The other way; throws std::invalid_argument for another word.
 SequenceSolver SequenceSolverFromString(const std::string& word);
@@ -21,7 +22,7 @@ SequenceSolver SequenceSolverFromString(const std::string& word);
 enum class SolveStatus { kFailure, kConverged, kMaxIterations, kStopped };
 std::string ToString(SolveStatus status);
 
-/// What the chain engine may leave out on its way; Ceres does not read it.
+/// Of the chain engine, what it may leave out on its way; Ceres does not read it.
 struct ChainOptions {
   /// Until the cost changes by less than a thousandth, frames with more than twice as many dense keypoints use about
   /// this many, evenly chosen and weighted to represent all; then all of them. What converges is always the whole
@@ -49,6 +50,9 @@ struct SolveOptions {
   double gradient_tolerance = 1e-9;   ///< … when no component of the gradient is larger
   double parameter_tolerance = 1e-9;  ///< … when the step is below this share of the unknowns' norm
   bool shape_constant = false, focal_constant = false;
+  /// Ceres: a clip of more frames is solved in windows of so many that overlap, with shape and focal length held; 0:
+  /// never. Not where users' terms couple frames.
+  int max_frames_at_once = 0;
   ChainOptions chain;
   /// Called after each iteration with (iteration, cost); false stops.
   std::function<bool(int, double)> on_iteration;
@@ -57,6 +61,8 @@ struct SolveOptions {
 /// What the tracker sets these to; linearisations are reused only where there are dense keypoints.
 inline constexpr int kTrackerEarlyDense = 300;
 inline constexpr double kTrackerReuse = 0.01, kTrackerFrozenShare = 0.05;
+/// Of the last solve: Ceres takes 30 KB and more a frame at once (docs/lab/ceres_finish.md).
+inline constexpr int kTrackerFramesAtOnce = 3000;
 
 struct SolveReport {
   SolveStatus status = SolveStatus::kFailure;
@@ -64,6 +70,7 @@ struct SolveReport {
   double initial_cost = 0, final_cost = 0, seconds = 0;
   double seconds_evaluation = 0, seconds_linear_solver = 0;  ///< parts of `seconds`
   int64_t frames_evaluated = 0, frames_skipped = 0;          ///< chain: frames × evaluations
+  double gradient_max_norm = 0;                              ///< at the end, Ceres
   std::string message;
 };
 

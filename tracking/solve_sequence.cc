@@ -15,7 +15,19 @@ SolveReport SolveSequence(SequenceProblem* problem, const SolveOptions& options)
       problem->cut_before.size(), " cut flags; expected the same number of each");
   BODYLOOM_CHECK(problem->betas.size() == problem->layout.num_betas, "sequence: ", problem->betas.size(),
                  " betas, the layout has ", problem->layout.num_betas);
-  return options.solver == SequenceSolver::kChain ? SolveChain(problem, options) : SolveWithCeres(problem, options);
+  if (options.solver == SequenceSolver::kCeres) return SolveWithCeres(problem, options);
+  SolveReport chain = SolveChain(problem, options);
+  const bool ended = chain.status == SolveStatus::kFailure || chain.status == SolveStatus::kStopped;
+  if (options.solver == SequenceSolver::kChain || ended) return chain;
+  SolveReport report = SolveWithCeres(problem, options);
+  report.iterations += chain.iterations;
+  report.initial_cost = chain.initial_cost;
+  report.seconds += chain.seconds;
+  report.seconds_evaluation += chain.seconds_evaluation;
+  report.seconds_linear_solver += chain.seconds_linear_solver;
+  report.frames_evaluated = chain.frames_evaluated;
+  report.frames_skipped = chain.frames_skipped;
+  return report;
 }
 
 }  // namespace bodyloom

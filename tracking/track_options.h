@@ -10,9 +10,9 @@
 #include "bodyloom/tracking/initialise/joint_hypotheses.h"
 #include "bodyloom/tracking/solve_options.h"
 #include "bodyloom/tracking/terms/ground_contact/ground_options.h"
-#include "bodyloom/tracking/terms/own/own_term.h"
 #include "bodyloom/tracking/terms/part_labels/part_label_options.h"
 #include "bodyloom/tracking/terms/rendered_uv/rendered_uv_options.h"
+#include "bodyloom/tracking/terms/user/user_term.h"
 
 namespace bodyloom {
 
@@ -25,11 +25,11 @@ struct TrackProgress {
 
 struct TrackSequenceOptions {
   CameraKnowledge camera_knowledge = CameraKnowledge::kKnown;
-  SequenceSolver solver = SequenceSolver::kChain;  ///< the engine; both solve the same problem
-  int num_threads = 0;                             ///< 0: all cores
-  int max_iterations = 50;                         ///< solver iterations of a stage
-  int max_fine_iterations = 8;                     ///< of the last stage, when a coarse one came before
-  double initialiser_weight = 0.1;                 ///< λ_d of paper A, per frame
+  SequenceSolver solver = SequenceSolver::kChainThenCeres;  ///< all engines solve the same problem
+  int num_threads = 0;                                      ///< 0: all cores
+  int max_iterations = 50;                                  ///< solver iterations of a stage
+  int max_fine_iterations = 8;      ///< of chain's stage on all frames, when a coarse one came before
+  double initialiser_weight = 0.1;  ///< λ_d of paper A, per frame
   /// λ_d when the lifter is the initialiser (0: it is not used), and a floor of its own uncertainty in metres. Found
   /// on cameras c02, c04, c06 and c09 of the clips of docs/benchmarks.md, whose other cameras are reported there:
   /// weights 0.03 to 0.4 differ by 2 mm.
@@ -56,7 +56,7 @@ struct TrackSequenceOptions {
   bool skip_unneeded = true;
   /// The relative change of the cost at which every stage ends; 0: each stage's own (track_stages.h).
   double function_tolerance = 0;
-  std::vector<OwnTerm> own_terms;  ///< of the user (terms/own/own_term.h); both engines run them
+  std::vector<UserTerm> user_terms;  ///< terms/user/user_term.h; both engines run them
   std::function<bool(const TrackProgress&)> progress;
   /// False with the reason when a field is out of range.
   bool IsValid(std::string* why) const;

@@ -6,16 +6,7 @@
 
 #include "bodyloom/tracking/initialise/initial_states.h"
 #include "bodyloom/tracking/observability.h"
-#include "bodyloom/tracking/terms/dense/dense.h"
-#include "bodyloom/tracking/terms/ground_contact/ground_contact.h"
-#include "bodyloom/tracking/terms/initialiser.h"
-#include "bodyloom/tracking/terms/landmarks.h"
-#include "bodyloom/tracking/terms/own/own_terms.h"
-#include "bodyloom/tracking/terms/part_labels/part_labels.h"
-#include "bodyloom/tracking/terms/pose_prior/pose_prior.h"
-#include "bodyloom/tracking/terms/rendered_uv/rendered_uv.h"
-#include "bodyloom/tracking/terms/straight_knees.h"
-#include "bodyloom/tracking/terms/upright.h"
+#include "bodyloom/tracking/terms/term_kinds.h"
 
 namespace bodyloom {
 
@@ -34,16 +25,13 @@ std::vector<PlanEntry> PlanTrackSequence(const TrackSequenceInput& input, const 
       input.initialiser != nullptr ? "the initialiser gives the start"
       : no_lifter.empty()          ? "the lifter gives the start"
                                    : "no initialiser and no lifter");
-  for (const auto plan_of : {PlanLandmarks, PlanDense, PlanRenderedUv, PlanSilhouette, PlanParts, PlanInitialiser,
-                             PlanUp, PlanGround, PlanPosePrior}) {
-    plan.push_back(plan_of(input, options));
+  for (const TermKind& kind : TermKinds()) {
+    for (PlanEntry& entry : kind.plan(input, options)) plan.push_back(std::move(entry));
   }
-  if (options.straight_knees_weight > 0) plan.push_back(PlanStraightKnees(options.straight_knees_weight));
   if (options.velocity_weight > 0) add("velocities", true, "cost something (paper A's L_t), beside accelerations");
-  for (PlanEntry& entry : PlanOwnTerms(options.own_terms)) plan.push_back(std::move(entry));
   const bool surface = input.dense != nullptr || input.part_labels != nullptr;
   const ObservedLandmarks landmarks = FindObservedLandmarks(model, input.keypoints, 0);
-  const size_t active = FindActiveJoints(model, landmarks, surface, options.skip_unneeded, options.own_terms).size();
+  const size_t active = FindActiveJoints(model, landmarks, surface, options.skip_unneeded, options.user_terms).size();
   const std::string joints = std::to_string(active) + " of " + std::to_string(model.num_joints());
   add("joint rotations", true, joints + " joints are estimated");
   if (active < static_cast<size_t>(model.num_joints())) {

@@ -11,6 +11,9 @@
 #include "bodyloom/tracking/frame_cost.h"
 #include "bodyloom/tracking/kinematics.h"
 #include "bodyloom/tracking/moving_camera.h"
+#include "bodyloom/tracking/terms/dense/dense.h"
+#include "bodyloom/tracking/terms/part_labels/part_label_term.h"
+#include "bodyloom/tracking/terms/rendered_uv/rendered_uv_term.h"
 
 namespace bodyloom {
 
@@ -26,9 +29,9 @@ constexpr int kFewDense = 20;
 }  // namespace
 
 FrameStatus StatusOf(const FrameData& frame) {
-  const size_t dense = frame.dense.size(), joints = frame.landmarks.seen.size();
-  if (frame.part_labels.term != nullptr && frame.part_labels.term->num_person_pixels() > 0)
-    return FrameStatus::kTracked;
+  const size_t dense = frame.Get<DenseTerm>().size(), joints = frame.Get<LandmarkTerm>().seen.size();
+  const PartLabelMatches* labels = frame.Get<PartLabelTerm>().term;
+  if (labels != nullptr && labels->num_person_pixels() > 0) return FrameStatus::kTracked;
   if (joints == 0 && dense == 0) return FrameStatus::kInterpolated;
   if (joints < kFewLandmarks && dense < kFewDense) return FrameStatus::kWeak;
   return FrameStatus::kTracked;
@@ -101,9 +104,9 @@ void FillTrack(const TrackSequenceInput& input, const SequenceProblem& problem, 
       AppendLandmarkErrors(landmarks, *input.keypoints, t, camera, kinematics, &landmark_errors);
       summary.frame_px.push_back(Percentile(std::span(landmark_errors).subspan(before), 50));
     }
-    if (frame.dense.points != nullptr) {
+    if (const auto* dense = frame.Get<DenseTerm>().points; dense != nullptr) {
       vertices.NewFrame(kinematics);
-      AppendDenseErrors(*frame.dense.points, camera, kinematics, &vertices, &dense_errors);
+      AppendDenseErrors(*dense, camera, kinematics, &vertices, &dense_errors);
     }
   }
   const TermSummary joints = SummarizeTerm("2D joints", landmark_errors);
@@ -114,24 +117,23 @@ void FillTrack(const TrackSequenceInput& input, const SequenceProblem& problem, 
   if (input.dense != nullptr) summary.terms.push_back(dense);
 }
 
-void SummariseImageTerms(const SequenceProblem& problem, bool rendered_uv, bool part_labels,
-                         TrackSequenceSummary* summary) {
-  if (!rendered_uv && !part_labels) return;
+void SummariseImageTerms(const SequenceProblem& problem, TrackSequenceSummary* summary) {
+  const bool any = std::any_of(problem.frames.begin(), problem.frames.end(), [](const FrameData& frame) {
+    return frame.Get<RenderedUvTerm>().term != nullptr || frame.Get<PartLabelTerm>().term != nullptr;
+  });
+  if (!any) return;
   FrameResiduals residuals;
   FrameEvaluator evaluator;
   FrameSystem system;
   for (size_t t = 0; t < problem.frames.size(); ++t) {
     evaluator.Evaluate(problem.layout, problem.frames[t], problem.states[t], problem.betas, problem.log_focal, false,
                        &system, &residuals);
-    summary->num_observations += problem.frames[t].part_labels.num_rows();
+    summary->num_observations += problem.frames[t].Get<PartLabelTerm>().num_rows();
   }
-  const auto add = [&](const char* term, const std::vector<double>& px, int unmatched) {
-    summary->terms.push_back(SummarizeTerm(term, px, unmatched));
-  };
-  if (rendered_uv) add("rendered UV", residuals.rendered_uv_px, residuals.rendered_uv_unmatched);
-  if (!part_labels) return;
-  add("silhouette", residuals.silhouette_px, residuals.silhouette_unmatched);
-  add("part labels", residuals.part_px, residuals.part_unmatched);
+  for (const char* term : {"rendered UV", "silhouette", "part labels"}) {
+    const auto at = residuals.find(term);
+    if (at != residuals.end()) summary->terms.push_back(SummarizeTerm(term, at->second.px, at->second.unmatched));
+  }
 }
 
 }  // namespace bodyloom

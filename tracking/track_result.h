@@ -19,7 +19,6 @@ void FillTrack(const TrackSequenceInput& input, const SequenceProblem& problem, 
 
 /// Appends to the summary how the rendered UV and the silhouette with the part labels fit the whole clip, those that
 /// ran.
-void SummariseImageTerms(const SequenceProblem& problem, bool rendered_uv, bool part_labels,
-                         TrackSequenceSummary* summary);
+void SummariseImageTerms(const SequenceProblem& problem, TrackSequenceSummary* summary);
 
 }  // namespace bodyloom

@@ -14,6 +14,7 @@ TrackSequenceResult TrackSequence(const TrackSequenceInput& input, const TrackSe
   fit.Observe();
   fit.FitCoarseFrames();
   fit.FitAllFrames();
+  fit.FinishWithCeres();
   fit.Finish(&result);
   return result;
 }

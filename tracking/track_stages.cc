@@ -10,39 +10,39 @@ namespace bodyloom {
 Stages StagesFor(const TrackSequenceInput& input, const TrackSequenceOptions& options, bool coarse_to_fine) {
   // Without an initialiser the start is a guess: nothing keeps the track near it in the end.
   const double pull = input.initialiser == nullptr ? 0.0 : options.initialiser_weight;
-  const int most = options.max_iterations, fine = coarse_to_fine ? options.max_fine_iterations : most;
+  const int max = options.max_iterations, fine = coarse_to_fine ? options.max_fine_iterations : max;
   Stages stages{
       // name, pull, kernel, tolerance, iterations, from, to
-      .near_start = {"fit near start", options.start_pull, 8, 1e-3, most, 0.05, 0.3},
-      .coarse = {"fit coarse", pull, 4, 1e-4, most, 0.3, 0.45},
-      .again = {"fit again", pull, 4, 1e-4, most, 0.45, 0.5},
-      .part_labels = {"fit part labels", pull, 4, 1e-4, options.part_labels.max_iterations, 0.5, 0.55},
-      .dense = {"fit dense", pull, 4, 1e-4, options.rendered_uv.max_iterations, 0.55, 0.6},
-      .all = {"fit", pull, 4, 1e-4, fine, 0.6, 0.95},
+      .near_start = {"fit near start", options.start_pull, 8, 1e-3, max, 0.05, 0.3},
+      .coarse = {"fit coarse", pull, 4, 1e-4, max, 0.3, 0.45},
+      .again = {"fit again", pull, 4, 1e-4, max, 0.45, 0.5},
+      .round = {"", pull, 4, 1e-4, 0, 0.5, 0.6},
+      .all = {"fit", pull, 4, 1e-4, fine, 0.6, 0.8},
+      .finish = {"ceres", pull, 4, 1e-4, max, 0.8, 0.95},
   };
   if (options.function_tolerance > 0) {
     for (Stage* stage :
-         {&stages.near_start, &stages.coarse, &stages.again, &stages.part_labels, &stages.dense, &stages.all}) {
+         {&stages.near_start, &stages.coarse, &stages.again, &stages.round, &stages.all, &stages.finish}) {
       stage->tolerance = options.function_tolerance;
     }
   }
   return stages;
 }
 
-bool StageRunner::Run(const Stage& stage, SequenceProblem* problem) {
-  if (!going_) return false;
-  for (FrameData& frame : problem->frames) {
-    frame.initialiser.weight = stage.pull;
-    frame.landmarks.kernel = stage.landmark_kernel;
+bool StageRunner::Run(const Stage& stage, SequenceSolver solver, SequenceProblem* problem) {
+  if (!ok_) return false;
+  for (const FrameData& frame : problem->frames) {
+    for (const auto& term : frame.terms) term->BeginStage({stage.pull, stage.landmark_kernel});
   }
   SolveOptions solve;
-  solve.solver = options_.solver;
+  solve.solver = solver;
   if (options_.skip_unneeded) {
     solve.chain.early_dense = kTrackerEarlyDense;
     solve.chain.frozen_share = kTrackerFrozenShare;
     // Joints alone are evaluated as fast as skipped: 10 % slower with it on AIST++.
     if (input_.dense != nullptr) solve.chain.reuse_linearisation = kTrackerReuse;
   }
+  if (options_.solver == SequenceSolver::kChainThenCeres) solve.max_frames_at_once = kTrackerFramesAtOnce;
   solve.max_iterations = stage.max_iterations;
   solve.num_threads = num_threads_;
   solve.function_tolerance = stage.tolerance;
@@ -61,8 +61,12 @@ bool StageRunner::Run(const Stage& stage, SequenceProblem* problem) {
   summary_->status = report.status;
   summary_->message = report.message;
   clock_->Book(stage.name);
-  going_ = report.status != SolveStatus::kFailure && report.status != SolveStatus::kStopped;
-  return going_;
+  if (solver == SequenceSolver::kCeres) {
+    CeresSummary& ceres = summary_->ceres;
+    ceres = {true, report.iterations, report.initial_cost, report.final_cost, report.gradient_max_norm, report.seconds};
+  }
+  ok_ = report.status != SolveStatus::kFailure && report.status != SolveStatus::kStopped;
+  return ok_;
 }
 
 }  // namespace bodyloom

@@ -24,12 +24,12 @@ struct Stage {
 /// Coarse in time first: what a frame cannot decide alone its neighbours decide together, and 15 frames a second are
 /// enough to see how a person moves. All stages but the last solve the coarse frames.
 struct Stages {
-  Stage near_start;   ///< pulled towards the start, wide kernels; not from an initialiser
-  Stage coarse;       ///< what was seen against the priors
-  Stage again;        ///< with the clip's own smoothness and its ground
-  Stage part_labels;  ///< each round
-  Stage dense;        ///< each round: covariances of dense keypoints, rendered UV
-  Stage all;          ///< every frame: few steps when a coarse solve has converged in what converges slowly
+  Stage near_start;  ///< pulled towards the start, wide kernels; not from an initialiser
+  Stage coarse;      ///< what was seen against the priors
+  Stage again;       ///< with the clip's own smoothness and its ground
+  Stage round;       ///< each round of a term (terms/clip_term.h); its name and iterations are the term's
+  Stage all;         ///< every frame: few steps when a coarse solve has converged in what converges slowly
+  Stage finish;      ///< every frame by Ceres, to its own convergence (SequenceSolver::kChainThenCeres)
 };
 /// `coarse_to_fine`: the coarse frames are fewer than all.
 Stages StagesFor(const TrackSequenceInput& input, const TrackSequenceOptions& options, bool coarse_to_fine);
@@ -43,8 +43,12 @@ class StageRunner {
       : input_(input), options_(options), num_threads_(num_threads), clock_(clock), summary_(summary) {}
 
   /// True while the run may go on.
-  [[nodiscard]] bool going() const { return going_; }
-  bool Run(const Stage& stage, SequenceProblem* problem);
+  [[nodiscard]] bool ok() const { return ok_; }
+  bool Run(const Stage& stage, SequenceProblem* problem) {
+    const bool ceres = options_.solver == SequenceSolver::kCeres;
+    return Run(stage, ceres ? SequenceSolver::kCeres : SequenceSolver::kChain, problem);
+  }
+  bool Run(const Stage& stage, SequenceSolver solver, SequenceProblem* problem);
 
  private:
   const TrackSequenceInput& input_;
@@ -52,7 +56,7 @@ class StageRunner {
   int num_threads_;
   StageClock* clock_;
   TrackSequenceSummary* summary_;
-  bool going_ = true;
+  bool ok_ = true;
 };
 
 }  // namespace bodyloom

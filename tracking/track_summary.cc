@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/tracking/track_summary.h"
 
+#include <cstdio>
 #include <sstream>
 
 #include "bodyloom/geometry/base/percentile.h"
@@ -13,6 +14,13 @@ TermSummary SummarizeTerm(const std::string& term, const std::vector<double>& px
   const std::vector<double> sorted = SortedFinite(px);
   summary.median_px = SortedPercentile(sorted, 50), summary.p95_px = SortedPercentile(sorted, 95);
   return summary;
+}
+
+std::string WorstStretch::BriefReport() const {
+  char text[200];
+  std::snprintf(text, sizeof text, "%.1f to %.1f s, at %.1f times the mean cost: %s pulls (%.0f %% of it)", begin_s,
+                end_s, cost_ratio, term.c_str(), 100 * term_share);
+  return text;
 }
 
 std::string TrackSequenceSummary::BriefReport() const {

@@ -31,11 +31,30 @@ struct TermSummary {
   double median_px = 0, p95_px = 0;  ///< of |residual|, in pixels
 };
 
-/// How a user's own term ended.
-struct OwnTermSummary {
-  std::string name;
-  int num_costs = 0;  ///< cost functions that took part
-  double cost = 0;    ///< ½ Σ ρ of them, at the answer
+/// Where Ceres ended, the last engine of a track unless it is told otherwise.
+struct CeresSummary {
+  bool ran = false;
+  int iterations = 0;
+  double initial_cost = 0, final_cost = 0;  ///< initial: where chain has brought it
+  double gradient_max_norm = 0;             ///< the largest component of the gradient at the end
+  double seconds = 0;
+};
+
+/// What a term costs at the answer, ½ Σ ρ of its residuals.
+struct TermCost {
+  std::string term;  ///< as FrameTerm::name(), or "smoothness", "shape prior", …
+  double cost = 0;
+};
+
+/// The second of the clip that fits worst.
+struct WorstStretch {
+  int begin = 0, end = 0;         ///< frames
+  double begin_s = 0, end_s = 0;  ///< times of the first and the last of them
+  double cost_ratio = 0;          ///< its cost a frame over that of the whole clip
+  std::string term;               ///< whose cost there is most above what it is in the whole clip: the one that pulls
+  double term_share = 0;          ///< of the cost there
+  /// "3.2 to 4.2 s, at 2.4 times the mean cost: lifter pulls (38 % of it)"
+  [[nodiscard]] std::string BriefReport() const;
 };
 
 /// A foot that stands where it is over the frames [begin, end).
@@ -88,8 +107,10 @@ struct TrackSequenceSummary {
   std::vector<double> frame_px;                                ///< T: median of the same in a frame; NaN: none used
   double dense_median_px = 0;                                  ///< of the dense keypoints, 0 without
   std::vector<TermSummary> terms;                              ///< of every image term that ran
-  std::vector<OwnTermSummary> own_terms;                       ///< one a term of TrackSequenceOptions::own_terms
-  double focal_px = 0;                                         ///< used or estimated
+  CeresSummary ceres;
+  std::vector<TermCost> costs;                ///< of every term, the largest first; their sum is final_cost
+  std::optional<WorstStretch> worst_stretch;  ///< of clips of two seconds and more
+  double focal_px = 0;                        ///< used or estimated
   /// What the detections by themselves say of it where it was joined with the prior (focal_length.h); else nothing.
   std::optional<FocalFit> focal_fit;
   /// Standard deviation of log focal_px when it was estimated with uncertainty; 0 when it was known, NaN when its

@@ -98,18 +98,17 @@ PositionSigma PositionSigma::Unknown(Eigen::Index num_frames, int num_joints) {
 PositionSigma PositionSigmaOf(SequenceProblem problem, int num_threads, double* focal_log_sigma) {
   const auto T = static_cast<Eigen::Index>(problem.states.size());
   PositionSigma sigma = PositionSigma::Unknown(T, problem.layout.model->num_joints());
-  for (FrameData& frame : problem.frames) frame.lifted.weight = 0;
+  for (FrameData& frame : problem.frames) frame.Get<LiftedPoseTerm>().weight = 0;
   ChainProblem chain(problem, false, false, num_threads);
   if (!std::isfinite(chain.Linearise({problem.states, problem.betas, problem.log_focal}))) return sigma;
-  ChainFactor factor(chain.frame_size(), chain.shared_size(), chain.cut_before());
+  ChainFactor factor(chain.frame_size(), chain.arrow_size(), chain.cut_before(), chain.num_far_rows());
   VisitCovariance(&chain, &factor, 0, static_cast<int>(T), num_threads, [&](int t, const MatrixXd& P) {
     const JointSpread spread = JointSpreadOf(problem.layout, problem.states[t], problem.betas, P);
     const FrameData& frame = problem.frames[t];
+    const LiftedPose* lifted = frame.Get<LiftedPoseTerm>().pose;
     const Matrix3d turn =
         frame.camera_from_scene == nullptr ? Matrix3d::Identity() : frame.camera_from_scene->camera_from_world_rotation;
-    sigma.joints.row(t) =
-        (frame.lifted.pose == nullptr ? JointSigmaOf(spread) : JointSigmaOf(spread, *frame.lifted.pose, turn))
-            .transpose();
+    sigma.joints.row(t) = (lifted == nullptr ? JointSigmaOf(spread) : JointSigmaOf(spread, *lifted, turn)).transpose();
     sigma.hips[t] = spread.HipsSigma();
     // The last of the shared values, the same in every frame's covariance.
     if (t == 0 && focal_log_sigma != nullptr && problem.layout.focal_column >= 0) {
@@ -124,7 +123,7 @@ double FocalLogSigmaOf(const SequenceProblem& problem, int num_threads) {
   if (problem.layout.focal_column < 0) return sigma;
   ChainProblem chain(problem, false, false, num_threads);
   if (!std::isfinite(chain.Linearise({problem.states, problem.betas, problem.log_focal}))) return sigma;
-  ChainFactor factor(chain.frame_size(), chain.shared_size(), chain.cut_before());
+  ChainFactor factor(chain.frame_size(), chain.arrow_size(), chain.cut_before(), chain.num_far_rows());
   // Of the frame in which the elimination ends, so that no other's is computed on the way.
   const int middle = static_cast<int>(problem.states.size()) / 2;
   VisitCovariance(&chain, &factor, middle, middle + 1, 1,

@@ -20,6 +20,7 @@
 #include "bodyloom/geometry/arrays.h"
 #include "bodyloom/geometry/track.h"
 #include "bodyloom/tracking/sequence_problem.h"
+#include "bodyloom/tracking/terms/lifted/lifted_pose.h"
 
 namespace bodyloom {
 

@@ -10,6 +10,7 @@
 #include "bodyloom/geometry/rotation.h"
 #include "bodyloom/tracking/body_points.h"
 #include "bodyloom/tracking/frame_cost.h"
+#include "bodyloom/tracking/terms/dense/dense.h"
 
 namespace bodyloom {
 namespace {
@@ -128,8 +129,8 @@ ProjectionBound DenseBound(const BodyModel& body, const SynthClip& clip, const D
     const std::vector<DenseKeypoint> inliers =
         Inliers(body, clip, t, PoseVertices(body, betas, pose), options.outlier_sigmas);
     FrameData data;
-    data.dense.points = &inliers;
-    data.dense.kernel = 1e6;  // no robust weights: the bound of the Gaussian part
+    data.Get<DenseTerm>().points = &inliers;
+    data.Get<DenseTerm>().kernel = 1e6;  // no robust weights: the bound of the Gaussian part
     FrameSystem system;
     evaluator.Evaluate(layout, data, states.back(), betas, 0, true, &system);
     MatrixXd H = system.H.selfadjointView<Eigen::Lower>();

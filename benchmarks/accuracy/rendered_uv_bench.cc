@@ -31,6 +31,8 @@
 #include "bodyloom/geometry/posed_body.h"
 #include "bodyloom/render/visibility_buffer.h"
 #include "bodyloom/tracking/solve_sequence.h"
+#include "bodyloom/tracking/terms/dense/dense.h"
+#include "bodyloom/tracking/terms/pose_prior/pose_prior.h"
 #include "bodyloom/tracking/terms/rendered_uv/rendered_uv.h"
 #include "bodyloom/tracking/track_sequence.h"
 #include "tests/support/paths.h"
@@ -178,11 +180,11 @@ BasinResult SolveFrame(const SynthClip& clip, const std::string& method, const s
   problem.timestamps = {0};
   problem.cut_before = {0};
   FrameData frame;
-  frame.dense.points = &clip.dense.frames[0];
-  frame.dense.kernel = 8;
+  frame.Get<DenseTerm>().points = &clip.dense.frames[0];
+  frame.Get<DenseTerm>().kernel = 8;
   const MixturePrior prior(BuiltinPosePrior(), body, joints);
-  frame.prior.mixture = &prior;
-  frame.prior.weight = options.prior_weight;
+  frame.Get<PosePriorTerm>().mixture = {std::shared_ptr<void>(), &prior};
+  frame.Get<PosePriorTerm>().weight = options.prior_weight;
   problem.frames = {frame};
   const DenseRounds rounds(input, options, problem.layout, 1);
   SolveOptions solve;

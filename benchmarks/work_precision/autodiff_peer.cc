@@ -15,6 +15,15 @@
 #include "bodyloom/tracking/residuals/acceleration_cost.h"
 #include "bodyloom/tracking/residuals/linear_cost.h"
 #include "bodyloom/tracking/serial_openmp.h"
+#include "bodyloom/tracking/terms/dense/dense.h"
+#include "bodyloom/tracking/terms/initialiser.h"
+#include "bodyloom/tracking/terms/joint_limits.h"
+#include "bodyloom/tracking/terms/landmarks.h"
+#include "bodyloom/tracking/terms/lifted/lifted_pose.h"
+#include "bodyloom/tracking/terms/part_labels/part_label_term.h"
+#include "bodyloom/tracking/terms/pose_prior/pose_prior.h"
+#include "bodyloom/tracking/terms/rendered_uv/rendered_uv_term.h"
+#include "bodyloom/tracking/terms/upright.h"
 #include "tests/tracking/jet_twin.h"
 
 namespace bodyloom {
@@ -187,7 +196,7 @@ struct Blocks {
 
 void AddKeypoints(const SequenceProblem& problem, size_t t, double* betas, Blocks* x, ceres::Problem* target) {
   const BodyModel& model = *problem.layout.model;
-  for (const DenseKeypoint& keypoint : *problem.frames[t].dense.points) {
+  for (const DenseKeypoint& keypoint : *problem.frames[t].Get<DenseTerm>().points) {
     auto residual = std::make_unique<KeypointResidual>();
     residual->model = &model;
     residual->camera = &problem.layout.camera;
@@ -206,17 +215,18 @@ void AddKeypoints(const SequenceProblem& problem, size_t t, double* betas, Block
     for (size_t i = 0; i + 1 < blocks.size(); ++i) cost->AddParameterBlock(3);
     cost->AddParameterBlock(problem.layout.num_betas);
     cost->SetNumResiduals(2);
-    target->AddResidualBlock(cost, new GemanMcClureLoss(problem.frames[t].dense.kernel), blocks);
+    target->AddResidualBlock(cost, new GemanMcClureLoss(problem.frames[t].Get<DenseTerm>().kernel), blocks);
   }
 }
 
 void AddPrior(const SequenceProblem& problem, size_t t, Blocks* x, ceres::Problem* target) {
   const FrameData& frame = problem.frames[t];
-  if (frame.prior.mixture == nullptr || frame.prior.mixture->empty()) return;
+  const PosePriorTerm& prior = frame.Get<PosePriorTerm>();
+  if (prior.mixture == nullptr || prior.mixture->empty()) return;
   auto* cost = new ceres::DynamicAutoDiffCostFunction<PriorResidual, kStride>(
-      new PriorResidual{frame.prior.mixture, std::sqrt(frame.prior.weight)});
+      new PriorResidual{prior.mixture.get(), std::sqrt(prior.weight)});
   std::vector<double*> blocks;
-  for (int j : frame.prior.mixture->joints()) {
+  for (int j : prior.mixture->joints()) {
     blocks.push_back(x->Rotation(t, j));
     cost->AddParameterBlock(3);
   }
@@ -244,9 +254,11 @@ void Check(const SequenceProblem& problem) {
                static_cast<int>(layout.active_joints.size()) == layout.model->num_joints() &&
                std::find(problem.cut_before.begin(), problem.cut_before.end(), 1) == problem.cut_before.end();
   for (const FrameData& frame : problem.frames) {
-    plain = plain && frame.dense.points != nullptr && frame.dense.whitening.empty() && frame.landmarks.seen.empty() &&
-            frame.rendered_uv.term == nullptr && frame.part_labels.term == nullptr && frame.lifted.pose == nullptr &&
-            frame.limits.limits == nullptr && frame.upright.weight == 0 && frame.initialiser.weight == 0;
+    plain = plain && frame.Get<DenseTerm>().points != nullptr && frame.Get<DenseTerm>().whitening.empty() &&
+            frame.Get<LandmarkTerm>().seen.empty() && frame.Get<RenderedUvTerm>().term == nullptr &&
+            frame.Get<PartLabelTerm>().term == nullptr && frame.Get<LiftedPoseTerm>().pose == nullptr &&
+            frame.Get<JointLimitTerm>().limits == nullptr && frame.Get<UprightTerm>().weight == 0 &&
+            frame.Get<InitialiserTerm>().weight == 0;
   }
   BODYLOOM_CHECK(plain, "the AutoDiff peer states dense keypoints, pose prior, shape prior and accelerations only");
 }

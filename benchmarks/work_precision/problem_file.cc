@@ -10,6 +10,8 @@
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/rotation.h"
 #include "bodyloom/tracking/residuals/acceleration_cost.h"
+#include "bodyloom/tracking/terms/dense/dense.h"
+#include "bodyloom/tracking/terms/pose_prior/pose_prior.h"
 
 namespace bodyloom {
 namespace {
@@ -45,9 +47,10 @@ void WriteProblemFile(const WorkProblem& work, const std::string& path) {
   const int64_t T = static_cast<int64_t>(problem.states.size()), V = body.num_vertices(), J = body.num_joints();
   const int64_t B = problem.layout.num_betas;
   int64_t K = 1;
-  for (const FrameData& frame : problem.frames) K = std::max(K, static_cast<int64_t>(frame.dense.points->size()));
+  for (const FrameData& frame : problem.frames)
+    K = std::max(K, static_cast<int64_t>(frame.Get<DenseTerm>().points->size()));
   const auto keypoint = [&](int64_t t, int64_t k) -> const DenseKeypoint* {
-    const std::vector<DenseKeypoint>& points = *problem.frames[t].dense.points;
+    const std::vector<DenseKeypoint>& points = *problem.frames[t].Get<DenseTerm>().points;
     return k < static_cast<int64_t>(points.size()) ? &points[k] : nullptr;
   };
   NpzArrays out;
@@ -93,7 +96,7 @@ void WriteProblemFile(const WorkProblem& work, const std::string& path) {
   const Camera& camera = problem.layout.camera;
   const double intrinsics[4] = {camera.fx, camera.fy, camera.cx, camera.cy};
   out["camera"] = NdArray::FromDoubles(intrinsics, {4});
-  out["kernel"] = NdArray::FromDouble(problem.frames[0].dense.kernel);
+  out["kernel"] = NdArray::FromDouble(problem.frames[0].Get<DenseTerm>().kernel);
   out["acceleration_factors"] = Filled({std::max<int64_t>(0, T - 2), 2}, [&](int64_t i) {
     const int64_t t = i / 2 + 2;
     const AccelerationFactors f = AccelerationFactors::Of(problem.timestamps[t - 1] - problem.timestamps[t - 2],
@@ -106,7 +109,7 @@ void WriteProblemFile(const WorkProblem& work, const std::string& path) {
   out["root_inverse_sigma"] = Filled({3}, [&](int64_t c) { return 1 / root[c]; });
   const MixturePrior& prior = *work.prior;
   const int64_t M = prior.num_components(), D = 3 * static_cast<int64_t>(prior.joints().size());
-  out["prior_weight"] = NdArray::FromDouble(problem.frames[0].prior.weight);
+  out["prior_weight"] = NdArray::FromDouble(problem.frames[0].Get<PosePriorTerm>().weight);
   out["prior_joints"] = Filled({D / 3}, [&](int64_t i) { return prior.joints()[i]; });
   out["prior_means"] = Filled({M, D}, [&](int64_t i) { return prior.mean(static_cast<int>(i / D))[i % D]; });
   out["prior_offset"] = Filled({M}, [&](int64_t i) { return prior.offset(static_cast<int>(i)); });

@@ -11,6 +11,8 @@
 #include "bodyloom/data_tools/motion/load_motion.h"
 #include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
 #include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/tracking/terms/dense/dense.h"
+#include "bodyloom/tracking/terms/pose_prior/pose_prior.h"
 
 namespace bodyloom {
 namespace {
@@ -63,9 +65,9 @@ std::unique_ptr<WorkProblem> MakeWorkProblem(const WorkProblemOptions& options) 
         PoseFromAxisAngle(body, clip.initialiser.poses.row(t).transpose(), clip.initialiser.trans.row(t).transpose());
     problem.states.push_back({start.rotations, start.trans});
     FrameData frame;
-    frame.dense.points = &clip.dense.frames[t];
-    frame.prior.mixture = work->prior.get();
-    frame.prior.weight = 0.2;
+    frame.Get<DenseTerm>().points = &clip.dense.frames[t];
+    frame.Get<PosePriorTerm>().mixture = work->prior;
+    frame.Get<PosePriorTerm>().weight = 0.2;
     problem.frames.push_back(frame);
   }
   return work;

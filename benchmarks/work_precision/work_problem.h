@@ -26,7 +26,7 @@ struct WorkProblemOptions {
 /// Points into itself: not to be copied.
 struct WorkProblem {
   SynthClip clip;
-  std::unique_ptr<MixturePrior> prior;
+  std::shared_ptr<const MixturePrior> prior;
   SequenceProblem problem;  ///< at its start
   WorkProblem() = default;
   WorkProblem(const WorkProblem&) = delete;

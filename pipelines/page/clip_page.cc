@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/pipelines/fixed_text.h"
 #include "bodyloom/pipelines/page/report_page.h"
 
 extern "C" const unsigned char bodyloom_page_viewer_begin[], bodyloom_page_viewer_end[];
@@ -130,6 +131,20 @@ std::string LinksHtml(const ClipPageContent& content) {
   return html + "</ul>\n";
 }
 
+/// The cost of each term as a table; the line on the worst stretch behind it is returned.
+std::string CostsHtml(const ClipPagePerson& person, ReportPage* page) {
+  page->AddHeading("Cost by term: " + person.name);
+  double sum = 0;
+  for (const TermCost& cost : person.costs) sum += cost.cost;
+  std::vector<std::vector<std::string>> rows = {{"term", "cost", "share"}};
+  for (const TermCost& cost : person.costs) {
+    rows.push_back({cost.term, Fixed(cost.cost, 1), sum > 0 ? Fixed(100 * cost.cost / sum, 1) + " %" : ""});
+  }
+  page->AddTable(rows);
+  if (!person.worst_stretch) return "";
+  return "<p>Worst stretch: " + EscapeHtml(person.worst_stretch->BriefReport()) + ".</p>\n";
+}
+
 void CheckContent(const ClipPageContent& content) {
   BODYLOOM_CHECK(!content.seconds.empty() && !content.people.empty(), "a clip's page: no frames or nobody to show");
   const size_t n = content.seconds.size();
@@ -157,6 +172,7 @@ std::string ClipPageHtml(const ClipPageContent& content) {
     page.AddHtml("<pre>" + EscapeHtml(content.summary) + "</pre>\n");
   }
   for (const ClipPagePerson& person : content.people) {
+    if (!person.costs.empty()) page.AddHtml(CostsHtml(person, &page));
     if (person.plan.empty()) continue;
     page.AddHeading("What ran and why: " + person.name);
     std::vector<std::vector<std::string>> rows = {{"part", "ran", "why"}};

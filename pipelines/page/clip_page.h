@@ -4,6 +4,7 @@
 /// elsewhere: scene, video and the script that shows them (assets/page/viewer.js) are in the page.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,8 @@ struct ClipPagePerson {
   std::vector<double> residual_px;       ///< N; NaN where nothing is known
   RowMatrixXd joint_sigma_m;             ///< N×J; NaN likewise
   std::vector<PlanEntry> plan;           ///< what ran and why
+  std::vector<TermCost> costs;           ///< of each term at the answer
+  std::optional<WorstStretch> worst_stretch;
 };
 
 /// A file that the page gives away.

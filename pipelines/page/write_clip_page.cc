@@ -84,7 +84,11 @@ ClipPagePerson OnClock(const PersonOnPage& person, const std::vector<double>& mo
     if (has_px) on_page.residual_px[size_t(row)] = person.summary->frame_px[size_t(t)];
     if (t < track.joint_sigma.rows()) on_page.joint_sigma_m.row(row) = track.joint_sigma.row(t);
   }
-  if (person.summary != nullptr) on_page.plan = person.summary->plan;
+  if (person.summary != nullptr) {
+    on_page.plan = person.summary->plan;
+    on_page.costs = person.summary->costs;
+    on_page.worst_stretch = person.summary->worst_stretch;
+  }
   return on_page;
 }
 

@@ -57,6 +57,24 @@ Json ToJson(const InitialiserReport& from) {
   return json;
 }
 
+/// "2D joints 41 %, smoothness 22 %, …": the largest five.
+std::string CostsText(const std::vector<TermCost>& costs) {
+  constexpr size_t kShown = 5;
+  double sum = 0;
+  for (const TermCost& cost : costs) sum += cost.cost;
+  std::string text;
+  for (size_t i = 0; i < std::min(kShown, costs.size()) && sum > 0; ++i) {
+    text += (i == 0 ? "" : ", ") + costs[i].term + " " + Fixed(100 * costs[i].cost / sum, 0) + " %";
+  }
+  return text;
+}
+
+Json ToJson(const WorstStretch& worst) {
+  return {{"begin_frame", worst.begin},    {"end_frame", worst.end},         {"begin_s", worst.begin_s},
+          {"end_s", worst.end_s},          {"cost_ratio", worst.cost_ratio}, {"term", worst.term},
+          {"term_share", worst.term_share}};
+}
+
 }  // namespace
 
 StageSeconds StagesOf(const TrackReport& report) {
@@ -104,6 +122,13 @@ std::string ToText(const TrackReport& report) {
           (solve.initial_cost > 0 ? ", cost " + Fixed(solve.initial_cost, 1) + " -> " + Fixed(solve.final_cost, 1)
                                   : std::string()) +
           (solve.message.empty() ? "" : " (" + solve.message + ")") + "\n";
+  if (solve.ceres.ran) {
+    text += "ceres    " + std::to_string(solve.ceres.iterations) + " iterations in " + Fixed(solve.ceres.seconds, 2) +
+            " s, cost " + Fixed(solve.ceres.initial_cost, 2) + " -> " + Fixed(solve.ceres.final_cost, 2) +
+            ", gradient below " + Fixed(solve.ceres.gradient_max_norm, 3) + "\n";
+  }
+  if (!solve.costs.empty()) text += "costs    " + CostsText(solve.costs) + "\n";
+  if (solve.worst_stretch) text += "worst    " + solve.worst_stretch->BriefReport() + "\n";
   text += "error    2D joints: median " + Fixed(solve.reprojection_median_px, 2) + " px, 95 % below " +
           Fixed(solve.reprojection_p95_px, 2) + " px";
   if (solve.dense_median_px > 0) {
@@ -189,6 +214,15 @@ std::string ToJson(const TrackReport& report) {
       {"skipped", skipped},
       {"outputs", report.outputs},
   };
+  if (solve.ceres.ran) {
+    json["ceres"] = {{"iterations", solve.ceres.iterations},
+                     {"initial_cost", solve.ceres.initial_cost},
+                     {"final_cost", solve.ceres.final_cost},
+                     {"gradient_max_norm", solve.ceres.gradient_max_norm},
+                     {"seconds", solve.ceres.seconds}};
+  }
+  for (const TermCost& cost : solve.costs) json["cost_by_term"][cost.term] = cost.cost;
+  if (solve.worst_stretch) json["worst_stretch"] = ToJson(*solve.worst_stretch);
   if (!report.camera_path.file.empty()) json["camera_path"] = ToJson(report.camera_path, solve.camera_path);
   if (report.initialiser) json["initialiser"] = ToJson(*report.initialiser);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -81,7 +81,7 @@ void CheckTrackRequest(const TrackRequest& request) {
   if (request.solve.velocity_weight > 0 && request.live_lag) {
     throw RequestError("--live does not use --velocity-weight: leave it out");
   }
-  if (request.live_lag && request.solve.solver != SequenceSolver::kChain) {
+  if (request.live_lag && request.solve.solver == SequenceSolver::kCeres) {
     throw RequestError("--live runs on the chain solver: leave out --solver " + ToString(request.solve.solver));
   }
   if (request.live_lag && ReadsJointsOffLabels(request)) {

@@ -173,6 +173,8 @@ class TrackSummary:
     @property
     def final_cost(self) -> float: ...
     @property
+    def cost_by_term(self) -> dict[str, float]: ...
+    @property
     def num_observations(self) -> int: ...
     @property
     def frames_by_status(self) -> dict[str, int]: ...
@@ -485,7 +487,7 @@ def track(
     prior: _Path | None = None,
     lifter: _Path | None = None,
     live_lag: int | None = None,
-    solver: Literal["chain", "ceres"] = "chain",
+    solver: Literal["chain+ceres", "chain", "ceres"] = "chain+ceres",
     threads: int = 0,
     max_iterations: int = 50,
     estimate_shape: bool = True,
@@ -530,7 +532,7 @@ def run(
     mask: bool = True,
     begin_s: float = 0.0,
     end_s: float | None = None,
-    solver: Literal["chain", "ceres"] = "chain",
+    solver: Literal["chain+ceres", "chain", "ceres"] = "chain+ceres",
     threads: int = 0,
     uncertainty: bool = True,
     ground: bool = True,

@@ -11,6 +11,7 @@
 #include "benchmarks/work_precision/problem_file.h"
 #include "bodyloom/data_tools/formats/npz.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/tracking/terms/upright.h"
 #include "tests/support/paths.h"
 
 namespace bodyloom {
@@ -54,7 +55,7 @@ TEST(Peers, AutoDiffMinimisesTheSameCost) {
 
 TEST(Peers, AutoDiffRefusesWhatItDoesNotState) {
   const auto work = Problem(2, "pixel");
-  work->problem.frames[1].upright.weight = 1;
+  work->problem.frames[1].Get<UprightTerm>().weight = 1;
   SequenceProblem problem = work->problem;
   EXPECT_THROW(SolveWithAutoDiff(&problem, {}), std::invalid_argument);
 }

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,7 @@ namespace bodyloom::stress {
 
 /// Every case that solves runs once with each of these (TrackSequenceOptions::solver). A new engine is one more name.
 inline const std::vector<std::string>& Engines() {
-  static const std::vector<std::string> names = {"ceres", "chain"};
+  static const std::vector<std::string> names = {"ceres", "chain", "chain+ceres"};
   return names;
 }
 
@@ -26,7 +27,11 @@ class EngineTest : public ::testing::TestWithParam<std::string> {};
 /// Makes a suite of EngineTest run with every engine: "Suite.Case/ceres".
 #define BODYLOOM_WITH_EVERY_ENGINE(suite)                                               \
   INSTANTIATE_TEST_SUITE_P(, suite, ::testing::ValuesIn(::bodyloom::stress::Engines()), \
-                           [](const ::testing::TestParamInfo<std::string>& info) { return info.param; })
+                           [](const ::testing::TestParamInfo<std::string>& info) {      \
+                             std::string name = info.param;                             \
+                             std::replace(name.begin(), name.end(), '+', '_');          \
+                             return name;                                               \
+                           })
 
 /// The demo motion before a camera: `frames` frames at `fps` with detections as a detector makes them, and with
 /// `dense` surface keypoints a frame.

@@ -11,15 +11,18 @@ namespace bodyloom {
 
 /// The undamped normal equations of a linearised chain of T frames: frames, then shared values.
 inline void DenseSystem(ChainProblem& chain, int T, Eigen::MatrixXd* H, Eigen::VectorXd* g) {
-  const int n = chain.frame_size(), s = chain.shared_size(), N = T * n + s;
+  const int n = chain.frame_size(), s = chain.shared_size(), N = T * n + s, a = chain.arrow_size(), m = a - s;
+  Eigen::MatrixXd far(m, N);  // rows of couplings between frames that are not neighbours
+  far.rightCols(s) = chain.Arrow(Eigen::VectorXd::Zero(s)).block(s, 0, m, s);
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(T * n);
   chain.SetDamping(&none);
   H->setZero(N, N);
   g->resize(N);
   *g << chain.gradient(), chain.shared_gradient();
   for (int t = 0; t < T; ++t) {
-    RowMatrixXd A = RowMatrixXd::Zero(n, n), B = RowMatrixXd::Zero(n, s + 1);
-    chain.AddFrame(t, A.data(), n, B.data(), s + 1);
+    RowMatrixXd A = RowMatrixXd::Zero(n, n), B = RowMatrixXd::Zero(n, a + 1);
+    chain.AddFrame(t, A.data(), n, B.data(), a + 1);
+    far.middleCols(t * n, n) = B.middleCols(s, m).transpose();
     H->block(t * n, t * n, n, n) = A.selfadjointView<Eigen::Upper>();
     H->block(t * n, T * n, n, s) = B.leftCols(s);
     for (int k = 1; k < 3 && t + k < T; ++k) {
@@ -34,7 +37,7 @@ inline void DenseSystem(ChainProblem& chain, int T, Eigen::MatrixXd* H, Eigen::V
     }
   }
   H->bottomRightCorner(s, s) = chain.shared().selfadjointView<Eigen::Lower>();
-  *H = Eigen::MatrixXd(H->selfadjointView<Eigen::Upper>());
+  *H = Eigen::MatrixXd(H->selfadjointView<Eigen::Upper>()) + far.transpose() * far;
   chain.SetDamping(nullptr);
 }
 

@@ -7,9 +7,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <random>
 #include <vector>
 
+#include "bodyloom/geometry/observations.h"
 #include "bodyloom/geometry/rotation.h"
 #include "bodyloom/tracking/frame_cost.h"
 #include "tests/support/toy_body.h"
@@ -29,6 +31,12 @@ struct FrameScene {
   FrameScene(const FrameScene&) = delete;
   FrameScene& operator=(const FrameScene&) = delete;
 };
+
+/// A pointer that owns nothing, for terms that share what a scene holds.
+template <typename T>
+std::shared_ptr<const T> Borrowed(const T& value) {
+  return {std::shared_ptr<void>(), &value};
+}
 
 inline std::vector<int> AllJoints(const BodyModel& body) {
   std::vector<int> all;

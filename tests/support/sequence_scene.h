@@ -10,7 +10,12 @@
 
 #include "bodyloom/geometry/rotation.h"
 #include "bodyloom/tracking/sequence_problem.h"
+#include "bodyloom/tracking/terms/dense/dense.h"
+#include "bodyloom/tracking/terms/initialiser.h"
 #include "bodyloom/tracking/terms/joint_limits.h"
+#include "bodyloom/tracking/terms/landmarks.h"
+#include "bodyloom/tracking/terms/straight_knees.h"
+#include "bodyloom/tracking/terms/upright.h"
 #include "tests/support/frame_scene.h"
 #include "tests/support/toy_body.h"
 
@@ -87,7 +92,7 @@ inline std::unique_ptr<SequenceScene> MakeSequenceScene(const SequenceSceneOptio
       observation.point = &point;
       observation.sigma_px = 4;
       if (see(points.Evaluate(kinematics, point, false), &observation.pixel))
-        frame.landmarks.seen.push_back(observation);
+        frame.Get<LandmarkTerm>().seen.push_back(observation);
     }
     for (int i = 0; i < options.dense; ++i) {
       DenseKeypoint keypoint;
@@ -102,20 +107,20 @@ inline std::unique_ptr<SequenceScene> MakeSequenceScene(const SequenceSceneOptio
       keypoint.pixel = pixel.cast<float>();
       scene->dense[t].push_back(keypoint);
     }
-    frame.dense.points = &scene->dense[t];
-    frame.limits.limits = &scene->limits;
-    frame.upright.weight = 1;
-    frame.straight_knees = {FindKnees(body), 0.5};
+    frame.Get<DenseTerm>().points = &scene->dense[t];
+    frame.Get<JointLimitTerm>().limits = Borrowed(scene->limits);
+    frame.Get<UprightTerm>().weight = 1;
+    frame.Get<StraightKneesTerm>() = {FindKnees(body), 0.5};
     problem.timestamps.push_back(t / 25.0);
     problem.cut_before.push_back(0);
     for (int j = 0; j < J; ++j) {
       state.rotations[j] = state.rotations[j] * RotationFromAxisAngle(RandomTurn(options.start_error, &random));
     }
     problem.states.push_back(state);
-    frame.dense.kernel = 12;
-    frame.initialiser.rotations = state.rotations;  // what few points leave open
-    frame.initialiser.translation = state.translation;
-    frame.initialiser.weight = 0.1;
+    frame.Get<DenseTerm>().kernel = 12;
+    frame.Get<InitialiserTerm>().rotations = state.rotations;  // what few points leave open
+    frame.Get<InitialiserTerm>().translation = state.translation;
+    frame.Get<InitialiserTerm>().weight = 0.1;
     problem.frames.push_back(frame);
   }
   problem.betas = Eigen::VectorXd::Zero(B);

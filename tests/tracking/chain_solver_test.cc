@@ -6,6 +6,9 @@
 #include <cmath>
 
 #include "bodyloom/tracking/solve_sequence.h"
+#include "bodyloom/tracking/terms/dense/dense.h"
+#include "bodyloom/tracking/terms/initialiser.h"
+#include "bodyloom/tracking/terms/landmarks.h"
 #include "tests/support/sequence_scene.h"
 
 namespace bodyloom {
@@ -72,9 +75,9 @@ TEST(ChainSolver, SameCostAsCeresWithCutsGapsAndUnevenTimes) {
   SequenceProblem& problem = scene->problem;
   problem.cut_before[5] = problem.cut_before[6] = 1;
   for (size_t t = 8; t < 12; ++t) problem.timestamps[t] += 0.1 * double(t - 7);
-  problem.frames[9].landmarks.seen.clear();  // nothing was seen; the neighbours and the limits hold it
-  problem.frames[9].dense.points = nullptr;
-  problem.frames[9].initialiser.weight = 1e-3;
+  problem.frames[9].Get<LandmarkTerm>().seen.clear();  // nothing was seen; the neighbours and the limits hold it
+  problem.frames[9].Get<DenseTerm>().points = nullptr;
+  problem.frames[9].Get<InitialiserTerm>().weight = 1e-3;
   ExpectSameAsCeres(problem);
 }
 

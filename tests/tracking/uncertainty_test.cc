@@ -14,6 +14,12 @@
 #include "bodyloom/geometry/rotation.h"
 #include "bodyloom/tracking/initialise/lifter_input.h"
 #include "bodyloom/tracking/solve_sequence.h"
+#include "bodyloom/tracking/terms/dense/dense.h"
+#include "bodyloom/tracking/terms/initialiser.h"
+#include "bodyloom/tracking/terms/joint_limits.h"
+#include "bodyloom/tracking/terms/landmarks.h"
+#include "bodyloom/tracking/terms/straight_knees.h"
+#include "bodyloom/tracking/terms/upright.h"
 #include "tests/support/dense_chain.h"
 #include "tests/support/sequence_scene.h"
 
@@ -108,10 +114,10 @@ TEST(Uncertainty, SpreadOfTheErrorsOfALinearProblem) {
   };
   for (int t = 0; t < T; ++t) {
     FrameData frame;
-    frame.initialiser.rotations.assign(body.num_joints(), Eigen::Matrix3d::Identity());
-    frame.initialiser.weight = t % 5 == 3 || t == 9 ? 0 : 1 + t % 3;
+    frame.Get<InitialiserTerm>().rotations.assign(body.num_joints(), Eigen::Matrix3d::Identity());
+    frame.Get<InitialiserTerm>().weight = t % 5 == 3 || t == 9 ? 0 : 1 + t % 3;
     problem.frames.push_back(frame);
-    problem.states.push_back({frame.initialiser.rotations, Vector3d(0, 0, 4)});
+    problem.states.push_back({frame.Get<InitialiserTerm>().rotations, Vector3d(0, 0, 4)});
     problem.timestamps.push_back(t / 30.0 + (t > 7 ? 0.04 : 0));
     problem.cut_before.push_back(t == 12);
   }
@@ -135,8 +141,9 @@ TEST(Uncertainty, SpreadOfTheErrorsOfALinearProblem) {
     }
     for (int t = 0; t < T; ++t) {
       FrameData& frame = problem.frames[t];
-      const double weight = std::max(1e-9, frame.initialiser.weight);
-      frame.initialiser.translation = truth[t] + noise(frame.initialiser.translation_sigma / std::sqrt(weight));
+      const double weight = std::max(1e-9, frame.Get<InitialiserTerm>().weight);
+      frame.Get<InitialiserTerm>().translation =
+          truth[t] + noise(frame.Get<InitialiserTerm>().translation_sigma / std::sqrt(weight));
     }
     SolveSequence(&problem, options);
     if (trial == 0) sigma = PositionSigmaOf(problem, 1).hips;  // the same for all; its joints do not turn
@@ -172,17 +179,18 @@ TEST(Uncertainty, SpreadOfTheErrorsOfTheWholeProblem) {
         stature + gradient.dot(scene->betas) + problem.shape_prior.height_sigma_m * normal(random);
     for (size_t t = 0; t < 4; ++t) {
       FrameData& frame = problem.frames[t];
-      for (LandmarkObservation& seen : frame.landmarks.seen) seen.sigma_px = 2;
-      frame.landmarks.kernel = frame.dense.kernel = 100;
-      frame.limits.limits = nullptr;
-      frame.upright.weight = 0;
-      frame.straight_knees.weight = 0;
-      frame.initialiser.weight = 1;
+      for (LandmarkObservation& seen : frame.Get<LandmarkTerm>().seen) seen.sigma_px = 2;
+      frame.Get<LandmarkTerm>().kernel = frame.Get<DenseTerm>().kernel = 100;
+      frame.Get<JointLimitTerm>().limits = nullptr;
+      frame.Get<UprightTerm>().weight = 0;
+      frame.Get<StraightKneesTerm>().weight = 0;
+      frame.Get<InitialiserTerm>().weight = 1;
       problem.states[t] = scene->truth[t];
-      frame.initialiser.translation = scene->truth[t].translation + noise(frame.initialiser.translation_sigma);
+      frame.Get<InitialiserTerm>().translation =
+          scene->truth[t].translation + noise(frame.Get<InitialiserTerm>().translation_sigma);
       for (int j = 0; j < 24; ++j) {
-        frame.initialiser.rotations[j] =
-            scene->truth[t].rotations[j] * RotationFromAxisAngle(noise(frame.initialiser.sigma));
+        frame.Get<InitialiserTerm>().rotations[j] =
+            scene->truth[t].rotations[j] * RotationFromAxisAngle(noise(frame.Get<InitialiserTerm>().sigma));
       }
     }
     SolveOptions solve;

@@ -2,6 +2,7 @@
 #include "bodyloom/tracking/chain/chain_factor.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <utility>
 
@@ -63,8 +64,12 @@ void AddDense(const double* block, int n, bool transposed, double* target, int64
 
 }  // namespace
 
-ChainFactor::ChainFactor(int frame_size, int shared_size, std::vector<char> cut_before)
-    : n_(frame_size), s_(shared_size), b_columns_(RoundUp(shared_size + 1)), cut_before_(std::move(cut_before)) {
+ChainFactor::ChainFactor(int frame_size, int shared_size, std::vector<char> cut_before, int num_multipliers)
+    : n_(frame_size),
+      s_(shared_size),
+      num_multipliers_(num_multipliers),
+      b_columns_(RoundUp(shared_size + 1)),
+      cut_before_(std::move(cut_before)) {
   BODYLOOM_CHECK(n_ > 0 && n_ % 3 == 0 && s_ >= 0 && !cut_before_.empty(), "chain: ", cut_before_.size(), " frames of ",
                  n_, " values and ", s_, " shared ones; expected at least one frame of a multiple of 3");
   factor_.resize(cut_before_.size());
@@ -281,10 +286,16 @@ bool ChainFactor::Solve(const ChainSource& source, const Eigen::MatrixXd& shared
   }
   shared_step->setZero(s_);
   if (s_ > 0 && frozen_.empty()) {
-    const Eigen::LLT<Eigen::MatrixXd> factor(S);
-    if (factor.info() != Eigen::Success) return false;
-    *shared_step = factor.solve(rhs);
-    shared_inverse_ = factor.solve(Eigen::MatrixXd::Identity(s_, s_));
+    if (num_multipliers_ > 0) {
+      const Eigen::PartialPivLU<Eigen::MatrixXd> factor(S.selfadjointView<Eigen::Lower>().toDenseMatrix());
+      *shared_step = factor.solve(rhs);
+      shared_inverse_ = factor.inverse();
+    } else {
+      const Eigen::LLT<Eigen::MatrixXd> factor(S);
+      if (factor.info() != Eigen::Success) return false;
+      *shared_step = factor.solve(rhs);
+      shared_inverse_ = factor.solve(Eigen::MatrixXd::Identity(s_, s_));
+    }
   }
   frames->resize(static_cast<int64_t>(T) * n_);
   if (!frozen_.empty()) frames->setZero();

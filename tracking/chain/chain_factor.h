@@ -45,8 +45,9 @@ class ChainSource {
 
 class ChainFactor {
  public:
-  /// `frame_size` n is a multiple of 3; `cut_before[t]` separates frame t from t − 1.
-  ChainFactor(int frame_size, int shared_size, std::vector<char> cut_before);
+  /// `frame_size` n is a multiple of 3; `cut_before[t]` separates frame t from t − 1. The last `num_multipliers` of the
+  /// shared values are multipliers (chain_couplings.cc): M is then not positive definite in them.
+  ChainFactor(int frame_size, int shared_size, std::vector<char> cut_before, int num_multipliers = 0);
   ~ChainFactor();
   ChainFactor(const ChainFactor&) = delete;
   ChainFactor& operator=(const ChainFactor&) = delete;
@@ -94,7 +95,7 @@ class ChainFactor {
   void BackSubstitute(int t, int next, int second, const double* shared, double* frames) const;
   void Store(int t, const Panel& front);
 
-  int n_, s_;
+  int n_, s_, num_multipliers_;
   int b_columns_;  ///< of the arrow section of a panel: s + 1 rounded up
   std::vector<char> cut_before_;
   std::vector<char> frozen_;                 ///< T, or empty: none

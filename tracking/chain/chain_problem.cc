@@ -97,13 +97,7 @@ void ChainProblem::Resize() {
   costs_.resize(T);
   acceleration_costs_.resize(T);
   velocity_costs_.resize(T);
-  has_pairs_ = false;
-  for (size_t t = 0; t < T; ++t) has_pairs_ = has_pairs_ || HasCostsWithNext(problem_, t);
-  pairs_.clear();
-  if (has_pairs_) {
-    pairs_.resize(T);
-    for (size_t t = 0; t < T; ++t) pairs_[t].coupled = HasCostsWithNext(problem_, t);
-  }
+  ResizeCouplings();
   next_.resize(T * 3 * n_);
   second_.resize(T * 3 * n_);
   own_.resize(T * 3 * n_);
@@ -119,17 +113,17 @@ void ChainProblem::Moved(int dropped) {
 }
 
 void ChainProblem::SetPrior(const ChainPrior* prior) {
-  BODYLOOM_CHECK(prior == nullptr || !has_pairs_, "chain: a prior beside cost functions on neighbouring frames");
+  BODYLOOM_CHECK(prior == nullptr || couplings_.empty(), "chain: a prior beside cost functions on several frames");
   prior_ = prior;
   linearised_ = false;
 }
 
-void ChainProblem::LimitDense(int max_points) {
-  if (max_points != max_dense_) {
+void ChainProblem::LimitPoints(int max_points) {
+  if (max_points != max_points_) {
     for (Anchor& anchor : anchors_) anchor.set = false;
     linearised_ = false;
   }
-  max_dense_ = max_points;
+  max_points_ = max_points;
 }
 
 bool ChainProblem::StepsFrom(const Anchor& anchor, const FrameState& state, const ChainPoint& point,
@@ -197,7 +191,7 @@ double ChainProblem::EvaluateFrames(const ChainPoint& point, bool derivatives) {
       }
     }
     Lease evaluator(this);
-    (*evaluator).LimitDense(max_dense_);
+    (*evaluator).LimitPoints(max_points_);
     (*evaluator)
         .Evaluate(problem_.layout, problem_.frames[t], point.states[t], point.betas, point.log_focal, derivatives,
                   &system);
@@ -231,7 +225,7 @@ double ChainProblem::Cost(const ChainPoint& point) {
   linearised_ = false;
   const double cost =
       EvaluateFrames(point, false) + EvaluateChanges(point, false) + EvaluatePrior(point, false) + SharedCost(point);
-  return has_pairs_ ? cost + EvaluatePairs(point, false) : cost;
+  return couplings_.empty() ? cost : cost + EvaluateCouplings(point, false);
 }
 
 void ChainProblem::AddSharedPriors(const ChainPoint& point) {
@@ -322,12 +316,8 @@ void ChainProblem::SumShared(const ChainPoint& point) {
       for (int j = 0; j <= i; ++j) shared_(i, j) += systems_[t].H(shared_columns_[i], shared_columns_[j]);
     }
   }
-  for (const Pair& pair : pairs_) {
-    if (!pair.coupled || shape_constant_) continue;
-    const int B = problem_.layout.num_betas;
-    shared_.topLeftCorner(B, B) += pair.J.rightCols(B).transpose() * pair.J.rightCols(B);
-    shared_gradient_.head(B) += pair.J.rightCols(B).transpose() * pair.r;
-  }
+  far_shared_diagonal_.setZero(s);
+  SumSharedOfCouplings();
   AddSharedPriors(point);
 }
 
@@ -336,7 +326,7 @@ double ChainProblem::Linearise(const ChainPoint& point) {
   const int T = static_cast<int>(point.states.size());
   double cost =
       EvaluateFrames(point, true) + EvaluateChanges(point, true) + EvaluatePrior(point, true) + SharedCost(point);
-  if (has_pairs_) cost += EvaluatePairs(point, true);
+  if (!couplings_.empty()) cost += EvaluateCouplings(point, true);
   gradient_.resize(static_cast<Eigen::Index>(T) * n_);
   diagonal_.resize(gradient_.size());
   ParallelFor(T, num_threads_, [&](int t) {
@@ -348,7 +338,7 @@ double ChainProblem::Linearise(const ChainPoint& point) {
     for (int i = 0; i < n_; ++i) {
       diagonal_[offset + i] = systems_[t].H(i, i) + own_[static_cast<size_t>(offset) * 3 + i / 3 * 9 + i % 3 * 4];
     }
-    if (has_pairs_) AssemblePairs(t);
+    if (!couplings_.empty()) AssembleCouplings(t);
   });
   if (frozen_.empty()) SumShared(point);
   AddPrior();
@@ -362,7 +352,7 @@ bool ChainProblem::Marginalise(const ChainPoint& point, ChainPrior* prior) const
   using panel_internal::RoundUp;
   const int T = static_cast<int>(point.states.size()), s = shared_size(), size = 2 * n_ + s;
   BODYLOOM_CHECK(T >= 3, "chain: ", T, " frames, expected three or more to take the first away");
-  BODYLOOM_CHECK(!has_pairs_, "chain: a frame with cost functions on its neighbour cannot be taken away");
+  BODYLOOM_CHECK(couplings_.empty(), "chain: a frame that a cost function couples to others cannot be taken away");
   BODYLOOM_CHECK(problem_.velocity_weight <= 0, "chain: a frame whose velocity costs something cannot be taken away");
   // Frame 0's rows: [A | C D B | right-hand side].
   const int x_begin = RoundUp(n_), x_columns = RoundUp(size + 1);
@@ -459,9 +449,9 @@ void ChainProblem::AddFrame(int t, double* a, int64_t a_stride, double* b, int64
       for (int j = i; j < n_; ++j) row[j] += p[offset + j];
       for (int j = 0; j < s; ++j) arrow[j] += p[2 * n_ + j];
     }
-    arrow[s] -= gradient_[offset + i];
+    arrow[arrow_size()] -= gradient_[offset + i];
   }
-  if (has_pairs_) AddPairs(t, a, a_stride, b, b_stride);
+  if (!couplings_.empty()) AddCouplings(t, a, a_stride, b, b_stride);
 }
 
 void ChainProblem::Plus(const ChainPoint& x, const VectorXd& step, const VectorXd& shared_step, ChainPoint* y) const {

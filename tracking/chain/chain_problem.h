@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// A SequenceProblem as the chain solver sees it: cost, gradient and Gauss–Newton matrix at a point, in the blocks of
 /// chain_factor.h. Frames come from FrameEvaluator, smoothness from the formulas of residuals/acceleration_cost.h,
-/// shared priors as in sequence_problem.h, users' cost functions on neighbouring frames from terms/own; nothing is
+/// shared priors as in sequence_problem.h, users' cost functions on several frames from terms/user; nothing is
 /// approximated.
 #pragma once
 
@@ -31,8 +31,9 @@ class ChainProblem : public ChainSource {
   /// The problem is borrowed. Its states, betas and log_focal are not read.
   ChainProblem(const SequenceProblem& problem, bool shape_constant, bool focal_constant, int num_threads);
 
-  /// From now on at most about this many dense keypoints a frame (FrameEvaluator::LimitDense); 0: all.
-  void LimitDense(int max_points);
+  /// From now on at most about this many observations of a term of thousands a frame (FrameEvaluator::LimitPoints);
+  /// 0: all.
+  void LimitPoints(int max_points);
   /// From now on a frame is not evaluated where its residuals have moved, since it was linearised last, by less than
   /// this share of their own size (root mean square: ½ dᵀHd ≤ share² c), and no unknown by more than 0.05 (radians,
   /// metres, log focal length, 0.03 betas). Its linearisation is reused: cost c + gᵀd + ½ dᵀHd and gradient g + Hd,
@@ -48,8 +49,7 @@ class ChainProblem : public ChainSource {
   void SetFrozen(std::vector<char> frozen);
   /// How many frames the last Cost() or Linearise() took from an earlier point.
   [[nodiscard]] int num_skipped() const { return num_skipped_; }
-  /// A term beside the problem's own; borrowed, null: none. The problem must have two frames or more, and no cost
-  /// functions on neighbouring frames.
+  /// A term beside the problem's own; borrowed, null: none. The problem must have two frames or more, and no couplings.
   void SetPrior(const ChainPrior* prior);
 
   /// The borrowed problem has lost its first `dropped` frames, and may have got new ones at its end, other cuts or
@@ -75,6 +75,9 @@ class ChainProblem : public ChainSource {
   [[nodiscard]] const Eigen::VectorXd& shared_gradient() const { return shared_gradient_; }  ///< s
   [[nodiscard]] const Eigen::VectorXd& diagonal() const { return diagonal_; }                ///< of the matrix, T·n
   [[nodiscard]] const Eigen::MatrixXd& shared() const { return shared_; }                    ///< s×s, undamped
+  [[nodiscard]] Eigen::VectorXd shared_diagonal() const { return shared_.diagonal() + far_shared_diagonal_; }
+  /// What ChainFactor takes for shared values: S with its damping, and behind it the multipliers of far couplings.
+  [[nodiscard]] Eigen::MatrixXd Arrow(const Eigen::VectorXd& damping) const;
 
   /// Damping that AddFrame adds to the diagonal (T·n values).
   void SetDamping(const Eigen::VectorXd* damping) { damping_ = damping; }
@@ -86,6 +89,10 @@ class ChainProblem : public ChainSource {
 
   [[nodiscard]] int frame_size() const { return n_; }
   [[nodiscard]] int shared_size() const { return static_cast<int>(shared_columns_.size()); }
+  /// With the multipliers of couplings between frames that are not neighbours (chain_couplings.cc).
+  [[nodiscard]] int arrow_size() const { return shared_size() + num_far_rows_; }
+  [[nodiscard]] int num_far_rows() const { return num_far_rows_; }
+  static constexpr int kMaxFarRows = 400;
   [[nodiscard]] const std::vector<char>& cut_before() const { return problem_.cut_before; }
 
   void AddFrame(int t, double* a, int64_t a_stride, double* b, int64_t b_stride) const override;
@@ -93,7 +100,7 @@ class ChainProblem : public ChainSource {
   [[nodiscard]] const double* Second(int t) const override { return &second_[static_cast<size_t>(t) * 3 * n_]; }
   [[nodiscard]] const double* DenseNext(int t) const override {
     if (prior_ != nullptr) return t == 0 ? prior_next_.data() : nullptr;
-    return has_pairs_ && pairs_[t].coupled ? pairs_[t].next.data() : nullptr;
+    return !pair_next_.empty() && pair_next_[t].size() > 0 ? pair_next_[t].data() : nullptr;
   }
 
  private:
@@ -110,13 +117,16 @@ class ChainProblem : public ChainSource {
     Eigen::VectorXd betas;
     double log_focal = 0, cost = 0;
   };
-  /// Cost functions on frames t and t + 1 (SequenceProblem's OwnCostsOfFrame::with_next), weighted by their losses.
-  struct Pair {
-    bool coupled = false;
+  /// A cost function on several frames, weighted by its loss.
+  struct Coupling {
+    const FrameCoupling* source = nullptr;
     double cost = 0;
-    RowMatrixXd J;      ///< columns: frame t, frame t + 1, betas
-    Eigen::VectorXd r;  ///< one a row of J
-    RowMatrixXd next;   ///< n×n, frame t with t + 1
+    UserResidual at;
+    int first_far_row = -1;  ///< of its multipliers; −1: of two frames in a row, which have none
+  };
+  /// A coupling and the place of a frame among those that it reads.
+  struct CouplingOfFrame {
+    int index, k;
   };
   class Lease;
   void Resize();
@@ -129,12 +139,16 @@ class ChainProblem : public ChainSource {
   /// Whether the accelerations that frames first … last take part in are as they were.
   [[nodiscard]] bool AllFrozen(int64_t first, int64_t last) const;
   double EvaluateChanges(const ChainPoint& point, bool derivatives);
-  double EvaluatePairs(const ChainPoint& point, bool derivatives);
-  void EvaluatePair(int t, const ChainPoint& point, bool derivatives);
-  /// Adds to frame t's rows what its pairs give: AddFrame() without gradient and damping.
-  void AddPairs(int t, double* a, int64_t a_stride, double* b, int64_t b_stride) const;
-  /// Adds to frame t's gradient and diagonal what its pairs give.
-  void AssemblePairs(int t);
+  void ResizeCouplings();
+  double EvaluateCouplings(const ChainPoint& point, bool derivatives);
+  void EvaluateCoupling(const ChainPoint& point, bool derivatives, Coupling* coupling) const;
+  /// Adds to frame t's rows what its couplings give: AddFrame() without gradient and damping.
+  void AddCouplings(int t, double* a, int64_t a_stride, double* b, int64_t b_stride) const;
+  /// Adds to frame t's gradient and diagonal what its couplings give.
+  void AssembleCouplings(int t);
+  void SumSharedOfCouplings();
+  /// Column of a coupling's Jacobian for one of shared_columns_.
+  [[nodiscard]] int SharedColumnOf(const Coupling& coupling, int shared) const;
   void SumShared(const ChainPoint& point);
   double SharedCost(const ChainPoint& point) const;
   void AddSharedPriors(const ChainPoint& point);
@@ -151,7 +165,7 @@ class ChainProblem : public ChainSource {
   void AssembleVelocity(size_t t);
 
   const SequenceProblem& problem_;
-  int n_, blocks_, num_threads_, max_dense_ = 0, num_skipped_ = 0;
+  int n_, blocks_, num_threads_, max_points_ = 0, num_skipped_ = 0;
   double reuse_share_ = 0;
   bool linearised_ = false;  ///< all that Linearise() makes is there, for this point
   ChainPoint linearised_at_;
@@ -175,8 +189,11 @@ class ChainProblem : public ChainSource {
   std::vector<double> next_, second_, own_;                 ///< T × n/3 blocks of 9
   Eigen::VectorXd gradient_, shared_gradient_, diagonal_;
   Eigen::MatrixXd shared_;
-  std::vector<Pair> pairs_;  ///< T, or empty
-  bool has_pairs_ = false;
+  Eigen::VectorXd far_shared_diagonal_;  ///< what far couplings add to that of shared_
+  std::vector<Coupling> couplings_;
+  std::vector<std::vector<CouplingOfFrame>> pairs_of_frame_, far_of_frame_;  ///< T, or empty
+  std::vector<RowMatrixXd> pair_next_;  ///< T, or empty: n×n of frame t with t + 1, or nothing
+  int num_far_rows_ = 0;
   const Eigen::VectorXd* damping_ = nullptr;
   const ChainPrior* prior_ = nullptr;
   Eigen::MatrixXd prior_matrix_;  ///< at the point linearised last

@@ -42,7 +42,7 @@ class FixedLag {
   void Touch(int t) { chain_.Forget(t); }
   /// Frame t of the window does not continue the one before. Nothing of the frames before stays.
   void Cut(int t);
-  void LimitDense(int max_points) { chain_.LimitDense(max_points); }
+  void LimitPoints(int max_points) { chain_.LimitPoints(max_points); }
   [[nodiscard]] int num_frames() const { return static_cast<int>(problem_.states.size()); }
   [[nodiscard]] const ChainPrior& prior() const { return prior_; }
 

@@ -246,20 +246,20 @@ void FillDirections(const std::vector<char>& seen, std::vector<Vector3f>* direct
 }
 
 /// Usable detections as unit directions, and the middle of the body in every frame.
-struct Rays {
+struct LifterRays {
   std::vector<char> usable;      ///< T·21
   std::vector<Vector3f> ray;     ///< T·21
   std::vector<char> seen;        ///< T
   std::vector<Vector3f> centre;  ///< T
 };
 
-Rays MakeRays(const LifterFrames& frames) {
+LifterRays MakeLifterRays(const LifterFrames& frames) {
   const int T = frames.num_frames;
   const size_t N = static_cast<size_t>(std::max(T, 0)) * kLifterPoints;
   BODYLOOM_CHECK(T >= 0 && frames.x.size() == N && frames.y.size() == N && frames.confidence.size() == N,
                  "lifter input: ", T, " frames need ", N, " values each of x, y and confidence, got ", frames.x.size(),
                  ", ", frames.y.size(), " and ", frames.confidence.size());
-  Rays rays;
+  LifterRays rays;
   rays.usable.resize(N);
   rays.ray.resize(N);
   rays.seen.assign(T, 0);
@@ -282,7 +282,7 @@ Rays MakeRays(const LifterFrames& frames) {
       ++num_middle;
     }
     const Vector3f& sum = num_middle >= 2 ? middle : all;
-    // Rays a quarter turn to both sides could cancel.
+    // LifterRays a quarter turn to both sides could cancel.
     if (rays.seen[t]) rays.centre[t] = sum.norm() > 1e-6F ? sum.normalized() : Vector3f::UnitZ();
   }
   FillDirections(rays.seen, &rays.centre);
@@ -301,7 +301,7 @@ const std::vector<std::string>& LifterPointNames() {
 }
 
 LifterInput MakeLifterInput(const LifterFrames& frames) {
-  const Rays rays = MakeRays(frames);
+  const LifterRays rays = MakeLifterRays(frames);
   const int T = frames.num_frames;
   LifterInput input;
   input.seen = rays.seen;
@@ -351,7 +351,7 @@ LifterInput MakeLifterInput(const LifterFrames& frames) {
 int MirroredLifterBone(int bone) { return bone < kPairedBones ? bone ^ 1 : bone; }
 
 std::vector<Matrix3f> LifterVirtualCameras(const LifterFrames& frames) {
-  const Rays rays = MakeRays(frames);
+  const LifterRays rays = MakeLifterRays(frames);
   std::vector<Matrix3f> cameras(frames.num_frames);
   std::transform(rays.centre.begin(), rays.centre.end(), cameras.begin(), TurnAxisTo);
   return cameras;

@@ -51,9 +51,9 @@ LiveReading LiveLifter::Ask(const LiveSetup& setup, LiveWindow* window) {
     LiveRecord& record = window->RecordAt(slot);
     record.lifted =
         MakeLiftedPose(frame, setup.lifted_landmarks, reading.metres, setup.options.solve.lifter_min_sigma_m);
-    FrameData& data = lag.problem().frames[slot];
-    data.lifted.pose = &record.lifted;
-    data.lifted.weight = setup.options.solve.lifter_weight;
+    LiftedPoseTerm& term = lag.problem().frames[slot].Get<LiftedPoseTerm>();
+    term.pose = &record.lifted;
+    term.weight = setup.options.solve.lifter_weight;
     lag.Touch(slot);
   }
   reading.frames.assign(read.begin() + first, read.end());

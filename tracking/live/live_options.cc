@@ -11,7 +11,7 @@ bool LiveTrackerOptions::IsValid(std::string* why) const {
     *why = Concatenate(name, " is ", value, ", expected ", low, " to ", high);
     return false;
   };
-  if (solve.solver != SequenceSolver::kChain) {
+  if (solve.solver == SequenceSolver::kCeres) {
     *why = "a window of frames is solved by the chain engine, not by " + ToString(solve.solver);
     return false;
   }
@@ -19,8 +19,9 @@ bool LiveTrackerOptions::IsValid(std::string* why) const {
     *why = "velocities cost something in whole clips alone: expected velocity_weight 0";
     return false;
   }
-  if (!solve.own_terms.empty()) {
-    *why = "own terms are of whole clips; '" + solve.own_terms[0].name + "' cannot run live";
+  for (const UserTerm& term : solve.user_terms) {
+    if (term.is_of_one_frame()) continue;
+    *why = "the term '" + term.name + "' couples frames, which leave a live tracker's window one by one";
     return false;
   }
   return solve.IsValid(why) && in_range("lag", lag, 0, 60) && in_range("context", context, 3, 60) &&

@@ -34,7 +34,7 @@ struct LiveTrackerOptions {
   double max_jump_s = 0.15;
   double reuse_linearisation = 0.1;  ///< ChainOptions::reuse_linearisation
   /// Camera knowledge, weights, threads, estimate_shape, skip_unneeded and estimate_uncertainty mean what they mean for
-  /// TrackSequence(). The engine must be the chain, and own terms are refused.
+  /// TrackSequence(). Windows are solved by the chain engine, and users' terms are of one frame.
   TrackSequenceOptions solve;
   /// False with the reason when a field is out of range.
   bool IsValid(std::string* why) const;

@@ -7,6 +7,7 @@
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/tracking/input_checks.h"
+#include "bodyloom/tracking/terms/straight_knees.h"
 
 namespace bodyloom {
 
@@ -29,15 +30,18 @@ LiveSetup::LiveSetup(const LiveTrackerInput& given, const LiveTrackerOptions& ch
   KeypointSequence names;
   names.names = input.landmarks;
   if (!input.landmarks.empty()) landmarks = FindObservedLandmarks(model, &names, num_betas);
-  const std::vector<int> active = FindActiveJoints(model, landmarks, input.dense, options.solve.skip_unneeded);
+  const std::vector<int> active =
+      FindActiveJoints(model, landmarks, input.dense, options.solve.skip_unneeded, options.solve.user_terms);
   Camera camera = input.camera;
   if (options.solve.camera_knowledge != CameraKnowledge::kKnown) {
     const FocalPrior focal = input.focal_prior.value_or(FocalPrior::ForImage(camera.width, camera.height));
     camera = MakePinhole(camera.width, camera.height, std::exp(focal.log_mean));
   }
   layout = FrameLayout::Make(model, options.solve.camera_knowledge, camera, active, num_betas);
-  if (input.prior != nullptr && input.prior->num_components() > 0) prior.emplace(*input.prior, model, active);
-  limits = JointLimits::ForBody(model);
+  if (input.prior != nullptr && input.prior->num_components() > 0) {
+    prior = std::make_shared<const MixturePrior>(*input.prior, model, active);
+  }
+  limits = std::make_shared<const JointLimits>(JointLimits::ForBody(model));
   knees = FindKnees(model);
   if (input.lifter != nullptr) lifted_landmarks = CompileLiftedLandmarks(model, num_betas);
   VectorXd gradient;

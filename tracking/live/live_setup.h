@@ -3,7 +3,7 @@
 #pragma once
 
 #include <array>
-#include <optional>
+#include <memory>
 
 #include "bodyloom/tracking/initialise/lifted_landmarks.h"
 #include "bodyloom/tracking/live/live_options.h"
@@ -32,8 +32,8 @@ struct LiveSetup {
   FrameLayout layout;
   ObservedLandmarks landmarks;
   LiftedLandmarks lifted_landmarks;
-  std::optional<MixturePrior> prior;
-  JointLimits limits;
+  std::shared_ptr<const MixturePrior> prior;  ///< null: none
+  std::shared_ptr<const JointLimits> limits;
   std::array<int, 2> knees = {-1, -1};
   double stature_m = 0;  ///< of the mean shape
 };

@@ -8,6 +8,7 @@
 #include "bodyloom/geometry/posed_body.h"
 #include "bodyloom/tracking/initialise/initial_states.h"
 #include "bodyloom/tracking/initialise/lifted_start.h"
+#include "bodyloom/tracking/terms/initialiser.h"
 
 namespace bodyloom {
 
@@ -96,10 +97,10 @@ void RestartShot(const LiveSetup& setup, int count, LiveWindow* window) {
   std::vector<FrameData> observed(problem.frames.begin() + first, problem.frames.end());
   for (int slot = first; slot < T; ++slot) {
     FrameData& frame = problem.frames[slot];
-    frame.initialiser.rotations = problem.states[slot].rotations;
-    frame.initialiser.translation = problem.states[slot].translation;
-    frame.initialiser.weight = setup.options.solve.start_pull;
-    frame.landmarks.kernel = 8;
+    frame.Get<InitialiserTerm>().rotations = problem.states[slot].rotations;
+    frame.Get<InitialiserTerm>().translation = problem.states[slot].translation;
+    frame.Get<InitialiserTerm>().weight = setup.options.solve.start_pull;
+    frame.Get<LandmarkTerm>().kernel = 8;
     lag.Touch(slot);
   }
   if (!window->Solve(setup.options.start_iterations)) return;

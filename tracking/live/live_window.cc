@@ -7,6 +7,12 @@
 #include <utility>
 
 #include "bodyloom/tracking/input_checks.h"
+#include "bodyloom/tracking/terms/dense/dense.h"
+#include "bodyloom/tracking/terms/initialiser.h"
+#include "bodyloom/tracking/terms/pose_prior/pose_prior.h"
+#include "bodyloom/tracking/terms/straight_knees.h"
+#include "bodyloom/tracking/terms/upright.h"
+#include "bodyloom/tracking/terms/user/user_cost.h"
 #include "bodyloom/tracking/track_result.h"
 #include "bodyloom/tracking/uncertainty.h"
 
@@ -18,7 +24,7 @@ constexpr int kHistoryFrames = 512;
 
 std::unique_ptr<FixedLag> MakeLag(const LiveSetup& setup, SequenceProblem problem) {
   auto lag = std::make_unique<FixedLag>(std::move(problem), setup.options.lag + setup.options.context, setup.threads);
-  lag->LimitDense(setup.options.max_dense);
+  lag->LimitPoints(setup.options.max_dense);
   return lag;
 }
 
@@ -81,7 +87,7 @@ void LiveWindow::Release(int count) {
     it->lifted = LiftedPose();  // predicted for the person before
     if (!it->in_window) continue;
     const int slot = SlotOf(*it);
-    lag_->problem().frames[slot].lifted.pose = nullptr;
+    lag_->problem().frames[slot].Get<LiftedPoseTerm>().pose = nullptr;
     lag_->Touch(slot);
   }
 }
@@ -111,25 +117,34 @@ FrameData LiveWindow::Observe(const FrameState& state, LiveRecord* record) const
   const double height_px = UprightHeightPx(setup_.layout, state, setup_.stature_m);
   const auto back = static_cast<int>(records_.back().index - record->index);
   const KeypointSequence recent = history_.Recent(back + 1, 1);
-  if (recent.num_frames() == back + 1) frame.landmarks.seen = ObserveLandmarks(setup_.landmarks, recent, 0, height_px);
-  if (!record->dense.empty()) frame.dense.points = &record->dense;
-  if (setup_.prior) {
-    frame.prior.mixture = &*setup_.prior;
-    frame.prior.weight = solve.prior_weight;
-  }
-  frame.limits.limits = &setup_.limits;
-  frame.upright.weight = solve.upright_weight;
-  frame.straight_knees = {setup_.knees, solve.straight_knees_weight};
-  frame.landmarks.kernel = 4;
+  auto& landmarks = frame.Get<LandmarkTerm>();
+  if (recent.num_frames() == back + 1) landmarks.seen = ObserveLandmarks(setup_.landmarks, recent, 0, height_px);
+  landmarks.kernel = StageSettings().landmark_kernel;
+  if (!record->dense.empty()) frame.Get<DenseTerm>().points = &record->dense;
+  auto& lifted = frame.Get<LiftedPoseTerm>();  // of which something is known later
   if (!record->lifted.points.empty()) {
-    frame.lifted.pose = &record->lifted;
-    frame.lifted.weight = solve.lifter_weight;
+    lifted.pose = &record->lifted;
+    lifted.weight = solve.lifter_weight;
   }
+  if (setup_.prior != nullptr) {
+    frame.Get<PosePriorTerm>().mixture = setup_.prior;
+    frame.Get<PosePriorTerm>().weight = solve.prior_weight;
+  }
+  frame.Get<JointLimitTerm>().limits = setup_.limits;
+  frame.Get<UprightTerm>().weight = solve.upright_weight;
+  if (solve.straight_knees_weight > 0) {
+    frame.Get<StraightKneesTerm>() = StraightKneesTerm(setup_.knees, solve.straight_knees_weight);
+  }
+  auto& initialiser = frame.Get<InitialiserTerm>();
   if (record->initialiser) {
-    frame.initialiser.rotations = record->initialiser->rotations;
-    frame.initialiser.translation = record->initialiser->trans;
-    frame.initialiser.weight = solve.initialiser_weight;
-    if (setup_.layout.knowledge == CameraKnowledge::kWeak) frame.initialiser.translation = state.translation;
+    initialiser.rotations = record->initialiser->rotations;
+    initialiser.translation = record->initialiser->trans;
+    initialiser.weight = solve.initialiser_weight;
+    if (setup_.layout.knowledge == CameraKnowledge::kWeak) initialiser.translation = state.translation;
+  }
+  for (const UserTerm& term : solve.user_terms) {
+    auto cost = MakeUserCostTerm(term, setup_.layout, static_cast<int>(record->index));
+    if (cost != nullptr) frame.terms.Add(std::move(cost));
   }
   return frame;
 }
@@ -185,9 +200,9 @@ PositionSigma LiveWindow::Uncertainty(int begin, int end) {
     const JointSpread spread = JointSpreadOf(setup_.layout, problem().states[slot], problem().betas, P);
     // What has left the window holds the lifter's predictions too, so P cannot be had without them. Of 2D joints alone the
     // lifter's own spread is nearly all of both; dense keypoints know better than it.
-    const bool lifter_decides = frame.lifted.pose != nullptr && frame.dense.size() == 0;
-    sigma.joints.row(slot - begin) =
-        (lifter_decides ? JointSigmaOf(*frame.lifted.pose, J) : JointSigmaOf(spread)).transpose();
+    const LiftedPose* lifted = frame.Get<LiftedPoseTerm>().pose;
+    const bool lifter_decides = lifted != nullptr && frame.Get<DenseTerm>().size() == 0;
+    sigma.joints.row(slot - begin) = (lifter_decides ? JointSigmaOf(*lifted, J) : JointSigmaOf(spread)).transpose();
     sigma.hips[slot - begin] = spread.HipsSigma();
   });
   return sigma;

@@ -10,6 +10,7 @@
 #include "bodyloom/geometry/posed_body.h"
 #include "bodyloom/tracking/input_checks.h"
 #include "bodyloom/tracking/observability.h"
+#include "bodyloom/tracking/terms/dense/dense.h"
 #include "bodyloom/tracking/track_result.h"
 
 namespace bodyloom {
@@ -153,11 +154,11 @@ TrackSequenceResult TrackLive(const TrackSequenceInput& input, const LiveTracker
     ++found;
     if (taken.status[t] == FrameStatus::kInterpolated) continue;  // it may have been left out: nothing of it was used
     if (input.keypoints != nullptr) {
-      problem.frames[t].landmarks.seen =
+      problem.frames[t].Get<LandmarkTerm>().seen =
           ObserveLandmarks(landmarks, *input.keypoints, t, UprightHeightPx(problem.layout, state, stature));
     }
-    if (input.dense != nullptr) problem.frames[t].dense.points = &input.dense->frames[t];
-    summary.num_observations += static_cast<int>(problem.frames[t].landmarks.seen.size()) +
+    if (input.dense != nullptr) problem.frames[t].Get<DenseTerm>().points = &input.dense->frames[t];
+    summary.num_observations += static_cast<int>(problem.frames[t].Get<LandmarkTerm>().seen.size()) +
                                 (input.dense != nullptr ? static_cast<int>(input.dense->frames[t].size()) : 0);
   }
   if (found == 0) {

@@ -6,7 +6,8 @@
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/rotation.h"
 #include "bodyloom/tracking/frame_accumulator.h"
-#include "bodyloom/tracking/initialise/initial_states.h"
+#include "bodyloom/tracking/terms/clip_term.h"
+#include "bodyloom/tracking/track_input.h"
 #include "bodyloom/tracking/track_options.h"
 #include "bodyloom/tracking/track_summary.h"
 
@@ -15,32 +16,37 @@ namespace bodyloom {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-void InitialiserOfFrame::Add(FrameAccumulator* sums) const {
-  if (rotations.empty() || !(weight > 0)) return;
+void InitialiserTerm::Add(FrameAccumulator* sums) const {
+  if (!runs()) return;
   const double rotation_scale = std::sqrt(weight) / sigma;
   for (int j : sums->layout().active_joints) {
     const Vector3d w = AxisAngleFromRotation(rotations[j].transpose() * sums->state().rotations[j]);
-    sums->AddCost(0.5 * rotation_scale * rotation_scale * w.squaredNorm());
+    sums->AddGroup(3, rotation_scale * rotation_scale * w.squaredNorm(), 0, 1);
     if (!sums->derivatives()) continue;
-    const Matrix3d d_w = rotation_scale * RightJacobianInverse(w);
-    sums->AddSquares(sums->layout().column_of_joint[j], d_w.transpose() * d_w, rotation_scale * (d_w.transpose() * w));
+    sums->AddBlockRows<3>(sums->layout().column_of_joint[j], rotation_scale * RightJacobianInverse(w),
+                          rotation_scale * w);
   }
   const double translation_scale = std::sqrt(weight) / translation_sigma;
   const Vector3d offset = sums->state().translation - translation;
-  sums->AddCost(0.5 * translation_scale * translation_scale * offset.squaredNorm());
-  if (sums->derivatives()) {
-    const double information = translation_scale * translation_scale;
-    sums->AddSquares(sums->layout().translation_column, information * Matrix3d::Identity(), information * offset);
-  }
+  sums->AddGroup(3, translation_scale * translation_scale * offset.squaredNorm(), 0, 1);
+  if (!sums->derivatives()) return;
+  sums->AddBlockRows<3>(sums->layout().translation_column, translation_scale * Matrix3d::Identity(),
+                        translation_scale * offset);
 }
 
-PlanEntry PlanInitialiser(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
-  const bool given = input.initialiser != nullptr;
-  const bool stays = given ? options.initialiser_weight > 0 : WhyNoLifter(input, options).empty();
-  return {"initialiser term (L_d)", stays,
-          stays ? Concatenate("weight ", given ? options.initialiser_weight : options.lifter_weight,
-                              given ? "" : ", of the lifter")
-                : "no initialiser and no lifter"};
+std::vector<PlanEntry> PlanInitialiser(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
+  if (input.initialiser == nullptr) return {};
+  return {
+      {"initialiser term (L_d)", options.initialiser_weight > 0, Concatenate("weight ", options.initialiser_weight)}};
+}
+
+std::unique_ptr<ClipTerm> MakeInitialiserTerms(const ClipTermInput& clip) {
+  return EachFrame([given = clip.input.initialiser](int t, const FrameState& state, FrameData* frame) {
+    InitialiserTerm& term = frame->Get<InitialiserTerm>();
+    if (given != nullptr && !given->HasPose(t)) return;
+    term.rotations = state.rotations;
+    term.translation = state.translation;
+  });
 }
 
 }  // namespace bodyloom

@@ -7,26 +7,38 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
+#include <string>
 #include <vector>
+
+#include "bodyloom/tracking/terms/frame_term.h"
 
 namespace bodyloom {
 
-class FrameAccumulator;
+class ClipTerm;
+struct ClipTermInput;
 struct PlanEntry;
 struct TrackSequenceInput;
 struct TrackSequenceOptions;
 
-struct InitialiserOfFrame {
+class InitialiserTerm : public CopyableTerm<InitialiserTerm> {
+ public:
   std::vector<Eigen::Matrix3d> rotations;  ///< R̄: J, or empty: no initialiser
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();
   double weight = 0;                            ///< λ_d
   double sigma = 0.2, translation_sigma = 0.3;  ///< radians, metres
 
-  [[nodiscard]] static int num_rows() { return 0; }  ///< adds to the matrix directly
-  void Add(FrameAccumulator* sums) const;
+  [[nodiscard]] std::string name() const override { return "initialiser"; }
+  [[nodiscard]] int num_rows() const override { return runs() ? static_cast<int>(3 * rotations.size()) + 3 : 0; }
+  void Add(FrameAccumulator* sums) const override;
+  void BeginStage(const StageSettings& settings) override { weight = settings.initialiser_weight; }
+
+ private:
+  [[nodiscard]] bool runs() const { return !rotations.empty() && weight > 0; }
 };
 
-/// Of the initialiser, or of the lifter in its place (terms/lifted/lifted_pose.h).
-PlanEntry PlanInitialiser(const TrackSequenceInput& input, const TrackSequenceOptions& options);
+/// An entry where an initialiser is given; without one the lifter takes its place (terms/lifted/lifted_pose.h).
+std::vector<PlanEntry> PlanInitialiser(const TrackSequenceInput& input, const TrackSequenceOptions& options);
+std::unique_ptr<ClipTerm> MakeInitialiserTerms(const ClipTermInput& clip);
 
 }  // namespace bodyloom

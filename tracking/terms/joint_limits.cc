@@ -6,6 +6,9 @@
 
 #include "bodyloom/geometry/rotation.h"
 #include "bodyloom/tracking/frame_accumulator.h"
+#include "bodyloom/tracking/terms/clip_term.h"
+#include "bodyloom/tracking/track_input.h"
+#include "bodyloom/tracking/track_summary.h"
 
 namespace bodyloom {
 
@@ -51,22 +54,33 @@ Eigen::Vector3d LimitExcess(const JointLimits::Range& range, const Eigen::Vector
   return (w - range.upper).cwiseMax(0) - (range.lower - w).cwiseMax(0);
 }
 
-void JointLimitsOfFrame::Add(FrameAccumulator* sums) const {
+void JointLimitTerm::Add(FrameAccumulator* sums) const {
   if (limits == nullptr) return;
   for (const JointLimits::Range& range : limits->ranges) {
     const int column = sums->layout().column_of_joint[range.joint];
     if (column < 0) continue;
     const Vector3d w = AxisAngleFromRotation(sums->state().rotations[range.joint]);
     const Vector3d excess = LimitExcess(range, w) / sigma;
-    if (excess.isZero(0)) continue;
-    sums->AddCost(0.5 * excess.squaredNorm());
+    if (excess.isZero(0) && !sums->one_by_one()) continue;
+    sums->AddGroup(3, excess.squaredNorm(), 0, 1);
     if (!sums->derivatives()) continue;
     Matrix3d d_excess = RightJacobianInverse(w) / sigma;
     for (int c = 0; c < 3; ++c) {
       if (excess[c] == 0) d_excess.row(c).setZero();
     }
-    sums->AddSquares(column, d_excess.transpose() * d_excess, d_excess.transpose() * excess);
+    sums->AddBlockRows<3>(column, d_excess, excess);
   }
+}
+
+std::vector<PlanEntry> PlanJointLimits(const TrackSequenceInput& input, const TrackSequenceOptions& /*options*/) {
+  const size_t known = JointLimits::ForBody(*input.body).ranges.size();
+  return {{"joint limits", known > 0, known > 0 ? std::to_string(known) + " joints" : "of no joint of this body"}};
+}
+
+std::unique_ptr<ClipTerm> MakeJointLimitTerms(const ClipTermInput& clip) {
+  const auto limits = std::make_shared<const JointLimits>(JointLimits::ForBody(*clip.layout.model));
+  return EachFrame(
+      [limits](int, const FrameState&, FrameData* frame) { frame->Get<JointLimitTerm>().limits = limits; });
 }
 
 }  // namespace bodyloom

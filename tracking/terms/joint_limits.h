@@ -11,13 +11,20 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "bodyloom/geometry/body_model.h"
+#include "bodyloom/tracking/terms/frame_term.h"
 
 namespace bodyloom {
 
-class FrameAccumulator;
+class ClipTerm;
+struct ClipTermInput;
+struct PlanEntry;
+struct TrackSequenceInput;
+struct TrackSequenceOptions;
 
 struct JointLimits {
   struct Range {
@@ -33,12 +40,19 @@ struct JointLimits {
 /// max(0, w − upper) − max(0, lower − w), component by component: zero inside the box.
 Eigen::Vector3d LimitExcess(const JointLimits::Range& range, const Eigen::Vector3d& axis_angle);
 
-struct JointLimitsOfFrame {
-  const JointLimits* limits = nullptr;  ///< borrowed; null: none
-  double sigma = 0.05;                  ///< radians
+class JointLimitTerm : public CopyableTerm<JointLimitTerm> {
+ public:
+  std::shared_ptr<const JointLimits> limits;  ///< null: none
+  double sigma = 0.05;                        ///< radians
 
-  [[nodiscard]] static int num_rows() { return 0; }  ///< adds to the matrix directly
-  void Add(FrameAccumulator* sums) const;
+  [[nodiscard]] std::string name() const override { return "joint limits"; }
+  [[nodiscard]] int num_rows() const override {
+    return limits == nullptr ? 0 : static_cast<int>(3 * limits->ranges.size());
+  }
+  void Add(FrameAccumulator* sums) const override;
 };
+
+std::vector<PlanEntry> PlanJointLimits(const TrackSequenceInput& input, const TrackSequenceOptions& options);
+std::unique_ptr<ClipTerm> MakeJointLimitTerms(const ClipTermInput& clip);
 
 }  // namespace bodyloom

@@ -6,6 +6,7 @@
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/tracking/frame_accumulator.h"
+#include "bodyloom/tracking/terms/clip_term.h"
 #include "bodyloom/tracking/track_input.h"
 #include "bodyloom/tracking/track_summary.h"
 
@@ -14,7 +15,7 @@ namespace bodyloom {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-void LandmarksOfFrame::Add(FrameAccumulator* sums) const {
+void LandmarkTerm::Add(FrameAccumulator* sums) const {
   for (const LandmarkObservation& observation : seen) {
     const Vector3d x = sums->points().Evaluate(sums->kinematics(), *observation.point, sums->derivatives());
     sums->AddPixel(x, observation.pixel, Eigen::Matrix2d::Identity() / observation.sigma_px, kernel, 1);
@@ -66,10 +67,18 @@ void AppendLandmarkErrors(const ObservedLandmarks& landmarks, const KeypointSequ
   }
 }
 
-PlanEntry PlanLandmarks(const TrackSequenceInput& input, const TrackSequenceOptions& /*options*/) {
-  if (input.keypoints == nullptr) return {"2D joints (L_f)", false, "no 2D joints in the input"};
+std::vector<PlanEntry> PlanLandmarks(const TrackSequenceInput& input, const TrackSequenceOptions& /*options*/) {
+  if (input.keypoints == nullptr) return {{"2D joints (L_f)", false, "no 2D joints in the input"}};
   const size_t known = FindObservedLandmarks(*input.body, input.keypoints, 0).names.size();
-  return {"2D joints (L_f)", true, std::to_string(known) + " landmarks"};
+  return {{"2D joints (L_f)", true, std::to_string(known) + " landmarks"}};
+}
+
+std::unique_ptr<ClipTerm> MakeLandmarkTerms(const ClipTermInput& clip) {
+  if (clip.input.keypoints == nullptr) return nullptr;
+  return EachFrame([clip](int t, const FrameState& state, FrameData* frame) {
+    const double height_px = UprightHeightPx(clip.layout, state, clip.stature_m);
+    frame->Get<LandmarkTerm>().seen = ObserveLandmarks(clip.landmarks, *clip.input.keypoints, t, height_px);
+  });
 }
 
 }  // namespace bodyloom

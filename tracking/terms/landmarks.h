@@ -8,6 +8,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -15,10 +16,12 @@
 #include "bodyloom/geometry/camera.h"
 #include "bodyloom/geometry/observations.h"
 #include "bodyloom/tracking/body_points.h"
+#include "bodyloom/tracking/terms/frame_term.h"
 
 namespace bodyloom {
 
-class FrameAccumulator;
+class ClipTerm;
+struct ClipTermInput;
 struct PlanEntry;
 struct TrackSequenceInput;
 struct TrackSequenceOptions;
@@ -30,12 +33,15 @@ struct LandmarkObservation {
   double sigma_px = 1;
 };
 
-struct LandmarksOfFrame {
+class LandmarkTerm : public CopyableTerm<LandmarkTerm> {
+ public:
   std::vector<LandmarkObservation> seen;
   double kernel = 8;  ///< c, in σ
 
-  [[nodiscard]] int num_rows() const { return static_cast<int>(2 * seen.size()); }
-  void Add(FrameAccumulator* sums) const;
+  [[nodiscard]] std::string name() const override { return "2D joints"; }
+  [[nodiscard]] int num_rows() const override { return static_cast<int>(2 * seen.size()); }
+  void Add(FrameAccumulator* sums) const override;
+  void BeginStage(const StageSettings& settings) override { kernel = settings.landmark_kernel; }
 };
 
 /// Landmarks that both the body and the detections have.
@@ -63,6 +69,7 @@ inline constexpr double kMinConfidence = 0.1;
 void AppendLandmarkErrors(const ObservedLandmarks& landmarks, const KeypointSequence& keypoints, int t,
                           const Camera& camera, const Kinematics& kinematics, std::vector<double>* errors_px);
 
-PlanEntry PlanLandmarks(const TrackSequenceInput& input, const TrackSequenceOptions& options);
+std::vector<PlanEntry> PlanLandmarks(const TrackSequenceInput& input, const TrackSequenceOptions& options);
+std::unique_ptr<ClipTerm> MakeLandmarkTerms(const ClipTermInput& clip);
 
 }  // namespace bodyloom

@@ -2,11 +2,12 @@
 #include "bodyloom/tracking/terms/straight_knees.h"
 
 #include <cmath>
-#include <cstdio>
 
+#include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/rotation.h"
 #include "bodyloom/tracking/frame_accumulator.h"
-#include "bodyloom/tracking/robust.h"
+#include "bodyloom/tracking/terms/clip_term.h"
+#include "bodyloom/tracking/track_options.h"
 #include "bodyloom/tracking/track_summary.h"
 
 namespace bodyloom {
@@ -15,25 +16,28 @@ using Eigen::Vector3d;
 
 std::array<int, 2> FindKnees(const BodyModel& model) { return {model.FindJoint("l_knee"), model.FindJoint("r_knee")}; }
 
-void StraightKneesOfFrame::Add(FrameAccumulator* sums) const {
+void StraightKneesTerm::Add(FrameAccumulator* sums) const {
   if (!(weight > 0)) return;
   for (const int knee : knees) {
     if (knee < 0 || sums->layout().column_of_joint[knee] < 0) continue;
     const Vector3d w = AxisAngleFromRotation(sums->state().rotations[knee]);
     const double flexion = w.x();
-    const RobustValue robust = GemanMcClure(flexion * flexion, kStraightKneesKernel);
-    sums->AddCost(0.5 * weight * weight * robust.rho);
+    const double scale = sums->AddGroup(1, flexion * flexion, kStraightKneesKernel, weight * weight);
     if (!sums->derivatives()) continue;
-    const double scale = weight * std::sqrt(robust.weight);
     const Eigen::RowVector3d row = scale * RightJacobianInverse(w).row(0);
-    sums->AddSquares(sums->layout().column_of_joint[knee], row.transpose() * row, row.transpose() * (scale * flexion));
+    sums->AddBlockRows<1>(sums->layout().column_of_joint[knee], row, Eigen::Matrix<double, 1, 1>(scale * flexion));
   }
 }
 
-PlanEntry PlanStraightKnees(double weight) {
-  char text[64];
-  std::snprintf(text, sizeof(text), "both, with weight %g", weight);
-  return {"straight knees", true, text};
+std::vector<PlanEntry> PlanStraightKnees(const TrackSequenceInput& /*input*/, const TrackSequenceOptions& options) {
+  if (!(options.straight_knees_weight > 0)) return {};
+  return {{"straight knees", true, Concatenate("both, with weight ", options.straight_knees_weight)}};
+}
+
+std::unique_ptr<ClipTerm> MakeStraightKneesTerms(const ClipTermInput& clip) {
+  if (!(clip.options.straight_knees_weight > 0)) return nullptr;
+  const StraightKneesTerm term(FindKnees(*clip.layout.model), clip.options.straight_knees_weight);
+  return EachFrame([term](int, const FrameState&, FrameData* frame) { frame->Get<StraightKneesTerm>() = term; });
 }
 
 }  // namespace bodyloom

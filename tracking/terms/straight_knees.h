@@ -10,28 +10,41 @@
 #pragma once
 
 #include <array>
+#include <memory>
+#include <string>
+#include <vector>
 
 #include "bodyloom/geometry/body_model.h"
+#include "bodyloom/tracking/terms/frame_term.h"
 
 namespace bodyloom {
 
-class FrameAccumulator;
+class ClipTerm;
+struct ClipTermInput;
 struct PlanEntry;
+struct TrackSequenceInput;
+struct TrackSequenceOptions;
 
 inline constexpr double kStraightKneesKernel = 0.4;
 
 /// Joint indices of the left and the right knee; −1 where the body has none of that name.
 std::array<int, 2> FindKnees(const BodyModel& model);
 
-struct StraightKneesOfFrame {
+class StraightKneesTerm : public CopyableTerm<StraightKneesTerm> {
+ public:
+  StraightKneesTerm() = default;
+  StraightKneesTerm(const std::array<int, 2>& knees, double weight) : knees(knees), weight(weight) {}
+
   std::array<int, 2> knees = {-1, -1};  ///< FindKnees()
   double weight = 0;                    ///< w, 1/rad
 
-  [[nodiscard]] static int num_rows() { return 0; }  ///< adds to the matrix directly
-  void Add(FrameAccumulator* sums) const;
+  [[nodiscard]] std::string name() const override { return "straight knees"; }
+  [[nodiscard]] int num_rows() const override { return weight > 0 ? 2 : 0; }
+  void Add(FrameAccumulator* sums) const override;
 };
 
-/// The entry of a solve with w > 0.
-PlanEntry PlanStraightKnees(double weight);
+/// An entry where w > 0.
+std::vector<PlanEntry> PlanStraightKnees(const TrackSequenceInput& input, const TrackSequenceOptions& options);
+std::unique_ptr<ClipTerm> MakeStraightKneesTerms(const ClipTermInput& clip);
 
 }  // namespace bodyloom

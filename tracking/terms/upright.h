@@ -7,27 +7,35 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <string>
+#include <vector>
+
+#include "bodyloom/tracking/terms/frame_term.h"
 
 namespace bodyloom {
 
-class FrameAccumulator;
+class ClipTerm;
+struct ClipTermInput;
 struct PlanEntry;
 struct TrackSequenceInput;
 struct TrackSequenceOptions;
 
 inline constexpr double kUprightSigma = 0.25, kUprightKernel = 1.5;
 
-struct UprightOfFrame {
+class UprightTerm : public CopyableTerm<UprightTerm> {
+ public:
   double weight = 0;                                  ///< w
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< n: the direction in which it should not lean
 
-  [[nodiscard]] static int num_rows() { return 0; }  ///< adds to the matrix directly
-  void Add(FrameAccumulator* sums) const;
+  [[nodiscard]] std::string name() const override { return "upright trunk"; }
+  [[nodiscard]] int num_rows() const override { return weight > 0 ? 1 : 0; }
+  void Add(FrameAccumulator* sums) const override;
 };
 
 /// Why the clip's vertical is not used, or empty when it is.
 std::string WhyNoUp(const TrackSequenceInput& input, const TrackSequenceOptions& options);
-PlanEntry PlanUp(const TrackSequenceInput& input, const TrackSequenceOptions& options);
+std::vector<PlanEntry> PlanUpright(const TrackSequenceInput& input, const TrackSequenceOptions& options);
+std::unique_ptr<ClipTerm> MakeUprightTerms(const ClipTermInput& clip);
 
 }  // namespace bodyloom

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/tracking/chain/chain_problem.h"
+#include "bodyloom/tracking/terms/landmarks.h"
 
 #include <gtest/gtest.h>
 
@@ -55,7 +56,7 @@ TEST(ChainProblem, LinearisedAgainAfterAnyChangeItIsTheSameAsAnew) {
   EXPECT_FALSE(System(&chain, y) == first);
   EXPECT_TRUE(System(&chain, x) == first) << "after another point";
 
-  problem.frames[2].landmarks.seen.resize(3);
+  problem.frames[2].Get<LandmarkTerm>().seen.resize(3);
   chain.Forget(2);
   const System fewer(&chain, x);
   EXPECT_FALSE(fewer == first) << "other observations";

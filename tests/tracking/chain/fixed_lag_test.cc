@@ -7,6 +7,7 @@
 
 #include "bodyloom/tracking/chain/chain_covariance.h"
 #include "bodyloom/tracking/solve_sequence.h"
+#include "bodyloom/tracking/terms/initialiser.h"
 #include "tests/support/dense_chain.h"
 #include "tests/support/sequence_scene.h"
 
@@ -110,12 +111,12 @@ SequenceProblem LinearClip(const SequenceScene& scene, int frames) {
   std::normal_distribution<double> normal;
   for (int t = 0; t < frames; ++t) {
     FrameData frame;
-    frame.initialiser.rotations.assign(24, Matrix3d::Identity());
-    frame.initialiser.translation =
+    frame.Get<InitialiserTerm>().rotations.assign(24, Matrix3d::Identity());
+    frame.Get<InitialiserTerm>().translation =
         Vector3d(0.3 * std::sin(0.3 * t), 0.02 * t, 4) + 0.1 * Vector3d::NullaryExpr([&]() { return normal(random); });
-    frame.initialiser.weight = t % 7 == 3 ? 0 : 0.5 + 0.1 * (t % 5);  // now and then nothing is seen
+    frame.Get<InitialiserTerm>().weight = t % 7 == 3 ? 0 : 0.5 + 0.1 * (t % 5);  // now and then nothing is seen
     problem.frames.push_back(frame);
-    problem.states.push_back({frame.initialiser.rotations, Vector3d(0, 0, 4)});
+    problem.states.push_back({frame.Get<InitialiserTerm>().rotations, Vector3d(0, 0, 4)});
     problem.timestamps.push_back(t / 30.0 + (t > 9 ? 0.05 : 0));
     problem.cut_before.push_back(t == 14);
   }

@@ -9,6 +9,7 @@
 
 #include "bodyloom/tracking/live/live_history.h"
 #include "bodyloom/tracking/live/track_live.h"
+#include "bodyloom/tracking/terms/landmarks.h"
 #include "tests/support/sequence_scene.h"
 
 namespace bodyloom {
@@ -42,7 +43,7 @@ LiveScene MakeLiveScene(int count, bool dense) {
     LiveObservations frame;
     frame.timestamp = problem.timestamps[t];
     frame.keypoints.resize(live.input.landmarks.size());
-    for (const LandmarkObservation& seen : problem.frames[t].landmarks.seen) {
+    for (const LandmarkObservation& seen : problem.frames[t].Get<LandmarkTerm>().seen) {
       const auto k = seen.point - live.scene->landmarks.data();
       frame.keypoints[k] = {static_cast<float>(seen.pixel.x()), static_cast<float>(seen.pixel.y()), 0.9F};
     }

@@ -28,7 +28,7 @@ std::unique_ptr<FrameScene> MakeScene(std::vector<int> active = {}) {
   if (active.empty()) active = AllJoints(scene->body);
   PlaceCamera(CameraKnowledge::kKnown, MakePinhole(1280, 720, 1000), 1000, active, &random, scene.get());
   PoseAtRandom(CameraKnowledge::kKnown, 0.5, &random, scene.get());
-  scene->data.straight_knees = {FindKnees(scene->body), kWeight};
+  scene->data.Get<StraightKneesTerm>() = {FindKnees(scene->body), kWeight};
   return scene;
 }
 
@@ -59,7 +59,7 @@ void CheckAgainstTwin(const FrameScene& scene) {
 TEST(StraightKnees, MatchAutomaticDerivatives) {
   const auto scene = MakeScene();
   CheckAgainstTwin(*scene);
-  const int left = scene->data.straight_knees.knees[0], right = scene->data.straight_knees.knees[1];
+  const int left = scene->data.Get<StraightKneesTerm>().knees[0], right = scene->data.Get<StraightKneesTerm>().knees[1];
   const auto bend = [&](const Vector3d& a, const Vector3d& b) {
     scene->state.rotations[left] = RotationFromAxisAngle(a);
     scene->state.rotations[right] = RotationFromAxisAngle(b);
@@ -72,7 +72,7 @@ TEST(StraightKnees, MatchAutomaticDerivatives) {
 
 TEST(StraightKnees, OnlyKneesCount) {
   const auto scene = MakeScene();
-  const auto [left, right] = scene->data.straight_knees.knees;
+  const auto [left, right] = scene->data.Get<StraightKneesTerm>().knees;
   EXPECT_EQ(scene->body.data().joint_names[left], "l_knee");
   EXPECT_EQ(scene->body.data().joint_names[right], "r_knee");
   scene->state.rotations[left] = scene->state.rotations[right] = Eigen::Matrix3d::Identity();
@@ -82,14 +82,14 @@ TEST(StraightKnees, OnlyKneesCount) {
   EXPECT_GT(one, 0);
   scene->state.rotations[right] = scene->state.rotations[left];
   EXPECT_DOUBLE_EQ(Cost(*scene), 2 * one);
-  scene->data.straight_knees.weight = 0;
+  scene->data.Get<StraightKneesTerm>().weight = 0;
   EXPECT_EQ(Cost(*scene), 0);
 }
 
 TEST(StraightKnees, AKneeThatIsBentFarIsLetGo) {
   const auto scene = MakeScene();
-  const int left = scene->data.straight_knees.knees[0];
-  scene->state.rotations[scene->data.straight_knees.knees[1]] = Eigen::Matrix3d::Identity();
+  const int left = scene->data.Get<StraightKneesTerm>().knees[0];
+  scene->state.rotations[scene->data.Get<StraightKneesTerm>().knees[1]] = Eigen::Matrix3d::Identity();
   const auto pull = [&](double flexion) {
     scene->state.rotations[left] = RotationFromAxisAngle({flexion, 0, 0});
     return Evaluate(*scene).gradient[scene->layout.column_of_joint[left]];
@@ -102,12 +102,12 @@ TEST(StraightKnees, AKneeThatIsBentFarIsLetGo) {
 
 TEST(StraightKnees, AKneeThatIsNotEstimatedHasNoPart) {
   const auto all = MakeScene();
-  const auto [left, right] = all->data.straight_knees.knees;
+  const auto [left, right] = all->data.Get<StraightKneesTerm>().knees;
   const auto scene = MakeScene({0, left});
   scene->state.rotations[left] = Eigen::Matrix3d::Identity();
   ASSERT_NE(AxisAngleFromRotation(scene->state.rotations[right]).x(), 0);
   EXPECT_EQ(Cost(*scene), 0);
-  scene->data.straight_knees.knees = {-1, -1};
+  scene->data.Get<StraightKneesTerm>().knees = {-1, -1};
   scene->state.rotations[left] = RotationFromAxisAngle({0.3, 0, 0});
   EXPECT_EQ(Cost(*scene), 0);
 }

@@ -6,6 +6,8 @@
 
 #include "bodyloom/tracking/frame_accumulator.h"
 #include "bodyloom/tracking/robust.h"
+#include "bodyloom/tracking/terms/clip_term.h"
+#include "bodyloom/tracking/terms/dense/dense_points.h"
 #include "bodyloom/tracking/track_input.h"
 #include "bodyloom/tracking/track_summary.h"
 
@@ -15,17 +17,28 @@ using Eigen::Matrix2d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-void DenseOfFrame::Add(FrameAccumulator* sums) const {
+namespace {
+
+struct DenseScratch {
+  DensePoints points;
+  std::vector<DensePoints::Row> rows;
+  std::vector<char> has_row;
+};
+
+}  // namespace
+
+void DenseTerm::Add(FrameAccumulator* sums) const {
   if (size() == 0) return;
+  DenseScratch& scratch = sums->Scratch<DenseScratch>();
   const FrameLayout& layout = sums->layout();
   const Camera& camera = sums->camera();
   const bool derivatives = sums->derivatives();
-  std::vector<DensePoints::Row>& rows = sums->dense_rows;
-  std::vector<char>& has_row = sums->has_dense_row;
-  const bool thin = sums->max_dense > 0 && taken == nullptr;
-  const size_t step = thin ? std::max<size_t>(1, points->size() / static_cast<size_t>(sums->max_dense)) : 1;
+  std::vector<DensePoints::Row>& rows = scratch.rows;
+  std::vector<char>& has_row = scratch.has_row;
+  const bool thin = sums->max_points > 0 && taken == nullptr;
+  const size_t step = thin ? std::max<size_t>(1, points->size() / static_cast<size_t>(sums->max_points)) : 1;
   const auto weight = static_cast<double>(step);
-  sums->dense_points.Pose(sums->kinematics(), *points, step, derivatives);
+  scratch.points.Pose(sums->kinematics(), *points, step, derivatives);
   if (derivatives) {
     rows.resize(points->size());
     has_row.assign(points->size(), 0);
@@ -33,7 +46,7 @@ void DenseOfFrame::Add(FrameAccumulator* sums) const {
   for (size_t i = 0, n = 0; i < points->size(); i += step, ++n) {
     if (taken != nullptr && (*taken)[i] != 0) continue;
     FrameAccumulator::Projected at;
-    if (!sums->Project(sums->dense_points.position(n), &at)) {
+    if (!sums->Project(scratch.points.position(n), &at)) {
       sums->AddSaturated(kernel, weight);
       continue;
     }
@@ -61,7 +74,7 @@ void DenseOfFrame::Add(FrameAccumulator* sums) const {
   if (!derivatives) return;
   const DensePoints::Columns columns{&layout.column_of_joint, layout.translation_column, layout.beta_column,
                                      layout.focal_column};
-  sums->dense_points.Accumulate(columns, rows, has_row, sums->H().data(), sums->H().cols(), sums->gradient().data());
+  scratch.points.Accumulate(columns, rows, has_row, sums->H().data(), sums->H().cols(), sums->gradient().data());
 }
 
 void AppendDenseErrors(const std::vector<DenseKeypoint>& keypoints, const Camera& camera, const Kinematics& kinematics,
@@ -76,9 +89,16 @@ void AppendDenseErrors(const std::vector<DenseKeypoint>& keypoints, const Camera
   }
 }
 
-PlanEntry PlanDense(const TrackSequenceInput& input, const TrackSequenceOptions& /*options*/) {
+std::vector<PlanEntry> PlanDense(const TrackSequenceInput& input, const TrackSequenceOptions& /*options*/) {
   const bool runs = input.dense != nullptr;
-  return {"dense keypoints (L_f)", runs, runs ? "in the input" : "no dense keypoints in the input"};
+  return {{"dense keypoints (L_f)", runs, runs ? "in the input" : "no dense keypoints in the input"}};
+}
+
+std::unique_ptr<ClipTerm> MakeDenseTerms(const ClipTermInput& clip) {
+  if (clip.input.dense == nullptr) return nullptr;
+  return EachFrame([dense = clip.input.dense](int t, const FrameState&, FrameData* frame) {
+    frame->Get<DenseTerm>().points = &dense->frames[t];
+  });
 }
 
 }  // namespace bodyloom

@@ -3,22 +3,25 @@
 ///   ½ Σ_k w ρ(‖W_k (π(x_k) − y_k)‖²)      ρ: Geman–McClure with c = `kernel`
 /// x_k: face and barycentric coordinates of the detection, posed, camera frame, metres; W_k = I/σ_k, or the inverse
 /// root of the keypoint's covariance (dense_whitening.h), 1/px. Keypoints that another term takes (`taken`) are left
-/// out. w = 1, or the number that each of the evenly chosen keypoints stands for (FrameAccumulator::max_dense; frames
+/// out. w = 1, or the number that each of the evenly chosen keypoints stands for (FrameAccumulator::max_points; frames
 /// with `taken` use all). What cannot be projected costs c²/2 and is counted. Many points share few joints, so their
 /// normal equations are summed set by set (dense_points.h). Runs when the input has dense keypoints.
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <vector>
 
 #include "bodyloom/geometry/body_model.h"
 #include "bodyloom/geometry/camera.h"
 #include "bodyloom/geometry/observations.h"
 #include "bodyloom/tracking/body_points.h"
+#include "bodyloom/tracking/terms/frame_term.h"
 
 namespace bodyloom {
 
-class FrameAccumulator;
+class ClipTerm;
+struct ClipTermInput;
 struct PlanEntry;
 struct TrackSequenceInput;
 struct TrackSequenceOptions;
@@ -29,21 +32,25 @@ struct DenseWhitening {
   Eigen::Matrix2d pixel_by_uv;  ///< M = ∂pixel/∂(u, v) at the label, pixels a chart; zero where there is none
 };
 
-struct DenseOfFrame {
+class DenseTerm : public CopyableTerm<DenseTerm> {
+ public:
   const std::vector<DenseKeypoint>* points = nullptr;  ///< borrowed; null: none
   std::vector<DenseWhitening> whitening;               ///< one a keypoint, or empty: I/sigma_px
   const std::vector<char>* taken = nullptr;            ///< by keypoint: evaluated by another term; null: none
   double kernel = 4;                                   ///< c, in σ
 
   [[nodiscard]] size_t size() const { return points != nullptr ? points->size() : 0; }
-  [[nodiscard]] int num_rows() const { return 0; }  ///< adds to the matrix directly
-  void Add(FrameAccumulator* sums) const;
+  [[nodiscard]] std::string name() const override { return "dense keypoints"; }
+  [[nodiscard]] bool is_empty() const override { return size() == 0; }
+  [[nodiscard]] bool is_compressed() const override { return true; }
+  void Add(FrameAccumulator* sums) const override;
 };
 
 /// Appends |π(x) − y|, pixels, of each keypoint that projects. `vertices`: of this frame's kinematics.
 void AppendDenseErrors(const std::vector<DenseKeypoint>& keypoints, const Camera& camera, const Kinematics& kinematics,
                        PointEvaluator::VertexCache* vertices, std::vector<double>* errors_px);
 
-PlanEntry PlanDense(const TrackSequenceInput& input, const TrackSequenceOptions& options);
+std::vector<PlanEntry> PlanDense(const TrackSequenceInput& input, const TrackSequenceOptions& options);
+std::unique_ptr<ClipTerm> MakeDenseTerms(const ClipTermInput& clip);
 
 }  // namespace bodyloom

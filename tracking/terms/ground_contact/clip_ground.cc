@@ -8,10 +8,12 @@
 #include <span>
 
 #include "bodyloom/geometry/camera_path.h"
+#include "bodyloom/tracking/initialise/lifted_start.h"
 #include "bodyloom/tracking/initialise/lifter_input.h"
 #include "bodyloom/tracking/initialise/seen_feet.h"
 #include "bodyloom/tracking/kinematics.h"
 #include "bodyloom/tracking/terms/ground_contact/ground_contact.h"
+#include "bodyloom/tracking/terms/upright.h"
 
 namespace bodyloom {
 namespace {
@@ -40,23 +42,30 @@ UpEstimate UpInScene(std::span<const LiftedFrame> lifted, std::span<const FrameD
 
 }  // namespace
 
-ClipGround::ClipGround(const TrackSequenceInput& input, const TrackSequenceOptions& options,
-                       const KeypointSequence* keypoints, const std::vector<LiftedFrame>& lifted,
-                       const LiftedLandmarks& landmarks, SequenceProblem* problem)
-    : options_(options.ground),
-      keypoints_(keypoints),
-      known_(input.ground),
-      lifted_(lifted),
-      landmarks_(landmarks),
-      why_not_(WhyNoGround(input, options)) {
-  if (lifted.empty()) return;
-  const int T = static_cast<int>(lifted.size());
+ClipGround::ClipGround(const ClipTermInput& clip)
+    : options_(clip.options.ground),
+      keypoints_(clip.joints),
+      known_(clip.input.ground),
+      lifted_(clip.lifted.frames),
+      landmarks_(clip.lifted_landmarks),
+      why_not_(WhyNoGround(clip.input, clip.options)) {}
+
+std::unique_ptr<ClipTerm> MakeClipGround(const ClipTermInput& clip) { return std::make_unique<ClipGround>(clip); }
+
+void ClipGround::Observe(SequenceProblem* problem) {
+  if (lifted_.empty() || !why_not_.empty()) return;
+  for (FrameData& frame : problem->frames) frame.Get<GroundContactTerm>();
+}
+
+void ClipGround::BeginFit(SequenceProblem* problem) {
+  if (lifted_.empty()) return;
+  const int T = static_cast<int>(lifted_.size());
   for (int begin = 0, end = 0; begin < T; begin = end) {
     for (end = begin + 1; end < T && !problem->cut_before[end];) ++end;
     Shot& shot = shots_.emplace_back();
     shot.begin = begin;
     shot.end = end;
-    shot.up = UpInScene({lifted.data() + begin, lifted.data() + end},
+    shot.up = UpInScene({lifted_.data() + begin, lifted_.data() + end},
                         {problem->frames.data() + begin, problem->frames.data() + end});
     if (known_ != nullptr) {
       shot.up.found = true;
@@ -73,7 +82,7 @@ void ClipGround::SetUpright(const Shot& shot, const Vector3d& up, SequenceProble
     const Vector3d up_in_camera = InCamera(frame, up);
     const Vector3d level = Vector3d::UnitZ() - up_in_camera.z() * up_in_camera;
     // Seen from straight above or below, no direction of lean is hidden more than another.
-    if (level.norm() >= 0.1) frame.upright.normal = level.normalized();
+    if (level.norm() >= 0.1) frame.Get<UprightTerm>().normal = level.normalized();
   }
 }
 
@@ -90,7 +99,7 @@ void ClipGround::Hold(const Stance& stance, const GroundPlane& ground, FrameData
     contact.target_m = MovedPoint(*camera, stance.place_m);
     contact.whitening *= camera->camera_from_world_rotation.transpose();
   }
-  frame->ground_contact.feet.push_back(contact);
+  frame->Get<GroundContactTerm>().feet.push_back(contact);
 }
 
 GroundPlane ClipGround::PlaneUnder(const std::vector<std::array<FootPlace, 2>>& feet,
@@ -106,7 +115,7 @@ GroundPlane ClipGround::PlaneUnder(const std::vector<std::array<FootPlace, 2>>& 
   return EstimateGroundPlane(feet, timestamps, up, options);
 }
 
-bool ClipGround::FindGround(const std::vector<int>& frames, SequenceProblem* coarse, SequenceProblem* problem) {
+bool ClipGround::LearnFrom(const std::vector<int>& frames, SequenceProblem* coarse, SequenceProblem* problem) {
   if (lifted_.empty() || !why_not_.empty()) return false;
   const std::vector<std::array<FootPlace, 2>> all_feet = SeenFeet(*coarse, frames, lifted_, landmarks_, *keypoints_);
   standing_speed_mps_ = StandingSpeed(all_feet, coarse->timestamps, {});
@@ -145,7 +154,9 @@ bool ClipGround::FindGround(const std::vector<int>& frames, SequenceProblem* coa
         held[t] = 1;
       }
     }
-    for (const int i : index) coarse->frames[i].upright.normal = problem->frames[frames[i]].upright.normal;
+    for (const int i : index) {
+      coarse->frames[i].Get<UprightTerm>().normal = problem->frames[frames[i]].Get<UprightTerm>().normal;
+    }
   }
   contact_frames_ = static_cast<int>(std::count(held.begin(), held.end(), 1));
   return any;

@@ -5,31 +5,33 @@
 
 #include <array>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "bodyloom/tracking/initialise/ground_plane.h"
 #include "bodyloom/tracking/initialise/lifted_landmarks.h"
-#include "bodyloom/tracking/sequence_problem.h"
+#include "bodyloom/tracking/terms/clip_term.h"
 #include "bodyloom/tracking/track_input.h"
 #include "bodyloom/tracking/track_options.h"
 #include "bodyloom/tracking/track_summary.h"
 
 namespace bodyloom {
 
-/// Must not outlive what it is given. Without lifted frames, or switched off, it changes nothing.
-class ClipGround {
+/// Without lifted frames, or switched off, it changes nothing.
+class ClipGround : public ClipTerm {
  public:
-  /// `problem` holds the whole clip, `lifted` what the lifter predicted for each of its frames (or nothing) when it
-  /// read `keypoints`.
-  ClipGround(const TrackSequenceInput& input, const TrackSequenceOptions& options, const KeypointSequence* keypoints,
-             const std::vector<LiftedFrame>& lifted, const LiftedLandmarks& landmarks, SequenceProblem* problem);
+  explicit ClipGround(const ClipTermInput& clip);
+
+  void Observe(SequenceProblem* problem) override;
+  /// The vertical of each shot.
+  void BeginFit(SequenceProblem* problem) override;
 
   /// Looks for the ground with the states of `coarse`, which holds `frames` of the clip. True when there is one: then
   /// `coarse` and `problem` (the whole clip) have their feet held and their trunks measured against its normal.
-  bool FindGround(const std::vector<int>& frames, SequenceProblem* coarse, SequenceProblem* problem);
+  bool LearnFrom(const std::vector<int>& frames, SequenceProblem* coarse, SequenceProblem* problem) override;
 
   /// Of the longest shot, with the answer in `problem` (the whole clip).
-  void Summarise(const SequenceProblem& problem, TrackSequenceSummary* summary) const;
+  void Summarise(const SequenceProblem& problem, TrackSequenceSummary* summary) const override;
 
  private:
   struct Shot {
@@ -57,5 +59,7 @@ class ClipGround {
   int contact_frames_ = 0;
   double standing_speed_mps_ = std::numeric_limits<double>::quiet_NaN();
 };
+
+std::unique_ptr<ClipTerm> MakeClipGround(const ClipTermInput& clip);
 
 }  // namespace bodyloom

@@ -14,7 +14,7 @@ namespace bodyloom {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-void GroundContactOfFrame::Add(FrameAccumulator* sums) const {
+void GroundContactTerm::Add(FrameAccumulator* sums) const {
   if (feet.empty()) return;
   const FrameLayout& layout = sums->layout();
   const bool weak = layout.knowledge == CameraKnowledge::kWeak;
@@ -29,10 +29,8 @@ void GroundContactOfFrame::Add(FrameAccumulator* sums) const {
   for (const GroundContact& contact : feet) {
     const Vector3d x = sums->points().Evaluate(sums->kinematics(), *contact.point, sums->derivatives()) + offset;
     const Vector3d residual = contact.whitening * (x - contact.target_m);
-    const RobustValue robust = GemanMcClure(residual.squaredNorm(), kContactKernel);
-    sums->AddCost(0.5 * robust.rho);
+    const double scale = sums->AddGroup(3, residual.squaredNorm(), kContactKernel, 1);
     if (!sums->derivatives()) continue;
-    const double scale = std::sqrt(robust.weight);
     auto rows = sums->NextRows(3);
     sums->FillPointRows(rows);
     rows.middleCols<3>(layout.translation_column) = d_origin;
@@ -40,6 +38,8 @@ void GroundContactOfFrame::Add(FrameAccumulator* sums) const {
     rows.noalias() = scale * contact.whitening * d_x;
     sums->NextResiduals(3) = scale * residual;
     sums->TakeRows(3);
+    sums->DependsOnPoint();
+    sums->DependsOn(layout.TranslationBlock());
   }
 }
 
@@ -49,10 +49,10 @@ std::string WhyNoGround(const TrackSequenceInput& input, const TrackSequenceOpti
   return options.ground.contact_weight > 0 ? "" : "switched off";
 }
 
-PlanEntry PlanGround(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
+std::vector<PlanEntry> PlanGround(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
   const std::string why_not = WhyNoGround(input, options);
-  return {"ground", why_not.empty(),
-          why_not.empty() ? "looked for; standing feet are held to it when there is one" : why_not};
+  return {{"ground", why_not.empty(),
+           why_not.empty() ? "looked for; standing feet are held to it when there is one" : why_not}};
 }
 
 }  // namespace bodyloom

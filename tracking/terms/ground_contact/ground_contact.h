@@ -13,10 +13,10 @@
 #include <vector>
 
 #include "bodyloom/tracking/body_points.h"
+#include "bodyloom/tracking/terms/frame_term.h"
 
 namespace bodyloom {
 
-class FrameAccumulator;
 struct PlanEntry;
 struct TrackSequenceInput;
 struct TrackSequenceOptions;
@@ -29,15 +29,17 @@ struct GroundContact {
 
 inline constexpr double kContactKernel = 3;  ///< c of ρ, in σ
 
-struct GroundContactOfFrame {
+class GroundContactTerm : public CopyableTerm<GroundContactTerm> {
+ public:
   std::vector<GroundContact> feet;
 
-  [[nodiscard]] int num_rows() const { return static_cast<int>(3 * feet.size()); }
-  void Add(FrameAccumulator* sums) const;
+  [[nodiscard]] std::string name() const override { return "standing feet"; }
+  [[nodiscard]] int num_rows() const override { return static_cast<int>(3 * feet.size()); }
+  void Add(FrameAccumulator* sums) const override;
 };
 
 /// Why no ground is looked for, or empty when one is.
 std::string WhyNoGround(const TrackSequenceInput& input, const TrackSequenceOptions& options);
-PlanEntry PlanGround(const TrackSequenceInput& input, const TrackSequenceOptions& options);
+std::vector<PlanEntry> PlanGround(const TrackSequenceInput& input, const TrackSequenceOptions& options);
 
 }  // namespace bodyloom

@@ -4,9 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bodyloom/geometry/base/check.h"
 #include "bodyloom/tracking/frame_accumulator.h"
+#include "bodyloom/tracking/initialise/initial_states.h"
+#include "bodyloom/tracking/initialise/lifted_start.h"
 #include "bodyloom/tracking/initialise/lifter_input.h"
-#include "bodyloom/tracking/robust.h"
+#include "bodyloom/tracking/terms/clip_term.h"
+#include "bodyloom/tracking/track_input.h"
+#include "bodyloom/tracking/track_options.h"
+#include "bodyloom/tracking/track_summary.h"
 
 namespace bodyloom {
 
@@ -38,35 +44,89 @@ Eigen::Matrix3d LiftedPose::JointCovariance(int joint) const {
   return nearest.share * nearest.share * point->covariance;
 }
 
-void LiftedOfFrame::Add(FrameAccumulator* sums) const {
+namespace {
+
+struct LiftedScratch {
+  RowMatrixXd hip_rows;
+  std::vector<int> hip_blocks;
+};
+
+}  // namespace
+
+void LiftedPoseTerm::Add(FrameAccumulator* sums) const {
   if (!runs()) return;
   const LiftedLandmarks& landmarks = *pose->landmarks;
   const Kinematics& kinematics = sums->kinematics();
   PointEvaluator& points = sums->points();
-  RowMatrixXd& hip_rows = sums->hip_rows;
+  RowMatrixXd& hip_rows = sums->Scratch<LiftedScratch>().hip_rows;
   const bool derivatives = sums->derivatives();
   // The translation moves landmark and mid-hip alike, so its columns stay zero.
   Vector3d hips = Vector3d::Zero();
+  std::vector<int>& hip_blocks = sums->Scratch<LiftedScratch>().hip_blocks;
+  hip_blocks.clear();
   if (derivatives) hip_rows.setZero(3, sums->NextRows(3).cols());
   for (int k = kLifterLeftHip; k <= kLifterLeftHip + 1; ++k) {
     hips += 0.5 * points.Evaluate(kinematics, landmarks.points[k], derivatives);
     if (!derivatives) continue;
     sums->FillPointRows(sums->NextRows(3));  // scratch until the first landmark
     hip_rows += 0.5 * sums->NextRows(3);
+    for (const int j : points.joints()) {
+      const int column = sums->layout().column_of_joint[j];
+      if (column >= 0) hip_blocks.push_back(FrameLayout::BlockOfColumn(column));
+    }
   }
   for (const LiftedPose::Point& point : pose->points) {
     const Vector3d x = points.Evaluate(kinematics, landmarks.points[point.landmark], derivatives);
     const Vector3d residual = point.whitening * (x - hips - point.offset);
-    const RobustValue robust = GemanMcClure(residual.squaredNorm(), kernel);
-    sums->AddCost(0.5 * weight * robust.rho);
+    const double scale = sums->AddGroup(3, residual.squaredNorm(), kernel, weight);
     if (!derivatives) continue;
-    const double scale = std::sqrt(weight * robust.weight);
     sums->FillPointRows(sums->NextRows(3));
+    sums->DependsOnPoint();
+    for (const int block : hip_blocks) sums->DependsOn(block);
     const RowMatrixXd difference = sums->NextRows(3) - hip_rows;
     sums->NextRows(3).noalias() = scale * point.whitening * difference;
     sums->NextResiduals(3) = scale * residual;
     sums->TakeRows(3);
   }
+}
+
+std::vector<PlanEntry> PlanLifted(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
+  if (input.initialiser != nullptr) return {};
+  const std::string why_not = WhyNoLifter(input, options);
+  return {{"initialiser term (L_d)", why_not.empty(),
+           why_not.empty() ? Concatenate("weight ", options.lifter_weight, ", of the lifter")
+                           : "no initialiser and no lifter"}};
+}
+
+namespace {
+
+class LiftedPoseTerms : public ClipTerm {
+ public:
+  explicit LiftedPoseTerms(const ClipTermInput& clip) : weight_(clip.options.lifter_weight) {
+    for (const LiftedFrame& frame : clip.lifted.frames) {
+      poses_.push_back(
+          MakeLiftedPose(frame, clip.lifted_landmarks, clip.lifted.metres, clip.options.lifter_min_sigma_m));
+    }
+  }
+  void Observe(SequenceProblem* problem) override {
+    for (size_t t = 0; t < problem->frames.size(); ++t) {
+      LiftedPoseTerm& term = problem->frames[t].Get<LiftedPoseTerm>();
+      term.pose = &poses_[t];
+      term.weight = weight_;
+    }
+  }
+
+ private:
+  double weight_;
+  std::vector<LiftedPose> poses_;  ///< T
+};
+
+}  // namespace
+
+std::unique_ptr<ClipTerm> MakeLiftedPoseTerms(const ClipTermInput& clip) {
+  // With an initialiser of the user's own the lifter is asked for the vertical and standing feet alone.
+  if (clip.input.initialiser != nullptr || clip.lifted.frames.empty()) return nullptr;
+  return std::make_unique<LiftedPoseTerms>(clip);
 }
 
 }  // namespace bodyloom

@@ -7,14 +7,21 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "bodyloom/tracking/initialise/lift_keypoints.h"
 #include "bodyloom/tracking/initialise/lifted_landmarks.h"
+#include "bodyloom/tracking/terms/frame_term.h"
 
 namespace bodyloom {
 
-class FrameAccumulator;
+class ClipTerm;
+struct ClipTermInput;
+struct PlanEntry;
+struct TrackSequenceInput;
+struct TrackSequenceOptions;
 
 struct LiftedPose {
   struct Point {
@@ -37,14 +44,19 @@ struct LiftedPose {
 LiftedPose MakeLiftedPose(const LiftedFrame& frame, const LiftedLandmarks& landmarks, double metres,
                           double min_sigma_m);
 
-struct LiftedOfFrame {
+class LiftedPoseTerm : public CopyableTerm<LiftedPoseTerm> {
+ public:
   const LiftedPose* pose = nullptr;  ///< borrowed; null: none
   double weight = 0;                 ///< w
   double kernel = 3;                 ///< c of ρ, in σ
 
   [[nodiscard]] bool runs() const { return pose != nullptr && weight > 0; }
-  [[nodiscard]] int num_rows() const { return runs() ? static_cast<int>(3 * pose->points.size()) + 3 : 0; }
-  void Add(FrameAccumulator* sums) const;
+  [[nodiscard]] std::string name() const override { return "lifter"; }
+  [[nodiscard]] int num_rows() const override { return runs() ? static_cast<int>(3 * pose->points.size()) + 3 : 0; }
+  void Add(FrameAccumulator* sums) const override;
 };
+
+std::vector<PlanEntry> PlanLifted(const TrackSequenceInput& input, const TrackSequenceOptions& options);
+std::unique_ptr<ClipTerm> MakeLiftedPoseTerms(const ClipTermInput& clip);
 
 }  // namespace bodyloom

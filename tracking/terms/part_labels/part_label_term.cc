@@ -44,8 +44,8 @@ bool IsMask(const PartLabelSequence& labels) {
 
 }  // namespace
 
-PartLabelTerm::PartLabelTerm(const PartLabelSequence& labels, int t, std::shared_ptr<const Skinner> skinner,
-                             const PartLabelOptions& options)
+PartLabelMatches::PartLabelMatches(const PartLabelSequence& labels, int t, std::shared_ptr<const Skinner> skinner,
+                                   const PartLabelOptions& options)
     : labels_(labels), t_(t), skinner_(std::move(skinner)), options_(options) {
   BODYLOOM_CHECK(t >= 0 && t < labels.num_frames(), "part labels: frame ", t, " of ", labels.num_frames());
   const PartMap map = MakePartMap(labels, t, kSpeckShare);
@@ -67,12 +67,12 @@ PartLabelTerm::PartLabelTerm(const PartLabelSequence& labels, int t, std::shared
   SampleBoundary(map);
 }
 
-const DistanceField* PartLabelTerm::Field(uint8_t part) const {
+const DistanceField* PartLabelMatches::Field(uint8_t part) const {
   const auto it = fields_.find(part);
   return it == fields_.end() ? nullptr : &it->second;
 }
 
-std::vector<uint8_t> PartLabelTerm::PartOfFaces(const BodyModel& model) const {
+std::vector<uint8_t> PartLabelMatches::PartOfFaces(const BodyModel& model) const {
   std::vector<uint8_t> result(model.num_faces());
   for (int f = 0; f < model.num_faces(); ++f) {
     const uint8_t part = labels_.part_of_chart[model.has_parts() ? model.data().face_part[f] : 0];
@@ -81,7 +81,7 @@ std::vector<uint8_t> PartLabelTerm::PartOfFaces(const BodyModel& model) const {
   return result;
 }
 
-void PartLabelTerm::FindBoxes(const PartMap& map) {
+void PartLabelMatches::FindBoxes(const PartMap& map) {
   const auto grow = [](PixelBox* box, int x, int y) {
     *box = box->empty() ? PixelBox{x, y, x + 1, y + 1}
                         : PixelBox{std::min(box->x_begin, x), std::min(box->y_begin, y), std::max(box->x_end, x + 1),
@@ -99,7 +99,7 @@ void PartLabelTerm::FindBoxes(const PartMap& map) {
   }
 }
 
-void PartLabelTerm::AddField(const PartMap& map, uint8_t part) {
+void PartLabelMatches::AddField(const PartMap& map, uint8_t part) {
   // Beyond the image nothing is known; one cell of it is enough for the field.
   const PixelBox box = boxes_[part].GrownBy(kMarginCells * cell_px_).ClippedTo(map.image.GrownBy(cell_px_));
   using Pixel = DistanceField::Pixel;
@@ -114,7 +114,7 @@ void PartLabelTerm::AddField(const PartMap& map, uint8_t part) {
   fields_.try_emplace(part, box.x_begin, box.y_begin, box.width(), box.height(), cell_px_, fill_row);
 }
 
-void PartLabelTerm::SampleBoundary(const PartMap& map) {
+void PartLabelMatches::SampleBoundary(const PartMap& map) {
   std::vector<BoundarySample> silhouette;
   std::map<std::pair<uint8_t, uint8_t>, std::vector<BoundarySample>> between;
   const PixelBox box = boxes_[0].GrownBy(1).ClippedTo(map.image);
@@ -138,7 +138,7 @@ void PartLabelTerm::SampleBoundary(const PartMap& map) {
   }
 }
 
-void PartLabelTerm::SampleInside(const PartMap& map) {
+void PartLabelMatches::SampleInside(const PartMap& map) {
   std::array<std::vector<Inside>, 256> by_part;
   const PixelBox& box = boxes_[0];
   // A grid of at least kMaxInside points in the smallest part that counts is finer than needed elsewhere: thinned
@@ -156,8 +156,8 @@ void PartLabelTerm::SampleInside(const PartMap& map) {
   }
 }
 
-std::vector<PartLabelTerm::Edge> PartLabelTerm::EdgesOfBody(const std::vector<uint8_t>& part_of_face,
-                                                            const VisibilityBuffer& buffer) const {
+std::vector<PartLabelMatches::Edge> PartLabelMatches::EdgesOfBody(const std::vector<uint8_t>& part_of_face,
+                                                                  const VisibilityBuffer& buffer) const {
   std::vector<Edge> edges;
   const PixelBox& box = buffer.box();
   const PixelBox image{0, 0, labels_.image_width, labels_.image_height};
@@ -182,8 +182,8 @@ std::vector<PartLabelTerm::Edge> PartLabelTerm::EdgesOfBody(const std::vector<ui
   return edges;
 }
 
-void PartLabelTerm::AddContour(const std::vector<Edge>& edges, const BodyModel& model, const VisibleSurface& surface,
-                               const Camera& camera, const Sigmas& sigmas) {
+void PartLabelMatches::AddContour(const std::vector<Edge>& edges, const BodyModel& model, const VisibleSurface& surface,
+                                  const Camera& camera, const Sigmas& sigmas) {
   const auto add = [&](const Edge& edge, const DistanceField* field, bool is_silhouette) {
     if (labels_.PartAt(t_, edge.x, edge.y) == kUnknown) return;
     ContourPoint point;
@@ -213,8 +213,9 @@ void PartLabelTerm::AddContour(const std::vector<Edge>& edges, const BodyModel& 
   }
 }
 
-void PartLabelTerm::AddBoundary(const std::vector<Edge>& edges, const BodyModel& model, const VisibleSurface& surface,
-                                const Camera& camera, const Sigmas& sigmas, double reach_px) {
+void PartLabelMatches::AddBoundary(const std::vector<Edge>& edges, const BodyModel& model,
+                                   const VisibleSurface& surface, const Camera& camera, const Sigmas& sigmas,
+                                   double reach_px) {
   std::map<std::pair<uint8_t, uint8_t>, std::vector<const Edge*>> between;
   for (const Edge& edge : edges) {
     const auto key = edge.other == kBackground
@@ -265,8 +266,8 @@ void PartLabelTerm::AddBoundary(const std::vector<Edge>& edges, const BodyModel&
   }
 }
 
-void PartLabelTerm::AddInside(const std::vector<uint8_t>& part_of_face, const BodyModel& model,
-                              const VisibleSurface& surface, const Camera& camera, double sigma_px) {
+void PartLabelMatches::AddInside(const std::vector<uint8_t>& part_of_face, const BodyModel& model,
+                                 const VisibleSurface& surface, const Camera& camera, double sigma_px) {
   const MatrixX3i& faces = model.data().faces;
   struct Corner {
     Vector2d pixel;
@@ -322,7 +323,7 @@ void PartLabelTerm::AddInside(const std::vector<uint8_t>& part_of_face, const Bo
   }
 }
 
-void PartLabelTerm::Weigh() {
+void PartLabelMatches::Weigh() {
   std::array<double, 2> count = {0, 0};
   for (const Target& target : targets_) ++count[target.is_silhouette];
   for (const ContourPoint& point : contour_) ++count[point.is_silhouette];
@@ -333,8 +334,8 @@ void PartLabelTerm::Weigh() {
   for (ContourPoint& point : contour_) point.weight = weight[point.is_silhouette];
 }
 
-void PartLabelTerm::Correspond(const FrameLayout& layout, const FrameState& state, const Eigen::VectorXd& betas,
-                               double log_focal, double person_height_px, double kernel, VisibleSurface* surface) {
+void PartLabelMatches::Correspond(const FrameLayout& layout, const FrameState& state, const Eigen::VectorXd& betas,
+                                  double log_focal, double person_height_px, double kernel, VisibleSurface* surface) {
   targets_.clear();
   contour_.clear();
   kernel_ = kernel;
@@ -354,13 +355,14 @@ void PartLabelTerm::Correspond(const FrameLayout& layout, const FrameState& stat
   Weigh();
 }
 
-void PartLabelsOfFrame::Add(FrameAccumulator* sums) const {
+void PartLabelTerm::Add(FrameAccumulator* sums) const {
   if (term == nullptr) return;
   const MatrixX3i& faces = sums->layout().model->data().faces;
   const Kinematics& kinematics = sums->kinematics();
   const bool derivatives = sums->derivatives();
-  FrameResiduals* residuals = sums->residuals();
-  for (const PartLabelTerm::Target& target : term->targets()) {
+  PixelResiduals* silhouette = sums->residuals("silhouette");
+  PixelResiduals* parts = sums->residuals("part labels");
+  for (const PartLabelMatches::Target& target : term->targets()) {
     const Vector3d x = sums->points().Evaluate(kinematics, faces.row(target.face).data(), target.barycentric.data(),
                                                &sums->vertices(), derivatives);
     FrameAccumulator::Projected at;
@@ -371,7 +373,7 @@ void PartLabelsOfFrame::Add(FrameAccumulator* sums) const {
     const Matrix2d& whitening = target.WhiteningAt(at.pixel);
     sums->AddImageRows<2>(at, whitening * (at.pixel - target.pixel), whitening, term->kernel(), target.weight);
   }
-  for (const PartLabelTerm::ContourPoint& point : term->contour()) {
+  for (const PartLabelMatches::ContourPoint& point : term->contour()) {
     const Vector3d x = sums->points().Evaluate(kinematics, faces.row(point.face).data(), point.barycentric.data(),
                                                &sums->vertices(), derivatives);
     FrameAccumulator::Projected at;
@@ -381,16 +383,14 @@ void PartLabelsOfFrame::Add(FrameAccumulator* sums) const {
     }
     Eigen::RowVector2d gradient;
     const double distance = point.field->Evaluate(at.pixel, &gradient) - point.offset_px;
-    if (residuals != nullptr) {
-      (point.is_silhouette ? residuals->silhouette_px : residuals->part_px).push_back(std::abs(distance));
-    }
+    if (silhouette != nullptr) (point.is_silhouette ? silhouette : parts)->px.push_back(std::abs(distance));
     const double inverse_sigma = point.InverseSigmaAt(distance);
     sums->AddImageRows<1>(at, Eigen::Matrix<double, 1, 1>(distance * inverse_sigma), gradient * inverse_sigma,
                           term->kernel(), point.weight);
   }
-  if (residuals != nullptr) {
-    residuals->silhouette_unmatched += term->silhouette_unmatched();
-    residuals->part_unmatched += term->part_unmatched();
+  if (silhouette != nullptr) {
+    silhouette->unmatched += term->silhouette_unmatched();
+    parts->unmatched += term->part_unmatched();
   }
 }
 

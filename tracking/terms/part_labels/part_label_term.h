@@ -30,6 +30,7 @@
 
 #include "bodyloom/geometry/observations.h"
 #include "bodyloom/tracking/frame_layout.h"
+#include "bodyloom/tracking/terms/frame_term.h"
 #include "bodyloom/tracking/terms/part_labels/distance_field.h"
 #include "bodyloom/tracking/terms/part_labels/part_label_options.h"
 #include "bodyloom/tracking/terms/part_labels/part_map.h"
@@ -37,9 +38,7 @@
 
 namespace bodyloom {
 
-class FrameAccumulator;
-
-class PartLabelTerm {
+class PartLabelMatches {
  public:
   static constexpr int kMinPartPixels = 30;
   static constexpr double kSilhouetteCount = 40, kPartCount = 60, kSpeckShare = 0.1;
@@ -71,8 +70,8 @@ class PartLabelTerm {
   };
 
   /// Reads frame t of the labels, which must be in order (TrackSequence checks them). `skinner` poses all vertices.
-  PartLabelTerm(const PartLabelSequence& labels, int t, std::shared_ptr<const Skinner> skinner,
-                const PartLabelOptions& options);
+  PartLabelMatches(const PartLabelSequence& labels, int t, std::shared_ptr<const Skinner> skinner,
+                   const PartLabelOptions& options);
 
   /// Starts a round. `person_height_px` sets σ, `kernel` is c in σ.
   void Correspond(const FrameLayout& layout, const FrameState& state, const Eigen::VectorXd& betas, double log_focal,
@@ -141,11 +140,14 @@ class PartLabelTerm {
   int silhouette_unmatched_ = 0, part_unmatched_ = 0;
 };
 
-struct PartLabelsOfFrame {
-  const PartLabelTerm* term = nullptr;  ///< borrowed; null: none
+class PartLabelTerm : public CopyableTerm<PartLabelTerm> {
+ public:
+  const PartLabelMatches* term = nullptr;  ///< borrowed; null: none
 
-  [[nodiscard]] int num_rows() const { return term == nullptr ? 0 : term->num_rows(); }
-  void Add(FrameAccumulator* sums) const;
+  [[nodiscard]] std::string name() const override { return "silhouette and parts"; }
+  [[nodiscard]] int num_rows() const override { return term == nullptr ? 0 : term->num_rows(); }
+  [[nodiscard]] bool is_compressed() const override { return true; }
+  void Add(FrameAccumulator* sums) const override;
 };
 
 }  // namespace bodyloom

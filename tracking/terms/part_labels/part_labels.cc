@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/tracking/terms/part_labels/part_labels.h"
 
+#include <cmath>
+
 #include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/tracking/initialise/stature.h"
 #include "bodyloom/tracking/moving_camera.h"
 #include "bodyloom/tracking/track_input.h"
 #include "bodyloom/tracking/track_options.h"
@@ -21,36 +22,42 @@ std::string WhyNoParts(const TrackSequenceInput& input, const TrackSequenceOptio
   return options.part_labels.part_weight == 0 ? "switched off" : "";
 }
 
-PlanEntry PlanSilhouette(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
-  const std::string why_not = WhyNoSilhouette(input, options);
-  return {"silhouette", why_not.empty(), why_not.empty() ? "of all labelled parts" : why_not};
+std::vector<PlanEntry> PlanPartLabels(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
+  const std::string no_silhouette = WhyNoSilhouette(input, options), no_parts = WhyNoParts(input, options);
+  return {{"silhouette", no_silhouette.empty(), no_silhouette.empty() ? "of all labelled parts" : no_silhouette},
+          {"part labels", no_parts.empty(), no_parts.empty() ? "outline and pixels of each part" : no_parts}};
 }
 
-PlanEntry PlanParts(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
-  const std::string why_not = WhyNoParts(input, options);
-  return {"part labels", why_not.empty(), why_not.empty() ? "outline and pixels of each part" : why_not};
+std::unique_ptr<ClipTerm> MakePartLabelRounds(const ClipTermInput& clip) {
+  if (!WhyNoSilhouette(clip.input, clip.options).empty() && !WhyNoParts(clip.input, clip.options).empty()) {
+    return nullptr;
+  }
+  return std::make_unique<PartLabelRounds>(clip);
 }
 
-PartLabelRounds::PartLabelRounds(const TrackSequenceInput& input, const TrackSequenceOptions& options,
-                                 const FrameLayout& layout, int num_threads)
-    : num_threads_(num_threads), stature_m_(AssumedStature(input)) {
-  if (!WhyNoSilhouette(input, options).empty() && !WhyNoParts(input, options).empty()) return;
-  const auto skinner = std::make_shared<const Skinner>(*layout.model);
-  part_labels_.resize(input.part_labels->num_frames());
-  ParallelFor(input.part_labels->num_frames(), num_threads, [&](int t) {
-    part_labels_[t] = std::make_unique<PartLabelTerm>(*input.part_labels, t, skinner, options.part_labels);
+PartLabelRounds::PartLabelRounds(const ClipTermInput& clip)
+    : options_(clip.options.part_labels), num_threads_(clip.num_threads), stature_m_(clip.stature_m) {
+  const auto skinner = std::make_shared<const Skinner>(*clip.layout.model);
+  part_labels_.resize(clip.input.part_labels->num_frames());
+  ParallelFor(clip.input.part_labels->num_frames(), num_threads_, [&](int t) {
+    part_labels_[t] = std::make_unique<PartLabelMatches>(*clip.input.part_labels, t, skinner, options_);
   });
 }
 
-void PartLabelRounds::Start(const std::vector<int>& frames, double kernel, SequenceProblem* problem) const {
-  if (!any()) return;
+void PartLabelRounds::Observe(SequenceProblem* problem) {
+  for (FrameData& frame : problem->frames) frame.Get<PartLabelTerm>();
+}
+
+void PartLabelRounds::StartRound(int round, const std::vector<int>& frames, SequenceProblem* problem) {
+  const double s = options_.rounds > 1 ? static_cast<double>(round) / (options_.rounds - 1) : 1.0;
+  const double kernel = options_.start_kernel * std::pow(options_.kernel / options_.start_kernel, s);
   ParallelFor(static_cast<int>(frames.size()), num_threads_, [&](int i) {
     thread_local VisibleSurface surface;
-    PartLabelTerm& term = *part_labels_[frames[i]];
+    PartLabelMatches& matches = *part_labels_[frames[i]];
     const FrameState state = StateInCamera(*problem, i);
     const double height_px = UprightHeightPx(problem->layout, state, stature_m_);
-    term.Correspond(problem->layout, state, problem->betas, problem->log_focal, height_px, kernel, &surface);
-    problem->frames[i].part_labels.term = &term;
+    matches.Correspond(problem->layout, state, problem->betas, problem->log_focal, height_px, kernel, &surface);
+    problem->frames[i].Get<PartLabelTerm>().term = &matches;
   });
 }
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/tracking/sequence_problem.h"
+#include "bodyloom/tracking/terms/clip_term.h"
 #include "bodyloom/tracking/terms/part_labels/part_label_term.h"
 
 namespace bodyloom {
@@ -23,23 +23,22 @@ struct TrackSequenceOptions;
 /// Why a term does not run, or empty when it does.
 std::string WhyNoSilhouette(const TrackSequenceInput& input, const TrackSequenceOptions& options);
 std::string WhyNoParts(const TrackSequenceInput& input, const TrackSequenceOptions& options);
-PlanEntry PlanSilhouette(const TrackSequenceInput& input, const TrackSequenceOptions& options);
-PlanEntry PlanParts(const TrackSequenceInput& input, const TrackSequenceOptions& options);
+std::vector<PlanEntry> PlanPartLabels(const TrackSequenceInput& input, const TrackSequenceOptions& options);
+std::unique_ptr<ClipTerm> MakePartLabelRounds(const ClipTermInput& clip);
 
-/// Must not outlive the input and the layout's body.
-class PartLabelRounds {
+class PartLabelRounds : public ClipTerm {
  public:
-  PartLabelRounds(const TrackSequenceInput& input, const TrackSequenceOptions& options, const FrameLayout& layout,
-                  int num_threads);
+  explicit PartLabelRounds(const ClipTermInput& clip);
 
-  [[nodiscard]] bool any() const { return !part_labels_.empty(); }
-  /// Starts a round: `problem` holds the frames `frames` of the clip. Nothing changes unless any().
-  void Start(const std::vector<int>& frames, double kernel, SequenceProblem* problem) const;
+  void Observe(SequenceProblem* problem) override;
+  [[nodiscard]] Rounds rounds() const override { return {options_.rounds, options_.max_iterations, "fit part labels"}; }
+  void StartRound(int round, const std::vector<int>& frames, SequenceProblem* problem) override;
 
  private:
+  PartLabelOptions options_;
   int num_threads_;
-  double stature_m_ = 0;
-  std::vector<std::unique_ptr<PartLabelTerm>> part_labels_;  ///< T, or empty
+  double stature_m_;
+  std::vector<std::unique_ptr<PartLabelMatches>> part_labels_;  ///< T
 };
 
 }  // namespace bodyloom

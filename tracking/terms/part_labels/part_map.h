@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The parts of one frame's label image, without specks: what PartLabelTerm reads.
+/// The parts of one frame's label image, without specks: what PartLabelMatches reads.
 #pragma once
 
 #include <cstdint>

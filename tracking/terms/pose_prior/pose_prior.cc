@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/tracking/terms/pose_prior/pose_prior.h"
 
+#include <cmath>
 #include <vector>
 
 #include "bodyloom/geometry/rotation.h"
 #include "bodyloom/tracking/frame_accumulator.h"
+#include "bodyloom/tracking/terms/clip_term.h"
 #include "bodyloom/tracking/track_input.h"
+#include "bodyloom/tracking/track_options.h"
 #include "bodyloom/tracking/track_summary.h"
 
 namespace bodyloom {
@@ -13,8 +16,8 @@ namespace bodyloom {
 using Eigen::Matrix3d;
 using Eigen::VectorXd;
 
-void PosePriorOfFrame::Add(FrameAccumulator* sums) const {
-  if (mixture == nullptr || mixture->empty() || !(weight > 0)) return;
+void PosePriorTerm::Add(FrameAccumulator* sums) const {
+  if (!runs()) return;
   const FrameLayout& layout = sums->layout();
   const std::vector<int>& joints = mixture->joints();
   VectorXd x(3 * joints.size());
@@ -22,6 +25,10 @@ void PosePriorOfFrame::Add(FrameAccumulator* sums) const {
     x.segment<3>(3 * i) = AxisAngleFromRotation(sums->state().rotations[joints[i]]);
   double energy;
   const int k = mixture->Nearest(x, &energy);
+  if (sums->one_by_one()) {
+    AddOneByOne(x, k, energy, sums);
+    return;
+  }
   sums->AddCost(0.5 * weight * energy);
   if (!sums->derivatives()) return;
   const Eigen::MatrixXd& precision = mixture->precision(k);
@@ -40,8 +47,39 @@ void PosePriorOfFrame::Add(FrameAccumulator* sums) const {
   }
 }
 
-PlanEntry PlanPosePrior(const TrackSequenceInput& input, const TrackSequenceOptions& /*options*/) {
-  return {"pose prior", input.prior != nullptr, input.prior != nullptr ? "learned mixture" : "none was given"};
+void PosePriorTerm::AddOneByOne(const VectorXd& x, int component, double energy, FrameAccumulator* sums) const {
+  const std::vector<int>& joints = mixture->joints();
+  const auto n = static_cast<Eigen::Index>(x.size());
+  const int num_rows = static_cast<int>(n) + 1;
+  sums->AddGroup(num_rows, energy, 0, weight);
+  if (!sums->derivatives()) return;
+  const Eigen::MatrixXd& L = mixture->sqrt_precision(component);
+  auto rows = sums->NextRows(num_rows);
+  auto residual = sums->NextResiduals(num_rows);
+  rows.setZero();
+  residual.head(n) = L.triangularView<Eigen::Upper>() * (x - mixture->mean(component));
+  residual[n] = std::sqrt(mixture->offset(component));
+  for (size_t i = 0; i < joints.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(3 * i);
+    const int column = sums->layout().column_of_joint[joints[i]];
+    rows.block(0, column, at + 3, 3) = L.block(0, at, at + 3, 3) * RightJacobianInverse(x.segment<3>(at));
+    sums->DependsOn(FrameLayout::BlockOfColumn(column));
+  }
+  sums->TakeRows(num_rows);
+}
+
+std::vector<PlanEntry> PlanPosePrior(const TrackSequenceInput& input, const TrackSequenceOptions& /*options*/) {
+  return {{"pose prior", input.prior != nullptr, input.prior != nullptr ? "learned mixture" : "none was given"}};
+}
+
+std::unique_ptr<ClipTerm> MakePosePriorTerms(const ClipTermInput& clip) {
+  if (clip.input.prior == nullptr || clip.input.prior->num_components() == 0) return nullptr;
+  const auto mixture =
+      std::make_shared<const MixturePrior>(*clip.input.prior, *clip.layout.model, clip.layout.active_joints);
+  return EachFrame([mixture, weight = clip.options.prior_weight](int, const FrameState&, FrameData* frame) {
+    frame->Get<PosePriorTerm>().mixture = mixture;
+    frame->Get<PosePriorTerm>().weight = weight;
+  });
 }
 
 }  // namespace bodyloom

@@ -21,28 +21,37 @@ std::string WhyNoRenderedUv(const TrackSequenceInput& input, const TrackSequence
   return "";
 }
 
-PlanEntry PlanRenderedUv(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
+std::vector<PlanEntry> PlanRenderedUv(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
   const std::string why_not = WhyNoRenderedUv(input, options);
-  return {"rendered UV (L_r)", why_not.empty(),
-          why_not.empty() ? "weight " + std::to_string(options.rendered_uv.weight) : why_not};
+  return {{"rendered UV (L_r)", why_not.empty(),
+           why_not.empty() ? "weight " + std::to_string(options.rendered_uv.weight) : why_not}};
 }
 
-DenseRounds::DenseRounds(const TrackSequenceInput& input, const TrackSequenceOptions& options,
-                         const FrameLayout& layout, int num_threads)
-    : input_(input), num_threads_(num_threads) {
-  const BodyModel& model = *layout.model;
-  whitens_ = input.dense != nullptr && input.dense->uv_sigma > 0 && model.data().face_iuv.rows() > 0;
-  const bool uv = WhyNoRenderedUv(input, options).empty();
-  if (!uv && !whitens_) return;
-  skinner_ = std::make_shared<const Skinner>(model);
-  if (!uv) return;
-  for (const std::vector<DenseKeypoint>& frame : input.dense->frames) {
-    rendered_uv_.push_back(std::make_unique<RenderedUvTerm>(model, skinner_, frame, options.rendered_uv));
+std::unique_ptr<ClipTerm> MakeDenseRounds(const ClipTermInput& clip) {
+  const bool whitens =
+      clip.input.dense != nullptr && clip.input.dense->uv_sigma > 0 && clip.layout.model->data().face_iuv.rows() > 0;
+  if (!whitens && !WhyNoRenderedUv(clip.input, clip.options).empty()) return nullptr;
+  return std::make_unique<DenseRounds>(clip);
+}
+
+DenseRounds::DenseRounds(const ClipTermInput& clip)
+    : input_(clip.input),
+      num_threads_(clip.num_threads),
+      rounds_{clip.options.rendered_uv.rounds, clip.options.rendered_uv.max_iterations, "fit dense"},
+      skinner_(std::make_shared<const Skinner>(*clip.layout.model)) {
+  if (!WhyNoRenderedUv(clip.input, clip.options).empty()) return;
+  for (const std::vector<DenseKeypoint>& frame : clip.input.dense->frames) {
+    rendered_uv_.push_back(
+        std::make_unique<RenderedUvPixels>(*clip.layout.model, skinner_, frame, clip.options.rendered_uv));
   }
 }
 
-void DenseRounds::Start(const std::vector<int>& frames, SequenceProblem* problem) const {
-  if (!any()) return;
+void DenseRounds::Observe(SequenceProblem* problem) {
+  if (rendered_uv_.empty()) return;
+  for (FrameData& frame : problem->frames) frame.Get<RenderedUvTerm>();
+}
+
+void DenseRounds::StartRound(int /*round*/, const std::vector<int>& frames, SequenceProblem* problem) {
   ParallelFor(static_cast<int>(frames.size()), num_threads_, [&](int i) {
     FrameData& frame = problem->frames[i];
     const FrameState state = StateInCamera(*problem, i);
@@ -50,15 +59,16 @@ void DenseRounds::Start(const std::vector<int>& frames, SequenceProblem* problem
     const bool seen =
         surface.Render(skinner_, *problem->layout.model, problem->betas, state.rotations,
                        problem->layout.BodyTranslation(state), problem->layout.CameraAt(state, problem->log_focal));
-    frame.dense.whitening =
-        WhitenDense(problem->layout, state, problem->betas, problem->log_focal, *frame.dense.points,
-                    input_.dense->uv_sigma, input_.dense->pixel_sigma_px, seen ? &surface.buffer() : nullptr);
+    DenseTerm& dense = frame.Get<DenseTerm>();
+    dense.whitening =
+        WhitenDense(problem->layout, state, problem->betas, problem->log_focal, *dense.points, input_.dense->uv_sigma,
+                    input_.dense->pixel_sigma_px, seen ? &surface.buffer() : nullptr);
     if (rendered_uv_.empty()) return;
-    RenderedUvTerm* term = rendered_uv_[frames[i]].get();
-    term->SetWhitening(frame.dense.whitening);
-    frame.rendered_uv.term = term;
-    frame.rendered_uv.kernel = frame.dense.kernel;
-    frame.dense.taken = &term->taken();
+    RenderedUvPixels* term = rendered_uv_[frames[i]].get();
+    term->SetWhitening(dense.whitening);
+    frame.Get<RenderedUvTerm>().term = term;
+    frame.Get<RenderedUvTerm>().kernel = dense.kernel;
+    dense.taken = &term->taken();
   });
 }
 

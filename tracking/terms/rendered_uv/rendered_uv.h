@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/tracking/sequence_problem.h"
+#include "bodyloom/tracking/terms/clip_term.h"
 #include "bodyloom/tracking/terms/rendered_uv/rendered_uv_term.h"
 
 namespace bodyloom {
@@ -22,26 +22,24 @@ struct TrackSequenceOptions;
 
 /// Why the term does not run, or empty when it does.
 std::string WhyNoRenderedUv(const TrackSequenceInput& input, const TrackSequenceOptions& options);
-PlanEntry PlanRenderedUv(const TrackSequenceInput& input, const TrackSequenceOptions& options);
+std::vector<PlanEntry> PlanRenderedUv(const TrackSequenceInput& input, const TrackSequenceOptions& options);
+std::unique_ptr<ClipTerm> MakeDenseRounds(const ClipTermInput& clip);
 
-/// The rounds of a clip with dense keypoints: their covariance and, where it runs, the rendered UV. Must not outlive
-/// the input and the layout's body.
-class DenseRounds {
+/// The rounds of a clip with dense keypoints: their covariance and, where it runs, the rendered UV.
+class DenseRounds : public ClipTerm {
  public:
-  DenseRounds(const TrackSequenceInput& input, const TrackSequenceOptions& options, const FrameLayout& layout,
-              int num_threads);
+  explicit DenseRounds(const ClipTermInput& clip);
 
-  [[nodiscard]] bool any() const { return has_rendered_uv() || whitens_; }
-  [[nodiscard]] bool has_rendered_uv() const { return !rendered_uv_.empty(); }
-  /// Starts a round: `problem` holds the frames `frames` of the clip. Nothing changes unless any().
-  void Start(const std::vector<int>& frames, SequenceProblem* problem) const;
+  void Observe(SequenceProblem* problem) override;
+  [[nodiscard]] Rounds rounds() const override { return rounds_; }
+  void StartRound(int round, const std::vector<int>& frames, SequenceProblem* problem) override;
 
  private:
   const TrackSequenceInput& input_;
   int num_threads_;
-  bool whitens_ = false;
-  std::shared_ptr<const Skinner> skinner_;                    ///< null when nothing looks at the surface
-  std::vector<std::unique_ptr<RenderedUvTerm>> rendered_uv_;  ///< T, or empty
+  Rounds rounds_;
+  std::shared_ptr<const Skinner> skinner_;                      ///< null when nothing looks at the surface
+  std::vector<std::unique_ptr<RenderedUvPixels>> rendered_uv_;  ///< T, or empty
 };
 
 }  // namespace bodyloom

@@ -52,8 +52,8 @@ Eigen::Matrix2d UvByPixel(const Eigen::Matrix3d& corners, const Matrix2x3d& d_pi
   return U * (d_pixel_d_x * E).inverse();
 }
 
-RenderedUvTerm::RenderedUvTerm(const BodyModel& model, std::shared_ptr<const Skinner> skinner,
-                               const std::vector<DenseKeypoint>& keypoints, const RenderedUvOptions& options)
+RenderedUvPixels::RenderedUvPixels(const BodyModel& model, std::shared_ptr<const Skinner> skinner,
+                                   const std::vector<DenseKeypoint>& keypoints, const RenderedUvOptions& options)
     : keypoints_(keypoints), skinner_(std::move(skinner)), options_(options), taken_(keypoints.size(), 0) {
   BODYLOOM_CHECK(model.has_parts() && model.data().face_iuv.rows() == model.num_faces(), "rendered UV: the body '",
                  model.name(), "' has no charts with coordinates");
@@ -70,7 +70,7 @@ RenderedUvTerm::RenderedUvTerm(const BodyModel& model, std::shared_ptr<const Ski
   }
 }
 
-void RenderedUvTerm::SetWhitening(const std::vector<DenseWhitening>& whitening) {
+void RenderedUvPixels::SetWhitening(const std::vector<DenseWhitening>& whitening) {
   BODYLOOM_CHECK(whitening.size() == taken_.size(), "rendered UV: ", whitening.size(), " covariances for ",
                  taken_.size(), " keypoints");
   pixels_.clear();
@@ -87,9 +87,9 @@ void RenderedUvTerm::SetWhitening(const std::vector<DenseWhitening>& whitening) 
   }
 }
 
-const std::vector<int>& RenderedUvTerm::VisibleFaces(const BodyModel& model, const FrameState& state,
-                                                     const Eigen::VectorXd& betas, const Eigen::Vector3d& translation,
-                                                     const Camera& camera, VisibleSurface* surface) {
+const std::vector<int>& RenderedUvPixels::VisibleFaces(const BodyModel& model, const FrameState& state,
+                                                       const Eigen::VectorXd& betas, const Eigen::Vector3d& translation,
+                                                       const Camera& camera, VisibleSurface* surface) {
   if (valid_ && hold_) return faces_;
   if (valid_ && state_.translation == state.translation && fx_ == camera.fx && betas_.size() == betas.size() &&
       betas_ == betas && state_.rotations == state.rotations) {
@@ -110,19 +110,19 @@ const std::vector<int>& RenderedUvTerm::VisibleFaces(const BodyModel& model, con
   return faces_;
 }
 
-void RenderedUvOfFrame::Add(FrameAccumulator* sums) const {
+void RenderedUvTerm::Add(FrameAccumulator* sums) const {
   if (term == nullptr) return;
   const FrameLayout& layout = sums->layout();
   const BodyModel& model = *layout.model;
   const Kinematics& kinematics = sums->kinematics();
   const Camera& camera = sums->camera();
   const bool derivatives = sums->derivatives();
-  FrameResiduals* residuals = sums->residuals();
+  PixelResiduals* residuals = sums->residuals("rendered UV");
   const MatrixX3i& faces = model.data().faces;
   const std::vector<int>& seen = term->VisibleFaces(model, sums->state(), sums->betas(),
                                                     layout.BodyTranslation(sums->state()), camera, &sums->surface());
   for (size_t i = 0; i < seen.size(); ++i) {
-    const RenderedUvTerm::Pixel& pixel = term->pixels()[i];
+    const RenderedUvPixels::Pixel& pixel = term->pixels()[i];
     SeenUv uv;
     Matrix3d corners;
     const bool same_chart = seen[i] >= 0 && model.data().face_part[seen[i]] == pixel.part;
@@ -139,12 +139,12 @@ void RenderedUvOfFrame::Add(FrameAccumulator* sums) const {
         const Vector2d off = uv.uv - pixel.uv;
         Matrix2d B = Matrix2d::Zero();
         if (derivatives) B = -pixel.residual_by_uv * UvByPixel(corners, at.d_pixel_d_x, CornerUv(model, seen[i]));
-        if (residuals != nullptr) residuals->rendered_uv_px.push_back((pixel.pixel_by_uv * off).norm());
+        if (residuals != nullptr) residuals->px.push_back((pixel.pixel_by_uv * off).norm());
         sums->AddImageRows<2>(at, pixel.residual_by_uv * off, B, kernel, term->weight());
         continue;
       }
     }
-    if (residuals != nullptr) ++residuals->rendered_uv_unmatched;
+    if (residuals != nullptr) ++residuals->unmatched;
     if (!term->unmatched_reproject()) {
       sums->AddSaturated(kernel, term->weight());
       continue;

@@ -27,18 +27,17 @@
 #include "bodyloom/geometry/skinning.h"
 #include "bodyloom/tracking/frame_layout.h"
 #include "bodyloom/tracking/terms/dense/dense.h"
+#include "bodyloom/tracking/terms/frame_term.h"
 #include "bodyloom/tracking/terms/rendered_uv/rendered_uv_options.h"
 #include "bodyloom/tracking/visible_surface.h"
 
 namespace bodyloom {
 
-class FrameAccumulator;
-
 /// M⁻¹ = ∂(u, v)/∂pixel on a face, at a point whose ∂pixel/∂x is given.
 Eigen::Matrix2d UvByPixel(const Eigen::Matrix3d& corners, const Matrix2x3d& d_pixel_d_x,
                           const Eigen::Matrix<double, 3, 2>& corner_uv);
 
-class RenderedUvTerm {
+class RenderedUvPixels {
  public:
   struct Pixel {
     int keypoint = 0;  ///< index into the frame's dense keypoints
@@ -51,8 +50,8 @@ class RenderedUvTerm {
 
   /// Takes up to options.max_points of the frame's keypoints, which are borrowed. The body must have charts with
   /// coordinates.
-  RenderedUvTerm(const BodyModel& model, std::shared_ptr<const Skinner> skinner,
-                 const std::vector<DenseKeypoint>& keypoints, const RenderedUvOptions& options);
+  RenderedUvPixels(const BodyModel& model, std::shared_ptr<const Skinner> skinner,
+                   const std::vector<DenseKeypoint>& keypoints, const RenderedUvOptions& options);
 
   /// To be called before the first evaluation and between rounds. Keypoints without M₀ are left to reprojection.
   void SetWhitening(const std::vector<DenseWhitening>& whitening);
@@ -90,12 +89,17 @@ class RenderedUvTerm {
   int num_rasterised_ = 0;
 };
 
-struct RenderedUvOfFrame {
-  RenderedUvTerm* term = nullptr;  ///< borrowed; null: none. It keeps the visible faces of the state seen last
-  double kernel = 4;               ///< c of Geman–McClure, in σ
+class RenderedUvTerm : public CopyableTerm<RenderedUvTerm> {
+ public:
+  RenderedUvPixels* term = nullptr;  ///< borrowed; null: none. It keeps the visible faces of the state seen last
+  double kernel = 4;                 ///< c of Geman–McClure, in σ
 
-  [[nodiscard]] int num_rows() const { return term == nullptr ? 0 : static_cast<int>(2 * term->keypoints().size()); }
-  void Add(FrameAccumulator* sums) const;
+  [[nodiscard]] std::string name() const override { return "rendered UV"; }
+  [[nodiscard]] int num_rows() const override {
+    return term == nullptr ? 0 : static_cast<int>(2 * term->keypoints().size());
+  }
+  [[nodiscard]] bool is_compressed() const override { return true; }
+  void Add(FrameAccumulator* sums) const override;
 };
 
 /// Up to max_points indices into `keypoints`, ascending: every part gets an equal share as far as it has that many, and

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "bodyloom/tracking/robust.h"
+#include "bodyloom/tracking/terms/upright.h"
 #include "tests/support/frame_scene.h"
 #include "tests/tracking/jet_twin.h"
 
@@ -48,7 +49,7 @@ std::unique_ptr<Scene> MakeScene(CameraKnowledge knowledge, double pose_size, do
     contact.target_m = evaluator.Evaluate(kinematics, scene->points.back(), false) +
                        scene->layout.BodyPlace(scene->state) + RandomTurn(off_m, &random);
     contact.whitening = Vector3d(10, 20, 30).asDiagonal() * RotationFromAxisAngle(RandomTurn(1, &random));
-    scene->data.ground_contact.feet.push_back(contact);
+    scene->data.Get<GroundContactTerm>().feet.push_back(contact);
   }
   return scene;
 }
@@ -75,7 +76,7 @@ void CheckAgainstTwin(const Scene& scene) {
         }
         x += twin::Vector3<Jet>(t[1], t[2], Jet(scene.layout.camera.fx) / exp(t[0]));
       }
-      const GroundContact& contact = scene.data.ground_contact.feet[foot];
+      const GroundContact& contact = scene.data.Get<GroundContactTerm>().feet[foot];
       const twin::Vector3<Jet> d = x - contact.target_m.cast<Jet>();
       const twin::Vector3<Jet> whitened = contact.whitening.cast<Jet>() * d;
       Vector3d value, slope;
@@ -115,11 +116,11 @@ TEST(GroundContact, CostsNothingWhereTheFootIs) {
 /// ½ w ρ((n·R e_y)²/σ²) by central differences of the rotation, for verticals other than the image's.
 TEST(Upright, LeanIsMeasuredAlongTheNormal) {
   auto scene = MakeScene(CameraKnowledge::kKnown, 0.4, 0.1, 44);
-  scene->data.ground_contact.feet.clear();
-  scene->data.upright.weight = 0.8;
-  scene->data.upright.normal = Vector3d(0.1, 0.5, 0.9).normalized();
+  scene->data.Get<GroundContactTerm>().feet.clear();
+  scene->data.Get<UprightTerm>().weight = 0.8;
+  scene->data.Get<UprightTerm>().normal = Vector3d(0.1, 0.5, 0.9).normalized();
   const FrameSystem system = Evaluate(*scene);
-  const double lean = scene->data.upright.normal.dot(scene->state.rotations[0].col(1)) / kUprightSigma;
+  const double lean = scene->data.Get<UprightTerm>().normal.dot(scene->state.rotations[0].col(1)) / kUprightSigma;
   EXPECT_NEAR(system.cost, 0.4 * GemanMcClure(lean * lean, kUprightKernel).rho, 1e-12);
   EXPECT_GT(system.cost, 1e-3);
   const Eigen::Matrix3d R = scene->state.rotations[0];

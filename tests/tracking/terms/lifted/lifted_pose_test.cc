@@ -44,9 +44,9 @@ std::unique_ptr<Scene> MakeScene(CameraKnowledge knowledge, double pose_size, ui
     frame.sigma(k, 1) = 0.2 + 0.1 * std::abs(normal(random));
   }
   scene->lifted = MakeLiftedPose(frame, scene->landmarks, 1.3, 0.03);
-  scene->data.lifted.pose = &scene->lifted;
-  scene->data.lifted.weight = 0.7;
-  scene->data.lifted.kernel = 4;
+  scene->data.Get<LiftedPoseTerm>().pose = &scene->lifted;
+  scene->data.Get<LiftedPoseTerm>().weight = 0.7;
+  scene->data.Get<LiftedPoseTerm>().kernel = 4;
   return scene;
 }
 
@@ -76,9 +76,9 @@ void CheckAgainstTwin(const Scene& scene) {
         value[c] = whitened[c].a;
         slope[c] = whitened[c].v[0];
       }
-      const RobustValue robust = GemanMcClure(value.squaredNorm(), scene.data.lifted.kernel);
-      cost += 0.5 * scene.data.lifted.weight * robust.rho;
-      const double scale = std::sqrt(scene.data.lifted.weight * robust.weight);
+      const RobustValue robust = GemanMcClure(value.squaredNorm(), scene.data.Get<LiftedPoseTerm>().kernel);
+      cost += 0.5 * scene.data.Get<LiftedPoseTerm>().weight * robust.rho;
+      const double scale = std::sqrt(scene.data.Get<LiftedPoseTerm>().weight * robust.weight);
       r.segment<3>(3 * i) = scale * value;
       J.block<3, 1>(3 * i, column) = scale * slope;
     }

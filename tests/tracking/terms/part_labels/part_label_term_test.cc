@@ -62,18 +62,18 @@ std::unique_ptr<Scene> MakeScene(const Vector3d& translation = Vector3d(0, 0, 3)
   return scene;
 }
 
-std::unique_ptr<PartLabelTerm> MakeTerm(const Scene& scene, const FrameState& state,
-                                        const PartLabelOptions& options = {}, double kernel = 8) {
-  auto term = std::make_unique<PartLabelTerm>(scene.labels, 0, scene.skinner, options);
+std::unique_ptr<PartLabelMatches> MakeTerm(const Scene& scene, const FrameState& state,
+                                           const PartLabelOptions& options = {}, double kernel = 8) {
+  auto term = std::make_unique<PartLabelMatches>(scene.labels, 0, scene.skinner, options);
   VisibleSurface surface;
   term->Correspond(scene.layout, state, scene.betas, scene.log_focal, kPersonPx, kernel, &surface);
   return term;
 }
 
-FrameSystem Evaluate(const Scene& scene, const PartLabelTerm& term, const FrameState& state,
+FrameSystem Evaluate(const Scene& scene, const PartLabelMatches& term, const FrameState& state,
                      FrameResiduals* residuals = nullptr) {
   FrameData data;
-  data.part_labels.term = &term;
+  data.Get<PartLabelTerm>().term = &term;
   FrameEvaluator evaluator;
   FrameSystem system;
   evaluator.Evaluate(scene.layout, data, state, scene.betas, scene.log_focal, true, &system, residuals);
@@ -90,9 +90,9 @@ TEST(PartLabelTerm, CostsLittleWhereItsLabelsComeFrom) {
   FrameResiduals residuals;
   const double at_truth = Evaluate(*scene, *term, scene->truth, &residuals).cost;
   double largest = 0;
-  for (const double px : residuals.silhouette_px) largest = std::max(largest, px);
+  for (const double px : residuals["silhouette"].px) largest = std::max(largest, px);
   EXPECT_LT(largest, 1.6);
-  ASSERT_GT(residuals.part_px.size(), 50U);
+  ASSERT_GT(residuals["part labels"].px.size(), 50U);
   FrameState moved = scene->truth;
   moved.translation.x() += 0.1;
   EXPECT_GT(Evaluate(*scene, *MakeTerm(*scene, moved), moved).cost, 100 * at_truth);
@@ -146,8 +146,8 @@ TEST(PartLabelTerm, DerivativesMatchDifferences) {
 using twin::Jet;
 
 /// Where the term's points appear, as functions of parameter `column`.
-std::vector<Eigen::Matrix<Jet, 2, 1>> TwinPixels(const Scene& scene, const PartLabelTerm& term, const FrameState& state,
-                                                 int column) {
+std::vector<Eigen::Matrix<Jet, 2, 1>> TwinPixels(const Scene& scene, const PartLabelMatches& term,
+                                                 const FrameState& state, int column) {
   const twin::SeededFrame frame =
       twin::SeedFrame(scene.body, scene.layout, state, scene.betas, scene.log_focal, column);
   std::vector<int> corners;
@@ -156,8 +156,8 @@ std::vector<Eigen::Matrix<Jet, 2, 1>> TwinPixels(const Scene& scene, const PartL
     for (int c = 0; c < 3; ++c) corners.push_back(scene.body.data().faces(face, c));
     barycentrics.push_back(barycentric);
   };
-  for (const PartLabelTerm::Target& target : term.targets()) add(target.face, target.barycentric);
-  for (const PartLabelTerm::ContourPoint& point : term.contour()) add(point.face, point.barycentric);
+  for (const PartLabelMatches::Target& target : term.targets()) add(target.face, target.barycentric);
+  for (const PartLabelMatches::ContourPoint& point : term.contour()) add(point.face, point.barycentric);
   const auto vertices = frame.body.Vertices(corners);
   std::vector<Eigen::Matrix<Jet, 2, 1>> pixels;
   for (size_t i = 0; i < barycentrics.size(); ++i) {
@@ -170,7 +170,7 @@ std::vector<Eigen::Matrix<Jet, 2, 1>> TwinPixels(const Scene& scene, const PartL
 
 /// The term from its definition with the correspondences held, which is what a round does. The distance field's own
 /// derivative is checked where the field is (distance_field_test.cc). Returns the number of rows.
-int CheckAgainstTwin(const Scene& scene, const PartLabelTerm& term, const FrameState& state) {
+int CheckAgainstTwin(const Scene& scene, const PartLabelMatches& term, const FrameState& state) {
   const size_t num_targets = term.targets().size(), n = num_targets + term.contour().size();
   MatrixXd J = MatrixXd::Zero(static_cast<int>(2 * n), scene.layout.num_columns);
   VectorXd r = VectorXd::Zero(static_cast<int>(2 * n));
@@ -182,14 +182,14 @@ int CheckAgainstTwin(const Scene& scene, const PartLabelTerm& term, const FrameS
       Eigen::Matrix<Jet, 2, 1> raw(Jet(0.0), Jet(0.0));
       double weight;
       if (i < num_targets) {
-        const PartLabelTerm::Target& target = term.targets()[i];
+        const PartLabelMatches::Target& target = term.targets()[i];
         const Vector2d off(pixels[i][0].a - target.pixel.x(), pixels[i][1].a - target.pixel.y());
         const bool is_inside = target.outward.dot(off) < 0;
         raw = (is_inside ? target.whitening_inside : target.whitening).cast<Jet>() *
               (pixels[i] - target.pixel.cast<Jet>());
         weight = target.weight;
       } else {
-        const PartLabelTerm::ContourPoint& point = term.contour()[i - num_targets];
+        const PartLabelMatches::ContourPoint& point = term.contour()[i - num_targets];
         Eigen::RowVector2d slope;
         const double distance = point.field->Evaluate(Eigen::Vector2d(pixels[i][0].a, pixels[i][1].a), &slope);
         raw[0] = Jet(distance - point.offset_px);
@@ -348,8 +348,8 @@ TEST(PartLabelTerm, ATermThatIsOffHasNoRows) {
   FrameResiduals residuals;
   const auto silhouette = MakeTerm(*scene, scene->truth, options);
   (void)Evaluate(*scene, *silhouette, scene->truth, &residuals);
-  EXPECT_GT(residuals.silhouette_px.size(), 0U);
-  EXPECT_EQ(residuals.part_px.size(), 0U);
+  EXPECT_GT(residuals["silhouette"].px.size(), 0U);
+  EXPECT_EQ(residuals["part labels"].px.size(), 0U);
   EXPECT_EQ(silhouette->Field(2), nullptr);
   options.silhouette_weight = 0;
   EXPECT_EQ(MakeTerm(*scene, scene->truth, options)->num_rows(), 0);
@@ -407,7 +407,7 @@ TEST(PartLabelTerm, UnknownPixelsHaveNoBoundary) {
   scene->labels.frames[0] = image;
   const auto term = MakeTerm(*scene, scene->truth);
   ASSERT_GT(term->num_rows(), 100);
-  for (const PartLabelTerm::Target& target : term->targets()) EXPECT_LT(target.pixel.x(), kWidth / 2 + 1);
+  for (const PartLabelMatches::Target& target : term->targets()) EXPECT_LT(target.pixel.x(), kWidth / 2 + 1);
   const FrameSystem system = Evaluate(*scene, *term, scene->truth);
   FrameState moved = scene->truth;
   moved.translation.x() += 0.05;
@@ -422,7 +422,7 @@ TEST(PartLabelTerm, SpecksAreLeftOut) {
     for (int x = 5; x < 15; ++x) image.labels[y * kWidth + x] = 3;  // far from the person
   }
   scene->labels.frames[0] = image;
-  const PartMap map = MakePartMap(scene->labels, 0, PartLabelTerm::kSpeckShare);
+  const PartMap map = MakePartMap(scene->labels, 0, PartLabelMatches::kSpeckShare);
   EXPECT_EQ(map.At(10, 10), PartLabelSequence::kUnknown);
   EXPECT_EQ(map.At(20, 10), PartLabelSequence::kBackground);
   EXPECT_EQ(map.At(-1, 10), PartLabelSequence::kUnknown);
@@ -434,7 +434,7 @@ TEST(PartLabelTerm, SpecksAreLeftOut) {
   const uint8_t around = image.labels[centre];
   image.labels[centre] = around == 3 ? 4 : 3;
   scene->labels.frames[0] = image;
-  const PartMap with_hole = MakePartMap(scene->labels, 0, PartLabelTerm::kSpeckShare);
+  const PartMap with_hole = MakePartMap(scene->labels, 0, PartLabelMatches::kSpeckShare);
   EXPECT_EQ(with_hole.At(kWidth / 2, kHeight / 2), PartLabelSequence::kUnknown);
   EXPECT_EQ(with_hole.At(kWidth / 2 + 1, kHeight / 2), map.At(kWidth / 2 + 1, kHeight / 2));
 }
@@ -446,7 +446,7 @@ TEST(PartLabelTerm, APersonCutByTheImageIsNotPulledInside) {
   FrameResiduals residuals;
   const FrameSystem system = Evaluate(*scene, *term, scene->truth, &residuals);
   double largest = 0;
-  for (const double px : residuals.silhouette_px) largest = std::max(largest, px);
+  for (const double px : residuals["silhouette"].px) largest = std::max(largest, px);
   EXPECT_LT(largest, 2.5);
   EXPECT_LT(system.cost, 3);
 }

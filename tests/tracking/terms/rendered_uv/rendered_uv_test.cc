@@ -12,6 +12,7 @@
 #include "bodyloom/geometry/rotation.h"
 #include "bodyloom/render/visible_points.h"
 #include "bodyloom/tracking/robust.h"
+#include "bodyloom/tracking/terms/dense/dense.h"
 #include "bodyloom/tracking/terms/dense/dense_whitening.h"
 #include "tests/support/frame_scene.h"
 #include "tests/tracking/jet_twin.h"
@@ -27,7 +28,7 @@ using Eigen::VectorXd;
 using twin::Jet;
 
 struct Scene : FrameScene {
-  std::unique_ptr<RenderedUvTerm> term;
+  std::unique_ptr<RenderedUvPixels> term;
 };
 
 void Perturb(double radians, std::mt19937_64* random, FrameState* state) {
@@ -60,15 +61,16 @@ std::unique_ptr<Scene> MakeScene(CameraKnowledge knowledge, double offset_rad, u
     point.sigma_px = 2;
     scene->dense.push_back(point);
   }
-  scene->data.dense.points = &scene->dense;
-  scene->data.dense.kernel = 20;  // generic weights: neither all inliers nor all saturated
-  scene->term = std::make_unique<RenderedUvTerm>(scene->body, skinner, scene->dense, options);
+  scene->data.Get<DenseTerm>().points = &scene->dense;
+  scene->data.Get<DenseTerm>().kernel = 20;  // generic weights: neither all inliers nor all saturated
+  scene->term = std::make_unique<RenderedUvPixels>(scene->body, skinner, scene->dense, options);
   Perturb(offset_rad, &random, &scene->state);
-  scene->data.dense.whitening =
+  scene->data.Get<DenseTerm>().whitening =
       WhitenDense(scene->layout, scene->state, scene->betas, scene->log_focal, scene->dense, uv_sigma, 1);
-  scene->term->SetWhitening(scene->data.dense.whitening);
-  scene->data.rendered_uv = {scene->term.get(), scene->data.dense.kernel};
-  scene->data.dense.taken = &scene->term->taken();
+  scene->term->SetWhitening(scene->data.Get<DenseTerm>().whitening);
+  scene->data.Get<RenderedUvTerm>().term = scene->term.get();
+  scene->data.Get<RenderedUvTerm>().kernel = scene->data.Get<DenseTerm>().kernel;
+  scene->data.Get<DenseTerm>().taken = &scene->term->taken();
   // Elsewhere than where the whitening was computed.
   Perturb(0.3 * offset_rad, &random, &scene->state);
   return scene;
@@ -112,7 +114,7 @@ struct TwinSystem {
 };
 
 TwinSystem MakeTwin(Scene* scene) {
-  RenderedUvTerm& term = *scene->term;
+  RenderedUvPixels& term = *scene->term;
   VisibleSurface surface;
   const Camera camera = scene->layout.CameraAt(scene->state, scene->log_focal);
   const std::vector<int> seen = term.VisibleFaces(scene->body, scene->state, scene->betas,
@@ -127,7 +129,7 @@ TwinSystem MakeTwin(Scene* scene) {
     twin.cost = 0;
     twin.matched = twin.unmatched = 0;
     for (int i = 0; i < n; ++i) {
-      const RenderedUvTerm::Pixel& pixel = term.pixels()[i];
+      const RenderedUvPixels::Pixel& pixel = term.pixels()[i];
       Eigen::Matrix<Jet, 2, 1> raw;
       bool matched = seen[i] >= 0 && scene->body.data().face_part[seen[i]] == pixel.part;
       if (matched) {
@@ -148,7 +150,7 @@ TwinSystem MakeTwin(Scene* scene) {
       } else {
         ++twin.unmatched;
         if (!term.unmatched_reproject()) {
-          twin.cost += 0.5 * term.weight() * scene->data.dense.kernel * scene->data.dense.kernel;
+          twin.cost += 0.5 * term.weight() * scene->data.Get<DenseTerm>().kernel * scene->data.Get<DenseTerm>().kernel;
           continue;
         }
         const DenseKeypoint& point = scene->dense[pixel.keypoint];
@@ -160,7 +162,8 @@ TwinSystem MakeTwin(Scene* scene) {
         }
         raw = pixel.whitening.cast<Jet>() * (frame.Project(sum) - pixel.pixel.cast<Jet>());
       }
-      const RobustValue robust = GemanMcClure(raw[0].a * raw[0].a + raw[1].a * raw[1].a, scene->data.dense.kernel);
+      const RobustValue robust =
+          GemanMcClure(raw[0].a * raw[0].a + raw[1].a * raw[1].a, scene->data.Get<DenseTerm>().kernel);
       twin.cost += 0.5 * term.weight() * robust.rho;
       for (int c = 0; c < 2; ++c) {
         const double scale = std::sqrt(term.weight() * robust.weight);
@@ -241,7 +244,7 @@ TEST(RenderedUv, UnmatchedPixelsSaturateWithoutPullWhenAsked) {
   EXPECT_GT(CheckAgainstTwin(scene.get()), 50);
   scene->state.translation.x() += 50;  // out of the image
   const FrameSystem system = Evaluate(*scene);
-  const double c = scene->data.dense.kernel;
+  const double c = scene->data.Get<DenseTerm>().kernel;
   EXPECT_DOUBLE_EQ(system.cost, 0.5 * 0.5 * c * c * double(scene->term->pixels().size()));
   EXPECT_EQ(system.gradient.norm(), 0);
   scene->state.translation = {0, 0, -3};  // behind the camera
@@ -252,8 +255,8 @@ TEST(RenderedUv, AllPixelsUnmatchedCostTheirReprojection) {
   const auto scene = MakeScene(CameraKnowledge::kKnown, 0.05, 8, {.weight = 1});
   scene->state.translation.x() += 1.5;
   const FrameSystem with = Evaluate(*scene);
-  scene->data.rendered_uv.term = nullptr;
-  scene->data.dense.taken = nullptr;
+  scene->data.Get<RenderedUvTerm>().term = nullptr;
+  scene->data.Get<DenseTerm>().taken = nullptr;
   const FrameSystem without = Evaluate(*scene);
   EXPECT_NEAR(with.cost, without.cost, 1e-9 * without.cost);
   EXPECT_LE((with.gradient - without.gradient).norm(), 1e-9 * without.gradient.norm());
@@ -263,8 +266,8 @@ TEST(RenderedUv, NearTheSolutionUvAndReprojectionAgreeToFirstOrder) {
   // Same whitened observation written in two ways: gradients agree up to the second order of the offset.
   const auto scene = MakeScene(CameraKnowledge::kKnown, 1e-4, 9, {.weight = 1});
   const FrameSystem uv = Evaluate(*scene);
-  scene->data.rendered_uv.term = nullptr;
-  scene->data.dense.taken = nullptr;
+  scene->data.Get<RenderedUvTerm>().term = nullptr;
+  scene->data.Get<DenseTerm>().taken = nullptr;
   const FrameSystem reprojection = Evaluate(*scene);
   EXPECT_LE((uv.gradient - reprojection.gradient).norm(), 0.05 * reprojection.gradient.norm());
 }
@@ -293,7 +296,7 @@ TEST(DenseWhitening, IsTheInverseRootOfTheCovariance) {
   const Camera camera = scene->layout.CameraAt(scene->state, 0);
   int checked = 0;
   for (size_t i = 0; i < scene->dense.size(); ++i) {
-    const DenseWhitening& w = scene->data.dense.whitening[i];
+    const DenseWhitening& w = scene->data.Get<DenseTerm>().whitening[i];
     const Matrix2d S = Matrix2d::Identity() + 0.03 * 0.03 * w.pixel_by_uv * w.pixel_by_uv.transpose();
     EXPECT_LE((w.whitening * S * w.whitening - Matrix2d::Identity()).norm(), 1e-9);
     // M against the pixels at which two points of the face appear.
@@ -326,7 +329,7 @@ TEST(DenseWhitening, IsTheInverseRootOfTheCovariance) {
 
 TEST(DenseWhitening, WithoutAKnownUvNoiseIsTheSameInEveryDirection) {
   const auto scene = MakeScene(CameraKnowledge::kKnown, 0, 11, {.weight = 1}, 0);
-  for (const DenseWhitening& w : scene->data.dense.whitening) {
+  for (const DenseWhitening& w : scene->data.Get<DenseTerm>().whitening) {
     EXPECT_LE((w.whitening - 0.5 * Matrix2d::Identity()).norm(), 1e-12);
   }
 }

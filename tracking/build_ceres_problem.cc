@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/tracking/build_ceres_problem.h"
+
+#include <utility>
+
+#include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/tracking/clip_fit.h"
+#include "bodyloom/tracking/input_checks.h"
+
+namespace bodyloom {
+
+ClipCeresProblem::ClipCeresProblem(const TrackSequenceInput& input, const TrackSequenceOptions& options)
+    : options_(options), fit_(std::make_unique<ClipFit>(input, options_, &result_.summary)) {
+  if (!fit_->FindStart()) return;
+  fit_->Observe();
+  fit_->FitCoarseFrames();
+  fit_->FitAllFrames();
+  blocks_ = std::make_unique<CeresProblem>(
+      *fit_->problem(),
+      CeresProblemOptions{.num_threads = ThreadsFor(options_.num_threads), .enable_fast_removal = true});
+}
+
+ClipCeresProblem::~ClipCeresProblem() = default;
+
+TrackSequenceResult ClipCeresProblem::Finish() {
+  if (blocks_ != nullptr) {
+    blocks_->CopyTo(fit_->problem());
+    fit_->Finish(&result_);
+  }
+  return std::move(result_);
+}
+
+std::unique_ptr<ClipCeresProblem> BuildCeresProblem(const TrackSequenceInput& input,
+                                                    const TrackSequenceOptions& options) {
+  CheckInput(input, options);
+  return std::make_unique<ClipCeresProblem>(input, options);
+}
+
+}  // namespace bodyloom
