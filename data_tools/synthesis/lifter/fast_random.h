@@ -72,7 +72,7 @@ inline void SmoothNoise(int count, float knot_frames, FastNormal* normal, std::v
 }
 
 /// 3x² − 2x³ between 0 and 1.
-inline double SmoothStep(double x) {
+inline double CubicStep(double x) {
   x = std::clamp(x, 0.0, 1.0);
   return x * x * (3 - 2 * x);
 }
@@ -82,7 +82,7 @@ inline std::vector<float> RandomRamp(int count, double rate, double min_rise_s, 
                                      double latest, HashRandom* random) {
   const double rise = rate * random->Uniform(min_rise_s, max_rise_s), start = random->Uniform(earliest, latest) * count;
   std::vector<float> values(count);
-  for (int t = 0; t < count; ++t) values[t] = static_cast<float>(SmoothStep((t - start) / rise));
+  for (int t = 0; t < count; ++t) values[t] = static_cast<float>(CubicStep((t - start) / rise));
   return values;
 }
 
@@ -97,7 +97,7 @@ inline std::vector<float> RandomHump(int count, double rate, double min_rise_s, 
   std::vector<float> values(count);
   for (int t = 0; t < count; ++t) {
     const double at = t / rate - start;
-    values[t] = static_cast<float>(SmoothStep(at / rise) * (falls ? 1 - SmoothStep((at - rise - hold) / fall) : 1));
+    values[t] = static_cast<float>(CubicStep(at / rise) * (falls ? 1 - CubicStep((at - rise - hold) / fall) : 1));
   }
   return values;
 }
