@@ -194,7 +194,7 @@ class Tree:
             return True
         if "*" in pattern:
             return any(self.root.glob(c) for c in candidates if list(self.root.glob(c)))
-        # "render/uv_splat's", "geometry/camera.Project", a test's name "tracking/Chain.Converges"
+        # "render/uv_sample's", "geometry/camera.Project", a test's name "tracking/Chain.Converges"
         return "." in name and self.exists(path[:path.rindex(".")]) or "." in name and name[0].isupper()
 
     def find_circles(self):

@@ -8,7 +8,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include "bodyloom/render/uv_splat.h"
 #include "tests/render/painted_body.h"
 #include "tests/support/meshes.h"
 #include "tests/support/toy_body.h"
@@ -237,34 +236,6 @@ TEST(TexelSight, HiddenTexelsAreNotSeen) {
     buffer.Render(moved, body.data().faces, camera);
     for (const TexelSight& sight : SeeTexels(table, body, moved, camera, buffer)) ASSERT_EQ(sight.cosine, 0);
   }
-}
-
-TEST(UvSplat, PaintsTheAtlasFromLabelsAlone) {
-  const BodyModel& body = ToyBody();
-  const Camera camera = MakePinhole(320, 320, 390);
-  UvSplatter splatter(body, {.width = 96, .height = 96});
-  for (int t = 0; t < 4; ++t) {
-    const MatrixX3d vertices = Posed(t, 1.6 * t);
-    VisibilityBuffer buffer;
-    buffer.Render(vertices, body.data().faces, camera);
-    const VisiblePoints points = ResolveVisiblePoints(buffer, body, vertices, camera, {.part = true, .chart_uv = true});
-    std::vector<uint8_t> part(320 * 320, 0);
-    std::vector<float> u(part.size(), 0.0F), v(part.size(), 0.0F);
-    for (size_t i = 0; i < points.size(); ++i) {
-      const size_t p = size_t(points.y[i]) * 320 + points.x[i];
-      part[p] = points.part[i];
-      u[p] = points.chart_uv[i][0];
-      v[p] = points.chart_uv[i][1];
-    }
-    u[0] = std::nanf("");
-    part[0] = 3;
-    EXPECT_EQ(splatter.Add(PaintedPicture(body, vertices, camera), part, u, v), static_cast<int>(points.size()));
-  }
-  const Texture texture = splatter.Merge();
-  const Comparison found = Compare(texture, splatter.table(), body);
-  EXPECT_GT(found.compared, 0.7 * splatter.table().num_inside);
-  EXPECT_GT(found.psnr, 26);
-  EXPECT_THROW(splatter.Add(Image(10, 10), {}, {}, {}), std::invalid_argument);
 }
 
 TEST(TextureExtract, TakesNothingWhereTheMaskShowsSomethingElse) {
