@@ -23,7 +23,6 @@ constexpr const char* kExportFooter =
     "  smplx      .npz in AMASS' SMPL-X form, which GMR and other retargeters read: z up\n"
     "  bvh        for animation programs: centimetres; --rig\n"
     "  glb        glTF 2.0: skinned, textured, animated bodies, camera and ground; several --track, --texture\n"
-    "  usd        the same as .usda text; several --track\n"
     "  trc, c3d   22 markers of HALPE_26 for OpenSim, Pose2Sim and others: metres, millimetres\n"
     "  colmap     a folder with the camera as a COLMAP text model; several --track\n"
     "  pose2sim   the camera as Calib.toml, z up\n"
@@ -42,7 +41,7 @@ std::vector<std::string> SortedNames() {
 
 void AddExportVerb(CLI::App& app, Action* action) {
   CLI::App* verb =
-      app.add_subcommand("export", "Writes tracks in another form: glTF, USD, BVH, AMASS, TRC, C3D, COLMAP, arrays");
+      app.add_subcommand("export", "Writes tracks in another form: glTF, BVH, AMASS, TRC, C3D, COLMAP, arrays");
   verb->footer(std::string(kExportFooter) + kExitCodeHelp);
   auto request = std::make_shared<ExportTrackRequest>();
   auto form = std::make_shared<std::string>();
@@ -65,7 +64,7 @@ void AddExportVerb(CLI::App& app, Action* action) {
       ->check(CLI::IsMember(BvhRigNames()))
       ->capture_default_str();
   verb->add_option("--texture", c.textures, "glb: the person's texture, .png; by track")->type_name("FILE");
-  verb->add_option("--correctives", c.correctives, "glb, usd: shapes that hold the pose correctives")
+  verb->add_option("--correctives", c.correctives, "glb: shapes that hold the pose correctives")
       ->check(CLI::Range(0, 64))
       ->capture_default_str();
   verb->callback([=] {

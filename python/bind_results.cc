@@ -33,16 +33,15 @@ constexpr const char* kEvaluationDoc =
 
 constexpr const char* kExportDoc = R"(Writes a track for another program, whole or not at all.
 
-tracks      a Track or a file; a list of them, people of one clip, for "glb", "usd" and "colmap"
+tracks      a Track or a file; a list of them, people of one clip, for "glb" and "colmap"
 out         the file, or for "obj" of all frames and "colmap" the folder
-form        "vertices", "joints" (.npy), "obj", "amass", "bvh", "glb", "usd", "smplx", "trc", "c3d", "colmap",
-            "pose2sim"
+form        "vertices", "joints" (.npy), "obj", "amass", "bvh", "glb", "smplx", "trc", "c3d", "colmap", "pose2sim"
 body        Body that the tracks are of, or a file; None: the first track's own
 world_axes  of vertices, joints and obj: the clip's world (y up, ground at y = 0) instead of the camera frame
 frame       of obj: only this frame
 rig         of bvh: its skeleton
 textures    of glb: PNG files, one a track
-correctives of glb and usd: shapes for pose correctives, 0 to 64
+correctives of glb: shapes for pose correctives, 0 to 64
 docs/exports.md says what each form holds. Returns a few lines of text on what was written. Raises ValueError for
 arguments that do not go together, RuntimeError naming a file that cannot be used or a frame that is lost.)";
 

@@ -16,7 +16,6 @@
 #include "bodyloom/data_tools/export/markers.h"
 #include "bodyloom/data_tools/export/pose2sim_calibration.h"
 #include "bodyloom/data_tools/export/trc_writer.h"
-#include "bodyloom/data_tools/export/usda_writer.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/formats/npz.h"
 #include "bodyloom/data_tools/motion/amass.h"
@@ -129,9 +128,7 @@ bool IsFolder(const ExportTrackRequest& request) {
   return (request.form == TrackForm::kObj && request.frame < 0) || request.form == TrackForm::kColmap;
 }
 
-bool TakesPeople(TrackForm form) {
-  return form == TrackForm::kGlb || form == TrackForm::kUsd || form == TrackForm::kColmap;
-}
+bool TakesPeople(TrackForm form) { return form == TrackForm::kGlb || form == TrackForm::kColmap; }
 
 bool HasAxes(TrackForm form) {
   return form == TrackForm::kVertices || form == TrackForm::kJoints || form == TrackForm::kObj;
@@ -195,7 +192,7 @@ void RequireEveryFrame(const ExportInputs& inputs, const ExportTrackRequest& req
     if (track.motion.HasPose(t)) continue;
     throw std::runtime_error(Concatenate(request.tracks[0], ": frame ", t, " is lost, which ",
                                          TrackFormNames()[size_t(request.form)],
-                                         " cannot say; glb, usd, trc and c3d leave it out"));
+                                         " cannot say; glb, trc and c3d leave it out"));
   }
 }
 
@@ -229,8 +226,6 @@ void Write(const ExportInputs& inputs, const ExportTrackRequest& request, const 
     case TrackForm::kGlb:
       report->glb = ExportGlb(inputs, request);
       return;
-    case TrackForm::kUsd:
-      return WriteUsda(request.out, inputs.Scene(), request.correctives);
     case TrackForm::kSmplx:
       RequireEveryFrame(inputs, request);
       return WriteAmassSmplx(request.out, inputs.MotionOfTrack(), pelvis);
@@ -284,8 +279,8 @@ ExportTrackReport ExportChecked(const ExportTrackRequest& request, const BodyMod
 }  // namespace
 
 const std::vector<std::string>& TrackFormNames() {
-  static const std::vector<std::string> names = {"vertices", "joints", "obj", "amass", "bvh",    "glb",
-                                                 "usd",      "smplx",  "trc", "c3d",   "colmap", "pose2sim"};
+  static const std::vector<std::string> names = {"vertices", "joints", "obj", "amass",  "bvh",     "glb",
+                                                 "smplx",    "trc",    "c3d", "colmap", "pose2sim"};
   return names;
 }
 

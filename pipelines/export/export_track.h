@@ -22,7 +22,6 @@ enum class TrackForm {
   kAmass,     ///< .npz as AMASS has it: SMPL-H's 156 pose columns, z up
   kBvh,       ///< for animation programs: centimetres
   kGlb,       ///< glTF 2.0 binary: skinned bodies, animation, camera, ground (glb_writer.h); several people
-  kUsd,       ///< .usda: the same (usda_writer.h); several people
   kSmplx,     ///< .npz in AMASS' SMPL-X form, which GMR reads: z up
   kTrc,       ///< markers for OpenSim and Pose2Sim: metres
   kC3d,       ///< markers for biomechanics programs: millimetres
@@ -35,14 +34,14 @@ const std::vector<std::string>& TrackFormNames();
 TrackForm TrackFormFromString(const std::string& name);
 
 struct ExportTrackRequest {
-  std::vector<std::string> tracks;  ///< .npz; more than one: people of one clip, for kGlb, kUsd and kColmap
+  std::vector<std::string> tracks;  ///< .npz; more than one: people of one clip, for kGlb and kColmap
   std::string body;                 ///< the tracks' body; empty: the built-in one
   TrackForm form = TrackForm::kVertices;
   bool world_axes = false;            ///< kVertices, kJoints, kObj: in the clip's world; false: in the camera frame
   int frame = -1;                     ///< kObj: only this frame, counted from 0; -1: all
   BvhRig rig = BvhRig::kSmpl;         ///< kBvh
   std::vector<std::string> textures;  ///< kGlb: PNG files, by track
-  int correctives = 8;                ///< kGlb, kUsd: shapes for pose correctives, 0 to 64
+  int correctives = 8;                ///< kGlb: shapes for pose correctives, 0 to 64
   std::string out;                    ///< file, or folder (kObj of all frames, kColmap)
 };
 

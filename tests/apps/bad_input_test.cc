@@ -131,7 +131,7 @@ TEST_F(BadInput, OptionsThatContradictEachOtherAreUsageErrors) {
   ExpectUsageError({"export", "--track", d, "--track", d, "--what", "bvh", "--out", o}, "holds one person");
   ExpectUsageError({"export", "--track", d, "--what", "glb", "--axes", "world", "--out", o}, "axes of its own");
   ExpectUsageError({"export", "--track", d, "--what", "glb", "--rig", "mixamo", "--out", o}, "--rig");
-  ExpectUsageError({"export", "--track", d, "--what", "usd", "--texture", d, "--out", o}, "--texture");
+  ExpectUsageError({"export", "--track", d, "--what", "bvh", "--texture", d, "--out", o}, "--texture");
   ExpectUsageError({"body"}, "body: no verb");
 }
 
