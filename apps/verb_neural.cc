@@ -69,7 +69,6 @@ void AddTrainVerb(CLI::App& app, Action* action) {
       {{"motion", "Trains a renderer of one person's motion-dependent appearance (needs LibTorch)"},
        {"photo", "Trains a renderer that needs one photo of a person (needs LibTorch)"},
        {"guided", "Trains a renderer that animates anybody from one photo (needs LibTorch)"},
-       {"refiner", "Trains the network that refines pictures of people made from photos (needs LibTorch)"},
        {"parser", "Trains the network that tells clothes, hair and skin apart (needs LibTorch)"},
        {"lifter", "Trains the network that lifts 2D joints to 3D from recorded motion (needs LibTorch)"}},
       action);

@@ -51,7 +51,6 @@ int main(int argc, char** argv) {
   bodyloom::AddTrainMotion(*train, &action);
   bodyloom::AddTrainPhoto(*train, &action);
   bodyloom::AddTrainGuided(*train, &action);
-  bodyloom::AddTrainRefiner(*train, &action);
   bodyloom::AddTrainParser(*train, &action);
   CLI::App* animate = app.add_subcommand("animate", "Renders a person with a trained network");
   animate->require_subcommand(1);

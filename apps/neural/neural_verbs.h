@@ -14,7 +14,6 @@ void AddTrainLifter(CLI::App& train, Action* action);
 void AddTrainMotion(CLI::App& train, Action* action);
 void AddTrainPhoto(CLI::App& train, Action* action);
 void AddTrainGuided(CLI::App& train, Action* action);
-void AddTrainRefiner(CLI::App& train, Action* action);
 void AddTrainParser(CLI::App& train, Action* action);
 
 // Below `animate`.

@@ -7,7 +7,7 @@
 
 #include "apps/command_callbacks.h"
 #include "apps/neural/neural_verbs.h"
-#include "apps/neural/picture_training_options.h"
+#include "apps/neural/training_options.h"
 #include "apps/neural/training_report.h"
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/pipelines/neural/parser/train_clothes_parser.h"
@@ -48,7 +48,19 @@ void AddTrainParser(CLI::App& train, Action* action) {
   verb->add_option("--size", request->size, "Pixels of the windows that people are shown in")
       ->check(CLI::Range(64, 2048))
       ->capture_default_str();
-  AddPictureTrainingOptions(verb, &request->options, &request->body_error_px, "Bodies", "Of weights and crops");
+  TrainParserOptions& options = request->options;
+  verb->add_option("--steps", options.steps, "Batches to train on")->capture_default_str();
+  verb->add_option("--batch", options.batch, "Crops in a batch")->capture_default_str();
+  verb->add_option("--crop", options.crop, "Pixels of a crop's side, a multiple of 16")->capture_default_str();
+  verb->add_option("--learning-rate", options.learning_rate, "At its highest")->capture_default_str();
+  verb->add_option("--light-strength", options.light_strength, "Of the change of colours that each crop gets; 0: none")
+      ->capture_default_str();
+  verb->add_option("--body-error", request->body_error_px,
+                   "Bodies are off by up to this, as fitted ones are: mean distance of projected vertices, pixels in a "
+                   "picture whose longer side has 512")
+      ->check(CLI::Range(0.0, 50.0))
+      ->capture_default_str();
+  AddTrainingOptions(verb, &options, "Of weights and crops");
   verb->footer(
       "Example:\n  bodyloom synth-people --clothes everyday --motions motions --size 512 --out people\n"
       "  bodyloom train parser --data people --out run\n"

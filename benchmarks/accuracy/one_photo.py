@@ -2,18 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """The renderers that need one photo under one protocol: the same people, photos and pictures, the same scores, with true
 labels and bodies and with estimated ones; beside them what needs no training, a textured body with clothes (person) and
-the photo warped by the bare body (floor), and that textured body's pictures refined by a small network (refined); the
-one-photo renderer's simpler variants (Sec. 4.4 of Sarkar et al., "Neural Re-Rendering of Humans from a Single Image",
-ECCV 2020) and the ablations of the pose-guided renderer (Table 2 of Yoon et al., "Pose-Guided Human Animation from a
-Single Image in the Wild", CVPR 2021) on synthetic people.
+the photo warped by the bare body (floor); the one-photo renderer's simpler variants (Sec. 4.4 of Sarkar et al., "Neural
+Re-Rendering of Humans from a Single Image", ECCV 2020) and the ablations of the pose-guided renderer (Table 2 of Yoon
+et al., "Pose-Guided Human Animation from a Single Image in the Wild", CVPR 2021) on synthetic people.
 
 usage: one_photo.py --bodyloom build/release/apps/bodyloom --motions ../shared/data/motion --out FOLDER
-       [--systems floor person refined photo guided] [--photos 1 2 4] [--baselines ip warp ...] [--without latent kl ...]
+       [--systems floor person photo guided] [--photos 1 2 4] [--baselines ip warp ...] [--without latent kl ...]
        [--given true labels iuv bodies all] [--seeds 1 2 3]
        [--people 60] [--size 256] [--people-options="--clothes everyday --light-style natural"] [--window 512]
        [--steps 4000] [--batch 4] [--profile cpu] [--report] [--picture P.jpg [--rows 0 1]]
        [--photo-options="--gan-weight 0 --learning-rate 0.001"] [--guided-options="--learning-rate 0.002"]
-       [--refiner-options="--crop 128"]
 
 FOLDER gets the people, a folder a run, report.md and report.json. What is there is not made again: a program that was
 stopped (Ctrl-C, SIGTERM) goes on where it was, within a run from its last checkpoint. --report only prints what there
@@ -38,8 +36,7 @@ TRACK = "tracked.npz"
 GIVEN = {"true": [], "labels": ["--score-labels", "estimated"], "iuv": ["--score-iuv"], "bodies": ["--score-tracks", TRACK],
          "all": ["--score-labels", "estimated", "--score-tracks", TRACK]}
 UNTRAINED = {"floor": ["--score-floor"], "person": []}
-REFINED = "refined"
-NO_IUV = {"person", REFINED}  # they take bodies
+NO_IUV = {"person"}  # it takes bodies
 WINDOW = {"tiny": 128, "cpu": 256, "paper": 256}  # pixels a side, of the networks' pictures: of all that are compared
 SCORES = [("image_l1", "L1", 4), ("psnr_db", "PSNR dB", 2), ("ssim", "SSIM", 4), ("silhouette_iou", "silhouette IoU", 3),
           ("label_iou", "labels IoU", 3), ("lpips", "LPIPS", 4), ("lpips_deviation", "deviation", 4),
@@ -94,7 +91,7 @@ def track_test_people(o, people):
 def settings(o):
     """Name, verb and options of each kind of run."""
     for system in o.systems:
-        yield system, "person" if system in UNTRAINED or system == REFINED else system, []
+        yield system, "person" if system in UNTRAINED else system, []
     if "photo" in o.systems:
         for variant in o.baselines:
             yield f"photo {variant}", "photo", ["--baseline", variant]
@@ -117,13 +114,10 @@ def train(o, people, name, verb, options, seed):
         return
     run.mkdir(exist_ok=True)
     print(f"{run.name} …", flush=True)
-    arguments = [o.bodyloom, "train", "refiner" if name == REFINED else verb, "--data", str(people), "--out", str(run),
-                 "--batch", str(o.batch), "--steps", str(o.steps), "--validate-every", str(o.steps), "--seed", str(seed),
-                 "--threads", str(o.threads)] + options
-    if name == REFINED:
-        arguments += ["--size", str(o.window)] + shlex.split(o.refiner_options)
-    else:
-        arguments += ["--profile", o.profile] + shlex.split(o.photo_options if verb == "photo" else o.guided_options)
+    arguments = [o.bodyloom, "train", verb, "--data", str(people), "--out", str(run), "--profile", o.profile,
+                 "--batch", str(o.batch), "--steps", str(o.steps), "--validate-every", str(o.steps),
+                 "--seed", str(seed), "--threads", str(o.threads)] + options
+    arguments += shlex.split(o.photo_options if verb == "photo" else o.guided_options)
     if (run / "checkpoint.bin").exists():
         arguments.append("--resume")
     call(arguments, run / "log.txt")
@@ -141,7 +135,7 @@ def score(o, people, name, verb, seed):
             continue
         run.mkdir(exist_ok=True)
         what = ["--size", str(o.window)] if verb == "person" else ["--run", str(run)]
-        what += UNTRAINED.get(name, ["--refiner", str(run / "refiner.npz")] if name == REFINED else [])
+        what += UNTRAINED.get(name, [])
         call([o.bodyloom, "animate", verb, "--score", str(people), "--score-photos"] + [str(n) for n in o.photos] +
              ["--score-frames", str(o.score_frames), "--sheet", str(run / f"{given}.png"), "--json", str(scores),
               "--threads", str(o.threads)] + what + GIVEN[given], run / "log.txt")
@@ -200,7 +194,7 @@ def main():
     parser.add_argument("--bodyloom", default="build/release/apps/bodyloom")
     parser.add_argument("--motions", default="../shared/data/motion")
     parser.add_argument("--out", type=pathlib.Path, required=True)
-    systems = [*UNTRAINED, REFINED, "photo", "guided"]
+    systems = [*UNTRAINED, "photo", "guided"]
     parser.add_argument("--systems", nargs="+", default=systems, choices=systems)
     parser.add_argument("--photos", type=int, nargs="+", default=[1], help="numbers of photos, each a row")
     parser.add_argument("--baselines", nargs="*", default=BASELINES, choices=BASELINES)
@@ -217,7 +211,6 @@ def main():
     parser.add_argument("--batch", type=int, default=4)
     parser.add_argument("--photo-options", default="", help="of train photo, one text: those of runs of other lengths")
     parser.add_argument("--guided-options", default="", help="of train guided, the same")
-    parser.add_argument("--refiner-options", default="", help="of train refiner, the same")
     parser.add_argument("--score-frames", type=int, default=8)
     parser.add_argument("--profile", default="cpu", choices=list(WINDOW))
     parser.add_argument("--threads", type=int, default=1)

@@ -4,7 +4,6 @@
 that the video itself shows.
 
 usage: photo_person.py --bodyloom build/release/apps/bodyloom --video CLIP --out FOLDER [--frames 0 60 120] [--photos 1]
-       [--refiner none run/refiner.npz …]
 
 For each of --frames a person is made from that frame (with --photos N, from N frames evenly spread from there on) and
 drawn in every frame of the clip, as `bodyloom run` tracked it. PSNR of the person's box with the true background behind
@@ -43,7 +42,6 @@ def main():
     parser.add_argument("--out", required=True, type=pathlib.Path)
     parser.add_argument("--frames", nargs="+", type=int, default=[0, 60, 120])
     parser.add_argument("--photos", type=int, default=1)
-    parser.add_argument("--refiner", nargs="+", default=["none"], help="what refines the pictures, a row each")
     o = parser.parse_args()
     o.out.mkdir(parents=True, exist_ok=True)
     people = o.out / "people"
@@ -63,23 +61,18 @@ def main():
             photos.append(str(photo))
         run = o.out / f"from_{first}_{o.photos}"
         run.mkdir(exist_ok=True)
-        made = None
-        for number, refiner in enumerate(o.refiner):
-            result = run / f"{number}_{pathlib.Path(refiner).stem}"
-            result.mkdir(exist_ok=True)
-            person = ["--image", *photos, "--keep", str(run)] if made is None else ["--person", str(run)]
-            subprocess.run([o.bodyloom, "animate", "person", *person, "--track", str(people / "person_0.npz"), "--refiner", refiner,
-                            "--pictures", str(result / "pictures"), "--out", str(result / "out.mp4"), "--json",
-                            str(result / "report.json")], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-            report = json.loads((result / "report.json").read_text(encoding="utf-8"))
-            made = made or report["person"]
-            rows.append((first, refiner, made["texture_shares"]["seen"],
-                         *scores(decoded(result / "pictures" / "%06d.png", width, height, 4), truth, mask, used),
-                         report["first_frame_s"], report["draw_ms_median"]))
+        subprocess.run([o.bodyloom, "animate", "person", "--image", *photos, "--keep", str(run),
+                        "--track", str(people / "person_0.npz"), "--pictures", str(run / "pictures"),
+                        "--out", str(run / "out.mp4"), "--json", str(run / "report.json")],
+                       check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        report = json.loads((run / "report.json").read_text(encoding="utf-8"))
+        rows.append((first, 100 * report["person"]["texture_shares"]["seen"],
+                     *scores(decoded(run / "pictures" / "%06d.png", width, height, 4), truth, mask, used),
+                     report["first_frame_s"], report["draw_ms_median"]))
     print(f"{o.video.name}, {count} frames of {width}x{height}, from {o.photos} of them")
-    print("from frame   seen   PSNR dB   5 %    outline IoU   first frame s   draw ms  refiner")
+    print("from frame   seen   PSNR dB   5 %    outline IoU   first frame s   draw ms")
     for row in rows:
-        print("%10d   %4.0f %% %8.2f %6.2f %11.3f %13.1f %11.1f   %s" % (row[0], 100 * row[2], *row[3:], row[1]))
+        print("%10d   %4.0f %% %8.2f %6.2f %11.3f %13.1f %11.1f" % row)
     return 0
 
 

@@ -15,7 +15,7 @@ namespace bodyloom {
 struct PackedPicture {
   int width = 0, height = 0;    ///< as PersonLayers
   double pixels_per_metre = 0;  ///< how large the person is
-  std::vector<uint8_t> planes;  ///< the first of PersonPlane's × height × width, PackPlane()
+  std::vector<uint8_t> planes;  ///< PersonPlane::kCount × height × width, PackPlane()
   std::vector<uint8_t> truth;   ///< what is to be learned, planes × height × width
 
   [[nodiscard]] size_t pixels() const { return static_cast<size_t>(width) * height; }
@@ -28,7 +28,7 @@ struct PlanePacking {
 
 constexpr PlanePacking PackingOf(int plane) {
   if (plane >= PersonPlane::kNormal && plane < PersonPlane::kPlace) return {128, 127};
-  if (plane >= PersonPlane::kPlace && plane < PersonPlane::kSeen) return {128, 64};
+  if (plane >= PersonPlane::kPlace && plane < PersonPlane::kCount) return {128, 64};
   return {};
 }
 
@@ -37,11 +37,10 @@ inline uint8_t PackPlane(int plane, float value) {
   return static_cast<uint8_t>(std::clamp(std::round(packing.offset + packing.scale * value), 0.0F, 255.0F));
 }
 
-/// The first `count` planes of layers, packed.
-inline std::vector<uint8_t> PackPlanes(const PersonLayers& layers, int count) {
+inline std::vector<uint8_t> PackPlanes(const PersonLayers& layers) {
   std::vector<uint8_t> packed;
-  packed.reserve(count * layers.pixels());
-  for (int p = 0; p < count; ++p) {
+  packed.reserve(PersonPlane::kCount * layers.pixels());
+  for (int p = 0; p < PersonPlane::kCount; ++p) {
     for (const float value : layers.Plane(p)) packed.push_back(PackPlane(p, value));
   }
   return packed;

@@ -76,7 +76,7 @@ CropBatch MakeCrops(const std::vector<PackedPicture>& pictures, const CropReques
   const int side = request.side, together = request.planes + request.truth;
   const size_t numbers = static_cast<size_t>(together) * side * side;
   CropBatch crops = {torch::empty({request.batch, together, side, side}, torch::kUInt8),
-                     torch::empty({request.batch, 3, 1, 1}), torch::empty({request.batch, 3, 3})};
+                     torch::empty({request.batch, 3, 3})};
   for (int b = 0; b < request.batch; ++b) {
     uint64_t hash = Mix(Mix(request.seed) ^ (static_cast<uint64_t>(step) * request.batch + b));
     const PackedPicture& picture = pictures[hash % pictures.size()];
@@ -94,10 +94,8 @@ CropBatch MakeCrops(const std::vector<PackedPicture>& pictures, const CropReques
     CopyCrop(picture.planes, request.planes, picture, x0, y0, side, to);
     CopyCrop(picture.truth, request.truth, picture, x0, y0, side,
              to + static_cast<size_t>(request.planes) * side * side);
-    for (int c = 0; c < 3; ++c) {
-      hash = Mix(hash);
-      crops.backgrounds.data_ptr<float>()[3 * b + c] = static_cast<float>(UniformOf(hash));
-    }
+    for (int unused = 0; unused < 3; ++unused)
+      hash = Mix(hash);  // so that a seed means what it meant for the built-in parser
     DrawLight(Mix(hash), request.light_strength, crops.lights.data_ptr<float>() + 9 * b);
   }
   return crops;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Batches of crops of packed pictures, each in a light of its own. Internal: includes LibTorch.
 ///
-/// Half of the crops lie around a pixel that tells much (where a drawing is wrong, where classes meet), the others
+/// Half of the crops lie around a pixel that tells much (where classes meet), the others
 /// anywhere. What a batch holds depends on the seed and its number alone.
 #pragma once
 
@@ -25,9 +25,8 @@ struct CropRequest {
 };
 
 struct CropBatch {
-  torch::Tensor bytes;        ///< B × (planes + truth) × side × side
-  torch::Tensor backgrounds;  ///< B × 3 × 1 × 1: a colour each
-  torch::Tensor lights;       ///< B × 3 × 3: colours are to be multiplied by it (Lit())
+  torch::Tensor bytes;   ///< B × (planes + truth) × side × side
+  torch::Tensor lights;  ///< B × 3 × 3: colours are to be multiplied by it (Lit())
 };
 
 /// Number `step` of the batches. Where a picture ends within a crop nothing is drawn, and truth is 0.

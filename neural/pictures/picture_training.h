@@ -16,7 +16,7 @@ struct PictureTraining : TrainingRun {
   int warmup_steps = 100;
   double weight_decay = 1e-4;
   double average_share = 0.1;  ///< of the steps: the mean age of the averaged weights
-  double light_strength = 1;   ///< of the change of colours, drawn and true alike, that each crop gets: 0 none
+  double light_strength = 1;   ///< of the change of colours that each crop gets: 0 none
 };
 
 /// Of what all have in common. `why` may be nullptr.

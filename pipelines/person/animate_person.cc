@@ -54,7 +54,6 @@ class PersonAnimation {
 
   AnimatePersonSummary Run() {
     CheckRequest();
-    refiner_ = OpenRefiner(request_.refiner);
     std::optional<ShownLight> light;
     if (!request_.relight.empty()) light = OtherLight(request_.relight);
     clock_.Begin("person");
@@ -154,7 +153,7 @@ class PersonAnimation {
       throw std::runtime_error(Concatenate(request_.track, ": pictures of ", width_, "x", height_,
                                            ", expected sides of 2 to ", kLongestPictureSide));
     }
-    frames_.emplace(person_, refiner_.get(), std::min(threads_, std::max(1, track_.num_frames())));
+    frames_.emplace(person_, std::min(threads_, std::max(1, track_.num_frames())));
   }
 
   [[nodiscard]] Camera CameraAt(int t) const {
@@ -245,8 +244,7 @@ class PersonAnimation {
   int width_ = 0, height_ = 0;
   std::optional<PosedTrack> posed_;
   std::optional<PersonCloth> cloth_;
-  std::vector<int> order_;                   ///< the track's frames as they are shown; empty: in turn
-  std::unique_ptr<PictureRefiner> refiner_;  ///< null: pictures stay as they are drawn
+  std::vector<int> order_;  ///< the track's frames as they are shown; empty: in turn
   std::optional<PersonFramePainter> frames_;
   AnimatePersonSummary summary_;
 };

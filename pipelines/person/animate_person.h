@@ -8,7 +8,6 @@
 #include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/pipelines/callbacks.h"
 #include "bodyloom/pipelines/person/make_photo_person.h"
-#include "bodyloom/pipelines/person/open_refiner.h"
 
 namespace bodyloom {
 
@@ -21,17 +20,16 @@ struct AnimatePersonRequest {
   std::string track;          ///< the motion, .npz; empty: none, the person is only made and kept
   /// As tall in the driver's scene as the photos say, not as tall in the picture as the driver.
   bool own_stature = false;
-  std::string view_yaw;    ///< how far the view is turned (pipelines/people/view_angles.h)
-  std::string freeze;      ///< where time stands still (pipelines/people/freeze.h); empty: nowhere
-  std::string background;  ///< an image, a video or a folder behind the person; empty: a plain backdrop
-  std::string relight;     ///< other light, a file (pipelines/people/relight_frames.h); empty: the first photo's
-  std::string refiner = kNoRefiner;  ///< what pictures are refined with (open_refiner.h)
-  int size = 0;                      ///< pixels of the picture's longer side; 0: as the track's
-  std::string out;                   ///< the video to write, .mp4; empty: none
-  std::string pictures;              ///< a folder for PNGs with transparency, 000000.png …; empty: none
-  std::string moved_track;           ///< the motion by this person: a track for its body.npz, .npz; empty: none
-  std::string json;                  ///< a report; empty: none
-  int threads = 0;                   ///< 0: all cores
+  std::string view_yaw;     ///< how far the view is turned (pipelines/people/view_angles.h)
+  std::string freeze;       ///< where time stands still (pipelines/people/freeze.h); empty: nowhere
+  std::string background;   ///< an image, a video or a folder behind the person; empty: a plain backdrop
+  std::string relight;      ///< other light, a file (pipelines/people/relight_frames.h); empty: the first photo's
+  int size = 0;             ///< pixels of the picture's longer side; 0: as the track's
+  std::string out;          ///< the video to write, .mp4; empty: none
+  std::string pictures;     ///< a folder for PNGs with transparency, 000000.png …; empty: none
+  std::string moved_track;  ///< the motion by this person: a track for its body.npz, .npz; empty: none
+  std::string json;         ///< a report; empty: none
+  int threads = 0;          ///< 0: all cores
 };
 
 struct AnimatePersonSummary {

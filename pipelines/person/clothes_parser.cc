@@ -85,8 +85,7 @@ PersonLayers ParserLayers(const PersonPhoto& photo, int num_threads) {
       layers.planes[(PersonPlane::kColour + c) * pixels + i] = static_cast<float>(picture.pixel(x, y)[2 - c]) / 255;
     }
   });
-  SurfacePlanes(*photo.body, *photo.rest_vertices, num_threads)
-      .Draw(*photo.vertices_in_camera, photo.camera, true, nullptr, &layers);
+  SurfacePlanes(*photo.body, *photo.rest_vertices, num_threads).Draw(*photo.vertices_in_camera, photo.camera, &layers);
   return layers;
 }
 

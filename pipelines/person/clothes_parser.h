@@ -28,7 +28,7 @@ struct PersonPhoto {
   Camera camera;                                  ///< of the picture's size
 };
 
-/// What the parser reads, the first ten planes, of the part of the photo around the mask. Throws std::invalid_argument
+/// What the parser reads of the part of the photo around the mask. Throws std::invalid_argument
 /// when sizes do not fit.
 PersonLayers ParserLayers(const PersonPhoto& photo, int num_threads);
 

@@ -22,11 +22,8 @@ std::vector<uint8_t> BgraOf(const DrawnPerson& person) {
   return bgra;
 }
 
-PersonFramePainter::PersonFramePainter(const PhotoPerson& person, const PictureRefiner* refiner, int threads) {
-  for (int i = 0; i < std::max(1, threads); ++i) {
-    refiners_.push_back(refiner == nullptr ? nullptr : std::make_unique<PictureRefiner>(refiner->Another()));
-    painters_.push_back(std::make_unique<RefinedPainter>(person, 1, refiners_.back().get()));
-  }
+PersonFramePainter::PersonFramePainter(const PhotoPerson& person, int threads) {
+  for (int i = 0; i < std::max(1, threads); ++i) painters_.push_back(std::make_unique<PersonPainter>(person, 1));
 }
 
 std::vector<DrawnPerson> PersonFramePainter::Draw(std::span<const PersonPose> poses) {

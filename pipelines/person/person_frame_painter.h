@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Frames of a person made from photos, several drawn at once: refining one is work for one thread.
+/// Frames of a person made from photos, several drawn at once.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,6 @@
 #include <vector>
 
 #include "bodyloom/pipelines/person/draw_person.h"
-#include "bodyloom/pipelines/person/picture_refiner.h"
-#include "bodyloom/pipelines/person/refined_painter.h"
 
 namespace bodyloom {
 
@@ -19,9 +17,8 @@ std::vector<uint8_t> BgraOf(const DrawnPerson& person);
 /// Not for use by two threads at once.
 class PersonFramePainter {
  public:
-  /// `person` must outlive this; null `refiner`: pictures stay as they are drawn. `threads` frames are drawn at once, each
-  /// by a refiner of the same weights. Pictures are the same for any number.
-  PersonFramePainter(const PhotoPerson& person, const PictureRefiner* refiner, int threads);
+  /// `person` must outlive this. `threads` frames are drawn at once. Pictures are the same for any number.
+  PersonFramePainter(const PhotoPerson& person, int threads);
 
   [[nodiscard]] int at_once() const { return static_cast<int>(painters_.size()); }
 
@@ -29,8 +26,7 @@ class PersonFramePainter {
   std::vector<DrawnPerson> Draw(std::span<const PersonPose> poses);
 
  private:
-  std::vector<std::unique_ptr<PictureRefiner>> refiners_;
-  std::vector<std::unique_ptr<RefinedPainter>> painters_;
+  std::vector<std::unique_ptr<PersonPainter>> painters_;
 };
 
 }  // namespace bodyloom

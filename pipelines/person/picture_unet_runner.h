@@ -19,8 +19,6 @@ class PictureUnetRunner {
   /// Throws std::invalid_argument for weights that are not valid.
   PictureUnetRunner(PictureUnetWeights weights, PictureUnetPlanes planes);
 
-  [[nodiscard]] const PictureUnetWeights& weights() const { return weights_; }
-
   /// planes.in × height × width → planes.out × height × width. Throws std::invalid_argument for another size, a picture
   /// without a pixel and sides that are not multiples of kPictureUnetMultiple.
   std::vector<float> Run(int width, int height, std::span<const float> planes);

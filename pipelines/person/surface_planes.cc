@@ -11,13 +11,12 @@ SurfacePlanes::SurfacePlanes(const BodyModel& body, const MatrixX3d& rest_vertic
   }
 }
 
-void SurfacePlanes::Draw(const MatrixX3d& vertices, const Camera& camera, bool cull_back_faces,
-                         const TexelAttribute* texels, PersonLayers* layers) {
+void SurfacePlanes::Draw(const MatrixX3d& vertices, const Camera& camera, PersonLayers* layers) {
   const size_t pixels = layers->pixels();
   layers->planes.resize(PersonPlane::kNormal * pixels);
-  layers->planes.resize((texels == nullptr ? PersonPlane::kSeen : PersonPlane::kCount) * pixels, 0);
+  layers->planes.resize(PersonPlane::kCount * pixels, 0);
   VisibilityOptions visibility;
-  visibility.cull_back_faces = cull_back_faces;
+  visibility.cull_back_faces = true;
   visibility.num_threads = threads_;
   buffer_.Render(vertices, body_->data().faces, camera, visibility);
   ResolveRequest request;
@@ -25,7 +24,6 @@ void SurfacePlanes::Draw(const MatrixX3d& vertices, const Camera& camera, bool c
   request.normal = true;
   request.vertex_normals = &normals_.Compute(vertices, body_->data().faces);
   request.vertex_attributes = {{places_, 3}};
-  if (texels != nullptr) request.texel_attributes = {*texels};
   ResolvePixels(buffer_, *body_, vertices, camera, request, &pixels_);
   const auto plane = [&](int p) { return layers->planes.begin() + static_cast<std::ptrdiff_t>(p * pixels); };
   ForEachPixel(*layers, camera.width, camera.height, [&](int x, int y, size_t i) {
@@ -35,9 +33,6 @@ void SurfacePlanes::Draw(const MatrixX3d& vertices, const Camera& camera, bool c
       plane(PersonPlane::kNormal + c)[i] = pixels_.normal[3 * at + c];
       plane(PersonPlane::kPlace + c)[i] = pixels_.vertex_attributes[0][3 * at + c];
     }
-    if (texels == nullptr) return;
-    plane(PersonPlane::kSeen)[i] = pixels_.texel_attributes[0][2 * at];
-    plane(PersonPlane::kMirrored)[i] = pixels_.texel_attributes[0][2 * at + 1];
   });
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Draws what a body's surface is like into person layers (render/person/person_layers.h): its normal, where its points
-/// lie at rest, and what is known of their texels.
+/// Draws what a body's surface is like into person layers (render/person/person_layers.h): its normal, and where its
+/// points lie at rest.
 #pragma once
 
 #include <vector>
@@ -21,11 +21,9 @@ class SurfacePlanes {
   /// `body` must outlive this; `rest_vertices`: V×3, metres.
   SurfacePlanes(const BodyModel& body, const MatrixX3d& rest_vertices, int num_threads);
 
-  /// Where alpha is above 0 and the surface is seen: kNormal and kPlace; of `texels`, a map of two channels, kSeen and
-  /// kMirrored. Without `texels` the planes end with kPlace. Those planes are 0 elsewhere; others stay. The same for any
-  /// number of threads.
-  void Draw(const MatrixX3d& vertices_in_camera, const Camera& camera, bool cull_back_faces,
-            const TexelAttribute* texels, PersonLayers* layers);
+  /// kNormal and kPlace where alpha is above 0 and the surface is seen from outside, 0 elsewhere; other planes stay.
+  /// The same for any number of threads.
+  void Draw(const MatrixX3d& vertices_in_camera, const Camera& camera, PersonLayers* layers);
 
  private:
   const BodyModel* body_;

@@ -3,7 +3,7 @@
 /// bottom, face, hair, skin or shoes. These are its numbers; neural/parser trains it, pipelines/person runs it. What it
 /// brings: docs/lab/clothes_parser.md.
 ///
-/// It reads the first ten planes of PersonPlane (render/person/person_layers.h): the photo's colours, 0 where the person
+/// It reads the planes of PersonPlane (render/person/person_layers.h): the photo's colours, 0 where the person
 /// is not, the person's mask as alpha, and of the bare body that was fitted, where it covers the mask, the normal and the
 /// place at rest. It answers with a number a class; the largest is the class.
 #pragma once
@@ -17,7 +17,7 @@ namespace bodyloom {
 
 /// Classes in the order of PersonLabel (data_tools/datasets/single_person_dataset.h), from kTop to kShoes.
 inline constexpr int kParserClasses = 6;
-inline constexpr PictureUnetPlanes kParserPlanes = {PersonPlane::kSeen, kParserClasses};
+inline constexpr PictureUnetPlanes kParserPlanes = {PersonPlane::kCount, kParserClasses};
 
 struct ParserWeights {
   PictureUnetWeights network;     ///< of kParserPlanes

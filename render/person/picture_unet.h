@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// A small U-Net that reads planes of a picture and answers with planes of the same size: its shape and its numbers. The
-/// picture refiner (render/person/refiner_weights.h) and the clothes parser (render/person/parser_weights.h) are two of
-/// them; neural/networks/picture_unet_module.h learns, pipelines/person/picture_unet_runner.h runs without LibTorch.
+/// clothes parser (render/person/parser_weights.h) is one; neural/networks/picture_unet_module.h learns,
+/// pipelines/person/picture_unet_runner.h runs without LibTorch.
 ///
 /// Of P planes and Q outputs. Pixels are taken 2×2 together first: in(y, x, (2r + s)·P + c) = plane c at
 /// (2y + r, 2x + s); the answer of 4Q channels is laid out again the same way. Between, 3×3 convolutions with bias and

@@ -18,7 +18,7 @@ TEST(AvatarVerbs, HelpNamesAllVerbsWithoutLibTorch) {
   const CommandResult train = RunCommand({"train", "--help"}), animate = RunCommand({"animate", "--help"});
   EXPECT_EQ(train.exit_code, 0);
   EXPECT_EQ(animate.exit_code, 0);
-  for (const char* verb : {"avatar", "motion", "photo", "guided", "lifter", "refiner"})
+  for (const char* verb : {"avatar", "motion", "photo", "guided", "lifter", "parser"})
     EXPECT_THAT(train.out, HasSubstr(verb));
   for (const char* verb : {"avatar", "motion", "photo", "guided"}) EXPECT_THAT(animate.out, HasSubstr(verb));
   EXPECT_THAT(RunCommand({"train", "avatar", "--help"}).out, HasSubstr("--minutes"));

@@ -20,10 +20,10 @@ const Verbs kOwnVerbs = {{"track"},   {"synth"},  {"synth-person"}, {"synth-peop
                          {"parse"},   {"body"},   {"body", "info"}, {"body", "make"}, {"body", "convert"},
                          {"demo"},    {"prior"},  {"motions"},      {"version"}};
 /// Those that it passes on to the program that LibTorch is linked with.
-const Verbs kNeuralVerbs = {{"neural"},           {"neural", "doctor"}, {"neural", "card"}, {"train"},
-                            {"train", "lifter"},  {"train", "motion"},  {"train", "photo"}, {"train", "guided"},
-                            {"train", "refiner"}, {"train", "parser"},  {"animate"},        {"animate", "motion"},
-                            {"animate", "photo"}, {"animate", "guided"}};
+const Verbs kNeuralVerbs = {{"neural"},           {"neural", "doctor"}, {"neural", "card"},    {"train"},
+                            {"train", "lifter"},  {"train", "motion"},  {"train", "photo"},    {"train", "guided"},
+                            {"train", "parser"},  {"animate"},          {"animate", "motion"}, {"animate", "photo"},
+                            {"animate", "guided"}};
 
 /// All that were built.
 Verbs AllVerbs() {

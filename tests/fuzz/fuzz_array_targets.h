@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// The fuzzers' functions for files of named arrays beside bodies and tracks: observations, part labels, the pose
-/// prior, the lifter, the picture refiner, the clothes parser and the built-in body's own arrays; and for the front doors that tell a format
+/// prior, the lifter, the clothes parser and the built-in body's own arrays; and for the front doors that tell a format
 /// by its content.
 /// Each returns whether the input was accepted; what is accepted must hold together.
 #pragma once
@@ -17,7 +17,6 @@
 #include "bodyloom/data_tools/learned/lifter_weights_io.h"
 #include "bodyloom/data_tools/learned/parser_weights_io.h"
 #include "bodyloom/data_tools/learned/pose_prior_io.h"
-#include "bodyloom/data_tools/learned/refiner_weights_io.h"
 #include "bodyloom/data_tools/motion/load_motion.h"
 #include "bodyloom/data_tools/observations/load_detections.h"
 #include "bodyloom/data_tools/observations/observations_npz.h"
@@ -113,14 +112,6 @@ inline bool AcceptsLifter(const std::string& bytes) {
   return Accepts([&] {
     std::string why;
     const LifterWeights weights = ReadLifterWeightsBytes(ArchiveOf(FramedArrays(bytes)), "fuzz.npz");
-    if (!weights.IsValid(&why)) throw std::logic_error(why);
-  });
-}
-
-inline bool AcceptsRefiner(const std::string& bytes) {
-  return Accepts([&] {
-    std::string why;
-    const RefinerWeights weights = ReadRefinerWeightsBytes(ArchiveOf(FramedArrays(bytes)), "fuzz.npz");
     if (!weights.IsValid(&why)) throw std::logic_error(why);
   });
 }

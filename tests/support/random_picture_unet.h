@@ -6,7 +6,6 @@
 #include <random>
 
 #include "bodyloom/render/person/parser_weights.h"
-#include "bodyloom/render/person/refiner_weights.h"
 
 namespace bodyloom {
 
@@ -23,11 +22,6 @@ inline PictureUnetWeights RandomPictureUnet(PictureUnetPlanes planes, float stre
     for (Eigen::Index i = 0; i < convolution.bias.size(); ++i) convolution.bias[i] = 0.1F * scale * normal(random);
   }
   return weights;
-}
-
-/// `strength` 0: it changes nothing. It moves the outline.
-inline RefinerWeights RandomRefiner(float strength) {
-  return {RandomPictureUnet(kRefinerPlanes, strength), 123, true, "made up for a test"};
 }
 
 inline ParserWeights RandomParser(float strength) {

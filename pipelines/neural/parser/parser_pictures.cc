@@ -30,11 +30,8 @@ std::vector<PackedPicture> PicturesOfPerson(const PeopleData& people, int person
     parsed.rest_vertices = &rest, parsed.vertices_in_camera = &vertices, parsed.camera = body.CameraAt(0);
     const PersonLayers layers = ParserLayers(parsed, 1);
     if (layers.pixels() == 0) continue;
-    PackedPicture packed = {layers.width,
-                            layers.height,
-                            PixelsPerMetre(parsed.camera, vertices.col(2).mean()),
-                            PackPlanes(layers, kParserPlanes.in),
-                            {}};
+    PackedPicture packed = {
+        layers.width, layers.height, PixelsPerMetre(parsed.camera, vertices.col(2).mean()), PackPlanes(layers), {}};
     packed.truth.assign(ParserTruth::kCount * packed.pixels(), 0);
     ForEachPixel(layers, photo.size, photo.size, [&](int x, int y, size_t to) {
       const size_t from = static_cast<size_t>(y) * photo.size + x;

@@ -19,7 +19,7 @@ struct PicturesOfPeopleRequest {
   bool test = false;         ///< the people kept for testing, instead of those to train on
   int size = 512;            ///< of the windows
   double body_error_px = 4;  ///< bodies are off by up to this, each clip by its own: PeopleDataRequest
-  uint64_t seed = 1;         ///< of those errors, and of what else is drawn
+  uint64_t seed = 1;         ///< of those errors
   int threads = 1;
 };
 

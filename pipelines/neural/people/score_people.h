@@ -17,7 +17,6 @@
 #include "bodyloom/neural/guided/guided_scores.h"
 #include "bodyloom/pipelines/callbacks.h"
 #include "bodyloom/pipelines/neural/photo/people_data.h"
-#include "bodyloom/pipelines/person/open_refiner.h"
 
 namespace bodyloom {
 
@@ -30,16 +29,15 @@ enum class PeopleRenderer {
 
 struct ScorePeopleRequest {
   PeopleRenderer renderer = PeopleRenderer::kPhoto;
-  std::string run;                   ///< folder of the trained run; of the others: empty
-  int size = 256;                    ///< of the windows, of what has no run
-  int texture_size = 512;            ///< texels a side, of kPerson
-  std::string refiner = kNoRefiner;  ///< what kPerson's pictures are refined with (pipelines/person/open_refiner.h)
-  std::string data;                  ///< a multi-person dataset: its test people
-  std::string body;                  ///< empty: the built-in body
-  GivenOfPeople given;               ///< of photos and poses
-  std::vector<int> photos = {1};     ///< numbers of photos to animate from, each scored: 1, 2, 4
-  int frames = 8;                    ///< of each person, spread over those that none of the numbers takes for photos
-  bool anywhere = false;             ///< people may be farther from the body than clothes ever were in training
+  std::string run;                ///< folder of the trained run; of the others: empty
+  int size = 256;                 ///< of the windows, of what has no run
+  int texture_size = 512;         ///< texels a side, of kPerson
+  std::string data;               ///< a multi-person dataset: its test people
+  std::string body;               ///< empty: the built-in body
+  GivenOfPeople given;            ///< of photos and poses
+  std::vector<int> photos = {1};  ///< numbers of photos to animate from, each scored: 1, 2, 4
+  int frames = 8;                 ///< of each person, spread over those that none of the numbers takes for photos
+  bool anywhere = false;          ///< people may be farther from the body than clothes ever were in training
   /// Of what the photos do not show; absent: as the run says. Of the pose-guided renderer alone.
   std::optional<MapCompletion> completion;
   /// A contact sheet to write, a row a person: the photo, then what it shows of the pose, result, truth for the first

@@ -9,8 +9,7 @@
 #include "bodyloom/pipelines/callbacks.h"
 #include "bodyloom/pipelines/neural/people/person_of_frames.h"
 #include "bodyloom/pipelines/neural/people/scored_renderer.h"
-#include "bodyloom/pipelines/person/open_refiner.h"
-#include "bodyloom/pipelines/person/refined_painter.h"
+#include "bodyloom/pipelines/person/draw_person.h"
 
 namespace bodyloom {
 namespace {
@@ -48,7 +47,6 @@ class ScoredPerson : public ScoredRenderer {
  public:
   explicit ScoredPerson(const ScorePeopleRequest& request)
       : people_(PeopleOf(request)), texture_size_(request.texture_size), threads_(ThreadsFor(request.threads)) {
-    refiner_ = OpenRefiner(request.refiner);
     if (request.given.iuv) throw RequestError("--score-iuv: a body with a texture takes bodies, not IUV images");
   }
 
@@ -60,7 +58,7 @@ class ScoredPerson : public ScoredRenderer {
     clothes.num_threads = threads_;
     painter_.reset();
     person_ = PersonOfFrames(people_, person, frames, photos, texture_size_, clothes);
-    if (person_) painter_.emplace(*person_, threads_, refiner_.get());
+    if (person_) painter_.emplace(*person_, threads_);
     return ShareSeen(shown_, photos.size());
   }
   [[nodiscard]] bool HasPerson() const override { return person_.has_value(); }
@@ -92,8 +90,7 @@ class ScoredPerson : public ScoredRenderer {
   int texture_size_, threads_, number_ = 0;
   CoherentMaps shown_;
   std::optional<PhotoPerson> person_;
-  std::unique_ptr<PictureRefiner> refiner_;  ///< null: what is drawn stays as it is
-  std::optional<RefinedPainter> painter_;
+  std::optional<PersonPainter> painter_;
 };
 
 }  // namespace

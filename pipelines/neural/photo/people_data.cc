@@ -90,7 +90,7 @@ class PeopleData::Impl {
     const FrameOfPerson& from = people_.at(person).at(frame);
     PhotoFrame photo;
     Fill(from, &photo);
-    if (!request_.given.estimated_labels || IsTrue(static_cast<size_t>(person))) return photo;
+    if (!request_.given.estimated_labels) return photo;
     const CutPhoto& truth = CutAt(from);
     const Track& track = from.clip->track;
     Image everywhere(track.camera.width, track.camera.height);
@@ -133,9 +133,6 @@ class PeopleData::Impl {
     int t = 0;
   };
 
-  /// Whether nothing of this person is to be estimated.
-  [[nodiscard]] bool IsTrue(size_t person) const { return request_.every_other_estimated && person % 2 == 0; }
-
   /// `clips`: below `folder`.
   void AddPerson(const std::string& folder, const std::vector<std::string>& clips) {
     std::vector<FrameOfPerson> frames;
@@ -150,9 +147,7 @@ class PeopleData::Impl {
       clips_.push_back(std::make_unique<Clip>(path));
       Clip& clip = *clips_.back();
       clip.track = TrackOfClip(clip.set, request_.given.track);
-      if (!IsTrue(people_.size())) {
-        clip.track = WithBodyError(*body_, std::move(clip.track), request_.body_error_px * UniformOf(hash), Mix(hash));
-      }
+      clip.track = WithBodyError(*body_, std::move(clip.track), request_.body_error_px * UniformOf(hash), Mix(hash));
       if (!clip.set.info().has.labels) throw std::runtime_error(path + ": has no labels, which training needs");
       PhotoMapsOptions options;
       options.size = request_.size, options.texture_size = request_.texture_size, options.texels = texels_;

@@ -40,9 +40,7 @@ struct PeopleDataRequest {
   /// Bodies are off by a mean projection error (data_tools/synthesis/clips/perturbed_motion.h) of 0 to this, each clip by
   /// its own, as fitted bodies are; pixels, in a picture whose longer side has 512.
   double body_error_px = 0;
-  uint64_t seed = 1;  ///< of those errors
-  /// Of the second, fourth, … person alone labels are estimated and bodies off; the others' are true.
-  bool every_other_estimated = false;
+  uint64_t seed = 1;            ///< of those errors
   bool labels_of_body = false;  ///< estimated labels are those of SegmentPerson alone: the parser's beginning
 };
 

@@ -15,7 +15,6 @@
 #include "bodyloom/data_tools/learned/lifter_weights_io.h"
 #include "bodyloom/data_tools/learned/parser_weights_io.h"
 #include "bodyloom/data_tools/learned/pose_prior_io.h"
-#include "bodyloom/data_tools/learned/refiner_weights_io.h"
 #include "bodyloom/data_tools/observations/mask_runs.h"
 #include "bodyloom/data_tools/observations/observations_npz.h"
 #include "bodyloom/data_tools/video/image_file.h"
@@ -216,7 +215,6 @@ void AddArraySeeds(std::map<std::string, std::vector<std::string>>* seeds) {
   }
   (*seeds)["pose_prior"] = {FramedBytesOf([](const std::string& path) { WritePosePrior(path, SmallPrior()); })};
   (*seeds)["lifter"] = {FramedBytesOf([](const std::string& path) { WriteLifterWeights(path, SmallLifter()); })};
-  (*seeds)["refiner"] = {FramedBytesOf([](const std::string& path) { WriteRefinerWeights(path, RandomRefiner(1)); })};
   (*seeds)["parser"] = {FramedBytesOf([](const std::string& path) { WriteParserWeights(path, RandomParser(1)); })};
   (*seeds)["left_half"] = {FrameArrays(ReadNpzBytes(EmbeddedBuiltinBodySources().parts_bytes, "parts.npz"))};
   (*seeds)["motion"] = {(*seeds)["deepmimic"][0], AmassBytes()};

@@ -27,7 +27,6 @@ TEST(FuzzCorpus, PartLabels) { RunMutations("part_labels", AcceptsPartLabels, 40
 TEST(FuzzCorpus, Avatar) { RunMutations("avatar", AcceptsAvatar, 4000); }
 TEST(FuzzCorpus, PosePrior) { RunMutations("pose_prior", AcceptsPosePrior, 500); }
 TEST(FuzzCorpus, Lifter) { RunMutations("lifter", AcceptsLifter, 2000); }
-TEST(FuzzCorpus, Refiner) { RunMutations("refiner", AcceptsRefiner, 200); }
 TEST(FuzzCorpus, Parser) { RunMutations("parser", AcceptsParser, 200); }
 TEST(FuzzCorpus, LeftHalf) { RunMutations("left_half", AcceptsLeftHalf, 50); }
 TEST(FuzzCorpus, Motion) { RunMutations("motion", AcceptsMotion, 4000); }

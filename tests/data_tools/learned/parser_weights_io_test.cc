@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <limits>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/formats/npz.h"
@@ -41,8 +43,12 @@ TEST(ParserWeightsIo, ComeBack) {
   EXPECT_EQ(read.pixels_per_metre, written.pixels_per_metre);
   EXPECT_EQ(read.network.num_parameters(), written.network.num_parameters());
   EXPECT_LT(read.network.num_parameters(), 2'000'000U);
-  EXPECT_TRUE(read.network.convolutions[0].bias == written.network.convolutions[0].bias);
-  EXPECT_TRUE(read.network.convolutions[0].kernel.isApprox(written.network.convolutions[0].kernel, 1e-3F));
+  for (size_t i = 0; i < written.network.convolutions.size(); ++i) {  // kernels to eleven bits, biases exactly
+    EXPECT_TRUE(read.network.convolutions[i].bias == written.network.convolutions[i].bias);
+    const auto difference =
+        (read.network.convolutions[i].kernel - written.network.convolutions[i].kernel).cwiseAbs().array();
+    EXPECT_TRUE((difference <= written.network.convolutions[i].kernel.cwiseAbs().array() / 2048 + 1e-7F).all()) << i;
+  }
   EXPECT_EQ(BytesOfParser(read), BytesOfParser(ReadParserWeightsBytes(BytesOfParser(read), "x")));
 }
 
@@ -60,11 +66,23 @@ TEST(ParserWeightsIo, NamesWhatIsWrong) {
   EXPECT_NE(missing.find("merge1"), std::string::npos) << missing;
   const std::string other = ParserErrorOf([](NpzArrays* arrays) { (*arrays)["leave"] = (*arrays)["merge0"]; });
   EXPECT_NE(other.find("leave is 32x288"), std::string::npos) << other;
+  const std::string flat = ParserErrorOf([](NpzArrays* arrays) { (*arrays)["enter"] = (*arrays)["enter_bias"]; });
+  EXPECT_NE(flat.find("enter"), std::string::npos) << flat;
+  const std::string infinite = ParserErrorOf([](NpzArrays* arrays) {
+    const std::vector<float> bias(32, std::numeric_limits<float>::infinity());
+    (*arrays)["first_bias"] = NdArray::FromFloats(bias.data(), {32});
+  });
+  EXPECT_NE(infinite.find("first has numbers that are not finite"), std::string::npos) << infinite;
   const std::string nobody = ParserErrorOf([](NpzArrays* arrays) {
     const float none = 0;
     (*arrays)["pixels_per_metre"] = NdArray::FromFloats(&none, {1});
   });
   EXPECT_NE(nobody.find("pixels_per_metre is 0, expected 1 to 100000"), std::string::npos) << nobody;
+  const std::string several = ParserErrorOf([](NpzArrays* arrays) {
+    const std::vector<float> two(2, 250);
+    (*arrays)["pixels_per_metre"] = NdArray::FromFloats(two.data(), {2});
+  });
+  EXPECT_NE(several.find("pixels_per_metre has 2 numbers, expected one"), std::string::npos) << several;
   EXPECT_THROW(ReadParserWeightsBytes("no archive", "x"), std::runtime_error);
   EXPECT_THROW(ReadParserWeights("/nowhere/parser.npz"), std::runtime_error);
   ParserWeights weights = RandomParser(1);

@@ -59,24 +59,5 @@ TEST_F(PeopleWithBodyErrors, PicturesStayAsTheyAre) {
   EXPECT_TRUE(exact.BodyOf(0, 1).motion.poses == same.BodyOf(0, 1).motion.poses);
 }
 
-TEST(PeopleData, EveryOtherPersonMayBeEstimated) {
-  const ScratchFolder scratch;
-  MakeMultiPersonDatasetOptions options;
-  options.people = 3, options.actions = 1, options.views = 1, options.frames = 1, options.size_px = 128;
-  options.test_share = 0, options.num_threads = 1;  // one is kept for testing all the same
-  MakeMultiPersonDataset(scratch / "people", BuiltinBody(), {DemoMotion(BuiltinBody(), 60, 30)}, options);
-  PeopleDataRequest request;
-  request.data = scratch / "people", request.size = 128, request.texture_size = 64;
-  const PeopleData exact(request);
-  request.body_error_px = 12;
-  request.given.estimated_labels = request.every_other_estimated = true;
-  const PeopleData mixed(request);
-  ASSERT_EQ(mixed.source().num_frames.size(), 2U);
-  EXPECT_EQ(mixed.PhotoOf(0, 0).labels, exact.PhotoOf(0, 0).labels);
-  EXPECT_TRUE(mixed.BodyOf(0, 0).motion.poses == exact.BodyOf(0, 0).motion.poses);
-  EXPECT_NE(mixed.PhotoOf(1, 0).labels, exact.PhotoOf(1, 0).labels);
-  EXPECT_FALSE(mixed.BodyOf(1, 0).motion.poses == exact.BodyOf(1, 0).motion.poses);
-}
-
 }  // namespace
 }  // namespace bodyloom
