@@ -73,14 +73,10 @@ void AddTrainAvatar(CLI::App& train, Action* action) {
   verb->add_option("--seed", request->seed, "Of places, order of frames and backgrounds")->capture_default_str();
   verb->add_option("--threads", request->clip.threads, "0: all cores; the result is the same for any number")
       ->check(CLI::Range(0, 1024));
-  verb->add_option_function<std::vector<std::string>>(
-          "--without",
-          [request](const std::vector<std::string>& parts) {
-            for (const std::string& part : parts) (part == "motion" ? request->motion : request->garment) = false;
-          },
-          "motion: do not learn what the body's motion does to the person. garment: do not look for a skirt, dress or "
-          "coat to simulate; cloth then follows the pose alone")
-      ->check(CLI::IsMember({"motion", "garment"}));
+  verb->add_option_function<std::string>(
+          "--without", [request](const std::string&) { request->garment = false; },
+          "garment: do not look for a skirt, dress or coat to simulate; cloth then follows the pose alone")
+      ->check(CLI::IsMember({"garment"}));
   verb->add_flag("--all-steps", request->all_steps,
                  "Do not end earlier where more steps no longer help the frames held out");
   verb->add_flag("--refine", request->refine,

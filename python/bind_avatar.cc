@@ -37,9 +37,9 @@ constexpr const char* kTrainDoc =
     "Learns a person and leaves the run in a folder (`bodyloom train avatar`); needs no LibTorch.\n\n"
     "data: a video or folder of images with its track and the person's mask, or a single-person dataset. out: the\n"
     "folder of the run, where resume=True goes on, also after Ctrl-C or Cancelled. minutes: learn for so long in the\n"
-    "place of steps. all_steps: do not end earlier where more no longer helps the frames held out. motion, garment:\n"
-    "learn what the body's motion does; look for a skirt, dress or coat. refine: correct the poses of the frames\n"
-    "learned from; refined_track: file for the track with all poses corrected.\n"
+    "place of steps. all_steps: do not end earlier where more no longer helps the frames held out. garment: look\n"
+    "for a skirt, dress or coat. refine: correct the poses of the frames learned from; refined_track: file for the "
+    "track with all poses corrected.\n"
     "Raises ValueError, RuntimeError naming a file, Cancelled, KeyboardInterrupt.";
 constexpr const char* kShowDoc =
     "The person in a motion, to be drawn frame by frame; a garment is simulated along all of it first.\n\n"
@@ -101,9 +101,9 @@ std::shared_ptr<AvatarObject> Load(const Path& run, const std::optional<Path>& b
 
 std::shared_ptr<AvatarObject> Train(const Path& data, const Path& out, const std::optional<Path>& track,
                                     const std::optional<Path>& mask, const std::optional<Path>& body, int64_t steps,
-                                    std::optional<double> minutes, uint64_t seed, bool motion, bool garment,
-                                    bool all_steps, bool refine, const std::optional<Path>& refined_track, bool resume,
-                                    int threads, const py::object& progress) {
+                                    std::optional<double> minutes, uint64_t seed, bool garment, bool all_steps,
+                                    bool refine, const std::optional<Path>& refined_track, bool resume, int threads,
+                                    const py::object& progress) {
   CheckThreads(threads);
   BODYLOOM_CHECK(steps > 0, "steps: expected a number above 0, found ", steps);
   TrainAvatarRequest request;
@@ -112,7 +112,7 @@ std::shared_ptr<AvatarObject> Train(const Path& data, const Path& out, const std
   request.clip.threads = threads;
   request.out = out.string();
   request.steps = steps, request.minutes = PositiveOr0(minutes, "minutes"), request.seed = seed;
-  request.motion = motion, request.garment = garment, request.all_steps = all_steps;
+  request.garment = garment, request.all_steps = all_steps;
   request.refine = refine, request.refined_track = TextOf(refined_track), request.resume = resume;
   const TrainAvatarSummary summary = PythonCallbacks(progress).Run(
       [&](const PipelineCallbacks& callbacks) { return TrainAvatar(request, callbacks); });
@@ -175,9 +175,9 @@ void BindAvatar(py::module_& module) {
       .def_static("train", &Train, py::arg("data"), py::kw_only(), py::arg("out"), py::arg("track") = py::none(),
                   py::arg("mask") = py::none(), py::arg("body") = py::none(),
                   py::arg("steps") = TrainAvatarRequest().steps, py::arg("minutes") = py::none(), py::arg("seed") = 1,
-                  py::arg("motion") = true, py::arg("garment") = true, py::arg("all_steps") = false,
-                  py::arg("refine") = false, py::arg("refined_track") = py::none(), py::arg("resume") = false,
-                  py::arg("threads") = 0, py::arg("progress") = py::none(), kTrainDoc)
+                  py::arg("garment") = true, py::arg("all_steps") = false, py::arg("refine") = false,
+                  py::arg("refined_track") = py::none(), py::arg("resume") = false, py::arg("threads") = 0,
+                  py::arg("progress") = py::none(), kTrainDoc)
       .def_static("load", &Load, py::arg("run"), py::kw_only(), py::arg("body") = py::none(),
                   "The person of a run's folder, or of its avatar.npz. Raises RuntimeError naming the file.")
       .def("show", &Show, py::arg("track"), py::kw_only(), py::arg("view_yaw") = "", py::arg("freeze") = "",
@@ -193,9 +193,6 @@ void BindAvatar(py::module_& module) {
       .def_property_readonly(
           "has_garment", [](const AvatarObject& self) { return self.file().garment.has_value(); },
           "Whether a skirt, dress or coat is simulated.")
-      .def_property_readonly(
-          "has_motion", [](const AvatarObject& self) { return self.file().motion.has_value(); },
-          "Whether the body's motion changes how the person looks.")
       .def_property_readonly(
           "betas",
           [](const py::object& self) { return MatrixView(self.cast<const AvatarObject&>().file().betas, self); },

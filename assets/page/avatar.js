@@ -3,13 +3,13 @@
 // Needs no library and is carried by the program as it is.
 //
 // The page holds, by id of its <script> elements:
-//   avatar     JSON: gaussians n, joints, influences, key_interval, units (one a channel), image_size, K [fx, fy, cx, cy], up,
+//   avatar     JSON: gaussians n, joints, influences, key_interval, unit (metres), image_size, K [fx, fy, cx, cy], up,
 //              light (3x9, a row a colour), seconds (one a frame)
 //   gaussians  base64 of float32, a column of n after the other: place 3, quaternion 4 (w first), standard deviations 3,
 //              opacity, albedo 3, normal 3, weights and joints (`influences` each)
 //   bones      float32, frames x joints x 3x4; NaN where nobody is shown
-//   changes    int8, key frames x channels x n, in units: what is added to place as it is seen 3, and with a motion network to log
-//              scales 3, opacity's logit and albedo 3; keys are every key_interval-th frame and the last
+//   changes    int8, key frames x 3 x n, in units: what is added to place as it is seen; keys are every key_interval-th frame and the
+//              last
 // Formulas: render/avatar/pose_gaussians.h and render/splat/project_gaussians.h. A fragment "#frame=30&yaw=90" opens it there,
 // "&plain" shows the picture alone, in its own size on black, and "&measure" counts pictures a second.
 (() => {
@@ -34,14 +34,12 @@
   const PLACE = columns(0, 3), TURN = columns(3, 4), SCALE = columns(7, 3), OPACITY = columns(10, 1)[0], ALBEDO = columns(11, 3),
     NORMAL = columns(14, 3), WEIGHT = columns(17, influences), JOINT = columns(17 + influences, influences);
   const bones = new Float32Array(bytesOf('bones')), changes = new Int8Array(bytesOf('changes'));
-  const units = person.units, moves = units.length > 3;
   const isShown = (frame) => !Number.isNaN(bones[frame * person.joints * 12]);
   const keys = [];
   for (let t = 0; t < frames; ++t) if (t % person.key_interval === 0 || t === frames - 1) keys.push(t);
 
   /// What a frame looks like from anywhere: places, covariance factors and colours in the frame of the camera that filmed.
-  const posed = { frame: -1, middle: [0, 0, 0], place: new Float32Array(3 * n), factor: new Float32Array(9 * n), colour: new Float32Array(3 * n),
-    opacity: Float32Array.from(OPACITY) };
+  const posed = { frame: -1, middle: [0, 0, 0], place: new Float32Array(3 * n), factor: new Float32Array(9 * n), colour: new Float32Array(3 * n) };
 
   function pose(frame) {
     if (posed.frame === frame) return;
@@ -51,8 +49,8 @@
     const next = Math.min(key + 1, keys.length - 1);
     let part = next > key ? (frame - keys[key]) / (keys[next] - keys[key]) : 0;
     if (!isShown(keys[key])) part = 1; else if (!isShown(keys[next])) part = 0; // a key without a person says nothing
-    const before = key * n * units.length, after = next * n * units.length, first = frame * person.joints * 12;
-    const change = (channel, i) => units[channel] * ((1 - part) * changes[before + channel * n + i] + part * changes[after + channel * n + i]);
+    const before = 3 * key * n, after = 3 * next * n, first = frame * person.joints * 12;
+    const change = (channel, i) => person.unit * ((1 - part) * changes[before + channel * n + i] + part * changes[after + channel * n + i]);
     const m = new Float64Array(12), r = new Float64Array(9), light = person.light;
     posed.middle.fill(0);
     for (let i = 0; i < n; ++i) {
@@ -70,12 +68,8 @@
       r[0] = 1 - 2 * (b * b + d * d); r[1] = 2 * (a * b - w * d); r[2] = 2 * (a * d + w * b);
       r[3] = 2 * (a * b + w * d); r[4] = 1 - 2 * (a * a + d * d); r[5] = 2 * (b * d - w * a);
       r[6] = 2 * (a * d - w * b); r[7] = 2 * (b * d + w * a); r[8] = 1 - 2 * (a * a + b * b);
-      if (moves) {
-        const o = OPACITY[i];
-        posed.opacity[i] = o / (o + (1 - o) * Math.exp(-change(6, i))); // the logistic function of logit(o) and the change
-      }
       for (let c = 0; c < 3; ++c) {
-        const scale = moves ? SCALE[c][i] * Math.exp(change(3 + c, i)) : SCALE[c][i];
+        const scale = SCALE[c][i];
         for (let row = 0; row < 3; ++row) {
           posed.factor[9 * i + 3 * row + c] = scale * (m[4 * row] * r[c] + m[4 * row + 1] * r[3 + c] + m[4 * row + 2] * r[6 + c]);
         }
@@ -90,7 +84,7 @@
         const shading = light[L] * SH[0] + SH[1] * (light[L + 1] * ny + light[L + 2] * nz + light[L + 3] * nx) +
           SH[2] * (light[L + 4] * nx * ny + light[L + 5] * ny * nz + light[L + 7] * nx * nz) +
           SH[3] * light[L + 6] * (3 * nz * nz - 1) + SH[4] * light[L + 8] * (nx * nx - ny * ny);
-        posed.colour[3 * i + c] = (ALBEDO[c][i] + (moves ? change(7 + c, i) : 0)) * shading;
+        posed.colour[3 * i + c] = ALBEDO[c][i] * shading;
       }
     }
   }
@@ -221,7 +215,7 @@
       const px = posed.place[3 * i], py = posed.place[3 * i + 1], pz = posed.place[3 * i + 2];
       const x = V[0] * px + V[1] * py + V[2] * pz + shift[0], y = V[3] * px + V[4] * py + V[5] * pz + shift[1],
         z = V[6] * px + V[7] * py + V[8] * pz + shift[2];
-      if (!(z > NEAREST_M) || posed.opacity[i] < LEAST_ALPHA) continue;
+      if (!(z > NEAREST_M) || OPACITY[i] < LEAST_ALPHA) continue;
       const jx = scale * fx / z, jy = scale * fy / z;
       for (let c = 0; c < 3; ++c) {
         const f0 = posed.factor[9 * i + c], f1 = posed.factor[9 * i + 3 + c], f2 = posed.factor[9 * i + 6 + c];
@@ -241,7 +235,7 @@
       screen[to + 2] = l1 * cosine; screen[to + 3] = l1 * sine;
       screen[to + 4] = -l2 * sine; screen[to + 5] = l2 * cosine;
       screen[to + 6] = posed.colour[3 * i]; screen[to + 7] = posed.colour[3 * i + 1]; screen[to + 8] = posed.colour[3 * i + 2];
-      screen[to + 9] = posed.opacity[i];
+      screen[to + 9] = OPACITY[i];
       depth[i] = z;
       nearest = Math.min(nearest, z);
       farthest = Math.max(farthest, z);

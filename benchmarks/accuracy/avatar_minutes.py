@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Renderers of one person side by side after the same time on the same machine: the person of Gaussians, the same without
-what motion does to it, the same without a garment that is simulated, the published network, and the texture-mapped body.
+a garment that is simulated, the published network, and the texture-mapped body.
 
 usage: avatar_minutes.py --bodyloom build/release/apps/bodyloom --motions ../shared/data --out FOLDER [--minutes 2 10 60]
-       [--seeds 1 2 3] [--systems avatar still bare published floor] [--size 512] [--person 3] [--threads 2] [--paced-by MINUTES]
+       [--seeds 1 2 3] [--systems avatar bare published floor] [--size 512] [--person 3] [--threads 2] [--paced-by MINUTES]
        [--report]
 
 A synthetic dancer in a skirt; motions that nobody learned from, at the speed of training, at half of it, and from 90 degrees
@@ -33,9 +33,9 @@ from avatar_garment import SETS, TEST, TRAIN, make_dancer
 from pixels import decoded, write_numbered
 from runs import call, text
 
-SYSTEMS = ("avatar", "still", "bare", "published", "floor")
-WITHOUT = {"avatar": [], "still": ["--without", "motion"], "bare": ["--without", "garment"]}
-NAMES = {"avatar": "avatar", "still": "without motion", "bare": "without garment", "published": "published network", "floor": "textured body"}
+SYSTEMS = ("avatar", "bare", "published", "floor")
+WITHOUT = {"avatar": [], "bare": ["--without", "garment"]}
+NAMES = {"avatar": "avatar", "bare": "without garment", "published": "published network", "floor": "textured body"}
 BOTTOM, MARGIN = 2, 32
 SCORES = (("psnr_box_db", "PSNR box, dB", 2), ("psnr_person_db", "PSNR person, dB", 2), ("ssim", "SSIM", 3), ("lpips", "LPIPS", 4),
           ("tlpips", "tLPIPS", 4), ("flicker", "flicker", 4), ("outline_iou", "outline IoU", 3), ("skirt_iou", "skirt IoU", 3))

@@ -100,7 +100,7 @@ struct Scene {
   }
 
   void MakeFrame(int threads) { frames.Make(pose, {}, threads, &frame); }
-  void Pose(int threads) { PoseGaussians(body, model.data().faces, frame, {}, {.num_threads = threads}, &posed); }
+  void Pose(int threads) { PoseGaussians(body, model.data().faces, frame, {.num_threads = threads}, &posed); }
   void Project(int threads) { ProjectGaussians(posed, camera, {.num_threads = threads}, &screen); }
   void Draw(int threads) { picture.Draw(screen, window, {.num_threads = threads}); }
   void SplatBack(int threads) { splat_gradient.Compute(picture, screen, by_planes, threads, &by_screen); }
@@ -108,7 +108,7 @@ struct Scene {
     ProjectGaussiansBackward(posed, screen, by_screen, camera, {.num_threads = threads}, &by_posed);
   }
   void PoseBack(int threads) {
-    pose_gradient.Compute(body, model.data().faces, frame, {}, {.num_threads = threads}, by_posed, &gradient);
+    pose_gradient.Compute(body, model.data().faces, frame, {.num_threads = threads}, by_posed, &gradient);
   }
   /// A loss's derivatives: any will do.
   void MakeLoss() {

@@ -9,7 +9,6 @@
 #include "bodyloom/data_tools/formats/printable.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/refuse.h"
-#include "bodyloom/render/avatar/motion/motion_offsets.h"
 
 namespace bodyloom {
 namespace {
@@ -72,13 +71,6 @@ class AvatarArrays {
     }
     return {values.begin(), values.end()};
   }
-  FloatColumns Column(const std::string& key, int64_t rows) const {
-    const std::vector<float> values = Floats(key, {rows});
-    FloatColumns column(1, static_cast<int>(rows));
-    column.Fill(0);
-    std::copy(values.begin(), values.end(), column.column(0));
-    return column;
-  }
   FloatColumns Table(const std::string& key, int columns, int64_t rows) const {
     const std::vector<float> values = Floats(key, {rows, columns});
     FloatColumns table(columns, static_cast<int>(rows));
@@ -131,16 +123,6 @@ class AvatarArrays {
   const NpzArrays& arrays_;
   std::string where_;
 };
-
-NdArray ColumnOf(const FloatColumns& table) { return NdArray::FromFloats(table.column(0), {table.rows()}); }
-
-void PutMotion(const AvatarMotionFile& motion, const FloatColumns& parameters, NpzArrays* to) {
-  const MotionNetworkOptions& o = motion.options;
-  const int32_t sizes[4] = {o.side, o.maps, o.embedding, o.width};
-  (*to)["motion_network"] = NdArray::FromInts32(sizes, {4});
-  (*to)["motion_parameters"] = ColumnOf(parameters);
-  (*to)["motion_fps"] = NdArray::FromDouble(motion.fps);
-}
 
 void PutGarment(const AvatarGarment& garment, NpzArrays* to) {
   const LooseGarmentOptions& cut = garment.cut;
@@ -250,13 +232,12 @@ constexpr const char* kBest = "best_";
 void PutKept(const AvatarFile& avatar, const KeptAvatar& kept, NpzArrays* to) {
   NpzArrays best;
   PutAvatar(avatar, kept.body, &best);
-  if (avatar.motion) PutMotion(*avatar.motion, kept.motion, &best);
   for (auto& [key, array] : best) (*to)[kBest + key] = std::move(array);
   (*to)["best_step"] = NdArray::FromDouble(static_cast<double>(kept.step));
   (*to)["best_loss"] = NdArray::FromDouble(kept.loss);
 }
 
-/// What is kept must be of the same person, network and garment as what goes on.
+/// What is kept must be of the same person and garment as what goes on.
 void TakeKept(const NpzArrays& npz, const std::string& where, AvatarCheckpoint* to) {
   NpzArrays best;
   for (const auto& [key, array] : npz) {
@@ -267,31 +248,12 @@ void TakeKept(const NpzArrays& npz, const std::string& where, AvatarCheckpoint* 
   AvatarFile avatar = AvatarFromArrays(best, where + ": " + kBest);
   const AvatarFile& own = to->avatar;
   if (avatar.num_bones() != own.num_bones() || avatar.num_vertices != own.num_vertices ||
-      avatar.num_faces != own.num_faces || avatar.motion.has_value() != own.motion.has_value() ||
-      (own.motion && avatar.motion->options != own.motion->options)) {
-    arrays.Fail("best_body_size", "another body, garment or network than the person's beside it");
+      avatar.num_faces != own.num_faces) {
+    arrays.Fail("best_body_size", "another body or garment than the person's beside it");
   }
   KeptAvatar& kept = to->state.kept.emplace();
   kept.body = std::move(avatar.body);
-  if (avatar.motion) kept.motion = std::move(avatar.motion->parameters);
   kept.step = arrays.Step("best_step"), kept.loss = arrays.Number("best_loss");
-}
-
-std::optional<AvatarMotionFile> TakeMotion(const AvatarArrays& arrays, const NpzArrays& npz) {
-  const auto is_motion = [](const auto& entry) { return entry.first.starts_with("motion_"); };
-  if (std::none_of(npz.begin(), npz.end(), is_motion)) return std::nullopt;
-  AvatarMotionFile motion;
-  const std::vector<int32_t> sizes = arrays.Ints("motion_network", {4}, 1, 1024);
-  motion.options = {.side = sizes[0], .maps = sizes[1], .embedding = sizes[2], .width = sizes[3]};
-  motion.options.outputs = kMotionChannels;
-  if (std::string why; !motion.options.IsValid(&why)) arrays.Fail("motion_network", why);
-  const MotionNetwork network(motion.options, std::vector<uint8_t>(static_cast<size_t>(sizes[0]) * sizes[0]));
-  motion.parameters = arrays.Column("motion_parameters", network.num_parameters());
-  motion.fps = arrays.Number("motion_fps");
-  if (!(motion.fps >= 1 && motion.fps <= 1000)) {
-    arrays.Fail("motion_fps", Concatenate(motion.fps, ", expected 1 to 1000"));
-  }
-  return motion;
 }
 
 std::optional<AvatarGarment> TakeGarment(const AvatarArrays& arrays, const NpzArrays& npz, int num_vertices) {
@@ -337,7 +299,6 @@ std::vector<GaussianKind> TakeKinds(const AvatarArrays& arrays, const std::strin
 void WriteAvatar(const std::string& path, const AvatarFile& avatar) {
   NpzArrays arrays;
   PutAvatar(avatar, avatar.body, &arrays);
-  if (avatar.motion) PutMotion(*avatar.motion, avatar.motion->parameters, &arrays);
   WriteNpz(path, arrays);
 }
 
@@ -350,10 +311,6 @@ void WriteAvatarCheckpoint(const std::string& path, const AvatarCheckpoint& chec
   PutPoses(state.poses, &arrays);
   PutHeldOut(state.held_out, &arrays);
   if (state.kept) PutKept(checkpoint.avatar, *state.kept, &arrays);
-  if (checkpoint.avatar.motion) {
-    PutMotion(*checkpoint.avatar.motion, state.motion, &arrays);
-    PutAdam(state.motion_adam, "motion", &arrays);
-  }
   arrays["pull"] = NdArray::FromFloats(state.pull.data(), {static_cast<int64_t>(state.pull.size())});
   arrays["step"] = NdArray::FromDouble(static_cast<double>(state.step));
   arrays["seconds"] = NdArray::FromDouble(state.seconds);
@@ -390,7 +347,7 @@ AvatarFile AvatarFromArrays(const NpzArrays& npz, const std::string& where) {
   }
   const std::vector<float> light = arrays.Floats("light", {GaussianBody::kLightValues});
   std::copy(light.begin(), light.end(), body.light.begin());
-  avatar.motion = TakeMotion(arrays, npz);
+  avatar.had_network = npz.contains("motion_network");
   return avatar;
 }
 
@@ -403,10 +360,6 @@ AvatarCheckpoint AvatarCheckpointFromArrays(const NpzArrays& npz, const std::str
   const int64_t count = state.body.size();
   state.adam = TakeAdam(arrays, "adam", kColumns, count);
   state.light_adam = TakeAdam(arrays, "light", 1, GaussianBody::kLightValues);
-  if (checkpoint.avatar.motion) {
-    std::swap(state.motion, checkpoint.avatar.motion->parameters);
-    state.motion_adam = TakeAdam(arrays, "motion", 1, state.motion.rows());
-  }
   state.poses = TakePoses(arrays, npz, checkpoint.avatar.num_joints);
   state.held_out = TakeHeldOut(arrays, npz);
   TakeKept(npz, where, &checkpoint);

@@ -103,7 +103,7 @@ class AvatarAnimation {
     }
     page_step_ = AvatarPage::FrameStep(track.num_frames(), avatar_->file.num_bones());
     page_.emplace(avatar_->file.body, avatar_->body->data().faces, shown_->CameraAt(0), EstimatedUp(track),
-                  (track.num_frames() + page_step_ - 1) / page_step_, shown_->has_network());
+                  (track.num_frames() + page_step_ - 1) / page_step_);
   }
 
   /// Frames of a track without times come at kFpsWithoutTimes.
@@ -111,7 +111,7 @@ class AvatarAnimation {
     const std::vector<double>& times = shown_->track().motion.timestamps;
     const double seconds = fps_ > 0 ? times[t] - times.front() : t / kFpsWithoutTimes;
     if (shows) {
-      page_->AddFrame(seconds, shown_->frame(), shown_->posed(), shown_->offsets());
+      page_->AddFrame(seconds, shown_->frame(), shown_->posed());
     } else {
       page_->AddEmptyFrame(seconds);
     }
@@ -137,7 +137,7 @@ class AvatarAnimation {
       rest.bones.insert(rest.bones.end(), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0});
     }
     CameraGaussians gaussians;
-    PoseGaussians(avatar_->file.body, avatar_->body->data().faces, rest, {}, {.num_threads = threads_}, &gaussians);
+    PoseGaussians(avatar_->file.body, avatar_->body->data().faces, rest, {.num_threads = threads_}, &gaussians);
     WriteGaussianPly(request_.ply, gaussians);
   }
 
@@ -222,7 +222,7 @@ class AvatarAnimation {
       if (views[0].window.empty()) continue;
       AvatarView view;
       view.camera = views[0].camera, view.window = views[0].window, view.options.num_threads = threads_;
-      const SplatPicture& picture = shown_->Draw(t, views[0].frame, view);
+      const SplatPicture& picture = shown_->Draw(views[0].frame, view);
       scorer.Add(views[0], picture, shown_->GarmentShare());  // of the picture drawn: not in one call with Draw()
     }
     summary_.scores = scorer.Means();

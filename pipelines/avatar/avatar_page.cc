@@ -2,7 +2,6 @@
 #include "bodyloom/pipelines/avatar/avatar_page.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -21,11 +20,7 @@ using Body = GaussianBody;
 
 constexpr double kMaxKeyBytes = 16e6, kMaxBoneBytes = 16e6;
 
-/// What one step of a key's byte is worth, channel by channel: place as it is seen (metres), log scales, opacity's logit,
-/// albedo. The first three are there without a motion network, too.
-constexpr int kPlaceChannels = 3, kAllChannels = 10;
-constexpr std::array<float, kAllChannels> kUnits = {1e-3F,      1e-3F,      1e-3F,      0.5F / 127, 0.5F / 127,
-                                                    0.5F / 127, 1.5F / 127, 0.5F / 127, 0.5F / 127, 0.5F / 127};
+constexpr float kPageUnit_m = 1e-3F;  ///< what one step of a key's byte is worth
 
 /// Columns of the page's table; the order is that of assets/page/avatar.js.
 enum Column : int {
@@ -101,26 +96,22 @@ int AvatarPage::FrameStep(int num_frames, int num_bones) {
 }
 
 AvatarPage::AvatarPage(const GaussianBody& body, const MatrixX3i& faces, const Camera& camera,
-                       const Eigen::Vector3d& up_in_camera, int num_frames, bool has_offsets)
+                       const Eigen::Vector3d& up_in_camera, int num_frames)
     : body_(body),
       faces_(faces),
       camera_(camera),
       up_in_camera_(up_in_camera),
       num_frames_(num_frames),
       num_gaussians_(body.size()),
-      num_channels_(has_offsets ? kAllChannels : kPlaceChannels),
       gaussians_(PageColumns(body)) {
   BODYLOOM_CHECK(camera.model == CameraModel::kPinhole && !camera.HasDistortion() && camera.width > 0,
                  "an avatar's page: expected a pinhole camera without distortion, of a known size");
-  const double keys = std::max(2.0, kMaxKeyBytes / (static_cast<double>(num_channels_) * std::max(1, num_gaussians_)));
+  const double keys = std::max(2.0, kMaxKeyBytes / (3.0 * std::max(1, num_gaussians_)));
   key_interval_ = std::max(1, static_cast<int>(std::ceil(num_frames / keys)));
 }
 
-void AvatarPage::AddFrame(double seconds, const AvatarFrame& frame, const CameraGaussians& posed,
-                          const GaussianOffsets& offsets) {
-  const bool has_offsets = num_channels_ == kAllChannels;
-  BODYLOOM_CHECK(posed.size() == num_gaussians_ && (!has_offsets || offsets.columns.rows() == num_gaussians_),
-                 "an avatar's page: ", posed.size(), " Gaussians and ", offsets.columns.rows(), " offsets, expected ",
+void AvatarPage::AddFrame(double seconds, const AvatarFrame& frame, const CameraGaussians& posed) {
+  BODYLOOM_CHECK(posed.size() == num_gaussians_, "an avatar's page: ", posed.size(), " Gaussians, expected ",
                  num_gaussians_);
   const int t = static_cast<int>(seconds_.size());
   num_joints_ = static_cast<size_t>(frame.num_joints());
@@ -129,29 +120,23 @@ void AvatarPage::AddFrame(double seconds, const AvatarFrame& frame, const Camera
   seconds_.push_back(seconds);
   if (!IsKey(t)) return;
   bones_alone_.bones = frame.bones, bones_alone_.rest_joints = frame.rest_joints;
-  PoseGaussians(body_, faces_, bones_alone_, {}, {}, &on_bones_);
+  PoseGaussians(body_, faces_, bones_alone_, {}, &on_bones_);
   const size_t first = changes_.size();
-  changes_.resize(first + static_cast<size_t>(num_channels_) * num_gaussians_);
-  const auto set = [&](int channel, int i, float change) {
-    const float steps = std::clamp(change / kUnits[channel], -127.0F, 127.0F);
-    changes_[first + static_cast<size_t>(channel) * num_gaussians_ + i] =
-        std::isfinite(steps) ? static_cast<int8_t>(std::lround(steps)) : int8_t{0};
-  };
+  changes_.resize(first + size_t{3} * num_gaussians_);
   for (int i = 0; i < num_gaussians_; ++i) {
     for (int r = CameraGaussians::kX; r <= CameraGaussians::kZ; ++r) {
-      set(r, i, posed.columns(i, r) - on_bones_.columns(i, r));
+      const float change = posed.columns(i, r) - on_bones_.columns(i, r);
+      const float steps = std::clamp(change / kPageUnit_m, -127.0F, 127.0F);
+      changes_[first + static_cast<size_t>(r) * num_gaussians_ + i] =
+          std::isfinite(steps) ? static_cast<int8_t>(std::lround(steps)) : int8_t{0};
     }
-    if (!has_offsets) continue;
-    for (int c = 0; c < 3; ++c) set(kPlaceChannels + c, i, offsets.columns(i, GaussianOffsets::kLogScale + c));
-    set(kPlaceChannels + 3, i, offsets.columns(i, GaussianOffsets::kOpacityLogit));
-    for (int c = 0; c < 3; ++c) set(kPlaceChannels + 4 + c, i, offsets.columns(i, GaussianOffsets::kAlbedo + c));
   }
 }
 
 void AvatarPage::AddEmptyFrame(double seconds) {
   const int t = static_cast<int>(seconds_.size());
   seconds_.push_back(seconds);
-  if (IsKey(t)) changes_.resize(changes_.size() + static_cast<size_t>(num_channels_) * num_gaussians_, 0);
+  if (IsKey(t)) changes_.resize(changes_.size() + size_t{3} * num_gaussians_, 0);
 }
 
 std::string AvatarPage::ToHtml(const std::string& title, const std::string& subtitle) const {
@@ -162,7 +147,7 @@ std::string AvatarPage::ToHtml(const std::string& title, const std::string& subt
                          {"joints", num_joints_},
                          {"influences", int{Body::kInfluences}},
                          {"key_interval", key_interval_},
-                         {"units", std::vector<float>(kUnits.begin(), kUnits.begin() + num_channels_)},
+                         {"unit", kPageUnit_m},
                          {"image_size", {camera_.width, camera_.height}},
                          {"K", {camera_.fx, camera_.fy, camera_.cx, camera_.cy}},
                          {"up", {up_in_camera_.x(), up_in_camera_.y(), up_in_camera_.z()}},

@@ -19,6 +19,9 @@ namespace bodyloom {
 ShownAvatar::ShownAvatar(const LearnedAvatar& avatar, ShownMotion motion, int num_threads,
                          const PipelineCallbacks& callbacks)
     : avatar_(avatar), threads_(num_threads) {
+  if (avatar.file.had_network) {
+    callbacks.Say(avatar.run + ": learned a network of the motion, which this version no longer has; shown without it");
+  }
   track_ = std::move(motion.track);
   try {
     Pose(motion, callbacks);
@@ -38,7 +41,7 @@ void ShownAvatar::Pose(const ShownMotion& motion, const PipelineCallbacks& callb
   if (!motion.keeps_shape) track_ = WithShape(body, track_, avatar_.file.betas);
   int first = 0, last = track_.num_frames() - 1;
   std::vector<int> shown;
-  moving_ = track_;
+  const Track moving = track_;  // in which no time stands still
   if (!motion.freeze.empty()) {
     const Freeze freeze = ReadFreeze(motion.freeze, track_.num_frames());
     shown = FrozenAt(track_.num_frames(), freeze.frame, freeze.count);
@@ -50,39 +53,17 @@ void ShownAvatar::Pose(const ShownMotion& motion, const PipelineCallbacks& callb
   posed_.emplace(body, track_, ViewAngles(motion.view_yaw, track_.num_frames(), first, last), scale, threads_,
                  motion.where);
   if (avatar_.file.garment) {
-    posed_->Wear(CutAnew(body, avatar_.file.betas, *avatar_.file.garment, avatar_.run).Along(moving_, callbacks),
-                 shown);
+    posed_->Wear(CutAnew(body, avatar_.file.betas, *avatar_.file.garment, avatar_.run).Along(moving, callbacks), shown);
   }
-  if (avatar_.file.motion) OpenNetwork(std::move(shown));
-}
-
-void ShownAvatar::OpenNetwork(std::vector<int> shown) {
-  const AvatarMotionFile& file = *avatar_.file.motion;
-  if (file.options.maps != AvatarMotionMaps::kChannels) {
-    throw std::runtime_error(Concatenate(avatar_.run, ": its network of the motion wants ", file.options.maps,
-                                         " maps, expected ", int{AvatarMotionMaps::kChannels},
-                                         "; it is of another version of this program"));
-  }
-  network_.emplace(*avatar_.body, file.options);
-  network_->Anchor(avatar_.file.body);
-  maps_.emplace(*avatar_.body, moving_, file.options.side, file.fps, std::move(shown), threads_);
-  of_frame_.resize(network_->num_values());
-}
-
-void ShownAvatar::AddMotion(int t) {
-  if (!network_) return;
-  maps_->Maps(t, of_frame_);
-  network_->Compute(avatar_.file.motion->parameters, of_frame_, threads_, &offsets_);
 }
 
 const SplatPicture& ShownAvatar::Draw(int t) {
   posed_->MakeFrame(t, &frame_);
-  return Draw(t, frame_, posed_->ViewAt(t));
+  return Draw(frame_, posed_->ViewAt(t));
 }
 
-const SplatPicture& ShownAvatar::Draw(int t, const AvatarFrame& frame, const AvatarView& view) {
-  AddMotion(t);
-  painter_.Draw(avatar_.file.body, avatar_.body->data().faces, frame, offsets_, view);
+const SplatPicture& ShownAvatar::Draw(const AvatarFrame& frame, const AvatarView& view) {
+  painter_.Draw(avatar_.file.body, avatar_.body->data().faces, frame, view);
   return painter_.picture();
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A person of Gaussians in a motion, drawn frame by frame: posed, its garment simulated, its network told of the motion.
+/// A person of Gaussians in a motion, drawn frame by frame: posed, its garment simulated.
 #pragma once
 
 #include <optional>
@@ -8,11 +8,9 @@
 
 #include "bodyloom/geometry/track.h"
 #include "bodyloom/pipelines/avatar/learned_avatar.h"
-#include "bodyloom/pipelines/avatar/motion_maps.h"
 #include "bodyloom/pipelines/avatar/posed_avatar.h"
 #include "bodyloom/pipelines/callbacks.h"
 #include "bodyloom/render/avatar/avatar_painter.h"
-#include "bodyloom/render/avatar/motion/motion_network.h"
 
 namespace bodyloom {
 
@@ -29,6 +27,8 @@ struct ShownMotion {
 class ShownAvatar {
  public:
   /// The garment is simulated along the whole motion, which is most of what this takes. Keeps a reference to `avatar`.
+  /// A person who learned a network of the motion, as those of earlier versions did, is shown without it, and a message
+  /// says so.
   /// Throws std::runtime_error naming what cannot be used, RequestError for a view or freeze that is none, Cancelled.
   ShownAvatar(const LearnedAvatar& avatar, ShownMotion motion, int num_threads, const PipelineCallbacks& callbacks);
   ShownAvatar(const ShownAvatar&) = delete;
@@ -44,35 +44,26 @@ class ShownAvatar {
   [[nodiscard]] Camera CameraAt(int t) const { return posed_->CameraAt(t); }
   /// Where the garment's nodes are in the motion's own frames; without frames: none is worn.
   [[nodiscard]] const GarmentBones& garment() const { return posed_->garment(); }
-  [[nodiscard]] bool has_network() const { return network_.has_value(); }
 
   /// Frame t, which has a result. The references that this class gives are valid until the next Draw.
   const SplatPicture& Draw(int t);
-  /// The motion of frame t on a body that is posed and looked at as given.
-  const SplatPicture& Draw(int t, const AvatarFrame& frame, const AvatarView& view);
+  /// Posed and looked at as given.
+  const SplatPicture& Draw(const AvatarFrame& frame, const AvatarView& view);
 
   // Of the picture last drawn.
   [[nodiscard]] const SplatPicture& picture() const { return painter_.picture(); }
   [[nodiscard]] const CameraGaussians& posed() const { return painter_.posed(); }
   [[nodiscard]] const AvatarFrame& frame() const { return frame_; }  ///< of Draw(t)
-  [[nodiscard]] const GaussianOffsets& offsets() const { return offsets_; }
   /// How much of each pixel is the garment, in [0, 1]; empty: none is worn.
   [[nodiscard]] std::vector<float> GarmentShare();
 
  private:
   void Pose(const ShownMotion& motion, const PipelineCallbacks& callbacks);
-  void OpenNetwork(std::vector<int> shown);
-  void AddMotion(int t);
 
   const LearnedAvatar& avatar_;
   const int threads_;
   Track track_;
-  Track moving_;  ///< in which no time stands still; for the garment and the network
   std::optional<PosedAvatar> posed_;
-  std::optional<AvatarMotion> network_;
-  std::optional<AvatarMotionMaps> maps_;
-  std::vector<float> of_frame_;
-  GaussianOffsets offsets_;
   AvatarFrame frame_;
   AvatarPainter painter_;
 };

@@ -21,7 +21,6 @@
 #include "bodyloom/geometry/uv_texels.h"
 #include "bodyloom/pipelines/avatar/clip_clothes.h"
 #include "bodyloom/pipelines/avatar/frame_spans.h"
-#include "bodyloom/pipelines/avatar/motion_maps.h"
 #include "bodyloom/pipelines/avatar/refined_track.h"
 #include "bodyloom/pipelines/avatar/worn_garment.h"
 #include "bodyloom/pipelines/files.h"
@@ -82,13 +81,6 @@ class AvatarTraining {
       held_out_ = clip_->ReadViews(Spread(split_.validation, kJudgedFrames), kTrainingMargin, true, callbacks_);
     }
     clock_.Begin("begin");
-    if (request_.motion) {
-      MotionNetworkOptions network;
-      network.maps = AvatarMotionMaps::kChannels;
-      motion_.emplace(clip_->body(), network);
-      maps_.emplace(clip_->body(), clip_->track(), network.side, MotionRate(clip_->track()), std::vector<int>(),
-                    request_.clip.threads);
-    }
     refiner_.emplace(clip_->body(), clip_->track().motion.betas, TrackedPoses(clip_->body(), clip_->track()),
                      PoseRefinerOptions());
     if (!request_.resume) Begin();
@@ -133,7 +125,6 @@ class AvatarTraining {
                                    {"data", request_.clip.data}};
     if (request_.refine) json["refine"] = true;  // runs of earlier versions name neither
     if (request_.all_steps) json["all_steps"] = true;
-    if (request_.motion) json["motion"] = true;
     if (request_.garment) json["garment"] = true;
     return json.dump();
   }
@@ -182,10 +173,6 @@ class AvatarTraining {
     checkpoint_.avatar.num_faces = clip_->body().num_faces();
     checkpoint_.state = AvatarTrainingState::Of(std::move(body));
     if (request_.refine) checkpoint_.state.poses.Reset(refiner_->num_frames(), refiner_->num_joints());
-    if (motion_) {
-      checkpoint_.avatar.motion = {motion_->options(), {}, MotionRate(clip_->track())};
-      checkpoint_.state.BeginMotion(motion_->Initial(request_.seed));
-    }
     checkpoint_.options = OptionsText();
     WriteConfig();
   }
@@ -193,6 +180,10 @@ class AvatarTraining {
   void TakeCheckpoint() {
     const std::string path = AvatarCheckpointPath(request_.out);
     checkpoint_ = ReadAvatarCheckpoint(path);
+    if (checkpoint_.avatar.had_network) {
+      throw RequestError(path +
+                         ": was begun with a network of the motion, which this version no longer has; begin anew");
+    }
     if (checkpoint_.options != OptionsText()) {
       throw RequestError(path +
                          ": was begun with other data, frames, steps, minutes, seed, --skin, --loose, --refine, "
@@ -222,14 +213,8 @@ class AvatarTraining {
   /// With corrected poses the person gets better in those alone, and frames held out have none.
   [[nodiscard]] bool IsWatched() const { return !request_.all_steps && !request_.refine; }
 
-  [[nodiscard]] MotionLesson MotionToLearn() {
-    if (!motion_) return {};
-    return {&*motion_, [this](int time, std::span<float> maps) { maps_->Maps(time, maps); }};
-  }
-
   void Train() {
-    AvatarTrainer trainer(clip_->body().data().faces, views_, options_, request_.refine ? &*refiner_ : nullptr,
-                          MotionToLearn());
+    AvatarTrainer trainer(clip_->body().data().faces, views_, options_, request_.refine ? &*refiner_ : nullptr);
     trainer.Watch(held_out_);
     AvatarTrainingState& state = checkpoint_.state;
     if (metrics_.empty()) metrics_ = "step,loss,cost,drawn,relocated,held_out,seconds\n";
@@ -266,7 +251,6 @@ class AvatarTraining {
     WriteAvatarCheckpoint(AvatarCheckpointPath(request_.out), checkpoint_);
     AvatarFile avatar = checkpoint_.avatar;
     avatar.body = checkpoint_.state.ResultBody();
-    if (avatar.motion) avatar.motion->parameters = checkpoint_.state.ResultMotion();
     WriteAvatar(AvatarPath(request_.out), avatar);
     WriteFileAtomically(MetricsPath(), metrics_);
   }
@@ -282,9 +266,8 @@ class AvatarTraining {
     AvatarTrainerOptions options = options_;
     options.learn_person = false, options.refine_from = 0;
     options.steps = request_.refine_rounds * shown, options.seconds = 0;
-    AvatarTrainer trainer(clip_->body().data().faces, views_, options, &*refiner_, MotionToLearn());
+    AvatarTrainer trainer(clip_->body().data().faces, views_, options, &*refiner_);
     AvatarTrainingState state = AvatarTrainingState::Of(checkpoint_.state.ResultBody());
-    if (motion_) state.BeginMotion(checkpoint_.state.ResultMotion());
     state.poses = checkpoint_.state.poses;
     if (state.poses.values.rows() == 0) state.poses.Reset(refiner_->num_frames(), refiner_->num_joints());
     while (!trainer.IsDone(state)) {
@@ -307,16 +290,9 @@ class AvatarTraining {
     AvatarScorer scorer;
     AvatarPainter painter;
     std::vector<Image> sheet;
-    GaussianOffsets offsets;
-    std::vector<float> maps(motion_ ? motion_->num_values() : 0);
     const GaussianBody& body = checkpoint_.state.ResultBody();
-    if (motion_) motion_->Anchor(body);
     for (size_t i = 0; i < views.size(); ++i) {
       if (views[i].window.empty()) continue;
-      if (motion_) {
-        maps_->Maps(views[i].time, maps);
-        motion_->Compute(checkpoint_.state.ResultMotion(), maps, request_.clip.threads, &offsets);
-      }
       AvatarView view;
       view.camera = views[i].camera, view.window = views[i].window;
       view.options.num_threads = request_.clip.threads;
@@ -325,7 +301,7 @@ class AvatarTraining {
         refiner_->MakeFrame(views[i].time, poses, request_.clip.threads, &frame);
         CarryBones(views[i].frame, &frame);
       }
-      painter.Draw(body, clip_->body().data().faces, frame, offsets, view);
+      painter.Draw(body, clip_->body().data().faces, frame, view);
       scorer.Add(views[i], painter.picture(), GarmentIn(&painter));
       if (preview == nullptr || !std::binary_search(shown.begin(), shown.end(), static_cast<int>(i))) continue;
       sheet.push_back(TrueWindow(views[i]));
@@ -361,8 +337,7 @@ class AvatarTraining {
                                    {"steps", request_.steps},         {"minutes", request_.minutes},
                                    {"skin_side", request_.skin_side}, {"loose", request_.loose},
                                    {"seed", request_.seed},           {"refine", request_.refine},
-                                   {"motion", request_.motion},       {"garment", request_.garment},
-                                   {"all_steps", request_.all_steps}};
+                                   {"garment", request_.garment},     {"all_steps", request_.all_steps}};
     if (!garment_report_.is_null()) json[kGarmentFit] = garment_report_;
     WriteFileAtomically(RunConfigPath(request_.out), json.dump(1) + "\n");
   }
@@ -405,8 +380,6 @@ class AvatarTraining {
   std::vector<TrainingView> views_, held_out_;
   AvatarTrainerOptions options_;
   std::optional<PoseRefiner> refiner_;
-  std::optional<AvatarMotion> motion_;
-  std::optional<AvatarMotionMaps> maps_;
   std::optional<WornGarment> worn_;
   nlohmann::ordered_json garment_report_;
   AvatarCheckpoint checkpoint_;

@@ -26,8 +26,6 @@ struct TrainAvatarRequest {
   /// Without such frames, and with `refine`, no training does.
   bool all_steps = false;
   uint64_t seed = 1;
-  /// Learn what the motion of the body's surface does to the person (render/avatar/motion/motion_network.h).
-  bool motion = true;
   /// Look for a skirt, dress or coat (pipelines/avatar/clip_clothes.h); one that is found is simulated, in training and
   /// whenever the person is shown.
   bool garment = true;

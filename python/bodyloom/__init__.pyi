@@ -399,7 +399,6 @@ class Avatar:
         steps: int = 6000,
         minutes: float | None = None,
         seed: int = 1,
-        motion: bool = True,
         garment: bool = True,
         all_steps: bool = False,
         refine: bool = False,
@@ -441,8 +440,6 @@ class Avatar:
     def gaussians(self) -> int: ...
     @property
     def has_garment(self) -> bool: ...
-    @property
-    def has_motion(self) -> bool: ...
     @property
     def betas(self) -> _Doubles: ...
 

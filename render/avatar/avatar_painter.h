@@ -22,10 +22,8 @@ struct AvatarView {
 /// Keeps its memory between pictures. Not for use by two threads at once.
 class AvatarPainter {
  public:
-  /// `offsets` (without columns: none) are what the frame's motion adds. Throws as PoseGaussians, ProjectGaussians and
-  /// SplatPicture::Draw.
-  void Draw(const GaussianBody& body, const MatrixX3i& faces, const AvatarFrame& frame, const GaussianOffsets& offsets,
-            const AvatarView& view);
+  /// Throws as PoseGaussians, ProjectGaussians and SplatPicture::Draw.
+  void Draw(const GaussianBody& body, const MatrixX3i& faces, const AvatarFrame& frame, const AvatarView& view);
 
   [[nodiscard]] const SplatPicture& picture() const { return picture_; }
   /// Of the picture last drawn, a number a pixel of the window: how much of it is Gaussians of a kind of `body`, which
@@ -35,9 +33,8 @@ class AvatarPainter {
   [[nodiscard]] const CameraGaussians& posed() const { return posed_; }
 
   /// From d loss / d planes of what was last drawn, with the same arguments.
-  void GoBack(const GaussianBody& body, const MatrixX3i& faces, const AvatarFrame& frame,
-              const GaussianOffsets& offsets, const AvatarView& view, const FloatColumns& by_planes,
-              AvatarGradient* gradient);
+  void GoBack(const GaussianBody& body, const MatrixX3i& faces, const AvatarFrame& frame, const AvatarView& view,
+              const FloatColumns& by_planes, AvatarGradient* gradient);
   /// By the Gaussians on the screen, of the last GoBack().
   [[nodiscard]] const FloatColumns& by_screen() const { return by_screen_; }
 

@@ -22,7 +22,7 @@ struct SkinAnchor {
 /// What a Gaussian is of.
 enum class GaussianKind : uint8_t {
   kSkin,   ///< the body's surface
-  kLoose,  ///< hair and whatever else stands off: a network may move it far
+  kLoose,  ///< hair and whatever else stands off
   kCloth,  ///< a garment that is simulated (geometry/cloth/cloth_nodes.h)
 };
 

@@ -9,8 +9,8 @@
 namespace bodyloom {
 
 void PoseGaussians(const GaussianBody& body, const MatrixX3i& faces, const AvatarFrame& frame,
-                   const GaussianOffsets& offsets, const PoseGaussiansOptions& options, CameraGaussians* posed) {
-  const avatar_internal::PoseTables tables = avatar_internal::TablesOf(body, faces, frame, offsets, options);
+                   const PoseGaussiansOptions& options, CameraGaussians* posed) {
+  const avatar_internal::PoseTables tables = avatar_internal::TablesOf(body, faces, frame, options);
   const int count = body.size();
   posed->Resize(count);
   FloatColumns& out = posed->columns;

@@ -27,9 +27,9 @@ void ToJointPlace(const MatrixX3f& rest_joints, std::vector<float>* bones) {
 }  // namespace
 
 void PoseGradient::Compute(const GaussianBody& body, const MatrixX3i& faces, const AvatarFrame& frame,
-                           const GaussianOffsets& offsets, const PoseGaussiansOptions& options,
-                           const FloatColumns& by_posed, AvatarGradient* gradient) {
-  const avatar_internal::PoseTables tables = avatar_internal::TablesOf(body, faces, frame, offsets, options);
+                           const PoseGaussiansOptions& options, const FloatColumns& by_posed,
+                           AvatarGradient* gradient) {
+  const avatar_internal::PoseTables tables = avatar_internal::TablesOf(body, faces, frame, options);
   const int count = body.size(), num_chunks = avatar_internal::NumChunks(count);
   BODYLOOM_CHECK(by_posed.rows() == count && by_posed.columns() == CameraGaussians::kNumColumns,
                  "pose gradient: derivatives are ", by_posed.rows(), " by ", by_posed.columns(), ", expected ", count,

@@ -6,10 +6,6 @@
 /// skin weights and the bones. The corrective of the skin is taken as given (it is a function of the pose too, of
 /// millimetres; a derivative by the pose leaves it out).
 ///
-/// Offsets add to parameters, so derivatives by them are those by the parameters that they add to
-/// (GaussianOffsets::kPosition is GaussianBody::kPosition, kLogScale, kOpacityLogit and kAlbedo follow each other there
-/// from GaussianBody::kLogScale on).
-///
 /// Sums over Gaussians are taken by chunks that depend on their number alone: the same bytes for any number of threads
 /// and any instruction set.
 #pragma once
@@ -35,8 +31,7 @@ class PoseGradient {
   /// The arguments of PoseGaussians, and `by_posed`: d loss/d posed, columns of CameraGaussians. A row whose derivatives
   /// are all zero gets zeros and gives nothing, whatever it holds. Throws as PoseGaussians.
   void Compute(const GaussianBody& body, const MatrixX3i& faces, const AvatarFrame& frame,
-               const GaussianOffsets& offsets, const PoseGaussiansOptions& options, const FloatColumns& by_posed,
-               AvatarGradient* gradient);
+               const PoseGaussiansOptions& options, const FloatColumns& by_posed, AvatarGradient* gradient);
 
  private:
   FloatColumns sums_;  ///< a column a chunk: by the light's 27 × lanes, then by the bones

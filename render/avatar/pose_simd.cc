@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "bodyloom/render/avatar/gaussian_offsets.h"
 #include "bodyloom/render/splat/camera_gaussians.h"
 
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
@@ -163,7 +162,7 @@ HWY_INLINE void FindBasis(Vec3 n, VF* basis) {
 /// Everything of one register of Gaussians that both directions need.
 struct Pose {
   Mat3 a;
-  Vec3 t, rest;  ///< rest: with its offset
+  Vec3 t, rest;
   Turn turn;
   Vec3 scale;
   Mat3 shape;  ///< R diag(scale)
@@ -189,15 +188,8 @@ HWY_INLINE void FindPose(const PoseTables& tables, int row, const Block& block, 
   LoadBone(block, lane, &pose->a, &pose->t);
   pose->rest = parameters.Three(Body::kPosition);
   pose->albedo = parameters.Three(Body::kAlbedo);
-  Vec3 log_scale = parameters.Three(Body::kLogScale);
-  VF logit = parameters(Body::kOpacityLogit);
-  if (tables.offsets != nullptr) {
-    const Reader offsets = {tables.offsets + row, tables.offset_stride};
-    pose->rest = pose->rest + offsets.Three(GaussianOffsets::kPosition);
-    log_scale = log_scale + offsets.Three(GaussianOffsets::kLogScale);
-    logit = hn::Add(logit, offsets(GaussianOffsets::kOpacityLogit));
-    pose->albedo = pose->albedo + offsets.Three(GaussianOffsets::kAlbedo);
-  }
+  const Vec3 log_scale = parameters.Three(Body::kLogScale);
+  const VF logit = parameters(Body::kOpacityLogit);
   pose->turn = TurnOf(parameters);
   pose->scale = {Exp(d, log_scale.x), Exp(d, log_scale.y), Exp(d, log_scale.z)};
   const auto scaled = [&](Vec3 r) HWY_ATTR {

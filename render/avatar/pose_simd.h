@@ -16,8 +16,6 @@ inline constexpr int kLanes = FloatColumns::kLanes;
 struct PoseTables {
   const float* parameters = nullptr;  ///< columns of GaussianBody
   size_t parameter_stride = 0;
-  const float* offsets = nullptr;  ///< columns of GaussianOffsets, or null
-  size_t offset_stride = 0;
   const int32_t* joints = nullptr;
   const float* bones = nullptr;        ///< J × 12
   const float* correctives = nullptr;  ///< V × 4, or null

@@ -6,7 +6,7 @@
 namespace bodyloom::avatar_internal {
 
 PoseTables TablesOf(const GaussianBody& body, const MatrixX3i& faces, const AvatarFrame& frame,
-                    const GaussianOffsets& offsets, const PoseGaussiansOptions& options) {
+                    const PoseGaussiansOptions& options) {
   std::string why;
   BODYLOOM_CHECK(options.IsValid(&why), "posing Gaussians: ", why);
   BODYLOOM_CHECK(body.IsValid(frame.num_joints(), static_cast<int>(faces.rows()), &why), "posing Gaussians: ", why);
@@ -14,12 +14,6 @@ PoseTables TablesOf(const GaussianBody& body, const MatrixX3i& faces, const Avat
                  "posing Gaussians: ", frame.bones.size(), " numbers of bones, expected ", 12 * frame.num_joints());
   PoseTables tables;
   tables.parameters = body.parameters.data(), tables.parameter_stride = body.parameters.stride();
-  if (offsets.columns.columns() > 0) {
-    BODYLOOM_CHECK(offsets.columns.columns() == GaussianOffsets::kNumColumns && offsets.columns.rows() == body.size(),
-                   "posing Gaussians: offsets are ", offsets.columns.rows(), " by ", offsets.columns.columns(),
-                   ", expected ", body.size(), " by ", static_cast<int>(GaussianOffsets::kNumColumns));
-    tables.offsets = offsets.columns.data(), tables.offset_stride = offsets.columns.stride();
-  }
   if (!frame.correctives.empty()) {
     const auto num_vertices = static_cast<int>(frame.correctives.size() / 4);
     BODYLOOM_CHECK(faces.size() == 0 || (faces.minCoeff() >= 0 && faces.maxCoeff() < num_vertices),

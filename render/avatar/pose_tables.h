@@ -5,7 +5,6 @@
 #include "bodyloom/geometry/arrays.h"
 #include "bodyloom/render/avatar/avatar_frame.h"
 #include "bodyloom/render/avatar/gaussian_body.h"
-#include "bodyloom/render/avatar/gaussian_offsets.h"
 #include "bodyloom/render/avatar/pose_options.h"
 #include "bodyloom/render/avatar/pose_simd.h"
 
@@ -16,6 +15,6 @@ inline int NumChunks(int num_rows) { return (num_rows + kRowsAChunk - 1) / kRows
 
 /// Throws as PoseGaussians does. The arguments must outlive the answer.
 PoseTables TablesOf(const GaussianBody& body, const MatrixX3i& faces, const AvatarFrame& frame,
-                    const GaussianOffsets& offsets, const PoseGaussiansOptions& options);
+                    const PoseGaussiansOptions& options);
 
 }  // namespace bodyloom::avatar_internal

@@ -35,7 +35,6 @@ class Learned(unittest.TestCase):
                     "garment")
         self.assertEqual((self.folder / "command/avatar.npz").read_bytes(), (self.folder / "run/avatar.npz").read_bytes())
         self.assertGreater(self.avatar.gaussians, 1000)
-        self.assertTrue(self.avatar.has_motion)
         self.assertFalse(self.avatar.has_garment)
         self.assertIn("Gaussians", repr(bodyloom.Avatar.load(self.folder / "run/avatar.npz")))
 

@@ -10,7 +10,6 @@
 
 #include "bodyloom/render/avatar/avatar_frame.h"
 #include "bodyloom/render/avatar/gaussian_body.h"
-#include "bodyloom/render/avatar/gaussian_offsets.h"
 #include "tests/support/splat_twin.h"
 
 namespace bodyloom {
@@ -19,7 +18,6 @@ namespace bodyloom {
 template <class T>
 struct TwinPerson {
   std::vector<std::array<T, GaussianBody::kNumParameters>> rows;
-  std::vector<std::array<T, GaussianOffsets::kNumColumns>> offsets;
   std::array<T, GaussianBody::kLightValues> light;
   std::vector<std::array<T, 12>> bones;  ///< rows of [R_k | p_k]
 };
@@ -48,7 +46,6 @@ TwinGaussian<T> TwinPose(const GaussianBody& body, const MatrixX3i& faces, const
   using std::sqrt;
   using Body = GaussianBody;
   const auto& row = person.rows[i];
-  const auto& offset = person.offsets[i];
   // Weights.
   std::array<T, Body::kInfluences> weight;
   T sum(0);
@@ -68,7 +65,7 @@ TwinGaussian<T> TwinPose(const GaussianBody& body, const MatrixX3i& faces, const
       T moved = bone[4 * r + 3];
       for (int c = 0; c < 3; ++c) {
         a[r][c] += weight[k] * bone[4 * r + c];
-        moved += bone[4 * r + c] * (row[c] + offset[c] - T(double(frame.rest_joints(joint, c))));
+        moved += bone[4 * r + c] * (row[c] - T(double(frame.rest_joints(joint, c))));
       }
       g.position[r] += weight[k] * moved;
     }
@@ -92,12 +89,12 @@ TwinGaussian<T> TwinPose(const GaussianBody& body, const MatrixX3i& faces, const
     for (int k = 0; k < 3; ++k) {
       turned[k] = v[k] + T(2) * (u[(k + 1) % 3] * inner[(k + 2) % 3] - u[(k + 2) % 3] * inner[(k + 1) % 3]) / square;
     }
-    const T scale = exp(row[Body::kLogScale + c] + offset[GaussianOffsets::kLogScale + c]);
+    const T scale = exp(row[Body::kLogScale + c]);
     for (int r = 0; r < 3; ++r) {
       g.factor[3 * r + c] = scale * (a[r][0] * turned[0] + a[r][1] * turned[1] + a[r][2] * turned[2]);
     }
   }
-  g.opacity = T(1) / (T(1) + exp(-(row[Body::kOpacityLogit] + offset[GaussianOffsets::kOpacityLogit])));
+  g.opacity = T(1) / (T(1) + exp(-row[Body::kOpacityLogit]));
   // Colour.
   std::array<T, 3> m, n;
   for (int r = 0; r < 3; ++r) {
@@ -112,22 +109,17 @@ TwinGaussian<T> TwinPose(const GaussianBody& body, const MatrixX3i& faces, const
   for (int c = 0; c < 3; ++c) {
     T shading(0);
     for (int h = 0; h < 9; ++h) shading += person.light[9 * c + h] * basis[h];
-    g.colour[c] = (row[Body::kAlbedo + c] + offset[GaussianOffsets::kAlbedo + c]) * shading;
+    g.colour[c] = row[Body::kAlbedo + c] * shading;
   }
   return g;
 }
 
 /// The numbers of a body and a frame.
 template <class T>
-TwinPerson<T> TwinOf(const GaussianBody& body, const AvatarFrame& frame, const GaussianOffsets& offsets) {
+TwinPerson<T> TwinOf(const GaussianBody& body, const AvatarFrame& frame) {
   TwinPerson<T> person;
   for (int i = 0; i < body.size(); ++i) {
     person.rows.push_back(RowOf<T, GaussianBody::kNumParameters>(body.parameters, i));
-    person.offsets.emplace_back();
-    person.offsets.back().fill(T(0));
-    if (offsets.columns.columns() > 0) {
-      person.offsets.back() = RowOf<T, GaussianOffsets::kNumColumns>(offsets.columns, i);
-    }
   }
   for (int k = 0; k < GaussianBody::kLightValues; ++k) person.light[k] = T(double(body.light[k]));
   person.bones.resize(frame.num_joints());

@@ -56,14 +56,9 @@ AvatarTrainingState AvatarTrainingState::Of(GaussianBody body) {
   return state;
 }
 
-void AvatarTrainingState::BeginMotion(FloatColumns parameters) {
-  motion = std::move(parameters);
-  motion_adam.Reset(motion.columns(), motion.rows());
-}
-
 AvatarTrainer::AvatarTrainer(const MatrixX3i& faces, std::span<const TrainingView> views,
-                             const AvatarTrainerOptions& options, const PoseRefiner* refiner, MotionLesson motion)
-    : faces_(faces), views_(views), options_(options), refiner_(refiner), motion_(std::move(motion)) {
+                             const AvatarTrainerOptions& options, const PoseRefiner* refiner)
+    : faces_(faces), views_(views), options_(options), refiner_(refiner) {
   std::string why;
   BODYLOOM_CHECK(options.IsValid(&why), "avatar training: ", why);
   for (size_t i = 0; i < views.size(); ++i) {
@@ -122,9 +117,6 @@ AvatarStep AvatarTrainer::Step(AvatarTrainingState* state) {
   const Stopwatch watch;
   BODYLOOM_CHECK(static_cast<int>(state->pull.size()) == state->body.size(), "avatar training: ", state->pull.size(),
                  " pulls for ", state->body.size(), " Gaussians");
-  BODYLOOM_CHECK(state->motion.rows() == (motion_.model != nullptr ? motion_.model->num_parameters() : 0),
-                 "avatar training: ", state->motion.rows(), " parameters of a motion network, expected ",
-                 motion_.model != nullptr ? motion_.model->num_parameters() : 0);
   const double progress = Progress(*state);
   AvatarStep done;
   done.view = ViewAt(state->step);
@@ -140,7 +132,7 @@ AvatarStep AvatarTrainer::Step(AvatarTrainingState* state) {
   done.loss = loss_.Compute(painter_.picture().planes(), truth_, background, options_.num_threads, &by_planes_);
   if (std::isfinite(done.loss)) {
     clock_.Begin("derivatives");
-    painter_.GoBack(state->body, faces_, frame, offsets_, seen, by_planes_, &gradient_);
+    painter_.GoBack(state->body, faces_, frame, seen, by_planes_, &gradient_);
     clock_.Begin("moving");
     MovePose(view, progress, state);
     if (options_.learn_person) LearnPerson(progress, state, &done);
@@ -156,8 +148,7 @@ AvatarStep AvatarTrainer::Step(AvatarTrainingState* state) {
 AvatarView AvatarTrainer::Draw(const TrainingView& view, const AvatarFrame& frame, const AvatarTrainingState& state) {
   AvatarView seen;
   seen.camera = view.camera, seen.window = view.window, seen.options.num_threads = options_.num_threads;
-  AddMotion(view, state);
-  painter_.Draw(state.body, faces_, frame, offsets_, seen);
+  painter_.Draw(state.body, faces_, frame, seen);
   return seen;
 }
 
@@ -173,13 +164,12 @@ void AvatarTrainer::JudgeHeldOut(AvatarTrainingState* state) {
     sum += loss_.Compute(painter_.picture().planes(), truth_, kGrey, options_.num_threads, &by_planes_);
   }
   const double loss = sum / static_cast<double>(held_out_.size());
-  if (!state->kept || loss < state->kept->loss) state->kept = {state->body, state->motion, state->step, loss};
+  if (!state->kept || loss < state->kept->loss) state->kept = {state->body, state->step, loss};
   if (state->step % every == 0) state->held_out.Add(loss, state->step, Progress(*state), options_.held_out);
 }
 
 void AvatarTrainer::LearnPerson(double progress, AvatarTrainingState* state, AvatarStep* done) {
   done->drawn = ChooseMovers(state);
-  MoveMotion(state, progress);
   done->cost = AddGaussianCost(state->body, options_.cost, &gradient_.parameters);
   Move(state, progress);
   MoveLight(state);
@@ -225,23 +215,6 @@ void AvatarTrainer::MoveLight(AvatarTrainingState* state) {
   std::copy_n(light.column(0), GaussianBody::kLightValues, state->body.light.begin());
 }
 
-void AvatarTrainer::AddMotion(const TrainingView& view, const AvatarTrainingState& state) {
-  if (motion_.model == nullptr) return;
-  if (!std::exchange(anchored_, true)) motion_.model->Anchor(state.body);
-  motion_maps_.resize(motion_.model->num_values());
-  motion_.maps(view.time, motion_maps_);
-  motion_.model->Compute(state.motion, motion_maps_, options_.num_threads, &offsets_);
-}
-
-void AvatarTrainer::MoveMotion(AvatarTrainingState* state, double progress) {
-  if (motion_.model == nullptr) return;
-  motion_.model->Back(state->motion, gradient_.parameters, options_.num_threads, &by_motion_);
-  const float rate = options_.rates.MotionAt(progress);
-  moves_of_motion_.assign(state->motion.rows(), 1);
-  AdamStep(by_motion_, std::span(&rate, 1), moves_of_motion_, options_.num_threads, &state->motion_adam,
-           &state->motion);
-}
-
 int AvatarTrainer::Relocate(AvatarTrainingState* state, double progress) {
   if (options_.relocate_every == 0 || state->step % options_.relocate_every != 0) return 0;
   std::vector<int> moved;
@@ -249,7 +222,6 @@ int AvatarTrainer::Relocate(AvatarTrainingState* state, double progress) {
     const uint64_t seed = HashRandom(options_.seed, {kRelocateStream, static_cast<uint64_t>(state->step)}).Next();
     moved = RelocateGaussians(state->pull, {options_.dead_opacity, seed}, &state->body);
     for (const int row : moved) state->adam.Forget(row);
-    anchored_ = anchored_ && moved.empty();
   }
   std::fill(state->pull.begin(), state->pull.end(), 0.0F);
   return static_cast<int>(moved.size());

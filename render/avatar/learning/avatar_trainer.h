@@ -16,9 +16,6 @@
 /// With a PoseRefiner the frame's pose is corrected too (pose_refiner.h), from refine_from of the training on, by the
 /// derivatives of the same picture. Without learn_person the Gaussians and the light stay and the poses alone move.
 ///
-/// With a MotionLesson the network of the motion (render/avatar/motion/avatar_motion.h) learns with the person, by the same
-/// derivatives; hidden Gaussians teach it nothing either.
-///
 /// With Watch() the loss of frames that are not learned from is taken now and then, and where more steps no longer help
 /// them the training comes to its end (held_out_curve.h).
 ///
@@ -42,7 +39,6 @@
 #include "bodyloom/render/avatar/learning/pose_refiner.h"
 #include "bodyloom/render/avatar/learning/relocate_gaussians.h"
 #include "bodyloom/render/avatar/learning/training_view.h"
-#include "bodyloom/render/avatar/motion/avatar_motion.h"
 
 namespace bodyloom {
 
@@ -70,9 +66,8 @@ struct AvatarTrainerOptions {
 /// The person at one moment of a training.
 struct KeptAvatar {
   GaussianBody body;
-  FloatColumns motion;  ///< as AvatarTrainingState::motion
-  int64_t step = 0;     ///< steps done
-  double loss = 0;      ///< of the frames held out
+  int64_t step = 0;  ///< steps done
+  double loss = 0;   ///< of the frames held out
 };
 
 /// All that goes on.
@@ -82,8 +77,6 @@ struct AvatarTrainingState {
   AdamState light_adam;     ///< of body.light, a row a coefficient
   std::vector<float> pull;  ///< by row: sum since the last move of |d loss / d mean on the screen|
   PoseCorrections poses;    ///< of every frame of the clip; without rows: none are refined
-  FloatColumns motion;      ///< parameters of the network of the motion; without rows: there is none
-  AdamState motion_adam;
   HeldOutCurve held_out;
   std::optional<KeptAvatar> kept;  ///< whose loss of the frames held out was least, where they were judged
   int64_t step = 0;                ///< steps done
@@ -93,15 +86,6 @@ struct AvatarTrainingState {
   static AvatarTrainingState Of(GaussianBody body);
   /// What the training leaves: what was kept, else the person as it is.
   [[nodiscard]] const GaussianBody& ResultBody() const { return kept ? kept->body : body; }
-  [[nodiscard]] const FloatColumns& ResultMotion() const { return kept ? kept->motion : motion; }
-  /// Gives it a network's parameters.
-  void BeginMotion(FloatColumns parameters);
-};
-
-/// What the network of the motion learns by; pointers are borrowed.
-struct MotionLesson {
-  AvatarMotion* model = nullptr;
-  MotionMapsOf maps;  ///< by TrainingView::time
 };
 
 struct AvatarStep {
@@ -115,9 +99,9 @@ struct AvatarStep {
 class AvatarTrainer {
  public:
   /// Views without a person are left out. Throws std::invalid_argument when options are not valid or no view is left.
-  /// `faces`, `views`, `refiner` (null: poses stay) and the lesson's model (null: none) must outlive it.
+  /// `faces`, `views` and `refiner` (null: poses stay) must outlive it.
   AvatarTrainer(const MatrixX3i& faces, std::span<const TrainingView> views, const AvatarTrainerOptions& options,
-                const PoseRefiner* refiner = nullptr, MotionLesson motion = {});
+                const PoseRefiner* refiner = nullptr);
 
   /// From now on the training is judged by these frames as well, which must outlive it; those without a person are
   /// left out.
@@ -142,9 +126,6 @@ class AvatarTrainer {
   int ChooseMovers(AvatarTrainingState* state);
   void Move(AvatarTrainingState* state, double progress);
   void MoveLight(AvatarTrainingState* state);
-  /// Of the view's motion, into offsets_.
-  void AddMotion(const TrainingView& view, const AvatarTrainingState& state);
-  void MoveMotion(AvatarTrainingState* state, double progress);
   int Relocate(AvatarTrainingState* state, double progress);
   /// Poses and draws the view with all that the state has learned.
   AvatarView Draw(const TrainingView& view, const AvatarFrame& frame, const AvatarTrainingState& state);
@@ -157,18 +138,13 @@ class AvatarTrainer {
   int64_t order_of_ = -1;  ///< which time round
   AvatarTrainerOptions options_;
   const PoseRefiner* refiner_;
-  MotionLesson motion_;
-  std::vector<float> motion_maps_;
-  bool anchored_ = false;  ///< the model knows where the Gaussians stand
-  GaussianOffsets offsets_;
-  FloatColumns by_motion_;
   AvatarFrame in_other_cloth_, corrected_;
   AvatarPainter painter_;
   PictureLoss loss_;
   PictureTruth truth_;
   FloatColumns by_planes_;
   AvatarGradient gradient_;
-  std::vector<uint8_t> moves_, moves_of_motion_;
+  std::vector<uint8_t> moves_;
   StageClock clock_;
 };
 

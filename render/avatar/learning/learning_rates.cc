@@ -22,12 +22,9 @@ bool AvatarRates::IsValid(std::string* why) const {
          in_range("rate of quaternion", quaternion, 0, 1) && in_range("rate of log_scale", log_scale, 0, 1) &&
          in_range("rate of opacity_logit", opacity_logit, 0, 1) && in_range("rate of albedo", albedo, 0, 1) &&
          in_range("rate of normal", normal, 0, 1) && in_range("rate of weight_logit", weight_logit, 0, 1) &&
-         in_range("rate of light", light, 0, 1) && in_range("rate of motion", motion, 0, 1) &&
-         in_range("motion_at_end", motion_at_end, 1e-6, 1) && in_range("others_at_end", others_at_end, 1e-6, 1) &&
+         in_range("rate of light", light, 0, 1) && in_range("others_at_end", others_at_end, 1e-6, 1) &&
          in_range("settle_steps", settle_steps, 1, 1e9);
 }
-
-float AvatarRates::MotionAt(double progress) const { return Shrunk(motion, motion_at_end, progress); }
 
 std::array<float, GaussianBody::kNumParameters> AvatarRates::At(double progress, int64_t step) const {
   std::array<float, GaussianBody::kNumParameters> rates{};

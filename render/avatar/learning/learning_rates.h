@@ -11,8 +11,8 @@
 namespace bodyloom {
 
 /// Adam's rates; those of a parameter that is to stay are 0. Places become finer in the course of training: theirs goes
-/// exponentially from `position` to position · position_at_end, and that of the motion's network likewise. All other numbers
-/// of a Gaussian settle: after n steps, at `progress` p, theirs are
+/// exponentially from `position` to position · position_at_end. All other numbers of a Gaussian settle: after n steps,
+/// at `progress` p, theirs are
 ///   rate · others_at_end^max(0, 2p − 1) / sqrt(1 + n/settle_steps)
 /// Adam's steps are as long where a picture hardly says anything as where it says all, so what no picture asks for (a normal
 /// in shade, the weights of skin that is seen in one pose) wanders: by rate · sqrt(n) at a rate that stays, which other
@@ -24,11 +24,9 @@ struct AvatarRates {
   float others_at_end = 0.03F;  ///< above 0, at most 1
   float settle_steps = 3000;    ///< 1 to 1e9
   float light = 2e-3F;
-  float motion = 1.5e-3F, motion_at_end = 0.05F;  ///< of the network's parameters
   [[nodiscard]] bool IsValid(std::string* why) const;
   /// By column of GaussianBody::parameters, `progress` in [0, 1] of the training, `step` from 0 on.
   [[nodiscard]] std::array<float, GaussianBody::kNumParameters> At(double progress, int64_t step) const;
-  [[nodiscard]] float MotionAt(double progress) const;
 };
 
 }  // namespace bodyloom

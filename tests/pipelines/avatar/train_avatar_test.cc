@@ -14,6 +14,7 @@
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/formats/json_reader.h"
+#include "bodyloom/data_tools/formats/npz.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/observations/part_labels.h"
 #include "bodyloom/data_tools/video/image_file.h"
@@ -78,7 +79,7 @@ TrainAvatarRequest SmallRequest(const std::string& out) {
 TEST(TrainAvatar, EndsWhereFramesHeldOutGainNothing) {
   const TemporaryFolder folder;
   TrainAvatarRequest request = SmallRequest(folder.File("run"));
-  request.train = {"0-1"}, request.steps = 20000, request.motion = false;
+  request.train = {"0-1"}, request.steps = 20000;
   const TrainAvatarSummary summary = TrainAvatar(request);
   EXPECT_LT(summary.steps, 10000);
   EXPECT_GT(summary.landing_step, summary.best_step);
@@ -215,32 +216,35 @@ TEST(ShownAvatar, DrawsInMemoryWhatTheFilesShow) {
   EXPECT_THROW(ReadLearnedAvatar(folder.File("nothere"), ""), std::runtime_error);
 }
 
-TEST(TrainAvatar, MotionIsLearnedAndShownAsItWasLearned) {
+TEST(TrainAvatar, IsShownAsItWasLearned) {
   const TemporaryFolder folder;
-  TrainAvatarRequest request = SmallRequest(folder.File("moving"));
+  TrainAvatarRequest request = SmallRequest(folder.File("learned"));
   request.train = {"0-9"}, request.validate = {};
-  const TrainAvatarSummary moving = TrainAvatar(request);
-  ASSERT_TRUE(ReadAvatar(AvatarPath(request.out)).motion.has_value());
+  const TrainAvatarSummary learned = TrainAvatar(request);
   AnimateAvatarRequest show;
   show.run = request.out;
   show.data = Scene().File("person");
   show.threads = 1;
   const AnimateAvatarSummary shown = AnimateAvatar(show);
-  EXPECT_EQ(shown.scores->frames, moving.training->frames);
-  EXPECT_NEAR(shown.scores->psnr_box_db, moving.training->psnr_box_db, 1e-9);
-  EXPECT_NEAR(shown.scores->ssim, moving.training->ssim, 1e-9);
+  EXPECT_EQ(shown.scores->frames, learned.training->frames);
+  EXPECT_NEAR(shown.scores->psnr_box_db, learned.training->psnr_box_db, 1e-9);
+  EXPECT_NEAR(shown.scores->ssim, learned.training->ssim, 1e-9);
 
-  // Without the network's share the pictures are others.
-  AvatarFile still = ReadAvatar(AvatarPath(request.out));
-  still.motion.reset();
-  WriteAvatar(folder.File("still.npz"), still);
-  show.run = folder.File("still.npz");
-  EXPECT_NE(AnimateAvatar(show).scores->psnr_box_db, shown.scores->psnr_box_db);
-
-  request.out = folder.File("without");
-  request.motion = false;
-  EXPECT_EQ(TrainAvatar(request).steps, 60);
-  EXPECT_FALSE(ReadAvatar(AvatarPath(request.out)).motion.has_value());
+  // A network of the motion, which persons of earlier versions learned, is left out, and said to be.
+  NpzArrays arrays = ReadNpz(AvatarPath(request.out));
+  arrays["motion_network"] = NdArray::FromDouble(0);
+  WriteNpz(folder.File("old.npz"), arrays);
+  show.run = folder.File("old.npz");
+  std::string said;
+  PipelineCallbacks callbacks;
+  callbacks.message = [&](const std::string& line) { said += line; };
+  EXPECT_EQ(AnimateAvatar(show, callbacks).scores->psnr_box_db, shown.scores->psnr_box_db);
+  EXPECT_NE(said.find("old.npz: learned a network of the motion"), std::string::npos) << said;
+  arrays = ReadNpz(AvatarCheckpointPath(request.out));
+  arrays["motion_network"] = NdArray::FromDouble(0);
+  WriteNpz(AvatarCheckpointPath(request.out), arrays);
+  request.resume = true;
+  EXPECT_THROW(TrainAvatar(request), RequestError);
 }
 
 TEST(TrainAvatar, FindsTheSkirtAndLetsItSwing) {

@@ -105,7 +105,7 @@ TEST_F(ClothGaussiansTest, GoWithTheCloth) {
   AppendBones(bones, nodes_.places(), camera, &frame);
   EXPECT_EQ(frame.num_joints(), model_.num_joints() + nodes_.size());
   CameraGaussians posed;
-  PoseGaussians(body, model_.data().faces, frame, {}, {}, &posed);
+  PoseGaussians(body, model_.data().faces, frame, {}, &posed);
   for (int i = 0; i < body.size(); ++i) {
     const Vector3d expected = turn * (R * PlaceOf(body, i) + t) + shift;
     for (int r = 0; r < 3; ++r) ASSERT_NEAR(posed.columns(i, CameraGaussians::kX + r), expected[r], 2e-6) << i;

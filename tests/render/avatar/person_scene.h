@@ -13,29 +13,23 @@ struct PersonScene {
   BodyModel model = ToyBody();
   AvatarFrame frame;
   GaussianBody body;
-  GaussianOffsets offsets;
   PoseGaussiansOptions options;
   const MatrixX3i& faces = model.data().faces;
 
   explicit PersonScene(int count, uint32_t seed = 1) {
     AvatarFrames(model, Eigen::VectorXd::Constant(2, 0.5)).Make(RandomPose(model, seed, 1.2, 2.5), {}, 1, &frame);
     body = RandomPerson(count, frame, model.num_faces(), seed);
-    std::mt19937 generator(seed + 100);
-    offsets.columns.Resize(GaussianOffsets::kNumColumns, count);
-    for (int c = 0; c < GaussianOffsets::kNumColumns; ++c) {
-      for (float& v : offsets.columns.values(c)) v = static_cast<float>(0.05 * (generator() / 2147483648.0 - 1));
-    }
     const Eigen::Matrix3d turn = RotationFromAxisAngle(Eigen::Vector3d(0.3, -0.8, 0.4));
     for (int k = 0; k < 9; ++k) options.light_from_frame[k] = static_cast<float>(turn(k / 3, k % 3));
   }
   void Pose(CameraGaussians* posed, int threads = 1) const {
     PoseGaussiansOptions own = options;
     own.num_threads = threads;
-    PoseGaussians(body, faces, frame, offsets, own, posed);
+    PoseGaussians(body, faces, frame, own, posed);
   }
   template <class T>
   [[nodiscard]] TwinPerson<T> Twin() const {
-    return TwinOf<T>(body, frame, offsets);
+    return TwinOf<T>(body, frame);
   }
   template <class T>
   [[nodiscard]] TwinGaussian<T> TwinRow(const TwinPerson<T>& person, int i) const {

@@ -59,7 +59,7 @@ TEST(PoseGaussians, OnTheSkinTheyFollowThePosedBody) {
     body.anchors[f] = {f, {0, 1, 0}, 1};
   }
   CameraGaussians posed;
-  PoseGaussians(body, model.data().faces, frame, {}, {}, &posed);
+  PoseGaussians(body, model.data().faces, frame, {}, &posed);
   for (int f = 0; f < body.size(); ++f) {
     for (int k = 0; k < 3; ++k) {
       ASSERT_NEAR(posed.columns(f, Posed::kX + k), expected(model.data().faces(f, 1), k), 3e-6) << f;
@@ -74,7 +74,6 @@ TEST(PoseGaussians, TheLightIsThatOfLighting) {
   for (int j = 0; j < scene.frame.num_joints(); ++j) {  // bones at rest, so normals stay
     for (int k = 0; k < 12; ++k) scene.frame.bones[12 * j + k] = k % 5 == 0 ? 1.0F : 0.0F;
   }
-  scene.offsets.columns.Fill(0);
   scene.Pose(&posed);
   ShLighting light;
   for (int k = 0; k < Body::kLightValues; ++k) light(k / 9, k % 9) = scene.body.light[k];
@@ -116,25 +115,21 @@ TEST(PoseGaussians, NoTurnAndNoNormalAreHarmless) {
 }
 
 TEST(PoseGaussians, NumbersThatAreNotFiniteAreNotDrawn) {
-  constexpr int kParameters = Body::kNumParameters;
   for (const float bad : {std::numeric_limits<float>::quiet_NaN(), INFINITY, -INFINITY}) {
-    for (int c = 0; c < kParameters + GaussianOffsets::kNumColumns; ++c) {
+    for (int c = 0; c < Body::kNumParameters; ++c) {
       PersonScene scene(20);
       for (int i = 0; i < 20; ++i) {  // in the middle of the view, well drawn
         for (int k = 0; k < 3; ++k) scene.body.parameters(i, Body::kAlbedo + k) = 0.5F;
       }
-      const bool is_offset = c >= kParameters;
-      (is_offset ? scene.offsets.columns(7, c - kParameters) : scene.body.parameters(7, c)) = bad;
+      scene.body.parameters(7, c) = bad;
       CameraGaussians posed;
       scene.Pose(&posed);
       ScreenGaussians screen;
       ProjectGaussians(posed, MakePinhole(400, 400, 300), {}, &screen);
-      const int first_scale = is_offset ? kParameters + GaussianOffsets::kLogScale : int{Body::kLogScale};
-      const bool is_scale = c >= first_scale && c < first_scale + 3, is_logit = c == first_scale + 3;
-      const int parameter = is_offset ? -1 : c;
+      const bool is_scale = c >= Body::kLogScale && c < Body::kLogScale + 3, is_logit = c == Body::kOpacityLogit;
       // Infinite logits and log scales have limits: opacities of 0 and 1, extents of nothing and too much.
       const bool has_limit = std::isinf(bad) && (is_logit || is_scale);
-      const bool weight_is_gone = parameter >= Body::kWeightLogit && bad == -INFINITY;
+      const bool weight_is_gone = c >= Body::kWeightLogit && bad == -INFINITY;
       if (!has_limit && !weight_is_gone) {
         EXPECT_FALSE(screen.IsDrawn(7)) << c << ", " << bad;
       }
@@ -155,10 +150,6 @@ TEST(PoseGaussians, RefusesWhatDoesNotFit) {
   scene.body.joints[7] = 24;
   EXPECT_THROW(pose(), std::invalid_argument);
   scene.body.joints[7] = 0;
-  scene.offsets.columns.Resize(GaussianOffsets::kNumColumns, 19);
-  EXPECT_THROW(pose(), std::invalid_argument);
-  scene.offsets.columns.Resize(0, 0);
-  EXPECT_NO_THROW(pose());
   scene.frame.correctives.resize(40);
   EXPECT_THROW(pose(), std::invalid_argument);
   scene.frame.correctives.clear();

@@ -28,7 +28,7 @@ TEST(SkinGaussians, CoverThePosedBodyAndNothingElse) {
   AvatarFrame frame;
   AvatarFrames(model, betas).Make(pose, {}, 1, &frame);
   CameraGaussians posed;
-  PoseGaussians(body, model.data().faces, frame, {}, {}, &posed);
+  PoseGaussians(body, model.data().faces, frame, {}, &posed);
   ScreenGaussians screen;
   ProjectGaussians(posed, camera, {}, &screen);
   SplatPicture picture;

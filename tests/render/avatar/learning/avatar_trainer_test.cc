@@ -191,8 +191,6 @@ TEST(LearningRates, PlacesBecomeFiner) {
   EXPECT_FLOAT_EQ(rates.At(0, 0)[GaussianBody::kPosition + 2], 3e-4F);
   EXPECT_FLOAT_EQ(rates.At(1, 500)[GaussianBody::kPosition], 9e-6F);
   EXPECT_NEAR(rates.At(0.5, 500)[GaussianBody::kPosition], 3e-4 * std::sqrt(0.03), 1e-9);
-  EXPECT_FLOAT_EQ(rates.MotionAt(0), 1.5e-3F);
-  EXPECT_FLOAT_EQ(rates.MotionAt(1), 7.5e-5F);
   EXPECT_EQ(rates.At(0.2, 70)[GaussianBody::kAlbedo + 2], rates.At(0.4, 70)[GaussianBody::kAlbedo]);
 }
 

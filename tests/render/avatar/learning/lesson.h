@@ -41,7 +41,7 @@ struct Lesson {
       AvatarView view;
       view.camera = MakePinhole(120, 150, 170);
       view.window = {0, 0, 120, 150};
-      painter.Draw(truth, model.data().faces, frame, {}, view);
+      painter.Draw(truth, model.data().faces, frame, view);
       Image picture(120, 150);
       const SplatPicture& drawn = painter.picture();
       for (int i = 0; i < 120 * 150; ++i) {

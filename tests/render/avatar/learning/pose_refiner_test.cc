@@ -53,7 +53,7 @@ Slopes SlopesOn(const BodyModel& model) {
     AvatarFrame moved;
     refiner.MakeFrame(0, corrections, 1, &moved);
     CameraGaussians posed;
-    PoseGaussians(body, model.data().faces, moved, {}, {}, &posed);
+    PoseGaussians(body, model.data().faces, moved, {}, &posed);
     double sum = 0;
     for (int c = 0; c < weights.columns(); ++c) {
       for (int i = 0; i < body.size(); ++i) sum += double{weights(i, c)} * posed.columns(i, c);
@@ -62,7 +62,7 @@ Slopes SlopesOn(const BodyModel& model) {
   };
   PoseGradient pose_gradient;
   AvatarGradient gradient;
-  pose_gradient.Compute(body, model.data().faces, frame, {}, {}, weights, &gradient);
+  pose_gradient.Compute(body, model.data().faces, frame, {}, weights, &gradient);
   Slopes slopes;
   const Eigen::VectorXd ours = refiner.ByCorrection(0, gradient.bones, at);
   for (int c = 0; c < at.values.columns(); ++c) {
