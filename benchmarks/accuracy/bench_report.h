@@ -6,14 +6,26 @@
 #include <utility>
 #include <vector>
 
-#include "benchmarks/report/plot_svg.h"
-
 namespace bodyloom {
 
 struct BenchRow {
   std::string group;                ///< rows of one group are averaged ("known focal length")
   std::vector<std::string> labels;  ///< one a label column
   std::vector<double> values;       ///< one a value column; NaN prints as "-"
+};
+
+struct PlotLine {
+  std::string name;
+  std::vector<std::pair<double, double>> points;
+  bool dashed = false;  ///< a limit, drawn without marks
+  bool stairs = false;  ///< constant between points
+};
+
+struct Plot {
+  std::string file;  ///< name without extension
+  std::string title, x_label, y_label;
+  bool log_x = true, log_y = true;
+  std::vector<PlotLine> lines;
 };
 
 struct BenchReport {
@@ -23,7 +35,7 @@ struct BenchReport {
   std::vector<std::string> value_columns;  ///< "pa_mpjpe_mm", …
   std::vector<BenchRow> rows;
   std::vector<std::string> notes;
-  std::vector<Plot> plots;  ///< drawn by `bodyloom_report --render`
+  std::vector<Plot> plots;  ///< drawn by benchmarks/report/draw_plots.py
   bool summarise = true;    ///< close each group with the mean and spread of its rows
 };
 
@@ -33,7 +45,7 @@ std::string BenchText(const BenchReport& report);
 
 /// {title, command, commit, machine, notes, groups: [{name, rows: [{label: …, value: …}], mean: {…}, std: {…}}],
 /// plots: [{file, title, x_label, y_label, log_x, log_y, lines: [{name, dashed, stairs, points: [[x, y], …]}]}]}.
-/// benchmarks/report/saved_report.h reads it.
+/// benchmarks/report/saved_report.h reads it, all but the plots.
 std::string BenchJson(const BenchReport& report);
 
 /// Prints the text and, when `json_path` is not empty, writes the JSON.

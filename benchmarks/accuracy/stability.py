@@ -18,10 +18,6 @@ import statistics
 
 from runs import call, score_of, text
 
-WIDTH, HEIGHT, MARGIN = 640, 300, 48
-STEPS = [0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2]  # between the lines of the axis
-COLOURS = ["#1f77b4", "#d62728", "#2ca02c", "#7f7f7f"]
-
 
 def scores_of(o, people, name, arguments):
     report = o.out / f"{name}.json"
@@ -33,28 +29,20 @@ def scores_of(o, people, name, arguments):
     return score_of(scores, "lpips_of_people")
 
 
-def drawn(curves, title):
-    """The curves as an SVG, frames from left to right."""
-    highest = 1.05 * max(max(curve) for curve in curves.values())
-    frames = max(len(curve) for curve in curves.values())
+def draw(curves, title, path):
+    """The curves, frames from left to right."""
+    import matplotlib  # the rest does without
 
-    def at(frame, value):
-        return (f"{MARGIN + frame * (WIDTH - MARGIN - 110) / max(1, frames - 1):.1f},"
-                f"{HEIGHT - MARGIN - value * (HEIGHT - 2 * MARGIN) / highest:.1f}")
+    matplotlib.use("svg")
+    import matplotlib.pyplot as plt
 
-    lines = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" font-family="sans-serif" font-size="12">',
-             f'<rect width="{WIDTH}" height="{HEIGHT}" fill="white"/>', f'<text x="{MARGIN}" y="24">{title}</text>',
-             f'<text x="{MARGIN}" y="{HEIGHT - 12}">picture, in the order of the clip</text>']
-    step = next(step for step in STEPS if highest <= 5 * step)
-    for k in range(int(highest / step) + 1):
-        x, y = at(0, k * step).split(",")
-        lines += [f'<line x1="{x}" y1="{y}" x2="{WIDTH - 110}" y2="{y}" stroke="#dddddd"/>',
-                  f'<text x="{MARGIN - 6}" y="{float(y) + 4:.1f}" text-anchor="end">{k * step:g}</text>']
-    for i, (name, curve) in enumerate(curves.items()):
-        points = " ".join(at(frame, value) for frame, value in enumerate(curve))
-        lines += [f'<polyline points="{points}" fill="none" stroke="{COLOURS[i % len(COLOURS)]}" stroke-width="1.5"/>',
-                  f'<text x="{WIDTH - 100}" y="{MARGIN + 18 * i}" fill="{COLOURS[i % len(COLOURS)]}">{name}</text>']
-    return "\n".join(lines + ["</svg>", ""])
+    figure, axes = plt.subplots(figsize=(7.6, 3.4), layout="constrained")
+    for name, curve in curves.items():
+        axes.plot(curve, label=name)
+    axes.set(title=title, xlabel="picture, in the order of the clip", ylim=(0, None))
+    axes.grid(color="0.9")
+    axes.legend(loc="upper left", bbox_to_anchor=(1, 1), frameon=False)
+    figure.savefig(path, metadata={"Date": None})
 
 
 def main():
@@ -89,8 +77,8 @@ def main():
         print(f"| {name} | {text([statistics.mean(clip) for clip in clips], 4)} | "
               f"{text([statistics.pstdev(clip) for clip in clips], 4)} | {text(steps, 4)} |")
     if o.picture:
-        o.picture.write_text(drawn({name: clips[o.curve] for name, clips in curves.items()},
-                                   f"LPIPS over a clip of {o.frames} frames"), encoding="utf-8")
+        draw({name: clips[o.curve] for name, clips in curves.items()}, f"LPIPS over a clip of {o.frames} frames",
+             o.picture)
 
 
 if __name__ == "__main__":

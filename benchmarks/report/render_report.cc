@@ -5,7 +5,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
@@ -90,15 +89,6 @@ std::string RenderIntoPage(const std::string& page, const std::string& page_name
     result += kClose;
     at = close + kClose.size();
   }
-}
-
-std::vector<std::string> WritePlots(const SavedReport& saved, const std::string& folder) {
-  std::vector<std::string> paths;
-  for (const Plot& plot : saved.report.plots) {
-    paths.push_back(folder + "/" + plot.file + ".svg");
-    WriteFileAtomically(paths.back(), PlotSvg(plot));
-  }
-  return paths;
 }
 
 }  // namespace bodyloom

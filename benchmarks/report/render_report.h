@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A benchmark's JSON as part of the documentation: tables in Markdown and plots in SVG.
+/// A benchmark's JSON as part of the documentation: tables in Markdown.
 #pragma once
 
 #include <string>
@@ -18,8 +18,5 @@ std::string MarkdownTable(const SavedReport& saved, const std::string& group);
 /// the replaced groups. Throws std::runtime_error with `page_name` when a mark is never closed.
 std::string RenderIntoPage(const std::string& page, const std::string& page_name, const SavedReport& saved,
                            std::vector<std::string>* rendered = nullptr);
-
-/// FOLDER/<file>.svg for every plot; returns the paths.
-std::vector<std::string> WritePlots(const SavedReport& saved, const std::string& folder);
 
 }  // namespace bodyloom

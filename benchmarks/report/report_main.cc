@@ -2,7 +2,7 @@
 /// What became of benchmarks' JSON (`./dev bench --render …`, `./dev bench --compare …`).
 ///
 ///   bodyloom_report --before A.json --after B.json          ratios of two commits, with their spread
-///   bodyloom_report --render F.json[,G.json] [--page docs/lab/run_time_against_error.md] [--images docs/images]
+///   bodyloom_report --render F.json[,G.json] [--page docs/lab/run_time_against_error.md]
 #include <cstdio>
 #include <fstream>
 #include <sstream>
@@ -17,7 +17,7 @@
 namespace bodyloom {
 namespace {
 
-void Render(const std::string& json, const std::string& page_path, const std::string& images) {
+void Render(const std::string& json, const std::string& page_path) {
   const SavedReport saved = ReadSavedReport(json);
   std::ifstream file(page_path, std::ios::binary);
   if (!file) throw std::runtime_error(page_path + ": cannot be opened, expected a page with marks");
@@ -27,7 +27,6 @@ void Render(const std::string& json, const std::string& page_path, const std::st
   const std::string result = RenderIntoPage(page.str(), page_path, saved, &rendered);
   if (!rendered.empty()) WriteFileAtomically(page_path, result);
   for (const std::string& name : rendered) std::printf("%s: %s\n", page_path.c_str(), name.c_str());
-  for (const std::string& path : WritePlots(saved, images)) std::printf("%s\n", path.c_str());
 }
 
 void RunReport(const BenchArguments& arguments) {
@@ -39,9 +38,7 @@ void RunReport(const BenchArguments& arguments) {
                       after = ReadSavedReport(arguments.Text("after"));
     std::fputs(ComparisonText(before, after, CompareReports(before, after)).c_str(), stdout);
   }
-  for (const std::string& json : arguments.List("render")) {
-    Render(json, arguments.Text("page"), arguments.Text("images"));
-  }
+  for (const std::string& json : arguments.List("render")) Render(json, arguments.Text("page"));
 }
 
 }  // namespace
@@ -53,7 +50,6 @@ int main(int argc, char** argv) {
       {{"before", ""},
        {"after", ""},
        {"render", ""},
-       {"page", bodyloom::SourceDir() + "/docs/lab/run_time_against_error.md"},
-       {"images", bodyloom::SourceDir() + "/docs/images"}},
+       {"page", bodyloom::SourceDir() + "/docs/lab/run_time_against_error.md"}},
       [](const bodyloom::BenchArguments& arguments, const std::string&) { bodyloom::RunReport(arguments); });
 }

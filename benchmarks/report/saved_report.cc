@@ -41,24 +41,6 @@ void ReadRows(const ordered_json& group, BenchReport* report) {
   }
 }
 
-Plot ReadPlot(const ordered_json& json) {
-  Plot plot{json.at("file"),
-            json.at("title"),
-            json.at("x_label"),
-            json.at("y_label"),
-            json.at("log_x"),
-            json.at("log_y"),
-            {}};
-  for (const ordered_json& drawn : json.at("lines")) {
-    PlotLine line{drawn.at("name"), {}, drawn.at("dashed"), drawn.at("stairs")};
-    for (const ordered_json& point : drawn.at("points")) {
-      line.points.emplace_back(NumberOf(point.at(0)), NumberOf(point.at(1)));
-    }
-    plot.lines.push_back(line);
-  }
-  return plot;
-}
-
 }  // namespace
 
 SavedReport ReadSavedReport(const std::string& path) {
@@ -72,9 +54,6 @@ SavedReport ReadSavedReport(const std::string& path) {
     for (const char* name : {"commit", "processor", "cores", "compiler"}) saved.environment[name] = json.at(name);
     saved.report.notes = json.at("notes").get<std::vector<std::string>>();
     for (const ordered_json& group : json.at("groups")) ReadRows(group, &saved.report);
-    if (json.contains("plots")) {
-      for (const ordered_json& plot : json.at("plots")) saved.report.plots.push_back(ReadPlot(plot));
-    }
     return saved;
   } catch (const std::exception& error) {
     throw std::runtime_error(path + ": not the JSON of a benchmark: " + error.what());

@@ -10,7 +10,7 @@
 namespace bodyloom {
 
 struct SavedReport {
-  BenchReport report;                              ///< label columns: those whose values are texts
+  BenchReport report;                              ///< label columns: those whose values are texts; no plots
   std::map<std::string, std::string> environment;  ///< commit, processor, cores, compiler
 };
 
