@@ -26,8 +26,7 @@ struct AnimationRequest {
   std::string device = "cpu";  ///< where the networks run: "cpu" or "cuda"
 };
 
-inline constexpr double kDefaultFps = 30;  ///< of a track without times
-inline constexpr int kSheetFrames = 6;     ///< of the clip, on a contact sheet
+inline constexpr int kSheetFrames = 6;  ///< of the clip, on a contact sheet
 
 struct AnimationSummary {
   int frames = 0;

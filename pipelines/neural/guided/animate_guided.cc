@@ -20,6 +20,7 @@
 #include "bodyloom/pipelines/neural/guided/guided_scores_json.h"
 #include "bodyloom/pipelines/neural/guided/virtual_views.h"
 #include "bodyloom/pipelines/neural/photo/photo_backdrop.h"
+#include "bodyloom/pipelines/people/animation_limits.h"
 #include "bodyloom/pipelines/people/planar_picture.h"
 #include "bodyloom/pipelines/report_json.h"
 #include "bodyloom/pipelines/runs/guided_run.h"
@@ -126,7 +127,7 @@ class GuidedAnimation {
       truth_ = std::make_unique<SinglePersonDataset>(request_.data);
       scorer_ = std::make_unique<GuidedScorer>(true, GuidedScoreWeightsOf(ReadWeightsFolder(request_.weights)));
     }
-    VideoWriter video(request_.out, picture_.width, picture_.height, FramesPerSecond(track_, kDefaultFps));
+    VideoWriter video(request_.out, picture_.width, picture_.height, FramesPerSecond(track_, kFpsWithoutTimes));
     const std::vector<int> on_sheet = EvenlySpreadFrames(num_frames, kSheetFrames);
     const Stopwatch frames_watch;
     for (int t = 0; t < num_frames; ++t) {

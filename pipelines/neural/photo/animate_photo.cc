@@ -16,6 +16,7 @@
 #include "bodyloom/neural/training/training_run.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/neural/photo/photo_backdrop.h"
+#include "bodyloom/pipelines/people/animation_limits.h"
 #include "bodyloom/pipelines/people/planar_picture.h"
 #include "bodyloom/pipelines/report_json.h"
 #include "bodyloom/pipelines/runs/photo_run.h"
@@ -101,7 +102,7 @@ class PhotoAnimation {
     const int num_frames = track_.num_frames();
     picture_ = SizeOfPictures(maps_->window(), track_.camera, request_.full_size);
     PhotoBackdrop backdrop(request_.background, photos_.front(), picture_);
-    VideoWriter video(request_.out, picture_.width, picture_.height, FramesPerSecond(track_, kDefaultFps));
+    VideoWriter video(request_.out, picture_.width, picture_.height, FramesPerSecond(track_, kFpsWithoutTimes));
     const std::vector<int> on_sheet = EvenlySpreadFrames(num_frames, kSheetFrames);
     // Maps of the next frames are made while the network is at work.
     Prefetcher<PhotoFrame> poses(num_frames, [this](int64_t t) { return PoseAt(static_cast<int>(t)); });
