@@ -13,12 +13,12 @@
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/rotation.h"
 #include "bodyloom/tracking/residuals/acceleration_cost.h"
-#include "bodyloom/tracking/residuals/coupling_cost.h"
 #include "bodyloom/tracking/residuals/frame_batch.h"
 #include "bodyloom/tracking/residuals/geman_mcclure_loss.h"
 #include "bodyloom/tracking/residuals/linear_cost.h"
 #include "bodyloom/tracking/residuals/rotation_manifold.h"
 #include "bodyloom/tracking/residuals/velocity_cost.h"
+#include "bodyloom/tracking/terms/user/coupling_cost.h"
 
 namespace bodyloom {
 

@@ -9,9 +9,11 @@
 #include <string>
 #include <utility>
 
+#include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/geometry/camera_path.h"
 #include "bodyloom/tracking/camera_scale.h"
+#include "bodyloom/tracking/chain/chain_problem.h"
 #include "bodyloom/tracking/initialise/impossible_frames.h"
 #include "bodyloom/tracking/initialise/initial_states.h"
 #include "bodyloom/tracking/initialise/seen_feet.h"
@@ -22,8 +24,8 @@
 #include "bodyloom/tracking/moving_camera.h"
 #include "bodyloom/tracking/observability.h"
 #include "bodyloom/tracking/term_costs.h"
+#include "bodyloom/tracking/term_kinds.h"
 #include "bodyloom/tracking/terms/dense/dense.h"
-#include "bodyloom/tracking/terms/term_kinds.h"
 #include "bodyloom/tracking/track_plan.h"
 #include "bodyloom/tracking/track_result.h"
 #include "bodyloom/tracking/track_world.h"
@@ -166,6 +168,11 @@ void ClipFit::Observe() {
   for (const FrameData& frame : problem_.frames) {
     summary_.num_observations +=
         static_cast<int>(frame.Get<LandmarkTerm>().seen.size() + frame.Get<DenseTerm>().size());
+  }
+  if (const int rows = NumFarRows(problem_); rows > ChainProblem::kMaxFarRows) {
+    summary_.plan.push_back(
+        {"chain", false,
+         Concatenate("terms couple frames apart from each other in ", rows, " residuals: Ceres solves every stage")});
   }
   FollowCamera();
   problem_.velocity_weight = options_.velocity_weight;

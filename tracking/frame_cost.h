@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// The cost of one frame: everything that depends on one frame's pose and on the clip's shape and focal length. It is the
 /// sum over the terms of the frame's list (frame_data.h), each of which has its law in its own header; the built-in ones
-/// are those of terms/term_kinds.h.
+/// are those of term_kinds.h.
 ///
 /// Where the camera moves, the state is in the scene and every term takes it in the camera frame of its frame; the sums
 /// are taken back to the scene at the end (moving_camera.h).

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "bodyloom/geometry/camera.h"
-#include "bodyloom/tracking/terms/frame_term.h"
+#include "bodyloom/tracking/problem/frame_term.h"
 
 namespace bodyloom {
 

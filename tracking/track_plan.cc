@@ -6,7 +6,7 @@
 
 #include "bodyloom/tracking/initialise/initial_states.h"
 #include "bodyloom/tracking/observability.h"
-#include "bodyloom/tracking/terms/term_kinds.h"
+#include "bodyloom/tracking/term_kinds.h"
 
 namespace bodyloom {
 

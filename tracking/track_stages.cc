@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "bodyloom/tracking/chain/chain_problem.h"
 #include "bodyloom/tracking/solve_sequence.h"
 
 namespace bodyloom {
@@ -33,6 +34,9 @@ bool StageRunner::Run(const Stage& stage, SequenceSolver solver, SequenceProblem
   if (!ok_) return false;
   for (const FrameData& frame : problem->frames) {
     for (const auto& term : frame.terms) term->BeginStage({stage.pull, stage.landmark_kernel});
+  }
+  if (solver == SequenceSolver::kChain && NumFarRows(*problem) > ChainProblem::kMaxFarRows) {
+    solver = SequenceSolver::kCeres;
   }
   SolveOptions solve;
   solve.solver = solver;

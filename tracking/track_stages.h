@@ -27,7 +27,7 @@ struct Stages {
   Stage near_start;  ///< pulled towards the start, wide kernels; not from an initialiser
   Stage coarse;      ///< what was seen against the priors
   Stage again;       ///< with the clip's own smoothness and its ground
-  Stage round;       ///< each round of a term (terms/clip_term.h); its name and iterations are the term's
+  Stage round;       ///< each round of a term (problem/clip_term.h); its name and iterations are the term's
   Stage all;         ///< every frame: few steps when a coarse solve has converged in what converges slowly
   Stage finish;      ///< every frame by Ceres, to its own convergence (SequenceSolver::kChainThenCeres)
 };

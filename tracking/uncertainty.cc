@@ -99,6 +99,8 @@ PositionSigma PositionSigmaOf(SequenceProblem problem, int num_threads, double* 
   const auto T = static_cast<Eigen::Index>(problem.states.size());
   PositionSigma sigma = PositionSigma::Unknown(T, problem.layout.model->num_joints());
   for (FrameData& frame : problem.frames) frame.Get<LiftedPoseTerm>().weight = 0;
+  // More than chain takes: the spread is stated without them, which is too much rather than too little.
+  if (NumFarRows(problem) > ChainProblem::kMaxFarRows) problem.couplings.clear();
   ChainProblem chain(problem, false, false, num_threads);
   if (!std::isfinite(chain.Linearise({problem.states, problem.betas, problem.log_focal}))) return sigma;
   ChainFactor factor(chain.frame_size(), chain.arrow_size(), chain.cut_before(), chain.num_far_rows());

@@ -252,7 +252,9 @@ TEST(TextureExtract, TakesNothingWhereTheMaskShowsSomethingElse) {
   EXPECT_GT(extractor.Add(Image(200, 300), vertices, camera, 0, person), 50);
   const Texture texture = extractor.Merge();
   for (size_t p = 0; p < texture.confidence.size(); ++p) {
-    if (texture.confidence[p] > 0) EXPECT_GT(texture.source_x_px[p], 100);
+    if (texture.confidence[p] > 0) {
+      EXPECT_GT(texture.source_x_px[p], 100);
+    }
   }
   person.pop_back();
   EXPECT_THROW(extractor.Add(Image(200, 300), vertices, camera, 0, person), std::invalid_argument);

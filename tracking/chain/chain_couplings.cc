@@ -5,15 +5,33 @@
 //   ⎡ H   Jᵀ ⎤ ⎡ δ ⎤   ⎡ −g ⎤
 //   ⎣ J  −1  ⎦ ⎣ λ ⎦ = ⎣  0 ⎦
 // whose multipliers λ are shared columns like the shape's.
+#include <ceres/cost_function.h>
+
 #include <cmath>
 #include <limits>
 #include <utility>
+#include <vector>
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/tracking/chain/chain_problem.h"
 
 namespace bodyloom {
+namespace {
+
+bool AreNeighbours(const SequenceProblem& problem, const std::vector<int>& frames) {
+  return frames.size() == 2 && frames[0] + 1 == frames[1] && problem.cut_before[frames[1]] == 0;
+}
+
+}  // namespace
+
+int NumFarRows(const SequenceProblem& problem) {
+  int rows = 0;
+  for (const FrameCoupling& coupling : problem.couplings) {
+    if (!AreNeighbours(problem, coupling.frames)) rows += coupling.cost.function->num_residuals();
+  }
+  return rows;
+}
 
 void ChainProblem::ResizeCouplings() {
   couplings_.clear();
@@ -26,7 +44,7 @@ void ChainProblem::ResizeCouplings() {
     Coupling& coupling = couplings_.emplace_back();
     coupling.source = &given;
     const int index = static_cast<int>(couplings_.size()) - 1;
-    if (given.frames.size() == 2 && given.frames[0] + 1 == given.frames[1] && !problem_.cut_before[given.frames[1]]) {
+    if (AreNeighbours(problem_, given.frames)) {
       pairs_of_frame_[given.frames[0]].push_back({index, 0});
       pairs_of_frame_[given.frames[1]].push_back({index, 1});
       continue;

@@ -19,6 +19,10 @@
 
 namespace bodyloom {
 
+/// Residuals of couplings between frames that are not neighbours (chain_couplings.cc); a ChainProblem takes at most
+/// ChainProblem::kMaxFarRows.
+int NumFarRows(const SequenceProblem& problem);
+
 /// Where the solver stands.
 struct ChainPoint {
   std::vector<FrameState> states;

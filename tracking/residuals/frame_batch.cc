@@ -46,15 +46,16 @@ void FrameBatch::Frame::StateOf(FrameState* state, VectorXd* betas, double* log_
 
 void FrameBatch::Frame::Compress(FrameEvaluator* evaluator, const FrameState& state, const VectorXd& betas,
                                  double log_focal, Mode mode, FrameRows* rows) const {
-  thread_local FrameSystem system;
-  const bool derivatives = mode != Mode::kNorms;
-  evaluator->Evaluate(*layout, *data, state, betas, log_focal, derivatives, &system);
-  rows->is_finite = std::isfinite(system.cost);
   ResidualGroup group;
   group.num_rows = layout->num_columns + 2;
   for (int block = 0; block < layout->num_blocks(); ++block) group.blocks.push_back(block);
   rows->groups.assign(1, group);
   rows->term_of_group.assign(1, -1);
+  if (mode == Mode::kStructure) return;  // the same at every state
+  thread_local FrameSystem system;
+  const bool derivatives = mode != Mode::kNorms;
+  evaluator->Evaluate(*layout, *data, state, betas, log_focal, derivatives, &system);
+  rows->is_finite = std::isfinite(system.cost);
   rows->J.resize(group.num_rows, layout->num_columns);
   rows->r.resize(group.num_rows);
   if (rows->is_finite) CompressedRows(system, derivatives, rows->J, rows->r);

@@ -16,7 +16,7 @@
 #include "bodyloom/geometry/camera.h"
 #include "bodyloom/geometry/observations.h"
 #include "bodyloom/tracking/body_points.h"
-#include "bodyloom/tracking/terms/frame_term.h"
+#include "bodyloom/tracking/problem/frame_term.h"
 
 namespace bodyloom {
 

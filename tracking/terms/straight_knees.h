@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "bodyloom/geometry/body_model.h"
-#include "bodyloom/tracking/terms/frame_term.h"
+#include "bodyloom/tracking/problem/frame_term.h"
 
 namespace bodyloom {
 

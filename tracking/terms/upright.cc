@@ -6,7 +6,7 @@
 #include "bodyloom/geometry/rotation.h"
 #include "bodyloom/tracking/frame_accumulator.h"
 #include "bodyloom/tracking/initialise/initial_states.h"
-#include "bodyloom/tracking/terms/clip_term.h"
+#include "bodyloom/tracking/problem/clip_term.h"
 #include "bodyloom/tracking/track_options.h"
 #include "bodyloom/tracking/track_summary.h"
 

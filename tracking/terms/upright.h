@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/tracking/terms/frame_term.h"
+#include "bodyloom/tracking/problem/frame_term.h"
 
 namespace bodyloom {
 

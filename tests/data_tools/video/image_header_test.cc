@@ -97,7 +97,9 @@ TEST(ImageHeader, NothingIsSaidOfWhatIsCutOrNoImage) {
       std::string bytes = beginning;
       for (int i = static_cast<int>(random() % 80); i > 0; --i) bytes += static_cast<char>(random());
       const auto header = ReadImageHeader(bytes);
-      if (header) EXPECT_GE(header->width * header->height, 1);
+      if (header) {
+        EXPECT_GE(header->width * header->height, 1);
+      }
     }
   }
 }

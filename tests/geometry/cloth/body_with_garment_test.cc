@@ -76,8 +76,12 @@ TEST_F(BodyWithGarmentTest, GoesWithBothLegsInTheMiddleAndNeverWithArms) {
     }
     EXPECT_EQ(arms, 0);
     const double x = both_.data().v_template(v, 0);
-    if (x > 0.1) EXPECT_GE(left, right);
-    if (x < -0.1) EXPECT_GE(right, left);
+    if (x > 0.1) {
+      EXPECT_GE(left, right);
+    }
+    if (x < -0.1) {
+      EXPECT_GE(right, left);
+    }
   }
 }
 

@@ -131,7 +131,9 @@ TEST(Openness, WhatIsConvexIsOpen) {
   for (Eigen::Index v = 0; v < mesh.vertices.rows(); ++v) {
     const Vector3d from_middle = (mesh.vertices.row(v).transpose() - Vector3d::Constant(0.5)).cwiseAbs();
     const bool at_edge = (from_middle.array() > 0.45).count() > 1;  // what is lifted off one face lies in another
-    if (!at_edge) EXPECT_EQ(inside[v], 0);
+    if (!at_edge) {
+      EXPECT_EQ(inside[v], 0);
+    }
   }
   mesh.normals.setZero();
   EXPECT_EQ(open.Compute(mesh.vertices, mesh.normals, mesh.faces)[7], 1);

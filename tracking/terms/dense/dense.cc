@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "bodyloom/tracking/frame_accumulator.h"
+#include "bodyloom/tracking/problem/clip_term.h"
 #include "bodyloom/tracking/robust.h"
-#include "bodyloom/tracking/terms/clip_term.h"
 #include "bodyloom/tracking/terms/dense/dense_points.h"
 #include "bodyloom/tracking/track_input.h"
 #include "bodyloom/tracking/track_summary.h"

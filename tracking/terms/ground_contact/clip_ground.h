@@ -10,7 +10,7 @@
 
 #include "bodyloom/tracking/initialise/ground_plane.h"
 #include "bodyloom/tracking/initialise/lifted_landmarks.h"
-#include "bodyloom/tracking/terms/clip_term.h"
+#include "bodyloom/tracking/problem/clip_term.h"
 #include "bodyloom/tracking/track_input.h"
 #include "bodyloom/tracking/track_options.h"
 #include "bodyloom/tracking/track_summary.h"

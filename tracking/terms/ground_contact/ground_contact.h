@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "bodyloom/tracking/body_points.h"
-#include "bodyloom/tracking/terms/frame_term.h"
+#include "bodyloom/tracking/problem/frame_term.h"
 
 namespace bodyloom {
 

@@ -9,7 +9,7 @@
 #include "bodyloom/tracking/initialise/initial_states.h"
 #include "bodyloom/tracking/initialise/lifted_start.h"
 #include "bodyloom/tracking/initialise/lifter_input.h"
-#include "bodyloom/tracking/terms/clip_term.h"
+#include "bodyloom/tracking/problem/clip_term.h"
 #include "bodyloom/tracking/track_input.h"
 #include "bodyloom/tracking/track_options.h"
 #include "bodyloom/tracking/track_summary.h"

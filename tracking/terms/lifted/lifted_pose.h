@@ -13,7 +13,7 @@
 
 #include "bodyloom/tracking/initialise/lift_keypoints.h"
 #include "bodyloom/tracking/initialise/lifted_landmarks.h"
-#include "bodyloom/tracking/terms/frame_term.h"
+#include "bodyloom/tracking/problem/frame_term.h"
 
 namespace bodyloom {
 

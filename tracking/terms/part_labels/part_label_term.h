@@ -30,7 +30,7 @@
 
 #include "bodyloom/geometry/observations.h"
 #include "bodyloom/tracking/frame_layout.h"
-#include "bodyloom/tracking/terms/frame_term.h"
+#include "bodyloom/tracking/problem/frame_term.h"
 #include "bodyloom/tracking/terms/part_labels/distance_field.h"
 #include "bodyloom/tracking/terms/part_labels/part_label_options.h"
 #include "bodyloom/tracking/terms/part_labels/part_map.h"

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/tracking/terms/clip_term.h"
+#include "bodyloom/tracking/problem/clip_term.h"
 #include "bodyloom/tracking/terms/part_labels/part_label_term.h"
 
 namespace bodyloom {

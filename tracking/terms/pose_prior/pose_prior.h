@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/tracking/terms/frame_term.h"
+#include "bodyloom/tracking/problem/frame_term.h"
 #include "bodyloom/tracking/terms/pose_prior/mixture_prior.h"
 
 namespace bodyloom {

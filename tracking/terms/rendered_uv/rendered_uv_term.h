@@ -26,8 +26,8 @@
 
 #include "bodyloom/geometry/skinning.h"
 #include "bodyloom/tracking/frame_layout.h"
+#include "bodyloom/tracking/problem/frame_term.h"
 #include "bodyloom/tracking/terms/dense/dense.h"
-#include "bodyloom/tracking/terms/frame_term.h"
 #include "bodyloom/tracking/terms/rendered_uv/rendered_uv_options.h"
 #include "bodyloom/tracking/visible_surface.h"
 

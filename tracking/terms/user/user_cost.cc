@@ -14,7 +14,7 @@
 #include "bodyloom/geometry/rotation.h"
 #include "bodyloom/geometry/surface_jacobian.h"
 #include "bodyloom/tracking/frame_accumulator.h"
-#include "bodyloom/tracking/terms/clip_term.h"
+#include "bodyloom/tracking/problem/clip_term.h"
 #include "bodyloom/tracking/track_options.h"
 #include "bodyloom/tracking/track_summary.h"
 

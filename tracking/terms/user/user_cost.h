@@ -17,7 +17,7 @@
 
 #include "bodyloom/geometry/arrays.h"
 #include "bodyloom/tracking/frame_layout.h"
-#include "bodyloom/tracking/terms/frame_term.h"
+#include "bodyloom/tracking/problem/frame_term.h"
 #include "bodyloom/tracking/terms/user/user_term.h"
 
 namespace bodyloom {

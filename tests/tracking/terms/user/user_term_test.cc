@@ -196,6 +196,19 @@ std::vector<UserTerm> AllKinds(const BodyModel& body, CameraKnowledge knowledge)
           Loop(body, std::make_shared<ceres::CauchyLoss>(3.0))};
 }
 
+/// A clip of the built-in body from 2D joints, tracked by an engine with these terms.
+TrackSequenceResult TrackWith(const SynthClip& clip, SequenceSolver solver, const std::vector<UserTerm>& terms) {
+  TrackSequenceInput input;
+  input.body = &BuiltinBody();
+  input.keypoints = &clip.keypoints;
+  input.prior = &BuiltinPosePrior();
+  input.camera = clip.truth.camera;
+  TrackSequenceOptions options;
+  options.solver = solver;
+  options.user_terms = terms;
+  return TrackSequence(input, options);
+}
+
 TEST(UserTerm, DerivativesMatchDifferencesThroughTheProblem) {
   for (CameraKnowledge knowledge : {CameraKnowledge::kKnown, CameraKnowledge::kUnknownFocal, CameraKnowledge::kWeak}) {
     SequenceSceneOptions options;
@@ -350,6 +363,20 @@ TEST(UserTerm, FramesFarApartInTheCoarseSolveAreNeighboursThere) {
   EXPECT_EQ(ChainProblem(coarse, false, false, 1).num_far_rows(), 0);
 }
 
+TEST(UserTerm, MoreCouplingsThanChainTakesAreSolvedByCeres) {
+  SynthClipOptions synth;
+  synth.dense_per_frame = 0;
+  const SynthClip clip = MakeSynthClip(BuiltinBody(), DemoMotion(BuiltinBody(), 150, 15), synth);
+  UserTerm term = Loop(BuiltinBody());
+  term.cost = [](int) {
+    return std::make_shared<ceres::AutoDiffCostFunction<ComesBack, 7, 3, 3, 3, 9, 9>>(new ComesBack);
+  };
+  const TrackSequenceSummary summary = TrackWith(clip, TrackSequenceOptions().solver, {term}).summary;
+  EXPECT_TRUE(summary.IsUsable()) << summary.message;
+  EXPECT_TRUE(std::any_of(summary.plan.begin(), summary.plan.end(),
+                          [](const PlanEntry& entry) { return entry.what == "chain" && !entry.runs; }));
+}
+
 TEST(UserTerm, ReadsTheCameraFrameWhereTheCameraMoves) {
   // The same scene, once seen by a camera that stands still and once said of a camera that has moved: what a term of one
   // frame reads is what the camera sees, so costs are the same.
@@ -404,19 +431,6 @@ TEST(UserTerm, ACostThatCannotBeEvaluatedIsAFailureNotACrash) {
     options.solver = solver;
     EXPECT_EQ(SolveSequence(&scene->problem, options).status, SolveStatus::kFailure);
   }
-}
-
-/// A clip of the built-in body from 2D joints, tracked by an engine with these terms.
-TrackSequenceResult TrackWith(const SynthClip& clip, SequenceSolver solver, const std::vector<UserTerm>& terms) {
-  TrackSequenceInput input;
-  input.body = &BuiltinBody();
-  input.keypoints = &clip.keypoints;
-  input.prior = &BuiltinPosePrior();
-  input.camera = clip.truth.camera;
-  TrackSequenceOptions options;
-  options.solver = solver;
-  options.user_terms = terms;
-  return TrackSequence(input, options);
 }
 
 TEST(UserTerm, MovesTheWristOfATrack) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// A term over a clip: it puts its part into the frames' lists (frame_term.h), learns from answers, and finds anew what
-/// corresponds to what where it needs rounds. TrackSequence() makes those of terms/term_kinds.h and calls them in the
+/// corresponds to what where it needs rounds. TrackSequence() makes those of term_kinds.h and calls them in the
 /// order in which they are declared here.
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/terms/term_kinds.h"
+#include "bodyloom/tracking/term_kinds.h"
 
 #include <utility>
 

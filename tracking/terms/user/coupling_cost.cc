@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/residuals/coupling_cost.h"
+#include "bodyloom/tracking/terms/user/coupling_cost.h"
 
 #include "bodyloom/geometry/rotation.h"
 
