@@ -86,7 +86,7 @@ void RunBatchCommand(const BatchCommand& command, const ClipSettings& common) {
     } else {
       RunAndTell(RequestFrom(command, common), command.progress);
     }
-  } catch (const OutOfRoom& error) {
+  } catch (const DiskFullError& error) {
     throw CommandEnded(kExitRetry, error.what());
   } catch (const PlaceTaken& error) {
     throw CommandEnded(kExitRetry, command.out + ": " + error.what());

@@ -32,8 +32,8 @@ void RequireWritable(const std::string& path) {
   const std::string probe = path + ".probe" + std::to_string(getpid());
   try {
     WriteFileAtomically(probe, "probe");
-  } catch (const OutOfRoom& error) {
-    throw OutOfRoom(path + ": cannot be written (" + error.what() + ")");
+  } catch (const DiskFullError& error) {
+    throw DiskFullError(path + ": cannot be written (" + error.what() + ")");
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(path + ": cannot be written (" + error.what() + ")");
   }

@@ -8,22 +8,19 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <random>
 #include <stdexcept>
 #include <utility>
 
 namespace bodyloom {
 namespace {
 
-[[noreturn]] void FailWithErrno(const std::string& path, const std::string& action) {
-  const int reason = errno;
-  const std::string message = path + ": cannot " + action + ": " + std::strerror(reason);
-  if (reason == ENOSPC || reason == EDQUOT || reason == EFBIG) throw OutOfRoom(message);
-  throw std::runtime_error(message);
-}
-
+/// Another one for each call: processes of two machines may have one number, and write into one folder.
 std::string TemporaryBeside(const std::string& target) {
   const std::filesystem::path path(target);
-  const std::string name = "." + path.stem().string() + ".tmp" + std::to_string(::getpid()) + path.extension().string();
+  std::random_device random;
+  const std::string name = "." + path.stem().string() + ".tmp" + std::to_string(::getpid()) + "-" +
+                           std::to_string(random()) + path.extension().string();
   return (path.parent_path() / name).string();
 }
 
@@ -38,10 +35,17 @@ void SyncFolderOf(const std::string& path) {
 
 }  // namespace
 
+void ThrowFileError(const std::string& path, const std::string& action) {
+  const int reason = errno;
+  const std::string message = path + ": cannot " + action + ": " + std::strerror(reason);
+  if (reason == ENOSPC || reason == EDQUOT || reason == EFBIG) throw DiskFullError(message);
+  throw std::runtime_error(message);
+}
+
 std::string ReadFileBytes(const std::string& path, size_t max_bytes) {
   // Without O_NONBLOCK, opening a pipe that nobody writes to would wait forever.
   const int fd = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-  if (fd < 0) FailWithErrno(path, "open for reading");
+  if (fd < 0) ThrowFileError(path, "open for reading");
   struct stat info {};
   if (::fstat(fd, &info) != 0 || !S_ISREG(info.st_mode)) {
     ::close(fd);
@@ -59,7 +63,7 @@ std::string ReadFileBytes(const std::string& path, size_t max_bytes) {
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) {
       ::close(fd);
-      FailWithErrno(path, "read");
+      ThrowFileError(path, "read");
     }
     if (n == 0) break;
     done += static_cast<size_t>(n);
@@ -72,7 +76,7 @@ std::string ReadFileBytes(const std::string& path, size_t max_bytes) {
 void WriteFileAtomically(const std::string& path, const std::string& bytes) {
   AtomicPath file(path);
   const int fd = ::open(file.temporary().c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (fd < 0) FailWithErrno(path, "open for writing");
+  if (fd < 0) ThrowFileError(path, "open for writing");
   size_t done = 0;
   while (done < bytes.size()) {
     const ssize_t n = ::write(fd, bytes.data() + done, bytes.size() - done);
@@ -81,11 +85,12 @@ void WriteFileAtomically(const std::string& path, const std::string& bytes) {
       const int reason = errno;
       ::close(fd);
       errno = reason;
-      FailWithErrno(path, "write (" + std::to_string(done) + " of " + std::to_string(bytes.size()) + " bytes written)");
+      ThrowFileError(path,
+                     "write (" + std::to_string(done) + " of " + std::to_string(bytes.size()) + " bytes written)");
     }
     done += static_cast<size_t>(n);
   }
-  if (::close(fd) != 0) FailWithErrno(path, "close");
+  if (::close(fd) != 0) ThrowFileError(path, "close");
   file.Commit();
 }
 
@@ -97,11 +102,11 @@ AtomicPath::~AtomicPath() {
 
 void AtomicPath::Commit() {
   const int fd = ::open(temporary_.c_str(), O_RDONLY | O_CLOEXEC);
-  if (fd < 0) FailWithErrno(target_, "finish (no output was written)");
+  if (fd < 0) ThrowFileError(target_, "finish (no output was written)");
   const bool synced = ::fsync(fd) == 0;
   ::close(fd);
-  if (!synced) FailWithErrno(target_, "flush to disk");
-  if (::rename(temporary_.c_str(), target_.c_str()) != 0) FailWithErrno(target_, "move the finished file into place");
+  if (!synced) ThrowFileError(target_, "flush to disk");
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) ThrowFileError(target_, "move the finished file into place");
   committed_ = true;
   SyncFolderOf(target_);
 }

@@ -7,17 +7,20 @@
 
 namespace bodyloom {
 
-/// Nothing more can be written: the disk, the quota or the file-size limit is used up. Another try may succeed.
-class OutOfRoom : public std::runtime_error {
+/// Nothing more can be written: the disk, the quota or the file-size limit is used up.
+class DiskFullError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+
+/// Throws "path: cannot ACTION: " and what errno says: DiskFullError, or else std::runtime_error.
+[[noreturn]] void ThrowFileError(const std::string& path, const std::string& action);
 
 /// Whole contents of a file. Throws std::runtime_error with path and reason; larger than max_bytes is refused.
 std::string ReadFileBytes(const std::string& path, size_t max_bytes = size_t{1} << 32);
 
 /// Writes `bytes` to `path` atomically. Throws std::runtime_error with path and reason (no folder, no permission, disk
-/// full: OutOfRoom); a failure leaves whatever stood at `path` untouched and no temporary behind.
+/// full: DiskFullError); a failure leaves whatever stood at `path` untouched and no temporary behind.
 void WriteFileAtomically(const std::string& path, const std::string& bytes);
 
 /// For writers that need a path (video encoders): hands out a temporary path beside the target with the same extension;

@@ -42,8 +42,8 @@ class VideoWriter::Sink {
     if (num_frames_ == 0) throw std::runtime_error(path_ + ": no frames to write");
     const int found = FramesInFile();
     if (!reason.empty() || found < num_frames_) {
-      throw OutOfRoom(Concatenate(path_, ": only ", found, " of ", num_frames_, " frames could be written (",
-                                  reason.empty() ? "read back" : reason, "); is the disk full?"));
+      throw DiskFullError(Concatenate(path_, ": only ", found, " of ", num_frames_, " frames could be written (",
+                                      reason.empty() ? "read back" : reason, "); is the disk full?"));
     }
     file_.Commit();
   }

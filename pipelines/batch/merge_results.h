@@ -48,7 +48,7 @@ std::string ToHtml(const MergeResultsReport& report);
 /// Reads the records of the manifest's clips and writes clips.csv, clips.jsonl and index.html into `out`, each whole or
 /// not at all. A record that cannot be read is told of as missing, with the reason. Only the records are read: whether the
 /// files beside them are as they were is looked at by RunBatch(). Throws std::runtime_error for a folder or manifest that
-/// cannot be used, PlaceTaken when another process is merging, OutOfRoom.
+/// cannot be used, PlaceTaken when another process is merging, DiskFullError.
 MergeResultsReport MergeResults(const MergeResultsRequest& request);
 
 }  // namespace bodyloom

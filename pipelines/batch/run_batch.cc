@@ -178,7 +178,7 @@ class Batch {
       throw;
     } catch (const Cancelled&) {
       return Ended(ClipStatus::kRetry, WhyStopped());
-    } catch (const OutOfRoom& error) {
+    } catch (const DiskFullError& error) {
       Stop("out of room");
       return Ended(ClipStatus::kRetry, error.what());
     } catch (const std::bad_alloc&) {

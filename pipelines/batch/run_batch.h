@@ -58,7 +58,7 @@ std::string ToText(const RunBatchReport& report);
 /// Tracks what is not there yet. A clip that fails stops no other; an interruption or a full disk stops all, and those not
 /// finished end as kRetry. A clip at which another process is comes last, and ends as kRetry when it still is. Results are
 /// the same bytes for any number of jobs and shards, but for times and memory in the reports. Throws std::invalid_argument
-/// for jobs outside 1 to 256, and std::runtime_error when `out` cannot be written (OutOfRoom when it is full).
+/// for jobs outside 1 to 256, and std::runtime_error when `out` cannot be written (DiskFullError when it is full).
 RunBatchReport RunBatch(const RunBatchRequest& request, const BatchCallbacks& callbacks = {});
 
 /// Folder, or file, of these in a batch's results.

@@ -123,7 +123,7 @@ bool IsStale(const std::string& path, const std::optional<LockHolder>& holder) {
 
 [[noreturn]] void FailPlace(const std::string& path, const std::string& action, int reason) {
   const std::string message = path + ": cannot " + action + ": " + std::strerror(reason);
-  if (reason == ENOSPC || reason == EDQUOT) throw OutOfRoom(message);
+  if (reason == ENOSPC || reason == EDQUOT) throw DiskFullError(message);
   throw std::runtime_error(message);
 }
 

@@ -32,7 +32,7 @@ class WorkPlace {
   static constexpr int kHeartbeatSeconds = 20, kStaleSeconds = 300;
 
   /// Takes ROOT/NAME, made when it is not there. Throws PlaceTaken, naming the holder, when a living process has it;
-  /// std::runtime_error (OutOfRoom) for a root that cannot be written.
+  /// std::runtime_error (DiskFullError) for a root that cannot be written.
   WorkPlace(const std::string& root, const std::string& name);
   /// Removes the folder and all that is in it, and gives the place back.
   ~WorkPlace();

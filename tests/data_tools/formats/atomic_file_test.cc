@@ -73,6 +73,12 @@ TEST(AtomicFile, ReadingRefusesWhatIsNoFile) {
               HasSubstr("100 bytes, at most 99"));
 }
 
+TEST(AtomicPath, TwoThatWriteOneFileDoNotShareATemporary) {
+  const TemporaryFolder folder;
+  const AtomicPath one(folder.File("a.csv")), other(folder.File("a.csv"));
+  EXPECT_NE(one.temporary(), other.temporary());
+}
+
 TEST(AtomicPath, CommitMovesAndDestructionCleansUp) {
   const TemporaryFolder folder;
   const std::string path = folder.File("video.mp4");
