@@ -14,7 +14,6 @@ enum ExitCode : int {
   kExitFailed = 1,          ///< any std::exception: a file, the data, or the solve
   kExitUsage = 2,           ///< unknown verb or option, or options that do not go together
   kExitNothingToTrack = 3,  ///< of `batch`: some clips show nobody, and none failed
-  kExitRetry = 75,          ///< of `batch`: not finished, and another try may (EX_TEMPFAIL of sysexits.h)
   kExitInterrupted = 130,   ///< Ctrl-C or SIGTERM; what was being written is removed
 };
 

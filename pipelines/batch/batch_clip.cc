@@ -4,56 +4,28 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <vector>
+#include <iomanip>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <tuple>
 
-#include "bodyloom/data_tools/detection/model_files.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/formats/json_reader.h"
+#include "bodyloom/data_tools/formats/printable.h"
 #include "bodyloom/data_tools/formats/sha256.h"
+#include "bodyloom/data_tools/observations/nothing_to_track.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/refuse.h"
+#include "bodyloom/pipelines/fixed_text.h"
 #include "bodyloom/pipelines/track/track_clip.h"
 
 namespace bodyloom {
 namespace {
 
 namespace fs = std::filesystem;
+using nlohmann::ordered_json;
 
-const TrackRequest& TrackOf(const BatchClip& clip) {
-  const auto* people = std::get_if<TrackPeopleClipRequest>(&clip.request);
-  return people != nullptr ? people->track : std::get<TrackRequest>(clip.request);
-}
-
-/// BlazePose's files that detection would read; none where another detector finds and measures people.
-std::vector<std::string> NetworkFiles(const TrackRequest& request) {
-  const FrameDetectorOptions& detector = request.detector;
-  if (!DetectsPeople(request) || (!detector.pose_model.empty() && !detector.box_model.empty())) return {};
-  std::vector<std::string> files;
-  const auto add = [&](const char* name) {
-    // Another detector may do without: then they need not be there.
-    try {
-      files.push_back(FindModelFile(name, detector.models));
-    } catch (const std::runtime_error&) {
-      if (detector.pose_model.empty()) throw;
-    }
-  };
-  add(kPoseDetectorFile);
-  switch (detector.blazepose.network) {
-    case PoseNetworkSize::kLite:
-      add(kPoseLandmarkLiteFile);
-      break;
-    case PoseNetworkSize::kFull:
-      add(kPoseLandmarkFullFile);
-      break;
-    case PoseNetworkSize::kHeavy:
-      add(kPoseLandmarkHeavyFile);
-      break;
-  }
-  return files;
-}
-
-std::string NameAlone(const std::string& path) { return path.empty() ? path : fs::path(path).filename().string(); }
-
-void NameAlone(std::vector<std::string>* paths) {
-  for (std::string& path : *paths) path = NameAlone(path);
-}
+std::string NameAlone(const std::string& path) { return fs::path(path).filename().string(); }
 
 void AddCounts(const TrackSequenceSummary& solve, ClipRecord* record) {
   for (const auto& [status, frames] : solve.frames_by_status) record->frames_by_status[status] += frames;
@@ -63,39 +35,46 @@ void AddCounts(const TrackSequenceSummary& solve, ClipRecord* record) {
   ++record->people;
 }
 
-ClipRecord TrackOne(const BatchClip& clip, const std::string& folder, const PipelineCallbacks& callbacks) {
+void TrackOne(const BatchClip& clip, const fs::path& folder, const PipelineCallbacks& callbacks, ClipRecord* record) {
   TrackRequest request = std::get<TrackRequest>(clip.request);
-  const auto in_folder = [&](const char* name) { return (fs::path(folder) / name).string(); };
-  request.out = in_folder("track.npz");
-  if (clip.overlay) request.overlay = in_folder("overlay.mp4");
-  if (clip.report) request.report = in_folder("report.html");
+  request.out = (folder / "track.npz").string();
+  if (clip.overlay) request.overlay = (folder / "overlay.mp4").string();
+  if (clip.report) request.report = (folder / "report.html").string();
   TrackReport report = TrackClip(request, callbacks);
-  NameAlone(&report.outputs);
-  WriteFileAtomically(in_folder("report.json"), ToJson(report));
-  ClipRecord record;
-  record.frames = report.num_frames;
-  AddCounts(report.solve, &record);
-  return record;
+  for (std::string& output : report.outputs) output = NameAlone(output);
+  WriteFileAtomically((folder / "report.json").string(), ToJson(report));
+  record->frames = report.num_frames;
+  AddCounts(report.solve, record);
 }
 
-ClipRecord TrackEverybody(const BatchClip& clip, const std::string& folder, const PipelineCallbacks& callbacks) {
+void TrackAll(const BatchClip& clip, const fs::path& folder, const PipelineCallbacks& callbacks, ClipRecord* record) {
   TrackPeopleClipRequest request = std::get<TrackPeopleClipRequest>(clip.request);
-  request.out = folder;
+  request.out = folder.string();
   request.overlay = clip.overlay;
   request.report = clip.report;
   TrackPeopleReport report = TrackPeopleClip(request, callbacks);
-  NameAlone(&report.outputs);
-  for (TrackedPerson& person : report.people) person.track = NameAlone(person.track);
-  std::replace(report.outputs.begin(), report.outputs.end(), std::string("summary.json"), std::string("report.json"));
-  fs::remove(fs::path(folder) / "summary.json");
-  WriteFileAtomically((fs::path(folder) / "report.json").string(), ToJson(report));
-  ClipRecord record;
-  record.frames = report.num_frames;
-  for (const TrackedPerson& person : report.people) {
-    if (person.solve.IsUsable()) AddCounts(person.solve, &record);
+  for (std::string& output : report.outputs) output = NameAlone(output);
+  for (TrackedPerson& person : report.people) {
+    person.track = NameAlone(person.track);
+    if (person.solve.IsUsable()) AddCounts(person.solve, record);
   }
-  return record;
+  WriteFileAtomically((folder / "summary.json").string(), ToJson(report));
+  record->frames = report.num_frames;
 }
+
+ClipStatus StatusFrom(const JsonNode& node) {
+  const std::string name = node.Text();
+  for (size_t i = 0; i < std::size(kClipStatusNames); ++i) {
+    if (name == kClipStatusNames[i]) return static_cast<ClipStatus>(i);
+  }
+  Refuse(node.place(), "'" + PrintableText(name) + "', expected the status of a clip");
+}
+
+double NumberOrNan(const JsonNode& node) {
+  return node.is_null() ? std::numeric_limits<double>::quiet_NaN() : node.Number();
+}
+
+std::string CsvCell(double error) { return std::isfinite(error) ? Fixed(error, 2) : ""; }
 
 }  // namespace
 
@@ -109,26 +88,80 @@ std::string ClipHash(const BatchClip& clip, const std::string& version) {
   sha.AddField(VerbOf(clip));
   for (const auto& [name, value] : clip.settings) {
     if (name == "threads") continue;
+    const bool is_path = IsPathSetting(name, value);
     sha.AddField(name);
-    if (IsPathSetting(name, value)) {
-      sha.AddField(fs::path(value).lexically_normal().filename().string());
-      sha.AddField(Sha256OfTree(value));
-    } else {
-      sha.AddField(value);
-    }
+    sha.AddField(is_path ? NameAlone(fs::path(value).lexically_normal().string()) : value);
+    if (is_path) sha.AddField(Sha256OfTree(value));
   }
-  sha.AddField("networks");
-  for (const std::string& file : NetworkFiles(TrackOf(clip))) sha.AddField(Sha256OfFile(file));
   return sha.Hex();
 }
 
 ClipRecord TrackBatchClip(const BatchClip& clip, const std::string& folder, const PipelineCallbacks& callbacks) {
-  const bool one = std::holds_alternative<TrackRequest>(clip.request);
-  ClipRecord record = one ? TrackOne(clip, folder, callbacks) : TrackEverybody(clip, folder, callbacks);
+  ClipRecord record;
   record.id = clip.id;
   record.verb = VerbOf(clip);
   record.status = ClipStatus::kDone;
+  try {
+    const auto track = record.verb == "track" ? TrackOne : TrackAll;
+    track(clip, folder, callbacks, &record);
+  } catch (const NothingToTrack& nothing) {
+    for (const fs::directory_entry& left : fs::directory_iterator(folder)) fs::remove_all(left.path());
+    record.status = ClipStatus::kNothingToTrack;
+    record.reason = nothing.what();
+  }
   return record;
+}
+
+std::string ToLine(const ClipRecord& record) {
+  return ordered_json({{"id", record.id},
+                       {"status", kClipStatusNames[static_cast<size_t>(record.status)]},
+                       {"reason", record.reason},
+                       {"verb", record.verb},
+                       {"seconds", std::round(1e3 * record.seconds) / 1e3},
+                       {"frames", record.frames},
+                       {"people", record.people},
+                       {"frames_by_status", record.frames_by_status},
+                       {"reprojection_median_px", record.reprojection_median_px},
+                       {"reprojection_p95_px", record.reprojection_p95_px},
+                       {"hash", record.hash}})
+      .dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+ClipRecord ClipRecordFromText(const std::string& text, const std::string& path) {
+  const nlohmann::json json = ParseJson(text, path, {.max_bytes = size_t{1} << 20, .max_depth = 3});
+  const JsonNode node(json, path);
+  ClipRecord record;
+  record.id = node.At("id").Text();
+  record.verb = node.At("verb").Text();
+  record.status = StatusFrom(node.At("status"));
+  record.reason = node.At("reason").Text();
+  record.hash = node.At("hash").Text();
+  record.seconds = node.At("seconds").Number();
+  record.frames = node.At("frames").Int();
+  record.people = node.At("people").Int();
+  const JsonNode counts = node.At("frames_by_status");
+  for (const std::string& status : counts.Keys()) record.frames_by_status[status] = counts.At(status).Int();
+  record.reprojection_median_px = NumberOrNan(node.At("reprojection_median_px"));
+  record.reprojection_p95_px = NumberOrNan(node.At("reprojection_p95_px"));
+  return record;
+}
+
+std::string ToCsv(std::vector<ClipRecord> records) {
+  const auto key = [](const ClipRecord& record) {
+    const double error = record.reprojection_p95_px;
+    return std::tuple(record.status, std::isfinite(error) ? -error : 0.0, record.id);
+  };
+  std::sort(records.begin(), records.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
+  std::string text =
+      "id,status,reprojection_p95_px,reprojection_median_px,frames,people,weak,interpolated,lost,seconds,reason\n";
+  for (ClipRecord& record : records) {
+    std::map<std::string, int>& frames = record.frames_by_status;
+    text += Concatenate(record.id, ",", kClipStatusNames[static_cast<size_t>(record.status)], ",",
+                        CsvCell(record.reprojection_p95_px), ",", CsvCell(record.reprojection_median_px), ",",
+                        record.frames, ",", record.people, ",", frames["weak"], ",", frames["interpolated"], ",",
+                        frames["lost"], ",", Fixed(record.seconds, 2), ",", std::quoted(record.reason, '"', '"'), "\n");
+  }
+  return text;
 }
 
 }  // namespace bodyloom

@@ -4,22 +4,23 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/formats/json_reader.h"
 #include "bodyloom/data_tools/formats/printable.h"
 #include "bodyloom/geometry/base/refuse.h"
+#include "bodyloom/pipelines/callbacks.h"
 
 namespace bodyloom {
 namespace {
 
 using nlohmann::json;
 
-constexpr size_t kMostManifestBytes = size_t{256} << 20, kMostIdLength = 100;
-constexpr JsonLimits kLineLimits = {.max_bytes = size_t{1} << 20, .max_depth = 2};
+constexpr const char* kIdCharacters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-";
 
 constexpr std::array kPathSettings = {"box-model",  "cameras",     "camera-path", "dense",    "detections",
                                       "init",       "body",        "lifter",      "models",   "prior",
@@ -30,23 +31,9 @@ bool IsIn(const auto& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-bool IsPlainLetterOrDigit(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9'); }
-
 bool IsClipId(const std::string& id) {
-  return !id.empty() && id.size() <= kMostIdLength && IsPlainLetterOrDigit(id[0]) &&
-         std::all_of(id.begin(), id.end(),
-                     [](char c) { return IsPlainLetterOrDigit(c) || c == '.' || c == '_' || c == '-'; });
-}
-
-bool IsOptionName(const std::string& name) {
-  return !name.empty() && name.front() != '-' && std::all_of(name.begin(), name.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-';
-  });
-}
-
-std::string InLowerCase(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
+  return !id.empty() && id.size() <= 100 && id.find_first_not_of(kIdCharacters) == std::string::npos &&
+         id.find_first_of("._-") != 0;
 }
 
 std::string SettingText(const json& value, const std::string& name, const std::string& place) {
@@ -61,14 +48,13 @@ std::string SettingText(const json& value, const std::string& name, const std::s
 }
 
 ManifestClip ClipFromLine(const std::string& line, const std::string& place, const std::filesystem::path& folder) {
-  const json object = ParseJson(line, place, kLineLimits);
+  const json object = ParseJson(line, place, {.max_bytes = size_t{1} << 20, .max_depth = 2});
   if (!object.is_object()) Refuse(place, std::string("found ") + object.type_name() + ", expected a JSON object");
   ManifestClip clip;
   clip.place = place;
   for (const auto& [name, value] : object.items()) {
-    if (!IsOptionName(name)) Refuse(place, "key '" + PrintableText(name) + "', expected the long name of an option");
     if (IsIn(kNotOfAClip, name)) Refuse(place, "'" + name + "' is no option of a clip of a batch: leave it out");
-    const std::string text = SettingText(value, name, place);
+    const std::string text = SettingText(value, PrintableText(name), place);
     if (name == "id") {
       if (!value.is_string()) Refuse(place, name, "expected a text");
       clip.id = text;
@@ -101,16 +87,15 @@ bool IsPathSetting(const std::string& name, const std::string& value) {
 std::vector<ManifestClip> ManifestFromText(const std::string& text, const std::string& path) {
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   std::vector<ManifestClip> clips;
-  std::map<std::string, size_t> line_of;  // of each id
-  size_t number = 0;
-  for (size_t begin = 0; begin < text.size();) {
-    const size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string line = text.substr(begin, end - begin);
-    begin = end + 1;
-    ++number;
+  std::map<std::string, size_t> line_of;  // of each id in lower case
+  std::istringstream stream(text);
+  std::string line;
+  for (size_t number = 1; std::getline(stream, line); ++number) {
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
     clips.push_back(ClipFromLine(line, path + ": line " + std::to_string(number), folder));
-    const auto [other, is_new] = line_of.emplace(InLowerCase(clips.back().id), number);
+    std::string id = clips.back().id;
+    for (char& c : id) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    const auto [other, is_new] = line_of.emplace(id, number);
     if (!is_new) {
       Refuse(clips.back().place, "id '" + clips.back().id + "' is that of line " + std::to_string(other->second) +
                                      ", expected another one");
@@ -120,8 +105,18 @@ std::vector<ManifestClip> ManifestFromText(const std::string& text, const std::s
   return clips;
 }
 
-std::vector<ManifestClip> ReadManifest(const std::string& path) {
-  return ManifestFromText(ReadFileBytes(path, kMostManifestBytes), path);
+std::vector<ManifestClip> ShardOf(const std::vector<ManifestClip>& clips, const std::string& text) {
+  size_t index = 0, count = 0;
+  const char* const end = text.data() + text.size();
+  const auto [slash, error] = std::from_chars(text.data(), end, index);
+  const bool both = error == std::errc() && slash != end && *slash == '/';
+  const auto [rest, other_error] = both ? std::from_chars(slash + 1, end, count) : std::from_chars_result{};
+  if (!both || other_error != std::errc() || rest != end || index >= count) {
+    throw RequestError("--shard '" + PrintableText(text) + "', expected i/N with i from 0 to N - 1, as in 0/6 to 5/6");
+  }
+  std::vector<ManifestClip> own;
+  for (size_t k = index; k < clips.size(); k += count) own.push_back(clips[k]);
+  return own;
 }
 
 }  // namespace bodyloom

@@ -16,7 +16,7 @@ import sys
 import tempfile
 import time
 
-from slurm_test import CLIPS, FAILING, TASKS, check, make_clips
+from slurm_test import CLIPS, FAILING, TASKS, check, make_clips, num_rows, process_at_work
 
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "examples/cluster/batch_parallel.sh"
 
@@ -24,15 +24,10 @@ SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "examples/cluster/batch_p
 def kill_a_worker(folder, run):
     """Kills the first process that is at a clip of shard 2."""
     while run.poll() is None:
-        for lock in (folder / "results/.work").glob("*/lock"):
-            try:
-                process = json.loads(lock.read_text())["process"]
-                words = pathlib.Path(f"/proc/{process}/cmdline").read_bytes().split(b"\0")
-                if f"2/{TASKS}".encode() in words:
-                    os.kill(process, signal.SIGKILL)
-                    return True
-            except (OSError, ValueError, KeyError):  # it ended meanwhile
-                pass
+        process = process_at_work(folder, 2, f"2/{TASKS}")
+        if process is not None:
+            os.kill(process, signal.SIGKILL)
+            return True
         time.sleep(0.01)
     return False
 
@@ -70,7 +65,8 @@ def main():
         lines = [json.loads(line) for line in (folder / "lines.txt").read_text().splitlines()]
         done = collections.Counter(line["id"] for line in lines if line["status"] == "done")
         good &= check(len(done) == CLIPS and set(done.values()) == {1}, f"{len(done)} of {CLIPS} clips done, each once")
-        good &= check(not (folder / "results/.work").exists(), "nothing is left at work")
+        good &= check(num_rows(folder, "done") == CLIPS, "the table has them all")
+        good &= check(not any((folder / "results/.work").iterdir()), "nothing is left at work")
         return 0 if good else 1
 
 

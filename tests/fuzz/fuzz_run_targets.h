@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/pipelines/batch/clip_record.h"
+#include "bodyloom/pipelines/batch/batch_clip.h"
 #include "bodyloom/pipelines/batch/manifest.h"
 #include "bodyloom/pipelines/people/relight_frames.h"
 #include "bodyloom/pipelines/runs/guided_run.h"
@@ -53,7 +53,7 @@ inline bool AcceptsManifest(const std::string& bytes) {
       }
       if (clip.verb != "track" && clip.verb != "run") throw std::logic_error("another verb");
       for (const auto& [name, value] : clip.settings) {
-        if (value.empty() || !IsOneLine(value) || name.empty()) throw std::logic_error("a setting in several lines");
+        if (value.empty() || !IsOneLine(value)) throw std::logic_error("a setting in several lines");
       }
     }
   });
@@ -62,11 +62,8 @@ inline bool AcceptsManifest(const std::string& bytes) {
 inline bool AcceptsClipRecord(const std::string& bytes) {
   return Accepts([&] {
     const ClipRecord record = ClipRecordFromText(bytes, "fuzz.json");
-    if (ToJson(ClipRecordFromText(ToJson(record), "fuzz.json")) != ToJson(record)) {
+    if (ToLine(ClipRecordFromText(ToLine(record), "fuzz.json")) != ToLine(record)) {
       throw std::logic_error("a record that is another one when it is written and read");
-    }
-    for (const auto& [name, file] : record.files) {
-      if (name.find('/') != std::string::npos) throw std::logic_error("a file outside the folder");
     }
   });
 }

@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// The command killed at a random moment: its output is whole or not there, and running it again gives the same bytes; so
-// does a batch of clips.
+// The command killed at a random moment: its output is whole or not there, and running it again gives the same bytes;
+// so does a batch of clips.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <map>
 #include <random>
+#include <set>
 #include <thread>
 
 #include "bodyloom/data_tools/motion/track_io.h"
@@ -25,9 +28,9 @@ namespace bodyloom::stress {
 namespace {
 
 /// Starts `bodyloom arguments...` and kills it (SIGKILL) after `milliseconds`. Returns whether it was still running.
-/// `begun`, where it is given, is a file or folder from whose appearance the time counts: how long a program takes to
-/// begin depends on what else the machine does.
-bool KillAfter(const std::vector<std::string>& arguments, int milliseconds, const std::string& begun = {}) {
+/// The time counts from when `begun` holds, where it is given: how long a program takes to begin depends on what else
+/// the machine does.
+bool KillAfter(const std::vector<std::string>& arguments, int milliseconds, const std::function<bool()>& begun = {}) {
   const std::string command = CommandPath();
   const pid_t child = fork();
   if (child == 0) {
@@ -42,7 +45,7 @@ bool KillAfter(const std::vector<std::string>& arguments, int milliseconds, cons
     _exit(127);
   }
   constexpr int kLongestBegin = 20000;  // half milliseconds
-  for (int i = 0; !begun.empty() && i < kLongestBegin && !std::filesystem::exists(begun); ++i) {
+  for (int i = 0; begun && i < kLongestBegin && !begun(); ++i) {
     std::this_thread::sleep_for(std::chrono::microseconds(500));
     siginfo_t ended{};
     if (waitid(P_PID, child, &ended, WEXITED | WNOHANG | WNOWAIT) == 0 && ended.si_pid == child) break;
@@ -94,15 +97,16 @@ TEST(Interruption, ATrackKilledAtARandomMomentIsWholeOrNotThereAndRunsAgain) {
   EXPECT_GT(absent, 1);
 }
 
-/// Every track below the folder, by its name in it.
-std::map<std::string, std::string> TracksBelow(const std::string& folder) {
-  std::map<std::string, std::string> tracks;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
-    if (entry.path().extension() == ".npz") {
-      tracks[entry.path().lexically_relative(folder).string()] = FileBytes(entry.path().string());
-    }
+/// What each clip's folder holds: the track's bytes, and the names of the other files (reports have times in them).
+std::map<std::string, std::string> ClipsOf(const std::string& out) {
+  std::map<std::string, std::string> clips;
+  if (!std::filesystem::exists(out + "/clips")) return clips;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(out + "/clips")) {
+    if (entry.is_directory()) continue;
+    const std::string path = entry.path().string();
+    clips[entry.path().lexically_relative(out).string()] = path.ends_with(".npz") ? FileBytes(path) : "";
   }
-  return tracks;
+  return clips;
 }
 
 TEST(Interruption, ABatchKilledAgainAndAgainEndsAsOneThatWasNot) {
@@ -111,7 +115,7 @@ TEST(Interruption, ABatchKilledAgainAndAgainEndsAsOneThatWasNot) {
   const CommandResult synth = RunCommand(
       {"synth", "--motion", "demo", "--frames", "10", "--fps", "15", "--dense", "0", "--out", folder / "clip"});
   ASSERT_EQ(synth.exit_code, 0) << synth.err;
-  constexpr int kClips = 6, kMostKills = 40;
+  constexpr int kClips = 6, kMostKills = 40, kFilesOfAClip = 3;
   std::string manifest;
   for (int i = 0; i < kClips; ++i) {
     manifest += "{\"id\":\"c" + std::to_string(i) + "\",\"detections\":\"clip/observations.npz\"}\n";
@@ -125,29 +129,45 @@ TEST(Interruption, ABatchKilledAgainAndAgainEndsAsOneThatWasNot) {
   ASSERT_EQ(RunCommand(batch("whole")).exit_code, 0);
   const int run_ms = static_cast<int>(
       std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now() - start).count());
-  const std::map<std::string, std::string> expected = TracksBelow(folder / "whole");
-  ASSERT_EQ(expected.size(), size_t{kClips});
+  const std::map<std::string, std::string> expected = ClipsOf(folder / "whole");
+  ASSERT_EQ(expected.size(), size_t{kClips * kFilesOfAClip});
   std::mt19937 random(5);
   int killed = 0, left_at_work = 0;
   std::map<std::string, std::string> before;
+  const std::string work = folder / "killed/.work";
+  const auto names_at_work = [&] {
+    std::set<std::string> names;
+    std::error_code ignored;
+    for (const auto& entry : std::filesystem::directory_iterator(work, ignored)) names.insert(entry.path().filename());
+    return names;
+  };
   for (int i = 0; i < kMostKills && before.size() < expected.size(); ++i) {
     // Every other one while a clip is at work.
-    const bool at_work = i % 2 == 1 && !std::filesystem::exists(folder / "killed/.work");
-    const int after = static_cast<int>(at_work ? random() % 4 : 1 + random() % unsigned(run_ms / 2 + 1));
-    killed += KillAfter(batch("killed"), after, at_work ? folder / "killed/.work" : std::string()) ? 1 : 0;
-    left_at_work += std::filesystem::exists(folder / "killed/.work") ? 1 : 0;
-    before.clear();
-    if (std::filesystem::exists(folder / "killed/clips")) before = TracksBelow(folder / "killed");
-    // What lies among the results is whole; what was at work lies elsewhere.
-    std::erase_if(before, [](const auto& track) { return !track.first.starts_with("clips/"); });
-    for (const auto& [name, bytes] : before) EXPECT_EQ(bytes, expected.at(name)) << name;
+    const std::set<std::string> left = names_at_work();
+    const auto is_at_work = [&] {
+      const std::set<std::string> names = names_at_work();
+      return !std::includes(left.begin(), left.end(), names.begin(), names.end());
+    };
+    if (i % 2 == 1) {
+      killed += KillAfter(batch("killed"), static_cast<int>(random() % 4), is_at_work) ? 1 : 0;
+    } else {
+      killed += KillAfter(batch("killed"), static_cast<int>(1 + random() % unsigned(run_ms / 2 + 1))) ? 1 : 0;
+    }
+    left_at_work += names_at_work().empty() ? 0 : 1;
+    const std::map<std::string, std::string> now = ClipsOf(folder / "killed");
+    EXPECT_EQ(now.size() % kFilesOfAClip, 0u) << "a folder is there in part";
+    for (const auto& [name, bytes] : now) EXPECT_EQ(bytes, expected.at(name)) << name;
+    for (const auto& [name, bytes] : before) EXPECT_TRUE(now.contains(name)) << name << " was done, and is gone";
+    before = now;
   }
   EXPECT_GT(killed, 2);
   EXPECT_GT(left_at_work, 0) << "no kill hit a clip at work";
   const CommandResult last = RunCommand(batch("killed"));
   EXPECT_EQ(last.exit_code, 0) << last.err;
-  EXPECT_EQ(TracksBelow(folder / "killed"), expected);
-  EXPECT_FALSE(std::filesystem::exists(folder / "killed/.work")) << "what killed processes left piles up";
+  EXPECT_EQ(ClipsOf(folder / "killed"), expected);
+  EXPECT_TRUE(std::filesystem::is_empty(work)) << "what killed processes left piles up";
+  EXPECT_EQ(FileBytes(folder / "killed/clips.csv").find("failed"), std::string::npos);
+  EXPECT_NE(FileBytes(folder / "killed/clips.csv").find("\nc5,done,"), std::string::npos);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/data_tools/fuzz/fuzz_run_seeds.h"
 
-#include "bodyloom/pipelines/batch/clip_record.h"
+#include "bodyloom/pipelines/batch/batch_clip.h"
 #include "bodyloom/pipelines/runs/guided_run.h"
 #include "bodyloom/pipelines/runs/motion_run.h"
 #include "bodyloom/pipelines/runs/photo_run.h"
@@ -43,14 +43,12 @@ void AddRunSeeds(std::map<std::string, std::vector<std::string>>* seeds) {
   record.verb = "track";
   record.status = ClipStatus::kDone;
   record.hash = std::string(64, 'a');
-  record.version = "0.1.0";
   record.seconds = 1.5;
   record.frames = 240;
   record.people = 1;
   record.frames_by_status = {{"tracked", 239}, {"lost", 1}};
   record.reprojection_median_px = 1.25;
-  record.files["track.npz"] = {12345, std::string(64, 'b')};
-  (*seeds)["clip_record"] = {ToJson(record)};
+  (*seeds)["clip_record"] = {ToLine(record)};
   (*seeds)["manifest"] = {
       R"({"id": "dance_01", "detections": "dance_01.json", "image-size": "1920x1080", "fps": 59.94})"
       "\n"

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -89,6 +90,91 @@ TEST_F(ClipHashTest, NeitherThreadsNorIdNorPlaceCounts) {
   fs::rename(folder_ / "elsewhere/openpose", folder_ / "elsewhere/other");
   clip_.settings["detections"] = folder_ / "elsewhere/other";
   EXPECT_NE(Hash(), hash) << "its own name does count: some formats are told apart by it";
+}
+
+ClipRecord SampleRecord(const std::string& id = "a", ClipStatus status = ClipStatus::kDone, double error = 4.25) {
+  ClipRecord record;
+  record.id = id;
+  record.verb = "track";
+  record.status = status;
+  record.hash = std::string(64, 'f');
+  record.seconds = 1.25;
+  record.frames = 6;
+  record.people = 1;
+  record.frames_by_status = {{"lost", 1}, {"tracked", 5}};
+  record.reprojection_median_px = 1.5;
+  record.reprojection_p95_px = error;
+  return record;
+}
+
+TEST(ClipRecord, IsReadAsItWasWritten) {
+  EXPECT_EQ(ToLine(ClipRecordFromText(ToLine(SampleRecord()), "clip.json")), ToLine(SampleRecord()));
+  ClipRecord nothing;
+  nothing.id = "b";
+  nothing.status = ClipStatus::kNothingToTrack;
+  nothing.reason = "b.json: nobody \"there\"";
+  const ClipRecord read = ClipRecordFromText(ToLine(nothing), "clip.json");
+  EXPECT_EQ(read.status, ClipStatus::kNothingToTrack);
+  EXPECT_EQ(read.reason, nothing.reason);
+  EXPECT_TRUE(std::isnan(read.reprojection_median_px));
+}
+
+TEST(ClipRecord, ALineIsOneObjectInOneLine) {
+  ClipRecord record = SampleRecord();
+  record.reason = "two\nlines";
+  const std::string line = ToLine(record);
+  EXPECT_EQ(line.find('\n'), std::string::npos);
+  const nlohmann::json json = nlohmann::json::parse(line);
+  EXPECT_EQ(json["id"], "a");
+  EXPECT_EQ(json["status"], "done");
+  EXPECT_EQ(json["seconds"], 1.25);
+  EXPECT_EQ(json["frames_by_status"]["tracked"], 5);
+}
+
+TEST(ClipRecord, RefusesGarbageInOneLine) {
+  const std::string good = ToLine(SampleRecord());
+  const auto with = [&](const std::string& key, const nlohmann::json& value) {
+    nlohmann::json json = nlohmann::json::parse(good);
+    json[key] = value;
+    return json.dump();
+  };
+  for (const std::string& text :
+       {std::string(), std::string("[]"), good.substr(0, good.size() / 2), with("status", "perhaps"),
+        with("frames", 1.5), with("id", 7), with("seconds", "long"), with("hash", nullptr)}) {
+    try {
+      ClipRecordFromText(text, "clip.json");
+      ADD_FAILURE() << text;
+    } catch (const std::runtime_error& error) {
+      EXPECT_TRUE(std::string(error.what()).starts_with("clip.json: ")) << error.what();
+    }
+  }
+}
+
+TEST(ClipTable, WorstComeFirstAndAReasonStaysInItsCell) {
+  ClipRecord failed = SampleRecord("failed", ClipStatus::kFailed, NAN);
+  failed.reason = "\"x\", y.json: no such file";
+  ClipRecord good = SampleRecord("good", ClipStatus::kDone, 1);
+  good.frames_by_status = {{"weak", 2}, {"interpolated", 3}, {"lost", 4}};
+  const std::string table = ToCsv(
+      {good, SampleRecord("bad", ClipStatus::kDone, 9), SampleRecord("nan", ClipStatus::kDone, NAN),
+       SampleRecord("empty", ClipStatus::kNothingToTrack, NAN), failed, SampleRecord("also", ClipStatus::kDone, 9)});
+  EXPECT_EQ(table,
+            "id,status,reprojection_p95_px,reprojection_median_px,frames,people,weak,interpolated,lost,seconds,reason\n"
+            "failed,failed,,1.50,6,1,0,0,1,1.25,\"\"\"x\"\", y.json: no such file\"\n"
+            "empty,nothing_to_track,,1.50,6,1,0,0,1,1.25,\"\"\n"
+            "also,done,9.00,1.50,6,1,0,0,1,1.25,\"\"\n"
+            "bad,done,9.00,1.50,6,1,0,0,1,1.25,\"\"\n"
+            "good,done,1.00,1.50,6,1,2,3,4,1.25,\"\"\n"
+            "nan,done,,1.50,6,1,0,0,1,1.25,\"\"\n");
+}
+
+TEST(TrackBatchClip, LeavesNoFileOfAClipThatShowsNobody) {
+  const ScratchFolder folder;
+  fs::create_directories(folder / "batch");
+  const ClipRecord record = TrackBatchClip(EmptyClip("e", folder), folder / "batch");
+  EXPECT_EQ(record.status, ClipStatus::kNothingToTrack);
+  EXPECT_NE(record.reason.find("no person in any of 1 frames"), std::string::npos) << record.reason;
+  EXPECT_TRUE(fs::is_empty(folder / "batch"));
 }
 
 TEST(TrackBatchClip, WritesWhatTrackWrites) {

@@ -54,11 +54,12 @@ inline BatchClip EmptyClip(const std::string& id, const ScratchFolder& folder) {
   return clip;
 }
 
-/// Every file below the folder by its name in it, but for times and memory: reports and records are left out.
+/// Every file below the folder by its name in it, but for times and memory: reports, records and the table are left
+/// out.
 inline std::map<std::string, std::string> ResultBytes(const std::string& folder) {
   std::map<std::string, std::string> bytes;
   for (const std::string& file : FilesBelow(folder)) {
-    if (!file.ends_with(".json") && !file.ends_with(".jsonl")) {
+    if (!file.ends_with(".json") && !file.ends_with(".csv")) {
       bytes[std::filesystem::path(file).lexically_relative(folder).string()] = FileBytes(file);
     }
   }

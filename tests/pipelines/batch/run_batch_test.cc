@@ -3,28 +3,23 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <csignal>
 #include <filesystem>
 #include <memory>
-#include <set>
+#include <thread>
 
-#include "bodyloom/pipelines/batch/work_place.h"
 #include "tests/pipelines/batch/batch_fixture.h"
 
 namespace bodyloom {
 namespace {
 
 namespace fs = std::filesystem;
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
-using ::testing::UnorderedElementsAre;
 
 constexpr int kClips = 4;
+using Counts = std::map<ClipStatus, int>;
 
 /// Four tiny clips, tracked once without any disturbance.
 class RunBatchTest : public ::testing::Test {
@@ -32,201 +27,274 @@ class RunBatchTest : public ::testing::Test {
   struct World {
     ScratchFolder folder;
     std::vector<BatchClip> clips;
+    std::vector<std::string> ids;
     std::map<std::string, std::string> undisturbed;
   };
   static void SetUpTestSuite() {
     world_ = std::make_unique<World>();
     for (int i = 0; i < kClips; ++i) {
-      world_->clips.push_back(BatchClipOf("clip" + std::to_string(i), TinyClip(world_->folder, i + 1)));
+      world_->ids.push_back("clip" + std::to_string(i));
+      world_->clips.push_back(BatchClipOf(world_->ids.back(), TinyClip(world_->folder, i + 1)));
     }
     RunBatchRequest request;
     request.clips = world_->clips;
+    request.ids_of_table = world_->ids;
     request.out = world_->folder / "undisturbed";
     RunBatch(request);
     world_->undisturbed = ResultBytes(request.out);
+    ASSERT_EQ(world_->undisturbed.size(), size_t{kClips});
   }
   static void TearDownTestSuite() { world_.reset(); }
 
   RunBatchTest() {
     request_.clips = world_->clips;
+    request_.ids_of_table = world_->ids;
     request_.out = folder_ / "out";
   }
   /// Runs, and keeps what was told of each clip.
-  RunBatchReport Run(const std::function<bool(const BatchProgress&)>& progress = {}) {
+  Counts Run(const std::function<bool(const std::string&, double)>& progress = {}) {
     told_.clear();
-    BatchCallbacks callbacks;
+    request_.on_ended = [this](const ClipRecord& record) {
+      EXPECT_TRUE(told_.emplace(record.id, record).second) << "a clip told of twice";
+    };
+    PipelineCallbacks callbacks;
     callbacks.progress = progress;
-    callbacks.ended = [&](const ClipRecord& record) { told_.push_back(record); };
-    return RunBatch(request_, callbacks);
+    report_ = RunBatch(request_, callbacks);
+    return report_.clips;
   }
-  [[nodiscard]] std::map<std::string, ClipStatus> Statuses() const {
-    std::map<std::string, ClipStatus> statuses;
-    for (const ClipRecord& record : told_) statuses[record.id] = record.status;
-    EXPECT_EQ(statuses.size(), told_.size()) << "a clip told of twice";
-    return statuses;
+  [[nodiscard]] std::string Clip(int clip) const { return request_.out + "/clips/clip" + std::to_string(clip); }
+  [[nodiscard]] std::string Failure(int clip) const {
+    return request_.out + "/failed/clip" + std::to_string(clip) + ".json";
   }
-  [[nodiscard]] const ClipRecord& Told(const std::string& id) const {
-    return *std::find_if(told_.begin(), told_.end(), [&](const ClipRecord& record) { return record.id == id; });
-  }
-  [[nodiscard]] std::string Track(int clip) const {
-    return ClipFolder(request_.out, "clip" + std::to_string(clip)) + "/track.npz";
-  }
+  [[nodiscard]] std::string Table() const { return FileBytes(request_.out + "/clips.csv"); }
   void ExpectWhole() const {
     EXPECT_EQ(ResultBytes(request_.out), world_->undisturbed);
-    EXPECT_FALSE(fs::exists(BatchWorkFolder(request_.out)));
+    EXPECT_TRUE(fs::is_empty(request_.out + "/.work"));
   }
 
   static std::unique_ptr<World> world_;
   ScratchFolder folder_;
   RunBatchRequest request_;
-  std::vector<ClipRecord> told_;
+  RunBatchReport report_;
+  std::map<std::string, ClipRecord> told_;
 };
 
 std::unique_ptr<RunBatchTest::World> RunBatchTest::world_;
 
 TEST_F(RunBatchTest, EveryClipIsTrackedOnceAndThenSkipped) {
-  request_.manifest = "the manifest\n";
-  EXPECT_EQ(Run().Count(ClipStatus::kDone), kClips);
-  EXPECT_EQ(Statuses().size(), size_t{kClips});
+  EXPECT_EQ(Run(), (Counts{{ClipStatus::kDone, kClips}}));
+  EXPECT_EQ(told_.size(), size_t{kClips});
   ExpectWhole();
-  EXPECT_EQ(FileBytes(BatchManifestFile(request_.out)), "the manifest\n");
-  const auto written = fs::last_write_time(Track(2));
-  EXPECT_EQ(Run().Count(ClipStatus::kSkipped), kClips);
-  EXPECT_EQ(fs::last_write_time(Track(2)), written);
-  EXPECT_EQ(Told("clip2").frames, 6) << "what the record holds is told again";
-  EXPECT_GT(Told("clip2").reprojection_p95_px, 0);
+  const auto written = fs::last_write_time(Clip(2) + "/track.npz");
+  EXPECT_EQ(Run(), (Counts{{ClipStatus::kSkipped, kClips}}));
+  EXPECT_EQ(fs::last_write_time(Clip(2) + "/track.npz"), written);
+  EXPECT_EQ(told_.at("clip2").frames, 6) << "what the record holds is told again";
+  EXPECT_GT(told_.at("clip2").reprojection_p95_px, 0);
   ExpectWhole();
+}
+
+TEST_F(RunBatchTest, ResultsCanBeReadByWhomeverTheUmaskLets) {
+  Run();
+  EXPECT_EQ(fs::status(Clip(0)).permissions(), fs::status(request_.out).permissions());
 }
 
 TEST_F(RunBatchTest, WhatChangedIsDoneAgainAndNothingElse) {
   Run();
+  WriteFileAtomically(Clip(1) + "/older.txt", "");
   request_.clips[1].settings["min-confidence"] = "0.1";
   std::get<TrackRequest>(request_.clips[1].request).min_confidence = 0.1;
-  Run();
-  EXPECT_EQ(Statuses(), (std::map<std::string, ClipStatus>{{"clip0", ClipStatus::kSkipped},
-                                                           {"clip1", ClipStatus::kDone},
-                                                           {"clip2", ClipStatus::kSkipped},
-                                                           {"clip3", ClipStatus::kSkipped}}));
+  EXPECT_EQ(Run(), (Counts{{ClipStatus::kDone, 1}, {ClipStatus::kSkipped, kClips - 1}}));
+  EXPECT_EQ(told_.at("clip1").status, ClipStatus::kDone);
+  EXPECT_FALSE(fs::exists(Clip(1) + "/older.txt")) << "the folder is replaced as a whole";
+  EXPECT_TRUE(fs::is_empty(request_.out + "/.work"));
 }
 
 TEST_F(RunBatchTest, GarbageAmongTheResultsIsReplaced) {
   Run();
-  std::string damaged = FileBytes(Track(0));
-  damaged[damaged.size() / 2] = static_cast<char>(damaged[damaged.size() / 2] ^ 1);
-  WriteFileAtomically(Track(0), damaged);
-  fs::remove(Track(1));
-  WriteFileAtomically(ClipFolder(request_.out, "clip2") + "/" + kClipRecordFile, "{\"id\": \"clip2\"");
-  fs::remove_all(ClipFolder(request_.out, "clip3"));
-  WriteFileAtomically(ClipFolder(request_.out, "clip3"), "a file where a folder is expected");
-  EXPECT_EQ(Run().Count(ClipStatus::kDone), kClips);
+  fs::remove(Clip(0) + "/clip.json");
+  WriteFileAtomically(Clip(1) + "/clip.json", "{\"id\": \"clip1\"");
+  fs::remove_all(Clip(2));
+  WriteFileAtomically(Clip(2), "a file where a folder is expected");
+  fs::remove_all(Clip(3));
+  EXPECT_EQ(Run(), (Counts{{ClipStatus::kDone, kClips}}));
   ExpectWhole();
 }
 
 TEST_F(RunBatchTest, AnotherClipsFolderIsNotTakenForThisOnes) {
   Run();
-  fs::remove_all(ClipFolder(request_.out, "clip1"));
-  fs::copy(ClipFolder(request_.out, "clip0"), ClipFolder(request_.out, "clip1"), fs::copy_options::recursive);
-  EXPECT_EQ(Run().Count(ClipStatus::kDone), 1);
+  fs::remove_all(Clip(1));
+  fs::copy(Clip(0), Clip(1), fs::copy_options::recursive);
+  EXPECT_EQ(Run(), (Counts{{ClipStatus::kDone, 1}, {ClipStatus::kSkipped, kClips - 1}}));
   ExpectWhole();
 }
 
-TEST_F(RunBatchTest, JobsAndShardsGiveTheSameBytes) {
+TEST_F(RunBatchTest, JobsAndShardsGiveTheSameBytesAndTheLastShardTheTable) {
   request_.jobs = 3;
-  EXPECT_EQ(Run().Count(ClipStatus::kDone), kClips);
+  EXPECT_EQ(Run(), (Counts{{ClipStatus::kDone, kClips}}));
   ExpectWhole();
-  fs::remove_all(request_.out);
+  const auto rows = [&] {
+    return Table().substr(0, Table().find("\n")) + std::to_string(std::ranges::count(Table(), '\n'));
+  };
+  const std::string whole = rows();
   request_.jobs = 1;
-  for (size_t shard = 0; shard < 2; ++shard) {
-    request_.clips = {world_->clips[shard], world_->clips[shard + 2]};
-    EXPECT_EQ(Run().Count(ClipStatus::kDone), 2);
+  for (const size_t first : {0, 1}) {  // whichever shard comes first
+    fs::remove_all(request_.out);
+    for (const size_t shard : {first, 1 - first}) {
+      EXPECT_FALSE(fs::exists(request_.out + "/clips.csv")) << "a table in which clips are missing";
+      request_.clips = {world_->clips[shard], world_->clips[shard + 2]};
+      EXPECT_EQ(Run(), (Counts{{ClipStatus::kDone, 2}}));
+      EXPECT_EQ(report_.table.empty(), shard == first);
+      EXPECT_THAT(ToText(report_),
+                  HasSubstr(shard == first ? "2 done, no table yet" : "2 done, table: " + report_.table));
+    }
+    ExpectWhole();
+    EXPECT_EQ(rows(), whole);
   }
-  ExpectWhole();
 }
 
-TEST_F(RunBatchTest, OneThatFailsStopsNoOther) {
+TEST_F(RunBatchTest, TheTableIsThereOnceShardsThatRunAtTheSameTimeHaveEnded) {
+  for (int round = 0; round < 5; ++round) {
+    fs::remove_all(request_.out);
+    {
+      std::vector<std::jthread> shards;
+      for (int i = 0; i < kClips; ++i) {
+        shards.emplace_back([&, i] {
+          RunBatchRequest request = request_;
+          request.clips = {world_->clips[static_cast<size_t>(i)]};
+          EXPECT_EQ(RunBatch(request).clips, (Counts{{ClipStatus::kDone, 1}}));
+        });
+      }
+    }
+    ExpectWhole();
+    for (const std::string& id : world_->ids) EXPECT_THAT(Table(), HasSubstr("\n" + id + ",done,"));
+  }
+}
+
+TEST_F(RunBatchTest, OneThatFailsStopsNoOtherAndIsNamedWithItsReason) {
   const ScratchFolder inputs;
   std::get<TrackRequest>(request_.clips[1].request).detections = inputs / "absent.npz";
   request_.clips[1].settings["detections"] = inputs / "absent.npz";
   request_.clips[2] = EmptyClip("clip2", inputs);
-  for (int run = 0; run < 2; ++run) {
-    const RunBatchReport report = Run();
-    EXPECT_EQ(Statuses(),
-              (std::map<std::string, ClipStatus>{{"clip0", run == 0 ? ClipStatus::kDone : ClipStatus::kSkipped},
-                                                 {"clip1", ClipStatus::kFailed},
-                                                 {"clip2", ClipStatus::kNothingToTrack},
-                                                 {"clip3", run == 0 ? ClipStatus::kDone : ClipStatus::kSkipped}}));
-    EXPECT_THAT(Told("clip1").reason, HasSubstr("absent.npz: "));
-    EXPECT_THAT(Told("clip2").reason, HasSubstr("no person in any of 1 frames"));
-    EXPECT_THAT(ToText(report), HasSubstr("1 with nothing to track, 1 failed"));
+  for (const ClipStatus others : {ClipStatus::kDone, ClipStatus::kSkipped}) {
+    EXPECT_EQ(Run(), (Counts{{ClipStatus::kFailed, 1}, {ClipStatus::kNothingToTrack, 1}, {others, 2}}));
+    EXPECT_THAT(told_.at("clip1").reason, HasSubstr("absent.npz: "));
+    EXPECT_THAT(told_.at("clip2").reason, HasSubstr("no person in any of 1 frames"));
+    EXPECT_THAT(ToText(report_), HasSubstr("1 failed, 1 nothing_to_track, 2 "));
+    EXPECT_THAT(Table(), HasSubstr("\nclip1,failed,,,0,0,0,0,0,0.00,\"" + told_.at("clip1").reason + "\"\nclip2,noth"));
   }
-  EXPECT_TRUE(fs::exists(FailureFile(request_.out, "clip1")));
-  EXPECT_FALSE(fs::exists(ClipFolder(request_.out, "clip1")));
+  EXPECT_TRUE(fs::exists(Failure(1)));
+  EXPECT_FALSE(fs::exists(Clip(1)));
   request_.clips = world_->clips;
   Run();
-  EXPECT_FALSE(fs::exists(FailureFile(request_.out, "clip1"))) << "put right";
+  EXPECT_FALSE(fs::exists(Failure(1))) << "put right";
+  EXPECT_THAT(Table(), Not(HasSubstr("failed")));
   ExpectWhole();
 }
 
-TEST_F(RunBatchTest, AnInterruptionLeavesWhatIsDoneAndTheRestForAnotherTry) {
-  // In the middle of the second clip.
-  const RunBatchReport report = Run([](const BatchProgress& at) { return at.clip != "clip1" || at.fraction < 0.3; });
-  EXPECT_EQ(report.Count(ClipStatus::kDone), 1);
-  EXPECT_EQ(report.Count(ClipStatus::kRetry), kClips - 1);
-  EXPECT_EQ(Told("clip1").reason, "interrupted");
-  EXPECT_EQ(Told("clip3").reason, "not begun: interrupted");
-  EXPECT_TRUE(fs::exists(Track(0)));
-  EXPECT_FALSE(fs::exists(ClipFolder(request_.out, "clip1")));
-  EXPECT_FALSE(fs::exists(BatchWorkFolder(request_.out)));
-  EXPECT_EQ(Run().Count(ClipStatus::kDone), kClips - 1);
-  EXPECT_EQ(Told("clip0").status, ClipStatus::kSkipped);
-  ExpectWhole();
-}
-
-TEST_F(RunBatchTest, AClipThatAnotherHasComesLastAndIsLeftToIt) {
-  {
-    const WorkPlace other(BatchWorkFolder(request_.out), "clip0");
-    Run();
-    EXPECT_EQ(told_.back().id, "clip0");
-    EXPECT_EQ(told_.back().status, ClipStatus::kRetry);
-    EXPECT_THAT(told_.back().reason, HasSubstr("is at it"));
-  }
-  EXPECT_EQ(Run().Count(ClipStatus::kDone), 1);
-  ExpectWhole();
-}
-
-TEST_F(RunBatchTest, WhatOneKilledAfterItsLastStepLeftIsClearedThoughItsClipIsDone) {
+TEST_F(RunBatchTest, ATableThatIsRightIsLeftAlone) {
   Run();
-  const pid_t child = fork();
-  ASSERT_GE(child, 0);
-  if (child == 0) {
-    const WorkPlace place(BatchWorkFolder(request_.out), "clip0");
-    raise(SIGKILL);
-  }
-  int status = 0;
-  ASSERT_EQ(waitpid(child, &status, 0), child);
-  ASSERT_TRUE(fs::exists(BatchWorkFolder(request_.out)));
-  EXPECT_EQ(Run().Count(ClipStatus::kSkipped), kClips);
+  const std::string table = request_.out + "/clips.csv", whole = Table();
+  const auto written = fs::last_write_time(table);
+  Run();
+  EXPECT_EQ(fs::last_write_time(table), written);
+  WriteFileAtomically(table, "id,status\n");
+  Run();
+  EXPECT_EQ(Table(), whole);
+}
+
+TEST_F(RunBatchTest, AFailureLeavesOlderResultsWhereTheyAre) {
+  Run();
+  request_.clips[1].settings["detections"] = folder_ / "absent.npz";
+  EXPECT_EQ(Run(), (Counts{{ClipStatus::kFailed, 1}, {ClipStatus::kSkipped, kClips - 1}}));
+  ExpectWhole();
+  EXPECT_THAT(Table(), HasSubstr("\nclip1,failed,"));
+}
+
+TEST_F(RunBatchTest, AnInterruptionLeavesWhatIsDoneAndTheRestForAnotherRun) {
+  // In the middle of the second clip.
+  const double limit = 1.3 / kClips;
+  EXPECT_THROW(Run([&](const std::string&, double whole) { return whole < limit; }), Cancelled);
+  EXPECT_EQ(told_.size(), 1u);
+  EXPECT_TRUE(fs::exists(Clip(0)));
+  EXPECT_FALSE(fs::exists(Clip(1)));
+  EXPECT_TRUE(fs::is_empty(request_.out + "/.work"));
+  EXPECT_EQ(Run(), (Counts{{ClipStatus::kDone, kClips - 1}, {ClipStatus::kSkipped, 1}}));
   ExpectWhole();
 }
 
-TEST_F(RunBatchTest, ProgressEndsAtTheWholeAndNeverFalls) {
-  double last = 0;
-  std::set<std::string> begun;
-  Run([&](const BatchProgress& at) {
-    EXPECT_GE(at.whole, last);
-    EXPECT_EQ(at.all, kClips);
-    last = at.whole;
-    if (at.stage == kBatchStageBegin) begun.insert(at.clip);
+TEST_F(RunBatchTest, WhatKilledRunsLeftGoesWhenTheClipIsDone) {
+  const auto leave = [&](const std::string& name) {
+    fs::create_directories(request_.out + "/.work/" + name + "/finished");
+    WriteFileAtomically(request_.out + "/.work/" + name + "/finished/track.npz", "half");
+  };
+  leave("clip0~abcdef");
+  leave("clip0~ghijkl~");
+  leave("clip1~mnopqr");
+  Run();
+  ExpectWhole();
+  leave("clip0~abcdef");
+  leave("clip0~ghijkl~");
+  leave("clip00~abcdef");
+  EXPECT_EQ(Run(), (Counts{{ClipStatus::kSkipped, kClips}})) << "killed after its last step";
+  EXPECT_FALSE(fs::exists(request_.out + "/.work/clip0~abcdef"));
+  EXPECT_FALSE(fs::exists(request_.out + "/.work/clip0~ghijkl~"));
+  EXPECT_TRUE(fs::exists(request_.out + "/.work/clip00~abcdef")) << "of another shard";
+}
+
+TEST_F(RunBatchTest, OfTwoWithTheSameClipTheResultsThatComeFirstStay) {
+  // The other one does all clips while this one is in the middle of the first, and clears up.
+  bool others = false;
+  std::map<std::string, std::string> first;
+  const Counts counts = Run([&](const std::string&, double whole) {
+    if (whole > 0.5 / kClips && !others) {
+      others = true;
+      RunBatchRequest other = request_;
+      other.on_ended = {};
+      EXPECT_EQ(RunBatch(other).clips, (Counts{{ClipStatus::kDone, kClips}}));
+      first["clip0"] = FileBytes(Clip(0) + "/clip.json");
+    }
     return true;
   });
-  EXPECT_GT(last, 0.9);
-  EXPECT_EQ(begun.size(), size_t{kClips});
+  EXPECT_TRUE(others);
+  EXPECT_EQ(counts, (Counts{{ClipStatus::kSkipped, kClips}}));
+  EXPECT_EQ(FileBytes(Clip(0) + "/clip.json"), first["clip0"]);
+  EXPECT_FALSE(fs::exists(Failure(0)));
+  ExpectWhole();
 }
 
-TEST_F(RunBatchTest, RefusesWhatItCannotDo) {
-  request_.jobs = 0;
-  EXPECT_THROW(Run(), std::invalid_argument);
-  request_.jobs = 1;
+TEST_F(RunBatchTest, TwoOnTheSameClipsAtOnceLeaveThemWhole) {
+  for (int round = 0; round < 5; ++round) {
+    fs::remove_all(request_.out);
+    request_.on_ended = {};
+    {
+      std::vector<std::jthread> both;
+      for (int i = 0; i < 2; ++i) {
+        both.emplace_back([&] {
+          RunBatchReport report = RunBatch(request_);
+          EXPECT_EQ(report.clips[ClipStatus::kDone] + report.clips[ClipStatus::kSkipped], kClips);
+        });
+      }
+    }
+    EXPECT_FALSE(fs::exists(request_.out + "/failed"));
+    EXPECT_EQ(Run(), (Counts{{ClipStatus::kSkipped, kClips}}));
+    ExpectWhole();  // of .work only now: each may have cleared up where the other was clearing up
+  }
+}
+
+TEST_F(RunBatchTest, ProgressCountsClips) {
+  std::vector<std::string> stages;
+  double last = 0;
+  Run([&](const std::string& stage, double whole) {
+    if (stages.empty() || stages.back() != stage) stages.push_back(stage);
+    EXPECT_GE(whole, last);
+    last = whole;
+    return true;
+  });
+  EXPECT_EQ(stages, (std::vector<std::string>{"0 of 4", "1 of 4", "2 of 4", "3 of 4"}));
+  EXPECT_GT(last, 0.9);
+}
+
+TEST_F(RunBatchTest, RefusesAFolderThatCannotBeOne) {
   WriteFileAtomically(folder_ / "file", "");
   request_.out = folder_ / "file";
   EXPECT_THROW(Run(), std::runtime_error);
