@@ -294,7 +294,12 @@ void ExpectEnginesAgree(const std::vector<UserTerm>& terms, SequenceSceneOptions
   ASSERT_EQ(chain.status, SolveStatus::kConverged) << chain.message;
   EXPECT_NEAR(chain.initial_cost, ceres.initial_cost, 1e-10 * ceres.initial_cost);
   EXPECT_NEAR(chain.final_cost, ceres.final_cost, 1e-6 * ceres.final_cost);
-  EXPECT_NEAR(reuse.final_cost, ceres.final_cost, 1e-6 * ceres.final_cost);
+  // Skips may lead into another minimum of the robust cost than every frame in every step does: a minimum it is, by what
+  // Ceres makes of it, and none that is worse.
+  EXPECT_LE(reuse.final_cost, (1 + 1e-6) * ceres.final_cost);
+  SolveOptions polish = options;
+  polish.solver = SequenceSolver::kCeres;
+  EXPECT_NEAR(SolveSequence(&by_reuse, polish).final_cost, reuse.final_cost, 1e-6 * reuse.final_cost);
   double moved = 0;
   for (size_t t = 0; t < without.states.size(); ++t) {
     moved += (without.states[t].translation - by_chain.states[t].translation).norm();
