@@ -26,6 +26,8 @@ TrackSequenceResult ClipCeresProblem::Finish() {
   if (blocks_ != nullptr) {
     blocks_->CopyTo(fit_->problem());
     fit_->Finish(&result_);
+    result_.summary.final_cost = 0;  // of the values now, with the weights that terms have of themselves
+    for (const TermCost& cost : result_.summary.costs) result_.summary.final_cost += cost.cost;
   }
   return std::move(result_);
 }

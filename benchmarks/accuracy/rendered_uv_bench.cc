@@ -30,8 +30,11 @@
 #include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/geometry/posed_body.h"
 #include "bodyloom/render/visibility_buffer.h"
+#include "bodyloom/tracking/initialise/lifted_start.h"
+#include "bodyloom/tracking/problem/clip_term.h"
 #include "bodyloom/tracking/solve_sequence.h"
 #include "bodyloom/tracking/terms/dense/dense.h"
+#include "bodyloom/tracking/terms/landmarks.h"
 #include "bodyloom/tracking/terms/pose_prior/pose_prior.h"
 #include "bodyloom/tracking/terms/rendered_uv/rendered_uv.h"
 #include "bodyloom/tracking/track_sequence.h"
@@ -182,11 +185,19 @@ BasinResult SolveFrame(const SynthClip& clip, const std::string& method, const s
   FrameData frame;
   frame.Get<DenseTerm>().points = &clip.dense.frames[0];
   frame.Get<DenseTerm>().kernel = 8;
-  const MixturePrior prior(BuiltinPosePrior(), body, joints);
-  frame.Get<PosePriorTerm>().mixture = {std::shared_ptr<void>(), &prior};
+  frame.Get<PosePriorTerm>().mixture = std::make_shared<const MixturePrior>(BuiltinPosePrior(), body, joints);
   frame.Get<PosePriorTerm>().weight = options.prior_weight;
   problem.frames = {frame};
-  const DenseRounds rounds(input, options, problem.layout, 1);
+  const ObservedLandmarks no_landmarks;
+  const LiftedStart not_lifted;
+  const LiftedLandmarks none_lifted;
+  const std::unique_ptr<ClipTerm> rounds = MakeDenseRounds({.input = input,
+                                                            .options = options,
+                                                            .layout = problem.layout,
+                                                            .landmarks = no_landmarks,
+                                                            .joints = nullptr,
+                                                            .lifted = not_lifted,
+                                                            .lifted_landmarks = none_lifted});
   SolveOptions solve;
   solve.max_iterations = 60;
   solve.shape_constant = true;
@@ -195,7 +206,7 @@ BasinResult SolveFrame(const SynthClip& clip, const std::string& method, const s
   const auto run = [&] { result.iterations += SolveSequence(&problem, solve).iterations; };
   if (method != "rendered UV") run();
   if (method != "reprojection") {
-    rounds.Start({0}, &problem);
+    if (rounds != nullptr) rounds->StartRound(0, {0}, &problem);
     run();
   }
   result.ms = 1e3 * watch.seconds();
