@@ -15,6 +15,7 @@ import json
 import pathlib
 import statistics
 import subprocess
+import sys
 import tempfile
 import time
 
@@ -35,9 +36,9 @@ def main():
     parser.add_argument("--rounds", type=int, default=9)
     parser.add_argument("--engines", nargs="+", default=["chain", "chain+ceres", "ceres"])
     parser.add_argument("--threads", type=int, default=0)
-    parser.add_argument("options", nargs=argparse.REMAINDER)
-    arguments = parser.parse_args()
-    options = [word for word in arguments.options if word != "--"]
+    given = sys.argv[1:]
+    split = given.index("--") if "--" in given else len(given)
+    arguments, options = parser.parse_args(given[:split]), given[split + 1:]
     seconds, last = {engine: [] for engine in arguments.engines}, {}
     with tempfile.TemporaryDirectory() as scratch:
         for _ in range(arguments.rounds):
