@@ -139,7 +139,9 @@ void CompressedRows(const FrameSystem& system, bool derivatives, Eigen::Ref<RowM
   r.tail(2).setZero();
   double rest = std::max(0.0, 2 * system.cost - y.squaredNorm());
   // Directions whose pivots are zero to rounding: their gradient is a row's with as little curvature as leaves it room.
-  const VectorXd left_out = system.gradient - R.triangularView<Eigen::Upper>().transpose() * y;
+  const bool is_definite = R.diagonal().minCoeff() > 0;
+  const VectorXd left_out =
+      is_definite ? VectorXd() : VectorXd(system.gradient - R.triangularView<Eigen::Upper>().transpose() * y);
   const double size = left_out.norm();
   if (size > 1e-12 * system.gradient.norm() && rest > 0) {
     const double scale = size * std::sqrt(2 / rest);

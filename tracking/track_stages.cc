@@ -50,6 +50,9 @@ bool StageRunner::Run(const Stage& stage, SequenceSolver solver, SequenceProblem
   solve.max_iterations = stage.max_iterations;
   solve.num_threads = num_threads_;
   solve.function_tolerance = stage.tolerance;
+  // Ceres drops the step that it finds too small to go on from, which chain keeps. Where all stages are Ceres', each goes
+  // on until that step is a tenth of what it may be for chain.
+  if (options_.solver == SequenceSolver::kCeres && options_.function_tolerance == 0) solve.function_tolerance /= 10;
   if (options_.progress) {
     solve.on_iteration = [&](int iteration, double cost) {
       const double done = 1 - std::exp(-iteration / 6.0);

@@ -18,20 +18,26 @@ using Eigen::Vector3d;
 
 void InitialiserTerm::Add(FrameAccumulator* sums) const {
   if (!runs()) return;
-  const double rotation_scale = std::sqrt(weight) / sigma;
+  // ½ s² ‖e‖² of one block of three unknowns by which e has the derivative d.
+  const auto add = [&](int column, double s, const Vector3d& e, const Matrix3d& d) {
+    sums->AddGroup(3, s * s * e.squaredNorm(), 0, 1);
+    if (!sums->derivatives()) return;
+    const Matrix3d J = s * d;
+    if (sums->one_by_one()) {
+      sums->AddBlockRows<3>(column, J, s * e);
+      return;
+    }
+    sums->H().block<3, 3>(column, column) += J.transpose() * J;
+    sums->gradient().segment<3>(column) += s * (J.transpose() * e);
+  };
   for (int j : sums->layout().active_joints) {
     const Vector3d w = AxisAngleFromRotation(rotations[j].transpose() * sums->state().rotations[j]);
-    sums->AddGroup(3, rotation_scale * rotation_scale * w.squaredNorm(), 0, 1);
-    if (!sums->derivatives()) continue;
-    sums->AddBlockRows<3>(sums->layout().column_of_joint[j], rotation_scale * RightJacobianInverse(w),
-                          rotation_scale * w);
+    add(sums->layout().column_of_joint[j], std::sqrt(weight) / sigma, w,
+        sums->derivatives() ? RightJacobianInverse(w) : Matrix3d());
   }
-  const double translation_scale = std::sqrt(weight) / translation_sigma;
+  const double s = std::sqrt(weight) / translation_sigma;
   const Vector3d offset = sums->state().translation - translation;
-  sums->AddGroup(3, translation_scale * translation_scale * offset.squaredNorm(), 0, 1);
-  if (!sums->derivatives()) return;
-  sums->AddBlockRows<3>(sums->layout().translation_column, translation_scale * Matrix3d::Identity(),
-                        translation_scale * offset);
+  add(sums->layout().translation_column, s, offset, Matrix3d::Identity());
 }
 
 std::vector<PlanEntry> PlanInitialiser(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
