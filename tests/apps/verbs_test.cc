@@ -124,7 +124,9 @@ TEST_F(Verbs, TrackTellsWhatItDidOnScreenAndAsJson) {
   }
   EXPECT_EQ(json["frames"], kFrames);
   EXPECT_EQ(json["frames_by_status"]["tracked"], kFrames);
-  EXPECT_EQ(json["solver"], "chain");
+  EXPECT_EQ(json["solver"], "chain+ceres");
+  EXPECT_GE(json["ceres"]["iterations"], 1);
+  EXPECT_GT(json["cost_by_term"]["2D joints"], 0);
   EXPECT_GT(json["initial_cost"], json["final_cost"]);
   EXPECT_GT(json["seconds"]["total"], 0);
 }
