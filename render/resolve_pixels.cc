@@ -10,7 +10,6 @@
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/render/covered_span.h"
 #include "bodyloom/render/resolve_simd.h"
-#include "bodyloom/render/shaded_mesh.h"
 #include "bodyloom/render/visible_points.h"
 
 namespace bodyloom {

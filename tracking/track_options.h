@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "bodyloom/tracking/camera_knowledge.h"
-#include "bodyloom/tracking/initialise/joint_hypotheses.h"
 #include "bodyloom/tracking/solve_options.h"
 #include "bodyloom/tracking/terms/ground_contact/ground_options.h"
 #include "bodyloom/tracking/terms/part_labels/part_label_options.h"
@@ -21,6 +20,19 @@ struct TrackProgress {
   std::string stage;    ///< "initialise", "fit", "refine", …
   double fraction = 0;  ///< of the whole run, estimated, in [0, 1]
   double cost = 0;      ///< of the current stage
+};
+
+/// Of the joints' hypotheses without a start (tracking/initialise/joint_hypotheses.h).
+struct JointHypothesesOptions {
+  double confidence = 0.2;      ///< joints below are not used as positions
+  bool hidden_pairs = false;    ///< a shoulder or hip that is not seen is where the other one is: a view from the side
+  double frame_rate = 15;       ///< the trellis runs on about this many frames a second
+  double angular_speed = 4.0;   ///< rad/s, σ of the torso's turning
+  double limb_speed = 2.2;      ///< m/s, σ of a limb's joints relative to the torso
+  double density_weight = 0.6;  ///< of the learned limb density
+  double occlusion_weight = 0.5;  ///< of confidence as a depth cue
+  double face_weight = 1.0;       ///< of the face's visibility as a heading cue
+  double upright_weight = 1.0;    ///< of the trunk being upright in a level camera
 };
 
 struct TrackSequenceOptions {

@@ -22,16 +22,11 @@
 #include <string>
 #include <vector>
 
+#include "bodyloom/geometry/person_label.h"
 #include "bodyloom/geometry/track.h"
 #include "bodyloom/render/image.h"
 
 namespace bodyloom {
-
-/// What a pixel shows; the names, in this order, are kPersonLabelNames.
-enum class PersonLabel : uint8_t { kBackground, kTop, kBottom, kFace, kHair, kSkin, kShoes };
-inline constexpr int kNumPersonLabels = 7;
-inline constexpr std::array<const char*, kNumPersonLabels> kPersonLabelNames = {"background", "top",  "bottom", "face",
-                                                                                "hair",       "skin", "shoes"};
 
 /// Which of the pictures beside `images` a dataset has, or a reader wants.
 struct PersonPictures {

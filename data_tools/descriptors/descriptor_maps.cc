@@ -170,8 +170,8 @@ MatrixX3d DescriptorMaps::VerticesInCamera(int t) const {
   return (from_root.cast<double>() * camera_from_frame.transpose()).rowwise() + root.transpose();
 }
 
-Map DescriptorMaps::OnlySeen(int t, Maps maps, Scratch* scratch, double* share) const {
-  const SeenTexels sight = FindSeenTexels(texels(), body_, VerticesInCamera(t), track_.CameraAt(t), &scratch->buffer);
+Map DescriptorMaps::OnlySeen(int t, Maps maps, VisibilityBuffer* buffer, double* share) const {
+  const SeenTexels sight = FindSeenTexels(texels(), body_, VerticesInCamera(t), track_.CameraAt(t), buffer);
   *share = sight.share;
   return KeepSeen(texels(), sight.seen, maps, item_size_);
 }
@@ -184,7 +184,7 @@ void DescriptorMaps::Make() {
   std::vector<NormalSummary> normal_summaries(num_normals);
   std::vector<int> cancelled(num_normals, 0);
   ParallelFor(num_normals + num_velocities, options_.num_threads, [&](int i) {
-    std::unique_ptr<Scratch> scratch = scratch_.Take();
+    std::unique_ptr<SightScratch> scratch = scratch_.Take();
     if (i < num_normals) {
       const int t = frames_[i];
       if (HasFit(t)) normal_maps_[i] = NormalMap(t, scratch.get(), &normal_summaries[i], &cancelled[i]);
@@ -210,7 +210,7 @@ void DescriptorMaps::Use(int i, const std::function<void(Maps, const FrameSummar
   std::vector<std::span<const char>> maps;
   std::vector<Map> own;  // for as long as the maps are needed
   own.reserve(options_.past);
-  std::unique_ptr<Scratch> scratch = scratch_.Take();
+  std::unique_ptr<SightScratch> scratch = scratch_.Take();
   if (options_.normals) maps.emplace_back(HasFit(t) ? normal_maps_[i] : zero_map_);
   for (int k = 0; k < options_.past; ++k) {
     const int s = HasFit(t) ? PastFrame(t, k) : -1;
@@ -226,7 +226,7 @@ void DescriptorMaps::Use(int i, const std::function<void(Maps, const FrameSummar
   summary.velocity_maps = static_cast<int>(own.size());
   Map masked;
   if (options_.seen_only && HasFit(t)) {
-    masked = OnlySeen(t, maps, scratch.get(), &summary.seen);
+    masked = OnlySeen(t, maps, &scratch->buffer, &summary.seen);
     maps = {masked};
   }
   scratch_.Return(std::move(scratch));

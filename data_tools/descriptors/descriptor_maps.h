@@ -12,10 +12,16 @@
 #include "bodyloom/data_tools/descriptors/map_memory.h"
 #include "bodyloom/data_tools/descriptors/posed_frames.h"
 #include "bodyloom/data_tools/descriptors/surface_maps.h"
+#include "bodyloom/render/visibility_buffer.h"
 #include "bodyloom/geometry/body_model.h"
 #include "bodyloom/geometry/track.h"
 
 namespace bodyloom::describe_internal {
+
+/// What one worker needs to make maps, and to find which of their texels are seen.
+struct SightScratch : Scratch {
+  VisibilityBuffer buffer;
+};
 
 /// Frames whose maps are held at the same time.
 inline constexpr int kFramesInFlight = 32;
@@ -72,7 +78,7 @@ class DescriptorMaps {
   [[nodiscard]] MatrixX3d VerticesInCamera(int t) const;
   /// Vectors of frame t from the scene's axes into those of a camera that moves, where these are asked for.
   void TurnToCamera(int t, std::span<float> planes) const;
-  Map OnlySeen(int t, Maps maps, Scratch* scratch, double* share) const;
+  Map OnlySeen(int t, Maps maps, VisibilityBuffer* buffer, double* share) const;
 
   const BodyModel& body_;
   const Track& track_;
@@ -83,7 +89,7 @@ class DescriptorMaps {
   Skinner skinner_;
   ShapedBody shape_;
   VelocitySkinner velocity_skinner_;
-  ScratchPool scratch_;
+  ScratchPool<SightScratch> scratch_;
   size_t item_size_, map_bytes_;
   Map zero_map_;
   MapPool maps_;

@@ -29,7 +29,7 @@ class LiveDescriptors::Impl {
         options_(Checked(options)),
         maps_(body, options.texels, options.weighting, options.normals),
         skinner_(body),
-        scratch_(ScratchPool(body.num_vertices(), static_cast<int>(maps_.num_pixels())).Take()),
+        scratch_(ScratchPool<Scratch>(body.num_vertices(), static_cast<int>(maps_.num_pixels())).Take()),
         vertices_(6 * static_cast<size_t>(body.num_vertices())) {}
 
   void Push(double timestamp, const BodyPose* pose, const Eigen::VectorXd& betas, std::span<float> planes) {

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "bodyloom/geometry/normals.h"
-#include "bodyloom/render/visibility_buffer.h"
 
 namespace bodyloom::describe_internal {
 
@@ -19,29 +18,29 @@ using Map = std::vector<char>;
 struct Scratch {
   NormalScratch normals;
   std::vector<float> vertices, padded, planes;  ///< V×3, V×4, three planes
-  VisibilityBuffer buffer;
 };
 
-/// Hands out scratch memory, one a worker at a time.
+/// Hands out scratch memory, one a worker at a time. ScratchType is Scratch or derives from it.
+template <typename ScratchType>
 class ScratchPool {
  public:
   ScratchPool(int num_vertices, int num_pixels) : num_vertices_(num_vertices), num_pixels_(num_pixels) {}
-  std::unique_ptr<Scratch> Take() {
+  std::unique_ptr<ScratchType> Take() {
     {
       const std::lock_guard<std::mutex> lock(mutex_);
       if (!free_.empty()) {
-        std::unique_ptr<Scratch> scratch = std::move(free_.back());
+        std::unique_ptr<ScratchType> scratch = std::move(free_.back());
         free_.pop_back();
         return scratch;
       }
     }
-    auto scratch = std::make_unique<Scratch>();
+    auto scratch = std::make_unique<ScratchType>();
     scratch->vertices.resize(3 * size_t(num_vertices_));
     scratch->padded.resize(4 * size_t(num_vertices_));
     scratch->planes.resize(3 * size_t(num_pixels_));
     return scratch;
   }
-  void Return(std::unique_ptr<Scratch> scratch) {
+  void Return(std::unique_ptr<ScratchType> scratch) {
     const std::lock_guard<std::mutex> lock(mutex_);
     free_.push_back(std::move(scratch));
   }
@@ -49,7 +48,7 @@ class ScratchPool {
  private:
   int num_vertices_, num_pixels_;
   std::mutex mutex_;
-  std::vector<std::unique_ptr<Scratch>> free_;
+  std::vector<std::unique_ptr<ScratchType>> free_;
 };
 
 /// Room for maps: one that is no longer needed, or a new one. Either is zero where no texel is.

@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
+#include "bodyloom/geometry/person_label.h"
 #include "bodyloom/render/splat/splat_picture.h"
 
 namespace bodyloom {

@@ -8,7 +8,7 @@
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/pipelines/person/person_cloth.h"
-#include "bodyloom/pipelines/person/photo_person.h"
+#include "bodyloom/pipelines/person/person_cloth.h"
 #include "bodyloom/render/avatar/cloth_bones.h"
 
 namespace bodyloom {

@@ -127,7 +127,7 @@ class PersonAnimation {
     const Track read = ReadTrack(request_.track);
     try {
       track_ = MovedByPerson(person_, read, request_.own_stature ? PersonPlacing::kInScene : PersonPlacing::kInPicture);
-      if (!person_.garment.empty() && Draws()) cloth_.emplace(person_, track_);
+      if (!person_.garment.empty() && Draws()) cloth_.emplace(*person_.clothed, person_.garment, track_);
       if (!request_.moved_track.empty()) WriteTrack(request_.moved_track, track_);
       int first = 0, last = track_.num_frames() - 1;
       if (!request_.freeze.empty()) {

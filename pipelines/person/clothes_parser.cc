@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
+#include "bodyloom/geometry/person_label.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/posed_body.h"
 #include "bodyloom/pipelines/person/label_colours.h"

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
+#include "bodyloom/geometry/person_label.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/render/median_colour.h"
 

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/cloth/body_with_garment.h"
 #include "bodyloom/geometry/cloth/cloth_runs.h"
 #include "bodyloom/render/overlay.h"
 #include "bodyloom/render/person/garment_swing.h"
@@ -43,8 +42,12 @@ ClothRunOptions OptionsFor(const Track& track, const PersonClothOptions& shown) 
 
 }  // namespace
 
-PersonCloth::PersonCloth(const PhotoPerson& person, const Track& moved)
-    : PersonCloth(*person.clothed, person.garment, moved) {}
+LooseGarment CutGarment(const BodyModel& clothed, LooseGarmentOptions* cut) {
+  constexpr uint64_t kSeed = 1;  // of how it is crumpled
+  LooseGarment garment = ClothWearer(clothed, Eigen::VectorXd(), {}).Cut(*cut, kSeed);
+  cut->columns = garment.columns;
+  return garment;
+}
 
 PersonCloth::PersonCloth(const BodyModel& clothed, const LooseGarment& garment, const Track& moved,
                          const PersonClothOptions& options) {
@@ -58,12 +61,6 @@ const std::vector<Eigen::Vector3d>& PersonCloth::At(int t) {
   BODYLOOM_CHECK(t >= last_, "a garment's frame ", t, " was requested after frame ", last_);
   for (; run_ && last_ < t; ++last_) cloth_ = run_->Next();
   return cloth_;
-}
-
-MatrixX3d StillVertices(const PhotoPerson& person, const Track& moved) {
-  MatrixX3d vertices = TrackVertices(*person.body, moved, 0);
-  if (!person.garment.empty()) PlaceGarment(person.garment, PersonCloth(person, moved).At(0), &vertices);
-  return vertices;
 }
 
 }  // namespace bodyloom

@@ -10,8 +10,8 @@
 #include "bodyloom/geometry/body_model.h"
 #include "bodyloom/geometry/cloth/cloth_run.h"
 #include "bodyloom/geometry/cloth/cloth_wearer.h"
+#include "bodyloom/geometry/cloth/loose_garment.h"
 #include "bodyloom/geometry/track.h"
-#include "bodyloom/pipelines/person/photo_person.h"
 
 namespace bodyloom {
 
@@ -23,10 +23,9 @@ struct PersonClothOptions {
 /// Borrows the clothed body.
 class PersonCloth {
  public:
-  /// `moved`: a track of person.body (MovedByPerson). Frames without a result go on as the frame before them. Throws
-  /// std::invalid_argument as ClothRun does.
-  PersonCloth(const PhotoPerson& person, const Track& moved);
   /// A garment as a photo shows it, on the clothed body of that photo, which has the faces of the one it was cut for.
+  /// `moved`: a track of that body (MovedByPerson). Frames without a result go on as the frame before them. Throws
+  /// std::invalid_argument as ClothRun does.
   PersonCloth(const BodyModel& clothed, const LooseGarment& garment, const Track& moved,
               const PersonClothOptions& options = {});
   PersonCloth(const PersonCloth&) = delete;
@@ -43,7 +42,7 @@ class PersonCloth {
   int last_ = -1;
 };
 
-/// Vertices of person.body in the only frame of `moved`, metres, camera frame: the garment at rest.
-MatrixX3d StillVertices(const PhotoPerson& person, const Track& moved);
+/// The garment of a clothed body whose zero betas are the person; the same each time. `cut` gets the number of columns.
+LooseGarment CutGarment(const BodyModel& clothed, LooseGarmentOptions* cut);
 
 }  // namespace bodyloom

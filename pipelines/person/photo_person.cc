@@ -3,20 +3,23 @@
 
 #include "bodyloom/geometry/bake_shape.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/cloth/cloth_wearer.h"
+#include "bodyloom/geometry/cloth/body_with_garment.h"
+#include "bodyloom/pipelines/person/person_cloth.h"
+#include "bodyloom/render/overlay.h"
 
 namespace bodyloom {
-
-LooseGarment CutGarment(const BodyModel& clothed, LooseGarmentOptions* cut) {
-  constexpr uint64_t kSeed = 1;  // of how it is crumpled
-  LooseGarment garment = ClothWearer(clothed, Eigen::VectorXd(), {}).Cut(*cut, kSeed);
-  cut->columns = garment.columns;
-  return garment;
-}
 
 Track MovedByPerson(const PhotoPerson& person, const Track& track, PersonPlacing placed) {
   BODYLOOM_CHECK(!track.HasMovingCamera(), "its camera moves; expected one that stands still");
   return OfBakedBody(WithShape(*person.bare, track, person.betas, placed));
+}
+
+MatrixX3d StillVertices(const PhotoPerson& person, const Track& moved) {
+  MatrixX3d vertices = TrackVertices(*person.body, moved, 0);
+  if (person.garment.empty()) return vertices;
+  PersonCloth cloth(*person.clothed, person.garment, moved);
+  PlaceGarment(person.garment, cloth.At(0), &vertices);
+  return vertices;
 }
 
 }  // namespace bodyloom

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bodyloom/data_tools/motion/shape_track.h"
+#include "bodyloom/geometry/arrays.h"
 #include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/geometry/body_model.h"
 #include "bodyloom/geometry/cloth/loose_garment.h"
@@ -68,12 +69,12 @@ struct PhotoPerson {
   PhotoPersonReport report;
 };
 
-/// The garment of a clothed body whose zero betas are the person; the same each time. `cut` gets the number of columns.
-LooseGarment CutGarment(const BodyModel& clothed, LooseGarmentOptions* cut);
-
 /// The motion of a track of `bare` by this person: for person.body, with zero betas. Neither the photos nor the track say
 /// how tall anybody is, so the person is as tall in the picture as the track's own unless `placed` says otherwise. Throws
 /// std::invalid_argument for a track whose camera moves, and as WithShape().
 Track MovedByPerson(const PhotoPerson& person, const Track& track, PersonPlacing placed = PersonPlacing::kInPicture);
+
+/// Vertices of person.body in the only frame of `moved` (MovedByPerson), metres, camera frame: the garment at rest.
+MatrixX3d StillVertices(const PhotoPerson& person, const Track& moved);
 
 }  // namespace bodyloom

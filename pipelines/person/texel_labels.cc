@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
+#include "bodyloom/geometry/person_label.h"
 #include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
+#include "bodyloom/geometry/person_label.h"
 #include "bodyloom/geometry/bake_shape.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/cloth/body_with_garment.h"

@@ -15,7 +15,7 @@
 
 namespace bodyloom {
 
-/// Classes in the order of PersonLabel (data_tools/datasets/single_person_dataset.h), from kTop to kShoes.
+/// Classes in the order of PersonLabel (geometry/person_label.h), from kTop to kShoes.
 inline constexpr int kParserClasses = 6;
 inline constexpr PictureUnetPlanes kParserPlanes = {PersonPlane::kCount, kParserClasses};
 

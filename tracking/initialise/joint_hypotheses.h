@@ -21,20 +21,9 @@
 #include "bodyloom/geometry/camera.h"
 #include "bodyloom/geometry/observations.h"
 #include "bodyloom/geometry/pose_prior.h"
+#include "bodyloom/tracking/track_options.h"
 
 namespace bodyloom {
-
-struct JointHypothesesOptions {
-  double confidence = 0.2;      ///< joints below are not used as positions
-  bool hidden_pairs = false;    ///< a shoulder or hip that is not seen is where the other one is: a view from the side
-  double frame_rate = 15;       ///< the trellis runs on about this many frames a second
-  double angular_speed = 4.0;   ///< rad/s, σ of the torso's turning
-  double limb_speed = 2.2;      ///< m/s, σ of a limb's joints relative to the torso
-  double density_weight = 0.6;  ///< of the learned limb density
-  double occlusion_weight = 0.5;  ///< of confidence as a depth cue
-  double face_weight = 1.0;       ///< of the face's visibility as a heading cue
-  double upright_weight = 1.0;    ///< of the trunk being upright in a level camera
-};
 
 /// Index of the torso's axes and joints in `JointHypothesis::points`: CocoNames() order.
 struct JointHypothesis {

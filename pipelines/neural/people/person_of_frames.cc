@@ -7,7 +7,7 @@
 #include "bodyloom/data_tools/observations/nothing_to_track.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/pipelines/people/planar_picture.h"
-#include "bodyloom/pipelines/person/person_cloth.h"
+#include "bodyloom/pipelines/person/photo_person.h"
 #include "bodyloom/pipelines/person/photo_person_builder.h"
 
 namespace bodyloom {

@@ -48,7 +48,7 @@ double Furthest(const std::vector<Eigen::Vector3d>& a, const std::vector<Eigen::
 TEST(PersonCloth, HangsAroundTheHipsAndMovesOn) {
   const PhotoPerson person = InASkirt();
   const Track moved = MovedByPerson(person, ShortTrack(12));
-  PersonCloth cloth(person, moved);
+  PersonCloth cloth(*person.clothed, person.garment, moved);
   std::vector<Eigen::Vector3d> before;
   for (int t = 0; t < 6; ++t) {
     const std::vector<Eigen::Vector3d> now = cloth.At(t);
@@ -71,18 +71,18 @@ TEST(PersonCloth, WaitsWhereTheTrackIsLost) {
     moved.motion.poses.row(t).setConstant(std::numeric_limits<double>::quiet_NaN());
     moved.frame_status[t] = FrameStatus::kLost;
   }
-  PersonCloth cloth(person, moved);
+  PersonCloth cloth(*person.clothed, person.garment, moved);
   for (int t = 0; t < 8; ++t) {
     for (const Eigen::Vector3d& p : cloth.At(t)) ASSERT_TRUE(p.allFinite()) << t;
   }
   moved.motion.poses.setConstant(std::numeric_limits<double>::quiet_NaN());
-  EXPECT_THROW(PersonCloth(person, moved), std::invalid_argument);
+  EXPECT_THROW(PersonCloth(*person.clothed, person.garment, moved), std::invalid_argument);
 }
 
 TEST(PersonCloth, BeginsAtRest) {
   const PhotoPerson person = InASkirt();
   const Track still = FramesInOrder(MovedByPerson(person, ShortTrack(30)), std::vector<int>{5, 5});
-  PersonCloth cloth(person, still);
+  PersonCloth cloth(*person.clothed, person.garment, still);
   const std::vector<Eigen::Vector3d> first = cloth.At(0), next = cloth.At(1);
   double way = 0;
   for (size_t i = 0; i < first.size(); ++i) way += (next[i] - first[i]).norm() / double(first.size());
@@ -97,7 +97,7 @@ TEST(PersonCloth, OtherRunsFallElsewhere) {
     PersonCloth cloth(*person.clothed, person.garment, moved, {.run = run});
     return cloth.At(11);
   };
-  const std::vector<Eigen::Vector3d> first = PersonCloth(person, moved).At(11);
+  const std::vector<Eigen::Vector3d> first = PersonCloth(*person.clothed, person.garment, moved).At(11);
   EXPECT_EQ(Furthest(last(0), first), 0);
   for (int run = 1; run < kMostClothRuns; ++run) {
     const std::vector<Eigen::Vector3d> other = last(run);
@@ -113,7 +113,7 @@ TEST(PersonCloth, NoGarmentNoCloth) {
   PhotoPerson person = InASkirt();
   person.garment = {};
   person.body = person.clothed;
-  EXPECT_TRUE(PersonCloth(person, person.tracks[0]).At(0).empty());
+  EXPECT_TRUE(PersonCloth(*person.clothed, person.garment, person.tracks[0]).At(0).empty());
   EXPECT_EQ(StillVertices(person, person.tracks[0]).rows(), person.body->num_vertices());
 }
 
