@@ -4,10 +4,10 @@
 #include <iostream>
 #include <memory>
 
-#include "apps/avatar_verbs.h"
-#include "apps/command_callbacks.h"
+#include "apps/progress.h"
 #include "apps/shown_motion_options.h"
-#include "bodyloom/pipelines/avatar/animate_avatar.h"
+#include "apps/verbs.h"
+#include "bodyloom/pipelines/gaussian_avatar/animate_avatar.h"
 
 namespace bodyloom {
 namespace {

@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "apps/avatar_verbs.h"
-#include "apps/command_callbacks.h"
 #include "apps/detector_options.h"
-#include "apps/exec_neural.h"
-#include "bodyloom/pipelines/person/animate_person.h"
+#include "apps/exec_beside.h"
+#include "apps/progress.h"
+#include "apps/verbs.h"
+#include "bodyloom/pipelines/photo_avatar/animate_person.h"
 
 namespace bodyloom {
 namespace {

@@ -11,7 +11,7 @@
 #include "apps/run_options.h"
 #include "apps/track_options.h"
 #include "bodyloom/data_tools/formats/printable.h"
-#include "bodyloom/geometry/base/refuse.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

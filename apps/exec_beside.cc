@@ -2,7 +2,6 @@
 #include "apps/exec_beside.h"
 
 #include <unistd.h>
-
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>

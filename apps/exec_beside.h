@@ -15,4 +15,10 @@ std::filesystem::path ProgramBeside(const std::string& name);
 /// std::runtime_error when it cannot be started.
 void ExecBeside(const std::string& name, const std::vector<std::string>& arguments);
 
+// Hands a verb over to the executable that is linked with LibTorch.
+
+/// Replaces this process by `bodyloom-neural` with these arguments. Returns only by throwing std::runtime_error: it is
+/// not there, or cannot be started.
+[[noreturn]] void ExecNeural(const std::vector<std::string>& arguments);
+
 }  // namespace bodyloom

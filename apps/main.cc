@@ -4,8 +4,7 @@
 #include <exception>
 #include <iostream>
 
-#include "apps/exit_code.h"
-#include "apps/interrupt.h"
+#include "apps/progress.h"
 #include "apps/usage_error.h"
 #include "apps/verbs.h"
 

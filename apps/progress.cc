@@ -2,12 +2,14 @@
 #include "apps/progress.h"
 
 #include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <iostream>
+#include <memory>
+#include <optional>
 
-#include "bodyloom/pipelines/clock_text.h"
+#include "bodyloom/pipelines/report_text.h"
 
 namespace bodyloom {
 namespace {
@@ -73,6 +75,43 @@ void Progress::Draw(const std::string& stage, double fraction, double elapsed_se
   } else {
     out_ << line << std::endl;
   }
+}
+
+namespace {
+
+volatile std::sig_atomic_t interrupt_flag = 0;
+
+void RaiseFlag(int) { interrupt_flag = 1; }
+
+}  // namespace
+
+void InstallSignalHandlers() {
+  struct sigaction action = {};
+  action.sa_handler = RaiseFlag;
+  // SA_RESETHAND: a second signal has its default effect, for work that does not poll.
+  action.sa_flags = static_cast<int>(SA_RESTART | SA_RESETHAND);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+
+bool IsInterrupted() { return interrupt_flag != 0; }
+
+PipelineCallbacks CommandCallbacks(bool quiet, std::ostream& messages) {
+  const Progress::Style style = quiet ? Progress::Style::kSilent : Progress::DefaultStyle();
+  const auto shown = std::make_shared<std::optional<Progress>>();
+  PipelineCallbacks callbacks;
+  callbacks.begin = [shown, style](const std::string& work) { shown->emplace(work, style); };
+  callbacks.progress = [shown](const std::string& stage, double fraction) {
+    if (*shown) (*shown)->Update(stage, fraction);
+    return !IsInterrupted();
+  };
+  callbacks.message = [shown, &messages](const std::string& line) {
+    if (*shown) (*shown)->Wipe();
+    messages << line << std::endl;
+  };
+  return callbacks;
 }
 
 }  // namespace bodyloom

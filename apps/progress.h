@@ -4,7 +4,10 @@
 
 #include <chrono>
 #include <iosfwd>
+#include <iostream>
 #include <string>
+
+#include "bodyloom/geometry/base/callbacks.h"
 
 namespace bodyloom {
 
@@ -42,5 +45,29 @@ class Progress {
   double first_fraction_ = -1, fraction_ = 0;  ///< -1: no Update() yet
   size_t drawn_width_ = 0;
 };
+
+// Ctrl-C without half files: the first SIGINT or SIGTERM raises a flag that long work polls, the second one kills.
+
+/// Installs the handlers, and ignores SIGPIPE and SIGXFSZ so that a closed pipe or a file-size limit becomes a write
+/// error with a message instead of a silent death.
+void InstallSignalHandlers();
+
+[[nodiscard]] bool IsInterrupted();
+
+// Callbacks of the command: a pipeline's reports on a terminal, progress on stderr, messages as lines; Ctrl-C cancels
+// it.
+
+/// Work that has a name (PipelineCallbacks::begin) gets a bar or lines on stderr (apps/progress.h), nothing when
+/// `quiet`; work without one shows nothing. A raised interrupt flag (apps/progress.h) cancels the job. Messages go to
+/// `messages`, which must outlive the callbacks. The bar is wiped when the last copy of the callbacks goes.
+PipelineCallbacks CommandCallbacks(bool quiet = false, std::ostream& messages = std::cout);
+
+/// The answer of `job(request, callbacks)`, run under a bar of this title, which is gone when it returns.
+template <class Job, class Request>
+auto RunWithBar(const std::string& title, const Job& job, const Request& request) {
+  const PipelineCallbacks callbacks = CommandCallbacks();
+  callbacks.Begin(title);
+  return job(request, callbacks);
+}
 
 }  // namespace bodyloom

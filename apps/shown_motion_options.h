@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "bodyloom/geometry/uv_maps/descriptor_options.h"
+
 namespace CLI {
 class App;
 }
@@ -21,5 +23,16 @@ struct ShownMotion {
 
 /// --view-yaw, --shape, --freeze, --background.
 void AddShownMotion(CLI::App* verb, const ShownMotion& shown);
+
+}  // namespace bodyloom
+
+namespace CLI {
+class App;
+}
+
+namespace bodyloom {
+
+/// --velocity, --window, --longest-step, --frame, --cameras, --view: the axes and velocities of a surface's motion.
+void AddSurfaceMotionOptions(CLI::App* verb, SurfaceMotion* motion, std::string* cameras, std::string* view);
 
 }  // namespace bodyloom

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/avatar_verbs.h"
-#include "apps/command_callbacks.h"
-#include "bodyloom/pipelines/avatar/train_avatar.h"
+#include "apps/progress.h"
+#include "apps/verbs.h"
+#include "bodyloom/pipelines/gaussian_avatar/train_avatar.h"
 
 namespace bodyloom {
 namespace {

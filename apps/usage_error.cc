@@ -2,7 +2,11 @@
 #include "apps/usage_error.h"
 
 #include <CLI/CLI.hpp>
+#include <exception>
+#include <iostream>
 #include <vector>
+
+#include "apps/progress.h"
 
 namespace bodyloom {
 namespace {
@@ -40,6 +44,31 @@ std::string UsageError(const CLI::App& app, const CLI::ParseError& error) {
   if (path.empty()) return left.empty() ? "no verb" : "no verb or option \"" + left.front() + "\"";
   const std::string expected = "expected " + Alternatives(VerbsOf(*given));
   return path + (left.empty() ? ": no verb, " : ": no verb or option \"" + left.front() + "\", ") + expected;
+}
+
+int RunParsed(CLI::App* app, const std::string& name, int argc, char** argv, const Action& action) {
+  const auto wrong_usage = [&](const std::string& error) {
+    std::cerr << name << ": " << error << "\nRun with --help for the options.\n";
+    return kExitUsage;
+  };
+  try {
+    app->parse(argc, argv);
+    action();
+    return kExitOk;
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) {  // --help
+      return app->exit(error);
+    }
+    return wrong_usage(UsageError(*app, error));
+  } catch (const RequestError& error) {
+    return wrong_usage(error.what());
+  } catch (const Cancelled&) {
+    std::cerr << name << ": interrupted\n";
+    return kExitInterrupted;
+  } catch (const std::exception& error) {
+    std::cerr << name << ": " << error.what() << "\n";
+    return IsInterrupted() ? kExitInterrupted : kExitFailed;
+  }
 }
 
 }  // namespace bodyloom

@@ -4,9 +4,8 @@
 #include <memory>
 
 #include "apps/clip_settings.h"
-#include "apps/exit_code.h"
-#include "apps/interrupt.h"
 #include "apps/progress.h"
+#include "apps/usage_error.h"
 #include "apps/verbs.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/geometry/base/parallel.h"

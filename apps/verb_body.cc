@@ -6,10 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "apps/command_callbacks.h"
-#include "apps/exit_code.h"
+#include "apps/progress.h"
+#include "apps/usage_error.h"
 #include "apps/verbs.h"
-#include "bodyloom/pipelines/body/build_builtin_body.h"
 #include "bodyloom/pipelines/body/convert_body.h"
 
 namespace bodyloom {

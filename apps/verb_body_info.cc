@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "apps/command_callbacks.h"
 #include "apps/exec_beside.h"
+#include "apps/progress.h"
 #include "apps/verbs.h"
 #include "bodyloom/data_tools/body/body_io.h"
-#include "bodyloom/data_tools/body/body_or_builtin.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/pipelines/body/check_body.h"
 #include "bodyloom/pipelines/files.h"
 

@@ -3,8 +3,8 @@
 #include <iostream>
 #include <memory>
 
-#include "apps/command_callbacks.h"
-#include "apps/exit_code.h"
+#include "apps/progress.h"
+#include "apps/usage_error.h"
 #include "apps/verbs.h"
 #include "bodyloom/pipelines/demo/run_demo.h"
 

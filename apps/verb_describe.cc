@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/command_callbacks.h"
-#include "apps/exit_code.h"
-#include "apps/surface_motion_options.h"
+#include "apps/progress.h"
+#include "apps/shown_motion_options.h"
+#include "apps/usage_error.h"
 #include "apps/verbs.h"
 #include "bodyloom/pipelines/describe/describe_clip.h"
 

@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "apps/command_callbacks.h"
 #include "apps/detector_options.h"
-#include "apps/exec_neural.h"
-#include "apps/exit_code.h"
+#include "apps/exec_beside.h"
+#include "apps/progress.h"
+#include "apps/usage_error.h"
 #include "apps/verbs.h"
 #include "bodyloom/pipelines/detect/detect_clip.h"
 

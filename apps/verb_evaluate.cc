@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/command_callbacks.h"
-#include "apps/exit_code.h"
+#include "apps/progress.h"
+#include "apps/usage_error.h"
 #include "apps/verbs.h"
 #include "bodyloom/pipelines/score/evaluate_track.h"
 

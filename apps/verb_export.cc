@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/command_callbacks.h"
-#include "apps/exit_code.h"
+#include "apps/progress.h"
+#include "apps/usage_error.h"
 #include "apps/verbs.h"
 #include "bodyloom/pipelines/export/export_track.h"
 

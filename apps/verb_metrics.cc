@@ -4,9 +4,9 @@
 #include <memory>
 #include <string>
 
-#include "apps/command_callbacks.h"
-#include "apps/exec_neural.h"
-#include "apps/exit_code.h"
+#include "apps/exec_beside.h"
+#include "apps/progress.h"
+#include "apps/usage_error.h"
 #include "apps/verbs.h"
 #include "bodyloom/pipelines/score/compare_results.h"
 

@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
-#include "apps/command_callbacks.h"
-#include "apps/exit_code.h"
+#include "apps/progress.h"
+#include "apps/usage_error.h"
 #include "apps/verbs.h"
 #include "bodyloom/pipelines/motions/survey_motions.h"
 

@@ -10,9 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "apps/avatar_verbs.h"
 #include "apps/exec_beside.h"
-#include "apps/exec_neural.h"
 #include "apps/verbs.h"
 
 namespace bodyloom {

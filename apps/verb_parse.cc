@@ -6,11 +6,11 @@
 #include <memory>
 #include <string>
 
-#include "apps/command_callbacks.h"
 #include "apps/detector_options.h"
-#include "apps/exit_code.h"
+#include "apps/progress.h"
+#include "apps/usage_error.h"
 #include "apps/verbs.h"
-#include "bodyloom/pipelines/person/parse_photo.h"
+#include "bodyloom/pipelines/photo_avatar/make_photo_person.h"
 
 namespace bodyloom {
 namespace {

@@ -3,7 +3,7 @@
 #include <iostream>
 #include <memory>
 
-#include "apps/command_callbacks.h"
+#include "apps/progress.h"
 #include "apps/verbs.h"
 #include "bodyloom/pipelines/prior/learn_prior.h"
 

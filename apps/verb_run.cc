@@ -4,9 +4,9 @@
 #include <memory>
 #include <string>
 
-#include "apps/command_callbacks.h"
-#include "apps/exit_code.h"
+#include "apps/progress.h"
 #include "apps/run_options.h"
+#include "apps/usage_error.h"
 #include "apps/verbs.h"
 #include "bodyloom/pipelines/track/track_people_clip.h"
 

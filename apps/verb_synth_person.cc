@@ -4,9 +4,9 @@
 #include <memory>
 #include <string>
 
-#include "apps/command_callbacks.h"
-#include "apps/exit_code.h"
+#include "apps/progress.h"
 #include "apps/synth_options.h"
+#include "apps/usage_error.h"
 #include "apps/verbs.h"
 #include "bodyloom/pipelines/synthesis/synthesize_person.h"
 

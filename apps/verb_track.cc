@@ -3,9 +3,9 @@
 #include <iostream>
 #include <memory>
 
-#include "apps/command_callbacks.h"
-#include "apps/exit_code.h"
+#include "apps/progress.h"
 #include "apps/track_options.h"
+#include "apps/usage_error.h"
 #include "apps/verbs.h"
 #include "bodyloom/pipelines/track/track_clip.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// The verbs of the command, one file each (apps/verb_*.cc).
 /// An Add function describes its verb to the parser and, when the user chose it, sets `action` to what is to be done;
-/// main() runs it after parsing. An action returns normally on success and throws otherwise (apps/exit_code.h).
+/// main() runs it after parsing. An action returns normally on success and throws otherwise (apps/usage_error.h).
 #pragma once
 
 #include <functional>
@@ -57,5 +57,14 @@ void AddTrainVerb(CLI::App& app, Action* action);
 void AddAnimateVerb(CLI::App& app, Action* action, std::vector<std::string> arguments);
 void AddNeuralVerb(CLI::App& app, Action* action);
 void AddVersionVerb(CLI::App& app, Action* action);
+
+// `train avatar`, `animate avatar` and `animate person`, which need no LibTorch and so are this command's own, unlike
+// their siblings.
+
+void AddTrainAvatar(CLI::App& train, Action* action);
+void AddAnimateAvatar(CLI::App& animate, Action* action);
+/// Scores need LibTorch: with --score the command goes on in the executable that has them, which takes `arguments`,
+/// those of this one.
+void AddAnimatePerson(CLI::App& animate, Action* action, std::vector<std::string> arguments);
 
 }  // namespace bodyloom

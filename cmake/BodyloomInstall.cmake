@@ -56,7 +56,7 @@ foreach(component command neural)
   endif()
 endforeach()
 
-# The pose detector's networks, where the command looks for them (data_tools/detection/model_files.h), with their list.
+# The pose detector's networks, where the command looks for them (tracking/detection/model_files.h), with their list.
 file(STRINGS ${CMAKE_CURRENT_LIST_DIR}/models.txt models REGEX "^file ")
 list(TRANSFORM models REPLACE "^file +([^ ]+) .*" "${PROJECT_SOURCE_DIR}/build/models/\\1")
 set(models_there TRUE)

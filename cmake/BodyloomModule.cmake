@@ -58,12 +58,8 @@ function(bodyloom_umbrella)
 endfunction()
 
 # Headers are included as "bodyloom/tracking/track_sequence.h", in this tree, from add_subdirectory() and once installed
-# alike: the build folder has a folder `bodyloom` with links to ours.
-set(BODYLOOM_INCLUDE_DIR ${PROJECT_BINARY_DIR}/include)
-file(MAKE_DIRECTORY ${BODYLOOM_INCLUDE_DIR}/bodyloom)
-foreach(folder geometry render tracking data_tools neural pipelines)
-  file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${folder} ${BODYLOOM_INCLUDE_DIR}/bodyloom/${folder} SYMBOLIC)
-endforeach()
+# alike: include/bodyloom holds a link to each of our folders.
+set(BODYLOOM_INCLUDE_DIR ${PROJECT_SOURCE_DIR}/include)
 
 # Warnings and sanitizers shared by every target of the project.
 function(bodyloom_flags target)

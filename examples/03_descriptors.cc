@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/descriptors/descriptor_frames.h"
 #include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/render/uv_maps/descriptor_frames.h"
 
 int main(int argc, char** argv) {
   if (argc != 2) {

@@ -6,7 +6,7 @@
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/render/overlay.h"
+#include "bodyloom/render/view/overlay.h"
 
 int main(int argc, char** argv) {
   if (argc != 3) {

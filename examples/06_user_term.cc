@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A term of your own, as a plain Ceres cost function: a point of the left wrist's skin 15 cm above where the clip shows it,
-// and a shape that should be near.
+// A term of your own, as a plain Ceres cost function: a point of the left wrist's skin 15 cm above where the clip shows
+// it, and a shape that should be near.
 #include <ceres/autodiff_cost_function.h>
 
 #include <cstdio>

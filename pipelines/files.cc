@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/pipelines/files.h"
 
+#include <sys/resource.h>
 #include <unistd.h>
-
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <stdexcept>
 
 #include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/geometry/base/callbacks.h"
 
 namespace bodyloom {
 namespace fs = std::filesystem;
@@ -66,6 +66,12 @@ void RequireDistinct(const std::vector<std::string>& inputs, const std::vector<s
       }
     }
   }
+}
+
+size_t PeakMemoryBytes() {
+  rusage usage = {};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<size_t>(usage.ru_maxrss) * 1024;  // Linux counts KiB
 }
 
 }  // namespace bodyloom

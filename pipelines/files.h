@@ -2,6 +2,7 @@
 /// Checks of the files a job was given, made before the long work rather than after it.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -20,5 +21,10 @@ void RequireWritableFolder(const std::string& path);
 
 /// Throws RequestError when an output is the same file as an input or as another output. Empty paths are ignored.
 void RequireDistinct(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs);
+
+// Peak memory of a job.
+
+/// Largest resident size of this process so far, bytes.
+size_t PeakMemoryBytes();
 
 }  // namespace bodyloom

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/geometry/world_frame.h"
+#include "bodyloom/geometry/scene/world_frame.h"
 
 namespace bodyloom {
 

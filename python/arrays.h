@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/arrays.h"
-#include "bodyloom/render/image.h"
+#include "bodyloom/geometry/math/arrays.h"
+#include "bodyloom/render/image/image.h"
 
 namespace bodyloom::python {
 
@@ -27,9 +27,9 @@ struct Extent {
 template <typename T>
 using RowMajorArray = py::array_t<T, py::array::c_style | py::array::forcecast>;
 
-/// What NumPy makes of `value` (an array, a list of lists, …), as T in C order; copied only when it is not that already.
-/// Raises TypeError when it holds no real numbers and ValueError when it has another shape, both in one line: "points:
-/// expected numbers of shape (T, K, 3), found shape (5, 17)".
+/// What NumPy makes of `value` (an array, a list of lists, …), as T in C order; copied only when it is not that
+/// already. Raises TypeError when it holds no real numbers and ValueError when it has another shape, both in one line:
+/// "points: expected numbers of shape (T, K, 3), found shape (5, 17)".
 template <typename T>
 RowMajorArray<T> NumbersFrom(const py::handle& value, const char* name, const std::vector<Extent>& shape);
 

@@ -13,15 +13,13 @@
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/pipelines/avatar/animate_avatar.h"
-#include "bodyloom/pipelines/avatar/avatar_picture.h"
-#include "bodyloom/pipelines/avatar/learned_avatar.h"
-#include "bodyloom/pipelines/avatar/shown_avatar.h"
-#include "bodyloom/pipelines/avatar/train_avatar.h"
+#include "bodyloom/pipelines/gaussian_avatar/animate_avatar.h"
+#include "bodyloom/pipelines/gaussian_avatar/shown_avatar.h"
+#include "bodyloom/pipelines/gaussian_avatar/train_avatar.h"
+#include "bodyloom/render/gaussian_avatar/avatar_image.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/python_callbacks.h"
-#include "python/request_arguments.h"
 #include "python/track_object.h"
 
 namespace bodyloom::python {

@@ -8,16 +8,15 @@
 #include <vector>
 
 #include "bodyloom/data_tools/body/body_io.h"
-#include "bodyloom/data_tools/body/body_or_builtin.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/geometry/skinning.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/geometry/body/skinning.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/python_callbacks.h"
-#include "python/request_arguments.h"
 #include "python/track_object.h"
 
 namespace bodyloom::python {

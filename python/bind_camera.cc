@@ -11,7 +11,7 @@
 
 #include "bodyloom/data_tools/observations/load_cameras.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/camera.h"
+#include "bodyloom/geometry/scene/camera.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/track_object.h"

@@ -12,16 +12,15 @@
 #include <vector>
 
 #include "bodyloom/data_tools/descriptors/describe_track.h"
-#include "bodyloom/data_tools/descriptors/descriptor_frames.h"
-#include "bodyloom/data_tools/descriptors/live_descriptors.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/geometry/scene/track.h"
 #include "bodyloom/pipelines/files.h"
-#include "bodyloom/pipelines/track_fits_body.h"
+#include "bodyloom/render/uv_maps/descriptor_frames.h"
+#include "bodyloom/render/uv_maps/live_descriptors.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/python_callbacks.h"
-#include "python/request_arguments.h"
 #include "python/track_object.h"
 
 namespace bodyloom::python {

@@ -15,7 +15,6 @@
 #include "bodyloom/geometry/base/check.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
-#include "python/landmark_names.h"
 #include "python/track_object.h"
 
 namespace bodyloom::python {

@@ -10,13 +10,12 @@
 #include <vector>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/body/posed_body.h"
 #include "bodyloom/pipelines/with_builtins.h"
 #include "bodyloom/tracking/live/live_tracker.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
-#include "python/landmark_names.h"
-#include "python/request_arguments.h"
+#include "python/python_callbacks.h"
 #include "python/track_object.h"
 
 namespace bodyloom::python {

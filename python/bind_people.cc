@@ -18,7 +18,6 @@
 #include "bodyloom/pipelines/track/track_people_clip.h"
 #include "python/bindings.h"
 #include "python/python_callbacks.h"
-#include "python/request_arguments.h"
 #include "python/track_object.h"
 
 namespace bodyloom::python {

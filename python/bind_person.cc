@@ -14,10 +14,9 @@
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/pipelines/files.h"
-#include "bodyloom/pipelines/person/make_photo_person.h"
-#include "bodyloom/pipelines/person/parse_photo.h"
-#include "bodyloom/pipelines/person/person_folder.h"
-#include "bodyloom/pipelines/person/wear_clothes.h"
+#include "bodyloom/pipelines/photo_avatar/make_photo_person.h"
+#include "bodyloom/pipelines/photo_avatar/person_folder.h"
+#include "bodyloom/render/photo_avatar/wear_clothes.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/python_callbacks.h"

@@ -14,12 +14,11 @@
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/geometry/scene/track.h"
 #include "bodyloom/pipelines/render/render_track.h"
-#include "bodyloom/pipelines/track_fits_body.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/python_callbacks.h"
-#include "python/request_arguments.h"
 #include "python/track_object.h"
 
 namespace bodyloom::python {

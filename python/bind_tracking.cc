@@ -13,11 +13,10 @@
 #include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
 #include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/pipelines/track/track_to_memory.h"
+#include "bodyloom/pipelines/track/solve_track.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/python_callbacks.h"
-#include "python/request_arguments.h"
 #include "python/track_object.h"
 
 namespace bodyloom::python {

@@ -4,14 +4,22 @@
 #pragma once
 
 #include <pybind11/pybind11.h>
-
 #include <exception>
+#include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 
+#include "bodyloom/geometry/base/callbacks.h"
 #include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/scene/camera.h"
+#include "bodyloom/pipelines/track/scene_inputs.h"
+#include "bodyloom/pipelines/track/track_request.h"
+#include "bodyloom/tracking/detection/frame_detector.h"
+#include "python/track_object.h"
 
 namespace bodyloom::python {
 
@@ -24,8 +32,8 @@ class PythonCallbacks {
   /// Run().
   explicit PythonCallbacks(py::object progress) : progress_(std::move(progress)) {}
 
-  /// work(callbacks) without the interpreter's lock. Afterwards what a callback raised is raised, KeyboardInterrupt among
-  /// it, else what the work threw.
+  /// work(callbacks) without the interpreter's lock. Afterwards what a callback raised is raised, KeyboardInterrupt
+  /// among it, else what the work threw.
   template <typename Work>
   auto Run(const Work& work) {
     using Result = decltype(work(std::declval<const PipelineCallbacks&>()));
@@ -65,5 +73,27 @@ class PythonCallbacks {
   bool stopped_ = false;
   std::exception_ptr raised_;
 };
+
+// How arguments that several functions take become a request for tracks.
+
+using CameraArgument = std::variant<Camera, Path>;
+
+/// The number given, checked; 0 when there is none.
+double PositiveOr0(const std::optional<double>& value, const char* name);
+
+/// A file is named in the request, an object is given.
+void TakeCamera(const std::optional<CameraArgument>& argument, TrackRequest* request, GivenInMemory* given);
+void TakeBody(const std::optional<BodyArgument>& argument, TrackRequest* request, GivenInMemory* given);
+
+/// The body in memory that a track is of, so that what is asked of it later finds it; the request's file is read, and
+/// given from then on. Null: the built-in one.
+std::shared_ptr<const BodyModel> BodyToKeep(const TrackRequest& request, GivenInMemory* given);
+
+/// What detects people: networks of BlazePose ("lite", "full", "heavy") or of the user's own.
+FrameDetectorOptions DetectorFrom(const std::string& detector, const std::optional<Path>& pose_model,
+                                  const std::optional<Path>& box_model, const std::optional<Path>& models);
+
+/// Throws std::invalid_argument for a number of threads that cannot be.
+void CheckThreads(int threads);
 
 }  // namespace bodyloom::python

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "bodyloom/data_tools/body/body_or_builtin.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 
 namespace bodyloom::python {

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/tracking/clip_fit.h"
-#include "bodyloom/tracking/input_checks.h"
+#include "bodyloom/tracking/clip/clip_fit.h"
+#include "bodyloom/tracking/problem/input_checks.h"
 
 namespace bodyloom {
 

@@ -4,10 +4,10 @@
 
 #include <memory>
 
-#include "bodyloom/tracking/ceres_problem.h"
-#include "bodyloom/tracking/track_input.h"
-#include "bodyloom/tracking/track_options.h"
-#include "bodyloom/tracking/track_summary.h"
+#include "bodyloom/tracking/problem/track_input.h"
+#include "bodyloom/tracking/problem/track_options.h"
+#include "bodyloom/tracking/problem/track_summary.h"
+#include "bodyloom/tracking/solvers/ceres_problem.h"
 
 namespace bodyloom {
 
@@ -35,9 +35,9 @@ class ClipCeresProblem {
   std::unique_ptr<CeresProblem> blocks_;
 };
 
-/// States the problem of a clip as TrackSequence() hands it to Ceres: all terms of all frames, at the values to which the
-/// stages before have brought them (SequenceSolver::kChainThenCeres). `input` is borrowed for the life of the result;
-/// throws as TrackSequence() does. Every observation is a residual block with a loss function of its own.
+/// States the problem of a clip as TrackSequence() hands it to Ceres: all terms of all frames, at the values to which
+/// the stages before have brought them (SequenceSolver::kChainThenCeres). `input` is borrowed for the life of the
+/// result; throws as TrackSequence() does. Every observation is a residual block with a loss function of its own.
 std::unique_ptr<ClipCeresProblem> BuildCeresProblem(const TrackSequenceInput& input,
                                                     const TrackSequenceOptions& options = {});
 

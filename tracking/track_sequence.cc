@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/tracking/track_sequence.h"
 
-#include "bodyloom/tracking/clip_fit.h"
-#include "bodyloom/tracking/input_checks.h"
+#include "bodyloom/tracking/clip/clip_fit.h"
+#include "bodyloom/tracking/problem/input_checks.h"
 
 namespace bodyloom {
 

@@ -3,10 +3,10 @@
 /// How it works: docs/tracking.md.
 #pragma once
 
-#include "bodyloom/tracking/track_input.h"
-#include "bodyloom/tracking/track_options.h"
-#include "bodyloom/tracking/track_plan.h"
-#include "bodyloom/tracking/track_summary.h"
+#include "bodyloom/tracking/clip/track_plan.h"
+#include "bodyloom/tracking/problem/track_input.h"
+#include "bodyloom/tracking/problem/track_options.h"
+#include "bodyloom/tracking/problem/track_summary.h"
 
 namespace bodyloom {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/math/arrays.h"
 
 namespace bodyloom {
 

@@ -3,8 +3,8 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/cgal/crossing_faces.h"
-#include "apps/interrupt.h"
-#include "apps/run_parsed.h"
+#include "apps/progress.h"
+#include "apps/usage_error.h"
 #include "apps/verbs.h"
 
 int main(int argc, char** argv) {

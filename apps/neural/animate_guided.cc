@@ -3,11 +3,11 @@
 #include <memory>
 #include <string>
 
-#include "apps/command_callbacks.h"
 #include "apps/neural/animate_options.h"
-#include "apps/neural/guided_report.h"
 #include "apps/neural/neural_verbs.h"
 #include "apps/neural/score_options.h"
+#include "apps/neural/training_report.h"
+#include "apps/progress.h"
 
 namespace bodyloom {
 namespace {

@@ -5,13 +5,13 @@
 #include <memory>
 #include <string>
 
-#include "apps/command_callbacks.h"
 #include "apps/neural/animate_options.h"
 #include "apps/neural/command_line.h"
 #include "apps/neural/neural_verbs.h"
+#include "apps/progress.h"
 #include "apps/shown_motion_options.h"
+#include "bodyloom/pipelines/animate/motion_errors.h"
 #include "bodyloom/pipelines/neural/motion/animate_motion.h"
-#include "bodyloom/pipelines/people/motion_scores_text.h"
 
 namespace bodyloom {
 namespace {

@@ -4,10 +4,10 @@
 #include <memory>
 #include <string>
 
-#include "apps/command_callbacks.h"
 #include "apps/neural/animate_options.h"
 #include "apps/neural/neural_verbs.h"
 #include "apps/neural/score_options.h"
+#include "apps/progress.h"
 #include "bodyloom/pipelines/neural/photo/animate_photo.h"
 
 namespace bodyloom {

@@ -7,13 +7,11 @@
 #include <string>
 #include <string_view>
 
-#include "apps/exit_code.h"
-#include "apps/interrupt.h"
 #include "apps/neural/neural_verbs.h"
-#include "apps/run_parsed.h"
-#include "bodyloom/neural/runtime.h"
+#include "apps/progress.h"
+#include "apps/usage_error.h"
+#include "bodyloom/neural/base/runtime.h"
 #include "bodyloom/pipelines/neural/densepose_detector.h"
-#include "bodyloom/pipelines/neural/likeness_metrics.h"
 
 namespace {
 

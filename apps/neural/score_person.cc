@@ -3,9 +3,9 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "apps/command_callbacks.h"
 #include "apps/neural/neural_verbs.h"
 #include "apps/neural/score_options.h"
+#include "apps/progress.h"
 
 namespace bodyloom {
 

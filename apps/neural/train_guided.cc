@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "apps/command_callbacks.h"
 #include "apps/neural/neural_verbs.h"
 #include "apps/neural/training_options.h"
 #include "apps/neural/training_report.h"
+#include "apps/progress.h"
 #include "bodyloom/pipelines/neural/guided/train_guided_renderer.h"
 #include "bodyloom/pipelines/neural/photo/people_data.h"
 

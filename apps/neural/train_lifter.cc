@@ -4,11 +4,11 @@
 #include <memory>
 #include <string>
 
-#include "apps/command_callbacks.h"
 #include "apps/neural/neural_verbs.h"
 #include "apps/neural/training_report.h"
-#include "bodyloom/pipelines/clock_text.h"
+#include "apps/progress.h"
 #include "bodyloom/pipelines/neural/lifter/train_lifter_network.h"
+#include "bodyloom/pipelines/report_text.h"
 
 namespace bodyloom {
 namespace {

@@ -6,15 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "apps/command_callbacks.h"
-#include "apps/neural/motion_data_options.h"
 #include "apps/neural/neural_verbs.h"
 #include "apps/neural/training_options.h"
 #include "apps/neural/training_report.h"
-#include "apps/surface_motion_options.h"
+#include "apps/progress.h"
+#include "apps/shown_motion_options.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/pipelines/animate/motion_errors.h"
 #include "bodyloom/pipelines/neural/motion/train_motion_renderer.h"
-#include "bodyloom/pipelines/people/motion_scores_text.h"
 
 namespace bodyloom {
 namespace {

@@ -5,10 +5,10 @@
 #include <iostream>
 #include <memory>
 
-#include "apps/command_callbacks.h"
 #include "apps/neural/neural_verbs.h"
 #include "apps/neural/training_options.h"
 #include "apps/neural/training_report.h"
+#include "apps/progress.h"
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/pipelines/neural/parser/train_clothes_parser.h"
 

@@ -4,10 +4,10 @@
 #include <memory>
 #include <string>
 
-#include "apps/command_callbacks.h"
 #include "apps/neural/neural_verbs.h"
 #include "apps/neural/training_options.h"
 #include "apps/neural/training_report.h"
+#include "apps/progress.h"
 #include "bodyloom/pipelines/neural/photo/people_data.h"
 #include "bodyloom/pipelines/neural/photo/train_photo_renderer.h"
 

@@ -7,6 +7,7 @@
 
 #include "bodyloom/neural/motion/rollout_plan.h"
 #include "bodyloom/neural/training/training_run.h"
+#include "bodyloom/pipelines/neural/motion/motion_data.h"
 
 namespace CLI {
 class App;
@@ -22,5 +23,18 @@ void AddTrainingOptions(CLI::App* verb, TrainingRun* run, const char* seed_help)
 
 /// "12-40" (last frame included) → [12, 41), each. Throws RequestError naming the option.
 std::vector<FrameRange> ParseFrameRanges(const std::vector<std::string>& texts, const char* option);
+
+}  // namespace bodyloom
+
+// Options of `bodyloom train motion` that say what is trained on.
+
+namespace CLI {
+class App;
+}
+
+namespace bodyloom {
+
+/// --data, --track, --body, --iuv, --mask, --part-labels.
+void AddMotionDataOptions(CLI::App* verb, MotionDataRequest* request);
 
 }  // namespace bodyloom

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/neural/training_report.h"
 
+#include <algorithm>
+#include <cstdio>
 #include <iostream>
 #include <stdexcept>
 
-#include "bodyloom/pipelines/clock_text.h"
+#include "apps/neural/animate_options.h"
+#include "apps/neural/score_options.h"
+#include "bodyloom/pipelines/report_text.h"
 
 namespace bodyloom {
 
@@ -30,6 +34,20 @@ void RequireNotStopped(const TrainingOutcome& outcome, const std::string& out) {
   if (outcome.status == TrainingStatus::kStopped) {
     throw std::runtime_error(out + ": " + outcome.message + "; go on with --resume");
   }
+}
+
+void Print(const AnimateGuidedSummary& summary, const AnimateGuidedRequest& request) {
+  std::printf(
+      "%d frames, source encoded in %.1f s, networks %.0f ms a frame (%.0f %% of the window), %.1f frames/s in all\n",
+      summary.frames, summary.source_seconds, summary.network_ms, 100 * summary.computed_share,
+      summary.frames / std::max(1e-9, summary.frame_seconds));
+  PrintFramesWithoutFit(summary);
+  if (summary.frames_kept > 0) {
+    std::printf("%lld frames were those before and were not computed again\n",
+                static_cast<long long>(summary.frames_kept));
+  }
+  if (summary.scores) std::printf("against %s: %s\n", request.data.c_str(), ScoresText(*summary.scores).c_str());
+  std::printf("wrote %s\n", request.out.c_str());
 }
 
 }  // namespace bodyloom

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bodyloom/neural/training/training_run.h"
+#include "bodyloom/pipelines/neural/guided/animate_guided.h"
 
 namespace bodyloom {
 
@@ -23,5 +24,9 @@ void PrintEnd(const TrainingOutcome& outcome, const std::string& checkpoint, con
 
 /// Throws std::runtime_error when the user stopped the run in `out`, saying how it goes on.
 void RequireNotStopped(const TrainingOutcome& outcome, const std::string& out);
+
+// The lines of `bodyloom animate guided`.
+
+void Print(const AnimateGuidedSummary& summary, const AnimateGuidedRequest& request);
 
 }  // namespace bodyloom

@@ -5,8 +5,9 @@
 ///
 /// FOLDER is a multi-person dataset of `bodyloom synth-people`. Frame --frame of every clip is taken as a photo: its
 /// mask, its true pose and shape, the true camera. By garment: pictures, the share in which a loose garment is found
-/// (render/person/fit_clothes.h), E of the silhouettes with clothes close to the skin alone and with what was chosen, and the
-/// time of a fit. Garments of the dataset are of the same family of shapes as the fit's, simulated with other cloth.
+/// (render/garment/fit_clothes.h), E of the silhouettes with clothes close to the skin alone and with what was chosen,
+/// and the time of a fit. Garments of the dataset are of the same family of shapes as the fit's, simulated with other
+/// cloth.
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -21,7 +22,7 @@
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/percentile.h"
 #include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/render/person/fit_clothes.h"
+#include "bodyloom/render/garment/fit_clothes.h"
 
 namespace bodyloom {
 namespace {

@@ -28,7 +28,7 @@
 #include "bodyloom/geometry/base/hash_random.h"
 #include "bodyloom/geometry/base/percentile.h"
 #include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/math/rotation.h"
 #include "bodyloom/tracking/track_sequence.h"
 
 namespace bodyloom {

@@ -12,7 +12,6 @@
 
 #include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/accuracy/bench_report.h"
-#include "benchmarks/accuracy/dense_bound.h"
 #include "benchmarks/accuracy/dense_clips.h"
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/evaluation/truth_evaluation.h"

@@ -22,9 +22,9 @@
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/geometry/procrustes.h"
-#include "bodyloom/render/contact_sheet.h"
-#include "bodyloom/render/overlay.h"
+#include "bodyloom/geometry/math/procrustes.h"
+#include "bodyloom/render/view/contact_sheet.h"
+#include "bodyloom/render/view/overlay.h"
 #include "bodyloom/tracking/track_sequence.h"
 #include "tests/support/paths.h"
 

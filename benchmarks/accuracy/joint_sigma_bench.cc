@@ -7,8 +7,8 @@
 /// Synthetic: each clip of the split (every so-many-th; its first frames at 30 a second), a body of random shape, a
 /// camera of known focal length from anywhere around and −5° to 30° from above, a detector's noise on COCO-17
 /// (data_tools/synthesis/clips/detection_noise.h). AIST++: its detections in these cameras, known focal length. Errors
-/// and standard deviations as in data_tools/evaluation/sigma_reliability.h, of shoulders to ankles in every fourth frame;
-/// by class of motion, by clip, and by joint.
+/// and standard deviations as in data_tools/evaluation/sigma_reliability.h, of shoulders to ankles in every fourth
+/// frame; by class of motion, by clip, and by joint.
 #include <algorithm>
 #include <cstdio>
 #include <map>
@@ -31,7 +31,7 @@
 #include "bodyloom/data_tools/observations/load_detections.h"
 #include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/camera_path.h"
+#include "bodyloom/geometry/scene/camera_path.h"
 #include "bodyloom/tracking/track_sequence.h"
 #include "tests/support/paths.h"
 

@@ -24,17 +24,17 @@
 
 #include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/accuracy/bench_report.h"
-#include "benchmarks/accuracy/lifter_choice.h"
+#include "benchmarks/accuracy/lifter_oracle.h"
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/motion/motion_library.h"
 #include "bodyloom/data_tools/synthesis/lifter/lifter_windows.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/geometry/procrustes.h"
-#include "bodyloom/tracking/initialise/lifter_input.h"
-#include "bodyloom/tracking/initialise/lifter_network.h"
-#include "bodyloom/tracking/initialise/lifter_reading.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/geometry/math/procrustes.h"
+#include "bodyloom/tracking/lifter/lifter_input.h"
+#include "bodyloom/tracking/lifter/lifter_network.h"
+#include "bodyloom/tracking/lifter/lifter_reading.h"
 
 namespace bodyloom {
 namespace {

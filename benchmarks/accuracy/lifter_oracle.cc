@@ -6,10 +6,11 @@
 #include <algorithm>
 #include <array>
 
+#include "bodyloom/data_tools/learned/lifter_weights_io.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/rotation.h"
-#include "bodyloom/tracking/initialise/lifter_input.h"
+#include "bodyloom/geometry/math/rotation.h"
 #include "bodyloom/tracking/initialise/swap_repair.h"
+#include "bodyloom/tracking/lifter/lifter_input.h"
 
 namespace bodyloom {
 namespace {
@@ -95,6 +96,13 @@ std::vector<LiftedFrame> LiftWithOracle(const KeypointSequence& keypoints, Camer
     if (relative.allFinite()) Correct(relative, oracle, &frames[t]);
   }
   return frames;
+}
+
+const LifterWeights* LifterOf(const std::string& name) {
+  if (name == "none") return nullptr;
+  if (name == "built-in") return &BuiltinLifter();
+  static const LifterWeights weights = ReadLifterWeights(name);
+  return &weights;
 }
 
 }  // namespace bodyloom

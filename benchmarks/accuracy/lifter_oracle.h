@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/arrays.h"
-#include "bodyloom/geometry/camera.h"
-#include "bodyloom/geometry/lifter_weights.h"
-#include "bodyloom/geometry/observations.h"
-#include "bodyloom/tracking/initialise/lift_keypoints.h"
+#include "bodyloom/geometry/math/arrays.h"
+#include "bodyloom/geometry/scene/camera.h"
+#include "bodyloom/geometry/scene/lifter_weights.h"
+#include "bodyloom/geometry/scene/observations.h"
+#include "bodyloom/tracking/lifter/lift_keypoints.h"
 #include "bodyloom/tracking/track_sequence.h"
 
 namespace bodyloom {
@@ -20,5 +20,10 @@ namespace bodyloom {
 std::vector<LiftedFrame> LiftWithOracle(const KeypointSequence& keypoints, CameraKnowledge knowledge,
                                         const Camera& camera, const LifterWeights& weights,
                                         const std::vector<MatrixX3d>& truth, const std::string& oracle);
+
+// The "lifter" option of the benchmarks.
+
+/// "built-in", "none" (null) or a file of weights; lives as long as the program. Throws as ReadLifterWeights.
+const LifterWeights* LifterOf(const std::string& name);
 
 }  // namespace bodyloom

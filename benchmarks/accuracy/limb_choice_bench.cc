@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-/// bodyloom_bench_limb_choice: would a clip be followed better if the right hypothesis of a limb were known, and does what
-/// the clip shows tell which one it is?
+/// bodyloom_bench_limb_choice: would a clip be followed better if the right hypothesis of a limb were known, and does
+/// what the clip shows tell which one it is?
 ///
 ///   bodyloom_bench_limb_choice [--data AISTPP] [--sequences A,B] [--views c02,c04,c06,c09] [--window 8] [--loose 20]
 ///                              [--rounds 3] [--json F]
 ///
 /// AIST++ at 15 frames a second, the lifter run at the recording's rate, known focal length. A limb's hypotheses in a
 /// window of frames are halved by depth, and the clip is solved three times: with the expected limb (the tracker), and
-/// with the mean of the nearer and of the farther half in its place. Errors are the limb's two joints in that window, mm,
-/// each frame aligned by one similarity:
+/// with the mean of the nearer and of the farther half in its place. Errors are the limb's two joints in that window,
+/// mm, each frame aligned by one similarity:
 ///   expected      as the tracker does it
 ///   best          the best of the three, by hindsight
 ///   by cost       the one of lowest cost of the whole clip
 ///   by weight     the half that the lifter holds for likelier
-///   by the rest   the half that costs less where the limb's own σ is multiplied by --loose, so that image, prior, limits,
+///   by the rest   the half that costs less where the limb's own σ is multiplied by --loose, so that image, prior,
+///   limits,
 ///                 smoothness and ground decide
-/// Group "reweighed": hypotheses weighed again by how near the answer lies to each (exp(−½ τ d²), d in σ), --rounds times;
-/// PA-MPJPE of the clip by τ.
+/// Group "reweighed": hypotheses weighed again by how near the answer lies to each (exp(−½ τ d²), d in σ), --rounds
+/// times; PA-MPJPE of the clip by τ.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -34,11 +35,11 @@
 #include "bodyloom/data_tools/observations/load_cameras.h"
 #include "bodyloom/data_tools/observations/load_detections.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/camera_path.h"
-#include "bodyloom/geometry/procrustes.h"
-#include "bodyloom/tracking/initialise/lift_keypoints.h"
+#include "bodyloom/geometry/math/procrustes.h"
+#include "bodyloom/geometry/scene/camera_path.h"
 #include "bodyloom/tracking/initialise/lifted_start.h"
 #include "bodyloom/tracking/initialise/swap_repair.h"
+#include "bodyloom/tracking/lifter/lift_keypoints.h"
 #include "bodyloom/tracking/track_sequence.h"
 #include "tests/support/paths.h"
 

@@ -9,7 +9,8 @@
 /// detector's noise (data_tools/synthesis/clips/detection_noise.h), its toes and heels left out. pa: PA-MPJPE, mpjpe:
 /// mid-hip aligned, both of COCO-17 in mm. pa_over_120: frames in which pa is above 120 mm, of all the class' frames.
 /// --worst N names the N clips whose worst frame is the worst. slide: mean speed of the ankles, m/s, in frames in which
-/// the true ones stand (below 0.1 m/s). ground: clips in which one was found. Means over clips; the body's stature is the true one.
+/// the true ones stand (below 0.1 m/s). ground: clips in which one was found. Means over clips; the body's stature is
+/// the true one.
 #include <algorithm>
 #include <cstdio>
 #include <map>
@@ -19,7 +20,7 @@
 #include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/accuracy/bench_report.h"
 #include "benchmarks/accuracy/dense_clips.h"
-#include "benchmarks/accuracy/lifter_choice.h"
+#include "benchmarks/accuracy/lifter_oracle.h"
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/evaluation/metrics.h"
 #include "bodyloom/data_tools/learned/pose_prior_io.h"

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// bodyloom_bench_moving_camera: synthetic clips of a camera that moves, tracked with its path and without.
 ///
-///   bodyloom_bench_moving_camera [--motions demo,FILE,…] [--frames 180] [--seeds 3] [--cameras still,hand-held,walking,orbit]
+///   bodyloom_bench_moving_camera [--motions demo,FILE,…] [--frames 180] [--seeds 3] [--cameras
+///   still,hand-held,walking,orbit]
 ///                                [--json F]
 ///
 /// The first frames of each motion at 30 a second before a synthetic camera of known focal length
@@ -30,11 +31,11 @@
 #include "bodyloom/data_tools/motion/load_motion.h"
 #include "bodyloom/data_tools/motion/motion_tools.h"
 #include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
-#include "bodyloom/data_tools/synthesis/clips/drift.h"
+#include "bodyloom/data_tools/synthesis/clips/smooth_curve.h"
 #include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
 #include "bodyloom/geometry/base/units.h"
-#include "bodyloom/geometry/camera_path.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/math/rotation.h"
+#include "bodyloom/geometry/scene/camera_path.h"
 #include "bodyloom/tracking/track_sequence.h"
 
 namespace bodyloom {

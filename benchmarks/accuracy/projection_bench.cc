@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Per-vertex projection error at 512 px on AIST++, as paper A's Table 4 has it: tracks of one camera's observations
-/// against the SMPL motion that the recording publishes of itself (data_tools/evaluation/pseudo_truth.h), on one body.
+/// against the SMPL motion that the recording publishes of itself (data_tools/evaluation/aist_evaluation.h), on one
+/// body.
 ///
 ///   bodyloom_bench_projection --data AISTPP [--sequences A,B] [--views c01,c03] [--inputs joints,dense,…] [--frames 0]
 ///                             [--dense 300] [--threads 2] [--json F]
@@ -21,7 +22,6 @@
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/evaluation/aist_evaluation.h"
 #include "bodyloom/data_tools/evaluation/metrics.h"
-#include "bodyloom/data_tools/evaluation/pseudo_truth.h"
 #include "bodyloom/data_tools/evaluation/vertex_errors.h"
 #include "bodyloom/data_tools/learned/lifter_weights_io.h"
 #include "bodyloom/data_tools/learned/pose_prior_io.h"
@@ -30,7 +30,7 @@
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/geometry/base/units.h"
-#include "bodyloom/tracking/initialise/part_keypoints.h"
+#include "bodyloom/tracking/lifter/given_landmarks.h"
 #include "bodyloom/tracking/track_sequence.h"
 #include "tests/support/paths.h"
 

@@ -3,13 +3,13 @@
 ///
 ///   bodyloom_bench_avatar [--gaussians 16000,32000] [--repetitions 60] [--json F]
 ///
-/// Gaussians on the texels of the built-in body's skin (an atlas about as large as asked for), posed with bent limbs, in
-/// a picture of 512² (person about 460 px high) and of 1920×1080 (900 px). Milliseconds, medians over the repetitions,
-/// one row a stage and one for a whole frame and a whole step of training (forward and backward, without a loss):
-/// wall time with one thread, the thread's own processor time, wall time with two, and the least of each wall time. On a
-/// busy machine the processor time travels best. error: a frame's largest difference of a plane to the picture in double
-/// (tests/support/splat_twin.h) over a hundred pixels where rounding decides nothing; a step's is the share of bytes of
-/// derivatives that differ between one thread and two, which is none.
+/// Gaussians on the texels of the built-in body's skin (an atlas about as large as asked for), posed with bent limbs,
+/// in a picture of 512² (person about 460 px high) and of 1920×1080 (900 px). Milliseconds, medians over the
+/// repetitions, one row a stage and one for a whole frame and a whole step of training (forward and backward, without a
+/// loss): wall time with one thread, the thread's own processor time, wall time with two, and the least of each wall
+/// time. On a busy machine the processor time travels best. error: a frame's largest difference of a plane to the
+/// picture in double (tests/support/splat_twin.h) over a hundred pixels where rounding decides nothing; a step's is the
+/// share of bytes of derivatives that differ between one thread and two, which is none.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -25,10 +25,10 @@
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/geometry/rotation.h"
-#include "bodyloom/render/avatar/pose_gradient.h"
-#include "bodyloom/render/avatar/skin_gaussians.h"
-#include "bodyloom/render/raster_simd.h"
+#include "bodyloom/geometry/math/rotation.h"
+#include "bodyloom/render/gaussian_avatar/pose_gradient.h"
+#include "bodyloom/render/gaussian_avatar/skin_gaussians.h"
+#include "bodyloom/render/raster/raster_simd.h"
 #include "bodyloom/render/splat/project_gaussians.h"
 #include "bodyloom/render/splat/splat_gradient.h"
 #include "tests/support/splat_twin.h"

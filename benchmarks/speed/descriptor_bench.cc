@@ -2,9 +2,9 @@
 // Time and error of everything from posed vertices to descriptor files and textures, on the built-in body:
 //   build/release/benchmarks/bodyloom_bench_descriptors [--section NAME] [--folder DIR] [--track NPZ [--truth NPZ]]
 // NAME: normals, velocities, tracked, bake, seams, stream, texture or all. `tracked` is of --track: its jitter, and the
-// velocities' errors against --truth (bodyloom synth … --fps 120); without --track it is left out. DIR (default: the system's temporary folder) takes
-// the files that are timed, and the textures to look at. Times are the median and the minimum of many repetitions, one
-// thread unless stated.
+// velocities' errors against --truth (bodyloom synth … --fps 120); without --track it is left out. DIR (default: the
+// system's temporary folder) takes the files that are timed, and the textures to look at. Times are the median and the
+// minimum of many repetitions, one thread unless stated.
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "benchmarks/accuracy/bench_arguments.h"
-#include "benchmarks/speed/descriptor_sections.h"
+#include "benchmarks/speed/moving_body.h"
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/geometry/base/check.h"
 

@@ -24,7 +24,7 @@
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/render/draw_keypoints.h"
+#include "bodyloom/render/view/overlay_landmarks.h"
 
 namespace bodyloom {
 namespace {

@@ -32,7 +32,7 @@
 #include "bodyloom/geometry/base/percentile.h"
 #include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/tracking/live/track_live.h"
-#include "bodyloom/tracking/solve_sequence.h"
+#include "bodyloom/tracking/solvers/solve_sequence.h"
 #include "tests/support/paths.h"
 
 namespace bodyloom {

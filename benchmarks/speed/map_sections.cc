@@ -7,17 +7,15 @@
 #include <random>
 #include <span>
 
-#include "benchmarks/speed/bench_table.h"
-#include "benchmarks/speed/descriptor_sections.h"
 #include "benchmarks/speed/moving_body.h"
 #include "bodyloom/data_tools/descriptors/describe_track.h"
 #include "bodyloom/data_tools/formats/npz.h"
 #include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/geometry/normals.h"
-#include "bodyloom/geometry/normals_simd.h"
-#include "bodyloom/geometry/uv_bake.h"
-#include "bodyloom/geometry/uv_charts.h"
-#include "bodyloom/render/uv_sample.h"
+#include "bodyloom/geometry/body/normals.h"
+#include "bodyloom/geometry/body/normals_simd.h"
+#include "bodyloom/geometry/uv_maps/uv_bake.h"
+#include "bodyloom/geometry/uv_maps/uv_charts.h"
+#include "bodyloom/render/texture/uv_sample.h"
 
 namespace bodyloom {
 

@@ -12,14 +12,14 @@
 #include <vector>
 
 #include "benchmarks/accuracy/bench_arguments.h"
-#include "benchmarks/speed/bench_table.h"
+#include "benchmarks/speed/moving_body.h"
+#include "bodyloom/neural/base/runtime.h"
 #include "bodyloom/neural/motion/motion_model.h"
 #include "bodyloom/neural/motion/person_box.h"
 #include "bodyloom/neural/motion/roll_out.h"
 #include "bodyloom/neural/motion/train_motion.h"
 #include "bodyloom/neural/networks/architecture_card.h"
-#include "bodyloom/neural/networks/transposed_conv.h"
-#include "bodyloom/neural/runtime.h"
+#include "bodyloom/neural/networks/blocks.h"
 
 namespace bodyloom {
 namespace {

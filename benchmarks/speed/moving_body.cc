@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/math/rotation.h"
 
 namespace bodyloom {
 

@@ -15,11 +15,11 @@
 
 #include "benchmarks/accuracy/bench_arguments.h"
 #include "bodyloom/geometry/base/stopwatch.h"
+#include "bodyloom/neural/base/runtime.h"
 #include "bodyloom/neural/guided/coherent_maps.h"
 #include "bodyloom/neural/guided/guided_model.h"
 #include "bodyloom/neural/networks/architecture_card.h"
 #include "bodyloom/neural/photo/photo_model.h"
-#include "bodyloom/neural/runtime.h"
 
 namespace bodyloom {
 namespace {

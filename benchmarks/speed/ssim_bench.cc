@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "benchmarks/accuracy/bench_arguments.h"
-#include "benchmarks/speed/bench_table.h"
+#include "benchmarks/speed/moving_body.h"
 #include "bodyloom/data_tools/evaluation/ssim.h"
 
 namespace bodyloom {

@@ -5,12 +5,10 @@
 #include <span>
 #include <utility>
 
-#include "benchmarks/speed/bench_table.h"
-#include "benchmarks/speed/descriptor_sections.h"
 #include "benchmarks/speed/moving_body.h"
 #include "benchmarks/speed/peer_normals.h"
-#include "bodyloom/geometry/normals.h"
-#include "bodyloom/geometry/surface_velocity.h"
+#include "bodyloom/geometry/body/normals.h"
+#include "bodyloom/geometry/uv_maps/surface_velocity.h"
 
 namespace bodyloom {
 

@@ -7,17 +7,15 @@
 #include <opencv2/photo.hpp>
 #include <utility>
 
-#include "benchmarks/speed/bench_table.h"
-#include "benchmarks/speed/descriptor_sections.h"
 #include "benchmarks/speed/moving_body.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/geometry/surface_velocity.h"
-#include "bodyloom/geometry/uv_charts.h"
-#include "bodyloom/render/texture_extract.h"
-#include "bodyloom/render/uv_fill.h"
-#include "bodyloom/render/uv_sample.h"
-#include "bodyloom/render/visible_points.h"
+#include "bodyloom/geometry/uv_maps/surface_velocity.h"
+#include "bodyloom/geometry/uv_maps/uv_charts.h"
+#include "bodyloom/render/raster/visible_points.h"
+#include "bodyloom/render/texture/complete/uv_fill.h"
+#include "bodyloom/render/texture/texture_extract.h"
+#include "bodyloom/render/texture/uv_sample.h"
 
 namespace bodyloom {
 

@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "benchmarks/speed/descriptor_sections.h"
-#include "bodyloom/data_tools/descriptors/surface_motion.h"
+#include "benchmarks/speed/moving_body.h"
 #include "bodyloom/data_tools/motion/motion_tools.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/rotation.h"
-#include "bodyloom/geometry/surface_velocity.h"
+#include "bodyloom/geometry/math/rotation.h"
+#include "bodyloom/geometry/uv_maps/descriptor_options.h"
+#include "bodyloom/geometry/uv_maps/surface_velocity.h"
 
 namespace bodyloom {
 

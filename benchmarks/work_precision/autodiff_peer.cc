@@ -11,10 +11,10 @@
 #include <utility>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/rotation.h"
-#include "bodyloom/tracking/residuals/acceleration_cost.h"
-#include "bodyloom/tracking/residuals/linear_cost.h"
-#include "bodyloom/tracking/serial_openmp.h"
+#include "bodyloom/geometry/math/rotation.h"
+#include "bodyloom/tracking/solvers/residuals/acceleration_cost.h"
+#include "bodyloom/tracking/solvers/residuals/ceres_functions.h"
+#include "bodyloom/tracking/solvers/solve_sequence.h"
 #include "bodyloom/tracking/terms/dense/dense.h"
 #include "bodyloom/tracking/terms/initialiser.h"
 #include "bodyloom/tracking/terms/joint_limits.h"

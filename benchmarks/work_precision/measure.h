@@ -2,6 +2,7 @@
 /// Engines on one problem: time, memory, error and cost of each.
 #pragma once
 
+#include <Eigen/Core>
 #include <functional>
 #include <limits>
 #include <string>
@@ -10,7 +11,9 @@
 #include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/accuracy/bench_report.h"
 #include "benchmarks/work_precision/work_problem.h"
-#include "bodyloom/tracking/solve_sequence.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/scene/track.h"
+#include "bodyloom/tracking/solvers/solve_sequence.h"
 
 namespace bodyloom {
 
@@ -81,5 +84,26 @@ inline const std::vector<std::string> kWorkColumns = {"wall_ms",    "wall_ms_spr
                                                       "iterations", "error",
                                                       "bound",      "cost_excess",
                                                       "peak_mb",    "wall_over_chain"};
+
+// Error of descriptor maps against the surface that they describe.
+
+struct MapError {
+  double normal_deg = 0;     ///< mean angle
+  double velocity_mm_s = 0;  ///< root mean square of the vector's difference
+};
+
+/// The truth at the middle of every tenth face: the unit normal (interpolated from its vertices, as maps do) and the
+/// velocity of the surface by the body model's derivative at central differences of the true poses.
+class MapTruth {
+ public:
+  MapTruth(const BodyModel& body, const Track& truth);
+  /// Maps [N(3), V(3)] of size² texels, one record a frame of the truth, looked up bilinearly at the faces' middles.
+  [[nodiscard]] MapError ErrorOf(const std::string& npy_path, int size) const;
+
+ private:
+  std::vector<Eigen::Vector2d> uv_;                    ///< one a face
+  std::vector<std::vector<Eigen::Vector3d>> normals_;  ///< T of one a face
+  std::vector<std::vector<Eigen::Vector3d>> velocities_;
+};
 
 }  // namespace bodyloom

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "benchmarks/work_precision/problem_file.h"
 #include "benchmarks/work_precision/sections.h"
+#include "benchmarks/work_precision/work_problem.h"
 #include "bodyloom/geometry/base/check.h"
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/support/paths.h"

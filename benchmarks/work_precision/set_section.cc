@@ -6,7 +6,7 @@
 #include "benchmarks/accuracy/dense_clips.h"
 #include "benchmarks/work_precision/sections.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/math/rotation.h"
 
 namespace bodyloom {
 namespace {

@@ -6,9 +6,8 @@
 #include <cmath>
 #include <utility>
 
-#include "benchmarks/accuracy/dense_bound.h"
 #include "benchmarks/accuracy/dense_clips.h"
-#include "benchmarks/work_precision/map_error.h"
+#include "benchmarks/work_precision/measure.h"
 #include "benchmarks/work_precision/sections.h"
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/descriptors/describe_track.h"

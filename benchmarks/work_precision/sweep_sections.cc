@@ -4,7 +4,7 @@
 
 #include "benchmarks/work_precision/sections.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/tracking/frame_cost.h"
+#include "bodyloom/tracking/problem/frame_cost.h"
 
 namespace bodyloom {
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
-#include "bodyloom/tracking/sequence_problem.h"
-#include "bodyloom/tracking/terms/pose_prior/mixture_prior.h"
+#include "bodyloom/tracking/problem/sequence_problem.h"
+#include "bodyloom/tracking/terms/pose_prior/pose_prior.h"
 
 namespace bodyloom {
 
@@ -38,5 +38,18 @@ std::unique_ptr<WorkProblem> MakeWorkProblem(const WorkProblemOptions& options);
 /// Mean distance between where every tenth vertex of the fitted and of the true body appears, pixels of the image
 /// scaled to 512 by its longer side.
 double ProjectionErrorPx(const WorkProblem& work, const std::vector<FrameState>& states, const Eigen::VectorXd& betas);
+
+// A WorkProblem as numbers, for fitters written in Python (benchmarks/peers/pytorch_fit.py), and what they answer.
+
+/// Every array that the cost needs (names and shapes: class Problem of the script). Throws std::runtime_error.
+void WriteProblemFile(const WorkProblem& work, const std::string& path);
+
+/// Where a fitter stood at one moment.
+struct PeerMoment {
+  double seconds = 0, cpu_seconds = 0;  ///< wall, and processor time of the process
+  int iterations = 0;
+  SequenceProblem answer;
+};
+std::vector<PeerMoment> ReadPeerFile(const WorkProblem& work, const std::string& path);
 
 }  // namespace bodyloom

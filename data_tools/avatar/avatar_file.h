@@ -1,24 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Files of a person of Gaussians: the person, and a training that can go on.
 ///
-/// One .npz. N Gaussians (render/avatar/gaussian_body.h says what the numbers mean) on a body of J joints, V vertices
-/// and F faces:
+/// One .npz. N Gaussians (render/gaussian_avatar/gaussian_body.h says what the numbers mean) on a body of J joints, V
+/// vertices and F faces:
 ///   format 'bodyloom avatar'   version 2              body_size int32 [J, V, F]    betas B, float64
 ///   parameters N×23 float32    joints N×6 int32       kinds N uint8 (GaussianKind) light 27 float32
 ///   anchor_face N int32        anchor_barycentric N×3 float32                      anchor_factor N float32
-/// with a garment of K nodes (render/avatar/avatar_garment.h), which joints J to J + K − 1 name,
-///   garment_cut float64 [waist, length, fullness, spacing, nodes' spacing]   garment_offsets V float32   garment_nodes K×3 float32
-/// and, in a training's checkpoint (render/avatar/learning/avatar_trainer.h):
+/// with a garment of K nodes (render/gaussian_avatar/avatar_frame.h), which joints J to J + K − 1 name,
+///   garment_cut float64 [waist, length, fullness, spacing, nodes' spacing]   garment_offsets V float32   garment_nodes
+///   K×3 float32
+/// and, in a training's checkpoint (render/gaussian_avatar/learning/avatar_trainer.h):
 ///   adam_first, adam_second N×23 float32   adam_steps N int32    pull N float32    step, seconds float64
 ///   light_first, light_second 27 float32   light_steps 27 int32  options text: what the training was begun with
-/// where frames held out were judged (render/avatar/learning/held_out_curve.h) also
+/// where frames held out were judged (render/gaussian_avatar/learning/held_out_curve.h) also
 ///   held_out K float64 (losses)            held_out_landing float64 [step, progress]; 0, 0: it does not land
 ///   best_…: the person that is kept, keys as above with best_ before them      best_step, best_loss float64
-/// where it refines the poses of a clip of T frames (render/avatar/learning/pose_refiner.h) also
+/// where it refines the poses of a clip of T frames (render/gaussian_avatar/learning/pose_refiner.h) also
 ///   pose_values, pose_mean T×(3J + 3) float32     pose_square T float32     pose_steps T int32
-/// All numbers are finite. Files of version 1, which have is_loose (0, 1) in place of kinds and no garment, are read too,
-/// and so are files with a network of the motion (motion_network, motion_parameters, …), which earlier versions learned:
-/// it is left out.
+/// All numbers are finite. Files of version 1, which have is_loose (0, 1) in place of kinds and no garment, are read
+/// too, and so are files with a network of the motion (motion_network, motion_parameters, …), which earlier versions
+/// learned: it is left out.
 #pragma once
 
 #include <optional>
@@ -27,9 +28,9 @@
 #include <Eigen/Core>
 
 #include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/render/avatar/avatar_garment.h"
-#include "bodyloom/render/avatar/gaussian_body.h"
-#include "bodyloom/render/avatar/learning/avatar_trainer.h"
+#include "bodyloom/render/gaussian_avatar/avatar_frame.h"
+#include "bodyloom/render/gaussian_avatar/gaussian_body.h"
+#include "bodyloom/render/gaussian_avatar/learning/avatar_trainer.h"
 
 namespace bodyloom {
 

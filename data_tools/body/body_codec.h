@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "bodyloom/data_tools/formats/ndarray.h"
-#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/math/arrays.h"
 
 namespace bodyloom {
 
@@ -68,5 +69,37 @@ PackedUnitRows PackUnitRows(const UnitRows& rows, int bits);
 /// The inverse. Columns must lie in 0..num_columns−1. Throws std::runtime_error "where: …".
 UnitRows UnpackUnitRows(const PackedUnitRows& packed, int bits, int64_t num_rows, int64_t num_columns,
                         const std::string& where);
+
+// Triangles of a compact body file: each index as the difference to that of the face `lag` faces before, because
+// meshes are numbered regularly (lag 1: previous triangle; 2: previous quad; 8: the same quad of the previous
+// subdivided face).
+
+NdArray PackFaces(const MatrixX3i& faces, int lag);
+
+/// The lag of 1, 2 and 8 whose differences deflate best.
+int BestLag(const MatrixX3i& faces);
+
+/// The inverse of PackFaces; every index must lie in 0..limit−1 and, when expected_faces >= 0, their number fit. Throws
+/// std::runtime_error "where: …".
+MatrixX3i UnpackFaces(const NdArray& packed, int lag, int64_t limit, int64_t expected_faces, const std::string& where);
+
+// Pose correctives of a compact body file: blocks on a grid, predicted from the same joint's blocks at neighbouring
+// vertices. Layout and error bound in body_compact.h.
+
+struct PackedPoseCorrectives {
+  NdArray count;  ///< blocks of each vertex
+  NdArray joint;  ///< joint of each block, as the difference to the vertex's block before it
+  NdArray block;  ///< 27 residuals of each block
+};
+
+/// The step that the blocks are stored in: a decimal one on which they lie exactly, else a power of two
+/// (body_compact.h).
+double PoseGrid(const PoseCorrectives& posedirs);
+
+PackedPoseCorrectives PackPoseCorrectives(const PoseCorrectives& posedirs, const MeshPredictor& predictor, double step);
+
+/// The inverse for V vertices and J joints. Throws std::runtime_error "where: …".
+PoseCorrectives UnpackPoseCorrectives(const PackedPoseCorrectives& packed, const MeshPredictor& predictor, int64_t V,
+                                      int64_t J, double step, const std::string& where);
 
 }  // namespace bodyloom

@@ -7,8 +7,6 @@
 #include <utility>
 
 #include "bodyloom/data_tools/body/body_codec.h"
-#include "bodyloom/data_tools/body/body_faces_codec.h"
-#include "bodyloom/data_tools/body/body_posedirs_codec.h"
 #include "bodyloom/data_tools/formats/printable.h"
 #include "bodyloom/geometry/base/check.h"
 

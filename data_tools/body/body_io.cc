@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/data_tools/body/body_io.h"
 
+#include <algorithm>
+#include <iomanip>
+#include <set>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -44,6 +48,46 @@ BodyModelData LoadBodyData(const std::string& path, const LoadBodyOptions& optio
 
 void SaveBodyCompact(const std::string& path, const BodyModelData& body) {
   WriteNpz(path, CompactFromBody(BodyModel(body).data()));
+}
+
+std::string DescribeBody(const BodyModel& body) {
+  const BodyModelData& data = body.data();
+  const Eigen::RowVector3d size = data.v_template.colwise().maxCoeff() - data.v_template.colwise().minCoeff();
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(3);
+  text << "name             " << body.name() << '\n'
+       << "vertices         " << body.num_vertices() << '\n'
+       << "faces            " << body.num_faces() << '\n'
+       << "joints           " << body.num_joints() << '\n'
+       << "shape components " << body.num_betas() << '\n'
+       << "size             " << size.y() << " m high, " << size.x() << " m wide, " << size.z() << " m deep (T-pose)\n"
+       << "skinning         " << body.influence_joint().size() << " weights, "
+       << static_cast<double>(body.influence_joint().size()) / body.num_vertices() << " a vertex\n";
+  text << "pose correctives ";
+  if (data.posedirs.empty()) {
+    text << "none\n";
+  } else {
+    const double all = static_cast<double>(body.num_vertices()) * std::max(body.num_joints() - 1, 1);
+    text << data.posedirs.joint.size() << " blocks, " << std::setprecision(1)
+         << 100.0 * static_cast<double>(data.posedirs.joint.size()) / all << " % of vertices x joints\n";
+  }
+  text << "mean hand pose   " << (data.pose_mean.size() > 0 ? "yes" : "none") << '\n';
+  text << "UV               ";
+  if (body.has_uv()) {
+    text << data.vt.rows() << " UV vertices\n";
+  } else {
+    text << "none (bring an OBJ with the same vertex order)\n";
+  }
+  text << "parts            ";
+  if (body.has_parts()) {
+    const std::set<int> parts(data.face_part.begin(), data.face_part.end());
+    text << parts.size() - parts.count(0) << " parts, " << std::count(data.face_part.begin(), data.face_part.end(), 0)
+         << " faces without\n";
+  } else {
+    text << "none (bring DensePose's UV_Processed.mat)\n";
+  }
+  text << "landmarks        " << data.landmarks.size() << '\n';
+  return text.str();
 }
 
 }  // namespace bodyloom

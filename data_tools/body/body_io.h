@@ -9,7 +9,7 @@
 
 #include <string>
 
-#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/body/body_model.h"
 
 namespace bodyloom {
 

@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "bodyloom/geometry/base/check.h"
+
 namespace bodyloom {
 namespace {
 
@@ -44,6 +46,12 @@ std::vector<Landmark> StandardLandmarks(const BodyModelData& body) {
     landmarks.push_back(std::move(landmark));
   }
   return landmarks;
+}
+
+Eigen::Vector3d MeanPelvis(const std::string& body) {
+  if (body == "smpl") return {-0.0018, -0.2233, 0.0282};
+  BODYLOOM_CHECK(body == "smplx", "the pelvis of a body '", body, "', expected smpl or smplx");
+  return {0.0031, -0.3514, 0.0120};
 }
 
 }  // namespace bodyloom

@@ -3,9 +3,11 @@
 /// topology.
 #pragma once
 
+#include <Eigen/Core>
+#include <string>
 #include <vector>
 
-#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/body/body_model.h"
 
 namespace bodyloom {
 
@@ -15,5 +17,11 @@ namespace bodyloom {
 /// with neither 6,890 nor 10,475 vertices, or without SMPL's first 22 joints.
 /// Source: vertex numbers from smplx vertex_ids.py.
 std::vector<Landmark> StandardLandmarks(const BodyModelData& body);
+
+// Where the published bodies have their pelvis: their `trans` is not the pelvis's place but its place less this.
+
+/// The pelvis joint of the mean neutral shape at rest, metres, about which the root turns ("smpl", "smplx"). Throws
+/// std::invalid_argument for another body. Shapes move it by a few centimetres.
+Eigen::Vector3d MeanPelvis(const std::string& body);
 
 }  // namespace bodyloom

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "bodyloom/data_tools/body/body_landmarks.h"
+#include "bodyloom/data_tools/formats/ndarray.h"
 #include "bodyloom/data_tools/formats/printable.h"
-#include "bodyloom/data_tools/formats/whole_numbers.h"
 #include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/data_tools/body/builtin_body.h"
 
+#include "bodyloom/data_tools/body/body_io.h"
+
 // Made by bodyloom_embed() in data_tools/CMakeLists.txt.
 extern "C" {
 extern const char bodyloom_builtin_body_cage_begin[], bodyloom_builtin_body_cage_end[];
@@ -19,6 +21,11 @@ BuiltinBodySources EmbeddedBuiltinBodySources() {
 const BodyModel& BuiltinBody() {
   static const BodyModel body(MakeBuiltinBody(EmbeddedBuiltinBodySources()));
   return body;
+}
+
+std::shared_ptr<const BodyModel> BodyOrBuiltin(const std::string& path) {
+  if (path.empty()) return {std::shared_ptr<void>(), &BuiltinBody()};  // lives as long as the program
+  return std::make_shared<const BodyModel>(LoadBody(path));
 }
 
 }  // namespace bodyloom

@@ -6,8 +6,11 @@
 /// left, y up, z front, metres, pelvis joint of the mean shape at the origin. What it promises: docs/built_in_body.md.
 #pragma once
 
+#include <memory>
+#include <string>
+
 #include "bodyloom/data_tools/body_making/make_builtin_body.h"
-#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/body/body_model.h"
 
 namespace bodyloom {
 
@@ -16,5 +19,9 @@ const BodyModel& BuiltinBody();
 
 /// The sources compiled into the library.
 BuiltinBodySources EmbeddedBuiltinBodySources();
+
+/// The body in a file (data_tools/body/body_io.h), or the built-in one for an empty path. Throws std::runtime_error
+/// naming the file and what is wrong with it.
+std::shared_ptr<const BodyModel> BodyOrBuiltin(const std::string& path);
 
 }  // namespace bodyloom

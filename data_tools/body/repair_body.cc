@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "bodyloom/data_tools/body/body_landmarks.h"
-#include "bodyloom/geometry/mesh_check.h"
+#include "bodyloom/geometry/mesh/mesh_check.h"
 
 namespace bodyloom {
 namespace {

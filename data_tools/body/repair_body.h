@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Mends what can be mended of a body's mesh (geometry/mesh_check.h) without changing how the body looks or moves.
+/// Mends what can be mended of a body's mesh (geometry/mesh/mesh_check.h) without changing how the body looks or moves.
 ///
 ///   turned faces          get their corners the other way round, with their UV corners
 ///   superfluous faces     (a corner twice, or the vertices of an earlier face) go; the others keep their parts and UV
@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/body/body_model.h"
 
 namespace bodyloom {
 

@@ -15,10 +15,14 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/body_making/quads.h"
-#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/math/arrays.h"
 
 namespace bodyloom {
+
+// Quad connectivity shared by the control cage and its subdivisions.
+
+using Quad = std::array<int, 4>;  ///< vertex indices, counter-clockwise seen from outside
+using Edge = std::array<int, 2>;  ///< vertex indices in the direction in which the edge was first met
 
 struct Cage {
   std::vector<std::string> vertex_names;                 ///< N

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "bodyloom/data_tools/body_making/body_charts.h"
-#include "bodyloom/geometry/arrays.h"
-#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/math/arrays.h"
 
 namespace bodyloom {
 

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "bodyloom/data_tools/body_making/openmesh_catmull_clark.h"
-#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/body/body_model.h"
 
 namespace bodyloom {
 

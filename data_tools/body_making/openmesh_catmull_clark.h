@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/body_making/quads.h"
-#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/data_tools/body_making/cage.h"
+#include "bodyloom/geometry/math/arrays.h"
 
 namespace bodyloom {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/data_tools/datasets/body_truth.h"
 
-#include "bodyloom/data_tools/datasets/label_of_part.h"
-#include "bodyloom/data_tools/datasets/nearest_pixel.h"
+#include "bodyloom/data_tools/datasets/photo_segmentation.h"
+#include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {

@@ -2,16 +2,16 @@
 /// Labels and normals of a person of whom no dataset knows them: from the person's outline and the tracked body.
 ///
 /// The outline is as good as the mask it comes from. Within it a pixel has the clothing class of the part of the body
-/// that it shows, or that the nearest pixel of the body shows (label_of_part.h): skirts are trousers, coats end at the
-/// waist, hair is face. Normals are the bare body's, beyond its outline those of its nearest pixel; folds and whatever
-/// hangs free are not in them.
+/// that it shows, or that the nearest pixel of the body shows (photo_segmentation.h): skirts are trousers, coats end at
+/// the waist, hair is face. Normals are the bare body's, beyond its outline those of its nearest pixel; folds and
+/// whatever hangs free are not in them.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "bodyloom/render/image.h"
+#include "bodyloom/render/image/image.h"
 
 namespace bodyloom {
 

@@ -14,6 +14,8 @@
 #include <string>
 #include <vector>
 
+#include "bodyloom/render/image/image.h"
+
 namespace bodyloom {
 
 struct DatasetPerson {
@@ -35,9 +37,9 @@ struct MultiPersonDataset {
 /// leads out of the dataset or is not there.
 MultiPersonDataset ReadMultiPersonDataset(const std::string& path);
 
-/// What a clip's name says of it: views of one action have equal actions, frame by frame of the same poses; clips of one
-/// view were taken from the same side. Of "p000/a0_v1": "p000/a0" and "v1"; a clip whose name does not end in _v and a
-/// number is an action and a view of its own.
+/// What a clip's name says of it: views of one action have equal actions, frame by frame of the same poses; clips of
+/// one view were taken from the same side. Of "p000/a0_v1": "p000/a0" and "v1"; a clip whose name does not end in _v
+/// and a number is an action and a view of its own.
 struct ClipPlace {
   std::string action, view;
 };
@@ -45,5 +47,10 @@ ClipPlace PlaceOfClip(const std::string& clip);
 
 /// Writes people.json alone. Throws std::runtime_error "path: why".
 void WriteMultiPersonDataset(const MultiPersonDataset& set);
+
+// A contact sheet of a multi-person dataset: a row a person, pictures of evenly spread clips side by side.
+
+/// At most `rows` people, evenly spread over the dataset. Throws as ReadMultiPersonDataset and SinglePersonDataset.
+Image PeopleSheet(const std::string& dataset, int rows = 8, int columns = 8, int cell_height_px = 160);
 
 }  // namespace bodyloom

@@ -22,9 +22,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/person_label.h"
-#include "bodyloom/geometry/track.h"
-#include "bodyloom/render/image.h"
+#include "bodyloom/geometry/scene/person_label.h"
+#include "bodyloom/geometry/scene/track.h"
+#include "bodyloom/render/image/image.h"
 
 namespace bodyloom {
 
@@ -93,6 +93,28 @@ class SinglePersonDatasetWriter {
  private:
   std::string path_;
   SinglePersonDatasetInfo info_;
+};
+
+// A contact sheet of a single-person dataset: evenly spread frames as columns; image, labels in colours, normals and
+// IUV as rows.
+
+/// The colour a label is shown in.
+Colour PersonLabelColour(PersonLabel label);
+
+/// Labels (indices in all channels) as colours.
+Image PersonLabelPicture(const Image& labels);
+
+/// Takes frames as they come, in order, and keeps those that are shown.
+class PersonSheet {
+ public:
+  explicit PersonSheet(int num_frames, int columns = 8);
+  void Take(int t, const PersonFrame& frame);
+  /// Throws std::invalid_argument when no frame was taken.
+  [[nodiscard]] Image Picture(int cell_height_px = 200) const;
+
+ private:
+  std::vector<int> wanted_;
+  std::vector<PersonFrame> frames_;
 };
 
 }  // namespace bodyloom

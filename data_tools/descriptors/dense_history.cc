@@ -6,7 +6,7 @@
 #include <string>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/observations.h"
+#include "bodyloom/geometry/scene/observations.h"
 
 namespace bodyloom {
 namespace {

@@ -15,8 +15,8 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/descriptors/descriptor_frames.h"
-#include "bodyloom/render/image.h"
+#include "bodyloom/render/image/image.h"
+#include "bodyloom/render/uv_maps/descriptor_frames.h"
 
 namespace bodyloom {
 
@@ -55,5 +55,11 @@ DescribeTrackSummary DescribeTrack(const BodyModel& body, const Track& track, co
 
 /// The header's place: out_npy with .json for its extension.
 std::string DescriptorHeaderPath(const std::string& out_npy);
+
+// The header beside a descriptor file: what its numbers are, in JSON. Keys: docs/descriptors.md.
+
+/// `outputs`: the track's frame of each record.
+std::string DescriptorHeaderJson(const BodyModel& body, const Track& track, const DescribeTrackOptions& options,
+                                 const DescribeTrackSummary& summary, const std::vector<int>& outputs);
 
 }  // namespace bodyloom

@@ -6,8 +6,8 @@
 
 #include "bodyloom/data_tools/descriptors/describe_track.h"
 #include "bodyloom/data_tools/formats/ndarray.h"
-#include "bodyloom/render/caption.h"
-#include "bodyloom/render/unit_byte.h"
+#include "bodyloom/render/image/image.h"
+#include "bodyloom/render/view/caption.h"
 
 namespace bodyloom {
 namespace {

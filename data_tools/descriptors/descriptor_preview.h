@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/geometry/uv_texels.h"
-#include "bodyloom/render/image.h"
+#include "bodyloom/geometry/uv_maps/uv_texels.h"
+#include "bodyloom/render/image/image.h"
 
 namespace bodyloom {
 

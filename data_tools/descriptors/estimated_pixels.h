@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/render/chart_lookup.h"
-#include "bodyloom/render/person_window.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/render/texture/chart_lookup.h"
+#include "bodyloom/render/view/person_window.h"
 
 namespace bodyloom {
 
@@ -18,10 +18,10 @@ class EstimatedPixels {
  public:
   static constexpr double kMaxGap = 0.05;  ///< chart units: a label farther outside its chart shows nothing
 
-  /// Frame t's is the folder's picture `first` + t in the order of their numbers: of those whose names end in _IUV where
-  /// there are any. `path` may also be one picture, of a clip of one frame. Keeps a reference to the body. Throws
-  /// std::runtime_error naming the path when it has too few for `num_frames`, std::invalid_argument when the body has no
-  /// charts or no atlas.
+  /// Frame t's is the folder's picture `first` + t in the order of their numbers: of those whose names end in _IUV
+  /// where there are any. `path` may also be one picture, of a clip of one frame. Keeps a reference to the body. Throws
+  /// std::runtime_error naming the path when it has too few for `num_frames`, std::invalid_argument when the body has
+  /// no charts or no atlas.
   EstimatedPixels(const BodyModel& body, const std::string& path, int num_frames, int first = 0);
 
   /// Frame t's window: atlas coordinates (2 × height × width, 0 elsewhere) and a mask (height × width), each pixel that

@@ -11,14 +11,14 @@
 #include <utility>
 
 #include "bodyloom/data_tools/descriptors/describe_track.h"
-#include "bodyloom/data_tools/descriptors/posed_track.h"
-#include "bodyloom/data_tools/formats/half.h"
 #include "bodyloom/data_tools/formats/mapped_npy.h"
-#include "bodyloom/data_tools/motion/freeze_track.h"
+#include "bodyloom/data_tools/formats/ndarray.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/observations.h"
-#include "bodyloom/render/resolve_pixels.h"
-#include "bodyloom/render/visibility_buffer.h"
+#include "bodyloom/geometry/scene/observations.h"
+#include "bodyloom/geometry/scene/track_edits.h"
+#include "bodyloom/render/raster/resolve_pixels.h"
+#include "bodyloom/render/raster/visibility_buffer.h"
+#include "bodyloom/render/uv_maps/posed_track.h"
 
 namespace bodyloom {
 namespace {

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "bodyloom/data_tools/datasets/body_truth.h"
-#include "bodyloom/data_tools/descriptors/surface_motion.h"
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/track.h"
-#include "bodyloom/render/person_window.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/scene/track.h"
+#include "bodyloom/geometry/uv_maps/descriptor_options.h"
+#include "bodyloom/render/view/person_window.h"
 
 namespace bodyloom {
 
@@ -26,7 +26,7 @@ struct PersonFramesOptions {
   /// own view. The motion is turned with it (about the same vertical in world axes; body axes know of no view), so that
   /// a view that moves adds no velocity of its own.
   std::vector<double> yaw_deg;
-  /// Which frame of the track is shown when (data_tools/motion/freeze_track.h); empty: each in turn. One that is shown
+  /// Which frame of the track is shown when (geometry/scene/track_edits.h); empty: each in turn. One that is shown
   /// again moves as it did the first time: time stands still, nothing comes to rest. All that is by frame here is by
   /// frame shown.
   std::vector<int> shown;
@@ -70,8 +70,8 @@ class PersonFrames {
   /// called by several threads. Throws std::invalid_argument when the body has no charts.
   [[nodiscard]] BodySurface Surface(int t) const;
 
-  /// The 17 keypoints of COCO (CocoNames, geometry/observations.h) of frame t's body, pixels of its window, 17×2; NaN
-  /// for those behind the camera and for a frame without a result. May be called by several threads. Throws
+  /// The 17 keypoints of COCO (CocoNames, geometry/scene/observations.h) of frame t's body, pixels of its window, 17×2;
+  /// NaN for those behind the camera and for a frame without a result. May be called by several threads. Throws
   /// std::invalid_argument when the body lacks one.
   [[nodiscard]] Eigen::Matrix<double, Eigen::Dynamic, 2> Keypoints(int t) const;
 

@@ -5,13 +5,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "bodyloom/data_tools/descriptors/estimated_pixels.h"
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/track.h"
-#include "bodyloom/geometry/uv_texels.h"
-#include "bodyloom/render/person_window.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/scene/track.h"
+#include "bodyloom/geometry/uv_maps/uv_texels.h"
+#include "bodyloom/render/view/person_window.h"
 
 namespace bodyloom {
 
@@ -20,8 +21,8 @@ struct PhotoMapsOptions {
   int texture_size = 256;       ///< U: texels of the atlas' sides
   double margin = 0.15;         ///< around the body (PersonWindowOptions::margin)
   std::vector<double> yaw_deg;  ///< by frame: turns the view (PersonFramesOptions::yaw_deg); empty: the track's own
-  /// What pixels show of the body by estimates from the pictures, of all frames; null: what the tracked body says, which
-  /// places the window in either case. With estimates a texel that is seen has the cosine 1. Not with yaw_deg.
+  /// What pixels show of the body by estimates from the pictures, of all frames; null: what the tracked body says,
+  /// which places the window in either case. With estimates a texel that is seen has the cosine 1. Not with yaw_deg.
   std::shared_ptr<const EstimatedPixels> estimated;
   /// Texels of the body at that size, when a caller has them already (many clips of one body); null: made.
   std::shared_ptr<const UvTexelTable> texels;
@@ -59,5 +60,20 @@ class PhotoMaps {
   class Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+// Where the texels of a body appear in a picture, from what its pixels show: the inverse of an IUV image.
+
+struct TexelPlaces {
+  std::vector<float> pixels;  ///< 2 × U × U: x and y in the picture where the texel's point appears; 0: not seen
+  std::vector<float> seen;    ///< U × U: 1, or 0 where it is not seen
+};
+
+/// `uv`: atlas coordinates, 2 × height × width; `parts`: DensePose's, 0 off the body. `texel_parts` (U × U): the part
+/// of each texel. Between each three neighbouring pixels of one part that are near each other in the atlas (0.1),
+/// places are interpolated, and continued by half a pixel at the rim; so a texel is seen where pixels around it show
+/// its part. Of two places the interpolated one counts, then the upper, then the left one. Throws std::invalid_argument
+/// when sizes differ.
+TexelPlaces TexelsOfPixels(std::span<const float> uv, std::span<const uint8_t> parts, int width, int height,
+                           std::span<const uint8_t> texel_parts, int texture_size);
 
 }  // namespace bodyloom

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/math/rotation.h"
 
 namespace bodyloom {
 namespace {

@@ -2,13 +2,13 @@
 /// What another system made of a video: SMPL poses of the people in it, frame by frame, each with the camera in which
 /// that system means them. Read by load_estimate.h; EstimateInCamera() brings one person into the camera of a fit.
 ///
-/// Whose pelvis stands where: `trans` moves the body model's origin, which is not the pelvis about which the root turns.
-/// rest_pelvis is that of the mean shape (body/mean_pelvis.h), or a track's own.
+/// Whose pelvis stands where: `trans` moves the body model's origin, which is not the pelvis about which the root
+/// turns. rest_pelvis is that of the mean shape (body/mean_pelvis.h), or a track's own.
 ///
-/// Systems differ in that camera: a full-image pinhole of a guessed focal length (WHAM, GVHMR), one of a very long focal
-/// length (PHALP), a scale and an offset (VIBE). What they agree on is what the image says: where the pelvis is seen,
-/// how many pixels a metre has there, and how the body is turned against its line of sight. These three are kept when a
-/// pose moves into another camera.
+/// Systems differ in that camera: a full-image pinhole of a guessed focal length (WHAM, GVHMR), one of a very long
+/// focal length (PHALP), a scale and an offset (VIBE). What they agree on is what the image says: where the pelvis is
+/// seen, how many pixels a metre has there, and how the body is turned against its line of sight. These three are kept
+/// when a pose moves into another camera.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,10 +16,10 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/arrays.h"
-#include "bodyloom/geometry/camera.h"
-#include "bodyloom/geometry/observations.h"
-#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/math/arrays.h"
+#include "bodyloom/geometry/scene/camera.h"
+#include "bodyloom/geometry/scene/observations.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 
@@ -30,8 +30,8 @@ struct PersonEstimate {
   MatrixX3d trans;              ///< N×3, metres, of the body model in its frame's camera; weak perspective: 0
   std::vector<Camera> cameras;  ///< N: pinhole or weak perspective; of images of 0x0 where a file does not say
   /// N of 21×3, in place of poses (which then has no columns), where a system gives points of another body: COCO's 17,
-  /// left and right big toe, left and right heel, metres from the middle of the hips, axes of the frame's camera. `trans`
-  /// is the middle of the hips.
+  /// left and right big toe, left and right heel, metres from the middle of the hips, axes of the frame's camera.
+  /// `trans` is the middle of the hips.
   std::vector<MatrixX3d> landmarks;
   Eigen::VectorXd betas;  ///< of the system's body; the mean of its frames'
 };
@@ -55,11 +55,12 @@ struct PelvisInImage {
 /// Of entry i of a person; nothing when the pelvis is not in front of the camera.
 std::optional<PelvisInImage> PelvisOf(const PersonEstimate& person, size_t i, const Eigen::Vector3d& rest_pelvis);
 
-/// The person in `camera` (pinhole): with the pelvis seen at pixel p under ray r and s pixels a metre there, and a ray r'
-/// and a focal length f' of `camera`, the pelvis is put to (f'/s)·(r', 1), and the root turned by the smallest rotation
-/// from r to r'. In the estimate's own camera nothing changes. `num_frames` rows, NaN where the person is missing;
-/// timestamps are left empty. `estimate_pelvis` is the pelvis of the estimate's body at rest, `pelvis` that of the body
-/// whose `trans` is wanted. Throws std::invalid_argument for a frame beyond num_frames and a camera that is no pinhole.
+/// The person in `camera` (pinhole): with the pelvis seen at pixel p under ray r and s pixels a metre there, and a ray
+/// r' and a focal length f' of `camera`, the pelvis is put to (f'/s)·(r', 1), and the root turned by the smallest
+/// rotation from r to r'. In the estimate's own camera nothing changes. `num_frames` rows, NaN where the person is
+/// missing; timestamps are left empty. `estimate_pelvis` is the pelvis of the estimate's body at rest, `pelvis` that of
+/// the body whose `trans` is wanted. Throws std::invalid_argument for a frame beyond num_frames and a camera that is no
+/// pinhole.
 Motion EstimateInCamera(const PersonEstimate& person, const Camera& camera, int num_frames,
                         const Eigen::Vector3d& estimate_pelvis, const Eigen::Vector3d& pelvis);
 

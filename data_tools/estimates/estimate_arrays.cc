@@ -5,13 +5,11 @@
 #include <numeric>
 #include <utility>
 
-#include "bodyloom/data_tools/body/mean_pelvis.h"
+#include "bodyloom/data_tools/body/body_landmarks.h"
+#include "bodyloom/data_tools/formats/ndarray.h"
 #include "bodyloom/data_tools/formats/printable.h"
-#include "bodyloom/data_tools/formats/whole_numbers.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/refuse.h"
-#include "bodyloom/geometry/rotation.h"
-#include "bodyloom/geometry/rotation_check.h"
+#include "bodyloom/geometry/math/rotation.h"
 
 namespace bodyloom {
 namespace {

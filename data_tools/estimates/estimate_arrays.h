@@ -36,9 +36,9 @@ Eigen::Vector3d AxisAngleFromRows(const Eigen::Ref<const Eigen::RowVectorXd>& ni
 /// A pinhole camera of square pixels in the middle (w/2, h/2) of an image, as these systems place it.
 Camera CentredCamera(int width, int height, double focal_px);
 
-/// People of SMPL's body by name in one dictionary, each with `pose` (n×72 axis-angle), `betas` and `frame_ids`, as VIBE and
-/// WHAM write them. `rest` sets what else a system knows of a person (its values; "where: person NAME"; trans is 0 and there
-/// are no cameras yet). Throws as RequireShape(), RequireFrameNumbers() and SortEstimate().
+/// People of SMPL's body by name in one dictionary, each with `pose` (n×72 axis-angle), `betas` and `frame_ids`, as
+/// VIBE and WHAM write them. `rest` sets what else a system knows of a person (its values; "where: person NAME"; trans
+/// is 0 and there are no cameras yet). Throws as RequireShape(), RequireFrameNumbers() and SortEstimate().
 BodyEstimate SmplPeople(
     const PickleValue& file, const std::string& where, const std::string& system,
     const std::function<void(const PickleValue& values, const std::string& place, PersonEstimate* person)>& rest);

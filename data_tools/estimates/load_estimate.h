@@ -8,6 +8,7 @@
 #include <string>
 
 #include "bodyloom/data_tools/estimates/body_estimate.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 
@@ -21,5 +22,12 @@ BodyEstimate LoadEstimate(const std::string& path, const LoadEstimateOptions& op
 /// The same for the contents of a file; `where` names it in messages.
 BodyEstimate EstimateFromBytes(const std::string& bytes, const std::string& where,
                                const LoadEstimateOptions& options = {});
+
+// A track as an estimate: of another camera model, of a fit that is to be continued, or written by another program.
+
+/// Frames without a result are missing. Of bodies with hands and a face SMPL's 21 body joints are taken. `where` names
+/// the track in messages; throws std::runtime_error when no frame has a result or the poses have neither 72 nor 156,
+/// 162 or 165 columns.
+BodyEstimate EstimateFromTrack(const Track& track, const std::string& where);
 
 }  // namespace bodyloom

@@ -6,11 +6,10 @@
 #include <map>
 #include <utility>
 
-#include "bodyloom/data_tools/body/mean_pelvis.h"
+#include "bodyloom/data_tools/body/body_landmarks.h"
 #include "bodyloom/data_tools/estimates/estimate_arrays.h"
 #include "bodyloom/data_tools/formats/printable.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/refuse.h"
 
 namespace bodyloom {
 namespace {

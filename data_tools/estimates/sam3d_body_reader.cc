@@ -11,10 +11,9 @@
 #include <utility>
 
 #include "bodyloom/data_tools/estimates/estimate_arrays.h"
-#include "bodyloom/data_tools/formats/files_below.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/observations/frame_numbers.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/refuse.h"
 
 namespace bodyloom {
 namespace {

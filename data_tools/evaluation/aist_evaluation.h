@@ -6,8 +6,8 @@
 
 #include "bodyloom/data_tools/evaluation/evaluation.h"
 #include "bodyloom/data_tools/evaluation/held_out_views.h"
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 
@@ -19,11 +19,35 @@ MultiViewClip ReadAistClip(const std::string& annotations_folder, const std::str
 
 /// Protocol "aist-held-out": EvaluateHeldOutViews on that clip. `view` is the camera the track was fitted to ("c01").
 /// With the body that the track was made with, also the per-vertex projection error of paper A, Table 4, against the
-/// recording's own SMPL motion on that body (pseudo_truth.h: as published on a body of SMPL's 6,890 vertices, fitted to
-/// the 3D joints on any other).
+/// recording's own SMPL motion on that body (aist_evaluation.h: as published on a body of SMPL's 6,890 vertices, fitted
+/// to the 3D joints on any other).
 Evaluation EvaluateAist(const Track& track, const MultiViewClip& clip, const std::string& view,
                         const BodyModel* body = nullptr);
 Evaluation EvaluateAist(const Track& track, const std::string& annotations_folder, const std::string& cameras_folder,
                         const std::string& sequence, const std::string& view, const BodyModel* body = nullptr);
+
+// The SMPL motion that a recording publishes of itself, as a track on a body: AIST++'s is made from all nine cameras.
+
+/// Which body wears the recording's rotations.
+enum class PseudoTruthShape {
+  /// As published: β = 0, the recording's translations, its cameras scaled to the body's size. Right on SMPL's own
+  /// template alone: joints of another one lie elsewhere.
+  kAsPublished,
+  /// One β for the clip and a place for each frame, so that the body's COCO landmarks L(θ_t, β) come nearest to the
+  /// clip's K_t:  min_{β, τ} 1/T Σ_t Σ_j ‖L_j(θ_t, β) + τ_t − K_tj‖² / σ² + ‖β‖²,  σ = 2 cm. Linear in β and τ.
+  kFitted,
+};
+
+struct PseudoTruth {
+  Track track;                      ///< camera frame and camera of the view; up = kCamera; joints and coco17 are empty
+  double landmark_error_m = 0;      ///< mean distance of its COCO landmarks to the clip's, metres of the recording
+  double landmark_error_p95_m = 0;  ///< 95th percentile of frames' means
+};
+
+/// Over the frames that have both motion and landmarks. kAsPublished uses clip.motion_scale. Throws
+/// std::invalid_argument when the clip has no motion, its landmarks are not finite in any frame, or the body has fewer
+/// joints than the motion or lacks COCO's landmarks.
+PseudoTruth MakePseudoTruth(const MultiViewClip& clip, const RigView& view, const BodyModel& body,
+                            PseudoTruthShape shape);
 
 }  // namespace bodyloom

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "bodyloom/geometry/scene/track.h"
+
 namespace bodyloom {
 
 /// One number. The name ends in its unit (`pa_mpjpe_mm`, `heldout_median_px`) and is the key in JSON; NaN means that
@@ -46,5 +48,18 @@ std::string EvaluationTable(const Evaluation& evaluation);
 /// One JSON object: protocol, description, subject, frames, frames_without_result, values {name: number or null},
 /// meanings {name: text}, breakdowns {name: {label: number or null}}. Ends with a newline.
 std::string EvaluationJson(const Evaluation& evaluation);
+
+// How bent the knees of a motion are.
+
+/// Median of the knees' flexion over the frames with a pose and both knees, degrees. Flexion is the x component of a
+/// knee's axis-angle (SMPL's joints 4 and 5; tracking/terms/joint_limits.h has the frame): 0 where thigh and shin are
+/// in line as in the rest pose. NaN without such frames, and for poses of fewer than six joints.
+double MedianKneeFlexionDeg(const Motion& motion);
+
+/// Adds `knee_flexion_deg`, and with a truth `gt_knee_flexion_deg`.
+void AddKneeFlexion(const Motion& estimate, const Motion* truth, Evaluation* evaluation);
+
+/// Protocol "track-alone", where nothing is known to compare with: the knees' flexion.
+Evaluation EvaluateAlone(const Track& track);
 
 }  // namespace bodyloom

@@ -4,14 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bodyloom/data_tools/evaluation/knee_flexion.h"
+#include "bodyloom/data_tools/evaluation/evaluation.h"
 #include "bodyloom/data_tools/evaluation/metrics.h"
 #include "bodyloom/data_tools/evaluation/metrics_image.h"
 #include "bodyloom/data_tools/evaluation/sigma_reliability.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/camera_path.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/math/rotation.h"
+#include "bodyloom/geometry/scene/camera_path.h"
 
 namespace bodyloom {
 namespace {

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "bodyloom/data_tools/evaluation/evaluation.h"
-#include "bodyloom/geometry/arrays.h"
-#include "bodyloom/geometry/camera.h"
-#include "bodyloom/geometry/observations.h"
-#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/math/arrays.h"
+#include "bodyloom/geometry/scene/camera.h"
+#include "bodyloom/geometry/scene/observations.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 
@@ -40,7 +40,7 @@ struct EvaluateHeldOutViewsOptions {
 /// the fitted view, and hip(·) the middle of COCO's hips:
 ///   clip_scale         s = argmin Σ ‖s (P − hip P) − (G − hip G)‖²
 ///   mpjpe_mm, mpjpe_scaled_mm   mean ‖(P − hip P) − (G − hip G)‖, and with s
-///   pa_mpjpe_mm, pa_p95_mm, pa_over_120_percent   after one similarity a frame (geometry/procrustes.h)
+///   pa_mpjpe_mm, pa_p95_mm, pa_over_120_percent   after one similarity a frame (geometry/math/procrustes.h)
 ///   accel_err_ms2, gt_accel_ms2 ‖P″ − G″‖ and ‖G″‖
 ///   root_err_mm        mean ‖hip P − hip G‖, and its parts across and along the viewing direction
 ///   heldout_*          distance in pixels of s (P − hip P) + hip G, carried into every other camera, to its detections

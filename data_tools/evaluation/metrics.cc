@@ -7,8 +7,8 @@
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/percentile.h"
-#include "bodyloom/geometry/procrustes.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/math/procrustes.h"
+#include "bodyloom/geometry/math/rotation.h"
 
 namespace bodyloom {
 namespace {

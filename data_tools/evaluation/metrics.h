@@ -17,8 +17,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/arrays.h"
-#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/math/arrays.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 
@@ -93,7 +93,7 @@ class PositionErrorAccumulator {
 /// `scale` multiplies the prediction.
 PositionError MeanPositionError(Clip prediction, Clip truth, double scale = 1);
 
-/// PA-MPJPE: each frame's prediction is first moved onto the truth by its own similarity (geometry/procrustes.h).
+/// PA-MPJPE: each frame's prediction is first moved onto the truth by its own similarity (geometry/math/procrustes.h).
 /// A frame whose alignment has no points is missing.
 PositionError ProcrustesPositionError(Clip prediction, Clip truth);
 

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "bodyloom/data_tools/evaluation/metrics.h"
-#include "bodyloom/geometry/arrays.h"
-#include "bodyloom/geometry/camera.h"
-#include "bodyloom/geometry/observations.h"
+#include "bodyloom/geometry/math/arrays.h"
+#include "bodyloom/geometry/scene/camera.h"
+#include "bodyloom/geometry/scene/observations.h"
 
 namespace bodyloom {
 

@@ -10,9 +10,9 @@
 #include "bodyloom/data_tools/motion/motion_tools.h"
 #include "bodyloom/data_tools/motion/smpl_rest.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/motion_check.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/math/rotation.h"
+#include "bodyloom/geometry/scene/track.h"
 #include "bodyloom/tracking/terms/joint_limits.h"
 
 namespace bodyloom {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 

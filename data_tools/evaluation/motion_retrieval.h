@@ -9,6 +9,9 @@
 
 #include "bodyloom/data_tools/descriptors/person_frames.h"
 #include "bodyloom/data_tools/evaluation/turning_person.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/scene/track.h"
+#include "bodyloom/geometry/uv_maps/descriptor_options.h"
 
 namespace bodyloom {
 
@@ -47,12 +50,24 @@ struct RetrievalScores {
 };
 
 /// Peaks above 0.9 of the largest value, 4 frames either side. Frames that turn slower than a third of the fastest have
-/// no direction and do not count; nor do they, for they lie where cycles meet, in the counts of peaks. `defined`: frames
-/// whose descriptor says something; others are neither looked for nor found (empty: all are).
+/// no direction and do not count; nor do they, for they lie where cycles meet, in the counts of peaks. `defined`:
+/// frames whose descriptor says something; others are neither looked for nor found (empty: all are).
 RetrievalScores ScoreRetrieval(const TurningPerson& person, const DescriptorRows& descriptors,
                                const std::vector<bool>& defined = {});
 
 /// The frames that ScoreRetrieval counts, of cycle 0 (`first`) or of all later ones.
 std::vector<int> TurningFrames(const TurningPerson& person, bool first);
+
+/// Similarity of each frame's motion to those of other frames: the largest normalised cross-correlation, in [−1, 1], of
+/// its motion descriptor (normals and the velocities of `past` frames over an atlas of 32², in the axes of `motion`)
+/// with that of any frame of `others`, which may be the same track (then 1). `counts` has an entry a frame of `others`,
+/// 0 for those that are only there for the velocities of their neighbours; empty: all count. NaN for a frame without a
+/// result, and where no frame of `others` counts. Yoon et
+/// al., CVPR 2022, Fig. 6.
+/// Memory: 4 · 1024 · (3 + 3 past) bytes a frame of both. Throws as PersonFrames, and std::invalid_argument for another
+/// number of `counts`.
+std::vector<float> SimilarityToNearest(const BodyModel& body, const Track& track, const Track& others, int past,
+                                       int num_threads, const SurfaceMotion& motion = {},
+                                       std::span<const char> counts = {});
 
 }  // namespace bodyloom

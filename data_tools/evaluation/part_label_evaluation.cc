@@ -6,10 +6,10 @@
 #include <limits>
 #include <numeric>
 
-#include "bodyloom/data_tools/evaluation/knee_flexion.h"
+#include "bodyloom/data_tools/evaluation/evaluation.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/render/visibility_buffer.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/render/raster/visibility_buffer.h"
 
 namespace bodyloom {
 namespace {

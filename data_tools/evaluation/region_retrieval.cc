@@ -8,8 +8,8 @@
 
 #include "bodyloom/data_tools/descriptors/photo_maps.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/observations.h"
-#include "bodyloom/geometry/uv_texels.h"
+#include "bodyloom/geometry/scene/observations.h"
+#include "bodyloom/geometry/uv_maps/uv_texels.h"
 
 namespace bodyloom {
 namespace {

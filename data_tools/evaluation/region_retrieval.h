@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Retrieval by a part of the body (motion_retrieval.h): hand, torso or leg, as Yoon et al. (CVPR 2022, Fig. 4) retrieve
-/// patches. A camera's descriptor of a part says nothing while the body hides the part; the 3D descriptor knows no view.
+/// Retrieval by a part of the body (motion_retrieval.h): hand, torso or leg, as Yoon et al. (CVPR 2022, Fig. 4)
+/// retrieve patches. A camera's descriptor of a part says nothing while the body hides the part; the 3D descriptor
+/// knows no view.
 #pragma once
 
 #include <vector>
 
 #include "bodyloom/data_tools/descriptors/person_frames.h"
 #include "bodyloom/data_tools/evaluation/motion_retrieval.h"
-#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/body/body_model.h"
 
 namespace bodyloom {
 

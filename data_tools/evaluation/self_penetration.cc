@@ -11,7 +11,7 @@
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/geometry/base/units.h"
-#include "bodyloom/geometry/skinning.h"
+#include "bodyloom/geometry/body/skinning.h"
 
 namespace bodyloom {
 namespace {

@@ -23,8 +23,8 @@
 #include <vector>
 
 #include "bodyloom/data_tools/evaluation/evaluation.h"
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 

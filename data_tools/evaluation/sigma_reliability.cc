@@ -8,8 +8,8 @@
 #include "bodyloom/data_tools/evaluation/metrics.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/units.h"
-#include "bodyloom/geometry/hip_joints.h"
-#include "bodyloom/geometry/observations.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/scene/observations.h"
 
 namespace bodyloom {
 namespace {

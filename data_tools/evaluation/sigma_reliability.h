@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "bodyloom/data_tools/evaluation/evaluation.h"
-#include "bodyloom/geometry/arrays.h"
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/math/arrays.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 
@@ -35,8 +35,8 @@ struct SigmaReliability {
 /// NaN where nothing, or too little, is there to judge.
 SigmaReliability JudgeSigmas(std::span<const JudgedSigma> pairs);
 
-/// Pairs of a track's landmarks 5 to 16 (shoulders to ankles; T of 17×3, about the middle of the hips, as `truth`) and of
-/// the joint_sigma of frame source[t] of the body joint of the same name; SMPL's joint names.
+/// Pairs of a track's landmarks 5 to 16 (shoulders to ankles; T of 17×3, about the middle of the hips, as `truth`) and
+/// of the joint_sigma of frame source[t] of the body joint of the same name; SMPL's joint names.
 std::vector<JudgedSigma> JudgedLandmarks(const Track& track, const std::vector<int>& source,
                                          const std::vector<MatrixX3d>& from_hips,
                                          const std::vector<MatrixX3d>& true_from_hips);

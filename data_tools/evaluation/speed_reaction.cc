@@ -9,7 +9,7 @@
 #include "bodyloom/data_tools/evaluation/image_metrics.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/velocity_stencil.h"
+#include "bodyloom/geometry/uv_maps/velocity_stencil.h"
 
 namespace bodyloom {
 namespace {

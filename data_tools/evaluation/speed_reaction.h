@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 
@@ -31,8 +31,8 @@ struct LabelExtent {
 LabelExtent MeasureLabelExtent(const Image& labels, PersonLabel label, const Track& track, int t);
 
 /// Pairs (frame of a, frame of b), in order: poses equal to 1e-3 rad, places to 1 cm. Left out are the first
-/// `frames_after_gap` (≥ 0) frames of each gap-free run (geometry/velocity_stencil.h), whose past is not of their
-/// speed.
+/// `frames_after_gap` (≥ 0) frames of each gap-free run (geometry/uv_maps/velocity_stencil.h), whose past is not of
+/// their speed.
 std::vector<std::pair<int, int>> PairFramesByPose(const Track& a, const Track& b, int frames_after_gap);
 
 struct SpeedReaction {

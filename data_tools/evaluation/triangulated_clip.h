@@ -6,14 +6,17 @@
 /// therefore pose and orientation, as on AIST++.
 #pragma once
 
+#include <Eigen/Core>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "bodyloom/data_tools/evaluation/evaluation.h"
 #include "bodyloom/data_tools/evaluation/held_out_views.h"
-#include "bodyloom/geometry/arrays.h"
-#include "bodyloom/geometry/observations.h"
-#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/math/arrays.h"
+#include "bodyloom/geometry/scene/camera.h"
+#include "bodyloom/geometry/scene/observations.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 
@@ -26,8 +29,8 @@ struct TriangulatedClipOptions {
 /// `where` when one is missing.
 KeypointSequence AsCoco17(const KeypointSequence& detections, const std::string& where);
 
-/// The joints of every frame that all views have, T of 17×3 metres in the world (triangulation.h); NaN where fewer than
-/// two views saw a joint, or saw it in places that do not agree.
+/// The joints of every frame that all views have, T of 17×3 metres in the world (triangulated_clip.h); NaN where fewer
+/// than two views saw a joint, or saw it in places that do not agree.
 std::vector<MatrixX3d> TriangulateViews(const std::vector<RigView>& views, const TriangulatedClipOptions& options = {});
 
 /// Protocol "rig-held-out": EvaluateHeldOutViews on a clip whose joints came from TriangulateViews(), and how far these
@@ -36,5 +39,45 @@ std::vector<MatrixX3d> TriangulateViews(const std::vector<RigView>& views, const
 /// fitted to.
 Evaluation EvaluateTriangulatedClip(const Track& track, const MultiViewClip& clip, const std::string& view,
                                     const TriangulatedClipOptions& options = {});
+
+// A point from the pixels at which several calibrated cameras saw it.
+
+/// One camera's view of a point. Borrowed pointers.
+struct Sighting {
+  const Camera* camera = nullptr;    ///< pinhole
+  const CameraPose* pose = nullptr;  ///< camera from world
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
+};
+
+struct TriangulatedPoint {
+  bool is_valid = false;  ///< two or more rays that meet at more than 1°, the point in front of every camera
+  Eigen::Vector3d point_in_world = Eigen::Vector3d::Zero();  ///< metres
+  double rms_px = 0;                                         ///< distance of its projections to the pixels
+};
+
+/// argmin_X Σ_i ‖π_i(X) − pixel_i‖²: the point nearest to all rays (least squares), refined by Gauss–Newton on pixels.
+/// Source: Hartley and Zisserman, "Multiple View Geometry", chapter 12.
+TriangulatedPoint TriangulatePoint(std::span<const Sighting> sightings);
+
+// The two-camera protocol on Pose2Sim's balancing trial: fit one camera, score in the other.
+//
+// There is no 3D truth: joints triangulated from both cameras' detections stand in for it (triangulated_clip.h).
+
+struct Pose2SimOptions {
+  std::string trial = "balancing";
+  double fps = 60;
+  TriangulatedClipOptions triangulation;
+};
+
+/// Reads `folder`/calib_refined.json and `folder`/<trial>/json_single/cam0{1,2}_json: OpenPose BODY_25B in the
+/// calibration's pixels, one person. (The videos' pixels and frame numbers differ: video frame = JSON frame + 1, and
+/// video_to_calib_affine.json.) Throws std::runtime_error naming the file that cannot be used.
+MultiViewClip ReadPose2SimClip(const std::string& folder, const Pose2SimOptions& options = {});
+
+/// Protocol "pose2sim-held-out": EvaluateTriangulatedClip() on that clip. `view` is the camera the track was fitted to.
+Evaluation EvaluatePose2Sim(const Track& track, const MultiViewClip& clip, const std::string& view = "cam_01",
+                            const Pose2SimOptions& options = {});
+Evaluation EvaluatePose2Sim(const Track& track, const std::string& folder, const std::string& view = "cam_01",
+                            const Pose2SimOptions& options = {});
 
 }  // namespace bodyloom

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bodyloom/data_tools/evaluation/knee_flexion.h"
+#include "bodyloom/data_tools/evaluation/evaluation.h"
 #include "bodyloom/data_tools/evaluation/metrics.h"
 #include "bodyloom/data_tools/evaluation/sigma_reliability.h"
 #include "bodyloom/data_tools/evaluation/vertex_errors.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/units.h"
-#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/body/posed_body.h"
 
 namespace bodyloom {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/units.h"
-#include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/geometry/skinning.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/geometry/body/skinning.h"
 
 namespace bodyloom {
 namespace {

@@ -9,8 +9,8 @@
 #include "bodyloom/data_tools/evaluation/metrics.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/units.h"
-#include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/geometry/procrustes.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/geometry/math/procrustes.h"
 
 namespace bodyloom {
 namespace {

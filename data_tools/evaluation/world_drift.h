@@ -2,8 +2,8 @@
 /// How true a track is in the world, where the camera moves: not in each picture, but from the clip's beginning to its
 /// end.
 ///
-/// Joints of track and truth in their scenes (geometry/camera_path.h; that of a track without a path is its camera
-/// frame, which is what it claims), one rigid motion for the clip, no scale, found
+/// Joints of track and truth in their scenes (geometry/scene/camera_path.h; that of a track without a path is its
+/// camera frame, which is what it claims), one rigid motion for the clip, no scale, found
 ///   w_mpjpe_mm       on the first second's joints: what has drifted away since (W-MPJPE; WHAM and SLAHMR align the
 ///                    first two frames of every 100, by a similarity)
 ///   wa_mpjpe_mm      on all joints (WA-MPJPE)
@@ -13,8 +13,8 @@
 #pragma once
 
 #include "bodyloom/data_tools/evaluation/evaluation.h"
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 

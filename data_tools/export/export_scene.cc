@@ -9,8 +9,8 @@
 
 #include "bodyloom/data_tools/motion/motion_tools.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/camera_path.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/math/rotation.h"
+#include "bodyloom/geometry/scene/camera_path.h"
 
 namespace bodyloom {
 namespace {

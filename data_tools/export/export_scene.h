@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/geometry/track.h"
-#include "bodyloom/geometry/world_frame.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/geometry/scene/track.h"
+#include "bodyloom/geometry/scene/world_frame.h"
 
 namespace bodyloom {
 
@@ -51,8 +51,8 @@ BodyPose PoseInWorld(const WorldFrame& world, const Eigen::Vector3d& rest_pelvis
 Motion MotionInWorld(const WorldFrame& world, const Eigen::Vector3d& rest_pelvis, const Motion& motion);
 
 /// Tracks of one clip, each of the body beside it. Throws std::invalid_argument when there are none, bodies and tracks
-/// differ in number, a track has more joints than its body, or no frame with a result, and for a camera that moves in one
-/// track and stands still in another.
+/// differ in number, a track has more joints than its body, or no frame with a result, and for a camera that moves in
+/// one track and stands still in another.
 ExportScene MakeExportScene(std::span<const BodyModel* const> bodies, std::span<const Track* const> tracks,
                             const WorldFrame& world);
 

@@ -12,7 +12,7 @@
 #include "bodyloom/data_tools/export/skinned_mesh.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/camera_path.h"
+#include "bodyloom/geometry/scene/camera_path.h"
 
 namespace bodyloom {
 namespace {

@@ -7,9 +7,10 @@
 ///   mesh         T-pose of the track's shape, normals, UV (v down, as glTF has it), four joints a vertex
 ///   shapes       pose correctives as "corrective_0" …, weights in [0, 1] (skinned_mesh.h says what is left)
 ///   animation    one for everybody, "motion": rotations (quaternions without jumps of sign), the pelvis' place, the
-///                shapes' weights, and the node of a camera that moves, a key for every frame of the track; LINEAR. Whoever is lost or not yet there is scaled
-///                to nothing for that time (STEP)
-///   camera       perspective, vertical angle 2·atan(H / (2 fy)). glTF has no principal point and no distortion: "extras"
+///                shapes' weights, and the node of a camera that moves, a key for every frame of the track; LINEAR.
+///                Whoever is lost or not yet there is scaled to nothing for that time (STEP)
+///   camera       perspective, vertical angle 2·atan(H / (2 fy)). glTF has no principal point and no distortion:
+///   "extras"
 ///                hold K, distortion and image size. None for weak perspective and where the image size is not known
 ///   extras       of the asset: how the world was found and how sure it is
 /// Source: Khronos, glTF 2.0 specification.

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/vertex_normals.h"
+#include "bodyloom/geometry/body/normals.h"
 
 namespace bodyloom {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bodyloom/data_tools/export/export_scene.h"
-#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/math/arrays.h"
 
 namespace bodyloom {
 

@@ -4,7 +4,7 @@
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -109,6 +109,21 @@ void AtomicPath::Commit() {
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) ThrowFileError(target_, "move the finished file into place");
   committed_ = true;
   SyncFolderOf(target_);
+}
+
+std::vector<std::string> FilesBelow(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  if (!fs::is_directory(path, error)) return {path};
+  std::vector<std::string> files;
+  fs::recursive_directory_iterator entry(path, error);
+  for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
+    std::error_code not_a_file;
+    if (entry->is_regular_file(not_a_file)) files.push_back(entry->path().string());
+  }
+  if (error) throw std::runtime_error(path + ": the folder cannot be read: " + error.message());
+  std::sort(files.begin(), files.end());
+  return files;
 }
 
 }  // namespace bodyloom

@@ -2,8 +2,11 @@
 /// Files appear whole or not at all: temporary file beside the target → write → fsync → rename → fsync of the folder.
 #pragma once
 
+#include <cctype>
+#include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace bodyloom {
 
@@ -38,5 +41,21 @@ class AtomicPath {
   std::string target_, temporary_;
   bool committed_ = false;
 };
+
+// The files of a folder and of all folders below it.
+
+/// Every regular file below the folder, sorted by path, so that the same folder gives the same order everywhere; a
+/// path that is no folder is returned as it is. Folders behind symbolic links are not entered. Throws
+/// std::runtime_error naming the folder when it, or one below it, cannot be read.
+std::vector<std::string> FilesBelow(const std::string& path);
+
+// The kind of a file by its name.
+
+/// ".jpg" of "Photo.JPG"; empty when the name has none.
+inline std::string LowerExtension(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
 
 }  // namespace bodyloom

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
-#include "bodyloom/data_tools/formats/half.h"
-#include "bodyloom/data_tools/formats/utf8.h"
+#include "bodyloom/data_tools/formats/printable.h"
 #include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
@@ -187,5 +187,13 @@ NdArray NdArray::FromStrings(const std::vector<std::string>& values) {
 NdArray NdArray::FromString(const std::string& value) { return TextArray({value}, {}); }
 
 NdArray NdArray::FromDouble(double value) { return FromDoubles(&value, {}); }
+
+std::vector<int64_t> WholeNumbers(const NdArray& array, const std::string& name, const std::string& where) {
+  try {
+    return array.ToInts();
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(where + ": " + name + ": " + error.what());
+  }
+}
 
 }  // namespace bodyloom

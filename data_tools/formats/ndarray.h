@@ -2,12 +2,14 @@
 /// A typed n-dimensional array as it lies in .npy, .npz and pickle files: C order, little endian, owned bytes.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/math/arrays.h"
 
 namespace bodyloom {
 
@@ -61,5 +63,28 @@ struct NdArray {
   static NdArray FromString(const std::string& value);  ///< scalar '<U'
   static NdArray FromDouble(double value);              ///< scalar
 };
+
+// IEEE half precision, as .npy files and descriptors hold it.
+
+/// The value of 16 bits; exact. Subnormal numbers, infinities and NaN included.
+inline float FloatFromHalf(uint16_t half) {
+  const int exponent = (half >> 10) & 31;
+  const int fraction = half & 1023;
+  float value = 0;
+  if (exponent == 31) {
+    value = fraction == 0 ? std::numeric_limits<float>::infinity() : std::numeric_limits<float>::quiet_NaN();
+  } else if (exponent == 0) {
+    value = static_cast<float>(fraction) * 0x1p-24F;
+  } else {  // the same bits with another bias; weights of networks come by the million
+    value = std::bit_cast<float>(static_cast<uint32_t>((exponent + 112) << 23 | fraction << 13));
+  }
+  return (half & 0x8000) != 0 ? -value : value;
+}
+
+// Arrays of indices out of files.
+
+/// The whole numbers of the array called `name`; std::runtime_error naming `where`, the array and the element when it
+/// holds anything else.
+std::vector<int64_t> WholeNumbers(const NdArray& array, const std::string& name, const std::string& where);
 
 }  // namespace bodyloom

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Reads Python pickles (protocols 0–5) without running anything.
 ///
-/// An opcode machine that builds inert values. Only the globals on a fixed list are understood (pickle_objects.cc:
+/// An opcode machine that builds inert values. Only the globals on a fixed list are understood (pickle_node.cc:
 /// numpy arrays, dtypes and scalars, scipy.sparse csc/csr matrices, chumpy's Ch and Select, collections.OrderedDict and
-/// defaultdict, joblib's arrays, _codecs.encode, object reconstruction); any other global is refused by name and offset,
-/// and nothing is ever executed. What becomes what: sparse matrices and chumpy objects arrive as plain arrays, numpy
-/// scalars as numbers or text, object arrays and sets as lists, whole numbers beyond 64 bits as the nearest float; of a
-/// repeated key the last value counts. Python-2 strings (STRING, BINSTRING) are their latin-1 bytes. Limits, checked
-/// before memory is taken: bytes in all (also at most 64 MiB + 256 times the file), number of values, nesting; values
-/// that contain themselves are refused.
+/// defaultdict, joblib's arrays, _codecs.encode, object reconstruction); any other global is refused by name and
+/// offset, and nothing is ever executed. What becomes what: sparse matrices and chumpy objects arrive as plain arrays,
+/// numpy scalars as numbers or text, object arrays and sets as lists, whole numbers beyond 64 bits as the nearest
+/// float; of a repeated key the last value counts. Python-2 strings (STRING, BINSTRING) are their latin-1 bytes.
+/// Limits, checked before memory is taken: bytes in all (also at most 64 MiB + 256 times the file), number of values,
+/// nesting; values that contain themselves are refused.
 ///
 /// joblib.dump (0.10 and later) writes a pickle in which an array is an object NumpyArrayWrapper, and behind the opcode
 /// that ends that object lie the array's raw bytes, from joblib 1.2 after a byte n and n bytes of padding. The file may
-/// be a zlib (compress=1..9) or gzip stream as a whole; its bz2, lzma, xz and lz4 are not read. Arrays of Python objects
-/// in it are refused.
+/// be a zlib (compress=1..9) or gzip stream as a whole; its bz2, lzma, xz and lz4 are not read. Arrays of Python
+/// objects in it are refused.
 /// Sources: CPython Lib/pickletools.py for the opcodes; numpy's _reconstruct and ndarray.__setstate__; joblib's
 /// numpy_pickle.py.
 #pragma once

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Nodes of the pickle machine: values under construction, the budget they are charged to, and the meaning of the few
-/// globals that are understood. Internal to pickle.cc and pickle_objects.cc.
+/// globals that are understood. Internal to pickle.cc and pickle_node.cc.
 #pragma once
 
 #include <memory>
@@ -84,8 +84,9 @@ PickleNodePtr CallPickleGlobal(PickleContext* context, const PickleNode& callabl
 /// Gives `object` its state (opcode BUILD). Sparse matrices and chumpy objects become plain arrays here.
 void SetPickleState(PickleContext* context, PickleNode* object, const PicklePtr& state);
 
-/// joblib's NumpyArrayWrapper, with its state, becomes the array whose bytes lie behind it: `rest` begins there. Returns
-/// how many bytes are the array's: one for the length of the padding (joblib from 1.2), the padding, the elements.
+/// joblib's NumpyArrayWrapper, with its state, becomes the array whose bytes lie behind it: `rest` begins there.
+/// Returns how many bytes are the array's: one for the length of the padding (joblib from 1.2), the padding, the
+/// elements.
 size_t TakeJoblibArray(PickleContext* context, PickleNode* wrapper, std::string_view rest);
 
 }  // namespace bodyloom

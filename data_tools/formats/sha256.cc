@@ -14,7 +14,7 @@
 #include <system_error>
 #include <vector>
 
-#include "bodyloom/data_tools/formats/files_below.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
 
 extern "C" {
 #include <libavutil/mem.h>

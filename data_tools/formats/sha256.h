@@ -30,8 +30,8 @@ class Sha256 {
 /// Of a file's contents, read in pieces. Throws std::runtime_error naming a file that cannot be read.
 std::string Sha256OfFile(const std::string& path);
 
-/// Of a file, that of its contents; of a folder, that of the names and contents of all files below it (FilesBelow()), so
-/// that it is the same wherever the folder lies. Throws std::runtime_error naming what cannot be read.
+/// Of a file, that of its contents; of a folder, that of the names and contents of all files below it (FilesBelow()),
+/// so that it is the same wherever the folder lies. Throws std::runtime_error naming what cannot be read.
 std::string Sha256OfTree(const std::string& path);
 
 }  // namespace bodyloom

@@ -200,8 +200,8 @@ size_t SizeOf(std::span<const std::string_view> pieces) {
   return size;
 }
 
-/// The pieces, one after the other, packed; nothing when that is no smaller. Grows with what comes out: pieces may be most
-/// of the memory there is.
+/// The pieces, one after the other, packed; nothing when that is no smaller. Grows with what comes out: pieces may be
+/// most of the memory there is.
 std::optional<std::string> Deflate(std::span<const std::string_view> pieces, int level) {
   z_stream stream{};
   if (deflateInit2(&stream, level, Z_DEFLATED, -MAX_WBITS, 9, Z_DEFAULT_STRATEGY) != Z_OK) throw std::bad_alloc();

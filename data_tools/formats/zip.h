@@ -26,8 +26,8 @@ bool LooksLikeZip(std::string_view bytes);
 /// was expected; together the members take at most max_bytes, which is checked before memory is taken.
 std::vector<ZipMember> ReadZip(std::string_view archive, const std::string& where, size_t max_bytes);
 
-/// An archive member by member, with fixed dates, deflated where that is smaller, so that equal members give equal bytes.
-/// What is packed is not copied first: beside the pieces an archive takes its own size.
+/// An archive member by member, with fixed dates, deflated where that is smaller, so that equal members give equal
+/// bytes. What is packed is not copied first: beside the pieces an archive takes its own size.
 class ZipBuilder {
  public:
   /// The member whose bytes are the pieces one after the other. level 1..9 as in zlib. Throws

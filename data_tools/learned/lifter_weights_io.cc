@@ -4,8 +4,8 @@
 #include <stdexcept>
 
 #include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/formats/ndarray.h"
 #include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/data_tools/formats/whole_numbers.h"
 #include "bodyloom/data_tools/learned/weight_arrays.h"
 #include "bodyloom/geometry/base/check.h"
 
@@ -78,6 +78,21 @@ LifterWeights ReadLifterWeightsBytes(const std::string& bytes, const std::string
 
 LifterWeights ReadLifterWeights(const std::string& path) {
   return ReadLifterWeightsBytes(ReadFileBytes(path, size_t{1} << 28), path);
+}
+
+}  // namespace bodyloom
+
+// Made by bodyloom_embed() in data_tools/CMakeLists.txt.
+extern "C" {
+extern const char bodyloom_lifter_begin[], bodyloom_lifter_end[];
+}
+
+namespace bodyloom {
+
+const LifterWeights& BuiltinLifter() {
+  static const LifterWeights weights = ReadLifterWeightsBytes(std::string(bodyloom_lifter_begin, bodyloom_lifter_end),
+                                                              "assets/lifter/lifter.npz (built in)");
+  return weights;
 }
 
 }  // namespace bodyloom

@@ -5,7 +5,6 @@
 
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/data_tools/learned/picture_unet_arrays.h"
 #include "bodyloom/data_tools/learned/weight_arrays.h"
 #include "bodyloom/geometry/base/check.h"
 
@@ -39,6 +38,45 @@ ParserWeights ReadParserWeightsBytes(const std::string& bytes, const std::string
 
 ParserWeights ReadParserWeights(const std::string& path) {
   return ReadParserWeightsBytes(ReadFileBytes(path, kMostPictureUnetBytes), path);
+}
+
+}  // namespace bodyloom
+
+// Made by bodyloom_embed() in data_tools/CMakeLists.txt.
+extern "C" {
+extern const char bodyloom_clothes_parser_begin[], bodyloom_clothes_parser_end[];
+}
+
+namespace bodyloom {
+
+const ParserWeights& BuiltinParser() {
+  static const ParserWeights weights = ReadParserWeightsBytes(
+      std::string(bodyloom_clothes_parser_begin, bodyloom_clothes_parser_end), "assets/parser/parser.npz (built in)");
+  return weights;
+}
+
+namespace {
+
+std::string BiasOf(const std::string& layer) { return layer + "_bias"; }
+
+}  // namespace
+
+void PutPictureUnet(const PictureUnetWeights& weights, PictureUnetPlanes planes, NpzArrays* arrays) {
+  const auto layers = PictureUnetLayers(planes);
+  for (size_t i = 0; i < layers.size(); ++i) {
+    const std::string name = layers[i].name;
+    (*arrays)[name] = HalfMatrix(weights.convolutions.at(i).kernel);
+    (*arrays)[BiasOf(name)] = FloatVector(weights.convolutions[i].bias);
+  }
+}
+
+PictureUnetWeights PictureUnetFrom(const NpzArrays& arrays, PictureUnetPlanes planes, const std::string& where) {
+  PictureUnetWeights weights;
+  for (const PictureUnetLayer& layer : PictureUnetLayers(planes)) {
+    const std::string name = layer.name;
+    weights.convolutions.push_back({MatrixFrom(arrays, name, where), VectorFrom(arrays, BiasOf(name), where)});
+  }
+  return weights;
 }
 
 }  // namespace bodyloom

@@ -109,3 +109,18 @@ PosePrior ReadPosePriorBytes(const std::string& bytes, const std::string& where)
 PosePrior ReadPosePrior(const std::string& path) { return FromArrays(ReadNpz(path), path); }
 
 }  // namespace bodyloom
+
+// Made by bodyloom_embed() in data_tools/CMakeLists.txt.
+extern "C" {
+extern const char bodyloom_pose_prior_begin[], bodyloom_pose_prior_end[];
+}
+
+namespace bodyloom {
+
+const PosePrior& BuiltinPosePrior() {
+  static const PosePrior prior = ReadPosePriorBytes(std::string(bodyloom_pose_prior_begin, bodyloom_pose_prior_end),
+                                                    "assets/prior/pose_prior.npz (built in)");
+  return prior;
+}
+
+}  // namespace bodyloom

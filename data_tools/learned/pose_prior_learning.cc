@@ -11,9 +11,9 @@
 #include <string>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/direction_bins.h"
-#include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/geometry/math/direction_bins.h"
+#include "bodyloom/geometry/math/rotation.h"
 
 namespace bodyloom {
 namespace {

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/pose_prior.h"
-#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/scene/pose_prior.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 

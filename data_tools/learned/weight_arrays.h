@@ -6,7 +6,7 @@
 #include <string>
 
 #include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/math/arrays.h"
 
 namespace bodyloom {
 

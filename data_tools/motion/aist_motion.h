@@ -9,7 +9,7 @@
 #include <string>
 
 #include "bodyloom/data_tools/formats/pickle.h"
-#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 

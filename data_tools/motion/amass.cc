@@ -5,12 +5,11 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/body/mean_pelvis.h"
+#include "bodyloom/data_tools/body/body_landmarks.h"
 #include "bodyloom/data_tools/motion/motion_tools.h"
 #include "bodyloom/data_tools/motion/skeleton_motion.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/refuse.h"
-#include "bodyloom/geometry/motion_check.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 namespace {

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 
@@ -27,8 +27,8 @@ void WriteAmass(const std::string& path, const Motion& motion, const Eigen::Vect
 
 /// Writes the SMPL-X form, as GMR (retargeting to robots) and other readers of AMASS' second release take it: `poses`
 /// T×165 and the same in parts (`root_orient`, `pose_body` T×63, `pose_jaw`, `pose_eye`, `pose_hand` T×90), `trans`, 16
-/// `betas`, `gender` text, `surface_model_type` 'smplx', the frame rate under both spellings; z up. Motions of 24, 52 or
-/// 55 joints; SMPL's two hand joints are left out. `betas` are the motion's when its body is SMPL-X and 0 otherwise:
+/// `betas`, `gender` text, `surface_model_type` 'smplx', the frame rate under both spellings; z up. Motions of 24, 52
+/// or 55 joints; SMPL's two hand joints are left out. `betas` are the motion's when its body is SMPL-X and 0 otherwise:
 /// then the root's place is that of the same pelvis on SMPL-X's mean neutral shape. Throws as WriteAmass().
 void WriteAmassSmplx(const std::string& path, const Motion& motion, const Eigen::Vector3d& rest_pelvis,
                      const std::string& gender = "neutral");

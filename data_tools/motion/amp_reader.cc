@@ -5,10 +5,10 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "bodyloom/data_tools/formats/ndarray.h"
 #include "bodyloom/data_tools/formats/pickle.h"
 #include "bodyloom/data_tools/formats/printable.h"
-#include "bodyloom/data_tools/formats/whole_numbers.h"
-#include "bodyloom/geometry/base/refuse.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -11,7 +11,7 @@
 #include "bodyloom/data_tools/formats/printable.h"
 #include "bodyloom/data_tools/motion/text_scanner.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/math/rotation.h"
 
 namespace bodyloom {
 namespace {

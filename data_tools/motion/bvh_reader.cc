@@ -6,7 +6,7 @@
 #include "bodyloom/data_tools/formats/printable.h"
 #include "bodyloom/data_tools/motion/text_scanner.h"
 #include "bodyloom/geometry/base/units.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/math/rotation.h"
 
 namespace bodyloom {
 namespace {

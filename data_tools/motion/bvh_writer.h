@@ -1,16 +1,41 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Writes a motion as BVH for animation programs: the body's joints (rest positions of the motion's shape) in
-/// centimetres, y up, rotation channels Z X Y (R = Rz·Rx·Ry), degrees. Ends of chains get a short End Site. Names and rest
-/// pose are a rig's (bvh_rig.h).
+/// centimetres, y up, rotation channels Z X Y (R = Rz·Rx·Ry), degrees. Ends of chains get a short End Site. Names and
+/// rest pose are a rig's (bvh_writer.h).
 #pragma once
 
 #include <string>
+#include <vector>
 
-#include "bodyloom/data_tools/motion/bvh_rig.h"
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/math/arrays.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
+
+// Which skeleton a BVH file has: names of its joints and the pose at zero rotations. All bones' axes are the world's at
+// rest, which animation programs and retargeters take for a T-pose or A-pose of their own.
+
+enum class BvhRig {
+  kSmpl,    ///< the body's own names and all of its joints, T-pose
+  kMixamo,  ///< Hips, Spine, LeftUpLeg …: Mixamo's names without "mixamorig:", T-pose; hands end at the wrist
+  /// pelvis, spine_01, thigh_l …: the UE4 mannequin's names, A-pose with arms 45° down; hands end at the wrist
+  kUnreal,
+};
+/// "smpl", "mixamo", "unreal".
+const std::vector<std::string>& BvhRigNames();
+/// Throws std::invalid_argument for other names.
+BvhRig BvhRigFromString(const std::string& name);
+
+/// The first joints of a body under a rig's names.
+struct BvhSkeleton {
+  std::vector<std::string> names;  ///< of the joints kept; the others are left out
+  /// World rotation of each joint of the body from its T-pose to the rig's rest pose.
+  std::vector<Eigen::Matrix3d> rest_rotations;
+};
+
+/// Throws std::invalid_argument when the body does not begin with SMPL's 22 body joints (kMixamo, kUnreal).
+BvhSkeleton BvhSkeletonOf(BvhRig rig, const BodyModel& model);
 
 /// The motion may have fewer joints than the body (the rest stay at rest). Motions with z up or in camera coordinates
 /// are turned (motion_tools.h). BVH has one frame time: a motion with a gap is refused, resample it first. Throws

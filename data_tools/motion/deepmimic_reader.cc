@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/math/rotation.h"
 
 namespace bodyloom {
 namespace {

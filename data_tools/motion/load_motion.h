@@ -8,7 +8,7 @@
 #include <string>
 
 #include "bodyloom/data_tools/motion/retarget.h"
-#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 

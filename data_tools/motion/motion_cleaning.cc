@@ -8,8 +8,8 @@
 #include "bodyloom/data_tools/motion/smpl_rest.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/units.h"
-#include "bodyloom/geometry/motion_check.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/math/rotation.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 namespace {

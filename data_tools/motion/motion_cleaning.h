@@ -7,16 +7,16 @@
 ///    every joint is where it should be. (It does so with hands, too; they are left, nothing hangs on them.)
 /// 2. Frames are broken, and left out, where a thigh is rolled about its own axis by more than 110° (the knee then
 ///    bends backwards) or the chest is turned by more than 110° against the pelvis (some
-///    recordings bend the lowest joint of the spine alone, by 90° in a squat). The roll is what is left when the shortest turn has
-///    taken a half-raised thigh (70° forward) to where the thigh is: counted from a hanging one, deep squats with the
-///    knees apart and people who lie down with their legs drawn up would seem rolled.
+///    recordings bend the lowest joint of the spine alone, by 90° in a squat). The roll is what is left when the
+///    shortest turn has taken a half-raised thigh (70° forward) to where the thigh is: counted from a hanging one, deep
+///    squats with the knees apart and people who lie down with their legs drawn up would seem rolled.
 /// 3. The motion is cut at impossible steps and at gaps. What lies within 0.04 s of an impossible step or a broken
 ///    frame goes with it, because recordings are smoothed over such places; so do pieces that are too short.
 #pragma once
 
 #include <vector>
 
-#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 

@@ -12,8 +12,8 @@
 
 #include <span>
 
-#include "bodyloom/geometry/arrays.h"
-#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/math/arrays.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 

@@ -6,7 +6,7 @@
 #include <regex>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/formats/files_below.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/motion/load_motion.h"
 #include "bodyloom/data_tools/motion/motion_floor.h"
 #include "bodyloom/data_tools/motion/motion_split.h"
@@ -31,8 +31,8 @@ struct Origin {
   std::string source, subject;
 };
 
-/// By the name: CMU numbers its trials SUBJECT_TRIAL, AIST++ has genre_situation_camera_DANCER_music_choreography, HDM05
-/// HDM_ACTOR_motion_number.
+/// By the name: CMU numbers its trials SUBJECT_TRIAL, AIST++ has genre_situation_camera_DANCER_music_choreography,
+/// HDM05 HDM_ACTOR_motion_number.
 Origin OriginOf(const std::string& name) {
   static const std::regex cmu(R"((\d{1,3})_(\d{1,3}(\D.*)?|[a-z].*))"), aist(R"(g[A-Z]{2}_s\w\w_c\w+?_(d\d+)_m.*)"),
       hdm05(R"((HDM_[a-z]{2})_.*)");

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "bodyloom/data_tools/motion/motion_cleaning.h"
-#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 

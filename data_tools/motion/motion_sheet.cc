@@ -9,11 +9,11 @@
 
 #include "bodyloom/data_tools/motion/smpl_rest.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/rotation.h"
-#include "bodyloom/render/contact_sheet.h"
-#include "bodyloom/render/image_mat.h"
-#include "bodyloom/render/palette.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/math/rotation.h"
+#include "bodyloom/render/image/image_mat.h"
+#include "bodyloom/render/image/palette.h"
+#include "bodyloom/render/view/contact_sheet.h"
 
 namespace bodyloom {
 namespace {

@@ -3,15 +3,15 @@
 ///
 /// A clip is a strip with its label: the upper row looks at the person's front, the lower row at the person's left side
 /// (the pelvis' heading at that instant; a person upright walks to the left below). The left limbs are warm, the right
-/// ones cool (render/palette.h), so that in the upper row warm is on the right: a mirrored clip shows. The line is
-/// y = 0, drawn where the clip has a flat floor; figures keep their height above it.
+/// ones cool (render/image/palette.h), so that in the upper row warm is on the right: a mirrored clip shows. The line
+/// is y = 0, drawn where the clip has a flat floor; figures keep their height above it.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/track.h"
-#include "bodyloom/render/image.h"
+#include "bodyloom/geometry/scene/track.h"
+#include "bodyloom/render/image/image.h"
 
 namespace bodyloom {
 

@@ -7,8 +7,8 @@
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/percentile.h"
-#include "bodyloom/geometry/motion_check.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/math/rotation.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 namespace {

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 

@@ -8,8 +8,8 @@
 
 #include "bodyloom/data_tools/motion/skeleton_map.h"
 #include "bodyloom/data_tools/motion/smpl_rest.h"
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/math/rotation.h"
 
 namespace bodyloom {
 namespace {

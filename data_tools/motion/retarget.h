@@ -23,7 +23,7 @@
 #include <string>
 
 #include "bodyloom/data_tools/motion/skeleton_motion.h"
-#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 

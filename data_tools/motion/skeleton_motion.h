@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/math/arrays.h"
 
 namespace bodyloom {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/math/rotation.h"
 
 namespace bodyloom {
 

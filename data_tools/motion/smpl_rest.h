@@ -6,8 +6,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "bodyloom/geometry/arrays.h"
-#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/math/arrays.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 

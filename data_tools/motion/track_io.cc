@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/formats/ndarray.h"
 #include "bodyloom/data_tools/formats/printable.h"
-#include "bodyloom/data_tools/formats/whole_numbers.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/rotation_check.h"
+#include "bodyloom/geometry/math/rotation.h"
 
 namespace bodyloom {
 namespace {

@@ -10,11 +10,14 @@
 ///   image_size [width, height], pixels      camera T×3     (s, tx, ty), only with 'weak':
 ///                                                          pixel = s·(X + tx, Y + ty) + (cx, cy), s in pixels a metre,
 ///                                                          cx and cy from K
-///   camera_from_scene T×4×4  [R t; 0 0 0 1] of each frame, only where the camera moves: poses, trans, joints and coco17
-///                          are then in a scene that stands still (geometry/camera_path.h), and what is projected is
-///                          R · point in the scene + t; world_from_camera is then of the scene
-///   world_from_camera 4×4  [R t; 0 0 0 1]: a point of the clip's world (y up, the ground at y = 0, the camera above the
-///                          origin and heading for −z; geometry/world_frame.h) is R · point in the camera frame + t
+///   camera_from_scene T×4×4  [R t; 0 0 0 1] of each frame, only where the camera moves: poses, trans, joints and
+///   coco17
+///                          are then in a scene that stands still (geometry/scene/camera_path.h), and what is projected
+///                          is R · point in the scene + t; world_from_camera is then of the scene
+///   world_from_camera 4×4  [R t; 0 0 0 1]: a point of the clip's world (y up, the ground at y = 0, the camera above
+///   the
+///                          origin and heading for −z; geometry/scene/world_frame.h) is R · point in the camera frame +
+///                          t
 ///   world_source           how it was found: 'ground', 'several people', 'vertical', 'given', 'level camera assumed'
 ///   world_sigma [degrees of the vertical, metres of the ground's height]: standard deviations (NaN: unknown)
 /// Files without the world members are of a track that does not say. Theirs is 'given' when only world_from_camera is.
@@ -30,7 +33,7 @@
 #include <string>
 
 #include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 
@@ -38,8 +41,8 @@ namespace bodyloom {
 /// std::runtime_error when the file cannot be written.
 void WriteTrack(const std::string& path, const Track& track);
 
-/// Whether a reader's caller takes a track whose camera moves for what it is. Who does not would draw it at wrong places
-/// or take the camera's motion for the person's.
+/// Whether a reader's caller takes a track whose camera moves for what it is. Who does not would draw it at wrong
+/// places or take the camera's motion for the person's.
 enum class MovingCamera {
   kRefuse,
   kTake,

@@ -8,8 +8,8 @@
 
 #include "bodyloom/data_tools/formats/printable.h"
 #include "bodyloom/data_tools/observations/keypoint_conventions.h"
-#include "bodyloom/data_tools/observations/nothing_to_track.h"
 #include "bodyloom/geometry/base/units.h"
+#include "bodyloom/geometry/scene/observations.h"
 
 namespace bodyloom {
 namespace {

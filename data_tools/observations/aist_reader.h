@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "bodyloom/data_tools/formats/pickle.h"
-#include "bodyloom/geometry/arrays.h"
-#include "bodyloom/geometry/observations.h"
+#include "bodyloom/geometry/math/arrays.h"
+#include "bodyloom/geometry/scene/observations.h"
 
 namespace bodyloom {
 

@@ -8,7 +8,7 @@
 
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/render/image.h"
+#include "bodyloom/render/image/image.h"
 
 namespace bodyloom {
 namespace {

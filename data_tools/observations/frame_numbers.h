@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "bodyloom/geometry/scene/observations.h"
+
 namespace bodyloom {
 
 /// The last run of digits in a file name without folder, extension and OpenPose's "_keypoints" ending
@@ -26,5 +28,12 @@ struct FrameGrid {
 /// without detections. Throws std::runtime_error beginning with `where` for duplicates and for a grid of more than a
 /// million frames, std::invalid_argument for a frame rate that is not positive.
 FrameGrid MakeFrameGrid(const std::vector<int64_t>& numbers, double fps, const std::string& where);
+
+// A stretch of a clip's observations.
+
+/// Frames [first, last], both included, with their timestamps as they are. Throws std::invalid_argument for frames that
+/// are not there.
+KeypointSequence CutFrames(KeypointSequence keypoints, int first, int last);
+PartLabelSequence CutFrames(PartLabelSequence labels, int first, int last);
 
 }  // namespace bodyloom

@@ -6,7 +6,6 @@
 #include "bodyloom/data_tools/formats/printable.h"
 #include "bodyloom/data_tools/observations/keypoint_conventions.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/refuse.h"
 
 namespace bodyloom {
 namespace {

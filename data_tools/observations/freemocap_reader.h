@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-/// FreeMoCap's 2D landmarks: output_data/raw_data/<detector>_2dData_numCams_numFrames_numTrackedPoints_pixelXY.npy, an array
-/// cameras × frames × points × 2 of pixels, NaN where nothing was seen; or one camera of it, frames × points × 2.
+/// FreeMoCap's 2D landmarks: output_data/raw_data/<detector>_2dData_numCams_numFrames_numTrackedPoints_pixelXY.npy, an
+/// array cameras × frames × points × 2 of pixels, NaN where nothing was seen; or one camera of it, frames × points × 2.
 ///
 /// 133 points are RTMPose's (COCO-WholeBody); any other number from 33 on begins with MediaPipe's 33 of the body (its
-/// holistic tracker has 543 or 553, hands and face behind them). There are no confidences: what is seen counts as 1. Some
-/// versions have a third number a point, a confidence or a depth: it is not read. FreeMoCap's 3D
+/// holistic tracker has 543 or 553, hands and face behind them). There are no confidences: what is seen counts as 1.
+/// Some versions have a third number a point, a confidence or a depth: it is not read. FreeMoCap's 3D
 /// (frames × points × 3, millimetres, triangulated from all cameras in a world of its own) is no detection and refused.
 /// Source: freemocap/freemocap, data_layer/recording_models; skellytracker; a file's own name says its shape.
 #pragma once
@@ -12,11 +12,12 @@
 #include <string>
 
 #include "bodyloom/data_tools/formats/ndarray.h"
-#include "bodyloom/geometry/observations.h"
+#include "bodyloom/geometry/scene/observations.h"
 
 namespace bodyloom {
 
-/// `view` chooses the camera: "0", "1", … in the array's order, which is that of the videos' names; "" when there is one.
+/// `view` chooses the camera: "0", "1", … in the array's order, which is that of the videos' names; "" when there is
+/// one.
 /// Throws std::runtime_error naming `where`, what was found and what was expected.
 KeypointSequence FreeMocapFromArray(const NdArray& array, const std::string& where, const std::string& view,
                                     double fps);

@@ -32,8 +32,8 @@ const KeypointConvention& Halpe26();
 /// BlazePose's 33. Its "foot index" is the tip of the foot and stands for the big toe (about 2 cm away).
 const KeypointConvention& MediaPipe33();
 
-/// The convention of COCO's family with that many landmarks: 17, 23 or 133 (whole body), 26 or 136 (Halpe), of which the
-/// first ones are those named; nullptr for another number.
+/// The convention of COCO's family with that many landmarks: 17, 23 or 133 (whole body), 26 or 136 (Halpe), of which
+/// the first ones are those named; nullptr for another number.
 const KeypointConvention* ConventionOfCount(size_t num_points);
 
 }  // namespace bodyloom

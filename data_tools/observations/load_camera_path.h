@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// The path of a camera that moves, from files.
 ///
-/// 1. COLMAP (colmap_reader.h): a folder with images.bin or images.txt, or such a file. Its pictures are the clip's frames
-///    by the last number in their names ("frame_000012.png": 12), or by their sorted names where names have no number or
-///    two the same. Its scale is unknown.
+/// 1. COLMAP (colmap_reader.h): a folder with images.bin or images.txt, or such a file. Its pictures are the clip's
+///    frames by the last number in their names ("frame_000012.png": 12), or by their sorted names where names have no
+///    number or two the same. Its scale is unknown.
 /// 2. This project's JSON, metres:
 ///      "camera_path"  1, the form's version
 ///      "fps"          optional: the frame numbers below count so many a second; without it they are the clip's frames
@@ -21,8 +21,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/camera.h"
-#include "bodyloom/geometry/camera_path.h"
+#include "bodyloom/geometry/scene/camera.h"
+#include "bodyloom/geometry/scene/camera_path.h"
 
 namespace bodyloom {
 
@@ -51,8 +51,8 @@ struct PlaceInTime {
       -1;  ///< number of the clip's first frame; −1: 0 when the path begins with 0, else 1 for COLMAP, 0 for JSON
   double fps = 0;  ///< pictures a second of numbered frames; 0: the file's, else they are the clip's frames
 };
-/// The path on the clock of a clip whose frames are at these seconds: numbered frames at the times of the clip's frames,
-/// those beyond its end left out. Throws std::runtime_error beginning with `where` when none is in the clip.
+/// The path on the clock of a clip whose frames are at these seconds: numbered frames at the times of the clip's
+/// frames, those beyond its end left out. Throws std::runtime_error beginning with `where` when none is in the clip.
 CameraPath CameraPathOnClock(const RecordedCameraPath& recorded, std::span<const double> clip_seconds,
                              const PlaceInTime& place, const std::string& where);
 

@@ -16,7 +16,7 @@
 #include "bodyloom/data_tools/observations/pose2sim_toml.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/units.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/math/rotation.h"
 
 namespace bodyloom {
 namespace {

@@ -22,7 +22,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/camera.h"
+#include "bodyloom/geometry/scene/camera.h"
 
 namespace bodyloom {
 

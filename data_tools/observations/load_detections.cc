@@ -20,12 +20,12 @@
 #include "bodyloom/data_tools/observations/coco_reader.h"
 #include "bodyloom/data_tools/observations/freemocap_reader.h"
 #include "bodyloom/data_tools/observations/mmpose_reader.h"
-#include "bodyloom/data_tools/observations/nothing_to_track.h"
 #include "bodyloom/data_tools/observations/observations_npz.h"
 #include "bodyloom/data_tools/observations/openpose_reader.h"
 #include "bodyloom/data_tools/observations/people.h"
 #include "bodyloom/data_tools/observations/people_npz.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/scene/observations.h"
 
 namespace bodyloom {
 namespace {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Loads 2D detections of any form: recognises the format by content and returns one person's landmarks.
 ///
-/// Read: a folder of OpenPose or MMPose JSON files (or a folder of such folders, one a view), OpenPose and MMPose frames in
-/// one file, COCO results or annotations and AlphaPose, BlazePose/MediaPipe dumps, AIST++ keypoints2d pickles, FreeMoCap's
-/// 2D .npy, the project's own .npz.
+/// Read: a folder of OpenPose or MMPose JSON files (or a folder of such folders, one a view), OpenPose and MMPose
+/// frames in one file, COCO results or annotations and AlphaPose, BlazePose/MediaPipe dumps, AIST++ keypoints2d
+/// pickles, FreeMoCap's 2D .npy, the project's own .npz.
 /// Coordinates in [0, 1] (all of them) are taken as fractions of the image, whose size must then be known; OpenPose's
 /// [−1, 1] likewise. Fractions become pixels by x·width − 0.5 (pixel centres at integers).
 #pragma once
 
 #include <string>
 
-#include "bodyloom/geometry/observations.h"
+#include "bodyloom/geometry/scene/observations.h"
 
 namespace bodyloom {
 

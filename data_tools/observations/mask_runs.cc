@@ -12,8 +12,9 @@
 namespace bodyloom {
 namespace {
 
-/// Runs say more pixels than bytes, so what they may say is bounded before memory is taken: boxes of at most 67 megapixels
-/// (8K video has 33), and beyond 1 GiB together no more than 16384 pixels a run, where a person's outline has some hundreds.
+/// Runs say more pixels than bytes, so what they may say is bounded before memory is taken: boxes of at most 67
+/// megapixels (8K video has 33), and beyond 1 GiB together no more than 16384 pixels a run, where a person's outline
+/// has some hundreds.
 constexpr int64_t kMostPixelsOfBox = int64_t{1} << 26, kMostPixelsAnyway = int64_t{1} << 30, kMostPixelsOfRun = 16384;
 
 std::vector<int64_t> WholeNumbers(const NpzArrays& arrays, const std::string& name, const std::vector<int64_t>& shape,

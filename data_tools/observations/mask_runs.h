@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A clip's masks as runs of pixels, in arrays of an .npz: a person of 900 pixels takes 10 KB a frame, where pictures of
-/// 1920×1080 take 2 MB.
+/// A clip's masks as runs of pixels, in arrays of an .npz: a person of 900 pixels takes 10 KB a frame, where pictures
+/// of 1920×1080 take 2 MB.
 ///
-///   mask_runs   int32 (R): lengths of runs of pixels, in the rows of a frame's box one after the other, by turns without
+///   mask_runs   int32 (R): lengths of runs of pixels, in the rows of a frame's box one after the other, by turns
+///   without
 ///               and with the person, beginning without; frame after frame
 ///   mask_count  int32 (T): how many of them are of each frame
 ///   mask_box    int32 (T, 4): x, y, width, height in pixels; width 0: nobody was seen
@@ -13,7 +14,7 @@
 #include <string>
 
 #include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/geometry/observations.h"
+#include "bodyloom/geometry/scene/observations.h"
 
 namespace bodyloom {
 

@@ -8,7 +8,6 @@
 #include "bodyloom/data_tools/formats/printable.h"
 #include "bodyloom/data_tools/observations/frame_numbers.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/refuse.h"
 
 namespace bodyloom {
 namespace {

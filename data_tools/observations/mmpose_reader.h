@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 /// MMPose's JSON. A person is {"keypoints": [[x, y], …], "keypoint_scores": […], "bbox": …, "bbox_score": …}, pixels.
 ///
-/// Three forms: a list of people (one image; a folder of such files, one an image), a list of {"frame_id": n, "instances":
-/// [people]} with n from 0 (the inferencer on a video), and {"meta_info": {…}, "instance_info": [{"frame_id": n,
-/// "instances": […]}]} with n from 1 (the demo scripts). There is no identity. Scores may exceed 1 a little and count as 1.
-/// 17 (COCO), 23, 26 (Halpe, Body8), 133 (COCO-WholeBody) and 136 landmarks are read; `meta_info` says which they are when
-/// it is there, and an order of other landmarks is refused. Lifted keypoints [x, y, z] are refused: they are no pixels.
+/// Three forms: a list of people (one image; a folder of such files, one an image), a list of {"frame_id": n,
+/// "instances": [people]} with n from 0 (the inferencer on a video), and {"meta_info": {…}, "instance_info":
+/// [{"frame_id": n, "instances": […]}]} with n from 1 (the demo scripts). There is no identity. Scores may exceed 1 a
+/// little and count as 1. 17 (COCO), 23, 26 (Halpe, Body8), 133 (COCO-WholeBody) and 136 landmarks are read;
+/// `meta_info` says which they are when it is there, and an order of other landmarks is refused. Lifted keypoints [x,
+/// y, z] are refused: they are no pixels.
 /// Source: open-mmlab/mmpose, mmpose/structures/utils.py, mmpose/apis/inferencers, demo/topdown_demo_with_mmdet.py.
 #pragma once
 

@@ -5,9 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/formats/whole_numbers.h"
+#include "bodyloom/data_tools/formats/ndarray.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/refuse.h"
 
 namespace bodyloom {
 namespace {

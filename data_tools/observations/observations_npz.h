@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The project's own file of observations: a .npz that holds one person's 2D keypoints, dense surface keypoints, or both.
-/// Several people's keypoints: people_npz.h.
+/// The project's own file of observations: a .npz that holds one person's 2D keypoints, dense surface keypoints, or
+/// both. Several people's keypoints: people_npz.h.
 ///
 /// | key                | shape  | type  | meaning                                                             |
 /// |--------------------|--------|-------|---------------------------------------------------------------------|
@@ -22,7 +22,7 @@
 #include <vector>
 
 #include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/geometry/observations.h"
+#include "bodyloom/geometry/scene/observations.h"
 
 namespace bodyloom {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-/// DensePose part labels, or a mask of the person, of a whole clip in one .npz: key `labels`, uint8, T×H×W, 0 = background,
-/// 1..24 = parts; optional `timestamps` (T, seconds) and `label_kind`, the text "densepose" (without the key: the same)
-/// or "person": then 1 is the person, and PartLabelSequence::AsMask() has been called on what is read. A mask may be given
-/// as runs (mask_runs.h) in the place of `labels`, as this project writes it.
+/// DensePose part labels, or a mask of the person, of a whole clip in one .npz: key `labels`, uint8, T×H×W, 0 =
+/// background, 1..24 = parts; optional `timestamps` (T, seconds) and `label_kind`, the text "densepose" (without the
+/// key: the same) or "person": then 1 is the person, and PartLabelSequence::AsMask() has been called on what is read. A
+/// mask may be given as runs (mask_runs.h) in the place of `labels`, as this project writes it.
 #pragma once
 
 #include <string>
 
 #include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/geometry/observations.h"
+#include "bodyloom/geometry/scene/observations.h"
 
 namespace bodyloom {
 
@@ -22,8 +22,9 @@ struct ReadPartLabelsOptions {
   bool mend_strays = true;
 };
 
-/// Writes a mask as runs: the person is where `frames[t]` is not 0. Throws std::invalid_argument when frames and timestamps
-/// differ in number or a rectangle leaves the image, std::runtime_error naming the path when it cannot be written.
+/// Writes a mask as runs: the person is where `frames[t]` is not 0. Throws std::invalid_argument when frames and
+/// timestamps differ in number or a rectangle leaves the image, std::runtime_error naming the path when it cannot be
+/// written.
 void WriteMask(const std::string& path, const PartLabelSequence& mask);
 
 /// Whether an archive is one of part labels.

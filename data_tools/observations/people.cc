@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "bodyloom/data_tools/observations/nothing_to_track.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/scene/observations.h"
 
 namespace bodyloom {
 namespace {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "bodyloom/data_tools/observations/keypoint_conventions.h"
-#include "bodyloom/geometry/observations.h"
+#include "bodyloom/geometry/scene/observations.h"
 
 namespace bodyloom {
 
@@ -38,8 +38,8 @@ struct PersonTrack {
 /// All tracks, heaviest first: index 0 is the person who is largest, best seen and longest in the picture.
 std::vector<PersonTrack> LinkPeople(const PeopleSequence& people);
 
-/// Person number `person` in LinkPeople's order. Throws std::runtime_error beginning with `where` when nobody was seen at
-/// all or there are not that many people.
+/// Person number `person` in LinkPeople's order. Throws std::runtime_error beginning with `where` when nobody was seen
+/// at all or there are not that many people.
 PersonTrack PersonOf(const PeopleSequence& people, int person, const std::string& where);
 
 /// The landmarks of one of them; frames without that person are missing. Confidences are clamped to [0, 1]; non-finite

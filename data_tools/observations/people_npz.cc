@@ -5,10 +5,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/formats/whole_numbers.h"
+#include "bodyloom/data_tools/formats/ndarray.h"
 #include "bodyloom/data_tools/observations/observations_npz.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/refuse.h"
 
 namespace bodyloom {
 namespace {}  // namespace

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/data_tools/video/frame_image.h"
 
+#include <cstdlib>
+
 extern "C" {
 #include <libavformat/avformat.h>
 #include <libavutil/frame.h>
@@ -13,7 +15,7 @@ extern "C" {
 #include <stdexcept>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/render/image_mat.h"
+#include "bodyloom/render/image/image_mat.h"
 
 namespace bodyloom {
 namespace {
@@ -129,6 +131,13 @@ void FrameImage::Convert(const AVFrame& frame, Image* image) {
     const int code = orientation_.flip_columns && orientation_.flip_rows ? -1 : orientation_.flip_columns ? 1 : 0;
     cv::flip(shown, shown, code);
   }
+}
+
+DisplayOrientation OrientationOf(const int32_t* matrix) {
+  if (matrix == nullptr) return {};
+  const int64_t a = matrix[0], b = matrix[1], c = matrix[3], d = matrix[4];
+  if (std::abs(a) + std::abs(d) >= std::abs(b) + std::abs(c)) return {false, a < 0, d < 0};
+  return {true, c < 0, b < 0};
 }
 
 }  // namespace bodyloom

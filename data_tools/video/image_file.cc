@@ -4,16 +4,16 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 #include <string_view>
+#include <vector>
 
 #include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/file_extension.h"
 #include "bodyloom/data_tools/video/image_header.h"
-#include "bodyloom/data_tools/video/picture_limits.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/render/image_mat.h"
+#include "bodyloom/render/image/image_mat.h"
 
 namespace bodyloom {
 namespace {
@@ -129,6 +129,15 @@ std::vector<std::string> ImageFilesOf(const std::string& folder) {
   std::sort(names.begin(), names.end(), [](const auto& a, const auto& b) { return NaturalLess(a, b); });
   for (std::string& name : names) name = (fs::path(folder) / name).string();
   return names;
+}
+
+void WriteAlphaPng(const std::string& path, int width, int height, std::span<const uint8_t> bgra) {
+  BODYLOOM_CHECK(width > 0 && height > 0 && bgra.size() == 4 * static_cast<size_t>(width) * height, "writing ", path,
+                 ": ", bgra.size(), " bytes for ", width, "x", height, " pixels");
+  const cv::Mat picture(height, width, CV_8UC4, const_cast<uint8_t*>(bgra.data()));
+  std::vector<unsigned char> bytes;
+  if (!cv::imencode(".png", picture, bytes, {cv::IMWRITE_PNG_COMPRESSION, 2})) Refuse(path, "cannot be encoded");
+  WriteFileAtomically(path, std::string(bytes.begin(), bytes.end()));
 }
 
 }  // namespace bodyloom

@@ -2,10 +2,15 @@
 /// Still images: PNG, JPEG, BMP, WebP and TIFF in; PNG and JPEG out.
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "bodyloom/render/image.h"
+#include "bodyloom/render/image/image.h"
 
 namespace bodyloom {
 
@@ -28,5 +33,21 @@ std::string EncodeImage(const Image& image, const std::string& path);
 /// The image files of a folder (.png .jpg .jpeg .bmp .webp .tif .tiff), numbers in names compared as numbers, so that
 /// frame_2 comes before frame_10; hidden files are passed over. Throws std::runtime_error when there are none.
 std::vector<std::string> ImageFilesOf(const std::string& folder);
+
+// How folders of pictures name their frames.
+
+/// "FOLDER/000012.png" of frame 12.
+inline std::string FrameFile(const std::filesystem::path& folder, int t) {
+  std::array<char, 32> name{};
+  std::snprintf(name.data(), name.size(), "%06d.png", t);
+  return (folder / name.data()).string();
+}
+
+// Pictures with transparency.
+
+/// An 8-bit PNG of blue, green, red (straight, not multiplied by alpha) and alpha, four bytes a pixel in rows from the
+/// top. Whole or not at all. Throws std::invalid_argument for another number of bytes than the size asks for,
+/// std::runtime_error naming the path.
+void WriteAlphaPng(const std::string& path, int width, int height, std::span<const uint8_t> bgra);
 
 }  // namespace bodyloom

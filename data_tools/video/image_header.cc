@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdlib>
 
-#include "bodyloom/data_tools/video/header_bytes.h"
 #include "bodyloom/data_tools/video/jpeg_header.h"
 
 namespace bodyloom {

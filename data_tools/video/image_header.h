@@ -18,4 +18,8 @@ struct ImageHeader {
 /// BigTIFF.
 std::optional<ImageHeader> ReadImageHeader(std::string_view bytes);
 
+// How large a picture may be, still or moving: files that promise more are refused before memory is taken.
+
+inline constexpr int64_t kMaxPicturePixels = int64_t{1} << 26;
+
 }  // namespace bodyloom

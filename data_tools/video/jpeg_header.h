@@ -2,6 +2,8 @@
 /// The header of a JPEG, read before the file is decoded.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string_view>
 
@@ -10,11 +12,42 @@ namespace bodyloom {
 struct JpegHeader {
   int width = 0, height = 0;  ///< 0: no frame header was found
   int components = 3;         ///< 1 grey, 3 colours, 4 inks
-  double focal_35mm_mm = 0;   ///< of its Exif (exif.h); 0: it has none
+  double focal_35mm_mm = 0;   ///< of its Exif (jpeg_header.h); 0: it has none
   bool ends = false;          ///< an end-of-image marker comes after the first scan began
 };
 
 /// Of a file's bytes; nullopt when they are no JPEG. Source: ITU-T T.81, Annex B.
 std::optional<JpegHeader> ReadJpegHeader(std::string_view bytes);
+
+// What a camera noted of its lens in a photograph.
+
+/// FocalLengthIn35mmFilm (tag 0xA405), millimetres: the focal length that has the same diagonal angle of view on film
+/// of 36 mm × 24 mm. Of the TIFF structure that an Exif segment holds; 0 when it has none, says that it is not known,
+/// or is damaged. Source: Exif 2.32 (CIPA DC-008), 4.6.
+double ReadExifFocal35mm(std::string_view tiff);
+
+// Whole numbers in the header of an image file. Internal to data_tools/video.
+
+/// Whole numbers of a file's bytes; beyond the end there are zeros.
+class HeaderBytes {
+ public:
+  explicit HeaderBytes(std::string_view bytes) : bytes_(bytes) {}
+
+  [[nodiscard]] bool Has(size_t at, std::string_view text) const {
+    return bytes_.size() >= at + text.size() && bytes_.substr(at, text.size()) == text;
+  }
+  [[nodiscard]] uint64_t Number(size_t at, int count, bool big_endian) const {
+    uint64_t value = 0;
+    for (int i = 0; i < count; ++i) value = value << 8 | Byte(at + (big_endian ? i : count - 1 - i));
+    return value;
+  }
+  [[nodiscard]] uint64_t Big(size_t at, int count) const { return Number(at, count, true); }
+  [[nodiscard]] uint64_t Little(size_t at, int count) const { return Number(at, count, false); }
+  [[nodiscard]] size_t size() const { return bytes_.size(); }
+
+ private:
+  [[nodiscard]] uint8_t Byte(size_t at) const { return at < bytes_.size() ? static_cast<uint8_t>(bytes_[at]) : 0; }
+  std::string_view bytes_;
+};
 
 }  // namespace bodyloom

@@ -31,4 +31,9 @@ LibavPtr<AVPacket> NewLibavPacket();
 /// What an error code of these libraries means: "Invalid data found when processing input".
 std::string LibavReason(int error);
 
+// Keeps ffmpeg's libraries from writing to the terminal: this library reports faults by exceptions.
+
+/// Takes effect once a process; a level other than the libraries' own that a program has set by av_log_set_level stays.
+void QuietCodecs();
+
 }  // namespace bodyloom

@@ -14,8 +14,7 @@ extern "C" {
 #include <stdexcept>
 
 #include "bodyloom/data_tools/video/libav_handles.h"
-#include "bodyloom/data_tools/video/quiet_codecs.h"
-#include "bodyloom/render/image_mat.h"
+#include "bodyloom/render/image/image_mat.h"
 
 namespace bodyloom {
 namespace {
@@ -36,8 +35,8 @@ void DescribePicture(int width, int height, AVRational fps, AVCodecContext* code
 }
 
 /// x264 (r3095) with AVX-512 gives other bytes now and then for the same frames, when its macroblock tree is on; with
-/// what else these processors have it does not (docs/lab/video.md). A list replaces what x264 would find, so it is given
-/// only where all of it is there.
+/// what else these processors have it does not (docs/lab/video.md). A list replaces what x264 would find, so it is
+/// given only where all of it is there.
 void UseRepeatableInstructions(AVCodecContext* codec) {
 #if defined(__x86_64__)
   if (__builtin_cpu_supports("avx512f")) {

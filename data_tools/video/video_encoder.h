@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "bodyloom/render/image.h"
+#include "bodyloom/render/image/image.h"
 
 namespace bodyloom {
 

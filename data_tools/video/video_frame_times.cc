@@ -11,7 +11,6 @@ extern "C" {
 #include <optional>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/video/frame_clock.h"
 #include "bodyloom/data_tools/video/frame_decoder.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/data_tools/video/video_packets.h"

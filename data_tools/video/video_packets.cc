@@ -15,8 +15,8 @@ extern "C" {
 #include <string_view>
 #include <vector>
 
-#include "bodyloom/data_tools/video/picture_limits.h"
-#include "bodyloom/data_tools/video/quiet_codecs.h"
+#include "bodyloom/data_tools/video/image_header.h"
+#include "bodyloom/data_tools/video/libav_handles.h"
 #include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "bodyloom/render/image.h"
+#include "bodyloom/render/image/image.h"
 
 namespace bodyloom {
 
@@ -22,9 +22,9 @@ struct VideoInfo {
 
 class VideoReader {
  public:
-  /// Opens a video file that ffmpeg decodes, a folder of images (in the order of ImageFilesOf), or a still image. Throws
-  /// std::runtime_error naming the path when it is missing, empty, no video, its frames have more than 2^26 pixels, or
-  /// its first frame cannot be decoded.
+  /// Opens a video file that ffmpeg decodes, a folder of images (in the order of ImageFilesOf), or a still image.
+  /// Throws std::runtime_error naming the path when it is missing, empty, no video, its frames have more than 2^26
+  /// pixels, or its first frame cannot be decoded.
   explicit VideoReader(const std::string& path);
   ~VideoReader();
   VideoReader(const VideoReader&) = delete;

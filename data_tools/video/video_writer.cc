@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/video/picture_limits.h"
+#include "bodyloom/data_tools/video/image_header.h"
 #include "bodyloom/data_tools/video/video_encoder.h"
 #include "bodyloom/data_tools/video/video_reader.h"
 #include "bodyloom/geometry/base/check.h"

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "bodyloom/geometry/joint_influence.h"
+#include "bodyloom/geometry/body/skinning.h"
 
 namespace bodyloom {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/body/body_model.h"
 #include "bodyloom/geometry/cloth/cloth_simulation.h"
 
 namespace bodyloom {

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/body/skinning.h"
 #include "bodyloom/geometry/cloth/body_obstacles.h"
-#include "bodyloom/geometry/joint_influence.h"
 
 namespace bodyloom {
 namespace {

@@ -2,8 +2,8 @@
 /// A body and its loose garment as one surface, for whatever draws, textures or exports bodies.
 ///
 /// The garment's vertices (LooseGarment::drawn_from, as sewn) and faces follow the body's. In UV the body's charts keep
-/// their width and shrink to kBodyShareOfV of the height; above them the garment is one rectangle, its way around along u,
-/// the pinned ring at the top. Where nobody simulates cloth, the garment goes with the limbs near it: of the body's
+/// their width and shrink to kBodyShareOfV of the height; above them the garment is one rectangle, its way around along
+/// u, the pinned ring at the top. Where nobody simulates cloth, the garment goes with the limbs near it: of the body's
 /// vertices b of trunk and legs with skinning weights w_b on the joints 0 to 11, normalised to 1,
 ///   w(v) = Σ_b exp(−‖v − b‖² / 2σ²) w_b / Σ_b exp(−‖v − b‖² / 2σ²),   σ = 0.1 m.
 #pragma once
@@ -12,9 +12,9 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/geometry/arrays.h"
-#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/body/body_model.h"
 #include "bodyloom/geometry/cloth/loose_garment.h"
+#include "bodyloom/geometry/math/arrays.h"
 
 namespace bodyloom {
 
@@ -24,8 +24,8 @@ constexpr double kBodyShareOfV = 0.8;
 /// std::invalid_argument when the body does not begin with SMPL's 24 joints.
 BodyModelData BodyWithGarment(const BodyModel& body, const LooseGarment& garment);
 
-/// The body again: its vertices are the first `num_vertices` of `both`. Throws std::invalid_argument when one of its faces
-/// or regressors reaches further, or there are not as many.
+/// The body again: its vertices are the first `num_vertices` of `both`. Throws std::invalid_argument when one of its
+/// faces or regressors reaches further, or there are not as many.
 BodyModelData BodyWithoutGarment(const BodyModel& both, int num_vertices);
 
 /// Puts the cloth's vertices (as ClothRun gives them) into the last rows of the vertices of both.

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/procrustes.h"
+#include "bodyloom/geometry/math/procrustes.h"
 
 namespace bodyloom {
 namespace {

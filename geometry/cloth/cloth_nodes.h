@@ -2,12 +2,12 @@
 /// Nodes on a garment that carry what lies near it as bones carry skin (embedded deformation; Sumner, Schmid and Pauly,
 /// "Embedded deformation for shape manipulation", SIGGRAPH 2007).
 ///
-/// A node is a vertex of the garment as sewn that is at least spacing_m away from every node before it. A point x of the
-/// space in which the garment was sewn moves with node k as
+/// A node is a vertex of the garment as sewn that is at least spacing_m away from every node before it. A point x of
+/// the space in which the garment was sewn moves with node k as
 ///   x ↦ R_k (x − j_k) + p_k,
 /// j_k and p_k the node's place as sewn and now, R_k the rotation that takes the vertices around it, those within
-/// kReach·spacing_m as sewn, onto where they are now in the least-squares sense (geometry/procrustes.h). Folds narrower
-/// than two nodes are apart are lost.
+/// kReach·spacing_m as sewn, onto where they are now in the least-squares sense (geometry/math/procrustes.h). Folds
+/// narrower than two nodes are apart are lost.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,8 +15,8 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/geometry/arrays.h"
 #include "bodyloom/geometry/cloth/loose_garment.h"
+#include "bodyloom/geometry/math/arrays.h"
 
 namespace bodyloom {
 
@@ -45,8 +45,8 @@ class ClothNodes {
   [[nodiscard]] const MatrixX3d& places() const { return places_; }  ///< K×3, as sewn: j_k
 
   /// `cloth`: places of the garment's vertices now, as ClothRun gives them. Where the vertices around a node have
-  /// collapsed onto a line its rotation is that of the node before it (the first: none). Throws std::invalid_argument for another
-  /// number of vertices.
+  /// collapsed onto a line its rotation is that of the node before it (the first: none). Throws std::invalid_argument
+  /// for another number of vertices.
   [[nodiscard]] MovedNodes Move(std::span<const Eigen::Vector3d> cloth) const;
 
   /// The nodes nearest to a point of the sewn garment's space, nearest first, weighted by exp(−d²/2σ²), σ = 0.6

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/cloth/cloth_faults.h"
-#include "bodyloom/geometry/motion_check.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/cloth/cloth_simulation.h"
+#include "bodyloom/geometry/math/rotation.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 namespace {
@@ -138,6 +138,21 @@ int ClothRun::legs_through() const {
   if (!simulation_ || next_ == 0) return 0;
   return LegsThroughCloth(simulation_->mesh().faces, simulation_->positions(),
                           PoseSkeleton(wearer_.body(), wearer_.rest_joints(), PoseAt(next_ - 1)).joints);
+}
+
+namespace {
+
+/// Of ln of a value: friction and, the other way, damping; air density.
+constexpr double kApart[kMostClothRuns][2] = {{0, 0}, {0.1, 0.1}, {-0.1, -0.1}, {0.1, -0.1}, {-0.1, 0.1}};
+
+}  // namespace
+
+ClothOptions OfRun(ClothOptions options, int run) {
+  BODYLOOM_CHECK(run >= 0 && run < kMostClothRuns, "cloth: run ", run, ", expected 0 to ", kMostClothRuns - 1);
+  options.friction *= std::exp(kApart[run][0]);
+  options.damping *= std::exp(-kApart[run][0]);
+  options.air_density *= std::exp(kApart[run][1]);
+  return options;
 }
 
 }  // namespace bodyloom

@@ -6,11 +6,11 @@
 #include <optional>
 #include <vector>
 
+#include "bodyloom/geometry/body/normals.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/geometry/cloth/cloth_body.h"
 #include "bodyloom/geometry/cloth/cloth_simulation.h"
-#include "bodyloom/geometry/cloth/cloth_wearer.h"
-#include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/geometry/track.h"
-#include "bodyloom/geometry/vertex_normals.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 
@@ -34,8 +34,8 @@ class ClothRun {
   /// not rise.
   ClothRun(const ClothWearer& wearer, Motion motion, const ClothRunOptions& options);
 
-  /// Places of the cloth's vertices in the next frame (the first call: frame 0, at rest); empty without a garment. Throws
-  /// std::invalid_argument after the last frame.
+  /// Places of the cloth's vertices in the next frame (the first call: frame 0, at rest); empty without a garment.
+  /// Throws std::invalid_argument after the last frame.
   const std::vector<Eigen::Vector3d>& Next();
 
   [[nodiscard]] int num_cuts() const { return cuts_; }
@@ -65,5 +65,16 @@ class ClothRun {
   std::vector<Eigen::Vector3d> none_;
   int next_ = 0, cuts_ = 0;
 };
+
+// One garment in one motion, simulated several times.
+//
+// Where a fold falls is chance: with a little more friction it falls beside. Who learns from one run takes its folds
+// for the cloth's own; what several runs have in common is what cloth does in that motion.
+
+constexpr int kMostClothRuns = 5;
+
+/// The options of one of several runs: those given for run 0; in others friction, damping and air density times e^0.1
+/// or e^-0.1, each run by signs of its own. Throws std::invalid_argument for a run outside 0 to kMostClothRuns − 1.
+ClothOptions OfRun(ClothOptions options, int run);
 
 }  // namespace bodyloom

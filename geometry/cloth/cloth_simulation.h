@@ -32,7 +32,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/math/arrays.h"
 
 namespace bodyloom {
 
@@ -161,5 +161,15 @@ int CrossingsOfSegment(const MatrixX3i& faces, const std::vector<Eigen::Vector3d
 
 /// Largest ‖x_a − x_b‖ / rest − 1 over the links that do not stretch.
 double LargestStretch(const ClothMesh& mesh, const std::vector<Eigen::Vector3d>& positions);
+
+// What can be wrong with cloth on a body: legs through it, depth inside the body. (Stretch: cloth_simulation.h.)
+
+/// How many legs have come through the cloth's faces: whose line from hip over knee to ankle (joints J×3) passes
+/// through them an odd number of times. A leg that stays inside, or leaves by the hem, does not.
+int LegsThroughCloth(const MatrixX3i& faces, const std::vector<Eigen::Vector3d>& cloth, const MatrixX3d& joints);
+
+/// How deep the cloth lies inside the clothed body: for each vertex of the cloth the signed distance to the tangent
+/// plane of the nearest point of trunk and legs, for those within 6 cm of it. Largest depth, metres (0: none inside).
+double LargestDepth(const std::vector<Eigen::Vector3d>& cloth, const ClothObstacles& obstacles);
 
 }  // namespace bodyloom

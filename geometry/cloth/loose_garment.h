@@ -13,8 +13,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "bodyloom/geometry/arrays.h"
 #include "bodyloom/geometry/cloth/cloth_simulation.h"
+#include "bodyloom/geometry/math/arrays.h"
 
 namespace bodyloom {
 
@@ -57,7 +57,8 @@ struct LooseGarment {
 LooseGarment CutLooseGarment(const MatrixX3d& vertices, const MatrixX3i& faces, double arm_x_m,
                              const LooseGarmentOptions& options);
 
-/// Moves all but the pinned vertices by noise of 2 mm: a perfectly regular cone would balance instead of falling into folds.
+/// Moves all but the pinned vertices by noise of 2 mm: a perfectly regular cone would balance instead of falling into
+/// folds.
 void Crumple(LooseGarment* garment, uint64_t seed);
 
 /// Where the pinned vertices are on a body's posed, clothed surface.

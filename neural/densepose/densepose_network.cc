@@ -10,10 +10,10 @@
 #include <utility>
 
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/neural/base/device.h"
 #include "bodyloom/neural/densepose/densepose_output.h"
 #include "bodyloom/neural/densepose/paste_charts.h"
 #include "bodyloom/neural/densepose/vision_operators.h"
-#include "bodyloom/neural/device.h"
 
 namespace bodyloom {
 namespace {

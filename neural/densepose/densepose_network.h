@@ -19,8 +19,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/chart_image.h"
-#include "bodyloom/render/image.h"
+#include "bodyloom/geometry/scene/label_image.h"
+#include "bodyloom/render/image/image.h"
 
 namespace bodyloom {
 
@@ -29,8 +29,8 @@ enum class DensePoseColours { kOfForm, kRgb, kBgr };
 
 class DensePoseNetwork {
  public:
-  /// Loads onto the networks' device (neural/runtime.h). Throws std::runtime_error in one line: the file is not there,
-  /// is no TorchScript, calls an operator that is not here, or has neither form.
+  /// Loads onto the networks' device (neural/base/runtime.h). Throws std::runtime_error in one line: the file is not
+  /// there, is no TorchScript, calls an operator that is not here, or has neither form.
   explicit DensePoseNetwork(const std::string& path, DensePoseColours colours = DensePoseColours::kOfForm);
   ~DensePoseNetwork();
   DensePoseNetwork(DensePoseNetwork&&) noexcept;

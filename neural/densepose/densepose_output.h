@@ -22,8 +22,8 @@ struct DensePoseOutput {
   torch::Tensor fine, u, v;  ///< n×25×h×w
 };
 
-/// Throws std::runtime_error "path: …" for a number of outputs, a key or a shape that is not as above; `value` must have
-/// the form's type.
+/// Throws std::runtime_error "path: …" for a number of outputs, a key or a shape that is not as above; `value` must
+/// have the form's type.
 DensePoseOutput CheckedDensePoseOutput(const c10::IValue& value, DensePoseForm form, const std::string& path);
 
 }  // namespace bodyloom

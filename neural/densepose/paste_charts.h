@@ -10,7 +10,7 @@
 /// (detectron2, projects/DensePose, converters/to_chart_result.py).
 #pragma once
 
-#include "bodyloom/geometry/chart_image.h"
+#include "bodyloom/geometry/scene/label_image.h"
 
 namespace bodyloom {
 
@@ -23,7 +23,8 @@ struct ChartPlanes {
 };
 
 /// The pixels of an image of this size whose centres lie in `box`; none when the box is empty, not finite or elsewhere.
-/// Pixels whose interpolated u or v is not finite are background. Throws std::invalid_argument for planes without cells.
+/// Pixels whose interpolated u or v is not finite are background. Throws std::invalid_argument for planes without
+/// cells.
 ChartImage PasteCharts(const ChartPlanes& planes, const ChartDetection& box, int image_width, int image_height);
 
 }  // namespace bodyloom

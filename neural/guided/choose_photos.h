@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "bodyloom/neural/people/photo_frame.h"
+#include "bodyloom/render/texture/photo_frame.h"
 
 namespace bodyloom {
 

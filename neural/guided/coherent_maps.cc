@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/guided/clothes_extent.h"
+#include "bodyloom/render/garment/clothes_extent.h"
 
 namespace bodyloom {
 namespace {

@@ -2,9 +2,9 @@
 /// Renders one pose through the three networks. Internal: includes LibTorch.
 #pragma once
 
+#include "bodyloom/neural/guided/coherent_maps.h"
 #include "bodyloom/neural/guided/guided_model.h"
-#include "bodyloom/neural/guided/guided_picture.h"
-#include "bodyloom/neural/people/photo_frame.h"
+#include "bodyloom/render/texture/photo_frame.h"
 
 namespace bodyloom {
 

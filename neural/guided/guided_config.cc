@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/geometry/base/in_range.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

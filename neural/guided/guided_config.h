@@ -12,7 +12,7 @@ namespace bodyloom {
 enum class MapCompletion {
   kNone,          ///< they stay empty: the source warped as it is (the paper's −A)
   kVirtualViews,  ///< six views of the body, drawn by the networks (complete_maps.h), as in the paper
-  kNearest        ///< the nearest texels that a photo shows, both sides, front and back as one (guess_maps.h)
+  kNearest        ///< the nearest texels that a photo shows, both sides, front and back as one (source_maps.h)
 };
 
 /// "none", "virtual views", "nearest texels".

@@ -5,24 +5,20 @@
 ///   G^t = softmax GarNet(G̃^t | P^t, S^t, {P^s, S^s, G^s})
 ///   I^t = S^t · sigmoid RenderNet(Ĩ^t, S̃^t | S^t, G^t, {I^s, S^s, G^s})
 /// Source: Yoon et al., "Pose-Guided Human Animation from a Single Image in the Wild", CVPR 2021, Section 3.1. P:
-/// colours of body parts (neural/people/body_part_map.h); S: silhouette; G: garment labels; tilde: pseudo inputs, what
-/// is known of the target where it shows the bare body.
+/// colours of body parts (render/texture/complete/body_part_map.h); S: silhouette; G: garment labels; tilde: pseudo
+/// inputs, what is known of the target where it shows the bare body.
 ///
-/// SilNet (sil_net.h) has an encoder of the source and one of the target, GarNet (gar_net.h) one for both; RenderNet:
-/// render_net.h. Pictures of the source fill the whole window, those of the target may be cropped to a box of code
-/// cells: then the source's codes are cropped with it.
+/// SilNet (guided_networks.h) has an encoder of the source and one of the target, GarNet (guided_networks.h) one for
+/// both; RenderNet: guided_networks.h. Pictures of the source fill the whole window, those of the target may be cropped
+/// to a box of code cells: then the source's codes are cropped with it.
 #pragma once
 
 #include <torch/torch.h>
-
 #include <cstdint>
 #include <vector>
 
-#include "bodyloom/neural/guided/coder.h"
-#include "bodyloom/neural/guided/gar_net.h"
 #include "bodyloom/neural/guided/guided_config.h"
-#include "bodyloom/neural/guided/render_net.h"
-#include "bodyloom/neural/guided/sil_net.h"
+#include "bodyloom/neural/guided/guided_networks.h"
 #include "bodyloom/neural/networks/patch_discriminator.h"
 
 namespace bodyloom {
@@ -91,5 +87,17 @@ TORCH_MODULE(GuidedModel);
 
 /// The discriminator that a run trains against: it sees the true labels beside the picture.
 PatchDiscriminator GuidedDiscriminator(const GuidedConfig& config);
+
+// Known colours, carried on over the garment that they belong to. Internal: includes LibTorch.
+//
+// x_k = PullPush(Ĩ, S̃ [G̃ = k]),   x = x_k where G = k and k is known somewhere in the picture,
+// PullPush(Ĩ, S̃) elsewhere
+// So a skirt's rim takes its colour from the skirt on the thigh, not from the stocking beside it. Where the pixel
+// itself is known under its label the colour is its own.
+
+/// image: B×3×H×W, known: B×1×H×W of zeros and ones (Ĩ, S̃), known_classes and classes: B×1×H×W class numbers (G̃, G;
+/// `classes` may be undefined: every pixel then takes what is nearest). Returns B×3×H×W. No gradient.
+torch::Tensor CarryColours(const torch::Tensor& image, const torch::Tensor& known, const torch::Tensor& known_classes,
+                           const torch::Tensor& classes);
 
 }  // namespace bodyloom

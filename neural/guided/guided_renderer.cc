@@ -2,11 +2,11 @@
 #include "bodyloom/neural/guided/guided_renderer.h"
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/device.h"
+#include "bodyloom/neural/base/device.h"
+#include "bodyloom/neural/base/runtime.h"
 #include "bodyloom/neural/guided/draw_pose.h"
 #include "bodyloom/neural/guided/guided_model.h"
 #include "bodyloom/neural/guided/guided_tensors.h"
-#include "bodyloom/neural/runtime.h"
 #include "bodyloom/neural/training/checkpoint.h"
 
 namespace bodyloom {

@@ -11,9 +11,8 @@
 
 #include "bodyloom/neural/guided/coherent_maps.h"
 #include "bodyloom/neural/guided/guided_config.h"
-#include "bodyloom/neural/guided/guided_picture.h"
 #include "bodyloom/neural/guided/source_maps.h"
-#include "bodyloom/neural/people/photo_frame.h"
+#include "bodyloom/render/texture/photo_frame.h"
 
 namespace bodyloom {
 

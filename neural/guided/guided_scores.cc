@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/metrics/class_overlap.h"
 #include "bodyloom/neural/metrics/contextual_similarity.h"
 #include "bodyloom/neural/metrics/lpips.h"
+#include "bodyloom/neural/metrics/pixel_metrics.h"
 
 namespace bodyloom {
 namespace {

@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/device.h"
-#include "bodyloom/neural/people/aligned_box.h"
-#include "bodyloom/neural/people/body_part_map.h"
+#include "bodyloom/neural/base/device.h"
+#include "bodyloom/neural/networks/aligned_box.h"
+#include "bodyloom/render/texture/complete/body_part_map.h"
 
 namespace bodyloom {
 namespace {

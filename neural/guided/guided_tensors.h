@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/neural/guided/coder.h"
+#include "bodyloom/neural/guided/coherent_maps.h"
 #include "bodyloom/neural/guided/guided_model.h"
-#include "bodyloom/neural/guided/guided_picture.h"
-#include "bodyloom/neural/people/photo_frame.h"
+#include "bodyloom/neural/guided/guided_networks.h"
+#include "bodyloom/render/texture/photo_frame.h"
 
 namespace bodyloom {
 

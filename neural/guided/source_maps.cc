@@ -2,11 +2,11 @@
 #include "bodyloom/neural/guided/source_maps.h"
 
 #include <optional>
+#include <vector>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/guided/clothes_extent.h"
-#include "bodyloom/neural/guided/guess_maps.h"
-#include "bodyloom/neural/people/guess_unseen.h"
+#include "bodyloom/render/garment/clothes_extent.h"
+#include "bodyloom/render/texture/complete/guess_unseen.h"
 
 namespace bodyloom {
 namespace {
@@ -92,6 +92,19 @@ SourceMaps MapsOfSource(std::span<const PhotoFrame> photos, const SourceBody& bo
     source.virtual_pictures = CompleteMaps(body.virtual_views, draw, next, &source.maps);
   }
   return source;
+}
+
+int GuessRest(const TexelNeighbours& neighbours, uint8_t from, CoherentMaps* maps) {
+  BODYLOOM_CHECK(from > 0 && neighbours.texture_size() == maps->size, "coherent maps: neighbours of ",
+                 neighbours.texture_size(), " texels a side for maps of ", maps->size);
+  const std::vector<uint8_t> guessed = GuessUnseen(neighbours, maps->labels, maps->appearance);
+  int count = 0;
+  for (size_t i = 0; i < guessed.size(); ++i) {
+    if (guessed[i] == 0) continue;
+    maps->from[i] = from;
+    ++count;
+  }
+  return count;
 }
 
 }  // namespace bodyloom

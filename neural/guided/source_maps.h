@@ -9,7 +9,7 @@
 #include "bodyloom/neural/guided/coherent_maps.h"
 #include "bodyloom/neural/guided/complete_maps.h"
 #include "bodyloom/neural/guided/guided_config.h"
-#include "bodyloom/neural/people/texel_neighbours.h"
+#include "bodyloom/render/texture/complete/texel_neighbours.h"
 
 namespace bodyloom {
 
@@ -39,5 +39,12 @@ struct SourceMaps {
 /// is drawn. Throws std::invalid_argument for sizes that do not fit, and for what the completion needs and is absent.
 SourceMaps MapsOfSource(std::span<const PhotoFrame> photos, const SourceBody& body, MapCompletion completion,
                         bool extent, const DrawPose& draw);
+
+// Guesses what the coherent maps do not hold from the nearest texels that they do
+// (render/texture/complete/guess_unseen.h).
+
+/// Fills every empty texel of the atlas as picture number `from` (1 to 255); maps that hold nothing stay empty.
+/// Returns how many were filled. Throws std::invalid_argument for sizes that do not fit.
+int GuessRest(const TexelNeighbours& neighbours, uint8_t from, CoherentMaps* maps);
 
 }  // namespace bodyloom

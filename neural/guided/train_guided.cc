@@ -9,9 +9,9 @@
 #include <span>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/in_range.h"
 #include "bodyloom/geometry/base/prefetcher.h"
-#include "bodyloom/neural/device.h"
+#include "bodyloom/neural/base/device.h"
+#include "bodyloom/neural/base/runtime.h"
 #include "bodyloom/neural/guided/choose_photos.h"
 #include "bodyloom/neural/guided/draw_pose.h"
 #include "bodyloom/neural/guided/guided_batches.h"
@@ -21,11 +21,8 @@
 #include "bodyloom/neural/losses/contextual_loss.h"
 #include "bodyloom/neural/losses/gan_losses.h"
 #include "bodyloom/neural/losses/image_losses.h"
-#include "bodyloom/neural/losses/perceptual_loss.h"
 #include "bodyloom/neural/networks/vgg.h"
-#include "bodyloom/neural/runtime.h"
-#include "bodyloom/neural/training/adam.h"
-#include "bodyloom/neural/training/schedules.h"
+#include "bodyloom/neural/training/optimizers.h"
 #include "bodyloom/neural/training/training_loop.h"
 
 namespace bodyloom {

@@ -8,7 +8,7 @@
 /// λ come from loss_balance.h: in the first `balance_steps` steps RenderNet learns by L1 alone. Without SilNet and
 /// GarNet the silhouette that RenderNet draws itself learns by L1 too.
 ///
-/// The three networks learn side by side, each from true inputs (guided_plan.h says what is hidden of the target),
+/// The three networks learn side by side, each from true inputs (guided_batches.h says what is hidden of the target),
 /// which is the same as one after the other; from share `predicted_from` of the steps on RenderNet sees the silhouette
 /// and the labels that the other two predict, as it will at work.
 ///
@@ -20,12 +20,12 @@
 #include <string>
 #include <vector>
 
+#include "bodyloom/neural/guided/coherent_maps.h"
 #include "bodyloom/neural/guided/guided_config.h"
-#include "bodyloom/neural/guided/guided_picture.h"
 #include "bodyloom/neural/guided/guided_scores.h"
 #include "bodyloom/neural/networks/named_weights.h"
-#include "bodyloom/neural/people/photo_frame.h"
 #include "bodyloom/neural/training/training_run.h"
+#include "bodyloom/render/texture/photo_frame.h"
 
 namespace bodyloom {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "bodyloom/geometry/lifter_weights.h"
+#include "bodyloom/geometry/scene/lifter_weights.h"
 
 namespace bodyloom {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The lifter (geometry/lifter_weights.h) as a LibTorch module, and its weights as plain arrays.
+/// The lifter (geometry/scene/lifter_weights.h) as a LibTorch module, and its weights as plain arrays.
 /// Internal: included by neural's own sources only, because it includes LibTorch.
 #pragma once
 
@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "bodyloom/geometry/lifter_weights.h"
+#include "bodyloom/geometry/scene/lifter_weights.h"
 
 namespace bodyloom {
 

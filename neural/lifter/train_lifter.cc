@@ -6,14 +6,11 @@
 #include <memory>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/in_range.h"
 #include "bodyloom/geometry/base/prefetcher.h"
+#include "bodyloom/neural/base/runtime.h"
 #include "bodyloom/neural/lifter/lifter_loss.h"
 #include "bodyloom/neural/lifter/lifter_module.h"
-#include "bodyloom/neural/muon.h"
-#include "bodyloom/neural/runtime.h"
-#include "bodyloom/neural/training/adam.h"
-#include "bodyloom/neural/training/schedules.h"
+#include "bodyloom/neural/training/optimizers.h"
 #include "bodyloom/neural/training/training_loop.h"
 
 namespace bodyloom {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Trains the lifter (geometry/lifter_weights.h): AdamW with a cosine schedule on windows that a source makes up as
-/// they are needed, exponential moving average of the weights, validation on windows of other seeds.
+/// Trains the lifter (geometry/scene/lifter_weights.h): AdamW with a cosine schedule on windows that a source makes up
+/// as they are needed, exponential moving average of the weights, validation on windows of other seeds.
 ///
 /// A run folder holds `metrics.csv` (a line every `report_every` steps), `checkpoint.bin` (replaced whole or not at
 /// all) and, at the end, what the caller writes. A run that was interrupted goes on from its checkpoint and ends with
@@ -12,13 +12,13 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/lifter_weights.h"
+#include "bodyloom/geometry/scene/lifter_weights.h"
 #include "bodyloom/neural/training/training_run.h"
 
 namespace bodyloom {
 
-/// One window of T frames: what the network reads and what it should predict (tracking/initialise/lifter_input.h,
-/// geometry/lifter_weights.h).
+/// One window of T frames: what the network reads and what it should predict (tracking/lifter/lifter_input.h,
+/// geometry/scene/lifter_weights.h).
 struct LifterExample {
   std::vector<float> features;  ///< T·num_inputs
   std::vector<float> points;    ///< T·21·3
@@ -49,7 +49,7 @@ struct TrainLifterOptions : TrainingRun {
   double learning_rate = 1.5e-3;
   int warmup_steps = 100;
   double weight_decay = 1e-3;
-  bool muon = true;  ///< for the matrices of the blocks (neural/muon.h); false: AdamW for everything
+  bool muon = true;  ///< for the matrices of the blocks (neural/training/optimizers.h); false: AdamW for everything
   double clip_norm = 1;
   double average = 0.998;  ///< of the moving average of the weights
   double nll_weight = 0.05, velocity_weight = 0.3;

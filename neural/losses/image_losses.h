@@ -8,6 +8,9 @@
 #pragma once
 
 #include <torch/torch.h>
+#include <vector>
+
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 
@@ -26,5 +29,37 @@ torch::Tensor SoftLabelCrossEntropy(const torch::Tensor& logits, const torch::Te
 
 /// B×H×W class numbers 0 … K−1 → B×K×H×W one-hot floats; other numbers give a column of zeros.
 torch::Tensor OneHot(const torch::Tensor& classes, int num_classes);
+
+// The perceptual loss: the difference of two images in the features of a network. Internal: includes LibTorch.
+//
+// Takes features, not images, so that those of a target which does not change are computed once:
+// FeatureNetwork vgg(options);
+// const auto target = vgg(image);          // under torch::NoGradGuard, kept
+// loss = PerceptualLoss(vgg(prediction), target);
+
+/// Σ_i w_i mean |features_i − target_i|; w_i = 1 when no weights are given.
+inline torch::Tensor PerceptualLoss(const std::vector<torch::Tensor>& features,
+                                    const std::vector<torch::Tensor>& targets,
+                                    const std::vector<double>& weights = {}) {
+  BODYLOOM_CHECK(
+      !features.empty() && features.size() == targets.size() && (weights.empty() || weights.size() == features.size()),
+      "perceptual loss: ", features.size(), " features, ", targets.size(), " targets and ", weights.size(),
+      " weights, expected as many of each (or no weights)");
+  torch::Tensor loss;
+  for (size_t i = 0; i < features.size(); ++i) {
+    torch::Tensor term = L1Loss(features[i], targets[i]);
+    if (!weights.empty()) term = weights[i] * term;
+    loss = i == 0 ? term : loss + term;
+  }
+  return loss;
+}
+
+/// Divergence of N(μ, σ²) from N(0, 1): −½ Σ (1 + log σ² − μ² − σ²), summed over a sample's numbers, mean over the
+/// batch (the first dimension).
+inline torch::Tensor KlLoss(const torch::Tensor& mean, const torch::Tensor& log_variance) {
+  BODYLOOM_CHECK(mean.sizes() == log_variance.sizes() && mean.dim() >= 1 && mean.size(0) > 0,
+                 "KL loss: means of shape ", mean.sizes(), " and log variances of shape ", log_variance.sizes());
+  return -0.5 * (1 + log_variance - mean.square() - log_variance.exp()).sum() / mean.size(0);
+}
 
 }  // namespace bodyloom

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "bodyloom/neural/image_tensor.h"
+#include "bodyloom/neural/base/image_tensor.h"
 #include "bodyloom/neural/losses/contextual_loss.h"
 #include "bodyloom/neural/networks/vgg.h"
 

@@ -14,7 +14,7 @@
 #include <string>
 
 #include "bodyloom/neural/networks/named_weights.h"
-#include "bodyloom/render/image.h"
+#include "bodyloom/render/image/image.h"
 
 namespace bodyloom {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/image_tensor.h"
+#include "bodyloom/neural/base/image_tensor.h"
 #include "bodyloom/neural/networks/load_weights.h"
 #include "bodyloom/neural/networks/vgg.h"
 

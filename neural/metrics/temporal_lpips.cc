@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "bodyloom/neural/image_tensor.h"
+#include "bodyloom/neural/base/image_tensor.h"
 
 namespace bodyloom {
 

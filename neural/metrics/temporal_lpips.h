@@ -3,8 +3,8 @@
 ///
 /// tLPIPS of frame t = |LPIPS(s_t, s_{t−1}) − LPIPS(g_t, g_{t−1})| with result s and truth g: whether the result
 /// changes as much as the truth does. Pictures that are windows which follow a person are laid over each other first
-/// (Shifted, neural/image_tensor.h): a window that jumps is no change of the picture. A video's value is the mean over
-/// its frames but the first (of every cut). Tables print 100 times that. Source: Chu et al., "Learning Temporal
+/// (Shifted, neural/base/image_tensor.h): a window that jumps is no change of the picture. A video's value is the mean
+/// over its frames but the first (of every cut). Tables print 100 times that. Source: Chu et al., "Learning Temporal
 /// Coherence via Self-Supervision for GAN-based Video Generation", 2020 (which crops and drops two frames at each end;
 /// this does not), as used by Yoon et al., CVPR 2022.
 #pragma once

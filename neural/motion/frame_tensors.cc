@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/device.h"
+#include "bodyloom/neural/base/device.h"
 
 namespace bodyloom {
 namespace {

@@ -4,7 +4,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "bodyloom/geometry/base/in_range.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 

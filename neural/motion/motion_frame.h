@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
+#include <span>
 #include <vector>
 
 namespace bodyloom {
@@ -29,5 +31,48 @@ struct MotionFrame {
 
 /// Fills frame t of a clip; truth only when requested. Called from one thread other than the caller's.
 using MotionFrameSource = std::function<void(int t, bool with_truth, MotionFrame* frame)>;
+
+// A picture rendered by the motion-dependent renderer.
+
+/// Planar, window size.
+struct MotionPicture {
+  int width = 0, height = 0;
+  std::vector<float> image;     ///< 3, RGB in [0, 1], 0 on the background
+  std::vector<float> alpha;     ///< 1, probability of the foreground (1 throughout without the shape decoder)
+  std::vector<float> normals;   ///< 3, camera frame, shortened by alpha; empty without normals
+  std::vector<uint8_t> labels;  ///< likeliest class; empty without the shape decoder
+};
+
+// The reach of clothes and hair beyond the body, so that a renderer need not look for the person elsewhere.
+
+/// The smallest number of pixels r such that squares of side 2r + 1 around the body's pixels hold all but `left_out` of
+/// the foreground (labels other than 0) of the frames; 0 when the frames have no labels or no foreground. Frames
+/// without a body are passed over.
+int ClothesReach(std::span<const MotionFrame> frames, double left_out = 0.001);
+
+// A trained motion-dependent renderer against pictures of the person it was trained on.
+
+/// Means over frames of roll-outs, one a stretch, that begin with nothing. "Foreground" is the true one: labels other
+/// than the background.
+struct MotionScores {
+  double image_l1 = 0;            ///< mean |Â − A| over the foreground and channels
+  double psnr_db = 0;             ///< over the foreground, range 1
+  double label_iou = 0;           ///< mean over the classes other than the background that occur; NaN without labels
+  double foreground_iou = 0;      ///< NaN without labels
+  std::vector<double> class_iou;  ///< by class; NaN where it does not occur; empty without labels
+  double normal_deg = 0;          ///< mean angle over the foreground; NaN without normals
+  double flicker = 0;  ///< mean over the foreground of |(Â_t − Â_{t−1}) − (A_t − A_{t−1})|: errors that move
+  // Of whole windows, both on black; NaN where not measured (window too small, or not requested). Between frames the
+  // window of the one before is laid where it was, as for flicker.
+  double ssim = 0, lpips = 0, tlpips = 0;
+  bool lpips_random_features = true;  ///< LPIPS and tLPIPS compare with nobody else's figures
+  int frames = 0;
+};
+
+/// The same of one frame.
+struct MotionFrameScores {
+  double image_l1 = std::numeric_limits<double>::quiet_NaN(), ssim = image_l1, lpips = image_l1;
+  double tlpips = image_l1;  ///< NaN for a clip's first frame
+};
 
 }  // namespace bodyloom

@@ -9,8 +9,8 @@
 /// Source: Yoon et al., "Learning Motion-Dependent Appearance for High-Fidelity Rendering of Dynamic Humans from a
 /// Single Camera", CVPR 2022, Section 3; channels and levels: neural/motion/motion_config.h.
 ///
-/// With the descriptor dense2d E sees dense UV coordinates and keypoints of ten frames in the picture's plane, and f̂ is
-/// its output at every pixel, on the body and off it.
+/// With the descriptor dense2d E sees dense UV coordinates and keypoints of ten frames in the picture's plane, and f̂
+/// is its output at every pixel, on the body and off it.
 /// With `surface` (not in the paper) f̂ has the rendered UV coordinates (u, v, 1) beside Π f_3D; with `texture`
 /// (neither) also Π of a learned texture. Without shape there is no ŝ: Â = sigmoid a must learn where the person ends.
 /// Without motion f̂ is the rendered UV itself, (u, v, 1) on the body and 0 elsewhere, and the learned texture. Without
@@ -18,14 +18,31 @@
 #pragma once
 
 #include <torch/torch.h>
-
 #include <vector>
 
-#include "bodyloom/neural/motion/learned_texture.h"
 #include "bodyloom/neural/motion/motion_config.h"
 #include "bodyloom/neural/networks/unet.h"
 
 namespace bodyloom {
+
+// A learned texture, the appearance of a person whatever the motion: values by texel, trained with the networks.
+// Internal: includes LibTorch.
+//
+// x = gain · Π T          C channels at the pixels that see the body, 0 elsewhere
+// A x, B x                what the classes' and the colour's logits are without anything that the networks add
+// Source of T: Thies, Zollhöfer, Nießner, "Deferred Neural Rendering", SIGGRAPH 2019; A and B are this project's.
+
+struct LearnedTextureImpl : torch::nn::Module {
+  /// `num_labels` 0: no A. T begins with zeros.
+  LearnedTextureImpl(int size, int features, int num_labels);
+
+  /// x of B×2×h×w coordinates and B×1×h×w body.
+  torch::Tensor forward(const torch::Tensor& uv, const torch::Tensor& body);
+
+  torch::Tensor values;                                                  ///< T: 1×C×S×S
+  torch::nn::Conv2d colour_of_texel{nullptr}, labels_of_texel{nullptr};  ///< B, A
+};
+TORCH_MODULE(LearnedTexture);
 
 /// Of B frames: B×channels×U×U (dense2d: B×channels×h×w), B×2×h×w, B×1×h×w.
 struct MotionInput {

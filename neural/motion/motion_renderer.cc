@@ -3,11 +3,11 @@
 
 #include <span>
 
-#include "bodyloom/neural/device.h"
+#include "bodyloom/neural/base/device.h"
+#include "bodyloom/neural/base/runtime.h"
 #include "bodyloom/neural/motion/frame_tensors.h"
 #include "bodyloom/neural/motion/motion_scorer.h"
 #include "bodyloom/neural/motion/roll_out.h"
-#include "bodyloom/neural/runtime.h"
 #include "bodyloom/neural/training/checkpoint.h"
 
 namespace bodyloom {

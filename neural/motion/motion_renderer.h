@@ -8,17 +8,15 @@
 #include <vector>
 
 #include "bodyloom/neural/metrics/lpips.h"
-#include "bodyloom/neural/metrics/picture_similarity.h"
+#include "bodyloom/neural/metrics/pixel_metrics.h"
 #include "bodyloom/neural/motion/motion_config.h"
 #include "bodyloom/neural/motion/motion_frame.h"
-#include "bodyloom/neural/motion/motion_picture.h"
-#include "bodyloom/neural/motion/motion_scores.h"
 
 namespace bodyloom {
 
 struct MotionRendererOptions {
   int warmup_iterations = 50;  ///< of a clip's first frame, as Kappel et al., CVPR 2021
-  int reach = 0;               ///< of clothes beyond the body, pixels (neural/motion/clothes_reach.h); 0: not known
+  int reach = 0;               ///< of clothes beyond the body, pixels (neural/motion/motion_frame.h); 0: not known
   bool anywhere = false;       ///< what lies beyond reach may still be the person (roll_out.h)
   bool score = false;          ///< compare every frame with the truth that it holds
   /// With `score`: whole windows too, by LPIPS and tLPIPS (empty: not) and SSIM (empty: not).

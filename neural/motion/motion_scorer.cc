@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "bodyloom/neural/device.h"
-#include "bodyloom/neural/image_tensor.h"
+#include "bodyloom/neural/base/device.h"
+#include "bodyloom/neural/base/image_tensor.h"
 
 namespace bodyloom {
 

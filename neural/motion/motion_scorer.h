@@ -7,12 +7,11 @@
 #include <memory>
 #include <optional>
 
-#include "bodyloom/neural/metrics/class_overlap.h"
-#include "bodyloom/neural/metrics/picture_similarity.h"
+#include "bodyloom/neural/metrics/pixel_metrics.h"
 #include "bodyloom/neural/metrics/temporal_lpips.h"
 #include "bodyloom/neural/motion/frame_tensors.h"
+#include "bodyloom/neural/motion/motion_frame.h"
 #include "bodyloom/neural/motion/motion_model.h"
-#include "bodyloom/neural/motion/motion_scores.h"
 
 namespace bodyloom {
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/people/aligned_box.h"
+#include "bodyloom/neural/networks/aligned_box.h"
 
 namespace bodyloom {
 

@@ -8,14 +8,14 @@
 
 #include "bodyloom/neural/motion/motion_frame.h"
 #include "bodyloom/neural/motion/motion_model.h"
-#include "bodyloom/render/pixel_box.h"
+#include "bodyloom/render/image/pixel_box.h"
 
 namespace bodyloom {
 
 /// A box a frame, all of one size: each holds its frame's body and `reach` pixels around it (what the window has of
-/// them) and lies among the networks' strides as the window does (neural/people/aligned_box.h). reach 0: whole windows.
-/// Frames' sides are multiples of `multiple`. Throws std::invalid_argument unless they are of one size and, with a
-/// reach, hold their body masks.
+/// them) and lies among the networks' strides as the window does (neural/networks/aligned_box.h). reach 0: whole
+/// windows. Frames' sides are multiples of `multiple`. Throws std::invalid_argument unless they are of one size and,
+/// with a reach, hold their body masks.
 std::vector<PixelBox> PersonBoxes(std::span<const MotionFrame> frames, int reach, int multiple);
 
 /// The box's pixels of a frame's maps and pictures; everything else as it is (before_x and before_y are the window's).

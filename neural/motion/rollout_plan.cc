@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/split_mix.h"
+#include "bodyloom/geometry/base/hash_random.h"
 
 namespace bodyloom {
 

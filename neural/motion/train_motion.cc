@@ -7,22 +7,17 @@
 #include <span>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/in_range.h"
-#include "bodyloom/neural/device.h"
+#include "bodyloom/neural/base/device.h"
+#include "bodyloom/neural/base/runtime.h"
 #include "bodyloom/neural/losses/gan_losses.h"
 #include "bodyloom/neural/losses/image_losses.h"
-#include "bodyloom/neural/losses/perceptual_loss.h"
 #include "bodyloom/neural/motion/motion_batches.h"
 #include "bodyloom/neural/motion/motion_scorer.h"
 #include "bodyloom/neural/motion/roll_out.h"
-#include "bodyloom/neural/motion/rollout_memory.h"
 #include "bodyloom/neural/networks/patch_discriminator.h"
 #include "bodyloom/neural/networks/vgg.h"
-#include "bodyloom/neural/runtime.h"
-#include "bodyloom/neural/training/adam.h"
-#include "bodyloom/neural/training/schedules.h"
+#include "bodyloom/neural/training/optimizers.h"
 #include "bodyloom/neural/training/training_loop.h"
-#include "bodyloom/neural/training/weight_average.h"
 
 namespace bodyloom {
 namespace {

@@ -17,10 +17,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/neural/metrics/picture_similarity.h"
+#include "bodyloom/neural/metrics/pixel_metrics.h"
 #include "bodyloom/neural/motion/motion_config.h"
 #include "bodyloom/neural/motion/motion_frame.h"
-#include "bodyloom/neural/motion/motion_scores.h"
 #include "bodyloom/neural/motion/rollout_plan.h"
 #include "bodyloom/neural/networks/named_weights.h"
 #include "bodyloom/neural/training/training_run.h"
@@ -53,7 +52,7 @@ struct TrainMotionOptions : TrainingRun {
   bool shape_by_cross_entropy = true;
   double shape_weight = 10, normal_weight = 1, perceptual_weight = 1, gan_weight = 0.01;
   /// Validated and kept is the average of the weights over the last part of the run, this share of the steps old in the
-  /// mean (neural/training/weight_average.h); 0: the last step's weights.
+  /// mean (neural/training/optimizers.h); 0: the last step's weights.
   double average = 0.1;
   int warmup_iterations = 10;        ///< of the first frame, before a roll-out counts
   WeightsFrom vgg16;                 ///< empty: a seeded random-feature substitute

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A picture U-Net (render/person/picture_unet.h) as a module that learns. Internal: includes LibTorch.
+/// A picture U-Net (render/image/parser_weights.h) as a module that learns. Internal: includes LibTorch.
 #pragma once
 
 #include <torch/torch.h>
 
 #include <vector>
 
-#include "bodyloom/render/person/picture_unet.h"
+#include "bodyloom/render/image/parser_weights.h"
 
 namespace bodyloom {
 

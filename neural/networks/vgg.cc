@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/device.h"
+#include "bodyloom/neural/base/device.h"
 
 namespace bodyloom {
 

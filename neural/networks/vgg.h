@@ -61,8 +61,8 @@ struct FeatureNetworkImpl : torch::nn::Module {
 };
 TORCH_MODULE(FeatureNetwork);
 
-/// On the networks' device (neural/device.h), with the layers of these names as taps; `weights` empty: a random-feature
-/// substitute whose channels are divided. Throws as FeatureNetworkImpl::Load.
+/// On the networks' device (neural/base/device.h), with the layers of these names as taps; `weights` empty: a
+/// random-feature substitute whose channels are divided. Throws as FeatureNetworkImpl::Load.
 FeatureNetwork MakeFeatureNetwork(FeatureTrunk trunk, const std::vector<std::string>& layers,
                                   const WeightsFrom& weights, int random_features_divisor);
 

@@ -5,12 +5,12 @@
 #include <utility>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/device.h"
-#include "bodyloom/neural/metrics/class_overlap.h"
+#include "bodyloom/neural/base/device.h"
+#include "bodyloom/neural/base/runtime.h"
+#include "bodyloom/neural/metrics/pixel_metrics.h"
 #include "bodyloom/neural/networks/picture_unet_module.h"
-#include "bodyloom/neural/pictures/picture_crops.h"
-#include "bodyloom/neural/pictures/picture_trainer.h"
-#include "bodyloom/neural/runtime.h"
+#include "bodyloom/neural/parser/picture_crops.h"
+#include "bodyloom/neural/parser/picture_trainer.h"
 
 namespace bodyloom {
 namespace {

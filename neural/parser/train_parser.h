@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Trains the clothes parser (render/person/parser_weights.h) on people whose labels are known.
+/// Trains the clothes parser (render/image/parser_weights.h) on people whose labels are known.
 ///
 ///   loss = − mean log softmax(answers)_c,   c: the true class, over the pixels of the mask that truly show the person
 /// Half of the crops lie around a pixel where classes meet, the others anywhere; each is in a random light
-/// (neural/pictures/picture_crops.h). Steps as neural/pictures/picture_trainer.h has them.
+/// (neural/parser/picture_crops.h). Steps as neural/parser/picture_trainer.h has them.
 ///
 /// Writes into run_dir: checkpoint.bin and metrics.csv. A run that goes on from a checkpoint ends with the same bytes
 /// as one that was never interrupted (same binary, machine and threads).
@@ -13,10 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/neural/pictures/packed_picture.h"
-#include "bodyloom/neural/pictures/picture_training.h"
+#include "bodyloom/render/image/parser_weights.h"
+#include "bodyloom/neural/parser/packed_picture.h"
 #include "bodyloom/neural/training/training_run.h"
-#include "bodyloom/render/person/parser_weights.h"
 
 namespace bodyloom {
 
@@ -49,8 +48,9 @@ struct TrainParserResult {
   ParserWeights weights;  ///< without a recipe and people's size
 };
 
-/// Pictures have the planes of kParserPlanes and the truth of ParserTruth. Throws std::invalid_argument for options that
-/// are not valid, no picture to train on, or one whose sizes do not fit, std::runtime_error for files that cannot be used.
+/// Pictures have the planes of kParserPlanes and the truth of ParserTruth. Throws std::invalid_argument for options
+/// that are not valid, no picture to train on, or one whose sizes do not fit, std::runtime_error for files that cannot
+/// be used.
 TrainParserResult TrainParser(const std::vector<PackedPicture>& train, const std::vector<PackedPicture>& validation,
                               const TrainParserOptions& options);
 

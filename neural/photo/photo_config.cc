@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/in_range.h"
 
 namespace bodyloom {
 namespace {

@@ -23,8 +23,8 @@ struct PhotoProfile {
   /// Instance norm takes colours out of every map before; how they come back is learned, which takes longer than two
   /// cores can wait. Not in the paper.
   bool render_passes_input = false;
-  /// FeatureNet sees guesses at the colours of texels that the photo does not show (neural/photo/guess_texture.h). Not
-  /// in the paper.
+  /// FeatureNet sees guesses at the colours of texels that the photo does not show
+  /// (render/texture/complete/partial_texture.h). Not in the paper.
   bool guesses_unseen = false;
   /// Of RenderNet's transposed convolutions: 3 (the paper's) or 4 (no grain of every other pixel).
   int render_up_kernel = 3;

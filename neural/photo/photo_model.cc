@@ -2,7 +2,6 @@
 #include "bodyloom/neural/photo/photo_model.h"
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/networks/pull_push.h"
 #include "bodyloom/neural/networks/uv_sampler.h"
 
 namespace bodyloom {

@@ -2,11 +2,12 @@
 /// The networks of the one-photo renderer. Internal: includes LibTorch.
 ///
 ///   F_s = f(T_s + G_s, M_s)      FeatureNet on the partial texture's colours, guesses at those of the other texels
-///                                (neural/photo/guess_texture.h; the paper has none) and visibility, in UV; d channels
+///                                (render/texture/complete/partial_texture.h; the paper has none) and visibility, in
+///                                UV; d channels
 ///   R   = r(F_s, P_t)            bilinear look-up at the target pose's surface coordinates, 0 off the body
 ///   c, α = tanh, sigmoid g(R)    RenderNet;  I = α (c + 1)/2. Where its last convolution sees R too
 ///                                (PhotoProfile::render_passes_input), it also sees R's colours filled outwards from
-///                                the body (neural/networks/pull_push.h), which clothes beyond the body begin with,
+///                                the body (neural/networks/uv_sampler.h), which clothes beyond the body begin with,
 ///                                and the body's silhouette
 /// Source: Sarkar et al., "Neural Re-Rendering of Humans from a Single Image", ECCV 2020, Sections 3.2–3.4. The paper's
 /// RenderNet has three outputs on its photographs' plain background; the fourth is this project's
@@ -21,7 +22,6 @@
 
 #include <torch/torch.h>
 
-#include "bodyloom/neural/networks/feature_unet.h"
 #include "bodyloom/neural/networks/patch_discriminator.h"
 #include "bodyloom/neural/networks/residual_generator.h"
 #include "bodyloom/neural/photo/photo_config.h"

@@ -4,9 +4,9 @@
 #include <span>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/device.h"
+#include "bodyloom/neural/base/device.h"
+#include "bodyloom/neural/base/runtime.h"
 #include "bodyloom/neural/photo/render_photo.h"
-#include "bodyloom/neural/runtime.h"
 #include "bodyloom/neural/training/checkpoint.h"
 
 namespace bodyloom {

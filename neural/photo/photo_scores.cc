@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/image_tensor.h"
+#include "bodyloom/neural/base/image_tensor.h"
 
 namespace bodyloom {
 namespace {

@@ -4,11 +4,10 @@
 
 #include <utility>
 
-#include "bodyloom/neural/metrics/class_overlap.h"
 #include "bodyloom/neural/metrics/lpips.h"
-#include "bodyloom/neural/metrics/picture_similarity.h"
-#include "bodyloom/neural/people/photo_frame.h"
+#include "bodyloom/neural/metrics/pixel_metrics.h"
 #include "bodyloom/neural/photo/photo_picture.h"
+#include "bodyloom/render/texture/photo_frame.h"
 
 namespace bodyloom {
 

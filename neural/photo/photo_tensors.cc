@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/device.h"
+#include "bodyloom/neural/base/device.h"
 
 namespace bodyloom {
 

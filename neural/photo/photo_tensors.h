@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/neural/people/photo_frame.h"
-#include "bodyloom/neural/photo/partial_texture.h"
 #include "bodyloom/neural/photo/photo_window.h"
+#include "bodyloom/render/texture/complete/partial_texture.h"
+#include "bodyloom/render/texture/photo_frame.h"
 
 namespace bodyloom {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/motion/clothes_reach.h"
+#include "bodyloom/neural/motion/motion_frame.h"
 
 namespace bodyloom {
 namespace {

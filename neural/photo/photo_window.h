@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/neural/people/photo_frame.h"
+#include "bodyloom/render/texture/photo_frame.h"
 
 namespace bodyloom {
 
@@ -27,14 +27,14 @@ PhotoWindow WindowAround(const PhotoFrame& frame, int reach, int smallest_side);
 /// The same windows grown to the sides of the largest, for a batch; `size` is the frames' side.
 std::vector<PhotoWindow> EqualWindows(std::span<const PhotoWindow> windows, int size);
 
-/// How far clothes and hair reach beyond the body, pixels (neural/motion/clothes_reach.h), over some frames of the
+/// How far clothes and hair reach beyond the body, pixels (neural/motion/motion_frame.h), over some frames of the
 /// persons; 0 when they have no labels. Frames are spread over persons and frames alike.
 int PhotoReach(const PhotoSource& source, std::span<const int> persons, int num_frames = 64);
 
 /// Box of the head's parts (DensePose 23 and 24) in the frame; width 0 where it is not to be seen, or where its face
 /// does not look at the camera: less than two thirds of its pixels show texels of its front. Of the built-in body's
 /// head seen from 0, 45, 60 and 90 degrees past the face they are 0.89, 0.74, 0.66 and 0.48. `back_of_head`: U × U
-/// (neural/people/back_of_head.h). Throws std::invalid_argument for sizes that do not fit.
+/// (render/texture/complete/body_part_map.h). Throws std::invalid_argument for sizes that do not fit.
 PhotoWindow FaceBox(const PhotoFrame& frame, std::span<const uint8_t> back_of_head);
 
 }  // namespace bodyloom

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/neural/device.h"
+#include "bodyloom/neural/base/device.h"
 
 namespace bodyloom {
 

@@ -9,22 +9,20 @@
 #include <span>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/in_range.h"
 #include "bodyloom/geometry/base/prefetcher.h"
-#include "bodyloom/neural/device.h"
+#include "bodyloom/neural/base/device.h"
+#include "bodyloom/neural/base/runtime.h"
 #include "bodyloom/neural/losses/gan_losses.h"
-#include "bodyloom/neural/losses/perceptual_loss.h"
+#include "bodyloom/neural/losses/image_losses.h"
 #include "bodyloom/neural/networks/vgg.h"
-#include "bodyloom/neural/people/back_of_head.h"
-#include "bodyloom/neural/photo/guess_texture.h"
 #include "bodyloom/neural/photo/photo_batch.h"
 #include "bodyloom/neural/photo/photo_losses.h"
 #include "bodyloom/neural/photo/photo_model.h"
 #include "bodyloom/neural/photo/render_photo.h"
-#include "bodyloom/neural/runtime.h"
-#include "bodyloom/neural/training/adam.h"
-#include "bodyloom/neural/training/schedules.h"
+#include "bodyloom/neural/training/optimizers.h"
 #include "bodyloom/neural/training/training_loop.h"
+#include "bodyloom/render/texture/complete/body_part_map.h"
+#include "bodyloom/render/texture/complete/partial_texture.h"
 
 namespace bodyloom {
 namespace {

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/in_range.h"
 #include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/neural/training/run_files.h"
 

@@ -11,7 +11,7 @@ struct TrainingRun {
   int steps = 20000;
   uint64_t seed = 1;
   int num_threads = 0;                                                  ///< of LibTorch; 0: all cores
-  std::string device = "cpu";                                           ///< or "cuda" (neural/runtime.h)
+  std::string device = "cpu";                                           ///< or "cuda" (neural/base/runtime.h)
   int report_every = 20, validate_every = 500, checkpoint_every = 250;  ///< steps
   int patience = 0;         ///< stop after so many validations without a better one (0: never), where there are any
   std::string run_dir;      ///< exists; checkpoint.bin and metrics.csv are written here

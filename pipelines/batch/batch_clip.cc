@@ -13,10 +13,9 @@
 #include "bodyloom/data_tools/formats/json_reader.h"
 #include "bodyloom/data_tools/formats/printable.h"
 #include "bodyloom/data_tools/formats/sha256.h"
-#include "bodyloom/data_tools/observations/nothing_to_track.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/refuse.h"
-#include "bodyloom/pipelines/fixed_text.h"
+#include "bodyloom/geometry/scene/observations.h"
+#include "bodyloom/pipelines/report_text.h"
 #include "bodyloom/pipelines/track/track_clip.h"
 
 namespace bodyloom {

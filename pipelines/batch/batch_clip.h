@@ -8,8 +8,8 @@
 #include <variant>
 #include <vector>
 
+#include "bodyloom/geometry/base/callbacks.h"
 #include "bodyloom/pipelines/batch/manifest.h"
-#include "bodyloom/pipelines/callbacks.h"
 #include "bodyloom/pipelines/track/track_people_clip.h"
 #include "bodyloom/pipelines/track/track_request.h"
 

@@ -12,8 +12,8 @@
 
 #include "bodyloom/data_tools/formats/json_reader.h"
 #include "bodyloom/data_tools/formats/printable.h"
-#include "bodyloom/geometry/base/refuse.h"
-#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/geometry/base/callbacks.h"
+#include "bodyloom/geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

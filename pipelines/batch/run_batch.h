@@ -16,8 +16,8 @@
 #include <string>
 #include <vector>
 
+#include "bodyloom/geometry/base/callbacks.h"
 #include "bodyloom/pipelines/batch/batch_clip.h"
-#include "bodyloom/pipelines/callbacks.h"
 
 namespace bodyloom {
 

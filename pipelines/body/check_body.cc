@@ -8,15 +8,15 @@
 #include <utility>
 
 #include "bodyloom/data_tools/body/body_io.h"
-#include "bodyloom/data_tools/body/body_or_builtin.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/units.h"
+#include "bodyloom/geometry/scene/track.h"
 #include "bodyloom/pipelines/files.h"
-#include "bodyloom/pipelines/fixed_text.h"
 #include "bodyloom/pipelines/render/render_track.h"
-#include "bodyloom/pipelines/track_fits_body.h"
-#include "bodyloom/render/overlay.h"
+#include "bodyloom/pipelines/report_text.h"
+#include "bodyloom/render/view/overlay.h"
 
 namespace bodyloom {
 namespace {

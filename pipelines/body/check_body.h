@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "bodyloom/data_tools/body/repair_body.h"
-#include "bodyloom/geometry/mesh_check.h"
-#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/geometry/base/callbacks.h"
+#include "bodyloom/geometry/mesh/mesh_check.h"
 
 namespace bodyloom {
 

@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "bodyloom/data_tools/body/body_io.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/pipelines/files.h"
 
 namespace bodyloom {
@@ -25,6 +27,22 @@ ConvertBodyReport ConvertBody(const ConvertBodyRequest& request, const PipelineC
   }
   SaveBodyCompact(request.out, body);
   return {DescribeBody(BodyModel(std::move(body))), request.out};
+}
+
+BuildBuiltinBodyReport BuildBuiltinBody(const BuildBuiltinBodyRequest& request, const PipelineCallbacks& callbacks) {
+  RequireReadable(request.cage, "cage");
+  RequireReadable(request.parts, "parts on the cage");
+  RequireDistinct({request.cage, request.parts}, {request.out});
+  RequireWritable(request.out);
+  const BuiltinBodySources sources =
+      request.cage.empty() ? EmbeddedBuiltinBodySources() : ReadBuiltinBodySources(request.cage, request.parts);
+  callbacks.Update("build", 0);
+  BuildBuiltinBodyReport report;
+  report.out = request.out;
+  BodyModelData body = MakeBuiltinBody(sources, &report.summary);
+  SaveBodyCompact(request.out, body);
+  report.description = DescribeBody(BodyModel(std::move(body)));
+  return report;
 }
 
 }  // namespace bodyloom

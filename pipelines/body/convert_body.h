@@ -5,7 +5,8 @@
 #include <string>
 
 #include "bodyloom/data_tools/body/body_io.h"
-#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/data_tools/body_making/make_builtin_body.h"
+#include "bodyloom/geometry/base/callbacks.h"
 
 namespace bodyloom {
 
@@ -25,5 +26,23 @@ struct ConvertBodyReport {
 /// Says how many faces have a part when parts were given. Throws std::runtime_error naming a file that cannot be used,
 /// RequestError for a file both read and written, Cancelled.
 ConvertBodyReport ConvertBody(const ConvertBodyRequest& request, const PipelineCallbacks& callbacks = {});
+
+// The built-in body as a file, built from its cage (data_tools/body_making/make_builtin_body.h).
+
+struct BuildBuiltinBodyRequest {
+  std::string cage, parts;  ///< another cage, with weights, shapes and charts on it; both or neither
+  std::string out;          ///< the compact body, .npz
+};
+
+struct BuildBuiltinBodyReport {
+  MakeBuiltinBodySummary summary;
+  std::string description;  ///< DescribeBody of what was written
+  std::string out;
+};
+
+/// Throws std::runtime_error naming a file that cannot be used, RequestError for a file both read and written,
+/// Cancelled.
+BuildBuiltinBodyReport BuildBuiltinBody(const BuildBuiltinBodyRequest& request,
+                                        const PipelineCallbacks& callbacks = {});
 
 }  // namespace bodyloom

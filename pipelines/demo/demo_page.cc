@@ -5,9 +5,9 @@
 
 #include "bodyloom/data_tools/video/video_reader.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/pipelines/fixed_text.h"
 #include "bodyloom/pipelines/page/report_page.h"
-#include "bodyloom/render/contact_sheet.h"
+#include "bodyloom/pipelines/report_text.h"
+#include "bodyloom/render/view/contact_sheet.h"
 
 namespace bodyloom {
 namespace {

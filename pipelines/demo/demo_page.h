@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "bodyloom/data_tools/evaluation/evaluation.h"
-#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/scene/track.h"
 #include "bodyloom/pipelines/track/track_report.h"
-#include "bodyloom/render/image.h"
+#include "bodyloom/render/image/image.h"
 
 namespace bodyloom {
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "bodyloom/data_tools/evaluation/evaluation.h"
-#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/geometry/base/callbacks.h"
 #include "bodyloom/pipelines/track/track_report.h"
 
 namespace bodyloom {

@@ -5,19 +5,20 @@
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/body/body_or_builtin.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/motion/track_io.h"
+#include "bodyloom/data_tools/observations/load_cameras.h"
 #include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/geometry/base/callbacks.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/pipelines/describe/axes_pose.h"
+#include "bodyloom/geometry/scene/track.h"
 #include "bodyloom/pipelines/files.h"
-#include "bodyloom/pipelines/peak_memory.h"
 #include "bodyloom/pipelines/report_json.h"
-#include "bodyloom/pipelines/track_fits_body.h"
 
 namespace bodyloom {
 namespace {
@@ -130,6 +131,24 @@ std::string ToJson(const DescribeClipReport& report) {
                                        {"peak_memory_bytes", report.peak_memory_bytes},
                                        {"outputs", {report.out, DescriptorHeaderPath(report.out)}}};
   return json.dump(1) + "\n";
+}
+
+namespace {
+
+CameraPose WorldPoseOf(const std::string& track) {
+  if (track.empty()) return LevelCamera();
+  const std::optional<WorldFrame> world = ReadTrack(track, MovingCamera::kTake).world;
+  return world ? world->camera_pose() : LevelCamera();
+}
+
+}  // namespace
+
+void SetAxesPose(const std::string& cameras, const std::string& view, const std::string& track, SurfaceMotion* motion) {
+  if (motion->frame == SurfaceFrame::kWorld) {
+    motion->camera_pose = cameras.empty() ? WorldPoseOf(track) : FindCamera(LoadCameras(cameras), view, cameras).pose;
+  } else if (!cameras.empty()) {
+    throw RequestError("--cameras is for --frame world");
+  }
 }
 
 }  // namespace bodyloom

@@ -6,7 +6,8 @@
 #include <string>
 
 #include "bodyloom/data_tools/descriptors/describe_track.h"
-#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/geometry/base/callbacks.h"
+#include "bodyloom/geometry/uv_maps/descriptor_options.h"
 
 namespace bodyloom {
 
@@ -39,5 +40,10 @@ DescribeClipReport DescribeClip(const DescribeClipRequest& request, const Pipeli
 std::string ToText(const DescribeClipReport& report);
 /// The same as one JSON object.
 std::string ToJson(const DescribeClipReport& report);
+
+/// The camera's pose for SurfaceFrame::kWorld: that of `view` in the camera file; without one that of the world of
+/// the file `track` (geometry/scene/world_frame.h), or a level camera when it does not say or there is none. Other axes
+/// need none. Throws RequestError for a camera file with other axes, std::runtime_error for one that cannot be used.
+void SetAxesPose(const std::string& cameras, const std::string& view, const std::string& track, SurfaceMotion* motion);
 
 }  // namespace bodyloom

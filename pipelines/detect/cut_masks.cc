@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/masks/background_cut.h"
-#include "bodyloom/data_tools/masks/still_background.h"
 #include "bodyloom/data_tools/observations/people.h"
 #include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/tracking/detection/background_cut.h"
+#include "bodyloom/tracking/detection/still_background.h"
 
 namespace bodyloom {
 namespace {

@@ -7,18 +7,18 @@
 #include <optional>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/body/body_or_builtin.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/observations/nothing_to_track.h"
 #include "bodyloom/data_tools/observations/observations_npz.h"
 #include "bodyloom/data_tools/observations/part_labels.h"
 #include "bodyloom/data_tools/observations/people_npz.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/percentile.h"
+#include "bodyloom/geometry/scene/observations.h"
 #include "bodyloom/pipelines/detect/cut_masks.h"
 #include "bodyloom/pipelines/files.h"
-#include "bodyloom/pipelines/fixed_text.h"
 #include "bodyloom/pipelines/report_json.h"
+#include "bodyloom/pipelines/report_text.h"
 
 namespace bodyloom {
 namespace {

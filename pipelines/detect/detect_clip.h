@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "bodyloom/geometry/base/callbacks.h"
 #include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/pipelines/callbacks.h"
 #include "bodyloom/pipelines/detect/detect_dense.h"
 #include "bodyloom/pipelines/detect/detect_people.h"
 
@@ -59,9 +59,9 @@ struct DetectClipReport {
 };
 
 /// Detects and writes. Landmarks are looked for unless nothing but dense keypoints is to be written; where they are,
-/// they say who is meant by `person` (DetectDense). Throws RequestError when nothing is to be written or files coincide,
-/// std::runtime_error naming a file that cannot be used or saying that nobody was found, Cancelled (nothing is written
-/// after it).
+/// they say who is meant by `person` (DetectDense). Throws RequestError when nothing is to be written or files
+/// coincide, std::runtime_error naming a file that cannot be used or saying that nobody was found, Cancelled (nothing
+/// is written after it).
 DetectClipReport DetectClip(const DetectClipRequest& request, const PipelineCallbacks& callbacks = {});
 
 /// What FoundPerson says of each of the clip's people; `tracks` is LinkPeople(people).

@@ -7,9 +7,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/data_tools/observations/visible_rectangle.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/prefetcher.h"
+#include "bodyloom/tracking/detection/frame_detector.h"
 
 namespace bodyloom {
 namespace {

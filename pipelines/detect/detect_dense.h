@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/observations/iuv_to_dense.h"
 #include "bodyloom/data_tools/observations/people.h"
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/chart_image.h"
-#include "bodyloom/geometry/observations.h"
-#include "bodyloom/pipelines/callbacks.h"
-#include "bodyloom/pipelines/detect/frame_source.h"
-#include "bodyloom/render/image.h"
+#include "bodyloom/geometry/base/callbacks.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/scene/label_image.h"
+#include "bodyloom/geometry/scene/observations.h"
+#include "bodyloom/pipelines/detect/detect_people.h"
+#include "bodyloom/render/image/image.h"
+#include "bodyloom/tracking/detection/iuv_to_dense.h"
 
 namespace bodyloom {
 

@@ -9,13 +9,11 @@
 #include <memory>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/body/body_or_builtin.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/export/c3d_writer.h"
-#include "bodyloom/data_tools/export/colmap_writer.h"
+#include "bodyloom/data_tools/export/camera_writers.h"
 #include "bodyloom/data_tools/export/export_scene.h"
 #include "bodyloom/data_tools/export/markers.h"
-#include "bodyloom/data_tools/export/pose2sim_calibration.h"
-#include "bodyloom/data_tools/export/trc_writer.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/formats/npz.h"
 #include "bodyloom/data_tools/motion/amass.h"
@@ -23,11 +21,11 @@
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/stopwatch.h"
+#include "bodyloom/geometry/scene/track.h"
 #include "bodyloom/pipelines/files.h"
-#include "bodyloom/pipelines/track_fits_body.h"
-#include "bodyloom/render/follow_view.h"
-#include "bodyloom/render/overlay.h"
-#include "bodyloom/render/track_world.h"
+#include "bodyloom/render/view/floor.h"
+#include "bodyloom/render/view/follow_view.h"
+#include "bodyloom/render/view/overlay.h"
 
 namespace bodyloom {
 namespace {

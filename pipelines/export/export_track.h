@@ -6,15 +6,16 @@
 #include <vector>
 
 #include "bodyloom/data_tools/export/glb_writer.h"
-#include "bodyloom/data_tools/motion/bvh_rig.h"
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/track.h"
-#include "bodyloom/geometry/world_frame.h"
-#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/data_tools/motion/bvh_writer.h"
+#include "bodyloom/geometry/base/callbacks.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/scene/track.h"
+#include "bodyloom/geometry/scene/world_frame.h"
 
 namespace bodyloom {
 
-/// What is written: in the clip's world (geometry/world_frame.h: metres, y up, ground at y = 0), unless stated otherwise.
+/// What is written: in the clip's world (geometry/scene/world_frame.h: metres, y up, ground at y = 0), unless stated
+/// otherwise.
 enum class TrackForm {
   kVertices,  ///< .npy, frames x vertices x 3, float32; lost frames are NaN; the request's axes
   kJoints,    ///< .npy, frames x joints x 3, float64; lost frames are NaN; the request's axes
@@ -58,8 +59,8 @@ struct ExportTrackReport {
 /// What was written, in which world, how exact: some lines, the last one with a newline.
 std::string ToText(const ExportTrackReport& report);
 
-/// Throws std::runtime_error naming a file that cannot be used, a frame that a track lacks or has lost, or a body that is
-/// not the track's; RequestError for a file both read and written, and for options or tracks that the form does not
+/// Throws std::runtime_error naming a file that cannot be used, a frame that a track lacks or has lost, or a body that
+/// is not the track's; RequestError for a file both read and written, and for options or tracks that the form does not
 /// take; Cancelled.
 ExportTrackReport ExportTrack(const ExportTrackRequest& request, const PipelineCallbacks& callbacks = {});
 

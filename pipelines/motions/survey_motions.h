@@ -8,7 +8,7 @@
 #include "bodyloom/data_tools/evaluation/motion_quality.h"
 #include "bodyloom/data_tools/motion/motion_library.h"
 #include "bodyloom/data_tools/motion/motion_sheet.h"
-#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/geometry/base/callbacks.h"
 
 namespace bodyloom {
 

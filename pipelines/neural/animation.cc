@@ -8,7 +8,7 @@
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/geometry/base/percentile.h"
 #include "bodyloom/pipelines/files.h"
-#include "bodyloom/render/contact_sheet.h"
+#include "bodyloom/render/view/contact_sheet.h"
 
 namespace bodyloom {
 

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "bodyloom/geometry/base/callbacks.h"
 #include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/geometry/track.h"
-#include "bodyloom/pipelines/callbacks.h"
-#include "bodyloom/pipelines/people/composite.h"
-#include "bodyloom/render/image.h"
+#include "bodyloom/geometry/scene/track.h"
+#include "bodyloom/pipelines/animate/background.h"
+#include "bodyloom/render/image/image.h"
 
 namespace bodyloom {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "bodyloom/geometry/base/callbacks.h"
 #include "bodyloom/neural/training/training_run.h"
-#include "bodyloom/pipelines/callbacks.h"
 
 namespace bodyloom {
 
@@ -24,8 +24,8 @@ void WriteRunConfig(const TrainingRun& run);
 /// RUN/preview_000250.png.
 std::string PreviewPath(const TrainingRun& run, int step);
 
-/// Tells the caller of a job how its training goes, as a work of its own ("training 400 steps"). Unlike other jobs' a cancelled training ends with a checkpoint and
-/// a summary (TrainingStatus::kStopped), not with Cancelled.
+/// Tells the caller of a job how its training goes, as a work of its own ("training 400 steps"). Unlike other jobs' a
+/// cancelled training ends with a checkpoint and a summary (TrainingStatus::kStopped), not with Cancelled.
 class TrainingProgress {
  public:
   /// Begins the work.

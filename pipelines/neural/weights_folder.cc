@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "bodyloom/data_tools/formats/weights_file.h"
+#include "bodyloom/neural/cards/network_cards.h"
 
 namespace bodyloom {
 namespace {
@@ -63,6 +64,14 @@ std::string ToText(const WeightsFolder& weights) {
             (from.empty() ? "not there" : fs::path(from.source).filename().string());
   }
   return text;
+}
+
+std::string NetworkCard(NeuralRenderer renderer, const std::string& profile) {
+  if (renderer == NeuralRenderer::kPhoto) return PhotoCard({PhotoProfileNamed(profile)});
+  if (renderer == NeuralRenderer::kGuided) return GuidedCard({GuidedProfileNamed(profile)});
+  MotionConfig config;
+  config.profile = MotionProfileNamed(profile);
+  return MotionCard(config);
 }
 
 }  // namespace bodyloom

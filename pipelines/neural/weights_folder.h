@@ -9,6 +9,7 @@
 
 #include <string>
 
+#include "bodyloom/data_tools/evaluation/ssim.h"
 #include "bodyloom/neural/networks/named_weights.h"
 
 namespace bodyloom {
@@ -25,5 +26,17 @@ WeightsFolder ReadWeightsFolder(const std::string& folder);
 
 /// "vgg19 vgg19.pth, sphereface not there", one line for the user.
 std::string ToText(const WeightsFolder& weights);
+
+/// SSIM of the windows that renderers draw, whole, on black: what training and animation report.
+inline constexpr SsimPreset kWindowSsim = SsimPreset::kWang2004;
+inline double WindowSsim(const Image& truth, const Image& result) { return Ssim(truth, result, kWindowSsim); }
+
+// Architecture cards of a renderer's networks, which `bodyloom neural card` prints.
+
+enum class NeuralRenderer { kMotion, kPhoto, kGuided };
+
+/// Names, shapes, parameters and multiply-adds of all layers, a table. `profile`: "paper", "cpu" or "tiny". Throws
+/// std::invalid_argument for other names.
+std::string NetworkCard(NeuralRenderer renderer, const std::string& profile);
 
 }  // namespace bodyloom

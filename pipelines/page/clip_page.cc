@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/pipelines/fixed_text.h"
 #include "bodyloom/pipelines/page/report_page.h"
+#include "bodyloom/pipelines/report_text.h"
 
 extern "C" const unsigned char bodyloom_page_viewer_begin[], bodyloom_page_viewer_end[];
 

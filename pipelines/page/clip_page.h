@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A tracked clip as one HTML file that opens from disk: the video beside the bodies in their world, turned and scrubbed
-/// by hand, a timeline of residuals, statuses and uncertainty, text, and files to take away. Nothing is fetched from
-/// elsewhere: scene, video and the script that shows them (assets/page/viewer.js) are in the page.
+/// A tracked clip as one HTML file that opens from disk: the video beside the bodies in their world, turned and
+/// scrubbed by hand, a timeline of residuals, statuses and uncertainty, text, and files to take away. Nothing is
+/// fetched from elsewhere: scene, video and the script that shows them (assets/page/viewer.js) are in the page.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/arrays.h"
-#include "bodyloom/geometry/track.h"
-#include "bodyloom/tracking/track_summary.h"
+#include "bodyloom/geometry/math/arrays.h"
+#include "bodyloom/geometry/scene/track.h"
+#include "bodyloom/tracking/problem/track_summary.h"
 
 namespace bodyloom {
 

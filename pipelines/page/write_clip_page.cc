@@ -14,12 +14,12 @@
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/data_tools/video/video_encoder.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/camera_path.h"
+#include "bodyloom/geometry/scene/camera_path.h"
 #include "bodyloom/pipelines/page/clip_page.h"
-#include "bodyloom/pipelines/texture/person_texture.h"
 #include "bodyloom/pipelines/video/track_video.h"
-#include "bodyloom/render/image.h"
-#include "bodyloom/render/track_world.h"
+#include "bodyloom/render/image/image.h"
+#include "bodyloom/render/texture/complete/person_texture.h"
+#include "bodyloom/render/view/floor.h"
 
 namespace bodyloom {
 namespace {
@@ -136,8 +136,8 @@ struct Seen {
   std::vector<std::string> textures;
 };
 
-/// The video's picture of every moment, evenly spaced (where the video has none the last one stays), and what it shows of
-/// the people.
+/// The video's picture of every moment, evenly spaced (where the video has none the last one stays), and what it shows
+/// of the people.
 Seen SeenIn(const ClipPageRequest& request, const std::vector<double>& moments, double fps,
             const PipelineCallbacks& callbacks) {
   TrackVideo video(request.video, *request.people[0].track, request.video_px_from_camera_px, request.video_offset);

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "bodyloom/data_tools/observations/load_cameras.h"
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/track.h"
-#include "bodyloom/pipelines/callbacks.h"
-#include "bodyloom/tracking/track_summary.h"
+#include "bodyloom/geometry/base/callbacks.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/scene/track.h"
+#include "bodyloom/tracking/problem/track_summary.h"
 
 namespace bodyloom {
 
@@ -37,15 +37,15 @@ struct ClipPageRequest {
 /// The longer side of the page's video at most, pixels: a minute of it then takes some 10 MB.
 inline constexpr int kPageVideoPx = 640;
 
-/// Bodies wear what the video shows of them: colours of this many pictures at most, spread over the clip, in a texture of
-/// kPageTextureTexels a side.
+/// Bodies wear what the video shows of them: colours of this many pictures at most, spread over the clip, in a texture
+/// of kPageTextureTexels a side.
 inline constexpr int kPageTexturePictures = 60;
 inline constexpr int kPageTextureTexels = 512;
 
 /// Writes the page, whole or not at all. Frames of two tracks are the same moment when their timestamps are equal. What
 /// a .bvh cannot say (lost frames, uneven time) has none among its files. Progress is told as "report". Throws
-/// std::invalid_argument when nobody is given or a track does not fit its body, std::runtime_error for files that cannot
-/// be read or written, and Cancelled.
+/// std::invalid_argument when nobody is given or a track does not fit its body, std::runtime_error for files that
+/// cannot be read or written, and Cancelled.
 void WriteClipPage(const ClipPageRequest& request, const PipelineCallbacks& callbacks = {});
 
 }  // namespace bodyloom

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/formats/files_below.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/learned/pose_prior_io.h"
 #include "bodyloom/data_tools/motion/load_motion.h"
 

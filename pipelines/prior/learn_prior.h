@@ -5,7 +5,7 @@
 #include <string>
 
 #include "bodyloom/data_tools/learned/pose_prior_learning.h"
-#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/geometry/base/callbacks.h"
 
 namespace bodyloom {
 

@@ -7,11 +7,11 @@
 #include <stdexcept>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/camera_path.h"
-#include "bodyloom/pipelines/fixed_text.h"
-#include "bodyloom/render/contact_sheet.h"
-#include "bodyloom/render/overlay.h"
-#include "bodyloom/render/palette.h"
+#include "bodyloom/geometry/scene/camera_path.h"
+#include "bodyloom/pipelines/report_text.h"
+#include "bodyloom/render/image/palette.h"
+#include "bodyloom/render/view/contact_sheet.h"
+#include "bodyloom/render/view/overlay.h"
 
 namespace bodyloom {
 namespace {

@@ -8,14 +8,14 @@
 #include <vector>
 
 #include "bodyloom/data_tools/evaluation/vertex_errors.h"
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/track.h"
-#include "bodyloom/render/attribute_picture.h"
-#include "bodyloom/render/error_colours.h"
-#include "bodyloom/render/floor.h"
-#include "bodyloom/render/follow_view.h"
-#include "bodyloom/render/image.h"
-#include "bodyloom/render/shaded_mesh.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/scene/track.h"
+#include "bodyloom/render/image/image.h"
+#include "bodyloom/render/view/attribute_picture.h"
+#include "bodyloom/render/view/error_colours.h"
+#include "bodyloom/render/view/floor.h"
+#include "bodyloom/render/view/follow_view.h"
+#include "bodyloom/render/view/shaded_mesh.h"
 
 namespace bodyloom {
 

@@ -10,13 +10,13 @@
 #include <stdexcept>
 
 #include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/geometry/base/callbacks.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/pipelines/callbacks.h"
-#include "bodyloom/render/caption.h"
-#include "bodyloom/render/contact_sheet.h"
-#include "bodyloom/render/error_colours.h"
-#include "bodyloom/render/palette.h"
-#include "bodyloom/render/resolve_pixels.h"
+#include "bodyloom/render/image/palette.h"
+#include "bodyloom/render/raster/resolve_pixels.h"
+#include "bodyloom/render/view/caption.h"
+#include "bodyloom/render/view/contact_sheet.h"
+#include "bodyloom/render/view/error_colours.h"
 
 namespace bodyloom {
 namespace {

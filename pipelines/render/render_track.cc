@@ -7,19 +7,19 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/body/body_or_builtin.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/geometry/camera_path.h"
+#include "bodyloom/geometry/scene/camera_path.h"
+#include "bodyloom/geometry/scene/track.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/render/render_sinks.h"
-#include "bodyloom/pipelines/track_fits_body.h"
 #include "bodyloom/pipelines/video/track_video.h"
-#include "bodyloom/render/overlay.h"
+#include "bodyloom/render/view/overlay.h"
 
 namespace bodyloom {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/geometry/base/callbacks.h"
 #include "bodyloom/pipelines/render/render_picture.h"
 
 namespace bodyloom {
@@ -48,8 +48,8 @@ std::pair<int, int> FrameRange(const std::string& text, int num_frames, const st
 /// std::runtime_error naming a file that cannot be used, Cancelled. Nothing is left behind then.
 RenderTrackReport RenderTrack(const RenderTrackRequest& request, const PipelineCallbacks& callbacks = {});
 
-/// The same for a track in memory, its body, and, when it is given, a true track to compare with: they take the place of
-/// the request's files, which then name them in titles and messages.
+/// The same for a track in memory, its body, and, when it is given, a true track to compare with: they take the place
+/// of the request's files, which then name them in titles and messages.
 RenderTrackReport RenderTrack(const RenderTrackRequest& request, const BodyModel& body, const Track& track,
                               const Track* truth, const PipelineCallbacks& callbacks = {});
 

@@ -10,7 +10,7 @@
 #include "bodyloom/data_tools/descriptors/dense_history.h"
 #include "bodyloom/data_tools/formats/json_reader.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/rotation_check.h"
+#include "bodyloom/geometry/math/rotation.h"
 #include "bodyloom/pipelines/runs/run_config.h"
 
 namespace bodyloom {

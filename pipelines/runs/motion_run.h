@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/descriptors/surface_motion.h"
+#include "bodyloom/geometry/uv_maps/descriptor_options.h"
 #include "bodyloom/neural/motion/motion_config.h"
 
 namespace bodyloom {
@@ -17,7 +17,7 @@ struct MotionRun {
   MotionConfig config;
   double pixels_per_metre = 0;  ///< of the window: the size that the person was trained at
   double fps = 30;              ///< of the clip; motion is shown at this rate
-  int reach = 0;         ///< pixels that clothes reach beyond the body (neural/motion/clothes_reach.h), 0: not known
+  int reach = 0;         ///< pixels that clothes reach beyond the body (neural/motion/motion_frame.h), 0: not known
   int past = 10;         ///< velocities of so many frames
   SurfaceMotion motion;  ///< axes and velocities of the motion maps; older runs: those that were the only ones
   std::optional<Eigen::VectorXd> betas;  ///< the person's shape; absent in runs from before they held it

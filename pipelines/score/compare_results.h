@@ -7,9 +7,11 @@
 
 #include "bodyloom/data_tools/evaluation/speed_reaction.h"
 #include "bodyloom/data_tools/evaluation/ssim.h"
-#include "bodyloom/pipelines/callbacks.h"
-#include "bodyloom/pipelines/score/compare_report.h"
+#include "bodyloom/geometry/base/callbacks.h"
 #include "bodyloom/pipelines/score/frame_metric.h"
+#include "bodyloom/pipelines/score/metric_table.h"
+#include "bodyloom/render/image/image.h"
+#include "bodyloom/render/view/error_colours.h"
 
 namespace bodyloom {
 
@@ -30,5 +32,19 @@ struct CompareResultsRequest {
 /// Pictures in both folders, or in images/, labels/ and normals/ below both, or two videos; writes the files requested.
 /// Throws std::runtime_error naming a file that cannot be used, Cancelled; nothing but pictures is left behind then.
 CompareResultsReport CompareResults(const CompareResultsRequest& request, const PipelineCallbacks& callbacks = {});
+
+// Pictures of where a picture differs from the truth.
+
+/// Distance of two pictures of one size, pixel by pixel, in grey levels: √(mean over the three channels of (a − b)²), 0
+/// to 255. The mean of its square is the MSE of psnr_db. Throws std::invalid_argument when the sizes differ.
+std::vector<float> PixelErrors(const Image& truth, const Image& result);
+
+/// Truth, result and their distance side by side, each at its own size under its name, and the legend of the colours
+/// below the distance.
+Image ErrorPicture(const Image& truth, const Image& result, const ErrorScale& scale);
+
+/// A metric without columns that writes the ErrorPicture of every frame to FOLDER/NAME.png, the last colour at
+/// `maximum` grey levels.
+FrameMetric ErrorPictures(const std::string& folder, double maximum);
 
 }  // namespace bodyloom

@@ -9,11 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/body/body_or_builtin.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/evaluation/aist_evaluation.h"
-#include "bodyloom/data_tools/evaluation/knee_flexion.h"
+#include "bodyloom/data_tools/evaluation/evaluation.h"
 #include "bodyloom/data_tools/evaluation/part_label_evaluation.h"
-#include "bodyloom/data_tools/evaluation/pose2sim_evaluation.h"
 #include "bodyloom/data_tools/evaluation/self_penetration.h"
 #include "bodyloom/data_tools/evaluation/triangulated_clip.h"
 #include "bodyloom/data_tools/evaluation/truth_evaluation.h"
@@ -23,7 +22,7 @@
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/observations/part_labels.h"
 #include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/camera_path.h"
+#include "bodyloom/geometry/scene/camera_path.h"
 #include "bodyloom/pipelines/files.h"
 
 namespace bodyloom {

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "bodyloom/data_tools/evaluation/evaluation.h"
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/track.h"
-#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/geometry/base/callbacks.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/scene/track.h"
 #include "bodyloom/pipelines/score/rig_clip.h"
 
 namespace bodyloom {
@@ -16,7 +16,7 @@ namespace bodyloom {
 struct EvaluateTrackRequest {
   std::string track;  ///< .npz
   /// What is known, and thereby the protocol: a track or part labels (.npz), an AIST++ folder (keypoints2d/), or a
-  /// Pose2Sim folder (calib_refined.json). Neither this nor `seen`: the track alone (knee_flexion.h).
+  /// Pose2Sim folder (calib_refined.json). Neither this nor `seen`: the track alone (evaluation.h).
   std::string truth;
   /// Instead of `truth`: what the calibrated cameras of a rig saw of the person, two or more; `cameras` is the
   /// calibration, `view` the camera that the track was fitted to (rig_clip.h).

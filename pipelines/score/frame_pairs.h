@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bodyloom/data_tools/evaluation/image_metrics.h"
-#include "bodyloom/render/image.h"
+#include "bodyloom/render/image/image.h"
 
 namespace bodyloom {
 
@@ -28,8 +28,8 @@ class FramePairs {
   /// `mask` may be empty. Names that only one side has are an error unless `common_only`; a missing mask always is.
   /// `runs`: of a clip with cuts, by frame the number of the gap-free run that it lies in; empty: nobody knows of any.
   /// Pictures of a folder follow each other where their names' numbers do (FrameNumberFromName; every fifth frame of a
-  /// clip is no gap of four) and where those numbers lie in one run; names without numbers as they are sorted. Of videos
-  /// without `runs` every frame follows: a cut in the pictures alone is not looked for.
+  /// clip is no gap of four) and where those numbers lie in one run; names without numbers as they are sorted. Of
+  /// videos without `runs` every frame follows: a cut in the pictures alone is not looked for.
   /// Throws std::runtime_error naming the path: nothing there, no pictures, two files of one name, no common name.
   static std::unique_ptr<FramePairs> Open(const std::string& truth, const std::string& result, const std::string& mask,
                                           bool common_only, const std::vector<int>& runs = {});

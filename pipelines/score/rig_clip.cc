@@ -8,12 +8,12 @@
 #include <utility>
 
 #include "bodyloom/data_tools/evaluation/triangulated_clip.h"
-#include "bodyloom/data_tools/observations/cut_frames.h"
+#include "bodyloom/data_tools/observations/frame_numbers.h"
 #include "bodyloom/data_tools/observations/load_cameras.h"
 #include "bodyloom/data_tools/observations/load_detections.h"
+#include "bodyloom/geometry/base/callbacks.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/pipelines/callbacks.h"
-#include "bodyloom/pipelines/track/move_observations.h"
+#include "bodyloom/pipelines/track/detected_people.h"
 #include "bodyloom/pipelines/video/track_video.h"
 
 namespace bodyloom {

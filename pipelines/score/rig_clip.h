@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bodyloom/data_tools/evaluation/held_out_views.h"
-#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 
@@ -22,8 +22,8 @@ RigDetections RigDetectionsFromText(const std::string& text);
 
 /// The clip from the track's first frame on. The cameras ran together: their frames of one number are one moment, and
 /// the frame of the track's first timestamp is looked up in the detections of `view`, the camera that it was fitted to.
-/// Joints are triangulated (triangulated_clip.h). Throws RequestError when there are fewer than two cameras or `view` is
-/// none of them, std::runtime_error naming a file that cannot be used or whose frames do not reach the track.
+/// Joints are triangulated (triangulated_clip.h). Throws RequestError when there are fewer than two cameras or `view`
+/// is none of them, std::runtime_error naming a file that cannot be used or whose frames do not reach the track.
 MultiViewClip ReadRigClip(const std::string& cameras, const std::vector<RigDetections>& seen, const std::string& view,
                           const Track& track);
 

@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 

@@ -5,18 +5,18 @@
 #include <memory>
 #include <sstream>
 
-#include "bodyloom/data_tools/body/body_or_builtin.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/observations/load_camera_path.h"
 #include "bodyloom/data_tools/observations/load_cameras.h"
 #include "bodyloom/data_tools/observations/observations_npz.h"
 #include "bodyloom/data_tools/video/video_writer.h"
-#include "bodyloom/geometry/camera_path.h"
+#include "bodyloom/geometry/scene/camera_path.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/video/track_video.h"
-#include "bodyloom/render/overlay.h"
-#include "bodyloom/render/palette.h"
-#include "bodyloom/render/shaded_mesh.h"
+#include "bodyloom/render/image/palette.h"
+#include "bodyloom/render/view/overlay.h"
+#include "bodyloom/render/view/shaded_mesh.h"
 
 namespace bodyloom {
 namespace {

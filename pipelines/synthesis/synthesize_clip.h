@@ -5,7 +5,7 @@
 #include <string>
 
 #include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
-#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/geometry/base/callbacks.h"
 #include "bodyloom/pipelines/synthesis/motion_source.h"
 
 namespace bodyloom {

@@ -7,13 +7,13 @@
 #include <sstream>
 #include <utility>
 
-#include "bodyloom/data_tools/body/body_or_builtin.h"
-#include "bodyloom/data_tools/datasets/people_sheet.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/data_tools/datasets/multi_person_dataset.h"
 #include "bodyloom/data_tools/motion/motion_library.h"
 #include "bodyloom/data_tools/motion/motion_tools.h"
 #include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/pipelines/clock_text.h"
 #include "bodyloom/pipelines/files.h"
+#include "bodyloom/pipelines/report_text.h"
 #include "bodyloom/pipelines/synthesis/motion_source.h"
 
 namespace bodyloom {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bodyloom/data_tools/synthesis/people/make_multi_person_dataset.h"
-#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/geometry/base/callbacks.h"
 
 namespace bodyloom {
 

@@ -8,14 +8,14 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "bodyloom/data_tools/body/body_or_builtin.h"
-#include "bodyloom/data_tools/datasets/person_sheet.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/data_tools/motion/motion_tools.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/geometry/cloth/cloth_run.h"
-#include "bodyloom/pipelines/clock_text.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/report_json.h"
+#include "bodyloom/pipelines/report_text.h"
 
 namespace bodyloom {
 namespace {

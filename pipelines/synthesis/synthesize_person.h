@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bodyloom/data_tools/synthesis/people/make_single_person_dataset.h"
-#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/geometry/base/callbacks.h"
 #include "bodyloom/pipelines/synthesis/motion_source.h"
 
 namespace bodyloom {
@@ -19,7 +19,7 @@ struct SynthesizePersonRequest {
   std::string body;                            ///< empty: the built-in body
   std::string out;                             ///< the folder
   std::string sheet;                           ///< also a contact sheet, .png or .jpg; empty: none
-  std::string light;                           ///< also the light, JSON as pipelines/people/relight_frames.h reads it
+  std::string light;                           ///< also the light, JSON as pipelines/animate/relight_frames.h reads it
   /// progress, look, motion and command are set by SynthesizePerson.
   MakeSinglePersonDatasetOptions set;
 };

@@ -8,17 +8,17 @@
 #include <optional>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/body/body_or_builtin.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/data_tools/video/video_frame_times.h"
 #include "bodyloom/data_tools/video/video_reader.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/camera_path.h"
+#include "bodyloom/geometry/scene/camera_path.h"
+#include "bodyloom/geometry/scene/track.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/report_json.h"
-#include "bodyloom/pipelines/track_fits_body.h"
 #include "bodyloom/pipelines/video/track_video.h"
 
 namespace bodyloom {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The tracked person's texture, taken from the frames of the video (render/texture_extract.h).
+/// The tracked person's texture, taken from the frames of the video (render/texture/texture_extract.h).
 #pragma once
 
 #include <string>
 
+#include "bodyloom/geometry/base/callbacks.h"
 #include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/pipelines/callbacks.h"
-#include "bodyloom/pipelines/texture/person_texture.h"
+#include "bodyloom/render/texture/complete/person_texture.h"
 
 namespace bodyloom {
 

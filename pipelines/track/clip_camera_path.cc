@@ -5,8 +5,7 @@
 #include <stdexcept>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/pipelines/fixed_text.h"
-#include "bodyloom/pipelines/track/clip_camera_path_json.h"
+#include "bodyloom/pipelines/report_text.h"
 
 namespace bodyloom {
 namespace {

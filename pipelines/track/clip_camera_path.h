@@ -2,14 +2,15 @@
 /// The path of a clip's camera as a request names it, at the clip's frames.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "bodyloom/data_tools/observations/load_camera_path.h"
-#include "bodyloom/geometry/camera_path.h"
+#include "bodyloom/geometry/scene/camera_path.h"
 #include "bodyloom/pipelines/track/track_request.h"
-#include "bodyloom/tracking/track_summary.h"
+#include "bodyloom/tracking/problem/track_summary.h"
 
 namespace bodyloom {
 
@@ -33,8 +34,13 @@ double CameraScaleOf(const TrackRequest& request, const RecordedCameraPath& path
 
 /// Two lines: how many poses, and the scale and how it was found; nothing for a camera that stands still.
 std::string ToText(const CameraPathReport& report, const CameraPathSummary& solved);
-/// Of a camera that is said to stand still: empty, or one line when feet that the lifter calls standing move faster than
-/// they do under such a camera (docs/lab/moving_camera.md).
+/// Of a camera that is said to stand still: empty, or one line when feet that the lifter calls standing move faster
+/// than they do under such a camera (docs/lab/moving_camera.md).
 std::string MovingCameraWarning(const CameraPathSummary& solved, const GroundSummary& ground);
+
+// What became of a camera's path, for a program.
+
+/// The report's fields, and the scale and how it was found.
+nlohmann::ordered_json ToJson(const CameraPathReport& report, const CameraPathSummary& solved);
 
 }  // namespace bodyloom

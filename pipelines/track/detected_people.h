@@ -5,9 +5,10 @@
 #include <optional>
 #include <utility>
 
+#include "bodyloom/data_tools/observations/load_cameras.h"
 #include "bodyloom/data_tools/observations/people.h"
-#include "bodyloom/geometry/observations.h"
-#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/geometry/base/callbacks.h"
+#include "bodyloom/geometry/scene/observations.h"
 #include "bodyloom/pipelines/detect/detect_people.h"
 #include "bodyloom/pipelines/track/scene_inputs.h"
 #include "bodyloom/pipelines/track/track_request.h"
@@ -37,5 +38,15 @@ DetectedClip DetectForTracking(const TrackRequest& request, const PipelineCallba
 /// other proportions than the video's.
 DetectedObservations ObservationsOf(const DetectedClip& clip, const PersonTrack& person, ClipFrames frames,
                                     const TrackRequest& request, const SceneInputs& scene);
+
+// Observations made in a video's pixels, moved into those of the camera that its calibration describes.
+
+/// Keypoints at p become those at q with p = video_from_camera · (q, 1). The image size becomes the camera's.
+KeypointSequence MovedToCamera(KeypointSequence keypoints, const Matrix2x3d& video_from_camera, int camera_width,
+                               int camera_height);
+
+/// Labels: each pixel of the camera's image takes the label of the video's pixel next to its place.
+PartLabelSequence MovedToCamera(const PartLabelSequence& labels, const Matrix2x3d& video_from_camera, int camera_width,
+                                int camera_height);
 
 }  // namespace bodyloom

@@ -8,7 +8,6 @@
 #include "bodyloom/data_tools/estimates/body_estimate.h"
 #include "bodyloom/data_tools/estimates/load_estimate.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/refuse.h"
 
 namespace bodyloom {
 namespace {

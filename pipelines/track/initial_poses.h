@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/camera.h"
-#include "bodyloom/geometry/observations.h"
-#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/scene/camera.h"
+#include "bodyloom/geometry/scene/observations.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 
@@ -34,8 +34,8 @@ struct InitialPosesRequest {
 };
 
 /// With several people in the file, the one whose pelvis is where `keypoints` have the hips. Throws std::runtime_error
-/// naming the file: nobody is there, images of another size, frames beyond the clip's, another number of frames (of systems that do not number
-/// them).
+/// naming the file: nobody is there, images of another size, frames beyond the clip's, another number of frames (of
+/// systems that do not number them).
 InitialPoses ReadInitialPoses(const InitialPosesRequest& request);
 
 }  // namespace bodyloom

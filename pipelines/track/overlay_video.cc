@@ -12,7 +12,7 @@
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/geometry/base/prefetcher.h"
 #include "bodyloom/pipelines/video/track_video.h"
-#include "bodyloom/render/overlay.h"
+#include "bodyloom/render/view/overlay.h"
 
 namespace bodyloom {
 namespace {
@@ -34,8 +34,8 @@ struct DrawnFrames {
   int without_video = 0;
 };
 
-/// Writes one picture for each of these times; `draw(renderer, index, frame of the video or null)` runs in several threads at
-/// once, each with a renderer of its own. Pictures are read and drawn while those before them are encoded.
+/// Writes one picture for each of these times; `draw(renderer, index, frame of the video or null)` runs in several
+/// threads at once, each with a renderer of its own. Pictures are read and drawn while those before them are encoded.
 template <typename Renderer>
 OverlaySummary WriteFrames(VideoWriter* writer, const std::vector<double>& times, TrackVideo* video,
                            const Renderer& renderer,

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "bodyloom/data_tools/observations/load_cameras.h"
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/observations.h"
-#include "bodyloom/geometry/track.h"
-#include "bodyloom/render/people_overlay.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/scene/observations.h"
+#include "bodyloom/geometry/scene/track.h"
+#include "bodyloom/render/view/people_overlay.h"
 
 namespace bodyloom {
 
@@ -38,7 +38,7 @@ struct OverlaySummary {
 /// and when `path` cannot be written; nothing is left behind then.
 OverlaySummary WriteOverlayVideo(const std::string& path, const OverlayVideo& what);
 
-/// Several people in one picture (render/people_overlay.h).
+/// Several people in one picture (render/view/people_overlay.h).
 struct PeopleOverlayVideo {
   std::vector<PersonInOverlay> people;
   // As above.

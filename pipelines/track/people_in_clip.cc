@@ -5,8 +5,8 @@
 #include <string>
 #include <utility>
 
-#include "bodyloom/data_tools/observations/nothing_to_track.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/scene/observations.h"
 #include "bodyloom/pipelines/track/clip_camera_path.h"
 #include "bodyloom/pipelines/video/track_video.h"
 

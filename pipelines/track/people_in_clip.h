@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "bodyloom/data_tools/observations/people.h"
-#include "bodyloom/geometry/camera.h"
-#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/geometry/base/callbacks.h"
+#include "bodyloom/geometry/scene/camera.h"
 #include "bodyloom/pipelines/detect/detect_people.h"
 #include "bodyloom/pipelines/track/detected_people.h"
 #include "bodyloom/pipelines/track/scene_inputs.h"
@@ -36,8 +36,8 @@ struct PeopleInClip {
   std::vector<int> chosen;             ///< numbers in `everybody` of those who are to be tracked
 };
 
-/// Detects, links and chooses. Throws std::runtime_error naming a file that cannot be used, NothingToTrack where nobody is
-/// left, Cancelled.
+/// Detects, links and chooses. Throws std::runtime_error naming a file that cannot be used, NothingToTrack where nobody
+/// is left, Cancelled.
 PeopleInClip FindPeopleInClip(const TrackPeopleRequest& request, const PipelineCallbacks& callbacks);
 
 /// What the detections say of the clip and of those chosen.

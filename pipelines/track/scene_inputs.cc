@@ -3,7 +3,6 @@
 
 #include <stdexcept>
 
-#include "bodyloom/data_tools/body/body_or_builtin.h"
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/learned/lifter_weights_io.h"
 #include "bodyloom/data_tools/learned/pose_prior_io.h"

@@ -7,13 +7,13 @@
 
 #include "bodyloom/data_tools/observations/load_camera_path.h"
 #include "bodyloom/data_tools/observations/load_cameras.h"
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/camera.h"
-#include "bodyloom/geometry/lifter_weights.h"
-#include "bodyloom/geometry/observations.h"
-#include "bodyloom/geometry/pose_prior.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/scene/camera.h"
+#include "bodyloom/geometry/scene/lifter_weights.h"
+#include "bodyloom/geometry/scene/observations.h"
+#include "bodyloom/geometry/scene/pose_prior.h"
 #include "bodyloom/pipelines/track/track_request.h"
-#include "bodyloom/tracking/track_input.h"
+#include "bodyloom/tracking/problem/track_input.h"
 
 namespace bodyloom {
 

@@ -7,11 +7,10 @@
 
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/observations/nothing_to_track.h"
-#include "bodyloom/geometry/camera_path.h"
+#include "bodyloom/geometry/scene/camera_path.h"
+#include "bodyloom/geometry/scene/observations.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/page/write_clip_page.h"
-#include "bodyloom/pipelines/peak_memory.h"
 #include "bodyloom/pipelines/track/overlay_video.h"
 #include "bodyloom/pipelines/track/solve_track.h"
 #include "bodyloom/pipelines/track/track_inputs.h"

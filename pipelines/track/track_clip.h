@@ -2,7 +2,7 @@
 /// A clip tracked, from files to files: detections in; track, overlay video and summary out.
 #pragma once
 
-#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/geometry/base/callbacks.h"
 #include "bodyloom/pipelines/track/track_report.h"
 #include "bodyloom/pipelines/track/track_request.h"
 

@@ -8,17 +8,16 @@
 
 #include "bodyloom/data_tools/formats/npz.h"
 #include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/observations/iuv_to_dense.h"
 #include "bodyloom/data_tools/observations/load_detections.h"
 #include "bodyloom/data_tools/observations/observations_npz.h"
 #include "bodyloom/data_tools/observations/part_labels.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/track/detected_people.h"
-#include "bodyloom/tracking/initialise/given_landmarks.h"
-#include "bodyloom/tracking/initialise/lift_keypoints.h"
-#include "bodyloom/tracking/initialise/part_keypoints.h"
+#include "bodyloom/tracking/detection/iuv_to_dense.h"
 #include "bodyloom/tracking/initialise/swap_repair.h"
+#include "bodyloom/tracking/lifter/given_landmarks.h"
+#include "bodyloom/tracking/lifter/lift_keypoints.h"
 
 namespace bodyloom {
 namespace {

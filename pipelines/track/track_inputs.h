@@ -6,14 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/observations.h"
-#include "bodyloom/geometry/track.h"
-#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/geometry/base/callbacks.h"
+#include "bodyloom/geometry/scene/observations.h"
+#include "bodyloom/geometry/scene/track.h"
 #include "bodyloom/pipelines/track/clip_camera_path.h"
 #include "bodyloom/pipelines/track/initial_poses.h"
 #include "bodyloom/pipelines/track/scene_inputs.h"
 #include "bodyloom/pipelines/track/track_request.h"
-#include "bodyloom/tracking/initialise/lifter_reading.h"
+#include "bodyloom/tracking/lifter/lifter_reading.h"
 
 namespace bodyloom {
 
@@ -43,8 +43,8 @@ struct TrackInputs : SceneInputs {
 std::vector<std::string> RequireTrackInputs(const TrackRequest& request);
 
 /// Reads what the request names and is not given (request.detections then names the keypoints in messages), and detects
-/// people when there is nothing but a video. Throws Cancelled, and std::runtime_error naming file and place, also when two
-/// files contradict each other (image sizes, number of frames).
+/// people when there is nothing but a video. Throws Cancelled, and std::runtime_error naming file and place, also when
+/// two files contradict each other (image sizes, number of frames).
 TrackInputs LoadTrackInputs(const TrackRequest& request, const PipelineCallbacks& callbacks = {},
                             const GivenInMemory& given = {});
 

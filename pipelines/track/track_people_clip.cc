@@ -13,7 +13,6 @@
 #include "bodyloom/pipelines/detect/cut_masks.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/page/write_clip_page.h"
-#include "bodyloom/pipelines/peak_memory.h"
 #include "bodyloom/pipelines/track/overlay_video.h"
 #include "bodyloom/pipelines/track/track_inputs.h"
 

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/geometry/base/callbacks.h"
 #include "bodyloom/pipelines/track/people_in_clip.h"
 #include "bodyloom/pipelines/track/scene_inputs.h"
 #include "bodyloom/pipelines/track/track_people_report.h"
-#include "bodyloom/tracking/track_summary.h"
+#include "bodyloom/tracking/problem/track_summary.h"
 
 namespace bodyloom {
 
@@ -19,8 +19,8 @@ struct TrackPeopleClipRequest : TrackPeopleRequest {
   bool overlay = true;
   bool report = false;  ///< the clip's page
   bool masks = false;   ///< each person's mask is written too
-  /// Masks are written as the network gives them, not cut anew from what stands behind the people (CutMasks()). Tracks are
-  /// the same in any case: for them the network's masks do as well.
+  /// Masks are written as the network gives them, not cut anew from what stands behind the people (CutMasks()). Tracks
+  /// are the same in any case: for them the network's masks do as well.
   bool coarse_masks = false;
 };
 
@@ -28,8 +28,8 @@ struct TrackPeopleClipRequest : TrackPeopleRequest {
 ///   detections.npz   everybody's landmarks (people_npz.h), before anything else is computed
 ///   person_I.npz     the track of person I (track_io.h) from the first frame that shows it to the last, with the
 ///                    video's times; all tracks are in one camera frame
-///   mask_I.npz       with `masks`: the mask of person I in every frame of the clip (part_labels.h), in the video's pixels
-///   overlay.mp4      all of them over the video (render/people_overlay.h)
+///   mask_I.npz       with `masks`: the mask of person I in every frame of the clip (part_labels.h), in the video's
+///   pixels overlay.mp4      all of them over the video (render/view/people_overlay.h)
 ///   report.html      with `report`: the page of the clip (pipelines/page/write_clip_page.h)
 ///   summary.json     ToJson(TrackPeopleReport)
 /// Files of these names are replaced; tracks of people whom this run does not find stay. Throws RequestError for a

@@ -6,10 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/pipelines/fixed_text.h"
-#include "bodyloom/pipelines/list_text.h"
 #include "bodyloom/pipelines/report_json.h"
-#include "bodyloom/pipelines/track/clip_camera_path_json.h"
+#include "bodyloom/pipelines/report_text.h"
+#include "bodyloom/pipelines/track/clip_camera_path.h"
 #include "bodyloom/pipelines/track/track_report.h"
 
 namespace bodyloom {

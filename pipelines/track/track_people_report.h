@@ -11,8 +11,8 @@
 #include "bodyloom/pipelines/detect/detect_clip.h"
 #include "bodyloom/pipelines/track/clip_camera_path.h"
 #include "bodyloom/tracking/people/occlusion.h"
-#include "bodyloom/tracking/people/shared_scene.h"
-#include "bodyloom/tracking/track_summary.h"
+#include "bodyloom/tracking/problem/track_summary.h"
+#include "bodyloom/tracking/room/shared_scene.h"
 
 namespace bodyloom {
 

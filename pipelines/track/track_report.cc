@@ -4,10 +4,9 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "bodyloom/pipelines/fixed_text.h"
-#include "bodyloom/pipelines/list_text.h"
 #include "bodyloom/pipelines/report_json.h"
-#include "bodyloom/pipelines/track/clip_camera_path_json.h"
+#include "bodyloom/pipelines/report_text.h"
+#include "bodyloom/pipelines/track/clip_camera_path.h"
 
 namespace bodyloom {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/pipelines/track/clip_camera_path.h"
-#include "bodyloom/tracking/initialiser_gain.h"
+#include "bodyloom/tracking/clip/initialiser_gain.h"
 #include "bodyloom/tracking/track_sequence.h"
 
 namespace bodyloom {
@@ -50,8 +50,8 @@ std::string ToJson(const TrackReport& report);
 /// A plan as lines "run   what: why" / "skip  what: why".
 std::string ToText(const std::vector<PlanEntry>& plan);
 
-/// What follows a focal length: ", estimated within 20.0 % (standard deviation)"; empty when it was known or its spread is
-/// not.
+/// What follows a focal length: ", estimated within 20.0 % (standard deviation)"; empty when it was known or its spread
+/// is not.
 std::string FocalSigmaText(double focal_log_sigma);
 
 }  // namespace bodyloom

@@ -2,7 +2,7 @@
 #include "bodyloom/pipelines/track/track_request.h"
 
 #include "bodyloom/data_tools/observations/keypoint_conventions.h"
-#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/geometry/base/callbacks.h"
 
 namespace bodyloom {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "bodyloom/data_tools/detection/frame_detector.h"
+#include "bodyloom/tracking/detection/frame_detector.h"
 #include "bodyloom/tracking/track_sequence.h"
 
 namespace bodyloom {
@@ -75,8 +75,8 @@ bool DetectsMasks(const TrackRequest& request);
 /// Whether 2D joints are to be read off the part labels: they are all that was seen.
 bool ReadsJointsOffLabels(const TrackRequest& request);
 
-/// Weight of straight knees for BlazePose's joints, 1/rad, whose hips lie 4 cm lower than other detectors'. Found on AIST++
-/// (docs/lab/pose_detector.md).
+/// Weight of straight knees for BlazePose's joints, 1/rad, whose hips lie 4 cm lower than other detectors'. Found on
+/// AIST++ (docs/lab/pose_detector.md).
 inline constexpr double kBlazePoseStraightKnees = 3;
 
 /// TrackSequenceOptions::straight_knees_weight for joints of that convention (KeypointSequence::convention).

@@ -7,7 +7,7 @@
 
 #include "bodyloom/data_tools/observations/load_cameras.h"
 #include "bodyloom/data_tools/video/video_reader.h"
-#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 

@@ -124,7 +124,8 @@ class Fit {
       sizes.push_back(std::abs(Residual(s)));
       brightest = std::max(brightest, std::abs(s.light));
     }
-    // A fit without any error still needs a scale, below which the kernels would take what the ridge costs for outliers.
+    // A fit without any error still needs a scale, below which the kernels would take what the ridge costs for
+    // outliers.
     const double least = std::max(1e-6 * brightest, options_.ridge * median_);
     result_.summary.sigma = std::max(1.4826 * Median(sizes), least);
   }

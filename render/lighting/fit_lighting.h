@@ -9,9 +9,10 @@
 ///
 /// y_i: light of a pixel (luminance, or one colour), n_i its normal, l(i) its label. Albedo and light have one common
 /// factor that no picture determines: the mean albedo over the samples is 1, so the shading is in units of it. ρ is
-/// Tukey's biweight at 4.685 σ, σ from the residuals' median, at least r times the light's median; it forgets cast shadows, prints and highlights. Started
-/// from least squares of y/median_l(y), then Huber. The shading is not kept from being negative; the result tells how
-/// often it is. Solver: Ceres, analytic derivatives. The same result for any machine load: one thread.
+/// Tukey's biweight at 4.685 σ, σ from the residuals' median, at least r times the light's median; it forgets cast
+/// shadows, prints and highlights. Started from least squares of y/median_l(y), then Huber. The shading is not kept
+/// from being negative; the result tells how often it is. Solver: Ceres, analytic derivatives. The same result for any
+/// machine load: one thread.
 #pragma once
 
 #include <ceres/sized_cost_function.h>
@@ -22,7 +23,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/arrays.h"
+#include "bodyloom/geometry/math/arrays.h"
 #include "bodyloom/render/lighting/sh_lighting.h"
 
 namespace bodyloom {

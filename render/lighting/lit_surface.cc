@@ -7,12 +7,13 @@
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/render/unit_byte.h"
+#include "bodyloom/render/image/image.h"
 
 namespace bodyloom {
 namespace {
 
-/// The shading of one colour as a quadratic function of the normal: nᵀ Q n + l·n + c, which is what nine coefficients are.
+/// The shading of one colour as a quadratic function of the normal: nᵀ Q n + l·n + c, which is what nine coefficients
+/// are.
 class Quadric {
  public:
   explicit Quadric(const Eigen::Matrix<double, 1, 9>& lighting) {

@@ -10,14 +10,14 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/geometry/arrays.h"
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/camera.h"
-#include "bodyloom/geometry/vertex_normals.h"
-#include "bodyloom/render/image.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/body/normals.h"
+#include "bodyloom/geometry/math/arrays.h"
+#include "bodyloom/geometry/scene/camera.h"
+#include "bodyloom/render/image/image.h"
 #include "bodyloom/render/lighting/sh_lighting.h"
-#include "bodyloom/render/resolve_pixels.h"
-#include "bodyloom/render/visibility_buffer.h"
+#include "bodyloom/render/raster/resolve_pixels.h"
+#include "bodyloom/render/raster/visibility_buffer.h"
 
 namespace bodyloom {
 
@@ -32,17 +32,17 @@ class LitSurface {
   /// `body` must outlive this. `both_sides`: faces that turn away are seen too, their normals turned to the viewer.
   LitSurface(const BodyModel& body, bool both_sides, int num_threads);
 
-  /// What the camera sees: the normals of the pixels whose centres the body covers. `vertices_in_camera`: V×3, metres. The
-  /// same for any number of threads.
+  /// What the camera sees: the normals of the pixels whose centres the body covers. `vertices_in_camera`: V×3, metres.
+  /// The same for any number of threads.
   void Look(const MatrixX3d& vertices_in_camera, const Camera& camera);
 
   /// Three numbers, unit length, camera frame; null where the body does not cover the pixel's centre.
   [[nodiscard]] const float* NormalAt(int x, int y) const;
 
   /// Lights the body, drawn over black in even light, of which `coverage`, one a pixel, says 0 to 255 how much of the
-  /// pixel it is. At the outline, where the body misses the pixel's centre, the shading is that of its neighbours. Throws
-  /// std::invalid_argument when image, coverage and the camera of Look() differ in size, or for limits that are not
-  /// 0 < least <= most.
+  /// pixel it is. At the outline, where the body misses the pixel's centre, the shading is that of its neighbours.
+  /// Throws std::invalid_argument when image, coverage and the camera of Look() differ in size, or for limits that are
+  /// not 0 < least <= most.
   void Light(const ShLighting& light, const ShadingLimits& limits, std::span<const uint8_t> coverage,
              Image* image) const;
   /// Takes the light away from a picture in which the body covers whole pixels; other pixels stay. Throws as Light().

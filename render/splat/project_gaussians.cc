@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/in_range.h"
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/render/splat/project_simd.h"
 

@@ -5,7 +5,7 @@
 /// Visualization 2001; Kerbl et al., "3D Gaussian Splatting", SIGGRAPH 2023, eq. 5). With J = d pixel / d x:
 ///   mean = pixel of x,  B = J F,  Σ₂ = B Bᵀ + low_pass · I,  K = Σ₂⁻¹
 /// Pixels of α ≥ 1/255 lie within sqrt(2 ln(255 o) Σ₂,xx) and sqrt(2 ln(255 o) Σ₂,yy) of the mean: the half extents,
-/// with a margin for rounding. Which Gaussians are not drawn: render/splat/screen_gaussians.h.
+/// with a margin for rounding. Which Gaussians are not drawn: render/splat/camera_gaussians.h.
 ///
 /// Backwards everything is followed, the dependence of J on x included.
 ///
@@ -14,9 +14,8 @@
 
 #include <string>
 
-#include "bodyloom/geometry/camera.h"
+#include "bodyloom/geometry/scene/camera.h"
 #include "bodyloom/render/splat/camera_gaussians.h"
-#include "bodyloom/render/splat/screen_gaussians.h"
 
 namespace bodyloom {
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "bodyloom/render/splat/camera_gaussians.h"
-#include "bodyloom/render/splat/screen_gaussians.h"
 
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The inner loops of render/splat/project_gaussians.h: plain arrays in, plain arrays out, compiled once per instruction
-/// set like render/raster_simd.h. The same bits from all of them: every operation is one correctly rounded IEEE
-/// operation, never fused (2^x and log2: render/splat/float_math-inl.h).
+/// The inner loops of render/splat/project_gaussians.h: plain arrays in, plain arrays out, compiled once per
+/// instruction set like render/raster/raster_simd.h. The same bits from all of them: every operation is one correctly
+/// rounded IEEE operation, never fused (2^x and log2: render/splat/float_math-inl.h).
 #pragma once
 
 #include <cstddef>

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/render/parallel_phases.h"
+#include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/render/splat/splat_simd.h"
 
 namespace bodyloom {

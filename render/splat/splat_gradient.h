@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Derivatives of a loss by the Gaussians of a picture (render/splat/splat_picture.h) from those by its pixels.
 ///
-/// Each pixel is gone through front to back once more, with the same arithmetic, so it takes the Gaussians that it took:
-/// the cut at 1/255, the limit of 0.99 and the stop are the picture's own. They are steps of the picture; derivatives are
-/// those of what was drawn (a Gaussian that a pixel did not take gets nothing from it, one at the limit nothing for its
-/// shape and opacity). With g, g_A the derivatives by colour and alpha, and `rest` = what lies behind:
+/// Each pixel is gone through front to back once more, with the same arithmetic, so it takes the Gaussians that it
+/// took: the cut at 1/255, the limit of 0.99 and the stop are the picture's own. They are steps of the picture;
+/// derivatives are those of what was drawn (a Gaussian that a pixel did not take gets nothing from it, one at the limit
+/// nothing for its shape and opacity). With g, g_A the derivatives by colour and alpha, and `rest` = what lies behind:
 ///   rest = colour·g + alpha g_A;   for each Gaussian: w = T α,  k = c·g + g_A,  rest −= w k,
 ///   d loss/dα = T k − rest/(1 − α),   D = α d loss/dα
 ///   d loss/d mean = K [Σ D d_x, Σ D d_y],   d loss/dK = [−½ Σ D d_x², −Σ D d_x d_y, −½ Σ D d_y²],
 ///   d loss/d o = Σ D / o,   d loss/d c = Σ w g
 ///
-/// Sums are taken tile by tile into a slot for every meeting of a Gaussian and a tile, then slot by slot in their order:
-/// the same bytes for any number of threads and any instruction set.
+/// Sums are taken tile by tile into a slot for every meeting of a Gaussian and a tile, then slot by slot in their
+/// order: the same bytes for any number of threads and any instruction set.
 #pragma once
 
 #include <vector>
 
-#include "bodyloom/geometry/aligned_floats.h"
+#include "bodyloom/geometry/math/arrays.h"
 #include "bodyloom/render/splat/float_columns.h"
 #include "bodyloom/render/splat/splat_picture.h"
 

@@ -5,10 +5,8 @@
 #include <cmath>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/in_range.h"
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/render/parallel_phases.h"
 
 namespace bodyloom {
 

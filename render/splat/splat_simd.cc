@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "bodyloom/render/splat/screen_gaussians.h"
+#include "bodyloom/render/splat/camera_gaussians.h"
 
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
@@ -14,7 +14,7 @@
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
-#include "bodyloom/geometry/quad-inl.h"
+#include "bodyloom/geometry/math/quad-inl.h"
 #include "bodyloom/render/splat/float_math-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -122,8 +122,8 @@ HWY_INLINE void FetchAhead(const SplatList& list, int i) {
   if (i + kEntriesAhead < list.count) hwy::Prefetch(list.splats + list.entries[i + kEntriesAhead].row);
 }
 
-/// Of the pixels of a part of a block from `column` on: the exponent of 2 that the Gaussian has there, and which of them take it. Forwards
-/// and backwards alike, so that derivatives are those of what was drawn.
+/// Of the pixels of a part of a block from `column` on: the exponent of 2 that the Gaussian has there, and which of
+/// them take it. Forwards and backwards alike, so that derivatives are those of what was drawn.
 struct Taking {
   VF t;
   MF takes;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// The inner loops of render/splat/splat_picture.h and render/splat/splat_gradient.h: Gaussians over the pixels of one
-/// tile. Plain arrays in, plain arrays out, compiled once per instruction set like render/raster_simd.h. The same bits
-/// from all of them: every operation is one correctly rounded IEEE operation in the order written here, never fused, and
-/// sums over pixels are taken by the sixteen pixels of a block whatever the length of a vector.
+/// tile. Plain arrays in, plain arrays out, compiled once per instruction set like render/raster/raster_simd.h. The
+/// same bits from all of them: every operation is one correctly rounded IEEE operation in the order written here, never
+/// fused, and sums over pixels are taken by the sixteen pixels of a block whatever the length of a vector.
 ///
 /// A pixel at d from a mean has the exponent, in base 2,
 ///   t = (log2 o + a d_x²) + d_y (b d_x + c d_y),   a, b, c = −½ log2(e) K_xx, −log2(e) K_xy, −½ log2(e) K_yy

@@ -2,9 +2,9 @@
 /// Which Gaussians meet which tile of the screen, front to back.
 ///
 /// Tiles of 16×16 pixels lie on the whole screen's grid: a tile has its corner at multiples of 16, whatever the window,
-/// so a pixel sees the same in every window. Gaussians in the order of their depth (their rank) are cut into chunks that
-/// depend on their number alone; each chunk is sorted into tiles by itself, on a thread of its own, and a tile is drawn
-/// chunk after chunk.
+/// so a pixel sees the same in every window. Gaussians in the order of their depth (their rank) are cut into chunks
+/// that depend on their number alone; each chunk is sorted into tiles by itself, on a thread of its own, and a tile is
+/// drawn chunk after chunk.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +12,32 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/render/pixel_box.h"
-#include "bodyloom/render/splat/depth_order.h"
-#include "bodyloom/render/splat/screen_gaussians.h"
+#include "bodyloom/render/image/pixel_box.h"
+#include "bodyloom/render/splat/camera_gaussians.h"
 #include "bodyloom/render/splat/splat_simd.h"
+
+namespace bodyloom {
+
+// Front to back: a stable radix sort by depth.
+
+/// Keeps its memory between calls.
+class DepthOrder {
+ public:
+  /// `rows`, indices into depth, ordered by depth[row]: smaller first, equal ones (0 and −0 are not) as they were.
+  /// O(n): one pass for every 11 bits in which the depths differ, three at most. The depths must not be NaN. The
+  /// answer lives until the next call.
+  std::span<const int32_t> Sort(std::span<const float> depth, std::span<const int32_t> rows);
+
+ private:
+  struct Item {
+    uint32_t key;
+    int32_t row;
+  };
+  std::vector<Item> items_, other_;
+  std::vector<int32_t> sorted_;
+};
+
+}  // namespace bodyloom
 
 namespace bodyloom::splat_internal {
 

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "apps/exit_code.h"
+#include "apps/usage_error.h"
 #include "bodyloom/data_tools/formats/npz.h"
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"

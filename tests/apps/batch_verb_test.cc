@@ -12,7 +12,7 @@
 #include <sstream>
 #include <thread>
 
-#include "apps/exit_code.h"
+#include "apps/usage_error.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/pipelines/batch/manifest.h"
 #include "tests/support/run_command.h"

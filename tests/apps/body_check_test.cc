@@ -6,11 +6,11 @@
 #include <cmath>
 #include <filesystem>
 
-#include "apps/exit_code.h"
+#include "apps/usage_error.h"
 #include "bodyloom/data_tools/body/body_io.h"
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/geometry/mesh_check.h"
+#include "bodyloom/geometry/mesh/mesh_check.h"
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/short_track.h"

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/command_callbacks.h"
+#include "apps/progress.h"
 
 #include <gtest/gtest.h>
 
 #include <csignal>
 #include <sstream>
-
-#include "apps/interrupt.h"
 
 namespace bodyloom {
 namespace {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "apps/exit_code.h"
+#include "apps/usage_error.h"
 #include "tests/support/run_command.h"
 
 namespace bodyloom {

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "apps/exit_code.h"
+#include "apps/usage_error.h"
 #include "bodyloom/data_tools/formats/npz.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "tests/support/run_command.h"

@@ -10,14 +10,14 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "apps/exit_code.h"
+#include "apps/usage_error.h"
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/formats/npz.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/observations/observations_npz.h"
 #include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/render/overlay.h"
-#include "bodyloom/render/visible_points.h"
+#include "bodyloom/render/raster/visible_points.h"
+#include "bodyloom/render/view/overlay.h"
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"
 

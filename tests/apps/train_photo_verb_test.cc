@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "bodyloom/data_tools/formats/ndarray.h"
-#include "bodyloom/data_tools/formats/safetensors.h"
+#include "bodyloom/data_tools/formats/weights_file.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/data_tools/video/video_reader.h"

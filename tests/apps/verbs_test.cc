@@ -7,7 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "apps/exit_code.h"
+#include "apps/usage_error.h"
 #include "bodyloom/data_tools/body/body_io.h"
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/formats/npz.h"

@@ -8,7 +8,7 @@
 
 #include "benchmarks/work_precision/autodiff_peer.h"
 #include "benchmarks/work_precision/measure.h"
-#include "benchmarks/work_precision/problem_file.h"
+#include "benchmarks/work_precision/work_problem.h"
 #include "bodyloom/data_tools/formats/npz.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/tracking/terms/upright.h"

@@ -11,7 +11,7 @@
 
 #include "bodyloom/data_tools/avatar/avatar_file.h"
 #include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/estimates/gvhmr_reader.h"
+#include "bodyloom/data_tools/estimates/hmr_readers.h"
 #include "bodyloom/data_tools/estimates/load_estimate.h"
 #include "bodyloom/data_tools/formats/zip.h"
 #include "bodyloom/data_tools/learned/lifter_weights_io.h"

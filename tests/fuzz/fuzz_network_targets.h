@@ -9,10 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/detection/onnx_network.h"
-#include "bodyloom/data_tools/detection/simcc_landmarks.h"
-#include "bodyloom/data_tools/detection/tflite_network.h"
-#include "bodyloom/data_tools/detection/yolo_people.h"
+#include "bodyloom/tracking/detection/inference/onnx_network.h"
+#include "bodyloom/tracking/detection/inference/tflite_network.h"
+#include "bodyloom/tracking/detection/keypoint_model.h"
 #include "tests/fuzz/fuzz_accepts.h"
 
 namespace bodyloom::fuzz {
@@ -49,8 +48,8 @@ inline bool AcceptsTflite(const std::string& bytes) {
   return true;
 }
 
-/// An ONNX file that was read is a network, or is refused in one line by what its operators make of each other; one that
-/// was tried out on zeros runs.
+/// An ONNX file that was read is a network, or is refused in one line by what its operators make of each other; one
+/// that was tried out on zeros runs.
 inline bool AcceptsOnnx(const std::string& bytes) {
   OnnxModel model;
   if (!Accepts([&] { model = ParseOnnxModel(bytes, "fuzz.onnx"); })) return false;

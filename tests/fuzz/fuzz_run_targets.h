@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The fuzzers' functions for what jobs read beside weights, pictures and observations: a run's config.json, the light that
-/// shall be, a batch's manifest and the records of its clips.
+/// The fuzzers' functions for what jobs read beside weights, pictures and observations: a run's config.json, the light
+/// that shall be, a batch's manifest and the records of its clips.
 #pragma once
 
 #include <cmath>
 #include <string>
 #include <vector>
 
+#include "bodyloom/pipelines/animate/relight_frames.h"
 #include "bodyloom/pipelines/batch/batch_clip.h"
 #include "bodyloom/pipelines/batch/manifest.h"
-#include "bodyloom/pipelines/people/relight_frames.h"
-#include "bodyloom/pipelines/runs/guided_run.h"
 #include "bodyloom/pipelines/runs/motion_run.h"
-#include "bodyloom/pipelines/runs/photo_run.h"
+#include "bodyloom/pipelines/runs/run_config.h"
 #include "tests/fuzz/fuzz_file_targets.h"
 
 namespace bodyloom::fuzz {

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/geometry/math/rotation.h"
 
 namespace bodyloom {
 

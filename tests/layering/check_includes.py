@@ -16,16 +16,18 @@ import sys
 BASE = {"geometry"}
 SEEN = BASE | {"render"}
 JUDGED = SEEN | {"tracking", "data_tools"}
-WHOLE = JUDGED | {"render/lighting", "data_tools/detection", "data_tools/synthesis", "data_tools/evaluation"}
+WHOLE = JUDGED | {"render/lighting", "render/photo_avatar", "tracking/detection", "data_tools/synthesis",
+                  "data_tools/evaluation"}
 # Room -> rooms whose headers it may include (always its own). A file belongs to the longest path that fits.
 ROOMS = {
     "geometry/base": set(),
     "geometry": {"geometry/base"},
     "render": BASE,
     "render/lighting": SEEN,
+    "render/photo_avatar": SEEN | {"render/lighting"},
     "tracking": SEEN,
     "data_tools": SEEN,
-    "data_tools/detection": SEEN | {"data_tools"},
+    "tracking/detection": SEEN | {"data_tools"},
     "data_tools/synthesis": JUDGED,
     "data_tools/evaluation": JUDGED,
     "neural": SEEN,
@@ -43,7 +45,8 @@ for room in ROOMS:
     if room != "geometry/base":
         ROOMS[room] = ROOMS[room] | {"geometry/base"}
 # Headers of a room above that hold plain data and need no LibTorch: room -> pattern of their paths.
-EXCEPTIONS = {"pipelines": r"neural/\w+/\w+_(config|picture|scores)\.h$"}
+EXCEPTIONS = {"pipelines": r"neural/\w+/(\w+_config|motion_frame)\.h$"}
+WIDTH = 120  # columns of a comment
 
 PROGRAMS = ("apps", "tests", "benchmarks", "examples", "python")
 FOLDERS = sorted({room.split("/")[0] for room in ROOMS})
@@ -53,8 +56,8 @@ LIBRARIES = {room for room in ROOMS if not room.startswith(PROGRAMS)}
 # Third-party header -> (rooms or folders of theirs that may include it, whether a header file of ours may).
 THIRD_PARTY = [
     (r"ceres/", {"tracking", "render/lighting", "examples"} | TEST_CODE, True),
-    (r"opencv2/dnn", {"data_tools/detection"} | TEST_CODE, False),
-    (r"opencv2/", {"render", "render/lighting", "data_tools", "data_tools/detection", "data_tools/synthesis",
+    (r"opencv2/dnn", {"tracking/detection"} | TEST_CODE, False),
+    (r"opencv2/", {"render", "render/lighting", "render/photo_avatar", "data_tools", "tracking/detection", "data_tools/synthesis",
                    "data_tools/evaluation", "pipelines", "pipelines/neural"} | TEST_CODE, True),
     (r"(torch|ATen|c10|caffe2)/", {"neural", "pipelines/neural"} | TEST_CODE, True),
     (r"CGAL/", {"apps/cgal"} | TEST_CODE, False),
@@ -135,6 +138,8 @@ class Tree:
                     self.check_include(name, f"{name}:{number}", match.group(1), match.group(2))
                 elif "//" in line:
                     self.check_comment(f"{name}:{number}", line[line.index("//"):])
+                    if len(line) > WIDTH and re.match(r"\s*//|[^\"]*[;,{}]\s+//", line) and "://" not in line:
+                        self.fault(f"{name}:{number}: a comment {len(line)} columns wide, expected at most {WIDTH}")
         circles = self.find_circles() + self.find_folder_circles()
         for circle in circles:
             self.fault("circle: " + " -> ".join(circle + circle[:1]))
@@ -194,7 +199,7 @@ class Tree:
             return True
         if "*" in pattern:
             return any(self.root.glob(c) for c in candidates if list(self.root.glob(c)))
-        # "render/uv_sample's", "geometry/camera.Project", a test's name "tracking/Chain.Converges"
+        # "render/texture/uv_sample's", "geometry/scene/camera.Project", a test's name "tracking/Chain.Converges"
         return "." in name and self.exists(path[:path.rindex(".")]) or "." in name and name[0].isupper()
 
     def find_circles(self):
@@ -216,14 +221,12 @@ class Tree:
         return circles_of(graph)
 
     def find_folder_circles(self):
-        """Circles among the sub-folders of one room."""
+        """Circles among folders, the root of each room among them."""
         graph = {}
         for file, targets in self.includes.items():
             folder = file.rsplit("/", 1)[0]
-            if file.startswith(PROGRAMS) or folder == room_of(file):
-                continue
-            others = {t.rsplit("/", 1)[0] for t in targets if room_of(t) == room_of(file)}
-            graph.setdefault(folder, set()).update(others - {folder, room_of(file)})
+            if not file.startswith(PROGRAMS):
+                graph.setdefault(folder, set()).update({t.rsplit("/", 1)[0] for t in targets} - {folder})
         return circles_of(graph)
 
     def check_verbs(self):

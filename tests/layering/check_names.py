@@ -13,7 +13,8 @@ import sys
 
 LIBRARIES = ["geometry", "render", "tracking", "data_tools", "neural", "pipelines", "apps", "python"]
 # Folders with libraries or programs of their own, besides those of LIBRARIES.
-OWN = ["render/lighting", "data_tools/detection", "data_tools/synthesis", "data_tools/evaluation", "pipelines/neural", "apps/neural", "apps/cgal"]
+OWN = ["render/lighting", "render/photo_avatar", "tracking/detection", "data_tools/synthesis", "data_tools/evaluation",
+       "pipelines/neural", "apps/neural", "apps/cgal"]
 
 LITERAL = re.compile(r'R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])+\'|//[^\n]*|/\*.*?\*/|^[ \t]*#(?:\\\n|[^\n])*', re.S | re.M)
 WORD = r"[A-Za-z_]\w*"

@@ -9,7 +9,7 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/geometry/base/callbacks.h"
 
 namespace bodyloom {
 namespace {

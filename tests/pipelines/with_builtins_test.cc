@@ -8,7 +8,7 @@
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/learned/lifter_weights_io.h"
 #include "bodyloom/data_tools/learned/pose_prior_io.h"
-#include "bodyloom/tracking/initialise/lift_keypoints.h"
+#include "bodyloom/tracking/lifter/lift_keypoints.h"
 
 namespace bodyloom {
 namespace {

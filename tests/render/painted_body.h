@@ -5,9 +5,9 @@
 #include <Eigen/Core>
 #include <cmath>
 
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/render/image.h"
-#include "bodyloom/render/visible_points.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/render/image/image.h"
+#include "bodyloom/render/raster/visible_points.h"
 
 namespace bodyloom {
 

@@ -6,13 +6,13 @@
 #include <cmath>
 #include <numeric>
 
-#include "bodyloom/render/caption.h"
-#include "bodyloom/render/contact_sheet.h"
-#include "bodyloom/render/draw_keypoints.h"
-#include "bodyloom/render/floor.h"
-#include "bodyloom/render/image.h"
-#include "bodyloom/render/palette.h"
-#include "bodyloom/render/pixel_box.h"
+#include "bodyloom/render/image/image.h"
+#include "bodyloom/render/image/palette.h"
+#include "bodyloom/render/image/pixel_box.h"
+#include "bodyloom/render/view/caption.h"
+#include "bodyloom/render/view/contact_sheet.h"
+#include "bodyloom/render/view/floor.h"
+#include "bodyloom/render/view/overlay_landmarks.h"
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 

@@ -10,8 +10,8 @@
 #include <set>
 #include <utility>
 
-#include "bodyloom/geometry/observations.h"
-#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/geometry/scene/observations.h"
 
 namespace bodyloom {
 namespace {

@@ -10,9 +10,9 @@
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/learned/lifter_weights_io.h"
 #include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
-#include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/geometry/rotation.h"
-#include "bodyloom/geometry/skinning.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/geometry/body/skinning.h"
+#include "bodyloom/geometry/math/rotation.h"
 #include "tests/stress/stress_support.h"
 #include "tests/support/toy_poses.h"
 

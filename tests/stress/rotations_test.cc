@@ -4,7 +4,7 @@
 
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/math/rotation.h"
 #include "tests/stress/stress_support.h"
 
 namespace bodyloom::stress {

@@ -13,7 +13,7 @@
 #include "bodyloom/data_tools/learned/lifter_weights_io.h"
 #include "bodyloom/data_tools/learned/pose_prior_io.h"
 #include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/math/rotation.h"
 
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
-#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/body/body_model.h"
 #include "bodyloom/tracking/track_sequence.h"
 
 namespace bodyloom::stress {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The law of render/avatar/pose_gaussians.h once more, as plainly as it can be written, for double or for automatic
-/// derivatives, and a small person of Gaussians to try it on.
+/// The law of render/gaussian_avatar/pose_gaussians.h once more, as plainly as it can be written, for double or for
+/// automatic derivatives, and a small person of Gaussians to try it on.
 #pragma once
 
 #include <array>
@@ -8,8 +8,8 @@
 #include <random>
 #include <vector>
 
-#include "bodyloom/render/avatar/avatar_frame.h"
-#include "bodyloom/render/avatar/gaussian_body.h"
+#include "bodyloom/render/gaussian_avatar/avatar_frame.h"
+#include "bodyloom/render/gaussian_avatar/gaussian_body.h"
 #include "tests/support/splat_twin.h"
 
 namespace bodyloom {

@@ -2,8 +2,8 @@
 /// A person as one made from photos, of whom everything is known.
 #pragma once
 
-#include "bodyloom/data_tools/body/body_or_builtin.h"
-#include "bodyloom/pipelines/person/photo_person.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/render/photo_avatar/photo_person.h"
 
 namespace bodyloom {
 

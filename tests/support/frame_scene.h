@@ -11,9 +11,9 @@
 #include <random>
 #include <vector>
 
-#include "bodyloom/geometry/observations.h"
-#include "bodyloom/geometry/rotation.h"
-#include "bodyloom/tracking/frame_cost.h"
+#include "bodyloom/geometry/math/rotation.h"
+#include "bodyloom/geometry/scene/observations.h"
+#include "bodyloom/tracking/problem/frame_cost.h"
 #include "tests/support/toy_body.h"
 
 namespace bodyloom {

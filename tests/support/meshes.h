@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/geometry/arrays.h"
-#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/math/arrays.h"
 
 namespace bodyloom {
 

@@ -11,8 +11,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "bodyloom/geometry/arrays.h"
-#include "bodyloom/geometry/camera.h"
+#include "bodyloom/geometry/math/arrays.h"
+#include "bodyloom/geometry/scene/camera.h"
 
 namespace bodyloom {
 

@@ -8,8 +8,8 @@
 #include <random>
 #include <vector>
 
-#include "bodyloom/geometry/rotation.h"
-#include "bodyloom/tracking/sequence_problem.h"
+#include "bodyloom/geometry/math/rotation.h"
+#include "bodyloom/tracking/problem/sequence_problem.h"
 #include "bodyloom/tracking/terms/dense/dense.h"
 #include "bodyloom/tracking/terms/initialiser.h"
 #include "bodyloom/tracking/terms/joint_limits.h"

@@ -8,8 +8,8 @@
 
 namespace bodyloom {
 
-/// Two seconds of the demo's walk, at 6 frames a second unless told otherwise, in pictures of 320×240; the camera stands
-/// still unless told otherwise.
+/// Two seconds of the demo's walk, at 6 frames a second unless told otherwise, in pictures of 320×240; the camera
+/// stands still unless told otherwise.
 inline Track ShortTrack(int fps = 6, SynthCameraMotion camera = SynthCameraMotion::kStill) {
   SynthClipOptions options;
   options.camera_path.motion = camera;

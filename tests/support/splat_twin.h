@@ -11,10 +11,9 @@
 #include <random>
 #include <vector>
 
-#include "bodyloom/geometry/camera.h"
-#include "bodyloom/render/pixel_box.h"
+#include "bodyloom/geometry/scene/camera.h"
+#include "bodyloom/render/image/pixel_box.h"
 #include "bodyloom/render/splat/camera_gaussians.h"
-#include "bodyloom/render/splat/screen_gaussians.h"
 
 namespace bodyloom {
 
@@ -145,8 +144,8 @@ std::array<T, kColumns> RowOf(const FloatColumns& columns, int i) {
   return row;
 }
 
-/// Gaussians of all shapes about the middle of a camera's view, some turned, some flat, some hidden by others; `size` is
-/// their largest standard deviation in metres.
+/// Gaussians of all shapes about the middle of a camera's view, some turned, some flat, some hidden by others; `size`
+/// is their largest standard deviation in metres.
 inline CameraGaussians GaussianCloud(int count, uint32_t seed, double spread = 0.5, double size = 0.06) {
   std::mt19937 generator(seed);
   const auto uniform = [&] { return generator() / 4294967296.0; };

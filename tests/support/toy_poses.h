@@ -6,10 +6,10 @@
 #include <cmath>
 #include <random>
 
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/camera.h"
-#include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/geometry/math/rotation.h"
+#include "bodyloom/geometry/scene/camera.h"
 
 namespace bodyloom {
 

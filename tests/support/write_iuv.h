@@ -9,10 +9,10 @@
 
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/geometry/track.h"
-#include "bodyloom/render/resolve_pixels.h"
-#include "bodyloom/render/visibility_buffer.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/geometry/scene/track.h"
+#include "bodyloom/render/raster/resolve_pixels.h"
+#include "bodyloom/render/raster/visibility_buffer.h"
 
 namespace bodyloom {
 

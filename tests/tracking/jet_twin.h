@@ -8,10 +8,10 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/camera.h"
-#include "bodyloom/geometry/rotation.h"
-#include "bodyloom/tracking/frame_cost.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/math/rotation.h"
+#include "bodyloom/geometry/scene/camera.h"
+#include "bodyloom/tracking/problem/frame_cost.h"
 
 namespace bodyloom::twin {
 

@@ -10,7 +10,7 @@
 #include "bodyloom/data_tools/learned/pose_prior_io.h"
 #include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
 #include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
-#include "bodyloom/geometry/camera_path.h"
+#include "bodyloom/geometry/scene/camera_path.h"
 #include "bodyloom/tracking/live/track_live.h"
 #include "bodyloom/tracking/people/track_people.h"
 #include "bodyloom/tracking/track_sequence.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// The ground plane, and which way is up, from one shot of one camera. Where it moves, everything is in the scene
-/// (geometry/camera_path.h), and each foot says from where it was seen.
+/// (geometry/scene/camera_path.h), and each foot says from where it was seen.
 ///
 /// The lifter predicts where up is in every frame; over a shot these directions are one measurement. A foot stands
 /// while the lifter calls it so and its ankle keeps its place across the view. Ankles of stances lie in one plane
@@ -16,7 +16,10 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/tracking/initialise/lifter_reading.h"
+#include "bodyloom/geometry/scene/observations.h"
+#include "bodyloom/tracking/initialise/lifted_landmarks.h"
+#include "bodyloom/tracking/lifter/lifter_reading.h"
+#include "bodyloom/tracking/problem/sequence_problem.h"
 
 namespace bodyloom {
 
@@ -70,8 +73,8 @@ struct GroundPlane {
   Eigen::Vector3d normal = Eigen::Vector3d(0, -1, 0);  ///< up, camera axes, unit
   double offset_m = 0;                                 ///< normal · ankle of standing feet
   double spread_m = 0;                                 ///< robust σ of the stances' heights, weighted by time
-  /// Standard deviations by the fit's normal equations: of the normal's angle to the true one (root mean square), and of
-  /// the offset at the true normal. NaN of a plane that is given.
+  /// Standard deviations by the fit's normal equations: of the normal's angle to the true one (root mean square), and
+  /// of the offset at the true normal. NaN of a plane that is given.
   double up_sigma_rad = std::numeric_limits<double>::quiet_NaN();
   double offset_sigma_m = std::numeric_limits<double>::quiet_NaN();
   double share = 0;             ///< of the stances' time on the plane
@@ -96,5 +99,14 @@ GroundPlane EstimateGroundPlane(const std::vector<std::array<FootPlace, 2>>& fee
 /// feet stand on it for min_total_s; places are moved onto it.
 GroundPlane StandOnPlane(const std::vector<std::array<FootPlace, 2>>& feet, std::span<const double> timestamps,
                          const Eigen::Vector3d& normal, double offset_m, const GroundPlaneOptions& options);
+
+// Where a person's ankles are in the frames of a clip, and what the lifter says of the feet.
+
+/// Of each frame of `problem`, which are `frames` of the clip that `lifted` and `keypoints` hold all frames of: both
+/// ankles where the problem's states have them (for weak perspective as far away as FrameLayout::BodyPlace), and where
+/// the camera was. A foot is seen where the detector is sure of its ankle.
+std::vector<std::array<FootPlace, 2>> SeenFeet(const SequenceProblem& problem, const std::vector<int>& frames,
+                                               const std::vector<LiftedFrame>& lifted, const LiftedLandmarks& landmarks,
+                                               const KeypointSequence& keypoints);
 
 }  // namespace bodyloom

@@ -8,17 +8,16 @@
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/geometry/rotation.h"
-#include "bodyloom/tracking/initialise/bone_ratio_shape.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/geometry/math/rotation.h"
 #include "bodyloom/tracking/initialise/inverse_kinematics.h"
 #include "bodyloom/tracking/initialise/joint_hypotheses.h"
 #include "bodyloom/tracking/initialise/lifted_landmarks.h"
 #include "bodyloom/tracking/initialise/lifted_start.h"
-#include "bodyloom/tracking/initialise/stature.h"
 #include "bodyloom/tracking/initialise/swap_repair.h"
-#include "bodyloom/tracking/input_checks.h"
-#include "bodyloom/tracking/shots.h"
+#include "bodyloom/tracking/problem/input_checks.h"
+#include "bodyloom/tracking/problem/sequence_problem.h"
+#include "bodyloom/tracking/problem/stature.h"
 
 namespace bodyloom {
 

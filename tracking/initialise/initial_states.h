@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/tracking/frame_layout.h"
-#include "bodyloom/tracking/track_input.h"
-#include "bodyloom/tracking/track_options.h"
+#include "bodyloom/tracking/problem/frame_layout.h"
+#include "bodyloom/tracking/problem/track_input.h"
+#include "bodyloom/tracking/problem/track_options.h"
 
 namespace bodyloom {
 
@@ -20,11 +20,11 @@ struct InitialStates {
 
 struct LiftedStart;
 
-/// The initialiser's poses when given, frames that it lacks between its others as below; else the lifter's, when there is one that can read the observations; else joint
-/// hypotheses turned into poses by inverse kinematics and interpolated on SO(3) to every frame. `keypoints`:
-/// JointsToStartFrom(); null only with an initialiser. `lifted`, when given, receives what the lifter predicted (its
-/// frames are empty when it was not run or saw nothing); with an initialiser the lifter runs for the vertical and the
-/// ground alone, when they are wanted.
+/// The initialiser's poses when given, frames that it lacks between its others as below; else the lifter's, when there
+/// is one that can read the observations; else joint hypotheses turned into poses by inverse kinematics and
+/// interpolated on SO(3) to every frame. `keypoints`: JointsToStartFrom(); null only with an initialiser. `lifted`,
+/// when given, receives what the lifter predicted (its frames are empty when it was not run or saw nothing); with an
+/// initialiser the lifter runs for the vertical and the ground alone, when they are wanted.
 InitialStates FindInitialStates(const TrackSequenceInput& input, const KeypointSequence* keypoints,
                                 const FrameLayout& layout, const TrackSequenceOptions& options,
                                 LiftedStart* lifted = nullptr);

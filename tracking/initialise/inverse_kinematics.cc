@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/tracking/initialise/inverse_kinematics.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/geometry/math/rotation.h"
 #include "bodyloom/tracking/initialise/joint_hypotheses.h"
+#include "bodyloom/tracking/initialise/joint_rays.h"
 
 namespace bodyloom {
 
@@ -78,6 +85,75 @@ BodyPose PoseFromJoints(const BodyModel& model, const MatrixX3d& rest_joints, co
   const Vector3d pelvis = rest_joints.row(0).transpose();
   pose.trans = hips - (pelvis + pose.rotations[0] * (rest_hips - pelvis));
   return pose;
+}
+
+using Eigen::Vector2d;
+using namespace hypotheses_internal;  // NOLINT(google-build-using-namespace)
+
+Eigen::VectorXd EstimateShape(const KeypointSequence& keypoints, const Camera& camera, const BodyModel& model,
+                              int num_betas, const JointHypothesesOptions& options) {
+  Eigen::VectorXd betas = Eigen::VectorXd::Zero(num_betas);
+  std::vector<int> frames;
+  const int step = std::max(1, keypoints.num_frames() / 1000);
+  for (int t = 0; t < keypoints.num_frames(); t += step) frames.push_back(t);
+  const std::vector<Rays> rays = RaysOfFrames(keypoints, camera, frames, options);
+
+  // Bones as pairs of point groups: torso, then the two bones of each limb, left and right together.
+  const auto midpoint = [](const auto& points, int a, int b) -> Vector2d { return (points(a) + points(b)) / 2; };
+  constexpr int kNumBones = 5;
+  std::array<std::vector<double>, kNumBones> seen;
+  for (const Rays& r : rays) {
+    if (!r.has_torso()) continue;
+    const auto at = [&](int k) -> Vector2d { return r.ray[k]; };
+    std::array<double, kNumBones> length{};
+    std::array<int, kNumBones> count{};
+    length[0] = (midpoint(at, kLeftShoulder, kRightShoulder) - midpoint(at, kLeftHip, kRightHip)).norm();
+    count[0] = 1;
+    for (int l = 0; l < 4; ++l) {
+      for (int b = 0; b < 2; ++b) {
+        const int from = kLimbs[l][b], to = kLimbs[l][b + 1];
+        if (!r.seen[from] || !r.seen[to] || std::min(r.confidence[from], r.confidence[to]) < 0.5) continue;
+        // The longer of left and right: the other is foreshortened.
+        double& longest = length[1 + 2 * (l / 2) + b];
+        longest = std::max(longest, (at(to) - at(from)).norm());
+        count[1 + 2 * (l / 2) + b] = 1;
+      }
+    }
+    if (count[0] + count[3] + count[4] < 3) continue;
+    const double size = length[0] + length[3] + length[4];
+    if (!(size > 0)) continue;
+    for (int b = 0; b < kNumBones; ++b) {
+      if (count[b] > 0) seen[b].push_back(length[b] / size);
+    }
+  }
+  Eigen::VectorXd log_seen(kNumBones);
+  for (int b = 0; b < kNumBones; ++b) {
+    if (seen[b].size() < 30) return betas;
+    // The ratio to the body's apparent size is noisy both ways for torso and legs (median), and only shortened for
+    // arms.
+    const size_t k = static_cast<size_t>((b == 0 || b >= 3 ? 0.5 : 0.85) * static_cast<double>(seen[b].size() - 1));
+    std::nth_element(seen[b].begin(), seen[b].begin() + static_cast<std::ptrdiff_t>(k), seen[b].end());
+    log_seen[b] = std::log(seen[b][k]);
+  }
+  const auto log_lengths = [&](const Eigen::VectorXd& shape) {
+    BodyPose rest;
+    rest.rotations.assign(model.num_joints(), Matrix3d::Identity());
+    const Lengths lengths(PoseLandmarks(model, shape, rest, CocoNames()));
+    Eigen::VectorXd result(kNumBones);
+    result << lengths.torso, (lengths.upper[0] + lengths.upper[1]) / 2, (lengths.lower[0] + lengths.lower[1]) / 2,
+        (lengths.upper[2] + lengths.upper[3]) / 2, (lengths.lower[2] + lengths.lower[3]) / 2;
+    const double size = result[0] + result[3] + result[4];
+    return Eigen::VectorXd((result / size).array().log());
+  };
+  const Eigen::VectorXd mean = log_lengths(betas);
+  Eigen::MatrixXd A(kNumBones, num_betas);
+  for (int b = 0; b < num_betas; ++b) A.col(b) = log_lengths(Eigen::VectorXd::Unit(num_betas, b)) - mean;
+  constexpr double kSigma = 0.03;
+  const Eigen::MatrixXd H = A.transpose() * A / (kSigma * kSigma) + Eigen::MatrixXd::Identity(num_betas, num_betas);
+  // No two people differ by more; beyond it the joints are not a person's.
+  constexpr double kLimit = 0.35;
+  const Eigen::VectorXd difference = (log_seen - mean).cwiseMax(-kLimit).cwiseMin(kLimit);
+  return H.ldlt().solve(A.transpose() * difference / (kSigma * kSigma));
 }
 
 }  // namespace bodyloom

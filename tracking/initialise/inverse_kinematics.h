@@ -8,8 +8,12 @@
 
 #include <Eigen/Core>
 
-#include "bodyloom/geometry/arrays.h"
-#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/geometry/math/arrays.h"
+#include "bodyloom/geometry/scene/camera.h"
+#include "bodyloom/geometry/scene/observations.h"
+#include "bodyloom/tracking/initialise/joint_hypotheses.h"
 
 namespace bodyloom {
 
@@ -18,5 +22,14 @@ namespace bodyloom {
 /// lacks SMPL's limb joints by name.
 BodyPose PoseFromJoints(const BodyModel& model, const MatrixX3d& rest_joints, const MatrixX3d& rest_points,
                         const MatrixX3d& points, const Eigen::Matrix3d& torso_rotation);
+
+// A shape before anything is fitted, from how long the bones look.
+
+/// Shape components whose bone lengths have the ratios that the clip shows: a bone's largest projections over the clip
+/// (90th percentile, relative to the body's apparent size) give its length wherever it once lay in the image plane.
+/// Fits log ratios of torso, thighs, shins, upper arms and forearms with σ = 0.03, and N(0, 1) on each component; a log
+/// ratio counts at most 0.35 from the mean body's. Zero without enough frames.
+Eigen::VectorXd EstimateShape(const KeypointSequence& keypoints, const Camera& camera, const BodyModel& model,
+                              int num_betas, const JointHypothesesOptions& options);
 
 }  // namespace bodyloom

@@ -9,8 +9,7 @@
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/tracking/initialise/joint_rays.h"
 #include "bodyloom/tracking/initialise/limb_costs.h"
-#include "bodyloom/tracking/initialise/torso_states.h"
-#include "bodyloom/tracking/initialise/viterbi.h"
+#include "bodyloom/tracking/initialise/swap_repair.h"
 
 namespace bodyloom {
 

@@ -16,12 +16,12 @@
 #include <array>
 #include <vector>
 
-#include "bodyloom/geometry/arrays.h"
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/camera.h"
-#include "bodyloom/geometry/observations.h"
-#include "bodyloom/geometry/pose_prior.h"
-#include "bodyloom/tracking/track_options.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/math/arrays.h"
+#include "bodyloom/geometry/scene/camera.h"
+#include "bodyloom/geometry/scene/observations.h"
+#include "bodyloom/geometry/scene/pose_prior.h"
+#include "bodyloom/tracking/problem/track_options.h"
 
 namespace bodyloom {
 

@@ -7,9 +7,9 @@
 #include <array>
 #include <vector>
 
-#include "bodyloom/geometry/arrays.h"
-#include "bodyloom/geometry/camera.h"
-#include "bodyloom/geometry/observations.h"
+#include "bodyloom/geometry/math/arrays.h"
+#include "bodyloom/geometry/scene/camera.h"
+#include "bodyloom/geometry/scene/observations.h"
 #include "bodyloom/tracking/initialise/joint_hypotheses.h"
 
 namespace bodyloom::hypotheses_internal {

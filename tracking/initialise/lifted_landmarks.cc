@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/tracking/initialise/lifter_input.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/tracking/lifter/lifter_input.h"
 
 namespace bodyloom {
 

@@ -5,17 +5,17 @@
 #include <array>
 #include <vector>
 
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/lifter_weights.h"
-#include "bodyloom/tracking/body_points.h"
-#include "bodyloom/tracking/initialise/lift_keypoints.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/scene/lifter_weights.h"
+#include "bodyloom/tracking/lifter/lift_keypoints.h"
+#include "bodyloom/tracking/problem/body_points.h"
 
 namespace bodyloom {
 
 /// The lifter's landmarks, compiled for a body.
 struct LiftedLandmarks {
-  /// The landmark whose uncertainty is a joint's: the one that is nearest in the rest pose. `share`: the joint's distance
-  /// from the middle of the hips over the landmark's, at most 1.
+  /// The landmark whose uncertainty is a joint's: the one that is nearest in the rest pose. `share`: the joint's
+  /// distance from the middle of the hips over the landmark's, at most 1.
   struct Nearest {
     int landmark = -1;  ///< −1: the body has none
     double share = 0;

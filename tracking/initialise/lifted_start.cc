@@ -6,12 +6,12 @@
 #include <cmath>
 #include <optional>
 
-#include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/geometry/math/rotation.h"
 #include "bodyloom/tracking/initialise/inverse_kinematics.h"
 #include "bodyloom/tracking/initialise/joint_hypotheses.h"
-#include "bodyloom/tracking/initialise/lifter_input.h"
-#include "bodyloom/tracking/robust.h"
+#include "bodyloom/tracking/lifter/lifter_input.h"
+#include "bodyloom/tracking/problem/robust.h"
 
 namespace bodyloom {
 namespace {

@@ -4,11 +4,11 @@
 
 #include <vector>
 
-#include "bodyloom/geometry/camera.h"
-#include "bodyloom/geometry/lifter_weights.h"
-#include "bodyloom/geometry/observations.h"
+#include "bodyloom/geometry/scene/camera.h"
+#include "bodyloom/geometry/scene/lifter_weights.h"
+#include "bodyloom/geometry/scene/observations.h"
 #include "bodyloom/tracking/initialise/initial_states.h"
-#include "bodyloom/tracking/initialise/lift_keypoints.h"
+#include "bodyloom/tracking/lifter/lift_keypoints.h"
 
 namespace bodyloom {
 

@@ -5,9 +5,10 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <vector>
 
-#include "bodyloom/geometry/direction_bins.h"
-#include "bodyloom/geometry/pose_prior.h"
+#include "bodyloom/geometry/math/direction_bins.h"
+#include "bodyloom/geometry/scene/pose_prior.h"
 #include "bodyloom/tracking/initialise/joint_rays.h"
 
 namespace bodyloom::hypotheses_internal {
@@ -39,5 +40,19 @@ class LimbCosts {
   const PosePrior* prior_ = nullptr;
   std::optional<DirectionBins> bins_;
 };
+
+// The torso orientations that a frame may have: heading × tilt, turned in the image as the detections are, and what
+// each costs by shoulders, hips, lean and face.
+
+struct TorsoState {
+  Eigen::Matrix3d rotation;  ///< camera-from-torso
+  double cost = 0;
+};
+
+/// All states of one frame whose root lies at `depth` metres.
+std::vector<TorsoState> TorsoStates(const Rays& rays, double depth, const Lengths& lengths,
+                                    const JointHypothesesOptions& options);
+
+Eigen::Vector3d Centroid(const MatrixX3d& points, const std::array<int, 4>& ids);
 
 }  // namespace bodyloom::hypotheses_internal

@@ -7,8 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "bodyloom/tracking/initialise/viterbi.h"
-#include "bodyloom/tracking/robust.h"
+#include "bodyloom/tracking/problem/robust.h"
 
 namespace bodyloom {
 namespace {

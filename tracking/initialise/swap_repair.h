@@ -2,9 +2,12 @@
 /// Repairs detections whose left and right were exchanged for some frames, and finds cuts.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
+#include <limits>
 #include <vector>
 
-#include "bodyloom/geometry/observations.h"
+#include "bodyloom/geometry/scene/observations.h"
 
 namespace bodyloom {
 
@@ -26,5 +29,37 @@ bool IsSeen(const Keypoint& point);
 /// Diagonal of the box around the seen landmarks of frame t: the person's size in the image, pixels; 0 with fewer
 /// than 4.
 double SeenBodySize(const KeypointSequence& keypoints, int t);
+
+// The cheapest path through a trellis: min over s of Σ_t unary(t, s_t) + Σ_t transition(t, s_{t−1}, s_t).
+
+/// unary[t][s] for T steps with any number of states a step (at least one); transition(t, a, b) is the cost of going
+/// from state a of step t−1 to state b of step t. Returns T states. O(Σ S_{t−1} S_t); ties go to the lower index.
+template <typename Transition>
+std::vector<int> Viterbi(const std::vector<std::vector<double>>& unary, const Transition& transition) {
+  const size_t T = unary.size();
+  if (T == 0) return {};
+  std::vector<std::vector<int>> from(T);
+  std::vector<double> cost = unary[0], next;
+  for (size_t t = 1; t < T; ++t) {
+    next.assign(unary[t].size(), std::numeric_limits<double>::infinity());
+    from[t].assign(unary[t].size(), 0);
+    for (size_t b = 0; b < unary[t].size(); ++b) {
+      for (size_t a = 0; a < cost.size(); ++a) {
+        if (cost[a] >= next[b]) continue;  // transitions are not negative
+        const double c = cost[a] + transition(t, static_cast<int>(a), static_cast<int>(b));
+        if (c < next[b]) {
+          next[b] = c;
+          from[t][b] = static_cast<int>(a);
+        }
+      }
+      next[b] += unary[t][b];
+    }
+    cost.swap(next);
+  }
+  std::vector<int> path(T);
+  path[T - 1] = static_cast<int>(std::min_element(cost.begin(), cost.end()) - cost.begin());
+  for (size_t t = T - 1; t > 0; --t) path[t - 1] = from[t][path[t]];
+  return path;
+}
 
 }  // namespace bodyloom

@@ -7,8 +7,8 @@
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/tracking/initialise/impossible_frames.h"
 #include "bodyloom/tracking/initialise/swap_repair.h"
-#include "bodyloom/tracking/input_checks.h"
-#include "bodyloom/tracking/observability.h"
+#include "bodyloom/tracking/problem/input_checks.h"
+#include "bodyloom/tracking/terms/observability.h"
 
 namespace bodyloom {
 namespace {

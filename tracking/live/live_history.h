@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/observations.h"
+#include "bodyloom/geometry/scene/observations.h"
 
 namespace bodyloom {
 

@@ -9,16 +9,16 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/camera.h"
-#include "bodyloom/geometry/lifter_weights.h"
-#include "bodyloom/geometry/observations.h"
-#include "bodyloom/geometry/pose_prior.h"
-#include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/geometry/track.h"
-#include "bodyloom/tracking/camera_knowledge.h"
-#include "bodyloom/tracking/frame_layout.h"
-#include "bodyloom/tracking/track_options.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/geometry/scene/camera.h"
+#include "bodyloom/geometry/scene/lifter_weights.h"
+#include "bodyloom/geometry/scene/observations.h"
+#include "bodyloom/geometry/scene/pose_prior.h"
+#include "bodyloom/geometry/scene/track.h"
+#include "bodyloom/tracking/problem/camera_knowledge.h"
+#include "bodyloom/tracking/problem/frame_layout.h"
+#include "bodyloom/tracking/problem/track_options.h"
 
 namespace bodyloom {
 

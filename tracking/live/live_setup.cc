@@ -6,7 +6,7 @@
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/tracking/input_checks.h"
+#include "bodyloom/tracking/problem/input_checks.h"
 #include "bodyloom/tracking/terms/straight_knees.h"
 
 namespace bodyloom {

@@ -7,10 +7,10 @@
 
 #include "bodyloom/tracking/initialise/lifted_landmarks.h"
 #include "bodyloom/tracking/live/live_options.h"
-#include "bodyloom/tracking/observability.h"
-#include "bodyloom/tracking/sequence_problem.h"
+#include "bodyloom/tracking/problem/sequence_problem.h"
 #include "bodyloom/tracking/terms/joint_limits.h"
-#include "bodyloom/tracking/terms/pose_prior/mixture_prior.h"
+#include "bodyloom/tracking/terms/observability.h"
+#include "bodyloom/tracking/terms/pose_prior/pose_prior.h"
 
 namespace bodyloom {
 

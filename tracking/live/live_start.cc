@@ -5,8 +5,9 @@
 #include <cmath>
 #include <utility>
 
-#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/body/posed_body.h"
 #include "bodyloom/tracking/initialise/initial_states.h"
+#include "bodyloom/tracking/initialise/inverse_kinematics.h"
 #include "bodyloom/tracking/initialise/lifted_start.h"
 #include "bodyloom/tracking/terms/initialiser.h"
 
@@ -109,6 +110,15 @@ void RestartShot(const LiveSetup& setup, int count, LiveWindow* window) {
     lag.Touch(slot);
   }
   window->Solve(setup.options.start_iterations);
+}
+
+void LiveShape::Refine(const LiveSetup& setup, LiveWindow* window) {
+  const int num_betas = setup.layout.num_betas;
+  const KeypointSequence& sample = window->history().Sample();
+  if (num_betas == 0 || sample.num_frames() == 0 || window->frames_of_clip() < next_frames_) return;
+  next_frames_ *= 2;
+  window->lag().problem().shape_prior.mean =
+      EstimateShape(sample, window->PinholeNow(), *setup.input.body, num_betas, setup.options.solve.hypotheses);
 }
 
 }  // namespace bodyloom

@@ -5,10 +5,9 @@
 #include <limits>
 #include <utility>
 
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/math/rotation.h"
 #include "bodyloom/tracking/live/live_limbs.h"
 #include "bodyloom/tracking/live/live_setup.h"
-#include "bodyloom/tracking/live/live_shape.h"
 #include "bodyloom/tracking/live/live_start.h"
 #include "bodyloom/tracking/live/live_window.h"
 

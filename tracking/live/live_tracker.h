@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Tracks a person while the frames come in: one frame in, the pose of the frame `lag` frames before out.
 ///
-/// The last frames are solved together by a fixed-lag smoother (tracking/chain/fixed_lag.h); what older frames implied
-/// about pose, shape and focal length stays as a prior. Time and memory of a frame are bounded, whatever comes: every
-/// frame gets a status and none is waited for. How it works, and what it costs: docs/live.md.
+/// The last frames are solved together by a fixed-lag smoother (tracking/solvers/fixed_lag.h); what older frames
+/// implied about pose, shape and focal length stays as a prior. Time and memory of a frame are bounded, whatever comes:
+/// every frame gets a status and none is waited for. How it works, and what it costs: docs/live.md.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@
 #include <optional>
 #include <vector>
 
-#include "bodyloom/tracking/frame_layout.h"
 #include "bodyloom/tracking/live/live_options.h"
+#include "bodyloom/tracking/problem/frame_layout.h"
 
 namespace bodyloom {
 

@@ -6,15 +6,15 @@
 #include <limits>
 #include <utility>
 
-#include "bodyloom/tracking/input_checks.h"
+#include "bodyloom/tracking/clip/track_result.h"
+#include "bodyloom/tracking/clip/uncertainty.h"
+#include "bodyloom/tracking/problem/input_checks.h"
+#include "bodyloom/tracking/problem/user_cost.h"
 #include "bodyloom/tracking/terms/dense/dense.h"
 #include "bodyloom/tracking/terms/initialiser.h"
 #include "bodyloom/tracking/terms/pose_prior/pose_prior.h"
 #include "bodyloom/tracking/terms/straight_knees.h"
 #include "bodyloom/tracking/terms/upright.h"
-#include "bodyloom/tracking/terms/user/user_cost.h"
-#include "bodyloom/tracking/track_result.h"
-#include "bodyloom/tracking/uncertainty.h"
 
 namespace bodyloom {
 namespace {
@@ -198,8 +198,8 @@ PositionSigma LiveWindow::Uncertainty(int begin, int end) {
   lag_->VisitCovariance(begin, end, [&](int slot, const Eigen::MatrixXd& P) {
     const FrameData& frame = problem().frames[slot];
     const JointSpread spread = JointSpreadOf(setup_.layout, problem().states[slot], problem().betas, P);
-    // What has left the window holds the lifter's predictions too, so P cannot be had without them. Of 2D joints alone the
-    // lifter's own spread is nearly all of both; dense keypoints know better than it.
+    // What has left the window holds the lifter's predictions too, so P cannot be had without them. Of 2D joints alone
+    // the lifter's own spread is nearly all of both; dense keypoints know better than it.
     const LiftedPose* lifted = frame.Get<LiftedPoseTerm>().pose;
     const bool lifter_decides = lifted != nullptr && frame.Get<DenseTerm>().size() == 0;
     sigma.joints.row(slot - begin) = (lifter_decides ? JointSigmaOf(*lifted, J) : JointSigmaOf(spread)).transpose();

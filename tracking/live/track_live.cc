@@ -7,11 +7,11 @@
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/tracking/input_checks.h"
-#include "bodyloom/tracking/observability.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/tracking/clip/track_result.h"
+#include "bodyloom/tracking/problem/input_checks.h"
 #include "bodyloom/tracking/terms/dense/dense.h"
-#include "bodyloom/tracking/track_result.h"
+#include "bodyloom/tracking/terms/observability.h"
 
 namespace bodyloom {
 

@@ -9,10 +9,10 @@
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/camera_path.h"
-#include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/geometry/skinning.h"
-#include "bodyloom/tracking/visible_surface.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/geometry/body/skinning.h"
+#include "bodyloom/geometry/scene/camera_path.h"
+#include "bodyloom/tracking/problem/visible_surface.h"
 
 namespace bodyloom {
 namespace {

@@ -7,10 +7,10 @@
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/tracking/initialise/stature.h"
+#include "bodyloom/tracking/clip/uncertainty.h"
+#include "bodyloom/tracking/problem/stature.h"
+#include "bodyloom/tracking/room/shared_scene.h"
 #include "bodyloom/tracking/track_sequence.h"
-#include "bodyloom/tracking/track_world.h"
-#include "bodyloom/tracking/uncertainty.h"
 
 namespace bodyloom {
 namespace {

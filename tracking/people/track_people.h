@@ -3,20 +3,20 @@
 /// nearer people in front of others.
 ///
 /// Everybody is fitted alone first. What these fits say of the scene is joined (shared_scene.h), what a nearer body
-/// hides of another is found (occlusion.h), and those for whom that changes something are fitted again with it. Where the
-/// focal length was not known and feet of two people stand, twice: with the joined focal length, which moves everybody's
-/// feet, and with the ground and the sizes that these show. Of a camera that moves the scale of the path is one for all,
-/// and sizes are not compared.
+/// hides of another is found (occlusion.h), and those for whom that changes something are fitted again with it. Where
+/// the focal length was not known and feet of two people stand, twice: with the joined focal length, which moves
+/// everybody's feet, and with the ground and the sizes that these show. Of a camera that moves the scale of the path is
+/// one for all, and sizes are not compared.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "bodyloom/tracking/people/occlusion.h"
-#include "bodyloom/tracking/people/shared_scene.h"
-#include "bodyloom/tracking/track_input.h"
-#include "bodyloom/tracking/track_options.h"
-#include "bodyloom/tracking/track_summary.h"
+#include "bodyloom/tracking/problem/track_input.h"
+#include "bodyloom/tracking/problem/track_options.h"
+#include "bodyloom/tracking/problem/track_summary.h"
+#include "bodyloom/tracking/room/shared_scene.h"
 
 namespace bodyloom {
 

@@ -8,8 +8,8 @@
 #include <memory>
 #include <vector>
 
-#include "bodyloom/geometry/observations.h"
-#include "bodyloom/tracking/sequence_problem.h"
+#include "bodyloom/geometry/scene/observations.h"
+#include "bodyloom/tracking/problem/sequence_problem.h"
 
 namespace bodyloom {
 

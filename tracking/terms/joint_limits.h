@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/body/body_model.h"
 #include "bodyloom/tracking/problem/frame_term.h"
 
 namespace bodyloom {

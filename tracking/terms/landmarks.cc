@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/tracking/frame_accumulator.h"
 #include "bodyloom/tracking/problem/clip_term.h"
-#include "bodyloom/tracking/track_input.h"
-#include "bodyloom/tracking/track_summary.h"
+#include "bodyloom/tracking/problem/frame_accumulator.h"
+#include "bodyloom/tracking/problem/track_input.h"
+#include "bodyloom/tracking/problem/track_summary.h"
 
 namespace bodyloom {
 

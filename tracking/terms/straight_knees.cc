@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/rotation.h"
-#include "bodyloom/tracking/frame_accumulator.h"
+#include "bodyloom/geometry/math/rotation.h"
 #include "bodyloom/tracking/problem/clip_term.h"
-#include "bodyloom/tracking/track_options.h"
-#include "bodyloom/tracking/track_summary.h"
+#include "bodyloom/tracking/problem/frame_accumulator.h"
+#include "bodyloom/tracking/problem/track_options.h"
+#include "bodyloom/tracking/problem/track_summary.h"
 
 namespace bodyloom {
 

@@ -5,8 +5,8 @@
 /// where thigh and shin are in line). A detector whose hips lie lower on the body than the body's own makes thighs
 /// short in the image, and a short thigh looks like a bent knee; with how far legs point out of the image plane a
 /// camera sees a bend of up to 40° hardly at all (cos is flat). The kernel lets go of knees that are bent far, as in a
-/// squat: the pull is largest at 13° and an eighth of that at 60°. Runs in every frame and for both knees where they are
-/// estimated and w > 0.
+/// squat: the pull is largest at 13° and an eighth of that at 60°. Runs in every frame and for both knees where they
+/// are estimated and w > 0.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/body/body_model.h"
 #include "bodyloom/tracking/problem/frame_term.h"
 
 namespace bodyloom {

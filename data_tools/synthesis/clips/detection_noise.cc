@@ -5,8 +5,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "bodyloom/data_tools/synthesis/clips/detection_model.h"
-#include "bodyloom/data_tools/synthesis/clips/drift.h"
+#include "bodyloom/data_tools/synthesis/clips/smooth_curve.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/hash_random.h"
 

@@ -6,12 +6,12 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/synthesis/clips/drift.h"
+#include "bodyloom/data_tools/synthesis/clips/smooth_curve.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/hash_random.h"
 #include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/geometry/math/rotation.h"
 
 namespace bodyloom {
 namespace {

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/render/visibility_buffer.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/render/raster/visibility_buffer.h"
 
 namespace bodyloom {
 

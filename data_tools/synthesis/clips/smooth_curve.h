@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "bodyloom/geometry/base/hash_random.h"
+
 namespace bodyloom {
 
 /// 0 below 0, 1 above 1, between them 6x⁵ − 15x⁴ + 10x³: first and second derivatives vanish at both ends.
@@ -55,5 +57,15 @@ class SmoothCurve {
   double start_, blur_s_;
   std::vector<std::pair<double, double>> bends_;  ///< time, change of slope
 };
+
+// Random errors that change slowly.
+
+/// One value a time (increasing, seconds), mean 0, variance 1, correlation exp(−Δt/τ): continuous but rough
+/// (Ornstein–Uhlenbeck).
+std::vector<double> RoughDrift(const std::vector<double>& times_s, double time_constant_s, HashRandom random);
+
+/// One value a time, mean 0, variance about 1, differentiable: a sum of waves with random phases and frequencies spread
+/// evenly below 1/(2π) · 2/time_constant_s.
+std::vector<double> SmoothDrift(const std::vector<double>& times_s, double time_constant_s, HashRandom random);
 
 }  // namespace bodyloom

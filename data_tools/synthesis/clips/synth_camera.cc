@@ -9,9 +9,9 @@
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/units.h"
-#include "bodyloom/geometry/camera_path.h"
-#include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/geometry/math/rotation.h"
+#include "bodyloom/geometry/scene/camera_path.h"
 
 namespace bodyloom {
 namespace {

@@ -5,13 +5,12 @@
 #include <array>
 #include <cmath>
 
-#include "bodyloom/data_tools/synthesis/clips/drift.h"
 #include "bodyloom/data_tools/synthesis/clips/smooth_curve.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/hash_random.h"
 #include "bodyloom/geometry/base/units.h"
-#include "bodyloom/geometry/camera_path.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/math/rotation.h"
+#include "bodyloom/geometry/scene/camera_path.h"
 
 namespace bodyloom {
 namespace {

@@ -2,7 +2,7 @@
 /// Paths of a camera that moves, for synthetic clips.
 ///
 /// kHandHeld  stands where PlaceSynthCamera() puts it and shakes: rotations about its three axes and places along them
-///            are smooth drifts (drift.h) of shake_deg and shake_m, with a time constant of 0.6 s
+///            are smooth drifts (smooth_curve.h) of shake_deg and shake_m, with a time constant of 0.6 s
 /// kWalking   goes along with the person: as kHandHeld about a place that follows the person's pelvis over the ground,
 ///            averaged over a second
 /// kOrbit     goes round the person by orbit_deg over the clip, about the vertical through the pelvis, which it follows
@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "bodyloom/data_tools/synthesis/clips/synth_camera.h"
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/camera.h"
-#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/scene/camera.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 
@@ -44,8 +44,8 @@ struct SynthCameraPath {
   std::vector<CameraPose> camera_from_scene;  ///< of every frame; empty for kStill
 };
 
-/// Throws std::invalid_argument when options are out of range, no frame is finite, or a camera that moves is one of weak
-/// perspective. The same for the same seed.
+/// Throws std::invalid_argument when options are out of range, no frame is finite, or a camera that moves is one of
+/// weak perspective. The same for the same seed.
 SynthCameraPath MakeSynthCameraPath(const BodyModel& body, const Motion& motion, const SynthCameraOptions& camera,
                                     const SynthCameraPathOptions& path, uint64_t seed);
 

@@ -9,11 +9,11 @@
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/hash_random.h"
 #include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/camera_path.h"
-#include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/render/chart_lookup.h"
-#include "bodyloom/render/visibility_buffer.h"
-#include "bodyloom/render/visible_points.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/geometry/scene/camera_path.h"
+#include "bodyloom/render/raster/visibility_buffer.h"
+#include "bodyloom/render/raster/visible_points.h"
+#include "bodyloom/render/texture/chart_lookup.h"
 
 namespace bodyloom {
 namespace {

@@ -24,9 +24,9 @@
 #include "bodyloom/data_tools/synthesis/clips/perturbed_motion.h"
 #include "bodyloom/data_tools/synthesis/clips/synth_camera.h"
 #include "bodyloom/data_tools/synthesis/clips/synth_camera_path.h"
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/observations.h"
-#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/scene/observations.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 

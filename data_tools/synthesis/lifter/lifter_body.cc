@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/tracking/body_points.h"
+#include "bodyloom/tracking/problem/body_points.h"
 
 namespace bodyloom {
 

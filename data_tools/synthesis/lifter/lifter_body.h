@@ -2,7 +2,8 @@
 /// The lifter's 21 landmarks of a posed body, fast: each compiled once into a few bones, without pose correctives (they
 /// move joint landmarks by millimetres), in single precision.
 ///
-///   x = Σ_i R_i (s_i ∘ l_i(β) + w_i o) + w_i p_i     l_i(β) = q_i(β) − w_i J_i(β), Σ w_i = 1 (tracking/body_points.h)
+///   x = Σ_i R_i (s_i ∘ l_i(β) + w_i o) + w_i p_i     l_i(β) = q_i(β) − w_i J_i(β), Σ w_i = 1
+///   (tracking/problem/body_points.h)
 /// with s_i the stretch of bone i along its own axes (all bones share the body's axes in T-pose; the joints below bone
 /// i move by s_i too) and o the landmark's own offset.
 #pragma once
@@ -11,10 +12,10 @@
 #include <array>
 #include <vector>
 
-#include "bodyloom/data_tools/synthesis/lifter/pose_sequence.h"
+#include "bodyloom/data_tools/synthesis/lifter/lifter_window_options.h"
 #include "bodyloom/geometry/base/hash_random.h"
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/tracking/initialise/lifter_input.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/tracking/lifter/lifter_input.h"
 
 namespace bodyloom {
 

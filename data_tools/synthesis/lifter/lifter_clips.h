@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "bodyloom/data_tools/synthesis/lifter/lifter_body.h"
-#include "bodyloom/data_tools/synthesis/lifter/pose_sequence.h"
-#include "bodyloom/geometry/track.h"
+#include "bodyloom/data_tools/synthesis/lifter/lifter_window_options.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "bodyloom/data_tools/synthesis/clips/detection_model.h"
+#include "bodyloom/data_tools/synthesis/clips/detection_noise.h"
 #include "bodyloom/data_tools/synthesis/lifter/fast_random.h"
 
 namespace bodyloom {

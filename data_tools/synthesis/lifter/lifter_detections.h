@@ -5,7 +5,7 @@
 /// Confidence: the typical value of the landmark (face: by the direction of the head), × 0.16 where the trunk (three
 /// capsules between shoulders and hips, radius 9–13 cm) or a leg (radius 7 cm) lies more than 9 cm in front of it,
 /// softened over 3 cm; × 0.85 for a shoulder or hip that is turned away by more than 10 cm; plus its slow drift. Noise:
-/// data_tools/synthesis/clips/detection_model.h, in person heights (1.3 Lref) at the person's distance. Then swaps, the
+/// data_tools/synthesis/clips/detection_noise.h, in person heights (1.3 Lref) at the person's distance. Then swaps, the
 /// detector's own idea of a confidence, points it does not have or report, and the image's border.
 #pragma once
 

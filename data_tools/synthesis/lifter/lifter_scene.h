@@ -7,7 +7,6 @@
 
 #include "bodyloom/data_tools/synthesis/lifter/lifter_body.h"
 #include "bodyloom/data_tools/synthesis/lifter/lifter_window_options.h"
-#include "bodyloom/data_tools/synthesis/lifter/pose_sequence.h"
 
 namespace bodyloom {
 

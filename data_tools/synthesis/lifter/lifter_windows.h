@@ -12,8 +12,8 @@
 #include "bodyloom/data_tools/synthesis/lifter/lifter_scene.h"
 #include "bodyloom/data_tools/synthesis/lifter/lifter_window_options.h"
 #include "bodyloom/data_tools/synthesis/lifter/pose_augmentation.h"
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 

@@ -7,8 +7,7 @@
 
 #include "bodyloom/data_tools/synthesis/lifter/lifter_clips.h"
 #include "bodyloom/data_tools/synthesis/lifter/lifter_window_options.h"
-#include "bodyloom/data_tools/synthesis/lifter/pose_sequence.h"
-#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/body/body_model.h"
 
 namespace bodyloom {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What is sewn, knitted and buttoned on everyday clothes (ClothesStyle::kEveryday): collars, bands and stitches at their
-/// ends, a jacket that is open over a shirt, buttons, knit, waistbands, side seams, worn denim, soles. Each is on some
-/// people and not on others, as the seed has it.
+/// What is sewn, knitted and buttoned on everyday clothes (ClothesStyle::kEveryday): collars, bands and stitches at
+/// their ends, a jacket that is open over a shirt, buttons, knit, waistbands, side seams, worn denim, soles. Each is on
+/// some people and not on others, as the seed has it.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,8 +15,8 @@ class ClothesDetails {
  public:
   ClothesDetails(const Outfit& outfit, uint64_t seed);
 
-  /// `colour` (red, green, blue, 0…255) of the cloth as the details of this place on the template change it; as it is for
-  /// labels other than top, bottom and shoes.
+  /// `colour` (red, green, blue, 0…255) of the cloth as the details of this place on the template change it; as it is
+  /// for labels other than top, bottom and shoes.
   [[nodiscard]] Eigen::Vector3f On(PersonLabel label, const Eigen::Vector3f& on_template,
                                    const Eigen::Vector3f& colour) const;
 

@@ -2,17 +2,19 @@
 /// A body in the clothes of a synthetic person, and how its loose garment moves along with it.
 ///
 /// The clothes close to the skin are the skinned surface moved outwards along its normals (outfit.h); the loose garment
-/// is cloth pinned to that surface and colliding with it (geometry/cloth/cloth_run.h). Cloth depends on how the body has
-/// moved: the same pose at another speed gives other folds.
+/// is cloth pinned to that surface and colliding with it (geometry/cloth/cloth_run.h). Cloth depends on how the body
+/// has moved: the same pose at another speed gives other folds.
 #pragma once
 
 #include <Eigen/Core>
 #include <cstdint>
 
 #include "bodyloom/data_tools/synthesis/people/outfit.h"
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/cloth/cloth_stuff.h"
-#include "bodyloom/geometry/cloth/cloth_wearer.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/cloth/cloth_body.h"
+#include "bodyloom/geometry/cloth/cloth_material.h"
+#include "bodyloom/geometry/cloth/loose_garment.h"
+#include "bodyloom/geometry/math/arrays.h"
 
 namespace bodyloom {
 
@@ -31,5 +33,11 @@ class DressedPerson : public ClothWearer {
   DressedPerson(const BodyModel& body, const Eigen::VectorXd& betas, Outfit outfit, uint64_t seed, ClothStuff stuff);
   Outfit outfit_;
 };
+
+// How the loose garment of a synthetic person's outfit is cut.
+
+/// The garment of an outfit's kind and seed on a body with these joints (J×3, T-pose, SMPL's tree) and pinned ring
+/// height scaled along; for a suit, which has none, length_m is 0.
+LooseGarmentOptions LooseGarmentOf(const Outfit& outfit, const MatrixX3d& rest_joints, uint64_t seed);
 
 }  // namespace bodyloom

@@ -2,8 +2,8 @@
 /// Pictures of a dressed person and the truth about every pixel.
 ///
 /// The clothed body and the cloth (seen from both sides) go through one visibility buffer a resolution:
-/// - image: samples × samples samples a pixel. Colour = pattern (wardrobe.h) · light (person_light.h), cloth's inner side
-///   at 0.7 of it, averaged with the background;
+/// - image: samples × samples samples a pixel. Colour = pattern (wardrobe.h) · light (person_light.h), cloth's inner
+///   side at 0.7 of it, averaged with the background;
 /// - labels and normals: what the pixel's centre sees; normals are interpolated, and turned towards the viewer on cloth
 ///   seen from inside;
 /// - iuv: the bare body without clothes, at the pixel's centre.
@@ -17,17 +17,35 @@
 
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/data_tools/synthesis/people/dressed_person.h"
-#include "bodyloom/data_tools/synthesis/people/moving_background.h"
 #include "bodyloom/data_tools/synthesis/people/person_light.h"
 #include "bodyloom/data_tools/synthesis/people/wardrobe.h"
-#include "bodyloom/geometry/camera.h"
-#include "bodyloom/geometry/vertex_normals.h"
-#include "bodyloom/render/resolve_pixels.h"
-#include "bodyloom/render/shadows/openness.h"
+#include "bodyloom/geometry/body/normals.h"
+#include "bodyloom/geometry/scene/camera.h"
+#include "bodyloom/render/image/image.h"
+#include "bodyloom/render/raster/resolve_pixels.h"
+#include "bodyloom/render/raster/visibility_buffer.h"
 #include "bodyloom/render/shadows/shadow_map.h"
-#include "bodyloom/render/visibility_buffer.h"
 
 namespace bodyloom {
+
+// The background of a synthetic person: a picture made of gradients, noise and a few shapes, slowly panning.
+
+/// Immutable, may be shared by threads.
+class MovingBackground {
+ public:
+  /// Throws std::invalid_argument for a size that is not positive.
+  MovingBackground(int width, int height, uint64_t seed);
+
+  /// The view at a time (seconds), of the size given: the large picture, which goes on beyond its borders as in a
+  /// mirror, sampled bilinearly at whole pixels + velocity · time.
+  [[nodiscard]] Image At(double time_s) const;
+  [[nodiscard]] const Eigen::Vector2d& velocity_px_s() const { return velocity_px_s_; }
+
+ private:
+  int width_, height_;
+  Image picture_;
+  Eigen::Vector2d velocity_px_s_;
+};
 
 /// What does not change from frame to frame. Immutable, may be shared by threads; the person must outlive it.
 class DressedScene {

@@ -16,8 +16,8 @@
 
 #include "bodyloom/data_tools/synthesis/people/outfit.h"
 #include "bodyloom/data_tools/synthesis/people/person_light.h"
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 

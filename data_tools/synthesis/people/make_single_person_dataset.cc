@@ -16,10 +16,10 @@
 #include "bodyloom/geometry/base/hash_random.h"
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/geometry/base/stopwatch.h"
+#include "bodyloom/geometry/body/posed_body.h"
 #include "bodyloom/geometry/cloth/cloth_run.h"
-#include "bodyloom/geometry/motion_check.h"
-#include "bodyloom/geometry/observations.h"
-#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/scene/observations.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 namespace {

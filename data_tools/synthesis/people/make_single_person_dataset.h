@@ -16,9 +16,9 @@
 #include "bodyloom/data_tools/synthesis/clips/synth_camera.h"
 #include "bodyloom/data_tools/synthesis/people/dressed_person.h"
 #include "bodyloom/data_tools/synthesis/people/person_light.h"
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/cloth/cloth_stuff.h"
-#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/cloth/cloth_material.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/geometry/body_model.h"
+#include "bodyloom/geometry/body/body_model.h"
 
 namespace bodyloom {
 
@@ -25,8 +25,8 @@ std::string ToString(GarmentKind kind);
 /// "suit", "skirt" or "coat"; throws std::invalid_argument otherwise.
 GarmentKind GarmentKindFromString(const std::string& name);
 
-/// Patterned: clothes near the skin in the patterns that show best how a surface moves. Everyday: what people wear, wide
-/// trousers and shirts that hang loose among it, most of it plain (wardrobe.h).
+/// Patterned: clothes near the skin in the patterns that show best how a surface moves. Everyday: what people wear,
+/// wide trousers and shirts that hang loose among it, most of it plain (wardrobe.h).
 enum class ClothesStyle { kPatterned, kEveryday };
 
 std::string ToString(ClothesStyle style);

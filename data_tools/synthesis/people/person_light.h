@@ -21,8 +21,8 @@ LightStyle LightStyleFromString(const std::string& name);
 
 /// A surface of normal n shows its colour, of the picture's own numbers, times
 ///   ambient · o + Σ strength · r · max(0, n·towards),
-/// o: how open the place is (1 without shadows; render/shadows/openness.h, of which a fifth is made up for by the light
-/// that the person throws back), r: the share of the light that reaches it (1 without shadows).
+/// o: how open the place is (1 without shadows; render/shadows/shadow_map.h, of which a fifth is made up for by the
+/// light that the person throws back), r: the share of the light that reaches it (1 without shadows).
 struct PersonLight {
   float ambient = 0.45F;
   std::array<Eigen::Vector3f, 2> towards = {Eigen::Vector3f::UnitY(),

@@ -2,10 +2,10 @@
 /// Colours and patterns of a synthetic person, fixed to the surface: stripes, checks, dots and noise as functions of
 /// the place on the template (or on the cloth as sewn), distinct for every label and chosen by a seed.
 ///
-/// Patterned clothes (ClothesStyle): top and bottom are plain for one person in five each, else of two different patterns.
-/// Everyday clothes: three tops in five and three bottoms in four are plain but for how cloth fades; a tenth of the tops
-/// has a print on the chest; half of all are black, grey or white, a third of the bottoms blue as denim. Seams, collars,
-/// knit and the like: clothes_details.h.
+/// Patterned clothes (ClothesStyle): top and bottom are plain for one person in five each, else of two different
+/// patterns. Everyday clothes: three tops in five and three bottoms in four are plain but for how cloth fades; a tenth
+/// of the tops has a print on the chest; half of all are black, grey or white, a third of the bottoms blue as denim.
+/// Seams, collars, knit and the like: clothes_details.h.
 #pragma once
 
 #include <Eigen/Core>

@@ -6,9 +6,9 @@
 #include <optional>
 #include <string>
 
+#include "bodyloom/geometry/base/callbacks.h"
 #include "bodyloom/neural/guided/guided_config.h"
 #include "bodyloom/neural/guided/guided_scores.h"
-#include "bodyloom/pipelines/callbacks.h"
 #include "bodyloom/pipelines/neural/photo/photo_animation.h"
 
 namespace bodyloom {

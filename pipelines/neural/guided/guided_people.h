@@ -6,9 +6,10 @@
 #include <memory>
 #include <vector>
 
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/neural/people/photo_frame.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/scene/track.h"
 #include "bodyloom/pipelines/neural/photo/people_data.h"
+#include "bodyloom/render/texture/photo_frame.h"
 
 namespace bodyloom {
 
@@ -20,7 +21,7 @@ class GuidedPeople {
   [[nodiscard]] const PeopleData& data() const { return data_; }
   /// Refers to this, which must outlive it.
   [[nodiscard]] const PhotoSource& source() const { return data_.source(); }
-  /// The six views of pipelines/neural/guided/virtual_views.h.
+  /// The six views of pipelines/neural/guided/guided_people.h.
   [[nodiscard]] std::vector<PhotoFrame> VirtualViewsOf(int person) const;
 
  private:
@@ -29,5 +30,14 @@ class GuidedPeople {
   std::shared_ptr<const BodyModel> body_;
   std::vector<Eigen::VectorXd> betas_;  ///< by person
 };
+
+// The six views of a body in T-pose over which the pose-guided renderer completes its maps.
+
+/// A track of six frames: the body of shape `betas` in T-pose, its root turned so that a camera six metres away sees
+/// its front, back, left, right, top and bottom (neural/guided/complete_maps.h, VirtualView).
+Track VirtualViewTrack(const BodyModel& body, const Eigen::VectorXd& betas);
+
+/// Its frames, in windows of size × size pixels with maps of texture_size × texture_size texels.
+std::vector<PhotoFrame> VirtualViews(const BodyModel& body, const Eigen::VectorXd& betas, int size, int texture_size);
 
 }  // namespace bodyloom

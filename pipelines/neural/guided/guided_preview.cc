@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 
-#include "bodyloom/pipelines/people/planar_picture.h"
-#include "bodyloom/render/contact_sheet.h"
+#include "bodyloom/render/texture/planar_image.h"
+#include "bodyloom/render/view/contact_sheet.h"
 
 namespace bodyloom {
 namespace {

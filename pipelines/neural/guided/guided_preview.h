@@ -6,9 +6,8 @@
 #include <vector>
 
 #include "bodyloom/neural/guided/coherent_maps.h"
-#include "bodyloom/neural/guided/guided_picture.h"
 #include "bodyloom/neural/guided/train_guided.h"
-#include "bodyloom/render/image.h"
+#include "bodyloom/render/image/image.h"
 
 namespace bodyloom {
 

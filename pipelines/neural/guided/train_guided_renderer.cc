@@ -13,10 +13,10 @@
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/neural/guided/guided_people.h"
 #include "bodyloom/pipelines/neural/guided/guided_preview.h"
-#include "bodyloom/pipelines/neural/guided/guided_score_weights.h"
+#include "bodyloom/pipelines/neural/guided/guided_scores.h"
 #include "bodyloom/pipelines/neural/training_session.h"
 #include "bodyloom/pipelines/neural/weights_folder.h"
-#include "bodyloom/pipelines/runs/guided_run.h"
+#include "bodyloom/pipelines/runs/run_config.h"
 
 namespace bodyloom {
 namespace {

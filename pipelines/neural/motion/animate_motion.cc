@@ -8,9 +8,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "bodyloom/data_tools/body/body_or_builtin.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/data_tools/evaluation/motion_similarity.h"
+#include "bodyloom/data_tools/evaluation/motion_retrieval.h"
 #include "bodyloom/data_tools/motion/motion_tools.h"
 #include "bodyloom/data_tools/motion/resample_track.h"
 #include "bodyloom/data_tools/motion/track_io.h"
@@ -19,19 +19,17 @@
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/neural/motion/motion_renderer.h"
 #include "bodyloom/neural/training/training_run.h"
+#include "bodyloom/pipelines/animate/background.h"
+#include "bodyloom/pipelines/animate/relight_frames.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/neural/motion/animated_clip.h"
-#include "bodyloom/pipelines/neural/motion/clip_rate.h"
-#include "bodyloom/pipelines/neural/motion/clip_scores_json.h"
+#include "bodyloom/pipelines/neural/motion/clip_scores.h"
+#include "bodyloom/pipelines/neural/motion/motion_data.h"
 #include "bodyloom/pipelines/neural/weights_folder.h"
-#include "bodyloom/pipelines/neural/window_ssim.h"
-#include "bodyloom/pipelines/people/background.h"
-#include "bodyloom/pipelines/people/planar_picture.h"
-#include "bodyloom/pipelines/people/relight_frames.h"
-#include "bodyloom/pipelines/people/rendered_dataset.h"
 #include "bodyloom/pipelines/report_json.h"
 #include "bodyloom/pipelines/runs/motion_run.h"
-#include "bodyloom/render/contact_sheet.h"
+#include "bodyloom/render/texture/planar_image.h"
+#include "bodyloom/render/view/contact_sheet.h"
 
 namespace bodyloom {
 namespace {
@@ -61,8 +59,8 @@ void CheckRequest(const AnimateMotionRequest& request) {
   RequireDistinct({request.data, request.like}, {request.set});
 }
 
-/// Of the T frames of `like`: 1 where the run was trained on the frame; empty: it was trained on other data, or does not
-/// say on which frames.
+/// Of the T frames of `like`: 1 where the run was trained on the frame; empty: it was trained on other data, or does
+/// not say on which frames.
 std::vector<char> TrainedOn(const MotionRun& run, const std::string& like, int T) {
   namespace fs = std::filesystem;
   std::error_code ignored;

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/geometry/base/callbacks.h"
 #include "bodyloom/pipelines/neural/animation.h"
 #include "bodyloom/pipelines/neural/motion/clip_scores.h"
 #include "bodyloom/render/lighting/fit_lighting.h"
@@ -23,7 +23,7 @@ struct AnimateMotionRequest : AnimationRequest {
   bool shape_of_track = false;  ///< poses the track's shape, not that of the person who was trained on
   std::string freeze;           ///< "FRAME:COUNT": that frame is shown so many times more; empty: none is
   std::string background;       ///< an image, a video or a folder behind the person; empty: a plain backdrop
-  std::string relight;          ///< the light that shall be (pipelines/people/relight_frames.h); empty: as it is
+  std::string relight;          ///< the light that shall be (pipelines/animate/relight_frames.h); empty: as it is
   bool true_normals = false;    ///< with `relight` and `data`: by the normals of `data`, not the networks'
   int warmup = 50;              ///< passes of the first frame through the network before it counts
   bool without_past = false;    ///< every frame as if it were the first

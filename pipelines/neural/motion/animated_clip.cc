@@ -4,18 +4,15 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/data_tools/body/body_or_builtin.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/data_tools/descriptors/posed_track.h"
-#include "bodyloom/data_tools/motion/freeze_track.h"
-#include "bodyloom/data_tools/motion/play_track.h"
 #include "bodyloom/data_tools/motion/resample_track.h"
-#include "bodyloom/data_tools/motion/shape_track.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/pipelines/neural/motion/clip_rate.h"
-#include "bodyloom/pipelines/people/freeze.h"
-#include "bodyloom/pipelines/people/view_angles.h"
+#include "bodyloom/geometry/scene/track_edits.h"
+#include "bodyloom/pipelines/animate/animation_limits.h"
+#include "bodyloom/pipelines/neural/motion/motion_data.h"
+#include "bodyloom/render/uv_maps/posed_track.h"
 
 namespace bodyloom {
 namespace {

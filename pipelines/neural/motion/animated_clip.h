@@ -8,8 +8,8 @@
 #include <string>
 
 #include "bodyloom/data_tools/descriptors/person_frames.h"
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/scene/track.h"
 #include "bodyloom/neural/motion/motion_frame.h"
 #include "bodyloom/pipelines/neural/motion/motion_data.h"
 #include "bodyloom/pipelines/runs/motion_run.h"
@@ -21,10 +21,10 @@ struct AnimatedClipRequest {
   std::string data;      ///< a single-person dataset of the same person; empty: `track` alone
   std::string body;      ///< the track's body; empty: the built-in body
   std::string iuv;       ///< with `data`: as MotionDataRequest::iuv
-  std::string view_yaw;  ///< how far the view is turned (pipelines/people/view_angles.h)
-  std::string freeze;    ///< where time stands still (pipelines/people/freeze.h); empty: nowhere
+  std::string view_yaw;  ///< how far the view is turned (pipelines/animate/animation_limits.h)
+  std::string freeze;    ///< where time stands still (pipelines/animate/animation_limits.h); empty: nowhere
   double speed = 1;      ///< the motion is played so many times as fast
-  /// The track's own shape is posed instead of that of the run's person (data_tools/motion/shape_track.h).
+  /// The track's own shape is posed instead of that of the run's person (geometry/scene/track_edits.h).
   bool shape_of_track = false;
   int threads = 1;
 

@@ -4,9 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "bodyloom/pipelines/neural/motion/clip_scores_json.h"
-#include "bodyloom/pipelines/neural/window_ssim.h"
-#include "bodyloom/pipelines/people/motion_errors_json.h"
+#include "bodyloom/pipelines/animate/motion_errors.h"
+#include "bodyloom/pipelines/neural/weights_folder.h"
 
 namespace bodyloom {
 nlohmann::ordered_json ToJson(const ClipScores& scores) {

@@ -2,15 +2,16 @@
 /// A rendered clip against the pictures of the single-person dataset it was rendered for.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "bodyloom/neural/motion/motion_scores.h"
-#include "bodyloom/pipelines/people/composite.h"
-#include "bodyloom/pipelines/people/composite_score.h"
-#include "bodyloom/pipelines/people/motion_errors.h"
-#include "bodyloom/render/image.h"
+#include "bodyloom/neural/motion/motion_frame.h"
+#include "bodyloom/pipelines/animate/background.h"
+#include "bodyloom/pipelines/animate/motion_errors.h"
+#include "bodyloom/pipelines/animate/person_segmentation.h"
+#include "bodyloom/render/image/image.h"
 
 namespace bodyloom {
 
@@ -45,5 +46,7 @@ class ClipScorer {
   MotionErrors errors_;
   std::optional<CompositeScore> composed_;
 };
+
+nlohmann::ordered_json ToJson(const ClipScores& scores);
 
 }  // namespace bodyloom

@@ -2,19 +2,21 @@
 #include "bodyloom/pipelines/neural/motion/motion_data.h"
 
 #include <algorithm>
+#include <cmath>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
 #include <vector>
 
-#include "bodyloom/data_tools/body/body_or_builtin.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/datasets/body_truth.h"
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/data_tools/descriptors/posed_track.h"
+#include "bodyloom/data_tools/motion/motion_tools.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/observations/part_labels.h"
 #include "bodyloom/data_tools/video/video_reader.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/render/uv_maps/posed_track.h"
 
 namespace bodyloom {
 /// The window's part of a frame's pictures.
@@ -242,5 +244,26 @@ bool MotionData::has_labels() const { return impl_->has_labels(); }
 bool MotionData::has_normals() const { return impl_->has_normals(); }
 std::string MotionData::notes() const { return impl_->notes(); }
 void MotionData::Fill(int t, bool with_truth, MotionFrame* frame) { impl_->Fill(t, with_truth, frame); }
+
+namespace {
+
+constexpr double kTolerance = 0.01;
+
+}  // namespace
+
+bool IsAtRate(const Track& track, double fps) {
+  const double own = FrameRateWithoutGaps(track.motion);
+  return own <= 0 || std::abs(own / fps - 1) <= kTolerance;
+}
+
+std::string RateText(const Track& track) {
+  return Concatenate(std::round(100 * FrameRateWithoutGaps(track.motion)) / 100, " frames a second");
+}
+
+void RequireRate(const Track& track, double fps, const std::string& data, const std::string& what_helps) {
+  if (IsAtRate(track, fps)) return;
+  throw std::runtime_error(
+      Concatenate(data, ": pictures at ", RateText(track), ", expected ", fps, " as in training; ", what_helps));
+}
 
 }  // namespace bodyloom

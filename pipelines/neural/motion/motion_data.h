@@ -8,7 +8,7 @@
 #include "bodyloom/data_tools/descriptors/dense_history.h"
 #include "bodyloom/data_tools/descriptors/estimated_pixels.h"
 #include "bodyloom/data_tools/descriptors/person_frames.h"
-#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/scene/track.h"
 #include "bodyloom/neural/motion/motion_config.h"
 #include "bodyloom/neural/motion/motion_frame.h"
 
@@ -20,9 +20,9 @@ struct MotionDataRequest {
   std::string body;   ///< empty: the built-in body
   std::string iuv;    ///< what pixels show of the body: a folder of DensePose's IUV images, or kOwnIuv, the
                       ///< single-person dataset's; empty: what the tracked body says
-  /// For a video: where the person is (bodyloom detect --mask, bodyloom run --masks), and DensePose's parts, which stand
-  /// in for a parsing of the clothes; each may do without the other. With one of them labels and normals are those of
-  /// the tracked body within that outline (data_tools/datasets/body_truth.h).
+  /// For a video: where the person is (bodyloom detect --mask, bodyloom run --masks), and DensePose's parts, which
+  /// stand in for a parsing of the clothes; each may do without the other. With one of them labels and normals are
+  /// those of the tracked body within that outline (data_tools/datasets/body_truth.h).
   std::string mask, part_labels;
   MotionDescriptor descriptor = MotionDescriptor::kSurface;
   SurfaceMotion motion;         ///< axes and velocities of the motion maps
@@ -62,5 +62,18 @@ class MotionData {
 /// the body; nullptr: as the tracked body has it.
 void FillMotion(const PersonFrames& frames, const DenseHistory* dense, const EstimatedPixels* estimated, int t,
                 MotionFrame* frame);
+
+// The frame rate of the motion-dependent renderer's clips. The network sees velocities of so many past frames and its
+// own last picture, so a run is of one rate.
+
+/// Whether the track has `fps` frames a second between its gaps, to 1 %, or is too short to say.
+bool IsAtRate(const Track& track, double fps);
+
+/// "60 frames a second", as far as it matters.
+std::string RateText(const Track& track);
+
+/// Throws std::runtime_error unless IsAtRate, naming the data, both rates, and what helps: pictures cannot be
+/// resampled.
+void RequireRate(const Track& track, double fps, const std::string& data, const std::string& what_helps);
 
 }  // namespace bodyloom

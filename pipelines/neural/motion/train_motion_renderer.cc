@@ -9,14 +9,13 @@
 #include "bodyloom/data_tools/motion/motion_tools.h"
 #include "bodyloom/data_tools/video/image_file.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/pipelines/describe/axes_pose.h"
+#include "bodyloom/pipelines/describe/describe_clip.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/neural/animation.h"
-#include "bodyloom/pipelines/neural/motion/clip_rate.h"
-#include "bodyloom/pipelines/neural/motion/motion_preview.h"
+#include "bodyloom/pipelines/neural/motion/motion_data.h"
+#include "bodyloom/pipelines/neural/motion/training_frames.h"
 #include "bodyloom/pipelines/neural/training_session.h"
 #include "bodyloom/pipelines/neural/weights_folder.h"
-#include "bodyloom/pipelines/neural/window_ssim.h"
 #include "bodyloom/pipelines/runs/motion_run.h"
 
 namespace bodyloom {

@@ -4,8 +4,8 @@
 
 #include <string>
 
+#include "bodyloom/geometry/base/callbacks.h"
 #include "bodyloom/neural/motion/train_motion.h"
-#include "bodyloom/pipelines/callbacks.h"
 #include "bodyloom/pipelines/neural/motion/motion_data.h"
 #include "bodyloom/pipelines/neural/motion/training_frames.h"
 

@@ -5,9 +5,10 @@
 #include <cmath>
 #include <utility>
 
-#include "bodyloom/neural/motion/clothes_reach.h"
+#include "bodyloom/neural/motion/motion_frame.h"
 #include "bodyloom/pipelines/clip_span.h"
-#include "bodyloom/render/contact_sheet.h"
+#include "bodyloom/render/texture/planar_image.h"
+#include "bodyloom/render/view/contact_sheet.h"
 
 namespace bodyloom {
 namespace {
@@ -85,6 +86,29 @@ int ReachOf(MotionData* data, const std::vector<FrameRange>& ranges) {
     frames.push_back(std::move(frame));
   }
   return ClothesReach(frames);
+}
+
+Image MotionPreviewSheet(const std::vector<MotionPreview>& previews) {
+  std::vector<Image> pictures;
+  ContactSheetOptions options;
+  for (const MotionPreview& p : previews) {
+    const size_t before = pictures.size();
+    pictures.push_back(PictureOf(p.true_image, p.width, p.height));
+    pictures.push_back(PictureOf(p.image, p.width, p.height));
+    if (!p.labels.empty()) {
+      pictures.push_back(p.true_labels.empty() ? Image(p.width, p.height)
+                                               : LabelsPicture(p.true_labels, p.width, p.height));
+      pictures.push_back(LabelsPicture(p.labels, p.width, p.height));
+    }
+    if (!p.normals.empty()) {
+      pictures.push_back(p.true_normals.empty() ? Image(p.width, p.height)
+                                                : NormalPicture(p.true_normals, p.width, p.height));
+      pictures.push_back(NormalPicture(p.normals, p.width, p.height));
+    }
+    options.columns = static_cast<int>(pictures.size() - before);
+    options.cell_height_px = p.height;
+  }
+  return ContactSheet(pictures, options);
 }
 
 }  // namespace bodyloom

@@ -6,7 +6,9 @@
 
 #include "bodyloom/data_tools/descriptors/person_frames.h"
 #include "bodyloom/neural/motion/rollout_plan.h"
+#include "bodyloom/neural/motion/train_motion.h"
 #include "bodyloom/pipelines/neural/motion/motion_data.h"
+#include "bodyloom/render/image/image.h"
 
 namespace bodyloom {
 
@@ -28,8 +30,13 @@ struct TrainingFrames {
 TrainingFrames ChooseFrames(const TrainingFramesRequest& request, const PersonFrames& frames,
                             const PersonFrames* validation);
 
-/// Pixels that clothes reach beyond the body in frames spread over the ranges (neural/motion/clothes_reach.h); 0
+/// Pixels that clothes reach beyond the body in frames spread over the ranges (neural/motion/motion_frame.h); 0
 /// without labels.
 int ReachOf(MotionData* data, const std::vector<FrameRange>& ranges);
+
+// Pictures to judge a run of the motion-dependent renderer by.
+
+/// A row a frame: truth and result of the image, then of labels and normals where there are any.
+Image MotionPreviewSheet(const std::vector<MotionPreview>& previews);
 
 }  // namespace bodyloom

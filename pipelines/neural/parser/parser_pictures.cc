@@ -1,14 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/pipelines/neural/parser/parser_pictures.h"
 
+#include <iterator>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <utility>
 
-#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/geometry/base/percentile.h"
+#include "bodyloom/geometry/body/posed_body.h"
 #include "bodyloom/neural/parser/train_parser.h"
-#include "bodyloom/pipelines/people/planar_picture.h"
-#include "bodyloom/pipelines/person/clothes_parser.h"
-#include "bodyloom/render/overlay.h"
-#include "bodyloom/render/view_camera.h"
+#include "bodyloom/pipelines/neural/photo/people_data.h"
+#include "bodyloom/render/texture/planar_image.h"
+#include "bodyloom/render/view/overlay.h"
+#include "bodyloom/render/view/view_camera.h"
+#include "bodyloom/tracking/detection/clothes_parser.h"
 
 namespace bodyloom {
 namespace {
@@ -50,6 +58,76 @@ std::vector<PackedPicture> ParserPicturesOf(const PicturesOfPeopleRequest& reque
   const PeopleData people(AsPhotosShowThem(request));
   return PicturesByPerson(static_cast<int>(people.source().num_frames.size()), request.threads, stage, callbacks,
                           [&](int person) { return PicturesOfPerson(people, person); });
+}
+
+PeopleDataRequest AsPhotosShowThem(const PicturesOfPeopleRequest& request) {
+  constexpr int kMapSize = 64;  // of maps that nobody reads
+  PeopleDataRequest people;
+  people.data = request.data, people.body = request.body, people.size = request.size;
+  people.texture_size = kMapSize, people.test = request.test;
+  people.given.estimated_labels = people.labels_of_body = true;
+  people.body_error_px = request.body_error_px;
+  people.seed = request.seed;
+  return people;
+}
+
+std::vector<PackedPicture> PicturesByPerson(int num_people, int threads, const char* stage,
+                                            const PipelineCallbacks& callbacks,
+                                            const std::function<std::vector<PackedPicture>(int)>& pictures_of) {
+  std::vector<std::vector<PackedPicture>> of_person(num_people);
+  std::mutex mutex;
+  int done = 0;
+  ParallelFor(num_people, threads, [&](int person) {
+    of_person[person] = pictures_of(person);
+    const std::lock_guard lock(mutex);
+    callbacks.Update(stage, static_cast<double>(++done) / num_people);
+  });
+  std::vector<PackedPicture> pictures;
+  for (std::vector<PackedPicture>& of_one : of_person) {
+    std::move(of_one.begin(), of_one.end(), std::back_inserter(pictures));
+  }
+  return pictures;
+}
+
+double MedianPersonSize(const std::vector<PackedPicture>& pictures) {
+  std::vector<double> sizes;
+  sizes.reserve(pictures.size());
+  for (const PackedPicture& picture : pictures) sizes.push_back(picture.pixels_per_metre);
+  return Percentile(sizes, 50);
+}
+
+PicturesToLearnFrom MakePicturesToLearnFrom(const std::string& data, const PipelineCallbacks& callbacks,
+                                            const std::function<std::vector<PackedPicture>(bool test)>& pictures_of) {
+  PicturesToLearnFrom pictures;
+  callbacks.Begin("people");
+  pictures.train = pictures_of(false);
+  if (HasTestPeople(data)) {
+    callbacks.Begin("people for validation");
+    pictures.test = pictures_of(true);
+  }
+  if (pictures.train.empty()) throw std::runtime_error(data + ": no picture to train on");
+  callbacks.Say(Concatenate("training on ", pictures.train.size(), " pictures; validating on ", pictures.test.size()));
+  return pictures;
+}
+
+nlohmann::ordered_json RecipeOf(const std::string& program, const PicturesOfPeopleRequest& people,
+                                const PicturesToLearnFrom& pictures, const PictureTraining& training) {
+  return {{"program", program},
+          {"version", BODYLOOM_VERSION},
+          {"data", people.data},
+          {"pictures", pictures.train.size()},
+          {"test_pictures", pictures.test.size()},
+          {"size", people.size},
+          {"body_error_px", people.body_error_px},
+          {"seed", training.seed},
+          {"steps", training.steps},
+          {"batch", training.batch},
+          {"crop", training.crop},
+          {"learning_rate", training.learning_rate},
+          {"weight_decay", training.weight_decay},
+          {"average_share", training.average_share},
+          {"light_strength", training.light_strength},
+          {"device", training.device}};
 }
 
 }  // namespace bodyloom

@@ -9,8 +9,6 @@
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/neural/parser/parser_pictures.h"
-#include "bodyloom/pipelines/neural/people/pictures_by_person.h"
-#include "bodyloom/pipelines/neural/people/pictures_to_learn_from.h"
 #include "bodyloom/pipelines/neural/training_session.h"
 
 namespace bodyloom {

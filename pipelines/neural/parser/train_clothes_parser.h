@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <string>
 
+#include "bodyloom/geometry/base/callbacks.h"
 #include "bodyloom/neural/parser/train_parser.h"
-#include "bodyloom/pipelines/callbacks.h"
 
 namespace bodyloom {
 

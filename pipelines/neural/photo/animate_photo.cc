@@ -11,16 +11,16 @@
 #include "bodyloom/data_tools/video/video_writer.h"
 #include "bodyloom/geometry/base/parallel.h"
 #include "bodyloom/geometry/base/prefetcher.h"
-#include "bodyloom/neural/photo/guess_texture.h"
 #include "bodyloom/neural/photo/photo_renderer.h"
 #include "bodyloom/neural/training/training_run.h"
+#include "bodyloom/pipelines/animate/animation_limits.h"
 #include "bodyloom/pipelines/files.h"
-#include "bodyloom/pipelines/neural/photo/photo_backdrop.h"
-#include "bodyloom/pipelines/people/animation_limits.h"
-#include "bodyloom/pipelines/people/planar_picture.h"
+#include "bodyloom/pipelines/neural/photo/photo_animation.h"
 #include "bodyloom/pipelines/report_json.h"
-#include "bodyloom/pipelines/runs/photo_run.h"
-#include "bodyloom/render/contact_sheet.h"
+#include "bodyloom/pipelines/runs/run_config.h"
+#include "bodyloom/render/texture/complete/partial_texture.h"
+#include "bodyloom/render/texture/planar_image.h"
+#include "bodyloom/render/view/contact_sheet.h"
 
 namespace bodyloom {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/geometry/base/callbacks.h"
 #include "bodyloom/pipelines/neural/photo/photo_animation.h"
 
 namespace bodyloom {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/track.h"
-#include "bodyloom/neural/people/photo_frame.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/scene/track.h"
+#include "bodyloom/render/texture/photo_frame.h"
 
 namespace bodyloom {
 
@@ -37,8 +37,8 @@ struct PeopleDataRequest {
   int texture_size = 256;
   bool test = false;  ///< the people kept for testing, instead of those to train on
   GivenOfPeople given;
-  /// Bodies are off by a mean projection error (data_tools/synthesis/clips/perturbed_motion.h) of 0 to this, each clip by
-  /// its own, as fitted bodies are; pixels, in a picture whose longer side has 512.
+  /// Bodies are off by a mean projection error (data_tools/synthesis/clips/perturbed_motion.h) of 0 to this, each clip
+  /// by its own, as fitted bodies are; pixels, in a picture whose longer side has 512.
   double body_error_px = 0;
   uint64_t seed = 1;            ///< of those errors
   bool labels_of_body = false;  ///< estimated labels are those of SegmentPerson alone: the parser's beginning

@@ -2,19 +2,44 @@
 /// Parts that the jobs which render a person from photos share: who is shown, in which motion, from where.
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "bodyloom/data_tools/descriptors/photo_maps.h"
-#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/scene/track.h"
+#include "bodyloom/pipelines/animate/background.h"
 #include "bodyloom/pipelines/neural/animation.h"
-#include "bodyloom/pipelines/neural/photo/photo_appearance.h"
 #include "bodyloom/pipelines/neural/photo/photo_input.h"
-#include "bodyloom/pipelines/people/background.h"
+#include "bodyloom/render/texture/complete/partial_texture.h"
 
 namespace bodyloom {
+
+// Appearance of a person rendered from photos: the texture that they show, parts of it lent by somebody else.
+
+/// Somebody who lends a part of his or her appearance.
+struct LentGarment {
+  std::string from;                ///< IMAGE:TRACK[:FRAME] (ParsePhotoRequest); empty: nobody
+  std::vector<std::string> parts;  ///< "top", "bottom", "shoes", "head", "arms" or a DensePose part, "1" to "24"
+};
+
+/// DensePose's parts of "top", "bottom", "shoes", "head", "arms" (below the elbow, with hands) or a number. Throws
+/// RequestError for other names.
+std::vector<int> PartsNamed(const std::vector<std::string>& names);
+
+/// U × U: 1 where `garment` replaces what the person wears by what `lender` does. Adds to `notes` a line that says how
+/// much of that the lender's photo shows. Throws std::runtime_error when it shows nothing of it.
+std::vector<uint8_t> LentTexels(const LentGarment& garment, const Photo& lender, std::span<const uint8_t> texel_parts,
+                                std::string* notes);
+
+/// The union of what the photos show; where somebody lends, the last of them shows what. Adds to `notes` and throws
+/// as LentTexels.
+PartialTexture AppearanceOf(std::span<const Photo> photos, const LentGarment& garment,
+                            std::span<const uint8_t> texel_parts, std::string* notes);
 
 /// The body is the photo's; `body` is not looked at.
 struct PhotoAnimationRequest : AnimationRequest {
@@ -42,5 +67,19 @@ std::set<int> FramesAmong(const std::vector<PhotoRequest>& photos, const std::st
 /// naming `path` for a motion of another body and one that shows nobody.
 std::unique_ptr<PhotoMaps> MapsOfMotion(const PhotoAnimationRequest& request, const Photo& photo,
                                         const std::string& path, int size, int texture_size, Track* track);
+
+// The background of a person rendered from a photo, frame by frame.
+
+class PhotoBackdrop {
+ public:
+  /// Pictures of this size. Throws std::runtime_error naming the background that cannot be read.
+  PhotoBackdrop(const PhotoBackground& background, const Photo& photo, PictureSize size);
+  /// The next frame.
+  const Image& Next() { return background_ ? background_->Next() : filled_; }
+
+ private:
+  std::optional<Background> background_;
+  Image filled_;  ///< without `background_`: the photo's own, filled in where the person stood
+};
 
 }  // namespace bodyloom

@@ -10,20 +10,20 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/data_tools/body/body_or_builtin.h"
-#include "bodyloom/data_tools/datasets/label_of_part.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
+#include "bodyloom/data_tools/datasets/photo_segmentation.h"
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/data_tools/descriptors/posed_track.h"
 #include "bodyloom/data_tools/learned/parser_weights_io.h"
-#include "bodyloom/data_tools/motion/freeze_track.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/observations/part_labels.h"
+#include "bodyloom/geometry/base/callbacks.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/photo/partial_texture.h"
-#include "bodyloom/pipelines/callbacks.h"
-#include "bodyloom/pipelines/people/person_segmentation.h"
-#include "bodyloom/pipelines/people/photo_pictures.h"
-#include "bodyloom/pipelines/person/clothes_parser.h"
+#include "bodyloom/geometry/scene/track_edits.h"
+#include "bodyloom/pipelines/animate/person_segmentation.h"
+#include "bodyloom/pipelines/animate/photo_pictures.h"
+#include "bodyloom/render/texture/complete/partial_texture.h"
+#include "bodyloom/render/uv_maps/posed_track.h"
+#include "bodyloom/tracking/detection/clothes_parser.h"
 
 namespace bodyloom {
 namespace {

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "bodyloom/data_tools/descriptors/photo_maps.h"
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/track.h"
-#include "bodyloom/neural/people/photo_frame.h"
-#include "bodyloom/render/image.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/scene/track.h"
+#include "bodyloom/render/image/image.h"
+#include "bodyloom/render/texture/photo_frame.h"
 
 namespace bodyloom {
 

@@ -12,10 +12,11 @@
 #include "bodyloom/neural/photo/photo_window.h"
 #include "bodyloom/pipelines/files.h"
 #include "bodyloom/pipelines/neural/photo/people_data.h"
-#include "bodyloom/pipelines/neural/photo/photo_preview.h"
 #include "bodyloom/pipelines/neural/training_session.h"
 #include "bodyloom/pipelines/neural/weights_folder.h"
-#include "bodyloom/pipelines/runs/photo_run.h"
+#include "bodyloom/pipelines/runs/run_config.h"
+#include "bodyloom/render/texture/planar_image.h"
+#include "bodyloom/render/view/contact_sheet.h"
 
 namespace bodyloom {
 namespace {
@@ -106,6 +107,22 @@ TrainPhotoRendererSummary TrainPhotoRenderer(const TrainPhotoRendererRequest& re
   const TrainPhotoSummary summary = TrainPhoto(data.source(), options);
   RequireFinite(summary, request.out);
   return {summary, CheckpointPath(request.out)};
+}
+
+Image PhotoPreviewSheet(const std::vector<PhotoPreview>& previews) {
+  std::vector<Image> pictures;
+  ContactSheetOptions options;
+  options.columns = 5;
+  for (const PhotoPreview& p : previews) {
+    const int S = p.picture.size, U = p.source.texture_size;
+    pictures.push_back(PictureOf(p.source.image, S, S));
+    pictures.push_back(PictureOf(p.partial_texture, U, U));
+    pictures.push_back(PictureOf(p.completed_texture, U, U));
+    pictures.push_back(PictureOf(p.target.image, S, S));
+    pictures.push_back(PictureOf(p.picture.image, S, S));
+    options.cell_height_px = S;
+  }
+  return ContactSheet(pictures, options);
 }
 
 }  // namespace bodyloom

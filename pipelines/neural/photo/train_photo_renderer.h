@@ -3,9 +3,11 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "bodyloom/geometry/base/callbacks.h"
 #include "bodyloom/neural/photo/train_photo.h"
-#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/render/image/image.h"
 
 namespace bodyloom {
 
@@ -27,5 +29,10 @@ struct TrainPhotoRendererSummary : TrainPhotoSummary {
 /// run that is or is not there, std::runtime_error for files that cannot be used and when a loss is not finite.
 TrainPhotoRendererSummary TrainPhotoRenderer(const TrainPhotoRendererRequest& request,
                                              const PipelineCallbacks& callbacks);
+
+// Pictures to judge a run of the one-photo renderer by.
+
+/// A row a pair: the source picture, what it shows of the texture, the completed texture, the true target, the result.
+Image PhotoPreviewSheet(const std::vector<PhotoPreview>& previews);
 
 }  // namespace bodyloom

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <iostream>
 
-#include "bodyloom/geometry/camera.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/math/rotation.h"
+#include "bodyloom/geometry/scene/camera.h"
 
 int main() {
   const Eigen::Matrix3d turn = bodyloom::RotationFromAxisAngle(Eigen::Vector3d(0, 1.5, 0));

@@ -2,7 +2,7 @@
 // LibTorch comes along with bodyloom::neural.
 #include <iostream>
 
-#include "bodyloom/neural/runtime.h"
+#include "bodyloom/neural/base/runtime.h"
 
 int main() {
   std::cout << ToText(bodyloom::StartNeuralRuntime(1)) << "\n";

@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/descriptors/descriptor_frames.h"
 #include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
 #include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
 #include "bodyloom/pipelines/with_builtins.h"
+#include "bodyloom/render/uv_maps/descriptor_frames.h"
 #include "bodyloom/tracking/track_sequence.h"
 
 int main() {

@@ -11,9 +11,9 @@
 #include <opencv2/imgcodecs.hpp>
 #include <random>
 
-#include "bodyloom/data_tools/avatar/alpha_png.h"
 #include "bodyloom/data_tools/avatar/gaussian_ply.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/video/image_file.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 

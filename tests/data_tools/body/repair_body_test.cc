@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/geometry/mesh_check.h"
-#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/geometry/mesh/mesh_check.h"
 #include "tests/support/toy_body.h"
 
 namespace bodyloom {

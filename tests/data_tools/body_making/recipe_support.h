@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/geometry/arrays.h"
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/geometry/math/arrays.h"
 
 namespace bodyloom {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/body/posed_body.h"
 
 namespace bodyloom {
 namespace {

@@ -9,8 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "bodyloom/data_tools/datasets/label_of_part.h"
-#include "bodyloom/data_tools/datasets/nearest_pixel.h"
+#include "bodyloom/data_tools/datasets/photo_segmentation.h"
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
 
 namespace bodyloom {
@@ -46,7 +45,8 @@ TEST(NearestMarked, IsAsNearAsTheNearest) {
 }
 
 /// A bare body from column 20 to 59 of rows 10 to 49, a leg on its left and a sleeve on its right, which face left and
-/// right; a person who reaches five pixels farther on all sides but the right, where six pixels of the body are not hers.
+/// right; a person who reaches five pixels farther on all sides but the right, where six pixels of the body are not
+/// hers.
 struct Dressed {
   BodySurface body = {kWidth, kHeight, std::vector<uint8_t>(kArea, 0), std::vector<float>(3 * kArea, 0)};
   std::vector<uint8_t> person = std::vector<uint8_t>(kArea, 0);

@@ -12,8 +12,8 @@
 
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/geometry/observations.h"
-#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/geometry/scene/observations.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/short_track.h"
 #include "tests/support/write_iuv.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodyloom/data_tools/descriptors/person_frames.h"
-#include "bodyloom/data_tools/descriptors/posed_track.h"
+#include "bodyloom/render/uv_maps/posed_track.h"
 
 #include <gtest/gtest.h>
 
@@ -15,9 +15,9 @@
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/descriptors/describe_track.h"
 #include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/geometry/rotation.h"
-#include "bodyloom/render/visibility_buffer.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/geometry/math/rotation.h"
+#include "bodyloom/render/raster/visibility_buffer.h"
 #include "tests/support/short_track.h"
 
 namespace bodyloom {

@@ -10,10 +10,8 @@
 #include <vector>
 
 #include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/datasets/label_of_part.h"
 #include "bodyloom/data_tools/datasets/photo_segmentation.h"
-#include "bodyloom/data_tools/descriptors/posed_track.h"
-#include "bodyloom/data_tools/descriptors/texels_of_pixels.h"
+#include "bodyloom/render/uv_maps/posed_track.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/short_track.h"
 #include "tests/support/write_iuv.h"

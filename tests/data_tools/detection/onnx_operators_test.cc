@@ -6,10 +6,10 @@
 #include <cmath>
 #include <limits>
 
-#include "bodyloom/data_tools/detection/onnx_arithmetic.h"
-#include "bodyloom/data_tools/detection/onnx_image.h"
-#include "bodyloom/data_tools/detection/onnx_products.h"
-#include "bodyloom/data_tools/detection/onnx_rearrangement.h"
+#include "bodyloom/tracking/detection/inference/onnx_arithmetic.h"
+#include "bodyloom/tracking/detection/inference/onnx_image.h"
+#include "bodyloom/tracking/detection/inference/onnx_products.h"
+#include "bodyloom/tracking/detection/inference/onnx_rearrangement.h"
 
 namespace bodyloom {
 namespace {

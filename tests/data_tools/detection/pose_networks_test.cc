@@ -13,9 +13,9 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/detection/model_files.h"
-#include "bodyloom/data_tools/detection/tflite_network.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/tracking/detection/inference/tflite_network.h"
+#include "bodyloom/tracking/detection/model_files.h"
 #include "tests/data_tools/detection/tflite_reference.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 
@@ -89,8 +89,8 @@ struct Landmarks {
   Spread mask, heatmap, world;
 };
 
-// Tolerances: what TensorFlow Lite's own builds differ by on a pattern like this (4e-3 crop pixels, 0.6 mask logits, 7e-4
-// heatmap logits). Single numbers are compared with exact sums below.
+// Tolerances: what TensorFlow Lite's own builds differ by on a pattern like this (4e-3 crop pixels, 0.6 mask logits,
+// 7e-4 heatmap logits). Single numbers are compared with exact sums below.
 void ExpectLandmarks(const Landmarks& expected) {
   const std::optional<TfliteModel> model = ModelIfThere(expected.file);
   if (!model) GTEST_SKIP() << expected.file << " is not there; ./dev models fetches it";

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/detection/tflite_model.h"
+#include "bodyloom/tracking/detection/inference/tflite_model.h"
 #include "tests/data_tools/detection/tflite_writer.h"
 
 namespace bodyloom {

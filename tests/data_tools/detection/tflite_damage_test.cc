@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Files that are cut off, changed or something else altogether: read or refused in one line, never overrun.
-#include "bodyloom/data_tools/detection/tflite_model.h"
+#include "bodyloom/tracking/detection/inference/tflite_model.h"
 
 #include <gtest/gtest.h>
 

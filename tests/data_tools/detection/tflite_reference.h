@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// TensorFlow Lite's operators in plain loops over N×H×W×C, sums in double: what the network that runs is compared with.
+/// TensorFlow Lite's operators in plain loops over N×H×W×C, sums in double: what the network that runs is compared
+/// with.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "bodyloom/data_tools/detection/tflite_model.h"
+#include "bodyloom/tracking/detection/inference/tflite_model.h"
 
 namespace bodyloom {
 

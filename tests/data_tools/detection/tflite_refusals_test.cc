@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/detection/tflite_model.h"
+#include "bodyloom/tracking/detection/inference/tflite_model.h"
 
 #include <gtest/gtest.h>
 

@@ -5,10 +5,10 @@
 
 #include <cmath>
 
+#include "bodyloom/data_tools/body/body_landmarks.h"
 #include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/body/mean_pelvis.h"
 #include "bodyloom/data_tools/estimates/estimate_arrays.h"
-#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/body/posed_body.h"
 #include "tests/data_tools/estimates/estimate_files.h"
 
 namespace bodyloom {

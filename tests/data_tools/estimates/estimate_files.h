@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bodyloom/data_tools/estimates/body_estimate.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/math/rotation.h"
 #include "tests/data_tools/formats/joblib_stream.h"
 #include "tests/data_tools/formats/torch_stream.h"
 

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <random>
 
-#include "bodyloom/data_tools/evaluation/triangulation.h"
-#include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/data_tools/evaluation/triangulated_clip.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/geometry/math/rotation.h"
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 

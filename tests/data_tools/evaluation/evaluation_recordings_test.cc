@@ -11,9 +11,9 @@
 #include <random>
 
 #include "bodyloom/data_tools/evaluation/aist_evaluation.h"
-#include "bodyloom/data_tools/evaluation/pose2sim_evaluation.h"
+#include "bodyloom/data_tools/evaluation/triangulated_clip.h"
 #include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/math/rotation.h"
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/support/paths.h"
 

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/math/rotation.h"
 
 namespace bodyloom {
 namespace {

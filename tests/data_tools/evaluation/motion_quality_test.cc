@@ -9,7 +9,7 @@
 
 #include "bodyloom/data_tools/motion/motion_floor.h"
 #include "bodyloom/data_tools/motion/motion_sheet.h"
-#include "bodyloom/render/palette.h"
+#include "bodyloom/render/image/palette.h"
 #include "tests/data_tools/motion/motion_support.h"
 
 namespace bodyloom {

@@ -9,7 +9,6 @@
 #include <limits>
 
 #include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/evaluation/motion_similarity.h"
 #include "tests/data_tools/evaluation/short_turning_clip.h"
 
 namespace bodyloom {

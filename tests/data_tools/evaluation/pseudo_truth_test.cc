@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/evaluation/pseudo_truth.h"
+#include "bodyloom/data_tools/evaluation/aist_evaluation.h"
 
 #include <gtest/gtest.h>
 
@@ -7,11 +7,10 @@
 #include <memory>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/body/body_or_builtin.h"
-#include "bodyloom/data_tools/evaluation/aist_evaluation.h"
+#include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/evaluation/vertex_errors.h"
-#include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/geometry/math/rotation.h"
 #include "tests/support/toy_poses.h"
 
 namespace bodyloom {
@@ -20,8 +19,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kFrames = 24;
-/// Weights of landmarks sum to one to the rounding of float32, in which a body holds them: a landmark does not move with
-/// its body to more than 6e-8 of the way.
+/// Weights of landmarks sum to one to the rounding of float32, in which a body holds them: a landmark does not move
+/// with its body to more than 6e-8 of the way.
 constexpr double kWeightRounding = 6e-8;
 
 const BodyModel& Body() {

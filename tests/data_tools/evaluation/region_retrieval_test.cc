@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/geometry/observations.h"
+#include "bodyloom/geometry/scene/observations.h"
 #include "tests/data_tools/evaluation/short_turning_clip.h"
 
 namespace bodyloom {

@@ -13,7 +13,7 @@
 #include <random>
 
 #include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/body/posed_body.h"
 #include "tests/support/meshes.h"
 
 namespace bodyloom {

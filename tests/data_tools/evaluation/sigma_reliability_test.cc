@@ -8,7 +8,7 @@
 #include <random>
 
 #include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/geometry/observations.h"
+#include "bodyloom/geometry/scene/observations.h"
 
 namespace bodyloom {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "bodyloom/geometry/camera_path.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/math/rotation.h"
+#include "bodyloom/geometry/scene/camera_path.h"
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 

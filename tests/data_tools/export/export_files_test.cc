@@ -10,16 +10,15 @@
 #include <stdexcept>
 
 #include "bodyloom/data_tools/export/c3d_writer.h"
-#include "bodyloom/data_tools/export/colmap_writer.h"
-#include "bodyloom/data_tools/export/pose2sim_calibration.h"
-#include "bodyloom/data_tools/export/trc_writer.h"
+#include "bodyloom/data_tools/export/camera_writers.h"
+#include "bodyloom/data_tools/export/markers.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/motion/amass.h"
 #include "bodyloom/data_tools/motion/motion_tools.h"
 #include "bodyloom/data_tools/observations/colmap_reader.h"
 #include "bodyloom/data_tools/observations/load_camera_path.h"
-#include "bodyloom/geometry/camera_path.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/math/rotation.h"
+#include "bodyloom/geometry/scene/camera_path.h"
 #include "tests/data_tools/export/exported_scene.h"
 #include "tests/data_tools/formats/temporary_file.h"
 

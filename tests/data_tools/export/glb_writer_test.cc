@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "bodyloom/data_tools/export/skinned_mesh.h"
-#include "bodyloom/geometry/camera_path.h"
+#include "bodyloom/geometry/scene/camera_path.h"
 #include "tests/data_tools/export/exported_scene.h"
 #include "tests/data_tools/export/gltf_twin.h"
 

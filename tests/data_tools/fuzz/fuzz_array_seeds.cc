@@ -183,7 +183,8 @@ void WriteThreeFrames(const std::string& path) {
   writer.Finish();
 }
 
-/// WHAM's and VIBE's results (PHALP's are compressed, which no mutation survives; here they are not) and GVHMR's tensors.
+/// WHAM's and VIBE's results (PHALP's are compressed, which no mutation survives; here they are not) and GVHMR's
+/// tensors.
 std::vector<std::string> EstimateSeeds() {
   using namespace estimate_files;  // NOLINT(google-build-using-namespace)
   Camera camera = MakePinhole(640, 480, 800);

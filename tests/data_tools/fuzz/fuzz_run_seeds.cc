@@ -2,9 +2,8 @@
 #include "tests/data_tools/fuzz/fuzz_run_seeds.h"
 
 #include "bodyloom/pipelines/batch/batch_clip.h"
-#include "bodyloom/pipelines/runs/guided_run.h"
 #include "bodyloom/pipelines/runs/motion_run.h"
-#include "bodyloom/pipelines/runs/photo_run.h"
+#include "bodyloom/pipelines/runs/run_config.h"
 
 namespace bodyloom::fuzz {
 

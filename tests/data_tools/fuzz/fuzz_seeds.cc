@@ -3,7 +3,7 @@
 
 #include "bodyloom/data_tools/body/body_compact.h"
 #include "bodyloom/data_tools/body/body_smpl.h"
-#include "bodyloom/data_tools/formats/safetensors.h"
+#include "bodyloom/data_tools/formats/weights_file.h"
 #include "bodyloom/data_tools/formats/zip.h"
 #include "tests/data_tools/body/small_body.h"
 #include "tests/data_tools/detection/small_networks.h"

@@ -14,8 +14,8 @@
 #include "bodyloom/data_tools/learned/lifter_weights_io.h"
 #include "bodyloom/data_tools/motion/motion_library.h"
 #include "bodyloom/data_tools/synthesis/lifter/lifter_windows.h"
-#include "bodyloom/tracking/initialise/lifter_network.h"
-#include "bodyloom/tracking/initialise/lifter_reading.h"
+#include "bodyloom/tracking/lifter/lifter_network.h"
+#include "bodyloom/tracking/lifter/lifter_reading.h"
 #include "tests/support/paths.h"
 
 namespace bodyloom {

@@ -10,7 +10,7 @@
 
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/tracking/initialise/lifter_input.h"
+#include "bodyloom/tracking/lifter/lifter_input.h"
 #include "tests/support/paths.h"
 
 namespace bodyloom {

@@ -11,7 +11,7 @@
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/learned/pose_prior_io.h"
 #include "bodyloom/data_tools/learned/pose_prior_learning.h"
-#include "bodyloom/geometry/direction_bins.h"
+#include "bodyloom/geometry/math/direction_bins.h"
 #include "tests/support/toy_body.h"
 
 namespace bodyloom {

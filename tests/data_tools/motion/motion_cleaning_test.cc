@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "bodyloom/data_tools/motion/smpl_rest.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/math/rotation.h"
 #include "tests/data_tools/motion/motion_support.h"
 
 namespace bodyloom {

@@ -9,7 +9,7 @@
 #include <set>
 
 #include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/formats/files_below.h"
+#include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/formats/npz.h"
 #include "bodyloom/data_tools/motion/amass.h"
 #include "bodyloom/data_tools/motion/bvh_writer.h"

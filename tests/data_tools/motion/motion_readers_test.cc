@@ -13,7 +13,7 @@
 #include "bodyloom/data_tools/motion/deepmimic_reader.h"
 #include "bodyloom/data_tools/motion/load_motion.h"
 #include "bodyloom/data_tools/motion/text_scanner.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/math/rotation.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/pickle_writer.h"
 #include "tests/data_tools/formats/temporary_file.h"

@@ -6,7 +6,7 @@
 
 #include "bodyloom/data_tools/motion/motion_floor.h"
 #include "bodyloom/data_tools/motion/smpl_rest.h"
-#include "bodyloom/geometry/track.h"
+#include "bodyloom/geometry/scene/track.h"
 
 namespace bodyloom {
 

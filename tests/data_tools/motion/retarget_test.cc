@@ -15,8 +15,8 @@
 #include "bodyloom/data_tools/motion/load_motion.h"
 #include "bodyloom/data_tools/motion/skeleton_map.h"
 #include "bodyloom/data_tools/motion/smpl_rest.h"
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/math/rotation.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/support/paths.h"
 

@@ -6,8 +6,8 @@
 #include <cstring>
 
 #include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/geometry/camera_path.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/math/rotation.h"
+#include "bodyloom/geometry/scene/camera_path.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 

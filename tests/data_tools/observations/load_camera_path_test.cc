@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/math/rotation.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 

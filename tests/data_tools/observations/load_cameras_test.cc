@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/math/rotation.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/support/paths.h"

@@ -13,8 +13,8 @@
 #include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
 #include "bodyloom/data_tools/synthesis/clips/rendered_labels.h"
 #include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
-#include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/tracking/initialise/part_keypoints.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/tracking/lifter/given_landmarks.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Turns and mirror images against the matrix's own formula, against ffmpeg's, and as a phone's clip.
-#include "bodyloom/data_tools/video/display_matrix.h"
+#include "bodyloom/data_tools/video/frame_image.h"
 
 #include <gtest/gtest.h>
 

@@ -8,9 +8,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "bodyloom/geometry/cloth/cloth_wearer.h"
-#include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/geometry/uv_texels.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/geometry/cloth/cloth_body.h"
+#include "bodyloom/geometry/uv_maps/uv_texels.h"
 #include "tests/support/toy_body.h"
 
 namespace bodyloom {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/math/rotation.h"
 #include "tests/support/toy_body.h"
 
 namespace bodyloom {

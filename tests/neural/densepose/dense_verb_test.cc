@@ -7,15 +7,15 @@
 #include <filesystem>
 #include <fstream>
 
-#include "apps/exit_code.h"
+#include "apps/usage_error.h"
 #include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/observations/iuv_to_dense.h"
 #include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/geometry/camera.h"
-#include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/geometry/math/rotation.h"
+#include "bodyloom/geometry/scene/camera.h"
 #include "bodyloom/pipelines/track/track_inputs.h"
-#include "bodyloom/render/visible_points.h"
+#include "bodyloom/render/raster/visible_points.h"
+#include "bodyloom/tracking/detection/iuv_to_dense.h"
 #include "tests/neural/densepose/scripted_densepose.h"
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"

@@ -7,7 +7,7 @@
 
 #include <string>
 
-#include "bodyloom/render/image.h"
+#include "bodyloom/render/image/image.h"
 
 namespace bodyloom {
 

@@ -12,7 +12,6 @@
 #include "bodyloom/neural/guided/loss_balance.h"
 #include "bodyloom/neural/networks/architecture_card.h"
 #include "bodyloom/neural/networks/spatial_modulation.h"
-#include "bodyloom/neural/networks/spectral_norm.h"
 #include "tests/neural/guided/guided_toy.h"
 #include "tests/support/gradient_check.h"
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "bodyloom/neural/guided/guided_config.h"
-#include "bodyloom/neural/people/photo_frame.h"
+#include "bodyloom/render/texture/photo_frame.h"
 
 namespace bodyloom {
 

@@ -8,8 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "bodyloom/neural/guided/clothes_extent.h"
-#include "bodyloom/neural/guided/guess_maps.h"
+#include "bodyloom/render/garment/clothes_extent.h"
 #include "tests/neural/guided/guided_toy.h"
 
 namespace bodyloom {

@@ -12,7 +12,7 @@
 #include "bodyloom/neural/lifter/lifter_loss.h"
 #include "bodyloom/neural/lifter/lifter_module.h"
 #include "bodyloom/neural/lifter/train_lifter.h"
-#include "bodyloom/tracking/initialise/lifter_network.h"
+#include "bodyloom/tracking/lifter/lifter_network.h"
 
 namespace bodyloom {
 namespace {

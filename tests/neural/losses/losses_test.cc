@@ -10,7 +10,6 @@
 #include "bodyloom/neural/losses/contextual_loss.h"
 #include "bodyloom/neural/losses/gan_losses.h"
 #include "bodyloom/neural/losses/image_losses.h"
-#include "bodyloom/neural/losses/perceptual_loss.h"
 #include "tests/support/gradient_check.h"
 
 namespace bodyloom {

@@ -7,11 +7,11 @@
 #include <cmath>
 #include <random>
 
-#include "bodyloom/neural/image_tensor.h"
+#include "bodyloom/neural/base/image_tensor.h"
 #include "bodyloom/neural/losses/contextual_loss.h"
-#include "bodyloom/neural/metrics/class_overlap.h"
 #include "bodyloom/neural/metrics/contextual_similarity.h"
 #include "bodyloom/neural/metrics/lpips.h"
+#include "bodyloom/neural/metrics/pixel_metrics.h"
 #include "bodyloom/neural/metrics/temporal_lpips.h"
 #include "bodyloom/neural/networks/vgg.h"
 #include "tests/neural/metrics/named_features.h"

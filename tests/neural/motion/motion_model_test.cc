@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/neural/image_tensor.h"
+#include "bodyloom/neural/base/image_tensor.h"
+#include "bodyloom/neural/cards/network_cards.h"
 #include "bodyloom/neural/motion/frame_tensors.h"
-#include "bodyloom/neural/motion/motion_card.h"
 #include "bodyloom/neural/motion/motion_model.h"
 #include "bodyloom/neural/networks/architecture_card.h"
 #include "tests/neural/motion/toy_motion.h"

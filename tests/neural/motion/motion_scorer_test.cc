@@ -5,7 +5,7 @@
 #include <cmath>
 #include <memory>
 
-#include "bodyloom/neural/image_tensor.h"
+#include "bodyloom/neural/base/image_tensor.h"
 #include "bodyloom/neural/motion/frame_tensors.h"
 #include "bodyloom/neural/motion/motion_scorer.h"
 #include "tests/neural/motion/toy_motion.h"

@@ -14,12 +14,12 @@
 #include <vector>
 
 #include "bodyloom/data_tools/descriptors/person_frames.h"
-#include "bodyloom/neural/image_tensor.h"
+#include "bodyloom/neural/base/image_tensor.h"
+#include "bodyloom/neural/base/runtime.h"
 #include "bodyloom/neural/motion/motion_model.h"
 #include "bodyloom/neural/motion/motion_renderer.h"
 #include "bodyloom/neural/motion/motion_scorer.h"
 #include "bodyloom/neural/motion/train_motion.h"
-#include "bodyloom/neural/runtime.h"
 #include "bodyloom/neural/training/checkpoint.h"
 #include "tests/neural/metrics/named_features.h"
 #include "tests/neural/motion/toy_motion.h"

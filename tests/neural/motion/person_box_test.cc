@@ -9,7 +9,7 @@
 #include "bodyloom/neural/motion/frame_tensors.h"
 #include "bodyloom/neural/motion/motion_renderer.h"
 #include "bodyloom/neural/motion/roll_out.h"
-#include "bodyloom/neural/people/aligned_box.h"
+#include "bodyloom/neural/networks/aligned_box.h"
 #include "bodyloom/neural/training/checkpoint_file.h"
 #include "tests/neural/motion/toy_motion.h"
 

@@ -2,8 +2,8 @@
 // The motion-dependent renderer frame by frame, and how far clothes reach.
 #include <gtest/gtest.h>
 
-#include "bodyloom/neural/motion/clothes_reach.h"
 #include "bodyloom/neural/motion/frame_tensors.h"
+#include "bodyloom/neural/motion/motion_frame.h"
 #include "bodyloom/neural/motion/motion_model.h"
 #include "bodyloom/neural/motion/roll_out.h"
 #include "tests/neural/motion/toy_motion.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/motion/rollout_memory.h"
+#include "bodyloom/neural/motion/roll_out.h"
 
 #include <gtest/gtest.h>
 
-#include "bodyloom/neural/image_tensor.h"
+#include "bodyloom/neural/base/image_tensor.h"
 #include "tests/support/test_files.h"
 
 namespace bodyloom {

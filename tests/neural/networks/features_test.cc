@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "bodyloom/neural/image_tensor.h"
+#include "bodyloom/neural/base/image_tensor.h"
 #include "bodyloom/neural/networks/architecture_card.h"
 #include "bodyloom/neural/networks/load_weights.h"
 #include "bodyloom/neural/networks/patch_discriminator.h"

@@ -9,7 +9,6 @@
 
 #include "bodyloom/neural/networks/blocks.h"
 #include "bodyloom/neural/networks/patch_discriminator.h"
-#include "bodyloom/neural/networks/transposed_conv.h"
 #include "bodyloom/neural/networks/unet.h"
 #include "bodyloom/neural/networks/uv_sampler.h"
 #include "tests/support/gradient_check.h"

@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "bodyloom/neural/device.h"
-#include "bodyloom/pipelines/person/picture_unet_runner.h"
+#include "bodyloom/neural/base/device.h"
+#include "bodyloom/tracking/detection/inference/picture_unet_runner.h"
 #include "tests/support/random_picture_unet.h"
 
 namespace bodyloom {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/geometry/base/split_mix.h"
+#include "bodyloom/geometry/base/hash_random.h"
 #include "bodyloom/neural/parser/train_parser.h"
 
 namespace bodyloom {
@@ -17,8 +17,8 @@ namespace {
 
 constexpr uint8_t kTopHere = 1, kBottomHere = 2, kSkinHere = 5;
 
-/// A person of 40×56 pixels in 64×64: a red top down to a line that is another in every picture, skin-coloured below, which
-/// the body takes for trousers from row 32 on.
+/// A person of 40×56 pixels in 64×64: a red top down to a line that is another in every picture, skin-coloured below,
+/// which the body takes for trousers from row 32 on.
 PackedPicture RedTop(uint64_t seed) {
   PackedPicture picture;
   picture.width = picture.height = 64, picture.pixels_per_metre = 100;

@@ -5,10 +5,10 @@
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/descriptors/photo_maps.h"
 #include "bodyloom/neural/guided/complete_maps.h"
-#include "bodyloom/neural/people/back_of_head.h"
 #include "bodyloom/neural/photo/photo_batch.h"
-#include "bodyloom/pipelines/neural/guided/virtual_views.h"
+#include "bodyloom/pipelines/neural/guided/guided_people.h"
 #include "bodyloom/pipelines/neural/photo/photo_input.h"
+#include "bodyloom/render/texture/complete/body_part_map.h"
 #include "tests/neural/photo/toy_photos.h"
 
 namespace bodyloom {

@@ -10,18 +10,17 @@
 #include <sstream>
 #include <string>
 
+#include "bodyloom/neural/cards/network_cards.h"
 #include "bodyloom/neural/guided/guided_batches.h"
-#include "bodyloom/neural/guided/guided_card.h"
 #include "bodyloom/neural/guided/guided_model.h"
 #include "bodyloom/neural/guided/guided_tensors.h"
 #include "bodyloom/neural/losses/gan_losses.h"
 #include "bodyloom/neural/losses/image_losses.h"
 #include "bodyloom/neural/networks/architecture_card.h"
 #include "bodyloom/neural/photo/photo_batch.h"
-#include "bodyloom/neural/photo/photo_card.h"
 #include "bodyloom/neural/photo/photo_losses.h"
 #include "bodyloom/neural/photo/photo_model.h"
-#include "bodyloom/neural/training/adam.h"
+#include "bodyloom/neural/training/optimizers.h"
 #include "tests/neural/guided/guided_toy.h"
 #include "tests/neural/photo/toy_photos.h"
 #include "tests/support/gradient_check.h"

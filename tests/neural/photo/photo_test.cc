@@ -11,9 +11,9 @@
 #include <set>
 
 #include "bodyloom/neural/networks/architecture_card.h"
+#include "bodyloom/neural/photo/photo_batch.h"
 #include "bodyloom/neural/photo/photo_losses.h"
 #include "bodyloom/neural/photo/photo_model.h"
-#include "bodyloom/neural/photo/photo_pairs.h"
 #include "bodyloom/neural/photo/photo_scores.h"
 #include "tests/neural/photo/toy_photos.h"
 #include "tests/support/gradient_check.h"

@@ -13,10 +13,10 @@
 #include <string>
 
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/neural/base/runtime.h"
 #include "bodyloom/neural/networks/sphereface.h"
 #include "bodyloom/neural/photo/photo_renderer.h"
 #include "bodyloom/neural/photo/photo_window.h"
-#include "bodyloom/neural/runtime.h"
 #include "tests/neural/photo/toy_photo_training.h"
 #include "tests/neural/training/last_metrics.h"
 

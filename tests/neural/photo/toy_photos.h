@@ -6,8 +6,8 @@
 
 #include <cmath>
 
-#include "bodyloom/neural/people/photo_frame.h"
 #include "bodyloom/neural/photo/photo_config.h"
+#include "bodyloom/render/texture/photo_frame.h"
 
 namespace bodyloom {
 

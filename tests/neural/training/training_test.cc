@@ -12,8 +12,8 @@
 
 #include "bodyloom/neural/networks/unet.h"
 #include "bodyloom/neural/training/checkpoint.h"
+#include "bodyloom/neural/training/optimizers.h"
 #include "bodyloom/neural/training/run_files.h"
-#include "bodyloom/neural/training/schedules.h"
 #include "tests/support/test_files.h"
 
 namespace bodyloom {

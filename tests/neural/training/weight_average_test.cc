@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "bodyloom/neural/training/weight_average.h"
+#include "bodyloom/neural/training/optimizers.h"
 
 namespace bodyloom {
 namespace {

@@ -7,7 +7,6 @@
 #include <string>
 
 #include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/files_below.h"
 #include "bodyloom/pipelines/batch/batch_clip.h"
 #include "bodyloom/pipelines/synthesis/synthesize_clip.h"
 #include "tests/support/scratch_folder.h"

@@ -8,7 +8,7 @@
 #include <set>
 #include <string>
 
-#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/geometry/base/callbacks.h"
 
 namespace bodyloom {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "bodyloom/data_tools/video/image_file.h"
 #include "tests/data_tools/formats/temporary_file.h"
-#include "tests/data_tools/masks/masked_clip.h"
+#include "tests/tracking/detection/masked_clip.h"
 
 namespace bodyloom {
 namespace {

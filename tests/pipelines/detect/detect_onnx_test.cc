@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A clip with an ONNX network in place of BlazePose, from pictures to landmarks and tracks. The network is scripted: it
-/// sees two people, and the redder a picture is, the farther the small one has gone to the right.
+/// A clip with an ONNX network in place of BlazePose, from pictures to landmarks and tracks. The network is scripted:
+/// it sees two people, and the redder a picture is, the farther the small one has gone to the right.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

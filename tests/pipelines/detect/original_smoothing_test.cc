@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-/// MediaPipe's own pipeline around our networks: one frame after the other, landmarks and regions smoothed by its One Euro
-/// filters. What it published for a clip must come out, but for the training of the network since. Skipped where the
-/// recording or the networks (./dev models) are missing.
+/// MediaPipe's own pipeline around our networks: one frame after the other, landmarks and regions smoothed by its One
+/// Euro filters. What it published for a clip must come out, but for the training of the network since. Skipped where
+/// the recording or the networks (./dev models) are missing.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,17 +9,17 @@
 #include <optional>
 #include <vector>
 
-#include "bodyloom/data_tools/detection/pose_detector.h"
 #include "bodyloom/data_tools/observations/load_detections.h"
 #include "bodyloom/data_tools/video/video_reader.h"
+#include "bodyloom/tracking/detection/pose_detector.h"
 #include "tests/support/paths.h"
 #include "tests/support/real_video.h"
 
 namespace bodyloom {
 namespace {
 
-/// Casiez, Roussel, Vogel, "1€ Filter", CHI 2012, as MediaPipe has it: the speed that opens the filter is relative to the
-/// person's size, and taken between raw values.
+/// Casiez, Roussel, Vogel, "1€ Filter", CHI 2012, as MediaPipe has it: the speed that opens the filter is relative to
+/// the person's size, and taken between raw values.
 class OneEuro {
  public:
   OneEuro(double min_cutoff, double beta) : min_cutoff_(min_cutoff), beta_(beta) {}

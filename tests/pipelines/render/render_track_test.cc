@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/geometry/camera_path.h"
+#include "bodyloom/geometry/scene/camera_path.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/short_track.h"
 

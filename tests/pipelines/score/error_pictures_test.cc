@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/score/error_pictures.h"
+#include "bodyloom/pipelines/score/compare_results.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,6 @@
 
 #include "bodyloom/data_tools/evaluation/image_metrics.h"
 #include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/pipelines/score/compare_results.h"
 #include "tests/support/scratch_folder.h"
 
 namespace bodyloom {

@@ -9,8 +9,8 @@
 #include "bodyloom/data_tools/evaluation/triangulated_clip.h"
 #include "bodyloom/data_tools/observations/load_cameras.h"
 #include "bodyloom/data_tools/observations/observations_npz.h"
-#include "bodyloom/geometry/rotation.h"
-#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/geometry/base/callbacks.h"
+#include "bodyloom/geometry/math/rotation.h"
 #include "bodyloom/pipelines/score/evaluate_track.h"
 #include "tests/support/scratch_folder.h"
 

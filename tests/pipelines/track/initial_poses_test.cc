@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "bodyloom/data_tools/body/body_landmarks.h"
 #include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/body/mean_pelvis.h"
 #include "bodyloom/data_tools/estimates/estimate_arrays.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/formats/npz.h"

@@ -8,7 +8,7 @@
 
 #include "bodyloom/data_tools/formats/atomic_file.h"
 #include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/pipelines/callbacks.h"
+#include "bodyloom/geometry/base/callbacks.h"
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/data_tools/video/exif_maker.h"
 

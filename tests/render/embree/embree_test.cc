@@ -6,8 +6,8 @@
 #include <random>
 
 #include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/render/visibility_buffer.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/render/raster/visibility_buffer.h"
 #include "tests/support/embree_twin.h"
 #include "tests/support/toy_poses.h"
 

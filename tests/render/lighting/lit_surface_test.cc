@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/render/overlay.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/render/view/overlay.h"
 #include "tests/support/meshes.h"
 
 namespace bodyloom {

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/body/posed_body.h"
 #include "bodyloom/render/lighting/fit_lighting.h"
-#include "bodyloom/render/lighting/relight.h"
-#include "bodyloom/render/resolve_pixels.h"
-#include "bodyloom/render/visibility_buffer.h"
+#include "bodyloom/render/lighting/sh_lighting.h"
+#include "bodyloom/render/raster/resolve_pixels.h"
+#include "bodyloom/render/raster/visibility_buffer.h"
 
 namespace bodyloom {
 namespace {

@@ -3,11 +3,11 @@
 #pragma once
 
 #include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/geometry/camera.h"
-#include "bodyloom/geometry/observations.h"
-#include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/geometry/rotation.h"
-#include "bodyloom/render/visibility_buffer.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/geometry/math/rotation.h"
+#include "bodyloom/geometry/scene/camera.h"
+#include "bodyloom/geometry/scene/observations.h"
+#include "bodyloom/render/raster/visibility_buffer.h"
 
 namespace bodyloom {
 

@@ -5,11 +5,11 @@
 #include <Eigen/Geometry>
 
 #include "bodyloom/geometry/cloth/body_with_garment.h"
+#include "bodyloom/geometry/cloth/cloth_body.h"
 #include "bodyloom/geometry/cloth/cloth_run.h"
-#include "bodyloom/geometry/cloth/cloth_wearer.h"
-#include "bodyloom/geometry/track.h"
-#include "bodyloom/render/overlay.h"
-#include "bodyloom/render/person/garment_swing.h"
+#include "bodyloom/geometry/scene/track.h"
+#include "bodyloom/render/garment/fit_clothes.h"
+#include "bodyloom/render/view/overlay.h"
 #include "tests/render/person/person_scene.h"
 
 namespace bodyloom {

@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/render/shadows/openness.h"
 #include "bodyloom/render/shadows/shadow_map.h"
 
 namespace bodyloom {

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <functional>
 
-#include "bodyloom/render/raster_simd.h"
+#include "bodyloom/render/raster/raster_simd.h"
 #include "bodyloom/render/splat/float_columns.h"
 
 namespace bodyloom {

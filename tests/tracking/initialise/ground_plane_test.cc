@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/math/rotation.h"
 
 namespace bodyloom {
 namespace {

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <random>
 
-#include "bodyloom/tracking/initialise/viterbi.h"
-
 namespace bodyloom {
 namespace {
 

@@ -7,9 +7,9 @@
 #include <algorithm>
 
 #include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/render/follow_view.h"
-#include "bodyloom/render/overlay.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/render/view/follow_view.h"
+#include "bodyloom/render/view/overlay.h"
 
 namespace bodyloom {
 namespace {

@@ -13,10 +13,10 @@
 #include "bodyloom/data_tools/learned/pose_prior_io.h"
 #include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
 #include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
-#include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/geometry/rotation.h"
-#include "bodyloom/tracking/initialise/stature.h"
-#include "bodyloom/tracking/sequence_problem.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/geometry/math/rotation.h"
+#include "bodyloom/tracking/problem/sequence_problem.h"
+#include "bodyloom/tracking/problem/stature.h"
 #include "bodyloom/tracking/track_sequence.h"
 
 namespace bodyloom {

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/math/rotation.h"
 #include "tests/support/frame_scene.h"
 #include "tests/tracking/jet_twin.h"
 

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bodyloom/tracking/frame_accumulator.h"
 #include "bodyloom/tracking/problem/clip_term.h"
-#include "bodyloom/tracking/robust.h"
+#include "bodyloom/tracking/problem/frame_accumulator.h"
+#include "bodyloom/tracking/problem/robust.h"
+#include "bodyloom/tracking/problem/track_input.h"
+#include "bodyloom/tracking/problem/track_summary.h"
 #include "bodyloom/tracking/terms/dense/dense_points.h"
-#include "bodyloom/tracking/track_input.h"
-#include "bodyloom/tracking/track_summary.h"
 
 namespace bodyloom {
 

@@ -12,10 +12,10 @@
 #include <memory>
 #include <vector>
 
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/camera.h"
-#include "bodyloom/geometry/observations.h"
-#include "bodyloom/tracking/body_points.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/scene/camera.h"
+#include "bodyloom/geometry/scene/observations.h"
+#include "bodyloom/tracking/problem/body_points.h"
 #include "bodyloom/tracking/problem/frame_term.h"
 
 namespace bodyloom {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/tracking/chain/panel_simd.h"
+#include "bodyloom/tracking/problem/panel_simd.h"
 
 namespace bodyloom {
 

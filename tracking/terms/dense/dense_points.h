@@ -12,9 +12,9 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/geometry/body_model.h"
-#include "bodyloom/geometry/observations.h"
-#include "bodyloom/tracking/kinematics.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/scene/observations.h"
+#include "bodyloom/tracking/problem/body_points.h"
 #include "bodyloom/tracking/terms/dense/dense_points_simd.h"
 
 namespace bodyloom {

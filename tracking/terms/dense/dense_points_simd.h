@@ -21,7 +21,7 @@ struct Body {
   int shape_stride = 0, num_joints = 0;
 };
 
-/// The kinematic tree of one frame (kinematics.h), in rows of four values, which vectors read at once.
+/// The kinematic tree of one frame (body_points.h), in rows of four values, which vectors read at once.
 struct Frame {
   int num_betas = 0, dt_stride = 0;
   const double* betas = nullptr;

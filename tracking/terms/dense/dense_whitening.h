@@ -11,9 +11,9 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "bodyloom/geometry/observations.h"
-#include "bodyloom/render/visibility_buffer.h"
-#include "bodyloom/tracking/frame_layout.h"
+#include "bodyloom/geometry/scene/observations.h"
+#include "bodyloom/render/raster/visibility_buffer.h"
+#include "bodyloom/tracking/problem/frame_layout.h"
 #include "bodyloom/tracking/terms/dense/dense.h"
 
 namespace bodyloom {

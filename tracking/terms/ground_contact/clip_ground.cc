@@ -7,11 +7,11 @@
 #include <cmath>
 #include <span>
 
-#include "bodyloom/geometry/camera_path.h"
+#include "bodyloom/geometry/scene/camera_path.h"
+#include "bodyloom/tracking/initialise/ground_plane.h"
 #include "bodyloom/tracking/initialise/lifted_start.h"
-#include "bodyloom/tracking/initialise/lifter_input.h"
-#include "bodyloom/tracking/initialise/seen_feet.h"
-#include "bodyloom/tracking/kinematics.h"
+#include "bodyloom/tracking/lifter/lifter_input.h"
+#include "bodyloom/tracking/problem/body_points.h"
 #include "bodyloom/tracking/terms/ground_contact/ground_contact.h"
 #include "bodyloom/tracking/terms/upright.h"
 

@@ -3,11 +3,11 @@
 
 #include <cmath>
 
-#include "bodyloom/tracking/frame_accumulator.h"
 #include "bodyloom/tracking/initialise/initial_states.h"
-#include "bodyloom/tracking/robust.h"
-#include "bodyloom/tracking/track_options.h"
-#include "bodyloom/tracking/track_summary.h"
+#include "bodyloom/tracking/problem/frame_accumulator.h"
+#include "bodyloom/tracking/problem/robust.h"
+#include "bodyloom/tracking/problem/track_options.h"
+#include "bodyloom/tracking/problem/track_summary.h"
 
 namespace bodyloom {
 

@@ -2,17 +2,18 @@
 /// A foot that stands: a point of it should be where it was put down.
 ///   ½ ρ(‖W (x + o − a)‖²)                ρ: Geman–McClure
 /// x: the point relative to the body's origin, o = FrameLayout::BodyPlace, so a is in the camera frame, metres, for
-/// every kind of camera, of one that moves in that of this frame. W = diag(1/σ_slide, 1/σ_slide, 1/σ_height) in axes whose third is the ground's normal, times
-/// the root of the weight. a lies on the ground; it is an estimate of initialise/ground_plane.h and held fixed here, so
-/// that frames stay uncoupled. Derivatives: ∂x/∂θ of tracking/body_points.h; ∂o/∂t = I, and for weak perspective
-/// ∂o/∂(log s, tx, ty) = (−o_z e_z, e_x, e_y). Runs in frames in which clip_ground.h found a standing foot.
+/// every kind of camera, of one that moves in that of this frame. W = diag(1/σ_slide, 1/σ_slide, 1/σ_height) in axes
+/// whose third is the ground's normal, times the root of the weight. a lies on the ground; it is an estimate of
+/// initialise/ground_plane.h and held fixed here, so that frames stay uncoupled. Derivatives: ∂x/∂θ of
+/// tracking/problem/body_points.h; ∂o/∂t = I, and for weak perspective ∂o/∂(log s, tx, ty) = (−o_z e_z, e_x, e_y). Runs
+/// in frames in which clip_ground.h found a standing foot.
 #pragma once
 
 #include <Eigen/Core>
 #include <string>
 #include <vector>
 
-#include "bodyloom/tracking/body_points.h"
+#include "bodyloom/tracking/problem/body_points.h"
 #include "bodyloom/tracking/problem/frame_term.h"
 
 namespace bodyloom {

@@ -5,14 +5,14 @@
 #include <cmath>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/tracking/frame_accumulator.h"
 #include "bodyloom/tracking/initialise/initial_states.h"
 #include "bodyloom/tracking/initialise/lifted_start.h"
-#include "bodyloom/tracking/initialise/lifter_input.h"
+#include "bodyloom/tracking/lifter/lifter_input.h"
 #include "bodyloom/tracking/problem/clip_term.h"
-#include "bodyloom/tracking/track_input.h"
-#include "bodyloom/tracking/track_options.h"
-#include "bodyloom/tracking/track_summary.h"
+#include "bodyloom/tracking/problem/frame_accumulator.h"
+#include "bodyloom/tracking/problem/track_input.h"
+#include "bodyloom/tracking/problem/track_options.h"
+#include "bodyloom/tracking/problem/track_summary.h"
 
 namespace bodyloom {
 

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/tracking/initialise/lift_keypoints.h"
 #include "bodyloom/tracking/initialise/lifted_landmarks.h"
+#include "bodyloom/tracking/lifter/lift_keypoints.h"
 #include "bodyloom/tracking/problem/frame_term.h"
 
 namespace bodyloom {

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/render/visible_points.h"
-#include "bodyloom/tracking/frame_accumulator.h"
+#include "bodyloom/render/raster/visible_points.h"
+#include "bodyloom/tracking/problem/frame_accumulator.h"
 
 namespace bodyloom {
 namespace {

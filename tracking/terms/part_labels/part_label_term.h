@@ -16,8 +16,8 @@
 /// σ = sigma_share × the person's height in the image. The silhouette of a mask takes clothes_sigma_share for σ across
 /// the boundary wherever the body is inside (φ < 0, or n·(π(x) − y) < 0): clothes and hair reach beyond the body, the
 /// body never beyond them. Both costs and their derivatives are continuous where the body crosses. Correspondences (x
-/// and y) stay during a round, φ and π are evaluated at every state. Each of the two terms counts as kSilhouetteCount or
-/// kPartCount observations at most, however many samples it has: neighbouring pixels err together.
+/// and y) stay during a round, φ and π are evaluated at every state. Each of the two terms counts as kSilhouetteCount
+/// or kPartCount observations at most, however many samples it has: neighbouring pixels err together.
 /// Unknown pixels and pixels beyond the image give no boundary. Pieces of the person or of a part below kSpeckShare of
 /// the largest are unknown (part_map.h); parts of fewer than kMinPartPixels pixels are left out.
 #pragma once
@@ -28,13 +28,13 @@
 #include <memory>
 #include <vector>
 
-#include "bodyloom/geometry/observations.h"
-#include "bodyloom/tracking/frame_layout.h"
+#include "bodyloom/geometry/scene/observations.h"
+#include "bodyloom/tracking/problem/frame_layout.h"
 #include "bodyloom/tracking/problem/frame_term.h"
+#include "bodyloom/tracking/problem/track_options.h"
+#include "bodyloom/tracking/problem/visible_surface.h"
 #include "bodyloom/tracking/terms/part_labels/distance_field.h"
-#include "bodyloom/tracking/terms/part_labels/part_label_options.h"
 #include "bodyloom/tracking/terms/part_labels/part_map.h"
-#include "bodyloom/tracking/visible_surface.h"
 
 namespace bodyloom {
 

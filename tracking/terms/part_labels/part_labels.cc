@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/tracking/moving_camera.h"
-#include "bodyloom/tracking/track_input.h"
-#include "bodyloom/tracking/track_options.h"
-#include "bodyloom/tracking/track_summary.h"
+#include "bodyloom/tracking/problem/moving_camera.h"
+#include "bodyloom/tracking/problem/track_input.h"
+#include "bodyloom/tracking/problem/track_options.h"
+#include "bodyloom/tracking/problem/track_summary.h"
 
 namespace bodyloom {
 

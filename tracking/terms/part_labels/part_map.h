@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "bodyloom/geometry/observations.h"
-#include "bodyloom/render/pixel_box.h"
+#include "bodyloom/geometry/scene/observations.h"
+#include "bodyloom/render/image/pixel_box.h"
 
 namespace bodyloom {
 

@@ -1,18 +1,54 @@
 // SPDX-License-Identifier: Apache-2.0
 /// The learned pose prior: which poses people take.
-///   ½ w E(x),   E(x) = min_k [ ‖L_k (x − μ_k)‖² + e_k ]      (mixture_prior.h)
+///   ½ w E(x),   E(x) = min_k [ ‖L_k (x − μ_k)‖² + e_k ]      (pose_prior.h)
 /// x: axis-angle of the prior's joints that are estimated, radians. No robust kernel: the minimum over the components
 /// is what keeps rare poses possible. Derivatives are those of the nearest component. Runs when a prior was given.
 #pragma once
 
+#include <Eigen/Core>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/scene/pose_prior.h"
 #include "bodyloom/tracking/problem/frame_term.h"
-#include "bodyloom/tracking/terms/pose_prior/mixture_prior.h"
 
 namespace bodyloom {
+
+// The pose prior as the solver uses it: the learned mixture restricted to the joints that are estimated.
+//
+// Energy of x (stacked axis-angle of the joints): min_k [ ‖L_k (x − μ_k)‖² + e_k ], e_k = −2 log(w_k |L_k|) shifted so
+// that the smallest is zero. The minimum over components replaces the logarithm of the sum, as in SMPLify, so that the
+// energy stays a sum of squares.
+
+class MixturePrior {
+ public:
+  /// Marginalises the prior to those of its joints that are in `active_joints`. Empty when there are none.
+  MixturePrior(const PosePrior& prior, const BodyModel& model, const std::vector<int>& active_joints);
+
+  [[nodiscard]] bool empty() const { return joints_.empty(); }
+  /// Body joint indices in the order of x.
+  [[nodiscard]] const std::vector<int>& joints() const { return joints_; }
+  /// Index of the component with the least energy at x, and that energy.
+  int Nearest(const Eigen::VectorXd& x, double* energy) const;
+  [[nodiscard]] const Eigen::MatrixXd& sqrt_precision(int k) const { return components_[k].L; }
+  /// Σ⁻¹
+  [[nodiscard]] const Eigen::MatrixXd& precision(int k) const { return components_[k].precision; }
+  [[nodiscard]] const Eigen::VectorXd& mean(int k) const { return components_[k].mean; }
+  [[nodiscard]] double offset(int k) const { return components_[k].offset; }
+  [[nodiscard]] int num_components() const { return static_cast<int>(components_.size()); }
+
+ private:
+  struct Component {
+    Eigen::VectorXd mean;
+    Eigen::MatrixXd L;  ///< upper triangular, LᵀL = Σ⁻¹
+    Eigen::MatrixXd precision;
+    double offset = 0;
+  };
+  std::vector<int> joints_;
+  std::vector<Component> components_;
+};
 
 class ClipTerm;
 struct ClipTermInput;

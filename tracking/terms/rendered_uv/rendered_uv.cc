@@ -2,11 +2,11 @@
 #include "bodyloom/tracking/terms/rendered_uv/rendered_uv.h"
 
 #include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/tracking/moving_camera.h"
+#include "bodyloom/tracking/problem/moving_camera.h"
+#include "bodyloom/tracking/problem/track_input.h"
+#include "bodyloom/tracking/problem/track_options.h"
+#include "bodyloom/tracking/problem/track_summary.h"
 #include "bodyloom/tracking/terms/dense/dense_whitening.h"
-#include "bodyloom/tracking/track_input.h"
-#include "bodyloom/tracking/track_options.h"
-#include "bodyloom/tracking/track_summary.h"
 
 namespace bodyloom {
 

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/tracking/frame_accumulator.h"
+#include "bodyloom/tracking/problem/frame_accumulator.h"
 #include "bodyloom/tracking/terms/dense/dense_whitening.h"
 
 namespace bodyloom {

@@ -24,12 +24,12 @@
 #include <memory>
 #include <vector>
 
-#include "bodyloom/geometry/skinning.h"
-#include "bodyloom/tracking/frame_layout.h"
+#include "bodyloom/geometry/body/skinning.h"
+#include "bodyloom/tracking/problem/frame_layout.h"
 #include "bodyloom/tracking/problem/frame_term.h"
+#include "bodyloom/tracking/problem/track_options.h"
+#include "bodyloom/tracking/problem/visible_surface.h"
 #include "bodyloom/tracking/terms/dense/dense.h"
-#include "bodyloom/tracking/terms/rendered_uv/rendered_uv_options.h"
-#include "bodyloom/tracking/visible_surface.h"
 
 namespace bodyloom {
 

@@ -8,9 +8,9 @@
 #include <numeric>
 
 #include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
-#include "bodyloom/data_tools/synthesis/clips/drift.h"
-#include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/render/visible_points.h"
+#include "bodyloom/data_tools/synthesis/clips/smooth_curve.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/render/raster/visible_points.h"
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 

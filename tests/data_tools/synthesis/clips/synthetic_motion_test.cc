@@ -9,8 +9,8 @@
 #include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
 #include "bodyloom/data_tools/synthesis/clips/smooth_curve.h"
 #include "bodyloom/data_tools/synthesis/clips/synth_camera.h"
-#include "bodyloom/geometry/posed_body.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/geometry/math/rotation.h"
 #include "tests/support/toy_body.h"
 
 namespace bodyloom {

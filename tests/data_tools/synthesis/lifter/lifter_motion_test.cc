@@ -9,7 +9,7 @@
 
 #include "bodyloom/data_tools/synthesis/lifter/fast_random.h"
 #include "bodyloom/data_tools/synthesis/lifter/floor_poses.h"
-#include "bodyloom/geometry/posed_body.h"
+#include "bodyloom/geometry/body/posed_body.h"
 #include "bodyloom/tracking/terms/joint_limits.h"
 #include "tests/data_tools/synthesis/lifter/lifter_support.h"
 

@@ -14,9 +14,9 @@
 #include "bodyloom/data_tools/motion/motion_tools.h"
 #include "bodyloom/data_tools/synthesis/people/dressed_person.h"
 #include "bodyloom/data_tools/synthesis/people/make_single_person_dataset.h"
-#include "bodyloom/geometry/cloth/cloth_faults.h"
-#include "bodyloom/geometry/rotation.h"
-#include "bodyloom/geometry/vertex_normals.h"
+#include "bodyloom/geometry/body/normals.h"
+#include "bodyloom/geometry/cloth/cloth_simulation.h"
+#include "bodyloom/geometry/math/rotation.h"
 #include "tests/data_tools/synthesis/people/turning_motion.h"
 #include "tests/support/paths.h"
 

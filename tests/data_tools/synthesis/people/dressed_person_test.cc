@@ -10,7 +10,7 @@
 #include "bodyloom/data_tools/synthesis/people/dressed_render.h"
 #include "bodyloom/data_tools/synthesis/people/make_single_person_dataset.h"
 #include "bodyloom/geometry/cloth/cloth_run.h"
-#include "bodyloom/geometry/rotation.h"
+#include "bodyloom/geometry/math/rotation.h"
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/data_tools/synthesis/people/turning_motion.h"
 #include "tests/support/toy_body.h"
@@ -93,7 +93,8 @@ TEST(Outfit, EverydayTrousersAreSlimStraightOrWideAndMostShirtsHangLoose) {
     EXPECT_EQ(outfit.LabelAt(hip - Vector3d(0, 0.01, 0)), PersonLabel::kBottom);
   }
   EXPECT_NEAR(hanging, 0.66 * kPeople, 47);  // five standard deviations; one in eight wears no shirt
-  // Three in ten have wide trousers, seven in ten of those long ones; nearly all of them are wider than 4 cm at the hem.
+  // Three in ten have wide trousers, seven in ten of those long ones; nearly all of them are wider than 4 cm at the
+  // hem.
   EXPECT_NEAR(wide, 0.2 * kPeople, 41);
   EXPECT_EQ(ClothesStyleFromString(ToString(ClothesStyle::kEveryday)), ClothesStyle::kEveryday);
   EXPECT_THROW(ClothesStyleFromString("fancy"), std::invalid_argument);

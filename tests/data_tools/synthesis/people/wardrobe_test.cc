@@ -97,7 +97,8 @@ TEST(Wardrobe, EverydayClothesAreMostlyPlainAndHalfOfThemGrey) {
     ++tops[size_t(top.kind)], ++bottoms[size_t(bottom.kind)];
     grey_tops += Saturation(top.colour) <= 0.081F ? 1 : 0;
   }
-  // Five standard deviations of 2000 draws. Plain cloth fades, so it counts as noise, as 6 % of tops and 7 % of bottoms.
+  // Five standard deviations of 2000 draws. Plain cloth fades, so it counts as noise, as 6 % of tops and 7 % of
+  // bottoms.
   EXPECT_NEAR(tops[size_t(PatternKind::kNoise)], 0.66 * kPeople, 106);
   EXPECT_NEAR(tops[size_t(PatternKind::kPrint)], 0.1 * kPeople, 67);
   EXPECT_NEAR(tops[size_t(PatternKind::kStripes)], 0.12 * kPeople, 73);

@@ -8,7 +8,7 @@
 #include <memory>
 #include <random>
 
-#include "bodyloom/tracking/robust.h"
+#include "bodyloom/tracking/problem/robust.h"
 #include "bodyloom/tracking/terms/upright.h"
 #include "tests/support/frame_scene.h"
 #include "tests/tracking/jet_twin.h"

@@ -7,8 +7,8 @@
 #include <memory>
 #include <random>
 
-#include "bodyloom/tracking/initialise/lifter_input.h"
-#include "bodyloom/tracking/robust.h"
+#include "bodyloom/tracking/lifter/lifter_input.h"
+#include "bodyloom/tracking/problem/robust.h"
 #include "tests/support/frame_scene.h"
 #include "tests/tracking/jet_twin.h"
 

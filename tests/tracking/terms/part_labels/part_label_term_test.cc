@@ -7,8 +7,8 @@
 #include <functional>
 #include <memory>
 
-#include "bodyloom/geometry/rotation.h"
-#include "bodyloom/tracking/robust.h"
+#include "bodyloom/geometry/math/rotation.h"
+#include "bodyloom/tracking/problem/robust.h"
 #include "tests/support/frame_scene.h"
 #include "tests/tracking/jet_twin.h"
 

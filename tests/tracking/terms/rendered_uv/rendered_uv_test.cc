@@ -9,9 +9,9 @@
 #include <memory>
 #include <random>
 
-#include "bodyloom/geometry/rotation.h"
-#include "bodyloom/render/visible_points.h"
-#include "bodyloom/tracking/robust.h"
+#include "bodyloom/geometry/math/rotation.h"
+#include "bodyloom/render/raster/visible_points.h"
+#include "bodyloom/tracking/problem/robust.h"
 #include "bodyloom/tracking/terms/dense/dense.h"
 #include "bodyloom/tracking/terms/dense/dense_whitening.h"
 #include "tests/support/frame_scene.h"

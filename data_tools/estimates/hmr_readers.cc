@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/data_tools/estimates/hmr_readers.h"
+
+#include <cmath>
+#include <numeric>
+
+#include "bodyloom/data_tools/body/body_landmarks.h"
+#include "bodyloom/data_tools/estimates/estimate_arrays.h"
+#include "bodyloom/geometry/base/check.h"
+
+namespace bodyloom {
+namespace {
+
+/// How far sx·W may be from sy·H before the image size cannot be VIBE's.
+constexpr double kMostAspectError = 0.02;
+
+Camera WeakCamera(const Eigen::Ref<const Eigen::RowVectorXd>& orig_cam, int width, int height, const std::string& place,
+                  Eigen::Index row) {
+  const double x_scale = 0.5 * width * orig_cam[0], y_scale = 0.5 * height * orig_cam[1];
+  if (!(x_scale > 0) || !(y_scale > 0)) {
+    Refuse(place, "orig_cam",
+           Concatenate("row ", row, " has scales ", orig_cam[0], " and ", orig_cam[1], ", expected positive ones"));
+  }
+  if (std::abs(x_scale / y_scale - 1) > kMostAspectError) {
+    Refuse(place, "orig_cam",
+           Concatenate("made for images whose width is ", orig_cam[1] / orig_cam[0], " times their height, expected ",
+                       width, "x", height));
+  }
+  Camera camera;
+  camera.model = CameraModel::kWeakPerspective;
+  camera.width = width;
+  camera.height = height;
+  camera.cx = 0.5 * width;
+  camera.cy = 0.5 * height;
+  camera.scale = std::sqrt(x_scale * y_scale);
+  camera.tx = orig_cam[2];
+  camera.ty = orig_cam[3];
+  return camera;
+}
+
+}  // namespace
+
+bool IsVibe(const PickleValue& file) {
+  if (file.dict.empty()) return false;
+  const PickleValue& person = *file.dict.front().second;
+  return person.Find("pose") != nullptr && person.Find("orig_cam") != nullptr && person.Find("frame_ids") != nullptr;
+}
+
+BodyEstimate VibeFromPickle(const PickleValue& file, const std::string& where, int image_width, int image_height) {
+  if (image_width <= 0 || image_height <= 0) {
+    Refuse(where, "VIBE: its camera is in units of the image size, which is not known; give --video or --image-size");
+  }
+  return SmplPeople(
+      file, where, "VIBE", [&](const PickleValue& values, const std::string& place, PersonEstimate* person) {
+        const RowMatrixXd cameras =
+            RequireShape(RequireNumbers(values, "orig_cam", place), {person->poses.rows(), 4}, place, "orig_cam");
+        for (Eigen::Index i = 0; i < cameras.rows(); ++i) {
+          person->cameras.push_back(WeakCamera(cameras.row(i), image_width, image_height, place, i));
+        }
+      });
+}
+
+bool IsWham(const PickleValue& file) {
+  if (file.dict.empty()) return false;
+  const PickleValue& person = *file.dict.front().second;
+  return person.Find("pose") != nullptr && person.Find("trans") != nullptr && person.Find("frame_ids") != nullptr;
+}
+
+BodyEstimate WhamFromPickle(const PickleValue& file, const std::string& where, int image_width, int image_height) {
+  if (image_width <= 0 || image_height <= 0) {
+    Refuse(where, "WHAM: its camera follows from the image size, which is not known; give --video or --image-size");
+  }
+  const Camera camera = CentredCamera(image_width, image_height, std::hypot(image_width, image_height));
+  return SmplPeople(
+      file, where, "WHAM", [&](const PickleValue& values, const std::string& place, PersonEstimate* person) {
+        person->trans = RequireShape(RequireNumbers(values, "trans", place), {person->poses.rows(), 3}, place, "trans");
+        person->cameras.assign(person->frames.size(), camera);
+      });
+}
+
+namespace {
+
+const NdArray& RequireTensor(const WeightsFile& file, const std::string& key, const std::string& where) {
+  const auto found = file.tensors.find(key);
+  if (found == file.tensors.end()) Refuse(where, "GVHMR: no tensor '" + key + "'");
+  return found->second;
+}
+
+Camera CameraFromK(const Eigen::Ref<const Eigen::RowVectorXd>& k, const std::string& where, Eigen::Index row) {
+  if (!(k[0] > 0) || !(k[4] > 0) || k[8] != 1 || k[1] != 0 || k[3] != 0) {
+    Refuse(where, "K_fullimg", Concatenate("frame ", row, ": expected [fx 0 cx; 0 fy cy; 0 0 1]"));
+  }
+  Camera camera;
+  camera.fx = k[0];
+  camera.fy = k[4];
+  camera.cx = k[2];
+  camera.cy = k[5];
+  // GVHMR's principal point is the middle of the image.
+  camera.width = static_cast<int>(std::lround(std::min(2 * std::abs(k[2]), 1e6)));
+  camera.height = static_cast<int>(std::lround(std::min(2 * std::abs(k[5]), 1e6)));
+  return camera;
+}
+
+}  // namespace
+
+bool IsGvhmr(const WeightsFile& file) { return file.tensors.count("smpl_params_incam.body_pose") > 0; }
+
+BodyEstimate GvhmrFromTensors(const WeightsFile& file, const std::string& where) {
+  BodyEstimate estimate;
+  estimate.system = "GVHMR";
+  estimate.body = "smplx";
+  estimate.rest_pelvis = MeanPelvis(estimate.body);
+  PersonEstimate& person = estimate.people.emplace_back();
+  person.name = "0";
+  const auto matrix = [&](const std::string& key, const std::vector<int64_t>& shape) {
+    return RequireShape(RequireTensor(file, key, where), shape, where, key);
+  };
+  const RowMatrixXd body = matrix("smpl_params_incam.body_pose", {-1, 63});
+  const int64_t n = body.rows();
+  if (n >= kMostEstimateFrames) Refuse(where, "smpl_params_incam.body_pose", "too many frames");
+  person.poses.setZero(n, 72);
+  person.poses.leftCols<3>() = matrix("smpl_params_incam.global_orient", {n, 3});
+  person.poses.middleCols<63>(3) = body;
+  person.trans = matrix("smpl_params_incam.transl", {n, 3});
+  person.betas = MeanBetas(RequireTensor(file, "smpl_params_incam.betas", where), n, where);
+  const RowMatrixXd k = matrix("K_fullimg", {n, 3, 3});
+  for (Eigen::Index i = 0; i < k.rows(); ++i) person.cameras.push_back(CameraFromK(k.row(i), where, i));
+  person.frames.resize(static_cast<size_t>(n));
+  std::iota(person.frames.begin(), person.frames.end(), 0);
+  estimate.num_frames = static_cast<int>(n);
+  SortEstimate(where, &estimate);
+  return estimate;
+}
+
+}  // namespace bodyloom

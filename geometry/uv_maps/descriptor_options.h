@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bodyloom/geometry/body/normals.h"
+#include "bodyloom/geometry/scene/camera.h"
+#include "bodyloom/geometry/uv_maps/surface_velocity.h"
+#include "bodyloom/geometry/uv_maps/uv_texels.h"
+#include "bodyloom/geometry/uv_maps/velocity_stencil.h"
+
+namespace bodyloom {
+
+// How the motion of a body's surface is described: in which axes, and by which velocities. Descriptor files and the
+// motion-dependent renderer share it, and the names of its values.
+
+struct SurfaceMotion {
+  VelocityStencilOptions velocity;
+  bool analytic = false;  ///< velocities by the body model's derivative instead of differences of vertices
+  /// Of normals and velocities. kCamera: where the track has the path of a camera that moves, the velocities are the
+  /// body's own, in each frame's axes of the camera; a camera that moves without a path adds its own motion. kWorld has
+  /// one pose for the clip; kBody knows nothing of the camera.
+  SurfaceFrame frame = SurfaceFrame::kCamera;
+  CameraPose camera_pose;  ///< for SurfaceFrame::kWorld
+  /// False with the reason when a field is out of range.
+  [[nodiscard]] bool IsValid(std::string* why) const { return velocity.IsValid(why); }
+};
+
+/// Names of the velocities, the four that follow.
+const std::vector<std::string>& VelocityNames();
+/// "backward", "central", "savgol" or "analytic".
+std::string VelocityName(const SurfaceMotion& motion);
+/// Sets scheme and `analytic`. Throws std::invalid_argument for other names, listing these.
+void SetVelocity(const std::string& name, SurfaceMotion* motion);
+
+/// "camera", "world", "body" (ToString, geometry/uv_maps/surface_velocity.h).
+const std::vector<std::string>& SurfaceFrameNames();
+/// Throws std::invalid_argument for other names, listing these.
+SurfaceFrame SurfaceFrameNamed(const std::string& name);
+
+/// A level camera: the world's y is up and its z points at the camera.
+CameraPose LevelCamera();
+
+/// Options of a frame's descriptor: what it holds.
+struct DescriptorOptions : SurfaceMotion {
+  UvTexelOptions texels;
+  int past = 10;        ///< velocity maps a frame, its own included; 0 to 1000
+  bool normals = true;  ///< the three channels of N
+  NormalWeighting weighting = NormalWeighting::kArea;
+  bool seen_only = false;  ///< texels that the frame's camera does not see are zero
+  int num_threads = 1;     ///< 1 to 1024; the same values for any number
+  /// False with the reason when a field is out of range.
+  [[nodiscard]] bool IsValid(std::string* why) const;
+  /// 3·normals + 3·past.
+  [[nodiscard]] int channels() const { return 3 * (normals ? 1 : 0) + 3 * past; }
+};
+
+}  // namespace bodyloom

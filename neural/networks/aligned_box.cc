@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/neural/networks/aligned_box.h"
+
+#include <algorithm>
+
+namespace bodyloom {
+namespace {
+
+/// [begin, end) widened to whole cells, of which there are `cells`, and to at least `least` of them, by turns on both
+/// sides.
+void Align(int cells, int multiple, int least, int* begin, int* end) {
+  int from = *begin / multiple, to = (*end + multiple - 1) / multiple;
+  least = std::min(least, cells);
+  while (to - from < least) {
+    if (from > 0) --from;
+    if (to - from < least && to < cells) ++to;
+  }
+  *begin = from * multiple;
+  *end = to * multiple;
+}
+
+}  // namespace
+
+int LeastBoxSide(int multiple) { return std::max(2 * multiple, 32); }
+
+PixelBox AlignedBox(const PixelBox& box, const PixelBox& window, int multiple, int least_width, int least_height) {
+  PixelBox aligned = box.ClippedTo(window);
+  if (aligned.empty()) {
+    const int x = window.x_end / 2, y = window.y_end / 2;
+    aligned = {x, y, x + 1, y + 1};
+  }
+  const auto cells = [&](int pixels) { return (pixels + multiple - 1) / multiple; };
+  Align(window.x_end / multiple, multiple, cells(least_width), &aligned.x_begin, &aligned.x_end);
+  Align(window.y_end / multiple, multiple, cells(least_height), &aligned.y_begin, &aligned.y_end);
+  return aligned;
+}
+
+std::vector<PixelBox> AlignedBoxes(std::vector<PixelBox> boxes, const PixelBox& window, int multiple) {
+  int width = LeastBoxSide(multiple), height = width;
+  for (const PixelBox& box : boxes) {
+    const PixelBox aligned = AlignedBox(box, window, multiple, width, height);
+    width = std::max(width, aligned.width());
+    height = std::max(height, aligned.height());
+  }
+  for (PixelBox& box : boxes) box = AlignedBox(box, window, multiple, width, height);
+  return boxes;
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A picture of a person that a picture U-Net (render/image/parser_weights.h) learns from, a byte a number.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "bodyloom/neural/training/training_run.h"
+#include "bodyloom/render/image/person_layers.h"
+
+namespace bodyloom {
+
+struct PackedPicture {
+  int width = 0, height = 0;    ///< as PersonLayers
+  double pixels_per_metre = 0;  ///< how large the person is
+  std::vector<uint8_t> planes;  ///< PersonPlane::kCount × height × width, PackPlane()
+  std::vector<uint8_t> truth;   ///< what is to be learned, planes × height × width
+
+  [[nodiscard]] size_t pixels() const { return static_cast<size_t>(width) * height; }
+};
+
+/// Normals are kept in steps of 1/127, places of 1/64 m (up to ±2 m), all else of 1/255.
+struct PlanePacking {
+  float offset = 0, scale = 255;
+};
+
+constexpr PlanePacking PackingOf(int plane) {
+  if (plane >= PersonPlane::kNormal && plane < PersonPlane::kPlace) return {128, 127};
+  if (plane >= PersonPlane::kPlace && plane < PersonPlane::kCount) return {128, 64};
+  return {};
+}
+
+inline uint8_t PackPlane(int plane, float value) {
+  const PlanePacking packing = PackingOf(plane);
+  return static_cast<uint8_t>(std::clamp(std::round(packing.offset + packing.scale * value), 0.0F, 255.0F));
+}
+
+inline std::vector<uint8_t> PackPlanes(const PersonLayers& layers) {
+  std::vector<uint8_t> packed;
+  packed.reserve(PersonPlane::kCount * layers.pixels());
+  for (int p = 0; p < PersonPlane::kCount; ++p) {
+    for (const float value : layers.Plane(p)) packed.push_back(PackPlane(p, value));
+  }
+  return packed;
+}
+
+// Options that every training of a picture U-Net (render/image/parser_weights.h) has.
+
+struct PictureTraining : TrainingRun {
+  PictureTraining() { steps = 8000; }
+  int crop = 192;  ///< pixels a side, a multiple of kPictureUnetMultiple
+  int batch = 8;
+  double learning_rate = 1e-3;
+  int warmup_steps = 100;
+  double weight_decay = 1e-4;
+  double average_share = 0.1;  ///< of the steps: the mean age of the averaged weights
+  double light_strength = 1;   ///< of the change of colours that each crop gets: 0 none
+};
+
+/// Of what all have in common. `why` may be nullptr.
+bool IsValidPictureTraining(const PictureTraining& training, std::string* why);
+
+}  // namespace bodyloom

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/neural/parser/picture_trainer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "bodyloom/neural/training/optimizers.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr double kClipNorm = 1;
+
+}  // namespace
+
+PictureTrainer::PictureTrainer(const std::string& name, const PictureTraining& training,
+                               const std::vector<PackedPicture>& train, CropRequest request,
+                               std::shared_ptr<torch::nn::Module> module, std::shared_ptr<torch::nn::Module> average)
+    : training_(training),
+      train_(train),
+      request_(std::move(request)),
+      module_(std::move(module)),
+      average_(std::move(average)),
+      checkpoint_(name) {
+  request_.side = training.crop, request_.batch = training.batch, request_.seed = training.seed;
+  request_.light_strength = training.light_strength;
+  optimizer_ = std::make_unique<torch::optim::AdamW>(
+      module_->parameters(), torch::optim::AdamWOptions(training.learning_rate).weight_decay(training.weight_decay));
+  checkpoint_.config_json = training.config_json;
+  checkpoint_.Add("module", module_.get());
+  checkpoint_.Add("average", average_.get());
+  checkpoint_.Add("optimizer", optimizer_.get());
+}
+
+void PictureTrainer::Begin(int first_step) {
+  batches_ = std::make_unique<Prefetcher<CropBatch>>(
+      std::max(0, training_.steps - first_step),
+      [this, first_step](int64_t i) { return MakeCrops(train_, request_, first_step + static_cast<int>(i)); });
+}
+
+bool PictureTrainer::Step(int step) {
+  const Losses losses = LossesOf(batches_->Take());
+  const bool reports = (step + 1) % training_.report_every == 0 || step + 1 == training_.steps;
+  // Reading a loss waits for the card: only where somebody reads it.
+  if (reports) {
+    loss_ = losses.total.item<double>();
+    parts_.clear();
+    for (const torch::Tensor& part : losses.parts) parts_.push_back(part.item<double>());
+    if (!std::isfinite(loss_)) return false;
+  }
+  SetRate(optimizer_.get(), LearningRate(step));
+  optimizer_->zero_grad();
+  losses.total.backward();
+  torch::nn::utils::clip_grad_norm_(module_->parameters(), kClipNorm);
+  optimizer_->step();
+  AverageWeights(*module_, step + 1, training_.average_share, average_.get());
+  return true;
+}
+
+TrainingOutcome PictureTrainer::Train(const std::vector<std::string>& columns) {
+  return RunTraining(training_, training_.steps, columns, &checkpoint_, this);
+}
+
+double PictureTrainer::LearningRate(int step) const {
+  return CosineWithWarmup(training_.learning_rate, step, training_.steps, training_.warmup_steps);
+}
+
+std::vector<double> PictureTrainer::Row(int done) const {
+  std::vector<double> row = {LearningRate(done - 1), loss_};
+  row.insert(row.end(), parts_.begin(), parts_.end());
+  return row;
+}
+
+}  // namespace bodyloom

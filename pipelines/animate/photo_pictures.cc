@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/animate/photo_pictures.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <numeric>
+#include <stdexcept>
+
+#include "bodyloom/data_tools/video/image_file.h"
+#include "bodyloom/data_tools/video/video_reader.h"
+#include "bodyloom/geometry/base/check.h"
+
+namespace bodyloom {
+namespace {
+
+/// A still or a folder's picture; false for what must be a video.
+bool ReadStill(const PictureRequest& request, PhotoFile* picture) {
+  if (std::filesystem::is_directory(request.path)) {
+    const std::vector<std::string> files = ImageFilesOf(request.path);
+    if (request.frame >= static_cast<int>(files.size())) {
+      throw std::runtime_error(
+          Concatenate(request.path, ": ", files.size(), " pictures, requested number ", request.frame));
+    }
+    *picture = ReadPhoto(files[request.frame]);
+    return true;
+  }
+  if (IsImageName(request.path)) {
+    *picture = ReadPhoto(request.path);
+    return true;
+  }
+  try {
+    *picture = ReadPhoto(request.path);
+    return true;
+  } catch (const std::runtime_error&) {
+    return false;  // a video, or nothing at all, which its reader will say
+  }
+}
+
+}  // namespace
+
+std::vector<PhotoFile> ReadPictures(std::span<const PictureRequest> requests) {
+  std::vector<PhotoFile> pictures(requests.size());
+  std::map<std::string, std::vector<size_t>> videos;
+  for (size_t i = 0; i < requests.size(); ++i) {
+    if (videos.count(requests[i].path) > 0 || !ReadStill(requests[i], &pictures[i])) {
+      videos[requests[i].path].push_back(i);
+    }
+  }
+  for (auto& [path, wanted] : videos) {
+    std::stable_sort(wanted.begin(), wanted.end(),
+                     [&](size_t a, size_t b) { return requests[a].frame < requests[b].frame; });
+    VideoReader video(path);
+    Image picture;
+    for (const size_t i : wanted) {
+      const int frame = requests[i].frame;
+      video.Skip(std::max(0, frame - video.next_frame()));
+      if (video.next_frame() == frame && !video.Read(&picture)) {
+        throw std::runtime_error(Concatenate(path, ": ", video.next_frame(), " frames, requested frame ", frame));
+      }
+      if (video.next_frame() < frame) {
+        throw std::runtime_error(Concatenate(path, ": ", video.next_frame(), " frames, requested frame ", frame));
+      }
+      pictures[i].image = picture;
+    }
+  }
+  return pictures;
+}
+
+}  // namespace bodyloom

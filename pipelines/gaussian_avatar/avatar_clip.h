@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What a person of Gaussians is learned from: a single-person dataset, or a video with a track and the person's mask.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bodyloom/data_tools/datasets/single_person_dataset.h"
+#include "bodyloom/geometry/base/callbacks.h"
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/scene/observations.h"
+#include "bodyloom/geometry/scene/track.h"
+#include "bodyloom/render/gaussian_avatar/learning/training_view.h"
+#include "bodyloom/render/gaussian_avatar/posed_avatar.h"
+
+namespace bodyloom {
+
+struct AvatarClipRequest {
+  std::string data;   ///< a single-person dataset, a video or a folder of images
+  std::string track;  ///< empty: the single-person dataset's own
+  std::string mask;   ///< for a video: the person's mask or DensePose's parts (data_tools/observations/part_labels.h)
+  std::string body;   ///< the track's body; empty: the built-in body
+  int threads = 1;
+};
+
+class AvatarClip {
+ public:
+  /// Throws std::runtime_error naming files that cannot be used or do not fit each other, RequestError where a video
+  /// comes without track or mask.
+  explicit AvatarClip(const AvatarClipRequest& request);
+
+  [[nodiscard]] const BodyModel& body() const { return *body_; }
+  [[nodiscard]] const Track& track() const { return track_; }
+  [[nodiscard]] const PosedAvatar& posed() const { return *posed_; }
+
+  /// Where the person is in a frame with a result, near the tracked body. Throws std::runtime_error when it cannot be
+  /// read.
+  [[nodiscard]] LabelImage MaskAt(int t) const;
+
+  /// From now on views have the bones of a garment, of every frame of the track: those of the first run, and those of
+  /// all others as TrainingView::other_cloth. At least one run.
+  void Wear(std::vector<GarmentBones> runs);
+
+  /// The views of these frames (rising), windows `margin` pixels around the person and, where `with_body`, around the
+  /// tracked body. A frame without a result or without the person has an empty window. Throws std::runtime_error when
+  /// a picture cannot be read; Cancelled. The stage is "reading".
+  [[nodiscard]] std::vector<TrainingView> ReadViews(const std::vector<int>& frames, int margin, bool with_body,
+                                                    const PipelineCallbacks& callbacks) const;
+
+ private:
+  void OpenVideo();
+  void CheckSize(const std::string& file, int num_frames, int width, int height) const;
+  [[nodiscard]] TrainingView CutView(int t, const Image& picture, const PersonAt& person_at, int margin,
+                                     bool with_body) const;
+
+  AvatarClipRequest request_;
+  std::shared_ptr<const BodyModel> body_;
+  std::optional<SinglePersonDataset> set_;
+  std::optional<PartLabelSequence> mask_;
+  Track track_;
+  std::unique_ptr<PosedAvatar> posed_;
+  std::vector<GarmentBones> other_runs_;
+};
+
+}  // namespace bodyloom

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/pipelines/neural/score/score_people.h"
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <stdexcept>
+#include <utility>
+
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/neural/guided/choose_photos.h"
+#include "bodyloom/pipelines/files.h"
+#include "bodyloom/pipelines/neural/animation.h"
+#include "bodyloom/pipelines/neural/guided/guided_scores.h"
+#include "bodyloom/pipelines/neural/score/scored_renderer.h"
+#include "bodyloom/pipelines/neural/weights_folder.h"
+#include "bodyloom/pipelines/report_json.h"
+#include "bodyloom/render/texture/planar_image.h"
+#include "bodyloom/render/view/contact_sheet.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr int kPairColumns = 4, kSmallestPairCell = 128;
+
+/// Numbers of a person's photos, and of the pictures to compare with.
+struct PersonPhotos {
+  std::vector<int> photos, others;
+};
+
+PersonPhotos PhotosOf(const ScorePeopleRequest& request, const PhotoSource& truth, int person) {
+  const int most = *std::max_element(request.photos.begin(), request.photos.end());
+  PersonPhotos result;
+  result.photos = ChoosePhotos(truth, person, most);
+  for (int f = 0; f < truth.num_frames[person]; ++f) {
+    if (std::find(result.photos.begin(), result.photos.end(), f) == result.photos.end()) result.others.push_back(f);
+  }
+  if (result.others.empty()) {
+    throw std::runtime_error(request.data + ": a person has " + std::to_string(truth.num_frames[person]) +
+                             " pictures, none is left to compare with");
+  }
+  return result;
+}
+
+nlohmann::ordered_json Report(const ScorePeopleSummary& summary) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const ScoredPhotos& s : summary.scored) {
+    nlohmann::ordered_json row = {
+        {"photos", s.photos}, {"texels_seen", s.texels_seen}, {"people_missing", s.missing}, {"ssim", s.ssim}};
+    row.update(ToJson(s.scores));
+    rows.push_back(row);
+  }
+  return {{"given", summary.given}, {"scores", rows}};
+}
+
+ScorePeopleSummary Score(const ScorePeopleRequest& request, ScoredRenderer* renderer,
+                         const PipelineCallbacks& callbacks) {
+  const PeopleData& people = renderer->people();
+  const PhotoSource& source = people.source();
+  std::unique_ptr<PeopleData> truth;
+  if (!request.given.IsTrue()) {
+    truth = std::make_unique<PeopleData>(
+        PeopleDataRequest{request.data, request.body, source.size, source.texture_size, true, {}});
+  }
+  const int count = static_cast<int>(source.num_frames.size());
+  std::vector<std::unique_ptr<GuidedScorer>> scorers;
+  ScorePeopleSummary summary;
+  summary.given = ToText(request.given);
+  std::vector<ScoredPhotos>& scored = summary.scored;
+  const GuidedScoreWeights weights = GuidedScoreWeightsOf(ReadWeightsFolder(request.weights));
+  for (const int photos : request.photos) {
+    scorers.push_back(std::make_unique<GuidedScorer>(true, weights));
+    scored.emplace_back().photos = photos;
+  }
+  std::vector<Image> sheet;
+  for (int person = 0; person < count; ++person) {
+    const PersonPhotos chosen = PhotosOf(request, truth ? truth->source() : source, person);
+    std::vector<PhotoFrame> photos;
+    for (const int f : chosen.photos) photos.push_back(people.PhotoOf(person, f));
+    for (size_t n = 0; n < scored.size(); ++n) {
+      const size_t used = std::min(photos.size(), static_cast<size_t>(scored[n].photos));
+      scored[n].texels_seen +=
+          renderer->SetPhotos(person, std::span(chosen.photos).first(used), std::span(photos).first(used)) / count;
+      scored[n].missing += renderer->HasPerson() ? 0 : 1;
+      for (const int k : EvenlySpreadFrames(static_cast<int>(chosen.others.size()), request.frames)) {
+        PhotoFrame other;
+        source.fill(person, chosen.others[k], &other);
+        const GuidedPicture picture = renderer->Render(chosen.others[k], other);
+        scorers[n]->Add(picture, other);
+        scored[n].ssim += WindowSsim(PictureOf(other.image, other.size, other.size),
+                                     PictureOf(picture.image, picture.size, picture.size));
+        if (request.sheet.empty() || n != 0 || k != 0) continue;
+        const int size = other.size;
+        for (const std::vector<float>& shown :
+             {photos[0].image, renderer->ShownOf(other), picture.image, other.image}) {
+          sheet.push_back(PictureOf(shown, size, size));
+        }
+      }
+      scorers[n]->NextPerson();
+      callbacks.Update("people", (person + (n + 1.0) / static_cast<double>(scored.size())) / count);
+    }
+  }
+  for (size_t n = 0; n < scored.size(); ++n) {
+    scored[n].scores = scorers[n]->Scores();
+    scored[n].ssim /= std::max(1, scored[n].scores.frames);
+    if (!renderer->DrawsLabels()) scored[n].scores.label_iou = std::numeric_limits<double>::quiet_NaN();
+  }
+  WriteSheet(request.sheet, sheet, kPairColumns, std::max(kSmallestPairCell, source.size));
+  WriteReport(request.json, Report(summary));
+  summary.written = FilesAmong({request.sheet, request.json});
+  return summary;
+}
+
+void CheckRequest(const ScorePeopleRequest& request) {
+  BODYLOOM_CHECK(!request.photos.empty(), "score: no number of photos given");
+  RequireReadable(request.data, "multi-person dataset");
+  RequireOutputs({}, {request.sheet, request.json});
+}
+
+std::unique_ptr<ScoredRenderer> RendererOf(const ScorePeopleRequest& request) {
+  switch (request.renderer) {
+    case PeopleRenderer::kPhoto:
+      return MakeScoredPhoto(request);
+    case PeopleRenderer::kGuided:
+      return MakeScoredGuided(request);
+    case PeopleRenderer::kPerson:
+      return MakeScoredPerson(request);
+    case PeopleRenderer::kWarp:
+      return MakeScoredWarp(request);
+  }
+  throw std::invalid_argument("score: no such renderer");
+}
+
+}  // namespace
+
+ScorePeopleSummary ScorePeople(const ScorePeopleRequest& request, const PipelineCallbacks& callbacks) {
+  CheckRequest(request);
+  return Score(request, RendererOf(request).get(), callbacks);
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// The renderers that are a surface with colours: nothing was trained.
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "bodyloom/geometry/base/callbacks.h"
+#include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/pipelines/neural/score/person_of_frames.h"
+#include "bodyloom/pipelines/neural/score/scored_renderer.h"
+#include "bodyloom/render/photo_avatar/draw_person.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr int kMapSize = 256;  ///< texels of the maps of what photos show, as those of the profiles
+
+PeopleDataRequest PeopleOf(const ScorePeopleRequest& request) {
+  if (!request.run.empty()) throw RequestError("nothing was trained: not with a run");
+  return {request.data, request.body, request.size, kMapSize, true, request.given};
+}
+
+class ScoredWarp : public ScoredRenderer {
+ public:
+  explicit ScoredWarp(const ScorePeopleRequest& request) : people_(PeopleOf(request)) {}
+
+  [[nodiscard]] const PeopleData& people() const override { return people_; }
+  double SetPhotos(int /*person*/, std::span<const int> /*frames*/, std::span<const PhotoFrame> photos) override {
+    shown_ = MapsOf(photos, people_.source());
+    return ShareSeen(shown_, photos.size());
+  }
+  GuidedPicture Render(int /*frame*/, const PhotoFrame& pose) override {
+    GuidedPicture picture = {pose.size, ShownOf(pose), {}, {}};
+    for (const uint8_t part : pose.parts) picture.alpha.push_back(part != 0 ? 1 : 0);
+    picture.labels = SomebodyOf(picture.alpha);
+    return picture;
+  }
+  [[nodiscard]] std::vector<float> ShownOf(const PhotoFrame& pose) const override { return LookUp(shown_, pose).image; }
+
+ private:
+  PeopleData people_;
+  CoherentMaps shown_;
+};
+
+class ScoredPerson : public ScoredRenderer {
+ public:
+  explicit ScoredPerson(const ScorePeopleRequest& request)
+      : people_(PeopleOf(request)), texture_size_(request.texture_size), threads_(ThreadsFor(request.threads)) {
+    if (request.given.iuv) throw RequestError("--score-iuv: a body with a texture takes bodies, not IUV images");
+  }
+
+  [[nodiscard]] const PeopleData& people() const override { return people_; }
+  double SetPhotos(int person, std::span<const int> frames, std::span<const PhotoFrame> photos) override {
+    number_ = person;
+    shown_ = MapsOf(photos, people_.source());
+    FitClothesOptions clothes;
+    clothes.num_threads = threads_;
+    painter_.reset();
+    person_ = PersonOfFrames(people_, person, frames, photos, texture_size_, clothes);
+    if (person_) painter_.emplace(*person_, threads_);
+    return ShareSeen(shown_, photos.size());
+  }
+  [[nodiscard]] bool HasPerson() const override { return person_.has_value(); }
+  GuidedPicture Render(int frame, const PhotoFrame& pose) override {
+    Image picture(pose.size, pose.size);
+    std::vector<uint8_t> coverage(static_cast<size_t>(pose.size) * pose.size, 0);
+    if (person_) {
+      if (const std::optional<PersonPose> body = PoseOfFrame(*person_, people_, number_, frame)) {
+        painter_->Draw(body->vertices_in_camera, body->camera, &picture, &coverage);
+      }
+    }
+    return GuidedPictureOf(picture, coverage);
+  }
+  [[nodiscard]] std::vector<float> ShownOf(const PhotoFrame& pose) const override { return LookUp(shown_, pose).image; }
+
+ private:
+  static GuidedPicture GuidedPictureOf(const Image& picture, std::span<const uint8_t> coverage) {
+    const size_t pixels = coverage.size();
+    GuidedPicture result = {picture.width, std::vector<float>(3 * pixels), {}, {}};
+    for (size_t i = 0; i < pixels; ++i) {
+      for (size_t c = 0; c < 3; ++c) result.image[c * pixels + i] = picture.bgr[3 * i + 2 - c] / 255.0F;
+      result.alpha.push_back(coverage[i] / 255.0F);
+    }
+    result.labels = SomebodyOf(result.alpha);
+    return result;
+  }
+
+  PeopleData people_;
+  int texture_size_, threads_, number_ = 0;
+  CoherentMaps shown_;
+  std::optional<PhotoPerson> person_;
+  std::optional<PersonPainter> painter_;
+};
+
+}  // namespace
+
+std::unique_ptr<ScoredRenderer> MakeScoredWarp(const ScorePeopleRequest& request) {
+  return std::make_unique<ScoredWarp>(request);
+}
+std::unique_ptr<ScoredRenderer> MakeScoredPerson(const ScorePeopleRequest& request) {
+  return std::make_unique<ScoredPerson>(request);
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "python/bindings.h"
+
+#include <set>
+
+#include "bodyloom/data_tools/observations/keypoint_conventions.h"
+#include "bodyloom/geometry/base/check.h"
+
+namespace bodyloom::python {
+
+std::pair<std::string, std::vector<std::string>> ConventionFrom(const LandmarkNames& names) {
+  if (const auto* list = std::get_if<std::vector<std::string>>(&names)) {
+    BODYLOOM_CHECK(!list->empty(), "names: expected at least one landmark, found none");
+    std::set<std::string> seen;
+    for (const std::string& name : *list) {
+      BODYLOOM_CHECK(seen.insert(name).second, "names: \"", name, "\" stands there twice");
+    }
+    return {"custom", *list};
+  }
+  const std::string& wanted = std::get<std::string>(names);
+  std::string all;
+  for (const KeypointConvention* convention :
+       {&Coco17(), &Body25(), &Body25B(), &OpenPoseCoco18(), &CocoWholeBody23(), &Halpe26(), &MediaPipe33()}) {
+    if (convention->name == wanted) return {convention->name, convention->names};
+    all += (all.empty() ? "" : ", ") + convention->name;
+  }
+  BODYLOOM_CHECK(false, "names: \"", wanted, "\", expected a list of landmarks or one of ", all);
+  return {};
+}
+
+}  // namespace bodyloom::python

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/render/garment/clip_clothes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/geometry/base/percentile.h"
+#include "bodyloom/geometry/scene/track_edits.h"
+#include "bodyloom/render/garment/fit_clothes.h"
+#include "bodyloom/render/garment/person_cloth.h"
+#include "bodyloom/render/garment/person_silhouette.h"
+#include "bodyloom/render/view/overlay.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr int kMostPieces = 5, kPieceFrames = 40;
+constexpr int kFramesForPiece = 20;  ///< a clip has a piece for so many frames
+constexpr int kMasksAPiece = 5, kAskedAPiece = 2;
+constexpr double kSearchSpacing_m = 0.04;  ///< of the garment's vertices, which is later cut finer
+constexpr double kLeastShare = 1.0 / 3;    ///< of the frames asked for themselves: as coats are found in half of theirs
+constexpr int kHalvings = 2;
+constexpr double kLengthStep_m = 0.04, kFullnessStep = 0.08, kWaistStep_m = 0.04;
+constexpr double kShortest_m = 0.25, kFullest = 0.9;
+constexpr int kJointsOfSmpl = 24;
+
+/// Some frames on end, at a few of which the masks are looked at.
+struct Piece {
+  Track track;
+  std::vector<int> looked_at;  ///< of the piece's frames, rising
+  std::vector<PersonSilhouette> silhouettes;
+};
+
+/// Waist (from the waist of the beginning), length, fullness, in steps, so that what was tried is known again.
+using Measures = std::array<int, 3>;
+
+class ClipClothesFit {
+ public:
+  ClipClothesFit(const BodyModel& body, const Track& track, int num_threads, const PipelineCallbacks& callbacks)
+      : body_(body), track_(track), num_threads_(num_threads), callbacks_(callbacks) {}
+
+  ClipClothes Run(const std::vector<int>& frames, const MaskOfFrame& mask_of) {
+    std::vector<int> usable;
+    std::copy_if(frames.begin(), frames.end(), std::back_inserter(usable), [&](int t) { return track_.HasResult(t); });
+    if (usable.empty() || body_.num_joints() < kJointsOfSmpl) return {};
+    std::vector<FittedClothes> asked;
+    const int count = std::clamp(static_cast<int>(usable.size()) / kFramesForPiece, 1, kMostPieces);
+    for (int k = 0; k < count && MayBeEnough(asked, count); ++k) {
+      const size_t end = (k + 1) * usable.size() / count;
+      AddPiece(usable, static_cast<int>(end) - 1, mask_of, &asked);
+    }
+    ClipClothes clothes;
+    clothes.frames = static_cast<int>(asked.size());
+    if (!Begin(asked, &clothes)) return clothes;
+    Search();
+    if (std::isfinite(Unlike(best_))) clothes.unlike_loose = Unlike(best_);
+    if (clothes.unlike_close - clothes.unlike_loose >= options_.least_gain) {
+      clothes.garment = Cut(best_);
+      clothes.offsets_m = offsets_;
+    }
+    return clothes;
+  }
+
+ private:
+  static int FoundIn(const std::vector<FittedClothes>& asked) {
+    return static_cast<int>(std::count_if(asked.begin(), asked.end(),
+                                          [](const FittedClothes& fitted) { return fitted.garment.length_m > 0; }));
+  }
+
+  /// Whether the frames of so many pieces can still make a garment of it.
+  static bool MayBeEnough(const std::vector<FittedClothes>& asked, int pieces) {
+    const int all = pieces * kAskedAPiece, without = static_cast<int>(asked.size()) - FoundIn(asked);
+    return all - without >= kLeastShare * all;
+  }
+
+  /// The piece that ends with usable[last], and what its last masks say by themselves.
+  void AddPiece(const std::vector<int>& usable, int last, const MaskOfFrame& mask_of,
+                std::vector<FittedClothes>* asked) {
+    const int end = usable[last], begin = std::max(0, end - kPieceFrames + 1);
+    const auto first = std::lower_bound(usable.begin(), usable.begin() + last, begin);
+    const auto count = static_cast<int>(usable.begin() + last + 1 - first);
+    std::vector<int> run(end - begin + 1);
+    std::iota(run.begin(), run.end(), begin);
+    Piece piece;
+    piece.track = FramesInOrder(track_, run);
+    for (size_t i = 0; i < run.size(); ++i) piece.track.motion.timestamps[i] = track_.motion.timestamps[run[i]];
+    const int masks = std::min(count, kMasksAPiece);
+    for (int i = 0; i < masks; ++i) {
+      const int t = first[static_cast<ptrdiff_t>(i + 1) * count / masks - 1];
+      callbacks_.Update("looking for a garment", 0);
+      const LabelImage mask = mask_of(t);
+      PersonSilhouette silhouette(track_.CameraAt(t), mask, options_.compared_height_px);
+      if (silhouette.area() == 0) continue;
+      piece.looked_at.push_back(t - begin);
+      piece.silhouettes.push_back(std::move(silhouette));
+      if (i + kAskedAPiece < masks) continue;
+      FitClothesOptions options = options_;
+      options.num_threads = num_threads_;
+      asked->push_back(FitClothes(body_, FramesInOrder(track_, std::vector<int>{t}), mask, options));
+    }
+    if (!piece.looked_at.empty()) pieces_.push_back(std::move(piece));
+  }
+
+  /// Whether there is a garment to search for.
+  bool Begin(const std::vector<FittedClothes>& asked, ClipClothes* clothes) {
+    std::vector<const FittedClothes*> found;
+    std::vector<double> waists;
+    double hem = 0, fullness = 0;
+    for (const FittedClothes& fitted : asked) {
+      clothes->unlike_close += fitted.unlike_close / static_cast<double>(asked.size());
+      if (fitted.garment.length_m <= 0) continue;
+      found.push_back(&fitted);
+      waists.push_back(fitted.garment.waist_y_m);
+      hem += fitted.garment.waist_y_m - fitted.garment.length_m;
+      fullness += fitted.garment.fullness;
+    }
+    clothes->found_in = FoundIn(asked);
+    clothes->unlike_loose = clothes->unlike_close;
+    if (found.empty() || clothes->found_in < kLeastShare * clothes->frames) return false;
+    // A silhouette hardly shows where cloth begins that lies on the body. Too high does little harm, there it goes with
+    // the body; too low lets swing what is held.
+    constexpr double kWaistPercentile = 75;
+    const auto count = static_cast<double>(found.size());
+    begun_ = found.front()->garment;
+    begun_.waist_y_m = Percentile(waists, kWaistPercentile);
+    begun_.length_m = begun_.waist_y_m - hem / count;
+    begun_.fullness = fullness / count;
+    offsets_.resize(body_.num_vertices());
+    for (size_t v = 0; v < offsets_.size(); ++v) {
+      std::vector<double> metres;
+      metres.reserve(found.size());
+      for (const FittedClothes* fitted : found) metres.push_back(fitted->offsets.metres[v]);
+      offsets_[v] = Percentile(metres, 50);
+    }
+    clothed_.emplace(BakeShape(body_, track_.motion.betas, offsets_));
+    for (Piece& piece : pieces_) piece.track = OfBakedBody(std::move(piece.track));
+    return true;
+  }
+
+  /// The hem stays where the waist is moved.
+  [[nodiscard]] LooseGarmentOptions Cut(const Measures& steps) const {
+    constexpr double kFinest = 1 << (kHalvings - 1);
+    LooseGarmentOptions cut = begun_;
+    cut.waist_y_m += steps[0] * kWaistStep_m / kFinest;
+    cut.length_m += steps[0] * kWaistStep_m / kFinest + steps[1] * kLengthStep_m / kFinest;
+    cut.fullness += steps[2] * kFullnessStep / kFinest;
+    return cut;
+  }
+
+  void Search() {
+    for (int step = 1 << (kHalvings - 1); step >= 1; step /= 2) {
+      for (const int measure : {1, 0, 2}) {
+        for (const int sign : {1, -1}) {
+          while (Improves(measure, sign * step)) {
+          }
+        }
+      }
+    }
+  }
+
+  /// Whether it is better there, and if so goes there.
+  bool Improves(int measure, int by) {
+    Measures there = best_;
+    there[measure] += by;
+    const LooseGarmentOptions cut = Cut(there);
+    if (cut.length_m < kShortest_m || cut.fullness < 0 || cut.fullness > kFullest) return false;
+    if (!(Unlike(there) < Unlike(best_))) return false;
+    best_ = there;
+    return true;
+  }
+
+  double Unlike(const Measures& steps) {
+    const auto known = unlike_.find(steps);
+    if (known != unlike_.end()) return known->second;
+    callbacks_.Update("fitting the garment", 0);
+    std::vector<double> sums(pieces_.size(), 0);
+    LooseGarmentOptions cut = Cut(steps);
+    cut.spacing_m = std::max(cut.spacing_m, kSearchSpacing_m);
+    LooseGarment garment;
+    try {
+      garment = CutGarment(*clothed_, &cut);
+    } catch (const std::invalid_argument&) {  // no body at that height
+      return unlike_[steps] = std::numeric_limits<double>::infinity();
+    }
+    ParallelFor(static_cast<int>(pieces_.size()), num_threads_,
+                [&](int p) { sums[p] = UnlikeIn(pieces_[p], garment); });
+    size_t looked_at = 0;
+    for (const Piece& piece : pieces_) looked_at += piece.looked_at.size();
+    return unlike_[steps] = std::accumulate(sums.begin(), sums.end(), 0.0) / static_cast<double>(looked_at);
+  }
+
+  /// Sum of E over the frames looked at.
+  [[nodiscard]] double UnlikeIn(const Piece& piece, const LooseGarment& garment) const {
+    PersonCloth cloth(*clothed_, garment, piece.track);
+    VisibilityBuffer body;
+    double sum = 0;
+    for (size_t i = 0; i < piece.looked_at.size(); ++i) {
+      const PersonSilhouette& silhouette = piece.silhouettes[i];
+      const int t = piece.looked_at[i];
+      body.Render(TrackVertices(*clothed_, piece.track, t), clothed_->data().faces, silhouette.camera());
+      const VisibilityBuffer seen = SeeGarment(garment, cloth.At(t), silhouette.camera());
+      sum += static_cast<double>(UnlikePixels(silhouette, body, seen)) / silhouette.area();
+    }
+    return sum;
+  }
+
+  const BodyModel& body_;
+  const Track& track_;
+  const int num_threads_;
+  const PipelineCallbacks& callbacks_;
+  const FitClothesOptions options_;
+  std::vector<Piece> pieces_;
+  LooseGarmentOptions begun_;
+  std::vector<double> offsets_;
+  std::optional<BodyModel> clothed_;
+  Measures best_{};
+  std::map<Measures, double> unlike_;
+};
+
+}  // namespace
+
+ClipClothes FitClipClothes(const BodyModel& body, const Track& track, const std::vector<int>& frames,
+                           const MaskOfFrame& mask_of, int num_threads, const PipelineCallbacks& callbacks) {
+  return ClipClothesFit(body, track, num_threads, callbacks).Run(frames, mask_of);
+}
+
+}  // namespace bodyloom

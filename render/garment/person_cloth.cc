@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/render/garment/person_cloth.h"
+
+#include <utility>
+
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/cloth/cloth_run.h"
+#include "bodyloom/render/garment/fit_clothes.h"
+#include "bodyloom/render/view/overlay.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr double kRestDamping = 4;  ///< 1/s
+
+/// A frame without a pose gets that of the one before it, the first ones that of the first which has one.
+Motion WithoutGaps(Motion motion) {
+  int first = 0;
+  while (first < motion.num_frames() && !motion.HasPose(first)) ++first;
+  BODYLOOM_CHECK(first < motion.num_frames(), "a garment's motion: no frame has a pose");
+  for (int t = 0; t < motion.num_frames(); ++t) {
+    if (motion.HasPose(t)) continue;
+    const int from = t < first ? first : t - 1;
+    motion.poses.row(t) = motion.poses.row(from).eval();
+    motion.trans.row(t) = motion.trans.row(from).eval();
+  }
+  return motion;
+}
+
+/// At rest sooner than a simulation that begins a dataset: a person is shown, and someone waits. By itself cloth swings
+/// for seconds, and what it does then tells nothing of the motion.
+ClothRunOptions OptionsFor(const Track& track, const PersonClothOptions& shown) {
+  ClothRunOptions options;
+  options.up = SwungUp(track, shown.swing_rad);
+  options.tick_s = 1.0 / 30;
+  options.move_in_s = 0.8;
+  options.settle_s = 0.8;
+  options.rest_damping = kRestDamping;
+  options.cloth = OfRun(options.cloth, shown.run);
+  return options;
+}
+
+}  // namespace
+
+LooseGarment CutGarment(const BodyModel& clothed, LooseGarmentOptions* cut) {
+  constexpr uint64_t kSeed = 1;  // of how it is crumpled
+  LooseGarment garment = ClothWearer(clothed, Eigen::VectorXd(), {}).Cut(*cut, kSeed);
+  cut->columns = garment.columns;
+  return garment;
+}
+
+PersonCloth::PersonCloth(const BodyModel& clothed, const LooseGarment& garment, const Track& moved,
+                         const PersonClothOptions& options) {
+  if (garment.empty()) return;
+  wearer_.emplace(clothed, moved.motion.betas, std::vector<double>());
+  wearer_->Wear(garment);
+  run_.emplace(*wearer_, WithoutGaps(moved.motion), OptionsFor(moved, options));
+}
+
+const std::vector<Eigen::Vector3d>& PersonCloth::At(int t) {
+  BODYLOOM_CHECK(t >= last_, "a garment's frame ", t, " was requested after frame ", last_);
+  for (; run_ && last_ < t; ++last_) cloth_ = run_->Next();
+  return cloth_;
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A track's frames as a person of Gaussians is posed and looked at in them.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bodyloom/render/gaussian_avatar/avatar_painter.h"
+#include "bodyloom/render/gaussian_avatar/worn_garment.h"
+#include "bodyloom/render/uv_maps/posed_track.h"
+
+namespace bodyloom {
+
+/// Keeps references to body and track.
+class PosedAvatar {
+ public:
+  /// `yaw_deg` as PosedTrack's. `scale`: pictures so many times as large as the track's. Throws std::runtime_error
+  /// naming `where` when the camera's lens is distorted.
+  PosedAvatar(const BodyModel& body, const Track& track, std::vector<double> yaw_deg, double scale, int num_threads,
+              const std::string& where);
+
+  [[nodiscard]] int width() const { return width_; }
+  [[nodiscard]] int height() const { return height_; }
+  [[nodiscard]] bool HasResult(int t) const { return track_.HasResult(t) && !extents_[t].empty(); }
+
+  /// From now on frames have the bones of a garment: frame t those of shown[t], or of t where `shown` is empty.
+  void Wear(GarmentBones bones, std::vector<int> shown = {});
+  [[nodiscard]] const GarmentBones& garment() const { return garment_; }  ///< without frames: none
+
+  /// Of a frame with a result.
+  void MakeFrame(int t, AvatarFrame* frame) const;
+  /// Bones of another run of the garment in frame t, as MakeFrame() appends those of the one that is worn.
+  [[nodiscard]] std::vector<float> SeenCloth(int t, const GarmentBones& run) const;
+  [[nodiscard]] Camera CameraAt(int t) const;
+  /// What the bare body spans, grown by `share` of its longer side; clipped to the picture.
+  [[nodiscard]] PixelBox BoxAt(int t, double share) const;
+  /// Camera, window with room for clothes, and the light as it was in the track's own view.
+  [[nodiscard]] AvatarView ViewAt(int t) const;
+
+ private:
+  [[nodiscard]] CameraPose CameraPoseAt(int t) const;
+  const BodyModel& body_;
+  const Track& track_;
+  PosedTrack posed_;
+  AvatarFrames frames_;
+  double scale_;
+  int num_threads_, width_, height_;
+  std::vector<PersonExtent> extents_;  ///< pixels of the track's picture
+  GarmentBones garment_;
+  std::vector<int> shown_;
+};
+
+}  // namespace bodyloom

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/render/gaussian_avatar/skin_gaussians.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/render/gaussian_avatar/gaussian_body.h"
+
+namespace bodyloom {
+namespace {
+
+using Eigen::Vector3d;
+using Body = GaussianBody;
+
+/// Joints and weights of a point of the surface, heaviest first.
+std::vector<std::pair<double, int>> WeightsAt(const BodyModel& model, int face, const Eigen::Vector3f& barycentric) {
+  std::vector<std::pair<double, int>> weights;
+  for (int c = 0; c < 3; ++c) {
+    const int v = model.data().faces(face, c);
+    for (int k = model.influence_begin()[v]; k < model.influence_begin()[v + 1]; ++k) {
+      const int joint = model.influence_joint()[k];
+      const double weight = barycentric[c] * model.influence_weight()[k];
+      const auto known = std::find_if(weights.begin(), weights.end(), [&](const auto& w) { return w.second == joint; });
+      if (known != weights.end()) {
+        known->first += weight;
+      } else {
+        weights.emplace_back(weight, joint);
+      }
+    }
+  }
+  std::sort(weights.begin(), weights.end(),
+            [](const auto& a, const auto& b) { return a.first != b.first ? a.first > b.first : a.second < b.second; });
+  return weights;
+}
+
+void SetWeights(const BodyModel& model, int face, const Eigen::Vector3f& barycentric, int row, Body* body) {
+  const auto weights = WeightsAt(model, face, barycentric);
+  for (int k = 0; k < Body::kInfluences; ++k) {
+    const bool has = k < static_cast<int>(weights.size());
+    body->joints[static_cast<size_t>(row) * Body::kInfluences + k] = has ? weights[k].second : 0;
+    body->parameters(row, Body::kWeightLogit + k) =
+        static_cast<float>(std::log(std::max(1e-6, has ? weights[k].first : 0)));
+  }
+}
+
+}  // namespace
+
+bool SkinGaussiansOptions::IsValid(std::string* why) const {
+  const InRange in_range(why);
+  return in_range("texels_sigma", texels_sigma, 0.01, 100) && in_range("flatness", flatness, 0.001, 1) &&
+         in_range("opacity_logit", opacity_logit, -20, 20) && in_range("albedo", albedo, 0, 1);
+}
+
+GaussianBody SkinGaussians(const BodyModel& model, const Eigen::VectorXd& betas, const UvTexelTable& texels,
+                           const SkinGaussiansOptions& options) {
+  std::string why;
+  BODYLOOM_CHECK(options.IsValid(&why), "skin Gaussians: ", why);
+  BODYLOOM_CHECK(model.has_uv(), "skin Gaussians: the body has no UV");
+  const MatrixX3d vertices = ShapeVertices(model, betas);
+  const BodyModelData& data = model.data();
+  Body body;
+  body.Resize(texels.num_inside);
+  int row = 0;
+  for (size_t i = 0; i < texels.size(); ++i) {
+    if (texels.in_gutter[i] != 0) continue;
+    const int face = texels.face[i];
+    BODYLOOM_CHECK(face >= 0 && face < model.num_faces() && row < body.size(), "skin Gaussians: texel ", i,
+                   " shows face ", face, ", expected a table of this body, with ", model.num_faces(), " faces");
+    Vector3d corner[3];
+    Eigen::Vector2d uv[3];
+    for (int c = 0; c < 3; ++c) {
+      corner[c] = vertices.row(data.faces(face, c)).transpose();
+      uv[c] = data.vt.row(data.ft(face, c)).transpose().cast<double>();
+    }
+    const Vector3d cross = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
+    const Eigen::Vector2d a = uv[1] - uv[0], b = uv[2] - uv[0];
+    const double area_in_texels = std::abs(a.x() * b.y() - a.y() * b.x()) * texels.width * texels.height;
+    const double width = std::sqrt(cross.norm() / area_in_texels);
+    const Vector3d normal = cross.normalized();
+    const Eigen::Vector3f& barycentric = texels.barycentric[i];
+    const Vector3d place = barycentric[0] * corner[0] + barycentric[1] * corner[1] + barycentric[2] * corner[2];
+    SetFlatGaussian(
+        {place, normal, options.texels_sigma * width, options.flatness, options.opacity_logit, options.albedo}, row,
+        &body);
+    SetWeights(model, face, barycentric, row, &body);
+    body.anchors[row] = {face, {barycentric[0], barycentric[1], barycentric[2]}, 1};
+    ++row;
+  }
+  for (int c = 0; c < 3; ++c) body.light[9 * c] = static_cast<float>(2 * std::sqrt(M_PI));
+  return body;
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Faces that reach behind the near plane or far outside the image are cut to what can be projected.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+#include "bodyloom/geometry/scene/camera.h"
+
+namespace bodyloom {
+
+/// A convex polygon of at most 3 + 5 corners in the camera frame, in the order of the face it was cut from.
+struct ClippedPolygon {
+  std::array<Eigen::Vector3d, 8> corners;
+  int size = 0;
+};
+
+/// The part of a triangle (camera frame, metres) with z >= near_m (pinhole only) and |x_px|, |y_px| < guard_px; empty
+/// when nothing is left. Cut in space, before any division by depth. The two faces of a shared edge are cut at the same
+/// points. With lens distortion only the near plane cuts: edges are not straight there.
+ClippedPolygon ClipTriangle(const std::array<Eigen::Vector3d, 3>& corners, const Camera& camera, double near_m,
+                            double guard_px);
+
+}  // namespace bodyloom

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Visible points of the body, one a covered pixel: the point on the surface and, on request, its part and chart
+/// coordinates.
+///
+/// The point is where the ray through the pixel's centre meets the plane of the face that the visibility buffer found,
+/// computed in double from the unrounded vertices: perspective correct, exact for distorted lenses too, and free of the
+/// 1/256 px rounding that decided which face it is. Barycentrics that this rounding leaves outside the face (by less
+/// than the rounding) are clamped to it.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/scene/camera.h"
+#include "bodyloom/render/raster/visibility_buffer.h"
+
+namespace bodyloom {
+
+/// What to compute besides face and barycentrics.
+struct VisiblePointsRequest {
+  bool part = false;      ///< chart id 1..24, 0 where the face has none
+  bool chart_uv = false;  ///< (u, v) inside the face's chart
+  bool depth = false;     ///< z, metres
+};
+
+/// One entry a covered pixel, rows from top to bottom, pixels from left to right. Arrays not requested are empty.
+struct VisiblePoints {
+  std::vector<int> x, y;  ///< pixel
+  std::vector<int> face;
+  std::vector<Eigen::Vector3d> barycentric;  ///< of the face's corners, each in [0, 1], sums to 1
+  std::vector<uint8_t> part;
+  std::vector<Eigen::Vector2f> chart_uv;
+  std::vector<float> depth_m;
+  [[nodiscard]] size_t size() const { return face.size(); }
+};
+
+/// The surface point that `face` shows at `pixel`: barycentrics clamped to the face. The plane of a face seen edge-on
+/// meets the ray nowhere stable; its nearest corner is returned then.
+Eigen::Vector3d BarycentricAtPixel(const MatrixX3d& vertices_in_camera, const MatrixX3i& faces, const Camera& camera,
+                                   int face, const Eigen::Vector2d& pixel);
+
+/// Chart coordinates of a surface point: barycentric mean of the face's corners. The body must have face_iuv.
+Eigen::Vector2f ChartUvAt(const BodyModel& body, int face, const Eigen::Vector3d& barycentric);
+
+/// Resolves every covered pixel of the buffer. `vertices_in_camera`, the body's faces and `camera` must be those that
+/// were rendered. Throws std::invalid_argument when parts or chart coordinates are requested from a body without them.
+VisiblePoints ResolveVisiblePoints(const VisibilityBuffer& buffer, const BodyModel& body,
+                                   const MatrixX3d& vertices_in_camera, const Camera& camera,
+                                   const VisiblePointsRequest& request = {});
+
+}  // namespace bodyloom

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/render/texture/complete/texel_counterparts.h"
+
+#include <array>
+
+#include "bodyloom/geometry/body/skinning.h"
+
+namespace bodyloom {
+
+MatrixX3d TexelPoints(const MatrixX3d& rest_vertices, const MatrixX3i& faces, const UvTexelTable& table) {
+  MatrixX3d points(static_cast<Eigen::Index>(table.size()), 3);
+  for (size_t i = 0; i < table.size(); ++i) {
+    const Eigen::RowVector3d weights = table.barycentric[i].cast<double>().transpose();
+    points.row(static_cast<Eigen::Index>(i)).setZero();
+    for (int k = 0; k < 3; ++k) {
+      points.row(static_cast<Eigen::Index>(i)) += weights[k] * rest_vertices.row(faces(table.face[i], k));
+    }
+  }
+  return points;
+}
+
+TexelCounterparts FindTexelCounterparts(const RestViews& views, const MatrixX3d& points) {
+  TexelCounterparts counterparts;
+  for (auto& of_kind : counterparts) of_kind.resize(points.rows());
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    const Eigen::Vector3d point = points.row(i).transpose(), mirrored(-point.x(), point.y(), point.z());
+    const std::optional<RestSide> side = views.SideOf(point);
+    if (!side) continue;
+    const RestSide other = *side == RestSide::kFront ? RestSide::kBack : RestSide::kFront;
+    counterparts[kMirror][i] = views.At(*side, mirrored);
+    counterparts[kBehind][i] = views.At(other, point);
+    counterparts[kAcross][i] = views.At(other, mirrored);
+  }
+  return counterparts;
+}
+
+namespace {
+
+constexpr int kEdge = 4;  ///< pixels
+constexpr int kSide = RestViews::kPixels;
+
+}  // namespace
+
+NearestAroundLimb::NearestAroundLimb(const BodyModel& body, const RestViews& views,
+                                     const std::function<bool(const SurfacePoint&)>& is_known)
+    : views_(views), found_(static_cast<size_t>(kSide) * kSide) {
+  const std::vector<double> of_arms = WeightsBelow(body, {"l_shoulder", "r_shoulder"});
+  enum : uint8_t { kNothing, kInFront, kBehind };
+  std::vector<uint8_t> known(found_.size(), kNothing), is_arm(found_.size(), 0), covered(found_.size(), 0);
+  const auto at = [](int x, int y) { return static_cast<size_t>(y) * kSide + x; };
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) {
+      const Eigen::Vector3d place = views.PointAt(x, y);
+      const SurfacePoint front = views.At(RestSide::kFront, place), back = views.At(RestSide::kBack, place);
+      if (front.face < 0 && back.face < 0) continue;
+      covered[at(x, y)] = 1;
+      const int face = front.face >= 0 ? front.face : back.face;
+      is_arm[at(x, y)] = of_arms[body.data().faces(face, 0)] > 0.5 ? 1 : 0;
+      if (front.face >= 0 && is_known(front)) {
+        known[at(x, y)] = kInFront;
+      } else if (back.face >= 0 && is_known(back)) {
+        known[at(x, y)] = kBehind;
+      }
+    }
+  }
+  // What lies at the edge of what is known has a little of its neighbour in it: the inside is looked for first.
+  std::vector<uint8_t> inside(known.size(), 0);
+  for (int y = kEdge; y + kEdge < kSide; ++y) {
+    for (int x = kEdge; x + kEdge < kSide; ++x) {
+      bool all = true;
+      for (int d = -kEdge; d <= kEdge && all; ++d) {
+        all = known[is_arm[at(x, y)] != 0 ? at(x, y + d) : at(x + d, y)] != kNothing;
+      }
+      inside[at(x, y)] = all ? 1 : 0;
+    }
+  }
+  // Along a line, the last known pixel of the same kind (arm or not) as seen from either end.
+  const auto sweep = [&](bool arms, bool whole, const std::function<size_t(int, int)>& place) {
+    const auto counts = [&](size_t p) {
+      return (whole ? inside[p] != 0 : known[p] != kNothing) && is_arm[p] == (arms ? 1 : 0);
+    };
+    for (int line = 0; line < kSide; ++line) {
+      std::array<int, kSide> before{};
+      int last = -1;
+      for (int i = 0; i < kSide; ++i) {
+        if (counts(place(line, i))) last = i;
+        before[i] = last;
+      }
+      last = -1;
+      for (int i = kSide - 1; i >= 0; --i) {
+        const size_t p = place(line, i);
+        if (counts(p)) last = i;
+        if (covered[p] == 0 || is_arm[p] != (arms ? 1 : 0) || found_[p].x >= 0) continue;
+        int best = before[i];
+        if (last >= 0 && (best < 0 || last - i < i - best)) best = last;
+        if (best < 0) continue;
+        const size_t q = place(line, best);
+        found_[p] = {static_cast<int16_t>(q % kSide), static_cast<int16_t>(q / kSide), known[q] == kBehind};
+      }
+    }
+  };
+  for (const bool whole : {true, false}) {
+    sweep(false, whole, [&](int row, int i) { return at(i, row); });
+    sweep(true, whole, [&](int column, int i) { return at(column, i); });
+  }
+}
+
+SurfacePoint NearestAroundLimb::At(const Eigen::Vector3d& point) const {
+  const Eigen::Vector2i pixel = views_.PixelOf(point);
+  // A point of the contour may lie beside the last pixel that shows the body.
+  constexpr std::array<std::array<int, 2>, 5> kNear = {{{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
+  for (const auto& [dx, dy] : kNear) {
+    const int x = pixel.x() + dx, y = pixel.y() + dy;
+    if (x < 0 || y < 0 || x >= kSide || y >= kSide) continue;
+    const Found& found = found_[static_cast<size_t>(y) * kSide + x];
+    if (found.x < 0) continue;
+    return views_.At(found.behind ? RestSide::kBack : RestSide::kFront, views_.PointAt(found.x, found.y));
+  }
+  return {};
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Attributes of the surface as colours for people to look at. (Programs want the numbers:
+/// render/raster/resolve_pixels.h.)
+///
+///   parts    the chart's colour (render/image/palette.h)
+///   iuv      red = u, green = v of the chart, blue rises with the part's number
+///   normal   camera frame: red = right, green = up, blue = towards the viewer, each (1 + component) / 2
+///   depth    near is warm, far is cold (OpenCV's "turbo"), linear between two depths
+///   texture  a UV map of colours over the body's atlas
+///   error    a number a vertex, in the colours of render/view/error_colours.h
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/body/normals.h"
+#include "bodyloom/geometry/scene/camera.h"
+#include "bodyloom/render/image/image.h"
+#include "bodyloom/render/raster/resolve_pixels.h"
+#include "bodyloom/render/raster/visibility_buffer.h"
+
+namespace bodyloom {
+
+enum class SurfaceAttribute { kParts, kIuv, kNormal, kDepth, kTexture, kError };
+
+struct AttributePictureOptions {
+  SurfaceAttribute attribute = SurfaceAttribute::kParts;
+  double near_m = 1, far_m = 5;               ///< depth: where the colours begin and end
+  TexelAttribute texture = {};                ///< texture: three channels blue, green, red, 0…255
+  std::span<const float> vertex_errors = {};  ///< error: one a vertex; NaN where it is not known
+  double error_maximum = 1;                   ///< error: the last colour
+  int samples = 2;          ///< a pixel along x and y, 1..8: their colours are averaged, never their coordinates
+  bool both_sides = false;  ///< faces that turn away are seen too: of a surface that is not closed
+  int num_threads = 1;      ///< the picture is the same for any number
+};
+
+/// UV map of an image's colours, for AttributePictureOptions::texture (which borrows it).
+std::vector<float> TexelsOf(const Image& image);
+
+/// Keeps its memory between pictures. Not for use by two threads at once.
+class AttributePainter {
+ public:
+  /// Draws the attribute over an image of the camera's size. `coverage`, one a pixel of it, becomes the share of
+  /// samples that show the body, 0 to 255, where there are any. Throws std::invalid_argument when sizes differ or the
+  /// body lacks what is to be drawn.
+  void Draw(const BodyModel& body, const MatrixX3d& vertices_in_camera, const Camera& camera,
+            const AttributePictureOptions& options, Image* image, std::vector<uint8_t>* coverage = nullptr);
+
+ private:
+  VisibilityBuffer buffer_;
+  ResolvedPixels pixels_;
+  VertexNormalsOfMesh normals_;
+};
+
+}  // namespace bodyloom

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Several pictures on one: a contact sheet to judge a clip at a glance.
+#pragma once
+
+#include <vector>
+
+#include "bodyloom/render/image/image.h"
+
+namespace bodyloom {
+
+struct ContactSheetOptions {
+  int columns = 0;           ///< 0: as square as it gets
+  int cell_height_px = 360;  ///< pictures are scaled to this height
+  int gap_px = 6;
+  Colour background{26, 32, 44};
+};
+
+/// The pictures in rows from left to right, all scaled to one height; each cell is as wide as the widest picture and
+/// pictures stand centred in theirs. Throws std::invalid_argument for an empty list or an empty picture.
+Image ContactSheet(const std::vector<Image>& pictures, const ContactSheetOptions& options = {});
+
+/// `count` indices spread evenly over 0..num_frames−1, first and last included (one: the middle); fewer when there are
+/// not as many frames.
+std::vector<int> EvenlySpreadFrames(int num_frames, int count);
+
+}  // namespace bodyloom

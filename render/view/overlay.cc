@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/render/view/overlay.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/geometry/scene/camera_path.h"
+#include "bodyloom/render/view/overlay_landmarks.h"
+
+namespace bodyloom {
+namespace {
+
+using Eigen::Vector3d;
+
+std::optional<BodyPose> PoseOf(const BodyModel& body, const Track& track, int frame) {
+  const Motion& motion = track.motion;
+  if (!track.HasResult(frame)) return std::nullopt;
+  return PoseFromAxisAngle(body, motion.poses.row(frame).transpose(), motion.trans.row(frame).transpose());
+}
+
+}  // namespace
+
+bool OverlayOptions::IsValid(std::string* why) const {
+  const auto no = [&](const std::string& text) {
+    if (why != nullptr) *why = text;
+    return false;
+  };
+  if (!(alpha >= 0 && alpha <= 1)) return no("overlay: alpha must be in [0, 1]");
+  if (!(side_aspect > 0.1 && side_aspect < 10)) return no("overlay: side_aspect must be in (0.1, 10)");
+  if (!(std::abs(side_elevation_deg) < 90)) return no("overlay: side_elevation_deg must be in (-90, 90)");
+  if (!std::isfinite(side_yaw_deg)) return no("overlay: side_yaw_deg must be finite");
+  if (num_threads < 1) return no("overlay: num_threads must be at least 1");
+  if (!(up_in_camera.norm() > 0)) return no("overlay: up_in_camera must not be zero");
+  return true;
+}
+
+FollowViewOptions OverlayOptions::SideView(int height) const {
+  FollowViewOptions view;
+  view.orbit = {.yaw_deg = side_yaw_deg, .elevation_deg = side_elevation_deg, .up_in_camera = up_in_camera};
+  view.width = 2 * static_cast<int>(std::lround(0.5 * height * side_aspect));
+  view.height = height;
+  view.follows = side_follows;
+  return view;
+}
+
+double OverlayCaptionHeight(int image_height) { return std::max(9.0, image_height / 48.0); }
+
+int OverlaySamples(int image_height) { return image_height >= 600 ? 2 : 3; }
+
+std::optional<BodyPose> PoseInCamera(const BodyModel& body, const Track& track, int frame) {
+  std::optional<BodyPose> pose = PoseOf(body, track, frame);
+  if (!pose || !track.HasMovingCamera()) return pose;
+  const Vector3d pelvis = body.RestJoints(track.motion.betas).row(0).transpose();
+  return MovedPose(track.camera_from_scene[size_t(frame)], pelvis, *std::move(pose));
+}
+
+Floor FloorInCamera(const Floor& floor, const Track& track, int frame) {
+  if (!track.HasMovingCamera()) return floor;
+  const CameraPose& camera = track.camera_from_scene[size_t(frame)];
+  return {MovedPoint(camera, floor.point), camera.camera_from_world_rotation * floor.up};
+}
+
+MatrixX3d TrackVertices(const BodyModel& body, const Track& track, int frame) {
+  BODYLOOM_CHECK(frame >= 0 && frame < track.num_frames(), "frame ", frame, " is outside the track's ",
+                 track.num_frames(), " frames");
+  const auto pose = PoseOf(body, track, frame);
+  return pose ? PoseVertices(body, track.motion.betas, *pose) : MatrixX3d(0, 3);
+}
+
+OverlayRenderer::OverlayRenderer(const BodyModel& body, const Track& track, const OverlayOptions& options,
+                                 const Track* reference)
+    : body_(body), track_(track), reference_(reference), options_(options) {
+  std::string why;
+  BODYLOOM_CHECK(options.IsValid(&why), why);
+  BODYLOOM_CHECK(track.camera.width > 0 && track.camera.height > 0, "overlay: the track's camera has no image size");
+  BODYLOOM_CHECK(track.num_frames() > 0, "overlay: the track has no frames");
+  BODYLOOM_CHECK(options.colours == BodyColours::kPlain || body.has_parts(), "overlay: the body '", body.name(),
+                 "' has no parts to colour");
+  if (options.colours != BodyColours::kPlain) {
+    for (const uint8_t part : body.data().face_part) {
+      face_colours_.push_back(options.colours == BodyColours::kParts ? PartColour(part) : ClothesColour(part));
+    }
+  }
+  backdrop_ = StudioBackdrop(track.camera.width, track.camera.height);
+  const std::vector<MatrixX3d> joints = TrackJoints(body, track);
+  const std::vector<MatrixX3d> leaders = reference != nullptr ? TrackJoints(body, *reference) : joints;
+  floor_ = FloorUnder(leaders, options.up_in_camera);
+  if (!options.side_view) return;
+  BODYLOOM_CHECK(leaders.size() == joints.size(), "overlay: the track has ", joints.size(), " frames, its reference ",
+                 leaders.size());
+  side_.emplace(leaders, track.motion.timestamps, options.SideView(track.camera.height), joints);
+}
+
+MeshStyle OverlayRenderer::Style(double alpha) const {
+  return {.face_colours = face_colours_,
+          .alpha = alpha,
+          .samples = OverlaySamples(track_.camera.height),
+          .num_threads = options_.num_threads};
+}
+
+Image OverlayRenderer::Side(int frame) const {
+  const MatrixX3i& faces = body_.data().faces;
+  SidePanel::Picture panel = side_->At(frame, *floor_);
+  const auto draw = [&](const MatrixX3d& vertices_in_camera, const MeshStyle& style) {
+    if (vertices_in_camera.rows() == 0) return;
+    const MatrixX3d vertices = panel.view.Apply(vertices_in_camera);
+    DrawShadow(vertices, faces, panel.floor, panel.view.camera, 0.3, &panel.image);
+    drawer_.Draw(vertices, faces, panel.view.camera, style, &panel.image);
+  };
+  if (reference_ != nullptr) {
+    draw(TrackVertices(body_, *reference_, frame), {.colour = kReferenceColour,
+                                                    .samples = OverlaySamples(track_.camera.height),
+                                                    .num_threads = options_.num_threads});
+  }
+  const double alpha = reference_ != nullptr ? options_.alpha : 1;
+  draw(TrackVertices(body_, track_, frame), Style(alpha));
+  return std::move(panel.image);
+}
+
+Image OverlayRenderer::Backdrop(int frame, const MatrixX3d& vertices, const Camera& camera) const {
+  Image image = backdrop_;
+  if (!options_.floor || !floor_ || camera.model != CameraModel::kPinhole) return image;
+  if (vertices.rows() == 0) return image;
+  const Vector3d centre = vertices.colwise().mean().transpose();
+  const Floor floor = FloorInCamera(*floor_, track_, frame);
+  DrawFloorGrid(floor, centre, {}, camera, &image);
+  if (options_.body) DrawShadow(vertices, body_.data().faces, floor, camera, 0.35, &image);
+  return image;
+}
+
+Image OverlayRenderer::Render(int frame, const OverlayFrame& what) const {
+  BODYLOOM_CHECK(frame >= 0 && frame < track_.num_frames(), "frame ", frame, " is outside the track's ",
+                 track_.num_frames(), " frames");
+  const Camera camera = track_.CameraAt(frame);
+  const auto pose = PoseInCamera(body_, track_, frame);
+  const MatrixX3d vertices = pose ? PoseVertices(body_, track_.motion.betas, *pose) : MatrixX3d(0, 3);
+  Image view;
+  if (what.background != nullptr) {
+    BODYLOOM_CHECK(what.background->width == camera.width && what.background->height == camera.height,
+                   "overlay: the video is ", what.background->width, "x", what.background->height, ", the camera ",
+                   camera.width, "x", camera.height);
+    view = *what.background;
+  } else {
+    view = Backdrop(frame, vertices, camera);
+  }
+  if (pose && options_.body) {
+    const double alpha = what.background != nullptr ? options_.alpha : 1;
+    drawer_.Draw(vertices, body_.data().faces, camera, Style(alpha), &view);
+  }
+  if (pose && (options_.skeleton || what.detected != nullptr)) {
+    DrawOverlayLandmarks({.body = &body_, .betas = track_.motion.betas, .pose = *pose, .camera = camera}, what.detected,
+                         frame, {.skeleton = options_.skeleton, .min_confidence = options_.min_confidence}, &view);
+  }
+  const double caption_height = OverlayCaptionHeight(view.height);
+  DrawCaption(what.caption, Corner::kTopLeft, caption_height, &view);
+  if (what.detected != nullptr) {
+    DrawCaption(LandmarkLegend(options_.skeleton), Corner::kBottomLeft, caption_height, &view);
+  }
+  if (!side_) return view;
+
+  Image panel = Side(frame);
+  std::vector<CaptionLine> legend = {{"seen from the side"}};
+  if (reference_ != nullptr) {
+    legend = {{"estimate", CaptionLine::Mark::kDisc, kBodyColour},
+              {"truth", CaptionLine::Mark::kDisc, kReferenceColour}};
+  }
+  DrawCaption(legend, Corner::kBottomRight, caption_height, &panel);
+  return Beside(view, panel);
+}
+
+SidePanel::SidePanel(const std::vector<MatrixX3d>& joints, const std::vector<double>& timestamps,
+                     const FollowViewOptions& options, const std::vector<MatrixX3d>& others)
+    : follow_(joints, timestamps, options, others), backdrop_(StudioBackdrop(options.width, options.height)) {}
+
+SidePanel::Picture SidePanel::At(int t, const Floor& floor) const {
+  const View view = follow_.At(t);
+  const Eigen::Matrix3d& R = view.from_camera.camera_from_world_rotation;
+  const Eigen::Vector3d& translation = view.from_camera.camera_from_world_translation;
+  Picture picture{view, {R * floor.point + translation, R * floor.up}, backdrop_};
+  DrawFloorGrid(picture.floor, R * follow_.CentreAt(t) + translation, {}, view.camera, &picture.image);
+  return picture;
+}
+
+Image Beside(const Image& left, const Image& right) {
+  Image both(left.width + right.width, left.height);
+  Paste(left, 0, 0, &both);
+  Paste(right, left.width, 0, &both);
+  return both;
+}
+
+}  // namespace bodyloom

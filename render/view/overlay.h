@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The picture by which a track is judged: the projected body over the video (or a plain backdrop), detected and
+/// projected landmarks, a caption, and on request the same body seen from the side, where errors in depth show. A
+/// camera that moves shows each frame as it saw it; the side view is of the scene.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/geometry/math/arrays.h"
+#include "bodyloom/geometry/scene/observations.h"
+#include "bodyloom/geometry/scene/track.h"
+#include "bodyloom/render/image/image.h"
+#include "bodyloom/render/view/caption.h"
+#include "bodyloom/render/view/floor.h"
+#include "bodyloom/render/view/follow_view.h"
+#include "bodyloom/render/view/shaded_mesh.h"
+#include "bodyloom/render/view/view_camera.h"
+
+namespace bodyloom {
+
+// The panel beside an overlay in which the same scene is seen from its side, where errors in depth show.
+
+class SidePanel {
+ public:
+  /// As FollowView, whose view it shows.
+  SidePanel(const std::vector<MatrixX3d>& joints, const std::vector<double>& timestamps,
+            const FollowViewOptions& options, const std::vector<MatrixX3d>& others = {});
+
+  /// What is drawn into at one moment: the image with the floor's grid, and whence it is seen.
+  struct Picture {
+    View view;
+    Floor floor;  ///< in the view's camera
+    Image image;
+  };
+  /// Frame t of the joints; `floor` in the frame of the joints.
+  [[nodiscard]] Picture At(int t, const Floor& floor) const;
+
+  [[nodiscard]] int width() const { return backdrop_.width; }
+
+ private:
+  FollowView follow_;
+  Image backdrop_;
+};
+
+/// A picture with another one of the same height to its right.
+Image Beside(const Image& left, const Image& right);
+
+/// How the estimated body is coloured.
+enum class BodyColours {
+  kPlain,    ///< one colour
+  kParts,    ///< by chart; needs a body with parts
+  kClothes,  ///< shirt, trousers, shoes, skin; needs a body with parts
+};
+
+struct OverlayOptions {
+  bool body = true;
+  double alpha = 0.72;  ///< opacity of the body over the video
+  BodyColours colours = BodyColours::kPlain;
+  bool skeleton = false;     ///< bones between the projected landmarks
+  bool floor = true;         ///< where there is no video: a floor with the body's shadow (pinhole only)
+  bool side_view = false;    ///< a second panel to the right, as high as the image
+  bool side_follows = true;  ///< the side camera moves along with the person; false: it sees the whole clip's space
+  double side_yaw_deg = 90;  ///< 90: from the person's left when it faces the camera
+  double side_elevation_deg = 8;
+  double side_aspect = 0.75;  ///< width of the panel / its height
+  Eigen::Vector3d up_in_camera =
+      -Eigen::Vector3d::UnitY();  ///< for the floor and the side view, when the camera is tilted
+  double min_confidence = 0.1;    ///< detections below are not drawn
+  int num_threads = 1;            ///< the picture is the same for any number
+  /// False with the reason when a field is out of range.
+  bool IsValid(std::string* why) const;
+  /// The view of the side panel beside a picture of this height.
+  [[nodiscard]] FollowViewOptions SideView(int height) const;
+};
+
+/// Height of the letters of an overlay's captions, pixels.
+double OverlayCaptionHeight(int image_height);
+/// Samples a pixel along x and y of bodies in an overlay: large pictures need fewer to look smooth.
+int OverlaySamples(int image_height);
+
+/// What one picture shows besides the body. Pointers are borrowed and may be null.
+struct OverlayFrame {
+  const Image* background = nullptr;           ///< of the camera's size; null: a plain backdrop
+  const KeypointSequence* detected = nullptr;  ///< drawn as discs, the track's own landmarks as rings
+  std::vector<CaptionLine> caption = {};       ///< top left
+};
+
+/// Not for use by two threads at once; copies are.
+class OverlayRenderer {
+ public:
+  /// Borrows everything. `reference`, when given, is the true track: it stands beside the estimate in the side view.
+  /// Throws std::invalid_argument when the track has no image size or no frame, or options are out of range.
+  OverlayRenderer(const BodyModel& body, const Track& track, const OverlayOptions& options = {},
+                  const Track* reference = nullptr);
+
+  /// Size of the pictures, side panel included.
+  [[nodiscard]] int width() const { return track_.camera.width + (side_ ? side_->width() : 0); }
+  [[nodiscard]] int height() const { return track_.camera.height; }
+
+  /// Frames that the track has lost show no body. Throws std::invalid_argument when `frame` is not in the track or the
+  /// background has another size than the camera.
+  [[nodiscard]] Image Render(int frame, const OverlayFrame& what) const;
+
+ private:
+  [[nodiscard]] Image Backdrop(int frame, const MatrixX3d& vertices, const Camera& camera) const;
+  [[nodiscard]] MeshStyle Style(double alpha) const;
+  [[nodiscard]] Image Side(int frame) const;
+
+  const BodyModel& body_;
+  const Track& track_;
+  const Track* reference_;
+  OverlayOptions options_;
+  std::vector<Colour> face_colours_;
+  std::optional<SidePanel> side_;
+  Image backdrop_;
+  std::optional<Floor> floor_;  ///< the track's frame
+  mutable MeshDrawer drawer_;   ///< memory used again
+};
+
+/// The pose of frame t as its camera has it; nothing when the frame is lost.
+std::optional<BodyPose> PoseInCamera(const BodyModel& body, const Track& track, int frame);
+
+/// A floor of the track's frame as the camera of frame t has it.
+Floor FloorInCamera(const Floor& floor, const Track& track, int frame);
+
+/// The body of frame t of a track, V×3 in the track's frame (the camera's, or the scene of one that moves); empty when
+/// the frame is lost.
+MatrixX3d TrackVertices(const BodyModel& body, const Track& track, int frame);
+
+}  // namespace bodyloom

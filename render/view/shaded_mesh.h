@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Draws a mesh over an image: smooth shading by vertex normals, dark antialiased contour, transparency.
+#pragma once
+
+#include <vector>
+
+#include "bodyloom/geometry/body/normals.h"
+#include "bodyloom/geometry/math/arrays.h"
+#include "bodyloom/geometry/scene/camera.h"
+#include "bodyloom/render/image/image.h"
+#include "bodyloom/render/image/palette.h"
+#include "bodyloom/render/raster/visibility_buffer.h"
+
+namespace bodyloom {
+
+struct MeshStyle {
+  Colour colour = kBodyColour;
+  std::vector<Colour> face_colours = {};  ///< F colours instead of `colour`, or empty
+  double alpha = 1;                       ///< opacity of the surface
+  double contour_px = 1.4;     ///< width of the line along silhouettes and where a limb hides another; 0: none
+  double contour_alpha = 0.9;  ///< opacity of that line
+  int samples = 3;             ///< samples a pixel along x and y
+  int num_threads = 1;         ///< the picture is the same for any number
+};
+
+/// Draws meshes (vertices in the camera frame, metres) as `camera` sees them onto an image of the camera's size. Lit
+/// from the upper left of the viewer. Only the mesh's box is touched. Where all samples of a pixel see one smooth
+/// stretch of surface in one colour, light is computed once, in its middle.
+///
+/// Keeps its memory between pictures: allocating 20 MB for each costs as much as drawing. Not for use by two threads
+/// at once.
+class MeshDrawer {
+ public:
+  MeshDrawer() = default;
+  /// A copy draws in memory of its own, for another thread.
+  MeshDrawer(const MeshDrawer&) : MeshDrawer() {}
+  MeshDrawer& operator=(const MeshDrawer&) { return *this; }
+  ~MeshDrawer() = default;
+
+  /// Throws std::invalid_argument when sizes differ.
+  void Draw(const MatrixX3d& vertices_in_camera, const MatrixX3i& faces, const Camera& camera, const MeshStyle& style,
+            Image* image);
+
+ private:
+  VisibilityBuffer buffer_;
+  VertexNormalsOfMesh normals_;
+};
+
+/// The same for a single picture.
+void DrawMesh(const MatrixX3d& vertices_in_camera, const MatrixX3i& faces, const Camera& camera, const MeshStyle& style,
+              Image* image);
+
+}  // namespace bodyloom

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/geometry/base/callbacks.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace bodyloom {
+namespace {
+
+TEST(PipelineCallbacks, WithoutAnyAJobRunsThrough) {
+  const PipelineCallbacks none;
+  EXPECT_NO_THROW(none.Begin("work"));
+  EXPECT_TRUE(none.GoesOn("stage", 0.5));
+  EXPECT_NO_THROW(none.Update("stage", 0.5));
+  EXPECT_NO_THROW(none.Say("line"));
+}
+
+TEST(PipelineCallbacks, FalseCancels) {
+  PipelineCallbacks callbacks;
+  double last = 0;
+  callbacks.progress = [&](const std::string& stage, double fraction) {
+    EXPECT_EQ(stage, "fit");
+    last = fraction;
+    return fraction < 0.5;
+  };
+  EXPECT_NO_THROW(callbacks.Update("fit", 0.25));
+  EXPECT_FALSE(callbacks.GoesOn("fit", 0.5));
+  EXPECT_THROW(callbacks.Update("fit", 0.75), Cancelled);
+  EXPECT_EQ(last, 0.75);
+}
+
+TEST(PipelineCallbacks, WorkAndLinesArrive) {
+  PipelineCallbacks callbacks;
+  std::string heard;
+  callbacks.begin = [&](const std::string& work) { heard += "begin " + work + "; "; };
+  callbacks.message = [&](const std::string& line) { heard += line; };
+  callbacks.Begin("tracking 3 frames");
+  callbacks.Say("one file left out");
+  EXPECT_EQ(heard, "begin tracking 3 frames; one file left out");
+}
+
+}  // namespace
+}  // namespace bodyloom

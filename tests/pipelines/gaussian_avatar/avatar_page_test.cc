@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// How long clips are thinned; what the page shows is tests/page/avatar_test.py's.
+#include "bodyloom/pipelines/gaussian_avatar/avatar_page.h"
+
+#include <gtest/gtest.h>
+
+namespace bodyloom {
+namespace {
+
+TEST(AvatarPage, ShowsAsManyFramesAsBonesFitIn) {
+  EXPECT_EQ(AvatarPage::FrameStep(1, 24), 1);
+  EXPECT_EQ(AvatarPage::FrameStep(13000, 24), 1);
+  constexpr double kBytesOfBone = 48, kMost = 16e6;
+  for (const int frames : {100, 1500, 20000, 200000}) {
+    for (const int bones : {24, 245, 1000}) {
+      const int step = AvatarPage::FrameStep(frames, bones);
+      EXPECT_LE(frames * bones * kBytesOfBone / step, kMost) << frames << ' ' << bones;
+      if (step > 1) {
+        EXPECT_GT(frames * bones * kBytesOfBone / (step - 1), kMost) << "thinned more than it must be";
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace bodyloom

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/render/garment/fit_clothes.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/render/person/skirt_scene.h"
+
+namespace bodyloom {
+namespace {
+
+TEST(GarmentSwing, TurnsUpInThePictureOnly) {
+  const Track photo = StandingPhoto(0);
+  EXPECT_LT((SwungUp(photo, 0) - Eigen::Vector3d(0, -1, 0)).norm(), 1e-12);
+  EXPECT_LT((SwungUp(photo, EIGEN_PI / 2) - Eigen::Vector3d(1, 0, 0)).norm(), 1e-12);
+}
+
+}  // namespace
+}  // namespace bodyloom

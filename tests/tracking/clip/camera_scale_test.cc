@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/tracking/clip/camera_scale.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "bodyloom/geometry/math/rotation.h"
+#include "bodyloom/geometry/scene/camera_path.h"
+
+namespace bodyloom {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A person who walks beside a camera: each foot stands for half a second, then goes 0.7 m ahead.
+struct WalkBeside {
+  std::vector<std::array<FootPlace, 2>> feet;
+  std::vector<double> timestamps;
+  std::vector<char> cut_before;
+  std::vector<CameraPose> unit_path;
+
+  /// `scale`: metres a unit; `slide`: of standing feet in the scene, m/s, during the share `sliding` of the clip.
+  explicit WalkBeside(double scale, double slide = 0, double sliding = 0) {
+    constexpr int kFrames = 60;
+    for (int t = 0; t < kFrames; ++t) {
+      const double seconds = t / 15.0;
+      const Vector3d centre(1.1 * seconds, 0.05 * std::sin(5 * seconds), 0);
+      CameraPose camera{RotationFromAxisAngle({0.02 * std::sin(seconds), 0.1 * std::cos(seconds), 0}), {}};
+      camera.camera_from_world_translation = -camera.camera_from_world_rotation * centre;
+      std::array<FootPlace, 2> both;
+      for (int foot = 0; foot < 2; ++foot) {
+        const double phase = seconds + 0.5 * foot;
+        const double step = std::floor(phase), in_step = phase - step;
+        Vector3d ankle(1.1 * step - 0.55 * foot, 1.4, 4 + 0.2 * foot);
+        both[foot].contact = in_step < 0.55 ? 0.9 : 0.1;
+        if (in_step >= 0.55) ankle.x() += 1.1 * (in_step - 0.55) / 0.45;
+        if (t < sliding * kFrames) ankle.x() += slide * seconds;
+        both[foot].seen = true;
+        both[foot].ankle_m = MovedPoint(camera, ankle);
+      }
+      feet.push_back(both);
+      timestamps.push_back(seconds);
+      cut_before.push_back(0);
+      camera.camera_from_world_translation /= scale;
+      unit_path.push_back(camera);
+    }
+  }
+  [[nodiscard]] CameraScale Estimate() const { return EstimateCameraScale(feet, timestamps, cut_before, unit_path); }
+};
+
+TEST(CameraScale, IsExactWhereFeetStand) {
+  for (const double scale : {0.3, 1.0, 7.5}) {
+    const CameraScale found = WalkBeside(scale).Estimate();
+    ASSERT_TRUE(found.found) << found.why;
+    EXPECT_NEAR(found.scale_m, scale, 1e-9 * scale);
+    EXPECT_GT(found.sigma_m, 0);
+    EXPECT_LT(found.sigma_m, 0.1 * scale);
+  }
+}
+
+TEST(CameraScale, FeetThatSlideForAThirdOfTheClipAreOutvoted) {
+  const CameraScale found = WalkBeside(2, 0.8, 0.3).Estimate();
+  ASSERT_TRUE(found.found) << found.why;
+  // The kernel lets the middle of a sliding run count, which hardly deviates from its mean.
+  EXPECT_NEAR(found.scale_m, 2, 0.1);
+}
+
+TEST(CameraScale, OneOfTwoFeetStandsWhicheverItIs) {
+  for (const double scale : {0.3, 1.0, 7.5}) {
+    WalkBeside walk(scale);
+    for (auto& both : walk.feet) both[0].contact = both[1].contact = 0;  // the lifter takes both for swinging
+    const CameraScale found = walk.Estimate();
+    ASSERT_TRUE(found.found) << found.why;
+    EXPECT_NEAR(found.scale_m, scale, 0.02 * scale);  // while the feet change, neither stands
+    EXPECT_LT(found.sigma_m, 0.2 * scale);
+    EXPECT_THAT(found.why, testing::HasSubstr("one of both feet"));
+  }
+}
+
+TEST(CameraScale, FeetThatNeverStandTellNothing) {
+  WalkBeside skating(1);
+  for (size_t t = 0; t < skating.feet.size(); ++t) {
+    for (FootPlace& foot : skating.feet[t]) {
+      foot.contact = 0;
+      const double seconds = skating.timestamps[t];
+      foot.ankle_m = Vector3d(std::sin(7 * seconds + 3 * double(&foot - skating.feet[t].data())), 1.4,
+                              4 + std::cos(5 * seconds));  // in the camera frame, whatever the camera does
+    }
+  }
+  EXPECT_FALSE(skating.Estimate().found);
+  WalkBeside broken(1);
+  for (auto& both : broken.feet) both[0].ankle_m.setConstant(std::nan("")), both[1].seen = false;
+  EXPECT_FALSE(broken.Estimate().found);
+}
+
+TEST(CameraScale, SaysWhyThereIsNone) {
+  WalkBeside still(1);
+  for (CameraPose& camera : still.unit_path) camera.camera_from_world_translation.setZero();
+  EXPECT_FALSE(still.Estimate().found);
+  WalkBeside hidden(1);
+  for (auto& both : hidden.feet) both[0].seen = both[1].seen = false;
+  const CameraScale none = hidden.Estimate();
+  EXPECT_FALSE(none.found);
+  EXPECT_THAT(none.why, testing::HasSubstr("no foot"));
+  WalkBeside barely(1);
+  for (size_t t = 0; t < barely.unit_path.size(); ++t) {
+    // Every frame a shot of its own.
+    barely.cut_before[t] = 1;
+  }
+  EXPECT_FALSE(barely.Estimate().found);
+  EXPECT_THROW(EstimateCameraScale(still.feet, still.timestamps, {}, still.unit_path), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace bodyloom

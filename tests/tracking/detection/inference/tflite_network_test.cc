@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/tracking/detection/inference/tflite_network.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/hash_random.h"
+#include "bodyloom/tracking/detection/inference/tflite_shapes.h"
+#include "tests/data_tools/detection/small_networks.h"
+#include "tests/data_tools/detection/tflite_reference.h"
+#include "tests/data_tools/detection/tflite_writer.h"
+
+namespace bodyloom {
+namespace {
+
+using Writer = TfliteWriter;
+
+TfliteModel ModelOf(const Writer& writer) { return ParseTfliteModel(writer.Bytes(), "small.tflite"); }
+
+std::vector<float> InputOf(const TfliteModel& model) {
+  return SomeFloats(model.tensors[static_cast<size_t>(model.inputs[0])].size(), 5);
+}
+
+/// Runs the network twice (the second time without first-time preparations) and compares all outputs; returns how many
+/// numbers were compared. `largest` is that of the differences relative to the largest number of an output.
+size_t ExpectAsReference(const Writer& writer, const std::string& what, double tolerance = 1e-6) {
+  const TfliteModel model = ModelOf(writer);
+  const std::vector<float> input = InputOf(model);
+  const std::vector<std::vector<float>> expected = RunReference(model, input);
+  TfliteNetwork network(model);
+  size_t compared = 0;
+  for (int run = 0; run < 2; ++run) {
+    const std::vector<TfliteValues> outputs = network.Run(input);
+    EXPECT_EQ(outputs.size(), model.outputs.size()) << what;
+    for (size_t i = 0; i < outputs.size(); ++i) {
+      const auto tensor = static_cast<size_t>(model.outputs[i]);
+      EXPECT_EQ(outputs[i].shape, model.tensors[tensor].shape) << what;
+      const std::vector<float>& reference = expected[tensor];
+      EXPECT_EQ(outputs[i].values.size(), reference.size()) << what;
+      double largest = 1, difference = 0;
+      for (size_t j = 0; j < std::min(reference.size(), outputs[i].values.size()); ++j, ++compared) {
+        largest = std::max(largest, std::abs(static_cast<double>(reference[j])));
+        difference = std::max(difference, std::abs(static_cast<double>(reference[j]) - outputs[i].values[j]));
+      }
+      EXPECT_LE(difference, tolerance * largest) << what << ", output " << i;
+    }
+  }
+  return compared;
+}
+
+int Strided(int size, int kernel, int stride, bool same) {
+  return same ? (size - 1) / stride + 1 : (size - kernel) / stride + 1;
+}
+
+TEST(TfliteNetwork, Convolutions) {
+  size_t compared = 0;
+  for (const auto storage : {Writer::Storage::kFloat32, Writer::Storage::kFloat16, Writer::Storage::kSparse}) {
+    for (const bool same : {false, true}) {
+      for (const int stride : {1, 2}) {
+        for (const auto& [height, width] : {std::pair{1, 1}, {2, 2}, {3, 3}, {5, 5}, {3, 1}, {2, 5}}) {
+          for (const auto& [rows, columns] : {std::pair{8, 8}, {7, 10}, {9, 7}}) {
+            Writer writer;
+            const int input = writer.Input({1, rows, columns, 5});
+            const std::vector<int> shape = {1, Strided(rows, height, stride, same),
+                                            Strided(columns, width, stride, same), 9};
+            const bool relu6 = (height + rows) % 2 == 0;
+            writer.outputs = {writer.Conv(input, {9, height, width, 5}, shape, same, stride, relu6, storage,
+                                          storage != Writer::Storage::kFloat32)};
+            compared += ExpectAsReference(writer, Concatenate("kernel ", height, "x", width, " stride ", stride, " on ",
+                                                              rows, "x", columns, same ? " SAME" : " VALID"));
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(compared, 50'000U);
+}
+
+TEST(TfliteNetwork, DepthwiseConvolutions) {
+  size_t compared = 0;
+  for (const bool same : {false, true}) {
+    for (const int stride : {1, 2}) {
+      for (const int side : {3, 5}) {
+        for (const int channels : {1, 3, 16}) {
+          for (const auto& [rows, columns] : {std::pair{8, 8}, {7, 10}}) {
+            Writer writer;
+            const int input = writer.Input({1, rows, columns, channels});
+            const std::vector<int> shape = {1, Strided(rows, side, stride, same), Strided(columns, side, stride, same),
+                                            channels};
+            writer.outputs = {writer.Depthwise(input, side, side, shape, same, stride, side == 5)};
+            compared += ExpectAsReference(writer, Concatenate("side ", side, " stride ", stride, " on ", rows, "x",
+                                                              columns, "x", channels, same ? " SAME" : " VALID"));
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(compared, 10'000U);
+}
+
+TEST(TfliteNetwork, Sums) {
+  Writer writer;
+  const int input = writer.Input({1, 4, 6, 3}), conv = writer.Conv(input, {3, 1, 1, 3}, {1, 4, 6, 3}, true, 1);
+  const int clamped = writer.Apply(Writer::kAdd, {input, conv}, {1, 4, 6, 3}, {{0, 3}});
+  writer.outputs = {clamped, writer.Apply(Writer::kAdd, {clamped, input}, {1, 4, 6, 3}),
+                    writer.Apply(Writer::kAdd, {input, input}, {1, 4, 6, 3})};
+  ExpectAsReference(writer, "sums");
+}
+
+TEST(TfliteNetwork, PaddingOfRowsAndColumns) {
+  // Even: folded into both convolutions that take it. Uneven, before SAME, before something else, and asked for itself.
+  const std::vector<std::vector<int32_t>> paddings = {{0, 0, 1, 1, 2, 2, 0, 0}, {0, 0, 0, 1, 0, 1, 0, 0}};
+  for (const std::vector<int32_t>& n : paddings) {
+    const int rows = 6 + n[2] + n[3], columns = 7 + n[4] + n[5];
+    Writer writer;
+    const int input = writer.Input({1, 6, 7, 2});
+    const int pad = writer.Pad(input, n, {1, rows, columns, 2});
+    writer.outputs = {
+        writer.Conv(pad, {4, 3, 3, 2}, {1, rows - 2, columns - 2, 4}, false, 1),
+        writer.Conv(pad, {4, 3, 3, 2}, {1, Strided(rows, 3, 2, true), Strided(columns, 3, 2, true), 4}, true, 2),
+        writer.Depthwise(pad, 3, 3, {1, (rows - 3) / 2 + 1, (columns - 3) / 2 + 1, 2}, false, 2),
+        writer.Apply(Writer::kLogistic, {pad}, {1, rows, columns, 2}), pad};
+    ExpectAsReference(writer, "padding");
+    writer.outputs.pop_back();
+    ExpectAsReference(writer, "padding within");
+    writer.outputs.resize(2);
+    ExpectAsReference(writer, "padding before convolutions alone");
+  }
+}
+
+TEST(TfliteNetwork, PaddingOfChannels) {
+  Writer writer;
+  const int input = writer.Input({1, 4, 5, 3});
+  const int pad = writer.Pad(input, {0, 0, 0, 0, 0, 0, 2, 1}, {1, 4, 5, 6});
+  const int all = writer.Pad(pad, {0, 0, 1, 1, 1, 1, 0, 4}, {1, 6, 7, 10});
+  writer.outputs = {pad, writer.Conv(pad, {2, 3, 3, 6}, {1, 4, 5, 2}, true, 1), all,
+                    writer.Conv(all, {2, 3, 3, 10}, {1, 4, 5, 2}, false, 1)};
+  ExpectAsReference(writer, "channels");
+}
+
+TEST(TfliteNetwork, Resizes) {
+  for (const auto& [height, width] : {std::pair{8, 10}, {12, 15}, {4, 10}, {7, 9}, {2, 3}, {2, 5}}) {
+    Writer writer;
+    const int input = writer.Input({1, 4, 5, 3}), size = writer.Ints({2}, {height, width});
+    writer.outputs = {writer.Apply(Writer::kResizeBilinear, {input, size}, {1, height, width, 3}, {{2, 0}, {3, 1}})};
+    ExpectAsReference(writer, Concatenate(height, "x", width), 2e-6);
+  }
+}
+
+TEST(TfliteNetwork, Pooling) {
+  for (const int side : {2, 3}) {
+    for (const int stride : {1, 2}) {
+      Writer writer;
+      const int input = writer.Input({1, 7, 8, 3});
+      writer.outputs = {writer.Apply(Writer::kMaxPool2d, {input},
+                                     {1, Strided(7, side, stride, false), Strided(8, side, stride, false), 3},
+                                     {{0, 1}, {1, stride}, {2, stride}, {3, side}, {4, side}, {5, 0}})};
+      ExpectAsReference(writer, Concatenate(side, " ", stride), 0);
+    }
+  }
+}
+
+TEST(TfliteNetwork, ReshapesFollowTheOrderOfTflite) {
+  Writer writer;
+  const int input = writer.Input({1, 4, 6, 5});
+  const auto reshape = [&](int from, const std::vector<int32_t>& to, const std::vector<int>& shape) {
+    return writer.Apply(Writer::kReshape, {from, writer.Ints({static_cast<int>(to.size())}, to)}, shape);
+  };
+  const int flat = reshape(input, {1, -1, 5}, {1, 24, 5}), row = reshape(flat, {-1}, {120});
+  writer.outputs = {flat,
+                    row,
+                    reshape(row, {1, 3, 4, 10}, {1, 3, 4, 10}),
+                    reshape(input, {1, 3, -1, 10}, {1, 3, 4, 10}),
+                    reshape(flat, {1, 24, 5, 1}, {1, 24, 5, 1}),
+                    reshape(input, {1, 1, 1, 120}, {1, 1, 1, 120})};
+  ExpectAsReference(writer, "reshapes", 0);
+}
+
+TEST(TfliteNetwork, DepthToSpace) {
+  for (const int block : {2, 3}) {
+    Writer writer;
+    const int input = writer.Input({1, 3, 4, 36});
+    writer.outputs = {
+        writer.Apply(Writer::kDepthToSpace, {input}, {1, 3 * block, 4 * block, 36 / (block * block)}, {{0, block}})};
+    ExpectAsReference(writer, "depth to space", 0);
+  }
+}
+
+TEST(TfliteNetwork, ConcatenationAlongEveryAxis) {
+  for (const int axis : {1, 2, 3, -1}) {
+    Writer writer;
+    const int input = writer.Input({1, 3, 4, 2});
+    const int logistic = writer.Apply(Writer::kLogistic, {input}, {1, 3, 4, 2});
+    std::vector<int> shape = {1, 3, 4, 2};
+    shape[static_cast<size_t>((axis + 4) % 4)] *= 3;
+    writer.outputs = {writer.Apply(Writer::kConcatenation, {input, logistic, input}, shape, {{0, axis}, {1, 3}}),
+                      logistic};
+    ExpectAsReference(writer, Concatenate("axis ", axis));
+  }
+  Writer writer;
+  const int input = writer.Input({1, 3, 4, 2});
+  const int flat = writer.Apply(Writer::kReshape, {input, writer.Ints({3}, {1, 12, 2})}, {1, 12, 2});
+  const int other = writer.Apply(Writer::kLogistic, {flat}, {1, 12, 2});
+  writer.outputs = {writer.Apply(Writer::kConcatenation, {flat, other}, {1, 24, 2}, {{0, 1}})};
+  ExpectAsReference(writer, "rows");
+}
+
+TEST(TfliteNetwork, WholeNetworks) {
+  for (const Writer& writer : SmallNetworks()) ExpectAsReference(writer, "whole");
+}
+
+/// Graphs of 30 random operators on one size of image, where tensors are read once, twice or never, soon or late, and
+/// wanted or not: which buffers are shared, and which sums are done in place, differs in each.
+TEST(TfliteNetwork, RandomGraphs) {
+  size_t compared = 0;
+  for (uint64_t seed = 0; seed < 60; ++seed) {
+    HashRandom random(seed, {1});
+    const auto below = [&random](size_t n) { return static_cast<size_t>(random.Uniform() * static_cast<double>(n)); };
+    const std::vector<int> shape = {1, 5, 6, 4}, padded = {1, 7, 8, 4};
+    Writer writer;
+    std::vector<int> images = {writer.Input(shape)};
+    // Mostly the latest: chains with now and then a long link.
+    const auto any = [&] { return random.Uniform() < 0.6 ? images.back() : images[below(images.size())]; };
+    for (int i = 0; i < 30; ++i) {
+      const bool relu6 = random.Uniform() < 0.3;
+      switch (below(6)) {
+        case 0:
+          images.push_back(writer.Conv(any(), {4, 1, 1, 4}, shape, true, 1, relu6));
+          break;
+        case 1:
+          images.push_back(writer.Depthwise(any(), 3, 3, shape, true, 1, relu6));
+          break;
+        case 2: {
+          const int pad = writer.Pad(any(), {0, 0, 1, 1, 0, 2, 0, 0}, padded);
+          images.push_back(writer.Depthwise(pad, 3, 3, shape, false, 1, relu6));
+          if (relu6) images.push_back(writer.Conv(pad, {4, 3, 3, 4}, shape, false, 1));
+          break;
+        }
+        case 3: {
+          const int flat = writer.Apply(Writer::kReshape, {any(), writer.Ints({2}, {1, 120})}, {1, 120});
+          images.push_back(writer.Apply(Writer::kReshape, {flat, writer.Ints({4}, shape)}, shape));
+          break;
+        }
+        default:
+          images.push_back(writer.Apply(Writer::kAdd, {any(), any()}, shape, {{0, relu6 ? 3 : 0}}));
+      }
+    }
+    const auto computed = [&] { return images[1 + below(images.size() - 1)]; };
+    writer.outputs = {images.back(), computed(), computed()};
+    compared += ExpectAsReference(writer, Concatenate("seed ", seed), 1e-5);
+  }
+  EXPECT_GT(compared, 40'000U);
+}
+
+TEST(TfliteNetwork, WhatNoWantedOutputNeedsIsLeftOut) {
+  const TfliteModel model = ModelOf(SmallNetworks()[0]);
+  ASSERT_EQ(model.outputs.size(), 3U);
+  const std::vector<float> input = InputOf(model);
+  TfliteNetwork all(model), two(model, {2, 0}), twice(model, {1, 1});
+  EXPECT_EQ(all.num_operators(), static_cast<int>(model.operators.size()));
+  EXPECT_LT(two.num_operators(), all.num_operators());
+  const std::vector<TfliteValues> expected = all.Run(input), outputs = two.Run(input), same = twice.Run(input);
+  ASSERT_EQ(outputs.size(), 2U);
+  EXPECT_EQ(outputs[0].values, expected[2].values);
+  EXPECT_EQ(outputs[1].values, expected[0].values);
+  ASSERT_EQ(same.size(), 2U);
+  EXPECT_EQ(same[0].values, expected[1].values);
+  EXPECT_EQ(same[1].values, expected[1].values);
+}
+
+TEST(TfliteNetwork, OutlivesItsModel) {
+  auto model = std::make_unique<TfliteModel>(ModelOf(SmallNetworks()[0]));
+  const std::vector<float> input = InputOf(*model);
+  TfliteNetwork first(*model), second(*model);
+  const std::vector<TfliteValues> expected = first.Run(input);
+  model.reset();
+  TfliteNetwork moved = std::move(second);
+  const std::vector<TfliteValues> outputs = moved.Run(input);
+  for (size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(outputs[i].values, expected[i].values);
+}
+
+TEST(TfliteNetwork, CopiesShareKernelsAndNothingThatARunChanges) {
+  const TfliteModel model = ModelOf(SmallNetworks()[0]);
+  const std::vector<float> input = InputOf(model), other(input.size(), 0.5F);
+  auto first = std::make_unique<TfliteNetwork>(model);
+  const std::vector<TfliteValues> expected = first->Run(input);
+  TfliteNetwork copy(*first);
+  copy.Run(other);
+  first.reset();
+  const std::vector<TfliteValues> outputs = copy.Run(input);
+  ASSERT_EQ(outputs.size(), expected.size());
+  for (size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(outputs[i].values, expected[i].values);
+}
+
+TEST(TfliteNetwork, TwoThreadsGiveTheBitsOfOne) {
+  const TfliteModel model = ModelOf(SmallNetworks()[0]);
+  TfliteNetwork alone(model);
+  constexpr int kRuns = 40;
+  std::vector<std::vector<TfliteValues>> expected(kRuns);
+  const auto input = [&](int run) { return SomeFloats(InputOf(model).size(), static_cast<uint32_t>(run)); };
+  for (int run = 0; run < kRuns; ++run) expected[static_cast<size_t>(run)] = alone.Run(input(run));
+  std::vector<std::thread> threads;
+  threads.reserve(2);
+  std::vector<int> different(2, 0);
+  for (size_t t = 0; t < 2; ++t) {
+    threads.emplace_back([&, t] {
+      TfliteNetwork own = t == 0 ? TfliteNetwork(alone) : TfliteNetwork(model);
+      for (int run = 0; run < kRuns; ++run) {
+        const std::vector<TfliteValues> outputs = own.Run(input(run));
+        for (size_t i = 0; i < outputs.size(); ++i) {
+          different[t] += outputs[i].values != expected[static_cast<size_t>(run)][i].values ? 1 : 0;
+        }
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(different, std::vector<int>(2, 0));
+}
+
+TEST(TfliteNetwork, WrongArguments) {
+  const TfliteModel model = ModelOf(SmallNetworks()[0]);
+  EXPECT_THROW(TfliteNetwork(model, {3}), std::invalid_argument);
+  EXPECT_THROW(TfliteNetwork(model, {-1}), std::invalid_argument);
+  TfliteNetwork network(model);
+  EXPECT_THROW(network.Run(std::vector<float>(7)), std::invalid_argument);
+  TfliteModel two = model;
+  two.inputs.push_back(two.inputs[0]);
+  EXPECT_THROW(TfliteNetwork{two}, std::invalid_argument);
+  Writer flat;
+  flat.outputs = {flat.Apply(Writer::kLogistic, {flat.Input({1, 12})}, {1, 12})};
+  EXPECT_THROW(TfliteNetwork{ModelOf(flat)}, std::invalid_argument);
+}
+
+TEST(TfliteShapes, SamePaddingIsTensorFlows) {
+  struct Case {
+    int size, kernel, stride, before, after;
+  };
+  for (const Case& c : {Case{256, 3, 2, 0, 1},
+                        {255, 3, 2, 1, 1},
+                        {64, 3, 1, 1, 1},
+                        {64, 5, 1, 2, 2},
+                        {64, 5, 2, 1, 2},
+                        {64, 1, 2, 0, 0},
+                        {7, 2, 1, 0, 1},
+                        {8, 2, 2, 0, 0},
+                        {7, 2, 2, 0, 1},
+                        {1, 3, 2, 1, 1}}) {
+    const TflitePads pads = SamePads(c.size, c.kernel, c.stride);
+    EXPECT_EQ(pads.before, c.before) << c.size << " " << c.kernel << " " << c.stride;
+    EXPECT_EQ(pads.after, c.after) << c.size << " " << c.kernel << " " << c.stride;
+  }
+}
+
+}  // namespace
+}  // namespace bodyloom

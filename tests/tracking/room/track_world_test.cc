@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/tracking/room/shared_scene.h"
+
+#include <gtest/gtest.h>
+
+namespace bodyloom {
+namespace {
+
+std::vector<MatrixX3d> OneFrame() { return {(MatrixX3d(1, 3) << 0, 1, 3).finished()}; }
+
+TEST(TrackWorld, SaysHowItWasFound) {
+  GroundSummary ground;
+  EXPECT_EQ(WorldOfGround(ground, OneFrame()).source, WorldSource::kLevelCamera);
+  EXPECT_NEAR(WorldOfGround(ground, OneFrame()).camera_height_m(), 1.04, 1e-9);
+
+  ground.has_up = true;
+  ground.up = Eigen::Vector3d(0, -1, -0.1).normalized();
+  ground.up_sigma_deg = 4;
+  WorldFrame world = WorldOfGround(ground, OneFrame());
+  EXPECT_EQ(world.source, WorldSource::kVertical);
+  EXPECT_EQ(world.vertical_sigma_deg, 4);
+  EXPECT_NEAR(world.PointFromCamera({0, 1, 3}).y(), 0.04, 1e-9);
+
+  ground.has_plane = true;
+  ground.camera_height_m = 1.7;
+  ground.height_sigma_m = 0.02;
+  world = WorldOfGround(ground, OneFrame());
+  EXPECT_EQ(world.source, WorldSource::kGround);
+  EXPECT_EQ(world.camera_height_m(), 1.7);
+  EXPECT_EQ(world.height_sigma_m, 0.02);
+  EXPECT_TRUE(world.up_in_camera().isApprox(ground.up, 1e-12));
+  ground.given = true;
+  EXPECT_EQ(WorldOfGround(ground, OneFrame()).source, WorldSource::kGiven);
+}
+
+/// Somebody whose fit found the vertical and who stands on the plane 1.5 m under a level camera.
+TrackSequenceSummary Standing(double x) {
+  TrackSequenceSummary person;
+  person.status = SolveStatus::kConverged;
+  person.frames_by_status["tracked"] = 100;
+  person.ground.has_up = person.ground.has_plane = true;
+  person.ground.camera_height_m = 1.5;
+  person.ground.up_sigma_deg = 3;
+  person.ground.height_sigma_m = 0.05;
+  for (int i = 0; i < 6; ++i) {
+    person.ground.stances.push_back({.foot = i % 2,
+                                     .begin = 10 * i,
+                                     .end = 10 * i + 10,
+                                     .seconds = 0.4,
+                                     .place_m = {x + 0.3 * (i % 3), 1.5, 3 + 0.4 * i}});
+  }
+  return person;
+}
+
+TEST(TrackWorld, PeopleShareOne) {
+  const SharedScene scene = JoinScenes({Standing(-1), Standing(1)}, FocalPrior::ForImage(1280, 720));
+  const WorldFrame world = WorldOfScene(scene, OneFrame());
+  EXPECT_EQ(world.source, WorldSource::kPeople);
+  EXPECT_NEAR(world.camera_height_m(), 1.5, 1e-3);
+  EXPECT_GT(world.vertical_sigma_deg, 0);
+  EXPECT_LT(world.vertical_sigma_deg, 4.8) << "feet tell more than the lifter alone";
+  EXPECT_LT(world.height_sigma_m, 0.05);
+
+  TrackSequenceSummary floats = Standing(1);
+  floats.ground.stances.clear();
+  floats.ground.has_plane = false;
+  const WorldFrame one = WorldOfScene(JoinScenes({Standing(-1), floats}, FocalPrior::ForImage(1280, 720)), OneFrame());
+  EXPECT_EQ(one.source, WorldSource::kGround);
+  EXPECT_EQ(one.vertical_sigma_deg, 3);
+  EXPECT_EQ(one.height_sigma_m, 0.05);
+  EXPECT_EQ(WorldOfScene(SharedScene(), OneFrame()).source, WorldSource::kLevelCamera);
+}
+
+}  // namespace
+}  // namespace bodyloom

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/tracking/clip/camera_scale.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/scene/camera_path.h"
+#include "bodyloom/tracking/problem/robust.h"
+
+namespace bodyloom {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr double kScaleKernel = 3;
+constexpr double kLastKernel =
+    1;  // of unnamed feet: while they change, neither stands, and all such steps err to one side
+constexpr double kMaxRunStepS = 0.25;
+constexpr int kReweightings = 30;
+constexpr size_t kMostStarts = 256;  // from unnamed feet: each costs a pass over the clip
+
+/// One frame of a run: its whitened offset from the run's mean, a + s b.
+struct Offset {
+  Vector3d a, b;
+};
+using StandingRun = std::vector<Offset>;
+
+/// Frames [begin, end) of one foot as offsets.
+StandingRun MakeRun(const std::vector<std::array<FootPlace, 2>>& feet, std::span<const CameraPose> unit_path, int foot,
+                    size_t begin, size_t end, const CameraScaleOptions& options) {
+  Vector3d mean_q = Vector3d::Zero(), mean_c = Vector3d::Zero();
+  const auto in_scene = [&](size_t t) -> Vector3d {
+    return unit_path[t].camera_from_world_rotation.transpose() * feet[t][foot].ankle_m;
+  };
+  for (size_t t = begin; t < end; ++t) {
+    mean_q += in_scene(t) / static_cast<double>(end - begin);
+    mean_c += CentreOf(unit_path[t]) / static_cast<double>(end - begin);
+  }
+  StandingRun run;
+  for (size_t t = begin; t < end; ++t) {
+    const Vector3d ray = in_scene(t).normalized();
+    const Matrix3d whitening =
+        Matrix3d::Identity() / options.across_m + (1 / options.along_m - 1 / options.across_m) * ray * ray.transpose();
+    run.push_back({whitening * (in_scene(t) - mean_q), whitening * (CentreOf(unit_path[t]) - mean_c)});
+  }
+  return run;
+}
+
+std::vector<StandingRun> StandingRuns(const std::vector<std::array<FootPlace, 2>>& feet,
+                                      std::span<const double> timestamps, const std::vector<char>& cut_before,
+                                      std::span<const CameraPose> unit_path, const CameraScaleOptions& options) {
+  std::vector<StandingRun> runs;
+  const size_t T = feet.size();
+  for (int foot = 0; foot < 2; ++foot) {
+    const auto stands = [&](size_t t) {
+      const FootPlace& place = feet[t][foot];
+      return place.seen && place.contact >= options.min_contact && place.ankle_m.allFinite();
+    };
+    for (size_t begin = 0, end = 0; begin < T; begin = std::max(end, begin + 1)) {
+      for (end = begin; end < T && stands(end); ++end) {
+        if (end > begin && (cut_before[end] != 0 || timestamps[end] - timestamps[end - 1] > kMaxRunStepS)) break;
+      }
+      if (end < begin + 3 || timestamps[end - 1] - timestamps[begin] < options.min_run_s) continue;
+      runs.push_back(MakeRun(feet, unit_path, foot, begin, end, options));
+    }
+  }
+  return runs;
+}
+
+double CostAt(const std::vector<StandingRun>& runs, double s) {
+  double cost = 0;
+  for (const StandingRun& run : runs) {
+    for (const Offset& e : run) cost += 0.5 * GemanMcClure((e.a + s * e.b).squaredNorm(), kScaleKernel).rho;
+  }
+  return cost;
+}
+
+struct Normal {
+  double H = 0, g = 0;
+};
+
+/// Of the run's reweighted least squares at s; with a kernel of 0, of plain least squares.
+Normal NormalOf(const StandingRun& run, double s, double kernel) {
+  Normal normal;
+  for (const Offset& e : run) {
+    const double weight = kernel > 0 ? GemanMcClure((e.a + s * e.b).squaredNorm(), kernel).weight : 1;
+    normal.H += weight * e.b.squaredNorm();
+    normal.g += weight * e.a.dot(e.b);
+  }
+  return normal;
+}
+
+/// Both feet over one step of time; a foot that is not seen at both ends has no offset.
+struct Step {
+  std::array<std::optional<Offset>, 2> feet;
+};
+
+std::vector<Step> StepsOf(const std::vector<std::array<FootPlace, 2>>& feet, std::span<const double> timestamps,
+                          const std::vector<char>& cut_before, std::span<const CameraPose> unit_path,
+                          const CameraScaleOptions& options) {
+  std::vector<Step> steps;
+  const size_t T = feet.size();
+  for (size_t begin = 0, end = 0; begin < T; ++begin) {
+    bool is_cut = false;
+    for (end = begin + 1; end < T && timestamps[end] - timestamps[begin] < options.step_s; ++end) {
+      is_cut = is_cut || cut_before[end] != 0;
+    }
+    if (end >= T || is_cut || cut_before[end] != 0) continue;
+    if (timestamps[end] - timestamps[begin] > options.step_s + kMaxRunStepS) continue;
+    Step step;
+    for (int foot = 0; foot < 2; ++foot) {
+      const FootPlace &from = feet[begin][foot], &to = feet[end][foot];
+      if (!from.seen || !to.seen || !from.ankle_m.allFinite() || !to.ankle_m.allFinite()) continue;
+      // Each deviates from their mean by half of what separates them, once before and once after.
+      const StandingRun run =
+          MakeRun({feet[begin], feet[end]}, std::array{unit_path[begin], unit_path[end]}, foot, 0, 2, options);
+      step.feet[foot] = Offset{std::sqrt(2.0) * run[0].a, std::sqrt(2.0) * run[0].b};
+    }
+    if (step.feet[0] || step.feet[1]) steps.push_back(step);
+  }
+  return steps;
+}
+
+/// The foot that moves less at scale s.
+const Offset& SlowerFoot(const Step& step, double s) {
+  if (!step.feet[1]) return *step.feet[0];
+  if (!step.feet[0]) return *step.feet[1];
+  const auto moves = [&](int foot) { return (step.feet[foot]->a + s * step.feet[foot]->b).squaredNorm(); };
+  return moves(0) <= moves(1) ? *step.feet[0] : *step.feet[1];
+}
+
+double CostAt(const std::vector<Step>& steps, double s) {
+  double cost = 0;
+  for (const Step& step : steps) {
+    const Offset& e = SlowerFoot(step, s);
+    cost += 0.5 * GemanMcClure((e.a + s * e.b).squaredNorm(), kScaleKernel).rho;
+  }
+  return cost;
+}
+
+/// The positive start of least cost; 0 when none costs less than a path without length.
+template <typename Feet>
+double BestStart(const Feet& feet, const std::vector<double>& starts) {
+  double best = 0, best_cost = CostAt(feet, 0);
+  for (const double s : starts) {
+    const double cost = s > 0 ? CostAt(feet, s) : best_cost;
+    if (cost < best_cost) best = s, best_cost = cost;
+  }
+  return best;
+}
+
+/// The second way of the header.
+CameraScale ScaleOfUnnamedFeet(const std::vector<Step>& steps, double seconds_a_frame,
+                               const CameraScaleOptions& options) {
+  CameraScale result;
+  result.why = steps.empty() ? "no foot is seen" : "the feet do not tell it";
+  std::vector<double> starts;
+  for (size_t i = 0; i < steps.size(); i += 1 + steps.size() / kMostStarts) {
+    for (const std::optional<Offset>& foot : steps[i].feet) {
+      if (foot && foot->b.squaredNorm() > 0) starts.push_back(-foot->a.dot(foot->b) / foot->b.squaredNorm());
+    }
+  }
+  double best = BestStart(steps, starts);
+  if (!(best > 0)) return result;
+  const auto at = [&](double s, double kernel) {
+    Normal sum;
+    for (const Step& step : steps) {
+      const Normal normal = NormalOf({SlowerFoot(step, s)}, s, kernel);
+      sum.H += normal.H;
+      sum.g += normal.g;
+    }
+    return sum;
+  };
+  for (int pass = 0; pass < kReweightings; ++pass) {
+    const Normal sum = at(best, pass < kReweightings / 2 ? kScaleKernel : kLastKernel);
+    if (!(sum.H > 0)) return result;
+    best = -sum.g / sum.H;
+  }
+  const double information = at(best, kScaleKernel).H * std::min(1.0, seconds_a_frame / options.correlation_s);
+  result.scale_m = best;
+  result.sigma_m = information > 0 ? 1 / std::sqrt(information) : best;
+  result.found = best > 0 && result.sigma_m <= options.max_relative_sigma * best &&
+                 CostAt(steps, best) <= (1 - options.least_gain) * CostAt(steps, 0);
+  if (result.found) result.why = "one of both feet stands at any time";
+  return result;
+}
+
+/// The first way of the header.
+CameraScale ScaleOfStandingFeet(const std::vector<StandingRun>& runs, const CameraScaleOptions& options) {
+  CameraScale result;
+  std::vector<double> starts;
+  for (const StandingRun& run : runs) {
+    const Normal normal = NormalOf(run, 0, 0);
+    if (normal.H > 0) starts.push_back(-normal.g / normal.H);
+  }
+  double best = BestStart(runs, starts);
+  if (!(best > 0)) {
+    result.why = runs.empty() ? "no foot is seen to stand" : "standing feet do not tell it";
+    return result;
+  }
+  double information = 0;
+  for (int pass = 0; pass < kReweightings; ++pass) {
+    Normal sum;
+    information = 0;
+    for (const StandingRun& run : runs) {
+      const Normal normal = NormalOf(run, best, kScaleKernel);
+      sum.H += normal.H;
+      sum.g += normal.g;
+      information += normal.H / static_cast<double>(run.size());
+    }
+    if (!(sum.H > 0)) break;
+    best = -sum.g / sum.H;
+  }
+  result.scale_m = best;
+  result.sigma_m = information > 0 ? 1 / std::sqrt(information) : best;
+  result.found = best > 0 && result.sigma_m <= options.max_relative_sigma * best;
+  result.why = result.found ? std::to_string(runs.size()) + " times that a foot stands"
+                            : "the camera hardly moves while a foot stands";
+  return result;
+}
+
+}  // namespace
+
+CameraScale EstimateCameraScale(const std::vector<std::array<FootPlace, 2>>& feet, std::span<const double> timestamps,
+                                const std::vector<char>& cut_before, std::span<const CameraPose> unit_path,
+                                const CameraScaleOptions& options) {
+  BODYLOOM_CHECK(
+      feet.size() == timestamps.size() && feet.size() == cut_before.size() && feet.size() == unit_path.size(),
+      "camera scale: ", feet.size(), " frames of feet, ", timestamps.size(), " timestamps, ", cut_before.size(),
+      " cuts and ", unit_path.size(), " cameras, expected as many of each");
+  CameraScale named = ScaleOfStandingFeet(StandingRuns(feet, timestamps, cut_before, unit_path, options), options);
+  if (named.found || feet.size() < 2) return named;
+  const double seconds_a_frame = (timestamps.back() - timestamps.front()) / static_cast<double>(feet.size() - 1);
+  CameraScale unnamed =
+      ScaleOfUnnamedFeet(StepsOf(feet, timestamps, cut_before, unit_path, options), seconds_a_frame, options);
+  return unnamed.found ? unnamed : named;
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,391 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/tracking/clip/clip_fit.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <string>
+#include <utility>
+
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/geometry/math/rotation.h"
+#include "bodyloom/geometry/scene/camera_path.h"
+#include "bodyloom/tracking/clip/camera_scale.h"
+#include "bodyloom/tracking/clip/term_kinds.h"
+#include "bodyloom/tracking/clip/track_plan.h"
+#include "bodyloom/tracking/clip/track_result.h"
+#include "bodyloom/tracking/clip/uncertainty.h"
+#include "bodyloom/tracking/initialise/ground_plane.h"
+#include "bodyloom/tracking/initialise/impossible_frames.h"
+#include "bodyloom/tracking/initialise/initial_states.h"
+#include "bodyloom/tracking/initialise/swap_repair.h"
+#include "bodyloom/tracking/problem/input_checks.h"
+#include "bodyloom/tracking/problem/moving_camera.h"
+#include "bodyloom/tracking/problem/stature.h"
+#include "bodyloom/tracking/room/shared_scene.h"
+#include "bodyloom/tracking/solvers/chain/chain_problem.h"
+#include "bodyloom/tracking/solvers/residuals/acceleration_cost.h"
+#include "bodyloom/tracking/solvers/term_costs.h"
+#include "bodyloom/tracking/terms/dense/dense.h"
+#include "bodyloom/tracking/terms/observability.h"
+
+namespace bodyloom {
+namespace {
+
+using Eigen::VectorXd;
+
+/// The camera the problem starts with.
+Camera StartCamera(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
+  const ClipExtent extent = ExtentOf(input);
+  const int width = input.camera.width > 0 ? input.camera.width : extent.width;
+  const int height = input.camera.height > 0 ? input.camera.height : extent.height;
+  if (options.camera_knowledge != CameraKnowledge::kKnown) {
+    const FocalPrior prior = input.focal_prior.value_or(FocalPrior::ForImage(width, height));
+    return MakePinhole(width, height, std::exp(prior.log_mean));
+  }
+  Camera camera = input.camera;
+  camera.width = width;
+  camera.height = height;
+  return camera;
+}
+
+/// Hypotheses are off by a share of the body, while a dense keypoint's σ is in pixels: where the image is large, all of
+/// them would be outliers of the start. (The lifter's starts are near enough: with it this finds worse minima.)
+void WidenDenseKernels(double stature, SequenceProblem* problem) {
+  constexpr double kShareOfHeight = 0.008;  // the usual 4 σ of 1 px for a person 500 pixels high
+  for (size_t t = 0; t < problem->frames.size(); ++t) {
+    auto* dense = problem->frames[t].terms.Find<DenseTerm>();
+    if (dense == nullptr || dense->size() == 0) continue;
+    double sigma_px = 0;
+    for (const DenseKeypoint& point : *dense->points) sigma_px += point.sigma_px;
+    sigma_px /= static_cast<double>(dense->size());
+    const double share_px = kShareOfHeight * UprightHeightPx(problem->layout, StateInCamera(*problem, t), stature);
+    dense->kernel = std::max(dense->kernel, share_px / sigma_px);
+  }
+}
+
+}  // namespace
+
+ClipFit::ClipFit(const TrackSequenceInput& given, const TrackSequenceOptions& options, TrackSequenceSummary* summary)
+    : options_(options), summary_(*summary), threads_(ThreadsFor(options.num_threads)), input_(given) {
+  CleanObservations();
+  joints_ = JointsToStartFrom(input_, &joints_from_dense_);
+  summary_.solver = ToString(options.solver);
+  summary_.plan = PlanTrackSequence(input_, options);
+  if (num_impossible_ > 0) {
+    summary_.plan.push_back(
+        {"2D joints of impossible frames", false,
+         std::to_string(num_impossible_) + " frames jump away from the person and back, or are flat"});
+  }
+  clock_ = StageClock();
+  SetUpProblem();
+}
+
+void ClipFit::CleanObservations() {
+  if (input_.keypoints != nullptr) {
+    keypoints_ = *input_.keypoints;
+    DropUnusable(&keypoints_);
+    num_impossible_ = DropImpossibleFrames(&keypoints_);
+    summary_.num_swaps_repaired = RepairSwaps(&keypoints_);
+    input_.keypoints = &keypoints_;
+  }
+  if (input_.dense != nullptr && HasUnusable(*input_.dense)) {
+    dense_ = *input_.dense;
+    DropUnusable(&dense_);
+    input_.dense = &dense_;
+  }
+}
+
+void ClipFit::SetUpProblem() {
+  const BodyModel& model = *input_.body;
+  const int num_betas = options_.estimate_shape ? std::min(model.num_betas(), 10) : 0;
+  landmarks_ = FindObservedLandmarks(model, input_.keypoints, num_betas);
+  const std::vector<int> active =
+      FindActiveJoints(model, landmarks_, input_.dense != nullptr || input_.part_labels != nullptr,
+                       options_.skip_unneeded, options_.user_terms);
+  const Camera camera = StartCamera(input_, options_);
+  problem_.layout = FrameLayout::Make(model, options_.camera_knowledge, camera, active, num_betas);
+  problem_.timestamps = *ExtentOf(input_).timestamps;
+  problem_.cut_before = joints_ != nullptr ? FindCuts(*joints_) : std::vector<char>(num_frames(), 0);
+  problem_.betas = VectorXd::Zero(num_betas);
+  problem_.log_focal = problem_.log_focal_prior = std::log(camera.fx);
+  problem_.log_focal_sigma = input_.focal_prior.value_or(FocalPrior()).log_sigma;
+  stature_m_ = AssumedStature(input_);
+  problem_.shape_prior.height_m = summary_.stature_m = input_.stature_m;
+}
+
+bool ClipFit::FindStart() {
+  if (options_.progress && !options_.progress({"initialise", 0.0, 0.0})) summary_.status = SolveStatus::kStopped;
+  const InitialStates initial = FindInitialStates(input_, joints_, problem_.layout, options_, &lifted_);
+  if (initial.states.empty()) {
+    summary_.message =
+        "no frame shows enough of the body to start from: a shoulder and a hip are needed, with some confidence";
+    return false;
+  }
+  problem_.states = initial.states;
+  problem_.betas = initial.betas;
+  problem_.shape_prior.mean = initial.betas;
+  clock_.Book("initialise");
+  if (!lifted_.frames.empty()) {
+    lifted_landmarks_ = CompileLiftedLandmarks(*input_.body, problem_.layout.num_betas);
+  }
+  return true;
+}
+
+void ClipFit::FollowCamera() {
+  if (input_.camera_from_scene == nullptr) return;
+  camera_path_ = ScaledPath(*input_.camera_from_scene, input_.camera_scale_m);
+  summary_.camera_path.moves = true;
+  summary_.camera_path.scale_m = input_.camera_scale_m;
+  summary_.camera_path.estimated = seeks_camera_scale();
+  for (size_t t = 0; t < num_frames(); ++t) {
+    problem_.frames[t].camera_from_scene = &camera_path_[t];
+    problem_.states[t] =
+        StateInCamera(problem_.layout, Inverse(camera_path_[t]), problem_.betas, std::move(problem_.states[t]));
+  }
+}
+
+void ClipFit::Observe() {
+  const size_t T = num_frames();
+  problem_.frames.resize(T);
+  const ClipTermInput clip{.input = input_,
+                           .options = options_,
+                           .layout = problem_.layout,
+                           .landmarks = landmarks_,
+                           .joints = joints_,
+                           .lifted = lifted_,
+                           .lifted_landmarks = lifted_landmarks_,
+                           .stature_m = stature_m_,
+                           .num_threads = threads_};
+  for (const TermKind& kind : TermKinds()) {
+    std::unique_ptr<ClipTerm> term = kind.make(clip);
+    if (term == nullptr) continue;
+    term->Observe(&problem_);
+    terms_.push_back(std::move(term));
+  }
+  for (const FrameData& frame : problem_.frames) {
+    summary_.num_observations +=
+        static_cast<int>(frame.Get<LandmarkTerm>().seen.size() + frame.Get<DenseTerm>().size());
+  }
+  if (const int rows = NumFarRows(problem_); rows > ChainProblem::kMaxFarRows) {
+    summary_.plan.push_back(
+        {"chain", false,
+         Concatenate("terms couple frames apart from each other in ", rows, " residuals: Ceres solves every stage")});
+  }
+  FollowCamera();
+  problem_.velocity_weight = options_.velocity_weight;
+  // Detections of a frame and of its neighbours err together (COCO joints are not the body's, and detectors are off for
+  // a third of a second at a time), so frames do not outvote the shape prior as independent measurements would.
+  problem_.shape_prior.weight = std::max(1.0, options_.shape_prior_weight * static_cast<double>(T));
+  for (const auto& term : terms_) term->BeginFit(&problem_);
+  summary_.num_parameters = static_cast<int>(T) * problem_.layout.num_frame_columns() + problem_.layout.num_columns -
+                            problem_.layout.beta_column;
+  coarse_frames_ = FramesAtRate(problem_, options_.coarse_rate);
+  stages_ = StagesFor(input_, options_, coarse_frames_.size() < T);
+  runner_.emplace(input_, options_, threads_, &clock_, &summary_);
+}
+
+void ClipFit::FitCoarseFrames() {
+  const bool from_guess = input_.initialiser == nullptr;
+  const bool has_rounds =
+      std::any_of(terms_.begin(), terms_.end(), [](const auto& term) { return term->rounds().count > 0; });
+  const bool learns = !lifted_.frames.empty() || has_rounds || seeks_camera_scale();
+  if (!from_guess && coarse_frames_.size() == num_frames() && !learns) return;
+  SequenceProblem coarse = SelectFrames(problem_, coarse_frames_);
+  if (from_guess) FitNearStart(&coarse);
+  FitCameraScale(&coarse);
+  if (has_points()) runner_->Run(stages_.coarse, &coarse);
+  SettleFocalLength(&coarse);
+  FitCameraScale(&coarse);
+  LearnFromFirstAnswer(&coarse);
+  FitRounds(&coarse);
+  SpreadFrames(coarse, coarse_frames_, &problem_);
+}
+
+void ClipFit::FitNearStart(SequenceProblem* coarse) {
+  if (lifted_.frames.empty()) WidenDenseKernels(stature_m_, coarse);
+  runner_->Run(stages_.near_start, coarse);
+  for (FrameData& frame : coarse->frames) {
+    if (auto* dense = frame.terms.Find<DenseTerm>(); dense != nullptr) dense->kernel = DenseTerm().kernel;
+  }
+}
+
+void ClipFit::LearnFromFirstAnswer(SequenceProblem* coarse) {
+  if (!runner_->ok()) return;
+  if (options_.fit_smoothness) {
+    problem_.smoothness = coarse->smoothness = FitSmoothness(*coarse, coarse->smoothness[0]);
+  }
+  bool learned = false;
+  for (const auto& term : terms_) learned = term->LearnFrom(coarse_frames_, coarse, &problem_) || learned;
+  if (has_points() && (options_.fit_smoothness || learned || settled_focal_)) runner_->Run(stages_.again, coarse);
+}
+
+void ClipFit::FitCameraScale(SequenceProblem* coarse) {
+  if (!seeks_camera_scale() || !runner_->ok()) return;
+  CameraPathSummary& summary = summary_.camera_path;
+  if (lifted_.frames.empty() || joints_ == nullptr) {
+    summary.why = "the lifter says which feet stand, and it does not run";
+    return;
+  }
+  std::vector<std::array<FootPlace, 2>> feet =
+      SeenFeet(*coarse, coarse_frames_, lifted_.frames, lifted_landmarks_, *joints_);
+  std::vector<CameraPose> unit_path;
+  for (size_t i = 0; i < feet.size(); ++i) {
+    unit_path.push_back((*input_.camera_from_scene)[coarse_frames_[i]]);
+    for (FootPlace& foot : feet[i]) foot.ankle_m = MovedPoint(camera_path_[coarse_frames_[i]], foot.ankle_m);
+  }
+  const CameraScale scale = EstimateCameraScale(feet, coarse->timestamps, coarse->cut_before, unit_path);
+  summary.why = scale.why;
+  summary.scale_m = scale.found ? scale.scale_m : 0;
+  summary.sigma_m = scale.found ? scale.sigma_m : 0;
+  ScaleCameraPath(summary.scale_m, coarse);
+}
+
+void ClipFit::ScaleCameraPath(double scale_m, SequenceProblem* coarse) {
+  const std::vector<CameraPose> before = camera_path_, after = ScaledPath(*input_.camera_from_scene, scale_m);
+  const auto move = [&](int t, const Eigen::VectorXd& betas, FrameState* state) {
+    *state = StateInCamera(problem_.layout, Compose(Inverse(after[t]), before[t]), betas, std::move(*state));
+  };
+  for (size_t i = 0; i < coarse_frames_.size(); ++i) move(coarse_frames_[i], coarse->betas, &coarse->states[i]);
+  for (size_t t = 0; t < num_frames(); ++t) move(static_cast<int>(t), problem_.betas, &problem_.states[t]);
+  std::copy(after.begin(), after.end(), camera_path_.begin());  // frames point into it
+}
+
+void ClipFit::SettleFocalLength(SequenceProblem* coarse) {
+  constexpr double kHeldLogSigma = 1e-4;
+  const bool joints_alone = !lifted_.frames.empty() && input_.dense == nullptr;
+  if (problem_.layout.focal_column < 0 || !joints_alone || !runner_->ok()) return;
+  const FocalFit fit{coarse->log_focal, FocalLogSigmaOf(*coarse, threads_)};
+  const FocalFit joined =
+      JoinFocalFits({&fit, 1}, {.log_mean = problem_.log_focal_prior, .log_sigma = problem_.log_focal_sigma});
+  const double farther = std::exp(joined.log_px - fit.log_px);
+  const double pelvis_z = input_.body->RestJoints(coarse->betas)(0, 2);
+  for (size_t i = 0; i < coarse->states.size(); ++i) {
+    FrameState seen = StateInCamera(*coarse, i);
+    seen.translation.z() = farther * (pelvis_z + seen.translation.z()) - pelvis_z;
+    const CameraPose* camera = coarse->frames[i].camera_from_scene;
+    coarse->states[i] = camera == nullptr
+                            ? std::move(seen)
+                            : StateInCamera(problem_.layout, Inverse(*camera), coarse->betas, std::move(seen));
+  }
+  for (SequenceProblem* problem : {coarse, &problem_}) {
+    problem->log_focal = problem->log_focal_prior = joined.log_px;
+    problem->log_focal_sigma = kHeldLogSigma;
+  }
+  summary_.focal_fit = fit;
+  settled_focal_ = joined;
+}
+
+void ClipFit::FitRounds(SequenceProblem* coarse) {
+  // Labels bring the body into its outline before dense keypoints look at what it shows.
+  for (auto term = terms_.rbegin(); term != terms_.rend(); ++term) {
+    const ClipTerm::Rounds rounds = (*term)->rounds();
+    Stage stage = stages_.round;
+    stage.name = rounds.stage;
+    stage.max_iterations = rounds.max_iterations;
+    for (int round = 0; runner_->ok() && round < rounds.count; ++round) {
+      (*term)->StartRound(round, coarse_frames_, coarse);
+      runner_->Run(stage, coarse);
+    }
+  }
+}
+
+void ClipFit::FitAllFrames() {
+  std::vector<int> all(num_frames());
+  std::iota(all.begin(), all.end(), 0);
+  for (auto term = terms_.rbegin(); term != terms_.rend(); ++term) {
+    const int count = (*term)->rounds().count;
+    if ((*term)->rounds().stage[0] != '\0') (*term)->StartRound(std::max(0, count - 1), all, &problem_);
+  }
+  runner_->Run(stages_.all, &problem_);
+}
+
+void ClipFit::FinishWithCeres() {
+  if (options_.solver != SequenceSolver::kChainThenCeres) return;
+  runner_->Run(stages_.finish, SequenceSolver::kCeres, &problem_);
+}
+
+void ClipFit::Finish(TrackSequenceResult* result) {
+  FillTrack(input_, problem_, landmarks_, result);
+  SummariseImageTerms(problem_, &summary_);
+  SummariseCosts(problem_, threads_, &summary_);
+  for (const auto& term : terms_) term->Summarise(problem_, &summary_);
+  result->track.world = WorldOfGround(summary_.ground, result->track.joints);
+  clock_.Book("finish");
+  summary_.focal_log_sigma = problem_.layout.focal_column < 0 ? 0 : std::numeric_limits<double>::quiet_NaN();
+  if (options_.estimate_uncertainty) {
+    FillJointSigma(&result->track);
+    clock_.Book("uncertainty");
+  }
+  summary_.seconds = clock_.seconds();
+}
+
+void ClipFit::FillJointSigma(Track* track) {
+  // On the coarse frames: neighbours' detection errors are not independent, and their joints' spread changes slowly.
+  const PositionSigma sigma =
+      PositionSigmaOf(SelectFrames(problem_, coarse_frames_), threads_, &summary_.focal_log_sigma);
+  const auto distance = [&](size_t i, size_t t) {
+    return std::abs(problem_.timestamps[coarse_frames_[i]] - problem_.timestamps[t]);
+  };
+  for (size_t i = 0, t = 0; t < num_frames(); ++t) {
+    while (i + 1 < coarse_frames_.size() && distance(i + 1, t) <= distance(i, t)) ++i;
+    track->joint_sigma.row(t) = sigma.joints.row(i);
+    track->root_sigma[t] = sigma.hips[i];
+  }
+  if (!settled_focal_) return;
+  summary_.focal_log_sigma = settled_focal_->log_sigma;  // in the equations it is held
+  AddFocalSpread(settled_focal_->log_sigma, track);
+}
+
+std::vector<double> TipAccelerationRms(const SequenceProblem& problem, int shot) {
+  const std::vector<int> shots = ShotOfFrames(problem.cut_before);
+  std::vector<double> rms = JointLevers(*problem.layout.model);
+  std::vector<char> active(rms.size(), 0);
+  for (const int j : problem.layout.active_joints) active[j] = 1;
+  const auto [begin, end] = std::equal_range(shots.begin(), shots.end(), shot);
+  const auto first = static_cast<size_t>(begin - shots.begin()), last = static_cast<size_t>(end - shots.begin());
+  for (size_t j = 0; j < rms.size(); ++j) {
+    double squares = 0;
+    int64_t count = 0;
+    for (size_t t = first + 2; active[j] != 0 && t < last; ++t) {
+      const AccelerationFactors f = AccelerationFactors::Of(problem.timestamps[t - 1] - problem.timestamps[t - 2],
+                                                            problem.timestamps[t] - problem.timestamps[t - 1]);
+      const Eigen::Matrix3d &a = problem.states[t - 2].rotations[j], &b = problem.states[t - 1].rotations[j],
+                            &c = problem.states[t].rotations[j];
+      const double squared = (rms[j] * (f.later * AxisAngleFromRotation(b.transpose() * c) -
+                                        f.earlier * AxisAngleFromRotation(a.transpose() * b)))
+                                 .squaredNorm();
+      if (!std::isfinite(squared)) continue;
+      squares += squared;
+      ++count;
+    }
+    rms[j] = count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0;
+  }
+  return rms;
+}
+
+std::vector<Smoothness> FitSmoothness(const SequenceProblem& problem, const Smoothness& before) {
+  std::vector<Smoothness> fitted(1 + ShotOfFrames(problem.cut_before).back(), before);
+  for (size_t shot = 0; shot < fitted.size(); ++shot) {
+    const std::vector<double> rms = TipAccelerationRms(problem, static_cast<int>(shot));
+    double squares = 0;
+    for (const double r : rms) squares += r * r;
+    if (!(squares > 0)) continue;
+    const double all = std::sqrt(squares / static_cast<double>(problem.layout.active_joints.size()));
+    const double sigma = std::clamp(kSigmaOfRms * all, kLeastSigma, kMostSigma);
+    Smoothness& smooth = fitted[shot];
+    smooth.root_acceleration *= sigma / before.tip_acceleration;
+    smooth.weak_scale_acceleration *= sigma / before.tip_acceleration;
+    smooth.tip_acceleration = sigma;
+    smooth.of_joint.resize(rms.size());
+    for (size_t j = 0; j < rms.size(); ++j) {
+      smooth.of_joint[j] = std::clamp(kSigmaOfRms * rms[j], kLeastOfJoint, kMostOfJoint);
+    }
+  }
+  return fitted;
+}
+
+}  // namespace bodyloom

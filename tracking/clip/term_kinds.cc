@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/tracking/clip/term_kinds.h"
+
+#include <utility>
+
+#include "bodyloom/tracking/problem/track_summary.h"
+#include "bodyloom/tracking/problem/user_cost.h"
+#include "bodyloom/tracking/terms/dense/dense.h"
+#include "bodyloom/tracking/terms/ground_contact/clip_ground.h"
+#include "bodyloom/tracking/terms/ground_contact/ground_contact.h"
+#include "bodyloom/tracking/terms/initialiser.h"
+#include "bodyloom/tracking/terms/joint_limits.h"
+#include "bodyloom/tracking/terms/landmarks.h"
+#include "bodyloom/tracking/terms/lifted/lifted_pose.h"
+#include "bodyloom/tracking/terms/part_labels/part_labels.h"
+#include "bodyloom/tracking/terms/pose_prior/pose_prior.h"
+#include "bodyloom/tracking/terms/rendered_uv/rendered_uv.h"
+#include "bodyloom/tracking/terms/straight_knees.h"
+#include "bodyloom/tracking/terms/upright.h"
+
+namespace bodyloom {
+
+std::span<const TermKind> TermKinds() {
+  static constexpr TermKind kKinds[] = {
+      {PlanLandmarks, MakeLandmarkTerms},      {PlanDense, MakeDenseTerms},
+      {PlanRenderedUv, MakeDenseRounds},       {PlanPartLabels, MakePartLabelRounds},
+      {PlanLifted, MakeLiftedPoseTerms},       {PlanGround, MakeClipGround},
+      {PlanPosePrior, MakePosePriorTerms},     {PlanJointLimits, MakeJointLimitTerms},
+      {PlanUpright, MakeUprightTerms},         {PlanStraightKnees, MakeStraightKneesTerms},
+      {PlanInitialiser, MakeInitialiserTerms}, {PlanUserTerms, MakeUserTerms},
+  };
+  return kKinds;
+}
+
+namespace {
+
+class EachFrameTerm : public ClipTerm {
+ public:
+  explicit EachFrameTerm(std::function<void(int, const FrameState&, FrameData*)> observe)
+      : observe_(std::move(observe)) {}
+  void Observe(SequenceProblem* problem) override {
+    for (size_t t = 0; t < problem->frames.size(); ++t) {
+      observe_(static_cast<int>(t), problem->states[t], &problem->frames[t]);
+    }
+  }
+
+ private:
+  std::function<void(int, const FrameState&, FrameData*)> observe_;
+};
+
+}  // namespace
+
+std::unique_ptr<ClipTerm> EachFrame(std::function<void(int, const FrameState&, FrameData*)> observe) {
+  return std::make_unique<EachFrameTerm>(std::move(observe));
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The solves of TrackSequence(), one after the other, in a table.
+#pragma once
+
+#include <functional>
+
+#include "bodyloom/geometry/base/stopwatch.h"
+#include "bodyloom/tracking/problem/sequence_problem.h"
+#include "bodyloom/tracking/problem/track_input.h"
+#include "bodyloom/tracking/problem/track_options.h"
+#include "bodyloom/tracking/problem/track_summary.h"
+
+namespace bodyloom {
+
+struct Stage {
+  const char* name;
+  double pull;             ///< weight of the initialiser's term (terms/initialiser.h)
+  double landmark_kernel;  ///< c of the 2D joints, in σ
+  double tolerance;        ///< relative change of the cost that ends it
+  int max_iterations;
+  double from, to;  ///< of the whole run, for progress
+};
+
+/// Coarse in time first: what a frame cannot decide alone its neighbours decide together, and 15 frames a second are
+/// enough to see how a person moves. All stages but the last solve the coarse frames.
+struct Stages {
+  Stage near_start;  ///< pulled towards the start, wide kernels; not from an initialiser
+  Stage coarse;      ///< what was seen against the priors
+  Stage again;       ///< with the clip's own smoothness and its ground
+  Stage round;       ///< each round of a term (problem/clip_term.h); its name and iterations are the term's
+  Stage all;         ///< every frame: few steps when a coarse solve has converged in what converges slowly
+  Stage finish;      ///< every frame by Ceres, to its own convergence (SequenceSolver::kChainThenCeres)
+};
+/// `coarse_to_fine`: the coarse frames are fewer than all.
+Stages StagesFor(const TrackSequenceInput& input, const TrackSequenceOptions& options, bool coarse_to_fine);
+
+/// Solves stages and keeps the summary and the clock; once one has failed or was stopped, later ones do nothing.
+class StageRunner {
+ public:
+  /// All are borrowed.
+  StageRunner(const TrackSequenceInput& input, const TrackSequenceOptions& options, int num_threads, StageClock* clock,
+              TrackSequenceSummary* summary)
+      : input_(input), options_(options), num_threads_(num_threads), clock_(clock), summary_(summary) {}
+
+  /// True while the run may go on.
+  [[nodiscard]] bool ok() const { return ok_; }
+  bool Run(const Stage& stage, SequenceProblem* problem) {
+    const bool ceres = options_.solver == SequenceSolver::kCeres;
+    return Run(stage, ceres ? SequenceSolver::kCeres : SequenceSolver::kChain, problem);
+  }
+  bool Run(const Stage& stage, SequenceSolver solver, SequenceProblem* problem);
+
+ private:
+  const TrackSequenceInput& input_;
+  const TrackSequenceOptions& options_;
+  int num_threads_;
+  StageClock* clock_;
+  TrackSequenceSummary* summary_;
+  bool ok_ = true;
+};
+
+}  // namespace bodyloom

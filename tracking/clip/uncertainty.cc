@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/tracking/clip/uncertainty.h"
+
+#include <Eigen/LU>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/geometry/math/rotation.h"
+#include "bodyloom/geometry/scene/camera_path.h"
+#include "bodyloom/tracking/problem/body_points.h"
+#include "bodyloom/tracking/solvers/chain/chain_inverse.h"
+
+namespace bodyloom {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+constexpr double kErringTogether = 4;  ///< n
+constexpr double kModelSigmaM = 0.01;  ///< f
+
+/// d joint / d (the frame's columns, shared values): 3J×P.
+RowMatrixXd JointDerivatives(const FrameLayout& layout, const FrameState& state, const VectorXd& betas,
+                             Eigen::Index num_values) {
+  const BodyModel& model = *layout.model;
+  const int J = model.num_joints(), n = layout.num_frame_columns();
+  const bool shape_known = layout.num_betas == 0 || num_values < n + layout.num_betas;
+  Kinematics kinematics;
+  kinematics.Set(model, betas, state.rotations, layout.BodyTranslation(state), !shape_known);
+  RowMatrixXd D = RowMatrixXd::Zero(3 * J, num_values);
+  for (int j = 0; j < J; ++j) {
+    for (int a : model.ancestors(j)) {
+      const int column = layout.column_of_joint[a];
+      if (column < 0 || a == j) continue;
+      D.block<3, 3>(3 * j, column) = -Skew(kinematics.p[j] - kinematics.p[a]) * kinematics.G[a];
+    }
+    if (layout.knowledge == CameraKnowledge::kWeak) {
+      D(3 * j, layout.translation_column + 1) = D(3 * j + 1, layout.translation_column + 2) = 1;
+    } else {
+      D.block<3, 3>(3 * j, layout.translation_column).setIdentity();
+    }
+    if (!shape_known) D.block(3 * j, n, 3, layout.num_betas) = kinematics.dp[j];
+  }
+  return D;
+}
+
+}  // namespace
+
+JointSpread JointSpreadOf(const FrameLayout& layout, const FrameState& state, const VectorXd& betas,
+                          const MatrixXd& P) {
+  RowMatrixXd D = JointDerivatives(layout, state, betas, P.cols());
+  const std::array<int, 2> hip = HipJoints(*layout.model);
+  const RowMatrixXd hips = 0.5 * (D.middleRows<3>(3 * hip[0]) + D.middleRows<3>(3 * hip[1]));
+  JointSpread spread;
+  spread.hips = hips * P * hips.transpose();
+  const int J = layout.model->num_joints();
+  for (int j = 0; j < J; ++j) D.middleRows<3>(3 * j) -= hips;
+  const RowMatrixXd DP = D * P;
+  for (int j = 0; j < J; ++j) {
+    spread.about_hips.emplace_back(DP.middleRows<3>(3 * j) * D.middleRows<3>(3 * j).transpose());
+  }
+  return spread;
+}
+
+VectorXd JointSigmaOf(const JointSpread& spread) {
+  const auto J = static_cast<Eigen::Index>(spread.about_hips.size());
+  return VectorXd::NullaryExpr(J, [&](Eigen::Index j) { return std::sqrt(spread.about_hips[j].trace() / 3); });
+}
+
+VectorXd JointSigmaOf(const JointSpread& spread, const LiftedPose& lifted, const Matrix3d& camera_from_state) {
+  const auto J = static_cast<Eigen::Index>(spread.about_hips.size());
+  return VectorXd::NullaryExpr(J, [&](Eigen::Index j) {
+    const Matrix3d E = kErringTogether * spread.about_hips[j];
+    const Matrix3d L = camera_from_state.transpose() * lifted.JointCovariance(static_cast<int>(j)) * camera_from_state;
+    // (E⁻¹ + L⁻¹)⁻¹ without the inverse of either: nothing moves a joint that is the middle of the hips, E = 0.
+    const Matrix3d both = L - L * (L + E).inverse() * L;
+    return std::sqrt(both.trace() / 3 + kModelSigmaM * kModelSigmaM);
+  });
+}
+
+VectorXd JointSigmaOf(const LiftedPose& lifted, int num_joints) {
+  return VectorXd::NullaryExpr(num_joints, [&](Eigen::Index j) {
+    return std::sqrt(lifted.JointCovariance(static_cast<int>(j)).trace() / 3 + kModelSigmaM * kModelSigmaM);
+  });
+}
+
+double JointSpread::HipsSigma() const { return std::sqrt(hips.trace() / 3); }
+
+PositionSigma PositionSigma::Unknown(Eigen::Index num_frames, int num_joints) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  return {RowMatrixXd::Constant(num_frames, num_joints, kNaN), VectorXd::Constant(num_frames, kNaN)};
+}
+
+PositionSigma PositionSigmaOf(SequenceProblem problem, int num_threads, double* focal_log_sigma) {
+  const auto T = static_cast<Eigen::Index>(problem.states.size());
+  PositionSigma sigma = PositionSigma::Unknown(T, problem.layout.model->num_joints());
+  for (FrameData& frame : problem.frames) frame.Get<LiftedPoseTerm>().weight = 0;
+  // More than chain takes: the spread is stated without them, which is too much rather than too little.
+  if (NumFarRows(problem) > ChainProblem::kMaxFarRows) problem.couplings.clear();
+  ChainProblem chain(problem, false, false, num_threads);
+  if (!std::isfinite(chain.Linearise({problem.states, problem.betas, problem.log_focal}))) return sigma;
+  ChainFactor factor(chain.frame_size(), chain.arrow_size(), chain.cut_before(), chain.num_far_rows());
+  VisitCovariance(&chain, &factor, 0, static_cast<int>(T), num_threads, [&](int t, const MatrixXd& P) {
+    const JointSpread spread = JointSpreadOf(problem.layout, problem.states[t], problem.betas, P);
+    const FrameData& frame = problem.frames[t];
+    const LiftedPose* lifted = frame.Get<LiftedPoseTerm>().pose;
+    const Matrix3d turn =
+        frame.camera_from_scene == nullptr ? Matrix3d::Identity() : frame.camera_from_scene->camera_from_world_rotation;
+    sigma.joints.row(t) = (lifted == nullptr ? JointSigmaOf(spread) : JointSigmaOf(spread, *lifted, turn)).transpose();
+    sigma.hips[t] = spread.HipsSigma();
+    // The last of the shared values, the same in every frame's covariance.
+    if (t == 0 && focal_log_sigma != nullptr && problem.layout.focal_column >= 0) {
+      *focal_log_sigma = std::sqrt(P(P.rows() - 1, P.cols() - 1));
+    }
+  });
+  return sigma;
+}
+
+double FocalLogSigmaOf(const SequenceProblem& problem, int num_threads) {
+  double sigma = std::numeric_limits<double>::quiet_NaN();
+  if (problem.layout.focal_column < 0) return sigma;
+  ChainProblem chain(problem, false, false, num_threads);
+  if (!std::isfinite(chain.Linearise({problem.states, problem.betas, problem.log_focal}))) return sigma;
+  ChainFactor factor(chain.frame_size(), chain.arrow_size(), chain.cut_before(), chain.num_far_rows());
+  // Of the frame in which the elimination ends, so that no other's is computed on the way.
+  const int middle = static_cast<int>(problem.states.size()) / 2;
+  VisitCovariance(&chain, &factor, middle, middle + 1, 1,
+                  [&](int, const MatrixXd& P) { sigma = std::sqrt(P(P.rows() - 1, P.cols() - 1)); });
+  return sigma;
+}
+
+void AddFocalSpread(double log_sigma, Track* track) {
+  for (Eigen::Index t = 0; t < track->root_sigma.size(); ++t) {
+    const Vector3d pelvis = track->joints[t].row(0);
+    const double z = track->HasMovingCamera() ? MovedPoint(track->camera_from_scene[t], pelvis).z() : pelvis.z();
+    track->root_sigma[t] = std::hypot(track->root_sigma[t], log_sigma * z / std::sqrt(3));
+  }
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,364 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/tracking/detection/inference/onnx_arithmetic.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "bodyloom/geometry/base/check.h"
+
+namespace bodyloom {
+namespace {
+
+/// For each number of the result, calls body(place, its place in `from`): `from` is broadcast to `shape`.
+template <typename Body>
+void ForBroadcast(const std::vector<int64_t>& from, const std::vector<int64_t>& shape, const Body& body) {
+  const size_t rank = shape.size(), size = OnnxShapeSize(shape);
+  std::vector<size_t> step(rank, 0);  // in `from`, along each axis of `shape`
+  size_t stride = 1;
+  for (size_t i = from.size(); i-- > 0;) {
+    if (from[i] != 1) step[rank - from.size() + i] = stride;
+    stride *= size_t(from[i]);
+  }
+  if (size == 0) return;
+  if (rank == 0) {
+    body(0, 0);
+    return;
+  }
+  const auto row = size_t(shape.back());
+  std::vector<int64_t> at(rank, 0);
+  size_t start = 0;
+  for (size_t place = 0; place < size; place += row) {
+    for (size_t i = 0; i < row; ++i) body(place + i, start + i * step.back());
+    for (size_t axis = rank - 1; axis-- > 0;) {
+      start += step[axis];
+      if (++at[axis] < shape[axis]) break;
+      start -= step[axis] * size_t(shape[axis]);
+      at[axis] = 0;
+    }
+  }
+}
+
+template <typename T>
+std::vector<T> Broadcast(const std::vector<T>& values, const std::vector<int64_t>& from,
+                         const std::vector<int64_t>& to) {
+  if (from == to) return values;
+  std::vector<T> result(OnnxShapeSize(to));
+  ForBroadcast(from, to, [&](size_t place, size_t source) { result[place] = values[source]; });
+  return result;
+}
+
+/// compute(a, b), the smaller of the two broadcast.
+template <typename T, typename Compute>
+std::vector<T> Combined(std::vector<T> a, const std::vector<T>& b, const std::vector<int64_t>& b_shape,
+                        const std::vector<int64_t>& shape, const Compute& compute) {
+  if (b_shape == shape) {
+    for (size_t i = 0; i < a.size(); ++i) a[i] = compute(a[i], b[i]);
+  } else {
+    ForBroadcast(b_shape, shape, [&](size_t place, size_t source) { a[place] = compute(a[place], b[source]); });
+  }
+  return a;
+}
+
+/// Whole numbers wrap around, as a file may make them as large as it likes.
+int64_t Wrapped(uint64_t value) { return int64_t(value); }
+
+int64_t Divided(int64_t a, int64_t b) {
+  if (b == 0) throw std::runtime_error("division by zero");
+  return b == -1 ? Wrapped(0 - uint64_t(a)) : a / b;
+}
+
+template <typename T>
+T Computed(char op, T a, T b) {
+  constexpr bool kWhole = std::is_integral_v<T>;
+  switch (op) {
+    case '+':
+      if constexpr (kWhole) return Wrapped(uint64_t(a) + uint64_t(b));
+      return a + b;
+    case '-':
+      if constexpr (kWhole) return Wrapped(uint64_t(a) - uint64_t(b));
+      return a - b;
+    case '*':
+      if constexpr (kWhole) return Wrapped(uint64_t(a) * uint64_t(b));
+      return a * b;
+    case '/':
+      if constexpr (kWhole) return Divided(a, b);
+      return a / b;
+    case '^':
+      if constexpr (kWhole) throw std::runtime_error("a power of whole numbers, expected floats");
+      return b == T(2) ? a * a : std::pow(a, b);
+    case '<':
+      return std::min(a, b);
+    default:
+      return std::max(a, b);
+  }
+}
+
+/// The operator is looked at once, not once a number.
+template <typename T>
+std::vector<T> Combined(char op, std::vector<T> a, const std::vector<T>& b, const std::vector<int64_t>& b_shape,
+                        const std::vector<int64_t>& shape) {
+  const auto with = [&]<char kOp>() {
+    return Combined(std::move(a), b, b_shape, shape, [](T x, T y) { return Computed<T>(kOp, x, y); });
+  };
+  switch (op) {
+    case '+':
+      return with.template operator()<'+'>();
+    case '-':
+      return with.template operator()<'-'>();
+    case '*':
+      return with.template operator()<'*'>();
+    case '/':
+      return with.template operator()<'/'>();
+    case '^':
+      return with.template operator()<'^'>();
+    case '<':
+      return with.template operator()<'<'>();
+    default:
+      return with.template operator()<'>'>();
+  }
+}
+
+char Letter(const std::string& op) {
+  if (op == "Add") return '+';
+  if (op == "Sub") return '-';
+  if (op == "Mul") return '*';
+  if (op == "Div") return '/';
+  if (op == "Pow") return '^';
+  return op == "Min" ? '<' : '>';
+}
+
+void RequireAlike(const OnnxTensor& a, const OnnxTensor& b) {
+  if (a.has_floats() != b.has_floats()) throw std::runtime_error("floats and whole numbers, expected one kind");
+}
+
+template <typename T>
+std::vector<int64_t> EqualPlaces(const std::vector<T>& a, const std::vector<T>& b) {
+  std::vector<int64_t> equal(a.size());
+  for (size_t i = 0; i < a.size(); ++i) equal[i] = a[i] == b[i] ? 1 : 0;
+  return equal;
+}
+
+OnnxTensor Equal(const OnnxTensor& a, const OnnxTensor& b, std::vector<int64_t> shape) {
+  const OnnxTensor x = OnnxBroadcastTo(a, shape), y = OnnxBroadcastTo(b, shape);
+  std::vector<int64_t> equal = a.has_floats() ? EqualPlaces(*x.floats, *y.floats) : EqualPlaces(*x.ints, *y.ints);
+  return {std::move(shape), std::move(equal)};
+}
+
+template <typename Compute>
+OnnxTensor Mapped(const OnnxArguments& arguments, const Compute& compute) {
+  const std::vector<float>& from = arguments.Floats(0);
+  std::vector<float> to(from.size());
+  std::transform(from.begin(), from.end(), to.begin(), compute);
+  return {arguments.Input(0).shape, std::move(to)};
+}
+
+float Sigmoid(float x) { return 1 / (1 + std::exp(-x)); }
+
+/// Numbers before, along and behind an axis: the tensor is before × along × behind.
+struct Split {
+  size_t before = 1, along = 1, behind = 1;
+  Split(const std::vector<int64_t>& shape, int axis) {
+    for (int i = 0; i < int(shape.size()); ++i) {
+      (i < axis ? before : i == axis ? along : behind) *= size_t(shape[size_t(i)]);
+    }
+  }
+};
+
+/// Σ, Σ² or the maximum along one axis, which stays with length 1.
+OnnxTensor ReducedAlong(const OnnxTensor& tensor, int axis, char what) {
+  const Split n(tensor.shape, axis);
+  std::vector<int64_t> shape = tensor.shape;
+  shape[size_t(axis)] = 1;
+  std::vector<float> result(n.before * n.behind, what == '>' ? -std::numeric_limits<float>::infinity() : 0.0F);
+  const float* from = tensor.floats->data();
+  for (size_t i = 0; i < n.before; ++i) {
+    for (size_t k = 0; k < n.along; ++k) {
+      float* to = result.data() + i * n.behind;
+      for (size_t j = 0; j < n.behind; ++j, ++from) {
+        to[j] = what == '>' ? std::max(to[j], *from) : to[j] + *from;
+      }
+    }
+  }
+  return {std::move(shape), std::move(result)};
+}
+
+}  // namespace
+
+std::vector<int64_t> OnnxBroadcastShape(const std::vector<int64_t>& a, const std::vector<int64_t>& b) {
+  const size_t rank = std::max(a.size(), b.size());
+  std::vector<int64_t> shape(rank, 1);
+  for (size_t i = 0; i < rank; ++i) {
+    const int64_t n = i < rank - a.size() ? 1 : a[i - (rank - a.size())];
+    const int64_t m = i < rank - b.size() ? 1 : b[i - (rank - b.size())];
+    if (n != m && n != 1 && m != 1) {
+      throw std::runtime_error("shapes " + OnnxShapeText(a) + " and " + OnnxShapeText(b) + " do not fit each other");
+    }
+    shape[i] = n == 1 ? m : n;
+  }
+  return shape;
+}
+
+OnnxTensor OnnxBroadcastTo(const OnnxTensor& tensor, const std::vector<int64_t>& shape) {
+  if (tensor.shape == shape) return tensor;
+  if (OnnxBroadcastShape(tensor.shape, shape) != shape) {
+    throw std::runtime_error(OnnxShapeText(tensor.shape) + " cannot be broadcast to " + OnnxShapeText(shape));
+  }
+  if (tensor.has_floats()) return {shape, Broadcast(*tensor.floats, tensor.shape, shape)};
+  return {shape, Broadcast(*tensor.ints, tensor.shape, shape)};
+}
+
+OnnxTensor OnnxBinary(const OnnxArguments& arguments) {
+  const OnnxTensor& a = arguments.Input(0);
+  OnnxTensor b = arguments.Input(1);
+  if (arguments.node().op == "Pow" && a.has_floats() && !b.has_floats()) {
+    b = OnnxTensor(b.shape, std::vector<float>(b.ints->begin(), b.ints->end()));
+  }
+  RequireAlike(a, b);
+  std::vector<int64_t> shape = OnnxBroadcastShape(a.shape, b.shape);
+  if (arguments.node().op == "Equal") return Equal(a, b, std::move(shape));
+  const char op = Letter(arguments.node().op);
+  if (a.has_floats()) {
+    std::vector<float> result = Combined(op, Broadcast(*a.floats, a.shape, shape), *b.floats, b.shape, shape);
+    return {std::move(shape), std::move(result)};
+  }
+  std::vector<int64_t> result = Combined(op, Broadcast(*a.ints, a.shape, shape), *b.ints, b.shape, shape);
+  return {std::move(shape), std::move(result)};
+}
+
+OnnxTensor OnnxWhere(const OnnxArguments& arguments) {
+  RequireAlike(arguments.Input(1), arguments.Input(2));
+  const std::vector<int64_t> shape = OnnxBroadcastShape(
+      arguments.Input(0).shape, OnnxBroadcastShape(arguments.Input(1).shape, arguments.Input(2).shape));
+  const OnnxTensor condition = OnnxBroadcastTo(OnnxTensor(arguments.Input(0).shape, arguments.Ints(0)), shape);
+  const OnnxTensor yes = OnnxBroadcastTo(arguments.Input(1), shape), no = OnnxBroadcastTo(arguments.Input(2), shape);
+  const auto chosen = [&condition](auto result, const auto& other) {
+    for (size_t i = 0; i < result.size(); ++i) {
+      if ((*condition.ints)[i] == 0) result[i] = other[i];
+    }
+    return result;
+  };
+  if (yes.has_floats()) return {shape, chosen(*yes.floats, *no.floats)};
+  return {shape, chosen(*yes.ints, *no.ints)};
+}
+
+OnnxTensor OnnxUnary(const OnnxArguments& arguments) {
+  const std::string& op = arguments.node().op;
+  if (op == "Neg" && !arguments.Input(0).has_floats()) {
+    std::vector<int64_t> values = arguments.Ints(0);
+    for (int64_t& value : values) value = Wrapped(0 - uint64_t(value));
+    return {arguments.Input(0).shape, std::move(values)};
+  }
+  if (op == "Sigmoid") return Mapped(arguments, Sigmoid);
+  if (op == "Relu") return Mapped(arguments, [](float x) { return std::max(x, 0.0F); });
+  if (op == "Tanh") return Mapped(arguments, [](float x) { return std::tanh(x); });
+  if (op == "Sqrt") return Mapped(arguments, [](float x) { return std::sqrt(x); });
+  if (op == "Exp") return Mapped(arguments, [](float x) { return std::exp(x); });
+  if (op == "Abs") return Mapped(arguments, [](float x) { return std::abs(x); });
+  if (op == "Neg") return Mapped(arguments, [](float x) { return -x; });
+  if (op == "Floor") return Mapped(arguments, [](float x) { return std::floor(x); });
+  if (op == "HardSwish") return Mapped(arguments, [](float x) { return x * std::clamp(x / 6 + 0.5F, 0.0F, 1.0F); });
+  if (op == "LeakyRelu") {
+    const float slope = arguments.node().Float("alpha", 0.01F);
+    return Mapped(arguments, [slope](float x) { return x < 0 ? slope * x : x; });
+  }
+  if (op == "HardSigmoid") {
+    const float alpha = arguments.node().Float("alpha", 0.2F), beta = arguments.node().Float("beta", 0.5F);
+    return Mapped(arguments, [=](float x) { return std::clamp(alpha * x + beta, 0.0F, 1.0F); });
+  }
+  constexpr float kMost = std::numeric_limits<float>::max();
+  const float low = arguments.Number("min", 1, -kMost), high = arguments.Number("max", 2, kMost);
+  return Mapped(arguments, [=](float x) { return std::min(std::max(x, low), high); });
+}
+
+OnnxTensor OnnxReduce(const OnnxArguments& arguments) {
+  const std::string& op = arguments.node().op;
+  OnnxTensor result = arguments.FloatInput(0);
+  const int rank = result.rank();
+  std::vector<int64_t> axes = arguments.List("axes", 1);
+  if (axes.empty()) {
+    for (int axis = 0; axis < rank; ++axis) axes.push_back(axis);
+  }
+  if (op == "ReduceL2") result = Mapped(arguments, [](float x) { return x * x; });
+  size_t count = 1;
+  std::vector<bool> gone(size_t(rank), false);
+  for (const int64_t named : axes) {
+    const int axis = OnnxAxis(named, rank);
+    count *= size_t(result.shape[size_t(axis)]);
+    result = ReducedAlong(result, axis, op == "ReduceMax" ? '>' : '+');
+    gone[size_t(axis)] = true;
+  }
+  std::vector<float> values = *result.floats;
+  for (float& value : values) {
+    if (op == "ReduceMean") value /= float(count);
+    if (op == "ReduceL2") value = std::sqrt(value);
+  }
+  std::vector<int64_t> shape;
+  for (int axis = 0; axis < rank; ++axis) {
+    if (arguments.node().Integer("keepdims", 1) != 0 || !gone[size_t(axis)])
+      shape.push_back(result.shape[size_t(axis)]);
+  }
+  return {std::move(shape), std::move(values)};
+}
+
+OnnxTensor OnnxSoftmax(const OnnxArguments& arguments) {
+  const OnnxTensor& input = arguments.Input(0);
+  std::vector<float> values = arguments.Floats(0);
+  const Split n(input.shape, arguments.Axis(arguments.opset() < 13 ? 1 : -1, input.rank()));
+  if (arguments.opset() < 13 && n.behind > 1) {
+    throw std::runtime_error("a softmax over several axes, expected over the last");
+  }
+  std::vector<float> largest(n.behind), sum(n.behind);
+  for (size_t i = 0; i < n.before; ++i) {
+    float* block = values.data() + i * n.along * n.behind;
+    std::fill(largest.begin(), largest.end(), -std::numeric_limits<float>::infinity());
+    std::fill(sum.begin(), sum.end(), 0.0F);
+    for (size_t k = 0; k < n.along * n.behind; ++k) largest[k % n.behind] = std::max(largest[k % n.behind], block[k]);
+    for (size_t k = 0; k < n.along * n.behind; ++k) {
+      block[k] = std::exp(block[k] - largest[k % n.behind]);
+      sum[k % n.behind] += block[k];
+    }
+    for (size_t k = 0; k < n.along * n.behind; ++k) block[k] /= sum[k % n.behind];
+  }
+  return {input.shape, std::move(values)};
+}
+
+const OnnxTensor& OnnxArguments::Input(size_t i) const {
+  if (!Has(i)) throw std::runtime_error(Concatenate("input ", i, " is missing"));
+  return *inputs_[i];
+}
+
+const OnnxTensor& OnnxArguments::FloatInput(size_t i) const {
+  const OnnxTensor& input = Input(i);
+  if (!input.has_floats()) throw std::runtime_error(Concatenate("input ", i, " holds whole numbers, expected floats"));
+  return input;
+}
+
+const std::vector<int64_t>& OnnxArguments::Ints(size_t i) const {
+  const OnnxTensor& input = Input(i);
+  if (input.has_floats()) throw std::runtime_error(Concatenate("input ", i, " holds floats, expected whole numbers"));
+  return *input.ints;
+}
+
+std::vector<int64_t> OnnxArguments::List(const std::string& attribute, size_t input) const {
+  return Has(input) ? Ints(input) : node_.Integers(attribute, {});
+}
+
+float OnnxArguments::Number(const std::string& attribute, size_t input, float absent) const {
+  if (!Has(input)) return node_.Float(attribute, absent);
+  const std::vector<float>& values = Floats(input);
+  if (values.size() != 1)
+    throw std::runtime_error(Concatenate("input ", input, ": ", values.size(), " numbers, expected 1"));
+  return values[0];
+}
+
+int OnnxArguments::Axis(int64_t absent, int rank) const { return OnnxAxis(node_.Integer("axis", absent), rank); }
+
+int OnnxAxis(int64_t axis, int rank) {
+  if (axis < -rank || axis >= rank) throw std::runtime_error(Concatenate("axis ", axis, " of ", rank));
+  return int(axis < 0 ? axis + rank : axis);
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,409 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/tracking/detection/inference/onnx_model.h"
+
+#include <algorithm>
+#include <cstring>
+#include <stdexcept>
+#include <utility>
+
+#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "bodyloom/data_tools/formats/ndarray.h"
+#include "bodyloom/data_tools/formats/printable.h"
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/tracking/detection/inference/protobuf.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr size_t kMostBytes = size_t{1} << 30, kMostNodes = 20'000, kMostAttributes = 100, kMostAxes = 8;
+constexpr size_t kMostUnpacked = 16;  // bytes of constants a byte of the file
+enum OnnxType : int64_t { kOnnxFloat = 1, kOnnxInt32 = 6, kOnnxInt64 = 7, kOnnxBool = 9, kOnnxHalf = 10 };
+
+/// What a tensor's message holds.
+struct StoredTensor {
+  std::string_view name, raw;
+  std::vector<int64_t> shape, ints;
+  std::vector<float> floats;
+  int64_t type = 0;
+  bool has_raw = false;
+};
+
+template <typename Stored, typename To>
+std::vector<To> Unpacked(std::string_view raw, To (*convert)(Stored)) {
+  std::vector<To> values(raw.size() / sizeof(Stored));
+  for (size_t i = 0; i < values.size(); ++i) {
+    Stored stored;
+    std::memcpy(&stored, raw.data() + i * sizeof(Stored), sizeof(Stored));
+    values[i] = convert(stored);
+  }
+  return values;
+}
+
+class OnnxReader {
+ public:
+  OnnxReader(std::string_view bytes, const std::string& name)
+      : bytes_(bytes), name_(name), budget_(kMostUnpacked * bytes.size()) {
+    model_.name = name;
+  }
+
+  OnnxModel Read() {
+    ProtoMessage model(bytes_, name_ + ": not an ONNX file");
+    std::string_view graph;
+    bool has_graph = false;
+    for (ProtoField field; model.Next(&field);) {
+      if (field.number == 7) graph = model.Bytes(field), has_graph = true;
+      if (field.number == 8) ReadOperatorSet(model.Bytes(field));
+    }
+    if (!has_graph) Refuse(name_, "not an ONNX file", "no graph in it");
+    if (model_.opset < 7) Refuse(name_, "operators", Concatenate("version ", model_.opset, ", expected 7 or later"));
+    ReadGraph(graph);
+    return std::move(model_);
+  }
+
+ private:
+  [[nodiscard]] ProtoMessage Message(std::string_view bytes, const std::string& place) const {
+    return {bytes, name_ + ": " + place};
+  }
+
+  void ReadOperatorSet(std::string_view bytes) {
+    ProtoMessage set = Message(bytes, "operator set");
+    bool standard = true;
+    int64_t version = 0;
+    for (ProtoField field; set.Next(&field);) {
+      if (field.number == 1) standard = IsStandard(set.Bytes(field));
+      if (field.number == 2) version = set.Integer(field);
+    }
+    if (standard) model_.opset = version;
+  }
+
+  static bool IsStandard(std::string_view domain) { return domain.empty() || domain == "ai.onnx"; }
+
+  void ReadGraph(std::string_view bytes) {
+    ProtoMessage graph = Message(bytes, "graph");
+    std::vector<std::string_view> nodes, inputs, outputs;
+    for (ProtoField field; graph.Next(&field);) {
+      if (field.number == 1) nodes.push_back(graph.Bytes(field));
+      if (field.number == 5) AddConstant(graph.Bytes(field));
+      if (field.number == 11) inputs.push_back(graph.Bytes(field));
+      if (field.number == 12) outputs.push_back(graph.Bytes(field));
+      if (field.number == 15) Refuse(name_, "graph", "sparse constants, expected dense ones");
+    }
+    if (nodes.size() > kMostNodes)
+      Refuse(name_, "graph", Concatenate(nodes.size(), " nodes, expected at most ", kMostNodes));
+    ReadInputs(inputs);
+    for (size_t i = 0; i < nodes.size(); ++i) ReadNode(nodes[i], Concatenate("node ", i));
+    for (const std::string_view output : outputs) model_.outputs.push_back(Known(Value(output).first, "outputs"));
+    if (model_.outputs.empty()) Refuse(name_, "graph", "no outputs");
+    model_.num_tensors = int(number_.size());
+  }
+
+  void ReadInputs(const std::vector<std::string_view>& inputs) {
+    int count = 0;
+    for (const std::string_view input : inputs) {
+      auto [name, shape] = Value(input);
+      if (number_.contains(name)) continue;  // a constant, as files before version 4 list them
+      model_.input = Define(name, "inputs");
+      model_.input_shape = std::move(shape);
+      ++count;
+    }
+    if (count != 1) Refuse(name_, "inputs", Concatenate(count, " of them, expected one picture"));
+  }
+
+  /// Name and shape.
+  [[nodiscard]] std::pair<std::string, std::vector<int64_t>> Value(std::string_view bytes) const {
+    ProtoMessage value = Message(bytes, "value");
+    std::pair<std::string, std::vector<int64_t>> result;
+    for (ProtoField field; value.Next(&field);) {
+      if (field.number == 1) result.first = value.Bytes(field);
+      if (field.number == 2) result.second = ShapeOfType(value.Bytes(field));
+    }
+    return result;
+  }
+
+  [[nodiscard]] std::vector<int64_t> ShapeOfType(std::string_view bytes) const {
+    std::vector<int64_t> shape;
+    ProtoMessage type = Message(bytes, "type");
+    for (ProtoField field; type.Next(&field);) {
+      if (field.number != 1) continue;
+      ProtoMessage tensor = Message(type.Bytes(field), "type");
+      for (ProtoField part; tensor.Next(&part);) {
+        if (part.number != 2) continue;
+        ProtoMessage axes = Message(tensor.Bytes(part), "shape");
+        for (ProtoField axis; axes.Next(&axis);) {
+          if (axis.number == 1) shape.push_back(LengthOf(axes.Bytes(axis)));
+        }
+      }
+    }
+    if (shape.size() > kMostAxes)
+      Refuse(name_, "shape", Concatenate(shape.size(), " axes, expected at most ", kMostAxes));
+    return shape;
+  }
+
+  [[nodiscard]] int64_t LengthOf(std::string_view bytes) const {
+    int64_t length = -1;
+    ProtoMessage axis = Message(bytes, "shape");
+    for (ProtoField field; axis.Next(&field);) {
+      if (field.number == 1) length = axis.Integer(field);
+    }
+    return length > 0 ? length : -1;
+  }
+
+  int Define(const std::string& name, const std::string& place) {
+    const auto [at, is_new] = number_.emplace(name, int(number_.size()));
+    if (!is_new) Refuse(name_, place, "'" + PrintableText(name) + "' is written twice");
+    return at->second;
+  }
+
+  [[nodiscard]] int Known(const std::string& name, const std::string& place) const {
+    const auto at = number_.find(name);
+    if (at == number_.end()) {
+      Refuse(name_, place,
+             "'" + PrintableText(name) + "' is not there, expected a constant or what a node before it writes");
+    }
+    return at->second;
+  }
+
+  void ReadNode(std::string_view bytes, std::string place) {
+    ProtoMessage message = Message(bytes, place);
+    OnnxNode& node = model_.nodes.emplace_back();
+    std::vector<std::string> inputs, outputs;
+    std::vector<std::string_view> attributes;
+    bool standard = true;
+    for (ProtoField field; message.Next(&field);) {
+      if (field.number == 1) inputs.emplace_back(message.Bytes(field));
+      if (field.number == 2) outputs.emplace_back(message.Bytes(field));
+      if (field.number == 3) node.name = PrintableText(message.Bytes(field));
+      if (field.number == 4) node.op = PrintableText(message.Bytes(field));
+      if (field.number == 5) attributes.push_back(message.Bytes(field));
+      if (field.number == 7) standard = IsStandard(message.Bytes(field));
+    }
+    if (node.name.empty()) node.name = place;
+    place = "node '" + node.name + "' (" + node.op + ")";
+    if (!standard) Refuse(name_, place, "an operator of its author's own, expected one of the standard");
+    if (attributes.size() > kMostAttributes) Refuse(name_, place, Concatenate(attributes.size(), " attributes"));
+    for (const std::string_view attribute : attributes) ReadAttribute(attribute, place, &node);
+    for (const std::string& input : inputs) node.inputs.push_back(input.empty() ? -1 : Known(input, place));
+    for (const std::string& output : outputs) node.outputs.push_back(output.empty() ? -1 : Define(output, place));
+  }
+
+  void ReadAttribute(std::string_view bytes, const std::string& place, OnnxNode* node) {
+    ProtoMessage message = Message(bytes, place);
+    std::string name;
+    OnnxAttribute value;
+    for (ProtoField field; message.Next(&field);) {
+      switch (field.number) {
+        case 1:
+          name = message.Bytes(field);
+          break;
+        case 2:
+        case 7:
+          message.AddFloats(field, &value.floats);
+          break;
+        case 3:
+        case 8:
+          message.AddIntegers(field, &value.ints);
+          break;
+        case 4:
+          value.text = message.Bytes(field);
+          break;
+        case 5:
+          value.tensor = Tensor(Stored(message.Bytes(field), place), place);
+          break;
+        case 6:
+        case 10:
+        case 11:
+          Refuse(name_, place, "a graph within the graph, expected none");
+        default:
+          break;
+      }
+    }
+    node->attributes[name] = std::move(value);
+  }
+
+  void AddConstant(std::string_view bytes) {
+    const StoredTensor stored = Stored(bytes, "constants");
+    const std::string name(stored.name);
+    const int number = Define(name, "constants");
+    model_.constants[number] = Tensor(stored, "constant '" + PrintableText(name) + "'");
+  }
+
+  [[nodiscard]] StoredTensor Stored(std::string_view bytes, const std::string& place) const {
+    StoredTensor stored;
+    ProtoMessage tensor = Message(bytes, place);
+    for (ProtoField field; tensor.Next(&field);) {
+      switch (field.number) {
+        case 1:
+          tensor.AddIntegers(field, &stored.shape);
+          break;
+        case 2:
+          stored.type = tensor.Integer(field);
+          break;
+        case 4:
+          tensor.AddFloats(field, &stored.floats);
+          break;
+        case 5:
+        case 7:
+          tensor.AddIntegers(field, &stored.ints);
+          break;
+        case 8:
+          stored.name = tensor.Bytes(field);
+          break;
+        case 9:
+          stored.raw = tensor.Bytes(field);
+          stored.has_raw = true;
+          break;
+        case 14:
+          if (tensor.Integer(field) != 0) Refuse(name_, place, "weights in another file, expected them in this one");
+          break;
+        default:
+          break;
+      }
+    }
+    return stored;
+  }
+
+  OnnxTensor Tensor(const StoredTensor& stored, const std::string& place) {
+    if (stored.shape.size() > kMostAxes) Refuse(name_, place, Concatenate(stored.shape.size(), " axes"));
+    size_t size = 0;
+    try {
+      size = OnnxShapeSize(stored.shape);
+    } catch (const std::runtime_error& error) {
+      Refuse(name_, place, error.what());
+    }
+    const bool is_float = stored.type == kOnnxFloat || stored.type == kOnnxHalf;
+    const size_t bytes = size * (is_float ? sizeof(float) : sizeof(int64_t));
+    if (bytes > budget_) Refuse(name_, place, "constants that are much larger than the file");
+    budget_ -= bytes;
+    if (stored.has_raw) CheckBytes(stored, size, place);
+    if (is_float) {
+      std::vector<float> values = Floats(stored);
+      CheckCount(values.size(), size, place);
+      return {stored.shape, std::move(values)};
+    }
+    std::vector<int64_t> values = Ints(stored, place);
+    CheckCount(values.size(), size, place);
+    return {stored.shape, std::move(values)};
+  }
+
+  void CheckBytes(const StoredTensor& stored, size_t size, const std::string& place) const {
+    const size_t each = stored.type == kOnnxInt64 ? 8 : stored.type == kOnnxHalf ? 2 : stored.type == kOnnxBool ? 1 : 4;
+    if (stored.raw.size() != size * each) {
+      Refuse(name_, place,
+             Concatenate(stored.raw.size(), " bytes, expected ", size * each, " for a shape of ",
+                         OnnxShapeText(stored.shape)));
+    }
+  }
+
+  void CheckCount(size_t found, size_t size, const std::string& place) const {
+    if (found != size) Refuse(name_, place, Concatenate(found, " numbers, expected ", size));
+  }
+
+  static std::vector<float> Floats(const StoredTensor& stored) {
+    if (stored.type == kOnnxFloat) {
+      if (!stored.has_raw) return stored.floats;
+      return Unpacked<float, float>(stored.raw, [](float value) { return value; });
+    }
+    if (stored.has_raw) return Unpacked<uint16_t, float>(stored.raw, FloatFromHalf);
+    std::vector<float> values;
+    for (const int64_t bits : stored.ints) values.push_back(FloatFromHalf(uint16_t(bits)));
+    return values;
+  }
+
+  [[nodiscard]] std::vector<int64_t> Ints(const StoredTensor& stored, const std::string& place) const {
+    const auto widen = [](auto value) { return int64_t(value); };
+    switch (stored.type) {
+      case kOnnxInt32:
+        return stored.has_raw ? Unpacked<int32_t, int64_t>(stored.raw, widen) : stored.ints;
+      case kOnnxInt64:
+        return stored.has_raw ? Unpacked<int64_t, int64_t>(stored.raw, widen) : stored.ints;
+      case kOnnxBool:
+        return stored.has_raw ? Unpacked<uint8_t, int64_t>(stored.raw, widen) : stored.ints;
+      default:
+        Refuse(name_, place,
+               Concatenate("numbers of type ", stored.type, ", expected float32, float16, int32, int64 or bool"));
+    }
+  }
+
+  std::string_view bytes_;
+  const std::string& name_;
+  size_t budget_;
+  OnnxModel model_;
+  std::map<std::string, int> number_;  ///< of the tensor of that name
+};
+
+const OnnxAttribute* Find(const OnnxNode& node, const std::string& key) {
+  const auto at = node.attributes.find(key);
+  return at == node.attributes.end() ? nullptr : &at->second;
+}
+
+}  // namespace
+
+int64_t OnnxNode::Integer(const std::string& key, int64_t absent) const {
+  const OnnxAttribute* attribute = Find(*this, key);
+  return attribute == nullptr || attribute->ints.empty() ? absent : attribute->ints[0];
+}
+
+float OnnxNode::Float(const std::string& key, float absent) const {
+  const OnnxAttribute* attribute = Find(*this, key);
+  return attribute == nullptr || attribute->floats.empty() ? absent : attribute->floats[0];
+}
+
+std::vector<int64_t> OnnxNode::Integers(const std::string& key, const std::vector<int64_t>& absent) const {
+  const OnnxAttribute* attribute = Find(*this, key);
+  return attribute == nullptr ? absent : attribute->ints;
+}
+
+std::string OnnxNode::Text(const std::string& key, const std::string& absent) const {
+  const OnnxAttribute* attribute = Find(*this, key);
+  return attribute == nullptr ? absent : attribute->text;
+}
+
+OnnxModel ParseOnnxModel(std::string_view bytes, const std::string& name) { return OnnxReader(bytes, name).Read(); }
+
+OnnxModel ReadOnnxModel(const std::string& path) { return ParseOnnxModel(ReadFileBytes(path, kMostBytes), path); }
+
+namespace {
+
+constexpr size_t kMostNumbers = size_t{1} << 27;
+
+}  // namespace
+
+OnnxTensor::OnnxTensor(std::vector<int64_t> its_shape, std::vector<float> values)
+    : shape(std::move(its_shape)), floats(std::make_shared<const std::vector<float>>(std::move(values))) {
+  BODYLOOM_CHECK(floats->size() == size(), floats->size(), " numbers for a tensor of ", OnnxShapeText(shape));
+}
+
+OnnxTensor::OnnxTensor(std::vector<int64_t> its_shape, std::vector<int64_t> values)
+    : shape(std::move(its_shape)), ints(std::make_shared<const std::vector<int64_t>>(std::move(values))) {
+  BODYLOOM_CHECK(ints->size() == size(), ints->size(), " numbers for a tensor of ", OnnxShapeText(shape));
+}
+
+size_t OnnxTensor::size() const { return OnnxShapeSize(shape); }
+
+OnnxTensor OnnxTensor::Reshaped(std::vector<int64_t> to) const {
+  BODYLOOM_CHECK(OnnxShapeSize(to) == size(), OnnxShapeText(shape), " cannot become ", OnnxShapeText(to));
+  OnnxTensor result = *this;
+  result.shape = std::move(to);
+  return result;
+}
+
+size_t OnnxShapeSize(const std::vector<int64_t>& shape) {
+  size_t product = 1;
+  for (const int64_t n : shape) {
+    if (n < 0) throw std::runtime_error("a tensor of " + OnnxShapeText(shape));
+    if (n > 0 && product > kMostNumbers / size_t(n)) {
+      throw std::runtime_error(Concatenate("a tensor of ", OnnxShapeText(shape), ", expected at most 2^27 numbers"));
+    }
+    product *= size_t(n);
+  }
+  return product;
+}
+
+std::string OnnxShapeText(const std::vector<int64_t>& shape) {
+  if (shape.empty()) return "one number";
+  std::string text;
+  for (const int64_t n : shape) text += (text.empty() ? "" : "x") + (n < 0 ? "?" : std::to_string(n));
+  return text;
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Everybody in the frames of a clip, by BlazePose: people are looked for now and then, and followed from frame to
+/// frame in between.
+///
+/// Frames come in groups of up to kFramesAtOnce. All frames of a group are looked at in the regions that the frame
+/// before the group left (RegionAroundBody of its two region points), so that they can run side by side; results do not
+/// depend on the number of threads. New people are looked for in a group's first frame: when nobody is followed, and
+/// every `search_interval` frames unless max_people are followed already. A person is lost when the network says in
+/// every frame of a group that nobody is there. Two regions that show the same landmarks (PoseDistance below 0.1) are
+/// one person; the one followed longer stays.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bodyloom/render/image/image.h"
+#include "bodyloom/tracking/detection/pose_detector.h"
+
+namespace bodyloom {
+
+struct PeopleDetectorOptions {
+  PoseNetworkSize network = PoseNetworkSize::kHeavy;
+  bool masks = false;         ///< poses bring masks
+  int max_people = 0;         ///< the surest stay; 0: everybody
+  int search_interval = 30;   ///< frames
+  int tile_levels = 2;        ///< finest squares in which people are searched: 1/tile_levels of the longer side
+  double min_presence = 0.5;  ///< below, nobody is in a region
+  int num_threads = 2;
+  [[nodiscard]] bool IsValid() const;
+};
+
+struct PeopleDetectorSummary {
+  int frames = 0, searches = 0, regions = 0;        ///< regions looked at
+  double search_seconds = 0, landmark_seconds = 0;  ///< wall time
+};
+
+class PeopleDetector {
+ public:
+  static constexpr int kFramesAtOnce = 2;
+
+  /// Reads the networks from `folder`, or where they are installed when it is empty (model_files.h). Throws
+  /// std::runtime_error naming a file that is missing or no such network, std::invalid_argument for options that are
+  /// not valid.
+  PeopleDetector(const std::string& folder, const PeopleDetectorOptions& options);
+  ~PeopleDetector();
+  PeopleDetector(PeopleDetector&&) noexcept;
+  PeopleDetector& operator=(PeopleDetector&&) noexcept;
+
+  /// The next frames of the clip, all of one size: a group of 1 to kFramesAtOnce. Returns the people of
+  /// each, those followed longest first. Throws std::invalid_argument for another number or another size.
+  std::vector<std::vector<DetectedPose>> Detect(std::span<const Image> frames);
+
+  [[nodiscard]] const PeopleDetectorSummary& summary() const;
+
+ private:
+  class Follower;
+  std::unique_ptr<Follower> follower_;
+};
+
+}  // namespace bodyloom

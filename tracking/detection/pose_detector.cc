@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/tracking/detection/pose_detector.h"
+
+#include <stdexcept>
+#include <utility>
+
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/tracking/detection/inference/tflite_network.h"
+#include "bodyloom/tracking/detection/model_files.h"
+#include "bodyloom/tracking/detection/person_detection.h"
+
+namespace bodyloom {
+namespace {
+
+/// Places among the landmark network's outputs.
+enum LandmarkOutput { kLandmarks, kPresence, kMask, kHeatmaps, kWorld };
+
+struct NetworkOfSize {
+  const char *name, *file;
+};
+/// In the order of PoseNetworkSize.
+constexpr NetworkOfSize kNetworks[] = {
+    {"lite", kPoseLandmarkLiteFile}, {"full", kPoseLandmarkFullFile}, {"heavy", kPoseLandmarkHeavyFile}};
+
+const NetworkOfSize& NetworkOf(PoseNetworkSize size) { return kNetworks[static_cast<size_t>(size)]; }
+
+/// Throws unless the network has an input of size × size colours and outputs of these numbers of values.
+void CheckNetwork(const TfliteModel& model, int size, const std::vector<size_t>& outputs) {
+  const std::vector<int> expected = {1, size, size, 3};
+  bool fits = model.inputs.size() == 1 && model.tensors[size_t(model.inputs[0])].shape == expected &&
+              model.outputs.size() == outputs.size();
+  for (size_t i = 0; fits && i < outputs.size(); ++i) {
+    fits = model.tensors[size_t(model.outputs[i])].size() == outputs[i];
+  }
+  if (!fits) {
+    throw std::runtime_error(Concatenate(model.name,
+                                         ": another network, expected one of MediaPipe Pose with an input of ", size,
+                                         "x", size, "x3 and ", outputs.size(), " outputs"));
+  }
+}
+
+}  // namespace
+
+std::string ToText(PoseNetworkSize size) { return NetworkOf(size).name; }
+
+class PoseModels {
+ public:
+  PoseModels(TfliteModel people, TfliteModel landmarks) : people(std::move(people)), landmarks(std::move(landmarks)) {}
+  TfliteModel people, landmarks;
+};
+
+std::shared_ptr<const PoseModels> ReadPoseModels(const std::string& folder, PoseNetworkSize size) {
+  constexpr size_t n = kPoseNetworkLandmarks;
+  auto models = std::make_shared<PoseModels>(ReadTfliteModel(FindModelFile(kPoseDetectorFile, folder)),
+                                             ReadTfliteModel(FindModelFile(NetworkOf(size).file, folder)));
+  CheckNetwork(models->people, kPersonDetectorSize, {size_t(kPersonDetectorAnchors) * 12, kPersonDetectorAnchors});
+  CheckNetwork(models->landmarks, kPoseNetworkSize,
+               {n * 5, 1, size_t(kPoseNetworkSize) * kPoseNetworkSize, n * kPoseHeatmapSize * kPoseHeatmapSize, n * 3});
+  return models;
+}
+
+class PoseDetector::Networks {
+ public:
+  Networks(const PoseModels& models, bool with_mask)
+      : with_mask_(with_mask),
+        people_(models.people),
+        landmarks_(models.landmarks, with_mask ? std::vector<int>{kLandmarks, kPresence, kHeatmaps, kWorld, kMask}
+                                               : std::vector<int>{kLandmarks, kPresence, kHeatmaps, kWorld}) {}
+
+  std::vector<PoseRegion> FindPeople(const Image& image, const PoseRegion& square, double min_score) {
+    const std::vector<TfliteValues> outputs =
+        people_.Run(CropRegion(image, square, kPersonDetectorSize, 2.0F / 255, -1));
+    std::vector<PoseRegion> regions;
+    for (const PersonDetection& person : DecodePersonDetections(outputs[0].values, outputs[1].values, min_score)) {
+      const PoseRegion region =
+          RegionAroundBody(square.ImageFromFraction(person.points[0]), square.ImageFromFraction(person.points[1]));
+      if (region.IsValid()) regions.push_back(region);
+    }
+    return regions;
+  }
+
+  DetectedPose PoseIn(const Image& image, const PoseRegion& region) {
+    const std::vector<TfliteValues> outputs =
+        landmarks_.Run(CropRegion(image, region, kPoseNetworkSize, 1.0F / 255, 0));
+    return DecodePose({.landmarks = outputs[0].values,
+                       .presence = outputs[1].values[0],
+                       .mask = with_mask_ ? std::span<const float>(outputs[4].values) : std::span<const float>(),
+                       .heatmaps = outputs[2].values,
+                       .world = outputs[3].values},
+                      region, image.width, image.height);
+  }
+
+ private:
+  bool with_mask_;
+  TfliteNetwork people_, landmarks_;
+};
+
+PoseDetector::PoseDetector(const std::shared_ptr<const PoseModels>& models, bool with_mask)
+    : networks_(std::make_unique<Networks>(*models, with_mask)) {}
+PoseDetector::PoseDetector(const PoseDetector& other) : networks_(std::make_unique<Networks>(*other.networks_)) {}
+PoseDetector::~PoseDetector() = default;
+PoseDetector::PoseDetector(PoseDetector&&) noexcept = default;
+PoseDetector& PoseDetector::operator=(PoseDetector&&) noexcept = default;
+
+std::vector<PoseRegion> PoseDetector::FindPeople(const Image& image, const PoseRegion& square, double min_score) {
+  return networks_->FindPeople(image, square, min_score);
+}
+
+DetectedPose PoseDetector::PoseIn(const Image& image, const PoseRegion& region) {
+  return networks_->PoseIn(image, region);
+}
+
+}  // namespace bodyloom

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+/// 2D landmarks of a clip → 3D landmarks with their uncertainty, by the lifter.
+///
+/// The network works at about 20 frames a second. Faster clips are read in k = round(fps/20) interleaved phases, slower
+/// ones with interpolated frames in between. It runs a second time on the mirrored clip: torso landmarks, up and
+/// contact are averaged, and a limb's hypotheses of both runs stand side by side. A cut ends one clip and begins
+/// another.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "bodyloom/geometry/math/arrays.h"
+#include "bodyloom/geometry/scene/camera.h"
+#include "bodyloom/geometry/scene/lifter_weights.h"
+#include "bodyloom/geometry/scene/observations.h"
+#include "bodyloom/tracking/lifter/lifter_reading.h"
+
+namespace bodyloom {
+
+struct LiftOptions {
+  bool mirrored = true;    ///< the second run
+  bool all_phases = true;  ///< false: one phase, frames in between interpolated; faster and rougher
+  int num_threads = 1;
+  int last_samples = 0;  ///< above 0: only the last so many that each phase reads are computed; frames before are empty
+};
+
+/// Between two frames, s in [0, 1]: points by straight lines, limbs and uncertainty of the nearer one.
+LiftedFrame InterpolateLifted(const LiftedFrame& a, const LiftedFrame& b, double s);
+
+/// One entry a frame; empty when no landmark is ever seen. `cut_before` (T, or empty) marks frames that do not continue
+/// the one before. Throws std::invalid_argument for weights of another number of inputs.
+std::vector<LiftedFrame> LiftKeypoints(const KeypointSequence& keypoints, const Camera& camera, bool focal_known,
+                                       const std::vector<char>& cut_before, const LifterWeights& weights,
+                                       const LiftOptions& options);
+
+}  // namespace bodyloom

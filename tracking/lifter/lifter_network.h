@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Runs the lifter (geometry/scene/lifter_weights.h) with plain matrix products: about a million of them a frame.
+#pragma once
+
+#include "bodyloom/geometry/math/arrays.h"
+#include "bodyloom/geometry/scene/lifter_weights.h"
+
+namespace bodyloom {
+
+/// T×LifterOutput::kSize for T×num_inputs features of consecutive frames; beyond the ends is nothing, as in training.
+/// `last_frames` n > 0: only the last n rows, and only what they depend on is computed; they equal those of the whole.
+/// Throws std::invalid_argument when the features have another number of columns.
+RowMatrixXf RunLifter(const LifterWeights& weights, const RowMatrixXf& features, int last_frames = 0);
+
+}  // namespace bodyloom

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Sums of a frame's terms: its cost and its normal equations, or its residuals one by one.
+///
+/// A term hands over groups of residual rows with their derivatives, or squares of blocks that it knows itself.
+/// Rotations are differentiated by right increments. Points that cannot be projected cost the kernel's saturation c²
+/// with a zero derivative, and are counted. What becomes of the groups is the mode's:
+///   kCost       ½ Σ w ρ(‖r‖²) alone
+///   kSums       the same, and gradient and Gauss–Newton matrix of the weighted residuals √(w ρ′) r
+///   kRows       r and its derivatives as they are, group by group, with w and ρ beside them: what Ceres takes
+///   kNorms      the same without derivatives; of each group's r its norm stands in the first row
+///   kStructure  as kRows, and on which unknowns each group may depend
+/// Holds scratch memory that is kept from frame to frame; one instance a thread.
+#pragma once
+
+#include <Eigen/Core>
+#include <any>
+#include <cmath>
+#include <map>
+#include <string>
+#include <typeindex>
+#include <vector>
+
+#include "bodyloom/geometry/math/arrays.h"
+#include "bodyloom/geometry/scene/camera.h"
+#include "bodyloom/tracking/problem/body_points.h"
+#include "bodyloom/tracking/problem/frame_layout.h"
+#include "bodyloom/tracking/problem/robust.h"
+#include "bodyloom/tracking/problem/visible_surface.h"
+
+namespace ceres {
+class LossFunction;
+}  // namespace ceres
+
+namespace bodyloom {
+
+/// Gauss–Newton system of a frame: cost = ½ Σ ρ, gradient = Jᵀ r and H = Jᵀ J of the weighted residuals.
+struct FrameSystem {
+  double cost = 0;
+  Eigen::MatrixXd H;  ///< lower triangle
+  Eigen::VectorXd gradient;
+  int num_invalid = 0;  ///< observations that could not be projected
+};
+
+/// How far a term's observations are off in one frame, in pixels, before weights and kernels.
+struct PixelResiduals {
+  std::vector<double> px;
+  int unmatched = 0;
+};
+/// By what the summary calls them: "rendered UV", "silhouette", "part labels".
+using FrameResiduals = std::map<std::string, PixelResiduals>;
+
+/// Rows that share a robust kernel: ½ w ρ(‖r‖²).
+struct ResidualGroup {
+  int first_row = 0, num_rows = 0;
+  double kernel = 0;  ///< c of Geman–McClure; 0: ρ(s) = s
+  double weight = 1;
+  ceres::LossFunction* loss = nullptr;  ///< ρ in place of the kernel; borrowed
+  /// Unknowns that the rows may depend on, whatever the state: FrameLayout::BlockOf… numbers, ascending. Filled while
+  /// structure is noted (Mode::kStructure).
+  std::vector<int> blocks;
+};
+
+class FrameAccumulator {
+ public:
+  enum class Mode { kCost, kSums, kNorms, kRows, kStructure };
+
+  /// A surface point that was evaluated last in points(), and where it appears.
+  struct Projected {
+    Eigen::Vector3d x;
+    Eigen::Vector2d pixel;
+    Matrix2x3d d_pixel_d_x;
+  };
+
+  /// Begins a frame at this state, all of which is borrowed until Finish(). `residuals` may be null.
+  void Begin(const FrameLayout& layout, const FrameState& state, const Eigen::VectorXd& betas, double log_focal,
+             Mode mode, FrameResiduals* residuals);
+  /// Makes room for this many rows and forgets what was added since Begin(): before the first term in every mode but
+  /// kCost.
+  void ReserveRows(int rows);
+  /// Terms from here on are taken in this mode, which has derivatives only when that of Begin() had.
+  void SetMode(Mode mode) { mode_ = mode; }
+  /// The sums of all that was added since ReserveRows(); H and gradient with derivatives only.
+  void Finish(FrameSystem* system);
+
+  [[nodiscard]] const FrameLayout& layout() const { return *layout_; }
+  [[nodiscard]] const FrameState& state() const { return *state_; }
+  [[nodiscard]] const Eigen::VectorXd& betas() const { return *betas_; }
+  [[nodiscard]] double log_focal() const { return log_focal_; }
+  [[nodiscard]] const Camera& camera() const { return camera_; }
+  [[nodiscard]] bool derivatives() const { return mode_ != Mode::kCost && mode_ != Mode::kNorms; }
+  /// Residuals are wanted one by one: rows are to be handed over even where they are zero now.
+  [[nodiscard]] bool one_by_one() const { return mode_ != Mode::kCost && mode_ != Mode::kSums; }
+  [[nodiscard]] const Kinematics& kinematics() const { return kinematics_; }
+  /// Evaluates points of the body; what was evaluated last is what rows are added for.
+  PointEvaluator& points() { return points_; }
+  PointEvaluator::VertexCache& vertices() { return vertices_; }
+  VisibleSurface& surface() { return surface_; }
+  /// Null where nobody wants to know.
+  PixelResiduals* residuals(const char* name) { return residuals_ != nullptr ? &(*residuals_)[name] : nullptr; }
+  /// Memory of one term's own, kept from frame to frame.
+  template <typename T>
+  T& Scratch() {
+    std::any& scratch = scratch_[std::type_index(typeid(T))];
+    if (!scratch.has_value()) scratch = std::make_shared<T>();
+    return *std::any_cast<std::shared_ptr<T>&>(scratch);
+  }
+
+  [[nodiscard]] double cost() const { return cost_; }
+  void AddCost(double cost) { cost_ += cost; }
+  /// An observation of num_rows rows of the point evaluated last that could not be used costs its kernel's saturation.
+  void AddSaturated(double kernel, double weight, int num_rows = 2);
+  bool Project(const Eigen::Vector3d& x, Projected* projected) {
+    projected->x = x;
+    return camera_.Project(x, &projected->pixel, derivatives() ? &projected->d_pixel_d_x : nullptr);
+  }
+
+  /// Adds ½ w ρ(‖r‖²) of a group of rows whose squared norm is given (kernel 0: ρ(s) = s) and returns by what rows and
+  /// residuals are to be multiplied before they are handed over: √(w ρ′), or 1 where they are wanted one by one.
+  double AddGroup(int num_rows, double squared_norm, double kernel, double weight) {
+    const RobustValue robust = kernel > 0 ? GemanMcClure(squared_norm, kernel) : RobustValue{squared_norm, 1};
+    cost_ += 0.5 * weight * robust.rho;
+    if (one_by_one()) {
+      BeginGroup(num_rows, squared_norm, kernel, weight);
+      return 1;
+    }
+    return std::sqrt(weight * robust.weight);
+  }
+  /// The same with a loss function, of which ρ and ρ′ are given.
+  double AddGroup(int num_rows, double squared_norm, double rho, double d_rho, ceres::LossFunction* loss);
+  /// ½ w ρ(‖residual‖²) with ∂residual/∂θ = B ∂pixel/∂θ of the point evaluated last; N rows.
+  template <int N>
+  void AddImageRows(const Projected& at, const Eigen::Matrix<double, N, 1>& residual,
+                    const Eigen::Matrix<double, N, 2>& B, double kernel, double weight);
+  /// ½ w ρ(‖W (π(x) − pixel)‖²), x the point evaluated last.
+  void AddPixel(const Eigen::Vector3d& x, const Eigen::Vector2d& pixel, const Eigen::Matrix2d& whitening, double kernel,
+                double weight) {
+    Projected at;
+    if (!Project(x, &at)) {
+      AddSaturated(kernel, weight);
+      return;
+    }
+    AddImageRows<2>(at, whitening * (at.pixel - pixel), whitening, kernel, weight);
+  }
+  /// The next `count` rows of the Jacobian and their residuals, to be filled before TakeRows(count); columns beyond the
+  /// layout's are padding and stay zero.
+  auto NextRows(int count) { return J_.middleRows(row_, count); }
+  auto NextResiduals(int count) { return r_.segment(row_, count); }
+  void TakeRows(int count) { row_ += count; }
+  /// 3×columns: derivative of the point evaluated last, without translation.
+  void FillPointRows(Eigen::Ref<RowMatrixXd> rows);
+  /// Adds a group of N rows that depends on one joint (or on the translation), whose three columns begin at `column`:
+  /// J and r multiplied by what AddGroup() returned. Summed as JᵀJ and Jᵀr, without rows.
+  template <int N>
+  void AddBlockRows(int column, const Eigen::Matrix<double, N, 3>& J, const Eigen::Matrix<double, N, 1>& r) {
+    if (!one_by_one()) {
+      H_.block<3, 3>(column, column) += J.transpose() * J;
+      gradient_.segment<3>(column) += J.transpose() * r;
+      return;
+    }
+    auto rows = NextRows(N);
+    rows.setZero();
+    rows.template middleCols<3>(column) = J;
+    NextResiduals(N) = r;
+    DependsOn(layout_->BlockOfColumn(column));
+    TakeRows(N);
+  }
+  /// Upper triangle by rows; columns padded. For terms that sum themselves, in Mode::kSums.
+  RowMatrixXd& H() { return H_; }
+  Eigen::VectorXd& gradient() { return gradient_; }
+
+  /// Says, of the group begun last, on which unknowns it may depend: one of FrameLayout's blocks, or the joints that
+  /// move the point evaluated last and the shape. FillPointRows(), AddImageRows() and AddBlockRows() say it themselves.
+  void DependsOn(int block);
+  void DependsOnPoint();
+
+  /// Of the groups handed over since ReserveRows(), in the modes in which they are wanted one by one.
+  [[nodiscard]] const std::vector<ResidualGroup>& groups() const { return groups_; }
+  [[nodiscard]] const RowMatrixXd& rows() const { return J_; }
+  [[nodiscard]] const Eigen::VectorXd& residual_values() const { return r_; }
+  [[nodiscard]] int num_rows() const { return row_; }
+
+  /// At most about this many of a term's thousands of observations in a frame, evenly chosen and weighted to stand for
+  /// all; 0: all.
+  int max_points = 0;
+
+ private:
+  void BeginGroup(int num_rows, double squared_norm, double kernel, double weight);
+
+  const FrameLayout* layout_ = nullptr;
+  const FrameState* state_ = nullptr;
+  const Eigen::VectorXd* betas_ = nullptr;
+  double log_focal_ = 0;
+  FrameResiduals* residuals_ = nullptr;
+  Mode mode_ = Mode::kCost;
+  Kinematics kinematics_;
+  PointEvaluator points_;
+  PointEvaluator::VertexCache vertices_;
+  VisibleSurface surface_;
+  Camera camera_;
+  RowMatrixXd J_;  ///< rows of the terms that are not added directly; columns padded with zeros
+  Eigen::VectorXd r_;
+  RowMatrixXd H_;  ///< upper triangle; columns padded
+  Eigen::VectorXd gradient_;
+  int row_ = 0;
+  double cost_ = 0;
+  int num_invalid_ = 0;
+  std::vector<ResidualGroup> groups_;
+  std::map<std::type_index, std::any> scratch_;
+};
+
+template <int N>
+void FrameAccumulator::AddImageRows(const Projected& at, const Eigen::Matrix<double, N, 1>& residual,
+                                    const Eigen::Matrix<double, N, 2>& B, double kernel, double weight) {
+  const FrameLayout& layout = *layout_;
+  const double scale = AddGroup(N, residual.squaredNorm(), kernel, weight);
+  if (!derivatives()) return;
+  const Eigen::Matrix<double, N, 2> by_pixel = scale * B;
+  const Eigen::Matrix<double, N, 3> A = by_pixel * at.d_pixel_d_x;
+  auto rows = J_.middleRows<N>(row_);
+  rows.setZero();
+  for (int j : points_.joints()) {
+    const int column = layout.column_of_joint[j];
+    if (column >= 0) rows.template middleCols<3>(column).noalias() = A * points_.JointJacobian(kinematics_, j);
+  }
+  if (layout.knowledge == CameraKnowledge::kWeak) {
+    const Eigen::Matrix<double, N, 2> by_offset = camera_.scale * by_pixel;
+    rows.col(layout.translation_column) = by_offset * Eigen::Vector2d(at.x.x() + camera_.tx, at.x.y() + camera_.ty);
+    rows.col(layout.translation_column + 1) = by_offset.col(0);
+    rows.col(layout.translation_column + 2) = by_offset.col(1);
+  } else {
+    rows.template middleCols<3>(layout.translation_column) = A;
+  }
+  if (layout.num_betas > 0) {
+    rows.middleCols(layout.beta_column, layout.num_betas).noalias() = A * points_.ShapeJacobian();
+  }
+  if (layout.focal_column >= 0) {
+    rows.col(layout.focal_column) = by_pixel * (at.pixel - Eigen::Vector2d(camera_.cx, camera_.cy));
+  }
+  r_.segment<N>(row_) = scale * residual;
+  row_ += N;
+  if (mode_ == Mode::kStructure) {
+    DependsOnPoint();
+    DependsOn(layout.TranslationBlock());
+    DependsOn(layout.FocalBlock());
+  }
+}
+
+}  // namespace bodyloom

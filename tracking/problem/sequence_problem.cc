@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/tracking/problem/sequence_problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+namespace bodyloom {
+
+using Eigen::VectorXd;
+
+std::vector<double> JointLevers(const BodyModel& model) {
+  std::vector<double> levers(model.num_joints(), 0.1);
+  for (int j = 0; j < model.num_joints(); ++j) {
+    for (int a : model.ancestors(j)) {
+      levers[a] = std::max(levers[a], (model.joint_template().row(j) - model.joint_template().row(a)).norm());
+    }
+  }
+  return levers;
+}
+
+double StatureOfMeanShape(const BodyModel& model, int num_betas, VectorXd* gradient) {
+  Eigen::Index top, bottom;
+  const double height =
+      model.data().v_template.col(1).maxCoeff(&top) - model.data().v_template.col(1).minCoeff(&bottom);
+  const RowMatrixXf& s = model.data().shapedirs;
+  *gradient = (s.row(3 * top + 1).head(num_betas) - s.row(3 * bottom + 1).head(num_betas)).cast<double>().transpose();
+  return height;
+}
+
+void ShapePriorRows(const SequenceProblem& problem, RowMatrixXd* A, VectorXd* b) {
+  const int B = problem.layout.num_betas;
+  VectorXd gradient;
+  const double mean_height = StatureOfMeanShape(*problem.layout.model, B, &gradient);
+  const double height = problem.shape_prior.height_m > 0 ? problem.shape_prior.height_m : mean_height;
+  *A = RowMatrixXd::Identity(B + 1, B) * (std::sqrt(problem.shape_prior.weight) / problem.shape_prior.sigma);
+  *b = VectorXd::Zero(B + 1);
+  if (problem.shape_prior.mean.size() == B) *b = -*A * problem.shape_prior.mean;
+  A->row(B) = gradient.transpose() / problem.shape_prior.height_sigma_m;
+  (*b)[B] = (mean_height - height) / problem.shape_prior.height_sigma_m;
+}
+
+const Smoothness& SmoothnessOf(const SequenceProblem& problem, int shot) {
+  return problem.smoothness[problem.smoothness.size() == 1 ? 0 : shot];
+}
+
+std::vector<double> JointAccelerationSigma(const SequenceProblem& problem, int shot) {
+  const Smoothness& smooth = SmoothnessOf(problem, shot);
+  std::vector<double> sigma = JointLevers(*problem.layout.model);
+  for (size_t j = 0; j < sigma.size(); ++j) {
+    sigma[j] = (smooth.of_joint.empty() ? smooth.tip_acceleration : smooth.of_joint[j]) / sigma[j];
+  }
+  return sigma;
+}
+
+std::array<double, 3> RootAccelerationSigma(const SequenceProblem& problem, int shot) {
+  const Smoothness& smooth = SmoothnessOf(problem, shot);
+  const double sigma = smooth.root_acceleration;
+  const bool weak = problem.layout.knowledge == CameraKnowledge::kWeak;
+  return {weak ? smooth.weak_scale_acceleration : sigma, sigma, sigma};
+}
+
+std::vector<double> JointVelocitySigma(const SequenceProblem& problem) {
+  std::vector<double> sigma = JointLevers(*problem.layout.model);
+  for (double& s : sigma) s = 1 / (s * std::sqrt(problem.velocity_weight));
+  return sigma;
+}
+
+std::array<double, 3> RootVelocitySigma(const SequenceProblem& problem) {
+  // A change of log scale is to one of place as their accelerations are.
+  const Smoothness usual;
+  const double sigma = 1 / std::sqrt(problem.velocity_weight);
+  const bool weak = problem.layout.knowledge == CameraKnowledge::kWeak;
+  return {weak ? sigma * usual.weak_scale_acceleration / usual.root_acceleration : sigma, sigma, sigma};
+}
+
+SequenceProblem SelectFrames(const SequenceProblem& problem, const std::vector<int>& frames) {
+  SequenceProblem coarse;
+  coarse.layout = problem.layout;
+  coarse.betas = problem.betas;
+  coarse.log_focal = problem.log_focal;
+  coarse.log_focal_prior = problem.log_focal_prior;
+  coarse.log_focal_sigma = problem.log_focal_sigma;
+  coarse.smoothness = problem.smoothness;
+  coarse.velocity_weight = problem.velocity_weight;
+  coarse.shape_prior = problem.shape_prior;
+  int previous = -1;
+  for (int t : frames) {
+    coarse.frames.push_back(problem.frames[t]);
+    coarse.states.push_back(problem.states[t]);
+    coarse.timestamps.push_back(problem.timestamps[t]);
+    bool cut = false;
+    for (int u = previous + 1; u <= t; ++u) cut = cut || problem.cut_before[u];
+    coarse.cut_before.push_back(cut);
+    previous = t;
+  }
+  for (const FrameCoupling& coupling : problem.couplings) {
+    FrameCoupling selected = coupling;
+    bool all = true;
+    for (int& t : selected.frames) {
+      const auto at = std::lower_bound(frames.begin(), frames.end(), t);
+      all = all && at != frames.end() && *at == t;
+      t = static_cast<int>(at - frames.begin());
+    }
+    if (all) coarse.couplings.push_back(std::move(selected));
+  }
+  return coarse;
+}
+
+void SpreadFrames(const SequenceProblem& coarse, const std::vector<int>& frames, SequenceProblem* problem) {
+  problem->betas = coarse.betas;
+  problem->log_focal = coarse.log_focal;
+  for (size_t i = 0; i < frames.size(); ++i) problem->states[frames[i]] = coarse.states[i];
+  for (size_t i = 0; i + 1 < frames.size(); ++i) {
+    if (coarse.cut_before[i + 1]) continue;
+    const double t0 = problem->timestamps[frames[i]], t1 = problem->timestamps[frames[i + 1]];
+    for (int t = frames[i] + 1; t < frames[i + 1]; ++t) {
+      problem->states[t] =
+          InterpolateStates(coarse.states[i], coarse.states[i + 1], (problem->timestamps[t] - t0) / (t1 - t0));
+    }
+  }
+}
+
+std::vector<int> FramesAtRate(const SequenceProblem& problem, double rate) {
+  std::vector<int> frames;
+  const int T = static_cast<int>(problem.states.size());
+  double next = 0;
+  for (int t = 0; t < T; ++t) {
+    const bool ends_shot = t + 1 == T || problem.cut_before[t + 1];
+    if (t > 0 && !problem.cut_before[t] && !ends_shot && problem.timestamps[t] < next - 1e-9) continue;
+    frames.push_back(t);
+    next = problem.timestamps[t] + 1 / rate;
+  }
+  return frames;
+}
+
+std::vector<int> ShotOfFrames(const std::vector<char>& cut_before) {
+  std::vector<int> shot(cut_before.size(), 0);
+  for (size_t t = 1; t < shot.size(); ++t) shot[t] = shot[t - 1] + (cut_before[t] != 0 ? 1 : 0);
+  return shot;
+}
+
+}  // namespace bodyloom

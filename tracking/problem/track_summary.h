@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The summary of TrackSequence(): what ran and why, how well it fits, how long it took.
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bodyloom/geometry/scene/track.h"
+#include "bodyloom/tracking/problem/camera_knowledge.h"
+#include "bodyloom/tracking/problem/track_options.h"
+
+namespace bodyloom {
+
+/// One line of the plan: a step or part of the problem, whether it runs, and why.
+struct PlanEntry {
+  std::string what;
+  bool runs = false;
+  std::string why;
+};
+
+/// How well one term fits at the end, over all frames.
+struct TermSummary {
+  std::string term;                  ///< "2D joints", "dense keypoints", "rendered UV", "silhouette", "part labels"
+  int observations = 0;              ///< with a weight
+  int unmatched = 0;                 ///< that could not be used: hidden, another chart, another part, behind the camera
+  double median_px = 0, p95_px = 0;  ///< of |residual|, in pixels
+};
+
+/// Where Ceres ended, the last engine of a track unless it is told otherwise.
+struct CeresSummary {
+  bool ran = false;
+  int iterations = 0;
+  double initial_cost = 0, final_cost = 0;  ///< initial: where chain has brought it
+  double gradient_max_norm = 0;             ///< the largest component of the gradient at the end
+  double seconds = 0;
+};
+
+/// What a term costs at the answer, ½ Σ ρ of its residuals.
+struct TermCost {
+  std::string term;  ///< as FrameTerm::name(), or "smoothness", "shape prior", …
+  double cost = 0;
+};
+
+/// The second of the clip that fits worst.
+struct WorstStretch {
+  int begin = 0, end = 0;         ///< frames
+  double begin_s = 0, end_s = 0;  ///< times of the first and the last of them
+  double cost_ratio = 0;          ///< its cost a frame over that of the whole clip
+  std::string term;               ///< whose cost there is most above what it is in the whole clip: the one that pulls
+  double term_share = 0;          ///< of the cost there
+  /// "3.2 to 4.2 s, at 2.4 times the mean cost: lifter pulls (38 % of it)"
+  [[nodiscard]] std::string BriefReport() const;
+};
+
+/// A foot that stands where it is over the frames [begin, end).
+struct StandingFoot {
+  int foot = 0, begin = 0, end = 0;  ///< foot 0: left
+  double seconds = 0;
+  Eigen::Vector3d place_m = Eigen::Vector3d::Zero();  ///< on the floor under its ankle, mean of its frames; camera axes
+};
+
+/// What the clip showed of the vertical and the ground.
+struct GroundSummary {
+  bool has_up = false;
+  Eigen::Vector3d up = Eigen::Vector3d(0, -1, 0);  ///< world up in the camera frame, mean over the clip
+  double up_spread_deg = 0;                        ///< median angle of the frames' own up to it
+  bool has_plane = false;
+  std::string why;             ///< what was found, or why there is no ground
+  double camera_height_m = 0;  ///< of the camera above the ground
+  double height_spread_m = 0;  ///< robust σ of standing feet's heights before the ground held them
+  bool given = false;          ///< TrackSequenceInput::ground said it
+  /// Standard deviations of the vertical and of the camera's height (geometry/scene/world_frame.h); NaN where unknown.
+  double up_sigma_deg = std::numeric_limits<double>::quiet_NaN();
+  double height_sigma_m = std::numeric_limits<double>::quiet_NaN();
+  int contact_frames = 0;  ///< frames in which at least one foot was held
+  /// How fast ankles move across the view that the lifter calls standing, median over the clip before the ground held
+  /// them, m/s: a camera that moves although none was said to takes standing feet with it. NaN: none was seen.
+  double standing_speed_mps = std::numeric_limits<double>::quiet_NaN();
+  std::vector<StandingFoot> stances;  ///< all of the longest shot, on the plane or not, where the answer has them
+};
+
+/// How the path of a camera that moves came to its length.
+struct CameraPathSummary {
+  bool moves = false;      ///< a path was given
+  double scale_m = 1;      ///< metres a unit of the path's translations; 0: not known, its rotations alone were used
+  bool estimated = false;  ///< from the person (camera_scale.h)
+  double sigma_m = 0;      ///< standard deviation of an estimated scale
+  std::string why;         ///< what an estimate was made from, or why none could be
+};
+
+struct TrackSequenceSummary {
+  SolveStatus status = SolveStatus::kFailure;
+  std::string message;
+  std::string solver;
+  int iterations = 0;
+  double initial_cost = 0, final_cost = 0;
+  std::vector<std::pair<std::string, double>> seconds;         ///< by stage, in order of running
+  double seconds_evaluation = 0, seconds_linear_solver = 0;    ///< inside the solves
+  std::vector<PlanEntry> plan;                                 ///< what ran and what was skipped
+  std::map<std::string, int> frames_by_status;                 ///< "tracked", "weak", "interpolated", "lost"
+  double reprojection_median_px = 0, reprojection_p95_px = 0;  ///< of the used 2D joints (confidence > 0.3)
+  std::vector<double> frame_px;                                ///< T: median of the same in a frame; NaN: none used
+  double dense_median_px = 0;                                  ///< of the dense keypoints, 0 without
+  std::vector<TermSummary> terms;                              ///< of every image term that ran
+  CeresSummary ceres;
+  std::vector<TermCost> costs;                ///< of every term, the largest first; their sum is final_cost
+  std::optional<WorstStretch> worst_stretch;  ///< of clips of two seconds and more
+  double focal_px = 0;                        ///< used or estimated
+  /// What the detections by themselves say of it where it was joined with the prior (camera_knowledge.h); else nothing.
+  std::optional<FocalFit> focal_fit;
+  /// Standard deviation of log focal_px when it was estimated with uncertainty; 0 when it was known, NaN when its
+  /// spread is not known.
+  double focal_log_sigma = 0;
+  double stature_m = 0;  ///< at which the body was held because it was given; 0: the mean body's
+  int num_observations = 0, num_parameters = 0;
+  GroundSummary ground;
+  CameraPathSummary camera_path;
+  int num_swaps_repaired = 0;  ///< left–right pairs found exchanged in the detections
+  [[nodiscard]] bool IsUsable() const { return status != SolveStatus::kFailure; }
+  /// A few lines for a terminal.
+  [[nodiscard]] std::string BriefReport() const;
+};
+
+struct TrackSequenceResult {
+  Track track;
+  TrackSequenceSummary summary;
+};
+
+/// How a term of image residuals ended; `px` holds |residual| of each observation with a weight, pixels (0 of
+/// nothing).
+TermSummary SummarizeTerm(const std::string& term, const std::vector<double>& px, int unmatched = 0);
+
+}  // namespace bodyloom

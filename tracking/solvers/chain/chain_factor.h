@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The linear algebra of the chain solver: a symmetric positive definite matrix of T frames of n values each, coupled
+/// to their two neighbours on each side, and s values shared by all frames (an arrow),
+///
+///       ⎡ A₀   C₀   D₀             B₀ ⎤
+///       ⎢ C₀ᵀ  A₁   C₁   D₁        B₁ ⎥      A_t  n×n
+///   M = ⎢ D₀ᵀ  C₁ᵀ  A₂   C₂   …    B₂ ⎥      C_t, D_t  n×n, block diagonal in blocks of 3×3
+///       ⎢           …              …  ⎥      B_t  n×s
+///       ⎣ B₀ᵀ  B₁ᵀ  B₂ᵀ  …         S  ⎦      S  s×s
+///
+/// (or C_t any matrix, ChainSource::DenseNext)
+/// solved exactly by block elimination, frame after frame, shared values last. A frame's elimination costs 4.2 n³
+/// multiplications and additions: C fills up, D does not (U⁻ᵀD stays lower triangular), so a third of a plain band
+/// factorisation's work is left out. Cuts divide the chain into independent segments. A segment is eliminated from both
+/// ends at once and its two middle frames last, which costs nothing extra and makes two tasks that share no data: two
+/// threads work, and the sums are taken in the same order however many threads there are.
+///
+/// Memory: 8 n (2n + s + 4) bytes a frame, and scratch memory that is kept from one solve to the next: where windows of
+/// a few frames are solved again and again, computing it from the system would take as long as the elimination. Source
+/// of the elimination: any text on block band Cholesky; from both ends: "burn at both ends" (twisted) factorisation,
+/// van der Vorst 1987.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace bodyloom {
+
+/// Hands out the matrix and the right-hand side, frame by frame; called from several threads.
+class ChainSource {
+ public:
+  virtual ~ChainSource() = default;
+  /// Adds frame t's upper triangle of A_t to a, (B_t | right-hand side) to b; row-major with strides.
+  virtual void AddFrame(int t, double* a, int64_t a_stride, double* b, int64_t b_stride) const = 0;
+  /// n/3 row-major 3×3 blocks of C_t (frame t with t + 1) and D_t (t with t + 2); not requested across cuts.
+  [[nodiscard]] virtual const double* Next(int t) const = 0;
+  [[nodiscard]] virtual const double* Second(int t) const = 0;
+  /// n×n row-major block that is added to C_t where a coupling is not block diagonal, or null: what a marginal prior
+  /// couples (chain_problem.h), or a cost function on two frames' landmarks. Not requested across cuts.
+  [[nodiscard]] virtual const double* DenseNext(int /*t*/) const { return nullptr; }
+};
+
+class ChainFactor {
+ public:
+  /// `frame_size` n is a multiple of 3; `cut_before[t]` separates frame t from t − 1. The last `num_multipliers` of the
+  /// shared values are multipliers (chain_couplings.cc): M is then not positive definite in them.
+  ChainFactor(int frame_size, int shared_size, std::vector<char> cut_before, int num_multipliers = 0);
+  ~ChainFactor();
+  ChainFactor(const ChainFactor&) = delete;
+  ChainFactor& operator=(const ChainFactor&) = delete;
+
+  /// Solves M x = b. `shared` is S (lower triangle read), `shared_rhs` its right-hand side; the answer lies in
+  /// `frames` (T·n) and `shared_step`. False, with the answer undefined, when M is not positive definite to rounding.
+  bool Solve(const ChainSource& source, const Eigen::MatrixXd& shared, const Eigen::VectorXd& shared_rhs,
+             int num_threads, Eigen::VectorXd* frames, Eigen::VectorXd* shared_step);
+
+  /// From now on the frames marked here (T of them; empty: none) and, while there are any, the shared values keep a
+  /// step of zero: Solve() solves the system of the other frames alone.
+  void SetFrozen(std::vector<char> frozen);
+
+  /// Blocks of M⁻¹ for the matrix of the last Solve(), which must have succeeded and had no frozen frames: visit(t, P)
+  /// gets, for each frame begin ≤ t < end, the (n + s)² block of its values and, after them, of the shared ones. Frames
+  /// come in no particular order, from up to num_threads threads.
+  ///
+  /// With rows [U | W₁ | W₂ | Y] of the factor, V = U⁻ᵀ, K_i = U⁻¹W_i, and C = the inverse given the shared values:
+  ///   C_tu = −K₁ C_1u − K₂ C_2u (u = the next two frames),   C_tt = VᵀV − K₁ C_1t − K₂ C_2t,
+  ///   G_t = −U⁻¹Y − K₁ G_1 − K₂ G_2,   P_tt = C_tt + G_t P_ss G_tᵀ,   P_ts = G_t P_ss
+  /// from the middle of a segment, where the elimination ended, outwards as far as requested: 7 n³ multiplications and
+  /// additions a frame, no memory that grows with the clip. Source: Takahashi, Fagan, Chen 1973 (selected inverse).
+  void VisitInverse(int begin, int end, int num_threads,
+                    const std::function<void(int, const Eigen::MatrixXd&)>& visit) const;
+
+  [[nodiscard]] int num_frames() const { return static_cast<int>(cut_before_.size()); }
+  /// Another number of frames or other cuts; memory is kept.
+  void SetCuts(std::vector<char> cut_before);
+
+ private:
+  struct Panel;
+  struct Half;
+  class Inverse;
+  class InversePool;
+  /// Frames between two cuts, or frozen frames; `middle` is the first of the (up to) two that are eliminated last.
+  struct Segment {
+    int begin = 0, end = 0, middle = 0;
+  };
+  [[nodiscard]] std::vector<Segment> Segments() const;
+  static std::shared_ptr<InversePool> MakeInversePool();
+  bool Eliminate(const ChainSource& source, Half* half);
+  bool EliminateMiddle(const ChainSource& source, const Segment& segment, Half* forward, Half* backward,
+                       std::vector<double>* shared_sum);
+  bool Step(int t, Panel* front, Panel* next, Panel* second, std::vector<double>* shared_sum);
+  void BackSubstitute(int t, int next, int second, const double* shared, double* frames) const;
+  void Store(int t, const Panel& front);
+
+  int n_, s_, num_multipliers_;
+  int b_columns_;  ///< of the arrow section of a panel: s + 1 rounded up
+  std::vector<char> cut_before_;
+  std::vector<char> frozen_;                 ///< T, or empty: none
+  std::vector<std::vector<double>> factor_;  ///< T: rows of [U from the diagonal | W₁ | arrow and right-hand side | W₂]
+  Eigen::MatrixXd shared_inverse_;           ///< s×s block of M⁻¹
+  std::vector<std::vector<Panel>> panels_;  ///< scratch of the halves that are eliminated at the same time
+  std::vector<Panel> middle_panels_;
+  std::shared_ptr<InversePool> inverses_ = MakeInversePool();
+};
+
+}  // namespace bodyloom

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The last frames of a chain that grows: a fixed-lag smoother.
+///
+/// A window of at most `max_frames` frames is solved by the iterations of chain_solver.h. When it is full, its oldest
+/// frame is eliminated and leaves a ChainPrior on the two frames behind it and on shape and focal length. Time and
+/// memory of a frame are bounded. In a linear Gaussian problem the window holds what a solve of all frames so far
+/// would give for them.
+#pragma once
+
+#include <functional>
+
+#include "bodyloom/tracking/problem/sequence_problem.h"
+#include "bodyloom/tracking/problem/track_options.h"
+#include "bodyloom/tracking/solvers/chain/chain_factor.h"
+#include "bodyloom/tracking/solvers/chain/chain_problem.h"
+
+namespace bodyloom {
+
+class FixedLag {
+ public:
+  /// `clip` holds everything but frames (layout, smoothness, shape prior, betas, focal length). max_frames ≥ 3.
+  FixedLag(SequenceProblem clip, int max_frames, int num_threads);
+  FixedLag(const FixedLag&) = delete;
+  FixedLag& operator=(const FixedLag&) = delete;
+
+  /// Appends a frame at its starting state; when the window is full its first frame goes. `cut_before`: it does not
+  /// continue the last one. Returns how many frames have gone (0 or 1).
+  int Add(FrameData frame, FrameState start, double timestamp, bool cut_before);
+
+  /// At most this many iterations, with ChainOptions::reuse_linearisation = `reuse_share`. A failure leaves the states
+  /// at the best point that was found.
+  SolveReport Solve(int max_iterations, double reuse_share, double function_tolerance = 1e-5);
+
+  /// VisitCovariance() of chain_inverse.h at the window's states, for frames begin ≤ t < end of it; frames that have
+  /// left count through the prior. Later solves are the same with it as without.
+  bool VisitCovariance(int begin, int end, const std::function<void(int, const Eigen::MatrixXd&)>& visit);
+
+  /// Shape prior, betas, states and observations may be changed between calls; Touch(t) after the latter.
+  [[nodiscard]] SequenceProblem& problem() { return problem_; }
+  [[nodiscard]] const SequenceProblem& problem() const { return problem_; }
+  void Touch(int t) { chain_.Forget(t); }
+  /// Frame t of the window does not continue the one before. Nothing of the frames before stays.
+  void Cut(int t);
+  void LimitPoints(int max_points) { chain_.LimitPoints(max_points); }
+  [[nodiscard]] int num_frames() const { return static_cast<int>(problem_.states.size()); }
+  [[nodiscard]] const ChainPrior& prior() const { return prior_; }
+
+ private:
+  void DropFirst();
+
+  SequenceProblem problem_;
+  int max_frames_, num_threads_;
+  ChainProblem chain_;
+  ChainFactor factor_;
+  ChainPrior prior_;
+};
+
+}  // namespace bodyloom

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The robust kernel of robust.h for Ceres' own use: ρ(s) = c² s / (c² + s).
+#pragma once
+
+#include <ceres/cost_function.h>
+#include <ceres/loss_function.h>
+#include <ceres/manifold.h>
+#include <utility>
+
+#include "bodyloom/geometry/math/arrays.h"
+#include "bodyloom/geometry/math/rotation.h"
+#include "bodyloom/tracking/problem/robust.h"
+
+namespace bodyloom {
+
+class GemanMcClureLoss : public ceres::LossFunction {
+ public:
+  /// c > 0 in standard deviations.
+  explicit GemanMcClureLoss(double c) : c_(c) {}
+  void Evaluate(double s, double rho[3]) const override {
+    const RobustValue value = GemanMcClure(s, c_);
+    rho[0] = value.rho;
+    rho[1] = value.weight;
+    rho[2] = -2 * value.weight / (c_ * c_ + s);
+  }
+
+ private:
+  double c_;
+};
+
+// Gaussian prior on one parameter block: r = A x + b.
+
+class LinearCost : public ceres::CostFunction {
+ public:
+  LinearCost(RowMatrixXd A, Eigen::VectorXd b) : A_(std::move(A)), b_(std::move(b)) {
+    set_num_residuals(static_cast<int>(A_.rows()));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(A_.cols()));
+  }
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    Eigen::Map<Eigen::VectorXd> r(residuals, A_.rows());
+    r = A_ * Eigen::Map<const Eigen::VectorXd>(parameters[0], A_.cols()) + b_;
+    if (jacobians != nullptr && jacobians[0] != nullptr) {
+      Eigen::Map<RowMatrixXd> J(jacobians[0], A_.rows(), A_.cols());
+      J = A_;
+    }
+    return true;
+  }
+
+ private:
+  RowMatrixXd A_;
+  Eigen::VectorXd b_;
+};
+
+// SO(3) stored as axis-angle: Plus(w, δ) = log(exp(w) exp(δ)).
+//
+// PlusJacobian is declared the identity: cost functions on such blocks give their derivatives by the increment δ
+// directly ("lifted" Jacobians), which saves a 3×3 product for each block and is exact because Ceres only ever uses
+// the product of the two. A block must therefore not be mixed with cost functions that differentiate by w.
+
+class RotationManifold : public ceres::Manifold {
+ public:
+  [[nodiscard]] int AmbientSize() const override { return 3; }
+  [[nodiscard]] int TangentSize() const override { return 3; }
+  bool Plus(const double* x, const double* delta, double* x_plus_delta) const override {
+    using Vector = Eigen::Map<const Eigen::Vector3d>;
+    Eigen::Map<Eigen::Vector3d> result(x_plus_delta);
+    result = AxisAngleFromRotation(RotationFromAxisAngle(Vector(x)) * RotationFromAxisAngle(Vector(delta)));
+    return true;
+  }
+  bool PlusJacobian(const double*, double* jacobian) const override {
+    Eigen::Map<Eigen::Matrix3d> J(jacobian);
+    J.setIdentity();
+    return true;
+  }
+  bool Minus(const double* y, const double* x, double* y_minus_x) const override {
+    using Vector = Eigen::Map<const Eigen::Vector3d>;
+    Eigen::Map<Eigen::Vector3d> result(y_minus_x);
+    result = AxisAngleFromRotation(RotationFromAxisAngle(Vector(x)).transpose() * RotationFromAxisAngle(Vector(y)));
+    return true;
+  }
+  bool MinusJacobian(const double*, double* jacobian) const override {
+    Eigen::Map<Eigen::Matrix3d> J(jacobian);
+    J.setIdentity();
+    return true;
+  }
+};
+
+}  // namespace bodyloom

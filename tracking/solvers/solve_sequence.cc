@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/tracking/solvers/solve_sequence.h"
+
+#include <ceres/ceres.h>
+#include <omp.h>
+#include <algorithm>
+#include <memory>
+
+#include "bodyloom/geometry/base/check.h"
+#include "bodyloom/tracking/solvers/ceres_problem.h"
+#include "bodyloom/tracking/solvers/chain_solver.h"
+#include "bodyloom/tracking/solvers/term_costs.h"
+
+namespace bodyloom {
+
+SolveReport SolveSequence(SequenceProblem* problem, const SolveOptions& options) {
+  const size_t T = problem->states.size();
+  BODYLOOM_CHECK(
+      T > 0 && problem->frames.size() == T && problem->timestamps.size() == T && problem->cut_before.size() == T,
+      "sequence: ", T, " states, ", problem->frames.size(), " frames, ", problem->timestamps.size(), " timestamps, ",
+      problem->cut_before.size(), " cut flags; expected the same number of each");
+  BODYLOOM_CHECK(problem->betas.size() == problem->layout.num_betas, "sequence: ", problem->betas.size(),
+                 " betas, the layout has ", problem->layout.num_betas);
+  if (options.solver == SequenceSolver::kCeres) return SolveWithCeres(problem, options);
+  SolveReport chain = SolveChain(problem, options);
+  const bool ended = chain.status == SolveStatus::kFailure || chain.status == SolveStatus::kStopped;
+  if (options.solver == SequenceSolver::kChain || ended) return chain;
+  SolveReport report = SolveWithCeres(problem, options);
+  report.iterations += chain.iterations;
+  report.initial_cost = chain.initial_cost;
+  report.seconds += chain.seconds;
+  report.seconds_evaluation += chain.seconds_evaluation;
+  report.seconds_linear_solver += chain.seconds_linear_solver;
+  report.frames_evaluated = chain.frames_evaluated;
+  report.frames_skipped = chain.frames_skipped;
+  return report;
+}
+
+namespace {
+
+class IterationCallback : public ceres::IterationCallback {
+ public:
+  explicit IterationCallback(const std::function<bool(int, double)>& f) : f_(f) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& s) override {
+    return f_(s.iteration, s.cost) ? ceres::SOLVER_CONTINUE : ceres::SOLVER_TERMINATE_SUCCESSFULLY;
+  }
+
+ private:
+  const std::function<bool(int, double)>& f_;
+};
+
+SolveStatus StatusOf(const ceres::Solver::Summary& summary) {
+  switch (summary.termination_type) {
+    case ceres::CONVERGENCE:
+      return SolveStatus::kConverged;
+    case ceres::NO_CONVERGENCE:
+      return SolveStatus::kMaxIterations;
+    case ceres::USER_SUCCESS:
+      return SolveStatus::kStopped;
+    default:
+      return SolveStatus::kFailure;
+  }
+}
+
+/// Frames that two windows share.
+constexpr int kOverlap = 100;
+
+SolveReport SolveFrames(int begin, int end, bool shared_constant, const SolveOptions& options,
+                        SequenceProblem* problem) {
+  CeresProblem ceres_problem(*problem,
+                             {.num_threads = options.num_threads, .begin = begin, .end = end, .compress_frames = true});
+  const auto hold = [&](bool constant, double* block) {
+    if (constant && block != nullptr) ceres_problem.problem().SetParameterBlockConstant(block);
+  };
+  hold(shared_constant || options.shape_constant, ceres_problem.betas());
+  hold(shared_constant || options.focal_constant, ceres_problem.log_focal());
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  solver.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
+  solver.max_num_iterations = options.max_iterations;
+  solver.num_threads = 1;  // FrameBatch has the threads
+  solver.function_tolerance = options.function_tolerance;
+  solver.gradient_tolerance = options.gradient_tolerance;
+  solver.parameter_tolerance = options.parameter_tolerance;
+  solver.logging_type = ceres::SILENT;
+  std::unique_ptr<IterationCallback> callback;
+  if (options.on_iteration) {
+    callback = std::make_unique<IterationCallback>(options.on_iteration);
+    solver.callbacks.push_back(callback.get());
+  }
+  ceres::Solver::Summary summary;
+  const SerialOpenMp no_threads_in_the_factorisation;
+  ceres::Solve(solver, &ceres_problem.problem(), &summary);
+  SolveReport report;
+  report.status = StatusOf(summary);
+  report.iterations = static_cast<int>(summary.iterations.size());
+  report.initial_cost = summary.initial_cost;
+  report.final_cost = summary.final_cost;
+  report.seconds = summary.total_time_in_seconds;
+  report.message = summary.message;
+  report.seconds_evaluation = summary.residual_evaluation_time_in_seconds + summary.jacobian_evaluation_time_in_seconds;
+  report.seconds_linear_solver = summary.linear_solver_time_in_seconds;
+  if (!summary.iterations.empty()) report.gradient_max_norm = summary.iterations.back().gradient_max_norm;
+  if (summary.IsSolutionUsable()) ceres_problem.CopyTo(problem);
+  return report;
+}
+
+double CostOf(const SequenceProblem& problem, int num_threads) {
+  double cost = 0;
+  for (const TermCosts& term : CostsByTerm(problem, num_threads)) cost += term.cost;
+  return cost;
+}
+
+/// Windows one after the other, each from where the one before has left the frames that both have, beside frames that
+/// are held where they are: smoothness reaches across, so there is no seam, and every window lowers the cost of the
+/// whole. Shape and focal length stay.
+SolveReport SolveInWindows(const SolveOptions& options, SequenceProblem* problem) {
+  const int T = static_cast<int>(problem->states.size()), size = options.max_frames_at_once;
+  SolveReport report;
+  report.status = SolveStatus::kConverged;
+  report.initial_cost = CostOf(*problem, options.num_threads);
+  for (int begin = 0; begin == 0 || begin + kOverlap < T; begin += size - kOverlap) {
+    const SolveReport window = SolveFrames(begin, std::min(T, begin + size), true, options, problem);
+    report.iterations += window.iterations;
+    report.seconds += window.seconds;
+    report.seconds_evaluation += window.seconds_evaluation;
+    report.seconds_linear_solver += window.seconds_linear_solver;
+    report.gradient_max_norm = std::max(report.gradient_max_norm, window.gradient_max_norm);
+    report.message = window.message;
+    if (window.status == SolveStatus::kConverged) continue;
+    report.status = window.status;
+    if (window.status != SolveStatus::kMaxIterations) break;
+  }
+  report.final_cost = CostOf(*problem, options.num_threads);
+  return report;
+}
+
+}  // namespace
+
+SolveReport SolveWithCeres(SequenceProblem* problem, const SolveOptions& options) {
+  const int T = static_cast<int>(problem->states.size());
+  const bool windows = options.max_frames_at_once > 2 * kOverlap && T > options.max_frames_at_once;
+  // Frames that a user's term couples may be in different windows.
+  if (!windows || !problem->couplings.empty()) return SolveFrames(0, T, false, options, problem);
+  return SolveInWindows(options, problem);
+}
+
+SerialOpenMp::SerialOpenMp() : levels_(omp_get_max_active_levels()) { omp_set_max_active_levels(0); }
+SerialOpenMp::~SerialOpenMp() { omp_set_max_active_levels(levels_); }
+
+}  // namespace bodyloom

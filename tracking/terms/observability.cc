@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bodyloom/tracking/terms/observability.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "bodyloom/tracking/problem/body_points.h"
+#include "bodyloom/tracking/problem/user_cost.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr double kMinLever = 0.04;  ///< metres a radian
+
+}  // namespace
+
+std::vector<int> FindActiveJoints(const BodyModel& model, const ObservedLandmarks& landmarks, bool dense, bool skip,
+                                  std::span<const UserTerm> user_terms) {
+  std::vector<int> all(model.num_joints());
+  std::iota(all.begin(), all.end(), 0);
+  if (dense || !skip) return all;
+  Kinematics kinematics;
+  PointEvaluator points;
+  kinematics.Set(model, Eigen::VectorXd(),
+                 std::vector<Eigen::Matrix3d>(model.num_joints(), Eigen::Matrix3d::Identity()), Eigen::Vector3d::Zero(),
+                 true);
+  std::vector<double> lever(model.num_joints(), 0);
+  const auto add = [&](const CompiledPoint& point) {
+    points.Evaluate(kinematics, point, true);
+    for (int j : points.joints())
+      lever[j] = std::max(lever[j], points.JointJacobian(kinematics, j).norm() / std::sqrt(2.0));
+  };
+  for (const CompiledPoint& point : landmarks.points) add(point);
+  for (const UserTerm& term : user_terms) {
+    const auto compiled = CompileInputs(term, model, 1);
+    for (const CompiledInputs::Input& input : compiled->inputs) {
+      if (!input.vertices.empty()) add(CompilePoint(model, input.vertices, input.weights, 0));
+      if (input.kind == TermInput::Kind::kRotation) lever.at(input.joint) = std::max(lever[input.joint], kMinLever);
+    }
+  }
+  std::vector<int> active;
+  for (int j : all) {
+    if (j == 0 || lever[j] >= kMinLever) active.push_back(j);
+  }
+  return active;
+}
+
+}  // namespace bodyloom

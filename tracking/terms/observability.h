@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Observability: which joints the observations determine.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "bodyloom/geometry/body/body_model.h"
+#include "bodyloom/tracking/problem/user_term.h"
+#include "bodyloom/tracking/terms/landmarks.h"
+
+namespace bodyloom {
+
+/// Joints worth estimating. With dense keypoints: all. With 2D joints only: those that move some observed landmark by
+/// at least 4 cm a radian in the rest pose; the others (wrists, hands, feet without toe detections) only carry the
+/// prior, and holding them at rest changes nothing that was observed by more than that lever. `skip` false: all joints.
+/// A landmark or surface point that a user's term reads counts as observed, and a joint that it reads is estimated.
+std::vector<int> FindActiveJoints(const BodyModel& model, const ObservedLandmarks& landmarks, bool dense, bool skip,
+                                  std::span<const UserTerm> user_terms = {});
+
+}  // namespace bodyloom
